@@ -1,0 +1,37 @@
+# Compiler settings of every target of ours; generated code (proto/) opts out of the warnings.
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+
+# x86-64-v3 (AVX2, FMA, F16C) is every x86 server since 2015; half-float conversion needs it to be fast.
+option(THUNDERHEAD_X86_64_V3 "Compile for x86-64-v3 processors" OFF)
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+find_program(MOLD_PROGRAM mold)
+if(MOLD_PROGRAM)
+  add_link_options(-fuse-ld=mold)
+endif()
+
+add_library(thunderhead_options INTERFACE)
+target_include_directories(thunderhead_options INTERFACE ${CMAKE_SOURCE_DIR}/server)
+target_compile_options(thunderhead_options INTERFACE
+  -Wall -Wextra -Wpedantic -Werror -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
+  -Wno-missing-field-initializers)
+
+if(THUNDERHEAD_X86_64_V3)
+  add_compile_options(-march=x86-64-v3)
+endif()
+if(THUNDERHEAD_SANITIZE)
+  add_compile_options(-fsanitize=${THUNDERHEAD_SANITIZE} -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${THUNDERHEAD_SANITIZE})
+  if(THUNDERHEAD_SANITIZE MATCHES "undefined")
+    add_compile_options(-fno-sanitize-recover=undefined -fno-sanitize=vptr)
+  endif()
+endif()
+if(THUNDERHEAD_COVERAGE)
+  add_compile_options(--coverage)
+  add_link_options(--coverage)
+endif()

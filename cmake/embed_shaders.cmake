@@ -1,0 +1,10 @@
+# Writes OUTPUT, which defines thunderhead::gl::EmbeddedShaders() from FILES below ROOT.
+set(text "#include \"gl/embedded_shaders.h\"\n\nnamespace thunderhead::gl {\n\n")
+string(APPEND text "const std::map<std::string_view, std::string_view>& EmbeddedShaders() {\n")
+string(APPEND text "  static const std::map<std::string_view, std::string_view> shaders = {\n")
+foreach(file IN LISTS FILES)
+  file(READ ${ROOT}/${file} body)
+  string(APPEND text "      {\"${file}\", R\"glsl(${body})glsl\"},\n")
+endforeach()
+string(APPEND text "  };\n  return shaders;\n}\n\n}  // namespace thunderhead::gl\n")
+file(WRITE ${OUTPUT} "${text}")

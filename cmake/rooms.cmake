@@ -1,0 +1,30 @@
+# A room is one folder of server/ built as one static library, `thunderhead::NAME`.
+# thunderhead_room(NAME [DEPENDS rooms and libraries...]) takes every .cc file of the folder.
+function(thunderhead_room name)
+  cmake_parse_arguments(ROOM "" "" "DEPENDS;SOURCES" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
+  list(APPEND sources ${ROOM_SOURCES})
+  if(sources)
+    add_library(thunderhead_${name} STATIC ${sources})
+    target_link_libraries(thunderhead_${name} PUBLIC thunderhead_options ${ROOM_DEPENDS})
+  else()
+    add_library(thunderhead_${name} INTERFACE)
+    target_link_libraries(thunderhead_${name} INTERFACE thunderhead_options ${ROOM_DEPENDS})
+  endif()
+  add_library(thunderhead::${name} ALIAS thunderhead_${name})
+endfunction()
+
+# thunderhead_test(NAME DEPENDS libraries...) builds the .cc files of the current folder, or SOURCES, into one
+# GoogleTest program and registers each of its cases with ctest under LABEL.
+function(thunderhead_test name)
+  cmake_parse_arguments(TEST "" "LABEL" "DEPENDS;SOURCES;PROPERTIES" ${ARGN})
+  if(NOT TEST_SOURCES)
+    file(GLOB TEST_SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
+  endif()
+  add_executable(${name} ${TEST_SOURCES})
+  target_link_libraries(${name} PRIVATE thunderhead_options ${TEST_DEPENDS} GTest::gmock GTest::gtest_main)
+  target_include_directories(${name} PRIVATE ${CMAKE_SOURCE_DIR})
+  target_compile_definitions(${name} PRIVATE THUNDERHEAD_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS "${TEST_LABEL}" TIMEOUT 300
+    ENVIRONMENT "EGL_PLATFORM=surfaceless" ${TEST_PROPERTIES})
+endfunction()

@@ -1,0 +1,22 @@
+#include "base/status.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "absl/strings/str_cat.h"
+
+namespace thunderhead::base {
+
+absl::Status Annotate(const absl::Status& status, std::string_view prefix) {
+  if (status.ok()) return status;
+  return absl::Status(
+      status.code(),
+      absl::StrCat(absl::string_view(prefix.data(), prefix.size()), ": ", status.message()));
+}
+
+void CheckFailed(const char* file, int line, const char* condition, const std::string& detail) {
+  std::fprintf(stderr, "%s:%d: check failed: %s: %s\n", file, line, condition, detail.c_str());
+  std::abort();
+}
+
+}  // namespace thunderhead::base

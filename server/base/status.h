@@ -1,0 +1,49 @@
+// Status values and the macros that pass them on. Errors from input or the environment are absl::Status with
+// what went wrong, where, and what to do next; a broken invariant of our own is THUNDERHEAD_CHECK. No exception
+// crosses a room.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+
+namespace thunderhead::base {
+
+// `status` with `prefix` and ": " put before its message; OK stays OK.
+absl::Status Annotate(const absl::Status& status, std::string_view prefix);
+
+// Prints the failed condition with its place and `detail`, then aborts.
+[[noreturn]] void CheckFailed(const char* file, int line, const char* condition,
+                              const std::string& detail);
+
+}  // namespace thunderhead::base
+
+// Returns from the function when `expression` is not OK.
+#define THUNDERHEAD_RETURN_IF_ERROR(expression)                  \
+  do {                                                           \
+    if (absl::Status thunderhead_status = (expression);          \
+        !thunderhead_status.ok()) {                              \
+      return thunderhead_status;                                 \
+    }                                                            \
+  } while (false)
+
+#define THUNDERHEAD_CONCATENATE_INNER(a, b) a##b
+#define THUNDERHEAD_CONCATENATE(a, b) THUNDERHEAD_CONCATENATE_INNER(a, b)
+
+// THUNDERHEAD_ASSIGN_OR_RETURN(auto value, Function()): returns the error, or assigns the value.
+#define THUNDERHEAD_ASSIGN_OR_RETURN(declaration, expression)                                  \
+  auto THUNDERHEAD_CONCATENATE(thunderhead_or_, __LINE__) = (expression);                      \
+  if (!THUNDERHEAD_CONCATENATE(thunderhead_or_, __LINE__).ok()) {                              \
+    return std::move(THUNDERHEAD_CONCATENATE(thunderhead_or_, __LINE__)).status();             \
+  }                                                                                            \
+  declaration = *std::move(THUNDERHEAD_CONCATENATE(thunderhead_or_, __LINE__))
+
+// Aborts with place, condition and `detail` (a string expression that shows the values) when `condition` is false.
+#define THUNDERHEAD_CHECK(condition, detail)                                              \
+  do {                                                                                    \
+    if (!(condition)) {                                                                   \
+      ::thunderhead::base::CheckFailed(__FILE__, __LINE__, #condition, detail);           \
+    }                                                                                     \
+  } while (false)

@@ -1,0 +1,39 @@
+#include "physics/hydrometeors.h"
+
+namespace thunderhead::physics {
+namespace {
+
+constexpr std::array<std::string_view, kHydrometeorCount> kNames = {"cloud", "rain",    "ice",
+                                                                    "snow",  "graupel", "hail"};
+
+// The asymmetry parameters stand in for the Mie and ray-traced tables: water 0.85 (Mie, r_e 10 um, 0.55 um, rounded
+// down for the broad part of the lobe), smooth ice crystals 0.78, roughened and rimed ice 0.76.
+const std::array<ParticleOptics, kHydrometeorCount> kDefaults = {{
+    {1e-5F, 1000.0F, 1.0F, {PhaseKind::kCornetteShanks, 0.85F}, {1.0F, 0.0F, 0.0F}},
+    {1e-3F, 1000.0F, 1.0F, {PhaseKind::kCornetteShanks, 0.85F}, {0.0F, 0.0F, 1.0F}},
+    {1e-3F, 917.0F, 1.0F, {PhaseKind::kHenyeyGreenstein, 0.78F}, {1.0F, 0.0F, 1.0F}},
+    {2e-3F, 100.0F, 1.0F, {PhaseKind::kHenyeyGreenstein, 0.76F}, {1.0F, 1.0F, 0.0F}},
+    {2.5e-3F, 500.0F, 1.0F, {PhaseKind::kHenyeyGreenstein, 0.76F}, {0.0F, 1.0F, 0.0F}},
+    {1e-2F, 900.0F, 1.0F, {PhaseKind::kHenyeyGreenstein, 0.76F}, {0.0F, 1.0F, 1.0F}},
+}};
+
+}  // namespace
+
+std::string_view NameOf(Hydrometeor hydrometeor) { return kNames[IndexOf(hydrometeor)]; }
+
+std::optional<Hydrometeor> HydrometeorNamed(std::string_view name) {
+  for (Hydrometeor hydrometeor : kHydrometeors) {
+    if (NameOf(hydrometeor) == name) return hydrometeor;
+  }
+  return std::nullopt;
+}
+
+const ParticleOptics& DefaultOptics(Hydrometeor hydrometeor) {
+  return kDefaults[IndexOf(hydrometeor)];
+}
+
+float MassExtinction_m2_per_kg(float density_kg_per_m3, float radius_m) {
+  return 3.0F / (2.0F * density_kg_per_m3 * radius_m);
+}
+
+}  // namespace thunderhead::physics

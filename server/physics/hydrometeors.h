@@ -1,0 +1,60 @@
+// The kinds of hydrometeors and the optics of one particle of each: radius, bulk density, albedo, phase function,
+// false colour. Knows no files and no GL.
+//
+// Radii: Riley et al. 2003 (AMS), Table II; false colours: Table III; densities as in common bulk microphysics.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+#include "glm/vec3.hpp"
+
+namespace thunderhead::physics {
+
+enum class Hydrometeor { kCloud, kRain, kIce, kSnow, kGraupel, kHail };
+
+inline constexpr std::size_t kHydrometeorCount = 6;
+inline constexpr std::array<Hydrometeor, kHydrometeorCount> kHydrometeors = {
+    Hydrometeor::kCloud, Hydrometeor::kRain,    Hydrometeor::kIce,
+    Hydrometeor::kSnow,  Hydrometeor::kGraupel, Hydrometeor::kHail};
+
+constexpr std::size_t IndexOf(Hydrometeor hydrometeor) {
+  return static_cast<std::size_t>(hydrometeor);
+}
+
+// "cloud", "rain", "ice", "snow", "graupel" or "hail".
+std::string_view NameOf(Hydrometeor hydrometeor);
+
+// The hydrometeor of that name, or nothing.
+std::optional<Hydrometeor> HydrometeorNamed(std::string_view name);
+
+enum class PhaseKind { kHenyeyGreenstein, kCornetteShanks, kRayleigh };
+
+// A phase function by formula; `asymmetry` is its parameter g (unused by Rayleigh).
+struct PhaseFunction {
+  PhaseKind kind = PhaseKind::kHenyeyGreenstein;
+  float asymmetry = 0.0F;
+
+  bool operator==(const PhaseFunction&) const = default;
+};
+
+// The optics of one particle of a field.
+struct ParticleOptics {
+  float radius_m;
+  float density_kg_per_m3;
+  float albedo;
+  PhaseFunction phase;
+  glm::vec3 false_color;  // linear sRGB
+};
+
+// The defaults of each hydrometeor.
+const ParticleOptics& DefaultOptics(Hydrometeor hydrometeor);
+
+// Mass extinction coefficient in m2/kg: extinction (1/m) per mass of condensate in a volume of air (kg/m3),
+// 3 / (2 rho_f R_f). Riley et al. 2003 (AMS), eq. 4, geometric optics with an extinction efficiency of 2.
+// `density_kg_per_m3` and `radius_m` must be above zero.
+float MassExtinction_m2_per_kg(float density_kg_per_m3, float radius_m);
+
+}  // namespace thunderhead::physics

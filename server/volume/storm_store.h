@@ -1,0 +1,76 @@
+// The storms a server holds: a catalogue of series found under some paths, and a cache of the times in use within a
+// byte budget, which reads the next times ahead on a thread of its own. Safe to call from any thread; netCDF-C is not
+// thread-safe, so one reader works at a time.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::volume {
+
+// One of a storm's times.
+struct StormTime {
+  std::string valid_time;  // ISO 8601, UTC, e.g. "0001-01-01T00:40:00Z"
+  double elapsed_s = 0.0;  // since the storm's first time
+};
+
+// What is known of a storm without reading its fields.
+struct StormInfo {
+  std::string id;     // unique in a store; from the file's or folder's name
+  std::string title;  // for people, from the file's global attributes
+  std::vector<std::string> files;
+  std::vector<StormTime> times;  // in order of valid time
+  glm::ivec3 file_cells{0};      // west-east, south-north, bottom-top, as in the file
+  double dx_m = 0.0;
+  double dy_m = 0.0;
+  std::vector<physics::Hydrometeor> fields;  // that the file has
+  std::optional<double> latitude_deg;        // of the middle; nothing for an idealised run
+  std::optional<double> longitude_deg;
+};
+
+// Says how far a read has come: a share from 0 to 1. Called on the reading thread.
+using ReadProgress = std::function<void(double)>;
+
+struct StormStoreOptions {
+  std::size_t byte_budget = std::size_t{2} << 30;  // of cached times; the newest one is kept even if it alone is larger
+  int read_ahead = 1;                              // times read ahead after each Get
+};
+
+class StormStore {
+ public:
+  // Opens every storm under `paths`: a file is one storm; a folder is one series where its files continue one
+  // another (same grid, different times), else one storm a file or sub-folder. Reads only metadata. Fails with one
+  // clear error (file, variable, what to do) if a path given by name cannot be used; a file inside a folder that is
+  // no storm is logged and left out; no storm at all is an error.
+  static absl::StatusOr<std::unique_ptr<StormStore>> Open(const std::vector<std::string>& paths,
+                                                          const StormStoreOptions& options);
+  virtual ~StormStore() = default;
+
+  // The storms, in order of id.
+  virtual const std::vector<StormInfo>& Storms() const = 0;
+
+  // The storm of that id, or nothing.
+  const StormInfo* Find(std::string_view id) const;
+
+  // The fields of one time: from the cache, or read now (blocking). `time_index` must be one of the storm's. Errors:
+  // NOT_FOUND (id), OUT_OF_RANGE (time), and what is wrong with the file. `progress` may be empty.
+  virtual absl::StatusOr<std::shared_ptr<const HydrometeorFields>> Get(
+      std::string_view id, int time_index, const ReadProgress& progress) = 0;
+
+  // The same if it is in the cache; nothing is read.
+  virtual std::shared_ptr<const HydrometeorFields> Peek(std::string_view id, int time_index) = 0;
+
+  // Bytes of all cached times.
+  virtual std::size_t CachedBytes() const = 0;
+};
+
+}  // namespace thunderhead::volume
