@@ -1,0 +1,31 @@
+// Pixels to files and back: JPEG by libjpeg-turbo, PNG by libpng. Pixels are 8-bit sRGB, three bytes each, rows from
+// top to bottom. Pure functions, safe from any thread.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/types/span.h"
+
+namespace thunderhead::frame {
+
+struct RgbImage {
+  int width_px = 0;
+  int height_px = 0;
+  std::vector<std::uint8_t> rgb;
+};
+
+// JPEG with 4:2:0 chroma; `quality` is 1 to 100.
+absl::StatusOr<std::string> EncodeJpeg(int width_px, int height_px,
+                                       absl::Span<const std::uint8_t> rgb, int quality);
+
+absl::StatusOr<std::string> EncodePng(int width_px, int height_px,
+                                      absl::Span<const std::uint8_t> rgb);
+
+absl::StatusOr<RgbImage> DecodePng(const std::string& png);
+
+absl::StatusOr<RgbImage> DecodeJpeg(const std::string& jpeg);
+
+}  // namespace thunderhead::frame

@@ -1,0 +1,103 @@
+// A scene: one plain value that decides what a picture looks like, with every default resolved. Knows no files, no
+// GL and no messages. Azimuths are degrees clockwise from north; world coordinates as in volume/grid.h.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "glm/vec3.hpp"
+#include "physics/hydrometeors.h"
+
+namespace thunderhead::scene {
+
+// How one hydrometeor field is drawn.
+struct FieldParameters {
+  bool visible = true;
+  float scale = 1.0F;  // multiplies the mixing ratio
+  physics::ParticleOptics optics{};
+
+  bool operator==(const FieldParameters&) const;
+};
+
+// Looks at `target_m` from `distance_m` away, standing at azimuth and elevation seen from the target.
+struct OrbitCamera {
+  glm::dvec3 target_m{0.0};
+  double azimuth_deg = 200.0;
+  double elevation_deg = 8.0;
+  double distance_m = 1e5;
+  double field_of_view_deg = 35.0;  // vertical
+
+  bool operator==(const OrbitCamera&) const = default;
+};
+
+struct Sun {
+  double azimuth_deg = 255.0;
+  double elevation_deg = 35.0;
+  double irradiance = 1.0;  // on a plane facing the sun above the atmosphere; radiance is in this unit
+
+  bool operator==(const Sun&) const = default;
+};
+
+struct Sky {
+  double brightness = 1.0;
+  double ground_albedo = 0.2;
+
+  bool operator==(const Sky&) const = default;
+};
+
+// The modes of Riley et al. 2003 (AMS), Table IV.
+enum class Mode { kUniformPhaseLowAlbedo, kUniformPhaseTranslucent, kPerFieldPhaseTranslucent };
+
+enum class Transport { kPaper, kConsistent };
+
+struct Rendering {
+  Mode mode = Mode::kPerFieldPhaseTranslucent;
+  Transport transport = Transport::kConsistent;
+  int slices = 128;
+  double theta_f_deg = 20.0;
+  bool false_colors = false;
+
+  bool operator==(const Rendering&) const = default;
+};
+
+enum class ToneMap { kLinear, kFilmic };
+
+struct Display {
+  double exposure_ev = 0.0;
+  ToneMap tone_map = ToneMap::kFilmic;
+
+  bool operator==(const Display&) const = default;
+};
+
+struct Output {
+  int width_px = 1280;
+  int height_px = 720;
+  int jpeg_quality = 88;
+
+  bool operator==(const Output&) const = default;
+};
+
+struct Scene {
+  std::string storm_id;
+  int time_index = 0;
+  OrbitCamera camera;
+  Sun sun;
+  Sky sky;
+  std::array<FieldParameters, physics::kHydrometeorCount> fields;  // by physics::IndexOf
+  Rendering rendering;
+  Display display;
+  Output output;
+
+  // A scene with the default optics of every field.
+  Scene();
+
+  bool operator==(const Scene&) const = default;
+};
+
+// The stages of rendering in order; a change reruns the first stage it dirties and every later one.
+enum class Stage { kStorm, kExtinction, kLight, kView, kTone, kNothing };
+
+// The first stage that must rerun when `before` becomes `after`.
+Stage FirstDirtyStage(const Scene& before, const Scene& after);
+
+}  // namespace thunderhead::scene

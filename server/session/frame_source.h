@@ -1,0 +1,72 @@
+// What the render loop asks of the engine that draws: a scene and a storm's fields in, display pixels out. The GL
+// engine implements it; service tests use a fake one. A FrameSource lives and works on one thread.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "physics/hydrometeors.h"
+#include "scene/scene.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::session {
+
+// How finely a frame is drawn: full quality is the scene's own slices at scale 1.
+struct FrameQuality {
+  double image_scale = 1.0;  // of the eye buffer's width and height, (0, 1]; the frame keeps the scene's size
+  double slice_share = 1.0;  // of the scene's slices, (0, 1]
+
+  bool operator==(const FrameQuality&) const = default;
+};
+
+// One stage's wall time. Stages: "read", "extinction", "upload", "slices", "tone", "read_back", "encode".
+struct StageCost {
+  std::string stage;
+  double milliseconds = 0.0;
+};
+
+// What a frame modelled.
+struct Modelled {
+  std::vector<physics::Hydrometeor> fields;
+  int slices = 0;
+  std::uint64_t device_bytes = 0;
+  double occupied_share = 0.0;
+};
+
+// A finished picture: 8-bit sRGB, three bytes a pixel, rows from top to bottom.
+struct DisplayFrame {
+  int width_px = 0;
+  int height_px = 0;
+  std::vector<std::uint8_t> rgb;
+  std::vector<StageCost> stages;
+  Modelled modelled;
+};
+
+// What the source draws on.
+struct DeviceInfo {
+  std::string device;       // "software" or "gpu 0"
+  std::string gl_renderer;  // OpenGL's renderer string
+  std::string gl_version;
+};
+
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+
+  virtual const DeviceInfo& Device() const = 0;
+
+  // Draws `scene` from `fields` (of the scene's storm and time). Reruns only the stages that differ from the frame
+  // drawn before.
+  virtual absl::StatusOr<DisplayFrame> Draw(
+      const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
+      const FrameQuality& quality) = 0;
+};
+
+// Makes the source on the thread that will use it.
+using FrameSourceFactory = std::function<absl::StatusOr<std::unique_ptr<FrameSource>>()>;
+
+}  // namespace thunderhead::session
