@@ -1,7 +1,8 @@
-// The kinds of hydrometeors and the optics of one particle of each: radius, bulk density, albedo, phase function,
-// false colour. Knows no files and no GL.
+// The kinds of hydrometeors and the optics of one particle of each: radius, bulk density, albedo,
+// phase function, false colour. Knows no files and no GL.
 //
-// Radii: Riley et al. 2003 (AMS), Table II; false colours: Table III; densities as in common bulk microphysics.
+// Radii: Riley et al. 2003 (AMS), Table II; false colours: Table III; densities as in common bulk
+// microphysics.
 #pragma once
 
 #include <array>
@@ -52,9 +53,9 @@ struct ParticleOptics {
 // The defaults of each hydrometeor.
 const ParticleOptics& DefaultOptics(Hydrometeor hydrometeor);
 
-// Mass extinction coefficient in m2/kg: extinction (1/m) per mass of condensate in a volume of air (kg/m3),
-// 3 / (2 rho_f R_f). Riley et al. 2003 (AMS), eq. 4, geometric optics with an extinction efficiency of 2.
-// `density_kg_per_m3` and `radius_m` must be above zero.
+// Mass extinction coefficient in m2/kg: extinction (1/m) per mass of condensate in a volume of air
+// (kg/m3), 3 / (2 rho_f R_f). Riley et al. 2003 (AMS), eq. 4, geometric optics with an extinction
+// efficiency of 2. `density_kg_per_m3` and `radius_m` must be above zero.
 float MassExtinction_m2_per_kg(float density_kg_per_m3, float radius_m);
 
 }  // namespace thunderhead::physics

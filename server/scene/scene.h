@@ -1,5 +1,6 @@
-// A scene: one plain value that decides what a picture looks like, with every default resolved. Knows no files, no
-// GL and no messages. Azimuths are degrees clockwise from north; world coordinates as in volume/grid.h.
+// A scene: one plain value that decides what a picture looks like, with every default resolved.
+// Knows no files, no GL and no messages. Azimuths are degrees clockwise from north; world
+// coordinates as in volume/grid.h.
 #pragma once
 
 #include <array>
@@ -19,7 +20,8 @@ struct FieldParameters {
   bool operator==(const FieldParameters&) const;
 };
 
-// Looks at `target_m` from `distance_m` away, standing at azimuth and elevation seen from the target.
+// Looks at `target_m` from `distance_m` away, standing at azimuth and elevation seen from the
+// target.
 struct OrbitCamera {
   glm::dvec3 target_m{0.0};
   double azimuth_deg = 200.0;
@@ -33,7 +35,8 @@ struct OrbitCamera {
 struct Sun {
   double azimuth_deg = 255.0;
   double elevation_deg = 35.0;
-  double irradiance = 1.0;  // on a plane facing the sun above the atmosphere; radiance is in this unit
+  double irradiance =
+      1.0;  // on a plane facing the sun above the atmosphere; radiance is in this unit
 
   bool operator==(const Sun&) const = default;
 };

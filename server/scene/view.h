@@ -1,4 +1,5 @@
-// The geometry of a picture: where the eye is and how pixels map to rays. Derived from a scene's camera.
+// The geometry of a picture: where the eye is and how pixels map to rays. Derived from a scene's
+// camera.
 #pragma once
 
 #include "glm/mat4x4.hpp"
@@ -7,8 +8,8 @@
 
 namespace thunderhead::scene {
 
-// A perspective view. `right`, `up` and `forward` are unit vectors; a ray through normalised device coordinates
-// (x, y) has the direction forward + x tan_half_width right + y tan_half_height up.
+// A perspective view. `right`, `up` and `forward` are unit vectors; a ray through normalised device
+// coordinates (x, y) has the direction forward + x tan_half_width right + y tan_half_height up.
 struct View {
   glm::dvec3 eye_m{0.0};
   glm::dvec3 right{1.0, 0.0, 0.0};

@@ -1,0 +1,55 @@
+#include "frame/tone_map.h"
+
+#include <cmath>
+
+#include "base/status.h"
+#include "base/stopwatch.h"
+
+namespace thunderhead::frame {
+namespace {
+
+constexpr GLuint kLinearUnit = 4;
+
+std::size_t PixelCount(const gl::Texture2D& texture) {
+  return static_cast<std::size_t>(texture.Size().x) * static_cast<std::size_t>(texture.Size().y);
+}
+
+}  // namespace
+
+absl::StatusOr<ToneMapped> ToneMapper::Map(const gl::Texture2D& linear,
+                                           const scene::Display& display) {
+  base::Stopwatch stopwatch;
+  if (display_.Size() != linear.Size()) {
+    display_ = gl::Texture2D(GL_RGBA8, linear.Size());
+    target_ = gl::Framebuffer(display_);
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_.Get({"common/whole_target.vert",
+                     "post/tone_map.frag",
+                     {{"FILMIC", display.tone_map == scene::ToneMap::kFilmic ? 1 : 0}}}));
+  program->Set("exposure", kExposureAtZeroEv * static_cast<float>(std::exp2(display.exposure_ev)));
+  linear.Bind(kLinearUnit);
+  target_.Bind();
+  program->Use();
+  no_attributes_.Bind();
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glFinish();
+  ToneMapped mapped;
+  mapped.tone_ms = stopwatch.Restart();
+  mapped.rgb.resize(PixelCount(linear) * 3);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glGetTextureImage(display_.Get(), 0, GL_RGB, GL_UNSIGNED_BYTE,
+                    static_cast<GLsizei>(mapped.rgb.size()), mapped.rgb.data());
+  mapped.read_back_ms = stopwatch.ElapsedMs();
+  return mapped;
+}
+
+std::vector<float> ReadLinear(const gl::Texture2D& linear) {
+  std::vector<float> values(PixelCount(linear) * 4);
+  glGetTextureImage(linear.Get(), 0, GL_RGBA, GL_FLOAT,
+                    static_cast<GLsizei>(values.size() * sizeof(float)), values.data());
+  return values;
+}
+
+}  // namespace thunderhead::frame

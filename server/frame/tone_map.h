@@ -1,0 +1,40 @@
+// The last stage on the device: exposure, tone map and read-back of a linear frame. Owns GL
+// objects: use it on the context's thread. Knows no storms.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "gl/objects.h"
+#include "gl/program.h"
+#include "scene/scene.h"
+
+namespace thunderhead::frame {
+
+// 8-bit sRGB, three bytes a pixel, rows from top to bottom.
+struct ToneMapped {
+  std::vector<std::uint8_t> rgb;
+  double tone_ms = 0.0;
+  double read_back_ms = 0.0;
+};
+
+// Exposure 0 EV multiplies radiance by this: a sunlit white cloud, about 0.25 of the sun's
+// irradiance, comes out bright but not burnt.
+inline constexpr float kExposureAtZeroEv = 5.0F;
+
+class ToneMapper {
+ public:
+  absl::StatusOr<ToneMapped> Map(const gl::Texture2D& linear, const scene::Display& display);
+
+ private:
+  gl::ProgramCache programs_;
+  gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
+  gl::Texture2D display_;
+  gl::Framebuffer target_;
+};
+
+// The texture's values, four floats a pixel, rows from bottom to top as GL keeps them.
+std::vector<float> ReadLinear(const gl::Texture2D& linear);
+
+}  // namespace thunderhead::frame

@@ -1,0 +1,178 @@
+#include "gl/context.h"
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+
+#include <charconv>
+#include <cstdlib>
+#include <optional>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
+#include "base/status.h"
+#include "spdlog/spdlog.h"
+
+namespace thunderhead::gl {
+namespace {
+
+constexpr int kMostDevices = 64;
+
+std::string GlString(GLenum name) {
+  const GLubyte* text = glGetString(name);
+  return text == nullptr ? std::string() : std::string(reinterpret_cast<const char*>(text));
+}
+
+class EglContext final : public Context {
+ public:
+  explicit EglContext(EGLDisplay display) : display_(display) {}
+
+  ~EglContext() override {
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    if (context_ != EGL_NO_CONTEXT) eglDestroyContext(display_, context_);
+    eglTerminate(display_);
+  }
+
+  absl::Status Open(std::string device) {
+    EGLint major = 0;
+    EGLint minor = 0;
+    if (eglInitialize(display_, &major, &minor) == EGL_FALSE) {
+      return absl::UnavailableError("its EGL driver cannot be initialised");
+    }
+    if (eglBindAPI(EGL_OPENGL_API) == EGL_FALSE) {
+      return absl::UnavailableError("its EGL driver has no desktop OpenGL");
+    }
+    const EGLint config_attributes[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, 0,
+                                        EGL_NONE};
+    EGLConfig config = nullptr;
+    EGLint count = 0;
+    if (eglChooseConfig(display_, config_attributes, &config, 1, &count) == EGL_FALSE ||
+        count == 0) {
+      config = nullptr;  // EGL_KHR_no_config_context
+    }
+    const EGLint context_attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                         4,
+                                         EGL_CONTEXT_MINOR_VERSION,
+                                         5,
+                                         EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                         EGL_NONE};
+    context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, context_attributes);
+    if (context_ == EGL_NO_CONTEXT) {
+      return absl::UnavailableError("it offers no OpenGL 4.5 core context");
+    }
+    if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_FALSE) {
+      return absl::UnavailableError("its context cannot be used without a surface");
+    }
+    info_ = {std::move(device), GlString(GL_RENDERER), GlString(GL_VERSION)};
+    return absl::OkStatus();
+  }
+
+  const ContextInfo& Info() const override { return info_; }
+
+ private:
+  EGLDisplay display_;
+  EGLContext context_ = EGL_NO_CONTEXT;
+  ContextInfo info_;
+};
+
+// libepoxy cannot resolve the core eglGetPlatformDisplay before a display exists; the EXT entry
+// point it can.
+EGLDisplay PlatformDisplay(EGLenum platform, void* native) {
+  return eglGetPlatformDisplayEXT(platform, native, nullptr);
+}
+
+// GPUs only: Mesa also lists its software renderer as a device.
+std::vector<EGLDeviceEXT> GpuDevices() {
+  std::vector<EGLDeviceEXT> gpus;
+  if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_base") &&
+      !epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration")) {
+    return gpus;
+  }
+  EGLDeviceEXT devices[kMostDevices];
+  EGLint count = 0;
+  if (eglQueryDevicesEXT(kMostDevices, devices, &count) == EGL_FALSE) return gpus;
+  for (EGLint i = 0; i < count; ++i) {
+    const char* extensions = eglQueryDeviceStringEXT(devices[i], EGL_EXTENSIONS);
+    const absl::string_view text = extensions == nullptr ? "" : extensions;
+    if (text.find("EGL_MESA_device_software") == absl::string_view::npos) {
+      gpus.push_back(devices[i]);
+    }
+  }
+  return gpus;
+}
+
+absl::StatusOr<std::unique_ptr<Context>> OpenGpu(EGLDeviceEXT device, std::size_t index) {
+  EGLDisplay display = PlatformDisplay(EGL_PLATFORM_DEVICE_EXT, device);
+  if (display == EGL_NO_DISPLAY) return absl::UnavailableError("it has no EGL display");
+  auto context = std::make_unique<EglContext>(display);
+  THUNDERHEAD_RETURN_IF_ERROR(context->Open(absl::StrCat("gpu ", index)));
+  return context;
+}
+
+absl::StatusOr<std::unique_ptr<Context>> OpenSoftware() {
+  // Mesa's surfaceless platform would pick a GPU that Mesa drives; this keeps the word "software"
+  // true.
+  setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
+  EGLDisplay display =
+      PlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, reinterpret_cast<void*>(EGL_DEFAULT_DISPLAY));
+  absl::Status status = absl::UnavailableError("there is no surfaceless EGL platform");
+  if (display != EGL_NO_DISPLAY) {
+    auto context = std::make_unique<EglContext>(display);
+    status = context->Open("software");
+    if (status.ok()) return context;
+  }
+  return absl::UnavailableError(
+      absl::StrCat("software rendering is not available: ", status.message(),
+                   "; install Mesa's software renderer (Debian: libegl1 libgl1-mesa-dri)"));
+}
+
+absl::StatusOr<std::unique_ptr<Context>> OpenNumberedGpu(const std::vector<EGLDeviceEXT>& gpus,
+                                                         std::size_t index) {
+  if (index >= gpus.size()) {
+    return absl::NotFoundError(absl::StrCat(
+        "device ", index, " was asked for, but EGL finds ", gpus.size(),
+        " GPU(s), counted from 0; use --device software, or install the GPU's EGL driver"));
+  }
+  auto context = OpenGpu(gpus[index], index);
+  if (context.ok()) return context;
+  return absl::UnavailableError(absl::StrCat("device ", index,
+                                             " cannot be used: ", context.status().message(),
+                                             "; check the GPU's driver, or use --device software"));
+}
+
+absl::StatusOr<std::unique_ptr<Context>> OpenAny(const std::vector<EGLDeviceEXT>& gpus) {
+  for (std::size_t i = 0; i < gpus.size(); ++i) {
+    auto context = OpenGpu(gpus[i], i);
+    if (context.ok()) return context;
+    spdlog::info("gpu {} is left aside: {}", i, std::string(context.status().message()));
+  }
+  return OpenSoftware();
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Context>> Context::Create(std::string_view device) {
+  absl::StatusOr<std::unique_ptr<Context>> context = absl::UnknownError("");
+  if (device == "software") {
+    context = OpenSoftware();
+  } else if (device == "auto") {
+    context = OpenAny(GpuDevices());
+  } else {
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(device.data(), device.data() + device.size(), index);
+    if (error != std::errc() || end != device.data() + device.size()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("device is '", absl::string_view(device.data(), device.size()),
+                       "'; it must be 'auto', 'software' or a GPU's number"));
+    }
+    context = OpenNumberedGpu(GpuDevices(), index);
+  }
+  if (context.ok()) {
+    const ContextInfo& info = (*context)->Info();
+    spdlog::info("drawing on {}: {}, OpenGL {}", info.device, info.renderer, info.version);
+  }
+  return context;
+}
+
+}  // namespace thunderhead::gl

@@ -1,0 +1,11 @@
+// Every shader file of server/shaders, by its path below that folder; generated at build time.
+#pragma once
+
+#include <map>
+#include <string_view>
+
+namespace thunderhead::gl {
+
+const std::map<std::string_view, std::string_view>& EmbeddedShaders();
+
+}  // namespace thunderhead::gl

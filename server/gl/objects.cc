@@ -1,0 +1,117 @@
+#include "gl/objects.h"
+
+#include <string>
+
+#include "base/status.h"
+
+namespace thunderhead::gl {
+namespace internal {
+
+void DeleteTexture(GLuint name) { glDeleteTextures(1, &name); }
+void DeleteFramebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
+void DeleteBuffer(GLuint name) { glDeleteBuffers(1, &name); }
+void DeleteVertexArray(GLuint name) { glDeleteVertexArrays(1, &name); }
+
+}  // namespace internal
+
+namespace {
+
+GLuint NewTexture(GLenum target, Edge edge) {
+  GLuint name = 0;
+  glCreateTextures(target, 1, &name);
+  const GLint wrap = edge == Edge::kZero ? GL_CLAMP_TO_BORDER : GL_CLAMP_TO_EDGE;
+  glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTextureParameteri(name, GL_TEXTURE_WRAP_S, wrap);
+  glTextureParameteri(name, GL_TEXTURE_WRAP_T, wrap);
+  glTextureParameteri(name, GL_TEXTURE_WRAP_R, wrap);
+  return name;
+}
+
+}  // namespace
+
+std::size_t BytesPerTexel(GLenum internal_format) {
+  switch (internal_format) {
+    case GL_R16F:
+      return 2;
+    case GL_RG16F:
+    case GL_R32F:
+    case GL_RGBA8:
+      return 4;
+    case GL_RGBA16F:
+    case GL_RG32F:
+      return 8;
+    case GL_RGBA32F:
+      return 16;
+    default:
+      THUNDERHEAD_CHECK(false, "unknown internal format " + std::to_string(internal_format));
+  }
+}
+
+Texture2D::Texture2D(GLenum internal_format, glm::ivec2 size, Edge edge)
+    : name_(NewTexture(GL_TEXTURE_2D, edge)),
+      size_(size),
+      bytes_(BytesPerTexel(internal_format) * static_cast<std::size_t>(size.x) *
+             static_cast<std::size_t>(size.y)) {
+  glTextureStorage2D(name_.Get(), 1, internal_format, size.x, size.y);
+}
+
+Texture3D::Texture3D(GLenum internal_format, glm::ivec3 size)
+    : name_(NewTexture(GL_TEXTURE_3D, Edge::kClamp)),
+      size_(size),
+      bytes_(BytesPerTexel(internal_format) * static_cast<std::size_t>(size.x) *
+             static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z)) {
+  glTextureStorage3D(name_.Get(), 1, internal_format, size.x, size.y, size.z);
+}
+
+void Texture3D::Upload(GLenum format, GLenum type, const void* texels) {
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage3D(name_.Get(), 0, 0, 0, 0, size_.x, size_.y, size_.z, format, type, texels);
+}
+
+Framebuffer::Framebuffer(const Texture2D& color) : size_(color.Size()) {
+  GLuint name = 0;
+  glCreateFramebuffers(1, &name);
+  name_ = Name<internal::DeleteFramebuffer>(name);
+  glNamedFramebufferTexture(name, GL_COLOR_ATTACHMENT0, color.Get(), 0);
+  const GLenum status = glCheckNamedFramebufferStatus(name, GL_DRAW_FRAMEBUFFER);
+  THUNDERHEAD_CHECK(status == GL_FRAMEBUFFER_COMPLETE,
+                    "framebuffer status " + std::to_string(status));
+}
+
+void Framebuffer::Bind() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, name_.Get());
+  glViewport(0, 0, size_.x, size_.y);
+}
+
+void Framebuffer::Clear(float red, float green, float blue, float alpha) const {
+  const float color[4] = {red, green, blue, alpha};
+  glClearNamedFramebufferfv(name_.Get(), GL_COLOR, 0, color);
+}
+
+Buffer::Buffer(std::size_t bytes, const void* data, GLbitfield flags) : bytes_(bytes) {
+  GLuint name = 0;
+  glCreateBuffers(1, &name);
+  name_ = Name<internal::DeleteBuffer>(name);
+  glNamedBufferStorage(name, static_cast<GLsizeiptr>(bytes), data, flags);
+}
+
+VertexArray VertexArray::Empty() {
+  GLuint name = 0;
+  glCreateVertexArrays(1, &name);
+  VertexArray array;
+  array.name_ = Name<internal::DeleteVertexArray>(name);
+  return array;
+}
+
+VertexArray VertexArray::OfPositions(const Buffer& buffer) {
+  VertexArray array = Empty();
+  const GLuint name = array.name_.Get();
+  glVertexArrayVertexBuffer(name, 0, buffer.Get(), 0, 3 * sizeof(float));
+  glEnableVertexArrayAttrib(name, 0);
+  glVertexArrayAttribFormat(name, 0, 3, GL_FLOAT, GL_FALSE, 0);
+  glVertexArrayAttribBinding(name, 0, 0);
+  return array;
+}
+
+}  // namespace thunderhead::gl

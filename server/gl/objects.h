@@ -1,0 +1,129 @@
+// Owned OpenGL objects: textures, framebuffers, buffers. Each is freed by its destructor on the
+// thread of the context that made it. Uses direct state access (OpenGL 4.5). Knows no physics.
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <cstddef>
+#include <utility>
+
+#include "glm/vec2.hpp"
+#include "glm/vec3.hpp"
+
+namespace thunderhead::gl {
+
+// Owns one GL name; `Delete` frees it.
+template <void (*Delete)(GLuint)>
+class Name {
+ public:
+  Name() = default;
+  explicit Name(GLuint name) : name_(name) {}
+  Name(Name&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+  Name& operator=(Name&& other) noexcept {
+    std::swap(name_, other.name_);
+    return *this;
+  }
+  ~Name() {
+    if (name_ != 0) Delete(name_);
+  }
+  GLuint Get() const { return name_; }
+
+ private:
+  GLuint name_ = 0;
+};
+
+namespace internal {
+void DeleteTexture(GLuint name);
+void DeleteFramebuffer(GLuint name);
+void DeleteBuffer(GLuint name);
+void DeleteVertexArray(GLuint name);
+}  // namespace internal
+
+enum class Edge { kClamp, kZero };  // what a fetch beyond the edge gives
+
+// Bytes of one texel of a sized internal format that this project uses.
+std::size_t BytesPerTexel(GLenum internal_format);
+
+// An immutable two-dimensional texture with linear filtering.
+class Texture2D {
+ public:
+  Texture2D() = default;
+  Texture2D(GLenum internal_format, glm::ivec2 size, Edge edge = Edge::kClamp);
+
+  GLuint Get() const { return name_.Get(); }
+  glm::ivec2 Size() const { return size_; }
+  std::size_t Bytes() const { return bytes_; }
+  void Bind(GLuint unit) const { glBindTextureUnit(unit, name_.Get()); }
+
+ private:
+  Name<internal::DeleteTexture> name_;
+  glm::ivec2 size_{0};
+  std::size_t bytes_ = 0;
+};
+
+// An immutable three-dimensional texture with linear filtering and clamped edges.
+class Texture3D {
+ public:
+  Texture3D() = default;
+  Texture3D(GLenum internal_format, glm::ivec3 size);
+
+  // Fills the whole texture; `format` and `type` as glTextureSubImage3D takes them, rows tightly
+  // packed.
+  void Upload(GLenum format, GLenum type, const void* texels);
+
+  GLuint Get() const { return name_.Get(); }
+  glm::ivec3 Size() const { return size_; }
+  std::size_t Bytes() const { return bytes_; }
+  void Bind(GLuint unit) const { glBindTextureUnit(unit, name_.Get()); }
+
+ private:
+  Name<internal::DeleteTexture> name_;
+  glm::ivec3 size_{0};
+  std::size_t bytes_ = 0;
+};
+
+// A framebuffer with one colour attachment, which it does not own.
+class Framebuffer {
+ public:
+  Framebuffer() = default;
+  explicit Framebuffer(const Texture2D& color);
+
+  // Binds it for drawing and sets the viewport to the whole texture.
+  void Bind() const;
+  void Clear(float red, float green, float blue, float alpha) const;
+  GLuint Get() const { return name_.Get(); }
+
+ private:
+  Name<internal::DeleteFramebuffer> name_;
+  glm::ivec2 size_{0};
+};
+
+// A buffer object of fixed size.
+class Buffer {
+ public:
+  Buffer() = default;
+  Buffer(std::size_t bytes, const void* data, GLbitfield flags);
+
+  GLuint Get() const { return name_.Get(); }
+  std::size_t Bytes() const { return bytes_; }
+
+ private:
+  Name<internal::DeleteBuffer> name_;
+  std::size_t bytes_ = 0;
+};
+
+// A vertex array; with no attributes it serves shaders that make their vertices from gl_VertexID.
+class VertexArray {
+ public:
+  // An array without attributes.
+  static VertexArray Empty();
+  // Attribute 0 is a vec3 read tightly packed from `buffer`.
+  static VertexArray OfPositions(const Buffer& buffer);
+
+  void Bind() const { glBindVertexArray(name_.Get()); }
+
+ private:
+  Name<internal::DeleteVertexArray> name_;
+};
+
+}  // namespace thunderhead::gl

@@ -1,0 +1,76 @@
+// Shader programs and their variants. Sources come from the embedded shader files; `#include
+// "path"` is resolved among them. Knows no physics.
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "gl/objects.h"
+#include "glm/mat4x4.hpp"
+#include "glm/vec2.hpp"
+#include "glm/vec3.hpp"
+#include "glm/vec4.hpp"
+
+namespace thunderhead::gl {
+
+namespace internal {
+void DeleteProgram(GLuint name);
+}  // namespace internal
+
+// A name and value that the preprocessor sees.
+struct Define {
+  std::string name;
+  int value = 0;
+
+  auto operator<=>(const Define&) const = default;
+};
+
+// Which files a program is made of, and its variant.
+struct ProgramSource {
+  std::string vertex;    // e.g. "half_angle/slice.vert"
+  std::string fragment;  // e.g. "half_angle/slice.frag"
+  std::vector<Define> defines;
+
+  auto operator<=>(const ProgramSource&) const = default;
+};
+
+// A linked program. Setting a uniform that the variant does not have does nothing.
+class Program {
+ public:
+  static absl::StatusOr<Program> Link(const ProgramSource& source);
+
+  void Use() const { glUseProgram(name_.Get()); }
+  void Set(std::string_view uniform, int value) const;
+  void Set(std::string_view uniform, float value) const;
+  void Set(std::string_view uniform, const glm::vec2& value) const;
+  void Set(std::string_view uniform, const glm::vec3& value) const;
+  void Set(std::string_view uniform, const glm::vec4& value) const;
+  void Set(std::string_view uniform, const glm::mat4& value) const;
+  void Set(std::string_view uniform, const std::vector<float>& values) const;
+  void Set(std::string_view uniform, const std::vector<glm::vec2>& values) const;
+  void Set(std::string_view uniform, const std::vector<glm::vec3>& values) const;
+  void Set(std::string_view uniform, const std::vector<glm::vec4>& values) const;
+
+ private:
+  GLint Location(std::string_view uniform) const;
+
+  Name<internal::DeleteProgram> name_;
+  std::map<std::string, GLint, std::less<>> locations_;
+};
+
+// Programs linked so far, by source; links on first use.
+class ProgramCache {
+ public:
+  // The pointer stays valid as long as the cache.
+  absl::StatusOr<const Program*> Get(const ProgramSource& source);
+
+ private:
+  std::map<ProgramSource, Program> programs_;
+};
+
+}  // namespace thunderhead::gl

@@ -1,0 +1,319 @@
+#include "renderers/half_angle/half_angle_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/status.h"
+#include "glm/ext/matrix_clip_space.hpp"
+#include "glm/ext/matrix_transform.hpp"
+#include "glm/geometric.hpp"
+#include "glm/trigonometric.hpp"
+#include "physics/optics.h"
+
+namespace thunderhead::renderers {
+namespace {
+
+constexpr int kLightTexels = 256;      // along the longer side of the light buffer
+constexpr int kThicknessSlices = 128;  // perpendicular to the light
+constexpr GLuint kLightUnit = 4;
+constexpr GLuint kThicknessUnit = 5;
+
+enum LightPass { kCarry = 0, kTransmit = 1, kAddDepth = 2 };
+
+bool IsTranslucent(const scene::Rendering& rendering) {
+  return rendering.mode != scene::Mode::kUniformPhaseLowAlbedo;
+}
+bool IsConsistent(const scene::Rendering& rendering) {
+  return rendering.transport == scene::Transport::kConsistent;
+}
+
+// A rectangle of texels, `high` not included.
+struct TexelRect {
+  glm::ivec2 low{0};
+  glm::ivec2 high{0};
+};
+
+TexelRect Union(const TexelRect& a, const TexelRect& b) {
+  return {glm::min(a.low, b.low), glm::max(a.high, b.high)};
+}
+
+// The texels of the light buffer that a slice covers, with one around.
+TexelRect ShadowOf(const Slice& slice, const LightFrame& frame, const glm::ivec2& size) {
+  TexelRect rect{size, glm::ivec2(0)};
+  for (const glm::vec3& corner : slice.polygon) {
+    const glm::dvec2 across(glm::dot(glm::dvec3(corner), frame.right),
+                            glm::dot(glm::dvec3(corner), frame.up));
+    const glm::dvec2 texel = (0.5 * across / frame.half_extent_m + 0.5) * glm::dvec2(size);
+    rect.low = glm::min(rect.low, glm::ivec2(glm::floor(texel)) - 1);
+    rect.high = glm::max(rect.high, glm::ivec2(glm::ceil(texel)) + 1);
+  }
+  return {glm::max(rect.low, glm::ivec2(0)), glm::min(rect.high, size)};
+}
+
+void Scissor(const TexelRect& rect) {
+  glScissor(rect.low.x, rect.low.y, std::max(rect.high.x - rect.low.x, 0),
+            std::max(rect.high.y - rect.low.y, 0));
+}
+
+glm::mat4 ClipFromLocal(const scene::View& view, const glm::dvec3& middle_m) {
+  // Depth is not used; the planes only have to be valid, and clamping keeps every slice.
+  const double near_m = 1.0;
+  const glm::dmat4 clip_from_view =
+      glm::frustum(-view.tan_half_width * near_m, view.tan_half_width * near_m,
+                   -view.tan_half_height * near_m, view.tan_half_height * near_m, near_m, 1e8);
+  const glm::dvec3 eye = view.eye_m - middle_m;
+  return clip_from_view * glm::lookAt(eye, eye + view.forward, view.up);
+}
+
+// The paper's display normalisation: the logarithm of the cut phase function over its dynamic
+// range, 0 to 1.
+glm::vec2 DisplayNormalisation(const physics::PhaseFunction& phase, double cut_cosine) {
+  double low = physics::PhaseValue(phase, cut_cosine);
+  double high = low;
+  for (int i = 0; i <= 1800; ++i) {
+    const double mu = std::min(std::cos(glm::radians(0.1 * i)), cut_cosine);
+    low = std::min(low, physics::PhaseValue(phase, mu));
+    high = std::max(high, physics::PhaseValue(phase, mu));
+  }
+  if (high - low < 1e-6 * high) return {1.0F, 0.0F};
+  const double slope = 1.0 / std::log(high / low);
+  return {static_cast<float>(-std::log(low) * slope), static_cast<float>(slope)};
+}
+
+}  // namespace
+
+// What each group counts for in each sum of the shaders, as a share of its extinction.
+struct HalfAngleRenderer::GroupWeights {
+  std::vector<double> eye, light, scattering, transport, peripheral;
+  std::vector<glm::vec4> phase;
+  std::vector<float> phase_cut;
+  std::vector<glm::vec2> phase_display;
+  std::vector<glm::vec3> color;
+  bool colored = false;
+  glm::vec2 cumulative_phase{0.0F};
+
+  GroupWeights(const Medium& medium, const scene::Rendering& rendering) {
+    const double theta_f = glm::radians(rendering.theta_f_deg);
+    const bool delta_scaled = IsConsistent(rendering) && IsTranslucent(rendering);
+    for (const MediumGroup& group : medium.groups) {
+      const physics::DeltaScaling cut = physics::CutForwardPeak(group.phase, theta_f / 2.0);
+      const double passed = delta_scaled ? group.albedo * cut.forward_share : 0.0;
+      const double ring = physics::CumulativePhase(group.phase, theta_f / 2.0) -
+                          physics::CumulativePhase(group.phase, theta_f / 4.0);
+      eye.push_back(1.0 - passed);
+      light.push_back(1.0 - passed);
+      scattering.push_back(group.albedo);
+      transport.push_back(1.0 - group.albedo * physics::MeanCosine(group.phase));
+      peripheral.push_back(group.albedo * ring);
+      phase.push_back(physics::PhaseCoefficients(group.phase));
+      const bool whole = IsConsistent(rendering) && !IsTranslucent(rendering);
+      phase_cut.push_back(whole ? 1.0F : static_cast<float>(cut.cut_cosine));
+      phase_display.push_back(DisplayNormalisation(group.phase, cut.cut_cosine));
+      color.push_back(group.color);
+      colored = colored || group.color != glm::vec3(1.0F);
+    }
+    const physics::PhaseFunction& first = medium.groups.front().phase;
+    cumulative_phase = {physics::CumulativePhase(first, theta_f / 4.0),
+                        physics::CumulativePhase(first, theta_f / 2.0)};
+  }
+};
+
+struct HalfAngleRenderer::Programs {
+  const gl::Program* eye;
+  const gl::Program* light;
+};
+
+HalfAngleRenderer::HalfAngleRenderer() = default;
+
+std::size_t HalfAngleRenderer::Bytes() const {
+  return eye_.Bytes() + light_[0].Bytes() + light_[1].Bytes() + thickness_.Bytes();
+}
+
+void HalfAngleRenderer::Resize(const LightFrame& frame, const glm::ivec2& eye_size) {
+  if (eye_.Size() != eye_size) {
+    eye_ = gl::Texture2D(GL_RGBA16F, eye_size);
+    eye_target_ = gl::Framebuffer(eye_);
+  }
+  const double longest_m = std::max(frame.half_extent_m.x, frame.half_extent_m.y);
+  const glm::ivec2 light_size = glm::max(
+      glm::ivec2(glm::ceil(kLightTexels * frame.half_extent_m / longest_m)), glm::ivec2(1));
+  if (light_[0].Size() == light_size) return;
+  for (int i = 0; i < 2; ++i) {
+    light_[i] = gl::Texture2D(GL_RG16F, light_size);
+    light_target_[i] = gl::Framebuffer(light_[i]);
+  }
+  thickness_ = gl::Texture2D(GL_R32F, light_size);
+  thickness_target_ = gl::Framebuffer(thickness_);
+}
+
+absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium,
+                                       const HalfAngleSettings& settings, bool light_changed) {
+  const LocalBox box{medium.HalfExtent_m()};
+  const LightFrame frame = LightFrameOf(box, settings.illumination.towards_sun);
+  const Slicing slicing =
+      SliceBox(box, settings.illumination.towards_sun, -settings.view.forward, settings.slices);
+  const scene::Rendering& rendering = settings.rendering;
+  const GroupWeights weights(medium.Content(), rendering);
+  const bool translucent = IsTranslucent(rendering);
+  const bool consistent = IsConsistent(rendering);
+  const auto groups = static_cast<int>(medium.Content().groups.size());
+  Resize(frame, settings.eye_size);
+  if (light_changed && translucent && consistent) {
+    THUNDERHEAD_RETURN_IF_ERROR(DrawThickness(medium, settings, frame, weights));
+  }
+
+  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* eye,
+                               programs_.Get({"half_angle/slice.vert",
+                                              "half_angle/eye.frag",
+                                              {{"GROUPS", groups},
+                                               {"COLORED", weights.colored ? 1 : 0},
+                                               {"TRANSLUCENT", translucent ? 1 : 0},
+                                               {"CONSISTENT", consistent ? 1 : 0}}}));
+  medium.Bind(*eye);
+  const glm::dvec3 middle_m = medium.Middle_m();
+  eye->Set("clip_from_local", ClipFromLocal(settings.view, middle_m));
+  eye->Set("eye_local_m", glm::vec3(settings.view.eye_m - middle_m));
+  eye->Set("towards_sun", glm::vec3(frame.towards_sun));
+  eye->Set("slice_normal", glm::vec3(slicing.normal));
+  eye->Set("spacing_m", static_cast<float>(slicing.spacing_m));
+  eye->Set("light_path_m", static_cast<float>(slicing.light_path_m));
+  eye->Set("eye_weights", medium.Weights(weights.eye));
+  eye->Set("light_weights", medium.Weights(weights.light));
+  eye->Set("scattering_weights", medium.Weights(weights.scattering));
+  eye->Set("transport_weights", medium.Weights(weights.transport));
+  eye->Set("phase", weights.phase);
+  eye->Set("phase_cut", weights.phase_cut);
+  eye->Set("phase_display", weights.phase_display);
+  eye->Set("group_color", weights.color);
+  eye->Set("sunlight", settings.illumination.sunlight);
+  eye->Set("ambient", settings.illumination.ambient);
+  eye->Set("light_u", glm::vec3(0.5 * frame.right / frame.half_extent_m.x));
+  eye->Set("light_v", glm::vec3(0.5 * frame.up / frame.half_extent_m.y));
+
+  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* light,
+                               programs_.Get({"common/whole_target.vert",
+                                              "half_angle/light.frag",
+                                              {{"GROUPS", groups},
+                                               {"CONSISTENT", consistent ? 1 : 0},
+                                               {"PASS", translucent ? kCarry : kTransmit}}}));
+  medium.Bind(*light);
+  light->Set("slice_normal", glm::vec3(slicing.normal));
+  light->Set("light_path_m", static_cast<float>(slicing.light_path_m));
+  light->Set("towards_sun", glm::vec3(frame.towards_sun));
+  light->Set("light_right_m", glm::vec3(frame.right * frame.half_extent_m.x));
+  light->Set("light_up_m", glm::vec3(frame.up * frame.half_extent_m.y));
+  light->Set("light_weights", medium.Weights(weights.light));
+  light->Set("transport_weights", medium.Weights(weights.transport));
+  light->Set("peripheral_weights", medium.Weights(weights.peripheral));
+  light->Set("cumulative_phase", weights.cumulative_phase);
+  const glm::dvec3 cell_m = medium.Bounds().grid.spacing_m;
+  const double reach_m =
+      consistent ? std::max({cell_m.x, cell_m.y, cell_m.z}) : slicing.light_path_m;
+  const double tap_m = reach_m * std::tan(glm::radians(rendering.theta_f_deg) * 3.0 / 8.0);
+  light->Set("tap_offset", glm::vec2(0.5 * tap_m / frame.half_extent_m));
+
+  DrawSlices({eye, light}, settings, frame, slicing);
+  return absl::OkStatus();
+}
+
+absl::Status HalfAngleRenderer::DrawThickness(const ResidentMedium& medium,
+                                              const HalfAngleSettings& settings,
+                                              const LightFrame& frame,
+                                              const GroupWeights& weights) {
+  // Slices across the sun's rays, so that the sum does not depend on the view and can be kept.
+  const glm::dvec3& towards_sun = settings.illumination.towards_sun;
+  const Slicing slicing =
+      SliceBox({medium.HalfExtent_m()}, towards_sun, towards_sun, kThicknessSlices);
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_.Get({"common/whole_target.vert",
+                     "half_angle/light.frag",
+                     {{"GROUPS", static_cast<int>(medium.Content().groups.size())},
+                      {"CONSISTENT", 1},
+                      {"PASS", kAddDepth}}}));
+  medium.Bind(*program);
+  program->Set("slice_normal", glm::vec3(slicing.normal));
+  program->Set("light_path_m", static_cast<float>(slicing.light_path_m));
+  program->Set("towards_sun", glm::vec3(towards_sun));
+  program->Set("light_right_m", glm::vec3(frame.right * frame.half_extent_m.x));
+  program->Set("light_up_m", glm::vec3(frame.up * frame.half_extent_m.y));
+  program->Set("light_weights", medium.Weights(weights.light));
+  program->Set("transport_weights", medium.Weights(weights.transport));
+  program->Use();
+  no_attributes_.Bind();
+  thickness_target_.Bind();
+  thickness_target_.Clear(0.0F, 0.0F, 0.0F, 0.0F);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  glEnable(GL_SCISSOR_TEST);
+  for (const Slice& slice : slicing.slices) {
+    Scissor(ShadowOf(slice, frame, thickness_.Size()));
+    program->Set("slice_distance_m", static_cast<float>(slice.distance_m));
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  }
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_BLEND);
+  return absl::OkStatus();
+}
+
+void HalfAngleRenderer::DrawSlices(const Programs& programs, const HalfAngleSettings& settings,
+                                   const LightFrame& frame, const Slicing& slicing) {
+  std::vector<glm::vec3> corners;
+  for (const Slice& slice : slicing.slices) {
+    corners.insert(corners.end(), slice.polygon.begin(), slice.polygon.end());
+  }
+  const gl::Buffer corner_buffer(std::max<std::size_t>(corners.size(), 1) * sizeof(glm::vec3),
+                                 corners.empty() ? nullptr : corners.data(), 0);
+  const gl::VertexArray corner_array = gl::VertexArray::OfPositions(corner_buffer);
+  const bool carries = IsTranslucent(settings.rendering);
+
+  eye_target_.Clear(0.0F, 0.0F, 0.0F, 1.0F);
+  for (const gl::Framebuffer& target : light_target_) target.Clear(1.0F, 0.0F, 0.0F, 0.0F);
+  thickness_.Bind(kThicknessUnit);
+  glEnable(GL_DEPTH_CLAMP);
+  int current = 0;
+  GLint first = 0;
+  TexelRect stale{glm::ivec2(0), glm::ivec2(0)};
+  for (const Slice& slice : slicing.slices) {
+    const auto count = static_cast<GLsizei>(slice.polygon.size());
+    if (count == 0) continue;
+    light_[current].Bind(kLightUnit);
+    // The eye buffer keeps radiance in rgb and in alpha the share of what is behind that still
+    // shows.
+    glEnable(GL_BLEND);
+    if (slicing.front_to_back) {
+      glBlendFuncSeparate(GL_DST_ALPHA, GL_ONE, GL_ZERO, GL_SRC_ALPHA);
+    } else {
+      glBlendFuncSeparate(GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_SRC_ALPHA);
+    }
+    eye_target_.Bind();
+    programs.eye->Use();
+    corner_array.Bind();
+    glDrawArrays(GL_TRIANGLE_FAN, first, count);
+    first += count;
+
+    const TexelRect shadow = ShadowOf(slice, frame, light_[0].Size());
+    programs.light->Set("slice_distance_m", static_cast<float>(slice.distance_m));
+    programs.light->Use();
+    no_attributes_.Bind();
+    glEnable(GL_SCISSOR_TEST);
+    if (carries) {
+      // The other buffer misses what the last slice changed here.
+      glDisable(GL_BLEND);
+      light_target_[1 - current].Bind();
+      Scissor(Union(shadow, stale));
+      stale = shadow;
+      current = 1 - current;
+    } else {
+      glBlendFunc(GL_ZERO, GL_SRC_COLOR);
+      light_target_[current].Bind();
+      Scissor(shadow);
+    }
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDisable(GL_SCISSOR_TEST);
+  }
+  glDisable(GL_BLEND);
+  glDisable(GL_DEPTH_CLAMP);
+}
+
+}  // namespace thunderhead::renderers

@@ -1,0 +1,68 @@
+// Half-angle slicing: an eye buffer and a light buffer advance together through slices of the
+// medium. The result is what the medium sends to the eye (rgb) and the share of the background that
+// passes (a), before sky and ground.
+//
+// Riley et al. 2003 (Vis), section 4.4; transport `kPaper` is eq. 14-17 as printed, `kConsistent`
+// the same idea with the exact exponential of the effective extinction, delta scaling, and a
+// diffusion term (Eddington) for light scattered many times.
+#pragma once
+
+#include "absl/status/status.h"
+#include "gl/objects.h"
+#include "gl/program.h"
+#include "renderers/half_angle/slicing.h"
+#include "renderers/medium.h"
+#include "scene/scene.h"
+#include "scene/view.h"
+
+namespace thunderhead::renderers {
+
+// What the sun and sky send into the medium.
+struct Illumination {
+  glm::dvec3 towards_sun{0.0, 0.0, 1.0};
+  glm::vec3 sunlight{1.0F};  // irradiance on a plane facing the sun
+  glm::vec3 ambient{0.0F};   // mean radiance from sky and ground
+};
+
+struct HalfAngleSettings {
+  scene::Rendering rendering;
+  scene::View view;
+  Illumination illumination;
+  glm::ivec2 eye_size{1};  // of the eye buffer in pixels
+  int slices = 128;
+};
+
+class HalfAngleRenderer {
+ public:
+  HalfAngleRenderer();
+
+  // Draws `medium`, which must not be empty. `light_changed` says that the medium or the sun differ
+  // from the last call.
+  absl::Status Render(const ResidentMedium& medium, const HalfAngleSettings& settings,
+                      bool light_changed);
+
+  // The result of the last Render.
+  const gl::Texture2D& Eye() const { return eye_; }
+  std::size_t Bytes() const;
+
+ private:
+  struct GroupWeights;
+  struct Programs;
+
+  void Resize(const LightFrame& frame, const glm::ivec2& eye_size);
+  absl::Status DrawThickness(const ResidentMedium& medium, const HalfAngleSettings& settings,
+                             const LightFrame& frame, const GroupWeights& weights);
+  void DrawSlices(const Programs& programs, const HalfAngleSettings& settings,
+                  const LightFrame& frame, const Slicing& slicing);
+
+  gl::ProgramCache programs_;
+  gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
+  gl::Texture2D eye_;
+  gl::Framebuffer eye_target_;
+  gl::Texture2D light_[2];
+  gl::Framebuffer light_target_[2];
+  gl::Texture2D thickness_;
+  gl::Framebuffer thickness_target_;
+};
+
+}  // namespace thunderhead::renderers

@@ -1,0 +1,48 @@
+// The geometry of half-angle slicing: planes perpendicular to the half vector between the light and
+// the view, in the order in which sunlight meets them. Pure geometry: no GL. Kniss et al. 2003;
+// Riley et al. 2003 (Vis), 4.4.1.
+#pragma once
+
+#include <vector>
+
+#include "glm/vec2.hpp"
+#include "glm/vec3.hpp"
+
+namespace thunderhead::renderers {
+
+// A box around the origin of local coordinates (metres).
+struct LocalBox {
+  glm::dvec3 half_m{0.0};
+};
+
+// The light buffer's plane: its axes are perpendicular to the light and do not depend on the view.
+struct LightFrame {
+  glm::dvec3 towards_sun{0.0, 0.0, 1.0};
+  glm::dvec3 right{1.0, 0.0, 0.0};
+  glm::dvec3 up{0.0, 1.0, 0.0};
+  glm::dvec2 half_extent_m{1.0};  // covers the box's shadow
+};
+
+LightFrame LightFrameOf(const LocalBox& box, const glm::dvec3& towards_sun);
+
+// One slice: its plane and the part of it inside the box.
+struct Slice {
+  double distance_m = 0.0;         // of the plane from the origin, along the normal
+  std::vector<glm::vec3> polygon;  // 3 to 6 corners in order around it, or none
+};
+
+struct Slicing {
+  glm::dvec3 normal{0.0, 0.0, 1.0};  // points to the sun's side
+  bool front_to_back = true;         // in the order of `slices`, seen from the eye
+  double spacing_m = 1.0;
+  double light_path_m = 1.0;  // of a sun ray between two slices
+  std::vector<Slice> slices;  // the sun meets the first one first
+};
+
+// Cuts `box` into `count` slices. `towards_eye` is the unit vector against the view's axis. When
+// the eye is on the sun's side the slices face halfway between the two; otherwise the view is
+// reversed, and with it the blend order.
+Slicing SliceBox(const LocalBox& box, const glm::dvec3& towards_sun, const glm::dvec3& towards_eye,
+                 int count);
+
+}  // namespace thunderhead::renderers

@@ -1,0 +1,82 @@
+#include "renderers/medium.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/stopwatch.h"
+
+namespace thunderhead::renderers {
+
+physics::PhaseFunction UniformPhase(const scene::Scene& scene) {
+  const auto& cloud = scene.fields[physics::IndexOf(physics::Hydrometeor::kCloud)];
+  return {physics::PhaseKind::kCornetteShanks, cloud.optics.phase.asymmetry};
+}
+
+Medium MediumOf(const scene::Scene& scene, const volume::HydrometeorFields& fields) {
+  const bool per_field_phase = scene.rendering.mode == scene::Mode::kPerFieldPhaseTranslucent;
+  Medium medium;
+  for (std::size_t i = 0; i < fields.fields.size(); ++i) {
+    const volume::HydrometeorField& field = fields.fields[i];
+    const scene::FieldParameters& look = scene.fields[physics::IndexOf(field.hydrometeor)];
+    if (!look.visible || look.scale <= 0.0F || field.concentration_kg_per_m3.empty()) continue;
+    MediumGroup group;
+    group.albedo = look.optics.albedo;
+    group.phase = per_field_phase ? look.optics.phase : UniformPhase(scene);
+    if (scene.rendering.false_colors) group.color = look.optics.false_color;
+    auto found = std::find(medium.groups.begin(), medium.groups.end(), group);
+    if (found == medium.groups.end()) found = medium.groups.insert(found, group);
+    const float mass_extinction =
+        physics::MassExtinction_m2_per_kg(look.optics.density_kg_per_m3, look.optics.radius_m);
+    medium.terms.push_back({static_cast<int>(i), look.scale * mass_extinction,
+                            static_cast<int>(found - medium.groups.begin())});
+    medium.hydrometeors.push_back(field.hydrometeor);
+  }
+  return medium;
+}
+
+ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::HydrometeorFields& fields,
+                               Cost* cost)
+    : content_(MediumOf(scene, fields)) {
+  constexpr std::array<GLenum, 5> kFormats = {0, GL_R16F, GL_RG16F, 0, GL_RGBA16F};
+  constexpr std::array<GLenum, 5> kTransferFormats = {0, GL_RED, GL_RG, 0, GL_RGBA};
+  base::Stopwatch stopwatch;
+  bounds_ =
+      volume::ComputeExtinction(fields, content_.terms, static_cast<int>(content_.groups.size()));
+  cost->extinction_ms = stopwatch.Restart();
+  for (volume::ExtinctionPlane& plane : bounds_.planes) {
+    const auto channels = static_cast<std::size_t>(plane.channels);
+    gl::Texture3D texture(kFormats[channels], bounds_.grid.cells);
+    texture.Upload(kTransferFormats[channels], GL_HALF_FLOAT, plane.texels.data());
+    textures_.push_back(std::move(texture));
+  }
+  bounds_.planes.clear();
+  cost->upload_ms = stopwatch.ElapsedMs();
+}
+
+void ResidentMedium::Bind(const gl::Program& program) const {
+  for (std::size_t i = 0; i < textures_.size(); ++i) textures_[i].Bind(static_cast<GLuint>(i));
+  const glm::dvec3 extent_m = glm::dvec3(bounds_.grid.cells) * bounds_.grid.spacing_m;
+  program.Set("texture_from_local_scale", glm::vec3(1.0 / extent_m));
+  program.Set("texture_from_local_offset",
+              glm::vec3((Middle_m() - bounds_.grid.low_corner_m) / extent_m));
+  program.Set("medium_low_m", glm::vec3(-HalfExtent_m()));
+  program.Set("medium_high_m", glm::vec3(HalfExtent_m()));
+  program.Set("extinction_weights", Weights(std::vector<double>(content_.groups.size(), 1.0)));
+}
+
+std::size_t ResidentMedium::Bytes() const {
+  std::size_t bytes = 0;
+  for (const gl::Texture3D& texture : textures_) bytes += texture.Bytes();
+  return bytes;
+}
+
+std::vector<glm::vec4> ResidentMedium::Weights(const std::vector<double>& by_group) const {
+  std::vector<glm::vec4> weights((by_group.size() + 3) / 4, glm::vec4(0.0F));
+  for (std::size_t i = 0; i < by_group.size(); ++i) {
+    weights[i / 4][static_cast<int>(i % 4)] =
+        static_cast<float>(by_group[i] * bounds_.extinction_per_m);
+  }
+  return weights;
+}
+
+}  // namespace thunderhead::renderers

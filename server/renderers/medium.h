@@ -1,0 +1,72 @@
+// What of a storm a scene needs drawn: its visible, non-empty fields, with those merged into one
+// group that share albedo, phase function and colour. Each group is a channel of the extinction
+// textures. Shared by every renderer.
+#pragma once
+
+#include <vector>
+
+#include "gl/objects.h"
+#include "gl/program.h"
+#include "physics/hydrometeors.h"
+#include "scene/scene.h"
+#include "volume/extinction.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::renderers {
+
+// Fields that scatter alike.
+struct MediumGroup {
+  float albedo = 1.0F;
+  physics::PhaseFunction phase;
+  glm::vec3 color{1.0F};
+
+  bool operator==(const MediumGroup&) const = default;
+};
+
+struct Medium {
+  std::vector<MediumGroup> groups;
+  std::vector<volume::ExtinctionTerm> terms;       // which field adds to which group's channel
+  std::vector<physics::Hydrometeor> hydrometeors;  // drawn
+};
+
+// The phase function of the "uniform phase" modes: one for every field, Cornette and Shanks' as the
+// paper uses for its light transport, with cloud water's parameter in `scene`.
+physics::PhaseFunction UniformPhase(const scene::Scene& scene);
+
+Medium MediumOf(const scene::Scene& scene, const volume::HydrometeorFields& fields);
+
+// A medium with its extinction on the device.
+class ResidentMedium {
+ public:
+  // What making it cost, in milliseconds of wall time.
+  struct Cost {
+    double extinction_ms = 0.0;
+    double upload_ms = 0.0;
+  };
+
+  ResidentMedium() = default;
+  ResidentMedium(const scene::Scene& scene, const volume::HydrometeorFields& fields, Cost* cost);
+
+  bool Empty() const { return bounds_.Empty(); }
+  const Medium& Content() const { return content_; }
+  // The volume's place and scale; its texels are on the device only.
+  const volume::ExtinctionVolume& Bounds() const { return bounds_; }
+  glm::dvec3 Middle_m() const { return (bounds_.low_m + bounds_.high_m) / 2.0; }
+  glm::dvec3 HalfExtent_m() const { return (bounds_.high_m - bounds_.low_m) / 2.0; }
+
+  // Binds the textures to units 0 and up and sets the uniforms of common/medium.glsl. Local
+  // coordinates are metres from Middle_m().
+  void Bind(const gl::Program& program) const;
+  std::size_t Bytes() const;
+
+  // One weight a group as common/medium.glsl takes it: the value at which a texel counts, times the
+  // extinction of a texel value of 1.
+  std::vector<glm::vec4> Weights(const std::vector<double>& by_group) const;
+
+ private:
+  Medium content_;
+  volume::ExtinctionVolume bounds_;
+  std::vector<gl::Texture3D> textures_;
+};
+
+}  // namespace thunderhead::renderers

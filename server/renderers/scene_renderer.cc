@@ -1,0 +1,143 @@
+#include "renderers/scene_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/status.h"
+#include "base/stopwatch.h"
+#include "glm/geometric.hpp"
+#include "physics/sky.h"
+
+namespace thunderhead::renderers {
+namespace {
+
+constexpr GLuint kEyeUnit = 4;
+constexpr glm::vec3 kGroundTint(1.0F, 0.93F, 0.78F);  // of bare soil and grass seen from far off
+
+glm::vec3 GroundRadiance(const scene::Scene& scene, const glm::vec3& towards_sun,
+                         const physics::SkyLight& sky) {
+  const float sine = std::max(towards_sun.z, 0.0F);
+  const glm::vec3 direct = physics::glsl::sun_transmittance(towards_sun.z) * sine;
+  const glm::vec3 diffuse = sky.irradiance * static_cast<float>(scene.sky.brightness);
+  const auto reflected =
+      static_cast<float>(scene.sun.irradiance * scene.sky.ground_albedo * std::numbers::inv_pi);
+  return (direct + diffuse) * kGroundTint * reflected;
+}
+
+Illumination IlluminationOf(const scene::Scene& scene) {
+  Illumination light;
+  light.towards_sun = scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg);
+  const glm::vec3 towards_sun(light.towards_sun);
+  const physics::SkyLight sky = physics::SkyLightOf(towards_sun);
+  const auto irradiance = static_cast<float>(scene.sun.irradiance);
+  light.sunlight = irradiance * physics::glsl::sun_transmittance(towards_sun.z);
+  const glm::vec3 from_sky =
+      sky.mean_radiance * irradiance * static_cast<float>(scene.sky.brightness);
+  light.ambient = 0.5F * (from_sky + GroundRadiance(scene, towards_sun, sky));
+  return light;
+}
+
+glm::ivec2 EyeSize(const scene::Scene& scene, const DrawQuality& quality) {
+  const glm::dvec2 size(scene.output.width_px, scene.output.height_px);
+  return glm::max(glm::ivec2(glm::ceil(size * quality.image_scale)), glm::ivec2(1));
+}
+
+double AspectRatio(const scene::Scene& scene) {
+  return static_cast<double>(scene.output.width_px) / scene.output.height_px;
+}
+
+double LowestGround_m(const volume::HydrometeorFields& fields) {
+  if (fields.terrain_height_m.empty()) return fields.grid.low_corner_m.z;
+  return *std::min_element(fields.terrain_height_m.begin(), fields.terrain_height_m.end());
+}
+
+}  // namespace
+
+absl::StatusOr<LinearFrame> SceneRenderer::Draw(
+    const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
+    const DrawQuality& quality) {
+  scene::Stage first = scene::Stage::kStorm;
+  if (drawn_scene_.has_value() && drawn_fields_.lock() == fields) {
+    first = scene::FirstDirtyStage(*drawn_scene_, scene);
+    if (quality != drawn_quality_) first = std::min(first, scene::Stage::kView);
+  }
+  drawn_scene_.reset();
+  std::vector<StageTime> stages;
+  if (first <= scene::Stage::kExtinction) {
+    ResidentMedium::Cost cost;
+    medium_ = ResidentMedium();
+    medium_ = ResidentMedium(scene, *fields, &cost);
+    stages.push_back({"extinction", cost.extinction_ms});
+    stages.push_back({"upload", cost.upload_ms});
+  }
+  if (first <= scene::Stage::kView) {
+    base::Stopwatch stopwatch;
+    const scene::View view = scene::ViewOf(scene.camera, AspectRatio(scene));
+    drawn_slices_ = 0;
+    if (!medium_.Empty()) {
+      const double wanted = std::ceil(scene.rendering.slices * quality.slice_share);
+      drawn_slices_ = std::max(static_cast<int>(wanted), 1);
+      THUNDERHEAD_RETURN_IF_ERROR(half_angle_.Render(
+          medium_,
+          {scene.rendering, view, IlluminationOf(scene), EyeSize(scene, quality), drawn_slices_},
+          first <= scene::Stage::kLight));
+    }
+    THUNDERHEAD_RETURN_IF_ERROR(Composite(scene, view, medium_.Empty(), LowestGround_m(*fields)));
+    glFinish();
+    stages.push_back({"slices", stopwatch.ElapsedMs()});
+  }
+  drawn_scene_ = scene;
+  drawn_fields_ = fields;
+  drawn_quality_ = quality;
+  LinearFrame frame = Report(*fields);
+  frame.stages = std::move(stages);
+  return frame;
+}
+
+absl::Status SceneRenderer::Composite(const scene::Scene& scene, const scene::View& view,
+                                      bool empty, double ground_height_m) {
+  const glm::ivec2 size(scene.output.width_px, scene.output.height_px);
+  if (linear_.Size() != size) {
+    linear_ = gl::Texture2D(GL_RGBA16F, size);
+    linear_target_ = gl::Framebuffer(linear_);
+  }
+  if (nothing_.Get() == 0) {
+    nothing_ = gl::Texture2D(GL_RGBA16F, glm::ivec2(1));
+    gl::Framebuffer(nothing_).Clear(0.0F, 0.0F, 0.0F, 1.0F);
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_.Get({"common/whole_target.vert", "post/composite.frag", {}}));
+  const glm::vec3 towards_sun(scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg));
+  program->Set("ray_forward", glm::vec3(view.forward));
+  program->Set("ray_right", glm::vec3(view.right * view.tan_half_width));
+  program->Set("ray_up", glm::vec3(view.up * view.tan_half_height));
+  program->Set("towards_sun", towards_sun);
+  program->Set("sky_scale", static_cast<float>(scene.sun.irradiance * scene.sky.brightness));
+  program->Set("ground_radiance",
+               GroundRadiance(scene, towards_sun, physics::SkyLightOf(towards_sun)));
+  program->Set("eye_height_m", static_cast<float>(view.eye_m.z - ground_height_m));
+  (empty ? nothing_ : half_angle_.Eye()).Bind(kEyeUnit);
+  linear_target_.Bind();
+  program->Use();
+  no_attributes_.Bind();
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  return absl::OkStatus();
+}
+
+LinearFrame SceneRenderer::Report(const volume::HydrometeorFields& fields) const {
+  LinearFrame frame;
+  frame.radiance = &linear_;
+  frame.fields = medium_.Content().hydrometeors;
+  frame.slices = drawn_slices_;
+  frame.device_bytes = medium_.Bytes() + half_angle_.Bytes() + linear_.Bytes();
+  if (!medium_.Empty()) {
+    const glm::dvec3 box_m = 2.0 * medium_.HalfExtent_m();
+    const glm::dvec3 domain_m = fields.grid.HighCorner_m() - fields.grid.low_corner_m;
+    frame.occupied_share = box_m.x * box_m.y * box_m.z / (domain_m.x * domain_m.y * domain_m.z);
+  }
+  return frame;
+}
+
+}  // namespace thunderhead::renderers

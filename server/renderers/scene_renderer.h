@@ -1,0 +1,69 @@
+// From a scene and a storm's fields to a linear frame: keeps each stage's result and reruns from
+// the first stage that a change dirties. Owns GL objects: use it on the context's thread.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "gl/objects.h"
+#include "gl/program.h"
+#include "renderers/half_angle/half_angle_renderer.h"
+#include "renderers/medium.h"
+#include "scene/scene.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::renderers {
+
+struct DrawQuality {
+  double image_scale = 1.0;  // of the eye buffer's width and height, (0, 1]
+  double slice_share = 1.0;  // of the scene's slices, (0, 1]
+
+  bool operator==(const DrawQuality&) const = default;
+};
+
+// Wall time of one stage: "extinction", "upload", "slices".
+struct StageTime {
+  std::string stage;
+  double milliseconds = 0.0;
+};
+
+struct LinearFrame {
+  const gl::Texture2D* radiance = nullptr;  // RGBA float; lives until the next Draw
+  std::vector<StageTime> stages;            // those that ran
+  std::vector<physics::Hydrometeor> fields;
+  int slices = 0;
+  std::size_t device_bytes = 0;
+  double occupied_share = 0.0;
+};
+
+class SceneRenderer {
+ public:
+  // Draws `scene` from the fields of its storm and time.
+  absl::StatusOr<LinearFrame> Draw(const scene::Scene& scene,
+                                   const std::shared_ptr<const volume::HydrometeorFields>& fields,
+                                   const DrawQuality& quality);
+
+ private:
+  absl::Status Composite(const scene::Scene& scene, const scene::View& view, bool empty,
+                         double ground_height_m);
+  LinearFrame Report(const volume::HydrometeorFields& fields) const;
+
+  gl::ProgramCache programs_;
+  gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
+  HalfAngleRenderer half_angle_;
+  ResidentMedium medium_;
+  gl::Texture2D linear_;
+  gl::Framebuffer linear_target_;
+  gl::Texture2D nothing_;  // an eye buffer without medium
+
+  // What the kept results were drawn from.
+  std::optional<scene::Scene> drawn_scene_;
+  std::weak_ptr<const volume::HydrometeorFields> drawn_fields_;
+  DrawQuality drawn_quality_;
+  int drawn_slices_ = 0;
+};
+
+}  // namespace thunderhead::renderers

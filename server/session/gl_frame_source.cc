@@ -1,0 +1,56 @@
+#include "session/gl_frame_source.h"
+
+#include <utility>
+
+#include "base/status.h"
+#include "frame/tone_map.h"
+#include "gl/context.h"
+#include "renderers/scene_renderer.h"
+
+namespace thunderhead::session {
+namespace {
+
+class GlFrameSource final : public FrameSource {
+ public:
+  explicit GlFrameSource(std::unique_ptr<gl::Context> context)
+      : context_(std::move(context)),
+        info_{context_->Info().device, context_->Info().renderer, context_->Info().version} {}
+
+  const DeviceInfo& Device() const override { return info_; }
+
+  absl::StatusOr<DisplayFrame> Draw(const scene::Scene& scene,
+                                    const std::shared_ptr<const volume::HydrometeorFields>& fields,
+                                    const FrameQuality& quality) override {
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        const renderers::LinearFrame linear,
+        renderer_.Draw(scene, fields, {quality.image_scale, quality.slice_share}));
+    THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped,
+                                 tone_mapper_.Map(*linear.radiance, scene.display));
+    DisplayFrame frame;
+    frame.width_px = linear.radiance->Size().x;
+    frame.height_px = linear.radiance->Size().y;
+    frame.rgb = std::move(mapped.rgb);
+    for (const renderers::StageTime& stage : linear.stages) {
+      frame.stages.push_back({stage.stage, stage.milliseconds});
+    }
+    frame.stages.push_back({"tone", mapped.tone_ms});
+    frame.stages.push_back({"read_back", mapped.read_back_ms});
+    frame.modelled = {linear.fields, linear.slices, linear.device_bytes, linear.occupied_share};
+    return frame;
+  }
+
+ private:
+  std::unique_ptr<gl::Context> context_;  // outlives what was made in it
+  renderers::SceneRenderer renderer_;
+  frame::ToneMapper tone_mapper_;
+  DeviceInfo info_;
+};
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<FrameSource>> MakeGlFrameSource(const std::string& device) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<gl::Context> context, gl::Context::Create(device));
+  return std::make_unique<GlFrameSource>(std::move(context));
+}
+
+}  // namespace thunderhead::session

@@ -1,0 +1,46 @@
+// The extinction of a medium's groups at a point. A group is a channel: 0-3 of plane 0, 4-7 of plane 1; channels that a
+// plane does not have must be weighted with zero. GROUPS is the number of groups.
+#define PLANES ((GROUPS + 3) / 4)
+
+layout(binding = 0) uniform sampler3D medium_plane_0;
+#if PLANES > 1
+layout(binding = 1) uniform sampler3D medium_plane_1;
+#endif
+
+uniform vec3 texture_from_local_scale;
+uniform vec3 texture_from_local_offset;
+uniform vec3 medium_low_m;   // the box, in local metres
+uniform vec3 medium_high_m;
+
+uniform vec4 extinction_weights[PLANES];  // texel to extinction, 1/m; zero for channels that no group has
+
+struct Medium {
+  vec4 plane[PLANES];
+};
+
+// Texel values at `local_m`.
+Medium medium_at(vec3 local_m) {
+  vec3 place = local_m * texture_from_local_scale + texture_from_local_offset;
+  Medium medium;
+  medium.plane[0] = texture(medium_plane_0, place);
+#if PLANES > 1
+  medium.plane[1] = texture(medium_plane_1, place);
+#endif
+  return medium;
+}
+
+bool inside_medium(vec3 local_m) {
+  return all(greaterThanEqual(local_m, medium_low_m)) && all(lessThanEqual(local_m, medium_high_m));
+}
+
+// The sum over groups of weight times value.
+float weigh(Medium medium, vec4 weights[PLANES]) {
+  float sum = dot(medium.plane[0], weights[0]);
+#if PLANES > 1
+  sum += dot(medium.plane[1], weights[1]);
+#endif
+  return sum;
+}
+
+// All groups' extinction, 1/m.
+float total_extinction(Medium medium) { return weigh(medium, extinction_weights); }

@@ -1,0 +1,23 @@
+// Closed forms of light transport that the renderers share. Compiles as GLSL and as C++ (physics/optics.h).
+#ifdef __cplusplus
+#define PHYSICS_FUNCTION inline
+#else
+#define PHYSICS_FUNCTION
+#endif
+
+// (1 - exp(-x)) / x for x >= 0, without the cancellation at small x: the mean of exp(-t) over 0..x. Below 0.02 the
+// series' first dropped term is x^4/120, under 1.4e-9.
+PHYSICS_FUNCTION float mean_transmittance(float x) {
+  if (x < 0.02f) return 1.0f - x * (0.5f - x * (1.0f / 6.0f - x / 24.0f));
+  return (1.0f - exp(-x)) / x;
+}
+
+// Mean intensity of diffuse light, over the sun's irradiance, at optical depth `tau` below the lit face of a layer of
+// optical depth `total` that the sun strikes squarely: the Eddington solution for isotropic conservative scattering
+// with Marshak's boundary conditions (no diffuse light comes in from either side). Optical depths are similarity
+// scaled, (1 - omega g) times the real ones. Zero for an empty layer, 2/3 * 3/(4 pi) at the face of an infinite one.
+PHYSICS_FUNCTION float diffuse_mean_intensity(float tau, float total) {
+  const float kThreeOverFourPi = 0.238732415f;
+  float falling = (tau + 2.0f / 3.0f) * (5.0f - exp(-total)) / (3.0f * total + 4.0f);
+  return kThreeOverFourPi * max(5.0f / 3.0f - exp(-tau) - falling, 0.0f);
+}

@@ -1,0 +1,153 @@
+#include "volume/extinction.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <string>
+
+#include "base/status.h"
+#include "glm/common.hpp"
+#include "glm/geometric.hpp"
+
+namespace thunderhead::volume {
+namespace {
+
+// The terms of fields that have any condensate.
+std::vector<ExtinctionTerm> EffectiveTerms(const HydrometeorFields& fields,
+                                           const std::vector<ExtinctionTerm>& terms) {
+  std::vector<ExtinctionTerm> effective;
+  for (const ExtinctionTerm& term : terms) {
+    const HydrometeorField& field = fields.fields[static_cast<std::size_t>(term.field)];
+    if (!field.concentration_kg_per_m3.empty() && term.mass_extinction_m2_per_kg > 0.0F) {
+      effective.push_back(term);
+    }
+  }
+  return effective;
+}
+
+// Total extinction of the cells (low_x.., y, z) into `row`.
+void SumRow(const HydrometeorFields& fields, const std::vector<ExtinctionTerm>& terms, int low_x,
+            int y, int z, std::vector<float>* row) {
+  std::fill(row->begin(), row->end(), 0.0F);
+  const std::size_t offset = fields.grid.Offset(low_x, y, z);
+  for (const ExtinctionTerm& term : terms) {
+    const float* concentration =
+        fields.fields[static_cast<std::size_t>(term.field)].concentration_kg_per_m3.data() + offset;
+    for (std::size_t i = 0; i < row->size(); ++i) {
+      (*row)[i] += concentration[i] * term.mass_extinction_m2_per_kg;
+    }
+  }
+}
+
+struct Occupied {
+  CellBox cells;
+  float maximum_per_m = 0.0F;
+};
+
+void Include(int x, int y, int z, CellBox* box) {
+  box->low = glm::min(box->low, glm::ivec3(x, y, z));
+  box->high = glm::max(box->high, glm::ivec3(x + 1, y + 1, z + 1));
+}
+
+Occupied FindOccupied(const HydrometeorFields& fields, const std::vector<ExtinctionTerm>& terms) {
+  const RegularGrid& grid = fields.grid;
+  const double diagonal_m = glm::length(glm::dvec3(grid.cells) * grid.spacing_m);
+  const auto threshold_per_m = static_cast<float>(kNegligibleOpticalDepth / diagonal_m);
+  const CellBox& search = fields.condensate;
+  Occupied occupied{{grid.cells, glm::ivec3(0)}, 0.0F};
+  std::vector<float> row(static_cast<std::size_t>(search.high.x - search.low.x));
+  for (int z = search.low.z; z < search.high.z; ++z) {
+    for (int y = search.low.y; y < search.high.y; ++y) {
+      SumRow(fields, terms, search.low.x, y, z, &row);
+      const auto above = [&](float value) { return value > threshold_per_m; };
+      const auto first = std::find_if(row.begin(), row.end(), above);
+      if (first == row.end()) continue;
+      const auto last = std::find_if(row.rbegin(), row.rend(), above);
+      Include(search.low.x + static_cast<int>(first - row.begin()), y, z, &occupied.cells);
+      Include(search.low.x + static_cast<int>(row.rend() - last) - 1, y, z, &occupied.cells);
+      occupied.maximum_per_m =
+          std::max(occupied.maximum_per_m, *std::max_element(row.begin(), row.end()));
+    }
+  }
+  return occupied;
+}
+
+// Grows the box by one cell inside the domain and places it in the world.
+void PlaceBox(const RegularGrid& domain, const CellBox& occupied, ExtinctionVolume* volume) {
+  const glm::ivec3 low = glm::max(occupied.low - 1, glm::ivec3(0));
+  const glm::ivec3 high = glm::min(occupied.high + 1, domain.cells);
+  volume->grid.cells = high - low;
+  volume->grid.spacing_m = domain.spacing_m;
+  volume->grid.low_corner_m = domain.low_corner_m + glm::dvec3(low) * domain.spacing_m;
+  // A border cell is empty, so extinction has fallen to zero at its centre.
+  const glm::dvec3 low_border(glm::notEqual(low, occupied.low));
+  const glm::dvec3 high_border(glm::notEqual(high, occupied.high));
+  volume->low_m = volume->grid.low_corner_m + 0.5 * low_border * domain.spacing_m;
+  volume->high_m = volume->grid.HighCorner_m() - 0.5 * high_border * domain.spacing_m;
+}
+
+int RoundUpToFormat(int channels) { return channels == 3 ? 4 : channels; }
+
+void FillPlane(const HydrometeorFields& fields, const std::vector<ExtinctionTerm>& terms,
+               const glm::ivec3& low, int first_channel, const ExtinctionVolume& volume,
+               ExtinctionPlane* plane) {
+  const glm::ivec3 cells = volume.grid.cells;
+  const auto width = static_cast<std::size_t>(cells.x);
+  const auto stride = static_cast<std::size_t>(plane->channels);
+  const float texel_per_extinction = 1.0F / volume.extinction_per_m;
+  plane->texels.assign(volume.grid.CellCount() * stride, 0);
+  std::vector<float> row(width * stride);
+  for (int z = 0; z < cells.z; ++z) {
+    for (int y = 0; y < cells.y; ++y) {
+      std::fill(row.begin(), row.end(), 0.0F);
+      const std::size_t source = fields.grid.Offset(low.x, low.y + y, low.z + z);
+      for (const ExtinctionTerm& term : terms) {
+        const int channel = term.channel - first_channel;
+        if (channel < 0 || channel >= plane->channels) continue;
+        const float weight = term.mass_extinction_m2_per_kg * texel_per_extinction;
+        const float* concentration =
+            fields.fields[static_cast<std::size_t>(term.field)].concentration_kg_per_m3.data() +
+            source;
+        float* out = row.data() + channel;
+        for (std::size_t i = 0; i < width; ++i) out[i * stride] += concentration[i] * weight;
+      }
+      std::uint16_t* texels = plane->texels.data() + volume.grid.Offset(0, y, z) * stride;
+      for (std::size_t i = 0; i < row.size(); ++i) texels[i] = HalfFromFloat(row[i]);
+    }
+  }
+}
+
+}  // namespace
+
+std::uint16_t HalfFromFloat(float value) {
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  // Adding 0.5 aligns a half's subnormal step with a float's last bit, so the addition itself
+  // rounds.
+  const std::uint32_t subnormal = std::bit_cast<std::uint32_t>(value + 0.5F) - 0x3F000000U;
+  const std::uint32_t normal = (bits + 0xFFFU + ((bits >> 13U) & 1U) - 0x38000000U) >> 13U;
+  return static_cast<std::uint16_t>(bits < 0x38800000U ? subnormal : normal);
+}
+
+ExtinctionVolume ComputeExtinction(const HydrometeorFields& fields,
+                                   const std::vector<ExtinctionTerm>& terms, int channels) {
+  THUNDERHEAD_CHECK(channels >= 0 && channels <= kMostChannels, std::to_string(channels));
+  ExtinctionVolume volume;
+  const std::vector<ExtinctionTerm> effective = EffectiveTerms(fields, terms);
+  if (effective.empty() || fields.condensate.Empty()) return volume;
+  const Occupied occupied = FindOccupied(fields, effective);
+  if (occupied.cells.Empty()) return volume;
+  PlaceBox(fields.grid, occupied.cells, &volume);
+  volume.maximum_per_m = occupied.maximum_per_m;
+  // The largest value lands just below 2^15: the smallest normal half is then 3e-9 of it.
+  volume.extinction_per_m = std::ldexp(1.0F, std::ilogb(volume.maximum_per_m) - 14);
+  const glm::ivec3 low = glm::max(occupied.cells.low - 1, glm::ivec3(0));
+  for (int first = 0; first < channels; first += 4) {
+    ExtinctionPlane plane;
+    plane.channels = RoundUpToFormat(std::min(channels - first, 4));
+    FillPlane(fields, effective, low, first, volume, &plane);
+    volume.planes.push_back(std::move(plane));
+  }
+  return volume;
+}
+
+}  // namespace thunderhead::volume

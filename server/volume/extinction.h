@@ -1,0 +1,56 @@
+// Mixing ratios to extinction: adds up the fields of a storm into a few channels of extinction over
+// the smallest box that matters, as half floats ready for a texture. Knows no scene and no GL.
+//
+// Extinction of field f is its mass extinction 3 / (2 rho_f R_f) times its concentration rho_air
+// q_f: Riley et al. 2003 (AMS), eq. 4.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::volume {
+
+// One field's share in the volume.
+struct ExtinctionTerm {
+  int field = 0;  // index into HydrometeorFields::fields
+  float mass_extinction_m2_per_kg = 0.0F;
+  int channel = 0;
+};
+
+inline constexpr int kMostChannels = 8;
+
+// Up to four channels, interleaved, of the volume.
+struct ExtinctionPlane {
+  int channels = 0;                   // 1, 2 or 4
+  std::vector<std::uint16_t> texels;  // IEEE half floats, channel fastest, then x, y, z
+};
+
+// Extinction over a box of cells. A cell's value sits at its centre; between centres it is linear,
+// and outside the held cells it is that of the nearest one. That preserves each field's total:
+// inside the domain the box has a border of empty cells, at the domain's faces the last cell
+// reaches to the face.
+struct ExtinctionVolume {
+  RegularGrid grid;       // of the held cells; no cells if nothing is worth drawing
+  glm::dvec3 low_m{0.0};  // the box outside of which extinction is zero
+  glm::dvec3 high_m{0.0};
+  std::vector<ExtinctionPlane> planes;  // channels 0-3, then 4-7
+  float extinction_per_m = 0.0F;        // of a texel value of 1; a power of two
+  float maximum_per_m = 0.0F;           // largest sum over all channels in a cell
+
+  bool Empty() const { return grid.CellCount() == 0; }
+};
+
+// Cells whose extinction along the longest straight way through the domain adds up to less than
+// this optical depth in all are left out.
+inline constexpr double kNegligibleOpticalDepth = 1e-3;
+
+// Adds up `terms`, which use channels 0 to `channels` - 1.
+ExtinctionVolume ComputeExtinction(const HydrometeorFields& fields,
+                                   const std::vector<ExtinctionTerm>& terms, int channels);
+
+// The IEEE half float nearest to `value`, which is finite and from 0 to 65504.
+std::uint16_t HalfFromFloat(float value);
+
+}  // namespace thunderhead::volume
