@@ -1,0 +1,208 @@
+#include "volume/cached_storm_store.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "base/status.h"
+#include "spdlog/spdlog.h"
+#include "volume/wrf_reader.h"
+
+namespace thunderhead::volume {
+
+CachedStormStore::CachedStormStore(std::vector<CataloguedStorm> storms,
+                                   const StormStoreOptions& options)
+    : storms_(std::move(storms)),
+      options_(options),
+      cache_(options.byte_budget),
+      vertical_grids_(storms_.size()) {
+  for (const CataloguedStorm& storm : storms_) infos_.push_back(storm.info);
+  if (options_.read_ahead > 0) read_ahead_ = std::thread([this] { ReadAhead(); });
+}
+
+CachedStormStore::~CachedStormStore() {
+  {
+    Lock lock(mutex_);
+    ending_ = true;
+  }
+  changed_.notify_all();
+  if (read_ahead_.joinable()) read_ahead_.join();
+}
+
+absl::StatusOr<TimeKey> CachedStormStore::KeyOf(std::string_view id, int time_index) const {
+  const auto at = std::ranges::find(infos_, id, &StormInfo::id);
+  if (at == infos_.end()) {
+    const auto append_id = [](std::string* out, const StormInfo& info) { out->append(info.id); };
+    return absl::NotFoundError(absl::StrCat("there is no storm '", std::string(id),
+                                            "'; the storms are ",
+                                            absl::StrJoin(infos_, ", ", append_id)));
+  }
+  if (time_index < 0 || static_cast<std::size_t>(time_index) >= at->times.size()) {
+    return absl::OutOfRangeError(absl::StrCat("storm '", at->id, "' has no time ", time_index,
+                                              "; its times are 0 to ", at->times.size() - 1));
+  }
+  return TimeKey{static_cast<std::size_t>(at - infos_.begin()), time_index};
+}
+
+absl::StatusOr<std::shared_ptr<const HydrometeorFields>> CachedStormStore::Get(
+    std::string_view id, int time_index, const ReadProgress& progress) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const TimeKey key, KeyOf(id, time_index));
+  Lock lock(mutex_);
+  while (true) {
+    Fields fields = cache_.Use(key);
+    if (*fields == nullptr) {
+      const auto at = pending_.find(key);
+      fields = at != pending_.end() ? WaitFor(lock, at->second, progress)
+                                    : Read(lock, key, Purpose::kAsked, progress);
+    }
+    // The read that was waited for may have been a read-ahead given up just then.
+    if (absl::IsCancelled(fields.status()) && !ending_) continue;
+    if (fields.ok()) {
+      cache_.Use(key);
+      WantAfter(key);
+    }
+    return fields;
+  }
+}
+
+std::shared_ptr<const HydrometeorFields> CachedStormStore::Peek(std::string_view id,
+                                                                int time_index) {
+  const absl::StatusOr<TimeKey> key = KeyOf(id, time_index);
+  if (!key.ok()) return nullptr;
+  Lock lock(mutex_);
+  return cache_.Use(*key);
+}
+
+std::size_t CachedStormStore::CachedBytes() const {
+  Lock lock(mutex_);
+  return cache_.Bytes();
+}
+
+CachedStormStore::Fields CachedStormStore::WaitFor(Lock& lock,
+                                                   const std::shared_ptr<PendingRead>& read,
+                                                   const ReadProgress& progress) {
+  const std::shared_ptr<PendingRead> shared = read;  // outlives its place in pending_
+  ++shared->waiters;
+  if (progress) shared->listeners.push_back(progress);
+  changed_.notify_all();  // a read-ahead that stood back may now go on
+  changed_.wait(lock, [&shared] { return shared->result.has_value(); });
+  return *shared->result;
+}
+
+CachedStormStore::Fields CachedStormStore::Read(Lock& lock, const TimeKey& key, Purpose purpose,
+                                                const ReadProgress& progress) {
+  const auto read = std::make_shared<PendingRead>();
+  read->purpose = purpose;
+  if (progress) read->listeners.push_back(progress);
+  pending_[key] = read;
+  if (purpose == Purpose::kAsked) ++asked_reads_;
+  Fields fields = ReadFile(lock, key, *read);
+  if (purpose == Purpose::kAsked) --asked_reads_;
+  if (fields.ok() && (purpose == Purpose::kAsked || read->waiters > 0)) {
+    cache_.Insert(key, *fields);
+  } else if (fields.ok()) {
+    cache_.InsertAhead(key, *fields);
+  }
+  pending_.erase(key);
+  read->result = fields;
+  changed_.notify_all();
+  return fields;
+}
+
+CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, const TimeKey& key,
+                                                    PendingRead& read) {
+  const CataloguedStorm& storm = storms_[key.storm];
+  const TimeSource source = storm.sources[key.time];
+  const std::optional<VerticalGrid> grid = VerticalGridOf(lock, key);
+  lock.unlock();
+  absl::StatusOr<HydrometeorFields> fields =
+      ReadWrfTime(storm.files[source.file], source.record, grid,
+                  [&](double share) { return Checkpoint(key, read, share); });
+  lock.lock();
+  if (!fields.ok()) return fields.status();
+  if (!vertical_grids_[key.storm].has_value()) {
+    const RegularGrid& chosen = fields->grid;
+    vertical_grids_[key.storm] =
+        VerticalGrid{chosen.low_corner_m.z, chosen.spacing_m.z, chosen.cells.z};
+  }
+  return std::make_shared<const HydrometeorFields>(*std::move(fields));
+}
+
+// The storm's height grid comes from its first time, whichever time is read first, so that a
+// picture of a time does not depend on what was looked at before. Nothing if this is the first time
+// itself, or if that cannot be read.
+std::optional<VerticalGrid> CachedStormStore::VerticalGridOf(Lock& lock, const TimeKey& key) {
+  std::optional<VerticalGrid>& grid = vertical_grids_[key.storm];
+  if (grid.has_value() || key.time == 0) return grid;
+  const CataloguedStorm& storm = storms_[key.storm];
+  const TimeSource first = storm.sources.front();
+  lock.unlock();
+  const absl::StatusOr<VerticalGrid> chosen =
+      ReadWrfVerticalGrid(storm.files[first.file], first.record);
+  lock.lock();
+  if (!chosen.ok()) {
+    spdlog::warn("the first time of {} cannot be read: {}", storm.info.id,
+                 std::string(chosen.status().message()));
+  } else if (!grid.has_value()) {
+    grid = *chosen;
+  }
+  return grid;
+}
+
+absl::Status CachedStormStore::Checkpoint(const TimeKey& key, PendingRead& read, double share) {
+  Lock lock(mutex_);
+  if (read.purpose == Purpose::kAhead) {
+    const auto unwanted = [&] { return read.waiters == 0 && !IsWanted(key); };
+    changed_.wait(lock,
+                  [&] { return ending_ || read.waiters > 0 || asked_reads_ == 0 || unwanted(); });
+    if (ending_ || unwanted()) return absl::CancelledError("reading ahead was given up");
+  }
+  const std::vector<ReadProgress> listeners = read.listeners;
+  lock.unlock();
+  for (const ReadProgress& listener : listeners) listener(share);
+  return absl::OkStatus();
+}
+
+bool CachedStormStore::IsWanted(const TimeKey& key) const {
+  return std::ranges::find(wanted_, key) != wanted_.end();
+}
+
+void CachedStormStore::WantAfter(const TimeKey& key) {
+  wanted_.clear();
+  const int times = static_cast<int>(infos_[key.storm].times.size());
+  std::size_t bytes = cache_.NewestBytes();
+  for (int time = key.time + 1; time < times && time <= key.time + options_.read_ahead; ++time) {
+    // A time that would push out the one in view is not worth reading; times take about the same.
+    bytes += cache_.NewestBytes();
+    if (bytes > options_.byte_budget) break;
+    wanted_.push_back({key.storm, time});
+  }
+  changed_.notify_all();
+}
+
+std::optional<TimeKey> CachedStormStore::NextWanted() {
+  const auto at = std::ranges::find_if(wanted_, [this](const TimeKey& key) {
+    return !cache_.Holds(key) && !pending_.contains(key);
+  });
+  return at == wanted_.end() ? std::nullopt : std::optional(*at);
+}
+
+void CachedStormStore::ReadAhead() {
+  Lock lock(mutex_);
+  while (!ending_) {
+    const std::optional<TimeKey> key = NextWanted();
+    if (!key.has_value()) {
+      changed_.wait(lock);
+      continue;
+    }
+    const Fields fields = Read(lock, *key, Purpose::kAhead, {});
+    std::erase(wanted_, *key);
+    if (!fields.ok() && !absl::IsCancelled(fields.status())) {
+      spdlog::warn("reading ahead: {}", std::string(fields.status().message()));
+    }
+  }
+}
+
+}  // namespace thunderhead::volume

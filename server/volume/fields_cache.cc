@@ -1,0 +1,54 @@
+#include "volume/fields_cache.h"
+
+#include <utility>
+
+namespace thunderhead::volume {
+
+std::shared_ptr<const HydrometeorFields> FieldsCache::Use(const TimeKey& key) {
+  const auto at = entries_.find(key);
+  if (at == entries_.end()) return nullptr;
+  newest_first_.splice(newest_first_.begin(), newest_first_, at->second.order);
+  return at->second.fields;
+}
+
+void FieldsCache::Insert(const TimeKey& key, std::shared_ptr<const HydrometeorFields> fields) {
+  Remove(key);
+  Add(key, std::move(fields), newest_first_.begin());
+  Shrink();
+}
+
+void FieldsCache::InsertAhead(const TimeKey& key, std::shared_ptr<const HydrometeorFields> fields) {
+  if (newest_first_.empty() || newest_first_.front() == key) {
+    Insert(key, std::move(fields));
+    return;
+  }
+  Remove(key);
+  Add(key, std::move(fields), std::next(newest_first_.begin()));
+  Shrink();
+}
+
+std::size_t FieldsCache::NewestBytes() const {
+  return newest_first_.empty() ? 0 : entries_.at(newest_first_.front()).bytes;
+}
+
+void FieldsCache::Add(const TimeKey& key, std::shared_ptr<const HydrometeorFields> fields,
+                      std::list<TimeKey>::iterator before) {
+  const std::size_t bytes = fields->Bytes();
+  const auto order = newest_first_.insert(before, key);
+  entries_[key] = {std::move(fields), bytes, order};
+  bytes_ += bytes;
+}
+
+void FieldsCache::Remove(const TimeKey& key) {
+  const auto at = entries_.find(key);
+  if (at == entries_.end()) return;
+  bytes_ -= at->second.bytes;
+  newest_first_.erase(at->second.order);
+  entries_.erase(at);
+}
+
+void FieldsCache::Shrink() {
+  while (bytes_ > byte_budget_ && newest_first_.size() > 1) Remove(TimeKey(newest_first_.back()));
+}
+
+}  // namespace thunderhead::volume

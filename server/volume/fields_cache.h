@@ -1,0 +1,62 @@
+// Times of storms held in memory within a byte budget; the least recently used go first. Not safe
+// for several threads.
+#pragma once
+
+#include <cstddef>
+#include <list>
+#include <map>
+#include <memory>
+
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::volume {
+
+// A time of a storm: indices into the catalogue and into that storm's times.
+struct TimeKey {
+  std::size_t storm = 0;
+  int time = 0;
+
+  auto operator<=>(const TimeKey&) const = default;
+};
+
+class FieldsCache {
+ public:
+  explicit FieldsCache(std::size_t byte_budget) : byte_budget_(byte_budget) {}
+
+  // The fields, which become the most recently used; null if they are not held.
+  std::shared_ptr<const HydrometeorFields> Use(const TimeKey& key);
+
+  bool Holds(const TimeKey& key) const { return entries_.contains(key); }
+
+  // Holds `fields` as the most recently used and lets others go until the budget is met or only
+  // they are left.
+  void Insert(const TimeKey& key, std::shared_ptr<const HydrometeorFields> fields);
+
+  // Holds `fields` as less recently used than the newest, which is what is being looked at, if both
+  // fit.
+  void InsertAhead(const TimeKey& key, std::shared_ptr<const HydrometeorFields> fields);
+
+  std::size_t Bytes() const { return bytes_; }
+
+  // Bytes of the most recently used.
+  std::size_t NewestBytes() const;
+
+ private:
+  struct Entry {
+    std::shared_ptr<const HydrometeorFields> fields;
+    std::size_t bytes = 0;
+    std::list<TimeKey>::iterator order;
+  };
+
+  void Add(const TimeKey& key, std::shared_ptr<const HydrometeorFields> fields,
+           std::list<TimeKey>::iterator before);
+  void Remove(const TimeKey& key);
+  void Shrink();
+
+  std::size_t byte_budget_;
+  std::size_t bytes_ = 0;
+  std::list<TimeKey> newest_first_;
+  std::map<TimeKey, Entry> entries_;
+};
+
+}  // namespace thunderhead::volume

@@ -1,0 +1,34 @@
+// The air of a WRF file's layers: where each lies and how dense its dry part is.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace thunderhead::volume {
+
+// All arrays have x running fastest, then y, then levels upwards.
+struct LayerAir {
+  int levels = 0;
+  std::size_t columns = 0;
+  std::vector<float> interface_height_m;  // (levels + 1) * columns; NaN where missing
+  std::vector<float>
+      dry_air_density_kg_per_m3;  // levels * columns; NaN where anything it needs is missing
+};
+
+// Heights from the sum of perturbation and base geopotential (m2/s2), in place. Implausible ones
+// become NaN.
+void GeopotentialToHeight(const std::vector<float>& base, std::vector<float>& geopotential);
+
+// The state of the layers, from the file; values that are missing are NaN.
+struct LayerState {
+  std::vector<float> pressure_Pa;
+  std::vector<float> potential_temperature_K;
+  std::vector<float> vapour_kg_per_kg;  // empty: dry air
+};
+
+// The density of dry air in every layer; takes the memory of `state.pressure_Pa`. The density of a
+// layer with missing or unordered interfaces is NaN.
+std::vector<float> DryAirDensity(LayerState state, const std::vector<float>& interface_height_m,
+                                 std::size_t columns);
+
+}  // namespace thunderhead::volume

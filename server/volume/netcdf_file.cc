@@ -1,0 +1,337 @@
+#include "volume/netcdf_file.h"
+
+#include <netcdf.h>
+
+#include <cerrno>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <mutex>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+#include "volume/classic_file_size.h"
+
+namespace thunderhead::volume {
+namespace {
+
+constexpr int kNoHandle = -1;
+
+// Models write fills from 1e30 (a common choice) to 9.969e36 (netCDF's own); no quantity in a storm
+// is that large.
+constexpr double kLargestValue = 1e30;
+
+std::mutex& Lock() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+absl::Status OpenError(const std::string& path, int code) {
+  const std::string what = absl::StrCat(path, ": ");
+  switch (code) {
+    case ENOENT:
+      return absl::NotFoundError(absl::StrCat(what, "there is no such file; check the path"));
+    case EACCES:
+      return absl::PermissionDeniedError(
+          absl::StrCat(what, "may not be read; give this user permission to read it"));
+    case EAGAIN:
+      return absl::UnavailableError(absl::StrCat(
+          what, "another program is writing it; try again when the model has closed it"));
+    case NC_ENOTNC:
+      return absl::InvalidArgumentError(
+          absl::StrCat(what, "is not a netCDF file; give the model's output file (wrfout_...)"));
+    default:
+      return absl::DataLossError(
+          absl::StrCat(what, "cannot be opened as netCDF (", nc_strerror(code),
+                       "); it is cut short, damaged or still being written: wait for the model "
+                       "to finish, or copy the file again"));
+  }
+}
+
+// What a variable says about its values; all in the packed domain.
+struct Packing {
+  nc_type type = NC_FLOAT;
+  double scale = 1.0;
+  double offset = 0.0;
+  double fill = std::numeric_limits<double>::quiet_NaN();
+  double missing = std::numeric_limits<double>::quiet_NaN();
+
+  bool PlainFloat() const { return type == NC_FLOAT && scale == 1.0 && offset == 0.0; }
+};
+
+double NumberOr(int handle, int variable, const char* name, double otherwise) {
+  nc_type type;
+  std::size_t length = 0;
+  double value = otherwise;
+  if (nc_inq_att(handle, variable, name, &type, &length) != NC_NOERR || length != 1 ||
+      type == NC_CHAR || type == NC_STRING ||
+      nc_get_att_double(handle, variable, name, &value) != NC_NOERR) {
+    return otherwise;
+  }
+  return value;
+}
+
+double DefaultFill(nc_type type) {
+  switch (type) {
+    case NC_SHORT:
+      return NC_FILL_SHORT;
+    case NC_INT:
+      return NC_FILL_INT;
+    case NC_USHORT:
+      return NC_FILL_USHORT;
+    case NC_UINT:
+      return NC_FILL_UINT;
+    default:  // bytes have none by convention; those of real numbers are above kLargestValue
+      return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+Packing PackingOf(int handle, int variable) {
+  Packing packing;
+  nc_inq_vartype(handle, variable, &packing.type);
+  packing.scale = NumberOr(handle, variable, "scale_factor", 1.0);
+  packing.offset = NumberOr(handle, variable, "add_offset", 0.0);
+  packing.fill = NumberOr(handle, variable, "_FillValue", DefaultFill(packing.type));
+  packing.missing =
+      NumberOr(handle, variable, "missing_value", std::numeric_limits<double>::quiet_NaN());
+  return packing;
+}
+
+// Comparisons are written so that NaN fails them; `Real` is the type the file's values were read
+// as.
+template <typename Real>
+float Clean(Real packed, const Packing& packing) {
+  constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
+  if (packed == static_cast<Real>(packing.fill) || packed == static_cast<Real>(packing.missing)) {
+    return kMissing;
+  }
+  const auto value = static_cast<Real>(packed * packing.scale + packing.offset);
+  const Real size = std::abs(value);
+  if (!(size < static_cast<Real>(kLargestValue))) return kMissing;
+  return size < static_cast<Real>(std::numeric_limits<float>::min()) ? 0.0F
+                                                                     : static_cast<float>(value);
+}
+
+void CleanPlainFloats(const Packing& packing, std::vector<float>& values) {
+  const auto fill = static_cast<float>(packing.fill);
+  const auto missing = static_cast<float>(packing.missing);
+  for (float& value : values) {
+    const float size = std::abs(value);
+    const bool present =
+        size < static_cast<float>(kLargestValue) && value != fill && value != missing;
+    const float flushed = size < std::numeric_limits<float>::min() ? 0.0F : value;
+    value = present ? flushed : std::numeric_limits<float>::quiet_NaN();
+  }
+}
+
+}  // namespace
+
+absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return OpenError(path, ENOENT);
+  if (!std::filesystem::is_regular_file(path, error)) return OpenError(path, NC_ENOTNC);
+  // A file of no bytes is one that its writer has just created; HDF5 would call it "unknown
+  // format".
+  if (std::filesystem::file_size(path, error) == 0) return OpenError(path, NC_EHDFERR);
+  int handle = kNoHandle;
+  std::lock_guard lock(Lock());
+  if (const int code = nc_open(path.c_str(), NC_NOWRITE, &handle); code != NC_NOERR) {
+    return OpenError(path, code);
+  }
+  NetcdfFile file(path, handle);
+  const std::uintmax_t expected = ClassicFileSize(handle);
+  const std::uintmax_t actual = std::filesystem::file_size(path, error);
+  if (!error && actual >= expected) return file;
+  // ~NetcdfFile would take the lock again.
+  nc_close(std::exchange(file.handle_, kNoHandle));
+  return absl::DataLossError(absl::StrCat(
+      path, ": has ", actual, " bytes where its header promises ", expected,
+      "; it is cut short or still being written: wait for the model to finish, or copy it again"));
+}
+
+NetcdfFile::NetcdfFile(std::string path, int handle) : path_(std::move(path)), handle_(handle) {}
+
+NetcdfFile::NetcdfFile(NetcdfFile&& other) noexcept
+    : path_(std::move(other.path_)), handle_(std::exchange(other.handle_, kNoHandle)) {}
+
+NetcdfFile& NetcdfFile::operator=(NetcdfFile&& other) noexcept {
+  if (this != &other) {
+    Close();
+    path_ = std::move(other.path_);
+    handle_ = std::exchange(other.handle_, kNoHandle);
+  }
+  return *this;
+}
+
+NetcdfFile::~NetcdfFile() { Close(); }
+
+void NetcdfFile::Close() {
+  if (handle_ == kNoHandle) return;
+  std::lock_guard lock(Lock());
+  nc_close(std::exchange(handle_, kNoHandle));
+}
+
+bool NetcdfFile::HasVariable(const std::string& variable) const {
+  std::lock_guard lock(Lock());
+  int id = 0;
+  return nc_inq_varid(handle_, variable.c_str(), &id) == NC_NOERR;
+}
+
+std::optional<std::size_t> NetcdfFile::DimensionLength(const std::string& dimension) const {
+  std::lock_guard lock(Lock());
+  int id = 0;
+  std::size_t length = 0;
+  if (nc_inq_dimid(handle_, dimension.c_str(), &id) != NC_NOERR ||
+      nc_inq_dimlen(handle_, id, &length) != NC_NOERR) {
+    return std::nullopt;
+  }
+  return length;
+}
+
+absl::StatusOr<std::vector<std::size_t>> NetcdfFile::Shape(const std::string& variable) const {
+  std::lock_guard lock(Lock());
+  int id = 0;
+  int rank = 0;
+  int dimensions[NC_MAX_VAR_DIMS];
+  if (int code = nc_inq_varid(handle_, variable.c_str(), &id); code != NC_NOERR) {
+    return absl::NotFoundError(absl::StrCat(path_, ": has no variable ", variable));
+  }
+  if (int code = nc_inq_var(handle_, id, nullptr, nullptr, &rank, dimensions, nullptr);
+      code != NC_NOERR) {
+    return ReadError(variable, code);
+  }
+  std::vector<std::size_t> shape(rank);
+  for (int i = 0; i < rank; ++i) {
+    if (int code = nc_inq_dimlen(handle_, dimensions[i], &shape[i]); code != NC_NOERR) {
+      return ReadError(variable, code);
+    }
+  }
+  return shape;
+}
+
+std::optional<std::string> NetcdfFile::TextAttribute(const std::string& variable,
+                                                     const std::string& attribute) const {
+  std::lock_guard lock(Lock());
+  int id = NC_GLOBAL;
+  if (!variable.empty() && nc_inq_varid(handle_, variable.c_str(), &id) != NC_NOERR) return {};
+  nc_type type;
+  std::size_t length = 0;
+  if (nc_inq_att(handle_, id, attribute.c_str(), &type, &length) != NC_NOERR) return {};
+  if (type == NC_STRING && length == 1) {
+    char* text = nullptr;
+    if (nc_get_att_string(handle_, id, attribute.c_str(), &text) != NC_NOERR) return {};
+    std::string value = text != nullptr ? text : "";
+    nc_free_string(1, &text);
+    return value;
+  }
+  if (type != NC_CHAR) return {};
+  std::string value(length, '\0');
+  if (nc_get_att_text(handle_, id, attribute.c_str(), value.data()) != NC_NOERR) return {};
+  value.resize(std::char_traits<char>::find(value.data(), length, '\0') != nullptr
+                   ? value.find('\0')
+                   : length);
+  return value;
+}
+
+std::optional<double> NetcdfFile::NumberAttribute(const std::string& variable,
+                                                  const std::string& attribute) const {
+  std::lock_guard lock(Lock());
+  int id = NC_GLOBAL;
+  if (!variable.empty() && nc_inq_varid(handle_, variable.c_str(), &id) != NC_NOERR) return {};
+  const double value =
+      NumberOr(handle_, id, attribute.c_str(), std::numeric_limits<double>::quiet_NaN());
+  return std::isnan(value) ? std::nullopt : std::optional(value);
+}
+
+absl::StatusOr<std::vector<std::string>> NetcdfFile::ReadRows(const std::string& variable) const {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, Shape(variable));
+  std::lock_guard lock(Lock());
+  int id = 0;
+  nc_type type = NC_NAT;
+  nc_inq_varid(handle_, variable.c_str(), &id);
+  nc_inq_vartype(handle_, id, &type);
+  if (shape.size() != 2 || type != NC_CHAR) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(path_, ": ", variable, " is not a two-dimensional character variable"));
+  }
+  std::vector<char> text(shape[0] * shape[1]);
+  if (text.empty()) return std::vector<std::string>(shape[0]);
+  if (int code = nc_get_var_text(handle_, id, text.data()); code != NC_NOERR) {
+    return ReadError(variable, code);
+  }
+  std::vector<std::string> rows;
+  for (std::size_t row = 0; row < shape[0]; ++row) {
+    const std::string padded(text.data() + row * shape[1], shape[1]);
+    rows.emplace_back(padded.c_str());
+  }
+  return rows;
+}
+
+absl::Status NetcdfFile::ReadRecord(const std::string& variable, std::size_t record,
+                                    std::vector<float>& values) const {
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<std::size_t> count, Shape(variable));
+  if (count.empty() || record >= count[0]) {
+    return absl::DataLossError(absl::StrCat(path_, ": ", variable, " has no record ", record,
+                                            "; the file is shorter than it was: was it replaced?"));
+  }
+  std::vector<std::size_t> start(count.size(), 0);
+  start[0] = record;
+  count[0] = 1;
+  return ReadFloats(variable, start, count, values);
+}
+
+absl::StatusOr<std::vector<float>> NetcdfFile::ReadPart(
+    const std::string& variable, const std::vector<std::size_t>& start,
+    const std::vector<std::size_t>& count) const {
+  std::vector<float> values;
+  THUNDERHEAD_RETURN_IF_ERROR(ReadFloats(variable, start, count, values));
+  return values;
+}
+
+absl::Status NetcdfFile::ReadFloats(const std::string& variable,
+                                    const std::vector<std::size_t>& start,
+                                    const std::vector<std::size_t>& count,
+                                    std::vector<float>& values) const {
+  std::size_t total = 1;
+  for (std::size_t length : count) total *= length;
+  values.resize(total);
+  Packing packing;
+  std::vector<double> packed;
+  {
+    std::lock_guard lock(Lock());
+    int id = 0;
+    int code = nc_inq_varid(handle_, variable.c_str(), &id);
+    if (code != NC_NOERR) return ReadError(variable, code);
+    packing = PackingOf(handle_, id);
+    // Every chunk is read once; the cache would only keep each variable a second time until the
+    // file is closed.
+    nc_set_var_chunk_cache(handle_, id, 0, 0, 0.0F);
+    if (packing.PlainFloat()) {
+      code = nc_get_vara_float(handle_, id, start.data(), count.data(), values.data());
+    } else {
+      packed.resize(total);
+      code = nc_get_vara_double(handle_, id, start.data(), count.data(), packed.data());
+    }
+    if (code != NC_NOERR) return ReadError(variable, code);
+  }
+  if (packing.PlainFloat()) {
+    CleanPlainFloats(packing, values);
+  } else {
+    for (std::size_t i = 0; i < total; ++i) values[i] = Clean(packed[i], packing);
+  }
+  return absl::OkStatus();
+}
+
+absl::Status NetcdfFile::ReadError(const std::string& variable, int code) const {
+  if (code == NC_ECHAR) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(path_, ": ", variable, " holds text where numbers are needed"));
+  }
+  return absl::DataLossError(
+      absl::StrCat(path_, ": ", variable, " cannot be read (", nc_strerror(code),
+                   "); the file is cut short, damaged or still being written: wait for the model "
+                   "to finish, or copy the file again"));
+}
+
+}  // namespace thunderhead::volume

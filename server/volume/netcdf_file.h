@@ -1,0 +1,68 @@
+// One netCDF file, owned: text and numbers out of it, with everything that stands for "no value"
+// turned into NaN. Knows no model and no storm. NetCDF-C and HDF5 are not thread-safe, so every
+// call takes one lock of the process; nothing else may call netCDF-C.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+
+namespace thunderhead::volume {
+
+class NetcdfFile {
+ public:
+  // Opens `path` for reading. Errors: NOT_FOUND; INVALID_ARGUMENT (no netCDF file); DATA_LOSS (cut
+  // short or damaged); UNAVAILABLE (another program is writing it).
+  static absl::StatusOr<NetcdfFile> Open(const std::string& path);
+
+  NetcdfFile(NetcdfFile&& other) noexcept;
+  NetcdfFile& operator=(NetcdfFile&& other) noexcept;
+  ~NetcdfFile();
+
+  const std::string& Path() const { return path_; }
+
+  bool HasVariable(const std::string& variable) const;
+
+  // Length of the dimension, or nothing.
+  std::optional<std::size_t> DimensionLength(const std::string& dimension) const;
+
+  // Lengths of the variable's dimensions, slowest first.
+  absl::StatusOr<std::vector<std::size_t>> Shape(const std::string& variable) const;
+
+  // Attributes; nothing if absent or of another kind. An empty `variable` means the file's own
+  // attributes.
+  std::optional<std::string> TextAttribute(const std::string& variable,
+                                           const std::string& attribute) const;
+  std::optional<double> NumberAttribute(const std::string& variable,
+                                        const std::string& attribute) const;
+
+  // The rows of a two-dimensional character variable, up to the first NUL each.
+  absl::StatusOr<std::vector<std::string>> ReadRows(const std::string& variable) const;
+
+  // One record (index of the slowest dimension) of a numeric variable: unpacked (scale_factor,
+  // add_offset), missing values (the variable's fill values, anything of 1e30 or more, NaN,
+  // infinities) as NaN, denormals as zero. The memory of `values` is used again.
+  absl::Status ReadRecord(const std::string& variable, std::size_t record,
+                          std::vector<float>& values) const;
+
+  // A part of a variable, cleaned in the same way.
+  absl::StatusOr<std::vector<float>> ReadPart(const std::string& variable,
+                                              const std::vector<std::size_t>& start,
+                                              const std::vector<std::size_t>& count) const;
+
+ private:
+  NetcdfFile(std::string path, int handle);
+
+  absl::Status ReadFloats(const std::string& variable, const std::vector<std::size_t>& start,
+                          const std::vector<std::size_t>& count, std::vector<float>& values) const;
+  absl::Status ReadError(const std::string& variable, int code) const;
+  void Close();
+
+  std::string path_;
+  int handle_;
+};
+
+}  // namespace thunderhead::volume

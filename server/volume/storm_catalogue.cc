@@ -1,0 +1,258 @@
+#include "volume/storm_catalogue.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <new>
+#include <set>
+#include <system_error>
+#include <tuple>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+#include "spdlog/spdlog.h"
+
+namespace thunderhead::volume {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kDeepestFolder = 8;  // below a path given by name; also ends loops of symbolic links
+
+struct NamedStorm {
+  std::string name;
+  std::vector<WrfMetadata> files;
+};
+
+absl::StatusOr<WrfMetadata> Probe(const fs::path& path) {
+  try {
+    return ReadWrfMetadata(path.string());
+  } catch (const std::bad_alloc&) {
+    return absl::ResourceExhaustedError(absl::StrCat(
+        path.string(), ": its metadata does not fit in memory; the file is probably damaged"));
+  }
+}
+
+// What is safe in a URL and on a command line: "wrfout_d01_0001-01-01_00:10:00" has its colons
+// replaced.
+std::string IdFrom(const std::string& name) {
+  constexpr std::size_t kLongest = 128;
+  std::string id = name.substr(0, kLongest);
+  for (char& c : id) {
+    if (!absl::ascii_isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '_' && c != '-') {
+      c = '-';
+    }
+  }
+  return id.empty() ? "storm" : id;
+}
+
+// The file's name without the endings that netCDF files have; a date in the name may hold other
+// dots.
+std::string NameOfFile(const fs::path& path) {
+  const std::string extension = path.extension().string();
+  const bool known = extension == ".nc" || extension == ".nc4" || extension == ".cdf";
+  return known ? path.stem().string() : path.filename().string();
+}
+
+std::string NameOfFolder(const fs::path& path) {
+  std::error_code error;
+  const fs::path canonical = fs::canonical(path, error);
+  return (error ? path : canonical).filename().string();
+}
+
+// Files of which two may be parts of one run agree in this.
+auto RunKey(const WrfMetadata& file) {
+  return std::make_tuple(file.domain, file.cells.x, file.cells.y, file.cells.z, file.dx_m,
+                         file.dy_m, file.simulation_start, file.fields);
+}
+
+// Runs on the same grid, an ensemble for example, share most of their times; the files of one run
+// overlap at most at their ends, as after a restart.
+bool ContinueOneAnother(const std::vector<WrfMetadata>& files) {
+  std::set<absl::Time> distinct;
+  std::size_t total = 0;
+  for (const WrfMetadata& file : files) {
+    distinct.insert(file.times.begin(), file.times.end());
+    total += file.times.size();
+  }
+  return distinct.size() * 2 > total;
+}
+
+struct Folder {
+  std::vector<fs::path> files;
+  std::vector<fs::path> folders;
+};
+
+absl::StatusOr<Folder> List(const fs::path& path) {
+  Folder folder;
+  std::error_code error;
+  fs::directory_iterator entries(path, error);
+  for (; !error && entries != fs::directory_iterator(); entries.increment(error)) {
+    const fs::path& entry = entries->path();
+    if (entry.filename().string().starts_with('.')) continue;
+    std::error_code ignored;
+    if (fs::is_directory(entry, ignored)) folder.folders.push_back(entry);
+    if (fs::is_regular_file(entry, ignored)) folder.files.push_back(entry);
+  }
+  if (error) {
+    return absl::PermissionDeniedError(
+        absl::StrCat(path.string(), ": the folder cannot be listed (", error.message(), ")"));
+  }
+  std::ranges::sort(folder.files);
+  std::ranges::sort(folder.folders);
+  return folder;
+}
+
+// Groups a folder's files into runs; runs whose files do not continue one another fall apart into
+// single files.
+std::vector<NamedStorm> GroupRuns(const fs::path& folder, std::vector<WrfMetadata> files) {
+  std::map<decltype(RunKey(files[0])), std::vector<WrfMetadata>> runs;
+  for (WrfMetadata& file : files) runs[RunKey(file)].push_back(std::move(file));
+  std::vector<NamedStorm> storms;
+  std::vector<std::size_t> series;
+  for (auto& [key, run] : runs) {
+    if (run.size() > 1 && ContinueOneAnother(run)) {
+      series.push_back(storms.size());
+      storms.push_back({NameOfFolder(folder), std::move(run)});
+      continue;
+    }
+    for (WrfMetadata& file : run) {
+      const std::string name = NameOfFile(file.path);
+      storms.push_back({name, {}});
+      storms.back().files.push_back(std::move(file));
+    }
+  }
+  // Nests of one run lie side by side in a folder and are told apart by their number.
+  if (series.size() > 1) {
+    for (const std::size_t i : series) {
+      absl::StrAppend(&storms[i].name, "-d", absl::Dec(storms[i].files[0].domain, absl::kZeroPad2));
+    }
+  }
+  return storms;
+}
+
+absl::Status SearchFolder(const fs::path& path, int depth, std::vector<NamedStorm>& storms,
+                          absl::Status& first_failure) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Folder folder, List(path));
+  std::vector<WrfMetadata> files;
+  for (const fs::path& file : folder.files) {
+    absl::StatusOr<WrfMetadata> metadata = Probe(file);
+    if (metadata.ok()) {
+      files.push_back(*std::move(metadata));
+      continue;
+    }
+    first_failure.Update(metadata.status());
+    // A read-me beside the storms is nothing to worry about; a storm that cannot be read is.
+    const bool other = absl::IsInvalidArgument(metadata.status());
+    spdlog::log(other ? spdlog::level::info : spdlog::level::warn, "left out: {}",
+                std::string(metadata.status().message()));
+  }
+  if (!files.empty()) std::ranges::move(GroupRuns(path, std::move(files)), back_inserter(storms));
+  if (depth == kDeepestFolder) return absl::OkStatus();
+  for (const fs::path& below : folder.folders) {
+    if (absl::Status status = SearchFolder(below, depth + 1, storms, first_failure); !status.ok()) {
+      first_failure.Update(status);
+      spdlog::warn("left out: {}", std::string(status.message()));
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status Search(const std::string& path, std::vector<NamedStorm>& storms) {
+  std::error_code error;
+  if (!fs::is_directory(path, error)) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(WrfMetadata metadata, Probe(path));
+    storms.push_back({NameOfFile(path), {}});
+    storms.back().files.push_back(std::move(metadata));
+    return absl::OkStatus();
+  }
+  const std::size_t before = storms.size();
+  absl::Status first_failure;
+  THUNDERHEAD_RETURN_IF_ERROR(SearchFolder(path, 0, storms, first_failure));
+  if (storms.size() > before) return absl::OkStatus();
+  if (!first_failure.ok()) {
+    return base::Annotate(first_failure, absl::StrCat(path, " holds no storm; its first file"));
+  }
+  return absl::NotFoundError(
+      absl::StrCat(path, ": holds no storm; put the model's output files (wrfout_...) there"));
+}
+
+std::string TitleOf(const std::string& name, const WrfMetadata& file) {
+  std::string about = file.model;
+  if (file.idealised) absl::StrAppend(&about, about.empty() ? "" : ", ", "idealised");
+  return about.empty() ? name : absl::StrCat(name, " (", about, ")");
+}
+
+// The file that comes again under another path, or through a link, is one file.
+void DropRepeated(std::vector<NamedStorm>& storms) {
+  std::set<std::string> seen;
+  for (NamedStorm& storm : storms) {
+    std::erase_if(storm.files, [&seen](const WrfMetadata& file) {
+      std::error_code error;
+      const fs::path canonical = fs::canonical(file.path, error);
+      return !seen.insert(error ? file.path : canonical.string()).second;
+    });
+  }
+  std::erase_if(storms, [](const NamedStorm& storm) { return storm.files.empty(); });
+}
+
+}  // namespace
+
+CataloguedStorm AssembleStorm(const std::string& name, std::vector<WrfMetadata> files) {
+  THUNDERHEAD_CHECK(!files.empty(), name);
+  std::ranges::sort(files, {}, &WrfMetadata::path);
+  std::map<absl::Time, TimeSource> sources;
+  for (std::size_t file = 0; file < files.size(); ++file) {
+    for (std::size_t record = 0; record < files[file].times.size(); ++record) {
+      const absl::Time time = files[file].times[record];
+      const auto [at, added] = sources.try_emplace(time, TimeSource{file, record});
+      if (added) continue;
+      spdlog::info("{} is in {} and in {}; the latter is used", FormatValidTime(time),
+                   files[at->second.file].path, files[file].path);
+      at->second = {file, record};
+    }
+  }
+  CataloguedStorm storm;
+  StormInfo& info = storm.info;
+  info.id = IdFrom(name);
+  for (const auto& [time, source] : sources) {
+    info.times.push_back(
+        {FormatValidTime(time), absl::ToDoubleSeconds(time - sources.begin()->first)});
+    storm.sources.push_back(source);
+  }
+  for (const WrfMetadata& file : files) info.files.push_back(file.path);
+  const WrfMetadata& first = files[storm.sources.front().file];
+  info.title = TitleOf(name, first);
+  info.file_cells = first.cells;
+  info.dx_m = first.dx_m;
+  info.dy_m = first.dy_m;
+  info.fields = first.fields;
+  info.latitude_deg = first.latitude_deg;
+  info.longitude_deg = first.longitude_deg;
+  storm.files = std::move(files);
+  return storm;
+}
+
+absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths) {
+  std::vector<NamedStorm> named;
+  for (const std::string& path : paths) THUNDERHEAD_RETURN_IF_ERROR(Search(path, named));
+  if (named.empty()) {
+    return absl::InvalidArgumentError(
+        "no storm to show; name a file or folder of model output (wrfout_...)");
+  }
+  DropRepeated(named);
+  std::vector<CataloguedStorm> storms;
+  std::set<std::string> ids;
+  for (NamedStorm& storm : named) {
+    storms.push_back(AssembleStorm(storm.name, std::move(storm.files)));
+    std::string& id = storms.back().info.id;
+    const std::string stem = id;
+    for (int copy = 2; !ids.insert(id).second; ++copy) id = absl::StrCat(stem, "-", copy);
+  }
+  std::ranges::sort(storms, {}, [](const CataloguedStorm& storm) { return storm.info.id; });
+  return storms;
+}
+
+}  // namespace thunderhead::volume

@@ -1,0 +1,296 @@
+#include "volume/wrf_metadata.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/strip.h"
+#include "base/status.h"
+
+namespace thunderhead::volume {
+namespace {
+
+using physics::Hydrometeor;
+
+constexpr std::array<std::string_view, physics::kHydrometeorCount> kHydrometeorVariables = {
+    "QCLOUD", "QRAIN", "QICE", "QSNOW", "QGRAUP", "QHAIL"};
+
+// Spellings of a unit, without blanks, stars, hats, dots and brackets.
+struct Unit {
+  std::string_view name;
+  std::array<std::string_view, 4> spellings;
+};
+constexpr Unit kMixingRatio = {"kg kg-1", {"kgkg-1", "kg/kg", "kg-1kg", "1"}};
+constexpr Unit kPressure = {"Pa", {"Pa", "pascal", "pascals", "Nm-2"}};
+constexpr Unit kGeopotential = {"m2 s-2", {"m2s-2", "m2/s2", "Jkg-1", "J/kg"}};
+constexpr Unit kTemperature = {"K", {"K", "kelvin", "Kelvin", "degK"}};
+constexpr Unit kLength = {"m", {"m", "meter", "meters", "metres"}};
+
+absl::Status CheckUnits(const NetcdfFile& file, const std::string& variable, const Unit& unit) {
+  const std::optional<std::string> units = file.TextAttribute(variable, "units");
+  if (!units.has_value()) return absl::OkStatus();
+  std::string spelling = *units;
+  std::erase_if(spelling, [](char c) { return c == ' ' || c == '*' || c == '^' || c == '.'; });
+  std::erase_if(spelling, [](char c) { return c == '(' || c == ')' || c == '_'; });
+  if (spelling.empty() || std::ranges::find(unit.spellings, spelling) != unit.spellings.end()) {
+    return absl::OkStatus();
+  }
+  const std::string_view wanted = unit.name;
+  return absl::InvalidArgumentError(
+      absl::StrCat(file.Path(), ": ", variable, " has units '", *units, "' where '",
+                   std::string(wanted), "' is needed; convert it (and its units attribute) first"));
+}
+
+// `shape` in words, for errors.
+std::string InWords(const std::vector<std::size_t>& shape) {
+  return absl::StrCat("(", absl::StrJoin(shape, ", "), ")");
+}
+
+absl::Status CheckVariable(const NetcdfFile& file, const std::string& variable,
+                           const std::vector<std::size_t>& shape, const Unit& unit) {
+  if (!file.HasVariable(variable)) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        file.Path(), ": has no variable ", variable,
+        ", which is needed; write it to the model's history output, or extract it as well"));
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> actual, file.Shape(variable));
+  if (actual != shape) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": ", variable, " has dimensions ", InWords(actual), " where ",
+                     InWords(shape), " are needed (time, levels, south-north, west-east); ",
+                     "give the model's own output file"));
+  }
+  return CheckUnits(file, variable, unit);
+}
+
+absl::StatusOr<int> Length(const NetcdfFile& file, const std::string& dimension) {
+  const std::optional<std::size_t> length = file.DimensionLength(dimension);
+  if (!length.has_value()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": has no dimension ", dimension,
+                     ", so it is no WRF output; give a history file of the model (wrfout_...)"));
+  }
+  constexpr std::size_t kMost = 100'000;
+  if (*length < 1 || *length > kMost) {
+    return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": dimension ", dimension, " is ",
+                                                   *length, "; 1 to ", kMost, " can be read"));
+  }
+  return static_cast<int>(*length);
+}
+
+absl::Status ReadGrid(const NetcdfFile& file, WrfMetadata& metadata) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(metadata.cells.x, Length(file, "west_east"));
+  THUNDERHEAD_ASSIGN_OR_RETURN(metadata.cells.y, Length(file, "south_north"));
+  THUNDERHEAD_ASSIGN_OR_RETURN(metadata.cells.z, Length(file, "bottom_top"));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const int interfaces, Length(file, "bottom_top_stag"));
+  if (interfaces != metadata.cells.z + 1) {
+    return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": bottom_top_stag is ", interfaces,
+                                                   " where bottom_top + 1 = ", metadata.cells.z + 1,
+                                                   " is needed; extract all levels"));
+  }
+  const std::pair<const char*, double*> spacings[] = {{"DX", &metadata.dx_m},
+                                                      {"DY", &metadata.dy_m}};
+  for (const auto& [name, spacing_m] : spacings) {
+    *spacing_m = file.NumberAttribute("", name).value_or(0.0);
+    if (!(*spacing_m > 0.0) || !std::isfinite(*spacing_m)) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(file.Path(), ": the global attribute ", name,
+                       " (metres, above zero) is missing or wrong; add it"));
+    }
+  }
+  return absl::OkStatus();
+}
+
+std::optional<absl::Time> ParseWrfTime(const std::string& text) {
+  int year = 0;
+  int month = 0;
+  int day = 0;
+  int hour = 0;
+  int minute = 0;
+  int second = 0;
+  int length = 0;
+  // The separator between date and time is '_' in WRF's own files and 'T' or a blank in others.
+  if (std::sscanf(text.c_str(), "%4d-%2d-%2d%*1[_T ]%2d:%2d:%2d%n", &year, &month, &day, &hour,
+                  &minute, &second, &length) != 6 ||
+      length < 16) {
+    return std::nullopt;
+  }
+  const absl::CivilSecond civil(year, month, day, hour, minute, second);
+  if (civil.month() != month || civil.day() != day || civil.hour() != hour ||
+      civil.minute() != minute || civil.second() != second) {
+    return std::nullopt;
+  }
+  return absl::FromCivil(civil, absl::UTCTimeZone());
+}
+
+absl::Status NoTimes(const NetcdfFile& file) {
+  return absl::InvalidArgumentError(
+      absl::StrCat(file.Path(), ": holds no times yet; the model may still be writing it: try ",
+                   "again when it has finished"));
+}
+
+// Times from minutes since the start of the run, for files whose Times were left out.
+absl::StatusOr<std::vector<absl::Time>> TimesFromMinutes(const NetcdfFile& file) {
+  std::optional<std::string> start = file.TextAttribute("", "SIMULATION_START_DATE");
+  if (!start.has_value()) start = file.TextAttribute("", "START_DATE");
+  const std::optional<absl::Time> origin = start.has_value() ? ParseWrfTime(*start) : std::nullopt;
+  if (!file.HasVariable("XTIME") || !origin.has_value()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": has no variable Times (nor XTIME with the attribute ",
+                     "SIMULATION_START_DATE); extract Times as well"));
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, file.Shape("XTIME"));
+  if (shape.size() != 1) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": XTIME has dimensions ", InWords(shape), ", not (time)"));
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> minutes,
+                               file.ReadPart("XTIME", {0}, shape));
+  std::vector<absl::Time> times;
+  for (const float minute : minutes) {
+    if (!std::isfinite(minute)) return NoTimes(file);
+    times.push_back(*origin + absl::Seconds(std::round(static_cast<double>(minute) * 60.0)));
+  }
+  return times;
+}
+
+absl::StatusOr<std::vector<absl::Time>> ReadTimes(const NetcdfFile& file) {
+  const std::size_t records = file.DimensionLength("Time").value_or(0);
+  if (records == 0) return NoTimes(file);
+  std::vector<absl::Time> times;
+  if (!file.HasVariable("Times")) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(times, TimesFromMinutes(file));
+  } else {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::string> rows, file.ReadRows("Times"));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const std::optional<absl::Time> time = ParseWrfTime(rows[i]);
+      if (!time.has_value()) {
+        return absl::DataLossError(absl::StrCat(
+            file.Path(), ": Times of record ", i, " is '", absl::CEscape(rows[i]),
+            "', not a date like 2013-05-20_20:00:00; the model may still be writing the file: ",
+            "try again when it has finished"));
+      }
+      times.push_back(*time);
+    }
+  }
+  if (times.size() != records) {
+    return absl::DataLossError(absl::StrCat(
+        file.Path(), ": Times has ", times.size(), " records where the dimension Time has ",
+        records, "; the model may still be writing the file: try again when it has finished"));
+  }
+  return times;
+}
+
+absl::Status CheckVariables(const NetcdfFile& file, WrfMetadata& metadata) {
+  const std::size_t records = metadata.times.size();
+  const auto nx = static_cast<std::size_t>(metadata.cells.x);
+  const auto ny = static_cast<std::size_t>(metadata.cells.y);
+  const auto nz = static_cast<std::size_t>(metadata.cells.z);
+  const std::vector<std::size_t> at_interfaces = {records, nz + 1, ny, nx};
+  const std::vector<std::size_t> in_layers = {records, nz, ny, nx};
+  for (const char* name : {"PH", "PHB"}) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckVariable(file, name, at_interfaces, kGeopotential));
+  }
+  for (const char* name : {"P", "PB"}) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckVariable(file, name, in_layers, kPressure));
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(CheckVariable(file, "T", in_layers, kTemperature));
+  metadata.has_vapour = file.HasVariable("QVAPOR");
+  if (metadata.has_vapour) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckVariable(file, "QVAPOR", in_layers, kMixingRatio));
+  }
+  metadata.has_terrain = file.HasVariable("HGT");
+  if (metadata.has_terrain) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckVariable(file, "HGT", {records, ny, nx}, kLength));
+  }
+  for (Hydrometeor hydrometeor : physics::kHydrometeors) {
+    const std::string variable(WrfVariableOf(hydrometeor));
+    if (!file.HasVariable(variable)) continue;
+    THUNDERHEAD_RETURN_IF_ERROR(CheckVariable(file, variable, in_layers, kMixingRatio));
+    metadata.fields.push_back(hydrometeor);
+  }
+  if (!metadata.fields.empty()) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(
+      file.Path(), ": has none of the variables ",
+      absl::StrJoin(kHydrometeorVariables, ", ",
+                    [](std::string* out, std::string_view name) { out->append(name); }),
+      "; write at least one to the model's history output"));
+}
+
+// Mean over the cells around the middle of the domain; longitudes are unwrapped around the first of
+// them.
+absl::StatusOr<double> Middle(const NetcdfFile& file, const std::string& variable,
+                              const WrfMetadata& metadata) {
+  const auto nx = static_cast<std::size_t>(metadata.cells.x);
+  const auto ny = static_cast<std::size_t>(metadata.cells.y);
+  const std::vector<std::size_t> expected = {metadata.times.size(), ny, nx};
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, file.Shape(variable));
+  if (shape != expected) return std::numeric_limits<double>::quiet_NaN();
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const std::vector<float> values,
+      file.ReadPart(variable, {0, (ny - 1) / 2, (nx - 1) / 2}, {1, 2 - ny % 2, 2 - nx % 2}));
+  double sum_deg = 0.0;
+  for (const float value : values) {
+    sum_deg += values[0] + std::remainder(static_cast<double>(value) - values[0], 360.0);
+  }
+  return sum_deg / static_cast<double>(values.size());
+}
+
+absl::Status ReadPlace(const NetcdfFile& file, WrfMetadata& metadata) {
+  metadata.idealised = file.NumberAttribute("", "MAP_PROJ").value_or(1.0) == 0.0;
+  if (metadata.idealised) return absl::OkStatus();
+  if (!file.HasVariable("XLAT") || !file.HasVariable("XLONG")) return absl::OkStatus();
+  THUNDERHEAD_ASSIGN_OR_RETURN(const double latitude_deg, Middle(file, "XLAT", metadata));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const double longitude_deg, Middle(file, "XLONG", metadata));
+  if (!std::isfinite(latitude_deg) || !std::isfinite(longitude_deg)) return absl::OkStatus();
+  metadata.idealised = latitude_deg == 0.0 && longitude_deg == 0.0;
+  if (metadata.idealised) return absl::OkStatus();
+  metadata.latitude_deg = latitude_deg;
+  metadata.longitude_deg = std::remainder(longitude_deg, 360.0);
+  return absl::OkStatus();
+}
+
+// " OUTPUT FROM WRF V4.7.1 MODEL" -> "WRF V4.7.1".
+std::string ModelName(const NetcdfFile& file) {
+  const std::string title = file.TextAttribute("", "TITLE").value_or("");
+  absl::string_view name = absl::StripAsciiWhitespace(title);
+  name = absl::StripPrefix(name, "OUTPUT FROM ");
+  name = absl::StripSuffix(name, " MODEL");
+  return std::string(absl::StripAsciiWhitespace(name));
+}
+
+}  // namespace
+
+std::string_view WrfVariableOf(Hydrometeor hydrometeor) {
+  return kHydrometeorVariables[physics::IndexOf(hydrometeor)];
+}
+
+absl::StatusOr<WrfMetadata> ReadWrfMetadata(const std::string& path) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const NetcdfFile file, NetcdfFile::Open(path));
+  return ReadWrfMetadata(file);
+}
+
+absl::StatusOr<WrfMetadata> ReadWrfMetadata(const NetcdfFile& file) {
+  WrfMetadata metadata;
+  metadata.path = file.Path();
+  THUNDERHEAD_RETURN_IF_ERROR(ReadGrid(file, metadata));
+  THUNDERHEAD_ASSIGN_OR_RETURN(metadata.times, ReadTimes(file));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckVariables(file, metadata));
+  THUNDERHEAD_RETURN_IF_ERROR(ReadPlace(file, metadata));
+  metadata.model = ModelName(file);
+  metadata.domain = static_cast<int>(file.NumberAttribute("", "GRID_ID").value_or(1.0));
+  metadata.simulation_start = file.TextAttribute("", "SIMULATION_START_DATE").value_or("");
+  return metadata;
+}
+
+std::string FormatValidTime(absl::Time time) {
+  return absl::FormatTime("%E4Y-%m-%dT%H:%M:%SZ", time, absl::UTCTimeZone());
+}
+
+}  // namespace thunderhead::volume

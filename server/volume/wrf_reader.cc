@@ -1,0 +1,281 @@
+#include "volume/wrf_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+#include "volume/field_scan.h"
+#include "volume/layer_air.h"
+#include "volume/netcdf_file.h"
+
+namespace thunderhead::volume {
+namespace {
+
+using physics::Hydrometeor;
+
+constexpr float kBaseTheta_K = 300.0F;  // WRF's T is potential temperature less this
+
+// No air carries half its mass in condensate; a file that says so is in g/kg.
+constexpr float kMostMixingRatio = 0.5F;
+
+struct RemappedField {
+  HydrometeorField field;
+  CellBox condensate;
+  std::vector<float> buffer;  // given back for the next variable
+};
+
+// Reads one record. Variables are read on the calling thread, one at a time, while the one before
+// is worked on beside it: unpacking (netCDF) and remapping take about as long.
+class TimeReader {
+ public:
+  TimeReader(const WrfMetadata& metadata, std::size_t record, NetcdfFile file)
+      : metadata_(metadata), record_(record), file_(std::move(file)) {
+    air_.levels = metadata.cells.z;
+    air_.columns = static_cast<std::size_t>(metadata.cells.x) * metadata.cells.y;
+  }
+
+  absl::StatusOr<VerticalGrid> ReadHeights();
+  absl::StatusOr<HydrometeorFields> Read(const std::optional<VerticalGrid>& grid,
+                                         const ReadCheckpoint& checkpoint);
+
+ private:
+  absl::Status ReadVariable(const std::string& variable, std::size_t cells,
+                            std::vector<float>& values);
+  absl::Status ReadSum(const std::string& perturbation, const std::string& base, std::size_t cells,
+                       std::vector<float>& sum, std::vector<float>& base_values);
+  absl::StatusOr<LayerState> ReadState();
+  absl::Status ReadTerrain(HydrometeorFields& result);
+  absl::Status ReadFields(HydrometeorFields& result);
+  absl::StatusOr<VerticalGrid> GridFor(const std::optional<VerticalGrid>& storm_grid) const;
+  absl::StatusOr<RemappedField> Remap(Hydrometeor hydrometeor, std::vector<float> values) const;
+  absl::Status Take(std::future<absl::StatusOr<RemappedField>>& pending, HydrometeorFields& result);
+  absl::Status Advance();
+
+  const WrfMetadata& metadata_;
+  std::size_t record_;
+  NetcdfFile file_;
+  LayerAir air_;
+  VerticalGrid own_grid_;
+  VerticalGrid grid_;
+  RegularGrid regular_;
+  std::vector<float> buffer_;
+  ReadCheckpoint checkpoint_;
+  int variables_read_ = 0;
+};
+
+absl::Status TimeReader::Advance() {
+  if (!checkpoint_) return absl::OkStatus();
+  const int variables =
+      5 + (metadata_.has_vapour ? 1 : 0) + static_cast<int>(metadata_.fields.size());
+  return checkpoint_(std::min(1.0, static_cast<double>(variables_read_++) / variables));
+}
+
+absl::Status TimeReader::ReadVariable(const std::string& variable, std::size_t cells,
+                                      std::vector<float>& values) {
+  THUNDERHEAD_RETURN_IF_ERROR(Advance());
+  THUNDERHEAD_RETURN_IF_ERROR(file_.ReadRecord(variable, record_, values));
+  if (values.size() != cells) {
+    return absl::DataLossError(absl::StrCat(file_.Path(), ": ", variable, " now has ",
+                                            values.size(), " values a time where it had ", cells,
+                                            "; the file was replaced: restart to read it anew"));
+  }
+  if (std::ranges::all_of(values, [](float value) { return std::isnan(value); })) {
+    return absl::DataLossError(absl::StrCat(
+        file_.Path(), ": ", variable, " of record ", record_, " holds nothing but fill values; ",
+        "the model may still be writing the file: try again when it has finished"));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status TimeReader::ReadSum(const std::string& perturbation, const std::string& base,
+                                 std::size_t cells, std::vector<float>& sum,
+                                 std::vector<float>& base_values) {
+  THUNDERHEAD_RETURN_IF_ERROR(ReadVariable(perturbation, cells, sum));
+  return ReadVariable(base, cells, base_values);
+}
+
+absl::StatusOr<VerticalGrid> TimeReader::ReadHeights() {
+  const std::size_t cells = (air_.levels + 1) * air_.columns;
+  THUNDERHEAD_RETURN_IF_ERROR(ReadSum("PH", "PHB", cells, air_.interface_height_m, buffer_));
+  GeopotentialToHeight(buffer_, air_.interface_height_m);
+  own_grid_ = ChooseVerticalGrid(air_.interface_height_m, air_.levels, air_.columns);
+  if (own_grid_.cells == 0) {
+    return absl::DataLossError(
+        absl::StrCat(file_.Path(), ": PH + PHB of record ", record_,
+                     " give no layer whose top is above its bottom; write the file again"));
+  }
+  return own_grid_;
+}
+
+absl::StatusOr<LayerState> TimeReader::ReadState() {
+  const std::size_t cells = air_.levels * air_.columns;
+  LayerState state;
+  THUNDERHEAD_RETURN_IF_ERROR(ReadSum("P", "PB", cells, state.pressure_Pa, buffer_));
+  for (std::size_t i = 0; i < cells; ++i) state.pressure_Pa[i] += buffer_[i];
+  THUNDERHEAD_RETURN_IF_ERROR(ReadVariable("T", cells, state.potential_temperature_K));
+  for (float& theta_K : state.potential_temperature_K) theta_K += kBaseTheta_K;
+  if (metadata_.has_vapour) {
+    THUNDERHEAD_RETURN_IF_ERROR(ReadVariable("QVAPOR", cells, state.vapour_kg_per_kg));
+  }
+  return state;
+}
+
+// Terrain that is missing is where the lowest layer begins.
+absl::Status TimeReader::ReadTerrain(HydrometeorFields& result) {
+  std::vector<float>& terrain = result.terrain_height_m;
+  terrain.assign(air_.columns, std::nanf(""));
+  if (metadata_.has_terrain) {
+    THUNDERHEAD_RETURN_IF_ERROR(file_.ReadRecord("HGT", record_, terrain));
+    terrain.resize(air_.columns, std::nanf(""));
+  }
+  for (std::size_t i = 0; i < air_.columns; ++i) {
+    if (std::isnan(terrain[i])) terrain[i] = air_.interface_height_m[i];
+    if (std::isnan(terrain[i])) terrain[i] = static_cast<float>(grid_.low_m);
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<VerticalGrid> TimeReader::GridFor(
+    const std::optional<VerticalGrid>& storm_grid) const {
+  if (!storm_grid.has_value()) return own_grid_;
+  const VerticalGrid grid = Extended(*storm_grid, air_.interface_height_m);
+  constexpr int kFewCells = 8;
+  if (grid.cells <= 2 * storm_grid->cells + kFewCells) return grid;
+  return absl::DataLossError(absl::StrCat(
+      file_.Path(), ": the heights of record ", record_, " (PH + PHB) reach from ", grid.low_m,
+      " to ", grid.High_m(), " m where the storm's first time has ", storm_grid->low_m, " to ",
+      storm_grid->High_m(), " m; give files of one run only"));
+}
+
+absl::StatusOr<RemappedField> TimeReader::Remap(Hydrometeor hydrometeor,
+                                                std::vector<float> values) const {
+  RemappedField remapped;
+  HydrometeorField& field = remapped.field;
+  field.hydrometeor = hydrometeor;
+  field.variable = std::string(WrfVariableOf(hydrometeor));
+  field.statistics = MixingRatioToConcentration(air_, values);
+  if (field.statistics.maximum_kg_per_kg > kMostMixingRatio) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file_.Path(), ": ", field.variable, " of record ", record_, " reaches ",
+                     field.statistics.maximum_kg_per_kg,
+                     " where kg of water per kg of air is needed; if it is in g/kg, divide it by "
+                     "1000 and set its units attribute"));
+  }
+  if (field.statistics.maximum_water_path_kg_per_m2 > 0.0) {
+    field.concentration_kg_per_m3 =
+        RemapColumns(air_.interface_height_m, values, air_.levels, air_.columns, grid_);
+    remapped.condensate = FlushAndBound(regular_, field.concentration_kg_per_m3);
+    if (remapped.condensate.Empty()) field.concentration_kg_per_m3 = {};
+  }
+  remapped.buffer = std::move(values);
+  return remapped;
+}
+
+absl::Status TimeReader::Take(std::future<absl::StatusOr<RemappedField>>& pending,
+                              HydrometeorFields& result) {
+  if (!pending.valid()) return absl::OkStatus();
+  THUNDERHEAD_ASSIGN_OR_RETURN(RemappedField remapped, pending.get());
+  buffer_ = std::move(remapped.buffer);
+  result.condensate = Union(result.condensate, remapped.condensate);
+  result.fields.push_back(std::move(remapped.field));
+  return absl::OkStatus();
+}
+
+absl::Status TimeReader::ReadFields(HydrometeorFields& result) {
+  const std::size_t cells = air_.levels * air_.columns;
+  THUNDERHEAD_ASSIGN_OR_RETURN(LayerState state, ReadState());
+  std::shared_future<void> air_ready =
+      std::async([this, state = std::move(state)]() mutable {
+        air_.dry_air_density_kg_per_m3 =
+            DryAirDensity(std::move(state), air_.interface_height_m, air_.columns);
+      }).share();
+  std::vector<float> next;
+  std::future<absl::StatusOr<RemappedField>> pending;
+  for (const Hydrometeor hydrometeor : metadata_.fields) {
+    THUNDERHEAD_RETURN_IF_ERROR(ReadVariable(std::string(WrfVariableOf(hydrometeor)), cells, next));
+    THUNDERHEAD_RETURN_IF_ERROR(Take(pending, result));
+    pending = std::async([this, air_ready, hydrometeor, values = std::move(next)]() mutable {
+      air_ready.get();
+      return Remap(hydrometeor, std::move(values));
+    });
+    next = std::move(buffer_);
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(Take(pending, result));
+  if (std::ranges::any_of(air_.dry_air_density_kg_per_m3, [](float rho) { return rho > 0.0F; })) {
+    return absl::OkStatus();
+  }
+  return absl::DataLossError(absl::StrCat(
+      file_.Path(), ": P + PB, T and QVAPOR of record ", record_,
+      " give no usable air density in any cell; check their values and units (Pa, K, kg kg-1)"));
+}
+
+// Drops the cells added above the storm's grid that turned out empty.
+void TrimTop(const VerticalGrid& storm_grid, HydrometeorFields& fields) {
+  RegularGrid& grid = fields.grid;
+  const double storm_top = (storm_grid.High_m() - grid.low_corner_m.z) / grid.spacing_m.z;
+  const int cells = std::max(static_cast<int>(std::lround(storm_top)), fields.condensate.high.z);
+  if (cells >= grid.cells.z) return;
+  grid.cells.z = cells;
+  for (HydrometeorField& field : fields.fields) {
+    if (field.concentration_kg_per_m3.empty()) continue;
+    field.concentration_kg_per_m3.resize(grid.CellCount());
+    field.concentration_kg_per_m3.shrink_to_fit();
+  }
+}
+
+absl::StatusOr<HydrometeorFields> TimeReader::Read(const std::optional<VerticalGrid>& grid,
+                                                   const ReadCheckpoint& checkpoint) {
+  checkpoint_ = checkpoint;
+  THUNDERHEAD_RETURN_IF_ERROR(ReadHeights().status());
+  THUNDERHEAD_ASSIGN_OR_RETURN(grid_, GridFor(grid));
+  regular_.cells = {metadata_.cells.x, metadata_.cells.y, grid_.cells};
+  regular_.spacing_m = {metadata_.dx_m, metadata_.dy_m, grid_.spacing_m};
+  regular_.low_corner_m = {-0.5 * metadata_.dx_m * metadata_.cells.x,
+                           -0.5 * metadata_.dy_m * metadata_.cells.y, grid_.low_m};
+  HydrometeorFields result;
+  result.grid = regular_;
+  THUNDERHEAD_RETURN_IF_ERROR(ReadTerrain(result));
+  THUNDERHEAD_RETURN_IF_ERROR(ReadFields(result));
+  if (grid.has_value()) TrimTop(*grid, result);
+  THUNDERHEAD_RETURN_IF_ERROR(Advance());
+  return result;
+}
+
+// Runs `read` on a reader of the file; memory that cannot be had is an error of the input, not the
+// end of the server.
+template <typename Result, typename ReadFunction>
+absl::StatusOr<Result> WithReader(const WrfMetadata& metadata, std::size_t record,
+                                  ReadFunction read) {
+  try {
+    THUNDERHEAD_ASSIGN_OR_RETURN(NetcdfFile file, NetcdfFile::Open(metadata.path));
+    TimeReader reader(metadata, record, std::move(file));
+    return read(reader);
+  } catch (const std::bad_alloc&) {
+  } catch (const std::length_error&) {
+  }
+  return absl::ResourceExhaustedError(
+      absl::StrCat(metadata.path, ": one time of ", metadata.cells.x, " x ", metadata.cells.y,
+                   " x ", metadata.cells.z, " cells does not fit in memory; cut a smaller domain"));
+}
+
+}  // namespace
+
+absl::StatusOr<HydrometeorFields> ReadWrfTime(const WrfMetadata& metadata, std::size_t record,
+                                              const std::optional<VerticalGrid>& grid,
+                                              const ReadCheckpoint& checkpoint) {
+  return WithReader<HydrometeorFields>(
+      metadata, record, [&](TimeReader& reader) { return reader.Read(grid, checkpoint); });
+}
+
+absl::StatusOr<VerticalGrid> ReadWrfVerticalGrid(const WrfMetadata& metadata, std::size_t record) {
+  return WithReader<VerticalGrid>(metadata, record,
+                                  [](TimeReader& reader) { return reader.ReadHeights(); });
+}
+
+}  // namespace thunderhead::volume

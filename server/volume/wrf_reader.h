@@ -1,0 +1,32 @@
+// Reads one time of a WRF output file into HydrometeorFields: heights and dry-air density from the
+// file's own state, each hydrometeor's mixing ratio times that density, remapped to a regular
+// height grid. Knows no series and no cache.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+
+#include "absl/status/statusor.h"
+#include "volume/hydrometeor_fields.h"
+#include "volume/vertical_remap.h"
+#include "volume/wrf_metadata.h"
+
+namespace thunderhead::volume {
+
+// Called before each variable with the share done so far, 0 to 1; an error ends the reading with
+// that error.
+using ReadCheckpoint = std::function<absl::Status(double share)>;
+
+// Reads record `record` of the file that `metadata` describes. `grid` is the storm's height grid,
+// chosen from this time's heights if absent; a time whose condensate reaches beyond it gets more
+// cells of the same spacing. Errors name the file, the variable and what to do; there is never half
+// a result.
+absl::StatusOr<HydrometeorFields> ReadWrfTime(const WrfMetadata& metadata, std::size_t record,
+                                              const std::optional<VerticalGrid>& grid,
+                                              const ReadCheckpoint& checkpoint);
+
+// The height grid that ReadWrfTime would choose for that record.
+absl::StatusOr<VerticalGrid> ReadWrfVerticalGrid(const WrfMetadata& metadata, std::size_t record);
+
+}  // namespace thunderhead::volume
