@@ -21,7 +21,7 @@ struct ToneMapped {
 
 // Exposure 0 EV multiplies radiance by this: a sunlit white cloud, about 0.25 of the sun's
 // irradiance, comes out bright but not burnt.
-inline constexpr float kExposureAtZeroEv = 5.0F;
+inline constexpr float kExposureAtZeroEv = 6.0F;
 
 class ToneMapper {
  public:

@@ -35,7 +35,7 @@ glm::vec4 PhaseCoefficients(const PhaseFunction& phase) {
 
 double PhaseValue(const PhaseFunction& phase, double mu) {
   const glm::dvec4 k = PhaseCoefficients(phase);
-  const double base = k.z - k.w * mu;
+  const double base = k.z + k.w * (1.0 - mu);
   return (k.x + k.y * mu * mu) / (base * std::sqrt(base));
 }
 

@@ -12,8 +12,10 @@
 namespace thunderhead::physics {
 namespace glsl {
 
+using glm::abs;
 using glm::exp;
 using glm::max;
+using glm::min;
 using glm::sqrt;
 using glm::vec3;
 using glm::vec4;

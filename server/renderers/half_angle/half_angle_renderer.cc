@@ -136,7 +136,8 @@ void HalfAngleRenderer::Resize(const LightFrame& frame, const glm::ivec2& eye_si
   }
   const double longest_m = std::max(frame.half_extent_m.x, frame.half_extent_m.y);
   const glm::ivec2 light_size = glm::max(
-      glm::ivec2(glm::ceil(kLightTexels * frame.half_extent_m / longest_m)), glm::ivec2(1));
+      glm::ivec2(glm::ceil(static_cast<double>(kLightTexels) * frame.half_extent_m / longest_m)),
+      glm::ivec2(1));
   if (light_[0].Size() == light_size) return;
   for (int i = 0; i < 2; ++i) {
     light_[i] = gl::Texture2D(GL_RG16F, light_size);
@@ -168,7 +169,8 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium,
                                               {{"GROUPS", groups},
                                                {"COLORED", weights.colored ? 1 : 0},
                                                {"TRANSLUCENT", translucent ? 1 : 0},
-                                               {"CONSISTENT", consistent ? 1 : 0}}}));
+                                               {"CONSISTENT", consistent ? 1 : 0},
+                      {"FRONT_TO_BACK", slicing.front_to_back ? 1 : 0}}}));
   medium.Bind(*eye);
   const glm::dvec3 middle_m = medium.Middle_m();
   eye->Set("clip_from_local", ClipFromLocal(settings.view, middle_m));
@@ -312,6 +314,7 @@ void HalfAngleRenderer::DrawSlices(const Programs& programs, const HalfAngleSett
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glDisable(GL_SCISSOR_TEST);
   }
+  last_light_ = current;
   glDisable(GL_BLEND);
   glDisable(GL_DEPTH_CLAMP);
 }

@@ -43,6 +43,8 @@ class HalfAngleRenderer {
 
   // The result of the last Render.
   const gl::Texture2D& Eye() const { return eye_; }
+  // The light buffer after the last slice: r is the share of sunlight that comes through the medium.
+  const gl::Texture2D& Light() const { return light_[last_light_]; }
   std::size_t Bytes() const;
 
  private:
@@ -60,6 +62,7 @@ class HalfAngleRenderer {
   gl::Texture2D eye_;
   gl::Framebuffer eye_target_;
   gl::Texture2D light_[2];
+  int last_light_ = 0;
   gl::Framebuffer light_target_[2];
   gl::Texture2D thickness_;
   gl::Framebuffer thickness_target_;

@@ -1,6 +1,7 @@
 // What one slice sends to the eye: radiance scattered there (rgb) and the share of what lies behind that passes (a).
 // Riley et al. 2003 (Vis), eq. 5 with the phase of eq. 18; the light comes from the light buffer.
-// Variants: GROUPS, COLORED (per-group colours), TRANSLUCENT, CONSISTENT (transport).
+// Variants: GROUPS, COLORED (per-group colours), TRANSLUCENT, CONSISTENT (transport), FRONT_TO_BACK (the eye is on the
+// sun's side).
 #include "common/medium.glsl"
 #include "physics/phase_functions.glsl"
 #include "physics/light_transport.glsl"
@@ -62,15 +63,19 @@ void main() {
   }
   vec3 source = direct * arrived.r * sunlight;
 
+  float seen = mean_transmittance(depth);
 #if CONSISTENT
-  // The buffer holds the light that enters the slice; its middle gets that through half the slice.
-  source *= exp(-0.5 * weigh(medium, light_weights) * light_path_m);
+  // The buffer holds the light that enters the slice; on its way through, light fades as the view does.
+  float light_depth = weigh(medium, light_weights) * light_path_m;
+  source *= FRONT_TO_BACK == 1 ? mean_transmittance(depth + light_depth)
+                               : mean_counter_transmittance(depth, light_depth);
   vec3 isotropic = ambient;
 #if TRANSLUCENT
   float total = texture(thickness, light_place).r;
   float slice_depth = weigh(medium, transport_weights) * light_path_m;
   // Diffuse light that leaves a cloud comes from one transport mean free path (2/3 by Eddington) inside it.
-  float tau = min(arrived.g + 0.5 * slice_depth + 2.0 / 3.0, total);
+  float within = FRONT_TO_BACK == 1 ? mean_seen_place(depth) : 1.0 - mean_seen_place(depth);
+  float tau = min(arrived.g + within * slice_depth + 2.0 / 3.0, total);
   isotropic += sunlight * diffuse_mean_intensity(tau, total);
 #endif
   float scattering = weigh(medium, scattering_weights);
@@ -83,9 +88,10 @@ void main() {
   tint /= max(scattering, 1e-30);
 #endif
   float albedo = scattering / max(total_extinction(medium), 1e-30);
-  source += tint * isotropic * extinction * albedo;
+  source += tint * isotropic * (extinction * albedo * seen);
+#else
+  source *= seen;
 #endif
 
-  float passed = exp(-depth);
-  radiance_and_transmittance = vec4(source * path_m * mean_transmittance(depth), passed);
+  radiance_and_transmittance = vec4(source * path_m, exp(-depth));
 }

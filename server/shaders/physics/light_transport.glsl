@@ -12,6 +12,19 @@ PHYSICS_FUNCTION float mean_transmittance(float x) {
   return (1.0f - exp(-x)) / x;
 }
 
+// The mean over t in 0..1 of exp(-view (1 - t)) exp(-light t): what a slice shows of its light when the light enters
+// on the side away from the eye.
+PHYSICS_FUNCTION float mean_counter_transmittance(float view, float light) {
+  return exp(-min(view, light)) * mean_transmittance(abs(view - light));
+}
+
+// Where in a slice of optical depth x the eye sees on average: the mean of t in 0..1 weighted by exp(-x t). 1/2 for
+// thin slices, 1/x for thick ones. Below 0.1 the series' first dropped term is x^3/720.
+PHYSICS_FUNCTION float mean_seen_place(float x) {
+  if (x < 0.1f) return 0.5f - x / 12.0f;
+  return 1.0f / x - 1.0f / (exp(min(x, 80.0f)) - 1.0f);
+}
+
 // Mean intensity of diffuse light, over the sun's irradiance, at optical depth `tau` below the lit face of a layer of
 // optical depth `total` that the sun strikes squarely: the Eddington solution for isotropic conservative scattering
 // with Marshak's boundary conditions (no diffuse light comes in from either side). Optical depths are similarity

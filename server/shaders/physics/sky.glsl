@@ -9,7 +9,7 @@
 
 // Vertical optical depth of air (Rayleigh) at 650, 550 and 450 nm, and of a clean continental haze.
 PHYSICS_FUNCTION vec3 air_optical_depth() { return vec3(0.0495f, 0.0973f, 0.2209f); }
-PHYSICS_FUNCTION vec3 haze_optical_depth() { return vec3(0.045f, 0.052f, 0.062f); }
+PHYSICS_FUNCTION vec3 haze_optical_depth() { return vec3(0.018f, 0.021f, 0.025f); }
 
 // Relative air mass towards a direction with the given sine of elevation: Kasten and Young 1989 reaches 38 at the
 // horizon; this form agrees within 3 % above 5 degrees and stays finite everywhere.
@@ -39,8 +39,8 @@ PHYSICS_FUNCTION vec3 sky_radiance(vec3 direction, vec3 towards_sun) {
   vec3 depth = air_depth + haze_depth;
   vec3 phase = (air_depth * rayleigh + haze_depth * haze) / depth;
   vec3 filled = vec3(1.0f) - exp(-depth * air_mass(direction.z));
-  // Half of the way the light has come through the air that it lights.
-  vec3 sunlight = exp(-depth * 0.5f * air_mass(towards_sun.z));
+  // The air that fills a line of sight is lit through a part of the way to the ground only.
+  vec3 sunlight = exp(-depth * 0.25f * air_mass(towards_sun.z));
   // Twilight: the last light leaves the sky when the sun is 12 degrees down.
   float day = clamp((towards_sun.z + 0.208f) / 0.3f, 0.0f, 1.0f);
   return filled * phase * sunlight * (kMultipleScattering * day * day / kFourPi);

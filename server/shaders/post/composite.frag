@@ -25,7 +25,7 @@ void main() {
     // The path's mean air: it climbs from the ground to the eye.
     float air_m = distance_m * kScaleHeight_m / eye_height_m * (1.0 - exp(-eye_height_m / kScaleHeight_m));
     vec3 depth = (air_optical_depth() + haze_optical_depth()) * (air_m / kScaleHeight_m);
-    vec3 horizon = sky_scale * sky_radiance(normalize(vec3(ray.xy, 0.02)), towards_sun);
+    vec3 horizon = sky_scale * sky_radiance(normalize(vec3(ray.xy, 0.0)), towards_sun);
     background = mix(horizon, ground_radiance, exp(-depth));
   }
   vec4 front = texture(eye, 0.5 * position + 0.5);

@@ -1,0 +1,62 @@
+#include "physics/hydrometeors.h"
+
+#include "gtest/gtest.h"
+#include "physics/air.h"
+
+namespace thunderhead::physics {
+namespace {
+
+TEST(Hydrometeors, OneGramOfCloudWaterPerKilogram) {
+  // 3 * 1 kg/m3 * 1e-3 / (2 * 1000 kg/m3 * 1e-5 m) = 0.15 1/m.
+  const ParticleOptics& cloud = DefaultOptics(Hydrometeor::kCloud);
+  const float concentration_kg_per_m3 = 1e-3F;
+  EXPECT_NEAR(
+      concentration_kg_per_m3 * MassExtinction_m2_per_kg(cloud.density_kg_per_m3, cloud.radius_m),
+      0.15F, 1e-6F);
+}
+
+TEST(Hydrometeors, MassExtinctionIsNearPublishedTables) {
+  // ecRad's tables at 0.55 um in m2/kg. Geometric optics leaves out the edge terms, which grow as
+  // particles shrink: 5 % covers droplets of 10 um.
+  struct Row {
+    float density_kg_per_m3, radius_m, published_m2_per_kg;
+  };
+  for (const Row& row :
+       {Row{1000, 10e-6F, 157.2F}, Row{1000, 20e-6F, 77.3F}, Row{1000, 100e-6F, 15.16F},
+        Row{917, 30e-6F, 54.58F}, Row{917, 60e-6F, 27.26F}}) {
+    const float ours = MassExtinction_m2_per_kg(row.density_kg_per_m3, row.radius_m);
+    EXPECT_NEAR(ours / row.published_m2_per_kg, 1.0F, 0.05F) << row.radius_m;
+  }
+}
+
+TEST(Hydrometeors, DefaultsAreThePapersTables) {
+  EXPECT_FLOAT_EQ(DefaultOptics(Hydrometeor::kCloud).radius_m, 1e-5F);
+  EXPECT_FLOAT_EQ(DefaultOptics(Hydrometeor::kRain).radius_m, 1e-3F);
+  EXPECT_FLOAT_EQ(DefaultOptics(Hydrometeor::kIce).radius_m, 1e-3F);
+  EXPECT_FLOAT_EQ(DefaultOptics(Hydrometeor::kSnow).radius_m, 2e-3F);
+  EXPECT_FLOAT_EQ(DefaultOptics(Hydrometeor::kGraupel).radius_m, 2.5e-3F);
+  EXPECT_EQ(DefaultOptics(Hydrometeor::kIce).false_color, glm::vec3(1, 0, 1));
+  EXPECT_EQ(DefaultOptics(Hydrometeor::kSnow).false_color, glm::vec3(1, 1, 0));
+}
+
+TEST(Hydrometeors, NamesGoBothWays) {
+  for (Hydrometeor hydrometeor : kHydrometeors) {
+    EXPECT_EQ(HydrometeorNamed(NameOf(hydrometeor)), hydrometeor);
+  }
+  EXPECT_FALSE(HydrometeorNamed("fog").has_value());
+}
+
+TEST(Air, DensityOfDryAndMoistAir) {
+  // 1e5 / (287 * 300) = 1.16144 kg/m3; 10 g/kg of vapour divides it by 1.01608.
+  EXPECT_NEAR(DryAirDensity_kg_per_m3(1e5, 300.0, 0.0), 1.16144, 1e-5);
+  EXPECT_NEAR(DryAirDensity_kg_per_m3(1e5, 300.0, 0.01), 1.14306, 1e-5);
+}
+
+TEST(Air, TemperatureFromPotentialTemperature) {
+  EXPECT_DOUBLE_EQ(Temperature_K(300.0, 1e5), 300.0);
+  // 300 * 0.5^(287/1004.5) = 246.10 K.
+  EXPECT_NEAR(Temperature_K(300.0, 5e4), 246.10, 0.01);
+}
+
+}  // namespace
+}  // namespace thunderhead::physics

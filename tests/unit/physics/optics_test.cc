@@ -1,0 +1,143 @@
+#include "physics/optics.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "glm/trigonometric.hpp"
+#include "gtest/gtest.h"
+#include "physics/sky.h"
+
+namespace thunderhead::physics {
+namespace {
+
+constexpr PhaseKind kHg = PhaseKind::kHenyeyGreenstein;
+constexpr PhaseKind kCs = PhaseKind::kCornetteShanks;
+
+TEST(PhaseFunctions, AreNormalisedOverTheSphere) {
+  for (const PhaseFunction& phase :
+       {PhaseFunction{kHg, 0.0F}, PhaseFunction{kHg, 0.85F}, PhaseFunction{kHg, -0.5F},
+        PhaseFunction{kCs, 0.0F}, PhaseFunction{kCs, 0.979F},
+        PhaseFunction{PhaseKind::kRayleigh, 0.0F}}) {
+    EXPECT_NEAR(CumulativePhase(phase, std::numbers::pi), 1.0, 2e-5) << phase.asymmetry;
+  }
+}
+
+TEST(PhaseFunctions, HandComputedValues) {
+  // HG, g = 0.5: straight on 0.75 / 0.125 = 6; backward 0.75 / 3.375 = 2/9.
+  EXPECT_NEAR(PhaseValue({kHg, 0.5F}, 1.0), 6.0, 1e-6);
+  EXPECT_NEAR(PhaseValue({kHg, 0.5F}, -1.0), 2.0 / 9.0, 1e-6);
+  // Cornette-Shanks, g = 0.5, sideways: 1.5 * 0.75 / 2.25 / 1.25^1.5 = 0.357771.
+  EXPECT_NEAR(PhaseValue({kCs, 0.5F}, 0.0), 0.357771, 1e-5);
+  EXPECT_NEAR(PhaseValue({PhaseKind::kRayleigh, 0.0F}, 1.0), 1.5, 1e-6);
+}
+
+TEST(PhaseFunctions, MeanCosines) {
+  EXPECT_NEAR(MeanCosine({kHg, 0.85F}), 0.85, 1e-5);
+  // Cornette and Shanks 1992, eq. 9: g 3 (4 + g^2) / (5 (2 + g^2)).
+  const double g = 0.85;
+  EXPECT_NEAR(MeanCosine({kCs, 0.85F}), g * 3 * (4 + g * g) / (5 * (2 + g * g)), 1e-5);
+}
+
+TEST(PhaseFunctions, ShareScatteredWithinTenDegrees) {
+  // Cornette-Shanks puts 90 % there at g = 0.979, as the paper says of clouds, but 38 % at g =
+  // 0.85.
+  EXPECT_NEAR(CumulativePhase({kCs, 0.979F}, glm::radians(10.0)), 0.90, 0.005);
+  EXPECT_NEAR(CumulativePhase({kCs, 0.85F}, glm::radians(10.0)), 0.38, 0.005);
+}
+
+TEST(DeltaScaling, WhatIsCutAndWhatIsLeftAddUp) {
+  const PhaseFunction phase{kCs, 0.85F};
+  const DeltaScaling cut = CutForwardPeak(phase, glm::radians(10.0));
+  double left = 0.0;
+  constexpr int kSteps = 200000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double mu = -1.0 + 2.0 * (i + 0.5) / kSteps;
+    left += PhaseValue(phase, std::fmin(mu, cut.cut_cosine)) / kSteps;
+  }
+  EXPECT_NEAR(left + cut.forward_share, 1.0, 1e-4);
+  EXPECT_GT(cut.forward_share, 0.1);
+}
+
+TEST(LightTransport, MeanTransmittanceHoldsFromTinyToHuge) {
+  for (double x = 1e-8; x < 1e9; x *= 3.7) {
+    const double exact = -std::expm1(-x) / x;
+    // Single precision in and out: a few parts in 1e-6.
+    EXPECT_NEAR(glsl::mean_transmittance(static_cast<float>(x)) / exact, 1.0, 5e-6) << x;
+  }
+  EXPECT_FLOAT_EQ(glsl::mean_transmittance(0.0F), 1.0F);
+}
+
+TEST(LightTransport, CounterTransmittanceAgainstQuadrature) {
+  for (const auto& [view, light] :
+       {std::pair(0.3, 2.0), std::pair(5.0, 0.1), std::pair(1.0, 1.0)}) {
+    double mean = 0.0;
+    constexpr int kSteps = 10000;
+    for (int i = 0; i < kSteps; ++i) {
+      const double t = (i + 0.5) / kSteps;
+      mean += std::exp(-view * (1.0 - t) - light * t) / kSteps;
+    }
+    EXPECT_NEAR(
+        glsl::mean_counter_transmittance(static_cast<float>(view), static_cast<float>(light)), mean,
+        1e-6);
+  }
+}
+
+TEST(LightTransport, MeanSeenPlaceGoesFromTheMiddleToTheFace) {
+  EXPECT_FLOAT_EQ(glsl::mean_seen_place(0.0F), 0.5F);
+  EXPECT_NEAR(glsl::mean_seen_place(1.0F), 1.0 - 1.0 / (std::exp(1.0) - 1.0), 1e-6);
+  EXPECT_NEAR(glsl::mean_seen_place(1e6F), 1e-6, 1e-9);
+  EXPECT_NEAR(glsl::mean_seen_place(0.0999F), glsl::mean_seen_place(0.1001F), 1e-4);
+}
+
+TEST(LightTransport, DiffuseLightKeepsItsEnergy) {
+  // Eddington: net diffuse flux is -(4 pi / 3) dJ/dtau downwards, half fluxes pi J -+ (2 pi / 3)
+  // dJ/dtau. What is reflected, transmitted diffusely and transmitted directly must be all that
+  // came in.
+  for (const double total : {0.01, 0.5, 2.0, 20.0}) {
+    const auto intensity = [&](double tau) {
+      return static_cast<double>(
+          glsl::diffuse_mean_intensity(static_cast<float>(tau), static_cast<float>(total)));
+    };
+    const double step = std::fmin(total * 1e-2, 1e-2);
+    const double slope_top =
+        (-3 * intensity(0) + 4 * intensity(step) - intensity(2 * step)) / (2 * step);
+    const double slope_bottom =
+        (3 * intensity(total) - 4 * intensity(total - step) + intensity(total - 2 * step)) /
+        (2 * step);
+    const double pi = std::numbers::pi;
+    const double reflected = pi * intensity(0) + 2 * pi / 3 * slope_top;
+    const double transmitted = pi * intensity(total) - 2 * pi / 3 * slope_bottom;
+    // Slopes are finite differences of single-precision values.
+    EXPECT_NEAR(reflected + transmitted + std::exp(-total), 1.0, 2e-3) << total;
+  }
+}
+
+TEST(LightTransport, DiffuseLightAtTheFaceOfAnInfiniteLayer) {
+  EXPECT_NEAR(glsl::diffuse_mean_intensity(0.0F, 1e6F), 1.0 / (2.0 * std::numbers::pi), 1e-5);
+  EXPECT_NEAR(glsl::diffuse_mean_intensity(0.0F, 0.0F), 0.0, 1e-7);
+}
+
+TEST(Sky, SunlightAndSkylightShareWhatCameIn) {
+  for (const float elevation_deg : {5.0F, 20.0F, 45.0F, 80.0F}) {
+    const float sine = std::sin(glm::radians(elevation_deg));
+    const SkyLight sky = SkyLightOf({std::sqrt(1.0F - sine * sine), 0.0F, sine});
+    const glm::vec3 direct = sine * glsl::sun_transmittance(sine);
+    for (int channel = 0; channel < 3; ++channel) {
+      EXPECT_GT(sky.irradiance[channel], 0.0F);
+      EXPECT_LE(direct[channel] + sky.irradiance[channel], sine) << elevation_deg;
+    }
+    EXPECT_GT(sky.mean_radiance.b, sky.mean_radiance.r) << "a clear sky is blue";
+  }
+}
+
+TEST(Sky, TheSunReddensAndSets) {
+  const glm::vec3 high = glsl::sun_transmittance(0.9F);
+  const glm::vec3 low = glsl::sun_transmittance(0.05F);
+  EXPECT_GT(low.r / low.b, 2.0F * high.r / high.b);
+  EXPECT_EQ(glsl::sun_transmittance(-0.1F), glm::vec3(0.0F));
+  const SkyLight night = SkyLightOf({0.6F, 0.0F, -0.8F});
+  EXPECT_EQ(night.irradiance, glm::vec3(0.0F));
+}
+
+}  // namespace
+}  // namespace thunderhead::physics

@@ -1,0 +1,74 @@
+#include "renderers/half_angle/slicing.h"
+
+#include <cmath>
+
+#include "glm/geometric.hpp"
+#include "gtest/gtest.h"
+#include "scene/view.h"
+
+namespace thunderhead::renderers {
+namespace {
+
+const LocalBox kBox{{500.0, 400.0, 100.0}};
+
+double Area(const std::vector<glm::vec3>& polygon) {
+  glm::dvec3 sum(0.0);
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
+    sum += glm::cross(glm::dvec3(polygon[i] - polygon[0]), glm::dvec3(polygon[i + 1] - polygon[0]));
+  }
+  return 0.5 * glm::length(sum);
+}
+
+TEST(Slicing, SlicesFillTheBox) {
+  for (double sun_deg : {0.0, 40.0, 89.0, 91.0, 179.0}) {
+    const Slicing slicing =
+        SliceBox(kBox, scene::Direction(sun_deg, 20), scene::Direction(0, 20), 200);
+    double volume = 0.0;
+    for (const Slice& slice : slicing.slices) volume += Area(slice.polygon) * slicing.spacing_m;
+    EXPECT_NEAR(volume / (1000.0 * 800.0 * 200.0), 1.0, 1e-3) << sun_deg;
+  }
+}
+
+TEST(Slicing, FacesHalfwayBetweenLightAndView) {
+  const Slicing slicing = SliceBox(kBox, scene::Direction(30, 0), scene::Direction(-10, 0), 10);
+  EXPECT_TRUE(slicing.front_to_back);
+  EXPECT_NEAR(glm::dot(slicing.normal, scene::Direction(10, 0)), 1.0, 1e-12);
+  // 20 degrees between the light and the normal.
+  EXPECT_NEAR(slicing.light_path_m, slicing.spacing_m / std::cos(20 * M_PI / 180), 1e-9);
+}
+
+TEST(Slicing, ReversesTheViewWhenTheSunIsBehindTheStorm) {
+  const Slicing slicing = SliceBox(kBox, scene::Direction(30, 0), scene::Direction(170, 0), 10);
+  EXPECT_FALSE(slicing.front_to_back);
+  EXPECT_NEAR(glm::dot(slicing.normal, scene::Direction(10, 0)), 1.0, 1e-12);
+}
+
+TEST(Slicing, DegenerateDirectionsStillSlice) {
+  const glm::dvec3 sun = scene::Direction(0, 90);
+  for (const glm::dvec3& eye : {sun, -sun, glm::dvec3(1, 0, 0)}) {
+    const Slicing slicing = SliceBox(kBox, sun, eye, 1);
+    EXPECT_NEAR(glm::length(slicing.normal), 1.0, 1e-12);
+    ASSERT_EQ(slicing.slices.size(), 1U);
+    EXPECT_GE(slicing.slices[0].polygon.size(), 3U);
+  }
+}
+
+TEST(Slicing, TheSunMeetsTheFirstSliceFirst) {
+  const Slicing slicing = SliceBox(kBox, scene::Direction(0, 45), scene::Direction(90, 45), 10);
+  EXPECT_GT(slicing.slices.front().distance_m, slicing.slices.back().distance_m);
+  EXPECT_GT(glm::dot(slicing.normal, scene::Direction(0, 45)), 0.0);
+}
+
+TEST(LightFrame, CoversTheShadow) {
+  const LightFrame frame = LightFrameOf(kBox, scene::Direction(123, 33));
+  EXPECT_NEAR(glm::dot(frame.right, frame.up), 0.0, 1e-12);
+  EXPECT_NEAR(glm::dot(frame.right, frame.towards_sun), 0.0, 1e-12);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 sign((corner & 1) ? 1 : -1, (corner & 2) ? 1 : -1, (corner & 4) ? 1 : -1);
+    EXPECT_LE(std::abs(glm::dot(sign * kBox.half_m, frame.right)), frame.half_extent_m.x + 1e-9);
+    EXPECT_LE(std::abs(glm::dot(sign * kBox.half_m, frame.up)), frame.half_extent_m.y + 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace thunderhead::renderers
