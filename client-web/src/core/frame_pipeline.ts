@@ -1,0 +1,111 @@
+// Frames to the screen, the newest first: one frame is decoded at a time, one waits for it, one waits to be
+// painted, and a newer frame takes the place of whichever has not been painted yet. So the page holds three
+// frames at most and latency cannot grow, however slowly it decodes or paints.
+
+export interface Sequenced {
+  readonly sequence: bigint;
+}
+
+export interface PipelineSteps<F extends Sequenced, P> {
+  decode(frame: F): Promise<P>;
+  // Asks for one call when the screen is about to be drawn; returns what withdraws it.
+  onNextPaint(callback: () => void): () => void;
+  // Draws the picture; the frame counts as shown when this returns.
+  paint(frame: F, picture: P): void;
+  // Frees a picture that has been replaced or was never painted.
+  release(picture: P): void;
+  // The frame could not be decoded; a later one may.
+  failed(frame: F, reason: unknown): void;
+}
+
+export class FramePipeline<F extends Sequenced, P> {
+  readonly #steps: PipelineSteps<F, P>;
+  #stream = 0;
+  #newestDecoded = 0n;
+  #decoding: F | undefined;
+  #waiting: F | undefined;
+  #ready: { frame: F; picture: P } | undefined;
+  #withdrawPaint: (() => void) | undefined;
+  #disposed = false;
+  #dropped = 0;
+
+  constructor(steps: PipelineSteps<F, P>) {
+    this.#steps = steps;
+  }
+
+  // Frames that came and were never painted, because a newer one was there.
+  get dropped(): number {
+    return this.#dropped;
+  }
+
+  // Another stream counts its frames anew; what is under way from the old one is forgotten.
+  startStream(): void {
+    this.#stream += 1;
+    this.#newestDecoded = 0n;
+    this.#decoding = undefined;
+    this.#waiting = undefined;
+    this.#discardReady();
+  }
+
+  offer(frame: F): void {
+    if (this.#disposed) return;
+    const newest = this.#waiting ?? this.#decoding;
+    const newestSequence = newest?.sequence ?? 0n;
+    if (frame.sequence <= this.#newestDecoded || frame.sequence <= newestSequence) {
+      this.#dropped += 1;
+      return;
+    }
+    if (this.#decoding !== undefined) {
+      if (this.#waiting !== undefined) this.#dropped += 1;
+      this.#waiting = frame;
+      return;
+    }
+    void this.#decode(frame);
+  }
+
+  dispose(): void {
+    this.#disposed = true;
+    this.startStream();
+  }
+
+  async #decode(frame: F): Promise<void> {
+    const stream = this.#stream;
+    this.#decoding = frame;
+    try {
+      const picture = await this.#steps.decode(frame);
+      if (stream === this.#stream) this.#keepForPaint(frame, picture);
+      else this.#steps.release(picture);
+    } catch (reason) {
+      if (stream === this.#stream) this.#steps.failed(frame, reason);
+    }
+    if (stream !== this.#stream) return;
+    this.#decoding = undefined;
+    const next = this.#waiting;
+    this.#waiting = undefined;
+    if (next !== undefined) void this.#decode(next);
+  }
+
+  #keepForPaint(frame: F, picture: P): void {
+    if (this.#ready !== undefined) {
+      this.#steps.release(this.#ready.picture);
+      this.#dropped += 1;
+    }
+    this.#newestDecoded = frame.sequence;
+    this.#ready = { frame, picture };
+    this.#withdrawPaint ??= this.#steps.onNextPaint(() => this.#paint());
+  }
+
+  #paint(): void {
+    this.#withdrawPaint = undefined;
+    const ready = this.#ready;
+    this.#ready = undefined;
+    if (ready !== undefined) this.#steps.paint(ready.frame, ready.picture);
+  }
+
+  #discardReady(): void {
+    this.#withdrawPaint?.();
+    this.#withdrawPaint = undefined;
+    if (this.#ready !== undefined) this.#steps.release(this.#ready.picture);
+    this.#ready = undefined;
+  }
+}

@@ -1,0 +1,95 @@
+// What a number of the schema may be, read from the options beside its declaration in proto/, and how a
+// slider moves through that range. Knows no widget.
+import { type DescField, getOption, ScalarType } from "@bufbuild/protobuf";
+import { number$ as numberOption } from "../gen/thunderhead/v1/limits_pb";
+
+export interface Limits {
+  readonly minimum: number;
+  readonly maximum: number;
+  // What an absent field means; undefined where that depends on the storm or the hydrometeor.
+  readonly defaultValue: number | undefined;
+  // As UCUM writes it.
+  readonly unit: string;
+  readonly logarithmic: boolean;
+  readonly integer: boolean;
+  // True where the wire holds 32-bit floats.
+  readonly singlePrecision: boolean;
+}
+
+const INTEGER_SCALARS = new Set<ScalarType>([
+  ScalarType.UINT32,
+  ScalarType.INT32,
+  ScalarType.SINT32,
+  ScalarType.FIXED32,
+]);
+
+export function limitsOf(field: DescField): Limits {
+  const option = getOption(field, numberOption);
+  if (field.fieldKind !== "scalar" || option.maximum <= option.minimum) {
+    throw new Error(`${field.toString()} has no number limits in the schema`);
+  }
+  return {
+    minimum: option.minimum,
+    maximum: option.maximum,
+    defaultValue: option.defaultValue,
+    unit: option.unit,
+    logarithmic: option.logarithmic,
+    integer: INTEGER_SCALARS.has(field.scalar),
+    singlePrecision: field.scalar === ScalarType.FLOAT,
+  };
+}
+
+// The nearest value that the server accepts. A 32-bit float next to a limit can round to outside of it (0.99
+// becomes 0.9900000095), so the limit itself is rounded inwards.
+export function clampToLimits(value: number, limits: Limits): number {
+  if (Number.isNaN(value)) return limits.defaultValue ?? limits.minimum;
+  const rounded = limits.integer ? Math.round(value) : value;
+  const clamped = Math.min(limits.maximum, Math.max(limits.minimum, rounded));
+  if (!limits.singlePrecision) return clamped;
+  const single = Math.fround(clamped);
+  if (single > limits.maximum) return neighbourTowards(single, -1);
+  if (single < limits.minimum) return neighbourTowards(single, 1);
+  return single;
+}
+
+// The next 32-bit float below (-1) or above (1) a finite one that is not zero.
+function neighbourTowards(single: number, direction: -1 | 1): number {
+  const view = new DataView(new ArrayBuffer(4));
+  view.setFloat32(0, single);
+  const awayFromZero = single > 0 === direction > 0;
+  view.setInt32(0, view.getInt32(0) + (awayFromZero ? 1 : -1));
+  return view.getFloat32(0);
+}
+
+// A logarithmic slider that may reach zero starts this many times below its end; its first position is zero.
+const LOGARITHMIC_SPAN = 1e5;
+
+function logarithmicFloor(limits: Limits): number {
+  return limits.minimum > 0 ? limits.minimum : limits.maximum / LOGARITHMIC_SPAN;
+}
+
+// Where a value stands on its slider, 0 to 1.
+export function positionOfValue(value: number, limits: Limits): number {
+  const { minimum, maximum } = limits;
+  if (!limits.logarithmic) return share((value - minimum) / (maximum - minimum));
+  const floor = logarithmicFloor(limits);
+  if (value <= floor) return 0;
+  return share(Math.log(value / floor) / Math.log(maximum / floor));
+}
+
+// The value that a slider's position, 0 to 1, stands for, at most three digits long between the ends.
+export function valueAtPosition(position: number, limits: Limits): number {
+  const { minimum, maximum } = limits;
+  const along = share(position);
+  if (along === 0) return clampToLimits(minimum, limits);
+  if (along === 1) return clampToLimits(maximum, limits);
+  const floor = limits.logarithmic ? logarithmicFloor(limits) : minimum;
+  const value = limits.logarithmic
+    ? floor * (maximum / floor) ** along
+    : minimum + along * (maximum - minimum);
+  return clampToLimits(Number(value.toPrecision(3)), limits);
+}
+
+function share(value: number): number {
+  return Math.min(1, Math.max(0, value));
+}

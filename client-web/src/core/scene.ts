@@ -1,0 +1,194 @@
+// Scenes as values: each change gives a new scene that shares what did not change, so that `===` tells what
+// did. Absent values mean their defaults, as in proto/thunderhead/v1/scene.proto.
+import { create, fromBinary, type Message, toBinary } from "@bufbuild/protobuf";
+import {
+  type Camera,
+  type Display,
+  DisplaySchema,
+  type FieldParameters,
+  FieldParametersSchema,
+  Hydrometeor,
+  type Output,
+  OutputSchema,
+  PhaseFunctionSchema,
+  type Rendering,
+  RenderingSchema,
+  type Scene,
+  SceneSchema,
+  type Sky,
+  SkySchema,
+  type Sun,
+  SunSchema,
+} from "../gen/thunderhead/v1/scene_pb";
+import { clampToLimits, type Limits, limitsOf } from "./limits";
+
+export const LIMITS = {
+  fieldScale: limitsOf(FieldParametersSchema.field.scale),
+  fieldRadius: limitsOf(FieldParametersSchema.field.radiusM),
+  fieldDensity: limitsOf(FieldParametersSchema.field.densityKgPerM3),
+  fieldAlbedo: limitsOf(FieldParametersSchema.field.albedo),
+  phaseAsymmetry: limitsOf(PhaseFunctionSchema.field.asymmetry),
+  sunAzimuth: limitsOf(SunSchema.field.azimuthDeg),
+  sunElevation: limitsOf(SunSchema.field.elevationDeg),
+  sunIrradiance: limitsOf(SunSchema.field.irradiance),
+  skyBrightness: limitsOf(SkySchema.field.brightness),
+  groundAlbedo: limitsOf(SkySchema.field.groundAlbedo),
+  slices: limitsOf(RenderingSchema.field.slices),
+  thetaF: limitsOf(RenderingSchema.field.thetaFDeg),
+  exposure: limitsOf(DisplaySchema.field.exposureEv),
+  width: limitsOf(OutputSchema.field.widthPx),
+  height: limitsOf(OutputSchema.field.heightPx),
+  jpegQuality: limitsOf(OutputSchema.field.jpegQuality),
+} as const satisfies Record<string, Limits>;
+
+// What may be changed of a message.
+type Change<T extends Message> = Partial<Omit<T, keyof Message>>;
+
+function changed<T extends Message>(message: T, change: Change<T>): T {
+  return { ...message, ...change };
+}
+
+export function withCamera(scene: Scene, camera: Camera): Scene {
+  return changed(scene, { camera });
+}
+
+export function withTime(scene: Scene, timeIndex: number): Scene {
+  return changed(scene, { timeIndex });
+}
+
+export function withSun(scene: Scene, change: Change<Sun>): Scene {
+  return changed(scene, { sun: changed(scene.sun ?? create(SunSchema), change) });
+}
+
+export function withSky(scene: Scene, change: Change<Sky>): Scene {
+  return changed(scene, { sky: changed(scene.sky ?? create(SkySchema), change) });
+}
+
+export function withRendering(scene: Scene, change: Change<Rendering>): Scene {
+  return changed(scene, { rendering: changed(scene.rendering ?? create(RenderingSchema), change) });
+}
+
+export function withDisplay(scene: Scene, change: Change<Display>): Scene {
+  return changed(scene, { display: changed(scene.display ?? create(DisplaySchema), change) });
+}
+
+export function withOutput(scene: Scene, change: Change<Output>): Scene {
+  return changed(scene, { output: changed(scene.output ?? create(OutputSchema), change) });
+}
+
+// Changes one field's settings; a field that the scene does not list yet is added.
+export function withField(
+  scene: Scene,
+  hydrometeor: Hydrometeor,
+  change: Change<FieldParameters>,
+): Scene {
+  const listed = scene.fields.some((field) => field.hydrometeor === hydrometeor);
+  const all = listed
+    ? scene.fields
+    : [...scene.fields, create(FieldParametersSchema, { hydrometeor })];
+  return changed(scene, {
+    fields: all.map((field) =>
+      field.hydrometeor === hydrometeor ? changed(field, change) : field,
+    ),
+  });
+}
+
+// One field's phase function with another parameter.
+export function withAsymmetry(scene: Scene, hydrometeor: Hydrometeor, asymmetry: number): Scene {
+  const field = scene.fields.find((other) => other.hydrometeor === hydrometeor);
+  const phase = changed(field?.phase ?? create(PhaseFunctionSchema), { asymmetry });
+  return withField(scene, hydrometeor, { phase });
+}
+
+// Another storm has other fields and another extent: what belongs to the old one goes, the light, the
+// rendering and the picture stay.
+export function withStorm(scene: Scene, stormId: string): Scene {
+  return changed(scene, { stormId, timeIndex: 0, camera: undefined, fields: [] });
+}
+
+// A field's settings as drawn: the scene's, and where it is silent those the storm's description gives.
+export function effectiveField(
+  scene: Scene,
+  hydrometeor: Hydrometeor,
+  defaults: FieldParameters | undefined,
+): FieldParameters {
+  const set = scene.fields.find((field) => field.hydrometeor === hydrometeor);
+  const phase = create(PhaseFunctionSchema, {
+    kind: set?.phase?.kind || defaults?.phase?.kind || 0,
+    asymmetry: set?.phase?.asymmetry ?? defaults?.phase?.asymmetry,
+  });
+  return create(FieldParametersSchema, {
+    hydrometeor,
+    visible: set?.visible ?? defaults?.visible ?? true,
+    scale: set?.scale ?? defaults?.scale ?? LIMITS.fieldScale.defaultValue,
+    radiusM: set?.radiusM ?? defaults?.radiusM,
+    densityKgPerM3: set?.densityKgPerM3 ?? defaults?.densityKgPerM3,
+    albedo: set?.albedo ?? defaults?.albedo ?? LIMITS.fieldAlbedo.defaultValue,
+    phase,
+    falseColor: set?.falseColor ?? defaults?.falseColor,
+  });
+}
+
+// The picture's size for a canvas of so many device pixels at a share of its resolution.
+export function outputSize(
+  widthPx: number,
+  heightPx: number,
+  resolution: number,
+): { widthPx: number; heightPx: number } {
+  const fit = Math.min(
+    resolution,
+    LIMITS.width.maximum / Math.max(1, widthPx),
+    LIMITS.height.maximum / Math.max(1, heightPx),
+  );
+  return {
+    widthPx: clampToLimits(widthPx * fit, LIMITS.width),
+    heightPx: clampToLimits(heightPx * fit, LIMITS.height),
+  };
+}
+
+const HYDROMETEOR_NAMES: Readonly<Record<Hydrometeor, string>> = {
+  [Hydrometeor.UNSPECIFIED]: "Unknown",
+  [Hydrometeor.CLOUD]: "Cloud",
+  [Hydrometeor.RAIN]: "Rain",
+  [Hydrometeor.ICE]: "Ice",
+  [Hydrometeor.SNOW]: "Snow",
+  [Hydrometeor.GRAUPEL]: "Graupel",
+  [Hydrometeor.HAIL]: "Hail",
+};
+
+export function hydrometeorName(hydrometeor: Hydrometeor): string {
+  return HYDROMETEOR_NAMES[hydrometeor] ?? `Field ${hydrometeor}`;
+}
+
+// A scene in an address, base64 as RFC 4648 section 5 writes it for URLs.
+const URL_ALPHABET = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+
+export function sceneToUrlText(scene: Scene): string {
+  const bytes = toBinary(SceneSchema, scene);
+  let text = "";
+  for (let i = 0; i < bytes.length; i += 3) {
+    const have = Math.min(3, bytes.length - i);
+    const bits = ((bytes[i] ?? 0) << 16) | ((bytes[i + 1] ?? 0) << 8) | (bytes[i + 2] ?? 0);
+    for (let k = 0; k <= have; k += 1) text += URL_ALPHABET[(bits >> (18 - 6 * k)) & 63];
+  }
+  return text;
+}
+
+// Undefined where the text is no scene, as in a link that was cut off.
+export function sceneFromUrlText(text: string): Scene | undefined {
+  const bytes = new Uint8Array(Math.floor((text.length * 3) / 4));
+  let bits = 0;
+  for (let i = 0; i < text.length; i += 1) {
+    const digit = URL_ALPHABET.indexOf(text.charAt(i));
+    if (digit < 0) return undefined;
+    bits = ((bits << 6) | digit) & 0xffffff;
+    const bitsHeld = 6 * (i + 1);
+    const byteIndex = Math.floor(bitsHeld / 8) - 1;
+    if (bitsHeld % 8 < 6) bytes[byteIndex] = (bits >> (bitsHeld % 8)) & 255;
+  }
+  try {
+    return fromBinary(SceneSchema, bytes);
+  } catch {
+    return undefined;
+  }
+}

@@ -1,0 +1,156 @@
+// All that the page knows, as signals: the scene being edited, what the server said of itself and its storms,
+// the frame on the screen, the connection, and what went wrong. Knows no network and no document.
+
+import { create } from "@bufbuild/protobuf";
+import { batch, computed, type ReadonlySignal, signal } from "@preact/signals-core";
+import { type Camera, type Scene, SceneSchema } from "../gen/thunderhead/v1/scene_pb";
+import type { StormDescription, StormSummary } from "../gen/thunderhead/v1/storm_pb";
+import type {
+  Frame,
+  GetServerInfoResponse,
+  Modelled,
+  StageCost,
+} from "../gen/thunderhead/v1/thunderhead_pb";
+import { cameraOfPose, type OrbitPose, poseOfCamera } from "./camera";
+import { withCamera } from "./scene";
+
+export type Connection =
+  | { readonly kind: "connecting" }
+  | { readonly kind: "live" }
+  // `attempts` counts the tries since the loss; `retryInMs` is the wait before the next.
+  | {
+      readonly kind: "lost";
+      readonly reason: string;
+      readonly attempts: number;
+      readonly retryInMs: number;
+    };
+
+export interface ShownFrame {
+  readonly sequence: bigint;
+  readonly revision: bigint;
+  readonly refined: boolean;
+  readonly widthPx: number;
+  readonly heightPx: number;
+  readonly bytes: number;
+  readonly stages: readonly StageCost[];
+  readonly modelled: Modelled | undefined;
+}
+
+export interface Pace {
+  readonly framesPerSecond: number;
+  readonly bytesPerSecond: number;
+  readonly latencyMs: number | undefined;
+}
+
+export interface Notice {
+  // One notice a subject at a time; a newer one takes its place.
+  readonly subject: string;
+  readonly text: string;
+  readonly severity: "problem" | "note";
+}
+
+export interface Session {
+  readonly id: string;
+  // True where it was opened from a link, or a link to it was copied.
+  readonly shared: boolean;
+}
+
+export class PageState {
+  readonly #scene = signal<Scene>(create(SceneSchema));
+  // The server's own pose of the camera on the screen, while the scene leaves it open.
+  readonly #shownPose = signal<OrbitPose | undefined>(undefined);
+  #onEdit: ((scene: Scene) => void) | undefined;
+
+  readonly session = signal<Session | undefined>(undefined);
+  readonly connection = signal<Connection>({ kind: "connecting" });
+  readonly server = signal<GetServerInfoResponse | undefined>(undefined);
+  readonly storms = signal<readonly StormSummary[]>([]);
+  readonly storm = signal<StormDescription | undefined>(undefined);
+  readonly frame = signal<ShownFrame | undefined>(undefined);
+  readonly pace = signal<Pace>({ framesPerSecond: 0, bytesPerSecond: 0, latencyMs: undefined });
+  readonly notices = signal<readonly Notice[]>([]);
+  // Share of the canvas's device pixels that the picture has.
+  readonly resolution = signal(1);
+  readonly panelOpen = signal(true);
+
+  get scene(): ReadonlySignal<Scene> {
+    return this.#scene;
+  }
+
+  // Parts of the scene that change only when they are edited themselves.
+  readonly fields = computed(() => this.#scene.value.fields);
+  readonly sun = computed(() => this.#scene.value.sun);
+  readonly sky = computed(() => this.#scene.value.sky);
+  readonly rendering = computed(() => this.#scene.value.rendering);
+  readonly display = computed(() => this.#scene.value.display);
+  readonly output = computed(() => this.#scene.value.output);
+  readonly timeIndex = computed(() => this.#scene.value.timeIndex ?? 0);
+  readonly stormId = computed(() => this.#scene.value.stormId);
+  readonly timeCount = computed(() => {
+    const storm = this.storm.value;
+    return storm !== undefined && storm.id === this.stormId.value ? storm.times.length : 0;
+  });
+  // Where the camera stands: the scene's camera, or where the server put it.
+  readonly pose = computed(() => poseOfCamera(this.#scene.value.camera) ?? this.#shownPose.value);
+
+  // Called with each scene that the user makes.
+  onEdit(listener: (scene: Scene) => void): void {
+    this.#onEdit = listener;
+  }
+
+  // The user's change.
+  edit(change: (scene: Scene) => Scene): void {
+    const before = this.#scene.value;
+    const after = change(before);
+    if (after === before) return;
+    this.#scene.value = after;
+    this.#onEdit?.(after);
+  }
+
+  // A change of the camera, from where it stands now.
+  move(motion: (pose: OrbitPose) => OrbitPose): void {
+    const pose = this.pose.value;
+    if (pose !== undefined) this.edit((scene) => withCamera(scene, cameraOfPose(motion(pose))));
+  }
+
+  // The server's word on the scene; not sent back to it.
+  adoptScene(scene: Scene): void {
+    this.#scene.value = scene;
+  }
+
+  // The camera of a frame on the screen. It fills in what the scene leaves open; where another viewer moved the
+  // camera of a shared session it takes the place of ours.
+  adoptCamera(camera: Camera | undefined, movedByOthers: boolean): void {
+    const pose = poseOfCamera(camera);
+    if (pose === undefined) return;
+    batch(() => {
+      this.#shownPose.value = pose;
+      const open = poseOfCamera(this.#scene.value.camera) === undefined;
+      if (open || movedByOthers)
+        this.#scene.value = withCamera(this.#scene.value, cameraOfPose(pose));
+    });
+  }
+
+  showFrame(frame: Frame): void {
+    this.frame.value = {
+      sequence: frame.sequence,
+      revision: frame.sceneRevision,
+      refined: frame.refined,
+      widthPx: frame.widthPx,
+      heightPx: frame.heightPx,
+      bytes: frame.jpeg.byteLength,
+      stages: frame.stages,
+      modelled: frame.modelled,
+    };
+  }
+
+  notify(notice: Notice): void {
+    const others = this.notices.value.filter((other) => other.subject !== notice.subject);
+    this.notices.value = [...others, notice];
+  }
+
+  dismiss(subject: string): void {
+    if (!this.notices.value.some((notice) => notice.subject === subject)) return;
+    this.notices.value = this.notices.value.filter((notice) => notice.subject !== subject);
+  }
+}

@@ -1,0 +1,36 @@
+// The sky dome: the sun's direction as a point in a disc with the zenith in its middle and north at its top.
+
+export interface SunDirection {
+  readonly azimuthDeg: number;
+  readonly elevationDeg: number;
+}
+
+// The disc ends this far below the horizon, so that twilight can be dragged too.
+export const DOME_LOWEST_DEG = -18;
+
+// Where the disc's radius, 1 at its edge, meets the horizon.
+export const DOME_HORIZON = 90 / (90 - DOME_LOWEST_DEG);
+
+// Right and down from the middle, in radii of the disc.
+export function domePointOfSun(sun: SunDirection): { right: number; down: number } {
+  const elevation = Math.max(DOME_LOWEST_DEG, sun.elevationDeg);
+  const radius = (90 - elevation) / (90 - DOME_LOWEST_DEG);
+  const azimuth = (sun.azimuthDeg * Math.PI) / 180;
+  return { right: radius * Math.sin(azimuth), down: -radius * Math.cos(azimuth) };
+}
+
+export function sunOfDomePoint(right: number, down: number): SunDirection {
+  const radius = Math.min(1, Math.hypot(right, down));
+  const azimuth = (Math.atan2(right, -down) * 180) / Math.PI;
+  return {
+    azimuthDeg: azimuth < 0 ? azimuth + 360 : azimuth,
+    elevationDeg: 90 - radius * (90 - DOME_LOWEST_DEG),
+  };
+}
+
+const COMPASS = ["N", "NE", "E", "SE", "S", "SW", "W", "NW"];
+
+export function compassPoint(azimuthDeg: number): string {
+  const turns = (((azimuthDeg % 360) + 360) % 360) / 45;
+  return COMPASS[Math.round(turns) % 8] ?? "N";
+}

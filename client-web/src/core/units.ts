@@ -1,0 +1,69 @@
+// Numbers and units as people read them.
+import type { Limits } from "./limits";
+
+export interface DisplayUnit {
+  // What one schema unit is in this one.
+  readonly factor: number;
+  // What stands after the number; empty for a pure number.
+  readonly symbol: string;
+}
+
+const SYMBOLS: Readonly<Record<string, string>> = { "1": "", deg: "°", "kg/m3": "kg/m³", m: "m" };
+
+// The unit to show a number in: lengths that never exceed a metre are shown in millimetres, those that reach
+// farther than any storm in kilometres.
+export function displayUnitOf(limits: Limits): DisplayUnit {
+  if (limits.unit === "m" && limits.maximum <= 1) return { factor: 1e3, symbol: "mm" };
+  if (limits.unit === "m" && limits.maximum >= 1e5) return { factor: 1e-3, symbol: "km" };
+  return { factor: 1, symbol: SYMBOLS[limits.unit] ?? limits.unit };
+}
+
+// Three significant digits, without trailing zeros or an exponent where the number is readable without.
+export function formatNumber(value: number): string {
+  if (!Number.isFinite(value)) return "–";
+  if (value === 0) return "0";
+  const magnitude = Math.abs(value);
+  if (magnitude >= 1e6 || magnitude < 1e-4) return value.toExponential(2).replace("e+", "e");
+  if (magnitude >= 100) return String(Math.round(value));
+  return String(Number(value.toPrecision(3)));
+}
+
+export function formatQuantity(value: number, limits: Limits): string {
+  const unit = displayUnitOf(limits);
+  const separator = unit.symbol === "" || unit.symbol === "°" ? "" : " ";
+  return `${formatNumber(value * unit.factor)}${separator}${unit.symbol}`;
+}
+
+export function formatBytes(bytes: number): string {
+  const steps = ["B", "kB", "MB", "GB"];
+  let value = bytes;
+  let step = 0;
+  while (value >= 999.5 && step < steps.length - 1) {
+    value /= 1000;
+    step += 1;
+  }
+  return `${formatNumber(value)} ${steps[step]}`;
+}
+
+// "0001-01-01T00:20:00Z" as "00:20 · day 1" for idealised runs, which start in year 1, and as
+// "2013-05-20 20:00 UTC" for real dates.
+export function formatValidTime(validTime: string, elapsedS: number): string {
+  const match = /^(\d{4,})-(\d\d)-(\d\d)[T_ ](\d\d):(\d\d)(?::(\d\d))?/.exec(validTime);
+  if (!match) return validTime === "" ? formatElapsed(elapsedS) : validTime;
+  const [, year, month, day, hour, minute, second] = match;
+  const seconds = second !== undefined && second !== "00" ? `:${second}` : "";
+  if (Number(year) < 100) return `day ${Number(day)}, ${hour}:${minute}${seconds}`;
+  return `${year}-${month}-${day} ${hour}:${minute}${seconds} UTC`;
+}
+
+// "+1 h 20 min" since the storm's first time.
+export function formatElapsed(elapsedS: number): string {
+  const minutes = Math.floor(elapsedS / 60);
+  const hours = Math.floor(minutes / 60);
+  const seconds = Math.round(elapsedS - minutes * 60);
+  const parts: string[] = [];
+  if (hours > 0) parts.push(`${hours} h`);
+  if (minutes % 60 > 0 || (hours === 0 && seconds === 0)) parts.push(`${minutes % 60} min`);
+  if (seconds > 0) parts.push(`${seconds} s`);
+  return `+${parts.join(" ")}`;
+}

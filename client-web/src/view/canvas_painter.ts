@@ -1,0 +1,52 @@
+// Draws the newest picture into a canvas, as large as fits and in the middle, and draws it again when the
+// canvas changes size. Owns the picture on the screen.
+
+export class CanvasPainter {
+  readonly #canvas: HTMLCanvasElement;
+  readonly #context: CanvasRenderingContext2D;
+  #picture: ImageBitmap | undefined;
+
+  constructor(canvas: HTMLCanvasElement) {
+    const context = canvas.getContext("2d", { alpha: false });
+    if (context === null) throw new Error("this browser draws no 2D canvas");
+    this.#canvas = canvas;
+    this.#context = context;
+  }
+
+  // Takes the picture over.
+  paint(picture: ImageBitmap): void {
+    this.#picture?.close();
+    this.#picture = picture;
+    this.#draw();
+  }
+
+  resize(widthPx: number, heightPx: number): void {
+    if (this.#canvas.width === widthPx && this.#canvas.height === heightPx) return;
+    this.#canvas.width = widthPx;
+    this.#canvas.height = heightPx;
+    this.#draw();
+  }
+
+  dispose(): void {
+    this.#picture?.close();
+    this.#picture = undefined;
+  }
+
+  #draw(): void {
+    const picture = this.#picture;
+    if (picture === undefined) return;
+    const { width, height } = this.#canvas;
+    const scale = Math.min(width / picture.width, height / picture.height);
+    const shownWidth = Math.round(picture.width * scale);
+    const shownHeight = Math.round(picture.height * scale);
+    const left = Math.floor((width - shownWidth) / 2);
+    const top = Math.floor((height - shownHeight) / 2);
+    if (left > 0 || top > 0) {
+      this.#context.fillStyle = "#05070a";
+      this.#context.fillRect(0, 0, width, height);
+    }
+    this.#context.imageSmoothingEnabled = scale !== 1;
+    this.#context.imageSmoothingQuality = "medium";
+    this.#context.drawImage(picture, left, top, shownWidth, shownHeight);
+  }
+}

@@ -1,0 +1,161 @@
+// The small controls that the panel is made of. Each shows one value and says when the user changes it.
+import type { ComponentChildren } from "preact";
+import { useId } from "preact/hooks";
+import { clampToLimits, type Limits, positionOfValue, valueAtPosition } from "../core/limits";
+import { displayUnitOf, formatNumber, formatQuantity } from "../core/units";
+
+const SLIDER_STEPS = 400;
+
+interface SliderProps {
+  readonly label: string;
+  readonly limits: Limits;
+  // Undefined while the server has not said what it is.
+  readonly value: number | undefined;
+  // What the reset button goes back to.
+  readonly initial?: number | undefined;
+  readonly testId: string;
+  readonly onChange: (value: number) => void;
+}
+
+// A number as a slider and as text, with its unit.
+export function Slider({ label, limits, value, initial, testId, onChange }: SliderProps) {
+  const id = useId();
+  const unit = displayUnitOf(limits);
+  const range = limits.maximum - limits.minimum;
+  const steps =
+    limits.integer && !limits.logarithmic ? Math.min(range, SLIDER_STEPS) : SLIDER_STEPS;
+  const known = value !== undefined;
+  const first = initial ?? limits.defaultValue;
+  const changed = known && first !== undefined && !nearlyEqual(value, first);
+  return (
+    <div class="slider">
+      <label for={id}>{label}</label>
+      <span class="slider-value">
+        {changed && (
+          <button
+            type="button"
+            class="reset"
+            aria-label={`Reset ${label} to ${formatQuantity(first, limits)}`}
+            title={`Reset to ${formatQuantity(first, limits)}`}
+            onClick={() => onChange(first)}
+          >
+            ↺
+          </button>
+        )}
+        <input
+          type="number"
+          class="number"
+          aria-label={`${label}${unit.symbol === "" ? "" : ` in ${unit.symbol}`}`}
+          data-testid={`${testId}-number`}
+          disabled={!known}
+          min={limits.minimum * unit.factor}
+          max={limits.maximum * unit.factor}
+          step="any"
+          value={known ? formatNumber(value * unit.factor) : ""}
+          onChange={(event) => {
+            const typed = event.currentTarget.valueAsNumber;
+            if (Number.isNaN(typed)) return;
+            const next = clampToLimits(typed / unit.factor, limits);
+            event.currentTarget.value = formatNumber(next * unit.factor);
+            onChange(next);
+          }}
+        />
+        <span class="unit" aria-hidden="true">
+          {unit.symbol}
+        </span>
+      </span>
+      <input
+        id={id}
+        type="range"
+        data-testid={testId}
+        disabled={!known}
+        min={0}
+        max={steps}
+        step={1}
+        value={known ? Math.round(positionOfValue(value, limits) * steps) : 0}
+        aria-valuetext={known ? formatQuantity(value, limits) : "not known yet"}
+        onInput={(event) => {
+          onChange(valueAtPosition(event.currentTarget.valueAsNumber / steps, limits));
+        }}
+      />
+    </div>
+  );
+}
+
+function nearlyEqual(a: number, b: number): boolean {
+  return Math.abs(a - b) <= 1e-6 * Math.max(Math.abs(a), Math.abs(b));
+}
+
+interface ChoiceProps<T extends string | number> {
+  readonly label: string;
+  readonly value: T;
+  readonly options: readonly (readonly [T, string])[];
+  readonly testId: string;
+  readonly onChange: (value: T) => void;
+}
+
+// One of a few named values.
+export function Choice<T extends string | number>(props: ChoiceProps<T>) {
+  const { label, value, options, testId, onChange } = props;
+  const id = useId();
+  return (
+    <div class="choice">
+      <label for={id}>{label}</label>
+      <select
+        id={id}
+        data-testid={testId}
+        value={String(value)}
+        onChange={(event) => {
+          const chosen = options[event.currentTarget.selectedIndex];
+          if (chosen !== undefined) onChange(chosen[0]);
+        }}
+      >
+        {options.map(([key, text]) => (
+          <option key={key} value={String(key)} selected={key === value}>
+            {text}
+          </option>
+        ))}
+      </select>
+    </div>
+  );
+}
+
+interface SwitchProps {
+  readonly label: string;
+  readonly checked: boolean;
+  readonly testId: string;
+  readonly onChange: (checked: boolean) => void;
+  // Where the label is shown by something else.
+  readonly labelHidden?: boolean;
+}
+
+export function Switch({ label, checked, testId, onChange, labelHidden }: SwitchProps) {
+  return (
+    <label class="switch">
+      <input
+        type="checkbox"
+        data-testid={testId}
+        checked={checked}
+        onChange={(event) => onChange(event.currentTarget.checked)}
+      />
+      <span class={labelHidden ? "visually-hidden" : undefined}>{label}</span>
+    </label>
+  );
+}
+
+interface SectionProps {
+  readonly title: string;
+  readonly open?: boolean;
+  readonly testId: string;
+  readonly children: ComponentChildren;
+}
+
+// A part of the panel that folds.
+export function Section({ title, open, testId, children }: SectionProps) {
+  return (
+    <details class="section" open={open} data-testid={testId}>
+      <summary>{title}</summary>
+      <div class="section-body">{children}</div>
+    </details>
+  );
+}

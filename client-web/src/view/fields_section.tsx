@@ -1,0 +1,156 @@
+// The storm's fields, one row each: on or off, scale, colour, and what its particles are like.
+import { create } from "@bufbuild/protobuf";
+import { colorOfHex, hexOfColor } from "../core/color";
+import {
+  effectiveField,
+  hydrometeorName,
+  LIMITS,
+  withAsymmetry,
+  withField,
+  withRendering,
+} from "../core/scene";
+import type { PageState } from "../core/state";
+import { formatNumber } from "../core/units";
+import {
+  ColorSchema,
+  PhaseFunction_Kind as Kind,
+  PhaseFunctionSchema,
+} from "../gen/thunderhead/v1/scene_pb";
+import type { FieldDescription } from "../gen/thunderhead/v1/storm_pb";
+import { Choice, Section, Slider, Switch } from "./controls";
+
+const PHASE_KINDS = [
+  [Kind.HENYEY_GREENSTEIN, "Henyey–Greenstein"],
+  [Kind.CORNETTE_SHANKS, "Cornette–Shanks"],
+  [Kind.RAYLEIGH, "Rayleigh"],
+] as const;
+
+export function FieldsSection({ state }: { state: PageState }) {
+  const storm = state.storm.value;
+  const falseColors = state.rendering.value?.falseColors ?? false;
+  return (
+    <Section title="Fields" open testId="fields">
+      <Switch
+        label="False colours"
+        testId="false-colors"
+        checked={falseColors}
+        onChange={(checked) =>
+          state.edit((scene) => withRendering(scene, { falseColors: checked }))
+        }
+      />
+      {storm === undefined && <p class="quiet">Waiting for the storm's description …</p>}
+      {storm?.fields.map((field) => (
+        <FieldRow key={field.hydrometeor} state={state} field={field} />
+      ))}
+    </Section>
+  );
+}
+
+function FieldRow({ state, field }: { state: PageState; field: FieldDescription }) {
+  const { hydrometeor, defaults } = field;
+  // Read so that the row is drawn anew when a field changes, and only then.
+  void state.fields.value;
+  const shown = effectiveField(state.scene.peek(), hydrometeor, defaults);
+  const name = hydrometeorName(hydrometeor);
+  const id = name.toLowerCase();
+  const edit = (change: Parameters<typeof withField>[2]) =>
+    state.edit((scene) => withField(scene, hydrometeor, change));
+  const color = hexOfColor(shown.falseColor ?? { red: 1, green: 1, blue: 1 });
+  return (
+    <fieldset class={shown.visible ? "field" : "field off"} data-testid={`field-${id}`}>
+      <legend class="visually-hidden">{name}</legend>
+      <div class="field-head">
+        <Switch
+          label={name}
+          testId={`field-${id}-visible`}
+          checked={shown.visible ?? true}
+          onChange={(visible) => edit({ visible })}
+        />
+        <input
+          type="color"
+          aria-label={`${name}: false colour`}
+          title="False colour"
+          data-testid={`field-${id}-color`}
+          value={color}
+          onInput={(event) =>
+            edit({ falseColor: create(ColorSchema, colorOfHex(event.currentTarget.value)) })
+          }
+        />
+      </div>
+      <Slider
+        label="Scale"
+        limits={LIMITS.fieldScale}
+        value={shown.scale}
+        initial={defaults?.scale}
+        testId={`field-${id}-scale`}
+        onChange={(scale) => edit({ scale })}
+      />
+      <details class="particles">
+        <summary>Particles</summary>
+        <ParticleSettings state={state} field={field} />
+      </details>
+    </fieldset>
+  );
+}
+
+function ParticleSettings({ state, field }: { state: PageState; field: FieldDescription }) {
+  const { hydrometeor, defaults } = field;
+  void state.fields.value;
+  const shown = effectiveField(state.scene.peek(), hydrometeor, defaults);
+  const id = hydrometeorName(hydrometeor).toLowerCase();
+  const edit = (change: Parameters<typeof withField>[2]) =>
+    state.edit((scene) => withField(scene, hydrometeor, change));
+  const { phase } = shown;
+  return (
+    <>
+      <Slider
+        label="Radius"
+        limits={LIMITS.fieldRadius}
+        value={shown.radiusM}
+        initial={defaults?.radiusM}
+        testId={`field-${id}-radius`}
+        onChange={(radiusM) => edit({ radiusM })}
+      />
+      <Slider
+        label="Density"
+        limits={LIMITS.fieldDensity}
+        value={shown.densityKgPerM3}
+        initial={defaults?.densityKgPerM3}
+        testId={`field-${id}-density`}
+        onChange={(densityKgPerM3) => edit({ densityKgPerM3 })}
+      />
+      <Slider
+        label="Albedo"
+        limits={LIMITS.fieldAlbedo}
+        value={shown.albedo}
+        initial={defaults?.albedo}
+        testId={`field-${id}-albedo`}
+        onChange={(albedo) => edit({ albedo })}
+      />
+      <Choice
+        label="Phase function"
+        testId={`field-${id}-phase`}
+        value={phase?.kind || Kind.HENYEY_GREENSTEIN}
+        options={PHASE_KINDS}
+        onChange={(kind) =>
+          edit({ phase: create(PhaseFunctionSchema, { kind, asymmetry: phase?.asymmetry }) })
+        }
+      />
+      {phase?.kind !== Kind.RAYLEIGH && (
+        <Slider
+          label="Asymmetry g"
+          limits={LIMITS.phaseAsymmetry}
+          value={phase?.asymmetry}
+          initial={defaults?.phase?.asymmetry}
+          testId={`field-${id}-asymmetry`}
+          onChange={(g) => state.edit((scene) => withAsymmetry(scene, hydrometeor, g))}
+        />
+      )}
+      <p class="quiet">
+        {field.variable}: up to {formatNumber(field.maximumKgPerKg * 1000)} g/kg, column mean{" "}
+        {formatNumber(field.meanWaterPathKgPerM2)} kg/m² at this time
+        {field.missingCells > 0n && `; ${field.missingCells} cells missing`}
+      </p>
+    </>
+  );
+}

@@ -1,0 +1,96 @@
+// The page's keys. attachKeyboard() returns what takes the listener off again.
+import { type OrbitPose, pan, turn, zoom } from "../core/camera";
+
+export interface KeyActions {
+  move(motion: (pose: OrbitPose) => OrbitPose): void;
+  home(): void;
+  togglePanel(): void;
+  togglePlay(): void;
+  stepTime(by: number): void;
+}
+
+export const KEYS: readonly (readonly [string, string])[] = [
+  ["Drag, arrows", "turn"],
+  ["Right or shift drag, shift + arrows", "move"],
+  ["Wheel, pinch, + −", "nearer, farther"],
+  ["Home", "see the whole storm"],
+  ["Space", "play or pause"],
+  [", .", "one time back, forward"],
+  ["P", "show or hide this panel"],
+];
+
+const TURN_DEG = 3;
+// Share of the picture's height.
+const PAN_SHARE = 0.05;
+const ZOOM_FACTOR = 0.88;
+
+const ARROWS: Readonly<Record<string, readonly [number, number]>> = {
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowUp: [0, -1],
+  ArrowDown: [0, 1],
+};
+
+export function attachKeyboard(window: Window, actions: KeyActions): () => void {
+  const listening = new AbortController();
+  window.addEventListener(
+    "keydown",
+    (event) => {
+      if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
+      if (!usesKey(event.target, event.key) && act(event, actions)) event.preventDefault();
+    },
+    { signal: listening.signal },
+  );
+  return () => listening.abort();
+}
+
+function act(event: KeyboardEvent, actions: KeyActions): boolean {
+  const arrow = ARROWS[event.key];
+  if (arrow !== undefined) {
+    const [right, down] = arrow;
+    if (event.shiftKey) actions.move((pose) => pan(pose, right * PAN_SHARE, down * PAN_SHARE, 1));
+    else actions.move((pose) => turn(pose, right * TURN_DEG, -down * TURN_DEG));
+    return true;
+  }
+  switch (event.key) {
+    case "+":
+    case "=":
+      actions.move((pose) => zoom(pose, ZOOM_FACTOR));
+      return true;
+    case "-":
+    case "_":
+      actions.move((pose) => zoom(pose, 1 / ZOOM_FACTOR));
+      return true;
+    case "Home":
+      actions.home();
+      return true;
+    case "p":
+    case "P":
+      actions.togglePanel();
+      return true;
+    case " ":
+      actions.togglePlay();
+      return true;
+    case ",":
+      actions.stepTime(-1);
+      return true;
+    case ".":
+      actions.stepTime(1);
+      return true;
+    default:
+      return false;
+  }
+}
+
+// True where the focused control has its own use for the key: text takes all, a slider its arrows, a button
+// the space bar.
+function usesKey(target: EventTarget | null, key: string): boolean {
+  if (!(target instanceof Element)) return false;
+  const control = target.closest("input, select, textarea, button, summary, [role=slider]");
+  if (control === null) return false;
+  if (control.matches("button, summary, input[type=checkbox]")) return key === " ";
+  if (control.matches("input[type=range], [role=slider]")) {
+    return key in ARROWS || key === "Home" || key === "End";
+  }
+  return true;
+}

@@ -1,0 +1,411 @@
+// Ties the parts together: edits go to the server, frames go to the canvas, and each frame shown is accounted
+// for and acknowledged. Owns them all; dispose() ends them all.
+
+import { create } from "@bufbuild/protobuf";
+import type { Transport } from "@connectrpc/connect";
+import { effect } from "@preact/signals-core";
+import { homeCamera, poseOfCamera } from "../core/camera";
+import { FramePipeline } from "../core/frame_pipeline";
+import { FrameRate } from "../core/frame_rate";
+import { Playback } from "../core/playback";
+import { RevisionLedger } from "../core/revision_ledger";
+import {
+  outputSize,
+  sceneFromUrlText,
+  sceneToUrlText,
+  withCamera,
+  withOutput,
+  withStorm,
+  withTime,
+} from "../core/scene";
+import { SceneSender } from "../core/scene_sender";
+import { PageState } from "../core/state";
+import { type Scene, SceneSchema } from "../gen/thunderhead/v1/scene_pb";
+import type { Frame, Problem } from "../gen/thunderhead/v1/thunderhead_pb";
+import {
+  type OpenedSession,
+  SessionClient,
+  type SessionListener,
+} from "../transport/session_client";
+import { CanvasPainter } from "./canvas_painter";
+import { attachKeyboard } from "./keyboard";
+import { attachPointer } from "./pointer";
+
+const RESIZE_REST_MS = 150;
+const DESCRIBE_REST_MS = 400;
+const PACE_EVERY_MS = 500;
+// Narrower windows start with the panel closed.
+const NARROW_PX = 700;
+
+export class Page implements SessionListener {
+  readonly state = new PageState();
+  readonly playback: Playback;
+  readonly #window: Window;
+  readonly #client: SessionClient;
+  readonly #sender: SceneSender;
+  readonly #pipeline: FramePipeline<Frame, ImageBitmap>;
+  readonly #ledger = new RevisionLedger();
+  readonly #rate = new FrameRate();
+  readonly #listening = new AbortController();
+  readonly #disposals: (() => void)[] = [];
+  #canvas: HTMLCanvasElement | undefined;
+  #painter: CanvasPainter | undefined;
+  #canvasSize = { widthPx: 1280, heightPx: 720 };
+  // A viewer who joined somebody's session takes its pictures in the size that it has.
+  #setsOutput: boolean;
+  #shown: Frame | undefined;
+  #problemRevision = 0n;
+  #describeTimer: ReturnType<typeof setTimeout> | undefined;
+  #running = false;
+
+  constructor(transport: Transport, window: Window) {
+    this.#window = window;
+    const link = new URL(window.location.href);
+    const joined = link.searchParams.get("session") ?? undefined;
+    const carried = sceneFromUrlText(new URLSearchParams(link.hash.slice(1)).get("scene") ?? "");
+    if (carried !== undefined) this.state.adoptScene(carried);
+    this.#setsOutput = joined === undefined;
+    this.state.panelOpen.value = window.innerWidth >= NARROW_PX;
+
+    this.#client = new SessionClient(transport, this, joined);
+    const onNextPaint = (callback: (nowMs: number) => void) => {
+      const request = window.requestAnimationFrame(callback);
+      return () => window.cancelAnimationFrame(request);
+    };
+    this.#sender = new SceneSender({ send: (scene) => this.#send(scene), onNextPaint });
+    this.#pipeline = new FramePipeline({
+      decode: (frame) => decodeJpeg(frame.jpeg),
+      onNextPaint,
+      paint: (frame, picture) => this.#paint(frame, picture),
+      release: (picture) => picture.close(),
+      failed: (frame) => this.#undecodable(frame),
+    });
+    this.playback = new Playback({
+      timeCount: () => this.state.timeCount.value,
+      timeIndex: () => this.state.timeIndex.value,
+      isShown: (index) => this.#isTimeShown(index),
+      showTime: (index) => this.showTime(index),
+      onNextPaint,
+    });
+    this.state.onEdit((scene) => this.#sender.push(scene));
+    this.#listen();
+  }
+
+  // The canvas is in the document: pictures go there from now on. Returns what lets go of it.
+  attachCanvas(canvas: HTMLCanvasElement): () => void {
+    const painter = new CanvasPainter(canvas);
+    this.#canvas = canvas;
+    this.#painter = painter;
+    const detachPointer = attachPointer(canvas, (motion) => this.state.move(motion));
+    let resting: ReturnType<typeof setTimeout> | undefined;
+    const measure = () => {
+      const ratio = this.#window.devicePixelRatio;
+      const widthPx = Math.max(1, Math.round(canvas.clientWidth * ratio));
+      const heightPx = Math.max(1, Math.round(canvas.clientHeight * ratio));
+      this.#canvasSize = { widthPx, heightPx };
+      painter.resize(widthPx, heightPx);
+    };
+    const observer = new ResizeObserver(() => {
+      measure();
+      clearTimeout(resting);
+      resting = setTimeout(() => this.#sendOutputSize(), RESIZE_REST_MS);
+    });
+    observer.observe(canvas);
+    measure();
+    this.#start();
+    return () => {
+      observer.disconnect();
+      clearTimeout(resting);
+      detachPointer();
+      painter.dispose();
+      this.#canvas = undefined;
+      this.#painter = undefined;
+    };
+  }
+
+  showTime(index: number): void {
+    if (index !== this.state.timeIndex.value) this.state.edit((scene) => withTime(scene, index));
+  }
+
+  showStorm(stormId: string): void {
+    this.playback.pause();
+    this.state.edit((scene) => withStorm(scene, stormId));
+  }
+
+  home(): void {
+    this.state.edit((scene) => withCamera(scene, homeCamera()));
+  }
+
+  togglePanel(): void {
+    this.state.panelOpen.value = !this.state.panelOpen.value;
+  }
+
+  setResolution(share: number): void {
+    this.state.resolution.value = share;
+    this.#setsOutput = true;
+    this.#sendOutputSize();
+  }
+
+  // An address that opens this session elsewhere. It carries the scene, for the one who joins to edit.
+  async copyLink(): Promise<void> {
+    const session = this.state.session.value;
+    if (session === undefined) return;
+    const link = new URL(".", this.#window.location.href);
+    link.searchParams.set("session", session.id);
+    link.hash = `scene=${sceneToUrlText(this.state.scene.value)}`;
+    this.state.session.value = { ...session, shared: true };
+    try {
+      await this.#window.navigator.clipboard.writeText(link.href);
+      this.state.notify({ subject: "link", text: "Link copied", severity: "note" });
+    } catch {
+      // Browsers keep the clipboard from pages without HTTPS, and from those without the focus.
+      this.state.notify({ subject: "link", text: link.href, severity: "note" });
+    }
+  }
+
+  dispose(): void {
+    this.#listening.abort();
+    for (const dispose of this.#disposals) dispose();
+    clearTimeout(this.#describeTimer);
+    this.playback.dispose();
+    this.#sender.stop();
+    this.#client.dispose();
+    this.#pipeline.dispose();
+  }
+
+  // SessionListener: what the connection reports.
+
+  sceneToOpen(): Scene {
+    this.#setsOutput = true;
+    const size = outputSize(
+      this.#canvasSize.widthPx,
+      this.#canvasSize.heightPx,
+      this.state.resolution.value,
+    );
+    this.state.adoptScene(withOutput(this.state.scene.value, size));
+    return this.state.scene.value;
+  }
+
+  openingRefused(message: string): void {
+    this.state.notify({ subject: "refused", text: message, severity: "problem" });
+    this.state.adoptScene(create(SceneSchema));
+  }
+
+  opened(session: OpenedSession): void {
+    const before = this.state.session.value;
+    this.state.session.value = { id: session.id, shared: false };
+    this.#ledger.startSession();
+    this.#ledger.sent(session.asked.timeIndex ?? 0, this.#now()).accepted(session.revision);
+    if (this.state.scene.value === session.asked) this.state.adoptScene(session.completed);
+    this.#sender.start(session.asked);
+    this.#rewriteAddress();
+    if (session.replaces) {
+      const text =
+        before === undefined || before.shared
+          ? "The shared session has ended; this is a new one of your own."
+          : "The server had lost the session; this is a new one with the same scene.";
+      this.state.notify({ subject: "session", text, severity: "note" });
+    }
+    void this.#learnServer();
+  }
+
+  streaming(sessionId: string): void {
+    this.#pipeline.startStream();
+    this.#sender.start();
+    if (this.state.session.value?.id !== sessionId) {
+      this.state.session.value = { id: sessionId, shared: true };
+      void this.#learnServer();
+    }
+  }
+
+  connection(connection: PageState["connection"]["value"]): void {
+    this.state.connection.value = connection;
+    if (connection.kind === "lost") this.#sender.stop();
+  }
+
+  frame(frame: Frame): void {
+    this.#pipeline.offer(frame);
+  }
+
+  problem(problem: Problem): void {
+    this.#problemRevision = problem.sceneRevision;
+    this.#ledger.settled(problem.sceneRevision);
+    this.state.notify({ subject: "problem", text: problem.message, severity: "problem" });
+  }
+
+  #start(): void {
+    if (this.#running) return;
+    this.#running = true;
+    void this.#client.run();
+  }
+
+  #now(): number {
+    return this.#window.performance.now();
+  }
+
+  #listen(): void {
+    const options = { signal: this.#listening.signal };
+    const window = this.#window;
+    window.addEventListener("online", () => this.#client.retryNow(), options);
+    window.addEventListener("pagehide", (event) => this.#leave(event), options);
+    const pace = setInterval(() => this.#takePace(), PACE_EVERY_MS);
+    this.#disposals.push(
+      () => clearInterval(pace),
+      attachKeyboard(window, {
+        move: (motion) => this.state.move(motion),
+        home: () => this.home(),
+        togglePanel: () => this.togglePanel(),
+        togglePlay: () => this.playback.toggle(),
+        stepTime: (by) => this.playback.step(by),
+      }),
+      effect(() => this.#describeAfterRest()),
+    );
+  }
+
+  // A page that goes away for good gives its session back, unless others may be watching it.
+  #leave(event: PageTransitionEvent): void {
+    if (!event.persisted && this.state.session.value?.shared === false) this.#client.closeSession();
+  }
+
+  async #send(scene: Scene): Promise<void> {
+    const entry = this.#ledger.sent(scene.timeIndex ?? 0, this.#now());
+    try {
+      const verdict = await this.#client.updateScene(scene);
+      if (verdict.kind === "taken") {
+        entry.accepted(verdict.revision);
+        this.state.dismiss("refused");
+      } else {
+        entry.refused();
+        this.state.notify({ subject: "refused", text: verdict.message, severity: "problem" });
+      }
+    } catch (error) {
+      entry.refused();
+      throw error;
+    }
+  }
+
+  #paint(frame: Frame, picture: ImageBitmap): void {
+    if (this.#painter === undefined || this.#canvas === undefined) {
+      picture.close();
+      return;
+    }
+    this.#painter.paint(picture);
+    const now = this.#now();
+    this.#shown = frame;
+    this.#ledger.shown(frame.sceneRevision, now);
+    this.#rate.shown(frame.jpeg.byteLength, now);
+    this.#client.acknowledge(frame.sequence);
+    this.state.showFrame(frame);
+    this.#adoptCamera();
+    if (frame.sceneRevision >= this.#problemRevision) this.state.dismiss("problem");
+    Object.assign(this.#canvas.dataset, {
+      sequence: String(frame.sequence),
+      revision: String(frame.sceneRevision),
+      refined: String(frame.refined),
+      time: String(this.#ledger.shownTimeIndex ?? ""),
+      azimuth: poseOfCamera(frame.camera)?.azimuthDeg.toFixed(2) ?? "",
+    });
+  }
+
+  // A frame says where the camera stands; it counts once it shows all that this page has sent.
+  #adoptCamera(): void {
+    const frame = this.#shown;
+    if (frame === undefined || this.#sender.unsettled) return;
+    const ours = this.#ledger.newestAccepted;
+    if (frame.sceneRevision < ours) return;
+    this.state.adoptCamera(frame.camera, frame.sceneRevision > ours);
+  }
+
+  // Not shown, but acknowledged: the server must not wait for it.
+  #undecodable(frame: Frame): void {
+    this.#client.acknowledge(frame.sequence);
+    const text = `Frame ${frame.sequence} is no picture that this browser can read`;
+    this.state.notify({ subject: "decode", text, severity: "problem" });
+  }
+
+  #sendOutputSize(): void {
+    const { output } = this.state.scene.value;
+    const { widthPx, heightPx } = this.#canvasSize;
+    const size = outputSize(widthPx, heightPx, this.state.resolution.value);
+    if (!this.#setsOutput || this.state.session.value === undefined) return;
+    if (output?.widthPx === size.widthPx && output?.heightPx === size.heightPx) return;
+    this.state.edit((scene) => withOutput(scene, size));
+  }
+
+  // Before the first scene of our own, whatever is shown is the time that the page has.
+  #isTimeShown(index: number): boolean {
+    if (this.#sender.unsettled || this.#shown === undefined) return false;
+    return (this.#ledger.shownTimeIndex ?? index) === index;
+  }
+
+  #takePace(): void {
+    const now = this.#now();
+    // The frame may have come before the reply that says which revision it shows.
+    if (poseOfCamera(this.state.scene.value.camera) === undefined) this.#adoptCamera();
+    this.state.pace.value = {
+      framesPerSecond: this.#rate.framesPerSecond(now),
+      bytesPerSecond: this.#rate.bytesPerSecond(now),
+      latencyMs: this.#ledger.latencyMs,
+    };
+  }
+
+  // What the server is and which storms it holds; asked again with each new session, as it may be another server.
+  async #learnServer(): Promise<void> {
+    try {
+      this.state.server.value = await this.#client.serverInfo();
+      this.state.storms.value = await this.#client.storms();
+      const first = this.state.storms.value[0];
+      const { scene } = this.state;
+      if (scene.value.stormId === "" && first !== undefined) {
+        this.state.adoptScene({ ...scene.value, stormId: first.id });
+      }
+    } catch {
+      // The stream notices the loss as well, and its recovery asks again.
+    }
+  }
+
+  // Asks for the storm at the time shown; at once for another storm, after a rest for another time.
+  #describeAfterRest(): void {
+    const stormId = this.state.stormId.value;
+    const timeIndex = this.state.timeIndex.value;
+    const live = this.state.connection.value.kind === "live";
+    const playing = this.playback.playing.value;
+    clearTimeout(this.#describeTimer);
+    if (stormId === "" || !live) return;
+    const known = this.state.storm.peek();
+    if (known?.id !== stormId) void this.#describe(stormId, timeIndex);
+    else if (known.timeIndex !== timeIndex && !playing) {
+      this.#describeTimer = setTimeout(() => this.#describe(stormId, timeIndex), DESCRIBE_REST_MS);
+    }
+  }
+
+  async #describe(stormId: string, timeIndex: number): Promise<void> {
+    try {
+      const storm = await this.#client.describeStorm(stormId, timeIndex);
+      if (storm === undefined || stormId !== this.state.stormId.value) return;
+      this.state.storm.value = storm;
+      this.state.dismiss("storm");
+    } catch (error) {
+      if (this.state.connection.value.kind !== "live") return;
+      const text = `The storm cannot be described: ${String(error)}`;
+      this.state.notify({ subject: "storm", text, severity: "problem" });
+    }
+  }
+
+  // A link whose session has ended must not be kept: reloading would look for that session again.
+  #rewriteAddress(): void {
+    const { history, location } = this.#window;
+    const link = new URL(location.href);
+    const session = this.state.session.value;
+    if (session === undefined || !link.searchParams.has("session")) return;
+    link.search = "";
+    link.hash = "";
+    history.replaceState(null, "", link);
+  }
+}
+
+function decodeJpeg(jpeg: Uint8Array): Promise<ImageBitmap> {
+  // Messages lie in plain buffers, never in shared ones, which a Blob would refuse.
+  const bytes = jpeg as Uint8Array<ArrayBuffer>;
+  return createImageBitmap(new Blob([bytes], { type: "image/jpeg" }));
+}

@@ -1,0 +1,240 @@
+// The panel at the side: everything that can be set, part by part.
+import { wrapDegrees } from "../core/camera";
+import { LIMITS, withDisplay, withOutput, withRendering, withSky, withSun } from "../core/scene";
+import type { PageState } from "../core/state";
+import { compassPoint } from "../core/sun";
+import { formatNumber } from "../core/units";
+import { Mode, ToneMap, Transport } from "../gen/thunderhead/v1/scene_pb";
+import { Choice, Section, Slider } from "./controls";
+import { FieldsSection } from "./fields_section";
+import { KEYS } from "./keyboard";
+import type { Page } from "./page";
+import { SunDome } from "./sun_dome";
+
+const MODES = [
+  [Mode.PER_FIELD_PHASE_TRANSLUCENT, "Per-field phase, translucent"],
+  [Mode.UNIFORM_PHASE_TRANSLUCENT, "Uniform phase, translucent"],
+  [Mode.UNIFORM_PHASE_LOW_ALBEDO, "Uniform phase, low albedo"],
+] as const;
+
+const TRANSPORTS = [
+  [Transport.CONSISTENT, "Consistent"],
+  [Transport.PAPER, "As in the paper"],
+] as const;
+
+const TONE_MAPS = [
+  [ToneMap.FILMIC, "Filmic"],
+  [ToneMap.LINEAR, "Linear"],
+] as const;
+
+const RESOLUTIONS = [
+  [1, "Full"],
+  [0.75, "Three quarters"],
+  [0.5, "Half"],
+  [0.25, "A quarter"],
+] as const;
+
+export function Panel({ page }: { page: Page }) {
+  const { state } = page;
+  const open = state.panelOpen.value;
+  return (
+    <>
+      <button
+        type="button"
+        class="panel-toggle"
+        data-testid="panel-toggle"
+        aria-expanded={open}
+        aria-controls="panel"
+        title="Show or hide the settings (P)"
+        onClick={() => page.togglePanel()}
+      >
+        {open ? "Hide settings" : "Settings"}
+      </button>
+      <aside id="panel" class="panel" aria-label="Settings" data-testid="panel" hidden={!open}>
+        <StormSection page={page} />
+        <SunSection state={state} />
+        <FieldsSection state={state} />
+        <RenderingSection state={state} />
+        <PictureSection page={page} />
+        <HelpSection />
+      </aside>
+    </>
+  );
+}
+
+function StormSection({ page }: { page: Page }) {
+  const { state } = page;
+  const storms = state.storms.value;
+  const pose = state.pose.value;
+  return (
+    <Section title="Storm" open testId="storm-section">
+      <Choice
+        label="Storm"
+        testId="storm"
+        value={state.stormId.value}
+        options={storms.map((storm) => [storm.id, storm.title || storm.id] as const)}
+        onChange={(id) => page.showStorm(id)}
+      />
+      <p class="quiet" data-testid="camera">
+        {pose === undefined
+          ? "Waiting for the first picture …"
+          : `Seen from ${compassPoint(pose.azimuthDeg)} (${Math.round(wrapDegrees(pose.azimuthDeg))}°), ` +
+            `${Math.round(pose.elevationDeg)}° high, ${formatNumber(pose.distanceM / 1000)} km away`}
+      </p>
+      <div class="buttons">
+        <button type="button" data-testid="home" onClick={() => page.home()}>
+          Whole storm
+        </button>
+        <button
+          type="button"
+          data-testid="copy-link"
+          disabled={state.session.value === undefined}
+          onClick={() => void page.copyLink()}
+        >
+          Copy link
+        </button>
+      </div>
+    </Section>
+  );
+}
+
+function SunSection({ state }: { state: PageState }) {
+  const sun = state.sun.value;
+  const direction = {
+    azimuthDeg: sun?.azimuthDeg ?? LIMITS.sunAzimuth.defaultValue ?? 0,
+    elevationDeg: sun?.elevationDeg ?? LIMITS.sunElevation.defaultValue ?? 0,
+  };
+  return (
+    <Section title="Sun" open testId="sun-section">
+      <SunDome
+        sun={direction}
+        cameraAzimuthDeg={state.pose.value?.azimuthDeg}
+        onChange={(change) => state.edit((scene) => withSun(scene, change))}
+      />
+      <Slider
+        label="Azimuth"
+        limits={LIMITS.sunAzimuth}
+        value={direction.azimuthDeg}
+        testId="sun-azimuth"
+        onChange={(azimuthDeg) => state.edit((scene) => withSun(scene, { azimuthDeg }))}
+      />
+      <Slider
+        label="Elevation"
+        limits={LIMITS.sunElevation}
+        value={direction.elevationDeg}
+        testId="sun-elevation"
+        onChange={(elevationDeg) => state.edit((scene) => withSun(scene, { elevationDeg }))}
+      />
+      <Slider
+        label="Irradiance"
+        limits={LIMITS.sunIrradiance}
+        value={sun?.irradiance ?? LIMITS.sunIrradiance.defaultValue}
+        testId="sun-irradiance"
+        onChange={(irradiance) => state.edit((scene) => withSun(scene, { irradiance }))}
+      />
+    </Section>
+  );
+}
+
+function RenderingSection({ state }: { state: PageState }) {
+  const rendering = state.rendering.value;
+  return (
+    <Section title="Light in the cloud" testId="rendering-section">
+      <Choice
+        label="Mode"
+        testId="mode"
+        value={rendering?.mode || Mode.PER_FIELD_PHASE_TRANSLUCENT}
+        options={MODES}
+        onChange={(mode) => state.edit((scene) => withRendering(scene, { mode }))}
+      />
+      <Choice
+        label="Transport"
+        testId="transport"
+        value={rendering?.transport || Transport.CONSISTENT}
+        options={TRANSPORTS}
+        onChange={(transport) => state.edit((scene) => withRendering(scene, { transport }))}
+      />
+      <Slider
+        label="Slices"
+        limits={LIMITS.slices}
+        value={rendering?.slices ?? LIMITS.slices.defaultValue}
+        testId="slices"
+        onChange={(slices) => state.edit((scene) => withRendering(scene, { slices }))}
+      />
+      <Slider
+        label="Forward angle θf"
+        limits={LIMITS.thetaF}
+        value={rendering?.thetaFDeg ?? LIMITS.thetaF.defaultValue}
+        testId="theta-f"
+        onChange={(thetaFDeg) => state.edit((scene) => withRendering(scene, { thetaFDeg }))}
+      />
+    </Section>
+  );
+}
+
+function PictureSection({ page }: { page: Page }) {
+  const { state } = page;
+  const sky = state.sky.value;
+  const display = state.display.value;
+  return (
+    <Section title="Sky and picture" testId="picture-section">
+      <Slider
+        label="Exposure"
+        limits={LIMITS.exposure}
+        value={display?.exposureEv ?? LIMITS.exposure.defaultValue}
+        testId="exposure"
+        onChange={(exposureEv) => state.edit((scene) => withDisplay(scene, { exposureEv }))}
+      />
+      <Choice
+        label="Tone map"
+        testId="tone-map"
+        value={display?.toneMap || ToneMap.FILMIC}
+        options={TONE_MAPS}
+        onChange={(toneMap) => state.edit((scene) => withDisplay(scene, { toneMap }))}
+      />
+      <Slider
+        label="Sky brightness"
+        limits={LIMITS.skyBrightness}
+        value={sky?.brightness ?? LIMITS.skyBrightness.defaultValue}
+        testId="sky-brightness"
+        onChange={(brightness) => state.edit((scene) => withSky(scene, { brightness }))}
+      />
+      <Slider
+        label="Ground albedo"
+        limits={LIMITS.groundAlbedo}
+        value={sky?.groundAlbedo ?? LIMITS.groundAlbedo.defaultValue}
+        testId="ground-albedo"
+        onChange={(groundAlbedo) => state.edit((scene) => withSky(scene, { groundAlbedo }))}
+      />
+      <Choice
+        label="Resolution"
+        testId="resolution"
+        value={state.resolution.value}
+        options={RESOLUTIONS}
+        onChange={(share) => page.setResolution(share)}
+      />
+      <Slider
+        label="JPEG quality"
+        limits={LIMITS.jpegQuality}
+        value={state.output.value?.jpegQuality ?? LIMITS.jpegQuality.defaultValue}
+        testId="jpeg-quality"
+        onChange={(jpegQuality) => state.edit((scene) => withOutput(scene, { jpegQuality }))}
+      />
+    </Section>
+  );
+}
+
+function HelpSection() {
+  return (
+    <Section title="Mouse, touch and keys" testId="help-section">
+      <dl class="keys">
+        {KEYS.map(([key, what]) => (
+          <div key={key}>
+            <dt>{key}</dt>
+            <dd>{what}</dd>
+          </div>
+        ))}
+      </dl>
+    </Section>
+  );
+}

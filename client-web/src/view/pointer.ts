@@ -1,0 +1,92 @@
+// Mouse and touch over the storm: a drag turns, with the right button, shift or two fingers it moves, the
+// wheel or a pinch comes nearer. attachPointer() returns what takes the listeners off again.
+import { type OrbitPose, orbit, pan, zoom } from "../core/camera";
+
+type Move = (motion: (pose: OrbitPose) => OrbitPose) => void;
+
+interface Point {
+  readonly x: number;
+  readonly y: number;
+}
+
+// One notch of a common wheel, 100 pixels, changes the distance by 14 %.
+const WHEEL_PER_PIXEL = 0.0013;
+// A pinch on a touchpad comes as a wheel with small steps and the control key.
+const TOUCHPAD_PINCH_PER_PIXEL = 0.01;
+const LINE_PX = 16;
+const SECONDARY_AND_MIDDLE_BUTTONS = 2 | 4;
+
+export function attachPointer(canvas: HTMLCanvasElement, move: Move): () => void {
+  const down = new Map<number, Point>();
+  const listening = new AbortController();
+  const options = { signal: listening.signal };
+
+  canvas.addEventListener(
+    "pointerdown",
+    (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      down.set(event.pointerId, pointOf(event));
+      canvas.classList.add("grabbed");
+    },
+    options,
+  );
+
+  canvas.addEventListener(
+    "pointermove",
+    (event) => {
+      const before = down.get(event.pointerId);
+      if (before === undefined) return;
+      const after = pointOf(event);
+      const heightPx = canvas.clientHeight;
+      if (down.size === 1) {
+        const [rightPx, downPx] = [after.x - before.x, after.y - before.y];
+        const panning = event.shiftKey || (event.buttons & SECONDARY_AND_MIDDLE_BUTTONS) !== 0;
+        move((pose) => (panning ? pan : orbit)(pose, rightPx, downPx, heightPx));
+      } else if (down.size === 2) {
+        const other = [...down].find(([id]) => id !== event.pointerId)?.[1];
+        if (other !== undefined) move((pose) => pinch(pose, before, after, other, heightPx));
+      }
+      down.set(event.pointerId, after);
+    },
+    options,
+  );
+
+  const release = (event: PointerEvent) => {
+    down.delete(event.pointerId);
+    if (down.size === 0) canvas.classList.remove("grabbed");
+  };
+  canvas.addEventListener("pointerup", release, options);
+  canvas.addEventListener("pointercancel", release, options);
+  canvas.addEventListener("contextmenu", (event) => event.preventDefault(), options);
+
+  canvas.addEventListener(
+    "wheel",
+    (event) => {
+      event.preventDefault();
+      const pixels = event.deltaY * (event.deltaMode === WheelEvent.DOM_DELTA_LINE ? LINE_PX : 1);
+      const rate = event.ctrlKey ? TOUCHPAD_PINCH_PER_PIXEL : WHEEL_PER_PIXEL;
+      move((pose) => zoom(pose, Math.exp(pixels * rate)));
+    },
+    { ...options, passive: false },
+  );
+
+  return () => listening.abort();
+}
+
+// One of two fingers has moved: the middle between them pans, their distance zooms.
+function pinch(
+  pose: OrbitPose,
+  before: Point,
+  after: Point,
+  other: Point,
+  heightPx: number,
+): OrbitPose {
+  const apartBefore = Math.hypot(before.x - other.x, before.y - other.y);
+  const apartAfter = Math.hypot(after.x - other.x, after.y - other.y);
+  const nearer = zoom(pose, Math.max(1, apartBefore) / Math.max(1, apartAfter));
+  return pan(nearer, (after.x - before.x) / 2, (after.y - before.y) / 2, heightPx);
+}
+
+function pointOf(event: PointerEvent): Point {
+  return { x: event.clientX, y: event.clientY };
+}

@@ -1,0 +1,88 @@
+// What the pictures cost: frames a second and latency at a glance, the rest when opened.
+import type { PageState } from "../core/state";
+import { formatBytes, formatNumber } from "../core/units";
+
+const STAGE_NAMES: Readonly<Record<string, string>> = {
+  read: "Read file",
+  extinction: "Extinction",
+  upload: "Upload",
+  slices: "Slices",
+  tone: "Tone map",
+  read_back: "Read back",
+  encode: "Encode",
+};
+
+export function Readout({ state }: { state: PageState }) {
+  const frame = state.frame.value;
+  const pace = state.pace.value;
+  const latency = pace.latencyMs === undefined ? "–" : `${Math.round(pace.latencyMs)} ms`;
+  return (
+    <details class="readout" data-testid="readout">
+      <summary
+        aria-label="Performance"
+        data-frames-per-second={pace.framesPerSecond.toFixed(1)}
+        data-latency-ms={pace.latencyMs?.toFixed(0)}
+        data-testid="readout-summary"
+      >
+        <span>{formatNumber(pace.framesPerSecond)} fps</span>
+        <span>{latency}</span>
+        {frame !== undefined && (
+          <span class={frame.refined ? "refined" : "coarse"}>
+            {frame.refined ? "refined" : "coarse"}
+          </span>
+        )}
+      </summary>
+      {frame !== undefined && <Costs state={state} />}
+      <p class="quiet" data-testid="renderer">
+        {state.server.value === undefined
+          ? ""
+          : `${state.server.value.glRenderer} (${state.server.value.device}), Thunderhead ${state.server.value.version}`}
+      </p>
+    </details>
+  );
+}
+
+function Costs({ state }: { state: PageState }) {
+  const frame = state.frame.value;
+  if (frame === undefined) return null;
+  const total = frame.stages.reduce((sum, stage) => sum + stage.milliseconds, 0);
+  return (
+    <table class="costs" data-testid="stages">
+      <caption class="visually-hidden">Cost of the picture shown</caption>
+      <tbody>
+        {frame.stages.map((stage) => (
+          <tr key={stage.stage}>
+            <th scope="row">{STAGE_NAMES[stage.stage] ?? stage.stage}</th>
+            <td>{formatNumber(stage.milliseconds)} ms</td>
+            <td class="bar" aria-hidden="true">
+              <meter min={0} max={Math.max(total, 1e-3)} value={stage.milliseconds} />
+            </td>
+          </tr>
+        ))}
+        <Row name="All stages" text={`${formatNumber(total)} ms`} />
+        <Row name="Picture" text={`${frame.widthPx} × ${frame.heightPx}`} />
+        <Row name="Bytes" text={formatBytes(frame.bytes)} />
+        <Row name="Rate" text={`${formatBytes(state.pace.value.bytesPerSecond)}/s`} />
+        {frame.modelled !== undefined && (
+          <>
+            <Row name="Slices drawn" text={String(frame.modelled.slices)} />
+            <Row name="On the device" text={formatBytes(Number(frame.modelled.deviceBytes))} />
+            <Row
+              name="Of the domain"
+              text={`${formatNumber(frame.modelled.occupiedShare * 100)} %`}
+            />
+          </>
+        )}
+      </tbody>
+    </table>
+  );
+}
+
+function Row({ name, text }: { name: string; text: string }) {
+  return (
+    <tr>
+      <th scope="row">{name}</th>
+      <td colSpan={2}>{text}</td>
+    </tr>
+  );
+}

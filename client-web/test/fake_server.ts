@@ -1,0 +1,45 @@
+// Test support: an HTTP server that serves the built page and the fake service over gRPC-Web, with the flags
+// of `thunderhead serve`, to look at the page and to try the browser test without the real program:
+//   npm run fake -- serve --http 127.0.0.1:8099 --page dist
+import { createReadStream, existsSync, statSync } from "node:fs";
+import { createServer } from "node:http";
+import { extname, join, normalize } from "node:path";
+import { connectNodeAdapter } from "@connectrpc/connect-node";
+import { FakeService } from "./fake_service";
+import { drawFakeStorm } from "./fake_storm";
+
+const TYPES: Readonly<Record<string, string>> = {
+  ".html": "text/html; charset=utf-8",
+  ".js": "text/javascript; charset=utf-8",
+  ".css": "text/css; charset=utf-8",
+  ".svg": "image/svg+xml",
+};
+
+function flag(name: string, otherwise: string): string {
+  const at = process.argv.indexOf(`--${name}`);
+  return process.argv[at + 1] !== undefined && at > 0
+    ? (process.argv[at + 1] ?? otherwise)
+    : otherwise;
+}
+
+const [host, port] = flag("http", "127.0.0.1:8099").split(":");
+const page = flag("page", "dist");
+const service = new FakeService(drawFakeStorm);
+const bridge = connectNodeAdapter({ routes: service.routes, grpc: false, connect: false });
+
+createServer((request, response) => {
+  const path = normalize(new URL(request.url ?? "/", "http://fake").pathname);
+  if (path.startsWith("/thunderhead.v1.")) {
+    bridge(request, response);
+    return;
+  }
+  const file = join(page, path === "/" ? "index.html" : path);
+  if (!existsSync(file) || !statSync(file).isFile()) {
+    response.writeHead(404).end();
+    return;
+  }
+  response.writeHead(200, { "content-type": TYPES[extname(file)] ?? "application/octet-stream" });
+  createReadStream(file).pipe(response);
+}).listen(Number(port), host, () => {
+  process.stdout.write(`Serving a fake storm on http://${host}:${port}/\n`);
+});

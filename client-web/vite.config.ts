@@ -1,0 +1,12 @@
+import { defineConfig } from "vitest/config";
+
+// A running server to develop against; see the README.
+const server = process.env.THUNDERHEAD_URL ?? "http://127.0.0.1:8080";
+
+export default defineConfig({
+  // Relative addresses, so that the page also works below a path behind a proxy.
+  base: "./",
+  build: { outDir: "dist", emptyOutDir: true, target: "es2022" },
+  server: { proxy: { "^/thunderhead\\.v1\\.": { target: server, changeOrigin: true } } },
+  test: { include: ["test/**/*.test.ts"], environment: "node" },
+});

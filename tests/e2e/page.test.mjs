@@ -1,0 +1,317 @@
+// The page as a person meets it: the real server, a real browser, the sample storm. Each part leaves a
+// screenshot in output/.
+import assert from "node:assert/strict";
+import { mkdirSync } from "node:fs";
+import { after, before, test } from "node:test";
+import { fileURLToPath } from "node:url";
+import { chromium } from "playwright-core";
+import { boxMean, differingShare, difference, grabCanvas, greyShare, spread } from "./pictures.mjs";
+import { freePort, startServer } from "./server_process.mjs";
+
+const OUTPUT = fileURLToPath(new URL("output/", import.meta.url));
+const CHROMIUM = process.env.THUNDERHEAD_CHROMIUM ?? "/usr/bin/chromium";
+const CHROMIUM_ARGS = [
+  "--no-sandbox",
+  "--disable-gpu",
+  "--disable-quic",
+  "--no-first-run",
+  "--disable-background-networking",
+  "--disable-component-update",
+  "--disable-sync",
+];
+// Software rendering on two busy cores may take seconds for a refined picture.
+const PICTURE_TIMEOUT_MS = 60_000;
+const REST_MS = 600;
+const VIEWPORT = { width: 1100, height: 700 };
+
+let server;
+let ports;
+let browser;
+let context;
+let page;
+const complaints = [];
+
+before(async () => {
+  mkdirSync(OUTPUT, { recursive: true });
+  ports = { httpPort: await freePort(), grpcPort: await freePort() };
+  server = await startServer(ports);
+  browser = await chromium.launch({ executablePath: CHROMIUM, args: CHROMIUM_ARGS });
+  context = await browser.newContext({
+    viewport: VIEWPORT,
+    permissions: ["clipboard-read", "clipboard-write"],
+  });
+  page = await context.newPage();
+  page.on("pageerror", (error) => complaints.push(String(error)));
+  page.on("console", (message) => {
+    if (message.type() === "error") complaints.push(message.text());
+  });
+  await page.goto(server.url);
+});
+
+after(async () => {
+  await browser?.close();
+  await server?.stop();
+});
+
+function canvasData(of = page) {
+  return of.getByTestId("storm-canvas").evaluate((canvas) => ({ ...canvas.dataset }));
+}
+
+// Waits until a refined frame stays on the canvas.
+async function rested(of = page) {
+  const deadline = Date.now() + PICTURE_TIMEOUT_MS;
+  let held = { sequence: undefined, since: 0 };
+  while (Date.now() < deadline) {
+    const { sequence, refined } = await canvasData(of);
+    const now = Date.now();
+    if (refined !== "true" || sequence !== held.sequence) held = { sequence, since: now };
+    else if (now - held.since >= REST_MS) return canvasData(of);
+    await of.waitForTimeout(50);
+  }
+  throw new Error(`no refined picture came to rest; the server said:\n${server.log().slice(-2000)}`);
+}
+
+// Does something that changes the scene, and waits for the refined picture of it.
+async function changing(action, of = page) {
+  const revisionBefore = Number((await canvasData(of)).revision);
+  await action();
+  await of.waitForFunction(
+    (revision) => {
+      const canvas = document.querySelector("[data-testid=storm-canvas]");
+      return Number(canvas?.dataset.revision) > revision;
+    },
+    revisionBefore,
+    { timeout: PICTURE_TIMEOUT_MS },
+  );
+  return rested(of);
+}
+
+async function drag(rightPx, downPx, steps = 12) {
+  const start = { x: VIEWPORT.width * 0.4, y: VIEWPORT.height * 0.5 };
+  await page.mouse.move(start.x, start.y);
+  await page.mouse.down();
+  await page.mouse.move(start.x + rightPx, start.y + downPx, { steps });
+  await page.mouse.up();
+}
+
+const screenshot = (name, of = page) => of.screenshot({ path: `${OUTPUT}${name}.png` });
+
+test("a storm is on the canvas, not a blank", async () => {
+  await rested();
+  const picture = await grabCanvas(page);
+  await screenshot("1-storm");
+  assert.equal(picture.width, VIEWPORT.width);
+  assert.equal(picture.height, VIEWPORT.height);
+  const { deviation } = spread(picture);
+  assert.ok(deviation > 8, `the picture is nearly uniform: deviation ${deviation}`);
+  const grey = greyShare(picture, 60);
+  assert.ok(grey > 0.005 && grey < 0.9, `share of bright cloud pixels is ${grey}`);
+});
+
+test("the readout says what the picture costs, and on what", async () => {
+  await page.getByTestId("readout-summary").click();
+  const stages = await page.getByTestId("stages").innerText();
+  assert.match(stages, /All stages\s+[\d.e-]+ ms/);
+  assert.match(stages, /Bytes\s+[\d.]+ (kB|MB)/);
+  assert.match(await page.getByTestId("renderer").innerText(), /\S{3,}/);
+  await screenshot("2-readout");
+  await page.getByTestId("readout-summary").click();
+});
+
+test("a drag turns the storm, and the way back brings the first picture again", async () => {
+  const first = await rested();
+  const firstPicture = await grabCanvas(page);
+  const turned = await changing(() => drag(220, 0));
+  const turnedPicture = await grabCanvas(page);
+  await screenshot("3-turned");
+  const turnDeg = (Number(turned.azimuth) - Number(first.azimuth) + 360) % 360;
+  // 180 degrees across the picture's height.
+  assert.ok(Math.abs(turnDeg - (220 / VIEWPORT.height) * 180) < 1, `it turned by ${turnDeg} degrees`);
+  const change = difference(firstPicture, turnedPicture);
+  assert.ok(change > 1, `the picture hardly changed: ${change}`);
+  await changing(() => drag(-220, 0));
+  const back = difference(firstPicture, await grabCanvas(page));
+  assert.ok(back < change / 4, `the way back differs by ${back}, the turn by ${change}`);
+});
+
+test("latency does not grow while the storm is turned for a while", async () => {
+  const latencies = [];
+  const start = { x: VIEWPORT.width * 0.4, y: VIEWPORT.height * 0.5 };
+  await page.mouse.move(start.x, start.y);
+  await page.mouse.down();
+  const began = Date.now();
+  for (let i = 0; Date.now() - began < 10_000; i += 1) {
+    await page.mouse.move(start.x + 150 * Math.sin(i / 10), start.y + 40 * Math.sin(i / 17));
+    const { latencyMs } = await page
+      .getByTestId("readout-summary")
+      .evaluate((summary) => ({ ...summary.dataset }));
+    latencies.push({ at: Date.now() - began, ms: Number(latencyMs) });
+  }
+  await page.mouse.up();
+  const mean = (from, to) => {
+    const part = latencies.filter(({ at }) => at >= from && at < to);
+    return part.reduce((sum, { ms }) => sum + ms, 0) / part.length;
+  };
+  const [early, late] = [mean(3000, 5000), mean(8000, 10_000)];
+  console.log(`latency while turning: ${early.toFixed(0)} ms early, ${late.toFixed(0)} ms late`);
+  assert.ok(late < 2 * early + 150, `latency grew from ${early} to ${late} ms`);
+  await changing(() => page.keyboard.press("Home"));
+});
+
+test("the time slider shows another time", async () => {
+  const firstPicture = await grabCanvas(page);
+  const firstTime = await page.getByTestId("valid-time").innerText();
+  await page.getByTestId("time").focus();
+  const shown = await changing(() => page.keyboard.press("ArrowRight"));
+  await screenshot("4-later");
+  assert.equal(shown.time, "1");
+  assert.notEqual(await page.getByTestId("valid-time").innerText(), firstTime);
+  const change = difference(firstPicture, await grabCanvas(page));
+  assert.ok(change > 0.5, `another time looks the same: ${change}`);
+});
+
+test("a field switched off goes, and with the last one the storm", async () => {
+  await changing(() => page.getByTestId("home").click());
+  const whole = await grabCanvas(page);
+  const switches = page.locator("[data-testid$=-visible]");
+  const names = await switches.evaluateAll((boxes) => boxes.map((box) => box.dataset.testid));
+  assert.ok(names.includes("field-snow-visible"), `the fields are ${names}`);
+
+  await changing(() => page.getByTestId("field-snow-visible").uncheck());
+  const withoutSnow = await grabCanvas(page);
+  await screenshot("5-without-snow");
+  await changing(async () => {
+    for (const name of names) await page.getByTestId(name).uncheck();
+  });
+  const sky = await grabCanvas(page);
+  await screenshot("6-sky-alone");
+
+  const [wholeShare, lessShare] = [differingShare(whole, sky), differingShare(withoutSnow, sky)];
+  console.log(`share of the picture that is storm: ${wholeShare}, without snow ${lessShare}`);
+  assert.ok(wholeShare > 0.01, `the storm covers only ${wholeShare} of the picture`);
+  assert.ok(lessShare < wholeShare, `without snow the storm covers ${lessShare}, before ${wholeShare}`);
+  assert.ok(difference(whole, withoutSnow) > 0.1, "without snow the picture is the same");
+
+  await changing(async () => {
+    for (const name of names) await page.getByTestId(name).check();
+  });
+  const again = difference(whole, await grabCanvas(page));
+  assert.ok(again < 1, `with all fields again the picture differs by ${again}`);
+});
+
+test("the sun set by the dome darkens the storm as it sinks", async () => {
+  const high = boxMean(await grabCanvas(page), [0.2, 0.2, 0.6, 0.6]);
+  await page.getByTestId("sun-dome").focus();
+  await changing(async () => {
+    for (let i = 0; i < 7; i += 1) await page.keyboard.press("ArrowDown");
+  });
+  await screenshot("7-low-sun");
+  const low = boxMean(await grabCanvas(page), [0.2, 0.2, 0.6, 0.6]);
+  assert.ok(low < high, `the low sun gives ${low}, the high sun ${high}`);
+  await changing(async () => {
+    for (let i = 0; i < 7; i += 1) await page.keyboard.press("ArrowUp");
+  });
+});
+
+test("play goes through the times and waits for each", async () => {
+  const seen = new Set();
+  await page.getByTestId("rate").selectOption("8");
+  await page.getByTestId("play").click();
+  const deadline = Date.now() + PICTURE_TIMEOUT_MS;
+  while (seen.size < 4 && Date.now() < deadline) {
+    seen.add((await canvasData()).time);
+    await page.waitForTimeout(15);
+  }
+  await page.getByTestId("play").click();
+  assert.deepEqual([...seen].sort(), ["0", "1", "2", "3"]);
+  await rested();
+});
+
+test("a link brings another viewer into the session, who sees it turn", async () => {
+  await page.getByTestId("copy-link").click();
+  const link = await page.evaluate(() => navigator.clipboard.readText());
+  assert.match(link, /\?session=/);
+  const guest = await context.newPage();
+  try {
+    await guest.goto(link);
+    await rested(guest);
+    const host = await changing(() => drag(120, 30));
+    await guest.waitForFunction(
+      (azimuth) => {
+        const canvas = document.querySelector("[data-testid=storm-canvas]");
+        return canvas?.dataset.azimuth === azimuth && canvas.dataset.refined === "true";
+      },
+      host.azimuth,
+      { timeout: PICTURE_TIMEOUT_MS },
+    );
+    await screenshot("8-guest", guest);
+  } finally {
+    await guest.close();
+  }
+});
+
+test("the panel folds away with a key and leaves the storm", async () => {
+  await page.getByTestId("storm-canvas").focus();
+  await page.keyboard.press("p");
+  assert.equal(await page.getByTestId("panel").isVisible(), false);
+  await screenshot("9-no-panel");
+  await page.keyboard.press("p");
+  assert.equal(await page.getByTestId("panel").isVisible(), true);
+});
+
+test("no error reached the browser's console", () => {
+  assert.deepEqual(complaints, []);
+});
+
+test("a server that dies and comes back is found again with the same scene", async () => {
+  const before = await rested();
+  const beforePicture = await grabCanvas(page);
+  await server.stop("SIGKILL");
+  await page.getByTestId("connection-lost").waitFor({ state: "visible", timeout: 15_000 });
+  await screenshot("10-connection-lost");
+  server = await startServer(ports);
+  await page.getByTestId("connection-lost").waitFor({ state: "hidden", timeout: 30_000 });
+  await page.waitForFunction(
+    (sequence) => {
+      const canvas = document.querySelector("[data-testid=storm-canvas]");
+      return canvas?.dataset.sequence !== sequence;
+    },
+    before.sequence,
+    { timeout: PICTURE_TIMEOUT_MS },
+  );
+  const healed = await rested();
+  await screenshot("11-healed");
+  assert.equal(healed.azimuth, before.azimuth);
+  const change = difference(beforePicture, await grabCanvas(page));
+  assert.ok(change < 1, `after healing the picture differs by ${change}`);
+  const revision = healed.revision;
+  const turned = await changing(() => drag(-100, 0));
+  assert.notEqual(turned.revision, revision);
+});
+
+test("it works on a phone's screen", async () => {
+  const phone = await browser.newPage({
+    viewport: { width: 390, height: 780 },
+    deviceScaleFactor: 2,
+    hasTouch: true,
+    isMobile: true,
+  });
+  try {
+    await phone.goto(server.url);
+    await rested(phone);
+    assert.equal(await phone.getByTestId("panel").isVisible(), false);
+    await screenshot("12-phone", phone);
+    await phone.getByTestId("panel-toggle").tap();
+    assert.equal(await phone.getByTestId("panel").isVisible(), true);
+    await screenshot("13-phone-panel", phone);
+    const overflow = await phone.evaluate(
+      () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
+    );
+    assert.ok(overflow <= 0, `the page is ${overflow} pixels wider than the screen`);
+    const picture = await grabCanvas(phone);
+    assert.equal(picture.width, 780);
+    assert.ok(spread(picture).deviation > 8, "the phone's canvas is nearly uniform");
+  } finally {
+    await phone.close();
+  }
+});

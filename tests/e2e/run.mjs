@@ -1,0 +1,21 @@
+// Checks that what the browser test needs is there, says plainly what is not, and runs it.
+import { spawnSync } from "node:child_process";
+import { existsSync } from "node:fs";
+import { fileURLToPath } from "node:url";
+
+const here = fileURLToPath(new URL(".", import.meta.url));
+const root = fileURLToPath(new URL("../../", import.meta.url));
+
+const needed = [
+  [`${here}node_modules/playwright-core`, "run npm ci in tests/e2e"],
+  [`${root}client-web/dist/index.html`, "run npm ci and npm run build in client-web"],
+  [process.env.THUNDERHEAD_CHROMIUM ?? "/usr/bin/chromium", "install Debian's package chromium"],
+  [process.env.THUNDERHEAD_BINARY ?? `${root}build/release/bin/thunderhead`, "build the target thunderhead"],
+];
+
+const missing = needed.filter(([path]) => !existsSync(path));
+for (const [path, remedy] of missing) console.error(`The browser test needs ${path}: ${remedy}.`);
+if (missing.length > 0) process.exit(1);
+
+const run = spawnSync(process.execPath, ["--test", "page.test.mjs"], { cwd: here, stdio: "inherit" });
+process.exit(run.status ?? 1);

@@ -1,0 +1,62 @@
+// Starts the real program on the sample storms, and stops it. The program's path is THUNDERHEAD_BINARY, or
+// build/release/bin/thunderhead.
+import { spawn } from "node:child_process";
+import { existsSync } from "node:fs";
+import { createServer } from "node:net";
+import { fileURLToPath } from "node:url";
+
+const ROOT = fileURLToPath(new URL("../../", import.meta.url));
+const BINARY = process.env.THUNDERHEAD_BINARY ?? `${ROOT}build/release/bin/thunderhead`;
+const START_TIMEOUT_MS = 60_000;
+const STOP_TIMEOUT_MS = 10_000;
+
+// A port that is free now, for the program to take and to take again after a restart.
+export function freePort() {
+  return new Promise((resolve, reject) => {
+    const server = createServer();
+    server.once("error", reject);
+    server.listen(0, "127.0.0.1", () => {
+      const { port } = server.address();
+      server.close(() => resolve(port));
+    });
+  });
+}
+
+export async function startServer({ httpPort, grpcPort }) {
+  const page = `${ROOT}client-web/dist`;
+  if (!existsSync(BINARY)) throw new Error(`no program at ${BINARY}; build it, or set THUNDERHEAD_BINARY`);
+  if (!existsSync(`${page}/index.html`)) throw new Error(`no page in ${page}; run npm run build in client-web`);
+  const address = (port) => `127.0.0.1:${port}`;
+  const flags = ["--data", `${ROOT}samples`, "--http", address(httpPort), "--grpc", address(grpcPort)];
+  const child = spawn(BINARY, ["serve", ...flags, "--page", page], { cwd: ROOT });
+  let said = "";
+  const url = await new Promise((resolve, reject) => {
+    const timer = setTimeout(() => reject(new Error(`no URL printed in time:\n${said}`)), START_TIMEOUT_MS);
+    const settle = (finish, value) => {
+      clearTimeout(timer);
+      finish(value);
+    };
+    child.once("error", (error) => settle(reject, error));
+    child.once("exit", (code) => settle(reject, new Error(`${BINARY} exited with ${code}:\n${said}`)));
+    child.stderr.on("data", (text) => {
+      said += text;
+    });
+    let printed = "";
+    child.stdout.on("data", (text) => {
+      said += text;
+      printed += text;
+      const match = /http:\/\/[^\s"']+/.exec(printed);
+      if (match) settle(resolve, match[0]);
+    });
+  });
+  return { url, child, log: () => said, stop: (signal = "SIGTERM") => stop(child, signal) };
+}
+
+async function stop(child, signal) {
+  if (child.exitCode !== null || child.signalCode !== null) return;
+  const exited = new Promise((resolve) => child.once("exit", resolve));
+  child.kill(signal);
+  const timer = setTimeout(() => child.kill("SIGKILL"), STOP_TIMEOUT_MS);
+  await exited;
+  clearTimeout(timer);
+}
