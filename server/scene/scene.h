@@ -25,7 +25,7 @@ struct FieldParameters {
 struct OrbitCamera {
   glm::dvec3 target_m{0.0};
   double azimuth_deg = 200.0;
-  double elevation_deg = 8.0;
+  double elevation_deg = 4.0;
   double distance_m = 1e5;
   double field_of_view_deg = 35.0;  // vertical
 

@@ -13,8 +13,9 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kLightTexels = 256;      // along the longer side of the light buffer
-constexpr int kThicknessSlices = 128;  // perpendicular to the light
+constexpr int kMostLightTexels = 256;        // along the longer side of the light buffer
+constexpr double kLightTexelInCells = 0.75;  // size of a light texel
+constexpr int kThicknessSlices = 128;        // perpendicular to the light
 constexpr GLuint kLightUnit = 4;
 constexpr GLuint kThicknessUnit = 5;
 
@@ -76,8 +77,8 @@ glm::vec2 DisplayNormalisation(const physics::PhaseFunction& phase, double cut_c
     high = std::max(high, physics::PhaseValue(phase, mu));
   }
   if (high - low < 1e-6 * high) return {1.0F, 0.0F};
-  const double slope = 1.0 / std::log(high / low);
-  return {static_cast<float>(-std::log(low) * slope), static_cast<float>(slope)};
+  const double slope = 1.0 / (1.0 + std::log(high / low));
+  return {static_cast<float>((1.0 - std::log(low)) * slope), static_cast<float>(slope)};
 }
 
 }  // namespace
@@ -129,18 +130,19 @@ std::size_t HalfAngleRenderer::Bytes() const {
   return eye_.Bytes() + light_[0].Bytes() + light_[1].Bytes() + thickness_.Bytes();
 }
 
-void HalfAngleRenderer::Resize(const LightFrame& frame, const glm::ivec2& eye_size) {
+void HalfAngleRenderer::Resize(const LightFrame& frame, double cell_m, const glm::ivec2& eye_size) {
   if (eye_.Size() != eye_size) {
-    eye_ = gl::Texture2D(GL_RGBA16F, eye_size);
+    eye_ = gl::Texture2D(GL_RGBA32F, eye_size);
     eye_target_ = gl::Framebuffer(eye_);
   }
-  const double longest_m = std::max(frame.half_extent_m.x, frame.half_extent_m.y);
-  const glm::ivec2 light_size = glm::max(
-      glm::ivec2(glm::ceil(static_cast<double>(kLightTexels) * frame.half_extent_m / longest_m)),
-      glm::ivec2(1));
+  // Finer texels than cells would carry no more detail.
+  const double longest_m = 2.0 * std::max(frame.half_extent_m.x, frame.half_extent_m.y);
+  const double texel_m = std::max(longest_m / kMostLightTexels, kLightTexelInCells * cell_m);
+  const glm::ivec2 light_size =
+      glm::max(glm::ivec2(glm::ceil(2.0 * frame.half_extent_m / texel_m)), glm::ivec2(1));
   if (light_[0].Size() == light_size) return;
   for (int i = 0; i < 2; ++i) {
-    light_[i] = gl::Texture2D(GL_RG16F, light_size);
+    light_[i] = gl::Texture2D(GL_RG32F, light_size);
     light_target_[i] = gl::Framebuffer(light_[i]);
   }
   thickness_ = gl::Texture2D(GL_R32F, light_size);
@@ -158,7 +160,8 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium,
   const bool translucent = IsTranslucent(rendering);
   const bool consistent = IsConsistent(rendering);
   const auto groups = static_cast<int>(medium.Content().groups.size());
-  Resize(frame, settings.eye_size);
+  const glm::dvec3 cell_m = medium.Bounds().grid.spacing_m;
+  Resize(frame, std::min(cell_m.x, cell_m.y), settings.eye_size);
   if (light_changed && translucent && consistent) {
     THUNDERHEAD_RETURN_IF_ERROR(DrawThickness(medium, settings, frame, weights));
   }
@@ -170,7 +173,7 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium,
                                                {"COLORED", weights.colored ? 1 : 0},
                                                {"TRANSLUCENT", translucent ? 1 : 0},
                                                {"CONSISTENT", consistent ? 1 : 0},
-                      {"FRONT_TO_BACK", slicing.front_to_back ? 1 : 0}}}));
+                                               {"FRONT_TO_BACK", slicing.front_to_back ? 1 : 0}}}));
   medium.Bind(*eye);
   const glm::dvec3 middle_m = medium.Middle_m();
   eye->Set("clip_from_local", ClipFromLocal(settings.view, middle_m));
@@ -208,7 +211,6 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium,
   light->Set("transport_weights", medium.Weights(weights.transport));
   light->Set("peripheral_weights", medium.Weights(weights.peripheral));
   light->Set("cumulative_phase", weights.cumulative_phase);
-  const glm::dvec3 cell_m = medium.Bounds().grid.spacing_m;
   const double reach_m =
       consistent ? std::max({cell_m.x, cell_m.y, cell_m.z}) : slicing.light_path_m;
   const double tap_m = reach_m * std::tan(glm::radians(rendering.theta_f_deg) * 3.0 / 8.0);

@@ -51,7 +51,7 @@ class HalfAngleRenderer {
   struct GroupWeights;
   struct Programs;
 
-  void Resize(const LightFrame& frame, const glm::ivec2& eye_size);
+  void Resize(const LightFrame& frame, double cell_m, const glm::ivec2& eye_size);
   absl::Status DrawThickness(const ResidentMedium& medium, const HalfAngleSettings& settings,
                              const LightFrame& frame, const GroupWeights& weights);
   void DrawSlices(const Programs& programs, const HalfAngleSettings& settings,

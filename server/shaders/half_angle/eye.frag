@@ -31,7 +31,7 @@ in vec3 local_m;
 out vec4 radiance_and_transmittance;
 
 const float kFourPi = 12.5663706;
-const float kPi = 3.14159265;
+const float kPaperWhite = 0.5;  // radiance of the paper's display value 1
 
 // Scattered radiance per unit of irradiance, of one group.
 float phase_term(int group, float mu) {
@@ -39,7 +39,7 @@ float phase_term(int group, float mu) {
 #if CONSISTENT
   return value / kFourPi;
 #else
-  return (phase_display[group].x + phase_display[group].y * log(value)) / kPi;
+  return (phase_display[group].x + phase_display[group].y * log(value)) * kPaperWhite;
 #endif
 }
 

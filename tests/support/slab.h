@@ -1,0 +1,32 @@
+// A homogeneous box of one field for tests with analytic answers. The box touches every face of its
+// domain, so that its extinction is the same everywhere inside.
+#pragma once
+
+#include <memory>
+
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::support {
+
+// A box `width_m` wide and `height_m` high, standing on z = 0, whose cloud water has the given
+// extinction with the default radius and density.
+inline std::shared_ptr<const volume::HydrometeorFields> MakeSlab(double width_m, double height_m,
+                                                                 double extinction_per_m) {
+  auto fields = std::make_shared<volume::HydrometeorFields>();
+  const glm::ivec3 cells(32, 32, 16);
+  fields->grid.cells = cells;
+  fields->grid.spacing_m = glm::dvec3(width_m, width_m, height_m) / glm::dvec3(cells);
+  fields->grid.low_corner_m = {-width_m / 2, -width_m / 2, 0.0};
+  fields->condensate = {glm::ivec3(0), cells};
+  const physics::ParticleOptics& cloud = physics::DefaultOptics(physics::Hydrometeor::kCloud);
+  const float mass_extinction =
+      physics::MassExtinction_m2_per_kg(cloud.density_kg_per_m3, cloud.radius_m);
+  volume::HydrometeorField field;
+  field.hydrometeor = physics::Hydrometeor::kCloud;
+  field.concentration_kg_per_m3.assign(fields->grid.CellCount(),
+                                       static_cast<float>(extinction_per_m) / mass_extinction);
+  fields->fields.push_back(std::move(field));
+  return fields;
+}
+
+}  // namespace thunderhead::support
