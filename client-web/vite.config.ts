@@ -1,6 +1,6 @@
 import { defineConfig } from "vitest/config";
 
-// A running server to develop against; see the README.
+// A running server for `npm run dev` to pass calls on to.
 const server = process.env.THUNDERHEAD_URL ?? "http://127.0.0.1:8080";
 
 export default defineConfig({

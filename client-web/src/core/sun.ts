@@ -28,9 +28,9 @@ export function sunOfDomePoint(right: number, down: number): SunDirection {
   };
 }
 
-const COMPASS = ["N", "NE", "E", "SE", "S", "SW", "W", "NW"];
+const COMPASS = "N NNE NE ENE E ESE SE SSE S SSW SW WSW W WNW NW NNW".split(" ");
 
 export function compassPoint(azimuthDeg: number): string {
-  const turns = (((azimuthDeg % 360) + 360) % 360) / 45;
-  return COMPASS[Math.round(turns) % 8] ?? "N";
+  const points = (((azimuthDeg % 360) + 360) % 360) / (360 / COMPASS.length);
+  return COMPASS[Math.round(points) % COMPASS.length] ?? "N";
 }

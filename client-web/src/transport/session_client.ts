@@ -62,6 +62,7 @@ export class SessionClient {
   readonly #life = new AbortController();
   #sessionId: string | undefined;
   #hadSession: boolean;
+  #reopened = false;
   #viewerId: bigint | undefined;
   #stream: AbortController | undefined;
   #retryNow: (() => void) | undefined;
@@ -85,10 +86,10 @@ export class SessionClient {
       } catch (error) {
         if (this.#life.signal.aborted) return;
         if (this.#sessionId !== undefined && ConnectError.from(error).code === Code.NotFound) {
-          // Ended on the server; a new one takes its place at once, and after a while if that fails too.
+          // Ended on the server. A new one takes its place at once, but only once until a stream has begun.
           this.#sessionId = undefined;
-          if (this.#backOff.attempts === 0) {
-            this.#backOff.next();
+          if (!this.#reopened) {
+            this.#reopened = true;
             continue;
           }
         }
@@ -194,6 +195,7 @@ export class SessionClient {
         this.#viewerId = message.viewerId;
         if (!begun) {
           begun = true;
+          this.#reopened = false;
           this.#backOff.reset();
           this.#listener.connection({ kind: "live" });
           this.#listener.streaming(sessionId);

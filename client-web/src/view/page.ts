@@ -9,15 +9,7 @@ import { FramePipeline } from "../core/frame_pipeline";
 import { FrameRate } from "../core/frame_rate";
 import { Playback } from "../core/playback";
 import { RevisionLedger } from "../core/revision_ledger";
-import {
-  outputSize,
-  sceneFromUrlText,
-  sceneToUrlText,
-  withCamera,
-  withOutput,
-  withStorm,
-  withTime,
-} from "../core/scene";
+import { outputSize, withCamera, withOutput, withStorm, withTime } from "../core/scene";
 import { SceneSender } from "../core/scene_sender";
 import { PageState } from "../core/state";
 import { type Scene, SceneSchema } from "../gen/thunderhead/v1/scene_pb";
@@ -29,11 +21,13 @@ import {
 } from "../transport/session_client";
 import { CanvasPainter } from "./canvas_painter";
 import { attachKeyboard } from "./keyboard";
+import { linkTo, readLink, withoutLink } from "./link";
 import { attachPointer } from "./pointer";
 
 const RESIZE_REST_MS = 150;
 const DESCRIBE_REST_MS = 400;
 const PACE_EVERY_MS = 500;
+const NOTE_MS = 6000;
 // Narrower windows start with the panel closed.
 const NARROW_PX = 700;
 
@@ -60,14 +54,12 @@ export class Page implements SessionListener {
 
   constructor(transport: Transport, window: Window) {
     this.#window = window;
-    const link = new URL(window.location.href);
-    const joined = link.searchParams.get("session") ?? undefined;
-    const carried = sceneFromUrlText(new URLSearchParams(link.hash.slice(1)).get("scene") ?? "");
-    if (carried !== undefined) this.state.adoptScene(carried);
-    this.#setsOutput = joined === undefined;
+    const link = readLink(window.location.href);
+    if (link.scene !== undefined) this.state.adoptScene(link.scene);
+    this.#setsOutput = link.sessionId === undefined;
     this.state.panelOpen.value = window.innerWidth >= NARROW_PX;
 
-    this.#client = new SessionClient(transport, this, joined);
+    this.#client = new SessionClient(transport, this, link.sessionId);
     const onNextPaint = (callback: (nowMs: number) => void) => {
       const request = window.requestAnimationFrame(callback);
       return () => window.cancelAnimationFrame(request);
@@ -146,20 +138,18 @@ export class Page implements SessionListener {
     this.#sendOutputSize();
   }
 
-  // An address that opens this session elsewhere. It carries the scene, for the one who joins to edit.
   async copyLink(): Promise<void> {
     const session = this.state.session.value;
     if (session === undefined) return;
-    const link = new URL(".", this.#window.location.href);
-    link.searchParams.set("session", session.id);
-    link.hash = `scene=${sceneToUrlText(this.state.scene.value)}`;
     this.state.session.value = { ...session, shared: true };
+    const { location, navigator } = this.#window;
+    const address = linkTo(location.href, session.id, this.state.scene.value);
     try {
-      await this.#window.navigator.clipboard.writeText(link.href);
-      this.state.notify({ subject: "link", text: "Link copied", severity: "note" });
+      await navigator.clipboard.writeText(address);
+      this.#note("link", "Link copied");
     } catch {
       // Browsers keep the clipboard from pages without HTTPS, and from those without the focus.
-      this.state.notify({ subject: "link", text: link.href, severity: "note" });
+      this.state.notify({ subject: "link", text: address, severity: "note" });
     }
   }
 
@@ -198,13 +188,14 @@ export class Page implements SessionListener {
     this.#ledger.sent(session.asked.timeIndex ?? 0, this.#now()).accepted(session.revision);
     if (this.state.scene.value === session.asked) this.state.adoptScene(session.completed);
     this.#sender.start(session.asked);
-    this.#rewriteAddress();
+    // An address whose session has ended must not be kept: reloading would look for that session again.
+    this.#window.history.replaceState(null, "", withoutLink(this.#window.location.href));
     if (session.replaces) {
       const text =
         before === undefined || before.shared
           ? "The shared session has ended; this is a new one of your own."
           : "The server had lost the session; this is a new one with the same scene.";
-      this.state.notify({ subject: "session", text, severity: "note" });
+      this.#note("session", text);
     }
     void this.#learnServer();
   }
@@ -392,15 +383,11 @@ export class Page implements SessionListener {
     }
   }
 
-  // A link whose session has ended must not be kept: reloading would look for that session again.
-  #rewriteAddress(): void {
-    const { history, location } = this.#window;
-    const link = new URL(location.href);
-    const session = this.state.session.value;
-    if (session === undefined || !link.searchParams.has("session")) return;
-    link.search = "";
-    link.hash = "";
-    history.replaceState(null, "", link);
+  // Says something that needs no answer, for a while.
+  #note(subject: string, text: string): void {
+    this.state.notify({ subject, text, severity: "note" });
+    const timer = setTimeout(() => this.state.dismiss(subject), NOTE_MS);
+    this.#disposals.push(() => clearTimeout(timer));
   }
 }
 

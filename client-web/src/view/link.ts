@@ -1,0 +1,33 @@
+// Links to a session: ?session=ID names it, #scene=... carries the scene for the one who joins to edit, since
+// the server tells nobody a session's scene. The fragment stays in the browser.
+import { sceneFromUrlText, sceneToUrlText } from "../core/scene";
+import type { Scene } from "../gen/thunderhead/v1/scene_pb";
+
+export interface Link {
+  readonly sessionId: string | undefined;
+  readonly scene: Scene | undefined;
+}
+
+export function readLink(address: string): Link {
+  const link = new URL(address);
+  const text = new URLSearchParams(link.hash.slice(1)).get("scene");
+  return {
+    sessionId: link.searchParams.get("session") ?? undefined,
+    scene: text === null ? undefined : sceneFromUrlText(text),
+  };
+}
+
+export function linkTo(address: string, sessionId: string, scene: Scene): string {
+  const link = new URL(withoutLink(address));
+  link.searchParams.set("session", sessionId);
+  link.hash = `scene=${sceneToUrlText(scene)}`;
+  return link.href;
+}
+
+// The same page without a session.
+export function withoutLink(address: string): string {
+  const link = new URL(address);
+  link.search = "";
+  link.hash = "";
+  return link.href;
+}

@@ -1,0 +1,93 @@
+import { describe, expect, it } from "vitest";
+import { clampToLimits, limitsOf, positionOfValue, valueAtPosition } from "../src/core/limits";
+import { LIMITS } from "../src/core/scene";
+import {
+  FieldParametersSchema,
+  PositionSchema,
+  RenderingSchema,
+  SceneSchema,
+} from "../src/gen/thunderhead/v1/scene_pb";
+
+describe("limits come from the schema", () => {
+  it("reads range, default, unit and scale of a number", () => {
+    expect(limitsOf(RenderingSchema.field.slices)).toEqual({
+      minimum: 1,
+      maximum: 4096,
+      defaultValue: 128,
+      unit: "1",
+      logarithmic: true,
+      integer: true,
+      singlePrecision: false,
+    });
+    expect(LIMITS.sunAzimuth).toMatchObject({ minimum: -360, maximum: 360, unit: "deg" });
+  });
+
+  it("tells a default of zero from none", () => {
+    expect(LIMITS.exposure.defaultValue).toBe(0);
+    expect(limitsOf(FieldParametersSchema.field.radiusM).defaultValue).toBeUndefined();
+    expect(limitsOf(PositionSchema.field.xM).defaultValue).toBeUndefined();
+  });
+
+  it("refuses a field without limits", () => {
+    expect(() => limitsOf(SceneSchema.field.stormId)).toThrow(/storm_id/);
+  });
+});
+
+describe("clamping", () => {
+  it("keeps a 32-bit float from rounding to outside of its limits", () => {
+    // Both limits round outwards in 32 bits.
+    for (const value of [0.99, -0.99, 5, -5]) {
+      const sent = Math.fround(clampToLimits(value, LIMITS.phaseAsymmetry));
+      expect(Math.abs(sent)).toBeLessThanOrEqual(0.99);
+      expect(Math.abs(sent)).toBeGreaterThan(0.9899999);
+    }
+    const radius = Math.fround(clampToLimits(0, LIMITS.fieldRadius));
+    expect(radius).toBeGreaterThanOrEqual(1e-7);
+    expect(radius).toBeLessThan(1.0001e-7);
+  });
+
+  it("rounds integers and answers what is no number with the default", () => {
+    expect(clampToLimits(12.6, LIMITS.slices)).toBe(13);
+    expect(clampToLimits(1e9, LIMITS.slices)).toBe(4096);
+    expect(clampToLimits(Number.NaN, LIMITS.slices)).toBe(128);
+  });
+});
+
+describe("slider positions", () => {
+  it("moves evenly in the logarithm where the schema says so", () => {
+    const { slices } = LIMITS;
+    expect(positionOfValue(64, slices)).toBeCloseTo(0.5, 12);
+    expect(valueAtPosition(0.5, slices)).toBe(64);
+  });
+
+  it("reaches both ends exactly, also where a logarithmic range begins at zero", () => {
+    for (const limits of Object.values(LIMITS)) {
+      expect(valueAtPosition(0, limits)).toBeCloseTo(limits.minimum, 6);
+      const end = valueAtPosition(1, limits);
+      expect(Math.abs(end - limits.maximum)).toBeLessThanOrEqual(1e-6 * limits.maximum);
+    }
+    expect(valueAtPosition(0, LIMITS.fieldScale)).toBe(0);
+    expect(positionOfValue(0, LIMITS.fieldScale)).toBe(0);
+  });
+
+  it("gives back the position it came from, to three digits of the value", () => {
+    for (const limits of Object.values(LIMITS)) {
+      for (const position of [0.1, 0.35, 0.5, 0.77, 0.99]) {
+        const value = valueAtPosition(position, limits);
+        const tolerance = limits.integer ? 0.06 : 0.005;
+        expect(Math.abs(positionOfValue(value, limits) - position)).toBeLessThan(tolerance);
+      }
+    }
+  });
+
+  it("rises with its position", () => {
+    for (const limits of Object.values(LIMITS)) {
+      let before = valueAtPosition(0, limits);
+      for (let step = 1; step <= 40; step += 1) {
+        const value = valueAtPosition(step / 40, limits);
+        expect(value).toBeGreaterThanOrEqual(before);
+        before = value;
+      }
+    }
+  });
+});

@@ -1,0 +1,162 @@
+import { create, toBinary } from "@bufbuild/protobuf";
+import { describe, expect, it } from "vitest";
+import { colorOfHex, hexOfColor } from "../src/core/color";
+import {
+  effectiveField,
+  LIMITS,
+  outputSize,
+  sceneFromUrlText,
+  sceneToUrlText,
+  withAsymmetry,
+  withField,
+  withStorm,
+  withSun,
+} from "../src/core/scene";
+import { compassPoint, domePointOfSun, sunOfDomePoint } from "../src/core/sun";
+import {
+  displayUnitOf,
+  formatBytes,
+  formatElapsed,
+  formatNumber,
+  formatQuantity,
+  formatValidTime,
+} from "../src/core/units";
+import {
+  FieldParametersSchema,
+  Hydrometeor,
+  PhaseFunction_Kind,
+  SceneSchema,
+} from "../src/gen/thunderhead/v1/scene_pb";
+import { linkTo, readLink } from "../src/view/link";
+
+describe("scenes", () => {
+  const scene = create(SceneSchema, {
+    stormId: "a",
+    sun: { azimuthDeg: 10 },
+    fields: [
+      { hydrometeor: Hydrometeor.RAIN, scale: 2, phase: { kind: PhaseFunction_Kind.RAYLEIGH } },
+    ],
+  });
+
+  it("share what did not change and leave the old one alone", () => {
+    const after = withSun(scene, { elevationDeg: 5 });
+    expect(after.sun).toMatchObject({ azimuthDeg: 10, elevationDeg: 5 });
+    expect(after.fields).toBe(scene.fields);
+    expect(scene.sun?.elevationDeg).toBeUndefined();
+  });
+
+  it("change one field, and add one that was not listed", () => {
+    const after = withField(
+      withField(scene, Hydrometeor.RAIN, { visible: false }),
+      Hydrometeor.ICE,
+      { scale: 3 },
+    );
+    expect(after.fields.map((f) => [f.hydrometeor, f.visible, f.scale])).toEqual([
+      [Hydrometeor.RAIN, false, 2],
+      [Hydrometeor.ICE, undefined, 3],
+    ]);
+    const phase = withAsymmetry(scene, Hydrometeor.RAIN, 0.5).fields[0]?.phase;
+    expect(phase).toMatchObject({ kind: PhaseFunction_Kind.RAYLEIGH, asymmetry: 0.5 });
+  });
+
+  it("drop what belongs to a storm with the storm", () => {
+    const after = withStorm(scene, "b");
+    expect(after).toMatchObject({ stormId: "b", timeIndex: 0, camera: undefined, fields: [] });
+    expect(after.sun).toBe(scene.sun);
+  });
+
+  it("fall back on the storm's settings, then on the schema's", () => {
+    const defaults = create(FieldParametersSchema, {
+      radiusM: 0.001,
+      scale: 7,
+      phase: { asymmetry: 0.8 },
+    });
+    const rain = effectiveField(scene, Hydrometeor.RAIN, defaults);
+    expect(rain).toMatchObject({ visible: true, scale: 2, albedo: 1, phase: { asymmetry: 0.8 } });
+    expect(rain.radiusM).toBeCloseTo(0.001);
+    expect(effectiveField(scene, Hydrometeor.ICE, undefined).scale).toBe(1);
+  });
+
+  it("go into a link and come out the same", () => {
+    for (const stormId of ["", "a", "ab", "abc", "Gewitter äöü"]) {
+      const sent = create(SceneSchema, { ...scene, stormId });
+      const link = linkTo("http://host:1/path/?session=old#x", "s/1", sent);
+      const read = readLink(link);
+      expect(read.sessionId).toBe("s/1");
+      expect(read.scene && toBinary(SceneSchema, read.scene)).toEqual(toBinary(SceneSchema, sent));
+    }
+    expect(sceneFromUrlText("not base64!")).toBeUndefined();
+    expect(sceneFromUrlText(sceneToUrlText(scene).slice(0, -3))).toBeUndefined();
+  });
+
+  it("ask for pictures of the canvas's shape within the limits", () => {
+    expect(outputSize(1000, 500, 0.5)).toEqual({ widthPx: 500, heightPx: 250 });
+    expect(outputSize(16384, 4096, 1)).toEqual({ widthPx: 8192, heightPx: 2048 });
+    expect(outputSize(0, 0, 1)).toEqual({ widthPx: 1, heightPx: 1 });
+  });
+});
+
+describe("the sky dome", () => {
+  it("has the zenith in the middle, north at the top and east at the right", () => {
+    const zenith = domePointOfSun({ azimuthDeg: 77, elevationDeg: 90 });
+    expect(Math.hypot(zenith.right, zenith.down)).toBeCloseTo(0, 12);
+    expect(domePointOfSun({ azimuthDeg: 0, elevationDeg: 0 }).down).toBeLessThan(-0.8);
+    expect(domePointOfSun({ azimuthDeg: 90, elevationDeg: 0 }).right).toBeGreaterThan(0.8);
+  });
+
+  it("gives back the direction it was given", () => {
+    for (const sun of [
+      { azimuthDeg: 255, elevationDeg: 35 },
+      { azimuthDeg: 10, elevationDeg: -12 },
+    ]) {
+      const { right, down } = domePointOfSun(sun);
+      expect(sunOfDomePoint(right, down).azimuthDeg).toBeCloseTo(sun.azimuthDeg, 9);
+      expect(sunOfDomePoint(right, down).elevationDeg).toBeCloseTo(sun.elevationDeg, 9);
+    }
+  });
+
+  it("names the points of the compass", () => {
+    expect([0, 44, 200, 270, -1].map(compassPoint)).toEqual(["N", "NE", "SSW", "W", "N"]);
+  });
+});
+
+describe("colours", () => {
+  it("are encoded as sRGB: linear 0.21586 is the byte 128", () => {
+    expect(hexOfColor({ red: 0.2158605, green: 1, blue: 0 })).toBe("#80ff00");
+    expect(colorOfHex("#80FF00").red).toBeCloseTo(0.2158605, 6);
+    for (const hex of ["#000000", "#0a0b0c", "#12fe80"])
+      expect(hexOfColor(colorOfHex(hex))).toBe(hex);
+  });
+});
+
+describe("numbers as people read them", () => {
+  it("have three digits", () => {
+    expect([0, 0.012345, 1, 12.346, 255.4, 1e-7, 2.5e7].map(formatNumber)).toEqual([
+      "0",
+      "0.0123",
+      "1",
+      "12.3",
+      "255",
+      "1.00e-7",
+      "2.50e7",
+    ]);
+  });
+
+  it("have units that fit their range", () => {
+    expect(displayUnitOf(LIMITS.fieldRadius)).toEqual({ factor: 1000, symbol: "mm" });
+    expect(formatQuantity(0.001, LIMITS.fieldRadius)).toBe("1 mm");
+    expect(formatQuantity(35, LIMITS.sunElevation)).toBe("35°");
+    expect(formatQuantity(917, LIMITS.fieldDensity)).toBe("917 kg/m³");
+    expect(formatBytes(28_912)).toBe("28.9 kB");
+    expect(formatBytes(999)).toBe("999 B");
+    expect(formatBytes(999_800)).toBe("1 MB");
+  });
+
+  it("tell idealised times from real ones", () => {
+    expect(formatValidTime("0001-01-01T00:20:00Z", 0)).toBe("day 1, 00:20");
+    expect(formatValidTime("2013-05-20T20:00:30Z", 0)).toBe("2013-05-20 20:00:30 UTC");
+    expect(formatElapsed(0)).toBe("+0 min");
+    expect(formatElapsed(4800)).toBe("+1 h 20 min");
+    expect(formatElapsed(45)).toBe("+45 s");
+  });
+});
