@@ -1,5 +1,6 @@
 #include "volume/netcdf_file.h"
 
+#include <hdf5.h>
 #include <netcdf.h>
 
 #include <cerrno>
@@ -22,10 +23,24 @@ constexpr int kNoHandle = -1;
 // is that large.
 constexpr double kLargestValue = 1e30;
 
-std::mutex& Lock() {
-  static std::mutex mutex;
-  return mutex;
-}
+// Held around every call of netCDF-C.
+class NetcdfLock {
+ public:
+  NetcdfLock() : lock_(Mutex()) {
+    // HDF5 keeps a setting a thread for printing every failed look-up; netCDF switches it off in
+    // the thread that opens the first file only.
+    thread_local const herr_t silenced = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    static_cast<void>(silenced);
+  }
+
+ private:
+  static std::mutex& Mutex() {
+    static std::mutex mutex;
+    return mutex;
+  }
+
+  std::lock_guard<std::mutex> lock_;
+};
 
 absl::Status OpenError(const std::string& path, int code) {
   const std::string what = absl::StrCat(path, ": ");
@@ -135,7 +150,7 @@ absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path) {
   // format".
   if (std::filesystem::file_size(path, error) == 0) return OpenError(path, NC_EHDFERR);
   int handle = kNoHandle;
-  std::lock_guard lock(Lock());
+  const NetcdfLock lock;
   if (const int code = nc_open(path.c_str(), NC_NOWRITE, &handle); code != NC_NOERR) {
     return OpenError(path, code);
   }
@@ -168,18 +183,18 @@ NetcdfFile::~NetcdfFile() { Close(); }
 
 void NetcdfFile::Close() {
   if (handle_ == kNoHandle) return;
-  std::lock_guard lock(Lock());
+  const NetcdfLock lock;
   nc_close(std::exchange(handle_, kNoHandle));
 }
 
 bool NetcdfFile::HasVariable(const std::string& variable) const {
-  std::lock_guard lock(Lock());
+  const NetcdfLock lock;
   int id = 0;
   return nc_inq_varid(handle_, variable.c_str(), &id) == NC_NOERR;
 }
 
 std::optional<std::size_t> NetcdfFile::DimensionLength(const std::string& dimension) const {
-  std::lock_guard lock(Lock());
+  const NetcdfLock lock;
   int id = 0;
   std::size_t length = 0;
   if (nc_inq_dimid(handle_, dimension.c_str(), &id) != NC_NOERR ||
@@ -190,7 +205,7 @@ std::optional<std::size_t> NetcdfFile::DimensionLength(const std::string& dimens
 }
 
 absl::StatusOr<std::vector<std::size_t>> NetcdfFile::Shape(const std::string& variable) const {
-  std::lock_guard lock(Lock());
+  const NetcdfLock lock;
   int id = 0;
   int rank = 0;
   int dimensions[NC_MAX_VAR_DIMS];
@@ -212,7 +227,7 @@ absl::StatusOr<std::vector<std::size_t>> NetcdfFile::Shape(const std::string& va
 
 std::optional<std::string> NetcdfFile::TextAttribute(const std::string& variable,
                                                      const std::string& attribute) const {
-  std::lock_guard lock(Lock());
+  const NetcdfLock lock;
   int id = NC_GLOBAL;
   if (!variable.empty() && nc_inq_varid(handle_, variable.c_str(), &id) != NC_NOERR) return {};
   nc_type type;
@@ -236,7 +251,7 @@ std::optional<std::string> NetcdfFile::TextAttribute(const std::string& variable
 
 std::optional<double> NetcdfFile::NumberAttribute(const std::string& variable,
                                                   const std::string& attribute) const {
-  std::lock_guard lock(Lock());
+  const NetcdfLock lock;
   int id = NC_GLOBAL;
   if (!variable.empty() && nc_inq_varid(handle_, variable.c_str(), &id) != NC_NOERR) return {};
   const double value =
@@ -246,7 +261,7 @@ std::optional<double> NetcdfFile::NumberAttribute(const std::string& variable,
 
 absl::StatusOr<std::vector<std::string>> NetcdfFile::ReadRows(const std::string& variable) const {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, Shape(variable));
-  std::lock_guard lock(Lock());
+  const NetcdfLock lock;
   int id = 0;
   nc_type type = NC_NAT;
   nc_inq_varid(handle_, variable.c_str(), &id);
@@ -299,7 +314,7 @@ absl::Status NetcdfFile::ReadFloats(const std::string& variable,
   Packing packing;
   std::vector<double> packed;
   {
-    std::lock_guard lock(Lock());
+    const NetcdfLock lock;
     int id = 0;
     int code = nc_inq_varid(handle_, variable.c_str(), &id);
     if (code != NC_NOERR) return ReadError(variable, code);

@@ -1,0 +1,213 @@
+#include "tests/support/synthetic_wrf.h"
+
+#include <netcdf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/status.h"
+
+namespace thunderhead::testing {
+namespace {
+
+constexpr double kGravity_m_per_s2 = 9.81;
+constexpr int kDateLength = 19;
+
+void Succeed(int code) { THUNDERHEAD_CHECK(code == NC_NOERR, nc_strerror(code)); }
+
+using Value = std::function<double(const WrfCell&)>;
+
+struct Packing {
+  double scale = 1.0;
+  double offset = 0.0;
+};
+
+class Writer {
+ public:
+  Writer(const SyntheticWrf& file, const std::string& path) : file_(file) {
+    static const std::map<WrfFormat, int> kModes = {{WrfFormat::kNetcdf4, NC_NETCDF4},
+                                                    {WrfFormat::kClassic, 0},
+                                                    {WrfFormat::kOffset64, NC_64BIT_OFFSET},
+                                                    {WrfFormat::kCdf5, NC_64BIT_DATA}};
+    Succeed(nc_create(path.c_str(), NC_CLOBBER | kModes.at(file.format), &id_));
+    Dimension("Time", NC_UNLIMITED);
+    Dimension("DateStrLen", kDateLength);
+    Dimension("south_north", file.ny);
+    Dimension("west_east", file.nx);
+    Dimension("bottom_top", file.levels);
+    Dimension("bottom_top_stag", file.levels + 1);
+    Dimension("one_level_short", std::max(1, file.levels - 1));
+    Attributes();
+  }
+  ~Writer() { Succeed(nc_close(id_)); }
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  void Times() {
+    if (file_.omitted.contains("Times")) return;
+    int variable = 0;
+    const int dimensions[] = {dimensions_.at("Time"), dimensions_.at("DateStrLen")};
+    Define([&] { Succeed(nc_def_var(id_, "Times", NC_CHAR, 2, dimensions, &variable)); });
+    const std::size_t written = file_.times.size() - file_.times_left_blank;
+    for (std::size_t record = 0; record < written; ++record) {
+      const std::size_t start[] = {record, 0};
+      const std::size_t count[] = {1, kDateLength};
+      Succeed(nc_put_vara_text(id_, variable, start, count, file_.times[record].c_str()));
+    }
+  }
+
+  // `level_dimension` empty: a field of columns.
+  void Field(const std::string& name, const std::string& level_dimension, const std::string& units,
+             const Value& value) {
+    if (file_.omitted.contains(name)) return;
+    std::vector<std::string> names = {"Time", level_dimension, "south_north", "west_east"};
+    if (level_dimension.empty()) names.erase(names.begin() + 1);
+    if (file_.one_level_short.contains(name)) names[1] = "one_level_short";
+    const Packing packing = PackingOf(name);
+    const int variable = DeclareField(name, names, units, packing);
+    if (file_.unwritten.contains(name)) return;
+    std::size_t levels = 1;
+    if (!level_dimension.empty()) Succeed(nc_inq_dimlen(id_, dimensions_.at(names[1]), &levels));
+    for (int record = 0; record < static_cast<int>(file_.times.size()); ++record) {
+      const std::vector<double> values =
+          Record(name, static_cast<int>(levels), record, packing, value);
+      std::vector<std::size_t> start(names.size(), 0);
+      std::vector<std::size_t> count = {1, levels, static_cast<std::size_t>(file_.ny),
+                                        static_cast<std::size_t>(file_.nx)};
+      if (level_dimension.empty()) count.erase(count.begin() + 1);
+      start[0] = record;
+      // As float, so that netCDF does not refuse infinities.
+      const std::vector<float> narrow(values.begin(), values.end());
+      Succeed(nc_put_vara_float(id_, variable, start.data(), count.data(), narrow.data()));
+    }
+  }
+
+ private:
+  void Dimension(const std::string& name, std::size_t length) {
+    Succeed(nc_def_dim(id_, name.c_str(), length, &dimensions_[name]));
+  }
+
+  void Text(int variable, const char* name, const std::string& text) {
+    if (variable == NC_GLOBAL && file_.omitted.contains(name)) return;
+    Succeed(nc_put_att_text(id_, variable, name, text.size(), text.data()));
+  }
+
+  void Number(const char* name, double value) {
+    if (file_.omitted.contains(name)) return;
+    Succeed(nc_put_att_double(id_, NC_GLOBAL, name, NC_FLOAT, 1, &value));
+  }
+
+  void Attributes() {
+    Text(NC_GLOBAL, "TITLE", " OUTPUT FROM WRF V4.5 MODEL");
+    Text(NC_GLOBAL, "SIMULATION_START_DATE", file_.simulation_start);
+    Number("DX", file_.dx_m);
+    Number("DY", file_.dy_m);
+    Number("MAP_PROJ", file_.map_projection);
+    Number("GRID_ID", file_.domain);
+  }
+
+  // Classic files are declared in one mode and written in another; netCDF-4 changes by itself.
+  template <typename Declare>
+  void Define(Declare declare) {
+    if (defined_) Succeed(nc_redef(id_));
+    declare();
+    Succeed(nc_enddef(id_));
+    defined_ = true;
+  }
+
+  Packing PackingOf(const std::string& name) const {
+    if (!file_.packed.contains(name)) return {};
+    return name == "QCLOUD" || name == "QRAIN" ? Packing{1e-6, 0.01} : Packing{10.0, 1000.0};
+  }
+
+  int DeclareField(const std::string& name, const std::vector<std::string>& names,
+                   const std::string& units, const Packing& packing) {
+    std::vector<int> dimensions;
+    for (const std::string& dimension : names) dimensions.push_back(dimensions_.at(dimension));
+    const bool packed = file_.packed.contains(name);
+    const nc_type type = packed ? NC_SHORT : NC_FLOAT;
+    const auto other_units = file_.units.find(name);
+    int variable = 0;
+    Define([&] {
+      Succeed(nc_def_var(id_, name.c_str(), type, static_cast<int>(dimensions.size()),
+                         dimensions.data(), &variable));
+      Text(variable, "units", other_units == file_.units.end() ? units : other_units->second);
+      if (packed) {
+        Succeed(nc_put_att_double(id_, variable, "scale_factor", NC_DOUBLE, 1, &packing.scale));
+        Succeed(nc_put_att_double(id_, variable, "add_offset", NC_DOUBLE, 1, &packing.offset));
+      }
+      if (const auto fill = file_.fill_values.find(name); fill != file_.fill_values.end()) {
+        Succeed(nc_put_att_double(id_, variable, "_FillValue", type, 1, &fill->second));
+      }
+    });
+    return variable;
+  }
+
+  std::vector<double> Record(const std::string& name, int levels, int record,
+                             const Packing& packing, const Value& value) const {
+    std::vector<double> values;
+    for (int level = 0; level < levels; ++level) {
+      for (int y = 0; y < file_.ny; ++y) {
+        for (int x = 0; x < file_.nx; ++x) {
+          const double stored = (value({x, y, level, record}) - packing.offset) / packing.scale;
+          values.push_back(file_.packed.contains(name) ? std::round(stored) : stored);
+        }
+      }
+    }
+    for (const StoredValue& stored : file_.stored_values) {
+      if (stored.variable != name || stored.cell.record != record) continue;
+      const int at = (stored.cell.level * file_.ny + stored.cell.y) * file_.nx + stored.cell.x;
+      values[at] = stored.value;
+    }
+    return values;
+  }
+
+  const SyntheticWrf& file_;
+  int id_ = 0;
+  bool defined_ = false;
+  std::map<std::string, int> dimensions_;
+};
+
+}  // namespace
+
+double InterfaceHeight_m(const SyntheticWrf& file, const WrfCell& cell) {
+  if (file.interface_height_m) return file.interface_height_m(cell);
+  const double terrain_m = file.terrain_m ? file.terrain_m(cell.x, cell.y) : 0.0;
+  return terrain_m + (file.top_m - terrain_m) * cell.level / file.levels;
+}
+
+void WriteWrf(const SyntheticWrf& file, const std::string& path) {
+  Writer writer(file, path);
+  writer.Times();
+  // State is split into a base that is the same for all times and the perturbation, as WRF does.
+  const auto base_geopotential = [&](const WrfCell& cell) {
+    WrfCell first = cell;
+    first.record = 0;
+    return kGravity_m_per_s2 * 0.9 * InterfaceHeight_m(file, first);
+  };
+  const double base_pressure_Pa = 0.95 * file.pressure_Pa;
+  writer.Field("PHB", "bottom_top_stag", "m2 s-2", base_geopotential);
+  writer.Field("PH", "bottom_top_stag", "m2 s-2", [&](const WrfCell& cell) {
+    return kGravity_m_per_s2 * InterfaceHeight_m(file, cell) - base_geopotential(cell);
+  });
+  writer.Field("PB", "bottom_top", "Pa", [&](const WrfCell&) { return base_pressure_Pa; });
+  writer.Field("P", "bottom_top", "Pa",
+               [&](const WrfCell&) { return file.pressure_Pa - base_pressure_Pa; });
+  writer.Field("T", "bottom_top", "K",
+               [&](const WrfCell&) { return file.potential_temperature_K - 300.0; });
+  writer.Field("QVAPOR", "bottom_top", "kg kg-1",
+               [&](const WrfCell&) { return file.vapour_kg_per_kg; });
+  writer.Field("HGT", "", "m", [&](const WrfCell& cell) {
+    return file.terrain_m ? file.terrain_m(cell.x, cell.y) : 0.0;
+  });
+  writer.Field("XLAT", "", "degree_north",
+               [&](const WrfCell& cell) { return file.latitude_deg + 0.1 * cell.y; });
+  writer.Field("XLONG", "", "degree_east",
+               [&](const WrfCell& cell) { return file.longitude_deg + 0.1 * cell.x; });
+  for (const auto& [name, value] : file.mixing_ratios) {
+    writer.Field(name, "bottom_top", "kg kg-1", value);
+  }
+}
+
+}  // namespace thunderhead::testing

@@ -1,0 +1,73 @@
+// Writes small files in WRF's output layout with known contents, sound or broken in one chosen way.
+// Calls netCDF-C without a lock: write files before anything reads.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace thunderhead::testing {
+
+// A cell of the file: indices from west, south and bottom, and the record.
+struct WrfCell {
+  int x = 0;
+  int y = 0;
+  int level = 0;
+  int record = 0;
+};
+
+// A value put in place of the computed one, as stored in the file.
+struct StoredValue {
+  std::string variable;
+  WrfCell cell;
+  double value = 0.0;
+};
+
+enum class WrfFormat { kNetcdf4, kClassic, kOffset64, kCdf5 };
+
+// Layers follow the terrain at the bottom and are level at the top, all of a column equally thick,
+// unless `interface_height_m` says otherwise.
+struct SyntheticWrf {
+  int nx = 4;
+  int ny = 3;
+  int levels = 8;
+  double dx_m = 1000.0;
+  double dy_m = 2000.0;
+  double top_m = 4000.0;
+  std::vector<std::string> times = {"2013-05-20_20:00:00"};
+  std::function<double(int x, int y)> terrain_m;             // none: 0
+  std::function<double(const WrfCell&)> interface_height_m;  // `level` counts interfaces
+
+  double pressure_Pa = 80'000.0;
+  double potential_temperature_K = 310.0;
+  double vapour_kg_per_kg = 0.01;
+
+  // Mixing ratios by variable name; a variable that is not here is not in the file.
+  std::map<std::string, std::function<double(const WrfCell&)>> mixing_ratios;
+
+  double latitude_deg = 35.0;  // of the south-west cell; 0.1 degrees more a cell
+  double longitude_deg = -97.0;
+  int map_projection = 1;
+  int domain = 1;
+  std::string simulation_start = "2013-05-20_12:00:00";
+
+  WrfFormat format = WrfFormat::kNetcdf4;
+  std::set<std::string> omitted;    // variables and global attributes left out
+  std::set<std::string> unwritten;  // variables declared but never written
+  std::set<std::string> packed;     // variables stored as shorts with scale_factor and add_offset
+  std::set<std::string> one_level_short;      // variables whose levels are one fewer
+  std::map<std::string, std::string> units;   // units attribute in place of the right one
+  std::map<std::string, double> fill_values;  // _FillValue attribute
+  std::vector<StoredValue> stored_values;
+  int times_left_blank = 0;  // records at the end whose Times are not written yet
+};
+
+// Height of an interface of `file`.
+double InterfaceHeight_m(const SyntheticWrf& file, const WrfCell& cell);
+
+// Writes `file` at `path`; aborts the test program if that fails.
+void WriteWrf(const SyntheticWrf& file, const std::string& path);
+
+}  // namespace thunderhead::testing

@@ -1,0 +1,25 @@
+// A folder that is gone when its owner is.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace thunderhead::testing {
+
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& Path() const { return path_; }
+
+  // The path of `name` in the folder.
+  std::string File(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace thunderhead::testing

@@ -1,0 +1,204 @@
+// The supercell in samples/, checked against an independent reading of the file.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netcdf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "glm/common.hpp"
+#include "volume/storm_store.h"
+#include "volume/wrf_metadata.h"
+#include "volume/wrf_reader.h"
+
+namespace thunderhead::volume {
+namespace {
+
+const char* const kSample = THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc";
+constexpr int kNx = 200;
+constexpr int kNy = 160;
+constexpr int kLevels = 60;
+constexpr std::size_t kColumns = std::size_t{kNx} * kNy;
+
+std::vector<float> Raw(const char* name, std::size_t record, std::size_t levels) {
+  int file = 0;
+  int variable = 0;
+  std::vector<float> values(levels * kColumns);
+  const std::size_t start[] = {record, 0, 0, 0};
+  const std::size_t count[] = {1, levels, kNy, kNx};
+  EXPECT_EQ(nc_open(kSample, NC_NOWRITE, &file), NC_NOERR);
+  EXPECT_EQ(nc_inq_varid(file, name, &variable), NC_NOERR);
+  EXPECT_EQ(nc_get_vara_float(file, variable, start, count, values.data()), NC_NOERR);
+  EXPECT_EQ(nc_close(file), NC_NOERR);
+  return values;
+}
+
+// Mass per area of dry air in every layer, from first principles and in double precision.
+std::vector<double> AirMass(std::size_t record) {
+  const auto ph = Raw("PH", record, kLevels + 1);
+  const auto phb = Raw("PHB", record, kLevels + 1);
+  const auto p = Raw("P", record, kLevels);
+  const auto pb = Raw("PB", record, kLevels);
+  const auto t = Raw("T", record, kLevels);
+  const auto qv = Raw("QVAPOR", record, kLevels);
+  std::vector<double> mass(kLevels * kColumns);
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    const double pressure = double{p[i]} + pb[i];
+    const double temperature = (double{t[i]} + 300.0) * std::pow(pressure / 1e5, 2.0 / 7.0);
+    const double density = pressure / (287.0 * temperature * (1.0 + 1.608 * qv[i]));
+    const double bottom = (double{ph[i]} + phb[i]) / 9.81;
+    const double top = (double{ph[i + kColumns]} + phb[i + kColumns]) / 9.81;
+    mass[i] = density * (top - bottom);
+  }
+  return mass;
+}
+
+std::vector<double> PathInFile(const char* name, std::size_t record,
+                               const std::vector<double>& air_mass) {
+  const auto q = Raw(name, record, kLevels);
+  std::vector<double> path(kColumns, 0.0);
+  for (std::size_t i = 0; i < q.size(); ++i) path[i % kColumns] += q[i] * air_mass[i];
+  return path;
+}
+
+std::vector<double> PathOnGrid(const HydrometeorFields& fields, const HydrometeorField& field) {
+  std::vector<double> path(kColumns, 0.0);
+  for (std::size_t i = 0; i < field.concentration_kg_per_m3.size(); ++i) {
+    path[i % kColumns] += field.concentration_kg_per_m3[i] * fields.grid.spacing_m.z;
+  }
+  return path;
+}
+
+TEST(SampleStorm, IsDescribedWithoutReadingFields) {
+  const auto store = StormStore::Open({kSample}, {});
+  ASSERT_TRUE(store.ok()) << store.status();
+  ASSERT_EQ((*store)->Storms().size(), 1U);
+  const StormInfo& storm = (*store)->Storms()[0];
+  EXPECT_EQ(storm.id, "supercell");
+  EXPECT_EQ(storm.title, "supercell (WRF V4.7.1, idealised)");
+  EXPECT_EQ(storm.file_cells, glm::ivec3(kNx, kNy, kLevels));
+  EXPECT_EQ(storm.dx_m, 1000.0);
+  EXPECT_EQ(storm.dy_m, 1000.0);
+  EXPECT_EQ(storm.fields.size(), 5U);
+  EXPECT_FALSE(storm.latitude_deg.has_value());
+  EXPECT_FALSE(storm.longitude_deg.has_value());
+  ASSERT_EQ(storm.times.size(), 4U);
+  EXPECT_EQ(storm.times[0].valid_time, "0001-01-01T00:20:00Z");
+  EXPECT_EQ(storm.times[3].valid_time, "0001-01-01T01:20:00Z");
+  EXPECT_EQ(storm.times[3].elapsed_s, 3600.0);
+  EXPECT_EQ((*store)->CachedBytes(), 0U);
+}
+
+// One per cent is promised. What is left is single precision: heights of 20 km are kept to 2 mm,
+// which is 1e-5 of a layer.
+TEST(SampleStorm, KeepsTheWaterPathOfEveryColumnAndField) {
+  const auto metadata = ReadWrfMetadata(kSample);
+  ASSERT_TRUE(metadata.ok()) << metadata.status();
+  for (std::size_t record = 0; record < 4; ++record) {
+    const auto fields = ReadWrfTime(*metadata, record, std::nullopt, {});
+    ASSERT_TRUE(fields.ok()) << fields.status();
+    ASSERT_EQ(fields->fields.size(), 5U);
+    const std::vector<double> air_mass = AirMass(record);
+    for (const HydrometeorField& field : fields->fields) {
+      const std::vector<double> expected = PathInFile(field.variable.c_str(), record, air_mass);
+      const std::vector<double> actual = PathOnGrid(*fields, field);
+      double worst = 0.0;
+      double total = 0.0;
+      for (std::size_t i = 0; i < kColumns; ++i) {
+        // Below this a column holds nothing but the tails of denormals.
+        constexpr double kNothing_kg_per_m2 = 1e-30;
+        worst = std::max(
+            worst, std::abs(actual[i] - expected[i]) / std::max(expected[i], kNothing_kg_per_m2));
+        total += expected[i];
+      }
+      EXPECT_LT(worst, 3e-5) << field.variable << " at record " << record;
+      EXPECT_GT(total, 0.0);
+      EXPECT_NEAR(field.statistics.mean_water_path_kg_per_m2 / (total / kColumns), 1.0, 1e-5);
+      EXPECT_NEAR(field.statistics.maximum_water_path_kg_per_m2 /
+                      *std::max_element(expected.begin(), expected.end()),
+                  1.0, 1e-5);
+    }
+  }
+}
+
+// Peaks over all times, as known of this run.
+TEST(SampleStorm, HasThePeaksOfItsRun) {
+  const auto store = StormStore::Open({kSample}, {.read_ahead = 0});
+  ASSERT_TRUE(store.ok()) << store.status();
+  std::map<std::string, float> peaks;
+  for (int time = 0; time < 4; ++time) {
+    const auto fields = (*store)->Get("supercell", time, {});
+    ASSERT_TRUE(fields.ok()) << fields.status();
+    for (const HydrometeorField& field : (*fields)->fields) {
+      float& peak = peaks[field.variable];
+      peak = std::max(peak, field.statistics.maximum_kg_per_kg);
+      EXPECT_EQ(field.statistics.minimum_kg_per_kg, 0.0F);
+      EXPECT_EQ(field.statistics.negative_cells, 0);
+      EXPECT_EQ(field.statistics.missing_cells, 0);
+    }
+  }
+  EXPECT_NEAR(peaks["QCLOUD"], 3.8e-3, 1e-5);
+  EXPECT_NEAR(peaks["QRAIN"], 1.81e-2, 1e-4);
+  EXPECT_NEAR(peaks["QICE"], 3.51e-4, 1e-6);
+  EXPECT_NEAR(peaks["QSNOW"], 4.33e-3, 1e-5);
+  EXPECT_NEAR(peaks["QGRAUP"], 1.45e-2, 1e-4);
+}
+
+TEST(SampleStorm, LiesOnOneGridThatIsCentredAndSmall) {
+  const auto store = StormStore::Open({kSample}, {.read_ahead = 0});
+  ASSERT_TRUE(store.ok()) << store.status();
+  const auto first = (*store)->Get("supercell", 0, {});
+  ASSERT_TRUE(first.ok()) << first.status();
+  const RegularGrid grid = (*first)->grid;
+  EXPECT_EQ(grid.cells.x, kNx);
+  EXPECT_EQ(grid.cells.y, kNy);
+  EXPECT_EQ(grid.low_corner_m, glm::dvec3(-100'000, -80'000, 0));
+  EXPECT_GT(grid.HighCorner_m().z, 19'900.0);
+  EXPECT_LT(grid.HighCorner_m().z, 20'900.0);
+  EXPECT_THAT((*first)->terrain_height_m, ::testing::Each(0.0F));
+  EXPECT_EQ((*first)->terrain_height_m.size(), kColumns);
+  for (int time = 0; time < 4; ++time) {
+    const auto fields = (*store)->Get("supercell", time, {});
+    ASSERT_TRUE(fields.ok()) << fields.status();
+    EXPECT_EQ((*fields)->grid, grid);
+    constexpr std::size_t kRawBytes = 5 * kLevels * kColumns * sizeof(float);
+    EXPECT_LE((*fields)->Bytes(), kRawBytes * 3 / 2);
+  }
+}
+
+TEST(SampleStorm, BoxesItsCondensateTightly) {
+  const auto metadata = ReadWrfMetadata(kSample);
+  ASSERT_TRUE(metadata.ok()) << metadata.status();
+  const auto fields = ReadWrfTime(*metadata, 0, std::nullopt, {});
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  const CellBox box = fields->condensate;
+  glm::ivec3 low = fields->grid.cells;
+  glm::ivec3 high(0);
+  for (const HydrometeorField& field : fields->fields) {
+    for (std::size_t i = 0; i < field.concentration_kg_per_m3.size(); ++i) {
+      if (field.concentration_kg_per_m3[i] == 0.0F) continue;
+      const glm::ivec3 cell(i % kNx, i / kNx % kNy, i / kColumns);
+      low = glm::min(low, cell);
+      high = glm::max(high, cell + 1);
+    }
+  }
+  EXPECT_EQ(box.low, low);
+  EXPECT_EQ(box.high, high);
+  // A young tower fills a small part of the domain.
+  EXPECT_LT(high.x - low.x, kNx / 2);
+}
+
+TEST(SampleStorm, SaysHowFarItsReadingHasCome) {
+  const auto store = StormStore::Open({kSample}, {.read_ahead = 0});
+  ASSERT_TRUE(store.ok()) << store.status();
+  std::vector<double> shares;
+  ASSERT_TRUE((*store)->Get("supercell", 1, [&](double share) { shares.push_back(share); }).ok());
+  ASSERT_GE(shares.size(), 10U);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_EQ(shares.front(), 0.0);
+  EXPECT_EQ(shares.back(), 1.0);
+}
+
+}  // namespace
+}  // namespace thunderhead::volume
