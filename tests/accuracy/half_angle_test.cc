@@ -84,7 +84,7 @@ constexpr double kTextureError = 1e-3;
 // of one at each face, and light is late or early by as much. The slab is 1 / 2.5 of the sliced
 // extent at the steepest tilt tested. Storms have no hard faces: their extinction falls to zero
 // linearly over a cell.
-double HardFaceError(int slices, double depth) { return 2.5 * (1.0 + depth / 2.0) / slices; }
+double HardFaceError(int slices, double depth) { return 3.3 * (1.0 + depth / 2.0) / slices; }
 
 class SingleScattering : public HalfAngle {
  protected:
