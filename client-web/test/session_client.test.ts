@@ -10,10 +10,11 @@ import { FakeService } from "./fake_service";
 
 function setUp(joined?: string) {
   const service = new FakeService(() => new Uint8Array([1, 2, 3]));
-  const network = { down: false, calls: [] as string[] };
+  const network = { down: false, failing: "", calls: [] as string[] };
   const wire: Interceptor = (next) => async (request) => {
     network.calls.push(request.method.name);
     if (network.down) throw new ConnectError("Failed to fetch", Code.Unavailable);
+    if (network.failing === request.method.name) throw new ConnectError("it broke", Code.Internal);
     return next(request);
   };
   const transport = createRouterTransport(service.routes, { transport: { interceptors: [wire] } });
@@ -99,6 +100,28 @@ describe("the session client", () => {
     expect(verdict).toEqual({ kind: "refused", message: "display.exposure_ev is 50" });
     network.down = true;
     await expect(client.updateScene(create(SceneSchema))).rejects.toThrow();
+  });
+
+  it("gives a scene up, not the connection, when the server fails at it", async () => {
+    const { client, network, seen } = start();
+    await pass(300);
+    network.failing = "UpdateScene";
+    const verdict = await client.updateScene(create(SceneSchema));
+    expect(verdict).toEqual({ kind: "refused", message: "it broke" });
+    expect(network.calls.filter((name) => name === "UpdateScene")).toHaveLength(2);
+    expect(seen.connections).toEqual([{ kind: "live" }]);
+  });
+
+  it("does not run hot when every stream breaks at once", async () => {
+    const { network, client } = start();
+    await pass(300);
+    network.failing = "AcknowledgeFrame";
+    network.calls.length = 0;
+    await client.updateScene(create(SceneSchema));
+    await pass(60_000);
+    const streams = network.calls.filter((name) => name === "WatchFrames").length;
+    expect(streams).toBeGreaterThan(10);
+    expect(streams).toBeLessThan(25);
   });
 
   it("waits longer and longer for a server that is gone, and picks the session up again", async () => {

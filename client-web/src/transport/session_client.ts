@@ -41,18 +41,21 @@ export type SceneVerdict =
   | { readonly kind: "refused"; readonly message: string };
 
 const CALL_TIMEOUT_MS = 10_000;
+// Where the camera is left open the server reads the storm before it answers, which may take a while.
+const SCENE_TIMEOUT_MS = 120_000;
 // A stream silent for this long is checked, so that a connection that died without a word is noticed.
 export const SILENCE_MS = 5_000;
 const CHECK_TIMEOUT_MS = 4_000;
+// A stream that lived for this long was a success; one that breaks sooner makes the next wait longer.
+const SOUND_MS = 2_000;
 
-// What the server says of a scene that sending it again cannot change.
-const FINAL_CODES = new Set([
-  Code.InvalidArgument,
-  Code.OutOfRange,
-  Code.FailedPrecondition,
-  Code.NotFound,
-  Code.Unimplemented,
-  Code.PermissionDenied,
+// What a network says that fails, and a server that fails says as well.
+const NETWORK_CODES = new Set([
+  Code.Unknown,
+  Code.Unavailable,
+  Code.Canceled,
+  Code.DeadlineExceeded,
+  Code.Internal,
 ]);
 
 export class SessionClient {
@@ -106,27 +109,25 @@ export class SessionClient {
 
   // Rejects where the connection is lost; the scene must then be sent again after streaming().
   async updateScene(scene: Scene): Promise<SceneVerdict> {
-    const sessionId = this.#sessionId;
-    if (sessionId === undefined) throw new Error("there is no session to send a scene to");
-    try {
-      const response = await this.#client.updateScene({ sessionId, scene }, this.#callOptions());
-      return { kind: "taken", revision: response.sceneRevision };
-    } catch (error) {
-      const failure = ConnectError.from(error);
-      // A session that has ended closes its stream as well, which run() answers.
-      if (FINAL_CODES.has(failure.code)) return { kind: "refused", message: failure.rawMessage };
-      this.#stream?.abort(failure);
-      throw failure;
-    }
+    const stream = this.#stream;
+    const first = await this.#sendScene(scene);
+    if (first instanceof ConnectError === false) return first;
+    // The network or the server: if the server still answers the scene gets a second chance, its last.
+    if (stream !== undefined) await this.#check(stream);
+    const second = stream?.signal.aborted ? first : await this.#sendScene(scene);
+    if (second instanceof ConnectError === false) return second;
+    if (stream === undefined || stream.signal.aborted) throw second;
+    return { kind: "refused", message: second.rawMessage };
   }
 
   // The frame is on the screen.
   acknowledge(sequence: bigint): void {
     const sessionId = this.#sessionId;
     const viewerId = this.#viewerId;
-    if (sessionId === undefined || viewerId === undefined) return;
+    const signal = this.#stream?.signal;
+    if (sessionId === undefined || viewerId === undefined || signal === undefined) return;
     this.#client
-      .acknowledgeFrame({ sessionId, viewerId, sequence }, this.#callOptions())
+      .acknowledgeFrame({ sessionId, viewerId, sequence }, { signal, timeoutMs: CALL_TIMEOUT_MS })
       // Without acknowledgements the stream would stand still, so it is opened again.
       .catch((error: unknown) => {
         if (this.#viewerId === viewerId) this.#stream?.abort(ConnectError.from(error));
@@ -159,10 +160,28 @@ export class SessionClient {
     this.#retryNow?.();
   }
 
+  // The error where it says as little of the scene as a network's would.
+  async #sendScene(scene: Scene): Promise<SceneVerdict | ConnectError> {
+    const sessionId = this.#sessionId;
+    if (sessionId === undefined) return new ConnectError("there is no session", Code.Unavailable);
+    const signal = this.#stream?.signal ?? this.#life.signal;
+    const options = { signal, timeoutMs: SCENE_TIMEOUT_MS };
+    try {
+      const response = await this.#client.updateScene({ sessionId, scene }, options);
+      return { kind: "taken", revision: response.sceneRevision };
+    } catch (error) {
+      const failure = ConnectError.from(error);
+      // A session that has ended closes its stream as well, which run() answers.
+      if (NETWORK_CODES.has(failure.code)) return failure;
+      return { kind: "refused", message: failure.rawMessage };
+    }
+  }
+
   async #open(): Promise<string> {
     const asked = this.#listener.sceneToOpen();
     try {
-      const response = await this.#client.createSession({ scene: asked }, this.#lifeOptions());
+      const options = { signal: this.#life.signal, timeoutMs: SCENE_TIMEOUT_MS };
+      const response = await this.#client.createSession({ scene: asked }, options);
       const { sessionId, scene, sceneRevision } = response;
       this.#listener.opened({
         id: sessionId,
@@ -175,7 +194,10 @@ export class SessionClient {
       return sessionId;
     } catch (error) {
       const failure = ConnectError.from(error);
-      if (FINAL_CODES.has(failure.code)) this.#listener.openingRefused(failure.rawMessage);
+      const full = failure.code === Code.ResourceExhausted;
+      if (!full && !NETWORK_CODES.has(failure.code)) {
+        this.#listener.openingRefused(failure.rawMessage);
+      }
       throw failure;
     }
   }
@@ -184,8 +206,9 @@ export class SessionClient {
     const stream = new AbortController();
     this.#stream = stream;
     const silence = new SilenceWatch(() => this.#check(stream));
+    const startedAtMs = performance.now();
+    let begun = false;
     try {
-      let begun = false;
       silence.heard();
       for await (const message of this.#client.watchFrames(
         { sessionId },
@@ -196,7 +219,6 @@ export class SessionClient {
         if (!begun) {
           begun = true;
           this.#reopened = false;
-          this.#backOff.reset();
           this.#listener.connection({ kind: "live" });
           this.#listener.streaming(sessionId);
         }
@@ -208,6 +230,7 @@ export class SessionClient {
       throw stream.signal.aborted ? (stream.signal.reason ?? error) : error;
     } finally {
       silence.dispose();
+      if (begun && performance.now() - startedAtMs > SOUND_MS) this.#backOff.reset();
       this.#viewerId = undefined;
       this.#stream = undefined;
     }
@@ -241,12 +264,6 @@ export class SessionClient {
     this.#retryNow = undefined;
   }
 
-  // For calls that make sense only while the present stream lives.
-  #callOptions(): { signal: AbortSignal; timeoutMs: number } {
-    const signal = this.#stream?.signal ?? this.#life.signal;
-    return { signal, timeoutMs: CALL_TIMEOUT_MS };
-  }
-
   #lifeOptions(): { signal: AbortSignal; timeoutMs: number } {
     return { signal: this.#life.signal, timeoutMs: CALL_TIMEOUT_MS };
   }
@@ -277,8 +294,5 @@ class SilenceWatch {
 // What the server said, where it said it; the network's own words help nobody.
 function reasonOf(error: unknown): string {
   const failure = ConnectError.from(error);
-  if (FINAL_CODES.has(failure.code) || failure.code === Code.ResourceExhausted) {
-    return failure.rawMessage;
-  }
-  return "The server cannot be reached";
+  return NETWORK_CODES.has(failure.code) ? "The server cannot be reached" : failure.rawMessage;
 }

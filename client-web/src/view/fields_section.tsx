@@ -128,7 +128,7 @@ function ParticleSettings({ state, field }: { state: PageState; field: FieldDesc
         onChange={(albedo) => edit({ albedo })}
       />
       <Choice
-        label="Phase function"
+        label="Phase"
         testId={`field-${id}-phase`}
         value={phase?.kind || Kind.HENYEY_GREENSTEIN}
         options={PHASE_KINDS}

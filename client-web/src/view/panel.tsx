@@ -12,7 +12,7 @@ import type { Page } from "./page";
 import { SunDome } from "./sun_dome";
 
 const MODES = [
-  [Mode.PER_FIELD_PHASE_TRANSLUCENT, "Per-field phase, translucent"],
+  [Mode.PER_FIELD_PHASE_TRANSLUCENT, "Phase per field, translucent"],
   [Mode.UNIFORM_PHASE_TRANSLUCENT, "Uniform phase, translucent"],
   [Mode.UNIFORM_PHASE_LOW_ALBEDO, "Uniform phase, low albedo"],
 ] as const;
