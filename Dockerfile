@@ -1,0 +1,29 @@
+# Thunderhead's server. Installs and builds by ./dev, the same script as on a developer's machine.
+#   docker build -t thunderhead .
+#   docker run --rm -p 8080:8080 -v /path/to/storms:/data:ro thunderhead
+# Draws in software; with the NVIDIA container runtime (--gpus all) on the GPU, by the driver's own EGL.
+FROM debian:bookworm-slim AS build
+WORKDIR /src
+# The packages alone first, so that a change of the code does not install them again.
+COPY dev ./
+COPY deploy/packages deploy/packages
+RUN ./dev install runtime build web && rm -rf /var/lib/apt/lists/*
+COPY . .
+RUN ./dev build release && strip build/release/bin/thunderhead
+
+FROM debian:bookworm-slim
+WORKDIR /opt/thunderhead
+COPY dev ./
+COPY deploy/packages deploy/packages
+RUN ./dev install runtime && rm -rf /var/lib/apt/lists/* dev deploy \
+    && useradd --system --no-create-home thunderhead
+COPY --from=build /src/build/release/bin/thunderhead bin/
+COPY --from=build /src/client-web/dist share/thunderhead/page/
+COPY --from=build /src/samples /data/
+ENV PATH=/opt/thunderhead/bin:$PATH \
+    NVIDIA_DRIVER_CAPABILITIES=graphics,utility
+USER thunderhead
+EXPOSE 8080 50051
+# Inside the container every address is its own; what is published decides who reaches it.
+ENTRYPOINT ["thunderhead"]
+CMD ["serve", "--data", "/data", "--http", "0.0.0.0:8080", "--grpc", "0.0.0.0:50051"]
