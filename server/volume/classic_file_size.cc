@@ -97,14 +97,16 @@ std::uintmax_t ClassicFileSize(int handle) {
   std::size_t records = 0;
   if (record_dimension >= 0) nc_inq_dimlen(handle, record_dimension, &records);
   std::uintmax_t data = 0;
+  int record_variables = 0;
   for (int variable = 0; variable < variables; ++variable) {
     const VariableSizes sizes = SizesOf(handle, variable, record_dimension, widths);
     bytes += sizes.header;
     data += sizes.has_records ? sizes.data * records : sizes.data;
+    record_variables += sizes.has_records ? 1 : 0;
   }
-  // The last value's padding need not be in the file, nor that between records of a lone small
-  // variable: a file may be this much shorter and whole.
-  const std::uintmax_t slack = 3 * (records + 1);
+  // A whole file may lack the padding of its last value, and a lone variable with records has none
+  // between them.
+  const std::uintmax_t slack = 3 * (record_variables == 1 ? records + 1 : 1);
   return bytes + data - (data < slack ? data : slack);
 }
 
