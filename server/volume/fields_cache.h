@@ -6,6 +6,7 @@
 #include <list>
 #include <map>
 #include <memory>
+#include <tuple>
 
 #include "volume/hydrometeor_fields.h"
 
@@ -16,7 +17,10 @@ struct TimeKey {
   std::size_t storm = 0;
   int time = 0;
 
-  auto operator<=>(const TimeKey&) const = default;
+  bool operator==(const TimeKey&) const = default;
+  bool operator<(const TimeKey& other) const {
+    return std::tie(storm, time) < std::tie(other.storm, other.time);
+  }
 };
 
 class FieldsCache {

@@ -124,6 +124,7 @@ class Writer {
   int DeclareField(const std::string& name, const std::vector<std::string>& names,
                    const std::string& units, const Packing& packing) {
     std::vector<int> dimensions;
+    dimensions.reserve(names.size());
     for (const std::string& dimension : names) dimensions.push_back(dimensions_.at(dimension));
     const bool packed = file_.packed.contains(name);
     const nc_type type = packed ? NC_SHORT : NC_FLOAT;
