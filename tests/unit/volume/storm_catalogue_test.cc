@@ -44,6 +44,7 @@ class StormCatalogue : public ::testing::Test {
 
 std::vector<std::string> Ids(const std::vector<CataloguedStorm>& storms) {
   std::vector<std::string> ids;
+  ids.reserve(storms.size());
   for (const CataloguedStorm& storm : storms) ids.push_back(storm.info.id);
   return ids;
 }

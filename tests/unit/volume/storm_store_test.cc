@@ -173,6 +173,7 @@ TEST_F(StormSeries, ReadsOnceForAllWhoAskAtTheSameTime) {
   std::vector<std::shared_ptr<const HydrometeorFields>> got(kThreads);
   std::atomic<int> ready = 0;
   std::vector<std::thread> threads;
+  threads.reserve(kThreads);
   for (int i = 0; i < kThreads; ++i) {
     threads.emplace_back([&, i] {
       ++ready;
@@ -190,8 +191,10 @@ TEST_F(StormSeries, ReadsOnceForAllWhoAskAtTheSameTime) {
 TEST_F(StormSeries, ServesManyThreadsThatWanderAboutWithinABudget) {
   const auto store = Open({.byte_budget = 3 * one_time_, .read_ahead = 2});
   std::atomic<int> failures = 0;
+  constexpr int kThreads = 4;
   std::vector<std::thread> threads;
-  for (int i = 0; i < 4; ++i) {
+  threads.reserve(kThreads);
+  for (int i = 0; i < kThreads; ++i) {
     threads.emplace_back([&, i] {
       for (int step = 0; step < 25; ++step) {
         const int time = (i * 5 + step * (i + 1)) % kTimes;

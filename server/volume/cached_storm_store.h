@@ -1,0 +1,80 @@
+// The store that StormStore::Open gives: a catalogue, a cache, and a thread that reads ahead. One
+// time is read once however many ask for it; who asks goes before what is read ahead.
+#pragma once
+
+#include <condition_variable>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "volume/fields_cache.h"
+#include "volume/storm_catalogue.h"
+#include "volume/storm_store.h"
+#include "volume/vertical_remap.h"
+
+namespace thunderhead::volume {
+
+class CachedStormStore final : public StormStore {
+ public:
+  CachedStormStore(std::vector<CataloguedStorm> storms, const StormStoreOptions& options);
+  ~CachedStormStore() override;
+
+  CachedStormStore(const CachedStormStore&) = delete;
+  CachedStormStore& operator=(const CachedStormStore&) = delete;
+
+  const std::vector<StormInfo>& Storms() const override { return infos_; }
+  absl::StatusOr<std::shared_ptr<const HydrometeorFields>> Get(
+      std::string_view id, int time_index, const ReadProgress& progress) override;
+  std::shared_ptr<const HydrometeorFields> Peek(std::string_view id, int time_index) override;
+  std::size_t CachedBytes() const override;
+
+ private:
+  using Fields = absl::StatusOr<std::shared_ptr<const HydrometeorFields>>;
+  enum class Purpose { kAsked, kAhead };
+
+  // A read under way, shared by all who wait for it.
+  struct PendingRead {
+    Purpose purpose = Purpose::kAsked;
+    int waiters = 0;  // beside the thread that reads
+    std::vector<ReadProgress> listeners;
+    std::optional<Fields> result;
+  };
+
+  absl::StatusOr<TimeKey> KeyOf(std::string_view id, int time_index) const;
+
+  // All below are called with `lock` held on mutex_ and return with it held.
+  using Lock = std::unique_lock<std::mutex>;
+  Fields Read(Lock& lock, const TimeKey& key, Purpose purpose, const ReadProgress& progress);
+  Fields ReadFile(Lock& lock, const TimeKey& key, PendingRead& read);
+  Fields WaitFor(Lock& lock, const std::shared_ptr<PendingRead>& read,
+                 const ReadProgress& progress);
+  std::optional<VerticalGrid> VerticalGridOf(Lock& lock, const TimeKey& key);
+  void WantAfter(const TimeKey& key);
+  std::optional<TimeKey> NextWanted();
+  bool IsWanted(const TimeKey& key) const;
+
+  absl::Status Checkpoint(const TimeKey& key, PendingRead& read, double share);
+  void ReadAhead();
+
+  const std::vector<CataloguedStorm> storms_;
+  std::vector<StormInfo> infos_;
+  const StormStoreOptions options_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;  // a read ended, a wish or a waiter came, or the store ends
+  FieldsCache cache_;
+  std::map<TimeKey, std::shared_ptr<PendingRead>> pending_;
+  std::vector<std::optional<VerticalGrid>>
+      vertical_grids_;           // one for each storm, the same for all its times
+  std::vector<TimeKey> wanted_;  // to be read ahead, in order
+  int asked_reads_ = 0;
+  bool ending_ = false;
+
+  std::thread read_ahead_;  // last, so that it starts when all else is there
+};
+
+}  // namespace thunderhead::volume
