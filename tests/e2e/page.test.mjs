@@ -94,6 +94,21 @@ async function drag(rightPx, downPx, steps = 12) {
   await page.mouse.up();
 }
 
+// Fingers on the glass, from the first points to the second.
+async function slide(fingers, from, to) {
+  const steps = 8;
+  const at = (share) =>
+    from.map(([x, y], id) => ({
+      x: x + share * (to[id][0] - x),
+      y: y + share * (to[id][1] - y),
+      id,
+    }));
+  const send = (type, touchPoints) => fingers.send("Input.dispatchTouchEvent", { type, touchPoints });
+  await send("touchStart", at(0));
+  for (let step = 1; step <= steps; step += 1) await send("touchMove", at(step / steps));
+  await send("touchEnd", []);
+}
+
 const screenshot = (name, of = page) => of.screenshot({ path: `${OUTPUT}${name}.png` });
 
 test("a storm is on the canvas, not a blank", async () => {
@@ -311,6 +326,19 @@ test("it works on a phone's screen", async () => {
     const picture = await grabCanvas(phone);
     assert.equal(picture.width, 780);
     assert.ok(spread(picture).deviation > 8, "the phone's canvas is nearly uniform");
+
+    await phone.getByTestId("panel-toggle").tap();
+    const before = await canvasData(phone);
+    const fingers = await phone.context().newCDPSession(phone);
+    await changing(() => slide(fingers, [[200, 300]], [[120, 300]]), phone);
+    const turned = await canvasData(phone);
+    const turnDeg = (Number(turned.azimuth) - Number(before.azimuth) + 360) % 360;
+    assert.ok(Math.abs(turnDeg - (360 - (80 / 780) * 180)) < 1, `a finger turned it by ${turnDeg}`);
+    await changing(() => slide(fingers, [[150, 300], [250, 300]], [[100, 300], [300, 300]]), phone);
+    const nearer = await canvasData(phone);
+    const ratio = Number(nearer.distance) / Number(turned.distance);
+    assert.ok(Math.abs(ratio - 0.5) < 0.02, `a pinch to twice the width changed the distance by ${ratio}`);
+    await screenshot("14-phone-pinched", phone);
   } finally {
     await phone.close();
   }

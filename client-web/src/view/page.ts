@@ -289,12 +289,14 @@ export class Page implements SessionListener {
     this.state.showFrame(frame);
     this.#adoptCamera();
     if (frame.sceneRevision >= this.#problemRevision) this.state.dismiss("problem");
+    const pose = poseOfCamera(frame.camera);
     Object.assign(this.#canvas.dataset, {
       sequence: String(frame.sequence),
       revision: String(frame.sceneRevision),
       refined: String(frame.refined),
       time: String(this.#ledger.shownTimeIndex ?? ""),
-      azimuth: poseOfCamera(frame.camera)?.azimuthDeg.toFixed(2) ?? "",
+      azimuth: pose?.azimuthDeg.toFixed(2) ?? "",
+      distance: pose?.distanceM.toFixed(1) ?? "",
     });
   }
 
