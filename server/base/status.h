@@ -1,6 +1,6 @@
-// Status values and the macros that pass them on. Errors from input or the environment are absl::Status with
-// what went wrong, where, and what to do next; a broken invariant of our own is THUNDERHEAD_CHECK. No exception
-// crosses a room.
+// Status values and the macros that pass them on. Errors from input or the environment are
+// absl::Status with what went wrong, where, and what to do next; a broken invariant of our own is
+// THUNDERHEAD_CHECK. No exception crosses a room.
 #pragma once
 
 #include <string>
@@ -21,29 +21,31 @@ absl::Status Annotate(const absl::Status& status, std::string_view prefix);
 }  // namespace thunderhead::base
 
 // Returns from the function when `expression` is not OK.
-#define THUNDERHEAD_RETURN_IF_ERROR(expression)                  \
-  do {                                                           \
-    if (absl::Status thunderhead_status = (expression);          \
-        !thunderhead_status.ok()) {                              \
-      return thunderhead_status;                                 \
-    }                                                            \
+#define THUNDERHEAD_RETURN_IF_ERROR(expression)                                     \
+  do {                                                                              \
+    if (absl::Status thunderhead_status = (expression); !thunderhead_status.ok()) { \
+      return thunderhead_status;                                                    \
+    }                                                                               \
   } while (false)
 
 #define THUNDERHEAD_CONCATENATE_INNER(a, b) a##b
 #define THUNDERHEAD_CONCATENATE(a, b) THUNDERHEAD_CONCATENATE_INNER(a, b)
 
 // THUNDERHEAD_ASSIGN_OR_RETURN(auto value, Function()): returns the error, or assigns the value.
-#define THUNDERHEAD_ASSIGN_OR_RETURN(declaration, expression)                                  \
-  auto THUNDERHEAD_CONCATENATE(thunderhead_or_, __LINE__) = (expression);                      \
-  if (!THUNDERHEAD_CONCATENATE(thunderhead_or_, __LINE__).ok()) {                              \
-    return std::move(THUNDERHEAD_CONCATENATE(thunderhead_or_, __LINE__)).status();             \
-  }                                                                                            \
+// NOLINTBEGIN(bugprone-macro-parentheses): a declaration cannot stand in parentheses.
+#define THUNDERHEAD_ASSIGN_OR_RETURN(declaration, expression)                      \
+  auto THUNDERHEAD_CONCATENATE(thunderhead_or_, __LINE__) = (expression);          \
+  if (!THUNDERHEAD_CONCATENATE(thunderhead_or_, __LINE__).ok()) {                  \
+    return std::move(THUNDERHEAD_CONCATENATE(thunderhead_or_, __LINE__)).status(); \
+  }                                                                                \
   declaration = *std::move(THUNDERHEAD_CONCATENATE(thunderhead_or_, __LINE__))
+// NOLINTEND(bugprone-macro-parentheses)
 
-// Aborts with place, condition and `detail` (a string expression that shows the values) when `condition` is false.
-#define THUNDERHEAD_CHECK(condition, detail)                                              \
-  do {                                                                                    \
-    if (!(condition)) {                                                                   \
-      ::thunderhead::base::CheckFailed(__FILE__, __LINE__, #condition, detail);           \
-    }                                                                                     \
+// Aborts with place, condition and `detail` (a string expression that shows the values) when
+// `condition` is false.
+#define THUNDERHEAD_CHECK(condition, detail)                                    \
+  do {                                                                          \
+    if (!(condition)) {                                                         \
+      ::thunderhead::base::CheckFailed(__FILE__, __LINE__, #condition, detail); \
+    }                                                                           \
   } while (false)

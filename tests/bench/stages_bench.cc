@@ -14,6 +14,7 @@
 #include "renderers/scene_renderer.h"
 #include "spdlog/spdlog.h"
 #include "volume/storm_store.h"
+#include "volume/visible_box.h"
 
 namespace thunderhead {
 namespace {
@@ -53,10 +54,8 @@ struct Bench {
 scene::Scene PaperScene(const volume::HydrometeorFields& fields) {
   scene::Scene scene;
   scene.output = {300, 300, 88};
-  const glm::dvec3 low = fields.grid.low_corner_m;
-  scene.camera =
-      scene::Framing(scene.camera, low + glm::dvec3(fields.condensate.low) * fields.grid.spacing_m,
-                     low + glm::dvec3(fields.condensate.high) * fields.grid.spacing_m, 1.0);
+  const volume::WorldBox box = volume::VisibleBox(fields);
+  scene.camera = scene::Framing(scene.camera, box.low_m, box.high_m, 1.0);
   return scene;
 }
 
