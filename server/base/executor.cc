@@ -1,0 +1,68 @@
+#include "base/executor.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+
+namespace thunderhead::base {
+namespace {
+
+absl::Status Stopping() { return absl::UnavailableError("the server is shutting down"); }
+
+}  // namespace
+
+Executor::Executor(int threads, std::size_t max_waiting) : max_waiting_(max_waiting) {
+  for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { Run(); });
+}
+
+Executor::~Executor() { Stop(); }
+
+void Executor::Submit(Task task) {
+  absl::Status refusal;
+  {
+    const std::lock_guard lock(mutex_);
+    if (stopping_) {
+      refusal = Stopping();
+    } else if (waiting_.size() >= max_waiting_) {
+      refusal = absl::ResourceExhaustedError(
+          absl::StrCat("the server is busy: ", max_waiting_, " requests wait; try again later"));
+    } else {
+      waiting_.push_back(std::move(task));
+    }
+  }
+  if (refusal.ok()) {
+    changed_.notify_one();
+  } else {
+    task(refusal);
+  }
+}
+
+void Executor::Stop() {
+  std::deque<Task> refused;
+  std::vector<std::thread> threads;
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+    refused.swap(waiting_);
+    threads.swap(threads_);
+  }
+  changed_.notify_all();
+  for (Task& task : refused) task(Stopping());
+  for (std::thread& thread : threads) thread.join();
+}
+
+void Executor::Run() {
+  while (true) {
+    Task task;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [this] { return stopping_ || !waiting_.empty(); });
+      if (waiting_.empty()) return;
+      task = std::move(waiting_.front());
+      waiting_.pop_front();
+    }
+    task(absl::OkStatus());
+  }
+}
+
+}  // namespace thunderhead::base

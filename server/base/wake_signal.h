@@ -1,0 +1,39 @@
+// Wakes one thread that waits for work. A notification given while the thread is busy is kept until
+// it waits, so none is lost; several become one.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+
+namespace thunderhead::base {
+
+class WakeSignal {
+ public:
+  void Notify() {
+    {
+      const std::lock_guard lock(mutex_);
+      notified_ = true;
+    }
+    changed_.notify_one();
+  }
+
+  // Returns after a notification, or at `deadline` if there is one.
+  void Wait(const std::optional<std::chrono::steady_clock::time_point>& deadline) {
+    std::unique_lock lock(mutex_);
+    if (deadline.has_value()) {
+      changed_.wait_until(lock, *deadline, [this] { return notified_; });
+    } else {
+      changed_.wait(lock, [this] { return notified_; });
+    }
+    notified_ = false;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool notified_ = false;
+};
+
+}  // namespace thunderhead::base

@@ -1,0 +1,134 @@
+#include "frame/image_codec.h"
+
+#include <png.h>
+#include <turbojpeg.h>
+
+#include <memory>
+
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+
+namespace thunderhead::frame {
+namespace {
+
+constexpr int kChannels = 3;
+// The largest side that JPEG can hold.
+constexpr int kMaxSide_px = 65535;
+
+struct TurboDeleter {
+  void operator()(void* handle) const { tjDestroy(handle); }
+};
+using TurboHandle = std::unique_ptr<void, TurboDeleter>;
+
+struct TurboBufferDeleter {
+  void operator()(unsigned char* buffer) const { tjFree(buffer); }
+};
+
+// Frees what libpng holds for an image however the function ends.
+struct PngImage {
+  png_image image{};
+  PngImage() { image.version = PNG_IMAGE_VERSION; }
+  ~PngImage() { png_image_free(&image); }
+  PngImage(const PngImage&) = delete;
+  PngImage& operator=(const PngImage&) = delete;
+};
+
+std::size_t ByteCount(int width_px, int height_px) {
+  return static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px) * kChannels;
+}
+
+absl::Status CheckPixels(int width_px, int height_px, std::size_t bytes) {
+  if (width_px < 1 || height_px < 1 || width_px > kMaxSide_px || height_px > kMaxSide_px) {
+    return absl::InvalidArgumentError(absl::StrCat("a picture of ", width_px, " x ", height_px,
+                                                   " pixels cannot be encoded; each side must be "
+                                                   "between 1 and ",
+                                                   kMaxSide_px));
+  }
+  if (bytes != ByteCount(width_px, height_px)) {
+    return absl::InvalidArgumentError(absl::StrCat("a picture of ", width_px, " x ", height_px,
+                                                   " pixels needs ", ByteCount(width_px, height_px),
+                                                   " bytes, but ", bytes, " were given"));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status TurboError(const char* action, void* handle) {
+  return absl::InternalError(absl::StrCat(action, ": ", tjGetErrorStr2(handle)));
+}
+
+}  // namespace
+
+absl::StatusOr<std::string> EncodeJpeg(int width_px, int height_px,
+                                       absl::Span<const std::uint8_t> rgb, int quality) {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckPixels(width_px, height_px, rgb.size()));
+  if (quality < 1 || quality > 100) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("JPEG quality is ", quality, "; it must be between 1 and 100"));
+  }
+  const TurboHandle handle(tjInitCompress());
+  if (handle == nullptr) return TurboError("cannot start the JPEG encoder", nullptr);
+  unsigned char* buffer = nullptr;
+  unsigned long size = 0;
+  const int result = tjCompress2(handle.get(), rgb.data(), width_px, width_px * kChannels,
+                                 height_px, TJPF_RGB, &buffer, &size, TJSAMP_420, quality, 0);
+  const std::unique_ptr<unsigned char, TurboBufferDeleter> owned(buffer);
+  if (result != 0) return TurboError("cannot encode the picture as JPEG", handle.get());
+  return std::string(reinterpret_cast<const char*>(buffer), size);
+}
+
+absl::StatusOr<RgbImage> DecodeJpeg(const std::string& jpeg) {
+  const TurboHandle handle(tjInitDecompress());
+  if (handle == nullptr) return TurboError("cannot start the JPEG decoder", nullptr);
+  const auto* data = reinterpret_cast<const unsigned char*>(jpeg.data());
+  RgbImage image;
+  int subsampling = 0;
+  int colorspace = 0;
+  if (tjDecompressHeader3(handle.get(), data, jpeg.size(), &image.width_px, &image.height_px,
+                          &subsampling, &colorspace) != 0) {
+    return absl::InvalidArgumentError(absl::StrCat("no JPEG: ", tjGetErrorStr2(handle.get())));
+  }
+  image.rgb.resize(ByteCount(image.width_px, image.height_px));
+  if (tjDecompress2(handle.get(), data, jpeg.size(), image.rgb.data(), image.width_px,
+                    image.width_px * kChannels, image.height_px, TJPF_RGB, 0) != 0) {
+    return absl::InvalidArgumentError(absl::StrCat("broken JPEG: ", tjGetErrorStr2(handle.get())));
+  }
+  return image;
+}
+
+absl::StatusOr<std::string> EncodePng(int width_px, int height_px,
+                                      absl::Span<const std::uint8_t> rgb) {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckPixels(width_px, height_px, rgb.size()));
+  PngImage png;
+  png.image.width = static_cast<png_uint_32>(width_px);
+  png.image.height = static_cast<png_uint_32>(height_px);
+  png.image.format = PNG_FORMAT_RGB;
+  // Asking libpng for the exact size would compress the picture twice, so the upper bound is
+  // reserved.
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png.image);
+  std::string file(size, '\0');
+  if (png_image_write_to_memory(&png.image, file.data(), &size, 0, rgb.data(), 0, nullptr) == 0) {
+    return absl::InternalError(
+        absl::StrCat("cannot encode the picture as PNG: ", png.image.message));
+  }
+  file.resize(size);
+  file.shrink_to_fit();
+  return file;
+}
+
+absl::StatusOr<RgbImage> DecodePng(const std::string& png_file) {
+  PngImage png;
+  if (png_image_begin_read_from_memory(&png.image, png_file.data(), png_file.size()) == 0) {
+    return absl::InvalidArgumentError(absl::StrCat("no PNG: ", png.image.message));
+  }
+  png.image.format = PNG_FORMAT_RGB;
+  RgbImage image;
+  image.width_px = static_cast<int>(png.image.width);
+  image.height_px = static_cast<int>(png.image.height);
+  image.rgb.resize(ByteCount(image.width_px, image.height_px));
+  if (png_image_finish_read(&png.image, nullptr, image.rgb.data(), 0, nullptr) == 0) {
+    return absl::InvalidArgumentError(absl::StrCat("broken PNG: ", png.image.message));
+  }
+  return image;
+}
+
+}  // namespace thunderhead::frame

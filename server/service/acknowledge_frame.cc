@@ -1,0 +1,27 @@
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+#include "service/finished.h"
+#include "service/handlers.h"
+#include "service/limits_check.h"
+
+namespace thunderhead::service {
+namespace {
+
+absl::Status Acknowledge(Engine& engine, const v1::AcknowledgeFrameRequest& request) {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const auto session, engine.sessions.Find(request.session_id()));
+  if (session->hub().Acknowledge(request.viewer_id(), request.sequence())) return absl::OkStatus();
+  return absl::NotFoundError(absl::StrCat("viewer_id is ", request.viewer_id(),
+                                          "; no such viewer watches the session (its stream may "
+                                          "have ended)"));
+}
+
+}  // namespace
+
+grpc::ServerUnaryReactor* AcknowledgeFrame(Engine& engine, grpc::CallbackServerContext* context,
+                                           const v1::AcknowledgeFrameRequest* request,
+                                           v1::AcknowledgeFrameResponse* /*response*/) {
+  return Finished(context, Acknowledge(engine, *request));
+}
+
+}  // namespace thunderhead::service

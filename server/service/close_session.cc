@@ -1,0 +1,15 @@
+#include "service/finished.h"
+#include "service/handlers.h"
+#include "service/limits_check.h"
+
+namespace thunderhead::service {
+
+grpc::ServerUnaryReactor* CloseSession(Engine& engine, grpc::CallbackServerContext* context,
+                                       const v1::CloseSessionRequest* request,
+                                       v1::CloseSessionResponse* /*response*/) {
+  absl::Status status = CheckLimits(*request);
+  if (status.ok()) status = engine.sessions.Close(request->session_id());
+  return Finished(context, status);
+}
+
+}  // namespace thunderhead::service

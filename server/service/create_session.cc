@@ -1,0 +1,36 @@
+#include "base/status.h"
+#include "service/finished.h"
+#include "service/handlers.h"
+#include "service/limits_check.h"
+#include "service/scene_messages.h"
+
+namespace thunderhead::service {
+namespace {
+
+absl::Status Open(Engine& engine, v1::CreateSessionResponse& response) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const auto session, engine.sessions.Create());
+  const std::uint64_t revision = session->TakeRevision();
+  session->Show(revision, ToScene(response.scene()));
+  response.set_session_id(session->id());
+  response.set_scene_revision(revision);
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+grpc::ServerUnaryReactor* CreateSession(Engine& engine, grpc::CallbackServerContext* context,
+                                        const v1::CreateSessionRequest* request,
+                                        v1::CreateSessionResponse* response) {
+  absl::Status status = CheckLimits(*request);
+  v1::Scene& scene = *response->mutable_scene();
+  scene = request->scene();
+  if (status.ok()) status = PrepareScene(engine.store, scene);
+  if (!status.ok()) return Finished(context, status);
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  FrameThen(engine, scene, [=, &engine](const absl::Status& framed) {
+    reactor->Finish(ToGrpcStatus(framed.ok() ? Open(engine, *response) : framed));
+  });
+  return reactor;
+}
+
+}  // namespace thunderhead::service

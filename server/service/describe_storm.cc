@@ -1,0 +1,44 @@
+#include "base/status.h"
+#include "service/finished.h"
+#include "service/handlers.h"
+#include "service/limits_check.h"
+#include "service/scene_messages.h"
+
+namespace thunderhead::service {
+namespace {
+
+absl::StatusOr<const volume::StormInfo*> Check(const Engine& engine,
+                                               const v1::DescribeStormRequest& request) {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const volume::StormInfo* storm,
+                               FindStorm(engine.store, request.storm_id()));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckTime(*storm, request.time_index(), "time_index"));
+  return storm;
+}
+
+absl::Status Describe(Engine& engine, const volume::StormInfo& storm, int time_index,
+                      v1::DescribeStormResponse& response) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, engine.store.Get(storm.id, time_index, {}));
+  ToMessage(storm, *fields, time_index, *response.mutable_storm());
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+grpc::ServerUnaryReactor* DescribeStorm(Engine& engine, grpc::CallbackServerContext* context,
+                                        const v1::DescribeStormRequest* request,
+                                        v1::DescribeStormResponse* response) {
+  const auto storm = Check(engine, *request);
+  if (!storm.ok()) return Finished(context, storm.status());
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  engine.executor.Submit([=, &engine](const absl::Status& status) {
+    const bool abandoned = context->IsCancelled();
+    const int time_index = static_cast<int>(request->time_index());
+    reactor->Finish(ToGrpcStatus(abandoned     ? absl::CancelledError("no longer wanted")
+                                 : status.ok() ? Describe(engine, **storm, time_index, *response)
+                                               : status));
+  });
+  return reactor;
+}
+
+}  // namespace thunderhead::service

@@ -1,0 +1,70 @@
+#include "service/engine.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "base/status.h"
+#include "service/scene_messages.h"
+
+namespace thunderhead::service {
+namespace {
+
+// Enough names for a person to see a slip; a catalogue may hold thousands.
+constexpr std::size_t kMaxNamesListed = 10;
+
+std::string NamesOf(const std::vector<volume::StormInfo>& storms) {
+  const std::size_t listed = std::min(storms.size(), kMaxNamesListed);
+  std::string names = absl::StrJoin(
+      storms.begin(), storms.begin() + static_cast<std::ptrdiff_t>(listed), ", ",
+      [](std::string* out, const volume::StormInfo& storm) { out->append(storm.id); });
+  if (listed < storms.size()) absl::StrAppend(&names, " and ", storms.size() - listed, " more");
+  return names;
+}
+
+}  // namespace
+
+absl::StatusOr<const volume::StormInfo*> FindStorm(const volume::StormStore& store,
+                                                   const std::string& id) {
+  if (store.Storms().empty()) return absl::NotFoundError("the server holds no storm");
+  if (id.empty()) return &store.Storms().front();
+  const volume::StormInfo* storm = store.Find(id);
+  if (storm != nullptr) return storm;
+  return absl::NotFoundError(
+      absl::StrCat("no storm has the id '", id, "'; there is ", NamesOf(store.Storms())));
+}
+
+absl::Status CheckTime(const volume::StormInfo& storm, std::uint32_t time_index,
+                       const std::string& path) {
+  if (time_index < storm.times.size()) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(path, " is ", time_index, "; storm '", storm.id,
+                                                 "' has times 0 to ", storm.times.size() - 1));
+}
+
+absl::Status PrepareScene(const volume::StormStore& store, v1::Scene& scene) {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckScene(scene));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const volume::StormInfo* storm, FindStorm(store, scene.storm_id()));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckTime(*storm, scene.time_index(), "scene.time_index"));
+  FillSceneDefaults(scene, *storm);
+  return absl::OkStatus();
+}
+
+void FrameThen(Engine& engine, v1::Scene& scene, std::function<void(const absl::Status&)> then) {
+  if (!NeedsFraming(scene)) return then(absl::OkStatus());
+  const int time_index = static_cast<int>(scene.time_index());
+  if (const auto fields = engine.store.Peek(scene.storm_id(), time_index); fields != nullptr) {
+    FrameCondensate(scene, *fields);
+    return then(absl::OkStatus());
+  }
+  engine.executor.Submit(
+      [&engine, &scene, time_index, then = std::move(then)](const absl::Status& status) {
+        if (!status.ok()) return then(status);
+        const auto fields = engine.store.Get(scene.storm_id(), time_index, {});
+        if (!fields.ok()) return then(fields.status());
+        FrameCondensate(scene, **fields);
+        then(absl::OkStatus());
+      });
+}
+
+}  // namespace thunderhead::service

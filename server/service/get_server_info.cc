@@ -1,0 +1,19 @@
+#include "base/version.h"
+#include "service/finished.h"
+#include "service/handlers.h"
+
+namespace thunderhead::service {
+
+grpc::ServerUnaryReactor* GetServerInfo(Engine& engine, grpc::CallbackServerContext* context,
+                                        const v1::GetServerInfoRequest* /*request*/,
+                                        v1::GetServerInfoResponse* response) {
+  const session::DeviceInfo& device = engine.loop.Device();
+  response->set_version(base::Version());
+  response->set_gl_renderer(device.gl_renderer);
+  response->set_gl_version(device.gl_version);
+  response->set_device(device.device);
+  response->set_max_sessions(static_cast<std::uint32_t>(engine.sessions.max_sessions()));
+  return Finished(context, absl::OkStatus());
+}
+
+}  // namespace thunderhead::service

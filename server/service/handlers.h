@@ -1,0 +1,38 @@
+// One handler a remote call, each in the file named after it.
+#pragma once
+
+#include <grpcpp/support/server_callback.h>
+
+#include "service/engine.h"
+#include "thunderhead/v1/thunderhead.pb.h"
+
+namespace thunderhead::service {
+
+grpc::ServerUnaryReactor* GetServerInfo(Engine& engine, grpc::CallbackServerContext* context,
+                                        const v1::GetServerInfoRequest* request,
+                                        v1::GetServerInfoResponse* response);
+grpc::ServerUnaryReactor* ListStorms(Engine& engine, grpc::CallbackServerContext* context,
+                                     const v1::ListStormsRequest* request,
+                                     v1::ListStormsResponse* response);
+grpc::ServerUnaryReactor* DescribeStorm(Engine& engine, grpc::CallbackServerContext* context,
+                                        const v1::DescribeStormRequest* request,
+                                        v1::DescribeStormResponse* response);
+grpc::ServerUnaryReactor* CreateSession(Engine& engine, grpc::CallbackServerContext* context,
+                                        const v1::CreateSessionRequest* request,
+                                        v1::CreateSessionResponse* response);
+grpc::ServerUnaryReactor* UpdateScene(Engine& engine, grpc::CallbackServerContext* context,
+                                      const v1::UpdateSceneRequest* request,
+                                      v1::UpdateSceneResponse* response);
+grpc::ServerWriteReactor<v1::WatchFramesResponse>* WatchFrames(
+    Engine& engine, grpc::CallbackServerContext* context, const v1::WatchFramesRequest* request);
+grpc::ServerUnaryReactor* AcknowledgeFrame(Engine& engine, grpc::CallbackServerContext* context,
+                                           const v1::AcknowledgeFrameRequest* request,
+                                           v1::AcknowledgeFrameResponse* response);
+grpc::ServerUnaryReactor* CloseSession(Engine& engine, grpc::CallbackServerContext* context,
+                                       const v1::CloseSessionRequest* request,
+                                       v1::CloseSessionResponse* response);
+grpc::ServerUnaryReactor* RenderImage(Engine& engine, grpc::CallbackServerContext* context,
+                                      const v1::RenderImageRequest* request,
+                                      v1::RenderImageResponse* response);
+
+}  // namespace thunderhead::service

@@ -1,0 +1,208 @@
+#include "service/limits_check.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+#include "thunderhead/v1/limits.pb.h"
+
+namespace thunderhead::service {
+namespace {
+
+using google::protobuf::EnumDescriptor;
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+using google::protobuf::Reflection;
+
+// The shortest text that reads back as the same number.
+template <typename Number>
+std::string Text(Number value) {
+  char buffer[64];
+  const auto [end, error] = std::to_chars(buffer, buffer + sizeof(buffer), value);
+  return std::string(buffer, end);
+}
+
+std::string Range(const v1::NumberLimits& limits) {
+  std::string text =
+      absl::StrCat("between ", Text(limits.minimum()), " and ", Text(limits.maximum()));
+  if (!limits.unit().empty() && limits.unit() != "1") absl::StrAppend(&text, " ", limits.unit());
+  return text;
+}
+
+// The value, and the limits rounded to its type: 0.1 as float is above 0.1 as double, and yet is
+// within.
+struct Checked {
+  std::string text;
+  bool within = false;
+};
+
+template <typename Number>
+Checked Check(Number value, const v1::NumberLimits& limits) {
+  const bool within = value >= static_cast<Number>(limits.minimum()) &&
+                      value <= static_cast<Number>(limits.maximum());
+  return {Text(value), within};
+}
+
+// `index` is below zero for a field that is not repeated.
+Checked CheckNumber(const Message& message, const FieldDescriptor& field, int index,
+                    const v1::NumberLimits& limits) {
+  const Reflection& get = *message.GetReflection();
+  const bool one = index < 0;
+  switch (field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_FLOAT:
+      return Check(
+          one ? get.GetFloat(message, &field) : get.GetRepeatedFloat(message, &field, index),
+          limits);
+    case FieldDescriptor::CPPTYPE_DOUBLE:
+      return Check(
+          one ? get.GetDouble(message, &field) : get.GetRepeatedDouble(message, &field, index),
+          limits);
+    case FieldDescriptor::CPPTYPE_UINT32:
+      return Check<std::int64_t>(
+          one ? get.GetUInt32(message, &field) : get.GetRepeatedUInt32(message, &field, index),
+          limits);
+    case FieldDescriptor::CPPTYPE_INT32:
+      return Check<std::int64_t>(
+          one ? get.GetInt32(message, &field) : get.GetRepeatedInt32(message, &field, index),
+          limits);
+    default:
+      THUNDERHEAD_CHECK(false, absl::StrCat(field.full_name(), " has limits but is no number"));
+      return {};
+  }
+}
+
+std::string NamesOf(const EnumDescriptor& type) {
+  std::string names;
+  for (int i = 0; i < type.value_count(); ++i) {
+    absl::StrAppend(&names, i == 0 ? "" : ", ", type.value(i)->name());
+  }
+  return names;
+}
+
+absl::Status CheckEnum(const Message& message, const FieldDescriptor& field, int index,
+                       const std::string& path) {
+  const Reflection& get = *message.GetReflection();
+  const int value = index < 0 ? get.GetEnumValue(message, &field)
+                              : get.GetRepeatedEnumValue(message, &field, index);
+  if (field.enum_type()->FindValueByNumber(value) != nullptr) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat(path, " is ", value, "; it must be one of ", NamesOf(*field.enum_type())));
+}
+
+absl::Status CheckString(const Message& message, const FieldDescriptor& field, int index,
+                         const std::string& path) {
+  if (!field.options().HasExtension(v1::max_length)) return absl::OkStatus();
+  const std::size_t longest = field.options().GetExtension(v1::max_length);
+  std::string scratch;
+  const Reflection& get = *message.GetReflection();
+  const std::string& value = index < 0
+                                 ? get.GetStringReference(message, &field, &scratch)
+                                 : get.GetRepeatedStringReference(message, &field, index, &scratch);
+  if (value.size() <= longest) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(
+      path, " is ", value.size(), " bytes long; it may be at most ", longest, " bytes"));
+}
+
+absl::Status CheckMessage(const Message& message, const std::string& prefix);
+
+absl::Status CheckValue(const Message& message, const FieldDescriptor& field, int index,
+                        const std::string& path) {
+  switch (field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_MESSAGE: {
+      const Reflection& get = *message.GetReflection();
+      return CheckMessage(index < 0 ? get.GetMessage(message, &field)
+                                    : get.GetRepeatedMessage(message, &field, index),
+                          absl::StrCat(path, "."));
+    }
+    case FieldDescriptor::CPPTYPE_ENUM:
+      return CheckEnum(message, field, index, path);
+    case FieldDescriptor::CPPTYPE_STRING:
+      return CheckString(message, field, index, path);
+    default:
+      break;
+  }
+  if (!field.options().HasExtension(v1::number)) return absl::OkStatus();
+  const v1::NumberLimits& limits = field.options().GetExtension(v1::number);
+  const Checked checked = CheckNumber(message, field, index, limits);
+  if (checked.within) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat(path, " is ", checked.text, "; it must be ", Range(limits)));
+}
+
+absl::Status CheckRepeated(const Message& message, const FieldDescriptor& field,
+                           const std::string& path) {
+  const int size = message.GetReflection()->FieldSize(message, &field);
+  if (field.options().HasExtension(v1::max_items)) {
+    const std::uint32_t most = field.options().GetExtension(v1::max_items);
+    if (static_cast<std::uint32_t>(size) > most) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(path, " has ", size, " items; it may have at most ", most));
+    }
+  }
+  for (int i = 0; i < size; ++i) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckValue(message, field, i, absl::StrCat(path, "[", i, "]")));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status CheckMessage(const Message& message, const std::string& prefix) {
+  const auto& type = *message.GetDescriptor();
+  for (int i = 0; i < type.field_count(); ++i) {
+    const FieldDescriptor& field = *type.field(i);
+    const std::string path = absl::StrCat(prefix, field.name());
+    if (field.is_repeated()) {
+      THUNDERHEAD_RETURN_IF_ERROR(CheckRepeated(message, field, path));
+    } else if (!field.has_presence() || message.GetReflection()->HasField(message, &field)) {
+      THUNDERHEAD_RETURN_IF_ERROR(CheckValue(message, field, -1, path));
+    }
+  }
+  return absl::OkStatus();
+}
+
+void SetNumber(Message& message, const FieldDescriptor& field, double value) {
+  const Reflection& set = *message.GetReflection();
+  switch (field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_FLOAT:
+      return set.SetFloat(&message, &field, static_cast<float>(value));
+    case FieldDescriptor::CPPTYPE_DOUBLE:
+      return set.SetDouble(&message, &field, value);
+    case FieldDescriptor::CPPTYPE_UINT32:
+      return set.SetUInt32(&message, &field, static_cast<std::uint32_t>(value));
+    case FieldDescriptor::CPPTYPE_INT32:
+      return set.SetInt32(&message, &field, static_cast<std::int32_t>(value));
+    default:
+      THUNDERHEAD_CHECK(false, absl::StrCat(field.full_name(), " has limits but is no number"));
+  }
+}
+
+}  // namespace
+
+absl::Status CheckLimits(const Message& message) { return CheckMessage(message, ""); }
+
+void FillNumberDefaults(Message& message) {
+  const Reflection& reflection = *message.GetReflection();
+  const auto& type = *message.GetDescriptor();
+  for (int i = 0; i < type.field_count(); ++i) {
+    const FieldDescriptor& field = *type.field(i);
+    const bool is_message = field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
+    if (field.is_repeated()) {
+      for (int j = 0; is_message && j < reflection.FieldSize(message, &field); ++j) {
+        FillNumberDefaults(*reflection.MutableRepeatedMessage(&message, &field, j));
+      }
+    } else if (is_message) {
+      if (reflection.HasField(message, &field)) {
+        FillNumberDefaults(*reflection.MutableMessage(&message, &field));
+      }
+    } else if (field.has_presence() && !reflection.HasField(message, &field)) {
+      const v1::NumberLimits& limits = field.options().GetExtension(v1::number);
+      if (limits.has_default_value()) SetNumber(message, field, limits.default_value());
+    }
+  }
+}
+
+}  // namespace thunderhead::service

@@ -1,0 +1,19 @@
+// Checks any message against the limits that its schema states (proto/thunderhead/v1/limits.proto),
+// and fills in the defaults stated there. Knows the options, but no message by name.
+#pragma once
+
+#include <google/protobuf/message.h>
+
+#include "absl/status/status.h"
+
+namespace thunderhead::service {
+
+// INVALID_ARGUMENT names the first value outside its limits by its full path, e.g.
+// "scene.fields[1].radius_m is 5; it must be between 1e-07 and 0.1 m".
+absl::Status CheckLimits(const google::protobuf::Message& message);
+
+// Sets every absent number that has a default in the schema, in `message` and the messages present
+// in it.
+void FillNumberDefaults(google::protobuf::Message& message);
+
+}  // namespace thunderhead::service

@@ -1,0 +1,100 @@
+#include <atomic>
+#include <memory>
+#include <utility>
+
+#include "base/status.h"
+#include "base/stopwatch.h"
+#include "frame/image_codec.h"
+#include "service/finished.h"
+#include "service/handlers.h"
+#include "service/limits_check.h"
+#include "service/scene_messages.h"
+
+namespace thunderhead::service {
+namespace {
+
+absl::Status Encode(const session::DisplayFrame& picture, const v1::RenderImageRequest& request,
+                    v1::RenderImageResponse& response) {
+  const base::Stopwatch stopwatch;
+  const bool jpeg = request.format() == v1::IMAGE_FORMAT_JPEG;
+  const int quality = static_cast<int>(response.scene().output().jpeg_quality());
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      *response.mutable_image(),
+      jpeg ? frame::EncodeJpeg(picture.width_px, picture.height_px, picture.rgb, quality)
+           : frame::EncodePng(picture.width_px, picture.height_px, picture.rgb));
+  response.set_format(jpeg ? v1::IMAGE_FORMAT_JPEG : v1::IMAGE_FORMAT_PNG);
+  response.set_width_px(static_cast<std::uint32_t>(picture.width_px));
+  response.set_height_px(static_cast<std::uint32_t>(picture.height_px));
+  for (const session::StageCost& cost : picture.stages) ToMessage(cost, *response.add_stages());
+  ToMessage({"encode", stopwatch.ElapsedMs()}, *response.add_stages());
+  ToMessage(picture.modelled, *response.mutable_modelled());
+  return absl::OkStatus();
+}
+
+// One picture on its way: read (executor), drawn (render loop), encoded (executor). Finish is
+// called by exactly one of these steps; gRPC deletes the reactor through OnDone, after which no
+// step runs.
+class PictureReactor : public grpc::ServerUnaryReactor {
+ public:
+  PictureReactor(Engine& engine, const v1::RenderImageRequest& request,
+                 v1::RenderImageResponse& response)
+      : engine_(engine), request_(request), response_(response) {}
+
+  void Begin() {
+    engine_.executor.Submit([this](const absl::Status& status) {
+      const absl::Status submitted = status.ok() ? ReadAndSubmit() : status;
+      if (!submitted.ok()) Finish(ToGrpcStatus(submitted));
+    });
+  }
+
+  void OnCancel() override {
+    *cancelled_ = true;
+    engine_.wake.Notify();
+  }
+
+  void OnDone() override { delete this; }
+
+ private:
+  absl::Status ReadAndSubmit() {
+    if (*cancelled_) return absl::CancelledError("the picture was no longer wanted");
+    v1::Scene& scene = *response_.mutable_scene();
+    const base::Stopwatch stopwatch;
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        auto fields, engine_.store.Get(scene.storm_id(), static_cast<int>(scene.time_index()), {}));
+    ToMessage({"read", stopwatch.ElapsedMs()}, *response_.add_stages());
+    FrameCondensate(scene, *fields);
+    engine_.loop.RenderImage(
+        {ToScene(scene), std::move(fields), cancelled_,
+         [this](absl::StatusOr<session::DisplayFrame> picture) { Drawn(std::move(picture)); }});
+    return absl::OkStatus();
+  }
+
+  void Drawn(absl::StatusOr<session::DisplayFrame> picture) {
+    if (!picture.ok()) return Finish(ToGrpcStatus(picture.status()));
+    const auto drawn = std::make_shared<session::DisplayFrame>(*std::move(picture));
+    engine_.executor.Submit([this, drawn](const absl::Status& status) {
+      Finish(ToGrpcStatus(status.ok() ? Encode(*drawn, request_, response_) : status));
+    });
+  }
+
+  Engine& engine_;
+  const v1::RenderImageRequest& request_;
+  v1::RenderImageResponse& response_;
+  const std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
+};
+
+}  // namespace
+
+grpc::ServerUnaryReactor* RenderImage(Engine& engine, grpc::CallbackServerContext* context,
+                                      const v1::RenderImageRequest* request,
+                                      v1::RenderImageResponse* response) {
+  absl::Status status = CheckLimits(*request);
+  *response->mutable_scene() = request->scene();
+  if (status.ok()) status = PrepareScene(engine.store, *response->mutable_scene());
+  if (!status.ok()) return Finished(context, status);
+  auto* reactor = new PictureReactor(engine, *request, *response);
+  reactor->Begin();
+  return reactor;
+}
+
+}  // namespace thunderhead::service

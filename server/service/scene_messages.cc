@@ -1,0 +1,323 @@
+#include "service/scene_messages.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "scene/view.h"
+#include "service/limits_check.h"
+
+namespace thunderhead::service {
+namespace {
+
+// More than 8K UHD; a limit on the memory that one request can ask for.
+constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 25;
+
+// HYDROMETEOR_UNSPECIFIED is 0, so the values' order is the messages' less one.
+v1::Hydrometeor ToMessage(physics::Hydrometeor hydrometeor) {
+  return static_cast<v1::Hydrometeor>(physics::IndexOf(hydrometeor) + 1);
+}
+
+std::size_t IndexOf(v1::Hydrometeor hydrometeor) {
+  return static_cast<std::size_t>(hydrometeor) - 1;
+}
+
+constexpr std::array kPhaseKinds = {
+    std::pair{v1::PhaseFunction::KIND_HENYEY_GREENSTEIN, physics::PhaseKind::kHenyeyGreenstein},
+    std::pair{v1::PhaseFunction::KIND_CORNETTE_SHANKS, physics::PhaseKind::kCornetteShanks},
+    std::pair{v1::PhaseFunction::KIND_RAYLEIGH, physics::PhaseKind::kRayleigh},
+};
+constexpr std::array kModes = {
+    std::pair{v1::MODE_PER_FIELD_PHASE_TRANSLUCENT, scene::Mode::kPerFieldPhaseTranslucent},
+    std::pair{v1::MODE_UNIFORM_PHASE_LOW_ALBEDO, scene::Mode::kUniformPhaseLowAlbedo},
+    std::pair{v1::MODE_UNIFORM_PHASE_TRANSLUCENT, scene::Mode::kUniformPhaseTranslucent},
+};
+constexpr std::array kTransports = {
+    std::pair{v1::TRANSPORT_CONSISTENT, scene::Transport::kConsistent},
+    std::pair{v1::TRANSPORT_PAPER, scene::Transport::kPaper},
+};
+constexpr std::array kToneMaps = {
+    std::pair{v1::TONE_MAP_FILMIC, scene::ToneMap::kFilmic},
+    std::pair{v1::TONE_MAP_LINEAR, scene::ToneMap::kLinear},
+};
+
+// The value beside `message`; the first row is the default.
+template <typename Table, typename Message>
+auto ValueOf(const Table& table, Message message) {
+  for (const auto& [from, to] : table) {
+    if (from == message) return to;
+  }
+  return table.front().second;
+}
+
+template <typename Table, typename Value>
+auto MessageOf(const Table& table, Value value) {
+  for (const auto& [from, to] : table) {
+    if (to == value) return from;
+  }
+  return table.front().first;
+}
+
+void SetPosition(const glm::dvec3& position_m, v1::Position& message) {
+  message.set_x_m(static_cast<float>(position_m.x));
+  message.set_y_m(static_cast<float>(position_m.y));
+  message.set_z_m(static_cast<float>(position_m.z));
+}
+
+void FillFieldDefaults(v1::FieldParameters& field, physics::Hydrometeor hydrometeor) {
+  const physics::ParticleOptics& optics = physics::DefaultOptics(hydrometeor);
+  field.set_hydrometeor(ToMessage(hydrometeor));
+  if (!field.has_visible()) field.set_visible(true);
+  if (!field.has_radius_m()) field.set_radius_m(optics.radius_m);
+  if (!field.has_density_kg_per_m3()) field.set_density_kg_per_m3(optics.density_kg_per_m3);
+  if (!field.has_albedo()) field.set_albedo(optics.albedo);
+  v1::PhaseFunction& phase = *field.mutable_phase();
+  if (phase.kind() == v1::PhaseFunction::KIND_UNSPECIFIED) {
+    phase.set_kind(MessageOf(kPhaseKinds, optics.phase.kind));
+  }
+  if (!phase.has_asymmetry()) phase.set_asymmetry(optics.phase.asymmetry);
+  if (!field.has_false_color()) {
+    v1::Color& color = *field.mutable_false_color();
+    color.set_red(optics.false_color.r);
+    color.set_green(optics.false_color.g);
+    color.set_blue(optics.false_color.b);
+  }
+  FillNumberDefaults(field);
+}
+
+v1::FieldParameters& FieldOf(v1::Scene& scene, physics::Hydrometeor hydrometeor) {
+  for (v1::FieldParameters& field : *scene.mutable_fields()) {
+    if (field.hydrometeor() == ToMessage(hydrometeor)) return field;
+  }
+  v1::FieldParameters& field = *scene.add_fields();
+  field.set_hydrometeor(ToMessage(hydrometeor));
+  return field;
+}
+
+template <typename Repeated>
+std::optional<int> FirstWith(const Repeated& fields, v1::Hydrometeor hydrometeor) {
+  for (int i = 0; i < fields.size(); ++i) {
+    if (fields[i].hydrometeor() == hydrometeor) return i;
+  }
+  return std::nullopt;
+}
+
+scene::FieldParameters ToField(const v1::FieldParameters& message) {
+  scene::FieldParameters field;
+  field.visible = message.visible();
+  field.scale = message.scale();
+  field.optics.radius_m = message.radius_m();
+  field.optics.density_kg_per_m3 = message.density_kg_per_m3();
+  field.optics.albedo = message.albedo();
+  field.optics.phase = {ValueOf(kPhaseKinds, message.phase().kind()), message.phase().asymmetry()};
+  const v1::Color& color = message.false_color();
+  field.optics.false_color = {color.red(), color.green(), color.blue()};
+  return field;
+}
+
+scene::OrbitCamera ToCamera(const v1::OrbitCamera& message) {
+  scene::OrbitCamera camera;
+  camera.target_m = {message.target().x_m(), message.target().y_m(), message.target().z_m()};
+  camera.azimuth_deg = message.azimuth_deg();
+  camera.elevation_deg = message.elevation_deg();
+  camera.distance_m = message.distance_m();
+  camera.field_of_view_deg = message.field_of_view_deg();
+  return camera;
+}
+
+struct WorldBox {
+  glm::dvec3 low_m;
+  glm::dvec3 high_m;
+};
+
+WorldBox BoxOf(const volume::RegularGrid& grid, const volume::CellBox& cells) {
+  return {grid.low_corner_m + glm::dvec3(cells.low) * grid.spacing_m,
+          grid.low_corner_m + glm::dvec3(cells.high) * grid.spacing_m};
+}
+
+void SetGrid(const volume::RegularGrid& grid, v1::Grid& message) {
+  message.set_nx(static_cast<std::uint32_t>(grid.cells.x));
+  message.set_ny(static_cast<std::uint32_t>(grid.cells.y));
+  message.set_nz(static_cast<std::uint32_t>(grid.cells.z));
+  message.set_dx_m(grid.spacing_m.x);
+  message.set_dy_m(grid.spacing_m.y);
+  message.set_dz_m(grid.spacing_m.z);
+  SetPosition(grid.low_corner_m, *message.mutable_low());
+  SetPosition(grid.HighCorner_m(), *message.mutable_high());
+}
+
+void SetField(const volume::HydrometeorField& field, v1::FieldDescription& message) {
+  const volume::FieldStatistics& statistics = field.statistics;
+  message.set_hydrometeor(ToMessage(field.hydrometeor));
+  message.set_variable(field.variable);
+  message.set_minimum_kg_per_kg(statistics.minimum_kg_per_kg);
+  message.set_maximum_kg_per_kg(statistics.maximum_kg_per_kg);
+  message.set_mean_water_path_kg_per_m2(statistics.mean_water_path_kg_per_m2);
+  message.set_maximum_water_path_kg_per_m2(statistics.maximum_water_path_kg_per_m2);
+  message.set_negative_cells(static_cast<std::uint64_t>(statistics.negative_cells));
+  message.set_missing_cells(static_cast<std::uint64_t>(statistics.missing_cells));
+  FillFieldDefaults(*message.mutable_defaults(), field.hydrometeor);
+}
+
+}  // namespace
+
+absl::Status CheckScene(const v1::Scene& scene) {
+  for (int i = 0; i < scene.fields_size(); ++i) {
+    const v1::Hydrometeor hydrometeor = scene.fields(i).hydrometeor();
+    const std::string path = absl::StrCat("scene.fields[", i, "].hydrometeor");
+    if (hydrometeor == v1::HYDROMETEOR_UNSPECIFIED) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(path, " is not given; it must say which field the settings are for"));
+    }
+    const int first = *FirstWith(scene.fields(), hydrometeor);
+    if (first != i) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(path, " is ", v1::Hydrometeor_Name(hydrometeor), ", which scene.fields[",
+                       first, "] already is; each hydrometeor may be listed once"));
+    }
+  }
+  v1::Output output = scene.output();
+  FillNumberDefaults(output);
+  const std::uint64_t pixels = std::uint64_t{output.width_px()} * output.height_px();
+  if (pixels > kMaxPixels) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "scene.output.width_px times scene.output.height_px is ", output.width_px(), " x ",
+        output.height_px(), " = ", pixels, "; it must be at most ", kMaxPixels, " pixels"));
+  }
+  return absl::OkStatus();
+}
+
+bool NeedsFraming(const v1::Scene& scene) {
+  const v1::OrbitCamera& camera = scene.camera().orbit();
+  return !camera.has_target() || !camera.has_distance_m();
+}
+
+void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
+  scene.set_storm_id(storm.id);
+  scene.mutable_camera()->mutable_orbit();
+  scene.mutable_sun();
+  scene.mutable_sky();
+  scene.mutable_output();
+  v1::Rendering& rendering = *scene.mutable_rendering();
+  rendering.set_mode(MessageOf(kModes, ValueOf(kModes, rendering.mode())));
+  rendering.set_transport(MessageOf(kTransports, ValueOf(kTransports, rendering.transport())));
+  if (!rendering.has_false_colors()) rendering.set_false_colors(false);
+  v1::Display& display = *scene.mutable_display();
+  display.set_tone_map(MessageOf(kToneMaps, ValueOf(kToneMaps, display.tone_map())));
+  for (physics::Hydrometeor hydrometeor : storm.fields) FieldOf(scene, hydrometeor);
+  for (v1::FieldParameters& field : *scene.mutable_fields()) {
+    FillFieldDefaults(field, physics::kHydrometeors[IndexOf(field.hydrometeor())]);
+  }
+  FillNumberDefaults(scene);
+}
+
+void FrameCondensate(v1::Scene& scene, const volume::HydrometeorFields& fields) {
+  v1::OrbitCamera& camera = *scene.mutable_camera()->mutable_orbit();
+  const volume::RegularGrid& grid = fields.grid;
+  const WorldBox box = fields.condensate.Empty() ? WorldBox{grid.low_corner_m, grid.HighCorner_m()}
+                                                 : BoxOf(grid, fields.condensate);
+  const double aspect_ratio =
+      static_cast<double>(scene.output().width_px()) / scene.output().height_px();
+  const scene::OrbitCamera framing =
+      scene::Framing(ToCamera(camera), box.low_m, box.high_m, aspect_ratio);
+  if (!camera.has_target()) SetPosition(framing.target_m, *camera.mutable_target());
+  if (!camera.has_distance_m()) {
+    const auto& limits = v1::OrbitCamera::descriptor()
+                             ->FindFieldByName("distance_m")
+                             ->options()
+                             .GetExtension(v1::number);
+    camera.set_distance_m(
+        static_cast<float>(std::clamp(framing.distance_m, limits.minimum(), limits.maximum())));
+  }
+}
+
+scene::Scene ToScene(const v1::Scene& message) {
+  scene::Scene scene;
+  scene.storm_id = message.storm_id();
+  scene.time_index = static_cast<int>(message.time_index());
+  scene.camera = ToCamera(message.camera().orbit());
+  scene.sun = {message.sun().azimuth_deg(), message.sun().elevation_deg(),
+               message.sun().irradiance()};
+  scene.sky = {message.sky().brightness(), message.sky().ground_albedo()};
+  for (const v1::FieldParameters& field : message.fields()) {
+    scene.fields[IndexOf(field.hydrometeor())] = ToField(field);
+  }
+  const v1::Rendering& rendering = message.rendering();
+  scene.rendering.mode = ValueOf(kModes, rendering.mode());
+  scene.rendering.transport = ValueOf(kTransports, rendering.transport());
+  scene.rendering.slices = static_cast<int>(rendering.slices());
+  scene.rendering.theta_f_deg = rendering.theta_f_deg();
+  scene.rendering.false_colors = rendering.false_colors();
+  scene.display.exposure_ev = message.display().exposure_ev();
+  scene.display.tone_map = ValueOf(kToneMaps, message.display().tone_map());
+  scene.output.width_px = static_cast<int>(message.output().width_px());
+  scene.output.height_px = static_cast<int>(message.output().height_px());
+  scene.output.jpeg_quality = static_cast<int>(message.output().jpeg_quality());
+  return scene;
+}
+
+void ToMessage(const scene::OrbitCamera& camera, v1::Camera& message) {
+  v1::OrbitCamera& orbit = *message.mutable_orbit();
+  SetPosition(camera.target_m, *orbit.mutable_target());
+  orbit.set_azimuth_deg(static_cast<float>(camera.azimuth_deg));
+  orbit.set_elevation_deg(static_cast<float>(camera.elevation_deg));
+  orbit.set_distance_m(static_cast<float>(camera.distance_m));
+  orbit.set_field_of_view_deg(static_cast<float>(camera.field_of_view_deg));
+}
+
+void ToMessage(const session::Modelled& modelled, v1::Modelled& message) {
+  for (physics::Hydrometeor field : modelled.fields) message.add_fields(ToMessage(field));
+  message.set_slices(static_cast<std::uint32_t>(modelled.slices));
+  message.set_device_bytes(modelled.device_bytes);
+  message.set_occupied_share(static_cast<float>(modelled.occupied_share));
+}
+
+void ToMessage(const session::StageCost& cost, v1::StageCost& message) {
+  message.set_stage(cost.stage);
+  message.set_milliseconds(static_cast<float>(cost.milliseconds));
+}
+
+void ToMessage(const session::EncodedFrame& frame, v1::Frame& message) {
+  message.set_sequence(frame.sequence);
+  message.set_scene_revision(frame.scene_revision);
+  message.set_jpeg(frame.jpeg);
+  message.set_width_px(static_cast<std::uint32_t>(frame.width_px));
+  message.set_height_px(static_cast<std::uint32_t>(frame.height_px));
+  ToMessage(frame.camera, *message.mutable_camera());
+  for (const session::StageCost& cost : frame.stages) ToMessage(cost, *message.add_stages());
+  ToMessage(frame.modelled, *message.mutable_modelled());
+  message.set_refined(frame.refined);
+}
+
+void ToMessage(const session::Problem& problem, v1::Problem& message) {
+  message.set_scene_revision(problem.scene_revision);
+  message.set_message(problem.message);
+}
+
+void ToMessage(const volume::StormInfo& storm, const volume::HydrometeorFields& fields,
+               int time_index, v1::StormDescription& message) {
+  message.set_id(storm.id);
+  message.set_title(storm.title);
+  for (std::size_t i = 0; i < storm.times.size(); ++i) {
+    v1::StormTime& time = *message.add_times();
+    time.set_index(static_cast<std::uint32_t>(i));
+    time.set_valid_time(storm.times[i].valid_time);
+    time.set_elapsed_s(storm.times[i].elapsed_s);
+  }
+  SetGrid(fields.grid, *message.mutable_grid());
+  for (const volume::HydrometeorField& field : fields.fields) {
+    SetField(field, *message.add_fields());
+  }
+  message.set_time_index(static_cast<std::uint32_t>(time_index));
+  if (storm.latitude_deg.has_value()) message.set_latitude_deg(*storm.latitude_deg);
+  if (storm.longitude_deg.has_value()) message.set_longitude_deg(*storm.longitude_deg);
+  message.set_bytes_per_time(fields.Bytes());
+  if (!fields.condensate.Empty()) {
+    const WorldBox box = BoxOf(fields.grid, fields.condensate);
+    SetPosition(box.low_m, *message.mutable_condensate_low());
+    SetPosition(box.high_m, *message.mutable_condensate_high());
+  }
+}
+
+}  // namespace thunderhead::service

@@ -1,0 +1,44 @@
+// Messages to values and back: scenes, storms, frames. The one place that knows both. Limits are
+// checked elsewhere (limits_check.h); what is checked here are the rules that no number's limits
+// can state.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "scene/scene.h"
+#include "session/frame_hub.h"
+#include "session/frame_source.h"
+#include "thunderhead/v1/thunderhead.pb.h"
+#include "volume/storm_store.h"
+
+namespace thunderhead::service {
+
+// Rules on a scene that its fields' limits do not state: each hydrometeor once, the size of the
+// picture.
+absl::Status CheckScene(const v1::Scene& scene);
+
+// True if the camera's defaults depend on where the storm is.
+bool NeedsFraming(const v1::Scene& scene);
+
+// Fills in every default but those of the camera that depend on the storm's fields.
+void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm);
+
+// Fills in the camera's target and distance, where absent, so that the condensate of `fields` is
+// framed.
+void FrameCondensate(v1::Scene& scene, const volume::HydrometeorFields& fields);
+
+// The value of a scene whose defaults are filled in.
+scene::Scene ToScene(const v1::Scene& message);
+
+void ToMessage(const scene::OrbitCamera& camera, v1::Camera& message);
+void ToMessage(const session::Modelled& modelled, v1::Modelled& message);
+void ToMessage(const session::EncodedFrame& frame, v1::Frame& message);
+void ToMessage(const session::Problem& problem, v1::Problem& message);
+void ToMessage(const session::StageCost& cost, v1::StageCost& message);
+void ToMessage(const volume::StormInfo& storm, const volume::HydrometeorFields& fields,
+               int time_index, v1::StormDescription& message);
+
+}  // namespace thunderhead::service

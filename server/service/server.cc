@@ -1,0 +1,126 @@
+#include "service/server.h"
+
+#include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/grpcpp.h>
+#include <grpcpp/health_check_service_interface.h>
+
+#include <chrono>
+#include <mutex>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "base/executor.h"
+#include "base/status.h"
+#include "base/wake_signal.h"
+#include "service/engine.h"
+#include "service/thunderhead_service.h"
+
+namespace thunderhead::service {
+namespace {
+
+// Blocking work: reading fields, encoding pictures. Reads wait for one another in the store, so a
+// few are enough.
+constexpr int kExecutorThreads = 4;
+constexpr std::size_t kMaxWaitingTasks = 256;
+// A scene is at most a few kilobytes.
+constexpr int kMaxRequestBytes = 1 << 20;
+// The largest picture that CheckScene allows, uncompressed, with room to spare.
+constexpr int kMaxResponseBytes = 128 << 20;
+// A viewer that vanished without closing is noticed after these.
+constexpr int kKeepaliveTimeMs = 20'000;
+constexpr int kKeepaliveTimeoutMs = 10'000;
+// How long calls under way may take to end once they were told to.
+constexpr std::chrono::seconds kShutdownGrace{2};
+
+class RunningServer final : public Server {
+ public:
+  RunningServer(const ServerOptions& options, std::shared_ptr<volume::StormStore> store)
+      : store_(std::move(store)),
+        sessions_(options.sessions, [this] { wake_.Notify(); }),
+        executor_(kExecutorThreads, kMaxWaitingTasks) {}
+
+  ~RunningServer() override { Shutdown(); }
+
+  absl::Status StartLoop(const session::RenderLoopOptions& options,
+                         const session::FrameSourceFactory& make_source) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        loop_, session::RenderLoop::Start(options, *store_, sessions_, wake_, make_source));
+    engine_ = std::make_unique<Engine>(Engine{*store_, sessions_, *loop_, wake_, executor_});
+    service_ = std::make_unique<ThunderheadService>(*engine_);
+    return absl::OkStatus();
+  }
+
+  absl::Status Listen(const std::string& address) {
+    // Both work on the next server built, so they are said once for all.
+    static std::once_flag plugins;
+    std::call_once(plugins, [] {
+      grpc::EnableDefaultHealthCheckService(true);
+      grpc::reflection::InitProtoReflectionServerBuilderPlugin();
+    });
+    grpc::ServerBuilder builder;
+    builder.RegisterService(service_.get());
+    builder.SetMaxReceiveMessageSize(kMaxRequestBytes);
+    builder.SetMaxSendMessageSize(kMaxResponseBytes);
+    // Without this a second server would share the port instead of being told that it is taken.
+    builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveTimeMs);
+    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
+    if (!address.empty()) {
+      builder.AddListeningPort(address, grpc::InsecureServerCredentials(), &port_);
+    }
+    server_ = builder.BuildAndStart();
+    if (server_ == nullptr || (!address.empty() && port_ == 0)) {
+      return absl::UnavailableError(absl::StrCat(
+          "cannot listen for gRPC on ", address,
+          ": the address is not this machine's, or the port is taken; choose another"));
+    }
+    server_->GetHealthCheckService()->SetServingStatus(true);
+    server_->GetHealthCheckService()->SetServingStatus(v1::ThunderheadService::service_full_name(),
+                                                       true);
+    return absl::OkStatus();
+  }
+
+  int Port() const override { return port_; }
+  const session::DeviceInfo& Device() const override { return loop_->Device(); }
+
+  std::shared_ptr<grpc::Channel> InProcessChannel() override {
+    grpc::ChannelArguments arguments;
+    arguments.SetMaxReceiveMessageSize(kMaxResponseBytes);
+    return server_->InProcessChannel(arguments);
+  }
+
+  void Shutdown() override {
+    if (server_ != nullptr) server_->GetHealthCheckService()->Shutdown();
+    sessions_.CloseAll(absl::UnavailableError("the server is shutting down"));
+    if (loop_ != nullptr) loop_->Stop();
+    executor_.Stop();
+    if (server_ == nullptr) return;
+    server_->Shutdown(std::chrono::system_clock::now() + kShutdownGrace);
+    server_->Wait();
+    server_.reset();
+  }
+
+ private:
+  base::WakeSignal wake_;
+  const std::shared_ptr<volume::StormStore> store_;
+  session::Sessions sessions_;
+  base::Executor executor_;
+  std::unique_ptr<session::RenderLoop> loop_;
+  std::unique_ptr<Engine> engine_;
+  std::unique_ptr<ThunderheadService> service_;
+  std::unique_ptr<grpc::Server> server_;
+  int port_ = 0;
+};
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Server>> Server::Start(
+    const ServerOptions& options, std::shared_ptr<volume::StormStore> store,
+    const session::FrameSourceFactory& make_source) {
+  auto server = std::make_unique<RunningServer>(options, std::move(store));
+  THUNDERHEAD_RETURN_IF_ERROR(server->StartLoop(options.render_loop, make_source));
+  THUNDERHEAD_RETURN_IF_ERROR(server->Listen(options.address));
+  return server;
+}
+
+}  // namespace thunderhead::service

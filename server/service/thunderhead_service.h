@@ -1,0 +1,44 @@
+// The service as gRPC calls it: hands every call to its handler.
+#pragma once
+
+#include "service/engine.h"
+#include "thunderhead/v1/thunderhead.grpc.pb.h"
+
+namespace thunderhead::service {
+
+class ThunderheadService final : public v1::ThunderheadService::CallbackService {
+ public:
+  explicit ThunderheadService(Engine& engine) : engine_(engine) {}
+
+  grpc::ServerUnaryReactor* GetServerInfo(grpc::CallbackServerContext* context,
+                                          const v1::GetServerInfoRequest* request,
+                                          v1::GetServerInfoResponse* response) override;
+  grpc::ServerUnaryReactor* ListStorms(grpc::CallbackServerContext* context,
+                                       const v1::ListStormsRequest* request,
+                                       v1::ListStormsResponse* response) override;
+  grpc::ServerUnaryReactor* DescribeStorm(grpc::CallbackServerContext* context,
+                                          const v1::DescribeStormRequest* request,
+                                          v1::DescribeStormResponse* response) override;
+  grpc::ServerUnaryReactor* CreateSession(grpc::CallbackServerContext* context,
+                                          const v1::CreateSessionRequest* request,
+                                          v1::CreateSessionResponse* response) override;
+  grpc::ServerUnaryReactor* UpdateScene(grpc::CallbackServerContext* context,
+                                        const v1::UpdateSceneRequest* request,
+                                        v1::UpdateSceneResponse* response) override;
+  grpc::ServerUnaryReactor* AcknowledgeFrame(grpc::CallbackServerContext* context,
+                                             const v1::AcknowledgeFrameRequest* request,
+                                             v1::AcknowledgeFrameResponse* response) override;
+  grpc::ServerUnaryReactor* CloseSession(grpc::CallbackServerContext* context,
+                                         const v1::CloseSessionRequest* request,
+                                         v1::CloseSessionResponse* response) override;
+  grpc::ServerUnaryReactor* RenderImage(grpc::CallbackServerContext* context,
+                                        const v1::RenderImageRequest* request,
+                                        v1::RenderImageResponse* response) override;
+  grpc::ServerWriteReactor<v1::WatchFramesResponse>* WatchFrames(
+      grpc::CallbackServerContext* context, const v1::WatchFramesRequest* request) override;
+
+ private:
+  Engine& engine_;
+};
+
+}  // namespace thunderhead::service

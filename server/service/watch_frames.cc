@@ -1,0 +1,135 @@
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "base/status.h"
+#include "service/handlers.h"
+#include "service/limits_check.h"
+#include "service/scene_messages.h"
+#include "service/status_table.h"
+
+namespace thunderhead::service {
+namespace {
+
+using Reactor = grpc::ServerWriteReactor<v1::WatchFramesResponse>;
+
+// One viewer's stream. It lives until both gRPC and the hub have let go of it. At most one write is
+// under way, and Finish is called when none is, once.
+class FrameStream : public Reactor,
+                    public session::Viewer,
+                    public std::enable_shared_from_this<FrameStream> {
+ public:
+  static Reactor* Start(std::shared_ptr<session::Session> session) {
+    auto stream = std::make_shared<FrameStream>(std::move(session));
+    stream->held_by_grpc_ = stream;
+    const auto viewer_id = stream->session_->hub().Join(stream);
+    if (!viewer_id.ok()) {
+      stream->Finish(ToGrpcStatus(viewer_id.status()));
+      return stream.get();
+    }
+    {
+      const std::lock_guard lock(stream->mutex_);
+      stream->viewer_id_ = *viewer_id;
+    }
+    stream->Wake();
+    return stream.get();
+  }
+
+  explicit FrameStream(std::shared_ptr<session::Session> session) : session_(std::move(session)) {}
+
+  void Wake() override {
+    std::optional<session::FrameEvent> event;
+    std::optional<grpc::Status> end;
+    {
+      const std::lock_guard lock(mutex_);
+      if (viewer_id_ == 0 || writing_ || finished_) return;
+      end = End();
+      if (!end.has_value()) event = session_->hub().Take(viewer_id_);
+      if (!end.has_value() && !event.has_value()) return;
+      writing_ = event.has_value();
+      finished_ = end.has_value();
+    }
+    if (end.has_value()) return Finish(*end);
+    SetResponse(*event);
+    StartWrite(&response_);
+  }
+
+  void OnWriteDone(bool ok) override {
+    {
+      const std::lock_guard lock(mutex_);
+      writing_ = false;
+      disconnected_ = disconnected_ || !ok;
+    }
+    Wake();
+  }
+
+  void OnCancel() override {
+    {
+      const std::lock_guard lock(mutex_);
+      disconnected_ = true;
+    }
+    Wake();
+  }
+
+  void OnDone() override {
+    if (viewer_id_ != 0) session_->hub().Leave(viewer_id_);
+    session_->Touch();
+    held_by_grpc_.reset();
+  }
+
+ private:
+  // Why the stream must end now, if it must. Needs mutex_.
+  std::optional<grpc::Status> End() {
+    if (disconnected_) return grpc::Status(grpc::StatusCode::CANCELLED, "the viewer left");
+    const absl::Status closed = session_->hub().ClosedBecause();
+    if (closed.ok()) return std::nullopt;
+    return ToGrpcStatus(closed);
+  }
+
+  // `writing_` is set, so nobody else touches the response.
+  void SetResponse(const session::FrameEvent& event) {
+    response_.set_viewer_id(viewer_id_);
+    if (const auto* frame = std::get_if<std::shared_ptr<const session::EncodedFrame>>(&event)) {
+      response_.clear_event();
+      ToMessage(**frame, *response_.mutable_frame());
+    } else {
+      ToMessage(std::get<session::Problem>(event), *response_.mutable_problem());
+    }
+  }
+
+  const std::shared_ptr<session::Session> session_;
+  std::shared_ptr<FrameStream> held_by_grpc_;
+  v1::WatchFramesResponse response_;
+  std::mutex mutex_;
+  std::uint64_t viewer_id_ = 0;
+  bool writing_ = false;
+  bool disconnected_ = false;
+  bool finished_ = false;
+};
+
+// A stream that never began.
+class RefusedStream : public Reactor {
+ public:
+  explicit RefusedStream(const absl::Status& why) { Finish(ToGrpcStatus(why)); }
+  void OnDone() override { delete this; }
+};
+
+absl::StatusOr<std::shared_ptr<session::Session>> Find(Engine& engine,
+                                                       const v1::WatchFramesRequest& request) {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
+  return engine.sessions.Find(request.session_id());
+}
+
+}  // namespace
+
+Reactor* WatchFrames(Engine& engine, grpc::CallbackServerContext* /*context*/,
+                     const v1::WatchFramesRequest* request) {
+  auto session = Find(engine, *request);
+  // gRPC calls OnDone of what is given to it, which deletes it.
+  if (!session.ok()) return new RefusedStream(session.status());
+  return FrameStream::Start(*std::move(session));
+}
+
+}  // namespace thunderhead::service

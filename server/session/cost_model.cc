@@ -1,0 +1,70 @@
+#include "session/cost_model.h"
+
+#include <algorithm>
+
+namespace thunderhead::session {
+namespace {
+
+// The weight of a measurement falls to a third in five frames: fast enough to follow a camera that
+// flies into the cloud, slow enough to tell a from b.
+constexpr double kForgetting = 0.8;
+// Below this variance of x (relative to its mean square) a and b cannot be told apart.
+constexpr double kMinRelativeVariance = 1e-3;
+
+bool IsPreparation(const StageCost& cost) {
+  return cost.stage == "extinction" || cost.stage == "upload";
+}
+
+}  // namespace
+
+double MegaSamples(const scene::Scene& scene, const FrameQuality& quality) {
+  const double pixels = static_cast<double>(scene.output.width_px) * scene.output.height_px *
+                        quality.image_scale * quality.image_scale;
+  return pixels * scene.rendering.slices * quality.slice_share * 1e-6;
+}
+
+double CostModel::EstimateMs(double mega_samples, scene::Stage first_dirty) const {
+  const double drawing_ms =
+      first_dirty >= scene::Stage::kTone ? 0.0 : ms_per_mega_sample_ * mega_samples;
+  const double preparation_ms = first_dirty <= scene::Stage::kExtinction ? preparation_ms_ : 0.0;
+  return fixed_ms_ + drawing_ms + preparation_ms;
+}
+
+void CostModel::Observe(double mega_samples, double total_ms,
+                        const std::vector<StageCost>& stages) {
+  double preparation_ms = 0.0;
+  bool drew_slices = false;
+  for (const StageCost& cost : stages) {
+    if (IsPreparation(cost)) preparation_ms += cost.milliseconds;
+    drew_slices = drew_slices || cost.stage == "slices";
+  }
+  if (preparation_ms > 0.0) {
+    preparation_ms_ = preparation_ms_ == 0.0
+                          ? preparation_ms
+                          : kForgetting * preparation_ms_ + (1.0 - kForgetting) * preparation_ms;
+  }
+  if (!drew_slices) return;
+  const double y = std::max(0.0, total_ms - preparation_ms);
+  const auto add = [](double& sum, double value) { sum = kForgetting * sum + value; };
+  add(weight_, 1.0);
+  add(sum_x_, mega_samples);
+  add(sum_y_, y);
+  add(sum_xx_, mega_samples * mega_samples);
+  add(sum_xy_, mega_samples * y);
+  Fit();
+}
+
+void CostModel::Fit() {
+  const double variance = weight_ * sum_xx_ - sum_x_ * sum_x_;
+  if (variance > kMinRelativeVariance * sum_x_ * sum_x_) {
+    ms_per_mega_sample_ = (weight_ * sum_xy_ - sum_x_ * sum_y_) / variance;
+    fixed_ms_ = (sum_y_ - ms_per_mega_sample_ * sum_x_) / weight_;
+    if (ms_per_mega_sample_ > 0.0 && fixed_ms_ >= 0.0) return;
+  }
+  // Frames of one size, or a fit that noise has bent below zero: all of the cost grows with the
+  // size.
+  fixed_ms_ = 0.0;
+  ms_per_mega_sample_ = sum_xx_ > 0.0 ? sum_xy_ / sum_xx_ : ms_per_mega_sample_;
+}
+
+}  // namespace thunderhead::session

@@ -1,0 +1,40 @@
+// Foretells what a frame will cost from what frames have cost: milliseconds = a + b pixels x
+// slices, fitted by least squares in which older frames count for less, plus what preparing the
+// fields costs when they changed. Plain values, no clock.
+#pragma once
+
+#include <vector>
+
+#include "scene/scene.h"
+#include "session/frame_source.h"
+
+namespace thunderhead::session {
+
+// What drawing `scene` at `quality` grows with: pixels times slices, in millions.
+double MegaSamples(const scene::Scene& scene, const FrameQuality& quality);
+
+class CostModel {
+ public:
+  // What the frame will cost if `first_dirty` is the first stage to rerun.
+  double EstimateMs(double mega_samples, scene::Stage first_dirty) const;
+
+  // A frame of that size took `total_ms`, of which `stages` say what they tell apart. Frames that
+  // ran no slices teach nothing.
+  void Observe(double mega_samples, double total_ms, const std::vector<StageCost>& stages);
+
+ private:
+  void Fit();
+
+  double weight_ = 0.0;
+  double sum_x_ = 0.0;
+  double sum_y_ = 0.0;
+  double sum_xx_ = 0.0;
+  double sum_xy_ = 0.0;
+  double fixed_ms_ = 0.0;
+  // Before anything was measured: between a GPU's 0.1 and a software renderer's 15, so that the
+  // first frame is coarse but not the coarsest.
+  double ms_per_mega_sample_ = 2.0;
+  double preparation_ms_ = 0.0;
+};
+
+}  // namespace thunderhead::session

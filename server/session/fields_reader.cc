@@ -1,0 +1,72 @@
+#include "session/fields_reader.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/stopwatch.h"
+
+namespace thunderhead::session {
+
+FieldsReader::FieldsReader(volume::StormStore& store, std::function<void()> on_read)
+    : store_(store), on_read_(std::move(on_read)), thread_([this] { Run(); }) {}
+
+FieldsReader::~FieldsReader() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_one();
+  thread_.join();
+}
+
+void FieldsReader::Ask(const std::string& owner, const FieldsKey& key) {
+  {
+    const std::lock_guard lock(mutex_);
+    asked_[owner] = key;
+    read_.erase(owner);
+    if (std::find(waiting_.begin(), waiting_.end(), owner) == waiting_.end()) {
+      waiting_.push_back(owner);
+    }
+  }
+  changed_.notify_one();
+}
+
+std::optional<FieldsRead> FieldsReader::Take(const std::string& owner) {
+  const std::lock_guard lock(mutex_);
+  auto read = read_.extract(owner);
+  if (read.empty()) return std::nullopt;
+  return std::move(read.mapped());
+}
+
+void FieldsReader::Forget(const std::string& owner) {
+  const std::lock_guard lock(mutex_);
+  waiting_.erase(std::remove(waiting_.begin(), waiting_.end(), owner), waiting_.end());
+  asked_.erase(owner);
+  read_.erase(owner);
+}
+
+void FieldsReader::Run() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [this] { return stopping_ || !waiting_.empty(); });
+    if (stopping_) return;
+    const std::string owner = std::move(waiting_.front());
+    waiting_.pop_front();
+    const FieldsKey key = asked_[owner];
+    lock.unlock();
+    const base::Stopwatch stopwatch;
+    auto fields = store_.Get(key.storm_id, key.time_index, {});
+    FieldsRead read{std::move(fields), stopwatch.ElapsedMs()};
+    lock.lock();
+    // Forgotten, or asked for another time, while it was read.
+    const auto asked = asked_.find(owner);
+    if (asked == asked_.end() || asked->second != key) continue;
+    asked_.erase(asked);
+    read_.insert_or_assign(owner, std::move(read));
+    lock.unlock();
+    on_read_();
+    lock.lock();
+  }
+}
+
+}  // namespace thunderhead::session

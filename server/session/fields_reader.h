@@ -1,0 +1,64 @@
+// Reads storms' fields for the render loop on a thread of its own, so that a long read holds up
+// only the session that waits for it. Each owner (a session) has at most one read, so nothing
+// queues without bound.
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "absl/status/statusor.h"
+#include "volume/storm_store.h"
+
+namespace thunderhead::session {
+
+// Which fields: one time of one storm.
+struct FieldsKey {
+  std::string storm_id;
+  int time_index = 0;
+
+  bool operator==(const FieldsKey&) const = default;
+};
+
+struct FieldsRead {
+  absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> fields;
+  double milliseconds = 0.0;
+};
+
+class FieldsReader {
+ public:
+  // `on_read` is called on the reading thread when a read has ended.
+  FieldsReader(volume::StormStore& store, std::function<void()> on_read);
+  // Waits for the read that runs.
+  ~FieldsReader();
+  FieldsReader(const FieldsReader&) = delete;
+  FieldsReader& operator=(const FieldsReader&) = delete;
+
+  // Asks for a read; replaces the owner's earlier one if it has not begun.
+  void Ask(const std::string& owner, const FieldsKey& key);
+  // What the owner's read gave, once.
+  std::optional<FieldsRead> Take(const std::string& owner);
+  // The owner wants nothing any more.
+  void Forget(const std::string& owner);
+
+ private:
+  void Run();
+
+  volume::StormStore& store_;
+  const std::function<void()> on_read_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool stopping_ = false;
+  std::deque<std::string> waiting_;  // owners, in the order in which they asked
+  std::map<std::string, FieldsKey> asked_;
+  std::map<std::string, FieldsRead> read_;
+  std::thread thread_;
+};
+
+}  // namespace thunderhead::session

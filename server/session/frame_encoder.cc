@@ -1,0 +1,101 @@
+#include "session/frame_encoder.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/stopwatch.h"
+#include "frame/image_codec.h"
+
+namespace thunderhead::session {
+namespace {
+
+// A coarse frame is blurred by its smaller buffer anyway and is replaced at once; fewer bytes bring
+// it sooner.
+constexpr int kCoarseJpegQuality = 75;
+
+void EncodeAndPublish(DrawnFrame drawn) {
+  const base::Stopwatch stopwatch;
+  const int wanted_quality = drawn.scene.output.jpeg_quality;
+  const int quality = drawn.refined ? wanted_quality : std::min(wanted_quality, kCoarseJpegQuality);
+  const DisplayFrame& picture = drawn.picture;
+  auto jpeg = frame::EncodeJpeg(picture.width_px, picture.height_px, picture.rgb, quality);
+  if (!jpeg.ok()) {
+    drawn.session->hub().Publish(
+        Problem{drawn.scene_revision, std::string(jpeg.status().message())});
+    return;
+  }
+  EncodedFrame frame;
+  frame.scene_revision = drawn.scene_revision;
+  frame.jpeg = *std::move(jpeg);
+  frame.width_px = picture.width_px;
+  frame.height_px = picture.height_px;
+  frame.camera = drawn.scene.camera;
+  frame.stages = std::move(drawn.picture.stages);
+  frame.stages.push_back({"encode", stopwatch.ElapsedMs()});
+  frame.modelled = std::move(drawn.picture.modelled);
+  frame.refined = drawn.refined;
+  drawn.session->hub().Publish(std::move(frame));
+}
+
+}  // namespace
+
+FrameEncoder::FrameEncoder(int threads, std::function<void()> on_encoded)
+    : on_encoded_(std::move(on_encoded)) {
+  for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { Run(); });
+}
+
+FrameEncoder::~FrameEncoder() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+}
+
+void FrameEncoder::Encode(DrawnFrame frame) {
+  {
+    const std::lock_guard lock(mutex_);
+    waiting_.push_back(std::move(frame));
+  }
+  changed_.notify_one();
+}
+
+bool FrameEncoder::IsFullFor(const Session& session) {
+  const std::lock_guard lock(mutex_);
+  const auto pending =
+      std::count(encoding_.begin(), encoding_.end(), &session) +
+      std::count_if(waiting_.begin(), waiting_.end(),
+                    [&](const DrawnFrame& frame) { return frame.session.get() == &session; });
+  return pending >= kMaxPending;
+}
+
+std::deque<DrawnFrame>::iterator FrameEncoder::NextFrame() {
+  return std::find_if(waiting_.begin(), waiting_.end(), [this](const DrawnFrame& frame) {
+    return std::find(encoding_.begin(), encoding_.end(), frame.session.get()) == encoding_.end();
+  });
+}
+
+void FrameEncoder::Run() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [this] { return stopping_ || NextFrame() != waiting_.end(); });
+    if (stopping_) return;
+    const auto next = NextFrame();
+    DrawnFrame drawn = std::move(*next);
+    waiting_.erase(next);
+    const std::shared_ptr<Session> session = drawn.session;
+    encoding_.push_back(session.get());
+    lock.unlock();
+    EncodeAndPublish(std::move(drawn));
+    lock.lock();
+    encoding_.erase(std::find(encoding_.begin(), encoding_.end(), session.get()));
+    lock.unlock();
+    // A frame of the same session may have waited for this one.
+    changed_.notify_one();
+    on_encoded_();
+    lock.lock();
+  }
+}
+
+}  // namespace thunderhead::session

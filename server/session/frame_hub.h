@@ -1,0 +1,106 @@
+// Hands one session's newest frame to its viewers. Each viewer has at most two unacknowledged
+// frames; one that is slow skips frames and never slows another, and nothing queues: the hub keeps
+// one frame and one problem. Safe from any thread. Knows nothing of how frames are made or sent.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "scene/scene.h"
+#include "session/frame_source.h"
+
+namespace thunderhead::session {
+
+// A frame ready to be sent.
+struct EncodedFrame {
+  std::uint64_t sequence = 0;  // counts the session's frames from 1; set by the hub
+  std::uint64_t scene_revision = 0;
+  std::string jpeg;
+  int width_px = 0;
+  int height_px = 0;
+  scene::OrbitCamera camera;
+  std::vector<StageCost> stages;
+  Modelled modelled;
+  bool refined = false;
+};
+
+// Why the scene of a revision has no frame.
+struct Problem {
+  std::uint64_t scene_revision = 0;
+  std::string message;
+};
+
+using FrameEvent = std::variant<std::shared_ptr<const EncodedFrame>, Problem>;
+
+// One who watches. Wake is called from any thread, without the hub's lock, when Take may have
+// something or the hub has closed.
+class Viewer {
+ public:
+  virtual ~Viewer() = default;
+  virtual void Wake() = 0;
+};
+
+class FrameHub {
+ public:
+  static constexpr std::size_t kMaxInFlight = 2;
+
+  // `on_demand` is called, without the lock, whenever a viewer comes to be ready for another frame.
+  explicit FrameHub(std::function<void()> on_demand);
+
+  // Gives the viewer's id, or the reason given to Close. Does not call Wake.
+  absl::StatusOr<std::uint64_t> Join(std::shared_ptr<Viewer> viewer);
+  void Leave(std::uint64_t viewer_id);
+
+  // Takes the newest frame or problem that the viewer has not had, if it may have one now. A frame
+  // taken is in flight until it is acknowledged.
+  std::optional<FrameEvent> Take(std::uint64_t viewer_id);
+
+  // Acknowledges every frame up to `sequence`. False if there is no such viewer.
+  bool Acknowledge(std::uint64_t viewer_id, std::uint64_t sequence);
+
+  // Replaces the newest frame.
+  void Publish(EncodedFrame frame);
+  // Replaces the newest problem; a frame of the same or a newer revision ends it.
+  void Publish(Problem problem);
+
+  // Ends every watch with `why`; the first reason given stays.
+  void Close(const absl::Status& why);
+  // OK while open.
+  absl::Status ClosedBecause() const;
+
+  bool HasViewers() const;
+  // True if some viewer could be sent another frame now.
+  bool HasReadyViewer() const;
+
+ private:
+  struct Watch {
+    std::shared_ptr<Viewer> viewer;
+    std::deque<std::uint64_t> in_flight;  // sequences, oldest first
+    std::uint64_t last_sequence = 0;
+    std::uint64_t last_problem = 0;
+  };
+
+  void WakeAll();
+
+  const std::function<void()> on_demand_;
+  mutable std::mutex mutex_;
+  std::map<std::uint64_t, Watch> watches_;
+  std::shared_ptr<const EncodedFrame> frame_;
+  std::optional<Problem> problem_;
+  std::uint64_t problem_count_ = 0;
+  std::uint64_t frame_count_ = 0;
+  std::uint64_t viewer_count_ = 0;
+  absl::Status closed_because_;
+};
+
+}  // namespace thunderhead::session

@@ -1,0 +1,88 @@
+#include "session/frame_planner.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace thunderhead::session {
+namespace {
+
+// Steps between the coarsest and full quality, a factor of 2^(1/4) apart: small changes of the
+// estimate must not change the size of the buffers.
+constexpr int kSteps = 8;
+
+FrameQuality Step(int step) {
+  const double share = kCoarsest * std::pow(1.0 / kCoarsest, static_cast<double>(step) / kSteps);
+  return step == kSteps ? FrameQuality{} : FrameQuality{share, share};
+}
+
+scene::Stage FirstDirty(const std::optional<LastDrawn>& last_drawn, const scene::Scene& scene) {
+  if (!last_drawn.has_value()) return scene::Stage::kStorm;
+  return scene::FirstDirtyStage(last_drawn->scene, scene);
+}
+
+bool IsFull(const FrameQuality& quality) { return quality == FrameQuality{}; }
+
+}  // namespace
+
+FramePlanner::FramePlanner(const PlannerTargets& targets, const CostModel& costs)
+    : targets_(targets), costs_(costs) {}
+
+Decision FramePlanner::Decide(const NewestScene& newest, Clock::time_point now,
+                              const std::optional<LastDrawn>& last_drawn) const {
+  if (newest.revision > revision_) return {Coarse(*newest.scene, last_drawn), std::nullopt};
+  if (finished_) return {};
+  return AtRest(newest, now, last_drawn);
+}
+
+FramePlan FramePlanner::Coarse(const scene::Scene& scene,
+                               const std::optional<LastDrawn>& last_drawn) const {
+  const scene::Stage first_dirty = FirstDirty(last_drawn, scene);
+  if (first_dirty < scene::Stage::kTone) {
+    const FrameQuality quality = Finest(scene, first_dirty, targets_.coarse_ms);
+    return {quality, IsFull(quality)};
+  }
+  // Only the tone changes: the slices that are there already, however fine, cost nothing again.
+  const bool as_refined_as_before = drawn_.refined && drawn_.quality == last_drawn->quality;
+  return {last_drawn->quality, IsFull(last_drawn->quality) || as_refined_as_before};
+}
+
+Decision FramePlanner::AtRest(const NewestScene& newest, Clock::time_point now,
+                              const std::optional<LastDrawn>& last_drawn) const {
+  const Clock::time_point rested_at = newest.changed_at + targets_.rest_delay;
+  if (now < rested_at) return {std::nullopt, rested_at};
+  const scene::Stage first_dirty =
+      std::min(FirstDirty(last_drawn, *newest.scene), scene::Stage::kView);
+  if (!drawn_.refined) {
+    const FrameQuality quality = Finest(*newest.scene, first_dirty, targets_.refined_ms);
+    if (quality.image_scale > drawn_.quality.image_scale) {
+      return {FramePlan{quality, true}, std::nullopt};
+    }
+  }
+  const Clock::time_point settled_at = newest.changed_at + targets_.settle_delay;
+  if (now < settled_at) return {std::nullopt, settled_at};
+  return {FramePlan{FrameQuality{}, true}, std::nullopt};
+}
+
+void FramePlanner::Drawn(std::uint64_t revision, const scene::Scene& scene, const FramePlan& plan,
+                         double total_ms, const std::vector<StageCost>& stages) {
+  revision_ = revision;
+  finished_ = IsFull(plan.quality);
+  drawn_ = plan;
+  costs_.Observe(MegaSamples(scene, plan.quality), total_ms, stages);
+}
+
+void FramePlanner::Failed(std::uint64_t revision) {
+  revision_ = std::max(revision_, revision);
+  finished_ = true;
+}
+
+FrameQuality FramePlanner::Finest(const scene::Scene& scene, scene::Stage first_dirty,
+                                  double budget_ms) const {
+  for (int step = kSteps; step > 0; --step) {
+    const FrameQuality quality = Step(step);
+    if (costs_.EstimateMs(MegaSamples(scene, quality), first_dirty) <= budget_ms) return quality;
+  }
+  return Step(0);
+}
+
+}  // namespace thunderhead::session

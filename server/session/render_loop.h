@@ -1,0 +1,125 @@
+// The loop that draws: one thread makes the frame source, owns it, and draws with it in turn the
+// newest scene of every session that has a viewer ready for a frame, and the pictures that were
+// asked for one by one. Reads and encoding run on other threads beside it. Knows no GL (that is the
+// frame source's) and no messages.
+#pragma once
+
+#include <atomic>
+#include <deque>
+#include <functional>
+#include <future>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "base/wake_signal.h"
+#include "session/cost_model.h"
+#include "session/fields_reader.h"
+#include "session/frame_encoder.h"
+#include "session/frame_planner.h"
+#include "session/frame_source.h"
+#include "session/sessions.h"
+
+namespace thunderhead::session {
+
+struct RenderLoopOptions {
+  PlannerTargets targets;
+  std::size_t max_waiting_images = 16;
+  int encoder_threads = 1;
+};
+
+// One picture at full quality, outside any session.
+struct ImageJob {
+  scene::Scene scene;
+  std::shared_ptr<const volume::HydrometeorFields> fields;
+  std::shared_ptr<const std::atomic<bool>> cancelled;  // true drops the job while it waits
+  // Called once, on the loop's thread or the one that asked; must not block.
+  std::function<void(absl::StatusOr<DisplayFrame>)> done;
+};
+
+class RenderLoop {
+ public:
+  // Returns once the frame source is made, or could not be. `sessions` calls `wake.Notify()` when
+  // there is work; all three references must outlive the loop.
+  static absl::StatusOr<std::unique_ptr<RenderLoop>> Start(const RenderLoopOptions& options,
+                                                           volume::StormStore& store,
+                                                           Sessions& sessions,
+                                                           base::WakeSignal& wake,
+                                                           const FrameSourceFactory& make_source);
+  ~RenderLoop();
+  RenderLoop(const RenderLoop&) = delete;
+  RenderLoop& operator=(const RenderLoop&) = delete;
+
+  const DeviceInfo& Device() const { return device_; }
+
+  void RenderImage(ImageJob job);
+
+  // Waits for the frame being drawn, refuses the pictures that wait and ends every thread.
+  void Stop();
+
+ private:
+  // What the loop knows of a session.
+  struct Track {
+    FramePlanner planner;
+    std::optional<FieldsKey> fields_key;
+    std::shared_ptr<const volume::HydrometeorFields> fields;
+    std::optional<NewestScene> reading_for;  // the scene whose fields are being read
+    std::optional<NewestScene> arrived_for;  // the scene whose fields have just been read
+    std::uint64_t unreadable_revision = 0;
+    double read_ms = 0.0;  // to be reported with the next frame
+  };
+  // What came of looking at a session or the pictures that wait.
+  struct Outcome {
+    bool drew = false;
+    std::optional<Clock::time_point> look_again_at;
+  };
+
+  RenderLoop(const RenderLoopOptions& options, volume::StormStore& store, Sessions& sessions,
+             base::WakeSignal& wake);
+
+  void Run(const FrameSourceFactory& make_source, std::promise<absl::Status> started);
+  std::optional<Clock::time_point> DrawOne();
+  void DropEndedTracks(const std::vector<std::shared_ptr<Session>>& sessions);
+  Outcome TrySession(const std::shared_ptr<Session>& session);
+  void TakeRead(Session& session, Track& track);
+  std::optional<NewestScene> DrawableScene(const Session& session, Track& track,
+                                           const NewestScene& newest);
+  void DrawFor(const std::shared_ptr<Session>& session, Track& track, const NewestScene& shown,
+               const FramePlan& plan);
+  Outcome TryImage();
+  std::optional<ImageJob> NextImage();
+  absl::StatusOr<DisplayFrame> Draw(const scene::Scene& scene,
+                                    const std::shared_ptr<const volume::HydrometeorFields>& fields,
+                                    const FrameQuality& quality, double& total_ms);
+  void RefuseImages();
+
+  const RenderLoopOptions options_;
+  volume::StormStore& store_;
+  Sessions& sessions_;
+  base::WakeSignal& wake_;
+  DeviceInfo device_;
+  std::atomic<bool> stopping_{false};
+
+  std::mutex images_mutex_;
+  std::deque<ImageJob> images_;
+  bool refuses_images_ = false;
+
+  // Used by the loop's thread only.
+  std::unique_ptr<FrameSource> source_;
+  std::map<std::string, Track> tracks_;  // by session id
+  std::string last_served_;  // the session looked at last; the pictures' turn is the empty string
+  std::optional<LastDrawn> last_drawn_;
+  bool warm_ = false;
+  CostModel machine_costs_;
+
+  std::unique_ptr<FieldsReader> reader_;
+  std::unique_ptr<FrameEncoder> encoder_;
+  std::thread thread_;
+};
+
+}  // namespace thunderhead::session
