@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "scene/view.h"
 #include "service/limits_check.h"
+#include "volume/visible_box.h"
 
 namespace thunderhead::service {
 namespace {
@@ -126,12 +127,7 @@ scene::OrbitCamera ToCamera(const v1::OrbitCamera& message) {
   return camera;
 }
 
-struct WorldBox {
-  glm::dvec3 low_m;
-  glm::dvec3 high_m;
-};
-
-WorldBox BoxOf(const volume::RegularGrid& grid, const volume::CellBox& cells) {
+volume::WorldBox BoxOf(const volume::RegularGrid& grid, const volume::CellBox& cells) {
   return {grid.low_corner_m + glm::dvec3(cells.low) * grid.spacing_m,
           grid.low_corner_m + glm::dvec3(cells.high) * grid.spacing_m};
 }
@@ -214,9 +210,7 @@ void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
 
 void FrameCondensate(v1::Scene& scene, const volume::HydrometeorFields& fields) {
   v1::OrbitCamera& camera = *scene.mutable_camera()->mutable_orbit();
-  const volume::RegularGrid& grid = fields.grid;
-  const WorldBox box = fields.condensate.Empty() ? WorldBox{grid.low_corner_m, grid.HighCorner_m()}
-                                                 : BoxOf(grid, fields.condensate);
+  const volume::WorldBox box = volume::VisibleBox(fields);
   const double aspect_ratio =
       static_cast<double>(scene.output().width_px()) / scene.output().height_px();
   const scene::OrbitCamera framing =
@@ -314,7 +308,7 @@ void ToMessage(const volume::StormInfo& storm, const volume::HydrometeorFields& 
   if (storm.longitude_deg.has_value()) message.set_longitude_deg(*storm.longitude_deg);
   message.set_bytes_per_time(fields.Bytes());
   if (!fields.condensate.Empty()) {
-    const WorldBox box = BoxOf(fields.grid, fields.condensate);
+    const volume::WorldBox box = BoxOf(fields.grid, fields.condensate);
     SetPosition(box.low_m, *message.mutable_condensate_low());
     SetPosition(box.high_m, *message.mutable_condensate_high());
   }

@@ -26,8 +26,8 @@ bool NeedsFraming(const v1::Scene& scene);
 // Fills in every default but those of the camera that depend on the storm's fields.
 void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm);
 
-// Fills in the camera's target and distance, where absent, so that the condensate of `fields` is
-// framed.
+// Fills in the camera's target and distance, where absent, so that what is to be seen of `fields`
+// (volume::VisibleBox) is framed.
 void FrameCondensate(v1::Scene& scene, const volume::HydrometeorFields& fields);
 
 // The value of a scene whose defaults are filled in.

@@ -1,0 +1,22 @@
+// HOST:PORT as the command line gives it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "absl/status/statusor.h"
+
+namespace thunderhead::app {
+
+struct Address {
+  std::string host;  // "localhost" becomes 127.0.0.1; an IPv6 address has no brackets here
+  std::uint16_t port = 0;
+};
+
+// INVALID_ARGUMENT names `flag` and shows the form.
+absl::StatusOr<Address> ParseAddress(const std::string& flag, const std::string& text);
+
+// HOST:PORT, with brackets around an IPv6 address.
+std::string ToString(const Address& address);
+
+}  // namespace thunderhead::app

@@ -1,0 +1,22 @@
+// The program's subcommands. Each adds its flags to `app` and returns what to run once they are
+// parsed; what it runs returns OK, or an error to print: INVALID_ARGUMENT for what the user wrote,
+// anything else for what went wrong.
+#pragma once
+
+#include <functional>
+
+#include "CLI/CLI.hpp"
+#include "absl/status/status.h"
+
+namespace thunderhead::app {
+
+struct Command {
+  CLI::App* app = nullptr;
+  std::function<absl::Status()> run;
+};
+
+Command AddServe(CLI::App& app);
+Command AddRender(CLI::App& app);
+Command AddInspect(CLI::App& app);
+
+}  // namespace thunderhead::app

@@ -1,0 +1,105 @@
+#include <google/protobuf/util/json_util.h>
+
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/strip.h"
+#include "app/commands.h"
+#include "app/local_service.h"
+#include "base/status.h"
+#include "service/scene_messages.h"
+#include "spdlog/spdlog.h"
+
+namespace thunderhead::app {
+namespace {
+
+struct Flags {
+  std::string storm;
+  int time_index = 0;
+  bool json = false;
+};
+
+std::string NameOf(v1::Hydrometeor hydrometeor) {
+  return absl::AsciiStrToLower(
+      absl::StripPrefix(v1::Hydrometeor_Name(hydrometeor), "HYDROMETEOR_"));
+}
+
+std::string Table(const v1::StormDescription& storm) {
+  const v1::Grid& grid = storm.grid();
+  std::string text = absl::StrFormat(
+      "%s\n  %s\n\ngrid    %d x %d x %d cells of %g x %g x %.1f m, %.1f x %.1f x %.1f km\n",
+      storm.id(), storm.title(), grid.nx(), grid.ny(), grid.nz(), grid.dx_m(), grid.dy_m(),
+      grid.dz_m(), grid.nx() * grid.dx_m() / 1e3, grid.ny() * grid.dy_m() / 1e3,
+      grid.nz() * grid.dz_m() / 1e3);
+  absl::StrAppendFormat(&text, "memory  %.1f MiB a time\n",
+                        static_cast<double>(storm.bytes_per_time()) / (1 << 20));
+  if (storm.has_latitude_deg()) {
+    absl::StrAppendFormat(&text, "middle  %.3f N %.3f E\n", storm.latitude_deg(),
+                          storm.longitude_deg());
+  } else {
+    absl::StrAppend(&text, "middle  no place on Earth (idealised)\n");
+  }
+  absl::StrAppend(&text, "\ntime  valid (UTC)           minutes\n");
+  for (const v1::StormTime& time : storm.times()) {
+    absl::StrAppendFormat(&text, "%4d  %-20s %8.1f%s\n", time.index(), time.valid_time(),
+                          time.elapsed_s() / 60.0,
+                          time.index() == storm.time_index() ? "  described below" : "");
+  }
+  absl::StrAppend(
+      &text,
+      "\nfield    variable  minimum    maximum    mean path  largest path  negative  missing\n",
+      "                   kg/kg      kg/kg      kg/m2      kg/m2         cells     cells\n");
+  for (const v1::FieldDescription& field : storm.fields()) {
+    absl::StrAppendFormat(&text, "%-8s %-9s %-10.3g %-10.3g %-10.4g %-13.4g %-9d %d\n",
+                          NameOf(field.hydrometeor()), field.variable(), field.minimum_kg_per_kg(),
+                          field.maximum_kg_per_kg(), field.mean_water_path_kg_per_m2(),
+                          field.maximum_water_path_kg_per_m2(), field.negative_cells(),
+                          field.missing_cells());
+  }
+  return text;
+}
+
+std::string Json(const v1::StormDescription& storm) {
+  google::protobuf::util::JsonPrintOptions options;
+  options.add_whitespace = true;
+  options.always_print_primitive_fields = true;
+  std::string json;
+  (void)google::protobuf::util::MessageToJsonString(storm, &json, options);
+  return json;
+}
+
+absl::Status Inspect(const Flags& flags) {
+  spdlog::set_level(spdlog::level::warn);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store,
+                               OpenStorm(flags.storm));
+  const volume::StormInfo& storm = store->Storms().front();
+  if (flags.time_index < 0 || flags.time_index >= static_cast<int>(storm.times.size())) {
+    return absl::InvalidArgumentError(absl::StrCat("--time is ", flags.time_index, "; ",
+                                                   flags.storm, " has times 0 to ",
+                                                   storm.times.size() - 1));
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(*store, flags.time_index));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, store->Get(storm.id, flags.time_index, {}));
+  v1::StormDescription description;
+  service::ToMessage(storm, *fields, flags.time_index, description);
+  std::cout << (flags.json ? Json(description) : Table(description));
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+Command AddInspect(CLI::App& app) {
+  auto flags = std::make_shared<Flags>();
+  CLI::App* inspect = app.add_subcommand("inspect", "Say what a storm file or folder holds");
+  inspect->add_option("STORM", flags->storm, "Storm file or folder")->required();
+  inspect->add_option("--time", flags->time_index, "Which of its times to describe, from 0")
+      ->capture_default_str();
+  inspect->add_flag("--json", flags->json, "Print the StormDescription message as JSON");
+  return {inspect, [flags] { return Inspect(*flags); }};
+}
+
+}  // namespace thunderhead::app

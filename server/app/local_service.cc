@@ -1,0 +1,44 @@
+#include "app/local_service.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "app/progress_bar.h"
+#include "base/status.h"
+#include "session/gl_frame_source.h"
+
+namespace thunderhead::app {
+
+absl::StatusOr<std::shared_ptr<volume::StormStore>> OpenStorm(const std::string& path) {
+  volume::StormStoreOptions options;
+  options.read_ahead = 0;
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<volume::StormStore> store,
+                               volume::StormStore::Open({path}, options));
+  const std::vector<volume::StormInfo>& storms = store->Storms();
+  if (storms.size() == 1) return store;
+  const std::string names =
+      absl::StrJoin(storms, ", ", [](std::string* out, const volume::StormInfo& storm) {
+        absl::StrAppend(out, storm.files.front());
+      });
+  return absl::InvalidArgumentError(
+      absl::StrCat(path, " holds ", storms.size(), " storms; name one of ", names));
+}
+
+absl::Status ReadWithProgress(volume::StormStore& store, int time_index) {
+  const volume::StormInfo& storm = store.Storms().front();
+  ProgressBar bar(absl::StrCat("reading ", storm.id));
+  return store.Get(storm.id, time_index, [&bar](double share) { bar.Set(share); }).status();
+}
+
+absl::StatusOr<std::unique_ptr<service::Server>> StartLocalService(
+    std::shared_ptr<volume::StormStore> store, const std::string& device) {
+  return service::Server::Start({}, std::move(store),
+                                [device] { return session::MakeGlFrameSource(device); });
+}
+
+absl::Status FromGrpc(const grpc::Status& status) {
+  return absl::Status(static_cast<absl::StatusCode>(status.error_code()), status.error_message());
+}
+
+}  // namespace thunderhead::app

@@ -1,0 +1,29 @@
+// The service in this process, for commands that work on a file without a server.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "grpcpp/channel.h"
+#include "grpcpp/support/status.h"
+#include "service/server.h"
+#include "volume/storm_store.h"
+
+namespace thunderhead::app {
+
+// The store of `path`, which must hold one storm.
+absl::StatusOr<std::shared_ptr<volume::StormStore>> OpenStorm(const std::string& path);
+
+// Reads one time of the store's storm into its cache, with a progress bar.
+absl::Status ReadWithProgress(volume::StormStore& store, int time_index);
+
+// The service on `store`, drawing on `device`, listening nowhere.
+absl::StatusOr<std::unique_ptr<service::Server>> StartLocalService(
+    std::shared_ptr<volume::StormStore> store, const std::string& device);
+
+// A call's outcome as this program reports it.
+absl::Status FromGrpc(const grpc::Status& status);
+
+}  // namespace thunderhead::app

@@ -1,0 +1,55 @@
+// thunderhead: storms from weather models as they would look in the sky. Exit codes: 0 done, 1 it
+// went wrong, 2 the command line is wrong.
+#include <array>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+
+#include "app/commands.h"
+#include "base/version.h"
+#include "spdlog/sinks/stdout_color_sinks.h"
+#include "spdlog/spdlog.h"
+
+namespace thunderhead::app {
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kWrongUsage = 2;
+
+int Report(const absl::Status& status) {
+  if (status.ok()) return 0;
+  std::cerr << "thunderhead: " << status.message() << "\n";
+  return status.code() == absl::StatusCode::kInvalidArgument ? kWrongUsage : kFailed;
+}
+
+int Main(int argc, char** argv) {
+  // Standard output is for results; what happens on the way goes to standard error.
+  spdlog::set_default_logger(spdlog::stderr_color_mt("thunderhead"));
+  CLI::App app("Storms from weather models as they would look in the sky.", "thunderhead");
+  app.set_version_flag("--version", "thunderhead " + base::Version());
+  app.require_subcommand(1);
+  const std::array commands = {AddServe(app), AddRender(app), AddInspect(app)};
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    std::cerr << "thunderhead: " << error.what() << "; see thunderhead --help\n";
+    return kWrongUsage;
+  }
+  for (const Command& command : commands) {
+    if (command.app->parsed()) return Report(command.run());
+  }
+  return kWrongUsage;
+}
+
+}  // namespace
+}  // namespace thunderhead::app
+
+int main(int argc, char** argv) {
+  try {
+    return thunderhead::app::Main(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "thunderhead: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,133 @@
+#include <google/protobuf/util/json_util.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "app/address.h"
+#include "app/commands.h"
+#include "app/local_service.h"
+#include "app/progress_bar.h"
+#include "app/scene_file.h"
+#include "base/status.h"
+#include "grpcpp/create_channel.h"
+#include "grpcpp/security/credentials.h"
+#include "spdlog/spdlog.h"
+#include "thunderhead/v1/thunderhead.grpc.pb.h"
+
+namespace thunderhead::app {
+namespace {
+
+constexpr int kMaxResponseBytes = 128 << 20;
+
+struct Flags {
+  std::string storm;
+  std::string output;
+  SceneFlags scene;
+  std::string server;
+  std::string device = "auto";
+  bool json = false;
+};
+
+absl::StatusOr<v1::ImageFormat> FormatOf(const std::string& output) {
+  if (absl::EndsWithIgnoreCase(output, ".png")) return v1::IMAGE_FORMAT_PNG;
+  if (absl::EndsWithIgnoreCase(output, ".jpg") || absl::EndsWithIgnoreCase(output, ".jpeg")) {
+    return v1::IMAGE_FORMAT_JPEG;
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat("-o is '", output, "'; its name must end in .png, .jpg or .jpeg"));
+}
+
+absl::StatusOr<v1::RenderImageResponse> Call(const std::shared_ptr<grpc::Channel>& channel,
+                                             const v1::RenderImageRequest& request) {
+  const ProgressBar bar("rendering");
+  v1::RenderImageResponse response;
+  grpc::ClientContext context;
+  const grpc::Status status =
+      v1::ThunderheadService::NewStub(channel)->RenderImage(&context, request, &response);
+  THUNDERHEAD_RETURN_IF_ERROR(FromGrpc(status));
+  return response;
+}
+
+absl::StatusOr<v1::RenderImageResponse> CallServer(const Flags& flags,
+                                                   v1::RenderImageRequest request) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Address address, ParseAddress("--server", flags.server));
+  request.mutable_scene()->set_storm_id(flags.storm);
+  grpc::ChannelArguments arguments;
+  arguments.SetMaxReceiveMessageSize(kMaxResponseBytes);
+  return Call(
+      grpc::CreateCustomChannel(ToString(address), grpc::InsecureChannelCredentials(), arguments),
+      request);
+}
+
+absl::StatusOr<v1::RenderImageResponse> CallHere(const Flags& flags,
+                                                 const v1::RenderImageRequest& request) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store,
+                               OpenStorm(flags.storm));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<service::Server> server,
+                               StartLocalService(store, flags.device));
+  if (request.scene().time_index() < store->Storms().front().times.size()) {
+    THUNDERHEAD_RETURN_IF_ERROR(
+        ReadWithProgress(*store, static_cast<int>(request.scene().time_index())));
+  }
+  return Call(server->InProcessChannel(), request);
+}
+
+// Under a name of its own first, so that a reader never sees half a picture.
+absl::Status WriteFile(const std::string& path, const std::string& bytes) {
+  const std::string partial = path + ".partial";
+  std::ofstream file(partial, std::ios::binary);
+  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  std::error_code error;
+  if (file) std::filesystem::rename(partial, path, error);
+  if (file && !error) return absl::OkStatus();
+  std::filesystem::remove(partial, error);
+  return absl::UnavailableError(
+      absl::StrCat(path, " cannot be written; check that its folder exists and has room"));
+}
+
+absl::Status Render(const Flags& flags) {
+  spdlog::set_level(spdlog::level::warn);
+  v1::RenderImageRequest request;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const v1::ImageFormat format, FormatOf(flags.output));
+  THUNDERHEAD_ASSIGN_OR_RETURN(*request.mutable_scene(), ReadScene(flags.scene));
+  request.set_format(format);
+  THUNDERHEAD_ASSIGN_OR_RETURN(v1::RenderImageResponse response, flags.server.empty()
+                                                                     ? CallHere(flags, request)
+                                                                     : CallServer(flags, request));
+  THUNDERHEAD_RETURN_IF_ERROR(WriteFile(flags.output, response.image()));
+  if (!flags.json) return absl::OkStatus();
+  response.clear_image();
+  std::string json;
+  google::protobuf::util::JsonPrintOptions options;
+  options.add_whitespace = true;
+  (void)google::protobuf::util::MessageToJsonString(response, &json, options);
+  std::cout << json;
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+Command AddRender(CLI::App& app) {
+  auto flags = std::make_shared<Flags>();
+  CLI::App* render = app.add_subcommand("render", "Render one picture of a storm");
+  render->add_option("STORM", flags->storm, "Storm file or folder; with --server a storm's id")
+      ->required();
+  render->add_option("-o,--output", flags->output, "The picture: .png, .jpg or .jpeg")->required();
+  render->add_option("--scene", flags->scene.file, "Scene as Protobuf JSON");
+  render->add_option("--time", flags->scene.time_index, "Which of the storm's times, from 0");
+  render->add_option("--size", flags->scene.size, "WIDTHxHEIGHT in pixels");
+  render->add_option("--slices", flags->scene.slices, "Number of slices");
+  render->add_option("--server", flags->server, "HOST:PORT of a running server's gRPC");
+  render->add_option("--device", flags->device, "auto, software or a GPU's number")
+      ->capture_default_str();
+  render->add_flag("--json", flags->json, "Print what it cost and the completed scene");
+  return {render, [flags] { return Render(*flags); }};
+}
+
+}  // namespace thunderhead::app

@@ -1,0 +1,65 @@
+#include "app/scene_file.h"
+
+#include <google/protobuf/util/json_util.h>
+
+#include <fstream>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "base/status.h"
+
+namespace thunderhead::app {
+namespace {
+
+absl::StatusOr<v1::Scene> ReadFile(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string json(std::istreambuf_iterator<char>(file), {});
+  if (!file.good() && json.empty()) {
+    return absl::InvalidArgumentError(absl::StrCat("--scene ", path, " cannot be read"));
+  }
+  v1::Scene scene;
+  const auto status = google::protobuf::util::JsonStringToMessage(json, &scene);
+  if (status.ok()) return scene;
+  // The parser quotes the file, line ends and all.
+  std::string why(status.message());
+  absl::RemoveExtraAsciiWhitespace(&why);
+  return absl::InvalidArgumentError(
+      absl::StrCat("--scene ", path, " is not a scene: ", why,
+                   "; see proto/thunderhead/v1/scene.proto for its fields"));
+}
+
+absl::Status SetSize(const std::string& size, v1::Output& output) {
+  const std::vector<std::string> sides = absl::StrSplit(size, 'x');
+  std::uint32_t width_px = 0;
+  std::uint32_t height_px = 0;
+  if (sides.size() != 2 || !absl::SimpleAtoi(sides[0], &width_px) ||
+      !absl::SimpleAtoi(sides[1], &height_px)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--size is '", size, "'; it must be WIDTHxHEIGHT, for example 1280x720"));
+  }
+  output.set_width_px(width_px);
+  output.set_height_px(height_px);
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<v1::Scene> ReadScene(const SceneFlags& flags) {
+  v1::Scene scene;
+  if (!flags.file.empty()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(scene, ReadFile(flags.file));
+  }
+  if (flags.time_index.has_value()) scene.set_time_index(*flags.time_index);
+  if (flags.slices.has_value()) scene.mutable_rendering()->set_slices(*flags.slices);
+  if (!flags.size.empty()) {
+    THUNDERHEAD_RETURN_IF_ERROR(SetSize(flags.size, *scene.mutable_output()));
+  }
+  return scene;
+}
+
+}  // namespace thunderhead::app

@@ -1,0 +1,22 @@
+// A scene as the render command is given it: a file of Protobuf JSON, and flags that override it.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "thunderhead/v1/scene.pb.h"
+
+namespace thunderhead::app {
+
+struct SceneFlags {
+  std::string file;  // may be empty
+  std::optional<std::uint32_t> time_index;
+  std::optional<std::uint32_t> slices;
+  std::string size;  // WxH, may be empty
+};
+
+// INVALID_ARGUMENT names the file or flag and what is wrong with it.
+absl::StatusOr<v1::Scene> ReadScene(const SceneFlags& flags);
+
+}  // namespace thunderhead::app
