@@ -1,0 +1,114 @@
+#include "gateway/client_link.h"
+
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
+#include <array>
+#include <boost/beast/core/buffers_suffix.hpp>
+#include <utility>
+
+namespace thunderhead::gateway {
+namespace {
+
+namespace net = boost::asio;
+using boost::system::error_code;
+
+constexpr size_t kMaxReceived = 64 << 10;
+constexpr size_t kWatchRead = 4 << 10;
+constexpr std::chrono::seconds kLinger{2};
+
+void SetOption(int socket, int level, int name, int value) {
+  // Each of these only improves behaviour, so a kernel without one is served all the same.
+  static_cast<void>(::setsockopt(socket, level, name, &value, sizeof(value)));
+}
+
+void TuneSocket(int socket) {
+  SetOption(socket, IPPROTO_TCP, TCP_NODELAY, 1);
+  // A client that vanished without a word is noticed after about a minute even while its stream is
+  // quiet.
+  SetOption(socket, SOL_SOCKET, SO_KEEPALIVE, 1);
+  SetOption(socket, IPPROTO_TCP, TCP_KEEPIDLE, 30);
+  SetOption(socket, IPPROTO_TCP, TCP_KEEPINTVL, 10);
+  SetOption(socket, IPPROTO_TCP, TCP_KEEPCNT, 3);
+  // Old frames shall not pile up in the kernel before a slow client; what waits there is latency.
+  SetOption(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, 128 << 10);
+}
+
+}  // namespace
+
+ClientLink::ClientLink(net::ip::tcp::socket socket, std::chrono::milliseconds write_stall_timeout)
+    : stream_(std::move(socket)),
+      received_(kMaxReceived),
+      write_stall_timeout_(write_stall_timeout),
+      watch_ended_(stream_.get_executor(), net::steady_timer::time_point::max()) {
+  TuneSocket(stream_.socket().native_handle());
+}
+
+net::awaitable<bool> ClientLink::WriteAll(std::vector<net::const_buffer> buffers) {
+  boost::beast::buffers_suffix<std::vector<net::const_buffer>> rest(std::move(buffers));
+  while (net::buffer_size(rest) > 0) {
+    ExpireIdleWrite();
+    error_code error;
+    const size_t written =
+        co_await stream_.async_write_some(rest, net::redirect_error(net::use_awaitable, error));
+    if (error) co_return false;
+    rest.consume(written);
+  }
+  co_return true;
+}
+
+void ClientLink::StartWatching(std::function<void()> on_gone) {
+  on_gone_ = std::move(on_gone);
+  WatchOn();
+}
+
+net::awaitable<void> ClientLink::StopWatching() {
+  on_gone_ = nullptr;
+  if (reading_) stream_.cancel();
+  while (reading_) {
+    error_code woken;
+    co_await watch_ended_.async_wait(net::redirect_error(net::use_awaitable, woken));
+  }
+}
+
+void ClientLink::WatchOn() {
+  reading_ = true;
+  stream_.expires_never();
+  stream_.async_read_some(received_.prepare(kWatchRead),
+                          [self = shared_from_this()](error_code error, size_t bytes) {
+                            self->OnWatched(error, bytes);
+                          });
+}
+
+void ClientLink::OnWatched(error_code error, size_t bytes) {
+  received_.commit(bytes);
+  reading_ = false;
+  if (on_gone_ && !error && received_.size() + kWatchRead <= kMaxReceived) {
+    WatchOn();
+    return;
+  }
+  if (on_gone_) {
+    gone_ = true;
+    std::exchange(on_gone_, nullptr)();
+  }
+  watch_ended_.cancel();
+}
+
+net::awaitable<void> ClientLink::LingeringClose() {
+  error_code error;
+  stream_.socket().shutdown(net::ip::tcp::socket::shutdown_send, error);
+  stream_.expires_after(kLinger);
+  std::array<char, 16 << 10> ignored;
+  while (!error) {
+    co_await stream_.async_read_some(net::buffer(ignored),
+                                     net::redirect_error(net::use_awaitable, error));
+  }
+  Close();
+}
+
+void ClientLink::Close() {
+  error_code ignored;
+  stream_.socket().close(ignored);
+}
+
+}  // namespace thunderhead::gateway

@@ -1,0 +1,162 @@
+#include "gateway/gateway.h"
+
+#include <algorithm>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <thread>
+#include <unordered_set>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+#include "gateway/awaitable.h"
+#include "gateway/client_link.h"
+#include "gateway/http_connection.h"
+#include "gateway/site.h"
+#include "spdlog/spdlog.h"
+
+namespace thunderhead::gateway {
+namespace {
+
+namespace net = boost::asio;
+using boost::system::error_code;
+using net::ip::tcp;
+
+constexpr std::chrono::milliseconds kAcceptPause{100};
+
+absl::StatusOr<net::ip::address> ParseAddress(const std::string& text) {
+  error_code error;
+  const net::ip::address address =
+      net::ip::make_address(text == "localhost" ? "127.0.0.1" : text, error);
+  if (error) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "'", text,
+        "' is not an IP address to listen on; give one such as 127.0.0.1, ::1 or 0.0.0.0"));
+  }
+  return address;
+}
+
+std::string HostAndPort(const tcp::endpoint& endpoint) {
+  const std::string host = endpoint.address().to_string();
+  return endpoint.address().is_v6() ? absl::StrCat("[", host, "]:", endpoint.port())
+                                    : absl::StrCat(host, ":", endpoint.port());
+}
+
+absl::Status CannotListen(const tcp::endpoint& endpoint, const error_code& error) {
+  const std::string problem =
+      absl::StrCat("cannot listen for browsers on ", HostAndPort(endpoint), ": ", error.message());
+  if (error == net::error::address_in_use) {
+    return absl::UnavailableError(
+        absl::StrCat(problem, "; stop the program that uses this port or choose another one"));
+  }
+  if (error == net::error::access_denied) {
+    return absl::PermissionDeniedError(absl::StrCat(problem, "; choose a port of 1024 or more"));
+  }
+  return absl::UnavailableError(absl::StrCat(problem, "; choose an address of this machine"));
+}
+
+}  // namespace
+
+// Everything but construction and Stop() runs on `thread_`, so nothing here needs a lock.
+class Gateway::Listener {
+ public:
+  explicit Listener(Site site) : site_(std::move(site)), acceptor_(io_) {}
+
+  ~Listener() {
+    if (!thread_.joinable()) return;
+    net::post(io_, [this] { Stop(); });
+    thread_.join();
+  }
+
+  absl::Status Listen(const tcp::endpoint& endpoint) {
+    error_code error;
+    acceptor_.open(endpoint.protocol(), error);
+    if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
+    if (!error) acceptor_.bind(endpoint, error);
+    if (!error) acceptor_.listen(net::socket_base::max_listen_connections, error);
+    if (!error) endpoint_ = acceptor_.local_endpoint(error);
+    if (error) return CannotListen(endpoint, error);
+    net::co_spawn(io_, Accept(), net::detached);
+    thread_ = std::thread([this] { io_.run(); });
+    return absl::OkStatus();
+  }
+
+  const tcp::endpoint& Endpoint() const { return endpoint_; }
+
+ private:
+  net::awaitable<void> Accept() {
+    while (!stopping_) {
+      error_code error;
+      tcp::socket socket =
+          co_await acceptor_.async_accept(net::redirect_error(net::use_awaitable, error));
+      if (stopping_) break;
+      if (!error) {
+        Admit(std::move(socket));
+        continue;
+      }
+      // Out of file descriptors, most likely; trying again at once would only burn the processor.
+      spdlog::warn("cannot take a browser's connection: {}", error.message());
+      net::steady_timer pause(io_, kAcceptPause);
+      co_await pause.async_wait(net::redirect_error(net::use_awaitable, error));
+    }
+  }
+
+  void Admit(tcp::socket socket) {
+    if (links_.size() >= site_.options.max_connections) {
+      spdlog::warn("a browser's connection is turned away: {} are open, the most allowed",
+                   links_.size());
+      return;
+    }
+    auto link = std::make_shared<ClientLink>(std::move(socket), site_.options.write_stall_timeout);
+    links_.insert(link);
+    net::co_spawn(io_, ServeConnection(link, site_),
+                  [this, link](const std::exception_ptr&) { links_.erase(link); });
+  }
+
+  void Stop() {
+    stopping_ = true;
+    error_code ignored;
+    acceptor_.close(ignored);
+    for (const std::shared_ptr<ClientLink>& link : links_) link->Close();
+  }
+
+  Site site_;
+  net::io_context io_{1};
+  tcp::acceptor acceptor_;
+  tcp::endpoint endpoint_;
+  std::unordered_set<std::shared_ptr<ClientLink>> links_;
+  bool stopping_ = false;
+  std::thread thread_;
+};
+
+absl::StatusOr<std::unique_ptr<Gateway>> Gateway::Start(const GatewayOptions& options,
+                                                        std::shared_ptr<grpc::Channel> channel) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const net::ip::address address, ParseAddress(options.address));
+  THUNDERHEAD_ASSIGN_OR_RETURN(StaticFiles files, StaticFiles::Open(options.page_directory));
+  auto listener = std::make_unique<Listener>(
+      Site{options, std::move(files), HttpPolicy(address.is_loopback(), options.allowed_origins),
+           grpc::GenericStub(std::move(channel))});
+  THUNDERHEAD_RETURN_IF_ERROR(listener->Listen(tcp::endpoint(address, options.port)));
+  return std::unique_ptr<Gateway>(new Gateway(std::move(listener)));
+}
+
+Gateway::Gateway(std::unique_ptr<Listener> listener) : listener_(std::move(listener)) {}
+Gateway::~Gateway() = default;
+
+uint16_t Gateway::Port() const { return listener_->Endpoint().port(); }
+
+std::string Gateway::Url() const {
+  const net::ip::address address = listener_->Endpoint().address();
+  // A wildcard address is for listening only.
+  if (address.is_unspecified() || address == net::ip::address_v4::loopback()) {
+    return absl::StrCat("http://localhost:", Port(), "/");
+  }
+  return absl::StrCat("http://", HostAndPort(listener_->Endpoint()), "/");
+}
+
+}  // namespace thunderhead::gateway

@@ -1,0 +1,47 @@
+// One gRPC-Web request, answered on its connection: headers, messages and trailers in their frames,
+// each message read from the server only when the client has taken the one before. Errors are
+// trailers with HTTP status 200, as clients expect. Knows no message type.
+#pragma once
+
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/http/string_body.hpp>
+
+#include "absl/status/status.h"
+#include "gateway/awaitable.h"
+#include "gateway/client_link.h"
+#include "gateway/grpc_web_protocol.h"
+#include "gateway/site.h"
+#include "gateway/upstream_call.h"
+
+namespace thunderhead::gateway {
+
+class GrpcWebExchange {
+ public:
+  using Request = boost::beast::http::request<boost::beast::http::string_body>;
+
+  // All three outlive the exchange.
+  GrpcWebExchange(Site& site, ClientLink& link, const Request& request)
+      : site_(site), link_(link), request_(request) {}
+
+  // Makes the call that the complete request asks for. False where the connection is of no more
+  // use.
+  boost::asio::awaitable<bool> Run();
+  // Answers without a call; `keep_alive` says whether the connection may go on.
+  boost::asio::awaitable<bool> Refuse(const absl::Status& status, bool keep_alive);
+
+ private:
+  absl::StatusOr<UpstreamRequest> Translate() const;
+  boost::asio::awaitable<bool> Relay(const UpstreamCall::Lease& call);
+  boost::asio::awaitable<bool> WriteHeaders(const Metadata& metadata);
+  boost::asio::awaitable<bool> WriteMessage(grpc::ByteBuffer message);
+  boost::asio::awaitable<bool> WriteTrailers(const Metadata& trailers);
+  boost::asio::awaitable<bool> WriteTrailersOnly(const Metadata& trailers, bool keep_alive);
+  template <typename Response>
+  void Prepare(Response& response, const Metadata& metadata) const;
+
+  Site& site_;
+  ClientLink& link_;
+  const Request& request_;
+};
+
+}  // namespace thunderhead::gateway

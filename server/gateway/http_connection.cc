@@ -1,0 +1,314 @@
+#include "gateway/http_connection.h"
+
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/error.hpp>
+#include <boost/beast/http/file_body.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/serializer.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <boost/beast/http/write.hpp>
+#include <cstdint>
+#include <exception>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "gateway/grpc_web_exchange.h"
+#include "gateway/grpc_web_protocol.h"
+#include "gateway/text_view.h"
+#include "spdlog/spdlog.h"
+
+namespace thunderhead::gateway {
+namespace {
+
+namespace net = boost::asio;
+namespace http = boost::beast::http;
+using boost::system::error_code;
+using Request = GrpcWebExchange::Request;
+
+constexpr uint32_t kMaxHeaderBytes = 16 << 10;
+constexpr char kPageMethods[] = "GET, HEAD";
+
+class HttpConnection {
+ public:
+  HttpConnection(ClientLink& link, Site& site) : link_(link), site_(site) {}
+
+  // False where it was the last request of the connection.
+  net::awaitable<bool> ServeOne();
+  // True where the client may still be sending.
+  bool HasUnreadInput() const { return unread_input_; }
+
+ private:
+  using Parser = http::request_parser<http::string_body>;
+
+  net::awaitable<bool> Answer(Parser& parser);
+  net::awaitable<bool> AnswerPage(const Request& request, const std::string& path);
+  net::awaitable<bool> AnswerPost(Parser& parser, const std::string& path);
+  net::awaitable<bool> AnswerOptions(const Request& request);
+  net::awaitable<bool> AnswerCall(Parser& parser);
+  net::awaitable<bool> AnswerBadHeader(error_code error);
+  net::awaitable<bool> RefuseLargeCall(const Request& request);
+  net::awaitable<bool> SendFile(const Request& request, const StaticFile& file);
+  net::awaitable<bool> SendText(const Request& request, http::status status,
+                                const std::string& text, std::string_view allowed_methods = {});
+  template <typename Body>
+  net::awaitable<bool> Send(const Request& request, http::response<Body>& response);
+  net::awaitable<error_code> ReadBody(Parser& parser);
+
+  ClientLink& link_;
+  Site& site_;
+  bool unread_input_ = false;
+};
+
+net::awaitable<bool> HttpConnection::ServeOne() {
+  Parser parser;
+  parser.header_limit(kMaxHeaderBytes);
+  // The body's limit comes once the header says whose answer it is; boost::none would refuse every
+  // body in Beast 1.74.
+  parser.body_limit(std::numeric_limits<uint64_t>::max());
+  link_.Stream().expires_after(site_.options.idle_timeout);
+  error_code error;
+  co_await http::async_read_header(link_.Stream(), link_.Received(), parser,
+                                   net::redirect_error(net::use_awaitable, error));
+  if (error) {
+    const bool keep = co_await AnswerBadHeader(error);
+    co_return keep;
+  }
+  unread_input_ = !parser.is_done();
+  const bool keep = co_await Answer(parser);
+  co_return keep && !unread_input_;
+}
+
+net::awaitable<bool> HttpConnection::Answer(Parser& parser) {
+  const Request& request = parser.get();
+  const std::string_view host = View(request[http::field::host]);
+  const std::string_view target = View(request.target());
+  const std::string path(target.substr(0, target.find('?')));
+  bool keep = false;
+  if (!site_.policy.AllowsHost(host)) {
+    keep = co_await SendText(request, http::status::forbidden,
+                             "This server answers only at localhost, 127.0.0.1 and [::1]. Open it "
+                             "under one of these names, or bind it to another address.\n");
+  } else if (!path.starts_with('/') && path != "*") {
+    keep = co_await SendText(request, http::status::bad_request,
+                             "The request's target must be a path that begins with '/'.\n");
+  } else if (request.method() == http::verb::get || request.method() == http::verb::head) {
+    keep = co_await AnswerPage(request, path);
+  } else if (request.method() == http::verb::post) {
+    keep = co_await AnswerPost(parser, path);
+  } else if (request.method() == http::verb::options) {
+    keep = co_await AnswerOptions(request);
+  } else {
+    keep = co_await SendText(request, http::status::method_not_allowed,
+                             "Only GET, HEAD, POST and OPTIONS are answered.\n",
+                             "GET, HEAD, POST, OPTIONS");
+  }
+  co_return keep;
+}
+
+net::awaitable<bool> HttpConnection::AnswerPage(const Request& request, const std::string& path) {
+  bool keep = false;
+  if (path == "/healthz") {
+    keep = co_await SendText(request, http::status::ok, "ok\n");
+  } else if (const std::optional<StaticFile> file = site_.files.Find(path); file.has_value()) {
+    keep = co_await SendFile(request, *file);
+  } else if (IsMethodPath(path) && path.find('.') < path.rfind('/')) {
+    keep = co_await SendText(request, http::status::method_not_allowed,
+                             "This is the path of a gRPC method; call it with POST and gRPC-Web.\n",
+                             "POST, OPTIONS");
+  } else {
+    keep = co_await SendText(request, http::status::not_found, "There is nothing at this path.\n");
+  }
+  co_return keep;
+}
+
+net::awaitable<bool> HttpConnection::AnswerPost(Parser& parser, const std::string& path) {
+  const Request& request = parser.get();
+  bool keep = false;
+  if (path == "/healthz" || site_.files.Find(path).has_value()) {
+    keep = co_await SendText(request, http::status::method_not_allowed,
+                             "This path is read with GET.\n", kPageMethods);
+  } else if (!IsMethodPath(path)) {
+    keep = co_await SendText(request, http::status::not_found,
+                             "There is nothing at this path; gRPC methods are at "
+                             "/package.Service/Method.\n");
+  } else if (!IsBinaryGrpcWeb(View(request[http::field::content_type]))) {
+    keep = co_await SendText(request, http::status::unsupported_media_type,
+                             "Calls are made as application/grpc-web or "
+                             "application/grpc-web+proto; grpc-web-text, JSON and plain gRPC are "
+                             "not served on this port.\n");
+  } else if (request.version() < 11) {
+    keep = co_await SendText(request, http::status::http_version_not_supported,
+                             "Calls need HTTP/1.1, whose chunks carry streams.\n");
+  } else {
+    keep = co_await AnswerCall(parser);
+  }
+  co_return keep;
+}
+
+net::awaitable<bool> HttpConnection::AnswerOptions(const Request& request) {
+  const std::string_view origin = View(request[http::field::origin]);
+  if (!origin.empty() && !site_.policy.AllowsOrigin(origin)) {
+    const std::string text = absl::StrCat("Pages of ", std::string(origin),
+                                          " may not call this server; start it with that origin "
+                                          "among those allowed.\n");
+    const bool keep = co_await SendText(request, http::status::forbidden, text);
+    co_return keep;
+  }
+  http::response<http::empty_body> response(http::status::no_content, request.version());
+  response.set(http::field::allow, "GET, HEAD, POST, OPTIONS");
+  if (!origin.empty()) {
+    site_.policy.DecoratePreflight(View(request[http::field::access_control_request_headers]),
+                                   response);
+  }
+  const bool keep = co_await Send(request, response);
+  co_return keep;
+}
+
+net::awaitable<bool> HttpConnection::AnswerCall(Parser& parser) {
+  const Request& request = parser.get();
+  const uint64_t limit = site_.options.max_message_bytes + kFrameHeaderBytes;
+  bool keep = false;
+  if (parser.content_length().value_or(0) > limit) {
+    keep = co_await RefuseLargeCall(request);
+    co_return keep;
+  }
+  parser.body_limit(limit);
+  const error_code error = co_await ReadBody(parser);
+  if (error == http::error::body_limit) {
+    keep = co_await RefuseLargeCall(request);
+  } else if (!error) {
+    unread_input_ = false;
+    keep = co_await GrpcWebExchange(site_, link_, request).Run();
+  }
+  co_return keep;
+}
+
+net::awaitable<error_code> HttpConnection::ReadBody(Parser& parser) {
+  error_code error;
+  if (parser.is_done()) co_return error;
+  if (boost::beast::iequals(parser.get()[http::field::expect], "100-continue")) {
+    http::response<http::empty_body> response(http::status::continue_, 11);
+    link_.ExpireIdleWrite();
+    co_await http::async_write(link_.Stream(), response,
+                               net::redirect_error(net::use_awaitable, error));
+    if (error) co_return error;
+  }
+  link_.Stream().expires_after(site_.options.idle_timeout);
+  co_await http::async_read(link_.Stream(), link_.Received(), parser,
+                            net::redirect_error(net::use_awaitable, error));
+  co_return error;
+}
+
+net::awaitable<bool> HttpConnection::RefuseLargeCall(const Request& request) {
+  const absl::Status status = absl::ResourceExhaustedError(
+      absl::StrCat("the request message is larger than the ", site_.options.max_message_bytes,
+                   " bytes that this server takes"));
+  GrpcWebExchange exchange(site_, link_, request);
+  const bool keep = co_await exchange.Refuse(status, /*keep_alive=*/false);
+  co_return keep;
+}
+
+net::awaitable<bool> HttpConnection::AnswerBadHeader(error_code error) {
+  // The client's own end of a connection, a timeout or a broken network needs no answer.
+  if (error.category() != http::make_error_code(http::error::bad_method).category() ||
+      error == http::error::end_of_stream || error == http::error::partial_message) {
+    co_return false;
+  }
+  unread_input_ = true;
+  const bool too_large =
+      error == http::error::header_limit || error == http::error::buffer_overflow;
+  Request request;
+  request.version(11);
+  request.keep_alive(false);
+  const bool keep = co_await SendText(
+      request,
+      too_large ? http::status::request_header_fields_too_large : http::status::bad_request,
+      absl::StrCat("The request's header cannot be read: ", error.message(), ".\n"));
+  co_return keep;
+}
+
+net::awaitable<bool> HttpConnection::SendFile(const Request& request, const StaticFile& file) {
+  http::response<http::empty_body> header(http::status::ok, request.version());
+  header.set(http::field::etag, file.entity_tag);
+  header.set(http::field::cache_control, file.cache_control);
+  bool keep = false;
+  if (MatchesEntityTag(View(request[http::field::if_none_match]), file.entity_tag)) {
+    header.result(http::status::not_modified);
+    keep = co_await Send(request, header);
+    co_return keep;
+  }
+  http::file_body::value_type body;
+  error_code error;
+  body.open(file.path.c_str(), boost::beast::file_mode::scan, error);
+  if (error) {
+    spdlog::warn("{} cannot be read: {}", file.path.string(), error.message());
+    keep = co_await SendText(request, http::status::not_found, "This file cannot be read.\n");
+    co_return keep;
+  }
+  header.set(http::field::content_type, file.content_type);
+  header.content_length(body.size());
+  if (request.method() == http::verb::head) {
+    keep = co_await Send(request, header);
+    co_return keep;
+  }
+  http::response<http::file_body> response(std::move(header.base()), std::move(body));
+  keep = co_await Send(request, response);
+  co_return keep;
+}
+
+net::awaitable<bool> HttpConnection::SendText(const Request& request, http::status status,
+                                              const std::string& text,
+                                              std::string_view allowed_methods) {
+  http::response<http::empty_body> header(status, request.version());
+  header.set(http::field::content_type, "text/plain; charset=utf-8");
+  header.set(http::field::cache_control, "no-store");
+  if (!allowed_methods.empty()) header.set(http::field::allow, BeastView(allowed_methods));
+  header.content_length(text.size());
+  bool keep = false;
+  if (request.method() == http::verb::head) {
+    keep = co_await Send(request, header);
+    co_return keep;
+  }
+  http::response<http::string_body> response(std::move(header.base()), text);
+  keep = co_await Send(request, response);
+  co_return keep;
+}
+
+template <typename Body>
+net::awaitable<bool> HttpConnection::Send(const Request& request, http::response<Body>& response) {
+  const bool keep_alive = request.keep_alive() && !unread_input_;
+  site_.policy.Decorate(View(request[http::field::origin]), response);
+  response.keep_alive(keep_alive);
+  http::response_serializer<Body> serializer(response);
+  // Part by part, so that a large file on a slow line is given up only when nothing moves.
+  while (!serializer.is_done()) {
+    link_.ExpireIdleWrite();
+    error_code error;
+    co_await http::async_write_some(link_.Stream(), serializer,
+                                    net::redirect_error(net::use_awaitable, error));
+    if (error) co_return false;
+  }
+  co_return keep_alive;
+}
+
+}  // namespace
+
+net::awaitable<void> ServeConnection(std::shared_ptr<ClientLink> link, Site& site) {
+  try {
+    HttpConnection connection(*link, site);
+    bool keep = true;
+    while (keep) keep = co_await connection.ServeOne();
+    if (connection.HasUnreadInput()) co_await link->LingeringClose();
+  } catch (const std::exception& error) {
+    spdlog::error("a browser's connection is closed after an internal error: {}", error.what());
+  }
+  link->Close();
+}
+
+}  // namespace thunderhead::gateway

@@ -1,0 +1,65 @@
+#include "gateway/http_policy.h"
+
+#include <algorithm>
+#include <boost/beast/http/field.hpp>
+#include <string>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "gateway/text_view.h"
+
+namespace thunderhead::gateway {
+namespace {
+
+namespace http = boost::beast::http;
+
+// Pictures arrive as blobs, decoding may run in a worker made from one, and sliders are styled
+// inline.
+constexpr char kContentSecurityPolicy[] =
+    "default-src 'self'; img-src 'self' blob: data:; worker-src 'self' blob:; "
+    "style-src 'self' 'unsafe-inline'; object-src 'none'; base-uri 'self'; frame-ancestors 'self'";
+
+// "localhost" of "LocalHost:8080", "[::1]" of "[::1]:8080".
+std::string WithoutPort(std::string_view host) {
+  const size_t bracket = host.find(']');
+  const size_t colon = host.find(':', bracket == std::string_view::npos ? 0 : bracket);
+  return absl::AsciiStrToLower(std::string(host.substr(0, colon)));
+}
+
+}  // namespace
+
+HttpPolicy::HttpPolicy(bool loopback, std::vector<std::string> allowed_origins)
+    : loopback_(loopback), allowed_origins_(std::move(allowed_origins)) {}
+
+bool HttpPolicy::AllowsHost(std::string_view host) const {
+  if (!loopback_) return true;
+  const std::string name = WithoutPort(host);
+  return name == "localhost" || name == "127.0.0.1" || name == "[::1]";
+}
+
+bool HttpPolicy::AllowsOrigin(std::string_view origin) const {
+  return std::find(allowed_origins_.begin(), allowed_origins_.end(), origin) !=
+         allowed_origins_.end();
+}
+
+void HttpPolicy::Decorate(std::string_view origin, http::fields& response) const {
+  response.set("X-Content-Type-Options", "nosniff");
+  response.set("Content-Security-Policy", kContentSecurityPolicy);
+  response.set("Referrer-Policy", "no-referrer");
+  if (allowed_origins_.empty()) return;
+  response.set(http::field::vary, "Origin");
+  if (!AllowsOrigin(origin)) return;
+  response.set(http::field::access_control_allow_origin, BeastView(origin));
+  // Metadata may have any name; without credentials the asterisk stands for all of them.
+  response.set(http::field::access_control_expose_headers, "*");
+}
+
+void HttpPolicy::DecoratePreflight(std::string_view asked_headers, http::fields& response) const {
+  response.set(http::field::access_control_allow_methods, "GET, HEAD, POST, OPTIONS");
+  if (!asked_headers.empty()) {
+    response.set(http::field::access_control_allow_headers, BeastView(asked_headers));
+  }
+  response.set(http::field::access_control_max_age, "7200");
+}
+
+}  // namespace thunderhead::gateway

@@ -1,0 +1,98 @@
+// One call to the gRPC server, as seen from the thread of an executor: start it, await what comes,
+// one message at a time, and its end. Messages are bytes; knows neither their types nor HTTP.
+#pragma once
+
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "gateway/awaitable.h"
+#include "gateway/grpc_web_protocol.h"
+#include "grpcpp/client_context.h"
+#include "grpcpp/generic/generic_stub.h"
+#include "grpcpp/support/byte_buffer.h"
+#include "grpcpp/support/client_callback.h"
+#include "grpcpp/support/status.h"
+
+namespace thunderhead::gateway {
+
+struct UpstreamRequest {
+  std::string method;  // "/package.Service/Method"
+  Metadata metadata;
+  std::optional<std::chrono::system_clock::time_point> deadline;
+  std::string_view message;
+};
+
+class UpstreamCall : private grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
+ public:
+  // Ends its call when it goes, so that none outlives the connection that asked for it.
+  class Lease {
+   public:
+    explicit Lease(std::shared_ptr<UpstreamCall> call) : call_(std::move(call)) {}
+    Lease(const Lease&) = delete;
+    Lease& operator=(const Lease&) = delete;
+    ~Lease() { call_->Release(); }
+    UpstreamCall* operator->() const { return call_.get(); }
+    // For those who may still want to cancel the call after the lease.
+    std::shared_ptr<UpstreamCall> Share() const { return call_; }
+
+   private:
+    std::shared_ptr<UpstreamCall> call_;
+  };
+
+  // A call whose methods all run on `executor`, which must be one thread.
+  static Lease Start(grpc::GenericStub& stub, const boost::asio::any_io_executor& executor,
+                     const UpstreamRequest& request);
+
+  // False where the server sent only trailers.
+  boost::asio::awaitable<bool> AwaitHeaders();
+  // Asks the server for its next message; nothing once there are no more.
+  boost::asio::awaitable<std::optional<grpc::ByteBuffer>> ReadMessage();
+  // The call's outcome; cancels the call where messages are left.
+  boost::asio::awaitable<grpc::Status> Finish();
+
+  // Valid after AwaitHeaders() and Finish(); values ready for the wire.
+  Metadata InitialMetadata() const;
+  Metadata TrailingMetadata() const;
+
+  void Cancel() { context_.TryCancel(); }
+
+ private:
+  explicit UpstreamCall(const boost::asio::any_io_executor& executor);
+
+  void OnReadInitialMetadataDone(bool ok) override;
+  void OnReadDone(bool ok) override;
+  void OnDone(const grpc::Status& status) override;
+
+  boost::asio::awaitable<void> AwaitTrue(const bool& condition);
+  template <typename Change>
+  void PostChange(Change change);
+  void Release();
+
+  boost::asio::any_io_executor executor_;
+  // Keeps the executor running until gRPC has let go of the call.
+  boost::asio::executor_work_guard<boost::asio::any_io_executor> work_;
+  // Never expires: cancelled to wake who awaits a change.
+  boost::asio::steady_timer changed_;
+  std::shared_ptr<UpstreamCall> self_;  // held until gRPC is done with it
+  grpc::ClientContext context_;
+  grpc::ByteBuffer request_;
+  grpc::ByteBuffer message_;
+
+  // Written and read on the executor only.
+  bool headers_known_ = false;
+  bool has_headers_ = false;
+  bool read_known_ = false;
+  bool has_message_ = false;
+  bool at_end_ = false;
+  bool done_ = false;
+  bool released_ = false;
+  grpc::Status status_;
+};
+
+}  // namespace thunderhead::gateway
