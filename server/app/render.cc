@@ -74,7 +74,7 @@ absl::StatusOr<v1::RenderImageResponse> CallHere(const Flags& flags,
     THUNDERHEAD_RETURN_IF_ERROR(
         ReadWithProgress(*store, static_cast<int>(request.scene().time_index())));
   }
-  return Call(server->InProcessChannel(), request);
+  return Call(server->LocalChannel(), request);
 }
 
 // Under a name of its own first, so that a reader never sees half a picture.

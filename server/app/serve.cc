@@ -83,7 +83,7 @@ absl::Status Serve(const Flags& flags) {
   if (gateway_options.page_directory.empty()) {
     spdlog::warn("no page is served: none is built beside the program; name one with --page");
   }
-  const std::shared_ptr<grpc::Channel> channel = server->InProcessChannel();
+  const std::shared_ptr<grpc::Channel> channel = server->LocalChannel();
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gateway::Gateway> gateway,
                                gateway::Gateway::Start(gateway_options, channel));
   http.port = gateway->Port();

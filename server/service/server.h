@@ -34,8 +34,8 @@ class Server {
   virtual int Port() const = 0;
   // What the server draws on.
   virtual const session::DeviceInfo& Device() const = 0;
-  // A channel to this server that touches no network.
-  virtual std::shared_ptr<grpc::Channel> InProcessChannel() = 0;
+  // A channel to this server from its own process, by a local socket.
+  virtual std::shared_ptr<grpc::Channel> LocalChannel() = 0;
   // Ends every stream with UNAVAILABLE, drops what waits, and waits for what runs. The destructor
   // does it too.
   virtual void Shutdown() = 0;
