@@ -50,7 +50,7 @@ class RunningServer final : public Server {
         sessions_(options.sessions, [this] { wake_.Notify(); }),
         executor_(kExecutorThreads, kMaxWaitingTasks) {}
 
-  ~RunningServer() override { Shutdown(); }
+  ~RunningServer() override { RunningServer::Shutdown(); }
 
   absl::Status StartLoop(const session::RenderLoopOptions& options,
                          const session::FrameSourceFactory& make_source) {
@@ -103,13 +103,14 @@ class RunningServer final : public Server {
 
   void Shutdown() override {
     if (server_ != nullptr) server_->GetHealthCheckService()->Shutdown();
+    // First, so that who sees its stream end also finds that no picture is begun any more.
+    if (loop_ != nullptr) loop_->RequestStop();
     sessions_.CloseAll(absl::UnavailableError("the server is shutting down"));
     if (loop_ != nullptr) loop_->Stop();
     executor_.Stop();
     if (server_ == nullptr) return;
     server_->Shutdown(std::chrono::system_clock::now() + kShutdownGrace);
     server_->Wait();
-    server_.reset();
   }
 
  private:

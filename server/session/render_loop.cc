@@ -50,9 +50,13 @@ RenderLoop::RenderLoop(const RenderLoopOptions& options, volume::StormStore& sto
 
 RenderLoop::~RenderLoop() { Stop(); }
 
-void RenderLoop::Stop() {
+void RenderLoop::RequestStop() {
   stopping_ = true;
   wake_.Notify();
+}
+
+void RenderLoop::Stop() {
+  RequestStop();
   if (thread_.joinable()) thread_.join();
   reader_.reset();
   encoder_.reset();

@@ -59,6 +59,8 @@ class RenderLoop {
 
   void RenderImage(ImageJob job);
 
+  // Nothing is drawn any more after the frame being drawn. Returns at once.
+  void RequestStop();
   // Waits for the frame being drawn, refuses the pictures that wait and ends every thread.
   void Stop();
 
