@@ -9,9 +9,8 @@ namespace thunderhead::base {
 
 absl::Status Annotate(const absl::Status& status, std::string_view prefix) {
   if (status.ok()) return status;
-  return absl::Status(
-      status.code(),
-      absl::StrCat(absl::string_view(prefix.data(), prefix.size()), ": ", status.message()));
+  return absl::Status(status.code(), absl::StrCat(absl::string_view(prefix.data(), prefix.size()),
+                                                  ": ", status.message()));
 }
 
 void CheckFailed(const char* file, int line, const char* condition, const std::string& detail) {

@@ -1,5 +1,6 @@
-// What the render loop asks of the engine that draws: a scene and a storm's fields in, display pixels out. The GL
-// engine implements it; service tests use a fake one. A FrameSource lives and works on one thread.
+// What the render loop asks of the engine that draws: a scene and a storm's fields in, display
+// pixels out. The GL engine implements it; service tests use a fake one. A FrameSource lives and
+// works on one thread.
 #pragma once
 
 #include <cstdint>
@@ -17,13 +18,15 @@ namespace thunderhead::session {
 
 // How finely a frame is drawn: full quality is the scene's own slices at scale 1.
 struct FrameQuality {
-  double image_scale = 1.0;  // of the eye buffer's width and height, (0, 1]; the frame keeps the scene's size
+  double image_scale =
+      1.0;  // of the eye buffer's width and height, (0, 1]; the frame keeps the scene's size
   double slice_share = 1.0;  // of the scene's slices, (0, 1]
 
   bool operator==(const FrameQuality&) const = default;
 };
 
-// One stage's wall time. Stages: "read", "extinction", "upload", "slices", "tone", "read_back", "encode".
+// One stage's wall time. Stages: "read", "extinction", "upload", "slices", "tone", "read_back",
+// "encode".
 struct StageCost {
   std::string stage;
   double milliseconds = 0.0;
@@ -59,8 +62,8 @@ class FrameSource {
 
   virtual const DeviceInfo& Device() const = 0;
 
-  // Draws `scene` from `fields` (of the scene's storm and time). Reruns only the stages that differ from the frame
-  // drawn before.
+  // Draws `scene` from `fields` (of the scene's storm and time). Reruns only the stages that differ
+  // from the frame drawn before.
   virtual absl::StatusOr<DisplayFrame> Draw(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
       const FrameQuality& quality) = 0;

@@ -1,5 +1,6 @@
-// The regular grid on which storms are drawn. World coordinates are metres: x east and y north of the middle of the
-// domain, z up from sea level. Cells are boxes; values stand for cell means and sit at cell centres.
+// The regular grid on which storms are drawn. World coordinates are metres: x east and y north of
+// the middle of the domain, z up from sea level. Cells are boxes; values stand for cell means and
+// sit at cell centres.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +10,8 @@
 namespace thunderhead::volume {
 
 struct RegularGrid {
-  glm::ivec3 cells{0};          // nx, ny, nz
-  glm::dvec3 spacing_m{0.0};    // dx, dy, dz
+  glm::ivec3 cells{0};           // nx, ny, nz
+  glm::dvec3 spacing_m{0.0};     // dx, dy, dz
   glm::dvec3 low_corner_m{0.0};  // of cell (0, 0, 0)
 
   glm::dvec3 HighCorner_m() const { return low_corner_m + glm::dvec3(cells) * spacing_m; }

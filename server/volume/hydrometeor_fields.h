@@ -1,5 +1,5 @@
-// One time of a storm: the mass of each hydrometeor in every cell of a regular grid, with what was found in the file.
-// Knows nothing of optics' parameters (a scene's) and of GL.
+// One time of a storm: the mass of each hydrometeor in every cell of a regular grid, with what was
+// found in the file. Knows nothing of optics' parameters (a scene's) and of GL.
 #pragma once
 
 #include <cstdint>
@@ -24,17 +24,19 @@ struct FieldStatistics {
 // One hydrometeor on the grid.
 struct HydrometeorField {
   physics::Hydrometeor hydrometeor = physics::Hydrometeor::kCloud;
-  std::string variable;                            // name in the file
-  std::vector<float> concentration_kg_per_m3;      // grid.CellCount() values, x fastest; empty if all are zero
+  std::string variable;  // name in the file
+  std::vector<float>
+      concentration_kg_per_m3;  // grid.CellCount() values, x fastest; empty if all are zero
   FieldStatistics statistics;
 };
 
 // One time of a storm.
 struct HydrometeorFields {
   RegularGrid grid;
-  std::vector<HydrometeorField> fields;     // every field the file has, in the order of physics::kHydrometeors
-  std::vector<float> terrain_height_m;      // nx * ny values above sea level, x fastest
-  CellBox condensate;                       // the smallest box that holds every cell with condensate
+  std::vector<HydrometeorField>
+      fields;  // every field the file has, in the order of physics::kHydrometeors
+  std::vector<float> terrain_height_m;  // nx * ny values above sea level, x fastest
+  CellBox condensate;                   // the smallest box that holds every cell with condensate
 
   // Bytes that the arrays take.
   std::size_t Bytes() const;

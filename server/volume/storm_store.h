@@ -1,6 +1,6 @@
-// The storms a server holds: a catalogue of series found under some paths, and a cache of the times in use within a
-// byte budget, which reads the next times ahead on a thread of its own. Safe to call from any thread; netCDF-C is not
-// thread-safe, so one reader works at a time.
+// The storms a server holds: a catalogue of series found under some paths, and a cache of the times
+// in use within a byte budget, which reads the next times ahead on a thread of its own. Safe to
+// call from any thread; netCDF-C is not thread-safe, so one reader works at a time.
 #pragma once
 
 #include <cstddef>
@@ -41,16 +41,18 @@ struct StormInfo {
 using ReadProgress = std::function<void(double)>;
 
 struct StormStoreOptions {
-  std::size_t byte_budget = std::size_t{2} << 30;  // of cached times; the newest one is kept even if it alone is larger
-  int read_ahead = 1;                              // times read ahead after each Get
+  std::size_t byte_budget =
+      std::size_t{2} << 30;  // of cached times; the newest one is kept even if it alone is larger
+  int read_ahead = 1;        // times read ahead after each Get
 };
 
 class StormStore {
  public:
-  // Opens every storm under `paths`: a file is one storm; a folder is one series where its files continue one
-  // another (same grid, different times), else one storm a file or sub-folder. Reads only metadata. Fails with one
-  // clear error (file, variable, what to do) if a path given by name cannot be used; a file inside a folder that is
-  // no storm is logged and left out; no storm at all is an error.
+  // Opens every storm under `paths`: a file is one storm; a folder is one series where its files
+  // continue one another (same grid, different times), else one storm a file or sub-folder. Reads
+  // only metadata. Fails with one clear error (file, variable, what to do) if a path given by name
+  // cannot be used; a file inside a folder that is no storm is logged and left out; no storm at all
+  // is an error.
   static absl::StatusOr<std::unique_ptr<StormStore>> Open(const std::vector<std::string>& paths,
                                                           const StormStoreOptions& options);
   virtual ~StormStore() = default;
@@ -61,8 +63,9 @@ class StormStore {
   // The storm of that id, or nothing.
   const StormInfo* Find(std::string_view id) const;
 
-  // The fields of one time: from the cache, or read now (blocking). `time_index` must be one of the storm's. Errors:
-  // NOT_FOUND (id), OUT_OF_RANGE (time), and what is wrong with the file. `progress` may be empty.
+  // The fields of one time: from the cache, or read now (blocking). `time_index` must be one of the
+  // storm's. Errors: NOT_FOUND (id), OUT_OF_RANGE (time), and what is wrong with the file.
+  // `progress` may be empty.
   virtual absl::StatusOr<std::shared_ptr<const HydrometeorFields>> Get(
       std::string_view id, int time_index, const ReadProgress& progress) = 0;
 

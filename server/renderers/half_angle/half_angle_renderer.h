@@ -43,7 +43,8 @@ class HalfAngleRenderer {
 
   // The result of the last Render.
   const gl::Texture2D& Eye() const { return eye_; }
-  // The light buffer after the last slice: r is the share of sunlight that comes through the medium.
+  // The light buffer after the last slice: r is the share of sunlight that comes through the
+  // medium.
   const gl::Texture2D& Light() const { return light_[last_light_]; }
   std::size_t Bytes() const;
 
