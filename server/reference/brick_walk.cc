@@ -1,0 +1,118 @@
+#include "reference/brick_walk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace thunderhead::reference {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// A level ray through the gaps of a periodic medium would never end: it is taken to leave after
+// this many periods. A scattered ray is that level with a probability of about 1e-6 at most.
+constexpr double kMostPeriods = 1e5;
+
+void ClipAxis(double origin, double direction, double low, double high, RayInterval* interval) {
+  if (direction == 0.0) {
+    if (origin < low || origin > high) interval->end_m = interval->begin_m;
+    return;
+  }
+  const double to_low = (low - origin) / direction;
+  const double to_high = (high - origin) / direction;
+  interval->begin_m = std::max(interval->begin_m, std::min(to_low, to_high));
+  interval->end_m = std::min(interval->end_m, std::max(to_low, to_high));
+}
+
+}  // namespace
+
+RayInterval Clip(const Medium& medium, const Ray& ray, double limit_m) {
+  RayInterval interval{0.0, limit_m};
+  const glm::dvec3& low = medium.Low_m();
+  const glm::dvec3& high = medium.High_m();
+  for (int axis = medium.Periodic() ? 2 : 0; axis < 3; ++axis) {
+    ClipAxis(ray.origin_m[axis], ray.direction[axis], low[axis], high[axis], &interval);
+  }
+  if (medium.Periodic()) {
+    const double period_m = std::max(high.x - low.x, high.y - low.y);
+    interval.end_m = std::min(interval.end_m, interval.begin_m + kMostPeriods * period_m);
+  }
+  return interval;
+}
+
+BrickWalk::BrickWalk(const Medium& medium, const Ray& ray, double limit_m)
+    : medium_(medium), ray_(ray) {
+  const RayInterval interval = Clip(medium, ray, limit_m);
+  at_m_ = interval.begin_m;
+  end_m_ = interval.end_m;
+  if (at_m_ >= end_m_) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double direction = ray.direction[axis];
+    step_[axis] = direction > 0.0 ? 1 : (direction < 0.0 ? -1 : 0);
+    delta_m_[axis] =
+        step_[axis] == 0 ? kInfinity : medium.BrickSize_m()[axis] / std::abs(direction);
+    Enter(axis);
+  }
+}
+
+// Finds the brick and its far face along `axis` at `at_m_`.
+void BrickWalk::Enter(int axis) {
+  const double low_m = medium_.Low_m()[axis];
+  const double size_m = medium_.BrickSize_m()[axis];
+  const double place = (ray_.origin_m[axis] + at_m_ * ray_.direction[axis] - low_m) / size_m;
+  brick_[axis] = static_cast<int>(std::floor(place));
+  if (axis == 2 || !medium_.Periodic()) {
+    brick_[axis] = std::clamp(brick_[axis], 0, medium_.Bricks()[axis] - 1);
+  }
+  if (step_[axis] == 0) {
+    next_m_[axis] = kInfinity;
+    return;
+  }
+  const double face_m = low_m + (brick_[axis] + (step_[axis] > 0 ? 1 : 0)) * size_m;
+  next_m_[axis] = (face_m - ray_.origin_m[axis]) / ray_.direction[axis];
+}
+
+void BrickWalk::SkipLayer() {
+  at_m_ = std::max(at_m_, next_m_.z);
+  if (at_m_ >= end_m_) return;
+  brick_.z += step_.z;
+  next_m_.z += delta_m_.z;
+  Enter(0);
+  Enter(1);
+}
+
+glm::ivec3 BrickWalk::WrappedBrick() const {
+  if (!medium_.Periodic()) return brick_;
+  const glm::ivec3& bricks = medium_.Bricks();
+  const auto wrap = [](int value, int count) {
+    const int rest = value % count;
+    return rest < 0 ? rest + count : rest;
+  };
+  return {wrap(brick_.x, bricks.x), wrap(brick_.y, bricks.y), brick_.z};
+}
+
+bool BrickWalk::Next(Stretch* stretch) {
+  const glm::ivec3& bricks = medium_.Bricks();
+  while (at_m_ < end_m_) {
+    if (brick_.z < 0 || brick_.z >= bricks.z) break;
+    if (medium_.EmptyLayer(brick_.z)) {
+      SkipLayer();
+      continue;
+    }
+    const glm::ivec3 here = WrappedBrick();
+    if (here.x < 0 || here.x >= bricks.x || here.y < 0 || here.y >= bricks.y) break;
+    int axis = next_m_.x < next_m_.y ? 0 : 1;
+    if (next_m_.z < next_m_[axis]) axis = 2;
+    stretch->begin_m = at_m_;
+    stretch->end_m = std::clamp(next_m_[axis], at_m_, end_m_);
+    stretch->majorant_per_m = medium_.Majorant_per_m(here);
+    at_m_ = stretch->end_m;
+    brick_[axis] += step_[axis];
+    next_m_[axis] += delta_m_[axis];
+    if (stretch->majorant_per_m > 0.0 && stretch->end_m > stretch->begin_m) return true;
+  }
+  at_m_ = end_m_;
+  return false;
+}
+
+}  // namespace thunderhead::reference

@@ -1,0 +1,124 @@
+// What scatters: extinction on a grid for each group of fields that scatter alike, and a coarse
+// lattice of its local maxima (majorants) for null-collision sampling. Knows no light and no files.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "glm/vec3.hpp"
+#include "reference/philox.h"
+#include "reference/sampled_phase.h"
+#include "volume/grid.h"
+
+namespace thunderhead::reference {
+
+// How extinction varies between cell centres: linearly, as the renderers draw it (beyond the outer
+// centres it is that of the nearest cell), or not at all inside each cell.
+enum class Interpolation { kLinear, kConstant };
+
+// What lies beyond the sides of the box: nothing, or the same box again and again.
+enum class Sides { kOpen, kPeriodic };
+
+// Fields that scatter alike.
+struct ScatteringGroup {
+  std::vector<float> extinction_per_m;  // grid.CellCount() values, x fastest
+  glm::dvec3 albedo{1.0};               // single-scattering, red, green, blue
+  std::shared_ptr<const SampledPhase> phase;
+};
+
+struct MediumDescription {
+  volume::RegularGrid grid;
+  // The box outside of which extinction is zero; within the grid's. Spans it in x and y if sides
+  // are periodic.
+  glm::dvec3 low_m{0.0};
+  glm::dvec3 high_m{0.0};
+  Interpolation interpolation = Interpolation::kLinear;
+  Sides sides = Sides::kOpen;
+  std::vector<ScatteringGroup> groups;  // may be none: empty space
+};
+
+// A collision with a particle: of which group, and by how much the light of a path that goes on is
+// multiplied so that choosing one group stands for all.
+struct Scattering {
+  const SampledPhase* phase = nullptr;  // null if the light is absorbed
+  glm::dvec3 weight{0.0};
+};
+
+class Medium {
+ public:
+  // Fails if an extinction is negative or not finite, an albedo outside 0 to 1, or sizes disagree.
+  static absl::StatusOr<std::shared_ptr<const Medium>> Create(MediumDescription description);
+
+  const glm::dvec3& Low_m() const { return low_m_; }
+  const glm::dvec3& High_m() const { return high_m_; }
+  bool Periodic() const { return periodic_; }
+
+  // Total extinction at a point of the box or, if periodic, at any height of it.
+  double Extinction_per_m(const glm::dvec3& point_m) const;
+
+  // The group of a collision at `point_m`, chosen by `u` (uniform over (0, 1)) with a probability
+  // in proportion to its scattering.
+  Scattering ScatteringAt(const glm::dvec3& point_m, double u) const;
+
+  // The lattice of bricks that fills the box; a brick's majorant bounds extinction in it.
+  const glm::ivec3& Bricks() const { return bricks_; }
+  const glm::dvec3& BrickSize_m() const { return brick_size_m_; }
+  // `brick` lies in the lattice.
+  double Majorant_per_m(const glm::ivec3& brick) const { return majorants_[BrickOffset(brick)]; }
+  // No brick of this height holds anything.
+  bool EmptyLayer(int z) const { return empty_layers_[static_cast<std::size_t>(z)] != 0; }
+
+ private:
+  // The eight (or fewer) cells around a point with their shares.
+  struct Place {
+    std::array<std::size_t, 8> offsets;
+    std::array<double, 8> shares;
+    int count = 0;
+  };
+  struct GroupOptics {
+    glm::dvec3 albedo;
+    double choice_albedo;  // mean over colours
+    std::shared_ptr<const SampledPhase> phase;
+  };
+  struct CellRange {
+    int first = 0;
+    int last = 0;
+  };
+
+  explicit Medium(MediumDescription description);
+  void BuildMajorants();
+  CellRange CellsOfBrick(int axis, int brick) const;
+  int CellIndex(int axis, int cell) const;
+  double LargestIn(const CellRange& x, const CellRange& y, const CellRange& z) const;
+  Place PlaceOf(const glm::dvec3& point_m) const;
+  static double Weigh(const std::vector<float>& values, const Place& place);
+  std::size_t BrickOffset(const glm::ivec3& brick) const {
+    return (static_cast<std::size_t>(brick.z) * static_cast<std::size_t>(bricks_.y) +
+            static_cast<std::size_t>(brick.y)) *
+               static_cast<std::size_t>(bricks_.x) +
+           static_cast<std::size_t>(brick.x);
+  }
+
+  volume::RegularGrid grid_;
+  glm::dvec3 low_m_;
+  glm::dvec3 high_m_;
+  bool linear_;
+  bool periodic_;
+  glm::vec<3, std::size_t> strides_;  // between neighbours along each axis
+  std::vector<GroupOptics> groups_;
+  std::vector<std::vector<float>> group_extinctions_per_m_;  // empty with a single group
+  std::vector<float> extinction_per_m_;                      // total
+  glm::ivec3 bricks_{0};
+  glm::dvec3 brick_size_m_{0.0};
+  std::vector<double> majorants_;
+  std::vector<char> empty_layers_;
+};
+
+// A plane-parallel layer 1 km deep, without sides, of optical depth `optical_depth`.
+absl::StatusOr<std::shared_ptr<const Medium>> SlabMedium(double optical_depth,
+                                                         const SampledPhase& phase, double albedo);
+
+}  // namespace thunderhead::reference

@@ -1,0 +1,139 @@
+#include "reference/path_radiance.h"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "glm/geometric.hpp"
+#include "reference/tracking.h"
+
+namespace thunderhead::reference {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Paths that carry less than this share go on by Russian roulette.
+constexpr double kRouletteThroughput = 0.1;
+
+// In bright thick clouds the number of paths with more than n collisions falls only as 1 / sqrt(n):
+// a few endless ones would cost most of the time. At this many collisions, and whenever they have
+// become four times as many, every other path ends; then work and variance of all lengths balance.
+constexpr int kLongPath = 64;
+
+// Sunlight that adds less than this to the path, over the light scattered evenly, is asked for by
+// Russian roulette.
+constexpr double kRouletteSunlight = 0.5;
+
+double Largest(const glm::dvec3& color) { return std::max({color.x, color.y, color.z}); }
+
+// One path from the eye: what it has gathered and what it still carries.
+class Path {
+ public:
+  Path(const Medium& medium, const Surroundings& surroundings, const Ray& ray, RandomStream* random)
+      : medium_(medium), surroundings_(surroundings), ray_(ray), random_(random) {}
+
+  glm::dvec3 Follow() {
+    while (Advance()) {
+      if (!Survive()) break;
+    }
+    return radiance_;
+  }
+
+ private:
+  // One flight and what it meets; false when the path ends.
+  bool Advance() {
+    const double ground_m = GroundDistance_m();
+    const std::optional<double> collision_m = SampleCollision(medium_, ray_, ground_m, random_);
+    if (collision_m.has_value()) return Scatter(ray_.At(*collision_m));
+    if (ground_m < kInfinity) return Reflect(ground_m);
+    if (surroundings_.sky) radiance_ += throughput_ * surroundings_.sky(ray_.direction);
+    return false;
+  }
+
+  double GroundDistance_m() const {
+    if (!surroundings_.ground.has_value() || ray_.direction.z >= 0.0) return kInfinity;
+    const double above_m = ray_.origin_m.z - surroundings_.ground->height_m;
+    return above_m > 0.0 ? above_m / -ray_.direction.z : kInfinity;
+  }
+
+  bool Scatter(const glm::dvec3& point_m) {
+    seen_from_eye_ = false;
+    const Scattering scattering = medium_.ScatteringAt(point_m, random_->Uniform());
+    if (scattering.phase == nullptr) return false;
+    throughput_ *= scattering.weight;
+    if (!Survive() || !GoOnAtLength()) return false;
+    const double mu = glm::dot(ray_.direction, surroundings_.towards_sun);
+    const glm::dvec3 phase = scattering.phase->Value(mu);
+    const double worth = std::min(Largest(throughput_ * phase) / kRouletteSunlight, 1.0);
+    if (random_->Uniform() < worth) {
+      AddSunlight(point_m, phase * (0.25 * std::numbers::inv_pi / worth));
+    }
+    const PhaseSample sample = scattering.phase->Sample(random_->Uniform());
+    throughput_ *= sample.weight;
+    const double azimuth_rad = 2.0 * std::numbers::pi * random_->Uniform();
+    ray_ = {point_m, Deflect(ray_.direction, sample.mu, azimuth_rad)};
+    return true;
+  }
+
+  bool Reflect(double ground_m) {
+    const Ground& ground = *surroundings_.ground;
+    glm::dvec3 point_m = ray_.At(ground_m);
+    point_m.z = ground.height_m;
+    if (seen_from_eye_ && surroundings_.air) {
+      const Air air = surroundings_.air(ray_, ground_m);
+      radiance_ += throughput_ * air.airlight;
+      throughput_ *= air.transmittance;
+    }
+    seen_from_eye_ = false;
+    radiance_ += throughput_ * ground.radiance;
+    throughput_ *= ground.albedo;
+    if (Largest(throughput_) <= 0.0) return false;
+    const double sine = std::max(surroundings_.towards_sun.z, 0.0);
+    AddSunlight(point_m, glm::dvec3(sine * std::numbers::inv_pi));
+    ray_ = {point_m, SampleCosine({0.0, 0.0, 1.0}, random_)};
+    return true;
+  }
+
+  // `reflected` is radiance sent back along the path for each unit of sunlight.
+  void AddSunlight(const glm::dvec3& point_m, const glm::dvec3& reflected) {
+    const glm::dvec3 most = throughput_ * reflected * surroundings_.sun_irradiance;
+    if (Largest(most) <= 0.0) return;
+    const Ray ray{point_m, surroundings_.towards_sun};
+    radiance_ += most * EstimateTransmittance(medium_, ray, kInfinity, random_);
+  }
+
+  bool GoOnAtLength() {
+    if (++collisions_ < next_roulette_) return true;
+    next_roulette_ *= 4;
+    throughput_ *= 2.0;
+    return random_->Uniform() < 0.5;
+  }
+
+  bool Survive() {
+    const double carried = Largest(throughput_);
+    if (carried >= kRouletteThroughput) return true;
+    if (random_->Uniform() * kRouletteThroughput >= carried) return false;
+    throughput_ *= kRouletteThroughput / carried;
+    return true;
+  }
+
+  const Medium& medium_;
+  const Surroundings& surroundings_;
+  Ray ray_;
+  RandomStream* random_;
+  bool seen_from_eye_ = true;
+  int collisions_ = 0;
+  int next_roulette_ = kLongPath;
+  glm::dvec3 radiance_{0.0};
+  glm::dvec3 throughput_{1.0};
+};
+
+}  // namespace
+
+glm::dvec3 EstimateRadiance(const Medium& medium, const Surroundings& surroundings, const Ray& ray,
+                            RandomStream* random) {
+  return Path(medium, surroundings, ray, random).Follow();
+}
+
+}  // namespace thunderhead::reference

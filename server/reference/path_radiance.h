@@ -1,0 +1,17 @@
+// The radiance along a ray by one random path: null-collision free flights, sunlight by ratio
+// tracking at every collision, sky and ground where the path meets them, Russian roulette.
+// Unbiased: its mean is the solution of the radiative transfer equation; nothing is clamped.
+#pragma once
+
+#include "glm/vec3.hpp"
+#include "reference/medium.h"
+#include "reference/philox.h"
+#include "reference/surroundings.h"
+
+namespace thunderhead::reference {
+
+// One estimate of the radiance that arrives at `ray`'s origin from its direction.
+glm::dvec3 EstimateRadiance(const Medium& medium, const Surroundings& surroundings, const Ray& ray,
+                            RandomStream* random);
+
+}  // namespace thunderhead::reference

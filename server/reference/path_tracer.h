@@ -1,0 +1,103 @@
+// The image of a medium, refined step by step: each pixel's mean radiance and standard error. The
+// result after a number of samples is the same, bit for bit, for any number of threads and however
+// the samples were divided among calls. Knows no GL, files or messages.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <stop_token>
+#include <vector>
+
+#include "glm/vec2.hpp"
+#include "glm/vec3.hpp"
+#include "reference/camera.h"
+#include "reference/medium.h"
+#include "reference/surroundings.h"
+
+namespace thunderhead::reference {
+
+struct PathTracerOptions {
+  std::uint64_t seed = 0;
+  int threads = 0;  // 0: as many as the machine has
+};
+
+// Refining ends at the first limit that is reached. With none it goes on until it is stopped.
+struct RefineLimits {
+  int samples_per_pixel = 0;    // in all, over every call; 0: no limit
+  double seconds = 0.0;         // of this call; 0: no limit. One sample a pixel is always finished
+  double relative_error = 0.0;  // see ImageProgress; 0: no limit. Needs 16 samples at least
+};
+
+struct ImageProgress {
+  int samples_per_pixel = 0;  // that every pixel has
+  double seconds = 0.0;       // of this call
+  // The root of the mean squared standard error over pixels and colours, over their mean radiance;
+  // infinite below two samples a pixel.
+  double relative_error = 0.0;
+  double samples_per_second = 0.0;  // paths, of this call
+};
+
+// Called between passes on the thread that called Refine.
+using ImageObserver = std::function<void(const ImageProgress&)>;
+
+enum class RefineEnd { kSamples, kSeconds, kRelativeError, kStopped };
+
+struct RefineResult {
+  RefineEnd end = RefineEnd::kStopped;
+  ImageProgress progress;
+};
+
+// Rows from top to bottom.
+struct Image {
+  glm::ivec2 size_px{0};
+  std::vector<glm::vec3> radiance;
+  std::vector<glm::vec3> standard_error;  // infinite where a pixel has fewer than two samples
+};
+
+class PathTracer {
+ public:
+  PathTracer(std::shared_ptr<const Medium> medium, Surroundings surroundings, const Camera& camera,
+             const glm::ivec2& size_px, const PathTracerOptions& options);
+
+  // Adds samples until a limit is reached or `stop` asks to stop, which may leave some pixels with
+  // more samples than others; their means stay right. `observer` may be empty. Calls must not
+  // overlap.
+  RefineResult Refine(const RefineLimits& limits, const ImageObserver& observer,
+                      const std::stop_token& stop);
+
+  Image Snapshot() const;
+
+ private:
+  // Mean and sum of squared differences from it (Welford 1962).
+  struct Pixel {
+    glm::dvec3 mean{0.0};
+    glm::dvec3 squares{0.0};
+    int samples = 0;
+
+    void Add(const glm::dvec3& value);
+    glm::dvec3 SquaredError() const;
+  };
+  struct Pass {
+    int until_samples = 0;
+    std::function<bool()> must_end;
+  };
+
+  void RunPass(const Pass& pass);
+  void RunTile(const Pass& pass, const glm::ivec2& low_px);
+  void RefinePixel(int x, int y, int until_samples);
+  int PassTarget(const RefineLimits& limits) const;
+  int FewestSamples() const;
+  std::int64_t AllSamples() const;
+  ImageProgress ProgressOf(double seconds, std::int64_t samples_before) const;
+  double RelativeError() const;
+
+  std::shared_ptr<const Medium> medium_;
+  Surroundings surroundings_;
+  Camera camera_;
+  glm::ivec2 size_px_;
+  PathTracerOptions options_;
+  std::vector<Pixel> pixels_;
+};
+
+}  // namespace thunderhead::reference

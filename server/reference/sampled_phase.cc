@@ -1,0 +1,158 @@
+#include "reference/sampled_phase.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "base/status.h"
+#include "physics/optics.h"
+
+namespace thunderhead::reference {
+namespace {
+
+// Diffraction peaks of millimetre drops are 0.02 degrees wide: nodes crowd towards angle 0.
+constexpr std::size_t kIntervals = 8192;
+
+// 1 - mu at node `i`, without the cancellation of 1 - cos.
+double NodeX(std::size_t i) {
+  const double s = static_cast<double>(i) / kIntervals;
+  const double sine = std::sin(0.5 * std::numbers::pi * s * s);
+  return 2.0 * sine * sine;
+}
+
+std::size_t IntervalAt(double x) {
+  const double angle = 2.0 * std::asin(std::sqrt(std::clamp(0.5 * x, 0.0, 1.0)));
+  const double s = std::sqrt(angle * std::numbers::inv_pi);
+  return std::min(static_cast<std::size_t>(s * kIntervals), kIntervals - 1);
+}
+
+double Interpolate(const std::vector<double>& values, std::size_t interval, double share) {
+  return values[interval] + share * (values[interval + 1] - values[interval]);
+}
+
+double HenyeyGreensteinValue(double g, double mu) {
+  const double base = (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 - mu);
+  return (1.0 - g) * (1.0 + g) / (base * std::sqrt(base));
+}
+
+// The inverse of Henyey and Greenstein's cumulative distribution.
+double HenyeyGreensteinSample(double g, double u) {
+  // The closed form cancels to 0 / 0 at g = 0; below 1e-4 the first order in g is exact to 1e-8.
+  if (std::abs(g) < 1e-4) {
+    const double isotropic = 1.0 - 2.0 * u;
+    return isotropic + 1.5 * g * (1.0 - isotropic * isotropic);
+  }
+  const double root = (1.0 - g * g) / (1.0 + g - 2.0 * g * u);
+  return std::clamp((1.0 + g * g - root * root) / (2.0 * g), -1.0, 1.0);
+}
+
+}  // namespace
+
+SampledPhase SampledPhase::HenyeyGreenstein(double asymmetry) {
+  THUNDERHEAD_CHECK(std::abs(asymmetry) < 1.0, std::to_string(asymmetry));
+  SampledPhase phase;
+  phase.asymmetry_ = asymmetry;
+  return phase;
+}
+
+SampledPhase SampledPhase::Tabulated(const Function& function) {
+  return Tabulated(std::array<Function, 3>{function, {}, {}});
+}
+
+SampledPhase SampledPhase::Tabulated(const std::array<Function, 3>& by_color) {
+  SampledPhase phase;
+  phase.colored_ = static_cast<bool>(by_color[1]);
+  phase.x_.resize(kIntervals + 1);
+  for (std::size_t i = 0; i <= kIntervals; ++i) phase.x_[i] = NodeX(i);
+  for (std::size_t color = 0; color < (phase.colored_ ? 3U : 1U); ++color) {
+    for (const double x : phase.x_) phase.values_[color].push_back(by_color[color](1.0 - x));
+    phase.Normalize(color);
+  }
+  phase.Accumulate();
+  return phase;
+}
+
+SampledPhase SampledPhase::Of(const physics::PhaseFunction& phase) {
+  if (phase.kind == physics::PhaseKind::kHenyeyGreenstein) {
+    return HenyeyGreenstein(phase.asymmetry);
+  }
+  return Tabulated([phase](double mu) { return physics::PhaseValue(phase, mu); });
+}
+
+void SampledPhase::Normalize(std::size_t color) {
+  std::vector<double>& values = values_[color];
+  double integral = 0.0;
+  for (std::size_t i = 0; i < kIntervals; ++i) {
+    THUNDERHEAD_CHECK(std::isfinite(values[i]) && values[i] >= 0.0, std::to_string(values[i]));
+    integral += 0.5 * (values[i] + values[i + 1]) * (x_[i + 1] - x_[i]);
+  }
+  THUNDERHEAD_CHECK(std::isfinite(integral) && integral > 0.0, std::to_string(integral));
+  for (double& value : values) value *= 2.0 / integral;
+}
+
+void SampledPhase::Accumulate() {
+  if (colored_) {
+    mean_.resize(kIntervals + 1);
+    for (std::size_t i = 0; i <= kIntervals; ++i) {
+      mean_[i] = (values_[0][i] + values_[1][i] + values_[2][i]) / 3.0;
+    }
+  }
+  const std::vector<double>& density = colored_ ? mean_ : values_[0];
+  cumulative_.assign(kIntervals + 1, 0.0);
+  for (std::size_t i = 0; i < kIntervals; ++i) {
+    cumulative_[i + 1] =
+        cumulative_[i] + 0.25 * (density[i] + density[i + 1]) * (x_[i + 1] - x_[i]);
+  }
+  for (double& value : cumulative_) value /= cumulative_.back();
+  guide_.resize(kIntervals);
+  std::uint32_t interval = 0;
+  for (std::size_t i = 0; i < kIntervals; ++i) {
+    while (cumulative_[interval + 1] * kIntervals < static_cast<double>(i)) ++interval;
+    guide_[i] = interval;
+  }
+}
+
+glm::dvec3 SampledPhase::Value(double mu) const {
+  if (x_.empty()) return glm::dvec3(HenyeyGreensteinValue(asymmetry_, mu));
+  const double x = 1.0 - mu;
+  const std::size_t interval = IntervalAt(x);
+  const double share = std::clamp((x - x_[interval]) / (x_[interval + 1] - x_[interval]), 0.0, 1.0);
+  const double first = Interpolate(values_[0], interval, share);
+  if (!colored_) return glm::dvec3(first);
+  return {first, Interpolate(values_[1], interval, share),
+          Interpolate(values_[2], interval, share)};
+}
+
+std::size_t SampledPhase::IntervalOf(double u) const {
+  std::size_t interval = guide_[std::min(static_cast<std::size_t>(u * kIntervals), kIntervals - 1)];
+  while (interval + 1 < kIntervals && cumulative_[interval + 1] < u) ++interval;
+  return interval;
+}
+
+PhaseSample SampledPhase::Sample(double u) const {
+  if (x_.empty()) return {HenyeyGreensteinSample(asymmetry_, u), glm::dvec3(1.0)};
+  const std::size_t interval = IntervalOf(u);
+  const std::vector<double>& density = colored_ ? mean_ : values_[0];
+  const double low = density[interval];
+  const double high = density[interval + 1];
+  const double width = x_[interval + 1] - x_[interval];
+  const double rest = u - cumulative_[interval];
+  // The root of low y + (high - low) y^2 / (2 width) = 2 rest, in the form that does not cancel.
+  const double discriminant = low * low + 4.0 * (high - low) * rest / width;
+  const double divisor = low + std::sqrt(std::max(discriminant, 0.0));
+  const double y = divisor > 0.0 ? std::clamp(4.0 * rest / divisor, 0.0, width) : 0.0;
+  PhaseSample sample;
+  sample.mu = 1.0 - (x_[interval] + y);
+  if (colored_) {
+    const double share = y / width;
+    const double mean = Interpolate(mean_, interval, share);
+    for (int color = 0; color < 3; ++color) {
+      sample.weight[color] =
+          Interpolate(values_[static_cast<std::size_t>(color)], interval, share) / mean;
+    }
+  }
+  return sample;
+}
+
+}  // namespace thunderhead::reference

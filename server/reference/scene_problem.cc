@@ -1,0 +1,191 @@
+#include "reference/scene_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "glm/common.hpp"
+#include "glm/exponential.hpp"
+#include "glm/geometric.hpp"
+#include "glm/vector_relational.hpp"
+#include "physics/optics.h"
+#include "physics/sky.h"
+#include "scene/view.h"
+
+namespace thunderhead::reference {
+namespace {
+
+// Bare soil and grass seen from far off; the scene's ground albedo is that of red.
+constexpr glm::dvec3 kGroundTint(1.0, 0.93, 0.78);
+
+// The eye's view of the ground fades within this distance in any case: the earth is round.
+constexpr double kFarthestGround_m = 4e5;
+constexpr double kAirScaleHeight_m = 8000.0;
+
+physics::PhaseFunction PhaseOf(const scene::Scene& scene, physics::Hydrometeor hydrometeor) {
+  const auto phase_of = [&](physics::Hydrometeor kind) {
+    return scene.fields[physics::IndexOf(kind)].optics.phase;
+  };
+  if (scene.rendering.mode == scene::Mode::kPerFieldPhaseTranslucent) return phase_of(hydrometeor);
+  return {physics::PhaseKind::kCornetteShanks, phase_of(physics::Hydrometeor::kCloud).asymmetry};
+}
+
+struct Box {
+  volume::RegularGrid grid;
+  glm::ivec3 first_cell{0};  // in the domain
+  glm::dvec3 low_m{0.0};
+  glm::dvec3 high_m{0.0};
+};
+
+// The cells to hold, and the box. A border of empty cells takes extinction to zero at its centres.
+Box BoxOf(const volume::HydrometeorFields& fields, Sides sides) {
+  const volume::RegularGrid& domain = fields.grid;
+  volume::CellBox occupied = fields.condensate;
+  if (occupied.Empty()) occupied = {glm::ivec3(0), glm::ivec3(1)};
+  if (sides == Sides::kPeriodic) {
+    occupied.low = glm::ivec3(0, 0, occupied.low.z);
+    occupied.high = glm::ivec3(domain.cells.x, domain.cells.y, occupied.high.z);
+  }
+  const glm::ivec3 low = glm::max(occupied.low - 1, glm::ivec3(0));
+  const glm::ivec3 high = glm::min(occupied.high + 1, domain.cells);
+  Box box;
+  box.first_cell = low;
+  box.grid = {high - low, domain.spacing_m,
+              domain.low_corner_m + glm::dvec3(low) * domain.spacing_m};
+  const glm::dvec3 low_border(glm::notEqual(low, occupied.low));
+  const glm::dvec3 high_border(glm::notEqual(high, occupied.high));
+  box.low_m = box.grid.low_corner_m + 0.5 * low_border * domain.spacing_m;
+  box.high_m = box.grid.HighCorner_m() - 0.5 * high_border * domain.spacing_m;
+  return box;
+}
+
+void AddField(const volume::RegularGrid& domain, const Box& box,
+              const volume::HydrometeorField& field, float mass_extinction_m2_per_kg,
+              std::vector<float>* extinction_per_m) {
+  const glm::ivec3& cells = box.grid.cells;
+  extinction_per_m->resize(box.grid.CellCount(), 0.0F);
+  for (int z = 0; z < cells.z; ++z) {
+    for (int y = 0; y < cells.y; ++y) {
+      const float* from =
+          field.concentration_kg_per_m3.data() +
+          domain.Offset(box.first_cell.x, box.first_cell.y + y, box.first_cell.z + z);
+      float* to = extinction_per_m->data() + box.grid.Offset(0, y, z);
+      for (int x = 0; x < cells.x; ++x) to[x] += from[x] * mass_extinction_m2_per_kg;
+    }
+  }
+}
+
+// What fields have in common that share a group.
+struct GroupLook {
+  physics::PhaseFunction phase;
+  glm::dvec3 albedo{1.0};
+
+  bool operator==(const GroupLook&) const = default;
+};
+
+GroupLook LookOf(const scene::Scene& scene, physics::Hydrometeor hydrometeor) {
+  const physics::ParticleOptics& optics = scene.fields[physics::IndexOf(hydrometeor)].optics;
+  GroupLook look{PhaseOf(scene, hydrometeor), glm::dvec3(optics.albedo)};
+  if (scene.rendering.false_colors) look.albedo *= glm::dvec3(optics.false_color);
+  return look;
+}
+
+double LowestGround_m(const volume::HydrometeorFields& fields) {
+  if (fields.terrain_height_m.empty()) return fields.grid.low_corner_m.z;
+  return *std::min_element(fields.terrain_height_m.begin(), fields.terrain_height_m.end());
+}
+
+glm::dvec3 SkyRadiance(const glm::dvec3& direction, const glm::vec3& towards_sun, double scale) {
+  const glm::vec3 above(direction.x, direction.y, std::abs(direction.z));
+  return scale * glm::dvec3(physics::glsl::sky_radiance(above, towards_sun));
+}
+
+// Air between the eye and the ground: what is lost of the ground is filled up with the horizon's
+// light.
+Air AirBefore(const Ray& ray, double ground_distance_m, double ground_height_m,
+              const std::function<glm::dvec3(const glm::dvec3&)>& sky) {
+  const double eye_height_m = ray.origin_m.z - ground_height_m;
+  const double distance_m = std::min(ground_distance_m, kFarthestGround_m);
+  // The mean density along the way from the ground up to the eye, over that at the ground.
+  const double mean_density =
+      -std::expm1(-eye_height_m / kAirScaleHeight_m) * kAirScaleHeight_m / eye_height_m;
+  const glm::dvec3 depth =
+      glm::dvec3(physics::glsl::air_optical_depth() + physics::glsl::haze_optical_depth()) *
+      (distance_m * mean_density / kAirScaleHeight_m);
+  Air air;
+  air.transmittance = glm::exp(-depth);
+  const glm::dvec3 level(ray.direction.x, ray.direction.y, 0.0);
+  const double length = glm::length(level);
+  // Straight down there is no horizon to look at, and hardly any air that would need one.
+  const glm::dvec3 horizon = length > 0.0 ? level / length : glm::dvec3(1.0, 0.0, 0.0);
+  air.airlight = (1.0 - air.transmittance) * sky(horizon);
+  return air;
+}
+
+}  // namespace
+
+absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene,
+                                                       const volume::HydrometeorFields& fields,
+                                                       Sides sides) {
+  const Box box = BoxOf(fields, sides);
+  MediumDescription description;
+  description.grid = box.grid;
+  description.low_m = box.low_m;
+  description.high_m = box.high_m;
+  description.sides = sides;
+  std::vector<GroupLook> looks;
+  for (const volume::HydrometeorField& field : fields.fields) {
+    const scene::FieldParameters& drawn = scene.fields[physics::IndexOf(field.hydrometeor)];
+    if (!drawn.visible || drawn.scale <= 0.0F || field.concentration_kg_per_m3.empty()) continue;
+    const GroupLook look = LookOf(scene, field.hydrometeor);
+    auto found = std::find(looks.begin(), looks.end(), look);
+    if (found == looks.end()) {
+      found = looks.insert(found, look);
+      const auto phase = std::make_shared<const SampledPhase>(SampledPhase::Of(look.phase));
+      description.groups.push_back({{}, look.albedo, phase});
+    }
+    const float mass_extinction =
+        physics::MassExtinction_m2_per_kg(drawn.optics.density_kg_per_m3, drawn.optics.radius_m);
+    AddField(fields.grid, box, field, drawn.scale * mass_extinction,
+             &description.groups[static_cast<std::size_t>(found - looks.begin())].extinction_per_m);
+  }
+  return Medium::Create(std::move(description));
+}
+
+Surroundings SurroundingsOf(const scene::Scene& scene, const volume::HydrometeorFields& fields,
+                            GroundLight ground_light) {
+  Surroundings around;
+  around.towards_sun = scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg);
+  const glm::vec3 towards_sun(around.towards_sun);
+  around.sun_irradiance =
+      scene.sun.irradiance * glm::dvec3(physics::glsl::sun_transmittance(towards_sun.z));
+  const double sky_scale = scene.sun.irradiance * scene.sky.brightness;
+  around.sky = [towards_sun, sky_scale](const glm::dvec3& direction) {
+    return SkyRadiance(direction, towards_sun, sky_scale);
+  };
+  Ground ground;
+  ground.height_m = LowestGround_m(fields);
+  const glm::dvec3 albedo = scene.sky.ground_albedo * kGroundTint;
+  if (ground_light == GroundLight::kShaded) {
+    ground.albedo = albedo;
+  } else {
+    const glm::dvec3 direct = around.sun_irradiance * std::max(around.towards_sun.z, 0.0);
+    const glm::dvec3 diffuse = sky_scale * glm::dvec3(physics::SkyLightOf(towards_sun).irradiance);
+    ground.radiance = albedo * (direct + diffuse) * std::numbers::inv_pi;
+  }
+  around.ground = ground;
+  around.air = [sky = around.sky, height_m = ground.height_m](const Ray& ray, double distance_m) {
+    return AirBefore(ray, distance_m, height_m, sky);
+  };
+  return around;
+}
+
+Camera CameraOf(const scene::Scene& scene) {
+  const double aspect_ratio = static_cast<double>(scene.output.width_px) / scene.output.height_px;
+  return Camera::Perspective(scene::ViewOf(scene.camera, aspect_ratio));
+}
+
+}  // namespace thunderhead::reference

@@ -1,0 +1,34 @@
+// From a scene and a storm's fields to what the reference computes: medium, surroundings, camera.
+// The same scene that the renderers draw, without their approximations: full-precision extinction,
+// each field's own phase function, a ground that clouds shade. Knows no renderer.
+#pragma once
+
+#include <memory>
+
+#include "absl/status/statusor.h"
+#include "reference/camera.h"
+#include "reference/medium.h"
+#include "reference/surroundings.h"
+#include "scene/scene.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::reference {
+
+// The scene's visible fields. With open sides the box is the smallest that holds all condensate,
+// bordered as in volume/extinction.h; with periodic ones, the whole domain. A storm without
+// condensate gives an empty medium. False colours multiply albedos, the uniform-phase modes give
+// every field Cornette and Shanks' function with cloud water's parameter.
+absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene,
+                                                       const volume::HydrometeorFields& fields,
+                                                       Sides sides);
+
+// kShaded is a Lambertian ground lit by sun and sky through the medium. kUniform has the radiance
+// that the same ground would have without any medium, as the renderers draw it.
+enum class GroundLight { kShaded, kUniform };
+
+Surroundings SurroundingsOf(const scene::Scene& scene, const volume::HydrometeorFields& fields,
+                            GroundLight ground_light);
+
+Camera CameraOf(const scene::Scene& scene);
+
+}  // namespace thunderhead::reference

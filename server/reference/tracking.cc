@@ -1,0 +1,84 @@
+#include "reference/tracking.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "glm/geometric.hpp"
+
+namespace thunderhead::reference {
+namespace {
+
+constexpr double kRouletteTransmittance = 0.1;
+
+}  // namespace
+
+std::optional<double> SampleCollision(const Medium& medium, const Ray& ray, double limit_m,
+                                      RandomStream* random) {
+  BrickWalk walk(medium, ray, limit_m);
+  double depth = random->Exponential();  // still to pass, in units of the majorant
+  Stretch stretch;
+  while (walk.Next(&stretch)) {
+    double at_m = stretch.begin_m;
+    for (;;) {
+      const double ahead = (stretch.end_m - at_m) * stretch.majorant_per_m;
+      if (depth >= ahead) {
+        depth -= ahead;
+        break;
+      }
+      at_m += depth / stretch.majorant_per_m;
+      if (random->Uniform() * stretch.majorant_per_m < medium.Extinction_per_m(ray.At(at_m))) {
+        return at_m;
+      }
+      depth = random->Exponential();
+    }
+  }
+  return std::nullopt;
+}
+
+double EstimateTransmittance(const Medium& medium, const Ray& ray, double limit_m,
+                             RandomStream* random) {
+  BrickWalk walk(medium, ray, limit_m);
+  double transmittance = 1.0;
+  double depth = random->Exponential();
+  Stretch stretch;
+  while (walk.Next(&stretch)) {
+    double at_m = stretch.begin_m;
+    for (;;) {
+      const double ahead = (stretch.end_m - at_m) * stretch.majorant_per_m;
+      if (depth >= ahead) {
+        depth -= ahead;
+        break;
+      }
+      at_m += depth / stretch.majorant_per_m;
+      const double share = medium.Extinction_per_m(ray.At(at_m)) / stretch.majorant_per_m;
+      transmittance *= std::max(1.0 - share, 0.0);
+      if (transmittance < kRouletteTransmittance) {
+        if (random->Uniform() * kRouletteTransmittance >= transmittance) return 0.0;
+        transmittance = kRouletteTransmittance;
+      }
+      depth = random->Exponential();
+    }
+  }
+  return transmittance;
+}
+
+glm::dvec3 Deflect(const glm::dvec3& direction, double mu, double azimuth_rad) {
+  // Two vectors across `direction`; adding its z's sign to z keeps the divisor away from 0.
+  const double sign = std::copysign(1.0, direction.z);
+  const double a = -1.0 / (sign + direction.z);
+  const double b = direction.x * direction.y * a;
+  const glm::dvec3 across(1.0 + sign * direction.x * direction.x * a, sign * b,
+                          -sign * direction.x);
+  const glm::dvec3 other(b, sign + direction.y * direction.y * a, -direction.y);
+  const double sine = std::sqrt(std::max((1.0 - mu) * (1.0 + mu), 0.0));
+  return glm::normalize(mu * direction + (sine * std::cos(azimuth_rad)) * across +
+                        (sine * std::sin(azimuth_rad)) * other);
+}
+
+glm::dvec3 SampleCosine(const glm::dvec3& normal, RandomStream* random) {
+  const double mu = std::sqrt(random->Uniform());
+  return Deflect(normal, mu, 2.0 * std::numbers::pi * random->Uniform());
+}
+
+}  // namespace thunderhead::reference

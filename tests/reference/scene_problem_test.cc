@@ -1,0 +1,205 @@
+#include "reference/scene_problem.h"
+
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+#include "comparisons.h"
+#include "glm/geometric.hpp"
+#include "glm/vector_relational.hpp"
+#include "physics/optics.h"
+#include "physics/sky.h"
+#include "reference/path_tracer.h"
+#include "volume/extinction.h"
+#include "volume/storm_store.h"
+#include "volume/visible_box.h"
+
+namespace thunderhead::reference {
+namespace {
+
+using physics::Hydrometeor;
+
+// Cloud water in cells 2..4 of each axis and rain in the lowest layer under it, of 8 x 7 x 6 cells.
+volume::HydrometeorFields SmallStorm() {
+  volume::HydrometeorFields fields;
+  fields.grid = {{8, 7, 6}, {500.0, 400.0, 300.0}, {-2000.0, -1400.0, 100.0}};
+  for (const Hydrometeor hydrometeor : {Hydrometeor::kCloud, Hydrometeor::kRain}) {
+    volume::HydrometeorField field;
+    field.hydrometeor = hydrometeor;
+    field.concentration_kg_per_m3.assign(fields.grid.CellCount(), 0.0F);
+    fields.fields.push_back(std::move(field));
+  }
+  for (int z = 0; z < 5; ++z) {
+    for (int y = 2; y < 5; ++y) {
+      for (int x = 2; x < 5; ++x) {
+        const std::size_t offset = fields.grid.Offset(x, y, z);
+        const auto amount = 1e-4F * static_cast<float>(1 + x + 2 * y + 3 * z);
+        fields.fields[z < 2 ? 1 : 0].concentration_kg_per_m3[offset] = amount;
+      }
+    }
+  }
+  fields.condensate = {{2, 2, 0}, {5, 5, 5}};
+  return fields;
+}
+
+TEST(MediumOf, HasTheBoxAndExtinctionThatTheRenderersDraw) {
+  const volume::HydrometeorFields fields = SmallStorm();
+  const scene::Scene scene;
+  std::vector<volume::ExtinctionTerm> terms;
+  for (int i = 0; i < 2; ++i) {
+    const auto& optics =
+        physics::DefaultOptics(fields.fields[static_cast<std::size_t>(i)].hydrometeor);
+    terms.push_back(
+        {i, physics::MassExtinction_m2_per_kg(optics.density_kg_per_m3, optics.radius_m), 0});
+  }
+  const volume::ExtinctionVolume drawn = volume::ComputeExtinction(fields, terms, 1);
+  const auto medium = *MediumOf(scene, fields, Sides::kOpen);
+  EXPECT_EQ(medium->Low_m(), drawn.low_m);
+  EXPECT_EQ(medium->High_m(), drawn.high_m);
+  for (int z = 0; z < drawn.grid.cells.z; ++z) {
+    for (int y = 0; y < drawn.grid.cells.y; ++y) {
+      for (int x = 0; x < drawn.grid.cells.x; ++x) {
+        const glm::dvec3 centre_m =
+            drawn.grid.low_corner_m + (glm::dvec3(x, y, z) + 0.5) * drawn.grid.spacing_m;
+        const float here = static_cast<float>(medium->Extinction_per_m(centre_m));
+        const std::uint16_t texel = drawn.planes[0].texels[drawn.grid.Offset(x, y, z)];
+        // Half floats round to 2^-11; double interpolation may land on the other side.
+        EXPECT_NEAR(volume::HalfFromFloat(here / drawn.extinction_per_m), texel, 1);
+      }
+    }
+  }
+}
+
+TEST(MediumOf, PeriodicSpansTheDomain) {
+  const volume::HydrometeorFields fields = SmallStorm();
+  const auto medium = *MediumOf(scene::Scene(), fields, Sides::kPeriodic);
+  EXPECT_TRUE(medium->Periodic());
+  EXPECT_EQ(medium->Low_m().x, fields.grid.low_corner_m.x);
+  EXPECT_EQ(medium->High_m().y, fields.grid.HighCorner_m().y);
+  const glm::dvec3 centre_m =
+      fields.grid.low_corner_m + glm::dvec3(3.5, 2.5, 3.5) * fields.grid.spacing_m;
+  const auto open = *MediumOf(scene::Scene(), fields, Sides::kOpen);
+  EXPECT_DOUBLE_EQ(medium->Extinction_per_m(centre_m), open->Extinction_per_m(centre_m));
+  EXPECT_GT(medium->Extinction_per_m(centre_m), 0.0);
+}
+
+TEST(MediumOf, FollowsTheScenesFields) {
+  const volume::HydrometeorFields fields = SmallStorm();
+  scene::Scene scene;
+  const glm::dvec3 cloud_m =
+      fields.grid.low_corner_m + glm::dvec3(3.5, 3.5, 3.5) * fields.grid.spacing_m;
+  const double whole = (*MediumOf(scene, fields, Sides::kOpen))->Extinction_per_m(cloud_m);
+  auto& cloud = scene.fields[physics::IndexOf(Hydrometeor::kCloud)];
+  cloud.scale = 0.5F;
+  cloud.optics.radius_m *= 2.0F;
+  EXPECT_NEAR((*MediumOf(scene, fields, Sides::kOpen))->Extinction_per_m(cloud_m), 0.25 * whole,
+              1e-6 * whole);
+  cloud.visible = false;
+  EXPECT_EQ((*MediumOf(scene, fields, Sides::kOpen))->Extinction_per_m(cloud_m), 0.0);
+  scene.fields[physics::IndexOf(Hydrometeor::kRain)].visible = false;
+  EXPECT_TRUE(MediumOf(scene, fields, Sides::kOpen).ok());
+  EXPECT_TRUE(
+      MediumOf(scene, volume::HydrometeorFields{fields.grid, {}, {}, {}}, Sides::kOpen).ok());
+}
+
+TEST(MediumOf, ModesChoosePhaseAndColor) {
+  const volume::HydrometeorFields fields = SmallStorm();
+  const glm::dvec3 cloud_m =
+      fields.grid.low_corner_m + glm::dvec3(3.5, 3.5, 3.5) * fields.grid.spacing_m;
+  const glm::dvec3 rain_m =
+      fields.grid.low_corner_m + glm::dvec3(3.5, 3.5, 0.4) * fields.grid.spacing_m;
+  scene::Scene scene;
+  auto& rain = scene.fields[physics::IndexOf(Hydrometeor::kRain)].optics;
+  rain.phase = {physics::PhaseKind::kHenyeyGreenstein, 0.3F};
+  rain.albedo = 0.5F;
+  scene.rendering.false_colors = true;
+  auto medium = *MediumOf(scene, fields, Sides::kOpen);
+  EXPECT_NEAR(medium->ScatteringAt(rain_m, 0.5).phase->Value(0.2).x,
+              physics::PhaseValue(rain.phase, 0.2), 1e-5);
+  EXPECT_EQ(medium->ScatteringAt(rain_m, 0.5).weight, 0.5 * glm::dvec3(rain.false_color));
+  scene.rendering.mode = scene::Mode::kUniformPhaseTranslucent;
+  medium = *MediumOf(scene, fields, Sides::kOpen);
+  const auto& cloud = scene.fields[physics::IndexOf(Hydrometeor::kCloud)].optics;
+  EXPECT_NEAR(medium->ScatteringAt(rain_m, 0.5).phase->Value(0.2).x,
+              physics::PhaseValue(cloud.phase, 0.2), 1e-5);
+  EXPECT_EQ(medium->ScatteringAt(cloud_m, 0.5).weight, glm::dvec3(cloud.false_color));
+}
+
+// Without a medium, the shaded ground is as bright as the uniform one, which the renderers draw.
+// Both see it through the same air. The uniform one's sky is a sum over 2048 directions: 0.3 %.
+TEST(SurroundingsOf, ShadedGroundWithoutCloudsIsUniform) {
+  volume::HydrometeorFields fields = SmallStorm();
+  fields.fields.clear();
+  scene::Scene scene;
+  scene.sky.brightness = 1.7;
+  scene.sun.irradiance = 2.0;
+  scene.camera.elevation_deg = 40.0;
+  scene.camera.distance_m = 5e4;
+  const auto medium = *MediumOf(scene, fields, Sides::kOpen);
+  const Camera camera =
+      Camera::Parallel({0.0, 0.0, 2e4}, {}, {}, glm::normalize(glm::dvec3(0.5, 0.3, -0.6)));
+  const auto trace = [&](GroundLight light, int samples) {
+    PathTracer tracer(medium, SurroundingsOf(scene, fields, light), camera, {8, 8}, {});
+    RefineLimits limits;
+    limits.samples_per_pixel = samples;
+    tracer.Refine(limits, {}, {});
+    return tracer.Snapshot();
+  };
+  const Image uniform = trace(GroundLight::kUniform, 2);
+  const Image shaded = trace(GroundLight::kShaded, 2000);
+  for (int color = 0; color < 3; ++color) {
+    double sum = 0.0;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < shaded.radiance.size(); ++i) {
+      sum += shaded.radiance[i][color] / 64.0;
+      squares += std::pow(shaded.standard_error[i][color] / 64.0, 2);
+    }
+    const double expected = uniform.radiance[0][color];
+    EXPECT_GT(expected, 0.05);
+    ExpectAgrees({sum, std::sqrt(squares)}, expected, 3e-3 * expected, 2e-3 * expected);
+  }
+}
+
+TEST(SurroundingsOf, SunBelowTheHorizonGivesNoSunlight) {
+  scene::Scene scene;
+  scene.sun.elevation_deg = -5.0;
+  const Surroundings around = SurroundingsOf(scene, SmallStorm(), GroundLight::kShaded);
+  EXPECT_EQ(around.sun_irradiance, glm::dvec3(0.0));
+  const glm::dvec3 sky = around.sky(glm::normalize(glm::dvec3(0.3, 0.2, 0.1)));
+  EXPECT_TRUE(glm::all(glm::greaterThan(sky, glm::dvec3(0.0))));
+}
+
+// The sample storm under sunlight alone: nothing that is not finite, and the middle of its sunlit
+// side, optically thick, is brighter than that of the other.
+TEST(Scene, SampleStorm) {
+  const auto store = volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
+  ASSERT_TRUE(store.ok()) << store.status();
+  const auto fields = (*store)->Get((*store)->Storms().front().id, 1, {});
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  scene::Scene scene;
+  scene.output = {16, 9, 88};
+  scene.sky = {0.0, 0.0};
+  const volume::WorldBox box = volume::VisibleBox(**fields);
+  const auto mean_from = [&](double azimuth_deg) {
+    scene.camera = {};
+    scene.camera.azimuth_deg = azimuth_deg;
+    scene.camera = scene::Framing(scene.camera, box.low_m, box.high_m, 16.0 / 9.0);
+    scene.camera.field_of_view_deg = 4.0;
+    PathTracer tracer(*MediumOf(scene, **fields, Sides::kOpen),
+                      SurroundingsOf(scene, **fields, GroundLight::kShaded), CameraOf(scene),
+                      {16, 9}, {});
+    RefineLimits limits;
+    limits.samples_per_pixel = 16;
+    tracer.Refine(limits, {}, {});
+    double sum = 0.0;
+    for (const glm::vec3& radiance : tracer.Snapshot().radiance) {
+      EXPECT_TRUE(std::isfinite(radiance.x) && radiance.x >= 0.0F);
+      sum += radiance.y;
+    }
+    return sum / 144.0;
+  };
+  EXPECT_GT(mean_from(scene.sun.azimuth_deg), 1.3 * mean_from(scene.sun.azimuth_deg + 180.0));
+}
+
+}  // namespace
+}  // namespace thunderhead::reference
