@@ -1,0 +1,11 @@
+# Writes OUTPUT, which defines thunderhead::physics::EmbeddedPhaseTableTexts() from FILES in ROOT, named NAME.txt.
+set(text "#include \"physics/embedded_phase_tables.h\"\n\nnamespace thunderhead::physics {\n\n")
+string(APPEND text "const std::map<std::string_view, std::string_view>& EmbeddedPhaseTableTexts() {\n")
+string(APPEND text "  static const std::map<std::string_view, std::string_view> texts = {\n")
+foreach(file IN LISTS FILES)
+  file(READ ${ROOT}/${file} body)
+  get_filename_component(name ${file} NAME_WE)
+  string(APPEND text "      {\"${name}\", R\"table(${body})table\"},\n")
+endforeach()
+string(APPEND text "  };\n  return texts;\n}\n\n}  // namespace thunderhead::physics\n")
+file(WRITE ${OUTPUT} "${text}")

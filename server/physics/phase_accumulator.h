@@ -1,0 +1,60 @@
+// Gathers scattered light by angle into the values of a phase table: a ray that leaves at an angle
+// is shared between the two nearest angles of the grid, so that the table, linear in between, holds
+// exactly the energy put in. For ray tracing and for quadrature over the angle alike.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "physics/phase_table.h"
+
+namespace thunderhead::physics {
+
+// The grid's angles up to `end_deg` are `step_deg` apart.
+struct GridSpan {
+  double end_deg;
+  double step_deg;
+};
+
+// The angles of consecutive spans from 0; the last span must end at 180, each be a multiple of its
+// step.
+std::vector<double> AngleGrid(const std::vector<GridSpan>& spans);
+
+class PhaseAccumulator {
+ public:
+  explicit PhaseAccumulator(const std::vector<double>& angles_deg);
+
+  // Adds light scattered by `angle_rad`.
+  void Add(double angle_rad, double energy, std::size_t channel);
+
+  // Adds all of another accumulator of the same grid, times `factor` in each channel.
+  void Add(const PhaseAccumulator& other, const PhaseRgb& factor);
+
+  // All that was added.
+  const PhaseRgb& energy() const { return energy_; }
+
+  // The phase function of what was added, its mean over the sphere 1: a value for each angle.
+  std::vector<PhaseRgb> Values() const;
+
+ private:
+  std::vector<double> angles_rad_;
+  std::vector<PhaseRgb> energies_;
+  PhaseRgb energy_{};
+};
+
+// Points and weights that integrate over sin(angle) d(angle) from 0 to pi: Gauss-Legendre with
+// `order` points between each two neighbouring angles of the grid.
+struct AngleQuadrature {
+  std::vector<double> angles_rad;
+  std::vector<double> weights;  // they hold sin(angle); their sum is 2
+};
+AngleQuadrature QuadratureOf(const std::vector<double>& angles_deg, int order);
+
+// Points and weights of Gauss-Legendre quadrature on [-1, 1].
+struct GaussLegendre {
+  explicit GaussLegendre(int order);
+  std::vector<double> points;
+  std::vector<double> weights;
+};
+
+}  // namespace thunderhead::physics

@@ -1,0 +1,106 @@
+#include "physics/tables/recipes.h"
+
+#include <utility>
+
+#include "absl/strings/str_format.h"
+#include "base/status.h"
+#include "physics/refractive_index.h"
+
+namespace thunderhead::physics {
+namespace {
+
+// Fine about straight on (diffraction) and, for cloud, straight back (glory); between 125 and 150
+// degrees the cloudbow.
+std::vector<GridSpan> CloudGrid() {
+  return {{2, 0.05}, {6, 0.1},    {10, 0.25}, {30, 0.5},
+          {125, 1},  {150, 0.25}, {172, 0.5}, {180, 0.1}};
+}
+
+std::vector<GridSpan> RainGrid() {
+  return {{0.2, 0.01}, {2, 0.05},  {10, 0.25}, {30, 0.5},
+          {120, 1},    {145, 0.1}, {178, 0.5}, {180, 0.1}};
+}
+
+// The halos stand at 22 and 46 degrees.
+std::vector<GridSpan> IceGrid() {
+  return {{2, 0.05}, {6, 0.1}, {50, 0.25}, {60, 0.5}, {176, 1}, {180, 0.5}};
+}
+
+PhaseTable TableOf(const std::string& name, std::vector<double> angles_deg,
+                   std::vector<PhaseRgb> values) {
+  absl::StatusOr<PhaseTable> table = PhaseTable::Create({.name = name,
+                                                         .wavelengths_um = kWavelengthsUm,
+                                                         .angles_deg = std::move(angles_deg),
+                                                         .values = std::move(values)},
+                                                        1e-9);
+  THUNDERHEAD_CHECK(table.ok(), std::string(table.status().message()));
+  return *std::move(table);
+}
+
+}  // namespace
+
+std::vector<DropletRecipe> DropletRecipes() {
+  std::vector<DropletRecipe> recipes;
+  for (const int radius_um : {5, 10, 20}) {
+    recipes.push_back({.name = absl::StrFormat("cloud_re%02d", radius_um),
+                       .sizes = {static_cast<double>(radius_um), 0.1},
+                       .grid = CloudGrid(),
+                       .radii = 4000,
+                       .points = 3});
+  }
+  recipes.push_back(
+      {.name = "rain", .sizes = {500.0, 0.1}, .grid = RainGrid(), .radii = 800, .points = 4});
+  return recipes;
+}
+
+std::vector<IceRecipe> IceRecipes() {
+  const IceCrystal column{.width_um = 50, .length_um = 80};
+  const IceCrystal plate{.width_um = 100, .length_um = 40};
+  const IceCrystal rough{.width_um = 80, .length_um = 120, .roughness = 0.5};
+  std::vector<IceRecipe> recipes;
+  for (const auto& [name, crystal] :
+       {std::pair{"ice_columns", column}, {"ice_plates", plate}, {"ice_rough", rough}}) {
+    recipes.push_back({.name = name,
+                       .crystal = crystal,
+                       .grid = IceGrid(),
+                       .rays = 4'000'000,
+                       .orientations = 30'000,
+                       .seed = 1});
+  }
+  return recipes;
+}
+
+BuiltTable Build(const DropletRecipe& recipe, const WorkPlan& plan) {
+  const std::vector<double> angles_deg = AngleGrid(recipe.grid);
+  const PhaseAccumulator light =
+      ScatterByDroplets(recipe.sizes, angles_deg, recipe.radii, recipe.points, plan);
+  PhaseRgb index{};
+  for (std::size_t c = 0; c < kPhaseChannels; ++c)
+    index[c] = WaterRefractiveIndex(kWavelengthsUm[c]);
+  const std::string provenance = absl::StrFormat(
+      "Mie theory; water drops, gamma distribution of effective radius %g um and effective "
+      "variance "
+      "%g\n(%d radii); refractive index %.4f, %.4f, %.4f. See docs/phase_tables.md.",
+      recipe.sizes.effective_radius_um, recipe.sizes.effective_variance, recipe.radii, index[0],
+      index[1], index[2]);
+  return {TableOf(recipe.name, angles_deg, light.Values()), provenance};
+}
+
+BuiltTable Build(const IceRecipe& recipe, const WorkPlan& plan) {
+  const std::vector<double> angles_deg = AngleGrid(recipe.grid);
+  const RayScattering rays = TraceRays(recipe.crystal, angles_deg, recipe.rays, recipe.seed, plan);
+  const PhaseAccumulator diffraction =
+      Diffract(recipe.crystal, angles_deg, recipe.orientations, recipe.seed, plan);
+  const std::string provenance = absl::StrFormat(
+      "Geometric optics and diffraction; randomly oriented hexagonal ice, width %g um, length %g "
+      "um,\nroughness %g; refractive index %.4f, %.4f, %.4f; %d rays, seed %d. Of the rays' "
+      "energy\n"
+      "%.4f went straight on and is spread as diffraction; %.1e was left inside and is dropped.\n"
+      "See docs/phase_tables.md.",
+      recipe.crystal.width_um, recipe.crystal.length_um, recipe.crystal.roughness,
+      kIceRefractiveIndex[0], kIceRefractiveIndex[1], kIceRefractiveIndex[2], recipe.rays,
+      recipe.seed, rays.budget.straight[1], rays.budget.left[1]);
+  return {TableOf(recipe.name, angles_deg, PhaseOf(rays, diffraction, angles_deg)), provenance};
+}
+
+}  // namespace thunderhead::physics

@@ -1,0 +1,44 @@
+// How each table of data/phase is computed: which drops or crystals, on which angles, with how much
+// work. Tests run the same recipes with less.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "physics/chunked_work.h"
+#include "physics/droplets.h"
+#include "physics/ice_crystals.h"
+#include "physics/phase_accumulator.h"
+#include "physics/phase_table.h"
+
+namespace thunderhead::physics {
+
+struct DropletRecipe {
+  std::string name;
+  DropletSizes sizes;
+  std::vector<GridSpan> grid;
+  int radii;   // quadrature points over the sizes
+  int points;  // within each step of the grid
+};
+
+struct IceRecipe {
+  std::string name;
+  IceCrystal crystal;
+  std::vector<GridSpan> grid;
+  std::int64_t rays;
+  int orientations;  // for diffraction
+  std::uint64_t seed;
+};
+
+std::vector<DropletRecipe> DropletRecipes();
+std::vector<IceRecipe> IceRecipes();
+
+// A table and the lines about its origin that stand at the top of its file.
+struct BuiltTable {
+  PhaseTable table;
+  std::string provenance;
+};
+BuiltTable Build(const DropletRecipe& recipe, const WorkPlan& plan);
+BuiltTable Build(const IceRecipe& recipe, const WorkPlan& plan);
+
+}  // namespace thunderhead::physics
