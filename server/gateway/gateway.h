@@ -42,8 +42,10 @@ struct GatewayOptions {
 class Gateway {
  public:
   // Listens and serves on a thread of its own until destroyed. `channel` is that of any gRPC
-  // server; grpc::Server::InProcessChannel() serves the same process. Give the channel
-  // SetMaxReceiveMessageSize(-1) where replies may exceed gRPC's 4 MiB.
+  // server; give it SetMaxReceiveMessageSize(-1) where replies may exceed gRPC's 4 MiB. For a
+  // server in the same process a Unix socket is better than Server::InProcessChannel(): in
+  // gRPC 1.51 the latter crashes on calls made after Server::Shutdown(), and leaves calls open for
+  // ever whose handler ends while its last message has not been asked for.
   static absl::StatusOr<std::unique_ptr<Gateway>> Start(const GatewayOptions& options,
                                                         std::shared_ptr<grpc::Channel> channel);
 

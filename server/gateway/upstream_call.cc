@@ -45,6 +45,10 @@ UpstreamCall::Lease UpstreamCall::Start(grpc::GenericStub& stub,
   call->self_ = call;
   // Reads start outside gRPC's callbacks, which needs a hold until the last of them.
   call->AddHold();
+  // gRPC 1.51's in-process transport never ends the server's side of a call whose handler sends a
+  // message together with its status, as unary ones do, while no read is pending. So the first read
+  // is there before the call.
+  call->StartRead(&call->message_);
   call->StartWriteLast(&call->request_, grpc::WriteOptions());
   call->StartCall();
   return Lease(std::move(call));
@@ -56,8 +60,11 @@ net::awaitable<bool> UpstreamCall::AwaitHeaders() {
 }
 
 net::awaitable<std::optional<grpc::ByteBuffer>> UpstreamCall::ReadMessage() {
-  read_known_ = false;
-  StartRead(&message_);
+  if (!is_first_read_) {
+    read_known_ = false;
+    StartRead(&message_);
+  }
+  is_first_read_ = false;
   co_await AwaitTrue(read_known_);
   if (!has_message_) {
     at_end_ = true;

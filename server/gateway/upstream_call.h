@@ -87,6 +87,7 @@ class UpstreamCall : private grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::Byt
   // Written and read on the executor only.
   bool headers_known_ = false;
   bool has_headers_ = false;
+  bool is_first_read_ = true;
   bool read_known_ = false;
   bool has_message_ = false;
   bool at_end_ = false;

@@ -1,0 +1,188 @@
+#include "tests/gateway/echo_service.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+#include "grpcpp/alarm.h"
+#include "grpcpp/create_channel.h"
+#include "grpcpp/security/credentials.h"
+#include "grpcpp/security/server_credentials.h"
+#include "grpcpp/server_builder.h"
+
+namespace thunderhead::gateway::test {
+namespace {
+
+grpc::Status FailureOf(const FailRequest& request) {
+  return {static_cast<grpc::StatusCode>(request.code()), request.message(), request.details()};
+}
+
+// Writes `count` answers with a pause before each, then finishes with `end`.
+class Counter final : public grpc::ServerWriteReactor<CountResponse> {
+ public:
+  Counter(EchoRecord& record, CountRequest request, grpc::Status end)
+      : record_(record), request_(std::move(request)), end_(std::move(end)) {
+    ++record_.started;
+    StartSendInitialMetadata();
+    Next();
+  }
+
+ private:
+  void OnWriteDone(bool ok) override {
+    if (!ok) {
+      Finish(grpc::Status::CANCELLED);
+      return;
+    }
+    ++record_.written;
+    Next();
+  }
+  void OnCancel() override {
+    ++record_.cancelled;
+    const std::lock_guard lock(mutex_);
+    cancelled_ = true;
+    alarm_.Cancel();
+  }
+  void OnDone() override {
+    ++record_.done;
+    delete this;
+  }
+
+  void Next() {
+    const std::lock_guard lock(mutex_);
+    if (cancelled_ || next_ == request_.count()) {
+      Finish(cancelled_ ? grpc::Status::CANCELLED : end_);
+      return;
+    }
+    const auto pause = std::chrono::milliseconds(request_.interval_ms());
+    alarm_.Set(std::chrono::system_clock::now() + pause, [this](bool expired) {
+      if (!expired) {
+        Finish(grpc::Status::CANCELLED);
+        return;
+      }
+      response_.set_index(next_);
+      response_.set_payload(std::string(request_.payload_bytes(), static_cast<char>(next_)));
+      ++next_;
+      StartWrite(&response_);
+    });
+  }
+
+  EchoRecord& record_;
+  const CountRequest request_;
+  const grpc::Status end_;
+  std::mutex mutex_;  // between a cancellation and the next alarm
+  bool cancelled_ = false;
+  grpc::Alarm alarm_;
+  CountResponse response_;
+  uint32_t next_ = 0;
+};
+
+class Waiter final : public grpc::ServerUnaryReactor {
+ public:
+  explicit Waiter(EchoRecord& record) : record_(record) { ++record_.started; }
+
+ private:
+  void OnCancel() override {
+    ++record_.cancelled;
+    Finish(grpc::Status::CANCELLED);
+  }
+  void OnDone() override {
+    ++record_.done;
+    delete this;
+  }
+
+  EchoRecord& record_;
+};
+
+}  // namespace
+
+grpc::ServerUnaryReactor* EchoService::Say(grpc::CallbackServerContext* context,
+                                           const SayRequest* request, SayResponse* response) {
+  response->set_text(request->text());
+  response->set_payload(request->payload());
+  grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
+  reactor->Finish(grpc::Status::OK);
+  return reactor;
+}
+
+grpc::ServerWriteReactor<CountResponse>* EchoService::Count(grpc::CallbackServerContext*,
+                                                            const CountRequest* request) {
+  return new Counter(record_, *request, grpc::Status::OK);
+}
+
+grpc::ServerWriteReactor<CountResponse>* EchoService::Fail(grpc::CallbackServerContext* context,
+                                                           const FailRequest* request) {
+  context->AddTrailingMetadata("failed-after", absl::StrCat(request->messages()));
+  CountRequest count;
+  count.set_count(request->messages());
+  return new Counter(record_, count, FailureOf(*request));
+}
+
+grpc::ServerUnaryReactor* EchoService::FailOnce(grpc::CallbackServerContext* context,
+                                                const FailRequest* request, SayResponse*) {
+  context->AddTrailingMetadata("failed-after", "0");
+  grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
+  reactor->Finish(FailureOf(*request));
+  return reactor;
+}
+
+grpc::ServerUnaryReactor* EchoService::Metadata(grpc::CallbackServerContext* context,
+                                                const MetadataRequest*,
+                                                MetadataResponse* response) {
+  for (const auto& [key, data] : context->client_metadata()) {
+    const std::string name(key.data(), key.size());
+    const std::string value(data.data(), data.size());
+    Entry* const entry = response->add_entries();
+    entry->set_name(name);
+    entry->set_value(value);
+    if (name.rfind("echo-", 0) == 0) {
+      context->AddInitialMetadata(name, value);
+      context->AddTrailingMetadata(absl::StrCat("trailing-", name), value);
+    }
+  }
+  grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
+  reactor->Finish(grpc::Status::OK);
+  return reactor;
+}
+
+grpc::ServerUnaryReactor* EchoService::Wait(grpc::CallbackServerContext*, const WaitRequest*,
+                                            SayResponse*) {
+  return new Waiter(record_);
+}
+
+std::unique_ptr<EchoSite> EchoSite::Start(const GatewayOptions& options, Path path) {
+  std::unique_ptr<EchoSite> site(new EchoSite());
+  // In Linux's abstract namespace, which needs no file.
+  static std::atomic<int> count = 0;
+  const std::string address = absl::StrCat("unix-abstract:echo-", getpid(), "-", ++count);
+  grpc::ServerBuilder builder;
+  if (path == Path::kUnixSocket) {
+    builder.AddListeningPort(address, grpc::InsecureServerCredentials());
+  }
+  builder.RegisterService(&site->service_);
+  site->server_ = builder.BuildAndStart();
+  const std::shared_ptr<grpc::Channel> channel =
+      path == Path::kUnixSocket ? grpc::CreateChannel(address, grpc::InsecureChannelCredentials())
+                                : site->server_->InProcessChannel({});
+  absl::StatusOr<std::unique_ptr<Gateway>> gateway = Gateway::Start(options, channel);
+  THUNDERHEAD_CHECK(gateway.ok(), gateway.status().ToString());
+  site->gateway_ = *std::move(gateway);
+  return site;
+}
+
+EchoSite::~EchoSite() {
+  gateway_.reset();
+  StopServer();
+}
+
+void EchoSite::StopServer() {
+  server_->Shutdown(std::chrono::system_clock::now() + std::chrono::seconds(5));
+}
+
+}  // namespace thunderhead::gateway::test

@@ -1,0 +1,302 @@
+// The gateway's port as HTTP: page, health, methods, hosts, origins and the life of connections.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <boost/beast/http/field.hpp>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "absl/strings/str_cat.h"
+#include "tests/gateway/echo_service.h"
+#include "tests/gateway/raw_client.h"
+#include "tests/support/temporary_folder.h"
+
+namespace thunderhead::gateway::test {
+namespace {
+
+namespace http = boost::beast::http;
+using std::chrono::milliseconds;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string Header(const Response& response, const std::string& name) {
+  return response[name].to_string();
+}
+
+class HttpTest : public ::testing::Test {
+ protected:
+  HttpTest() {
+    std::filesystem::create_directories(folder_.Path() / "assets");
+    std::ofstream(folder_.File("index.html")) << "<html>storm</html>";
+    // Larger than what the kernel takes at once.
+    std::ofstream(folder_.File("assets/big-1a2b.js")) << std::string(9'000'000, 'x');
+    options_.page_directory = folder_.Path().string();
+  }
+
+  EchoSite& Site() {
+    if (site_ == nullptr) site_ = EchoSite::Start(options_);
+    return *site_;
+  }
+
+  Response Ask(const std::string& method, const std::string& target, const Headers& headers = {},
+               const std::string& body = "") {
+    return RawClient(Site().Port()).Ask(method, target, headers, body);
+  }
+
+  testing::TemporaryFolder folder_;
+  GatewayOptions options_;
+  std::unique_ptr<EchoSite> site_;
+};
+
+TEST_F(HttpTest, ServesThePage) {
+  const Response page = Ask("GET", "/?session=1");
+  EXPECT_EQ(page.result(), http::status::ok);
+  EXPECT_EQ(page.body(), "<html>storm</html>");
+  EXPECT_EQ(Header(page, "Content-Type"), "text/html; charset=utf-8");
+  EXPECT_EQ(Header(page, "Cache-Control"), "no-cache");
+  EXPECT_EQ(Header(page, "X-Content-Type-Options"), "nosniff");
+  const std::string policy = Header(page, "Content-Security-Policy");
+  EXPECT_THAT(policy, HasSubstr("default-src 'self'"));
+  EXPECT_THAT(policy, HasSubstr("img-src 'self' blob: data:"));
+  EXPECT_THAT(policy, HasSubstr("worker-src 'self' blob:"));
+  EXPECT_THAT(policy, HasSubstr("style-src 'self' 'unsafe-inline'"));
+}
+
+TEST_F(HttpTest, ServesALargeAssetWhole) {
+  const Response asset = Ask("GET", "/assets/big-1a2b.js");
+  EXPECT_EQ(asset.body(), std::string(9'000'000, 'x'));
+  EXPECT_THAT(Header(asset, "Cache-Control"), HasSubstr("immutable"));
+}
+
+TEST_F(HttpTest, HeadHasTheHeadersOfGetAndNoBody) {
+  RawClient client(Site().Port());
+  const Response head = client.Ask("HEAD", "/");
+  EXPECT_EQ(Header(head, "Content-Length"), "18");
+  EXPECT_EQ(Header(head, "Content-Type"), "text/html; charset=utf-8");
+  EXPECT_EQ(client.Ask("HEAD", "/nothing").result(), http::status::not_found);
+  // Whatever followed a header would be read as this response.
+  EXPECT_EQ(client.Ask("GET", "/").body(), "<html>storm</html>");
+}
+
+TEST_F(HttpTest, UnchangedFilesAreNotSentAgain) {
+  RawClient client(Site().Port());
+  const std::string tag = Header(client.Ask("GET", "/"), "ETag");
+  const Response again = client.Ask("GET", "/", {{"If-None-Match", tag}});
+  EXPECT_EQ(again.result(), http::status::not_modified);
+  EXPECT_EQ(Header(again, "ETag"), tag);
+  EXPECT_EQ(client.Ask("GET", "/", {{"If-None-Match", "\"old\""}}).result(), http::status::ok);
+}
+
+TEST_F(HttpTest, HealthIsTold) {
+  const Response health = Ask("GET", "/healthz");
+  EXPECT_EQ(health.result(), http::status::ok);
+  EXPECT_EQ(health.body(), "ok\n");
+  EXPECT_EQ(Header(health, "Cache-Control"), "no-store");
+}
+
+TEST_F(HttpTest, WithoutAPageHealthAndCallsAreServed) {
+  options_.page_directory = "";
+  EXPECT_EQ(Ask("GET", "/").result(), http::status::not_found);
+  EXPECT_EQ(Ask("GET", "/healthz").result(), http::status::ok);
+  EXPECT_EQ(Call(Site().Port(), "Say", "").Trailer("grpc-status"), "0");
+}
+
+TEST_F(HttpTest, NothingOutsideThePageIsServed) {
+  for (const char* target : {"/../../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "/nothing",
+                             "/..%2f..%2fetc%2fpasswd", "/assets"}) {
+    EXPECT_EQ(Ask("GET", target).result(), http::status::not_found) << target;
+  }
+  EXPECT_EQ(Ask("GET", "http://localhost/").result(), http::status::bad_request);
+}
+
+TEST_F(HttpTest, WrongMethodsSayWhichAreRight) {
+  const Response get = Ask("GET", "/thunderhead.gateway.test.Echo/Say");
+  EXPECT_EQ(get.result(), http::status::method_not_allowed);
+  EXPECT_EQ(Header(get, "Allow"), "POST, OPTIONS");
+  const Response post = Ask("POST", "/", {{"Content-Type", "application/grpc-web"}});
+  EXPECT_EQ(post.result(), http::status::method_not_allowed);
+  EXPECT_EQ(Header(post, "Allow"), "GET, HEAD");
+  for (const char* method : {"PUT", "DELETE", "PATCH", "TRACE", "CONNECT"}) {
+    EXPECT_EQ(Ask(method, "/thunderhead.gateway.test.Echo/Say").result(),
+              http::status::method_not_allowed)
+        << method;
+  }
+}
+
+TEST_F(HttpTest, OnlyBinaryGrpcWebIsTaken) {
+  const std::string say = "/thunderhead.gateway.test.Echo/Say";
+  for (const char* type : {"application/grpc-web-text", "application/grpc", "application/json"}) {
+    const Response response = Ask("POST", say, {{"Content-Type", type}}, Frame(""));
+    EXPECT_EQ(response.result(), http::status::unsupported_media_type) << type;
+    EXPECT_THAT(response.body(), HasSubstr("application/grpc-web+proto"));
+  }
+  EXPECT_EQ(Ask("POST", say, {}, Frame("")).result(), http::status::unsupported_media_type);
+  EXPECT_EQ(Ask("POST", "/a/b/c", {{"Content-Type", "application/grpc-web"}}, Frame("")).result(),
+            http::status::not_found);
+}
+
+TEST_F(HttpTest, CallsNeedHttp11) {
+  RawClient client(Site().Port());
+  client.Send(
+      "POST /thunderhead.gateway.test.Echo/Say HTTP/1.0\r\nHost: localhost\r\n"
+      "Content-Type: application/grpc-web\r\nContent-Length: 5\r\n\r\n" +
+      Frame(""));
+  EXPECT_EQ(client.Read().result(), http::status::http_version_not_supported);
+}
+
+TEST_F(HttpTest, OnLoopbackForeignHostsAreRefused) {
+  for (const char* host :
+       {"localhost", "LocalHost:1234", "127.0.0.1", "127.0.0.1:80", "[::1]", "[::1]:8080"}) {
+    EXPECT_EQ(Ask("GET", "/", {{"Host", host}}).result(), http::status::ok) << host;
+  }
+  for (const char* host : {"storms.example", "localhost.example", "127.0.0.1.example:80", "",
+                           "[::2]", "10.0.0.1", "example:localhost", "localhost@example"}) {
+    EXPECT_EQ(Ask("GET", "/", {{"Host", host}}).result(), http::status::forbidden) << host;
+  }
+  // A call is refused before it is made.
+  const Response call =
+      Ask("POST", "/thunderhead.gateway.test.Echo/Wait",
+          {{"Host", "evil.example"}, {"Content-Type", "application/grpc-web"}}, Frame(""));
+  EXPECT_EQ(call.result(), http::status::forbidden);
+  EXPECT_EQ(Site().Record().started, 0);
+  RawClient without(Site().Port());
+  without.Send("GET / HTTP/1.1\r\n\r\n");
+  EXPECT_EQ(without.Read().result(), http::status::forbidden);
+}
+
+TEST_F(HttpTest, BeyondLoopbackEveryHostIsAnswered) {
+  options_.address = "0.0.0.0";
+  EXPECT_EQ(Ask("GET", "/", {{"Host", "storms.example"}}).result(), http::status::ok);
+}
+
+TEST_F(HttpTest, ForeignOriginsGetNothingUnlessAllowed) {
+  options_.allowed_origins = {"http://localhost:5173"};
+  const std::string say = "/thunderhead.gateway.test.Echo/Say";
+  const Headers preflight = {{"Access-Control-Request-Method", "POST"},
+                             {"Access-Control-Request-Headers", "content-type,x-grpc-web,x-own"}};
+  Headers allowed = preflight;
+  allowed.emplace_back("Origin", "http://localhost:5173");
+  const Response yes = Ask("OPTIONS", say, allowed);
+  EXPECT_EQ(yes.result(), http::status::no_content);
+  EXPECT_EQ(Header(yes, "Access-Control-Allow-Origin"), "http://localhost:5173");
+  EXPECT_THAT(Header(yes, "Access-Control-Allow-Methods"), HasSubstr("POST"));
+  EXPECT_EQ(Header(yes, "Access-Control-Allow-Headers"), "content-type,x-grpc-web,x-own");
+  EXPECT_EQ(Header(yes, "Vary"), "Origin");
+
+  Headers foreign = preflight;
+  foreign.emplace_back("Origin", "http://evil.example");
+  const Response no = Ask("OPTIONS", say, foreign);
+  EXPECT_EQ(no.result(), http::status::forbidden);
+  EXPECT_EQ(no.count("Access-Control-Allow-Origin"), 0u);
+  EXPECT_EQ(no.count("Access-Control-Allow-Headers"), 0u);
+}
+
+TEST_F(HttpTest, AllowedOriginsMayReadCalls) {
+  options_.allowed_origins = {"http://localhost:5173"};
+  const auto call = [&](const std::string& origin) {
+    return Ask("POST", "/thunderhead.gateway.test.Echo/Say",
+               {{"Content-Type", "application/grpc-web"}, {"Origin", origin}}, Frame(""));
+  };
+  const Response yes = call("http://localhost:5173");
+  EXPECT_EQ(Header(yes, "Access-Control-Allow-Origin"), "http://localhost:5173");
+  EXPECT_EQ(Header(yes, "Access-Control-Expose-Headers"), "*");
+  const Response no = call("http://localhost:51730");
+  EXPECT_EQ(no.count("Access-Control-Allow-Origin"), 0u);
+  EXPECT_EQ(no.count("Access-Control-Expose-Headers"), 0u);
+}
+
+TEST_F(HttpTest, ConnectionsServeManyRequests) {
+  RawClient client(Site().Port());
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(client.Ask("GET", "/").result(), http::status::ok);
+    client.Send(CallRequest("Say", Frame("")));
+    EXPECT_EQ(ParseResult(client.Read()).Trailer("grpc-status"), "0");
+  }
+  const Response last = client.Ask("GET", "/", {{"Connection", "close"}});
+  EXPECT_EQ(last.result(), http::status::ok);
+  EXPECT_TRUE(client.IsClosed());
+}
+
+TEST_F(HttpTest, RequestsSentAtOnceAreAnsweredInOrder) {
+  RawClient client(Site().Port());
+  client.Send("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n" + CallRequest("Say", Frame("\x0a\x01z")) +
+              "GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_EQ(client.Read().body(), "<html>storm</html>");
+  EXPECT_THAT(ParseResult(client.Read()).messages, ::testing::ElementsAre("\x0a\x01z"));
+  EXPECT_EQ(client.Read().body(), "ok\n");
+}
+
+TEST_F(HttpTest, IdleConnectionsAreClosed) {
+  options_.idle_timeout = milliseconds(100);
+  RawClient silent(Site().Port());
+  EXPECT_TRUE(silent.IsClosed());
+  RawClient half_said(Site().Port());
+  half_said.Send("GET / HTTP/1.1\r\nHo");
+  EXPECT_TRUE(half_said.IsClosed());
+  RawClient after_one(Site().Port());
+  EXPECT_EQ(after_one.Ask("GET", "/").result(), http::status::ok);
+  EXPECT_TRUE(after_one.IsClosed());
+  RawClient body_missing(Site().Port());
+  std::string call = CallRequest("Say", Frame("abc"));
+  call.pop_back();
+  body_missing.Send(call);
+  EXPECT_TRUE(body_missing.IsClosed());
+}
+
+TEST_F(HttpTest, UnreadableRequestsAreRefused) {
+  RawClient nonsense(Site().Port());
+  nonsense.Send("storm\r\n\r\n");
+  EXPECT_EQ(nonsense.Read().result(), http::status::bad_request);
+  EXPECT_TRUE(nonsense.IsClosed());
+  RawClient endless(Site().Port());
+  endless.Send("GET / HTTP/1.1\r\nHost: localhost\r\nX: " + std::string(100'000, 'x'));
+  EXPECT_EQ(endless.Read().result(), http::status::request_header_fields_too_large);
+  RawClient twofold(Site().Port());
+  twofold.Send(
+      "POST /a.B/C HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\n"
+      "Transfer-Encoding: chunked\r\n\r\n");
+  EXPECT_EQ(twofold.Read().result(), http::status::bad_request);
+}
+
+TEST_F(HttpTest, ConnectionsBeyondTheMostAreClosedAtOnce) {
+  options_.max_connections = 2;
+  RawClient first(Site().Port());
+  RawClient second(Site().Port());
+  EXPECT_EQ(first.Ask("GET", "/").result(), http::status::ok);
+  EXPECT_EQ(second.Ask("GET", "/").result(), http::status::ok);
+  EXPECT_TRUE(RawClient(Site().Port()).IsClosed());
+  first.Ask("GET", "/", {{"Connection", "close"}});
+  ASSERT_TRUE(first.IsClosed());
+  std::this_thread::sleep_for(milliseconds(100));
+  EXPECT_EQ(Ask("GET", "/").result(), http::status::ok);
+}
+
+TEST_F(HttpTest, ATakenPortIsAnErrorThatNamesIt) {
+  GatewayOptions same = options_;
+  same.port = Site().Port();
+  const absl::Status error = Gateway::Start(same, nullptr).status();
+  EXPECT_EQ(error.code(), absl::StatusCode::kUnavailable);
+  EXPECT_THAT(std::string(error.message()), HasSubstr(absl::StrCat("127.0.0.1:", same.port)));
+  EXPECT_THAT(std::string(error.message()), HasSubstr("choose another"));
+}
+
+TEST_F(HttpTest, AddressesAreChecked) {
+  const auto start = [&](const std::string& address) {
+    GatewayOptions options = options_;
+    options.address = address;
+    return std::string(Gateway::Start(options, nullptr).status().message());
+  };
+  EXPECT_THAT(start("storms.example"), HasSubstr("'storms.example' is not an IP address"));
+  // Kept for documentation, so of no machine.
+  EXPECT_THAT(start("192.0.2.1"), HasSubstr("choose an address of this machine"));
+  EXPECT_EQ(start("localhost"), "");
+}
+
+TEST_F(HttpTest, UrlIsWhereThePageIs) {
+  EXPECT_EQ(Site().Front().Url(), absl::StrCat("http://localhost:", Site().Port(), "/"));
+}
+
+}  // namespace
+}  // namespace thunderhead::gateway::test

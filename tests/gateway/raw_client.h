@@ -1,0 +1,76 @@
+// An HTTP/1.1 client that sends exactly the bytes it is given, and reads gRPC-Web without a
+// library. Every wait ends after ten seconds.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace thunderhead::gateway::test {
+
+using Response = boost::beast::http::response<boost::beast::http::string_body>;
+using Headers = std::vector<std::pair<std::string, std::string>>;
+
+class RawClient {
+ public:
+  // `receive_buffer_bytes` above 0 makes a client whose kernel takes little ahead of it.
+  explicit RawClient(uint16_t port, int receive_buffer_bytes = 0);
+
+  void Send(const std::string& bytes);
+  // The next response; one to a HEAD request has no body.
+  Response Read(bool to_head = false);
+  // Sends a request with a Host header and reads its response.
+  Response Ask(const std::string& method, const std::string& target, const Headers& headers = {},
+               const std::string& body = "");
+
+  // A response whose body is read as it comes.
+  Response ReadHeaders();
+  // Reads until the body so far holds `bytes`, or has ended; the body so far.
+  const std::string& ReadBody(size_t bytes);
+
+  // True where the server ends the connection within the wait, and sent nothing more.
+  bool IsClosed();
+  void ShutdownSending();
+  void Close();
+
+ private:
+  using Parser = boost::beast::http::response_parser<boost::beast::http::string_body>;
+  template <typename Start>
+  boost::system::error_code Await(Start start);
+
+  boost::asio::io_context io_;
+  boost::beast::tcp_stream stream_;
+  boost::beast::flat_buffer buffer_;
+  std::unique_ptr<Parser> parser_;
+};
+
+// "POST" of a gRPC-Web call with its Host header and content type.
+std::string CallRequest(const std::string& method, const std::string& body,
+                        const Headers& headers = {});
+
+// `message` in a frame.
+std::string Frame(const std::string& message, uint8_t flags = 0);
+
+// What a response body holds.
+struct CallResult {
+  std::vector<std::string> messages;
+  std::multimap<std::string, std::string> trailers;  // or the headers, where there is no body
+  bool trailers_only = false;
+
+  std::string Trailer(const std::string& name) const;
+};
+CallResult ParseResult(const Response& response);
+
+// One whole call on a connection of its own.
+CallResult Call(uint16_t port, const std::string& method, const std::string& message,
+                const Headers& headers = {});
+
+}  // namespace thunderhead::gateway::test

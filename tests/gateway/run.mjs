@@ -1,0 +1,40 @@
+// Checks that what the stock clients' test needs is there, says plainly what is not, generates the messages' code and
+// runs the test.
+import { spawnSync } from "node:child_process";
+import { existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { fileURLToPath } from "node:url";
+
+const here = fileURLToPath(new URL(".", import.meta.url));
+const root = fileURLToPath(new URL("../../", import.meta.url));
+const server = process.env.THUNDERHEAD_ECHO_SERVER ?? `${root}build/release/bin/gateway_echo_server`;
+const protoc = process.env.THUNDERHEAD_PROTOC ?? "/usr/bin/protoc";
+const { dependencies } = JSON.parse(readFileSync(`${here}package.json`, "utf8"));
+
+const needed = [
+  ...Object.keys(dependencies).map((name) => [`${here}node_modules/${name}`, "run npm ci in tests/gateway"]),
+  [server, "build the target gateway_echo_server"],
+  [protoc, "install Debian's package protobuf-compiler"],
+];
+const missing = needed.filter(([path]) => !existsSync(path));
+for (const [path, remedy] of missing) console.error(`The stock clients' test needs ${path}: ${remedy}.`);
+if (missing.length > 0) process.exit(1);
+
+// Below node_modules, so that the generated code finds its runtime and git does not find the code.
+const generated = mkdtempSync(`${here}node_modules/.generated-`);
+try {
+  const plugin = `--plugin=protoc-gen-es=${here}node_modules/.bin/protoc-gen-es`;
+  const made = spawnSync(
+    protoc,
+    ["-I", here, plugin, `--es_out=${generated}`, "--es_opt=target=js", `${here}echo.proto`],
+    { stdio: "inherit" },
+  );
+  if (made.status !== 0) throw new Error("protoc could not generate the messages' code");
+  const run = spawnSync(process.execPath, ["--test", "stock_clients.test.mjs"], {
+    cwd: here,
+    stdio: "inherit",
+    env: { ...process.env, THUNDERHEAD_ECHO_SERVER: server, THUNDERHEAD_GENERATED: generated },
+  });
+  process.exitCode = run.status ?? 1;
+} finally {
+  rmSync(generated, { recursive: true });
+}

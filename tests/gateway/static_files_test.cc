@@ -1,0 +1,110 @@
+#include "gateway/static_files.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/support/temporary_folder.h"
+
+namespace thunderhead::gateway {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+void Write(const fs::path& path, const std::string& text) {
+  fs::create_directories(path.parent_path());
+  std::ofstream(path) << text;
+}
+
+// A page beside secrets that no request may reach.
+class StaticFilesTest : public ::testing::Test {
+ protected:
+  StaticFilesTest() {
+    Write(root_ / "index.html", "<html>");
+    Write(root_ / "favicon.svg", "<svg>");
+    Write(root_ / "assets/index-Ab12.js", "1");
+    Write(root_ / "a b.txt", "spaced");
+    Write(root_ / ".built", "hidden");
+    Write(folder_.Path() / "secret.txt", "secret");
+    // Its name begins with the page's.
+    Write(folder_.Path() / "page-secret/key", "secret");
+    fs::create_symlink(folder_.Path() / "secret.txt", root_ / "leak.txt");
+    fs::create_directory_symlink(folder_.Path() / "page-secret", root_ / "leak");
+    fs::create_symlink("favicon.svg", root_ / "alias.svg");
+  }
+
+  std::optional<StaticFile> Find(const std::string& path) const {
+    return StaticFiles::Open(root_.string())->Find(path);
+  }
+
+  testing::TemporaryFolder folder_;
+  fs::path root_ = folder_.Path() / "page";
+};
+
+TEST_F(StaticFilesTest, FindsThePageAndItsFiles) {
+  ASSERT_TRUE(Find("/").has_value());
+  EXPECT_EQ(Find("/")->content_type, "text/html; charset=utf-8");
+  EXPECT_EQ(Find("/")->path, Find("/index.html")->path);
+  EXPECT_EQ(Find("/favicon.svg")->content_type, "image/svg+xml");
+  EXPECT_EQ(Find("/assets/index-Ab12.js")->content_type, "text/javascript; charset=utf-8");
+  EXPECT_TRUE(Find("/a%20b.txt").has_value());
+  // A link within the page is a file like any other.
+  EXPECT_TRUE(Find("/alias.svg").has_value());
+}
+
+TEST_F(StaticFilesTest, OnlyHashedAssetsAreKeptForever) {
+  EXPECT_THAT(Find("/assets/index-Ab12.js")->cache_control, HasSubstr("immutable"));
+  EXPECT_EQ(Find("/")->cache_control, "no-cache");
+  EXPECT_EQ(Find("/favicon.svg")->cache_control, "no-cache");
+}
+
+TEST_F(StaticFilesTest, NeverLeavesThePage) {
+  for (const char* path :
+       {"/../secret.txt", "/assets/../../secret.txt", "/%2e%2e/secret.txt", "/..%2fsecret.txt",
+        "/%2e%2e%2fsecret.txt", "/assets/..%2f..%2fsecret.txt", "/..\\secret.txt",
+        "/..%5csecret.txt", "//secret.txt", "/leak.txt", "/leak/key", "/../page-secret/key",
+        "/%252e%252e/secret.txt", "/favicon.svg%00.txt", "/./favicon.svg", "secret.txt", ""}) {
+    EXPECT_FALSE(Find(path).has_value()) << path;
+  }
+}
+
+TEST_F(StaticFilesTest, FindsNoFoldersHiddenOrMissingFiles) {
+  for (const char* path : {"/assets", "/assets/", "/.built", "/nothing", "/favicon.svg/", "/%",
+                           "/%2", "/%zz", "/assets/%2ehidden"}) {
+    EXPECT_FALSE(Find(path).has_value()) << path;
+  }
+}
+
+TEST_F(StaticFilesTest, EntityTagFollowsTheFile) {
+  const std::string before = Find("/favicon.svg")->entity_tag;
+  EXPECT_EQ(before, Find("/favicon.svg")->entity_tag);
+  const fs::path path = root_ / "favicon.svg";
+  fs::last_write_time(path, fs::last_write_time(path) + std::chrono::seconds(1));
+  EXPECT_NE(before, Find("/favicon.svg")->entity_tag);
+}
+
+TEST_F(StaticFilesTest, OpenWantsAPage) {
+  const absl::Status missing = StaticFiles::Open((root_ / "no").string()).status();
+  EXPECT_EQ(missing.code(), absl::StatusCode::kNotFound);
+  EXPECT_THAT(std::string(missing.message()), HasSubstr("./dev build"));
+  const absl::Status empty = StaticFiles::Open((root_ / "assets").string()).status();
+  EXPECT_THAT(std::string(empty.message()), HasSubstr("index.html"));
+  // No directory is no page, and no error.
+  ASSERT_TRUE(StaticFiles::Open("").ok());
+  EXPECT_FALSE(StaticFiles::Open("")->Find("/").has_value());
+  EXPECT_FALSE(StaticFiles::Open("")->Find("/etc/passwd").has_value());
+}
+
+TEST(EntityTag, MatchesAnyOfTheCandidates) {
+  EXPECT_TRUE(MatchesEntityTag("\"a\"", "\"a\""));
+  EXPECT_TRUE(MatchesEntityTag("\"b\", W/\"a\"", "\"a\""));
+  EXPECT_TRUE(MatchesEntityTag("*", "\"a\""));
+  EXPECT_FALSE(MatchesEntityTag("", "\"a\""));
+  EXPECT_FALSE(MatchesEntityTag("\"ab\"", "\"a\""));
+}
+
+}  // namespace
+}  // namespace thunderhead::gateway

@@ -1,0 +1,245 @@
+// The clients that others write, as npm has them, against the gateway: connect-web (as in the page), its node twin and
+// grpc-web. They know nothing of the gateway and the gateway nothing of their messages.
+import assert from "node:assert/strict";
+import { after, before, describe, test } from "node:test";
+import { setTimeout as sleep } from "node:timers/promises";
+import { pathToFileURL } from "node:url";
+import { create, fromBinary, toBinary } from "@bufbuild/protobuf";
+import { Code, ConnectError, createClient, decodeBinaryHeader, encodeBinaryHeader } from "@connectrpc/connect";
+import { createGrpcWebTransport as createNodeTransport } from "@connectrpc/connect-node";
+import { createGrpcWebTransport as createWebTransport } from "@connectrpc/connect-web";
+import xhr2 from "xhr2";
+import { startEchoServer } from "./echo_server_process.mjs";
+
+// The code generated from echo.proto.
+const generated = pathToFileURL(`${process.env.THUNDERHEAD_GENERATED}/echo_pb.js`);
+const { Echo, SayRequestSchema, SayResponseSchema, FailRequestSchema, WaitRequestSchema } = await import(generated);
+
+// grpc-web is made for browsers; xhr2 is their XMLHttpRequest for Node.js.
+globalThis.XMLHttpRequest = xhr2.XMLHttpRequest ?? xhr2;
+const grpcWeb = (await import("grpc-web")).default;
+
+async function eventually(condition) {
+  const patience = Date.now() + 10_000;
+  while (Date.now() < patience) {
+    if (await condition()) return;
+    await sleep(10);
+  }
+  assert.fail("what was waited for did not happen");
+}
+
+async function failureOf(promise) {
+  try {
+    await promise;
+  } catch (error) {
+    return ConnectError.from(error);
+  }
+  assert.fail("the call was to fail");
+}
+
+async function collect(stream) {
+  const all = [];
+  for await (const message of stream) all.push(message);
+  return all;
+}
+
+const transports = {
+  "connect-web": (baseUrl) => createWebTransport({ baseUrl }),
+  "connect-node": (baseUrl) => createNodeTransport({ baseUrl, httpVersion: "1.1" }),
+};
+
+for (const way of ["unix-socket", "in-process"]) {
+  for (const [name, createTransport] of Object.entries(transports)) {
+    describe(`${name} over ${way}`, () => {
+      let server;
+      let client;
+      before(async () => {
+        server = await startEchoServer(way);
+        client = createClient(Echo, createTransport(server.url));
+      });
+      after(() => server.stop());
+
+      test("a unary call comes back", async () => {
+        const payload = new Uint8Array(100_000).fill(7);
+        const response = await client.say({ text: "Gewitter ⛈", payload });
+        assert.equal(response.text, "Gewitter ⛈");
+        assert.deepEqual(response.payload, payload);
+        assert.equal((await client.say({})).text, "");
+      });
+
+      test("a stream comes in order", async () => {
+        const all = await collect(client.count({ count: 100, payloadBytes: 20_000 }));
+        assert.deepEqual(all.map((message) => message.index), [...Array(100).keys()]);
+        assert.ok(all.every((message) => message.payload.length === 20_000));
+        assert.deepEqual(await collect(client.count({ count: 0 })), []);
+      });
+
+      test("messages arrive when they are sent", async () => {
+        const begin = Date.now();
+        const arrivals = [];
+        for await (const _ of client.count({ count: 3, intervalMs: 500 })) arrivals.push(Date.now() - begin);
+        assert.equal(arrivals.length, 3);
+        assert.ok(arrivals[0] < 1000, `the first came after ${arrivals[0]} ms`);
+        assert.ok(arrivals[2] >= 1500, `the last came after ${arrivals[2]} ms`);
+      });
+
+      test("an error has its code, message, details and trailers", async () => {
+        // google.rpc.Status with the code, the message and no details.
+        const details = new Uint8Array([0x08, 5, 0x12, 1, 0x78]);
+        const error = await failureOf(client.failOnce({ code: 5, message: "kein Sturm: 100 % ☀\n", details }));
+        assert.equal(error.code, Code.NotFound);
+        assert.equal(error.metadata.get("failed-after"), "0");
+        assert.equal(error.metadata.get("grpc-status-details-bin"), encodeBinaryHeader(details));
+        const plain = await failureOf(client.failOnce({ code: 3, message: "kein Sturm: 100 % ☀\n" }));
+        assert.equal(plain.code, Code.InvalidArgument);
+        assert.equal(plain.rawMessage, "kein Sturm: 100 % ☀\n");
+      });
+
+      test("an error in the middle of a stream keeps what came before", async () => {
+        const seen = [];
+        const error = await failureOf(
+          (async () => {
+            for await (const message of client.fail({ code: 14, message: "gone", messages: 2 })) seen.push(message.index);
+          })(),
+        );
+        assert.deepEqual(seen, [0, 1]);
+        assert.equal(error.code, Code.Unavailable);
+        assert.equal(error.rawMessage, "gone");
+        assert.equal(error.metadata.get("failed-after"), "2");
+      });
+
+      test("metadata goes both ways, binary too", async () => {
+        const bytes = new Uint8Array([0, 1, 254, 255]);
+        let header;
+        let trailer;
+        const response = await client.metadata(
+          {},
+          {
+            headers: { "echo-text": "some text", "echo-data-bin": encodeBinaryHeader(bytes) },
+            onHeader: (headers) => {
+              header = headers;
+            },
+            onTrailer: (trailers) => {
+              trailer = trailers;
+            },
+          },
+        );
+        const seen = new Map(response.entries.map((entry) => [entry.name, entry.value]));
+        assert.equal(Buffer.from(seen.get("echo-text")).toString(), "some text");
+        assert.deepEqual([...seen.get("echo-data-bin")], [...bytes]);
+        assert.equal(header.get("echo-text"), "some text");
+        assert.deepEqual([...decodeBinaryHeader(header.get("echo-data-bin"))], [...bytes]);
+        assert.equal(trailer.get("trailing-echo-text"), "some text");
+        assert.deepEqual([...decodeBinaryHeader(trailer.get("trailing-echo-data-bin"))], [...bytes]);
+      });
+
+      test("a deadline ends the call on both sides", async () => {
+        const before = await server.record();
+        const error = await failureOf(client.wait({}, { timeoutMs: 200 }));
+        assert.equal(error.code, Code.DeadlineExceeded);
+        await eventually(async () => (await server.record()).cancelled === before.cancelled + 1);
+      });
+
+      test("leaving a stream cancels it", async () => {
+        const before = await server.record();
+        const leave = new AbortController();
+        const error = await failureOf(
+          (async () => {
+            for await (const _ of client.count({ count: 2, intervalMs: 200 }, { signal: leave.signal })) {
+              break;
+            }
+            for await (const _ of client.count({ count: 1, intervalMs: 3_600_000 }, {
+              signal: leave.signal,
+              onHeader: () => setTimeout(() => leave.abort(), 100),
+            })) {
+              assert.fail("nothing was to come");
+            }
+          })(),
+        );
+        assert.equal(error.code, Code.Canceled);
+        await eventually(async () => {
+          const record = await server.record();
+          return record.done === before.done + 2 && record.cancelled > before.cancelled;
+        });
+      });
+
+      test("a request beyond the limit is refused with a reason", async () => {
+        const error = await failureOf(client.say({ payload: new Uint8Array(5 << 20) }));
+        assert.equal(error.code, Code.ResourceExhausted);
+        assert.match(error.rawMessage, /larger than the 4194304 bytes/);
+        assert.equal((await client.say({ text: "still there" })).text, "still there");
+      });
+
+      test("many calls at once are kept apart", async () => {
+        const texts = [...Array(200).keys()].map(String);
+        const responses = await Promise.all(texts.map((text) => client.say({ text })));
+        assert.deepEqual(responses.map((response) => response.text), texts);
+      });
+    });
+  }
+}
+
+// In its binary format grpc-web serves unary calls alone: it waits for the whole body, and streams only as
+// grpc-web-text, which the gateway does not speak.
+describe("grpc-web", () => {
+  let server;
+  let client;
+  before(async () => {
+    server = await startEchoServer();
+    client = new grpcWeb.GrpcWebClientBase({ format: "binary" });
+  });
+  after(() => server.stop());
+
+  const method = (name, request, response) =>
+    new grpcWeb.MethodDescriptor(
+      `/thunderhead.gateway.test.Echo/${name}`,
+      grpcWeb.MethodType.UNARY,
+      Object,
+      Object,
+      (message) => toBinary(request, message),
+      (bytes) => fromBinary(response, bytes),
+    );
+  // The callback's word is the call's end; the status comes beside it.
+  const call = (descriptor, request, metadata = {}) =>
+    new Promise((resolve) => {
+      const outcome = {};
+      const url = `${server.url}${descriptor.getName()}`;
+      const stream = client.rpcCall(url, request, metadata, descriptor, (error, response) => {
+        Object.assign(outcome, { error, response });
+        setTimeout(() => resolve(outcome), 20);
+      });
+      stream.on("status", (status) => Object.assign(outcome, { status }));
+    });
+
+  test("a unary call comes back", async () => {
+    const say = method("Say", SayRequestSchema, SayResponseSchema);
+    const payload = new Uint8Array([0, 128, 255]);
+    const { error, response, status } = await call(say, create(SayRequestSchema, { text: "Gewitter ⛈", payload }));
+    assert.equal(error, null);
+    assert.equal(response.text, "Gewitter ⛈");
+    assert.deepEqual([...response.payload], [...payload]);
+    assert.equal(status.code, 0);
+  });
+
+  test("an error has its code and message", async () => {
+    const fail = method("FailOnce", FailRequestSchema, SayResponseSchema);
+    const { error } = await call(fail, create(FailRequestSchema, { code: 5, message: "no storm, 100 %" }));
+    assert.equal(error.code, 5);
+    assert.equal(error.message, "no storm, 100 %");
+  });
+
+  test("an error that the gateway itself finds is told", async () => {
+    const say = method("Say", SayRequestSchema, SayResponseSchema);
+    const { error } = await call(say, create(SayRequestSchema, { payload: new Uint8Array(5 << 20) }));
+    assert.equal(error.code, 8);
+    assert.match(error.message, /larger than/);
+  });
+
+  test("a deadline ends the call", async () => {
+    const wait = method("Wait", WaitRequestSchema, SayResponseSchema);
+    const deadline = String(Date.now() + 300);
+    const { error } = await call(wait, create(WaitRequestSchema), { deadline });
+    assert.equal(error.code, 4);
+    await eventually(async () => (await server.record()).cancelled === 1);
+  });
+});
