@@ -79,7 +79,8 @@ void FrameHub::Publish(Problem problem) {
 void FrameHub::Close(const absl::Status& why) {
   {
     const std::lock_guard lock(mutex_);
-    if (closed_because_.ok()) closed_because_ = why;
+    if (!closed_because_.ok()) return;
+    closed_because_ = why;
   }
   WakeAll();
 }

@@ -76,6 +76,7 @@ absl::StatusOr<std::shared_ptr<Session>> Sessions::Create() {
 
 absl::StatusOr<std::shared_ptr<Session>> Sessions::Find(const std::string& id) {
   const std::lock_guard lock(mutex_);
+  if (!closed_because_.ok()) return closed_because_;
   DropExpired();
   const auto found = sessions_.find(id);
   if (found == sessions_.end()) return NotFound(id);

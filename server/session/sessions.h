@@ -69,11 +69,11 @@ class Sessions {
 
   // RESOURCE_EXHAUSTED when there are too many, UNAVAILABLE after CloseAll.
   absl::StatusOr<std::shared_ptr<Session>> Create();
-  // NOT_FOUND when it never was, was closed or has expired. Counts as use.
+  // NOT_FOUND when it never was, was closed or has expired; UNAVAILABLE after CloseAll. Counts as use.
   absl::StatusOr<std::shared_ptr<Session>> Find(const std::string& id);
   // Ends the session and every watch of it. NOT_FOUND as Find.
   absl::Status Close(const std::string& id);
-  // Ends every session with `why`; none can be created afterwards.
+  // Ends every session with `why`; none can be created or found afterwards.
   void CloseAll(const absl::Status& why);
 
   // Those that have not expired, in order of id.

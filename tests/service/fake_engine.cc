@@ -1,0 +1,175 @@
+#include "tests/service/fake_engine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "base/status.h"
+#include "session/cost_model.h"
+
+namespace thunderhead::testing {
+namespace {
+
+volume::StormInfo Storm(const std::string& id, int time_count) {
+  volume::StormInfo storm;
+  storm.id = id;
+  storm.title = "A storm called " + id;
+  for (int i = 0; i < time_count; ++i) {
+    storm.times.push_back({"0001-01-01T00:" + std::to_string(10 + 10 * i) + ":00Z", 600.0 * i});
+  }
+  storm.file_cells = {20, 10, 5};
+  storm.fields = {physics::Hydrometeor::kCloud, physics::Hydrometeor::kRain};
+  return storm;
+}
+
+std::shared_ptr<const volume::HydrometeorFields> Fields(bool empty) {
+  auto fields = std::make_shared<volume::HydrometeorFields>();
+  fields->grid = {{20, 10, 5}, {1000.0, 1000.0, 500.0}, {-10000.0, -5000.0, 0.0}};
+  volume::HydrometeorField cloud;
+  cloud.hydrometeor = physics::Hydrometeor::kCloud;
+  cloud.variable = "QCLOUD";
+  volume::HydrometeorField rain;
+  rain.hydrometeor = physics::Hydrometeor::kRain;
+  rain.variable = "QRAIN";
+  if (!empty) {
+    cloud.concentration_kg_per_m3.assign(fields->grid.CellCount(), 0.0F);
+    cloud.concentration_kg_per_m3[fields->grid.Offset(4, 4, 2)] = 1e-3F;
+    cloud.statistics = {-1e-13F, 2e-3F, 0.25, 7.5, 3, 1};
+    fields->condensate = {{4, 4, 2}, {5, 5, 3}};
+  }
+  fields->fields = {cloud, rain};
+  return fields;
+}
+
+class FakeFrameSource final : public session::FrameSource {
+ public:
+  explicit FakeFrameSource(std::shared_ptr<FakeMachine> machine) : machine_(std::move(machine)) {}
+
+  const session::DeviceInfo& Device() const override { return info_; }
+
+  absl::StatusOr<session::DisplayFrame> Draw(
+      const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
+      const session::FrameQuality& quality) override {
+    THUNDERHEAD_CHECK(fields != nullptr, "drawn without fields");
+    machine_->Add({scene, quality, std::chrono::steady_clock::now()});
+    machine_->drawing.Pass();
+    if (scene.display.exposure_ev > machine_->fails_above_exposure_ev) {
+      return absl::InternalError("the fake machine does not like this exposure");
+    }
+    const double ms = machine_->ms_per_mega_sample * session::MegaSamples(scene, quality);
+    std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(ms));
+    return Paint(scene, quality, ms);
+  }
+
+ private:
+  static session::DisplayFrame Paint(const scene::Scene& scene,
+                                     const session::FrameQuality& quality, double ms) {
+    session::DisplayFrame frame;
+    frame.width_px = scene.output.width_px;
+    frame.height_px = scene.output.height_px;
+    for (int i = 0; i < frame.width_px * frame.height_px; ++i) {
+      frame.rgb.push_back(RedOf(scene.time_index));
+      frame.rgb.push_back(GreenOf(scene.sun.azimuth_deg));
+      frame.rgb.push_back(static_cast<std::uint8_t>(255 * (i % frame.width_px) / frame.width_px));
+    }
+    frame.stages = {{"slices", ms}};
+    frame.modelled.fields = {physics::Hydrometeor::kCloud};
+    frame.modelled.slices =
+        std::max(1, static_cast<int>(std::lround(scene.rendering.slices * quality.slice_share)));
+    frame.modelled.device_bytes = 4096;
+    frame.modelled.occupied_share = 0.125;
+    return frame;
+  }
+
+  const std::shared_ptr<FakeMachine> machine_;
+  const session::DeviceInfo info_{"software", "fake renderer", "4.5 fake"};
+};
+
+}  // namespace
+
+void Gate::Close() {
+  const std::lock_guard lock(mutex_);
+  open_ = false;
+}
+
+void Gate::Open() {
+  {
+    const std::lock_guard lock(mutex_);
+    open_ = true;
+  }
+  changed_.notify_all();
+}
+
+void Gate::Pass() {
+  std::unique_lock lock(mutex_);
+  ++waiting_;
+  changed_.notify_all();
+  changed_.wait(lock, [this] { return open_; });
+  --waiting_;
+}
+
+bool Gate::AwaitWaiting(int count) {
+  std::unique_lock lock(mutex_);
+  return changed_.wait_for(lock, kPatience, [&] { return waiting_ >= count; });
+}
+
+FakeStormStore::FakeStormStore() : storms_{Storm("anvil", 4), Storm("clear", 1)} {}
+
+absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> FakeStormStore::Get(
+    std::string_view id, int time_index, const volume::ReadProgress& /*progress*/) {
+  if (auto cached = Peek(id, time_index); cached != nullptr) return cached;
+  reading.Pass();
+  const std::lock_guard lock(mutex_);
+  ++reads_;
+  changed_.notify_all();
+  if (const auto failure = failures_.find(time_index); failure != failures_.end()) {
+    return failure->second;
+  }
+  cached_.emplace(id, time_index);
+  return Fields(id == "clear");
+}
+
+std::shared_ptr<const volume::HydrometeorFields> FakeStormStore::Peek(std::string_view id,
+                                                                      int time_index) {
+  const std::lock_guard lock(mutex_);
+  return cached_.count({std::string(id), time_index}) > 0 ? Fields(id == "clear") : nullptr;
+}
+
+void FakeStormStore::FailAt(int time_index, const absl::Status& status) {
+  const std::lock_guard lock(mutex_);
+  failures_[time_index] = status;
+}
+
+int FakeStormStore::Reads() {
+  const std::lock_guard lock(mutex_);
+  return reads_;
+}
+
+bool FakeStormStore::AwaitReads(int count) {
+  std::unique_lock lock(mutex_);
+  return changed_.wait_for(lock, kPatience, [&] { return reads_ >= count; });
+}
+
+std::vector<FakeMachine::Drawn> FakeMachine::Log() {
+  const std::lock_guard lock(mutex_);
+  return log_;
+}
+
+void FakeMachine::Add(Drawn drawn) {
+  const std::lock_guard lock(mutex_);
+  log_.push_back(std::move(drawn));
+}
+
+session::FrameSourceFactory FakeFrameSources(std::shared_ptr<FakeMachine> machine) {
+  return [machine]() -> absl::StatusOr<std::unique_ptr<session::FrameSource>> {
+    return std::make_unique<FakeFrameSource>(machine);
+  };
+}
+
+std::uint8_t RedOf(int time_index) { return static_cast<std::uint8_t>(40 + 50 * time_index); }
+
+std::uint8_t GreenOf(double sun_azimuth_deg) {
+  return static_cast<std::uint8_t>(std::lround(sun_azimuth_deg / 360.0 * 200.0));
+}
+
+}  // namespace thunderhead::testing

@@ -1,0 +1,98 @@
+// What the render loop runs on in tests instead of files and GL: storms made up in memory, and a
+// frame source that paints scene values as colours and takes as long as it is told to.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "session/frame_source.h"
+#include "volume/storm_store.h"
+
+namespace thunderhead::testing {
+
+inline constexpr std::chrono::seconds kPatience{20};
+
+// A gate that a fake's thread passes only while it is open; it starts open.
+class Gate {
+ public:
+  void Close();
+  void Open();
+  // Called by the fake: waits until the gate is open.
+  void Pass();
+  // Called by the test: waits until `count` have come to the closed gate.
+  bool AwaitWaiting(int count);
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool open_ = true;
+  int waiting_ = 0;
+};
+
+// "anvil" has four times with cloud and rain in part of the domain; "clear" has one time without
+// condensate.
+class FakeStormStore final : public volume::StormStore {
+ public:
+  FakeStormStore();
+
+  const std::vector<volume::StormInfo>& Storms() const override { return storms_; }
+  absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> Get(
+      std::string_view id, int time_index, const volume::ReadProgress& progress) override;
+  std::shared_ptr<const volume::HydrometeorFields> Peek(std::string_view id,
+                                                        int time_index) override;
+  std::size_t CachedBytes() const override { return 0; }
+
+  // Reads of that time fail with `status` from now on.
+  void FailAt(int time_index, const absl::Status& status);
+  int Reads();
+  // Waits until that many reads have ended.
+  bool AwaitReads(int count);
+
+  Gate reading;
+
+ private:
+  std::vector<volume::StormInfo> storms_;
+  std::mutex mutex_;
+  std::map<int, absl::Status> failures_;
+  std::condition_variable changed_;
+  std::set<std::pair<std::string, int>> cached_;
+  int reads_ = 0;
+};
+
+// The machine that fake frame sources draw on; shared with the test, since the source lives on the
+// loop's thread.
+struct FakeMachine {
+  struct Drawn {
+    scene::Scene scene;
+    session::FrameQuality quality;
+    std::chrono::steady_clock::time_point at;
+  };
+
+  Gate drawing;
+  std::atomic<double> ms_per_mega_sample{0.0};
+  std::atomic<double> fails_above_exposure_ev{1e9};
+
+  std::vector<Drawn> Log();
+  void Add(Drawn drawn);
+
+ private:
+  std::mutex mutex_;
+  std::vector<Drawn> log_;
+};
+
+session::FrameSourceFactory FakeFrameSources(std::shared_ptr<FakeMachine> machine);
+
+// The colour that the fake source paints a scene in: red from the time, green from the sun's
+// azimuth.
+std::uint8_t RedOf(int time_index);
+std::uint8_t GreenOf(double sun_azimuth_deg);
+
+}  // namespace thunderhead::testing

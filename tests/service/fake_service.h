@@ -1,0 +1,86 @@
+// A server on fakes, and a viewer that collects what a stream brings.
+#pragma once
+
+#include <grpcpp/grpcpp.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "service/server.h"
+#include "tests/service/fake_engine.h"
+#include "thunderhead/v1/thunderhead.grpc.pb.h"
+
+namespace thunderhead::testing {
+
+// A server on fakes and a stub to it.
+class FakeService {
+ public:
+  explicit FakeService(service::ServerOptions options = {});
+  ~FakeService();
+
+  service::Server& server() { return *server_; }
+  v1::ThunderheadService::Stub& stub() { return *stub_; }
+
+  // Opens a session of a small picture and returns its id.
+  std::string Open(const v1::Scene& scene);
+  std::uint64_t Update(const std::string& session_id, const v1::Scene& scene);
+
+  const std::shared_ptr<FakeStormStore> store = std::make_shared<FakeStormStore>();
+  const std::shared_ptr<FakeMachine> machine = std::make_shared<FakeMachine>();
+
+ private:
+  std::unique_ptr<service::Server> server_;
+  std::unique_ptr<v1::ThunderheadService::Stub> stub_;
+};
+
+// A scene of 64 x 36 pixels and 16 slices.
+v1::Scene SmallScene();
+
+// Watches a session on a thread of its own; acknowledges every frame at once unless told otherwise.
+class Watcher {
+ public:
+  Watcher(v1::ThunderheadService::Stub& stub, std::string session_id, bool acknowledges = true);
+  ~Watcher();
+
+  // Waits until `wanted` is true of the messages so far, or patience ends.
+  bool Await(const std::function<bool(const std::vector<v1::WatchFramesResponse>&)>& wanted);
+  // Waits for a frame of at least that revision, at full quality if `refined`.
+  bool AwaitFrame(std::uint64_t revision, bool refined);
+  std::vector<v1::WatchFramesResponse> Messages();
+  v1::Frame NewestFrame();
+
+  void Acknowledge(std::uint64_t sequence);
+  void Cancel() { context_.TryCancel(); }
+  // Waits for the stream to end.
+  grpc::Status End();
+
+ private:
+  void Run();
+
+  v1::ThunderheadService::Stub& stub_;
+  const std::string session_id_;
+  const bool acknowledges_;
+  grpc::ClientContext context_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<v1::WatchFramesResponse> messages_;
+  grpc::Status end_;
+  std::thread thread_;
+};
+
+// Calls one rpc with a deadline: Call(stub, &Stub::ListStorms, request, &response).
+template <typename Method, typename Request, typename Response>
+grpc::Status Call(v1::ThunderheadService::Stub& stub, Method method, const Request& request,
+                  Response* response) {
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + kPatience);
+  return (stub.*method)(&context, request, response);
+}
+
+}  // namespace thunderhead::testing

@@ -1,0 +1,183 @@
+// Which frame is due, with a made-up clock and made-up costs.
+#include "session/frame_planner.h"
+
+#include <cmath>
+
+#include "gtest/gtest.h"
+
+namespace thunderhead::session {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr Clock::time_point kStart{};
+
+scene::Scene Hd() { return {}; }  // 1280 x 720, 128 slices: 118 million samples
+
+NewestScene At(std::uint64_t revision, const scene::Scene& scene, Clock::time_point changed_at) {
+  return {revision, std::make_shared<const scene::Scene>(scene), changed_at};
+}
+
+// A machine whose frames cost `fixed_ms` + `ms_per_mega_sample` x samples, exactly.
+struct Machine {
+  double fixed_ms = 0.0;
+  double ms_per_mega_sample = 0.0;
+
+  double Cost(const scene::Scene& scene, const FrameQuality& quality) const {
+    return fixed_ms + ms_per_mega_sample * MegaSamples(scene, quality);
+  }
+};
+
+class FramePlannerTest : public ::testing::Test {
+ protected:
+  // Drags: `count` scenes, each drawn as planned.
+  void Drag(const Machine& machine, int count) {
+    for (int i = 0; i < count; ++i) {
+      scene_.camera.azimuth_deg += 1.0;
+      ++revision_;
+      const Decision decision = planner_.Decide(At(revision_, scene_, kStart), kStart, last_drawn_);
+      ASSERT_TRUE(decision.plan.has_value());
+      Draw(machine, *decision.plan);
+    }
+  }
+
+  void Draw(const Machine& machine, const FramePlan& plan) {
+    const double ms = machine.Cost(scene_, plan.quality);
+    planner_.Drawn(revision_, scene_, plan, ms, {{"slices", ms}});
+    last_drawn_ = LastDrawn{scene_, plan.quality};
+    last_plan_ = plan;
+    last_ms_ = ms;
+  }
+
+  Decision Ask(milliseconds since_change) {
+    return planner_.Decide(At(revision_, scene_, kStart), kStart + since_change, last_drawn_);
+  }
+
+  FramePlanner planner_{PlannerTargets{}, CostModel{}};
+  scene::Scene scene_ = Hd();
+  std::uint64_t revision_ = 0;
+  std::optional<LastDrawn> last_drawn_;
+  FramePlan last_plan_;
+  double last_ms_ = 0.0;
+};
+
+TEST_F(FramePlannerTest, FastMachineDrawsFullQualityAtOnceAndOnce) {
+  Drag({1.0, 0.05}, 10);  // 7 ms a full frame
+  EXPECT_EQ(last_plan_, (FramePlan{FrameQuality{}, true}));
+  const Decision decision = Ask(milliseconds(10000));
+  EXPECT_FALSE(decision.plan.has_value());
+  EXPECT_FALSE(decision.ask_again_at.has_value());
+}
+
+TEST_F(FramePlannerTest, CoarseFramesComeToCostAboutTheTarget) {
+  for (const double ms_per_mega_sample : {0.4, 1.0, 3.0, 10.0}) {
+    Drag({4.0, ms_per_mega_sample}, 20);
+    EXPECT_LE(last_ms_, 33.0) << ms_per_mega_sample;
+    // One step of quality is a factor of 2^(3/4) in samples: no coarser than one step below the
+    // target.
+    EXPECT_GE(last_ms_, 33.0 / std::pow(2.0, 0.75) - 4.0) << ms_per_mega_sample;
+    EXPECT_FALSE(last_plan_.refined);
+  }
+}
+
+TEST_F(FramePlannerTest, CoarsestIsAQuarter) {
+  Drag({0.0, 1000.0}, 5);
+  EXPECT_EQ(last_plan_.quality, (FrameQuality{kCoarsest, kCoarsest}));
+}
+
+TEST_F(FramePlannerTest, RefinesAfterTheDelayAtFullQualityWhenThatIsQuick) {
+  Drag({2.0, 1.0}, 10);  // 120 ms a full frame
+  EXPECT_FALSE(last_plan_.refined);
+  const Decision early = Ask(milliseconds(79));
+  EXPECT_FALSE(early.plan.has_value());
+  EXPECT_EQ(early.ask_again_at, kStart + milliseconds(80));
+  const Decision decision = Ask(milliseconds(80));
+  ASSERT_TRUE(decision.plan.has_value());
+  EXPECT_EQ(*decision.plan, (FramePlan{FrameQuality{}, true}));
+  Draw({2.0, 1.0}, *decision.plan);
+  EXPECT_FALSE(Ask(milliseconds(10000)).plan.has_value());
+}
+
+TEST_F(FramePlannerTest, SlowMachineRefinesInTwoSteps) {
+  const Machine machine{5.0, 10.0};  // 1185 ms a full frame
+  Drag(machine, 10);
+  const Decision first = Ask(milliseconds(100));
+  ASSERT_TRUE(first.plan.has_value());
+  EXPECT_TRUE(first.plan->refined);
+  EXPECT_LT(first.plan->quality.image_scale, 1.0);
+  EXPECT_GT(first.plan->quality.image_scale, last_plan_.quality.image_scale);
+  Draw(machine, *first.plan);
+  EXPECT_LE(last_ms_, 180.0);
+  const Decision between = Ask(milliseconds(300));
+  EXPECT_FALSE(between.plan.has_value());
+  EXPECT_EQ(between.ask_again_at, kStart + milliseconds(500));
+  const Decision last = Ask(milliseconds(500));
+  ASSERT_TRUE(last.plan.has_value());
+  EXPECT_EQ(*last.plan, (FramePlan{FrameQuality{}, true}));
+  Draw(machine, *last.plan);
+  EXPECT_FALSE(Ask(milliseconds(10000)).plan.has_value());
+}
+
+TEST_F(FramePlannerTest, AChangeOfToneKeepsTheQualityThatIsThere) {
+  const Machine machine{5.0, 10.0};
+  Drag(machine, 5);
+  Draw(machine, {FrameQuality{}, true});
+  scene_.display.exposure_ev += 1.0;
+  ++revision_;
+  const Decision decision = Ask(milliseconds(0));
+  ASSERT_TRUE(decision.plan.has_value());
+  EXPECT_EQ(*decision.plan, (FramePlan{FrameQuality{}, true}));
+}
+
+TEST_F(FramePlannerTest, AChangeOfToneAfterAnotherSessionDrewIsCoarse) {
+  const Machine machine{5.0, 10.0};
+  Drag(machine, 5);
+  Draw(machine, {FrameQuality{}, true});
+  last_drawn_->scene.camera.azimuth_deg += 90.0;
+  scene_.display.exposure_ev += 1.0;
+  ++revision_;
+  const Decision decision = Ask(milliseconds(0));
+  ASSERT_TRUE(decision.plan.has_value());
+  EXPECT_LT(decision.plan->quality.image_scale, 1.0);
+}
+
+TEST_F(FramePlannerTest, FailedSceneIsNotTriedAgain) {
+  revision_ = 1;
+  planner_.Failed(1);
+  EXPECT_FALSE(Ask(milliseconds(0)).plan.has_value());
+  EXPECT_FALSE(Ask(milliseconds(10000)).plan.has_value());
+  revision_ = 2;
+  EXPECT_TRUE(Ask(milliseconds(0)).plan.has_value());
+}
+
+TEST(CostModelTest, TellsFixedFromGrowingCost) {
+  CostModel model;
+  for (const double x : {1.0, 10.0, 100.0}) model.Observe(x, 7.0 + 2.0 * x, {{"slices", 1.0}});
+  EXPECT_NEAR(model.EstimateMs(50.0, scene::Stage::kView), 107.0, 1e-6);
+}
+
+TEST(CostModelTest, PreparationCountsOnlyWhenFieldsChange) {
+  CostModel model;
+  model.Observe(10.0, 70.0, {{"extinction", 30.0}, {"upload", 20.0}, {"slices", 20.0}});
+  EXPECT_NEAR(model.EstimateMs(10.0, scene::Stage::kView), 20.0, 1e-6);
+  EXPECT_NEAR(model.EstimateMs(10.0, scene::Stage::kExtinction), 70.0, 1e-6);
+}
+
+TEST(CostModelTest, FollowsAMachineThatSlowsDown) {
+  CostModel model;
+  for (int i = 0; i < 10; ++i) model.Observe(10.0, 10.0, {{"slices", 1.0}});
+  for (int i = 0; i < 10; ++i) model.Observe(10.0, 40.0, {{"slices", 1.0}});
+  // What is left of the ten fast frames weighs 0.8^10 = 0.11.
+  EXPECT_NEAR(model.EstimateMs(10.0, scene::Stage::kView), 40.0, 30.0 * 0.11);
+}
+
+TEST(CostModelTest, NoiseGivesNoNegativeEstimate) {
+  CostModel model;
+  model.Observe(1.0, 50.0, {{"slices", 1.0}});
+  model.Observe(10.0, 5.0, {{"slices", 1.0}});
+  EXPECT_GE(model.EstimateMs(0.0, scene::Stage::kView), 0.0);
+  EXPECT_GE(model.EstimateMs(1000.0, scene::Stage::kView), 0.0);
+}
+
+}  // namespace
+}  // namespace thunderhead::session

@@ -1,0 +1,163 @@
+// Every limit of the schema is checked, with the value's whole path, the value and its range in the
+// text.
+#include <cmath>
+#include <limits>
+
+#include "gmock/gmock.h"
+#include "google/protobuf/util/json_util.h"
+#include "gtest/gtest.h"
+#include "service/limits_check.h"
+#include "service/scene_messages.h"
+#include "tests/service/fake_service.h"
+
+namespace thunderhead::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using Stub = v1::ThunderheadService::Stub;
+
+// What the server says to a scene; empty if it takes it.
+std::string Complaint(const v1::Scene& scene) {
+  v1::CreateSessionRequest request;
+  *request.mutable_scene() = scene;
+  absl::Status status = service::CheckLimits(request);
+  if (status.ok()) status = service::CheckScene(scene);
+  EXPECT_TRUE(status.ok() || status.code() == absl::StatusCode::kInvalidArgument);
+  return std::string(status.message());
+}
+
+v1::Scene SceneFrom(const std::string& json) {
+  v1::Scene scene;
+  EXPECT_TRUE(google::protobuf::util::JsonStringToMessage(json, &scene).ok()) << json;
+  return scene;
+}
+
+struct Case {
+  const char* json;
+  const char* complaint;
+};
+
+class WrongSceneTest : public ::testing::TestWithParam<Case> {};
+
+TEST_P(WrongSceneTest, IsNamed) {
+  EXPECT_EQ(Complaint(SceneFrom(GetParam().json)), GetParam().complaint);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, WrongSceneTest,
+    ::testing::Values(
+        Case{R"({"fields": [{"hydrometeor": 1}, {"hydrometeor": 2, "radiusM": 5}]})",
+             "scene.fields[1].radius_m is 5; it must be between 1e-07 and 0.1 m"},
+        Case{R"({"fields": [{"hydrometeor": 1, "albedo": -0.25}]})",
+             "scene.fields[0].albedo is -0.25; it must be between 0 and 1"},
+        Case{R"({"fields": [{"hydrometeor": 1, "phase": {"asymmetry": 1}}]})",
+             "scene.fields[0].phase.asymmetry is 1; it must be between -0.99 and 0.99"},
+        Case{R"({"fields": [{"hydrometeor": 1, "falseColor": {"green": 2}}]})",
+             "scene.fields[0].false_color.green is 2; it must be between 0 and 1"},
+        Case{R"({"sun": {"elevationDeg": "NaN"}})",
+             "scene.sun.elevation_deg is nan; it must be between -90 and 90 deg"},
+        Case{R"({"sun": {"irradiance": "Infinity"}})",
+             "scene.sun.irradiance is inf; it must be between 0 and 100"},
+        Case{R"({"camera": {"orbit": {"target": {"zM": "-Infinity"}}}})",
+             "scene.camera.orbit.target.z_m is -inf; it must be between -1e+06 and 1e+06 m"},
+        Case{R"({"camera": {"orbit": {"distanceM": 0}}})",
+             "scene.camera.orbit.distance_m is 0; it must be between 1 and 5e+07 m"},
+        Case{R"({"rendering": {"slices": 0}})",
+             "scene.rendering.slices is 0; it must be between 1 and 4096"},
+        Case{R"({"rendering": {"slices": 4294967295}})",
+             "scene.rendering.slices is 4294967295; it must be between 1 and 4096"},
+        Case{R"({"rendering": {"mode": 77}})",
+             "scene.rendering.mode is 77; it must be one of MODE_UNSPECIFIED, "
+             "MODE_UNIFORM_PHASE_LOW_ALBEDO, MODE_UNIFORM_PHASE_TRANSLUCENT, "
+             "MODE_PER_FIELD_PHASE_TRANSLUCENT"},
+        Case{R"({"output": {"widthPx": 8193}})",
+             "scene.output.width_px is 8193; it must be between 1 and 8192"},
+        Case{
+            R"({"output": {"widthPx": 8192, "heightPx": 8192}})",
+            "scene.output.width_px times scene.output.height_px is 8192 x 8192 = 67108864; it must "
+            "be at most 33554432 pixels"},
+        Case{R"({"fields": [{"scale": 1}]})",
+             "scene.fields[0].hydrometeor is not given; it must say which field the settings are "
+             "for"},
+        Case{R"({"fields": [{"hydrometeor": 2}, {"hydrometeor": 1}, {"hydrometeor": 2}]})",
+             "scene.fields[2].hydrometeor is HYDROMETEOR_RAIN, which scene.fields[0] already is; "
+             "each hydrometeor may be listed once"}));
+
+TEST(LimitsTest, TooManyItemsAndTooLongStrings) {
+  v1::Scene scene;
+  for (int i = 0; i < 17; ++i) scene.add_fields();
+  EXPECT_EQ(Complaint(scene), "scene.fields has 17 items; it may have at most 16");
+  v1::Scene named;
+  named.set_storm_id(std::string(257, 'x'));
+  EXPECT_EQ(Complaint(named), "scene.storm_id is 257 bytes long; it may be at most 256 bytes");
+}
+
+TEST(LimitsTest, TheLimitsThemselvesAreAllowed) {
+  v1::Scene scene;
+  v1::FieldParameters& field = *scene.add_fields();
+  field.set_hydrometeor(v1::HYDROMETEOR_HAIL);
+  // 0.1 and 1e-7 as floats lie beyond 0.1 and 1e-7 as doubles.
+  for (const float radius_m : {1e-7F, 0.1F}) {
+    field.set_radius_m(radius_m);
+    EXPECT_EQ(Complaint(scene), "");
+  }
+  field.set_radius_m(std::nextafter(0.1F, 1.0F));
+  EXPECT_THAT(Complaint(scene), HasSubstr("scene.fields[0].radius_m is 0.1000000"));
+  field.clear_radius_m();
+  for (const float asymmetry : {-0.99F, 0.99F}) {
+    field.mutable_phase()->set_asymmetry(asymmetry);
+    EXPECT_EQ(Complaint(scene), "");
+  }
+  scene.mutable_output()->set_width_px(8192);
+  scene.mutable_output()->set_height_px(4096);
+  EXPECT_EQ(Complaint(scene), "");
+}
+
+TEST(LimitsTest, EveryRpcChecksItsRequest) {
+  FakeService service;
+  v1::Scene scene = SmallScene();
+  scene.mutable_display()->set_exposure_ev(21);
+  const std::string complaint = "scene.display.exposure_ev is 21; it must be between -20 and 20";
+  const auto expect = [&](const grpc::Status& status, const std::string& text) {
+    EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+    EXPECT_EQ(status.error_message(), text);
+  };
+  v1::CreateSessionRequest create;
+  *create.mutable_scene() = scene;
+  v1::CreateSessionResponse created;
+  expect(Call(service.stub(), &Stub::CreateSession, create, &created), complaint);
+  v1::UpdateSceneRequest update;
+  update.set_session_id(service.Open(SmallScene()));
+  *update.mutable_scene() = scene;
+  v1::UpdateSceneResponse updated;
+  expect(Call(service.stub(), &Stub::UpdateScene, update, &updated), complaint);
+  v1::RenderImageRequest render;
+  *render.mutable_scene() = scene;
+  v1::RenderImageResponse rendered;
+  expect(Call(service.stub(), &Stub::RenderImage, render, &rendered), complaint);
+  render.clear_scene();
+  render.set_format(static_cast<v1::ImageFormat>(9));
+  expect(Call(service.stub(), &Stub::RenderImage, render, &rendered),
+         "format is 9; it must be one of IMAGE_FORMAT_UNSPECIFIED, IMAGE_FORMAT_PNG, "
+         "IMAGE_FORMAT_JPEG");
+  v1::DescribeStormRequest describe;
+  describe.set_time_index(2000000);
+  v1::DescribeStormResponse described;
+  expect(Call(service.stub(), &Stub::DescribeStorm, describe, &described),
+         "time_index is 2000000; it must be between 0 and 1e+06");
+  v1::CloseSessionRequest close;
+  close.set_session_id(std::string(65, 'a'));
+  v1::CloseSessionResponse closed;
+  expect(Call(service.stub(), &Stub::CloseSession, close, &closed),
+         "session_id is 65 bytes long; it may be at most 64 bytes");
+  v1::AcknowledgeFrameRequest acknowledge;
+  acknowledge.set_session_id(std::string(65, 'a'));
+  v1::AcknowledgeFrameResponse acknowledged;
+  expect(Call(service.stub(), &Stub::AcknowledgeFrame, acknowledge, &acknowledged),
+         "session_id is 65 bytes long; it may be at most 64 bytes");
+  Watcher watcher(service.stub(), std::string(65, 'a'));
+  expect(watcher.End(), "session_id is 65 bytes long; it may be at most 64 bytes");
+}
+
+}  // namespace
+}  // namespace thunderhead::testing

@@ -1,0 +1,278 @@
+// The render loop with its reader and encoder, without gRPC: so that ThreadSanitizer sees every
+// lock.
+#include "session/render_loop.h"
+
+#include <algorithm>
+#include <future>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/service/fake_engine.h"
+
+namespace thunderhead::session {
+namespace {
+
+using testing::FakeMachine;
+using testing::FakeStormStore;
+using ::testing::HasSubstr;
+
+scene::Scene Small(double sun_azimuth_deg) {
+  scene::Scene scene;
+  scene.storm_id = "anvil";
+  scene.output = {64, 36, 88};
+  scene.rendering.slices = 16;
+  scene.sun.azimuth_deg = sun_azimuth_deg;
+  return scene;
+}
+
+// Takes and acknowledges whatever comes, at once.
+class EagerViewer : public Viewer, public std::enable_shared_from_this<EagerViewer> {
+ public:
+  explicit EagerViewer(std::shared_ptr<Session> session) : session_(std::move(session)) {}
+
+  void Join() {
+    id_ = *session_->hub().Join(shared_from_this());
+    Wake();
+  }
+  void Leave() { session_->hub().Leave(id_); }
+
+  void Wake() override {
+    if (id_ == 0) return;
+    const auto event = session_->hub().Take(id_);
+    if (!event.has_value()) return;
+    std::uint64_t sequence = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      events_.push_back(*event);
+      if (const auto* frame = std::get_if<std::shared_ptr<const EncodedFrame>>(&*event)) {
+        sequence = (*frame)->sequence;
+      }
+    }
+    changed_.notify_all();
+    // Acknowledging wakes again.
+    session_->hub().Acknowledge(id_, sequence);
+  }
+
+  bool Await(std::uint64_t revision, bool refined) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, testing::kPatience, [&] {
+      return std::any_of(events_.begin(), events_.end(), [&](const FrameEvent& event) {
+        const auto* frame = std::get_if<std::shared_ptr<const EncodedFrame>>(&event);
+        return frame != nullptr && (*frame)->scene_revision >= revision &&
+               ((*frame)->refined || !refined);
+      });
+    });
+  }
+
+  std::size_t EventCount() {
+    const std::lock_guard lock(mutex_);
+    return events_.size();
+  }
+
+ private:
+  const std::shared_ptr<Session> session_;
+  std::atomic<std::uint64_t> id_{0};
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<FrameEvent> events_;
+};
+
+class RenderLoopTest : public ::testing::Test {
+ protected:
+  ~RenderLoopTest() override {
+    machine_->drawing.Open();
+    store_.reading.Open();
+    loop_.reset();
+  }
+
+  void Start(const RenderLoopOptions& options = {}) {
+    auto loop =
+        RenderLoop::Start(options, store_, sessions_, wake_, testing::FakeFrameSources(machine_));
+    ASSERT_TRUE(loop.ok()) << loop.status();
+    loop_ = *std::move(loop);
+  }
+
+  std::shared_ptr<EagerViewer> Watch(const std::shared_ptr<Session>& session) {
+    auto viewer = std::make_shared<EagerViewer>(session);
+    viewer->Join();
+    return viewer;
+  }
+
+  static std::uint64_t Show(Session& session, const scene::Scene& scene) {
+    const std::uint64_t revision = session.TakeRevision();
+    session.Show(revision, scene);
+    return revision;
+  }
+
+  std::future<absl::StatusOr<DisplayFrame>> Picture(
+      double exposure_ev,
+      std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false)) {
+    auto promise = std::make_shared<std::promise<absl::StatusOr<DisplayFrame>>>();
+    auto future = promise->get_future();
+    scene::Scene scene = Small(0.0);
+    scene.display.exposure_ev = exposure_ev;
+    loop_->RenderImage({scene, *store_.Get("anvil", 0, {}), std::move(cancelled),
+                        [promise](absl::StatusOr<DisplayFrame> picture) {
+                          promise->set_value(std::move(picture));
+                        }});
+    return future;
+  }
+
+  base::WakeSignal wake_;
+  FakeStormStore store_;
+  const std::shared_ptr<FakeMachine> machine_ = std::make_shared<FakeMachine>();
+  Sessions sessions_{SessionsOptions{}, [this] { wake_.Notify(); }};
+  std::unique_ptr<RenderLoop> loop_;
+};
+
+TEST_F(RenderLoopTest, NewestSceneIsTheLastShown) {
+  machine_->ms_per_mega_sample = 500.0;
+  Start();
+  const auto session = *sessions_.Create();
+  const auto viewer = Watch(session);
+  std::uint64_t revision = 0;
+  for (int i = 0; i < 1000; ++i) revision = Show(*session, Small(i % 300));
+  ASSERT_TRUE(viewer->Await(revision, true));
+  // A frame takes half a millisecond at the least; the thousand updates take no longer than a few.
+  EXPECT_LT(viewer->EventCount(), 500U);
+}
+
+TEST_F(RenderLoopTest, PicturesAndSessionsDoNotStarveOneAnother) {
+  machine_->ms_per_mega_sample = 1000.0;  // 37 ms a picture
+  Start();
+  const auto session = *sessions_.Create();
+  Show(*session, Small(0.0));
+  const auto viewer = Watch(session);
+  ASSERT_TRUE(viewer->Await(1, true));
+  std::atomic<bool> stop{false};
+  std::thread hand([&] {
+    for (int i = 0; !stop; ++i) {
+      Show(*session, Small(i % 300));
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  });
+  std::vector<std::future<absl::StatusOr<DisplayFrame>>> pictures;
+  for (int i = 0; i < 10; ++i) pictures.push_back(Picture(1.0));
+  for (auto& picture : pictures) EXPECT_TRUE(picture.get().ok());
+  stop = true;
+  hand.join();
+  int pictures_in_a_row = 0;
+  for (const auto& drawn : machine_->Log()) {
+    pictures_in_a_row = drawn.scene.display.exposure_ev == 1.0 ? pictures_in_a_row + 1 : 0;
+    // One, unless the threads that move or encode had no processor for the time of a picture.
+    EXPECT_LE(pictures_in_a_row, 3);
+  }
+}
+
+TEST_F(RenderLoopTest, CancelledPicturesAreDroppedAndSayso) {
+  Start();
+  machine_->drawing.Close();
+  auto first = Picture(1.0);
+  ASSERT_TRUE(machine_->drawing.AwaitWaiting(1));
+  const auto cancelled = std::make_shared<std::atomic<bool>>(false);
+  auto second = Picture(2.0, cancelled);
+  auto third = Picture(3.0);
+  *cancelled = true;
+  machine_->drawing.Open();
+  EXPECT_TRUE(first.get().ok());
+  EXPECT_EQ(second.get().status().code(), absl::StatusCode::kCancelled);
+  EXPECT_TRUE(third.get().ok());
+  for (const auto& drawn : machine_->Log()) EXPECT_NE(drawn.scene.display.exposure_ev, 2.0);
+}
+
+TEST_F(RenderLoopTest, StopRefusesPicturesThatWait) {
+  RenderLoopOptions options;
+  options.max_waiting_images = 1;
+  Start(options);
+  machine_->drawing.Close();
+  auto drawn = Picture(1.0);
+  ASSERT_TRUE(machine_->drawing.AwaitWaiting(1));
+  auto waiting = Picture(2.0);
+  auto refused = Picture(3.0);
+  EXPECT_THAT(std::string(refused.get().status().message()),
+              HasSubstr("1 pictures wait to be drawn"));
+  loop_->RequestStop();
+  machine_->drawing.Open();
+  loop_->Stop();
+  EXPECT_TRUE(drawn.get().ok());
+  EXPECT_EQ(waiting.get().status().code(), absl::StatusCode::kUnavailable);
+  EXPECT_EQ(Picture(4.0).get().status().code(), absl::StatusCode::kUnavailable);
+}
+
+TEST_F(RenderLoopTest, ASessionThatNobodyWatchesLetsGoOfItsFields) {
+  Start();
+  const auto session = *sessions_.Create();
+  Show(*session, Small(0.0));
+  const auto viewer = Watch(session);
+  ASSERT_TRUE(viewer->Await(1, true));
+  viewer->Leave();
+  wake_.Notify();
+  const std::uint64_t revision = Show(*session, Small(10.0));
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_EQ(machine_->Log().back().scene.sun.azimuth_deg, 0.0);
+  const auto again = Watch(session);
+  EXPECT_TRUE(again->Await(revision, true));
+}
+
+TEST_F(RenderLoopTest, ManyHandsManyViewersComingAndGoing) {
+  machine_->ms_per_mega_sample = 20.0;
+  store_.FailAt(3, absl::DataLossError("broken"));
+  RenderLoopOptions options;
+  options.encoder_threads = 2;
+  Start(options);
+  std::vector<std::thread> hands;
+  for (int hand = 0; hand < 4; ++hand) {
+    hands.emplace_back([this, hand] {
+      const auto session = *sessions_.Create();
+      for (int round = 0; round < 15; ++round) {
+        const auto viewer = Watch(session);
+        scene::Scene scene = Small(10.0 * round);
+        scene.time_index = (hand + round) % 4;
+        const std::uint64_t revision = Show(*session, scene);
+        if (scene.time_index != 3) {
+          EXPECT_TRUE(viewer->Await(revision, false));
+        }
+        viewer->Leave();
+      }
+      EXPECT_TRUE(Picture(1.0).get().ok());
+      EXPECT_TRUE(sessions_.Close(session->id()).ok());
+    });
+  }
+  for (std::thread& hand : hands) hand.join();
+}
+
+TEST_F(RenderLoopTest, StopsAmidWork) {
+  machine_->ms_per_mega_sample = 20.0;
+  Start();
+  const auto session = *sessions_.Create();
+  const auto viewer = Watch(session);
+  std::atomic<bool> stop{false};
+  std::thread hand([&] {
+    for (int i = 0; !stop; ++i) {
+      scene::Scene scene = Small(i % 300);
+      scene.time_index = i / 10 % 4;
+      Show(*session, scene);
+    }
+  });
+  ASSERT_TRUE(viewer->Await(1, false));
+  loop_->Stop();
+  stop = true;
+  hand.join();
+}
+
+TEST(SessionTest, OlderRevisionNeverReplacesANewer) {
+  Session session("id", [] {});
+  const std::uint64_t early = session.TakeRevision();
+  const std::uint64_t late = session.TakeRevision();
+  scene::Scene scene;
+  scene.time_index = 2;
+  session.Show(late, scene);
+  scene.time_index = 1;
+  session.Show(early, scene);
+  ASSERT_TRUE(session.Newest().has_value());
+  EXPECT_EQ(session.Newest()->revision, late);
+  EXPECT_EQ(session.Newest()->scene->time_index, 2);
+}
+
+}  // namespace
+}  // namespace thunderhead::session

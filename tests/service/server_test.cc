@@ -1,0 +1,196 @@
+// The server as a whole: ports, health, reflection, ending.
+#include "service/server.h"
+
+#include <grpcpp/generic/generic_stub.h>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "service/status_table.h"
+#include "tests/service/fake_service.h"
+
+namespace thunderhead::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using Stub = v1::ThunderheadService::Stub;
+
+grpc::ByteBuffer Bytes(const std::string& bytes) {
+  const grpc::Slice slice(bytes);
+  return {&slice, 1};
+}
+
+std::string Text(grpc::ByteBuffer& buffer) {
+  std::vector<grpc::Slice> slices;
+  EXPECT_TRUE(buffer.Dump(&slices).ok());
+  std::string text;
+  for (const grpc::Slice& slice : slices) {
+    text.append(reinterpret_cast<const char*>(slice.begin()), slice.size());
+  }
+  return text;
+}
+
+// Sends one message of a service whose generated code Debian does not ship, and returns the first
+// reply.
+std::string Ask(const std::shared_ptr<grpc::Channel>& channel, const std::string& method,
+                const std::string& request) {
+  grpc::GenericStub stub(channel);
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + kPatience);
+  grpc::CompletionQueue queue;
+  const auto await = [&] {
+    void* tag = nullptr;
+    bool ok = false;
+    return queue.Next(&tag, &ok) && ok;
+  };
+  const auto call = stub.PrepareCall(&context, method, &queue);
+  grpc::ByteBuffer reply;
+  call->StartCall(nullptr);
+  EXPECT_TRUE(await());
+  call->Write(Bytes(request), nullptr);
+  EXPECT_TRUE(await());
+  call->WritesDone(nullptr);
+  EXPECT_TRUE(await());
+  call->Read(&reply, nullptr);
+  EXPECT_TRUE(await());
+  grpc::Status status;
+  call->Finish(&status, nullptr);
+  EXPECT_TRUE(await());
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  queue.Shutdown();
+  return Text(reply);
+}
+
+TEST(ServerTest, HealthIsServingInProcessAndOnItsPort) {
+  service::ServerOptions options;
+  options.address = "127.0.0.1:0";
+  FakeService service(options);
+  ASSERT_GT(service.server().Port(), 0);
+  const auto remote = grpc::CreateChannel("127.0.0.1:" + std::to_string(service.server().Port()),
+                                          grpc::InsecureChannelCredentials());
+  // HealthCheckResponse: field 1 (status) is 1, SERVING. Requests: all, and ours by name (field 1).
+  const std::string serving("\x08\x01", 2);
+  const std::string name = "thunderhead.v1.ThunderheadService";
+  const std::string by_name = std::string("\x0a") + static_cast<char>(name.size()) + name;
+  for (const auto& channel : {service.server().LocalChannel(), remote}) {
+    EXPECT_EQ(Ask(channel, "/grpc.health.v1.Health/Check", ""), serving);
+    EXPECT_EQ(Ask(channel, "/grpc.health.v1.Health/Check", by_name), serving);
+  }
+}
+
+TEST(ServerTest, ReflectionListsTheService) {
+  FakeService service;
+  // ServerReflectionRequest: field 7 (list_services) is "".
+  const std::string services =
+      Ask(service.server().LocalChannel(),
+          "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo", "\x3a\x01*");
+  EXPECT_THAT(services, HasSubstr("thunderhead.v1.ThunderheadService"));
+  EXPECT_THAT(services, HasSubstr("grpc.health.v1.Health"));
+}
+
+TEST(ServerTest, TakenPortIsAnError) {
+  service::ServerOptions options;
+  options.address = "127.0.0.1:0";
+  FakeService first(options);
+  options.address = "127.0.0.1:" + std::to_string(first.server().Port());
+  const auto second = service::Server::Start(options, std::make_shared<FakeStormStore>(),
+                                             FakeFrameSources(std::make_shared<FakeMachine>()));
+  ASSERT_FALSE(second.ok());
+  EXPECT_THAT(std::string(second.status().message()),
+              HasSubstr("cannot listen for gRPC on " + options.address));
+}
+
+TEST(ServerTest, FrameSourceThatCannotBeMadeIsAnError) {
+  const auto server =
+      service::Server::Start({}, std::make_shared<FakeStormStore>(),
+                             []() -> absl::StatusOr<std::unique_ptr<session::FrameSource>> {
+                               return absl::NotFoundError("there is no GPU 3");
+                             });
+  ASSERT_FALSE(server.ok());
+  EXPECT_EQ(server.status().message(), "there is no GPU 3");
+}
+
+TEST(ServerTest, ShutdownEndsStreamsAndPicturesWithUnavailable) {
+  FakeService service;
+  Watcher watcher(service.stub(), service.Open(SmallScene()));
+  ASSERT_TRUE(watcher.AwaitFrame(1, true));
+  service.machine->drawing.Close();
+  grpc::Status drawn;
+  grpc::Status waited;
+  const auto render = [&](std::uint32_t time_index, grpc::Status* status) {
+    v1::RenderImageRequest request;
+    *request.mutable_scene() = SmallScene();
+    request.mutable_scene()->set_time_index(time_index);
+    v1::RenderImageResponse response;
+    *status = Call(service.stub(), &Stub::RenderImage, request, &response);
+  };
+  std::thread first([&] { render(1, &drawn); });
+  ASSERT_TRUE(service.machine->drawing.AwaitWaiting(1));
+  std::thread second([&] { render(2, &waited); });
+  ASSERT_TRUE(service.store->AwaitReads(3));
+  // From its read to its place in the queue.
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  std::thread shutdown([&] { service.server().Shutdown(); });
+  const grpc::Status ended = watcher.End();
+  service.machine->drawing.Open();
+  shutdown.join();
+  first.join();
+  second.join();
+  EXPECT_EQ(ended.error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_EQ(ended.error_message(), "the server is shutting down");
+  EXPECT_EQ(waited.error_code(), grpc::StatusCode::UNAVAILABLE);
+  // The one being drawn is finished if its encoding began in time.
+  EXPECT_TRUE(drawn.ok() || drawn.error_code() == grpc::StatusCode::UNAVAILABLE)
+      << drawn.error_message();
+}
+
+TEST(ServerTest, ShutdownWithManyBusyStreamsEnds) {
+  FakeService service;
+  std::vector<std::string> sessions;
+  std::vector<std::unique_ptr<Watcher>> watchers;
+  for (int i = 0; i < 8; ++i) {
+    sessions.push_back(service.Open(SmallScene()));
+    watchers.push_back(std::make_unique<Watcher>(service.stub(), sessions.back()));
+    watchers.push_back(std::make_unique<Watcher>(service.stub(), sessions.back(), i % 2 == 0));
+  }
+  for (int round = 0; round < 20; ++round) {
+    for (const std::string& session : sessions) {
+      v1::Scene scene = SmallScene();
+      scene.mutable_sun()->set_azimuth_deg(static_cast<float>(round));
+      service.Update(session, scene);
+    }
+  }
+  service.server().Shutdown();
+  for (const auto& watcher : watchers) {
+    EXPECT_EQ(watcher->End().error_code(), grpc::StatusCode::UNAVAILABLE);
+  }
+}
+
+TEST(ServerTest, UnreadStormHoldsUpNoShutdownForever) {
+  auto service = std::make_unique<FakeService>();
+  service->store->reading.Close();
+  std::thread reader([&] {
+    v1::DescribeStormResponse response;
+    Call(service->stub(), &Stub::DescribeStorm, v1::DescribeStormRequest(), &response);
+  });
+  ASSERT_TRUE(service->store->reading.AwaitWaiting(1));
+  std::thread shutdown([&] { service->server().Shutdown(); });
+  service->store->reading.Open();
+  shutdown.join();
+  reader.join();
+}
+
+TEST(StatusTableTest, EveryEngineStatusHasItsCode) {
+  const auto code = [](const absl::Status& status) {
+    return service::ToGrpcStatus(status).error_code();
+  };
+  EXPECT_TRUE(service::ToGrpcStatus(absl::OkStatus()).ok());
+  EXPECT_EQ(code(absl::InvalidArgumentError("x")), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(code(absl::OutOfRangeError("x")), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(code(absl::NotFoundError("x")), grpc::StatusCode::NOT_FOUND);
+  EXPECT_EQ(code(absl::DataLossError("x")), grpc::StatusCode::DATA_LOSS);
+  EXPECT_EQ(code(absl::UnauthenticatedError("x")), grpc::StatusCode::UNKNOWN);
+  EXPECT_EQ(service::ToGrpcStatus(absl::InternalError("why")).error_message(), "why");
+}
+
+}  // namespace
+}  // namespace thunderhead::testing

@@ -1,0 +1,195 @@
+// Sessions: opening, completing scenes, closing, expiring, and how many there may be.
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/service/fake_service.h"
+
+namespace thunderhead::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
+using Stub = v1::ThunderheadService::Stub;
+
+v1::CreateSessionResponse Create(FakeService& service, const v1::Scene& scene) {
+  v1::CreateSessionRequest request;
+  *request.mutable_scene() = scene;
+  v1::CreateSessionResponse response;
+  const grpc::Status status = Call(service.stub(), &Stub::CreateSession, request, &response);
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  return response;
+}
+
+grpc::Status Close(FakeService& service, const std::string& session_id) {
+  v1::CloseSessionRequest request;
+  request.set_session_id(session_id);
+  v1::CloseSessionResponse response;
+  return Call(service.stub(), &Stub::CloseSession, request, &response);
+}
+
+TEST(SessionsTest, EmptySceneComesBackWithEveryDefault) {
+  FakeService service;
+  const v1::CreateSessionResponse created = Create(service, {});
+  EXPECT_THAT(created.session_id(), MatchesRegex("[0-9a-f]{32}"));
+  EXPECT_EQ(created.scene_revision(), 1U);
+  const v1::Scene& scene = created.scene();
+  EXPECT_EQ(scene.storm_id(), "anvil");
+  EXPECT_TRUE(scene.has_time_index());
+  const v1::OrbitCamera& camera = scene.camera().orbit();
+  EXPECT_EQ(camera.azimuth_deg(), 200.0F);
+  EXPECT_EQ(camera.field_of_view_deg(), 35.0F);
+  // The middle of the one cell with condensate, (4, 4, 2).
+  EXPECT_EQ(camera.target().x_m(), -5500.0F);
+  EXPECT_EQ(camera.target().y_m(), -500.0F);
+  EXPECT_EQ(camera.target().z_m(), 1250.0F);
+  EXPECT_GT(camera.distance_m(), 1000.0F);
+  EXPECT_EQ(scene.sun().elevation_deg(), 35.0F);
+  EXPECT_TRUE(scene.sky().has_brightness());
+  EXPECT_EQ(scene.rendering().mode(), v1::MODE_PER_FIELD_PHASE_TRANSLUCENT);
+  EXPECT_EQ(scene.rendering().transport(), v1::TRANSPORT_CONSISTENT);
+  EXPECT_EQ(scene.rendering().slices(), 128U);
+  EXPECT_TRUE(scene.rendering().has_false_colors());
+  EXPECT_EQ(scene.display().tone_map(), v1::TONE_MAP_FILMIC);
+  EXPECT_EQ(scene.output().width_px(), 1280U);
+  EXPECT_EQ(scene.output().jpeg_quality(), 88U);
+  ASSERT_EQ(scene.fields_size(), 2);
+  EXPECT_EQ(scene.fields(0).hydrometeor(), v1::HYDROMETEOR_CLOUD);
+  EXPECT_EQ(scene.fields(0).radius_m(), 1e-5F);
+  EXPECT_EQ(scene.fields(0).phase().kind(), v1::PhaseFunction::KIND_CORNETTE_SHANKS);
+  EXPECT_EQ(scene.fields(1).false_color().blue(), 1.0F);
+  EXPECT_TRUE(scene.fields(1).visible());
+}
+
+TEST(SessionsTest, ValuesGivenAreKept) {
+  FakeService service;
+  v1::Scene wanted = SmallScene();
+  wanted.mutable_camera()->mutable_orbit()->mutable_target()->set_x_m(123.0F);
+  wanted.set_time_index(3);
+  v1::FieldParameters& rain = *wanted.add_fields();
+  rain.set_hydrometeor(v1::HYDROMETEOR_RAIN);
+  rain.set_visible(false);
+  rain.mutable_phase()->set_kind(v1::PhaseFunction::KIND_RAYLEIGH);
+  const v1::Scene scene = Create(service, wanted).scene();
+  EXPECT_EQ(scene.time_index(), 3U);
+  EXPECT_EQ(scene.camera().orbit().target().x_m(), 123.0F);
+  EXPECT_EQ(scene.camera().orbit().target().z_m(), 0.0F);
+  EXPECT_EQ(scene.output().width_px(), 64U);
+  ASSERT_EQ(scene.fields_size(), 2);
+  EXPECT_EQ(scene.fields(0).hydrometeor(), v1::HYDROMETEOR_RAIN);
+  EXPECT_FALSE(scene.fields(0).visible());
+  EXPECT_EQ(scene.fields(0).phase().kind(), v1::PhaseFunction::KIND_RAYLEIGH);
+  EXPECT_EQ(scene.fields(0).scale(), 1.0F);
+}
+
+TEST(SessionsTest, CompletedSceneIsCompleteAlready) {
+  FakeService service;
+  const v1::Scene once = Create(service, SmallScene()).scene();
+  EXPECT_EQ(Create(service, once).scene().SerializeAsString(), once.SerializeAsString());
+}
+
+TEST(SessionsTest, StormWithoutCondensateFramesTheDomain) {
+  FakeService service;
+  v1::Scene wanted = SmallScene();
+  wanted.set_storm_id("clear");
+  const v1::Scene scene = Create(service, wanted).scene();
+  EXPECT_EQ(scene.camera().orbit().target().x_m(), 0.0F);
+  EXPECT_EQ(scene.camera().orbit().target().z_m(), 1250.0F);
+  EXPECT_GT(scene.camera().orbit().distance_m(), 10000.0F);
+}
+
+TEST(SessionsTest, CompleteCameraNeedsNoRead) {
+  FakeService service;
+  v1::Scene scene = SmallScene();
+  scene.mutable_camera()->mutable_orbit()->mutable_target();
+  scene.mutable_camera()->mutable_orbit()->set_distance_m(50000.0F);
+  Create(service, scene);
+  EXPECT_EQ(service.store->Reads(), 0);
+}
+
+TEST(SessionsTest, UnknownStormsAndTimesAreRefused) {
+  FakeService service;
+  v1::CreateSessionRequest request;
+  v1::CreateSessionResponse response;
+  request.mutable_scene()->set_storm_id("hurricane");
+  EXPECT_EQ(Call(service.stub(), &Stub::CreateSession, request, &response).error_code(),
+            grpc::StatusCode::NOT_FOUND);
+  request.mutable_scene()->set_storm_id("anvil");
+  request.mutable_scene()->set_time_index(9);
+  const grpc::Status status = Call(service.stub(), &Stub::CreateSession, request, &response);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(status.error_message(), "scene.time_index is 9; storm 'anvil' has times 0 to 3");
+}
+
+TEST(SessionsTest, RevisionsCount) {
+  FakeService service;
+  const std::string id = service.Open(SmallScene());
+  EXPECT_EQ(service.Update(id, SmallScene()), 2U);
+  EXPECT_EQ(service.Update(id, SmallScene()), 3U);
+}
+
+TEST(SessionsTest, UpdateThatFailsLeavesTheScene) {
+  FakeService service;
+  const std::string id = service.Open(SmallScene());
+  v1::UpdateSceneRequest request;
+  request.set_session_id(id);
+  *request.mutable_scene() = SmallScene();
+  request.mutable_scene()->set_time_index(7);
+  v1::UpdateSceneResponse response;
+  EXPECT_EQ(Call(service.stub(), &Stub::UpdateScene, request, &response).error_code(),
+            grpc::StatusCode::INVALID_ARGUMENT);
+  Watcher watcher(service.stub(), id);
+  ASSERT_TRUE(watcher.AwaitFrame(1, true));
+  EXPECT_EQ(watcher.NewestFrame().scene_revision(), 1U);
+}
+
+TEST(SessionsTest, ClosedSessionIsNotFoundByEveryRpc) {
+  FakeService service;
+  const std::string id = service.Open(SmallScene());
+  ASSERT_TRUE(Close(service, id).ok());
+  const auto expect_gone = [&](const grpc::Status& status) {
+    EXPECT_EQ(status.error_code(), grpc::StatusCode::NOT_FOUND);
+    EXPECT_THAT(status.error_message(), HasSubstr("no session has the id '" + id + "'"));
+  };
+  expect_gone(Close(service, id));
+  v1::UpdateSceneRequest update;
+  update.set_session_id(id);
+  v1::UpdateSceneResponse updated;
+  expect_gone(Call(service.stub(), &Stub::UpdateScene, update, &updated));
+  v1::AcknowledgeFrameRequest acknowledge;
+  acknowledge.set_session_id(id);
+  v1::AcknowledgeFrameResponse acknowledged;
+  expect_gone(Call(service.stub(), &Stub::AcknowledgeFrame, acknowledge, &acknowledged));
+  Watcher watcher(service.stub(), id);
+  expect_gone(watcher.End());
+}
+
+TEST(SessionsTest, NoMoreThanTheMost) {
+  service::ServerOptions options;
+  options.sessions.max_sessions = 2;
+  FakeService service(options);
+  const std::string first = service.Open(SmallScene());
+  service.Open(SmallScene());
+  v1::CreateSessionResponse response;
+  const grpc::Status status =
+      Call(service.stub(), &Stub::CreateSession, v1::CreateSessionRequest(), &response);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_EQ(status.error_message(),
+            "the server holds its most sessions (2); close one, or try again later");
+  ASSERT_TRUE(Close(service, first).ok());
+  service.Open(SmallScene());
+}
+
+TEST(SessionsTest, IdleSessionsExpireAndWatchedOnesDoNot) {
+  service::ServerOptions options;
+  options.sessions.idle_timeout = std::chrono::milliseconds(300);
+  FakeService service(options);
+  const std::string idle = service.Open(SmallScene());
+  const std::string watched = service.Open(SmallScene());
+  Watcher watcher(service.stub(), watched);
+  ASSERT_TRUE(watcher.AwaitFrame(1, true));
+  std::this_thread::sleep_for(std::chrono::milliseconds(600));
+  EXPECT_EQ(Close(service, idle).error_code(), grpc::StatusCode::NOT_FOUND);
+  EXPECT_TRUE(Close(service, watched).ok());
+}
+
+}  // namespace
+}  // namespace thunderhead::testing

@@ -1,0 +1,127 @@
+// What the server knows: itself, its storms.
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/service/fake_service.h"
+
+namespace thunderhead::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using Stub = v1::ThunderheadService::Stub;
+
+grpc::Status Describe(FakeService& service, const std::string& id, std::uint32_t time_index,
+                      v1::StormDescription* storm) {
+  v1::DescribeStormRequest request;
+  request.set_storm_id(id);
+  request.set_time_index(time_index);
+  v1::DescribeStormResponse response;
+  const grpc::Status status = Call(service.stub(), &Stub::DescribeStorm, request, &response);
+  *storm = response.storm();
+  return status;
+}
+
+TEST(StormsTest, ServerInfoSaysWhatItRunsOn) {
+  FakeService service;
+  v1::GetServerInfoResponse info;
+  ASSERT_TRUE(Call(service.stub(), &Stub::GetServerInfo, v1::GetServerInfoRequest(), &info).ok());
+  EXPECT_EQ(info.gl_renderer(), "fake renderer");
+  EXPECT_EQ(info.gl_version(), "4.5 fake");
+  EXPECT_EQ(info.device(), "software");
+  EXPECT_EQ(info.max_sessions(), 64U);
+  EXPECT_THAT(info.version(), ::testing::MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+"));
+}
+
+TEST(StormsTest, StormsAreListedInOrder) {
+  FakeService service;
+  v1::ListStormsResponse list;
+  ASSERT_TRUE(Call(service.stub(), &Stub::ListStorms, v1::ListStormsRequest(), &list).ok());
+  ASSERT_EQ(list.storms_size(), 2);
+  EXPECT_EQ(list.storms(0).id(), "anvil");
+  EXPECT_EQ(list.storms(0).title(), "A storm called anvil");
+  EXPECT_EQ(list.storms(0).time_count(), 4U);
+  EXPECT_EQ(list.storms(1).id(), "clear");
+}
+
+TEST(StormsTest, DescriptionHoldsGridTimesFieldsAndDefaults) {
+  FakeService service;
+  v1::StormDescription storm;
+  ASSERT_TRUE(Describe(service, "anvil", 2, &storm).ok());
+  EXPECT_EQ(storm.id(), "anvil");
+  EXPECT_EQ(storm.time_index(), 2U);
+  ASSERT_EQ(storm.times_size(), 4);
+  EXPECT_EQ(storm.times(3).valid_time(), "0001-01-01T00:40:00Z");
+  EXPECT_EQ(storm.times(3).elapsed_s(), 1800.0);
+  EXPECT_EQ(storm.grid().nx(), 20U);
+  EXPECT_EQ(storm.grid().dz_m(), 500.0);
+  EXPECT_EQ(storm.grid().low().x_m(), -10000.0F);
+  EXPECT_EQ(storm.grid().high().y_m(), 5000.0F);
+  EXPECT_FALSE(storm.has_latitude_deg());
+  ASSERT_EQ(storm.fields_size(), 2);
+  const v1::FieldDescription& cloud = storm.fields(0);
+  EXPECT_EQ(cloud.hydrometeor(), v1::HYDROMETEOR_CLOUD);
+  EXPECT_EQ(cloud.variable(), "QCLOUD");
+  EXPECT_EQ(cloud.minimum_kg_per_kg(), -1e-13F);
+  EXPECT_EQ(cloud.maximum_kg_per_kg(), 2e-3F);
+  EXPECT_EQ(cloud.mean_water_path_kg_per_m2(), 0.25);
+  EXPECT_EQ(cloud.maximum_water_path_kg_per_m2(), 7.5);
+  EXPECT_EQ(cloud.negative_cells(), 3U);
+  EXPECT_EQ(cloud.missing_cells(), 1U);
+  EXPECT_EQ(cloud.defaults().radius_m(), 1e-5F);
+  EXPECT_TRUE(cloud.defaults().visible());
+  EXPECT_EQ(cloud.defaults().scale(), 1.0F);
+  EXPECT_EQ(storm.fields(1).defaults().density_kg_per_m3(), 1000.0F);
+  // Cell (4, 4, 2) of 1 km x 1 km x 500 m cells counted from (-10 km, -5 km, 0).
+  EXPECT_EQ(storm.condensate_low().x_m(), -6000.0F);
+  EXPECT_EQ(storm.condensate_low().z_m(), 1000.0F);
+  EXPECT_EQ(storm.condensate_high().y_m(), 0.0F);
+}
+
+TEST(StormsTest, StormWithoutCondensateHasNoCondensateBox) {
+  FakeService service;
+  v1::StormDescription storm;
+  ASSERT_TRUE(Describe(service, "clear", 0, &storm).ok());
+  EXPECT_FALSE(storm.has_condensate_low());
+  EXPECT_EQ(storm.fields_size(), 2);
+}
+
+TEST(StormsTest, UnknownStormIsNotFoundAndNamesThoseThereAre) {
+  FakeService service;
+  v1::StormDescription storm;
+  const grpc::Status status = Describe(service, "hurricane", 0, &storm);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::NOT_FOUND);
+  EXPECT_EQ(status.error_message(), "no storm has the id 'hurricane'; there is anvil, clear");
+}
+
+TEST(StormsTest, TimeBeyondTheLastNamesTheRange) {
+  FakeService service;
+  v1::StormDescription storm;
+  const grpc::Status status = Describe(service, "anvil", 4, &storm);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(status.error_message(), "time_index is 4; storm 'anvil' has times 0 to 3");
+}
+
+TEST(StormsTest, ReadErrorComesBackWithItsText) {
+  FakeService service;
+  service.store->FailAt(1, absl::DataLossError("wrfout_1: QRAIN is truncated; copy it again"));
+  v1::StormDescription storm;
+  const grpc::Status status = Describe(service, "anvil", 1, &storm);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::DATA_LOSS);
+  EXPECT_THAT(status.error_message(), HasSubstr("QRAIN is truncated"));
+}
+
+TEST(StormsTest, OtherCallsGoOnDuringALongRead) {
+  FakeService service;
+  service.store->reading.Close();
+  v1::StormDescription storm;
+  grpc::Status described;
+  std::thread reader([&] { described = Describe(service, "anvil", 0, &storm); });
+  EXPECT_TRUE(service.store->reading.AwaitWaiting(1));
+  v1::ListStormsResponse list;
+  EXPECT_TRUE(Call(service.stub(), &Stub::ListStorms, v1::ListStormsRequest(), &list).ok());
+  service.store->reading.Open();
+  reader.join();
+  EXPECT_TRUE(described.ok()) << described.error_message();
+}
+
+}  // namespace
+}  // namespace thunderhead::testing
