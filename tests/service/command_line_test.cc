@@ -1,0 +1,167 @@
+// The program as a user runs it, on the sample storm: what it prints, writes and returns.
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "frame/image_codec.h"
+#include "gmock/gmock.h"
+#include "google/protobuf/util/json_util.h"
+#include "gtest/gtest.h"
+#include "tests/support/temporary_folder.h"
+#include "thunderhead/v1/thunderhead.pb.h"
+
+namespace thunderhead::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::MatchesRegex;
+using ::testing::StartsWith;
+
+const std::string kSample = std::string(THUNDERHEAD_SOURCE_DIR) + "/samples/supercell.nc";
+
+std::string Contents(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+struct Outcome {
+  int code = -1;
+  std::string out;
+  std::string err;
+};
+
+class CommandLineTest : public ::testing::Test {
+ protected:
+  // Runs the program by the shell, with ARGUMENTS as one would type them.
+  Outcome Run(const std::string& arguments) const { return Shell(PROGRAM + (" " + arguments)); }
+
+  Outcome Shell(const std::string& command) const {
+    const std::string out = folder_.File("out");
+    const std::string err = folder_.File("err");
+    const int status = std::system(("{ " + command + "; } >" + out + " 2>" + err).c_str());
+    return {WEXITSTATUS(status), Contents(out), Contents(err)};
+  }
+
+  void ExpectError(const std::string& arguments, int code, const std::string& text) const {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.code, code) << arguments;
+    EXPECT_THAT(outcome.err, StartsWith("thunderhead: ")) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr(text)) << arguments;
+    // One line, and nothing of it where a picture's costs or a description would be.
+    EXPECT_EQ(outcome.err.find('\n'), outcome.err.size() - 1) << outcome.err;
+    EXPECT_THAT(outcome.out, IsEmpty()) << arguments;
+  }
+
+  std::string Scene(const std::string& json) const {
+    std::ofstream(folder_.File("scene.json")) << json;
+    return folder_.File("scene.json");
+  }
+
+  const TemporaryFolder folder_;
+  const std::string picture_ = folder_.File("storm.png");
+  const std::string render_ = "render " + kSample + " --device software -o " + picture_;
+};
+
+TEST_F(CommandLineTest, VersionAndHelp) {
+  EXPECT_THAT(Run("--version").out, MatchesRegex("thunderhead [0-9.]+\n"));
+  const Outcome help = Run("--help");
+  EXPECT_EQ(help.code, 0);
+  for (const char* command : {"serve", "render", "inspect"})
+    EXPECT_THAT(help.out, HasSubstr(command));
+}
+
+TEST_F(CommandLineTest, WrongUsageReturnsTwo) {
+  ExpectError("", 2, "subcommand");
+  ExpectError("frobnicate", 2, "subcommand");
+  ExpectError("render " + kSample, 2, "--output");
+  ExpectError("render " + kSample + " -o storm.gif", 2, "must end in .png");
+  ExpectError(render_ + " --size 12", 2, "WIDTHxHEIGHT");
+  ExpectError("serve --data " + kSample + " --http nowhere", 2, "--http");
+}
+
+TEST_F(CommandLineTest, InspectDescribesTheSample) {
+  const Outcome outcome = Run("inspect " + kSample + " --time 1 --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, IsEmpty());
+  v1::StormDescription storm;
+  ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(outcome.out, &storm).ok());
+  EXPECT_EQ(storm.times_size(), 4);
+  EXPECT_EQ(storm.time_index(), 1U);
+  EXPECT_EQ(storm.grid().nx(), 200U);
+  EXPECT_EQ(storm.grid().ny(), 160U);
+  EXPECT_EQ(storm.fields_size(), 5);
+  EXPECT_GT(storm.bytes_per_time(), 1U << 20);
+  const Outcome table = Run("inspect " + kSample);
+  EXPECT_EQ(table.code, 0);
+  EXPECT_THAT(table.out, HasSubstr("QGRAUP"));
+}
+
+TEST_F(CommandLineTest, MissingAndForeignFilesAreNamed) {
+  ExpectError("inspect " + folder_.File("none.nc"), 1, "none.nc");
+  std::ofstream(folder_.File("text.nc")) << "no storm at all";
+  // What is no storm file at all is a wrong argument.
+  ExpectError("inspect " + folder_.File("text.nc"), 2, "text.nc");
+}
+
+TEST_F(CommandLineTest, RenderWritesThePictureAndItsCosts) {
+  const Outcome outcome = Run(render_ + " --time 1 --size 80x45 --slices 16 --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, IsEmpty());  // no progress bars where there is no terminal
+  const auto image = frame::DecodePng(Contents(picture_));
+  ASSERT_TRUE(image.ok()) << image.status();
+  EXPECT_EQ(image->width_px, 80);
+  EXPECT_EQ(image->height_px, 45);
+  v1::RenderImageResponse said;
+  ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(outcome.out, &said).ok());
+  EXPECT_EQ(said.scene().time_index(), 1U);
+  EXPECT_TRUE(said.scene().camera().orbit().has_distance_m());
+  EXPECT_GT(said.modelled().device_bytes(), 0U);
+  EXPECT_GT(said.stages_size(), 2);
+}
+
+TEST_F(CommandLineTest, FlagsOverrideTheSceneFile) {
+  const std::string scene = Scene(R"({"timeIndex": 3, "rendering": {"slices": 9},
+                                      "output": {"widthPx": 64, "heightPx": 36}})");
+  const Outcome outcome = Run(render_ + " --scene " + scene + " --slices 12 --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  v1::RenderImageResponse said;
+  ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(outcome.out, &said).ok());
+  EXPECT_EQ(said.scene().time_index(), 3U);
+  EXPECT_EQ(said.scene().rendering().slices(), 12U);
+  EXPECT_EQ(said.width_px(), 64U);
+}
+
+TEST_F(CommandLineTest, FailedRenderNamesTheCauseAndLeavesNoFile) {
+  ExpectError(render_ + " --scene " + Scene(R"({"sun": {"elevation": 3}})"), 2, "elevation");
+  ExpectError(render_ + " --scene " + Scene(R"({"sun": {"elevationDeg": 300}})"), 2,
+              "scene.sun.elevation_deg is 300; it must be between -90 and 90 deg");
+  ExpectError(render_ + " --scene " + folder_.File("none.json"), 2, "none.json");
+  ExpectError("render storm --server 127.0.0.1:1 -o " + picture_, 1, "connect");
+  EXPECT_FALSE(std::filesystem::exists(picture_));
+  ExpectError("render " + kSample + " --device software --size 16x9 --slices 4 -o " +
+                  folder_.File("no/folder.png"),
+              1, "no/folder.png");
+}
+
+TEST_F(CommandLineTest, ServeSaysOneLineAndStopsOnASignal) {
+  const Outcome outcome =
+      Shell(std::string(PROGRAM) + " serve --device software --data " + kSample +
+            " --http 127.0.0.1:0 --grpc 127.0.0.1:0 & server=$!; "
+            "until [ -s " +
+            folder_.File("out") +
+            " ]; do kill -0 $server || break; sleep 0.1; done; "
+            "kill -TERM $server; wait $server");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, MatchesRegex("Thunderhead is ready at http://127.0.0.1:[1-9][0-9]*/ "
+                                        "\\(gRPC 127.0.0.1:[1-9][0-9]*\\)\n"));
+}
+
+}  // namespace
+}  // namespace thunderhead::testing
