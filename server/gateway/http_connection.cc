@@ -16,7 +16,6 @@
 #include <string_view>
 #include <utility>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "gateway/grpc_web_exchange.h"
 #include "gateway/grpc_web_protocol.h"
