@@ -7,8 +7,8 @@ const here = fileURLToPath(new URL(".", import.meta.url));
 const root = fileURLToPath(new URL("../../", import.meta.url));
 
 const needed = [
-  [`${here}node_modules/playwright-core`, "run npm ci in tests/e2e"],
-  [`${root}client-web/dist/index.html`, "run npm ci and npm run build in client-web"],
+  [`${here}node_modules/playwright-core`, "run npm install in tests/e2e"],
+  [`${root}client-web/dist/index.html`, "run npm install and npm run build in client-web"],
   [process.env.THUNDERHEAD_CHROMIUM ?? "/usr/bin/chromium", "install Debian's package chromium"],
   [process.env.THUNDERHEAD_BINARY ?? `${root}build/release/bin/thunderhead`, "build the target thunderhead"],
 ];

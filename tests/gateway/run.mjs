@@ -11,7 +11,7 @@ const protoc = process.env.THUNDERHEAD_PROTOC ?? "/usr/bin/protoc";
 const { dependencies } = JSON.parse(readFileSync(`${here}package.json`, "utf8"));
 
 const needed = [
-  ...Object.keys(dependencies).map((name) => [`${here}node_modules/${name}`, "run npm ci in tests/gateway"]),
+  ...Object.keys(dependencies).map((name) => [`${here}node_modules/${name}`, "run npm install in tests/gateway"]),
   [server, "build the target gateway_echo_server"],
   [protoc, "install Debian's package protobuf-compiler"],
 ];
