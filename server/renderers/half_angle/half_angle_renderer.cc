@@ -8,7 +8,7 @@
 #include "glm/ext/matrix_transform.hpp"
 #include "glm/geometric.hpp"
 #include "glm/trigonometric.hpp"
-#include "physics/optics.h"
+#include "renderers/group_weights.h"
 
 namespace thunderhead::renderers {
 namespace {
@@ -20,13 +20,6 @@ constexpr GLuint kLightUnit = 4;
 constexpr GLuint kThicknessUnit = 5;
 
 enum LightPass { kCarry = 0, kTransmit = 1, kAddDepth = 2 };
-
-bool IsTranslucent(const scene::Rendering& rendering) {
-  return rendering.mode != scene::Mode::kUniformPhaseLowAlbedo;
-}
-bool IsConsistent(const scene::Rendering& rendering) {
-  return rendering.transport == scene::Transport::kConsistent;
-}
 
 // A rectangle of texels, `high` not included.
 struct TexelRect {
@@ -66,58 +59,7 @@ glm::mat4 ClipFromLocal(const scene::View& view, const glm::dvec3& middle_m) {
   return clip_from_view * glm::lookAt(eye, eye + view.forward, view.up);
 }
 
-// The paper's display normalisation: the logarithm of the cut phase function over its dynamic
-// range, 0 to 1.
-glm::vec2 DisplayNormalisation(const physics::PhaseFunction& phase, double cut_cosine) {
-  double low = physics::PhaseValue(phase, cut_cosine);
-  double high = low;
-  for (int i = 0; i <= 1800; ++i) {
-    const double mu = std::min(std::cos(glm::radians(0.1 * i)), cut_cosine);
-    low = std::min(low, physics::PhaseValue(phase, mu));
-    high = std::max(high, physics::PhaseValue(phase, mu));
-  }
-  if (high - low < 1e-6 * high) return {1.0F, 0.0F};
-  const double slope = 1.0 / (1.0 + std::log(high / low));
-  return {static_cast<float>((1.0 - std::log(low)) * slope), static_cast<float>(slope)};
-}
-
 }  // namespace
-
-// What each group counts for in each sum of the shaders, as a share of its extinction.
-struct HalfAngleRenderer::GroupWeights {
-  std::vector<double> eye, light, scattering, transport, peripheral;
-  std::vector<glm::vec4> phase;
-  std::vector<float> phase_cut;
-  std::vector<glm::vec2> phase_display;
-  std::vector<glm::vec3> color;
-  bool colored = false;
-  glm::vec2 cumulative_phase{0.0F};
-
-  GroupWeights(const Medium& medium, const scene::Rendering& rendering) {
-    const double theta_f = glm::radians(rendering.theta_f_deg);
-    const bool delta_scaled = IsConsistent(rendering) && IsTranslucent(rendering);
-    for (const MediumGroup& group : medium.groups) {
-      const physics::DeltaScaling cut = physics::CutForwardPeak(group.phase, theta_f / 2.0);
-      const double passed = delta_scaled ? group.albedo * cut.forward_share : 0.0;
-      const double ring = physics::CumulativePhase(group.phase, theta_f / 2.0) -
-                          physics::CumulativePhase(group.phase, theta_f / 4.0);
-      eye.push_back(1.0 - passed);
-      light.push_back(1.0 - passed);
-      scattering.push_back(group.albedo);
-      transport.push_back(1.0 - group.albedo * physics::MeanCosine(group.phase));
-      peripheral.push_back(group.albedo * ring);
-      phase.push_back(physics::PhaseCoefficients(group.phase));
-      const bool whole = IsConsistent(rendering) && !IsTranslucent(rendering);
-      phase_cut.push_back(whole ? 1.0F : static_cast<float>(cut.cut_cosine));
-      phase_display.push_back(DisplayNormalisation(group.phase, cut.cut_cosine));
-      color.push_back(group.color);
-      colored = colored || group.color != glm::vec3(1.0F);
-    }
-    const physics::PhaseFunction& first = medium.groups.front().phase;
-    cumulative_phase = {physics::CumulativePhase(first, theta_f / 4.0),
-                        physics::CumulativePhase(first, theta_f / 2.0)};
-  }
-};
 
 struct HalfAngleRenderer::Programs {
   const gl::Program* eye;
@@ -186,10 +128,7 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium,
   eye->Set("light_weights", medium.Weights(weights.light));
   eye->Set("scattering_weights", medium.Weights(weights.scattering));
   eye->Set("transport_weights", medium.Weights(weights.transport));
-  eye->Set("phase", weights.phase);
-  eye->Set("phase_cut", weights.phase_cut);
-  eye->Set("phase_display", weights.phase_display);
-  eye->Set("group_color", weights.color);
+  weights.BindPhase(*eye);
   eye->Set("sunlight", settings.illumination.sunlight);
   eye->Set("ambient", settings.illumination.ambient);
   eye->Set("light_u", glm::vec3(0.5 * frame.right / frame.half_extent_m.x));

@@ -10,6 +10,7 @@
 #include "absl/status/status.h"
 #include "gl/objects.h"
 #include "gl/program.h"
+#include "renderers/group_weights.h"
 #include "renderers/half_angle/slicing.h"
 #include "renderers/medium.h"
 #include "scene/scene.h"
@@ -49,7 +50,6 @@ class HalfAngleRenderer {
   std::size_t Bytes() const;
 
  private:
-  struct GroupWeights;
   struct Programs;
 
   void Resize(const LightFrame& frame, double cell_m, const glm::ivec2& eye_size);

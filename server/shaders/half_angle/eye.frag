@@ -3,7 +3,7 @@
 // Variants: GROUPS, COLORED (per-group colours), TRANSLUCENT, CONSISTENT (transport), FRONT_TO_BACK (the eye is on the
 // sun's side).
 #include "common/medium.glsl"
-#include "physics/phase_functions.glsl"
+#include "common/phase.glsl"
 #include "physics/light_transport.glsl"
 
 layout(binding = 4) uniform sampler2D light;      // r: share of sunlight, g: optical depth towards the sun
@@ -18,10 +18,6 @@ uniform vec4 eye_weights[PLANES];        // texel to the extinction that the eye
 uniform vec4 light_weights[PLANES];      // texel to the extinction that the light buffer sees, 1/m
 uniform vec4 scattering_weights[PLANES];  // texel to scattering, 1/m
 uniform vec4 transport_weights[PLANES];  // texel to similarity-scaled extinction, 1/m
-uniform vec4 phase[GROUPS];
-uniform float phase_cut[GROUPS];     // cosine within which the phase function is held
-uniform vec2 phase_display[GROUPS];  // offset and slope of the paper's display normalisation
-uniform vec3 group_color[GROUPS];
 uniform vec3 sunlight;               // irradiance
 uniform vec3 ambient;                // mean radiance from sky and ground
 uniform vec3 light_u;                // light buffer axes, scaled to its texture coordinates
@@ -29,19 +25,6 @@ uniform vec3 light_v;
 
 in vec3 local_m;
 out vec4 radiance_and_transmittance;
-
-const float kFourPi = 12.5663706;
-const float kPaperWhite = 0.5;  // radiance of the paper's display value 1
-
-// Scattered radiance per unit of irradiance, of one group.
-float phase_term(int group, float mu) {
-  float value = phase_value(phase[group], min(mu, phase_cut[group]));
-#if CONSISTENT
-  return value / kFourPi;
-#else
-  return (phase_display[group].x + phase_display[group].y * log(value)) * kPaperWhite;
-#endif
-}
 
 void main() {
   Medium medium = medium_at(local_m);
@@ -59,7 +42,7 @@ void main() {
   vec3 direct = vec3(0.0);
   for (int group = 0; group < GROUPS; ++group) {
     float value = medium.plane[group / 4][group % 4] * scattering_weights[group / 4][group % 4];
-    direct += group_color[COLORED == 1 ? group : 0] * (value * phase_term(group, mu));
+    direct += value * phase_term(group, mu);
   }
   vec3 source = direct * arrived.r * sunlight;
 
