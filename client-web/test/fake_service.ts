@@ -241,6 +241,7 @@ function describe(stormId: string, timeIndex: number) {
 
 // Stands where the whole storm is in view.
 const HOME = cameraOfPose({
+  kind: "orbit",
   targetM: [4000, 0, 7000],
   azimuthDeg: 200,
   elevationDeg: 8,

@@ -48,7 +48,7 @@ export function drawFakeStorm(scene: Scene, widthPx: number, heightPx: number): 
 
 function project(scene: Scene, widthPx: number, heightPx: number) {
   const pose = poseOfCamera(scene.camera);
-  if (pose === undefined) return [];
+  if (pose?.kind !== "orbit") return [];
   const azimuth = (pose.azimuthDeg * Math.PI) / 180;
   const elevation = (pose.elevationDeg * Math.PI) / 180;
   const focalPx = heightPx / 2 / Math.tan((pose.fieldOfViewDeg * Math.PI) / 360);

@@ -1,9 +1,9 @@
 import { create } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 import { BackOff } from "../src/core/back_off";
-import { cameraOfPose } from "../src/core/camera";
+import { cameraOfPose, homeCamera, zoom } from "../src/core/camera";
 import { Playback } from "../src/core/playback";
-import { withTime } from "../src/core/scene";
+import { withCamera, withTime } from "../src/core/scene";
 import { SceneSender } from "../src/core/scene_sender";
 import { PageState } from "../src/core/state";
 import { type Scene, SceneSchema } from "../src/gen/thunderhead/v1/scene_pb";
@@ -179,6 +179,7 @@ describe("play", () => {
 
 describe("the page's state", () => {
   const pose = {
+    kind: "orbit" as const,
     targetM: [0, 0, 5000] as const,
     azimuthDeg: 200,
     elevationDeg: 8,
@@ -199,15 +200,33 @@ describe("the page's state", () => {
 
   it("takes the camera from a frame where the scene leaves it open, or somebody else moved it", () => {
     const state = new PageState();
-    state.move((p) => ({ ...p, distanceM: 1 }));
+    state.move((p) => zoom(p, 0.5));
     expect(state.scene.value.camera).toBeUndefined();
     state.adoptCamera(cameraOfPose(pose), false);
     expect(state.pose.value).toEqual(pose);
-    state.move((p) => ({ ...p, distanceM: 1234 }));
+    state.move((p) => zoom(p, 0.5));
     state.adoptCamera(cameraOfPose(pose), false);
-    expect(state.pose.value?.distanceM).toBe(1234);
+    expect(state.pose.value).toEqual(zoom(pose, 0.5));
     state.adoptCamera(cameraOfPose(pose), true);
     expect(state.pose.value).toEqual(pose);
+  });
+
+  it("knows no pose of another kind of camera until the server has placed it", () => {
+    const state = new PageState();
+    state.adoptCamera(cameraOfPose(pose), false);
+    state.edit((scene) => withCamera(scene, homeCamera("spotter")));
+    expect(state.cameraKind.value).toBe("spotter");
+    expect(state.pose.value).toBeUndefined();
+    const spotter = {
+      kind: "spotter" as const,
+      placeM: [1000, -60_000] as const,
+      eyeHeightM: 2,
+      azimuthDeg: 20,
+      elevationDeg: 6,
+      focalLengthMm: 24,
+    };
+    state.adoptCamera(cameraOfPose(spotter), false);
+    expect(state.pose.value).toEqual(spotter);
   });
 
   it("keeps one notice a subject", () => {

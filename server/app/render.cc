@@ -122,6 +122,7 @@ Command AddRender(CLI::App& app) {
   render->add_option("--scene", flags->scene.file, "Scene as Protobuf JSON");
   render->add_option("--time", flags->scene.time_index, "Which of the storm's times, from 0");
   render->add_option("--size", flags->scene.size, "WIDTHxHEIGHT in pixels");
+  render->add_option("--camera", flags->scene.camera, "orbit, spotter or top-down");
   render->add_option("--slices", flags->scene.slices, "Number of slices");
   render->add_option("--server", flags->server, "HOST:PORT of a running server's gRPC");
   render->add_option("--device", flags->device, "auto, software or a GPU's number")

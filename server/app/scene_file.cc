@@ -47,6 +47,21 @@ absl::Status SetSize(const std::string& size, v1::Output& output) {
   return absl::OkStatus();
 }
 
+// Keeps what the file says of that kind of camera; another kind starts with its defaults.
+absl::Status SetCamera(const std::string& kind, v1::Camera& camera) {
+  if (kind == "orbit") {
+    camera.mutable_orbit();
+  } else if (kind == "spotter") {
+    camera.mutable_spotter();
+  } else if (kind == "top-down") {
+    camera.mutable_top_down();
+  } else {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--camera is '", kind, "'; it must be orbit, spotter or top-down"));
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::StatusOr<v1::Scene> ReadScene(const SceneFlags& flags) {
@@ -58,6 +73,9 @@ absl::StatusOr<v1::Scene> ReadScene(const SceneFlags& flags) {
   if (flags.slices.has_value()) scene.mutable_rendering()->set_slices(*flags.slices);
   if (!flags.size.empty()) {
     THUNDERHEAD_RETURN_IF_ERROR(SetSize(flags.size, *scene.mutable_output()));
+  }
+  if (!flags.camera.empty()) {
+    THUNDERHEAD_RETURN_IF_ERROR(SetCamera(flags.camera, *scene.mutable_camera()));
   }
   return scene;
 }

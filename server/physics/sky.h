@@ -1,4 +1,4 @@
-// Sunlight and the clear sky: the GLSL of shaders/physics/sky.glsl compiled for the CPU, and its
+// Sunlight and the clear sky: the GLSL of shaders/physics/{sky,air}.glsl compiled for the CPU, and its
 // means over the sky.
 #pragma once
 
@@ -16,7 +16,10 @@ using glm::exp;
 using glm::max;
 using glm::sqrt;
 using glm::vec3;
+// clang-format off: air needs sky
 #include "shaders/physics/sky.glsl"
+#include "shaders/physics/air.glsl"
+// clang-format on
 
 }  // namespace glsl
 

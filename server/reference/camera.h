@@ -17,13 +17,10 @@ struct Camera {
   glm::dvec3 right{0.0};  // what x = 1 adds to the direction
   glm::dvec3 up{0.0};
 
-  static Camera Perspective(const scene::View& view) {
-    return {view.eye_m,
-            {},
-            {},
-            view.forward,
-            view.right * view.tan_half_width,
-            view.up * view.tan_half_height};
+  // Also of a view without perspective.
+  static Camera Of(const scene::View& view) {
+    return {view.eye_m,   view.right * view.half_width_m,   view.up * view.half_height_m,
+            view.forward, view.right * view.tan_half_width, view.up * view.tan_half_height};
   }
 
   // Parallel rays in `direction` from every point of a rectangle.

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "glm/common.hpp"
-#include "glm/exponential.hpp"
 #include "glm/geometric.hpp"
 #include "glm/vector_relational.hpp"
 #include "physics/optics.h"
 #include "physics/sky.h"
 #include "scene/view.h"
+#include "volume/terrain.h"
 
 namespace thunderhead::reference {
 namespace {
@@ -23,7 +23,6 @@ constexpr glm::dvec3 kGroundTint(1.0, 0.93, 0.78);
 
 // The eye's view of the ground fades within this distance in any case: the earth is round.
 constexpr double kFarthestGround_m = 4e5;
-constexpr double kAirScaleHeight_m = 8000.0;
 
 physics::PhaseFunction PhaseOf(const scene::Scene& scene, physics::Hydrometeor hydrometeor) {
   const auto phase_of = [&](physics::Hydrometeor kind) {
@@ -93,11 +92,6 @@ GroupLook LookOf(const scene::Scene& scene, physics::Hydrometeor hydrometeor) {
   return look;
 }
 
-double LowestGround_m(const volume::HydrometeorFields& fields) {
-  if (fields.terrain_height_m.empty()) return fields.grid.low_corner_m.z;
-  return *std::min_element(fields.terrain_height_m.begin(), fields.terrain_height_m.end());
-}
-
 glm::dvec3 SkyRadiance(const glm::dvec3& direction, const glm::vec3& towards_sun, double scale) {
   const glm::vec3 above(direction.x, direction.y, std::abs(direction.z));
   return scale * glm::dvec3(physics::glsl::sky_radiance(above, towards_sun));
@@ -109,14 +103,9 @@ Air AirBefore(const Ray& ray, double ground_distance_m, double ground_height_m,
               const std::function<glm::dvec3(const glm::dvec3&)>& sky) {
   const double eye_height_m = ray.origin_m.z - ground_height_m;
   const double distance_m = std::min(ground_distance_m, kFarthestGround_m);
-  // The mean density along the way from the ground up to the eye, over that at the ground.
-  const double mean_density =
-      -std::expm1(-eye_height_m / kAirScaleHeight_m) * kAirScaleHeight_m / eye_height_m;
-  const glm::dvec3 depth =
-      glm::dvec3(physics::glsl::air_optical_depth() + physics::glsl::haze_optical_depth()) *
-      (distance_m * mean_density / kAirScaleHeight_m);
   Air air;
-  air.transmittance = glm::exp(-depth);
+  air.transmittance = physics::glsl::air_transmittance(static_cast<float>(distance_m),
+                                                       static_cast<float>(eye_height_m));
   const glm::dvec3 level(ray.direction.x, ray.direction.y, 0.0);
   const double length = glm::length(level);
   // Straight down there is no horizon to look at, and hardly any air that would need one.
@@ -167,7 +156,7 @@ Surroundings SurroundingsOf(const scene::Scene& scene, const volume::Hydrometeor
     return SkyRadiance(direction, towards_sun, sky_scale);
   };
   Ground ground;
-  ground.height_m = LowestGround_m(fields);
+  ground.height_m = volume::LowestTerrain_m(fields);
   const glm::dvec3 albedo = scene.sky.ground_albedo * kGroundTint;
   if (ground_light == GroundLight::kShaded) {
     ground.albedo = albedo;
@@ -183,9 +172,8 @@ Surroundings SurroundingsOf(const scene::Scene& scene, const volume::Hydrometeor
   return around;
 }
 
-Camera CameraOf(const scene::Scene& scene) {
-  const double aspect_ratio = static_cast<double>(scene.output.width_px) / scene.output.height_px;
-  return Camera::Perspective(scene::ViewOf(scene.camera, aspect_ratio));
+Camera CameraOf(const scene::Scene& scene, const volume::HydrometeorFields& fields) {
+  return Camera::Of(scene::ViewOf(scene, fields));
 }
 
 }  // namespace thunderhead::reference

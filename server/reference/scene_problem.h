@@ -29,6 +29,8 @@ enum class GroundLight { kShaded, kUniform };
 Surroundings SurroundingsOf(const scene::Scene& scene, const volume::HydrometeorFields& fields,
                             GroundLight ground_light);
 
-Camera CameraOf(const scene::Scene& scene);
+// A spotter's rays are straight in world coordinates (scene/view.h); the ground that they meet is
+// flat there, which differs from the renderers' round one near the horizon only.
+Camera CameraOf(const scene::Scene& scene, const volume::HydrometeorFields& fields);
 
 }  // namespace thunderhead::reference

@@ -8,6 +8,9 @@
 #include "base/stopwatch.h"
 #include "glm/geometric.hpp"
 #include "physics/sky.h"
+#include "renderers/view_uniforms.h"
+#include "scene/view.h"
+#include "volume/terrain.h"
 
 namespace thunderhead::renderers {
 namespace {
@@ -43,15 +46,6 @@ glm::ivec2 EyeSize(const scene::Scene& scene, const DrawQuality& quality) {
   return glm::max(glm::ivec2(glm::ceil(size * quality.image_scale)), glm::ivec2(1));
 }
 
-double AspectRatio(const scene::Scene& scene) {
-  return static_cast<double>(scene.output.width_px) / scene.output.height_px;
-}
-
-double LowestGround_m(const volume::HydrometeorFields& fields) {
-  if (fields.terrain_height_m.empty()) return fields.grid.low_corner_m.z;
-  return *std::min_element(fields.terrain_height_m.begin(), fields.terrain_height_m.end());
-}
-
 }  // namespace
 
 absl::StatusOr<LinearFrame> SceneRenderer::Draw(
@@ -73,7 +67,7 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
   }
   if (first <= scene::Stage::kView) {
     base::Stopwatch stopwatch;
-    const scene::View view = scene::ViewOf(scene.camera, AspectRatio(scene));
+    const scene::View view = scene::ViewOf(scene, *fields);
     drawn_slices_ = 0;
     if (!medium_.Empty()) {
       const double wanted = std::ceil(scene.rendering.slices * quality.slice_share);
@@ -83,7 +77,8 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
           {scene.rendering, view, IlluminationOf(scene), EyeSize(scene, quality), drawn_slices_},
           first <= scene::Stage::kLight));
     }
-    THUNDERHEAD_RETURN_IF_ERROR(Composite(scene, view, medium_.Empty(), LowestGround_m(*fields)));
+    THUNDERHEAD_RETURN_IF_ERROR(
+        Composite(scene, view, medium_.Empty(), volume::LowestTerrain_m(*fields)));
     glFinish();
     stages.push_back({"slices", stopwatch.ElapsedMs()});
   }
@@ -110,14 +105,13 @@ absl::Status SceneRenderer::Composite(const scene::Scene& scene, const scene::Vi
       const gl::Program* program,
       programs_.Get({"common/whole_target.vert", "post/composite.frag", {}}));
   const glm::vec3 towards_sun(scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg));
-  program->Set("ray_forward", glm::vec3(view.forward));
-  program->Set("ray_right", glm::vec3(view.right * view.tan_half_width));
-  program->Set("ray_up", glm::vec3(view.up * view.tan_half_height));
-  program->Set("towards_sun", towards_sun);
+  BindLocalRays(*program, view);
+  program->Set("towards_sun", glm::vec3(view.local_from_world * glm::dvec3(towards_sun)));
   program->Set("sky_scale", static_cast<float>(scene.sun.irradiance * scene.sky.brightness));
   program->Set("ground_radiance",
                GroundRadiance(scene, towards_sun, physics::SkyLightOf(towards_sun)));
-  program->Set("eye_height_m", static_cast<float>(view.eye_m.z - ground_height_m));
+  program->Set("eye_height_m", static_cast<float>(view.altitude_m - ground_height_m));
+  program->Set("ground_curvature_per_m", static_cast<float>(view.ground_curvature_per_m));
   (empty ? nothing_ : half_angle_.Eye()).Bind(kEyeUnit);
   linear_target_.Bind();
   program->Use();

@@ -5,7 +5,9 @@
 
 #include <array>
 #include <string>
+#include <variant>
 
+#include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 #include "physics/hydrometeors.h"
 
@@ -31,6 +33,29 @@ struct OrbitCamera {
 
   bool operator==(const OrbitCamera&) const = default;
 };
+
+// Stands on the ground at `place_m` and looks to azimuth and elevation. The picture is cut out of a
+// frame of 36 x 24 mm behind a lens of the given focal length: wider pictures use its whole width,
+// narrower ones its whole height.
+struct SpotterCamera {
+  glm::dvec2 place_m{0.0};
+  double eye_height_m = 1.7;  // above the terrain
+  double azimuth_deg = 20.0;
+  double elevation_deg = 5.0;
+  double focal_length_mm = 24.0;
+
+  bool operator==(const SpotterCamera&) const = default;
+};
+
+// Looks straight down from above the air, north up, without perspective, as satellite pictures do.
+struct TopDownCamera {
+  glm::dvec2 center_m{0.0};
+  double width_m = 1e5;  // that the picture shows
+
+  bool operator==(const TopDownCamera&) const = default;
+};
+
+using Camera = std::variant<OrbitCamera, SpotterCamera, TopDownCamera>;
 
 struct Sun {
   double azimuth_deg = 255.0;
@@ -83,7 +108,7 @@ struct Output {
 struct Scene {
   std::string storm_id;
   int time_index = 0;
-  OrbitCamera camera;
+  Camera camera;
   Sun sun;
   Sky sky;
   std::array<FieldParameters, physics::kHydrometeorCount> fields;  // by physics::IndexOf

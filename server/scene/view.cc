@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "glm/geometric.hpp"
+#include "glm/matrix.hpp"
 #include "glm/trigonometric.hpp"
+#include "volume/terrain.h"
 
 namespace thunderhead::scene {
 
@@ -15,21 +17,104 @@ glm::dvec3 Direction(double azimuth_deg, double elevation_deg) {
           std::sin(elevation)};
 }
 
+namespace {
+
+constexpr double kMargin = 1.05;
+
+// Above practically all air, so that a picture from there shows what a satellite sees.
+constexpr double kSatelliteAltitude_m = 1e5;
+
+// Sets the axes of a view along `forward`, with `up` upright in the local frame of `zenith`.
+void LookAlong(const glm::dvec3& forward, const glm::dvec3& zenith, View* view) {
+  view->forward = forward;
+  view->right = glm::normalize(glm::cross(forward, zenith));
+  view->up = glm::cross(view->right, forward);
+}
+
+// Half the picture's size over the focal length, cut out of a frame of 36 x 24 mm.
+glm::dvec2 HalfFrame(double focal_length_mm, double aspect_ratio) {
+  const double half_width_mm = aspect_ratio >= 1.5 ? 18.0 : 12.0 * aspect_ratio;
+  return glm::dvec2(half_width_mm, half_width_mm / aspect_ratio) / focal_length_mm;
+}
+
+double AzimuthOf(const glm::dvec2& towards) {
+  return glm::degrees(std::atan2(towards.x, towards.y));
+}
+
+}  // namespace
+
 View ViewOf(const OrbitCamera& camera, double aspect_ratio) {
   View view;
   const glm::dvec3 towards_eye = Direction(camera.azimuth_deg, camera.elevation_deg);
   view.eye_m = camera.target_m + camera.distance_m * towards_eye;
-  view.forward = -towards_eye;
-  view.right = glm::normalize(glm::cross(view.forward, glm::dvec3(0.0, 0.0, 1.0)));
-  view.up = glm::cross(view.right, view.forward);
+  LookAlong(-towards_eye, {0.0, 0.0, 1.0}, &view);
+  view.altitude_m = view.eye_m.z;
   view.tan_half_height = std::tan(glm::radians(camera.field_of_view_deg) / 2.0);
   view.tan_half_width = view.tan_half_height * aspect_ratio;
   return view;
 }
 
+View ViewOf(const SpotterCamera& camera, const Site& site, double aspect_ratio) {
+  View view;
+  view.altitude_m = site.ground_height_m + camera.eye_height_m;
+  view.ground_curvature_per_m = 1.0 / kEffectiveEarthRadius_m;
+  // The world's plane touches the sphere below the storm's middle.
+  const glm::dvec2 from_storm_m = camera.place_m - site.storm_middle_m;
+  const double distance_m = glm::length(from_storm_m);
+  const double angle = distance_m / kEffectiveEarthRadius_m;
+  const glm::dvec2 away = distance_m > 0.0 ? from_storm_m / distance_m : glm::dvec2(0.0, -1.0);
+  const glm::dvec3 outwards(away, 0.0);
+  const glm::dvec3 zenith = std::sin(angle) * outwards + glm::dvec3(0.0, 0.0, std::cos(angle));
+  const double from_center_m = kEffectiveEarthRadius_m + view.altitude_m;
+  view.eye_m = glm::dvec3(site.storm_middle_m + away * (from_center_m * std::sin(angle)),
+                          from_center_m * std::cos(angle) - kEffectiveEarthRadius_m);
+  // Turns the upright at the eye to z, along the great circle to the storm.
+  const glm::dvec3 tilted = std::cos(angle) * outwards - glm::dvec3(0.0, 0.0, std::sin(angle));
+  const glm::dvec3 sideways(-away.y, away.x, 0.0);
+  const glm::dmat3 local_axes(outwards, sideways, glm::dvec3(0.0, 0.0, 1.0));
+  const glm::dmat3 world_axes(tilted, sideways, zenith);
+  view.local_from_world = local_axes * glm::transpose(world_axes);
+  const glm::dvec3 looks = Direction(camera.azimuth_deg, camera.elevation_deg);
+  LookAlong(looks * view.local_from_world, zenith, &view);
+  const glm::dvec2 half_frame = HalfFrame(camera.focal_length_mm, aspect_ratio);
+  view.tan_half_width = half_frame.x;
+  view.tan_half_height = half_frame.y;
+  return view;
+}
+
+View ViewOf(const TopDownCamera& camera, double aspect_ratio) {
+  View view;
+  view.eye_m = glm::dvec3(camera.center_m, kSatelliteAltitude_m);
+  view.altitude_m = kSatelliteAltitude_m;
+  view.forward = {0.0, 0.0, -1.0};
+  view.up = {0.0, 1.0, 0.0};
+  view.tan_half_width = 0.0;
+  view.tan_half_height = 0.0;
+  view.half_width_m = camera.width_m / 2.0;
+  view.half_height_m = view.half_width_m / aspect_ratio;
+  return view;
+}
+
+View ViewOf(const Scene& scene, const volume::HydrometeorFields& fields) {
+  const double aspect_ratio = static_cast<double>(scene.output.width_px) / scene.output.height_px;
+  if (const auto* orbit = std::get_if<OrbitCamera>(&scene.camera)) {
+    return ViewOf(*orbit, aspect_ratio);
+  }
+  if (const auto* top_down = std::get_if<TopDownCamera>(&scene.camera)) {
+    return ViewOf(*top_down, aspect_ratio);
+  }
+  const auto& spotter = std::get<SpotterCamera>(scene.camera);
+  const volume::RegularGrid& grid = fields.grid;
+  const volume::CellBox& cells = fields.condensate;
+  const glm::dvec3 middle_cell =
+      cells.Empty() ? glm::dvec3(grid.cells) / 2.0 : glm::dvec3(cells.low + cells.high) / 2.0;
+  const Site site{volume::TerrainHeight_m(fields, spotter.place_m),
+                  glm::dvec2(grid.low_corner_m + middle_cell * grid.spacing_m)};
+  return ViewOf(spotter, site, aspect_ratio);
+}
+
 OrbitCamera Framing(OrbitCamera camera, const glm::dvec3& low_m, const glm::dvec3& high_m,
                     double aspect_ratio) {
-  constexpr double kMargin = 1.05;
   camera.target_m = (low_m + high_m) / 2.0;
   const View view = ViewOf(camera, aspect_ratio);
   double distance_m = 1.0;
@@ -44,6 +129,34 @@ OrbitCamera Framing(OrbitCamera camera, const glm::dvec3& low_m, const glm::dvec
     distance_m = std::max(distance_m, towards_eye + kMargin * std::max(across, along));
   }
   camera.distance_m = distance_m;
+  return camera;
+}
+
+SpotterCamera Framing(SpotterCamera camera, const glm::dvec3& low_m, const glm::dvec3& high_m,
+                      double aspect_ratio) {
+  OrbitCamera level;
+  level.azimuth_deg = camera.azimuth_deg + 180.0;
+  level.elevation_deg = 0.0;
+  const double tan_half_height = HalfFrame(camera.focal_length_mm, aspect_ratio).y;
+  level.field_of_view_deg = 2.0 * glm::degrees(std::atan(tan_half_height));
+  camera.place_m = glm::dvec2(ViewOf(Framing(level, low_m, high_m, aspect_ratio), 1.0).eye_m);
+  return camera;
+}
+
+TopDownCamera Framing(TopDownCamera camera, const glm::dvec3& low_m, const glm::dvec3& high_m,
+                      double aspect_ratio) {
+  const glm::dvec2 size_m(high_m - low_m);
+  camera.center_m = glm::dvec2(low_m + high_m) / 2.0;
+  camera.width_m = kMargin * std::max(size_m.x, size_m.y * aspect_ratio);
+  return camera;
+}
+
+SpotterCamera LookingAt(SpotterCamera camera, const glm::dvec3& low_m, const glm::dvec3& high_m) {
+  const glm::dvec2 towards_m = glm::dvec2(low_m + high_m) / 2.0 - camera.place_m;
+  const double distance_m = glm::length(towards_m);
+  if (distance_m > 0.0) camera.azimuth_deg = AzimuthOf(towards_m);
+  // The storm's top is as far above the middle of the picture as the ground at its foot is below.
+  camera.elevation_deg = 0.5 * glm::degrees(std::atan2(high_m.z - low_m.z, distance_m));
   return camera;
 }
 

@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "base/status.h"
+#include "service/camera_messages.h"
 #include "service/scene_messages.h"
 
 namespace thunderhead::service {

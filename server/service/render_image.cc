@@ -5,6 +5,7 @@
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "frame/image_codec.h"
+#include "service/camera_messages.h"
 #include "service/finished.h"
 #include "service/handlers.h"
 #include "service/limits_check.h"

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "scene/view.h"
+#include "service/camera_messages.h"
 #include "service/limits_check.h"
 #include "volume/visible_box.h"
 
@@ -60,12 +60,6 @@ auto MessageOf(const Table& table, Value value) {
   return table.front().first;
 }
 
-void SetPosition(const glm::dvec3& position_m, v1::Position& message) {
-  message.set_x_m(static_cast<float>(position_m.x));
-  message.set_y_m(static_cast<float>(position_m.y));
-  message.set_z_m(static_cast<float>(position_m.z));
-}
-
 void FillFieldDefaults(v1::FieldParameters& field, physics::Hydrometeor hydrometeor) {
   const physics::ParticleOptics& optics = physics::DefaultOptics(hydrometeor);
   field.set_hydrometeor(ToMessage(hydrometeor));
@@ -115,16 +109,6 @@ scene::FieldParameters ToField(const v1::FieldParameters& message) {
   const v1::Color& color = message.false_color();
   field.optics.false_color = {color.red(), color.green(), color.blue()};
   return field;
-}
-
-scene::OrbitCamera ToCamera(const v1::OrbitCamera& message) {
-  scene::OrbitCamera camera;
-  camera.target_m = {message.target().x_m(), message.target().y_m(), message.target().z_m()};
-  camera.azimuth_deg = message.azimuth_deg();
-  camera.elevation_deg = message.elevation_deg();
-  camera.distance_m = message.distance_m();
-  camera.field_of_view_deg = message.field_of_view_deg();
-  return camera;
 }
 
 volume::WorldBox BoxOf(const volume::RegularGrid& grid, const volume::CellBox& cells) {
@@ -184,14 +168,10 @@ absl::Status CheckScene(const v1::Scene& scene) {
   return absl::OkStatus();
 }
 
-bool NeedsFraming(const v1::Scene& scene) {
-  const v1::OrbitCamera& camera = scene.camera().orbit();
-  return !camera.has_target() || !camera.has_distance_m();
-}
-
 void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
   scene.set_storm_id(storm.id);
-  scene.mutable_camera()->mutable_orbit();
+  v1::Camera& camera = *scene.mutable_camera();
+  if (camera.kind_case() == v1::Camera::KIND_NOT_SET) camera.mutable_orbit();
   scene.mutable_sun();
   scene.mutable_sky();
   scene.mutable_output();
@@ -208,29 +188,11 @@ void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
   FillNumberDefaults(scene);
 }
 
-void FrameCondensate(v1::Scene& scene, const volume::HydrometeorFields& fields) {
-  v1::OrbitCamera& camera = *scene.mutable_camera()->mutable_orbit();
-  const volume::WorldBox box = volume::VisibleBox(fields);
-  const double aspect_ratio =
-      static_cast<double>(scene.output().width_px()) / scene.output().height_px();
-  const scene::OrbitCamera framing =
-      scene::Framing(ToCamera(camera), box.low_m, box.high_m, aspect_ratio);
-  if (!camera.has_target()) SetPosition(framing.target_m, *camera.mutable_target());
-  if (!camera.has_distance_m()) {
-    const auto& limits = v1::OrbitCamera::descriptor()
-                             ->FindFieldByName("distance_m")
-                             ->options()
-                             .GetExtension(v1::number);
-    camera.set_distance_m(
-        static_cast<float>(std::clamp(framing.distance_m, limits.minimum(), limits.maximum())));
-  }
-}
-
 scene::Scene ToScene(const v1::Scene& message) {
   scene::Scene scene;
   scene.storm_id = message.storm_id();
   scene.time_index = static_cast<int>(message.time_index());
-  scene.camera = ToCamera(message.camera().orbit());
+  scene.camera = ToCamera(message.camera());
   scene.sun = {message.sun().azimuth_deg(), message.sun().elevation_deg(),
                message.sun().irradiance()};
   scene.sky = {message.sky().brightness(), message.sky().ground_albedo()};
@@ -249,15 +211,6 @@ scene::Scene ToScene(const v1::Scene& message) {
   scene.output.height_px = static_cast<int>(message.output().height_px());
   scene.output.jpeg_quality = static_cast<int>(message.output().jpeg_quality());
   return scene;
-}
-
-void ToMessage(const scene::OrbitCamera& camera, v1::Camera& message) {
-  v1::OrbitCamera& orbit = *message.mutable_orbit();
-  SetPosition(camera.target_m, *orbit.mutable_target());
-  orbit.set_azimuth_deg(static_cast<float>(camera.azimuth_deg));
-  orbit.set_elevation_deg(static_cast<float>(camera.elevation_deg));
-  orbit.set_distance_m(static_cast<float>(camera.distance_m));
-  orbit.set_field_of_view_deg(static_cast<float>(camera.field_of_view_deg));
 }
 
 void ToMessage(const session::Modelled& modelled, v1::Modelled& message) {

@@ -20,20 +20,12 @@ namespace thunderhead::service {
 // picture.
 absl::Status CheckScene(const v1::Scene& scene);
 
-// True if the camera's defaults depend on where the storm is.
-bool NeedsFraming(const v1::Scene& scene);
-
 // Fills in every default but those of the camera that depend on the storm's fields.
 void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm);
-
-// Fills in the camera's target and distance, where absent, so that what is to be seen of `fields`
-// (volume::VisibleBox) is framed.
-void FrameCondensate(v1::Scene& scene, const volume::HydrometeorFields& fields);
 
 // The value of a scene whose defaults are filled in.
 scene::Scene ToScene(const v1::Scene& message);
 
-void ToMessage(const scene::OrbitCamera& camera, v1::Camera& message);
 void ToMessage(const session::Modelled& modelled, v1::Modelled& message);
 void ToMessage(const session::EncodedFrame& frame, v1::Frame& message);
 void ToMessage(const session::Problem& problem, v1::Problem& message);

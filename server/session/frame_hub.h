@@ -28,7 +28,7 @@ struct EncodedFrame {
   std::string jpeg;
   int width_px = 0;
   int height_px = 0;
-  scene::OrbitCamera camera;
+  scene::Camera camera;
   std::vector<StageCost> stages;
   Modelled modelled;
   bool refined = false;

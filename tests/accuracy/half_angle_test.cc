@@ -38,18 +38,22 @@ class HalfAngle : public testing::Test {
 
   // Looks straight at the middle of the slab along `elevation_deg` through a narrow lens.
   Seen Look(double optical_depth, double elevation_deg, double sun_elevation_deg) {
-    const auto fields = support::MakeSlab(kWidth_m, kHeight_m, optical_depth / kHeight_m);
-    ResidentMedium::Cost cost;
-    const ResidentMedium medium(scene_, *fields, &cost);
     scene::OrbitCamera camera;
     camera.target_m = {0.0, 0.0, kHeight_m / 2};
     camera.azimuth_deg = 200.0;
     camera.elevation_deg = elevation_deg;
     camera.distance_m = 5000.0;
     camera.field_of_view_deg = 2.0;
+    return Look(optical_depth, scene::ViewOf(camera, 1.0), sun_elevation_deg);
+  }
+
+  Seen Look(double optical_depth, const scene::View& view, double sun_elevation_deg) {
+    const auto fields = support::MakeSlab(kWidth_m, kHeight_m, optical_depth / kHeight_m);
+    ResidentMedium::Cost cost;
+    const ResidentMedium medium(scene_, *fields, &cost);
     HalfAngleSettings settings;
     settings.rendering = scene_.rendering;
-    settings.view = scene::ViewOf(camera, 1.0);
+    settings.view = view;
     settings.illumination = {scene::Direction(70.0, sun_elevation_deg), glm::vec3(1.0F),
                              glm::vec3(0.0F)};
     settings.eye_size = {9, 9};
@@ -121,6 +125,23 @@ TEST_F(SingleScattering, ReflectedLightOfASlab) {
             << slices << " slices, depth " << depth << ", view " << view_deg << ", sun " << sun_deg;
         EXPECT_NEAR(seen.transmittance, std::exp(-depth * view), kTextureError + error);
       }
+    }
+  }
+}
+
+TEST_F(SingleScattering, SeenFromAboveWithoutPerspective) {
+  // Every pixel over the slab looks straight down: the same integral as above, in all of them.
+  scene::TopDownCamera camera;
+  camera.width_m = 1000.0;
+  const scene::View view = scene::ViewOf(camera, 1.0);
+  for (const double depth : {0.01, 0.5, 3.0}) {
+    const double sun = 1.0 / std::sin(60.0 * std::numbers::pi / 180);
+    const double expected = PhaseTerm(90.0, 60.0) * -std::expm1(-depth * (1.0 + sun)) / (1.0 + sun);
+    const Seen seen = Look(depth, view, 60.0);
+    const double error = kTextureError + HardFaceError(scene_.rendering.slices, depth);
+    for (std::size_t pixel = 0; pixel < seen.eye.size(); pixel += 4) {
+      EXPECT_NEAR(seen.eye[pixel] / expected, 1.0, error) << depth;
+      EXPECT_NEAR(seen.eye[pixel + 3], std::exp(-depth), error) << depth;
     }
   }
 }

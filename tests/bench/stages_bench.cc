@@ -55,14 +55,14 @@ scene::Scene PaperScene(const volume::HydrometeorFields& fields) {
   scene::Scene scene;
   scene.output = {300, 300, 88};
   const volume::WorldBox box = volume::VisibleBox(fields);
-  scene.camera = scene::Framing(scene.camera, box.low_m, box.high_m, 1.0);
+  scene.camera = scene::Framing(scene::OrbitCamera(), box.low_m, box.high_m, 1.0);
   return scene;
 }
 
 void Move(Moving moving, scene::Scene* scene) {
   switch (moving) {
     case Moving::kCamera:
-      scene->camera.azimuth_deg += 1.0;
+      std::get<scene::OrbitCamera>(scene->camera).azimuth_deg += 1.0;
       break;
     case Moving::kSun:
       scene->sun.azimuth_deg += 1.0;

@@ -8,6 +8,7 @@
 #include "gl/context.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "scene/view.h"
 #include "tests/support/slab.h"
 
 namespace thunderhead::renderers {
@@ -25,13 +26,15 @@ class SceneRendererTest : public testing::Test {
     renderer_ = std::make_unique<SceneRenderer>();
     scene_.output = {48, 32, 90};
     scene_.rendering.slices = 16;
-    scene_.camera.target_m = {0.0, 0.0, 1000.0};
-    scene_.camera.distance_m = 12e3;
+    Orbit().target_m = {0.0, 0.0, 1000.0};
+    Orbit().distance_m = 12e3;
   }
   void TearDown() override {
     renderer_.reset();
     context_.reset();
   }
+
+  scene::OrbitCamera& Orbit() { return std::get<scene::OrbitCamera>(scene_.camera); }
 
   std::vector<std::string> StagesOf(const DrawQuality& quality = {}) {
     const auto frame = renderer_->Draw(scene_, fields_, quality);
@@ -59,7 +62,7 @@ TEST_F(SceneRendererTest, AChangeRerunsOnlyWhatItDirties) {
   EXPECT_THAT(StagesOf(), IsEmpty());
   scene_.display.exposure_ev = 1.0;
   EXPECT_THAT(StagesOf(), IsEmpty());
-  scene_.camera.azimuth_deg += 5.0;
+  Orbit().azimuth_deg += 5.0;
   EXPECT_THAT(StagesOf(), ElementsAre("slices"));
   scene_.sun.elevation_deg += 5.0;
   EXPECT_THAT(StagesOf(), ElementsAre("slices"));
@@ -74,7 +77,7 @@ TEST_F(SceneRendererTest, KeptStagesGiveThePictureThatAFreshRendererGives) {
   const auto change = [&](int step) {
     switch (step) {
       case 0:
-        scene_.camera.azimuth_deg = 123.0;
+        Orbit().azimuth_deg = 123.0;
         break;
       case 1:
         scene_.sun.azimuth_deg = 20.0;
@@ -124,6 +127,52 @@ TEST_F(SceneRendererTest, ACloudIsBrighterThanTheGroundBehindIt) {
   EXPECT_EQ(with[4 * (31 * 48)], without[4 * (31 * 48)]);
 }
 
+TEST_F(SceneRendererTest, FromAboveACloudStandsWhereItsCoordinatesSay) {
+  // 4 km of cloud in the left half of 16 km: its middle is 4 km west of the picture's.
+  scene_.camera = scene::TopDownCamera{{4000.0, 0.0}, 16e3};
+  const std::vector<float> with = Pixels(renderer_.get());
+  scene_.fields[0].visible = false;
+  const std::vector<float> without = Pixels(renderer_.get());
+  for (std::size_t y = 0; y < 32; ++y) {
+    for (std::size_t x = 0; x < 48; ++x) {
+      const double east_m = 4000.0 + 16e3 * ((static_cast<double>(x) + 0.5) / 48 - 0.5);
+      const double north_m = 16e3 * (32.0 / 48.0) * ((static_cast<double>(y) + 0.5) / 32 - 0.5);
+      const double outside_m = std::max(std::abs(east_m), std::abs(north_m)) - 2000.0;
+      const std::size_t at = 4 * (48 * y + x);
+      if (outside_m > 0.0) {
+        ASSERT_EQ(with[at], without[at]) << east_m << ' ' << north_m;
+      } else if (outside_m < -400.0) {
+        ASSERT_GT(with[at], 1.5F * without[at]) << east_m << ' ' << north_m;
+      }
+    }
+  }
+}
+
+TEST_F(SceneRendererTest, ASpottersHorizonDips) {
+  scene::SpotterCamera camera;
+  camera.place_m = {0.0, -60e3};
+  camera.eye_height_m = 12000.0;  // the dip is sqrt(2 h / R): 3.25 degrees
+  camera.azimuth_deg = 180.0;     // away from the storm
+  camera.elevation_deg = 0.0;
+  camera.focal_length_mm = 50.0;
+  scene_.camera = camera;
+  scene_.sky.ground_albedo = 0.0;
+  scene_.output = {8, 400, 90};
+  const std::vector<float> pixels = Pixels(renderer_.get());
+  // Just below the horizon the ground is so far that it looks like the sky there; count from where
+  // the radiance, mirrored about level, stops being the same.
+  const double dip = std::sqrt(2.0 * 12000.0 / scene::kEffectiveEarthRadius_m);
+  const auto row_of = [](double tangent) { return 200.0 * (1.0 + tangent * 50.0 / 12.0); };
+  const auto differs = [&](int below) {
+    const auto low = static_cast<std::size_t>(4 * 8 * (199 - below));
+    const auto high = static_cast<std::size_t>(4 * 8 * (200 + below));
+    return std::abs(pixels[low] - pixels[high]) > 1e-3F * pixels[high];
+  };
+  const int dip_rows = static_cast<int>(row_of(dip) - 200.0);
+  for (int below = 0; below < dip_rows - 1; ++below) ASSERT_FALSE(differs(below)) << below;
+  EXPECT_TRUE(differs(dip_rows + 2));
+}
+
 TEST_F(SceneRendererTest, NightIsDarkAndFinite) {
   scene_.sun.elevation_deg = -30.0;
   for (const float value : Pixels(renderer_.get())) {
@@ -133,7 +182,7 @@ TEST_F(SceneRendererTest, NightIsDarkAndFinite) {
 }
 
 TEST_F(SceneRendererTest, ACameraInsideTheCloudSeesCloudEverywhere) {
-  scene_.camera.distance_m = 10.0;
+  Orbit().distance_m = 10.0;
   scene_.fields[0].scale = 100.0F;
   const std::vector<float> pixels = Pixels(renderer_.get());
   for (std::size_t i = 0; i < pixels.size(); i += 4) ASSERT_TRUE(std::isfinite(pixels[i]));

@@ -80,7 +80,7 @@ TEST(PathTracer, WhiteFurnace) {
     scene::View view;
     view.eye_m = 0.5 * (cloud->Low_m() + cloud->High_m()) - glm::dvec3(0.0, 1500.0, 0.0);
     view.tan_half_width = view.tan_half_height = 0.5;
-    const Image image = Trace(cloud, furnace, Camera::Perspective(view), {24, 24}, 64);
+    const Image image = Trace(cloud, furnace, Camera::Of(view), {24, 24}, 64);
     for (int color = 0; color < 3; ++color) {
       ExpectAgrees(MeanOf(image, color), kLight[color], 1e-6, 5e-3 * kLight[color]);
     }

@@ -133,8 +133,6 @@ TEST(SurroundingsOf, ShadedGroundWithoutCloudsIsUniform) {
   scene::Scene scene;
   scene.sky.brightness = 1.7;
   scene.sun.irradiance = 2.0;
-  scene.camera.elevation_deg = 40.0;
-  scene.camera.distance_m = 5e4;
   const auto medium = *MediumOf(scene, fields, Sides::kOpen);
   const Camera camera =
       Camera::Parallel({0.0, 0.0, 2e4}, {}, {}, glm::normalize(glm::dvec3(0.5, 0.3, -0.6)));
@@ -181,13 +179,14 @@ TEST(Scene, SampleStorm) {
   scene.sky = {0.0, 0.0};
   const volume::WorldBox box = volume::VisibleBox(**fields);
   const auto mean_from = [&](double azimuth_deg) {
-    scene.camera = {};
-    scene.camera.azimuth_deg = azimuth_deg;
-    scene.camera = scene::Framing(scene.camera, box.low_m, box.high_m, 16.0 / 9.0);
-    scene.camera.field_of_view_deg = 4.0;
+    scene::OrbitCamera camera;
+    camera.azimuth_deg = azimuth_deg;
+    camera = scene::Framing(camera, box.low_m, box.high_m, 16.0 / 9.0);
+    camera.field_of_view_deg = 4.0;
+    scene.camera = camera;
     PathTracer tracer(*MediumOf(scene, **fields, Sides::kOpen),
-                      SurroundingsOf(scene, **fields, GroundLight::kShaded), CameraOf(scene),
-                      {16, 9}, {});
+                      SurroundingsOf(scene, **fields, GroundLight::kShaded),
+                      CameraOf(scene, **fields), {16, 9}, {});
     RefineLimits limits;
     limits.samples_per_pixel = 16;
     tracer.Refine(limits, {}, {});

@@ -83,6 +83,7 @@ TEST_F(CommandLineTest, WrongUsageReturnsTwo) {
   ExpectError("render " + kSample, 2, "--output");
   ExpectError("render " + kSample + " -o storm.gif", 2, "must end in .png");
   ExpectError(render_ + " --size 12", 2, "WIDTHxHEIGHT");
+  ExpectError(render_ + " --camera kite", 2, "orbit, spotter or top-down");
   ExpectError("serve --data " + kSample + " --http nowhere", 2, "--http");
 }
 

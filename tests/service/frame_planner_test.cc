@@ -33,7 +33,7 @@ class FramePlannerTest : public ::testing::Test {
   // Drags: `count` scenes, each drawn as planned.
   void Drag(const Machine& machine, int count) {
     for (int i = 0; i < count; ++i) {
-      scene_.camera.azimuth_deg += 1.0;
+      std::get<scene::OrbitCamera>(scene_.camera).azimuth_deg += 1.0;
       ++revision_;
       const Decision decision = planner_.Decide(At(revision_, scene_, kStart), kStart, last_drawn_);
       ASSERT_TRUE(decision.plan.has_value());
@@ -133,7 +133,7 @@ TEST_F(FramePlannerTest, AChangeOfToneAfterAnotherSessionDrewIsCoarse) {
   const Machine machine{5.0, 10.0};
   Drag(machine, 5);
   Draw(machine, {FrameQuality{}, true});
-  last_drawn_->scene.camera.azimuth_deg += 90.0;
+  std::get<scene::OrbitCamera>(last_drawn_->scene.camera).azimuth_deg += 90.0;
   scene_.display.exposure_ev += 1.0;
   ++revision_;
   const Decision decision = Ask(milliseconds(0));

@@ -105,6 +105,34 @@ TEST(SessionsTest, CompleteCameraNeedsNoRead) {
   EXPECT_EQ(service.store->Reads(), 0);
 }
 
+TEST(SessionsTest, OtherCamerasAreFramedToo) {
+  FakeService service;
+  v1::Scene wanted = SmallScene();
+  wanted.mutable_camera()->mutable_spotter()->set_azimuth_deg(0.0F);
+  const v1::Scene spotted = Create(service, wanted).scene();
+  const v1::SpotterCamera& spotter = spotted.camera().spotter();
+  EXPECT_EQ(spotter.azimuth_deg(), 0.0F);
+  EXPECT_EQ(spotter.eye_height_m(), 1.7F);
+  EXPECT_EQ(spotter.focal_length_mm(), 24.0F);
+  // Due south of the one cell with condensate.
+  EXPECT_NEAR(spotter.x_m(), -5500.0F, 0.01);
+  EXPECT_LT(spotter.y_m(), -1000.0F);
+  EXPECT_GT(spotter.elevation_deg(), 0.0F);
+  EXPECT_EQ(Create(service, spotted).scene().SerializeAsString(), spotted.SerializeAsString());
+  // From a place of its own it looks at the storm.
+  wanted.mutable_camera()->mutable_spotter()->clear_azimuth_deg();
+  wanted.mutable_camera()->mutable_spotter()->set_x_m(-50000.0F);
+  wanted.mutable_camera()->mutable_spotter()->set_y_m(-500.0F);
+  EXPECT_NEAR(Create(service, wanted).scene().camera().spotter().azimuth_deg(), 90.0F, 0.01);
+
+  wanted.mutable_camera()->mutable_top_down();
+  const v1::Scene map = Create(service, wanted).scene();
+  EXPECT_EQ(map.camera().top_down().x_m(), -5500.0F);
+  EXPECT_EQ(map.camera().top_down().y_m(), -500.0F);
+  EXPECT_GT(map.camera().top_down().width_m(), 1000.0F);
+  EXPECT_EQ(Create(service, map).scene().SerializeAsString(), map.SerializeAsString());
+}
+
 TEST(SessionsTest, UnknownStormsAndTimesAreRefused) {
   FakeService service;
   v1::CreateSessionRequest request;

@@ -1,4 +1,4 @@
-// The orbit camera's motions: what a drag of so many pixels does to azimuth, elevation, distance and target.
+// The cameras' motions: what a drag of so many pixels does to where a camera stands and looks.
 // World axes as in proto/thunderhead/v1/scene.proto: x east, y north, z up, azimuth clockwise from north.
 import { create } from "@bufbuild/protobuf";
 import {
@@ -6,16 +6,60 @@ import {
   CameraSchema,
   OrbitCameraSchema,
   PositionSchema,
+  SpotterCameraSchema,
+  TopDownCameraSchema,
 } from "../gen/thunderhead/v1/scene_pb";
-import { clampToLimits, limitsOf } from "./limits";
+import { clampToLimits, type Limits, limitsOf } from "./limits";
 
 export interface OrbitPose {
+  readonly kind: "orbit";
   readonly targetM: readonly [number, number, number];
   readonly azimuthDeg: number;
   readonly elevationDeg: number;
   readonly distanceM: number;
   readonly fieldOfViewDeg: number;
 }
+
+// Stands on the ground and looks to azimuth and elevation.
+export interface SpotterPose {
+  readonly kind: "spotter";
+  readonly placeM: readonly [number, number];
+  readonly eyeHeightM: number;
+  readonly azimuthDeg: number;
+  readonly elevationDeg: number;
+  readonly focalLengthMm: number;
+}
+
+// Looks straight down, north up.
+export interface TopDownPose {
+  readonly kind: "topDown";
+  readonly centerM: readonly [number, number];
+  readonly widthM: number;
+}
+
+// Of the picture that the pointer moves over, in any unit that its motions are in.
+export interface PictureSize {
+  readonly widthPx: number;
+  readonly heightPx: number;
+}
+
+export type Pose = OrbitPose | SpotterPose | TopDownPose;
+export type CameraKind = Pose["kind"];
+
+export const SPOTTER_LIMITS = {
+  x: limitsOf(SpotterCameraSchema.field.xM),
+  y: limitsOf(SpotterCameraSchema.field.yM),
+  eyeHeight: limitsOf(SpotterCameraSchema.field.eyeHeightM),
+  azimuth: limitsOf(SpotterCameraSchema.field.azimuthDeg),
+  elevation: limitsOf(SpotterCameraSchema.field.elevationDeg),
+  focalLength: limitsOf(SpotterCameraSchema.field.focalLengthMm),
+} as const satisfies Record<string, Limits>;
+
+export const TOP_DOWN_LIMITS = {
+  x: limitsOf(TopDownCameraSchema.field.xM),
+  y: limitsOf(TopDownCameraSchema.field.yM),
+  width: limitsOf(TopDownCameraSchema.field.widthM),
+} as const satisfies Record<string, Limits>;
 
 const AZIMUTH = limitsOf(OrbitCameraSchema.field.azimuthDeg);
 const ELEVATION = limitsOf(OrbitCameraSchema.field.elevationDeg);
@@ -28,43 +72,102 @@ const TARGET_Z = limitsOf(PositionSchema.field.zM);
 // Dragging across the whole height of the picture turns the camera this far.
 const DEGREES_PER_HEIGHT = 180;
 
+// Dragging across the whole height of the picture walks a spotter this far.
+const WALK_PER_HEIGHT_M = 20_000;
+
+// Of the frame behind a spotter's lens.
+const FRAME_HEIGHT_MM = 24;
+
 // The pose of a camera in which the server has filled in every value; undefined while some are missing.
-export function poseOfCamera(camera: Camera | undefined): OrbitPose | undefined {
-  if (camera?.kind.case !== "orbit") return undefined;
-  const { target, azimuthDeg, elevationDeg, distanceM, fieldOfViewDeg } = camera.kind.value;
-  if (target === undefined || distanceM === undefined) return undefined;
+export function poseOfCamera(camera: Camera | undefined): Pose | undefined {
+  switch (camera?.kind.case) {
+    case "orbit": {
+      const { target, azimuthDeg, elevationDeg, distanceM, fieldOfViewDeg } = camera.kind.value;
+      if (target === undefined || distanceM === undefined) return undefined;
+      return {
+        kind: "orbit",
+        targetM: [target.xM, target.yM, target.zM],
+        azimuthDeg: azimuthDeg ?? AZIMUTH.defaultValue ?? 0,
+        elevationDeg: elevationDeg ?? ELEVATION.defaultValue ?? 0,
+        distanceM,
+        fieldOfViewDeg: fieldOfViewDeg ?? FIELD_OF_VIEW.defaultValue ?? 35,
+      };
+    }
+    case "spotter": {
+      const { xM, yM, eyeHeightM, azimuthDeg, elevationDeg, focalLengthMm } = camera.kind.value;
+      if (xM === undefined || yM === undefined) return undefined;
+      if (azimuthDeg === undefined || elevationDeg === undefined) return undefined;
+      return {
+        kind: "spotter",
+        placeM: [xM, yM],
+        eyeHeightM: eyeHeightM ?? SPOTTER_LIMITS.eyeHeight.defaultValue ?? 0,
+        azimuthDeg,
+        elevationDeg,
+        focalLengthMm: focalLengthMm ?? SPOTTER_LIMITS.focalLength.defaultValue ?? FRAME_HEIGHT_MM,
+      };
+    }
+    case "topDown": {
+      const { xM, yM, widthM } = camera.kind.value;
+      if (xM === undefined || yM === undefined || widthM === undefined) return undefined;
+      return { kind: "topDown", centerM: [xM, yM], widthM };
+    }
+    default:
+      return undefined;
+  }
+}
+
+export function cameraOfPose(pose: Pose): Camera {
+  switch (pose.kind) {
+    case "orbit":
+      return create(CameraSchema, { kind: { case: "orbit", value: orbitMessage(pose) } });
+    case "spotter":
+      return create(CameraSchema, { kind: { case: "spotter", value: spotterMessage(pose) } });
+    case "topDown": {
+      const value = {
+        xM: clampToLimits(pose.centerM[0], TOP_DOWN_LIMITS.x),
+        yM: clampToLimits(pose.centerM[1], TOP_DOWN_LIMITS.y),
+        widthM: clampToLimits(pose.widthM, TOP_DOWN_LIMITS.width),
+      };
+      return create(CameraSchema, { kind: { case: "topDown", value } });
+    }
+  }
+}
+
+function orbitMessage(pose: OrbitPose) {
+  const [x, y, z] = pose.targetM;
   return {
-    targetM: [target.xM, target.yM, target.zM],
-    azimuthDeg: azimuthDeg ?? AZIMUTH.defaultValue ?? 0,
-    elevationDeg: elevationDeg ?? ELEVATION.defaultValue ?? 0,
-    distanceM,
-    fieldOfViewDeg: fieldOfViewDeg ?? FIELD_OF_VIEW.defaultValue ?? 35,
+    target: {
+      xM: clampToLimits(x, TARGET_X),
+      yM: clampToLimits(y, TARGET_Y),
+      zM: clampToLimits(z, TARGET_Z),
+    },
+    azimuthDeg: clampToLimits(wrapDegrees(pose.azimuthDeg), AZIMUTH),
+    elevationDeg: clampToLimits(pose.elevationDeg, ELEVATION),
+    distanceM: clampToLimits(pose.distanceM, DISTANCE),
+    fieldOfViewDeg: clampToLimits(pose.fieldOfViewDeg, FIELD_OF_VIEW),
   };
 }
 
-export function cameraOfPose(pose: OrbitPose): Camera {
-  const [x, y, z] = pose.targetM;
-  return create(CameraSchema, {
-    kind: {
-      case: "orbit",
-      value: {
-        target: {
-          xM: clampToLimits(x, TARGET_X),
-          yM: clampToLimits(y, TARGET_Y),
-          zM: clampToLimits(z, TARGET_Z),
-        },
-        azimuthDeg: clampToLimits(wrapDegrees(pose.azimuthDeg), AZIMUTH),
-        elevationDeg: clampToLimits(pose.elevationDeg, ELEVATION),
-        distanceM: clampToLimits(pose.distanceM, DISTANCE),
-        fieldOfViewDeg: clampToLimits(pose.fieldOfViewDeg, FIELD_OF_VIEW),
-      },
-    },
-  });
+function spotterMessage(pose: SpotterPose) {
+  return {
+    xM: clampToLimits(pose.placeM[0], SPOTTER_LIMITS.x),
+    yM: clampToLimits(pose.placeM[1], SPOTTER_LIMITS.y),
+    eyeHeightM: clampToLimits(pose.eyeHeightM, SPOTTER_LIMITS.eyeHeight),
+    azimuthDeg: clampToLimits(wrapDegrees(pose.azimuthDeg), SPOTTER_LIMITS.azimuth),
+    elevationDeg: clampToLimits(pose.elevationDeg, SPOTTER_LIMITS.elevation),
+    focalLengthMm: clampToLimits(pose.focalLengthMm, SPOTTER_LIMITS.focalLength),
+  };
 }
 
-// A camera with nothing set: the server frames the whole storm.
-export function homeCamera(): Camera {
-  return create(CameraSchema, { kind: { case: "orbit", value: {} } });
+// A camera of that kind with nothing set: the server frames the whole storm.
+export function homeCamera(kind: CameraKind = "orbit"): Camera {
+  return create(CameraSchema, { kind: { case: kind, value: {} } });
+}
+
+// The azimuth at which the camera stands, seen from what it looks at; undefined where it looks down.
+export function standingAzimuthDeg(pose: Pose | undefined): number | undefined {
+  if (pose?.kind === "orbit") return pose.azimuthDeg;
+  return pose?.kind === "spotter" ? wrapDegrees(pose.azimuthDeg + 180) : undefined;
 }
 
 // The same direction between 0 and 360 degrees.
@@ -73,19 +176,37 @@ export function wrapDegrees(degrees: number): number {
   return wrapped < 0 ? wrapped + 360 : wrapped;
 }
 
-// Turns so that the storm follows the pointer. Pixels are right and down; heightPx is the picture's height.
-export function orbit(
-  pose: OrbitPose,
+// What the pointer holds follows it: an orbit camera goes around, a spotter turns its head, a map moves. Pixels are
+// right and down.
+export function drag<P extends Pose>(
+  pose: P,
   rightPx: number,
   downPx: number,
-  heightPx: number,
-): OrbitPose {
-  const degreesPerPixel = DEGREES_PER_HEIGHT / Math.max(1, heightPx);
-  return turn(pose, rightPx * degreesPerPixel, downPx * degreesPerPixel);
+  picture: PictureSize,
+): P;
+export function drag(pose: Pose, rightPx: number, downPx: number, picture: PictureSize): Pose {
+  const height = Math.max(1, picture.heightPx);
+  switch (pose.kind) {
+    case "orbit":
+      return turn(
+        pose,
+        (rightPx * DEGREES_PER_HEIGHT) / height,
+        (downPx * DEGREES_PER_HEIGHT) / height,
+      );
+    case "spotter": {
+      const degreesPerPixel = degrees(FRAME_HEIGHT_MM / pose.focalLengthMm / height);
+      return turn(pose, -rightPx * degreesPerPixel, downPx * degreesPerPixel);
+    }
+    case "topDown":
+      return pan(pose, rightPx, downPx, picture);
+  }
 }
 
-// Moves the camera around the target: clockwise seen from above, and up.
-export function turn(pose: OrbitPose, azimuthDeg: number, elevationDeg: number): OrbitPose {
+// Moves an orbit camera around its target, clockwise seen from above, and up; turns a spotter's head to the right and
+// up. A map cannot turn.
+export function turn<P extends Pose>(pose: P, azimuthDeg: number, elevationDeg: number): P;
+export function turn(pose: Pose, azimuthDeg: number, elevationDeg: number): Pose {
+  if (pose.kind === "topDown") return pose;
   return {
     ...pose,
     azimuthDeg: wrapDegrees(pose.azimuthDeg + azimuthDeg),
@@ -93,10 +214,44 @@ export function turn(pose: OrbitPose, azimuthDeg: number, elevationDeg: number):
   };
 }
 
-// Moves the target in the plane of the picture, so that what lies at the target's distance follows the pointer.
-export function pan(pose: OrbitPose, rightPx: number, downPx: number, heightPx: number): OrbitPose {
+// Moves the camera across the line of sight, so that what lies at the target's distance follows the pointer. A spotter
+// walks instead: to the left of a drag to the right, backwards of one up.
+export function pan<P extends Pose>(
+  pose: P,
+  rightPx: number,
+  downPx: number,
+  picture: PictureSize,
+): P;
+export function pan(pose: Pose, rightPx: number, downPx: number, picture: PictureSize): Pose {
+  const height = Math.max(1, picture.heightPx);
+  switch (pose.kind) {
+    case "orbit":
+      return panOrbit(pose, rightPx, downPx, height);
+    case "spotter": {
+      const metresPerPixel = WALK_PER_HEIGHT_M / height;
+      const azimuth = radians(pose.azimuthDeg);
+      const rightM = -rightPx * metresPerPixel;
+      const forwardM = downPx * metresPerPixel;
+      const [x, y] = pose.placeM;
+      return {
+        ...pose,
+        placeM: [
+          x + rightM * Math.cos(azimuth) + forwardM * Math.sin(azimuth),
+          y - rightM * Math.sin(azimuth) + forwardM * Math.cos(azimuth),
+        ],
+      };
+    }
+    case "topDown": {
+      const metresPerPixel = pose.widthM / Math.max(1, picture.widthPx);
+      const [x, y] = pose.centerM;
+      return { ...pose, centerM: [x - rightPx * metresPerPixel, y + downPx * metresPerPixel] };
+    }
+  }
+}
+
+function panOrbit(pose: OrbitPose, rightPx: number, downPx: number, heightPx: number): OrbitPose {
   const halfAngle = radians(pose.fieldOfViewDeg) / 2;
-  const metresPerPixel = (2 * pose.distanceM * Math.tan(halfAngle)) / Math.max(1, heightPx);
+  const metresPerPixel = (2 * pose.distanceM * Math.tan(halfAngle)) / heightPx;
   const { right, up } = pictureAxes(pose);
   const rightM = -rightPx * metresPerPixel;
   const upM = downPx * metresPerPixel;
@@ -111,9 +266,20 @@ export function pan(pose: OrbitPose, rightPx: number, downPx: number, heightPx: 
   };
 }
 
-// Multiplies the distance; below 1 comes nearer.
-export function zoom(pose: OrbitPose, factor: number): OrbitPose {
-  return { ...pose, distanceM: clampToLimits(pose.distanceM * factor, DISTANCE) };
+// Below 1 shows things larger: an orbit camera comes nearer, a spotter takes a longer lens, a map shows less.
+export function zoom<P extends Pose>(pose: P, factor: number): P;
+export function zoom(pose: Pose, factor: number): Pose {
+  switch (pose.kind) {
+    case "orbit":
+      return { ...pose, distanceM: clampToLimits(pose.distanceM * factor, DISTANCE) };
+    case "spotter":
+      return {
+        ...pose,
+        focalLengthMm: clampToLimits(pose.focalLengthMm / factor, SPOTTER_LIMITS.focalLength),
+      };
+    case "topDown":
+      return { ...pose, widthM: clampToLimits(pose.widthM * factor, TOP_DOWN_LIMITS.width) };
+  }
 }
 
 // Unit vectors of the picture's right and up in the world.
@@ -135,4 +301,8 @@ export function pictureAxes(pose: OrbitPose): {
 
 function radians(degrees: number): number {
   return (degrees * Math.PI) / 180;
+}
+
+function degrees(radians: number): number {
+  return (radians * 180) / Math.PI;
 }

@@ -11,7 +11,7 @@ import type {
   Modelled,
   StageCost,
 } from "../gen/thunderhead/v1/thunderhead_pb";
-import { cameraOfPose, type OrbitPose, poseOfCamera } from "./camera";
+import { cameraOfPose, type Pose, poseOfCamera } from "./camera";
 import { withCamera } from "./scene";
 
 export type Connection =
@@ -58,7 +58,7 @@ export interface Session {
 export class PageState {
   readonly #scene = signal<Scene>(create(SceneSchema));
   // The server's own pose of the camera on the screen, while the scene leaves it open.
-  readonly #shownPose = signal<OrbitPose | undefined>(undefined);
+  readonly #shownPose = signal<Pose | undefined>(undefined);
   #onEdit: ((scene: Scene) => void) | undefined;
 
   readonly session = signal<Session | undefined>(undefined);
@@ -91,7 +91,17 @@ export class PageState {
     return storm !== undefined && storm.id === this.stormId.value ? storm.times.length : 0;
   });
   // Where the camera stands: the scene's camera, or where the server put it.
-  readonly pose = computed(() => poseOfCamera(this.#scene.value.camera) ?? this.#shownPose.value);
+  readonly pose = computed(() => {
+    const { camera } = this.#scene.value;
+    const shown = this.#shownPose.value;
+    const asked = camera?.kind.case;
+    return (
+      poseOfCamera(camera) ?? (asked === undefined || asked === shown?.kind ? shown : undefined)
+    );
+  });
+  readonly cameraKind = computed(
+    () => this.#scene.value.camera?.kind.case ?? this.#shownPose.value?.kind ?? "orbit",
+  );
 
   // Called with each scene that the user makes.
   onEdit(listener: (scene: Scene) => void): void {
@@ -108,7 +118,7 @@ export class PageState {
   }
 
   // A change of the camera, from where it stands now.
-  move(motion: (pose: OrbitPose) => OrbitPose): void {
+  move(motion: (pose: Pose) => Pose): void {
     const pose = this.pose.value;
     if (pose !== undefined) this.edit((scene) => withCamera(scene, cameraOfPose(motion(pose))));
   }

@@ -1,8 +1,8 @@
 // The page's keys. attachKeyboard() returns what takes the listener off again.
-import { type OrbitPose, pan, turn, zoom } from "../core/camera";
+import { type Pose, pan, turn, zoom } from "../core/camera";
 
 export interface KeyActions {
-  move(motion: (pose: OrbitPose) => OrbitPose): void;
+  move(motion: (pose: Pose) => Pose): void;
   home(): void;
   togglePanel(): void;
   togglePlay(): void;
@@ -20,8 +20,9 @@ export const KEYS: readonly (readonly [string, string])[] = [
 ];
 
 const TURN_DEG = 3;
-// Share of the picture's height.
-const PAN_SHARE = 0.05;
+// Moves by this share of a picture.
+const PAN_PX = 5;
+const PICTURE = { widthPx: 100, heightPx: 100 };
 const ZOOM_FACTOR = 0.88;
 
 const ARROWS: Readonly<Record<string, readonly [number, number]>> = {
@@ -44,12 +45,18 @@ export function attachKeyboard(window: Window, actions: KeyActions): () => void 
   return () => listening.abort();
 }
 
+// The arrow's way: around the storm, of the spotter's head, or over the map.
+function look(pose: Pose, right: number, down: number): Pose {
+  if (pose.kind === "topDown") return pan(pose, -right * PAN_PX, -down * PAN_PX, PICTURE);
+  return turn(pose, right * TURN_DEG, -down * TURN_DEG);
+}
+
 function act(event: KeyboardEvent, actions: KeyActions): boolean {
   const arrow = ARROWS[event.key];
   if (arrow !== undefined) {
     const [right, down] = arrow;
-    if (event.shiftKey) actions.move((pose) => pan(pose, right * PAN_SHARE, down * PAN_SHARE, 1));
-    else actions.move((pose) => turn(pose, right * TURN_DEG, -down * TURN_DEG));
+    if (event.shiftKey) actions.move((pose) => pan(pose, right * PAN_PX, down * PAN_PX, PICTURE));
+    else actions.move((pose) => look(pose, right, down));
     return true;
   }
   switch (event.key) {

@@ -4,7 +4,7 @@
 import { create } from "@bufbuild/protobuf";
 import type { Transport } from "@connectrpc/connect";
 import { effect } from "@preact/signals-core";
-import { homeCamera, poseOfCamera } from "../core/camera";
+import { type CameraKind, homeCamera, poseOfCamera, standingAzimuthDeg } from "../core/camera";
 import { FramePipeline } from "../core/frame_pipeline";
 import { FrameRate } from "../core/frame_rate";
 import { Playback } from "../core/playback";
@@ -124,8 +124,13 @@ export class Page implements SessionListener {
     this.state.edit((scene) => withStorm(scene, stormId));
   }
 
+  // A camera of that kind that shows the whole storm.
+  showCamera(kind: CameraKind): void {
+    this.state.edit((scene) => withCamera(scene, homeCamera(kind)));
+  }
+
   home(): void {
-    this.state.edit((scene) => withCamera(scene, homeCamera()));
+    this.showCamera(this.state.cameraKind.value);
   }
 
   togglePanel(): void {
@@ -295,8 +300,9 @@ export class Page implements SessionListener {
       revision: String(frame.sceneRevision),
       refined: String(frame.refined),
       time: String(this.#ledger.shownTimeIndex ?? ""),
-      azimuth: pose?.azimuthDeg.toFixed(2) ?? "",
-      distance: pose?.distanceM.toFixed(1) ?? "",
+      camera: pose?.kind ?? "",
+      azimuth: standingAzimuthDeg(pose)?.toFixed(2) ?? "",
+      distance: pose?.kind === "orbit" ? pose.distanceM.toFixed(1) : "",
     });
   }
 

@@ -1,10 +1,9 @@
 // The panel at the side: everything that can be set, part by part.
-import { wrapDegrees } from "../core/camera";
+import { standingAzimuthDeg } from "../core/camera";
 import { LIMITS, withDisplay, withOutput, withRendering, withSky, withSun } from "../core/scene";
 import type { PageState } from "../core/state";
-import { compassPoint } from "../core/sun";
-import { formatNumber } from "../core/units";
 import { Mode, ToneMap, Transport } from "../gen/thunderhead/v1/scene_pb";
+import { CameraSection } from "./camera_section";
 import { Choice, Section, Slider } from "./controls";
 import { FieldsSection } from "./fields_section";
 import { KEYS } from "./keyboard";
@@ -52,6 +51,7 @@ export function Panel({ page }: { page: Page }) {
       </button>
       <aside id="panel" class="panel" aria-label="Settings" data-testid="panel" hidden={!open}>
         <StormSection page={page} />
+        <CameraSection page={page} />
         <SunSection state={state} />
         <FieldsSection state={state} />
         <RenderingSection state={state} />
@@ -65,7 +65,6 @@ export function Panel({ page }: { page: Page }) {
 function StormSection({ page }: { page: Page }) {
   const { state } = page;
   const storms = state.storms.value;
-  const pose = state.pose.value;
   return (
     <Section title="Storm" open testId="storm-section">
       <Choice
@@ -75,12 +74,6 @@ function StormSection({ page }: { page: Page }) {
         options={storms.map((storm) => [storm.id, storm.title || storm.id] as const)}
         onChange={(id) => page.showStorm(id)}
       />
-      <p class="quiet" data-testid="camera">
-        {pose === undefined
-          ? "Waiting for the first picture …"
-          : `Seen from ${compassPoint(pose.azimuthDeg)} (${Math.round(wrapDegrees(pose.azimuthDeg))}°), ` +
-            `${Math.round(pose.elevationDeg)}° high, ${formatNumber(pose.distanceM / 1000)} km away`}
-      </p>
       <div class="buttons">
         <button type="button" data-testid="home" onClick={() => page.home()}>
           Whole storm
@@ -108,7 +101,7 @@ function SunSection({ state }: { state: PageState }) {
     <Section title="Sun" open testId="sun-section">
       <SunDome
         sun={direction}
-        cameraAzimuthDeg={state.pose.value?.azimuthDeg}
+        cameraAzimuthDeg={standingAzimuthDeg(state.pose.value)}
         onChange={(change) => state.edit((scene) => withSun(scene, change))}
       />
       <Slider

@@ -1,8 +1,8 @@
 // Mouse and touch over the storm: a drag turns, with the right button, shift or two fingers it moves, the
 // wheel or a pinch comes nearer. attachPointer() returns what takes the listeners off again.
-import { type OrbitPose, orbit, pan, zoom } from "../core/camera";
+import { drag, type PictureSize, type Pose, pan, zoom } from "../core/camera";
 
-type Move = (motion: (pose: OrbitPose) => OrbitPose) => void;
+type Move = (motion: (pose: Pose) => Pose) => void;
 
 interface Point {
   readonly x: number;
@@ -37,14 +37,14 @@ export function attachPointer(canvas: HTMLCanvasElement, move: Move): () => void
       const before = down.get(event.pointerId);
       if (before === undefined) return;
       const after = pointOf(event);
-      const heightPx = canvas.clientHeight;
+      const picture = { widthPx: canvas.clientWidth, heightPx: canvas.clientHeight };
       if (down.size === 1) {
         const [rightPx, downPx] = [after.x - before.x, after.y - before.y];
         const panning = event.shiftKey || (event.buttons & SECONDARY_AND_MIDDLE_BUTTONS) !== 0;
-        move((pose) => (panning ? pan : orbit)(pose, rightPx, downPx, heightPx));
+        move((pose) => (panning ? pan : drag)(pose, rightPx, downPx, picture));
       } else if (down.size === 2) {
         const other = [...down].find(([id]) => id !== event.pointerId)?.[1];
-        if (other !== undefined) move((pose) => pinch(pose, before, after, other, heightPx));
+        if (other !== undefined) move((pose) => pinch(pose, before, after, other, picture));
       }
       down.set(event.pointerId, after);
     },
@@ -74,17 +74,11 @@ export function attachPointer(canvas: HTMLCanvasElement, move: Move): () => void
 }
 
 // One of two fingers has moved: the middle between them pans, their distance zooms.
-function pinch(
-  pose: OrbitPose,
-  before: Point,
-  after: Point,
-  other: Point,
-  heightPx: number,
-): OrbitPose {
+function pinch(pose: Pose, before: Point, after: Point, other: Point, picture: PictureSize): Pose {
   const apartBefore = Math.hypot(before.x - other.x, before.y - other.y);
   const apartAfter = Math.hypot(after.x - other.x, after.y - other.y);
   const nearer = zoom(pose, Math.max(1, apartBefore) / Math.max(1, apartAfter));
-  return pan(nearer, (after.x - before.x) / 2, (after.y - before.y) / 2, heightPx);
+  return pan(nearer, (after.x - before.x) / 2, (after.y - before.y) / 2, picture);
 }
 
 function pointOf(event: PointerEvent): Point {

@@ -4,11 +4,10 @@
 #include <cmath>
 
 #include "base/status.h"
-#include "glm/ext/matrix_clip_space.hpp"
-#include "glm/ext/matrix_transform.hpp"
 #include "glm/geometric.hpp"
 #include "glm/trigonometric.hpp"
 #include "renderers/group_weights.h"
+#include "renderers/view_uniforms.h"
 
 namespace thunderhead::renderers {
 namespace {
@@ -47,16 +46,6 @@ TexelRect ShadowOf(const Slice& slice, const LightFrame& frame, const glm::ivec2
 void Scissor(const TexelRect& rect) {
   glScissor(rect.low.x, rect.low.y, std::max(rect.high.x - rect.low.x, 0),
             std::max(rect.high.y - rect.low.y, 0));
-}
-
-glm::mat4 ClipFromLocal(const scene::View& view, const glm::dvec3& middle_m) {
-  // Depth is not used; the planes only have to be valid, and clamping keeps every slice.
-  const double near_m = 1.0;
-  const glm::dmat4 clip_from_view =
-      glm::frustum(-view.tan_half_width * near_m, view.tan_half_width * near_m,
-                   -view.tan_half_height * near_m, view.tan_half_height * near_m, near_m, 1e8);
-  const glm::dvec3 eye = view.eye_m - middle_m;
-  return clip_from_view * glm::lookAt(eye, eye + view.forward, view.up);
 }
 
 }  // namespace
@@ -119,7 +108,7 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium,
   medium.Bind(*eye);
   const glm::dvec3 middle_m = medium.Middle_m();
   eye->Set("clip_from_local", ClipFromLocal(settings.view, middle_m));
-  eye->Set("eye_local_m", glm::vec3(settings.view.eye_m - middle_m));
+  eye->Set("eye_local_m", EyeOf(settings.view, middle_m));
   eye->Set("towards_sun", glm::vec3(frame.towards_sun));
   eye->Set("slice_normal", glm::vec3(slicing.normal));
   eye->Set("spacing_m", static_cast<float>(slicing.spacing_m));

@@ -9,7 +9,7 @@
 layout(binding = 4) uniform sampler2D light;      // r: share of sunlight, g: optical depth towards the sun
 layout(binding = 5) uniform sampler2D thickness;  // r: optical depth along the whole sun ray
 
-uniform vec3 eye_local_m;
+uniform vec4 eye_local_m;            // with w = 0 a direction: infinitely far
 uniform vec3 towards_sun;
 uniform vec3 slice_normal;
 uniform float spacing_m;
@@ -31,7 +31,7 @@ void main() {
   float extinction = weigh(medium, eye_weights);
   if (extinction <= 0.0) discard;
 
-  vec3 ray = normalize(local_m - eye_local_m);
+  vec3 ray = normalize(local_m * eye_local_m.w - eye_local_m.xyz);
   // A ray along the slices would have no end; the limit is where perspective's corners lie in the widest view.
   float path_m = spacing_m / max(abs(dot(ray, slice_normal)), 0.05);
   float depth = extinction * path_m;

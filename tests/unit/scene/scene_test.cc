@@ -1,6 +1,8 @@
 #include "scene/scene.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "glm/geometric.hpp"
 #include "gtest/gtest.h"
@@ -25,7 +27,9 @@ TEST(Scene, EachChangeRerunsFromItsOwnStage) {
   EXPECT_EQ(After([](Scene* s) { s->rendering.false_colors = true; }), Stage::kExtinction);
   EXPECT_EQ(After([](Scene* s) { s->sun.azimuth_deg = 10; }), Stage::kLight);
   EXPECT_EQ(After([](Scene* s) { s->rendering.slices = 64; }), Stage::kLight);
-  EXPECT_EQ(After([](Scene* s) { s->camera.azimuth_deg = 10; }), Stage::kView);
+  EXPECT_EQ(After([](Scene* s) { std::get<OrbitCamera>(s->camera).azimuth_deg = 10; }),
+            Stage::kView);
+  EXPECT_EQ(After([](Scene* s) { s->camera = SpotterCamera(); }), Stage::kView);
   EXPECT_EQ(After([](Scene* s) { s->output.width_px = 10; }), Stage::kView);
   EXPECT_EQ(After([](Scene* s) { s->display.exposure_ev = 1; }), Stage::kTone);
 }
@@ -75,6 +79,96 @@ TEST(View, FramingShowsEveryCornerOfTheBox) {
       EXPECT_GT(fullest, 0.8) << "the storm should fill the picture";
     }
   }
+}
+
+// Elevation of a world point above the horizon of the view's eye.
+double ElevationSeen_deg(const View& view, const glm::dvec3& point_m) {
+  const glm::dvec3 ray = glm::normalize(view.local_from_world * (point_m - view.eye_m));
+  return std::asin(ray.z) * 180.0 / std::numbers::pi;
+}
+
+TEST(SpotterView, LooksWhereItsAzimuthAndElevationSay) {
+  SpotterCamera camera;
+  camera.place_m = {-30e3, -40e3};
+  camera.azimuth_deg = 70.0;
+  camera.elevation_deg = 12.0;
+  const View view = ViewOf(camera, {200.0, {10e3, 5e3}}, 16.0 / 9.0);
+  const glm::dvec3 looks = view.local_from_world * view.forward;
+  EXPECT_LT(glm::distance(looks, Direction(70.0, 12.0)), 1e-12);
+  EXPECT_LT(glm::distance(view.local_from_world * view.right, Direction(160.0, 0.0)), 1e-12);
+  EXPECT_NEAR(view.altitude_m, 201.7, 1e-9);
+  // At the storm's middle there is nothing to bend.
+  camera.place_m = {10e3, 5e3};
+  EXPECT_LT(
+      glm::distance(ViewOf(camera, {200.0, {10e3, 5e3}}, 1.0).eye_m, glm::dvec3(10e3, 5e3, 201.7)),
+      1e-6);
+}
+
+TEST(SpotterView, DistantStormsSinkBelowTheHorizon) {
+  // The triangle of the Earth's centre, the eye and a point above the storm's middle. To first
+  // order the point seems d^2 / 2R lower than it is.
+  for (const double distance_m : {20e3, 80e3, 150e3}) {
+    SpotterCamera camera;
+    camera.place_m = {5e3, -distance_m};
+    const View view = ViewOf(camera, {300.0, {5e3, 0.0}}, 1.5);
+    for (const double height_m : {300.0, 1500.0, 12e3}) {
+      const double angle = distance_m / kEffectiveEarthRadius_m;
+      const double point_m = kEffectiveEarthRadius_m + height_m;
+      const double eye_m = kEffectiveEarthRadius_m + view.altitude_m;
+      const double rise_m = point_m * std::cos(angle) - eye_m;
+      const double expected_deg =
+          std::atan2(rise_m, point_m * std::sin(angle)) * 180.0 / std::numbers::pi;
+      EXPECT_NEAR(ElevationSeen_deg(view, {5e3, 0.0, height_m}), expected_deg, 1e-9)
+          << distance_m << " m away, " << height_m << " m high";
+      const double drop_m = distance_m * distance_m / (2.0 * kEffectiveEarthRadius_m);
+      EXPECT_NEAR(rise_m, height_m - view.altitude_m - drop_m, 1e-3 * drop_m + 3.0)
+          << distance_m << " m away, " << height_m << " m high";
+    }
+  }
+}
+
+TEST(SpotterView, ThePictureIsCutOutOfTheFrame) {
+  SpotterCamera camera;
+  camera.focal_length_mm = 36.0;
+  const View wide = ViewOf(camera, Site(), 2.0);
+  EXPECT_NEAR(wide.tan_half_width, 0.5, 1e-12);
+  EXPECT_NEAR(wide.tan_half_height, 0.25, 1e-12);
+  const View narrow = ViewOf(camera, Site(), 0.5);
+  EXPECT_NEAR(narrow.tan_half_height, 1.0 / 3.0, 1e-12);
+  EXPECT_NEAR(narrow.tan_half_width, 1.0 / 6.0, 1e-12);
+}
+
+TEST(SpotterView, FramingShowsTheStormAndItsHorizon) {
+  const glm::dvec3 low(-50e3, -20e3, 0);
+  const glm::dvec3 high(60e3, 30e3, 15e3);
+  SpotterCamera camera = Framing(SpotterCamera(), low, high, 16.0 / 9.0);
+  camera = LookingAt(camera, low, high);
+  const View view = ViewOf(camera, {0.0, {5e3, 5e3}}, 16.0 / 9.0);
+  for (const glm::dvec3 point : {glm::dvec3(5e3, 5e3, 15e3), glm::dvec3(5e3, 5e3, 2e3),
+                                 glm::dvec3(-50e3, 5e3, 5e3), glm::dvec3(60e3, 5e3, 5e3)}) {
+    const glm::dvec3 offset = point - view.eye_m;
+    const double depth = glm::dot(offset, view.forward);
+    ASSERT_GT(depth, 0.0);
+    EXPECT_LT(std::abs(glm::dot(offset, view.right)) / depth, view.tan_half_width);
+    EXPECT_LT(std::abs(glm::dot(offset, view.up)) / depth, view.tan_half_height);
+  }
+  EXPECT_LT(camera.elevation_deg, std::atan(view.tan_half_height) * 180.0 / std::numbers::pi)
+      << "the horizon should be in the picture";
+}
+
+TEST(TopDownView, HasNorthAboveAndEastAtTheRight) {
+  const glm::dvec3 low(-50e3, -20e3, 0);
+  const glm::dvec3 high(60e3, 30e3, 15e3);
+  const TopDownCamera camera = Framing(TopDownCamera(), low, high, 1.0);
+  EXPECT_NEAR(camera.width_m, 1.05 * 110e3, 1e-6);
+  EXPECT_EQ(camera.center_m, glm::dvec2(5e3, 5e3));
+  const View view = ViewOf(camera, 2.0);
+  EXPECT_TRUE(view.Orthographic());
+  EXPECT_EQ(view.forward, glm::dvec3(0, 0, -1));
+  EXPECT_EQ(view.right, glm::dvec3(1, 0, 0));
+  EXPECT_EQ(view.up, glm::dvec3(0, 1, 0));
+  EXPECT_NEAR(view.half_height_m, view.half_width_m / 2.0, 1e-9);
+  EXPECT_EQ(view.tan_half_width, 0.0);
 }
 
 }  // namespace

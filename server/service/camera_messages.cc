@@ -1,0 +1,150 @@
+#include "service/camera_messages.h"
+
+#include <algorithm>
+#include <variant>
+
+#include "scene/view.h"
+#include "thunderhead/v1/limits.pb.h"
+#include "volume/visible_box.h"
+
+namespace thunderhead::service {
+namespace {
+
+scene::OrbitCamera ToOrbit(const v1::OrbitCamera& message) {
+  scene::OrbitCamera camera;
+  camera.target_m = {message.target().x_m(), message.target().y_m(), message.target().z_m()};
+  camera.azimuth_deg = message.azimuth_deg();
+  camera.elevation_deg = message.elevation_deg();
+  camera.distance_m = message.distance_m();
+  camera.field_of_view_deg = message.field_of_view_deg();
+  return camera;
+}
+
+scene::SpotterCamera ToSpotter(const v1::SpotterCamera& message) {
+  return {{message.x_m(), message.y_m()},
+          message.eye_height_m(),
+          message.azimuth_deg(),
+          message.elevation_deg(),
+          message.focal_length_mm()};
+}
+
+scene::TopDownCamera ToTopDown(const v1::TopDownCamera& message) {
+  return {{message.x_m(), message.y_m()}, message.width_m()};
+}
+
+// The length as the nearest that the field's limits allow.
+float WithinLimits(const google::protobuf::Descriptor& message, const char* field, double value) {
+  const auto& limits = message.FindFieldByName(field)->options().GetExtension(v1::number);
+  return static_cast<float>(std::clamp(value, limits.minimum(), limits.maximum()));
+}
+
+void Frame(v1::OrbitCamera& camera, const volume::WorldBox& box, double aspect_ratio) {
+  const scene::OrbitCamera framing =
+      scene::Framing(ToOrbit(camera), box.low_m, box.high_m, aspect_ratio);
+  if (!camera.has_target()) SetPosition(framing.target_m, *camera.mutable_target());
+  if (camera.has_distance_m()) return;
+  camera.set_distance_m(WithinLimits(*camera.GetDescriptor(), "distance_m", framing.distance_m));
+}
+
+void Frame(v1::SpotterCamera& camera, const volume::WorldBox& box, double aspect_ratio) {
+  if (!camera.has_x_m() || !camera.has_y_m()) {
+    scene::SpotterCamera standing = ToSpotter(camera);
+    if (!camera.has_azimuth_deg()) standing.azimuth_deg = scene::SpotterCamera().azimuth_deg;
+    standing = scene::Framing(standing, box.low_m, box.high_m, aspect_ratio);
+    if (!camera.has_x_m()) camera.set_x_m(static_cast<float>(standing.place_m.x));
+    if (!camera.has_y_m()) camera.set_y_m(static_cast<float>(standing.place_m.y));
+  }
+  const scene::SpotterCamera looking = scene::LookingAt(ToSpotter(camera), box.low_m, box.high_m);
+  if (!camera.has_azimuth_deg()) camera.set_azimuth_deg(static_cast<float>(looking.azimuth_deg));
+  if (!camera.has_elevation_deg()) {
+    camera.set_elevation_deg(static_cast<float>(looking.elevation_deg));
+  }
+}
+
+void Frame(v1::TopDownCamera& camera, const volume::WorldBox& box, double aspect_ratio) {
+  const scene::TopDownCamera framing =
+      scene::Framing(ToTopDown(camera), box.low_m, box.high_m, aspect_ratio);
+  if (!camera.has_x_m()) camera.set_x_m(static_cast<float>(framing.center_m.x));
+  if (!camera.has_y_m()) camera.set_y_m(static_cast<float>(framing.center_m.y));
+  if (camera.has_width_m()) return;
+  camera.set_width_m(WithinLimits(*camera.GetDescriptor(), "width_m", framing.width_m));
+}
+
+void SetCamera(const scene::OrbitCamera& camera, v1::Camera& message) {
+  v1::OrbitCamera& orbit = *message.mutable_orbit();
+  SetPosition(camera.target_m, *orbit.mutable_target());
+  orbit.set_azimuth_deg(static_cast<float>(camera.azimuth_deg));
+  orbit.set_elevation_deg(static_cast<float>(camera.elevation_deg));
+  orbit.set_distance_m(static_cast<float>(camera.distance_m));
+  orbit.set_field_of_view_deg(static_cast<float>(camera.field_of_view_deg));
+}
+
+void SetCamera(const scene::SpotterCamera& camera, v1::Camera& message) {
+  v1::SpotterCamera& spotter = *message.mutable_spotter();
+  spotter.set_x_m(static_cast<float>(camera.place_m.x));
+  spotter.set_y_m(static_cast<float>(camera.place_m.y));
+  spotter.set_eye_height_m(static_cast<float>(camera.eye_height_m));
+  spotter.set_azimuth_deg(static_cast<float>(camera.azimuth_deg));
+  spotter.set_elevation_deg(static_cast<float>(camera.elevation_deg));
+  spotter.set_focal_length_mm(static_cast<float>(camera.focal_length_mm));
+}
+
+void SetCamera(const scene::TopDownCamera& camera, v1::Camera& message) {
+  v1::TopDownCamera& top_down = *message.mutable_top_down();
+  top_down.set_x_m(static_cast<float>(camera.center_m.x));
+  top_down.set_y_m(static_cast<float>(camera.center_m.y));
+  top_down.set_width_m(static_cast<float>(camera.width_m));
+}
+
+}  // namespace
+
+bool NeedsFraming(const v1::Scene& scene) {
+  const v1::Camera& camera = scene.camera();
+  switch (camera.kind_case()) {
+    case v1::Camera::kSpotter:
+      return !camera.spotter().has_x_m() || !camera.spotter().has_y_m() ||
+             !camera.spotter().has_azimuth_deg() || !camera.spotter().has_elevation_deg();
+    case v1::Camera::kTopDown:
+      return !camera.top_down().has_x_m() || !camera.top_down().has_y_m() ||
+             !camera.top_down().has_width_m();
+    default:
+      return !camera.orbit().has_target() || !camera.orbit().has_distance_m();
+  }
+}
+
+void FrameCondensate(v1::Scene& scene, const volume::HydrometeorFields& fields) {
+  v1::Camera& camera = *scene.mutable_camera();
+  const volume::WorldBox box = volume::VisibleBox(fields);
+  const double aspect_ratio =
+      static_cast<double>(scene.output().width_px()) / scene.output().height_px();
+  if (camera.has_spotter()) {
+    Frame(*camera.mutable_spotter(), box, aspect_ratio);
+  } else if (camera.has_top_down()) {
+    Frame(*camera.mutable_top_down(), box, aspect_ratio);
+  } else {
+    Frame(*camera.mutable_orbit(), box, aspect_ratio);
+  }
+}
+
+scene::Camera ToCamera(const v1::Camera& message) {
+  switch (message.kind_case()) {
+    case v1::Camera::kSpotter:
+      return ToSpotter(message.spotter());
+    case v1::Camera::kTopDown:
+      return ToTopDown(message.top_down());
+    default:
+      return ToOrbit(message.orbit());
+  }
+}
+
+void ToMessage(const scene::Camera& camera, v1::Camera& message) {
+  std::visit([&message](const auto& kind) { SetCamera(kind, message); }, camera);
+}
+
+void SetPosition(const glm::dvec3& position_m, v1::Position& message) {
+  message.set_x_m(static_cast<float>(position_m.x));
+  message.set_y_m(static_cast<float>(position_m.y));
+  message.set_z_m(static_cast<float>(position_m.z));
+}
+
+}  // namespace thunderhead::service

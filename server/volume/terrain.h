@@ -1,0 +1,15 @@
+// The height of the ground under a storm. Beyond the domain it goes on as at the domain's edge.
+#pragma once
+
+#include "glm/vec2.hpp"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::volume {
+
+// Height above sea level at a place in world metres, linear between the middles of the columns.
+double TerrainHeight_m(const HydrometeorFields& fields, const glm::dvec2& place_m);
+
+// The lowest ground of the domain.
+double LowestTerrain_m(const HydrometeorFields& fields);
+
+}  // namespace thunderhead::volume
