@@ -11,8 +11,15 @@ import {
   withField,
   withStorm,
   withSun,
+  withSunClock,
 } from "../src/core/scene";
-import { compassPoint, domePointOfSun, sunOfDomePoint } from "../src/core/sun";
+import {
+  compassPoint,
+  dateTimeOfInput,
+  domePointOfSun,
+  inputOfDateTime,
+  sunOfDomePoint,
+} from "../src/core/sun";
 import {
   displayUnitOf,
   formatBytes,
@@ -158,5 +165,20 @@ describe("numbers as people read them", () => {
     expect(formatElapsed(0)).toBe("+0 min");
     expect(formatElapsed(4800)).toBe("+1 h 20 min");
     expect(formatElapsed(45)).toBe("+45 s");
+  });
+});
+
+describe("the sun's clock", () => {
+  it("goes between the schema's date and an input's", () => {
+    expect(inputOfDateTime("2013-05-20T20:00:00Z")).toBe("2013-05-20T20:00:00");
+    expect(inputOfDateTime("")).toBe("");
+    expect(dateTimeOfInput("2013-05-20T20:00")).toBe("2013-05-20T20:00:00Z");
+    expect(dateTimeOfInput("2013-05-20T20:00:30")).toBe("2013-05-20T20:00:30Z");
+  });
+
+  it("belongs to the storm", () => {
+    const clocked = withSunClock(create(SceneSchema, { stormId: "a" }), { latitudeDeg: 12 });
+    expect(clocked.sun?.clock?.latitudeDeg).toBe(12);
+    expect(withStorm(clocked, "b").sun?.clock).toBeUndefined();
   });
 });

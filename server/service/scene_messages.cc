@@ -5,8 +5,10 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "base/status.h"
 #include "service/camera_messages.h"
 #include "service/limits_check.h"
+#include "service/sun_messages.h"
 #include "volume/visible_box.h"
 
 namespace thunderhead::service {
@@ -143,6 +145,7 @@ void SetField(const volume::HydrometeorField& field, v1::FieldDescription& messa
 }  // namespace
 
 absl::Status CheckScene(const v1::Scene& scene) {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckSun(scene.sun()));
   for (int i = 0; i < scene.fields_size(); ++i) {
     const v1::Hydrometeor hydrometeor = scene.fields(i).hydrometeor();
     const std::string path = absl::StrCat("scene.fields[", i, "].hydrometeor");
@@ -172,7 +175,7 @@ void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
   scene.set_storm_id(storm.id);
   v1::Camera& camera = *scene.mutable_camera();
   if (camera.kind_case() == v1::Camera::KIND_NOT_SET) camera.mutable_orbit();
-  scene.mutable_sun();
+  FillSunDefaults(*scene.mutable_sun(), storm, static_cast<int>(scene.time_index()));
   scene.mutable_sky();
   scene.mutable_output();
   v1::Rendering& rendering = *scene.mutable_rendering();
@@ -232,6 +235,7 @@ void ToMessage(const session::EncodedFrame& frame, v1::Frame& message) {
   message.set_width_px(static_cast<std::uint32_t>(frame.width_px));
   message.set_height_px(static_cast<std::uint32_t>(frame.height_px));
   ToMessage(frame.camera, *message.mutable_camera());
+  ToMessage(frame.sun, *message.mutable_sun());
   for (const session::StageCost& cost : frame.stages) ToMessage(cost, *message.add_stages());
   ToMessage(frame.modelled, *message.mutable_modelled());
   message.set_refined(frame.refined);
@@ -259,6 +263,7 @@ void ToMessage(const volume::StormInfo& storm, const volume::HydrometeorFields& 
   message.set_time_index(static_cast<std::uint32_t>(time_index));
   if (storm.latitude_deg.has_value()) message.set_latitude_deg(*storm.latitude_deg);
   if (storm.longitude_deg.has_value()) message.set_longitude_deg(*storm.longitude_deg);
+  FillClockDefaults(*message.mutable_sun_clock(), storm);
   message.set_bytes_per_time(fields.Bytes());
   if (!fields.condensate.Empty()) {
     const volume::WorldBox box = BoxOf(fields.grid, fields.condensate);

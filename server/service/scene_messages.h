@@ -16,8 +16,8 @@
 
 namespace thunderhead::service {
 
-// Rules on a scene that its fields' limits do not state: each hydrometeor once, the size of the
-// picture.
+// Rules on a scene that its fields' limits do not state: each hydrometeor once, the sun's date,
+// the size of the picture.
 absl::Status CheckScene(const v1::Scene& scene);
 
 // Fills in every default but those of the camera that depend on the storm's fields.

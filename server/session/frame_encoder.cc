@@ -30,6 +30,7 @@ void EncodeAndPublish(DrawnFrame drawn) {
   frame.width_px = picture.width_px;
   frame.height_px = picture.height_px;
   frame.camera = drawn.scene.camera;
+  frame.sun = drawn.scene.sun;
   frame.stages = std::move(drawn.picture.stages);
   frame.stages.push_back({"encode", stopwatch.ElapsedMs()});
   frame.modelled = std::move(drawn.picture.modelled);

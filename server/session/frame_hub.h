@@ -29,6 +29,7 @@ struct EncodedFrame {
   int width_px = 0;
   int height_px = 0;
   scene::Camera camera;
+  scene::Sun sun;
   std::vector<StageCost> stages;
   Modelled modelled;
   bool refined = false;

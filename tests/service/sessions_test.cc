@@ -1,6 +1,8 @@
 // Sessions: opening, completing scenes, closing, expiring, and how many there may be.
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "physics/sun_position.h"
+#include "service/sun_messages.h"
 #include "tests/service/fake_service.h"
 
 namespace thunderhead::testing {
@@ -131,6 +133,74 @@ TEST(SessionsTest, OtherCamerasAreFramedToo) {
   EXPECT_EQ(map.camera().top_down().y_m(), -500.0F);
   EXPECT_GT(map.camera().top_down().width_m(), 1000.0F);
   EXPECT_EQ(Create(service, map).scene().SerializeAsString(), map.SerializeAsString());
+}
+
+TEST(SessionsTest, AnIdealisedRunsSunIsSetByHand) {
+  FakeService service;
+  const v1::Sun sun = Create(service, SmallScene()).scene().sun();
+  EXPECT_EQ(sun.source(), v1::Sun::SOURCE_BY_HAND);
+  EXPECT_EQ(sun.azimuth_deg(), 255.0F);
+  EXPECT_EQ(sun.elevation_deg(), 35.0F);
+}
+
+TEST(SessionsTest, TheSunFollowsTheClockWhereAsked) {
+  FakeService service;
+  v1::Scene wanted = SmallScene();
+  wanted.set_time_index(0);
+  v1::Sun& sun = *wanted.mutable_sun();
+  sun.set_source(v1::Sun::SOURCE_BY_TIME);
+  sun.set_azimuth_deg(1.0F);
+  // Local noon at the equinox.
+  sun.mutable_clock()->set_date_time("2013-03-20T12:00:00Z");
+  sun.mutable_clock()->set_latitude_deg(0.0F);
+  sun.mutable_clock()->set_longitude_deg(0.0F);
+  const v1::Scene noon = Create(service, wanted).scene();
+  EXPECT_GT(noon.sun().elevation_deg(), 87.0F);
+  EXPECT_EQ(Create(service, noon).scene().SerializeAsString(), noon.SerializeAsString());
+  // It moves on with the storm's times, a quarter of a degree a minute.
+  wanted.set_time_index(3);
+  sun.mutable_clock()->set_date_time("2013-03-20T06:20:00Z");
+  const float later_deg = Create(service, wanted).scene().sun().elevation_deg();
+  wanted.set_time_index(0);
+  const float first_deg = Create(service, wanted).scene().sun().elevation_deg();
+  const double elapsed_min = service.store->Find("anvil")->times[3].elapsed_s / 60.0;
+  EXPECT_GT(elapsed_min, 0.0);
+  EXPECT_NEAR(later_deg - first_deg, elapsed_min / 4.0, 0.02);
+  // What the clock leaves open is an afternoon in Oklahoma.
+  sun.clear_clock();
+  const v1::Sun open = Create(service, wanted).scene().sun();
+  EXPECT_EQ(open.clock().date_time(), "2013-05-20T20:00:00Z");
+  EXPECT_GT(open.azimuth_deg(), 180.0F);
+  EXPECT_GT(open.elevation_deg(), 45.0F);
+}
+
+TEST(SessionsTest, AClockWithoutADateIsRefused) {
+  FakeService service;
+  v1::CreateSessionRequest request;
+  v1::CreateSessionResponse response;
+  request.mutable_scene()->mutable_sun()->mutable_clock()->set_date_time("teatime");
+  const grpc::Status status = Call(service.stub(), &Stub::CreateSession, request, &response);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_THAT(status.error_message(), HasSubstr("scene.sun.clock.date_time is 'teatime'"));
+}
+
+TEST(SunMessages, ARealStormsSunFollowsItsTimeAndPlace) {
+  volume::StormInfo storm;
+  storm.times = {{"2013-05-20T19:00:00Z", 0.0}, {"2013-05-20T20:00:00Z", 3600.0}};
+  storm.latitude_deg = 35.3;
+  storm.longitude_deg = -97.6;
+  v1::Sun sun;
+  service::FillSunDefaults(sun, storm, 1);
+  EXPECT_EQ(sun.source(), v1::Sun::SOURCE_BY_TIME);
+  const physics::SunPosition expected = physics::SunPositionAt(1369080000.0, 35.3, -97.6);
+  EXPECT_NEAR(sun.azimuth_deg(), expected.azimuth_deg, 1e-3);
+  EXPECT_NEAR(sun.elevation_deg(), expected.elevation_deg, 1e-3);
+  // A hand on it takes it off the clock.
+  v1::Sun held;
+  held.set_elevation_deg(10.0F);
+  service::FillSunDefaults(held, storm, 1);
+  EXPECT_EQ(held.source(), v1::Sun::SOURCE_BY_HAND);
+  EXPECT_EQ(held.elevation_deg(), 10.0F);
 }
 
 TEST(SessionsTest, UnknownStormsAndTimesAreRefused) {

@@ -18,6 +18,8 @@ import {
   type Sky,
   SkySchema,
   type Sun,
+  type SunClock,
+  SunClockSchema,
   SunSchema,
 } from "../gen/thunderhead/v1/scene_pb";
 import { clampToLimits, type Limits, limitsOf } from "./limits";
@@ -30,6 +32,8 @@ export const LIMITS = {
   phaseAsymmetry: limitsOf(PhaseFunctionSchema.field.asymmetry),
   sunAzimuth: limitsOf(SunSchema.field.azimuthDeg),
   sunElevation: limitsOf(SunSchema.field.elevationDeg),
+  sunLatitude: limitsOf(SunClockSchema.field.latitudeDeg),
+  sunLongitude: limitsOf(SunClockSchema.field.longitudeDeg),
   sunIrradiance: limitsOf(SunSchema.field.irradiance),
   skyBrightness: limitsOf(SkySchema.field.brightness),
   groundAlbedo: limitsOf(SkySchema.field.groundAlbedo),
@@ -58,6 +62,12 @@ export function withTime(scene: Scene, timeIndex: number): Scene {
 
 export function withSun(scene: Scene, change: Change<Sun>): Scene {
   return changed(scene, { sun: changed(scene.sun ?? create(SunSchema), change) });
+}
+
+export function withSunClock(scene: Scene, change: Change<SunClock>): Scene {
+  return withSun(scene, {
+    clock: changed(scene.sun?.clock ?? create(SunClockSchema), change),
+  });
 }
 
 export function withSky(scene: Scene, change: Change<Sky>): Scene {
@@ -100,10 +110,11 @@ export function withAsymmetry(scene: Scene, hydrometeor: Hydrometeor, asymmetry:
   return withField(scene, hydrometeor, { phase });
 }
 
-// Another storm has other fields and another extent: what belongs to the old one goes, the light, the
-// rendering and the picture stay.
+// Another storm has other fields, another extent, place and date: what belongs to the old one goes, the light,
+// the rendering and the picture stay.
 export function withStorm(scene: Scene, stormId: string): Scene {
-  return changed(scene, { stormId, timeIndex: 0, camera: undefined, fields: [] });
+  const next = changed(scene, { stormId, timeIndex: 0, camera: undefined, fields: [] });
+  return next.sun?.clock === undefined ? next : withSun(next, { clock: undefined });
 }
 
 // A field's settings as drawn: the scene's, and where it is silent those the storm's description gives.

@@ -3,7 +3,13 @@
 
 import { create } from "@bufbuild/protobuf";
 import { batch, computed, type ReadonlySignal, signal } from "@preact/signals-core";
-import { type Camera, type Scene, SceneSchema } from "../gen/thunderhead/v1/scene_pb";
+import {
+  type Camera,
+  type Scene,
+  SceneSchema,
+  type Sun,
+  Sun_Source,
+} from "../gen/thunderhead/v1/scene_pb";
 import type { StormDescription, StormSummary } from "../gen/thunderhead/v1/storm_pb";
 import type {
   Frame,
@@ -12,7 +18,8 @@ import type {
   StageCost,
 } from "../gen/thunderhead/v1/thunderhead_pb";
 import { cameraOfPose, type Pose, poseOfCamera } from "./camera";
-import { withCamera } from "./scene";
+import { LIMITS, withCamera } from "./scene";
+import type { SunDirection } from "./sun";
 
 export type Connection =
   | { readonly kind: "connecting" }
@@ -59,6 +66,8 @@ export class PageState {
   readonly #scene = signal<Scene>(create(SceneSchema));
   // The server's own pose of the camera on the screen, while the scene leaves it open.
   readonly #shownPose = signal<Pose | undefined>(undefined);
+  // The sun of the frame on the screen.
+  readonly #shownSun = signal<Sun | undefined>(undefined);
   #onEdit: ((scene: Scene) => void) | undefined;
 
   readonly session = signal<Session | undefined>(undefined);
@@ -80,6 +89,16 @@ export class PageState {
   // Parts of the scene that change only when they are edited themselves.
   readonly fields = computed(() => this.#scene.value.fields);
   readonly sun = computed(() => this.#scene.value.sun);
+  // Where the sun stands: as set by hand, or where the server found it to be at the time.
+  readonly sunDirection = computed((): SunDirection => {
+    const sun = this.#scene.value.sun;
+    const byTime = sun?.source === Sun_Source.BY_TIME ? this.#shownSun.value : undefined;
+    return {
+      azimuthDeg: byTime?.azimuthDeg ?? sun?.azimuthDeg ?? LIMITS.sunAzimuth.defaultValue ?? 0,
+      elevationDeg:
+        byTime?.elevationDeg ?? sun?.elevationDeg ?? LIMITS.sunElevation.defaultValue ?? 0,
+    };
+  });
   readonly sky = computed(() => this.#scene.value.sky);
   readonly rendering = computed(() => this.#scene.value.rendering);
   readonly display = computed(() => this.#scene.value.display);
@@ -142,6 +161,7 @@ export class PageState {
   }
 
   showFrame(frame: Frame): void {
+    this.#shownSun.value = frame.sun;
     this.frame.value = {
       sequence: frame.sequence,
       revision: frame.sceneRevision,

@@ -34,3 +34,13 @@ export function compassPoint(azimuthDeg: number): string {
   const points = (((azimuthDeg % 360) + 360) % 360) / (360 / COMPASS.length);
   return COMPASS[Math.round(points) % COMPASS.length] ?? "N";
 }
+
+// A date and time of the schema, UTC, as an input of type datetime-local takes it, and back.
+export function inputOfDateTime(dateTime: string): string {
+  return /^\d{4}-\d\d-\d\dT\d\d:\d\d(:\d\d)?/.exec(dateTime)?.[0] ?? "";
+}
+
+export function dateTimeOfInput(input: string): string {
+  if (input === "") return "";
+  return input.length === "2013-05-20T20:00".length ? `${input}:00Z` : `${input}Z`;
+}

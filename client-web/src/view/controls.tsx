@@ -120,6 +120,33 @@ export function Choice<T extends string | number>(props: ChoiceProps<T>) {
   );
 }
 
+interface TimeInputProps {
+  readonly label: string;
+  // As an input of type datetime-local has it; empty while it is not known.
+  readonly value: string;
+  readonly testId: string;
+  readonly onChange: (value: string) => void;
+}
+
+// A date and time.
+export function TimeInput({ label, value, testId, onChange }: TimeInputProps) {
+  const id = useId();
+  return (
+    <div class="choice">
+      <label for={id}>{label}</label>
+      <input
+        id={id}
+        type="datetime-local"
+        data-testid={testId}
+        value={value}
+        onChange={(event) => {
+          if (event.currentTarget.value !== "") onChange(event.currentTarget.value);
+        }}
+      />
+    </div>
+  );
+}
+
 interface SwitchProps {
   readonly label: string;
   readonly checked: boolean;

@@ -1,6 +1,5 @@
 // The panel at the side: everything that can be set, part by part.
-import { standingAzimuthDeg } from "../core/camera";
-import { LIMITS, withDisplay, withOutput, withRendering, withSky, withSun } from "../core/scene";
+import { LIMITS, withDisplay, withOutput, withRendering, withSky } from "../core/scene";
 import type { PageState } from "../core/state";
 import { Mode, ToneMap, Transport } from "../gen/thunderhead/v1/scene_pb";
 import { CameraSection } from "./camera_section";
@@ -8,7 +7,7 @@ import { Choice, Section, Slider } from "./controls";
 import { FieldsSection } from "./fields_section";
 import { KEYS } from "./keyboard";
 import type { Page } from "./page";
-import { SunDome } from "./sun_dome";
+import { SunSection } from "./sun_section";
 
 const MODES = [
   [Mode.PER_FIELD_PHASE_TRANSLUCENT, "Phase per field, translucent"],
@@ -87,44 +86,6 @@ function StormSection({ page }: { page: Page }) {
           Copy link
         </button>
       </div>
-    </Section>
-  );
-}
-
-function SunSection({ state }: { state: PageState }) {
-  const sun = state.sun.value;
-  const direction = {
-    azimuthDeg: sun?.azimuthDeg ?? LIMITS.sunAzimuth.defaultValue ?? 0,
-    elevationDeg: sun?.elevationDeg ?? LIMITS.sunElevation.defaultValue ?? 0,
-  };
-  return (
-    <Section title="Sun" open testId="sun-section">
-      <SunDome
-        sun={direction}
-        cameraAzimuthDeg={standingAzimuthDeg(state.pose.value)}
-        onChange={(change) => state.edit((scene) => withSun(scene, change))}
-      />
-      <Slider
-        label="Azimuth"
-        limits={LIMITS.sunAzimuth}
-        value={direction.azimuthDeg}
-        testId="sun-azimuth"
-        onChange={(azimuthDeg) => state.edit((scene) => withSun(scene, { azimuthDeg }))}
-      />
-      <Slider
-        label="Elevation"
-        limits={LIMITS.sunElevation}
-        value={direction.elevationDeg}
-        testId="sun-elevation"
-        onChange={(elevationDeg) => state.edit((scene) => withSun(scene, { elevationDeg }))}
-      />
-      <Slider
-        label="Irradiance"
-        limits={LIMITS.sunIrradiance}
-        value={sun?.irradiance ?? LIMITS.sunIrradiance.defaultValue}
-        testId="sun-irradiance"
-        onChange={(irradiance) => state.edit((scene) => withSun(scene, { irradiance }))}
-      />
     </Section>
   );
 }

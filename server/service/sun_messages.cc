@@ -1,0 +1,85 @@
+#include "service/sun_messages.h"
+
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "absl/time/civil_time.h"
+#include "absl/time/time.h"
+#include "physics/sun_position.h"
+
+namespace thunderhead::service {
+namespace {
+
+// An afternoon of the storm season in Oklahoma, for runs that have no date and place of their own.
+constexpr char kStormSeason[] = "2013-05-20T20:00:00Z";
+constexpr float kOklahomaLatitude_deg = 35.25F;
+constexpr float kOklahomaLongitude_deg = -97.5F;
+
+// Idealised runs start in year 1.
+constexpr int kFirstRealYear = 100;
+
+bool ParseUtc(const std::string& text, absl::Time* time) {
+  std::string why;
+  return absl::ParseTime(absl::RFC3339_full, text, time, &why);
+}
+
+bool IsReal(const std::string& valid_time) {
+  absl::Time time;
+  return ParseUtc(valid_time, &time) &&
+         absl::ToCivilYear(time, absl::UTCTimeZone()).year() >= kFirstRealYear;
+}
+
+bool HasPlace(const volume::StormInfo& storm) {
+  return storm.latitude_deg.has_value() && storm.longitude_deg.has_value();
+}
+
+}  // namespace
+
+absl::Status CheckSun(const v1::Sun& sun) {
+  absl::Time time;
+  const std::string& text = sun.clock().date_time();
+  if (text.empty() || ParseUtc(text, &time)) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("scene.sun.clock.date_time is '", text,
+                   "'; it must be a date and time like 2013-05-20T20:00:00Z"));
+}
+
+void FillSunDefaults(v1::Sun& sun, const volume::StormInfo& storm, int time_index) {
+  if (sun.source() == v1::Sun::SOURCE_UNSPECIFIED) {
+    const bool given = sun.has_azimuth_deg() || sun.has_elevation_deg();
+    const bool real = HasPlace(storm) && IsReal(storm.times.front().valid_time);
+    sun.set_source(real && !given ? v1::Sun::SOURCE_BY_TIME : v1::Sun::SOURCE_BY_HAND);
+  }
+  if (sun.source() != v1::Sun::SOURCE_BY_TIME) return;
+  v1::SunClock& clock = *sun.mutable_clock();
+  FillClockDefaults(clock, storm);
+  absl::Time first;
+  if (!ParseUtc(clock.date_time(), &first)) return;  // refused by CheckSun
+  const double unix_s = absl::ToDoubleSeconds(first - absl::UnixEpoch()) +
+                        storm.times[static_cast<std::size_t>(time_index)].elapsed_s;
+  const physics::SunPosition position =
+      physics::SunPositionAt(unix_s, clock.latitude_deg(), clock.longitude_deg());
+  sun.set_azimuth_deg(static_cast<float>(position.azimuth_deg));
+  sun.set_elevation_deg(static_cast<float>(position.elevation_deg));
+}
+
+void FillClockDefaults(v1::SunClock& clock, const volume::StormInfo& storm) {
+  const std::string& first = storm.times.front().valid_time;
+  if (clock.date_time().empty()) clock.set_date_time(IsReal(first) ? first : kStormSeason);
+  if (!clock.has_latitude_deg()) {
+    clock.set_latitude_deg(HasPlace(storm) ? static_cast<float>(*storm.latitude_deg)
+                                           : kOklahomaLatitude_deg);
+  }
+  if (!clock.has_longitude_deg()) {
+    clock.set_longitude_deg(HasPlace(storm) ? static_cast<float>(*storm.longitude_deg)
+                                            : kOklahomaLongitude_deg);
+  }
+}
+
+void ToMessage(const scene::Sun& sun, v1::Sun& message) {
+  message.set_azimuth_deg(static_cast<float>(sun.azimuth_deg));
+  message.set_elevation_deg(static_cast<float>(sun.elevation_deg));
+  message.set_irradiance(static_cast<float>(sun.irradiance));
+}
+
+}  // namespace thunderhead::service
