@@ -18,5 +18,6 @@ struct Command {
 Command AddServe(CLI::App& app);
 Command AddRender(CLI::App& app);
 Command AddInspect(CLI::App& app);
+Command AddFlux(CLI::App& app);
 
 }  // namespace thunderhead::app

@@ -51,12 +51,14 @@ std::string Table(const v1::StormDescription& storm) {
   }
   absl::StrAppend(
       &text,
-      "\nfield    variable  minimum    maximum    mean path  largest path  negative  missing\n",
-      "                   kg/kg      kg/kg      kg/m2      kg/m2         cells     cells\n");
+      "\nfield    variable    units    minimum    maximum    mean path  largest path  negative  "
+      "missing\n"
+      "                                                     kg/m2      kg/m2         cells     "
+      "cells\n");
   for (const v1::FieldDescription& field : storm.fields()) {
-    absl::StrAppendFormat(&text, "%-8s %-9s %-10.3g %-10.3g %-10.4g %-13.4g %-9d %d\n",
-                          NameOf(field.hydrometeor()), field.variable(), field.minimum_kg_per_kg(),
-                          field.maximum_kg_per_kg(), field.mean_water_path_kg_per_m2(),
+    absl::StrAppendFormat(&text, "%-8s %-11s %-8s %-10.3g %-10.3g %-10.4g %-13.4g %-9d %d\n",
+                          NameOf(field.hydrometeor()), field.variable(), field.units(),
+                          field.minimum(), field.maximum(), field.mean_water_path_kg_per_m2(),
                           field.maximum_water_path_kg_per_m2(), field.negative_cells(),
                           field.missing_cells());
   }
@@ -77,11 +79,7 @@ absl::Status Inspect(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store,
                                OpenStorm(flags.storm));
   const volume::StormInfo& storm = store->Storms().front();
-  if (flags.time_index < 0 || flags.time_index >= static_cast<int>(storm.times.size())) {
-    return absl::InvalidArgumentError(absl::StrCat("--time is ", flags.time_index, "; ",
-                                                   flags.storm, " has times 0 to ",
-                                                   storm.times.size() - 1));
-  }
+  THUNDERHEAD_RETURN_IF_ERROR(CheckTime(*store, flags.storm, flags.time_index));
   THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(*store, flags.time_index));
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, store->Get(storm.id, flags.time_index, {}));
   v1::StormDescription description;

@@ -9,12 +9,22 @@
 #include "session/gl_frame_source.h"
 
 namespace thunderhead::app {
+namespace {
+
+// What is wrong with a file is no mistake in the command line, whatever the store calls it.
+absl::Status AsFileProblem(const absl::Status& status) {
+  if (!absl::IsInvalidArgument(status)) return status;
+  return absl::FailedPreconditionError(status.message());
+}
+
+}  // namespace
 
 absl::StatusOr<std::shared_ptr<volume::StormStore>> OpenStorm(const std::string& path) {
   volume::StormStoreOptions options;
   options.read_ahead = 0;
-  THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<volume::StormStore> store,
-                               volume::StormStore::Open({path}, options));
+  auto opened = volume::StormStore::Open({path}, options);
+  if (!opened.ok()) return AsFileProblem(opened.status());
+  std::shared_ptr<volume::StormStore> store = *std::move(opened);
   const std::vector<volume::StormInfo>& storms = store->Storms();
   if (storms.size() == 1) return store;
   const std::string names =
@@ -25,10 +35,18 @@ absl::StatusOr<std::shared_ptr<volume::StormStore>> OpenStorm(const std::string&
       absl::StrCat(path, " holds ", storms.size(), " storms; name one of ", names));
 }
 
+absl::Status CheckTime(const volume::StormStore& store, const std::string& path, int time_index) {
+  const std::size_t times = store.Storms().front().times.size();
+  if (time_index >= 0 && static_cast<std::size_t>(time_index) < times) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("--time is ", time_index, "; ", path, " has times 0 to ", times - 1));
+}
+
 absl::Status ReadWithProgress(volume::StormStore& store, int time_index) {
   const volume::StormInfo& storm = store.Storms().front();
   ProgressBar bar(absl::StrCat("reading ", storm.id));
-  return store.Get(storm.id, time_index, [&bar](double share) { bar.Set(share); }).status();
+  return AsFileProblem(
+      store.Get(storm.id, time_index, [&bar](double share) { bar.Set(share); }).status());
 }
 
 absl::StatusOr<std::unique_ptr<service::Server>> StartLocalService(

@@ -16,6 +16,9 @@ namespace thunderhead::app {
 // The store of `path`, which must hold one storm.
 absl::StatusOr<std::shared_ptr<volume::StormStore>> OpenStorm(const std::string& path);
 
+// INVALID_ARGUMENT unless the store's storm, which the user named `path`, has that time.
+absl::Status CheckTime(const volume::StormStore& store, const std::string& path, int time_index);
+
 // Reads one time of the store's storm into its cache, with a progress bar.
 absl::Status ReadWithProgress(volume::StormStore& store, int time_index);
 

@@ -1,10 +1,15 @@
 // thunderhead: storms from weather models as they would look in the sky. Exit codes: 0 done, 1 it
 // went wrong, 2 the command line is wrong.
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <string>
+#include <vector>
 
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "app/commands.h"
 #include "base/version.h"
 #include "spdlog/sinks/stdout_color_sinks.h"
@@ -22,13 +27,26 @@ int Report(const absl::Status& status) {
   return status.code() == absl::StatusCode::kInvalidArgument ? kWrongUsage : kFailed;
 }
 
+// The parser would only say that some subcommand is needed.
+absl::Status CheckSubcommand(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return absl::OkStatus();
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (std::ranges::find(names, argv[1]) != names.end()) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(
+      "there is no subcommand '", argv[1], "'; the subcommands are ", absl::StrJoin(names, ", ")));
+}
+
 int Main(int argc, char** argv) {
   // Standard output is for results; what happens on the way goes to standard error.
   spdlog::set_default_logger(spdlog::stderr_color_mt("thunderhead"));
   CLI::App app("Storms from weather models as they would look in the sky.", "thunderhead");
   app.set_version_flag("--version", "thunderhead " + base::Version());
   app.require_subcommand(1);
-  const std::array commands = {AddServe(app), AddRender(app), AddInspect(app)};
+  const std::array commands = {AddServe(app), AddRender(app), AddInspect(app), AddFlux(app)};
+  if (const absl::Status status = CheckSubcommand(app, argc, argv); !status.ok()) {
+    return Report(status);
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

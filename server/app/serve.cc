@@ -84,7 +84,7 @@ absl::Status Serve(const Flags& flags) {
     spdlog::warn("no page is served: none is built beside the program; name one with --page");
   }
   const std::shared_ptr<grpc::Channel> channel = server->LocalChannel();
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gateway::Gateway> gateway,
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<gateway::Gateway> gateway,
                                gateway::Gateway::Start(gateway_options, channel));
   http.port = gateway->Port();
   grpc.port = static_cast<std::uint16_t>(server->Port());
@@ -94,6 +94,8 @@ absl::Status Serve(const Flags& flags) {
   int signal = 0;
   sigwait(&signals, &signal);
   spdlog::info("stopping");
+  // First: it calls the service, which must not end under its calls.
+  gateway.reset();
   server->Shutdown();
   warm_up.join();
   return absl::OkStatus();

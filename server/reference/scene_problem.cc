@@ -39,17 +39,19 @@ struct Box {
   glm::dvec3 high_m{0.0};
 };
 
-// The cells to hold, and the box. A border of empty cells takes extinction to zero at its centres.
-Box BoxOf(const volume::HydrometeorFields& fields, Sides sides) {
+// The cells to hold, and the box. A border of empty cells takes linear extinction to zero at its
+// centres.
+Box BoxOf(const volume::HydrometeorFields& fields, const MediumOptions& options) {
   const volume::RegularGrid& domain = fields.grid;
   volume::CellBox occupied = fields.condensate;
   if (occupied.Empty()) occupied = {glm::ivec3(0), glm::ivec3(1)};
-  if (sides == Sides::kPeriodic) {
+  if (options.sides == Sides::kPeriodic) {
     occupied.low = glm::ivec3(0, 0, occupied.low.z);
     occupied.high = glm::ivec3(domain.cells.x, domain.cells.y, occupied.high.z);
   }
-  const glm::ivec3 low = glm::max(occupied.low - 1, glm::ivec3(0));
-  const glm::ivec3 high = glm::min(occupied.high + 1, domain.cells);
+  const int border = options.interpolation == Interpolation::kLinear ? 1 : 0;
+  const glm::ivec3 low = glm::max(occupied.low - border, glm::ivec3(0));
+  const glm::ivec3 high = glm::min(occupied.high + border, domain.cells);
   Box box;
   box.first_cell = low;
   box.grid = {high - low, domain.spacing_m,
@@ -119,25 +121,37 @@ Air AirBefore(const Ray& ray, double ground_distance_m, double ground_height_m,
 absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene,
                                                        const volume::HydrometeorFields& fields,
                                                        Sides sides) {
-  const Box box = BoxOf(fields, sides);
+  MediumOptions options;
+  options.sides = sides;
+  return MediumOf(scene, fields, options);
+}
+
+absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene,
+                                                       const volume::HydrometeorFields& fields,
+                                                       const MediumOptions& options) {
+  const Box box = BoxOf(fields, options);
   MediumDescription description;
   description.grid = box.grid;
   description.low_m = box.low_m;
   description.high_m = box.high_m;
-  description.sides = sides;
+  description.interpolation = options.interpolation;
+  description.sides = options.sides;
   std::vector<GroupLook> looks;
   for (const volume::HydrometeorField& field : fields.fields) {
     const scene::FieldParameters& drawn = scene.fields[physics::IndexOf(field.hydrometeor)];
     if (!drawn.visible || drawn.scale <= 0.0F || field.concentration_kg_per_m3.empty()) continue;
-    const GroupLook look = LookOf(scene, field.hydrometeor);
+    GroupLook look = LookOf(scene, field.hydrometeor);
+    if (options.phase != nullptr) look.phase = {};
     auto found = std::find(looks.begin(), looks.end(), look);
     if (found == looks.end()) {
       found = looks.insert(found, look);
-      const auto phase = std::make_shared<const SampledPhase>(SampledPhase::Of(look.phase));
-      description.groups.push_back({{}, look.albedo, phase});
+      description.groups.push_back({{},
+                                    look.albedo,
+                                    options.phase != nullptr ? options.phase
+                                                             : std::make_shared<const SampledPhase>(
+                                                                   SampledPhase::Of(look.phase))});
     }
-    const float mass_extinction =
-        physics::MassExtinction_m2_per_kg(drawn.optics.density_kg_per_m3, drawn.optics.radius_m);
+    const float mass_extinction = volume::MassExtinction_m2_per_kg(field, drawn.optics);
     AddField(fields.grid, box, field, drawn.scale * mass_extinction,
              &description.groups[static_cast<std::size_t>(found - looks.begin())].extinction_per_m);
   }

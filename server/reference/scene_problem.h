@@ -14,10 +14,20 @@
 
 namespace thunderhead::reference {
 
+struct MediumOptions {
+  Sides sides = Sides::kOpen;
+  // Constant cells fill the file's own boxes; linear ones are what the renderers draw.
+  Interpolation interpolation = Interpolation::kLinear;
+  std::shared_ptr<const SampledPhase> phase;  // in place of every field's own, if given
+};
+
 // The scene's visible fields. With open sides the box is the smallest that holds all condensate,
 // bordered as in volume/extinction.h; with periodic ones, the whole domain. A storm without
 // condensate gives an empty medium. False colours multiply albedos, the uniform-phase modes give
 // every field Cornette and Shanks' function with cloud water's parameter.
+absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene,
+                                                       const volume::HydrometeorFields& fields,
+                                                       const MediumOptions& options);
 absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene,
                                                        const volume::HydrometeorFields& fields,
                                                        Sides sides);

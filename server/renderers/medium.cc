@@ -25,8 +25,7 @@ Medium MediumOf(const scene::Scene& scene, const volume::HydrometeorFields& fiel
     if (scene.rendering.false_colors) group.color = look.optics.false_color;
     auto found = std::find(medium.groups.begin(), medium.groups.end(), group);
     if (found == medium.groups.end()) found = medium.groups.insert(found, group);
-    const float mass_extinction =
-        physics::MassExtinction_m2_per_kg(look.optics.density_kg_per_m3, look.optics.radius_m);
+    const float mass_extinction = volume::MassExtinction_m2_per_kg(field, look.optics);
     medium.terms.push_back({static_cast<int>(i), look.scale * mass_extinction,
                             static_cast<int>(found - medium.groups.begin())});
     medium.hydrometeors.push_back(field.hydrometeor);

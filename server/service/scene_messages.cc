@@ -133,8 +133,13 @@ void SetField(const volume::HydrometeorField& field, v1::FieldDescription& messa
   const volume::FieldStatistics& statistics = field.statistics;
   message.set_hydrometeor(ToMessage(field.hydrometeor));
   message.set_variable(field.variable);
-  message.set_minimum_kg_per_kg(statistics.minimum_kg_per_kg);
-  message.set_maximum_kg_per_kg(statistics.maximum_kg_per_kg);
+  if (field.quantity == volume::Quantity::kMixingRatio) {
+    message.set_minimum_kg_per_kg(statistics.minimum);
+    message.set_maximum_kg_per_kg(statistics.maximum);
+  }
+  message.set_units(std::string(volume::UnitOf(field.quantity)));
+  message.set_minimum(statistics.minimum);
+  message.set_maximum(statistics.maximum);
   message.set_mean_water_path_kg_per_m2(statistics.mean_water_path_kg_per_m2);
   message.set_maximum_water_path_kg_per_m2(statistics.maximum_water_path_kg_per_m2);
   message.set_negative_cells(static_cast<std::uint64_t>(statistics.negative_cells));

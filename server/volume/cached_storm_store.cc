@@ -8,7 +8,6 @@
 #include "absl/strings/str_join.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
-#include "volume/wrf_reader.h"
 
 namespace thunderhead::volume {
 
@@ -118,8 +117,8 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, const TimeKey& k
   const std::optional<VerticalGrid> grid = VerticalGridOf(lock, key);
   lock.unlock();
   absl::StatusOr<HydrometeorFields> fields =
-      ReadWrfTime(storm.files[source.file], source.record, grid,
-                  [&](double share) { return Checkpoint(key, read, share); });
+      ReadTime(storm.files[source.file], source.record, grid,
+               [&](double share) { return Checkpoint(key, read, share); });
   lock.lock();
   if (!fields.ok()) return fields.status();
   if (!vertical_grids_[key.storm].has_value()) {
@@ -140,7 +139,7 @@ std::optional<VerticalGrid> CachedStormStore::VerticalGridOf(Lock& lock, const T
   const TimeSource first = storm.sources.front();
   lock.unlock();
   const absl::StatusOr<VerticalGrid> chosen =
-      ReadWrfVerticalGrid(storm.files[first.file], first.record);
+      ReadVerticalGrid(storm.files[first.file], first.record);
   lock.lock();
   if (!chosen.ok()) {
     spdlog::warn("the first time of {} cannot be read: {}", storm.info.id,

@@ -58,8 +58,8 @@ FieldStatistics MixingRatioToConcentration(const LayerAir& air, std::vector<floa
     ScanLevel(air, level, values.data() + level * air.columns, statistics, range, water_path);
   }
   if (range.minimum <= range.maximum) {
-    statistics.minimum_kg_per_kg = range.minimum;
-    statistics.maximum_kg_per_kg = range.maximum;
+    statistics.minimum = range.minimum;
+    statistics.maximum = range.maximum;
   }
   const double total = std::accumulate(water_path.begin(), water_path.end(), 0.0);
   statistics.mean_water_path_kg_per_m2 = total / static_cast<double>(air.columns);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "physics/hydrometeors.h"
@@ -11,11 +12,19 @@
 
 namespace thunderhead::volume {
 
+// What a file says of a hydrometeor: its mass per mass of air (kg/kg), its mass per volume of air
+// (kg/m3), or at once the extinction of its particles (1/m).
+enum class Quantity { kMixingRatio, kMassConcentration, kExtinction };
+
+// The unit of a quantity: "kg kg-1", "kg m-3" or "m-1".
+std::string_view UnitOf(Quantity quantity);
+
 // What was found in the file for one field at one time.
 struct FieldStatistics {
-  float minimum_kg_per_kg = 0.0F;  // before negatives were clamped; missing cells left out
-  float maximum_kg_per_kg = 0.0F;
-  double mean_water_path_kg_per_m2 = 0.0;     // mean over columns of the integral of rho_air q dz
+  float minimum = 0.0F;  // in the quantity's unit; before negatives were clamped; missing left out
+  float maximum = 0.0F;
+  // Mean over columns of the integral of rho_air q dz; of extinction it is an optical depth.
+  double mean_water_path_kg_per_m2 = 0.0;
   double maximum_water_path_kg_per_m2 = 0.0;  // largest column
   std::int64_t negative_cells = 0;            // below zero, taken as zero
   std::int64_t missing_cells = 0;             // fill value, NaN or infinite, taken as empty
@@ -25,10 +34,17 @@ struct FieldStatistics {
 struct HydrometeorField {
   physics::Hydrometeor hydrometeor = physics::Hydrometeor::kCloud;
   std::string variable;  // name in the file
+  Quantity quantity = Quantity::kMixingRatio;
   std::vector<float>
-      concentration_kg_per_m3;  // grid.CellCount() values, x fastest; empty if all are zero
+      concentration_kg_per_m3;  // grid.CellCount() values, x fastest; empty if all are zero. Of
+                                // Quantity::kExtinction: extinction in 1/m, a mass of 1 m2/kg
   FieldStatistics statistics;
 };
+
+// Extinction (1/m) per concentration (kg/m3) of `field` if its particles have `optics`. That of a
+// field given as extinction is 1 m2/kg whatever the optics.
+float MassExtinction_m2_per_kg(const HydrometeorField& field,
+                               const physics::ParticleOptics& optics);
 
 // One time of a storm.
 struct HydrometeorFields {

@@ -204,6 +204,64 @@ std::optional<std::size_t> NetcdfFile::DimensionLength(const std::string& dimens
   return length;
 }
 
+std::vector<std::string> NetcdfFile::Variables() const {
+  const NetcdfLock lock;
+  int count = 0;
+  std::vector<std::string> names;
+  if (nc_inq_nvars(handle_, &count) != NC_NOERR) return names;
+  for (int id = 0; id < count; ++id) {
+    char name[NC_MAX_NAME + 1];
+    if (nc_inq_varname(handle_, id, name) == NC_NOERR) names.emplace_back(name);
+  }
+  return names;
+}
+
+absl::StatusOr<std::vector<std::string>> NetcdfFile::Dimensions(const std::string& variable) const {
+  const NetcdfLock lock;
+  int id = 0;
+  int rank = 0;
+  int dimensions[NC_MAX_VAR_DIMS];
+  if (nc_inq_varid(handle_, variable.c_str(), &id) != NC_NOERR) {
+    return absl::NotFoundError(absl::StrCat(path_, ": has no variable ", variable));
+  }
+  if (int code = nc_inq_var(handle_, id, nullptr, nullptr, &rank, dimensions, nullptr);
+      code != NC_NOERR) {
+    return ReadError(variable, code);
+  }
+  std::vector<std::string> names;
+  for (int i = 0; i < rank; ++i) {
+    char name[NC_MAX_NAME + 1];
+    if (int code = nc_inq_dimname(handle_, dimensions[i], name); code != NC_NOERR) {
+      return ReadError(variable, code);
+    }
+    names.emplace_back(name);
+  }
+  return names;
+}
+
+absl::StatusOr<std::vector<double>> NetcdfFile::ReadDoubles(const std::string& variable) const {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, Shape(variable));
+  std::size_t total = 1;
+  for (const std::size_t length : shape) total *= length;
+  std::vector<double> values(total);
+  if (total == 0) return values;
+  const NetcdfLock lock;
+  int id = 0;
+  nc_inq_varid(handle_, variable.c_str(), &id);
+  if (const int code = nc_get_var_double(handle_, id, values.data()); code != NC_NOERR) {
+    return ReadError(variable, code);
+  }
+  const Packing packing = PackingOf(handle_, id);
+  for (double& value : values) {
+    const bool missing = value == packing.fill || value == packing.missing;
+    value = value * packing.scale + packing.offset;
+    if (missing || !(std::abs(value) < kLargestValue)) {
+      value = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  return values;
+}
+
 absl::StatusOr<std::vector<std::size_t>> NetcdfFile::Shape(const std::string& variable) const {
   const NetcdfLock lock;
   int id = 0;

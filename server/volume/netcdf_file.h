@@ -26,6 +26,12 @@ class NetcdfFile {
 
   bool HasVariable(const std::string& variable) const;
 
+  // The names of all variables, in the file's order.
+  std::vector<std::string> Variables() const;
+
+  // The names of the variable's dimensions, slowest first.
+  absl::StatusOr<std::vector<std::string>> Dimensions(const std::string& variable) const;
+
   // Length of the dimension, or nothing.
   std::optional<std::size_t> DimensionLength(const std::string& dimension) const;
 
@@ -47,6 +53,9 @@ class NetcdfFile {
   // infinities) as NaN, denormals as zero. The memory of `values` is used again.
   absl::Status ReadRecord(const std::string& variable, std::size_t record,
                           std::vector<float>& values) const;
+
+  // A whole numeric variable in double precision, cleaned in the same way: coordinates.
+  absl::StatusOr<std::vector<double>> ReadDoubles(const std::string& variable) const;
 
   // A part of a variable, cleaned in the same way.
   absl::StatusOr<std::vector<float>> ReadPart(const std::string& variable,

@@ -23,12 +23,12 @@ constexpr int kDeepestFolder = 8;  // below a path given by name; also ends loop
 
 struct NamedStorm {
   std::string name;
-  std::vector<WrfMetadata> files;
+  std::vector<StormFile> files;
 };
 
-absl::StatusOr<WrfMetadata> Probe(const fs::path& path) {
+absl::StatusOr<StormFile> Probe(const fs::path& path) {
   try {
-    return ReadWrfMetadata(path.string());
+    return ReadStormFile(path.string());
   } catch (const std::bad_alloc&) {
     return absl::ResourceExhaustedError(absl::StrCat(
         path.string(), ": its metadata does not fit in memory; the file is probably damaged"));
@@ -63,17 +63,17 @@ std::string NameOfFolder(const fs::path& path) {
 }
 
 // Files of which two may be parts of one run agree in this.
-auto RunKey(const WrfMetadata& file) {
+auto RunKey(const StormFile& file) {
   return std::make_tuple(file.domain, file.cells.x, file.cells.y, file.cells.z, file.dx_m,
-                         file.dy_m, file.simulation_start, file.fields);
+                         file.dy_m, file.run, file.fields);
 }
 
 // Runs on the same grid, an ensemble for example, share most of their times; the files of one run
 // overlap at most at their ends, as after a restart.
-bool ContinueOneAnother(const std::vector<WrfMetadata>& files) {
+bool ContinueOneAnother(const std::vector<StormFile>& files) {
   std::set<absl::Time> distinct;
   std::size_t total = 0;
-  for (const WrfMetadata& file : files) {
+  for (const StormFile& file : files) {
     distinct.insert(file.times.begin(), file.times.end());
     total += file.times.size();
   }
@@ -107,9 +107,9 @@ absl::StatusOr<Folder> List(const fs::path& path) {
 
 // Groups a folder's files into runs; runs whose files do not continue one another fall apart into
 // single files.
-std::vector<NamedStorm> GroupRuns(const fs::path& folder, std::vector<WrfMetadata> files) {
-  std::map<decltype(RunKey(files[0])), std::vector<WrfMetadata>> runs;
-  for (WrfMetadata& file : files) runs[RunKey(file)].push_back(std::move(file));
+std::vector<NamedStorm> GroupRuns(const fs::path& folder, std::vector<StormFile> files) {
+  std::map<decltype(RunKey(files[0])), std::vector<StormFile>> runs;
+  for (StormFile& file : files) runs[RunKey(file)].push_back(std::move(file));
   std::vector<NamedStorm> storms;
   std::vector<std::size_t> series;
   for (auto& [key, run] : runs) {
@@ -118,7 +118,7 @@ std::vector<NamedStorm> GroupRuns(const fs::path& folder, std::vector<WrfMetadat
       storms.push_back({NameOfFolder(folder), std::move(run)});
       continue;
     }
-    for (WrfMetadata& file : run) {
+    for (StormFile& file : run) {
       const std::string name = NameOfFile(file.path);
       storms.push_back({name, {}});
       storms.back().files.push_back(std::move(file));
@@ -136,9 +136,9 @@ std::vector<NamedStorm> GroupRuns(const fs::path& folder, std::vector<WrfMetadat
 absl::Status SearchFolder(const fs::path& path, int depth, std::vector<NamedStorm>& storms,
                           absl::Status& first_failure) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const Folder folder, List(path));
-  std::vector<WrfMetadata> files;
+  std::vector<StormFile> files;
   for (const fs::path& file : folder.files) {
-    absl::StatusOr<WrfMetadata> metadata = Probe(file);
+    absl::StatusOr<StormFile> metadata = Probe(file);
     if (metadata.ok()) {
       files.push_back(*std::move(metadata));
       continue;
@@ -163,7 +163,7 @@ absl::Status SearchFolder(const fs::path& path, int depth, std::vector<NamedStor
 absl::Status Search(const std::string& path, std::vector<NamedStorm>& storms) {
   std::error_code error;
   if (!fs::is_directory(path, error)) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(WrfMetadata metadata, Probe(path));
+    THUNDERHEAD_ASSIGN_OR_RETURN(StormFile metadata, Probe(path));
     storms.push_back({NameOfFile(path), {}});
     storms.back().files.push_back(std::move(metadata));
     return absl::OkStatus();
@@ -175,21 +175,19 @@ absl::Status Search(const std::string& path, std::vector<NamedStorm>& storms) {
   if (!first_failure.ok()) {
     return base::Annotate(first_failure, absl::StrCat(path, " holds no storm; its first file"));
   }
-  return absl::NotFoundError(
-      absl::StrCat(path, ": holds no storm; put the model's output files (wrfout_...) there"));
+  return absl::NotFoundError(absl::StrCat(
+      path, ": holds no storm; put the model's output files (wrfout_..., or CF netCDF) there"));
 }
 
-std::string TitleOf(const std::string& name, const WrfMetadata& file) {
-  std::string about = file.model;
-  if (file.idealised) absl::StrAppend(&about, about.empty() ? "" : ", ", "idealised");
-  return about.empty() ? name : absl::StrCat(name, " (", about, ")");
+std::string TitleOf(const std::string& name, const StormFile& file) {
+  return file.about.empty() ? name : absl::StrCat(name, " (", file.about, ")");
 }
 
 // The file that comes again under another path, or through a link, is one file.
 void DropRepeated(std::vector<NamedStorm>& storms) {
   std::set<std::string> seen;
   for (NamedStorm& storm : storms) {
-    std::erase_if(storm.files, [&seen](const WrfMetadata& file) {
+    std::erase_if(storm.files, [&seen](const StormFile& file) {
       std::error_code error;
       const fs::path canonical = fs::canonical(file.path, error);
       return !seen.insert(error ? file.path : canonical.string()).second;
@@ -200,9 +198,9 @@ void DropRepeated(std::vector<NamedStorm>& storms) {
 
 }  // namespace
 
-CataloguedStorm AssembleStorm(const std::string& name, std::vector<WrfMetadata> files) {
+CataloguedStorm AssembleStorm(const std::string& name, std::vector<StormFile> files) {
   THUNDERHEAD_CHECK(!files.empty(), name);
-  std::ranges::sort(files, {}, &WrfMetadata::path);
+  std::ranges::sort(files, {}, &StormFile::path);
   std::map<absl::Time, TimeSource> sources;
   for (std::size_t file = 0; file < files.size(); ++file) {
     for (std::size_t record = 0; record < files[file].times.size(); ++record) {
@@ -222,8 +220,8 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<WrfMetadata> 
         {FormatValidTime(time), absl::ToDoubleSeconds(time - sources.begin()->first)});
     storm.sources.push_back(source);
   }
-  for (const WrfMetadata& file : files) info.files.push_back(file.path);
-  const WrfMetadata& first = files[storm.sources.front().file];
+  for (const StormFile& file : files) info.files.push_back(file.path);
+  const StormFile& first = files[storm.sources.front().file];
   info.title = TitleOf(name, first);
   info.file_cells = first.cells;
   info.dx_m = first.dx_m;
@@ -240,7 +238,7 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
   for (const std::string& path : paths) THUNDERHEAD_RETURN_IF_ERROR(Search(path, named));
   if (named.empty()) {
     return absl::InvalidArgumentError(
-        "no storm to show; name a file or folder of model output (wrfout_...)");
+        "no storm to show; name a file or folder of model output (wrfout_..., or CF netCDF)");
   }
   DropRepeated(named);
   std::vector<CataloguedStorm> storms;

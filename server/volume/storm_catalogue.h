@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "volume/storm_file.h"
 #include "volume/storm_store.h"
-#include "volume/wrf_metadata.h"
 
 namespace thunderhead::volume {
 
@@ -20,7 +20,7 @@ struct TimeSource {
 
 struct CataloguedStorm {
   StormInfo info;
-  std::vector<WrfMetadata> files;
+  std::vector<StormFile> files;
   std::vector<TimeSource> sources;  // one for each of info.times
 };
 
@@ -29,6 +29,6 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
 
 // Files of one run as one storm: times in order; of a time that several files hold, the last file's
 // is kept. `files` must not be empty.
-CataloguedStorm AssembleStorm(const std::string& name, std::vector<WrfMetadata> files);
+CataloguedStorm AssembleStorm(const std::string& name, std::vector<StormFile> files);
 
 }  // namespace thunderhead::volume

@@ -15,8 +15,7 @@ using Profiles = std::array<std::vector<double>, 3>;
 
 void AddField(const HydrometeorFields& fields, const HydrometeorField& field, Profiles* profiles) {
   const physics::ParticleOptics& optics = physics::DefaultOptics(field.hydrometeor);
-  const float mass_extinction =
-      physics::MassExtinction_m2_per_kg(optics.density_kg_per_m3, optics.radius_m);
+  const float mass_extinction = MassExtinction_m2_per_kg(field, optics);
   const CellBox& box = fields.condensate;
   for (int z = box.low.z; z < box.high.z; ++z) {
     for (int y = box.low.y; y < box.high.y; ++y) {

@@ -160,10 +160,10 @@ absl::StatusOr<RemappedField> TimeReader::Remap(Hydrometeor hydrometeor,
   field.hydrometeor = hydrometeor;
   field.variable = std::string(WrfVariableOf(hydrometeor));
   field.statistics = MixingRatioToConcentration(air_, values);
-  if (field.statistics.maximum_kg_per_kg > kMostMixingRatio) {
+  if (field.statistics.maximum > kMostMixingRatio) {
     return absl::InvalidArgumentError(
         absl::StrCat(file_.Path(), ": ", field.variable, " of record ", record_, " reaches ",
-                     field.statistics.maximum_kg_per_kg,
+                     field.statistics.maximum,
                      " where kg of water per kg of air is needed; if it is in g/kg, divide it by "
                      "1000 and set its units attribute"));
   }

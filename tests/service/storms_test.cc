@@ -62,6 +62,8 @@ TEST(StormsTest, DescriptionHoldsGridTimesFieldsAndDefaults) {
   EXPECT_EQ(cloud.variable(), "QCLOUD");
   EXPECT_EQ(cloud.minimum_kg_per_kg(), -1e-13F);
   EXPECT_EQ(cloud.maximum_kg_per_kg(), 2e-3F);
+  EXPECT_EQ(cloud.units(), "kg kg-1");
+  EXPECT_EQ(cloud.maximum(), 2e-3F);
   EXPECT_EQ(cloud.mean_water_path_kg_per_m2(), 0.25);
   EXPECT_EQ(cloud.maximum_water_path_kg_per_m2(), 7.5);
   EXPECT_EQ(cloud.negative_cells(), 3U);

@@ -132,8 +132,8 @@ TEST(SampleStorm, HasThePeaksOfItsRun) {
     ASSERT_TRUE(fields.ok()) << fields.status();
     for (const HydrometeorField& field : (*fields)->fields) {
       float& peak = peaks[field.variable];
-      peak = std::max(peak, field.statistics.maximum_kg_per_kg);
-      EXPECT_EQ(field.statistics.minimum_kg_per_kg, 0.0F);
+      peak = std::max(peak, field.statistics.maximum);
+      EXPECT_EQ(field.statistics.minimum, 0.0F);
       EXPECT_EQ(field.statistics.negative_cells, 0);
       EXPECT_EQ(field.statistics.missing_cells, 0);
     }

@@ -72,7 +72,7 @@ TEST_F(StormSeries, GivesEachTimeItsFieldsOnOneGrid) {
   for (int time = 0; time < kTimes; ++time) {
     const auto fields = store->Get("series", time, {});
     ASSERT_TRUE(fields.ok()) << fields.status();
-    EXPECT_NEAR((*fields)->fields[0].statistics.maximum_kg_per_kg, 1e-3 * (time + 1), 1e-8);
+    EXPECT_NEAR((*fields)->fields[0].statistics.maximum, 1e-3 * (time + 1), 1e-8);
     EXPECT_EQ((*fields)->grid, grid);
   }
 }
@@ -200,7 +200,7 @@ TEST_F(StormSeries, ServesManyThreadsThatWanderAboutWithinABudget) {
         const int time = (i * 5 + step * (i + 1)) % kTimes;
         const auto fields = store->Get("series", time, {});
         const bool right =
-            fields.ok() && std::abs((*fields)->fields[0].statistics.maximum_kg_per_kg -
+            fields.ok() && std::abs((*fields)->fields[0].statistics.maximum -
                                     1e-3F * static_cast<float>(time + 1)) < 1e-7F;
         failures += right ? 0 : 1;
       }

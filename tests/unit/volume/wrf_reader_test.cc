@@ -153,7 +153,7 @@ TEST_F(WrfReader, HoldsNoArrayForAFieldThatIsZero) {
   ASSERT_EQ(fields->fields.size(), 3U);
   for (const std::size_t zero : {1U, 2U}) {
     EXPECT_TRUE(fields->fields[zero].concentration_kg_per_m3.empty());
-    EXPECT_EQ(fields->fields[zero].statistics.maximum_kg_per_kg, 0.0F);
+    EXPECT_EQ(fields->fields[zero].statistics.maximum, 0.0F);
   }
 }
 
@@ -171,7 +171,7 @@ TEST_F(WrfReader, UnpacksShorts) {
   const auto fields = Read(file);
   ASSERT_TRUE(fields.ok()) << fields.status();
   const FieldStatistics& statistics = fields->fields[0].statistics;
-  EXPECT_NEAR(statistics.maximum_kg_per_kg, 1.5e-3, 1e-9);
+  EXPECT_NEAR(statistics.maximum, 1.5e-3, 1e-9);
   EXPECT_EQ(statistics.missing_cells, 1);
   EXPECT_NEAR(ColumnPath(*fields, 0, 0, 0), 1.5e-3 * kDensity_kg_per_m3 * 4000.0, 1e-3);
   EXPECT_NEAR(ColumnPath(*fields, 0, 1, 2), 1.5e-3 * kDensity_kg_per_m3 * 3500.0, 1e-3);
@@ -194,8 +194,8 @@ TEST_F(WrfReader, CountsNegativesAndMissingValuesAndDrawsNeither) {
   const FieldStatistics& statistics = fields->fields[0].statistics;
   EXPECT_EQ(statistics.negative_cells, 2);
   EXPECT_EQ(statistics.missing_cells, 7);
-  EXPECT_FLOAT_EQ(statistics.minimum_kg_per_kg, -3e-13F);
-  EXPECT_FLOAT_EQ(statistics.maximum_kg_per_kg, 1e-3F);
+  EXPECT_FLOAT_EQ(statistics.minimum, -3e-13F);
+  EXPECT_FLOAT_EQ(statistics.maximum, 1e-3F);
   EXPECT_NEAR(ColumnPath(*fields, 0, 0, 0), 1e-3 * kDensity_kg_per_m3 * 3000.0, 1e-4);
   EXPECT_NEAR(ColumnPath(*fields, 0, 1, 0), 1e-3 * kDensity_kg_per_m3 * 500.0, 1e-4);
   for (const float mass : fields->fields[0].concentration_kg_per_m3) {

@@ -1,0 +1,18 @@
+// A phase function as the command line gives it.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "reference/sampled_phase.h"
+
+namespace thunderhead::app {
+
+inline constexpr char kPhaseFlagHelp[] =
+    "Phase function: hg:G (Henyey-Greenstein), cs:G (Cornette-Shanks), rayleigh, or table:NAME";
+
+// "hg:0.85", "cs:0.85", "rayleigh" or "table:cloud_re10". INVALID_ARGUMENT shows the forms.
+absl::StatusOr<std::shared_ptr<const reference::SampledPhase>> ParsePhase(const std::string& text);
+
+}  // namespace thunderhead::app

@@ -1,0 +1,290 @@
+#include "volume/cf_axes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+#include "spdlog/spdlog.h"
+
+namespace thunderhead::volume {
+namespace {
+
+constexpr std::size_t kMostCells = 100'000;
+
+// Coordinates are often stored as floats, and rounded when written.
+constexpr double kEvenTolerance = 1e-2;
+constexpr double kLatticeTolerance = 1e-4;
+
+// Uneven layers may become at most this many times as many cells.
+constexpr int kMostRefinement = 16;
+
+struct Coordinate {
+  std::vector<double> centres_m;  // as in the file
+  std::vector<double> faces_m;    // one more, from bounds; empty if the file gives none
+  std::optional<double> middle_deg;
+};
+
+// Faces from CF bounds, two for each cell; nothing if absent or not contiguous.
+absl::StatusOr<std::vector<double>> ReadBounds(const NetcdfFile& file, const std::string& dimension,
+                                               std::size_t cells) {
+  const auto name = file.TextAttribute(dimension, "bounds");
+  std::vector<double> faces;
+  if (!name.has_value() || !file.HasVariable(*name)) return faces;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, file.Shape(*name));
+  if (shape != std::vector<std::size_t>{cells, 2}) {
+    return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": ", *name, ", the bounds of ",
+                                                   dimension, ", must have dimensions (", cells,
+                                                   ", 2)"));
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<double> pairs, file.ReadDoubles(*name));
+  // The pairs may run against the axis.
+  if (cells > 1 && (pairs[0] < pairs[1]) != (pairs[0] < pairs[2])) {
+    for (std::size_t i = 0; i < cells; ++i) std::swap(pairs[2 * i], pairs[2 * i + 1]);
+  }
+  for (std::size_t i = 0; i < cells; ++i) {
+    const double slack = kEvenTolerance * std::abs(pairs[2 * i + 1] - pairs[2 * i]);
+    if (i > 0 && !(std::abs(pairs[2 * i] - pairs[2 * i - 1]) <= slack)) {
+      return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": ", *name, ", the bounds of ",
+                                                     dimension, ", leave a gap before cell ", i));
+    }
+    faces.push_back(pairs[2 * i]);
+  }
+  faces.push_back(pairs.back());
+  return faces;
+}
+
+absl::StatusOr<double> MetresPerUnit(const NetcdfFile& file, const CfDescription& coordinate,
+                                     CfDirection direction, double metres_per_degree) {
+  if (direction != CfDirection::kZ && IsDegrees(coordinate.units)) return metres_per_degree;
+  const auto metres = MetresIn(coordinate.units);
+  if (metres.has_value()) return *metres;
+  return absl::InvalidArgumentError(absl::StrCat(
+      file.Path(), ": the coordinate ", coordinate.name, " has units '", coordinate.units,
+      direction == CfDirection::kZ
+          ? "'; heights in m or km are needed: interpolate to heights first"
+          : "'; m, km or degrees are needed"));
+}
+
+absl::StatusOr<Coordinate> ReadCoordinate(const NetcdfFile& file, const std::string& dimension,
+                                          CfDirection direction, double metres_per_degree) {
+  if (!file.HasVariable(dimension)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": the dimension ", dimension, " has no coordinate variable ",
+                     dimension, ", so its cells have no size; add one, in metres"));
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::string> dimensions,
+                               file.Dimensions(dimension));
+  if (dimensions != std::vector<std::string>{dimension}) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": the coordinate ", dimension,
+                     " must have its own dimension only; interpolate to a rectangular grid first"));
+  }
+  const CfDescription description = DescribeCf(file, dimension);
+  THUNDERHEAD_ASSIGN_OR_RETURN(double scale,
+                               MetresPerUnit(file, description, direction, metres_per_degree));
+  Coordinate coordinate;
+  THUNDERHEAD_ASSIGN_OR_RETURN(coordinate.centres_m, file.ReadDoubles(dimension));
+  THUNDERHEAD_ASSIGN_OR_RETURN(coordinate.faces_m,
+                               ReadBounds(file, dimension, coordinate.centres_m.size()));
+  if (IsDegrees(description.units)) {
+    coordinate.middle_deg = 0.5 * (coordinate.centres_m.front() + coordinate.centres_m.back());
+  }
+  if (direction == CfDirection::kZ && description.positive == "down") scale = -scale;
+  for (double& centre : coordinate.centres_m) centre *= scale;
+  for (double& face : coordinate.faces_m) face *= scale;
+  return coordinate;
+}
+
+absl::Status CheckMonotonic(const NetcdfFile& file, const std::string& dimension,
+                            const std::vector<double>& rising_m) {
+  for (std::size_t i = 0; i < rising_m.size(); ++i) {
+    if (std::isfinite(rising_m[i]) && (i == 0 || rising_m[i] > rising_m[i - 1])) continue;
+    return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": the coordinate ", dimension,
+                                                   " neither rises nor falls all along (see value ",
+                                                   i, "); write it in order"));
+  }
+  return absl::OkStatus();
+}
+
+// Steps of `rising` differ by no more than rounding.
+bool IsEven(const std::vector<double>& rising) {
+  const auto steps = static_cast<double>(rising.size() - 1);
+  const double step = (rising.back() - rising.front()) / steps;
+  for (std::size_t i = 0; i < rising.size(); ++i) {
+    const double expected = rising.front() + static_cast<double>(i) * step;
+    if (std::abs(rising[i] - expected) > kEvenTolerance * step) return false;
+  }
+  return true;
+}
+
+struct Faces {
+  std::vector<double> faces_m;  // empty if there are none
+  double most_change = 1.0;     // of thickness from one cell to the next, as a factor
+};
+
+// The faces of cells whose middles are `centres_m` and whose lowest face is `low_m`; none unless
+// their thickness is positive and changes by no more than a factor of two from one to the next.
+Faces FacesFrom(double low_m, const std::vector<double>& centres_m) {
+  constexpr double kMostChange = 2.001;
+  Faces faces{{low_m}, 1.0};
+  double before_m = 0.0;
+  for (const double centre_m : centres_m) {
+    const double thickness_m = 2.0 * (centre_m - faces.faces_m.back());
+    if (!(thickness_m > 0.0)) return {};
+    const double change = before_m > 0.0 ? thickness_m / before_m : 1.0;
+    faces.most_change = std::max({faces.most_change, change, 1.0 / change});
+    if (faces.most_change > kMostChange) return {};
+    before_m = thickness_m;
+    faces.faces_m.push_back(faces.faces_m.back() + thickness_m);
+  }
+  return faces;
+}
+
+// The faces of two or more cells around `centres_m`: so that these are the cells' middles, from the
+// ground up if that can be; else half-way between neighbours.
+std::vector<double> FacesAround(const std::vector<double>& centres_m) {
+  const double even_low_m = 1.5 * centres_m[0] - 0.5 * centres_m[1];
+  std::vector<double> faces_m;
+  if (IsEven(centres_m)) {
+    const auto steps = static_cast<double>(centres_m.size() - 1);
+    const double step_m = (centres_m.back() - centres_m.front()) / steps;
+    for (const double centre_m : centres_m) faces_m.push_back(centre_m - 0.5 * step_m);
+    faces_m.push_back(centres_m.back() + 0.5 * step_m);
+    return faces_m;
+  }
+  const Faces even = FacesFrom(even_low_m, centres_m);
+  const Faces grounded = FacesFrom(0.0, centres_m);
+  const bool prefer_even = grounded.faces_m.empty() || even.most_change < grounded.most_change;
+  if (!even.faces_m.empty() && prefer_even) return even.faces_m;
+  if (!grounded.faces_m.empty()) return grounded.faces_m;
+  faces_m.push_back(even_low_m);
+  for (std::size_t i = 1; i < centres_m.size(); ++i) {
+    faces_m.push_back(0.5 * (centres_m[i - 1] + centres_m[i]));
+  }
+  faces_m.push_back(2.0 * centres_m.back() - faces_m.back());
+  return faces_m;
+}
+
+// A single cell without bounds is taken to begin at 0, as a layer that stands on the ground does.
+absl::StatusOr<std::vector<double>> FacesOfOne(const NetcdfFile& file, const std::string& dimension,
+                                               CfDirection direction, double centre_m,
+                                               double size_without_bounds_m) {
+  double size_m = 2.0 * std::abs(centre_m);
+  double low_m = std::min(0.0, 2.0 * centre_m);
+  if (size_m == 0.0 && direction != CfDirection::kZ) {
+    size_m = size_without_bounds_m;
+    low_m = -0.5 * size_m;
+  }
+  if (!(size_m > 0.0)) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        file.Path(), ": ", dimension, " has one cell at 0 and no bounds, so it has no size; add ",
+        dimension, ":bounds"));
+  }
+  spdlog::warn("{}: {} has one cell and no bounds; taken to be {} m wide", file.Path(), dimension,
+               size_m);
+  return std::vector<double>{low_m, low_m + size_m};
+}
+
+double Thinnest_m(const std::vector<double>& faces_m) {
+  double thinnest_m = faces_m[1] - faces_m[0];
+  for (std::size_t i = 1; i < faces_m.size(); ++i) {
+    thinnest_m = std::min(thinnest_m, faces_m[i] - faces_m[i - 1]);
+  }
+  return thinnest_m;
+}
+
+// The most cells per thinnest layer on whose faces all layers' faces lie; 0 if there is none.
+int CommonDivisor(const std::vector<double>& faces_m, int most_cells) {
+  const double thinnest_m = Thinnest_m(faces_m);
+  const double depth_m = faces_m.back() - faces_m.front();
+  for (int divisor = 1; divisor <= kMostRefinement; ++divisor) {
+    const double spacing_m = thinnest_m / divisor;
+    if (depth_m / spacing_m > most_cells + 0.5) return 0;
+    const bool fits = std::ranges::all_of(faces_m, [&](double face_m) {
+      const double steps = (face_m - faces_m.front()) / spacing_m;
+      return std::abs(steps - std::round(steps)) <= kLatticeTolerance * std::max(steps, 1.0);
+    });
+    if (fits) return divisor;
+  }
+  return 0;
+}
+
+}  // namespace
+
+CfDescription DescribeCf(const NetcdfFile& file, const std::string& variable) {
+  const auto text = [&](const char* attribute) {
+    return file.HasVariable(variable) ? file.TextAttribute(variable, attribute).value_or("") : "";
+  };
+  return {variable, text("standard_name"), text("units"), text("axis"), text("positive")};
+}
+
+void EvenOut(const std::vector<double>& faces_m, CfAxis* axis) {
+  const int layers = static_cast<int>(faces_m.size()) - 1;
+  const double depth_m = faces_m.back() - faces_m.front();
+  const int most_cells = std::max(kMostRefinement * layers, 256);
+  const int divisor = CommonDivisor(faces_m, most_cells);
+  axis->exact = divisor > 0;
+  const double thinnest_m = Thinnest_m(faces_m);
+  const double wanted = axis->exact ? std::round(depth_m * divisor / thinnest_m)
+                                    : std::min(std::ceil(depth_m / thinnest_m), 2.0 * layers);
+  axis->cells = static_cast<int>(wanted);
+  axis->low_m = faces_m.front();
+  axis->spacing_m = depth_m / axis->cells;
+  axis->shares.assign(static_cast<std::size_t>(axis->cells), {});
+  for (int cell = 0; cell < axis->cells; ++cell) {
+    const double low_m = axis->low_m + cell * axis->spacing_m;
+    for (int layer = 0; layer < layers; ++layer) {
+      const auto at = static_cast<std::size_t>(layer);
+      const double overlap_m =
+          std::min(faces_m[at + 1], low_m + axis->spacing_m) - std::max(faces_m[at], low_m);
+      const double share = overlap_m / axis->spacing_m;
+      if (share > kLatticeTolerance) {
+        axis->shares[static_cast<std::size_t>(cell)].push_back({layer, std::min(share, 1.0)});
+      }
+    }
+  }
+}
+
+absl::StatusOr<CfAxis> ReadCfAxis(const NetcdfFile& file, const std::string& dimension,
+                                  CfDirection direction, const CfSizes& sizes) {
+  const std::size_t length = file.DimensionLength(dimension).value_or(0);
+  if (length < 1 || length > kMostCells) {
+    return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": dimension ", dimension, " is ",
+                                                   length, "; 1 to ", kMostCells, " can be read"));
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(Coordinate coordinate,
+                               ReadCoordinate(file, dimension, direction, sizes.metres_per_degree));
+  CfAxis axis;
+  axis.dimension = dimension;
+  axis.file_cells = static_cast<int>(length);
+  axis.cells = axis.file_cells;
+  axis.middle_deg = coordinate.middle_deg;
+  std::vector<double>& centres_m = coordinate.centres_m;
+  std::vector<double>& faces_m = coordinate.faces_m;
+  axis.reversed = centres_m.front() > centres_m.back();
+  if (axis.reversed) std::ranges::reverse(centres_m);
+  THUNDERHEAD_RETURN_IF_ERROR(CheckMonotonic(file, dimension, centres_m));
+  if (faces_m.empty()) {
+    if (centres_m.size() > 1) {
+      faces_m = FacesAround(centres_m);
+    } else {
+      THUNDERHEAD_ASSIGN_OR_RETURN(
+          faces_m, FacesOfOne(file, dimension, direction, centres_m[0], sizes.single_cell_m));
+    }
+  }
+  if (faces_m.front() > faces_m.back()) std::ranges::reverse(faces_m);
+  THUNDERHEAD_RETURN_IF_ERROR(CheckMonotonic(file, dimension, faces_m));
+  axis.low_m = faces_m.front();
+  axis.spacing_m = (faces_m.back() - faces_m.front()) / axis.cells;
+  if (IsEven(faces_m)) return axis;
+  if (direction != CfDirection::kZ) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": the coordinate ", dimension,
+                     " is not evenly spaced; interpolate to even spacing first"));
+  }
+  EvenOut(faces_m, &axis);
+  return axis;
+}
+
+}  // namespace thunderhead::volume

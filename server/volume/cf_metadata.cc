@@ -1,0 +1,303 @@
+#include "volume/cf_metadata.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
+#include "base/status.h"
+#include "spdlog/spdlog.h"
+
+namespace thunderhead::volume {
+namespace {
+
+constexpr double kEarthRadius_m = 6.371e6;
+constexpr double kMetresPerDegree = kEarthRadius_m * std::numbers::pi / 180.0;
+
+// Where axes stand among a variable's dimensions.
+absl::StatusOr<CfVariable> Arrange(const NetcdfFile& file, const std::string& variable) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::string> names, file.Dimensions(variable));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, file.Shape(variable));
+  CfVariable arranged;
+  arranged.name = variable;
+  arranged.dimensions = static_cast<int>(names.size());
+  for (int i = 0; i < arranged.dimensions; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const auto direction = DirectionOf(DescribeCf(file, names[at]));
+    int* place = nullptr;
+    if (direction == CfDirection::kX) place = &arranged.x;
+    if (direction == CfDirection::kY) place = &arranged.y;
+    if (direction == CfDirection::kZ) place = &arranged.z;
+    if (direction == CfDirection::kTime) place = &arranged.time;
+    if (place != nullptr && *place < 0) {
+      *place = i;
+    } else if (shape[at] != 1) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          file.Path(), ": ", variable, " has a dimension ", names[at], " of ", shape[at],
+          " beside x, y, z and time; extract one of them, or give its coordinate an axis "
+          "attribute"));
+    }
+  }
+  const char* lacking = arranged.x < 0 ? "x" : arranged.y < 0 ? "y" : "z";
+  if (arranged.x >= 0 && arranged.y >= 0 && arranged.z >= 0) return arranged;
+  return absl::InvalidArgumentError(
+      absl::StrCat(file.Path(), ": none of the dimensions (", absl::StrJoin(names, ", "), ") of ",
+                   variable, " is known as ", lacking,
+                   "; name it so, or give its coordinate variable the attribute axis"));
+}
+
+std::vector<CfDescription> Describe(const NetcdfFile& file) {
+  std::vector<CfDescription> descriptions;
+  for (const std::string& name : file.Variables()) descriptions.push_back(DescribeCf(file, name));
+  return descriptions;
+}
+
+absl::Status WrongUnits(const NetcdfFile& file, const CfDescription& variable,
+                        const std::string& wanted) {
+  return absl::InvalidArgumentError(absl::StrCat(
+      file.Path(), ": ", variable.name,
+      variable.units.empty() ? " has no units" : absl::StrCat(" has units '", variable.units, "'"),
+      " where ", wanted, " is needed; convert it, or add its units attribute"));
+}
+
+absl::Status CheckQuantityUnits(const NetcdfFile& file, const CfDescription& variable,
+                                const CfQuantity& quantity) {
+  if (quantity.known_units) return absl::OkStatus();
+  return WrongUnits(file, variable,
+                    quantity.quantity == Quantity::kExtinction ? "'m-1'" : "'kg kg-1' or 'kg m-3'");
+}
+
+// The hydrometeors; or the extinction alone, which is that of them all.
+absl::Status FindFields(const NetcdfFile& file, const std::vector<CfDescription>& variables,
+                        CfMetadata* metadata) {
+  std::vector<CfField>& fields = metadata->fields;
+  for (const CfDescription& variable : variables) {
+    const std::optional<CfQuantity> quantity = QuantityOf(variable);
+    if (!quantity.has_value()) continue;
+    // Column totals and the like share the names.
+    THUNDERHEAD_ASSIGN_OR_RETURN(const auto shape, file.Shape(variable.name));
+    if (shape.size() < 3) continue;
+    THUNDERHEAD_RETURN_IF_ERROR(CheckQuantityUnits(file, variable, *quantity));
+    THUNDERHEAD_ASSIGN_OR_RETURN(CfVariable arranged, Arrange(file, variable.name));
+    const auto same = [&](const CfField& field) {
+      return field.quantity.hydrometeor == quantity->hydrometeor &&
+             (field.quantity.quantity == Quantity::kExtinction) ==
+                 (quantity->quantity == Quantity::kExtinction);
+    };
+    if (const auto first = std::ranges::find_if(fields, same); first != fields.end()) {
+      spdlog::info("{}: {} is left out: {} says the same", file.Path(), variable.name,
+                   first->variable.name);
+      continue;
+    }
+    fields.push_back({std::move(arranged), *quantity});
+  }
+  const auto extinction = std::ranges::find_if(fields, [](const CfField& field) {
+    return field.quantity.quantity == Quantity::kExtinction;
+  });
+  if (extinction != fields.end() && fields.size() > 1) {
+    spdlog::info("{}: only its extinction is used, not its hydrometeors", file.Path());
+    fields = {*extinction};
+  }
+  std::ranges::stable_sort(fields, {}, [](const CfField& field) {
+    return physics::IndexOf(field.quantity.hydrometeor);
+  });
+  return absl::OkStatus();
+}
+
+bool Has(const CfMetadata& metadata, AirVariable variable) {
+  return std::ranges::any_of(
+      metadata.air, [variable](const CfAirField& field) { return field.air.variable == variable; });
+}
+
+// What mixing ratios need to become masses per volume.
+absl::Status FindAir(const NetcdfFile& file, const std::vector<CfDescription>& variables,
+                     CfMetadata* metadata) {
+  const auto ratio = std::ranges::find_if(metadata->fields, [](const CfField& field) {
+    return field.quantity.quantity == Quantity::kMixingRatio;
+  });
+  if (ratio == metadata->fields.end()) return absl::OkStatus();
+  for (const CfDescription& variable : variables) {
+    const std::optional<CfAir> air = AirVariableOf(variable);
+    if (!air.has_value() || Has(*metadata, air->variable)) continue;
+    THUNDERHEAD_ASSIGN_OR_RETURN(const auto shape, file.Shape(variable.name));
+    if (shape.size() < 3) continue;
+    if (!air->known_units) return WrongUnits(file, variable, "kg m-3, Pa, K or kg kg-1");
+    THUNDERHEAD_ASSIGN_OR_RETURN(CfVariable arranged, Arrange(file, variable.name));
+    metadata->air.push_back({std::move(arranged), *air});
+  }
+  const bool warm = Has(*metadata, AirVariable::kTemperature) ||
+                    Has(*metadata, AirVariable::kPotentialTemperature);
+  if (Has(*metadata, AirVariable::kDensity) || (Has(*metadata, AirVariable::kPressure) && warm)) {
+    return absl::OkStatus();
+  }
+  return absl::InvalidArgumentError(absl::StrCat(
+      file.Path(), ": ", ratio->variable.name,
+      " is per kg of air, and the file lacks the air's density; add air_density (kg m-3), or "
+      "air_pressure (Pa) with air_temperature (K), or give masses in kg m-3"));
+}
+
+absl::Status ReadAxes(const NetcdfFile& file, CfMetadata* metadata) {
+  const CfVariable& first = metadata->fields.front().variable;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const auto names, file.Dimensions(first.name));
+  auto& [x, y, z] = metadata->axes;
+  const auto read = [&](int place, CfDirection direction, const CfSizes& sizes, CfAxis* axis) {
+    auto result = ReadCfAxis(file, names[static_cast<std::size_t>(place)], direction, sizes);
+    if (result.ok()) *axis = *std::move(result);
+    return result.status();
+  };
+  const bool single_y = file.DimensionLength(names[static_cast<std::size_t>(first.y)]) == 1U;
+  CfSizes sizes{kMetresPerDegree, 0.0};
+  // A slice of one cell is as wide as the cells along it.
+  if (single_y && read(first.x, CfDirection::kX, sizes, &x).ok()) sizes.single_cell_m = x.spacing_m;
+  THUNDERHEAD_RETURN_IF_ERROR(read(first.y, CfDirection::kY, sizes, &y));
+  const double latitude_deg = y.middle_deg.value_or(0.0);
+  sizes = {kMetresPerDegree * std::cos(latitude_deg * std::numbers::pi / 180.0), y.spacing_m};
+  THUNDERHEAD_RETURN_IF_ERROR(read(first.x, CfDirection::kX, sizes, &x));
+  THUNDERHEAD_RETURN_IF_ERROR(read(first.z, CfDirection::kZ, sizes, &z));
+  if (!metadata->axes[2].exact) {
+    spdlog::warn("{}: its layers are uneven; {} of them are averaged onto {} of {:.1f} m",
+                 file.Path(), metadata->axes[2].file_cells, metadata->axes[2].cells,
+                 metadata->axes[2].spacing_m);
+  }
+  return absl::OkStatus();
+}
+
+// All variables must lie on the axes of the first.
+absl::Status CheckSameAxes(const NetcdfFile& file, const CfVariable& variable,
+                           const CfMetadata& metadata) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const auto names, file.Dimensions(variable.name));
+  const std::array places = {variable.x, variable.y, variable.z};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string& name = names[static_cast<std::size_t>(places[axis])];
+    if (name == metadata.axes[axis].dimension) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": ", variable.name, " lies on ", name, " where ",
+                     metadata.fields.front().variable.name, " lies on ",
+                     metadata.axes[axis].dimension, "; put all on one grid"));
+  }
+  return absl::OkStatus();
+}
+
+struct TimeUnits {
+  absl::Time origin;
+  double seconds = 1.0;
+};
+
+// "minutes since 2013-05-20 18:00".
+std::optional<TimeUnits> ParseTimeUnits(const std::string& units) {
+  const std::vector<std::string> words =
+      absl::StrSplit(units, absl::ByAnyChar(" T"), absl::SkipEmpty());
+  if (words.size() < 3 || words[1] != "since") return std::nullopt;
+  const std::string unit = absl::AsciiStrToLower(words[0]);
+  TimeUnits parsed;
+  if (unit.starts_with("day") || unit == "d") {
+    parsed.seconds = 86400.0;
+  } else if (unit.starts_with("hour") || unit == "h" || unit == "hr") {
+    parsed.seconds = 3600.0;
+  } else if (unit.starts_with("min")) {
+    parsed.seconds = 60.0;
+  } else if (!unit.starts_with("sec") && unit != "s") {
+    return std::nullopt;
+  }
+  int year = 0;
+  int month = 0;
+  int day = 0;
+  int hour = 0;
+  int minute = 0;
+  double second = 0.0;
+  if (std::sscanf(words[2].c_str(), "%d-%d-%d", &year, &month, &day) != 3) return std::nullopt;
+  if (words.size() > 3) std::sscanf(words[3].c_str(), "%d:%d:%lf", &hour, &minute, &second);
+  const absl::CivilSecond civil(year, month, day, hour, minute, 0);
+  parsed.origin = absl::FromCivil(civil, absl::UTCTimeZone()) + absl::Seconds(second);
+  return parsed;
+}
+
+absl::Status ReadTimes(const NetcdfFile& file, CfMetadata* metadata) {
+  // Without a date a storm is idealised, as WRF dates such runs.
+  const absl::Time nowhen = absl::FromCivil(absl::CivilSecond(1, 1, 1), absl::UTCTimeZone());
+  const CfVariable& first = metadata->fields.front().variable;
+  if (first.time < 0) {
+    metadata->times = {nowhen};
+    return absl::OkStatus();
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const auto names, file.Dimensions(first.name));
+  const std::string& name = names[static_cast<std::size_t>(first.time)];
+  const std::size_t records = file.DimensionLength(name).value_or(0);
+  if (records == 0) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        file.Path(), ": holds no times yet; the model may still be writing it: try again later"));
+  }
+  const std::string units = DescribeCf(file, name).units;
+  const std::optional<TimeUnits> parsed = ParseTimeUnits(units);
+  if (!parsed.has_value() && records > 1) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        file.Path(), ": the coordinate ", name, " has units '", units,
+        "' where 'seconds since 2013-05-20 18:00:00' or the like is needed; add them"));
+  }
+  if (!parsed.has_value()) {
+    metadata->times = {nowhen};
+    return absl::OkStatus();
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<double> values, file.ReadDoubles(name));
+  for (const double value : values) {
+    if (!std::isfinite(value)) {
+      return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": the coordinate ", name,
+                                                     " has missing values; fill them in"));
+    }
+    metadata->times.push_back(parsed->origin + absl::Seconds(value * parsed->seconds));
+  }
+  return absl::OkStatus();
+}
+
+std::optional<std::string> FindSurface(const NetcdfFile& file,
+                                       const std::vector<CfDescription>& variables,
+                                       const CfMetadata& metadata) {
+  const std::vector<std::string> on = {metadata.axes[1].dimension, metadata.axes[0].dimension};
+  for (const CfDescription& variable : variables) {
+    if (variable.standard_name != "surface_altitude" || MetresIn(variable.units) != 1.0) continue;
+    const auto names = file.Dimensions(variable.name);
+    if (names.ok() && *names == on) return variable.name;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool LooksLikeCf(const NetcdfFile& file) {
+  return std::ranges::any_of(Describe(file), [](const CfDescription& variable) {
+    return QuantityOf(variable).has_value();
+  });
+}
+
+absl::StatusOr<CfMetadata> ReadCfMetadata(const NetcdfFile& file) {
+  const std::vector<CfDescription> variables = Describe(file);
+  CfMetadata metadata;
+  metadata.path = file.Path();
+  THUNDERHEAD_RETURN_IF_ERROR(FindFields(file, variables, &metadata));
+  if (metadata.fields.empty()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(),
+                     ": no variable on x, y and z is a hydrometeor (by standard name, e.g. "
+                     "mass_concentration_of_cloud_liquid_water_in_air) or 'extinction' (m-1); "
+                     "add one"));
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(ReadAxes(file, &metadata));
+  THUNDERHEAD_RETURN_IF_ERROR(FindAir(file, variables, &metadata));
+  for (const CfField& field : metadata.fields) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckSameAxes(file, field.variable, metadata));
+  }
+  for (const CfAirField& field : metadata.air) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckSameAxes(file, field.variable, metadata));
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(ReadTimes(file, &metadata));
+  metadata.surface = FindSurface(file, variables, metadata);
+  metadata.source = file.TextAttribute("", "title").value_or("");
+  if (metadata.source.empty()) metadata.source = file.TextAttribute("", "source").value_or("");
+  return metadata;
+}
+
+}  // namespace thunderhead::volume

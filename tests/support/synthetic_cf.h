@@ -1,0 +1,45 @@
+// Writes small CF files: any axes, any variables. Calls netCDF-C without a lock: write files before
+// anything reads.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace thunderhead::testing {
+
+struct CfCoordinate {
+  std::string name;
+  std::vector<double> values;  // the dimension is as long
+  std::map<std::string, std::string> attributes;
+  std::vector<double> faces;  // one more than values: written as bounds
+  bool written = true;        // false: a dimension without a coordinate variable
+};
+
+struct CfContent {
+  std::string name;
+  std::vector<std::string> dimensions;  // slowest first
+  std::map<std::string, std::string> attributes;
+  // The value at indices along x, y, z, time by those coordinates' names; 0 for others.
+  std::function<double(const std::map<std::string, std::size_t>&)> value;
+};
+
+struct SyntheticCf {
+  std::vector<CfCoordinate> coordinates;
+  std::vector<CfContent> variables;
+  std::map<std::string, std::string> attributes;
+};
+
+void WriteCf(const SyntheticCf& file, const std::string& path);
+
+// Cell middles of `count` even cells from `low`.
+std::vector<double> Middles(std::size_t count, double low, double spacing);
+
+// A file with the variable `extinction` (1/m) on z, y, x in metres.
+SyntheticCf ExtinctionFile(std::size_t nx, std::size_t ny, std::size_t nz, double dx_m, double dy_m,
+                           double dz_m,
+                           std::function<double(std::size_t, std::size_t, std::size_t)> value);
+
+}  // namespace thunderhead::testing

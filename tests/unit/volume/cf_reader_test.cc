@@ -1,0 +1,381 @@
+// CF files as storms: axes in any order and direction, quantities by standard name or name, clear
+// errors for what a file lacks.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "physics/air.h"
+#include "tests/support/synthetic_cf.h"
+#include "tests/support/temporary_folder.h"
+#include "volume/cf_axes.h"
+#include "volume/cf_names.h"
+#include "volume/storm_store.h"
+
+namespace thunderhead::volume {
+namespace {
+
+using testing::CfContent;
+using testing::CfCoordinate;
+using testing::ExtinctionFile;
+using ::testing::HasSubstr;
+using testing::Middles;
+using ::testing::SizeIs;
+using testing::SyntheticCf;
+using testing::TemporaryFolder;
+using Index = std::map<std::string, std::size_t>;
+
+// Different in every cell, all above zero.
+double Value(std::size_t x, std::size_t y, std::size_t z) {
+  return 1e-3 * static_cast<double>(1 + x + 10 * y + 100 * z);
+}
+
+class CfReader : public ::testing::Test {
+ protected:
+  absl::StatusOr<std::shared_ptr<const HydrometeorFields>> Read(const SyntheticCf& file,
+                                                                int time = 0) {
+    testing::WriteCf(file, path_);
+    auto store = StormStore::Open({path_}, {.read_ahead = 0});
+    if (!store.ok()) return store.status();
+    info_ = (*store)->Storms().front();
+    return (*store)->Get(info_.id, time, {});
+  }
+
+  void ExpectError(const SyntheticCf& file, const std::string& what) {
+    const auto fields = Read(file);
+    ASSERT_FALSE(fields.ok()) << what;
+    EXPECT_THAT(std::string(fields.status().message()), HasSubstr(path_));
+    EXPECT_THAT(std::string(fields.status().message()), HasSubstr(what));
+  }
+
+  void ExpectValues(const HydrometeorFields& fields) {
+    ASSERT_THAT(fields.fields, SizeIs(1));
+    const auto& values = fields.fields[0].concentration_kg_per_m3;
+    ASSERT_THAT(values, SizeIs(fields.grid.CellCount()));
+    for (int z = 0; z < fields.grid.cells.z; ++z) {
+      for (int y = 0; y < fields.grid.cells.y; ++y) {
+        for (int x = 0; x < fields.grid.cells.x; ++x) {
+          EXPECT_FLOAT_EQ(values[fields.grid.Offset(x, y, z)], static_cast<float>(Value(x, y, z)));
+        }
+      }
+    }
+  }
+
+  TemporaryFolder folder_;
+  std::string path_ = folder_.File("cloud.nc");
+  StormInfo info_;
+};
+
+SyntheticCf Small() { return ExtinctionFile(4, 3, 2, 100.0, 200.0, 50.0, Value); }
+
+TEST_F(CfReader, ReadsExtinctionAsOneFieldOnItsGrid) {
+  const auto fields = Read(Small());
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->grid.cells, glm::ivec3(4, 3, 2));
+  EXPECT_EQ((*fields)->grid.spacing_m, glm::dvec3(100.0, 200.0, 50.0));
+  EXPECT_EQ((*fields)->grid.low_corner_m, glm::dvec3(-200.0, -300.0, 0.0));
+  ExpectValues(**fields);
+  const HydrometeorField& field = (*fields)->fields[0];
+  EXPECT_EQ(field.quantity, Quantity::kExtinction);
+  EXPECT_EQ(field.variable, "extinction");
+  physics::ParticleOptics optics = physics::DefaultOptics(field.hydrometeor);
+  EXPECT_EQ(MassExtinction_m2_per_kg(field, optics), 1.0F);
+  optics.radius_m *= 7.0F;
+  EXPECT_EQ(MassExtinction_m2_per_kg(field, optics), 1.0F);
+  EXPECT_NEAR(field.statistics.maximum_water_path_kg_per_m2,
+              50.0 * (Value(3, 2, 0) + Value(3, 2, 1)), 1e-4);
+  EXPECT_EQ((*fields)->condensate, (CellBox{{0, 0, 0}, {4, 3, 2}}));
+  EXPECT_EQ(info_.times[0].valid_time, "0001-01-01T00:00:00Z");
+}
+
+TEST_F(CfReader, TakesAnyOrderOfDimensions) {
+  for (const std::vector<std::string>& order : {std::vector<std::string>{"x", "y", "z"},
+                                                {"y", "z", "x"},
+                                                {"z", "x", "y"},
+                                                {"x", "z", "y"},
+                                                {"y", "x", "z"}}) {
+    SyntheticCf file = Small();
+    file.variables[0].dimensions = order;
+    const auto fields = Read(file);
+    ASSERT_TRUE(fields.ok()) << fields.status();
+    ExpectValues(**fields);
+  }
+}
+
+TEST_F(CfReader, TakesAxesThatRunWestSouthOrDown) {
+  for (const std::size_t reversed : {0U, 1U, 2U}) {
+    SyntheticCf file = Small();
+    CfCoordinate& axis = file.coordinates[reversed];
+    std::ranges::reverse(axis.values);
+    const std::size_t last = axis.values.size() - 1;
+    const std::string name = axis.name;
+    file.variables[0].value = [last, name](Index at) {
+      at[name] = last - at[name];
+      return Value(at["x"], at["y"], at["z"]);
+    };
+    const auto fields = Read(file);
+    ASSERT_TRUE(fields.ok()) << fields.status();
+    EXPECT_EQ((*fields)->grid.low_corner_m, glm::dvec3(-200.0, -300.0, 0.0));
+    ExpectValues(**fields);
+  }
+}
+
+TEST_F(CfReader, DepthsPointDown) {
+  SyntheticCf file = Small();
+  file.coordinates[2] = {"level", {-25.0, -75.0}, {{"units", "m"}, {"positive", "down"}}, {}};
+  file.variables[0].dimensions[0] = "level";
+  file.variables[0].value = [](Index at) { return Value(at["x"], at["y"], at["level"]); };
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->grid.low_corner_m.z, 0.0);
+  ExpectValues(**fields);
+}
+
+// Names say nothing; one thing each tells the axis.
+TEST_F(CfReader, AxesAreKnownByAttributesStandardNamesOrUnits) {
+  SyntheticCf file = Small();
+  file.coordinates[0] = {"a", Middles(4, 0.0, 0.1), {{"units", "km"}, {"axis", "X"}}, {}};
+  file.coordinates[1] = {"b",
+                         Middles(3, 7.0, 200.0),
+                         {{"units", "m"}, {"standard_name", "projection_y_coordinate"}},
+                         {}};
+  file.coordinates[2] = {"c", Middles(2, 0.0, 50.0), {{"units", "m"}, {"positive", "up"}}, {}};
+  file.variables[0].dimensions = {"a", "c", "b"};
+  file.variables[0].value = [](Index at) { return Value(at["a"], at["b"], at["c"]); };
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_NEAR((*fields)->grid.spacing_m.x, 100.0, 1e-9);
+  ExpectValues(**fields);
+}
+
+TEST_F(CfReader, SingleCellsHaveTheSizeOfTheirBounds) {
+  SyntheticCf file = ExtinctionFile(1, 1, 1, 100.0, 200.0, 50.0, Value);
+  file.coordinates[0].faces = {1000.0, 1300.0};
+  file.coordinates[2].faces = {500.0, 450.0};
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->grid.spacing_m, glm::dvec3(300.0, 200.0, 50.0));
+  EXPECT_EQ((*fields)->grid.low_corner_m.z, 450.0);
+  file.coordinates[2].faces = {};
+  file.coordinates[2].values = {0.0};
+  ExpectError(file, "bounds");
+  // A slice of one cell at 0 is as wide as its other cells.
+  file = ExtinctionFile(4, 1, 1, 100.0, 1.0, 50.0, Value);
+  file.coordinates[1].values = {0.0};
+  const auto slice = Read(file);
+  ASSERT_TRUE(slice.ok()) << slice.status();
+  EXPECT_EQ((*slice)->grid.spacing_m, glm::dvec3(100.0, 100.0, 50.0));
+}
+
+// Layers of 50, 50, 100 and 200 m become eight of 50 m, each wholly of one layer.
+TEST_F(CfReader, UnevenLayersBecomeEvenOnesExactlyWhereTheyCan) {
+  SyntheticCf file = ExtinctionFile(2, 2, 4, 100.0, 100.0, 1.0, Value);
+  file.coordinates[2].values = {25.0, 75.0, 150.0, 300.0};
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->grid.cells.z, 8);
+  const int layer_of_cell[8] = {0, 1, 2, 2, 3, 3, 3, 3};
+  for (int z = 0; z < 8; ++z) {
+    EXPECT_FLOAT_EQ((*fields)->fields[0].concentration_kg_per_m3[(*fields)->grid.Offset(1, 1, z)],
+                    static_cast<float>(Value(1, 1, static_cast<std::size_t>(layer_of_cell[z]))));
+  }
+}
+
+// Layers that stretch by 7.3 % each: the column's optical depth is kept.
+TEST_F(CfReader, UnevenLayersKeepTheirOpticalDepth) {
+  SyntheticCf file = ExtinctionFile(1, 1, 20, 100.0, 100.0, 1.0, Value);
+  std::vector<double> faces = {0.0};
+  double depth = 0.0;
+  for (std::size_t z = 0; z < 20; ++z) {
+    const double thickness_m = 30.0 * std::pow(1.073, static_cast<double>(z));
+    file.coordinates[2].values[z] = faces.back() + 0.5 * thickness_m;
+    faces.push_back(faces.back() + thickness_m);
+    depth += thickness_m * Value(0, 0, z);
+  }
+  for (const bool bounds : {false, true}) {
+    if (bounds) file.coordinates[2].faces = faces;
+    const auto fields = Read(file);
+    ASSERT_TRUE(fields.ok()) << fields.status();
+    EXPECT_NEAR((*fields)->grid.HighCorner_m().z, faces.back(), 1e-6);
+    EXPECT_NEAR((*fields)->fields[0].statistics.mean_water_path_kg_per_m2, depth, 1e-5 * depth);
+  }
+}
+
+SyntheticCf Water(const std::string& name, const std::map<std::string, std::string>& attributes,
+                  double amount) {
+  SyntheticCf file = Small();
+  file.variables[0] = {
+      name, {"z", "y", "x"}, attributes, [amount](const Index&) { return amount; }};
+  return file;
+}
+
+TEST_F(CfReader, HydrometeorsByStandardNameOrNameInTheirUnits) {
+  struct Case {
+    std::string name;
+    std::map<std::string, std::string> attributes;
+    double amount;
+    physics::Hydrometeor hydrometeor;
+    float concentration_kg_per_m3;
+  };
+  using physics::Hydrometeor;
+  const std::string concentration = "mass_concentration_of_";
+  for (const Case& c : {
+           Case{"w",
+                {{"standard_name", concentration + "cloud_liquid_water_in_air"},
+                 {"units", "kg m-3"}},
+                2e-4,
+                Hydrometeor::kCloud,
+                2e-4F},
+           Case{"w",
+                {{"standard_name", concentration + "liquid_water_in_air"}, {"units", "g m**-3"}},
+                0.5,
+                Hydrometeor::kCloud,
+                5e-4F},
+           Case{"lwc", {{"units", "g/m^3"}}, 0.3, Hydrometeor::kCloud, 3e-4F},
+           Case{"QS", {{"units", "mg m-3"}}, 70.0, Hydrometeor::kSnow, 7e-5F},
+           Case{"hail",
+                {{"standard_name", concentration + "hail_in_air"}, {"units", "kg m-3"}},
+                1e-3,
+                Hydrometeor::kHail,
+                1e-3F},
+       }) {
+    SCOPED_TRACE(c.name + " " + c.attributes.begin()->second);
+    const auto fields = Read(Water(c.name, c.attributes, c.amount));
+    ASSERT_TRUE(fields.ok()) << fields.status();
+    const HydrometeorField& field = (*fields)->fields[0];
+    EXPECT_EQ(field.hydrometeor, c.hydrometeor);
+    EXPECT_EQ(field.quantity, Quantity::kMassConcentration);
+    EXPECT_FLOAT_EQ(field.concentration_kg_per_m3[5], c.concentration_kg_per_m3);
+    EXPECT_FLOAT_EQ(field.statistics.maximum, c.concentration_kg_per_m3);
+  }
+}
+
+CfContent Uniform(const std::string& name, const std::string& units, double value) {
+  return {name, {"y", "z", "x"}, {{"units", units}}, [value](const Index&) { return value; }};
+}
+
+// Mixing ratios times the density of the air that they refer to.
+TEST_F(CfReader, MixingRatiosTakeTheAirsDensity) {
+  const double q_v = 0.01;
+  const double dry = physics::DryAirDensity_kg_per_m3(9e4, 290.0, q_v);
+  SyntheticCf file = Water("qc", {{"units", "g/kg"}}, 0.8);
+  file.variables.push_back(Uniform("prs", "hPa", 900.0));
+  file.variables.push_back(Uniform("temp", "K", 290.0));
+  file.variables.push_back(Uniform("qv", "kg/kg", q_v));
+  auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_NEAR((*fields)->fields[0].concentration_kg_per_m3[3], 0.8e-3 * dry, 1e-9);
+  EXPECT_FLOAT_EQ((*fields)->fields[0].statistics.maximum, 0.8e-3F);
+  file.variables[0] =
+      Water("w", {{"standard_name", "mass_fraction_of_cloud_liquid_water_in_air"}, {"units", "1"}},
+            0.8e-3)
+          .variables[0];
+  fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_NEAR((*fields)->fields[0].concentration_kg_per_m3[3], 0.8e-3 * dry * (1.0 + q_v), 1e-9);
+  file.variables = {file.variables[0], Uniform("rho", "kg m-3", 0.9)};
+  fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_NEAR((*fields)->fields[0].concentration_kg_per_m3[3], 0.8e-3 * 0.9, 1e-9);
+}
+
+TEST_F(CfReader, TimesAreRecords) {
+  SyntheticCf file = Small();
+  file.coordinates.push_back(
+      {"time", {0.0, 90.5}, {{"units", "minutes since 2013-05-20 18:00:00"}}, {}});
+  file.variables[0].dimensions = {"time", "z", "y", "x"};
+  file.variables[0].value = [](Index at) {
+    return Value(at["x"], at["y"], at["z"]) * (at["time"] == 1 ? 1.0 : 2.0);
+  };
+  const auto fields = Read(file, 1);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  ExpectValues(**fields);
+  ASSERT_THAT(info_.times, SizeIs(2));
+  EXPECT_EQ(info_.times[1].valid_time, "2013-05-20T19:30:30Z");
+}
+
+TEST_F(CfReader, DegreesHaveAPlaceOnEarth) {
+  SyntheticCf file = Small();
+  file.coordinates[0] = {"lon", {9.98, 9.99, 10.0, 10.01}, {{"units", "degrees_east"}}, {}};
+  file.coordinates[1] = {"lat", {59.99, 60.0, 60.01}, {{"units", "degrees_north"}}, {}};
+  file.variables[0].dimensions = {"z", "lat", "lon"};
+  file.variables[0].value = [](Index at) { return Value(at["lon"], at["lat"], at["z"]); };
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_NEAR((*fields)->grid.spacing_m.y, 1111.9, 0.1);
+  EXPECT_NEAR((*fields)->grid.spacing_m.x, 0.5 * 1111.9, 0.1);
+  EXPECT_NEAR(info_.latitude_deg.value(), 60.0, 1e-9);
+  EXPECT_NEAR(info_.longitude_deg.value(), 9.995, 1e-9);
+}
+
+TEST_F(CfReader, MissingAndNegativeCellsAreEmptyAndCounted) {
+  SyntheticCf file = Small();
+  file.variables[0].value = [](Index at) {
+    if (at["x"] == 0) return std::nan("");
+    if (at["x"] == 1) return -999.0;
+    return at["x"] == 2 ? -1e-9 : 0.01;
+  };
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  const HydrometeorField& field = (*fields)->fields[0];
+  EXPECT_EQ(field.statistics.missing_cells, 12);
+  EXPECT_EQ(field.statistics.negative_cells, 6);
+  EXPECT_EQ((*fields)->condensate, (CellBox{{3, 0, 0}, {4, 3, 2}}));
+}
+
+TEST_F(CfReader, SaysWhatAFileLacks) {
+  SyntheticCf file = Small();
+  file.variables[0].name = "brightness";
+  ExpectError(file, "neither WRF");
+  file = Small();
+  file.coordinates[0].written = false;
+  ExpectError(file, "no coordinate variable x");
+  file = Small();
+  file.coordinates[0].values[2] += 30.0;
+  ExpectError(file, "not evenly spaced");
+  file = Small();
+  file.coordinates[1].values[2] = file.coordinates[1].values[0];
+  ExpectError(file, "neither rises nor falls");
+  file = Small();
+  file.coordinates[2].attributes["units"] = "hPa";
+  ExpectError(file, "heights in m or km");
+  file = Small();
+  file.variables[0].attributes["units"] = "dBZ";
+  ExpectError(file, "'m-1' is needed");
+  ExpectError(Water("qc", {{"units", "kg kg-1"}}, 1e-3), "lacks the air's density");
+  ExpectError(Water("qc", {}, 1e-3), "has no units");
+  ExpectError(Water("lwc", {{"units", "kg m-3"}}, 0.8), "no air can hold");
+  file = Small();
+  file.coordinates.push_back({"member", {1.0, 2.0}, {}, {}});
+  file.variables[0].dimensions = {"member", "z", "y", "x"};
+  ExpectError(file, "member");
+  file = Small();
+  file.coordinates[2].name = "q";
+  file.variables[0].dimensions[0] = "q";
+  file.variables[0].value = [](const Index&) { return 0.0; };
+  ExpectError(file, "q");
+}
+
+TEST(CfNames, UnitsAreReadInTheirSpellings) {
+  EXPECT_EQ(PlainUnits("kg m**-3"), "kgm-3");
+  EXPECT_EQ(PlainUnits("g.m^(-3)"), "gm-3");
+  EXPECT_EQ(MetresIn("km"), 1000.0);
+  EXPECT_FALSE(MetresIn("hPa").has_value());
+}
+
+TEST(EvenOut, FindsACommonDivisorOfThickness) {
+  CfAxis axis;
+  EvenOut({0.0, 20.0, 50.0, 100.0}, &axis);
+  EXPECT_TRUE(axis.exact);
+  EXPECT_EQ(axis.cells, 10);
+  EvenOut({0.0, 31.4, 100.0}, &axis);
+  EXPECT_FALSE(axis.exact);
+  for (const auto& cell : axis.shares) {
+    double sum = 0.0;
+    for (const LayerShare& part : cell) sum += part.share;
+    EXPECT_NEAR(sum, 1.0, 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace thunderhead::volume
