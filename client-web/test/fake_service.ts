@@ -223,7 +223,8 @@ function describe(stormId: string, timeIndex: number) {
     fields: FIELDS.map((hydrometeor, i) => ({
       hydrometeor,
       variable: "Q",
-      maximumKgPerKg: 4e-3,
+      units: "kg kg-1",
+      maximum: 4e-3,
       meanWaterPathKgPerM2: 0.8,
       defaults: create(FieldParametersSchema, {
         hydrometeor,

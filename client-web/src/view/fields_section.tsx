@@ -93,6 +93,18 @@ function FieldRow({ state, field }: { state: PageState; field: FieldDescription 
   );
 }
 
+/** Fields of this unit are extinction already: a particle's size changes nothing. */
+const EXTINCTION_UNITS = "m-1";
+
+function amountOf(field: FieldDescription): string {
+  const path = formatNumber(field.meanWaterPathKgPerM2);
+  if (field.units === EXTINCTION_UNITS) {
+    return `${field.variable}: up to ${formatNumber(field.maximum * 1000)} /km, mean optical depth ${path}`;
+  }
+  const unit = field.units === "kg m-3" ? "g/m³" : "g/kg";
+  return `${field.variable}: up to ${formatNumber(field.maximum * 1000)} ${unit}, column mean ${path} kg/m²`;
+}
+
 function ParticleSettings({ state, field }: { state: PageState; field: FieldDescription }) {
   const { hydrometeor, defaults } = field;
   void state.fields.value;
@@ -103,22 +115,26 @@ function ParticleSettings({ state, field }: { state: PageState; field: FieldDesc
   const { phase } = shown;
   return (
     <>
-      <Slider
-        label="Radius"
-        limits={LIMITS.fieldRadius}
-        value={shown.radiusM}
-        initial={defaults?.radiusM}
-        testId={`field-${id}-radius`}
-        onChange={(radiusM) => edit({ radiusM })}
-      />
-      <Slider
-        label="Density"
-        limits={LIMITS.fieldDensity}
-        value={shown.densityKgPerM3}
-        initial={defaults?.densityKgPerM3}
-        testId={`field-${id}-density`}
-        onChange={(densityKgPerM3) => edit({ densityKgPerM3 })}
-      />
+      {field.units !== EXTINCTION_UNITS && (
+        <>
+          <Slider
+            label="Radius"
+            limits={LIMITS.fieldRadius}
+            value={shown.radiusM}
+            initial={defaults?.radiusM}
+            testId={`field-${id}-radius`}
+            onChange={(radiusM) => edit({ radiusM })}
+          />
+          <Slider
+            label="Density"
+            limits={LIMITS.fieldDensity}
+            value={shown.densityKgPerM3}
+            initial={defaults?.densityKgPerM3}
+            testId={`field-${id}-density`}
+            onChange={(densityKgPerM3) => edit({ densityKgPerM3 })}
+          />
+        </>
+      )}
       <Slider
         label="Albedo"
         limits={LIMITS.fieldAlbedo}
@@ -147,8 +163,7 @@ function ParticleSettings({ state, field }: { state: PageState; field: FieldDesc
         />
       )}
       <p class="quiet">
-        {field.variable}: up to {formatNumber(field.maximumKgPerKg * 1000)} g/kg, column mean{" "}
-        {formatNumber(field.meanWaterPathKgPerM2)} kg/m² at this time
+        {amountOf(field)} at this time
         {field.missingCells > 0n && `; ${field.missingCells} cells missing`}
       </p>
     </>
