@@ -124,6 +124,8 @@ Command AddRender(CLI::App& app) {
   render->add_option("--size", flags->scene.size, "WIDTHxHEIGHT in pixels");
   render->add_option("--camera", flags->scene.camera, "orbit, spotter or top-down");
   render->add_option("--slices", flags->scene.slices, "Number of slices");
+  render->add_option("--renderer", flags->scene.renderer,
+                     "half_angle or light_volume (the default)");
   render->add_option("--server", flags->server, "HOST:PORT of a running server's gRPC");
   render->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();

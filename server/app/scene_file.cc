@@ -62,6 +62,17 @@ absl::Status SetCamera(const std::string& kind, v1::Camera& camera) {
   return absl::OkStatus();
 }
 
+absl::Status SetRenderer(const std::string& name, v1::Rendering& rendering) {
+  v1::Renderer renderer = v1::RENDERER_UNSPECIFIED;
+  const std::string value = absl::StrCat("RENDERER_", absl::AsciiStrToUpper(name));
+  if (!v1::Renderer_Parse(value, &renderer) || renderer == v1::RENDERER_UNSPECIFIED) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--renderer is '", name, "'; it must be half_angle or light_volume"));
+  }
+  rendering.set_renderer(renderer);
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::StatusOr<v1::Scene> ReadScene(const SceneFlags& flags) {
@@ -76,6 +87,9 @@ absl::StatusOr<v1::Scene> ReadScene(const SceneFlags& flags) {
   }
   if (!flags.camera.empty()) {
     THUNDERHEAD_RETURN_IF_ERROR(SetCamera(flags.camera, *scene.mutable_camera()));
+  }
+  if (!flags.renderer.empty()) {
+    THUNDERHEAD_RETURN_IF_ERROR(SetRenderer(flags.renderer, *scene.mutable_rendering()));
   }
   return scene;
 }

@@ -13,8 +13,9 @@ struct SceneFlags {
   std::string file;  // may be empty
   std::optional<std::uint32_t> time_index;
   std::optional<std::uint32_t> slices;
-  std::string size;    // WxH, may be empty
-  std::string camera;  // orbit, spotter or top-down; may be empty
+  std::string size;      // WxH, may be empty
+  std::string camera;    // orbit, spotter or top-down; may be empty
+  std::string renderer;  // "half_angle" and so on, may be empty
 };
 
 // INVALID_ARGUMENT names the file or flag and what is wrong with it.

@@ -16,12 +16,13 @@ void DeleteVertexArray(GLuint name) { glDeleteVertexArrays(1, &name); }
 
 namespace {
 
-GLuint NewTexture(GLenum target, Edge edge) {
+GLuint NewTexture(GLenum target, Edge edge, Filter filter = Filter::kLinear) {
   GLuint name = 0;
   glCreateTextures(target, 1, &name);
   const GLint wrap = edge == Edge::kZero ? GL_CLAMP_TO_BORDER : GL_CLAMP_TO_EDGE;
-  glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  const GLint sampling = filter == Filter::kLinear ? GL_LINEAR : GL_NEAREST;
+  glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, sampling);
+  glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, sampling);
   glTextureParameteri(name, GL_TEXTURE_WRAP_S, wrap);
   glTextureParameteri(name, GL_TEXTURE_WRAP_T, wrap);
   glTextureParameteri(name, GL_TEXTURE_WRAP_R, wrap);
@@ -32,6 +33,8 @@ GLuint NewTexture(GLenum target, Edge edge) {
 
 std::size_t BytesPerTexel(GLenum internal_format) {
   switch (internal_format) {
+    case GL_R8UI:
+      return 1;
     case GL_R16F:
       return 2;
     case GL_RG16F:
@@ -50,15 +53,17 @@ std::size_t BytesPerTexel(GLenum internal_format) {
 
 Texture2D::Texture2D(GLenum internal_format, glm::ivec2 size, Edge edge)
     : name_(NewTexture(GL_TEXTURE_2D, edge)),
+      internal_format_(internal_format),
       size_(size),
       bytes_(BytesPerTexel(internal_format) * static_cast<std::size_t>(size.x) *
              static_cast<std::size_t>(size.y)) {
   glTextureStorage2D(name_.Get(), 1, internal_format, size.x, size.y);
 }
 
-Texture3D::Texture3D(GLenum internal_format, glm::ivec3 size)
-    : name_(NewTexture(GL_TEXTURE_3D, Edge::kClamp)),
+Texture3D::Texture3D(GLenum internal_format, glm::ivec3 size, Filter filter)
+    : name_(NewTexture(GL_TEXTURE_3D, Edge::kClamp, filter)),
       size_(size),
+      internal_format_(internal_format),
       bytes_(BytesPerTexel(internal_format) * static_cast<std::size_t>(size.x) *
              static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z)) {
   glTextureStorage3D(name_.Get(), 1, internal_format, size.x, size.y, size.z);
@@ -67,6 +72,16 @@ Texture3D::Texture3D(GLenum internal_format, glm::ivec3 size)
 void Texture3D::Upload(GLenum format, GLenum type, const void* texels) {
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTextureSubImage3D(name_.Get(), 0, 0, 0, 0, size_.x, size_.y, size_.z, format, type, texels);
+}
+
+void Texture2D::BindImage(GLuint unit, GLenum access) const {
+  glBindImageTexture(unit, name_.Get(), 0, GL_FALSE, 0, access, internal_format_);
+}
+
+void Texture3D::Clear() { glClearTexImage(name_.Get(), 0, GL_RED, GL_FLOAT, nullptr); }
+
+void Texture3D::BindImage(GLuint unit, GLenum access) const {
+  glBindImageTexture(unit, name_.Get(), 0, GL_TRUE, 0, access, internal_format_);
 }
 
 Framebuffer::Framebuffer(const Texture2D& color) : size_(color.Size()) {

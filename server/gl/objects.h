@@ -54,18 +54,23 @@ class Texture2D {
   glm::ivec2 Size() const { return size_; }
   std::size_t Bytes() const { return bytes_; }
   void Bind(GLuint unit) const { glBindTextureUnit(unit, name_.Get()); }
+  // For imageLoad and imageStore.
+  void BindImage(GLuint unit, GLenum access) const;
 
  private:
   Name<internal::DeleteTexture> name_;
+  GLenum internal_format_ = 0;
   glm::ivec2 size_{0};
   std::size_t bytes_ = 0;
 };
 
-// An immutable three-dimensional texture with linear filtering and clamped edges.
+enum class Filter { kLinear, kNearest };
+
+// An immutable three-dimensional texture with clamped edges.
 class Texture3D {
  public:
   Texture3D() = default;
-  Texture3D(GLenum internal_format, glm::ivec3 size);
+  Texture3D(GLenum internal_format, glm::ivec3 size, Filter filter = Filter::kLinear);
 
   // Fills the whole texture; `format` and `type` as glTextureSubImage3D takes them, rows tightly
   // packed.
@@ -75,10 +80,15 @@ class Texture3D {
   glm::ivec3 Size() const { return size_; }
   std::size_t Bytes() const { return bytes_; }
   void Bind(GLuint unit) const { glBindTextureUnit(unit, name_.Get()); }
+  // Fills it with zeros.
+  void Clear();
+  // For imageLoad and imageStore, all layers.
+  void BindImage(GLuint unit, GLenum access) const;
 
  private:
   Name<internal::DeleteTexture> name_;
   glm::ivec3 size_{0};
+  GLenum internal_format_ = 0;
   std::size_t bytes_ = 0;
 };
 
@@ -106,6 +116,10 @@ class Buffer {
 
   GLuint Get() const { return name_.Get(); }
   std::size_t Bytes() const { return bytes_; }
+  // As shader storage.
+  void BindStorage(GLuint binding) const {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name_.Get());
+  }
 
  private:
   Name<internal::DeleteBuffer> name_;

@@ -90,23 +90,27 @@ std::map<std::string, GLint, std::less<>> UniformLocations(GLuint program) {
 }  // namespace
 
 absl::StatusOr<Program> Program::Link(const ProgramSource& source) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const Shader vertex,
-                               Compile(GL_VERTEX_SHADER, source.vertex, source.defines));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const Shader fragment,
-                               Compile(GL_FRAGMENT_SHADER, source.fragment, source.defines));
   Program program;
   program.name_ = Name<internal::DeleteProgram>(glCreateProgram());
   const GLuint name = program.name_.Get();
-  glAttachShader(name, vertex.Get());
-  glAttachShader(name, fragment.Get());
+  std::vector<Shader> shaders;  // stay until the program is linked
+  for (const auto& [type, path] : {std::pair{GL_VERTEX_SHADER, &source.vertex},
+                                   std::pair{GL_FRAGMENT_SHADER, &source.fragment},
+                                   std::pair{GL_COMPUTE_SHADER, &source.compute}}) {
+    if (path->empty()) continue;
+    THUNDERHEAD_ASSIGN_OR_RETURN(Shader shader,
+                                 Compile(static_cast<GLenum>(type), *path, source.defines));
+    glAttachShader(name, shader.Get());
+    shaders.push_back(std::move(shader));
+  }
   glLinkProgram(name);
   GLint linked = 0;
   glGetProgramiv(name, GL_LINK_STATUS, &linked);
   if (linked == GL_FALSE) {
     char log[4096];
     glGetProgramInfoLog(name, sizeof(log), nullptr, log);
-    return absl::InternalError(
-        absl::StrCat("program ", source.vertex, " + ", source.fragment, " does not link: ", log));
+    return absl::InternalError(absl::StrCat("program ", source.vertex, " ", source.fragment, " ",
+                                            source.compute, " does not link: ", log));
   }
   program.locations_ = UniformLocations(name);
   return program;
@@ -119,6 +123,9 @@ GLint Program::Location(std::string_view uniform) const {
 
 void Program::Set(std::string_view uniform, int value) const {
   glProgramUniform1i(name_.Get(), Location(uniform), value);
+}
+void Program::Set(std::string_view uniform, const glm::ivec3& value) const {
+  glProgramUniform3iv(name_.Get(), Location(uniform), 1, glm::value_ptr(value));
 }
 void Program::Set(std::string_view uniform, float value) const {
   glProgramUniform1f(name_.Get(), Location(uniform), value);
@@ -134,6 +141,9 @@ void Program::Set(std::string_view uniform, const glm::vec4& value) const {
 }
 void Program::Set(std::string_view uniform, const glm::mat4& value) const {
   glProgramUniformMatrix4fv(name_.Get(), Location(uniform), 1, GL_FALSE, glm::value_ptr(value));
+}
+void Program::Set(std::string_view uniform, const glm::mat4x3& value) const {
+  glProgramUniformMatrix4x3fv(name_.Get(), Location(uniform), 1, GL_FALSE, glm::value_ptr(value));
 }
 void Program::Set(std::string_view uniform, const std::vector<float>& values) const {
   glProgramUniform1fv(name_.Get(), Location(uniform), static_cast<GLsizei>(values.size()),

@@ -11,6 +11,7 @@
 
 #include "absl/status/statusor.h"
 #include "gl/objects.h"
+#include "glm/mat4x3.hpp"
 #include "glm/mat4x4.hpp"
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
@@ -30,11 +31,12 @@ struct Define {
   auto operator<=>(const Define&) const = default;
 };
 
-// Which files a program is made of, and its variant.
+// Which files a program is made of, and its variant: vertex and fragment, or compute alone.
 struct ProgramSource {
   std::string vertex;    // e.g. "half_angle/slice.vert"
   std::string fragment;  // e.g. "half_angle/slice.frag"
   std::vector<Define> defines;
+  std::string compute = {};  // e.g. "light_volume/light.comp"
 
   auto operator<=>(const ProgramSource&) const = default;
 };
@@ -46,11 +48,13 @@ class Program {
 
   void Use() const { glUseProgram(name_.Get()); }
   void Set(std::string_view uniform, int value) const;
+  void Set(std::string_view uniform, const glm::ivec3& value) const;
   void Set(std::string_view uniform, float value) const;
   void Set(std::string_view uniform, const glm::vec2& value) const;
   void Set(std::string_view uniform, const glm::vec3& value) const;
   void Set(std::string_view uniform, const glm::vec4& value) const;
   void Set(std::string_view uniform, const glm::mat4& value) const;
+  void Set(std::string_view uniform, const glm::mat4x3& value) const;
   void Set(std::string_view uniform, const std::vector<float>& values) const;
   void Set(std::string_view uniform, const std::vector<glm::vec2>& values) const;
   void Set(std::string_view uniform, const std::vector<glm::vec3>& values) const;

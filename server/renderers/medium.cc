@@ -4,8 +4,14 @@
 #include <array>
 
 #include "base/stopwatch.h"
+#include "volume/brick_map.h"
 
 namespace thunderhead::renderers {
+namespace {
+
+constexpr GLuint kBrickUnit = 2;
+
+}  // namespace
 
 physics::PhaseFunction UniformPhase(const scene::Scene& scene) {
   const auto& cloud = scene.fields[physics::IndexOf(physics::Hydrometeor::kCloud)];
@@ -41,7 +47,9 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
   base::Stopwatch stopwatch;
   bounds_ =
       volume::ComputeExtinction(fields, content_.terms, static_cast<int>(content_.groups.size()));
+  const volume::BrickMap bricks = volume::BrickMapOf(bounds_);
   cost->extinction_ms = stopwatch.Restart();
+  if (bounds_.Empty()) return;
   for (volume::ExtinctionPlane& plane : bounds_.planes) {
     const auto channels = static_cast<std::size_t>(plane.channels);
     gl::Texture3D texture(kFormats[channels], bounds_.grid.cells);
@@ -49,6 +57,14 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
     textures_.push_back(std::move(texture));
   }
   bounds_.planes.clear();
+  bricks_ = gl::Texture3D(GL_R8UI, bricks.bricks, gl::Filter::kNearest);
+  bricks_.Upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, bricks.content.data());
+  cells_per_brick_ = bricks.cells_per_brick;
+  const std::vector<std::uint32_t> occupied = bricks.Occupied();
+  occupied_count_ = static_cast<int>(occupied.size());
+  if (!occupied.empty()) {
+    occupied_bricks_ = gl::Buffer(occupied.size() * sizeof(std::uint32_t), occupied.data(), 0);
+  }
   cost->upload_ms = stopwatch.ElapsedMs();
 }
 
@@ -60,11 +76,24 @@ void ResidentMedium::Bind(const gl::Program& program) const {
               glm::vec3((Middle_m() - bounds_.grid.low_corner_m) / extent_m));
   program.Set("medium_low_m", glm::vec3(-HalfExtent_m()));
   program.Set("medium_high_m", glm::vec3(HalfExtent_m()));
+  bricks_.Bind(kBrickUnit);
+  const glm::dvec3 brick_m = glm::dvec3(cells_per_brick_) * bounds_.grid.spacing_m;
+  program.Set("brick_from_local_scale", glm::vec3(1.0 / brick_m));
+  program.Set("brick_from_local_offset",
+              glm::vec3((Middle_m() - bounds_.grid.low_corner_m) / brick_m));
+  program.Set("cells_per_brick", cells_per_brick_);
+  program.Set("brick_count", bricks_.Size());
   program.Set("extinction_weights", Weights(std::vector<double>(content_.groups.size(), 1.0)));
 }
 
+double ResidentMedium::OccupiedShare() const {
+  if (Empty()) return 0.0;
+  const glm::dvec3 bricks(bricks_.Size());
+  return occupied_count_ / (bricks.x * bricks.y * bricks.z);
+}
+
 std::size_t ResidentMedium::Bytes() const {
-  std::size_t bytes = 0;
+  std::size_t bytes = bricks_.Bytes() + occupied_bricks_.Bytes();
   for (const gl::Texture3D& texture : textures_) bytes += texture.Bytes();
   return bytes;
 }

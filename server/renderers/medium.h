@@ -54,10 +54,15 @@ class ResidentMedium {
   glm::dvec3 Middle_m() const { return (bounds_.low_m + bounds_.high_m) / 2.0; }
   glm::dvec3 HalfExtent_m() const { return (bounds_.high_m - bounds_.low_m) / 2.0; }
 
-  // Binds the textures to units 0 and up and sets the uniforms of common/medium.glsl. Local
-  // coordinates are metres from Middle_m().
+  // Binds the textures to units 0 and up and sets the uniforms of common/medium.glsl and
+  // common/bricks.glsl. Local coordinates are metres from Middle_m().
   void Bind(const gl::Program& program) const;
   std::size_t Bytes() const;
+  // Share of the box's bricks that are not empty, 0 to 1.
+  double OccupiedShare() const;
+  // How many those are; BindOccupied gives a list of them (volume::BrickMap::Occupied) to a shader.
+  int OccupiedCount() const { return occupied_count_; }
+  void BindOccupied(GLuint binding) const { occupied_bricks_.BindStorage(binding); }
 
   // One weight a group as common/medium.glsl takes it: the value at which a texel counts, times the
   // extinction of a texel value of 1.
@@ -67,6 +72,10 @@ class ResidentMedium {
   Medium content_;
   volume::ExtinctionVolume bounds_;
   std::vector<gl::Texture3D> textures_;
+  gl::Texture3D bricks_;
+  glm::ivec3 cells_per_brick_{1};
+  gl::Buffer occupied_bricks_;
+  int occupied_count_ = 0;
 };
 
 }  // namespace thunderhead::renderers

@@ -66,21 +66,19 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
     stages.push_back({"upload", cost.upload_ms});
   }
   if (first <= scene::Stage::kView) {
-    base::Stopwatch stopwatch;
     const scene::View view = scene::ViewOf(scene, *fields);
     drawn_slices_ = 0;
     if (!medium_.Empty()) {
       const double wanted = std::ceil(scene.rendering.slices * quality.slice_share);
       drawn_slices_ = std::max(static_cast<int>(wanted), 1);
-      THUNDERHEAD_RETURN_IF_ERROR(half_angle_.Render(
-          medium_,
+      THUNDERHEAD_RETURN_IF_ERROR(DrawMedium(
           {scene.rendering, view, IlluminationOf(scene), EyeSize(scene, quality), drawn_slices_},
-          first <= scene::Stage::kLight));
+          first, &stages));
     }
-    THUNDERHEAD_RETURN_IF_ERROR(
-        Composite(scene, view, medium_.Empty(), volume::LowestTerrain_m(*fields)));
+    base::Stopwatch stopwatch;
+    THUNDERHEAD_RETURN_IF_ERROR(Composite(scene, view, volume::LowestTerrain_m(*fields)));
     glFinish();
-    stages.push_back({"slices", stopwatch.ElapsedMs()});
+    stages.push_back({"composite", stopwatch.ElapsedMs()});
   }
   drawn_scene_ = scene;
   drawn_fields_ = fields;
@@ -90,8 +88,39 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
   return frame;
 }
 
+absl::Status SceneRenderer::DrawMedium(const RenderSettings& settings, scene::Stage first,
+                                       std::vector<StageTime>* stages) {
+  base::Stopwatch stopwatch;
+  const auto ran = [&](const char* stage) {
+    glFinish();
+    stages->push_back({stage, stopwatch.Restart()});
+  };
+  const bool light_changed = first <= scene::Stage::kLight;
+  switch (settings.rendering.renderer) {
+    case scene::Renderer::kHalfAngle:
+      THUNDERHEAD_RETURN_IF_ERROR(half_angle_.Render(medium_, settings, light_changed));
+      ran("slices");
+      break;
+    case scene::Renderer::kLightVolume:
+      if (light_changed) {
+        THUNDERHEAD_RETURN_IF_ERROR(light_volume_.CarryLight(medium_, settings));
+        ran("light");
+      }
+      THUNDERHEAD_RETURN_IF_ERROR(light_volume_.DrawView(medium_, settings));
+      ran("view");
+      break;
+  }
+  drawn_by_ = settings.rendering.renderer;
+  return absl::OkStatus();
+}
+
+const gl::Texture2D& SceneRenderer::Eye() const {
+  if (medium_.Empty()) return nothing_;
+  return drawn_by_ == scene::Renderer::kHalfAngle ? half_angle_.Eye() : light_volume_.Eye();
+}
+
 absl::Status SceneRenderer::Composite(const scene::Scene& scene, const scene::View& view,
-                                      bool empty, double ground_height_m) {
+                                      double ground_height_m) {
   const glm::ivec2 size(scene.output.width_px, scene.output.height_px);
   if (linear_.Size() != size) {
     linear_ = gl::Texture2D(GL_RGBA16F, size);
@@ -112,7 +141,7 @@ absl::Status SceneRenderer::Composite(const scene::Scene& scene, const scene::Vi
                GroundRadiance(scene, towards_sun, physics::SkyLightOf(towards_sun)));
   program->Set("eye_height_m", static_cast<float>(view.altitude_m - ground_height_m));
   program->Set("ground_curvature_per_m", static_cast<float>(view.ground_curvature_per_m));
-  (empty ? nothing_ : half_angle_.Eye()).Bind(kEyeUnit);
+  Eye().Bind(kEyeUnit);
   linear_target_.Bind();
   program->Use();
   no_attributes_.Bind();
@@ -125,11 +154,14 @@ LinearFrame SceneRenderer::Report(const volume::HydrometeorFields& fields) const
   frame.radiance = &linear_;
   frame.fields = medium_.Content().hydrometeors;
   frame.slices = drawn_slices_;
-  frame.device_bytes = medium_.Bytes() + half_angle_.Bytes() + linear_.Bytes();
+  frame.device_bytes =
+      medium_.Bytes() + half_angle_.Bytes() + light_volume_.Bytes() + linear_.Bytes();
   if (!medium_.Empty()) {
     const glm::dvec3 box_m = 2.0 * medium_.HalfExtent_m();
     const glm::dvec3 domain_m = fields.grid.HighCorner_m() - fields.grid.low_corner_m;
-    frame.occupied_share = box_m.x * box_m.y * box_m.z / (domain_m.x * domain_m.y * domain_m.z);
+    const bool leaps = drawn_by_ == scene::Renderer::kLightVolume;
+    frame.occupied_share = (leaps ? medium_.OccupiedShare() : 1.0) * box_m.x * box_m.y * box_m.z /
+                           (domain_m.x * domain_m.y * domain_m.z);
   }
   return frame;
 }

@@ -11,6 +11,7 @@
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "renderers/half_angle/half_angle_renderer.h"
+#include "renderers/light_volume/light_volume_renderer.h"
 #include "renderers/medium.h"
 #include "scene/scene.h"
 #include "volume/hydrometeor_fields.h"
@@ -24,7 +25,8 @@ struct DrawQuality {
   bool operator==(const DrawQuality&) const = default;
 };
 
-// Wall time of one stage: "extinction", "upload", "slices".
+// Wall time of one stage: "extinction", "upload"; "slices" of half-angle slicing, or "light" and
+// "view" of the light volume; "composite".
 struct StageTime {
   std::string stage;
   double milliseconds = 0.0;
@@ -47,13 +49,19 @@ class SceneRenderer {
                                    const DrawQuality& quality);
 
  private:
-  absl::Status Composite(const scene::Scene& scene, const scene::View& view, bool empty,
+  // Reruns what `first` dirties of the light and the view; appends the times of what ran.
+  absl::Status DrawMedium(const RenderSettings& settings, scene::Stage first,
+                          std::vector<StageTime>* stages);
+  const gl::Texture2D& Eye() const;
+  absl::Status Composite(const scene::Scene& scene, const scene::View& view,
                          double ground_height_m);
   LinearFrame Report(const volume::HydrometeorFields& fields) const;
 
   gl::ProgramCache programs_;
   gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
   HalfAngleRenderer half_angle_;
+  LightVolumeRenderer light_volume_;
+  scene::Renderer drawn_by_ = scene::Renderer::kHalfAngle;  // of the eye buffer, if not empty
   ResidentMedium medium_;
   gl::Texture2D linear_;
   gl::Framebuffer linear_target_;

@@ -76,9 +76,15 @@ struct Sky {
 // The modes of Riley et al. 2003 (AMS), Table IV.
 enum class Mode { kUniformPhaseLowAlbedo, kUniformPhaseTranslucent, kPerFieldPhaseTranslucent };
 
+// The renderer: slices halfway between sun and eye; or light carried once into a volume, which view
+// rays march through.
+enum class Renderer { kHalfAngle, kLightVolume };
+inline constexpr std::size_t kRendererCount = 2;
+
 enum class Transport { kPaper, kConsistent };
 
 struct Rendering {
+  Renderer renderer = Renderer::kLightVolume;
   Mode mode = Mode::kPerFieldPhaseTranslucent;
   Transport transport = Transport::kConsistent;
   int slices = 128;

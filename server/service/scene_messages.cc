@@ -36,6 +36,10 @@ constexpr std::array kModes = {
     std::pair{v1::MODE_UNIFORM_PHASE_LOW_ALBEDO, scene::Mode::kUniformPhaseLowAlbedo},
     std::pair{v1::MODE_UNIFORM_PHASE_TRANSLUCENT, scene::Mode::kUniformPhaseTranslucent},
 };
+constexpr std::array kRenderers = {
+    std::pair{v1::RENDERER_LIGHT_VOLUME, scene::Renderer::kLightVolume},
+    std::pair{v1::RENDERER_HALF_ANGLE, scene::Renderer::kHalfAngle},
+};
 constexpr std::array kTransports = {
     std::pair{v1::TRANSPORT_CONSISTENT, scene::Transport::kConsistent},
     std::pair{v1::TRANSPORT_PAPER, scene::Transport::kPaper},
@@ -184,6 +188,7 @@ void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
   scene.mutable_sky();
   scene.mutable_output();
   v1::Rendering& rendering = *scene.mutable_rendering();
+  rendering.set_renderer(MessageOf(kRenderers, ValueOf(kRenderers, rendering.renderer())));
   rendering.set_mode(MessageOf(kModes, ValueOf(kModes, rendering.mode())));
   rendering.set_transport(MessageOf(kTransports, ValueOf(kTransports, rendering.transport())));
   if (!rendering.has_false_colors()) rendering.set_false_colors(false);
@@ -208,6 +213,7 @@ scene::Scene ToScene(const v1::Scene& message) {
     scene.fields[IndexOf(field.hydrometeor())] = ToField(field);
   }
   const v1::Rendering& rendering = message.rendering();
+  scene.rendering.renderer = ValueOf(kRenderers, rendering.renderer());
   scene.rendering.mode = ValueOf(kModes, rendering.mode());
   scene.rendering.transport = ValueOf(kTransports, rendering.transport());
   scene.rendering.slices = static_cast<int>(rendering.slices());
@@ -226,6 +232,7 @@ void ToMessage(const session::Modelled& modelled, v1::Modelled& message) {
   message.set_slices(static_cast<std::uint32_t>(modelled.slices));
   message.set_device_bytes(modelled.device_bytes);
   message.set_occupied_share(static_cast<float>(modelled.occupied_share));
+  message.set_renderer(MessageOf(kRenderers, modelled.renderer));
 }
 
 void ToMessage(const session::StageCost& cost, v1::StageCost& message) {

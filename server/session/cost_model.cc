@@ -15,6 +15,13 @@ bool IsPreparation(const StageCost& cost) {
   return cost.stage == "extinction" || cost.stage == "upload";
 }
 
+// Moves `mean` towards a measurement of a stage that ran.
+void Follow(double measured_ms, double* mean_ms) {
+  if (measured_ms <= 0.0) return;
+  *mean_ms =
+      *mean_ms == 0.0 ? measured_ms : kForgetting * *mean_ms + (1.0 - kForgetting) * measured_ms;
+}
+
 }  // namespace
 
 double MegaSamples(const scene::Scene& scene, const FrameQuality& quality) {
@@ -27,24 +34,24 @@ double CostModel::EstimateMs(double mega_samples, scene::Stage first_dirty) cons
   const double drawing_ms =
       first_dirty >= scene::Stage::kTone ? 0.0 : ms_per_mega_sample_ * mega_samples;
   const double preparation_ms = first_dirty <= scene::Stage::kExtinction ? preparation_ms_ : 0.0;
-  return fixed_ms_ + drawing_ms + preparation_ms;
+  const double light_ms = first_dirty <= scene::Stage::kLight ? light_ms_ : 0.0;
+  return fixed_ms_ + drawing_ms + preparation_ms + light_ms;
 }
 
 void CostModel::Observe(double mega_samples, double total_ms,
                         const std::vector<StageCost>& stages) {
   double preparation_ms = 0.0;
-  bool drew_slices = false;
+  double light_ms = 0.0;
+  bool drew = false;
   for (const StageCost& cost : stages) {
     if (IsPreparation(cost)) preparation_ms += cost.milliseconds;
-    drew_slices = drew_slices || cost.stage == "slices";
+    if (cost.stage == "light") light_ms += cost.milliseconds;
+    drew = drew || cost.stage == "slices" || cost.stage == "view";
   }
-  if (preparation_ms > 0.0) {
-    preparation_ms_ = preparation_ms_ == 0.0
-                          ? preparation_ms
-                          : kForgetting * preparation_ms_ + (1.0 - kForgetting) * preparation_ms;
-  }
-  if (!drew_slices) return;
-  const double y = std::max(0.0, total_ms - preparation_ms);
+  Follow(preparation_ms, &preparation_ms_);
+  Follow(light_ms, &light_ms_);
+  if (!drew) return;
+  const double y = std::max(0.0, total_ms - preparation_ms - light_ms);
   const auto add = [](double& sum, double value) { sum = kForgetting * sum + value; };
   add(weight_, 1.0);
   add(sum_x_, mega_samples);

@@ -1,8 +1,9 @@
 // Foretells what a frame will cost from what frames have cost: milliseconds = a + b pixels x
 // slices, fitted by least squares in which older frames count for less, plus what preparing the
-// fields costs when they changed. Plain values, no clock.
+// fields and carrying the light cost when they changed. Plain values, no clock.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "scene/scene.h"
@@ -19,7 +20,7 @@ class CostModel {
   double EstimateMs(double mega_samples, scene::Stage first_dirty) const;
 
   // A frame of that size took `total_ms`, of which `stages` say what they tell apart. Frames that
-  // ran no slices teach nothing.
+  // drew no slices and no view teach nothing.
   void Observe(double mega_samples, double total_ms, const std::vector<StageCost>& stages);
 
  private:
@@ -35,6 +36,20 @@ class CostModel {
   // first frame is coarse but not the coarsest.
   double ms_per_mega_sample_ = 2.0;
   double preparation_ms_ = 0.0;
+  double light_ms_ = 0.0;
+};
+
+// One for each renderer: what they cost has nothing in common.
+class CostModels {
+ public:
+  CostModel& Of(const scene::Scene& scene) { return models_[IndexOf(scene)]; }
+  const CostModel& Of(const scene::Scene& scene) const { return models_[IndexOf(scene)]; }
+
+ private:
+  static std::size_t IndexOf(const scene::Scene& scene) {
+    return static_cast<std::size_t>(scene.rendering.renderer);
+  }
+  std::array<CostModel, scene::kRendererCount> models_;
 };
 
 }  // namespace thunderhead::session

@@ -24,7 +24,7 @@ bool IsFull(const FrameQuality& quality) { return quality == FrameQuality{}; }
 
 }  // namespace
 
-FramePlanner::FramePlanner(const PlannerTargets& targets, const CostModel& costs)
+FramePlanner::FramePlanner(const PlannerTargets& targets, const CostModels& costs)
     : targets_(targets), costs_(costs) {}
 
 Decision FramePlanner::Decide(const NewestScene& newest, Clock::time_point now,
@@ -68,7 +68,7 @@ void FramePlanner::Drawn(std::uint64_t revision, const scene::Scene& scene, cons
   revision_ = revision;
   finished_ = IsFull(plan.quality);
   drawn_ = plan;
-  costs_.Observe(MegaSamples(scene, plan.quality), total_ms, stages);
+  costs_.Of(scene).Observe(MegaSamples(scene, plan.quality), total_ms, stages);
 }
 
 void FramePlanner::Failed(std::uint64_t revision) {
@@ -80,7 +80,8 @@ FrameQuality FramePlanner::Finest(const scene::Scene& scene, scene::Stage first_
                                   double budget_ms) const {
   for (int step = kSteps; step > 0; --step) {
     const FrameQuality quality = Step(step);
-    if (costs_.EstimateMs(MegaSamples(scene, quality), first_dirty) <= budget_ms) return quality;
+    if (costs_.Of(scene).EstimateMs(MegaSamples(scene, quality), first_dirty) <= budget_ms)
+      return quality;
   }
   return Step(0);
 }

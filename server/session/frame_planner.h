@@ -48,7 +48,7 @@ struct Decision {
 
 class FramePlanner {
  public:
-  FramePlanner(const PlannerTargets& targets, const CostModel& costs);
+  FramePlanner(const PlannerTargets& targets, const CostModels& costs);
 
   Decision Decide(const NewestScene& newest, Clock::time_point now,
                   const std::optional<LastDrawn>& last_drawn) const;
@@ -68,7 +68,7 @@ class FramePlanner {
   FrameQuality Finest(const scene::Scene& scene, scene::Stage first_dirty, double budget_ms) const;
 
   const PlannerTargets targets_;
-  CostModel costs_;
+  CostModels costs_;
   std::uint64_t revision_ = 0;
   bool finished_ = false;  // nothing finer is to come for that revision
   FramePlan drawn_;

@@ -25,8 +25,8 @@ struct FrameQuality {
   bool operator==(const FrameQuality&) const = default;
 };
 
-// One stage's wall time. Stages: "read", "extinction", "upload", "slices", "tone", "read_back",
-// "encode".
+// One stage's wall time. Stages: "read", "extinction", "upload", "slices", "light", "view",
+// "composite", "tone", "read_back", "encode".
 struct StageCost {
   std::string stage;
   double milliseconds = 0.0;
@@ -38,6 +38,7 @@ struct Modelled {
   int slices = 0;
   std::uint64_t device_bytes = 0;
   double occupied_share = 0.0;
+  scene::Renderer renderer = scene::Renderer::kLightVolume;
 };
 
 // A finished picture: 8-bit sRGB, three bytes a pixel, rows from top to bottom.

@@ -35,7 +35,8 @@ class GlFrameSource final : public FrameSource {
     }
     frame.stages.push_back({"tone", mapped.tone_ms});
     frame.stages.push_back({"read_back", mapped.read_back_ms});
-    frame.modelled = {linear.fields, linear.slices, linear.device_bytes, linear.occupied_share};
+    frame.modelled = {linear.fields, linear.slices, linear.device_bytes, linear.occupied_share,
+                      scene.rendering.renderer};
     return frame;
   }
 

@@ -236,7 +236,7 @@ absl::StatusOr<DisplayFrame> RenderLoop::Draw(
   last_drawn_ = LastDrawn{scene, quality};
   // The first frame compiles shaders; its time foretells nothing.
   if (std::exchange(warm_, true)) {
-    machine_costs_.Observe(MegaSamples(scene, quality), total_ms, picture->stages);
+    machine_costs_.Of(scene).Observe(MegaSamples(scene, quality), total_ms, picture->stages);
   }
   return picture;
 }

@@ -117,7 +117,7 @@ class RenderLoop {
   std::string last_served_;  // the session looked at last; the pictures' turn is the empty string
   std::optional<LastDrawn> last_drawn_;
   bool warm_ = false;
-  CostModel machine_costs_;
+  CostModels machine_costs_;
 
   std::unique_ptr<FieldsReader> reader_;
   std::unique_ptr<FrameEncoder> encoder_;

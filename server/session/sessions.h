@@ -69,7 +69,8 @@ class Sessions {
 
   // RESOURCE_EXHAUSTED when there are too many, UNAVAILABLE after CloseAll.
   absl::StatusOr<std::shared_ptr<Session>> Create();
-  // NOT_FOUND when it never was, was closed or has expired; UNAVAILABLE after CloseAll. Counts as use.
+  // NOT_FOUND when it never was, was closed or has expired; UNAVAILABLE after CloseAll. Counts as
+  // use.
   absl::StatusOr<std::shared_ptr<Session>> Find(const std::string& id);
   // Ends the session and every watch of it. NOT_FOUND as Find.
   absl::Status Close(const std::string& id);

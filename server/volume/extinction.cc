@@ -49,10 +49,9 @@ void Include(int x, int y, int z, CellBox* box) {
   box->high = glm::max(box->high, glm::ivec3(x + 1, y + 1, z + 1));
 }
 
-Occupied FindOccupied(const HydrometeorFields& fields, const std::vector<ExtinctionTerm>& terms) {
+Occupied FindOccupied(const HydrometeorFields& fields, const std::vector<ExtinctionTerm>& terms,
+                      float threshold_per_m) {
   const RegularGrid& grid = fields.grid;
-  const double diagonal_m = glm::length(glm::dvec3(grid.cells) * grid.spacing_m);
-  const auto threshold_per_m = static_cast<float>(kNegligibleOpticalDepth / diagonal_m);
   const CellBox& search = fields.condensate;
   Occupied occupied{{grid.cells, glm::ivec3(0)}, 0.0F};
   std::vector<float> row(static_cast<std::size_t>(search.high.x - search.low.x));
@@ -134,7 +133,9 @@ ExtinctionVolume ComputeExtinction(const HydrometeorFields& fields,
   ExtinctionVolume volume;
   const std::vector<ExtinctionTerm> effective = EffectiveTerms(fields, terms);
   if (effective.empty() || fields.condensate.Empty()) return volume;
-  const Occupied occupied = FindOccupied(fields, effective);
+  const double diagonal_m = glm::length(glm::dvec3(fields.grid.cells) * fields.grid.spacing_m);
+  volume.negligible_per_m = static_cast<float>(kNegligibleOpticalDepth / diagonal_m);
+  const Occupied occupied = FindOccupied(fields, effective, volume.negligible_per_m);
   if (occupied.cells.Empty()) return volume;
   PlaceBox(fields.grid, occupied.cells, &volume);
   volume.maximum_per_m = occupied.maximum_per_m;

@@ -38,6 +38,7 @@ struct ExtinctionVolume {
   std::vector<ExtinctionPlane> planes;  // channels 0-3, then 4-7
   float extinction_per_m = 0.0F;        // of a texel value of 1; a power of two
   float maximum_per_m = 0.0F;           // largest sum over all channels in a cell
+  float negligible_per_m = 0.0F;        // what is not more is not worth drawing
 
   bool Empty() const { return grid.CellCount() == 0; }
 };

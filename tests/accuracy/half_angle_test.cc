@@ -1,88 +1,19 @@
 // The slicing renderer against closed forms: single scattering in a homogeneous box, the paper's
 // printed transport, and limits that hold for every optical depth.
-#include "renderers/half_angle/half_angle_renderer.h"
-
-#include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numbers>
 
-#include "base/status.h"
-#include "frame/tone_map.h"
-#include "gl/context.h"
 #include "gtest/gtest.h"
 #include "physics/optics.h"
-#include "tests/support/slab.h"
+#include "tests/accuracy/slab_view.h"
 
 namespace thunderhead::renderers {
 namespace {
 
-constexpr double kWidth_m = 4000.0;
-constexpr double kHeight_m = 1000.0;
-
-class HalfAngle : public testing::Test {
+class HalfAngle : public SlabView {
  protected:
-  static void SetUpTestSuite() {
-    auto context = gl::Context::Create("software");
-    ASSERT_TRUE(context.ok()) << context.status();
-    context_ = *std::move(context);
-  }
-  static void TearDownTestSuite() { context_.reset(); }
-
-  struct Seen {
-    double radiance;       // of the middle pixel's red
-    double transmittance;  // along the middle pixel's ray
-    std::vector<float> eye;
-    std::vector<float> light;
-  };
-
-  // Looks straight at the middle of the slab along `elevation_deg` through a narrow lens.
-  Seen Look(double optical_depth, double elevation_deg, double sun_elevation_deg) {
-    scene::OrbitCamera camera;
-    camera.target_m = {0.0, 0.0, kHeight_m / 2};
-    camera.azimuth_deg = 200.0;
-    camera.elevation_deg = elevation_deg;
-    camera.distance_m = 5000.0;
-    camera.field_of_view_deg = 2.0;
-    return Look(optical_depth, scene::ViewOf(camera, 1.0), sun_elevation_deg);
-  }
-
-  Seen Look(double optical_depth, const scene::View& view, double sun_elevation_deg) {
-    const auto fields = support::MakeSlab(kWidth_m, kHeight_m, optical_depth / kHeight_m);
-    ResidentMedium::Cost cost;
-    const ResidentMedium medium(scene_, *fields, &cost);
-    HalfAngleSettings settings;
-    settings.rendering = scene_.rendering;
-    settings.view = view;
-    settings.illumination = {scene::Direction(70.0, sun_elevation_deg), glm::vec3(1.0F),
-                             glm::vec3(0.0F)};
-    settings.eye_size = {9, 9};
-    settings.slices = scene_.rendering.slices;
-    HalfAngleRenderer renderer;
-    const absl::Status status = renderer.Render(medium, settings, true);
-    EXPECT_TRUE(status.ok()) << status;
-    Seen seen;
-    seen.eye = frame::ReadLinear(renderer.Eye());
-    seen.light = frame::ReadLinear(renderer.Light());
-    seen.radiance = seen.eye[4 * 40];
-    seen.transmittance = seen.eye[4 * 40 + 3];
-    return seen;
-  }
-
-  void SetPhase(physics::PhaseKind kind, float asymmetry) {
-    for (scene::FieldParameters& field : scene_.fields) field.optics.phase = {kind, asymmetry};
-  }
-
-  scene::Scene scene_;
-
- private:
-  static std::unique_ptr<gl::Context> context_;
+  void SetUp() override { scene_.rendering.renderer = scene::Renderer::kHalfAngle; }
 };
-
-std::unique_ptr<gl::Context> HalfAngle::context_;
-
-// Extinction is stored in half floats, 2^-12 off at most; buffers are single precision.
-constexpr double kTextureError = 1e-3;
 
 // The slab's hard faces cut tilted slices: a ray counts its path in whole slices, off by up to half
 // of one at each face, and light is late or early by as much. The slab is 1 / 2.5 of the sliced
@@ -93,16 +24,10 @@ double HardFaceError(int slices, double depth) { return 3.3 * (1.0 + depth / 2.0
 class SingleScattering : public HalfAngle {
  protected:
   void SetUp() override {
+    HalfAngle::SetUp();
     scene_.rendering.mode = scene::Mode::kUniformPhaseLowAlbedo;
     scene_.rendering.transport = scene::Transport::kConsistent;
     SetPhase(physics::PhaseKind::kCornetteShanks, 0.0F);
-  }
-
-  // The phase function over 4 pi for the angle between the view and the sun.
-  double PhaseTerm(double elevation_deg, double sun_elevation_deg) {
-    const double mu = -glm::dot(scene::Direction(200.0, elevation_deg),
-                                scene::Direction(70.0, sun_elevation_deg));
-    return physics::PhaseValue(UniformPhase(scene_), mu) / (4 * std::numbers::pi);
   }
 };
 

@@ -114,8 +114,9 @@ void Register(const std::string& name, const scene::Scene& scene, Moving moving,
       ->UseRealTime();
 }
 
-void RegisterModes() {
+void RegisterModes(const std::string& path, scene::Renderer renderer) {
   scene::Scene scene = PaperScene(*Bench::Get().fields);
+  scene.rendering.renderer = renderer;
   struct Row {
     const char* name;
     scene::Mode mode;
@@ -126,18 +127,18 @@ void RegisterModes() {
         Row{"uniform_phase_translucent", scene::Mode::kUniformPhaseTranslucent, 4.3},
         Row{"per_field_phase_translucent", scene::Mode::kPerFieldPhaseTranslucent, 1.7}}) {
     scene.rendering.mode = row.mode;
-    Register(std::string("half_angle/") + row.name, scene, Moving::kCamera, row.paper_fps);
+    Register(path + "/" + row.name, scene, Moving::kCamera, row.paper_fps);
   }
-  Register("half_angle/sun_moves", scene, Moving::kSun);
-  Register("half_angle/field_scale_moves", scene, Moving::kField);
-  Register("half_angle/exposure_moves", scene, Moving::kExposure);
+  Register(path + "/sun_moves", scene, Moving::kSun);
+  Register(path + "/field_scale_moves", scene, Moving::kField);
+  Register(path + "/exposure_moves", scene, Moving::kExposure);
   for (const int slices : {32, 256}) {
     scene.rendering.slices = slices;
-    Register("half_angle/slices_" + std::to_string(slices), scene, Moving::kCamera);
+    Register(path + "/slices_" + std::to_string(slices), scene, Moving::kCamera);
   }
   scene.rendering.slices = 128;
   scene.output = {600, 600, 88};
-  Register("half_angle/600x600", scene, Moving::kCamera);
+  Register(path + "/600x600", scene, Moving::kCamera);
 }
 
 void EncodeJpeg(benchmark::State& state) {
@@ -182,7 +183,8 @@ int Run(int argc, char** argv) {
   benchmark::Initialize(&count, pointers.data());
   if (benchmark::ReportUnrecognizedArguments(count, pointers.data())) return 2;
   benchmark::AddCustomContext("gl_renderer", Bench::Get().context->Info().renderer);
-  RegisterModes();
+  RegisterModes("half_angle", scene::Renderer::kHalfAngle);
+  RegisterModes("light_volume", scene::Renderer::kLightVolume);
   benchmark::RegisterBenchmark("encode_jpeg/1280x720", EncodeJpeg)
       ->Unit(benchmark::kMillisecond)
       ->UseRealTime();

@@ -58,19 +58,33 @@ class SceneRendererTest : public testing::Test {
 };
 
 TEST_F(SceneRendererTest, AChangeRerunsOnlyWhatItDirties) {
-  EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "slices"));
+  scene_.rendering.renderer = scene::Renderer::kHalfAngle;
+  EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "slices", "composite"));
   EXPECT_THAT(StagesOf(), IsEmpty());
   scene_.display.exposure_ev = 1.0;
   EXPECT_THAT(StagesOf(), IsEmpty());
   Orbit().azimuth_deg += 5.0;
-  EXPECT_THAT(StagesOf(), ElementsAre("slices"));
+  EXPECT_THAT(StagesOf(), ElementsAre("slices", "composite"));
   scene_.sun.elevation_deg += 5.0;
-  EXPECT_THAT(StagesOf(), ElementsAre("slices"));
+  EXPECT_THAT(StagesOf(), ElementsAre("slices", "composite"));
   scene_.fields[0].scale = 2.0F;
-  EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "slices"));
-  EXPECT_THAT(StagesOf({0.5, 1.0}), ElementsAre("slices"));
+  EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "slices", "composite"));
+  EXPECT_THAT(StagesOf({0.5, 1.0}), ElementsAre("slices", "composite"));
   fields_ = support::MakeSlab(4000.0, 2000.0, 0.02);
-  EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "slices"));
+  EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "slices", "composite"));
+}
+
+TEST_F(SceneRendererTest, TheLightVolumeIsKeptWhileOnlyTheCameraMoves) {
+  scene_.rendering.renderer = scene::Renderer::kLightVolume;
+  EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "light", "view", "composite"));
+  Orbit().azimuth_deg += 5.0;
+  EXPECT_THAT(StagesOf(), ElementsAre("view", "composite"));
+  scene_.sun.elevation_deg += 5.0;
+  EXPECT_THAT(StagesOf(), ElementsAre("light", "view", "composite"));
+  scene_.rendering.renderer = scene::Renderer::kHalfAngle;
+  EXPECT_THAT(StagesOf(), ElementsAre("slices", "composite"));
+  scene_.rendering.renderer = scene::Renderer::kLightVolume;
+  EXPECT_THAT(StagesOf(), ElementsAre("light", "view", "composite"));
 }
 
 TEST_F(SceneRendererTest, KeptStagesGiveThePictureThatAFreshRendererGives) {

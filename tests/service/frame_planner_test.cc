@@ -53,7 +53,7 @@ class FramePlannerTest : public ::testing::Test {
     return planner_.Decide(At(revision_, scene_, kStart), kStart + since_change, last_drawn_);
   }
 
-  FramePlanner planner_{PlannerTargets{}, CostModel{}};
+  FramePlanner planner_{PlannerTargets{}, CostModels{}};
   scene::Scene scene_ = Hd();
   std::uint64_t revision_ = 0;
   std::optional<LastDrawn> last_drawn_;
@@ -161,6 +161,25 @@ TEST(CostModelTest, PreparationCountsOnlyWhenFieldsChange) {
   model.Observe(10.0, 70.0, {{"extinction", 30.0}, {"upload", 20.0}, {"slices", 20.0}});
   EXPECT_NEAR(model.EstimateMs(10.0, scene::Stage::kView), 20.0, 1e-6);
   EXPECT_NEAR(model.EstimateMs(10.0, scene::Stage::kExtinction), 70.0, 1e-6);
+}
+
+TEST(CostModelTest, CarryingLightCountsOnlyWhenItMustBeCarried) {
+  CostModel model;
+  model.Observe(10.0, 35.0, {{"light", 15.0}, {"view", 20.0}});
+  EXPECT_NEAR(model.EstimateMs(10.0, scene::Stage::kView), 20.0, 1e-6);
+  EXPECT_NEAR(model.EstimateMs(10.0, scene::Stage::kLight), 35.0, 1e-6);
+}
+
+TEST(CostModelTest, RenderersAreEstimatedApart) {
+  CostModels models;
+  scene::Scene slices;
+  slices.rendering.renderer = scene::Renderer::kHalfAngle;
+  scene::Scene light;
+  light.rendering.renderer = scene::Renderer::kLightVolume;
+  models.Of(slices).Observe(10.0, 80.0, {{"slices", 80.0}});
+  models.Of(light).Observe(10.0, 20.0, {{"view", 20.0}});
+  EXPECT_NEAR(models.Of(slices).EstimateMs(10.0, scene::Stage::kView), 80.0, 1e-6);
+  EXPECT_NEAR(models.Of(light).EstimateMs(10.0, scene::Stage::kView), 20.0, 1e-6);
 }
 
 TEST(CostModelTest, FollowsAMachineThatSlowsDown) {

@@ -2,6 +2,7 @@
 // domain, so that its extinction is the same everywhere inside.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 
 #include "volume/hydrometeor_fields.h"
@@ -26,6 +27,28 @@ inline std::shared_ptr<const volume::HydrometeorFields> MakeSlab(double width_m,
   field.concentration_kg_per_m3.assign(fields->grid.CellCount(),
                                        static_cast<float>(extinction_per_m) / mass_extinction);
   fields->fields.push_back(std::move(field));
+  return fields;
+}
+
+// The same, `cells_thick` cells of the middle of a domain `height_m` high filled and none above and
+// below, so that extinction rises linearly over a cell as in a storm. `optical_depth` is that of
+// the whole layer, straight up.
+inline std::shared_ptr<const volume::HydrometeorFields> MakeLayerInAir(double width_m,
+                                                                       double height_m,
+                                                                       int cells_thick,
+                                                                       double optical_depth) {
+  const double cell_m = height_m / 16;
+  const auto slab = MakeSlab(width_m, height_m, optical_depth / (cells_thick * cell_m));
+  auto fields = std::make_shared<volume::HydrometeorFields>(*slab);
+  const int low = (16 - cells_thick) / 2;
+  const volume::RegularGrid& grid = fields->grid;
+  std::vector<float>& concentration = fields->fields[0].concentration_kg_per_m3;
+  for (int z = 0; z < grid.cells.z; ++z) {
+    if (z >= low && z < low + cells_thick) continue;
+    std::fill_n(concentration.begin() + static_cast<std::ptrdiff_t>(grid.Offset(0, 0, z)),
+                grid.cells.x * grid.cells.y, 0.0F);
+  }
+  fields->condensate = {{0, 0, low}, {grid.cells.x, grid.cells.y, low + cells_thick}};
   return fields;
 }
 

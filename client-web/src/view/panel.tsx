@@ -1,13 +1,18 @@
 // The panel at the side: everything that can be set, part by part.
 import { LIMITS, withDisplay, withOutput, withRendering, withSky } from "../core/scene";
 import type { PageState } from "../core/state";
-import { Mode, ToneMap, Transport } from "../gen/thunderhead/v1/scene_pb";
+import { Mode, Renderer, ToneMap, Transport } from "../gen/thunderhead/v1/scene_pb";
 import { CameraSection } from "./camera_section";
 import { Choice, Section, Slider } from "./controls";
 import { FieldsSection } from "./fields_section";
 import { KEYS } from "./keyboard";
 import type { Page } from "./page";
 import { SunSection } from "./sun_section";
+
+const RENDERERS = [
+  [Renderer.LIGHT_VOLUME, "Light volume"],
+  [Renderer.HALF_ANGLE, "Half-angle slices"],
+] as const;
 
 const MODES = [
   [Mode.PER_FIELD_PHASE_TRANSLUCENT, "Phase per field, translucent"],
@@ -94,6 +99,13 @@ function RenderingSection({ state }: { state: PageState }) {
   const rendering = state.rendering.value;
   return (
     <Section title="Light in the cloud" testId="rendering-section">
+      <Choice
+        label="Renderer"
+        testId="renderer"
+        value={rendering?.renderer || Renderer.LIGHT_VOLUME}
+        options={RENDERERS}
+        onChange={(renderer) => state.edit((scene) => withRendering(scene, { renderer }))}
+      />
       <Choice
         label="Mode"
         testId="mode"

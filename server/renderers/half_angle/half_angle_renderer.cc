@@ -80,8 +80,8 @@ void HalfAngleRenderer::Resize(const LightFrame& frame, double cell_m, const glm
   thickness_target_ = gl::Framebuffer(thickness_);
 }
 
-absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium,
-                                       const HalfAngleSettings& settings, bool light_changed) {
+absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const RenderSettings& settings,
+                                       bool light_changed) {
   const LocalBox box{medium.HalfExtent_m()};
   const LightFrame frame = LightFrameOf(box, settings.illumination.towards_sun);
   const Slicing slicing =
@@ -149,7 +149,7 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium,
 }
 
 absl::Status HalfAngleRenderer::DrawThickness(const ResidentMedium& medium,
-                                              const HalfAngleSettings& settings,
+                                              const RenderSettings& settings,
                                               const LightFrame& frame,
                                               const GroupWeights& weights) {
   // Slices across the sun's rays, so that the sum does not depend on the view and can be kept.
@@ -188,7 +188,7 @@ absl::Status HalfAngleRenderer::DrawThickness(const ResidentMedium& medium,
   return absl::OkStatus();
 }
 
-void HalfAngleRenderer::DrawSlices(const Programs& programs, const HalfAngleSettings& settings,
+void HalfAngleRenderer::DrawSlices(const Programs& programs, const RenderSettings& settings,
                                    const LightFrame& frame, const Slicing& slicing) {
   std::vector<glm::vec3> corners;
   for (const Slice& slice : slicing.slices) {

@@ -13,25 +13,9 @@
 #include "renderers/group_weights.h"
 #include "renderers/half_angle/slicing.h"
 #include "renderers/medium.h"
-#include "scene/scene.h"
-#include "scene/view.h"
+#include "renderers/render_settings.h"
 
 namespace thunderhead::renderers {
-
-// What the sun and sky send into the medium.
-struct Illumination {
-  glm::dvec3 towards_sun{0.0, 0.0, 1.0};
-  glm::vec3 sunlight{1.0F};  // irradiance on a plane facing the sun
-  glm::vec3 ambient{0.0F};   // mean radiance from sky and ground
-};
-
-struct HalfAngleSettings {
-  scene::Rendering rendering;
-  scene::View view;
-  Illumination illumination;
-  glm::ivec2 eye_size{1};  // of the eye buffer in pixels
-  int slices = 128;
-};
 
 class HalfAngleRenderer {
  public:
@@ -39,7 +23,7 @@ class HalfAngleRenderer {
 
   // Draws `medium`, which must not be empty. `light_changed` says that the medium or the sun differ
   // from the last call.
-  absl::Status Render(const ResidentMedium& medium, const HalfAngleSettings& settings,
+  absl::Status Render(const ResidentMedium& medium, const RenderSettings& settings,
                       bool light_changed);
 
   // The result of the last Render.
@@ -53,10 +37,10 @@ class HalfAngleRenderer {
   struct Programs;
 
   void Resize(const LightFrame& frame, double cell_m, const glm::ivec2& eye_size);
-  absl::Status DrawThickness(const ResidentMedium& medium, const HalfAngleSettings& settings,
+  absl::Status DrawThickness(const ResidentMedium& medium, const RenderSettings& settings,
                              const LightFrame& frame, const GroupWeights& weights);
-  void DrawSlices(const Programs& programs, const HalfAngleSettings& settings,
-                  const LightFrame& frame, const Slicing& slicing);
+  void DrawSlices(const Programs& programs, const RenderSettings& settings, const LightFrame& frame,
+                  const Slicing& slicing);
 
   gl::ProgramCache programs_;
   gl::VertexArray no_attributes_ = gl::VertexArray::Empty();

@@ -18,15 +18,19 @@ struct Medium {
   vec4 plane[PLANES];
 };
 
-// Texel values at `local_m`.
-Medium medium_at(vec3 local_m) {
-  vec3 place = local_m * texture_from_local_scale + texture_from_local_offset;
+// Texel values at `place` in texture coordinates.
+Medium medium_at_place(vec3 place) {
   Medium medium;
   medium.plane[0] = texture(medium_plane_0, place);
 #if PLANES > 1
   medium.plane[1] = texture(medium_plane_1, place);
 #endif
   return medium;
+}
+
+// Texel values at `local_m`.
+Medium medium_at(vec3 local_m) {
+  return medium_at_place(local_m * texture_from_local_scale + texture_from_local_offset);
 }
 
 bool inside_medium(vec3 local_m) {

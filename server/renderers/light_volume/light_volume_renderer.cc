@@ -1,0 +1,191 @@
+#include "renderers/light_volume/light_volume_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/status.h"
+#include "glm/common.hpp"
+#include "glm/geometric.hpp"
+#include "glm/mat4x3.hpp"
+#include "renderers/view_uniforms.h"
+
+namespace thunderhead::renderers {
+namespace {
+
+constexpr int kMostLightTexels = 256;        // along each side
+constexpr double kLightTexelInCells = 0.75;  // across the sun's rays
+constexpr double kLayerInCells = 1.5;        // along them, of the way through a cell
+constexpr GLuint kLightUnit = 4;
+constexpr GLuint kThicknessUnit = 5;
+constexpr double kNearInTexels = 1.5;  // sampled next to a cell
+constexpr int kGroupSide = 8;          // of carry.comp
+
+bool IsDiffuse(const scene::Rendering& rendering) {
+  return IsConsistent(rendering) && IsTranslucent(rendering);
+}
+
+}  // namespace
+
+// The box of the carried light: across and along the sun's rays, around the medium's middle.
+struct LightVolumeRenderer::LightBox {
+  LightFrame frame;
+  double reach_m = 0.0;  // half its depth
+  double texel_m = 0.0;  // the longest side of a texel
+  glm::ivec3 size{1};
+  int half_layer_steps = 1;  // samples of the medium in half a layer
+
+  LightBox(const ResidentMedium& medium, const RenderSettings& settings);
+  // Texture coordinates from local metres.
+  glm::mat4x3 FromLocal() const;
+};
+
+LightVolumeRenderer::LightBox::LightBox(const ResidentMedium& medium,
+                                        const RenderSettings& settings) {
+  const glm::dvec3& towards_sun = settings.illumination.towards_sun;
+  const glm::dvec3 half_m = medium.HalfExtent_m();
+  const glm::dvec3 cell_m = medium.Bounds().grid.spacing_m;
+  frame = LightFrameOf({half_m}, towards_sun);
+  reach_m = glm::dot(glm::abs(towards_sun), half_m);
+  const glm::dvec2 across_m = 2.0 * frame.half_extent_m;
+  // Finer texels than cells would carry no more detail.
+  texel_m = std::max(std::max(across_m.x, across_m.y) / kMostLightTexels,
+                     kLightTexelInCells * std::min(cell_m.x, cell_m.y));
+  const glm::dvec3 through_m = cell_m / glm::max(glm::abs(towards_sun), glm::dvec3(1e-6));
+  const double layer_m =
+      std::min(texel_m, kLayerInCells * std::min({through_m.x, through_m.y, through_m.z}));
+  size = glm::clamp(glm::ivec3(glm::ceil(glm::dvec3(across_m / texel_m, 2.0 * reach_m / layer_m))),
+                    glm::ivec3(1), glm::ivec3(kMostLightTexels));
+  if (IsTranslucent(settings.rendering) && !IsConsistent(settings.rendering)) {
+    // The paper's transport depends on the number of its steps: they are the scene's slices.
+    const int slices = settings.rendering.slices;
+    size.z = std::clamp((slices + 1) / 2, 1, kMostLightTexels);
+    half_layer_steps = std::max(1, (slices + size.z) / (2 * size.z));
+  }
+  texel_m = std::max(texel_m, 2.0 * reach_m / size.z);
+}
+
+glm::mat4x3 LightVolumeRenderer::LightBox::FromLocal() const {
+  const glm::dvec3 right = 0.5 * frame.right / frame.half_extent_m.x;
+  const glm::dvec3 up = 0.5 * frame.up / frame.half_extent_m.y;
+  const glm::dvec3 down = -0.5 * frame.towards_sun / reach_m;
+  return {right.x, up.x, down.x, right.y, up.y, down.y, right.z, up.z, down.z, 0.5, 0.5, 0.5};
+}
+
+void LightVolumeRenderer::Resize(const glm::ivec3& carried, const glm::ivec3& cells,
+                                 GLenum format) {
+  if (carried_.Size() != carried || light_format_ != format) {
+    carried_ = gl::Texture3D(format, carried);
+    carried_.Clear();
+    thickness_ = gl::Texture2D(GL_R32F, glm::ivec2(carried));
+  }
+  if (arrived_.Size() != cells || light_format_ != format) {
+    arrived_ = gl::Texture3D(format, cells);
+    // What is never written interpolation still multiplies by zero.
+    arrived_.Clear();
+  }
+  light_format_ = format;
+}
+
+absl::Status LightVolumeRenderer::CarryLight(const ResidentMedium& medium,
+                                             const RenderSettings& settings) {
+  const LightBox box(medium, settings);
+  const GroupWeights weights(medium.Content(), settings.rendering);
+  const bool diffuse = IsDiffuse(settings.rendering);
+  Resize(box.size, medium.Bounds().grid.cells, diffuse ? GL_RG16F : GL_R16F);
+  const std::vector<gl::Define> variant = {
+      {"GROUPS", static_cast<int>(medium.Content().groups.size())},
+      {"CONSISTENT", IsConsistent(settings.rendering) ? 1 : 0},
+      {"TRANSLUCENT", IsTranslucent(settings.rendering) ? 1 : 0},
+      {"DIFFUSE", diffuse ? 1 : 0}};
+  THUNDERHEAD_RETURN_IF_ERROR(Carry(medium, weights, box, variant));
+  return Arrive(medium, weights, box, variant);
+}
+
+absl::Status LightVolumeRenderer::Carry(const ResidentMedium& medium, const GroupWeights& weights,
+                                        const LightBox& box,
+                                        const std::vector<gl::Define>& variant) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
+                               programs_.Get({{}, {}, variant, "light_volume/carry.comp"}));
+  medium.Bind(*program);
+  program->Set("light_size", box.size);
+  program->Set("towards_sun", glm::vec3(box.frame.towards_sun));
+  program->Set("light_right_m", glm::vec3(box.frame.right * box.frame.half_extent_m.x));
+  program->Set("light_up_m", glm::vec3(box.frame.up * box.frame.half_extent_m.y));
+  program->Set("light_reach_m", static_cast<float>(box.reach_m));
+  program->Set("texel_m", static_cast<float>(box.texel_m));
+  program->Set("half_layer_steps", box.half_layer_steps);
+  program->Set("light_weights", medium.Weights(weights.light));
+  program->Set("transport_weights", medium.Weights(weights.transport));
+  program->Set("cumulative_phase", weights.cumulative_phase);
+  carried_.BindImage(0, GL_WRITE_ONLY);
+  thickness_.BindImage(1, GL_WRITE_ONLY);
+  program->Use();
+  const glm::ivec3 groups = (box.size + kGroupSide - 1) / kGroupSide;
+  glDispatchCompute(static_cast<GLuint>(groups.x), static_cast<GLuint>(groups.y), 1);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  return absl::OkStatus();
+}
+
+absl::Status LightVolumeRenderer::Arrive(const ResidentMedium& medium, const GroupWeights& weights,
+                                         const LightBox& box,
+                                         const std::vector<gl::Define>& variant) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
+                               programs_.Get({{}, {}, variant, "light_volume/arrive.comp"}));
+  medium.Bind(*program);
+  const glm::ivec3 cells = medium.Bounds().grid.cells;
+  program->Set("cell_count", cells);
+  program->Set("light_from_local", box.FromLocal());
+  program->Set("towards_sun", glm::vec3(box.frame.towards_sun));
+  program->Set("near_m", static_cast<float>(kNearInTexels * box.texel_m));
+  program->Set("light_weights", medium.Weights(weights.light));
+  carried_.Bind(kLightUnit);
+  thickness_.Bind(kThicknessUnit);
+  medium.BindOccupied(0);
+  arrived_.BindImage(0, GL_WRITE_ONLY);
+  program->Use();
+  glDispatchCompute(static_cast<GLuint>(medium.OccupiedCount()), 1, 1);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  return absl::OkStatus();
+}
+
+absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
+                                           const RenderSettings& settings) {
+  if (eye_.Size() != settings.eye_size) {
+    eye_ = gl::Texture2D(GL_RGBA16F, settings.eye_size);
+    eye_target_ = gl::Framebuffer(eye_);
+  }
+  const GroupWeights weights(medium.Content(), settings.rendering);
+  const std::vector<MediumGroup>& groups = medium.Content().groups;
+  const bool even_albedo =
+      !weights.colored && std::all_of(groups.begin(), groups.end(), [&](const MediumGroup& group) {
+        return group.albedo == groups.front().albedo;
+      });
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_.Get({"common/whole_target.vert",
+                     "light_volume/march.frag",
+                     {{"GROUPS", static_cast<int>(groups.size())},
+                      {"COLORED", weights.colored ? 1 : 0},
+                      {"CONSISTENT", IsConsistent(settings.rendering) ? 1 : 0},
+                      {"EVEN_ALBEDO", even_albedo ? 1 : 0}}}));
+  medium.Bind(*program);
+  weights.BindPhase(*program);
+  const scene::View& view = settings.view;
+  const double reach_m = glm::dot(glm::abs(view.forward), medium.HalfExtent_m());
+  BindRays(*program, view, medium.Middle_m());
+  program->Set("towards_sun", glm::vec3(settings.illumination.towards_sun));
+  program->Set("step_m", static_cast<float>(2.0 * reach_m / settings.slices));
+  program->Set("eye_weights", medium.Weights(weights.eye));
+  program->Set("scattering_weights", medium.Weights(weights.scattering));
+  program->Set("albedo", groups.front().albedo);
+  program->Set("sunlight", settings.illumination.sunlight);
+  program->Set("ambient", settings.illumination.ambient);
+  arrived_.Bind(kLightUnit);
+  eye_target_.Bind();
+  program->Use();
+  no_attributes_.Bind();
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  return absl::OkStatus();
+}
+
+}  // namespace thunderhead::renderers

@@ -1,0 +1,54 @@
+// Light once, view many: sunlight is carried along the sun's rays and given to the medium's cells,
+// once for a sun, fields and their parameters; a camera move only marches view rays through the
+// medium and that light, leaping over empty bricks and ending where nothing more shows. The result
+// is what the medium sends to the eye (rgb) and the share of the background that passes (a).
+//
+// The light model is that of half-angle slicing (Riley et al. 2003, Vis, 4.4), without the exchange
+// of light between neighbouring rays.
+#pragma once
+
+#include "absl/status/status.h"
+#include "gl/objects.h"
+#include "gl/program.h"
+#include "renderers/group_weights.h"
+#include "renderers/half_angle/slicing.h"
+#include "renderers/medium.h"
+#include "renderers/render_settings.h"
+
+namespace thunderhead::renderers {
+
+class LightVolumeRenderer {
+ public:
+  // Carries the light to the cells. `medium` must not be empty.
+  absl::Status CarryLight(const ResidentMedium& medium, const RenderSettings& settings);
+
+  // Draws `medium` with the light of the last CarryLight, which must have had the same medium, sun
+  // and rendering.
+  absl::Status DrawView(const ResidentMedium& medium, const RenderSettings& settings);
+
+  // The result of the last DrawView.
+  const gl::Texture2D& Eye() const { return eye_; }
+  std::size_t Bytes() const {
+    return eye_.Bytes() + carried_.Bytes() + thickness_.Bytes() + arrived_.Bytes();
+  }
+
+ private:
+  struct LightBox;
+
+  void Resize(const glm::ivec3& carried, const glm::ivec3& cells, GLenum format);
+  absl::Status Carry(const ResidentMedium& medium, const GroupWeights& weights, const LightBox& box,
+                     const std::vector<gl::Define>& variant);
+  absl::Status Arrive(const ResidentMedium& medium, const GroupWeights& weights,
+                      const LightBox& box, const std::vector<gl::Define>& variant);
+
+  gl::ProgramCache programs_;
+  gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
+  gl::Texture2D eye_;
+  gl::Framebuffer eye_target_;
+  gl::Texture3D carried_;  // along the sun's rays
+  gl::Texture2D thickness_;
+  gl::Texture3D arrived_;  // at the medium's cells
+  GLenum light_format_ = 0;
+};
+
+}  // namespace thunderhead::renderers

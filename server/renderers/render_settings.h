@@ -1,0 +1,26 @@
+// What every renderer of a medium is told besides the medium.
+#pragma once
+
+#include "glm/vec2.hpp"
+#include "glm/vec3.hpp"
+#include "scene/scene.h"
+#include "scene/view.h"
+
+namespace thunderhead::renderers {
+
+// What the sun and sky send into the medium.
+struct Illumination {
+  glm::dvec3 towards_sun{0.0, 0.0, 1.0};
+  glm::vec3 sunlight{1.0F};  // irradiance on a plane facing the sun
+  glm::vec3 ambient{0.0F};   // mean radiance from sky and ground
+};
+
+struct RenderSettings {
+  scene::Rendering rendering;
+  scene::View view;
+  Illumination illumination;
+  glm::ivec2 eye_size{1};  // of the eye buffer in pixels
+  int slices = 128;        // or samples along a ray
+};
+
+}  // namespace thunderhead::renderers

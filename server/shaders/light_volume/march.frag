@@ -1,0 +1,141 @@
+// What the medium sends to the eye: radiance (rgb) and the share of the background that passes (a). Marches through the
+// medium along the view ray; the light comes from arrive.comp. Riley et al. 2003 (Vis), eq. 5 with the phase of
+// eq. 18.
+// Between two samples extinction, scattering and the square root of the light's optical depth are linear. A segment shows
+// what scatters at the middle of the share of light that it takes: exact for a source that is linear in that share,
+// whatever the segment's optical depth. Errors against many samples: docs/performance.md.
+// Variants: GROUPS, COLORED (per-group colours), CONSISTENT (transport), EVEN_ALBEDO (one albedo and colour for all).
+#include "common/medium.glsl"
+#include "common/bricks.glsl"
+#include "common/phase.glsl"
+#include "common/view.glsl"
+#include "physics/light_transport.glsl"
+
+layout(binding = 4) uniform sampler3D arrived;  // of arrive.comp, cell by cell as the medium
+
+uniform vec3 towards_sun;
+uniform float step_m;  // between samples
+uniform vec4 eye_weights[PLANES];         // texel to the extinction that the eye sees, 1/m
+uniform vec4 scattering_weights[PLANES];  // texel to scattering, 1/m
+uniform float albedo;                     // of every group
+uniform vec3 sunlight;                    // irradiance
+uniform vec3 ambient;                     // mean radiance from sky and ground
+
+in vec2 position;
+out vec4 radiance_and_transmittance;
+
+const int kMostSamples = 16384;
+const float kOpaque = 5e-3;  // share of the background below which a ray ends
+
+void main() {
+  vec3 ray = ray_direction(position);
+  vec3 origin_m = ray_origin(position);
+  vec3 safe_ray = mix(ray, vec3(1e-7), lessThan(abs(ray), vec3(1e-7)));
+  vec3 low_m = (medium_low_m - origin_m) / safe_ray;
+  vec3 high_m = (medium_high_m - origin_m) / safe_ray;
+  vec3 nearest = min(low_m, high_m);
+  vec3 farthest = max(low_m, high_m);
+  float way_m = max(max(nearest.x, max(nearest.y, nearest.z)), 0.0);
+  float end_m = min(farthest.x, min(farthest.y, farthest.z));
+
+  vec3 place_step = ray * texture_from_local_scale;
+  vec3 place_start = origin_m * texture_from_local_scale + texture_from_local_offset;
+  vec3 brick_step = safe_ray * brick_from_local_scale;
+  vec3 brick_start = origin_m * brick_from_local_scale + brick_from_local_offset;
+  vec3 per_brick_step = 1.0 / brick_step;
+
+  float passing = 1.0;
+  float multiple = 0.0;    // mean intensity of light scattered many times, by the share of it that is seen
+  vec4 direct[PLANES];     // by group: what scatters of the sunlight that arrives
+#if !EVEN_ALBEDO
+  vec4 ambient_scattered[PLANES];
+  vec4 multiple_scattered[PLANES];
+#endif
+  for (int plane = 0; plane < PLANES; ++plane) {
+    direct[plane] = vec4(0.0);
+#if !EVEN_ALBEDO
+    ambient_scattered[plane] = multiple_scattered[plane] = vec4(0.0);
+#endif
+  }
+
+  Medium before;
+  for (int plane = 0; plane < PLANES; ++plane) before.plane[plane] = vec4(0.0);
+  vec3 through_m = abs(1.0 / (place_step * vec3(textureSize(medium_plane_0, 0))));
+  float cell_m = max(step_m, min(through_m.x, min(through_m.y, through_m.z)));  // the way through a cell
+  float extinction_before = -1.0;  // no sample yet
+  vec2 light_before = vec2(0.0);
+
+  for (int sample_count = 0; sample_count < kMostSamples && way_m < end_m && passing > kOpaque; ++sample_count) {
+    float from_m = way_m;
+    float longest_m = step_m;
+    while (way_m < end_m) {
+      vec3 brick_place = brick_start + way_m * brick_step;
+      uint content = brick_content(brick_place);
+      if (content == kThickBrick) break;
+      if (content == kThinBrick) {
+        longest_m = cell_m;
+        break;
+      }
+      way_m += empty_way(brick_place, content, per_brick_step);
+    }
+    // The first sample after a leap only starts a segment.
+    float segment_m = way_m > from_m || extinction_before < 0.0 ? 0.0 : min(longest_m, end_m - way_m);
+    way_m += segment_m;
+
+    vec3 place = place_start + way_m * place_step;
+    Medium here = medium_at_place(place);
+    vec2 light_here = texture(arrived, place).rg;
+    float extinction_here = weigh(here, eye_weights);
+    float start = max(extinction_before, 0.0);
+    float rise = extinction_here - start;
+    float depth = 0.5 * segment_m * (start + extinction_here);
+    float taken = depth < 0.01 ? depth * (1.0 - 0.5 * depth) : 1.0 - exp(-depth);
+    // Half of what the segment takes is taken before the optical depth from its start reaches:
+    float seen_depth = taken < 0.02 ? 0.5 * taken : -log(1.0 - 0.5 * taken);
+    // Where that is: the root of a quadratic.
+    float per_m = 2.0 * seen_depth / max(segment_m, 1e-6);
+    float at = min(per_m / (start + sqrt(max(start * start + rise * per_m, 1e-30))), 1.0);
+    vec2 light = mix(light_before, light_here, at);
+    float arriving = exp(-light.r * light.r);
+    float seen = passing * taken;
+    float per_extinction = seen / max(mix(start, extinction_here, at), 1e-30);
+#if EVEN_ALBEDO
+    multiple += seen * light.g;
+    for (int plane = 0; plane < PLANES; ++plane) {
+      direct[plane] += (per_extinction * arriving) * mix(before.plane[plane], here.plane[plane], at);
+    }
+#else
+    Medium between;
+    for (int plane = 0; plane < PLANES; ++plane) {
+      between.plane[plane] = mix(before.plane[plane], here.plane[plane], at);
+      direct[plane] += (per_extinction * arriving) * between.plane[plane];
+    }
+    float per_total = seen / max(total_extinction(between), 1e-30);
+    for (int plane = 0; plane < PLANES; ++plane) {
+      ambient_scattered[plane] += per_total * between.plane[plane];
+      multiple_scattered[plane] += (per_total * light.g) * between.plane[plane];
+    }
+#endif
+    passing *= 1.0 - taken;
+    before = here;
+    extinction_before = extinction_here;
+    light_before = light_here;
+  }
+
+  float mu = dot(ray, towards_sun);
+  vec3 radiance = vec3(0.0);
+  for (int group = 0; group < GROUPS; ++group) {
+    int plane = group / 4;
+    int channel = group % 4;
+    float scattering = scattering_weights[plane][channel];
+    radiance += sunlight * (direct[plane][channel] * scattering) * phase_term(group, mu);
+#if CONSISTENT && !EVEN_ALBEDO
+    vec3 isotropic = ambient * ambient_scattered[plane][channel] + sunlight * multiple_scattered[plane][channel];
+    radiance += (COLORED == 1 ? group_color[group] : vec3(1.0)) * isotropic * scattering;
+#endif
+  }
+#if CONSISTENT && EVEN_ALBEDO
+  radiance += albedo * (ambient * (1.0 - passing) + sunlight * multiple);
+#endif
+  radiance_and_transmittance = vec4(radiance, passing);
+}

@@ -1,0 +1,154 @@
+// The light volume and its march against closed forms, and against half-angle slicing, whose light
+// model it shares.
+#include <cmath>
+#include <numbers>
+
+#include "gtest/gtest.h"
+#include "tests/accuracy/slab_view.h"
+
+namespace thunderhead::renderers {
+namespace {
+
+class LightVolume : public SlabView {
+ protected:
+  void SetUp() override { scene_.rendering.renderer = scene::Renderer::kLightVolume; }
+
+  void SingleScattering() {
+    scene_.rendering.mode = scene::Mode::kUniformPhaseLowAlbedo;
+    scene_.rendering.transport = scene::Transport::kConsistent;
+    SetPhase(physics::PhaseKind::kCornetteShanks, 0.0F);
+  }
+};
+
+TEST_F(LightVolume, ReflectedLightOfALayer) {
+  // Sun and eye above: the integral of exp(-t (1 / sin e + 1 / sin s)) dt / sin e, whatever way
+  // extinction rises. The light volume's texels (94 m) are wider than the layer's cells are high
+  // (62 m): what is left is interpolation over a texel, in which a ray's optical depth is up to 20.
+  SingleScattering();
+  in_air_ = true;
+  for (const double depth : {0.01, 0.5, 3.0, 20.0, 100.0}) {
+    for (const auto& [view_deg, sun_deg] :
+         {std::pair(89.9, 89.9), std::pair(88.0, 45.0), std::pair(50.0, 60.0)}) {
+      const double view = 1.0 / std::sin(view_deg * std::numbers::pi / 180);
+      const double sun = 1.0 / std::sin(sun_deg * std::numbers::pi / 180);
+      const double expected =
+          PhaseTerm(view_deg, sun_deg) * view * -std::expm1(-depth * (view + sun)) / (view + sun);
+      const Seen seen = Look(depth, view_deg, sun_deg);
+      EXPECT_NEAR(seen.radiance / expected, 1.0, 0.05)
+          << "depth " << depth << ", view " << view_deg << ", sun " << sun_deg;
+      // A ray ends when less than 0.005 of the background shows.
+      EXPECT_NEAR(seen.transmittance, std::exp(-depth * view), 0.005);
+    }
+  }
+}
+
+TEST_F(LightVolume, HardFaces) {
+  // At a face of the domain extinction does not rise but jumps, which the light volume's texels
+  // cannot follow: the error grows with the optical depth of one of them (here 0.09 of the slab's).
+  SingleScattering();
+  for (const double depth : {0.01, 0.5, 3.0}) {
+    const double sun = std::numbers::sqrt2;
+    const double expected = PhaseTerm(89.9, 45.0) * -std::expm1(-depth * (1.0 + sun)) / (1.0 + sun);
+    EXPECT_NEAR(Look(depth, 89.9, 45.0).radiance / expected, 1.0, 0.01 + 0.02 * depth) << depth;
+  }
+}
+
+TEST_F(LightVolume, TransmittanceDoesNotDependOnTheNumberOfSamples) {
+  SingleScattering();
+  for (const int samples : {1, 3, 16, 500}) {
+    scene_.rendering.slices = samples;
+    EXPECT_NEAR(Look(1.0, 60.0, 45.0).transmittance,
+                std::exp(-1.0 / std::sin(std::numbers::pi / 3)), kTextureError)
+        << samples;
+  }
+}
+
+TEST_F(LightVolume, ThinSlabsKeepTheirDigits) {
+  SingleScattering();
+  scene_.rendering.slices = 1024;
+  for (const double depth : {3e-4, 1e-2}) {
+    const double expected = PhaseTerm(89.9, 89.9) * depth;
+    EXPECT_NEAR(Look(depth, 89.9, 89.9).radiance / expected, 1.0, 0.006 + depth);
+  }
+}
+
+TEST_F(LightVolume, AlbedoScalesSingleScattering) {
+  SingleScattering();
+  const double white = Look(1.0, 80.0, 60.0).radiance;
+  for (scene::FieldParameters& field : scene_.fields) field.optics.albedo = 0.5F;
+  EXPECT_NEAR(Look(1.0, 80.0, 60.0).radiance / white, 0.5, kTextureError);
+}
+
+TEST_F(LightVolume, AgreesWithHalfAngleSlicing) {
+  in_air_ = true;
+  for (const auto mode :
+       {scene::Mode::kUniformPhaseTranslucent, scene::Mode::kPerFieldPhaseTranslucent}) {
+    scene_.rendering.mode = mode;
+    for (const double depth : {0.1, 1.0, 10.0, 100.0}) {
+      for (const double elevation_deg : {-60.0, 30.0, 80.0}) {
+        scene_.rendering.renderer = scene::Renderer::kHalfAngle;
+        scene_.rendering.slices = 512;
+        const double slices = Look(depth, elevation_deg, 50.0).radiance;
+        scene_.rendering.renderer = scene::Renderer::kLightVolume;
+        scene_.rendering.slices = 128;
+        const double volume = Look(depth, elevation_deg, 50.0).radiance;
+        // Diffuse light is linear from cell to cell here; where a cell's optical depth is 12 that
+        // shows most on the dark side.
+        EXPECT_NEAR(volume / slices, 1.0, depth > 10.0 ? 0.25 : 0.05)
+            << depth << ", from " << elevation_deg;
+      }
+    }
+  }
+}
+
+TEST_F(LightVolume, PaperTransportDependsOnTheNumberOfSlicesAsPrinted) {
+  // Seen from below, the light that has passed the slab: more slices, less light (physics.md, 3).
+  scene_.rendering.mode = scene::Mode::kUniformPhaseTranslucent;
+  scene_.rendering.transport = scene::Transport::kPaper;
+  const auto seen = [&](int slices, scene::Renderer renderer) {
+    scene_.rendering.slices = slices;
+    scene_.rendering.renderer = renderer;
+    return Look(10.0, -89.9, 89.9).radiance;
+  };
+  const double coarse = seen(16, scene::Renderer::kLightVolume);
+  const double fine = seen(128, scene::Renderer::kLightVolume);
+  EXPECT_GT(coarse, 1.05 * fine);
+  const double slicing =
+      seen(16, scene::Renderer::kHalfAngle) / seen(128, scene::Renderer::kHalfAngle);
+  // A slice's own share of the light is counted at its middle here, before it there.
+  EXPECT_NEAR(coarse / fine / slicing, 1.0, 0.05);
+}
+
+TEST_F(LightVolume, ThickSlabIsWhite) {
+  // The bounds of half-angle slicing's test, for the same reasons.
+  scene_.rendering.mode = scene::Mode::kPerFieldPhaseTranslucent;
+  const double radiance = Look(5000.0, 89.0, 89.0).radiance;
+  EXPECT_GT(radiance, 0.7 / std::numbers::pi);
+  EXPECT_LT(radiance, 1.3 / std::numbers::pi);
+}
+
+class MarchedDepths : public LightVolume, public testing::WithParamInterface<double> {};
+
+TEST_P(MarchedDepths, NothingBreaks) {
+  for (const auto mode :
+       {scene::Mode::kUniformPhaseLowAlbedo, scene::Mode::kPerFieldPhaseTranslucent}) {
+    for (const auto transport : {scene::Transport::kPaper, scene::Transport::kConsistent}) {
+      for (const double elevation_deg : {-80.0, 30.0, 89.0}) {
+        scene_.rendering.mode = mode;
+        scene_.rendering.transport = transport;
+        scene_.rendering.slices = 8;
+        const Seen seen = Look(GetParam() * 8, elevation_deg, 40.0);
+        for (std::size_t i = 0; i < seen.eye.size(); ++i) {
+          ASSERT_TRUE(std::isfinite(seen.eye[i]));
+          ASSERT_GE(seen.eye[i], 0.0F);
+        }
+        EXPECT_LE(seen.transmittance, 1.0);
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(PerSegment, MarchedDepths, testing::Values(1e-8, 1e-4, 1.0, 1e4, 1e8));
+
+}  // namespace
+}  // namespace thunderhead::renderers

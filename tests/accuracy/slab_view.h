@@ -1,0 +1,102 @@
+// A homogeneous slab seen through a narrow lens by any renderer of a medium: what the closed forms
+// are compared with.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "frame/tone_map.h"
+#include "gl/context.h"
+#include "gtest/gtest.h"
+#include "physics/optics.h"
+#include "renderers/half_angle/half_angle_renderer.h"
+#include "renderers/light_volume/light_volume_renderer.h"
+#include "tests/support/slab.h"
+
+namespace thunderhead::renderers {
+
+// Extinction is stored in half floats, 2^-12 off at most.
+inline constexpr double kTextureError = 1e-3;
+
+class SlabView : public testing::Test {
+ protected:
+  static constexpr double kWidth_m = 4000.0;
+  static constexpr double kHeight_m = 1000.0;
+  static constexpr double kViewAzimuth_deg = 200.0;
+  static constexpr double kSunAzimuth_deg = 70.0;
+
+  static void SetUpTestSuite() {
+    auto context = gl::Context::Create("software");
+    ASSERT_TRUE(context.ok()) << context.status();
+    context_ = *std::move(context);
+  }
+  static void TearDownTestSuite() { context_.reset(); }
+
+  struct Seen {
+    double radiance;       // of the middle pixel's red
+    double transmittance;  // along the middle pixel's ray
+    std::vector<float> eye;
+    std::vector<float> light;  // of half-angle slicing
+  };
+
+  // Looks straight at the middle of the slab along `elevation_deg` with scene_.rendering.
+  Seen Look(double optical_depth, double elevation_deg, double sun_elevation_deg) {
+    scene::OrbitCamera camera;
+    camera.target_m = {0.0, 0.0, kHeight_m / 2};
+    camera.azimuth_deg = kViewAzimuth_deg;
+    camera.elevation_deg = elevation_deg;
+    camera.distance_m = 5000.0;
+    camera.field_of_view_deg = 2.0;
+    return Look(optical_depth, scene::ViewOf(camera, 1.0), sun_elevation_deg);
+  }
+
+  Seen Look(double optical_depth, const scene::View& view, double sun_elevation_deg) {
+    const auto fields = in_air_ ? support::MakeLayerInAir(kWidth_m, kHeight_m, 8, optical_depth)
+                                : support::MakeSlab(kWidth_m, kHeight_m, optical_depth / kHeight_m);
+    ResidentMedium::Cost cost;
+    const ResidentMedium medium(scene_, *fields, &cost);
+    RenderSettings settings;
+    settings.rendering = scene_.rendering;
+    settings.view = view;
+    settings.illumination = {scene::Direction(kSunAzimuth_deg, sun_elevation_deg), glm::vec3(1.0F),
+                             glm::vec3(0.0F)};
+    settings.eye_size = {9, 9};
+    settings.slices = scene_.rendering.slices;
+    Seen seen;
+    if (scene_.rendering.renderer == scene::Renderer::kHalfAngle) {
+      HalfAngleRenderer renderer;
+      EXPECT_TRUE(renderer.Render(medium, settings, true).ok());
+      seen.eye = frame::ReadLinear(renderer.Eye());
+      seen.light = frame::ReadLinear(renderer.Light());
+    } else {
+      LightVolumeRenderer renderer;
+      EXPECT_TRUE(renderer.CarryLight(medium, settings).ok());
+      EXPECT_TRUE(renderer.DrawView(medium, settings).ok());
+      seen.eye = frame::ReadLinear(renderer.Eye());
+    }
+    seen.radiance = seen.eye[4 * 40];
+    seen.transmittance = seen.eye[4 * 40 + 3];
+    return seen;
+  }
+
+  void SetPhase(physics::PhaseKind kind, float asymmetry) {
+    for (scene::FieldParameters& field : scene_.fields) field.optics.phase = {kind, asymmetry};
+  }
+
+  // The phase function over 4 pi for the angle between the view and the sun.
+  double PhaseTerm(double elevation_deg, double sun_elevation_deg) {
+    const double mu = -glm::dot(scene::Direction(kViewAzimuth_deg, elevation_deg),
+                                scene::Direction(kSunAzimuth_deg, sun_elevation_deg));
+    return physics::PhaseValue(UniformPhase(scene_), mu) / (4 * std::numbers::pi);
+  }
+
+  scene::Scene scene_;
+  bool in_air_ = false;  // a layer with soft faces instead of the slab
+
+ private:
+  inline static std::unique_ptr<gl::Context> context_;
+};
+
+}  // namespace thunderhead::renderers
