@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "base/status.h"
 #include "base/stopwatch.h"
@@ -48,14 +49,25 @@ glm::ivec2 EyeSize(const scene::Scene& scene, const DrawQuality& quality) {
 
 }  // namespace
 
+SceneRenderer::SceneRenderer(std::shared_ptr<gl::ProgramCache> programs)
+    : programs_(std::move(programs)), half_angle_(programs_), light_volume_(programs_) {}
+
+scene::Stage SceneRenderer::FirstStage(
+    const scene::Scene& scene,
+    const std::shared_ptr<const volume::HydrometeorFields>& fields) const {
+  if (!drawn_scene_.has_value() || drawn_fields_.lock() != fields) return scene::Stage::kStorm;
+  return scene::FirstDirtyStage(*drawn_scene_, scene);
+}
+
+std::size_t SceneRenderer::Bytes() const {
+  return medium_.Bytes() + half_angle_.Bytes() + light_volume_.Bytes() + linear_.Bytes();
+}
+
 absl::StatusOr<LinearFrame> SceneRenderer::Draw(
     const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
     const DrawQuality& quality) {
-  scene::Stage first = scene::Stage::kStorm;
-  if (drawn_scene_.has_value() && drawn_fields_.lock() == fields) {
-    first = scene::FirstDirtyStage(*drawn_scene_, scene);
-    if (quality != drawn_quality_) first = std::min(first, scene::Stage::kView);
-  }
+  scene::Stage first = FirstStage(scene, fields);
+  if (quality != drawn_quality_) first = std::min(first, scene::Stage::kView);
   drawn_scene_.reset();
   std::vector<StageTime> stages;
   if (first <= scene::Stage::kExtinction) {
@@ -132,7 +144,7 @@ absl::Status SceneRenderer::Composite(const scene::Scene& scene, const scene::Vi
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_.Get({"common/whole_target.vert", "post/composite.frag", {}}));
+      programs_->Get({"common/whole_target.vert", "post/composite.frag", {}}));
   const glm::vec3 towards_sun(scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg));
   BindLocalRays(*program, view);
   program->Set("towards_sun", glm::vec3(view.local_from_world * glm::dvec3(towards_sun)));
@@ -154,8 +166,7 @@ LinearFrame SceneRenderer::Report(const volume::HydrometeorFields& fields) const
   frame.radiance = &linear_;
   frame.fields = medium_.Content().hydrometeors;
   frame.slices = drawn_slices_;
-  frame.device_bytes =
-      medium_.Bytes() + half_angle_.Bytes() + light_volume_.Bytes() + linear_.Bytes();
+  frame.device_bytes = Bytes();
   if (!medium_.Empty()) {
     const glm::dvec3 box_m = 2.0 * medium_.HalfExtent_m();
     const glm::dvec3 domain_m = fields.grid.HighCorner_m() - fields.grid.low_corner_m;

@@ -43,10 +43,21 @@ struct LinearFrame {
 
 class SceneRenderer {
  public:
+  // Programs are linked in `programs`, which several renderers may share.
+  explicit SceneRenderer(
+      std::shared_ptr<gl::ProgramCache> programs = std::make_shared<gl::ProgramCache>());
+
+  // The first stage that Draw would rerun, at the quality of the last one.
+  scene::Stage FirstStage(const scene::Scene& scene,
+                          const std::shared_ptr<const volume::HydrometeorFields>& fields) const;
+
   // Draws `scene` from the fields of its storm and time.
   absl::StatusOr<LinearFrame> Draw(const scene::Scene& scene,
                                    const std::shared_ptr<const volume::HydrometeorFields>& fields,
                                    const DrawQuality& quality);
+
+  // On the device.
+  std::size_t Bytes() const;
 
  private:
   // Reruns what `first` dirties of the light and the view; appends the times of what ran.
@@ -57,7 +68,7 @@ class SceneRenderer {
                          double ground_height_m);
   LinearFrame Report(const volume::HydrometeorFields& fields) const;
 
-  gl::ProgramCache programs_;
+  std::shared_ptr<gl::ProgramCache> programs_;
   gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
   HalfAngleRenderer half_angle_;
   LightVolumeRenderer light_volume_;

@@ -5,7 +5,7 @@
 #include "base/status.h"
 #include "frame/tone_map.h"
 #include "gl/context.h"
-#include "renderers/scene_renderer.h"
+#include "renderers/renderer_pool.h"
 
 namespace thunderhead::session {
 namespace {
@@ -23,7 +23,7 @@ class GlFrameSource final : public FrameSource {
                                     const FrameQuality& quality) override {
     THUNDERHEAD_ASSIGN_OR_RETURN(
         const renderers::LinearFrame linear,
-        renderer_.Draw(scene, fields, {quality.image_scale, quality.slice_share}));
+        renderers_.Draw(scene, fields, {quality.image_scale, quality.slice_share}));
     THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped,
                                  tone_mapper_.Map(*linear.radiance, scene.display));
     DisplayFrame frame;
@@ -42,7 +42,7 @@ class GlFrameSource final : public FrameSource {
 
  private:
   std::unique_ptr<gl::Context> context_;  // outlives what was made in it
-  renderers::SceneRenderer renderer_;
+  renderers::RendererPool renderers_;
   frame::ToneMapper tone_mapper_;
   DeviceInfo info_;
 };

@@ -66,12 +66,12 @@ class SlabView : public testing::Test {
     settings.slices = scene_.rendering.slices;
     Seen seen;
     if (scene_.rendering.renderer == scene::Renderer::kHalfAngle) {
-      HalfAngleRenderer renderer;
+      HalfAngleRenderer renderer(std::make_shared<gl::ProgramCache>());
       EXPECT_TRUE(renderer.Render(medium, settings, true).ok());
       seen.eye = frame::ReadLinear(renderer.Eye());
       seen.light = frame::ReadLinear(renderer.Light());
     } else {
-      LightVolumeRenderer renderer;
+      LightVolumeRenderer renderer(std::make_shared<gl::ProgramCache>());
       EXPECT_TRUE(renderer.CarryLight(medium, settings).ok());
       EXPECT_TRUE(renderer.DrawView(medium, settings).ok());
       seen.eye = frame::ReadLinear(renderer.Eye());

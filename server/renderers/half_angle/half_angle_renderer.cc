@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/status.h"
 #include "glm/geometric.hpp"
@@ -55,7 +56,8 @@ struct HalfAngleRenderer::Programs {
   const gl::Program* light;
 };
 
-HalfAngleRenderer::HalfAngleRenderer() = default;
+HalfAngleRenderer::HalfAngleRenderer(std::shared_ptr<gl::ProgramCache> programs)
+    : programs_(std::move(programs)) {}
 
 std::size_t HalfAngleRenderer::Bytes() const {
   return eye_.Bytes() + light_[0].Bytes() + light_[1].Bytes() + thickness_.Bytes();
@@ -97,8 +99,8 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
     THUNDERHEAD_RETURN_IF_ERROR(DrawThickness(medium, settings, frame, weights));
   }
 
-  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* eye,
-                               programs_.Get({"half_angle/slice.vert",
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* eye, programs_->Get({"half_angle/slice.vert",
                                               "half_angle/eye.frag",
                                               {{"GROUPS", groups},
                                                {"COLORED", weights.colored ? 1 : 0},
@@ -124,11 +126,11 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
   eye->Set("light_v", glm::vec3(0.5 * frame.up / frame.half_extent_m.y));
 
   THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* light,
-                               programs_.Get({"common/whole_target.vert",
-                                              "half_angle/light.frag",
-                                              {{"GROUPS", groups},
-                                               {"CONSISTENT", consistent ? 1 : 0},
-                                               {"PASS", translucent ? kCarry : kTransmit}}}));
+                               programs_->Get({"common/whole_target.vert",
+                                               "half_angle/light.frag",
+                                               {{"GROUPS", groups},
+                                                {"CONSISTENT", consistent ? 1 : 0},
+                                                {"PASS", translucent ? kCarry : kTransmit}}}));
   medium.Bind(*light);
   light->Set("slice_normal", glm::vec3(slicing.normal));
   light->Set("light_path_m", static_cast<float>(slicing.light_path_m));
@@ -158,11 +160,11 @@ absl::Status HalfAngleRenderer::DrawThickness(const ResidentMedium& medium,
       SliceBox({medium.HalfExtent_m()}, towards_sun, towards_sun, kThicknessSlices);
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_.Get({"common/whole_target.vert",
-                     "half_angle/light.frag",
-                     {{"GROUPS", static_cast<int>(medium.Content().groups.size())},
-                      {"CONSISTENT", 1},
-                      {"PASS", kAddDepth}}}));
+      programs_->Get({"common/whole_target.vert",
+                      "half_angle/light.frag",
+                      {{"GROUPS", static_cast<int>(medium.Content().groups.size())},
+                       {"CONSISTENT", 1},
+                       {"PASS", kAddDepth}}}));
   medium.Bind(*program);
   program->Set("slice_normal", glm::vec3(slicing.normal));
   program->Set("light_path_m", static_cast<float>(slicing.light_path_m));

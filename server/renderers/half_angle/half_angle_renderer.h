@@ -7,6 +7,8 @@
 // diffusion term (Eddington) for light scattered many times.
 #pragma once
 
+#include <memory>
+
 #include "absl/status/status.h"
 #include "gl/objects.h"
 #include "gl/program.h"
@@ -19,7 +21,8 @@ namespace thunderhead::renderers {
 
 class HalfAngleRenderer {
  public:
-  HalfAngleRenderer();
+  // Programs are linked in `programs`.
+  explicit HalfAngleRenderer(std::shared_ptr<gl::ProgramCache> programs);
 
   // Draws `medium`, which must not be empty. `light_changed` says that the medium or the sun differ
   // from the last call.
@@ -42,7 +45,7 @@ class HalfAngleRenderer {
   void DrawSlices(const Programs& programs, const RenderSettings& settings, const LightFrame& frame,
                   const Slicing& slicing);
 
-  gl::ProgramCache programs_;
+  std::shared_ptr<gl::ProgramCache> programs_;
   gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
   gl::Texture2D eye_;
   gl::Framebuffer eye_target_;

@@ -105,7 +105,7 @@ absl::Status LightVolumeRenderer::Carry(const ResidentMedium& medium, const Grou
                                         const LightBox& box,
                                         const std::vector<gl::Define>& variant) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
-                               programs_.Get({{}, {}, variant, "light_volume/carry.comp"}));
+                               programs_->Get({{}, {}, variant, "light_volume/carry.comp"}));
   medium.Bind(*program);
   program->Set("light_size", box.size);
   program->Set("towards_sun", glm::vec3(box.frame.towards_sun));
@@ -130,7 +130,7 @@ absl::Status LightVolumeRenderer::Arrive(const ResidentMedium& medium, const Gro
                                          const LightBox& box,
                                          const std::vector<gl::Define>& variant) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
-                               programs_.Get({{}, {}, variant, "light_volume/arrive.comp"}));
+                               programs_->Get({{}, {}, variant, "light_volume/arrive.comp"}));
   medium.Bind(*program);
   const glm::ivec3 cells = medium.Bounds().grid.cells;
   program->Set("cell_count", cells);
@@ -162,12 +162,12 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
       });
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_.Get({"common/whole_target.vert",
-                     "light_volume/march.frag",
-                     {{"GROUPS", static_cast<int>(groups.size())},
-                      {"COLORED", weights.colored ? 1 : 0},
-                      {"CONSISTENT", IsConsistent(settings.rendering) ? 1 : 0},
-                      {"EVEN_ALBEDO", even_albedo ? 1 : 0}}}));
+      programs_->Get({"common/whole_target.vert",
+                      "light_volume/march.frag",
+                      {{"GROUPS", static_cast<int>(groups.size())},
+                       {"COLORED", weights.colored ? 1 : 0},
+                       {"CONSISTENT", IsConsistent(settings.rendering) ? 1 : 0},
+                       {"EVEN_ALBEDO", even_albedo ? 1 : 0}}}));
   medium.Bind(*program);
   weights.BindPhase(*program);
   const scene::View& view = settings.view;

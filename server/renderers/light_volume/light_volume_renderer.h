@@ -7,6 +7,9 @@
 // of light between neighbouring rays.
 #pragma once
 
+#include <memory>
+#include <utility>
+
 #include "absl/status/status.h"
 #include "gl/objects.h"
 #include "gl/program.h"
@@ -19,6 +22,10 @@ namespace thunderhead::renderers {
 
 class LightVolumeRenderer {
  public:
+  // Programs are linked in `programs`.
+  explicit LightVolumeRenderer(std::shared_ptr<gl::ProgramCache> programs)
+      : programs_(std::move(programs)) {}
+
   // Carries the light to the cells. `medium` must not be empty.
   absl::Status CarryLight(const ResidentMedium& medium, const RenderSettings& settings);
 
@@ -41,7 +48,7 @@ class LightVolumeRenderer {
   absl::Status Arrive(const ResidentMedium& medium, const GroupWeights& weights,
                       const LightBox& box, const std::vector<gl::Define>& variant);
 
-  gl::ProgramCache programs_;
+  std::shared_ptr<gl::ProgramCache> programs_;
   gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
   gl::Texture2D eye_;
   gl::Framebuffer eye_target_;

@@ -1,0 +1,46 @@
+#include "renderers/renderer_pool.h"
+
+#include <algorithm>
+
+namespace thunderhead::renderers {
+
+RendererPool::RendererPool(std::size_t most, std::size_t most_bytes)
+    : most_(most), most_bytes_(most_bytes), programs_(std::make_shared<gl::ProgramCache>()) {}
+
+absl::StatusOr<LinearFrame> RendererPool::Draw(
+    const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
+    const DrawQuality& quality) {
+  auto frame = Choose(scene, fields).Draw(scene, fields, quality);
+  Shrink();
+  return frame;
+}
+
+SceneRenderer& RendererPool::Choose(
+    const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields) {
+  const auto first_stage = [&](const std::unique_ptr<SceneRenderer>& renderer) {
+    return renderer->FirstStage(scene, fields);
+  };
+  auto best = std::max_element(
+      renderers_.begin(), renderers_.end(),
+      [&](const auto& a, const auto& b) { return first_stage(a) < first_stage(b); });
+  // What must compute the extinction anew keeps nothing worth sharing.
+  if (best == renderers_.end() || first_stage(*best) <= scene::Stage::kExtinction) {
+    if (renderers_.size() < most_) {
+      renderers_.push_back(std::make_unique<SceneRenderer>(programs_));
+    }
+    best = renderers_.end() - 1;
+  }
+  std::rotate(renderers_.begin(), best, best + 1);
+  return *renderers_.front();
+}
+
+void RendererPool::Shrink() {
+  std::size_t bytes = 0;
+  for (const auto& renderer : renderers_) bytes += renderer->Bytes();
+  while (renderers_.size() > 1 && bytes > most_bytes_) {
+    bytes -= renderers_.back()->Bytes();
+    renderers_.pop_back();
+  }
+}
+
+}  // namespace thunderhead::renderers

@@ -1,0 +1,38 @@
+// Scene renderers for viewers of different scenes: each keeps the stages of what it drew last, so
+// that viewers who alternate do not undo each other's. Owns GL objects: use it on the context's
+// thread.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "renderers/scene_renderer.h"
+
+namespace thunderhead::renderers {
+
+class RendererPool {
+ public:
+  // Keeps at most `most` renderers, and the least recently used of them only while all together
+  // take no more than `most_bytes` on the device.
+  explicit RendererPool(std::size_t most = 4, std::size_t most_bytes = std::size_t{1} << 30U);
+
+  // Draws with the renderer that keeps most of what the scene needs. The frame lives until the next
+  // Draw.
+  absl::StatusOr<LinearFrame> Draw(const scene::Scene& scene,
+                                   const std::shared_ptr<const volume::HydrometeorFields>& fields,
+                                   const DrawQuality& quality);
+
+ private:
+  SceneRenderer& Choose(const scene::Scene& scene,
+                        const std::shared_ptr<const volume::HydrometeorFields>& fields);
+  void Shrink();
+
+  std::size_t most_;
+  std::size_t most_bytes_;
+  std::shared_ptr<gl::ProgramCache> programs_;
+  std::vector<std::unique_ptr<SceneRenderer>> renderers_;  // the most recently used first
+};
+
+}  // namespace thunderhead::renderers
