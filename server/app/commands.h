@@ -19,5 +19,6 @@ Command AddServe(CLI::App& app);
 Command AddRender(CLI::App& app);
 Command AddInspect(CLI::App& app);
 Command AddFlux(CLI::App& app);
+Command AddGenerate(CLI::App& app);
 
 }  // namespace thunderhead::app

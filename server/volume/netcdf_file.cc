@@ -1,18 +1,17 @@
 #include "volume/netcdf_file.h"
 
-#include <hdf5.h>
 #include <netcdf.h>
 
 #include <cerrno>
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <mutex>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "volume/classic_file_size.h"
+#include "volume/netcdf_lock.h"
 
 namespace thunderhead::volume {
 namespace {
@@ -22,25 +21,6 @@ constexpr int kNoHandle = -1;
 // Models write fills from 1e30 (a common choice) to 9.969e36 (netCDF's own); no quantity in a storm
 // is that large.
 constexpr double kLargestValue = 1e30;
-
-// Held around every call of netCDF-C.
-class NetcdfLock {
- public:
-  NetcdfLock() : lock_(Mutex()) {
-    // HDF5 keeps a setting a thread for printing every failed look-up; netCDF switches it off in
-    // the thread that opens the first file only.
-    thread_local const herr_t silenced = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    static_cast<void>(silenced);
-  }
-
- private:
-  static std::mutex& Mutex() {
-    static std::mutex mutex;
-    return mutex;
-  }
-
-  std::lock_guard<std::mutex> lock_;
-};
 
 absl::Status OpenError(const std::string& path, int code) {
   const std::string what = absl::StrCat(path, ": ");

@@ -1,0 +1,192 @@
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
+#include "app/commands.h"
+#include "app/interruption.h"
+#include "app/progress_bar.h"
+#include "base/status.h"
+#include "base/version.h"
+#include "clouds/generator.h"
+#include "clouds/presets.h"
+#include "volume/cf_writer.h"
+
+namespace thunderhead::app {
+namespace {
+
+using clouds::CloudShape;
+
+struct Flags {
+  std::string output;
+  std::string preset = "fair-weather-cumulus";
+  std::uint64_t seed = 1;
+  std::optional<int> octaves;
+  std::optional<double> persistence;
+  std::string interpolation;
+  std::optional<double> feature_m;
+  std::optional<double> threshold;
+  std::optional<double> dynamics;
+  std::optional<double> water_g_per_m3;
+  std::optional<double> base_m;
+  std::vector<std::string> ellipsoids;
+  std::string cells;
+  std::optional<double> spacing_m;
+};
+
+absl::StatusOr<std::vector<double>> Numbers(const std::string& text, char separator) {
+  std::vector<double> numbers;
+  for (const auto part : absl::StrSplit(text, separator)) {
+    if (!absl::SimpleAtod(part, &numbers.emplace_back())) {
+      return absl::InvalidArgumentError(absl::StrCat("'", part, "' is no number"));
+    }
+  }
+  return numbers;
+}
+
+absl::StatusOr<clouds::Ellipsoid> ParseEllipsoid(const std::string& text) {
+  const auto numbers = Numbers(text, ',');
+  if (!numbers.ok() || (numbers->size() != 6 && numbers->size() != 9)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--ellipsoid is '", text,
+                     "'; it must be X,Y,Z,RX,RY,RZ in m, or with ,AX,AY,AZ in degrees after it"));
+  }
+  const std::vector<double>& n = *numbers;
+  clouds::Ellipsoid ellipsoid{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {}};
+  if (n.size() == 9) ellipsoid.rotation_deg = {n[6], n[7], n[8]};
+  return ellipsoid;
+}
+
+absl::Status SetNoise(const Flags& flags, CloudShape* shape) {
+  shape->noise.octaves = flags.octaves.value_or(shape->noise.octaves);
+  shape->noise.persistence = flags.persistence.value_or(shape->noise.persistence);
+  shape->feature_m = flags.feature_m.value_or(shape->feature_m);
+  if (flags.interpolation == "linear") {
+    shape->noise.interpolation = clouds::NoiseInterpolation::kLinear;
+  } else if (flags.interpolation == "cosine") {
+    shape->noise.interpolation = clouds::NoiseInterpolation::kCosine;
+  } else if (flags.interpolation == "cubic") {
+    shape->noise.interpolation = clouds::NoiseInterpolation::kCubic;
+  } else if (!flags.interpolation.empty()) {
+    return absl::InvalidArgumentError(absl::StrCat("--interpolation is '", flags.interpolation,
+                                                   "'; it must be linear, cosine or cubic"));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status SetGrid(const Flags& flags, volume::RegularGrid* grid) {
+  if (!flags.cells.empty()) {
+    const auto numbers = Numbers(flags.cells, 'x');
+    if (!numbers.ok() || numbers->size() != 3) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          "--cells is '", flags.cells, "'; it must be NXxNYxNZ, for example 128x128x64"));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const double count = (*numbers)[static_cast<std::size_t>(axis)];
+      if (!(count >= 1.0 && count <= 4096.0)) {
+        return absl::InvalidArgumentError(
+            absl::StrCat("--cells is '", flags.cells, "'; each number must be from 1 to 4096"));
+      }
+      grid->cells[axis] = static_cast<int>(count);
+    }
+  }
+  if (flags.spacing_m.has_value()) grid->spacing_m = glm::dvec3(*flags.spacing_m);
+  grid->low_corner_m = {-0.5 * grid->cells.x * grid->spacing_m.x,
+                        -0.5 * grid->cells.y * grid->spacing_m.y, 0.0};
+  return absl::OkStatus();
+}
+
+absl::StatusOr<CloudShape> ShapeOf(const Flags& flags) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(CloudShape shape, clouds::PresetNamed(flags.preset, flags.seed));
+  THUNDERHEAD_RETURN_IF_ERROR(SetNoise(flags, &shape));
+  THUNDERHEAD_RETURN_IF_ERROR(SetGrid(flags, &shape.grid));
+  shape.threshold = flags.threshold.value_or(shape.threshold);
+  shape.dynamics = flags.dynamics.value_or(shape.dynamics);
+  if (flags.water_g_per_m3.has_value()) shape.water_kg_per_m3 = 1e-3 * *flags.water_g_per_m3;
+  if (!flags.ellipsoids.empty()) {
+    shape.ellipsoids.clear();
+    shape.base_m.reset();  // the preset's belongs to the preset's
+  }
+  for (const std::string& text : flags.ellipsoids) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const clouds::Ellipsoid ellipsoid, ParseEllipsoid(text));
+    shape.ellipsoids.push_back(ellipsoid);
+  }
+  if (flags.base_m.has_value()) shape.base_m = flags.base_m;
+  return shape;
+}
+
+std::string Parameters(const Flags& flags, const CloudShape& shape) {
+  constexpr const char* kInterpolations[] = {"linear", "cosine", "cubic"};
+  return absl::StrFormat(
+      "preset %s, seed %d, %d octaves, persistence %g, %s interpolation, feature size %g m, "
+      "threshold %g, dynamics %g, liquid water %g g/m3, %d ellipsoids",
+      flags.preset, flags.seed, shape.noise.octaves, shape.noise.persistence,
+      kInterpolations[static_cast<int>(shape.noise.interpolation)], shape.feature_m,
+      shape.threshold, shape.dynamics, 1e3 * shape.water_kg_per_m3, shape.ellipsoids.size());
+}
+
+absl::Status Generate(const Flags& flags) {
+  if (!absl::EndsWithIgnoreCase(flags.output, ".nc")) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("-o is '", flags.output, "'; its name must end in .nc"));
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const CloudShape shape, ShapeOf(flags));
+  volume::CfCloud cloud;
+  cloud.grid = shape.grid;
+  cloud.title = flags.preset;
+  cloud.source = "thunderhead " + base::Version() + " generate";
+  cloud.comment = Parameters(flags, shape);
+  const Interruption interruption;
+  {
+    ProgressBar bar("generating");
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        cloud.water_kg_per_m3,
+        clouds::Generate(
+            shape, [&bar](double share) { bar.Set(share); }, interruption.Token()));
+  }
+  return volume::WriteCfCloud(cloud, flags.output);
+}
+
+}  // namespace
+
+Command AddGenerate(CLI::App& app) {
+  auto flags = std::make_shared<Flags>();
+  CLI::App* generate = app.add_subcommand("generate", "Make a cloud without a model run");
+  generate->add_option("-o,--output", flags->output, "The storm file: .nc")->required();
+  generate->add_option("--preset", flags->preset, absl::StrJoin(clouds::PresetNames(), ", "))
+      ->capture_default_str();
+  generate->add_option("--seed", flags->seed, "Which cloud of its kind")->capture_default_str();
+  const std::string otherwise = "; without it the preset's";
+  generate->add_option("--octaves", flags->octaves, "Scales of noise, 1 to 16" + otherwise);
+  generate->add_option("--persistence", flags->persistence,
+                       "Amplitude of a scale over the next coarser, up to 1" + otherwise);
+  generate->add_option("--interpolation", flags->interpolation,
+                       "Of the noise: linear, cosine or cubic" + otherwise);
+  generate->add_option("--feature-size", flags->feature_m,
+                       "The noise's coarsest scale in m" + otherwise);
+  generate->add_option("--threshold", flags->threshold,
+                       "Density below which there is nothing, from 0 to 1" + otherwise);
+  generate->add_option("--dynamics", flags->dynamics,
+                       "Scales density, above 0 up to 1" + otherwise);
+  generate->add_option("--water", flags->water_g_per_m3,
+                       "Liquid water where density is 1, g/m3" + otherwise);
+  generate->add_option("--base", flags->base_m,
+                       "Height in m below which there is none" + otherwise);
+  generate
+      ->add_option("--ellipsoid", flags->ellipsoids,
+                   "X,Y,Z,RX,RY,RZ[,AX,AY,AZ] in m and degrees, in place of the preset's; "
+                   "again for each")
+      ->allow_extra_args(false);
+  generate->add_option("--cells", flags->cells, "NXxNYxNZ" + otherwise);
+  generate->add_option("--spacing", flags->spacing_m, "Size of a cell in m" + otherwise);
+  return {generate, [flags] { return Generate(*flags); }};
+}
+
+}  // namespace thunderhead::app

@@ -1,0 +1,56 @@
+// What a generated cloud is: its grid, noise, ellipsoids and amount of water. Plain values.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clouds/noise.h"
+#include "glm/mat3x3.hpp"
+#include "glm/vec3.hpp"
+#include "volume/grid.h"
+
+namespace thunderhead::clouds {
+
+// Rotated about x, then y, then z, through its centre. World metres: x and y from the middle of the
+// domain, z from sea level.
+struct Ellipsoid {
+  glm::dvec3 centre_m{0.0};
+  glm::dvec3 radii_m{1.0};
+  glm::dvec3 rotation_deg{0.0};
+};
+
+struct CloudShape {
+  volume::RegularGrid grid;
+  NoiseParameters noise;
+  double feature_m = 400.0;           // size of the coarsest octave's lattice cells
+  double threshold = 0.1;             // t: what is thinner is empty
+  double dynamics = 1.0;              // d: scales the whole range of density
+  double water_kg_per_m3 = 2e-3;      // where the density is 1
+  std::optional<double> base_m;       // nothing lies lower
+  std::vector<Ellipsoid> ellipsoids;  // the cloud is their union
+};
+
+// Q of eq. 8 of one ellipsoid: 1 at its centre, 0 on its surface, below 0 outside. Its constants
+// q_0 to q_9 are those of 1 - (p - c)^T M (p - c).
+class Quadric {
+ public:
+  explicit Quadric(const Ellipsoid& ellipsoid);
+
+  double Value(const glm::dvec3& point_m) const {
+    const glm::dvec3 from_centre = point_m - centre_m_;
+    const glm::dvec3 m = matrix_ * from_centre;
+    return 1.0 - (from_centre.x * m.x + from_centre.y * m.y + from_centre.z * m.z);
+  }
+
+  // Half the size of the smallest level box around it.
+  const glm::dvec3& HalfExtent_m() const { return half_extent_m_; }
+  const glm::dvec3& Centre_m() const { return centre_m_; }
+
+ private:
+  glm::dvec3 centre_m_;
+  glm::dmat3 matrix_{0.0};
+  glm::dvec3 half_extent_m_{0.0};
+};
+
+}  // namespace thunderhead::clouds

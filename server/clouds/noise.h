@@ -1,0 +1,85 @@
+// Man's noise: a sum of octaves of smoothed lattice noise (P. Man, "Generating and Real-Time
+// Rendering of Clouds", eq. 1-7). Pure numbers: knows no cloud. The same bits on every machine.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace thunderhead::clouds {
+
+enum class NoiseInterpolation { kLinear, kCosine, kCubic };
+
+struct NoiseParameters {
+  int octaves = 4;           // Z
+  double persistence = 0.5;  // s: amplitude of an octave over that of the one before
+  NoiseInterpolation interpolation = NoiseInterpolation::kCosine;
+  std::uint64_t seed = 0;  // 0 gives the printed formula; others shift each octave's lattice
+};
+
+// g, eq. 2: from -1 (not reached) to 1. The scan garbles its operators; this is the 32-bit integer
+// noise with the same constants, with n = (m << 13) ^ m. `shift` is added to m.
+double LatticeNoise(std::int32_t x, std::int32_t y, std::int32_t z, std::uint32_t shift = 0);
+
+// f, eq. 3: the mean of g over 27 neighbours with weights 9/18 at the centre, 4/(6 18) for each of
+// 6 faces, 3/(12 18) for each of 12 edges, 2/(8 18) for each of 8 corners.
+double SmoothNoise(std::int32_t x, std::int32_t y, std::int32_t z, std::uint32_t shift = 0);
+
+// Weights of the lattice values at -1, 0, 1 and 2 for a place `fraction` (0 to 1) after 0:
+// eq. 4, 5 or 6.
+std::array<double, 4> InterpolationWeights(NoiseInterpolation interpolation, double fraction);
+
+// Eq. 1 at one point, in units of the coarsest lattice. The slow, plain form.
+double Noise(const NoiseParameters& parameters, double x, double y, double z);
+
+// Places of cells along an axis, in units of the coarsest lattice.
+struct NoiseAxis {
+  double first = 0.0;
+  double step = 1.0;
+  int count = 1;
+};
+
+// Eq. 1 on level slices of a grid: each lattice value is computed once for a plane.
+class NoiseSlices {
+ public:
+  NoiseSlices(const NoiseParameters& parameters, const NoiseAxis& x, const NoiseAxis& y);
+
+  // The values of the slice at height `z`, x fastest. Heights should rise from call to call.
+  const std::vector<double>& At(double z);
+
+ private:
+  struct Tap {
+    std::int32_t first = 0;  // lattice index of the first weight, 1 before the cell
+    std::array<double, 4> weights{};
+  };
+  // Smoothed lattice values of one height.
+  struct Plane {
+    std::int32_t z = 0;
+    bool filled = false;
+    std::vector<double> values;
+  };
+  struct Octave {
+    double frequency = 1.0;
+    double amplitude = 1.0;
+    std::uint32_t shift = 0;
+    std::vector<Tap> x;
+    std::vector<Tap> y;
+    std::int32_t low_x = 0;
+    std::int32_t low_y = 0;
+    std::size_t width = 0;
+    std::size_t height = 0;
+    std::array<Plane, 4> planes;  // by z modulo 4
+  };
+
+  std::vector<Tap> TapsOf(const NoiseAxis& axis, double frequency) const;
+  static const std::vector<double>& PlaneAt(Octave& octave, std::int32_t z);
+  void Add(Octave& octave, double z);
+
+  NoiseInterpolation interpolation_;
+  std::vector<Octave> octaves_;
+  std::vector<double> slice_;
+  std::vector<double> mixed_;
+  std::vector<double> row_;
+};
+
+}  // namespace thunderhead::clouds

@@ -1,0 +1,24 @@
+// Writes a field on a regular grid as a CF netCDF storm file, which this room reads back as it was.
+// Under a name of its own first, so that a reader never sees half a file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "volume/grid.h"
+
+namespace thunderhead::volume {
+
+struct CfCloud {
+  RegularGrid grid;
+  std::vector<float> water_kg_per_m3;  // cloud water, grid.CellCount() values, x fastest
+  std::string title;
+  std::string source;   // what made it
+  std::string comment;  // with which parameters
+};
+
+// The variable `lwc` (kg m-3) on z, y, x in metres, compressed.
+absl::Status WriteCfCloud(const CfCloud& cloud, const std::string& path);
+
+}  // namespace thunderhead::volume

@@ -1,0 +1,30 @@
+// The one lock of the process around netCDF-C and HDF5, which are not thread-safe. Only this room's
+// netCDF files include it.
+#pragma once
+
+#include <hdf5.h>
+
+#include <mutex>
+
+namespace thunderhead::volume {
+
+// Held around every call of netCDF-C.
+class NetcdfLock {
+ public:
+  NetcdfLock() : lock_(Mutex()) {
+    // HDF5 keeps a setting a thread for printing every failed look-up; netCDF switches it off in
+    // the thread that opens the first file only.
+    thread_local const herr_t silenced = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    static_cast<void>(silenced);
+  }
+
+ private:
+  static std::mutex& Mutex() {
+    static std::mutex mutex;
+    return mutex;
+  }
+
+  std::lock_guard<std::mutex> lock_;
+};
+
+}  // namespace thunderhead::volume

@@ -1,0 +1,112 @@
+// `thunderhead generate` as a user runs it: what it makes, every other command takes.
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "frame/image_codec.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/support/temporary_folder.h"
+
+namespace thunderhead::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+class GenerateCommand : public ::testing::Test {
+ protected:
+  int Run(const std::string& arguments) {
+    const int status = std::system((std::string(PROGRAM) + " " + arguments + " >" +
+                                    folder_.File("out") + " 2>" + folder_.File("err"))
+                                       .c_str());
+    out_ = Contents("out");
+    err_ = Contents("err");
+    return WEXITSTATUS(status);
+  }
+
+  std::string Contents(const std::string& name) const {
+    std::ostringstream text;
+    text << std::ifstream(folder_.File(name), std::ios::binary).rdbuf();
+    return text.str();
+  }
+
+  TemporaryFolder folder_;
+  std::string cloud_ = folder_.File("cloud.nc");
+  std::string out_;
+  std::string err_;
+};
+
+TEST_F(GenerateCommand, PresetsAreStormFiles) {
+  for (const std::string preset : {"fair-weather-cumulus", "congestus", "cumulus-field"}) {
+    ASSERT_EQ(Run("generate --preset " + preset + " -o " + cloud_), 0) << err_;
+    EXPECT_EQ(err_, "");
+    ASSERT_EQ(Run("inspect " + cloud_), 0) << err_;
+    EXPECT_THAT(out_, HasSubstr("lwc"));
+    EXPECT_THAT(out_, HasSubstr("kg m-3"));
+    EXPECT_THAT(out_, HasSubstr(preset));
+  }
+}
+
+TEST_F(GenerateCommand, ASeedIsACloud) {
+  const std::string small = "generate --cells 40x40x50 --spacing 40 --octaves 3 -o ";
+  const auto description = [&](const std::string& seed) {
+    EXPECT_EQ(Run(small + cloud_ + " --seed " + seed), 0) << err_;
+    EXPECT_EQ(Run("inspect --json " + cloud_), 0) << err_;
+    return out_;
+  };
+  const std::string first = description("5");
+  EXPECT_EQ(description("5"), first);
+  EXPECT_NE(description("6"), first);
+}
+
+TEST_F(GenerateCommand, CloudsOfOwnEllipsoidsAreDrawn) {
+  ASSERT_EQ(Run("generate --cells 48x48x32 --spacing 50 --octaves 4 --persistence 0.7 "
+                "--interpolation cubic --feature-size 300 --threshold 0.02 --dynamics 0.9 "
+                "--water 3 --base 500 --ellipsoid 0,0,800,700,500,500,0,0,30 "
+                "--ellipsoid=-300,0,1100,300,300,250 -o " +
+                cloud_),
+            0)
+      << err_;
+  const std::string picture = folder_.File("cloud.png");
+  ASSERT_EQ(Run("render " + cloud_ + " --device software --size 96x64 --slices 32 -o " + picture),
+            0)
+      << err_;
+  const auto image = frame::DecodePng(Contents("cloud.png"));
+  ASSERT_TRUE(image.ok()) << image.status();
+  // The cloud in the middle is brighter than the ground in the corner.
+  const auto brightness = [&](int x, int y) {
+    const auto* pixel = &image->rgb[static_cast<std::size_t>(y * 96 + x) * 3];
+    return pixel[0] + pixel[1] + pixel[2];
+  };
+  EXPECT_GT(brightness(48, 32), brightness(2, 60) + 60);
+  ASSERT_EQ(Run("flux " + cloud_ + " --photons 5000"), 0) << err_;
+}
+
+TEST_F(GenerateCommand, BadParametersAreNamed) {
+  struct Case {
+    std::string arguments;
+    std::string text;
+  };
+  for (const Case& c :
+       {Case{"--octaves 0", "octaves"}, Case{"--octaves 14", "too fine"},
+        Case{"--persistence 0", "persistence"}, Case{"--threshold 1", "threshold"},
+        Case{"--dynamics 1.5", "dynamics"}, Case{"--water -1", "water"},
+        Case{"--interpolation spline", "--interpolation"},
+        Case{"--ellipsoid 0,0,800,100,-5,100", "radius"},
+        Case{"--ellipsoid 0,0,800,100", "--ellipsoid"},
+        Case{"--ellipsoid 0,0,80000,100,100,100", "no cell"}, Case{"--cells 12x12", "--cells"},
+        Case{"--cells 0x4x4", "--cells"}, Case{"--spacing 0", "size of a cell"},
+        Case{"--preset nimbus", "nimbus"}, Case{"--feature-size -3", "feature"}}) {
+    EXPECT_EQ(Run("generate -o " + cloud_ + " " + c.arguments), 2) << c.arguments;
+    EXPECT_THAT(err_, HasSubstr(c.text)) << c.arguments;
+    EXPECT_FALSE(std::ifstream(cloud_).good()) << c.arguments;
+  }
+  EXPECT_EQ(Run("generate -o cloud.png"), 2);
+  EXPECT_EQ(Run("generate -o " + folder_.File("none/cloud.nc")), 1);
+}
+
+}  // namespace
+}  // namespace thunderhead::testing
