@@ -8,6 +8,7 @@ import {
   sceneFromUrlText,
   sceneToUrlText,
   withAsymmetry,
+  withDetail,
   withField,
   withStorm,
   withSun,
@@ -64,6 +65,15 @@ describe("scenes", () => {
     ]);
     const phase = withAsymmetry(scene, Hydrometeor.RAIN, 0.5).fields[0]?.phase;
     expect(phase).toMatchObject({ kind: PhaseFunction_Kind.RAYLEIGH, asymmetry: 0.5 });
+  });
+
+  it("change a field's detail and keep the rest of it", () => {
+    const seeded = withDetail(scene, Hydrometeor.RAIN, { seed: 9 });
+    const after = withDetail(seeded, Hydrometeor.RAIN, { share: 0.25 });
+    expect(after.fields[0]).toMatchObject({ scale: 2, detail: { seed: 9, share: 0.25 } });
+    const defaults = create(FieldParametersSchema, { detail: { share: 0.75, wavelengthM: 300 } });
+    const detail = { seed: 9, share: 0.25, octaves: 4, wavelengthM: 300 };
+    expect(effectiveField(after, Hydrometeor.RAIN, defaults).detail).toMatchObject(detail);
   });
 
   it("drop what belongs to a storm with the storm", () => {

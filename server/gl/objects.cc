@@ -16,10 +16,22 @@ void DeleteVertexArray(GLuint name) { glDeleteVertexArrays(1, &name); }
 
 namespace {
 
+GLint WrapOf(Edge edge) {
+  switch (edge) {
+    case Edge::kClamp:
+      return GL_CLAMP_TO_EDGE;
+    case Edge::kZero:
+      return GL_CLAMP_TO_BORDER;
+    case Edge::kRepeat:
+      return GL_REPEAT;
+  }
+  return GL_CLAMP_TO_EDGE;
+}
+
 GLuint NewTexture(GLenum target, Edge edge, Filter filter = Filter::kLinear) {
   GLuint name = 0;
   glCreateTextures(target, 1, &name);
-  const GLint wrap = edge == Edge::kZero ? GL_CLAMP_TO_BORDER : GL_CLAMP_TO_EDGE;
+  const GLint wrap = WrapOf(edge);
   const GLint sampling = filter == Filter::kLinear ? GL_LINEAR : GL_NEAREST;
   glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, sampling);
   glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, sampling);
@@ -34,6 +46,7 @@ GLuint NewTexture(GLenum target, Edge edge, Filter filter = Filter::kLinear) {
 std::size_t BytesPerTexel(GLenum internal_format) {
   switch (internal_format) {
     case GL_R8UI:
+    case GL_R8:
       return 1;
     case GL_R16F:
       return 2;
@@ -60,8 +73,8 @@ Texture2D::Texture2D(GLenum internal_format, glm::ivec2 size, Edge edge)
   glTextureStorage2D(name_.Get(), 1, internal_format, size.x, size.y);
 }
 
-Texture3D::Texture3D(GLenum internal_format, glm::ivec3 size, Filter filter)
-    : name_(NewTexture(GL_TEXTURE_3D, Edge::kClamp, filter)),
+Texture3D::Texture3D(GLenum internal_format, glm::ivec3 size, Filter filter, Edge edge)
+    : name_(NewTexture(GL_TEXTURE_3D, edge, filter)),
       size_(size),
       internal_format_(internal_format),
       bytes_(BytesPerTexel(internal_format) * static_cast<std::size_t>(size.x) *

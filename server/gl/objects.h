@@ -39,7 +39,7 @@ void DeleteBuffer(GLuint name);
 void DeleteVertexArray(GLuint name);
 }  // namespace internal
 
-enum class Edge { kClamp, kZero };  // what a fetch beyond the edge gives
+enum class Edge { kClamp, kZero, kRepeat };  // what a fetch beyond the edge gives
 
 // Bytes of one texel of a sized internal format that this project uses.
 std::size_t BytesPerTexel(GLenum internal_format);
@@ -66,11 +66,12 @@ class Texture2D {
 
 enum class Filter { kLinear, kNearest };
 
-// An immutable three-dimensional texture with clamped edges.
+// An immutable three-dimensional texture.
 class Texture3D {
  public:
   Texture3D() = default;
-  Texture3D(GLenum internal_format, glm::ivec3 size, Filter filter = Filter::kLinear);
+  Texture3D(GLenum internal_format, glm::ivec3 size, Filter filter = Filter::kLinear,
+            Edge edge = Edge::kClamp);
 
   // Fills the whole texture; `format` and `type` as glTextureSubImage3D takes them, rows tightly
   // packed.

@@ -28,7 +28,7 @@ physics::PhaseFunction PhaseOf(const scene::Scene& scene, physics::Hydrometeor h
   const auto phase_of = [&](physics::Hydrometeor kind) {
     return scene.fields[physics::IndexOf(kind)].optics.phase;
   };
-  if (scene.rendering.mode == scene::Mode::kPerFieldPhaseTranslucent) return phase_of(hydrometeor);
+  if (scene::HasPerFieldPhase(scene.rendering.mode)) return phase_of(hydrometeor);
   return {physics::PhaseKind::kCornetteShanks, phase_of(physics::Hydrometeor::kCloud).asymmetry};
 }
 

@@ -4,12 +4,44 @@
 #include <array>
 
 #include "base/stopwatch.h"
+#include "glm/common.hpp"
 #include "volume/brick_map.h"
 
 namespace thunderhead::renderers {
 namespace {
 
 constexpr GLuint kBrickUnit = 2;
+constexpr GLuint kDetailUnit = 8;  // binding of detail_noise in common/medium.glsl
+
+// Groups that differ only in their share are fetched together.
+std::vector<DetailLayer> LayersOf(const Medium& medium, DetailNoises* noises) {
+  std::vector<DetailLayer> layers;
+  for (std::size_t group = 0; group < medium.groups.size(); ++group) {
+    const scene::Detail& detail = medium.groups[group].detail;
+    if (detail.share <= 0.0F) continue;
+    const auto same = [&](const DetailLayer& layer) {
+      scene::Detail shared = layer.detail;
+      shared.share = detail.share;
+      return shared == detail;
+    };
+    auto found = std::find_if(layers.begin(), layers.end(), same);
+    if (found == layers.end()) {
+      found = layers.insert(found, {detail, noises->Get(detail.octaves, detail.seed),
+                                    std::vector<double>(medium.groups.size(), 0.0)});
+    }
+    found->share_by_group[group] = detail.share;
+  }
+  return layers;
+}
+
+// One value a group as shaders take them, four to a vector.
+std::vector<glm::vec4> Packed(const std::vector<double>& by_group, double factor) {
+  std::vector<glm::vec4> packed((by_group.size() + 3) / 4, glm::vec4(0.0F));
+  for (std::size_t i = 0; i < by_group.size(); ++i) {
+    packed[i / 4][static_cast<int>(i % 4)] = static_cast<float>(by_group[i] * factor);
+  }
+  return packed;
+}
 
 }  // namespace
 
@@ -19,7 +51,7 @@ physics::PhaseFunction UniformPhase(const scene::Scene& scene) {
 }
 
 Medium MediumOf(const scene::Scene& scene, const volume::HydrometeorFields& fields) {
-  const bool per_field_phase = scene.rendering.mode == scene::Mode::kPerFieldPhaseTranslucent;
+  const bool per_field_phase = scene::HasPerFieldPhase(scene.rendering.mode);
   Medium medium;
   for (std::size_t i = 0; i < fields.fields.size(); ++i) {
     const volume::HydrometeorField& field = fields.fields[i];
@@ -29,6 +61,7 @@ Medium MediumOf(const scene::Scene& scene, const volume::HydrometeorFields& fiel
     group.albedo = look.optics.albedo;
     group.phase = per_field_phase ? look.optics.phase : UniformPhase(scene);
     if (scene.rendering.false_colors) group.color = look.optics.false_color;
+    group.detail = scene::DrawnDetail(scene, field.hydrometeor, fields.grid.spacing_m);
     auto found = std::find(medium.groups.begin(), medium.groups.end(), group);
     if (found == medium.groups.end()) found = medium.groups.insert(found, group);
     const float mass_extinction = volume::MassExtinction_m2_per_kg(field, look.optics);
@@ -40,7 +73,7 @@ Medium MediumOf(const scene::Scene& scene, const volume::HydrometeorFields& fiel
 }
 
 ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::HydrometeorFields& fields,
-                               Cost* cost)
+                               DetailNoises* noises, Cost* cost)
     : content_(MediumOf(scene, fields)) {
   constexpr std::array<GLenum, 5> kFormats = {0, GL_R16F, GL_RG16F, 0, GL_RGBA16F};
   constexpr std::array<GLenum, 5> kTransferFormats = {0, GL_RED, GL_RG, 0, GL_RGBA};
@@ -65,6 +98,7 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
   if (!occupied.empty()) {
     occupied_bricks_ = gl::Buffer(occupied.size() * sizeof(std::uint32_t), occupied.data(), 0);
   }
+  details_ = LayersOf(content_, noises);
   cost->upload_ms = stopwatch.ElapsedMs();
 }
 
@@ -84,6 +118,30 @@ void ResidentMedium::Bind(const gl::Program& program) const {
   program.Set("cells_per_brick", cells_per_brick_);
   program.Set("brick_count", bricks_.Size());
   program.Set("extinction_weights", Weights(std::vector<double>(content_.groups.size(), 1.0)));
+  if (!details_.empty()) BindDetails(program);
+}
+
+void ResidentMedium::BindDetails(const gl::Program& program) const {
+  std::vector<glm::vec3> scales;
+  std::vector<glm::vec3> offsets;
+  std::vector<float> fulls;
+  std::vector<glm::vec4> shares;
+  for (std::size_t i = 0; i < details_.size(); ++i) {
+    const DetailLayer& layer = details_[i];
+    layer.noise->texture.Bind(kDetailUnit + static_cast<GLuint>(i));
+    const double tile_m =
+        static_cast<double>(layer.detail.wavelength_m) * physics::TurbulenceTile::kWaves;
+    const glm::dvec3 corner = bounds_.grid.low_corner_m / tile_m;
+    scales.emplace_back(glm::dvec3(bounds_.grid.cells) * bounds_.grid.spacing_m / tile_m);
+    offsets.emplace_back(corner - glm::floor(corner));
+    fulls.push_back(layer.noise->value_of_full);
+    const std::vector<glm::vec4> packed = Packed(layer.share_by_group, 1.0);
+    shares.insert(shares.end(), packed.begin(), packed.end());
+  }
+  program.Set("detail_from_texture_scale", scales);
+  program.Set("detail_from_texture_offset", offsets);
+  program.Set("detail_value_of_full", fulls);
+  program.Set("detail_shares", shares);
 }
 
 double ResidentMedium::OccupiedShare() const {
@@ -95,16 +153,12 @@ double ResidentMedium::OccupiedShare() const {
 std::size_t ResidentMedium::Bytes() const {
   std::size_t bytes = bricks_.Bytes() + occupied_bricks_.Bytes();
   for (const gl::Texture3D& texture : textures_) bytes += texture.Bytes();
+  for (const DetailLayer& layer : details_) bytes += layer.noise->texture.Bytes();
   return bytes;
 }
 
 std::vector<glm::vec4> ResidentMedium::Weights(const std::vector<double>& by_group) const {
-  std::vector<glm::vec4> weights((by_group.size() + 3) / 4, glm::vec4(0.0F));
-  for (std::size_t i = 0; i < by_group.size(); ++i) {
-    weights[i / 4][static_cast<int>(i % 4)] =
-        static_cast<float>(by_group[i] * bounds_.extinction_per_m);
-  }
-  return weights;
+  return Packed(by_group, bounds_.extinction_per_m);
 }
 
 }  // namespace thunderhead::renderers

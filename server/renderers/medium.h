@@ -3,22 +3,25 @@
 // textures. Shared by every renderer.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "physics/hydrometeors.h"
+#include "renderers/detail_noises.h"
 #include "scene/scene.h"
 #include "volume/extinction.h"
 #include "volume/hydrometeor_fields.h"
 
 namespace thunderhead::renderers {
 
-// Fields that scatter alike.
+// Fields that scatter and swirl alike.
 struct MediumGroup {
   float albedo = 1.0F;
   physics::PhaseFunction phase;
   glm::vec3 color{1.0F};
+  scene::Detail detail;  // with a wavelength if any
 
   bool operator==(const MediumGroup&) const = default;
 };
@@ -35,6 +38,13 @@ physics::PhaseFunction UniformPhase(const scene::Scene& scene);
 
 Medium MediumOf(const scene::Scene& scene, const volume::HydrometeorFields& fields);
 
+// One noise, and how much of each group it multiplies.
+struct DetailLayer {
+  scene::Detail detail;  // its share is unused
+  std::shared_ptr<const DetailNoise> noise;
+  std::vector<double> share_by_group;
+};
+
 // A medium with its extinction on the device.
 class ResidentMedium {
  public:
@@ -45,7 +55,8 @@ class ResidentMedium {
   };
 
   ResidentMedium() = default;
-  ResidentMedium(const scene::Scene& scene, const volume::HydrometeorFields& fields, Cost* cost);
+  ResidentMedium(const scene::Scene& scene, const volume::HydrometeorFields& fields,
+                 DetailNoises* noises, Cost* cost);
 
   bool Empty() const { return bounds_.Empty(); }
   const Medium& Content() const { return content_; }
@@ -54,8 +65,11 @@ class ResidentMedium {
   glm::dvec3 Middle_m() const { return (bounds_.low_m + bounds_.high_m) / 2.0; }
   glm::dvec3 HalfExtent_m() const { return (bounds_.high_m - bounds_.low_m) / 2.0; }
 
-  // Binds the textures to units 0 and up and sets the uniforms of common/medium.glsl and
-  // common/bricks.glsl. Local coordinates are metres from Middle_m().
+  // The DETAILS variant of common/medium.glsl: noises to be fetched.
+  int Details() const { return static_cast<int>(details_.size()); }
+
+  // Binds the textures to units 0 and up, detail to kDetailUnit and up, and sets the uniforms of
+  // common/medium.glsl and common/bricks.glsl. Local coordinates are metres from Middle_m().
   void Bind(const gl::Program& program) const;
   std::size_t Bytes() const;
   // Share of the box's bricks that are not empty, 0 to 1.
@@ -69,6 +83,8 @@ class ResidentMedium {
   std::vector<glm::vec4> Weights(const std::vector<double>& by_group) const;
 
  private:
+  void BindDetails(const gl::Program& program) const;
+
   Medium content_;
   volume::ExtinctionVolume bounds_;
   std::vector<gl::Texture3D> textures_;
@@ -76,6 +92,7 @@ class ResidentMedium {
   glm::ivec3 cells_per_brick_{1};
   gl::Buffer occupied_bricks_;
   int occupied_count_ = 0;
+  std::vector<DetailLayer> details_;
 };
 
 }  // namespace thunderhead::renderers

@@ -73,7 +73,7 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
   if (first <= scene::Stage::kExtinction) {
     ResidentMedium::Cost cost;
     medium_ = ResidentMedium();
-    medium_ = ResidentMedium(scene, *fields, &cost);
+    medium_ = ResidentMedium(scene, *fields, &detail_noises_, &cost);
     stages.push_back({"extinction", cost.extinction_ms});
     stages.push_back({"upload", cost.upload_ms});
   }

@@ -73,6 +73,7 @@ class SceneRenderer {
   HalfAngleRenderer half_angle_;
   LightVolumeRenderer light_volume_;
   scene::Renderer drawn_by_ = scene::Renderer::kHalfAngle;  // of the eye buffer, if not empty
+  DetailNoises detail_noises_;
   ResidentMedium medium_;
   gl::Texture2D linear_;
   gl::Framebuffer linear_target_;

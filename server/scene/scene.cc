@@ -1,5 +1,7 @@
 #include "scene/scene.h"
 
+#include <algorithm>
+
 namespace thunderhead::scene {
 namespace {
 
@@ -8,15 +10,52 @@ bool SameOptics(const physics::ParticleOptics& a, const physics::ParticleOptics&
          a.albedo == b.albedo && a.phase == b.phase && a.false_color == b.false_color;
 }
 
+// The fields as they are drawn: without the detail that the mode ignores.
+std::array<FieldParameters, physics::kHydrometeorCount> DrawnFields(const Scene& scene) {
+  auto fields = scene.fields;
+  if (HasDetail(scene.rendering.mode)) return fields;
+  for (FieldParameters& field : fields) field.detail = {};
+  return fields;
+}
+
 }  // namespace
 
 bool FieldParameters::operator==(const FieldParameters& other) const {
-  return visible == other.visible && scale == other.scale && SameOptics(optics, other.optics);
+  return visible == other.visible && scale == other.scale && SameOptics(optics, other.optics) &&
+         detail == other.detail;
 }
+
+Detail DefaultDetail(physics::Hydrometeor hydrometeor) {
+  // One seed and wavelength for all, as one turbulent flow carries them all: the noise is then
+  // fetched once. Equal shares leave fields that scatter alike in one group.
+  const bool water =
+      hydrometeor == physics::Hydrometeor::kCloud || hydrometeor == physics::Hydrometeor::kRain;
+  // A cell of cloud water is opaque: what was left of its even part would hide the rest.
+  return {.share = water ? 1.0F : 0.8F};
+}
+
+float DefaultDetailWavelength_m(const glm::dvec3& cell_m) {
+  return kDetailWavelengthInCells * static_cast<float>(std::max(cell_m.x, cell_m.y));
+}
+
+Detail DrawnDetail(const Scene& scene, physics::Hydrometeor hydrometeor, const glm::dvec3& cell_m) {
+  Detail detail = scene.fields[physics::IndexOf(hydrometeor)].detail;
+  if (!HasDetail(scene.rendering.mode) || detail.share <= 0.0F) return {};
+  if (detail.wavelength_m <= 0.0F) detail.wavelength_m = DefaultDetailWavelength_m(cell_m);
+  return detail;
+}
+
+bool HasPerFieldPhase(Mode mode) {
+  return mode == Mode::kPerFieldPhaseTranslucent || mode == Mode::kPerFieldPhaseDetailTranslucent;
+}
+
+bool HasDetail(Mode mode) { return mode == Mode::kPerFieldPhaseDetailTranslucent; }
 
 Scene::Scene() {
   for (physics::Hydrometeor hydrometeor : physics::kHydrometeors) {
-    fields[physics::IndexOf(hydrometeor)].optics = physics::DefaultOptics(hydrometeor);
+    FieldParameters& field = fields[physics::IndexOf(hydrometeor)];
+    field.optics = physics::DefaultOptics(hydrometeor);
+    field.detail = DefaultDetail(hydrometeor);
   }
 }
 
@@ -26,7 +65,7 @@ Stage FirstDirtyStage(const Scene& before, const Scene& after) {
   }
   const bool grouping_changed = before.rendering.mode != after.rendering.mode ||
                                 before.rendering.false_colors != after.rendering.false_colors;
-  if (before.fields != after.fields || grouping_changed) return Stage::kExtinction;
+  if (DrawnFields(before) != DrawnFields(after) || grouping_changed) return Stage::kExtinction;
   if (before.sun != after.sun || before.rendering != after.rendering) return Stage::kLight;
   const bool same_size = before.output.width_px == after.output.width_px &&
                          before.output.height_px == after.output.height_px;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <variant>
 
@@ -13,11 +14,31 @@
 
 namespace thunderhead::scene {
 
+// Turbulent structure finer than the grid (physics/turbulence.h), at rest in the world: noise with
+// a mean of 1 multiplies `share` of the field. Modes without detail ignore it.
+struct Detail {
+  float share = 0.0F;
+  float wavelength_m = 0.0F;  // of the first octave; 0 is kDetailWavelengthInCells of the storm's
+  int octaves = 4;
+  std::uint32_t seed = 1;
+
+  bool operator==(const Detail&) const = default;
+};
+
+// A model's grid carries waves of several cells; where those end, detail begins.
+inline constexpr float kDetailWavelengthInCells = 3.0F;
+
+float DefaultDetailWavelength_m(const glm::dvec3& cell_m);
+
+// The detail that suits each hydrometeor.
+Detail DefaultDetail(physics::Hydrometeor hydrometeor);
+
 // How one hydrometeor field is drawn.
 struct FieldParameters {
   bool visible = true;
   float scale = 1.0F;  // multiplies the mixing ratio
   physics::ParticleOptics optics{};
+  Detail detail;
 
   bool operator==(const FieldParameters&) const;
 };
@@ -74,7 +95,15 @@ struct Sky {
 };
 
 // The modes of Riley et al. 2003 (AMS), Table IV.
-enum class Mode { kUniformPhaseLowAlbedo, kUniformPhaseTranslucent, kPerFieldPhaseTranslucent };
+enum class Mode {
+  kUniformPhaseLowAlbedo,
+  kUniformPhaseTranslucent,
+  kPerFieldPhaseTranslucent,
+  kPerFieldPhaseDetailTranslucent
+};
+
+bool HasPerFieldPhase(Mode mode);
+bool HasDetail(Mode mode);
 
 // The renderer: slices halfway between sun and eye; or light carried once into a volume, which view
 // rays march through.
@@ -127,6 +156,10 @@ struct Scene {
 
   bool operator==(const Scene&) const = default;
 };
+
+// A field's detail as it is drawn on a grid of such cells, its wavelength given; a share of 0 if
+// none.
+Detail DrawnDetail(const Scene& scene, physics::Hydrometeor hydrometeor, const glm::dvec3& cell_m);
 
 // The stages of rendering in order; a change reruns the first stage it dirties and every later one.
 enum class Stage { kStorm, kExtinction, kLight, kView, kTone, kNothing };

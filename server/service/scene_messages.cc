@@ -33,6 +33,8 @@ constexpr std::array kPhaseKinds = {
 };
 constexpr std::array kModes = {
     std::pair{v1::MODE_PER_FIELD_PHASE_TRANSLUCENT, scene::Mode::kPerFieldPhaseTranslucent},
+    std::pair{v1::MODE_PER_FIELD_PHASE_DETAIL_TRANSLUCENT,
+              scene::Mode::kPerFieldPhaseDetailTranslucent},
     std::pair{v1::MODE_UNIFORM_PHASE_LOW_ALBEDO, scene::Mode::kUniformPhaseLowAlbedo},
     std::pair{v1::MODE_UNIFORM_PHASE_TRANSLUCENT, scene::Mode::kUniformPhaseTranslucent},
 };
@@ -84,6 +86,8 @@ void FillFieldDefaults(v1::FieldParameters& field, physics::Hydrometeor hydromet
     color.set_green(optics.false_color.g);
     color.set_blue(optics.false_color.b);
   }
+  v1::Detail& detail = *field.mutable_detail();
+  if (!detail.has_share()) detail.set_share(scene::DefaultDetail(hydrometeor).share);
   FillNumberDefaults(field);
 }
 
@@ -114,6 +118,9 @@ scene::FieldParameters ToField(const v1::FieldParameters& message) {
   field.optics.phase = {ValueOf(kPhaseKinds, message.phase().kind()), message.phase().asymmetry()};
   const v1::Color& color = message.false_color();
   field.optics.false_color = {color.red(), color.green(), color.blue()};
+  const v1::Detail& detail = message.detail();
+  field.detail = {detail.share(), detail.wavelength_m(), static_cast<int>(detail.octaves()),
+                  detail.seed()};
   return field;
 }
 
@@ -133,7 +140,8 @@ void SetGrid(const volume::RegularGrid& grid, v1::Grid& message) {
   SetPosition(grid.HighCorner_m(), *message.mutable_high());
 }
 
-void SetField(const volume::HydrometeorField& field, v1::FieldDescription& message) {
+void SetField(const volume::HydrometeorField& field, const volume::RegularGrid& grid,
+              v1::FieldDescription& message) {
   const volume::FieldStatistics& statistics = field.statistics;
   message.set_hydrometeor(ToMessage(field.hydrometeor));
   message.set_variable(field.variable);
@@ -149,6 +157,8 @@ void SetField(const volume::HydrometeorField& field, v1::FieldDescription& messa
   message.set_negative_cells(static_cast<std::uint64_t>(statistics.negative_cells));
   message.set_missing_cells(static_cast<std::uint64_t>(statistics.missing_cells));
   FillFieldDefaults(*message.mutable_defaults(), field.hydrometeor);
+  message.mutable_defaults()->mutable_detail()->set_wavelength_m(
+      scene::DefaultDetailWavelength_m(grid.spacing_m));
 }
 
 }  // namespace
@@ -270,7 +280,7 @@ void ToMessage(const volume::StormInfo& storm, const volume::HydrometeorFields& 
   }
   SetGrid(fields.grid, *message.mutable_grid());
   for (const volume::HydrometeorField& field : fields.fields) {
-    SetField(field, *message.add_fields());
+    SetField(field, fields.grid, *message.add_fields());
   }
   message.set_time_index(static_cast<std::uint32_t>(time_index));
   if (storm.latitude_deg.has_value()) message.set_latitude_deg(*storm.latitude_deg);

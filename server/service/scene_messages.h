@@ -20,7 +20,7 @@ namespace thunderhead::service {
 // the size of the picture.
 absl::Status CheckScene(const v1::Scene& scene);
 
-// Fills in every default but those of the camera that depend on the storm's fields.
+// Fills in every default but those that depend on the storm's fields.
 void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm);
 
 // The value of a scene whose defaults are filled in.

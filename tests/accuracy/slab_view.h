@@ -56,7 +56,8 @@ class SlabView : public testing::Test {
     const auto fields = in_air_ ? support::MakeLayerInAir(kWidth_m, kHeight_m, 8, optical_depth)
                                 : support::MakeSlab(kWidth_m, kHeight_m, optical_depth / kHeight_m);
     ResidentMedium::Cost cost;
-    const ResidentMedium medium(scene_, *fields, &cost);
+    DetailNoises noises;
+    const ResidentMedium medium(scene_, *fields, &noises, &cost);
     RenderSettings settings;
     settings.rendering = scene_.rendering;
     settings.view = view;

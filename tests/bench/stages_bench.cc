@@ -125,10 +125,13 @@ void RegisterModes(const std::string& path, scene::Renderer renderer) {
   for (const Row& row :
        {Row{"uniform_phase_low_albedo", scene::Mode::kUniformPhaseLowAlbedo, 5.1},
         Row{"uniform_phase_translucent", scene::Mode::kUniformPhaseTranslucent, 4.3},
-        Row{"per_field_phase_translucent", scene::Mode::kPerFieldPhaseTranslucent, 1.7}}) {
+        Row{"per_field_phase_translucent", scene::Mode::kPerFieldPhaseTranslucent, 1.7},
+        Row{"per_field_phase_detail_translucent", scene::Mode::kPerFieldPhaseDetailTranslucent,
+            1.2}}) {
     scene.rendering.mode = row.mode;
     Register(path + "/" + row.name, scene, Moving::kCamera, row.paper_fps);
   }
+  scene.rendering.mode = scene::Mode::kPerFieldPhaseTranslucent;
   Register(path + "/sun_moves", scene, Moving::kSun);
   Register(path + "/field_scale_moves", scene, Moving::kField);
   Register(path + "/exposure_moves", scene, Moving::kExposure);

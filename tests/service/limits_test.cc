@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{R"({"rendering": {"mode": 77}})",
              "scene.rendering.mode is 77; it must be one of MODE_UNSPECIFIED, "
              "MODE_UNIFORM_PHASE_LOW_ALBEDO, MODE_UNIFORM_PHASE_TRANSLUCENT, "
-             "MODE_PER_FIELD_PHASE_TRANSLUCENT"},
+             "MODE_PER_FIELD_PHASE_TRANSLUCENT, MODE_PER_FIELD_PHASE_DETAIL_TRANSLUCENT"},
         Case{R"({"output": {"widthPx": 8193}})",
              "scene.output.width_px is 8193; it must be between 1 and 8192"},
         Case{

@@ -71,6 +71,9 @@ TEST(StormsTest, DescriptionHoldsGridTimesFieldsAndDefaults) {
   EXPECT_EQ(cloud.defaults().radius_m(), 1e-5F);
   EXPECT_TRUE(cloud.defaults().visible());
   EXPECT_EQ(cloud.defaults().scale(), 1.0F);
+  EXPECT_EQ(cloud.defaults().detail().share(), 1.0F);
+  EXPECT_EQ(cloud.defaults().detail().wavelength_m(),
+            3.0F * static_cast<float>(storm.grid().dx_m()));
   EXPECT_EQ(storm.fields(1).defaults().density_kg_per_m3(), 1000.0F);
   // Cell (4, 4, 2) of 1 km x 1 km x 500 m cells counted from (-10 km, -5 km, 0).
   EXPECT_EQ(storm.condensate_low().x_m(), -6000.0F);

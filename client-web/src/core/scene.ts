@@ -3,6 +3,8 @@
 import { create, fromBinary, type Message, toBinary } from "@bufbuild/protobuf";
 import {
   type Camera,
+  type Detail,
+  DetailSchema,
   type Display,
   DisplaySchema,
   type FieldParameters,
@@ -29,6 +31,10 @@ export const LIMITS = {
   fieldRadius: limitsOf(FieldParametersSchema.field.radiusM),
   fieldDensity: limitsOf(FieldParametersSchema.field.densityKgPerM3),
   fieldAlbedo: limitsOf(FieldParametersSchema.field.albedo),
+  detailShare: limitsOf(DetailSchema.field.share),
+  detailWavelength: limitsOf(DetailSchema.field.wavelengthM),
+  detailOctaves: limitsOf(DetailSchema.field.octaves),
+  detailSeed: limitsOf(DetailSchema.field.seed),
   phaseAsymmetry: limitsOf(PhaseFunctionSchema.field.asymmetry),
   sunAzimuth: limitsOf(SunSchema.field.azimuthDeg),
   sunElevation: limitsOf(SunSchema.field.elevationDeg),
@@ -110,6 +116,13 @@ export function withAsymmetry(scene: Scene, hydrometeor: Hydrometeor, asymmetry:
   return withField(scene, hydrometeor, { phase });
 }
 
+// One field's turbulent detail, changed.
+export function withDetail(scene: Scene, hydrometeor: Hydrometeor, change: Change<Detail>): Scene {
+  const field = scene.fields.find((other) => other.hydrometeor === hydrometeor);
+  const detail = changed(field?.detail ?? create(DetailSchema), change);
+  return withField(scene, hydrometeor, { detail });
+}
+
 // Another storm has other fields, another extent, place and date: what belongs to the old one goes, the light,
 // the rendering and the picture stay.
 export function withStorm(scene: Scene, stormId: string): Scene {
@@ -128,6 +141,12 @@ export function effectiveField(
     kind: set?.phase?.kind || defaults?.phase?.kind || 0,
     asymmetry: set?.phase?.asymmetry ?? defaults?.phase?.asymmetry,
   });
+  const detail = create(DetailSchema, {
+    share: set?.detail?.share ?? defaults?.detail?.share,
+    wavelengthM: set?.detail?.wavelengthM ?? defaults?.detail?.wavelengthM,
+    octaves: set?.detail?.octaves ?? LIMITS.detailOctaves.defaultValue,
+    seed: set?.detail?.seed ?? LIMITS.detailSeed.defaultValue,
+  });
   return create(FieldParametersSchema, {
     hydrometeor,
     visible: set?.visible ?? defaults?.visible ?? true,
@@ -136,6 +155,7 @@ export function effectiveField(
     densityKgPerM3: set?.densityKgPerM3 ?? defaults?.densityKgPerM3,
     albedo: set?.albedo ?? defaults?.albedo ?? LIMITS.fieldAlbedo.defaultValue,
     phase,
+    detail,
     falseColor: set?.falseColor ?? defaults?.falseColor,
   });
 }

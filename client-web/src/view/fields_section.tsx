@@ -6,6 +6,7 @@ import {
   hydrometeorName,
   LIMITS,
   withAsymmetry,
+  withDetail,
   withField,
   withRendering,
 } from "../core/scene";
@@ -13,6 +14,7 @@ import type { PageState } from "../core/state";
 import { formatNumber } from "../core/units";
 import {
   ColorSchema,
+  Mode,
   PhaseFunction_Kind as Kind,
   PhaseFunctionSchema,
 } from "../gen/thunderhead/v1/scene_pb";
@@ -89,6 +91,12 @@ function FieldRow({ state, field }: { state: PageState; field: FieldDescription 
         <summary>Particles</summary>
         <ParticleSettings state={state} field={field} />
       </details>
+      {state.rendering.value?.mode === Mode.PER_FIELD_PHASE_DETAIL_TRANSLUCENT && (
+        <details class="particles">
+          <summary>Detail</summary>
+          <DetailSettings state={state} field={field} />
+        </details>
+      )}
     </fieldset>
   );
 }
@@ -166,6 +174,49 @@ function ParticleSettings({ state, field }: { state: PageState; field: FieldDesc
         {amountOf(field)} at this time
         {field.missingCells > 0n && `; ${field.missingCells} cells missing`}
       </p>
+    </>
+  );
+}
+
+function DetailSettings({ state, field }: { state: PageState; field: FieldDescription }) {
+  const { hydrometeor, defaults } = field;
+  void state.fields.value;
+  const { detail } = effectiveField(state.scene.peek(), hydrometeor, defaults);
+  const id = hydrometeorName(hydrometeor).toLowerCase();
+  const edit = (change: Parameters<typeof withDetail>[2]) =>
+    state.edit((scene) => withDetail(scene, hydrometeor, change));
+  return (
+    <>
+      <Slider
+        label="Share"
+        limits={LIMITS.detailShare}
+        value={detail?.share}
+        initial={defaults?.detail?.share}
+        testId={`field-${id}-detail-share`}
+        onChange={(share) => edit({ share })}
+      />
+      <Slider
+        label="Wavelength"
+        limits={LIMITS.detailWavelength}
+        value={detail?.wavelengthM}
+        initial={defaults?.detail?.wavelengthM}
+        testId={`field-${id}-detail-wavelength`}
+        onChange={(wavelengthM) => edit({ wavelengthM })}
+      />
+      <Slider
+        label="Octaves"
+        limits={LIMITS.detailOctaves}
+        value={detail?.octaves}
+        testId={`field-${id}-detail-octaves`}
+        onChange={(octaves) => edit({ octaves })}
+      />
+      <Slider
+        label="Seed"
+        limits={LIMITS.detailSeed}
+        value={detail?.seed}
+        testId={`field-${id}-detail-seed`}
+        onChange={(seed) => edit({ seed })}
+      />
     </>
   );
 }

@@ -15,6 +15,7 @@ const RENDERERS = [
 ] as const;
 
 const MODES = [
+  [Mode.PER_FIELD_PHASE_DETAIL_TRANSLUCENT, "Phase per field, detail, translucent"],
   [Mode.PER_FIELD_PHASE_TRANSLUCENT, "Phase per field, translucent"],
   [Mode.UNIFORM_PHASE_TRANSLUCENT, "Uniform phase, translucent"],
   [Mode.UNIFORM_PHASE_LOW_ALBEDO, "Uniform phase, low albedo"],

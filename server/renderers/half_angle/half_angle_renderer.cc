@@ -103,6 +103,7 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
       const gl::Program* eye, programs_->Get({"half_angle/slice.vert",
                                               "half_angle/eye.frag",
                                               {{"GROUPS", groups},
+                                               {"DETAILS", medium.Details()},
                                                {"COLORED", weights.colored ? 1 : 0},
                                                {"TRANSLUCENT", translucent ? 1 : 0},
                                                {"CONSISTENT", consistent ? 1 : 0},
@@ -129,6 +130,7 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
                                programs_->Get({"common/whole_target.vert",
                                                "half_angle/light.frag",
                                                {{"GROUPS", groups},
+                                                {"DETAILS", medium.Details()},
                                                 {"CONSISTENT", consistent ? 1 : 0},
                                                 {"PASS", translucent ? kCarry : kTransmit}}}));
   medium.Bind(*light);
@@ -163,6 +165,7 @@ absl::Status HalfAngleRenderer::DrawThickness(const ResidentMedium& medium,
       programs_->Get({"common/whole_target.vert",
                       "half_angle/light.frag",
                       {{"GROUPS", static_cast<int>(medium.Content().groups.size())},
+                       {"DETAILS", medium.Details()},
                        {"CONSISTENT", 1},
                        {"PASS", kAddDepth}}}));
   medium.Bind(*program);

@@ -94,6 +94,7 @@ absl::Status LightVolumeRenderer::CarryLight(const ResidentMedium& medium,
   Resize(box.size, medium.Bounds().grid.cells, diffuse ? GL_RG16F : GL_R16F);
   const std::vector<gl::Define> variant = {
       {"GROUPS", static_cast<int>(medium.Content().groups.size())},
+      {"DETAILS", medium.Details()},
       {"CONSISTENT", IsConsistent(settings.rendering) ? 1 : 0},
       {"TRANSLUCENT", IsTranslucent(settings.rendering) ? 1 : 0},
       {"DIFFUSE", diffuse ? 1 : 0}};
@@ -165,6 +166,7 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
       programs_->Get({"common/whole_target.vert",
                       "light_volume/march.frag",
                       {{"GROUPS", static_cast<int>(groups.size())},
+                       {"DETAILS", medium.Details()},
                        {"COLORED", weights.colored ? 1 : 0},
                        {"CONSISTENT", IsConsistent(settings.rendering) ? 1 : 0},
                        {"EVEN_ALBEDO", even_albedo ? 1 : 0}}}));

@@ -1,5 +1,9 @@
 // The extinction of a medium's groups at a point. A group is a channel: 0-3 of plane 0, 4-7 of plane 1; channels that a
-// plane does not have must be weighted with zero. GROUPS is the number of groups.
+// plane does not have must be weighted with zero. GROUPS is the number of groups, DETAILS that of the turbulent noises
+// that multiply shares of them (physics/turbulence.h); without any there is no code for them.
+#ifndef DETAILS
+#error "DETAILS is not defined"
+#endif
 #define PLANES ((GROUPS + 3) / 4)
 
 layout(binding = 0) uniform sampler3D medium_plane_0;
@@ -14,6 +18,14 @@ uniform vec3 medium_high_m;
 
 uniform vec4 extinction_weights[PLANES];  // texel to extinction, 1/m; zero for channels that no group has
 
+#if DETAILS > 0
+layout(binding = 8) uniform sampler3D detail_noise[DETAILS];
+uniform vec3 detail_from_texture_scale[DETAILS];   // tiles from the medium's texture coordinates: at rest in the world
+uniform vec3 detail_from_texture_offset[DETAILS];
+uniform float detail_value_of_full[DETAILS];       // of the noise, whose root is fetched, where a texel is 1
+uniform vec4 detail_shares[DETAILS * PLANES];      // of each channel that noise multiplies
+#endif
+
 struct Medium {
   vec4 plane[PLANES];
 };
@@ -24,6 +36,16 @@ Medium medium_at_place(vec3 place) {
   medium.plane[0] = texture(medium_plane_0, place);
 #if PLANES > 1
   medium.plane[1] = texture(medium_plane_1, place);
+#endif
+#if DETAILS > 0
+  for (int i = 0; i < DETAILS; ++i) {
+    vec3 tiles = place * detail_from_texture_scale[i] + detail_from_texture_offset[i];
+    float root = texture(detail_noise[i], tiles).r;
+    float above_mean = root * root * detail_value_of_full[i] - 1.0;
+    for (int plane = 0; plane < PLANES; ++plane) {
+      medium.plane[plane] *= 1.0 + detail_shares[i * PLANES + plane] * above_mean;
+    }
+  }
 #endif
   return medium;
 }

@@ -34,6 +34,17 @@ TEST(Scene, EachChangeRerunsFromItsOwnStage) {
   EXPECT_EQ(After([](Scene* s) { s->display.exposure_ev = 1; }), Stage::kTone);
 }
 
+TEST(Scene, DetailCountsOnlyInTheModeThatDrawsIt) {
+  EXPECT_EQ(After([](Scene* s) { s->fields[0].detail.seed = 7; }), Stage::kNothing);
+  Scene before;
+  before.rendering.mode = Mode::kPerFieldPhaseDetailTranslucent;
+  Scene after = before;
+  after.fields[0].detail.seed = 7;
+  EXPECT_EQ(FirstDirtyStage(before, after), Stage::kExtinction);
+  EXPECT_EQ(After([](Scene* s) { s->rendering.mode = Mode::kPerFieldPhaseDetailTranslucent; }),
+            Stage::kExtinction);
+}
+
 TEST(View, AzimuthsAreClockwiseFromNorth) {
   EXPECT_NEAR(Direction(0, 0).y, 1.0, 1e-12);
   EXPECT_NEAR(Direction(90, 0).x, 1.0, 1e-12);
