@@ -73,6 +73,11 @@ Texture2D::Texture2D(GLenum internal_format, glm::ivec2 size, Edge edge)
   glTextureStorage2D(name_.Get(), 1, internal_format, size.x, size.y);
 }
 
+void Texture2D::Upload(GLenum format, GLenum type, const void* texels) {
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage2D(name_.Get(), 0, 0, 0, size_.x, size_.y, format, type, texels);
+}
+
 Texture3D::Texture3D(GLenum internal_format, glm::ivec3 size, Filter filter, Edge edge)
     : name_(NewTexture(GL_TEXTURE_3D, edge, filter)),
       size_(size),

@@ -50,6 +50,9 @@ class Texture2D {
   Texture2D() = default;
   Texture2D(GLenum internal_format, glm::ivec2 size, Edge edge = Edge::kClamp);
 
+  // Fills the whole texture, as Texture3D::Upload.
+  void Upload(GLenum format, GLenum type, const void* texels);
+
   GLuint Get() const { return name_.Get(); }
   glm::ivec2 Size() const { return size_; }
   std::size_t Bytes() const { return bytes_; }

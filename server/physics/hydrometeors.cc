@@ -6,16 +6,16 @@ namespace {
 constexpr std::array<std::string_view, kHydrometeorCount> kNames = {"cloud", "rain",    "ice",
                                                                     "snow",  "graupel", "hail"};
 
-// The asymmetry parameters stand in for the Mie and ray-traced tables: water 0.85 (Mie, r_e 10 um,
+// The asymmetry parameters are for the formulas, should one be chosen: water 0.85 (Mie, r_e 10 um,
 // 0.55 um, rounded down for the broad part of the lobe), smooth ice crystals 0.78, roughened and
 // rimed ice 0.76.
 const std::array<ParticleOptics, kHydrometeorCount> kDefaults = {{
-    {1e-5F, 1000.0F, 1.0F, {PhaseKind::kCornetteShanks, 0.85F}, {1.0F, 0.0F, 0.0F}},
-    {1e-3F, 1000.0F, 1.0F, {PhaseKind::kCornetteShanks, 0.85F}, {0.0F, 0.0F, 1.0F}},
-    {1e-3F, 917.0F, 1.0F, {PhaseKind::kHenyeyGreenstein, 0.78F}, {1.0F, 0.0F, 1.0F}},
-    {2e-3F, 100.0F, 1.0F, {PhaseKind::kHenyeyGreenstein, 0.76F}, {1.0F, 1.0F, 0.0F}},
-    {2.5e-3F, 500.0F, 1.0F, {PhaseKind::kHenyeyGreenstein, 0.76F}, {0.0F, 1.0F, 0.0F}},
-    {1e-2F, 900.0F, 1.0F, {PhaseKind::kHenyeyGreenstein, 0.76F}, {0.0F, 1.0F, 1.0F}},
+    {1e-5F, 1000.0F, 1.0F, {PhaseKind::kWaterDroplets, 0.85F}, {1.0F, 0.0F, 0.0F}},
+    {1e-3F, 1000.0F, 1.0F, {PhaseKind::kWaterDroplets, 0.85F}, {0.0F, 0.0F, 1.0F}},
+    {1e-3F, 917.0F, 1.0F, {PhaseKind::kIceColumns, 0.78F}, {1.0F, 0.0F, 1.0F}},
+    {2e-3F, 100.0F, 1.0F, {PhaseKind::kIceRough, 0.76F}, {1.0F, 1.0F, 0.0F}},
+    {2.5e-3F, 500.0F, 1.0F, {PhaseKind::kIceRough, 0.76F}, {0.0F, 1.0F, 0.0F}},
+    {1e-2F, 900.0F, 1.0F, {PhaseKind::kIceRough, 0.76F}, {0.0F, 1.0F, 1.0F}},
 }};
 
 }  // namespace

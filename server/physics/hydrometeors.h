@@ -31,12 +31,21 @@ std::string_view NameOf(Hydrometeor hydrometeor);
 // The hydrometeor of that name, or nothing.
 std::optional<Hydrometeor> HydrometeorNamed(std::string_view name);
 
-enum class PhaseKind { kHenyeyGreenstein, kCornetteShanks, kRayleigh };
+// Formulas, then tables (docs/phase_tables.md).
+enum class PhaseKind {
+  kHenyeyGreenstein,
+  kCornetteShanks,
+  kRayleigh,
+  kWaterDroplets,
+  kIceColumns,
+  kIcePlates,
+  kIceRough
+};
 
-// A phase function by formula; `asymmetry` is its parameter g (unused by Rayleigh).
 struct PhaseFunction {
   PhaseKind kind = PhaseKind::kHenyeyGreenstein;
-  float asymmetry = 0.0F;
+  float asymmetry = 0.0F;  // the parameter g of Henyey and Greenstein, and of Cornette and Shanks
+  float droplet_radius_m = 0.0F;  // effective; chooses among the tables of water
 
   bool operator==(const PhaseFunction&) const = default;
 };
@@ -46,7 +55,7 @@ struct ParticleOptics {
   float radius_m;
   float density_kg_per_m3;
   float albedo;
-  PhaseFunction phase;
+  PhaseFunction phase;    // without a radius: PhaseOf in optics.h puts in that of the particle
   glm::vec3 false_color;  // linear sRGB
 };
 

@@ -1,7 +1,15 @@
 #include "physics/optics.h"
 
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <string>
+#include <vector>
+
+#include "base/status.h"
+#include "glm/geometric.hpp"
+#include "physics/phase_table.h"
 
 namespace thunderhead::physics {
 namespace {
@@ -19,42 +27,127 @@ double IntegrateOverAngle(double low_rad, double high_rad, const F& f) {
   return sum * step / 3.0;
 }
 
+// The tables that phase functions choose from, water first.
+struct TableName {
+  PhaseKind kind;
+  float droplet_radius_m;
+  const char* name;
+};
+constexpr std::array<TableName, 7> kTableNames = {{
+    {PhaseKind::kWaterDroplets, 5e-6F, "cloud_re05"},
+    {PhaseKind::kWaterDroplets, 1e-5F, "cloud_re10"},
+    {PhaseKind::kWaterDroplets, 2e-5F, "cloud_re20"},
+    {PhaseKind::kWaterDroplets, 5e-4F, "rain"},
+    {PhaseKind::kIceColumns, 0.0F, "ice_columns"},
+    {PhaseKind::kIcePlates, 0.0F, "ice_plates"},
+    {PhaseKind::kIceRough, 0.0F, "ice_rough"},
+}};
+
+// Which of kTableNames `phase` is; only droplets have a choice.
+std::size_t TableIndexOf(const PhaseFunction& phase) {
+  std::size_t nearest = kTableNames.size();
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < kTableNames.size(); ++i) {
+    const TableName& table = kTableNames[i];
+    if (table.kind != phase.kind) continue;
+    const double ratio = table.droplet_radius_m > 0.0F
+                             ? std::fmax(phase.droplet_radius_m, 1e-9F) / table.droplet_radius_m
+                             : 1.0;
+    const double distance = std::abs(std::log(ratio));
+    if (distance >= least) continue;
+    least = distance;
+    nearest = i;
+  }
+  THUNDERHEAD_CHECK(nearest < kTableNames.size(), "phase kind without a table");
+  return nearest;
+}
+
+const PhaseTable& TableOf(const PhaseFunction& phase) {
+  static const std::vector<PhaseTable> tables = [] {
+    std::vector<PhaseTable> loaded;
+    for (const TableName& table : kTableNames) {
+      absl::StatusOr<PhaseTable> embedded = EmbeddedPhaseTable(table.name);
+      THUNDERHEAD_CHECK(embedded.ok(), embedded.status().ToString());
+      loaded.push_back(*std::move(embedded));
+    }
+    return loaded;
+  }();
+  return tables[TableIndexOf(phase)];
+}
+
+bool IsFormula(const PhaseFunction& phase) {
+  return phase.kind == PhaseKind::kHenyeyGreenstein || phase.kind == PhaseKind::kCornetteShanks ||
+         phase.kind == PhaseKind::kRayleigh;
+}
+
+template <typename F>
+double Luminance(const F& value_of_channel) {
+  return glm::dot(kLuminance,
+                  glm::dvec3(value_of_channel(0), value_of_channel(1), value_of_channel(2)));
+}
+
+// 1 - mu keeps the forward peak free of cancellation.
+double FormulaValue(const PhaseFunction& phase, double mu) {
+  if (phase.kind == PhaseKind::kRayleigh) return 0.75 * (1.0 + mu * mu);
+  const double g = phase.asymmetry;
+  const double base = (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 - mu);
+  const double henyey_greenstein = (1.0 - g) * (1.0 + g) / (base * std::sqrt(base));
+  if (phase.kind == PhaseKind::kHenyeyGreenstein) return henyey_greenstein;
+  // Applied Optics 31, 1992, eq. 8.
+  return henyey_greenstein * 1.5 * (1.0 + mu * mu) / (2.0 + g * g);
+}
+
 }  // namespace
 
-glm::vec4 PhaseCoefficients(const PhaseFunction& phase) {
-  switch (phase.kind) {
-    case PhaseKind::kHenyeyGreenstein:
-      return glsl::henyey_greenstein_coefficients(phase.asymmetry);
-    case PhaseKind::kCornetteShanks:
-      return glsl::cornette_shanks_coefficients(phase.asymmetry);
-    case PhaseKind::kRayleigh:
-      break;
+PhaseFunction PhaseOf(const ParticleOptics& optics) {
+  PhaseFunction phase{optics.phase.kind, 0.0F, 0.0F};
+  if (phase.kind == PhaseKind::kWaterDroplets) {
+    phase.droplet_radius_m = optics.radius_m;
+    phase.droplet_radius_m = kTableNames[TableIndexOf(phase)].droplet_radius_m;
+  } else if (IsFormula(phase) && phase.kind != PhaseKind::kRayleigh) {
+    phase.asymmetry = optics.phase.asymmetry;
   }
-  return glsl::rayleigh_coefficients();
+  return phase;
+}
+
+glm::dvec3 PhaseColors(const PhaseFunction& phase, double mu) {
+  if (IsFormula(phase)) return glm::dvec3(FormulaValue(phase, mu));
+  const PhaseTable& table = TableOf(phase);
+  return {table.ValueAtCosine(mu, 0), table.ValueAtCosine(mu, 1), table.ValueAtCosine(mu, 2)};
 }
 
 double PhaseValue(const PhaseFunction& phase, double mu) {
-  const glm::dvec4 k = PhaseCoefficients(phase);
-  const double base = k.z + k.w * (1.0 - mu);
-  return (k.x + k.y * mu * mu) / (base * std::sqrt(base));
+  return IsFormula(phase) ? FormulaValue(phase, mu) : glm::dot(kLuminance, PhaseColors(phase, mu));
 }
 
 double CumulativePhase(const PhaseFunction& phase, double angle_rad) {
+  if (!IsFormula(phase)) {
+    const PhaseTable& table = TableOf(phase);
+    return Luminance([&](std::size_t c) { return table.CumulativeShare(angle_rad, c); });
+  }
   return 0.5 * IntegrateOverAngle(0.0, angle_rad, [&](double angle) {
-           return PhaseValue(phase, std::cos(angle)) * std::sin(angle);
+           return FormulaValue(phase, std::cos(angle)) * std::sin(angle);
          });
 }
 
 double MeanCosine(const PhaseFunction& phase) {
+  if (!IsFormula(phase)) {
+    const PhaseTable& table = TableOf(phase);
+    return Luminance([&](std::size_t c) { return table.Asymmetry(c); });
+  }
   return 0.5 * IntegrateOverAngle(0.0, std::numbers::pi, [&](double angle) {
-           return PhaseValue(phase, std::cos(angle)) * std::cos(angle) * std::sin(angle);
+           return FormulaValue(phase, std::cos(angle)) * std::cos(angle) * std::sin(angle);
          });
 }
 
 DeltaScaling CutForwardPeak(const PhaseFunction& phase, double angle_rad) {
   const double cut_cosine = std::cos(angle_rad);
+  if (!IsFormula(phase)) {
+    const PhaseTable& table = TableOf(phase);
+    return {Luminance([&](std::size_t c) { return table.CutShare(angle_rad, c); }), cut_cosine};
+  }
   const double within = CumulativePhase(phase, angle_rad);
-  const double held = 0.5 * PhaseValue(phase, cut_cosine) * (1.0 - cut_cosine);
+  const double held = 0.5 * FormulaValue(phase, cut_cosine) * (1.0 - cut_cosine);
   return {std::fmax(within - held, 0.0), cut_cosine};
 }
 

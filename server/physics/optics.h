@@ -1,12 +1,11 @@
-// Phase functions and closed forms of light transport. The formulas are GLSL that also compiles
-// here, so that what the tests check is what the GPU runs; what only the CPU needs (integrals of a
-// phase function) is beside them.
+// Phase functions, by formula and by table, and closed forms of light transport. What the GPU runs,
+// too, is GLSL that also compiles here, so that the tests check the same text; what only the CPU
+// needs (phase functions, which the GPU looks up, and their integrals) is beside it.
 #pragma once
 
 #include "glm/common.hpp"
 #include "glm/exponential.hpp"
 #include "glm/vec3.hpp"
-#include "glm/vec4.hpp"
 #include "physics/hydrometeors.h"
 
 namespace thunderhead::physics {
@@ -17,17 +16,24 @@ using glm::exp;
 using glm::max;
 using glm::min;
 using glm::sqrt;
-using glm::vec3;
-using glm::vec4;
 #include "shaders/physics/light_transport.glsl"
-#include "shaders/physics/phase_functions.glsl"
+#include "shaders/physics/phase_curve.glsl"
 
 }  // namespace glsl
 
-// The coefficients of `phase` for glsl::phase_value. An asymmetry beyond +-0.99 is not allowed.
-glm::vec4 PhaseCoefficients(const PhaseFunction& phase);
+// The phase function of a field's particles, with all that does not matter to it set to zero and
+// droplets' radius to that of the table nearest in proportion, so that equal ones compare equal.
+PhaseFunction PhaseOf(const ParticleOptics& optics);
 
-// The value of `phase` at the cosine of a scattering angle; its mean over the sphere is 1.
+// What a single value stands for where light has no colours: the luminance of linear sRGB. Formulas
+// have one value for all colours.
+inline constexpr glm::dvec3 kLuminance{0.2126, 0.7152, 0.0722};
+
+// The value of `phase` at the cosine of a scattering angle, for red, green and blue; its mean over
+// the sphere is 1.
+glm::dvec3 PhaseColors(const PhaseFunction& phase, double mu);
+
+// The same as a single value, as all below: the luminance of the colours.
 double PhaseValue(const PhaseFunction& phase, double mu);
 
 // The share of light scattered within `angle_rad` of straight on: CP(theta) of Riley et al. 2003

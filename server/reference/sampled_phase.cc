@@ -77,7 +77,14 @@ SampledPhase SampledPhase::Of(const physics::PhaseFunction& phase) {
   if (phase.kind == physics::PhaseKind::kHenyeyGreenstein) {
     return HenyeyGreenstein(phase.asymmetry);
   }
-  return Tabulated([phase](double mu) { return physics::PhaseValue(phase, mu); });
+  const auto color = [phase](int c) {
+    return [phase, c](double mu) { return physics::PhaseColors(phase, mu)[c]; };
+  };
+  if (phase.kind == physics::PhaseKind::kCornetteShanks ||
+      phase.kind == physics::PhaseKind::kRayleigh) {
+    return Tabulated(color(0));
+  }
+  return Tabulated({color(0), color(1), color(2)});
 }
 
 void SampledPhase::Normalize(std::size_t color) {

@@ -25,11 +25,9 @@ constexpr glm::dvec3 kGroundTint(1.0, 0.93, 0.78);
 constexpr double kFarthestGround_m = 4e5;
 
 physics::PhaseFunction PhaseOf(const scene::Scene& scene, physics::Hydrometeor hydrometeor) {
-  const auto phase_of = [&](physics::Hydrometeor kind) {
-    return scene.fields[physics::IndexOf(kind)].optics.phase;
-  };
-  if (scene::HasPerFieldPhase(scene.rendering.mode)) return phase_of(hydrometeor);
-  return {physics::PhaseKind::kCornetteShanks, phase_of(physics::Hydrometeor::kCloud).asymmetry};
+  const bool per_field = scene::HasPerFieldPhase(scene.rendering.mode);
+  const physics::Hydrometeor of = per_field ? hydrometeor : physics::Hydrometeor::kCloud;
+  return physics::PhaseOf(scene.fields[physics::IndexOf(of)].optics);
 }
 
 struct Box {

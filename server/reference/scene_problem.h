@@ -24,7 +24,7 @@ struct MediumOptions {
 // The scene's visible fields. With open sides the box is the smallest that holds all condensate,
 // bordered as in volume/extinction.h; with periodic ones, the whole domain. A storm without
 // condensate gives an empty medium. False colours multiply albedos, the uniform-phase modes give
-// every field Cornette and Shanks' function with cloud water's parameter.
+// every field cloud water's phase function.
 absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene,
                                                        const volume::HydrometeorFields& fields,
                                                        const MediumOptions& options);

@@ -1,6 +1,7 @@
 // What each group of a medium counts for in the sums of light transport: shares of its extinction
-// for the eye and the light, its scattering, and its phase function as the shaders take it. Shared
-// by the renderers that follow Riley et al. 2003 (Vis), section 4.4.
+// for the eye and the light, its scattering, and how its phase function is cut and displayed. Light
+// buffers have no colours, so extinctions follow from the luminance of a phase function's colours.
+// Shared by the renderers that follow Riley et al. 2003 (Vis), section 4.4.
 #pragma once
 
 #include <vector>
@@ -8,7 +9,6 @@
 #include "gl/program.h"
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
-#include "glm/vec4.hpp"
 #include "renderers/medium.h"
 #include "scene/scene.h"
 
@@ -24,11 +24,10 @@ struct GroupWeights {
   std::vector<double> scattering;        // albedo
   std::vector<double> transport;         // similarity-scaled extinction, 1 - omega g
   std::vector<double> peripheral;        // scattering into the outer ring around straight on
-  std::vector<glm::vec4> phase;          // coefficients
-  std::vector<float> phase_cut;          // cosine within which the phase function is held
   std::vector<glm::vec2> phase_display;  // offset and slope of the paper's display normalisation
   std::vector<glm::vec3> color;
   bool colored = false;
+  float phase_cut = 1.0F;            // cosine within which phase functions are held
   glm::vec2 cumulative_phase{0.0F};  // CP(theta_f / 4), CP(theta_f / 2): Vis eq. 13
 
   GroupWeights(const Medium& medium, const scene::Rendering& rendering);

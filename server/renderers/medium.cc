@@ -5,6 +5,7 @@
 
 #include "base/stopwatch.h"
 #include "glm/common.hpp"
+#include "physics/optics.h"
 #include "volume/brick_map.h"
 
 namespace thunderhead::renderers {
@@ -46,8 +47,7 @@ std::vector<glm::vec4> Packed(const std::vector<double>& by_group, double factor
 }  // namespace
 
 physics::PhaseFunction UniformPhase(const scene::Scene& scene) {
-  const auto& cloud = scene.fields[physics::IndexOf(physics::Hydrometeor::kCloud)];
-  return {physics::PhaseKind::kCornetteShanks, cloud.optics.phase.asymmetry};
+  return physics::PhaseOf(scene.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].optics);
 }
 
 Medium MediumOf(const scene::Scene& scene, const volume::HydrometeorFields& fields) {
@@ -59,7 +59,7 @@ Medium MediumOf(const scene::Scene& scene, const volume::HydrometeorFields& fiel
     if (!look.visible || look.scale <= 0.0F || field.concentration_kg_per_m3.empty()) continue;
     MediumGroup group;
     group.albedo = look.optics.albedo;
-    group.phase = per_field_phase ? look.optics.phase : UniformPhase(scene);
+    group.phase = per_field_phase ? physics::PhaseOf(look.optics) : UniformPhase(scene);
     if (scene.rendering.false_colors) group.color = look.optics.false_color;
     group.detail = scene::DrawnDetail(scene, field.hydrometeor, fields.grid.spacing_m);
     auto found = std::find(medium.groups.begin(), medium.groups.end(), group);
@@ -99,11 +99,15 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
     occupied_bricks_ = gl::Buffer(occupied.size() * sizeof(std::uint32_t), occupied.data(), 0);
   }
   details_ = LayersOf(content_, noises);
+  std::vector<physics::PhaseFunction> phases;
+  for (const MediumGroup& group : content_.groups) phases.push_back(group.phase);
+  phase_curves_ = PhaseCurves(phases);
   cost->upload_ms = stopwatch.ElapsedMs();
 }
 
 void ResidentMedium::Bind(const gl::Program& program) const {
   for (std::size_t i = 0; i < textures_.size(); ++i) textures_[i].Bind(static_cast<GLuint>(i));
+  phase_curves_.Bind();
   const glm::dvec3 extent_m = glm::dvec3(bounds_.grid.cells) * bounds_.grid.spacing_m;
   program.Set("texture_from_local_scale", glm::vec3(1.0 / extent_m));
   program.Set("texture_from_local_offset",
@@ -151,7 +155,7 @@ double ResidentMedium::OccupiedShare() const {
 }
 
 std::size_t ResidentMedium::Bytes() const {
-  std::size_t bytes = bricks_.Bytes() + occupied_bricks_.Bytes();
+  std::size_t bytes = bricks_.Bytes() + occupied_bricks_.Bytes() + phase_curves_.Bytes();
   for (const gl::Texture3D& texture : textures_) bytes += texture.Bytes();
   for (const DetailLayer& layer : details_) bytes += layer.noise->texture.Bytes();
   return bytes;

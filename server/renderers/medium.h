@@ -10,6 +10,7 @@
 #include "gl/program.h"
 #include "physics/hydrometeors.h"
 #include "renderers/detail_noises.h"
+#include "renderers/phase_curves.h"
 #include "scene/scene.h"
 #include "volume/extinction.h"
 #include "volume/hydrometeor_fields.h"
@@ -19,7 +20,7 @@ namespace thunderhead::renderers {
 // Fields that scatter and swirl alike.
 struct MediumGroup {
   float albedo = 1.0F;
-  physics::PhaseFunction phase;
+  physics::PhaseFunction phase;  // by physics::PhaseOf
   glm::vec3 color{1.0F};
   scene::Detail detail;  // with a wavelength if any
 
@@ -32,8 +33,7 @@ struct Medium {
   std::vector<physics::Hydrometeor> hydrometeors;  // drawn
 };
 
-// The phase function of the "uniform phase" modes: one for every field, Cornette and Shanks' as the
-// paper uses for its light transport, with cloud water's parameter in `scene`.
+// The phase function of the "uniform phase" modes: that of cloud water in `scene`, for every field.
 physics::PhaseFunction UniformPhase(const scene::Scene& scene);
 
 Medium MediumOf(const scene::Scene& scene, const volume::HydrometeorFields& fields);
@@ -68,7 +68,8 @@ class ResidentMedium {
   // The DETAILS variant of common/medium.glsl: noises to be fetched.
   int Details() const { return static_cast<int>(details_.size()); }
 
-  // Binds the textures to units 0 and up, detail to kDetailUnit and up, and sets the uniforms of
+  // Binds the textures to units 0 and up, detail to kDetailUnit and up, those that
+  // common/bricks.glsl and common/phase.glsl name to theirs, and sets the uniforms of
   // common/medium.glsl and common/bricks.glsl. Local coordinates are metres from Middle_m().
   void Bind(const gl::Program& program) const;
   std::size_t Bytes() const;
@@ -93,6 +94,7 @@ class ResidentMedium {
   gl::Buffer occupied_bricks_;
   int occupied_count_ = 0;
   std::vector<DetailLayer> details_;
+  PhaseCurves phase_curves_;
 };
 
 }  // namespace thunderhead::renderers

@@ -30,6 +30,10 @@ constexpr std::array kPhaseKinds = {
     std::pair{v1::PhaseFunction::KIND_HENYEY_GREENSTEIN, physics::PhaseKind::kHenyeyGreenstein},
     std::pair{v1::PhaseFunction::KIND_CORNETTE_SHANKS, physics::PhaseKind::kCornetteShanks},
     std::pair{v1::PhaseFunction::KIND_RAYLEIGH, physics::PhaseKind::kRayleigh},
+    std::pair{v1::PhaseFunction::KIND_WATER_DROPLETS, physics::PhaseKind::kWaterDroplets},
+    std::pair{v1::PhaseFunction::KIND_ICE_COLUMNS, physics::PhaseKind::kIceColumns},
+    std::pair{v1::PhaseFunction::KIND_ICE_PLATES, physics::PhaseKind::kIcePlates},
+    std::pair{v1::PhaseFunction::KIND_ICE_ROUGH, physics::PhaseKind::kIceRough},
 };
 constexpr std::array kModes = {
     std::pair{v1::MODE_PER_FIELD_PHASE_TRANSLUCENT, scene::Mode::kPerFieldPhaseTranslucent},

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "glm/common.hpp"
+#include "glm/geometric.hpp"
 #include "gtest/gtest.h"
 #include "physics/optics.h"
 
@@ -61,6 +63,39 @@ INSTANTIATE_TEST_SUITE_P(Formulas, FormulaTest,
                                          PhaseFunction{PhaseKind::kCornetteShanks, 0.85F},
                                          PhaseFunction{PhaseKind::kCornetteShanks, 0.979F},
                                          PhaseFunction{PhaseKind::kRayleigh, 0.0F}));
+
+// Samples are linear between values of the table at most 0.04 degrees away, which cuts the corners
+// off its halos and bows.
+class TableTest : public testing::TestWithParam<PhaseFunction> {};
+
+TEST_P(TableTest, ValuesAndSamplesAreTheTables) {
+  const SampledPhase phase = SampledPhase::Of(GetParam());
+  for (double angle_deg = 0.0; angle_deg <= 180.0; angle_deg += 0.37) {
+    const auto table = [&](double away_deg) {
+      const double angle_rad = (angle_deg + away_deg) * std::numbers::pi / 180.0;
+      return physics::PhaseColors(GetParam(), std::cos(angle_rad));
+    };
+    const glm::dvec3 low = glm::min(table(0.0), glm::min(table(-0.04), table(0.04)));
+    const glm::dvec3 high = glm::max(table(0.0), glm::max(table(-0.04), table(0.04)));
+    const glm::dvec3 value = phase.Value(std::cos(angle_deg * std::numbers::pi / 180.0));
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_GE(value[c], low[c] * (1.0 - 1e-3)) << angle_deg;
+      EXPECT_LE(value[c], high[c] * (1.0 + 1e-3)) << angle_deg;
+    }
+  }
+  glm::dvec3 mean_cosine(0.0);
+  for (int c = 0; c < 3; ++c) {
+    mean_cosine[c] =
+        MeanOverSamples(phase, [c](const PhaseSample& s) { return s.weight[c] * s.mu; });
+  }
+  EXPECT_NEAR(glm::dot(physics::kLuminance, mean_cosine), physics::MeanCosine(GetParam()), 2e-4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Tables, TableTest,
+                         testing::Values(PhaseFunction{PhaseKind::kWaterDroplets, 0.0F, 1e-5F},
+                                         PhaseFunction{PhaseKind::kWaterDroplets, 0.0F, 5e-4F},
+                                         PhaseFunction{PhaseKind::kIceColumns},
+                                         PhaseFunction{PhaseKind::kIceRough}));
 
 // A diffraction peak 0.02 degrees wide on a constant: its share of the light is known. The
 // trapezoid between nodes misses 1.2e-4 of a peak this sharp.

@@ -56,7 +56,7 @@ TEST(SessionsTest, EmptySceneComesBackWithEveryDefault) {
   ASSERT_EQ(scene.fields_size(), 2);
   EXPECT_EQ(scene.fields(0).hydrometeor(), v1::HYDROMETEOR_CLOUD);
   EXPECT_EQ(scene.fields(0).radius_m(), 1e-5F);
-  EXPECT_EQ(scene.fields(0).phase().kind(), v1::PhaseFunction::KIND_CORNETTE_SHANKS);
+  EXPECT_EQ(scene.fields(0).phase().kind(), v1::PhaseFunction::KIND_WATER_DROPLETS);
   EXPECT_EQ(scene.fields(1).false_color().blue(), 1.0F);
   EXPECT_TRUE(scene.fields(1).visible());
 }

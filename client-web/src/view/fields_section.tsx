@@ -22,10 +22,16 @@ import type { FieldDescription } from "../gen/thunderhead/v1/storm_pb";
 import { Choice, Section, Slider, Switch } from "./controls";
 
 const PHASE_KINDS = [
+  [Kind.WATER_DROPLETS, "Water droplets"],
+  [Kind.ICE_COLUMNS, "Ice columns"],
+  [Kind.ICE_PLATES, "Ice plates"],
+  [Kind.ICE_ROUGH, "Rough ice"],
   [Kind.HENYEY_GREENSTEIN, "Henyey–Greenstein"],
   [Kind.CORNETTE_SHANKS, "Cornette–Shanks"],
   [Kind.RAYLEIGH, "Rayleigh"],
 ] as const;
+
+const WITH_ASYMMETRY: readonly Kind[] = [Kind.HENYEY_GREENSTEIN, Kind.CORNETTE_SHANKS];
 
 export function FieldsSection({ state }: { state: PageState }) {
   const storm = state.storm.value;
@@ -160,7 +166,7 @@ function ParticleSettings({ state, field }: { state: PageState; field: FieldDesc
           edit({ phase: create(PhaseFunctionSchema, { kind, asymmetry: phase?.asymmetry }) })
         }
       />
-      {phase?.kind !== Kind.RAYLEIGH && (
+      {phase && WITH_ASYMMETRY.includes(phase.kind) && (
         <Slider
           label="Asymmetry g"
           limits={LIMITS.phaseAsymmetry}

@@ -1,18 +1,30 @@
-// What a group of a medium scatters towards the eye of light that turns by an angle. Variants: GROUPS, COLORED (per-group
-// colours), CONSISTENT (transport).
-#include "physics/phase_functions.glsl"
+// What a group of a medium scatters towards the eye of light that turns by an angle. Variants: COLORED (per-group
+// colours), CONSISTENT (transport). GROUPS is the number of groups.
+#include "physics/phase_curve.glsl"
 
-uniform vec4 phase[GROUPS];
-uniform float phase_cut[GROUPS];     // cosine within which the phase function is held
+layout(binding = 3) uniform sampler2D phase_curves;  // a row a group over phase_curve_place: red, green, blue
+
+uniform float phase_cut;             // cosine within which phase functions are held
 uniform vec2 phase_display[GROUPS];  // offset and slope of the paper's display normalisation
 uniform vec3 group_color[GROUPS];
 
 const float kFourPi = 12.5663706;
 const float kPaperWhite = 0.5;  // radiance of the paper's display value 1
 
-// Scattered radiance per unit of irradiance and optical depth, of one group; `mu` is the cosine of the scattering angle.
+// The phase function of a group for red, green and blue, its mean over the sphere 1; `mu` is the cosine of the scattering
+// angle. Two fetches and a mix: filtering units round the share to 8 bits, which shows in steep peaks.
+vec3 group_phase(int group, float mu) {
+  int last = textureSize(phase_curves, 0).x - 1;
+  float place = phase_curve_place(mu) * float(last);
+  int texel = min(int(place), last - 1);
+  vec3 low = texelFetch(phase_curves, ivec2(texel, group), 0).rgb;
+  vec3 high = texelFetch(phase_curves, ivec2(texel + 1, group), 0).rgb;
+  return mix(low, high, place - float(texel));
+}
+
+// Scattered radiance per unit of irradiance and optical depth, of one group.
 vec3 phase_term(int group, float mu) {
-  float value = phase_value(phase[group], min(mu, phase_cut[group]));
+  vec3 value = group_phase(group, min(mu, phase_cut));
 #if CONSISTENT
   value /= kFourPi;
 #else

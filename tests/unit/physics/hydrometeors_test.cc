@@ -29,6 +29,16 @@ TEST(Hydrometeors, MassExtinctionIsNearPublishedTables) {
   }
 }
 
+TEST(Hydrometeors, DefaultPhasesAreTables) {
+  const auto kind = [](Hydrometeor hydrometeor) { return DefaultOptics(hydrometeor).phase.kind; };
+  EXPECT_EQ(kind(Hydrometeor::kCloud), PhaseKind::kWaterDroplets);
+  EXPECT_EQ(kind(Hydrometeor::kRain), PhaseKind::kWaterDroplets);
+  EXPECT_EQ(kind(Hydrometeor::kIce), PhaseKind::kIceColumns);
+  EXPECT_EQ(kind(Hydrometeor::kSnow), PhaseKind::kIceRough);
+  EXPECT_EQ(kind(Hydrometeor::kGraupel), PhaseKind::kIceRough);
+  EXPECT_EQ(kind(Hydrometeor::kHail), PhaseKind::kIceRough);
+}
+
 TEST(Hydrometeors, DefaultsAreThePapersTables) {
   EXPECT_FLOAT_EQ(DefaultOptics(Hydrometeor::kCloud).radius_m, 1e-5F);
   EXPECT_FLOAT_EQ(DefaultOptics(Hydrometeor::kRain).radius_m, 1e-3F);

@@ -13,12 +13,93 @@ namespace {
 constexpr PhaseKind kHg = PhaseKind::kHenyeyGreenstein;
 constexpr PhaseKind kCs = PhaseKind::kCornetteShanks;
 
+const PhaseFunction kAll[] = {{kHg, 0.0F},
+                              {kHg, 0.85F},
+                              {kHg, -0.5F},
+                              {kCs, 0.0F},
+                              {kCs, 0.979F},
+                              {PhaseKind::kRayleigh, 0.0F},
+                              {PhaseKind::kWaterDroplets, 0.0F, 5e-6F},
+                              {PhaseKind::kWaterDroplets, 0.0F, 5e-4F},
+                              {PhaseKind::kIceColumns},
+                              {PhaseKind::kIcePlates},
+                              {PhaseKind::kIceRough}};
+
 TEST(PhaseFunctions, AreNormalisedOverTheSphere) {
-  for (const PhaseFunction& phase :
-       {PhaseFunction{kHg, 0.0F}, PhaseFunction{kHg, 0.85F}, PhaseFunction{kHg, -0.5F},
-        PhaseFunction{kCs, 0.0F}, PhaseFunction{kCs, 0.979F},
-        PhaseFunction{PhaseKind::kRayleigh, 0.0F}}) {
+  for (const PhaseFunction& phase : kAll) {
     EXPECT_NEAR(CumulativePhase(phase, std::numbers::pi), 1.0, 2e-5) << phase.asymmetry;
+  }
+}
+
+TEST(PhaseFunctions, ASingleValueIsTheLuminanceOfTheColors) {
+  for (const PhaseFunction& phase : kAll) {
+    for (double angle_deg = 0.3; angle_deg < 180.0; angle_deg += 7.1) {
+      const double mu = std::cos(glm::radians(angle_deg));
+      const glm::dvec3 colors = PhaseColors(phase, mu);
+      EXPECT_NEAR(PhaseValue(phase, mu), 0.2126 * colors.r + 0.7152 * colors.g + 0.0722 * colors.b,
+                  1e-12 * colors.g);
+    }
+  }
+}
+
+TEST(PhaseFunctions, IceHasItsHaloAndWaterItsBow) {
+  const auto at = [](PhaseKind kind, double angle_deg) {
+    return PhaseValue({kind, 0.0F, 1e-5F}, std::cos(glm::radians(angle_deg)));
+  };
+  for (const PhaseKind kind : {PhaseKind::kIceColumns, PhaseKind::kIcePlates}) {
+    EXPECT_GT(at(kind, 22.25), 2.0 * at(kind, 20.0));
+    EXPECT_GT(at(kind, 46.25), 1.3 * at(kind, 44.0));
+  }
+  EXPECT_LT(at(PhaseKind::kIceRough, 22.25), at(PhaseKind::kIceRough, 20.0));
+  EXPECT_GT(at(PhaseKind::kWaterDroplets, 140.0), 1.5 * at(PhaseKind::kWaterDroplets, 120.0));
+}
+
+TEST(PhaseFunctions, DropletsTakeTheTableOfTheNearestRadius) {
+  ParticleOptics optics = DefaultOptics(Hydrometeor::kCloud);
+  for (const auto& [radius_m, table_m] :
+       {std::pair(1e-7F, 5e-6F), std::pair(7e-6F, 5e-6F), std::pair(7.2e-6F, 1e-5F),
+        std::pair(1.4e-5F, 1e-5F), std::pair(1.5e-5F, 2e-5F), std::pair(9e-5F, 2e-5F),
+        std::pair(1.1e-4F, 5e-4F), std::pair(1e-3F, 5e-4F), std::pair(0.1F, 5e-4F)}) {
+    optics.radius_m = radius_m;
+    EXPECT_EQ(PhaseOf(optics).droplet_radius_m, table_m) << radius_m;
+  }
+  // Published asymmetries at 0.55 um; the luminance is mostly green's.
+  EXPECT_NEAR(MeanCosine({PhaseKind::kWaterDroplets, 0.0F, 5e-6F}), 0.846, 0.003);
+  EXPECT_NEAR(MeanCosine({PhaseKind::kWaterDroplets, 0.0F, 1e-5F}), 0.862, 0.003);
+  EXPECT_NEAR(MeanCosine({PhaseKind::kWaterDroplets, 0.0F, 2e-5F}), 0.872, 0.003);
+}
+
+TEST(PhaseFunctions, WhatDoesNotMatterDoesNotMakeThemDiffer) {
+  ParticleOptics a = DefaultOptics(Hydrometeor::kSnow);
+  ParticleOptics b = DefaultOptics(Hydrometeor::kGraupel);
+  b.phase.asymmetry = 0.1F;
+  EXPECT_EQ(PhaseOf(a), PhaseOf(b));
+  a.phase = {PhaseKind::kRayleigh, 0.5F};
+  b.phase = {PhaseKind::kRayleigh, 0.2F};
+  EXPECT_EQ(PhaseOf(a), PhaseOf(b));
+  a.phase = {kHg, 0.5F};
+  b.phase = {kHg, 0.2F};
+  EXPECT_NE(PhaseOf(a), PhaseOf(b));
+  b.phase = {kHg, 0.5F};
+  EXPECT_EQ(PhaseOf(a), PhaseOf(b));
+  b.phase = {kCs, 0.5F};
+  EXPECT_NE(PhaseOf(a), PhaseOf(b));
+}
+
+TEST(PhaseFunctions, PlaceInACurveGoesEvenlyFromStraightOnToStraightBack) {
+  EXPECT_EQ(glsl::phase_curve_place(1.0F), 0.0F);
+  EXPECT_EQ(glsl::phase_curve_place(1.0000001F), 0.0F);
+  EXPECT_EQ(glsl::phase_curve_place(-1.0F), 1.0F);
+  EXPECT_EQ(glsl::phase_curve_place(-1.0000001F), 1.0F);
+  EXPECT_NEAR(glsl::phase_curve_place(0.0F), std::sqrt(0.5), 1e-6);
+  double before = 0.0;
+  for (double angle_deg = 0.1; angle_deg <= 180.0; angle_deg += 0.1) {
+    const double place =
+        glsl::phase_curve_place(static_cast<float>(std::cos(glm::radians(angle_deg))));
+    // A tenth of a degree is at least one of 4096 texels, and 120 next to straight on.
+    EXPECT_GT(place - before, 1.1 / 4096.0) << angle_deg;
+    EXPECT_LT(place - before, 0.03) << angle_deg;
+    before = place;
   }
 }
 
@@ -46,16 +127,20 @@ TEST(PhaseFunctions, ShareScatteredWithinTenDegrees) {
 }
 
 TEST(DeltaScaling, WhatIsCutAndWhatIsLeftAddUp) {
-  const PhaseFunction phase{kCs, 0.85F};
-  const DeltaScaling cut = CutForwardPeak(phase, glm::radians(10.0));
-  double left = 0.0;
-  constexpr int kSteps = 200000;
-  for (int i = 0; i < kSteps; ++i) {
-    const double mu = -1.0 + 2.0 * (i + 0.5) / kSteps;
-    left += PhaseValue(phase, std::fmin(mu, cut.cut_cosine)) / kSteps;
+  for (const PhaseFunction& phase : kAll) {
+    const DeltaScaling cut = CutForwardPeak(phase, glm::radians(10.0));
+    double left = 0.0;
+    constexpr int kSteps = 20000;
+    for (int i = 0; i < kSteps; ++i) {
+      const double mu = -1.0 + 2.0 * (i + 0.5) / kSteps;
+      left += PhaseValue(phase, std::fmin(mu, cut.cut_cosine)) / kSteps;
+    }
+    // The midpoint rule is off by as much at the halos' edges.
+    EXPECT_NEAR(left + cut.forward_share, 1.0, 1e-4) << static_cast<int>(phase.kind);
+    EXPECT_GE(cut.forward_share, 0.0);
   }
-  EXPECT_NEAR(left + cut.forward_share, 1.0, 1e-4);
-  EXPECT_GT(cut.forward_share, 0.1);
+  EXPECT_GT(CutForwardPeak({kCs, 0.85F}, glm::radians(10.0)).forward_share, 0.1);
+  EXPECT_GT(CutForwardPeak({PhaseKind::kIceColumns}, glm::radians(10.0)).forward_share, 0.6);
 }
 
 TEST(LightTransport, MeanTransmittanceHoldsFromTinyToHuge) {
