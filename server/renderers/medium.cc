@@ -82,6 +82,9 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
       volume::ComputeExtinction(fields, content_.terms, static_cast<int>(content_.groups.size()));
   const volume::BrickMap bricks = volume::BrickMapOf(bounds_);
   cost->extinction_ms = stopwatch.Restart();
+  std::vector<physics::PhaseFunction> phases;
+  for (const MediumGroup& group : content_.groups) phases.push_back(group.phase);
+  if (!phases.empty()) phase_curves_ = PhaseCurves(phases);
   if (bounds_.Empty()) return;
   for (volume::ExtinctionPlane& plane : bounds_.planes) {
     const auto channels = static_cast<std::size_t>(plane.channels);
@@ -99,9 +102,6 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
     occupied_bricks_ = gl::Buffer(occupied.size() * sizeof(std::uint32_t), occupied.data(), 0);
   }
   details_ = LayersOf(content_, noises);
-  std::vector<physics::PhaseFunction> phases;
-  for (const MediumGroup& group : content_.groups) phases.push_back(group.phase);
-  phase_curves_ = PhaseCurves(phases);
   cost->upload_ms = stopwatch.ElapsedMs();
 }
 

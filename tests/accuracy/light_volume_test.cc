@@ -81,6 +81,7 @@ TEST_F(LightVolume, AlbedoScalesSingleScattering) {
 
 TEST_F(LightVolume, AgreesWithHalfAngleSlicing) {
   in_air_ = true;
+  SetPhase(physics::PhaseKind::kCornetteShanks, 0.85F);
   for (const auto mode :
        {scene::Mode::kUniformPhaseTranslucent, scene::Mode::kPerFieldPhaseTranslucent}) {
     scene_.rendering.mode = mode;
