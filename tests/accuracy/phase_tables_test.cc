@@ -55,7 +55,8 @@ class PhaseTables : public testing::TestWithParam<physics::PhaseFunction> {
   std::vector<float> LookUp(double sun_elevation_deg, scene::Renderer renderer) {
     const auto fields = support::MakeSlab(kWidth_m, kHeight_m, kOpticalDepth / kHeight_m);
     ResidentMedium::Cost cost;
-    const ResidentMedium medium(scene_, *fields, &cost);
+    DetailNoises noises;
+    const ResidentMedium medium(scene_, *fields, &noises, &cost);
     RenderSettings settings;
     settings.rendering = scene_.rendering;
     settings.view.eye_m = {0.0, 0.0, -3000.0};
