@@ -1,0 +1,40 @@
+// How far a picture is from the truth: error of linear radiance, and of what a viewer sees. Pure
+// functions of pixels; images are rows from top to bottom.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "glm/vec2.hpp"
+#include "glm/vec3.hpp"
+
+namespace thunderhead::measure {
+
+struct LinearImage {
+  glm::ivec2 size_px{0};
+  std::vector<glm::vec3> radiance;
+};
+
+// 8-bit sRGB, three bytes a pixel.
+struct DisplayImage {
+  glm::ivec2 size_px{0};
+  std::vector<std::uint8_t> rgb;
+};
+
+// Root of the mean squared difference over pixels and colours, over the truth's mean radiance. The
+// images have one size; the truth is not black.
+double RelativeRmse(const LinearImage& image, const LinearImage& truth);
+
+// The same of the truth's standard error: what RelativeRmse would be between the exact picture and
+// this truth.
+double RelativeNoise(const std::vector<glm::vec3>& standard_error, const LinearImage& truth);
+
+// Mean difference over the truth's mean radiance: above 0 where the picture is too bright.
+double RelativeBias(const LinearImage& image, const LinearImage& truth);
+
+// The mean of the perceived difference, 0 to 1, by FLIP (Andersson et al. 2020, A Difference
+// Evaluator for Alternating Images) at 67 pixels a degree: colours after the eye's contrast
+// sensitivity, and edges and points.
+double Flip(const DisplayImage& image, const DisplayImage& truth);
+
+}  // namespace thunderhead::measure

@@ -1,0 +1,190 @@
+#include "measure/trade.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/status.h"
+#include "base/stopwatch.h"
+#include "frame/image_codec.h"
+#include "reference/scene_problem.h"
+
+namespace thunderhead::measure {
+namespace {
+
+constexpr int kTimedFrames = 9;
+
+LinearImage TruthImage(const reference::Image& image) { return {image.size_px, image.radiance}; }
+
+// GL keeps rows from bottom to top, four floats a pixel.
+LinearImage ReadImage(const gl::Texture2D& texture) {
+  const std::vector<float> values = frame::ReadLinear(texture);
+  LinearImage image{texture.Size(), {}};
+  const auto width = static_cast<std::size_t>(image.size_px.x);
+  for (auto y = static_cast<std::size_t>(image.size_px.y); y-- > 0;) {
+    for (std::size_t x = 0; x < width; ++x) {
+      const float* pixel = &values[4 * (y * width + x)];
+      image.radiance.emplace_back(pixel[0], pixel[1], pixel[2]);
+    }
+  }
+  return image;
+}
+
+gl::Texture2D TextureOf(const LinearImage& image) {
+  const auto width = static_cast<std::size_t>(image.size_px.x);
+  std::vector<float> texels;
+  texels.reserve(4 * image.radiance.size());
+  for (auto y = static_cast<std::size_t>(image.size_px.y); y-- > 0;) {
+    for (std::size_t x = 0; x < width; ++x) {
+      const glm::vec3& pixel = image.radiance[y * width + x];
+      texels.insert(texels.end(), {pixel.x, pixel.y, pixel.z, 1.0F});
+    }
+  }
+  gl::Texture2D texture(GL_RGBA32F, image.size_px);
+  texture.Upload(GL_RGBA, GL_FLOAT, texels.data());
+  return texture;
+}
+
+double Quantile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(
+      std::lround(share * static_cast<double>(values.size() - 1)))];
+}
+
+}  // namespace
+
+std::string NameOf(scene::Renderer renderer) {
+  return renderer == scene::Renderer::kHalfAngle ? "half_angle" : "light_volume";
+}
+
+std::string NameOf(scene::Mode mode) {
+  switch (mode) {
+    case scene::Mode::kUniformPhaseLowAlbedo:
+      return "uniform_phase_low_albedo";
+    case scene::Mode::kUniformPhaseTranslucent:
+      return "uniform_phase_translucent";
+    case scene::Mode::kPerFieldPhaseTranslucent:
+      return "per_field_phase_translucent";
+  }
+  THUNDERHEAD_CHECK(false, "no such mode");
+}
+
+std::string NameOf(scene::Transport transport) {
+  return transport == scene::Transport::kPaper ? "paper" : "consistent";
+}
+
+std::vector<TradeSetting> DefaultSweep() {
+  std::vector<TradeSetting> settings;
+  for (const auto renderer : {scene::Renderer::kLightVolume, scene::Renderer::kHalfAngle}) {
+    for (const auto mode :
+         {scene::Mode::kPerFieldPhaseTranslucent, scene::Mode::kUniformPhaseTranslucent,
+          scene::Mode::kUniformPhaseLowAlbedo}) {
+      for (const auto transport : {scene::Transport::kConsistent, scene::Transport::kPaper}) {
+        for (const int slices : {32, 64, 128, 256, 512}) {
+          settings.push_back({renderer, mode, transport, slices, 1.0, 88});
+        }
+      }
+    }
+  }
+  TradeSetting best;
+  for (const double scale : {0.25, 0.5, 0.75}) {
+    for (const int slices : {32, 64, 128}) {
+      best.image_scale = scale;
+      best.slices = slices;
+      settings.push_back(best);
+    }
+  }
+  best = TradeSetting();
+  for (const int quality : {30, 60, 95}) {
+    best.jpeg_quality = quality;
+    settings.push_back(best);
+  }
+  return settings;
+}
+
+void MarkPareto(std::vector<TradeRow>* rows) {
+  for (TradeRow& row : *rows) {
+    row.pareto = std::none_of(rows->begin(), rows->end(), [&](const TradeRow& other) {
+      const bool no_worse =
+          other.milliseconds <= row.milliseconds && other.relative_rmse <= row.relative_rmse;
+      return no_worse &&
+             (other.milliseconds < row.milliseconds || other.relative_rmse < row.relative_rmse);
+    });
+  }
+}
+
+absl::StatusOr<reference::Image> ComputeTruth(const scene::Scene& scene,
+                                              const volume::HydrometeorFields& fields,
+                                              const reference::RefineLimits& limits,
+                                              const reference::ImageObserver& observer,
+                                              const std::stop_token& stop) {
+  scene::Scene true_scene = scene;
+  true_scene.rendering.mode = scene::Mode::kPerFieldPhaseTranslucent;
+  true_scene.rendering.false_colors = false;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const auto medium,
+                               reference::MediumOf(true_scene, fields, reference::Sides::kOpen));
+  reference::PathTracer tracer(
+      medium, reference::SurroundingsOf(true_scene, fields, reference::GroundLight::kUniform),
+      reference::CameraOf(true_scene, fields),
+      {true_scene.output.width_px, true_scene.output.height_px}, {});
+  const reference::RefineResult result = tracer.Refine(limits, observer, stop);
+  if (result.end == reference::RefineEnd::kStopped) {
+    return absl::CancelledError("the reference was stopped");
+  }
+  return tracer.Snapshot();
+}
+
+Trade::Trade(scene::Scene scene, std::shared_ptr<const volume::HydrometeorFields> fields,
+             const reference::Image& truth)
+    : scene_(std::move(scene)),
+      fields_(std::move(fields)),
+      truth_(TruthImage(truth)),
+      truth_noise_(RelativeNoise(truth.standard_error, truth_)) {
+  scene_.output.width_px = truth.size_px.x;
+  scene_.output.height_px = truth.size_px.y;
+}
+
+absl::StatusOr<DisplayImage> Trade::Display(const gl::Texture2D& linear) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped, tone_mapper_.Map(linear, scene_.display));
+  return DisplayImage{linear.Size(), std::move(mapped.rgb)};
+}
+
+absl::StatusOr<TradeRow> Trade::Measure(const TradeSetting& setting) {
+  if (truth_display_.rgb.empty()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(truth_display_, Display(TextureOf(truth_)));
+  }
+  scene::Scene scene = scene_;
+  scene.rendering.renderer = setting.renderer;
+  scene.rendering.mode = setting.mode;
+  scene.rendering.transport = setting.transport;
+  scene.rendering.slices = setting.slices;
+  TradeRow row;
+  row.setting = setting;
+  const renderers::DrawQuality quality{setting.image_scale, 1.0};
+  std::vector<double> milliseconds;
+  std::string jpeg;
+  // A change too small to see makes the view run again; the first frame also compiles
+  // shaders and carries the light.
+  for (int i = -1; i < kTimedFrames; ++i) {
+    scene.sky.brightness = scene_.sky.brightness * (1.0 + 1e-9 * (i + 1));
+    const base::Stopwatch stopwatch;
+    THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame linear,
+                                 renderer_.Draw(scene, fields_, quality));
+    THUNDERHEAD_ASSIGN_OR_RETURN(const DisplayImage display, Display(*linear.radiance));
+    THUNDERHEAD_ASSIGN_OR_RETURN(jpeg, frame::EncodeJpeg(display.size_px.x, display.size_px.y,
+                                                         display.rgb, setting.jpeg_quality));
+    if (i >= 0) milliseconds.push_back(stopwatch.ElapsedMs());
+    if (i + 1 < kTimedFrames) continue;
+    const LinearImage image = ReadImage(*linear.radiance);
+    row.relative_rmse = RelativeRmse(image, truth_);
+    row.relative_bias = RelativeBias(image, truth_);
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const frame::RgbImage seen, frame::DecodeJpeg(jpeg));
+  row.flip = Flip({{seen.width_px, seen.height_px}, seen.rgb}, truth_display_);
+  row.bytes = jpeg.size();
+  row.milliseconds = Quantile(milliseconds, 0.5);
+  row.milliseconds_spread = Quantile(milliseconds, 0.75) - Quantile(milliseconds, 0.25);
+  return row;
+}
+
+}  // namespace thunderhead::measure

@@ -1,0 +1,86 @@
+// Speed against accuracy: what each setting of the renderers costs for one scene, and how far its
+// picture is from the reference. Owns GL objects: use it on the context's thread.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "frame/tone_map.h"
+#include "measure/image_error.h"
+#include "reference/path_tracer.h"
+#include "renderers/scene_renderer.h"
+#include "scene/scene.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::measure {
+
+// What is swept.
+struct TradeSetting {
+  scene::Renderer renderer = scene::Renderer::kLightVolume;
+  scene::Mode mode = scene::Mode::kPerFieldPhaseTranslucent;
+  scene::Transport transport = scene::Transport::kConsistent;
+  int slices = 128;
+  double image_scale = 1.0;
+  int jpeg_quality = 88;
+
+  bool operator==(const TradeSetting&) const = default;
+};
+
+struct TradeRow {
+  TradeSetting setting;
+  double milliseconds = 0.0;         // a frame with a moved camera, JPEG included: median
+  double milliseconds_spread = 0.0;  // between its quartiles
+  std::size_t bytes = 0;             // of the JPEG
+  double relative_rmse = 0.0;        // of linear radiance
+  double relative_bias = 0.0;
+  double flip = 0.0;    // of the decoded JPEG
+  bool pareto = false;  // no other setting is both faster and closer
+};
+
+// Every renderer, mode, transport and number of slices at full size, then smaller pictures and
+// other JPEG qualities of the default renderer and mode.
+std::vector<TradeSetting> DefaultSweep();
+
+// Marks the rows that no other beats in both milliseconds and relative RMSE.
+void MarkPareto(std::vector<TradeRow>* rows);
+
+// The scene as it is: every field's own phase function, light of every order.
+absl::StatusOr<reference::Image> ComputeTruth(const scene::Scene& scene,
+                                              const volume::HydrometeorFields& fields,
+                                              const reference::RefineLimits& limits,
+                                              const reference::ImageObserver& observer,
+                                              const std::stop_token& stop);
+
+class Trade {
+ public:
+  // `scene` gives what is not swept; the truth has its size.
+  Trade(scene::Scene scene, std::shared_ptr<const volume::HydrometeorFields> fields,
+        const reference::Image& truth);
+
+  absl::StatusOr<TradeRow> Measure(const TradeSetting& setting);
+
+  // What relative RMSE the truth's own noise amounts to.
+  double TruthNoise() const { return truth_noise_; }
+
+ private:
+  absl::StatusOr<DisplayImage> Display(const gl::Texture2D& linear);
+
+  scene::Scene scene_;
+  std::shared_ptr<const volume::HydrometeorFields> fields_;
+  LinearImage truth_;
+  DisplayImage truth_display_;
+  double truth_noise_ = 0.0;
+  renderers::SceneRenderer renderer_;
+  frame::ToneMapper tone_mapper_;
+};
+
+// "half_angle" and so on, as in the tables.
+std::string NameOf(scene::Renderer renderer);
+std::string NameOf(scene::Mode mode);
+std::string NameOf(scene::Transport transport);
+
+}  // namespace thunderhead::measure

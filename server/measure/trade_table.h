@@ -1,0 +1,38 @@
+// Rows of the trade as text: CSV that a later run goes on from, JSON, and an SVG plot. Pure
+// functions.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "measure/trade.h"
+
+namespace thunderhead::measure {
+
+// What the rows belong to.
+struct TradeTitle {
+  std::string storm;
+  std::string view;      // what was looked at, for people
+  std::string renderer;  // OpenGL's renderer string
+  glm::ivec2 size_px{0};
+  int truth_samples_per_pixel = 0;
+  double truth_noise = 0.0;  // relative RMSE
+};
+
+// The first lines of a CSV file: comments with the title, then the names of the columns.
+std::string CsvHead(const TradeTitle& title);
+std::string CsvLine(const TradeRow& row);
+
+// The rows of a file that begins with `head`. INVALID_ARGUMENT if it begins otherwise, or names the
+// line that cannot be read; a last line without its end is left out, as an interrupted run leaves
+// it.
+absl::StatusOr<std::vector<TradeRow>> ReadCsv(std::string_view text, std::string_view head);
+
+std::string TradeJson(const TradeTitle& title, const std::vector<TradeRow>& rows);
+
+// Milliseconds across, relative RMSE up, both logarithmic; the Pareto front joined by a line.
+std::string TradeSvg(const TradeTitle& title, const std::vector<TradeRow>& rows);
+
+}  // namespace thunderhead::measure

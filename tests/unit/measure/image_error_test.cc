@@ -1,0 +1,73 @@
+#include "measure/image_error.h"
+
+#include <cmath>
+#include <functional>
+
+#include "gtest/gtest.h"
+
+namespace thunderhead::measure {
+namespace {
+
+LinearImage Linear(const std::vector<float>& gray) {
+  LinearImage image{{static_cast<int>(gray.size()), 1}, {}};
+  for (const float value : gray) image.radiance.emplace_back(value);
+  return image;
+}
+
+DisplayImage Drawn(const std::function<int(int x, int y)>& gray) {
+  DisplayImage image{{48, 40}, {}};
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 48; ++x)
+      image.rgb.insert(image.rgb.end(), 3, static_cast<std::uint8_t>(gray(x, y)));
+  }
+  return image;
+}
+
+TEST(ImageError, RelativeRmseAndBias) {
+  const LinearImage truth = Linear({1.0F, 3.0F});
+  EXPECT_EQ(RelativeRmse(truth, truth), 0.0);
+  EXPECT_EQ(RelativeBias(truth, truth), 0.0);
+  // Differences 1 and -1 of a mean of 2.
+  EXPECT_DOUBLE_EQ(RelativeRmse(Linear({2.0F, 2.0F}), truth), 0.5);
+  EXPECT_DOUBLE_EQ(RelativeBias(Linear({2.0F, 2.0F}), truth), 0.0);
+  EXPECT_DOUBLE_EQ(RelativeBias(Linear({1.5F, 3.5F}), truth), 0.25);
+  EXPECT_DOUBLE_EQ(RelativeNoise({glm::vec3(0.2F), glm::vec3(0.2F)}, truth), 0.2F / 2.0);
+}
+
+TEST(Flip, OfAPictureWithItselfIsZero) {
+  const DisplayImage picture = Drawn([](int x, int y) { return (x * 7 + y * 13) % 256; });
+  EXPECT_EQ(Flip(picture, picture), 0.0);
+}
+
+TEST(Flip, OfEvenGraysFollowsTheColourFormula) {
+  // Without edges or points the value is that of the colour pipeline. Black against white: HyAB
+  // distance 100. Green against blue, which bounds the scale: L* 87.73 and 32.30, a*, b* times L* /
+  // 100: (-75.6, 73.0) and (25.6, -34.8), so 55.4 + 148.0 = 203.5.
+  const double most = std::pow(203.5, 0.7);
+  const double distance = std::pow(100.0, 0.7);
+  const double expected = 0.95 + (distance - 0.4 * most) / (0.6 * most) * 0.05;
+  EXPECT_NEAR(Flip(Drawn([](int, int) { return 0; }), Drawn([](int, int) { return 255; })),
+              expected, 2e-3);
+}
+
+TEST(Flip, IsSymmetricAndGrowsWithTheDifference) {
+  const DisplayImage truth = Drawn([](int x, int) { return 100 + x; });
+  const auto shifted = [&](int by) { return Drawn([=](int x, int) { return 100 + x + by; }); };
+  const double small = Flip(shifted(2), truth);
+  const double large = Flip(shifted(40), truth);
+  EXPECT_GT(small, 0.0);
+  EXPECT_LT(small, large);
+  EXPECT_LT(large, 1.0);
+  EXPECT_DOUBLE_EQ(Flip(truth, shifted(40)), large);
+}
+
+TEST(Flip, FineNoiseIsForgivenAndANewEdgeIsNot) {
+  const DisplayImage truth = Drawn([](int, int) { return 128; });
+  // Both change every pixel by 10 levels.
+  const DisplayImage chequered = Drawn([](int x, int y) { return (x + y) % 2 == 0 ? 118 : 138; });
+  const DisplayImage stepped = Drawn([](int x, int) { return x < 24 ? 118 : 138; });
+  EXPECT_LT(2.0 * Flip(chequered, truth), Flip(stepped, truth));
+}
+
+}  // namespace
+}  // namespace thunderhead::measure
