@@ -19,6 +19,9 @@ Command AddServe(CLI::App& app);
 Command AddRender(CLI::App& app);
 Command AddInspect(CLI::App& app);
 Command AddFlux(CLI::App& app);
+Command AddMeasure(CLI::App& app);
+// A part of `measure`.
+Command AddMeasureTrade(CLI::App& measure);
 Command AddGenerate(CLI::App& app);
 
 }  // namespace thunderhead::app

@@ -1,7 +1,5 @@
 #include <google/protobuf/util/json_util.h>
 
-#include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -11,6 +9,7 @@
 #include "app/address.h"
 #include "app/commands.h"
 #include "app/local_service.h"
+#include "app/output_file.h"
 #include "app/progress_bar.h"
 #include "app/scene_file.h"
 #include "base/status.h"
@@ -75,20 +74,6 @@ absl::StatusOr<v1::RenderImageResponse> CallHere(const Flags& flags,
         ReadWithProgress(*store, static_cast<int>(request.scene().time_index())));
   }
   return Call(server->LocalChannel(), request);
-}
-
-// Under a name of its own first, so that a reader never sees half a picture.
-absl::Status WriteFile(const std::string& path, const std::string& bytes) {
-  const std::string partial = path + ".partial";
-  std::ofstream file(partial, std::ios::binary);
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(partial, path, error);
-  if (file && !error) return absl::OkStatus();
-  std::filesystem::remove(partial, error);
-  return absl::UnavailableError(
-      absl::StrCat(path, " cannot be written; check that its folder exists and has room"));
 }
 
 absl::Status Render(const Flags& flags) {

@@ -176,7 +176,9 @@ absl::StatusOr<TradeRow> Trade::Measure(const TradeSetting& setting) {
     if (i >= 0) milliseconds.push_back(stopwatch.ElapsedMs());
     if (i + 1 < kTimedFrames) continue;
     const LinearImage image = ReadImage(*linear.radiance);
-    row.relative_rmse = RelativeRmse(image, truth_);
+    const double rmse = RelativeRmse(image, truth_);
+    // The truth's noise knows nothing of the picture, so that mean squares add up.
+    row.relative_rmse = std::sqrt(std::max(rmse * rmse - truth_noise_ * truth_noise_, 0.0));
     row.relative_bias = RelativeBias(image, truth_);
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(const frame::RgbImage seen, frame::DecodeJpeg(jpeg));

@@ -35,7 +35,7 @@ struct TradeRow {
   double milliseconds = 0.0;         // a frame with a moved camera, JPEG included: median
   double milliseconds_spread = 0.0;  // between its quartiles
   std::size_t bytes = 0;             // of the JPEG
-  double relative_rmse = 0.0;        // of linear radiance
+  double relative_rmse = 0.0;        // of linear radiance, without the truth's own noise
   double relative_bias = 0.0;
   double flip = 0.0;    // of the decoded JPEG
   bool pareto = false;  // no other setting is both faster and closer

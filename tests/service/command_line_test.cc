@@ -1,6 +1,7 @@
 // The program as a user runs it, on the sample storm: what it prints, writes and returns.
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -161,6 +162,32 @@ TEST_F(CommandLineTest, ServeSaysOneLineAndStopsOnASignal) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, MatchesRegex("Thunderhead is ready at http://127.0.0.1:[1-9][0-9]*/ "
                                         "\\(gRPC 127.0.0.1:[1-9][0-9]*\\)\n"));
+}
+
+TEST_F(CommandLineTest, MeasureTradeGoesOnWhereItStopped) {
+  const std::string trade = folder_.File("trade");
+  const std::string command =
+      "measure trade " + kSample + " --device software --size 24x16 --spp 16 -o " + trade;
+  const Outcome first = Run(command);
+  ASSERT_EQ(first.code, 0) << first.err;
+  EXPECT_THAT(first.out, HasSubstr("half_angle    uniform_phase_low_albedo"));
+  EXPECT_THAT(Contents(trade + ".svg"), HasSubstr("<polyline"));
+  EXPECT_THAT(Contents(trade + ".json"), HasSubstr("\"pareto\": true"));
+  // A row and a half lost: the rest is not measured again, so its times are the same.
+  const std::string whole = Contents(trade + ".csv");
+  const std::string kept = whole.substr(0, whole.size() - 150);
+  std::ofstream(trade + ".csv") << kept;
+  ASSERT_EQ(Run(command).code, 0);
+  const std::string again = Contents(trade + ".csv");
+  EXPECT_THAT(again, StartsWith(kept.substr(0, kept.rfind('\n') + 1)));
+  EXPECT_EQ(std::count(again.begin(), again.end(), '\n'),
+            std::count(whole.begin(), whole.end(), '\n'));
+  // Another picture's file is not touched.
+  const Outcome other =
+      Run("measure trade " + kSample + " --device software --size 30x16 --spp 16 -o " + trade);
+  EXPECT_EQ(other.code, 2);
+  EXPECT_THAT(other.err, HasSubstr("no file to go on from"));
+  EXPECT_EQ(Contents(trade + ".csv"), again);
 }
 
 }  // namespace

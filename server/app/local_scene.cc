@@ -1,0 +1,27 @@
+#include "app/local_scene.h"
+
+#include "app/local_service.h"
+#include "base/status.h"
+#include "service/camera_messages.h"
+#include "service/engine.h"
+#include "service/limits_check.h"
+#include "service/scene_messages.h"
+
+namespace thunderhead::app {
+
+absl::StatusOr<LocalScene> OpenScene(const std::string& path, const SceneFlags& flags) {
+  LocalScene local;
+  THUNDERHEAD_ASSIGN_OR_RETURN(local.message, ReadScene(flags));
+  THUNDERHEAD_RETURN_IF_ERROR(service::CheckLimits(local.message));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store, OpenStorm(path));
+  THUNDERHEAD_RETURN_IF_ERROR(service::PrepareScene(*store, local.message));
+  const auto time_index = static_cast<int>(local.message.time_index());
+  THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(*store, time_index));
+  local.storm_id = local.message.storm_id();
+  THUNDERHEAD_ASSIGN_OR_RETURN(local.fields, store->Get(local.storm_id, time_index, {}));
+  service::FrameCondensate(local.message, *local.fields);
+  local.scene = service::ToScene(local.message);
+  return local;
+}
+
+}  // namespace thunderhead::app

@@ -1,0 +1,26 @@
+// A scene with its storm's fields at hand, for commands that draw or trace in this process without
+// the service.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "app/scene_file.h"
+#include "scene/scene.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::app {
+
+struct LocalScene {
+  std::string storm_id;
+  v1::Scene message;  // completed: every default filled in
+  scene::Scene scene;
+  std::shared_ptr<const volume::HydrometeorFields> fields;
+};
+
+// Opens the storm at `path`, completes the scene that `flags` give as the service does, and reads
+// the fields of its time, with a progress bar. INVALID_ARGUMENT names the value that is wrong.
+absl::StatusOr<LocalScene> OpenScene(const std::string& path, const SceneFlags& flags);
+
+}  // namespace thunderhead::app

@@ -1,0 +1,180 @@
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "app/commands.h"
+#include "app/interruption.h"
+#include "app/local_scene.h"
+#include "app/output_file.h"
+#include "app/progress_bar.h"
+#include "base/status.h"
+#include "gl/context.h"
+#include "measure/trade_table.h"
+#include "reference/exr_file.h"
+#include "spdlog/spdlog.h"
+
+namespace thunderhead::app {
+namespace {
+
+struct Flags {
+  std::string storm;
+  SceneFlags scene;
+  std::string output = "trade";
+  std::string device = "auto";
+  int samples_per_pixel = 256;
+  bool json = false;
+};
+
+absl::Status CheckFlags(const Flags& flags) {
+  if (flags.samples_per_pixel >= 16) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat("--spp is ", flags.samples_per_pixel,
+                                                 "; a truth needs 16 samples a pixel at least"));
+}
+
+std::string ReadText(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// The truth kept at `path` if it was computed for this scene, else a new one.
+absl::StatusOr<reference::Image> TruthOf(const Flags& flags, const LocalScene& local,
+                                         const std::string& path,
+                                         const Interruption& interruption) {
+  const std::string key = absl::StrCat(local.message.ShortDebugString(),
+                                       "\nsamples a pixel: ", flags.samples_per_pixel, "\n");
+  if (std::filesystem::exists(path) && ReadText(path + ".scene") == key) {
+    return reference::ReadExr(path);
+  }
+  reference::RefineLimits limits;
+  limits.samples_per_pixel = flags.samples_per_pixel;
+  ProgressBar bar("tracing the truth");
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const reference::Image truth,
+      measure::ComputeTruth(
+          local.scene, *local.fields, limits,
+          [&](const reference::ImageProgress& progress) {
+            bar.Set(static_cast<double>(progress.samples_per_pixel) / flags.samples_per_pixel);
+          },
+          interruption.Token()));
+  THUNDERHEAD_RETURN_IF_ERROR(reference::WriteExr(path, truth));
+  THUNDERHEAD_RETURN_IF_ERROR(WriteFile(path + ".scene", key));
+  return truth;
+}
+
+// The rows that an earlier run left in `path`, or none; the file then holds exactly those.
+absl::StatusOr<std::vector<measure::TradeRow>> RowsSoFar(const std::string& path,
+                                                         const std::string& head) {
+  std::vector<measure::TradeRow> rows;
+  std::string text = head;
+  if (std::filesystem::exists(path)) {
+    auto earlier = measure::ReadCsv(ReadText(path), head);
+    if (!earlier.ok()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(path, " is no file to go on from: ", earlier.status().message()));
+    }
+    rows = *std::move(earlier);
+    for (const measure::TradeRow& row : rows) absl::StrAppend(&text, measure::CsvLine(row));
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(WriteFile(path, text));
+  return rows;
+}
+
+absl::Status MeasureRest(measure::Trade& trade, const std::string& path,
+                         const Interruption& interruption, std::vector<measure::TradeRow>* rows) {
+  const std::vector<measure::TradeSetting> sweep = measure::DefaultSweep();
+  std::ofstream file(path, std::ios::binary | std::ios::app);
+  ProgressBar bar("measuring settings");
+  double done = 0.0;
+  for (const measure::TradeSetting& setting : sweep) {
+    bar.Set(done++ / static_cast<double>(sweep.size()));
+    if (std::any_of(rows->begin(), rows->end(),
+                    [&](const measure::TradeRow& row) { return row.setting == setting; })) {
+      continue;
+    }
+    if (interruption.Token().stop_requested()) {
+      return absl::CancelledError(absl::StrCat("stopped; the same command goes on from ", path));
+    }
+    THUNDERHEAD_ASSIGN_OR_RETURN(const measure::TradeRow row, trade.Measure(setting));
+    file << measure::CsvLine(row) << std::flush;
+    if (!file) return absl::UnavailableError(absl::StrCat(path, " cannot be written"));
+    rows->push_back(row);
+  }
+  return absl::OkStatus();
+}
+
+std::string Table(const std::vector<measure::TradeRow>& rows) {
+  std::string text =
+      absl::StrFormat("%-13s %-28s %-11s %6s %5s %4s %9s %8s %8s %7s\n", "renderer", "mode",
+                      "transport", "slices", "scale", "jpeg", "ms", "RMSE", "bias", "FLIP");
+  for (const measure::TradeRow& row : rows) {
+    const measure::TradeSetting& setting = row.setting;
+    absl::StrAppendFormat(&text, "%-13s %-28s %-11s %6d %5g %4d %9.2f %8.4f %+8.4f %7.4f%s\n",
+                          measure::NameOf(setting.renderer), measure::NameOf(setting.mode),
+                          measure::NameOf(setting.transport), setting.slices, setting.image_scale,
+                          setting.jpeg_quality, row.milliseconds, row.relative_rmse,
+                          row.relative_bias, row.flip, row.pareto ? "  *" : "");
+  }
+  return text;
+}
+
+absl::Status MeasureTrade(const Flags& flags) {
+  spdlog::set_level(spdlog::level::warn);
+  THUNDERHEAD_RETURN_IF_ERROR(CheckFlags(flags));
+  const Interruption interruption;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const LocalScene local, OpenScene(flags.storm, flags.scene));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,
+                               gl::Context::Create(flags.device));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const reference::Image truth,
+                               TruthOf(flags, local, flags.output + ".truth.exr", interruption));
+  measure::Trade trade(local.scene, local.fields, truth);
+  measure::TradeTitle title;
+  title.storm = absl::StrCat(local.storm_id, ", time ", local.message.time_index());
+  title.view = flags.scene.camera.empty() ? "orbit" : flags.scene.camera;
+  title.renderer = context->Info().renderer;
+  title.size_px = truth.size_px;
+  title.truth_samples_per_pixel = flags.samples_per_pixel;
+  title.truth_noise = trade.TruthNoise();
+  const std::string csv = flags.output + ".csv";
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<measure::TradeRow> rows,
+                               RowsSoFar(csv, measure::CsvHead(title)));
+  THUNDERHEAD_RETURN_IF_ERROR(MeasureRest(trade, csv, interruption, &rows));
+  measure::MarkPareto(&rows);
+  const std::string json = measure::TradeJson(title, rows);
+  THUNDERHEAD_RETURN_IF_ERROR(WriteFile(flags.output + ".json", json));
+  THUNDERHEAD_RETURN_IF_ERROR(WriteFile(flags.output + ".svg", measure::TradeSvg(title, rows)));
+  std::cout << (flags.json ? json : Table(rows));
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+Command AddMeasureTrade(CLI::App& measure) {
+  auto flags = std::make_shared<Flags>();
+  flags->scene.size = "240x160";
+  CLI::App* trade = measure.add_subcommand(
+      "trade", "Time and error of every setting against the reference; goes on where it stopped");
+  trade->add_option("STORM", flags->storm, "Storm file or folder")->required();
+  trade
+      ->add_option("-o,--output", flags->output,
+                   "Where results go: .csv, .json, .svg and .truth.exr are added")
+      ->capture_default_str();
+  trade->add_option("--scene", flags->scene.file, "Scene as Protobuf JSON");
+  trade->add_option("--camera", flags->scene.camera, "orbit, spotter or top-down");
+  trade->add_option("--time", flags->scene.time_index, "Which of the storm's times, from 0");
+  trade->add_option("--size", flags->scene.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  trade->add_option("--spp", flags->samples_per_pixel, "Samples a pixel of the truth")
+      ->capture_default_str();
+  trade->add_option("--device", flags->device, "auto, software or a GPU's number")
+      ->capture_default_str();
+  trade->add_flag("--json", flags->json, "Print JSON");
+  return {trade, [flags] { return MeasureTrade(*flags); }};
+}
+
+}  // namespace thunderhead::app
