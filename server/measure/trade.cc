@@ -65,6 +65,8 @@ std::string NameOf(scene::Mode mode) {
       return "uniform_phase_translucent";
     case scene::Mode::kPerFieldPhaseTranslucent:
       return "per_field_phase_translucent";
+    case scene::Mode::kPerFieldPhaseDetailTranslucent:
+      return "per_field_phase_detail_translucent";
   }
   THUNDERHEAD_CHECK(false, "no such mode");
 }
