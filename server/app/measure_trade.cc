@@ -18,6 +18,7 @@
 #include "gl/context.h"
 #include "measure/trade_table.h"
 #include "reference/exr_file.h"
+#include "reference/trace_scene.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::app {
@@ -56,13 +57,17 @@ absl::StatusOr<reference::Image> TruthOf(const Flags& flags, const LocalScene& l
   limits.samples_per_pixel = flags.samples_per_pixel;
   ProgressBar bar("tracing the truth");
   THUNDERHEAD_ASSIGN_OR_RETURN(
-      const reference::Image truth,
-      measure::ComputeTruth(
-          local.scene, *local.fields, limits,
+      const reference::TracedScene traced,
+      reference::TraceScene(
+          measure::TrueScene(local.scene), *local.fields, limits,
           [&](const reference::ImageProgress& progress) {
             bar.Set(static_cast<double>(progress.samples_per_pixel) / flags.samples_per_pixel);
           },
           interruption.Token()));
+  if (traced.result.end == reference::RefineEnd::kStopped) {
+    return absl::CancelledError("stopped before the truth was traced; nothing is kept of it");
+  }
+  const reference::Image& truth = traced.image;
   THUNDERHEAD_RETURN_IF_ERROR(reference::WriteExr(path, truth));
   THUNDERHEAD_RETURN_IF_ERROR(WriteFile(path + ".scene", key));
   return truth;

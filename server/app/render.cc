@@ -11,6 +11,7 @@
 #include "app/local_service.h"
 #include "app/output_file.h"
 #include "app/progress_bar.h"
+#include "app/render_reference.h"
 #include "app/scene_file.h"
 #include "base/status.h"
 #include "grpcpp/create_channel.h"
@@ -27,6 +28,7 @@ struct Flags {
   std::string storm;
   std::string output;
   SceneFlags scene;
+  ReferenceLimits reference;
   std::string server;
   std::string device = "auto";
   bool json = false;
@@ -76,8 +78,24 @@ absl::StatusOr<v1::RenderImageResponse> CallHere(const Flags& flags,
   return Call(server->LocalChannel(), request);
 }
 
+absl::Status ByReference(const Flags& flags) {
+  if (!flags.server.empty() || flags.json) {
+    return absl::InvalidArgumentError(
+        "--renderer reference works in this process only: leave out --server and --json");
+  }
+  if (!absl::EndsWithIgnoreCase(flags.output, ".exr")) {
+    THUNDERHEAD_RETURN_IF_ERROR(FormatOf(flags.output).status());
+  }
+  return RenderReference(flags.storm, flags.scene, flags.reference, flags.output, flags.device);
+}
+
 absl::Status Render(const Flags& flags) {
   spdlog::set_level(spdlog::level::warn);
+  if (flags.scene.renderer == "reference") return ByReference(flags);
+  if (flags.reference.Any()) {
+    return absl::InvalidArgumentError(
+        "--spp, --seconds and --target-error are for --renderer reference");
+  }
   v1::RenderImageRequest request;
   THUNDERHEAD_ASSIGN_OR_RETURN(const v1::ImageFormat format, FormatOf(flags.output));
   THUNDERHEAD_ASSIGN_OR_RETURN(*request.mutable_scene(), ReadScene(flags.scene));
@@ -103,14 +121,22 @@ Command AddRender(CLI::App& app) {
   CLI::App* render = app.add_subcommand("render", "Render one picture of a storm");
   render->add_option("STORM", flags->storm, "Storm file or folder; with --server a storm's id")
       ->required();
-  render->add_option("-o,--output", flags->output, "The picture: .png, .jpg or .jpeg")->required();
+  render
+      ->add_option("-o,--output", flags->output,
+                   "The picture: .png, .jpg or .jpeg; .exr too with --renderer reference")
+      ->required();
   render->add_option("--scene", flags->scene.file, "Scene as Protobuf JSON");
   render->add_option("--time", flags->scene.time_index, "Which of the storm's times, from 0");
   render->add_option("--size", flags->scene.size, "WIDTHxHEIGHT in pixels");
   render->add_option("--camera", flags->scene.camera, "orbit, spotter or top-down");
   render->add_option("--slices", flags->scene.slices, "Number of slices");
   render->add_option("--renderer", flags->scene.renderer,
-                     "half_angle or light_volume (the default)");
+                     "half_angle, light_volume (the default) or reference");
+  render->add_option("--spp", flags->reference.samples_per_pixel,
+                     "Reference: stop after so many samples a pixel");
+  render->add_option("--seconds", flags->reference.seconds, "Reference: stop after this time");
+  render->add_option("--target-error", flags->reference.target_error,
+                     "Reference: stop at this relative standard error");
   render->add_option("--server", flags->server, "HOST:PORT of a running server's gRPC");
   render->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();

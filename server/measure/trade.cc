@@ -7,7 +7,6 @@
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "frame/image_codec.h"
-#include "reference/scene_problem.h"
 
 namespace thunderhead::measure {
 namespace {
@@ -30,6 +29,14 @@ LinearImage ReadImage(const gl::Texture2D& texture) {
   return image;
 }
 
+double Quantile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(
+      std::lround(share * static_cast<double>(values.size() - 1)))];
+}
+
+}  // namespace
+
 gl::Texture2D TextureOf(const LinearImage& image) {
   const auto width = static_cast<std::size_t>(image.size_px.x);
   std::vector<float> texels;
@@ -44,14 +51,6 @@ gl::Texture2D TextureOf(const LinearImage& image) {
   texture.Upload(GL_RGBA, GL_FLOAT, texels.data());
   return texture;
 }
-
-double Quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(
-      std::lround(share * static_cast<double>(values.size() - 1)))];
-}
-
-}  // namespace
 
 std::string NameOf(scene::Renderer renderer) {
   return renderer == scene::Renderer::kHalfAngle ? "half_angle" : "light_volume";
@@ -115,25 +114,10 @@ void MarkPareto(std::vector<TradeRow>* rows) {
   }
 }
 
-absl::StatusOr<reference::Image> ComputeTruth(const scene::Scene& scene,
-                                              const volume::HydrometeorFields& fields,
-                                              const reference::RefineLimits& limits,
-                                              const reference::ImageObserver& observer,
-                                              const std::stop_token& stop) {
-  scene::Scene true_scene = scene;
-  true_scene.rendering.mode = scene::Mode::kPerFieldPhaseTranslucent;
-  true_scene.rendering.false_colors = false;
-  THUNDERHEAD_ASSIGN_OR_RETURN(const auto medium,
-                               reference::MediumOf(true_scene, fields, reference::Sides::kOpen));
-  reference::PathTracer tracer(
-      medium, reference::SurroundingsOf(true_scene, fields, reference::GroundLight::kUniform),
-      reference::CameraOf(true_scene, fields),
-      {true_scene.output.width_px, true_scene.output.height_px}, {});
-  const reference::RefineResult result = tracer.Refine(limits, observer, stop);
-  if (result.end == reference::RefineEnd::kStopped) {
-    return absl::CancelledError("the reference was stopped");
-  }
-  return tracer.Snapshot();
+scene::Scene TrueScene(scene::Scene scene) {
+  scene.rendering.mode = scene::Mode::kPerFieldPhaseTranslucent;
+  scene.rendering.false_colors = false;
+  return scene;
 }
 
 Trade::Trade(scene::Scene scene, std::shared_ptr<const volume::HydrometeorFields> fields,

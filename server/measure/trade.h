@@ -2,9 +2,7 @@
 // picture is from the reference. Owns GL objects: use it on the context's thread.
 #pragma once
 
-#include <functional>
 #include <memory>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -48,12 +46,9 @@ std::vector<TradeSetting> DefaultSweep();
 // Marks the rows that no other beats in both milliseconds and relative RMSE.
 void MarkPareto(std::vector<TradeRow>* rows);
 
-// The scene as it is: every field's own phase function, light of every order.
-absl::StatusOr<reference::Image> ComputeTruth(const scene::Scene& scene,
-                                              const volume::HydrometeorFields& fields,
-                                              const reference::RefineLimits& limits,
-                                              const reference::ImageObserver& observer,
-                                              const std::stop_token& stop);
+// The scene whose picture by the reference is the truth: every field's own phase function, true
+// colours.
+scene::Scene TrueScene(scene::Scene scene);
 
 class Trade {
  public:
@@ -77,6 +72,9 @@ class Trade {
   renderers::SceneRenderer renderer_;
   frame::ToneMapper tone_mapper_;
 };
+
+// A linear frame as the renderers leave one, from rows from top to bottom.
+gl::Texture2D TextureOf(const LinearImage& image);
 
 // "half_angle" and so on, as in the tables.
 std::string NameOf(scene::Renderer renderer);

@@ -164,6 +164,22 @@ TEST_F(CommandLineTest, ServeSaysOneLineAndStopsOnASignal) {
                                         "\\(gRPC 127.0.0.1:[1-9][0-9]*\\)\n"));
 }
 
+TEST_F(CommandLineTest, TheReferenceRendersToExrAndPng) {
+  const std::string reference =
+      "render " + kSample + " --renderer reference --device software --size 24x16 --spp 4 -o ";
+  const Outcome exr = Run(reference + folder_.File("truth.exr"));
+  ASSERT_EQ(exr.code, 0) << exr.err;
+  EXPECT_THAT(exr.out, StartsWith("4 samples a pixel"));
+  EXPECT_THAT(Contents(folder_.File("truth.exr")), HasSubstr("stderr.R"));
+  ASSERT_EQ(Run(reference + picture_).code, 0);
+  const auto png = frame::DecodePng(Contents(picture_));
+  ASSERT_TRUE(png.ok());
+  EXPECT_EQ(png->width_px, 24);
+  ExpectError(render_ + " --spp 4", 2, "for --renderer reference");
+  ExpectError(reference + "truth.txt", 2, "must end in");
+  ExpectError(reference + picture_ + " --seconds -1", 2, "--seconds is -1");
+}
+
 TEST_F(CommandLineTest, MeasureTradeGoesOnWhereItStopped) {
   const std::string trade = folder_.File("trade");
   const std::string command =

@@ -1,0 +1,106 @@
+#include "app/render_reference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "app/interruption.h"
+#include "app/local_scene.h"
+#include "app/output_file.h"
+#include "app/progress_bar.h"
+#include "base/status.h"
+#include "frame/image_codec.h"
+#include "frame/tone_map.h"
+#include "gl/context.h"
+#include "measure/trade.h"
+#include "reference/exr_file.h"
+#include "reference/trace_scene.h"
+
+namespace thunderhead::app {
+namespace {
+
+absl::Status CheckLimits(const ReferenceLimits& limits) {
+  if (limits.samples_per_pixel < 0) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--spp is ", limits.samples_per_pixel, "; it must be 1 or more"));
+  }
+  if (!(limits.seconds >= 0.0)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--seconds is ", limits.seconds, "; it must be above 0"));
+  }
+  if (!(limits.target_error >= 0.0)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--target-error is ", limits.target_error, "; it must be above 0"));
+  }
+  return absl::OkStatus();
+}
+
+// How near the nearest limit is, 0 to 1; the error falls with the root of the samples.
+double ShareDone(const reference::RefineLimits& limits, const reference::ImageProgress& progress) {
+  double share = 0.0;
+  if (limits.samples_per_pixel > 0) {
+    share = static_cast<double>(progress.samples_per_pixel) / limits.samples_per_pixel;
+  }
+  if (limits.seconds > 0.0) share = std::max(share, progress.seconds / limits.seconds);
+  if (limits.relative_error > 0.0 && progress.relative_error > 0.0) {
+    share = std::max(share, std::pow(limits.relative_error / progress.relative_error, 2.0));
+  }
+  return std::min(share, 1.0);
+}
+
+absl::Status WriteToneMapped(const reference::Image& image, const scene::Display& display,
+                             int jpeg_quality, const std::string& output,
+                             const std::string& device) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,
+                               gl::Context::Create(device));
+  frame::ToneMapper tone_mapper;
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const frame::ToneMapped mapped,
+      tone_mapper.Map(measure::TextureOf({image.size_px, image.radiance}), display));
+  const glm::ivec2 size = image.size_px;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::string bytes,
+                               absl::EndsWithIgnoreCase(output, ".png")
+                                   ? frame::EncodePng(size.x, size.y, mapped.rgb)
+                                   : frame::EncodeJpeg(size.x, size.y, mapped.rgb, jpeg_quality));
+  return WriteFile(output, bytes);
+}
+
+}  // namespace
+
+absl::Status RenderReference(const std::string& storm, const SceneFlags& scene,
+                             const ReferenceLimits& limits, const std::string& output,
+                             const std::string& device) {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(limits));
+  SceneFlags flags = scene;
+  flags.renderer.clear();
+  THUNDERHEAD_ASSIGN_OR_RETURN(const LocalScene local, OpenScene(storm, flags));
+  reference::RefineLimits refine{limits.samples_per_pixel, limits.seconds, limits.target_error};
+  if (!limits.Any()) refine.samples_per_pixel = kDefaultSamplesPerPixel;
+  const Interruption interruption;
+  absl::StatusOr<reference::TracedScene> traced;
+  {
+    ProgressBar bar("tracing");
+    traced = reference::TraceScene(
+        local.scene, *local.fields, refine,
+        [&](const reference::ImageProgress& progress) { bar.Set(ShareDone(refine, progress)); },
+        interruption.Token());
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(traced.status());
+  if (absl::EndsWithIgnoreCase(output, ".exr")) {
+    THUNDERHEAD_RETURN_IF_ERROR(reference::WriteExr(output, traced->image));
+  } else {
+    THUNDERHEAD_RETURN_IF_ERROR(WriteToneMapped(traced->image, local.scene.display,
+                                                local.scene.output.jpeg_quality, output, device));
+  }
+  const reference::ImageProgress& last = traced->result.progress;
+  std::cout << absl::StrFormat("%d samples a pixel, relative standard error %.4f, %.1f s\n",
+                               last.samples_per_pixel, last.relative_error, last.seconds);
+  return absl::OkStatus();
+}
+
+}  // namespace thunderhead::app

@@ -1,0 +1,28 @@
+// The reference's picture, for the render command: traced in this process, on all cores.
+#pragma once
+
+#include <string>
+
+#include "absl/status/status.h"
+#include "app/scene_file.h"
+
+namespace thunderhead::app {
+
+// When the reference stops; with none of them after kDefaultSamplesPerPixel.
+struct ReferenceLimits {
+  int samples_per_pixel = 0;
+  double seconds = 0.0;
+  double target_error = 0.0;  // relative standard error of the whole picture
+
+  bool Any() const { return samples_per_pixel != 0 || seconds != 0.0 || target_error != 0.0; }
+};
+
+inline constexpr int kDefaultSamplesPerPixel = 64;
+
+// Writes `output`: .exr with linear radiance and its standard error, or .png or .jpg tone mapped on
+// `device`. Ctrl-C stops early and writes what there is.
+absl::Status RenderReference(const std::string& storm, const SceneFlags& scene,
+                             const ReferenceLimits& limits, const std::string& output,
+                             const std::string& device);
+
+}  // namespace thunderhead::app
