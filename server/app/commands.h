@@ -20,7 +20,8 @@ Command AddRender(CLI::App& app);
 Command AddInspect(CLI::App& app);
 Command AddFlux(CLI::App& app);
 Command AddMeasure(CLI::App& app);
-// A part of `measure`.
+// Parts of `measure`.
+Command AddMeasureFrames(CLI::App& measure);
 Command AddMeasureTrade(CLI::App& measure);
 Command AddGenerate(CLI::App& app);
 

@@ -9,6 +9,7 @@ Command AddMeasure(CLI::App& app) {
   CLI::App* measure = app.add_subcommand("measure", "Measure speed, accuracy and stability");
   measure->require_subcommand(1);
   const auto parts = std::make_shared<std::vector<Command>>();
+  parts->push_back(AddMeasureFrames(*measure));
   parts->push_back(AddMeasureTrade(*measure));
   return {measure, [parts] {
             for (const Command& part : *parts) {

@@ -5,12 +5,10 @@
 #include <fstream>
 #include <iterator>
 #include <utility>
-#include <vector>
 
 #include "absl/strings/ascii.h"
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_split.h"
+#include "app/picture_size.h"
 #include "base/status.h"
 
 namespace thunderhead::app {
@@ -34,16 +32,9 @@ absl::StatusOr<v1::Scene> ReadFile(const std::string& path) {
 }
 
 absl::Status SetSize(const std::string& size, v1::Output& output) {
-  const std::vector<std::string> sides = absl::StrSplit(size, 'x');
-  std::uint32_t width_px = 0;
-  std::uint32_t height_px = 0;
-  if (sides.size() != 2 || !absl::SimpleAtoi(sides[0], &width_px) ||
-      !absl::SimpleAtoi(sides[1], &height_px)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("--size is '", size, "'; it must be WIDTHxHEIGHT, for example 1280x720"));
-  }
-  output.set_width_px(width_px);
-  output.set_height_px(height_px);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const PictureSize parsed, ParsePictureSize(size));
+  output.set_width_px(static_cast<std::uint32_t>(parsed.width_px));
+  output.set_height_px(static_cast<std::uint32_t>(parsed.height_px));
   return absl::OkStatus();
 }
 

@@ -6,11 +6,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <string>
 
 #include "frame/image_codec.h"
 #include "gmock/gmock.h"
+#include "google/protobuf/struct.pb.h"
 #include "google/protobuf/util/json_util.h"
 #include "gtest/gtest.h"
 #include "tests/support/temporary_folder.h"
@@ -149,6 +151,34 @@ TEST_F(CommandLineTest, FailedRenderNamesTheCauseAndLeavesNoFile) {
   ExpectError("render " + kSample + " --device software --size 16x9 --slices 4 -o " +
                   folder_.File("no/folder.png"),
               1, "no/folder.png");
+}
+
+TEST_F(CommandLineTest, MeasureFramesHasARowForEachPathAndMode) {
+  const Outcome outcome =
+      Run("measure frames " + kSample +
+          " --time 0 --size 24x16 --slices 8 --runs 1 --device software --json");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  google::protobuf::Struct json;
+  ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(outcome.out, &json).ok()) << outcome.out;
+  ASSERT_EQ(json.fields().size(), 2U) << outcome.out;
+  EXPECT_THAT(json.fields().at("machine").struct_value().fields().at("gl_renderer").string_value(),
+              HasSubstr("llvmpipe"));
+  std::set<std::string> rows;
+  for (const google::protobuf::Value& row : json.fields().at("rows").list_value().values()) {
+    const auto& fields = row.struct_value().fields();
+    EXPECT_EQ(fields.size(), 5U);
+    EXPECT_GT(fields.at("camera_fps").number_value(), 0.0);
+    EXPECT_GT(fields.at("sun_fps").number_value(), 0.0);
+    const auto& stages = fields.at("stages_ms").struct_value().fields();
+    EXPECT_EQ(stages.contains("light"), fields.at("renderer").string_value() == "light_volume");
+    EXPECT_TRUE(stages.contains("tone") && stages.contains("read_back") &&
+                stages.contains("encode"));
+    EXPECT_FALSE(stages.contains("extinction")) << "neither camera nor sun changes the fields";
+    rows.insert(fields.at("renderer").string_value() + " " + fields.at("mode").string_value());
+  }
+  EXPECT_EQ(rows.size(), 8U);
+  ExpectError("measure frames " + kSample + " --size 5", 2, "WIDTHxHEIGHT");
+  ExpectError("measure frames " + kSample + " --time 9", 2, "times 0 to 3");
 }
 
 TEST_F(CommandLineTest, ServeSaysOneLineAndStopsOnASignal) {

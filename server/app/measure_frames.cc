@@ -1,0 +1,102 @@
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "absl/strings/str_cat.h"
+#include "app/commands.h"
+#include "app/local_service.h"
+#include "app/picture_size.h"
+#include "app/progress_bar.h"
+#include "base/status.h"
+#include "gl/context.h"
+#include "measure/frame_rates.h"
+#include "spdlog/spdlog.h"
+
+namespace thunderhead::app {
+namespace {
+
+using Fields = std::shared_ptr<const volume::HydrometeorFields>;
+
+struct Flags {
+  std::string storm;
+  std::optional<int> time_index;
+  std::string size = "300x300";
+  int slices = 128;
+  int runs = 5;
+  std::string device = "auto";
+  bool json = false;
+};
+
+absl::StatusOr<Fields> Read(volume::StormStore& store, int time_index) {
+  THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(store, time_index));
+  return store.Get(store.Storms().front().id, time_index, {});
+}
+
+// The time asked for, or that with the most condensate.
+absl::StatusOr<Fields> Choose(const Flags& flags) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store,
+                               OpenStorm(flags.storm));
+  if (flags.time_index.has_value()) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckTime(*store, flags.storm, *flags.time_index));
+    return Read(*store, *flags.time_index);
+  }
+  Fields best;
+  for (std::size_t i = 0; i < store->Storms().front().times.size(); ++i) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const Fields fields, Read(*store, static_cast<int>(i)));
+    if (best == nullptr || measure::Condensate_kg(*fields) > measure::Condensate_kg(*best)) {
+      best = fields;
+    }
+  }
+  return best;
+}
+
+absl::Status MeasureFrames(const Flags& flags) {
+  spdlog::set_level(spdlog::level::warn);
+  measure::FrameRateOptions options;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const PictureSize size, ParsePictureSize(flags.size));
+  options.width_px = size.width_px;
+  options.height_px = size.height_px;
+  if (flags.slices < 1 || flags.slices > 4096) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--slices is ", flags.slices, "; it must be from 1 to 4096"));
+  }
+  options.slices = flags.slices;
+  if (flags.runs < 1) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--runs is ", flags.runs, "; it must be 1 or more"));
+  }
+  options.runs = flags.runs;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Fields fields, Choose(flags));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,
+                               gl::Context::Create(flags.device));
+  absl::StatusOr<std::vector<measure::FrameRateRow>> rows;
+  {
+    ProgressBar bar("drawing");
+    rows = measure::MeasureFrameRates(fields, options, [&bar](double share) { bar.Set(share); });
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(rows.status());
+  const measure::Machine machine = measure::MachineOf(context->Info());
+  std::cout << (flags.json ? measure::ToJson(machine, *rows) : measure::ToTable(machine, *rows));
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+Command AddMeasureFrames(CLI::App& measure) {
+  auto flags = std::make_shared<Flags>();
+  CLI::App* frames = measure.add_subcommand("frames", "Frames a second of each path and mode");
+  frames->add_option("STORM", flags->storm, "Storm file or folder")->required();
+  frames->add_option("--time", flags->time_index,
+                     "Which of its times, from 0; without it that with the most condensate");
+  frames->add_option("--size", flags->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  frames->add_option("--slices", flags->slices, "Slices, or samples along a ray")
+      ->capture_default_str();
+  frames->add_option("--runs", flags->runs, "Runs of which the medians are taken")
+      ->capture_default_str();
+  frames->add_option("--device", flags->device, "auto, software or a GPU's number")
+      ->capture_default_str();
+  frames->add_flag("--json", flags->json, "Print JSON");
+  return {frames, [flags] { return MeasureFrames(*flags); }};
+}
+
+}  // namespace thunderhead::app

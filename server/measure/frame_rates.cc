@@ -1,0 +1,182 @@
+#include "measure/frame_rates.h"
+
+#include <algorithm>
+#include <map>
+#include <variant>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "base/status.h"
+#include "base/stopwatch.h"
+#include "frame/image_codec.h"
+#include "frame/tone_map.h"
+#include "renderers/scene_renderer.h"
+#include "scene/view.h"
+#include "volume/visible_box.h"
+
+namespace thunderhead::measure {
+namespace {
+
+constexpr int kWarmFrames = 2;    // the first also compiles shaders
+constexpr int kFewestFrames = 3;  // in a run
+constexpr double kStep_deg = 1.0;
+
+using Samples = std::map<std::string, std::vector<double>>;
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Draws one scene again and again while something moves in it.
+class Frames {
+ public:
+  Frames(scene::Scene scene, std::shared_ptr<const volume::HydrometeorFields> fields)
+      : scene_(std::move(scene)), fields_(std::move(fields)) {}
+
+  void MoveCamera() { std::get<scene::OrbitCamera>(scene_.camera).azimuth_deg += kStep_deg; }
+  void MoveSun() { scene_.sun.azimuth_deg += kStep_deg; }
+
+  // From the scene to a JPEG; appends each stage's milliseconds to `stages`.
+  absl::Status Draw(Samples* stages) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame linear,
+                                 renderer_.Draw(scene_, fields_, {}));
+    THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped mapped,
+                                 tone_mapper_.Map(*linear.radiance, scene_.display));
+    const base::Stopwatch stopwatch;
+    THUNDERHEAD_RETURN_IF_ERROR(frame::EncodeJpeg(scene_.output.width_px, scene_.output.height_px,
+                                                  mapped.rgb, scene_.output.jpeg_quality)
+                                    .status());
+    for (const renderers::StageTime& stage : linear.stages) {
+      (*stages)[stage.stage].push_back(stage.milliseconds);
+    }
+    (*stages)["tone"].push_back(mapped.tone_ms);
+    (*stages)["read_back"].push_back(mapped.read_back_ms);
+    (*stages)["encode"].push_back(stopwatch.ElapsedMs());
+    return absl::OkStatus();
+  }
+
+  // Frames a second over at least `seconds` while `move` changes the scene before each.
+  absl::StatusOr<double> Rate(void (Frames::*move)(), double seconds, Samples* stages) {
+    const base::Stopwatch stopwatch;
+    int frames = 0;
+    while (frames < kFewestFrames || stopwatch.ElapsedMs() < 1e3 * seconds) {
+      (this->*move)();
+      THUNDERHEAD_RETURN_IF_ERROR(Draw(stages));
+      ++frames;
+    }
+    return 1e3 * frames / stopwatch.ElapsedMs();
+  }
+
+ private:
+  scene::Scene scene_;
+  std::shared_ptr<const volume::HydrometeorFields> fields_;
+  renderers::SceneRenderer renderer_;
+  frame::ToneMapper tone_mapper_;
+};
+
+scene::Scene SceneOf(const volume::HydrometeorFields& fields, const FrameRateOptions& options) {
+  scene::Scene scene;
+  scene.output.width_px = options.width_px;
+  scene.output.height_px = options.height_px;
+  scene.rendering.slices = options.slices;
+  const volume::WorldBox box = volume::VisibleBox(fields);
+  const double aspect_ratio = static_cast<double>(options.width_px) / options.height_px;
+  scene.camera = scene::Framing(scene::OrbitCamera(), box.low_m, box.high_m, aspect_ratio);
+  return scene;
+}
+
+absl::StatusOr<FrameRateRow> MeasureRow(
+    const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
+    const FrameRateOptions& options, FrameRateRow row) {
+  Frames frames(scene, fields);
+  Samples warming;
+  for (int i = 0; i < kWarmFrames; ++i) THUNDERHEAD_RETURN_IF_ERROR(frames.Draw(&warming));
+  Samples camera_stages;
+  Samples sun_stages;
+  std::vector<double> camera_fps;
+  std::vector<double> sun_fps;
+  for (int run = 0; run < options.runs; ++run) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        const double camera,
+        frames.Rate(&Frames::MoveCamera, options.seconds_a_run, &camera_stages));
+    THUNDERHEAD_ASSIGN_OR_RETURN(const double sun,
+                                 frames.Rate(&Frames::MoveSun, options.seconds_a_run, &sun_stages));
+    camera_fps.push_back(camera);
+    sun_fps.push_back(sun);
+  }
+  row.camera_fps = Median(camera_fps);
+  row.sun_fps = Median(sun_fps);
+  if (sun_stages.contains("light")) camera_stages["light"] = sun_stages["light"];
+  for (const auto& [stage, milliseconds] : camera_stages) {
+    row.stages.push_back({stage, Median(milliseconds)});
+  }
+  return row;
+}
+
+std::string StagesJson(const FrameRateRow& row) {
+  return absl::StrJoin(row.stages, ", ", [](std::string* text, const StageMedian& stage) {
+    absl::StrAppendFormat(text, "\"%s\": %.4g", stage.stage, stage.milliseconds);
+  });
+}
+
+}  // namespace
+
+absl::StatusOr<std::vector<FrameRateRow>> MeasureFrameRates(
+    const std::shared_ptr<const volume::HydrometeorFields>& fields, const FrameRateOptions& options,
+    const std::function<void(double share)>& progress) {
+  scene::Scene scene = SceneOf(*fields, options);
+  std::vector<FrameRateRow> rows;
+  for (const auto& path : kPaths) {
+    for (const auto& mode : kModes) {
+      scene.rendering.renderer = path.value;
+      scene.rendering.mode = mode.value;
+      THUNDERHEAD_ASSIGN_OR_RETURN(FrameRateRow row,
+                                   MeasureRow(scene, fields, options, {path, mode, 0.0, 0.0, {}}));
+      rows.push_back(std::move(row));
+      progress(static_cast<double>(rows.size()) / (kPaths.size() * kModes.size()));
+    }
+  }
+  return rows;
+}
+
+std::string ToJson(const Machine& machine, const std::vector<FrameRateRow>& rows) {
+  const std::string lines =
+      absl::StrJoin(rows, ",\n", [](std::string* text, const FrameRateRow& row) {
+        absl::StrAppendFormat(text,
+                              "    {\"renderer\": \"%s\", \"mode\": \"%s\", \"camera_fps\": %.4g, "
+                              "\"sun_fps\": %.4g, \"stages_ms\": {%s}}",
+                              row.renderer.name, row.mode.name, row.camera_fps, row.sun_fps,
+                              StagesJson(row));
+      });
+  return absl::StrCat("{\n  \"machine\": ", ToJson(machine), ",\n  \"rows\": [\n", lines,
+                      "\n  ]\n}\n");
+}
+
+std::string ToTable(const Machine& machine, const std::vector<FrameRateRow>& rows) {
+  std::string text = absl::StrFormat(
+      "%s, %d threads; %s\n\n%-13s %-35s %10s %10s  %s\n", machine.processor, machine.threads,
+      machine.gl_renderer, "renderer", "mode", "camera/s", "sun/s", "milliseconds by stage");
+  for (const FrameRateRow& row : rows) {
+    absl::StrAppendFormat(&text, "%-13s %-35s %10.1f %10.1f  %s\n", row.renderer.name,
+                          row.mode.name, row.camera_fps, row.sun_fps,
+                          absl::StrJoin(row.stages, ", ", [](std::string* out, const auto& stage) {
+                            absl::StrAppendFormat(out, "%s %.2f", stage.stage, stage.milliseconds);
+                          }));
+  }
+  return text;
+}
+
+double Condensate_kg(const volume::HydrometeorFields& fields) {
+  const glm::dvec3& cell_m = fields.grid.spacing_m;
+  const double columns = static_cast<double>(fields.grid.cells.x) * fields.grid.cells.y;
+  double path_kg_per_m2 = 0.0;
+  for (const volume::HydrometeorField& field : fields.fields) {
+    path_kg_per_m2 += field.statistics.mean_water_path_kg_per_m2;
+  }
+  return path_kg_per_m2 * columns * cell_m.x * cell_m.y;
+}
+
+}  // namespace thunderhead::measure

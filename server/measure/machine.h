@@ -1,0 +1,25 @@
+// What a figure was measured on.
+#pragma once
+
+#include <string>
+
+#include "gl/context.h"
+
+namespace thunderhead::measure {
+
+struct Machine {
+  std::string processor;  // as the system names it
+  int threads = 0;        // that it runs at once
+  std::string device;     // "software" or "gpu 0"
+  std::string gl_renderer;
+  std::string gl_version;
+};
+
+Machine MachineOf(const gl::ContextInfo& context);
+
+std::string ToJson(const Machine& machine);
+
+// `text` in quotes, as JSON wants it.
+std::string JsonText(const std::string& text);
+
+}  // namespace thunderhead::measure
