@@ -24,5 +24,6 @@ Command AddMeasure(CLI::App& app);
 Command AddMeasureFrames(CLI::App& measure);
 Command AddMeasureTrade(CLI::App& measure);
 Command AddGenerate(CLI::App& app);
+Command AddFit(CLI::App& app);
 
 }  // namespace thunderhead::app

@@ -147,7 +147,7 @@ absl::Status Generate(const Flags& flags) {
   {
     ProgressBar bar("generating");
     THUNDERHEAD_ASSIGN_OR_RETURN(
-        cloud.water_kg_per_m3,
+        cloud.values,
         clouds::Generate(
             shape, [&bar](double share) { bar.Set(share); }, interruption.Token()));
   }

@@ -51,6 +51,7 @@ void ProgressBar::Draw() {
     const double share = share_;
     std::fprintf(stderr, "\r%s [%s] ", label_.c_str(), Bar(share, tick).c_str());
     if (share >= 0.0) std::fprintf(stderr, "%3.0f %%", 100.0 * share);
+    if (!note_.empty()) std::fprintf(stderr, "  %s\x1b[K", note_.c_str());
     std::fflush(stderr);
     ended_changed_.wait_for(lock, kRedrawing, ended);
   }

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 
 namespace thunderhead::app {
 
@@ -23,6 +24,12 @@ class ProgressBar {
   // thread.
   void Set(double share) { share_ = share; }
 
+  // What is shown after the share, e.g. an error that falls. From any thread.
+  void Note(std::string note) {
+    const std::lock_guard lock(mutex_);
+    note_ = std::move(note);
+  }
+
  private:
   void Draw();
 
@@ -31,6 +38,7 @@ class ProgressBar {
   std::mutex mutex_;
   std::condition_variable ended_changed_;
   bool ended_ = false;
+  std::string note_;
   std::thread thread_;
 };
 

@@ -40,11 +40,11 @@ class Writer {
     if (Good()) Keep(nc_put_att_text(file_, variable, name, text.size(), text.c_str()));
   }
 
-  int Water() {
+  int Field(const char* name) {
     // Dimensions are numbered in the order of their definition: x, y, z.
     constexpr std::array<int, 3> kDimensions = {2, 1, 0};
     int variable = 0;
-    if (Good()) Keep(nc_def_var(file_, "lwc", NC_FLOAT, 3, kDimensions.data(), &variable));
+    if (Good()) Keep(nc_def_var(file_, name, NC_FLOAT, 3, kDimensions.data(), &variable));
     if (Good()) Keep(nc_def_var_deflate(file_, variable, 1, 1, 4));
     return variable;
   }
@@ -93,16 +93,19 @@ int Write(const CfCloud& cloud, const std::string& path) {
   const std::array axes = {file.Axis("x", grid.cells.x, "X", "projection_x_coordinate"),
                            file.Axis("y", grid.cells.y, "Y", "projection_y_coordinate"),
                            file.Axis("z", grid.cells.z, "Z", "altitude")};
-  const int water = file.Water();
-  file.Text(water, "standard_name", "mass_concentration_of_cloud_liquid_water_in_air");
-  file.Text(water, "long_name", "liquid water content");
-  file.Text(water, "units", "kg m-3");
+  const bool extinction = cloud.quantity == Quantity::kExtinction;
+  const int field = file.Field(extinction ? "extinction" : "lwc");
+  if (!extinction) {
+    file.Text(field, "standard_name", "mass_concentration_of_cloud_liquid_water_in_air");
+  }
+  file.Text(field, "long_name", extinction ? "extinction" : "liquid water content");
+  file.Text(field, "units", std::string(UnitOf(cloud.quantity)));
   file.EndDefinitions();
   for (int axis = 0; axis < 3; ++axis) {
     file.Middles(axes[static_cast<std::size_t>(axis)], grid.low_corner_m[axis],
                  grid.spacing_m[axis], grid.cells[axis]);
   }
-  file.Values(water, cloud.water_kg_per_m3);
+  file.Values(field, cloud.values);
   file.Close();
   return file.Code();
 }
@@ -110,7 +113,8 @@ int Write(const CfCloud& cloud, const std::string& path) {
 }  // namespace
 
 absl::Status WriteCfCloud(const CfCloud& cloud, const std::string& path) {
-  THUNDERHEAD_CHECK(cloud.water_kg_per_m3.size() == cloud.grid.CellCount(), path);
+  THUNDERHEAD_CHECK(cloud.quantity != Quantity::kMixingRatio, path);
+  THUNDERHEAD_CHECK(cloud.values.size() == cloud.grid.CellCount(), path);
   const std::string partial = path + ".partial";
   const int code = Write(cloud, partial);
   std::error_code error;

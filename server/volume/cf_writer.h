@@ -6,19 +6,20 @@
 #include <vector>
 
 #include "absl/status/status.h"
-#include "volume/grid.h"
+#include "volume/hydrometeor_fields.h"
 
 namespace thunderhead::volume {
 
 struct CfCloud {
   RegularGrid grid;
-  std::vector<float> water_kg_per_m3;  // cloud water, grid.CellCount() values, x fastest
+  Quantity quantity = Quantity::kMassConcentration;  // cloud water (kg/m3), or extinction (1/m)
+  std::vector<float> values;                         // grid.CellCount() values, x fastest
   std::string title;
   std::string source;   // what made it
   std::string comment;  // with which parameters
 };
 
-// The variable `lwc` (kg m-3) on z, y, x in metres, compressed.
+// The variable `lwc` (kg m-3) or `extinction` (m-1) on z, y, x in metres, compressed.
 absl::Status WriteCfCloud(const CfCloud& cloud, const std::string& path);
 
 }  // namespace thunderhead::volume

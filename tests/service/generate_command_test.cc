@@ -108,5 +108,52 @@ TEST_F(GenerateCommand, BadParametersAreNamed) {
   EXPECT_EQ(Run("generate -o " + folder_.File("none/cloud.nc")), 1);
 }
 
+TEST_F(GenerateCommand, CloudsAreFittedByMetaballs) {
+  ASSERT_EQ(Run("generate --cells 40x40x50 --spacing 40 --octaves 3 -o " + cloud_), 0) << err_;
+  const std::string balls = folder_.File("cloud.balls");
+  const std::string volume = folder_.File("balls.nc");
+  double before = 1e30;
+  for (const std::string solver : {"gradient", "direct"}) {
+    for (const std::string count : {"10", "200"}) {
+      ASSERT_EQ(Run("fit " + cloud_ + " --json --balls " + count + " --solver " + solver + " -o " +
+                    balls + " --volume " + volume),
+                0)
+          << err_;
+      const std::size_t at = out_.find("\"error\": ");
+      ASSERT_NE(at, std::string::npos) << out_;
+      const double error = std::stod(out_.substr(at + 9));
+      EXPECT_TRUE(count == "10" || error < 0.8 * before) << error << " after " << before;
+      before = error;
+    }
+  }
+  EXPECT_THAT(Contents("cloud.balls"), HasSubstr("balls 200"));
+  ASSERT_EQ(Run("inspect " + volume), 0) << err_;
+  EXPECT_THAT(out_, HasSubstr("extinction"));
+  EXPECT_EQ(
+      Run("fit " + cloud_ + " --field cloud --basis wyvill --non-negative --balls 20 -o " + balls),
+      0)
+      << err_;
+  EXPECT_THAT(Contents("cloud.balls"), HasSubstr("quantity cloud kg/m3"));
+}
+
+TEST_F(GenerateCommand, BadFitsAreNamed) {
+  ASSERT_EQ(Run("generate --cells 40x40x50 --spacing 40 --octaves 3 -o " + cloud_), 0) << err_;
+  const std::string fit = "fit " + cloud_ + " -o " + folder_.File("cloud.balls");
+  struct Case {
+    std::string arguments;
+    std::string text;
+  };
+  for (const Case& c :
+       {Case{"", "--balls"}, Case{" --balls 0", "--balls"}, Case{" --balls -4", "--balls"},
+        Case{" --balls 100000000", "fewer"}, Case{" --balls 5 --field rain", "cloud"},
+        Case{" --balls 5 --basis box", "--basis"}, Case{" --balls 5 --solver magic", "--solver"},
+        Case{" --balls 5 --overlap 0", "overlap"}, Case{" --balls 5 --time 2", "--time"},
+        Case{" --balls 5 --iterations 0", "iterations"}}) {
+    EXPECT_EQ(Run(fit + c.arguments), 2) << c.arguments;
+    EXPECT_THAT(err_, HasSubstr(c.text)) << c.arguments;
+  }
+  EXPECT_FALSE(std::ifstream(folder_.File("cloud.balls")).good());
+}
+
 }  // namespace
 }  // namespace thunderhead::testing

@@ -192,7 +192,10 @@ TEST(WriteCfCloud, ReadsBackAsItWas) {
   const std::string path = folder.File("ball.nc");
   const CloudShape shape = Ball();
   const std::vector<float> water = Made(shape);
-  ASSERT_TRUE(volume::WriteCfCloud({shape.grid, water, "ball", "test", "none"}, path).ok());
+  ASSERT_TRUE(
+      volume::WriteCfCloud(
+          {shape.grid, volume::Quantity::kMassConcentration, water, "ball", "test", "none"}, path)
+          .ok());
   auto store = volume::StormStore::Open({path}, {.read_ahead = 0});
   ASSERT_TRUE(store.ok()) << store.status();
   const auto fields = (*store)->Get("ball", 0, {});
@@ -200,8 +203,17 @@ TEST(WriteCfCloud, ReadsBackAsItWas) {
   EXPECT_NEAR(glm::length((*fields)->grid.spacing_m - shape.grid.spacing_m), 0.0, 1e-9);
   EXPECT_NEAR(glm::length((*fields)->grid.low_corner_m - shape.grid.low_corner_m), 0.0, 1e-9);
   EXPECT_EQ((*fields)->fields[0].concentration_kg_per_m3, water);
-  const absl::Status nowhere =
-      volume::WriteCfCloud({shape.grid, water, "", "", ""}, folder.File("none/ball.nc"));
+  ASSERT_TRUE(volume::WriteCfCloud(
+                  {shape.grid, volume::Quantity::kExtinction, water, "ball", "test", "none"}, path)
+                  .ok());
+  store = volume::StormStore::Open({path}, {.read_ahead = 0});
+  ASSERT_TRUE(store.ok()) << store.status();
+  const auto extinction = (*store)->Get("ball", 0, {});
+  ASSERT_TRUE(extinction.ok()) << extinction.status();
+  EXPECT_EQ((*extinction)->fields[0].quantity, volume::Quantity::kExtinction);
+  EXPECT_EQ((*extinction)->fields[0].concentration_kg_per_m3, water);
+  const absl::Status nowhere = volume::WriteCfCloud(
+      {shape.grid, volume::Quantity::kExtinction, water, "", "", ""}, folder.File("none/ball.nc"));
   EXPECT_THAT(std::string(nowhere.message()), HasSubstr("none/ball.nc"));
 }
 

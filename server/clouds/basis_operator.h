@@ -1,0 +1,55 @@
+// The linear map from metaballs' weights to a field on a grid, and its transpose, without storing
+// it: rows of cells in reach of each ball. The same result for any number of threads.
+#pragma once
+
+#include <vector>
+
+#include "clouds/metaballs.h"
+#include "volume/grid.h"
+
+namespace thunderhead::clouds {
+
+class BasisOperator {
+ public:
+  BasisOperator(const volume::RegularGrid& grid, const std::vector<Metaball>& balls, Basis basis,
+                double overlap, int threads);
+
+  // The sum of all balls in every cell's middle: A v.
+  void Apply(const std::vector<double>& weights, std::vector<float>* field) const;
+
+  // For each ball the sum over cells of its value times the field's: A^T r.
+  void ApplyTransposed(const std::vector<float>& field, std::vector<double>* sums) const;
+
+  // For each ball the sum over cells of its squared value: the diagonal of A^T A.
+  std::vector<double> SquaredNorms() const;
+
+ private:
+  // The cells in reach of a ball, and where its tables begin: one value for each x, y and z of
+  // them.
+  struct Footprint {
+    glm::ivec3 low{0};
+    glm::ivec3 high{0};  // one past the last
+    glm::dvec3 centre_cells{0.0};
+    double reach_m = 0.0;
+    std::size_t tables = 0;
+
+    bool Empty() const { return high.x <= low.x || high.y <= low.y || high.z <= low.z; }
+  };
+
+  void AddFootprint(const Metaball& ball);
+  template <typename Row>
+  void ForRows(const Footprint& ball, int first_z, int last_z, const Row& row) const;
+  template <typename Sum>
+  std::vector<double> SumOverRows(const Sum& sum) const;
+
+  volume::RegularGrid grid_;
+  Basis basis_;
+  double overlap_;
+  int threads_;
+  std::vector<Footprint> footprints_;
+  // Along each axis: for a Gaussian its factor, for Wyvill's field the squared distance over R^2.
+  std::vector<float> tables_;
+  std::vector<std::vector<std::uint32_t>> slabs_;  // the balls that reach each slab of layers
+};
+
+}  // namespace thunderhead::clouds

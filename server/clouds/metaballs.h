@@ -1,0 +1,57 @@
+// A cloud as metaballs: centres, sizes and amounts (Man, eq. 11-19), their sum as a field, and the
+// text that they are saved as. Knows no storm and no rendering.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "glm/vec3.hpp"
+
+namespace thunderhead::clouds {
+
+// What one ball spreads over: Gaussian exp(-r2 / s2) with s = u sigma / 2, which is eq. 15 for the
+// printed u = 2, cut off at 3 s; or Wyvill's field of eq. 12 with radius R = u sigma (eq. 16),
+// without its constant k: 1 in the middle, 0 from R on.
+enum class Basis { kGaussian, kWyvill };
+
+std::string_view NameOf(Basis basis);
+
+struct Metaball {
+  glm::dvec3 centre_m{0.0};
+  double sigma_m = 1.0;  // root mean square distance of its cluster, eq. 23
+  double weight = 0.0;   // v of eq. 17: the value in its middle
+
+  bool operator==(const Metaball&) const = default;
+};
+
+struct MetaballCloud {
+  std::string quantity = "extinction";  // or a hydrometeor's name
+  std::string units = "m-1";            // of weights
+  Basis basis = Basis::kGaussian;
+  double overlap = 2.0;   // u of eq. 16
+  glm::dvec3 low_m{0.0};  // the box that was approximated; world coordinates
+  glm::dvec3 high_m{0.0};
+  std::vector<Metaball> balls;
+
+  bool operator==(const MetaballCloud&) const = default;
+};
+
+// Beyond this distance from its middle a ball is nothing.
+double Reach_m(Basis basis, double overlap, double sigma_m);
+
+// The value of a ball of weight 1 at `distance_m` from its middle.
+double BasisValue(Basis basis, double overlap, double sigma_m, double distance_m);
+
+// The sum of all balls at a point: eq. 19.
+double ValueAt(const MetaballCloud& cloud, const glm::dvec3& point_m);
+
+// Text, and back without loss. Errors name the line.
+std::string ToText(const MetaballCloud& cloud);
+absl::StatusOr<MetaballCloud> FromText(std::string_view text);
+
+absl::Status SaveBalls(const MetaballCloud& cloud, const std::string& path);
+absl::StatusOr<MetaballCloud> LoadBalls(const std::string& path);
+
+}  // namespace thunderhead::clouds

@@ -1,0 +1,61 @@
+// Man's approximator: any field on a grid as a sum of metaballs, by a network of radial basis
+// functions in its three phases (eq. 11-24). The third, the output weights, which the paper left to
+// future work, by its gradient rule or by direct least squares (conjugate gradients). The same for
+// any number of threads.
+#pragma once
+
+#include <functional>
+#include <stop_token>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "clouds/metaballs.h"
+#include "volume/grid.h"
+
+namespace thunderhead::clouds {
+
+enum class Solver { kGradient, kDirect };
+
+struct FitOptions {
+  int balls = 1000;
+  Basis basis = Basis::kGaussian;
+  double overlap = 2.5;  // u of eq. 16; the paper has 2
+  Solver solver = Solver::kDirect;
+  bool non_negative = false;  // no ball takes away
+  int most_iterations = 200;  // of the third phase
+  double least_gain = 1e-4;   // it ends when ten iterations lower H by less than this share
+  std::uint64_t seed = 1;
+  int threads = 0;  // 0: as many as the machine has
+};
+
+// Where the fit stands. `error` is H, eq. 20; 0 before the third phase.
+struct FitProgress {
+  std::string_view phase;
+  double share = 0.0;  // of this phase
+  double error = 0.0;
+};
+
+struct FitResult {
+  MetaballCloud cloud;
+  double error = 0.0;           // H, eq. 20: over all cells of the box, empty ones too
+  double relative_error = 0.0;  // sqrt(H / sum of squares)
+  std::vector<double> errors;   // H after each iteration of the third phase
+  std::size_t cells = 0;        // K of eq. 20
+  std::size_t cloudy_cells = 0;
+  int epochs = 0;  // of the first phase
+};
+
+// Approximates `values` (grid.CellCount(), x fastest, at least 0). INVALID_ARGUMENT if nothing is
+// above 0, or there are more balls than cells that are. If `stop` asks to stop, the result is as
+// far as it came; CANCELLED if no centres were found yet.
+absl::StatusOr<FitResult> Fit(const volume::RegularGrid& grid, const std::vector<float>& values,
+                              const FitOptions& options,
+                              const std::function<void(const FitProgress&)>& observer,
+                              const std::stop_token& stop);
+
+// The sum of all balls in every cell's middle, x fastest; below zero nowhere.
+std::vector<float> Evaluate(const MetaballCloud& cloud, const volume::RegularGrid& grid,
+                            int threads);
+
+}  // namespace thunderhead::clouds
