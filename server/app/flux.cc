@@ -71,7 +71,7 @@ absl::Status CheckFlags(const Flags& flags) {
 
 absl::StatusOr<reference::FluxProblem> SlabProblem(const Flags& flags,
                                                    const glm::dvec3& towards_sun) {
-  const std::string phase_text = flags.phase.empty() ? "cs:0.85" : flags.phase;
+  const std::string phase_text = flags.phase.empty() ? "table:cloud_re10" : flags.phase;
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto phase, ParsePhase(phase_text));
   THUNDERHEAD_ASSIGN_OR_RETURN(
       auto medium, reference::SlabMedium(*flags.slab, *phase, flags.albedo.value_or(1.0)));
@@ -180,8 +180,9 @@ Command AddFlux(CLI::App& app) {
   flux->add_option("--slab", flags->slab, "A plane-parallel layer of this optical depth instead");
   flux->add_option("--time", flags->time_index, "Which of the storm's times, from 0")
       ->capture_default_str();
-  flux->add_option("--phase", flags->phase,
-                   std::string(kPhaseFlagHelp) + "; without it each field's own");
+  flux->add_option(
+      "--phase", flags->phase,
+      std::string(kPhaseFlagHelp) + "; without it each field's own, for a slab cloud water's");
   flux->add_option("--albedo", flags->albedo,
                    "Single-scattering albedo, 0 to 1; without it each field's own");
   flux->add_option("--sun-elevation", flags->sun_elevation_deg, "Degrees above the horizon")
