@@ -118,7 +118,9 @@ class Photon {
     const Scattering scattering = problem_.medium->ScatteringAt(ray_.origin_m, random_->Uniform());
     const double albedo = (scattering.weight.x + scattering.weight.y + scattering.weight.z) / 3.0;
     if (random_->Uniform() >= albedo) return End(kAbsorbed);
-    const double mu = scattering.phase->Sample(random_->Uniform()).mu;
+    // A colour at random: photons turn by the mean of the three functions.
+    const auto color = static_cast<std::size_t>(3.0 * random_->Uniform());
+    const double mu = scattering.phase->Sample(random_->Uniform(), color).mu;
     ray_.direction = Deflect(ray_.direction, mu, 2.0 * std::numbers::pi * random_->Uniform());
     return true;
   }

@@ -31,7 +31,11 @@ double Largest(const glm::dvec3& color) { return std::max({color.x, color.y, col
 class Path {
  public:
   Path(const Medium& medium, const Surroundings& surroundings, const Ray& ray, RandomStream* random)
-      : medium_(medium), surroundings_(surroundings), ray_(ray), random_(random) {}
+      : medium_(medium),
+        surroundings_(surroundings),
+        ray_(ray),
+        random_(random),
+        hero_(static_cast<std::size_t>(3.0 * random->Uniform())) {}
 
   glm::dvec3 Follow() {
     while (Advance()) {
@@ -47,7 +51,7 @@ class Path {
     const std::optional<double> collision_m = SampleCollision(medium_, ray_, ground_m, random_);
     if (collision_m.has_value()) return Scatter(ray_.At(*collision_m));
     if (ground_m < kInfinity) return Reflect(ground_m);
-    if (surroundings_.sky) radiance_ += throughput_ * surroundings_.sky(ray_.direction);
+    if (surroundings_.sky) radiance_ += Carried() * surroundings_.sky(ray_.direction);
     return false;
   }
 
@@ -65,16 +69,28 @@ class Path {
     if (!Survive() || !GoOnAtLength()) return false;
     const double mu = glm::dot(ray_.direction, surroundings_.towards_sun);
     const glm::dvec3 phase = scattering.phase->Value(mu);
-    const double worth = std::min(Largest(throughput_ * phase) / kRouletteSunlight, 1.0);
+    const double worth = std::min(Largest(Carried() * phase) / kRouletteSunlight, 1.0);
     if (random_->Uniform() < worth) {
       AddSunlight(point_m, phase * (0.25 * std::numbers::inv_pi / worth));
     }
-    const PhaseSample sample = scattering.phase->Sample(random_->Uniform());
-    throughput_ *= sample.weight;
+    const double mu_turned = TurnBy(scattering.phase->Sample(random_->Uniform(), hero_));
     const double azimuth_rad = 2.0 * std::numbers::pi * random_->Uniform();
-    ray_ = {point_m, Deflect(ray_.direction, sample.mu, azimuth_rad)};
+    ray_ = {point_m, Deflect(ray_.direction, mu_turned, azimuth_rad)};
     return true;
   }
+
+  // Colours whose phase functions differ share one path, sampled from the hero colour's. Its weight
+  // for a colour is the path's density by that colour's functions over the mean of all three:
+  // Wilkie et al. 2014, Hero Wavelength Spectral Sampling, eq. 8. It stays at most 3, where the
+  // product of single scatterings' ratios would grow without bound.
+  double TurnBy(const PhaseSample& sample) {
+    spectral_ *= sample.weight;
+    spectral_ *= 3.0 / (spectral_.x + spectral_.y + spectral_.z);
+    return sample.mu;
+  }
+
+  // What light along the rest of the path counts for.
+  glm::dvec3 Carried() const { return throughput_ * spectral_; }
 
   bool Reflect(double ground_m) {
     const Ground& ground = *surroundings_.ground;
@@ -82,13 +98,13 @@ class Path {
     point_m.z = ground.height_m;
     if (seen_from_eye_ && surroundings_.air) {
       const Air air = surroundings_.air(ray_, ground_m);
-      radiance_ += throughput_ * air.airlight;
+      radiance_ += Carried() * air.airlight;
       throughput_ *= air.transmittance;
     }
     seen_from_eye_ = false;
-    radiance_ += throughput_ * ground.radiance;
+    radiance_ += Carried() * ground.radiance;
     throughput_ *= ground.albedo;
-    if (Largest(throughput_) <= 0.0) return false;
+    if (Largest(Carried()) <= 0.0) return false;
     const double sine = std::max(surroundings_.towards_sun.z, 0.0);
     AddSunlight(point_m, glm::dvec3(sine * std::numbers::inv_pi));
     ray_ = {point_m, SampleCosine({0.0, 0.0, 1.0}, random_)};
@@ -97,7 +113,7 @@ class Path {
 
   // `reflected` is radiance sent back along the path for each unit of sunlight.
   void AddSunlight(const glm::dvec3& point_m, const glm::dvec3& reflected) {
-    const glm::dvec3 most = throughput_ * reflected * surroundings_.sun_irradiance;
+    const glm::dvec3 most = Carried() * reflected * surroundings_.sun_irradiance;
     if (Largest(most) <= 0.0) return;
     const Ray ray{point_m, surroundings_.towards_sun};
     radiance_ += most * EstimateTransmittance(medium_, ray, kInfinity, random_);
@@ -111,7 +127,7 @@ class Path {
   }
 
   bool Survive() {
-    const double carried = Largest(throughput_);
+    const double carried = Largest(Carried());
     if (carried >= kRouletteThroughput) return true;
     if (random_->Uniform() * kRouletteThroughput >= carried) return false;
     throughput_ *= kRouletteThroughput / carried;
@@ -125,6 +141,8 @@ class Path {
   bool seen_from_eye_ = true;
   int collisions_ = 0;
   int next_roulette_ = kLongPath;
+  std::size_t hero_;          // the colour whose phase functions are sampled
+  glm::dvec3 spectral_{1.0};  // the path's weight by colour, for being sampled by the hero's
   glm::dvec3 radiance_{0.0};
   glm::dvec3 throughput_{1.0};
 };

@@ -68,8 +68,8 @@ SampledPhase SampledPhase::Tabulated(const std::array<Function, 3>& by_color) {
   for (std::size_t color = 0; color < (phase.colored_ ? 3U : 1U); ++color) {
     for (const double x : phase.x_) phase.values_[color].push_back(by_color[color](1.0 - x));
     phase.Normalize(color);
+    phase.Accumulate(color);
   }
-  phase.Accumulate();
   return phase;
 }
 
@@ -98,25 +98,19 @@ void SampledPhase::Normalize(std::size_t color) {
   for (double& value : values) value *= 2.0 / integral;
 }
 
-void SampledPhase::Accumulate() {
-  if (colored_) {
-    mean_.resize(kIntervals + 1);
-    for (std::size_t i = 0; i <= kIntervals; ++i) {
-      mean_[i] = (values_[0][i] + values_[1][i] + values_[2][i]) / 3.0;
-    }
-  }
-  const std::vector<double>& density = colored_ ? mean_ : values_[0];
-  cumulative_.assign(kIntervals + 1, 0.0);
+void SampledPhase::Accumulate(std::size_t color) {
+  const std::vector<double>& density = values_[color];
+  std::vector<double>& cumulative = cumulative_[color];
+  cumulative.assign(kIntervals + 1, 0.0);
   for (std::size_t i = 0; i < kIntervals; ++i) {
-    cumulative_[i + 1] =
-        cumulative_[i] + 0.25 * (density[i] + density[i + 1]) * (x_[i + 1] - x_[i]);
+    cumulative[i + 1] = cumulative[i] + 0.25 * (density[i] + density[i + 1]) * (x_[i + 1] - x_[i]);
   }
-  for (double& value : cumulative_) value /= cumulative_.back();
-  guide_.resize(kIntervals);
+  for (double& value : cumulative) value /= cumulative.back();
+  guide_[color].resize(kIntervals);
   std::uint32_t interval = 0;
   for (std::size_t i = 0; i < kIntervals; ++i) {
-    while (cumulative_[interval + 1] * kIntervals < static_cast<double>(i)) ++interval;
-    guide_[i] = interval;
+    while (cumulative[interval + 1] * kIntervals < static_cast<double>(i)) ++interval;
+    guide_[color][i] = interval;
   }
 }
 
@@ -131,20 +125,22 @@ glm::dvec3 SampledPhase::Value(double mu) const {
           Interpolate(values_[2], interval, share)};
 }
 
-std::size_t SampledPhase::IntervalOf(double u) const {
-  std::size_t interval = guide_[std::min(static_cast<std::size_t>(u * kIntervals), kIntervals - 1)];
-  while (interval + 1 < kIntervals && cumulative_[interval + 1] < u) ++interval;
+std::size_t SampledPhase::IntervalOf(double u, std::size_t color) const {
+  const std::vector<double>& cumulative = cumulative_[color];
+  std::size_t interval =
+      guide_[color][std::min(static_cast<std::size_t>(u * kIntervals), kIntervals - 1)];
+  while (interval + 1 < kIntervals && cumulative[interval + 1] < u) ++interval;
   return interval;
 }
 
-PhaseSample SampledPhase::Sample(double u) const {
+PhaseSample SampledPhase::Sample(double u, std::size_t color) const {
   if (x_.empty()) return {HenyeyGreensteinSample(asymmetry_, u), glm::dvec3(1.0)};
-  const std::size_t interval = IntervalOf(u);
-  const std::vector<double>& density = colored_ ? mean_ : values_[0];
-  const double low = density[interval];
-  const double high = density[interval + 1];
+  const std::size_t table = colored_ ? color : 0;
+  const std::size_t interval = IntervalOf(u, table);
+  const double low = values_[table][interval];
+  const double high = values_[table][interval + 1];
   const double width = x_[interval + 1] - x_[interval];
-  const double rest = u - cumulative_[interval];
+  const double rest = u - cumulative_[table][interval];
   // The root of low y + (high - low) y^2 / (2 width) = 2 rest, in the form that does not cancel.
   const double discriminant = low * low + 4.0 * (high - low) * rest / width;
   const double divisor = low + std::sqrt(std::max(discriminant, 0.0));
@@ -153,10 +149,10 @@ PhaseSample SampledPhase::Sample(double u) const {
   sample.mu = 1.0 - (x_[interval] + y);
   if (colored_) {
     const double share = y / width;
-    const double mean = Interpolate(mean_, interval, share);
-    for (int color = 0; color < 3; ++color) {
-      sample.weight[color] =
-          Interpolate(values_[static_cast<std::size_t>(color)], interval, share) / mean;
+    const double sampled = Interpolate(values_[table], interval, share);
+    for (int other = 0; other < 3; ++other) {
+      sample.weight[other] =
+          Interpolate(values_[static_cast<std::size_t>(other)], interval, share) / sampled;
     }
   }
   return sample;

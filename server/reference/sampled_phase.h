@@ -4,6 +4,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -12,8 +14,8 @@
 
 namespace thunderhead::reference {
 
-// A sampled cosine of scattering angle. `weight` is the ratio of each colour's phase function to
-// the density sampled from: 1 unless the colours' functions differ.
+// A cosine of scattering angle sampled from one colour's phase function. `weight` is the ratio of
+// each colour's function to that one: 1 unless they differ.
 struct PhaseSample {
   double mu = 1.0;
   glm::dvec3 weight{1.0};
@@ -37,24 +39,25 @@ class SampledPhase {
   // The phase function; its mean over the sphere is 1.
   glm::dvec3 Value(double mu) const;
 
-  // Maps `u`, uniform over (0, 1), to the scattering angle within which that share of light goes.
-  PhaseSample Sample(double u) const;
+  // Maps `u`, uniform over (0, 1), to the scattering angle within which that share of the light of
+  // `color` (0 to 2) goes.
+  PhaseSample Sample(double u, std::size_t color) const;
 
  private:
   SampledPhase() = default;
   void Normalize(std::size_t color);
-  void Accumulate();
-  std::size_t IntervalOf(double u) const;
+  void Accumulate(std::size_t color);
+  std::size_t IntervalOf(double u, std::size_t color) const;
 
   // Henyey and Greenstein's parameter; unused where there is a table.
   double asymmetry_ = 0.0;
   bool colored_ = false;
   // The table: piecewise linear in x = 1 - mu between nodes, which lie at angles pi (i / last)^2.
   std::vector<double> x_;
-  std::array<std::vector<double>, 3> values_;  // by colour; only the first unless colored_
-  std::vector<double> mean_;                   // over colours; empty unless colored_
-  std::vector<double> cumulative_;             // of the mean, 0 to 1
-  std::vector<std::uint32_t> guide_;           // interval in which to start the search for u
+  // By colour; only the first unless colored_.
+  std::array<std::vector<double>, 3> values_;
+  std::array<std::vector<double>, 3> cumulative_;    // 0 to 1
+  std::array<std::vector<std::uint32_t>, 3> guide_;  // interval in which to start the search for u
 };
 
 }  // namespace thunderhead::reference

@@ -1,5 +1,6 @@
 #include "reference/path_tracer.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -87,6 +88,32 @@ TEST(PathTracer, WhiteFurnace) {
     if (densest_per_m > 1e-3) continue;
     for (const glm::vec3& radiance : image.radiance) EXPECT_NEAR(radiance.z, 3.0F, 4e-6F);
   }
+}
+
+// Colours whose phase functions differ share their paths: each must come out as if it were alone,
+// after hundreds of scatterings too.
+TEST(PathTracer, ColorsOfDifferentPhaseFunctions) {
+  constexpr std::array<double, 3> kAsymmetries = {0.85, 0.75, 0.2};
+  const auto formula = [](double g) {
+    return [g](double mu) { return (1.0 - g * g) / std::pow(1.0 + g * g - 2.0 * g * mu, 1.5); };
+  };
+  const SampledPhase colored = SampledPhase::Tabulated(std::array<SampledPhase::Function, 3>{
+      formula(kAsymmetries[0]), formula(kAsymmetries[1]), formula(kAsymmetries[2])});
+  const auto look = [](const SampledPhase& phase) {
+    auto slab = SlabMedium(20.0, phase, 1.0);
+    EXPECT_TRUE(slab.ok()) << slab.status();
+    return Trace(*slab, SunOnly(SunAt(60.0)), OverTheTop(**slab, {0.6, 0.0, -0.8}), {16, 16}, 400);
+  };
+  const Image together = look(colored);
+  for (std::size_t color = 0; color < 3; ++color) {
+    const Image alone = look(SampledPhase::HenyeyGreenstein(kAsymmetries[color]));
+    ExpectAgree(MeanOf(together, static_cast<int>(color)), MeanOf(alone, 0), 0.006);
+  }
+  Surroundings furnace;
+  furnace.sky = [](const glm::dvec3&) { return glm::dvec3(1.0); };
+  auto slab = SlabMedium(20.0, colored, 1.0);
+  const Image white = Trace(*slab, furnace, OverTheTop(**slab, {0.6, 0.0, -0.8}), {16, 16}, 400);
+  for (int color = 0; color < 3; ++color) ExpectAgrees(MeanOf(white, color), 1.0, 0.0, 0.006);
 }
 
 // The same with a white Lambertian ground below.

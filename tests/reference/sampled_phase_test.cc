@@ -16,10 +16,10 @@ using physics::PhaseKind;
 
 // The mean of f over samples at evenly spread u: a midpoint rule, no noise.
 template <typename F>
-double MeanOverSamples(const SampledPhase& phase, const F& f) {
+double MeanOverSamples(const SampledPhase& phase, const F& f, std::size_t color = 0) {
   constexpr int kSamples = 200000;
   double sum = 0.0;
-  for (int i = 0; i < kSamples; ++i) sum += f(phase.Sample((i + 0.5) / kSamples));
+  for (int i = 0; i < kSamples; ++i) sum += f(phase.Sample((i + 0.5) / kSamples, color));
   return sum / kSamples;
 }
 
@@ -39,7 +39,7 @@ TEST_P(FormulaTest, ValueIsTheFormula) {
 TEST_P(FormulaTest, SampleInvertsTheCumulativePhase) {
   const SampledPhase phase = SampledPhase::Of(GetParam());
   for (const double u : {1e-9, 1e-4, 0.01, 0.2, 0.5, 0.77, 0.95, 0.9999, 1.0 - 1e-9}) {
-    const PhaseSample sample = phase.Sample(u);
+    const PhaseSample sample = phase.Sample(u, 0);
     EXPECT_EQ(sample.weight, glm::dvec3(1.0));
     const double angle_rad = std::acos(sample.mu);
     EXPECT_NEAR(physics::CumulativePhase(GetParam(), angle_rad), u, 2e-6) << u;
@@ -113,26 +113,31 @@ TEST(TabulatedPhase, ResolvesADiffractionPeak) {
   EXPECT_NEAR(within, 0.5, 2e-5 + 1e-4);
 }
 
-TEST(TabulatedPhase, ColorsShareSamplesByWeight) {
+TEST(TabulatedPhase, EachColorHasItsOwnSamples) {
   const auto of = [](float g) {
     return [g](double mu) { return physics::PhaseValue({PhaseKind::kHenyeyGreenstein, g}, mu); };
   };
   const SampledPhase phase = SampledPhase::Tabulated({of(0.8F), of(0.7F), of(0.2F)});
   constexpr glm::dvec3 kMeanCosines(0.8, 0.7, 0.2);
   for (int color = 0; color < 3; ++color) {
-    EXPECT_NEAR(MeanOverSamples(phase, [&](const PhaseSample& s) { return s.weight[color]; }), 1.0,
-                1e-5);
-    EXPECT_NEAR(
-        MeanOverSamples(phase, [&](const PhaseSample& s) { return s.weight[color] * s.mu; }),
-        kMeanCosines[color], 1e-5);
+    const auto index = static_cast<std::size_t>(color);
+    EXPECT_NEAR(MeanOverSamples(
+                    phase, [](const PhaseSample& s) { return s.mu; }, index),
+                kMeanCosines[color], 1e-5);
     EXPECT_NEAR(phase.Value(0.3)[color], of(static_cast<float>(kMeanCosines[color]))(0.3), 1e-5);
+    // Weights say how much likelier each colour's own samples would be there.
+    const PhaseSample sample = phase.Sample(0.4, index);
+    const glm::dvec3 value = phase.Value(sample.mu);
+    for (int other = 0; other < 3; ++other) {
+      EXPECT_NEAR(sample.weight[other], value[other] / value[color], 1e-6);
+    }
   }
 }
 
 TEST(TabulatedPhase, ZeroOverPartOfTheSphere) {
   const SampledPhase phase =
       SampledPhase::Tabulated([](double mu) { return mu < 0.0 ? 1.0 : 0.0; });
-  for (const double u : {1e-9, 0.3, 1.0 - 1e-9}) EXPECT_LT(phase.Sample(u).mu, 1e-3);
+  for (const double u : {1e-9, 0.3, 1.0 - 1e-9}) EXPECT_LT(phase.Sample(u, 0).mu, 1e-3);
   EXPECT_NEAR(phase.Value(-0.5).x, 2.0, 1e-3);
   EXPECT_EQ(phase.Value(0.5).x, 0.0);
 }
