@@ -202,6 +202,17 @@ TEST_F(SceneRendererTest, ACameraInsideTheCloudSeesCloudEverywhere) {
   for (std::size_t i = 0; i < pixels.size(); i += 4) ASSERT_TRUE(std::isfinite(pixels[i]));
 }
 
+TEST_F(SceneRendererTest, MoreBricksThanOneRowOfWorkGroupsHolds) {
+  // 48 x 48 x 48 bricks of two cells a side, against a coarse grid of the same cloud.
+  const auto brightness = [&](const glm::ivec3& cells) {
+    fields_ = support::MakeSlab(4000.0, 2000.0, 0.01, cells);
+    const std::vector<float> pixels = Pixels(renderer_.get());
+    return pixels[4 * (16 * 48 + 24)];
+  };
+  const float fine = brightness({96, 96, 96});
+  EXPECT_NEAR(fine / brightness({32, 32, 32}), 1.0F, 0.1F);
+}
+
 TEST(ToneMap, MapsKnownRadiances) {
   const auto context = gl::Context::Create("software");
   ASSERT_TRUE(context.ok());

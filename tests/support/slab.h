@@ -11,10 +11,10 @@ namespace thunderhead::support {
 
 // A box `width_m` wide and `height_m` high, standing on z = 0, whose cloud water has the given
 // extinction with the default radius and density.
-inline std::shared_ptr<const volume::HydrometeorFields> MakeSlab(double width_m, double height_m,
-                                                                 double extinction_per_m) {
+inline std::shared_ptr<const volume::HydrometeorFields> MakeSlab(
+    double width_m, double height_m, double extinction_per_m,
+    const glm::ivec3& cells = glm::ivec3(32, 32, 16)) {
   auto fields = std::make_shared<volume::HydrometeorFields>();
-  const glm::ivec3 cells(32, 32, 16);
   fields->grid.cells = cells;
   fields->grid.spacing_m = glm::dvec3(width_m, width_m, height_m) / glm::dvec3(cells);
   fields->grid.low_corner_m = {-width_m / 2, -width_m / 2, 0.0};

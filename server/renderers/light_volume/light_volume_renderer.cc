@@ -17,8 +17,9 @@ constexpr double kLightTexelInCells = 0.75;  // across the sun's rays
 constexpr double kLayerInCells = 1.5;        // along them, of the way through a cell
 constexpr GLuint kLightUnit = 4;
 constexpr GLuint kThicknessUnit = 5;
-constexpr double kNearInTexels = 1.5;  // sampled next to a cell
-constexpr int kGroupSide = 8;          // of carry.comp
+constexpr double kNearInTexels = 1.5;    // sampled next to a cell
+constexpr int kMostGroupsInRow = 65535;  // what OpenGL 4.5 guarantees along each axis
+constexpr int kGroupSide = 8;            // of carry.comp
 
 bool IsDiffuse(const scene::Rendering& rendering) {
   return IsConsistent(rendering) && IsTranslucent(rendering);
@@ -144,7 +145,10 @@ absl::Status LightVolumeRenderer::Arrive(const ResidentMedium& medium, const Gro
   medium.BindOccupied(0);
   arrived_.BindImage(0, GL_WRITE_ONLY);
   program->Use();
-  glDispatchCompute(static_cast<GLuint>(medium.OccupiedCount()), 1, 1);
+  const int rows = (medium.OccupiedCount() + kMostGroupsInRow - 1) / kMostGroupsInRow;
+  program->Set("occupied_count", medium.OccupiedCount());
+  glDispatchCompute(static_cast<GLuint>(std::min(medium.OccupiedCount(), kMostGroupsInRow)),
+                    static_cast<GLuint>(rows), 1);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   return absl::OkStatus();
 }

@@ -21,6 +21,7 @@ layout(std430, binding = 0) readonly buffer Bricks { uint occupied_bricks[]; }; 
 
 uniform ivec3 cell_count;
 uniform ivec3 cells_per_brick;
+uniform int occupied_count;
 uniform mat4x3 light_from_local;
 uniform vec3 towards_sun;
 uniform float near_m;  // sampled next to the cell
@@ -57,7 +58,9 @@ void give_light(ivec3 cell, bool thick) {
 }
 
 void main() {
-  uint packed_brick = occupied_bricks[gl_WorkGroupID.x];
+  uint listed = gl_WorkGroupID.x + gl_NumWorkGroups.x * gl_WorkGroupID.y;
+  if (listed >= uint(occupied_count)) return;
+  uint packed_brick = occupied_bricks[listed];
   ivec3 brick = ivec3(packed_brick & 1023u, packed_brick >> 10 & 1023u, packed_brick >> 20);
   bool thick = texelFetch(bricks, brick, 0).r == kThickBrick;
   int cells = cells_per_brick.x * cells_per_brick.y * cells_per_brick.z;
