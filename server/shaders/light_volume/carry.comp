@@ -27,6 +27,10 @@ uniform vec4 light_weights[PLANES];
 uniform vec4 transport_weights[PLANES];
 uniform vec2 cumulative_phase;  // CP(theta_f / 4), CP(theta_f / 2)
 
+// Bricks from an occupied one within which arrive.comp reads this volume: it looks 1.5 texels towards the sun, and
+// interpolates over one more; a brick is at least 2 texels wide.
+const uint kReadBricks = 2u;
+
 // Optical depth that the light loses along `path_m` with extinction `extinction`.
 float lost(float extinction, float path_m) {
   float depth = extinction * path_m;
@@ -61,7 +65,10 @@ void main() {
   float depth = 0.0;
   float transport = 0.0;
   float way_m = float(first) * layer_m + 0.5 * step_m;
-  for (int half_layer = 2 * first; half_layer < 2 * last; ++half_layer) {
+  float half_layer_m = 0.5 * layer_m;
+  vec3 per_brick_step = 1.0 / (against_sun * brick_from_local_scale);
+  int half_layer = 2 * first;
+  while (half_layer < 2 * last) {
     if ((half_layer & 1) == 1) {
       imageStore(carried, ivec3(ray, half_layer >> 1), vec4(sqrt(depth), transport, 0.0, 0.0));
     }
@@ -69,6 +76,14 @@ void main() {
     ivec3 brick = ivec3(floor(brick_place));
     bool outside = any(lessThan(brick, ivec3(0))) || any(greaterThanEqual(brick, brick_count));
     uint content = brick_content(brick_place);
+    if (!outside && content != kThinBrick && content > kReadBricks) {
+      // So far from all that scatters nothing reads the light.
+      float leap_m = empty_way(brick_place, content - kReadBricks, per_brick_step);
+      int leap = max(2 * int(leap_m / layer_m), 2);  // whole layers: stores keep their turn
+      half_layer += leap;
+      way_m += float(leap) * half_layer_m;
+      continue;
+    }
     int steps = outside || (content != kThickBrick && content != kThinBrick) ? 0 : half_layer_steps;
     for (int i = 0; i < steps; ++i) {
       vec3 local_m = start_m - (way_m + float(i) * step_m) * towards_sun;
@@ -77,7 +92,8 @@ void main() {
       depth += lost(weigh(medium, light_weights), inside);
       transport += weigh(medium, transport_weights) * inside;
     }
-    way_m += float(half_layer_steps) * step_m;
+    ++half_layer;
+    way_m += half_layer_m;
   }
 
 #if DIFFUSE
