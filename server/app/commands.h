@@ -22,6 +22,7 @@ Command AddFlux(CLI::App& app);
 Command AddMeasure(CLI::App& app);
 // Parts of `measure`.
 Command AddMeasureFrames(CLI::App& measure);
+Command AddMeasureExtremes(CLI::App& measure);
 Command AddMeasureTrade(CLI::App& measure);
 Command AddGenerate(CLI::App& app);
 Command AddFit(CLI::App& app);

@@ -10,6 +10,7 @@ Command AddMeasure(CLI::App& app) {
   measure->require_subcommand(1);
   const auto parts = std::make_shared<std::vector<Command>>();
   parts->push_back(AddMeasureFrames(*measure));
+  parts->push_back(AddMeasureExtremes(*measure));
   parts->push_back(AddMeasureTrade(*measure));
   return {measure, [parts] {
             for (const Command& part : *parts) {

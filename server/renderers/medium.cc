@@ -7,6 +7,7 @@
 #include "glm/common.hpp"
 #include "physics/optics.h"
 #include "volume/brick_map.h"
+#include "volume/coarsen.h"
 
 namespace thunderhead::renderers {
 namespace {
@@ -44,6 +45,17 @@ std::vector<glm::vec4> Packed(const std::vector<double>& by_group, double factor
   return packed;
 }
 
+// On fewer cells if a texture cannot hold all.
+volume::ExtinctionVolume ExtinctionThatFits(const volume::HydrometeorFields& fields,
+                                            const Medium& medium) {
+  const auto channels = static_cast<int>(medium.groups.size());
+  GLint most_texels = 0;
+  glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most_texels);
+  const glm::ivec3 factor = volume::CoarseningFor(fields, most_texels);
+  if (factor == glm::ivec3(1)) return volume::ComputeExtinction(fields, medium.terms, channels);
+  return volume::ComputeExtinction(volume::Coarsened(fields, factor), medium.terms, channels);
+}
+
 }  // namespace
 
 physics::PhaseFunction UniformPhase(const scene::Scene& scene) {
@@ -78,8 +90,7 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
   constexpr std::array<GLenum, 5> kFormats = {0, GL_R16F, GL_RG16F, 0, GL_RGBA16F};
   constexpr std::array<GLenum, 5> kTransferFormats = {0, GL_RED, GL_RG, 0, GL_RGBA};
   base::Stopwatch stopwatch;
-  bounds_ =
-      volume::ComputeExtinction(fields, content_.terms, static_cast<int>(content_.groups.size()));
+  bounds_ = ExtinctionThatFits(fields, content_);
   const volume::BrickMap bricks = volume::BrickMapOf(bounds_);
   cost->extinction_ms = stopwatch.Restart();
   std::vector<physics::PhaseFunction> phases;

@@ -15,9 +15,11 @@ constexpr float kSmallestNormal = std::numeric_limits<float>::min();
 // -999.
 constexpr float kLeastMixingRatio = -0.5F;
 
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
 struct Range {
-  float minimum = std::numeric_limits<float>::infinity();
-  float maximum = -std::numeric_limits<float>::infinity();
+  float minimum = kInfinity;
+  float maximum = -kInfinity;
 };
 
 // One level: `values` in place, mass per area added to `water_path`.
@@ -31,8 +33,8 @@ void ScanLevel(const LayerAir& air, int level, float* values, FieldStatistics& s
   std::int64_t negative_cells = 0;
   for (std::size_t i = 0; i < air.columns; ++i) {
     const float value = values[i];
-    // Both comparisons fail for NaN.
-    const bool present = value > kLeastMixingRatio && density[i] > 0.0F;
+    // All comparisons fail for NaN.
+    const bool present = value > kLeastMixingRatio && value < kInfinity && density[i] > 0.0F;
     missing_cells += present ? 0 : 1;
     negative_cells += present && value < 0.0F ? 1 : 0;
     range.minimum = present ? std::min(range.minimum, value) : range.minimum;

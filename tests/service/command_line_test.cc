@@ -181,6 +181,15 @@ TEST_F(CommandLineTest, MeasureFramesHasARowForEachPathAndMode) {
   ExpectError("measure frames " + kSample + " --time 9", 2, "times 0 to 3");
 }
 
+TEST_F(CommandLineTest, MeasureExtremesJudgesEachCase) {
+  const Outcome outcome = Run("measure extremes --device software");
+  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("verdict"));
+  EXPECT_THAT(outcome.out, HasSubstr("half_angle: optical depth per slice 1e+08, paper"));
+  EXPECT_THAT(outcome.out, HasSubstr("light_volume: empty volume"));
+  EXPECT_EQ(outcome.out.find("FAILED"), std::string::npos);
+}
+
 TEST_F(CommandLineTest, ServeSaysOneLineAndStopsOnASignal) {
   const Outcome outcome =
       Shell(std::string(PROGRAM) + " serve --device software --data " + kSample +

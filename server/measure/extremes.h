@@ -1,0 +1,29 @@
+// The extremes that a storm or a user can bring, each as a case with its analytic or limiting
+// answer. `thunderhead measure extremes` prints them; tests/accuracy runs the same list. Uses the
+// current GL context.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "measure/probe.h"
+
+namespace thunderhead::measure {
+
+struct Verdict {
+  std::string expected;
+  std::string got;
+  bool passed = false;
+};
+
+struct Extreme {
+  std::string name;  // "half_angle: optical depth per slice 1e-08, paper"
+  std::function<absl::StatusOr<Verdict>(Probe& probe)> check;
+};
+
+// Those of files and numbers, then those of pictures by every path.
+std::vector<Extreme> Extremes();
+
+}  // namespace thunderhead::measure

@@ -1,0 +1,30 @@
+// What the files of extremes share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "measure/extremes.h"
+#include "measure/paths.h"
+
+namespace thunderhead::measure::internal {
+
+// Passes if `got` is within `tolerance` of `expected`.
+Verdict Near(double got, double expected, double tolerance);
+
+// Passes if `got` is at most `most`.
+Verdict AtMost(double got, double most);
+
+// `verdict`, failed if what was seen is not sound.
+Verdict Sound(const Seen& seen, Verdict verdict);
+
+// A scene of cloud water by one path: single scattering (low albedo, consistent) of a phase
+// function that is the same in all directions.
+scene::Scene PlainScene(scene::Renderer renderer);
+
+void AppendInputExtremes(std::vector<Extreme>* extremes);
+void AppendDepthExtremes(const Named<scene::Renderer>& path, std::vector<Extreme>* extremes);
+void AppendShapeExtremes(const Named<scene::Renderer>& path, std::vector<Extreme>* extremes);
+void AppendViewExtremes(const Named<scene::Renderer>& path, std::vector<Extreme>* extremes);
+
+}  // namespace thunderhead::measure::internal

@@ -1,0 +1,83 @@
+// Domains of all sizes, cells of all shapes, volumes of one cell, of too many, and of none.
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "absl/strings/str_format.h"
+#include "base/status.h"
+#include "measure/extremes_internal.h"
+
+namespace thunderhead::measure::internal {
+namespace {
+
+// Where a slanted ray crosses the box's hard faces half-angle slices count whole or not at all: off
+// by up to one of 128, over a box that fills a third of what is sliced. A ray of the light volume
+// may end at 0.005.
+constexpr double kSlantedError = 0.03;
+
+Extreme Transmittance(const Named<scene::Renderer>& path, const std::string& what, const Box& box,
+                      double elevation_deg) {
+  return {absl::StrFormat("%s: %s", path.name, what), [=](Probe& probe) -> absl::StatusOr<Verdict> {
+            THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen,
+                                         probe.Draw(PlainScene(path.value), *FieldsOf(box),
+                                                    {.view_elevation_deg = elevation_deg}));
+            const double sine = std::sin(elevation_deg * std::numbers::pi / 180.0);
+            return Sound(
+                seen, Near(seen.transmittance, std::exp(-box.optical_depth / sine), kSlantedError));
+          }};
+}
+
+Extreme DomainSize(const Named<scene::Renderer>& path, double width_m) {
+  return Transmittance(path, absl::StrFormat("domain %g m wide", width_m),
+                       {.size_m = glm::dvec3(width_m, width_m, width_m / 4)}, 89.9);
+}
+
+Extreme TooManyCells(const Named<scene::Renderer>& path) {
+  return {absl::StrFormat("%s: more cells than a 3D texture holds", path.name),
+          [=](Probe& probe) -> absl::StatusOr<Verdict> {
+            GLint most = 0;
+            glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most);
+            const auto fields = FieldsOf({.cells = glm::ivec3(most + 77, 2, 2)});
+            THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen,
+                                         probe.Draw(PlainScene(path.value), *fields, {}));
+            return Sound(seen, Near(seen.transmittance, std::exp(-1.0), 0.01));
+          }};
+}
+
+// Not drawn: transmittance is 1 and radiance 0, exactly.
+Extreme Nothing(const Named<scene::Renderer>& path, const std::string& what, const Box& box,
+                bool visible) {
+  return {absl::StrFormat("%s: %s", path.name, what), [=](Probe& probe) -> absl::StatusOr<Verdict> {
+            scene::Scene scene = PlainScene(path.value);
+            for (scene::FieldParameters& field : scene.fields) field.visible = visible;
+            THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *FieldsOf(box), {}));
+            const bool clear = seen.transmittance == 1.0 && seen.radiance == 0.0;
+            return Sound(seen, {"transmittance 1, radiance 0",
+                                absl::StrFormat("transmittance %g, radiance %g", seen.transmittance,
+                                                seen.radiance),
+                                clear});
+          }};
+}
+
+}  // namespace
+
+void AppendShapeExtremes(const Named<scene::Renderer>& path, std::vector<Extreme>* extremes) {
+  for (const double width_m : {10.0, 1e3, 1e5, 1e7}) extremes->push_back(DomainSize(path, width_m));
+  const glm::dvec3 flat_m(16e3, 16e3, 160.0);
+  const glm::dvec3 tall_m(160.0, 160.0, 16e3);
+  extremes->push_back(
+      Transmittance(path, "cells 100 times as wide as high", {.size_m = flat_m}, 60.0));
+  extremes->push_back(
+      Transmittance(path, "cells 100 times as high as wide", {.size_m = tall_m}, 89.9));
+  extremes->push_back(Transmittance(path, "one layer", {.cells = glm::ivec3(16, 16, 1)}, 89.9));
+  extremes->push_back(
+      Transmittance(path, "one layer, slanted", {.cells = glm::ivec3(16, 16, 1)}, 50.0));
+  extremes->push_back(Transmittance(path, "one cell", {.cells = glm::ivec3(1)}, 89.9));
+  extremes->push_back(TooManyCells(path));
+  extremes->push_back(Nothing(path, "empty volume", {.optical_depth = 0.0}, true));
+  extremes->push_back(Nothing(path, "no visible field", {}, false));
+}
+
+}  // namespace thunderhead::measure::internal

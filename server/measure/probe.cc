@@ -1,0 +1,124 @@
+#include "measure/probe.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "absl/strings/str_format.h"
+#include "base/status.h"
+#include "frame/tone_map.h"
+#include "glm/geometric.hpp"
+#include "renderers/half_angle/half_angle_renderer.h"
+#include "renderers/light_volume/light_volume_renderer.h"
+#include "scene/view.h"
+
+namespace thunderhead::measure {
+namespace {
+
+// A ray's transmittance is a product of rounded factors.
+constexpr float kMost = 1.0F + 1e-5F;
+
+std::string Unsound(const std::vector<float>& eye, const std::vector<float>& light) {
+  for (std::size_t i = 0; i < eye.size(); ++i) {
+    const bool share = i % 4 == 3;
+    if (std::isfinite(eye[i]) && eye[i] >= 0.0F && (!share || eye[i] <= kMost)) continue;
+    return absl::StrFormat("%s %g in pixel %d", share ? "transmittance" : "radiance", eye[i],
+                           i / 4);
+  }
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    if (i % 4 > 1) continue;  // the share of sunlight, and the depth it has passed
+    if (std::isfinite(light[i]) && light[i] >= 0.0F && (i % 4 == 1 || light[i] <= kMost)) continue;
+    return absl::StrFormat("%s %g in the light buffer", i % 4 == 0 ? "light" : "depth", light[i]);
+  }
+  return {};
+}
+
+renderers::RenderSettings SettingsOf(const scene::Scene& scene,
+                                     const volume::HydrometeorFields& fields, const Look& look) {
+  const volume::RegularGrid& grid = fields.grid;
+  const glm::dvec3 size_m = grid.HighCorner_m() - grid.low_corner_m;
+  scene::OrbitCamera camera;
+  camera.target_m = 0.5 * (grid.low_corner_m + grid.HighCorner_m());
+  camera.azimuth_deg = look.view_azimuth_deg;
+  camera.elevation_deg = look.view_elevation_deg;
+  camera.distance_m = std::max({size_m.x, size_m.y, size_m.z}) * look.distance_in_boxes;
+  camera.field_of_view_deg = look.field_of_view_deg;
+  renderers::RenderSettings settings;
+  settings.rendering = scene.rendering;
+  settings.view = scene::ViewOf(camera, 1.0);
+  settings.illumination = {scene::Direction(look.sun_azimuth_deg, look.sun_elevation_deg),
+                           glm::vec3(1.0F), glm::vec3(0.0F)};
+  settings.eye_size = glm::ivec2(look.side_px);
+  settings.slices = scene.rendering.slices;
+  return settings;
+}
+
+// Of the extinction of a full box of the same optical depth; `place` runs from -1/2 to 1/2.
+double ShareAt(Box::Shape shape, const glm::dvec3& place) {
+  switch (shape) {
+    case Box::Shape::kFull:
+      break;
+    case Box::Shape::kLayer:
+      return std::abs(place.z) < 0.25 ? 2.0 : 0.0;
+    case Box::Shape::kRound:
+      return std::exp(-24.0 * glm::dot(place, place));
+  }
+  return 1.0;
+}
+
+}  // namespace
+
+std::shared_ptr<volume::HydrometeorFields> FieldsOf(const Box& box) {
+  auto fields = std::make_shared<volume::HydrometeorFields>();
+  volume::RegularGrid& grid = fields->grid;
+  grid.cells = box.cells;
+  grid.spacing_m = box.size_m / glm::dvec3(box.cells);
+  grid.low_corner_m = {-box.size_m.x / 2, -box.size_m.y / 2, 0.0};
+  const physics::ParticleOptics& cloud = physics::DefaultOptics(physics::Hydrometeor::kCloud);
+  const double full_kg_per_m3 =
+      box.optical_depth / box.size_m.z /
+      physics::MassExtinction_m2_per_kg(cloud.density_kg_per_m3, cloud.radius_m);
+  volume::HydrometeorField field;
+  field.hydrometeor = physics::Hydrometeor::kCloud;
+  for (int z = 0; z < box.cells.z; ++z) {
+    for (int y = 0; y < box.cells.y; ++y) {
+      for (int x = 0; x < box.cells.x; ++x) {
+        const glm::dvec3 place = (glm::dvec3(x, y, z) + 0.5) / glm::dvec3(box.cells) - 0.5;
+        field.concentration_kg_per_m3.push_back(
+            static_cast<float>(full_kg_per_m3 * ShareAt(box.shape, place)));
+      }
+    }
+  }
+  fields->fields.push_back(std::move(field));
+  const int empty = box.shape == Box::Shape::kLayer ? box.cells.z / 4 : 0;
+  fields->condensate = {{0, 0, empty}, {box.cells.x, box.cells.y, box.cells.z - empty}};
+  return fields;
+}
+
+absl::StatusOr<Seen> Probe::Draw(const scene::Scene& scene, const volume::HydrometeorFields& fields,
+                                 const Look& look) {
+  renderers::ResidentMedium::Cost cost;
+  renderers::DetailNoises noises;
+  const renderers::ResidentMedium medium(scene, fields, &noises, &cost);
+  if (medium.Empty()) return Seen{};
+  const renderers::RenderSettings settings = SettingsOf(scene, fields, look);
+  Seen seen;
+  std::vector<float> light;
+  if (scene.rendering.renderer == scene::Renderer::kHalfAngle) {
+    renderers::HalfAngleRenderer renderer(programs_);
+    THUNDERHEAD_RETURN_IF_ERROR(renderer.Render(medium, settings, true));
+    seen.eye = frame::ReadLinear(renderer.Eye());
+    light = frame::ReadLinear(renderer.Light());
+  } else {
+    renderers::LightVolumeRenderer renderer(programs_);
+    THUNDERHEAD_RETURN_IF_ERROR(renderer.CarryLight(medium, settings));
+    THUNDERHEAD_RETURN_IF_ERROR(renderer.DrawView(medium, settings));
+    seen.eye = frame::ReadLinear(renderer.Eye());
+  }
+  seen.unsound = Unsound(seen.eye, light);
+  const std::size_t middle = seen.eye.size() / 4 / 2 * 4;
+  seen.radiance = seen.eye[middle];
+  seen.transmittance = seen.eye[middle + 3];
+  return seen;
+}
+
+}  // namespace thunderhead::measure

@@ -1,0 +1,58 @@
+// A small picture of a medium alone, drawn by one path without sky and ground, and a check that it
+// is sound whatever the scene: nothing but finite numbers, no radiance below 0, transmittance and
+// light within 0 to 1. Uses the current GL context.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "gl/program.h"
+#include "scene/scene.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::measure {
+
+// A box of cloud water standing on z = 0, in a domain of its own size.
+struct Box {
+  glm::ivec3 cells{16};
+  glm::dvec3 size_m{4000.0, 4000.0, 1000.0};
+  double optical_depth = 1.0;  // straight up, with the default radius
+  enum class Shape {
+    kFull,   // everywhere the same, up to the domain's faces
+    kLayer,  // the middle half of the height, its faces soft: extinction falls to zero over a cell
+    kRound,  // a Gaussian around the middle
+  } shape = Shape::kFull;
+};
+
+std::shared_ptr<volume::HydrometeorFields> FieldsOf(const Box& box);
+
+struct Look {
+  double view_azimuth_deg = 200.0;  // at which the camera stands, seen from the target
+  double view_elevation_deg = 89.9;
+  double sun_azimuth_deg = 70.0;
+  double sun_elevation_deg = 89.9;
+  double distance_in_boxes = 5.0;  // of the camera from the middle, in the box's longest side
+  double field_of_view_deg = 2.0;
+  int side_px = 9;  // odd: a pixel lies in the middle
+};
+
+struct Seen {
+  double radiance = 0.0;       // of the middle pixel's red, in units of the sun's irradiance
+  double transmittance = 1.0;  // of the middle pixel
+  std::vector<float> eye;      // four floats a pixel
+  std::string unsound;         // what is wrong with any value; empty if nothing is
+};
+
+class Probe {
+ public:
+  // Draws with scene.rendering and scene.fields; the camera looks at the middle of the domain.
+  absl::StatusOr<Seen> Draw(const scene::Scene& scene, const volume::HydrometeorFields& fields,
+                            const Look& look);
+
+ private:
+  std::shared_ptr<gl::ProgramCache> programs_ = std::make_shared<gl::ProgramCache>();
+};
+
+}  // namespace thunderhead::measure
