@@ -147,9 +147,8 @@ absl::Status Generate(const Flags& flags) {
   {
     ProgressBar bar("generating");
     THUNDERHEAD_ASSIGN_OR_RETURN(
-        cloud.values,
-        clouds::Generate(
-            shape, [&bar](double share) { bar.Set(share); }, interruption.Token()));
+        cloud.values, clouds::Generate(
+                          shape, [&bar](double share) { bar.Set(share); }, interruption.Token()));
   }
   return volume::WriteCfCloud(cloud, flags.output);
 }

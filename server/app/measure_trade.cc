@@ -48,8 +48,9 @@ std::string ReadText(const std::string& path) {
 absl::StatusOr<reference::Image> TruthOf(const Flags& flags, const LocalScene& local,
                                          const std::string& path,
                                          const Interruption& interruption) {
-  const std::string key = absl::StrCat(local.message.ShortDebugString(),
-                                       "\nsamples a pixel: ", flags.samples_per_pixel, "\n");
+  const std::string key =
+      absl::StrCat(local.message.ShortDebugString(), "\npeak cut: ", reference::kPeakCut_deg,
+                   "\nsamples a pixel: ", flags.samples_per_pixel, "\n");
   if (std::filesystem::exists(path) && ReadText(path + ".scene") == key) {
     return reference::ReadExr(path);
   }
@@ -59,7 +60,7 @@ absl::StatusOr<reference::Image> TruthOf(const Flags& flags, const LocalScene& l
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const reference::TracedScene traced,
       reference::TraceScene(
-          measure::TrueScene(local.scene), *local.fields, limits,
+          measure::TrueScene(local.scene), *local.fields, reference::kPeakCut_deg, limits,
           [&](const reference::ImageProgress& progress) {
             bar.Set(static_cast<double>(progress.samples_per_pixel) / flags.samples_per_pixel);
           },

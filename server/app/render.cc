@@ -28,7 +28,7 @@ struct Flags {
   std::string storm;
   std::string output;
   SceneFlags scene;
-  ReferenceLimits reference;
+  ReferenceFlags reference;
   std::string server;
   std::string device = "auto";
   bool json = false;
@@ -92,7 +92,7 @@ absl::Status ByReference(const Flags& flags) {
 absl::Status Render(const Flags& flags) {
   spdlog::set_level(spdlog::level::warn);
   if (flags.scene.renderer == "reference") return ByReference(flags);
-  if (flags.reference.Any()) {
+  if (flags.reference.AnyLimit()) {
     return absl::InvalidArgumentError(
         "--spp, --seconds and --target-error are for --renderer reference");
   }
@@ -137,6 +137,11 @@ Command AddRender(CLI::App& app) {
   render->add_option("--seconds", flags->reference.seconds, "Reference: stop after this time");
   render->add_option("--target-error", flags->reference.target_error,
                      "Reference: stop at this relative standard error");
+  render
+      ->add_option("--peak-cut", flags->reference.peak_cut_deg,
+                   "Reference: light scattered by less than these degrees counts as not scattered; "
+                   "0 scatters all, noisily")
+      ->capture_default_str();
   render->add_option("--server", flags->server, "HOST:PORT of a running server's gRPC");
   render->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();

@@ -24,7 +24,7 @@
 namespace thunderhead::app {
 namespace {
 
-absl::Status CheckLimits(const ReferenceLimits& limits) {
+absl::Status CheckFlags(const ReferenceFlags& limits) {
   if (limits.samples_per_pixel < 0) {
     return absl::InvalidArgumentError(
         absl::StrCat("--spp is ", limits.samples_per_pixel, "; it must be 1 or more"));
@@ -36,6 +36,10 @@ absl::Status CheckLimits(const ReferenceLimits& limits) {
   if (!(limits.target_error >= 0.0)) {
     return absl::InvalidArgumentError(
         absl::StrCat("--target-error is ", limits.target_error, "; it must be above 0"));
+  }
+  if (!(limits.peak_cut_deg >= 0.0 && limits.peak_cut_deg <= 30.0)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--peak-cut is ", limits.peak_cut_deg, "; it must be from 0 to 30 degrees"));
   }
   return absl::OkStatus();
 }
@@ -73,20 +77,20 @@ absl::Status WriteToneMapped(const reference::Image& image, const scene::Display
 }  // namespace
 
 absl::Status RenderReference(const std::string& storm, const SceneFlags& scene,
-                             const ReferenceLimits& limits, const std::string& output,
+                             const ReferenceFlags& limits, const std::string& output,
                              const std::string& device) {
-  THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(limits));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckFlags(limits));
   SceneFlags flags = scene;
   flags.renderer.clear();
   THUNDERHEAD_ASSIGN_OR_RETURN(const LocalScene local, OpenScene(storm, flags));
   reference::RefineLimits refine{limits.samples_per_pixel, limits.seconds, limits.target_error};
-  if (!limits.Any()) refine.samples_per_pixel = kDefaultSamplesPerPixel;
+  if (!limits.AnyLimit()) refine.samples_per_pixel = kDefaultSamplesPerPixel;
   const Interruption interruption;
   absl::StatusOr<reference::TracedScene> traced;
   {
     ProgressBar bar("tracing");
     traced = reference::TraceScene(
-        local.scene, *local.fields, refine,
+        local.scene, *local.fields, limits.peak_cut_deg, refine,
         [&](const reference::ImageProgress& progress) { bar.Set(ShareDone(refine, progress)); },
         interruption.Token());
   }

@@ -5,16 +5,19 @@
 
 #include "absl/status/status.h"
 #include "app/scene_file.h"
+#include "reference/trace_scene.h"
 
 namespace thunderhead::app {
 
-// When the reference stops; with none of them after kDefaultSamplesPerPixel.
-struct ReferenceLimits {
+// When the reference stops, with none of them after kDefaultSamplesPerPixel; and what it leaves
+// out.
+struct ReferenceFlags {
   int samples_per_pixel = 0;
   double seconds = 0.0;
-  double target_error = 0.0;  // relative standard error of the whole picture
+  double target_error = 0.0;                      // relative standard error of the whole picture
+  double peak_cut_deg = reference::kPeakCut_deg;  // MediumOptions::peak_cut_deg
 
-  bool Any() const { return samples_per_pixel != 0 || seconds != 0.0 || target_error != 0.0; }
+  bool AnyLimit() const { return samples_per_pixel != 0 || seconds != 0.0 || target_error != 0.0; }
 };
 
 inline constexpr int kDefaultSamplesPerPixel = 64;
@@ -22,7 +25,7 @@ inline constexpr int kDefaultSamplesPerPixel = 64;
 // Writes `output`: .exr with linear radiance and its standard error, or .png or .jpg tone mapped on
 // `device`. Ctrl-C stops early and writes what there is.
 absl::Status RenderReference(const std::string& storm, const SceneFlags& scene,
-                             const ReferenceLimits& limits, const std::string& output,
+                             const ReferenceFlags& limits, const std::string& output,
                              const std::string& device);
 
 }  // namespace thunderhead::app

@@ -1,6 +1,7 @@
 #include "reference/scene_problem.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -9,6 +10,7 @@
 
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
+#include "glm/trigonometric.hpp"
 #include "glm/vector_relational.hpp"
 #include "physics/optics.h"
 #include "physics/sky.h"
@@ -92,6 +94,31 @@ GroupLook LookOf(const scene::Scene& scene, physics::Hydrometeor hydrometeor) {
   return look;
 }
 
+// How a group scatters once its forward peak is cut off: `extinction` is a factor.
+struct CutOptics {
+  std::shared_ptr<const SampledPhase> phase;
+  glm::dvec3 albedo{1.0};
+  double extinction = 1.0;
+};
+
+CutOptics CutPeak(const GroupLook& look, double peak_cut_deg) {
+  if (peak_cut_deg <= 0.0) {
+    return {std::make_shared<const SampledPhase>(SampledPhase::Of(look.phase)), look.albedo, 1.0};
+  }
+  const physics::DeltaScaling cut = physics::CutForwardPeak(look.phase, glm::radians(peak_cut_deg));
+  const auto held = [phase = look.phase, cut](int color) {
+    return
+        [=](double mu) { return physics::PhaseColors(phase, std::min(mu, cut.cut_cosine))[color]; };
+  };
+  const double albedo = (look.albedo.x + look.albedo.y + look.albedo.z) / 3.0;
+  CutOptics optics;
+  optics.extinction = 1.0 - albedo * cut.forward_share;
+  optics.albedo = glm::min(look.albedo * (1.0 - cut.forward_share) / optics.extinction, 1.0);
+  optics.phase = std::make_shared<const SampledPhase>(
+      SampledPhase::Tabulated(std::array<SampledPhase::Function, 3>{held(0), held(1), held(2)}));
+  return optics;
+}
+
 glm::dvec3 SkyRadiance(const glm::dvec3& direction, const glm::vec3& towards_sun, double scale) {
   const glm::vec3 above(direction.x, direction.y, std::abs(direction.z));
   return scale * glm::dvec3(physics::glsl::sky_radiance(above, towards_sun));
@@ -135,6 +162,7 @@ absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene
   description.interpolation = options.interpolation;
   description.sides = options.sides;
   std::vector<GroupLook> looks;
+  std::vector<CutOptics> cuts;  // of each look
   for (const volume::HydrometeorField& field : fields.fields) {
     const scene::FieldParameters& drawn = scene.fields[physics::IndexOf(field.hydrometeor)];
     if (!drawn.visible || drawn.scale <= 0.0F || field.concentration_kg_per_m3.empty()) continue;
@@ -143,15 +171,15 @@ absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene
     auto found = std::find(looks.begin(), looks.end(), look);
     if (found == looks.end()) {
       found = looks.insert(found, look);
-      description.groups.push_back({{},
-                                    look.albedo,
-                                    options.phase != nullptr ? options.phase
-                                                             : std::make_shared<const SampledPhase>(
-                                                                   SampledPhase::Of(look.phase))});
+      cuts.push_back(options.phase != nullptr ? CutOptics{options.phase, look.albedo, 1.0}
+                                              : CutPeak(look, options.peak_cut_deg));
+      description.groups.push_back({{}, cuts.back().albedo, cuts.back().phase});
     }
+    const auto group = static_cast<std::size_t>(found - looks.begin());
     const float mass_extinction = volume::MassExtinction_m2_per_kg(field, drawn.optics);
-    AddField(fields.grid, box, field, drawn.scale * mass_extinction,
-             &description.groups[static_cast<std::size_t>(found - looks.begin())].extinction_per_m);
+    const auto scale = static_cast<float>(drawn.scale * cuts[group].extinction);
+    AddField(fields.grid, box, field, scale * mass_extinction,
+             &description.groups[group].extinction_per_m);
   }
   return Medium::Create(std::move(description));
 }

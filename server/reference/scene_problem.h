@@ -19,6 +19,11 @@ struct MediumOptions {
   // Constant cells fill the file's own boxes; linear ones are what the renderers draw.
   Interpolation interpolation = Interpolation::kLinear;
   std::shared_ptr<const SampledPhase> phase;  // in place of every field's own, if given
+  // Light that a field scatters within this angle of straight on counts as not scattered (delta
+  // scaling), but for what a function held at its value there leaves. 0 changes nothing. The
+  // tables' diffraction peaks, a thousand times brighter than the rest, are what makes pictures
+  // noisy; what changes is seen within about this angle of the sun.
+  double peak_cut_deg = 0.0;
 };
 
 // The scene's visible fields. With open sides the box is the smallest that holds all condensate,

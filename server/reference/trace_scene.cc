@@ -6,10 +6,12 @@
 namespace thunderhead::reference {
 
 absl::StatusOr<TracedScene> TraceScene(const scene::Scene& scene,
-                                       const volume::HydrometeorFields& fields,
+                                       const volume::HydrometeorFields& fields, double peak_cut_deg,
                                        const RefineLimits& limits, const ImageObserver& observer,
                                        const std::stop_token& stop) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const auto medium, MediumOf(scene, fields, Sides::kOpen));
+  MediumOptions options;
+  options.peak_cut_deg = peak_cut_deg;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const auto medium, MediumOf(scene, fields, options));
   PathTracer tracer(medium, SurroundingsOf(scene, fields, GroundLight::kUniform),
                     CameraOf(scene, fields), {scene.output.width_px, scene.output.height_px}, {});
   TracedScene traced;

@@ -128,6 +128,54 @@ TEST(MediumOf, ModesChoosePhaseAndColor) {
 
 // Without a medium, the shaded ground is as bright as the uniform one, which the renderers draw.
 // Both see it through the same air. The uniform one's sky is a sum over 2048 directions: 0.3 %.
+// Light that turns by less than 3 degrees goes on as good as unscattered: away from the sun the
+// picture stays, while extinction falls by the share cut off.
+TEST(MediumOf, ACutPeakLeavesThePicture) {
+  const volume::HydrometeorFields fields = SmallStorm();
+  scene::Scene scene;
+  for (scene::FieldParameters& field : scene.fields) {
+    field.optics.phase = {physics::PhaseKind::kHenyeyGreenstein, 0.9F};
+    field.scale = 0.05F;  // some optical depths
+  }
+  scene.sun.elevation_deg = 50.0;
+  const auto look = [&](double peak_cut_deg, double* extinction_per_m) {
+    MediumOptions options;
+    options.peak_cut_deg = peak_cut_deg;
+    const auto medium = MediumOf(scene, fields, options);
+    EXPECT_TRUE(medium.ok()) << medium.status();
+    const glm::dvec3 middle_m = 0.5 * ((*medium)->Low_m() + (*medium)->High_m());
+    *extinction_per_m = (*medium)->Extinction_per_m(middle_m);
+    Surroundings around;
+    around.towards_sun = {0.6, 0.0, 0.8};
+    around.sun_irradiance = glm::dvec3(1.0);
+    const Camera camera = Camera::Parallel(middle_m + glm::dvec3(0.0, 0.0, 5000.0),
+                                           {400.0, 0.0, 0.0}, {0.0, 400.0, 0.0}, {0.0, 0.0, -1.0});
+    PathTracer tracer(*medium, around, camera, {16, 16}, {});
+    RefineLimits limits;
+    limits.samples_per_pixel = 2000;
+    tracer.Refine(limits, {}, {});
+    const Image image = tracer.Snapshot();
+    FluxShare mean;
+    for (std::size_t i = 0; i < image.radiance.size(); ++i) {
+      mean.value += image.radiance[i].y / 256.0;
+      mean.standard_error += std::pow(image.standard_error[i].y / 256.0, 2);
+    }
+    mean.standard_error = std::sqrt(mean.standard_error);
+    return mean;
+  };
+  double whole_per_m = 0.0;
+  double cut_per_m = 0.0;
+  const FluxShare whole = look(0.0, &whole_per_m);
+  const FluxShare cut = look(3.0, &cut_per_m);
+  const double share = physics::CutForwardPeak({physics::PhaseKind::kHenyeyGreenstein, 0.9F},
+                                               3.0 * std::numbers::pi / 180)
+                           .forward_share;
+  EXPECT_GT(share, 0.01);
+  EXPECT_NEAR(cut_per_m / whole_per_m, 1.0 - share, 1e-5);
+  ExpectAgrees({cut.value - whole.value, std::hypot(cut.standard_error, whole.standard_error)}, 0.0,
+               0.005 * whole.value, 0.02 * whole.value);
+}
+
 TEST(SurroundingsOf, ShadedGroundWithoutCloudsIsUniform) {
   volume::HydrometeorFields fields = SmallStorm();
   fields.fields.clear();
