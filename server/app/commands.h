@@ -23,6 +23,7 @@ Command AddMeasure(CLI::App& app);
 // Parts of `measure`.
 Command AddMeasureFrames(CLI::App& measure);
 Command AddMeasureExtremes(CLI::App& measure);
+Command AddMeasureSlices(CLI::App& measure);
 Command AddMeasureTrade(CLI::App& measure);
 Command AddGenerate(CLI::App& app);
 Command AddFit(CLI::App& app);

@@ -11,6 +11,7 @@ Command AddMeasure(CLI::App& app) {
   const auto parts = std::make_shared<std::vector<Command>>();
   parts->push_back(AddMeasureFrames(*measure));
   parts->push_back(AddMeasureExtremes(*measure));
+  parts->push_back(AddMeasureSlices(*measure));
   parts->push_back(AddMeasureTrade(*measure));
   return {measure, [parts] {
             for (const Command& part : *parts) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "absl/strings/str_format.h"
 #include "base/status.h"
@@ -13,6 +14,9 @@
 
 namespace thunderhead::measure {
 namespace {
+
+// Of the round box: it is 0.25 % of its middle at its faces.
+constexpr double kSteepness = 24.0;
 
 // A ray's transmittance is a product of rounded factors.
 constexpr float kMost = 1.0F + 1e-5F;
@@ -60,7 +64,7 @@ double ShareAt(Box::Shape shape, const glm::dvec3& place) {
     case Box::Shape::kLayer:
       return std::abs(place.z) < 0.25 ? 2.0 : 0.0;
     case Box::Shape::kRound:
-      return std::exp(-24.0 * glm::dot(place, place));
+      return std::exp(-kSteepness * glm::dot(place, place));
   }
   return 1.0;
 }
@@ -92,6 +96,15 @@ std::shared_ptr<volume::HydrometeorFields> FieldsOf(const Box& box) {
   const int empty = box.shape == Box::Shape::kLayer ? box.cells.z / 4 : 0;
   fields->condensate = {{0, 0, empty}, {box.cells.x, box.cells.y, box.cells.z - empty}};
   return fields;
+}
+
+std::shared_ptr<const volume::HydrometeorFields> SmoothCloud(double optical_depth) {
+  // Of a Gaussian over a side, whose ends are as good as infinitely far.
+  const double mean = std::sqrt(std::numbers::pi / kSteepness);
+  return FieldsOf({.cells = glm::ivec3(32),
+                   .size_m = glm::dvec3(4000.0),
+                   .optical_depth = optical_depth / mean,
+                   .shape = Box::Shape::kRound});
 }
 
 absl::StatusOr<Seen> Probe::Draw(const scene::Scene& scene, const volume::HydrometeorFields& fields,

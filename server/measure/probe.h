@@ -28,6 +28,9 @@ struct Box {
 
 std::shared_ptr<volume::HydrometeorFields> FieldsOf(const Box& box);
 
+// A Gaussian cloud in a cube of 4 km, of that optical depth through its middle.
+std::shared_ptr<const volume::HydrometeorFields> SmoothCloud(double optical_depth);
+
 struct Look {
   double view_azimuth_deg = 200.0;  // at which the camera stands, seen from the target
   double view_elevation_deg = 89.9;

@@ -11,6 +11,7 @@
 #include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
+#include "measure/log_plot.h"
 
 namespace thunderhead::measure {
 namespace {
@@ -19,6 +20,10 @@ constexpr char kColumns[] =
     "renderer,mode,transport,slices,image_scale,jpeg_quality,milliseconds,milliseconds_spread,"
     "bytes,relative_rmse,relative_bias,flip";
 constexpr std::size_t kColumnCount = 12;
+
+// Where a logarithmic axis begins for what is zero.
+constexpr double kLeastMilliseconds = 1e-3;
+constexpr double kLeastError = 1e-6;
 
 template <typename Value>
 bool Named(absl::string_view name, std::initializer_list<Value> values, Value* found) {
@@ -61,55 +66,29 @@ std::string Quoted(const std::string& text) {
   return absl::StrCat("\"", absl::StrReplaceAll(text, {{"\\", "\\\\"}, {"\"", "\\\""}}), "\"");
 }
 
-// A logarithmic axis over the values.
-struct Axis {
-  double low, high, from_px, to_px;
-
-  Axis(std::vector<double> values, double from, double to) : from_px(from), to_px(to) {
-    const auto [least, most] = std::minmax_element(values.begin(), values.end());
-    low = std::log10(*least) - 0.05;
-    high = std::log10(*most) + 0.05;
-  }
-  double At(double value) const {
-    return from_px + (std::log10(value) - low) / (high - low) * (to_px - from_px);
-  }
-  // 1, 2 and 5 times powers of ten within the axis.
-  std::vector<double> Ticks() const {
-    std::vector<double> ticks;
-    for (int power = static_cast<int>(std::floor(low)); power <= std::ceil(high); ++power) {
-      for (const double digit : {1.0, 2.0, 5.0}) {
-        const double tick = digit * std::pow(10.0, power);
-        if (std::log10(tick) >= low && std::log10(tick) <= high) ticks.push_back(tick);
-      }
-    }
-    return ticks;
-  }
-};
-
 // Blue marches, orange slices; hollow for paper transport.
-std::string Marker(const TradeRow& row, double x, double y) {
+void AddDot(const TradeRow& row, LogPlot* plot) {
   const char* color = row.setting.renderer == scene::Renderer::kLightVolume ? "#1f6fb4" : "#d9730d";
   const bool hollow = row.setting.transport == scene::Transport::kPaper;
-  return absl::StrFormat(
-      "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%d\" fill=\"%s\" stroke=\"%s\"><title>%s, %s, %s, %d "
-      "slices, scale %g, JPEG %d: %.2f ms, RMSE %.3f, FLIP %.3f</title></circle>\n",
-      x, y, row.pareto ? 5 : 3, hollow ? "#ffffff" : color, color, NameOf(row.setting.renderer),
-      NameOf(row.setting.mode), NameOf(row.setting.transport), row.setting.slices,
-      row.setting.image_scale, row.setting.jpeg_quality, row.milliseconds, row.relative_rmse,
-      row.flip);
+  const std::string tip =
+      absl::StrFormat("%s, %s, %s, %d slices, scale %g, JPEG %d: %.2f ms, RMSE %.3f, FLIP %.3f",
+                      NameOf(row.setting.renderer), NameOf(row.setting.mode),
+                      NameOf(row.setting.transport), row.setting.slices, row.setting.image_scale,
+                      row.setting.jpeg_quality, row.milliseconds, row.relative_rmse, row.flip);
+  plot->Dot(std::max(row.milliseconds, kLeastMilliseconds),
+            std::max(row.relative_rmse, kLeastError), row.pareto ? 5 : 3,
+            hollow ? "#ffffff" : color, color, tip);
 }
 
-std::string Front(const std::vector<TradeRow>& rows, const Axis& across, const Axis& up) {
-  std::vector<TradeRow> front;
+std::vector<std::pair<double, double>> FrontOf(const std::vector<TradeRow>& rows) {
+  std::vector<std::pair<double, double>> front;
   for (const TradeRow& row : rows) {
-    if (row.pareto) front.push_back(row);
+    if (!row.pareto) continue;
+    front.emplace_back(std::max(row.milliseconds, kLeastMilliseconds),
+                       std::max(row.relative_rmse, kLeastError));
   }
-  std::sort(front.begin(), front.end(),
-            [](const TradeRow& a, const TradeRow& b) { return a.milliseconds < b.milliseconds; });
-  const std::string points = absl::StrJoin(front, " ", [&](std::string* text, const TradeRow& row) {
-    absl::StrAppendFormat(text, "%.1f,%.1f", across.At(row.milliseconds), up.At(row.relative_rmse));
-  });
-  return absl::StrCat("<polyline fill=\"none\" stroke=\"#555555\" points=\"", points, "\"/>\n");
+  std::sort(front.begin(), front.end());
+  return front;
 }
 
 }  // namespace
@@ -174,43 +153,21 @@ std::string TradeJson(const TradeTitle& title, const std::vector<TradeRow>& rows
 }
 
 std::string TradeSvg(const TradeTitle& title, const std::vector<TradeRow>& rows) {
-  std::string svg =
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 720 440\" "
-      "font-family=\"sans-serif\" "
-      "font-size=\"12\">\n<rect width=\"720\" height=\"440\" fill=\"#ffffff\"/>\n";
-  if (rows.empty()) return absl::StrCat(svg, "</svg>\n");
+  if (rows.empty()) return "<svg xmlns=\"http://www.w3.org/2000/svg\"></svg>\n";
   std::vector<double> times;
   std::vector<double> errors;
   for (const TradeRow& row : rows) {
-    times.push_back(std::max(row.milliseconds, 1e-3));
-    errors.push_back(std::max(row.relative_rmse, 1e-6));
+    times.push_back(std::max(row.milliseconds, kLeastMilliseconds));
+    errors.push_back(std::max(row.relative_rmse, kLeastError));
   }
-  const Axis across(times, 60.0, 700.0);
-  const Axis up(errors, 390.0, 40.0);
-  for (const double tick : across.Ticks()) {
-    absl::StrAppendFormat(&svg,
-                          "<path d=\"M%.1f 40V390\" stroke=\"#dddddd\"/><text x=\"%.1f\" y=\"405\" "
-                          "text-anchor=\"middle\">%g</text>\n",
-                          across.At(tick), across.At(tick), tick);
-  }
-  for (const double tick : up.Ticks()) {
-    absl::StrAppendFormat(&svg,
-                          "<path d=\"M60 %.1fH700\" stroke=\"#dddddd\"/><text x=\"54\" y=\"%.1f\" "
-                          "text-anchor=\"end\">%g</text>\n",
-                          up.At(tick), up.At(tick) + 4.0, tick);
-  }
-  absl::StrAppendFormat(
-      &svg,
-      "<text x=\"60\" y=\"24\">%s, %s: relative RMSE against milliseconds a frame "
-      "(%dx%d)</text>\n<text x=\"60\" y=\"428\">blue: light volume, orange: "
-      "half-angle slices; hollow: paper transport; line: Pareto front</text>\n",
-      title.storm, title.view, title.size_px.x, title.size_px.y);
-  absl::StrAppend(&svg, Front(rows, across, up));
-  for (const TradeRow& row : rows) {
-    absl::StrAppend(&svg, Marker(row, across.At(std::max(row.milliseconds, 1e-3)),
-                                 up.At(std::max(row.relative_rmse, 1e-6))));
-  }
-  return absl::StrCat(svg, "</svg>\n");
+  LogPlot plot(times, errors,
+               absl::StrFormat("%s, %s: relative RMSE against milliseconds a frame (%dx%d)",
+                               title.storm, title.view, title.size_px.x, title.size_px.y),
+               "blue: light volume, orange: half-angle slices; hollow: paper transport; line: "
+               "Pareto front");
+  plot.Line(FrontOf(rows), "#555555");
+  for (const TradeRow& row : rows) AddDot(row, &plot);
+  return plot.Svg();
 }
 
 }  // namespace thunderhead::measure

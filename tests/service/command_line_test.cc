@@ -190,6 +190,20 @@ TEST_F(CommandLineTest, MeasureExtremesJudgesEachCase) {
   EXPECT_EQ(outcome.out.find("FAILED"), std::string::npos);
 }
 
+TEST_F(CommandLineTest, MeasureSlicesWritesThePlot) {
+  const std::string plot = folder_.File("slices.svg");
+  const Outcome outcome = Run("measure slices --slab 2 --device software --json -o " + plot);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  google::protobuf::Struct json;
+  ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(outcome.out, &json).ok()) << outcome.out;
+  EXPECT_EQ(json.fields().at("rows").list_value().values_size(), 2);
+  EXPECT_THAT(Contents(plot), StartsWith("<svg"));
+  EXPECT_THAT(Contents(plot), HasSubstr("consistent, order"));
+  ExpectError("measure slices", 2, "either a STORM or --slab TAU");
+  ExpectError("measure slices --slab -1", 2, "above 0");
+  ExpectError("measure slices --slab 1 -o x.png", 2, ".svg or .csv");
+}
+
 TEST_F(CommandLineTest, ServeSaysOneLineAndStopsOnASignal) {
   const Outcome outcome =
       Shell(std::string(PROGRAM) + " serve --device software --data " + kSample +

@@ -1,0 +1,116 @@
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "app/commands.h"
+#include "app/local_scene.h"
+#include "app/output_file.h"
+#include "app/progress_bar.h"
+#include "base/status.h"
+#include "gl/context.h"
+#include "measure/probe.h"
+#include "measure/slice_convergence.h"
+#include "scene/view.h"
+#include "spdlog/spdlog.h"
+
+namespace thunderhead::app {
+namespace {
+
+struct Flags {
+  std::string storm;
+  std::optional<double> slab;
+  SceneFlags scene;
+  std::string output;
+  std::string device = "auto";
+  bool json = false;
+};
+
+struct Subject {
+  std::string title;
+  scene::Scene scene;
+  std::shared_ptr<const volume::HydrometeorFields> fields;
+};
+
+absl::Status CheckFlags(const Flags& flags) {
+  if (flags.storm.empty() == !flags.slab.has_value()) {
+    return absl::InvalidArgumentError("measure slices needs either a STORM or --slab TAU");
+  }
+  if (flags.slab.has_value() && !(std::isfinite(*flags.slab) && *flags.slab > 0.0)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--slab is ", *flags.slab, "; the optical depth must be above 0"));
+  }
+  if (!flags.output.empty() && !absl::EndsWithIgnoreCase(flags.output, ".svg") &&
+      !absl::EndsWithIgnoreCase(flags.output, ".csv")) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("-o is '", flags.output, "'; its name must end in .svg or .csv"));
+  }
+  return absl::OkStatus();
+}
+
+// The cloud fills the picture.
+Subject SlabOf(double optical_depth) {
+  Subject subject{absl::StrFormat("smooth cloud of optical depth %g", optical_depth),
+                  {},
+                  measure::SmoothCloud(optical_depth)};
+  const volume::RegularGrid& grid = subject.fields->grid;
+  subject.scene.camera =
+      scene::Framing(scene::OrbitCamera(), grid.low_corner_m, grid.HighCorner_m(), 1.0);
+  return subject;
+}
+
+absl::StatusOr<Subject> SubjectOf(const Flags& flags) {
+  if (flags.slab.has_value()) return SlabOf(*flags.slab);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const LocalScene local, OpenScene(flags.storm, flags.scene));
+  return Subject{local.storm_id, local.scene, local.fields};
+}
+
+absl::Status MeasureSlices(const Flags& flags) {
+  spdlog::set_level(spdlog::level::warn);
+  THUNDERHEAD_RETURN_IF_ERROR(CheckFlags(flags));
+  THUNDERHEAD_ASSIGN_OR_RETURN(Subject subject, SubjectOf(flags));
+  if (flags.scene.renderer.empty()) subject.scene.rendering.renderer = scene::Renderer::kHalfAngle;
+  subject.scene.output = {160, 160, 88};
+  // Black sky and ground: what is measured is the light in the cloud.
+  subject.scene.sky = {0.0, 0.0};
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,
+                               gl::Context::Create(flags.device));
+  absl::StatusOr<std::vector<measure::SliceCurve>> curves;
+  {
+    ProgressBar bar("slicing");
+    curves = measure::MeasureSliceConvergence(subject.scene, subject.fields,
+                                              [&bar](double share) { bar.Set(share); });
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(curves.status());
+  if (!flags.output.empty()) {
+    const bool svg = absl::EndsWithIgnoreCase(flags.output, ".svg");
+    THUNDERHEAD_RETURN_IF_ERROR(WriteFile(
+        flags.output, svg ? measure::ToSvg(subject.title, *curves) : measure::ToCsv(*curves)));
+  }
+  std::cout << (flags.json ? measure::ToJson(measure::MachineOf(context->Info()), *curves)
+                           : measure::ToTable(*curves));
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+Command AddMeasureSlices(CLI::App& measure) {
+  auto flags = std::make_shared<Flags>();
+  CLI::App* slices = measure.add_subcommand("slices", "How pictures converge as slices grow");
+  slices->add_option("STORM", flags->storm, "Storm file or folder");
+  slices->add_option("--slab", flags->slab, "A smooth cloud of this optical depth instead");
+  slices->add_option("--scene", flags->scene.file, "Scene as Protobuf JSON");
+  slices->add_option("--time", flags->scene.time_index, "Which of the storm's times, from 0");
+  slices->add_option("--renderer", flags->scene.renderer,
+                     "half_angle (the default) or light_volume");
+  slices->add_option("-o,--output", flags->output, "A plot (.svg) or the figures (.csv)");
+  slices->add_option("--device", flags->device, "auto, software or a GPU's number")
+      ->capture_default_str();
+  slices->add_flag("--json", flags->json, "Print JSON");
+  return {slices, [flags] { return MeasureSlices(*flags); }};
+}
+
+}  // namespace thunderhead::app

@@ -1,0 +1,42 @@
+// An SVG plot with two logarithmic axes that fit the data. Pure functions of numbers and text.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace thunderhead::measure {
+
+class LogPlot {
+ public:
+  // Axes that hold every point of `x` and `y`, all above 0 and at least one. `title` stands above,
+  // `note` below.
+  LogPlot(const std::vector<double>& x, const std::vector<double>& y, const std::string& title,
+          const std::string& note);
+
+  // Joins the points in their order.
+  void Line(const std::vector<std::pair<double, double>>& points, const std::string& color);
+  // A dot of `radius` pixels, described by `tip` where the mouse is.
+  void Dot(double x, double y, int radius, const std::string& fill, const std::string& stroke,
+           const std::string& tip);
+
+  std::string Svg() const;
+
+ private:
+  struct Axis {
+    Axis(const std::vector<double>& values, double from, double to);
+    double At(double value) const;
+    std::vector<double> Ticks() const;
+
+    double low = 0.0;
+    double high = 1.0;
+    double from_px = 0.0;
+    double to_px = 1.0;
+  };
+
+  Axis across_;
+  Axis up_;
+  std::string svg_;
+};
+
+}  // namespace thunderhead::measure

@@ -1,0 +1,168 @@
+#include "measure/slice_convergence.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "base/status.h"
+#include "frame/tone_map.h"
+#include "measure/image_error.h"
+#include "measure/log_plot.h"
+#include "renderers/scene_renderer.h"
+
+namespace thunderhead::measure {
+namespace {
+
+constexpr std::array kCounts = {8, 16, 32, 64, 128, 256};
+constexpr int kLimit = 2048;  // slices that stand for infinitely many
+
+// Half a step of a half float, relative.
+constexpr double kFrameRounding = 0x1p-12;
+
+// For a curve's line on a logarithmic axis.
+constexpr double kLeastError = 1e-9;
+
+absl::StatusOr<LinearImage> DrawWith(
+    renderers::SceneRenderer& renderer, scene::Scene scene, int slices,
+    const std::shared_ptr<const volume::HydrometeorFields>& fields) {
+  scene.rendering.slices = slices;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame frame,
+                               renderer.Draw(scene, fields, {}));
+  const std::vector<float> values = frame::ReadLinear(*frame.radiance);
+  LinearImage image{frame.radiance->Size(), {}};
+  for (std::size_t i = 0; i < values.size(); i += 4) {
+    image.radiance.emplace_back(values[i], values[i + 1], values[i + 2]);
+  }
+  return image;
+}
+
+}  // namespace
+
+double OrderOf(const std::vector<SlicePoint>& all) {
+  std::vector<SlicePoint> points;
+  for (const SlicePoint& point : all) {
+    if (point.relative_rmse > 10.0 * kFrameRounding) points.push_back(point);
+  }
+  if (points.size() < 2) points = all;
+  double x_mean = 0.0;
+  double y_mean = 0.0;
+  const auto count = static_cast<double>(points.size());
+  const auto y_of = [](const SlicePoint& point) {
+    return std::log(std::max(point.relative_rmse, kLeastError));
+  };
+  for (const SlicePoint& point : points) {
+    x_mean += std::log(point.slices) / count;
+    y_mean += y_of(point) / count;
+  }
+  double covariance = 0.0;
+  double variance = 0.0;
+  for (const SlicePoint& point : points) {
+    const double x = std::log(point.slices) - x_mean;
+    covariance += x * (y_of(point) - y_mean);
+    variance += x * x;
+  }
+  return variance > 0.0 ? -covariance / variance : 0.0;
+}
+
+absl::StatusOr<std::vector<SliceCurve>> MeasureSliceConvergence(
+    const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
+    const std::function<void(double share)>& progress) {
+  renderers::SceneRenderer renderer;
+  std::vector<SliceCurve> curves;
+  double done = 0.0;
+  const auto step = [&] {
+    progress(++done / static_cast<double>(kTransports.size() * (kCounts.size() + 1)));
+  };
+  for (const auto& transport : kTransports) {
+    scene::Scene drawn = scene;
+    drawn.rendering.transport = transport.value;
+    THUNDERHEAD_ASSIGN_OR_RETURN(const LinearImage limit,
+                                 DrawWith(renderer, drawn, kLimit, fields));
+    step();
+    SliceCurve curve{transport, {}, 0.0};
+    for (const int slices : kCounts) {
+      THUNDERHEAD_ASSIGN_OR_RETURN(const LinearImage image,
+                                   DrawWith(renderer, drawn, slices, fields));
+      curve.points.push_back({slices, RelativeRmse(image, limit)});
+      step();
+    }
+    curve.order = OrderOf(curve.points);
+    curves.push_back(std::move(curve));
+  }
+  return curves;
+}
+
+std::string ToTable(const std::vector<SliceCurve>& curves) {
+  std::string text = absl::StrFormat("relative RMSE against %d slices\n\n%-8s", kLimit, "slices");
+  for (const SliceCurve& curve : curves)
+    absl::StrAppendFormat(&text, " %12s", curve.transport.name);
+  for (std::size_t i = 0; i < kCounts.size(); ++i) {
+    absl::StrAppendFormat(&text, "\n%-8d", kCounts[i]);
+    for (const SliceCurve& curve : curves) {
+      absl::StrAppendFormat(&text, " %12.3g", curve.points[i].relative_rmse);
+    }
+  }
+  absl::StrAppendFormat(&text, "\n%-8s", "order");
+  for (const SliceCurve& curve : curves) absl::StrAppendFormat(&text, " %12.2f", curve.order);
+  return text + "\n";
+}
+
+std::string ToJson(const Machine& machine, const std::vector<SliceCurve>& curves) {
+  const std::string rows =
+      absl::StrJoin(curves, ",\n", [](std::string* text, const SliceCurve& curve) {
+        const std::string points =
+            absl::StrJoin(curve.points, ", ", [](std::string* out, const SlicePoint& point) {
+              absl::StrAppendFormat(out, "{\"slices\": %d, \"relative_rmse\": %.6g}", point.slices,
+                                    point.relative_rmse);
+            });
+        absl::StrAppendFormat(text,
+                              "    {\"transport\": \"%s\", \"order\": %.4g, \"points\": [%s]}",
+                              curve.transport.name, curve.order, points);
+      });
+  return absl::StrCat("{\n  \"machine\": ", ToJson(machine), ",\n  \"rows\": [\n", rows,
+                      "\n  ]\n}\n");
+}
+
+std::string ToCsv(const std::vector<SliceCurve>& curves) {
+  std::string text = "transport,slices,relative_rmse\n";
+  for (const SliceCurve& curve : curves) {
+    for (const SlicePoint& point : curve.points) {
+      absl::StrAppendFormat(&text, "%s,%d,%.6g\n", curve.transport.name, point.slices,
+                            point.relative_rmse);
+    }
+  }
+  return text;
+}
+
+std::string ToSvg(const std::string& title, const std::vector<SliceCurve>& curves) {
+  constexpr std::array<const char*, kTransports.size()> kColors = {"#d9730d", "#1f6fb4"};
+  std::vector<double> slices;
+  std::vector<double> errors;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    for (const SlicePoint& point : curves[i].points) {
+      slices.push_back(point.slices);
+      errors.push_back(std::max(point.relative_rmse, kLeastError));
+    }
+    names.push_back(absl::StrFormat("%s: %s, order %.2f", i == 0 ? "orange" : "blue",
+                                    curves[i].transport.name, curves[i].order));
+  }
+  LogPlot plot(slices, errors, absl::StrCat(title, ": relative RMSE against slices"),
+               absl::StrJoin(names, "; "));
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    std::vector<std::pair<double, double>> line;
+    for (const SlicePoint& point : curves[i].points) {
+      line.emplace_back(point.slices, std::max(point.relative_rmse, kLeastError));
+    }
+    plot.Line(line, kColors[i]);
+    for (const auto& [x, y] : line) {
+      plot.Dot(x, y, 4, kColors[i], kColors[i], absl::StrFormat("%g slices: %.3g", x, y));
+    }
+  }
+  return plot.Svg();
+}
+
+}  // namespace thunderhead::measure

@@ -1,0 +1,44 @@
+// How pictures converge as slices grow, for both transports: error of linear radiance against the
+// same transport with many more slices, and the order at which it falls. What a transport converges
+// to is not judged here (measure/trade.h does that). Uses the current GL context.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "measure/machine.h"
+#include "measure/paths.h"
+#include "scene/scene.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::measure {
+
+struct SlicePoint {
+  int slices = 0;
+  double relative_rmse = 0.0;
+};
+
+struct SliceCurve {
+  Named<scene::Transport> transport;
+  std::vector<SlicePoint> points;
+  double order = 0.0;  // of a power law through the points: error goes with slices^-order
+};
+
+// Draws `scene` (its renderer, mode and size) with 8 to 256 slices and both transports.
+absl::StatusOr<std::vector<SliceCurve>> MeasureSliceConvergence(
+    const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
+    const std::function<void(double share)>& progress);
+
+// The order of the power law that fits the points best (least squares of the logarithms). Points
+// within ten roundings of the frame's half floats are left out if two others are left.
+double OrderOf(const std::vector<SlicePoint>& points);
+
+std::string ToTable(const std::vector<SliceCurve>& curves);
+std::string ToJson(const Machine& machine, const std::vector<SliceCurve>& curves);
+std::string ToCsv(const std::vector<SliceCurve>& curves);
+std::string ToSvg(const std::string& title, const std::vector<SliceCurve>& curves);
+
+}  // namespace thunderhead::measure

@@ -1,0 +1,42 @@
+// The orders at which both transports converge as slices grow.
+#include "measure/slice_convergence.h"
+
+#include <memory>
+
+#include "gl/context.h"
+#include "gtest/gtest.h"
+#include "measure/probe.h"
+#include "scene/view.h"
+
+namespace thunderhead::measure {
+namespace {
+
+TEST(SliceConvergence, OrderOfAPowerLaw) {
+  EXPECT_NEAR(OrderOf({{10, 0.9}, {20, 0.45}, {40, 0.225}}), 1.0, 1e-12);
+  EXPECT_NEAR(OrderOf({{8, 0.64}, {16, 0.16}, {64, 0.01}}), 2.0, 1e-12);
+  // The last has reached the rounding of the frame.
+  EXPECT_NEAR(OrderOf({{8, 0.64}, {16, 0.16}, {1024, 3e-4}}), 2.0, 1e-12);
+}
+
+TEST(SliceConvergence, PaperIsFirstOrderConsistentSecond) {
+  auto context = gl::Context::Create("software");
+  ASSERT_TRUE(context.ok()) << context.status();
+  scene::Scene scene;
+  scene.rendering.renderer = scene::Renderer::kHalfAngle;
+  scene.output = {48, 48, 88};
+  scene.sky = {0.0, 0.0};
+  const auto fields = SmoothCloud(5.0);
+  scene.camera = scene::Framing(scene::OrbitCamera(), fields->grid.low_corner_m,
+                                fields->grid.HighCorner_m(), 1.0);
+  const auto curves = MeasureSliceConvergence(scene, fields, [](double) {});
+  ASSERT_TRUE(curves.ok()) << curves.status();
+  ASSERT_EQ(curves->size(), 2U);
+  // Each slice of the printed form adds (1 - T)^2 too much: half as much twice as often.
+  EXPECT_EQ(curves->front().transport.name, "paper");
+  EXPECT_NEAR(curves->front().order, 1.0, 0.15);
+  EXPECT_EQ(curves->back().transport.name, "consistent");
+  EXPECT_NEAR(curves->back().order, 2.0, 0.3);
+}
+
+}  // namespace
+}  // namespace thunderhead::measure
