@@ -102,7 +102,7 @@ function RenderingSection({ state }: { state: PageState }) {
     <Section title="Light in the cloud" testId="rendering-section">
       <Choice
         label="Renderer"
-        testId="renderer"
+        testId="renderer-choice"
         value={rendering?.renderer || Renderer.LIGHT_VOLUME}
         options={RENDERERS}
         onChange={(renderer) => state.edit((scene) => withRendering(scene, { renderer }))}
