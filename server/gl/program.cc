@@ -139,6 +139,10 @@ void Program::Set(std::string_view uniform, const glm::vec3& value) const {
 void Program::Set(std::string_view uniform, const glm::vec4& value) const {
   glProgramUniform4fv(name_.Get(), Location(uniform), 1, glm::value_ptr(value));
 }
+void Program::Set(std::string_view uniform, const glm::mat3& value) const {
+  glProgramUniformMatrix3fv(name_.Get(), Location(uniform), 1, GL_FALSE, glm::value_ptr(value));
+}
+
 void Program::Set(std::string_view uniform, const glm::mat4& value) const {
   glProgramUniformMatrix4fv(name_.Get(), Location(uniform), 1, GL_FALSE, glm::value_ptr(value));
 }

@@ -11,6 +11,7 @@
 
 #include "absl/status/statusor.h"
 #include "gl/objects.h"
+#include "glm/mat3x3.hpp"
 #include "glm/mat4x3.hpp"
 #include "glm/mat4x4.hpp"
 #include "glm/vec2.hpp"
@@ -53,6 +54,7 @@ class Program {
   void Set(std::string_view uniform, const glm::vec2& value) const;
   void Set(std::string_view uniform, const glm::vec3& value) const;
   void Set(std::string_view uniform, const glm::vec4& value) const;
+  void Set(std::string_view uniform, const glm::mat3& value) const;
   void Set(std::string_view uniform, const glm::mat4& value) const;
   void Set(std::string_view uniform, const glm::mat4x3& value) const;
   void Set(std::string_view uniform, const std::vector<float>& values) const;

@@ -1,25 +1,33 @@
-// Sunlight and the clear sky: the GLSL of shaders/physics/{sky,air}.glsl compiled for the CPU, and its
-// means over the sky.
+// The clear sky from a height above the ground and the light it sends: a table per direction of the
+// sun, looked up by the GLSL of shaders/physics/sky.glsl, compiled for the CPU here. Radiance is in
+// units of the sun's irradiance above the atmosphere. Air between eye and storm:
+// shaders/physics/air.glsl.
 #pragma once
+
+#include <vector>
 
 #include "glm/common.hpp"
 #include "glm/exponential.hpp"
 #include "glm/geometric.hpp"
+#include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
+#include "glm/vec4.hpp"
+#include "physics/atmosphere.h"
 
 namespace thunderhead::physics {
 namespace glsl {
 
+using glm::abs;
 using glm::clamp;
 using glm::dot;
 using glm::exp;
 using glm::max;
+using glm::min;
 using glm::sqrt;
+using glm::vec2;
 using glm::vec3;
-// clang-format off: air needs sky
-#include "shaders/physics/sky.glsl"
 #include "shaders/physics/air.glsl"
-// clang-format on
+#include "shaders/physics/sky.glsl"
 
 }  // namespace glsl
 
@@ -29,7 +37,34 @@ struct SkyLight {
   glm::vec3 irradiance{0.0F};     // on level ground
 };
 
-// Integrates glsl::sky_radiance over the upper hemisphere for the sun in unit `towards_sun`.
-SkyLight SkyLightOf(const glm::vec3& towards_sun);
+class ClearSky {
+ public:
+  // Seen from a height above the ground; `towards_sun` is a unit vector, z up.
+  ClearSky(const Atmosphere& atmosphere, const glm::vec3& towards_sun, float eye_height_m);
+
+  // From unit `direction`; below the horizon, what the air sends in front of the ground.
+  glm::vec3 Radiance(const glm::vec3& direction) const;
+
+  // Integrates Radiance over the upper hemisphere.
+  const SkyLight& Light() const { return light_; }
+
+  // Of the elevation of the horizon.
+  float HorizonSine() const { return horizon_sine_; }
+
+  // Share of sunlight that reaches the ground.
+  const glm::vec3& SunTransmittance() const { return sun_transmittance_; }
+
+  // 2 * kSkyAzimuths by kSkyElevations texels, rows from the nadir up.
+  const std::vector<glm::vec4>& Table() const { return table_; }
+
+ private:
+  SkyLight Integrate() const;
+
+  glm::vec3 towards_sun_;
+  glm::vec3 sun_transmittance_;
+  float horizon_sine_;
+  std::vector<glm::vec4> table_;
+  SkyLight light_;
+};
 
 }  // namespace thunderhead::physics

@@ -1,6 +1,7 @@
 #include "reference/path_radiance.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -49,20 +50,48 @@ class Path {
   bool Advance() {
     const double ground_m = GroundDistance_m();
     const std::optional<double> collision_m = SampleCollision(medium_, ray_, ground_m, random_);
-    if (collision_m.has_value()) return Scatter(ray_.At(*collision_m));
+    if (collision_m.has_value()) {
+      PassAir(*collision_m);
+      return Scatter(ray_.At(*collision_m));
+    }
     if (ground_m < kInfinity) return Reflect(ground_m);
-    if (surroundings_.sky) radiance_ += Carried() * surroundings_.sky(ray_.direction);
+    const auto& sky =
+        seen_from_eye_ && surroundings_.seen_sky ? surroundings_.seen_sky : surroundings_.sky;
+    if (sky) radiance_ += Carried() * sky(ray_.direction);
     return false;
   }
 
   double GroundDistance_m() const {
-    if (!surroundings_.ground.has_value() || ray_.direction.z >= 0.0) return kInfinity;
-    const double above_m = ray_.origin_m.z - surroundings_.ground->height_m;
-    return above_m > 0.0 ? above_m / -ray_.direction.z : kInfinity;
+    if (!surroundings_.ground.has_value()) return kInfinity;
+    const Ground& ground = *surroundings_.ground;
+    const glm::dvec2 across(ray_.direction);
+    const double above_m = ray_.origin_m.z - GroundHeight_m(ray_.origin_m);
+    const double closing =
+        -ray_.direction.z -
+        ground.curvature_per_m * glm::dot(glm::dvec2(ray_.origin_m) - ground.touch_m, across);
+    const double discriminant =
+        closing * closing - 2.0 * ground.curvature_per_m * glm::dot(across, across) * above_m;
+    if (above_m <= 0.0 || closing <= 0.0 || discriminant < 0.0) return kInfinity;
+    return 2.0 * above_m / (closing + std::sqrt(discriminant));
+  }
+
+  double GroundHeight_m(const glm::dvec3& point_m) const {
+    const Ground& ground = *surroundings_.ground;
+    const glm::dvec2 off_m = glm::dvec2(point_m) - ground.touch_m;
+    return ground.height_m - 0.5 * ground.curvature_per_m * glm::dot(off_m, off_m);
+  }
+
+  // Air matters on the way to the eye only.
+  void PassAir(double distance_m) {
+    if (seen_from_eye_ && surroundings_.air) {
+      const Air air = surroundings_.air(ray_, distance_m);
+      radiance_ += Carried() * air.airlight;
+      throughput_ *= air.transmittance;
+    }
+    seen_from_eye_ = false;
   }
 
   bool Scatter(const glm::dvec3& point_m) {
-    seen_from_eye_ = false;
     const Scattering scattering = medium_.ScatteringAt(point_m, random_->Uniform());
     if (scattering.phase == nullptr) return false;
     throughput_ *= scattering.weight;
@@ -95,13 +124,8 @@ class Path {
   bool Reflect(double ground_m) {
     const Ground& ground = *surroundings_.ground;
     glm::dvec3 point_m = ray_.At(ground_m);
-    point_m.z = ground.height_m;
-    if (seen_from_eye_ && surroundings_.air) {
-      const Air air = surroundings_.air(ray_, ground_m);
-      radiance_ += Carried() * air.airlight;
-      throughput_ *= air.transmittance;
-    }
-    seen_from_eye_ = false;
+    point_m.z = GroundHeight_m(point_m);
+    PassAir(ground_m);
     radiance_ += Carried() * ground.radiance;
     throughput_ *= ground.albedo;
     if (Largest(Carried()) <= 0.0) return false;

@@ -23,9 +23,6 @@ namespace {
 // Bare soil and grass seen from far off; the scene's ground albedo is that of red.
 constexpr glm::dvec3 kGroundTint(1.0, 0.93, 0.78);
 
-// The eye's view of the ground fades within this distance in any case: the earth is round.
-constexpr double kFarthestGround_m = 4e5;
-
 physics::PhaseFunction PhaseOf(const scene::Scene& scene, physics::Hydrometeor hydrometeor) {
   const bool per_field = scene::HasPerFieldPhase(scene.rendering.mode);
   const physics::Hydrometeor of = per_field ? hydrometeor : physics::Hydrometeor::kCloud;
@@ -119,26 +116,44 @@ CutOptics CutPeak(const GroupLook& look, double peak_cut_deg) {
   return optics;
 }
 
-glm::dvec3 SkyRadiance(const glm::dvec3& direction, const glm::vec3& towards_sun, double scale) {
-  const glm::vec3 above(direction.x, direction.y, std::abs(direction.z));
-  return scale * glm::dvec3(physics::glsl::sky_radiance(above, towards_sun));
-}
+// Shared by the functions that look at it.
+struct Around {
+  Around(const scene::Scene& scene, const glm::vec3& towards_sun, const scene::View& seen_from)
+      : atmosphere(static_cast<float>(scene.sky.turbidity),
+                   static_cast<float>(scene.sky.ground_albedo)),
+        sky(atmosphere, towards_sun, 0.0F),
+        seen_sky(atmosphere, glm::vec3(seen_from.local_from_world * glm::dvec3(towards_sun)),
+                 static_cast<float>(seen_from.altitude_m)),
+        view(seen_from),
+        scale(scene.sun.irradiance * scene.sky.brightness),
+        turbidity(static_cast<float>(scene.sky.turbidity)) {}
 
-// Air between the eye and the ground: what is lost of the ground is filled up with the horizon's
-// light.
-Air AirBefore(const Ray& ray, double ground_distance_m, double ground_height_m,
-              const std::function<glm::dvec3(const glm::dvec3&)>& sky) {
-  const double eye_height_m = ray.origin_m.z - ground_height_m;
-  const double distance_m = std::min(ground_distance_m, kFarthestGround_m);
-  Air air;
-  air.transmittance = physics::glsl::air_transmittance(static_cast<float>(distance_m),
-                                                       static_cast<float>(eye_height_m));
-  const glm::dvec3 level(ray.direction.x, ray.direction.y, 0.0);
-  const double length = glm::length(level);
-  // Straight down there is no horizon to look at, and hardly any air that would need one.
-  const glm::dvec3 horizon = length > 0.0 ? level / length : glm::dvec3(1.0, 0.0, 0.0);
-  air.airlight = (1.0 - air.transmittance) * sky(horizon);
-  return air;
+  // As the eye sees it.
+  glm::dvec3 SeenRadiance(const glm::dvec3& direction) const {
+    return scale * glm::dvec3(seen_sky.Radiance(glm::vec3(view.local_from_world * direction)));
+  }
+
+  physics::Atmosphere atmosphere;
+  physics::ClearSky sky;       // from the ground, as it lights the storm
+  physics::ClearSky seen_sky;  // from the eye
+  scene::View view;
+  double scale;
+  float turbidity;
+};
+
+// Air between the eye and what it sees: what is lost is filled up with the sky's light.
+Air AirBefore(const Around& around, const Ray& ray, double distance_m) {
+  const scene::View& view = around.view;
+  // The Earth falls away below the ray.
+  const double sine =
+      (view.local_from_world * ray.direction).z + 0.5 * view.ground_curvature_per_m * distance_m;
+  const auto seen = [&](float radiance, float opacity, const glm::dvec3& sky) {
+    return glm::dvec3(
+        physics::glsl::through_air(glm::vec3(radiance), opacity, static_cast<float>(distance_m),
+                                   static_cast<float>(std::max(view.altitude_m, 0.0)),
+                                   static_cast<float>(sine), around.turbidity, glm::vec3(sky)));
+  };
+  return {seen(1.0F, 0.0F, glm::dvec3(0.0)), seen(0.0F, 1.0F, around.SeenRadiance(ray.direction))};
 }
 
 }  // namespace
@@ -189,25 +204,30 @@ Surroundings SurroundingsOf(const scene::Scene& scene, const volume::Hydrometeor
   Surroundings around;
   around.towards_sun = scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg);
   const glm::vec3 towards_sun(around.towards_sun);
-  around.sun_irradiance =
-      scene.sun.irradiance * glm::dvec3(physics::glsl::sun_transmittance(towards_sun.z));
-  const double sky_scale = scene.sun.irradiance * scene.sky.brightness;
-  around.sky = [towards_sun, sky_scale](const glm::dvec3& direction) {
-    return SkyRadiance(direction, towards_sun, sky_scale);
+  const scene::View view = scene::ViewOf(scene, fields);
+  const auto shared = std::make_shared<const Around>(scene, towards_sun, view);
+  around.sun_irradiance = scene.sun.irradiance * glm::dvec3(shared->sky.SunTransmittance());
+  around.sky = [shared](const glm::dvec3& direction) {
+    return shared->scale * glm::dvec3(shared->sky.Radiance(glm::vec3(direction)));
+  };
+  around.seen_sky = [shared](const glm::dvec3& direction) {
+    return shared->SeenRadiance(direction);
   };
   Ground ground;
   ground.height_m = volume::LowestTerrain_m(fields);
+  ground.touch_m = view.touch_m;
+  ground.curvature_per_m = view.ground_curvature_per_m;
   const glm::dvec3 albedo = scene.sky.ground_albedo * kGroundTint;
   if (ground_light == GroundLight::kShaded) {
     ground.albedo = albedo;
   } else {
     const glm::dvec3 direct = around.sun_irradiance * std::max(around.towards_sun.z, 0.0);
-    const glm::dvec3 diffuse = sky_scale * glm::dvec3(physics::SkyLightOf(towards_sun).irradiance);
+    const glm::dvec3 diffuse = shared->scale * glm::dvec3(shared->sky.Light().irradiance);
     ground.radiance = albedo * (direct + diffuse) * std::numbers::inv_pi;
   }
   around.ground = ground;
-  around.air = [sky = around.sky, height_m = ground.height_m](const Ray& ray, double distance_m) {
-    return AirBefore(ray, distance_m, height_m, sky);
+  around.air = [shared](const Ray& ray, double distance_m) {
+    return AirBefore(*shared, ray, distance_m);
   };
   return around;
 }

@@ -37,15 +37,13 @@ absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene
                                                        const volume::HydrometeorFields& fields,
                                                        Sides sides);
 
-// kShaded is a Lambertian ground lit by sun and sky through the medium. kUniform has the radiance
-// that the same ground would have without any medium, as the renderers draw it.
+// kShaded is a Lambertian ground lit by sun and sky through the medium; renderers draw its shadow
+// from the sun. kUniform has the radiance that the same ground would have without any medium.
 enum class GroundLight { kShaded, kUniform };
 
 Surroundings SurroundingsOf(const scene::Scene& scene, const volume::HydrometeorFields& fields,
                             GroundLight ground_light);
 
-// A spotter's rays are straight in world coordinates (scene/view.h); the ground that they meet is
-// flat there, which differs from the renderers' round one near the horizon only.
 Camera CameraOf(const scene::Scene& scene, const volume::HydrometeorFields& fields);
 
 }  // namespace thunderhead::reference

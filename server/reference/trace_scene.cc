@@ -12,7 +12,7 @@ absl::StatusOr<TracedScene> TraceScene(const scene::Scene& scene,
   MediumOptions options;
   options.peak_cut_deg = peak_cut_deg;
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto medium, MediumOf(scene, fields, options));
-  PathTracer tracer(medium, SurroundingsOf(scene, fields, GroundLight::kUniform),
+  PathTracer tracer(medium, SurroundingsOf(scene, fields, GroundLight::kShaded),
                     CameraOf(scene, fields), {scene.output.width_px, scene.output.height_px}, {});
   TracedScene traced;
   traced.result = tracer.Refine(limits, observer, stop);

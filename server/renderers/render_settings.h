@@ -1,6 +1,7 @@
 // What every renderer of a medium is told besides the medium.
 #pragma once
 
+#include "gl/objects.h"
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 #include "scene/scene.h"
@@ -21,6 +22,8 @@ struct RenderSettings {
   Illumination illumination;
   glm::ivec2 eye_size{1};  // of the eye buffer in pixels
   int slices = 128;        // or samples along a ray
+  // How far the ground is along each pixel's ray; none where nothing hides a part of the medium.
+  const gl::Texture2D* ground_distance = nullptr;
 };
 
 }  // namespace thunderhead::renderers

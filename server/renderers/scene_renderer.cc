@@ -2,45 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "base/status.h"
 #include "base/stopwatch.h"
-#include "glm/geometric.hpp"
-#include "physics/sky.h"
-#include "renderers/view_uniforms.h"
 #include "scene/view.h"
-#include "volume/terrain.h"
 
 namespace thunderhead::renderers {
 namespace {
-
-constexpr GLuint kEyeUnit = 4;
-constexpr glm::vec3 kGroundTint(1.0F, 0.93F, 0.78F);  // of bare soil and grass seen from far off
-
-glm::vec3 GroundRadiance(const scene::Scene& scene, const glm::vec3& towards_sun,
-                         const physics::SkyLight& sky) {
-  const float sine = std::max(towards_sun.z, 0.0F);
-  const glm::vec3 direct = physics::glsl::sun_transmittance(towards_sun.z) * sine;
-  const glm::vec3 diffuse = sky.irradiance * static_cast<float>(scene.sky.brightness);
-  const auto reflected =
-      static_cast<float>(scene.sun.irradiance * scene.sky.ground_albedo * std::numbers::inv_pi);
-  return (direct + diffuse) * kGroundTint * reflected;
-}
-
-Illumination IlluminationOf(const scene::Scene& scene) {
-  Illumination light;
-  light.towards_sun = scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg);
-  const glm::vec3 towards_sun(light.towards_sun);
-  const physics::SkyLight sky = physics::SkyLightOf(towards_sun);
-  const auto irradiance = static_cast<float>(scene.sun.irradiance);
-  light.sunlight = irradiance * physics::glsl::sun_transmittance(towards_sun.z);
-  const glm::vec3 from_sky =
-      sky.mean_radiance * irradiance * static_cast<float>(scene.sky.brightness);
-  light.ambient = 0.5F * (from_sky + GroundRadiance(scene, towards_sun, sky));
-  return light;
-}
 
 glm::ivec2 EyeSize(const scene::Scene& scene, const DrawQuality& quality) {
   const glm::dvec2 size(scene.output.width_px, scene.output.height_px);
@@ -50,7 +19,11 @@ glm::ivec2 EyeSize(const scene::Scene& scene, const DrawQuality& quality) {
 }  // namespace
 
 SceneRenderer::SceneRenderer(std::shared_ptr<gl::ProgramCache> programs)
-    : programs_(std::move(programs)), half_angle_(programs_), light_volume_(programs_) {}
+    : programs_(std::move(programs)),
+      surroundings_(programs_),
+      ground_(programs_),
+      half_angle_(programs_),
+      light_volume_(programs_) {}
 
 scene::Stage SceneRenderer::FirstStage(
     const scene::Scene& scene,
@@ -60,7 +33,8 @@ scene::Stage SceneRenderer::FirstStage(
 }
 
 std::size_t SceneRenderer::Bytes() const {
-  return medium_.Bytes() + half_angle_.Bytes() + light_volume_.Bytes() + linear_.Bytes();
+  return medium_.Bytes() + half_angle_.Bytes() + light_volume_.Bytes() + surroundings_.Bytes() +
+         ground_.Bytes() + linear_.Bytes();
 }
 
 absl::StatusOr<LinearFrame> SceneRenderer::Draw(
@@ -79,16 +53,21 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
   }
   if (first <= scene::Stage::kView) {
     const scene::View view = scene::ViewOf(scene, *fields);
+    surroundings_.Update(scene, view);
+    if (first <= scene::Stage::kStorm) ground_.SetTerrain(*fields);
     drawn_slices_ = 0;
     if (!medium_.Empty()) {
       const double wanted = std::ceil(scene.rendering.slices * quality.slice_share);
       drawn_slices_ = std::max(static_cast<int>(wanted), 1);
-      THUNDERHEAD_RETURN_IF_ERROR(DrawMedium(
-          {scene.rendering, view, IlluminationOf(scene), EyeSize(scene, quality), drawn_slices_},
-          first, &stages));
+      RenderSettings settings{scene.rendering, view, surroundings_.IlluminationOf(scene),
+                              EyeSize(scene, quality), drawn_slices_};
+      THUNDERHEAD_RETURN_IF_ERROR(DrawGround(first, &settings, &stages));
+      THUNDERHEAD_RETURN_IF_ERROR(DrawMedium(settings, first, &stages));
+    } else {
+      ground_.ClearShadow();
     }
     base::Stopwatch stopwatch;
-    THUNDERHEAD_RETURN_IF_ERROR(Composite(scene, view, volume::LowestTerrain_m(*fields)));
+    THUNDERHEAD_RETURN_IF_ERROR(Composite(scene, view));
     glFinish();
     stages.push_back({"composite", stopwatch.ElapsedMs()});
   }
@@ -98,6 +77,24 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
   LinearFrame frame = Report(*fields);
   frame.stages = std::move(stages);
   return frame;
+}
+
+absl::Status SceneRenderer::DrawGround(scene::Stage first, RenderSettings* settings,
+                                       std::vector<StageTime>* stages) {
+  const bool light_changed = first <= scene::Stage::kLight;
+  const bool may_hide = ground_.MayHide(settings->view);
+  if (!light_changed && !may_hide) return absl::OkStatus();
+  base::Stopwatch stopwatch;
+  if (light_changed) {
+    THUNDERHEAD_RETURN_IF_ERROR(ground_.CastShadow(medium_, *settings));
+  }
+  if (may_hide) {
+    THUNDERHEAD_RETURN_IF_ERROR(ground_.DrawDistance(settings->view, settings->eye_size));
+    settings->ground_distance = &ground_.Distance();
+  }
+  glFinish();
+  stages->push_back({"ground", stopwatch.ElapsedMs()});
+  return absl::OkStatus();
 }
 
 absl::Status SceneRenderer::DrawMedium(const RenderSettings& settings, scene::Stage first,
@@ -131,8 +128,7 @@ const gl::Texture2D& SceneRenderer::Eye() const {
   return drawn_by_ == scene::Renderer::kHalfAngle ? half_angle_.Eye() : light_volume_.Eye();
 }
 
-absl::Status SceneRenderer::Composite(const scene::Scene& scene, const scene::View& view,
-                                      double ground_height_m) {
+absl::Status SceneRenderer::Composite(const scene::Scene& scene, const scene::View& view) {
   const glm::ivec2 size(scene.output.width_px, scene.output.height_px);
   if (linear_.Size() != size) {
     linear_ = gl::Texture2D(GL_RGBA16F, size);
@@ -142,23 +138,7 @@ absl::Status SceneRenderer::Composite(const scene::Scene& scene, const scene::Vi
     nothing_ = gl::Texture2D(GL_RGBA16F, glm::ivec2(1));
     gl::Framebuffer(nothing_).Clear(0.0F, 0.0F, 0.0F, 1.0F);
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      const gl::Program* program,
-      programs_->Get({"common/whole_target.vert", "post/composite.frag", {}}));
-  const glm::vec3 towards_sun(scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg));
-  BindLocalRays(*program, view);
-  program->Set("towards_sun", glm::vec3(view.local_from_world * glm::dvec3(towards_sun)));
-  program->Set("sky_scale", static_cast<float>(scene.sun.irradiance * scene.sky.brightness));
-  program->Set("ground_radiance",
-               GroundRadiance(scene, towards_sun, physics::SkyLightOf(towards_sun)));
-  program->Set("eye_height_m", static_cast<float>(view.altitude_m - ground_height_m));
-  program->Set("ground_curvature_per_m", static_cast<float>(view.ground_curvature_per_m));
-  Eye().Bind(kEyeUnit);
-  linear_target_.Bind();
-  program->Use();
-  no_attributes_.Bind();
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  return absl::OkStatus();
+  return surroundings_.Composite(scene, view, ground_, medium_, Eye(), linear_target_);
 }
 
 LinearFrame SceneRenderer::Report(const volume::HydrometeorFields& fields) const {

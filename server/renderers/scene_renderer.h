@@ -9,10 +9,10 @@
 
 #include "absl/status/statusor.h"
 #include "gl/objects.h"
-#include "gl/program.h"
 #include "renderers/half_angle/half_angle_renderer.h"
 #include "renderers/light_volume/light_volume_renderer.h"
 #include "renderers/medium.h"
+#include "renderers/sky_and_ground.h"
 #include "scene/scene.h"
 #include "volume/hydrometeor_fields.h"
 
@@ -26,7 +26,7 @@ struct DrawQuality {
 };
 
 // Wall time of one stage: "extinction", "upload"; "slices" of half-angle slicing, or "light" and
-// "view" of the light volume; "composite".
+// "view" of the light volume; "ground", "composite".
 struct StageTime {
   std::string stage;
   double milliseconds = 0.0;
@@ -60,16 +60,19 @@ class SceneRenderer {
   std::size_t Bytes() const;
 
  private:
+  // The storm's shadow, and what of the storm the ground hides.
+  absl::Status DrawGround(scene::Stage first, RenderSettings* settings,
+                          std::vector<StageTime>* stages);
   // Reruns what `first` dirties of the light and the view; appends the times of what ran.
   absl::Status DrawMedium(const RenderSettings& settings, scene::Stage first,
                           std::vector<StageTime>* stages);
   const gl::Texture2D& Eye() const;
-  absl::Status Composite(const scene::Scene& scene, const scene::View& view,
-                         double ground_height_m);
+  absl::Status Composite(const scene::Scene& scene, const scene::View& view);
   LinearFrame Report(const volume::HydrometeorFields& fields) const;
 
   std::shared_ptr<gl::ProgramCache> programs_;
-  gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
+  SkyAndGround surroundings_;
+  Ground ground_;
   HalfAngleRenderer half_angle_;
   LightVolumeRenderer light_volume_;
   scene::Renderer drawn_by_ = scene::Renderer::kHalfAngle;  // of the eye buffer, if not empty

@@ -14,14 +14,6 @@ void BindRays(const gl::Program& program, const scene::View& view, const glm::dv
   program.Set("ray_up", glm::vec3(view.up * view.tan_half_height));
 }
 
-void BindLocalRays(const gl::Program& program, const scene::View& view) {
-  scene::View local = view;
-  local.right = view.local_from_world * view.right;
-  local.up = view.local_from_world * view.up;
-  local.forward = view.local_from_world * view.forward;
-  BindRays(program, local, view.eye_m);
-}
-
 glm::mat4 ClipFromLocal(const scene::View& view, const glm::dvec3& middle_m) {
   // Depth is not used; the planes only have to be valid, and clamping keeps every slice.
   const double near_m = 1.0;

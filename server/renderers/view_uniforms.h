@@ -12,10 +12,6 @@ namespace thunderhead::renderers {
 // Sets the uniforms of common/view.glsl for coordinates in metres from `middle_m`.
 void BindRays(const gl::Program& program, const scene::View& view, const glm::dvec3& middle_m);
 
-// Sets those that a picture of sky and ground needs: directions east, north and up where the eye
-// is, from an origin at the eye.
-void BindLocalRays(const gl::Program& program, const scene::View& view);
-
 // From metres around `middle_m` to clip space.
 glm::mat4 ClipFromLocal(const scene::View& view, const glm::dvec3& middle_m);
 

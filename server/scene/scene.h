@@ -90,6 +90,7 @@ struct Sun {
 struct Sky {
   double brightness = 1.0;
   double ground_albedo = 0.2;
+  double turbidity = 1.5;  // of the air: 1 without haze, 10 very hazy
 
   bool operator==(const Sky&) const = default;
 };

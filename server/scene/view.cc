@@ -37,6 +37,26 @@ glm::dvec2 HalfFrame(double focal_length_mm, double aspect_ratio) {
   return glm::dvec2(half_width_mm, half_width_mm / aspect_ratio) / focal_length_mm;
 }
 
+// Sets what of a view follows from the Earth's roundness and the eye's place; returns how far the
+// sea there is below the world's plane. A paraboloid stands in for the sphere: at 150 km they
+// differ by 0.05 m.
+double StandOnEarth(const Site& site, View* view) {
+  view->touch_m = site.storm_middle_m;
+  view->ground_curvature_per_m = 1.0 / kEffectiveEarthRadius_m;
+  const glm::dvec2 off_m = glm::dvec2(view->eye_m) - site.storm_middle_m;
+  const double distance_m = glm::length(off_m);
+  const glm::dvec2 away = distance_m > 0.0 ? off_m / distance_m : glm::dvec2(0.0, -1.0);
+  const double angle = std::atan(distance_m / kEffectiveEarthRadius_m);
+  const glm::dvec3 outwards(away, 0.0);
+  const glm::dvec3 sideways(-away.y, away.x, 0.0);
+  const glm::dvec3 up(0.0, 0.0, 1.0);
+  const glm::dvec3 leaning = std::sin(angle) * outwards + std::cos(angle) * up;
+  const glm::dvec3 falling = std::cos(angle) * outwards - std::sin(angle) * up;
+  view->local_from_world =
+      glm::dmat3(outwards, sideways, up) * glm::transpose(glm::dmat3(falling, sideways, leaning));
+  return 0.5 * distance_m * distance_m / kEffectiveEarthRadius_m;
+}
+
 double AzimuthOf(const glm::dvec2& towards) {
   return glm::degrees(std::atan2(towards.x, towards.y));
 }
@@ -54,28 +74,22 @@ View ViewOf(const OrbitCamera& camera, double aspect_ratio) {
   return view;
 }
 
+View ViewOf(const OrbitCamera& camera, const Site& site, double aspect_ratio) {
+  View view = ViewOf(camera, aspect_ratio);
+  const double drop_m = StandOnEarth(site, &view);
+  view.altitude_m = view.eye_m.z + drop_m;
+  return view;
+}
+
 View ViewOf(const SpotterCamera& camera, const Site& site, double aspect_ratio) {
   View view;
   view.altitude_m = site.ground_height_m + camera.eye_height_m;
-  view.ground_curvature_per_m = 1.0 / kEffectiveEarthRadius_m;
-  // The world's plane touches the sphere below the storm's middle.
-  const glm::dvec2 from_storm_m = camera.place_m - site.storm_middle_m;
-  const double distance_m = glm::length(from_storm_m);
-  const double angle = distance_m / kEffectiveEarthRadius_m;
-  const glm::dvec2 away = distance_m > 0.0 ? from_storm_m / distance_m : glm::dvec2(0.0, -1.0);
-  const glm::dvec3 outwards(away, 0.0);
-  const glm::dvec3 zenith = std::sin(angle) * outwards + glm::dvec3(0.0, 0.0, std::cos(angle));
-  const double from_center_m = kEffectiveEarthRadius_m + view.altitude_m;
-  view.eye_m = glm::dvec3(site.storm_middle_m + away * (from_center_m * std::sin(angle)),
-                          from_center_m * std::cos(angle) - kEffectiveEarthRadius_m);
-  // Turns the upright at the eye to z, along the great circle to the storm.
-  const glm::dvec3 tilted = std::cos(angle) * outwards - glm::dvec3(0.0, 0.0, std::sin(angle));
-  const glm::dvec3 sideways(-away.y, away.x, 0.0);
-  const glm::dmat3 local_axes(outwards, sideways, glm::dvec3(0.0, 0.0, 1.0));
-  const glm::dmat3 world_axes(tilted, sideways, zenith);
-  view.local_from_world = local_axes * glm::transpose(world_axes);
-  const glm::dvec3 looks = Direction(camera.azimuth_deg, camera.elevation_deg);
-  LookAlong(looks * view.local_from_world, zenith, &view);
+  view.eye_m = glm::dvec3(camera.place_m, 0.0);
+  const double drop_m = StandOnEarth(site, &view);
+  view.eye_m.z = view.altitude_m - drop_m;
+  const glm::dmat3 world_from_local = glm::transpose(view.local_from_world);
+  LookAlong(world_from_local * Direction(camera.azimuth_deg, camera.elevation_deg),
+            world_from_local[2], &view);
   const glm::dvec2 half_frame = HalfFrame(camera.focal_length_mm, aspect_ratio);
   view.tan_half_width = half_frame.x;
   view.tan_half_height = half_frame.y;
@@ -97,19 +111,20 @@ View ViewOf(const TopDownCamera& camera, double aspect_ratio) {
 
 View ViewOf(const Scene& scene, const volume::HydrometeorFields& fields) {
   const double aspect_ratio = static_cast<double>(scene.output.width_px) / scene.output.height_px;
-  if (const auto* orbit = std::get_if<OrbitCamera>(&scene.camera)) {
-    return ViewOf(*orbit, aspect_ratio);
-  }
   if (const auto* top_down = std::get_if<TopDownCamera>(&scene.camera)) {
     return ViewOf(*top_down, aspect_ratio);
   }
-  const auto& spotter = std::get<SpotterCamera>(scene.camera);
   const volume::RegularGrid& grid = fields.grid;
   const volume::CellBox& cells = fields.condensate;
   const glm::dvec3 middle_cell =
       cells.Empty() ? glm::dvec3(grid.cells) / 2.0 : glm::dvec3(cells.low + cells.high) / 2.0;
-  const Site site{volume::TerrainHeight_m(fields, spotter.place_m),
-                  glm::dvec2(grid.low_corner_m + middle_cell * grid.spacing_m)};
+  Site site;
+  site.storm_middle_m = glm::dvec2(grid.low_corner_m + middle_cell * grid.spacing_m);
+  if (const auto* orbit = std::get_if<OrbitCamera>(&scene.camera)) {
+    return ViewOf(*orbit, site, aspect_ratio);
+  }
+  const auto& spotter = std::get<SpotterCamera>(scene.camera);
+  site.ground_height_m = volume::TerrainHeight_m(fields, spotter.place_m);
   return ViewOf(spotter, site, aspect_ratio);
 }
 

@@ -1,24 +1,22 @@
 // The geometry of a picture: which ray each pixel stands for. Derived from a scene's camera and the
 // ground under it.
 //
-// World coordinates are flat. Orbit and top-down cameras take them as they are. A spotter stands on
-// a round Earth: seen from its own place the storm is lowered and tilted as if it stood on the
-// plane that touches the Earth below the storm's middle. Rays stay straight lines in world
-// coordinates. The storm itself stays flat: what is r away from its middle stands r^2 / 2R too
-// high, 15 m at 15 km and 170 m at 50 km, however far the spotter is.
+// World coordinates are those of the plane that touches the round Earth below the storm's middle:
+// the ground falls away from there as d^2 / 2R, and where an eye stands off it, its upright leans
+// with it. So a distant storm sinks below a spotter's horizon while rays stay straight lines. The
+// storm itself stays flat: what is r away from its middle stands r^2 / 2R too high, 15 m at 15 km
+// and 170 m at 50 km, however far the eye is. A top-down camera sees a flat world.
 #pragma once
 
 #include "glm/mat3x3.hpp"
 #include "glm/vec3.hpp"
+#include "physics/atmosphere.h"
 #include "scene/scene.h"
 #include "volume/hydrometeor_fields.h"
 
 namespace thunderhead::scene {
 
-// The radius of a sphere without air above which straight rays rise as real ones do above the
-// Earth: 7/6 of the mean radius, the surveyors' coefficient of refraction (1/7) for visible light.
-// Radar's 4/3 is for microwaves, which water vapour bends more.
-constexpr double kEffectiveEarthRadius_m = 7.0 / 6.0 * 6.371e6;
+using physics::kEffectiveEarthRadius_m;
 
 // `right`, `up` and `forward` are unit vectors. The ray through normalised device coordinates (x,
 // y) starts at eye_m + x half_width_m right + y half_height_m up and has the direction forward + x
@@ -37,14 +35,15 @@ struct View {
   // East, north and up where the eye is, from world directions.
   glm::dmat3 local_from_world{1.0};
   double altitude_m = 0.0;              // of the eye above sea level
-  double ground_curvature_per_m = 0.0;  // of the level ground that the eye sees; 0 is flat
+  glm::dvec2 touch_m{0.0};              // where the world's plane touches the Earth
+  double ground_curvature_per_m = 0.0;  // away from there; 0 is flat
 
   bool Orthographic() const { return half_width_m > 0.0; }
 };
 
-// Where a spotter stands: what of a storm the camera depends on.
+// Where a storm is: what of it a view depends on.
 struct Site {
-  double ground_height_m = 0.0;  // above sea level
+  double ground_height_m = 0.0;  // above sea level, under a spotter
   glm::dvec2 storm_middle_m{0.0};
 };
 
@@ -52,7 +51,8 @@ struct Site {
 glm::dvec3 Direction(double azimuth_deg, double elevation_deg);
 
 // The view of a camera on a picture of the given aspect ratio (width over height).
-View ViewOf(const OrbitCamera& camera, double aspect_ratio);
+View ViewOf(const OrbitCamera& camera, double aspect_ratio);  // on a flat Earth
+View ViewOf(const OrbitCamera& camera, const Site& site, double aspect_ratio);
 View ViewOf(const SpotterCamera& camera, const Site& site, double aspect_ratio);
 View ViewOf(const TopDownCamera& camera, double aspect_ratio);
 

@@ -222,7 +222,8 @@ scene::Scene ToScene(const v1::Scene& message) {
   scene.camera = ToCamera(message.camera());
   scene.sun = {message.sun().azimuth_deg(), message.sun().elevation_deg(),
                message.sun().irradiance()};
-  scene.sky = {message.sky().brightness(), message.sky().ground_albedo()};
+  scene.sky = {message.sky().brightness(), message.sky().ground_albedo(),
+               message.sky().turbidity()};
   for (const v1::FieldParameters& field : message.fields()) {
     scene.fields[IndexOf(field.hydrometeor())] = ToField(field);
   }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
+#include <numbers>
 
 #include "frame/tone_map.h"
 #include "gl/context.h"
@@ -59,32 +61,32 @@ class SceneRendererTest : public testing::Test {
 
 TEST_F(SceneRendererTest, AChangeRerunsOnlyWhatItDirties) {
   scene_.rendering.renderer = scene::Renderer::kHalfAngle;
-  EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "slices", "composite"));
+  EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "ground", "slices", "composite"));
   EXPECT_THAT(StagesOf(), IsEmpty());
   scene_.display.exposure_ev = 1.0;
   EXPECT_THAT(StagesOf(), IsEmpty());
   Orbit().azimuth_deg += 5.0;
   EXPECT_THAT(StagesOf(), ElementsAre("slices", "composite"));
   scene_.sun.elevation_deg += 5.0;
-  EXPECT_THAT(StagesOf(), ElementsAre("slices", "composite"));
+  EXPECT_THAT(StagesOf(), ElementsAre("ground", "slices", "composite"));
   scene_.fields[0].scale = 2.0F;
-  EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "slices", "composite"));
+  EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "ground", "slices", "composite"));
   EXPECT_THAT(StagesOf({0.5, 1.0}), ElementsAre("slices", "composite"));
   fields_ = support::MakeSlab(4000.0, 2000.0, 0.02);
-  EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "slices", "composite"));
+  EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "ground", "slices", "composite"));
 }
 
 TEST_F(SceneRendererTest, TheLightVolumeIsKeptWhileOnlyTheCameraMoves) {
   scene_.rendering.renderer = scene::Renderer::kLightVolume;
-  EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "light", "view", "composite"));
+  EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "ground", "light", "view", "composite"));
   Orbit().azimuth_deg += 5.0;
   EXPECT_THAT(StagesOf(), ElementsAre("view", "composite"));
   scene_.sun.elevation_deg += 5.0;
-  EXPECT_THAT(StagesOf(), ElementsAre("light", "view", "composite"));
+  EXPECT_THAT(StagesOf(), ElementsAre("ground", "light", "view", "composite"));
   scene_.rendering.renderer = scene::Renderer::kHalfAngle;
-  EXPECT_THAT(StagesOf(), ElementsAre("slices", "composite"));
+  EXPECT_THAT(StagesOf(), ElementsAre("ground", "slices", "composite"));
   scene_.rendering.renderer = scene::Renderer::kLightVolume;
-  EXPECT_THAT(StagesOf(), ElementsAre("light", "view", "composite"));
+  EXPECT_THAT(StagesOf(), ElementsAre("ground", "light", "view", "composite"));
 }
 
 TEST_F(SceneRendererTest, KeptStagesGiveThePictureThatAFreshRendererGives) {
@@ -144,6 +146,7 @@ TEST_F(SceneRendererTest, ACloudIsBrighterThanTheGroundBehindIt) {
 TEST_F(SceneRendererTest, FromAboveACloudStandsWhereItsCoordinatesSay) {
   // 4 km of cloud in the left half of 16 km: its middle is 4 km west of the picture's.
   scene_.camera = scene::TopDownCamera{{4000.0, 0.0}, 16e3};
+  scene_.sun.elevation_deg = 90.0;  // its shadow lies below it
   const std::vector<float> with = Pixels(renderer_.get());
   scene_.fields[0].visible = false;
   const std::vector<float> without = Pixels(renderer_.get());
@@ -170,21 +173,128 @@ TEST_F(SceneRendererTest, ASpottersHorizonDips) {
   camera.elevation_deg = 0.0;
   camera.focal_length_mm = 50.0;
   scene_.camera = camera;
-  scene_.sky.ground_albedo = 0.0;
+  scene_.sky = {1.0, 0.0, 1.0};
   scene_.output = {8, 400, 90};
   const std::vector<float> pixels = Pixels(renderer_.get());
-  // Just below the horizon the ground is so far that it looks like the sky there; count from where
-  // the radiance, mirrored about level, stops being the same.
+  // Black ground behind air is darker than the sky above it: the edge is where brightness falls
+  // most.
+  const auto row = [&](int y) { return pixels[static_cast<std::size_t>(4 * 8 * y)]; };
+  int edge = 100;
+  for (int y = 20; y < 380; ++y) {
+    if (row(y + 1) / row(y) > row(edge + 1) / row(edge)) edge = y;
+  }
   const double dip = std::sqrt(2.0 * 12000.0 / scene::kEffectiveEarthRadius_m);
-  const auto row_of = [](double tangent) { return 200.0 * (1.0 + tangent * 50.0 / 12.0); };
-  const auto differs = [&](int below) {
-    const auto low = static_cast<std::size_t>(4 * 8 * (199 - below));
-    const auto high = static_cast<std::size_t>(4 * 8 * (200 + below));
-    return std::abs(pixels[low] - pixels[high]) > 1e-3F * pixels[high];
-  };
-  const int dip_rows = static_cast<int>(row_of(dip) - 200.0);
-  for (int below = 0; below < dip_rows - 1; ++below) ASSERT_FALSE(differs(below)) << below;
-  EXPECT_TRUE(differs(dip_rows + 2));
+  EXPECT_NEAR(edge + 1, 200.0 * (1.0 - dip * 50.0 / 12.0), 1.5);
+}
+
+// Black sky, white ground, no haze: what is seen of the ground is the sun's light on it, through
+// air that is the same with and without a cloud.
+class GroundTest : public SceneRendererTest {
+ protected:
+  void SetUp() override {
+    SceneRendererTest::SetUp();
+    scene_.sky = {0.0, 1.0, 1.0};
+    scene_.rendering.mode = scene::Mode::kUniformPhaseLowAlbedo;
+    scene_.camera = scene::TopDownCamera{{0.0, 0.0}, 24e3};
+    scene_.output = {96, 32, 90};
+    scene_.sun = {270.0, 45.0, 1.0};
+  }
+
+  // The red of the pixel at a place on the ground.
+  static float At(const std::vector<float>& pixels, double east_m, double north_m) {
+    const auto column = static_cast<std::size_t>((east_m / 24e3 + 0.5) * 96);
+    const auto row = static_cast<std::size_t>((north_m / 8e3 + 0.5) * 32);
+    return pixels[4 * (96 * row + column)];
+  }
+
+  // A copy of the slab on terrain.
+  void SetTerrain(const std::function<double(double east_m, double north_m)>& height_m) {
+    auto fields = std::make_shared<volume::HydrometeorFields>(*fields_);
+    const volume::RegularGrid& grid = fields->grid;
+    for (int y = 0; y < grid.cells.y; ++y) {
+      for (int x = 0; x < grid.cells.x; ++x) {
+        const glm::dvec3 middle = grid.low_corner_m + (glm::dvec3(x, y, 0) + 0.5) * grid.spacing_m;
+        fields->terrain_height_m.push_back(static_cast<float>(height_m(middle.x, middle.y)));
+      }
+    }
+    fields_ = fields;
+  }
+};
+
+TEST_F(GroundTest, ACloudsShadowIsItsTransmittance) {
+  // 4 km wide and 2 km high; the sun in the west, 45 degrees up. A sun ray that comes down e metres
+  // east of the slab's east face has entered it through its top, or through its west face.
+  for (const double extinction_per_m : {1e-4, 5e-4, 1e-2}) {
+    fields_ = support::MakeSlab(4000.0, 2000.0, extinction_per_m);
+    scene_.fields[0].visible = true;
+    const std::vector<float> with = Pixels(renderer_.get());
+    scene_.fields[0].visible = false;
+    const std::vector<float> without = Pixels(renderer_.get());
+    for (const double beyond_m : {375.0, 875.0, 1375.0}) {
+      const double path_m = std::sqrt(2.0) * (2000.0 - beyond_m);
+      const double expected = std::exp(-extinction_per_m * path_m);
+      // A texel and a sample of the shadow are 125 m long, a pixel of the picture 250 m.
+      EXPECT_NEAR(At(with, 2000.0 + beyond_m, 0.0) / At(without, 2000.0 + beyond_m, 0.0), expected,
+                  0.01 + 180.0 * extinction_per_m * expected)
+          << extinction_per_m << ' ' << beyond_m;
+    }
+    EXPECT_EQ(At(with, 4875.0, 0.0), At(without, 4875.0, 0.0)) << "beyond the shadow";
+    EXPECT_EQ(At(with, -3000.0, 0.0), At(without, -3000.0, 0.0)) << "on the sun's side";
+  }
+}
+
+TEST_F(GroundTest, SlopesAreLitByTheSunsAngleToThem) {
+  scene_.fields[0].visible = false;
+  const float level = At(Pixels(renderer_.get()), 0.0, 0.0);
+  // Rising to the east by one in four: the sun in the west stands on it at 45 + 14 degrees. The
+  // terrain is a few hundred metres high: 4 % of a scale height of air.
+  SetTerrain([](double east_m, double) { return 500.0 + east_m / 4.0; });
+  const double facing = std::sin(std::numbers::pi / 4 + std::atan(0.25));
+  EXPECT_NEAR(At(Pixels(renderer_.get()), 0.0, 0.0) / level / (facing * std::sqrt(2.0)), 1.0, 0.01);
+  // Falling to the east by two in one it is turned away from the sun.
+  fields_ = support::MakeSlab(4000.0, 2000.0, 0.01);
+  SetTerrain([](double east_m, double) { return 4000.0 - 2.0 * east_m; });
+  EXPECT_EQ(At(Pixels(renderer_.get()), 0.0, 0.0), 0.0F);
+}
+
+TEST_F(GroundTest, AMountainHidesWhatIsBehindIt) {
+  // A wall of 6 km between the spotter in the south and the slab.
+  scene::SpotterCamera camera;
+  camera.place_m = {0.0, -30e3};
+  camera.azimuth_deg = 0.0;
+  camera.elevation_deg = 2.0;
+  camera.focal_length_mm = 60.0;
+  scene_.camera = camera;
+  for (const auto renderer : {scene::Renderer::kHalfAngle, scene::Renderer::kLightVolume}) {
+    scene_.rendering.renderer = renderer;
+    const auto storm_shows = [&] {
+      scene_.fields[0].visible = true;
+      const std::vector<float> with = Pixels(renderer_.get());
+      scene_.fields[0].visible = false;
+      const std::vector<float> without = Pixels(renderer_.get());
+      int different = 0;
+      for (std::size_t i = 0; i < with.size(); i += 4) {
+        // Its shadow may show, darker; the storm itself stands before the sky.
+        different += with[i] > without[i] + 1e-4F ? 1 : 0;
+      }
+      return different;
+    };
+    scene_.sky.brightness = 1.0;
+    fields_ = support::MakeSlab(4000.0, 2000.0, 0.01);
+    EXPECT_GT(storm_shows(), 50);
+    SetTerrain([](double, double north_m) { return north_m < -1700.0 ? 6000.0 : 0.0; });
+    EXPECT_EQ(storm_shows(), 0);
+  }
+}
+
+TEST_F(GroundTest, TerrainThatIsLevelIsDrawnAsAPlane) {
+  scene_.camera = scene::OrbitCamera{{0.0, 0.0, 0.0}, 200.0, 20.0, 20e3, 35.0};
+  const std::vector<float> plane = Pixels(renderer_.get());
+  SetTerrain([](double east_m, double) { return east_m > 0.0 ? 0.0 : 1.5; });
+  const std::vector<float> relief = Pixels(renderer_.get());
+  for (std::size_t i = 0; i < plane.size(); ++i) {
+    ASSERT_NEAR(relief[i], plane[i], 0.02F * plane[i] + 1e-3F) << i;
+  }
 }
 
 TEST_F(SceneRendererTest, NightIsDarkAndFinite) {

@@ -43,6 +43,7 @@ export const LIMITS = {
   sunIrradiance: limitsOf(SunSchema.field.irradiance),
   skyBrightness: limitsOf(SkySchema.field.brightness),
   groundAlbedo: limitsOf(SkySchema.field.groundAlbedo),
+  turbidity: limitsOf(SkySchema.field.turbidity),
   slices: limitsOf(RenderingSchema.field.slices),
   thetaF: limitsOf(RenderingSchema.field.thetaFDeg),
   exposure: limitsOf(DisplaySchema.field.exposureEv),

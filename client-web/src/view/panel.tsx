@@ -167,6 +167,13 @@ function PictureSection({ page }: { page: Page }) {
         onChange={(brightness) => state.edit((scene) => withSky(scene, { brightness }))}
       />
       <Slider
+        label="Turbidity of the air"
+        limits={LIMITS.turbidity}
+        value={sky?.turbidity ?? LIMITS.turbidity.defaultValue}
+        testId="turbidity"
+        onChange={(turbidity) => state.edit((scene) => withSky(scene, { turbidity }))}
+      />
+      <Slider
         label="Ground albedo"
         limits={LIMITS.groundAlbedo}
         value={sky?.groundAlbedo ?? LIMITS.groundAlbedo.defaultValue}

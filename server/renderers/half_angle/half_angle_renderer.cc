@@ -18,6 +18,7 @@ constexpr double kLightTexelInCells = 0.75;  // size of a light texel
 constexpr int kThicknessSlices = 128;        // perpendicular to the light
 constexpr GLuint kLightUnit = 4;
 constexpr GLuint kThicknessUnit = 5;
+constexpr GLuint kGroundUnit = 7;
 
 enum LightPass { kCarry = 0, kTransmit = 1, kAddDepth = 2 };
 
@@ -100,17 +101,20 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
   }
 
   THUNDERHEAD_ASSIGN_OR_RETURN(
-      const gl::Program* eye, programs_->Get({"half_angle/slice.vert",
-                                              "half_angle/eye.frag",
-                                              {{"GROUPS", groups},
-                                               {"DETAILS", medium.Details()},
-                                               {"COLORED", weights.colored ? 1 : 0},
-                                               {"TRANSLUCENT", translucent ? 1 : 0},
-                                               {"CONSISTENT", consistent ? 1 : 0},
-                                               {"FRONT_TO_BACK", slicing.front_to_back ? 1 : 0}}}));
+      const gl::Program* eye,
+      programs_->Get({"half_angle/slice.vert",
+                      "half_angle/eye.frag",
+                      {{"GROUPS", groups},
+                       {"DETAILS", medium.Details()},
+                       {"COLORED", weights.colored ? 1 : 0},
+                       {"TRANSLUCENT", translucent ? 1 : 0},
+                       {"CONSISTENT", consistent ? 1 : 0},
+                       {"GROUND", settings.ground_distance != nullptr ? 1 : 0},
+                       {"FRONT_TO_BACK", slicing.front_to_back ? 1 : 0}}}));
   medium.Bind(*eye);
   const glm::dvec3 middle_m = medium.Middle_m();
   eye->Set("clip_from_local", ClipFromLocal(settings.view, middle_m));
+  eye->Set("eye_middle_m", glm::vec3(settings.view.eye_m - middle_m));
   eye->Set("eye_local_m", EyeOf(settings.view, middle_m));
   eye->Set("towards_sun", glm::vec3(frame.towards_sun));
   eye->Set("slice_normal", glm::vec3(slicing.normal));
@@ -207,6 +211,7 @@ void HalfAngleRenderer::DrawSlices(const Programs& programs, const RenderSetting
   eye_target_.Clear(0.0F, 0.0F, 0.0F, 1.0F);
   for (const gl::Framebuffer& target : light_target_) target.Clear(1.0F, 0.0F, 0.0F, 0.0F);
   thickness_.Bind(kThicknessUnit);
+  if (settings.ground_distance != nullptr) settings.ground_distance->Bind(kGroundUnit);
   glEnable(GL_DEPTH_CLAMP);
   int current = 0;
   GLint first = 0;

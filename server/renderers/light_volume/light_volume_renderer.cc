@@ -17,6 +17,7 @@ constexpr double kLightTexelInCells = 0.75;  // across the sun's rays
 constexpr double kLayerInCells = 1.5;        // along them, of the way through a cell
 constexpr GLuint kLightUnit = 4;
 constexpr GLuint kThicknessUnit = 5;
+constexpr GLuint kGroundUnit = 7;
 constexpr double kNearInTexels = 1.5;    // sampled next to a cell
 constexpr int kMostGroupsInRow = 65535;  // what OpenGL 4.5 guarantees along each axis
 constexpr int kGroupSide = 8;            // of carry.comp
@@ -173,6 +174,7 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
                        {"DETAILS", medium.Details()},
                        {"COLORED", weights.colored ? 1 : 0},
                        {"CONSISTENT", IsConsistent(settings.rendering) ? 1 : 0},
+                       {"GROUND", settings.ground_distance != nullptr ? 1 : 0},
                        {"EVEN_ALBEDO", even_albedo ? 1 : 0}}}));
   medium.Bind(*program);
   weights.BindPhase(*program);
@@ -187,6 +189,7 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
   program->Set("sunlight", settings.illumination.sunlight);
   program->Set("ambient", settings.illumination.ambient);
   arrived_.Bind(kLightUnit);
+  if (settings.ground_distance != nullptr) settings.ground_distance->Bind(kGroundUnit);
   eye_target_.Bind();
   program->Use();
   no_attributes_.Bind();

@@ -1,6 +1,6 @@
 // What one slice sends to the eye: radiance scattered there (rgb) and the share of what lies behind that passes (a).
 // Riley et al. 2003 (Vis), eq. 5 with the phase of eq. 18; the light comes from the light buffer.
-// Variants: GROUPS, COLORED (per-group colours), TRANSLUCENT, CONSISTENT (transport), FRONT_TO_BACK (the eye is on the
+// Variants: GROUND (what lies behind it is left out), GROUPS, COLORED (per-group colours), TRANSLUCENT, CONSISTENT (transport), FRONT_TO_BACK (the eye is on the
 // sun's side).
 #include "common/medium.glsl"
 #include "common/phase.glsl"
@@ -9,6 +9,10 @@
 layout(binding = 4) uniform sampler2D light;      // r: share of sunlight, g: optical depth towards the sun
 layout(binding = 5) uniform sampler2D thickness;  // r: optical depth along the whole sun ray
 
+#if GROUND
+layout(binding = 7) uniform sampler2D ground_distance;
+uniform vec3 eye_middle_m;
+#endif
 uniform vec4 eye_local_m;            // with w = 0 a direction: infinitely far
 uniform vec3 towards_sun;
 uniform vec3 slice_normal;
@@ -32,6 +36,9 @@ void main() {
   if (extinction <= 0.0) discard;
 
   vec3 ray = normalize(local_m * eye_local_m.w - eye_local_m.xyz);
+#if GROUND
+  if (dot(local_m - eye_middle_m, ray) > texelFetch(ground_distance, ivec2(gl_FragCoord.xy), 0).r) discard;
+#endif
   // A ray along the slices would have no end; the limit is where perspective's corners lie in the widest view.
   float path_m = spacing_m / max(abs(dot(ray, slice_normal)), 0.05);
   float depth = extinction * path_m;

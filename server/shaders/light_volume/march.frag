@@ -4,13 +4,16 @@
 // Between two samples extinction, scattering and the square root of the light's optical depth are linear. A segment shows
 // what scatters at the middle of the share of light that it takes: exact for a source that is linear in that share,
 // whatever the segment's optical depth. Errors against many samples: docs/performance.md.
-// Variants: GROUPS, COLORED (per-group colours), CONSISTENT (transport), EVEN_ALBEDO (one albedo and colour for all).
+// Variants: GROUND (a ray ends there), GROUPS, COLORED (per-group colours), CONSISTENT (transport), EVEN_ALBEDO (one albedo and colour for all).
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
 #include "common/phase.glsl"
 #include "common/view.glsl"
 #include "physics/light_transport.glsl"
 
+#if GROUND
+layout(binding = 7) uniform sampler2D ground_distance;
+#endif
 layout(binding = 4) uniform sampler3D arrived;  // of arrive.comp, cell by cell as the medium
 
 uniform vec3 towards_sun;
@@ -37,6 +40,9 @@ void main() {
   vec3 farthest = max(low_m, high_m);
   float way_m = max(max(nearest.x, max(nearest.y, nearest.z)), 0.0);
   float end_m = min(farthest.x, min(farthest.y, farthest.z));
+#if GROUND
+  end_m = min(end_m, texelFetch(ground_distance, ivec2(gl_FragCoord.xy), 0).r);
+#endif
 
   vec3 place_step = ray * texture_from_local_scale;
   vec3 place_start = origin_m * texture_from_local_scale + texture_from_local_offset;

@@ -1,30 +1,84 @@
-// The linear frame: what the eye buffer holds in front of sky and ground.
+// The linear frame: what the eye buffer holds in front of sky and ground, all through the air. Coordinates are metres from
+// the eye. Variant: RELIEF (terrain).
+#include "common/ground.glsl"
+#include "common/sky.glsl"
 #include "common/view.glsl"
-#include "physics/sky.glsl"
 #include "physics/air.glsl"
 
 layout(binding = 4) uniform sampler2D eye;
+layout(binding = 9) uniform sampler2D shadow;  // the share of sunlight that the storm keeps from the ground
 
-uniform vec3 towards_sun;       // where the eye is, like the rays: east, north, up
-uniform float sky_scale;        // irradiance times brightness
-uniform vec3 ground_radiance;
-uniform float eye_height_m;     // above the ground
-uniform float ground_curvature_per_m;
+uniform mat3 local_from_world;   // to east, north and up where the eye is
+uniform vec3 towards_sun;
+uniform vec3 towards_sun_local;
+uniform float sky_scale;         // irradiance times brightness
+uniform float turbidity;
+uniform float altitude_m;        // of the eye above sea level, not below 0
+uniform float sea_level_m;       // where the world's plane touches
+uniform vec3 ground_reflectance;  // radiance per irradiance
+uniform vec3 sunlight;           // irradiance on a plane facing the sun
+uniform vec3 skylight;           // irradiance on level ground
+uniform vec3 shadow_right;       // texture coordinates per metre
+uniform vec3 shadow_up;
+uniform vec2 shadow_offset;
+uniform vec3 box_low_m;          // the medium's
+uniform vec3 box_high_m;
 
 in vec2 position;
 out vec4 linear_rgb;
 
-const float kFarthestGround_m = 4e5;
+// The part of the ray that is in the medium's box; x > y where it misses it.
+vec2 way_through_box(vec3 origin_m, vec3 ray) {
+  vec3 safe_ray = mix(ray, vec3(1e-7), lessThan(abs(ray), vec3(1e-7)));
+  vec3 a = (box_low_m - origin_m) / safe_ray;
+  vec3 b = (box_high_m - origin_m) / safe_ray;
+  vec3 nearest = min(a, b);
+  vec3 farthest = max(a, b);
+  return vec2(max(max(nearest.x, max(nearest.y, nearest.z)), 0.0), min(farthest.x, min(farthest.y, farthest.z)));
+}
+
+// Lambert's law under sun and sky. The storm shades the sun, not the sky; the terrain shades itself by its slope only.
+vec3 ground_radiance(vec3 point_m) {
+#if RELIEF
+  vec3 normal = ground_normal(point_m.xy);
+#else
+  vec3 normal = vec3(0.0, 0.0, 1.0);
+#endif
+  vec2 place = vec2(dot(point_m, shadow_right), dot(point_m, shadow_up)) + shadow_offset;
+  float lit = max(dot(normal, towards_sun), 0.0) * (1.0 - texture(shadow, place).r);
+  return ground_reflectance * (sunlight * lit + skylight * (0.5 + 0.5 * normal.z));
+}
+
+// Above sea level, of a point of the ground.
+float ground_altitude_m(vec3 point_m) {
+#if RELIEF
+  return terrain_m(point_m.xy) - sea_level_m;
+#else
+  return lowest_ground_m - sea_level_m;
+#endif
+}
 
 void main() {
-  vec3 ray = ray_direction(position);
-  vec3 background = sky_scale * sky_radiance(vec3(ray.xy, abs(ray.z)), towards_sun);
-  float ground_m = level_ground_distance_m(eye_height_m, ray.z, ground_curvature_per_m);
+  vec3 origin_m = ray_origin(position);
+  vec3 world_ray = ray_direction(position);
+  vec3 ray = local_from_world * world_ray;
+  vec3 sky = sky_scale * sky_radiance(ray, towards_sun_local);
+  vec3 background = sky;
+  float ground_m = ground_distance_m(origin_m, world_ray);
   if (ground_m > 0.0) {
-    // What the air takes of the ground's light it fills up with the horizon's.
-    vec3 horizon = sky_scale * sky_radiance(normalize(vec3(ray.xy, 0.0) + vec3(1e-6, 0.0, 0.0)), towards_sun);
-    background = mix(horizon, ground_radiance, air_transmittance(min(ground_m, kFarthestGround_m), eye_height_m));
+    vec3 point_m = origin_m + ground_m * world_ray;
+    float climb = (ground_altitude_m(point_m) - altitude_m) / ground_m;
+    background = through_air(ground_radiance(point_m), 1.0, ground_m, altitude_m, climb, turbidity, sky);
   }
   vec4 front = texture(eye, 0.5 * position + 0.5);
+  float opacity = 1.0 - front.a;
+  if (opacity > 0.0) {
+    vec2 way_m = way_through_box(origin_m, world_ray);
+    float end_m = ground_m > 0.0 ? min(way_m.y, ground_m) : way_m.y;
+    float distance_m = 0.5 * (way_m.x + max(end_m, way_m.x));
+    // The Earth falls away below the ray.
+    float climb = ray.z + 0.5 * ground_curvature_per_m * distance_m;
+    front.rgb = through_air(front.rgb, opacity, distance_m, altitude_m, climb, turbidity, sky);
+  }
   linear_rgb = vec4(front.rgb + front.a * background, 1.0);
 }

@@ -5,7 +5,6 @@
 
 #include "glm/trigonometric.hpp"
 #include "gtest/gtest.h"
-#include "physics/sky.h"
 
 namespace thunderhead::physics {
 namespace {
@@ -200,28 +199,6 @@ TEST(LightTransport, DiffuseLightKeepsItsEnergy) {
 TEST(LightTransport, DiffuseLightAtTheFaceOfAnInfiniteLayer) {
   EXPECT_NEAR(glsl::diffuse_mean_intensity(0.0F, 1e6F), 1.0 / (2.0 * std::numbers::pi), 1e-5);
   EXPECT_NEAR(glsl::diffuse_mean_intensity(0.0F, 0.0F), 0.0, 1e-7);
-}
-
-TEST(Sky, SunlightAndSkylightShareWhatCameIn) {
-  for (const float elevation_deg : {5.0F, 20.0F, 45.0F, 80.0F}) {
-    const float sine = std::sin(glm::radians(elevation_deg));
-    const SkyLight sky = SkyLightOf({std::sqrt(1.0F - sine * sine), 0.0F, sine});
-    const glm::vec3 direct = sine * glsl::sun_transmittance(sine);
-    for (int channel = 0; channel < 3; ++channel) {
-      EXPECT_GT(sky.irradiance[channel], 0.0F);
-      EXPECT_LE(direct[channel] + sky.irradiance[channel], sine) << elevation_deg;
-    }
-    EXPECT_GT(sky.mean_radiance.b, sky.mean_radiance.r) << "a clear sky is blue";
-  }
-}
-
-TEST(Sky, TheSunReddensAndSets) {
-  const glm::vec3 high = glsl::sun_transmittance(0.9F);
-  const glm::vec3 low = glsl::sun_transmittance(0.05F);
-  EXPECT_GT(low.r / low.b, 2.0F * high.r / high.b);
-  EXPECT_EQ(glsl::sun_transmittance(-0.1F), glm::vec3(0.0F));
-  const SkyLight night = SkyLightOf({0.6F, 0.0F, -0.8F});
-  EXPECT_EQ(night.irradiance, glm::vec3(0.0F));
 }
 
 }  // namespace

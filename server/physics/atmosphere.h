@@ -1,0 +1,74 @@
+// Clear air around a round Earth: how sunlight passes it, and how bright it is inside by light
+// scattered any number of times. Air (Rayleigh scattering), haze (optical depth from turbidity) and
+// ozone (absorption only). Light scattered twice and more is taken as isotropic and as if the air
+// were everywhere as bright as at the point, which sums all orders as a geometric series
+// (Hillaire 2020, A scalable and production ready sky and atmosphere rendering technique, 5.5).
+#pragma once
+
+#include <vector>
+
+#include "glm/vec3.hpp"
+
+namespace thunderhead::physics {
+
+// The radius of a sphere without refraction above which straight rays rise as real ones do above the
+// Earth: 7/6 of the mean radius, the surveyors' coefficient of refraction (1/7) for visible light.
+// Radar's 4/3 is for microwaves, which water vapour bends more.
+constexpr double kEffectiveEarthRadius_m = 7.0 / 6.0 * 6.371e6;
+constexpr float kEarthRadius_m = static_cast<float>(kEffectiveEarthRadius_m);
+constexpr float kAtmosphereTop_m = 8e4F;
+
+// What a metre of the atmosphere does at some height, 1/m.
+struct AirOptics {
+  glm::vec3 air{0.0F};   // scattering
+  glm::vec3 haze{0.0F};  // scattering
+  glm::vec3 extinction{0.0F};
+};
+
+// A point above the Earth's middle.
+struct AirPlace {
+  float height_m = 0.0F;
+  float sun_sine = 0.0F;  // of the sun's elevation there
+};
+
+// Of the elevation below which rays from a height meet the ground.
+float HorizonSine(float height_m);
+
+class Atmosphere {
+ public:
+  Atmosphere(float turbidity, float ground_albedo);
+
+  AirOptics At(float height_m) const;
+
+  // Share of sunlight that arrives from above the atmosphere; fades while the disc sets.
+  glm::vec3 SunTransmittance(const AirPlace& place) const;
+
+  // Mean radiance from all directions of light scattered at least once, for a sun of irradiance 1.
+  glm::vec3 DiffuseMeanRadiance(const AirPlace& place) const;
+
+  // Light scattered towards the start of a ray.
+  struct Ray {
+    float height_m = 0.0F;
+    glm::vec3 direction{0.0F, 0.0F, 1.0F};  // z is up at the start
+    glm::vec3 towards_sun{0.0F, 0.0F, 1.0F};
+    int steps = 24;
+  };
+  struct Gathered {
+    glm::vec3 air{0.0F};      // once by air, without phase function
+    glm::vec3 haze{0.0F};     // once by haze, without phase function
+    glm::vec3 diffuse{0.0F};  // more than once
+    glm::vec3 uniform{0.0F};  // if the air were lit with radiance 1 from everywhere
+    glm::vec3 passed{1.0F};   // share of what lies at the ray's end
+    bool meets_ground = false;
+    AirPlace end;
+  };
+  Gathered Gather(const Ray& ray, bool with_diffuse) const;
+
+ private:
+  glm::vec3 SumOrders(const AirPlace& place, float ground_albedo) const;
+
+  glm::vec3 haze_depth_;
+  std::vector<glm::vec3> diffuse_;  // by height, then by the sine of the sun's elevation
+};
+
+}  // namespace thunderhead::physics

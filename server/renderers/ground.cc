@@ -1,0 +1,151 @@
+#include "renderers/ground.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/status.h"
+#include "glm/common.hpp"
+#include "glm/geometric.hpp"
+#include "renderers/group_weights.h"
+#include "renderers/half_angle/slicing.h"
+#include "renderers/view_uniforms.h"
+
+namespace thunderhead::renderers {
+namespace {
+
+constexpr GLuint kTerrainUnit = 8;
+constexpr GLuint kShadowUnit = 9;
+constexpr int kMostShadowTexels = 192;       // along the longer side
+constexpr double kShadowTexelInCells = 1.0;  // size of a texel
+constexpr double kShadowStepInCells = 1.0;   // between samples along the sun
+constexpr double kLevel_m = 1.0;             // terrain with less relief is level
+
+// The largest difference in height between columns side by side, over their distance.
+double SteepestSlope(const volume::RegularGrid& grid, const std::vector<float>& height_m) {
+  double steepest_x = 0.0;
+  double steepest_y = 0.0;
+  for (int y = 0; y < grid.cells.y; ++y) {
+    for (int x = 0; x < grid.cells.x; ++x) {
+      const double here = height_m[grid.Offset(x, y, 0)];
+      if (x > 0) {
+        steepest_x = std::max(steepest_x, std::abs(here - height_m[grid.Offset(x - 1, y, 0)]));
+      }
+      if (y > 0) {
+        steepest_y = std::max(steepest_y, std::abs(here - height_m[grid.Offset(x, y - 1, 0)]));
+      }
+    }
+  }
+  return std::hypot(steepest_x / grid.spacing_m.x, steepest_y / grid.spacing_m.y);
+}
+
+}  // namespace
+
+void Ground::SetTerrain(const volume::HydrometeorFields& fields) {
+  grid_ = fields.grid;
+  const std::vector<float>& height_m = fields.terrain_height_m;
+  relief_ = false;
+  lowest_m_ = highest_m_ = grid_.low_corner_m.z;
+  if (height_m.empty()) return;
+  const auto [lowest, highest] = std::minmax_element(height_m.begin(), height_m.end());
+  lowest_m_ = *lowest;
+  highest_m_ = *highest;
+  relief_ = highest_m_ - lowest_m_ > kLevel_m;
+  if (!relief_) return;
+  steepest_ = SteepestSlope(grid_, height_m);
+  const glm::ivec2 size(grid_.cells);
+  if (terrain_.Size() != size) terrain_ = gl::Texture2D(GL_R32F, size);
+  terrain_.Upload(GL_RED, GL_FLOAT, height_m.data());
+}
+
+absl::Status Ground::CastShadow(const ResidentMedium& medium, const RenderSettings& settings) {
+  has_shadow_ = false;
+  const glm::dvec3& towards_sun = settings.illumination.towards_sun;
+  if (medium.Empty() || towards_sun.z <= 0.0) return absl::OkStatus();
+  const LightFrame frame = LightFrameOf({medium.HalfExtent_m()}, towards_sun);
+  const glm::dvec3 cell_m = medium.Bounds().grid.spacing_m;
+  const double longest_m = 2.0 * std::max(frame.half_extent_m.x, frame.half_extent_m.y);
+  const double texel_m =
+      std::max(longest_m / kMostShadowTexels, kShadowTexelInCells * std::min(cell_m.x, cell_m.y));
+  const glm::ivec2 size =
+      glm::max(glm::ivec2(glm::ceil(2.0 * frame.half_extent_m / texel_m)), glm::ivec2(1));
+  if (shadow_.Size() != size) {
+    shadow_ = gl::Texture2D(GL_R16F, size, gl::Edge::kZero);
+    shadow_target_ = gl::Framebuffer(shadow_);
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_->Get({"common/whole_target.vert",
+                      "ground/shadow.frag",
+                      {{"GROUPS", static_cast<int>(medium.Content().groups.size())},
+                       {"DETAILS", medium.Details()}}}));
+  medium.Bind(*program);
+  const GroupWeights weights(medium.Content(), settings.rendering);
+  const glm::dvec3 through_m = cell_m / glm::max(glm::abs(towards_sun), glm::dvec3(1e-6));
+  const double step_m = kShadowStepInCells * std::min({through_m.x, through_m.y, through_m.z});
+  program->Set("towards_sun", glm::vec3(towards_sun));
+  program->Set("light_right_m", glm::vec3(frame.right * frame.half_extent_m.x));
+  program->Set("light_up_m", glm::vec3(frame.up * frame.half_extent_m.y));
+  program->Set("light_weights", medium.Weights(weights.light));
+  program->Set("step_m", static_cast<float>(step_m));
+  shadow_target_.Bind();
+  program->Use();
+  no_attributes_.Bind();
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  shadow_middle_m_ = medium.Middle_m();
+  shadow_right_ = frame.right / frame.half_extent_m.x;
+  shadow_up_ = frame.up / frame.half_extent_m.y;
+  has_shadow_ = true;
+  return absl::OkStatus();
+}
+
+absl::Status Ground::DrawDistance(const scene::View& view, const glm::ivec2& size) {
+  if (distance_.Size() != size) {
+    distance_ = gl::Texture2D(GL_R32F, size);
+    distance_target_ = gl::Framebuffer(distance_);
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_->Get(
+          {"common/whole_target.vert", "ground/distance.frag", {{"RELIEF", relief_ ? 1 : 0}}}));
+  BindRays(*program, view, view.eye_m);
+  Bind(*program, view);
+  distance_target_.Bind();
+  program->Use();
+  no_attributes_.Bind();
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  return absl::OkStatus();
+}
+
+void Ground::Bind(const gl::Program& program, const scene::View& view) const {
+  program.Set("lowest_ground_m", static_cast<float>(lowest_m_ - view.eye_m.z));
+  program.Set("ground_curvature_per_m", static_cast<float>(view.ground_curvature_per_m));
+  program.Set("touch_m", glm::vec2(view.touch_m - glm::dvec2(view.eye_m)));
+  if (!relief_) return;
+  const glm::dvec2 size_m = glm::dvec2(grid_.cells) * glm::dvec2(grid_.spacing_m);
+  const glm::dvec2 low_m = glm::dvec2(grid_.low_corner_m) - glm::dvec2(view.eye_m);
+  program.Set("terrain_from_ground_scale", glm::vec2(1.0 / size_m));
+  program.Set("terrain_from_ground_offset", glm::vec2(-low_m / size_m));
+  program.Set("terrain_offset_m", static_cast<float>(-view.eye_m.z));
+  program.Set("highest_ground_m", static_cast<float>(highest_m_ - view.eye_m.z));
+  program.Set("steepest_ground", static_cast<float>(steepest_));
+  terrain_.Bind(kTerrainUnit);
+}
+
+void Ground::BindShadow(const gl::Program& program, const scene::View& view) const {
+  if (!has_shadow_) {
+    // Far outside the texture, where nothing is blocked.
+    program.Set("shadow_right", glm::vec3(0.0F));
+    program.Set("shadow_up", glm::vec3(0.0F));
+    program.Set("shadow_offset", glm::vec2(-9.0F));
+    shadow_.Bind(kShadowUnit);
+    return;
+  }
+  const glm::dvec3 from_eye_m = shadow_middle_m_ - view.eye_m;
+  program.Set("shadow_right", glm::vec3(0.5 * shadow_right_));
+  program.Set("shadow_up", glm::vec3(0.5 * shadow_up_));
+  program.Set("shadow_offset", glm::vec2(0.5 - 0.5 * glm::dot(from_eye_m, shadow_right_),
+                                         0.5 - 0.5 * glm::dot(from_eye_m, shadow_up_)));
+  shadow_.Bind(kShadowUnit);
+}
+
+}  // namespace thunderhead::renderers

@@ -1,0 +1,69 @@
+// The ground under a storm: where view rays meet it, and the storm's shadow on it. Level ground is
+// a plane (or the round Earth's surface) and costs next to nothing; terrain is a height map that
+// rays are marched over. Owns GL objects: use it on the context's thread.
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "gl/objects.h"
+#include "gl/program.h"
+#include "renderers/medium.h"
+#include "renderers/render_settings.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::renderers {
+
+class Ground {
+ public:
+  explicit Ground(std::shared_ptr<gl::ProgramCache> programs) : programs_(std::move(programs)) {}
+
+  // Takes the terrain of these fields.
+  void SetTerrain(const volume::HydrometeorFields& fields);
+
+  // Computes the shadow of `medium`, if it is not empty, under the settings' sun.
+  absl::Status CastShadow(const ResidentMedium& medium, const RenderSettings& settings);
+  void ClearShadow() { has_shadow_ = false; }
+
+  // True where the terrain is not level: the variant RELIEF of common/ground.glsl.
+  bool Relief() const { return relief_; }
+  // True if ground may stand between the eye and a storm. Level ground falls away from below the
+  // storm, so that it hides nothing from an eye above the world's plane.
+  bool MayHide(const scene::View& view) const {
+    return relief_ || (view.ground_curvature_per_m > 0.0 && view.eye_m.z < lowest_m_);
+  }
+
+  // How far the ground is along each pixel's ray, for renderers of media to end at.
+  absl::Status DrawDistance(const scene::View& view, const glm::ivec2& size);
+  const gl::Texture2D& Distance() const { return distance_; }
+
+  // Sets the uniforms and textures of common/ground.glsl for coordinates from the eye.
+  void Bind(const gl::Program& program, const scene::View& view) const;
+  // Sets those of the shadow: its texture and where it lies.
+  void BindShadow(const gl::Program& program, const scene::View& view) const;
+
+  std::size_t Bytes() const { return terrain_.Bytes() + shadow_.Bytes() + distance_.Bytes(); }
+
+ private:
+  std::shared_ptr<gl::ProgramCache> programs_;
+  gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
+  volume::RegularGrid grid_;
+  bool relief_ = false;
+  double lowest_m_ = 0.0;
+  double highest_m_ = 0.0;
+  double steepest_ = 0.0;
+  gl::Texture2D terrain_;
+
+  bool has_shadow_ = false;
+  gl::Texture2D shadow_;
+  gl::Framebuffer shadow_target_;
+  glm::dvec3 shadow_middle_m_{0.0};
+  glm::dvec3 shadow_right_{0.0};  // 1 across its half width
+  glm::dvec3 shadow_up_{0.0};
+
+  gl::Texture2D distance_;
+  gl::Framebuffer distance_target_;
+};
+
+}  // namespace thunderhead::renderers

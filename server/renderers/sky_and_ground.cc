@@ -1,0 +1,113 @@
+#include "renderers/sky_and_ground.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/status.h"
+#include "renderers/view_uniforms.h"
+
+namespace thunderhead::renderers {
+namespace {
+
+constexpr GLuint kEyeUnit = 4;
+constexpr GLuint kSkyUnit = 6;
+// Heights that the sky is computed for: about 150 m apart near the ground, 6 % far above it.
+constexpr double kSkyStep_m = 2500.0;
+constexpr double kSkySteps = 16.0;
+
+constexpr glm::vec3 kGroundTint(1.0F, 0.93F, 0.78F);  // of bare soil and grass seen from far off
+
+// Radiance per irradiance of level ground.
+glm::vec3 GroundReflectance(const scene::Scene& scene) {
+  return kGroundTint * static_cast<float>(scene.sky.ground_albedo * std::numbers::inv_pi);
+}
+
+}  // namespace
+
+void SkyAndGround::Update(const scene::Scene& scene, const scene::View& view) {
+  const Key key{scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg),
+                scene.sky.turbidity, scene.sky.ground_albedo};
+  if (!sky_.has_value() || key != drawn_) {
+    if (!atmosphere_.has_value() || key.turbidity != drawn_.turbidity ||
+        key.ground_albedo != drawn_.ground_albedo) {
+      atmosphere_.emplace(static_cast<float>(key.turbidity), static_cast<float>(key.ground_albedo));
+    }
+    sky_.emplace(*atmosphere_, glm::vec3(key.towards_sun), 0.0F);
+    drawn_ = key;
+    eye_height_m_ = -1.0;
+  }
+  SetEyeSky(view.altitude_m);
+}
+
+void SkyAndGround::SetEyeSky(double altitude_m) {
+  // In steps, so that a moving camera makes a table now and then only.
+  const double step = std::round(kSkySteps * std::log1p(std::max(altitude_m, 0.0) / kSkyStep_m));
+  const double height_m = kSkyStep_m * std::expm1(step / kSkySteps);
+  if (height_m == eye_height_m_) return;
+  eye_height_m_ = height_m;
+  if (sky_table_.Get() == 0) {
+    sky_table_ =
+        gl::Texture2D(GL_RGBA32F, {2 * physics::glsl::kSkyAzimuths, physics::glsl::kSkyElevations});
+  }
+  const auto upload = [this](const physics::ClearSky& seen) {
+    sky_table_.Upload(GL_RGBA, GL_FLOAT, seen.Table().data());
+    horizon_sine_ = seen.HorizonSine();
+  };
+  if (height_m == 0.0) return upload(*sky_);
+  upload({*atmosphere_, glm::vec3(drawn_.towards_sun), static_cast<float>(height_m)});
+}
+
+Illumination SkyAndGround::IlluminationOf(const scene::Scene& scene) const {
+  Illumination light;
+  light.towards_sun = drawn_.towards_sun;
+  const auto irradiance = static_cast<float>(scene.sun.irradiance);
+  light.sunlight = irradiance * sky_->SunTransmittance();
+  const glm::vec3 from_sky =
+      sky_->Light().mean_radiance * irradiance * static_cast<float>(scene.sky.brightness);
+  // Of ground without the storm's shadow: what shows of it around the storm is larger.
+  const float sine = std::max(static_cast<float>(drawn_.towards_sun.z), 0.0F);
+  const glm::vec3 diffuse =
+      sky_->Light().irradiance * irradiance * static_cast<float>(scene.sky.brightness);
+  const glm::vec3 from_ground = GroundReflectance(scene) * (light.sunlight * sine + diffuse);
+  light.ambient = 0.5F * (from_sky + from_ground);
+  return light;
+}
+
+absl::Status SkyAndGround::Composite(const scene::Scene& scene, const scene::View& view,
+                                     const Ground& ground, const ResidentMedium& medium,
+                                     const gl::Texture2D& eye, const gl::Framebuffer& target) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
+                               programs_->Get({"common/whole_target.vert",
+                                               "post/composite.frag",
+                                               {{"RELIEF", ground.Relief() ? 1 : 0}}}));
+  BindRays(*program, view, view.eye_m);
+  ground.Bind(*program, view);
+  ground.BindShadow(*program, view);
+  const auto irradiance = static_cast<float>(scene.sun.irradiance);
+  const auto sky_scale = irradiance * static_cast<float>(scene.sky.brightness);
+  program->Set("local_from_world", glm::mat3(view.local_from_world));
+  program->Set("towards_sun", glm::vec3(drawn_.towards_sun));
+  program->Set("towards_sun_local", glm::vec3(view.local_from_world * drawn_.towards_sun));
+  program->Set("horizon_sine", horizon_sine_);
+  program->Set("sky_scale", sky_scale);
+  program->Set("turbidity", static_cast<float>(scene.sky.turbidity));
+  program->Set("altitude_m", static_cast<float>(std::max(view.altitude_m, 0.0)));
+  program->Set("sea_level_m", static_cast<float>(-view.eye_m.z));
+  program->Set("ground_reflectance", GroundReflectance(scene));
+  program->Set("sunlight", irradiance * sky_->SunTransmittance());
+  program->Set("skylight", sky_scale * sky_->Light().irradiance);
+  const glm::dvec3 half_m = medium.Empty() ? glm::dvec3(0.0) : medium.HalfExtent_m();
+  const glm::dvec3 middle_m = medium.Empty() ? glm::dvec3(0.0) : medium.Middle_m();
+  program->Set("box_low_m", glm::vec3(middle_m - half_m - view.eye_m));
+  program->Set("box_high_m", glm::vec3(middle_m + half_m - view.eye_m));
+  eye.Bind(kEyeUnit);
+  sky_table_.Bind(kSkyUnit);
+  target.Bind();
+  program->Use();
+  no_attributes_.Bind();
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  return absl::OkStatus();
+}
+
+}  // namespace thunderhead::renderers

@@ -1,0 +1,63 @@
+// What is around a storm: the sky and the ground that light it and stand behind it, and the air in
+// front of it. Keeps what depends on the sun and the air until they change. Owns GL objects: use it
+// on the context's thread.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "gl/objects.h"
+#include "gl/program.h"
+#include "physics/sky.h"
+#include "renderers/ground.h"
+#include "renderers/medium.h"
+#include "renderers/render_settings.h"
+#include "scene/scene.h"
+#include "scene/view.h"
+
+namespace thunderhead::renderers {
+
+class SkyAndGround {
+ public:
+  explicit SkyAndGround(std::shared_ptr<gl::ProgramCache> programs)
+      : programs_(std::move(programs)) {}
+
+  // Brings the sky up to date with the scene's sun and air and the eye's height. Call it before the
+  // others.
+  void Update(const scene::Scene& scene, const scene::View& view);
+
+  Illumination IlluminationOf(const scene::Scene& scene) const;
+
+  // Draws what `eye` holds (rgb: radiance, a: share of the background that passes) in front of sky
+  // and ground, all through the air, to `target`. `medium` tells how far it is; it may be empty.
+  absl::Status Composite(const scene::Scene& scene, const scene::View& view, const Ground& ground,
+                         const ResidentMedium& medium, const gl::Texture2D& eye,
+                         const gl::Framebuffer& target);
+
+  std::size_t Bytes() const { return sky_table_.Bytes(); }
+
+ private:
+  void SetEyeSky(double altitude_m);
+
+  // What the sky's light depends on.
+  struct Key {
+    glm::dvec3 towards_sun{0.0};
+    double turbidity = 0.0;
+    double ground_albedo = 0.0;
+
+    bool operator==(const Key&) const = default;
+  };
+
+  std::shared_ptr<gl::ProgramCache> programs_;
+  gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
+  std::optional<physics::Atmosphere> atmosphere_;
+  std::optional<physics::ClearSky> sky_;
+  Key drawn_;
+  double eye_height_m_ = -1.0;  // that the table was made for
+  float horizon_sine_ = 0.0F;
+  gl::Texture2D sky_table_;
+};
+
+}  // namespace thunderhead::renderers

@@ -1,0 +1,206 @@
+// The clear sky against energy, plane-parallel limits and what is known of it, and the air between
+// eye and storm against its integral.
+#include "physics/sky.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "glm/trigonometric.hpp"
+#include "gtest/gtest.h"
+
+namespace thunderhead::physics {
+namespace {
+
+glm::vec3 TowardsSun(float elevation_deg) {
+  const float elevation = glm::radians(elevation_deg);
+  return {std::cos(elevation), 0.0F, std::sin(elevation)};
+}
+
+TEST(ClearSky, SunlightAndSkylightShareWhatCameIn) {
+  for (const float turbidity : {1.0F, 1.5F, 4.0F, 10.0F}) {
+    const Atmosphere atmosphere(turbidity, 0.0F);
+    for (const float elevation_deg : {5.0F, 20.0F, 45.0F, 80.0F}) {
+      const ClearSky sky(atmosphere, TowardsSun(elevation_deg), 0.0F);
+      const float sine = std::sin(glm::radians(elevation_deg));
+      const glm::vec3 direct = sine * sky.SunTransmittance();
+      for (int channel = 0; channel < 3; ++channel) {
+        EXPECT_GT(sky.Light().irradiance[channel], 0.0F);
+        // A low sun lights the air of a round Earth from the side as well: what comes in on level
+        // ground is no bound for it.
+        if (elevation_deg >= 20.0F) {
+          EXPECT_LE(direct[channel] + sky.Light().irradiance[channel], sine) << elevation_deg;
+        }
+      }
+      if (turbidity < 3.0F && elevation_deg >= 20.0F) {
+        EXPECT_GT(sky.Light().mean_radiance.b, sky.Light().mean_radiance.r);
+      }
+    }
+  }
+}
+
+TEST(ClearSky, AirAloneScattersHalfOfWhatItTakesDown) {
+  // Without haze, of the light that thin air scatters half comes down: Rayleigh's function is the
+  // same forwards and backwards. Scattered twice, of that which went up half comes down again, so a
+  // little more than half of what the direct beam lost; ozone's absorption (2 %) takes from it.
+  const Atmosphere atmosphere(1.0F, 0.0F);
+  for (const float elevation_deg : {40.0F, 60.0F, 90.0F}) {
+    const ClearSky sky(atmosphere, TowardsSun(elevation_deg), 0.0F);
+    const float sine = std::sin(glm::radians(elevation_deg));
+    const glm::vec3 lost = sine * (glm::vec3(1.0F) - glm::exp(-glsl::air_optical_depth() / sine));
+    const glm::vec3 share = sky.Light().irradiance / lost;
+    for (int channel = 0; channel < 3; ++channel) {
+      EXPECT_GT(share[channel], 0.46F) << elevation_deg;
+      EXPECT_LT(share[channel], 0.58F) << elevation_deg;
+    }
+  }
+}
+
+TEST(ClearSky, DirectSunlightIsThatOfThePlaneParallelAir) {
+  // Bouguer's law with the air mass of Kasten and Young 1989: 1.994 at 30 degrees, 5.60 at 10. Haze
+  // lies lower than air, ozone higher: within 3 % of the depth.
+  const Atmosphere atmosphere(2.0F, 0.2F);
+  const glm::vec3 ozone(0.020F, 0.027F, 0.0014F);
+  const glm::vec3 depth = glsl::air_optical_depth() + glsl::haze_optical_depth(2.0F) + ozone;
+  for (const auto& [elevation_deg, mass] :
+       {std::pair(90.0F, 1.0F), std::pair(30.0F, 1.994F), std::pair(10.0F, 5.60F)}) {
+    const glm::vec3 passed =
+        ClearSky(atmosphere, TowardsSun(elevation_deg), 0.0F).SunTransmittance();
+    for (int channel = 0; channel < 3; ++channel) {
+      EXPECT_NEAR(-std::log(passed[channel]) / (depth[channel] * mass), 1.0, 0.03)
+          << elevation_deg << ' ' << channel;
+    }
+  }
+  // For air alone and the sun 0.34 degrees up, 33.2 air masses; ours is isothermal.
+  const Atmosphere clean(1.0F, 0.2F);
+  const float at_horizon = -std::log(clean.SunTransmittance({0.0F, 0.006F}).b);
+  EXPECT_NEAR(at_horizon / glsl::air_optical_depth().b, 33.2, 2.5);
+}
+
+TEST(ClearSky, DarkensThroughTwilightToBlack) {
+  const Atmosphere atmosphere(1.5F, 0.2F);
+  float before = 1e9F;
+  for (float elevation_deg = 90.0F; elevation_deg >= -40.0F; elevation_deg -= 2.0F) {
+    const ClearSky sky(atmosphere, TowardsSun(elevation_deg), 0.0F);
+    const float irradiance = sky.Light().irradiance.g;
+    ASSERT_TRUE(std::isfinite(irradiance)) << elevation_deg;
+    if (elevation_deg <= 40.0F) {
+      EXPECT_LE(irradiance, before) << elevation_deg;
+    }
+    before = irradiance;
+    if (elevation_deg < -1.0F) {
+      EXPECT_EQ(sky.SunTransmittance(), glm::vec3(0.0F));
+    }
+    if (elevation_deg <= -30.0F) {
+      EXPECT_EQ(sky.Light().irradiance, glm::vec3(0.0F));
+    }
+  }
+  // Sunset leaves the ground some hundredths of a noon sky's light, the end of civil twilight (-6
+  // degrees) some thousandths: 400 and 3 lux against 12 000.
+  const float noon = ClearSky(atmosphere, TowardsSun(60.0F), 0.0F).Light().irradiance.g;
+  EXPECT_NEAR(std::log10(ClearSky(atmosphere, TowardsSun(0.0F), 0.0F).Light().irradiance.g / noon),
+              -1.5, 0.4);
+  EXPECT_NEAR(std::log10(ClearSky(atmosphere, TowardsSun(-6.0F), 0.0F).Light().irradiance.g / noon),
+              -3.6, 0.7);
+}
+
+TEST(ClearSky, RedNearTheSettingSunBlueAbove) {
+  const Atmosphere atmosphere(2.0F, 0.2F);
+  const ClearSky sky(atmosphere, TowardsSun(2.0F), 0.0F);
+  const glm::vec3 sunwards = sky.Radiance(TowardsSun(2.0F));
+  const glm::vec3 zenith = sky.Radiance({0.0F, 0.0F, 1.0F});
+  EXPECT_GT(sunwards.r / sunwards.b, 1.5F);
+  EXPECT_LT(zenith.r / zenith.b, 1.0F);
+  EXPECT_GT(sunwards.g, 10.0F * zenith.g);
+}
+
+TEST(ClearSky, HasNoSeams) {
+  const Atmosphere atmosphere(1.5F, 0.2F);
+  for (const float sun_deg : {-8.0F, 0.0F, 30.0F, 90.0F}) {
+    const ClearSky sky(atmosphere, TowardsSun(sun_deg), 0.0F);
+    for (float azimuth_deg = 0.0F; azimuth_deg < 360.0F; azimuth_deg += 7.0F) {
+      glm::vec3 below = sky.Radiance({1.0F, 0.0F, 0.0F});
+      for (float elevation_deg = 0.0F; elevation_deg <= 90.0F; elevation_deg += 0.5F) {
+        const float azimuth = glm::radians(azimuth_deg);
+        const float elevation = glm::radians(elevation_deg);
+        const glm::vec3 radiance =
+            sky.Radiance({std::cos(elevation) * std::cos(azimuth),
+                          std::cos(elevation) * std::sin(azimuth), std::sin(elevation)});
+        ASSERT_TRUE(std::isfinite(radiance.r) && radiance.r >= 0.0F);
+        if (elevation_deg > 0.0F) {
+          // Under a low sun the air near the horizon is in shadow or nearly so, that above is not.
+          ASSERT_NEAR(radiance.g / below.g, 1.0F, sun_deg < 5.0F ? 1.0F : 0.12F)
+              << sun_deg << ' ' << elevation_deg;
+        }
+        below = radiance;
+      }
+    }
+  }
+}
+
+TEST(ClearSky, FromAboveTheAirIsBlueAndTheSkyBlack) {
+  const Atmosphere atmosphere(1.5F, 0.2F);
+  const ClearSky ground(atmosphere, TowardsSun(50.0F), 0.0F);
+  const ClearSky above(atmosphere, TowardsSun(50.0F), 1e5F);
+  const glm::vec3 up(0.0F, 0.0F, 1.0F);
+  EXPECT_LT(above.Radiance(up).g, 0.01F * ground.Radiance(up).g);
+  // Looked down upon, the air sends about as much as it does from below.
+  const glm::vec3 down = above.Radiance(-up);
+  EXPECT_GT(down.b, 2.0F * down.r);
+  EXPECT_NEAR(down.b / ground.Radiance(up).b, 1.0F, 0.35F);
+  EXPECT_LT(ground.Radiance(-up).g, 1e-4F) << "nothing lies between the eye and the ground";
+  // The horizon dips by arccos(R / (R + h)).
+  EXPECT_NEAR(ClearSky(atmosphere, up, 1e4F).HorizonSine(), -std::sqrt(2.0F * 1e4F / (kEarthRadius_m + 1e4F)),
+              1e-4F);
+}
+
+TEST(Air, DepthIsTheIntegralOfItsDensity) {
+  for (const auto& [height_m, sine, distance_m] :
+       {std::tuple(2.0, 0.0, 1e5), std::tuple(2.0, 0.1, 8e4), std::tuple(9000.0, -0.1, 8e4),
+        std::tuple(1e5, -1.0, 1e5), std::tuple(500.0, 1.0, 5e4), std::tuple(300.0, 1e-6, 3e5)}) {
+    double way_m = 0.0;
+    constexpr int kSteps = 200000;
+    for (int i = 0; i < kSteps; ++i) {
+      const double h = height_m + sine * distance_m * (i + 0.5) / kSteps;
+      way_m += std::exp(-h / 8000.0) * distance_m / kSteps;
+    }
+    EXPECT_NEAR(glsl::equivalent_m(8000.0F, static_cast<float>(height_m), static_cast<float>(sine),
+                                   static_cast<float>(distance_m)) /
+                    way_m,
+                1.0, 1e-3)
+        << height_m << ' ' << sine;
+  }
+}
+
+TEST(Air, FarAwayEverythingIsTheSky) {
+  const glm::vec3 sky(0.1F, 0.2F, 0.3F);
+  const glm::vec3 cloud(0.5F, 0.6F, 0.7F);
+  const auto seen = [&](float opacity, float distance_m, float sine) {
+    return glsl::through_air(opacity * cloud, opacity, distance_m, 2.0F, sine, 2.0F, sky);
+  };
+  for (int channel = 0; channel < 3; ++channel) {
+    EXPECT_NEAR(seen(1.0F, 0.0F, 0.1F)[channel], cloud[channel], 1e-6);
+    EXPECT_NEAR(seen(1.0F, 5e5F, 0.0F)[channel], sky[channel], 0.01);
+    EXPECT_NEAR(seen(0.25F, 5e5F, 0.0F)[channel], 0.25 * sky[channel], 0.01);
+    // Halfway, between the two, nearer to the sky the farther.
+    EXPECT_LT(seen(1.0F, 5e4F, 0.1F)[channel], cloud[channel]);
+    EXPECT_GT(seen(1.0F, 5e4F, 0.1F)[channel], seen(1.0F, 1e5F, 0.1F)[channel]);
+    EXPECT_EQ(seen(0.0F, 5e4F, 0.1F)[channel], 0.0F);
+  }
+}
+
+TEST(Air, LevelGroundOnARoundEarth) {
+  EXPECT_NEAR(glsl::level_ground_distance_m(100.0F, -0.1F, 0.0F), 1000.0F, 1e-2);
+  EXPECT_LT(glsl::level_ground_distance_m(100.0F, 0.0F, 0.0F), 0.0F);
+  EXPECT_LT(glsl::level_ground_distance_m(-1.0F, -0.1F, 0.0F), 0.0F);
+  // The horizon is sqrt(2 h / curvature) away and dips by sqrt(2 h curvature).
+  const float curvature = 1.0F / 7.4e6F;
+  const float dip = std::sqrt(2.0F * 100.0F * curvature);
+  EXPECT_NEAR(glsl::level_ground_distance_m(100.0F, -1.001F * dip, curvature) /
+                  std::sqrt(200.0F / curvature),
+              1.0F, 0.05F);
+  EXPECT_LT(glsl::level_ground_distance_m(100.0F, -0.99F * dip, curvature), 0.0F);
+}
+
+}  // namespace
+}  // namespace thunderhead::physics
