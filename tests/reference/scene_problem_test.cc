@@ -182,6 +182,8 @@ TEST(SurroundingsOf, ShadedGroundWithoutCloudsIsUniform) {
   scene::Scene scene;
   scene.sky.brightness = 1.7;
   scene.sun.irradiance = 2.0;
+  // As high as the camera below, which takes the place of this one.
+  scene.camera = scene::OrbitCamera{{0.0, 0.0, 0.0}, 200.0, 30.0, 4e4, 35.0};
   const auto medium = *MediumOf(scene, fields, Sides::kOpen);
   const Camera camera =
       Camera::Parallel({0.0, 0.0, 2e4}, {}, {}, glm::normalize(glm::dvec3(0.5, 0.3, -0.6)));
