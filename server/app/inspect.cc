@@ -62,6 +62,12 @@ std::string Table(const v1::StormDescription& storm) {
                           field.maximum_water_path_kg_per_m2(), field.negative_cells(),
                           field.missing_cells());
   }
+  for (const v1::FieldDescription& field : storm.fields()) {
+    if (field.size_variable().empty()) continue;
+    absl::StrAppendFormat(&text, "sizes of %s from %s, effective radius of all %.3g m\n",
+                          NameOf(field.hydrometeor()), field.size_variable(),
+                          field.mean_radius_m());
+  }
   return text;
 }
 

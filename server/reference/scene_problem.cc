@@ -23,10 +23,12 @@ namespace {
 // Bare soil and grass seen from far off; the scene's ground albedo is that of red.
 constexpr glm::dvec3 kGroundTint(1.0, 0.93, 0.78);
 
-physics::PhaseFunction PhaseOf(const scene::Scene& scene, physics::Hydrometeor hydrometeor) {
-  const bool per_field = scene::HasPerFieldPhase(scene.rendering.mode);
-  const physics::Hydrometeor of = per_field ? hydrometeor : physics::Hydrometeor::kCloud;
-  return physics::PhaseOf(scene.fields[physics::IndexOf(of)].optics);
+physics::PhaseFunction PhaseOf(const scene::Scene& scene, const volume::HydrometeorField& field) {
+  if (!scene::HasPerFieldPhase(scene.rendering.mode)) {
+    return physics::PhaseOf(scene.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].optics);
+  }
+  const scene::FieldParameters& drawn = scene.fields[physics::IndexOf(field.hydrometeor)];
+  return physics::PhaseOf(volume::WithDrawnRadius(field, drawn.optics, drawn.size_from_file));
 }
 
 struct Box {
@@ -61,17 +63,16 @@ Box BoxOf(const volume::HydrometeorFields& fields, const MediumOptions& options)
 }
 
 void AddField(const volume::RegularGrid& domain, const Box& box,
-              const volume::HydrometeorField& field, float mass_extinction_m2_per_kg,
+              const volume::HydrometeorField& field, const volume::MassExtinction& mass_extinction,
               std::vector<float>* extinction_per_m) {
   const glm::ivec3& cells = box.grid.cells;
   extinction_per_m->resize(box.grid.CellCount(), 0.0F);
   for (int z = 0; z < cells.z; ++z) {
     for (int y = 0; y < cells.y; ++y) {
-      const float* from =
-          field.concentration_kg_per_m3.data() +
-          domain.Offset(box.first_cell.x, box.first_cell.y + y, box.first_cell.z + z);
-      float* to = extinction_per_m->data() + box.grid.Offset(0, y, z);
-      for (int x = 0; x < cells.x; ++x) to[x] += from[x] * mass_extinction_m2_per_kg;
+      volume::AddExtinction(
+          field, mass_extinction,
+          domain.Offset(box.first_cell.x, box.first_cell.y + y, box.first_cell.z + z),
+          static_cast<std::size_t>(cells.x), extinction_per_m->data() + box.grid.Offset(0, y, z));
     }
   }
 }
@@ -84,9 +85,9 @@ struct GroupLook {
   bool operator==(const GroupLook&) const = default;
 };
 
-GroupLook LookOf(const scene::Scene& scene, physics::Hydrometeor hydrometeor) {
-  const physics::ParticleOptics& optics = scene.fields[physics::IndexOf(hydrometeor)].optics;
-  GroupLook look{PhaseOf(scene, hydrometeor), glm::dvec3(optics.albedo)};
+GroupLook LookOf(const scene::Scene& scene, const volume::HydrometeorField& field) {
+  const physics::ParticleOptics& optics = scene.fields[physics::IndexOf(field.hydrometeor)].optics;
+  GroupLook look{PhaseOf(scene, field), glm::dvec3(optics.albedo)};
   if (scene.rendering.false_colors) look.albedo *= glm::dvec3(optics.false_color);
   return look;
 }
@@ -181,7 +182,7 @@ absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene
   for (const volume::HydrometeorField& field : fields.fields) {
     const scene::FieldParameters& drawn = scene.fields[physics::IndexOf(field.hydrometeor)];
     if (!drawn.visible || drawn.scale <= 0.0F || field.concentration_kg_per_m3.empty()) continue;
-    GroupLook look = LookOf(scene, field.hydrometeor);
+    GroupLook look = LookOf(scene, field);
     if (options.phase != nullptr) look.phase = {};
     auto found = std::find(looks.begin(), looks.end(), look);
     if (found == looks.end()) {
@@ -191,10 +192,10 @@ absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene
       description.groups.push_back({{}, cuts.back().albedo, cuts.back().phase});
     }
     const auto group = static_cast<std::size_t>(found - looks.begin());
-    const float mass_extinction = volume::MassExtinction_m2_per_kg(field, drawn.optics);
-    const auto scale = static_cast<float>(drawn.scale * cuts[group].extinction);
-    AddField(fields.grid, box, field, scale * mass_extinction,
-             &description.groups[group].extinction_per_m);
+    volume::MassExtinction mass_extinction =
+        volume::MassExtinctionOf(field, drawn.optics, drawn.size_from_file);
+    mass_extinction.m2_per_kg *= static_cast<float>(drawn.scale * cuts[group].extinction);
+    AddField(fields.grid, box, field, mass_extinction, &description.groups[group].extinction_per_m);
   }
   return Medium::Create(std::move(description));
 }

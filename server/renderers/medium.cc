@@ -71,14 +71,19 @@ Medium MediumOf(const scene::Scene& scene, const volume::HydrometeorFields& fiel
     if (!look.visible || look.scale <= 0.0F || field.concentration_kg_per_m3.empty()) continue;
     MediumGroup group;
     group.albedo = look.optics.albedo;
-    group.phase = per_field_phase ? physics::PhaseOf(look.optics) : UniformPhase(scene);
+    group.phase =
+        per_field_phase
+            ? physics::PhaseOf(volume::WithDrawnRadius(field, look.optics, look.size_from_file))
+            : UniformPhase(scene);
     if (scene.rendering.false_colors) group.color = look.optics.false_color;
     group.detail = scene::DrawnDetail(scene, field.hydrometeor, fields.grid.spacing_m);
     auto found = std::find(medium.groups.begin(), medium.groups.end(), group);
     if (found == medium.groups.end()) found = medium.groups.insert(found, group);
-    const float mass_extinction = volume::MassExtinction_m2_per_kg(field, look.optics);
-    medium.terms.push_back({static_cast<int>(i), look.scale * mass_extinction,
-                            static_cast<int>(found - medium.groups.begin())});
+    const volume::MassExtinction mass_extinction =
+        volume::MassExtinctionOf(field, look.optics, look.size_from_file);
+    medium.terms.push_back({static_cast<int>(i), look.scale * mass_extinction.m2_per_kg,
+                            static_cast<int>(found - medium.groups.begin()),
+                            mass_extinction.by_cell});
     medium.hydrometeors.push_back(field.hydrometeor);
   }
   return medium;

@@ -22,7 +22,7 @@ std::array<FieldParameters, physics::kHydrometeorCount> DrawnFields(const Scene&
 
 bool FieldParameters::operator==(const FieldParameters& other) const {
   return visible == other.visible && scale == other.scale && SameOptics(optics, other.optics) &&
-         detail == other.detail;
+         size_from_file == other.size_from_file && detail == other.detail;
 }
 
 Detail DefaultDetail(physics::Hydrometeor hydrometeor) {

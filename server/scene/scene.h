@@ -38,6 +38,8 @@ struct FieldParameters {
   bool visible = true;
   float scale = 1.0F;  // multiplies the mixing ratio
   physics::ParticleOptics optics{};
+  bool size_from_file =
+      true;  // radii of each cell in place of optics.radius_m, if the file has any
   Detail detail;
 
   bool operator==(const FieldParameters&) const;

@@ -76,6 +76,7 @@ void FillFieldDefaults(v1::FieldParameters& field, physics::Hydrometeor hydromet
   const physics::ParticleOptics& optics = physics::DefaultOptics(hydrometeor);
   field.set_hydrometeor(ToMessage(hydrometeor));
   if (!field.has_visible()) field.set_visible(true);
+  if (!field.has_size_from_file()) field.set_size_from_file(true);
   if (!field.has_radius_m()) field.set_radius_m(optics.radius_m);
   if (!field.has_density_kg_per_m3()) field.set_density_kg_per_m3(optics.density_kg_per_m3);
   if (!field.has_albedo()) field.set_albedo(optics.albedo);
@@ -115,6 +116,7 @@ std::optional<int> FirstWith(const Repeated& fields, v1::Hydrometeor hydrometeor
 scene::FieldParameters ToField(const v1::FieldParameters& message) {
   scene::FieldParameters field;
   field.visible = message.visible();
+  field.size_from_file = message.size_from_file();
   field.scale = message.scale();
   field.optics.radius_m = message.radius_m();
   field.optics.density_kg_per_m3 = message.density_kg_per_m3();
@@ -160,6 +162,8 @@ void SetField(const volume::HydrometeorField& field, const volume::RegularGrid& 
   message.set_maximum_water_path_kg_per_m2(statistics.maximum_water_path_kg_per_m2);
   message.set_negative_cells(static_cast<std::uint64_t>(statistics.negative_cells));
   message.set_missing_cells(static_cast<std::uint64_t>(statistics.missing_cells));
+  message.set_size_variable(field.sizes.variable);
+  message.set_mean_radius_m(field.sizes.mean_radius_m);
   FillFieldDefaults(*message.mutable_defaults(), field.hydrometeor);
   message.mutable_defaults()->mutable_detail()->set_wavelength_m(
       scene::DefaultDetailWavelength_m(grid.spacing_m));

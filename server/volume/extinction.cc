@@ -31,11 +31,8 @@ void SumRow(const HydrometeorFields& fields, const std::vector<ExtinctionTerm>& 
   std::fill(row->begin(), row->end(), 0.0F);
   const std::size_t offset = fields.grid.Offset(low_x, y, z);
   for (const ExtinctionTerm& term : terms) {
-    const float* concentration =
-        fields.fields[static_cast<std::size_t>(term.field)].concentration_kg_per_m3.data() + offset;
-    for (std::size_t i = 0; i < row->size(); ++i) {
-      (*row)[i] += concentration[i] * term.mass_extinction_m2_per_kg;
-    }
+    AddExtinction(fields.fields[static_cast<std::size_t>(term.field)],
+                  {term.mass_extinction_m2_per_kg, term.by_cell}, offset, row->size(), row->data());
   }
 }
 
@@ -104,11 +101,8 @@ void FillPlane(const HydrometeorFields& fields, const std::vector<ExtinctionTerm
         const int channel = term.channel - first_channel;
         if (channel < 0 || channel >= plane->channels) continue;
         const float weight = term.mass_extinction_m2_per_kg * texel_per_extinction;
-        const float* concentration =
-            fields.fields[static_cast<std::size_t>(term.field)].concentration_kg_per_m3.data() +
-            source;
-        float* out = row.data() + channel;
-        for (std::size_t i = 0; i < width; ++i) out[i * stride] += concentration[i] * weight;
+        AddExtinction(fields.fields[static_cast<std::size_t>(term.field)], {weight, term.by_cell},
+                      source, width, row.data() + channel, stride);
       }
       std::uint16_t* texels = plane->texels.data() + volume.grid.Offset(0, y, z) * stride;
       for (std::size_t i = 0; i < row.size(); ++i) texels[i] = HalfFromFloat(row[i]);

@@ -17,6 +17,7 @@ struct ExtinctionTerm {
   int field = 0;  // index into HydrometeorFields::fields
   float mass_extinction_m2_per_kg = 0.0F;
   int channel = 0;
+  bool by_cell = false;  // as MassExtinction's
 };
 
 inline constexpr int kMostChannels = 8;

@@ -9,6 +9,7 @@
 
 #include "physics/hydrometeors.h"
 #include "volume/grid.h"
+#include "volume/particle_sizes.h"
 
 namespace thunderhead::volume {
 
@@ -39,12 +40,28 @@ struct HydrometeorField {
       concentration_kg_per_m3;  // grid.CellCount() values, x fastest; empty if all are zero. Of
                                 // Quantity::kExtinction: extinction in 1/m, a mass of 1 m2/kg
   FieldStatistics statistics;
+  ParticleSizes sizes;  // that the file gives, by cell
 };
 
-// Extinction (1/m) per concentration (kg/m3) of `field` if its particles have `optics`. That of a
-// field given as extinction is 1 m2/kg whatever the optics.
-float MassExtinction_m2_per_kg(const HydrometeorField& field,
-                               const physics::ParticleOptics& optics);
+// Extinction (1/m) per concentration (kg/m3) of a field.
+struct MassExtinction {
+  float m2_per_kg = 0.0F;
+  bool by_cell = false;  // `m2_per_kg` is for a radius of 1 m and is divided by each cell's own
+};
+
+// Of `field` if its particles have `optics`, but radii from the file where it has them and
+// `size_from_file` says so. That of a field given as extinction is 1 m2/kg whatever the optics.
+MassExtinction MassExtinctionOf(const HydrometeorField& field,
+                                const physics::ParticleOptics& optics, bool size_from_file);
+
+// Adds the extinction (1/m) of `count` cells from `offset` on to `sums`, which lie `stride` apart.
+void AddExtinction(const HydrometeorField& field, const MassExtinction& mass_extinction,
+                   std::size_t offset, std::size_t count, float* sums, std::size_t stride = 1);
+
+// `optics` with the radius that stands for all of the field's particles: what their phase function
+// is chosen by.
+physics::ParticleOptics WithDrawnRadius(const HydrometeorField& field,
+                                        physics::ParticleOptics optics, bool size_from_file);
 
 // One time of a storm.
 struct HydrometeorFields {

@@ -15,14 +15,17 @@ using Profiles = std::array<std::vector<double>, 3>;
 
 void AddField(const HydrometeorFields& fields, const HydrometeorField& field, Profiles* profiles) {
   const physics::ParticleOptics& optics = physics::DefaultOptics(field.hydrometeor);
-  const float mass_extinction = MassExtinction_m2_per_kg(field, optics);
+  const MassExtinction mass_extinction = MassExtinctionOf(field, optics, true);
   const CellBox& box = fields.condensate;
+  std::vector<float> row(static_cast<std::size_t>(box.high.x - box.low.x));
   for (int z = box.low.z; z < box.high.z; ++z) {
     for (int y = box.low.y; y < box.high.y; ++y) {
-      const float* row = field.concentration_kg_per_m3.data() + fields.grid.Offset(0, y, z);
+      row.assign(row.size(), 0.0F);
+      AddExtinction(field, mass_extinction, fields.grid.Offset(box.low.x, y, z), row.size(),
+                    row.data());
       double sum = 0.0;
       for (int x = box.low.x; x < box.high.x; ++x) {
-        const double extinction = row[x] * mass_extinction;
+        const double extinction = row[static_cast<std::size_t>(x - box.low.x)];
         (*profiles)[0][static_cast<std::size_t>(x)] += extinction;
         sum += extinction;
       }

@@ -12,6 +12,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/strip.h"
 #include "base/status.h"
+#include "spdlog/spdlog.h"
 
 namespace thunderhead::volume {
 namespace {
@@ -31,6 +32,24 @@ constexpr Unit kPressure = {"Pa", {"Pa", "pascal", "pascals", "Nm-2"}};
 constexpr Unit kGeopotential = {"m2 s-2", {"m2s-2", "m2/s2", "Jkg-1", "J/kg"}};
 constexpr Unit kTemperature = {"K", {"K", "kelvin", "Kelvin", "degK"}};
 constexpr Unit kLength = {"m", {"m", "meter", "meters", "metres"}};
+constexpr Unit kPerMass = {"kg-1", {"kg-1", "/kg", "#kg-1", "#/kg"}};
+
+// What tells particles' sizes: radii before numbers, which need a size distribution to be assumed.
+struct SizeName {
+  Hydrometeor hydrometeor;
+  std::string_view variable;
+  bool is_count;
+};
+constexpr std::array kSizeNames = {
+    SizeName{Hydrometeor::kCloud, "RE_CLOUD", false},
+    SizeName{Hydrometeor::kIce, "RE_ICE", false},
+    SizeName{Hydrometeor::kSnow, "RE_SNOW", false},
+    SizeName{Hydrometeor::kCloud, "QNCLOUD", true},
+    SizeName{Hydrometeor::kRain, "QNRAIN", true},
+    SizeName{Hydrometeor::kIce, "QNICE", true},
+    SizeName{Hydrometeor::kSnow, "QNSNOW", true},
+    SizeName{Hydrometeor::kGraupel, "QNGRAUPEL", true},
+};
 
 absl::Status CheckUnits(const NetcdfFile& file, const std::string& variable, const Unit& unit) {
   const std::optional<std::string> units = file.TextAttribute(variable, "units");
@@ -187,6 +206,25 @@ absl::StatusOr<std::vector<absl::Time>> ReadTimes(const NetcdfFile& file) {
   return times;
 }
 
+// A variable that is not as it should be is left out: the field has its constant radius then.
+void FindSizes(const NetcdfFile& file, const std::vector<std::size_t>& in_layers,
+               WrfMetadata& metadata) {
+  for (const SizeName& name : kSizeNames) {
+    const std::string variable(name.variable);
+    SizeVariable& size = metadata.sizes[physics::IndexOf(name.hydrometeor)];
+    const bool drawn =
+        std::ranges::find(metadata.fields, name.hydrometeor) != metadata.fields.end();
+    if (!drawn || !size.name.empty() || !file.HasVariable(variable)) continue;
+    const absl::Status fit =
+        CheckVariable(file, variable, in_layers, name.is_count ? kPerMass : kLength);
+    if (fit.ok()) {
+      size = {variable, name.is_count};
+    } else {
+      spdlog::warn("particle sizes are not read: {}", std::string(fit.message()));
+    }
+  }
+}
+
 absl::Status CheckVariables(const NetcdfFile& file, WrfMetadata& metadata) {
   const std::size_t records = metadata.times.size();
   const auto nx = static_cast<std::size_t>(metadata.cells.x);
@@ -215,6 +253,7 @@ absl::Status CheckVariables(const NetcdfFile& file, WrfMetadata& metadata) {
     THUNDERHEAD_RETURN_IF_ERROR(CheckVariable(file, variable, in_layers, kMixingRatio));
     metadata.fields.push_back(hydrometeor);
   }
+  FindSizes(file, in_layers, metadata);
   if (!metadata.fields.empty()) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat(
       file.Path(), ": has none of the variables ",

@@ -2,6 +2,7 @@
 // whether it is fit to be read at all (variables, dimensions, units). Knows no cache and no series.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +13,7 @@
 #include "physics/hydrometeors.h"
 #include "volume/grid.h"
 #include "volume/netcdf_file.h"
+#include "volume/particle_sizes.h"
 
 namespace thunderhead::volume {
 
@@ -22,6 +24,8 @@ struct WrfMetadata {
   double dy_m = 0.0;
   std::vector<absl::Time> times;             // of each record of the file, in the file's order
   std::vector<physics::Hydrometeor> fields;  // in the order of physics::kHydrometeors
+  // By physics::IndexOf: what tells the size of that field's particles; no name if nothing does.
+  std::array<SizeVariable, physics::kHydrometeorCount> sizes;
   bool has_vapour = false;
   bool has_terrain = false;
   std::string model;                   // "WRF V4.7.1"

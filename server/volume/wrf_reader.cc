@@ -53,7 +53,10 @@ class TimeReader {
   absl::Status ReadTerrain(HydrometeorFields& result);
   absl::Status ReadFields(HydrometeorFields& result);
   absl::StatusOr<VerticalGrid> GridFor(const std::optional<VerticalGrid>& storm_grid) const;
-  absl::StatusOr<RemappedField> Remap(Hydrometeor hydrometeor, std::vector<float> values) const;
+  absl::StatusOr<RemappedField> Remap(Hydrometeor hydrometeor, std::vector<float> values,
+                                      std::vector<float> sizes) const;
+  void RemapSizes(const SizeVariable& variable, const std::vector<float>& concentration,
+                  std::vector<float> inverse_radius, HydrometeorField& field) const;
   absl::Status Take(std::future<absl::StatusOr<RemappedField>>& pending, HydrometeorFields& result);
   absl::Status Advance();
 
@@ -71,8 +74,10 @@ class TimeReader {
 
 absl::Status TimeReader::Advance() {
   if (!checkpoint_) return absl::OkStatus();
-  const int variables =
-      5 + (metadata_.has_vapour ? 1 : 0) + static_cast<int>(metadata_.fields.size());
+  const auto sizes = std::ranges::count_if(
+      metadata_.sizes, [](const SizeVariable& size) { return !size.name.empty(); });
+  const int variables = 5 + (metadata_.has_vapour ? 1 : 0) +
+                        static_cast<int>(metadata_.fields.size()) + static_cast<int>(sizes);
   return checkpoint_(std::min(1.0, static_cast<double>(variables_read_++) / variables));
 }
 
@@ -153,8 +158,10 @@ absl::StatusOr<VerticalGrid> TimeReader::GridFor(
       storm_grid->High_m(), " m; give files of one run only"));
 }
 
-absl::StatusOr<RemappedField> TimeReader::Remap(Hydrometeor hydrometeor,
-                                                std::vector<float> values) const {
+absl::StatusOr<RemappedField> TimeReader::Remap(Hydrometeor hydrometeor, std::vector<float> values,
+                                                std::vector<float> sizes) const {
+  const SizeVariable& size = metadata_.sizes[physics::IndexOf(hydrometeor)];
+  if (!sizes.empty()) ToInverseRadius(hydrometeor, size, values, sizes);
   RemappedField remapped;
   HydrometeorField& field = remapped.field;
   field.hydrometeor = hydrometeor;
@@ -173,8 +180,21 @@ absl::StatusOr<RemappedField> TimeReader::Remap(Hydrometeor hydrometeor,
     remapped.condensate = FlushAndBound(regular_, field.concentration_kg_per_m3);
     if (remapped.condensate.Empty()) field.concentration_kg_per_m3 = {};
   }
+  if (!sizes.empty() && !field.concentration_kg_per_m3.empty()) {
+    RemapSizes(size, values, std::move(sizes), field);
+  }
   remapped.buffer = std::move(values);
   return remapped;
+}
+
+// Extinction goes with concentration over radius: that is what is remapped, so that each column
+// keeps its optical depth.
+void TimeReader::RemapSizes(const SizeVariable& variable, const std::vector<float>& concentration,
+                            std::vector<float> inverse_radius, HydrometeorField& field) const {
+  for (std::size_t i = 0; i < concentration.size(); ++i) inverse_radius[i] *= concentration[i];
+  field.sizes = SizesOf(
+      variable, field.concentration_kg_per_m3,
+      RemapColumns(air_.interface_height_m, inverse_radius, air_.levels, air_.columns, grid_));
 }
 
 absl::Status TimeReader::Take(std::future<absl::StatusOr<RemappedField>>& pending,
@@ -199,10 +219,14 @@ absl::Status TimeReader::ReadFields(HydrometeorFields& result) {
   std::future<absl::StatusOr<RemappedField>> pending;
   for (const Hydrometeor hydrometeor : metadata_.fields) {
     THUNDERHEAD_RETURN_IF_ERROR(ReadVariable(std::string(WrfVariableOf(hydrometeor)), cells, next));
+    std::vector<float> sizes;
+    const SizeVariable& size = metadata_.sizes[physics::IndexOf(hydrometeor)];
+    if (!size.name.empty()) THUNDERHEAD_RETURN_IF_ERROR(ReadVariable(size.name, cells, sizes));
     THUNDERHEAD_RETURN_IF_ERROR(Take(pending, result));
-    pending = std::async([this, air_ready, hydrometeor, values = std::move(next)]() mutable {
+    pending = std::async([this, air_ready, hydrometeor, values = std::move(next),
+                          sizes = std::move(sizes)]() mutable {
       air_ready.get();
-      return Remap(hydrometeor, std::move(values));
+      return Remap(hydrometeor, std::move(values), std::move(sizes));
     });
     next = std::move(buffer_);
   }
@@ -226,6 +250,9 @@ void TrimTop(const VerticalGrid& storm_grid, HydrometeorFields& fields) {
     if (field.concentration_kg_per_m3.empty()) continue;
     field.concentration_kg_per_m3.resize(grid.CellCount());
     field.concentration_kg_per_m3.shrink_to_fit();
+    if (field.sizes.Empty()) continue;
+    field.sizes.inverse_radius.resize(grid.CellCount());
+    field.sizes.inverse_radius.shrink_to_fit();
   }
 }
 

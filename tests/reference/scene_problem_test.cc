@@ -102,6 +102,30 @@ TEST(MediumOf, FollowsTheScenesFields) {
       MediumOf(scene, volume::HydrometeorFields{fields.grid, {}, {}, {}}, Sides::kOpen).ok());
 }
 
+TEST(MediumOf, TakesSizesFromTheFileUnlessToldNotTo) {
+  volume::HydrometeorFields fields = SmallStorm();
+  const glm::dvec3 cloud_m =
+      fields.grid.low_corner_m + glm::dvec3(3.5, 3.5, 3.5) * fields.grid.spacing_m;
+  scene::Scene scene;
+  const double plain = (*MediumOf(scene, fields, Sides::kOpen))->Extinction_per_m(cloud_m);
+  volume::HydrometeorField& cloud = fields.fields[0];
+  std::vector<float> per_radius = cloud.concentration_kg_per_m3;
+  for (float& value : per_radius) value /= 5e-6F;  // half the constant radius
+  cloud.sizes = volume::SizesOf({"RE_CLOUD", false}, cloud.concentration_kg_per_m3, per_radius);
+  const auto sized = *MediumOf(scene, fields, Sides::kOpen);
+  EXPECT_NEAR(sized->Extinction_per_m(cloud_m) / plain, 2.0, 1e-3);
+  const double small =
+      physics::PhaseColors({physics::PhaseKind::kWaterDroplets, 0.0F, 5e-6F}, 0.9).r;
+  EXPECT_NEAR(sized->ScatteringAt(cloud_m, 0.5).phase->Value(0.9).r, small, 1e-3 * small);
+  const std::vector<volume::ExtinctionTerm> terms = {
+      {0, volume::MassExtinctionOf(cloud, scene.fields[0].optics, true).m2_per_kg, 0, true}};
+  const volume::ExtinctionVolume drawn = volume::ComputeExtinction(fields, terms, 1);
+  EXPECT_NEAR(drawn.maximum_per_m / (1e-4 * 25.0 * 300.0), 1.0, 1e-3) << "of the densest cell";
+  scene.fields[0].size_from_file = false;
+  EXPECT_NEAR((*MediumOf(scene, fields, Sides::kOpen))->Extinction_per_m(cloud_m) / plain, 1.0,
+              1e-6);
+}
+
 TEST(MediumOf, ModesChoosePhaseAndColor) {
   const volume::HydrometeorFields fields = SmallStorm();
   const glm::dvec3 cloud_m =

@@ -59,6 +59,7 @@ TEST(SessionsTest, EmptySceneComesBackWithEveryDefault) {
   EXPECT_EQ(scene.fields(0).phase().kind(), v1::PhaseFunction::KIND_WATER_DROPLETS);
   EXPECT_EQ(scene.fields(1).false_color().blue(), 1.0F);
   EXPECT_TRUE(scene.fields(1).visible());
+  EXPECT_TRUE(scene.fields(1).size_from_file());
 }
 
 TEST(SessionsTest, ValuesGivenAreKept) {

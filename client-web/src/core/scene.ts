@@ -151,6 +151,7 @@ export function effectiveField(
   return create(FieldParametersSchema, {
     hydrometeor,
     visible: set?.visible ?? defaults?.visible ?? true,
+    sizeFromFile: set?.sizeFromFile ?? defaults?.sizeFromFile ?? true,
     scale: set?.scale ?? defaults?.scale ?? LIMITS.fieldScale.defaultValue,
     radiusM: set?.radiusM ?? defaults?.radiusM,
     densityKgPerM3: set?.densityKgPerM3 ?? defaults?.densityKgPerM3,

@@ -131,6 +131,14 @@ function ParticleSettings({ state, field }: { state: PageState; field: FieldDesc
     <>
       {field.units !== EXTINCTION_UNITS && (
         <>
+          {field.sizeVariable !== "" && (
+            <Switch
+              label={`Sizes from the file (${field.sizeVariable}, ${formatNumber(field.meanRadiusM * 1e6)} µm)`}
+              testId={`field-${id}-size-from-file`}
+              checked={shown.sizeFromFile ?? true}
+              onChange={(sizeFromFile) => edit({ sizeFromFile })}
+            />
+          )}
           <Slider
             label="Radius"
             limits={LIMITS.fieldRadius}

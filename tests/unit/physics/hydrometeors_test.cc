@@ -1,7 +1,10 @@
 #include "physics/hydrometeors.h"
 
+#include <cmath>
+
 #include "gtest/gtest.h"
 #include "physics/air.h"
+#include "physics/particle_size.h"
 
 namespace thunderhead::physics {
 namespace {
@@ -27,6 +30,17 @@ TEST(Hydrometeors, MassExtinctionIsNearPublishedTables) {
     const float ours = MassExtinction_m2_per_kg(row.density_kg_per_m3, row.radius_m);
     EXPECT_NEAR(ours / row.published_m2_per_kg, 1.0F, 0.05F) << row.radius_m;
   }
+}
+
+TEST(Hydrometeors, EffectiveRadiusFromTheMassOfAMeanParticle) {
+  // 1e-11 kg of water is a sphere of 13.365 um; a kilogram of air with 1 g in 1e8 droplets.
+  EXPECT_NEAR(EffectiveRadius_m(Hydrometeor::kCloud, 1e-11F), 1.1157 * 13.365e-6, 1e-9);
+  // A drop of 1 mm; the effective radius of an exponential distribution is 3/2 of its mean
+  // diameter.
+  const double mass_kg = 4.18879e-6;
+  EXPECT_NEAR(EffectiveRadius_m(Hydrometeor::kRain, static_cast<float>(mass_kg)), 1.651e-3, 1e-6);
+  const double snow_m = EffectiveRadius_m(Hydrometeor::kSnow, static_cast<float>(mass_kg));
+  EXPECT_NEAR(snow_m / 1.651e-3, std::cbrt(10.0), 1e-3) << "ten times less dense";
 }
 
 TEST(Hydrometeors, DefaultPhasesAreTables) {

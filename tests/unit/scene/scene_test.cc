@@ -24,6 +24,7 @@ TEST(Scene, EachChangeRerunsFromItsOwnStage) {
   EXPECT_EQ(After([](Scene* s) { s->storm_id = "b"; }), Stage::kStorm);
   EXPECT_EQ(After([](Scene* s) { s->fields[0].scale = 2; }), Stage::kExtinction);
   EXPECT_EQ(After([](Scene* s) { s->fields[2].visible = false; }), Stage::kExtinction);
+  EXPECT_EQ(After([](Scene* s) { s->fields[2].size_from_file = false; }), Stage::kExtinction);
   EXPECT_EQ(After([](Scene* s) { s->rendering.false_colors = true; }), Stage::kExtinction);
   EXPECT_EQ(After([](Scene* s) { s->sun.azimuth_deg = 10; }), Stage::kLight);
   EXPECT_EQ(After([](Scene* s) { s->rendering.slices = 64; }), Stage::kLight);
