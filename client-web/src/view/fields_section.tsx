@@ -14,8 +14,8 @@ import type { PageState } from "../core/state";
 import { formatNumber } from "../core/units";
 import {
   ColorSchema,
-  Mode,
   PhaseFunction_Kind as Kind,
+  Mode,
   PhaseFunctionSchema,
 } from "../gen/thunderhead/v1/scene_pb";
 import type { FieldDescription } from "../gen/thunderhead/v1/storm_pb";
