@@ -50,11 +50,10 @@ std::string FieldNames(const volume::HydrometeorFields& fields) {
 Target TotalExtinction(const volume::HydrometeorFields& fields) {
   Target target{"extinction", "m-1", std::vector<float>(fields.grid.CellCount(), 0.0F)};
   for (const volume::HydrometeorField& field : fields.fields) {
-    const float mass_extinction =
-        volume::MassExtinction_m2_per_kg(field, physics::DefaultOptics(field.hydrometeor));
-    for (std::size_t i = 0; i < field.concentration_kg_per_m3.size(); ++i) {
-      target.values[i] += field.concentration_kg_per_m3[i] * mass_extinction;
-    }
+    const volume::MassExtinction mass_extinction =
+        volume::MassExtinctionOf(field, physics::DefaultOptics(field.hydrometeor), true);
+    volume::AddExtinction(field, mass_extinction, 0, field.concentration_kg_per_m3.size(),
+                          target.values.data());
   }
   return target;
 }
