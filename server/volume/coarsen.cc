@@ -19,6 +19,13 @@ std::vector<float> BlockMeans(const RegularGrid& fine, const RegularGrid& coarse
   return means;
 }
 
+// Concentration over radius, what extinction goes with.
+std::vector<float> PerRadius(const HydrometeorField& field) {
+  std::vector<float> per_radius(field.concentration_kg_per_m3.size(), 0.0F);
+  AddExtinction(field, {1.0F, true}, 0, per_radius.size(), per_radius.data());
+  return per_radius;
+}
+
 }  // namespace
 
 glm::ivec3 CoarseningFor(const HydrometeorFields& fields, int most_cells) {
@@ -47,6 +54,9 @@ HydrometeorFields Coarsened(const HydrometeorFields& fields, const glm::ivec3& f
     if (field.concentration_kg_per_m3.empty()) continue;
     mean.concentration_kg_per_m3 =
         BlockMeans(fields.grid, coarse.grid, factor, field.concentration_kg_per_m3);
+    if (field.sizes.Empty()) continue;
+    mean.sizes = SizesOf(field.sizes.variable, mean.concentration_kg_per_m3,
+                         BlockMeans(fields.grid, coarse.grid, factor, PerRadius(field)));
   }
   if (!fields.condensate.Empty()) {
     coarse.condensate = {fields.condensate.low / factor,

@@ -9,8 +9,9 @@ namespace thunderhead::volume {
 // has at most `most_cells` along it. 1, 1, 1 if it has.
 glm::ivec3 CoarseningFor(const HydrometeorFields& fields, int most_cells);
 
-// Means over blocks of `factor` cells: each field keeps its mass. Blocks that reach beyond the
-// domain count what lies there as empty. Terrain and statistics are not carried over.
+// Means over blocks of `factor` cells: each field keeps its mass and, by cell, its extinction.
+// Blocks that reach beyond the domain count what lies there as empty. Terrain and statistics are
+// not carried over.
 HydrometeorFields Coarsened(const HydrometeorFields& fields, const glm::ivec3& factor);
 
 }  // namespace thunderhead::volume

@@ -23,10 +23,10 @@ void ToInverseRadius(physics::Hydrometeor hydrometeor, const SizeVariable& varia
   }
 }
 
-ParticleSizes SizesOf(const SizeVariable& variable, const std::vector<float>& concentration,
+ParticleSizes SizesOf(const std::string& variable, const std::vector<float>& concentration,
                       const std::vector<float>& concentration_per_radius) {
   ParticleSizes sizes;
-  sizes.variable = variable.name;
+  sizes.variable = variable;
   sizes.inverse_radius.resize(concentration.size());
   double mass = 0.0;
   double mass_per_radius = 0.0;

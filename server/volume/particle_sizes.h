@@ -44,7 +44,7 @@ void ToInverseRadius(physics::Hydrometeor hydrometeor, const SizeVariable& varia
 
 // Sizes of cells with `concentration` (kg/m3) of which `concentration_per_radius` (kg/m4) is left
 // after remapping: R is such that extinction, which goes with the latter, is kept.
-ParticleSizes SizesOf(const SizeVariable& variable, const std::vector<float>& concentration,
+ParticleSizes SizesOf(const std::string& variable, const std::vector<float>& concentration,
                       const std::vector<float>& concentration_per_radius);
 
 }  // namespace thunderhead::volume

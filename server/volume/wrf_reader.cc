@@ -193,7 +193,7 @@ void TimeReader::RemapSizes(const SizeVariable& variable, const std::vector<floa
                             std::vector<float> inverse_radius, HydrometeorField& field) const {
   for (std::size_t i = 0; i < concentration.size(); ++i) inverse_radius[i] *= concentration[i];
   field.sizes = SizesOf(
-      variable, field.concentration_kg_per_m3,
+      variable.name, field.concentration_kg_per_m3,
       RemapColumns(air_.interface_height_m, inverse_radius, air_.levels, air_.columns, grid_));
 }
 

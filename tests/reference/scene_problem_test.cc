@@ -111,7 +111,7 @@ TEST(MediumOf, TakesSizesFromTheFileUnlessToldNotTo) {
   volume::HydrometeorField& cloud = fields.fields[0];
   std::vector<float> per_radius = cloud.concentration_kg_per_m3;
   for (float& value : per_radius) value /= 5e-6F;  // half the constant radius
-  cloud.sizes = volume::SizesOf({"RE_CLOUD", false}, cloud.concentration_kg_per_m3, per_radius);
+  cloud.sizes = volume::SizesOf("RE_CLOUD", cloud.concentration_kg_per_m3, per_radius);
   const auto sized = *MediumOf(scene, fields, Sides::kOpen);
   EXPECT_NEAR(sized->Extinction_per_m(cloud_m) / plain, 2.0, 1e-3);
   const double small =

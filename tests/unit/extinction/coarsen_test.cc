@@ -39,6 +39,26 @@ TEST(Coarsened, KeepsMassAndPlace) {
   EXPECT_TRUE(coarse.fields[1].concentration_kg_per_m3.empty());
 }
 
+TEST(Coarsened, KeepsTheExtinctionOfCellsOfDifferentSizes) {
+  HydrometeorFields fine = Ramp({8, 4, 5});
+  HydrometeorField& field = fine.fields[0];
+  std::vector<float> per_radius = field.concentration_kg_per_m3;
+  for (std::size_t i = 0; i < per_radius.size(); ++i) {
+    per_radius[i] /= 1e-6F * static_cast<float>(1 + i % 11);
+  }
+  field.sizes = SizesOf("RE_CLOUD", field.concentration_kg_per_m3, per_radius);
+  const HydrometeorFields coarse = Coarsened(fine, {4, 2, 1});
+  const auto mean = [](const HydrometeorFields& fields) {
+    float sum = 0.0F;
+    // All cells into one sum.
+    AddExtinction(fields.fields[0], {150.0F, true}, 0, fields.grid.CellCount(), &sum, 0);
+    return sum / static_cast<float>(fields.grid.CellCount());
+  };
+  // Half floats in both: 2^-12 each.
+  EXPECT_NEAR(mean(coarse) / mean(fine), 1.0F, 6e-4F);
+  EXPECT_EQ(coarse.fields[0].sizes.variable, "RE_CLOUD");
+}
+
 TEST(Coarsened, OnlyAsMuchAsIsNeeded) {
   HydrometeorFields fields = Ramp({40, 10, 3});
   EXPECT_EQ(CoarseningFor(fields, 40), glm::ivec3(1));

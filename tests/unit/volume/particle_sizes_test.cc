@@ -158,7 +158,7 @@ TEST(InverseRadius, HalvesHoldEveryRadiusThatASceneMayHave) {
   for (double radius_m = physics::kLeastRadius_m; radius_m <= physics::kMostRadius_m;
        radius_m *= 1.07) {
     const auto per_radius = static_cast<float>(1.0 / radius_m);
-    const ParticleSizes sizes = SizesOf({"RE_CLOUD", false}, {2e-3F}, {2e-3F * per_radius});
+    const ParticleSizes sizes = SizesOf("RE_CLOUD", {2e-3F}, {2e-3F * per_radius});
     EXPECT_NEAR(InverseRadius_per_m(sizes.inverse_radius[0]) * radius_m, 1.0, 6e-4) << radius_m;
   }
 }
