@@ -99,6 +99,7 @@ absl::Status Render(const Flags& flags) {
   v1::RenderImageRequest request;
   THUNDERHEAD_ASSIGN_OR_RETURN(const v1::ImageFormat format, FormatOf(flags.output));
   THUNDERHEAD_ASSIGN_OR_RETURN(*request.mutable_scene(), ReadScene(flags.scene));
+  if (request.scene().rendering().renderer() == v1::RENDERER_REFERENCE) return ByReference(flags);
   request.set_format(format);
   THUNDERHEAD_ASSIGN_OR_RETURN(v1::RenderImageResponse response, flags.server.empty()
                                                                      ? CallHere(flags, request)

@@ -8,6 +8,8 @@
 #include "absl/status/statusor.h"
 #include "gl/objects.h"
 #include "gl/program.h"
+#include "glm/vec2.hpp"
+#include "glm/vec3.hpp"
 #include "scene/scene.h"
 
 namespace thunderhead::frame {
@@ -36,5 +38,8 @@ class ToneMapper {
 
 // The texture's values, four floats a pixel, rows from bottom to top as GL keeps them.
 std::vector<float> ReadLinear(const gl::Texture2D& linear);
+
+// A linear frame as the renderers leave one, from pixels in rows from top to bottom.
+gl::Texture2D TextureOf(const glm::ivec2& size_px, const std::vector<glm::vec3>& radiance);
 
 }  // namespace thunderhead::frame

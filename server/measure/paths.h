@@ -14,7 +14,8 @@ struct Named {
   std::string_view name;  // as in proto/thunderhead/v1/scene.proto, in lower case
 };
 
-inline constexpr std::array<Named<scene::Renderer>, scene::kRendererCount> kPaths = {{
+// Without the reference, which the others are measured against.
+inline constexpr std::array<Named<scene::Renderer>, scene::kRendererCount - 1> kPaths = {{
     {scene::Renderer::kHalfAngle, "half_angle"},
     {scene::Renderer::kLightVolume, "light_volume"},
 }};

@@ -38,18 +38,7 @@ double Quantile(std::vector<double> values, double share) {
 }  // namespace
 
 gl::Texture2D TextureOf(const LinearImage& image) {
-  const auto width = static_cast<std::size_t>(image.size_px.x);
-  std::vector<float> texels;
-  texels.reserve(4 * image.radiance.size());
-  for (auto y = static_cast<std::size_t>(image.size_px.y); y-- > 0;) {
-    for (std::size_t x = 0; x < width; ++x) {
-      const glm::vec3& pixel = image.radiance[y * width + x];
-      texels.insert(texels.end(), {pixel.x, pixel.y, pixel.z, 1.0F});
-    }
-  }
-  gl::Texture2D texture(GL_RGBA32F, image.size_px);
-  texture.Upload(GL_RGBA, GL_FLOAT, texels.data());
-  return texture;
+  return frame::TextureOf(image.size_px, image.radiance);
 }
 
 std::string NameOf(scene::Renderer renderer) {

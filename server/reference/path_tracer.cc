@@ -141,15 +141,17 @@ RefineResult PathTracer::Refine(const RefineLimits& limits, const ImageObserver&
   const base::Stopwatch stopwatch;
   const auto seconds = [&] { return stopwatch.ElapsedMs() * 1e-3; };
   const auto timed_out = [&] { return limits.seconds > 0.0 && seconds() >= limits.seconds; };
+  const auto pauses = [&] { return limits.pause_s > 0.0 && seconds() >= limits.pause_s; };
   const std::int64_t samples_before = AllSamples();
   for (;;) {
     const ImageProgress progress = ProgressOf(seconds(), samples_before);
     if (observer) observer(progress);
     if (const auto end = EndAt(limits, progress)) return {*end, progress};
     if (stop.stop_requested()) return {RefineEnd::kStopped, progress};
+    if (pauses()) return {RefineEnd::kPaused, progress};
     const bool first = progress.samples_per_pixel == 0;
     RunPass({PassTarget(limits),
-             [&, first] { return stop.stop_requested() || (!first && timed_out()); }});
+             [&, first] { return stop.stop_requested() || pauses() || (!first && timed_out()); }});
   }
 }
 

@@ -27,6 +27,7 @@ struct RefineLimits {
   int samples_per_pixel = 0;    // in all, over every call; 0: no limit
   double seconds = 0.0;         // of this call; 0: no limit. One sample a pixel is always finished
   double relative_error = 0.0;  // see ImageProgress; 0: no limit. Needs 16 samples at least
+  double pause_s = 0.0;         // of this call; 0: never. May leave pixels without any sample yet
 };
 
 struct ImageProgress {
@@ -41,7 +42,7 @@ struct ImageProgress {
 // Called between passes on the thread that called Refine.
 using ImageObserver = std::function<void(const ImageProgress&)>;
 
-enum class RefineEnd { kSamples, kSeconds, kRelativeError, kStopped };
+enum class RefineEnd { kSamples, kSeconds, kRelativeError, kStopped, kPaused };
 
 struct RefineResult {
   RefineEnd end = RefineEnd::kStopped;
@@ -61,8 +62,8 @@ class PathTracer {
              const glm::ivec2& size_px, const PathTracerOptions& options);
 
   // Adds samples until a limit is reached or `stop` asks to stop, which may leave some pixels with
-  // more samples than others; their means stay right. `observer` may be empty. Calls must not
-  // overlap.
+  // more samples than others; their means stay right, and another call goes on from there.
+  // `observer` may be empty. Calls must not overlap.
   RefineResult Refine(const RefineLimits& limits, const ImageObserver& observer,
                       const std::stop_token& stop);
 

@@ -118,6 +118,8 @@ absl::Status SceneRenderer::DrawMedium(const RenderSettings& settings, scene::St
       THUNDERHEAD_RETURN_IF_ERROR(light_volume_.DrawView(medium_, settings));
       ran("view");
       break;
+    case scene::Renderer::kReference:
+      return absl::InvalidArgumentError("the reference is traced, not drawn");
   }
   drawn_by_ = settings.rendering.renderer;
   return absl::OkStatus();

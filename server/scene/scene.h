@@ -108,10 +108,10 @@ enum class Mode {
 bool HasPerFieldPhase(Mode mode);
 bool HasDetail(Mode mode);
 
-// The renderer: slices halfway between sun and eye; or light carried once into a volume, which view
-// rays march through.
-enum class Renderer { kHalfAngle, kLightVolume };
-inline constexpr std::size_t kRendererCount = 2;
+// The renderer: slices halfway between sun and eye; light carried once into a volume, which view
+// rays march through; or the Monte Carlo reference, which is traced on the CPU, ever finer.
+enum class Renderer { kHalfAngle, kLightVolume, kReference };
+inline constexpr std::size_t kRendererCount = 3;
 
 enum class Transport { kPaper, kConsistent };
 

@@ -93,6 +93,12 @@ grpc::ServerUnaryReactor* RenderImage(Engine& engine, grpc::CallbackServerContex
   *response->mutable_scene() = request->scene();
   if (status.ok()) status = PrepareScene(engine.store, *response->mutable_scene());
   if (!status.ok()) return Finished(context, status);
+  if (response->scene().rendering().renderer() == v1::RENDERER_REFERENCE) {
+    return Finished(context, absl::InvalidArgumentError(
+                                 "scene.rendering.renderer is RENDERER_REFERENCE, which only "
+                                 "sessions show; for a file use thunderhead render --renderer "
+                                 "reference"));
+  }
   auto* reactor = new PictureReactor(engine, *request, *response);
   reactor->Begin();
   return reactor;

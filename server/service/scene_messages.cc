@@ -45,6 +45,7 @@ constexpr std::array kModes = {
 constexpr std::array kRenderers = {
     std::pair{v1::RENDERER_LIGHT_VOLUME, scene::Renderer::kLightVolume},
     std::pair{v1::RENDERER_HALF_ANGLE, scene::Renderer::kHalfAngle},
+    std::pair{v1::RENDERER_REFERENCE, scene::Renderer::kReference},
 };
 constexpr std::array kTransports = {
     std::pair{v1::TRANSPORT_CONSISTENT, scene::Transport::kConsistent},
@@ -259,6 +260,13 @@ void ToMessage(const session::StageCost& cost, v1::StageCost& message) {
   message.set_milliseconds(static_cast<float>(cost.milliseconds));
 }
 
+void ToMessage(const session::Refinement& refinement, v1::Refinement& message) {
+  message.set_samples_per_pixel(static_cast<std::uint32_t>(refinement.samples_per_pixel));
+  if (refinement.relative_error.has_value()) {
+    message.set_relative_error(static_cast<float>(*refinement.relative_error));
+  }
+}
+
 void ToMessage(const session::EncodedFrame& frame, v1::Frame& message) {
   message.set_sequence(frame.sequence);
   message.set_scene_revision(frame.scene_revision);
@@ -270,6 +278,9 @@ void ToMessage(const session::EncodedFrame& frame, v1::Frame& message) {
   for (const session::StageCost& cost : frame.stages) ToMessage(cost, *message.add_stages());
   ToMessage(frame.modelled, *message.mutable_modelled());
   message.set_refined(frame.refined);
+  if (frame.refinement.has_value()) {
+    ToMessage(*frame.refinement, *message.mutable_refinement());
+  }
 }
 
 void ToMessage(const session::Problem& problem, v1::Problem& message) {

@@ -35,6 +35,7 @@ void EncodeAndPublish(DrawnFrame drawn) {
   frame.stages.push_back({"encode", stopwatch.ElapsedMs()});
   frame.modelled = std::move(drawn.picture.modelled);
   frame.refined = drawn.refined;
+  frame.refinement = drawn.refinement;
   drawn.session->hub().Publish(std::move(frame));
 }
 

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -24,6 +25,7 @@ struct DrawnFrame {
   scene::Scene scene;
   bool refined = false;
   DisplayFrame picture;
+  std::optional<Refinement> refinement;  // of a picture by the reference
 };
 
 class FrameEncoder {

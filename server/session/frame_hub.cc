@@ -20,8 +20,11 @@ absl::StatusOr<std::uint64_t> FrameHub::Join(std::shared_ptr<Viewer> viewer) {
 }
 
 void FrameHub::Leave(std::uint64_t viewer_id) {
-  const std::lock_guard lock(mutex_);
-  watches_.erase(viewer_id);
+  {
+    const std::lock_guard lock(mutex_);
+    watches_.erase(viewer_id);
+  }
+  on_demand_();
 }
 
 std::optional<FrameEvent> FrameHub::Take(std::uint64_t viewer_id) {

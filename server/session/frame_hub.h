@@ -33,6 +33,7 @@ struct EncodedFrame {
   std::vector<StageCost> stages;
   Modelled modelled;
   bool refined = false;
+  std::optional<Refinement> refinement;  // of a picture by the reference
 };
 
 // Why the scene of a revision has no frame.
@@ -55,7 +56,8 @@ class FrameHub {
  public:
   static constexpr std::size_t kMaxInFlight = 2;
 
-  // `on_demand` is called, without the lock, whenever a viewer comes to be ready for another frame.
+  // `on_demand` is called, without the lock, whenever a viewer comes to be ready for another frame,
+  // or has left.
   explicit FrameHub(std::function<void()> on_demand);
 
   // Gives the viewer's id, or the reason given to Close. Does not call Wake.

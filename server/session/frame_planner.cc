@@ -71,7 +71,7 @@ void FramePlanner::Drawn(std::uint64_t revision, const scene::Scene& scene, cons
   costs_.Of(scene).Observe(MegaSamples(scene, plan.quality), total_ms, stages);
 }
 
-void FramePlanner::Failed(std::uint64_t revision) {
+void FramePlanner::GiveUp(std::uint64_t revision) {
   revision_ = std::max(revision_, revision);
   finished_ = true;
 }

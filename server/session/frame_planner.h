@@ -55,10 +55,10 @@ class FramePlanner {
 
   void Drawn(std::uint64_t revision, const scene::Scene& scene, const FramePlan& plan,
              double total_ms, const std::vector<StageCost>& stages);
-  // The scene of that revision cannot be drawn; it is not tried again.
-  void Failed(std::uint64_t revision);
+  // The scene of that revision cannot be drawn, or is shown by other means; it is not tried again.
+  void GiveUp(std::uint64_t revision);
 
-  // The newest revision drawn or failed.
+  // The newest revision drawn or given up.
   std::uint64_t revision() const { return revision_; }
 
  private:

@@ -6,10 +6,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "glm/vec2.hpp"
+#include "glm/vec3.hpp"
 #include "physics/hydrometeors.h"
 #include "scene/scene.h"
 #include "volume/hydrometeor_fields.h"
@@ -26,7 +29,7 @@ struct FrameQuality {
 };
 
 // One stage's wall time. Stages: "read", "extinction", "upload", "slices", "light", "view",
-// "composite", "tone", "read_back", "encode".
+// "ground", "composite", "trace", "tone", "read_back", "encode".
 struct StageCost {
   std::string stage;
   double milliseconds = 0.0;
@@ -39,6 +42,21 @@ struct Modelled {
   std::uint64_t device_bytes = 0;
   double occupied_share = 0.0;
   scene::Renderer renderer = scene::Renderer::kLightVolume;
+};
+
+// How far a picture by the reference has come.
+struct Refinement {
+  int samples_per_pixel = 0;  // that every pixel has
+  // Root of the mean squared standard error over the mean radiance; none where samples are too few.
+  std::optional<double> relative_error;
+
+  bool operator==(const Refinement&) const = default;
+};
+
+// Linear radiance, rows from top to bottom.
+struct LinearPicture {
+  glm::ivec2 size_px{0};
+  std::vector<glm::vec3> radiance;
 };
 
 // A finished picture: 8-bit sRGB, three bytes a pixel, rows from top to bottom.
@@ -68,6 +86,10 @@ class FrameSource {
   virtual absl::StatusOr<DisplayFrame> Draw(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
       const FrameQuality& quality) = 0;
+
+  // Tone maps what was computed elsewhere. What Draw keeps stays kept.
+  virtual absl::StatusOr<DisplayFrame> Tone(const LinearPicture& picture,
+                                            const scene::Display& display) = 0;
 };
 
 // Makes the source on the thread that will use it.

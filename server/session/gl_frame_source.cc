@@ -27,23 +27,38 @@ class GlFrameSource final : public FrameSource {
     THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped,
                                  tone_mapper_.Map(*linear.radiance, scene.display));
     DisplayFrame frame;
-    frame.width_px = linear.radiance->Size().x;
-    frame.height_px = linear.radiance->Size().y;
-    frame.rgb = std::move(mapped.rgb);
     for (const renderers::StageTime& stage : linear.stages) {
       frame.stages.push_back({stage.stage, stage.milliseconds});
     }
-    frame.stages.push_back({"tone", mapped.tone_ms});
-    frame.stages.push_back({"read_back", mapped.read_back_ms});
+    Fill(linear.radiance->Size(), std::move(mapped), &frame);
     frame.modelled = {linear.fields, linear.slices, linear.device_bytes, linear.occupied_share,
                       scene.rendering.renderer};
     return frame;
   }
 
+  absl::StatusOr<DisplayFrame> Tone(const LinearPicture& picture,
+                                    const scene::Display& display) override {
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        frame::ToneMapped mapped,
+        picture_tone_mapper_.Map(frame::TextureOf(picture.size_px, picture.radiance), display));
+    DisplayFrame frame;
+    Fill(picture.size_px, std::move(mapped), &frame);
+    return frame;
+  }
+
  private:
+  static void Fill(const glm::ivec2& size_px, frame::ToneMapped mapped, DisplayFrame* frame) {
+    frame->width_px = size_px.x;
+    frame->height_px = size_px.y;
+    frame->rgb = std::move(mapped.rgb);
+    frame->stages.push_back({"tone", mapped.tone_ms});
+    frame->stages.push_back({"read_back", mapped.read_back_ms});
+  }
+
   std::unique_ptr<gl::Context> context_;  // outlives what was made in it
   renderers::RendererPool renderers_;
   frame::ToneMapper tone_mapper_;
+  frame::ToneMapper picture_tone_mapper_;  // of other sizes: each keeps its buffers
   DeviceInfo info_;
 };
 

@@ -22,6 +22,17 @@ std::optional<Clock::time_point> Earlier(const std::optional<Clock::time_point>&
   return std::min(*a, *b);
 }
 
+std::vector<physics::Hydrometeor> DrawnFields(const scene::Scene& scene,
+                                              const volume::HydrometeorFields& fields) {
+  std::vector<physics::Hydrometeor> drawn;
+  for (const volume::HydrometeorField& field : fields.fields) {
+    const scene::FieldParameters& look = scene.fields[physics::IndexOf(field.hydrometeor)];
+    if (!look.visible || look.scale <= 0.0F || field.concentration_kg_per_m3.empty()) continue;
+    drawn.push_back(field.hydrometeor);
+  }
+  return drawn;
+}
+
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<RenderLoop>> RenderLoop::Start(
@@ -45,8 +56,9 @@ RenderLoop::RenderLoop(const RenderLoopOptions& options, volume::StormStore& sto
       sessions_(sessions),
       wake_(wake),
       reader_(std::make_unique<FieldsReader>(store, [&wake] { wake.Notify(); })),
-      encoder_(
-          std::make_unique<FrameEncoder>(options.encoder_threads, [&wake] { wake.Notify(); })) {}
+      encoder_(std::make_unique<FrameEncoder>(options.encoder_threads, [&wake] { wake.Notify(); })),
+      tracer_(std::make_unique<TruthTracer>(options.make_truth_source, options.max_traced_sessions,
+                                            [&wake] { wake.Notify(); })) {}
 
 RenderLoop::~RenderLoop() { Stop(); }
 
@@ -59,6 +71,7 @@ void RenderLoop::Stop() {
   RequestStop();
   if (thread_.joinable()) thread_.join();
   reader_.reset();
+  tracer_.reset();
   encoder_.reset();
 }
 
@@ -122,6 +135,17 @@ std::optional<Clock::time_point> RenderLoop::DrawOne() {
   return look_again_at;
 }
 
+// Gives back the memory of what a session without viewers shows, and its work in progress.
+void RenderLoop::LetGo(const std::string& session_id, Track& track) {
+  reader_->Forget(session_id);
+  tracer_->Forget(session_id);
+  track.fields.reset();
+  track.fields_key.reset();
+  track.reading_for.reset();
+  track.arrived_for.reset();
+  track.traced.reset();
+}
+
 void RenderLoop::DropEndedTracks(const std::vector<std::shared_ptr<Session>>& sessions) {
   for (auto track = tracks_.begin(); track != tracks_.end();) {
     const auto found = std::lower_bound(
@@ -133,13 +157,9 @@ void RenderLoop::DropEndedTracks(const std::vector<std::shared_ptr<Session>>& se
       ++track;
       continue;
     }
-    reader_->Forget(track->first);
+    LetGo(track->first, track->second);
     if (found != sessions.end() && (*found)->id() == track->first) {
-      // It may be watched again; only the memory of its fields is given back.
-      track->second.fields.reset();
-      track->second.fields_key.reset();
-      track->second.reading_for.reset();
-      track->second.arrived_for.reset();
+      // It may be watched again.
       ++track;
     } else {
       track = tracks_.erase(track);
@@ -154,9 +174,13 @@ RenderLoop::Outcome RenderLoop::TrySession(const std::shared_ptr<Session>& sessi
       tracks_.try_emplace(session->id(), Track{FramePlanner(options_.targets, machine_costs_)});
   Track& track = entry->second;
   TakeRead(*session, track);
+  EndTrace(session->id(), track, *newest->scene);
   if (!session->hub().HasReadyViewer() || encoder_->IsFullFor(*session)) return {};
   const std::optional<NewestScene> shown = DrawableScene(*session, track, *newest);
   if (!shown.has_value()) return {};
+  if (shown->scene->rendering.renderer == scene::Renderer::kReference) {
+    return ShowTraced(session, track, *shown);
+  }
   const Decision decision = track.planner.Decide(*shown, Clock::now(), last_drawn_);
   if (!decision.plan.has_value()) return {false, decision.ask_again_at};
   DrawFor(session, track, *shown, *decision.plan);
@@ -168,7 +192,7 @@ void RenderLoop::TakeRead(Session& session, Track& track) {
   if (!read.has_value() || !track.reading_for.has_value()) return;
   const NewestScene reading_for = *std::exchange(track.reading_for, std::nullopt);
   if (!read->fields.ok()) {
-    track.planner.Failed(reading_for.revision);
+    track.planner.GiveUp(reading_for.revision);
     track.unreadable_revision = reading_for.revision;
     session.hub().Publish(
         Problem{reading_for.revision, std::string(read->fields.status().message())});
@@ -210,17 +234,79 @@ void RenderLoop::DrawFor(const std::shared_ptr<Session>& session, Track& track,
   const bool was_warm = warm_;
   double total_ms = 0.0;
   auto picture = Draw(*shown.scene, track.fields, plan.quality, total_ms);
-  if (!picture.ok()) {
-    track.planner.Failed(shown.revision);
-    session->hub().Publish(Problem{shown.revision, std::string(picture.status().message())});
-    return;
-  }
+  if (!picture.ok()) return Fail(*session, track, shown.revision, picture.status());
   track.planner.Drawn(shown.revision, *shown.scene, plan, total_ms,
                       was_warm ? picture->stages : std::vector<StageCost>());
+  Send(track,
+       {session, shown.revision, *shown.scene, plan.refined, *std::move(picture), std::nullopt});
+}
+
+void RenderLoop::Send(Track& track, DrawnFrame frame) {
   if (track.read_ms > 0.0) {
-    picture->stages.insert(picture->stages.begin(), {"read", std::exchange(track.read_ms, 0.0)});
+    std::vector<StageCost>& stages = frame.picture.stages;
+    stages.insert(stages.begin(), {"read", std::exchange(track.read_ms, 0.0)});
   }
-  encoder_->Encode({session, shown.revision, *shown.scene, plan.refined, *std::move(picture)});
+  encoder_->Encode(std::move(frame));
+}
+
+void RenderLoop::Fail(Session& session, Track& track, std::uint64_t revision,
+                      const absl::Status& why) {
+  track.planner.GiveUp(revision);
+  session.hub().Publish(Problem{revision, std::string(why.message())});
+}
+
+void RenderLoop::EndTrace(const std::string& session_id, Track& track, const scene::Scene& newest) {
+  if (!track.traced.has_value()) return;
+  if (newest.rendering.renderer != scene::Renderer::kReference) {
+    tracer_->Forget(session_id);
+    track.traced.reset();
+  } else if (scene::FirstDirtyStage(*track.traced->shown.scene, newest) < scene::Stage::kTone) {
+    tracer_->Stop(session_id);
+    track.traced.reset();
+  }
+}
+
+absl::StatusOr<bool> RenderLoop::Trace(const std::string& session_id, Track& track,
+                                       const NewestScene& shown) {
+  if (!track.traced.has_value()) {
+    if (track.untraceable_revision == shown.revision) return false;
+    track.traced = Traced{shown, nullptr};
+    THUNDERHEAD_RETURN_IF_ERROR(tracer_->Trace(session_id, shown.scene, track.fields));
+    return false;
+  }
+  Traced& traced = *track.traced;
+  // Another exposure shows what was traced so far in another light.
+  bool news = traced.picture != nullptr && shown.revision > traced.shown.revision;
+  traced.shown = shown;
+  if (auto taken = tracer_->Take(session_id); taken.has_value()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(traced.picture, *std::move(taken));
+    news = true;
+  }
+  return news;
+}
+
+RenderLoop::Outcome RenderLoop::ShowTraced(const std::shared_ptr<Session>& session, Track& track,
+                                           const NewestScene& shown) {
+  const auto fail = [&](const absl::Status& why) -> Outcome {
+    tracer_->Forget(session->id());
+    track.traced.reset();
+    track.untraceable_revision = shown.revision;
+    Fail(*session, track, shown.revision, why);
+    return {};
+  };
+  const absl::StatusOr<bool> news = Trace(session->id(), track, shown);
+  if (!news.ok()) return fail(news.status());
+  track.planner.GiveUp(shown.revision);
+  if (!*news) return {};
+  const TruthPicture& traced = *track.traced->picture;
+  auto picture = source_->Tone(traced.picture, shown.scene->display);
+  if (!picture.ok()) return fail(picture.status());
+  picture->stages.insert(picture->stages.begin(), {"trace", traced.trace_ms});
+  picture->modelled.renderer = scene::Renderer::kReference;
+  picture->modelled.fields = DrawnFields(*shown.scene, *track.fields);
+  Send(track, {session, shown.revision, *shown.scene, traced.full_size, *std::move(picture),
+               traced.refinement});
+  return {true, std::nullopt};
 }
 
 absl::StatusOr<DisplayFrame> RenderLoop::Draw(

@@ -1,7 +1,7 @@
 // The loop that draws: one thread makes the frame source, owns it, and draws with it in turn the
 // newest scene of every session that has a viewer ready for a frame, and the pictures that were
-// asked for one by one. Reads and encoding run on other threads beside it. Knows no GL (that is the
-// frame source's) and no messages.
+// asked for one by one. Reads, encoding and the reference run on other threads beside it. Knows no
+// GL (that is the frame source's) and no messages.
 #pragma once
 
 #include <atomic>
@@ -24,6 +24,8 @@
 #include "session/frame_planner.h"
 #include "session/frame_source.h"
 #include "session/sessions.h"
+#include "session/truth_source.h"
+#include "session/truth_tracer.h"
 
 namespace thunderhead::session {
 
@@ -31,6 +33,9 @@ struct RenderLoopOptions {
   PlannerTargets targets;
   std::size_t max_waiting_images = 16;
   int encoder_threads = 1;
+  // Of sessions that show the reference; each takes some hundred bytes a pixel and the medium.
+  std::size_t max_traced_sessions = 8;
+  TruthSourceFactory make_truth_source = [] { return MakeReferenceTruthSource(); };
 };
 
 // One picture at full quality, outside any session.
@@ -65,6 +70,11 @@ class RenderLoop {
   void Stop();
 
  private:
+  // A session's picture by the reference.
+  struct Traced {
+    NewestScene shown;
+    std::shared_ptr<const TruthPicture> picture;  // none yet
+  };
   // What the loop knows of a session.
   struct Track {
     FramePlanner planner;
@@ -74,6 +84,8 @@ class RenderLoop {
     std::optional<NewestScene> arrived_for;  // the scene whose fields have just been read
     std::uint64_t unreadable_revision = 0;
     double read_ms = 0.0;  // to be reported with the next frame
+    std::optional<Traced> traced;
+    std::uint64_t untraceable_revision = 0;
   };
   // What came of looking at a session or the pictures that wait.
   struct Outcome {
@@ -86,6 +98,7 @@ class RenderLoop {
 
   void Run(const FrameSourceFactory& make_source, std::promise<absl::Status> started);
   std::optional<Clock::time_point> DrawOne();
+  void LetGo(const std::string& session_id, Track& track);
   void DropEndedTracks(const std::vector<std::shared_ptr<Session>>& sessions);
   Outcome TrySession(const std::shared_ptr<Session>& session);
   void TakeRead(Session& session, Track& track);
@@ -93,6 +106,14 @@ class RenderLoop {
                                            const NewestScene& newest);
   void DrawFor(const std::shared_ptr<Session>& session, Track& track, const NewestScene& shown,
                const FramePlan& plan);
+  void Send(Track& track, DrawnFrame frame);
+  // Ends the tracing of what the scene no longer shows.
+  void EndTrace(const std::string& session_id, Track& track, const scene::Scene& newest);
+  Outcome ShowTraced(const std::shared_ptr<Session>& session, Track& track,
+                     const NewestScene& shown);
+  // True if there is something that its viewers have not seen.
+  absl::StatusOr<bool> Trace(const std::string& session_id, Track& track, const NewestScene& shown);
+  void Fail(Session& session, Track& track, std::uint64_t revision, const absl::Status& why);
   Outcome TryImage();
   std::optional<ImageJob> NextImage();
   absl::StatusOr<DisplayFrame> Draw(const scene::Scene& scene,
@@ -121,6 +142,7 @@ class RenderLoop {
 
   std::unique_ptr<FieldsReader> reader_;
   std::unique_ptr<FrameEncoder> encoder_;
+  std::unique_ptr<TruthTracer> tracer_;
   std::thread thread_;
 };
 

@@ -228,6 +228,45 @@ test("the sun set by the dome darkens the storm as it sinks", async () => {
   });
 });
 
+test("the reference refines the picture while it rests, and begins again when it turns", async () => {
+  await page.getByTestId("rendering-section").locator("summary").click();
+  const choice = page.getByTestId("renderer-choice");
+  const usual = await choice.inputValue();
+  await choice.selectOption({ label: "Reference: refine to truth" });
+  const refinement = () => page.getByTestId("refinement").evaluate((text) => ({ ...text.dataset }));
+  // The error of the smallest picture falls with its samples; larger ones begin again.
+  const reached = (samples) =>
+    page.waitForFunction(
+      (least) => {
+        const text = document.querySelector("[data-testid=refinement]");
+        return Number(text?.dataset.samplesPerPixel) >= least;
+      },
+      samples,
+      { timeout: PICTURE_TIMEOUT_MS, polling: 20 },
+    );
+  await reached(2);
+  const { relativeError } = await refinement();
+  assert.ok(Number(relativeError) > 0, `the standard error is ${relativeError}`);
+  const traced = await canvasData();
+  await screenshot("8-refining");
+  await drag(60, 0);
+  await page.waitForFunction(
+    (revision) => {
+      const canvas = document.querySelector("[data-testid=storm-canvas]");
+      return Number(canvas?.dataset.revision) > revision;
+    },
+    Number(traced.revision),
+    { timeout: PICTURE_TIMEOUT_MS },
+  );
+  await reached(2);
+  await changing(async () => {
+    await choice.selectOption(usual);
+    await drag(-60, 0);
+  });
+  assert.equal(await page.getByTestId("refinement").count(), 0);
+  await page.getByTestId("rendering-section").locator("summary").click();
+});
+
 test("play goes through the times and waits for each", async () => {
   const seen = new Set();
   await page.getByTestId("rate").selectOption("8");
@@ -259,7 +298,7 @@ test("a link brings another viewer into the session, who sees it turn", async ()
       host.azimuth,
       { timeout: PICTURE_TIMEOUT_MS },
     );
-    await screenshot("8-guest", guest);
+    await screenshot("9-guest", guest);
   } finally {
     await guest.close();
   }
@@ -269,7 +308,7 @@ test("the panel folds away with a key and leaves the storm", async () => {
   await page.getByTestId("storm-canvas").focus();
   await page.keyboard.press("p");
   assert.equal(await page.getByTestId("panel").isVisible(), false);
-  await screenshot("9-no-panel");
+  await screenshot("10-no-panel");
   await page.keyboard.press("p");
   assert.equal(await page.getByTestId("panel").isVisible(), true);
 });
@@ -283,7 +322,7 @@ test("a server that dies and comes back is found again with the same scene", asy
   const beforePicture = await grabCanvas(page);
   await server.stop("SIGKILL");
   await page.getByTestId("connection-lost").waitFor({ state: "visible", timeout: 15_000 });
-  await screenshot("10-connection-lost");
+  await screenshot("11-connection-lost");
   server = await startServer(ports);
   await page.getByTestId("connection-lost").waitFor({ state: "hidden", timeout: 30_000 });
   await page.waitForFunction(
@@ -295,7 +334,7 @@ test("a server that dies and comes back is found again with the same scene", asy
     { timeout: PICTURE_TIMEOUT_MS },
   );
   const healed = await rested();
-  await screenshot("11-healed");
+  await screenshot("12-healed");
   assert.equal(healed.azimuth, before.azimuth);
   const change = difference(beforePicture, await grabCanvas(page));
   assert.ok(change < 1, `after healing the picture differs by ${change}`);
@@ -315,10 +354,10 @@ test("it works on a phone's screen", async () => {
     await phone.goto(server.url);
     await rested(phone);
     assert.equal(await phone.getByTestId("panel").isVisible(), false);
-    await screenshot("12-phone", phone);
+    await screenshot("13-phone", phone);
     await phone.getByTestId("panel-toggle").tap();
     assert.equal(await phone.getByTestId("panel").isVisible(), true);
-    await screenshot("13-phone-panel", phone);
+    await screenshot("14-phone-panel", phone);
     const overflow = await phone.evaluate(
       () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
     );
@@ -338,7 +377,7 @@ test("it works on a phone's screen", async () => {
     const nearer = await canvasData(phone);
     const ratio = Number(nearer.distance) / Number(turned.distance);
     assert.ok(Math.abs(ratio - 0.5) < 0.02, `a pinch to twice the width changed the distance by ${ratio}`);
-    await screenshot("14-phone-pinched", phone);
+    await screenshot("15-phone-pinched", phone);
   } finally {
     await phone.close();
   }

@@ -61,6 +61,20 @@ class FakeFrameSource final : public session::FrameSource {
     return Paint(scene, quality, ms);
   }
 
+  absl::StatusOr<session::DisplayFrame> Tone(const session::LinearPicture& picture,
+                                             const scene::Display& display) override {
+    session::DisplayFrame frame;
+    frame.width_px = picture.size_px.x;
+    frame.height_px = picture.size_px.y;
+    const double exposure = std::exp2(display.exposure_ev);
+    for (const glm::vec3& radiance : picture.radiance) {
+      const double level = std::min(255.0 * exposure * radiance.x, 255.0);
+      frame.rgb.insert(frame.rgb.end(), 3, static_cast<std::uint8_t>(level));
+    }
+    frame.stages = {{"tone", 0.1}};
+    return frame;
+  }
+
  private:
   static session::DisplayFrame Paint(const scene::Scene& scene,
                                      const session::FrameQuality& quality, double ms) {
@@ -85,7 +99,68 @@ class FakeFrameSource final : public session::FrameSource {
   const session::DeviceInfo info_{"software", "fake renderer", "4.5 fake"};
 };
 
+class FakeTruthSource final : public session::TruthSource {
+ public:
+  explicit FakeTruthSource(std::shared_ptr<FakeTruth> truth) : truth_(std::move(truth)) {
+    ++truth_->sources;
+  }
+  ~FakeTruthSource() override { --truth_->sources; }
+
+  absl::Status Begin(const scene::Scene& scene,
+                     const std::shared_ptr<const volume::HydrometeorFields>& fields,
+                     const glm::ivec2& size_px) override {
+    THUNDERHEAD_CHECK(fields != nullptr, "traced without fields");
+    truth_->Add({scene, size_px});
+    size_px_ = size_px;
+    samples_ = 0;
+    if (scene.display.exposure_ev > truth_->fails_above_exposure_ev) {
+      return absl::InternalError("the fake reference does not like this exposure");
+    }
+    return absl::OkStatus();
+  }
+
+  session::Refinement Refine(int until_samples, double seconds,
+                             const std::stop_token& stop) override {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+    while (samples_ < until_samples && std::chrono::steady_clock::now() < end) {
+      if (stop.stop_requested()) break;
+      std::this_thread::sleep_for(
+          std::chrono::duration<double, std::milli>(truth_->ms_per_sample.load()));
+      ++samples_;
+      ++truth_->samples;
+    }
+    session::Refinement refinement;
+    refinement.samples_per_pixel = samples_;
+    if (samples_ > 1) refinement.relative_error = 1.0 / std::sqrt(samples_);
+    return refinement;
+  }
+
+  session::LinearPicture Snapshot() override {
+    const auto pixels = static_cast<std::size_t>(size_px_.x) * static_cast<std::size_t>(size_px_.y);
+    return {size_px_, std::vector<glm::vec3>(pixels, glm::vec3(0.25F))};
+  }
+
+ private:
+  const std::shared_ptr<FakeTruth> truth_;
+  glm::ivec2 size_px_{0};
+  int samples_ = 0;
+};
+
 }  // namespace
+
+std::vector<FakeTruth::Begun> FakeTruth::Log() {
+  const std::lock_guard lock(mutex_);
+  return log_;
+}
+
+void FakeTruth::Add(Begun begun) {
+  const std::lock_guard lock(mutex_);
+  log_.push_back(std::move(begun));
+}
+
+session::TruthSourceFactory FakeTruthSources(std::shared_ptr<FakeTruth> truth) {
+  return [truth] { return std::make_unique<FakeTruthSource>(truth); };
+}
 
 void Gate::Close() {
   const std::lock_guard lock(mutex_);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "session/frame_source.h"
+#include "session/truth_source.h"
 #include "volume/storm_store.h"
 
 namespace thunderhead::testing {
@@ -89,6 +90,29 @@ struct FakeMachine {
 };
 
 session::FrameSourceFactory FakeFrameSources(std::shared_ptr<FakeMachine> machine);
+
+// What fake references do, shared with the test: each sample takes `ms_per_sample`, and the error
+// is one over the root of the samples. Their pictures are of even radiance.
+struct FakeTruth {
+  struct Begun {
+    scene::Scene scene;
+    glm::ivec2 size_px{0};
+  };
+
+  std::atomic<double> ms_per_sample{0.5};
+  std::atomic<double> fails_above_exposure_ev{1e9};
+  std::atomic<int> samples{0};  // of all pictures
+  std::atomic<int> sources{0};  // that exist
+
+  std::vector<Begun> Log();
+  void Add(Begun begun);
+
+ private:
+  std::mutex mutex_;
+  std::vector<Begun> log_;
+};
+
+session::TruthSourceFactory FakeTruthSources(std::shared_ptr<FakeTruth> truth);
 
 // The colour that the fake source paints a scene in: red from the time, green from the sun's
 // azimuth.

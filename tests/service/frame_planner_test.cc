@@ -143,7 +143,7 @@ TEST_F(FramePlannerTest, AChangeOfToneAfterAnotherSessionDrewIsCoarse) {
 
 TEST_F(FramePlannerTest, FailedSceneIsNotTriedAgain) {
   revision_ = 1;
-  planner_.Failed(1);
+  planner_.GiveUp(1);
   EXPECT_FALSE(Ask(milliseconds(0)).plan.has_value());
   EXPECT_FALSE(Ask(milliseconds(10000)).plan.has_value());
   revision_ = 2;

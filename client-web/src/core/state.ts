@@ -15,6 +15,7 @@ import type {
   Frame,
   GetServerInfoResponse,
   Modelled,
+  Refinement,
   StageCost,
 } from "../gen/thunderhead/v1/thunderhead_pb";
 import { cameraOfPose, type Pose, poseOfCamera } from "./camera";
@@ -41,6 +42,8 @@ export interface ShownFrame {
   readonly bytes: number;
   readonly stages: readonly StageCost[];
   readonly modelled: Modelled | undefined;
+  // Of a picture by the reference.
+  readonly refinement: Refinement | undefined;
 }
 
 export interface Pace {
@@ -171,6 +174,7 @@ export class PageState {
       bytes: frame.jpeg.byteLength,
       stages: frame.stages,
       modelled: frame.modelled,
+      refinement: frame.refinement,
     };
   }
 

@@ -12,6 +12,7 @@ import { SunSection } from "./sun_section";
 const RENDERERS = [
   [Renderer.LIGHT_VOLUME, "Light volume"],
   [Renderer.HALF_ANGLE, "Half-angle slices"],
+  [Renderer.REFERENCE, "Reference: refine to truth"],
 ] as const;
 
 const MODES = [

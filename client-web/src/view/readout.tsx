@@ -1,6 +1,7 @@
 // What the pictures cost: frames a second and latency at a glance, the rest when opened.
 import type { PageState } from "../core/state";
 import { formatBytes, formatNumber } from "../core/units";
+import type { Refinement } from "../gen/thunderhead/v1/thunderhead_pb";
 
 const STAGE_NAMES: Readonly<Record<string, string>> = {
   read: "Read file",
@@ -11,6 +12,7 @@ const STAGE_NAMES: Readonly<Record<string, string>> = {
   light: "Light",
   view: "View",
   composite: "Sky and ground",
+  trace: "Traced so far",
   tone: "Tone map",
   read_back: "Read back",
   encode: "Encode",
@@ -32,7 +34,11 @@ export function Readout({ state }: { state: PageState }) {
         <span>{latency}</span>
         {frame !== undefined && (
           <span class={frame.refined ? "refined" : "coarse"}>
-            {frame.refined ? "refined" : "coarse"}
+            {frame.refinement === undefined ? (
+              <>{frame.refined ? "refined" : "coarse"}</>
+            ) : (
+              <RefinementBrief refinement={frame.refinement} />
+            )}
           </span>
         )}
       </summary>
@@ -43,6 +49,22 @@ export function Readout({ state }: { state: PageState }) {
           : `${state.server.value.glRenderer} (${state.server.value.device}), Thunderhead ${state.server.value.version}`}
       </p>
     </details>
+  );
+}
+
+// How far the reference has come: what a reader of the picture must know, so it is never folded away.
+function RefinementBrief({ refinement }: { refinement: Refinement }) {
+  const { samplesPerPixel, relativeError } = refinement;
+  return (
+    <span
+      data-testid="refinement"
+      data-samples-per-pixel={samplesPerPixel}
+      data-relative-error={relativeError}
+      title="Samples a pixel, and the standard error of a pixel over the mean radiance"
+    >
+      {samplesPerPixel} spp
+      {relativeError !== undefined && ` ± ${formatNumber(100 * relativeError)} %`}
+    </span>
   );
 }
 
@@ -69,12 +91,17 @@ function Costs({ state }: { state: PageState }) {
         <Row name="Rate" text={`${formatBytes(state.pace.value.bytesPerSecond)}/s`} />
         {frame.modelled !== undefined && (
           <>
-            <Row name="Slices drawn" text={String(frame.modelled.slices)} />
-            <Row name="On the device" text={formatBytes(Number(frame.modelled.deviceBytes))} />
-            <Row
-              name="Of the domain"
-              text={`${formatNumber(frame.modelled.occupiedShare * 100)} %`}
-            />
+            {/* The reference has neither slices nor a place on the device. */}
+            {frame.refinement === undefined && (
+              <>
+                <Row name="Slices drawn" text={String(frame.modelled.slices)} />
+                <Row name="On the device" text={formatBytes(Number(frame.modelled.deviceBytes))} />
+                <Row
+                  name="Of the domain"
+                  text={`${formatNumber(frame.modelled.occupiedShare * 100)} %`}
+                />
+              </>
+            )}
           </>
         )}
       </tbody>

@@ -1,0 +1,39 @@
+// What refines a picture towards the truth for the render loop: the Monte Carlo reference, or a
+// fake in service tests. A TruthSource is used by one thread at a time. Knows no sessions.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <stop_token>
+
+#include "absl/status/status.h"
+#include "glm/vec2.hpp"
+#include "scene/scene.h"
+#include "session/frame_source.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::session {
+
+class TruthSource {
+ public:
+  virtual ~TruthSource() = default;
+
+  // Begins a picture of `size_px`, whatever size the scene asks for, without any sample.
+  virtual absl::Status Begin(const scene::Scene& scene,
+                             const std::shared_ptr<const volume::HydrometeorFields>& fields,
+                             const glm::ivec2& size_px) = 0;
+
+  // Adds samples until every pixel has `until_samples`, for `seconds` at most or until `stop` asks
+  // to; goes on from there when it is called again.
+  virtual Refinement Refine(int until_samples, double seconds, const std::stop_token& stop) = 0;
+
+  virtual LinearPicture Snapshot() = 0;
+};
+
+using TruthSourceFactory = std::function<std::unique_ptr<TruthSource>()>;
+
+// The reference on `threads` threads; 0 leaves a quarter of the machine's cores, one at least, to
+// everything else.
+std::unique_ptr<TruthSource> MakeReferenceTruthSource(int threads = 0);
+
+}  // namespace thunderhead::session

@@ -1,0 +1,162 @@
+#include "session/truth_tracer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "base/stopwatch.h"
+#include "session/truth_schedule.h"
+
+namespace thunderhead::session {
+namespace {
+
+// How long one owner's picture is refined before it is another's turn.
+constexpr double kTurn_s = 0.25;
+
+}  // namespace
+
+// One picture on its way. Used by the tracing thread, except for `stop`.
+struct TruthTracer::Job {
+  Job(std::string of_owner, std::shared_ptr<const scene::Scene> of_scene,
+      std::shared_ptr<const volume::HydrometeorFields> of_fields,
+      std::shared_ptr<TruthSource> with_source)
+      : owner(std::move(of_owner)),
+        scene(std::move(of_scene)),
+        fields(std::move(of_fields)),
+        source(std::move(with_source)),
+        schedule({scene->output.width_px, scene->output.height_px}) {}
+
+  // Refines for a turn. Gives a picture if one is to be shown, and whether that was the last.
+  std::pair<Found, bool> Refine();
+
+  const std::string owner;
+  const std::shared_ptr<const scene::Scene> scene;
+  const std::shared_ptr<const volume::HydrometeorFields> fields;
+  const std::shared_ptr<TruthSource> source;
+  std::stop_source stop;
+  TruthSchedule schedule;
+  bool begun = false;
+  double trace_ms = 0.0;
+  base::Stopwatch since_shown;
+};
+
+std::pair<TruthTracer::Found, bool> TruthTracer::Job::Refine() {
+  const base::Stopwatch stopwatch;
+  if (!begun) {
+    const absl::Status status = source->Begin(*scene, fields, schedule.SizePx());
+    if (!status.ok()) return {status, true};
+    begun = true;
+  }
+  const Refinement refinement = source->Refine(schedule.UntilSamples(), kTurn_s, stop.get_token());
+  trace_ms += stopwatch.ElapsedMs();
+  if (stop.stop_requested()) return {std::nullopt, true};
+  Found found;
+  const bool full_size = schedule.IsFull();
+  if (schedule.ShowNow(refinement, since_shown.ElapsedMs() * 1e-3)) {
+    found = std::make_shared<const TruthPicture>(
+        TruthPicture{source->Snapshot(), refinement, trace_ms, full_size});
+    since_shown.Restart();
+  }
+  if (schedule.GrowAt(refinement)) begun = false;
+  return {std::move(found), full_size && schedule.Finished(refinement)};
+}
+
+TruthTracer::TruthTracer(TruthSourceFactory make_source, std::size_t most_owners,
+                         std::function<void()> on_picture)
+    : make_source_(std::move(make_source)),
+      most_owners_(most_owners),
+      on_picture_(std::move(on_picture)),
+      thread_([this] { Run(); }) {}
+
+TruthTracer::~TruthTracer() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+    for (auto& [owner, owned] : owned_) {
+      if (owned.job != nullptr) owned.job->stop.request_stop();
+    }
+  }
+  changed_.notify_one();
+  thread_.join();
+}
+
+absl::Status TruthTracer::Trace(const std::string& owner, std::shared_ptr<const scene::Scene> scene,
+                                std::shared_ptr<const volume::HydrometeorFields> fields) {
+  Stop(owner);
+  {
+    const std::lock_guard lock(mutex_);
+    if (owned_.count(owner) == 0 && owned_.size() >= most_owners_) {
+      return absl::ResourceExhaustedError(
+          absl::StrCat("the server traces ", owned_.size(),
+                       " pictures by the reference already; choose another renderer"));
+    }
+    Owned& owned = owned_[owner];
+    if (owned.source == nullptr) owned.source = make_source_();
+    owned.job = std::make_shared<Job>(owner, std::move(scene), std::move(fields), owned.source);
+  }
+  changed_.notify_one();
+  return absl::OkStatus();
+}
+
+std::optional<absl::StatusOr<std::shared_ptr<const TruthPicture>>> TruthTracer::Take(
+    const std::string& owner) {
+  const std::lock_guard lock(mutex_);
+  const auto found = owned_.find(owner);
+  if (found == owned_.end()) return std::nullopt;
+  return std::exchange(found->second.found, std::nullopt);
+}
+
+void TruthTracer::Stop(const std::string& owner) {
+  const std::lock_guard lock(mutex_);
+  const auto found = owned_.find(owner);
+  if (found == owned_.end()) return;
+  found->second.found.reset();
+  const std::shared_ptr<Job> job = std::exchange(found->second.job, nullptr);
+  if (job != nullptr) job->stop.request_stop();
+}
+
+void TruthTracer::Forget(const std::string& owner) {
+  Stop(owner);
+  const std::lock_guard lock(mutex_);
+  owned_.erase(owner);
+}
+
+// The job of the owner after the last served.
+std::shared_ptr<TruthTracer::Job> TruthTracer::NextJob() {
+  const auto after_last = owned_.upper_bound(last_served_);
+  const auto has_job = [](const auto& entry) { return entry.second.job != nullptr; };
+  auto next = std::find_if(after_last, owned_.end(), has_job);
+  if (next == owned_.end()) next = std::find_if(owned_.begin(), owned_.end(), has_job);
+  return next == owned_.end() ? nullptr : next->second.job;
+}
+
+// Unless the job has been replaced.
+void TruthTracer::Keep(Job& job, Found found, bool ended) {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto entry = owned_.find(job.owner);
+    if (entry == owned_.end() || entry->second.job.get() != &job) return;
+    if (ended) entry->second.job.reset();
+    if (!found.has_value()) return;
+    entry->second.found = std::move(found);
+  }
+  on_picture_();
+}
+
+void TruthTracer::Run() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    std::shared_ptr<Job> job;
+    changed_.wait(lock, [&] { return stopping_ || (job = NextJob()) != nullptr; });
+    if (stopping_) return;
+    last_served_ = job->owner;
+    lock.unlock();
+    auto [found, ended] = job->Refine();
+    Keep(*job, std::move(found), ended);
+    // Its fields and pictures may be many megabytes: freed before the lock is taken.
+    job.reset();
+    lock.lock();
+  }
+}
+
+}  // namespace thunderhead::session

@@ -1,0 +1,289 @@
+// Sessions that show the reference, over gRPC: pictures that get better while the scene rests,
+// begin again when it changes and end when nobody looks; other sessions go on beside them.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "frame/image_codec.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/service/fake_service.h"
+
+namespace thunderhead::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using Messages = std::vector<v1::WatchFramesResponse>;
+
+v1::Scene Traced() {
+  v1::Scene scene = SmallScene();
+  scene.mutable_rendering()->set_renderer(v1::RENDERER_REFERENCE);
+  return scene;
+}
+
+v1::Scene TracedFrom(float azimuth_deg) {
+  v1::Scene scene = Traced();
+  scene.mutable_camera()->mutable_orbit()->set_azimuth_deg(azimuth_deg);
+  return scene;
+}
+
+class RefineTest : public ::testing::Test {
+ protected:
+  static service::ServerOptions OptionsOf(const std::shared_ptr<FakeTruth>& truth) {
+    service::ServerOptions options;
+    options.render_loop.make_truth_source = FakeTruthSources(truth);
+    options.render_loop.max_traced_sessions = 2;
+    return options;
+  }
+
+  // The frames of a revision, in order.
+  static std::vector<v1::Frame> FramesOf(Watcher& watcher, std::uint64_t revision) {
+    std::vector<v1::Frame> frames;
+    for (const v1::WatchFramesResponse& message : watcher.Messages()) {
+      if (message.has_frame() && message.frame().scene_revision() == revision) {
+        frames.push_back(message.frame());
+      }
+    }
+    return frames;
+  }
+
+  static bool AwaitSamples(Watcher& watcher, std::uint64_t revision, std::uint32_t samples) {
+    return watcher.Await([=](const Messages& messages) {
+      return std::any_of(messages.begin(), messages.end(), [=](const auto& message) {
+        return message.has_frame() && message.frame().scene_revision() == revision &&
+               message.frame().refinement().samples_per_pixel() >= samples;
+      });
+    });
+  }
+
+  static bool Await(const std::function<bool()>& condition) {
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (!condition() && std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return condition();
+  }
+
+  const std::shared_ptr<FakeTruth> truth_ = std::make_shared<FakeTruth>();
+  FakeService service_{OptionsOf(truth_)};
+};
+
+TEST_F(RefineTest, SamplesGrowAndTheErrorFallsWhileTheSceneRests) {
+  Watcher watcher(service_.stub(), service_.Open(Traced()));
+  ASSERT_TRUE(AwaitSamples(watcher, 1, 64));
+  const std::vector<v1::Frame> frames = FramesOf(watcher, 1);
+  ASSERT_GE(frames.size(), 3U);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const v1::Refinement& refinement = frames[i].refinement();
+    EXPECT_TRUE(frames[i].refined());
+    EXPECT_EQ(frames[i].modelled().renderer(), v1::RENDERER_REFERENCE);
+    EXPECT_EQ(frames[i].modelled().fields_size(), 1);
+    EXPECT_EQ(frames[i].stages(0).stage(), "trace");
+    EXPECT_EQ(refinement.has_relative_error(), refinement.samples_per_pixel() > 1);
+    if (i < 2) continue;
+    EXPECT_GT(refinement.samples_per_pixel(), frames[i - 1].refinement().samples_per_pixel());
+    EXPECT_LT(refinement.relative_error(), frames[i - 1].refinement().relative_error());
+  }
+  // Nothing was drawn the other way.
+  EXPECT_TRUE(service_.machine->Log().empty());
+}
+
+TEST_F(RefineTest, LargePicturesBeginSmall) {
+  v1::Scene scene = Traced();
+  scene.mutable_output()->set_width_px(320);
+  scene.mutable_output()->set_height_px(180);
+  Watcher watcher(service_.stub(), service_.Open(scene));
+  ASSERT_TRUE(watcher.AwaitFrame(1, true));
+  const std::vector<v1::Frame> frames = FramesOf(watcher, 1);
+  EXPECT_FALSE(frames.front().refined());
+  EXPECT_EQ(frames.front().width_px(), 80U);
+  EXPECT_EQ(watcher.NewestFrame().width_px(), 320U);
+  EXPECT_EQ(truth_->sources, 1);
+}
+
+TEST_F(RefineTest, AChangeBeginsAgainAtOnce) {
+  truth_->ms_per_sample = 5.0;
+  const std::string id = service_.Open(TracedFrom(0.0F));
+  Watcher watcher(service_.stub(), id);
+  ASSERT_TRUE(AwaitSamples(watcher, 1, 16));
+  const std::uint64_t revision = service_.Update(id, TracedFrom(40.0F));
+  ASSERT_TRUE(AwaitSamples(watcher, revision, 4));
+  const std::vector<v1::Frame> frames = FramesOf(watcher, revision);
+  EXPECT_LE(frames.front().refinement().samples_per_pixel(), 2U);
+  EXPECT_EQ(frames.front().camera().orbit().azimuth_deg(), 40.0F);
+  // What was made for the first picture is kept for the second.
+  EXPECT_EQ(truth_->sources, 1);
+  EXPECT_EQ(truth_->Log().size(), 2U);
+}
+
+TEST_F(RefineTest, AnotherExposureShowsWhatIsThereAndGoesOn) {
+  v1::Scene scene = Traced();
+  const std::string id = service_.Open(scene);
+  Watcher watcher(service_.stub(), id);
+  ASSERT_TRUE(AwaitSamples(watcher, 1, 32));
+  scene.mutable_display()->set_exposure_ev(1.0F);
+  const std::uint64_t revision = service_.Update(id, scene);
+  ASSERT_TRUE(AwaitSamples(watcher, revision, 64));
+  const v1::Frame first = FramesOf(watcher, revision).front();
+  EXPECT_GE(first.refinement().samples_per_pixel(), 32U);
+  const auto image = frame::DecodeJpeg(first.jpeg());
+  ASSERT_TRUE(image.ok()) << image.status();
+  EXPECT_NEAR(image->rgb[0], 127, 4);
+  EXPECT_EQ(truth_->Log().size(), 1U);
+}
+
+TEST_F(RefineTest, LeavingEndsItAndComingBackBeginsAnew) {
+  const std::string id = service_.Open(Traced());
+  {
+    Watcher watcher(service_.stub(), id);
+    ASSERT_TRUE(AwaitSamples(watcher, 1, 8));
+    EXPECT_EQ(truth_->sources, 1);
+  }
+  ASSERT_TRUE(Await([&] { return truth_->sources == 0; }));
+  const int samples = truth_->samples;
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_EQ(truth_->samples, samples);
+  Watcher again(service_.stub(), id);
+  ASSERT_TRUE(AwaitSamples(again, 1, 8));
+  EXPECT_EQ(truth_->Log().size(), 2U);
+}
+
+TEST_F(RefineTest, AnotherRendererEndsIt) {
+  const std::string id = service_.Open(Traced());
+  Watcher watcher(service_.stub(), id);
+  ASSERT_TRUE(AwaitSamples(watcher, 1, 8));
+  const std::uint64_t revision = service_.Update(id, SmallScene());
+  ASSERT_TRUE(watcher.AwaitFrame(revision, true));
+  EXPECT_FALSE(watcher.NewestFrame().has_refinement());
+  EXPECT_TRUE(Await([&] { return truth_->sources == 0; }));
+  const std::uint64_t back = service_.Update(id, Traced());
+  EXPECT_TRUE(AwaitSamples(watcher, back, 8));
+}
+
+TEST_F(RefineTest, AnotherTimeIsReadAndTraced) {
+  const std::string id = service_.Open(Traced());
+  Watcher watcher(service_.stub(), id);
+  ASSERT_TRUE(AwaitSamples(watcher, 1, 8));
+  v1::Scene scene = Traced();
+  scene.set_time_index(2);
+  // The camera is complete, so that only the render loop reads.
+  scene.mutable_camera()->mutable_orbit()->mutable_target();
+  scene.mutable_camera()->mutable_orbit()->set_distance_m(50000.0F);
+  const std::uint64_t revision = service_.Update(id, scene);
+  ASSERT_TRUE(AwaitSamples(watcher, revision, 8));
+  EXPECT_EQ(truth_->Log().back().scene.time_index, 2);
+}
+
+TEST_F(RefineTest, OtherSessionsAreDrawnMeanwhile) {
+  truth_->ms_per_sample = 20.0;
+  Watcher traced(service_.stub(), service_.Open(Traced()));
+  ASSERT_TRUE(AwaitSamples(traced, 1, 2));
+  const std::string id = service_.Open(SmallScene());
+  Watcher other(service_.stub(), id);
+  const auto start = std::chrono::steady_clock::now();
+  for (int i = 0; i < 10; ++i) {
+    v1::Scene scene = SmallScene();
+    scene.mutable_sun()->set_azimuth_deg(static_cast<float>(10 * i));
+    ASSERT_TRUE(other.AwaitFrame(service_.Update(id, scene), false));
+  }
+  // Each would wait for a turn of 250 ms if the pictures were traced where others are drawn.
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(2000));
+  EXPECT_TRUE(AwaitSamples(traced, 1, 16));
+}
+
+TEST_F(RefineTest, SessionsTakeTurnsAndOneTooManyIsTold) {
+  Watcher one(service_.stub(), service_.Open(TracedFrom(0.0F)));
+  Watcher two(service_.stub(), service_.Open(TracedFrom(90.0F)));
+  ASSERT_TRUE(AwaitSamples(one, 1, 16));
+  ASSERT_TRUE(AwaitSamples(two, 1, 16));
+  Watcher three(service_.stub(), service_.Open(TracedFrom(180.0F)));
+  ASSERT_TRUE(three.Await([](const Messages& messages) { return !messages.empty(); }));
+  EXPECT_THAT(three.Messages().front().problem().message(), HasSubstr("choose another renderer"));
+}
+
+TEST_F(RefineTest, WhatCannotBeTracedIsAProblemUntilTheSceneChanges) {
+  truth_->fails_above_exposure_ev = 5.0;
+  v1::Scene scene = Traced();
+  scene.mutable_display()->set_exposure_ev(6.0F);
+  const std::string id = service_.Open(scene);
+  Watcher watcher(service_.stub(), id);
+  ASSERT_TRUE(watcher.Await([](const Messages& messages) { return !messages.empty(); }));
+  EXPECT_THAT(watcher.Messages().front().problem().message(), HasSubstr("this exposure"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_EQ(truth_->Log().size(), 1U);
+  EXPECT_TRUE(AwaitSamples(watcher, service_.Update(id, Traced()), 4));
+}
+
+TEST_F(RefineTest, RenderImageSaysThatItIsForSessions) {
+  v1::RenderImageRequest request;
+  *request.mutable_scene() = Traced();
+  v1::RenderImageResponse response;
+  const grpc::Status status =
+      Call(service_.stub(), &v1::ThunderheadService::Stub::RenderImage, request, &response);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_THAT(status.error_message(), HasSubstr("--renderer reference"));
+}
+
+TEST_F(RefineTest, StopsAmidWork) {
+  truth_->ms_per_sample = 50.0;
+  Watcher watcher(service_.stub(), service_.Open(Traced()));
+  ASSERT_TRUE(AwaitSamples(watcher, 1, 1));
+  service_.server().Shutdown();
+  EXPECT_EQ(watcher.End().error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_EQ(truth_->sources, 0);
+}
+
+// The path tracer itself behind the same service.
+TEST(RefineByReferenceTest, SamplesGrowErrorFallsChangeRestartsLeavingCancels) {
+  FakeService service;
+  // The fake storm's cell is opaque, and its paths long.
+  const auto from = [](float azimuth_deg) {
+    v1::Scene scene = TracedFrom(azimuth_deg);
+    scene.mutable_output()->set_width_px(32);
+    scene.mutable_output()->set_height_px(18);
+    return scene;
+  };
+  const std::string id = service.Open(from(0.0F));
+  const auto samples_of = [](const v1::WatchFramesResponse& message) {
+    return message.frame().refinement().samples_per_pixel();
+  };
+  const auto reached = [&](std::uint64_t revision, std::uint32_t samples) {
+    return [=](const Messages& messages) {
+      return std::any_of(messages.begin(), messages.end(), [=](const auto& message) {
+        return message.frame().scene_revision() == revision && samples_of(message) >= samples;
+      });
+    };
+  };
+  Watcher watcher(service.stub(), id);
+  ASSERT_TRUE(watcher.Await(reached(1, 64)));
+  double first_error = 0.0;
+  double last_error = 0.0;
+  for (const v1::WatchFramesResponse& message : watcher.Messages()) {
+    if (!message.frame().refinement().has_relative_error()) continue;
+    last_error = message.frame().refinement().relative_error();
+    if (first_error == 0.0) first_error = last_error;
+  }
+  EXPECT_GT(first_error, 0.0);
+  // The root of 32; an estimate from two samples is itself uncertain.
+  EXPECT_LT(last_error, first_error / 2.0);
+  EXPECT_GT(last_error, first_error / 16.0);
+  const std::uint64_t revision = service.Update(id, from(120.0F));
+  ASSERT_TRUE(watcher.Await(reached(revision, 8)));
+  const auto messages = watcher.Messages();
+  const auto restarted = std::find_if(messages.begin(), messages.end(), [&](const auto& message) {
+    return message.frame().scene_revision() == revision;
+  });
+  EXPECT_LT(samples_of(*restarted), 8U);
+  const v1::Frame newest = watcher.NewestFrame();
+  const auto image = frame::DecodeJpeg(newest.jpeg());
+  ASSERT_TRUE(image.ok()) << image.status();
+  EXPECT_EQ(image->width_px, 32);
+  const auto [low, high] = std::minmax_element(image->rgb.begin(), image->rgb.end());
+  EXPECT_GT(*high - *low, 5);
+  watcher.Cancel();
+  EXPECT_EQ(watcher.End().error_code(), grpc::StatusCode::CANCELLED);
+}
+
+}  // namespace
+}  // namespace thunderhead::testing
