@@ -18,6 +18,7 @@ struct Named {
 inline constexpr std::array<Named<scene::Renderer>, scene::kRendererCount - 1> kPaths = {{
     {scene::Renderer::kHalfAngle, "half_angle"},
     {scene::Renderer::kLightVolume, "light_volume"},
+    {scene::Renderer::kMetaball, "metaball"},
 }};
 
 // In the order of Riley et al. 2003 (AMS), Table IV.

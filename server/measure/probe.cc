@@ -10,6 +10,8 @@
 #include "glm/geometric.hpp"
 #include "renderers/half_angle/half_angle_renderer.h"
 #include "renderers/light_volume/light_volume_renderer.h"
+#include "renderers/metaball/ball_fit.h"
+#include "renderers/metaball/metaball_renderer.h"
 #include "scene/view.h"
 
 namespace thunderhead::measure {
@@ -121,6 +123,14 @@ absl::StatusOr<Seen> Probe::Draw(const scene::Scene& scene, const volume::Hydrom
     THUNDERHEAD_RETURN_IF_ERROR(renderer.Render(medium, settings, true));
     seen.eye = frame::ReadLinear(renderer.Eye());
     light = frame::ReadLinear(renderer.Light());
+  } else if (scene.rendering.renderer == scene::Renderer::kMetaball) {
+    renderers::MetaballRenderer renderer(programs_);
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        const renderers::BallCloud balls,
+        renderers::FitBalls(medium.Content(), fields, scene.rendering.metaballs.count));
+    THUNDERHEAD_RETURN_IF_ERROR(renderer.CarryLight(balls, medium.Content(), settings));
+    THUNDERHEAD_RETURN_IF_ERROR(renderer.DrawView(settings));
+    seen.eye = frame::ReadLinear(renderer.Eye());
   } else {
     renderers::LightVolumeRenderer renderer(programs_);
     THUNDERHEAD_RETURN_IF_ERROR(renderer.CarryLight(medium, settings));

@@ -7,6 +7,7 @@
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "frame/image_codec.h"
+#include "measure/paths.h"
 
 namespace thunderhead::measure {
 namespace {
@@ -42,7 +43,10 @@ gl::Texture2D TextureOf(const LinearImage& image) {
 }
 
 std::string NameOf(scene::Renderer renderer) {
-  return renderer == scene::Renderer::kHalfAngle ? "half_angle" : "light_volume";
+  for (const auto& path : kPaths) {
+    if (path.value == renderer) return std::string(path.name);
+  }
+  THUNDERHEAD_CHECK(false, "no such renderer");
 }
 
 std::string NameOf(scene::Mode mode) {

@@ -42,8 +42,10 @@ std::optional<TradeRow> RowOf(absl::string_view line) {
   TradeSetting& setting = row.setting;
   std::uint64_t bytes = 0;
   const bool read =
-      Named(cells[0], {scene::Renderer::kHalfAngle, scene::Renderer::kLightVolume},
-            &setting.renderer) &&
+      Named(
+          cells[0],
+          {scene::Renderer::kHalfAngle, scene::Renderer::kLightVolume, scene::Renderer::kMetaball},
+          &setting.renderer) &&
       Named(cells[1],
             {scene::Mode::kUniformPhaseLowAlbedo, scene::Mode::kUniformPhaseTranslucent,
              scene::Mode::kPerFieldPhaseTranslucent},

@@ -14,6 +14,8 @@ struct Illumination {
   glm::dvec3 towards_sun{0.0, 0.0, 1.0};
   glm::vec3 sunlight{1.0F};  // irradiance on a plane facing the sun
   glm::vec3 ambient{0.0F};   // mean radiance from sky and ground
+  glm::vec3 from_sky{0.0F};  // mean radiance of the upper and of the lower half
+  glm::vec3 from_ground{0.0F};
 };
 
 struct RenderSettings {

@@ -16,14 +16,27 @@ glm::ivec2 EyeSize(const scene::Scene& scene, const DrawQuality& quality) {
   return glm::max(glm::ivec2(glm::ceil(size * quality.image_scale)), glm::ivec2(1));
 }
 
+std::vector<std::string> NotShownByMetaballs(const scene::Rendering& rendering) {
+  std::vector<std::string> not_shown = {"structure finer than the metaballs"};
+  if (scene::HasDetail(rendering.mode)) not_shown.emplace_back("turbulent detail");
+  if (rendering.transport == scene::Transport::kPaper) {
+    not_shown.emplace_back("the fields' albedo, phase functions and false colours");
+    not_shown.emplace_back("modes");
+  }
+  return not_shown;
+}
+
 }  // namespace
 
-SceneRenderer::SceneRenderer(std::shared_ptr<gl::ProgramCache> programs)
+SceneRenderer::SceneRenderer(std::shared_ptr<gl::ProgramCache> programs,
+                             std::shared_ptr<BallFits> fits)
     : programs_(std::move(programs)),
       surroundings_(programs_),
       ground_(programs_),
       half_angle_(programs_),
-      light_volume_(programs_) {}
+      light_volume_(programs_),
+      fits_(std::move(fits)),
+      metaball_(programs_) {}
 
 scene::Stage SceneRenderer::FirstStage(
     const scene::Scene& scene,
@@ -33,8 +46,8 @@ scene::Stage SceneRenderer::FirstStage(
 }
 
 std::size_t SceneRenderer::Bytes() const {
-  return medium_.Bytes() + half_angle_.Bytes() + light_volume_.Bytes() + surroundings_.Bytes() +
-         ground_.Bytes() + linear_.Bytes();
+  return medium_.Bytes() + half_angle_.Bytes() + light_volume_.Bytes() + metaball_.Bytes() +
+         surroundings_.Bytes() + ground_.Bytes() + linear_.Bytes();
 }
 
 absl::StatusOr<LinearFrame> SceneRenderer::Draw(
@@ -62,6 +75,9 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
       RenderSettings settings{scene.rendering, view, surroundings_.IlluminationOf(scene),
                               EyeSize(scene, quality), drawn_slices_};
       THUNDERHEAD_RETURN_IF_ERROR(DrawGround(first, &settings, &stages));
+      if (first <= scene::Stage::kLight) {
+        THUNDERHEAD_RETURN_IF_ERROR(FitMetaballs(scene, fields, &stages));
+      }
       THUNDERHEAD_RETURN_IF_ERROR(DrawMedium(settings, first, &stages));
     } else {
       ground_.ClearShadow();
@@ -74,7 +90,7 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
   drawn_scene_ = scene;
   drawn_fields_ = fields;
   drawn_quality_ = quality;
-  LinearFrame frame = Report(*fields);
+  LinearFrame frame = Report(scene, *fields);
   frame.stages = std::move(stages);
   return frame;
 }
@@ -94,6 +110,17 @@ absl::Status SceneRenderer::DrawGround(scene::Stage first, RenderSettings* setti
   }
   glFinish();
   stages->push_back({"ground", stopwatch.ElapsedMs()});
+  return absl::OkStatus();
+}
+
+absl::Status SceneRenderer::FitMetaballs(
+    const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
+    std::vector<StageTime>* stages) {
+  if (scene.rendering.renderer != scene::Renderer::kMetaball) return absl::OkStatus();
+  const bool kept = fits_->Has(scene, fields);
+  const base::Stopwatch stopwatch;
+  THUNDERHEAD_ASSIGN_OR_RETURN(balls_, fits_->Get(scene, fields));
+  if (!kept) stages->push_back({"fit", stopwatch.ElapsedMs()});
   return absl::OkStatus();
 }
 
@@ -118,6 +145,14 @@ absl::Status SceneRenderer::DrawMedium(const RenderSettings& settings, scene::St
       THUNDERHEAD_RETURN_IF_ERROR(light_volume_.DrawView(medium_, settings));
       ran("view");
       break;
+    case scene::Renderer::kMetaball:
+      if (light_changed) {
+        THUNDERHEAD_RETURN_IF_ERROR(metaball_.CarryLight(*balls_, medium_.Content(), settings));
+        ran("light");
+      }
+      THUNDERHEAD_RETURN_IF_ERROR(metaball_.DrawView(settings));
+      ran("view");
+      break;
     case scene::Renderer::kReference:
       return absl::InvalidArgumentError("the reference is traced, not drawn");
   }
@@ -127,7 +162,23 @@ absl::Status SceneRenderer::DrawMedium(const RenderSettings& settings, scene::St
 
 const gl::Texture2D& SceneRenderer::Eye() const {
   if (medium_.Empty()) return nothing_;
-  return drawn_by_ == scene::Renderer::kHalfAngle ? half_angle_.Eye() : light_volume_.Eye();
+  switch (drawn_by_) {
+    case scene::Renderer::kHalfAngle:
+      return half_angle_.Eye();
+    case scene::Renderer::kMetaball:
+      return metaball_.Eye();
+    case scene::Renderer::kLightVolume:
+      break;
+  }
+  return light_volume_.Eye();
+}
+
+volume::WorldBox SceneRenderer::Box() const {
+  if (medium_.Empty()) return {};
+  if (drawn_by_ == scene::Renderer::kMetaball && !metaball_.Box().Empty()) {
+    return {metaball_.Box().low_m, metaball_.Box().high_m};
+  }
+  return {medium_.Middle_m() - medium_.HalfExtent_m(), medium_.Middle_m() + medium_.HalfExtent_m()};
 }
 
 absl::Status SceneRenderer::Composite(const scene::Scene& scene, const scene::View& view) {
@@ -140,10 +191,11 @@ absl::Status SceneRenderer::Composite(const scene::Scene& scene, const scene::Vi
     nothing_ = gl::Texture2D(GL_RGBA16F, glm::ivec2(1));
     gl::Framebuffer(nothing_).Clear(0.0F, 0.0F, 0.0F, 1.0F);
   }
-  return surroundings_.Composite(scene, view, ground_, medium_, Eye(), linear_target_);
+  return surroundings_.Composite(scene, view, ground_, Box(), Eye(), linear_target_);
 }
 
-LinearFrame SceneRenderer::Report(const volume::HydrometeorFields& fields) const {
+LinearFrame SceneRenderer::Report(const scene::Scene& scene,
+                                  const volume::HydrometeorFields& fields) const {
   LinearFrame frame;
   frame.radiance = &linear_;
   frame.fields = medium_.Content().hydrometeors;
@@ -155,6 +207,14 @@ LinearFrame SceneRenderer::Report(const volume::HydrometeorFields& fields) const
     const bool leaps = drawn_by_ == scene::Renderer::kLightVolume;
     frame.occupied_share = (leaps ? medium_.OccupiedShare() : 1.0) * box_m.x * box_m.y * box_m.z /
                            (domain_m.x * domain_m.y * domain_m.z);
+  }
+  if (scene.rendering.renderer == scene::Renderer::kMetaball) {
+    frame.slices = 0;
+    if (!medium_.Empty()) {
+      frame.balls = static_cast<int>(balls_->balls.size());
+      frame.fit_error = balls_->relative_error;
+    }
+    frame.not_shown = NotShownByMetaballs(scene.rendering);
   }
   return frame;
 }

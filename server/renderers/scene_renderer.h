@@ -12,6 +12,8 @@
 #include "renderers/half_angle/half_angle_renderer.h"
 #include "renderers/light_volume/light_volume_renderer.h"
 #include "renderers/medium.h"
+#include "renderers/metaball/ball_fit.h"
+#include "renderers/metaball/metaball_renderer.h"
 #include "renderers/sky_and_ground.h"
 #include "scene/scene.h"
 #include "volume/hydrometeor_fields.h"
@@ -25,8 +27,8 @@ struct DrawQuality {
   bool operator==(const DrawQuality&) const = default;
 };
 
-// Wall time of one stage: "extinction", "upload"; "slices" of half-angle slicing, or "light" and
-// "view" of the light volume; "ground", "composite".
+// Wall time of one stage: "extinction", "upload"; "fit" of metaballs; "slices" of half-angle
+// slicing, or "light" and "view" of the others; "ground", "composite".
 struct StageTime {
   std::string stage;
   double milliseconds = 0.0;
@@ -39,13 +41,17 @@ struct LinearFrame {
   int slices = 0;
   std::size_t device_bytes = 0;
   double occupied_share = 0.0;
+  int balls = 0;                       // metaballs drawn
+  double fit_error = 0.0;              // of those, root mean square over the extinction's own
+  std::vector<std::string> not_shown;  // what the scene asks for and the renderer cannot show
 };
 
 class SceneRenderer {
  public:
-  // Programs are linked in `programs`, which several renderers may share.
+  // Programs are linked in `programs`, metaballs kept in `fits`, which several renderers may share.
   explicit SceneRenderer(
-      std::shared_ptr<gl::ProgramCache> programs = std::make_shared<gl::ProgramCache>());
+      std::shared_ptr<gl::ProgramCache> programs = std::make_shared<gl::ProgramCache>(),
+      std::shared_ptr<BallFits> fits = std::make_shared<BallFits>());
 
   // The first stage that Draw would rerun, at the quality of the last one.
   scene::Stage FirstStage(const scene::Scene& scene,
@@ -63,18 +69,27 @@ class SceneRenderer {
   // The storm's shadow, and what of the storm the ground hides.
   absl::Status DrawGround(scene::Stage first, RenderSettings* settings,
                           std::vector<StageTime>* stages);
+  // The metaballs of the scene, if it is drawn by them.
+  absl::Status FitMetaballs(const scene::Scene& scene,
+                            const std::shared_ptr<const volume::HydrometeorFields>& fields,
+                            std::vector<StageTime>* stages);
   // Reruns what `first` dirties of the light and the view; appends the times of what ran.
   absl::Status DrawMedium(const RenderSettings& settings, scene::Stage first,
                           std::vector<StageTime>* stages);
   const gl::Texture2D& Eye() const;
+  // Around what was drawn.
+  volume::WorldBox Box() const;
   absl::Status Composite(const scene::Scene& scene, const scene::View& view);
-  LinearFrame Report(const volume::HydrometeorFields& fields) const;
+  LinearFrame Report(const scene::Scene& scene, const volume::HydrometeorFields& fields) const;
 
   std::shared_ptr<gl::ProgramCache> programs_;
   SkyAndGround surroundings_;
   Ground ground_;
   HalfAngleRenderer half_angle_;
   LightVolumeRenderer light_volume_;
+  std::shared_ptr<BallFits> fits_;
+  std::shared_ptr<const BallCloud> balls_;
+  MetaballRenderer metaball_;
   scene::Renderer drawn_by_ = scene::Renderer::kHalfAngle;  // of the eye buffer, if not empty
   DetailNoises detail_noises_;
   ResidentMedium medium_;

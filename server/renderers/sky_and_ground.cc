@@ -63,19 +63,19 @@ Illumination SkyAndGround::IlluminationOf(const scene::Scene& scene) const {
   light.towards_sun = drawn_.towards_sun;
   const auto irradiance = static_cast<float>(scene.sun.irradiance);
   light.sunlight = irradiance * sky_->SunTransmittance();
-  const glm::vec3 from_sky =
+  light.from_sky =
       sky_->Light().mean_radiance * irradiance * static_cast<float>(scene.sky.brightness);
   // Of ground without the storm's shadow: what shows of it around the storm is larger.
   const float sine = std::max(static_cast<float>(drawn_.towards_sun.z), 0.0F);
   const glm::vec3 diffuse =
       sky_->Light().irradiance * irradiance * static_cast<float>(scene.sky.brightness);
-  const glm::vec3 from_ground = GroundReflectance(scene) * (light.sunlight * sine + diffuse);
-  light.ambient = 0.5F * (from_sky + from_ground);
+  light.from_ground = GroundReflectance(scene) * (light.sunlight * sine + diffuse);
+  light.ambient = 0.5F * (light.from_sky + light.from_ground);
   return light;
 }
 
 absl::Status SkyAndGround::Composite(const scene::Scene& scene, const scene::View& view,
-                                     const Ground& ground, const ResidentMedium& medium,
+                                     const Ground& ground, const volume::WorldBox& box,
                                      const gl::Texture2D& eye, const gl::Framebuffer& target) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
                                programs_->Get({"common/whole_target.vert",
@@ -97,10 +97,8 @@ absl::Status SkyAndGround::Composite(const scene::Scene& scene, const scene::Vie
   program->Set("ground_reflectance", GroundReflectance(scene));
   program->Set("sunlight", irradiance * sky_->SunTransmittance());
   program->Set("skylight", sky_scale * sky_->Light().irradiance);
-  const glm::dvec3 half_m = medium.Empty() ? glm::dvec3(0.0) : medium.HalfExtent_m();
-  const glm::dvec3 middle_m = medium.Empty() ? glm::dvec3(0.0) : medium.Middle_m();
-  program->Set("box_low_m", glm::vec3(middle_m - half_m - view.eye_m));
-  program->Set("box_high_m", glm::vec3(middle_m + half_m - view.eye_m));
+  program->Set("box_low_m", glm::vec3(box.low_m - view.eye_m));
+  program->Set("box_high_m", glm::vec3(box.high_m - view.eye_m));
   eye.Bind(kEyeUnit);
   sky_table_.Bind(kSkyUnit);
   target.Bind();

@@ -12,10 +12,10 @@
 #include "gl/program.h"
 #include "physics/sky.h"
 #include "renderers/ground.h"
-#include "renderers/medium.h"
 #include "renderers/render_settings.h"
 #include "scene/scene.h"
 #include "scene/view.h"
+#include "volume/visible_box.h"
 
 namespace thunderhead::renderers {
 
@@ -31,9 +31,10 @@ class SkyAndGround {
   Illumination IlluminationOf(const scene::Scene& scene) const;
 
   // Draws what `eye` holds (rgb: radiance, a: share of the background that passes) in front of sky
-  // and ground, all through the air, to `target`. `medium` tells how far it is; it may be empty.
+  // and ground, all through the air, to `target`. `box` is around what was drawn and tells how far
+  // it is; it may be empty.
   absl::Status Composite(const scene::Scene& scene, const scene::View& view, const Ground& ground,
-                         const ResidentMedium& medium, const gl::Texture2D& eye,
+                         const volume::WorldBox& box, const gl::Texture2D& eye,
                          const gl::Framebuffer& target);
 
   std::size_t Bytes() const { return sky_table_.Bytes(); }

@@ -109,11 +109,22 @@ bool HasPerFieldPhase(Mode mode);
 bool HasDetail(Mode mode);
 
 // The renderer: slices halfway between sun and eye; light carried once into a volume, which view
-// rays march through; or the Monte Carlo reference, which is traced on the CPU, ever finer.
-enum class Renderer { kHalfAngle, kLightVolume, kReference };
-inline constexpr std::size_t kRendererCount = 3;
+// rays march through; metaballs fitted to the fields, lit and splatted (Man); or the Monte Carlo
+// reference, which is traced on the CPU, ever finer.
+enum class Renderer { kHalfAngle, kLightVolume, kReference, kMetaball };
+inline constexpr std::size_t kRendererCount = 4;
 
 enum class Transport { kPaper, kConsistent };
+
+// How a storm is drawn by metaballs; other renderers ignore it.
+struct Metaballs {
+  int count = 1200;  // at most; the paper's first scene
+  bool isotropic = false;
+  double albedo = 0.9;         // a of Man's eq. 26; Transport::kPaper only
+  double optical_depth = 8.0;  // tau of the same
+
+  bool operator==(const Metaballs&) const = default;
+};
 
 struct Rendering {
   Renderer renderer = Renderer::kLightVolume;
@@ -122,6 +133,7 @@ struct Rendering {
   int slices = 128;
   double theta_f_deg = 20.0;
   bool false_colors = false;
+  Metaballs metaballs;
 
   bool operator==(const Rendering&) const = default;
 };

@@ -46,6 +46,7 @@ constexpr std::array kRenderers = {
     std::pair{v1::RENDERER_LIGHT_VOLUME, scene::Renderer::kLightVolume},
     std::pair{v1::RENDERER_HALF_ANGLE, scene::Renderer::kHalfAngle},
     std::pair{v1::RENDERER_REFERENCE, scene::Renderer::kReference},
+    std::pair{v1::RENDERER_METABALL, scene::Renderer::kMetaball},
 };
 constexpr std::array kTransports = {
     std::pair{v1::TRANSPORT_CONSISTENT, scene::Transport::kConsistent},
@@ -131,6 +132,11 @@ scene::FieldParameters ToField(const v1::FieldParameters& message) {
   return field;
 }
 
+scene::Metaballs ToMetaballs(const v1::Metaballs& message) {
+  return {static_cast<int>(message.count()), message.isotropic(), message.albedo(),
+          message.optical_depth()};
+}
+
 volume::WorldBox BoxOf(const volume::RegularGrid& grid, const volume::CellBox& cells) {
   return {grid.low_corner_m + glm::dvec3(cells.low) * grid.spacing_m,
           grid.low_corner_m + glm::dvec3(cells.high) * grid.spacing_m};
@@ -211,6 +217,8 @@ void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
   rendering.set_mode(MessageOf(kModes, ValueOf(kModes, rendering.mode())));
   rendering.set_transport(MessageOf(kTransports, ValueOf(kTransports, rendering.transport())));
   if (!rendering.has_false_colors()) rendering.set_false_colors(false);
+  v1::Metaballs& metaballs = *rendering.mutable_metaballs();
+  if (!metaballs.has_isotropic()) metaballs.set_isotropic(false);
   v1::Display& display = *scene.mutable_display();
   display.set_tone_map(MessageOf(kToneMaps, ValueOf(kToneMaps, display.tone_map())));
   for (physics::Hydrometeor hydrometeor : storm.fields) FieldOf(scene, hydrometeor);
@@ -239,6 +247,7 @@ scene::Scene ToScene(const v1::Scene& message) {
   scene.rendering.slices = static_cast<int>(rendering.slices());
   scene.rendering.theta_f_deg = rendering.theta_f_deg();
   scene.rendering.false_colors = rendering.false_colors();
+  scene.rendering.metaballs = ToMetaballs(rendering.metaballs());
   scene.display.exposure_ev = message.display().exposure_ev();
   scene.display.tone_map = ValueOf(kToneMaps, message.display().tone_map());
   scene.output.width_px = static_cast<int>(message.output().width_px());
@@ -253,6 +262,9 @@ void ToMessage(const session::Modelled& modelled, v1::Modelled& message) {
   message.set_device_bytes(modelled.device_bytes);
   message.set_occupied_share(static_cast<float>(modelled.occupied_share));
   message.set_renderer(MessageOf(kRenderers, modelled.renderer));
+  message.set_balls(static_cast<std::uint32_t>(modelled.balls));
+  message.set_fit_error(static_cast<float>(modelled.fit_error));
+  for (const std::string& what : modelled.not_shown) message.add_not_shown(what);
 }
 
 void ToMessage(const session::StageCost& cost, v1::StageCost& message) {

@@ -1,6 +1,7 @@
 #include "session/cost_model.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace thunderhead::session {
 namespace {
@@ -8,11 +9,13 @@ namespace {
 // The weight of a measurement falls to a third in five frames: fast enough to follow a camera that
 // flies into the cloud, slow enough to tell a from b.
 constexpr double kForgetting = 0.8;
+// Of the cube root of the balls: their radius is 2.5 times half their spacing (clouds/rbf_fit.h).
+constexpr double kBallsOverPixel = 5.0;
 // Below this variance of x (relative to its mean square) a and b cannot be told apart.
 constexpr double kMinRelativeVariance = 1e-3;
 
 bool IsPreparation(const StageCost& cost) {
-  return cost.stage == "extinction" || cost.stage == "upload";
+  return cost.stage == "extinction" || cost.stage == "upload" || cost.stage == "fit";
 }
 
 // Moves `mean` towards a measurement of a stage that ran.
@@ -27,6 +30,10 @@ void Follow(double measured_ms, double* mean_ms) {
 double MegaSamples(const scene::Scene& scene, const FrameQuality& quality) {
   const double pixels = static_cast<double>(scene.output.width_px) * scene.output.height_px *
                         quality.image_scale * quality.image_scale;
+  if (scene.rendering.renderer == scene::Renderer::kMetaball) {
+    // A pixel lies under so many balls that fill a volume, each as wide as its share of it.
+    return pixels * kBallsOverPixel * std::cbrt(scene.rendering.metaballs.count) * 1e-6;
+  }
   return pixels * scene.rendering.slices * quality.slice_share * 1e-6;
 }
 

@@ -28,8 +28,8 @@ struct FrameQuality {
   bool operator==(const FrameQuality&) const = default;
 };
 
-// One stage's wall time. Stages: "read", "extinction", "upload", "slices", "light", "view",
-// "ground", "composite", "trace", "tone", "read_back", "encode".
+// One stage's wall time. Stages: "read", "extinction", "upload", "fit", "slices", "light",
+// "view", "ground", "composite", "trace", "tone", "read_back", "encode".
 struct StageCost {
   std::string stage;
   double milliseconds = 0.0;
@@ -42,6 +42,9 @@ struct Modelled {
   std::uint64_t device_bytes = 0;
   double occupied_share = 0.0;
   scene::Renderer renderer = scene::Renderer::kLightVolume;
+  int balls = 0;                       // metaballs
+  double fit_error = 0.0;              // of those, over the extinction's root mean square
+  std::vector<std::string> not_shown;  // what the renderer cannot show
 };
 
 // How far a picture by the reference has come.

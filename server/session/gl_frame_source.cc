@@ -31,8 +31,14 @@ class GlFrameSource final : public FrameSource {
       frame.stages.push_back({stage.stage, stage.milliseconds});
     }
     Fill(linear.radiance->Size(), std::move(mapped), &frame);
-    frame.modelled = {linear.fields, linear.slices, linear.device_bytes, linear.occupied_share,
-                      scene.rendering.renderer};
+    frame.modelled = {linear.fields,
+                      linear.slices,
+                      linear.device_bytes,
+                      linear.occupied_share,
+                      scene.rendering.renderer,
+                      linear.balls,
+                      linear.fit_error,
+                      linear.not_shown};
     return frame;
   }
 

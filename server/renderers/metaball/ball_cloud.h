@@ -1,0 +1,38 @@
+// A storm as metaballs, as it is drawn: the fit's balls (clouds/metaballs.h) with Wyvill's field,
+// and what of each ball's extinction is whose. Plain values: no GL.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "glm/vec3.hpp"
+#include "volume/extinction.h"
+
+namespace thunderhead::renderers {
+
+struct Ball {
+  glm::dvec3 middle_m{0.0};
+  double radius_m = 1.0;          // R of Man, eq. 16
+  double extinction_per_m = 0.0;  // in its middle, from 0
+  // Of its extinction, by the medium's group; their sum is 1.
+  std::array<float, volume::kMostChannels> shares{1.0F};
+};
+
+struct BallCloud {
+  std::vector<Ball> balls;
+  double relative_error = 0.0;  // of the fit: sqrt(H / sum of squares), Man's eq. 20
+};
+
+// The box around all balls; empty (low above high) without any.
+struct BallBox {
+  glm::dvec3 low_m{1.0};
+  glm::dvec3 high_m{-1.0};
+
+  bool Empty() const { return low_m.x > high_m.x; }
+  glm::dvec3 Middle_m() const { return 0.5 * (low_m + high_m); }
+  glm::dvec3 HalfExtent_m() const { return 0.5 * (high_m - low_m); }
+};
+
+BallBox BoxOf(const std::vector<Ball>& balls);
+
+}  // namespace thunderhead::renderers

@@ -1,0 +1,299 @@
+#include "renderers/metaball/metaball_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "absl/strings/str_format.h"
+#include "base/status.h"
+#include "glm/common.hpp"
+#include "glm/geometric.hpp"
+#include "renderers/half_angle/slicing.h"
+#include "renderers/metaball/light_order.h"
+#include "renderers/view_uniforms.h"
+
+namespace thunderhead::renderers {
+namespace {
+
+constexpr GLuint kBallBinding = 0;
+constexpr GLuint kArrivedBinding = 1;
+constexpr GLuint kOrderBinding = 2;
+constexpr GLuint kLightImage = 0;
+constexpr GLuint kGroundUnit = 7;
+constexpr int kLeastLightTexels = 64;  // along the longer side
+constexpr int kMostLightTexels = 1024;
+constexpr double kTexelsAcrossBall = 8.0;  // of the smaller balls
+
+// As shaders/metaball/balls.glsl has it.
+struct DeviceBall {
+  glm::vec4 middle_radius;
+  glm::vec4 optics;
+  glm::vec4 scattering[2];
+  glm::vec4 tint;
+};
+
+bool IsPaper(const scene::Rendering& rendering) { return !IsConsistent(rendering); }
+
+absl::Status Check(const std::vector<Ball>& balls) {
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    const Ball& ball = balls[i];
+    const double sum = glm::dot(ball.middle_m, glm::dvec3(1.0)) + ball.radius_m;
+    if (std::isfinite(sum) && ball.radius_m > 0.0 && std::isfinite(ball.extinction_per_m) &&
+        ball.extinction_per_m >= 0.0) {
+      continue;
+    }
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "ball %d at %g, %g, %g m has a radius of %g m and an extinction of %g 1/m; a radius must "
+        "be above 0, an extinction 0 or above, and every number finite",
+        i, ball.middle_m.x, ball.middle_m.y, ball.middle_m.z, ball.radius_m,
+        ball.extinction_per_m));
+  }
+  return absl::OkStatus();
+}
+
+// Man, eq. 18: densities rho = t v. The paper leaves t open; here the mean ball has the density 1,
+// and none more.
+double PaperDensityFactor(const std::vector<Ball>& balls) {
+  double sum = 0.0;
+  for (const Ball& ball : balls) sum += ball.extinction_per_m;
+  return sum > 0.0 ? static_cast<double>(balls.size()) / sum : 0.0;
+}
+
+DeviceBall DeviceBallOf(const Ball& ball, const Medium& content, const GroupWeights& weights,
+                        const glm::dvec3& middle_m) {
+  DeviceBall device{};
+  device.middle_radius = {glm::vec3(ball.middle_m - middle_m), ball.radius_m};
+  glm::dvec3 optics(0.0);
+  glm::vec3 tint(0.0F);
+  for (std::size_t i = 0; i < content.groups.size(); ++i) {
+    const double share = ball.shares[i];
+    optics += share * glm::dvec3(weights.eye[i], weights.light[i], weights.transport[i]);
+    tint += static_cast<float>(share * weights.scattering[i]) * content.groups[i].color;
+  }
+  for (std::size_t i = 0; i < content.groups.size(); ++i) {
+    device.scattering[i / 4][static_cast<int>(i % 4)] =
+        static_cast<float>(ball.shares[i] * weights.scattering[i] / std::max(optics.x, 1e-12));
+  }
+  device.optics = glm::vec4(glm::vec3(optics * ball.extinction_per_m), 0.0F);
+  device.tint = glm::vec4(tint, 0.0F);
+  return device;
+}
+
+// The light buffer's axes and size.
+struct LightPlane {
+  LightFrame frame;
+  glm::ivec2 size{1};
+  double texels_per_m = 1.0;
+
+  glm::dvec2 TexelOf(const glm::dvec3& local_m) const {
+    return texels_per_m * glm::dvec2(glm::dot(local_m, frame.right), glm::dot(local_m, frame.up)) +
+           0.5 * glm::dvec2(size);
+  }
+};
+
+LightPlane LightPlaneOf(const std::vector<Ball>& balls, const BallBox& box,
+                        const glm::dvec3& towards) {
+  std::vector<double> radii_m;
+  for (const Ball& ball : balls) radii_m.push_back(ball.radius_m);
+  const auto small = radii_m.begin() + static_cast<std::ptrdiff_t>(radii_m.size() / 10);
+  std::nth_element(radii_m.begin(), small, radii_m.end());
+  LightPlane plane;
+  plane.frame = LightFrameOf({box.HalfExtent_m()}, towards);
+  const glm::dvec2 across_m = 2.0 * plane.frame.half_extent_m;
+  const double longest_m = std::max(across_m.x, across_m.y);
+  plane.texels_per_m = std::clamp(0.5 * kTexelsAcrossBall / *small, kLeastLightTexels / longest_m,
+                                  kMostLightTexels / longest_m);
+  plane.size = glm::max(glm::ivec2(glm::ceil(across_m * plane.texels_per_m)), glm::ivec2(1));
+  return plane;
+}
+
+gl::Buffer BufferOf(const std::vector<std::uint32_t>& values) {
+  return {values.size() * sizeof(std::uint32_t), values.data(), 0};
+}
+
+}  // namespace
+
+std::vector<MetaballRenderer::Light> MetaballRenderer::LightsOf(const RenderSettings& settings) {
+  const Illumination& from = settings.illumination;
+  std::vector<Light> lights = {{from.towards_sun, from.sunlight, false}};
+  if (IsPaper(settings.rendering)) {
+    // The paper has lights in directions only: the halves of the sky stand in as their middles.
+    const float half_sky = std::numbers::pi_v<float>;
+    lights.push_back({{0.0, 0.0, 1.0}, half_sky * from.from_sky, false});
+    lights.push_back({{0.0, 0.0, -1.0}, half_sky * from.from_ground, false});
+  } else {
+    lights.push_back({{0.0, 0.0, 1.0}, glm::vec3(0.0F), true});
+  }
+  return lights;
+}
+
+void MetaballRenderer::Upload(const BallCloud& cloud, const Medium& content,
+                              const RenderSettings& settings) {
+  balls_ = cloud.balls;
+  box_ = BoxOf(balls_);
+  lights_ = LightsOf(settings);
+  const GroupWeights weights(content, settings.rendering);
+  groups_ = static_cast<int>(content.groups.size());
+  colored_ = weights.colored;
+  std::vector<physics::PhaseFunction> phases;
+  for (const MediumGroup& group : content.groups) phases.push_back(group.phase);
+  phase_curves_ = PhaseCurves(phases);
+  if (balls_.empty()) return;
+  const double paper_factor = PaperDensityFactor(balls_);
+  std::vector<DeviceBall> device;
+  for (const Ball& ball : balls_) {
+    device.push_back(DeviceBallOf(ball, content, weights, box_.Middle_m()));
+    if (!IsPaper(settings.rendering)) continue;
+    const double density = std::min(paper_factor * ball.extinction_per_m, 1.0);
+    device.back().optics.x =
+        static_cast<float>(settings.rendering.metaballs.optical_depth * density);
+  }
+  ball_buffer_ = gl::Buffer(device.size() * sizeof(DeviceBall), device.data(), 0);
+  arrived_ = gl::Buffer(lights_.size() * balls_.size() * sizeof(glm::vec2), nullptr, 0);
+}
+
+absl::Status MetaballRenderer::CarryLight(const BallCloud& cloud, const Medium& content,
+                                          const RenderSettings& settings) {
+  THUNDERHEAD_RETURN_IF_ERROR(Check(cloud.balls));
+  Upload(cloud, content, settings);
+  if (balls_.empty()) return absl::OkStatus();
+  for (std::size_t i = 0; i < lights_.size(); ++i) {
+    THUNDERHEAD_RETURN_IF_ERROR(Carry(lights_[i], static_cast<int>(i), settings));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status MetaballRenderer::Carry(const Light& light, int index,
+                                     const RenderSettings& settings) {
+  const bool paper = IsPaper(settings.rendering);
+  const auto program_of = [&](int pass) {
+    return programs_->Get(
+        {{},
+         {},
+         {{"PAPER", paper ? 1 : 0}, {"PASS", pass}, {"DIFFUSE", light.diffuse ? 1 : 0}},
+         "metaball/light.comp"});
+  };
+  const LightPlane plane = LightPlaneOf(balls_, box_, light.towards);
+  std::vector<LightDisc> discs;
+  for (const Ball& ball : balls_) {
+    const glm::dvec3 local_m = ball.middle_m - box_.Middle_m();
+    discs.push_back({plane.TexelOf(local_m), std::max(ball.radius_m * plane.texels_per_m, 1.0),
+                     glm::dot(local_m, light.towards)});
+  }
+  const LightOrder order = OrderFromLight(discs, plane.size);
+  order_ = BufferOf(order.discs);
+  if (light_.Size() != plane.size) light_ = gl::Texture2D(GL_RG32F, plane.size);
+  // Depths begin at none, the paper's light at white.
+  const float clear[2] = {paper ? 1.0F : 0.0F, 0.0F};
+  glClearTexImage(light_.Get(), 0, GL_RG, GL_FLOAT, clear);
+  light_.BindImage(kLightImage, GL_READ_WRITE);
+  ball_buffer_.BindStorage(kBallBinding);
+  arrived_.BindStorage(kArrivedBinding);
+  order_.BindStorage(kOrderBinding);
+  const auto run = [&](const gl::Program& program, std::uint32_t first, std::uint32_t end) {
+    program.Set("first", static_cast<int>(first));
+    glDispatchCompute(end - first, 1, 1);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+  };
+  for (int pass = 0; pass < (paper ? 1 : 2); ++pass) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program, program_of(pass));
+    program->Set("arrived_first", index * static_cast<int>(balls_.size()));
+    program->Set("light_right", glm::vec3(plane.frame.right * plane.texels_per_m));
+    program->Set("light_up", glm::vec3(plane.frame.up * plane.texels_per_m));
+    program->Set("texels_per_m", static_cast<float>(plane.texels_per_m));
+    program->Set("light_middle", 0.5F * glm::vec2(plane.size));
+    program->Set("paper_albedo", static_cast<float>(settings.rendering.metaballs.albedo));
+    program->Set("scattered_often", IsTranslucent(settings.rendering) ? 1.0F : 0.0F);
+    program->Use();
+    if (pass == 1) {
+      run(*program, 0, static_cast<std::uint32_t>(balls_.size()));
+      continue;
+    }
+    for (std::size_t level = 0; level < order.Levels(); ++level) {
+      run(*program, order.starts[level], order.starts[level + 1]);
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status MetaballRenderer::DrawView(const RenderSettings& settings) {
+  if (eye_.Size() != settings.eye_size) {
+    // Single precision: thousands of thin balls multiply into the share that passes.
+    eye_ = gl::Texture2D(GL_RGBA32F, settings.eye_size);
+    eye_target_ = gl::Framebuffer(eye_);
+  }
+  eye_target_.Clear(0.0F, 0.0F, 0.0F, 1.0F);
+  if (balls_.empty()) return absl::OkStatus();
+  const bool paper = IsPaper(settings.rendering);
+  const std::size_t beams = lights_.size() - (paper ? 0 : 1);
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_->Get({"metaball/splat.vert",
+                      "metaball/splat.frag",
+                      {{"LIGHTS", static_cast<int>(beams)},
+                       {"GROUPS", groups_},
+                       {"COLORED", colored_ ? 1 : 0},
+                       {"CONSISTENT", paper ? 0 : 1},
+                       {"PAPER", paper ? 1 : 0},
+                       {"ISOTROPIC", settings.rendering.metaballs.isotropic ? 1 : 0},
+                       {"PARALLEL", settings.view.Orthographic() ? 1 : 0},
+                       {"GROUND", settings.ground_distance != nullptr ? 1 : 0}}}));
+  DrawBalls(*program, settings);
+  return absl::OkStatus();
+}
+
+void MetaballRenderer::DrawBalls(const gl::Program& program, const RenderSettings& settings) {
+  const scene::View& view = settings.view;
+  std::vector<double> away_m;
+  for (const Ball& ball : balls_) {
+    const glm::dvec3 off_m = ball.middle_m - view.eye_m;
+    away_m.push_back(view.Orthographic() ? glm::dot(off_m, view.forward) : glm::length(off_m));
+  }
+  std::vector<std::uint32_t> order(balls_.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return away_m[a] > away_m[b]; });
+  order_ = BufferOf(order);
+  std::vector<glm::vec3> towards;
+  std::vector<glm::vec3> irradiance;
+  for (const Light& light : lights_) {
+    if (light.diffuse) continue;
+    towards.emplace_back(light.towards);
+    irradiance.push_back(light.irradiance);
+  }
+  BindRays(program, view, box_.Middle_m());
+  program.Set("ball_count", static_cast<int>(balls_.size()));
+  program.Set("eye_right", glm::vec3(view.right));
+  program.Set("eye_up", glm::vec3(view.up));
+  program.Set("eye_forward", glm::vec3(view.forward));
+  program.Set("eye_m", glm::vec3(view.eye_m - box_.Middle_m()));
+  program.Set("half_picture", view.Orthographic()
+                                  ? glm::vec2(view.half_width_m, view.half_height_m)
+                                  : glm::vec2(view.tan_half_width, view.tan_half_height));
+  program.Set("towards_light", towards);
+  program.Set("irradiance", irradiance);
+  program.Set("sky_radiance", settings.illumination.from_sky);
+  program.Set("ground_radiance", settings.illumination.from_ground);
+  program.Set("paper_albedo", static_cast<float>(settings.rendering.metaballs.albedo));
+  phase_curves_.Bind();
+  ball_buffer_.BindStorage(kBallBinding);
+  arrived_.BindStorage(kArrivedBinding);
+  order_.BindStorage(kOrderBinding);
+  if (settings.ground_distance != nullptr) settings.ground_distance->Bind(kGroundUnit);
+  eye_target_.Bind();
+  program.Use();
+  no_attributes_.Bind();
+  glEnable(GL_BLEND);
+  // Eq. 28 and 29: what the ball sends, and of what is behind it the share that passes.
+  glBlendFuncSeparate(GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_SRC_ALPHA);
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(balls_.size()));
+  glDisable(GL_BLEND);
+}
+
+std::size_t MetaballRenderer::Bytes() const {
+  return ball_buffer_.Bytes() + arrived_.Bytes() + order_.Bytes() + light_.Bytes() + eye_.Bytes() +
+         phase_curves_.Bytes();
+}
+
+}  // namespace thunderhead::renderers

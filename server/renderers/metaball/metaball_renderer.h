@@ -1,0 +1,74 @@
+// Man's two-pass renderer of metaballs (P. Man, Generating and Real-Time Rendering of Clouds,
+// section 4), on the device: the first pass gives every ball its light from each of several
+// coloured lights, the second splats the balls from back to front. The result is what the balls
+// send to the eye (rgb) and the share of the background that passes (a).
+//
+// Transport "paper" is as printed; "consistent" has the fields' own optics and loses no energy.
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "gl/objects.h"
+#include "gl/program.h"
+#include "renderers/group_weights.h"
+#include "renderers/medium.h"
+#include "renderers/metaball/ball_cloud.h"
+#include "renderers/phase_curves.h"
+#include "renderers/render_settings.h"
+
+namespace thunderhead::renderers {
+
+class MetaballRenderer {
+ public:
+  // Programs are linked in `programs`.
+  explicit MetaballRenderer(std::shared_ptr<gl::ProgramCache> programs)
+      : programs_(std::move(programs)) {}
+
+  // The first pass. `content` tells how the groups scatter that the balls' shares are of; it must
+  // have a group. INVALID_ARGUMENT names a ball that is none: a radius that is not above 0, an
+  // extinction below 0, or a number that is not finite.
+  absl::Status CarryLight(const BallCloud& cloud, const Medium& content,
+                          const RenderSettings& settings);
+
+  // The second pass, with the balls and the light of the last CarryLight.
+  absl::Status DrawView(const RenderSettings& settings);
+
+  // The result of the last DrawView.
+  const gl::Texture2D& Eye() const { return eye_; }
+  // Around the balls of the last CarryLight.
+  const BallBox& Box() const { return box_; }
+  std::size_t Bytes() const;
+
+ private:
+  // A light that comes from one direction, or with `diffuse` the sky above and the ground below.
+  struct Light {
+    glm::dvec3 towards{0.0, 0.0, 1.0};
+    glm::vec3 irradiance{0.0F};
+    bool diffuse = false;
+  };
+
+  static std::vector<Light> LightsOf(const RenderSettings& settings);
+  void Upload(const BallCloud& cloud, const Medium& content, const RenderSettings& settings);
+  absl::Status Carry(const Light& light, int index, const RenderSettings& settings);
+  void DrawBalls(const gl::Program& program, const RenderSettings& settings);
+
+  std::shared_ptr<gl::ProgramCache> programs_;
+  gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
+  std::vector<Ball> balls_;
+  BallBox box_;
+  std::vector<Light> lights_;
+  int groups_ = 1;
+  bool colored_ = false;
+  gl::Buffer ball_buffer_;
+  gl::Buffer arrived_;  // the light of each ball, light by light
+  gl::Buffer order_;
+  gl::Texture2D light_;
+  PhaseCurves phase_curves_;
+  gl::Texture2D eye_;
+  gl::Framebuffer eye_target_;
+};
+
+}  // namespace thunderhead::renderers

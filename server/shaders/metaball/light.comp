@@ -1,0 +1,106 @@
+// The first pass (Man, 4.1): one light through the balls, the nearest to it first. A work group takes one ball of a level,
+// whose balls touch no common texel: it reads back what of the light buffer lies under the ball, gives the ball its light,
+// and splats the ball into the buffer. The buffer never leaves the device.
+// Variants: PAPER (eq. 26 and 27 as printed) or not: the buffer then holds optical depths, r of the light's extinction and
+// g similarity scaled, so that what a ball takes from the light is what it scatters, however thick it is.
+// PASS: 0 splats; 1, after all levels, gives the light scattered many times, which depends on what is behind the ball too.
+// DIFFUSE (with PASS 1): the light is no beam but the sky above and the ground below: their shares.
+#include "metaball/balls.glsl"
+#include "physics/light_transport.glsl"
+#include "physics/wyvill.glsl"
+
+layout(local_size_x = 64) in;
+layout(binding = 0, rg32f) uniform image2D light;
+// By light and ball: x the share of the beam that arrives, or that of the sky; y the mean intensity of light scattered
+// many times over the beam's irradiance. Between the passes y is the scaled optical depth before the ball's middle.
+layout(std430, binding = 1) buffer Arrived { vec2 arrived[]; };
+
+uniform int first;          // of this dispatch in `order`
+uniform int arrived_first;  // of this light
+uniform vec3 light_right;   // texels per metre
+uniform vec3 light_up;
+uniform float texels_per_m;
+uniform vec2 light_middle;  // in texels
+uniform float paper_albedo;
+uniform float scattered_often;  // 1, or 0 where light that strikes a particle is lost
+
+const float kFourPi = 12.5663706;
+const float kForwardPhase = 1.5;  // Rayleigh's function straight on, eq. 25
+
+shared vec3 sums[64];
+
+void main() {
+  uint listed = gl_WorkGroupID.x + uint(first);
+  uint index = order[listed];
+  Ball ball = balls[index];
+  float radius_m = ball.middle_radius.w;
+  vec2 middle = light_middle + vec2(dot(ball.middle_radius.xyz, light_right), dot(ball.middle_radius.xyz, light_up));
+  // What is smaller than the texels is spread over them.
+  float reach = max(radius_m * texels_per_m, 1.0);
+  float spread = radius_m * texels_per_m / reach;
+  float thinned = spread * spread;
+  ivec2 low = max(ivec2(floor(middle - reach)), ivec2(0));
+  ivec2 high = min(ivec2(ceil(middle + reach)), imageSize(light) - 1);
+  ivec2 size = max(high - low + 1, ivec2(0));
+  float light_depth = ball.optics.y * radius_m * thinned;      // times the column
+  float scaled_depth = ball.optics.z * radius_m * thinned;
+
+  vec3 sum = vec3(0.0);
+  for (int i = int(gl_LocalInvocationIndex); i < size.x * size.y; i += 64) {
+    ivec2 texel = low + ivec2(i % size.x, i / size.x);
+    vec2 off = (vec2(texel) + 0.5 - middle) / reach;
+    float s = 1.0 - dot(off, off);
+    if (s <= 0.0) continue;
+    vec2 before = imageLoad(light, texel).rg;
+#if PAPER
+    sum += vec3(before.r, 0.0, 1.0);
+#elif PASS == 0
+    float column = wyvill_column(s);
+    // In the mean over the ball's own matter the light that enters is weakened by the half that is before.
+    float enters = exp(-before.r) * mean_transmittance(column * light_depth);
+    sum += column * vec3(enters, before.g + 0.5 * column * scaled_depth, 1.0);
+#else
+    sum += wyvill_column(s) * vec3(before.g, 0.0, 1.0);
+#endif
+  }
+  sums[gl_LocalInvocationIndex] = sum;
+  barrier();
+  for (uint half_count = 32u; half_count > 0u; half_count >>= 1) {
+    if (gl_LocalInvocationIndex < half_count) {
+      sums[gl_LocalInvocationIndex] += sums[gl_LocalInvocationIndex + half_count];
+    }
+    barrier();
+  }
+  vec2 mean = sums[0].z > 0.0 ? sums[0].xy / sums[0].z : vec2(0.0);
+  uint slot = uint(arrived_first) + index;
+
+#if PASS == 1
+  if (gl_LocalInvocationIndex > 0u) return;
+  float total = mean.x;
+  float before = min(arrived[slot].y, total);
+#if DIFFUSE
+  // Both faces lit, each by diffuse light of its own: Eddington's mean intensity between them is linear.
+  arrived[slot] = vec2((total - before + 2.0 / 3.0) / (total + 4.0 / 3.0), 0.0);
+#else
+  // Diffuse light that leaves a cloud comes from one transport mean free path (2/3 by Eddington) inside it.
+  arrived[slot].y = scattered_often * diffuse_mean_intensity(min(before + 2.0 / 3.0, total), total);
+#endif
+#else
+  if (gl_LocalInvocationIndex == 0u) arrived[slot] = mean;
+  for (int i = int(gl_LocalInvocationIndex); i < size.x * size.y; i += 64) {
+    ivec2 texel = low + ivec2(i % size.x, i / size.x);
+    vec2 off = (vec2(texel) + 0.5 - middle) / reach;
+    float s = 1.0 - dot(off, off);
+    if (s <= 0.0) continue;
+    vec2 before = imageLoad(light, texel).rg;
+#if PAPER
+    float depth = paper_depth(ball) * wyvill_field(s) * thinned;
+    float scattered = paper_albedo * depth * kForwardPhase * mean.x / kFourPi;
+    imageStore(light, texel, vec4(scattered + exp(-depth) * before.r, 0.0, 0.0, 0.0));
+#else
+    float column = wyvill_column(s);
+    imageStore(light, texel, vec4(before + column * vec2(light_depth, scaled_depth), 0.0, 0.0));
+#endif
+  }
+#endif
+}
