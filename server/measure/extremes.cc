@@ -39,11 +39,12 @@ scene::Scene PlainScene(scene::Renderer renderer) {
 std::vector<Extreme> Extremes() {
   std::vector<Extreme> extremes;
   internal::AppendInputExtremes(&extremes);
-  for (const auto& path : kPaths) {
+  for (const auto& path : kFieldPaths) {
     internal::AppendDepthExtremes(path, &extremes);
     internal::AppendShapeExtremes(path, &extremes);
     internal::AppendViewExtremes(path, &extremes);
   }
+  internal::AppendMetaballExtremes(&extremes);
   return extremes;
 }
 

@@ -26,5 +26,6 @@ void AppendInputExtremes(std::vector<Extreme>* extremes);
 void AppendDepthExtremes(const Named<scene::Renderer>& path, std::vector<Extreme>* extremes);
 void AppendShapeExtremes(const Named<scene::Renderer>& path, std::vector<Extreme>* extremes);
 void AppendViewExtremes(const Named<scene::Renderer>& path, std::vector<Extreme>* extremes);
+void AppendMetaballExtremes(std::vector<Extreme>* extremes);
 
 }  // namespace thunderhead::measure::internal

@@ -21,6 +21,9 @@ inline constexpr std::array<Named<scene::Renderer>, scene::kRendererCount - 1> k
     {scene::Renderer::kMetaball, "metaball"},
 }};
 
+// Those that draw the fields as they are, cell by cell, so that their pictures have exact answers.
+inline constexpr std::array<Named<scene::Renderer>, 2> kFieldPaths = {{kPaths[0], kPaths[1]}};
+
 // In the order of Riley et al. 2003 (AMS), Table IV.
 inline constexpr std::array<Named<scene::Mode>, 4> kModes = {{
     {scene::Mode::kUniformPhaseLowAlbedo, "uniform_phase_low_albedo"},

@@ -1,11 +1,15 @@
 #include "renderers/renderer_pool.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace thunderhead::renderers {
 
-RendererPool::RendererPool(std::size_t most, std::size_t most_bytes)
-    : most_(most), most_bytes_(most_bytes), programs_(std::make_shared<gl::ProgramCache>()) {}
+RendererPool::RendererPool(std::shared_ptr<BallFits> fits, std::size_t most, std::size_t most_bytes)
+    : most_(most),
+      most_bytes_(most_bytes),
+      fits_(std::move(fits)),
+      programs_(std::make_shared<gl::ProgramCache>()) {}
 
 absl::StatusOr<LinearFrame> RendererPool::Draw(
     const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
@@ -26,7 +30,7 @@ SceneRenderer& RendererPool::Choose(
   // What must compute the extinction anew keeps nothing worth sharing.
   if (best == renderers_.end() || first_stage(*best) <= scene::Stage::kExtinction) {
     if (renderers_.size() < most_) {
-      renderers_.push_back(std::make_unique<SceneRenderer>(programs_));
+      renderers_.push_back(std::make_unique<SceneRenderer>(programs_, fits_));
     }
     best = renderers_.end() - 1;
   }

@@ -16,7 +16,11 @@ class RendererPool {
  public:
   // Keeps at most `most` renderers, and the least recently used of them only while all together
   // take no more than `most_bytes` on the device.
-  explicit RendererPool(std::size_t most = 4, std::size_t most_bytes = std::size_t{1} << 30U);
+  explicit RendererPool(std::size_t most = 4, std::size_t most_bytes = std::size_t{1} << 30U)
+      : RendererPool(std::make_shared<BallFits>(), most, most_bytes) {}
+  // Metaballs are taken from and kept in `fits`.
+  explicit RendererPool(std::shared_ptr<BallFits> fits, std::size_t most = 4,
+                        std::size_t most_bytes = std::size_t{1} << 30U);
 
   // Draws with the renderer that keeps most of what the scene needs. The frame lives until the next
   // Draw.
@@ -31,6 +35,7 @@ class RendererPool {
 
   std::size_t most_;
   std::size_t most_bytes_;
+  std::shared_ptr<BallFits> fits_;
   std::shared_ptr<gl::ProgramCache> programs_;
   std::vector<std::unique_ptr<SceneRenderer>> renderers_;  // the most recently used first
 };

@@ -59,13 +59,19 @@ class PictureReactor : public grpc::ServerUnaryReactor {
   absl::Status ReadAndSubmit() {
     if (*cancelled_) return absl::CancelledError("the picture was no longer wanted");
     v1::Scene& scene = *response_.mutable_scene();
-    const base::Stopwatch stopwatch;
+    base::Stopwatch stopwatch;
     THUNDERHEAD_ASSIGN_OR_RETURN(
         auto fields, engine_.store.Get(scene.storm_id(), static_cast<int>(scene.time_index()), {}));
     ToMessage({"read", stopwatch.ElapsedMs()}, *response_.add_stages());
     FrameCondensate(scene, *fields);
+    const scene::Scene drawn = ToScene(scene);
+    stopwatch.Restart();
+    THUNDERHEAD_RETURN_IF_ERROR(engine_.loop.Prepare(drawn, fields));
+    if (drawn.rendering.renderer == scene::Renderer::kMetaball) {
+      ToMessage({"fit", stopwatch.ElapsedMs()}, *response_.add_stages());
+    }
     engine_.loop.RenderImage(
-        {ToScene(scene), std::move(fields), cancelled_,
+        {drawn, std::move(fields), cancelled_,
          [this](absl::StatusOr<session::DisplayFrame> picture) { Drawn(std::move(picture)); }});
     return absl::OkStatus();
   }

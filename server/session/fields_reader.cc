@@ -19,10 +19,10 @@ FieldsReader::~FieldsReader() {
   thread_.join();
 }
 
-void FieldsReader::Ask(const std::string& owner, const FieldsKey& key) {
+void FieldsReader::Ask(const std::string& owner, const FieldsKey& key, PrepareFields prepare) {
   {
     const std::lock_guard lock(mutex_);
-    asked_[owner] = key;
+    asked_[owner] = {key, std::move(prepare), ++count_};
     read_.erase(owner);
     if (std::find(waiting_.begin(), waiting_.end(), owner) == waiting_.end()) {
       waiting_.push_back(owner);
@@ -45,6 +45,18 @@ void FieldsReader::Forget(const std::string& owner) {
   read_.erase(owner);
 }
 
+FieldsRead FieldsReader::Read(const Asked& work) {
+  base::Stopwatch stopwatch;
+  FieldsRead read;
+  read.fields = store_.Get(work.key.storm_id, work.key.time_index, {});
+  read.milliseconds = stopwatch.Restart();
+  if (!read.fields.ok() || !work.prepare) return read;
+  const absl::Status prepared = work.prepare(*read.fields);
+  if (!prepared.ok()) read.fields = prepared;
+  read.prepare_ms = stopwatch.ElapsedMs();
+  return read;
+}
+
 void FieldsReader::Run() {
   std::unique_lock lock(mutex_);
   while (true) {
@@ -52,15 +64,13 @@ void FieldsReader::Run() {
     if (stopping_) return;
     const std::string owner = std::move(waiting_.front());
     waiting_.pop_front();
-    const FieldsKey key = asked_[owner];
+    const Asked work = asked_[owner];
     lock.unlock();
-    const base::Stopwatch stopwatch;
-    auto fields = store_.Get(key.storm_id, key.time_index, {});
-    FieldsRead read{std::move(fields), stopwatch.ElapsedMs()};
+    FieldsRead read = Read(work);
     lock.lock();
-    // Forgotten, or asked for another time, while it was read.
+    // Forgotten, or asked for something else, while it was read.
     const auto asked = asked_.find(owner);
-    if (asked == asked_.end() || asked->second != key) continue;
+    if (asked == asked_.end() || asked->second.count != work.count) continue;
     asked_.erase(asked);
     read_.insert_or_assign(owner, std::move(read));
     lock.unlock();

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <map>
@@ -29,7 +30,12 @@ struct FieldsKey {
 struct FieldsRead {
   absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> fields;
   double milliseconds = 0.0;
+  double prepare_ms = 0.0;
 };
+
+// What is to be made of fields that were read, on the same thread; may be empty.
+using PrepareFields =
+    std::function<absl::Status(const std::shared_ptr<const volume::HydrometeorFields>&)>;
 
 class FieldsReader {
  public:
@@ -40,14 +46,22 @@ class FieldsReader {
   FieldsReader(const FieldsReader&) = delete;
   FieldsReader& operator=(const FieldsReader&) = delete;
 
-  // Asks for a read; replaces the owner's earlier one if it has not begun.
-  void Ask(const std::string& owner, const FieldsKey& key);
+  // Asks for a read and what `prepare` makes of it; replaces the owner's earlier one if it has not
+  // begun.
+  void Ask(const std::string& owner, const FieldsKey& key, PrepareFields prepare = {});
   // What the owner's read gave, once.
   std::optional<FieldsRead> Take(const std::string& owner);
   // The owner wants nothing any more.
   void Forget(const std::string& owner);
 
  private:
+  struct Asked {
+    FieldsKey key;
+    PrepareFields prepare;
+    std::uint64_t count = 0;  // tells one asking from the next
+  };
+
+  FieldsRead Read(const Asked& work);
   void Run();
 
   volume::StormStore& store_;
@@ -56,7 +70,8 @@ class FieldsReader {
   std::condition_variable changed_;
   bool stopping_ = false;
   std::deque<std::string> waiting_;  // owners, in the order in which they asked
-  std::map<std::string, FieldsKey> asked_;
+  std::uint64_t count_ = 0;
+  std::map<std::string, Asked> asked_;
   std::map<std::string, FieldsRead> read_;
   std::thread thread_;
 };

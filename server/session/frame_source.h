@@ -78,11 +78,28 @@ struct DeviceInfo {
   std::string gl_version;
 };
 
+// What drawing some scenes needs once and takes seconds: done beside the thread that draws, which
+// would else keep every session waiting. Safe from any thread.
+class Preparation {
+ public:
+  using Fields = std::shared_ptr<const volume::HydrometeorFields>;
+
+  virtual ~Preparation() = default;
+
+  // True if drawing `scene` from `fields` (of its storm and time) has nothing to wait for.
+  virtual bool IsDone(const scene::Scene& scene, const Fields& fields) = 0;
+  // Blocks until it has.
+  virtual absl::Status Prepare(const scene::Scene& scene, const Fields& fields) = 0;
+};
+
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
 
   virtual const DeviceInfo& Device() const = 0;
+
+  // Null if no scene needs any.
+  virtual std::shared_ptr<Preparation> PreparationOfScenes() const { return nullptr; }
 
   // Draws `scene` from `fields` (of the scene's storm and time). Reruns only the stages that differ
   // from the frame drawn before.

@@ -10,6 +10,24 @@
 namespace thunderhead::session {
 namespace {
 
+// Fits metaballs.
+class BallPreparation final : public Preparation {
+ public:
+  explicit BallPreparation(std::shared_ptr<renderers::BallFits> fits) : fits_(std::move(fits)) {}
+
+  bool IsDone(const scene::Scene& scene, const Fields& fields) override {
+    return scene.rendering.renderer != scene::Renderer::kMetaball || fits_->Has(scene, fields);
+  }
+
+  absl::Status Prepare(const scene::Scene& scene, const Fields& fields) override {
+    if (IsDone(scene, fields)) return absl::OkStatus();
+    return fits_->Get(scene, fields).status();
+  }
+
+ private:
+  std::shared_ptr<renderers::BallFits> fits_;
+};
+
 class GlFrameSource final : public FrameSource {
  public:
   explicit GlFrameSource(std::unique_ptr<gl::Context> context)
@@ -17,6 +35,10 @@ class GlFrameSource final : public FrameSource {
         info_{context_->Info().device, context_->Info().renderer, context_->Info().version} {}
 
   const DeviceInfo& Device() const override { return info_; }
+
+  std::shared_ptr<Preparation> PreparationOfScenes() const override {
+    return std::make_shared<BallPreparation>(fits_);
+  }
 
   absl::StatusOr<DisplayFrame> Draw(const scene::Scene& scene,
                                     const std::shared_ptr<const volume::HydrometeorFields>& fields,
@@ -62,7 +84,8 @@ class GlFrameSource final : public FrameSource {
   }
 
   std::unique_ptr<gl::Context> context_;  // outlives what was made in it
-  renderers::RendererPool renderers_;
+  std::shared_ptr<renderers::BallFits> fits_ = std::make_shared<renderers::BallFits>();
+  renderers::RendererPool renderers_{fits_};
   frame::ToneMapper tone_mapper_;
   frame::ToneMapper picture_tone_mapper_;  // of other sizes: each keeps its buffers
   DeviceInfo info_;

@@ -101,6 +101,7 @@ void RenderLoop::Run(const FrameSourceFactory& make_source, std::promise<absl::S
   }
   source_ = *std::move(source);
   device_ = source_->Device();
+  preparation_ = source_->PreparationOfScenes();
   started.set_value(absl::OkStatus());
   while (!stopping_) {
     const std::optional<Clock::time_point> look_again_at = DrawOne();
@@ -202,6 +203,28 @@ void RenderLoop::TakeRead(Session& session, Track& track) {
   track.fields_key = KeyOf(*reading_for.scene);
   track.arrived_for = reading_for;
   track.read_ms += read->milliseconds;
+  track.prepare_ms += read->prepare_ms;
+}
+
+bool RenderLoop::IsPrepared(const scene::Scene& scene,
+                            const std::shared_ptr<const volume::HydrometeorFields>& fields) const {
+  return preparation_ == nullptr || preparation_->IsDone(scene, fields);
+}
+
+absl::Status RenderLoop::Prepare(
+    const scene::Scene& scene,
+    const std::shared_ptr<const volume::HydrometeorFields>& fields) const {
+  return preparation_ == nullptr ? absl::OkStatus() : preparation_->Prepare(scene, fields);
+}
+
+void RenderLoop::AskFor(const Session& session, const NewestScene& newest) {
+  PrepareFields prepare;
+  if (preparation_ != nullptr) {
+    prepare = [preparation = preparation_, scene = newest.scene](const auto& fields) {
+      return preparation->Prepare(*scene, fields);
+    };
+  }
+  reader_->Ask(session.id(), KeyOf(*newest.scene), std::move(prepare));
 }
 
 // The scene to draw now: the newest if its fields are at hand. If they are not they are asked for,
@@ -211,9 +234,10 @@ std::optional<NewestScene> RenderLoop::DrawableScene(const Session& session, Tra
                                                      const NewestScene& newest) {
   const FieldsKey key = KeyOf(*newest.scene);
   const std::optional<NewestScene> arrived_for = std::exchange(track.arrived_for, std::nullopt);
-  if (track.fields_key == key) return newest;
+  if (track.fields_key == key && IsPrepared(*newest.scene, track.fields)) return newest;
   if (track.unreadable_revision == newest.revision) return std::nullopt;
-  if (auto cached = store_.Peek(key.storm_id, key.time_index); cached != nullptr) {
+  if (auto cached = store_.Peek(key.storm_id, key.time_index);
+      cached != nullptr && IsPrepared(*newest.scene, cached)) {
     track.fields = std::move(cached);
     track.fields_key = key;
     // Asked for all the same: it is the store's Get that reads the next times ahead.
@@ -223,7 +247,7 @@ std::optional<NewestScene> RenderLoop::DrawableScene(const Session& session, Tra
   }
   if (!track.reading_for.has_value()) {
     track.reading_for = newest;
-    reader_->Ask(session.id(), key);
+    AskFor(session, newest);
   }
   const bool is_news = arrived_for.has_value() && arrived_for->revision > track.planner.revision();
   return is_news ? arrived_for : std::nullopt;
@@ -242,8 +266,10 @@ void RenderLoop::DrawFor(const std::shared_ptr<Session>& session, Track& track,
 }
 
 void RenderLoop::Send(Track& track, DrawnFrame frame) {
+  std::vector<StageCost>& stages = frame.picture.stages;
+  if (track.prepare_ms > 1.0) stages.insert(stages.begin(), {"fit", track.prepare_ms});
+  track.prepare_ms = 0.0;
   if (track.read_ms > 0.0) {
-    std::vector<StageCost>& stages = frame.picture.stages;
     stages.insert(stages.begin(), {"read", std::exchange(track.read_ms, 0.0)});
   }
   encoder_->Encode(std::move(frame));

@@ -62,6 +62,10 @@ class RenderLoop {
 
   const DeviceInfo& Device() const { return device_; }
 
+  // What drawing `scene` would hold the loop up with; blocks. From any thread.
+  absl::Status Prepare(const scene::Scene& scene,
+                       const std::shared_ptr<const volume::HydrometeorFields>& fields) const;
+
   void RenderImage(ImageJob job);
 
   // Nothing is drawn any more after the frame being drawn. Returns at once.
@@ -84,6 +88,7 @@ class RenderLoop {
     std::optional<NewestScene> arrived_for;  // the scene whose fields have just been read
     std::uint64_t unreadable_revision = 0;
     double read_ms = 0.0;  // to be reported with the next frame
+    double prepare_ms = 0.0;
     std::optional<Traced> traced;
     std::uint64_t untraceable_revision = 0;
   };
@@ -102,6 +107,9 @@ class RenderLoop {
   void DropEndedTracks(const std::vector<std::shared_ptr<Session>>& sessions);
   Outcome TrySession(const std::shared_ptr<Session>& session);
   void TakeRead(Session& session, Track& track);
+  bool IsPrepared(const scene::Scene& scene,
+                  const std::shared_ptr<const volume::HydrometeorFields>& fields) const;
+  void AskFor(const Session& session, const NewestScene& newest);
   std::optional<NewestScene> DrawableScene(const Session& session, Track& track,
                                            const NewestScene& newest);
   void DrawFor(const std::shared_ptr<Session>& session, Track& track, const NewestScene& shown,
@@ -133,6 +141,7 @@ class RenderLoop {
   bool refuses_images_ = false;
 
   // Used by the loop's thread only.
+  std::shared_ptr<Preparation> preparation_;  // set before Start returns
   std::unique_ptr<FrameSource> source_;
   std::map<std::string, Track> tracks_;  // by session id
   std::string last_served_;  // the session looked at last; the pictures' turn is the empty string

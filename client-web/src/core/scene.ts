@@ -10,6 +10,8 @@ import {
   type FieldParameters,
   FieldParametersSchema,
   Hydrometeor,
+  type Metaballs,
+  MetaballsSchema,
   type Output,
   OutputSchema,
   PhaseFunctionSchema,
@@ -46,6 +48,9 @@ export const LIMITS = {
   turbidity: limitsOf(SkySchema.field.turbidity),
   slices: limitsOf(RenderingSchema.field.slices),
   thetaF: limitsOf(RenderingSchema.field.thetaFDeg),
+  metaballCount: limitsOf(MetaballsSchema.field.count),
+  metaballAlbedo: limitsOf(MetaballsSchema.field.albedo),
+  metaballOpticalDepth: limitsOf(MetaballsSchema.field.opticalDepth),
   exposure: limitsOf(DisplaySchema.field.exposureEv),
   width: limitsOf(OutputSchema.field.widthPx),
   height: limitsOf(OutputSchema.field.heightPx),
@@ -83,6 +88,12 @@ export function withSky(scene: Scene, change: Change<Sky>): Scene {
 
 export function withRendering(scene: Scene, change: Change<Rendering>): Scene {
   return changed(scene, { rendering: changed(scene.rendering ?? create(RenderingSchema), change) });
+}
+
+export function withMetaballs(scene: Scene, change: Change<Metaballs>): Scene {
+  return withRendering(scene, {
+    metaballs: changed(scene.rendering?.metaballs ?? create(MetaballsSchema), change),
+  });
 }
 
 export function withDisplay(scene: Scene, change: Change<Display>): Scene {

@@ -1,9 +1,16 @@
 // The panel at the side: everything that can be set, part by part.
-import { LIMITS, withDisplay, withOutput, withRendering, withSky } from "../core/scene";
+import {
+  LIMITS,
+  withDisplay,
+  withMetaballs,
+  withOutput,
+  withRendering,
+  withSky,
+} from "../core/scene";
 import type { PageState } from "../core/state";
 import { Mode, Renderer, ToneMap, Transport } from "../gen/thunderhead/v1/scene_pb";
 import { CameraSection } from "./camera_section";
-import { Choice, Section, Slider } from "./controls";
+import { Choice, Section, Slider, Switch } from "./controls";
 import { FieldsSection } from "./fields_section";
 import { KEYS } from "./keyboard";
 import type { Page } from "./page";
@@ -12,6 +19,7 @@ import { SunSection } from "./sun_section";
 const RENDERERS = [
   [Renderer.LIGHT_VOLUME, "Light volume"],
   [Renderer.HALF_ANGLE, "Half-angle slices"],
+  [Renderer.METABALL, "Metaballs"],
   [Renderer.REFERENCE, "Reference: refine to truth"],
 ] as const;
 
@@ -108,6 +116,8 @@ function RenderingSection({ state }: { state: PageState }) {
         options={RENDERERS}
         onChange={(renderer) => state.edit((scene) => withRendering(scene, { renderer }))}
       />
+      <NotShown state={state} />
+      {rendering?.renderer === Renderer.METABALL && <MetaballSettings state={state} />}
       <Choice
         label="Mode"
         testId="mode"
@@ -137,6 +147,59 @@ function RenderingSection({ state }: { state: PageState }) {
         onChange={(thetaFDeg) => state.edit((scene) => withRendering(scene, { thetaFDeg }))}
       />
     </Section>
+  );
+}
+
+// What the renderer of the picture on the screen leaves out.
+function NotShown({ state }: { state: PageState }) {
+  const notShown = state.frame.value?.modelled?.notShown ?? [];
+  if (notShown.length === 0) return null;
+  return (
+    <p class="quiet" data-testid="not-shown">
+      Not shown: {notShown.join(", ")}.
+    </p>
+  );
+}
+
+function MetaballSettings({ state }: { state: PageState }) {
+  const rendering = state.rendering.value;
+  const metaballs = rendering?.metaballs;
+  return (
+    <>
+      <Slider
+        label="Metaballs"
+        limits={LIMITS.metaballCount}
+        value={metaballs?.count ?? LIMITS.metaballCount.defaultValue}
+        testId="metaball-count"
+        onChange={(count) => state.edit((scene) => withMetaballs(scene, { count }))}
+      />
+      <Switch
+        label="Scatter evenly to all sides"
+        checked={metaballs?.isotropic ?? false}
+        testId="metaball-isotropic"
+        onChange={(isotropic) => state.edit((scene) => withMetaballs(scene, { isotropic }))}
+      />
+      {rendering?.transport === Transport.PAPER && (
+        <>
+          <Slider
+            label="Albedo a"
+            limits={LIMITS.metaballAlbedo}
+            value={metaballs?.albedo ?? LIMITS.metaballAlbedo.defaultValue}
+            testId="metaball-albedo"
+            onChange={(albedo) => state.edit((scene) => withMetaballs(scene, { albedo }))}
+          />
+          <Slider
+            label="Optical depth τ"
+            limits={LIMITS.metaballOpticalDepth}
+            value={metaballs?.opticalDepth ?? LIMITS.metaballOpticalDepth.defaultValue}
+            testId="metaball-optical-depth"
+            onChange={(opticalDepth) =>
+              state.edit((scene) => withMetaballs(scene, { opticalDepth }))
+            }
+          />
+        </>
+      )}
+    </>
   );
 }
 

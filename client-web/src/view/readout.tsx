@@ -7,6 +7,7 @@ const STAGE_NAMES: Readonly<Record<string, string>> = {
   read: "Read file",
   extinction: "Extinction",
   upload: "Upload",
+  fit: "Fit metaballs",
   ground: "Ground",
   slices: "Slices",
   light: "Light",
@@ -94,7 +95,17 @@ function Costs({ state }: { state: PageState }) {
             {/* The reference has neither slices nor a place on the device. */}
             {frame.refinement === undefined && (
               <>
-                <Row name="Slices drawn" text={String(frame.modelled.slices)} />
+                {frame.modelled.balls > 0 ? (
+                  <>
+                    <Row name="Metaballs" text={String(frame.modelled.balls)} />
+                    <Row
+                      name="Fit off by"
+                      text={`${formatNumber(frame.modelled.fitError * 100)} %, root mean square`}
+                    />
+                  </>
+                ) : (
+                  <Row name="Slices drawn" text={String(frame.modelled.slices)} />
+                )}
                 <Row name="On the device" text={formatBytes(Number(frame.modelled.deviceBytes))} />
                 <Row
                   name="Of the domain"

@@ -1,0 +1,457 @@
+#include "renderers/metaball/metaball_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "frame/tone_map.h"
+#include "gl/context.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "renderers/scene_renderer.h"
+#include "scene/view.h"
+#include "tests/support/slab.h"
+
+namespace thunderhead::renderers {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+constexpr int kSide = 65;  // odd: a pixel lies in the middle
+constexpr double kPi = std::numbers::pi;
+
+// The integral of Wyvill's field along a line at `u` radii from the middle, over the radius: Man's
+// eq. 12 as it is printed but for its signs, summed by midpoints.
+double Column(double u) {
+  constexpr int kSteps = 20000;
+  double sum = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double z = -1.0 + (i + 0.5) * 2.0 / kSteps;
+    const double a = u * u + z * z;
+    if (a < 1.0) sum += 1.0 - 22.0 / 9.0 * a + 17.0 / 9.0 * a * a - 4.0 / 9.0 * a * a * a;
+  }
+  return sum * 2.0 / kSteps;
+}
+
+class MetaballTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto context = gl::Context::Create("software");
+    ASSERT_TRUE(context.ok()) << context.status();
+    context_ = *std::move(context);
+    renderer_ = std::make_unique<MetaballRenderer>(std::make_shared<gl::ProgramCache>());
+    MediumGroup group;
+    group.phase = {physics::PhaseKind::kHenyeyGreenstein, 0.0};
+    content_.groups = {group};
+    settings_.rendering.renderer = scene::Renderer::kMetaball;
+    // Light that is scattered is lost, and no direction is special: single scattering.
+    settings_.rendering.mode = scene::Mode::kUniformPhaseLowAlbedo;
+    settings_.illumination = {{0.0, 0.0, 1.0}, glm::vec3(1.0F), glm::vec3(0.0F)};
+    settings_.eye_size = glm::ivec2(kSide);
+    LookDown(3000.0);
+  }
+  void TearDown() override {
+    renderer_.reset();
+    context_.reset();
+  }
+
+  // Parallel rays, straight down; the middle pixel's goes through x = y = 0.
+  void LookDown(double width_m) {
+    settings_.view = scene::ViewOf(scene::TopDownCamera{{0.0, 0.0}, width_m}, 1.0);
+  }
+
+  static Ball At(const glm::dvec3& middle_m, double radius_m, double extinction_per_m) {
+    Ball ball;
+    ball.middle_m = middle_m;
+    ball.radius_m = radius_m;
+    ball.extinction_per_m = extinction_per_m;
+    return ball;
+  }
+
+  // Four floats a pixel.
+  std::vector<float> Draw(const std::vector<Ball>& balls) {
+    const absl::Status lit = renderer_->CarryLight({balls, 0.0}, content_, settings_);
+    EXPECT_TRUE(lit.ok()) << lit;
+    return DrawAgain();
+  }
+  std::vector<float> DrawAgain() {
+    const absl::Status drawn = renderer_->DrawView(settings_);
+    EXPECT_TRUE(drawn.ok()) << drawn;
+    return frame::ReadLinear(renderer_->Eye());
+  }
+
+  static std::size_t Pixel(int x, int y) { return 4 * static_cast<std::size_t>(y * kSide + x); }
+  static constexpr std::size_t kMiddle = 4 * (kSide / 2 * kSide + kSide / 2);
+
+  std::unique_ptr<gl::Context> context_;
+  std::unique_ptr<MetaballRenderer> renderer_;
+  Medium content_;
+  RenderSettings settings_;
+};
+
+TEST_F(MetaballTest, OneBallsTransmittanceIsTheIntegralOfItsField) {
+  for (const double depth : {1e-3, 0.5, 3.0}) {
+    const std::vector<float> pixels = Draw({At({0.0, 0.0, 5000.0}, 1000.0, depth / 1000.0)});
+    EXPECT_NEAR(pixels[kMiddle + 3], std::exp(-depth * Column(0.0)), 1e-6);
+    for (const int x : {40, 46, 52}) {
+      const double u = 3.0 * ((x + 0.5) / kSide - 0.5);
+      EXPECT_NEAR(pixels[Pixel(x, kSide / 2) + 3], std::exp(-depth * Column(u)), 1e-5) << u;
+    }
+    EXPECT_EQ(pixels[Pixel(0, 0) + 3], 1.0F) << "beside the ball";
+  }
+}
+
+TEST_F(MetaballTest, PerspectiveAndParallelRaysAgreeOnTheMiddle) {
+  const std::vector<Ball> ball = {At({0.0, 0.0, 5000.0}, 1000.0, 1e-3)};
+  const std::vector<float> parallel = Draw(ball);
+  scene::OrbitCamera camera;
+  camera.target_m = {0.0, 0.0, 5000.0};
+  camera.azimuth_deg = 37.0;
+  camera.elevation_deg = -20.0;
+  for (const double distance_m : {1500.0, 3e4, 3e6}) {
+    camera.distance_m = distance_m;
+    camera.field_of_view_deg = 360.0 / kPi * std::atan(1200.0 / distance_m);
+    settings_.view = scene::ViewOf(camera, 1.0);
+    const std::vector<float> pixels = DrawAgain();
+    EXPECT_NEAR(pixels[kMiddle + 3], parallel[kMiddle + 3], 2e-4) << distance_m;
+    // The square covers all of the ball: its outline fills the picture's middle row alike.
+    const auto covered = [&](int x) { return pixels[Pixel(x, kSide / 2) + 3] < 1.0F; };
+    EXPECT_TRUE(covered(6 * kSide / 32) && covered(26 * kSide / 32)) << distance_m;
+  }
+}
+
+TEST_F(MetaballTest, AnEyeInsideABallSeesOnlyWhatIsBeforeIt) {
+  scene::OrbitCamera camera;
+  camera.target_m = {0.0, 0.0, 5000.0};
+  camera.distance_m = 1e-3;
+  settings_.view = scene::ViewOf(camera, 1.0);
+  const std::vector<float> pixels = Draw({At({0.0, 0.0, 5000.0}, 1000.0, 1e-3)});
+  for (std::size_t i = 3; i < pixels.size(); i += 4) {
+    ASSERT_NEAR(pixels[i], std::exp(-0.5 * Column(0.0)), 1e-4);
+  }
+}
+
+TEST_F(MetaballTest, TransmittancesOfBallsInLineMultiply) {
+  const double column = Column(0.0);
+  const std::vector<float> pixels =
+      Draw({At({0.0, 0.0, 9000.0}, 1000.0, 4e-4), At({0.0, 0.0, 5000.0}, 500.0, 2e-3),
+            At({0.0, 0.0, 5600.0}, 500.0, 1e-3)});  // overlapping
+  EXPECT_NEAR(pixels[kMiddle + 3], std::exp(-column * (0.4 + 1.0 + 0.5)), 1e-6);
+}
+
+// Seen and lit from above: the share of sunlight that a ball takes in its middle comes back evenly
+// to all sides, through what the ball keeps of it in the mean over itself.
+TEST_F(MetaballTest, AThinBallScattersWhatItTakes) {
+  const double depth = 1e-3;
+  const std::vector<float> pixels = Draw({At({0.0, 0.0, 5000.0}, 1000.0, depth / 1000.0)});
+  const double scattered = depth * Column(0.0) / (4 * kPi);
+  EXPECT_NEAR(pixels[kMiddle] / scattered, 1.0, 2e-3);
+}
+
+TEST_F(MetaballTest, LightThatABallTakesIsLightThatItHas) {
+  // Over all pixels a ball lit and seen by parallel rays gives back (1 - exp(-d)) of its light in
+  // the mean, however thick it is: what it shows is that mean, weighted by its own matter.
+  for (const double depth : {0.1, 2.0, 50.0}) {
+    const std::vector<float> pixels = Draw({At({0.0, 0.0, 5000.0}, 1000.0, depth / 1000.0)});
+    double taken = 0.0;
+    double matter = 0.0;
+    constexpr int kRings = 2000;
+    for (int i = 0; i < kRings; ++i) {
+      const double u = (i + 0.5) / kRings;
+      const double s = 1.0 - u * u;
+      const double column = std::pow(s, 2.5) * (16.0 / 27.0 + 128.0 / 315.0 * s);
+      taken += u * -std::expm1(-depth * column);
+      matter += u * depth * column;
+    }
+    const double arrives = taken / matter;
+    const double seen = -std::expm1(-depth * Column(0.0)) / (4 * kPi) * arrives;
+    // Some 64 texels across the light buffer.
+    EXPECT_NEAR(pixels[kMiddle] / seen, 1.0, 0.02) << depth;
+  }
+}
+
+TEST_F(MetaballTest, ABallInAnothersShadowHasWhatPasses) {
+  // The sun shines along x; the far ball is seen beside the near one from above.
+  settings_.illumination.towards_sun = {1.0, 0.0, 0.0};
+  LookDown(8000.0);
+  const Ball lit = At({2000.0, 0.0, 5000.0}, 1000.0, 1e-6);
+  const Ball thick = At({2000.0, 0.0, 5000.0}, 1000.0, 2e-3);
+  // Small, so that the whole of it lies under the middle of the other; in the middle of a pixel.
+  constexpr int kColumn = kSide / 4;
+  const double east_m = ((kColumn + 0.5) / kSide - 0.5) * 8000.0;
+  const Ball behind = At({east_m, 0.0, 5000.0}, 50.0, 1e-3);
+  const std::size_t at = Pixel(kColumn, kSide / 2);
+  const float free = Draw({behind})[at];
+  EXPECT_NEAR(Draw({behind, lit})[at] / free, 1.0, 5e-3);
+  EXPECT_NEAR(Draw({behind, thick})[at] / free, std::exp(-2.0 * Column(0.0)), 5e-3);
+  // With the sun on the other side it is the other that lies in shadow. The light buffer is laid
+  // out anew: its texels meet the small ball elsewhere.
+  settings_.illumination.towards_sun = {-1.0, 0.0, 0.0};
+  EXPECT_NEAR(Draw({behind, thick})[at] / free, 1.0, 1e-4);
+}
+
+TEST_F(MetaballTest, TheNearestBallIsDrawnLast) {
+  // Grey light: what is in front hides what is behind, from either side and in any order of the
+  // list. The upper ball is lit, the lower one in its shadow.
+  const Ball upper = At({0.0, 0.0, 8000.0}, 1000.0, 20e-3);
+  const Ball lower = At({0.0, 0.0, 4000.0}, 1000.0, 20e-3);
+  const float above = Draw({upper, lower})[kMiddle];
+  EXPECT_EQ(Draw({lower, upper})[kMiddle], above);
+  scene::OrbitCamera camera;
+  camera.target_m = {0.0, 0.0, 6000.0};
+  camera.elevation_deg = -89.9;
+  camera.distance_m = 50e3;
+  camera.field_of_view_deg = 2.0;
+  settings_.view = scene::ViewOf(camera, 1.0);
+  const float below = Draw({upper, lower})[kMiddle];
+  EXPECT_EQ(Draw({lower, upper})[kMiddle], below);
+  // A tenth of the light passes by the upper one's rim.
+  EXPECT_GT(above, 5.0F * below);
+}
+
+TEST_F(MetaballTest, PaperTransportIsAsPrinted) {
+  settings_.rendering.transport = scene::Transport::kPaper;
+  settings_.rendering.metaballs.isotropic = true;
+  LookDown(8000.0);
+  const double albedo = settings_.rendering.metaballs.albedo;
+  const double tau = settings_.rendering.metaballs.optical_depth;
+  const Ball ball = At({0.0, 0.0, 5000.0}, 1000.0, 1.0);
+  // One ball: white light, eq. 26 with p = 1, and eq. 12 splatted as it is.
+  const std::vector<float> one = Draw({ball});
+  EXPECT_NEAR(one[kMiddle], albedo * tau / (4 * kPi), 1e-3);
+  EXPECT_NEAR(one[kMiddle + 3], std::exp(-tau), 1e-5);
+  // Straight back Rayleigh's function is 3/2, across it is 3/4.
+  settings_.rendering.metaballs.isotropic = false;
+  EXPECT_NEAR(Draw({ball})[kMiddle] / one[kMiddle], 1.5, 1e-4);
+  settings_.illumination.towards_sun = {1.0, 0.0, 0.0};
+  EXPECT_NEAR(Draw({ball})[kMiddle] / one[kMiddle], 0.75, 1e-4);
+  // Two in line with the light: the second has the mean over its disc of eq. 27, g + T I with g for
+  // straight on.
+  Ball behind = ball;
+  behind.middle_m.x -= 3000.0;
+  double mean = 0.0;
+  double area = 0.0;
+  for (int i = 0; i < 2000; ++i) {
+    const double u = (i + 0.5) / 2000;
+    const double a = u * u;
+    const double depth = tau * (1.0 - 22.0 / 9.0 * a + 17.0 / 9.0 * a * a - 4.0 / 9.0 * a * a * a);
+    mean += u * (albedo * depth * 1.5 / (4 * kPi) + std::exp(-depth));
+    area += u;
+  }
+  settings_.rendering.metaballs.isotropic = true;
+  const std::vector<float> two = Draw({ball, behind});
+  const int x = static_cast<int>((0.5 - 3000.0 / 8000.0) * kSide);
+  const double off = (3000.0 + 8000.0 * ((x + 0.5) / kSide - 0.5)) / 1000.0;
+  const double s = 1.0 - off * off;
+  const double field = s * s * (5.0 + 4.0 * s) / 9.0;
+  EXPECT_NEAR(two[Pixel(x, kSide / 2)] / (albedo * tau * field / (4 * kPi)), mean / area, 0.02);
+}
+
+TEST_F(MetaballTest, SkyAndGroundLightFromBothSides) {
+  settings_.illumination.sunlight = glm::vec3(0.0F);
+  settings_.illumination.from_sky = {0.2F, 0.3F, 0.9F};
+  settings_.illumination.from_ground = {0.2F, 0.1F, 0.05F};
+  // A white furnace: alike from both sides, the cloud is as bright as its surroundings wherever it
+  // is opaque.
+  RenderSettings furnace = settings_;
+  furnace.illumination.from_ground = furnace.illumination.from_sky;
+  std::swap(settings_, furnace);
+  std::vector<Ball> balls;
+  for (int i = 0; i < 20; ++i) balls.push_back(At({0.0, 0.0, 2000.0 + 300.0 * i}, 1000.0, 5e-3));
+  const std::vector<float> even = Draw(balls);
+  EXPECT_NEAR(even[kMiddle], 0.2, 1e-4);
+  EXPECT_NEAR(even[kMiddle + 2], 0.9, 1e-4);
+  std::swap(settings_, furnace);
+  const std::vector<float> from_above = Draw(balls);
+  EXPECT_GT(from_above[kMiddle + 2], 0.8F) << "its top has the sky's colour";
+}
+
+TEST_F(MetaballTest, NoBallsAreNothing) {
+  for (const auto transport : {scene::Transport::kPaper, scene::Transport::kConsistent}) {
+    settings_.rendering.transport = transport;
+    const std::vector<float> pixels = Draw({});
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      ASSERT_EQ(pixels[i], i % 4 == 3 ? 1.0F : 0.0F);
+    }
+  }
+  EXPECT_TRUE(renderer_->Box().Empty());
+}
+
+TEST_F(MetaballTest, WhatIsNoBallIsRefused) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Ball& ball : {At({0.0, 0.0, 0.0}, -1.0, 1.0), At({0.0, 0.0, 0.0}, 0.0, 1.0),
+                           At({0.0, 0.0, 0.0}, 1.0, -1.0), At({0.0, nan, 0.0}, 1.0, 1.0),
+                           At({0.0, 0.0, 0.0}, nan, 1.0), At({0.0, 0.0, 0.0}, 1.0, 1.0 / 0.0)}) {
+    const absl::Status status =
+        renderer_->CarryLight({{At({0.0, 0.0, 0.0}, 1.0, 1.0), ball}, 0.0}, content_, settings_);
+    EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
+    EXPECT_THAT(status.message(), HasSubstr("ball 1"));
+  }
+}
+
+TEST_F(MetaballTest, ExtremesStaySound) {
+  const auto sound = [&](const std::vector<Ball>& balls, const std::string& what) {
+    const std::vector<float> pixels = Draw(balls);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      ASSERT_TRUE(std::isfinite(pixels[i])) << what << ' ' << i;
+      ASSERT_GE(pixels[i], 0.0F) << what;
+      // Of the sun's unit irradiance and no other light.
+      ASSERT_LE(pixels[i], 1.0F) << what;
+    }
+  };
+  for (const auto transport : {scene::Transport::kPaper, scene::Transport::kConsistent}) {
+    settings_.rendering.transport = transport;
+    sound({At({0.0, 0.0, 0.0}, 1e7, 1.0)}, "one huge ball");
+    sound({At({0.0, 0.0, 0.0}, 1e7, 1e-3), At({0.0, 0.0, 5000.0}, 1e-2, 1e3)}, "huge and tiny");
+    sound(std::vector<Ball>(500, At({0.0, 0.0, 5000.0}, 500.0, 1e-3)), "all in one place");
+    sound({At({0.0, 0.0, 5000.0}, 1000.0, 0.0)}, "nothing in it");
+    sound({At({0.0, 0.0, 5000.0}, 1000.0, 1e8)}, "a wall");
+    sound({At({0.0, 0.0, 5000.0}, 1000.0, 1e-12)}, "hardly anything");
+    sound({At({0.0, 0.0, 5000.0}, 1e-3, 1.0), At({900.0, 0.0, 7000.0}, 1e-3, 1.0)}, "points");
+  }
+}
+
+class MetaballSceneTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto context = gl::Context::Create("software");
+    ASSERT_TRUE(context.ok()) << context.status();
+    context_ = *std::move(context);
+    renderer_ = std::make_unique<SceneRenderer>();
+    scene_.output = {48, 32, 90};
+    scene_.rendering.renderer = scene::Renderer::kMetaball;
+    scene_.rendering.metaballs.count = 60;
+    auto& orbit = std::get<scene::OrbitCamera>(scene_.camera);
+    orbit.target_m = {0.0, 0.0, 1000.0};
+    orbit.distance_m = 12e3;
+  }
+  void TearDown() override {
+    renderer_.reset();
+    context_.reset();
+  }
+
+  LinearFrame Draw() {
+    auto frame = renderer_->Draw(scene_, fields_, {});
+    EXPECT_TRUE(frame.ok()) << frame.status();
+    return *std::move(frame);
+  }
+  std::vector<std::string> Stages() {
+    std::vector<std::string> names;
+    for (const StageTime& stage : Draw().stages) names.push_back(stage.stage);
+    return names;
+  }
+
+  std::unique_ptr<gl::Context> context_;
+  std::unique_ptr<SceneRenderer> renderer_;
+  std::shared_ptr<const volume::HydrometeorFields> fields_ =
+      support::MakeLayerInAir(4000.0, 2000.0, 8, 5.0);
+  scene::Scene scene_;
+};
+
+TEST_F(MetaballSceneTest, AChangeRerunsOnlyWhatItDirties) {
+  EXPECT_THAT(Stages(),
+              ElementsAre("extinction", "upload", "ground", "fit", "light", "view", "composite"));
+  EXPECT_THAT(Stages(), IsEmpty());
+  std::get<scene::OrbitCamera>(scene_.camera).azimuth_deg += 5.0;
+  EXPECT_THAT(Stages(), ElementsAre("view", "composite"));
+  scene_.sun.elevation_deg += 5.0;
+  EXPECT_THAT(Stages(), ElementsAre("ground", "light", "view", "composite"));
+  scene_.rendering.metaballs.isotropic = true;
+  EXPECT_THAT(Stages(), Not(Contains("fit")));
+  scene_.rendering.metaballs.count = 80;
+  EXPECT_THAT(Stages(), ElementsAre("ground", "fit", "light", "view", "composite"));
+  scene_.rendering.metaballs.count = 60;
+  EXPECT_THAT(Stages(), Not(Contains("fit"))) << "it is kept";
+  scene_.fields[0].scale = 2.0F;
+  EXPECT_THAT(Stages(), Contains("fit"));
+}
+
+TEST_F(MetaballSceneTest, TheFrameSaysWhatItIs) {
+  scene_.rendering.mode = scene::Mode::kPerFieldPhaseDetailTranslucent;
+  const LinearFrame frame = Draw();
+  EXPECT_GT(frame.balls, 10);
+  EXPECT_LE(frame.balls, 60);
+  EXPECT_GT(frame.fit_error, 0.0);
+  EXPECT_LT(frame.fit_error, 0.5);
+  EXPECT_EQ(frame.slices, 0);
+  EXPECT_THAT(frame.not_shown, Contains("turbulent detail"));
+  scene_.rendering.renderer = scene::Renderer::kLightVolume;
+  EXPECT_THAT(Draw().not_shown, IsEmpty());
+  EXPECT_EQ(Draw().balls, 0);
+}
+
+TEST_F(MetaballSceneTest, NothingVisibleNeedsNoBalls) {
+  scene_.fields[0].visible = false;
+  EXPECT_THAT(Stages(), Not(Contains("light")));
+  EXPECT_EQ(Draw().balls, 0);
+}
+
+TEST_F(MetaballSceneTest, IsNearTheLightVolume) {
+  scene_.camera = scene::TopDownCamera{{0.0, 0.0}, 8e3};
+  scene_.rendering.metaballs.count = 2000;
+  const auto mean = [&](scene::Renderer renderer) {
+    scene_.rendering.renderer = renderer;
+    const std::vector<float> pixels = frame::ReadLinear(*Draw().radiance);
+    double sum = 0.0;
+    for (int y = 10; y < 22; ++y) {
+      for (int x = 18; x < 30; ++x) sum += pixels[4 * static_cast<std::size_t>(48 * y + x)];
+    }
+    return sum / 144.0;
+  };
+  // Of the fit, and of balls that are lit and dark as wholes.
+  EXPECT_NEAR(mean(scene::Renderer::kMetaball) / mean(scene::Renderer::kLightVolume), 1.0, 0.15);
+}
+
+TEST(BallFits, KeepsWhatItsStormAndOpticsAskFor) {
+  BallFits fits(2);
+  scene::Scene scene;
+  scene.rendering.metaballs.count = 20;
+  auto fields = support::MakeLayerInAir(4000.0, 2000.0, 8, 5.0);
+  EXPECT_FALSE(fits.Has(scene, fields));
+  const auto first = fits.Get(scene, fields);
+  ASSERT_TRUE(first.ok()) << first.status();
+  EXPECT_TRUE(fits.Has(scene, fields));
+  EXPECT_EQ(*fits.Get(scene, fields), *first);
+  // Another storm, though alike.
+  EXPECT_FALSE(fits.Has(scene, support::MakeLayerInAir(4000.0, 2000.0, 8, 5.0)));
+  scene::Scene thinner = scene;
+  thinner.fields[0].scale = 0.5F;
+  ASSERT_TRUE(fits.Get(thinner, fields).ok());
+  thinner.fields[0].scale = 0.25F;
+  ASSERT_TRUE(fits.Get(thinner, fields).ok());
+  EXPECT_FALSE(fits.Has(scene, fields)) << "only two are kept";
+}
+
+TEST(FitBalls, TheSumOfBallsIsTheMedium) {
+  const auto fields = support::MakeLayerInAir(4000.0, 2000.0, 8, 5.0);
+  scene::Scene scene;
+  const Medium medium = MediumOf(scene, *fields);
+  const auto cloud = FitBalls(medium, *fields, 300);
+  ASSERT_TRUE(cloud.ok());
+  double sum = 0.0;
+  for (const Ball& ball : cloud->balls) {
+    // The field's integral over a ball of radius 1: 4 pi times 1/3 - 22/45 + 17/63 - 4/81.
+    const double volume = 4 * kPi * (1.0 / 3 - 22.0 / 45 + 17.0 / 63 - 4.0 / 81);
+    sum += ball.extinction_per_m * std::pow(ball.radius_m, 3.0) * volume;
+    EXPECT_FLOAT_EQ(ball.shares[0], 1.0F);
+    EXPECT_GT(ball.radius_m, 0.0);
+    EXPECT_GE(ball.extinction_per_m, 0.0);
+  }
+  // 5 optical depths over 4 x 4 km; balls reach beyond the faces, where nothing counts against.
+  EXPECT_NEAR(sum / (5.0 * 4000.0 * 4000.0), 1.0, 0.2);
+  // More balls than cells are as many as cells.
+  const auto few = support::MakeSlab(100.0, 100.0, 0.01, glm::ivec3(2));
+  EXPECT_LE(FitBalls(MediumOf(scene, *few), *few, 1000)->balls.size(), 8U);
+  EXPECT_THAT(FitBalls({}, *fields, 10)->balls, IsEmpty());
+}
+
+}  // namespace
+}  // namespace thunderhead::renderers
