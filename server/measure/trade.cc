@@ -80,6 +80,12 @@ std::vector<TradeSetting> DefaultSweep() {
       }
     }
   }
+  for (const auto transport : {scene::Transport::kConsistent, scene::Transport::kPaper}) {
+    for (const int balls : {300, 1200, 3000, 10000}) {
+      settings.push_back({scene::Renderer::kMetaball, scene::Mode::kPerFieldPhaseTranslucent,
+                          transport, balls, 1.0, 88});
+    }
+  }
   TradeSetting best;
   for (const double scale : {0.25, 0.5, 0.75}) {
     for (const int slices : {32, 64, 128}) {
@@ -136,7 +142,11 @@ absl::StatusOr<TradeRow> Trade::Measure(const TradeSetting& setting) {
   scene.rendering.renderer = setting.renderer;
   scene.rendering.mode = setting.mode;
   scene.rendering.transport = setting.transport;
-  scene.rendering.slices = setting.slices;
+  if (setting.renderer == scene::Renderer::kMetaball) {
+    scene.rendering.metaballs.count = setting.slices;
+  } else {
+    scene.rendering.slices = setting.slices;
+  }
   TradeRow row;
   row.setting = setting;
   const renderers::DrawQuality quality{setting.image_scale, 1.0};

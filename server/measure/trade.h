@@ -21,7 +21,7 @@ struct TradeSetting {
   scene::Renderer renderer = scene::Renderer::kLightVolume;
   scene::Mode mode = scene::Mode::kPerFieldPhaseTranslucent;
   scene::Transport transport = scene::Transport::kConsistent;
-  int slices = 128;
+  int slices = 128;  // or samples, or metaballs
   double image_scale = 1.0;
   int jpeg_quality = 88;
 
@@ -39,8 +39,9 @@ struct TradeRow {
   bool pareto = false;  // no other setting is both faster and closer
 };
 
-// Every renderer, mode, transport and number of slices at full size, then smaller pictures and
-// other JPEG qualities of the default renderer and mode.
+// Every renderer, mode, transport and number of slices at full size (of metaballs the default mode
+// and some numbers of them), then smaller pictures and other JPEG qualities of the default renderer
+// and mode.
 std::vector<TradeSetting> DefaultSweep();
 
 // Marks the rows that no other beats in both milliseconds and relative RMSE.

@@ -68,15 +68,30 @@ std::string Quoted(const std::string& text) {
   return absl::StrCat("\"", absl::StrReplaceAll(text, {{"\\", "\\\\"}, {"\"", "\\\""}}), "\"");
 }
 
-// Blue marches, orange slices; hollow for paper transport.
+const char* ColorOf(scene::Renderer renderer) {
+  switch (renderer) {
+    case scene::Renderer::kLightVolume:
+      return "#1f6fb4";
+    case scene::Renderer::kHalfAngle:
+      return "#d9730d";
+    case scene::Renderer::kMetaball:
+      return "#3f9142";
+    case scene::Renderer::kReference:
+      break;
+  }
+  return "#000000";
+}
+
+// Blue marches, orange slices, green metaballs; hollow for paper transport.
 void AddDot(const TradeRow& row, LogPlot* plot) {
-  const char* color = row.setting.renderer == scene::Renderer::kLightVolume ? "#1f6fb4" : "#d9730d";
+  const char* color = ColorOf(row.setting.renderer);
   const bool hollow = row.setting.transport == scene::Transport::kPaper;
-  const std::string tip =
-      absl::StrFormat("%s, %s, %s, %d slices, scale %g, JPEG %d: %.2f ms, RMSE %.3f, FLIP %.3f",
-                      NameOf(row.setting.renderer), NameOf(row.setting.mode),
-                      NameOf(row.setting.transport), row.setting.slices, row.setting.image_scale,
-                      row.setting.jpeg_quality, row.milliseconds, row.relative_rmse, row.flip);
+  const std::string tip = absl::StrFormat(
+      "%s, %s, %s, %d %s, scale %g, JPEG %d: %.2f ms, RMSE %.3f, FLIP %.3f",
+      NameOf(row.setting.renderer), NameOf(row.setting.mode), NameOf(row.setting.transport),
+      row.setting.slices, row.setting.renderer == scene::Renderer::kMetaball ? "balls" : "slices",
+      row.setting.image_scale, row.setting.jpeg_quality, row.milliseconds, row.relative_rmse,
+      row.flip);
   plot->Dot(std::max(row.milliseconds, kLeastMilliseconds),
             std::max(row.relative_rmse, kLeastError), row.pareto ? 5 : 3,
             hollow ? "#ffffff" : color, color, tip);
@@ -165,7 +180,8 @@ std::string TradeSvg(const TradeTitle& title, const std::vector<TradeRow>& rows)
   LogPlot plot(times, errors,
                absl::StrFormat("%s, %s: relative RMSE against milliseconds a frame (%dx%d)",
                                title.storm, title.view, title.size_px.x, title.size_px.y),
-               "blue: light volume, orange: half-angle slices; hollow: paper transport; line: "
+               "blue: light volume, orange: half-angle slices, green: metaballs; hollow: paper "
+               "transport; line: "
                "Pareto front");
   plot.Line(FrontOf(rows), "#555555");
   for (const TradeRow& row : rows) AddDot(row, &plot);

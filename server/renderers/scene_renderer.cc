@@ -168,6 +168,7 @@ const gl::Texture2D& SceneRenderer::Eye() const {
     case scene::Renderer::kMetaball:
       return metaball_.Eye();
     case scene::Renderer::kLightVolume:
+    case scene::Renderer::kReference:
       break;
   }
   return light_volume_.Eye();

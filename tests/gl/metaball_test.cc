@@ -374,6 +374,36 @@ TEST_F(MetaballSceneTest, AChangeRerunsOnlyWhatItDirties) {
   EXPECT_THAT(Stages(), Contains("fit"));
 }
 
+TEST_F(MetaballSceneTest, KeptStagesGiveThePictureThatAFreshRendererGives) {
+  const auto pixels = [&](SceneRenderer* renderer) {
+    const auto frame = renderer->Draw(scene_, fields_, {});
+    EXPECT_TRUE(frame.ok()) << frame.status();
+    return frame::ReadLinear(*frame->radiance);
+  };
+  const auto check = [&](const std::string& what) {
+    SceneRenderer fresh;
+    EXPECT_EQ(pixels(renderer_.get()), pixels(&fresh)) << what;
+  };
+  for (const auto transport : {scene::Transport::kConsistent, scene::Transport::kPaper}) {
+    scene_.rendering.transport = transport;
+    check("transport");
+    scene_.sky.turbidity += 2.0;
+    check("turbidity");
+    scene_.sky.brightness *= 0.5;
+    check("sky");
+    scene_.camera = scene::TopDownCamera{{0.0, 0.0}, 9e3};
+    check("camera");
+    scene_.sun.azimuth_deg += 90.0;
+    check("sun");
+    scene_.rendering.false_colors = !scene_.rendering.false_colors;
+    check("false colours");
+    scene_.rendering.renderer = scene::Renderer::kLightVolume;
+    check("another renderer");
+    scene_.rendering.renderer = scene::Renderer::kMetaball;
+    check("and back");
+  }
+}
+
 TEST_F(MetaballSceneTest, TheFrameSaysWhatItIs) {
   scene_.rendering.mode = scene::Mode::kPerFieldPhaseDetailTranslucent;
   const LinearFrame frame = Draw();

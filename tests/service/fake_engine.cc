@@ -41,16 +41,44 @@ std::shared_ptr<const volume::HydrometeorFields> Fields(bool empty) {
   return fields;
 }
 
+class FakePreparation final : public session::Preparation {
+ public:
+  explicit FakePreparation(std::shared_ptr<FakeMachine> machine) : machine_(std::move(machine)) {}
+
+  bool IsDone(const scene::Scene& scene, const Fields& fields) override {
+    THUNDERHEAD_CHECK(fields != nullptr, "prepared without fields");
+    return scene.rendering.renderer != scene::Renderer::kMetaball ||
+           machine_->IsPrepared(scene.rendering.metaballs.count);
+  }
+
+  absl::Status Prepare(const scene::Scene& scene, const Fields& fields) override {
+    if (IsDone(scene, fields)) return absl::OkStatus();
+    machine_->preparing.Pass();
+    const int balls = scene.rendering.metaballs.count;
+    if (balls == machine_->cannot_prepare) return absl::InternalError("it cannot be fitted");
+    machine_->Prepared(balls);
+    return absl::OkStatus();
+  }
+
+ private:
+  const std::shared_ptr<FakeMachine> machine_;
+};
+
 class FakeFrameSource final : public session::FrameSource {
  public:
   explicit FakeFrameSource(std::shared_ptr<FakeMachine> machine) : machine_(std::move(machine)) {}
 
   const session::DeviceInfo& Device() const override { return info_; }
 
+  std::shared_ptr<session::Preparation> PreparationOfScenes() const override {
+    return std::make_shared<FakePreparation>(machine_);
+  }
+
   absl::StatusOr<session::DisplayFrame> Draw(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
       const session::FrameQuality& quality) override {
     THUNDERHEAD_CHECK(fields != nullptr, "drawn without fields");
+    THUNDERHEAD_CHECK(FakePreparation(machine_).IsDone(scene, fields), "drawn unprepared");
     machine_->Add({scene, quality, std::chrono::steady_clock::now()});
     machine_->drawing.Pass();
     if (scene.display.exposure_ev > machine_->fails_above_exposure_ev) {
@@ -228,6 +256,16 @@ bool FakeStormStore::AwaitReads(int count) {
 std::vector<FakeMachine::Drawn> FakeMachine::Log() {
   const std::lock_guard lock(mutex_);
   return log_;
+}
+
+bool FakeMachine::IsPrepared(int balls) {
+  const std::lock_guard lock(mutex_);
+  return prepared_.contains(balls);
+}
+
+void FakeMachine::Prepared(int balls) {
+  const std::lock_guard lock(mutex_);
+  prepared_.insert(balls);
 }
 
 void FakeMachine::Add(Drawn drawn) {

@@ -80,13 +80,18 @@ struct FakeMachine {
   Gate drawing;
   std::atomic<double> ms_per_mega_sample{0.0};
   std::atomic<double> fails_above_exposure_ev{1e9};
+  Gate preparing;  // of scenes of metaballs; each number of them once
+  std::atomic<int> cannot_prepare{-1};
 
   std::vector<Drawn> Log();
   void Add(Drawn drawn);
+  bool IsPrepared(int balls);
+  void Prepared(int balls);
 
  private:
   std::mutex mutex_;
   std::vector<Drawn> log_;
+  std::set<int> prepared_;
 };
 
 session::FrameSourceFactory FakeFrameSources(std::shared_ptr<FakeMachine> machine);

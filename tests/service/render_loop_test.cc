@@ -64,6 +64,16 @@ class EagerViewer : public Viewer, public std::enable_shared_from_this<EagerView
     });
   }
 
+  bool AwaitProblem(const std::string& message) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, testing::kPatience, [&] {
+      return std::any_of(events_.begin(), events_.end(), [&](const FrameEvent& event) {
+        const auto* problem = std::get_if<Problem>(&event);
+        return problem != nullptr && problem->message == message;
+      });
+    });
+  }
+
   std::size_t EventCount() {
     const std::lock_guard lock(mutex_);
     return events_.size();
@@ -81,6 +91,7 @@ class RenderLoopTest : public ::testing::Test {
  protected:
   ~RenderLoopTest() override {
     machine_->drawing.Open();
+    machine_->preparing.Open();
     store_.reading.Open();
     loop_.reset();
   }
@@ -96,6 +107,13 @@ class RenderLoopTest : public ::testing::Test {
     auto viewer = std::make_shared<EagerViewer>(session);
     viewer->Join();
     return viewer;
+  }
+
+  static scene::Scene OfMetaballs(int count) {
+    scene::Scene scene = Small(0.0);
+    scene.rendering.renderer = scene::Renderer::kMetaball;
+    scene.rendering.metaballs.count = count;
+    return scene;
   }
 
   static std::uint64_t Show(Session& session, const scene::Scene& scene) {
@@ -162,6 +180,38 @@ TEST_F(RenderLoopTest, PicturesAndSessionsDoNotStarveOneAnother) {
     // One, unless the threads that move or encode had no processor for the time of a picture.
     EXPECT_LE(pictures_in_a_row, 3);
   }
+}
+
+TEST_F(RenderLoopTest, WhatAScenePreparesHoldsUpNobodyElse) {
+  Start();
+  const auto fitting = *sessions_.Create();
+  const auto other = *sessions_.Create();
+  const auto fitting_viewer = Watch(fitting);
+  const auto other_viewer = Watch(other);
+  // Its fields are at hand: only the fit is missing.
+  Show(*fitting, Small(0.0));
+  ASSERT_TRUE(fitting_viewer->Await(1, true));
+  machine_->preparing.Close();
+  Show(*fitting, OfMetaballs(100));
+  ASSERT_TRUE(machine_->preparing.AwaitWaiting(1));
+  Show(*other, Small(5.0));
+  ASSERT_TRUE(other_viewer->Await(1, true));
+  // Another number while the first is fitted: the first may be shown, the last must be.
+  const std::uint64_t last = Show(*fitting, OfMetaballs(200));
+  machine_->preparing.Open();
+  ASSERT_TRUE(fitting_viewer->Await(last, true));
+  EXPECT_EQ(machine_->Log().back().scene.rendering.metaballs.count, 200);
+}
+
+TEST_F(RenderLoopTest, APreparationThatFailsIsAProblemOfItsScene) {
+  Start();
+  machine_->cannot_prepare = 100;
+  const auto session = *sessions_.Create();
+  const auto viewer = Watch(session);
+  Show(*session, OfMetaballs(100));
+  ASSERT_TRUE(viewer->AwaitProblem("it cannot be fitted"));
+  const std::uint64_t revision = Show(*session, OfMetaballs(200));
+  EXPECT_TRUE(viewer->Await(revision, true));
 }
 
 TEST_F(RenderLoopTest, CancelledPicturesAreDroppedAndSayso) {

@@ -257,7 +257,8 @@ void MetaballRenderer::DrawBalls(const gl::Program& program, const RenderSetting
   order_ = BufferOf(order);
   std::vector<glm::vec3> towards;
   std::vector<glm::vec3> irradiance;
-  for (const Light& light : lights_) {
+  // Another haze changes the lights' colours, not what arrives of them.
+  for (const Light& light : LightsOf(settings)) {
     if (light.diffuse) continue;
     towards.emplace_back(light.towards);
     irradiance.push_back(light.irradiance);
