@@ -1,0 +1,111 @@
+#include "tests/bench/storm_bench.h"
+
+#include <map>
+#include <variant>
+
+#include "frame/image_codec.h"
+#include "frame/tone_map.h"
+#include "renderers/scene_renderer.h"
+#include "scene/view.h"
+#include "spdlog/spdlog.h"
+#include "volume/storm_store.h"
+#include "volume/visible_box.h"
+
+namespace thunderhead::bench {
+namespace {
+
+constexpr int kMatureTime = 1;  // 40 minutes
+constexpr int kWarmFrames = 2;  // the first also compiles shaders
+
+Sample Open() {
+  Sample sample;
+  auto context = gl::Context::Create("auto");
+  auto store = volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
+  if (!context.ok() || !store.ok()) {
+    spdlog::error("{} {}", context.status().ToString(), store.status().ToString());
+    std::exit(1);
+  }
+  sample.context = *std::move(context);
+  auto fields = (*store)->Get((*store)->Storms().front().id, kMatureTime, {});
+  if (!fields.ok()) {
+    spdlog::error("{}", fields.status().ToString());
+    std::exit(1);
+  }
+  sample.fields = *std::move(fields);
+  return sample;
+}
+
+void Move(Moving moving, scene::Scene* scene) {
+  switch (moving) {
+    case Moving::kCamera:
+      std::get<scene::OrbitCamera>(scene->camera).azimuth_deg += 1.0;
+      break;
+    case Moving::kSun:
+      scene->sun.azimuth_deg += 1.0;
+      break;
+    case Moving::kField:
+      scene->fields[0].scale *= 1.01F;
+      break;
+    case Moving::kExposure:
+      scene->display.exposure_ev += 0.01;
+      break;
+  }
+}
+
+void DrawFrames(benchmark::State& state, scene::Scene scene, const Fields& fields, Moving moving) {
+  renderers::SceneRenderer renderer;
+  frame::ToneMapper tone_mapper;
+  std::map<std::string, double> total_ms;
+  int balls = 0;
+  const auto draw = [&] {
+    Move(moving, &scene);
+    const auto linear = renderer.Draw(scene, fields, {});
+    const auto mapped = tone_mapper.Map(*linear->radiance, scene.display);
+    const auto jpeg =
+        frame::EncodeJpeg(scene.output.width_px, scene.output.height_px, mapped->rgb, 88);
+    benchmark::DoNotOptimize(jpeg);
+    balls = linear->balls;
+    for (const renderers::StageTime& stage : linear->stages) {
+      total_ms[stage.stage + "_ms"] += stage.milliseconds;
+    }
+    total_ms["tone_ms"] += mapped->tone_ms;
+    total_ms["read_back_ms"] += mapped->read_back_ms;
+  };
+  for (int i = 0; i < kWarmFrames; ++i) draw();
+  total_ms.clear();
+  for (auto _ : state) draw();
+  for (const auto& [name, milliseconds] : total_ms) {
+    state.counters[name] = milliseconds / static_cast<double>(state.iterations());
+  }
+  if (balls > 0) state.counters["balls"] = balls;
+  state.counters["fps"] =
+      benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+}
+
+}  // namespace
+
+Sample& Sample::Get() {
+  static Sample sample = Open();
+  return sample;
+}
+
+scene::Scene PaperScene() {
+  scene::Scene scene;
+  scene.output = {300, 300, 88};
+  const volume::WorldBox box = volume::VisibleBox(*Sample::Get().fields);
+  scene.camera = scene::Framing(scene::OrbitCamera(), box.low_m, box.high_m, 1.0);
+  return scene;
+}
+
+void Register(const std::string& name, const scene::Scene& scene, const Fields& fields,
+              Moving moving, double paper_fps) {
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [=](benchmark::State& state) {
+                                 DrawFrames(state, scene, fields, moving);
+                                 if (paper_fps > 0.0) state.counters["paper_fps"] = paper_fps;
+                               })
+      ->Unit(benchmark::kMillisecond)
+      ->UseRealTime();
+}
+
+}  // namespace thunderhead::bench

@@ -1,0 +1,47 @@
+// The sample storm and its papers' scene, and a benchmark that draws frame after frame of it.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "benchmark/benchmark.h"
+#include "gl/context.h"
+#include "scene/scene.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::bench {
+
+using Fields = std::shared_ptr<const volume::HydrometeorFields>;
+
+// Opened on first use; ends the program with a message if that fails.
+struct Sample {
+  std::unique_ptr<gl::Context> context;
+  Fields fields;  // at 40 minutes
+
+  static Sample& Get();
+};
+
+// What differs from frame to frame.
+enum class Moving { kCamera, kSun, kField, kExposure };
+
+// The storm as a whole at the papers' size, 300 x 300 pixels, 128 slices.
+scene::Scene PaperScene();
+
+// Registers whole frames, JPEG included; the columns `*_ms` split them by stage. `paper_fps` is the
+// papers' own on a GeForce FX 5800 (Riley et al. 2003, AMS, Table IV), 0 for none.
+void Register(const std::string& name, const scene::Scene& scene, const Fields& fields,
+              Moving moving, double paper_fps = 0.0);
+
+// The modes of the papers' table by both paths, and what a change reruns.
+void RegisterModes();
+
+// The scenes and the picture of P. Man, Generating and Real-Time Rendering of Clouds, section 5;
+// his figures are from a GeForce 4. Balls of no weight are dropped from a fit, so that more are
+// asked for.
+void RegisterMetaballs();
+
+// What is saved by drawing only what a scene requires, and how time grows.
+void RegisterSavings();
+void RegisterGrowth();
+
+}  // namespace thunderhead::bench
