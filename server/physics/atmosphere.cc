@@ -20,6 +20,8 @@ const glm::vec3 kOzoneDepth(0.020F, 0.027F, 0.0014F);
 constexpr float kOzoneMiddle_m = 2.5e4F;
 constexpr float kOzoneHalfWidth_m = 1.5e4F;
 
+const glm::vec2 kScaleHeights_m(glsl::kAirScaleHeight_m, glsl::kHazeScaleHeight_m);
+
 // Half the angle that the sun's disc fills.
 constexpr float kSunRadius = 0.00465F;
 
@@ -40,7 +42,7 @@ float HeightAlong(float height_m, float sine, float distance_m) {
                             kEarthRadius_m);
 }
 
-// Along a ray to a sphere of the given height around the Earth, from below it.
+// Along a ray to a sphere of the given height around the Earth, from below it; and from above it.
 float DistanceUpTo_m(float target_m, float height_m, float sine) {
   const double radius = static_cast<double>(kEarthRadius_m) + height_m;
   const double target = static_cast<double>(kEarthRadius_m) + target_m;
@@ -49,11 +51,11 @@ float DistanceUpTo_m(float target_m, float height_m, float sine) {
       -across + std::sqrt(std::max(across * across - radius * radius + target * target, 0.0)));
 }
 
-float DistanceToGround_m(float height_m, float sine) {
+float DistanceDownTo_m(float target_m, float height_m, float sine) {
   const double radius = static_cast<double>(kEarthRadius_m) + height_m;
+  const double target = static_cast<double>(kEarthRadius_m) + target_m;
   const double across = radius * sine;
-  const double inside =
-      across * across - radius * radius + static_cast<double>(kEarthRadius_m) * kEarthRadius_m;
+  const double inside = across * across - radius * radius + target * target;
   return static_cast<float>(-across - std::sqrt(std::max(inside, 0.0)));
 }
 
@@ -117,8 +119,8 @@ constexpr float kLowestSine = -0.4F;  // below, no part of the atmosphere that m
 
 }  // namespace
 
-float HorizonSine(float height_m) {
-  const float ratio = kEarthRadius_m / (kEarthRadius_m + std::max(height_m, 0.0F));
+float HorizonSine(float height_m, float ground_m) {
+  const float ratio = (kEarthRadius_m + ground_m) / (kEarthRadius_m + std::max(height_m, ground_m));
   return -std::sqrt(std::max(1.0F - ratio * ratio, 0.0F));
 }
 
@@ -173,8 +175,8 @@ glm::vec3 Atmosphere::DiffuseMeanRadiance(const AirPlace& place) const {
 Atmosphere::Gathered Atmosphere::Gather(const Ray& ray, bool with_diffuse) const {
   const float sine = ray.direction.z;
   Gathered gathered;
-  gathered.meets_ground = sine < HorizonSine(ray.height_m);
-  const float end_m = gathered.meets_ground ? DistanceToGround_m(ray.height_m, sine)
+  gathered.meets_ground = sine < HorizonSine(ray.height_m, ray.ground_m);
+  const float end_m = gathered.meets_ground ? DistanceDownTo_m(ray.ground_m, ray.height_m, sine)
                                             : DistanceUpTo_m(kAtmosphereTop_m, ray.height_m, sine);
   const auto place_at = [&](float distance_m) {
     const float height_m = std::max(HeightAlong(ray.height_m, sine, distance_m), 0.0F);
@@ -201,6 +203,7 @@ Atmosphere::Gathered Atmosphere::Gather(const Ray& ray, bool with_diffuse) const
     if (with_diffuse) gathered.diffuse += seen * scattering * DiffuseMeanRadiance(place);
     gathered.uniform += seen * scattering;
     gathered.passed *= passed;
+    gathered.way += glsl::densities_of_air(place.height_m) * ((to_m - from_m) / kScaleHeights_m);
     from_m = to_m;
   }
   gathered.end = place_at(end_m);

@@ -7,13 +7,14 @@
 
 #include <vector>
 
+#include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 
 namespace thunderhead::physics {
 
-// The radius of a sphere without refraction above which straight rays rise as real ones do above the
-// Earth: 7/6 of the mean radius, the surveyors' coefficient of refraction (1/7) for visible light.
-// Radar's 4/3 is for microwaves, which water vapour bends more.
+// The radius of a sphere without refraction above which straight rays rise as real ones do above
+// the Earth: 7/6 of the mean radius, the surveyors' coefficient of refraction (1/7) for visible
+// light. Radar's 4/3 is for microwaves, which water vapour bends more.
 constexpr double kEffectiveEarthRadius_m = 7.0 / 6.0 * 6.371e6;
 constexpr float kEarthRadius_m = static_cast<float>(kEffectiveEarthRadius_m);
 constexpr float kAtmosphereTop_m = 8e4F;
@@ -31,8 +32,9 @@ struct AirPlace {
   float sun_sine = 0.0F;  // of the sun's elevation there
 };
 
-// Of the elevation below which rays from a height meet the ground.
-float HorizonSine(float height_m);
+// Of the elevation below which rays from a height meet the ground, which is at another; both above
+// sea level.
+float HorizonSine(float height_m, float ground_m = 0.0F);
 
 class Atmosphere {
  public:
@@ -49,6 +51,7 @@ class Atmosphere {
   // Light scattered towards the start of a ray.
   struct Ray {
     float height_m = 0.0F;
+    float ground_m = 0.0F;  // height of the ground, not above the ray's
     glm::vec3 direction{0.0F, 0.0F, 1.0F};  // z is up at the start
     glm::vec3 towards_sun{0.0F, 0.0F, 1.0F};
     int steps = 24;
@@ -59,6 +62,7 @@ class Atmosphere {
     glm::vec3 diffuse{0.0F};  // more than once
     glm::vec3 uniform{0.0F};  // if the air were lit with radiance 1 from everywhere
     glm::vec3 passed{1.0F};   // share of what lies at the ray's end
+    glm::vec2 way{0.0F};      // air and haze on the ray, in vertical depths of the whole
     bool meets_ground = false;
     AirPlace end;
   };

@@ -25,12 +25,14 @@ float SineOfRow(int row, float horizon_sine) {
 
 }  // namespace
 
-ClearSky::ClearSky(const Atmosphere& atmosphere, const glm::vec3& towards_sun, float eye_height_m)
+ClearSky::ClearSky(const Atmosphere& atmosphere, const glm::vec3& towards_sun, const Site& site)
     : towards_sun_(towards_sun),
-      sun_transmittance_(atmosphere.SunTransmittance({0.0F, towards_sun.z})) {
+      sun_transmittance_(
+          atmosphere.SunTransmittance({glm::clamp(site.ground_m, 0.0F, kHighestEye_m), towards_sun.z})) {
   constexpr float kInverseFourPi = 0.25F * std::numbers::inv_pi_v<float>;
-  const float height_m = glm::clamp(eye_height_m, 0.0F, kHighestEye_m);
-  horizon_sine_ = physics::HorizonSine(height_m);
+  const float ground_m = glm::clamp(site.ground_m, 0.0F, kHighestEye_m);
+  const float height_m = glm::clamp(site.eye_m, ground_m, kHighestEye_m);
+  horizon_sine_ = physics::HorizonSine(height_m, ground_m);
   const float sun_across = std::sqrt(std::max(1.0F - towards_sun.z * towards_sun.z, 0.0F));
   table_.resize(static_cast<std::size_t>(2 * glsl::kSkyAzimuths * glsl::kSkyElevations));
   for (int y = 0; y < glsl::kSkyElevations; ++y) {
@@ -40,33 +42,36 @@ ClearSky::ClearSky(const Atmosphere& atmosphere, const glm::vec3& towards_sun, f
       const float east = 1.0F - 2.0F * static_cast<float>(x) / (glsl::kSkyAzimuths - 1);
       Atmosphere::Ray ray;
       ray.height_m = height_m;
+      ray.ground_m = ground_m;
       ray.direction = {cosine * east, cosine * std::sqrt(std::max(1.0F - east * east, 0.0F)), sine};
       ray.towards_sun = {sun_across, 0.0F, towards_sun.z};
       const Atmosphere::Gathered gathered = atmosphere.Gather(ray, true);
       const float mu = glm::dot(ray.direction, ray.towards_sun);
       const float rayleigh = 0.75F * (1.0F + mu * mu) * kInverseFourPi;
       const auto at = static_cast<std::size_t>(y * 2 * glsl::kSkyAzimuths + x);
-      table_[at] = glm::vec4(gathered.air * rayleigh + gathered.diffuse, 1.0F);
-      table_[at + glsl::kSkyAzimuths] = glm::vec4(gathered.haze, 1.0F);
+      table_[at] = glm::vec4(gathered.air * rayleigh + gathered.diffuse, gathered.way.x);
+      table_[at + glsl::kSkyAzimuths] = glm::vec4(gathered.haze, gathered.way.y);
     }
   }
   light_ = Integrate();
 }
 
-glm::vec3 ClearSky::Radiance(const glm::vec3& direction) const {
+ClearSky::Seen ClearSky::At(const glm::vec3& direction) const {
   const glm::vec2 cell = glsl::sky_cell(direction, towards_sun_, horizon_sine_);
   const glm::ivec2 low =
       glm::min(glm::ivec2(cell), glm::ivec2(glsl::kSkyAzimuths, glsl::kSkyElevations) - 2);
   const glm::vec2 share = cell - glm::vec2(low);
   const auto at = [this](int x, int y) {
-    return glm::vec3(table_[static_cast<std::size_t>(y * 2 * glsl::kSkyAzimuths + x)]);
+    return table_[static_cast<std::size_t>(y * 2 * glsl::kSkyAzimuths + x)];
   };
   const auto half = [&](int x) {
     return glm::mix(glm::mix(at(x, low.y), at(x + 1, low.y), share.x),
                     glm::mix(at(x, low.y + 1), at(x + 1, low.y + 1), share.x), share.y);
   };
-  return half(low.x) +
-         half(low.x + glsl::kSkyAzimuths) * glsl::haze_phase(glm::dot(direction, towards_sun_));
+  const glm::vec4 air = half(low.x);
+  const glm::vec4 haze = half(low.x + glsl::kSkyAzimuths);
+  const float phase = glsl::haze_phase(glm::dot(direction, towards_sun_));
+  return {glm::vec3(air) + glm::vec3(haze) * phase, {air.a, haze.a}};
 }
 
 SkyLight ClearSky::Integrate() const {
@@ -81,7 +86,7 @@ SkyLight ClearSky::Integrate() const {
       const float azimuth =
           2.0F * std::numbers::pi_v<float> * (static_cast<float>(j) + 0.5F) / kAzimuths;
       const glm::vec3 direction(cosine * std::cos(azimuth), cosine * std::sin(azimuth), sine);
-      const glm::vec3 radiance = Radiance(direction);
+      const glm::vec3 radiance = At(direction).radiance;
       light.mean_radiance += radiance;
       light.irradiance += radiance * sine;
     }

@@ -39,17 +39,23 @@ struct SkyLight {
 
 class ClearSky {
  public:
-  // Seen from a height above the ground; `towards_sun` is a unit vector, z up.
-  ClearSky(const Atmosphere& atmosphere, const glm::vec3& towards_sun, float eye_height_m);
+  // Heights are above sea level; `towards_sun` is a unit vector, z up.
+  struct Site {
+    float eye_m = 0.0F;
+    float ground_m = 0.0F;
+  };
+  ClearSky(const Atmosphere& atmosphere, const glm::vec3& towards_sun, const Site& site);
 
-  // From unit `direction`; below the horizon, what the air sends in front of the ground.
-  glm::vec3 Radiance(const glm::vec3& direction) const;
+  // What is seen in a direction; below the horizon, what the air sends in front of the ground.
+  struct Seen {
+    glm::vec3 radiance{0.0F};
+    glm::vec2 way{0.0F};  // air and haze on the whole ray, in their vertical depths
+  };
+  // In unit `direction`.
+  Seen At(const glm::vec3& direction) const;
 
-  // Integrates Radiance over the upper hemisphere.
+  // Integrates the radiance over the upper hemisphere.
   const SkyLight& Light() const { return light_; }
-
-  // Of the elevation of the horizon.
-  float HorizonSine() const { return horizon_sine_; }
 
   // Share of sunlight that reaches the ground.
   const glm::vec3& SunTransmittance() const { return sun_transmittance_; }

@@ -51,7 +51,7 @@ class Path {
     const double ground_m = GroundDistance_m();
     const std::optional<double> collision_m = SampleCollision(medium_, ray_, ground_m, random_);
     if (collision_m.has_value()) {
-      PassAir(*collision_m);
+      PassAir(*collision_m, Behind::kMedium);
       return Scatter(ray_.At(*collision_m));
     }
     if (ground_m < kInfinity) return Reflect(ground_m);
@@ -82,9 +82,9 @@ class Path {
   }
 
   // Air matters on the way to the eye only.
-  void PassAir(double distance_m) {
+  void PassAir(double distance_m, Behind behind) {
     if (seen_from_eye_ && surroundings_.air) {
-      const Air air = surroundings_.air(ray_, distance_m);
+      const Air air = surroundings_.air(ray_, distance_m, behind);
       radiance_ += Carried() * air.airlight;
       throughput_ *= air.transmittance;
     }
@@ -125,7 +125,7 @@ class Path {
     const Ground& ground = *surroundings_.ground;
     glm::dvec3 point_m = ray_.At(ground_m);
     point_m.z = GroundHeight_m(point_m);
-    PassAir(ground_m);
+    PassAir(ground_m, Behind::kGround);
     radiance_ += Carried() * ground.radiance;
     throughput_ *= ground.albedo;
     if (Largest(Carried()) <= 0.0) return false;

@@ -119,19 +119,22 @@ CutOptics CutPeak(const GroupLook& look, double peak_cut_deg) {
 
 // Shared by the functions that look at it.
 struct Around {
-  Around(const scene::Scene& scene, const glm::vec3& towards_sun, const scene::View& seen_from)
+  Around(const scene::Scene& scene, const glm::vec3& towards_sun, const scene::View& seen_from,
+         float ground_m)
       : atmosphere(static_cast<float>(scene.sky.turbidity),
                    static_cast<float>(scene.sky.ground_albedo)),
-        sky(atmosphere, towards_sun, 0.0F),
+        sky(atmosphere, towards_sun, {ground_m, ground_m}),
         seen_sky(atmosphere, glm::vec3(seen_from.local_from_world * glm::dvec3(towards_sun)),
-                 static_cast<float>(seen_from.altitude_m)),
+                 {static_cast<float>(seen_from.altitude_m), ground_m}),
         view(seen_from),
         scale(scene.sun.irradiance * scene.sky.brightness),
         turbidity(static_cast<float>(scene.sky.turbidity)) {}
 
   // As the eye sees it.
-  glm::dvec3 SeenRadiance(const glm::dvec3& direction) const {
-    return scale * glm::dvec3(seen_sky.Radiance(glm::vec3(view.local_from_world * direction)));
+  physics::ClearSky::Seen Seen(const glm::dvec3& direction) const {
+    physics::ClearSky::Seen seen = seen_sky.At(glm::vec3(view.local_from_world * direction));
+    seen.radiance *= static_cast<float>(scale);
+    return seen;
   }
 
   physics::Atmosphere atmosphere;
@@ -143,18 +146,22 @@ struct Around {
 };
 
 // Air between the eye and what it sees: what is lost is filled up with the sky's light.
-Air AirBefore(const Around& around, const Ray& ray, double distance_m) {
+Air AirBefore(const Around& around, const Ray& ray, double distance_m, Behind behind) {
+  namespace air = physics::glsl;
+  const physics::ClearSky::Seen sky = around.Seen(ray.direction);
+  const glm::vec3 sky_depth = air::depth_of_way(around.turbidity, sky.way);
+  // The sky's ray ends at the ground.
+  if (behind == Behind::kGround) return {glm::exp(-sky_depth), sky.radiance};
   const scene::View& view = around.view;
-  // The Earth falls away below the ray.
-  const double sine =
-      (view.local_from_world * ray.direction).z + 0.5 * view.ground_curvature_per_m * distance_m;
-  const auto seen = [&](float radiance, float opacity, const glm::dvec3& sky) {
-    return glm::dvec3(
-        physics::glsl::through_air(glm::vec3(radiance), opacity, static_cast<float>(distance_m),
-                                   static_cast<float>(std::max(view.altitude_m, 0.0)),
-                                   static_cast<float>(sine), around.turbidity, glm::vec3(sky)));
-  };
-  return {seen(1.0F, 0.0F, glm::dvec3(0.0)), seen(0.0F, 1.0F, around.SeenRadiance(ray.direction))};
+  const double sine = (view.local_from_world * ray.direction).z;
+  const auto height_m = static_cast<float>(std::max(view.altitude_m, 0.0));
+  const glm::vec3 depth = air::depth_of_air(
+      around.turbidity, air::densities_of_air(height_m),
+      {height_m, static_cast<float>(sine), static_cast<float>(view.ground_curvature_per_m),
+       static_cast<float>(distance_m)});
+  const glm::vec3 none(0.0F);
+  return {glm::dvec3(air::through_air(glm::vec3(1.0F), 0.0F, depth, none, sky_depth)),
+          glm::dvec3(air::through_air(none, 1.0F, depth, sky.radiance, sky_depth))};
 }
 
 }  // namespace
@@ -206,16 +213,18 @@ Surroundings SurroundingsOf(const scene::Scene& scene, const volume::Hydrometeor
   around.towards_sun = scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg);
   const glm::vec3 towards_sun(around.towards_sun);
   const scene::View view = scene::ViewOf(scene, fields);
-  const auto shared = std::make_shared<const Around>(scene, towards_sun, view);
+  const double lowest_m = volume::LowestTerrain_m(fields);
+  const auto shared =
+      std::make_shared<const Around>(scene, towards_sun, view, static_cast<float>(lowest_m));
   around.sun_irradiance = scene.sun.irradiance * glm::dvec3(shared->sky.SunTransmittance());
   around.sky = [shared](const glm::dvec3& direction) {
-    return shared->scale * glm::dvec3(shared->sky.Radiance(glm::vec3(direction)));
+    return shared->scale * glm::dvec3(shared->sky.At(glm::vec3(direction)).radiance);
   };
   around.seen_sky = [shared](const glm::dvec3& direction) {
-    return shared->SeenRadiance(direction);
+    return glm::dvec3(shared->Seen(direction).radiance);
   };
   Ground ground;
-  ground.height_m = volume::LowestTerrain_m(fields);
+  ground.height_m = lowest_m;
   ground.touch_m = view.touch_m;
   ground.curvature_per_m = view.ground_curvature_per_m;
   const glm::dvec3 albedo = scene.sky.ground_albedo * kGroundTint;
@@ -227,8 +236,8 @@ Surroundings SurroundingsOf(const scene::Scene& scene, const volume::Hydrometeor
     ground.radiance = albedo * (direct + diffuse) * std::numbers::inv_pi;
   }
   around.ground = ground;
-  around.air = [shared](const Ray& ray, double distance_m) {
-    return AirBefore(*shared, ray, distance_m);
+  around.air = [shared](const Ray& ray, double distance_m, Behind behind) {
+    return AirBefore(*shared, ray, distance_m, behind);
   };
   return around;
 }

@@ -22,6 +22,9 @@ struct Ground {
   double curvature_per_m = 0.0;
 };
 
+// What may be behind the air.
+enum class Behind { kMedium, kGround };
+
 // What air does to what is behind it.
 struct Air {
   glm::dvec3 transmittance{1.0};
@@ -38,7 +41,7 @@ struct Surroundings {
   std::optional<Ground> ground;
   // Air between the eye and the ground or the medium; clear if not set. The sky needs none: what it
   // sends is the air's.
-  std::function<Air(const Ray& ray, double distance_m)> air;
+  std::function<Air(const Ray& ray, double distance_m, Behind behind)> air;
 };
 
 }  // namespace thunderhead::reference

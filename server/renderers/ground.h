@@ -26,6 +26,8 @@ class Ground {
   absl::Status CastShadow(const ResidentMedium& medium, const RenderSettings& settings);
   void ClearShadow() { has_shadow_ = false; }
 
+  // Of its lowest point, above sea level.
+  double Lowest_m() const { return lowest_m_; }
   // True where the terrain is not level: the variant RELIEF of common/ground.glsl.
   bool Relief() const { return relief_; }
   // True if ground may stand between the eye and a storm. Level ground falls away from below the

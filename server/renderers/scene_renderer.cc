@@ -66,8 +66,8 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
   }
   if (first <= scene::Stage::kView) {
     const scene::View view = scene::ViewOf(scene, *fields);
-    surroundings_.Update(scene, view);
     if (first <= scene::Stage::kStorm) ground_.SetTerrain(*fields);
+    surroundings_.Update(scene, view, ground_);
     drawn_slices_ = 0;
     if (!medium_.Empty()) {
       const double wanted = std::ceil(scene.rendering.slices * quality.slice_share);

@@ -25,15 +25,18 @@ glm::vec3 GroundReflectance(const scene::Scene& scene) {
 
 }  // namespace
 
-void SkyAndGround::Update(const scene::Scene& scene, const scene::View& view) {
+void SkyAndGround::Update(const scene::Scene& scene, const scene::View& view,
+                          const Ground& ground) {
   const Key key{scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg),
-                scene.sky.turbidity, scene.sky.ground_albedo};
+                scene.sky.turbidity, scene.sky.ground_albedo, ground.Lowest_m()};
   if (!sky_.has_value() || key != drawn_) {
     if (!atmosphere_.has_value() || key.turbidity != drawn_.turbidity ||
         key.ground_albedo != drawn_.ground_albedo) {
       atmosphere_.emplace(static_cast<float>(key.turbidity), static_cast<float>(key.ground_albedo));
     }
-    sky_.emplace(*atmosphere_, glm::vec3(key.towards_sun), 0.0F);
+    const auto ground_m = static_cast<float>(key.ground_m);
+    sky_.emplace(*atmosphere_, glm::vec3(key.towards_sun),
+                 physics::ClearSky::Site{ground_m, ground_m});
     drawn_ = key;
     eye_height_m_ = -1.0;
   }
@@ -42,7 +45,8 @@ void SkyAndGround::Update(const scene::Scene& scene, const scene::View& view) {
 
 void SkyAndGround::SetEyeSky(double altitude_m) {
   // In steps, so that a moving camera makes a table now and then only.
-  const double step = std::round(kSkySteps * std::log1p(std::max(altitude_m, 0.0) / kSkyStep_m));
+  const double wanted_m = std::max(altitude_m - drawn_.ground_m, 0.0);
+  const double step = std::round(kSkySteps * std::log1p(wanted_m / kSkyStep_m));
   const double height_m = kSkyStep_m * std::expm1(step / kSkySteps);
   if (height_m == eye_height_m_) return;
   eye_height_m_ = height_m;
@@ -52,10 +56,12 @@ void SkyAndGround::SetEyeSky(double altitude_m) {
   }
   const auto upload = [this](const physics::ClearSky& seen) {
     sky_table_.Upload(GL_RGBA, GL_FLOAT, seen.Table().data());
-    horizon_sine_ = seen.HorizonSine();
   };
   if (height_m == 0.0) return upload(*sky_);
-  upload({*atmosphere_, glm::vec3(drawn_.towards_sun), static_cast<float>(height_m)});
+  const auto ground_m = static_cast<float>(drawn_.ground_m);
+  upload({*atmosphere_,
+          glm::vec3(drawn_.towards_sun),
+          {ground_m + static_cast<float>(height_m), ground_m}});
 }
 
 Illumination SkyAndGround::IlluminationOf(const scene::Scene& scene) const {
@@ -86,14 +92,17 @@ absl::Status SkyAndGround::Composite(const scene::Scene& scene, const scene::Vie
   ground.BindShadow(*program, view);
   const auto irradiance = static_cast<float>(scene.sun.irradiance);
   const auto sky_scale = irradiance * static_cast<float>(scene.sky.brightness);
+  const auto altitude_m = static_cast<float>(std::max(view.altitude_m, 0.0));
   program->Set("local_from_world", glm::mat3(view.local_from_world));
   program->Set("towards_sun", glm::vec3(drawn_.towards_sun));
   program->Set("towards_sun_local", glm::vec3(view.local_from_world * drawn_.towards_sun));
-  program->Set("horizon_sine", horizon_sine_);
+  // The eye's own, not that of the height that the table was made for.
+  program->Set("horizon_sine",
+               physics::HorizonSine(altitude_m, static_cast<float>(drawn_.ground_m)));
   program->Set("sky_scale", sky_scale);
   program->Set("turbidity", static_cast<float>(scene.sky.turbidity));
-  program->Set("altitude_m", static_cast<float>(std::max(view.altitude_m, 0.0)));
-  program->Set("sea_level_m", static_cast<float>(-view.eye_m.z));
+  program->Set("altitude_m", altitude_m);
+  program->Set("air_densities", physics::glsl::densities_of_air(altitude_m));
   program->Set("ground_reflectance", GroundReflectance(scene));
   program->Set("sunlight", irradiance * sky_->SunTransmittance());
   program->Set("skylight", sky_scale * sky_->Light().irradiance);

@@ -24,9 +24,9 @@ class SkyAndGround {
   explicit SkyAndGround(std::shared_ptr<gl::ProgramCache> programs)
       : programs_(std::move(programs)) {}
 
-  // Brings the sky up to date with the scene's sun and air and the eye's height. Call it before the
-  // others.
-  void Update(const scene::Scene& scene, const scene::View& view);
+  // Brings the sky up to date with the scene's sun and air, the ground's height and the eye's. Call
+  // it before the others.
+  void Update(const scene::Scene& scene, const scene::View& view, const Ground& ground);
 
   Illumination IlluminationOf(const scene::Scene& scene) const;
 
@@ -47,6 +47,7 @@ class SkyAndGround {
     glm::dvec3 towards_sun{0.0};
     double turbidity = 0.0;
     double ground_albedo = 0.0;
+    double ground_m = 0.0;
 
     bool operator==(const Key&) const = default;
   };
@@ -57,7 +58,6 @@ class SkyAndGround {
   std::optional<physics::ClearSky> sky_;
   Key drawn_;
   double eye_height_m_ = -1.0;  // that the table was made for
-  float horizon_sine_ = 0.0F;
   gl::Texture2D sky_table_;
 };
 

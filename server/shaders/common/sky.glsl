@@ -1,15 +1,20 @@
-// The radiance of the clear sky as the eye sees it, from its table; downwards, what the air sends in front of the ground.
+// The clear sky as the eye sees it, from its table; downwards, what the air sends in front of the ground.
 #include "physics/sky.glsl"
 
 layout(binding = 6) uniform sampler2D sky_table;
 
 uniform float horizon_sine;  // of the elevation of the horizon
 
-// From unit `direction` (z up), in units of the sun's irradiance above the atmosphere.
-vec3 sky_radiance(vec3 direction, vec3 towards_sun) {
+struct Sky {
+  vec3 radiance;  // in units of the sun's irradiance above the atmosphere
+  vec2 way;       // vertical depths of air and haze on the whole ray
+};
+
+// In unit `direction` (z up).
+Sky sky_at(vec3 direction, vec3 towards_sun) {
   vec2 size = vec2(2 * kSkyAzimuths, kSkyElevations);
   vec2 cell = sky_cell(direction, towards_sun, horizon_sine) + 0.5;
-  vec3 air = texture(sky_table, cell / size).rgb;
-  vec3 haze = texture(sky_table, (cell + vec2(kSkyAzimuths, 0.0)) / size).rgb;
-  return air + haze * haze_phase(dot(direction, towards_sun));
+  vec4 air = texture(sky_table, cell / size);
+  vec4 haze = texture(sky_table, (cell + vec2(kSkyAzimuths, 0.0)) / size);
+  return Sky(air.rgb + haze.rgb * haze_phase(dot(direction, towards_sun)), vec2(air.a, haze.a));
 }

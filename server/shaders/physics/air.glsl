@@ -18,49 +18,61 @@ PHYSICS_FUNCTION vec3 haze_optical_depth(float turbidity) {
   return (turbidity - 1.0f) * 0.0973f * vec3(0.805f, 1.0f, 1.298f);
 }
 
-// (1 - exp(-x)) / x for any x; below 0.02 its series, whose first dropped term is x^4/120.
-PHYSICS_FUNCTION float mean_decay(float x) {
-  if (abs(x) < 0.02f) return 1.0f - x * (0.5f - x * (1.0f / 6.0f - x / 24.0f));
-  return (1.0f - exp(-x)) / x;
+// The share of its density at sea level that the air (x) and the haze (y) have at a height.
+PHYSICS_FUNCTION vec2 densities_of_air(float height_m) {
+  return exp(-height_m / vec2(kAirScaleHeight_m, kHazeScaleHeight_m));
 }
 
-// Metres of sea-level air that `distance_m` of a straight way holds, from a height upwards with the given sine. A way
-// down must end above the ground.
-PHYSICS_FUNCTION float equivalent_m(float scale_height_m, float height_m, float sin_elevation, float distance_m) {
-  float climb = distance_m * sin_elevation / scale_height_m;
-  // Far below the eye the two exponentials would leave the range of floats one by one, not together.
-  if (climb < 0.0f) return distance_m * exp(-height_m / scale_height_m - climb) * mean_decay(-climb);
-  return distance_m * exp(-height_m / scale_height_m) * mean_decay(climb);
+// exp(x^2) erfc(x) for x from 0 on, off by less than 6e-4: the form of its bounds (Abramowitz and Stegun, 7.1.13), led
+// from one to the other with the right slope at 0.
+PHYSICS_FUNCTION float scaled_erfc(float x) {
+  float bound = 2.0f - 0.72676046f / (1.0f + x * (0.848f + x * 0.45f));
+  return 1.12837917f / (x + sqrt(x * x + bound));
 }
 
-// Optical depth of air and haze on that way.
-PHYSICS_FUNCTION vec3 depth_of_air(float turbidity, float height_m, float sin_elevation, float distance_m) {
-  return air_optical_depth() *
-             (equivalent_m(kAirScaleHeight_m, height_m, sin_elevation, distance_m) / kAirScaleHeight_m) +
-         haze_optical_depth(turbidity) *
-             (equivalent_m(kHazeScaleHeight_m, height_m, sin_elevation, distance_m) / kHazeScaleHeight_m);
+// A straight way above the Earth's curve.
+struct Way {
+  float height_m;         // where it starts, above sea level
+  float sin_elevation;    // there
+  float curvature_per_m;  // of the Earth
+  float distance_m;       // its length
+};
+
+// What `way` holds of air or haze, in metres of its density at sea level; `density` is that where the way starts. The
+// height is quadratic in the distance, so that the integral is a difference of error functions.
+PHYSICS_FUNCTION float equivalent_m(float scale_height_m, float density, Way way) {
+  // Without curvature the error functions would end in 0 / 0: a millionth of the Earth's is none.
+  float bend = max(way.curvature_per_m * (1.0f - way.sin_elevation * way.sin_elevation), 1e-13f);
+  float per_m = sqrt(0.5f * bend / scale_height_m);
+  float low = per_m * way.sin_elevation / bend;  // from the way's lowest place
+  float high = low + per_m * way.distance_m;
+  float climb_m = way.distance_m * (way.sin_elevation + 0.5f * bend * way.distance_m);
+  float from = density * scaled_erfc(abs(low));
+  float to = exp(-(way.height_m + climb_m) / scale_height_m) * scaled_erfc(abs(high));
+  float difference = low >= 0.0f ? from - to : to - from;
+  // The lowest place is on the way.
+  if (low < 0.0f && high > 0.0f) difference = 2.0f * density * exp(low * low) - from - to;
+  return 0.886226925f / per_m * difference;
 }
 
-// What the eye sees through `distance_m` of air of something that sends `radiance` (already weighted by its opacity) and
-// hides `opacity` of what is behind it. `sky` is the radiance of the clear sky in the ray's direction: the air gathers it
-// in step with the light that it takes away.
-PHYSICS_FUNCTION vec3 through_air(vec3 radiance, float opacity, float distance_m, float eye_height_m,
-                                  float sin_elevation, float turbidity, vec3 sky) {
-  vec3 passed = exp(-depth_of_air(turbidity, eye_height_m, sin_elevation, distance_m));
-  // The sky's own light comes from all the air on the ray, down to the ground or out of the atmosphere.
-  const float kEndless_m = 5e5f;
-  float end_m = eye_height_m < -sin_elevation * kEndless_m ? eye_height_m / -sin_elevation : kEndless_m;
-  vec3 sky_passed = exp(-depth_of_air(turbidity, eye_height_m, sin_elevation, end_m));
-  vec3 gathered = min((vec3(1.0f) - passed) / max(vec3(1.0f) - sky_passed, vec3(1e-6f)), vec3(1.0f));
+// Optical depth of `way`, vertical depths of the whole air (x) and haze (y).
+PHYSICS_FUNCTION vec3 depth_of_way(float turbidity, vec2 way) {
+  return air_optical_depth() * way.x + haze_optical_depth(turbidity) * way.y;
+}
+
+// Optical depth of air and haze on a straight way; `densities` are those where it starts.
+PHYSICS_FUNCTION vec3 depth_of_air(float turbidity, vec2 densities, Way way) {
+  return depth_of_way(turbidity,
+                      vec2(equivalent_m(kAirScaleHeight_m, densities.x, way) / kAirScaleHeight_m,
+                           equivalent_m(kHazeScaleHeight_m, densities.y, way) / kHazeScaleHeight_m));
+}
+
+// What the eye sees of something that sends `radiance` (already weighted by its opacity) and hides `opacity` of what is
+// behind it, through air of optical depth `depth`. The clear sky in that direction has radiance `sky` and the optical
+// depth `sky_depth` down to the ground or out of the atmosphere: the air gathers it in step with the light that it takes
+// away, beyond `sky_depth` too.
+PHYSICS_FUNCTION vec3 through_air(vec3 radiance, float opacity, vec3 depth, vec3 sky, vec3 sky_depth) {
+  vec3 passed = exp(-depth);
+  vec3 gathered = (vec3(1.0f) - passed) / max(vec3(1.0f) - exp(-sky_depth), vec3(1e-6f));
   return passed * radiance + opacity * gathered * sky;
-}
-
-// How far level ground is along a ray that starts `height_m` above it and climbs with the given sine; below zero where
-// the ray misses it. The ground falls away as d^2 curvature / 2 with the distance d: 0 is a plane. A ray from under the
-// ground meets nothing.
-PHYSICS_FUNCTION float level_ground_distance_m(float height_m, float sin_elevation, float curvature_per_m) {
-  float discriminant =
-      sin_elevation * sin_elevation - 2.0f * (1.0f - sin_elevation * sin_elevation) * curvature_per_m * height_m;
-  if (height_m <= 0.0f || sin_elevation >= 0.0f || discriminant < 0.0f) return -1.0f;
-  return 2.0f * height_m / (sqrt(discriminant) - sin_elevation);
 }

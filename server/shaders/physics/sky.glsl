@@ -7,7 +7,8 @@
 #endif
 
 // Cells of one half of the table: across, the azimuth from the sun; up, the elevation, as many below the horizon as above.
-// The left half holds the light of air, the right half that of haze without its phase function.
+// The left half holds the light of air, the right half that of haze without its phase function; their fourth channels
+// hold how much air and haze the ray passes, in vertical depths of the whole.
 const int kSkyAzimuths = 12;
 const int kSkyElevations = 64;
 

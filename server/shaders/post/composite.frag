@@ -14,7 +14,7 @@ uniform vec3 towards_sun_local;
 uniform float sky_scale;         // irradiance times brightness
 uniform float turbidity;
 uniform float altitude_m;        // of the eye above sea level, not below 0
-uniform float sea_level_m;       // where the world's plane touches
+uniform vec2 air_densities;      // there
 uniform vec3 ground_reflectance;  // radiance per irradiance
 uniform vec3 sunlight;           // irradiance on a plane facing the sun
 uniform vec3 skylight;           // irradiance on level ground
@@ -26,6 +26,9 @@ uniform vec3 box_high_m;
 
 in vec2 position;
 out vec4 linear_rgb;
+
+const float kJustBelow = 1e-5;
+const float kHardlyAnyHaze = 0.01;  // of its vertical depth
 
 // The part of the ray that is in the medium's box; x > y where it misses it.
 vec2 way_through_box(vec3 origin_m, vec3 ray) {
@@ -49,12 +52,30 @@ vec3 ground_radiance(vec3 point_m) {
   return ground_reflectance * (sunlight * lit + skylight * (0.5 + 0.5 * normal.z));
 }
 
-// Above sea level, of a point of the ground.
-float ground_altitude_m(vec3 point_m) {
+// Optical depth of the air before a point of the ray, which is in the eye's local frame.
+vec3 depth_before(vec3 ray, float distance_m) {
+  return depth_of_air(turbidity, air_densities, Way(altitude_m, ray.z, ground_curvature_per_m, distance_m));
+}
+
+// The clear sky behind a ray. The horizon is that of a sphere, the ground a paraboloid or rough.
+Sky sky_behind(vec3 ray, float ground_m) {
+  if (RELIEF == 0 && ground_m > 0.0) ray.z = min(ray.z, horizon_sine - kJustBelow);
+  if (ground_m <= 0.0) ray.z = max(ray.z, horizon_sine);
+  Sky sky = sky_at(ray, towards_sun_local);
 #if RELIEF
-  return terrain_m(point_m.xy) - sea_level_m;
+  // Where the table's ray ends before it is lit, the air beyond is taken to be as bright as above the horizon.
+  if (sky.way.y < kHardlyAnyHaze) sky = sky_at(vec3(ray.xy, max(ray.z, horizon_sine)), towards_sun_local);
+#endif
+  return sky;
+}
+
+// The ground through the air.
+vec3 seen_ground(vec3 radiance, vec3 ray, float ground_m, Sky sky) {
+  vec3 sky_depth = depth_of_way(turbidity, sky.way);
+#if RELIEF
+  return through_air(radiance, 1.0, depth_before(ray, ground_m), sky_scale * sky.radiance, sky_depth);
 #else
-  return lowest_ground_m - sea_level_m;
+  return exp(-sky_depth) * radiance + sky_scale * sky.radiance;
 #endif
 }
 
@@ -62,13 +83,11 @@ void main() {
   vec3 origin_m = ray_origin(position);
   vec3 world_ray = ray_direction(position);
   vec3 ray = local_from_world * world_ray;
-  vec3 sky = sky_scale * sky_radiance(ray, towards_sun_local);
-  vec3 background = sky;
   float ground_m = ground_distance_m(origin_m, world_ray);
+  Sky sky = sky_behind(ray, ground_m);
+  vec3 background = sky_scale * sky.radiance;
   if (ground_m > 0.0) {
-    vec3 point_m = origin_m + ground_m * world_ray;
-    float climb = (ground_altitude_m(point_m) - altitude_m) / ground_m;
-    background = through_air(ground_radiance(point_m), 1.0, ground_m, altitude_m, climb, turbidity, sky);
+    background = seen_ground(ground_radiance(origin_m + ground_m * world_ray), ray, ground_m, sky);
   }
   vec4 front = texture(eye, 0.5 * position + 0.5);
   float opacity = 1.0 - front.a;
@@ -76,9 +95,8 @@ void main() {
     vec2 way_m = way_through_box(origin_m, world_ray);
     float end_m = ground_m > 0.0 ? min(way_m.y, ground_m) : way_m.y;
     float distance_m = 0.5 * (way_m.x + max(end_m, way_m.x));
-    // The Earth falls away below the ray.
-    float climb = ray.z + 0.5 * ground_curvature_per_m * distance_m;
-    front.rgb = through_air(front.rgb, opacity, distance_m, altitude_m, climb, turbidity, sky);
+    front.rgb = through_air(front.rgb, opacity, depth_before(ray, distance_m), sky_scale * sky.radiance,
+                            depth_of_way(turbidity, sky.way));
   }
   linear_rgb = vec4(front.rgb + front.a * background, 1.0);
 }
