@@ -51,7 +51,7 @@ class Atmosphere {
   // Light scattered towards the start of a ray.
   struct Ray {
     float height_m = 0.0F;
-    float ground_m = 0.0F;  // height of the ground, not above the ray's
+    float ground_m = 0.0F;                  // height of the ground, not above the ray's
     glm::vec3 direction{0.0F, 0.0F, 1.0F};  // z is up at the start
     glm::vec3 towards_sun{0.0F, 0.0F, 1.0F};
     int steps = 24;

@@ -27,8 +27,8 @@ float SineOfRow(int row, float horizon_sine) {
 
 ClearSky::ClearSky(const Atmosphere& atmosphere, const glm::vec3& towards_sun, const Site& site)
     : towards_sun_(towards_sun),
-      sun_transmittance_(
-          atmosphere.SunTransmittance({glm::clamp(site.ground_m, 0.0F, kHighestEye_m), towards_sun.z})) {
+      sun_transmittance_(atmosphere.SunTransmittance(
+          {glm::clamp(site.ground_m, 0.0F, kHighestEye_m), towards_sun.z})) {
   constexpr float kInverseFourPi = 0.25F * std::numbers::inv_pi_v<float>;
   const float ground_m = glm::clamp(site.ground_m, 0.0F, kHighestEye_m);
   const float height_m = glm::clamp(site.eye_m, ground_m, kHighestEye_m);

@@ -78,7 +78,8 @@ TEST_F(SceneRendererTest, AChangeRerunsOnlyWhatItDirties) {
 
 TEST_F(SceneRendererTest, TheLightVolumeIsKeptWhileOnlyTheCameraMoves) {
   scene_.rendering.renderer = scene::Renderer::kLightVolume;
-  EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "ground", "light", "view", "composite"));
+  EXPECT_THAT(StagesOf(),
+              ElementsAre("extinction", "upload", "ground", "light", "view", "composite"));
   Orbit().azimuth_deg += 5.0;
   EXPECT_THAT(StagesOf(), ElementsAre("view", "composite"));
   scene_.sun.elevation_deg += 5.0;

@@ -199,9 +199,8 @@ TEST_F(StormSeries, ServesManyThreadsThatWanderAboutWithinABudget) {
       for (int step = 0; step < 25; ++step) {
         const int time = (i * 5 + step * (i + 1)) % kTimes;
         const auto fields = store->Get("series", time, {});
-        const bool right =
-            fields.ok() && std::abs((*fields)->fields[0].statistics.maximum -
-                                    1e-3F * static_cast<float>(time + 1)) < 1e-7F;
+        const bool right = fields.ok() && std::abs((*fields)->fields[0].statistics.maximum -
+                                                   1e-3F * static_cast<float>(time + 1)) < 1e-7F;
         failures += right ? 0 : 1;
       }
     });
