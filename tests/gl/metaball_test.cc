@@ -12,6 +12,7 @@
 #include "gl/context.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "physics/optics.h"
 #include "renderers/scene_renderer.h"
 #include "scene/view.h"
 #include "tests/support/slab.h"
@@ -154,6 +155,25 @@ TEST_F(MetaballTest, AThinBallScattersWhatItTakes) {
   const std::vector<float> pixels = Draw({At({0.0, 0.0, 5000.0}, 1000.0, depth / 1000.0)});
   const double scattered = depth * Column(0.0) / (4 * kPi);
   EXPECT_NEAR(pixels[kMiddle] / scattered, 1.0, 2e-3);
+}
+
+TEST_F(MetaballTest, ABallScattersByThePhaseFunctionsOfItsShares) {
+  MediumGroup forward;
+  forward.phase = {physics::PhaseKind::kHenyeyGreenstein, 0.6F};
+  content_.groups.push_back(forward);
+  Ball ball = At({0.0, 0.0, 5000.0}, 1000.0, 1e-6);
+  const auto seen = [&](float share) {
+    ball.shares = {1.0F - share, share};
+    return Draw({ball})[kMiddle];
+  };
+  // The view is straight down: the light turns by 180 degrees less the sun's zenith angle.
+  for (const double zenith_deg : {0.0, 60.0, 120.0, 179.0}) {
+    const double zenith = zenith_deg * kPi / 180.0;
+    settings_.illumination.towards_sun = {std::sin(zenith), 0.0, std::cos(zenith)};
+    const double phase = physics::PhaseValue(forward.phase, -std::cos(zenith));
+    EXPECT_NEAR(seen(1.0F) / seen(0.0F), phase, 2e-3 * phase) << zenith_deg;
+    EXPECT_NEAR(seen(0.25F) / seen(0.0F), 0.75 + 0.25 * phase, 2e-3 * phase) << zenith_deg;
+  }
 }
 
 TEST_F(MetaballTest, LightThatABallTakesIsLightThatItHas) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "absl/strings/str_format.h"
 #include "base/status.h"
@@ -11,6 +10,7 @@
 #include "glm/geometric.hpp"
 #include "renderers/half_angle/slicing.h"
 #include "renderers/metaball/light_order.h"
+#include "renderers/metaball/tiles.h"
 #include "renderers/view_uniforms.h"
 
 namespace thunderhead::renderers {
@@ -19,6 +19,9 @@ namespace {
 constexpr GLuint kBallBinding = 0;
 constexpr GLuint kArrivedBinding = 1;
 constexpr GLuint kOrderBinding = 2;
+constexpr GLuint kTileBinding = 1;
+constexpr GLuint kSourceBinding = 3;
+constexpr std::size_t kGroupSize = 64;  // of source.comp
 constexpr GLuint kLightImage = 0;
 constexpr GLuint kGroundUnit = 7;
 constexpr int kLeastLightTexels = 64;  // along the longer side
@@ -109,6 +112,8 @@ LightPlane LightPlaneOf(const std::vector<Ball>& balls, const BallBox& box,
 }
 
 gl::Buffer BufferOf(const std::vector<std::uint32_t>& values) {
+  // A buffer must have a size; nobody reads it.
+  if (values.empty()) return {sizeof(std::uint32_t), nullptr, 0};
   return {values.size() * sizeof(std::uint32_t), values.data(), 0};
 }
 
@@ -134,6 +139,7 @@ void MetaballRenderer::Upload(const BallCloud& cloud, const Medium& content,
   box_ = BoxOf(balls_);
   lights_ = LightsOf(settings);
   const GroupWeights weights(content, settings.rendering);
+  content_ = content;
   groups_ = static_cast<int>(content.groups.size());
   colored_ = weights.colored;
   std::vector<physics::PhaseFunction> phases;
@@ -150,6 +156,7 @@ void MetaballRenderer::Upload(const BallCloud& cloud, const Medium& content,
         static_cast<float>(settings.rendering.metaballs.optical_depth * density);
   }
   ball_buffer_ = gl::Buffer(device.size() * sizeof(DeviceBall), device.data(), 0);
+  sources_ = gl::Buffer(balls_.size() * sizeof(glm::vec4), nullptr, 0);
   arrived_ = gl::Buffer(lights_.size() * balls_.size() * sizeof(glm::vec2), nullptr, 0);
 }
 
@@ -219,42 +226,19 @@ absl::Status MetaballRenderer::Carry(const Light& light, int index,
 
 absl::Status MetaballRenderer::DrawView(const RenderSettings& settings) {
   if (eye_.Size() != settings.eye_size) {
-    // Single precision: thousands of thin balls multiply into the share that passes.
     eye_ = gl::Texture2D(GL_RGBA32F, settings.eye_size);
     eye_target_ = gl::Framebuffer(eye_);
   }
-  eye_target_.Clear(0.0F, 0.0F, 0.0F, 1.0F);
-  if (balls_.empty()) return absl::OkStatus();
-  const bool paper = IsPaper(settings.rendering);
-  const std::size_t beams = lights_.size() - (paper ? 0 : 1);
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      const gl::Program* program,
-      programs_->Get({"metaball/splat.vert",
-                      "metaball/splat.frag",
-                      {{"LIGHTS", static_cast<int>(beams)},
-                       {"GROUPS", groups_},
-                       {"COLORED", colored_ ? 1 : 0},
-                       {"CONSISTENT", paper ? 0 : 1},
-                       {"PAPER", paper ? 1 : 0},
-                       {"ISOTROPIC", settings.rendering.metaballs.isotropic ? 1 : 0},
-                       {"PARALLEL", settings.view.Orthographic() ? 1 : 0},
-                       {"GROUND", settings.ground_distance != nullptr ? 1 : 0}}}));
-  DrawBalls(*program, settings);
-  return absl::OkStatus();
+  if (balls_.empty()) {
+    eye_target_.Clear(0.0F, 0.0F, 0.0F, 1.0F);
+    return absl::OkStatus();
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(FindSources(settings));
+  return Splat(settings);
 }
 
-void MetaballRenderer::DrawBalls(const gl::Program& program, const RenderSettings& settings) {
-  const scene::View& view = settings.view;
-  std::vector<double> away_m;
-  for (const Ball& ball : balls_) {
-    const glm::dvec3 off_m = ball.middle_m - view.eye_m;
-    away_m.push_back(view.Orthographic() ? glm::dot(off_m, view.forward) : glm::length(off_m));
-  }
-  std::vector<std::uint32_t> order(balls_.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return away_m[a] > away_m[b]; });
-  order_ = BufferOf(order);
+absl::Status MetaballRenderer::FindSources(const RenderSettings& settings) {
+  const bool paper = IsPaper(settings.rendering);
   std::vector<glm::vec3> towards;
   std::vector<glm::vec3> irradiance;
   // Another haze changes the lights' colours, not what arrives of them.
@@ -263,38 +247,67 @@ void MetaballRenderer::DrawBalls(const gl::Program& program, const RenderSetting
     towards.emplace_back(light.towards);
     irradiance.push_back(light.irradiance);
   }
-  BindRays(program, view, box_.Middle_m());
-  program.Set("ball_count", static_cast<int>(balls_.size()));
-  program.Set("eye_right", glm::vec3(view.right));
-  program.Set("eye_up", glm::vec3(view.up));
-  program.Set("eye_forward", glm::vec3(view.forward));
-  program.Set("eye_m", glm::vec3(view.eye_m - box_.Middle_m()));
-  program.Set("half_picture", view.Orthographic()
-                                  ? glm::vec2(view.half_width_m, view.half_height_m)
-                                  : glm::vec2(view.tan_half_width, view.tan_half_height));
-  program.Set("towards_light", towards);
-  program.Set("irradiance", irradiance);
-  program.Set("sky_radiance", settings.illumination.from_sky);
-  program.Set("ground_radiance", settings.illumination.from_ground);
-  program.Set("paper_albedo", static_cast<float>(settings.rendering.metaballs.albedo));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_->Get({{},
+                      {},
+                      {{"LIGHTS", static_cast<int>(towards.size())},
+                       {"GROUPS", groups_},
+                       {"COLORED", colored_ ? 1 : 0},
+                       {"CONSISTENT", paper ? 0 : 1},
+                       {"PAPER", paper ? 1 : 0},
+                       {"ISOTROPIC", settings.rendering.metaballs.isotropic ? 1 : 0},
+                       {"PARALLEL", settings.view.Orthographic() ? 1 : 0}},
+                      "metaball/source.comp"}));
+  const GroupWeights weights(content_, settings.rendering);
+  weights.BindPhase(*program);
+  program->Set("ball_count", static_cast<int>(balls_.size()));
+  program->Set("eye_forward", glm::vec3(settings.view.forward));
+  program->Set("eye_m", glm::vec3(settings.view.eye_m - box_.Middle_m()));
+  program->Set("towards_light", towards);
+  program->Set("irradiance", irradiance);
+  program->Set("sky_radiance", settings.illumination.from_sky);
+  program->Set("ground_radiance", settings.illumination.from_ground);
+  program->Set("paper_albedo", static_cast<float>(settings.rendering.metaballs.albedo));
   phase_curves_.Bind();
   ball_buffer_.BindStorage(kBallBinding);
   arrived_.BindStorage(kArrivedBinding);
+  sources_.BindStorage(kSourceBinding);
+  program->Use();
+  const auto groups = (balls_.size() + kGroupSize - 1) / kGroupSize;
+  glDispatchCompute(static_cast<GLuint>(groups), 1, 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  return absl::OkStatus();
+}
+
+absl::Status MetaballRenderer::Splat(const RenderSettings& settings) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_->Get({"common/whole_target.vert",
+                      "metaball/splat.frag",
+                      {{"PAPER", IsPaper(settings.rendering) ? 1 : 0},
+                       {"GROUND", settings.ground_distance != nullptr ? 1 : 0}}}));
+  const BallTiles tiles = TilesOf(balls_, settings.view, settings.eye_size);
+  tile_starts_ = BufferOf(tiles.starts);
+  order_ = BufferOf(tiles.balls);
+  BindRays(*program, settings.view, box_.Middle_m());
+  program->Set("tile_px", tiles.tile_px);
+  program->Set("tiles_across", tiles.tiles.x);
+  ball_buffer_.BindStorage(kBallBinding);
+  tile_starts_.BindStorage(kTileBinding);
   order_.BindStorage(kOrderBinding);
+  sources_.BindStorage(kSourceBinding);
   if (settings.ground_distance != nullptr) settings.ground_distance->Bind(kGroundUnit);
   eye_target_.Bind();
-  program.Use();
+  program->Use();
   no_attributes_.Bind();
-  glEnable(GL_BLEND);
-  // Eq. 28 and 29: what the ball sends, and of what is behind it the share that passes.
-  glBlendFuncSeparate(GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_SRC_ALPHA);
-  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(balls_.size()));
-  glDisable(GL_BLEND);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  return absl::OkStatus();
 }
 
 std::size_t MetaballRenderer::Bytes() const {
-  return ball_buffer_.Bytes() + arrived_.Bytes() + order_.Bytes() + light_.Bytes() + eye_.Bytes() +
-         phase_curves_.Bytes();
+  return ball_buffer_.Bytes() + arrived_.Bytes() + sources_.Bytes() + order_.Bytes() +
+         tile_starts_.Bytes() + light_.Bytes() + eye_.Bytes() + phase_curves_.Bytes();
 }
 
 }  // namespace thunderhead::renderers

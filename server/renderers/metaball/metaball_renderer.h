@@ -1,6 +1,6 @@
 // Man's two-pass renderer of metaballs (P. Man, Generating and Real-Time Rendering of Clouds,
 // section 4), on the device: the first pass gives every ball its light from each of several
-// coloured lights, the second splats the balls from back to front. The result is what the balls
+// coloured lights, the second splats the balls in their order from the eye. The result is what they
 // send to the eye (rgb) and the share of the background that passes (a).
 //
 // Transport "paper" is as printed; "consistent" has the fields' own optics and loses no energy.
@@ -53,18 +53,22 @@ class MetaballRenderer {
   static std::vector<Light> LightsOf(const RenderSettings& settings);
   void Upload(const BallCloud& cloud, const Medium& content, const RenderSettings& settings);
   absl::Status Carry(const Light& light, int index, const RenderSettings& settings);
-  void DrawBalls(const gl::Program& program, const RenderSettings& settings);
+  absl::Status FindSources(const RenderSettings& settings);
+  absl::Status Splat(const RenderSettings& settings);
 
   std::shared_ptr<gl::ProgramCache> programs_;
   gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
   std::vector<Ball> balls_;
   BallBox box_;
   std::vector<Light> lights_;
+  Medium content_;
   int groups_ = 1;
   bool colored_ = false;
   gl::Buffer ball_buffer_;
   gl::Buffer arrived_;  // the light of each ball, light by light
-  gl::Buffer order_;
+  gl::Buffer sources_;  // what each sends to the eye
+  gl::Buffer order_;    // of the pass that runs
+  gl::Buffer tile_starts_;
   gl::Texture2D light_;
   PhaseCurves phase_curves_;
   gl::Texture2D eye_;

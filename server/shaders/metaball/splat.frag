@@ -1,42 +1,69 @@
-// The second pass (Man, 4.2): what one ball sends to the eye (rgb) and the share of what lies behind it that passes (a),
-// which blending puts together as eq. 28 and 29 say. The optical depth is the integral of the ball's field along the ray,
-// from the eye and up to the ground.
+// The second pass (Man, 4.2): the balls over a pixel, put together as eq. 29 says, the nearest first, until nothing more
+// shows. Each tile of the picture has a list of the balls that may lie over it, in that order: the same sum as blending
+// their splats from back to front, without reading and writing the picture for each. A ball's optical depth is the
+// integral of its field along the ray, from the eye and up to the ground.
 // Variants: GROUND (what lies behind it is left out), PAPER (the field's own value is the depth: eq. 12 splatted as it is).
 #include "common/view.glsl"
+#include "metaball/balls.glsl"
 #include "physics/light_transport.glsl"
 #include "physics/wyvill.glsl"
 
 #if GROUND
 layout(binding = 7) uniform sampler2D ground_distance;
 #endif
+layout(std430, binding = 1) readonly buffer TileStarts { uint tile_starts[]; };  // in `order`; row by row, and the end
+layout(std430, binding = 3) readonly buffer Sources { vec4 sources[]; };         // of source.comp
 
-flat in vec4 middle_radius;
-flat in vec4 source;
+uniform int tile_px;
+uniform int tiles_across;
+
 in vec2 position;
 out vec4 radiance_and_transmittance;
 
+const float kOpaque = 5e-3;  // share of the background below which a ray ends, as in light_volume/march.frag
+
 void main() {
+  ivec2 tile = ivec2(gl_FragCoord.xy) / tile_px;
+  int listed = tile.y * tiles_across + tile.x;
+  uint first = tile_starts[listed];
+  uint end = tile_starts[listed + 1];
   vec3 ray = ray_direction(position);
-  vec3 off_m = middle_radius.xyz - ray_origin(position);
-  float radius_m = middle_radius.w;
-  float along_m = dot(off_m, ray);
-  // The part across the ray first: the square of the whole would drown a small ball that is far away.
-  vec3 across = (off_m - along_m * ray) / radius_m;
-  float s = 1.0 - dot(across, across);
-  if (s <= 0.0) discard;
-  float half_chord = sqrt(s);
-  float from = max(-half_chord, -along_m / radius_m);
-  float to = half_chord;
+  vec3 origin_m = ray_origin(position);
 #if GROUND
-  to = min(to, (texelFetch(ground_distance, ivec2(gl_FragCoord.xy), 0).r - along_m) / radius_m);
+  float end_m = texelFetch(ground_distance, ivec2(gl_FragCoord.xy), 0).r;
 #endif
-  if (from >= to) discard;
+  vec3 radiance = vec3(0.0);
+  float passing = 1.0;
+  for (uint i = first; i < end && passing > kOpaque; ++i) {
+    uint index = order[i];
+    vec4 middle_radius = balls[index].middle_radius;
+    vec3 off_m = middle_radius.xyz - origin_m;
+    float along_m = dot(off_m, ray);
+    // The part across the ray first: the square of the whole would drown a small ball that is far away.
+    vec3 across_m = off_m - along_m * ray;
+    float per_radius = 1.0 / middle_radius.w;
+    float s = 1.0 - dot(across_m, across_m) * (per_radius * per_radius);
+    if (s <= 0.0) continue;
+    vec4 source = sources[index];
+    float half_chord = sqrt(s);
+    float from = -along_m * per_radius;
+    float to = half_chord;
+#if GROUND
+    to = min(to, (end_m - along_m) * per_radius);
+#endif
+    if (from >= to || to <= -half_chord) continue;
 #if PAPER
-  float depth = source.a * wyvill_field(s);
-  float taken = depth;  // eq. 26
+    float depth = source.a * wyvill_field(s);
+    float taken = depth;  // eq. 26
 #else
-  float depth = source.a * radius_m * max(wyvill_column_to(s, to) - wyvill_column_to(s, from), 0.0);
-  float taken = depth * mean_transmittance(depth);  // 1 - exp(-depth)
+    float column = from <= -half_chord && to >= half_chord
+                       ? wyvill_column(s)
+                       : wyvill_column_to(s, to) - wyvill_column_to(s, max(from, -half_chord));
+    float depth = source.a * middle_radius.w * max(column, 0.0);
+    float taken = depth * mean_transmittance(depth);  // 1 - exp(-depth)
 #endif
-  radiance_and_transmittance = vec4(source.rgb * taken, exp(-depth));
+    radiance += passing * taken * source.rgb;
+    passing *= exp(-depth);
+  }
+  radiance_and_transmittance = vec4(radiance, passing);
 }

@@ -1,0 +1,54 @@
+// What each ball sends to the eye per share of the ray that it takes. The phase functions are looked up once a ball (Man,
+// 4.2): its light comes from one direction, and the eye sees it in one.
+// Variants: LIGHTS, GROUPS, COLORED, CONSISTENT (as common/phase.glsl has it), PAPER, ISOTROPIC, PARALLEL (view rays).
+#include "common/phase.glsl"
+#include "metaball/balls.glsl"
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 1) readonly buffer Arrived { vec2 arrived[]; };  // of light.comp
+layout(std430, binding = 3) writeonly buffer Sources { vec4 sources[]; };  // rgb: radiance; a: extinction in the middle
+
+uniform int ball_count;
+uniform vec3 eye_forward;
+uniform vec3 eye_m;
+uniform vec3 towards_light[LIGHTS];
+uniform vec3 irradiance[LIGHTS];
+uniform vec3 sky_radiance;     // means over the upper and the lower half
+uniform vec3 ground_radiance;
+uniform float paper_albedo;
+
+void main() {
+  uint index = gl_GlobalInvocationID.x;
+  if (index >= uint(ball_count)) return;
+  Ball ball = balls[index];
+#if PARALLEL
+  vec3 ray = eye_forward;
+#else
+  vec3 off_m = ball.middle_radius.xyz - eye_m;
+  vec3 ray = off_m / max(length(off_m), 1e-3);
+#endif
+  vec3 radiance = vec3(0.0);
+  for (int i = 0; i < LIGHTS; ++i) {
+    vec2 light = arrived[uint(i * ball_count) + index];
+    float mu = dot(ray, towards_light[i]);
+#if PAPER
+    float phase = ISOTROPIC == 1 ? 1.0 : 0.75 * (1.0 + mu * mu);  // eq. 25
+    radiance += irradiance[i] * (paper_albedo * phase * light.x / kFourPi);
+#else
+    vec3 scattered = ball.tint.rgb * light.y;
+#if ISOTROPIC
+    scattered += ball.tint.rgb * (light.x / kFourPi);
+#else
+    for (int group = 0; group < GROUPS; ++group) {
+      scattered += phase_term(group, mu) * (ball.scattering[group / 4][group % 4] * light.x);
+    }
+#endif
+    radiance += irradiance[i] * scattered;
+#endif
+  }
+#if !PAPER
+  float sky = arrived[uint(LIGHTS * ball_count) + index].x;
+  radiance += ball.tint.rgb * mix(ground_radiance, sky_radiance, sky);
+#endif
+  sources[index] = vec4(radiance, ball.optics.x);
+}
