@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "glm/common.hpp"
 #include "glm/exponential.hpp"
@@ -126,15 +127,17 @@ float HorizonSine(float height_m, float ground_m) {
 
 Atmosphere::Atmosphere(float turbidity, float ground_albedo)
     : haze_depth_(glsl::haze_optical_depth(turbidity)) {
-  diffuse_.reserve(kDiffuseHeights * kDiffuseSines);
+  std::vector<glm::vec3> diffuse;
+  diffuse.reserve(kDiffuseHeights * kDiffuseSines);
   for (int y = 0; y < kDiffuseHeights; ++y) {
     const float high = static_cast<float>(y) / (kDiffuseHeights - 1);
     for (int x = 0; x < kDiffuseSines; ++x) {
       const float sine =
           kLowestSine + (1.0F - kLowestSine) * static_cast<float>(x) / (kDiffuseSines - 1);
-      diffuse_.push_back(SumOrders({high * high * kAtmosphereTop_m, sine}, ground_albedo));
+      diffuse.push_back(SumOrders({high * high * kAtmosphereTop_m, sine}, ground_albedo));
     }
   }
+  diffuse_ = std::move(diffuse);
 }
 
 AirOptics Atmosphere::At(float height_m) const {
@@ -172,41 +175,58 @@ glm::vec3 Atmosphere::DiffuseMeanRadiance(const AirPlace& place) const {
                   glm::mix(at(low.x, low.y + 1), at(low.x + 1, low.y + 1), share.x), share.y);
 }
 
-Atmosphere::Gathered Atmosphere::Gather(const Ray& ray, bool with_diffuse) const {
-  const float sine = ray.direction.z;
-  Gathered gathered;
-  gathered.meets_ground = sine < HorizonSine(ray.height_m, ray.ground_m);
-  const float end_m = gathered.meets_ground ? DistanceDownTo_m(ray.ground_m, ray.height_m, sine)
-                                            : DistanceUpTo_m(kAtmosphereTop_m, ray.height_m, sine);
-  const auto place_at = [&](float distance_m) {
-    const float height_m = std::max(HeightAlong(ray.height_m, sine, distance_m), 0.0F);
-    // The upright there, from the Earth's middle.
-    const glm::vec3 from_middle =
-        distance_m * ray.direction + glm::vec3(0.0F, 0.0F, kEarthRadius_m + ray.height_m);
-    return AirPlace{height_m, glm::dot(from_middle, ray.towards_sun) / (kEarthRadius_m + height_m)};
+Atmosphere::Line Atmosphere::Along(const Ray& ray) const {
+  Line line;
+  line.height_m = ray.height_m;
+  line.meets_ground = ray.sine < HorizonSine(ray.height_m, ray.ground_m);
+  line.end_m = line.meets_ground ? DistanceDownTo_m(ray.ground_m, ray.height_m, ray.sine)
+                                 : DistanceUpTo_m(kAtmosphereTop_m, ray.height_m, ray.sine);
+  const auto height_at = [&](float distance_m) {
+    return std::max(HeightAlong(ray.height_m, ray.sine, distance_m), 0.0F);
   };
+  line.end_height_m = height_at(line.end_m);
+  if (line.end_m <= 0.0F) return line;
   float from_m = 0.0F;
   for (int i = 1; i <= ray.steps; ++i) {
     // Steps grow with the distance, as the air thins out with it.
     const float share = static_cast<float>(i) / static_cast<float>(ray.steps);
-    const float to_m = end_m * share * share;
-    const AirPlace place = place_at(0.5F * (from_m + to_m));
-    const AirOptics optics = At(place.height_m);
+    const float to_m = line.end_m * share * share;
+    const float middle_m = 0.5F * (from_m + to_m);
+    const float height_m = height_at(middle_m);
+    const AirOptics optics = At(height_m);
     const glm::vec3 passed = glm::exp(-optics.extinction * (to_m - from_m));
     // The step's light on its way through the step itself.
     const glm::vec3 seen =
-        gathered.passed * (1.0F - passed) / glm::max(optics.extinction, glm::vec3(1e-20F));
-    const glm::vec3 sunlit = seen * SunTransmittance(place);
-    gathered.air += sunlit * optics.air;
-    gathered.haze += sunlit * optics.haze;
-    const glm::vec3 scattering = optics.air + optics.haze;
-    if (with_diffuse) gathered.diffuse += seen * scattering * DiffuseMeanRadiance(place);
-    gathered.uniform += seen * scattering;
-    gathered.passed *= passed;
-    gathered.way += glsl::densities_of_air(place.height_m) * ((to_m - from_m) / kScaleHeights_m);
+        line.passed * (1.0F - passed) / glm::max(optics.extinction, glm::vec3(1e-20F));
+    line.steps.push_back({middle_m, height_m, seen * optics.air, seen * optics.haze});
+    line.passed *= passed;
+    line.way += glsl::densities_of_air(height_m) * ((to_m - from_m) / kScaleHeights_m);
     from_m = to_m;
   }
-  gathered.end = place_at(end_m);
+  return line;
+}
+
+namespace {
+
+// A point of a line, whose upright leans with the distance.
+AirPlace PlaceOn(const Atmosphere::Line& line, const Atmosphere::Sunwards& sun, float distance_m,
+                 float height_m) {
+  const float above = distance_m * sun.mu + (kEarthRadius_m + line.height_m) * sun.sine;
+  return {height_m, above / (kEarthRadius_m + height_m)};
+}
+
+}  // namespace
+
+Atmosphere::Gathered Atmosphere::Gather(const Line& line, const Sunwards& sun) const {
+  Gathered gathered;
+  for (const Line::Step& step : line.steps) {
+    const AirPlace place = PlaceOn(line, sun, step.distance_m, step.height_m);
+    const glm::vec3 sunlight = SunTransmittance(place);
+    gathered.air += sunlight * step.air;
+    gathered.haze += sunlight * step.haze;
+    // While the orders are being summed there are none yet.
+    if (!diffuse_.empty()) gathered.diffuse += (step.air + step.haze) * DiffuseMeanRadiance(place);
+  }
   return gathered;
 }
 
@@ -220,18 +240,16 @@ glm::vec3 Atmosphere::SumOrders(const AirPlace& place, float ground_albedo) cons
     const float sine = 1.0F - 2.0F * (static_cast<float>(i) + 0.5F) / kDirections;
     const float cosine = std::sqrt(1.0F - sine * sine);
     const float azimuth = static_cast<float>(i) * 2.39996323F;
-    Ray ray;
-    ray.height_m = place.height_m;
-    ray.direction = {cosine * std::cos(azimuth), cosine * std::sin(azimuth), sine};
-    ray.towards_sun = {across, 0.0F, place.sun_sine};
-    ray.steps = 12;
-    const Gathered gathered = Gather(ray, false);
+    const Line line = Along({.height_m = place.height_m, .sine = sine, .steps = 12});
+    const Sunwards sun{place.sun_sine, cosine * std::cos(azimuth) * across + sine * place.sun_sine};
+    const Gathered gathered = Gather(line, sun);
     second += (gathered.air + gathered.haze) * kInverseFourPi;
-    again += gathered.uniform;
-    if (gathered.meets_ground) {
-      const float lit = std::max(gathered.end.sun_sine, 0.0F) * std::numbers::inv_pi_v<float>;
-      second += gathered.passed * SunTransmittance(gathered.end) * (ground_albedo * lit);
-      again += gathered.passed * ground_albedo;
+    for (const Line::Step& step : line.steps) again += step.air + step.haze;
+    if (line.meets_ground) {
+      const AirPlace end = PlaceOn(line, sun, line.end_m, line.end_height_m);
+      const float lit = std::max(end.sun_sine, 0.0F) * std::numbers::inv_pi_v<float>;
+      second += line.passed * SunTransmittance(end) * (ground_albedo * lit);
+      again += line.passed * ground_albedo;
     }
   }
   return second / (static_cast<float>(kDirections) - again);

@@ -48,25 +48,42 @@ class Atmosphere {
   // Mean radiance from all directions of light scattered at least once, for a sun of irradiance 1.
   glm::vec3 DiffuseMeanRadiance(const AirPlace& place) const;
 
-  // Light scattered towards the start of a ray.
   struct Ray {
     float height_m = 0.0F;
-    float ground_m = 0.0F;                  // height of the ground, not above the ray's
-    glm::vec3 direction{0.0F, 0.0F, 1.0F};  // z is up at the start
-    glm::vec3 towards_sun{0.0F, 0.0F, 1.0F};
+    float ground_m = 0.0F;  // height of the ground, not above the ray's
+    float sine = 1.0F;      // of the elevation at the start
     int steps = 24;
   };
+  // The air on a ray, wherever the sun is.
+  struct Line {
+    struct Step {
+      float distance_m = 0.0F;
+      float height_m = 0.0F;
+      glm::vec3 air{0.0F};   // share of light arriving at the step that air scatters and
+      glm::vec3 haze{0.0F};  // haze, of it what the start of the ray sees
+    };
+    float height_m = 0.0F;
+    std::vector<Step> steps;
+    glm::vec3 passed{1.0F};  // share of what lies at the ray's end
+    glm::vec2 way{0.0F};     // air and haze on the ray, in vertical depths of the whole
+    float end_m = 0.0F;
+    float end_height_m = 0.0F;
+    bool meets_ground = false;
+  };
+  Line Along(const Ray& ray) const;
+
+  // The sun, from the start of a ray.
+  struct Sunwards {
+    float sine = 1.0F;  // of its elevation
+    float mu = 1.0F;    // cosine of its angle to the ray
+  };
+  // Light scattered towards the start of a ray.
   struct Gathered {
     glm::vec3 air{0.0F};      // once by air, without phase function
     glm::vec3 haze{0.0F};     // once by haze, without phase function
     glm::vec3 diffuse{0.0F};  // more than once
-    glm::vec3 uniform{0.0F};  // if the air were lit with radiance 1 from everywhere
-    glm::vec3 passed{1.0F};   // share of what lies at the ray's end
-    glm::vec2 way{0.0F};      // air and haze on the ray, in vertical depths of the whole
-    bool meets_ground = false;
-    AirPlace end;
   };
-  Gathered Gather(const Ray& ray, bool with_diffuse) const;
+  Gathered Gather(const Line& line, const Sunwards& sun) const;
 
  private:
   glm::vec3 SumOrders(const AirPlace& place, float ground_albedo) const;

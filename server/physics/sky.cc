@@ -38,19 +38,16 @@ ClearSky::ClearSky(const Atmosphere& atmosphere, const glm::vec3& towards_sun, c
   for (int y = 0; y < glsl::kSkyElevations; ++y) {
     const float sine = glm::clamp(SineOfRow(y, horizon_sine_), -1.0F, 1.0F);
     const float cosine = std::sqrt(1.0F - sine * sine);
+    const Atmosphere::Line line =
+        atmosphere.Along({.height_m = height_m, .ground_m = ground_m, .sine = sine});
     for (int x = 0; x < glsl::kSkyAzimuths; ++x) {
       const float east = 1.0F - 2.0F * static_cast<float>(x) / (glsl::kSkyAzimuths - 1);
-      Atmosphere::Ray ray;
-      ray.height_m = height_m;
-      ray.ground_m = ground_m;
-      ray.direction = {cosine * east, cosine * std::sqrt(std::max(1.0F - east * east, 0.0F)), sine};
-      ray.towards_sun = {sun_across, 0.0F, towards_sun.z};
-      const Atmosphere::Gathered gathered = atmosphere.Gather(ray, true);
-      const float mu = glm::dot(ray.direction, ray.towards_sun);
+      const float mu = cosine * east * sun_across + sine * towards_sun.z;
+      const Atmosphere::Gathered gathered = atmosphere.Gather(line, {towards_sun.z, mu});
       const float rayleigh = 0.75F * (1.0F + mu * mu) * kInverseFourPi;
       const auto at = static_cast<std::size_t>(y * 2 * glsl::kSkyAzimuths + x);
-      table_[at] = glm::vec4(gathered.air * rayleigh + gathered.diffuse, gathered.way.x);
-      table_[at + glsl::kSkyAzimuths] = glm::vec4(gathered.haze, gathered.way.y);
+      table_[at] = glm::vec4(gathered.air * rayleigh + gathered.diffuse, line.way.x);
+      table_[at + glsl::kSkyAzimuths] = glm::vec4(gathered.haze, line.way.y);
     }
   }
   light_ = Integrate();

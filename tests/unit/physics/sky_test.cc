@@ -153,18 +153,17 @@ TEST(ClearSky, TableHoldsTheIntegral) {
       float worst_way = 0.0F;
       for (float azimuth_deg = 0.0F; azimuth_deg <= 180.0F; azimuth_deg += 7.0F) {
         for (float elevation_deg = 0.03F; elevation_deg < 90.0F; elevation_deg *= 1.13F) {
-          Atmosphere::Ray ray;
-          ray.height_m = height_m;
-          ray.direction = Towards(azimuth_deg, elevation_deg);
-          ray.towards_sun = TowardsSun(sun_deg);
-          ray.steps = 400;
-          const Atmosphere::Gathered gathered = atmosphere.Gather(ray, true);
-          const float mu = glm::dot(ray.direction, ray.towards_sun);
+          const glm::vec3 direction = Towards(azimuth_deg, elevation_deg);
+          const glm::vec3 towards_sun = TowardsSun(sun_deg);
+          const float mu = glm::dot(direction, towards_sun);
+          const Atmosphere::Line line =
+              atmosphere.Along({.height_m = height_m, .sine = direction.z, .steps = 400});
+          const Atmosphere::Gathered gathered = atmosphere.Gather(line, {towards_sun.z, mu});
           const float expected = gathered.air.g * 0.75F * (1.0F + mu * mu) * 0.0795775F +
                                  gathered.diffuse.g + gathered.haze.g * glsl::haze_phase(mu);
-          const ClearSky::Seen seen = sky.At(ray.direction);
+          const ClearSky::Seen seen = sky.At(direction);
           worst = std::max(worst, std::abs(seen.radiance.g / expected - 1.0F));
-          worst_way = std::max(worst_way, std::abs(seen.way.x / gathered.way.x - 1.0F));
+          worst_way = std::max(worst_way, std::abs(seen.way.x / line.way.x - 1.0F));
         }
       }
       // Linear between nodes in a light that is nearly exponential in elevation; most so in
