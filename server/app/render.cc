@@ -132,7 +132,8 @@ Command AddRender(CLI::App& app) {
   render->add_option("--camera", flags->scene.camera, "orbit, spotter or top-down");
   render->add_option("--slices", flags->scene.slices, "Number of slices");
   render->add_option("--renderer", flags->scene.renderer,
-                     "half_angle, light_volume (the default), metaball or reference");
+                     "half_angle, light_volume (the default), metaball, "
+                     "cumulus or reference");
   render->add_option("--spp", flags->reference.samples_per_pixel,
                      "Reference: stop after so many samples a pixel");
   render->add_option("--seconds", flags->reference.seconds, "Reference: stop after this time");

@@ -58,7 +58,7 @@ absl::Status SetRenderer(const std::string& name, v1::Rendering& rendering) {
   const std::string value = absl::StrCat("RENDERER_", absl::AsciiStrToUpper(name));
   if (!v1::Renderer_Parse(value, &renderer) || renderer == v1::RENDERER_UNSPECIFIED) {
     return absl::InvalidArgumentError(absl::StrCat(
-        "--renderer is '", name, "'; it must be half_angle, light_volume or metaball"));
+        "--renderer is '", name, "'; it must be half_angle, light_volume, metaball or cumulus"));
   }
   rendering.set_renderer(renderer);
   return absl::OkStatus();

@@ -5,9 +5,7 @@
 #include "clouds/repeatable_math.h"
 
 namespace thunderhead::clouds {
-namespace {
 
-// Columns are the ellipsoid's axes in the world.
 glm::dmat3 AxesOf(const glm::dvec3& rotation_deg) {
   const glm::dvec3 s(SineOfDegrees(rotation_deg.x), SineOfDegrees(rotation_deg.y),
                      SineOfDegrees(rotation_deg.z));
@@ -17,8 +15,6 @@ glm::dmat3 AxesOf(const glm::dvec3& rotation_deg) {
           glm::dvec3(s.x * s.y * c.z - c.x * s.z, s.x * s.y * s.z + c.x * c.z, s.x * c.y),
           glm::dvec3(c.x * s.y * c.z + s.x * s.z, c.x * s.y * s.z - s.x * c.z, c.x * c.y)};
 }
-
-}  // namespace
 
 Quadric::Quadric(const Ellipsoid& ellipsoid) : centre_m_(ellipsoid.centre_m) {
   const glm::dmat3 axes = AxesOf(ellipsoid.rotation_deg);

@@ -20,6 +20,9 @@ struct Ellipsoid {
   glm::dvec3 rotation_deg{0.0};
 };
 
+// Columns are unit vectors along the axes of what is rotated so.
+glm::dmat3 AxesOf(const glm::dvec3& rotation_deg);
+
 struct CloudShape {
   volume::RegularGrid grid;
   NoiseParameters noise;

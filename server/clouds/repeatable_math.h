@@ -1,4 +1,4 @@
-// Sine and cosine from additions and multiplications alone, so that they are the same, bit for bit,
+// Sine, cosine and cube root from the four operations alone, so that they are the same, bit for bit,
 // on every machine with IEEE doubles; the C library's are not. Accurate to 1e-15.
 #pragma once
 
@@ -25,5 +25,16 @@ inline double SineOfDegrees(double degrees) {
 }
 
 inline double CosineOfDegrees(double degrees) { return SineOfDegrees(degrees + 90.0); }
+
+// The cube root of a finite number that is not below 0, by Newton's rule.
+inline double CubeRoot(double x) {
+  if (x <= 0.0) return 0.0;
+  int exponent = 0;
+  double mantissa = std::frexp(x, &exponent);
+  for (; exponent % 3 != 0; ++exponent) mantissa *= 0.5;
+  double root = 0.7;  // the mantissa is from 1/8 to 1
+  for (int i = 0; i < 8; ++i) root = (2.0 * root + mantissa / (root * root)) / 3.0;
+  return std::ldexp(root, exponent / 3);
+}
 
 }  // namespace thunderhead::clouds

@@ -1,6 +1,7 @@
 #include "gl/objects.h"
 
 #include <string>
+#include <vector>
 
 #include "base/status.h"
 
@@ -52,6 +53,7 @@ std::size_t BytesPerTexel(GLenum internal_format) {
       return 2;
     case GL_RG16F:
     case GL_R32F:
+    case GL_DEPTH_COMPONENT32F:
     case GL_RGBA8:
       return 4;
     case GL_RGBA16F:
@@ -102,11 +104,24 @@ void Texture3D::BindImage(GLuint unit, GLenum access) const {
   glBindImageTexture(unit, name_.Get(), 0, GL_TRUE, 0, access, internal_format_);
 }
 
-Framebuffer::Framebuffer(const Texture2D& color) : size_(color.Size()) {
+Framebuffer::Framebuffer(const Texture2D& color) : Framebuffer({&color}) {}
+
+Framebuffer::Framebuffer(std::initializer_list<const Texture2D*> colors, const Texture2D* depth) {
   GLuint name = 0;
   glCreateFramebuffers(1, &name);
   name_ = Name<internal::DeleteFramebuffer>(name);
-  glNamedFramebufferTexture(name, GL_COLOR_ATTACHMENT0, color.Get(), 0);
+  std::vector<GLenum> drawn;
+  for (const Texture2D* color : colors) {
+    drawn.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(drawn.size()));
+    glNamedFramebufferTexture(name, drawn.back(), color->Get(), 0);
+    size_ = color->Size();
+  }
+  if (drawn.empty()) drawn.push_back(GL_NONE);
+  glNamedFramebufferDrawBuffers(name, static_cast<GLsizei>(drawn.size()), drawn.data());
+  if (depth != nullptr) {
+    glNamedFramebufferTexture(name, GL_DEPTH_ATTACHMENT, depth->Get(), 0);
+    size_ = depth->Size();
+  }
   const GLenum status = glCheckNamedFramebufferStatus(name, GL_DRAW_FRAMEBUFFER);
   THUNDERHEAD_CHECK(status == GL_FRAMEBUFFER_COMPLETE,
                     "framebuffer status " + std::to_string(status));
@@ -117,9 +132,13 @@ void Framebuffer::Bind() const {
   glViewport(0, 0, size_.x, size_.y);
 }
 
-void Framebuffer::Clear(float red, float green, float blue, float alpha) const {
+void Framebuffer::Clear(float red, float green, float blue, float alpha, int attachment) const {
   const float color[4] = {red, green, blue, alpha};
-  glClearNamedFramebufferfv(name_.Get(), GL_COLOR, 0, color);
+  glClearNamedFramebufferfv(name_.Get(), GL_COLOR, attachment, color);
+}
+
+void Framebuffer::ClearDepth(float depth) const {
+  glClearNamedFramebufferfv(name_.Get(), GL_DEPTH, 0, &depth);
 }
 
 Buffer::Buffer(std::size_t bytes, const void* data, GLbitfield flags) : bytes_(bytes) {

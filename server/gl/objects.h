@@ -5,6 +5,7 @@
 #include <epoxy/gl.h>
 
 #include <cstddef>
+#include <initializer_list>
 #include <utility>
 
 #include "glm/vec2.hpp"
@@ -96,15 +97,20 @@ class Texture3D {
   std::size_t bytes_ = 0;
 };
 
-// A framebuffer with one colour attachment, which it does not own.
+// A framebuffer with colour attachments, a depth attachment (GL_DEPTH_COMPONENT32F), or both, which
+// it does not own.
 class Framebuffer {
  public:
   Framebuffer() = default;
   explicit Framebuffer(const Texture2D& color);
+  // Of one size; drawn to in this order.
+  explicit Framebuffer(std::initializer_list<const Texture2D*> colors,
+                       const Texture2D* depth = nullptr);
 
   // Binds it for drawing and sets the viewport to the whole texture.
   void Bind() const;
-  void Clear(float red, float green, float blue, float alpha) const;
+  void Clear(float red, float green, float blue, float alpha, int attachment = 0) const;
+  void ClearDepth(float depth) const;
   GLuint Get() const { return name_.Get(); }
 
  private:

@@ -91,11 +91,22 @@ absl::Status Ground::CastShadow(const ResidentMedium& medium, const RenderSettin
   program->Use();
   no_attributes_.Bind();
   glDrawArrays(GL_TRIANGLES, 0, 3);
-  shadow_middle_m_ = medium.Middle_m();
+  PlaceShadow(frame, medium.Middle_m());
+  return absl::OkStatus();
+}
+
+void Ground::TakeShadow(gl::Texture2D blocked, const LightFrame& frame,
+                        const glm::dvec3& middle_m) {
+  shadow_ = std::move(blocked);
+  shadow_target_ = gl::Framebuffer(shadow_);
+  PlaceShadow(frame, middle_m);
+}
+
+void Ground::PlaceShadow(const LightFrame& frame, const glm::dvec3& middle_m) {
+  shadow_middle_m_ = middle_m;
   shadow_right_ = frame.right / frame.half_extent_m.x;
   shadow_up_ = frame.up / frame.half_extent_m.y;
   has_shadow_ = true;
-  return absl::OkStatus();
 }
 
 absl::Status Ground::DrawDistance(const scene::View& view, const glm::ivec2& size) {

@@ -9,6 +9,7 @@
 #include "absl/status/status.h"
 #include "gl/objects.h"
 #include "gl/program.h"
+#include "renderers/half_angle/slicing.h"
 #include "renderers/medium.h"
 #include "renderers/render_settings.h"
 #include "volume/hydrometeor_fields.h"
@@ -24,6 +25,8 @@ class Ground {
 
   // Computes the shadow of `medium`, if it is not empty, under the settings' sun.
   absl::Status CastShadow(const ResidentMedium& medium, const RenderSettings& settings);
+  // Takes the shadow of something else: the share of sunlight kept, over `frame` around `middle_m`.
+  void TakeShadow(gl::Texture2D blocked, const LightFrame& frame, const glm::dvec3& middle_m);
   void ClearShadow() { has_shadow_ = false; }
 
   // Of its lowest point, above sea level.
@@ -48,6 +51,8 @@ class Ground {
   std::size_t Bytes() const { return terrain_.Bytes() + shadow_.Bytes() + distance_.Bytes(); }
 
  private:
+  void PlaceShadow(const LightFrame& frame, const glm::dvec3& middle_m);
+
   std::shared_ptr<gl::ProgramCache> programs_;
   gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
   volume::RegularGrid grid_;

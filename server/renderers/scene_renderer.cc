@@ -6,6 +6,7 @@
 
 #include "base/status.h"
 #include "base/stopwatch.h"
+#include "renderers/cumulus/surface_of_scene.h"
 #include "scene/view.h"
 
 namespace thunderhead::renderers {
@@ -36,7 +37,8 @@ SceneRenderer::SceneRenderer(std::shared_ptr<gl::ProgramCache> programs,
       half_angle_(programs_),
       light_volume_(programs_),
       fits_(std::move(fits)),
-      metaball_(programs_) {}
+      metaball_(programs_),
+      cumulus_(programs_) {}
 
 scene::Stage SceneRenderer::FirstStage(
     const scene::Scene& scene,
@@ -47,7 +49,7 @@ scene::Stage SceneRenderer::FirstStage(
 
 std::size_t SceneRenderer::Bytes() const {
   return medium_.Bytes() + half_angle_.Bytes() + light_volume_.Bytes() + metaball_.Bytes() +
-         surroundings_.Bytes() + ground_.Bytes() + linear_.Bytes();
+         cumulus_.Bytes() + surroundings_.Bytes() + ground_.Bytes() + linear_.Bytes();
 }
 
 absl::StatusOr<LinearFrame> SceneRenderer::Draw(
@@ -57,28 +59,29 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
   if (quality != drawn_quality_) first = std::min(first, scene::Stage::kView);
   drawn_scene_.reset();
   std::vector<StageTime> stages;
+  drawn_by_ = scene.rendering.renderer;
   if (first <= scene::Stage::kExtinction) {
-    ResidentMedium::Cost cost;
-    medium_ = ResidentMedium();
-    medium_ = ResidentMedium(scene, *fields, &detail_noises_, &cost);
-    stages.push_back({"extinction", cost.extinction_ms});
-    stages.push_back({"upload", cost.upload_ms});
+    THUNDERHEAD_RETURN_IF_ERROR(MakeContent(scene, *fields, &stages));
   }
   if (first <= scene::Stage::kView) {
     const scene::View view = scene::ViewOf(scene, *fields);
     if (first <= scene::Stage::kStorm) ground_.SetTerrain(*fields);
     surroundings_.Update(scene, view, ground_);
     drawn_slices_ = 0;
-    if (!medium_.Empty()) {
+    if (!Empty()) {
       const double wanted = std::ceil(scene.rendering.slices * quality.slice_share);
       drawn_slices_ = std::max(static_cast<int>(wanted), 1);
       RenderSettings settings{scene.rendering, view, surroundings_.IlluminationOf(scene),
                               EyeSize(scene, quality), drawn_slices_};
-      THUNDERHEAD_RETURN_IF_ERROR(DrawGround(first, &settings, &stages));
-      if (first <= scene::Stage::kLight) {
-        THUNDERHEAD_RETURN_IF_ERROR(FitMetaballs(scene, fields, &stages));
+      if (drawn_by_ == scene::Renderer::kCumulus) {
+        THUNDERHEAD_RETURN_IF_ERROR(DrawCumulus(scene, &settings, first, &stages));
+      } else {
+        THUNDERHEAD_RETURN_IF_ERROR(DrawGround(first, &settings, &stages));
+        if (first <= scene::Stage::kLight) {
+          THUNDERHEAD_RETURN_IF_ERROR(FitMetaballs(scene, fields, &stages));
+        }
+        THUNDERHEAD_RETURN_IF_ERROR(DrawMedium(settings, first, &stages));
       }
-      THUNDERHEAD_RETURN_IF_ERROR(DrawMedium(settings, first, &stages));
     } else {
       ground_.ClearShadow();
     }
@@ -93,6 +96,56 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
   LinearFrame frame = Report(scene, *fields);
   frame.stages = std::move(stages);
   return frame;
+}
+
+absl::Status SceneRenderer::MakeContent(const scene::Scene& scene,
+                                        const volume::HydrometeorFields& fields,
+                                        std::vector<StageTime>* stages) {
+  medium_ = ResidentMedium();
+  cumulus_.SetSurface({});
+  if (drawn_by_ == scene::Renderer::kCumulus) {
+    const base::Stopwatch stopwatch;
+    THUNDERHEAD_ASSIGN_OR_RETURN(const DrawnSurface drawn, SurfaceOf(scene, fields));
+    cumulus_.SetSurface(drawn.surface);
+    cumulus_fields_ = drawn.fields;
+    stages->push_back({"surface", stopwatch.ElapsedMs()});
+    return absl::OkStatus();
+  }
+  ResidentMedium::Cost cost;
+  medium_ = ResidentMedium(scene, fields, &detail_noises_, &cost);
+  stages->push_back({"extinction", cost.extinction_ms});
+  stages->push_back({"upload", cost.upload_ms});
+  return absl::OkStatus();
+}
+
+bool SceneRenderer::Empty() const {
+  return drawn_by_ == scene::Renderer::kCumulus ? cumulus_.Empty() : medium_.Empty();
+}
+
+absl::Status SceneRenderer::DrawCumulus(const scene::Scene& scene, RenderSettings* settings,
+                                        scene::Stage first, std::vector<StageTime>* stages) {
+  base::Stopwatch stopwatch;
+  if (first <= scene::Stage::kLight) {
+    THUNDERHEAD_RETURN_IF_ERROR(cumulus_.CastShadow(*settings));
+    ground_.ClearShadow();
+    if (settings->illumination.towards_sun.z > 0.0) {
+      THUNDERHEAD_ASSIGN_OR_RETURN(gl::Texture2D shadow, cumulus_.GroundShadow());
+      ground_.TakeShadow(std::move(shadow), cumulus_.ShadowFrame(), cumulus_.Middle_m());
+    }
+    glFinish();
+    stages->push_back({"light", stopwatch.Restart()});
+  }
+  if (ground_.MayHide(settings->view)) {
+    THUNDERHEAD_RETURN_IF_ERROR(ground_.DrawDistance(settings->view, settings->eye_size));
+    settings->ground_distance = &ground_.Distance();
+    glFinish();
+    stages->push_back({"ground", stopwatch.Restart()});
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(
+      cumulus_.DrawView(*settings, surroundings_.LightMap(scene), &detail_noises_));
+  glFinish();
+  stages->push_back({"view", stopwatch.Restart()});
+  return absl::OkStatus();
 }
 
 absl::Status SceneRenderer::DrawGround(scene::Stage first, RenderSettings* settings,
@@ -155,16 +208,19 @@ absl::Status SceneRenderer::DrawMedium(const RenderSettings& settings, scene::St
       break;
     case scene::Renderer::kReference:
       return absl::InvalidArgumentError("the reference is traced, not drawn");
+    case scene::Renderer::kCumulus:
+      return absl::InternalError("a cumulus has no medium");
   }
-  drawn_by_ = settings.rendering.renderer;
   return absl::OkStatus();
 }
 
 const gl::Texture2D& SceneRenderer::Eye() const {
-  if (medium_.Empty()) return nothing_;
+  if (Empty()) return nothing_;
   switch (drawn_by_) {
     case scene::Renderer::kHalfAngle:
       return half_angle_.Eye();
+    case scene::Renderer::kCumulus:
+      return cumulus_.Eye();
     case scene::Renderer::kMetaball:
       return metaball_.Eye();
     case scene::Renderer::kLightVolume:
@@ -175,7 +231,11 @@ const gl::Texture2D& SceneRenderer::Eye() const {
 }
 
 volume::WorldBox SceneRenderer::Box() const {
-  if (medium_.Empty()) return {};
+  if (Empty()) return {};
+  if (drawn_by_ == scene::Renderer::kCumulus) {
+    return {cumulus_.Middle_m() - cumulus_.HalfExtent_m(),
+            cumulus_.Middle_m() + cumulus_.HalfExtent_m()};
+  }
   if (drawn_by_ == scene::Renderer::kMetaball && !metaball_.Box().Empty()) {
     return {metaball_.Box().low_m, metaball_.Box().high_m};
   }
@@ -202,6 +262,13 @@ LinearFrame SceneRenderer::Report(const scene::Scene& scene,
   frame.fields = medium_.Content().hydrometeors;
   frame.slices = drawn_slices_;
   frame.device_bytes = Bytes();
+  if (drawn_by_ == scene::Renderer::kCumulus) {
+    frame.fields = cumulus_fields_;
+    frame.slices = 0;
+    frame.ellipsoids = cumulus_.BubbleCount();
+    frame.not_shown = NotShownByCumulus(scene, fields);
+    return frame;
+  }
   if (!medium_.Empty()) {
     const glm::dvec3 box_m = 2.0 * medium_.HalfExtent_m();
     const glm::dvec3 domain_m = fields.grid.HighCorner_m() - fields.grid.low_corner_m;

@@ -9,6 +9,7 @@
 
 #include "absl/status/statusor.h"
 #include "gl/objects.h"
+#include "renderers/cumulus/cumulus_renderer.h"
 #include "renderers/half_angle/half_angle_renderer.h"
 #include "renderers/light_volume/light_volume_renderer.h"
 #include "renderers/medium.h"
@@ -27,8 +28,8 @@ struct DrawQuality {
   bool operator==(const DrawQuality&) const = default;
 };
 
-// Wall time of one stage: "extinction", "upload"; "fit" of metaballs; "slices" of half-angle
-// slicing, or "light" and "view" of the others; "ground", "composite".
+// Wall time of one stage: "extinction", "upload"; "fit" of metaballs; "surface" of a cumulus;
+// "slices" of half-angle slicing, or "light" and "view" of the others; "ground", "composite".
 struct StageTime {
   std::string stage;
   double milliseconds = 0.0;
@@ -43,6 +44,7 @@ struct LinearFrame {
   double occupied_share = 0.0;
   int balls = 0;                       // metaballs drawn
   double fit_error = 0.0;              // of those, root mean square over the extinction's own
+  int ellipsoids = 0;                  // of a cumulus
   std::vector<std::string> not_shown;  // what the scene asks for and the renderer cannot show
 };
 
@@ -66,6 +68,10 @@ class SceneRenderer {
   std::size_t Bytes() const;
 
  private:
+  // Makes what the renderer draws: the medium, or the surface of a cumulus.
+  absl::Status MakeContent(const scene::Scene& scene, const volume::HydrometeorFields& fields,
+                           std::vector<StageTime>* stages);
+  bool Empty() const;
   // The storm's shadow, and what of the storm the ground hides.
   absl::Status DrawGround(scene::Stage first, RenderSettings* settings,
                           std::vector<StageTime>* stages);
@@ -76,6 +82,9 @@ class SceneRenderer {
   // Reruns what `first` dirties of the light and the view; appends the times of what ran.
   absl::Status DrawMedium(const RenderSettings& settings, scene::Stage first,
                           std::vector<StageTime>* stages);
+  // Reruns what `first` dirties of a cumulus.
+  absl::Status DrawCumulus(const scene::Scene& scene, RenderSettings* settings, scene::Stage first,
+                           std::vector<StageTime>* stages);
   const gl::Texture2D& Eye() const;
   // Around what was drawn.
   volume::WorldBox Box() const;
@@ -90,7 +99,9 @@ class SceneRenderer {
   std::shared_ptr<BallFits> fits_;
   std::shared_ptr<const BallCloud> balls_;
   MetaballRenderer metaball_;
-  scene::Renderer drawn_by_ = scene::Renderer::kHalfAngle;  // of the eye buffer, if not empty
+  CumulusRenderer cumulus_;
+  scene::Renderer drawn_by_ = scene::Renderer::kHalfAngle;
+  std::vector<physics::Hydrometeor> cumulus_fields_;  // that the surface was made of
   DetailNoises detail_noises_;
   ResidentMedium medium_;
   gl::Texture2D linear_;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "base/status.h"
+#include "renderers/cumulus/light_map.h"
 #include "renderers/view_uniforms.h"
 
 namespace thunderhead::renderers {
@@ -78,6 +79,14 @@ Illumination SkyAndGround::IlluminationOf(const scene::Scene& scene) const {
   light.from_ground = GroundReflectance(scene) * (light.sunlight * sine + diffuse);
   light.ambient = 0.5F * (light.from_sky + light.from_ground);
   return light;
+}
+
+std::vector<glm::vec3> SkyAndGround::LightMap(const scene::Scene& scene) const {
+  const auto sky_scale = static_cast<float>(scene.sun.irradiance * scene.sky.brightness);
+  const glm::vec3 from_ground = IlluminationOf(scene).from_ground;
+  return LightMapOf([&](const glm::vec3& direction) {
+    return direction.z > 0.0F ? sky_scale * sky_->Radiance(direction) : from_ground;
+  });
 }
 
 absl::Status SkyAndGround::Composite(const scene::Scene& scene, const scene::View& view,

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "gl/objects.h"
@@ -29,6 +30,9 @@ class SkyAndGround {
   void Update(const scene::Scene& scene, const scene::View& view, const Ground& ground);
 
   Illumination IlluminationOf(const scene::Scene& scene) const;
+
+  // The light of sky and ground on a white surface, as LightMapOf gives it.
+  std::vector<glm::vec3> LightMap(const scene::Scene& scene) const;
 
   // Draws what `eye` holds (rgb: radiance, a: share of the background that passes) in front of sky
   // and ground, all through the air, to `target`. `box` is around what was drawn and tells how far

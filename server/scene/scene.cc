@@ -18,6 +18,29 @@ std::array<FieldParameters, physics::kHydrometeorCount> DrawnFields(const Scene&
   return fields;
 }
 
+bool BothCumulus(const Rendering& before, const Rendering& after) {
+  return before.renderer == Renderer::kCumulus && after.renderer == Renderer::kCumulus;
+}
+
+// The cumulus renderer draws a surface, all others a medium; each is made in the other's place.
+bool SameContent(const Rendering& before, const Rendering& after) {
+  if (BothCumulus(before, after)) {
+    const Cumulus& a = before.cumulus;
+    const Cumulus& b = after.cumulus;
+    return a.source == b.source && a.seed == b.seed && a.scales == b.scales &&
+           a.least_extinction_per_m == b.least_extinction_per_m;
+  }
+  if (before.renderer == Renderer::kCumulus || after.renderer == Renderer::kCumulus) return false;
+  return before.mode == after.mode && before.false_colors == after.false_colors;
+}
+
+// A surface shades what lies behind it, less its corona; the rest of its shading is the view's.
+bool SameLight(Rendering before, const Rendering& after) {
+  if (BothCumulus(before, after)) return before.cumulus.corona == after.cumulus.corona;
+  before.cumulus = after.cumulus;
+  return before == after;
+}
+
 }  // namespace
 
 bool FieldParameters::operator==(const FieldParameters& other) const {
@@ -63,13 +86,20 @@ Stage FirstDirtyStage(const Scene& before, const Scene& after) {
   if (before.storm_id != after.storm_id || before.time_index != after.time_index) {
     return Stage::kStorm;
   }
-  const bool grouping_changed = before.rendering.mode != after.rendering.mode ||
-                                before.rendering.false_colors != after.rendering.false_colors;
-  if (DrawnFields(before) != DrawnFields(after) || grouping_changed) return Stage::kExtinction;
-  if (before.sun != after.sun || before.rendering != after.rendering) return Stage::kLight;
+  if (DrawnFields(before) != DrawnFields(after) ||
+      !SameContent(before.rendering, after.rendering)) {
+    return Stage::kExtinction;
+  }
+  if (before.sun != after.sun || !SameLight(before.rendering, after.rendering)) {
+    return Stage::kLight;
+  }
   const bool same_size = before.output.width_px == after.output.width_px &&
                          before.output.height_px == after.output.height_px;
-  if (before.camera != after.camera || before.sky != after.sky || !same_size) return Stage::kView;
+  if (before.camera != after.camera || before.sky != after.sky || !same_size ||
+      (BothCumulus(before.rendering, after.rendering) &&
+       before.rendering.cumulus != after.rendering.cumulus)) {
+    return Stage::kView;
+  }
   if (before.display != after.display || before.output != after.output) return Stage::kTone;
   return Stage::kNothing;
 }

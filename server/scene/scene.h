@@ -109,10 +109,10 @@ bool HasPerFieldPhase(Mode mode);
 bool HasDetail(Mode mode);
 
 // The renderer: slices halfway between sun and eye; light carried once into a volume, which view
-// rays march through; metaballs fitted to the fields, lit and splatted (Man); or the Monte Carlo
-// reference, which is traced on the CPU, ever finer.
-enum class Renderer { kHalfAngle, kLightVolume, kReference, kMetaball };
-inline constexpr std::size_t kRendererCount = 4;
+// rays march through; metaballs fitted to the fields, lit and splatted (Man); the shading of a
+// cumulus' surface (Neyret); or the Monte Carlo reference, which is traced on the CPU, ever finer.
+enum class Renderer { kHalfAngle, kLightVolume, kReference, kMetaball, kCumulus };
+inline constexpr std::size_t kRendererCount = 5;
 
 enum class Transport { kPaper, kConsistent };
 
@@ -126,6 +126,29 @@ struct Metaballs {
   bool operator==(const Metaballs&) const = default;
 };
 
+// What the cumulus renderer draws: the storm's cloud water and ice, a heap of heaps of bubbles, or
+// the ellipsoids of one of the generator's presets. What is not the storm fills its place.
+enum class CumulusSource { kStorm, kCauliflower, kFairWeatherCumulus, kCongestus, kCumulusField };
+
+// Which part of a cumulus' light is shown; balls are Lambert's law on bare ellipsoids, what the
+// shading's cost is compared with.
+enum class CumulusComponent { kAll, kDirect, kInterReflection, kAmbient, kCorona, kBalls };
+
+// Neyret 2000; used by the cumulus renderer alone.
+struct Cumulus {
+  CumulusSource source = CumulusSource::kStorm;
+  std::uint32_t seed = 1;
+  int scales = 3;                        // of ellipsoids
+  float least_extinction_per_m = 2e-3F;  // of a storm, inside the surface
+  float corona = 0.3F;                   // thickness over the radius of the finest ellipsoids
+  float trap = 0.45F;                    // share of the sky that the deepest valley hides
+  float transmission = 0.05F;            // share of sunlight that comes through
+  float roughness = 0.6F;
+  CumulusComponent component = CumulusComponent::kAll;
+
+  bool operator==(const Cumulus&) const = default;
+};
+
 struct Rendering {
   Renderer renderer = Renderer::kLightVolume;
   Mode mode = Mode::kPerFieldPhaseTranslucent;
@@ -134,6 +157,7 @@ struct Rendering {
   double theta_f_deg = 20.0;
   bool false_colors = false;
   Metaballs metaballs;
+  Cumulus cumulus;
 
   bool operator==(const Rendering&) const = default;
 };

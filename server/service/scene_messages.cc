@@ -47,6 +47,22 @@ constexpr std::array kRenderers = {
     std::pair{v1::RENDERER_HALF_ANGLE, scene::Renderer::kHalfAngle},
     std::pair{v1::RENDERER_REFERENCE, scene::Renderer::kReference},
     std::pair{v1::RENDERER_METABALL, scene::Renderer::kMetaball},
+    std::pair{v1::RENDERER_CUMULUS, scene::Renderer::kCumulus},
+};
+constexpr std::array kCumulusSources = {
+    std::pair{v1::Cumulus::SOURCE_STORM, scene::CumulusSource::kStorm},
+    std::pair{v1::Cumulus::SOURCE_CAULIFLOWER, scene::CumulusSource::kCauliflower},
+    std::pair{v1::Cumulus::SOURCE_FAIR_WEATHER_CUMULUS, scene::CumulusSource::kFairWeatherCumulus},
+    std::pair{v1::Cumulus::SOURCE_CONGESTUS, scene::CumulusSource::kCongestus},
+    std::pair{v1::Cumulus::SOURCE_CUMULUS_FIELD, scene::CumulusSource::kCumulusField},
+};
+constexpr std::array kCumulusComponents = {
+    std::pair{v1::Cumulus::COMPONENT_ALL, scene::CumulusComponent::kAll},
+    std::pair{v1::Cumulus::COMPONENT_DIRECT, scene::CumulusComponent::kDirect},
+    std::pair{v1::Cumulus::COMPONENT_INTER_REFLECTION, scene::CumulusComponent::kInterReflection},
+    std::pair{v1::Cumulus::COMPONENT_AMBIENT, scene::CumulusComponent::kAmbient},
+    std::pair{v1::Cumulus::COMPONENT_CORONA, scene::CumulusComponent::kCorona},
+    std::pair{v1::Cumulus::COMPONENT_BALLS, scene::CumulusComponent::kBalls},
 };
 constexpr std::array kTransports = {
     std::pair{v1::TRANSPORT_CONSISTENT, scene::Transport::kConsistent},
@@ -137,6 +153,20 @@ scene::Metaballs ToMetaballs(const v1::Metaballs& message) {
           message.optical_depth()};
 }
 
+scene::Cumulus ToCumulus(const v1::Cumulus& message) {
+  scene::Cumulus cumulus;
+  cumulus.source = ValueOf(kCumulusSources, message.source());
+  cumulus.seed = message.seed();
+  cumulus.scales = static_cast<int>(message.scales());
+  cumulus.least_extinction_per_m = message.least_extinction_per_m();
+  cumulus.corona = message.corona();
+  cumulus.trap = message.trap();
+  cumulus.transmission = message.transmission();
+  cumulus.roughness = message.roughness();
+  cumulus.component = ValueOf(kCumulusComponents, message.component());
+  return cumulus;
+}
+
 volume::WorldBox BoxOf(const volume::RegularGrid& grid, const volume::CellBox& cells) {
   return {grid.low_corner_m + glm::dvec3(cells.low) * grid.spacing_m,
           grid.low_corner_m + glm::dvec3(cells.high) * grid.spacing_m};
@@ -219,6 +249,10 @@ void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
   if (!rendering.has_false_colors()) rendering.set_false_colors(false);
   v1::Metaballs& metaballs = *rendering.mutable_metaballs();
   if (!metaballs.has_isotropic()) metaballs.set_isotropic(false);
+  v1::Cumulus& cumulus = *rendering.mutable_cumulus();
+  cumulus.set_source(MessageOf(kCumulusSources, ValueOf(kCumulusSources, cumulus.source())));
+  cumulus.set_component(
+      MessageOf(kCumulusComponents, ValueOf(kCumulusComponents, cumulus.component())));
   v1::Display& display = *scene.mutable_display();
   display.set_tone_map(MessageOf(kToneMaps, ValueOf(kToneMaps, display.tone_map())));
   for (physics::Hydrometeor hydrometeor : storm.fields) FieldOf(scene, hydrometeor);
@@ -248,6 +282,7 @@ scene::Scene ToScene(const v1::Scene& message) {
   scene.rendering.theta_f_deg = rendering.theta_f_deg();
   scene.rendering.false_colors = rendering.false_colors();
   scene.rendering.metaballs = ToMetaballs(rendering.metaballs());
+  scene.rendering.cumulus = ToCumulus(rendering.cumulus());
   scene.display.exposure_ev = message.display().exposure_ev();
   scene.display.tone_map = ValueOf(kToneMaps, message.display().tone_map());
   scene.output.width_px = static_cast<int>(message.output().width_px());
@@ -265,6 +300,7 @@ void ToMessage(const session::Modelled& modelled, v1::Modelled& message) {
   message.set_balls(static_cast<std::uint32_t>(modelled.balls));
   message.set_fit_error(static_cast<float>(modelled.fit_error));
   for (const std::string& what : modelled.not_shown) message.add_not_shown(what);
+  message.set_ellipsoids(static_cast<std::uint32_t>(modelled.ellipsoids));
 }
 
 void ToMessage(const session::StageCost& cost, v1::StageCost& message) {

@@ -11,11 +11,14 @@ namespace {
 constexpr double kForgetting = 0.8;
 // Of the cube root of the balls: their radius is 2.5 times half their spacing (clouds/rbf_fit.h).
 constexpr double kBallsOverPixel = 5.0;
+// Fragments of a cumulus that a pixel lies under, about as many for any surface of some scales.
+constexpr double kEllipsoidsOverPixel = 20.0;
 // Below this variance of x (relative to its mean square) a and b cannot be told apart.
 constexpr double kMinRelativeVariance = 1e-3;
 
 bool IsPreparation(const StageCost& cost) {
-  return cost.stage == "extinction" || cost.stage == "upload" || cost.stage == "fit";
+  return cost.stage == "extinction" || cost.stage == "upload" || cost.stage == "fit" ||
+         cost.stage == "surface";
 }
 
 // Moves `mean` towards a measurement of a stage that ran.
@@ -33,6 +36,9 @@ double MegaSamples(const scene::Scene& scene, const FrameQuality& quality) {
   if (scene.rendering.renderer == scene::Renderer::kMetaball) {
     // A pixel lies under so many balls that fill a volume, each as wide as its share of it.
     return pixels * kBallsOverPixel * std::cbrt(scene.rendering.metaballs.count) * 1e-6;
+  }
+  if (scene.rendering.renderer == scene::Renderer::kCumulus) {
+    return pixels * kEllipsoidsOverPixel * 1e-6;
   }
   return pixels * scene.rendering.slices * quality.slice_share * 1e-6;
 }

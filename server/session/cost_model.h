@@ -11,8 +11,8 @@
 
 namespace thunderhead::session {
 
-// What drawing `scene` at `quality` grows with: pixels times slices, or the balls over them, in
-// millions.
+// What drawing `scene` at `quality` grows with: pixels times slices, or times the balls or
+// ellipsoids over them, in millions.
 double MegaSamples(const scene::Scene& scene, const FrameQuality& quality);
 
 class CostModel {

@@ -28,8 +28,8 @@ struct FrameQuality {
   bool operator==(const FrameQuality&) const = default;
 };
 
-// One stage's wall time. Stages: "read", "extinction", "upload", "fit", "slices", "light",
-// "view", "ground", "composite", "trace", "tone", "read_back", "encode".
+// One stage's wall time. Stages: "read", "extinction", "upload", "fit", "surface", "slices",
+// "light", "view", "ground", "composite", "trace", "tone", "read_back", "encode".
 struct StageCost {
   std::string stage;
   double milliseconds = 0.0;
@@ -45,6 +45,7 @@ struct Modelled {
   int balls = 0;                       // metaballs
   double fit_error = 0.0;              // of those, over the extinction's root mean square
   std::vector<std::string> not_shown;  // what the renderer cannot show
+  int ellipsoids = 0;                  // of a cumulus
 };
 
 // How far a picture by the reference has come.

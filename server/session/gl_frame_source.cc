@@ -60,7 +60,8 @@ class GlFrameSource final : public FrameSource {
                       scene.rendering.renderer,
                       linear.balls,
                       linear.fit_error,
-                      linear.not_shown};
+                      linear.not_shown,
+                      linear.ellipsoids};
     return frame;
   }
 

@@ -90,6 +90,95 @@ TEST_F(SceneRendererTest, TheLightVolumeIsKeptWhileOnlyTheCameraMoves) {
   EXPECT_THAT(StagesOf(), ElementsAre("ground", "light", "view", "composite"));
 }
 
+TEST_F(SceneRendererTest, ACumulusRerunsOnlyWhatAChangeDirties) {
+  scene_.rendering.renderer = scene::Renderer::kCumulus;
+  scene::Cumulus& cumulus = scene_.rendering.cumulus;
+  EXPECT_THAT(StagesOf(), ElementsAre("surface", "light", "view", "composite"));
+  EXPECT_THAT(StagesOf(), IsEmpty());
+  Orbit().azimuth_deg += 5.0;
+  EXPECT_THAT(StagesOf(), ElementsAre("view", "composite"));
+  cumulus.component = scene::CumulusComponent::kAmbient;
+  EXPECT_THAT(StagesOf(), ElementsAre("view", "composite"));
+  cumulus.corona = 0.5F;  // what casts a shadow is what is deeper
+  EXPECT_THAT(StagesOf(), ElementsAre("light", "view", "composite"));
+  scene_.sun.elevation_deg += 5.0;
+  EXPECT_THAT(StagesOf(), ElementsAre("light", "view", "composite"));
+  scene_.rendering.slices = 17;  // it has none
+  EXPECT_THAT(StagesOf(), IsEmpty());
+  cumulus.seed = 2;
+  EXPECT_THAT(StagesOf(), ElementsAre("surface", "light", "view", "composite"));
+  scene_.rendering.renderer = scene::Renderer::kLightVolume;
+  EXPECT_THAT(StagesOf(),
+              ElementsAre("extinction", "upload", "ground", "light", "view", "composite"));
+  cumulus.seed = 3;  // not looked at
+  EXPECT_THAT(StagesOf(), IsEmpty());
+}
+
+TEST_F(SceneRendererTest, ACumulusOfAStormStandsWhereTheStormIs) {
+  scene_.rendering.renderer = scene::Renderer::kCumulus;
+  scene_.camera = scene::TopDownCamera{{4000.0, 0.0}, 16e3};
+  scene_.sun.elevation_deg = 90.0;  // its shadow lies below it
+  const std::vector<float> with = Pixels(renderer_.get());
+  scene_.fields[0].visible = false;
+  const std::vector<float> without = Pixels(renderer_.get());
+  for (std::size_t y = 0; y < 32; ++y) {
+    for (std::size_t x = 0; x < 48; ++x) {
+      const double east_m = 4000.0 + 16e3 * ((static_cast<double>(x) + 0.5) / 48 - 0.5);
+      const double north_m = 16e3 * (32.0 / 48.0) * ((static_cast<double>(y) + 0.5) / 32 - 0.5);
+      const double outside_m = std::max(std::abs(east_m), std::abs(north_m)) - 2000.0;
+      const std::size_t at = 4 * (48 * y + x);
+      // Bubbles stick out; corners are rounded.
+      if (outside_m > 1000.0) {
+        ASSERT_EQ(with[at], without[at]) << east_m << ' ' << north_m;
+      } else if (std::hypot(east_m, north_m) < 1600.0) {
+        ASSERT_GT(with[at], 1.5F * without[at]) << east_m << ' ' << north_m;
+      }
+    }
+  }
+}
+
+TEST_F(SceneRendererTest, ACumulusWithoutSurfaceIsTheSkyAlone) {
+  scene_.fields[0].visible = false;
+  const std::vector<float> sky = Pixels(renderer_.get());
+  scene_.rendering.renderer = scene::Renderer::kCumulus;
+  EXPECT_EQ(Pixels(renderer_.get()), sky);
+  scene_.fields[0].visible = true;
+  scene_.rendering.cumulus.least_extinction_per_m = 1.0F;
+  const auto frame = renderer_->Draw(scene_, fields_, {});
+  ASSERT_TRUE(frame.ok());
+  EXPECT_EQ(frame->ellipsoids, 0);
+  EXPECT_EQ(frame::ReadLinear(*frame->radiance), sky);
+}
+
+TEST_F(SceneRendererTest, ACumulusIsDarkAtNight) {
+  scene_.rendering.renderer = scene::Renderer::kCumulus;
+  scene_.rendering.cumulus.source = scene::CumulusSource::kCauliflower;
+  scene_.sun.elevation_deg = -1.0;
+  const std::vector<float> dusk = Pixels(renderer_.get());
+  scene_.sun.elevation_deg = -40.0;
+  const std::vector<float> night = Pixels(renderer_.get());
+  for (std::size_t i = 0; i < night.size(); ++i) {
+    ASSERT_TRUE(std::isfinite(dusk[i]));
+    ASSERT_GE(dusk[i], 0.0F);
+    if (i % 4 != 3) {
+      ASSERT_LE(night[i], 1e-4F);
+    }
+  }
+}
+
+TEST_F(SceneRendererTest, ACumulusSaysWhatItCannotShow) {
+  scene_.rendering.renderer = scene::Renderer::kCumulus;
+  auto rainy = std::make_shared<volume::HydrometeorFields>(*fields_);
+  rainy->fields.push_back(rainy->fields.front());
+  rainy->fields.back().hydrometeor = physics::Hydrometeor::kRain;
+  const auto frame = renderer_->Draw(scene_, rainy, {});
+  ASSERT_TRUE(frame.ok()) << frame.status();
+  EXPECT_THAT(frame->fields, ElementsAre(physics::Hydrometeor::kCloud));
+  EXPECT_THAT(frame->not_shown, testing::Contains("rain"));
+  EXPECT_EQ(frame->slices, 0);
+  EXPECT_GT(frame->ellipsoids, 0);
+}
+
 TEST_F(SceneRendererTest, KeptStagesGiveThePictureThatAFreshRendererGives) {
   const auto change = [&](int step) {
     switch (step) {

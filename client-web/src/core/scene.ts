@@ -3,6 +3,8 @@
 import { create, fromBinary, type Message, toBinary } from "@bufbuild/protobuf";
 import {
   type Camera,
+  type Cumulus,
+  CumulusSchema,
   type Detail,
   DetailSchema,
   type Display,
@@ -51,6 +53,13 @@ export const LIMITS = {
   metaballCount: limitsOf(MetaballsSchema.field.count),
   metaballAlbedo: limitsOf(MetaballsSchema.field.albedo),
   metaballOpticalDepth: limitsOf(MetaballsSchema.field.opticalDepth),
+  cumulusSeed: limitsOf(CumulusSchema.field.seed),
+  cumulusScales: limitsOf(CumulusSchema.field.scales),
+  cumulusLeastExtinction: limitsOf(CumulusSchema.field.leastExtinctionPerM),
+  cumulusCorona: limitsOf(CumulusSchema.field.corona),
+  cumulusTrap: limitsOf(CumulusSchema.field.trap),
+  cumulusTransmission: limitsOf(CumulusSchema.field.transmission),
+  cumulusRoughness: limitsOf(CumulusSchema.field.roughness),
   exposure: limitsOf(DisplaySchema.field.exposureEv),
   width: limitsOf(OutputSchema.field.widthPx),
   height: limitsOf(OutputSchema.field.heightPx),
@@ -94,6 +103,11 @@ export function withMetaballs(scene: Scene, change: Change<Metaballs>): Scene {
   return withRendering(scene, {
     metaballs: changed(scene.rendering?.metaballs ?? create(MetaballsSchema), change),
   });
+}
+
+export function withCumulus(scene: Scene, change: Change<Cumulus>): Scene {
+  const cumulus = changed(scene.rendering?.cumulus ?? create(CumulusSchema), change);
+  return withRendering(scene, { cumulus });
 }
 
 export function withDisplay(scene: Scene, change: Change<Display>): Scene {

@@ -11,6 +11,7 @@ import type { PageState } from "../core/state";
 import { Mode, Renderer, ToneMap, Transport } from "../gen/thunderhead/v1/scene_pb";
 import { CameraSection } from "./camera_section";
 import { Choice, Section, Slider, Switch } from "./controls";
+import { CumulusControls } from "./cumulus_controls";
 import { FieldsSection } from "./fields_section";
 import { KEYS } from "./keyboard";
 import type { Page } from "./page";
@@ -21,6 +22,7 @@ const RENDERERS = [
   [Renderer.HALF_ANGLE, "Half-angle slices"],
   [Renderer.METABALL, "Metaballs"],
   [Renderer.REFERENCE, "Reference: refine to truth"],
+  [Renderer.CUMULUS, "Cumulus surface"],
 ] as const;
 
 const MODES = [
@@ -118,6 +120,7 @@ function RenderingSection({ state }: { state: PageState }) {
       />
       <NotShown state={state} />
       {rendering?.renderer === Renderer.METABALL && <MetaballSettings state={state} />}
+      {rendering?.renderer === Renderer.CUMULUS && <CumulusControls state={state} />}
       <Choice
         label="Mode"
         testId="mode"

@@ -8,6 +8,7 @@ const STAGE_NAMES: Readonly<Record<string, string>> = {
   extinction: "Extinction",
   upload: "Upload",
   fit: "Fit metaballs",
+  surface: "Surface",
   ground: "Ground",
   slices: "Slices",
   light: "Light",
@@ -95,7 +96,7 @@ function Costs({ state }: { state: PageState }) {
             {/* The reference has neither slices nor a place on the device. */}
             {frame.refinement === undefined && (
               <>
-                {frame.modelled.balls > 0 ? (
+                {frame.modelled.balls > 0 && (
                   <>
                     <Row name="Metaballs" text={String(frame.modelled.balls)} />
                     <Row
@@ -103,8 +104,12 @@ function Costs({ state }: { state: PageState }) {
                       text={`${formatNumber(frame.modelled.fitError * 100)} %, root mean square`}
                     />
                   </>
-                ) : (
+                )}
+                {frame.modelled.slices > 0 && (
                   <Row name="Slices drawn" text={String(frame.modelled.slices)} />
+                )}
+                {frame.modelled.ellipsoids > 0 && (
+                  <Row name="Ellipsoids" text={String(frame.modelled.ellipsoids)} />
                 )}
                 <Row name="On the device" text={formatBytes(Number(frame.modelled.deviceBytes))} />
                 <Row

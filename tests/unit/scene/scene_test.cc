@@ -35,6 +35,23 @@ TEST(Scene, EachChangeRerunsFromItsOwnStage) {
   EXPECT_EQ(After([](Scene* s) { s->display.exposure_ev = 1; }), Stage::kTone);
 }
 
+TEST(Scene, ACumulusLooksAtItsOwnSettingsOnly) {
+  Scene before;
+  before.rendering.renderer = Renderer::kCumulus;
+  const auto first = [&](const auto& change) {
+    Scene after = before;
+    change(&after.rendering);
+    return FirstDirtyStage(before, after);
+  };
+  EXPECT_EQ(first([](Rendering* r) { r->cumulus.scales = 4; }), Stage::kExtinction);
+  EXPECT_EQ(first([](Rendering* r) { r->cumulus.corona = 0.9F; }), Stage::kLight);
+  EXPECT_EQ(first([](Rendering* r) { r->cumulus.trap = 0.1F; }), Stage::kView);
+  EXPECT_EQ(first([](Rendering* r) { r->slices = 7; }), Stage::kNothing);
+  EXPECT_EQ(first([](Rendering* r) { r->renderer = Renderer::kLightVolume; }), Stage::kExtinction);
+  before.rendering.renderer = Renderer::kLightVolume;
+  EXPECT_EQ(first([](Rendering* r) { r->cumulus.scales = 4; }), Stage::kNothing);
+}
+
 TEST(Scene, DetailCountsOnlyInTheModeThatDrawsIt) {
   EXPECT_EQ(After([](Scene* s) { s->fields[0].detail.seed = 7; }), Stage::kNothing);
   Scene before;

@@ -1,0 +1,101 @@
+// What the cumulus renderer draws and how it shades it (Neyret 2000).
+import { LIMITS, withCumulus } from "../core/scene";
+import type { PageState } from "../core/state";
+import {
+  Cumulus_Component as Component,
+  Cumulus_Source as Source,
+} from "../gen/thunderhead/v1/scene_pb";
+import { Choice, Slider } from "./controls";
+
+const SOURCES = [
+  [Source.STORM, "The storm's cloud and ice"],
+  [Source.CAULIFLOWER, "Cauliflower"],
+  [Source.FAIR_WEATHER_CUMULUS, "Fair-weather cumulus"],
+  [Source.CONGESTUS, "Congestus"],
+  [Source.CUMULUS_FIELD, "Field of cumulus"],
+] as const;
+
+const COMPONENTS = [
+  [Component.ALL, "All"],
+  [Component.DIRECT, "Direct sunlight"],
+  [Component.INTER_REFLECTION, "Inter-reflection"],
+  [Component.AMBIENT, "Sky and ground"],
+  [Component.CORONA, "Corona"],
+  [Component.BALLS, "Bare ellipsoids"],
+] as const;
+
+export function CumulusControls({ state }: { state: PageState }) {
+  const cumulus = state.rendering.value?.cumulus;
+  const source = cumulus?.source || Source.STORM;
+  return (
+    <>
+      <Choice
+        label="Surface"
+        testId="cumulus-source"
+        value={source}
+        options={SOURCES}
+        onChange={(next) => state.edit((scene) => withCumulus(scene, { source: next }))}
+      />
+      <Choice
+        label="Light shown"
+        testId="cumulus-component"
+        value={cumulus?.component || Component.ALL}
+        options={COMPONENTS}
+        onChange={(component) => state.edit((scene) => withCumulus(scene, { component }))}
+      />
+      <Slider
+        label="Seed"
+        limits={LIMITS.cumulusSeed}
+        value={cumulus?.seed ?? LIMITS.cumulusSeed.defaultValue}
+        testId="cumulus-seed"
+        onChange={(seed) => state.edit((scene) => withCumulus(scene, { seed }))}
+      />
+      <Slider
+        label="Scales"
+        limits={LIMITS.cumulusScales}
+        value={cumulus?.scales ?? LIMITS.cumulusScales.defaultValue}
+        testId="cumulus-scales"
+        onChange={(scales) => state.edit((scene) => withCumulus(scene, { scales }))}
+      />
+      {source === Source.STORM && (
+        <Slider
+          label="Least extinction"
+          limits={LIMITS.cumulusLeastExtinction}
+          value={cumulus?.leastExtinctionPerM ?? LIMITS.cumulusLeastExtinction.defaultValue}
+          testId="cumulus-least-extinction"
+          onChange={(leastExtinctionPerM) =>
+            state.edit((scene) => withCumulus(scene, { leastExtinctionPerM }))
+          }
+        />
+      )}
+      <Slider
+        label="Corona"
+        limits={LIMITS.cumulusCorona}
+        value={cumulus?.corona ?? LIMITS.cumulusCorona.defaultValue}
+        testId="cumulus-corona"
+        onChange={(corona) => state.edit((scene) => withCumulus(scene, { corona }))}
+      />
+      <Slider
+        label="Light traps"
+        limits={LIMITS.cumulusTrap}
+        value={cumulus?.trap ?? LIMITS.cumulusTrap.defaultValue}
+        testId="cumulus-trap"
+        onChange={(trap) => state.edit((scene) => withCumulus(scene, { trap }))}
+      />
+      <Slider
+        label="Light through"
+        limits={LIMITS.cumulusTransmission}
+        value={cumulus?.transmission ?? LIMITS.cumulusTransmission.defaultValue}
+        testId="cumulus-transmission"
+        onChange={(transmission) => state.edit((scene) => withCumulus(scene, { transmission }))}
+      />
+      <Slider
+        label="Roughness"
+        limits={LIMITS.cumulusRoughness}
+        value={cumulus?.roughness ?? LIMITS.cumulusRoughness.defaultValue}
+        testId="cumulus-roughness"
+        onChange={(roughness) => state.edit((scene) => withCumulus(scene, { roughness }))}
+      />
+    </>
+  );
+}

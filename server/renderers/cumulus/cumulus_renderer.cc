@@ -1,0 +1,289 @@
+#include "renderers/cumulus/cumulus_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/status.h"
+#include "glm/common.hpp"
+#include "glm/geometric.hpp"
+#include "glm/matrix.hpp"
+#include "renderers/view_uniforms.h"
+
+namespace thunderhead::renderers {
+namespace {
+
+constexpr int kShadowTexels = 1024;  // along each side
+constexpr int kGroundShadowTexels = 256;
+constexpr GLuint kDepthUnit = 4;
+constexpr GLuint kShadowUnit = 5;
+constexpr GLuint kGroundUnit = 7;
+constexpr GLuint kNoiseUnit = 8;
+constexpr int kRoughnessOctaves = 4;
+constexpr double kRoughnessInFinest = 1.6;  // wavelength over the radius of the finest bubbles
+constexpr double kLeastCorona = 1e-3;       // of the finest radius: thinner is a division by zero
+
+// As cumulus/bubble.glsl has it.
+struct DeviceBubble {
+  glm::vec4 unit_x;
+  glm::vec4 unit_y;
+  glm::vec4 unit_z;
+  glm::vec4 centre_m;
+  glm::vec4 outward;
+};
+
+DeviceBubble OnDevice(const clouds::Bubble& bubble, const glm::dvec3& middle_m) {
+  // Columns of the transposed are rows.
+  const glm::dmat3 rows = glm::transpose(clouds::UnitFromWorld(bubble));
+  return {glm::vec4(glm::vec3(rows[0]), static_cast<float>(clouds::RadiusOf(bubble))),
+          glm::vec4(glm::vec3(rows[1]), 0.0F), glm::vec4(glm::vec3(rows[2]), 0.0F),
+          glm::vec4(glm::vec3(bubble.centre_m - middle_m), 0.0F),
+          glm::vec4(glm::vec3(bubble.outward), static_cast<float>(bubble.parent))};
+}
+
+bool IsPlain(const RenderSettings& settings) {
+  return settings.rendering.cumulus.component == scene::CumulusComponent::kBalls;
+}
+
+// Shares of direct light, inter-reflection, ambient light and corona.
+glm::vec4 SharesOf(scene::CumulusComponent component) {
+  switch (component) {
+    case scene::CumulusComponent::kAll:
+    case scene::CumulusComponent::kBalls:
+      return glm::vec4(1.0F);
+    case scene::CumulusComponent::kDirect:
+      return {1.0F, 0.0F, 0.0F, 0.0F};
+    case scene::CumulusComponent::kInterReflection:
+      return {0.0F, 1.0F, 0.0F, 0.0F};
+    case scene::CumulusComponent::kAmbient:
+      return {0.0F, 0.0F, 1.0F, 0.0F};
+    case scene::CumulusComponent::kCorona:
+      return {0.0F, 0.0F, 0.0F, 1.0F};
+  }
+  return glm::vec4(1.0F);
+}
+
+}  // namespace
+
+// What both passes over the bubbles need.
+struct CumulusRenderer::Pass {
+  scene::View view;
+  glm::ivec2 size{1};
+  double far_m = 1.0;  // that is depth 1
+  double corona_m = 1.0;
+  const gl::Texture2D* ground_distance = nullptr;
+  gl::Buffer order;
+
+  Pass(const scene::View& from, const glm::ivec2& target, const CumulusRenderer& renderer);
+  std::vector<gl::Define> Variant(const CumulusRenderer& renderer) const {
+    return {{"BASE", renderer.has_base_ ? 1 : 0}, {"GROUND", ground_distance != nullptr ? 1 : 0}};
+  }
+};
+
+CumulusRenderer::Pass::Pass(const scene::View& from, const glm::ivec2& target,
+                            const CumulusRenderer& renderer)
+    : view(from), size(target) {
+  const glm::dvec3 eye_m = view.eye_m - renderer.Middle_m();
+  // Parallel rays start on a plane, not in a point.
+  const double reach_m = glm::length(renderer.HalfExtent_m());
+  far_m =
+      view.Orthographic() ? glm::dot(view.forward, -eye_m) + reach_m : glm::length(eye_m) + reach_m;
+  far_m = std::max(far_m, 1.0);
+  std::vector<float> nearness(renderer.centres_m_.size());
+  const glm::vec3 eye(eye_m);
+  const glm::vec3 forward(view.forward);
+  for (std::size_t i = 0; i < nearness.size(); ++i) {
+    const glm::vec3 away_m = renderer.centres_m_[i] - eye;
+    nearness[i] = renderer.radii_m_[i] -
+                  (view.Orthographic() ? glm::dot(away_m, forward) : glm::length(away_m));
+  }
+  std::vector<std::uint32_t> ranks(nearness.size());
+  std::iota(ranks.begin(), ranks.end(), 0U);
+  std::stable_sort(ranks.begin(), ranks.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return nearness[a] < nearness[b]; });
+  order = gl::Buffer(ranks.size() * sizeof(std::uint32_t), ranks.data(), 0);
+}
+
+void CumulusRenderer::SetSurface(const clouds::CumulusSurface& surface) {
+  count_ = static_cast<int>(surface.bubbles.size());
+  centres_m_.clear();
+  radii_m_.clear();
+  bubbles_ = gl::Buffer();
+  if (count_ == 0) return;
+  box_ = clouds::BoxOf(surface);
+  finest_m_ = surface.finest_m;
+  has_base_ = surface.base_m.has_value();
+  base_m_ = static_cast<float>(surface.base_m.value_or(0.0) - Middle_m().z);
+  std::vector<DeviceBubble> on_device;
+  for (const clouds::Bubble& bubble : surface.bubbles) {
+    on_device.push_back(OnDevice(bubble, Middle_m()));
+    centres_m_.emplace_back(on_device.back().centre_m);
+    radii_m_.push_back(on_device.back().unit_x.w);
+  }
+  bubbles_ = gl::Buffer(on_device.size() * sizeof(DeviceBubble), on_device.data(), 0);
+}
+
+double CumulusRenderer::Corona_m(const scene::Cumulus& cumulus) const {
+  return finest_m_ * std::max(static_cast<double>(cumulus.corona), kLeastCorona);
+}
+
+void CumulusRenderer::DrawBubbles(const gl::Program& program, const Pass& pass) const {
+  BindRays(program, pass.view, Middle_m());
+  program.Set("clip_from_local", ClipFromLocal(pass.view, Middle_m()));
+  program.Set("eye", EyeOf(pass.view, Middle_m()));
+  program.Set("last_rank", count_ - 1);
+  program.Set("per_pixel", 2.0F / glm::vec2(pass.size));
+  program.Set("base_m", base_m_);
+  program.Set("corona_m", static_cast<float>(pass.corona_m));
+  program.Set("per_far", static_cast<float>(1.0 / pass.far_m));
+  bubbles_.BindStorage(0);
+  pass.order.BindStorage(1);
+  if (pass.ground_distance != nullptr) pass.ground_distance->Bind(kGroundUnit);
+  program.Use();
+  no_attributes_.Bind();
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, count_);
+}
+
+absl::Status CumulusRenderer::DrawDepth(const Pass& pass, const gl::Framebuffer& target) {
+  std::vector<gl::Define> variant = pass.Variant(*this);
+  variant.push_back({"FRONT_FIRST", 1});
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_->Get({"cumulus/bubble.vert", "cumulus/depth.frag", variant}));
+  target.ClearDepth(1.0F);
+  target.Bind();
+  glEnable(GL_DEPTH_TEST);
+  DrawBubbles(*program, pass);
+  glDisable(GL_DEPTH_TEST);
+  return absl::OkStatus();
+}
+
+absl::Status CumulusRenderer::CastShadow(const RenderSettings& settings) {
+  if (shadow_depth_.Get() == 0) {
+    shadow_depth_ = gl::Texture2D(GL_DEPTH_COMPONENT32F, glm::ivec2(kShadowTexels));
+    shadow_target_ = gl::Framebuffer({}, &shadow_depth_);
+  }
+  shadow_frame_ = LightFrameOf({HalfExtent_m()}, settings.illumination.towards_sun);
+  shadow_reach_m_ = glm::length(HalfExtent_m());
+  scene::View from_sun;
+  from_sun.eye_m = Middle_m() + (shadow_reach_m_ + 2.0) * shadow_frame_.towards_sun;
+  from_sun.forward = -shadow_frame_.towards_sun;
+  from_sun.right = shadow_frame_.right;
+  from_sun.up = shadow_frame_.up;
+  from_sun.tan_half_width = from_sun.tan_half_height = 0.0;
+  from_sun.half_width_m = shadow_frame_.half_extent_m.x;
+  from_sun.half_height_m = shadow_frame_.half_extent_m.y;
+  Pass pass(from_sun, shadow_depth_.Size(), *this);
+  pass.corona_m = Corona_m(settings.rendering.cumulus);
+  return DrawDepth(pass, shadow_target_);
+}
+
+absl::StatusOr<gl::Texture2D> CumulusRenderer::GroundShadow() {
+  gl::Texture2D shadow(GL_R16F, glm::ivec2(kGroundShadowTexels), gl::Edge::kZero);
+  const gl::Framebuffer target(shadow);
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_->Get({"common/whole_target.vert", "cumulus/ground_shadow.frag", {}}));
+  shadow_depth_.Bind(kDepthUnit);
+  target.Bind();
+  program->Use();
+  no_attributes_.Bind();
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  return shadow;
+}
+
+void CumulusRenderer::Resize(const glm::ivec2& size) {
+  if (eye_.Size() == size) return;
+  core_depth_ = gl::Texture2D(GL_DEPTH_COMPONENT32F, size);
+  core_target_ = gl::Framebuffer({}, &core_depth_);
+  cores_ = gl::Texture2D(GL_RGBA16F, size);
+  layer_ = gl::Texture2D(GL_RGBA16F, size);
+  shade_target_ = gl::Framebuffer({&cores_, &layer_});
+  eye_ = gl::Texture2D(GL_RGBA16F, size);
+  eye_target_ = gl::Framebuffer(eye_);
+}
+
+void CumulusRenderer::SetShading(const gl::Program& program, const RenderSettings& settings,
+                                 const std::vector<glm::vec3>& light_map, DetailNoises* noises) {
+  const scene::Cumulus& cumulus = settings.rendering.cumulus;
+  const scene::View& view = settings.view;
+  noise_ = noises->Get(kRoughnessOctaves, cumulus.seed);
+  const double wave_m = kRoughnessInFinest * finest_m_;
+  const double tile_m = wave_m * physics::TurbulenceTile::kWaves;
+  const glm::dvec3 corner = Middle_m() / tile_m;
+  program.Set("towards_sun", glm::vec3(settings.illumination.towards_sun));
+  program.Set("sunlight", settings.illumination.sunlight);
+  program.Set("light_map", light_map);
+  program.Set("component", SharesOf(cumulus.component));
+  program.Set("trap_share", cumulus.trap);
+  program.Set("transmission", cumulus.transmission);
+  program.Set("roughness", cumulus.roughness);
+  program.Set("noise_wave_m", static_cast<float>(wave_m));
+  program.Set("noise_per_m", static_cast<float>(1.0 / tile_m));
+  program.Set("noise_offset", glm::vec3(corner - glm::floor(corner)));
+  const double across = view.Orthographic() ? view.half_height_m : view.tan_half_height;
+  program.Set("pixel_share", static_cast<float>(2.0 * across / settings.eye_size.y));
+  program.Set("parallel", view.Orthographic() ? 1 : 0);
+  const glm::dvec3 right = 0.5 * shadow_frame_.right / shadow_frame_.half_extent_m.x;
+  const glm::dvec3 up = 0.5 * shadow_frame_.up / shadow_frame_.half_extent_m.y;
+  const double from_m = shadow_reach_m_ + 2.0;
+  const double far_m = from_m + shadow_reach_m_;
+  const glm::dvec3 down = -shadow_frame_.towards_sun / far_m;
+  program.Set("shadow_x", glm::vec4(right, 0.5));
+  program.Set("shadow_y", glm::vec4(up, 0.5));
+  program.Set("shadow_z", glm::vec4(down, from_m / far_m));
+  program.Set("shadow_texel_m",
+              static_cast<float>(
+                  2.0 * std::max(shadow_frame_.half_extent_m.x, shadow_frame_.half_extent_m.y) /
+                  kShadowTexels));
+  noise_->texture.Bind(kNoiseUnit);
+  shadow_depth_.Bind(kShadowUnit);
+  core_depth_.Bind(kDepthUnit);
+}
+
+absl::Status CumulusRenderer::DrawView(const RenderSettings& settings,
+                                       const std::vector<glm::vec3>& light_map,
+                                       DetailNoises* noises) {
+  Resize(settings.eye_size);
+  const bool plain = IsPlain(settings);
+  Pass pass(settings.view, settings.eye_size, *this);
+  pass.corona_m = plain ? 0.0 : Corona_m(settings.rendering.cumulus);
+  pass.ground_distance = settings.ground_distance;
+  THUNDERHEAD_RETURN_IF_ERROR(DrawDepth(pass, core_target_));
+  std::vector<gl::Define> variant = pass.Variant(*this);
+  variant.push_back({"FRONT_FIRST", 0});
+  variant.push_back({"PLAIN", plain ? 1 : 0});
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_->Get({"cumulus/bubble.vert", "cumulus/shade.frag", variant}));
+  SetShading(*program, settings, light_map, noises);
+  shade_target_.Clear(0.0F, 0.0F, 0.0F, 0.0F, 0);
+  shade_target_.Clear(0.0F, 0.0F, 0.0F, 1.0F, 1);
+  shade_target_.Bind();
+  glEnable(GL_BLEND);
+  glBlendFunci(0, GL_ONE, GL_ONE);
+  glBlendFuncSeparatei(1, GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_SRC_ALPHA);
+  DrawBubbles(*program, pass);
+  glDisable(GL_BLEND);
+  return Resolve();
+}
+
+absl::Status CumulusRenderer::Resolve() {
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_->Get({"common/whole_target.vert", "cumulus/resolve.frag", {}}));
+  cores_.Bind(kDepthUnit);
+  layer_.Bind(kShadowUnit);
+  eye_target_.Bind();
+  program->Use();
+  no_attributes_.Bind();
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  return absl::OkStatus();
+}
+
+std::size_t CumulusRenderer::Bytes() const {
+  return bubbles_.Bytes() + shadow_depth_.Bytes() + core_depth_.Bytes() + cores_.Bytes() +
+         layer_.Bytes() + eye_.Bytes() + (noise_ != nullptr ? noise_->texture.Bytes() : 0);
+}
+
+}  // namespace thunderhead::renderers

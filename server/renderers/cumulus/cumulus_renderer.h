@@ -1,0 +1,86 @@
+// Neyret's phenomenological shading of cumulus clouds (2000, "A Phenomenological Shader for the
+// Rendering of Cumulus Clouds") in real time: ray-cast ellipsoids, nearest cores first, then each
+// fragment shaded by section 4. The result is what the medium's renderers give: rgb sent to the
+// eye, a the share of the background that passes. Owns GL objects: use it on the context's thread.
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "clouds/cumulus_surface.h"
+#include "gl/objects.h"
+#include "gl/program.h"
+#include "renderers/detail_noises.h"
+#include "renderers/half_angle/slicing.h"
+#include "renderers/render_settings.h"
+
+namespace thunderhead::renderers {
+
+class CumulusRenderer {
+ public:
+  // Programs are linked in `programs`.
+  explicit CumulusRenderer(std::shared_ptr<gl::ProgramCache> programs)
+      : programs_(std::move(programs)) {}
+
+  // Takes a surface, which may be empty.
+  void SetSurface(const clouds::CumulusSurface& surface);
+  bool Empty() const { return count_ == 0; }
+  int BubbleCount() const { return count_; }
+  glm::dvec3 Middle_m() const { return (box_.low_m + box_.high_m) / 2.0; }
+  glm::dvec3 HalfExtent_m() const { return (box_.high_m - box_.low_m) / 2.0; }
+
+  // How deep the surface is seen from the sun: what is in shadow. Must not be empty.
+  absl::Status CastShadow(const RenderSettings& settings);
+  // The share of sunlight that the surface keeps from the ground, over `frame` around the middle;
+  // after CastShadow.
+  absl::StatusOr<gl::Texture2D> GroundShadow();
+  const LightFrame& ShadowFrame() const { return shadow_frame_; }
+
+  // Draws the surface, in the shadow of the last CastShadow. `light_map` as LightMapOf gives it.
+  absl::Status DrawView(const RenderSettings& settings, const std::vector<glm::vec3>& light_map,
+                        DetailNoises* noises);
+
+  const gl::Texture2D& Eye() const { return eye_; }
+  std::size_t Bytes() const;
+
+ private:
+  struct Pass;
+
+  void Resize(const glm::ivec2& size);
+  void SetShading(const gl::Program& program, const RenderSettings& settings,
+                  const std::vector<glm::vec3>& light_map, DetailNoises* noises);
+  absl::Status DrawDepth(const Pass& pass, const gl::Framebuffer& target);
+  absl::Status Resolve();
+  void DrawBubbles(const gl::Program& program, const Pass& pass) const;
+  double Corona_m(const scene::Cumulus& cumulus) const;
+
+  std::shared_ptr<gl::ProgramCache> programs_;
+  gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
+
+  std::vector<glm::vec3> centres_m_;  // from the middle
+  std::vector<float> radii_m_;
+  int count_ = 0;
+  double finest_m_ = 1.0;
+  clouds::SurfaceBox box_;
+  bool has_base_ = false;
+  float base_m_ = 0.0F;  // from the middle
+  gl::Buffer bubbles_;
+
+  LightFrame shadow_frame_;
+  double shadow_reach_m_ = 1.0;
+  gl::Texture2D shadow_depth_;
+  gl::Framebuffer shadow_target_;
+
+  gl::Texture2D core_depth_;
+  gl::Framebuffer core_target_;
+  gl::Texture2D cores_;
+  gl::Texture2D layer_;
+  gl::Framebuffer shade_target_;
+  gl::Texture2D eye_;
+  gl::Framebuffer eye_target_;
+  std::shared_ptr<const DetailNoise> noise_;
+};
+
+}  // namespace thunderhead::renderers

@@ -1,0 +1,127 @@
+#include "renderers/cumulus/surface_of_scene.h"
+
+#include <algorithm>
+
+#include "base/status.h"
+#include "clouds/cauliflower.h"
+#include "clouds/inscribed_balls.h"
+#include "glm/common.hpp"
+#include "volume/coarsen.h"
+
+namespace thunderhead::renderers {
+namespace {
+
+// More cells than this are coarsened first: the surface is no finer than its ellipsoids.
+constexpr std::size_t kMostCells = 4'000'000;
+constexpr int kMostBalls = 700;
+constexpr int kMostBubbles = 12000;
+
+// Precipitation has no surface.
+bool HasSurface(physics::Hydrometeor hydrometeor) {
+  return hydrometeor == physics::Hydrometeor::kCloud || hydrometeor == physics::Hydrometeor::kIce;
+}
+
+// The smallest number of cells along each axis of which one is made so that few enough are left.
+int CoarseningOf(const volume::RegularGrid& grid) {
+  int factor = 1;
+  while (grid.CellCount() / static_cast<std::size_t>(factor * factor * factor) > kMostCells) {
+    ++factor;
+  }
+  return factor;
+}
+
+DrawnSurface SurfaceOfStorm(const scene::Scene& scene, const volume::HydrometeorFields& fields) {
+  DrawnSurface drawn;
+  std::vector<float> extinction_per_m(fields.grid.CellCount(), 0.0F);
+  for (const volume::HydrometeorField& field : fields.fields) {
+    const scene::FieldParameters& look = scene.fields[physics::IndexOf(field.hydrometeor)];
+    if (!HasSurface(field.hydrometeor) || !look.visible || look.scale <= 0.0F ||
+        field.concentration_kg_per_m3.empty()) {
+      continue;
+    }
+    volume::MassExtinction mass_extinction =
+        volume::MassExtinctionOf(field, look.optics, look.size_from_file);
+    mass_extinction.m2_per_kg *= look.scale;
+    volume::AddExtinction(field, mass_extinction, 0, extinction_per_m.size(),
+                          extinction_per_m.data());
+    drawn.fields.push_back(field.hydrometeor);
+  }
+  clouds::InscribedBallsOptions options;
+  options.level = scene.rendering.cumulus.least_extinction_per_m;
+  options.most_balls = kMostBalls;
+  drawn.surface = clouds::InscribedBalls(fields.grid, extinction_per_m, options);
+  std::size_t first = 0;
+  for (int scale = 1; scale < scene.rendering.cumulus.scales; ++scale) {
+    const std::size_t end = drawn.surface.bubbles.size();
+    clouds::Sprouting sprouting;
+    sprouting.seed = scene.rendering.cumulus.seed;
+    sprouting.most_bubbles = kMostBubbles;
+    sprouting.least_radius_m = drawn.surface.finest_m;
+    clouds::Sprout(sprouting, first, &drawn.surface);
+    first = end;
+  }
+  return drawn;
+}
+
+// Where the storm is, or its domain if there is none.
+clouds::SurfaceBox PlaceOf(const volume::HydrometeorFields& fields) {
+  const volume::RegularGrid& grid = fields.grid;
+  const volume::CellBox cells =
+      fields.condensate.Empty() ? volume::CellBox{glm::ivec3(0), grid.cells} : fields.condensate;
+  return {grid.low_corner_m + glm::dvec3(cells.low) * grid.spacing_m,
+          grid.low_corner_m + glm::dvec3(cells.high) * grid.spacing_m};
+}
+
+absl::StatusOr<clouds::CumulusSurface> SurfaceFromSeed(const scene::Cumulus& cumulus) {
+  const clouds::CauliflowerOptions options{cumulus.seed, cumulus.scales};
+  switch (cumulus.source) {
+    case scene::CumulusSource::kStorm:
+    case scene::CumulusSource::kCauliflower:
+      return clouds::Cauliflower(options);
+    case scene::CumulusSource::kFairWeatherCumulus:
+      return clouds::SurfaceOfPreset("fair-weather-cumulus", options);
+    case scene::CumulusSource::kCongestus:
+      return clouds::SurfaceOfPreset("congestus", options);
+    case scene::CumulusSource::kCumulusField:
+      return clouds::SurfaceOfPreset("cumulus-field", options);
+  }
+  return absl::InternalError("unknown source of a cumulus");
+}
+
+}  // namespace
+
+absl::StatusOr<DrawnSurface> SurfaceOf(const scene::Scene& scene,
+                                       const volume::HydrometeorFields& fields) {
+  if (scene.rendering.cumulus.source == scene::CumulusSource::kStorm) {
+    const int factor = CoarseningOf(fields.grid);
+    if (factor == 1) return SurfaceOfStorm(scene, fields);
+    return SurfaceOfStorm(scene, volume::Coarsened(fields, glm::ivec3(factor)));
+  }
+  DrawnSurface drawn;
+  THUNDERHEAD_ASSIGN_OR_RETURN(drawn.surface, SurfaceFromSeed(scene.rendering.cumulus));
+  clouds::FitInto(PlaceOf(fields), &drawn.surface);
+  return drawn;
+}
+
+std::vector<std::string> NotShownByCumulus(const scene::Scene& scene,
+                                           const volume::HydrometeorFields& fields) {
+  std::vector<std::string> not_shown;
+  if (scene.rendering.cumulus.source != scene::CumulusSource::kStorm) {
+    not_shown.emplace_back("the storm: a cloud made from a seed stands in its place");
+  } else {
+    for (const volume::HydrometeorField& field : fields.fields) {
+      const scene::FieldParameters& look = scene.fields[physics::IndexOf(field.hydrometeor)];
+      const bool asked =
+          look.visible && look.scale > 0.0F && !field.concentration_kg_per_m3.empty();
+      if (asked && !HasSurface(field.hydrometeor)) {
+        not_shown.emplace_back(physics::NameOf(field.hydrometeor));
+      }
+    }
+    not_shown.emplace_back("what is inside the surface, and thinner than its extinction");
+  }
+  not_shown.emplace_back("slices, modes, transports and phase functions");
+  if (scene.rendering.false_colors) not_shown.emplace_back("false colours");
+  return not_shown;
+}
+
+}  // namespace thunderhead::renderers

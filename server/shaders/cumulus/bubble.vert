@@ -1,0 +1,45 @@
+// A quadrangle for each bubble that covers its silhouette exactly: the tangent cone of the eye touches the unit ball in a
+// circle. `order` has the farthest first; variant FRONT_FIRST draws it backwards.
+#include "cumulus/bubble.glsl"
+
+layout(std430, binding = 1) readonly buffer Order { uint order[]; };
+
+uniform mat4 clip_from_local;
+uniform vec4 eye;  // renderers::EyeOf
+uniform int last_rank;
+
+flat out vec4 unit_x;
+flat out vec3 unit_y;
+flat out vec3 unit_z;
+flat out vec3 centre_m;
+flat out int index;
+
+void main() {
+#if FRONT_FIRST
+  index = int(order[last_rank - gl_InstanceID]);
+#else
+  index = int(order[gl_InstanceID]);
+#endif
+  Bubble bubble = bubbles[index];
+  unit_x = bubble.unit_x;
+  unit_y = bubble.unit_y.xyz;
+  unit_z = bubble.unit_z.xyz;
+  centre_m = bubble.centre_m.xyz;
+  vec2 corner = vec2((gl_VertexID & 1) * 2 - 1, (gl_VertexID & 2) - 1);
+  // From the bubble's middle to the eye, or against parallel rays.
+  vec3 to_eye = to_unit(unit_x.xyz, unit_y, unit_z, eye.xyz - centre_m * eye.w);
+  if (eye.w == 0.0) to_eye = -to_eye;
+  float distance = length(to_eye);
+  if (eye.w != 0.0 && distance < 1.001) {  // the eye is inside
+    gl_Position = vec4(corner, 0.0, 1.0);
+    return;
+  }
+  vec3 towards = to_eye / distance;
+  float sine = eye.w == 0.0 ? 0.0 : 1.0 / distance;
+  float radius = sqrt(1.0 - sine * sine) * 1.002;  // of the circle; a little more, for rounding
+  vec3 right = normalize(cross(towards, abs(towards.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));
+  vec3 up = cross(right, towards);
+  vec3 on_unit = sine * towards + radius * (corner.x * right + corner.y * up);
+  mat3 local_from_unit = inverse(transpose(mat3(unit_x.xyz, unit_y, unit_z)));
+  gl_Position = clip_from_local * vec4(centre_m + local_from_unit * on_unit, 1.0);
+}

@@ -1,0 +1,11 @@
+// How far the nearest core is: what lies deeper than the corona. Variants of cumulus/meeting.glsl.
+#include "cumulus/meeting.glsl"
+
+uniform float corona_m;
+uniform float per_far;  // 1 over the distance that is depth 1
+
+void main() {
+  Meeting meeting;
+  if (!meet(meeting) || meeting.depth_m < corona_m) discard;
+  gl_FragDepth = meeting.entry_m * per_far;
+}

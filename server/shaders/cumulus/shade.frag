@@ -1,0 +1,164 @@
+// Neyret's shading of a cumulus (2000, section 4): Lambert's law on a rough surface, light traps between bubbles, the light
+// map of sky and ground, and a corona that scatters forwards. Core and corona are mixed by the density rho at the ray's
+// deepest point, 0 to 1 through the corona; where two bubbles are closer than its thickness their cores are mixed too.
+// Writes the cores that lie together, weighted, and what lies in front of them as a layer.
+// Variants: PLAIN (Lambert's law alone), and those of cumulus/meeting.glsl.
+#include "cumulus/meeting.glsl"
+
+layout(binding = 4) uniform sampler2D core_depth;    // of depth.frag
+layout(binding = 5) uniform sampler2D shadow_depth;  // the same from the sun
+layout(binding = 8) uniform sampler3D roughness_noise;
+
+uniform float corona_m;       // dR
+uniform float per_far;
+uniform vec3 towards_sun;
+uniform vec3 sunlight;        // irradiance
+uniform vec3 light_map[9];    // radiance that a white surface sends of sky's and ground's light, by its normal's harmonics
+uniform vec4 component;       // shares shown of direct light, inter-reflection, ambient light and corona
+uniform float trap_share;     // of the sky that the deepest valley of one scale hides
+uniform float transmission;   // share of sunlight that comes through the cloud
+uniform float roughness;
+uniform float noise_wave_m;   // wavelength of the noise's first octave
+uniform float noise_per_m;    // tiles
+uniform vec3 noise_offset;
+uniform float pixel_share;    // size of a pixel over its distance, or in metres of parallel rays
+uniform bool parallel;
+uniform vec4 shadow_x;        // texture coordinates and depth from a point
+uniform vec4 shadow_y;
+uniform vec4 shadow_z;
+uniform float shadow_texel_m;
+
+layout(location = 0) out vec4 cores;  // radiance times weight, weight
+layout(location = 1) out vec4 layer;  // radiance, share of what lies behind that passes
+
+const float kPi = 3.14159265;
+const float kTrapSharpness = 4.0;       // the paper's k
+const int kTrapScales = 3;
+const float kCoronaVariance = 0.16;     // of the scattering angle at the deepest corona: sigma_max 0.4 rad
+const float kNarrowest = 400.0;         // power of the cosine of droplets' own forward lobe
+const float kRelief = 0.35;             // height of the roughness over its wavelength
+
+float noise_root(vec3 point_m) { return texture(roughness_noise, point_m * noise_per_m + noise_offset).r; }
+
+// The share of sunlight that other bubbles let through to a point.
+float lit(vec3 point_m) {
+  vec4 p = vec4(point_m, 1.0);
+  vec2 size = vec2(textureSize(shadow_depth, 0));
+  vec2 texel = vec2(dot(shadow_x, p), dot(shadow_y, p)) * size - 0.5;
+  float depth = dot(shadow_z, p);
+  ivec2 low = ivec2(floor(texel));
+  vec2 share = texel - floor(texel);
+  vec4 sum;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 at = low + ivec2(i & 1, i >> 1);
+    bool outside = any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(size)));
+    sum[i] = outside || texelFetch(shadow_depth, at, 0).r >= depth ? 1.0 : 0.0;
+  }
+  vec2 rows = mix(sum.xz, sum.yw, share.x);
+  return mix(rows.x, rows.y, share.y);
+}
+
+vec3 from_surroundings(vec3 n) {
+  vec3 sum = light_map[0] + light_map[1] * n.y + light_map[2] * n.z + light_map[3] * n.x + light_map[4] * (n.x * n.y) +
+             light_map[5] * (n.y * n.z) + light_map[6] * (3.0 * n.z * n.z - 1.0) + light_map[7] * (n.x * n.z) +
+             light_map[8] * (n.x * n.x - n.y * n.y);
+  return max(sum, vec3(0.0));
+}
+
+// The normal of a rough surface. Roughness finer than pixels is left out.
+vec3 roughened(vec3 normal, vec3 point_m, float way_m) {
+  float pixel_m = parallel ? pixel_share : pixel_share * way_m;
+  float relief = roughness * kRelief * noise_wave_m * clamp(1.5 - 3.0 * pixel_m / noise_wave_m, 0.0, 1.0);
+  if (relief <= 0.0) return normal;
+  float step_m = max(noise_wave_m / 16.0, 0.5 * pixel_m);
+  vec3 right = normalize(cross(normal, abs(normal.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));
+  vec3 up = cross(normal, right);
+  float here = noise_root(point_m);
+  vec2 rise = vec2(noise_root(point_m + step_m * right), noise_root(point_m + step_m * up)) - here;
+  return normalize(normal - relief / step_m * (rise.x * right + rise.y * up));
+}
+
+// Light that comes back between bubbles (section 4.3). At each scale the valley around a bubble hides a share of the sky
+// that the paper's arc tangent gives by the height on the bubble; the hidden share 2 pi - Omega sends (2 pi - Omega) / Omega
+// of the mean light that arrives at the valley, which is Lambert's law on the underlying surface. Surroundings as bright
+// everywhere look the same in a valley: their light is neither lost nor gained.
+vec3 trapped(vec3 point_m, out float sky_share) {
+  vec3 sum = vec3(0.0);
+  sky_share = 1.0;
+  vec3 underlying = vec3(0.0, 0.0, 1.0);
+  int at = index;
+  for (int scale = 0; scale < kTrapScales && at >= 0; ++scale) {
+    Bubble bubble = bubbles[at];
+    vec3 outward = bubble.outward.xyz;
+    float height = dot(outward, normalize(point_m - bubble.centre_m.xyz));
+    float valley = trap_share * min(atan(kTrapSharpness * (1.0 - height)) / atan(kTrapSharpness), 1.0);
+    int parent = int(bubble.outward.w);
+    underlying = outward;
+    if (parent >= 0) {
+      Bubble below = bubbles[parent];
+      vec3 unit = to_unit(below.unit_x.xyz, below.unit_y.xyz, below.unit_z.xyz, point_m - below.centre_m.xyz);
+      underlying = normalize(from_unit_normal(below.unit_x.xyz, below.unit_y.xyz, below.unit_z.xyz, unit));
+    }
+    float received = max(dot(underlying, towards_sun), 0.0);
+    if (valley > 0.0 && received > 0.0) {
+      received *= lit(point_m + bubble.unit_x.w * underlying);
+      sum += sunlight * (received / kPi * valley / (1.0 - valley));
+    }
+    sky_share *= 1.0 - valley;
+    at = parent;
+  }
+  return sum + (1.0 - sky_share) * from_surroundings(underlying);
+}
+
+// What the core sends.
+vec3 core(Meeting meeting, vec3 point_m) {
+#if PLAIN
+  return sunlight * (max(dot(meeting.normal, towards_sun), 0.0) / kPi);
+#else
+  vec3 normal = roughened(meeting.normal, point_m, meeting.entry_m);
+  float cosine = max(dot(normal, towards_sun), 0.0);
+  if (cosine > 0.0) cosine *= lit(point_m + (1.5 * shadow_texel_m + corona_m) * meeting.normal);
+  float sky_share;
+  vec3 trap = trapped(point_m, sky_share);
+  vec3 ambient = sky_share * from_surroundings(normal) + sunlight * (transmission / kPi);
+  return component.x * sunlight * (cosine / kPi) + component.y * trap + component.z * ambient;
+#endif
+}
+
+// What the corona sends to the eye of the sunlight behind it (section 4.2, appendix A): the variance of the angle grows
+// with the droplets passed, and the lobe is a power of the cosine, scaled so that it sends as much as it takes.
+vec3 corona(Meeting meeting, float rho) {
+  float mu = dot(meeting.ray, towards_sun);
+  if (mu <= 0.0) return vec3(0.0);
+  float most = 2.0 * sqrt(2.0 * unit_x.w * corona_m);
+  float variance = kCoronaVariance * rho * (meeting.exit_m - meeting.entry_m) / most;
+  float power = clamp(1.0 / max(variance, 1e-6), 1.0, kNarrowest);
+  vec3 point_m = meeting.origin_m + meeting.exit_m * meeting.ray;
+  float arriving = lit(point_m + (1.5 * shadow_texel_m + corona_m) * towards_sun);
+  return sunlight * (rho * arriving * (power + 1.0) / (2.0 * kPi) * pow(mu, power));
+}
+
+void main() {
+  Meeting meeting;
+  if (!meet(meeting)) discard;
+  float core_m = texelFetch(core_depth, ivec2(gl_FragCoord.xy), 0).r / per_far;
+#if PLAIN
+  if (meeting.entry_m > core_m * (1.0 + 1e-5)) discard;
+  cores = vec4(core(meeting, vec3(0.0)), 1.0);
+  layer = vec4(0.0, 0.0, 0.0, 1.0);
+#else
+  float behind_m = meeting.entry_m - core_m;
+  if (behind_m > corona_m || meeting.depth_m <= 0.0) discard;
+  vec3 point_m = meeting.origin_m + meeting.entry_m * meeting.ray;
+  float rho = min(meeting.depth_m / corona_m, 1.0);
+  // Thinner where the noise is low; 0 stays 0 and 1 stays 1.
+  if (rho < 1.0 && roughness > 0.0) rho = pow(rho, exp(2.0 * roughness * (0.8 - noise_root(point_m))));
+  float together = max(1.0 - abs(behind_m) / corona_m, 0.0);
+  together = rho < 1.0 ? together * together : max(together * together, 1e-3);
+  vec3 radiance = core(meeting, point_m);
+  cores = together * rho * vec4(radiance, 1.0);
+  float apart = behind_m < 0.0 ? 1.0 - together : 0.0;
+  vec3 scattered = component.w * (1.0 - rho) * corona(meeting, rho);
+  layer = vec4(apart * (rho * radiance + scattered), 1.0 - apart * rho);
+#endif
+}
