@@ -22,6 +22,8 @@ constexpr double kBuried = 0.82;
 constexpr double kCloseness = 0.55;
 // The middle of a bubble lies so far below its parent's surface, in its own radii.
 constexpr double kSunken = 0.4;
+// Darts thrown for each bubble that there is room for.
+constexpr int kDarts = 8;
 
 glm::dvec3 NormalAt(const Bubble& bubble, const glm::dvec3& point_m) {
   const glm::dmat3 unit = UnitFromWorld(bubble);
@@ -82,9 +84,9 @@ class Sprouter {
     const auto wanted = static_cast<int>(sprouting_.cover * 4.0 /
                                          (sprouting_.relative_radius * sprouting_.relative_radius));
     const std::size_t siblings = surface_.bubbles.size();
-    for (int dart = 0; dart < 3 * wanted; ++dart) {
+    for (int dart = 0; dart < kDarts * wanted; ++dart) {
       const glm::dvec3 direction = RandomDirection(&random_);
-      const double size = 0.75 + 0.5 * random_.Next();
+      const double size = 0.65 + 0.7 * random_.Next();
       const glm::dvec3 normal = glm::normalize(glm::transpose(unit) * direction);
       if (normal.z < sprouting_.lowest_sine) continue;
       const double child_m = size * radius_m;

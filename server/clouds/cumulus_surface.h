@@ -51,11 +51,12 @@ void LayOnLarger(CumulusSurface* surface);
 
 // How bubbles sprout from those that are there.
 struct Sprouting {
-  double relative_radius = 0.34;  // of a bubble over that of its parent; each differs by a quarter
-  double cover = 0.8;             // of the parent's upper side
-  double lowest_sine = -0.6;      // of the normal: below it nothing sprouts
-  double least_radius_m = 0.0;    // of parents whose bubbles are worth drawing
-  int most_bubbles = 12000;       // in the surface
+  double relative_radius =
+      0.34;                   // of a bubble over that of its parent; each differs by up to a third
+  double cover = 0.8;         // of the parent's upper side
+  double lowest_sine = -0.6;  // of the normal: below it nothing sprouts
+  double least_radius_m = 0.0;  // of parents whose bubbles are worth drawing
+  int most_bubbles = 12000;     // in the surface
   std::uint64_t seed = 1;
 };
 

@@ -55,6 +55,7 @@ int Run(int argc, char** argv) {
   benchmark::AddCustomContext("gl_renderer", Sample::Get().context->Info().renderer);
   RegisterModes();
   RegisterMetaballs();
+  RegisterCumulus();
   RegisterSavings();
   RegisterGrowth();
   benchmark::RegisterBenchmark("encode_jpeg/1280x720", EncodeJpeg)

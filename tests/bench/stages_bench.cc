@@ -50,4 +50,28 @@ void RegisterMetaballs() {
   }
 }
 
+void RegisterCumulus() {
+  scene::Scene scene = PaperScene();
+  scene.output = {600, 600, 88};
+  scene.rendering.renderer = scene::Renderer::kCumulus;
+  struct Row {
+    const char* name;
+    scene::CumulusSource source;
+    int scales;
+  };
+  const Fields& fields = Sample::Get().fields;
+  for (const Row& row : {Row{"paper", scene::CumulusSource::kCauliflower, 2},
+                         Row{"cauliflower", scene::CumulusSource::kCauliflower, 4},
+                         Row{"storm", scene::CumulusSource::kStorm, 3}}) {
+    const std::string name = std::string("cumulus/") + row.name;
+    scene.rendering.cumulus = {};
+    scene.rendering.cumulus.source = row.source;
+    scene.rendering.cumulus.scales = row.scales;
+    Register(name + "/shaded", scene, fields, Moving::kCamera);
+    Register(name + "/sun_moves", scene, fields, Moving::kSun);
+    scene.rendering.cumulus.component = scene::CumulusComponent::kBalls;
+    Register(name + "/lambert_balls", scene, fields, Moving::kCamera);
+  }
+}
+
 }  // namespace thunderhead::bench
