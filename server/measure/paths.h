@@ -19,6 +19,7 @@ inline constexpr std::array<Named<scene::Renderer>, scene::kRendererCount - 1> k
     {scene::Renderer::kHalfAngle, "half_angle"},
     {scene::Renderer::kLightVolume, "light_volume"},
     {scene::Renderer::kMetaball, "metaball"},
+    {scene::Renderer::kCumulus, "cumulus"},
 }};
 
 // Those that draw the fields as they are, cell by cell, so that their pictures have exact answers.

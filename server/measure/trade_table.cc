@@ -76,13 +76,15 @@ const char* ColorOf(scene::Renderer renderer) {
       return "#d9730d";
     case scene::Renderer::kMetaball:
       return "#3f9142";
+    case scene::Renderer::kCumulus:
+      return "#8a4fbf";
     case scene::Renderer::kReference:
       break;
   }
   return "#000000";
 }
 
-// Blue marches, orange slices, green metaballs; hollow for paper transport.
+// Blue marches, orange slices, green metaballs, violet surfaces; hollow for paper transport.
 void AddDot(const TradeRow& row, LogPlot* plot) {
   const char* color = ColorOf(row.setting.renderer);
   const bool hollow = row.setting.transport == scene::Transport::kPaper;
