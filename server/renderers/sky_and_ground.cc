@@ -85,7 +85,7 @@ std::vector<glm::vec3> SkyAndGround::LightMap(const scene::Scene& scene) const {
   const auto sky_scale = static_cast<float>(scene.sun.irradiance * scene.sky.brightness);
   const glm::vec3 from_ground = IlluminationOf(scene).from_ground;
   return LightMapOf([&](const glm::vec3& direction) {
-    return direction.z > 0.0F ? sky_scale * sky_->Radiance(direction) : from_ground;
+    return direction.z > 0.0F ? sky_scale * sky_->At(direction).radiance : from_ground;
   });
 }
 
