@@ -267,6 +267,31 @@ test("the reference refines the picture while it rests, and begins again when it
   await page.getByTestId("rendering-section").locator("summary").click();
 });
 
+test("metaballs draw the storm, and the page says what they leave out", async () => {
+  await page.getByTestId("rendering-section").locator("summary").click();
+  const choice = page.getByTestId("renderer-choice");
+  const usual = await choice.inputValue();
+  const before = await grabCanvas(page);
+  assert.equal(await page.getByTestId("metaball-count").count(), 0);
+  await changing(() => choice.selectOption({ label: "Metaballs" }));
+  const balls = await grabCanvas(page);
+  await screenshot("9-metaballs");
+  const { deviation } = spread(balls);
+  assert.ok(deviation > 8, `the picture is nearly uniform: deviation ${deviation}`);
+  const change = difference(before, balls);
+  assert.ok(change > 0.5 && change < 40, `they differ from the light volume by ${change}`);
+  assert.match(await page.getByTestId("not-shown").innerText(), /finer than the metaballs/);
+  await page.getByTestId("readout-summary").click();
+  assert.match(await page.getByTestId("stages").innerText(), /Metaballs\s+\d+/);
+  await page.getByTestId("readout-summary").click();
+  await changing(() => page.getByTestId("metaball-isotropic").click());
+  assert.ok(difference(balls, await grabCanvas(page)) > 0.01);
+  await page.getByTestId("metaball-isotropic").click();
+  await changing(() => choice.selectOption(usual));
+  assert.equal(await page.getByTestId("not-shown").count(), 0);
+  await page.getByTestId("rendering-section").locator("summary").click();
+});
+
 test("play goes through the times and waits for each", async () => {
   const seen = new Set();
   await page.getByTestId("rate").selectOption("8");
