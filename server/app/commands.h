@@ -25,6 +25,7 @@ Command AddMeasureFrames(CLI::App& measure);
 Command AddMeasureExtremes(CLI::App& measure);
 Command AddMeasureSlices(CLI::App& measure);
 Command AddMeasureTrade(CLI::App& measure);
+Command AddMeasureLight(CLI::App& measure);
 Command AddGenerate(CLI::App& app);
 Command AddFit(CLI::App& app);
 

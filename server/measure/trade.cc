@@ -16,9 +16,17 @@ constexpr int kTimedFrames = 9;
 
 LinearImage TruthImage(const reference::Image& image) { return {image.size_px, image.radiance}; }
 
-// GL keeps rows from bottom to top, four floats a pixel.
-LinearImage ReadImage(const gl::Texture2D& texture) {
+double Quantile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(
+      std::lround(share * static_cast<double>(values.size() - 1)))];
+}
+
+}  // namespace
+
+LinearImage ImageOf(const gl::Texture2D& texture) {
   const std::vector<float> values = frame::ReadLinear(texture);
+  // GL keeps rows from bottom to top, four floats a pixel.
   LinearImage image{texture.Size(), {}};
   const auto width = static_cast<std::size_t>(image.size_px.x);
   for (auto y = static_cast<std::size_t>(image.size_px.y); y-- > 0;) {
@@ -29,14 +37,6 @@ LinearImage ReadImage(const gl::Texture2D& texture) {
   }
   return image;
 }
-
-double Quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(
-      std::lround(share * static_cast<double>(values.size() - 1)))];
-}
-
-}  // namespace
 
 gl::Texture2D TextureOf(const LinearImage& image) {
   return frame::TextureOf(image.size_px, image.radiance);
@@ -64,7 +64,15 @@ std::string NameOf(scene::Mode mode) {
 }
 
 std::string NameOf(scene::Transport transport) {
-  return transport == scene::Transport::kPaper ? "paper" : "consistent";
+  switch (transport) {
+    case scene::Transport::kPaper:
+      return "paper";
+    case scene::Transport::kConsistent:
+      return "consistent";
+    case scene::Transport::kDiffusion:
+      return "diffusion";
+  }
+  THUNDERHEAD_CHECK(false, "no such transport");
 }
 
 std::vector<TradeSetting> DefaultSweep() {
@@ -164,7 +172,7 @@ absl::StatusOr<TradeRow> Trade::Measure(const TradeSetting& setting) {
                                                          display.rgb, setting.jpeg_quality));
     if (i >= 0) milliseconds.push_back(stopwatch.ElapsedMs());
     if (i + 1 < kTimedFrames) continue;
-    const LinearImage image = ReadImage(*linear.radiance);
+    const LinearImage image = ImageOf(*linear.radiance);
     const double rmse = RelativeRmse(image, truth_);
     // The truth's noise knows nothing of the picture, so that mean squares add up.
     row.relative_rmse = std::sqrt(std::max(rmse * rmse - truth_noise_ * truth_noise_, 0.0));

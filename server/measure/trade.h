@@ -76,6 +76,8 @@ class Trade {
 
 // A linear frame as the renderers leave one, from rows from top to bottom.
 gl::Texture2D TextureOf(const LinearImage& image);
+// And back.
+LinearImage ImageOf(const gl::Texture2D& texture);
 
 // "half_angle" and so on, as in the tables.
 std::string NameOf(scene::Renderer renderer);

@@ -31,11 +31,13 @@ double Largest(const glm::dvec3& color) { return std::max({color.x, color.y, col
 // One path from the eye: what it has gathered and what it still carries.
 class Path {
  public:
-  Path(const Medium& medium, const Surroundings& surroundings, const Ray& ray, RandomStream* random)
+  Path(const Medium& medium, const Surroundings& surroundings, const Ray& ray, RandomStream* random,
+       int most_scatterings)
       : medium_(medium),
         surroundings_(surroundings),
         ray_(ray),
         random_(random),
+        most_scatterings_(most_scatterings),
         hero_(static_cast<std::size_t>(3.0 * random->Uniform())) {}
 
   glm::dvec3 Follow() {
@@ -94,6 +96,7 @@ class Path {
   bool Scatter(const glm::dvec3& point_m) {
     const Scattering scattering = medium_.ScatteringAt(point_m, random_->Uniform());
     if (scattering.phase == nullptr) return false;
+    if (most_scatterings_ > 0 && collisions_ >= most_scatterings_) return false;
     throughput_ *= scattering.weight;
     if (!Survive() || !GoOnAtLength()) return false;
     const double mu = glm::dot(ray_.direction, surroundings_.towards_sun);
@@ -162,6 +165,7 @@ class Path {
   const Surroundings& surroundings_;
   Ray ray_;
   RandomStream* random_;
+  int most_scatterings_;
   bool seen_from_eye_ = true;
   int collisions_ = 0;
   int next_roulette_ = kLongPath;
@@ -174,8 +178,8 @@ class Path {
 }  // namespace
 
 glm::dvec3 EstimateRadiance(const Medium& medium, const Surroundings& surroundings, const Ray& ray,
-                            RandomStream* random) {
-  return Path(medium, surroundings, ray, random).Follow();
+                            RandomStream* random, int most_scatterings) {
+  return Path(medium, surroundings, ray, random, most_scatterings).Follow();
 }
 
 }  // namespace thunderhead::reference

@@ -10,8 +10,9 @@
 
 namespace thunderhead::reference {
 
-// One estimate of the radiance that arrives at `ray`'s origin from its direction.
+// One estimate of the radiance that arrives at `ray`'s origin from its direction. Light that the
+// medium has scattered more than `most_scatterings` times is left out, unless that is 0.
 glm::dvec3 EstimateRadiance(const Medium& medium, const Surroundings& surroundings, const Ray& ray,
-                            RandomStream* random);
+                            RandomStream* random, int most_scatterings = 0);
 
 }  // namespace thunderhead::reference

@@ -72,7 +72,8 @@ void PathTracer::RefinePixel(int x, int y, int until_samples) {
     RandomStream random(options_.seed, index, static_cast<std::uint32_t>(pixel.samples));
     const double right = 2.0 * (x + random.Uniform()) / size_px_.x - 1.0;
     const double up = 1.0 - 2.0 * (y + random.Uniform()) / size_px_.y;
-    pixel.Add(EstimateRadiance(*medium_, surroundings_, camera_.RayThrough(right, up), &random));
+    pixel.Add(EstimateRadiance(*medium_, surroundings_, camera_.RayThrough(right, up), &random,
+                               options_.most_scatterings));
   }
 }
 

@@ -20,6 +20,8 @@ namespace thunderhead::reference {
 struct PathTracerOptions {
   std::uint64_t seed = 0;
   int threads = 0;  // 0: as many as the machine has
+  // Light that the medium has scattered more often is left out; 0 leaves nothing out.
+  int most_scatterings = 0;
 };
 
 // Refining ends at the first limit that is reached. With none it goes on until it is stopped.

@@ -1,0 +1,202 @@
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "app/commands.h"
+#include "app/interruption.h"
+#include "app/local_scene.h"
+#include "app/output_file.h"
+#include "app/progress_bar.h"
+#include "base/status.h"
+#include "frame/image_codec.h"
+#include "frame/tone_map.h"
+#include "gl/context.h"
+#include "measure/light_parts.h"
+#include "measure/paths.h"
+#include "measure/trade.h"
+#include "reference/exr_file.h"
+#include "spdlog/spdlog.h"
+
+namespace thunderhead::app {
+namespace {
+
+using measure::LightPart;
+
+constexpr LightPart kParts[] = {LightPart::kOnce, LightPart::kSun, LightPart::kSky,
+                                LightPart::kAll};
+
+struct Flags {
+  std::string storm;
+  SceneFlags scene;
+  std::string output = "light";
+  std::string device = "auto";
+  std::vector<std::string> parts;
+  std::vector<std::string> transports;
+  int samples_per_pixel = 512;
+  int finer = 4;
+  double peak_cut_deg = reference::kPeakCut_deg;
+};
+
+std::string ReadText(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+bool Chosen(const std::vector<std::string>& names, std::string_view name) {
+  return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// The truth of one part, kept at `path` if it was computed for this scene, else a new one.
+absl::StatusOr<reference::Image> TruthOf(const Flags& flags, const LocalScene& local,
+                                         LightPart part, const std::string& path,
+                                         const Interruption& interruption) {
+  v1::Scene scene = local.message;
+  scene.clear_rendering();
+  const std::string key = absl::StrCat(scene.ShortDebugString(), "\npeak cut: ", flags.peak_cut_deg,
+                                       "\nsamples a pixel: ", flags.samples_per_pixel, "\n");
+  if (std::filesystem::exists(path) && ReadText(path + ".scene") == key) {
+    return reference::ReadExr(path);
+  }
+  reference::RefineLimits limits;
+  limits.samples_per_pixel = flags.samples_per_pixel;
+  ProgressBar bar(absl::StrCat("tracing ", measure::NameOf(part)));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const reference::TracedScene traced,
+      reference::TraceScene(
+          measure::SceneOf(part, measure::TrueScene(local.scene)), *local.fields,
+          measure::TraceOptionsOf(part, flags.peak_cut_deg), limits,
+          [&](const reference::ImageProgress& progress) {
+            bar.Set(static_cast<double>(progress.samples_per_pixel) / flags.samples_per_pixel);
+          },
+          interruption.Token()));
+  if (traced.result.end == reference::RefineEnd::kStopped) {
+    return absl::CancelledError("stopped before the truth was traced; nothing is kept of it");
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(reference::WriteExr(path, traced.image));
+  THUNDERHEAD_RETURN_IF_ERROR(WriteFile(path + ".scene", key));
+  return traced.image;
+}
+
+// Truth, drawn, and 1/2 plus a quarter of their difference over the truth's mean, side by side.
+absl::Status WriteComparison(const measure::LinearImage& truth, const measure::LinearImage& drawn,
+                             const scene::Display& display, const std::string& path) {
+  frame::ToneMapper tone_mapper;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped left,
+                               tone_mapper.Map(measure::TextureOf(truth), display));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped middle,
+                               tone_mapper.Map(measure::TextureOf(drawn), display));
+  double mean = 0.0;
+  for (const glm::vec3& pixel : truth.radiance) mean += (pixel.x + pixel.y + pixel.z) / 3.0;
+  mean /= static_cast<double>(truth.radiance.size());
+  const auto width = static_cast<std::size_t>(truth.size_px.x);
+  std::vector<std::uint8_t> rgb;
+  for (std::size_t y = 0; y < static_cast<std::size_t>(truth.size_px.y); ++y) {
+    const auto row = static_cast<std::ptrdiff_t>(3 * y * width);
+    const auto end = row + static_cast<std::ptrdiff_t>(3 * width);
+    rgb.insert(rgb.end(), left.rgb.begin() + row, left.rgb.begin() + end);
+    rgb.insert(rgb.end(), middle.rgb.begin() + row, middle.rgb.begin() + end);
+    for (std::size_t x = 0; x < width; ++x) {
+      const glm::vec3 off = drawn.radiance[y * width + x] - truth.radiance[y * width + x];
+      for (int color = 0; color < 3; ++color) {
+        const double shown = 127.5 + 0.5 * 127.5 * off[color] / mean;
+        rgb.push_back(static_cast<std::uint8_t>(std::clamp(shown, 0.0, 255.0)));
+      }
+    }
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::string png,
+                               frame::EncodePng(3 * truth.size_px.x, truth.size_px.y, rgb));
+  return WriteFile(path, png);
+}
+
+absl::Status MeasureTransport(const Flags& flags, const LocalScene& local, LightPart part,
+                              const reference::Image& image,
+                              const measure::Named<scene::Transport>& transport,
+                              renderers::SceneRenderer& renderer) {
+  const measure::LinearImage truth{image.size_px, image.radiance};
+  const double noise = measure::RelativeNoise(image.standard_error, truth);
+  scene::Scene scene = local.scene;
+  scene.rendering.transport = transport.value;
+  const auto error_of = [&](const measure::LinearImage& drawn) {
+    const double rmse = measure::RelativeRmse(drawn, truth);
+    return std::sqrt(std::max(rmse * rmse - noise * noise, 0.0));
+  };
+  THUNDERHEAD_ASSIGN_OR_RETURN(const measure::LinearImage drawn,
+                               measure::DrawPart(renderer, scene, local.fields, part, flags.finer));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const measure::LinearImage single,
+                               measure::DrawPart(renderer, scene, local.fields, part, 1));
+  std::cout << absl::StrFormat("%-5s %-11s %8.4f %+8.4f %8.4f %8.4f\n", measure::NameOf(part),
+                               transport.name, error_of(drawn), measure::RelativeBias(drawn, truth),
+                               error_of(single), noise)
+            << std::flush;
+  return WriteComparison(truth, drawn, local.scene.display,
+                         absl::StrCat(flags.output, ".", measure::NameOf(part), ".",
+                                      std::string(transport.name), ".png"));
+}
+
+absl::Status MeasureLight(const Flags& flags) {
+  spdlog::set_level(spdlog::level::warn);
+  const Interruption interruption;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const LocalScene local, OpenScene(flags.storm, flags.scene));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,
+                               gl::Context::Create(flags.device));
+  renderers::SceneRenderer renderer;
+  std::cout << "part  transport       RMSE     bias   1 ray    noise\n";
+  for (const LightPart part : kParts) {
+    if (!Chosen(flags.parts, measure::NameOf(part))) continue;
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        const reference::Image truth,
+        TruthOf(flags, local, part, absl::StrCat(flags.output, ".", measure::NameOf(part), ".exr"),
+                interruption));
+    for (const auto& transport : measure::kTransports) {
+      const bool once = part == LightPart::kOnce;
+      if (once ? transport.value != scene::Transport::kConsistent
+               : !Chosen(flags.transports, transport.name)) {
+        continue;
+      }
+      THUNDERHEAD_RETURN_IF_ERROR(MeasureTransport(flags, local, part, truth, transport, renderer));
+    }
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+Command AddMeasureLight(CLI::App& measure) {
+  auto flags = std::make_shared<Flags>();
+  flags->scene.size = "96x64";
+  CLI::App* light = measure.add_subcommand(
+      "light", "Error of sunlight scattered once, of all sunlight, of skylight, and of all light");
+  light->add_option("STORM", flags->storm, "Storm file or folder")->required();
+  light
+      ->add_option("-o,--output", flags->output,
+                   "Where truths (.PART.exr) and pictures (.PART.TRANSPORT.png: truth, drawn, "
+                   "difference) go")
+      ->capture_default_str();
+  light->add_option("--part", flags->parts, "once, sun, sky, all; every one if not given");
+  light->add_option("--transport", flags->transports, "Which transports; every one if not given");
+  light->add_option("--scene", flags->scene.file, "Scene as Protobuf JSON");
+  light->add_option("--camera", flags->scene.camera, "orbit, spotter or top-down");
+  light->add_option("--time", flags->scene.time_index, "Which of the storm's times, from 0");
+  light->add_option("--size", flags->scene.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  light->add_option("--spp", flags->samples_per_pixel, "Samples a pixel of the truth")
+      ->check(CLI::Range(16, 1 << 20))
+      ->capture_default_str();
+  light->add_option("--finer", flags->finer, "Rays across and along a pixel of the drawn picture")
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str();
+  light->add_option("--peak-cut", flags->peak_cut_deg, "As of render")
+      ->check(CLI::Range(0.0, 30.0))
+      ->capture_default_str();
+  light->add_option("--device", flags->device, "auto, software or a GPU's number")
+      ->capture_default_str();
+  return {light, [flags] { return MeasureLight(*flags); }};
+}
+
+}  // namespace thunderhead::app

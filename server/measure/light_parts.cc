@@ -1,0 +1,84 @@
+#include "measure/light_parts.h"
+
+#include "base/status.h"
+#include "measure/trade.h"
+
+namespace thunderhead::measure {
+namespace {
+
+// The mean of squares of `side` pixels.
+LinearImage Averaged(const LinearImage& image, int side) {
+  LinearImage mean{image.size_px / side, {}};
+  const auto width = static_cast<std::size_t>(mean.size_px.x);
+  mean.radiance.resize(width * static_cast<std::size_t>(mean.size_px.y));
+  const float share = 1.0F / static_cast<float>(side * side);
+  for (int y = 0; y < mean.size_px.y * side; ++y) {
+    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.size_px.x);
+    for (int x = 0; x < mean.size_px.x * side; ++x) {
+      mean.radiance[static_cast<std::size_t>(y / side) * width +
+                    static_cast<std::size_t>(x / side)] +=
+          share * image.radiance[row + static_cast<std::size_t>(x)];
+    }
+  }
+  return mean;
+}
+
+absl::StatusOr<LinearImage> Draw(renderers::SceneRenderer& renderer, const scene::Scene& scene,
+                                 const std::shared_ptr<const volume::HydrometeorFields>& fields,
+                                 int finer) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame frame,
+                               renderer.Draw(scene, fields, {}));
+  return Averaged(ImageOf(*frame.radiance), finer);
+}
+
+}  // namespace
+
+std::string NameOf(LightPart part) {
+  switch (part) {
+    case LightPart::kOnce:
+      return "once";
+    case LightPart::kSun:
+      return "sun";
+    case LightPart::kSky:
+      return "sky";
+    case LightPart::kAll:
+      return "all";
+  }
+  THUNDERHEAD_CHECK(false, "no such part");
+}
+
+scene::Scene SceneOf(LightPart part, scene::Scene scene) {
+  if (part == LightPart::kAll) return scene;
+  scene.sky.ground_albedo = 0.0;
+  if (part == LightPart::kSky) return scene;
+  scene.sky.brightness = 0.0;
+  if (part == LightPart::kSun) return scene;
+  scene.rendering.mode = scene::Mode::kUniformPhaseLowAlbedo;
+  scene.rendering.transport = scene::Transport::kConsistent;
+  return scene;
+}
+
+reference::TraceOptions TraceOptionsOf(LightPart part, double peak_cut_deg) {
+  reference::TraceOptions options;
+  options.peak_cut_deg = part == LightPart::kOnce ? 0.0 : peak_cut_deg;
+  options.most_scatterings = part == LightPart::kOnce ? 1 : 0;
+  options.sun = part != LightPart::kSky;
+  return options;
+}
+
+absl::StatusOr<LinearImage> DrawPart(renderers::SceneRenderer& renderer, const scene::Scene& scene,
+                                     const std::shared_ptr<const volume::HydrometeorFields>& fields,
+                                     LightPart part, int finer) {
+  scene::Scene lit = SceneOf(part, scene);
+  lit.output.width_px *= finer;
+  lit.output.height_px *= finer;
+  THUNDERHEAD_ASSIGN_OR_RETURN(LinearImage image, Draw(renderer, lit, fields, finer));
+  if (part != LightPart::kSky) return image;
+  // Light adds up: the sky's is what a black sky leaves out.
+  lit.sky.brightness = 0.0;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const LinearImage sun, Draw(renderer, lit, fields, finer));
+  for (std::size_t i = 0; i < image.radiance.size(); ++i) image.radiance[i] -= sun.radiance[i];
+  return image;
+}
+
+}  // namespace thunderhead::measure

@@ -1,0 +1,37 @@
+// Which part of the light a renderer gets wrong: the same scene lit by less, or scattering less,
+// drawn and traced alike. Owns GL objects: use it on the context's thread.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "measure/image_error.h"
+#include "reference/trace_scene.h"
+#include "renderers/scene_renderer.h"
+#include "scene/scene.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::measure {
+
+enum class LightPart {
+  kOnce,  // sunlight scattered once, uniform phase, black sky and ground: both sides are exact
+  kSun,   // sunlight scattered any number of times, black sky and ground
+  kSky,   // skylight alone, black ground
+  kAll
+};
+
+std::string NameOf(LightPart part);
+
+// What the reference traces for that part of `scene`.
+scene::Scene SceneOf(LightPart part, scene::Scene scene);
+reference::TraceOptions TraceOptionsOf(LightPart part, double peak_cut_deg);
+
+// Draws one part with `scene`'s renderer and transport, `finer` times as wide and high as the
+// scene says and averaged, as the reference averages over a pixel.
+absl::StatusOr<LinearImage> DrawPart(renderers::SceneRenderer& renderer, const scene::Scene& scene,
+                                     const std::shared_ptr<const volume::HydrometeorFields>& fields,
+                                     LightPart part, int finer);
+
+}  // namespace thunderhead::measure
