@@ -98,6 +98,12 @@ void Texture2D::BindImage(GLuint unit, GLenum access) const {
   glBindImageTexture(unit, name_.Get(), 0, GL_FALSE, 0, access, internal_format_);
 }
 
+void Texture3D::Download(GLenum format, GLenum type, std::size_t bytes, void* texels) const {
+  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glGetTextureImage(name_.Get(), 0, format, type, static_cast<GLsizei>(bytes), texels);
+}
+
 void Texture3D::Clear() { glClearTexImage(name_.Get(), 0, GL_RED, GL_FLOAT, nullptr); }
 
 void Texture3D::BindImage(GLuint unit, GLenum access) const {

@@ -87,6 +87,8 @@ class Texture3D {
   void Bind(GLuint unit) const { glBindTextureUnit(unit, name_.Get()); }
   // Fills it with zeros.
   void Clear();
+  // The whole texture; waits for what draws it. `texels` has room for it, rows tightly packed.
+  void Download(GLenum format, GLenum type, std::size_t bytes, void* texels) const;
   // For imageLoad and imageStore, all layers.
   void BindImage(GLuint unit, GLenum access) const;
 

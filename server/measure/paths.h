@@ -33,9 +33,10 @@ inline constexpr std::array<Named<scene::Mode>, 4> kModes = {{
     {scene::Mode::kPerFieldPhaseDetailTranslucent, "per_field_phase_detail_translucent"},
 }};
 
-inline constexpr std::array<Named<scene::Transport>, 2> kTransports = {{
+inline constexpr std::array<Named<scene::Transport>, 3> kTransports = {{
     {scene::Transport::kPaper, "paper"},
     {scene::Transport::kConsistent, "consistent"},
+    {scene::Transport::kDiffusion, "diffusion"},
 }};
 
 }  // namespace thunderhead::measure

@@ -50,7 +50,8 @@ std::optional<TradeRow> RowOf(absl::string_view line) {
             {scene::Mode::kUniformPhaseLowAlbedo, scene::Mode::kUniformPhaseTranslucent,
              scene::Mode::kPerFieldPhaseTranslucent},
             &setting.mode) &&
-      Named(cells[2], {scene::Transport::kPaper, scene::Transport::kConsistent},
+      Named(cells[2],
+            {scene::Transport::kPaper, scene::Transport::kConsistent, scene::Transport::kDiffusion},
             &setting.transport) &&
       absl::SimpleAtoi(cells[3], &setting.slices) &&
       absl::SimpleAtod(cells[4], &setting.image_scale) &&

@@ -35,7 +35,7 @@ bool IsTranslucent(const scene::Rendering& rendering) {
 }
 
 bool IsConsistent(const scene::Rendering& rendering) {
-  return rendering.transport == scene::Transport::kConsistent;
+  return rendering.transport != scene::Transport::kPaper;
 }
 
 GroupWeights::GroupWeights(const Medium& medium, const scene::Rendering& rendering) {
@@ -49,7 +49,11 @@ GroupWeights::GroupWeights(const Medium& medium, const scene::Rendering& renderi
     eye.push_back(1.0 - passed);
     light.push_back(1.0 - passed);
     scattering.push_back(group.albedo);
-    transport.push_back(1.0 - group.albedo * physics::MeanCosine(group.phase));
+    const double mean_cosine = physics::MeanCosine(group.phase);
+    transport.push_back(1.0 - group.albedo * mean_cosine);
+    diffusing.push_back(group.albedo * (1.0 - mean_cosine));
+    absorption.push_back(1.0 - group.albedo);
+    absorbs = absorbs || group.albedo < 1.0F;
     peripheral.push_back(group.albedo * ring);
     phase_display.push_back(IsConsistent(rendering)
                                 ? glm::vec2(0.0F)

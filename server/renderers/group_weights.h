@@ -15,6 +15,7 @@
 namespace thunderhead::renderers {
 
 bool IsTranslucent(const scene::Rendering& rendering);
+// With an exact exponential and delta scaling: not the paper's transport.
 bool IsConsistent(const scene::Rendering& rendering);
 
 // One value a group, as a share of the group's extinction, where not said otherwise.
@@ -23,10 +24,13 @@ struct GroupWeights {
   std::vector<double> light;             // extinction of the sun's ray, delta scaled if consistent
   std::vector<double> scattering;        // albedo
   std::vector<double> transport;         // similarity-scaled extinction, 1 - omega g
+  std::vector<double> diffusing;         // similarity-scaled scattering, omega (1 - g)
+  std::vector<double> absorption;        // 1 - omega
   std::vector<double> peripheral;        // scattering into the outer ring around straight on
   std::vector<glm::vec2> phase_display;  // offset and slope of the paper's display normalisation
   std::vector<glm::vec3> color;
   bool colored = false;
+  bool absorbs = false;
   float phase_cut = 1.0F;            // cosine within which phase functions are held
   glm::vec2 cumulative_phase{0.0F};  // CP(theta_f / 4), CP(theta_f / 2): Vis eq. 13
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 
 #include "base/stopwatch.h"
 #include "glm/common.hpp"
@@ -43,6 +44,11 @@ std::vector<glm::vec4> Packed(const std::vector<double>& by_group, double factor
     packed[i / 4][static_cast<int>(i % 4)] = static_cast<float>(by_group[i] * factor);
   }
   return packed;
+}
+
+std::uint64_t NextId() {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
 }
 
 // On fewer cells if a texture cannot hold all.
@@ -91,7 +97,7 @@ Medium MediumOf(const scene::Scene& scene, const volume::HydrometeorFields& fiel
 
 ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::HydrometeorFields& fields,
                                DetailNoises* noises, Cost* cost)
-    : content_(MediumOf(scene, fields)) {
+    : id_(NextId()), content_(MediumOf(scene, fields)) {
   constexpr std::array<GLenum, 5> kFormats = {0, GL_R16F, GL_RG16F, 0, GL_RGBA16F};
   constexpr std::array<GLenum, 5> kTransferFormats = {0, GL_RED, GL_RG, 0, GL_RGBA};
   base::Stopwatch stopwatch;

@@ -3,6 +3,7 @@
 // textures. Shared by every renderer.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -59,6 +60,8 @@ class ResidentMedium {
                  DetailNoises* noises, Cost* cost);
 
   bool Empty() const { return bounds_.Empty(); }
+  // Differs from that of any other medium of this process; 0 has no content.
+  std::uint64_t Id() const { return id_; }
   const Medium& Content() const { return content_; }
   // The volume's place and scale; its texels are on the device only.
   const volume::ExtinctionVolume& Bounds() const { return bounds_; }
@@ -86,6 +89,7 @@ class ResidentMedium {
  private:
   void BindDetails(const gl::Program& program) const;
 
+  std::uint64_t id_ = 0;
   Medium content_;
   volume::ExtinctionVolume bounds_;
   std::vector<gl::Texture3D> textures_;

@@ -114,7 +114,10 @@ bool HasDetail(Mode mode);
 enum class Renderer { kHalfAngle, kLightVolume, kReference, kMetaball, kCumulus };
 inline constexpr std::size_t kRendererCount = 5;
 
-enum class Transport { kPaper, kConsistent };
+// What becomes of scattered light: the papers' slices; an exact exponential with a closed form for
+// light scattered many times; or that light from the diffusion equation (light volume only: slices
+// draw it as consistent).
+enum class Transport { kPaper, kConsistent, kDiffusion };
 
 // How a storm is drawn by metaballs; other renderers ignore it.
 struct Metaballs {

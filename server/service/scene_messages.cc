@@ -67,6 +67,7 @@ constexpr std::array kCumulusComponents = {
 constexpr std::array kTransports = {
     std::pair{v1::TRANSPORT_CONSISTENT, scene::Transport::kConsistent},
     std::pair{v1::TRANSPORT_PAPER, scene::Transport::kPaper},
+    std::pair{v1::TRANSPORT_DIFFUSION, scene::Transport::kDiffusion},
 };
 constexpr std::array kToneMaps = {
     std::pair{v1::TONE_MAP_FILMIC, scene::ToneMap::kFilmic},

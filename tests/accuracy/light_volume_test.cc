@@ -133,7 +133,8 @@ class MarchedDepths : public LightVolume, public testing::WithParamInterface<dou
 TEST_P(MarchedDepths, NothingBreaks) {
   for (const auto mode :
        {scene::Mode::kUniformPhaseLowAlbedo, scene::Mode::kPerFieldPhaseTranslucent}) {
-    for (const auto transport : {scene::Transport::kPaper, scene::Transport::kConsistent}) {
+    for (const auto transport :
+         {scene::Transport::kPaper, scene::Transport::kConsistent, scene::Transport::kDiffusion}) {
       for (const double elevation_deg : {-80.0, 30.0, 89.0}) {
         scene_.rendering.mode = mode;
         scene_.rendering.transport = transport;

@@ -53,8 +53,8 @@ class SlabView : public testing::Test {
   }
 
   Seen Look(double optical_depth, const scene::View& view, double sun_elevation_deg) {
-    const auto fields = in_air_ ? support::MakeLayerInAir(kWidth_m, kHeight_m, 8, optical_depth)
-                                : support::MakeSlab(kWidth_m, kHeight_m, optical_depth / kHeight_m);
+    const auto fields = in_air_ ? support::MakeLayerInAir(width_m_, kHeight_m, 8, optical_depth)
+                                : support::MakeSlab(width_m_, kHeight_m, optical_depth / kHeight_m);
     ResidentMedium::Cost cost;
     DetailNoises noises;
     const ResidentMedium medium(scene_, *fields, &noises, &cost);
@@ -63,6 +63,10 @@ class SlabView : public testing::Test {
     settings.view = view;
     settings.illumination = {scene::Direction(kSunAzimuth_deg, sun_elevation_deg), glm::vec3(1.0F),
                              glm::vec3(0.0F)};
+    if (even_light_) {
+      settings.illumination = {settings.illumination.towards_sun, glm::vec3(0.0F), glm::vec3(1.0F),
+                               glm::vec3(1.0F), glm::vec3(1.0F)};
+    }
     settings.eye_size = {9, 9};
     settings.slices = scene_.rendering.slices;
     Seen seen;
@@ -95,6 +99,8 @@ class SlabView : public testing::Test {
 
   scene::Scene scene_;
   bool in_air_ = false;  // a layer with soft faces instead of the slab
+  double width_m_ = kWidth_m;
+  bool even_light_ = false;  // radiance 1 from everywhere instead of sunlight
 
  private:
   inline static std::unique_ptr<gl::Context> context_;

@@ -34,6 +34,7 @@ const MODES = [
 
 const TRANSPORTS = [
   [Transport.CONSISTENT, "Consistent"],
+  [Transport.DIFFUSION, "Diffusion"],
   [Transport.PAPER, "As in the paper"],
 ] as const;
 

@@ -22,8 +22,14 @@ constexpr double kNearInTexels = 1.5;    // sampled next to a cell
 constexpr int kMostGroupsInRow = 65535;  // what OpenGL 4.5 guarantees along each axis
 constexpr int kGroupSide = 8;            // of carry.comp
 
+// Light scattered many times in closed form.
 bool IsDiffuse(const scene::Rendering& rendering) {
-  return IsConsistent(rendering) && IsTranslucent(rendering);
+  return rendering.transport == scene::Transport::kConsistent && IsTranslucent(rendering);
+}
+
+// The same from the diffusion equation.
+bool Diffuses(const scene::Rendering& rendering) {
+  return rendering.transport == scene::Transport::kDiffusion && IsTranslucent(rendering);
 }
 
 }  // namespace
@@ -101,7 +107,9 @@ absl::Status LightVolumeRenderer::CarryLight(const ResidentMedium& medium,
       {"TRANSLUCENT", IsTranslucent(settings.rendering) ? 1 : 0},
       {"DIFFUSE", diffuse ? 1 : 0}};
   THUNDERHEAD_RETURN_IF_ERROR(Carry(medium, weights, box, variant));
-  return Arrive(medium, weights, box, variant);
+  THUNDERHEAD_RETURN_IF_ERROR(Arrive(medium, weights, box, variant));
+  if (!Diffuses(settings.rendering)) return absl::OkStatus();
+  return diffusion_.Solve(medium, weights, arrived_, settings.illumination.towards_sun);
 }
 
 absl::Status LightVolumeRenderer::Carry(const ResidentMedium& medium, const GroupWeights& weights,
@@ -154,6 +162,21 @@ absl::Status LightVolumeRenderer::Arrive(const ResidentMedium& medium, const Gro
   return absl::OkStatus();
 }
 
+void LightVolumeRenderer::BindDiffusion(const gl::Program& program, const ResidentMedium& medium,
+                                        const GroupWeights& weights,
+                                        const RenderSettings& settings) {
+  program.Set("transport_weights", medium.Weights(weights.transport));
+  program.Set("from_sky", settings.illumination.from_sky);
+  program.Set("from_ground", settings.illumination.from_ground);
+  constexpr const char* kTints[] = {"red_weights", "green_weights", "blue_weights"};
+  for (int color = 0; color < 3; ++color) {
+    std::vector<double> tint = weights.diffusing;
+    for (std::size_t i = 0; i < tint.size(); ++i) tint[i] *= weights.color[i][color];
+    program.Set(kTints[color], medium.Weights(tint));
+  }
+  diffusion_.Bind();
+}
+
 absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
                                            const RenderSettings& settings) {
   if (eye_.Size() != settings.eye_size) {
@@ -166,6 +189,7 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
       !weights.colored && std::all_of(groups.begin(), groups.end(), [&](const MediumGroup& group) {
         return group.albedo == groups.front().albedo;
       });
+  const bool diffusion = Diffuses(settings.rendering);
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
       programs_->Get({"common/whole_target.vert",
@@ -175,7 +199,9 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
                        {"COLORED", weights.colored ? 1 : 0},
                        {"CONSISTENT", IsConsistent(settings.rendering) ? 1 : 0},
                        {"GROUND", settings.ground_distance != nullptr ? 1 : 0},
-                       {"EVEN_ALBEDO", even_albedo ? 1 : 0}}}));
+                       {"EVEN_ALBEDO", even_albedo ? 1 : 0},
+                       {"DIFFUSION", diffusion ? 1 : 0},
+                       {"TINTED", diffusion && (weights.colored || weights.absorbs) ? 1 : 0}}}));
   medium.Bind(*program);
   weights.BindPhase(*program);
   const scene::View& view = settings.view;
@@ -188,6 +214,7 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
   program->Set("albedo", groups.front().albedo);
   program->Set("sunlight", settings.illumination.sunlight);
   program->Set("ambient", settings.illumination.ambient);
+  if (diffusion) BindDiffusion(*program, medium, weights, settings);
   arrived_.Bind(kLightUnit);
   if (settings.ground_distance != nullptr) settings.ground_distance->Bind(kGroundUnit);
   eye_target_.Bind();

@@ -15,6 +15,7 @@
 #include "gl/program.h"
 #include "renderers/group_weights.h"
 #include "renderers/half_angle/slicing.h"
+#include "renderers/light_volume/diffusion_pass.h"
 #include "renderers/medium.h"
 #include "renderers/render_settings.h"
 
@@ -24,7 +25,7 @@ class LightVolumeRenderer {
  public:
   // Programs are linked in `programs`.
   explicit LightVolumeRenderer(std::shared_ptr<gl::ProgramCache> programs)
-      : programs_(std::move(programs)) {}
+      : programs_(std::move(programs)), diffusion_(programs_) {}
 
   // Carries the light to the cells. `medium` must not be empty.
   absl::Status CarryLight(const ResidentMedium& medium, const RenderSettings& settings);
@@ -36,7 +37,8 @@ class LightVolumeRenderer {
   // The result of the last DrawView.
   const gl::Texture2D& Eye() const { return eye_; }
   std::size_t Bytes() const {
-    return eye_.Bytes() + carried_.Bytes() + thickness_.Bytes() + arrived_.Bytes();
+    return eye_.Bytes() + carried_.Bytes() + thickness_.Bytes() + arrived_.Bytes() +
+           diffusion_.Bytes();
   }
 
  private:
@@ -48,6 +50,9 @@ class LightVolumeRenderer {
   absl::Status Arrive(const ResidentMedium& medium, const GroupWeights& weights,
                       const LightBox& box, const std::vector<gl::Define>& variant);
 
+  void BindDiffusion(const gl::Program& program, const ResidentMedium& medium,
+                     const GroupWeights& weights, const RenderSettings& settings);
+
   std::shared_ptr<gl::ProgramCache> programs_;
   gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
   gl::Texture2D eye_;
@@ -56,6 +61,7 @@ class LightVolumeRenderer {
   gl::Texture2D thickness_;
   gl::Texture3D arrived_;  // at the medium's cells
   GLenum light_format_ = 0;
+  DiffusionPass diffusion_;
 };
 
 }  // namespace thunderhead::renderers

@@ -4,7 +4,11 @@
 // Between two samples extinction, scattering and the square root of the light's optical depth are linear. A segment shows
 // what scatters at the middle of the share of light that it takes: exact for a source that is linear in that share,
 // whatever the segment's optical depth. Errors against many samples: docs/performance.md.
-// Variants: GROUND (a ray ends there), GROUPS, COLORED (per-group colours), CONSISTENT (transport), EVEN_ALBEDO (one albedo and colour for all).
+// DIFFUSION: light scattered many times comes from the diffusion equation (renderers/light_volume/diffuse_light.h). Its
+// medium scatters evenly but less, so that the ray loses this light, and what is behind, by similarity-scaled extinction;
+// light that is scattered just once keeps its own.
+// Variants: GROUND (a ray ends there), GROUPS, COLORED (per-group colours), CONSISTENT (transport), EVEN_ALBEDO (one albedo
+// and colour for all), DIFFUSION, TINTED (diffuse light is absorbed or coloured).
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
 #include "common/phase.glsl"
@@ -24,11 +28,49 @@ uniform float albedo;                     // of every group
 uniform vec3 sunlight;                    // irradiance
 uniform vec3 ambient;                     // mean radiance from sky and ground
 
+#if DIFFUSION
+layout(binding = 5) uniform sampler3D ways_out;    // root of the optical depth to the nearest one, share of sky seen there, its net flux
+layout(binding = 6) uniform sampler3D net_inward;  // of sunlight
+
+uniform vec4 transport_weights[PLANES];  // texel to similarity-scaled extinction, 1/m
+uniform vec3 from_sky;                   // radiance
+uniform vec3 from_ground;
+#if TINTED
+uniform vec4 red_weights[PLANES];  // texel to similarity-scaled scattering, 1/m
+uniform vec4 green_weights[PLANES];
+uniform vec4 blue_weights[PLANES];
+#endif
+#endif
+
 in vec2 position;
 out vec4 radiance_and_transmittance;
 
 const int kMostSamples = 16384;
 const float kOpaque = 5e-3;  // share of the background below which a ray ends
+#if DIFFUSION
+#define SHOWING diffuse_passing
+#else
+#define SHOWING passing
+#endif
+
+// What a segment of a ray takes of the light, from the extinction at its two ends: its share, and where on the segment
+// half of that is taken.
+struct Taken {
+  float share;
+  float at;
+};
+
+Taken taken_on(float segment_m, float start, float end) {
+  float rise = end - start;
+  float depth = 0.5 * segment_m * (start + end);
+  float share = depth < 0.01 ? depth * (1.0 - 0.5 * depth) : 1.0 - exp(-depth);
+  // Half of what the segment takes is taken before the optical depth from its start reaches:
+  float seen_depth = share < 0.02 ? 0.5 * share : -log(1.0 - 0.5 * share);
+  // Where that is: the root of a quadratic.
+  float per_m = 2.0 * seen_depth / max(segment_m, 1e-6);
+  float at = min(per_m / (start + sqrt(max(start * start + rise * per_m, 1e-30))), 1.0);
+  return Taken(share, at);
+}
 
 void main() {
   vec3 ray = ray_direction(position);
@@ -51,6 +93,14 @@ void main() {
   vec3 per_brick_step = 1.0 / brick_step;
 
   float passing = 1.0;
+#if DIFFUSION
+  float diffuse_passing = 1.0;
+  vec3 diffuse_sun = vec3(0.0);  // fluence, by the share of it that is seen
+  vec3 diffuse_sky = vec3(0.0);
+  vec3 diffuse_all = vec3(0.0);
+  float transport_before = 0.0;
+  vec4 diffuse_before = vec4(0.0);
+#endif
   float multiple = 0.0;    // mean intensity of light scattered many times, by the share of it that is seen
   vec4 direct[PLANES];     // by group: what scatters of the sunlight that arrives
 #if !EVEN_ALBEDO
@@ -71,7 +121,7 @@ void main() {
   float extinction_before = -1.0;  // no sample yet
   vec2 light_before = vec2(0.0);
 
-  for (int sample_count = 0; sample_count < kMostSamples && way_m < end_m && passing > kOpaque; ++sample_count) {
+  for (int sample_count = 0; sample_count < kMostSamples && way_m < end_m && SHOWING > kOpaque; ++sample_count) {
     float from_m = way_m;
     float longest_m = step_m;
     while (way_m < end_m) {
@@ -93,19 +143,46 @@ void main() {
     vec2 light_here = texture(arrived, place).rg;
     float extinction_here = weigh(here, eye_weights);
     float start = max(extinction_before, 0.0);
-    float rise = extinction_here - start;
-    float depth = 0.5 * segment_m * (start + extinction_here);
-    float taken = depth < 0.01 ? depth * (1.0 - 0.5 * depth) : 1.0 - exp(-depth);
-    // Half of what the segment takes is taken before the optical depth from its start reaches:
-    float seen_depth = taken < 0.02 ? 0.5 * taken : -log(1.0 - 0.5 * taken);
-    // Where that is: the root of a quadratic.
-    float per_m = 2.0 * seen_depth / max(segment_m, 1e-6);
-    float at = min(per_m / (start + sqrt(max(start * start + rise * per_m, 1e-30))), 1.0);
+    Taken split = taken_on(segment_m, start, extinction_here);
+    float taken = split.share;
+    float at = split.at;
     vec2 light = mix(light_before, light_here, at);
     float arriving = exp(-light.r * light.r);
     float seen = passing * taken;
     float per_extinction = seen / max(mix(start, extinction_here, at), 1e-30);
-#if EVEN_ALBEDO
+#if DIFFUSION
+    float transport_here = weigh(here, transport_weights);
+    vec4 diffuse_here = vec4(texture(ways_out, place).rgb, texture(net_inward, place).r);
+    Taken diffuse = taken_on(segment_m, extinction_before < 0.0 ? 0.0 : transport_before, transport_here);
+    vec4 between = mix(diffuse_before, diffuse_here, diffuse.at);
+    float passed_root = mix(light_before.r, light_here.r, diffuse.at);
+    float transport_there = mix(transport_before, transport_here, diffuse.at);
+    float exit_depth = between.x * between.x;
+    float scale = transport_there / max(mix(start, extinction_here, diffuse.at), 1e-30);
+    float fluence = diffuse_fluence(exit_depth, passed_root * passed_root, scale * exit_depth, between.w);
+    float sky_share = clamp(between.y - between.z * (3.0 * scale * exit_depth + 2.0), 0.0, 1.0);
+    float passed_depth = passed_root * passed_root;
+    fluence += forward_fluence(exit_depth, passed_depth, scale * passed_depth);
+    float shown = diffuse_passing * diffuse.share;
+#if TINTED
+    vec3 tint = mix(vec3(weigh(before, red_weights), weigh(before, green_weights), weigh(before, blue_weights)),
+                    vec3(weigh(here, red_weights), weigh(here, green_weights), weigh(here, blue_weights)), diffuse.at) /
+                max(transport_there, 1e-30);
+#else
+    const vec3 tint = vec3(1.0);
+#endif
+    diffuse_sun += (shown * fluence) * tint;
+    diffuse_sky += (shown * sky_share) * tint;
+    diffuse_all += shown * tint;
+    diffuse_passing *= 1.0 - diffuse.share;
+    transport_before = transport_here;
+    diffuse_before = diffuse_here;
+#endif
+#if DIFFUSION
+    for (int plane = 0; plane < PLANES; ++plane) {
+      direct[plane] += (per_extinction * arriving) * mix(before.plane[plane], here.plane[plane], at);
+    }
+#elif EVEN_ALBEDO
     multiple += seen * light.g;
     for (int plane = 0; plane < PLANES; ++plane) {
       direct[plane] += (per_extinction * arriving) * mix(before.plane[plane], here.plane[plane], at);
@@ -135,12 +212,15 @@ void main() {
     int channel = group % 4;
     float scattering = scattering_weights[plane][channel];
     radiance += sunlight * (direct[plane][channel] * scattering) * phase_term(group, mu);
-#if CONSISTENT && !EVEN_ALBEDO
+#if CONSISTENT && !EVEN_ALBEDO && !DIFFUSION
     vec3 isotropic = ambient * ambient_scattered[plane][channel] + sunlight * multiple_scattered[plane][channel];
     radiance += (COLORED == 1 ? group_color[group] : vec3(1.0)) * isotropic * scattering;
 #endif
   }
-#if CONSISTENT && EVEN_ALBEDO
+#if DIFFUSION
+  radiance += sunlight * diffuse_sun / kFourPi + from_sky * diffuse_sky + from_ground * (diffuse_all - diffuse_sky);
+  passing = diffuse_passing;
+#elif CONSISTENT && EVEN_ALBEDO
   radiance += albedo * (ambient * (1.0 - passing) + sunlight * multiple);
 #endif
   radiance_and_transmittance = vec4(radiance, passing);

@@ -34,3 +34,25 @@ PHYSICS_FUNCTION float diffuse_mean_intensity(float tau, float total) {
   float falling = (tau + 2.0f / 3.0f) * (5.0f - exp(-total)) / (3.0f * total + 4.0f);
   return kThreeOverFourPi * max(5.0f / 3.0f - exp(-tau) - falling, 0.0f);
 }
+
+// Fluence of diffuse light, over the sun's irradiance, in an endless cloud with a plane surface that reflects all: at
+// optical depth `exit` below the surface, which sunlight has reached through the optical depth `passed`, so that
+// exit / passed is the cosine of the sun's angle to the surface. Eddington's solution with Marshak's boundary condition.
+PHYSICS_FUNCTION float lit_fluence(float exit, float passed) {
+  float cosine = exit < passed ? exit / passed : 1.0f;
+  return cosine * (2.0f + 3.0f * cosine * (1.0f - exp(-passed)));
+}
+
+// Fluence that the diffusion equation misses near the surface: light that has been scattered, at optical depth `passed`,
+// but not yet turned, at the similarity-scaled depth `transport_passed`. It shows where the sun is low above the surface;
+// the factor is fitted to endless clouds' reflection (docs/decisions/0009-diffusion-transport.md).
+PHYSICS_FUNCTION float forward_fluence(float exit, float passed, float transport_passed) {
+  float cosine = exit < passed ? exit / passed : 1.0f;
+  return 1.3f * (1.0f - cosine * cosine) * (exp(-transport_passed) - exp(-passed));
+}
+
+// The same in a cloud into which `net_inward` of the sun's irradiance flows: light on its way to another face, or, below
+// zero, from one. `transport_exit` is the similarity-scaled optical depth below the surface.
+PHYSICS_FUNCTION float diffuse_fluence(float exit, float passed, float transport_exit, float net_inward) {
+  return max(lit_fluence(exit, passed) - net_inward * (3.0f * transport_exit + 2.0f), 0.0f);
+}

@@ -1,0 +1,345 @@
+#include "renderers/light_volume/diffuse_light.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "base/status.h"
+#include "physics/optics.h"
+
+namespace thunderhead::renderers {
+namespace {
+
+// Cells through which light loses less than this are empty.
+constexpr float kEmptyDepth = 1e-4F;
+constexpr int kMostIterations = 200;
+constexpr double kTolerance = 2e-4;
+// A face that light leaves aslant counts as at most so much farther from the surface.
+constexpr float kMostSlant = 4.0F;
+
+// Upward faces see the sky, sides half of it.
+constexpr std::array<float, 6> kSkySeen = {0.5F, 0.5F, 0.5F, 0.5F, 0.0F, 1.0F};
+
+// Diffusion knows no free flight: in haze on a thick cloud, which light leaves upwards before it
+// has gone far, it would carry light away sideways. A step sideways goes no farther than this share
+// of the medium's height. A third or three times this changes the errors of the sample storm by
+// 0.02.
+constexpr double kFarthestHop = 0.02;
+constexpr float kLeastResistance = 1e-3F;
+
+float MeanDecay(float from, float to) {
+  const float least = std::min(from, to);
+  return std::exp(-least) * physics::glsl::mean_transmittance(std::abs(to - from));
+}
+
+}  // namespace
+
+DiffuseLight::DiffuseLight(DiffusionCells cells) : cells_(std::move(cells)) {
+  const glm::dvec3& h = cells_.cell_m;
+  area_[0] = static_cast<float>(h.z / h.x);
+  area_[1] = static_cast<float>(h.z / h.y);
+  area_[2] = 1.0F;
+  Number();
+  FindExits();
+  MakeLinks();
+  Factor();
+  SolveSky();
+  fluence_.assign(cell_of_.size(), 0.0F);
+}
+
+std::size_t DiffuseLight::Offset(const glm::ivec3& cell) const {
+  const glm::ivec3& size = cells_.size;
+  return (static_cast<std::size_t>(cell.z) * static_cast<std::size_t>(size.y) +
+          static_cast<std::size_t>(cell.y)) *
+             static_cast<std::size_t>(size.x) +
+         static_cast<std::size_t>(cell.x);
+}
+
+void DiffuseLight::Number() {
+  const auto smallest =
+      static_cast<float>(std::min({cells_.cell_m.x, cells_.cell_m.y, cells_.cell_m.z}));
+  number_.assign(cells_.light_per_m.size(), kNone);
+  for (std::size_t i = 0; i < number_.size(); ++i) {
+    if (cells_.light_per_m[i] * smallest <= kEmptyDepth) continue;
+    number_[i] = static_cast<std::int32_t>(cell_of_.size());
+    cell_of_.push_back(static_cast<std::int32_t>(i));
+  }
+}
+
+// Adds 1 / depth^2 of the nearer way out along an axis.
+void DiffuseLight::ScanExits(int axis, std::vector<float>* sum, std::vector<float>* all) {
+  const int length = cells_.size[axis];
+  const std::array<int, 2> other = {(axis + 1) % 3, (axis + 2) % 3};
+  glm::ivec3 unit(0);
+  unit[axis] = 1;
+  const std::size_t stride = Offset(unit);
+  const float half_m = static_cast<float>(0.5 * cells_.cell_m[axis]);
+  std::vector<float> down(static_cast<std::size_t>(length));
+  for (int a = 0; a < cells_.size[other[0]]; ++a) {
+    for (int b = 0; b < cells_.size[other[1]]; ++b) {
+      glm::ivec3 start(0);
+      start[other[0]] = a;
+      start[other[1]] = b;
+      const std::size_t first = Offset(start);
+      float depth = 0.0F;
+      float before = 0.0F;
+      for (std::size_t i = 0; i < down.size(); ++i) {
+        const std::size_t cell = first + i * stride;
+        const float here = number_[cell] == kNone ? 0.0F : cells_.light_per_m[cell];
+        depth = before > 0.0F ? depth + half_m * (before + here) : half_m * here;
+        down[i] = depth;
+        before = here;
+      }
+      depth = before = 0.0F;
+      for (std::size_t i = down.size(); i-- > 0;) {
+        const std::size_t cell = first + i * stride;
+        const float here = number_[cell] == kNone ? 0.0F : cells_.light_per_m[cell];
+        depth = before > 0.0F ? depth + half_m * (before + here) : half_m * here;
+        before = here;
+        const float nearer = std::max(std::min(down[i], depth), 1e-9F);
+        (*sum)[cell] += 1.0F / (nearer * nearer);
+        const float low = 1.0F / std::max(down[i] * down[i], 1e-18F);
+        const float high = 1.0F / std::max(depth * depth, 1e-18F);
+        (*all)[cell] += low + high;
+        sky_seen_[cell] += low * kSkySeen[static_cast<std::size_t>(2 * axis)] +
+                           high * kSkySeen[static_cast<std::size_t>(2 * axis + 1)];
+      }
+    }
+  }
+}
+
+// Of a plane surface with normal n, the way out along axis k is t / |n_k|, so that squares of
+// reciprocals add up to that of the shortest way t, whichever way the surface faces.
+void DiffuseLight::FindExits() {
+  std::vector<float> sum(number_.size(), 0.0F);
+  std::vector<float> all(number_.size(), 0.0F);
+  sky_seen_.assign(number_.size(), 0.0F);
+  for (int axis = 0; axis < 3; ++axis) ScanExits(axis, &sum, &all);
+  exit_root_.assign(number_.size(), 0.0F);
+  for (const std::int32_t cell : cell_of_) {
+    const auto i = static_cast<std::size_t>(cell);
+    exit_root_[i] = std::pow(sum[i], -0.25F);
+    sky_seen_[i] /= all[i];
+  }
+  for (std::size_t i = 0; i < number_.size(); ++i) {
+    if (number_[i] == kNone) sky_seen_[i] = 0.0F;
+  }
+}
+
+void DiffuseLight::MakeLinks() {
+  const double farthest_hop_m = kFarthestHop * cells_.cell_m.z * cells_.size.z;
+  links_.resize(cell_of_.size());
+  diagonal_.assign(cell_of_.size(), 0.0F);
+  for (std::size_t n = 0; n < cell_of_.size(); ++n) {
+    const auto i = static_cast<std::size_t>(cell_of_[n]);
+    const auto at = static_cast<int>(i);
+    const glm::ivec3 cell(at % cells_.size.x, at / cells_.size.x % cells_.size.y,
+                          at / (cells_.size.x * cells_.size.y));
+    const float here = cells_.transport_per_m[i];
+    const float exit = exit_root_[i] * exit_root_[i];  // of light, as are the ways out below
+    for (int way = 0; way < 6; ++way) {
+      const int axis = way / 2;
+      glm::ivec3 next = cell;
+      next[axis] += way % 2 == 1 ? 1 : -1;
+      const bool inside = next[axis] >= 0 && next[axis] < cells_.size[axis];
+      const std::size_t j = inside ? Offset(next) : 0;
+      Links& links = links_[n];
+      links.to[way] = inside ? number_[j] : kNone;
+      const float there = links.to[way] == kNone ? 0.0F : cells_.transport_per_m[j];
+      const float depth = static_cast<float>(0.5 * cells_.cell_m[axis]) * (here + there);
+      const float out = static_cast<float>(0.5 * cells_.cell_m[axis]) * cells_.light_per_m[i];
+      links.marshak[way] =
+          links.to[way] == kNone ? 2.0F * std::clamp(out / exit, 1.0F, kMostSlant) : 0.0F;
+      const bool across = axis != 2 && links.to[way] != kNone;
+      const float hop = across ? static_cast<float>(cells_.cell_m[axis] / farthest_hop_m) : 0.0F;
+      links.conductance[way] =
+          area_[axis] / std::max(3.0F * depth + hop + links.marshak[way], kLeastResistance);
+      diagonal_[n] += links.conductance[way];
+    }
+    diagonal_[n] += static_cast<float>(cells_.cell_m.z) * cells_.absorption_per_m[i];
+  }
+}
+
+// Incomplete Cholesky with no fill: of a matrix with these links only its diagonal changes.
+void DiffuseLight::Factor() {
+  inverse_pivot_.resize(diagonal_.size());
+  for (std::size_t n = 0; n < diagonal_.size(); ++n) {
+    float pivot = diagonal_[n];
+    for (const int way : {0, 2, 4}) {
+      const std::int32_t to = links_[n].to[way];
+      if (to == kNone) continue;
+      const float conductance = links_[n].conductance[way];
+      pivot -= conductance * conductance * inverse_pivot_[static_cast<std::size_t>(to)];
+    }
+    inverse_pivot_[n] = 1.0F / pivot;
+  }
+}
+
+void DiffuseLight::Precondition(const std::vector<float>& from, std::vector<float>* to) const {
+  std::vector<float>& x = *to;
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    float sum = from[n];
+    for (const int way : {0, 2, 4}) {
+      const std::int32_t other = links_[n].to[way];
+      if (other != kNone) sum += links_[n].conductance[way] * x[static_cast<std::size_t>(other)];
+    }
+    x[n] = sum * inverse_pivot_[n];
+  }
+  for (std::size_t n = x.size(); n-- > 0;) {
+    float sum = 0.0F;
+    for (const int way : {1, 3, 5}) {
+      const std::int32_t other = links_[n].to[way];
+      if (other != kNone) sum += links_[n].conductance[way] * x[static_cast<std::size_t>(other)];
+    }
+    x[n] += sum * inverse_pivot_[n];
+  }
+}
+
+void DiffuseLight::Apply(const std::vector<float>& from, std::vector<float>* to) const {
+  for (std::size_t n = 0; n < from.size(); ++n) {
+    float sum = diagonal_[n] * from[n];
+    for (int way = 0; way < 6; ++way) {
+      const std::int32_t other = links_[n].to[way];
+      if (other != kNone) sum -= links_[n].conductance[way] * from[static_cast<std::size_t>(other)];
+    }
+    (*to)[n] = sum;
+  }
+}
+
+// Preconditioned conjugate gradients.
+void DiffuseLight::Solve(const std::vector<float>& right, double tolerance,
+                         std::vector<float>* solution) {
+  const std::size_t count = right.size();
+  residual_.resize(count);
+  direction_.assign(count, 0.0F);
+  image_.resize(count);
+  better_.resize(count);
+  const auto dot = [count](const std::vector<float>& a, const std::vector<float>& b) {
+    double sum = 0.0;
+    for (std::size_t n = 0; n < count; ++n) sum += static_cast<double>(a[n] * b[n]);
+    return sum;
+  };
+  Apply(*solution, &image_);
+  for (std::size_t n = 0; n < count; ++n) residual_[n] = right[n] - image_[n];
+  Precondition(right, &better_);
+  const double goal = tolerance * tolerance * dot(right, better_);
+  double before = 0.0;
+  for (last_iterations_ = 0; last_iterations_ < kMostIterations; ++last_iterations_) {
+    Precondition(residual_, &better_);
+    const double now = dot(residual_, better_);
+    if (!(now > goal)) break;
+    const auto beta = static_cast<float>(before > 0.0 ? now / before : 0.0);
+    before = now;
+    for (std::size_t n = 0; n < count; ++n) direction_[n] = better_[n] + beta * direction_[n];
+    Apply(direction_, &image_);
+    const double curvature = dot(direction_, image_);
+    if (!(curvature > 0.0)) break;
+    const auto step = static_cast<float>(now / curvature);
+    for (std::size_t n = 0; n < count; ++n) {
+      (*solution)[n] += step * direction_[n];
+      residual_[n] -= step * image_[n];
+    }
+  }
+}
+
+float DiffuseLight::TransportExit(std::size_t cell) const {
+  return exit_root_[cell] * exit_root_[cell] * cells_.transport_per_m[cell] /
+         cells_.light_per_m[cell];
+}
+
+void DiffuseLight::SolveSky() {
+  std::vector<float> right(cell_of_.size(), 0.0F);
+  for (std::size_t n = 0; n < right.size(); ++n) {
+    for (std::size_t way = 0; way < 6; ++way) {
+      if (links_[n].to[way] == kNone) right[n] += links_[n].conductance[way] * kSkySeen[way];
+    }
+  }
+  std::vector<float> share(right.size(), 0.5F);
+  Solve(right, kTolerance, &share);
+  sky_inward_.assign(number_.size(), 0.0F);
+  for (std::size_t n = 0; n < share.size(); ++n) {
+    const auto i = static_cast<std::size_t>(cell_of_[n]);
+    sky_inward_[i] = (sky_seen_[i] - share[n]) / (3.0F * TransportExit(i) + 2.0F);
+  }
+  Spread(&sky_inward_);
+  Spread(&sky_seen_);
+}
+
+const std::vector<float>& DiffuseLight::SolveSun(const glm::dvec3& towards_sun,
+                                                 const std::vector<float>& arrived_root) {
+  THUNDERHEAD_CHECK(arrived_root.size() == number_.size(), std::to_string(arrived_root.size()));
+  const std::size_t count = cell_of_.size();
+  std::vector<float> right(count, 0.0F);
+  const glm::ivec3& size = cells_.size;
+  const std::array<std::ptrdiff_t, 3> stride = {1, size.x,
+                                                static_cast<std::ptrdiff_t>(size.x) * size.y};
+  for (std::size_t n = 0; n < count; ++n) {
+    const auto i = static_cast<std::size_t>(cell_of_[n]);
+    const float depth = arrived_root[i] * arrived_root[i];
+    float mean_decay = 0.0F;
+    for (int way = 0; way < 6; ++way) {
+      const int axis = way / 2;
+      const float outward = way % 2 == 1 ? 1.0F : -1.0F;
+      // How much of the sun's direction of travel this way out has.
+      const auto along = -outward * static_cast<float>(towards_sun[axis]);
+      const Links& links = links_[n];
+      const auto half_m = static_cast<float>(0.5 * cells_.cell_m[axis]);
+      float flux = 0.0F;
+      float decay = 0.0F;
+      if (links.to[way] != kNone) {
+        const auto j = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) +
+                                                (way % 2 == 1 ? stride[axis] : -stride[axis]));
+        const float between = half_m * (cells_.light_per_m[i] + cells_.light_per_m[j]);
+        decay = MeanDecay(depth, arrived_root[j] * arrived_root[j]);
+        flux = 3.0F * along * between * decay;
+      } else {
+        const float out = half_m * cells_.light_per_m[i];
+        // Light has lost so much at the surface on the way in, or will have on the way out.
+        const float surface = along < 0.0F ? std::max(depth + out / std::min(along, -1e-3F), 0.0F)
+                                           : depth + out / std::max(along, 1e-3F);
+        decay = MeanDecay(depth, surface);
+        flux = along * (3.0F * out * decay + links.marshak[way] * std::exp(-surface));
+      }
+      right[n] -= links.conductance[way] * flux;
+      mean_decay += decay / 6.0F;
+    }
+    right[n] -= static_cast<float>(cells_.cell_m.z) * cells_.absorption_per_m[i] * mean_decay;
+  }
+  Solve(right, kTolerance, &fluence_);
+  net_inward_.assign(number_.size(), 0.0F);
+  for (std::size_t n = 0; n < count; ++n) {
+    const auto i = static_cast<std::size_t>(cell_of_[n]);
+    const float exit = exit_root_[i] * exit_root_[i];
+    const float transport_exit = TransportExit(i);
+    const float lit = physics::glsl::lit_fluence(exit, arrived_root[i] * arrived_root[i]);
+    net_inward_[i] = (lit - fluence_[n]) / (3.0F * transport_exit + 2.0F);
+  }
+  Spread(&net_inward_);
+  return net_inward_;
+}
+
+void DiffuseLight::Spread(std::vector<float>* values) const {
+  std::vector<std::uint8_t> times(number_.size(), 0);
+  const glm::ivec3& size = cells_.size;
+  for (const std::int32_t cell : cell_of_) {
+    const glm::ivec3 at(cell % size.x, cell / size.x % size.y, cell / (size.x * size.y));
+    const float value = (*values)[static_cast<std::size_t>(cell)];
+    for (int z = std::max(at.z - 1, 0); z <= std::min(at.z + 1, size.z - 1); ++z) {
+      for (int y = std::max(at.y - 1, 0); y <= std::min(at.y + 1, size.y - 1); ++y) {
+        for (int x = std::max(at.x - 1, 0); x <= std::min(at.x + 1, size.x - 1); ++x) {
+          const std::size_t j = Offset({x, y, z});
+          if (number_[j] != kNone) continue;
+          (*values)[j] += value;
+          ++times[j];
+        }
+      }
+    }
+  }
+  for (std::size_t j = 0; j < times.size(); ++j) {
+    if (times[j] > 1) (*values)[j] /= static_cast<float>(times[j]);
+  }
+}
+
+}  // namespace thunderhead::renderers

@@ -1,0 +1,114 @@
+#include "renderers/light_volume/diffusion_pass.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/status.h"
+#include "glm/common.hpp"
+
+namespace thunderhead::renderers {
+namespace {
+
+constexpr GLuint kLightUnit = 4;
+constexpr GLuint kWaysOutUnit = 5;
+constexpr GLuint kNetInwardUnit = 6;
+constexpr int kGroupSide = 8;  // of sample_cells.comp
+// Larger media are solved on fewer cells than their own.
+constexpr double kMostCells = 4e6;
+
+glm::ivec3 SizeFor(const glm::ivec3& cells) {
+  const double count = static_cast<double>(cells.x) * cells.y * cells.z;
+  const int factor = std::max(static_cast<int>(std::ceil(std::cbrt(count / kMostCells))), 1);
+  return glm::max((cells + factor - 1) / factor, glm::ivec3(1));
+}
+
+void Dispatch(const glm::ivec3& cells) {
+  const glm::ivec3 groups = (cells + kGroupSide - 1) / kGroupSide;
+  glDispatchCompute(static_cast<GLuint>(groups.x), static_cast<GLuint>(groups.y),
+                    static_cast<GLuint>(cells.z));
+}
+
+}  // namespace
+
+absl::Status DiffusionPass::Solve(const ResidentMedium& medium, const GroupWeights& weights,
+                                  const gl::Texture3D& arrived, const glm::dvec3& towards_sun) {
+  Key key{medium.Id(), weights.light, weights.transport, weights.absorption};
+  if (!light_.has_value() || key != key_) {
+    light_.reset();
+    THUNDERHEAD_RETURN_IF_ERROR(SampleCells(medium, weights));
+    key_ = std::move(key);
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(SampleLight(arrived));
+  net_inward_.Upload(GL_RED, GL_FLOAT, light_->SolveSun(towards_sun, arrived_root_).data());
+  return absl::OkStatus();
+}
+
+absl::Status DiffusionPass::SampleCells(const ResidentMedium& medium, const GroupWeights& weights) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_->Get({{},
+                      {},
+                      {{"GROUPS", static_cast<int>(medium.Content().groups.size())},
+                       {"DETAILS", medium.Details()}},
+                      "light_volume/sample_cells.comp"}));
+  const volume::RegularGrid& grid = medium.Bounds().grid;
+  const glm::ivec3 size = SizeFor(grid.cells);
+  if (size_ != size) {
+    size_ = size;
+    sampled_cells_ = gl::Texture3D(GL_RGBA32F, size);
+    sampled_light_ = gl::Texture3D(GL_R32F, size);
+    ways_out_ = gl::Texture3D(GL_RGBA16F, size);
+    net_inward_ = gl::Texture3D(GL_R16F, size);
+  }
+  medium.Bind(*program);
+  program->Set("cell_count", size);
+  program->Set("samples", (grid.cells + size - 1) / size);
+  program->Set("light_weights", medium.Weights(weights.light));
+  program->Set("transport_weights", medium.Weights(weights.transport));
+  program->Set("absorption_weights", medium.Weights(weights.absorption));
+  sampled_cells_.BindImage(0, GL_WRITE_ONLY);
+  program->Use();
+  Dispatch(size);
+  const std::size_t count = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
+                            static_cast<std::size_t>(size.z);
+  std::vector<float> texels(4 * count);
+  sampled_cells_.Download(GL_RGBA, GL_FLOAT, texels.size() * sizeof(float), texels.data());
+  DiffusionCells cells;
+  cells.size = size;
+  cells.cell_m = glm::dvec3(grid.cells) * grid.spacing_m / glm::dvec3(size);
+  for (std::size_t i = 0; i < count; ++i) {
+    cells.light_per_m.push_back(texels[4 * i]);
+    cells.transport_per_m.push_back(texels[4 * i + 1]);
+    cells.absorption_per_m.push_back(texels[4 * i + 2]);
+  }
+  light_.emplace(std::move(cells));
+  arrived_root_.resize(count);
+  std::vector<float> ways_out(4 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    ways_out[4 * i] = light_->ExitRoot()[i];
+    ways_out[4 * i + 1] = light_->SkySeen()[i];
+    ways_out[4 * i + 2] = light_->SkyInward()[i];
+  }
+  ways_out_.Upload(GL_RGBA, GL_FLOAT, ways_out.data());
+  return absl::OkStatus();
+}
+
+absl::Status DiffusionPass::SampleLight(const gl::Texture3D& arrived) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
+                               programs_->Get({{}, {}, {}, "light_volume/sample_light.comp"}));
+  program->Set("cell_count", size_);
+  arrived.Bind(kLightUnit);
+  sampled_light_.BindImage(0, GL_WRITE_ONLY);
+  program->Use();
+  Dispatch(size_);
+  sampled_light_.Download(GL_RED, GL_FLOAT, arrived_root_.size() * sizeof(float),
+                          arrived_root_.data());
+  return absl::OkStatus();
+}
+
+void DiffusionPass::Bind() const {
+  ways_out_.Bind(kWaysOutUnit);
+  net_inward_.Bind(kNetInwardUnit);
+}
+
+}  // namespace thunderhead::renderers

@@ -1,0 +1,64 @@
+// The diffusion equation of a resident medium: takes its cells and the light that has arrived there
+// from the device, solves (diffuse_light.h), and puts the result back as textures for the march.
+// What depends on the cells alone is kept for all suns. Owns GL objects: use it on the context's
+// thread.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "gl/objects.h"
+#include "gl/program.h"
+#include "renderers/group_weights.h"
+#include "renderers/light_volume/diffuse_light.h"
+#include "renderers/medium.h"
+
+namespace thunderhead::renderers {
+
+class DiffusionPass {
+ public:
+  explicit DiffusionPass(std::shared_ptr<gl::ProgramCache> programs)
+      : programs_(std::move(programs)) {}
+
+  // `arrived` is that of arrive.comp.
+  absl::Status Solve(const ResidentMedium& medium, const GroupWeights& weights,
+                     const gl::Texture3D& arrived, const glm::dvec3& towards_sun);
+
+  // For march.frag.
+  void Bind() const;
+
+  std::size_t Bytes() const {
+    return sampled_cells_.Bytes() + sampled_light_.Bytes() + ways_out_.Bytes() +
+           net_inward_.Bytes();
+  }
+
+ private:
+  // What the cells depend on.
+  struct Key {
+    std::uint64_t medium = 0;
+    std::vector<double> light;
+    std::vector<double> transport;
+    std::vector<double> absorption;
+
+    bool operator==(const Key&) const = default;
+  };
+
+  absl::Status SampleCells(const ResidentMedium& medium, const GroupWeights& weights);
+  absl::Status SampleLight(const gl::Texture3D& arrived);
+
+  std::shared_ptr<gl::ProgramCache> programs_;
+  Key key_;
+  std::optional<DiffuseLight> light_;
+  glm::ivec3 size_{0};
+  gl::Texture3D sampled_cells_;
+  gl::Texture3D sampled_light_;
+  gl::Texture3D ways_out_;    // root of the optical depth to the nearest way out, share of the sky
+  gl::Texture3D net_inward_;  // of sunlight
+  std::vector<float> arrived_root_;
+};
+
+}  // namespace thunderhead::renderers

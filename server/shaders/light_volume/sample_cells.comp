@@ -1,0 +1,29 @@
+// The medium as the diffusion equation sees it: extinction in each of its cells, the mean over the medium's own cells
+// that one of them stands for. rgb: that of the light's, of transport (similarity scaled), and absorption.
+// Variants: GROUPS, DETAILS.
+#include "common/medium.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 0, rgba32f) uniform writeonly image3D cells;
+
+uniform ivec3 cell_count;
+uniform ivec3 samples;  // of the medium, along each side of a cell
+uniform vec4 light_weights[PLANES];
+uniform vec4 transport_weights[PLANES];
+uniform vec4 absorption_weights[PLANES];
+
+void main() {
+  ivec3 cell = ivec3(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(cell, cell_count))) return;
+  vec3 sum = vec3(0.0);
+  for (int z = 0; z < samples.z; ++z) {
+    for (int y = 0; y < samples.y; ++y) {
+      for (int x = 0; x < samples.x; ++x) {
+        vec3 within = (vec3(x, y, z) + 0.5) / vec3(samples);
+        Medium medium = medium_at_place((vec3(cell) + within) / vec3(cell_count));
+        sum += vec3(weigh(medium, light_weights), weigh(medium, transport_weights), weigh(medium, absorption_weights));
+      }
+    }
+  }
+  imageStore(cells, cell, vec4(sum / float(samples.x * samples.y * samples.z), 0.0));
+}

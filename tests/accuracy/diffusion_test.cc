@@ -1,0 +1,77 @@
+// Diffusion transport against published plane-parallel layers and limits (physics.md, section 4).
+#include <cmath>
+#include <numbers>
+
+#include "gtest/gtest.h"
+#include "tests/accuracy/slab_view.h"
+
+namespace thunderhead::renderers {
+namespace {
+
+class Diffusion : public SlabView {
+ protected:
+  void SetUp() override {
+    scene_.rendering.renderer = scene::Renderer::kLightVolume;
+    scene_.rendering.mode = scene::Mode::kPerFieldPhaseTranslucent;
+    scene_.rendering.transport = scene::Transport::kDiffusion;
+    scene_.rendering.slices = 1024;  // steps shorter than the cells are high
+    in_air_ = true;
+    width_m_ = 6e3;  // so wide that what leaves by the sides is not seen
+    SetPhase(physics::PhaseKind::kHenyeyGreenstein, 0.75F);
+  }
+};
+
+TEST_F(Diffusion, UpwardRadianceOfDisortsThirdTest) {
+  // Henyey and Greenstein's g = 0.75, optical depth 8, sun overhead: 0.519598 and 0.493302 at
+  // mu = 0.5 and 1 for an irradiance of pi.
+  const double at_half = Look(8.0, 30.0, 89.9).radiance * std::numbers::pi;
+  const double at_one = Look(8.0, 89.9, 89.9).radiance * std::numbers::pi;
+  // Eddington's source is a straight line near the surface, where the true one bends down: a ray
+  // aslant sees it 12 % too bright.
+  EXPECT_NEAR(at_half / 0.519598, 1.0, 0.15);
+  EXPECT_NEAR(at_one / 0.493302, 1.0, 0.05);
+}
+
+TEST_F(Diffusion, EvenLightShowsNothing) {
+  even_light_ = true;
+  for (const double depth : {0.01, 1.0, 30.0, 1000.0}) {
+    for (const double elevation_deg : {-60.0, 20.0, 80.0}) {
+      const Seen seen = Look(depth, elevation_deg, 40.0);
+      EXPECT_NEAR(seen.radiance + seen.transmittance, 1.0, 0.005) << depth << " " << elevation_deg;
+    }
+  }
+}
+
+TEST_F(Diffusion, ThinLayersScatterOnce) {
+  // Diffuse light is of the second order in the optical depth.
+  for (const double elevation_deg : {30.0, 80.0}) {
+    const double depth = 0.002;
+    const double sine = std::sin(elevation_deg * std::numbers::pi / 180.0);
+    const double expected = PhaseTerm(elevation_deg, 50.0) * depth / sine;
+    EXPECT_NEAR(Look(depth, elevation_deg, 50.0).radiance / expected, 1.0, 0.05);
+  }
+}
+
+TEST_F(Diffusion, WhatALayerReflectsIsWhatDoesNotGoThrough) {
+  // Radiance integrated over the hemisphere (Gauss-Legendre points in mu) against Eddington's net
+  // flux through a white layer.
+  const double nodes[] = {0.1127, 0.5, 0.8873};
+  const double weights[] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+  for (const double depth : {8.0, 40.0}) {
+    // A sun lower than this lights cells 62 m high by texels that are wider, and too dark.
+    for (const double sun_deg : {35.0, 60.0, 89.0}) {
+      double reflected = 0.0;
+      for (int i = 0; i < 3; ++i) {
+        const double elevation_deg = std::asin(nodes[i]) * 180.0 / std::numbers::pi;
+        reflected += 2.0 * std::numbers::pi * weights[i] * nodes[i] *
+                     Look(depth, elevation_deg, sun_deg).radiance;
+      }
+      const double sine = std::sin(sun_deg * std::numbers::pi / 180.0);
+      const double net = sine * (2.0 + 3.0 * sine) / (4.0 + 0.75 * depth);
+      EXPECT_NEAR(reflected / (sine - net), 1.0, 0.15) << depth << " " << sun_deg;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace thunderhead::renderers

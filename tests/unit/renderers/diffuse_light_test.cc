@@ -1,0 +1,113 @@
+// The diffusion equation on cells against its closed form in a plane-parallel layer, and at the
+// extremes.
+#include "renderers/light_volume/diffuse_light.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "gtest/gtest.h"
+
+namespace thunderhead::renderers {
+namespace {
+
+constexpr int kAcross = 9;
+constexpr int kLayers = 20;
+constexpr double kLayer_m = 100.0;
+constexpr double kAsymmetry = 0.75;
+
+// A layer with an empty cell above and below, its cells so wide that nothing leaves by the sides.
+struct Layer {
+  DiffusionCells cells;
+  double depth = 0.0;
+
+  explicit Layer(double optical_depth, double albedo = 1.0) : depth(optical_depth) {
+    cells.size = {kAcross, kAcross, kLayers + 2};
+    cells.cell_m = {1e7, 1e7, kLayer_m};
+    const double per_m = optical_depth / (kLayers * kLayer_m);
+    for (int i = 0; i < kAcross * kAcross * (kLayers + 2); ++i) {
+      const int z = i / (kAcross * kAcross);
+      const double here = z > 0 && z <= kLayers ? per_m : 0.0;
+      cells.light_per_m.push_back(static_cast<float>(here));
+      cells.transport_per_m.push_back(static_cast<float>(here * (1.0 - albedo * kAsymmetry)));
+      cells.absorption_per_m.push_back(static_cast<float>(here * (1.0 - albedo)));
+    }
+  }
+
+  std::vector<float> ArrivedRoot(double sine) const {
+    std::vector<float> roots(cells.light_per_m.size(), 0.0F);
+    for (std::size_t i = 0; i < roots.size(); ++i) {
+      const int z = static_cast<int>(i) / (kAcross * kAcross);
+      if (z == 0 || z > kLayers) continue;
+      roots[i] = static_cast<float>(std::sqrt((kLayers + 0.5 - z) / kLayers * depth / sine));
+    }
+    return roots;
+  }
+
+  static std::size_t Middle(int z) {
+    return static_cast<std::size_t>((z * kAcross + kAcross / 2) * kAcross + kAcross / 2);
+  }
+};
+
+glm::dvec3 Sun(double sine) { return {std::sqrt(1.0 - sine * sine), 0.0, sine}; }
+
+TEST(DiffuseLight, NetFluxIntoALayerIsEddingtons) {
+  // F (4 + 3 T) = 2 m (1 + e) + 3 m^2 (1 - e), e = exp(-depth / m), T the similarity-scaled depth:
+  // Eddington's two-stream solution with Marshak's boundary conditions, exact on these cells but
+  // for single precision and the solver's tolerance.
+  for (const double depth : {0.01, 0.1, 1.0, 8.0, 100.0, 1e4}) {
+    const Layer layer(depth);
+    DiffuseLight light(layer.cells);
+    for (const double sine : {1.0, 0.574, 0.0872}) {
+      const double passes = std::exp(-depth / sine);
+      const double expected = (2.0 * sine * (1.0 + passes) + 3.0 * sine * sine * (1.0 - passes)) /
+                              (4.0 + 3.0 * depth * (1.0 - kAsymmetry));
+      const auto& net = light.SolveSun(Sun(sine), layer.ArrivedRoot(sine));
+      EXPECT_NEAR(net[Layer::Middle(kLayers)] / expected, 1.0, 0.01)
+          << "depth " << depth << ", sine " << sine;
+    }
+  }
+}
+
+TEST(DiffuseLight, SkyOverAThickLayerIsReflected) {
+  const Layer layer(1000.0);
+  const DiffuseLight light(layer.cells);
+  const std::size_t top = Layer::Middle(kLayers);
+  EXPECT_GT(light.SkySeen()[top], 0.99);
+  // Of fluence 1 - K (3 t + 2) at depth t, 2 K at the bottom, which a black ground lights not.
+  EXPECT_NEAR(light.SkyInward()[top], 1.0 / (4.0 + 750.0), 1e-4);
+}
+
+TEST(DiffuseLight, AbsorptionTakesLight) {
+  const Layer white(20.0);
+  const Layer grey(20.0, 0.9);
+  DiffuseLight in_white(white.cells);
+  DiffuseLight in_grey(grey.cells);
+  const std::size_t top = Layer::Middle(kLayers);
+  EXPECT_GT(in_grey.SolveSun(Sun(1.0), grey.ArrivedRoot(1.0))[top],
+            in_white.SolveSun(Sun(1.0), white.ArrivedRoot(1.0))[top]);
+}
+
+TEST(DiffuseLight, AWarmStartFindsTheSame) {
+  const Layer layer(50.0);
+  DiffuseLight cold(layer.cells);
+  DiffuseLight warm(layer.cells);
+  (void)warm.SolveSun(Sun(0.3), layer.ArrivedRoot(0.3));
+  const std::size_t middle = Layer::Middle(kLayers / 2);
+  const float from_warm = warm.SolveSun(Sun(0.8), layer.ArrivedRoot(0.8))[middle];
+  EXPECT_NEAR(cold.SolveSun(Sun(0.8), layer.ArrivedRoot(0.8))[middle] / from_warm, 1.0, 0.01);
+}
+
+TEST(DiffuseLight, NothingBreaks) {
+  for (const double depth : {0.0, 1e-8, 1e-2, 1e8}) {
+    for (const double sine : {-0.1, 0.0, 1e-4, 1.0}) {
+      const Layer layer(depth);
+      DiffuseLight light(layer.cells);
+      const auto& net = light.SolveSun(Sun(sine), layer.ArrivedRoot(std::max(sine, 1e-4)));
+      for (const float value : net) ASSERT_TRUE(std::isfinite(value)) << depth << " " << sine;
+      for (const float value : light.SkyInward()) ASSERT_TRUE(std::isfinite(value)) << depth;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace thunderhead::renderers
