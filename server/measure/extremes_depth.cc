@@ -49,10 +49,14 @@ Extreme DepthPerSlice(const Named<scene::Renderer>& path, double per_slice,
             scene.rendering.slices = kSlices;
             const auto fields = FieldsOf({.optical_depth = kSlices * per_slice});
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *fields, {}));
-            // Delta scaling takes the forward peak out of what the eye loses.
+            // Delta scaling takes the forward peak out of what the eye loses, similarity scaling
+            // all that goes on forward.
             const renderers::GroupWeights weights(renderers::MediumOf(scene, *fields),
                                                   scene.rendering);
-            return TransmittanceNear(seen, kSlices * per_slice * weights.eye.front());
+            const bool similar = transport.value == scene::Transport::kDiffusion &&
+                                 path.value == scene::Renderer::kLightVolume;
+            const std::vector<double>& lost = similar ? weights.transport : weights.eye;
+            return TransmittanceNear(seen, kSlices * per_slice * lost.front());
           }};
 }
 

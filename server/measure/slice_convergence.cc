@@ -77,6 +77,11 @@ absl::StatusOr<std::vector<SliceCurve>> MeasureSliceConvergence(
     progress(++done / static_cast<double>(kTransports.size() * (kCounts.size() + 1)));
   };
   for (const auto& transport : kTransports) {
+    // Slices draw diffusion as consistent.
+    if (transport.value == scene::Transport::kDiffusion &&
+        scene.rendering.renderer == scene::Renderer::kHalfAngle) {
+      continue;
+    }
     scene::Scene drawn = scene;
     drawn.rendering.transport = transport.value;
     THUNDERHEAD_ASSIGN_OR_RETURN(const LinearImage limit,
@@ -138,7 +143,8 @@ std::string ToCsv(const std::vector<SliceCurve>& curves) {
 }
 
 std::string ToSvg(const std::string& title, const std::vector<SliceCurve>& curves) {
-  constexpr std::array<const char*, kTransports.size()> kColors = {"#d9730d", "#1f6fb4"};
+  constexpr std::array<const char*, kTransports.size()> kColors = {"#d9730d", "#1f6fb4", "#3a8f4a"};
+  constexpr std::array<const char*, kTransports.size()> kColorNames = {"orange", "blue", "green"};
   std::vector<double> slices;
   std::vector<double> errors;
   std::vector<std::string> names;
@@ -147,8 +153,8 @@ std::string ToSvg(const std::string& title, const std::vector<SliceCurve>& curve
       slices.push_back(point.slices);
       errors.push_back(std::max(point.relative_rmse, kLeastError));
     }
-    names.push_back(absl::StrFormat("%s: %s, order %.2f", i == 0 ? "orange" : "blue",
-                                    curves[i].transport.name, curves[i].order));
+    names.push_back(absl::StrFormat("%s: %s, order %.2f", kColorNames[i], curves[i].transport.name,
+                                    curves[i].order));
   }
   LogPlot plot(slices, errors, absl::StrCat(title, ": relative RMSE against slices"),
                absl::StrJoin(names, "; "));

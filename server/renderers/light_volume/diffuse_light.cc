@@ -150,12 +150,14 @@ void DiffuseLight::MakeLinks() {
       const float there = links.to[way] == kNone ? 0.0F : cells_.transport_per_m[j];
       const float depth = static_cast<float>(0.5 * cells_.cell_m[axis]) * (here + there);
       const float out = static_cast<float>(0.5 * cells_.cell_m[axis]) * cells_.light_per_m[i];
-      links.marshak[way] =
-          links.to[way] == kNone ? 2.0F * std::clamp(out / exit, 1.0F, kMostSlant) : 0.0F;
-      const bool across = axis != 2 && links.to[way] != kNone;
-      const float hop = across ? static_cast<float>(cells_.cell_m[axis] / farthest_hop_m) : 0.0F;
+      if (links.to[way] == kNone) {
+        links.slack[way] = 2.0F * std::clamp(out / exit, 1.0F, kMostSlant);
+      } else {
+        links.slack[way] =
+            axis == 2 ? 0.0F : static_cast<float>(cells_.cell_m[axis] / farthest_hop_m);
+      }
       links.conductance[way] =
-          area_[axis] / std::max(3.0F * depth + hop + links.marshak[way], kLeastResistance);
+          area_[axis] / std::max(3.0F * depth + links.slack[way], kLeastResistance);
       diagonal_[n] += links.conductance[way];
     }
     diagonal_[n] += static_cast<float>(cells_.cell_m.z) * cells_.absorption_per_m[i];
@@ -293,14 +295,14 @@ const std::vector<float>& DiffuseLight::SolveSun(const glm::dvec3& towards_sun,
                                                 (way % 2 == 1 ? stride[axis] : -stride[axis]));
         const float between = half_m * (cells_.light_per_m[i] + cells_.light_per_m[j]);
         decay = MeanDecay(depth, arrived_root[j] * arrived_root[j]);
-        flux = 3.0F * along * between * decay;
+        flux = along * (3.0F * between + links.slack[way]) * decay;
       } else {
         const float out = half_m * cells_.light_per_m[i];
         // Light has lost so much at the surface on the way in, or will have on the way out.
         const float surface = along < 0.0F ? std::max(depth + out / std::min(along, -1e-3F), 0.0F)
                                            : depth + out / std::max(along, 1e-3F);
         decay = MeanDecay(depth, surface);
-        flux = along * (3.0F * out * decay + links.marshak[way] * std::exp(-surface));
+        flux = along * (3.0F * out * decay + links.slack[way] * std::exp(-surface));
       }
       right[n] -= links.conductance[way] * flux;
       mean_decay += decay / 6.0F;

@@ -50,7 +50,10 @@ class DiffuseLight {
   struct Links {
     std::int32_t to[6];
     float conductance[6];
-    float marshak[6];  // of ways out: twice the reciprocal of the face's cosine to the surface
+    // What resists diffuse light besides three times the optical depth: at a way out twice the
+    // reciprocal of the face's cosine to the surface (Marshak's condition), else the limit of a
+    // hop.
+    float slack[6];
   };
 
   std::size_t Offset(const glm::ivec3& cell) const;
