@@ -9,8 +9,8 @@ namespace {
 // The weight of a measurement falls to a third in five frames: fast enough to follow a camera that
 // flies into the cloud, slow enough to tell a from b.
 constexpr double kForgetting = 0.8;
-// Of the cube root of the balls: their radius is 2.5 times half their spacing (clouds/rbf_fit.h).
-constexpr double kBallsOverPixel = 5.0;
+// Of the cube root of the balls: their radius is about their spacing (renderers/metaball).
+constexpr double kBallsOverPixel = 3.0;
 // Fragments of a cumulus that a pixel lies under, about as many for any surface of some scales.
 constexpr double kEllipsoidsOverPixel = 20.0;
 // Below this variance of x (relative to its mean square) a and b cannot be told apart.

@@ -38,7 +38,7 @@ void RegisterMetaballs() {
     double paper_fps;
   };
   const Fields& fields = Sample::Get().fields;
-  for (const Row& row : {Row{"1200", 2100, 43.0}, Row{"10000", 14800, 7.0}}) {
+  for (const Row& row : {Row{"1200", 1660, 43.0}, Row{"10000", 11900, 7.0}}) {
     scene.rendering.metaballs.count = row.asked;
     for (const auto& transport : measure::kTransports) {
       scene.rendering.transport = transport.value;

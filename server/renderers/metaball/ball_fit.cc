@@ -17,6 +17,10 @@ namespace {
 // Balls are far larger than the cells of a storm that has more, and a fit grows with them.
 constexpr double kMostCells = 2e6;
 
+// The paper's u. With more the fit is nearer, but balls reach farther beyond the cloud's edge, which
+// costs pictures more (docs/performance.md).
+constexpr double kOverlap = 2.0;
+
 glm::ivec3 CoarseningForFit(const volume::HydrometeorFields& fields) {
   const glm::dvec3 box(fields.condensate.high - fields.condensate.low);
   glm::ivec3 factor(1);
@@ -101,6 +105,7 @@ absl::StatusOr<BallCloud> FitBalls(const Medium& medium, const volume::Hydromete
   options.balls = std::min(count, worth);
   options.basis = clouds::Basis::kWyvill;
   options.non_negative = true;
+  options.overlap = kOverlap;
   THUNDERHEAD_ASSIGN_OR_RETURN(clouds::FitResult fit,
                                clouds::Fit(fields.grid, values, options, {}, {}));
   std::erase_if(fit.cloud.balls, [](const clouds::Metaball& ball) { return !(ball.weight > 0.0); });
