@@ -24,6 +24,9 @@ std::vector<std::string> NotShownByMetaballs(const scene::Rendering& rendering) 
     not_shown.emplace_back("the fields' albedo, phase functions and false colours");
     not_shown.emplace_back("modes");
   }
+  if (rendering.transport == scene::Transport::kDiffusion) {
+    not_shown.emplace_back("diffusion transport (it is drawn as consistent)");
+  }
   return not_shown;
 }
 
