@@ -67,6 +67,12 @@ glm::dvec3 RandomDirection(CounterRandom* random) {
   return {across * CosineOfDegrees(azimuth_deg), across * SineOfDegrees(azimuth_deg), z};
 }
 
+// That cover a parent all around.
+int Wanted(const Sprouting& sprouting) {
+  return static_cast<int>(sprouting.cover * 4.0 /
+                          (sprouting.relative_radius * sprouting.relative_radius));
+}
+
 // Throws darts at one parent.
 class Sprouter {
  public:
@@ -77,14 +83,15 @@ class Sprouter {
         surface_(*surface),
         random_(sprouting.seed, StreamOf(first, parent)) {}
 
-  void Run(const std::vector<std::size_t>& near) {
+  // Adds at most `most`.
+  void Run(const std::vector<std::size_t>& near, int most) {
     const Bubble parent = surface_.bubbles[parent_];
     const double radius_m = sprouting_.relative_radius * RadiusOf(parent);
     const glm::dmat3 unit = UnitFromWorld(parent);
-    const auto wanted = static_cast<int>(sprouting_.cover * 4.0 /
-                                         (sprouting_.relative_radius * sprouting_.relative_radius));
+    const int wanted = Wanted(sprouting_);
     const std::size_t siblings = surface_.bubbles.size();
     for (int dart = 0; dart < kDarts * wanted; ++dart) {
+      if (static_cast<int>(surface_.bubbles.size() - siblings) >= most) return;
       const glm::dvec3 direction = RandomDirection(&random_);
       const double size = 0.65 + 0.7 * random_.Next();
       const glm::dvec3 normal = glm::normalize(glm::transpose(unit) * direction);
@@ -93,7 +100,6 @@ class Sprouter {
       const glm::dvec3 centre_m =
           parent.centre_m + parent.semi_axes_m * direction - kSunken * child_m * normal;
       if (!Shows(centre_m, near) || Crowded(centre_m, child_m, siblings)) continue;
-      if (static_cast<int>(surface_.bubbles.size()) >= sprouting_.most_bubbles) return;
       Bubble child = BallOf(centre_m, child_m);
       child.outward = normal;
       child.parent = static_cast<int>(parent_);
@@ -187,11 +193,20 @@ void LayOnLarger(CumulusSurface* surface) {
 
 void Sprout(const Sprouting& sprouting, std::size_t first, CumulusSurface* surface) {
   const std::size_t end = surface->bubbles.size();
+  const auto sprouts = [&](std::size_t parent) {
+    return RadiusOf(surface->bubbles[parent]) >= sprouting.least_radius_m;
+  };
+  int parents = 0;
+  for (std::size_t parent = first; parent < end; ++parent) parents += sprouts(parent) ? 1 : 0;
+  const int room = sprouting.most_bubbles - static_cast<int>(end);
+  if (parents == 0 || room <= 0) return;
+  // The same for each, so that no part of the surface is left bare.
+  const int most = std::clamp(room / parents, 1, Wanted(sprouting));
   std::vector<std::size_t> near;
   for (std::size_t parent = first; parent < end; ++parent) {
+    if (!sprouts(parent)) continue;
     const Bubble& bubble = surface->bubbles[parent];
     const glm::dvec3 reach_m = HalfExtent_m(bubble);
-    if (RadiusOf(bubble) < sprouting.least_radius_m) continue;
     near.clear();
     for (std::size_t other = 0; other < end; ++other) {
       const glm::dvec3 apart_m = glm::abs(surface->bubbles[other].centre_m - bubble.centre_m);
@@ -200,7 +215,7 @@ void Sprout(const Sprouting& sprouting, std::size_t first, CumulusSurface* surfa
         near.push_back(other);
       }
     }
-    Sprouter(sprouting, first, parent, surface).Run(near);
+    Sprouter(sprouting, first, parent, surface).Run(near, most);
   }
 }
 

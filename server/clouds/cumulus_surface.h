@@ -56,7 +56,7 @@ struct Sprouting {
   double cover = 0.8;         // of the parent's upper side
   double lowest_sine = -0.6;  // of the normal: below it nothing sprouts
   double least_radius_m = 0.0;  // of parents whose bubbles are worth drawing
-  int most_bubbles = 12000;     // in the surface
+  int most_bubbles = 20000;     // in the surface; near it each parent has fewer
   std::uint64_t seed = 1;
 };
 

@@ -291,9 +291,9 @@ TEST_F(CumulusRendererTest, NothingIsBrighterThanItsTrapsAllow) {
         ASSERT_GE(std::min({texel.r, texel.g, texel.b}), 0.0F);
         ASSERT_GE(texel.a, 0.0F);
         ASSERT_LE(texel.a, 1.0F);
-        // Lambert's law, three scales of traps, what comes through, the surroundings; and the
+        // Lambert's law, the traps of all scales, what comes through, the surroundings; and the
         // narrowest lobe in front.
-        const double core = std::numbers::inv_pi * (1.0 + 3.0 * 0.6 / 0.4 + 0.2) + 0.3;
+        const double core = std::numbers::inv_pi * (1.0 + 1.0 / 0.4 + 0.2) + 0.3;
         const double corona = 0.25 * 401.0 * 0.5 * std::numbers::inv_pi;
         ASSERT_LE(texel.r, core + corona);
       }

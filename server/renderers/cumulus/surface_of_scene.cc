@@ -14,7 +14,6 @@ namespace {
 // More cells than this are coarsened first: the surface is no finer than its ellipsoids.
 constexpr std::size_t kMostCells = 4'000'000;
 constexpr int kMostBalls = 700;
-constexpr int kMostBubbles = 12000;
 
 // Precipitation has no surface.
 bool HasSurface(physics::Hydrometeor hydrometeor) {
@@ -55,7 +54,6 @@ DrawnSurface SurfaceOfStorm(const scene::Scene& scene, const volume::Hydrometeor
     const std::size_t end = drawn.surface.bubbles.size();
     clouds::Sprouting sprouting;
     sprouting.seed = scene.rendering.cumulus.seed;
-    sprouting.most_bubbles = kMostBubbles;
     sprouting.least_radius_m = drawn.surface.finest_m;
     clouds::Sprout(sprouting, first, &drawn.surface);
     first = end;

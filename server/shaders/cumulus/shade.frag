@@ -33,7 +33,7 @@ layout(location = 1) out vec4 layer;  // radiance, share of what lies behind tha
 
 const float kPi = 3.14159265;
 const float kTrapSharpness = 4.0;       // the paper's k
-const int kTrapScales = 3;
+const int kTrapScales = 6;
 const float kCoronaVariance = 0.16;     // of the scattering angle at the deepest corona: sigma_max 0.4 rad
 const float kNarrowest = 400.0;         // power of the cosine of droplets' own forward lobe
 const float kRelief = 0.35;             // height of the roughness over its wavelength
@@ -80,12 +80,12 @@ vec3 roughened(vec3 normal, vec3 point_m, float way_m) {
 
 // Light that comes back between bubbles (section 4.3). At each scale the valley around a bubble hides a share of the sky
 // that the paper's arc tangent gives by the height on the bubble; the hidden share 2 pi - Omega sends (2 pi - Omega) / Omega
-// of the mean light that arrives at the valley, which is Lambert's law on the underlying surface. Surroundings as bright
+// of the mean light that arrives at the valley, which is Lambert's law on the underlying surface. Of a coarser scale the
+// finer ones let their share of sky pass, so that any number of scales sends at most 1 / (1 - trap_share) of it. Surroundings as bright
 // everywhere look the same in a valley: their light is neither lost nor gained.
 vec3 trapped(vec3 point_m, out float sky_share) {
   vec3 sum = vec3(0.0);
   sky_share = 1.0;
-  vec3 underlying = vec3(0.0, 0.0, 1.0);
   int at = index;
   for (int scale = 0; scale < kTrapScales && at >= 0; ++scale) {
     Bubble bubble = bubbles[at];
@@ -93,7 +93,7 @@ vec3 trapped(vec3 point_m, out float sky_share) {
     float height = dot(outward, normalize(point_m - bubble.centre_m.xyz));
     float valley = trap_share * min(atan(kTrapSharpness * (1.0 - height)) / atan(kTrapSharpness), 1.0);
     int parent = int(bubble.outward.w);
-    underlying = outward;
+    vec3 underlying = outward;
     if (parent >= 0) {
       Bubble below = bubbles[parent];
       vec3 unit = to_unit(below.unit_x.xyz, below.unit_y.xyz, below.unit_z.xyz, point_m - below.centre_m.xyz);
@@ -102,12 +102,13 @@ vec3 trapped(vec3 point_m, out float sky_share) {
     float received = max(dot(underlying, towards_sun), 0.0);
     if (valley > 0.0 && received > 0.0) {
       received *= lit(point_m + bubble.unit_x.w * underlying);
-      sum += sunlight * (received / kPi * valley / (1.0 - valley));
+      sum += sunlight * (sky_share * received / kPi * valley / (1.0 - valley));
     }
+    sum += sky_share * valley * from_surroundings(underlying);
     sky_share *= 1.0 - valley;
     at = parent;
   }
-  return sum + (1.0 - sky_share) * from_surroundings(underlying);
+  return sum;
 }
 
 // What the core sends.
