@@ -35,8 +35,12 @@ struct DeviceBubble {
 DeviceBubble OnDevice(const clouds::Bubble& bubble, const glm::dvec3& middle_m) {
   // Columns of the transposed are rows.
   const glm::dmat3 rows = glm::transpose(clouds::UnitFromWorld(bubble));
+  const glm::dmat3& axes = bubble.semi_axes_m;
+  const double longest_m =
+      std::max({glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])});
   return {glm::vec4(glm::vec3(rows[0]), static_cast<float>(clouds::RadiusOf(bubble))),
-          glm::vec4(glm::vec3(rows[1]), 0.0F), glm::vec4(glm::vec3(rows[2]), 0.0F),
+          glm::vec4(glm::vec3(rows[1]), static_cast<float>(longest_m)),
+          glm::vec4(glm::vec3(rows[2]), 0.0F),
           glm::vec4(glm::vec3(bubble.centre_m - middle_m), 0.0F),
           glm::vec4(glm::vec3(bubble.outward), static_cast<float>(bubble.parent))};
 }
@@ -71,6 +75,7 @@ struct CumulusRenderer::Pass {
   glm::ivec2 size{1};
   double far_m = 1.0;  // that is depth 1
   double corona_m = 1.0;
+  double slack_m = 0.0;  // how far behind the nearest core something is still drawn
   const gl::Texture2D* ground_distance = nullptr;
   gl::Buffer order;
 
@@ -135,6 +140,7 @@ void CumulusRenderer::DrawBubbles(const gl::Program& program, const Pass& pass) 
   program.Set("per_pixel", 2.0F / glm::vec2(pass.size));
   program.Set("base_m", base_m_);
   program.Set("corona_m", static_cast<float>(pass.corona_m));
+  program.Set("slack_m", static_cast<float>(pass.slack_m));
   program.Set("per_far", static_cast<float>(1.0 / pass.far_m));
   bubbles_.BindStorage(0);
   pass.order.BindStorage(1);
@@ -198,7 +204,8 @@ void CumulusRenderer::Resize(const glm::ivec2& size) {
   core_target_ = gl::Framebuffer({}, &core_depth_);
   cores_ = gl::Texture2D(GL_RGBA16F, size);
   layer_ = gl::Texture2D(GL_RGBA16F, size);
-  shade_target_ = gl::Framebuffer({&cores_, &layer_});
+  tested_depth_ = gl::Texture2D(GL_DEPTH_COMPONENT32F, size);
+  shade_target_ = gl::Framebuffer({&cores_, &layer_}, &tested_depth_);
   eye_ = gl::Texture2D(GL_RGBA16F, size);
   eye_target_ = gl::Framebuffer(eye_);
 }
@@ -259,12 +266,22 @@ absl::Status CumulusRenderer::DrawView(const RenderSettings& settings,
   SetShading(*program, settings, light_map, noises);
   shade_target_.Clear(0.0F, 0.0F, 0.0F, 0.0F, 0);
   shade_target_.Clear(0.0F, 0.0F, 0.0F, 1.0F, 1);
+  // What the shader reads must not be what it is tested against.
+  glCopyImageSubData(core_depth_.Get(), GL_TEXTURE_2D, 0, 0, 0, 0, tested_depth_.Get(),
+                     GL_TEXTURE_2D, 0, 0, 0, 0, settings.eye_size.x, settings.eye_size.y, 1);
   shade_target_.Bind();
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LEQUAL);
+  glDepthMask(GL_FALSE);
   glEnable(GL_BLEND);
   glBlendFunci(0, GL_ONE, GL_ONE);
   glBlendFuncSeparatei(1, GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_SRC_ALPHA);
+  pass.slack_m = pass.corona_m;
   DrawBubbles(*program, pass);
   glDisable(GL_BLEND);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_LESS);
+  glDisable(GL_DEPTH_TEST);
   return Resolve();
 }
 
@@ -282,8 +299,9 @@ absl::Status CumulusRenderer::Resolve() {
 }
 
 std::size_t CumulusRenderer::Bytes() const {
-  return bubbles_.Bytes() + shadow_depth_.Bytes() + core_depth_.Bytes() + cores_.Bytes() +
-         layer_.Bytes() + eye_.Bytes() + (noise_ != nullptr ? noise_->texture.Bytes() : 0);
+  return bubbles_.Bytes() + shadow_depth_.Bytes() + core_depth_.Bytes() + tested_depth_.Bytes() +
+         cores_.Bytes() + layer_.Bytes() + eye_.Bytes() +
+         (noise_ != nullptr ? noise_->texture.Bytes() : 0);
 }
 
 }  // namespace thunderhead::renderers

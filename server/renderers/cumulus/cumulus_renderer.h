@@ -75,6 +75,7 @@ class CumulusRenderer {
 
   gl::Texture2D core_depth_;
   gl::Framebuffer core_target_;
+  gl::Texture2D tested_depth_;  // a copy
   gl::Texture2D cores_;
   gl::Texture2D layer_;
   gl::Framebuffer shade_target_;

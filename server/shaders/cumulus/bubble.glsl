@@ -1,7 +1,7 @@
 // The ellipsoids of a cumulus surface, and where a ray meets one. Metres from the middle of the surface's box.
 struct Bubble {
   vec4 unit_x;   // rows of the matrix to where the bubble is the unit ball; w of this: radius of the ball of its volume
-  vec4 unit_y;
+  vec4 unit_y;   // w: the longest semi-axis
   vec4 unit_z;
   vec4 centre_m;
   vec4 outward;  // normal of what it lies on; w: the index of that, or -1

@@ -1,5 +1,7 @@
 // A quadrangle for each bubble that covers its silhouette exactly: the tangent cone of the eye touches the unit ball in a
-// circle. `order` has the farthest first; variant FRONT_FIRST draws it backwards.
+// circle. Its depth is that of the nearest point that the bubble could have, less slack_m, so that what is hidden is left out
+// before it is shaded. `order` has the farthest first; variant FRONT_FIRST draws it backwards.
+#include "common/view.glsl"
 #include "cumulus/bubble.glsl"
 
 layout(std430, binding = 1) readonly buffer Order { uint order[]; };
@@ -7,6 +9,10 @@ layout(std430, binding = 1) readonly buffer Order { uint order[]; };
 uniform mat4 clip_from_local;
 uniform vec4 eye;  // renderers::EyeOf
 uniform int last_rank;
+uniform float per_far;  // 1 over the distance that is depth 1
+uniform float slack_m;
+
+const float kRounding = 2e-6;
 
 flat out vec4 unit_x;
 flat out vec3 unit_y;
@@ -31,7 +37,7 @@ void main() {
   if (eye.w == 0.0) to_eye = -to_eye;
   float distance = length(to_eye);
   if (eye.w != 0.0 && distance < 1.001) {  // the eye is inside
-    gl_Position = vec4(corner, 0.0, 1.0);
+    gl_Position = vec4(corner, -1.0, 1.0);
     return;
   }
   vec3 towards = to_eye / distance;
@@ -42,4 +48,7 @@ void main() {
   vec3 on_unit = sine * towards + radius * (corner.x * right + corner.y * up);
   mat3 local_from_unit = inverse(transpose(mat3(unit_x.xyz, unit_y, unit_z)));
   gl_Position = clip_from_local * vec4(centre_m + local_from_unit * on_unit, 1.0);
+  float middle_m = eye.w == 0.0 ? dot(centre_m - ray_origin_m, ray_forward) : length(centre_m - eye.xyz);
+  float depth = clamp((middle_m - bubble.unit_y.w - slack_m) * per_far - kRounding, 0.0, 1.0);
+  gl_Position.z = (2.0 * depth - 1.0) * gl_Position.w;
 }

@@ -1,6 +1,8 @@
 // How far the nearest core is: what lies deeper than the corona. Variants of cumulus/meeting.glsl.
 #include "cumulus/meeting.glsl"
 
+layout(depth_greater) out float gl_FragDepth;
+
 uniform float corona_m;
 uniform float per_far;  // 1 over the distance that is depth 1
 
