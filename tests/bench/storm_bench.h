@@ -41,7 +41,7 @@ void RegisterModes();
 void RegisterMetaballs();
 
 // Neyret's shader against Lambert's law on the same ellipsoids, at his 600 x 600 pixels; "paper" has
-// about as many as his 87.
+// twice his 87.
 void RegisterCumulus();
 
 // What is saved by drawing only what a scene requires, and how time grows.
