@@ -40,8 +40,8 @@ void RegisterModes();
 // asked for.
 void RegisterMetaballs();
 
-// Neyret's shader against Lambert's law on the same ellipsoids, at his 600 x 600 pixels; "paper" has
-// twice his 87.
+// Neyret's shader against Lambert's law on the same ellipsoids, at his 600 x 600 pixels; "paper"
+// has twice his 87.
 void RegisterCumulus();
 
 // What is saved by drawing only what a scene requires, and how time grows.

@@ -79,10 +79,11 @@ vec3 roughened(vec3 normal, vec3 point_m, float way_m) {
 }
 
 // Light that comes back between bubbles (section 4.3). At each scale the valley around a bubble hides a share of the sky
-// that the paper's arc tangent gives by the height on the bubble; the hidden share 2 pi - Omega sends (2 pi - Omega) / Omega
-// of the mean light that arrives at the valley, which is Lambert's law on the underlying surface. Of a coarser scale the
-// finer ones let their share of sky pass, so that any number of scales sends at most 1 / (1 - trap_share) of it. Surroundings as bright
-// everywhere look the same in a valley: their light is neither lost nor gained.
+// that the paper's arc tangent gives by the height on the bubble; the hidden share 2 pi - Omega sends
+// (2 pi - Omega) / Omega of the mean light that arrives at the valley, which is Lambert's law on the underlying surface. Of
+// a coarser scale the finer ones let their share of sky pass, so that any number of scales sends at most
+// 1 / (1 - trap_share) of it. Surroundings as bright everywhere look the same in a valley: their light is neither lost nor
+// gained.
 vec3 trapped(vec3 point_m, out float sky_share) {
   vec3 sum = vec3(0.0);
   sky_share = 1.0;
