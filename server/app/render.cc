@@ -6,6 +6,7 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "app/address.h"
 #include "app/commands.h"
 #include "app/local_service.h"
@@ -78,6 +79,18 @@ absl::StatusOr<v1::RenderImageResponse> CallHere(const Flags& flags,
   return Call(server->LocalChannel(), request);
 }
 
+// What was decided for a scene that asks for an accuracy or a speed.
+void PrintAccuracy(const v1::RenderImageResponse& response) {
+  if (response.scene().accuracy().limit_case() == v1::Accuracy::LIMIT_NOT_SET) return;
+  const v1::AccuracyReport& report = response.accuracy();
+  if (!report.unmet().empty()) std::cerr << "thunderhead: " << report.unmet() << "\n";
+  std::cout << absl::StrFormat(
+      "%s, %s, %s, %d slices, image scale %g: error about %.3g, about %.3g ms a frame\n",
+      v1::Renderer_Name(report.renderer()), v1::Mode_Name(report.mode()),
+      v1::Transport_Name(report.transport()), report.slices(), report.image_scale(),
+      report.estimated_error(), report.expected_milliseconds());
+}
+
 absl::Status ByReference(const Flags& flags) {
   if (!flags.server.empty() || flags.json) {
     return absl::InvalidArgumentError(
@@ -105,7 +118,10 @@ absl::Status Render(const Flags& flags) {
                                                                      ? CallHere(flags, request)
                                                                      : CallServer(flags, request));
   THUNDERHEAD_RETURN_IF_ERROR(WriteFile(flags.output, response.image()));
-  if (!flags.json) return absl::OkStatus();
+  if (!flags.json) {
+    PrintAccuracy(response);
+    return absl::OkStatus();
+  }
   response.clear_image();
   std::string json;
   google::protobuf::util::JsonPrintOptions options;
@@ -134,6 +150,10 @@ Command AddRender(CLI::App& app) {
   render->add_option("--renderer", flags->scene.renderer,
                      "half_angle, light_volume (the default), metaball, "
                      "cumulus or reference");
+  render->add_option("--max-error", flags->scene.max_error,
+                     "Draw with the cheapest setting of at most this error (relative RMSE)");
+  render->add_option("--max-milliseconds", flags->scene.max_milliseconds,
+                     "Draw with the most accurate setting of at most this time a frame");
   render->add_option("--spp", flags->reference.samples_per_pixel,
                      "Reference: stop after so many samples a pixel");
   render->add_option("--seconds", flags->reference.seconds, "Reference: stop after this time");

@@ -82,6 +82,14 @@ absl::StatusOr<v1::Scene> ReadScene(const SceneFlags& flags) {
   if (!flags.renderer.empty()) {
     THUNDERHEAD_RETURN_IF_ERROR(SetRenderer(flags.renderer, *scene.mutable_rendering()));
   }
+  if (flags.max_error.has_value() && flags.max_milliseconds.has_value()) {
+    return absl::InvalidArgumentError(
+        "--max-error and --max-milliseconds exclude one another: leave one out");
+  }
+  if (flags.max_error.has_value()) scene.mutable_accuracy()->set_max_error(*flags.max_error);
+  if (flags.max_milliseconds.has_value()) {
+    scene.mutable_accuracy()->set_max_milliseconds(*flags.max_milliseconds);
+  }
   return scene;
 }
 

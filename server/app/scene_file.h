@@ -16,6 +16,8 @@ struct SceneFlags {
   std::string size;      // WxH, may be empty
   std::string camera;    // orbit, spotter or top-down; may be empty
   std::string renderer;  // "half_angle" and so on, may be empty
+  std::optional<float> max_error;
+  std::optional<float> max_milliseconds;  // at most one of the two
 };
 
 // INVALID_ARGUMENT names the file or flag and what is wrong with it.

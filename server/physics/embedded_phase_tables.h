@@ -1,4 +1,4 @@
-// The texts of data/phase, built into the program by cmake/embed_phase_tables.cmake, by table name.
+// The texts of data/phase, built into the program by cmake/embed_texts.cmake, by table name.
 #pragma once
 
 #include <map>

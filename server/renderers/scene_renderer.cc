@@ -14,7 +14,8 @@ namespace {
 
 glm::ivec2 EyeSize(const scene::Scene& scene, const DrawQuality& quality) {
   const glm::dvec2 size(scene.output.width_px, scene.output.height_px);
-  return glm::max(glm::ivec2(glm::ceil(size * quality.image_scale)), glm::ivec2(1));
+  const double scale = scene.rendering.image_scale * quality.image_scale;
+  return glm::max(glm::ivec2(glm::ceil(size * scale)), glm::ivec2(1));
 }
 
 std::vector<std::string> NotShownByMetaballs(const scene::Rendering& rendering) {

@@ -152,6 +152,20 @@ struct Cumulus {
   bool operator==(const Cumulus&) const = default;
 };
 
+// What the server is to reach, by whichever setting its tables say is best; neither leaves the
+// rendering as it is.
+struct MaxError {
+  double relative_rmse = 0.0;  // of linear radiance, against the reference
+
+  bool operator==(const MaxError&) const = default;
+};
+struct MaxMilliseconds {
+  double milliseconds = 0.0;  // a frame of a moved camera
+
+  bool operator==(const MaxMilliseconds&) const = default;
+};
+using Accuracy = std::variant<std::monostate, MaxError, MaxMilliseconds>;
+
 struct Rendering {
   Renderer renderer = Renderer::kLightVolume;
   Mode mode = Mode::kPerFieldPhaseTranslucent;
@@ -161,6 +175,7 @@ struct Rendering {
   bool false_colors = false;
   Metaballs metaballs;
   Cumulus cumulus;
+  double image_scale = 1.0;  // of the eye buffer at full quality, (0, 1]; pictures keep their size
 
   bool operator==(const Rendering&) const = default;
 };
@@ -192,6 +207,7 @@ struct Scene {
   Rendering rendering;
   Display display;
   Output output;
+  Accuracy accuracy;  // decides much of `rendering`, which renderers are given decided
 
   // A scene with the default optics of every field.
   Scene();

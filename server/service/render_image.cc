@@ -29,6 +29,7 @@ absl::Status Encode(const session::DisplayFrame& picture, const v1::RenderImageR
   for (const session::StageCost& cost : picture.stages) ToMessage(cost, *response.add_stages());
   ToMessage({"encode", stopwatch.ElapsedMs()}, *response.add_stages());
   ToMessage(picture.modelled, *response.mutable_modelled());
+  if (picture.accuracy.has_value()) ToMessage(*picture.accuracy, *response.mutable_accuracy());
   return absl::OkStatus();
 }
 

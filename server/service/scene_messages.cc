@@ -168,6 +168,18 @@ scene::Cumulus ToCumulus(const v1::Cumulus& message) {
   return cumulus;
 }
 
+scene::Accuracy ToAccuracy(const v1::Accuracy& message) {
+  switch (message.limit_case()) {
+    case v1::Accuracy::kMaxError:
+      return scene::MaxError{message.max_error()};
+    case v1::Accuracy::kMaxMilliseconds:
+      return scene::MaxMilliseconds{message.max_milliseconds()};
+    case v1::Accuracy::LIMIT_NOT_SET:
+      break;
+  }
+  return {};
+}
+
 volume::WorldBox BoxOf(const volume::RegularGrid& grid, const volume::CellBox& cells) {
   return {grid.low_corner_m + glm::dvec3(cells.low) * grid.spacing_m,
           grid.low_corner_m + glm::dvec3(cells.high) * grid.spacing_m};
@@ -289,6 +301,7 @@ scene::Scene ToScene(const v1::Scene& message) {
   scene.output.width_px = static_cast<int>(message.output().width_px());
   scene.output.height_px = static_cast<int>(message.output().height_px());
   scene.output.jpeg_quality = static_cast<int>(message.output().jpeg_quality());
+  scene.accuracy = ToAccuracy(message.accuracy());
   return scene;
 }
 
@@ -316,6 +329,23 @@ void ToMessage(const session::Refinement& refinement, v1::Refinement& message) {
   }
 }
 
+void ToMessage(const session::AccuracyReport& report, v1::AccuracyReport& message) {
+  message.set_renderer(MessageOf(kRenderers, report.renderer));
+  message.set_mode(MessageOf(kModes, report.mode));
+  message.set_transport(MessageOf(kTransports, report.transport));
+  message.set_slices(static_cast<std::uint32_t>(report.slices));
+  message.set_image_scale(static_cast<float>(report.image_scale));
+  if (report.expected_ms.has_value()) {
+    message.set_expected_milliseconds(static_cast<float>(*report.expected_ms));
+  }
+  message.set_model_error(static_cast<float>(report.model_error));
+  if (report.discretisation_error.has_value()) {
+    message.set_discretisation_error(static_cast<float>(*report.discretisation_error));
+  }
+  message.set_estimated_error(static_cast<float>(report.estimated_error));
+  message.set_unmet(report.unmet);
+}
+
 void ToMessage(const session::EncodedFrame& frame, v1::Frame& message) {
   message.set_sequence(frame.sequence);
   message.set_scene_revision(frame.scene_revision);
@@ -330,6 +360,7 @@ void ToMessage(const session::EncodedFrame& frame, v1::Frame& message) {
   if (frame.refinement.has_value()) {
     ToMessage(*frame.refinement, *message.mutable_refinement());
   }
+  if (frame.accuracy.has_value()) ToMessage(*frame.accuracy, *message.mutable_accuracy());
 }
 
 void ToMessage(const session::Problem& problem, v1::Problem& message) {

@@ -28,6 +28,7 @@ scene::Scene ToScene(const v1::Scene& message);
 
 void ToMessage(const session::Modelled& modelled, v1::Modelled& message);
 void ToMessage(const session::Refinement& refinement, v1::Refinement& message);
+void ToMessage(const session::AccuracyReport& report, v1::AccuracyReport& message);
 void ToMessage(const session::EncodedFrame& frame, v1::Frame& message);
 void ToMessage(const session::Problem& problem, v1::Problem& message);
 void ToMessage(const session::StageCost& cost, v1::StageCost& message);

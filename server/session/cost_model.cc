@@ -31,8 +31,9 @@ void Follow(double measured_ms, double* mean_ms) {
 }  // namespace
 
 double MegaSamples(const scene::Scene& scene, const FrameQuality& quality) {
-  const double pixels = static_cast<double>(scene.output.width_px) * scene.output.height_px *
-                        quality.image_scale * quality.image_scale;
+  const double scale = scene.rendering.image_scale * quality.image_scale;
+  const double pixels =
+      static_cast<double>(scene.output.width_px) * scene.output.height_px * scale * scale;
   if (scene.rendering.renderer == scene::Renderer::kMetaball) {
     // A pixel lies under so many balls that fill a volume, each as wide as its share of it.
     return pixels * kBallsOverPixel * std::cbrt(scene.rendering.metaballs.count) * 1e-6;
@@ -41,6 +42,17 @@ double MegaSamples(const scene::Scene& scene, const FrameQuality& quality) {
     return pixels * kEllipsoidsOverPixel * 1e-6;
   }
   return pixels * scene.rendering.slices * quality.slice_share * 1e-6;
+}
+
+std::optional<double> ViewMs(double total_ms, const std::vector<StageCost>& stages) {
+  double other_ms = 0.0;
+  bool drew = false;
+  for (const StageCost& cost : stages) {
+    if (IsPreparation(cost) || cost.stage == "light") other_ms += cost.milliseconds;
+    drew = drew || cost.stage == "slices" || cost.stage == "view";
+  }
+  if (!drew) return std::nullopt;
+  return std::max(0.0, total_ms - other_ms);
 }
 
 double CostModel::EstimateMs(double mega_samples, scene::Stage first_dirty) const {
@@ -55,16 +67,15 @@ void CostModel::Observe(double mega_samples, double total_ms,
                         const std::vector<StageCost>& stages) {
   double preparation_ms = 0.0;
   double light_ms = 0.0;
-  bool drew = false;
   for (const StageCost& cost : stages) {
     if (IsPreparation(cost)) preparation_ms += cost.milliseconds;
     if (cost.stage == "light") light_ms += cost.milliseconds;
-    drew = drew || cost.stage == "slices" || cost.stage == "view";
   }
   Follow(preparation_ms, &preparation_ms_);
   Follow(light_ms, &light_ms_);
-  if (!drew) return;
-  const double y = std::max(0.0, total_ms - preparation_ms - light_ms);
+  const std::optional<double> view_ms = ViewMs(total_ms, stages);
+  if (!view_ms.has_value()) return;
+  const double y = *view_ms;
   const auto add = [](double& sum, double value) { sum = kForgetting * sum + value; };
   add(weight_, 1.0);
   add(sum_x_, mega_samples);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "scene/scene.h"
@@ -14,6 +15,10 @@ namespace thunderhead::session {
 // What drawing `scene` at `quality` grows with: pixels times slices, or times the balls or
 // ellipsoids over them, in millions.
 double MegaSamples(const scene::Scene& scene, const FrameQuality& quality);
+
+// What the view and all after it took of a frame's `total_ms`: what a moved camera costs. None if
+// the frame drew no view.
+std::optional<double> ViewMs(double total_ms, const std::vector<StageCost>& stages);
 
 class CostModel {
  public:

@@ -36,6 +36,7 @@ void EncodeAndPublish(DrawnFrame drawn) {
   frame.modelled = std::move(drawn.picture.modelled);
   frame.refined = drawn.refined;
   frame.refinement = drawn.refinement;
+  frame.accuracy = std::move(drawn.picture.accuracy);
   drawn.session->hub().Publish(std::move(frame));
 }
 

@@ -34,6 +34,7 @@ struct EncodedFrame {
   Modelled modelled;
   bool refined = false;
   std::optional<Refinement> refinement;  // of a picture by the reference
+  std::optional<AccuracyReport> accuracy;
 };
 
 // Why the scene of a revision has no frame.

@@ -76,6 +76,11 @@ void FramePlanner::GiveUp(std::uint64_t revision) {
   finished_ = true;
 }
 
+void FramePlanner::Again() {
+  finished_ = false;
+  drawn_ = {FrameQuality{0.0, 0.0}, false};
+}
+
 FrameQuality FramePlanner::Finest(const scene::Scene& scene, scene::Stage first_dirty,
                                   double budget_ms) const {
   for (int step = kSteps; step > 0; --step) {

@@ -58,6 +58,9 @@ class FramePlanner {
   // The scene of that revision cannot be drawn, or is shown by other means; it is not tried again.
   void GiveUp(std::uint64_t revision);
 
+  // The scene of the revision drawn last is to be drawn otherwise: it begins anew.
+  void Again();
+
   // The newest revision drawn or given up.
   std::uint64_t revision() const { return revision_; }
 

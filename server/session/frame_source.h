@@ -57,6 +57,22 @@ struct Refinement {
   bool operator==(const Refinement&) const = default;
 };
 
+// How accurate a picture is believed to be; errors are relative RMSE of linear radiance.
+struct AccuracyReport {
+  scene::Renderer renderer = scene::Renderer::kLightVolume;
+  scene::Mode mode = scene::Mode::kPerFieldPhaseTranslucent;
+  scene::Transport transport = scene::Transport::kConsistent;
+  int slices = 0;                     // of this picture
+  double image_scale = 1.0;           // of this picture
+  std::optional<double> expected_ms;  // of a frame at full quality, on this machine
+  double model_error = 0.0;           // by the table
+  std::optional<double> discretisation_error;
+  double estimated_error = 0.0;
+  std::string unmet;  // why what the scene asks for is not reached; empty where it is
+
+  bool operator==(const AccuracyReport&) const = default;
+};
+
 // Linear radiance, rows from top to bottom.
 struct LinearPicture {
   glm::ivec2 size_px{0};
@@ -70,6 +86,14 @@ struct DisplayFrame {
   std::vector<std::uint8_t> rgb;
   std::vector<StageCost> stages;
   Modelled modelled;
+  std::optional<AccuracyReport> accuracy;
+};
+
+// A picture at full quality, and how much it differs from one with half the slices: no less than
+// its own distance from endlessly many, where that falls with the slices at first order or faster.
+struct CheckedFrame {
+  DisplayFrame frame;
+  double discretisation_error = 0.0;  // relative RMSE of linear radiance
 };
 
 // What the source draws on.
@@ -107,6 +131,11 @@ class FrameSource {
   virtual absl::StatusOr<DisplayFrame> Draw(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
       const FrameQuality& quality) = 0;
+
+  // Draws at full quality and with half the slices; a scene of one slice cannot be checked.
+  virtual absl::StatusOr<CheckedFrame> DrawChecked(
+      const scene::Scene& scene,
+      const std::shared_ptr<const volume::HydrometeorFields>& fields) = 0;
 
   // Tone maps what was computed elsewhere. What Draw keeps stays kept.
   virtual absl::StatusOr<DisplayFrame> Tone(const LinearPicture& picture,

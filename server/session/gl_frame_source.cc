@@ -1,6 +1,8 @@
 #include "session/gl_frame_source.h"
 
+#include <cmath>
 #include <utility>
+#include <vector>
 
 #include "base/status.h"
 #include "frame/tone_map.h"
@@ -28,6 +30,21 @@ class BallPreparation final : public Preparation {
   std::shared_ptr<renderers::BallFits> fits_;
 };
 
+// Relative RMSE of red, green and blue; four values a pixel.
+double RelativeDifference(const std::vector<float>& pixels, const std::vector<float>& truth) {
+  double squares = 0.0;
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (i % 4 == 3) continue;
+    squares += std::pow(static_cast<double>(pixels[i]) - truth[i], 2);
+    sum += truth[i];
+    ++count;
+  }
+  const double values = static_cast<double>(count);
+  return sum > 0.0 ? std::sqrt(squares / values) / (sum / values) : 0.0;
+}
+
 class GlFrameSource final : public FrameSource {
  public:
   explicit GlFrameSource(std::unique_ptr<gl::Context> context)
@@ -46,6 +63,37 @@ class GlFrameSource final : public FrameSource {
     THUNDERHEAD_ASSIGN_OR_RETURN(
         const renderers::LinearFrame linear,
         renderers_.Draw(scene, fields, {quality.image_scale, quality.slice_share}));
+    return Display(linear, scene);
+  }
+
+  absl::StatusOr<CheckedFrame> DrawChecked(
+      const scene::Scene& scene,
+      const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
+    CheckedFrame checked;
+    THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame coarse,
+                                 renderers_.Draw(scene, fields, {1.0, 0.5}));
+    const std::vector<float> coarse_radiance = frame::ReadLinear(*coarse.radiance);
+    THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame fine,
+                                 renderers_.Draw(scene, fields, {}));
+    checked.discretisation_error =
+        RelativeDifference(coarse_radiance, frame::ReadLinear(*fine.radiance));
+    THUNDERHEAD_ASSIGN_OR_RETURN(checked.frame, Display(fine, scene));
+    return checked;
+  }
+
+  absl::StatusOr<DisplayFrame> Tone(const LinearPicture& picture,
+                                    const scene::Display& display) override {
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        frame::ToneMapped mapped,
+        picture_tone_mapper_.Map(frame::TextureOf(picture.size_px, picture.radiance), display));
+    DisplayFrame frame;
+    Fill(picture.size_px, std::move(mapped), &frame);
+    return frame;
+  }
+
+ private:
+  absl::StatusOr<DisplayFrame> Display(const renderers::LinearFrame& linear,
+                                       const scene::Scene& scene) {
     THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped,
                                  tone_mapper_.Map(*linear.radiance, scene.display));
     DisplayFrame frame;
@@ -65,17 +113,6 @@ class GlFrameSource final : public FrameSource {
     return frame;
   }
 
-  absl::StatusOr<DisplayFrame> Tone(const LinearPicture& picture,
-                                    const scene::Display& display) override {
-    THUNDERHEAD_ASSIGN_OR_RETURN(
-        frame::ToneMapped mapped,
-        picture_tone_mapper_.Map(frame::TextureOf(picture.size_px, picture.radiance), display));
-    DisplayFrame frame;
-    Fill(picture.size_px, std::move(mapped), &frame);
-    return frame;
-  }
-
- private:
   static void Fill(const glm::ivec2& size_px, frame::ToneMapped mapped, DisplayFrame* frame) {
     frame->width_px = size_px.x;
     frame->height_px = size_px.y;

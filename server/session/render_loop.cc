@@ -22,17 +22,6 @@ std::optional<Clock::time_point> Earlier(const std::optional<Clock::time_point>&
   return std::min(*a, *b);
 }
 
-std::vector<physics::Hydrometeor> DrawnFields(const scene::Scene& scene,
-                                              const volume::HydrometeorFields& fields) {
-  std::vector<physics::Hydrometeor> drawn;
-  for (const volume::HydrometeorField& field : fields.fields) {
-    const scene::FieldParameters& look = scene.fields[physics::IndexOf(field.hydrometeor)];
-    if (!look.visible || look.scale <= 0.0F || field.concentration_kg_per_m3.empty()) continue;
-    drawn.push_back(field.hydrometeor);
-  }
-  return drawn;
-}
-
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<RenderLoop>> RenderLoop::Start(
@@ -55,6 +44,7 @@ RenderLoop::RenderLoop(const RenderLoopOptions& options, volume::StormStore& sto
       store_(store),
       sessions_(sessions),
       wake_(wake),
+      offers_(options.offer_tables()),
       reader_(std::make_unique<FieldsReader>(store, [&wake] { wake.Notify(); })),
       encoder_(std::make_unique<FrameEncoder>(options.encoder_threads, [&wake] { wake.Notify(); })),
       tracer_(std::make_unique<TruthTracer>(options.make_truth_source, options.max_traced_sessions,
@@ -177,15 +167,20 @@ RenderLoop::Outcome RenderLoop::TrySession(const std::shared_ptr<Session>& sessi
   TakeRead(*session, track);
   EndTrace(session->id(), track, *newest->scene);
   if (!session->hub().HasReadyViewer() || encoder_->IsFullFor(*session)) return {};
-  const std::optional<NewestScene> shown = DrawableScene(*session, track, *newest);
+  const std::optional<NewestScene> decided = Decide(*session, track, *newest);
+  if (!decided.has_value()) return {};
+  const std::optional<NewestScene> shown = DrawableScene(*session, track, *decided);
   if (!shown.has_value()) return {};
   if (shown->scene->rendering.renderer == scene::Renderer::kReference) {
     return ShowTraced(session, track, *shown);
   }
   const Decision decision = track.planner.Decide(*shown, Clock::now(), last_drawn_);
-  if (!decision.plan.has_value()) return {false, decision.ask_again_at};
-  DrawFor(session, track, *shown, *decision.plan);
-  return {true, std::nullopt};
+  if (decision.plan.has_value()) {
+    DrawFor(session, track, *shown, *decision.plan);
+    return {true, std::nullopt};
+  }
+  if (decision.ask_again_at.has_value()) return {false, decision.ask_again_at};
+  return Check(session, track, *newest);
 }
 
 void RenderLoop::TakeRead(Session& session, Track& track) {
@@ -259,6 +254,7 @@ void RenderLoop::DrawFor(const std::shared_ptr<Session>& session, Track& track,
   double total_ms = 0.0;
   auto picture = Draw(*shown.scene, track.fields, plan.quality, total_ms);
   if (!picture.ok()) return Fail(*session, track, shown.revision, picture.status());
+  picture->accuracy = offers_.Report(*shown.scene, plan.quality, std::nullopt);
   track.planner.Drawn(shown.revision, *shown.scene, plan, total_ms,
                       was_warm ? picture->stages : std::vector<StageCost>());
   Send(track,
@@ -278,61 +274,8 @@ void RenderLoop::Send(Track& track, DrawnFrame frame) {
 void RenderLoop::Fail(Session& session, Track& track, std::uint64_t revision,
                       const absl::Status& why) {
   track.planner.GiveUp(revision);
+  if (track.decided.has_value()) track.decided->settled = true;
   session.hub().Publish(Problem{revision, std::string(why.message())});
-}
-
-void RenderLoop::EndTrace(const std::string& session_id, Track& track, const scene::Scene& newest) {
-  if (!track.traced.has_value()) return;
-  if (newest.rendering.renderer != scene::Renderer::kReference) {
-    tracer_->Forget(session_id);
-    track.traced.reset();
-  } else if (scene::FirstDirtyStage(*track.traced->shown.scene, newest) < scene::Stage::kTone) {
-    tracer_->Stop(session_id);
-    track.traced.reset();
-  }
-}
-
-absl::StatusOr<bool> RenderLoop::Trace(const std::string& session_id, Track& track,
-                                       const NewestScene& shown) {
-  if (!track.traced.has_value()) {
-    if (track.untraceable_revision == shown.revision) return false;
-    track.traced = Traced{shown, nullptr};
-    THUNDERHEAD_RETURN_IF_ERROR(tracer_->Trace(session_id, shown.scene, track.fields));
-    return false;
-  }
-  Traced& traced = *track.traced;
-  // Another exposure shows what was traced so far in another light.
-  bool news = traced.picture != nullptr && shown.revision > traced.shown.revision;
-  traced.shown = shown;
-  if (auto taken = tracer_->Take(session_id); taken.has_value()) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(traced.picture, *std::move(taken));
-    news = true;
-  }
-  return news;
-}
-
-RenderLoop::Outcome RenderLoop::ShowTraced(const std::shared_ptr<Session>& session, Track& track,
-                                           const NewestScene& shown) {
-  const auto fail = [&](const absl::Status& why) -> Outcome {
-    tracer_->Forget(session->id());
-    track.traced.reset();
-    track.untraceable_revision = shown.revision;
-    Fail(*session, track, shown.revision, why);
-    return {};
-  };
-  const absl::StatusOr<bool> news = Trace(session->id(), track, shown);
-  if (!news.ok()) return fail(news.status());
-  track.planner.GiveUp(shown.revision);
-  if (!*news) return {};
-  const TruthPicture& traced = *track.traced->picture;
-  auto picture = source_->Tone(traced.picture, shown.scene->display);
-  if (!picture.ok()) return fail(picture.status());
-  picture->stages.insert(picture->stages.begin(), {"trace", traced.trace_ms});
-  picture->modelled.renderer = scene::Renderer::kReference;
-  picture->modelled.fields = DrawnFields(*shown.scene, *track.fields);
-  Send(track, {session, shown.revision, *shown.scene, traced.full_size, *std::move(picture),
-               traced.refinement});
-  return {true, std::nullopt};
 }
 
 absl::StatusOr<DisplayFrame> RenderLoop::Draw(
@@ -350,14 +293,29 @@ absl::StatusOr<DisplayFrame> RenderLoop::Draw(
   if (std::exchange(warm_, true)) {
     machine_costs_.Of(scene).Observe(MegaSamples(scene, quality), total_ms, picture->stages);
   }
+  const scene::Rendering& rendering = scene.rendering;
+  const bool compiled =
+      !compiled_.emplace(rendering.renderer, rendering.mode, rendering.transport).second;
+  if (compiled && quality == FrameQuality{}) {
+    const std::optional<double> view_ms = ViewMs(total_ms, picture->stages);
+    if (view_ms.has_value()) offers_.Observe(scene, *view_ms);
+  }
+  return picture;
+}
+
+absl::StatusOr<DisplayFrame> RenderLoop::DrawImage(const ImageJob& job) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const scene::Scene scene, offers_.Decide(job.scene, std::nullopt));
+  double total_ms = 0.0;
+  THUNDERHEAD_ASSIGN_OR_RETURN(DisplayFrame picture,
+                               Draw(scene, job.fields, FrameQuality{}, total_ms));
+  picture.accuracy = offers_.Report(scene, {}, std::nullopt);
   return picture;
 }
 
 RenderLoop::Outcome RenderLoop::TryImage() {
   std::optional<ImageJob> job = NextImage();
   if (!job.has_value()) return {};
-  double total_ms = 0.0;
-  job->done(Draw(job->scene, job->fields, FrameQuality{}, total_ms));
+  job->done(DrawImage(*job));
   return {true, std::nullopt};
 }
 

@@ -12,8 +12,10 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
+#include <tuple>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
@@ -23,6 +25,7 @@
 #include "session/frame_encoder.h"
 #include "session/frame_planner.h"
 #include "session/frame_source.h"
+#include "session/offers.h"
 #include "session/sessions.h"
 #include "session/truth_source.h"
 #include "session/truth_tracer.h"
@@ -35,6 +38,7 @@ struct RenderLoopOptions {
   int encoder_threads = 1;
   // Of sessions that show the reference; each takes some hundred bytes a pixel and the medium.
   std::size_t max_traced_sessions = 8;
+  std::function<OfferTables()> offer_tables = BuiltInOfferTables;
   TruthSourceFactory make_truth_source = [] { return MakeReferenceTruthSource(); };
 };
 
@@ -79,6 +83,14 @@ class RenderLoop {
     NewestScene shown;
     std::shared_ptr<const TruthPicture> picture;  // none yet
   };
+  // The scene of a revision with the setting that reaches what it asks for.
+  struct Decided {
+    std::uint64_t revision = 0;
+    std::shared_ptr<const scene::Scene> scene;  // null if that failed
+    int decided_again = 0;                      // at rest, by what its frames have cost
+    bool checked = false;                       // drawn with half the slices as well
+    bool settled = false;                       // nothing more is to be learnt of it
+  };
   // What the loop knows of a session.
   struct Track {
     FramePlanner planner;
@@ -89,6 +101,7 @@ class RenderLoop {
     std::uint64_t unreadable_revision = 0;
     double read_ms = 0.0;  // to be reported with the next frame
     double prepare_ms = 0.0;
+    std::optional<Decided> decided;
     std::optional<Traced> traced;
     std::uint64_t untraceable_revision = 0;
   };
@@ -112,6 +125,11 @@ class RenderLoop {
   void AskFor(const Session& session, const NewestScene& newest);
   std::optional<NewestScene> DrawableScene(const Session& session, Track& track,
                                            const NewestScene& newest);
+  // `shown` with what it asks for decided; null if that failed, which its viewers are told once.
+  std::optional<NewestScene> Decide(Session& session, Track& track, const NewestScene& shown);
+  // At rest: decides again by what frames have cost, then finds out what few slices do.
+  Outcome Check(const std::shared_ptr<Session>& session, Track& track, const NewestScene& asked);
+  void DrawChecked(const std::shared_ptr<Session>& session, Track& track, std::uint64_t revision);
   void DrawFor(const std::shared_ptr<Session>& session, Track& track, const NewestScene& shown,
                const FramePlan& plan);
   void Send(Track& track, DrawnFrame frame);
@@ -122,6 +140,7 @@ class RenderLoop {
   // True if there is something that its viewers have not seen.
   absl::StatusOr<bool> Trace(const std::string& session_id, Track& track, const NewestScene& shown);
   void Fail(Session& session, Track& track, std::uint64_t revision, const absl::Status& why);
+  absl::StatusOr<DisplayFrame> DrawImage(const ImageJob& job);
   Outcome TryImage();
   std::optional<ImageJob> NextImage();
   absl::StatusOr<DisplayFrame> Draw(const scene::Scene& scene,
@@ -148,6 +167,9 @@ class RenderLoop {
   std::optional<LastDrawn> last_drawn_;
   bool warm_ = false;
   CostModels machine_costs_;
+  Offers offers_;
+  // Whose shaders are compiled: what a renderer, mode and transport cost first foretells nothing.
+  std::set<std::tuple<scene::Renderer, scene::Mode, scene::Transport>> compiled_;
 
   std::unique_ptr<FieldsReader> reader_;
   std::unique_ptr<FrameEncoder> encoder_;

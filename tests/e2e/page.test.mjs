@@ -292,6 +292,37 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
   await page.getByTestId("rendering-section").locator("summary").click();
 });
 
+test("an accuracy asked for is reached by a setting that the server picks, or the nearest is told", async () => {
+  await page.getByTestId("accuracy-section").locator("summary").click();
+  const report = () => page.getByTestId("accuracy-report").evaluate((text) => ({ ...text.dataset }));
+  const ask = async (error) => {
+    await changing(async () => {
+      await page.getByTestId("max-error-number").fill(String(error));
+      await page.getByTestId("max-error-number").press("Enter");
+    });
+    // The slices' part is found out at rest.
+    await page.waitForFunction(
+      () =>
+        document.querySelector("[data-testid=accuracy-report]")?.dataset.discretisationError !==
+        undefined,
+      undefined,
+      { timeout: PICTURE_TIMEOUT_MS },
+    );
+    await rested();
+  };
+  await changing(() => page.getByTestId("accuracy-goal").selectOption("maxError"));
+  await ask(3);
+  assert.ok(Number((await report()).estimatedError) <= 3);
+  assert.ok(Number((await report()).expectedMilliseconds) > 0);
+  assert.equal(await page.getByTestId("accuracy-unmet").count(), 0);
+  await screenshot("10-accuracy");
+  await ask(0.001);
+  assert.match(await page.getByTestId("accuracy-unmet").innerText(), /out of reach.*nearest is/);
+  await screenshot("11-accuracy-unmet");
+  await changing(() => page.getByTestId("accuracy-goal").selectOption("none"));
+  await page.getByTestId("accuracy-section").locator("summary").click();
+});
+
 test("play goes through the times and waits for each", async () => {
   const seen = new Set();
   await page.getByTestId("rate").selectOption("8");
@@ -323,7 +354,7 @@ test("a link brings another viewer into the session, who sees it turn", async ()
       host.azimuth,
       { timeout: PICTURE_TIMEOUT_MS },
     );
-    await screenshot("9-guest", guest);
+    await screenshot("12-guest", guest);
   } finally {
     await guest.close();
   }
@@ -333,7 +364,7 @@ test("the panel folds away with a key and leaves the storm", async () => {
   await page.getByTestId("storm-canvas").focus();
   await page.keyboard.press("p");
   assert.equal(await page.getByTestId("panel").isVisible(), false);
-  await screenshot("10-no-panel");
+  await screenshot("13-no-panel");
   await page.keyboard.press("p");
   assert.equal(await page.getByTestId("panel").isVisible(), true);
 });
@@ -347,7 +378,7 @@ test("a server that dies and comes back is found again with the same scene", asy
   const beforePicture = await grabCanvas(page);
   await server.stop("SIGKILL");
   await page.getByTestId("connection-lost").waitFor({ state: "visible", timeout: 15_000 });
-  await screenshot("11-connection-lost");
+  await screenshot("14-connection-lost");
   server = await startServer(ports);
   await page.getByTestId("connection-lost").waitFor({ state: "hidden", timeout: 30_000 });
   await page.waitForFunction(
@@ -359,7 +390,7 @@ test("a server that dies and comes back is found again with the same scene", asy
     { timeout: PICTURE_TIMEOUT_MS },
   );
   const healed = await rested();
-  await screenshot("12-healed");
+  await screenshot("15-healed");
   assert.equal(healed.azimuth, before.azimuth);
   const change = difference(beforePicture, await grabCanvas(page));
   assert.ok(change < 1, `after healing the picture differs by ${change}`);
@@ -379,10 +410,10 @@ test("it works on a phone's screen", async () => {
     await phone.goto(server.url);
     await rested(phone);
     assert.equal(await phone.getByTestId("panel").isVisible(), false);
-    await screenshot("13-phone", phone);
+    await screenshot("16-phone", phone);
     await phone.getByTestId("panel-toggle").tap();
     assert.equal(await phone.getByTestId("panel").isVisible(), true);
-    await screenshot("14-phone-panel", phone);
+    await screenshot("17-phone-panel", phone);
     const overflow = await phone.evaluate(
       () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
     );
@@ -402,7 +433,7 @@ test("it works on a phone's screen", async () => {
     const nearer = await canvasData(phone);
     const ratio = Number(nearer.distance) / Number(turned.distance);
     assert.ok(Math.abs(ratio - 0.5) < 0.02, `a pinch to twice the width changed the distance by ${ratio}`);
-    await screenshot("15-phone-pinched", phone);
+    await screenshot("18-phone-pinched", phone);
   } finally {
     await phone.close();
   }

@@ -89,6 +89,14 @@ class FakeFrameSource final : public session::FrameSource {
     return Paint(scene, quality, ms);
   }
 
+  absl::StatusOr<session::CheckedFrame> DrawChecked(
+      const scene::Scene& scene,
+      const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
+    ++machine_->checked;
+    THUNDERHEAD_ASSIGN_OR_RETURN(session::DisplayFrame frame, Draw(scene, fields, {}));
+    return session::CheckedFrame{std::move(frame), 1.0 / scene.rendering.slices};
+  }
+
   absl::StatusOr<session::DisplayFrame> Tone(const session::LinearPicture& picture,
                                              const scene::Display& display) override {
     session::DisplayFrame frame;

@@ -82,6 +82,7 @@ struct FakeMachine {
   std::atomic<double> fails_above_exposure_ev{1e9};
   Gate preparing;  // of scenes of metaballs; each number of them once
   std::atomic<int> cannot_prepare{-1};
+  std::atomic<int> checked{0};  // frames drawn with half the slices as well
 
   std::vector<Drawn> Log();
   void Add(Drawn drawn);

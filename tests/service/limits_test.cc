@@ -63,6 +63,10 @@ INSTANTIATE_TEST_SUITE_P(
         Case{R"({"rendering": {"cumulus": {"leastExtinctionPerM": 0}}})",
              "scene.rendering.cumulus.least_extinction_per_m is 0; it must be between 1e-06 and 1 "
              "1/m"},
+        Case{R"({"accuracy": {"maxError": 0}})",
+             "scene.accuracy.max_error is 0; it must be between 0.001 and 10"},
+        Case{R"({"accuracy": {"maxMilliseconds": 1e9}})",
+             "scene.accuracy.max_milliseconds is 1e+09; it must be between 0.1 and 60000 ms"},
         Case{R"({"sun": {"elevationDeg": "NaN"}})",
              "scene.sun.elevation_deg is nan; it must be between -90 and 90 deg"},
         Case{R"({"sun": {"irradiance": "Infinity"}})",

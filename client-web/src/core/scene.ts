@@ -2,6 +2,8 @@
 // did. Absent values mean their defaults, as in proto/thunderhead/v1/scene.proto.
 import { create, fromBinary, type Message, toBinary } from "@bufbuild/protobuf";
 import {
+  type Accuracy,
+  AccuracySchema,
   type Camera,
   type Cumulus,
   CumulusSchema,
@@ -64,6 +66,8 @@ export const LIMITS = {
   width: limitsOf(OutputSchema.field.widthPx),
   height: limitsOf(OutputSchema.field.heightPx),
   jpegQuality: limitsOf(OutputSchema.field.jpegQuality),
+  maxError: limitsOf(AccuracySchema.field.maxError),
+  maxMilliseconds: limitsOf(AccuracySchema.field.maxMilliseconds),
 } as const satisfies Record<string, Limits>;
 
 // What may be changed of a message.
@@ -116,6 +120,10 @@ export function withDisplay(scene: Scene, change: Change<Display>): Scene {
 
 export function withOutput(scene: Scene, change: Change<Output>): Scene {
   return changed(scene, { output: changed(scene.output ?? create(OutputSchema), change) });
+}
+
+export function withAccuracy(scene: Scene, accuracy: Accuracy | undefined): Scene {
+  return changed(scene, { accuracy });
 }
 
 // Changes one field's settings; a field that the scene does not list yet is added.

@@ -12,6 +12,7 @@ import {
 } from "../gen/thunderhead/v1/scene_pb";
 import type { StormDescription, StormSummary } from "../gen/thunderhead/v1/storm_pb";
 import type {
+  AccuracyReport,
   Frame,
   GetServerInfoResponse,
   Modelled,
@@ -44,6 +45,7 @@ export interface ShownFrame {
   readonly modelled: Modelled | undefined;
   // Of a picture by the reference.
   readonly refinement: Refinement | undefined;
+  readonly accuracy: AccuracyReport | undefined;
 }
 
 export interface Pace {
@@ -105,6 +107,7 @@ export class PageState {
   readonly sky = computed(() => this.#scene.value.sky);
   readonly rendering = computed(() => this.#scene.value.rendering);
   readonly display = computed(() => this.#scene.value.display);
+  readonly accuracy = computed(() => this.#scene.value.accuracy);
   readonly output = computed(() => this.#scene.value.output);
   readonly timeIndex = computed(() => this.#scene.value.timeIndex ?? 0);
   readonly stormId = computed(() => this.#scene.value.stormId);
@@ -175,6 +178,7 @@ export class PageState {
       stages: frame.stages,
       modelled: frame.modelled,
       refinement: frame.refinement,
+      accuracy: frame.accuracy,
     };
   }
 

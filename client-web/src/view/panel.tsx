@@ -9,6 +9,7 @@ import {
 } from "../core/scene";
 import type { PageState } from "../core/state";
 import { Mode, Renderer, ToneMap, Transport } from "../gen/thunderhead/v1/scene_pb";
+import { AccuracySection } from "./accuracy_section";
 import { CameraSection } from "./camera_section";
 import { Choice, Section, Slider, Switch } from "./controls";
 import { CumulusControls } from "./cumulus_controls";
@@ -71,6 +72,7 @@ export function Panel({ page }: { page: Page }) {
         <CameraSection page={page} />
         <SunSection state={state} />
         <FieldsSection state={state} />
+        <AccuracySection state={state} />
         <RenderingSection state={state} />
         <PictureSection page={page} />
         <HelpSection />

@@ -36,11 +36,8 @@ export function Readout({ state }: { state: PageState }) {
         <span>{latency}</span>
         {frame !== undefined && (
           <span class={frame.refined ? "refined" : "coarse"}>
-            {frame.refinement === undefined ? (
-              <>{frame.refined ? "refined" : "coarse"}</>
-            ) : (
-              <RefinementBrief refinement={frame.refinement} />
-            )}
+            {frame.refinement !== undefined && <RefinementBrief refinement={frame.refinement} />}
+            {frame.refinement === undefined && (frame.refined ? "refined" : "coarse")}
           </span>
         )}
       </summary>

@@ -1,0 +1,140 @@
+#include "measure/priced_settings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
+#include "base/status.h"
+#include "measure/paths.h"
+
+namespace thunderhead::measure {
+namespace {
+
+using Cells = std::vector<absl::string_view>;
+
+constexpr std::array<absl::string_view, 8> kNeeded = {
+    "renderer",    "mode",         "transport",    "slices",
+    "image_scale", "jpeg_quality", "milliseconds", "relative_rmse"};
+// Results that nothing is chosen by.
+constexpr std::array<absl::string_view, 4> kPassedOver = {"milliseconds_spread", "bytes",
+                                                          "relative_bias", "flip"};
+
+template <typename Names>
+bool IsIn(const Names& names, absl::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// Where each column is that is needed, in the order of kNeeded.
+absl::StatusOr<std::vector<std::size_t>> ColumnsOf(const Cells& names) {
+  for (const absl::string_view name : names) {
+    if (IsIn(kNeeded, name) || IsIn(kPassedOver, name)) continue;
+    return absl::InvalidArgumentError(absl::StrCat(
+        "its column '", name, "' is not known: this program cannot tell what its rows differ by"));
+  }
+  std::vector<std::size_t> columns;
+  for (const absl::string_view needed : kNeeded) {
+    const auto found = std::find(names.begin(), names.end(), needed);
+    if (found == names.end()) {
+      return absl::InvalidArgumentError(absl::StrCat("it has no column '", needed, "'"));
+    }
+    columns.push_back(static_cast<std::size_t>(found - names.begin()));
+  }
+  return columns;
+}
+
+template <typename Table, typename Value>
+bool ReadName(const Table& table, absl::string_view name, Value* value) {
+  const std::string_view wanted(name.data(), name.size());
+  const auto found = std::find_if(table.begin(), table.end(),
+                                  [&](const auto& named) { return named.name == wanted; });
+  if (found == table.end()) return false;
+  *value = found->value;
+  return true;
+}
+
+bool ReadNumber(absl::string_view text, double* value) {
+  return absl::SimpleAtod(text, value) && std::isfinite(*value) && *value >= 0.0;
+}
+
+// `cells` in the order of kNeeded.
+bool ReadRow(const Cells& cells, PricedSetting* row) {
+  TradeSetting& setting = row->setting;
+  return ReadName(kPaths, cells[0], &setting.renderer) &&
+         ReadName(kModes, cells[1], &setting.mode) &&
+         ReadName(kTransports, cells[2], &setting.transport) &&
+         absl::SimpleAtoi(cells[3], &setting.slices) && setting.slices > 0 &&
+         ReadNumber(cells[4], &setting.image_scale) && setting.image_scale > 0.0 &&
+         setting.image_scale <= 1.0 && absl::SimpleAtoi(cells[5], &setting.jpeg_quality) &&
+         ReadNumber(cells[6], &row->milliseconds) && row->milliseconds > 0.0 &&
+         ReadNumber(cells[7], &row->relative_rmse);
+}
+
+absl::Status ReadSize(absl::string_view comment, glm::ivec2* size_px) {
+  if (!absl::ConsumePrefix(&comment, "# size: ")) return absl::OkStatus();
+  const std::pair<absl::string_view, absl::string_view> size = absl::StrSplit(comment, 'x');
+  const bool read = absl::SimpleAtoi(size.first, &size_px->x) &&
+                    absl::SimpleAtoi(size.second, &size_px->y) && size_px->x > 0 && size_px->y > 0;
+  if (read) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat("its size '", comment, "' is not WIDTHxHEIGHT"));
+}
+
+void KeepCommonestJpegQuality(std::vector<PricedSetting>* rows) {
+  std::map<int, std::size_t> counts;
+  for (const PricedSetting& row : *rows) ++counts[row.setting.jpeg_quality];
+  const auto fewer = [](const auto& a, const auto& b) { return a.second < b.second; };
+  const int commonest = std::max_element(counts.begin(), counts.end(), fewer)->first;
+  const auto other = [&](const PricedSetting& row) {
+    return row.setting.jpeg_quality != commonest;
+  };
+  rows->erase(std::remove_if(rows->begin(), rows->end(), other), rows->end());
+}
+
+}  // namespace
+
+absl::StatusOr<PricedSettings> ReadPricedSettings(std::string_view text) {
+  PricedSettings table;
+  std::vector<std::size_t> columns;
+  std::size_t column_count = 0;
+  const Cells lines = absl::StrSplit(absl::string_view(text.data(), text.size()), '\n');
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const absl::string_view line = absl::StripSuffix(lines[i], "\r");
+    if (line.empty()) continue;
+    if (line.front() == '#') {
+      THUNDERHEAD_RETURN_IF_ERROR(ReadSize(line, &table.size_px));
+      continue;
+    }
+    const Cells cells = absl::StrSplit(line, ',');
+    if (columns.empty()) {
+      THUNDERHEAD_ASSIGN_OR_RETURN(columns, ColumnsOf(cells));
+      column_count = cells.size();
+      continue;
+    }
+    Cells needed;
+    for (const std::size_t column : columns) {
+      if (cells.size() == column_count) needed.push_back(cells[column]);
+    }
+    PricedSetting row;
+    if (needed.empty() || !ReadRow(needed, &row)) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("its line ", i + 1, ", '", line, "', is not a row of ",
+                       absl::StrJoin(kNeeded, ", "), " that this program knows"));
+    }
+    table.rows.push_back(row);
+  }
+  if (table.size_px.x == 0) {
+    return absl::InvalidArgumentError("it does not say its pictures' size ('# size: 160x107')");
+  }
+  if (table.rows.empty()) return absl::InvalidArgumentError("it has no rows");
+  KeepCommonestJpegQuality(&table.rows);
+  return table;
+}
+
+}  // namespace thunderhead::measure

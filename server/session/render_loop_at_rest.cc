@@ -1,0 +1,145 @@
+// The parts of the render loop that are about what a scene asks for beyond being drawn: a setting
+// to be decided and checked, a truth to be refined.
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "base/status.h"
+#include "session/render_loop.h"
+
+namespace thunderhead::session {
+namespace {
+
+std::vector<physics::Hydrometeor> DrawnFields(const scene::Scene& scene,
+                                              const volume::HydrometeorFields& fields) {
+  std::vector<physics::Hydrometeor> drawn;
+  for (const volume::HydrometeorField& field : fields.fields) {
+    const scene::FieldParameters& look = scene.fields[physics::IndexOf(field.hydrometeor)];
+    if (!look.visible || look.scale <= 0.0F || field.concentration_kg_per_m3.empty()) continue;
+    drawn.push_back(field.hydrometeor);
+  }
+  return drawn;
+}
+
+}  // namespace
+
+std::optional<NewestScene> RenderLoop::Decide(Session& session, Track& track,
+                                              const NewestScene& shown) {
+  if (!track.decided.has_value() || track.decided->revision != shown.revision) {
+    std::optional<measure::TradeSetting> current;
+    if (track.decided.has_value() && track.decided->scene != nullptr) {
+      const scene::Scene& before = *track.decided->scene;
+      const bool alike = before.accuracy == shown.scene->accuracy &&
+                         before.camera.index() == shown.scene->camera.index();
+      if (alike) current = SettingOf(before);
+    }
+    Decided decided;
+    decided.revision = shown.revision;
+    auto scene = offers_.Decide(*shown.scene, current);
+    if (scene.ok()) decided.scene = std::make_shared<const scene::Scene>(*std::move(scene));
+    track.decided = std::move(decided);
+    if (!scene.ok()) Fail(session, track, shown.revision, scene.status());
+  }
+  if (track.decided->scene == nullptr) return std::nullopt;
+  return NewestScene{shown.revision, track.decided->scene, shown.changed_at};
+}
+
+RenderLoop::Outcome RenderLoop::Check(const std::shared_ptr<Session>& session, Track& track,
+                                      const NewestScene& asked) {
+  // Prices are learnt as frames are drawn; after these the times are known, or do not settle.
+  constexpr int kMostDecidedAgain = 3;
+  Decided& decided = *track.decided;
+  if (std::holds_alternative<std::monostate>(asked.scene->accuracy) || decided.settled) return {};
+  const Clock::time_point settled_at = asked.changed_at + options_.targets.settle_delay;
+  if (Clock::now() < settled_at) return {false, settled_at};
+  const scene::Rendering& rendering = decided.scene->rendering;
+  const bool checkable = HasSlices(rendering.renderer) && rendering.slices >= 2;
+  if (!std::exchange(decided.checked, true) && checkable) {
+    DrawChecked(session, track, asked.revision);
+    return {true, std::nullopt};
+  }
+  const measure::TradeSetting current = SettingOf(*decided.scene);
+  auto again = offers_.Decide(*asked.scene, current);
+  if (again.ok() && SettingOf(*again) != current && decided.decided_again < kMostDecidedAgain) {
+    decided.scene = std::make_shared<const scene::Scene>(*std::move(again));
+    decided.checked = false;
+    ++decided.decided_again;
+    track.planner.Again();
+    return {false, Clock::now()};
+  }
+  decided.settled = true;
+  return {};
+}
+
+void RenderLoop::DrawChecked(const std::shared_ptr<Session>& session, Track& track,
+                             std::uint64_t revision) {
+  const std::shared_ptr<const scene::Scene> scene = track.decided->scene;
+  auto checked = source_->DrawChecked(*scene, track.fields);
+  last_drawn_.reset();
+  if (!checked.ok()) return Fail(*session, track, revision, checked.status());
+  last_drawn_ = LastDrawn{*scene, FrameQuality{}};
+  DisplayFrame& frame = checked->frame;
+  double total_ms = 0.0;
+  for (const StageCost& cost : frame.stages) total_ms += cost.milliseconds;
+  if (const auto view_ms = ViewMs(total_ms, frame.stages); view_ms.has_value()) {
+    offers_.Observe(*scene, *view_ms);
+  }
+  frame.accuracy = offers_.Report(*scene, {}, checked->discretisation_error);
+  Send(track, {session, revision, *scene, true, std::move(frame), std::nullopt});
+}
+
+void RenderLoop::EndTrace(const std::string& session_id, Track& track, const scene::Scene& newest) {
+  if (!track.traced.has_value()) return;
+  if (newest.rendering.renderer != scene::Renderer::kReference) {
+    tracer_->Forget(session_id);
+    track.traced.reset();
+  } else if (scene::FirstDirtyStage(*track.traced->shown.scene, newest) < scene::Stage::kTone) {
+    tracer_->Stop(session_id);
+    track.traced.reset();
+  }
+}
+
+absl::StatusOr<bool> RenderLoop::Trace(const std::string& session_id, Track& track,
+                                       const NewestScene& shown) {
+  if (!track.traced.has_value()) {
+    if (track.untraceable_revision == shown.revision) return false;
+    track.traced = Traced{shown, nullptr};
+    THUNDERHEAD_RETURN_IF_ERROR(tracer_->Trace(session_id, shown.scene, track.fields));
+    return false;
+  }
+  Traced& traced = *track.traced;
+  // Another exposure shows what was traced so far in another light.
+  bool news = traced.picture != nullptr && shown.revision > traced.shown.revision;
+  traced.shown = shown;
+  if (auto taken = tracer_->Take(session_id); taken.has_value()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(traced.picture, *std::move(taken));
+    news = true;
+  }
+  return news;
+}
+
+RenderLoop::Outcome RenderLoop::ShowTraced(const std::shared_ptr<Session>& session, Track& track,
+                                           const NewestScene& shown) {
+  const auto fail = [&](const absl::Status& why) -> Outcome {
+    tracer_->Forget(session->id());
+    track.traced.reset();
+    track.untraceable_revision = shown.revision;
+    Fail(*session, track, shown.revision, why);
+    return {};
+  };
+  const absl::StatusOr<bool> news = Trace(session->id(), track, shown);
+  if (!news.ok()) return fail(news.status());
+  track.planner.GiveUp(shown.revision);
+  if (!*news) return {};
+  const TruthPicture& traced = *track.traced->picture;
+  auto picture = source_->Tone(traced.picture, shown.scene->display);
+  if (!picture.ok()) return fail(picture.status());
+  picture->stages.insert(picture->stages.begin(), {"trace", traced.trace_ms});
+  picture->modelled.renderer = scene::Renderer::kReference;
+  picture->modelled.fields = DrawnFields(*shown.scene, *track.fields);
+  Send(track, {session, shown.revision, *shown.scene, traced.full_size, *std::move(picture),
+               traced.refinement});
+  return {true, std::nullopt};
+}
+
+}  // namespace thunderhead::session

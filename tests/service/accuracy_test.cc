@@ -1,0 +1,160 @@
+// Sessions and pictures that ask for an accuracy or a speed, on a made-up table and machine.
+#include <algorithm>
+#include <cmath>
+#include <thread>
+#include <tuple>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/service/fake_service.h"
+
+namespace thunderhead::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using Messages = std::vector<v1::WatchFramesResponse>;
+using Stub = v1::ThunderheadService::Stub;
+
+// 64 x 36 pixels and 100 slices are 0.23 million samples.
+constexpr double kMegaSamplesAt100Slices = 64 * 36 * 100 * 1e-6;
+
+session::OfferTables Tables() {
+  measure::PricedSettings table;
+  table.size_px = {64, 36};
+  measure::TradeSetting setting;
+  for (const auto& [slices, milliseconds, error] :
+       {std::tuple{25, 5.0, 0.4}, std::tuple{50, 10.0, 0.3}, std::tuple{100, 20.0, 0.2}}) {
+    setting.slices = slices;
+    table.rows.push_back({setting, milliseconds, error});
+  }
+  session::OfferTables tables;
+  tables.fill(table);
+  tables[1] = absl::FailedPreconditionError("no accuracy can be offered for spotter views");
+  return tables;
+}
+
+class AccuracyTest : public ::testing::Test {
+ protected:
+  static service::ServerOptions Options() {
+    service::ServerOptions options;
+    options.render_loop.offer_tables = Tables;
+    return options;
+  }
+
+  static v1::Scene WithMaxError(float error) {
+    v1::Scene scene = SmallScene();
+    scene.mutable_accuracy()->set_max_error(error);
+    return scene;
+  }
+  static v1::Scene WithMaxMilliseconds(float milliseconds) {
+    v1::Scene scene = SmallScene();
+    scene.mutable_accuracy()->set_max_milliseconds(milliseconds);
+    return scene;
+  }
+
+  // A frame at rest with that many slices.
+  static bool AwaitChecked(Watcher& watcher, std::uint64_t revision, std::uint32_t slices) {
+    return watcher.Await([=](const Messages& messages) {
+      return std::any_of(messages.begin(), messages.end(), [=](const auto& message) {
+        const v1::AccuracyReport& report = message.frame().accuracy();
+        return message.frame().scene_revision() == revision && report.slices() == slices &&
+               report.has_discretisation_error();
+      });
+    });
+  }
+
+  FakeService service_{Options()};
+};
+
+TEST_F(AccuracyTest, EveryFrameSaysItsSettingAndError) {
+  const std::string id = service_.Open(WithMaxError(0.35F));
+  Watcher watcher(service_.stub(), id);
+  ASSERT_TRUE(AwaitChecked(watcher, 1, 50));
+  for (const v1::WatchFramesResponse& message : watcher.Messages()) {
+    const v1::AccuracyReport& report = message.frame().accuracy();
+    EXPECT_EQ(report.renderer(), v1::RENDERER_LIGHT_VOLUME);
+    EXPECT_EQ(report.mode(), v1::MODE_PER_FIELD_PHASE_TRANSLUCENT);
+    EXPECT_EQ(report.transport(), v1::TRANSPORT_CONSISTENT);
+    EXPECT_GT(report.estimated_error(), 0.0F);
+    EXPECT_TRUE(report.has_expected_milliseconds());
+    EXPECT_EQ(report.unmet(), "");
+  }
+  const v1::AccuracyReport report = watcher.NewestFrame().accuracy();
+  EXPECT_EQ(report.slices(), 50U);
+  EXPECT_EQ(report.model_error(), 0.3F);
+  // The fake's frames differ by one over their slices.
+  EXPECT_FLOAT_EQ(report.discretisation_error(), 0.02F);
+  EXPECT_FLOAT_EQ(report.estimated_error(), std::hypot(0.3F, 0.02F));
+  EXPECT_EQ(watcher.NewestFrame().modelled().slices(), 50U);
+  EXPECT_EQ(service_.machine->checked, 1);
+}
+
+TEST_F(AccuracyTest, UnreachableErrorsGetTheNearestAndSaySo) {
+  Watcher watcher(service_.stub(), service_.Open(WithMaxError(0.01F)));
+  ASSERT_TRUE(watcher.AwaitFrame(1, true));
+  const v1::AccuracyReport report = watcher.NewestFrame().accuracy();
+  EXPECT_EQ(report.slices(), 100U);
+  EXPECT_THAT(report.unmet(), HasSubstr("out of reach for orbit views; the nearest is 0.2"));
+}
+
+TEST_F(AccuracyTest, TimesAreCorrectedByWhatThisMachineTakes) {
+  // Four times as long as the table says; it is found out while the view rests.
+  service_.machine->ms_per_mega_sample = 80.0 / kMegaSamplesAt100Slices;
+  const std::string id = service_.Open(WithMaxMilliseconds(22.0F));
+  Watcher watcher(service_.stub(), id);
+  ASSERT_TRUE(AwaitChecked(watcher, 1, 25));
+  const v1::AccuracyReport report = watcher.NewestFrame().accuracy();
+  EXPECT_EQ(report.slices(), 25U);
+  EXPECT_NEAR(report.expected_milliseconds(), 20.0, 6.0);
+  const std::vector<FakeMachine::Drawn> log = service_.machine->Log();
+  EXPECT_TRUE(std::any_of(log.begin(), log.end(), [](const FakeMachine::Drawn& drawn) {
+    return drawn.scene.rendering.slices == 100;
+  }));
+}
+
+TEST_F(AccuracyTest, ChangesKeepTheSettingAndAnotherRequestChangesIt) {
+  const std::string id = service_.Open(WithMaxError(0.35F));
+  Watcher watcher(service_.stub(), id);
+  ASSERT_TRUE(AwaitChecked(watcher, 1, 50));
+  v1::Scene turned = WithMaxError(0.35F);
+  turned.mutable_camera()->mutable_orbit()->set_azimuth_deg(10.0F);
+  std::uint64_t revision = service_.Update(id, turned);
+  ASSERT_TRUE(watcher.AwaitFrame(revision, true));
+  EXPECT_EQ(watcher.NewestFrame().accuracy().slices(), 50U);
+  revision = service_.Update(id, WithMaxError(0.25F));
+  ASSERT_TRUE(watcher.AwaitFrame(revision, true));
+  EXPECT_EQ(watcher.NewestFrame().accuracy().slices(), 100U);
+  // Without a request the scene's own setting is drawn, and what the table knows is told.
+  revision = service_.Update(id, SmallScene());
+  ASSERT_TRUE(watcher.AwaitFrame(revision, true));
+  EXPECT_EQ(watcher.NewestFrame().modelled().slices(), 16U);
+  EXPECT_EQ(watcher.NewestFrame().accuracy().model_error(), 0.4F);
+}
+
+TEST_F(AccuracyTest, AViewWithoutATableIsAProblemOnce) {
+  v1::Scene scene = WithMaxError(0.35F);
+  scene.mutable_camera()->mutable_spotter();
+  const std::string id = service_.Open(scene);
+  Watcher watcher(service_.stub(), id);
+  ASSERT_TRUE(watcher.Await([](const Messages& messages) { return !messages.empty(); }));
+  EXPECT_THAT(watcher.Messages().front().problem().message(), HasSubstr("spotter views"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_EQ(watcher.Messages().size(), 1U);
+  EXPECT_TRUE(watcher.AwaitFrame(service_.Update(id, WithMaxError(0.35F)), true));
+}
+
+TEST_F(AccuracyTest, PicturesAskToo) {
+  v1::RenderImageRequest request;
+  *request.mutable_scene() = WithMaxError(0.35F);
+  v1::RenderImageResponse response;
+  const grpc::Status status = Call(service_.stub(), &Stub::RenderImage, request, &response);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(response.modelled().slices(), 50U);
+  EXPECT_EQ(response.accuracy().slices(), 50U);
+  EXPECT_EQ(response.accuracy().estimated_error(), 0.3F);
+  EXPECT_EQ(response.scene().accuracy().max_error(), 0.35F);
+}
+
+}  // namespace
+}  // namespace thunderhead::testing
