@@ -169,6 +169,7 @@ export class FakeService {
       waiting: session.newest,
       wake: undefined,
     };
+    let told = 0n;
     session.viewers.set(viewer.id, viewer);
     const wake = () => viewer.wake?.();
     signal.addEventListener("abort", wake);
@@ -179,7 +180,10 @@ export class FakeService {
           viewer.waiting = undefined;
           viewer.sent.push(waiting.event.value.sequence);
           this.mostUnacknowledged = Math.max(this.mostUnacknowledged, viewer.sent.length);
-          yield { ...waiting, viewerId: viewer.id };
+          const news = session.revision > told;
+          told = session.revision;
+          const scene = news ? session.scene : undefined;
+          yield { ...waiting, viewerId: viewer.id, scene, sceneRevision: news ? told : 0n };
         } else {
           await new Promise<void>((resolve) => {
             viewer.wake = resolve;

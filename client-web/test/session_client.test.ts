@@ -23,6 +23,7 @@ function setUp(joined?: string) {
     streams: [] as string[],
     connections: [] as Connection[],
     frames: [] as Frame[],
+    scenes: [] as { scene: Scene; revision: bigint }[],
     refused: [] as string[],
     scene: create(SceneSchema, { timeIndex: 2 }) as Scene,
     acknowledge: true,
@@ -35,6 +36,7 @@ function setUp(joined?: string) {
       opened: (session) => seen.opened.push(session),
       streaming: (id) => seen.streams.push(id),
       connection: (connection) => seen.connections.push(connection),
+      scene: (scene, revision) => seen.scenes.push({ scene, revision }),
       frame: (frame) => {
         seen.frames.push(frame);
         if (seen.acknowledge) client.acknowledge(frame.sequence);
@@ -90,6 +92,19 @@ describe("the session client", () => {
     expect(seen.frames).toHaveLength(3);
     expect(seen.frames[2]?.sceneRevision).toBe(6n);
     expect(service.mostUnacknowledged).toBe(2);
+  });
+
+  it("hands on the session's scene once, and again after a change", async () => {
+    const { seen, client } = start();
+    await pass(300);
+    expect(seen.scenes).toHaveLength(1);
+    expect(seen.scenes[0]?.scene.stormId).toBe("supercell");
+    expect(seen.scenes[0]?.revision).toBe(1n);
+    await client.updateScene(create(SceneSchema, { timeIndex: 3 }));
+    await pass(300);
+    expect(seen.scenes).toHaveLength(2);
+    expect(seen.scenes[1]?.scene.timeIndex).toBe(3);
+    expect(seen.scenes[1]?.revision).toBe(2n);
   });
 
   it("tells a scene that is refused from one that is lost", async () => {
@@ -168,6 +183,7 @@ describe("the session client", () => {
         opened: () => expect.unreachable("the guest opened a session"),
         streaming: () => undefined,
         connection: () => undefined,
+        scene: () => undefined,
         frame: (frame) => guestFrames.push(frame),
         problem: () => undefined,
       },

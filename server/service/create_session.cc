@@ -10,7 +10,7 @@ namespace {
 absl::Status Open(Engine& engine, v1::CreateSessionResponse& response) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto session, engine.sessions.Create());
   const std::uint64_t revision = session->TakeRevision();
-  session->Show(revision, ToScene(response.scene()));
+  session->Show(revision, ToScene(response.scene()), response.scene().SerializeAsString());
   response.set_session_id(session->id());
   response.set_scene_revision(revision);
   return absl::OkStatus();

@@ -24,7 +24,7 @@ grpc::ServerUnaryReactor* UpdateScene(Engine& engine, grpc::CallbackServerContex
   response->set_scene_revision(revision);
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   FrameThen(engine, *scene, [=, session = *session](const absl::Status& framed) {
-    if (framed.ok()) session->Show(revision, ToScene(*scene));
+    if (framed.ok()) session->Show(revision, ToScene(*scene), scene->SerializeAsString());
     reactor->Finish(ToGrpcStatus(framed));
   });
   return reactor;

@@ -97,11 +97,23 @@ class FrameStream : public Reactor,
     } else {
       ToMessage(std::get<session::Problem>(event), *response_.mutable_problem());
     }
+    SetScene();
+  }
+
+  void SetScene() {
+    response_.clear_scene();
+    response_.clear_scene_revision();
+    const std::optional<session::NewestScene> newest = session_->Newest();
+    if (!newest.has_value() || newest->revision == told_revision_) return;
+    told_revision_ = newest->revision;
+    response_.set_scene_revision(newest->revision);
+    if (!response_.mutable_scene()->ParseFromString(*newest->words)) response_.clear_scene();
   }
 
   const std::shared_ptr<session::Session> session_;
   std::shared_ptr<FrameStream> held_by_grpc_;
   v1::WatchFramesResponse response_;
+  std::uint64_t told_revision_ = 0;  // of the scene told last; used as `response_` is
   std::mutex mutex_;
   std::uint64_t viewer_id_ = 0;
   bool writing_ = false;

@@ -33,11 +33,12 @@ std::uint64_t Session::TakeRevision() {
   return ++revision_count_;
 }
 
-void Session::Show(std::uint64_t revision, scene::Scene scene) {
+void Session::Show(std::uint64_t revision, scene::Scene scene, std::string words) {
   {
     const std::lock_guard lock(mutex_);
     if (newest_.has_value() && newest_->revision > revision) return;
-    newest_ = {revision, std::make_shared<const scene::Scene>(std::move(scene)), Clock::now()};
+    newest_ = {revision, std::make_shared<const scene::Scene>(std::move(scene)), Clock::now(),
+               std::make_shared<const std::string>(std::move(words))};
   }
   on_work_();
 }

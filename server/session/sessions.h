@@ -28,6 +28,8 @@ struct NewestScene {
   std::uint64_t revision = 0;
   std::shared_ptr<const scene::Scene> scene;
   Clock::time_point changed_at;
+  // The scene in the words of the service, which tells it to viewers; nothing here reads them.
+  std::shared_ptr<const std::string> words;
 };
 
 class Session {
@@ -42,7 +44,7 @@ class Session {
   // complete, so that the update that arrived last wins.
   std::uint64_t TakeRevision();
   // Puts the scene into the mailbox unless a newer revision is there.
-  void Show(std::uint64_t revision, scene::Scene scene);
+  void Show(std::uint64_t revision, scene::Scene scene, std::string words = "");
   std::optional<NewestScene> Newest() const;
 
   void Touch();

@@ -109,6 +109,14 @@ async function slide(fingers, from, to) {
   await send("touchEnd", []);
 }
 
+// Types a number into the text of a slider, which may lie in a folded part.
+async function setNumber(of, name, value) {
+  await of.getByTestId(`${name}-number`).evaluate((input, text) => {
+    input.value = text;
+    input.dispatchEvent(new Event("change", { bubbles: true }));
+  }, String(value));
+}
+
 const screenshot = (name, of = page) => of.screenshot({ path: `${OUTPUT}${name}.png` });
 
 test("a storm is on the canvas, not a blank", async () => {
@@ -354,7 +362,24 @@ test("a link brings another viewer into the session, who sees it turn", async ()
       host.azimuth,
       { timeout: PICTURE_TIMEOUT_MS },
     );
+    // The guest's controls show what the host has set, before and after the guest came; and a change of the guest's
+    // leaves the rest of the scene as the host set it.
+    const exposure = guest.getByTestId("exposure-number");
+    await changing(() => setNumber(page, "turbidity", 2.5));
+    await changing(() => setNumber(page, "exposure", 0.7));
+    await rested(guest);
+    assert.equal(await exposure.inputValue(), "0.7");
+    assert.equal(await guest.getByTestId("turbidity-number").inputValue(), "2.5");
+    await changing(() => setNumber(guest, "ground-albedo", 0.4));
+    await rested(guest);
+    assert.equal(await page.getByTestId("ground-albedo-number").inputValue(), "0.4");
+    assert.equal(await page.getByTestId("turbidity-number").inputValue(), "2.5");
     await screenshot("12-guest", guest);
+    await changing(async () => {
+      await setNumber(page, "exposure", 0);
+      await setNumber(page, "turbidity", 1.5);
+      await setNumber(page, "ground-albedo", 0.2);
+    });
   } finally {
     await guest.close();
   }

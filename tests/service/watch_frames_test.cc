@@ -58,6 +58,40 @@ TEST(WatchFramesTest, FrameShowsTheSceneAndSaysWhatItCost) {
   ExpectPainted(frame, RedOf(2), GreenOf(180.0));
 }
 
+TEST(WatchFramesTest, WhoJoinsIsToldTheWholeSceneAndThenEveryChange) {
+  FakeService service;
+  v1::Scene scene = Facing(180.0F);
+  scene.mutable_display()->set_exposure_ev(1.5F);
+  const std::string id = service.Open(scene);
+  Watcher host(service.stub(), id);
+  ASSERT_TRUE(host.AwaitFrame(1, true));
+  scene.mutable_sky()->set_turbidity(3.0F);
+  const std::uint64_t revision = service.Update(id, scene);
+  ASSERT_TRUE(host.AwaitFrame(revision, true));
+  Watcher guest(service.stub(), id);
+  ASSERT_TRUE(guest.AwaitFrame(revision, true));
+  for (Watcher* watcher : {&host, &guest}) {
+    v1::WatchFramesResponse told;
+    std::uint64_t before = 0;
+    for (const v1::WatchFramesResponse& message : watcher->Messages()) {
+      if (!message.has_scene()) continue;
+      EXPECT_GT(message.scene_revision(), before);
+      EXPECT_GE(message.scene_revision(), message.frame().scene_revision());
+      before = message.scene_revision();
+      told = message;
+    }
+    EXPECT_TRUE(watcher->Messages().front().has_scene());
+    EXPECT_EQ(told.scene_revision(), revision);
+    EXPECT_EQ(told.scene().sky().turbidity(), 3.0F);
+    EXPECT_EQ(told.scene().display().exposure_ev(), 1.5F);
+    EXPECT_EQ(told.scene().sun().azimuth_deg(), 180.0F);
+    // Complete, as CreateSession answers.
+    EXPECT_EQ(told.scene().storm_id(), "anvil");
+    EXPECT_EQ(told.scene().rendering().renderer(), v1::RENDERER_LIGHT_VOLUME);
+    EXPECT_TRUE(told.scene().camera().orbit().has_distance_m());
+  }
+}
+
 TEST(WatchFramesTest, NothingIsDrawnWithoutAViewer) {
   FakeService service;
   const std::string id = service.Open(SmallScene());

@@ -32,6 +32,8 @@ export interface SessionListener {
   // A stream has begun; its frames are counted anew and the session takes scenes again.
   streaming(sessionId: string): void;
   connection(connection: Connection): void;
+  // The session's whole scene at a revision, as it is or as somebody has just made it.
+  scene(scene: Scene, revision: bigint): void;
   frame(frame: Frame): void;
   problem(problem: Problem): void;
 }
@@ -221,6 +223,9 @@ export class SessionClient {
           this.#reopened = false;
           this.#listener.connection({ kind: "live" });
           this.#listener.streaming(sessionId);
+        }
+        if (message.scene !== undefined) {
+          this.#listener.scene(message.scene, message.sceneRevision);
         }
         if (message.event.case === "frame") this.#listener.frame(message.event.value);
         if (message.event.case === "problem") this.#listener.problem(message.event.value);

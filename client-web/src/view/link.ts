@@ -1,5 +1,5 @@
-// Links to a session: ?session=ID names it, #scene=... carries the scene for the one who joins to edit, since
-// the server tells nobody a session's scene. The fragment stays in the browser.
+// Links to a session: ?session=ID names it, #scene=... carries the scene for a session of one's own, should that
+// one have ended. The fragment stays in the browser.
 import { sceneFromUrlText, sceneToUrlText } from "../core/scene";
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
 

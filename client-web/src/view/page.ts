@@ -49,6 +49,10 @@ export class Page implements SessionListener {
   #setsOutput: boolean;
   #shown: Frame | undefined;
   #problemRevision = 0n;
+  // The newest scene that the server told of, until it is known whether it is ours.
+  #told: { scene: Scene; revision: bigint } | undefined;
+  // The newest scene by another that the controls show.
+  #adoptedRevision = -1n;
   #describeTimer: ReturnType<typeof setTimeout> | undefined;
   #running = false;
 
@@ -190,6 +194,8 @@ export class Page implements SessionListener {
     const before = this.state.session.value;
     this.state.session.value = { id: session.id, shared: false };
     this.#ledger.startSession();
+    this.#adoptedRevision = -1n;
+    this.#told = undefined;
     this.#ledger.sent(session.asked.timeIndex ?? 0, this.#now()).accepted(session.revision);
     if (this.state.scene.value === session.asked) this.state.adoptScene(session.completed);
     this.#sender.start(session.asked);
@@ -217,6 +223,11 @@ export class Page implements SessionListener {
   connection(connection: PageState["connection"]["value"]): void {
     this.state.connection.value = connection;
     if (connection.kind === "lost") this.#sender.stop();
+  }
+
+  scene(scene: Scene, revision: bigint): void {
+    this.#told = { scene, revision };
+    this.#adoptTold();
   }
 
   frame(frame: Frame): void {
@@ -306,12 +317,22 @@ export class Page implements SessionListener {
     });
   }
 
+  // Another viewer's scene takes the place of ours once the server has answered all that this page has sent.
+  #adoptTold(): void {
+    const told = this.#told;
+    if (told === undefined || this.#sender.unsettled) return;
+    this.#told = undefined;
+    if (told.revision <= this.#ledger.newestAccepted) return;
+    this.#adoptedRevision = told.revision;
+    this.state.adoptScene(told.scene);
+  }
+
   // A frame says where the camera stands; it counts once it shows all that this page has sent.
   #adoptCamera(): void {
     const frame = this.#shown;
     if (frame === undefined || this.#sender.unsettled) return;
     const ours = this.#ledger.newestAccepted;
-    if (frame.sceneRevision < ours) return;
+    if (frame.sceneRevision < ours || frame.sceneRevision < this.#adoptedRevision) return;
     this.state.adoptCamera(frame.camera, frame.sceneRevision > ours);
   }
 
@@ -341,6 +362,7 @@ export class Page implements SessionListener {
     const now = this.#now();
     // The frame may have come before the reply that says which revision it shows.
     if (poseOfCamera(this.state.scene.value.camera) === undefined) this.#adoptCamera();
+    this.#adoptTold();
     this.state.pace.value = {
       framesPerSecond: this.#rate.framesPerSecond(now),
       bytesPerSecond: this.#rate.bytesPerSecond(now),
