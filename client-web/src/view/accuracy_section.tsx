@@ -25,6 +25,7 @@ const RENDERER_NAMES: Readonly<Partial<Record<Renderer, string>>> = {
   [Renderer.LIGHT_VOLUME]: "light volume",
   [Renderer.HALF_ANGLE]: "half-angle slices",
   [Renderer.METABALL]: "metaballs",
+  [Renderer.CUMULUS]: "cumulus surface",
 };
 
 function accuracyOf(goal: Goal): Accuracy | undefined {
