@@ -181,6 +181,28 @@ TEST(PathTracer, SingleScatteringByQuadrature) {
 
 // The thin limit with albedo 1: twice scattered light is of relative order of the optical depth,
 // 0.004 along the slanted paths.
+// With one scattering allowed: the integral over a slab, F0 = 1.
+TEST(PathTracer, LightScatteredOnceIsTheClosedForm) {
+  constexpr double kDepth = 2.0;
+  constexpr double kAsymmetry = 0.5;
+  const auto slab = Slab(kDepth, kAsymmetry, 1.0);
+  for (const double mu : {0.4, 1.0}) {
+    SCOPED_TRACE(mu);
+    const glm::dvec3 down(std::sqrt(1.0 - mu * mu), 0.0, -mu);
+    PathTracerOptions options;
+    options.most_scatterings = 1;
+    PathTracer tracer(slab, SunOnly(SunAt(0.0)), OverTheTop(*slab, down), {16, 16}, options);
+    RefineLimits limits;
+    limits.samples_per_pixel = 900;
+    tracer.Refine(limits, {}, {});
+    const double g = kAsymmetry;
+    const double phase = (1.0 - g * g) / std::pow(1.0 + g * g + 2.0 * g * mu, 1.5);
+    const double expected =
+        phase / (4.0 * std::numbers::pi) / (1.0 + mu) * -std::expm1(-kDepth * (1.0 / mu + 1.0));
+    ExpectAgrees(MeanOf(tracer.Snapshot(), 1), expected, 0.0, 2e-3 * expected);
+  }
+}
+
 TEST(PathTracer, ThinLimit) {
   const double depth = 1e-3;
   const auto slab = Slab(depth, 0.75, 1.0);
