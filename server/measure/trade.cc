@@ -88,6 +88,13 @@ std::vector<TradeSetting> DefaultSweep() {
       }
     }
   }
+  for (const auto mode :
+       {scene::Mode::kPerFieldPhaseTranslucent, scene::Mode::kUniformPhaseTranslucent}) {
+    for (const int slices : {32, 64, 128, 256, 512}) {
+      settings.push_back(
+          {scene::Renderer::kLightVolume, mode, scene::Transport::kDiffusion, slices, 1.0, 88});
+    }
+  }
   for (const auto transport : {scene::Transport::kConsistent, scene::Transport::kPaper}) {
     for (const int balls : {300, 1200, 3000, 10000}) {
       settings.push_back({scene::Renderer::kMetaball, scene::Mode::kPerFieldPhaseTranslucent,
