@@ -193,7 +193,7 @@ TEST(PathTracer, LightScatteredOnceIsTheClosedForm) {
     options.most_scatterings = 1;
     PathTracer tracer(slab, SunOnly(SunAt(0.0)), OverTheTop(*slab, down), {16, 16}, options);
     RefineLimits limits;
-    limits.samples_per_pixel = 900;
+    limits.samples_per_pixel = 4000;
     tracer.Refine(limits, {}, {});
     const double g = kAsymmetry;
     const double phase = (1.0 - g * g) / std::pow(1.0 + g * g + 2.0 * g * mu, 1.5);
