@@ -51,6 +51,10 @@ export class FakeService {
   mostUnacknowledged = 0;
   #count = 0;
   #viewers = 0n;
+  readonly #storms = [
+    { id: "supercell", title: "Supercell that is not there", timeCount: 4 },
+    { id: "single", title: "One time only", timeCount: 1 },
+  ];
 
   constructor(readonly draw: Draw) {}
 
@@ -63,12 +67,12 @@ export class FakeService {
         device: "software",
         maxSessions: 16,
       }),
-      listStorms: () => ({
-        storms: [
-          { id: "supercell", title: "Supercell that is not there", timeCount: 4 },
-          { id: "single", title: "One time only", timeCount: 1 },
-        ],
-      }),
+      listStorms: () => ({ storms: this.#storms }),
+      generateCloud: ({ seed }) => {
+        const storm = { id: `cloud-${seed ?? 1}`, title: "A cloud made up", timeCount: 1 };
+        this.#storms.push(storm);
+        return { storm };
+      },
       describeStorm: ({ stormId, timeIndex }) => ({ storm: describe(stormId, timeIndex) }),
       createSession: ({ scene }) => {
         const session = new Session(

@@ -156,7 +156,7 @@ absl::Status Fit(const Flags& flags) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckTime(*store, flags.storm, flags.time_index));
   THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(*store, flags.time_index));
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields,
-                               store->Get(store->Storms().front().id, flags.time_index, {}));
+                               store->Get(store->Storms().front()->id, flags.time_index, {}));
   THUNDERHEAD_ASSIGN_OR_RETURN(Target target, TargetOf(*fields, flags.field));
   const base::Stopwatch stopwatch;
   THUNDERHEAD_ASSIGN_OR_RETURN(clouds::FitResult fit,

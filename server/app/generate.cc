@@ -7,17 +7,14 @@
 #include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "app/commands.h"
 #include "app/interruption.h"
 #include "app/progress_bar.h"
 #include "base/status.h"
-#include "base/version.h"
-#include "clouds/generator.h"
+#include "clouds/cloud_file.h"
 #include "clouds/presets.h"
-#include "volume/cf_writer.h"
 
 namespace thunderhead::app {
 namespace {
@@ -122,35 +119,17 @@ absl::StatusOr<CloudShape> ShapeOf(const Flags& flags) {
   return shape;
 }
 
-std::string Parameters(const Flags& flags, const CloudShape& shape) {
-  constexpr const char* kInterpolations[] = {"linear", "cosine", "cubic"};
-  return absl::StrFormat(
-      "preset %s, seed %d, %d octaves, persistence %g, %s interpolation, feature size %g m, "
-      "threshold %g, dynamics %g, liquid water %g g/m3, %d ellipsoids",
-      flags.preset, flags.seed, shape.noise.octaves, shape.noise.persistence,
-      kInterpolations[static_cast<int>(shape.noise.interpolation)], shape.feature_m,
-      shape.threshold, shape.dynamics, 1e3 * shape.water_kg_per_m3, shape.ellipsoids.size());
-}
-
 absl::Status Generate(const Flags& flags) {
   if (!absl::EndsWithIgnoreCase(flags.output, ".nc")) {
     return absl::InvalidArgumentError(
         absl::StrCat("-o is '", flags.output, "'; its name must end in .nc"));
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(const CloudShape shape, ShapeOf(flags));
-  volume::CfCloud cloud;
-  cloud.grid = shape.grid;
-  cloud.title = flags.preset;
-  cloud.source = "thunderhead " + base::Version() + " generate";
-  cloud.comment = Parameters(flags, shape);
   const Interruption interruption;
-  {
-    ProgressBar bar("generating");
-    THUNDERHEAD_ASSIGN_OR_RETURN(
-        cloud.values, clouds::Generate(
-                          shape, [&bar](double share) { bar.Set(share); }, interruption.Token()));
-  }
-  return volume::WriteCfCloud(cloud, flags.output);
+  ProgressBar bar("generating");
+  return clouds::WriteGenerated(
+      shape, {flags.preset, flags.seed}, flags.output, [&bar](double share) { bar.Set(share); },
+      interruption.Token());
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ absl::Status Inspect(const Flags& flags) {
   spdlog::set_level(spdlog::level::warn);
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store,
                                OpenStorm(flags.storm));
-  const volume::StormInfo& storm = store->Storms().front();
+  const volume::StormInfo& storm = *store->Storms().front();
   THUNDERHEAD_RETURN_IF_ERROR(CheckTime(*store, flags.storm, flags.time_index));
   THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(*store, flags.time_index));
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, store->Get(storm.id, flags.time_index, {}));

@@ -25,25 +25,25 @@ absl::StatusOr<std::shared_ptr<volume::StormStore>> OpenStorm(const std::string&
   auto opened = volume::StormStore::Open({path}, options);
   if (!opened.ok()) return AsFileProblem(opened.status());
   std::shared_ptr<volume::StormStore> store = *std::move(opened);
-  const std::vector<volume::StormInfo>& storms = store->Storms();
+  const std::vector<const volume::StormInfo*> storms = store->Storms();
   if (storms.size() == 1) return store;
   const std::string names =
-      absl::StrJoin(storms, ", ", [](std::string* out, const volume::StormInfo& storm) {
-        absl::StrAppend(out, storm.files.front());
+      absl::StrJoin(storms, ", ", [](std::string* out, const volume::StormInfo* storm) {
+        absl::StrAppend(out, storm->files.front());
       });
   return absl::InvalidArgumentError(
       absl::StrCat(path, " holds ", storms.size(), " storms; name one of ", names));
 }
 
 absl::Status CheckTime(const volume::StormStore& store, const std::string& path, int time_index) {
-  const std::size_t times = store.Storms().front().times.size();
+  const std::size_t times = store.Storms().front()->times.size();
   if (time_index >= 0 && static_cast<std::size_t>(time_index) < times) return absl::OkStatus();
   return absl::InvalidArgumentError(
       absl::StrCat("--time is ", time_index, "; ", path, " has times 0 to ", times - 1));
 }
 
 absl::Status ReadWithProgress(volume::StormStore& store, int time_index) {
-  const volume::StormInfo& storm = store.Storms().front();
+  const volume::StormInfo& storm = *store.Storms().front();
   ProgressBar bar(absl::StrCat("reading ", storm.id));
   return AsFileProblem(
       store.Get(storm.id, time_index, [&bar](double share) { bar.Set(share); }).status());

@@ -29,7 +29,7 @@ struct Flags {
 
 absl::StatusOr<Fields> Read(volume::StormStore& store, int time_index) {
   THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(store, time_index));
-  return store.Get(store.Storms().front().id, time_index, {});
+  return store.Get(store.Storms().front()->id, time_index, {});
 }
 
 // The time asked for, or that with the most condensate.
@@ -41,7 +41,7 @@ absl::StatusOr<Fields> Choose(const Flags& flags) {
     return Read(*store, *flags.time_index);
   }
   Fields best;
-  for (std::size_t i = 0; i < store->Storms().front().times.size(); ++i) {
+  for (std::size_t i = 0; i < store->Storms().front()->times.size(); ++i) {
     THUNDERHEAD_ASSIGN_OR_RETURN(const Fields fields, Read(*store, static_cast<int>(i)));
     if (best == nullptr || measure::Condensate_kg(*fields) > measure::Condensate_kg(*best)) {
       best = fields;

@@ -72,7 +72,7 @@ absl::StatusOr<v1::RenderImageResponse> CallHere(const Flags& flags,
                                OpenStorm(flags.storm));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<service::Server> server,
                                StartLocalService(store, flags.device));
-  if (request.scene().time_index() < store->Storms().front().times.size()) {
+  if (request.scene().time_index() < store->Storms().front()->times.size()) {
     THUNDERHEAD_RETURN_IF_ERROR(
         ReadWithProgress(*store, static_cast<int>(request.scene().time_index())));
   }

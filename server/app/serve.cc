@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "app/address.h"
+#include "app/clouds_folder.h"
 #include "app/commands.h"
 #include "app/local_service.h"
 #include "base/status.h"
@@ -25,6 +26,7 @@ struct Flags {
   std::string grpc = "127.0.0.1:50051";
   std::string device = "auto";
   std::string page;
+  std::string clouds;
   std::vector<std::string> allowed_origins;
   double memory_budget_gib = 2.0;
 };
@@ -67,9 +69,16 @@ absl::Status Serve(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(Address grpc, ParseAddress("--grpc", flags.grpc));
   volume::StormStoreOptions store_options;
   store_options.byte_budget = static_cast<std::size_t>(flags.memory_budget_gib * (1 << 30));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const CloudsFolder clouds, CloudsFolder::Open(flags.clouds));
   THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<volume::StormStore> store,
                                volume::StormStore::Open(flags.data, store_options));
+  for (const std::string& file : clouds.Files()) {
+    if (const auto added = store->Add(file); !added.ok()) {
+      spdlog::warn("{} is left out: {}", file, std::string(added.status().message()));
+    }
+  }
   service::ServerOptions server_options;
+  server_options.clouds_folder = clouds.Path();
   server_options.address = ToString(grpc);
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<service::Server> server,
                                service::Server::Start(server_options, store, [&flags] {
@@ -112,6 +121,9 @@ Command AddServe(CLI::App& app) {
   serve->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();
   serve->add_option("--page", flags->page, "Folder of the built page");
+  serve->add_option("--clouds", flags->clouds,
+                    "Folder that generated clouds are kept in and served from; without it they go "
+                    "when the server ends");
   serve->add_option("--allow-origin", flags->allowed_origins,
                     "Origins of other sites whose pages may call");
   serve->add_option("--memory-budget", flags->memory_budget_gib, "GiB of storms kept in memory")

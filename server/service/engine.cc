@@ -15,11 +15,11 @@ namespace {
 // Enough names for a person to see a slip; a catalogue may hold thousands.
 constexpr std::size_t kMaxNamesListed = 10;
 
-std::string NamesOf(const std::vector<volume::StormInfo>& storms) {
+std::string NamesOf(const std::vector<const volume::StormInfo*>& storms) {
   const std::size_t listed = std::min(storms.size(), kMaxNamesListed);
   std::string names = absl::StrJoin(
       storms.begin(), storms.begin() + static_cast<std::ptrdiff_t>(listed), ", ",
-      [](std::string* out, const volume::StormInfo& storm) { out->append(storm.id); });
+      [](std::string* out, const volume::StormInfo* storm) { out->append(storm->id); });
   if (listed < storms.size()) absl::StrAppend(&names, " and ", storms.size() - listed, " more");
   return names;
 }
@@ -28,12 +28,13 @@ std::string NamesOf(const std::vector<volume::StormInfo>& storms) {
 
 absl::StatusOr<const volume::StormInfo*> FindStorm(const volume::StormStore& store,
                                                    const std::string& id) {
-  if (store.Storms().empty()) return absl::NotFoundError("the server holds no storm");
-  if (id.empty()) return &store.Storms().front();
+  const std::vector<const volume::StormInfo*> storms = store.Storms();
+  if (storms.empty()) return absl::NotFoundError("the server holds no storm");
+  if (id.empty()) return storms.front();
   const volume::StormInfo* storm = store.Find(id);
   if (storm != nullptr) return storm;
   return absl::NotFoundError(
-      absl::StrCat("no storm has the id '", id, "'; there is ", NamesOf(store.Storms())));
+      absl::StrCat("no storm has the id '", id, "'; there is ", NamesOf(storms)));
 }
 
 absl::Status CheckTime(const volume::StormInfo& storm, std::uint32_t time_index,

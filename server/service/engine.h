@@ -1,5 +1,5 @@
-// What the handlers work with: the storms, the sessions, the loop that draws, and threads for work
-// that blocks. Handlers run on gRPC's threads and must not block there.
+// What the handlers work with: the storms, the sessions, the loop that draws, threads for work
+// that blocks, and the folder for clouds. Handlers run on gRPC's threads and must not block there.
 #pragma once
 
 #include <functional>
@@ -9,6 +9,7 @@
 #include "absl/status/statusor.h"
 #include "base/executor.h"
 #include "base/wake_signal.h"
+#include "service/cloud_folder.h"
 #include "session/render_loop.h"
 #include "session/sessions.h"
 #include "thunderhead/v1/thunderhead.pb.h"
@@ -22,6 +23,7 @@ struct Engine {
   session::RenderLoop& loop;
   base::WakeSignal& wake;
   base::Executor& executor;
+  CloudFolder& clouds;
 };
 
 // The storm of that id, or the first for an empty id. NOT_FOUND names those there are.

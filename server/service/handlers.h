@@ -17,6 +17,9 @@ grpc::ServerUnaryReactor* ListStorms(Engine& engine, grpc::CallbackServerContext
 grpc::ServerUnaryReactor* DescribeStorm(Engine& engine, grpc::CallbackServerContext* context,
                                         const v1::DescribeStormRequest* request,
                                         v1::DescribeStormResponse* response);
+grpc::ServerUnaryReactor* GenerateCloud(Engine& engine, grpc::CallbackServerContext* context,
+                                        const v1::GenerateCloudRequest* request,
+                                        v1::GenerateCloudResponse* response);
 grpc::ServerUnaryReactor* CreateSession(Engine& engine, grpc::CallbackServerContext* context,
                                         const v1::CreateSessionRequest* request,
                                         v1::CreateSessionResponse* response);

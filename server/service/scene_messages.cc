@@ -368,6 +368,12 @@ void ToMessage(const session::Problem& problem, v1::Problem& message) {
   message.set_message(problem.message);
 }
 
+void ToMessage(const volume::StormInfo& storm, v1::StormSummary& message) {
+  message.set_id(storm.id);
+  message.set_title(storm.title);
+  message.set_time_count(static_cast<std::uint32_t>(storm.times.size()));
+}
+
 void ToMessage(const volume::StormInfo& storm, const volume::HydrometeorFields& fields,
                int time_index, v1::StormDescription& message) {
   message.set_id(storm.id);

@@ -32,6 +32,7 @@ void ToMessage(const session::AccuracyReport& report, v1::AccuracyReport& messag
 void ToMessage(const session::EncodedFrame& frame, v1::Frame& message);
 void ToMessage(const session::Problem& problem, v1::Problem& message);
 void ToMessage(const session::StageCost& cost, v1::StageCost& message);
+void ToMessage(const volume::StormInfo& storm, v1::StormSummary& message);
 void ToMessage(const volume::StormInfo& storm, const volume::HydrometeorFields& fields,
                int time_index, v1::StormDescription& message);
 

@@ -48,7 +48,8 @@ class RunningServer final : public Server {
   RunningServer(const ServerOptions& options, std::shared_ptr<volume::StormStore> store)
       : store_(std::move(store)),
         sessions_(options.sessions, [this] { wake_.Notify(); }),
-        executor_(kExecutorThreads, kMaxWaitingTasks) {}
+        executor_(kExecutorThreads, kMaxWaitingTasks),
+        clouds_(options.clouds_folder, *store_) {}
 
   ~RunningServer() override { RunningServer::Shutdown(); }
 
@@ -56,7 +57,8 @@ class RunningServer final : public Server {
                          const session::FrameSourceFactory& make_source) {
     THUNDERHEAD_ASSIGN_OR_RETURN(
         loop_, session::RenderLoop::Start(options, *store_, sessions_, wake_, make_source));
-    engine_ = std::make_unique<Engine>(Engine{*store_, sessions_, *loop_, wake_, executor_});
+    engine_ =
+        std::make_unique<Engine>(Engine{*store_, sessions_, *loop_, wake_, executor_, clouds_});
     service_ = std::make_unique<ThunderheadService>(*engine_);
     return absl::OkStatus();
   }
@@ -118,6 +120,7 @@ class RunningServer final : public Server {
   const std::shared_ptr<volume::StormStore> store_;
   session::Sessions sessions_;
   base::Executor executor_;
+  CloudFolder clouds_;
   std::unique_ptr<session::RenderLoop> loop_;
   std::unique_ptr<Engine> engine_;
   std::unique_ptr<ThunderheadService> service_;

@@ -17,7 +17,8 @@
 namespace thunderhead::service {
 
 struct ServerOptions {
-  std::string address;  // HOST:PORT, port 0 for a free one; empty listens nowhere
+  std::string address;        // HOST:PORT, port 0 for a free one; empty listens nowhere
+  std::string clouds_folder;  // of generated clouds; empty makes none
   session::SessionsOptions sessions;
   session::RenderLoopOptions render_loop;
 };

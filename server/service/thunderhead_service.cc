@@ -22,6 +22,12 @@ grpc::ServerUnaryReactor* ThunderheadService::DescribeStorm(grpc::CallbackServer
   return service::DescribeStorm(engine_, context, request, response);
 }
 
+grpc::ServerUnaryReactor* ThunderheadService::GenerateCloud(grpc::CallbackServerContext* context,
+                                                            const v1::GenerateCloudRequest* request,
+                                                            v1::GenerateCloudResponse* response) {
+  return service::GenerateCloud(engine_, context, request, response);
+}
+
 grpc::ServerUnaryReactor* ThunderheadService::CreateSession(grpc::CallbackServerContext* context,
                                                             const v1::CreateSessionRequest* request,
                                                             v1::CreateSessionResponse* response) {

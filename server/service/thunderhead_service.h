@@ -19,6 +19,9 @@ class ThunderheadService final : public v1::ThunderheadService::CallbackService 
   grpc::ServerUnaryReactor* DescribeStorm(grpc::CallbackServerContext* context,
                                           const v1::DescribeStormRequest* request,
                                           v1::DescribeStormResponse* response) override;
+  grpc::ServerUnaryReactor* GenerateCloud(grpc::CallbackServerContext* context,
+                                          const v1::GenerateCloudRequest* request,
+                                          v1::GenerateCloudResponse* response) override;
   grpc::ServerUnaryReactor* CreateSession(grpc::CallbackServerContext* context,
                                           const v1::CreateSessionRequest* request,
                                           v1::CreateSessionResponse* response) override;

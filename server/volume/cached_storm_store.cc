@@ -1,6 +1,7 @@
 #include "volume/cached_storm_store.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -13,11 +14,10 @@ namespace thunderhead::volume {
 
 CachedStormStore::CachedStormStore(std::vector<CataloguedStorm> storms,
                                    const StormStoreOptions& options)
-    : storms_(std::move(storms)),
-      options_(options),
-      cache_(options.byte_budget),
-      vertical_grids_(storms_.size()) {
-  for (const CataloguedStorm& storm : storms_) infos_.push_back(storm.info);
+    : options_(options),
+      storms_(std::make_move_iterator(storms.begin()), std::make_move_iterator(storms.end())),
+      vertical_grids_(storms_.size()),
+      cache_(options.byte_budget) {
   if (options_.read_ahead > 0) read_ahead_ = std::thread([this] { ReadAhead(); });
 }
 
@@ -30,25 +30,49 @@ CachedStormStore::~CachedStormStore() {
   if (read_ahead_.joinable()) read_ahead_.join();
 }
 
+std::vector<const StormInfo*> CachedStormStore::Storms() const {
+  const Lock lock(mutex_);
+  std::vector<const StormInfo*> infos;
+  for (const CataloguedStorm& storm : storms_) infos.push_back(&storm.info);
+  return infos;
+}
+
+absl::StatusOr<const StormInfo*> CachedStormStore::Add(const std::string& path) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<CataloguedStorm> found, FindStorms({path}));
+  CataloguedStorm& storm = found.front();
+  const Lock lock(mutex_);
+  const auto id_of = [](const CataloguedStorm& held) { return held.info.id; };
+  if (std::ranges::find(storms_, storm.info.id, id_of) != storms_.end()) {
+    return absl::AlreadyExistsError(absl::StrCat("cannot add ", path, ": there is a storm '",
+                                                 storm.info.id, "' already; rename the file"));
+  }
+  vertical_grids_.emplace_back();
+  return &storms_.emplace_back(std::move(storm)).info;
+}
+
 absl::StatusOr<TimeKey> CachedStormStore::KeyOf(std::string_view id, int time_index) const {
-  const auto at = std::ranges::find(infos_, id, &StormInfo::id);
-  if (at == infos_.end()) {
-    const auto append_id = [](std::string* out, const StormInfo& info) { out->append(info.id); };
+  const auto id_of = [](const CataloguedStorm& storm) { return storm.info.id; };
+  const auto at = std::ranges::find(storms_, id, id_of);
+  if (at == storms_.end()) {
+    const auto append_id = [](std::string* out, const CataloguedStorm& storm) {
+      out->append(storm.info.id);
+    };
     return absl::NotFoundError(absl::StrCat("there is no storm '", std::string(id),
                                             "'; the storms are ",
-                                            absl::StrJoin(infos_, ", ", append_id)));
+                                            absl::StrJoin(storms_, ", ", append_id)));
   }
-  if (time_index < 0 || static_cast<std::size_t>(time_index) >= at->times.size()) {
-    return absl::OutOfRangeError(absl::StrCat("storm '", at->id, "' has no time ", time_index,
-                                              "; its times are 0 to ", at->times.size() - 1));
+  const std::size_t times = at->info.times.size();
+  if (time_index < 0 || static_cast<std::size_t>(time_index) >= times) {
+    return absl::OutOfRangeError(absl::StrCat("storm '", at->info.id, "' has no time ", time_index,
+                                              "; its times are 0 to ", times - 1));
   }
-  return TimeKey{static_cast<std::size_t>(at - infos_.begin()), time_index};
+  return TimeKey{static_cast<std::size_t>(at - storms_.begin()), time_index};
 }
 
 absl::StatusOr<std::shared_ptr<const HydrometeorFields>> CachedStormStore::Get(
     std::string_view id, int time_index, const ReadProgress& progress) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const TimeKey key, KeyOf(id, time_index));
   Lock lock(mutex_);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const TimeKey key, KeyOf(id, time_index));
   while (true) {
     Fields fields = cache_.Use(key);
     if (*fields == nullptr) {
@@ -68,9 +92,9 @@ absl::StatusOr<std::shared_ptr<const HydrometeorFields>> CachedStormStore::Get(
 
 std::shared_ptr<const HydrometeorFields> CachedStormStore::Peek(std::string_view id,
                                                                 int time_index) {
+  const Lock lock(mutex_);
   const absl::StatusOr<TimeKey> key = KeyOf(id, time_index);
   if (!key.ok()) return nullptr;
-  Lock lock(mutex_);
   return cache_.Use(*key);
 }
 
@@ -170,7 +194,7 @@ bool CachedStormStore::IsWanted(const TimeKey& key) const {
 
 void CachedStormStore::WantAfter(const TimeKey& key) {
   wanted_.clear();
-  const int times = static_cast<int>(infos_[key.storm].times.size());
+  const int times = static_cast<int>(storms_[key.storm].info.times.size());
   std::size_t bytes = cache_.NewestBytes();
   for (int time = key.time + 1; time < times && time <= key.time + options_.read_ahead; ++time) {
     // A time that would push out the one in view is not worth reading; times take about the same.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -26,7 +27,8 @@ class CachedStormStore final : public StormStore {
   CachedStormStore(const CachedStormStore&) = delete;
   CachedStormStore& operator=(const CachedStormStore&) = delete;
 
-  const std::vector<StormInfo>& Storms() const override { return infos_; }
+  std::vector<const StormInfo*> Storms() const override;
+  absl::StatusOr<const StormInfo*> Add(const std::string& path) override;
   absl::StatusOr<std::shared_ptr<const HydrometeorFields>> Get(
       std::string_view id, int time_index, const ReadProgress& progress) override;
   std::shared_ptr<const HydrometeorFields> Peek(std::string_view id, int time_index) override;
@@ -44,10 +46,9 @@ class CachedStormStore final : public StormStore {
     std::optional<Fields> result;
   };
 
-  absl::StatusOr<TimeKey> KeyOf(std::string_view id, int time_index) const;
-
   // All below are called with `lock` held on mutex_ and return with it held.
   using Lock = std::unique_lock<std::mutex>;
+  absl::StatusOr<TimeKey> KeyOf(std::string_view id, int time_index) const;
   Fields Read(Lock& lock, const TimeKey& key, Purpose purpose, const ReadProgress& progress);
   Fields ReadFile(Lock& lock, const TimeKey& key, PendingRead& read);
   Fields WaitFor(Lock& lock, const std::shared_ptr<PendingRead>& read,
@@ -60,16 +61,16 @@ class CachedStormStore final : public StormStore {
   absl::Status Checkpoint(const TimeKey& key, PendingRead& read, double share);
   void ReadAhead();
 
-  const std::vector<CataloguedStorm> storms_;
-  std::vector<StormInfo> infos_;
   const StormStoreOptions options_;
 
   mutable std::mutex mutex_;
+  // Of both nothing is ever removed: what is in them stays where it is.
+  std::deque<CataloguedStorm> storms_;
+  std::deque<std::optional<VerticalGrid>>
+      vertical_grids_;               // one for each storm, the same for all its times
   std::condition_variable changed_;  // a read ended, a wish or a waiter came, or the store ends
   FieldsCache cache_;
   std::map<TimeKey, std::shared_ptr<PendingRead>> pending_;
-  std::vector<std::optional<VerticalGrid>>
-      vertical_grids_;           // one for each storm, the same for all its times
   std::vector<TimeKey> wanted_;  // to be read ahead, in order
   int asked_reads_ = 0;
   bool ending_ = false;

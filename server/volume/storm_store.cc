@@ -15,9 +15,9 @@ absl::StatusOr<std::unique_ptr<StormStore>> StormStore::Open(const std::vector<s
 }
 
 const StormInfo* StormStore::Find(std::string_view id) const {
-  const std::vector<StormInfo>& storms = Storms();
+  const std::vector<const StormInfo*> storms = Storms();
   const auto at = std::ranges::find(storms, id, &StormInfo::id);
-  return at == storms.end() ? nullptr : &*at;
+  return at == storms.end() ? nullptr : *at;
 }
 
 }  // namespace thunderhead::volume

@@ -57,8 +57,12 @@ class StormStore {
                                                           const StormStoreOptions& options);
   virtual ~StormStore() = default;
 
-  // The storms, in order of id.
-  virtual const std::vector<StormInfo>& Storms() const = 0;
+  // The storms: those opened in order of id, then those added, as they came. What is pointed to
+  // lives as long as the store.
+  virtual std::vector<const StormInfo*> Storms() const = 0;
+
+  // Adds the storm of a file. ALREADY_EXISTS if another has its id; else as Open.
+  virtual absl::StatusOr<const StormInfo*> Add(const std::string& path) = 0;
 
   // The storm of that id, or nothing.
   const StormInfo* Find(std::string_view id) const;

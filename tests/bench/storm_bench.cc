@@ -26,7 +26,7 @@ Sample Open() {
     std::exit(1);
   }
   sample.context = *std::move(context);
-  auto fields = (*store)->Get((*store)->Storms().front().id, kMatureTime, {});
+  auto fields = (*store)->Get((*store)->Storms().front()->id, kMatureTime, {});
   if (!fields.ok()) {
     spdlog::error("{}", fields.status().ToString());
     std::exit(1);

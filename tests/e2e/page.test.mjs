@@ -394,6 +394,28 @@ test("the panel folds away with a key and leaves the storm", async () => {
   assert.equal(await page.getByTestId("panel").isVisible(), true);
 });
 
+test("a cloud is made to order and shown, and a bad one is named", async () => {
+  const before = await grabCanvas(page);
+  await page.getByTestId("cloud-section").locator("summary").click();
+  await page.getByTestId("cloud-own-shape").check();
+  await page.getByTestId("cloud-ellipsoids").fill("0,0,1200,600,400");
+  await page.getByTestId("make-cloud").click();
+  await page.getByText("Line 1 of the ellipsoids").waitFor();
+  await page.getByTestId("cloud-ellipsoids").fill("");
+  await page.getByTestId("cloud-own-shape").uncheck();
+  await page.getByTestId("cloud-seed-number").fill("3");
+  await page.getByTestId("cloud-seed-number").press("Enter");
+  await changing(() => page.getByTestId("make-cloud").click());
+  assert.equal(await page.getByTestId("storm").inputValue(), "fair-weather-cumulus-3");
+  await rested();
+  const cloud = await grabCanvas(page);
+  await screenshot("cloud");
+  assert.ok(difference(before, cloud) > 5, "the picture is of something else");
+  assert.equal(await page.getByText("No cloud:").count(), 0);
+  await changing(() => page.getByTestId("storm").selectOption("supercell"));
+  await rested();
+});
+
 test("no error reached the browser's console", () => {
   assert.deepEqual(complaints, []);
 });

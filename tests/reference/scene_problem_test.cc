@@ -247,7 +247,7 @@ TEST(SurroundingsOf, SunBelowTheHorizonGivesNoSunlight) {
 TEST(Scene, SampleStorm) {
   const auto store = volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
   ASSERT_TRUE(store.ok()) << store.status();
-  const auto fields = (*store)->Get((*store)->Storms().front().id, 1, {});
+  const auto fields = (*store)->Get((*store)->Storms().front()->id, 1, {});
   ASSERT_TRUE(fields.ok()) << fields.status();
   scene::Scene scene;
   scene.output = {16, 9, 88};

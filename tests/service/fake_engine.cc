@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <thread>
 
 #include "base/status.h"
@@ -225,6 +226,19 @@ bool Gate::AwaitWaiting(int count) {
 }
 
 FakeStormStore::FakeStormStore() : storms_{Storm("anvil", 4), Storm("clear", 1)} {}
+
+std::vector<const volume::StormInfo*> FakeStormStore::Storms() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<const volume::StormInfo*> storms;
+  for (const volume::StormInfo& storm : storms_) storms.push_back(&storm);
+  return storms;
+}
+
+absl::StatusOr<const volume::StormInfo*> FakeStormStore::Add(const std::string& path) {
+  if (!std::filesystem::exists(path)) return absl::NotFoundError(path + " is not there");
+  const std::lock_guard lock(mutex_);
+  return &storms_.emplace_back(Storm(std::filesystem::path(path).stem(), 1));
+}
 
 absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> FakeStormStore::Get(
     std::string_view id, int time_index, const volume::ReadProgress& /*progress*/) {

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -44,7 +45,9 @@ class FakeStormStore final : public volume::StormStore {
  public:
   FakeStormStore();
 
-  const std::vector<volume::StormInfo>& Storms() const override { return storms_; }
+  std::vector<const volume::StormInfo*> Storms() const override;
+  // A storm of the file's name, if the file is there.
+  absl::StatusOr<const volume::StormInfo*> Add(const std::string& path) override;
   absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> Get(
       std::string_view id, int time_index, const volume::ReadProgress& progress) override;
   std::shared_ptr<const volume::HydrometeorFields> Peek(std::string_view id,
@@ -60,8 +63,8 @@ class FakeStormStore final : public volume::StormStore {
   Gate reading;
 
  private:
-  std::vector<volume::StormInfo> storms_;
-  std::mutex mutex_;
+  std::deque<volume::StormInfo> storms_;
+  mutable std::mutex mutex_;
   std::map<int, absl::Status> failures_;
   std::condition_variable changed_;
   std::set<std::pair<std::string, int>> cached_;

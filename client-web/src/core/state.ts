@@ -20,6 +20,7 @@ import type {
   StageCost,
 } from "../gen/thunderhead/v1/thunderhead_pb";
 import { cameraOfPose, type Pose, poseOfCamera } from "./camera";
+import { type CloudDraft, FIRST_CLOUD } from "./cloud";
 import { LIMITS, withCamera } from "./scene";
 import type { SunDirection } from "./sun";
 
@@ -86,6 +87,9 @@ export class PageState {
   // Share of the canvas's device pixels that the picture has.
   readonly resolution = signal(1);
   readonly panelOpen = signal(true);
+  // What the user would have made, and whether the server is at it.
+  readonly cloud = signal<CloudDraft>(FIRST_CLOUD);
+  readonly makingCloud = signal(false);
 
   get scene(): ReadonlySignal<Scene> {
     return this.#scene;

@@ -4,6 +4,7 @@
 import { type Client, Code, ConnectError, createClient, type Transport } from "@connectrpc/connect";
 import { BackOff } from "../core/back_off";
 import type { Connection } from "../core/state";
+import type { GenerateCloudRequest } from "../gen/thunderhead/v1/cloud_pb";
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
 import type { StormDescription, StormSummary } from "../gen/thunderhead/v1/storm_pb";
 import {
@@ -45,6 +46,7 @@ export type SceneVerdict =
 const CALL_TIMEOUT_MS = 10_000;
 // Where the camera is left open the server reads the storm before it answers, which may take a while.
 const SCENE_TIMEOUT_MS = 120_000;
+const CLOUD_TIMEOUT_MS = 120_000;
 // A stream silent for this long is checked, so that a connection that died without a word is noticed.
 export const SILENCE_MS = 5_000;
 const CHECK_TIMEOUT_MS = 4_000;
@@ -146,6 +148,14 @@ export class SessionClient {
 
   async describeStorm(stormId: string, timeIndex: number): Promise<StormDescription | undefined> {
     return (await this.#client.describeStorm({ stormId, timeIndex }, this.#lifeOptions())).storm;
+  }
+
+  async generateCloud(
+    request: GenerateCloudRequest,
+    signal: AbortSignal,
+  ): Promise<StormSummary | undefined> {
+    const options = { signal, timeoutMs: CLOUD_TIMEOUT_MS };
+    return (await this.#client.generateCloud(request, options)).storm;
   }
 
   // Tells the server that the session is no longer needed; for a page that goes away.

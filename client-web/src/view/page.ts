@@ -2,9 +2,10 @@
 // for and acknowledged. Owns them all; dispose() ends them all.
 
 import { create } from "@bufbuild/protobuf";
-import type { Transport } from "@connectrpc/connect";
+import { ConnectError, type Transport } from "@connectrpc/connect";
 import { effect } from "@preact/signals-core";
 import { type CameraKind, homeCamera, poseOfCamera, standingAzimuthDeg } from "../core/camera";
+import { requestOfCloud } from "../core/cloud";
 import { FramePipeline } from "../core/frame_pipeline";
 import { FrameRate } from "../core/frame_rate";
 import { Playback } from "../core/playback";
@@ -55,6 +56,7 @@ export class Page implements SessionListener {
   #adoptedRevision = -1n;
   #describeTimer: ReturnType<typeof setTimeout> | undefined;
   #running = false;
+  #making: AbortController | undefined;
 
   constructor(transport: Transport, window: Window) {
     this.#window = window;
@@ -128,6 +130,34 @@ export class Page implements SessionListener {
     this.state.edit((scene) => withStorm(scene, stormId));
   }
 
+  // Has the server make the cloud that was drafted, and shows it.
+  async makeCloud(): Promise<void> {
+    const making = new AbortController();
+    this.#making = making;
+    this.state.makingCloud.value = true;
+    try {
+      const storm = await this.#client.generateCloud(
+        requestOfCloud(this.state.cloud.value),
+        making.signal,
+      );
+      this.state.storms.value = await this.#client.storms();
+      this.state.dismiss("cloud");
+      if (storm === undefined) return;
+      this.showStorm(storm.id);
+      this.home();
+    } catch (error) {
+      if (making.signal.aborted) return;
+      const text = error instanceof ConnectError ? error.rawMessage : String(error);
+      this.state.notify({ subject: "cloud", text: `No cloud: ${text}`, severity: "problem" });
+    } finally {
+      this.state.makingCloud.value = false;
+    }
+  }
+
+  stopCloud(): void {
+    this.#making?.abort();
+  }
+
   // A camera of that kind that shows the whole storm.
   showCamera(kind: CameraKind): void {
     this.state.edit((scene) => withCamera(scene, homeCamera(kind)));
@@ -163,6 +193,7 @@ export class Page implements SessionListener {
   }
 
   dispose(): void {
+    this.#making?.abort();
     this.#listening.abort();
     for (const dispose of this.#disposals) dispose();
     clearTimeout(this.#describeTimer);

@@ -11,6 +11,7 @@ import type { PageState } from "../core/state";
 import { Mode, Renderer, ToneMap, Transport } from "../gen/thunderhead/v1/scene_pb";
 import { AccuracySection } from "./accuracy_section";
 import { CameraSection } from "./camera_section";
+import { CloudSection } from "./cloud_section";
 import { Choice, Section, Slider, Switch } from "./controls";
 import { CumulusControls } from "./cumulus_controls";
 import { FieldsSection } from "./fields_section";
@@ -69,6 +70,7 @@ export function Panel({ page }: { page: Page }) {
       </button>
       <aside id="panel" class="panel" aria-label="Settings" data-testid="panel" hidden={!open}>
         <StormSection page={page} />
+        <CloudSection page={page} />
         <CameraSection page={page} />
         <SunSection state={state} />
         <FieldsSection state={state} />

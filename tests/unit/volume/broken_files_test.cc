@@ -25,7 +25,7 @@ class BrokenFiles : public ::testing::Test {
   absl::Status Read() {
     auto store = StormStore::Open({path_}, {.read_ahead = 0});
     if (!store.ok()) return store.status();
-    return (*store)->Get((*store)->Storms()[0].id, 0, {}).status();
+    return (*store)->Get((*store)->Storms()[0]->id, 0, {}).status();
   }
 
   absl::Status Read(const SyntheticWrf& file) {

@@ -37,7 +37,7 @@ class CfReader : public ::testing::Test {
     testing::WriteCf(file, path_);
     auto store = StormStore::Open({path_}, {.read_ahead = 0});
     if (!store.ok()) return store.status();
-    info_ = (*store)->Storms().front();
+    info_ = *(*store)->Storms().front();
     return (*store)->Get(info_.id, time, {});
   }
 

@@ -74,7 +74,7 @@ TEST(SampleStorm, IsDescribedWithoutReadingFields) {
   const auto store = StormStore::Open({kSample}, {});
   ASSERT_TRUE(store.ok()) << store.status();
   ASSERT_EQ((*store)->Storms().size(), 1U);
-  const StormInfo& storm = (*store)->Storms()[0];
+  const StormInfo& storm = *(*store)->Storms()[0];
   EXPECT_EQ(storm.id, "supercell");
   EXPECT_EQ(storm.title, "supercell (WRF V4.7.1, idealised)");
   EXPECT_EQ(storm.file_cells, glm::ivec3(kNx, kNy, kLevels));

@@ -92,7 +92,22 @@ TEST_F(StormSeries, NamesWhatIsNotThere) {
   EXPECT_EQ(store->Get("series", -1, {}).status().code(), absl::StatusCode::kOutOfRange);
   EXPECT_EQ(store->Find("tornado"), nullptr);
   EXPECT_EQ(store->Peek("tornado", 0), nullptr);
-  EXPECT_EQ(store->Find("series"), &store->Storms()[0]);
+  EXPECT_EQ(store->Find("series"), store->Storms()[0]);
+}
+
+TEST_F(StormSeries, TakesAnotherStormWhileItServes) {
+  const auto store = Open({});
+  const StormInfo* const series = store->Find("series");
+  const std::string other = folder_.File("another.nc");
+  std::filesystem::copy_file(series->files[0], other);
+  const auto added = store->Add(other);
+  ASSERT_TRUE(added.ok()) << added.status();
+  EXPECT_EQ((*added)->id, "another");
+  EXPECT_EQ(store->Find("series"), series) << "what is pointed to stays";
+  EXPECT_EQ(store->Storms(), (std::vector<const StormInfo*>{series, *added}));
+  EXPECT_TRUE(store->Get("another", 0, {}).ok());
+  EXPECT_EQ(store->Add(other).status().code(), absl::StatusCode::kAlreadyExists);
+  EXPECT_FALSE(store->Add(folder_.File("nothing.nc")).ok());
 }
 
 TEST_F(StormSeries, ReadsATimeOnceWhileItIsHeld) {
@@ -158,7 +173,7 @@ TEST_F(StormSeries, NeverPushesOutTheTimeInViewByReadingAhead) {
 // A broken next time spoils neither the time in view nor the thread.
 TEST_F(StormSeries, OutlivesABrokenTimeWhenReadingAhead) {
   const auto store = Open({.read_ahead = 2});
-  const std::string broken = store->Storms()[0].files[1];
+  const std::string broken = store->Storms()[0]->files[1];
   std::filesystem::resize_file(broken, 1000);
   ASSERT_TRUE(store->Get("series", 0, {}).ok());
   EXPECT_TRUE(Eventually([&] { return store->Peek("series", 2) != nullptr; }));

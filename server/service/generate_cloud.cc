@@ -1,0 +1,47 @@
+#include <stop_token>
+
+#include "base/status.h"
+#include "service/cloud_messages.h"
+#include "service/finished.h"
+#include "service/handlers.h"
+#include "service/limits_check.h"
+#include "service/scene_messages.h"
+
+namespace thunderhead::service {
+namespace {
+
+absl::StatusOr<clouds::CloudShape> Check(const v1::GenerateCloudRequest& request) {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
+  return ShapeOf(request);
+}
+
+absl::Status Make(Engine& engine, const clouds::CloudShape& shape,
+                  const v1::GenerateCloudRequest& request, grpc::CallbackServerContext& context,
+                  v1::GenerateCloudResponse& response) {
+  std::stop_source stop;
+  const auto observe = [&](double) {
+    if (context.IsCancelled()) stop.request_stop();
+  };
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const volume::StormInfo* storm,
+      engine.clouds.Make(shape, OriginOf(request), observe, stop.get_token()));
+  ToMessage(*storm, *response.mutable_storm());
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+grpc::ServerUnaryReactor* GenerateCloud(Engine& engine, grpc::CallbackServerContext* context,
+                                        const v1::GenerateCloudRequest* request,
+                                        v1::GenerateCloudResponse* response) {
+  auto shape = Check(*request);
+  if (!shape.ok()) return Finished(context, shape.status());
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  engine.executor.Submit([=, &engine, shape = *std::move(shape)](const absl::Status& status) {
+    reactor->Finish(
+        ToGrpcStatus(status.ok() ? Make(engine, shape, *request, *context, *response) : status));
+  });
+  return reactor;
+}
+
+}  // namespace thunderhead::service
