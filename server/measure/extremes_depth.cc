@@ -16,9 +16,6 @@ namespace {
 // Extinction is stored in half floats.
 constexpr double kDepthError = 0.005;
 
-// A ray may end where less than this of the background shows (light_volume/march.frag).
-constexpr double kOpaque = 0.005;
-
 // Of a transmittance near 1 in a half-float buffer.
 constexpr double kHalfStep = 0x1p-11;
 

@@ -9,6 +9,10 @@
 
 namespace thunderhead::measure::internal {
 
+// A ray may end where less than this of the background shows (light_volume/march.frag,
+// metaball/splat.frag).
+inline constexpr double kOpaque = 0.005;
+
 // Passes if `got` is within `tolerance` of `expected`.
 Verdict Near(double got, double expected, double tolerance);
 

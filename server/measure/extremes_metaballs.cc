@@ -14,9 +14,10 @@ namespace {
 constexpr Named<scene::Renderer> kPath = {scene::Renderer::kMetaball, "metaball"};
 constexpr int kBalls = 200;
 
-// The middle ray's transmittance is between `least` and `most`, whatever the fit.
+// The middle ray's transmittance is between `least` and `highest`, whatever the fit.
 Extreme Between(const std::string& what, const Box& box, const Look& look,
-                scene::Transport transport, double least, double most) {
+                scene::Transport transport, double least, double highest) {
+  const double most = std::max(highest, kOpaque);
   return {absl::StrFormat("%s: %s", kPath.name, what),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
             scene::Scene scene = PlainScene(kPath.value);

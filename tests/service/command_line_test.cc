@@ -176,7 +176,7 @@ TEST_F(CommandLineTest, MeasureFramesHasARowForEachPathAndMode) {
     EXPECT_FALSE(stages.contains("extinction")) << "neither camera nor sun changes the fields";
     rows.insert(fields.at("renderer").string_value() + " " + fields.at("mode").string_value());
   }
-  EXPECT_EQ(rows.size(), 12U);
+  EXPECT_EQ(rows.size(), 16U) << "four renderers in four modes";
   ExpectError("measure frames " + kSample + " --size 5", 2, "WIDTHxHEIGHT");
   ExpectError("measure frames " + kSample + " --time 9", 2, "times 0 to 3");
 }
