@@ -151,12 +151,7 @@ absl::Status Fit(const Flags& flags) {
     return absl::InvalidArgumentError(
         absl::StrCat("--volume can write extinction or cloud, not ", flags.field));
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store,
-                               OpenStorm(flags.storm));
-  THUNDERHEAD_RETURN_IF_ERROR(CheckTime(*store, flags.storm, flags.time_index));
-  THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(*store, flags.time_index));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields,
-                               store->Get(store->Storms().front()->id, flags.time_index, {}));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, ReadStorm(flags.storm, flags.time_index));
   THUNDERHEAD_ASSIGN_OR_RETURN(Target target, TargetOf(*fields, flags.field));
   const base::Stopwatch stopwatch;
   THUNDERHEAD_ASSIGN_OR_RETURN(clouds::FitResult fit,

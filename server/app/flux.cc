@@ -92,12 +92,7 @@ absl::StatusOr<reference::FluxProblem> StormProblem(const Flags& flags,
   if (!flags.phase.empty()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(options.phase, ParsePhase(flags.phase));
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store,
-                               OpenStorm(flags.storm));
-  THUNDERHEAD_RETURN_IF_ERROR(CheckTime(*store, flags.storm, flags.time_index));
-  THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(*store, flags.time_index));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields,
-                               store->Get(store->Storms().front()->id, flags.time_index, {}));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, ReadStorm(flags.storm, flags.time_index));
   scene::Scene scene;
   for (scene::FieldParameters& field : scene.fields) {
     if (flags.albedo.has_value()) field.optics.albedo = static_cast<float>(*flags.albedo);

@@ -49,6 +49,14 @@ absl::Status ReadWithProgress(volume::StormStore& store, int time_index) {
       store.Get(storm.id, time_index, [&bar](double share) { bar.Set(share); }).status());
 }
 
+absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadStorm(const std::string& path,
+                                                                           int time_index) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store, OpenStorm(path));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckTime(*store, path, time_index));
+  THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(*store, time_index));
+  return store->Get(store->Storms().front()->id, time_index, {});
+}
+
 absl::StatusOr<std::unique_ptr<service::Server>> StartLocalService(
     std::shared_ptr<volume::StormStore> store, const std::string& device) {
   return service::Server::Start({}, std::move(store),

@@ -22,6 +22,10 @@ absl::Status CheckTime(const volume::StormStore& store, const std::string& path,
 // Reads one time of the store's storm into its cache, with a progress bar.
 absl::Status ReadWithProgress(volume::StormStore& store, int time_index);
 
+// The fields of one time of the storm at `path`, read with a progress bar; errors as of the above.
+absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadStorm(const std::string& path,
+                                                                           int time_index);
+
 // The service on `store`, drawing on `device`, listening nowhere.
 absl::StatusOr<std::unique_ptr<service::Server>> StartLocalService(
     std::shared_ptr<volume::StormStore> store, const std::string& device);

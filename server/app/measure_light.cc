@@ -1,7 +1,4 @@
-#include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,17 +8,16 @@
 #include "absl/strings/str_format.h"
 #include "app/commands.h"
 #include "app/interruption.h"
+#include "app/kept_truth.h"
 #include "app/local_scene.h"
-#include "app/output_file.h"
-#include "app/progress_bar.h"
 #include "base/status.h"
+#include "base/whole_file.h"
 #include "frame/image_codec.h"
 #include "frame/tone_map.h"
 #include "gl/context.h"
 #include "measure/light_parts.h"
 #include "measure/paths.h"
 #include "measure/trade.h"
-#include "reference/exr_file.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::app {
@@ -44,44 +40,22 @@ struct Flags {
   double peak_cut_deg = reference::kPeakCut_deg;
 };
 
-std::string ReadText(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 bool Chosen(const std::vector<std::string>& names, std::string_view name) {
   return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// The truth of one part, kept at `path` if it was computed for this scene, else a new one.
 absl::StatusOr<reference::Image> TruthOf(const Flags& flags, const LocalScene& local,
                                          LightPart part, const std::string& path,
                                          const Interruption& interruption) {
-  v1::Scene scene = local.message;
-  scene.clear_rendering();
-  const std::string key = absl::StrCat(scene.ShortDebugString(), "\npeak cut: ", flags.peak_cut_deg,
-                                       "\nsamples a pixel: ", flags.samples_per_pixel, "\n");
-  if (std::filesystem::exists(path) && ReadText(path + ".scene") == key) {
-    return reference::ReadExr(path);
-  }
-  reference::RefineLimits limits;
-  limits.samples_per_pixel = flags.samples_per_pixel;
-  ProgressBar bar(absl::StrCat("tracing ", measure::NameOf(part)));
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      const reference::TracedScene traced,
-      reference::TraceScene(
-          measure::SceneOf(part, measure::TrueScene(local.scene)), *local.fields,
-          measure::TraceOptionsOf(part, flags.peak_cut_deg), limits,
-          [&](const reference::ImageProgress& progress) {
-            bar.Set(static_cast<double>(progress.samples_per_pixel) / flags.samples_per_pixel);
-          },
-          interruption.Token()));
-  if (traced.result.end == reference::RefineEnd::kStopped) {
-    return absl::CancelledError("stopped before the truth was traced; nothing is kept of it");
-  }
-  THUNDERHEAD_RETURN_IF_ERROR(reference::WriteExr(path, traced.image));
-  THUNDERHEAD_RETURN_IF_ERROR(WriteFile(path + ".scene", key));
-  return traced.image;
+  v1::Scene message = local.message;
+  message.clear_rendering();
+  Truth truth;
+  truth.name = measure::NameOf(part);
+  truth.scene = measure::SceneOf(part, measure::TrueScene(local.scene));
+  truth.scene_text = message.ShortDebugString();
+  truth.options = measure::TraceOptionsOf(part, flags.peak_cut_deg);
+  truth.samples_per_pixel = flags.samples_per_pixel;
+  return KeptTruth(truth, *local.fields, path, interruption);
 }
 
 // Truth, drawn, and 1/2 plus a quarter of their difference over the truth's mean, side by side.
@@ -112,7 +86,7 @@ absl::Status WriteComparison(const measure::LinearImage& truth, const measure::L
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::string png,
                                frame::EncodePng(3 * truth.size_px.x, truth.size_px.y, rgb));
-  return WriteFile(path, png);
+  return base::WriteWholeFile(path, png);
 }
 
 absl::Status MeasureTransport(const Flags& flags, const LocalScene& local, LightPart part,
@@ -181,10 +155,7 @@ Command AddMeasureLight(CLI::App& measure) {
       ->capture_default_str();
   light->add_option("--part", flags->parts, "once, sun, sky, all; every one if not given");
   light->add_option("--transport", flags->transports, "Which transports; every one if not given");
-  light->add_option("--scene", flags->scene.file, "Scene as Protobuf JSON");
-  light->add_option("--camera", flags->scene.camera, "orbit, spotter or top-down");
-  light->add_option("--time", flags->scene.time_index, "Which of the storm's times, from 0");
-  light->add_option("--size", flags->scene.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  AddSceneOptions(*light, flags->scene);
   light->add_option("--spp", flags->samples_per_pixel, "Samples a pixel of the truth")
       ->check(CLI::Range(16, 1 << 20))
       ->capture_default_str();

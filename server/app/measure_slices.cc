@@ -8,9 +8,9 @@
 #include "absl/strings/str_format.h"
 #include "app/commands.h"
 #include "app/local_scene.h"
-#include "app/output_file.h"
 #include "app/progress_bar.h"
 #include "base/status.h"
+#include "base/whole_file.h"
 #include "gl/context.h"
 #include "measure/probe.h"
 #include "measure/slice_convergence.h"
@@ -87,7 +87,7 @@ absl::Status MeasureSlices(const Flags& flags) {
   THUNDERHEAD_RETURN_IF_ERROR(curves.status());
   if (!flags.output.empty()) {
     const bool svg = absl::EndsWithIgnoreCase(flags.output, ".svg");
-    THUNDERHEAD_RETURN_IF_ERROR(WriteFile(
+    THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(
         flags.output, svg ? measure::ToSvg(subject.title, *curves) : measure::ToCsv(*curves)));
   }
   std::cout << (flags.json ? measure::ToJson(measure::MachineOf(context->Info()), *curves)

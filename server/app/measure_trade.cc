@@ -1,7 +1,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,14 +10,13 @@
 #include "absl/strings/str_format.h"
 #include "app/commands.h"
 #include "app/interruption.h"
+#include "app/kept_truth.h"
 #include "app/local_scene.h"
-#include "app/output_file.h"
 #include "app/progress_bar.h"
 #include "base/status.h"
+#include "base/whole_file.h"
 #include "gl/context.h"
 #include "measure/trade_table.h"
-#include "reference/exr_file.h"
-#include "reference/trace_scene.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::app {
@@ -39,39 +37,15 @@ absl::Status CheckFlags(const Flags& flags) {
                                                  "; a truth needs 16 samples a pixel at least"));
 }
 
-std::string ReadText(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-// The truth kept at `path` if it was computed for this scene, else a new one.
 absl::StatusOr<reference::Image> TruthOf(const Flags& flags, const LocalScene& local,
                                          const std::string& path,
                                          const Interruption& interruption) {
-  const std::string key =
-      absl::StrCat(local.message.ShortDebugString(), "\npeak cut: ", reference::kPeakCut_deg,
-                   "\nsamples a pixel: ", flags.samples_per_pixel, "\n");
-  if (std::filesystem::exists(path) && ReadText(path + ".scene") == key) {
-    return reference::ReadExr(path);
-  }
-  reference::RefineLimits limits;
-  limits.samples_per_pixel = flags.samples_per_pixel;
-  ProgressBar bar("tracing the truth");
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      const reference::TracedScene traced,
-      reference::TraceScene(
-          measure::TrueScene(local.scene), *local.fields, reference::kPeakCut_deg, limits,
-          [&](const reference::ImageProgress& progress) {
-            bar.Set(static_cast<double>(progress.samples_per_pixel) / flags.samples_per_pixel);
-          },
-          interruption.Token()));
-  if (traced.result.end == reference::RefineEnd::kStopped) {
-    return absl::CancelledError("stopped before the truth was traced; nothing is kept of it");
-  }
-  const reference::Image& truth = traced.image;
-  THUNDERHEAD_RETURN_IF_ERROR(reference::WriteExr(path, truth));
-  THUNDERHEAD_RETURN_IF_ERROR(WriteFile(path + ".scene", key));
-  return truth;
+  Truth truth;
+  truth.name = "the truth";
+  truth.scene = measure::TrueScene(local.scene);
+  truth.scene_text = local.message.ShortDebugString();
+  truth.samples_per_pixel = flags.samples_per_pixel;
+  return KeptTruth(truth, *local.fields, path, interruption);
 }
 
 // The rows that an earlier run left in `path`, or none; the file then holds exactly those.
@@ -80,7 +54,8 @@ absl::StatusOr<std::vector<measure::TradeRow>> RowsSoFar(const std::string& path
   std::vector<measure::TradeRow> rows;
   std::string text = head;
   if (std::filesystem::exists(path)) {
-    auto earlier = measure::ReadCsv(ReadText(path), head);
+    THUNDERHEAD_ASSIGN_OR_RETURN(const std::string kept, base::ReadWholeFile(path));
+    auto earlier = measure::ReadCsv(kept, head);
     if (!earlier.ok()) {
       return absl::InvalidArgumentError(
           absl::StrCat(path, " is no file to go on from: ", earlier.status().message()));
@@ -88,7 +63,7 @@ absl::StatusOr<std::vector<measure::TradeRow>> RowsSoFar(const std::string& path
     rows = *std::move(earlier);
     for (const measure::TradeRow& row : rows) absl::StrAppend(&text, measure::CsvLine(row));
   }
-  THUNDERHEAD_RETURN_IF_ERROR(WriteFile(path, text));
+  THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(path, text));
   return rows;
 }
 
@@ -153,8 +128,9 @@ absl::Status MeasureTrade(const Flags& flags) {
   THUNDERHEAD_RETURN_IF_ERROR(MeasureRest(trade, csv, interruption, &rows));
   measure::MarkPareto(&rows);
   const std::string json = measure::TradeJson(title, rows);
-  THUNDERHEAD_RETURN_IF_ERROR(WriteFile(flags.output + ".json", json));
-  THUNDERHEAD_RETURN_IF_ERROR(WriteFile(flags.output + ".svg", measure::TradeSvg(title, rows)));
+  THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(flags.output + ".json", json));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      base::WriteWholeFile(flags.output + ".svg", measure::TradeSvg(title, rows)));
   std::cout << (flags.json ? json : Table(rows));
   return absl::OkStatus();
 }
@@ -171,10 +147,7 @@ Command AddMeasureTrade(CLI::App& measure) {
       ->add_option("-o,--output", flags->output,
                    "Where results go: .csv, .json, .svg and .truth.exr are added")
       ->capture_default_str();
-  trade->add_option("--scene", flags->scene.file, "Scene as Protobuf JSON");
-  trade->add_option("--camera", flags->scene.camera, "orbit, spotter or top-down");
-  trade->add_option("--time", flags->scene.time_index, "Which of the storm's times, from 0");
-  trade->add_option("--size", flags->scene.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  AddSceneOptions(*trade, flags->scene);
   trade->add_option("--spp", flags->samples_per_pixel, "Samples a pixel of the truth")
       ->capture_default_str();
   trade->add_option("--device", flags->device, "auto, software or a GPU's number")

@@ -10,11 +10,11 @@
 #include "app/address.h"
 #include "app/commands.h"
 #include "app/local_service.h"
-#include "app/output_file.h"
 #include "app/progress_bar.h"
 #include "app/render_reference.h"
 #include "app/scene_file.h"
 #include "base/status.h"
+#include "base/whole_file.h"
 #include "grpcpp/create_channel.h"
 #include "grpcpp/security/credentials.h"
 #include "spdlog/spdlog.h"
@@ -117,7 +117,7 @@ absl::Status Render(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(v1::RenderImageResponse response, flags.server.empty()
                                                                      ? CallHere(flags, request)
                                                                      : CallServer(flags, request));
-  THUNDERHEAD_RETURN_IF_ERROR(WriteFile(flags.output, response.image()));
+  THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(flags.output, response.image()));
   if (!flags.json) {
     PrintAccuracy(response);
     return absl::OkStatus();
@@ -142,10 +142,7 @@ Command AddRender(CLI::App& app) {
       ->add_option("-o,--output", flags->output,
                    "The picture: .png, .jpg or .jpeg; .exr too with --renderer reference")
       ->required();
-  render->add_option("--scene", flags->scene.file, "Scene as Protobuf JSON");
-  render->add_option("--time", flags->scene.time_index, "Which of the storm's times, from 0");
-  render->add_option("--size", flags->scene.size, "WIDTHxHEIGHT in pixels");
-  render->add_option("--camera", flags->scene.camera, "orbit, spotter or top-down");
+  AddSceneOptions(*render, flags->scene);
   render->add_option("--slices", flags->scene.slices, "Number of slices");
   render->add_option("--renderer", flags->scene.renderer,
                      "half_angle, light_volume (the default), metaball, "

@@ -11,9 +11,9 @@
 #include "absl/strings/str_format.h"
 #include "app/interruption.h"
 #include "app/local_scene.h"
-#include "app/output_file.h"
 #include "app/progress_bar.h"
 #include "base/status.h"
+#include "base/whole_file.h"
 #include "frame/image_codec.h"
 #include "frame/tone_map.h"
 #include "gl/context.h"
@@ -71,7 +71,7 @@ absl::Status WriteToneMapped(const reference::Image& image, const scene::Display
                                absl::EndsWithIgnoreCase(output, ".png")
                                    ? frame::EncodePng(size.x, size.y, mapped.rgb)
                                    : frame::EncodeJpeg(size.x, size.y, mapped.rgb, jpeg_quality));
-  return WriteFile(output, bytes);
+  return base::WriteWholeFile(output, bytes);
 }
 
 }  // namespace

@@ -66,6 +66,13 @@ absl::Status SetRenderer(const std::string& name, v1::Rendering& rendering) {
 
 }  // namespace
 
+void AddSceneOptions(CLI::App& command, SceneFlags& flags) {
+  command.add_option("--scene", flags.file, "Scene as Protobuf JSON");
+  command.add_option("--time", flags.time_index, "Which of the storm's times, from 0");
+  command.add_option("--size", flags.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  command.add_option("--camera", flags.camera, "orbit, spotter or top-down");
+}
+
 absl::StatusOr<v1::Scene> ReadScene(const SceneFlags& flags) {
   v1::Scene scene;
   if (!flags.file.empty()) {

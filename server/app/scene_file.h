@@ -1,9 +1,10 @@
-// A scene as the render command is given it: a file of Protobuf JSON, and flags that override it.
+// A scene as commands are given it: a file of Protobuf JSON, and flags that override it.
 #pragma once
 
 #include <optional>
 #include <string>
 
+#include "CLI/CLI.hpp"
 #include "absl/status/statusor.h"
 #include "thunderhead/v1/scene.pb.h"
 
@@ -19,6 +20,9 @@ struct SceneFlags {
   std::optional<float> max_error;
   std::optional<float> max_milliseconds;  // at most one of the two
 };
+
+// The options of every command that takes a scene: --scene, --time, --size, --camera.
+void AddSceneOptions(CLI::App& command, SceneFlags& flags);
 
 // INVALID_ARGUMENT names the file or flag and what is wrong with it.
 absl::StatusOr<v1::Scene> ReadScene(const SceneFlags& flags);

@@ -1,16 +1,13 @@
 #include "clouds/metaballs.h"
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <system_error>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
 #include "base/status.h"
+#include "base/whole_file.h"
 #include "glm/geometric.hpp"
 
 namespace thunderhead::clouds {
@@ -141,22 +138,11 @@ absl::StatusOr<MetaballCloud> FromText(std::string_view text) {
 }
 
 absl::Status SaveBalls(const MetaballCloud& cloud, const std::string& path) {
-  const std::string partial = path + ".partial";
-  std::ofstream file(partial, std::ios::binary);
-  file << ToText(cloud);
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(partial, path, error);
-  if (file && !error) return absl::OkStatus();
-  std::filesystem::remove(partial, error);
-  return absl::UnavailableError(
-      absl::StrCat(path, " cannot be written; check that its folder exists and has room"));
+  return base::WriteWholeFile(path, ToText(cloud));
 }
 
 absl::StatusOr<MetaballCloud> LoadBalls(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return absl::NotFoundError(absl::StrCat(path, ": cannot be read; check the path"));
-  const std::string text(std::istreambuf_iterator<char>(file), {});
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::string text, base::ReadWholeFile(path));
   absl::StatusOr<MetaballCloud> cloud = FromText(text);
   if (!cloud.ok()) return base::Annotate(cloud.status(), path);
   return cloud;

@@ -14,6 +14,7 @@
 #include "glm/vector_relational.hpp"
 #include "physics/optics.h"
 #include "physics/sky.h"
+#include "scene/drawn_fields.h"
 #include "scene/view.h"
 #include "volume/terrain.h"
 
@@ -188,7 +189,7 @@ absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene
   std::vector<CutOptics> cuts;  // of each look
   for (const volume::HydrometeorField& field : fields.fields) {
     const scene::FieldParameters& drawn = scene.fields[physics::IndexOf(field.hydrometeor)];
-    if (!drawn.visible || drawn.scale <= 0.0F || field.concentration_kg_per_m3.empty()) continue;
+    if (!scene::IsDrawn(scene, field)) continue;
     GroupLook look = LookOf(scene, field);
     if (options.phase != nullptr) look.phase = {};
     auto found = std::find(looks.begin(), looks.end(), look);

@@ -7,6 +7,7 @@
 #include "base/stopwatch.h"
 #include "glm/common.hpp"
 #include "physics/optics.h"
+#include "scene/drawn_fields.h"
 #include "volume/brick_map.h"
 #include "volume/coarsen.h"
 
@@ -74,7 +75,7 @@ Medium MediumOf(const scene::Scene& scene, const volume::HydrometeorFields& fiel
   for (std::size_t i = 0; i < fields.fields.size(); ++i) {
     const volume::HydrometeorField& field = fields.fields[i];
     const scene::FieldParameters& look = scene.fields[physics::IndexOf(field.hydrometeor)];
-    if (!look.visible || look.scale <= 0.0F || field.concentration_kg_per_m3.empty()) continue;
+    if (!scene::IsDrawn(scene, field)) continue;
     MediumGroup group;
     group.albedo = look.optics.albedo;
     group.phase =

@@ -31,8 +31,8 @@ absl::StatusOr<const volume::StormInfo*> FindStorm(const volume::StormStore& sto
   const std::vector<const volume::StormInfo*> storms = store.Storms();
   if (storms.empty()) return absl::NotFoundError("the server holds no storm");
   if (id.empty()) return storms.front();
-  const volume::StormInfo* storm = store.Find(id);
-  if (storm != nullptr) return storm;
+  const auto at = std::ranges::find(storms, id, &volume::StormInfo::id);
+  if (at != storms.end()) return *at;
   return absl::NotFoundError(
       absl::StrCat("no storm has the id '", id, "'; there is ", NamesOf(storms)));
 }

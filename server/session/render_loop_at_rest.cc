@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/status.h"
+#include "scene/drawn_fields.h"
 #include "session/render_loop.h"
 
 namespace thunderhead::session {
@@ -14,9 +15,7 @@ std::vector<physics::Hydrometeor> DrawnFields(const scene::Scene& scene,
                                               const volume::HydrometeorFields& fields) {
   std::vector<physics::Hydrometeor> drawn;
   for (const volume::HydrometeorField& field : fields.fields) {
-    const scene::FieldParameters& look = scene.fields[physics::IndexOf(field.hydrometeor)];
-    if (!look.visible || look.scale <= 0.0F || field.concentration_kg_per_m3.empty()) continue;
-    drawn.push_back(field.hydrometeor);
+    if (scene::IsDrawn(scene, field)) drawn.push_back(field.hydrometeor);
   }
   return drawn;
 }

@@ -6,6 +6,7 @@
 #include "clouds/cauliflower.h"
 #include "clouds/inscribed_balls.h"
 #include "glm/common.hpp"
+#include "scene/drawn_fields.h"
 #include "volume/coarsen.h"
 
 namespace thunderhead::renderers {
@@ -34,10 +35,7 @@ DrawnSurface SurfaceOfStorm(const scene::Scene& scene, const volume::Hydrometeor
   std::vector<float> extinction_per_m(fields.grid.CellCount(), 0.0F);
   for (const volume::HydrometeorField& field : fields.fields) {
     const scene::FieldParameters& look = scene.fields[physics::IndexOf(field.hydrometeor)];
-    if (!HasSurface(field.hydrometeor) || !look.visible || look.scale <= 0.0F ||
-        field.concentration_kg_per_m3.empty()) {
-      continue;
-    }
+    if (!HasSurface(field.hydrometeor) || !scene::IsDrawn(scene, field)) continue;
     volume::MassExtinction mass_extinction =
         volume::MassExtinctionOf(field, look.optics, look.size_from_file);
     mass_extinction.m2_per_kg *= look.scale;
@@ -108,10 +106,7 @@ std::vector<std::string> NotShownByCumulus(const scene::Scene& scene,
     not_shown.emplace_back("the storm: a cloud made from a seed stands in its place");
   } else {
     for (const volume::HydrometeorField& field : fields.fields) {
-      const scene::FieldParameters& look = scene.fields[physics::IndexOf(field.hydrometeor)];
-      const bool asked =
-          look.visible && look.scale > 0.0F && !field.concentration_kg_per_m3.empty();
-      if (asked && !HasSurface(field.hydrometeor)) {
+      if (scene::IsDrawn(scene, field) && !HasSurface(field.hydrometeor)) {
         not_shown.emplace_back(physics::NameOf(field.hydrometeor));
       }
     }

@@ -70,12 +70,11 @@ Sky sky_behind(vec3 ray, float ground_m) {
 }
 
 // The ground through the air.
-vec3 seen_ground(vec3 radiance, vec3 ray, float ground_m, Sky sky) {
-  vec3 sky_depth = depth_of_way(turbidity, sky.way);
+vec3 seen_ground(vec3 radiance, vec3 ray, float ground_m, vec3 sky_radiance, vec3 sky_depth) {
 #if RELIEF
-  return through_air(radiance, 1.0, depth_before(ray, ground_m), sky_scale * sky.radiance, sky_depth);
+  return through_air(radiance, 1.0, depth_before(ray, ground_m), sky_radiance, sky_depth);
 #else
-  return exp(-sky_depth) * radiance + sky_scale * sky.radiance;
+  return exp(-sky_depth) * radiance + sky_radiance;
 #endif
 }
 
@@ -85,9 +84,11 @@ void main() {
   vec3 ray = local_from_world * world_ray;
   float ground_m = ground_distance_m(origin_m, world_ray);
   Sky sky = sky_behind(ray, ground_m);
-  vec3 background = sky_scale * sky.radiance;
+  vec3 sky_radiance = sky_scale * sky.radiance;
+  vec3 sky_depth = depth_of_way(turbidity, sky.way);
+  vec3 background = sky_radiance;
   if (ground_m > 0.0) {
-    background = seen_ground(ground_radiance(origin_m + ground_m * world_ray), ray, ground_m, sky);
+    background = seen_ground(ground_radiance(origin_m + ground_m * world_ray), ray, ground_m, sky_radiance, sky_depth);
   }
   vec4 front = texture(eye, 0.5 * position + 0.5);
   float opacity = 1.0 - front.a;
@@ -95,8 +96,7 @@ void main() {
     vec2 way_m = way_through_box(origin_m, world_ray);
     float end_m = ground_m > 0.0 ? min(way_m.y, ground_m) : way_m.y;
     float distance_m = 0.5 * (way_m.x + max(end_m, way_m.x));
-    front.rgb = through_air(front.rgb, opacity, depth_before(ray, distance_m), sky_scale * sky.radiance,
-                            depth_of_way(turbidity, sky.way));
+    front.rgb = through_air(front.rgb, opacity, depth_before(ray, distance_m), sky_radiance, sky_depth);
   }
   linear_rgb = vec4(front.rgb + front.a * background, 1.0);
 }

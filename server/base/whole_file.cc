@@ -1,13 +1,20 @@
-#include "app/output_file.h"
+#include "base/whole_file.h"
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "absl/strings/str_cat.h"
 
-namespace thunderhead::app {
+namespace thunderhead::base {
 
-absl::Status WriteFile(const std::string& path, const std::string& bytes) {
+absl::StatusOr<std::string> ReadWholeFile(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return absl::NotFoundError(absl::StrCat(path, ": cannot be read; check the path"));
+  return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+absl::Status WriteWholeFile(const std::string& path, const std::string& bytes) {
   const std::string partial = path + ".partial";
   std::ofstream file(partial, std::ios::binary);
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
@@ -20,4 +27,4 @@ absl::Status WriteFile(const std::string& path, const std::string& bytes) {
       absl::StrCat(path, " cannot be written; check that its folder exists and has room"));
 }
 
-}  // namespace thunderhead::app
+}  // namespace thunderhead::base

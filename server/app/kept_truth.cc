@@ -1,0 +1,42 @@
+#include "app/kept_truth.h"
+
+#include <filesystem>
+
+#include "absl/strings/str_cat.h"
+#include "app/progress_bar.h"
+#include "base/status.h"
+#include "base/whole_file.h"
+#include "reference/exr_file.h"
+
+namespace thunderhead::app {
+
+absl::StatusOr<reference::Image> KeptTruth(const Truth& truth,
+                                           const volume::HydrometeorFields& fields,
+                                           const std::string& path,
+                                           const Interruption& interruption) {
+  const std::string key = absl::StrCat(truth.scene_text, "\npeak cut: ", truth.options.peak_cut_deg,
+                                       "\nsamples a pixel: ", truth.samples_per_pixel, "\n");
+  const std::string key_path = path + ".scene";
+  if (std::filesystem::exists(path) && base::ReadWholeFile(key_path).value_or("") == key) {
+    return reference::ReadExr(path);
+  }
+  reference::RefineLimits limits;
+  limits.samples_per_pixel = truth.samples_per_pixel;
+  ProgressBar bar(absl::StrCat("tracing ", truth.name));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const reference::TracedScene traced,
+      reference::TraceScene(
+          truth.scene, fields, truth.options, limits,
+          [&](const reference::ImageProgress& progress) {
+            bar.Set(static_cast<double>(progress.samples_per_pixel) / truth.samples_per_pixel);
+          },
+          interruption.Token()));
+  if (traced.result.end == reference::RefineEnd::kStopped) {
+    return absl::CancelledError("stopped before the truth was traced; nothing is kept of it");
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(reference::WriteExr(path, traced.image));
+  THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(key_path, key));
+  return traced.image;
+}
+
+}  // namespace thunderhead::app
