@@ -6,6 +6,9 @@
 namespace thunderhead::app {
 namespace {
 
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
 sigset_t Signals() {
   sigset_t signals;
   sigemptyset(&signals);
@@ -14,22 +17,31 @@ sigset_t Signals() {
   return signals;
 }
 
+// One of `signals`, taken within `wait`; false if none came.
+bool Taken(const sigset_t& signals, milliseconds wait) {
+  const timespec limit{0, std::chrono::nanoseconds(wait).count()};
+  return sigtimedwait(&signals, nullptr, &limit) > 0;
+}
+
+// One request may come as several signals: a terminal, a shell and coreutils' timeout each send
+// theirs to the program and to its group.
+constexpr milliseconds kOneRequest(250);
+
 }  // namespace
 
 Interruption::Interruption() {
   const sigset_t signals = Signals();
   pthread_sigmask(SIG_BLOCK, &signals, &before_);
   waiter_ = std::jthread([this, signals](const std::stop_token& ended) {
-    constexpr timespec kStep{0, 100'000'000};
-    while (!ended.stop_requested()) {
-      if (stop_.stop_requested()) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      } else if (sigtimedwait(&signals, nullptr, &kStep) > 0) {
-        stop_.request_stop();
-        // This is then the one thread that does not hold the next signal back.
-        pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
-      }
+    while (!Taken(signals, milliseconds(100))) {
+      if (ended.stop_requested()) return;
     }
+    stop_.request_stop();
+    const auto whole = steady_clock::now() + kOneRequest;
+    while (steady_clock::now() < whole) Taken(signals, milliseconds(20));
+    // This is then the one thread that does not hold the next signal back.
+    pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+    while (!ended.stop_requested()) std::this_thread::sleep_for(milliseconds(20));
   });
 }
 

@@ -1,5 +1,6 @@
-// Ctrl-C (SIGINT) and SIGTERM as a request to stop, for work that then reports what it has. A
-// second signal ends the program as usual.
+// Ctrl-C (SIGINT) and SIGTERM as a request to stop, for work that then reports what it has. What
+// follows within a quarter of a second is the same request; a later signal ends the program as
+// usual.
 #pragma once
 
 #include <csignal>
@@ -12,7 +13,8 @@ class Interruption {
  public:
   // From here on the signals are taken; threads started later leave them to this one.
   Interruption();
-  // The signals are as they were.
+  // The signals are as they were. Waits until a request has come whole, so that its rest does not
+  // end the program before it has written what it reports.
   ~Interruption();
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;

@@ -2,10 +2,9 @@
 // for and acknowledged. Owns them all; dispose() ends them all.
 
 import { create } from "@bufbuild/protobuf";
-import { ConnectError, type Transport } from "@connectrpc/connect";
+import type { Transport } from "@connectrpc/connect";
 import { effect } from "@preact/signals-core";
 import { type CameraKind, homeCamera, poseOfCamera, standingAzimuthDeg } from "../core/camera";
-import { requestOfCloud } from "../core/cloud";
 import { FramePipeline } from "../core/frame_pipeline";
 import { FrameRate } from "../core/frame_rate";
 import { Playback } from "../core/playback";
@@ -24,9 +23,9 @@ import { CanvasPainter } from "./canvas_painter";
 import { attachKeyboard } from "./keyboard";
 import { linkTo, readLink, withoutLink } from "./link";
 import { attachPointer } from "./pointer";
+import { StormsOnServer } from "./storms_on_server";
 
 const RESIZE_REST_MS = 150;
-const DESCRIBE_REST_MS = 400;
 const PACE_EVERY_MS = 500;
 const NOTE_MS = 6000;
 // Narrower windows start with the panel closed.
@@ -37,6 +36,7 @@ export class Page implements SessionListener {
   readonly playback: Playback;
   readonly #window: Window;
   readonly #client: SessionClient;
+  readonly #storms: StormsOnServer;
   readonly #sender: SceneSender;
   readonly #pipeline: FramePipeline<Frame, ImageBitmap>;
   readonly #ledger = new RevisionLedger();
@@ -54,9 +54,7 @@ export class Page implements SessionListener {
   #told: { scene: Scene; revision: bigint } | undefined;
   // The newest scene by another that the controls show.
   #adoptedRevision = -1n;
-  #describeTimer: ReturnType<typeof setTimeout> | undefined;
   #running = false;
-  #making: AbortController | undefined;
 
   constructor(transport: Transport, window: Window) {
     this.#window = window;
@@ -66,6 +64,7 @@ export class Page implements SessionListener {
     this.state.panelOpen.value = window.innerWidth >= NARROW_PX;
 
     this.#client = new SessionClient(transport, this, link.sessionId);
+    this.#storms = new StormsOnServer(this.#client, this.state);
     const onNextPaint = (callback: (nowMs: number) => void) => {
       const request = window.requestAnimationFrame(callback);
       return () => window.cancelAnimationFrame(request);
@@ -132,30 +131,14 @@ export class Page implements SessionListener {
 
   // Has the server make the cloud that was drafted, and shows it.
   async makeCloud(): Promise<void> {
-    const making = new AbortController();
-    this.#making = making;
-    this.state.makingCloud.value = true;
-    try {
-      const storm = await this.#client.generateCloud(
-        requestOfCloud(this.state.cloud.value),
-        making.signal,
-      );
-      this.state.storms.value = await this.#client.storms();
-      this.state.dismiss("cloud");
-      if (storm === undefined) return;
-      this.showStorm(storm.id);
-      this.home();
-    } catch (error) {
-      if (making.signal.aborted) return;
-      const text = error instanceof ConnectError ? error.rawMessage : String(error);
-      this.state.notify({ subject: "cloud", text: `No cloud: ${text}`, severity: "problem" });
-    } finally {
-      this.state.makingCloud.value = false;
-    }
+    const stormId = await this.#storms.makeCloud();
+    if (stormId === undefined) return;
+    this.showStorm(stormId);
+    this.home();
   }
 
   stopCloud(): void {
-    this.#making?.abort();
+    this.#storms.stopCloud();
   }
 
   // A camera of that kind that shows the whole storm.
@@ -193,10 +176,9 @@ export class Page implements SessionListener {
   }
 
   dispose(): void {
-    this.#making?.abort();
+    this.#storms.dispose();
     this.#listening.abort();
     for (const dispose of this.#disposals) dispose();
-    clearTimeout(this.#describeTimer);
     this.playback.dispose();
     this.#sender.stop();
     this.#client.dispose();
@@ -239,7 +221,7 @@ export class Page implements SessionListener {
           : "The server had lost the session; this is a new one with the same scene.";
       this.#note("session", text);
     }
-    void this.#learnServer();
+    void this.#storms.learn();
   }
 
   streaming(sessionId: string): void {
@@ -247,7 +229,7 @@ export class Page implements SessionListener {
     this.#sender.start();
     if (this.state.session.value?.id !== sessionId) {
       this.state.session.value = { id: sessionId, shared: true };
-      void this.#learnServer();
+      void this.#storms.learn();
     }
   }
 
@@ -296,7 +278,7 @@ export class Page implements SessionListener {
         togglePlay: () => this.playback.toggle(),
         stepTime: (by) => this.playback.step(by),
       }),
-      effect(() => this.#describeAfterRest()),
+      effect(() => this.#storms.describeAfterRest(this.playback.playing.value)),
     );
   }
 
@@ -399,49 +381,6 @@ export class Page implements SessionListener {
       bytesPerSecond: this.#rate.bytesPerSecond(now),
       latencyMs: this.#ledger.latencyMs,
     };
-  }
-
-  // What the server is and which storms it holds; asked again with each new session, as it may be another server.
-  async #learnServer(): Promise<void> {
-    try {
-      this.state.server.value = await this.#client.serverInfo();
-      this.state.storms.value = await this.#client.storms();
-      const first = this.state.storms.value[0];
-      const { scene } = this.state;
-      if (scene.value.stormId === "" && first !== undefined) {
-        this.state.adoptScene({ ...scene.value, stormId: first.id });
-      }
-    } catch {
-      // The stream notices the loss as well, and its recovery asks again.
-    }
-  }
-
-  // Asks for the storm at the time shown; at once for another storm, after a rest for another time.
-  #describeAfterRest(): void {
-    const stormId = this.state.stormId.value;
-    const timeIndex = this.state.timeIndex.value;
-    const live = this.state.connection.value.kind === "live";
-    const playing = this.playback.playing.value;
-    clearTimeout(this.#describeTimer);
-    if (stormId === "" || !live) return;
-    const known = this.state.storm.peek();
-    if (known?.id !== stormId) void this.#describe(stormId, timeIndex);
-    else if (known.timeIndex !== timeIndex && !playing) {
-      this.#describeTimer = setTimeout(() => this.#describe(stormId, timeIndex), DESCRIBE_REST_MS);
-    }
-  }
-
-  async #describe(stormId: string, timeIndex: number): Promise<void> {
-    try {
-      const storm = await this.#client.describeStorm(stormId, timeIndex);
-      if (storm === undefined || stormId !== this.state.stormId.value) return;
-      this.state.storm.value = storm;
-      this.state.dismiss("storm");
-    } catch (error) {
-      if (this.state.connection.value.kind !== "live") return;
-      const text = `The storm cannot be described: ${String(error)}`;
-      this.state.notify({ subject: "storm", text, severity: "problem" });
-    }
   }
 
   // Says something that needs no answer, for a while.

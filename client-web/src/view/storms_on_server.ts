@@ -1,0 +1,91 @@
+// What the server is and which storms it holds: learns of them, has the one shown described, has clouds made.
+import { ConnectError } from "@connectrpc/connect";
+import { requestOfCloud } from "../core/cloud";
+import type { PageState } from "../core/state";
+import type { SessionClient } from "../transport/session_client";
+
+const DESCRIBE_REST_MS = 400;
+
+export class StormsOnServer {
+  readonly #client: SessionClient;
+  readonly #state: PageState;
+  #describeTimer: ReturnType<typeof setTimeout> | undefined;
+  #making: AbortController | undefined;
+
+  constructor(client: SessionClient, state: PageState) {
+    this.#client = client;
+    this.#state = state;
+  }
+
+  // Asked again with each new session, as it may be another server.
+  async learn(): Promise<void> {
+    const { server, storms, scene } = this.#state;
+    try {
+      server.value = await this.#client.serverInfo();
+      storms.value = await this.#client.storms();
+      const first = storms.value[0];
+      if (scene.value.stormId === "" && first !== undefined) {
+        this.#state.adoptScene({ ...scene.value, stormId: first.id });
+      }
+    } catch {
+      // The stream notices the loss as well, and its recovery asks again.
+    }
+  }
+
+  // Asks for the storm at the time shown; at once for another storm, after a rest for another time. Reads signals.
+  describeAfterRest(playing: boolean): void {
+    const stormId = this.#state.stormId.value;
+    const timeIndex = this.#state.timeIndex.value;
+    const live = this.#state.connection.value.kind === "live";
+    clearTimeout(this.#describeTimer);
+    if (stormId === "" || !live) return;
+    const known = this.#state.storm.peek();
+    if (known?.id !== stormId) void this.#describe(stormId, timeIndex);
+    else if (known.timeIndex !== timeIndex && !playing) {
+      this.#describeTimer = setTimeout(() => this.#describe(stormId, timeIndex), DESCRIBE_REST_MS);
+    }
+  }
+
+  // Has the cloud made that was drafted; the id of the storm that it is then.
+  async makeCloud(): Promise<string | undefined> {
+    const making = new AbortController();
+    this.#making = making;
+    this.#state.makingCloud.value = true;
+    try {
+      const request = requestOfCloud(this.#state.cloud.value);
+      const storm = await this.#client.generateCloud(request, making.signal);
+      this.#state.storms.value = await this.#client.storms();
+      this.#state.dismiss("cloud");
+      return storm?.id;
+    } catch (error) {
+      if (making.signal.aborted) return undefined;
+      const text = error instanceof ConnectError ? error.rawMessage : String(error);
+      this.#state.notify({ subject: "cloud", text: `No cloud: ${text}`, severity: "problem" });
+      return undefined;
+    } finally {
+      this.#state.makingCloud.value = false;
+    }
+  }
+
+  stopCloud(): void {
+    this.#making?.abort();
+  }
+
+  dispose(): void {
+    this.stopCloud();
+    clearTimeout(this.#describeTimer);
+  }
+
+  async #describe(stormId: string, timeIndex: number): Promise<void> {
+    try {
+      const storm = await this.#client.describeStorm(stormId, timeIndex);
+      if (storm === undefined || stormId !== this.#state.stormId.value) return;
+      this.#state.storm.value = storm;
+      this.#state.dismiss("storm");
+    } catch (error) {
+      if (this.#state.connection.value.kind !== "live") return;
+      const text = `The storm cannot be described: ${String(error)}`;
+      this.#state.notify({ subject: "storm", text, severity: "problem" });
+    }
+  }
+}
