@@ -79,4 +79,13 @@ absl::StatusOr<CumulusSurface> SurfaceOfPreset(std::string_view preset,
   return surface;
 }
 
+absl::StatusOr<CumulusSurface> LoneEllipsoid(const CauliflowerOptions& options) {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckScales(options.scales));
+  CumulusSurface surface;
+  surface.bubbles.push_back(BubbleOf({{0.0, 0.0, 500.0}, {700.0, 600.0, 500.0}, {}}));
+  surface.bubbles.front().outward = glm::dvec3(0.0);
+  AddScales(options, options.scales - 1, &surface);
+  return surface;
+}
+
 }  // namespace thunderhead::clouds

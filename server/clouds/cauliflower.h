@@ -1,5 +1,5 @@
-// Surfaces of cumulus made from a seed: a heap of heaps of bubbles, or the ellipsoids of a preset
-// of the generator with bubbles on them. The same on every machine.
+// Surfaces of cumulus made from a seed: a heap of heaps of bubbles, the ellipsoids of a preset of
+// the generator with bubbles on them, or one ellipsoid. The same on every machine.
 #pragma once
 
 #include <cstdint>
@@ -24,5 +24,8 @@ absl::StatusOr<CumulusSurface> Cauliflower(const CauliflowerOptions& options);
 // The ellipsoids of a preset (clouds/presets.h) and, from `scales` 2 on, bubbles upon them.
 absl::StatusOr<CumulusSurface> SurfaceOfPreset(std::string_view preset,
                                                const CauliflowerOptions& options);
+
+// One ellipsoid, as in the paper's figure 6, and from `scales` 2 on bubbles upon it.
+absl::StatusOr<CumulusSurface> LoneEllipsoid(const CauliflowerOptions& options);
 
 }  // namespace thunderhead::clouds

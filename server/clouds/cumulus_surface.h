@@ -17,7 +17,7 @@ namespace thunderhead::clouds {
 struct Bubble {
   glm::dvec3 centre_m{0.0};
   glm::dmat3 semi_axes_m{1.0};        // columns
-  glm::dvec3 outward{0.0, 0.0, 1.0};  // N_sh: normal of what it lies on
+  glm::dvec3 outward{0.0, 0.0, 1.0};  // N_sh: normal of what it lies on; 0 if it stands alone
   int parent = -1;                    // the bubble that it lies on, earlier in the list; or none
 };
 

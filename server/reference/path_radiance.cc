@@ -99,16 +99,25 @@ class Path {
     if (most_scatterings_ > 0 && collisions_ >= most_scatterings_) return false;
     throughput_ *= scattering.weight;
     if (!Survive() || !GoOnAtLength()) return false;
-    const double mu = glm::dot(ray_.direction, surroundings_.towards_sun);
-    const glm::dvec3 phase = scattering.phase->Value(mu);
-    const double worth = std::min(Largest(Carried() * phase) / kRouletteSunlight, 1.0);
-    if (random_->Uniform() < worth) {
-      AddSunlight(point_m, phase * (0.25 * std::numbers::inv_pi / worth));
+    ScatterLight(*scattering.phase, point_m,
+                 {surroundings_.towards_sun, surroundings_.sun_irradiance});
+    for (const DirectionalLight& light : surroundings_.lights) {
+      ScatterLight(*scattering.phase, point_m, light);
     }
     const double mu_turned = TurnBy(scattering.phase->Sample(random_->Uniform(), hero_));
     const double azimuth_rad = 2.0 * std::numbers::pi * random_->Uniform();
     ray_ = {point_m, Deflect(ray_.direction, mu_turned, azimuth_rad)};
     return true;
+  }
+
+  // Light that is scattered once, from where it comes to the path.
+  void ScatterLight(const SampledPhase& phase, const glm::dvec3& point_m,
+                    const DirectionalLight& light) {
+    const glm::dvec3 value = phase.Value(glm::dot(ray_.direction, light.towards));
+    const double worth = std::min(Largest(Carried() * value) / kRouletteSunlight, 1.0);
+    if (random_->Uniform() < worth) {
+      AddLight(point_m, light, value * (0.25 * std::numbers::inv_pi / worth));
+    }
   }
 
   // Colours whose phase functions differ share one path, sampled from the hero colour's. Its weight
@@ -133,16 +142,18 @@ class Path {
     throughput_ *= ground.albedo;
     if (Largest(Carried()) <= 0.0) return false;
     const double sine = std::max(surroundings_.towards_sun.z, 0.0);
-    AddSunlight(point_m, glm::dvec3(sine * std::numbers::inv_pi));
+    AddLight(point_m, {surroundings_.towards_sun, surroundings_.sun_irradiance},
+             glm::dvec3(sine * std::numbers::inv_pi));
     ray_ = {point_m, SampleCosine({0.0, 0.0, 1.0}, random_)};
     return true;
   }
 
-  // `reflected` is radiance sent back along the path for each unit of sunlight.
-  void AddSunlight(const glm::dvec3& point_m, const glm::dvec3& reflected) {
-    const glm::dvec3 most = Carried() * reflected * surroundings_.sun_irradiance;
+  // `reflected` is radiance sent back along the path for each unit of irradiance.
+  void AddLight(const glm::dvec3& point_m, const DirectionalLight& light,
+                const glm::dvec3& reflected) {
+    const glm::dvec3 most = Carried() * reflected * light.irradiance;
     if (Largest(most) <= 0.0) return;
-    const Ray ray{point_m, surroundings_.towards_sun};
+    const Ray ray{point_m, light.towards};
     radiance_ += most * EstimateTransmittance(medium_, ray, kInfinity, random_);
   }
 

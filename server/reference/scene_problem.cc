@@ -218,6 +218,10 @@ Surroundings SurroundingsOf(const scene::Scene& scene, const volume::Hydrometeor
   const auto shared =
       std::make_shared<const Around>(scene, towards_sun, view, static_cast<float>(lowest_m));
   around.sun_irradiance = scene.sun.irradiance * glm::dvec3(shared->sky.SunTransmittance());
+  for (const scene::DirectionalLight& light : scene.lights) {
+    around.lights.push_back(
+        {scene::Direction(light.azimuth_deg, light.elevation_deg), light.irradiance * light.color});
+  }
   around.sky = [shared](const glm::dvec3& direction) {
     return shared->scale * glm::dvec3(shared->sky.At(glm::vec3(direction)).radiance);
   };

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
@@ -31,9 +32,16 @@ struct Air {
   glm::dvec3 airlight{0.0};
 };
 
+// A light besides the sun. It reaches the medium only, and nothing else shades it.
+struct DirectionalLight {
+  glm::dvec3 towards{0.0, 0.0, 1.0};
+  glm::dvec3 irradiance{0.0};  // on a plane facing it
+};
+
 struct Surroundings {
   glm::dvec3 towards_sun{0.0, 0.0, 1.0};
   glm::dvec3 sun_irradiance{0.0};  // on a plane facing the sun; all from one direction
+  std::vector<DirectionalLight> lights;
   // Radiance that comes from a direction; black if not set.
   std::function<glm::dvec3(const glm::dvec3& direction)> sky;
   // The same as the eye sees it; as `sky` if not set.

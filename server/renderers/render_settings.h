@@ -1,6 +1,8 @@
 // What every renderer of a medium is told besides the medium.
 #pragma once
 
+#include <vector>
+
 #include "gl/objects.h"
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
@@ -9,13 +11,20 @@
 
 namespace thunderhead::renderers {
 
-// What the sun and sky send into the medium.
+// A light besides the sun (scene::DirectionalLight).
+struct Beam {
+  glm::dvec3 towards{0.0, 0.0, 1.0};
+  glm::vec3 irradiance{1.0F};
+};
+
+// What the sun, the sky and the scene's own lights send into the medium.
 struct Illumination {
   glm::dvec3 towards_sun{0.0, 0.0, 1.0};
   glm::vec3 sunlight{1.0F};  // irradiance on a plane facing the sun
   glm::vec3 ambient{0.0F};   // mean radiance from sky and ground
   glm::vec3 from_sky{0.0F};  // mean radiance of the upper and of the lower half
   glm::vec3 from_ground{0.0F};
+  std::vector<Beam> beams{};  // renderers that cannot show them say so
 };
 
 struct RenderSettings {

@@ -31,6 +31,11 @@ std::vector<std::string> NotShownByMetaballs(const scene::Rendering& rendering) 
   return not_shown;
 }
 
+void SayWhichLights(const scene::Scene& scene, std::vector<std::string>* not_shown) {
+  if (scene.lights.empty() || scene::ShowsLights(scene.rendering.renderer)) return;
+  not_shown->emplace_back("lights besides the sun (metaballs and the reference show them)");
+}
+
 }  // namespace
 
 SceneRenderer::SceneRenderer(std::shared_ptr<gl::ProgramCache> programs,
@@ -271,6 +276,7 @@ LinearFrame SceneRenderer::Report(const scene::Scene& scene,
     frame.slices = 0;
     frame.ellipsoids = cumulus_.BubbleCount();
     frame.not_shown = NotShownByCumulus(scene, fields);
+    SayWhichLights(scene, &frame.not_shown);
     return frame;
   }
   if (!medium_.Empty()) {
@@ -288,6 +294,7 @@ LinearFrame SceneRenderer::Report(const scene::Scene& scene,
     }
     frame.not_shown = NotShownByMetaballs(scene.rendering);
   }
+  SayWhichLights(scene, &frame.not_shown);
   return frame;
 }
 

@@ -78,6 +78,10 @@ Illumination SkyAndGround::IlluminationOf(const scene::Scene& scene) const {
       sky_->Light().irradiance * irradiance * static_cast<float>(scene.sky.brightness);
   light.from_ground = GroundReflectance(scene) * (light.sunlight * sine + diffuse);
   light.ambient = 0.5F * (light.from_sky + light.from_ground);
+  for (const scene::DirectionalLight& lamp : scene.lights) {
+    light.beams.push_back({scene::Direction(lamp.azimuth_deg, lamp.elevation_deg),
+                           glm::vec3(lamp.irradiance * lamp.color)});
+  }
   return light;
 }
 

@@ -41,6 +41,31 @@ bool SameLight(Rendering before, const Rendering& after) {
   return before == after;
 }
 
+// What a change of the lights besides the sun dirties: their colours count once the light is
+// carried; where they are not shown, a frame only says so.
+Stage DirtiedByLights(const Scene& before, const Scene& after) {
+  if (before.lights == after.lights) return Stage::kNothing;
+  if (!ShowsLights(after.rendering.renderer)) return Stage::kTone;
+  const bool same_directions =
+      std::equal(before.lights.begin(), before.lights.end(), after.lights.begin(),
+                 after.lights.end(), [](const DirectionalLight& a, const DirectionalLight& b) {
+                   return a.azimuth_deg == b.azimuth_deg && a.elevation_deg == b.elevation_deg;
+                 });
+  return same_directions ? Stage::kView : Stage::kLight;
+}
+
+Stage DirtiedByTheRest(const Scene& before, const Scene& after) {
+  const bool same_size = before.output.width_px == after.output.width_px &&
+                         before.output.height_px == after.output.height_px;
+  if (before.camera != after.camera || before.sky != after.sky || !same_size ||
+      (BothCumulus(before.rendering, after.rendering) &&
+       before.rendering.cumulus != after.rendering.cumulus)) {
+    return Stage::kView;
+  }
+  if (before.display != after.display || before.output != after.output) return Stage::kTone;
+  return Stage::kNothing;
+}
+
 }  // namespace
 
 bool FieldParameters::operator==(const FieldParameters& other) const {
@@ -74,6 +99,10 @@ bool HasPerFieldPhase(Mode mode) {
 
 bool HasDetail(Mode mode) { return mode == Mode::kPerFieldPhaseDetailTranslucent; }
 
+bool ShowsLights(Renderer renderer) {
+  return renderer == Renderer::kMetaball || renderer == Renderer::kReference;
+}
+
 Scene::Scene() {
   for (physics::Hydrometeor hydrometeor : physics::kHydrometeors) {
     FieldParameters& field = fields[physics::IndexOf(hydrometeor)];
@@ -93,15 +122,7 @@ Stage FirstDirtyStage(const Scene& before, const Scene& after) {
   if (before.sun != after.sun || !SameLight(before.rendering, after.rendering)) {
     return Stage::kLight;
   }
-  const bool same_size = before.output.width_px == after.output.width_px &&
-                         before.output.height_px == after.output.height_px;
-  if (before.camera != after.camera || before.sky != after.sky || !same_size ||
-      (BothCumulus(before.rendering, after.rendering) &&
-       before.rendering.cumulus != after.rendering.cumulus)) {
-    return Stage::kView;
-  }
-  if (before.display != after.display || before.output != after.output) return Stage::kTone;
-  return Stage::kNothing;
+  return std::min(DirtiedByLights(before, after), DirtiedByTheRest(before, after));
 }
 
 }  // namespace thunderhead::scene

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
@@ -89,6 +90,17 @@ struct Sun {
   bool operator==(const Sun&) const = default;
 };
 
+// A light besides the sun, all of it from one direction. It lights the storm alone: neither ground
+// nor sky, and through no air. Shown by metaballs and by the reference.
+struct DirectionalLight {
+  double azimuth_deg = 75.0;
+  double elevation_deg = 20.0;
+  glm::dvec3 color{1.0};    // linear sRGB, up to 1
+  double irradiance = 1.0;  // of white, on a plane facing it, in the unit of the sun's
+
+  bool operator==(const DirectionalLight&) const = default;
+};
+
 struct Sky {
   double brightness = 1.0;
   double ground_albedo = 0.2;
@@ -114,6 +126,9 @@ bool HasDetail(Mode mode);
 enum class Renderer { kHalfAngle, kLightVolume, kReference, kMetaball, kCumulus };
 inline constexpr std::size_t kRendererCount = 5;
 
+// Whether it shows lights besides the sun.
+bool ShowsLights(Renderer renderer);
+
 // What becomes of scattered light: the papers' slices; an exact exponential with a closed form for
 // light scattered many times; or that light from the diffusion equation (light volume only: slices
 // draw it as consistent).
@@ -129,9 +144,17 @@ struct Metaballs {
   bool operator==(const Metaballs&) const = default;
 };
 
-// What the cumulus renderer draws: the storm's cloud water and ice, a heap of heaps of bubbles, or
-// the ellipsoids of one of the generator's presets. What is not the storm fills its place.
-enum class CumulusSource { kStorm, kCauliflower, kFairWeatherCumulus, kCongestus, kCumulusField };
+// What the cumulus renderer draws: the storm's cloud water and ice, a heap of heaps of bubbles, the
+// ellipsoids of one of the generator's presets, or one ellipsoid. What is not the storm fills its
+// place.
+enum class CumulusSource {
+  kStorm,
+  kCauliflower,
+  kFairWeatherCumulus,
+  kCongestus,
+  kCumulusField,
+  kEllipsoid
+};
 
 // Which part of a cumulus' light is shown; balls are Lambert's law on bare ellipsoids, what the
 // shading's cost is compared with.
@@ -203,6 +226,7 @@ struct Scene {
   Camera camera;
   Sun sun;
   Sky sky;
+  std::vector<DirectionalLight> lights;
   std::array<FieldParameters, physics::kHydrometeorCount> fields;  // by physics::IndexOf
   Rendering rendering;
   Display display;

@@ -55,6 +55,7 @@ constexpr std::array kCumulusSources = {
     std::pair{v1::Cumulus::SOURCE_FAIR_WEATHER_CUMULUS, scene::CumulusSource::kFairWeatherCumulus},
     std::pair{v1::Cumulus::SOURCE_CONGESTUS, scene::CumulusSource::kCongestus},
     std::pair{v1::Cumulus::SOURCE_CUMULUS_FIELD, scene::CumulusSource::kCumulusField},
+    std::pair{v1::Cumulus::SOURCE_ELLIPSOID, scene::CumulusSource::kEllipsoid},
 };
 constexpr std::array kCumulusComponents = {
     std::pair{v1::Cumulus::COMPONENT_ALL, scene::CumulusComponent::kAll},
@@ -147,6 +148,12 @@ scene::FieldParameters ToField(const v1::FieldParameters& message) {
   field.detail = {detail.share(), detail.wavelength_m(), static_cast<int>(detail.octaves()),
                   detail.seed()};
   return field;
+}
+
+scene::DirectionalLight ToLight(const v1::DirectionalLight& message) {
+  const v1::Color& color = message.color();
+  return {message.azimuth_deg(), message.elevation_deg(),
+          glm::dvec3(color.red(), color.green(), color.blue()), message.irradiance()};
 }
 
 scene::Metaballs ToMetaballs(const v1::Metaballs& message) {
@@ -254,6 +261,13 @@ void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
   if (camera.kind_case() == v1::Camera::KIND_NOT_SET) camera.mutable_orbit();
   FillSunDefaults(*scene.mutable_sun(), storm, static_cast<int>(scene.time_index()));
   scene.mutable_sky();
+  for (v1::DirectionalLight& light : *scene.mutable_lights()) {
+    if (light.has_color()) continue;
+    v1::Color& white = *light.mutable_color();
+    white.set_red(1.0F);
+    white.set_green(1.0F);
+    white.set_blue(1.0F);
+  }
   scene.mutable_output();
   v1::Rendering& rendering = *scene.mutable_rendering();
   rendering.set_renderer(MessageOf(kRenderers, ValueOf(kRenderers, rendering.renderer())));
@@ -286,6 +300,9 @@ scene::Scene ToScene(const v1::Scene& message) {
                message.sky().turbidity()};
   for (const v1::FieldParameters& field : message.fields()) {
     scene.fields[IndexOf(field.hydrometeor())] = ToField(field);
+  }
+  for (const v1::DirectionalLight& light : message.lights()) {
+    scene.lights.push_back(ToLight(light));
   }
   const v1::Rendering& rendering = message.rendering();
   scene.rendering.renderer = ValueOf(kRenderers, rendering.renderer());

@@ -294,6 +294,99 @@ TEST_F(MetaballTest, SkyAndGroundLightFromBothSides) {
   EXPECT_GT(from_above[kMiddle + 2], 0.8F) << "its top has the sky's colour";
 }
 
+class MetaballLightsTest : public MetaballTest {
+ protected:
+  void SetUp() override {
+    MetaballTest::SetUp();
+    settings_.rendering.mode = scene::Mode::kPerFieldPhaseTranslucent;
+    settings_.illumination = {{0.0, 0.6, 0.8}, glm::vec3(0.0F), glm::vec3(0.0F)};
+    balls_.push_back(At({0.0, 0.0, 5200.0}, 500.0, 4e-3));
+    for (int i = 0; i < 30; ++i) {
+      const double angle = 0.7 * i;
+      balls_.push_back(At({900.0 * std::cos(angle), 900.0 * std::sin(angle), 4000.0 + 60.0 * i},
+                          300.0 + 10.0 * i, 4e-3));
+    }
+  }
+
+  std::vector<float> DrawWith(const std::vector<Beam>& beams) {
+    settings_.illumination.beams = beams;
+    return Draw(balls_);
+  }
+
+  const Beam red_{glm::normalize(glm::dvec3(1.0, 0.0, 0.4)), {0.9F, 0.1F, 0.0F}};
+  const Beam blue_{glm::normalize(glm::dvec3(-0.3, -1.0, 0.1)), {0.0F, 0.2F, 2.0F}};
+  std::vector<Ball> balls_;
+};
+
+TEST_F(MetaballLightsTest, LightsAddUp) {
+  for (const auto transport : {scene::Transport::kConsistent, scene::Transport::kPaper}) {
+    settings_.rendering.transport = transport;
+    settings_.illumination.sunlight = glm::vec3(0.0F);
+    const std::vector<float> red = DrawWith({red_});
+    const std::vector<float> blue = DrawWith({blue_});
+    settings_.illumination.sunlight = {0.5F, 0.6F, 0.7F};
+    const std::vector<float> sun = DrawWith({});
+    const std::vector<float> all = DrawWith({red_, blue_});
+    double brightest = 0.0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (i % 4 == 3) {
+        ASSERT_EQ(all[i], sun[i]);
+        continue;
+      }
+      // Sums of three terms in single precision.
+      ASSERT_NEAR(all[i], sun[i] + red[i] + blue[i], 1e-6 * (1.0 + all[i]));
+      brightest = std::max<double>(brightest, all[i]);
+    }
+    EXPECT_GT(brightest, 0.05);
+    EXPECT_GT(red[kMiddle], 5.0F * red[kMiddle + 1]) << "in its own colour";
+    EXPECT_EQ(red[kMiddle + 2], 0.0F);
+    EXPECT_GT(blue[kMiddle + 2], 5.0F * blue[kMiddle + 1]);
+  }
+}
+
+TEST_F(MetaballLightsTest, ALightInTheSunsPlaceIsTheSun) {
+  settings_.illumination.sunlight = glm::vec3(0.7F);
+  const std::vector<float> sun = DrawWith({});
+  settings_.illumination.sunlight = glm::vec3(0.0F);
+  EXPECT_EQ(DrawWith({{settings_.illumination.towards_sun, glm::vec3(0.7F)}}), sun);
+}
+
+TEST_F(MetaballLightsTest, OnlyWhatChangedIsCarriedAgain) {
+  settings_.illumination.sunlight = glm::vec3(0.3F);
+  const auto check = [&](const std::vector<Beam>& beams, int carried, const std::string& what) {
+    const std::vector<float> pixels = DrawWith(beams);
+    EXPECT_EQ(renderer_->CarriedLights(), carried) << what;
+    MetaballRenderer fresh(std::make_shared<gl::ProgramCache>());
+    std::swap(*renderer_, fresh);
+    EXPECT_EQ(DrawWith(beams), pixels) << what;
+    std::swap(*renderer_, fresh);
+  };
+  check({red_}, 3, "the sun, one light, sky and ground");
+  check({red_}, 0, "nothing");
+  check({red_, blue_}, 1, "another light");
+  Beam dimmed = blue_;
+  dimmed.irradiance *= 0.1F;
+  check({red_, dimmed}, 0, "its colour");
+  check({dimmed, red_}, 0, "the order");
+  check({red_}, 0, "one less");
+  settings_.illumination.towards_sun = {0.0, -0.6, 0.8};
+  check({red_}, 1, "the sun");
+  settings_.illumination.from_sky = {0.1F, 0.2F, 0.3F};
+  check({red_}, 0, "the sky's colour");
+  settings_.rendering.metaballs.isotropic = true;
+  check({red_}, 0, "what the eye sees of it");
+  balls_[3].radius_m += 1.0;
+  check({red_}, 3, "a ball");
+  settings_.rendering.mode = scene::Mode::kUniformPhaseLowAlbedo;
+  check({red_}, 3, "how light goes on");
+  settings_.rendering.transport = scene::Transport::kPaper;
+  check({red_, blue_}, 5, "the paper's, with two lights for sky and ground");
+  settings_.rendering.metaballs.albedo = 0.5;
+  check({red_, blue_}, 5, "the paper's albedo");
+  settings_.rendering.metaballs.optical_depth = 5.0;
+  check({red_, blue_}, 5, "the paper's depth");
+}
+
 TEST_F(MetaballTest, NoBallsAreNothing) {
   for (const auto transport : {scene::Transport::kPaper, scene::Transport::kConsistent}) {
     settings_.rendering.transport = transport;
@@ -436,6 +529,31 @@ TEST_F(MetaballSceneTest, TheFrameSaysWhatItIs) {
   scene_.rendering.renderer = scene::Renderer::kLightVolume;
   EXPECT_THAT(Draw().not_shown, IsEmpty());
   EXPECT_EQ(Draw().balls, 0);
+}
+
+TEST_F(MetaballSceneTest, LightsBesidesTheSunAreShownOrSaidNotToBe) {
+  const auto blue_over_red = [](const LinearFrame& frame) {
+    const std::vector<float> pixels = frame::ReadLinear(*frame.radiance);
+    const std::size_t middle = 4 * (16 * 48 + 24);
+    return pixels[middle + 2] / pixels[middle];
+  };
+  const float plain = blue_over_red(Draw());
+  scene_.lights = {{200.0, 10.0, {0.0, 0.0, 1.0}, 1.0}};
+  const LinearFrame lit = Draw();
+  EXPECT_THAT(lit.not_shown, Not(Contains(HasSubstr("lights"))));
+  EXPECT_GT(blue_over_red(lit), 1.5F * plain);
+  EXPECT_THAT(Stages(), IsEmpty());
+  scene_.lights[0].color = {0.0, 1.0, 0.0};
+  EXPECT_THAT(Stages(), ElementsAre("view", "composite"));
+  for (const auto renderer :
+       {scene::Renderer::kLightVolume, scene::Renderer::kHalfAngle, scene::Renderer::kCumulus}) {
+    scene_.rendering.renderer = renderer;
+    EXPECT_THAT(Draw().not_shown, Contains(HasSubstr("lights besides the sun")));
+    scene_.lights.clear();
+    EXPECT_THAT(Stages(), IsEmpty()) << "none to draw again";
+    EXPECT_THAT(Draw().not_shown, Not(Contains(HasSubstr("lights"))));
+    scene_.lights.emplace_back();
+  }
 }
 
 TEST_F(MetaballSceneTest, NothingVisibleNeedsNoBalls) {

@@ -116,6 +116,30 @@ TEST(PathTracer, ColorsOfDifferentPhaseFunctions) {
   for (int color = 0; color < 3; ++color) ExpectAgrees(MeanOf(white, color), 1.0, 0.0, 0.006);
 }
 
+// Two lights give what each gives alone, in its own colour; a light in the sun's place is the sun,
+// but for the ground, which it does not light.
+TEST(PathTracer, LightsAddUp) {
+  const auto cloud = Made(LumpyCloud(0.02, 1.0, 0.5));
+  const auto look = [&](const std::vector<DirectionalLight>& lights, const Surroundings& around) {
+    Surroundings with = around;
+    with.lights = lights;
+    return Trace(cloud, with, OverTheTop(*cloud, {0.6, 0.0, -0.8}), {16, 16}, 400);
+  };
+  const DirectionalLight red{SunAt(50.0), {1.0, 0.0, 0.0}};
+  const DirectionalLight white{{-0.6, 0.0, 0.8}, glm::dvec3(0.5)};
+  const Image both = look({red, white}, {});
+  const Image sun = look({}, SunOnly(SunAt(50.0)));
+  const Image second = look({white}, {});
+  ExpectAgree(MeanOf(both, 1), MeanOf(second, 1), 0.01);
+  const FluxShare first = MeanOf(sun, 0);
+  const FluxShare other = MeanOf(second, 0);
+  ExpectAgree(MeanOf(both, 0),
+              {first.value + other.value, std::hypot(first.standard_error, other.standard_error)},
+              0.01);
+  EXPECT_GT(first.value, 0.02);
+  EXPECT_GT(other.value, 0.02);
+}
+
 // The same with a white Lambertian ground below.
 TEST(PathTracer, WhiteFurnaceWithGround) {
   Surroundings furnace;

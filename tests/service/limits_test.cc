@@ -75,6 +75,16 @@ INSTANTIATE_TEST_SUITE_P(
              "scene.camera.orbit.target.z_m is -inf; it must be between -1e+06 and 1e+06 m"},
         Case{R"({"camera": {"orbit": {"distanceM": 0}}})",
              "scene.camera.orbit.distance_m is 0; it must be between 1 and 5e+07 m"},
+        Case{R"({"lights": [{}, {"azimuthDeg": 400}]})",
+             "scene.lights[1].azimuth_deg is 400; it must be between -360 and 360 deg"},
+        Case{R"({"lights": [{"elevationDeg": "NaN"}]})",
+             "scene.lights[0].elevation_deg is nan; it must be between -90 and 90 deg"},
+        Case{R"({"lights": [{"irradiance": -1}]})",
+             "scene.lights[0].irradiance is -1; it must be between 0 and 100"},
+        Case{R"({"lights": [{"color": {"blue": 2}}]})",
+             "scene.lights[0].color.blue is 2; it must be between 0 and 1"},
+        Case{R"({"lights": [{}, {}, {}, {}, {}]})",
+             "scene.lights has 5 items; it may have at most 4"},
         Case{R"({"rendering": {"slices": 0}})",
              "scene.rendering.slices is 0; it must be between 1 and 4096"},
         Case{R"({"rendering": {"slices": 4294967295}})",
@@ -124,6 +134,24 @@ TEST(LimitsTest, TheLimitsThemselvesAreAllowed) {
   scene.mutable_output()->set_width_px(8192);
   scene.mutable_output()->set_height_px(4096);
   EXPECT_EQ(Complaint(scene), "");
+}
+
+TEST(SceneMessages, LightsAreWhatTheMessageSaysAndWhiteWhereItIsSilent) {
+  v1::Scene message = SceneFrom(
+      R"({"lights": [{}, {"azimuthDeg": -30, "elevationDeg": -5, "irradiance": 0.25,
+          "color": {"red": 0.5, "blue": 1}}]})");
+  volume::StormInfo storm;
+  storm.id = "a";
+  service::FillSceneDefaults(message, storm);
+  EXPECT_EQ(Complaint(message), "");
+  const scene::Scene scene = service::ToScene(message);
+  ASSERT_EQ(scene.lights.size(), 2U);
+  EXPECT_EQ(scene.lights[0], scene::DirectionalLight()) << "the defaults of both";
+  EXPECT_EQ(scene.lights[1],
+            (scene::DirectionalLight{-30.0, -5.0, glm::dvec3(0.5, 0.0, 1.0), 0.25}));
+  v1::Scene again = message;
+  service::FillSceneDefaults(again, storm);
+  EXPECT_EQ(again.SerializeAsString(), message.SerializeAsString());
 }
 
 TEST(LimitsTest, EveryRpcChecksItsRequest) {

@@ -13,6 +13,7 @@ const SOURCES = [
   [Source.FAIR_WEATHER_CUMULUS, "Fair-weather cumulus"],
   [Source.CONGESTUS, "Congestus"],
   [Source.CUMULUS_FIELD, "Field of cumulus"],
+  [Source.ELLIPSOID, "One ellipsoid"],
 ] as const;
 
 const COMPONENTS = [

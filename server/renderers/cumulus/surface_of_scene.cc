@@ -80,6 +80,8 @@ absl::StatusOr<clouds::CumulusSurface> SurfaceFromSeed(const scene::Cumulus& cum
       return clouds::SurfaceOfPreset("congestus", options);
     case scene::CumulusSource::kCumulusField:
       return clouds::SurfaceOfPreset("cumulus-field", options);
+    case scene::CumulusSource::kEllipsoid:
+      return clouds::LoneEllipsoid(options);
   }
   return absl::InternalError("unknown source of a cumulus");
 }

@@ -83,6 +83,15 @@ DeviceBall DeviceBallOf(const Ball& ball, const Medium& content, const GroupWeig
   return device;
 }
 
+std::vector<glm::vec4> NumbersOf(const std::vector<DeviceBall>& balls) {
+  std::vector<glm::vec4> numbers;
+  for (const DeviceBall& ball : balls) {
+    numbers.insert(numbers.end(), {ball.middle_radius, ball.optics, ball.scattering[0],
+                                   ball.scattering[1], ball.tint});
+  }
+  return numbers;
+}
+
 // The light buffer's axes and size.
 struct LightPlane {
   LightFrame frame;
@@ -127,7 +136,10 @@ std::vector<MetaballRenderer::Light> MetaballRenderer::LightsOf(const RenderSett
     const float half_sky = std::numbers::pi_v<float>;
     lights.push_back({{0.0, 0.0, 1.0}, half_sky * from.from_sky, false});
     lights.push_back({{0.0, 0.0, -1.0}, half_sky * from.from_ground, false});
-  } else {
+  }
+  for (const Beam& beam : from.beams) lights.push_back({beam.towards, beam.irradiance, false});
+  // The last: source.comp expects it there.
+  if (!IsPaper(settings.rendering)) {
     lights.push_back({{0.0, 0.0, 1.0}, glm::vec3(0.0F), true});
   }
   return lights;
@@ -137,7 +149,6 @@ void MetaballRenderer::Upload(const BallCloud& cloud, const Medium& content,
                               const RenderSettings& settings) {
   balls_ = cloud.balls;
   box_ = BoxOf(balls_);
-  lights_ = LightsOf(settings);
   const GroupWeights weights(content, settings.rendering);
   content_ = content;
   groups_ = static_cast<int>(content.groups.size());
@@ -145,7 +156,6 @@ void MetaballRenderer::Upload(const BallCloud& cloud, const Medium& content,
   std::vector<physics::PhaseFunction> phases;
   for (const MediumGroup& group : content.groups) phases.push_back(group.phase);
   phase_curves_ = PhaseCurves(phases);
-  if (balls_.empty()) return;
   const double paper_factor = PaperDensityFactor(balls_);
   std::vector<DeviceBall> device;
   for (const Ball& ball : balls_) {
@@ -155,19 +165,51 @@ void MetaballRenderer::Upload(const BallCloud& cloud, const Medium& content,
     device.back().optics.x =
         static_cast<float>(settings.rendering.metaballs.optical_depth * density);
   }
+  const bool paper = IsPaper(settings.rendering);
+  Optics optics{NumbersOf(device), paper, paper ? settings.rendering.metaballs.albedo : 0.0,
+                IsTranslucent(settings.rendering)};
+  if (optics == optics_) return;
+  optics_ = std::move(optics);
+  lights_.clear();
+  if (balls_.empty()) return;
   ball_buffer_ = gl::Buffer(device.size() * sizeof(DeviceBall), device.data(), 0);
   sources_ = gl::Buffer(balls_.size() * sizeof(glm::vec4), nullptr, 0);
-  arrived_ = gl::Buffer(lights_.size() * balls_.size() * sizeof(glm::vec2), nullptr, 0);
+}
+
+std::vector<int> MetaballRenderer::KeepArrived(const std::vector<Light>& lights) {
+  const std::size_t bytes = balls_.size() * sizeof(glm::vec2);
+  gl::Buffer arrived(lights.size() * bytes, nullptr, 0);
+  // Shaders wrote what is copied.
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  std::vector<int> missing;
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const auto known = std::find_if(lights_.begin(), lights_.end(),
+                                    [&](const Light& light) { return light.ArrivesAs(lights[i]); });
+    if (known == lights_.end()) {
+      missing.push_back(static_cast<int>(i));
+      continue;
+    }
+    const auto from = static_cast<std::size_t>(known - lights_.begin());
+    glCopyNamedBufferSubData(arrived_.Get(), arrived.Get(), static_cast<GLintptr>(from * bytes),
+                             static_cast<GLintptr>(i * bytes), static_cast<GLsizeiptr>(bytes));
+  }
+  arrived_ = std::move(arrived);
+  lights_.clear();
+  return missing;
 }
 
 absl::Status MetaballRenderer::CarryLight(const BallCloud& cloud, const Medium& content,
                                           const RenderSettings& settings) {
   THUNDERHEAD_RETURN_IF_ERROR(Check(cloud.balls));
   Upload(cloud, content, settings);
+  carried_lights_ = 0;
   if (balls_.empty()) return absl::OkStatus();
-  for (std::size_t i = 0; i < lights_.size(); ++i) {
-    THUNDERHEAD_RETURN_IF_ERROR(Carry(lights_[i], static_cast<int>(i), settings));
+  std::vector<Light> lights = LightsOf(settings);
+  for (const int i : KeepArrived(lights)) {
+    THUNDERHEAD_RETURN_IF_ERROR(Carry(lights[static_cast<std::size_t>(i)], i, settings));
+    ++carried_lights_;
   }
+  lights_ = std::move(lights);
   return absl::OkStatus();
 }
 

@@ -1,7 +1,8 @@
 // Man's two-pass renderer of metaballs (P. Man, Generating and Real-Time Rendering of Clouds,
 // section 4), on the device: the first pass gives every ball its light from each of several
-// coloured lights, the second splats the balls in their order from the eye. The result is what they
-// send to the eye (rgb) and the share of the background that passes (a).
+// coloured lights (the sun, the sky and the ground, the scene's own), the second splats the balls
+// in their order from the eye. The result is what they send to the eye (rgb) and the share of the
+// background that passes (a).
 //
 // Transport "paper" is as printed; "consistent" has the fields' own optics and loses no energy.
 #pragma once
@@ -29,7 +30,8 @@ class MetaballRenderer {
 
   // The first pass. `content` tells how the groups scatter that the balls' shares are of; it must
   // have a group. INVALID_ARGUMENT names a ball that is none: a radius that is not above 0, an
-  // extinction below 0, or a number that is not finite.
+  // extinction below 0, or a number that is not finite. What arrived of a light is kept while its
+  // direction, the balls and their optics stay.
   absl::Status CarryLight(const BallCloud& cloud, const Medium& content,
                           const RenderSettings& settings);
 
@@ -40,6 +42,8 @@ class MetaballRenderer {
   const gl::Texture2D& Eye() const { return eye_; }
   // Around the balls of the last CarryLight.
   const BallBox& Box() const { return box_; }
+  // How many lights the last CarryLight carried; what arrived of the others was kept.
+  int CarriedLights() const { return carried_lights_; }
   std::size_t Bytes() const;
 
  private:
@@ -48,10 +52,27 @@ class MetaballRenderer {
     glm::dvec3 towards{0.0, 0.0, 1.0};
     glm::vec3 irradiance{0.0F};
     bool diffuse = false;
+
+    bool ArrivesAs(const Light& other) const {
+      return towards == other.towards && diffuse == other.diffuse;
+    }
+  };
+
+  // What decides how light passes through the balls, besides its direction.
+  struct Optics {
+    std::vector<glm::vec4> balls;  // as the device has them
+    bool paper = false;
+    double paper_albedo = 0.0;
+    bool translucent = false;
+
+    bool operator==(const Optics&) const = default;
   };
 
   static std::vector<Light> LightsOf(const RenderSettings& settings);
   void Upload(const BallCloud& cloud, const Medium& content, const RenderSettings& settings);
+  // Makes room for what arrives of `lights`, with what is known of those that were carried.
+  // Returns the others.
+  std::vector<int> KeepArrived(const std::vector<Light>& lights);
   absl::Status Carry(const Light& light, int index, const RenderSettings& settings);
   absl::Status FindSources(const RenderSettings& settings);
   absl::Status Splat(const RenderSettings& settings);
@@ -60,7 +81,9 @@ class MetaballRenderer {
   gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
   std::vector<Ball> balls_;
   BallBox box_;
-  std::vector<Light> lights_;
+  std::vector<Light> lights_;  // that `arrived_` holds
+  Optics optics_;              // of the last CarryLight
+  int carried_lights_ = 0;
   Medium content_;
   int groups_ = 1;
   bool colored_ = false;

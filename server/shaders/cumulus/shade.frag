@@ -91,6 +91,7 @@ vec3 trapped(vec3 point_m, out float sky_share) {
   for (int scale = 0; scale < kTrapScales && at >= 0; ++scale) {
     Bubble bubble = bubbles[at];
     vec3 outward = bubble.outward.xyz;
+    if (outward == vec3(0.0)) break;  // it stands alone: no valley
     float height = dot(outward, normalize(point_m - bubble.centre_m.xyz));
     float valley = trap_share * min(atan(kTrapSharpness * (1.0 - height)) / atan(kTrapSharpness), 1.0);
     int parent = int(bubble.outward.w);

@@ -85,6 +85,20 @@ TEST(Cauliflower, MoreScalesAreFiner) {
   }
 }
 
+TEST(LoneEllipsoid, IsOneAndBubblesOnIt) {
+  const auto bare = LoneEllipsoid({1, 1});
+  ASSERT_TRUE(bare.ok()) << bare.status();
+  EXPECT_EQ(bare->bubbles.size(), 1U);
+  EXPECT_DOUBLE_EQ(bare->finest_m, RadiusOf(bare->bubbles[0]));
+  const auto bubbly = LoneEllipsoid({1, 2});
+  ASSERT_TRUE(bubbly.ok()) << bubbly.status();
+  EXPECT_GT(bubbly->bubbles.size(), 20U);
+  for (std::size_t i = 1; i < bubbly->bubbles.size(); ++i) {
+    EXPECT_EQ(bubbly->bubbles[i].parent, 0);
+  }
+  EXPECT_FALSE(LoneEllipsoid({1, 0}).ok());
+}
+
 TEST(Cauliflower, RefusesNoScalesAndTooMany) {
   for (const int scales : {-1, 0, kMostScales + 1}) {
     const auto surface = Cauliflower({1, scales});

@@ -52,6 +52,33 @@ TEST(Scene, ACumulusLooksAtItsOwnSettingsOnly) {
   EXPECT_EQ(first([](Rendering* r) { r->cumulus.scales = 4; }), Stage::kNothing);
 }
 
+TEST(Scene, LightsCountWhereTheyAreShown) {
+  Scene before;
+  const auto first = [&](const auto& change) {
+    Scene after = before;
+    change(&after.lights);
+    return FirstDirtyStage(before, after);
+  };
+  using Lights = std::vector<DirectionalLight>;
+  for (const Renderer renderer : {Renderer::kMetaball, Renderer::kReference}) {
+    before.lights = {{75.0, 20.0, glm::dvec3(1.0), 1.0}};
+    before.rendering.renderer = renderer;
+    EXPECT_EQ(first([](Lights*) {}), Stage::kNothing);
+    EXPECT_EQ(first([](Lights* lights) { lights->clear(); }), Stage::kLight);
+    EXPECT_EQ(first([](Lights* lights) { lights->emplace_back(); }), Stage::kLight);
+    EXPECT_EQ(first([](Lights* lights) { lights->front().elevation_deg = 3.0; }), Stage::kLight);
+    EXPECT_EQ(first([](Lights* lights) { lights->front().color.r = 0.5; }), Stage::kView);
+    EXPECT_EQ(first([](Lights* lights) { lights->front().irradiance = 0.5; }), Stage::kView);
+  }
+  // A frame that says that they are not shown.
+  for (const Renderer renderer :
+       {Renderer::kLightVolume, Renderer::kHalfAngle, Renderer::kCumulus}) {
+    before.rendering.renderer = renderer;
+    EXPECT_EQ(first([](Lights* lights) { lights->front().elevation_deg = 3.0; }), Stage::kTone);
+    EXPECT_EQ(first([](Lights* lights) { lights->clear(); }), Stage::kTone);
+  }
+}
+
 TEST(Scene, DetailCountsOnlyInTheModeThatDrawsIt) {
   EXPECT_EQ(After([](Scene* s) { s->fields[0].detail.seed = 7; }), Stage::kNothing);
   Scene before;
