@@ -52,8 +52,8 @@ export class FakeService {
   #count = 0;
   #viewers = 0n;
   readonly #storms = [
-    { id: "supercell", title: "Supercell that is not there", timeCount: 4 },
-    { id: "single", title: "One time only", timeCount: 1 },
+    { id: "supercell", title: "Supercell that is not there", timeCount: 4, deletable: false },
+    { id: "single", title: "One time only", timeCount: 1, deletable: false },
   ];
 
   constructor(readonly draw: Draw) {}
@@ -69,9 +69,18 @@ export class FakeService {
       }),
       listStorms: () => ({ storms: this.#storms }),
       generateCloud: ({ seed }) => {
-        const storm = { id: `cloud-${seed ?? 1}`, title: "A cloud made up", timeCount: 1 };
+        const id = `cloud-${seed ?? 1}`;
+        const storm = { id, title: "A cloud made up", timeCount: 1, deletable: true };
         this.#storms.push(storm);
         return { storm };
+      },
+      deleteCloud: ({ stormId }) => {
+        const at = this.#storms.findIndex((storm) => storm.id === stormId);
+        if (this.#storms[at]?.deletable !== true) {
+          throw new ConnectError(`'${stormId}' was not made here`, Code.FailedPrecondition);
+        }
+        this.#storms.splice(at, 1);
+        return {};
       },
       describeStorm: ({ stormId, timeIndex }) => ({ storm: describe(stormId, timeIndex) }),
       createSession: ({ scene }) => {

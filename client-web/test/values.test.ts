@@ -4,12 +4,16 @@ import { colorOfHex, hexOfColor } from "../src/core/color";
 import {
   effectiveField,
   LIMITS,
+  MOST_LIGHTS,
   outputSize,
   sceneFromUrlText,
   sceneToUrlText,
   withAsymmetry,
   withDetail,
   withField,
+  withLight,
+  withLightAdded,
+  withoutLight,
   withStorm,
   withSun,
   withSunClock,
@@ -30,6 +34,7 @@ import {
   formatValidTime,
 } from "../src/core/units";
 import {
+  DirectionalLightSchema,
   FieldParametersSchema,
   Hydrometeor,
   PhaseFunction_Kind,
@@ -51,6 +56,19 @@ describe("scenes", () => {
     expect(after.sun).toMatchObject({ azimuthDeg: 10, elevationDeg: 5 });
     expect(after.fields).toBe(scene.fields);
     expect(scene.sun?.elevationDeg).toBeUndefined();
+  });
+
+  it("gain lights, change one of them and lose it", () => {
+    const light = (azimuthDeg: number) => create(DirectionalLightSchema, { azimuthDeg });
+    const two = withLightAdded(withLightAdded(scene, light(10)), light(20));
+    expect(two.lights.map((each) => each.azimuthDeg)).toEqual([10, 20]);
+    const changed = withLight(two, 1, { irradiance: 0.5 });
+    expect(changed.lights[1]).toMatchObject({ azimuthDeg: 20, irradiance: 0.5 });
+    expect(changed.lights[0]).toBe(two.lights[0]);
+    expect(withoutLight(changed, 0).lights.map((each) => each.azimuthDeg)).toEqual([20]);
+    expect(scene.lights).toEqual([]);
+    expect(MOST_LIGHTS).toBe(4);
+    expect(LIMITS.lightElevation).toMatchObject({ minimum: -90, maximum: 90, unit: "deg" });
   });
 
   it("change one field, and add one that was not listed", () => {

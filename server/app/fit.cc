@@ -10,6 +10,7 @@
 #include "app/interruption.h"
 #include "app/local_service.h"
 #include "app/progress_bar.h"
+#include "app/seed_flag.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "base/version.h"
@@ -89,6 +90,11 @@ absl::StatusOr<clouds::FitOptions> OptionsOf(const Flags& flags) {
   if (options.balls < 1) {
     return absl::InvalidArgumentError(
         absl::StrCat("--balls is ", options.balls, "; it must be 1 or more"));
+  }
+  if (options.threads < 0) {
+    return absl::InvalidArgumentError(absl::StrCat("--threads is ", options.threads,
+                                                   "; it must be 1 or more, or 0 for as many as "
+                                                   "the machine has"));
   }
   return options;
 }
@@ -190,7 +196,7 @@ Command AddFit(CLI::App& app) {
   fit->add_flag("--non-negative", flags->options.non_negative, "No ball takes away");
   fit->add_option("--iterations", flags->options.most_iterations, "At most, for the weights")
       ->capture_default_str();
-  fit->add_option("--seed", flags->options.seed, "Of the first centres")->capture_default_str();
+  AddSeedFlag(*fit, "Of the first centres", &flags->options.seed);
   fit->add_option("--threads", flags->options.threads, "0: as many as the machine has")
       ->capture_default_str();
   fit->add_flag("--json", flags->json, "Print JSON, with H after every iteration");

@@ -15,6 +15,7 @@
 #include "app/local_service.h"
 #include "app/phase_flag.h"
 #include "app/progress_bar.h"
+#include "app/seed_flag.h"
 #include "base/status.h"
 #include "reference/scene_problem.h"
 #include "scene/view.h"
@@ -188,7 +189,7 @@ Command AddFlux(CLI::App& app) {
   flux->add_option("--ground-albedo", flags->ground_albedo, "Of the domain's bottom, 0 to 1")
       ->capture_default_str();
   flux->add_option("--photons", flags->photons, "How many to trace")->capture_default_str();
-  flux->add_option("--seed", flags->seed, "Of the random numbers")->capture_default_str();
+  AddSeedFlag(*flux, "Of the random numbers", &flags->seed);
   flux->add_flag("--json", flags->json, "Print JSON");
   return {flux, [flags] { return Flux(*flags); }};
 }

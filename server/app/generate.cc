@@ -12,6 +12,7 @@
 #include "app/commands.h"
 #include "app/interruption.h"
 #include "app/progress_bar.h"
+#include "app/seed_flag.h"
 #include "base/status.h"
 #include "clouds/cloud_file.h"
 #include "clouds/presets.h"
@@ -140,7 +141,7 @@ Command AddGenerate(CLI::App& app) {
   generate->add_option("-o,--output", flags->output, "The storm file: .nc")->required();
   generate->add_option("--preset", flags->preset, absl::StrJoin(clouds::PresetNames(), ", "))
       ->capture_default_str();
-  generate->add_option("--seed", flags->seed, "Which cloud of its kind")->capture_default_str();
+  AddSeedFlag(*generate, "Which cloud of its kind", &flags->seed);
   const std::string otherwise = "; without it the preset's";
   generate->add_option("--octaves", flags->octaves, "Scales of noise, 1 to 16" + otherwise);
   generate->add_option("--persistence", flags->persistence,

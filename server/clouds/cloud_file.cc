@@ -1,12 +1,17 @@
 #include "clouds/cloud_file.h"
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_format.h"
 #include "base/status.h"
 #include "base/version.h"
 #include "volume/cf_writer.h"
+#include "volume/netcdf_file.h"
 
 namespace thunderhead::clouds {
 namespace {
+
+constexpr const char* kMaker = "thunderhead ";
+constexpr const char* kCommand = " generate";
 
 std::string Parameters(const CloudShape& shape, const CloudOrigin& origin) {
   constexpr const char* kInterpolations[] = {"linear", "cosine", "cubic"};
@@ -26,10 +31,17 @@ absl::Status WriteGenerated(const CloudShape& shape, const CloudOrigin& origin,
   volume::CfCloud cloud;
   cloud.grid = shape.grid;
   cloud.title = absl::StrFormat("%s, seed %d", origin.preset, origin.seed);
-  cloud.source = "thunderhead " + base::Version() + " generate";
+  cloud.source = kMaker + base::Version() + kCommand;
   cloud.comment = Parameters(shape, origin);
   THUNDERHEAD_ASSIGN_OR_RETURN(cloud.values, Generate(shape, observer, stop));
   return volume::WriteCfCloud(cloud, path);
+}
+
+bool IsGenerated(const std::string& path) {
+  const auto file = volume::NetcdfFile::Open(path);
+  if (!file.ok()) return false;
+  const std::string source = file->TextAttribute("", "source").value_or("");
+  return absl::StartsWith(source, kMaker) && absl::EndsWith(source, kCommand);
 }
 
 }  // namespace thunderhead::clouds

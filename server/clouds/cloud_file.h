@@ -23,4 +23,7 @@ absl::Status WriteGenerated(const CloudShape& shape, const CloudOrigin& origin,
                             const std::string& path, const GenerateObserver& observer,
                             const std::stop_token& stop);
 
+// Whether a file says that WriteGenerated wrote it.
+bool IsGenerated(const std::string& path);
+
 }  // namespace thunderhead::clouds

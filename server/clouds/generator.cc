@@ -135,6 +135,9 @@ absl::Status CheckShape(const CloudShape& shape) {
     return Wrong("the liquid water in g/m3", 1e3 * shape.water_kg_per_m3,
                  absl::StrCat("above 0 and at most ", 1e3 * kMostWater_kg_per_m3));
   }
+  if (shape.base_m.has_value() && !std::isfinite(*shape.base_m)) {
+    return Wrong("the height of the base in m", *shape.base_m, "a finite number");
+  }
   if (shape.ellipsoids.empty()) return absl::InvalidArgumentError("a cloud needs an ellipsoid");
   for (const Ellipsoid& ellipsoid : shape.ellipsoids) {
     THUNDERHEAD_RETURN_IF_ERROR(CheckEllipsoid(ellipsoid));

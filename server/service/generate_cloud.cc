@@ -26,6 +26,7 @@ absl::Status Make(Engine& engine, const clouds::CloudShape& shape,
       const volume::StormInfo* storm,
       engine.clouds.Make(shape, OriginOf(request), observe, stop.get_token()));
   ToMessage(*storm, *response.mutable_storm());
+  response.mutable_storm()->set_deletable(true);
   return absl::OkStatus();
 }
 

@@ -20,6 +20,9 @@ grpc::ServerUnaryReactor* DescribeStorm(Engine& engine, grpc::CallbackServerCont
 grpc::ServerUnaryReactor* GenerateCloud(Engine& engine, grpc::CallbackServerContext* context,
                                         const v1::GenerateCloudRequest* request,
                                         v1::GenerateCloudResponse* response);
+grpc::ServerUnaryReactor* DeleteCloud(Engine& engine, grpc::CallbackServerContext* context,
+                                      const v1::DeleteCloudRequest* request,
+                                      v1::DeleteCloudResponse* response);
 grpc::ServerUnaryReactor* CreateSession(Engine& engine, grpc::CallbackServerContext* context,
                                         const v1::CreateSessionRequest* request,
                                         v1::CreateSessionResponse* response);

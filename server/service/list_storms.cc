@@ -8,7 +8,9 @@ grpc::ServerUnaryReactor* ListStorms(Engine& engine, grpc::CallbackServerContext
                                      const v1::ListStormsRequest* /*request*/,
                                      v1::ListStormsResponse* response) {
   for (const volume::StormInfo* storm : engine.store.Storms()) {
-    ToMessage(*storm, *response->add_storms());
+    v1::StormSummary& summary = *response->add_storms();
+    ToMessage(*storm, summary);
+    summary.set_deletable(engine.clouds.Holds(storm->id));
   }
   return Finished(context, absl::OkStatus());
 }

@@ -28,6 +28,12 @@ grpc::ServerUnaryReactor* ThunderheadService::GenerateCloud(grpc::CallbackServer
   return service::GenerateCloud(engine_, context, request, response);
 }
 
+grpc::ServerUnaryReactor* ThunderheadService::DeleteCloud(grpc::CallbackServerContext* context,
+                                                          const v1::DeleteCloudRequest* request,
+                                                          v1::DeleteCloudResponse* response) {
+  return service::DeleteCloud(engine_, context, request, response);
+}
+
 grpc::ServerUnaryReactor* ThunderheadService::CreateSession(grpc::CallbackServerContext* context,
                                                             const v1::CreateSessionRequest* request,
                                                             v1::CreateSessionResponse* response) {

@@ -22,6 +22,9 @@ class ThunderheadService final : public v1::ThunderheadService::CallbackService 
   grpc::ServerUnaryReactor* GenerateCloud(grpc::CallbackServerContext* context,
                                           const v1::GenerateCloudRequest* request,
                                           v1::GenerateCloudResponse* response) override;
+  grpc::ServerUnaryReactor* DeleteCloud(grpc::CallbackServerContext* context,
+                                        const v1::DeleteCloudRequest* request,
+                                        v1::DeleteCloudResponse* response) override;
   grpc::ServerUnaryReactor* CreateSession(grpc::CallbackServerContext* context,
                                           const v1::CreateSessionRequest* request,
                                           v1::CreateSessionResponse* response) override;

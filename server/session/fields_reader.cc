@@ -31,6 +31,14 @@ void FieldsReader::Ask(const std::string& owner, const FieldsKey& key, PrepareFi
   changed_.notify_one();
 }
 
+void FieldsReader::AskAhead(const std::string& owner, const FieldsKey& key, PrepareFields prepare) {
+  {
+    const std::lock_guard lock(mutex_);
+    ahead_[owner] = {key, std::move(prepare), ++count_};
+  }
+  changed_.notify_one();
+}
+
 std::optional<FieldsRead> FieldsReader::Take(const std::string& owner) {
   const std::lock_guard lock(mutex_);
   auto read = read_.extract(owner);
@@ -43,6 +51,7 @@ void FieldsReader::Forget(const std::string& owner) {
   waiting_.erase(std::remove(waiting_.begin(), waiting_.end(), owner), waiting_.end());
   asked_.erase(owner);
   read_.erase(owner);
+  ahead_.erase(owner);
 }
 
 FieldsRead FieldsReader::Read(const Asked& work) {
@@ -57,25 +66,41 @@ FieldsRead FieldsReader::Read(const Asked& work) {
   return read;
 }
 
+void FieldsReader::ServeFirst(std::unique_lock<std::mutex>& lock) {
+  const std::string owner = std::move(waiting_.front());
+  waiting_.pop_front();
+  const Asked work = asked_[owner];
+  lock.unlock();
+  FieldsRead read = Read(work);
+  lock.lock();
+  // Forgotten, or asked for something else, while it was read.
+  const auto asked = asked_.find(owner);
+  if (asked == asked_.end() || asked->second.count != work.count) return;
+  asked_.erase(asked);
+  read_.insert_or_assign(owner, std::move(read));
+  lock.unlock();
+  on_read_();
+  lock.lock();
+}
+
+void FieldsReader::ServeAhead(std::unique_lock<std::mutex>& lock) {
+  const Asked work = std::move(ahead_.extract(ahead_.begin()).mapped());
+  lock.unlock();
+  // Whoever wants it is told of its errors when it is asked for in earnest.
+  Read(work);
+  lock.lock();
+}
+
 void FieldsReader::Run() {
   std::unique_lock lock(mutex_);
   while (true) {
-    changed_.wait(lock, [this] { return stopping_ || !waiting_.empty(); });
+    changed_.wait(lock, [this] { return stopping_ || !waiting_.empty() || !ahead_.empty(); });
     if (stopping_) return;
-    const std::string owner = std::move(waiting_.front());
-    waiting_.pop_front();
-    const Asked work = asked_[owner];
-    lock.unlock();
-    FieldsRead read = Read(work);
-    lock.lock();
-    // Forgotten, or asked for something else, while it was read.
-    const auto asked = asked_.find(owner);
-    if (asked == asked_.end() || asked->second.count != work.count) continue;
-    asked_.erase(asked);
-    read_.insert_or_assign(owner, std::move(read));
-    lock.unlock();
-    on_read_();
-    lock.lock();
+    if (waiting_.empty()) {
+      ServeAhead(lock);
+    } else {
+      ServeFirst(lock);
+    }
   }
 }
 

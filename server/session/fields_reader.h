@@ -49,6 +49,9 @@ class FieldsReader {
   // Asks for a read and what `prepare` makes of it; replaces the owner's earlier one if it has not
   // begun.
   void Ask(const std::string& owner, const FieldsKey& key, PrepareFields prepare = {});
+  // As Ask, of what the owner may want next: begun when nobody waits, and given to nobody; what
+  // counts is what the store and `prepare` keep of it. Replaces the owner's earlier one.
+  void AskAhead(const std::string& owner, const FieldsKey& key, PrepareFields prepare);
   // What the owner's read gave, once.
   std::optional<FieldsRead> Take(const std::string& owner);
   // The owner wants nothing any more.
@@ -62,6 +65,9 @@ class FieldsReader {
   };
 
   FieldsRead Read(const Asked& work);
+  // Both with `lock` held, before and after.
+  void ServeFirst(std::unique_lock<std::mutex>& lock);
+  void ServeAhead(std::unique_lock<std::mutex>& lock);
   void Run();
 
   volume::StormStore& store_;
@@ -73,6 +79,7 @@ class FieldsReader {
   std::uint64_t count_ = 0;
   std::map<std::string, Asked> asked_;
   std::map<std::string, FieldsRead> read_;
+  std::map<std::string, Asked> ahead_;
   std::thread thread_;
 };
 

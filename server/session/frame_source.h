@@ -111,6 +111,9 @@ class Preparation {
 
   virtual ~Preparation() = default;
 
+  // False if a scene never waits for anything, from whatever fields.
+  virtual bool IsNeeded(const scene::Scene& scene) const = 0;
+
   // True if drawing `scene` from `fields` (of its storm and time) has nothing to wait for.
   virtual bool IsDone(const scene::Scene& scene, const Fields& fields) = 0;
   // Blocks until it has.

@@ -17,8 +17,12 @@ class BallPreparation final : public Preparation {
  public:
   explicit BallPreparation(std::shared_ptr<renderers::BallFits> fits) : fits_(std::move(fits)) {}
 
+  bool IsNeeded(const scene::Scene& scene) const override {
+    return scene.rendering.renderer == scene::Renderer::kMetaball;
+  }
+
   bool IsDone(const scene::Scene& scene, const Fields& fields) override {
-    return scene.rendering.renderer != scene::Renderer::kMetaball || fits_->Has(scene, fields);
+    return !IsNeeded(scene) || fits_->Has(scene, fields);
   }
 
   absl::Status Prepare(const scene::Scene& scene, const Fields& fields) override {

@@ -134,6 +134,7 @@ void RenderLoop::LetGo(const std::string& session_id, Track& track) {
   track.fields_key.reset();
   track.reading_for.reset();
   track.arrived_for.reset();
+  track.drawn_key.reset();
   track.traced.reset();
 }
 
@@ -222,6 +223,22 @@ void RenderLoop::AskFor(const Session& session, const NewestScene& newest) {
   reader_->Ask(session.id(), KeyOf(*newest.scene), std::move(prepare));
 }
 
+void RenderLoop::PrepareNext(const Session& session, Track& track, const scene::Scene& shown) {
+  const FieldsKey key = KeyOf(shown);
+  const std::optional<FieldsKey> before = std::exchange(track.drawn_key, key);
+  const bool goes_on = before.has_value() && before->storm_id == key.storm_id &&
+                       before->time_index + 1 == key.time_index;
+  if (!goes_on || preparation_ == nullptr || !preparation_->IsNeeded(shown)) return;
+  const volume::StormInfo* storm = store_.Find(key.storm_id);
+  if (storm == nullptr || key.time_index + 1 >= static_cast<int>(storm->times.size())) return;
+  auto next = std::make_shared<scene::Scene>(shown);
+  ++next->time_index;
+  reader_->AskAhead(session.id(), KeyOf(*next),
+                    [preparation = preparation_, next](const auto& fields) {
+                      return preparation->Prepare(*next, fields);
+                    });
+}
+
 // The scene to draw now: the newest if its fields are at hand. If they are not they are asked for,
 // and meanwhile the scene whose fields have just been read is drawn, if it is newer than what is
 // shown: so a time slider that moves faster than the disk still shows something.
@@ -259,6 +276,7 @@ void RenderLoop::DrawFor(const std::shared_ptr<Session>& session, Track& track,
                       was_warm ? picture->stages : std::vector<StageCost>());
   Send(track,
        {session, shown.revision, *shown.scene, plan.refined, *std::move(picture), std::nullopt});
+  PrepareNext(*session, track, *shown.scene);
 }
 
 void RenderLoop::Send(Track& track, DrawnFrame frame) {

@@ -99,6 +99,7 @@ class RenderLoop {
     std::optional<NewestScene> reading_for;  // the scene whose fields are being read
     std::optional<NewestScene> arrived_for;  // the scene whose fields have just been read
     std::uint64_t unreadable_revision = 0;
+    std::optional<FieldsKey> drawn_key;
     double read_ms = 0.0;  // to be reported with the next frame
     double prepare_ms = 0.0;
     std::optional<Decided> decided;
@@ -123,6 +124,8 @@ class RenderLoop {
   bool IsPrepared(const scene::Scene& scene,
                   const std::shared_ptr<const volume::HydrometeorFields>& fields) const;
   void AskFor(const Session& session, const NewestScene& newest);
+  // What a series that goes on, a step at a time, will need next, done before it is asked for.
+  void PrepareNext(const Session& session, Track& track, const scene::Scene& shown);
   std::optional<NewestScene> DrawableScene(const Session& session, Track& track,
                                            const NewestScene& newest);
   // `shown` with what it asks for decided; null if that failed, which its viewers are told once.

@@ -33,7 +33,9 @@ CachedStormStore::~CachedStormStore() {
 std::vector<const StormInfo*> CachedStormStore::Storms() const {
   const Lock lock(mutex_);
   std::vector<const StormInfo*> infos;
-  for (const CataloguedStorm& storm : storms_) infos.push_back(&storm.info);
+  for (std::size_t i = 0; i < storms_.size(); ++i) {
+    if (!removed_.contains(i)) infos.push_back(&storms_[i].info);
+  }
   return infos;
 }
 
@@ -41,8 +43,7 @@ absl::StatusOr<const StormInfo*> CachedStormStore::Add(const std::string& path) 
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<CataloguedStorm> found, FindStorms({path}));
   CataloguedStorm& storm = found.front();
   const Lock lock(mutex_);
-  const auto id_of = [](const CataloguedStorm& held) { return held.info.id; };
-  if (std::ranges::find(storms_, storm.info.id, id_of) != storms_.end()) {
+  if (PlaceOf(storm.info.id).has_value()) {
     return absl::AlreadyExistsError(absl::StrCat("cannot add ", path, ": there is a storm '",
                                                  storm.info.id, "' already; rename the file"));
   }
@@ -50,23 +51,45 @@ absl::StatusOr<const StormInfo*> CachedStormStore::Add(const std::string& path) 
   return &storms_.emplace_back(std::move(storm)).info;
 }
 
-absl::StatusOr<TimeKey> CachedStormStore::KeyOf(std::string_view id, int time_index) const {
-  const auto id_of = [](const CataloguedStorm& storm) { return storm.info.id; };
-  const auto at = std::ranges::find(storms_, id, id_of);
-  if (at == storms_.end()) {
-    const auto append_id = [](std::string* out, const CataloguedStorm& storm) {
-      out->append(storm.info.id);
-    };
-    return absl::NotFoundError(absl::StrCat("there is no storm '", std::string(id),
-                                            "'; the storms are ",
-                                            absl::StrJoin(storms_, ", ", append_id)));
+absl::Status CachedStormStore::Remove(std::string_view id) {
+  {
+    const Lock lock(mutex_);
+    const std::optional<std::size_t> place = PlaceOf(id);
+    if (!place.has_value()) return NoSuchStorm(id);
+    removed_.insert(*place);
+    cache_.RemoveStorm(*place);
+    std::erase_if(wanted_, [&](const TimeKey& key) { return key.storm == *place; });
   }
-  const std::size_t times = at->info.times.size();
+  changed_.notify_all();
+  return absl::OkStatus();
+}
+
+std::optional<std::size_t> CachedStormStore::PlaceOf(std::string_view id) const {
+  for (std::size_t i = 0; i < storms_.size(); ++i) {
+    if (storms_[i].info.id == id && !removed_.contains(i)) return i;
+  }
+  return std::nullopt;
+}
+
+absl::Status CachedStormStore::NoSuchStorm(std::string_view id) const {
+  std::vector<std::string> ids;
+  for (std::size_t i = 0; i < storms_.size(); ++i) {
+    if (!removed_.contains(i)) ids.push_back(storms_[i].info.id);
+  }
+  return absl::NotFoundError(absl::StrCat("there is no storm '", std::string(id),
+                                          "'; the storms are ", absl::StrJoin(ids, ", ")));
+}
+
+absl::StatusOr<TimeKey> CachedStormStore::KeyOf(std::string_view id, int time_index) const {
+  const std::optional<std::size_t> place = PlaceOf(id);
+  if (!place.has_value()) return NoSuchStorm(id);
+  const StormInfo& info = storms_[*place].info;
+  const std::size_t times = info.times.size();
   if (time_index < 0 || static_cast<std::size_t>(time_index) >= times) {
-    return absl::OutOfRangeError(absl::StrCat("storm '", at->info.id, "' has no time ", time_index,
+    return absl::OutOfRangeError(absl::StrCat("storm '", info.id, "' has no time ", time_index,
                                               "; its times are 0 to ", times - 1));
   }
-  return TimeKey{static_cast<std::size_t>(at - storms_.begin()), time_index};
+  return TimeKey{*place, time_index};
 }
 
 absl::StatusOr<std::shared_ptr<const HydrometeorFields>> CachedStormStore::Get(
@@ -123,9 +146,11 @@ CachedStormStore::Fields CachedStormStore::Read(Lock& lock, const TimeKey& key, 
   if (purpose == Purpose::kAsked) ++asked_reads_;
   Fields fields = ReadFile(lock, key, *read);
   if (purpose == Purpose::kAsked) --asked_reads_;
-  if (fields.ok() && (purpose == Purpose::kAsked || read->waiters > 0)) {
+  // A storm that was removed meanwhile is given to those who asked before, and not kept.
+  const bool keep = fields.ok() && !removed_.contains(key.storm);
+  if (keep && (purpose == Purpose::kAsked || read->waiters > 0)) {
     cache_.Insert(key, *fields);
-  } else if (fields.ok()) {
+  } else if (keep) {
     cache_.InsertAhead(key, *fields);
   }
   pending_.erase(key);
@@ -194,6 +219,7 @@ bool CachedStormStore::IsWanted(const TimeKey& key) const {
 
 void CachedStormStore::WantAfter(const TimeKey& key) {
   wanted_.clear();
+  if (removed_.contains(key.storm)) return;
   const int times = static_cast<int>(storms_[key.storm].info.times.size());
   std::size_t bytes = cache_.NewestBytes();
   for (int time = key.time + 1; time < times && time <= key.time + options_.read_ahead; ++time) {

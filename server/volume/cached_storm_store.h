@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <thread>
 #include <vector>
@@ -29,6 +30,7 @@ class CachedStormStore final : public StormStore {
 
   std::vector<const StormInfo*> Storms() const override;
   absl::StatusOr<const StormInfo*> Add(const std::string& path) override;
+  absl::Status Remove(std::string_view id) override;
   absl::StatusOr<std::shared_ptr<const HydrometeorFields>> Get(
       std::string_view id, int time_index, const ReadProgress& progress) override;
   std::shared_ptr<const HydrometeorFields> Peek(std::string_view id, int time_index) override;
@@ -48,6 +50,8 @@ class CachedStormStore final : public StormStore {
 
   // All below are called with `lock` held on mutex_ and return with it held.
   using Lock = std::unique_lock<std::mutex>;
+  std::optional<std::size_t> PlaceOf(std::string_view id) const;
+  absl::Status NoSuchStorm(std::string_view id) const;
   absl::StatusOr<TimeKey> KeyOf(std::string_view id, int time_index) const;
   Fields Read(Lock& lock, const TimeKey& key, Purpose purpose, const ReadProgress& progress);
   Fields ReadFile(Lock& lock, const TimeKey& key, PendingRead& read);
@@ -64,10 +68,11 @@ class CachedStormStore final : public StormStore {
   const StormStoreOptions options_;
 
   mutable std::mutex mutex_;
-  // Of both nothing is ever removed: what is in them stays where it is.
+  // Of both nothing is ever taken out: what is in them stays where it is.
   std::deque<CataloguedStorm> storms_;
   std::deque<std::optional<VerticalGrid>>
       vertical_grids_;               // one for each storm, the same for all its times
+  std::set<std::size_t> removed_;    // of storms_
   std::condition_variable changed_;  // a read ended, a wish or a waiter came, or the store ends
   FieldsCache cache_;
   std::map<TimeKey, std::shared_ptr<PendingRead>> pending_;

@@ -27,6 +27,12 @@ void FieldsCache::InsertAhead(const TimeKey& key, std::shared_ptr<const Hydromet
   Shrink();
 }
 
+void FieldsCache::RemoveStorm(std::size_t storm) {
+  // Keys are ordered by storm.
+  auto at = entries_.lower_bound(TimeKey{storm, 0});
+  while (at != entries_.end() && at->first.storm == storm) Remove(TimeKey((at++)->first));
+}
+
 std::size_t FieldsCache::NewestBytes() const {
   return newest_first_.empty() ? 0 : entries_.at(newest_first_.front()).bytes;
 }

@@ -40,6 +40,9 @@ class FieldsCache {
   // fit.
   void InsertAhead(const TimeKey& key, std::shared_ptr<const HydrometeorFields> fields);
 
+  // Lets all times of a storm go.
+  void RemoveStorm(std::size_t storm);
+
   std::size_t Bytes() const { return bytes_; }
 
   // Bytes of the most recently used.

@@ -64,6 +64,10 @@ class StormStore {
   // Adds the storm of a file. ALREADY_EXISTS if another has its id; else as Open.
   virtual absl::StatusOr<const StormInfo*> Add(const std::string& path) = 0;
 
+  // Forgets a storm: it is neither listed nor found, and nothing of it is read, from now on. Its
+  // files stay. NOT_FOUND for an unknown id.
+  virtual absl::Status Remove(std::string_view id) = 0;
+
   // The storm of that id, or nothing.
   const StormInfo* Find(std::string_view id) const;
 

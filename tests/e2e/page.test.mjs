@@ -294,9 +294,80 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
   await page.getByTestId("readout-summary").click();
   await changing(() => page.getByTestId("metaball-isotropic").click());
   assert.ok(difference(balls, await grabCanvas(page)) > 0.01);
-  await page.getByTestId("metaball-isotropic").click();
-  await changing(() => choice.selectOption(usual));
+  await changing(() => page.getByTestId("metaball-isotropic").click());
+
+  // A slider that has balls fitted anew is told once it is let go.
+  let updates = 0;
+  const count = (request) => {
+    if (request.url().endsWith("/UpdateScene")) updates += 1;
+  };
+  page.on("request", count);
+  const slider = page.getByTestId("metaball-count");
+  await slider.scrollIntoViewIfNeeded();
+  const { x, y, width, height } = await slider.boundingBox();
+  const ballsBefore = await page.getByTestId("metaball-count-number").inputValue();
+  await page.mouse.move(x + 0.7 * width, y + height / 2);
+  await page.mouse.down();
+  await page.mouse.move(x + 0.5 * width, y + height / 2, { steps: 15 });
+  assert.notEqual(await page.getByTestId("metaball-count-number").inputValue(), ballsBefore);
+  assert.equal(updates, 0, "balls are not fitted at each step of a drag");
+  await changing(() => page.mouse.up());
+  assert.equal(updates, 1);
+  page.off("request", count);
+  await changing(() => setNumber(page, "metaball-count", ballsBefore));
+
+  const before2 = await grabCanvas(page);
+  await page.getByTestId("lights-section").locator("summary").click();
+  await changing(() => page.getByTestId("add-light").click());
+  const warm = await grabCanvas(page);
+  await changing(() => page.getByTestId("add-light").click());
+  const both = await grabCanvas(page);
+  await screenshot("9-lights");
+  assert.ok(difference(before2, warm) > 0.5, "a light more is seen");
+  assert.ok(difference(warm, both) > 0.5, "and another one");
+  assert.doesNotMatch(await page.getByTestId("not-shown").innerText(), /lights/);
+  await changing(() => choice.selectOption({ label: "Light volume" }));
+  assert.match(await page.getByTestId("not-shown").innerText(), /lights besides the sun/);
+  await changing(() => page.getByTestId("light-1-remove").click());
+  await changing(() => page.getByTestId("light-1-remove").click());
+  assert.equal(await page.getByTestId("light-1").count(), 0);
+  await page.getByTestId("lights-section").locator("summary").click();
+  assert.equal(usual, await choice.inputValue());
   assert.equal(await page.getByTestId("not-shown").count(), 0);
+  await page.getByTestId("rendering-section").locator("summary").click();
+});
+
+test("a cumulus as a surface, and the parts of its light", async () => {
+  await page.getByTestId("rendering-section").locator("summary").click();
+  const choice = page.getByTestId("renderer-choice");
+  const usual = await choice.inputValue();
+  assert.equal(await page.getByTestId("cumulus-component").count(), 0);
+  await changing(() => choice.selectOption({ label: "Cumulus surface" }));
+  assert.match(await page.getByTestId("not-shown").innerText(), /snow/);
+  await changing(() => page.getByTestId("cumulus-source").selectOption({ label: "Cauliflower" }));
+  const whole = await grabCanvas(page);
+  await screenshot("10-cumulus");
+  assert.ok(spread(whole).deviation > 8, "the picture is nearly uniform");
+  assert.match(await page.getByTestId("not-shown").innerText(), /made from a seed/);
+  let last = whole;
+  for (const label of ["Direct sunlight", "Inter-reflection", "Sky and ground", "Corona"]) {
+    await changing(() => page.getByTestId("cumulus-component").selectOption({ label }));
+    const part = await grabCanvas(page);
+    await screenshot(`10-cumulus-${label.toLowerCase().replaceAll(" ", "-")}`);
+    const change = difference(last, part);
+    assert.ok(change > 0.3, `${label} looks like the part before it: ${change}`);
+    assert.ok(
+      boxMean(part, [0.3, 0.3, 0.6, 0.6]) < boxMean(whole, [0.3, 0.3, 0.6, 0.6]),
+      `${label} alone is no brighter than the whole`,
+    );
+    last = part;
+  }
+  await changing(() => page.getByTestId("cumulus-component").selectOption({ label: "All" }));
+  assert.ok(difference(whole, await grabCanvas(page)) < 1, "the whole is back");
+  await changing(() =>
+    page.getByTestId("cumulus-source").selectOption({ label: "The storm's cloud and ice" }),
+  );
+  await changing(() => choice.selectOption(usual));
   await page.getByTestId("rendering-section").locator("summary").click();
 });
 
@@ -308,11 +379,12 @@ test("an accuracy asked for is reached by a setting that the server picks, or th
       await page.getByTestId("max-error-number").fill(String(error));
       await page.getByTestId("max-error-number").press("Enter");
     });
-    // The slices' part is found out at rest.
+    // The slices' part is found out at rest, of renderers that have slices.
     await page.waitForFunction(
-      () =>
-        document.querySelector("[data-testid=accuracy-report]")?.dataset.discretisationError !==
-        undefined,
+      () => {
+        const report = document.querySelector("[data-testid=accuracy-report]")?.dataset;
+        return report?.discretisationError !== undefined || report?.hasSlices === "false";
+      },
       undefined,
       { timeout: PICTURE_TIMEOUT_MS },
     );
@@ -413,6 +485,21 @@ test("a cloud is made to order and shown, and a bad one is named", async () => {
   assert.ok(difference(before, cloud) > 5, "the picture is of something else");
   assert.equal(await page.getByText("No cloud:").count(), 0);
   await changing(() => page.getByTestId("storm").selectOption("supercell"));
+  await rested();
+  assert.equal(await page.getByTestId("delete-cloud").count(), 0, "a storm of a file stays");
+});
+
+test("a cloud that was made can be deleted, after a second thought", async () => {
+  await changing(() => page.getByTestId("storm").selectOption("fair-weather-cumulus-3"));
+  const button = page.getByTestId("delete-cloud");
+  await button.click();
+  assert.match(await button.innerText(), /for all/);
+  await changing(() => button.click());
+  assert.equal(await page.getByTestId("storm").inputValue(), "supercell");
+  await page.waitForFunction(
+    () => document.querySelectorAll("[data-testid=storm] option").length === 1,
+  );
+  assert.equal(await button.count(), 0);
   await rested();
 });
 

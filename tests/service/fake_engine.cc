@@ -46,18 +46,22 @@ class FakePreparation final : public session::Preparation {
  public:
   explicit FakePreparation(std::shared_ptr<FakeMachine> machine) : machine_(std::move(machine)) {}
 
+  bool IsNeeded(const scene::Scene& scene) const override {
+    return scene.rendering.renderer == scene::Renderer::kMetaball;
+  }
+
   bool IsDone(const scene::Scene& scene, const Fields& fields) override {
     THUNDERHEAD_CHECK(fields != nullptr, "prepared without fields");
-    return scene.rendering.renderer != scene::Renderer::kMetaball ||
-           machine_->IsPrepared(scene.rendering.metaballs.count);
+    return !IsNeeded(scene) || machine_->IsPrepared(scene);
   }
 
   absl::Status Prepare(const scene::Scene& scene, const Fields& fields) override {
     if (IsDone(scene, fields)) return absl::OkStatus();
     machine_->preparing.Pass();
-    const int balls = scene.rendering.metaballs.count;
-    if (balls == machine_->cannot_prepare) return absl::InternalError("it cannot be fitted");
-    machine_->Prepared(balls);
+    if (scene.rendering.metaballs.count == machine_->cannot_prepare) {
+      return absl::InternalError("it cannot be fitted");
+    }
+    machine_->Prepared(scene);
     return absl::OkStatus();
   }
 
@@ -230,7 +234,9 @@ FakeStormStore::FakeStormStore() : storms_{Storm("anvil", 4), Storm("clear", 1)}
 std::vector<const volume::StormInfo*> FakeStormStore::Storms() const {
   const std::lock_guard lock(mutex_);
   std::vector<const volume::StormInfo*> storms;
-  for (const volume::StormInfo& storm : storms_) storms.push_back(&storm);
+  for (const volume::StormInfo& storm : storms_) {
+    if (!removed_.contains(storm.id)) storms.push_back(&storm);
+  }
   return storms;
 }
 
@@ -238,6 +244,13 @@ absl::StatusOr<const volume::StormInfo*> FakeStormStore::Add(const std::string& 
   if (!std::filesystem::exists(path)) return absl::NotFoundError(path + " is not there");
   const std::lock_guard lock(mutex_);
   return &storms_.emplace_back(Storm(std::filesystem::path(path).stem(), 1));
+}
+
+absl::Status FakeStormStore::Remove(std::string_view id) {
+  const std::lock_guard lock(mutex_);
+  const auto at = std::ranges::find(storms_, id, &volume::StormInfo::id);
+  const bool there = at != storms_.end() && removed_.insert(at->id).second;
+  return there ? absl::OkStatus() : absl::NotFoundError("there is no such storm");
 }
 
 absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> FakeStormStore::Get(
@@ -280,14 +293,24 @@ std::vector<FakeMachine::Drawn> FakeMachine::Log() {
   return log_;
 }
 
-bool FakeMachine::IsPrepared(int balls) {
+bool FakeMachine::IsPrepared(const scene::Scene& scene) {
   const std::lock_guard lock(mutex_);
-  return prepared_.contains(balls);
+  return prepared_.contains({scene.rendering.metaballs.count, scene.time_index});
 }
 
-void FakeMachine::Prepared(int balls) {
-  const std::lock_guard lock(mutex_);
-  prepared_.insert(balls);
+bool FakeMachine::AwaitPrepared(const scene::Scene& scene) {
+  std::unique_lock lock(mutex_);
+  return changed_.wait_for(lock, kPatience, [&] {
+    return prepared_.contains({scene.rendering.metaballs.count, scene.time_index});
+  });
+}
+
+void FakeMachine::Prepared(const scene::Scene& scene) {
+  {
+    const std::lock_guard lock(mutex_);
+    prepared_.insert({scene.rendering.metaballs.count, scene.time_index});
+  }
+  changed_.notify_all();
 }
 
 void FakeMachine::Add(Drawn drawn) {

@@ -48,6 +48,7 @@ class FakeStormStore final : public volume::StormStore {
   std::vector<const volume::StormInfo*> Storms() const override;
   // A storm of the file's name, if the file is there.
   absl::StatusOr<const volume::StormInfo*> Add(const std::string& path) override;
+  absl::Status Remove(std::string_view id) override;
   absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> Get(
       std::string_view id, int time_index, const volume::ReadProgress& progress) override;
   std::shared_ptr<const volume::HydrometeorFields> Peek(std::string_view id,
@@ -64,6 +65,7 @@ class FakeStormStore final : public volume::StormStore {
 
  private:
   std::deque<volume::StormInfo> storms_;
+  std::set<std::string> removed_;  // ids
   mutable std::mutex mutex_;
   std::map<int, absl::Status> failures_;
   std::condition_variable changed_;
@@ -83,19 +85,22 @@ struct FakeMachine {
   Gate drawing;
   std::atomic<double> ms_per_mega_sample{0.0};
   std::atomic<double> fails_above_exposure_ev{1e9};
-  Gate preparing;  // of scenes of metaballs; each number of them once
+  Gate preparing;  // of scenes of metaballs; each number of them once a time
   std::atomic<int> cannot_prepare{-1};
   std::atomic<int> checked{0};  // frames drawn with half the slices as well
 
   std::vector<Drawn> Log();
   void Add(Drawn drawn);
-  bool IsPrepared(int balls);
-  void Prepared(int balls);
+  bool IsPrepared(const scene::Scene& scene);
+  // Waits until it is, or patience ends.
+  bool AwaitPrepared(const scene::Scene& scene);
+  void Prepared(const scene::Scene& scene);
 
  private:
   std::mutex mutex_;
+  std::condition_variable changed_;
   std::vector<Drawn> log_;
-  std::set<int> prepared_;
+  std::set<std::pair<int, int>> prepared_;  // numbers of balls, times
 };
 
 session::FrameSourceFactory FakeFrameSources(std::shared_ptr<FakeMachine> machine);

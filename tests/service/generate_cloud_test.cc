@@ -1,9 +1,13 @@
 // Clouds made on request: files in the server's folder, and storms like any other.
+#include <algorithm>
 #include <filesystem>
 
+#include "clouds/presets.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "service/cloud_folder.h"
 #include "tests/service/fake_service.h"
+#include "tests/support/synthetic_cf.h"
 #include "tests/support/temporary_folder.h"
 
 namespace thunderhead::testing {
@@ -17,6 +21,19 @@ class GenerateCloudTest : public ::testing::Test {
  protected:
   grpc::Status Make(const Request& request) {
     return Call(service_.stub(), &Stub::GenerateCloud, request, &response_);
+  }
+
+  grpc::Status Delete(const std::string& storm_id) {
+    v1::DeleteCloudRequest request;
+    request.set_storm_id(storm_id);
+    v1::DeleteCloudResponse deleted;
+    return Call(service_.stub(), &Stub::DeleteCloud, request, &deleted);
+  }
+
+  v1::ListStormsResponse List() {
+    v1::ListStormsResponse list;
+    EXPECT_TRUE(Call(service_.stub(), &Stub::ListStorms, v1::ListStormsRequest(), &list).ok());
+    return list;
   }
 
   std::size_t Files() const {
@@ -44,6 +61,74 @@ TEST_F(GenerateCloudTest, TheCloudIsAStormFromThenOn) {
   ASSERT_EQ(list.storms_size(), 3);
   EXPECT_EQ(list.storms(0).id(), "anvil") << "the first storm stays the first";
   EXPECT_EQ(list.storms(2).id(), "fair-weather-cumulus-7");
+}
+
+TEST_F(GenerateCloudTest, ACloudThatWasMadeCanBeDeleted) {
+  ASSERT_TRUE(Make(Request()).ok());
+  const std::string id = response_.storm().id();
+  EXPECT_TRUE(response_.storm().deletable());
+  EXPECT_FALSE(List().storms(0).deletable());
+  EXPECT_TRUE(List().storms(2).deletable());
+  v1::Scene scene = SmallScene();
+  scene.set_storm_id(id);
+  const std::string session = service_.Open(scene);
+  Watcher watcher(service_.stub(), session);
+  ASSERT_TRUE(watcher.AwaitFrame(1, true));
+
+  ASSERT_TRUE(Delete(id).ok());
+  EXPECT_EQ(List().storms_size(), 2);
+  EXPECT_EQ(Files(), 0U);
+  const std::string told = "the cloud '" + id + "' was deleted; choose another storm";
+  EXPECT_TRUE(watcher.Await([&](const std::vector<v1::WatchFramesResponse>& messages) {
+    return std::any_of(messages.begin(), messages.end(), [&](const auto& message) {
+      return message.has_problem() && message.problem().message() == told;
+    });
+  }));
+  v1::UpdateSceneRequest update;
+  update.set_session_id(session);
+  *update.mutable_scene() = scene;
+  v1::UpdateSceneResponse updated;
+  const grpc::Status refused = Call(service_.stub(), &Stub::UpdateScene, update, &updated);
+  EXPECT_EQ(refused.error_code(), grpc::StatusCode::NOT_FOUND);
+  EXPECT_THAT(refused.error_message(), HasSubstr(id));
+  EXPECT_EQ(Delete(id).error_code(), grpc::StatusCode::NOT_FOUND);
+  // Who still shows the old one must not get another under its name.
+  ASSERT_TRUE(Make(Request()).ok());
+  EXPECT_NE(response_.storm().id(), id);
+}
+
+TEST_F(GenerateCloudTest, AStormThatWasNotMadeHereIsNotDeleted) {
+  const grpc::Status status = Delete("anvil");
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
+  EXPECT_THAT(status.error_message(), HasSubstr("was not made by this server"));
+  EXPECT_EQ(Delete("").error_code(), grpc::StatusCode::NOT_FOUND);
+  EXPECT_EQ(Delete("../anvil").error_code(), grpc::StatusCode::NOT_FOUND);
+  EXPECT_EQ(Delete(std::string(257, 'a')).error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(List().storms_size(), 2);
+}
+
+TEST(CloudFolder, KnowsTheCloudsOfAnEarlierServerFromOtherFiles) {
+  const TemporaryFolder folder;
+  const std::string path = folder.Path().string();
+  WriteCf(ExtinctionFile(4, 4, 4, 100.0, 100.0, 100.0, [](auto, auto, auto) { return 1e-3; }),
+          path + "/other.nc");
+  auto shape = clouds::PresetNamed("fair-weather-cumulus", 1);
+  ASSERT_TRUE(shape.ok()) << shape.status();
+  ASSERT_TRUE(
+      clouds::WriteGenerated(*shape, {"fair-weather-cumulus", 1}, path + "/kept.nc", {}, {}).ok());
+  auto store = volume::StormStore::Open({path + "/other.nc", path + "/kept.nc"}, {});
+  ASSERT_TRUE(store.ok()) << store.status();
+  service::CloudFolder clouds(path, **store);
+  EXPECT_TRUE(clouds.Holds("kept"));
+  EXPECT_FALSE(clouds.Holds("other"));
+  EXPECT_EQ(clouds.Delete("other").code(), absl::StatusCode::kFailedPrecondition);
+  EXPECT_TRUE(clouds.Delete("kept").ok());
+  EXPECT_FALSE(std::filesystem::exists(path + "/kept.nc"));
+  EXPECT_TRUE(std::filesystem::exists(path + "/other.nc"));
+  EXPECT_EQ((*store)->Find("kept"), nullptr);
+  // The same file outside the folder is nobody's to delete.
+  const TemporaryFolder elsewhere;
+  EXPECT_FALSE(service::CloudFolder(elsewhere.Path().string(), **store).Holds("other"));
 }
 
 TEST_F(GenerateCloudTest, TheSameAgainIsAnotherStorm) {

@@ -3,12 +3,14 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <string>
 
 #include "frame/image_codec.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/synthetic_cf.h"
 #include "tests/support/temporary_folder.h"
 
 namespace thunderhead::testing {
@@ -90,16 +92,32 @@ TEST_F(GenerateCommand, BadParametersAreNamed) {
     std::string arguments;
     std::string text;
   };
-  for (const Case& c :
-       {Case{"--octaves 0", "octaves"}, Case{"--octaves 14", "too fine"},
-        Case{"--persistence 0", "persistence"}, Case{"--threshold 1", "threshold"},
-        Case{"--dynamics 1.5", "dynamics"}, Case{"--water -1", "water"},
-        Case{"--interpolation spline", "--interpolation"},
-        Case{"--ellipsoid 0,0,800,100,-5,100", "radius"},
-        Case{"--ellipsoid 0,0,800,100", "--ellipsoid"},
-        Case{"--ellipsoid 0,0,80000,100,100,100", "no cell"}, Case{"--cells 12x12", "--cells"},
-        Case{"--cells 0x4x4", "--cells"}, Case{"--spacing 0", "size of a cell"},
-        Case{"--preset nimbus", "nimbus"}, Case{"--feature-size -3", "feature"}}) {
+  for (const Case& c : {Case{"--octaves 0", "octaves"},
+                        Case{"--octaves 14", "too fine"},
+                        Case{"--persistence 0", "persistence"},
+                        Case{"--threshold 1", "threshold"},
+                        Case{"--dynamics 1.5", "dynamics"},
+                        Case{"--water -1", "water"},
+                        Case{"--interpolation spline", "--interpolation"},
+                        Case{"--ellipsoid 0,0,800,100,-5,100", "radius"},
+                        Case{"--ellipsoid 0,0,800,100", "--ellipsoid"},
+                        Case{"--ellipsoid 0,0,80000,100,100,100", "no cell"},
+                        Case{"--cells 12x12", "--cells"},
+                        Case{"--cells 0x4x4", "--cells"},
+                        Case{"--spacing 0", "size of a cell"},
+                        Case{"--preset nimbus", "nimbus"},
+                        Case{"--feature-size -3", "feature"},
+                        Case{"--persistence nan", "persistence"},
+                        Case{"--threshold nan", "threshold"},
+                        Case{"--dynamics nan", "dynamics"},
+                        Case{"--water inf", "water"},
+                        Case{"--feature-size nan", "feature"},
+                        Case{"--base nan", "base"},
+                        Case{"--spacing nan", "size of a cell"},
+                        Case{"--cells 4096x4096x4096", "cells"},
+                        Case{"--ellipsoid nan,0,800,100,100,100", "not finite"},
+                        Case{"--ellipsoid 0,0,800,100,inf,100", "radius"},
+                        Case{"--seed -1", "--seed"}}) {
     EXPECT_EQ(Run("generate -o " + cloud_ + " " + c.arguments), 2) << c.arguments;
     EXPECT_THAT(err_, HasSubstr(c.text)) << c.arguments;
     EXPECT_FALSE(std::ifstream(cloud_).good()) << c.arguments;
@@ -136,6 +154,24 @@ TEST_F(GenerateCommand, CloudsAreFittedByMetaballs) {
   EXPECT_THAT(Contents("cloud.balls"), HasSubstr("quantity cloud kg/m3"));
 }
 
+// Zeros, missing values and negatives hold nothing: there is nothing to fit, and every renderer
+// draws the sky.
+TEST_F(GenerateCommand, EmptyVolumesAreNamedByFitAndDrawnAsSky) {
+  for (const double value : {0.0, -1e-3, std::numeric_limits<double>::quiet_NaN(), 1e31}) {
+    WriteCf(
+        ExtinctionFile(6, 6, 4, 100.0, 100.0, 100.0, [value](auto, auto, auto) { return value; }),
+        cloud_);
+    EXPECT_EQ(Run("fit " + cloud_ + " --balls 3 -o " + folder_.File("x.balls")), 2) << value;
+    EXPECT_THAT(err_, HasSubstr("empty")) << value;
+    for (const std::string renderer : {"metaball", "cumulus", "light_volume", "half_angle"}) {
+      EXPECT_EQ(Run("render " + cloud_ + " --device software --size 16x12 --renderer " + renderer +
+                    " -o " + folder_.File("sky.png")),
+                0)
+          << renderer << ' ' << value << ' ' << err_;
+    }
+  }
+}
+
 TEST_F(GenerateCommand, BadFitsAreNamed) {
   ASSERT_EQ(Run("generate --cells 40x40x50 --spacing 40 --octaves 3 -o " + cloud_), 0) << err_;
   const std::string fit = "fit " + cloud_ + " -o " + folder_.File("cloud.balls");
@@ -148,7 +184,9 @@ TEST_F(GenerateCommand, BadFitsAreNamed) {
         Case{" --balls 100000000", "fewer"}, Case{" --balls 5 --field rain", "cloud"},
         Case{" --balls 5 --basis box", "--basis"}, Case{" --balls 5 --solver magic", "--solver"},
         Case{" --balls 5 --overlap 0", "overlap"}, Case{" --balls 5 --time 2", "--time"},
-        Case{" --balls 5 --iterations 0", "iterations"}}) {
+        Case{" --balls 5 --iterations 0", "iterations"}, Case{" --balls nan", "--balls"},
+        Case{" --balls 5 --overlap nan", "overlap"}, Case{" --balls 5 --threads -1", "--threads"},
+        Case{" --balls 5 --seed -1", "--seed"}}) {
     EXPECT_EQ(Run(fit + c.arguments), 2) << c.arguments;
     EXPECT_THAT(err_, HasSubstr(c.text)) << c.arguments;
   }

@@ -109,8 +109,9 @@ class RenderLoopTest : public ::testing::Test {
     return viewer;
   }
 
-  static scene::Scene OfMetaballs(int count) {
+  static scene::Scene OfMetaballs(int count, int time_index = 0) {
     scene::Scene scene = Small(0.0);
+    scene.time_index = time_index;
     scene.rendering.renderer = scene::Renderer::kMetaball;
     scene.rendering.metaballs.count = count;
     return scene;
@@ -201,6 +202,24 @@ TEST_F(RenderLoopTest, WhatAScenePreparesHoldsUpNobodyElse) {
   machine_->preparing.Open();
   ASSERT_TRUE(fitting_viewer->Await(last, true));
   EXPECT_EQ(machine_->Log().back().scene.rendering.metaballs.count, 200);
+}
+
+TEST_F(RenderLoopTest, ASeriesThatGoesOnIsPreparedAheadOfItsPictures) {
+  Start();
+  const auto session = *sessions_.Create();
+  const auto viewer = Watch(session);
+  ASSERT_TRUE(viewer->Await(Show(*session, OfMetaballs(100)), true));
+  EXPECT_FALSE(machine_->IsPrepared(OfMetaballs(100, 1))) << "nothing plays yet";
+  ASSERT_TRUE(viewer->Await(Show(*session, OfMetaballs(100, 1)), true));
+  ASSERT_TRUE(machine_->AwaitPrepared(OfMetaballs(100, 2)));
+  // The next picture waits for nothing, though the one after it is not ready.
+  machine_->preparing.Close();
+  ASSERT_TRUE(viewer->Await(Show(*session, OfMetaballs(100, 2)), true));
+  ASSERT_TRUE(machine_->preparing.AwaitWaiting(1));
+  EXPECT_FALSE(machine_->IsPrepared(OfMetaballs(100, 3)));
+  machine_->preparing.Open();
+  ASSERT_TRUE(machine_->AwaitPrepared(OfMetaballs(100, 3)));
+  ASSERT_TRUE(viewer->Await(Show(*session, OfMetaballs(100, 3)), true)) << "the last";
 }
 
 TEST_F(RenderLoopTest, APreparationThatFailsIsAProblemOfItsScene) {

@@ -1,7 +1,10 @@
 // What a number of the schema may be, read from the options beside its declaration in proto/, and how a
 // slider moves through that range. Knows no widget.
 import { type DescField, getOption, ScalarType } from "@bufbuild/protobuf";
-import { number$ as numberOption } from "../gen/thunderhead/v1/limits_pb";
+import {
+  max_items as maxItemsOption,
+  number$ as numberOption,
+} from "../gen/thunderhead/v1/limits_pb";
 
 export interface Limits {
   readonly minimum: number;
@@ -37,6 +40,15 @@ export function limitsOf(field: DescField): Limits {
     integer: INTEGER_SCALARS.has(field.scalar),
     singlePrecision: field.scalar === ScalarType.FLOAT,
   };
+}
+
+// How many elements a list may have.
+export function mostItemsOf(field: DescField): number {
+  const most = getOption(field, maxItemsOption);
+  if (field.fieldKind !== "list" || most < 1) {
+    throw new Error(`${field.toString()} has no limit of its length in the schema`);
+  }
+  return most;
 }
 
 // The nearest value that the server accepts. A 32-bit float next to a limit can round to outside of it (0.99

@@ -9,6 +9,8 @@ import {
   CumulusSchema,
   type Detail,
   DetailSchema,
+  type DirectionalLight,
+  DirectionalLightSchema,
   type Display,
   DisplaySchema,
   type FieldParameters,
@@ -30,7 +32,7 @@ import {
   SunClockSchema,
   SunSchema,
 } from "../gen/thunderhead/v1/scene_pb";
-import { clampToLimits, type Limits, limitsOf } from "./limits";
+import { clampToLimits, type Limits, limitsOf, mostItemsOf } from "./limits";
 
 export const LIMITS = {
   fieldScale: limitsOf(FieldParametersSchema.field.scale),
@@ -47,6 +49,9 @@ export const LIMITS = {
   sunLatitude: limitsOf(SunClockSchema.field.latitudeDeg),
   sunLongitude: limitsOf(SunClockSchema.field.longitudeDeg),
   sunIrradiance: limitsOf(SunSchema.field.irradiance),
+  lightAzimuth: limitsOf(DirectionalLightSchema.field.azimuthDeg),
+  lightElevation: limitsOf(DirectionalLightSchema.field.elevationDeg),
+  lightIrradiance: limitsOf(DirectionalLightSchema.field.irradiance),
   skyBrightness: limitsOf(SkySchema.field.brightness),
   groundAlbedo: limitsOf(SkySchema.field.groundAlbedo),
   turbidity: limitsOf(SkySchema.field.turbidity),
@@ -69,6 +74,8 @@ export const LIMITS = {
   maxError: limitsOf(AccuracySchema.field.maxError),
   maxMilliseconds: limitsOf(AccuracySchema.field.maxMilliseconds),
 } as const satisfies Record<string, Limits>;
+
+export const MOST_LIGHTS = mostItemsOf(SceneSchema.field.lights);
 
 // What may be changed of a message.
 type Change<T extends Message> = Partial<Omit<T, keyof Message>>;
@@ -93,6 +100,21 @@ export function withSunClock(scene: Scene, change: Change<SunClock>): Scene {
   return withSun(scene, {
     clock: changed(scene.sun?.clock ?? create(SunClockSchema), change),
   });
+}
+
+// One light more, besides the sun.
+export function withLightAdded(scene: Scene, light: DirectionalLight): Scene {
+  return changed(scene, { lights: [...scene.lights, light] });
+}
+
+export function withLight(scene: Scene, index: number, change: Change<DirectionalLight>): Scene {
+  return changed(scene, {
+    lights: scene.lights.map((light, at) => (at === index ? changed(light, change) : light)),
+  });
+}
+
+export function withoutLight(scene: Scene, index: number): Scene {
+  return changed(scene, { lights: scene.lights.filter((_, at) => at !== index) });
 }
 
 export function withSky(scene: Scene, change: Change<Sky>): Scene {

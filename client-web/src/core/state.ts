@@ -108,6 +108,7 @@ export class PageState {
         byTime?.elevationDeg ?? sun?.elevationDeg ?? LIMITS.sunElevation.defaultValue ?? 0,
     };
   });
+  readonly lights = computed(() => this.#scene.value.lights);
   readonly sky = computed(() => this.#scene.value.sky);
   readonly rendering = computed(() => this.#scene.value.rendering);
   readonly display = computed(() => this.#scene.value.display);

@@ -158,6 +158,10 @@ export class SessionClient {
     return (await this.#client.generateCloud(request, options)).storm;
   }
 
+  async deleteCloud(stormId: string): Promise<void> {
+    await this.#client.deleteCloud({ stormId }, { timeoutMs: CALL_TIMEOUT_MS });
+  }
+
   // Tells the server that the session is no longer needed; for a page that goes away.
   closeSession(): void {
     const sessionId = this.#sessionId;

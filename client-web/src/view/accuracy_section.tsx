@@ -93,12 +93,14 @@ function Report({ report }: { report: AccuracyReport }) {
         data-estimated-error={report.estimatedError}
         data-discretisation-error={report.discretisationError}
         data-slices={report.slices}
+        data-has-slices={hasSlices(report.renderer)}
         data-expected-milliseconds={report.expectedMilliseconds}
       >
         Believed error {percent(report.estimatedError)} ({parts.join(", ")}), by{" "}
         {RENDERER_NAMES[report.renderer] ?? Renderer[report.renderer]},{" "}
-        {(Transport[report.transport] ?? "").toLowerCase()} transport, {report.slices}{" "}
-        {report.renderer === Renderer.METABALL ? "balls" : "slices"}
+        {(Transport[report.transport] ?? "").toLowerCase()} transport
+        {hasSlices(report.renderer) && `, ${report.slices} slices`}
+        {report.renderer === Renderer.METABALL && `, ${report.slices} balls`}
         {report.imageScale < 1 && ` at ${percent(report.imageScale)} of the size`}
         {report.expectedMilliseconds !== undefined &&
           `; ${formatNumber(report.expectedMilliseconds)} ms a full frame`}
@@ -111,6 +113,10 @@ function Report({ report }: { report: AccuracyReport }) {
       )}
     </>
   );
+}
+
+function hasSlices(renderer: Renderer): boolean {
+  return renderer !== Renderer.METABALL && renderer !== Renderer.CUMULUS;
 }
 
 function percent(share: number): string {

@@ -1,10 +1,12 @@
 // The small controls that the panel is made of. Each shows one value and says when the user changes it.
 import type { ComponentChildren } from "preact";
-import { useId } from "preact/hooks";
+import { useEffect, useId, useRef, useState } from "preact/hooks";
 import { clampToLimits, type Limits, positionOfValue, valueAtPosition } from "../core/limits";
 import { displayUnitOf, formatNumber, formatQuantity } from "../core/units";
 
 const SLIDER_STEPS = 400;
+// How long a slider is held still before what takes seconds is begun.
+const SLIDER_REST_MS = 500;
 
 interface SliderProps {
   readonly label: string;
@@ -14,11 +16,36 @@ interface SliderProps {
   // What the reset button goes back to.
   readonly initial?: number | undefined;
   readonly testId: string;
+  // True where a change costs seconds: it is told when the slider is let go or rests, not at each step.
+  readonly afterRest?: boolean;
   readonly onChange: (value: number) => void;
 }
 
+// What a slider is dragged to before that is told, and how it is told: once it is let go, or rests.
+function useHeld(onChange: (value: number) => void) {
+  const [held, setHeld] = useState<number | undefined>(undefined);
+  const tellLater = useRef<ReturnType<typeof setTimeout> | undefined>(undefined);
+  const tell = useRef<() => void>(() => undefined);
+  useEffect(() => () => clearTimeout(tellLater.current), []);
+  const hold = (value: number) => {
+    clearTimeout(tellLater.current);
+    setHeld(value);
+    tell.current = () => {
+      clearTimeout(tellLater.current);
+      tell.current = () => undefined;
+      setHeld(undefined);
+      onChange(value);
+    };
+    tellLater.current = setTimeout(() => tell.current(), SLIDER_REST_MS);
+  };
+  return { held, hold, release: () => tell.current() };
+}
+
 // A number as a slider and as text, with its unit.
-export function Slider({ label, limits, value, initial, testId, onChange }: SliderProps) {
+export function Slider(props: SliderProps) {
+  const { label, limits, initial, testId, afterRest, onChange } = props;
+  const { held, hold, release } = useHeld(onChange);
+  const value = held ?? props.value;
   const id = useId();
   const unit = displayUnitOf(limits);
   const range = limits.maximum - limits.minimum;
@@ -75,8 +102,11 @@ export function Slider({ label, limits, value, initial, testId, onChange }: Slid
         value={known ? Math.round(positionOfValue(value, limits) * steps) : 0}
         aria-valuetext={known ? formatQuantity(value, limits) : "not known yet"}
         onInput={(event) => {
-          onChange(valueAtPosition(event.currentTarget.valueAsNumber / steps, limits));
+          const next = valueAtPosition(event.currentTarget.valueAsNumber / steps, limits);
+          if (afterRest) hold(next);
+          else onChange(next);
         }}
+        onPointerUp={release}
       />
     </div>
   );

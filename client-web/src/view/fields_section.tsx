@@ -17,6 +17,7 @@ import {
   PhaseFunction_Kind as Kind,
   Mode,
   PhaseFunctionSchema,
+  Renderer,
 } from "../gen/thunderhead/v1/scene_pb";
 import type { FieldDescription } from "../gen/thunderhead/v1/storm_pb";
 import { Choice, Section, Slider, Switch } from "./controls";
@@ -52,6 +53,11 @@ export function FieldsSection({ state }: { state: PageState }) {
       ))}
     </Section>
   );
+}
+
+// True where another extinction is fitted anew, which takes seconds.
+function fitsAnew(state: PageState): boolean {
+  return state.rendering.value?.renderer === Renderer.METABALL;
 }
 
 function FieldRow({ state, field }: { state: PageState; field: FieldDescription }) {
@@ -91,6 +97,7 @@ function FieldRow({ state, field }: { state: PageState; field: FieldDescription 
         value={shown.scale}
         initial={defaults?.scale}
         testId={`field-${id}-scale`}
+        afterRest={fitsAnew(state)}
         onChange={(scale) => edit({ scale })}
       />
       <details class="particles">
@@ -145,6 +152,7 @@ function ParticleSettings({ state, field }: { state: PageState; field: FieldDesc
             value={shown.radiusM}
             initial={defaults?.radiusM}
             testId={`field-${id}-radius`}
+            afterRest={fitsAnew(state)}
             onChange={(radiusM) => edit({ radiusM })}
           />
           <Slider
@@ -153,6 +161,7 @@ function ParticleSettings({ state, field }: { state: PageState; field: FieldDesc
             value={shown.densityKgPerM3}
             initial={defaults?.densityKgPerM3}
             testId={`field-${id}-density`}
+            afterRest={fitsAnew(state)}
             onChange={(densityKgPerM3) => edit({ densityKgPerM3 })}
           />
         </>

@@ -141,6 +141,15 @@ export class Page implements SessionListener {
     this.#storms.stopCloud();
   }
 
+  // Deletes the cloud that is shown, for all viewers, and shows another storm.
+  async deleteCloud(): Promise<void> {
+    const { storms, stormId } = this.state;
+    const deleted = stormId.value;
+    const other = storms.value.find((storm) => storm.id !== deleted);
+    if (other !== undefined) this.showStorm(other.id);
+    await this.#storms.deleteCloud(deleted);
+  }
+
   // A camera of that kind that shows the whole storm.
   showCamera(kind: CameraKind): void {
     this.state.edit((scene) => withCamera(scene, homeCamera(kind)));
@@ -251,6 +260,8 @@ export class Page implements SessionListener {
     this.#problemRevision = problem.sceneRevision;
     this.#ledger.settled(problem.sceneRevision);
     this.state.notify({ subject: "problem", text: problem.message, severity: "problem" });
+    // The storm may be gone.
+    void this.#storms.learn();
   }
 
   #start(): void {

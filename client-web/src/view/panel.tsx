@@ -1,4 +1,5 @@
 // The panel at the side: everything that can be set, part by part.
+import { useState } from "preact/hooks";
 import {
   LIMITS,
   withDisplay,
@@ -16,6 +17,7 @@ import { Choice, Section, Slider, Switch } from "./controls";
 import { CumulusControls } from "./cumulus_controls";
 import { FieldsSection } from "./fields_section";
 import { KEYS } from "./keyboard";
+import { LightsSection } from "./lights_section";
 import type { Page } from "./page";
 import { SunSection } from "./sun_section";
 
@@ -73,6 +75,7 @@ export function Panel({ page }: { page: Page }) {
         <CloudSection page={page} />
         <CameraSection page={page} />
         <SunSection state={state} />
+        <LightsSection state={state} />
         <FieldsSection state={state} />
         <AccuracySection state={state} />
         <RenderingSection state={state} />
@@ -86,6 +89,7 @@ export function Panel({ page }: { page: Page }) {
 function StormSection({ page }: { page: Page }) {
   const { state } = page;
   const storms = state.storms.value;
+  const shown = storms.find((storm) => storm.id === state.stormId.value);
   return (
     <Section title="Storm" open testId="storm-section">
       <Choice
@@ -107,8 +111,24 @@ function StormSection({ page }: { page: Page }) {
         >
           Copy link
         </button>
+        {shown?.deletable && <DeleteCloud key={shown.id} page={page} />}
       </div>
     </Section>
+  );
+}
+
+// Asks once more before it deletes.
+function DeleteCloud({ page }: { page: Page }) {
+  const [asked, setAsked] = useState(false);
+  return (
+    <button
+      type="button"
+      data-testid="delete-cloud"
+      onBlur={() => setAsked(false)}
+      onClick={() => (asked ? void page.deleteCloud() : setAsked(true))}
+    >
+      {asked ? "Delete it for all viewers?" : "Delete this cloud"}
+    </button>
   );
 }
 
@@ -179,6 +199,7 @@ function MetaballSettings({ state }: { state: PageState }) {
         limits={LIMITS.metaballCount}
         value={metaballs?.count ?? LIMITS.metaballCount.defaultValue}
         testId="metaball-count"
+        afterRest
         onChange={(count) => state.edit((scene) => withMetaballs(scene, { count }))}
       />
       <Switch

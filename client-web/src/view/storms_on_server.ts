@@ -67,6 +67,19 @@ export class StormsOnServer {
     }
   }
 
+  // Has a cloud deleted that was made. Says what went wrong.
+  async deleteCloud(stormId: string): Promise<void> {
+    try {
+      await this.#client.deleteCloud(stormId);
+      this.#state.dismiss("cloud");
+    } catch (error) {
+      const why = error instanceof ConnectError ? error.rawMessage : String(error);
+      const text = `The cloud is not deleted: ${why}`;
+      this.#state.notify({ subject: "cloud", text, severity: "problem" });
+    }
+    await this.learn();
+  }
+
   stopCloud(): void {
     this.#making?.abort();
   }

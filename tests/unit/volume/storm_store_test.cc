@@ -110,6 +110,25 @@ TEST_F(StormSeries, TakesAnotherStormWhileItServes) {
   EXPECT_FALSE(store->Add(folder_.File("nothing.nc")).ok());
 }
 
+TEST_F(StormSeries, ForgetsAStormThatIsRemoved) {
+  const auto store = Open({.read_ahead = 2});
+  const auto held = store->Get("series", 0, {});
+  ASSERT_TRUE(held.ok()) << held.status();
+  const StormInfo* info = store->Find("series");
+  ASSERT_TRUE(store->Remove("series").ok());
+  EXPECT_THAT(store->Storms(), ::testing::IsEmpty());
+  EXPECT_EQ(store->Find("series"), nullptr);
+  EXPECT_TRUE(absl::IsNotFound(store->Get("series", 0, {}).status()));
+  EXPECT_EQ(store->Peek("series", 0), nullptr);
+  EXPECT_TRUE(absl::IsNotFound(store->Remove("series")));
+  EXPECT_EQ(info->id, "series") << "what was pointed to stays";
+  EXPECT_GT((*held)->Bytes(), 0U) << "and what was given";
+  EXPECT_TRUE(Eventually([&] { return store->CachedBytes() == 0; }));
+  // Another of that name may come.
+  ASSERT_TRUE(store->Add(folder_.File("series")).ok());
+  EXPECT_TRUE(store->Get("series", 1, {}).ok());
+}
+
 TEST_F(StormSeries, ReadsATimeOnceWhileItIsHeld) {
   const auto store = Open({.read_ahead = 0});
   EXPECT_EQ(store->Peek("series", 3), nullptr);

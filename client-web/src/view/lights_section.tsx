@@ -1,0 +1,109 @@
+// Lights besides the sun, each from its own direction and in its own colour.
+import { create } from "@bufbuild/protobuf";
+import { colorOfHex, hexOfColor } from "../core/color";
+import { LIMITS, MOST_LIGHTS, withLight, withLightAdded, withoutLight } from "../core/scene";
+import type { PageState } from "../core/state";
+import {
+  ColorSchema,
+  type DirectionalLight,
+  DirectionalLightSchema,
+} from "../gen/thunderhead/v1/scene_pb";
+import { Section, Slider } from "./controls";
+
+const WHITE = { red: 1, green: 1, blue: 1 };
+// Of lights added one after the other, so that the second looks different from the first.
+const FIRST_COLORS = ["#ff9a4d", "#4d8dff", "#ffffff", "#c04dff"];
+
+export function LightsSection({ state }: { state: PageState }) {
+  const lights = state.lights.value;
+  return (
+    <Section title="Lights besides the sun" testId="lights-section">
+      <p class="quiet">Shown by metaballs and by the reference. They light the storm alone.</p>
+      {lights.map((light, index) => (
+        <LightSettings key={index} state={state} light={light} index={index} />
+      ))}
+      <div class="buttons">
+        <button
+          type="button"
+          data-testid="add-light"
+          disabled={lights.length >= MOST_LIGHTS}
+          onClick={() => state.edit((scene) => withLightAdded(scene, newLight(lights.length)))}
+        >
+          Add a light
+        </button>
+      </div>
+    </Section>
+  );
+}
+
+function newLight(count: number): DirectionalLight {
+  const hex = FIRST_COLORS[count % FIRST_COLORS.length] ?? "#ffffff";
+  return create(DirectionalLightSchema, {
+    azimuthDeg: (LIMITS.lightAzimuth.defaultValue ?? 0) + 90 * count,
+    color: create(ColorSchema, colorOfHex(hex)),
+  });
+}
+
+interface LightProps {
+  readonly state: PageState;
+  readonly light: DirectionalLight;
+  readonly index: number;
+}
+
+function LightSettings({ state, light, index }: LightProps) {
+  const name = `Light ${index + 1}`;
+  const id = `light-${index + 1}`;
+  const edit = (change: Parameters<typeof withLight>[2]) =>
+    state.edit((scene) => withLight(scene, index, change));
+  return (
+    <fieldset class="field" data-testid={id}>
+      <legend class="visually-hidden">{name}</legend>
+      <div class="field-head">
+        <span>{name}</span>
+        <span class="light-tools">
+          <input
+            type="color"
+            aria-label={`${name}: colour`}
+            title="Colour"
+            data-testid={`${id}-color`}
+            value={hexOfColor(light.color ?? WHITE)}
+            onInput={(event) =>
+              edit({ color: create(ColorSchema, colorOfHex(event.currentTarget.value)) })
+            }
+          />
+          <button
+            type="button"
+            class="remove"
+            aria-label={`Remove ${name}`}
+            title="Remove"
+            data-testid={`${id}-remove`}
+            onClick={() => state.edit((scene) => withoutLight(scene, index))}
+          >
+            ×
+          </button>
+        </span>
+      </div>
+      <Slider
+        label="Azimuth"
+        limits={LIMITS.lightAzimuth}
+        value={light.azimuthDeg ?? LIMITS.lightAzimuth.defaultValue}
+        testId={`${id}-azimuth`}
+        onChange={(azimuthDeg) => edit({ azimuthDeg })}
+      />
+      <Slider
+        label="Elevation"
+        limits={LIMITS.lightElevation}
+        value={light.elevationDeg ?? LIMITS.lightElevation.defaultValue}
+        testId={`${id}-elevation`}
+        onChange={(elevationDeg) => edit({ elevationDeg })}
+      />
+      <Slider
+        label="Irradiance"
+        limits={LIMITS.lightIrradiance}
+        value={light.irradiance ?? LIMITS.lightIrradiance.defaultValue}
+        testId={`${id}-irradiance`}
+        onChange={(irradiance) => edit({ irradiance })}
+      />
+    </fieldset>
+  );
+}

@@ -1,0 +1,42 @@
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+#include "service/finished.h"
+#include "service/handlers.h"
+#include "service/limits_check.h"
+
+namespace thunderhead::service {
+namespace {
+
+// Those who watch it keep its last picture; nothing else of it can be drawn.
+void TellSessions(session::Sessions& sessions, const std::string& storm_id) {
+  for (const std::shared_ptr<session::Session>& session : sessions.All()) {
+    const std::optional<session::NewestScene> newest = session->Newest();
+    if (!newest.has_value() || newest->scene->storm_id != storm_id) continue;
+    session->hub().Publish(session::Problem{
+        newest->revision,
+        absl::StrCat("the cloud '", storm_id, "' was deleted; choose another storm")});
+  }
+}
+
+absl::Status Delete(Engine& engine, const std::string& storm_id) {
+  THUNDERHEAD_RETURN_IF_ERROR(engine.clouds.Delete(storm_id));
+  TellSessions(engine.sessions, storm_id);
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+grpc::ServerUnaryReactor* DeleteCloud(Engine& engine, grpc::CallbackServerContext* context,
+                                      const v1::DeleteCloudRequest* request,
+                                      v1::DeleteCloudResponse* /*response*/) {
+  if (const absl::Status limits = CheckLimits(*request); !limits.ok()) {
+    return Finished(context, limits);
+  }
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  engine.executor.Submit([=, &engine](const absl::Status& status) {
+    reactor->Finish(ToGrpcStatus(status.ok() ? Delete(engine, request->storm_id()) : status));
+  });
+  return reactor;
+}
+
+}  // namespace thunderhead::service
