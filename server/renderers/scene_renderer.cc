@@ -56,6 +56,12 @@ scene::Stage SceneRenderer::FirstStage(
   return scene::FirstDirtyStage(*drawn_scene_, scene);
 }
 
+bool SceneRenderer::OnlyLightsDiffer(
+    scene::Scene scene, const std::shared_ptr<const volume::HydrometeorFields>& fields) const {
+  if (drawn_scene_.has_value()) scene.lights = drawn_scene_->lights;
+  return FirstStage(scene, fields) > scene::Stage::kLight;
+}
+
 std::size_t SceneRenderer::Bytes() const {
   return medium_.Bytes() + half_angle_.Bytes() + light_volume_.Bytes() + metaball_.Bytes() +
          cumulus_.Bytes() + surroundings_.Bytes() + ground_.Bytes() + linear_.Bytes();
@@ -65,6 +71,7 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
     const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
     const DrawQuality& quality) {
   scene::Stage first = FirstStage(scene, fields);
+  sunlight_changed_ = first <= scene::Stage::kLight && !OnlyLightsDiffer(scene, fields);
   if (quality != drawn_quality_) first = std::min(first, scene::Stage::kView);
   drawn_scene_.reset();
   std::vector<StageTime> stages;
@@ -85,7 +92,7 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
       if (drawn_by_ == scene::Renderer::kCumulus) {
         THUNDERHEAD_RETURN_IF_ERROR(DrawCumulus(scene, &settings, first, &stages));
       } else {
-        THUNDERHEAD_RETURN_IF_ERROR(DrawGround(first, &settings, &stages));
+        THUNDERHEAD_RETURN_IF_ERROR(DrawGround(&settings, &stages));
         if (first <= scene::Stage::kLight) {
           THUNDERHEAD_RETURN_IF_ERROR(FitMetaballs(scene, fields, &stages));
         }
@@ -157,13 +164,11 @@ absl::Status SceneRenderer::DrawCumulus(const scene::Scene& scene, RenderSetting
   return absl::OkStatus();
 }
 
-absl::Status SceneRenderer::DrawGround(scene::Stage first, RenderSettings* settings,
-                                       std::vector<StageTime>* stages) {
-  const bool light_changed = first <= scene::Stage::kLight;
+absl::Status SceneRenderer::DrawGround(RenderSettings* settings, std::vector<StageTime>* stages) {
   const bool may_hide = ground_.MayHide(settings->view);
-  if (!light_changed && !may_hide) return absl::OkStatus();
+  if (!sunlight_changed_ && !may_hide) return absl::OkStatus();
   base::Stopwatch stopwatch;
-  if (light_changed) {
+  if (sunlight_changed_) {
     THUNDERHEAD_RETURN_IF_ERROR(ground_.CastShadow(medium_, *settings));
   }
   if (may_hide) {

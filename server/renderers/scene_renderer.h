@@ -72,9 +72,12 @@ class SceneRenderer {
   absl::Status MakeContent(const scene::Scene& scene, const volume::HydrometeorFields& fields,
                            std::vector<StageTime>* stages);
   bool Empty() const;
+  // True if what sunlight does is as it was drawn: only lights besides the sun may differ up to the
+  // stage of light.
+  bool OnlyLightsDiffer(scene::Scene scene,
+                        const std::shared_ptr<const volume::HydrometeorFields>& fields) const;
   // The storm's shadow, and what of the storm the ground hides.
-  absl::Status DrawGround(scene::Stage first, RenderSettings* settings,
-                          std::vector<StageTime>* stages);
+  absl::Status DrawGround(RenderSettings* settings, std::vector<StageTime>* stages);
   // The metaballs of the scene, if it is drawn by them.
   absl::Status FitMetaballs(const scene::Scene& scene,
                             const std::shared_ptr<const volume::HydrometeorFields>& fields,
@@ -113,6 +116,7 @@ class SceneRenderer {
   std::weak_ptr<const volume::HydrometeorFields> drawn_fields_;
   DrawQuality drawn_quality_;
   int drawn_slices_ = 0;
+  bool sunlight_changed_ = true;  // since the frame before
 };
 
 }  // namespace thunderhead::renderers

@@ -351,6 +351,28 @@ TEST_F(MetaballLightsTest, ALightInTheSunsPlaceIsTheSun) {
   EXPECT_EQ(DrawWith({{settings_.illumination.towards_sun, glm::vec3(0.7F)}}), sun);
 }
 
+TEST_F(MetaballLightsTest, LightsFromAnywhereStaySound) {
+  const glm::vec3 strongest(100.0F);
+  // As many as a scene may have: straight down, straight up, from the eye and the sun's own place.
+  const std::vector<Beam> beams = {{{0.0, 0.0, 1.0}, strongest},
+                                   {{0.0, 0.0, -1.0}, strongest},
+                                   {-settings_.view.forward, glm::vec3(0.0F)},
+                                   {settings_.illumination.towards_sun, strongest}};
+  for (const auto transport : {scene::Transport::kConsistent, scene::Transport::kPaper}) {
+    settings_.rendering.transport = transport;
+    const std::vector<float> pixels = DrawWith(beams);
+    float brightest = 0.0F;
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      ASSERT_TRUE(std::isfinite(pixels[i]));
+      ASSERT_GE(pixels[i], 0.0F);
+      if (i % 4 != 3) brightest = std::max(brightest, pixels[i]);
+    }
+    // Of all three lights' irradiance.
+    EXPECT_LE(brightest, 300.0F);
+    EXPECT_GT(brightest, 1.0F);
+  }
+}
+
 TEST_F(MetaballLightsTest, OnlyWhatChangedIsCarriedAgain) {
   settings_.illumination.sunlight = glm::vec3(0.3F);
   const auto check = [&](const std::vector<Beam>& beams, int carried, const std::string& what) {
@@ -545,6 +567,9 @@ TEST_F(MetaballSceneTest, LightsBesidesTheSunAreShownOrSaidNotToBe) {
   EXPECT_THAT(Stages(), IsEmpty());
   scene_.lights[0].color = {0.0, 1.0, 0.0};
   EXPECT_THAT(Stages(), ElementsAre("view", "composite"));
+  scene_.lights[0].azimuth_deg += 10.0;
+  EXPECT_THAT(Stages(), ElementsAre("light", "view", "composite"))
+      << "the ground has no part in it";
   for (const auto renderer :
        {scene::Renderer::kLightVolume, scene::Renderer::kHalfAngle, scene::Renderer::kCumulus}) {
     scene_.rendering.renderer = renderer;

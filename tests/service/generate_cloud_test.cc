@@ -1,5 +1,6 @@
 // Clouds made on request: files in the server's folder, and storms like any other.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "clouds/presets.h"
@@ -154,6 +155,23 @@ TEST_F(GenerateCloudTest, BadParametersAreNamedAndLeaveNothing) {
   status = Make(request);
   EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
   EXPECT_THAT(status.error_message(), HasSubstr("ellipsoids[0].radius_x_m"));
+  for (const float wrong : {std::nanf(""), -1.0F, 1e30F}) {
+    request.Clear();
+    request.set_persistence(wrong);
+    EXPECT_THAT(Make(request).error_message(), HasSubstr("persistence"));
+    request.Clear();
+    request.set_base_m(wrong);
+    EXPECT_THAT(Make(request).error_message(), HasSubstr("base_m"));
+    request.Clear();
+    request.set_water_kg_per_m3(wrong);
+    EXPECT_THAT(Make(request).error_message(), HasSubstr("water_kg_per_m3"));
+  }
+  request.Clear();
+  for (int i = 0; i < 65; ++i) request.add_ellipsoids();
+  EXPECT_THAT(Make(request).error_message(), HasSubstr("ellipsoids has 65 items"));
+  request.Clear();
+  request.set_preset(static_cast<v1::GenerateCloudRequest::Preset>(9));
+  EXPECT_THAT(Make(request).error_message(), HasSubstr("preset is 9"));
   request.Clear();
   request.set_threshold(1.0F);
   EXPECT_FALSE(Make(request).ok()) << "no cell holds any cloud";
