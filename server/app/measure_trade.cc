@@ -91,16 +91,17 @@ absl::Status MeasureRest(measure::Trade& trade, const std::string& path,
 }
 
 std::string Table(const std::vector<measure::TradeRow>& rows) {
-  std::string text =
-      absl::StrFormat("%-13s %-28s %-11s %6s %5s %4s %9s %8s %8s %7s\n", "renderer", "mode",
-                      "transport", "slices", "scale", "jpeg", "ms", "RMSE", "bias", "FLIP");
+  std::string text = absl::StrFormat("%-13s %-28s %-11s %6s %5s %5s %-6s %4s %9s %8s %8s %7s\n",
+                                     "renderer", "mode", "transport", "slices", "scale", "light",
+                                     "bits", "jpeg", "ms", "RMSE", "bias", "FLIP");
   for (const measure::TradeRow& row : rows) {
     const measure::TradeSetting& setting = row.setting;
-    absl::StrAppendFormat(&text, "%-13s %-28s %-11s %6d %5g %4d %9.2f %8.4f %+8.4f %7.4f%s\n",
-                          measure::NameOf(setting.renderer), measure::NameOf(setting.mode),
-                          measure::NameOf(setting.transport), setting.slices, setting.image_scale,
-                          setting.jpeg_quality, row.milliseconds, row.relative_rmse,
-                          row.relative_bias, row.flip, row.pareto ? "  *" : "");
+    absl::StrAppendFormat(
+        &text, "%-13s %-28s %-11s %6d %5g %5g %-6s %4d %9.2f %8.4f %+8.4f %7.4f%s\n",
+        measure::NameOf(setting.renderer), measure::NameOf(setting.mode),
+        measure::NameOf(setting.transport), setting.slices, setting.image_scale,
+        setting.light_detail, setting.single_precision ? "single" : "half", setting.jpeg_quality,
+        row.milliseconds, row.relative_rmse, row.relative_bias, row.flip, row.pareto ? "  *" : "");
   }
   return text;
 }

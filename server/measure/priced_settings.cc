@@ -27,6 +27,29 @@ constexpr std::array<absl::string_view, 8> kNeeded = {
 constexpr std::array<absl::string_view, 4> kPassedOver = {"milliseconds_spread", "bytes",
                                                           "relative_bias", "flip"};
 
+// What scenes cannot ask for: rows that differ from these values are not offered.
+struct Fixed {
+  absl::string_view column;
+  absl::string_view value;
+};
+constexpr std::array<Fixed, 2> kFixed = {{{"light_detail", "1"}, {"precision", "half"}}};
+
+bool IsFixed(absl::string_view name) {
+  return std::any_of(kFixed.begin(), kFixed.end(),
+                     [&](const Fixed& fixed) { return fixed.column == name; });
+}
+
+// Whether a scene can ask for the row's setting. `names` are the columns'.
+bool IsOnOffer(const Cells& names, const Cells& cells) {
+  if (names.size() != cells.size()) return true;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    for (const Fixed& fixed : kFixed) {
+      if (fixed.column == names[i] && fixed.value != cells[i]) return false;
+    }
+  }
+  return true;
+}
+
 template <typename Names>
 bool IsIn(const Names& names, absl::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -35,7 +58,7 @@ bool IsIn(const Names& names, absl::string_view name) {
 // Where each column is that is needed, in the order of kNeeded.
 absl::StatusOr<std::vector<std::size_t>> ColumnsOf(const Cells& names) {
   for (const absl::string_view name : names) {
-    if (IsIn(kNeeded, name) || IsIn(kPassedOver, name)) continue;
+    if (IsIn(kNeeded, name) || IsIn(kPassedOver, name) || IsFixed(name)) continue;
     return absl::InvalidArgumentError(absl::StrCat(
         "its column '", name, "' is not known: this program cannot tell what its rows differ by"));
   }
@@ -102,7 +125,7 @@ void KeepCommonestJpegQuality(std::vector<PricedSetting>* rows) {
 absl::StatusOr<PricedSettings> ReadPricedSettings(std::string_view text) {
   PricedSettings table;
   std::vector<std::size_t> columns;
-  std::size_t column_count = 0;
+  Cells names;
   const Cells lines = absl::StrSplit(absl::string_view(text.data(), text.size()), '\n');
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const absl::string_view line = absl::StripSuffix(lines[i], "\r");
@@ -114,12 +137,13 @@ absl::StatusOr<PricedSettings> ReadPricedSettings(std::string_view text) {
     const Cells cells = absl::StrSplit(line, ',');
     if (columns.empty()) {
       THUNDERHEAD_ASSIGN_OR_RETURN(columns, ColumnsOf(cells));
-      column_count = cells.size();
+      names = cells;
       continue;
     }
+    if (!IsOnOffer(names, cells)) continue;
     Cells needed;
     for (const std::size_t column : columns) {
-      if (cells.size() == column_count) needed.push_back(cells[column]);
+      if (cells.size() == names.size()) needed.push_back(cells[column]);
     }
     PricedSetting row;
     if (needed.empty() || !ReadRow(needed, &row)) {

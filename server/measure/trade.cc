@@ -22,6 +22,29 @@ double Quantile(std::vector<double> values, double share) {
       std::lround(share * static_cast<double>(values.size() - 1)))];
 }
 
+// Of the default renderer and mode.
+void AddVariants(scene::Transport transport, std::vector<TradeSetting>* settings) {
+  TradeSetting usual;
+  usual.transport = transport;
+  for (const double scale : {0.25, 0.5, 0.75}) {
+    for (const int slices : {32, 64, 128}) {
+      settings->push_back(usual);
+      settings->back().image_scale = scale;
+      settings->back().slices = slices;
+    }
+  }
+  for (const double detail : {0.5, 2.0}) {
+    settings->push_back(usual);
+    settings->back().light_detail = detail;
+  }
+  settings->push_back(usual);
+  settings->back().single_precision = true;
+  for (const int quality : {30, 60, 95}) {
+    settings->push_back(usual);
+    settings->back().jpeg_quality = quality;
+  }
+}
+
 }  // namespace
 
 LinearImage ImageOf(const gl::Texture2D& texture) {
@@ -101,18 +124,8 @@ std::vector<TradeSetting> DefaultSweep() {
                           transport, balls, 1.0, 88});
     }
   }
-  TradeSetting best;
-  for (const double scale : {0.25, 0.5, 0.75}) {
-    for (const int slices : {32, 64, 128}) {
-      best.image_scale = scale;
-      best.slices = slices;
-      settings.push_back(best);
-    }
-  }
-  best = TradeSetting();
-  for (const int quality : {30, 60, 95}) {
-    best.jpeg_quality = quality;
-    settings.push_back(best);
+  for (const auto transport : {scene::Transport::kConsistent, scene::Transport::kDiffusion}) {
+    AddVariants(transport, &settings);
   }
   return settings;
 }
@@ -164,7 +177,8 @@ absl::StatusOr<TradeRow> Trade::Measure(const TradeSetting& setting) {
   }
   TradeRow row;
   row.setting = setting;
-  const renderers::DrawQuality quality{setting.image_scale, 1.0};
+  const renderers::DrawQuality quality{setting.image_scale, 1.0, setting.light_detail,
+                                       setting.single_precision};
   std::vector<double> milliseconds;
   std::string jpeg;
   // A change too small to see makes the view run again; the first frame also compiles

@@ -24,6 +24,8 @@ struct TradeSetting {
   int slices = 128;  // or samples, or metaballs
   double image_scale = 1.0;
   int jpeg_quality = 88;
+  double light_detail = 1.0;  // as in renderers::DrawQuality
+  bool single_precision = false;
 
   bool operator==(const TradeSetting&) const = default;
 };
@@ -40,8 +42,8 @@ struct TradeRow {
 };
 
 // Every renderer, mode, transport and number of slices at full size (of metaballs the default mode
-// and some numbers of them), then smaller pictures and other JPEG qualities of the default renderer
-// and mode.
+// and some numbers of them), then smaller pictures, and finer and coarser light volumes, single
+// precision and other JPEG qualities of the default renderer and mode.
 std::vector<TradeSetting> DefaultSweep();
 
 // Marks the rows that no other beats in both milliseconds and relative RMSE.

@@ -25,6 +25,12 @@ struct Illumination {
   glm::vec3 from_sky{0.0F};  // mean radiance of the upper and of the lower half
   glm::vec3 from_ground{0.0F};
   std::vector<Beam> beams{};  // renderers that cannot show them say so
+  // The sky as a sum, for diffusion transport: an irradiance from the sun's direction for its
+  // bright surroundings, and of the rest, taken for linear in the sine of the elevation, the mean
+  // radiance and the irradiance from above over pi.
+  glm::vec3 around_sun{0.0F};
+  glm::vec3 rest_of_sky{0.0F};
+  glm::vec3 rest_of_sky_level{0.0F};
 };
 
 struct RenderSettings {
@@ -33,6 +39,9 @@ struct RenderSettings {
   Illumination illumination;
   glm::ivec2 eye_size{1};  // of the eye buffer in pixels
   int slices = 128;        // or samples along a ray
+  // Of the light volume, as DrawQuality has them.
+  double light_detail = 1.0;
+  bool single_precision = false;
   // How far the ground is along each pixel's ray; none where nothing hides a part of the medium.
   const gl::Texture2D* ground_distance = nullptr;
 };

@@ -73,6 +73,10 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
   scene::Stage first = FirstStage(scene, fields);
   sunlight_changed_ = first <= scene::Stage::kLight && !OnlyLightsDiffer(scene, fields);
   if (quality != drawn_quality_) first = std::min(first, scene::Stage::kView);
+  if (quality.light_detail != drawn_quality_.light_detail ||
+      quality.single_precision != drawn_quality_.single_precision) {
+    first = std::min(first, scene::Stage::kLight);
+  }
   drawn_scene_.reset();
   std::vector<StageTime> stages;
   drawn_by_ = scene.rendering.renderer;
@@ -87,8 +91,10 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
     if (!Empty()) {
       const double wanted = std::ceil(scene.rendering.slices * quality.slice_share);
       drawn_slices_ = std::max(static_cast<int>(wanted), 1);
-      RenderSettings settings{scene.rendering, view, surroundings_.IlluminationOf(scene),
-                              EyeSize(scene, quality), drawn_slices_};
+      RenderSettings settings{
+          scene.rendering,         view,          surroundings_.IlluminationOf(scene),
+          EyeSize(scene, quality), drawn_slices_, quality.light_detail,
+          quality.single_precision};
       if (drawn_by_ == scene::Renderer::kCumulus) {
         THUNDERHEAD_RETURN_IF_ERROR(DrawCumulus(scene, &settings, first, &stages));
       } else {
@@ -102,7 +108,8 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
       ground_.ClearShadow();
     }
     base::Stopwatch stopwatch;
-    THUNDERHEAD_RETURN_IF_ERROR(Composite(scene, view));
+    THUNDERHEAD_RETURN_IF_ERROR(
+        Composite(scene, view, quality.single_precision ? GL_RGBA32F : GL_RGBA16F));
     glFinish();
     stages.push_back({"composite", stopwatch.ElapsedMs()});
   }
@@ -256,10 +263,12 @@ volume::WorldBox SceneRenderer::Box() const {
   return {medium_.Middle_m() - medium_.HalfExtent_m(), medium_.Middle_m() + medium_.HalfExtent_m()};
 }
 
-absl::Status SceneRenderer::Composite(const scene::Scene& scene, const scene::View& view) {
+absl::Status SceneRenderer::Composite(const scene::Scene& scene, const scene::View& view,
+                                      GLenum format) {
   const glm::ivec2 size(scene.output.width_px, scene.output.height_px);
-  if (linear_.Size() != size) {
-    linear_ = gl::Texture2D(GL_RGBA16F, size);
+  if (linear_.Size() != size || linear_format_ != format) {
+    linear_ = gl::Texture2D(format, size);
+    linear_format_ = format;
     linear_target_ = gl::Framebuffer(linear_);
   }
   if (nothing_.Get() == 0) {

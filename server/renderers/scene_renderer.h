@@ -24,6 +24,9 @@ namespace thunderhead::renderers {
 struct DrawQuality {
   double image_scale = 1.0;  // of the eye buffer's width and height, (0, 1]
   double slice_share = 1.0;  // of the scene's slices, (0, 1]
+  // What sweeps vary besides; sessions draw with these.
+  double light_detail = 1.0;      // texels of the light volume, over the usual ones, along a side
+  bool single_precision = false;  // in the light volume's buffers and the frame; half is usual
 
   bool operator==(const DrawQuality&) const = default;
 };
@@ -91,7 +94,7 @@ class SceneRenderer {
   const gl::Texture2D& Eye() const;
   // Around what was drawn.
   volume::WorldBox Box() const;
-  absl::Status Composite(const scene::Scene& scene, const scene::View& view);
+  absl::Status Composite(const scene::Scene& scene, const scene::View& view, GLenum format);
   LinearFrame Report(const scene::Scene& scene, const volume::HydrometeorFields& fields) const;
 
   std::shared_ptr<gl::ProgramCache> programs_;
@@ -108,6 +111,7 @@ class SceneRenderer {
   DetailNoises detail_noises_;
   ResidentMedium medium_;
   gl::Texture2D linear_;
+  GLenum linear_format_ = 0;
   gl::Framebuffer linear_target_;
   gl::Texture2D nothing_;  // an eye buffer without medium
 

@@ -39,6 +39,7 @@ void SkyAndGround::Update(const scene::Scene& scene, const scene::View& view,
     sky_.emplace(*atmosphere_, glm::vec3(key.towards_sun),
                  physics::ClearSky::Site{ground_m, ground_m});
     drawn_ = key;
+    around_sun_ = AroundSun();
     eye_height_m_ = -1.0;
   }
   SetEyeSky(view.altitude_m);
@@ -65,6 +66,40 @@ void SkyAndGround::SetEyeSky(double altitude_m) {
           {ground_m + static_cast<float>(height_m), ground_m}});
 }
 
+// Such that a surface that faces the sun receives what the sky sends it: irradiance of the sun's
+// surroundings, x, and of the rest, of radiance a + b (1 - sine of the elevation), where
+// a = 3 I - 2 M and b = 6 (M - I) for the rest's irradiance from above over pi, I, and its mean M.
+glm::vec3 SkyAndGround::AroundSun() const {
+  constexpr int kElevations = 24;
+  constexpr int kAzimuths = 48;
+  constexpr float kPi = std::numbers::pi_v<float>;
+  constexpr float kSolidAngle = 2.0F * kPi / (kElevations * kAzimuths);
+  const glm::vec3 sun(drawn_.towards_sun);
+  if (sun.z <= 0.0F) return glm::vec3(0.0F);
+  glm::vec3 facing(0.0F);
+  float even = 0.0F;     // what a sky of radiance 1 sends
+  float falling = 0.0F;  // and one of 1 - sine of the elevation
+  for (int i = 0; i < kElevations; ++i) {
+    const float sine = (static_cast<float>(i) + 0.5F) / kElevations;
+    const float cosine = std::sqrt(1.0F - sine * sine);
+    for (int j = 0; j < kAzimuths; ++j) {
+      const float azimuth = 2.0F * kPi * (static_cast<float>(j) + 0.5F) / kAzimuths;
+      const glm::vec3 direction(cosine * std::cos(azimuth), cosine * std::sin(azimuth), sine);
+      const float turned = std::max(glm::dot(direction, sun), 0.0F) * kSolidAngle;
+      facing += sky_->At(direction).radiance * turned;
+      even += turned;
+      falling += (1.0F - sine) * turned;
+    }
+  }
+  const glm::vec3 level = sky_->Light().irradiance / kPi;
+  const glm::vec3 mean = sky_->Light().mean_radiance;
+  const glm::vec3 without = (3.0F * level - 2.0F * mean) * even + 6.0F * (mean - level) * falling;
+  const float per_x = 1.0F + ((1.0F - 3.0F * sun.z) * even + (6.0F * sun.z - 3.0F) * falling) / kPi;
+  // No more than leaves the rest bright everywhere.
+  const glm::vec3 most = glm::min(kPi * mean, 0.5F * kPi * level / sun.z);
+  return glm::clamp((facing - without) / std::max(per_x, 0.1F), glm::vec3(0.0F), most);
+}
+
 Illumination SkyAndGround::IlluminationOf(const scene::Scene& scene) const {
   Illumination light;
   light.towards_sun = drawn_.towards_sun;
@@ -76,6 +111,10 @@ Illumination SkyAndGround::IlluminationOf(const scene::Scene& scene) const {
   const float sine = std::max(static_cast<float>(drawn_.towards_sun.z), 0.0F);
   const glm::vec3 diffuse =
       sky_->Light().irradiance * irradiance * static_cast<float>(scene.sky.brightness);
+  constexpr float kInversePi = std::numbers::inv_pi_v<float>;
+  light.around_sun = irradiance * static_cast<float>(scene.sky.brightness) * around_sun_;
+  light.rest_of_sky = light.from_sky - light.around_sun * (0.5F * kInversePi);
+  light.rest_of_sky_level = (diffuse - light.around_sun * sine) * kInversePi;
   light.from_ground = GroundReflectance(scene) * (light.sunlight * sine + diffuse);
   light.ambient = 0.5F * (light.from_sky + light.from_ground);
   for (const scene::DirectionalLight& lamp : scene.lights) {

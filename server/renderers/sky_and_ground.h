@@ -45,6 +45,7 @@ class SkyAndGround {
 
  private:
   void SetEyeSky(double altitude_m);
+  glm::vec3 AroundSun() const;
 
   // What the sky's light depends on.
   struct Key {
@@ -61,6 +62,7 @@ class SkyAndGround {
   std::optional<physics::Atmosphere> atmosphere_;
   std::optional<physics::ClearSky> sky_;
   Key drawn_;
+  glm::vec3 around_sun_{0.0F};  // of Illumination, for a sun of irradiance 1
   double eye_height_m_ = -1.0;  // that the table was made for
   gl::Texture2D sky_table_;
 };

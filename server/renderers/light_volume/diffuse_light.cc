@@ -19,14 +19,18 @@ constexpr double kTolerance = 2e-4;
 // A face that light leaves aslant counts as at most so much farther from the surface.
 constexpr float kMostSlant = 4.0F;
 
-// Upward faces see the sky, sides half of it.
-constexpr std::array<float, 6> kSkySeen = {0.5F, 0.5F, 0.5F, 0.5F, 0.0F, 1.0F};
+// What faces receive of a sky of radiance a + b (1 - sine of the elevation), in shares of its
+// irradiance from above over pi and of its mean radiance: integrals over the half of the sphere,
+// for sides over a quarter.
+constexpr glm::vec2 kSideSees(-0.227F, 0.727F);
+constexpr std::array<glm::vec2, 6> kSkySeen = {kSideSees, kSideSees,       kSideSees,
+                                               kSideSees, glm::vec2(0.0F), glm::vec2(1.0F, 0.0F)};
 
 // Diffusion knows no free flight: in haze on a thick cloud, which light leaves upwards before it
 // has gone far, it would carry light away sideways. A step sideways goes no farther than this share
-// of the medium's height. A third or three times this changes the errors of the sample storm by
-// 0.02.
-constexpr double kFarthestHop = 0.02;
+// of the medium's height. Half or twice this changes the errors of the sample storm by
+// 0.01 to 0.03.
+constexpr double kFarthestHop = 0.05;
 constexpr float kLeastResistance = 1e-3F;
 
 float MeanDecay(float from, float to) {
@@ -36,7 +40,7 @@ float MeanDecay(float from, float to) {
 
 }  // namespace
 
-DiffuseLight::DiffuseLight(DiffusionCells cells) : cells_(std::move(cells)) {
+DiffuseLight::DiffuseLight(DiffusionCells cells) : cells_(std::move(cells)), walls_(cells_) {
   const glm::dvec3& h = cells_.cell_m;
   area_[0] = static_cast<float>(h.z / h.x);
   area_[1] = static_cast<float>(h.z / h.y);
@@ -47,14 +51,6 @@ DiffuseLight::DiffuseLight(DiffusionCells cells) : cells_(std::move(cells)) {
   Factor();
   SolveSky();
   fluence_.assign(cell_of_.size(), 0.0F);
-}
-
-std::size_t DiffuseLight::Offset(const glm::ivec3& cell) const {
-  const glm::ivec3& size = cells_.size;
-  return (static_cast<std::size_t>(cell.z) * static_cast<std::size_t>(size.y) +
-          static_cast<std::size_t>(cell.y)) *
-             static_cast<std::size_t>(size.x) +
-         static_cast<std::size_t>(cell.x);
 }
 
 void DiffuseLight::Number() {
@@ -74,7 +70,7 @@ void DiffuseLight::ScanExits(int axis, std::vector<float>* sum, std::vector<floa
   const std::array<int, 2> other = {(axis + 1) % 3, (axis + 2) % 3};
   glm::ivec3 unit(0);
   unit[axis] = 1;
-  const std::size_t stride = Offset(unit);
+  const std::size_t stride = cells_.Offset(unit);
   const float half_m = static_cast<float>(0.5 * cells_.cell_m[axis]);
   std::vector<float> down(static_cast<std::size_t>(length));
   for (int a = 0; a < cells_.size[other[0]]; ++a) {
@@ -82,7 +78,7 @@ void DiffuseLight::ScanExits(int axis, std::vector<float>* sum, std::vector<floa
       glm::ivec3 start(0);
       start[other[0]] = a;
       start[other[1]] = b;
-      const std::size_t first = Offset(start);
+      const std::size_t first = cells_.Offset(start);
       float depth = 0.0F;
       float before = 0.0F;
       for (std::size_t i = 0; i < down.size(); ++i) {
@@ -115,7 +111,7 @@ void DiffuseLight::ScanExits(int axis, std::vector<float>* sum, std::vector<floa
 void DiffuseLight::FindExits() {
   std::vector<float> sum(number_.size(), 0.0F);
   std::vector<float> all(number_.size(), 0.0F);
-  sky_seen_.assign(number_.size(), 0.0F);
+  sky_seen_.assign(number_.size(), glm::vec2(0.0F));
   for (int axis = 0; axis < 3; ++axis) ScanExits(axis, &sum, &all);
   exit_root_.assign(number_.size(), 0.0F);
   for (const std::int32_t cell : cell_of_) {
@@ -124,7 +120,7 @@ void DiffuseLight::FindExits() {
     sky_seen_[i] /= all[i];
   }
   for (std::size_t i = 0; i < number_.size(); ++i) {
-    if (number_[i] == kNone) sky_seen_[i] = 0.0F;
+    if (number_[i] == kNone) sky_seen_[i] = glm::vec2(0.0F);
   }
 }
 
@@ -134,9 +130,7 @@ void DiffuseLight::MakeLinks() {
   diagonal_.assign(cell_of_.size(), 0.0F);
   for (std::size_t n = 0; n < cell_of_.size(); ++n) {
     const auto i = static_cast<std::size_t>(cell_of_[n]);
-    const auto at = static_cast<int>(i);
-    const glm::ivec3 cell(at % cells_.size.x, at / cells_.size.x % cells_.size.y,
-                          at / (cells_.size.x * cells_.size.y));
+    const glm::ivec3 cell = cells_.CellAt(i);
     const float here = cells_.transport_per_m[i];
     const float exit = exit_root_[i] * exit_root_[i];  // of light, as are the ways out below
     for (int way = 0; way < 6; ++way) {
@@ -144,7 +138,7 @@ void DiffuseLight::MakeLinks() {
       glm::ivec3 next = cell;
       next[axis] += way % 2 == 1 ? 1 : -1;
       const bool inside = next[axis] >= 0 && next[axis] < cells_.size[axis];
-      const std::size_t j = inside ? Offset(next) : 0;
+      const std::size_t j = inside ? cells_.Offset(next) : 0;
       Links& links = links_[n];
       links.to[way] = inside ? number_[j] : kNone;
       const float there = links.to[way] == kNone ? 0.0F : cells_.transport_per_m[j];
@@ -252,21 +246,35 @@ float DiffuseLight::TransportExit(std::size_t cell) const {
 }
 
 void DiffuseLight::SolveSky() {
+  sky_inward_.assign(number_.size(), glm::vec2(0.0F));
+  for (int part = 0; part < 2; ++part) SolveSkyPart(part);
+  Spread(&sky_inward_);
+  Spread(&sky_seen_);
+}
+
+void DiffuseLight::SolveSkyPart(int part) {
   std::vector<float> right(cell_of_.size(), 0.0F);
   for (std::size_t n = 0; n < right.size(); ++n) {
     for (std::size_t way = 0; way < 6; ++way) {
-      if (links_[n].to[way] == kNone) right[n] += links_[n].conductance[way] * kSkySeen[way];
+      if (links_[n].to[way] != kNone) continue;
+      right[n] += links_[n].conductance[way] * kSkySeen[way][part];
     }
   }
-  std::vector<float> share(right.size(), 0.5F);
+  std::vector<float> share(right.size(), 0.5F * static_cast<float>(part));
   Solve(right, kTolerance, &share);
-  sky_inward_.assign(number_.size(), 0.0F);
+  std::vector<float> own(number_.size(), 0.0F);
   for (std::size_t n = 0; n < share.size(); ++n) {
     const auto i = static_cast<std::size_t>(cell_of_[n]);
-    sky_inward_[i] = (sky_seen_[i] - share[n]) / (3.0F * TransportExit(i) + 2.0F);
+    const float seen = sky_seen_[i][part];
+    sky_inward_[i][part] = (seen - share[n]) / (3.0F * TransportExit(i) + 2.0F);
+    sky_seen_[i][part] = (1.0F - walls_.Hidden()[i]) * seen;
+    own[i] = sky_seen_[i][part] - 4.0F * sky_inward_[i][part];
   }
-  Spread(&sky_inward_);
-  Spread(&sky_seen_);
+  const std::vector<float> from_walls = walls_.Arriving(own);
+  for (const std::int32_t cell : cell_of_) {
+    const auto i = static_cast<std::size_t>(cell);
+    sky_seen_[i][part] += from_walls[i];
+  }
 }
 
 const std::vector<float>& DiffuseLight::SolveSun(const glm::dvec3& towards_sun,
@@ -311,27 +319,31 @@ const std::vector<float>& DiffuseLight::SolveSun(const glm::dvec3& towards_sun,
   }
   Solve(right, kTolerance, &fluence_);
   net_inward_.assign(number_.size(), 0.0F);
+  std::vector<float> own(number_.size(), 0.0F);
   for (std::size_t n = 0; n < count; ++n) {
     const auto i = static_cast<std::size_t>(cell_of_[n]);
     const float exit = exit_root_[i] * exit_root_[i];
-    const float transport_exit = TransportExit(i);
-    const float lit = physics::glsl::lit_fluence(exit, arrived_root[i] * arrived_root[i]);
-    net_inward_[i] = (lit - fluence_[n]) / (3.0F * transport_exit + 2.0F);
+    const float passed = arrived_root[i] * arrived_root[i];
+    const float lit = physics::glsl::lit_fluence(exit, passed);
+    net_inward_[i] = (lit - fluence_[n]) / (3.0F * TransportExit(i) + 2.0F);
+    own[i] = 4.0F * ((exit < passed ? exit / passed : 1.0F) - net_inward_[i]);
   }
+  from_walls_ = walls_.Arriving(own);
   Spread(&net_inward_);
   return net_inward_;
 }
 
-void DiffuseLight::Spread(std::vector<float>* values) const {
+template <typename Value>
+void DiffuseLight::Spread(std::vector<Value>* values) const {
   std::vector<std::uint8_t> times(number_.size(), 0);
   const glm::ivec3& size = cells_.size;
   for (const std::int32_t cell : cell_of_) {
-    const glm::ivec3 at(cell % size.x, cell / size.x % size.y, cell / (size.x * size.y));
-    const float value = (*values)[static_cast<std::size_t>(cell)];
+    const glm::ivec3 at = cells_.CellAt(static_cast<std::size_t>(cell));
+    const Value value = (*values)[static_cast<std::size_t>(cell)];
     for (int z = std::max(at.z - 1, 0); z <= std::min(at.z + 1, size.z - 1); ++z) {
       for (int y = std::max(at.y - 1, 0); y <= std::min(at.y + 1, size.y - 1); ++y) {
         for (int x = std::max(at.x - 1, 0); x <= std::min(at.x + 1, size.x - 1); ++x) {
-          const std::size_t j = Offset({x, y, z});
+          const std::size_t j = cells_.Offset({x, y, z});
           if (number_[j] != kNone) continue;
           (*values)[j] += value;
           ++times[j];

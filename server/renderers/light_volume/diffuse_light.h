@@ -10,18 +10,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
+#include "renderers/light_volume/diffusion_cells.h"
+#include "renderers/light_volume/wall_light.h"
 
 namespace thunderhead::renderers {
-
-// Cells, x fastest.
-struct DiffusionCells {
-  glm::ivec3 size{0};
-  glm::dvec3 cell_m{0.0};
-  std::vector<float> light_per_m;
-  std::vector<float> transport_per_m;
-  std::vector<float> absorption_per_m;
-};
 
 class DiffuseLight {
  public:
@@ -30,16 +24,20 @@ class DiffuseLight {
   // What follows from the cells alone, for each of them.
   // The root of the optical depth of `light` to the nearest way out.
   const std::vector<float>& ExitRoot() const { return exit_root_; }
-  // How much of what is seen from the nearest ways out is sky, not ground; and the net flux of an
-  // even sky's light above a black ground into the cloud, over the flux from above.
-  const std::vector<float>& SkySeen() const { return sky_seen_; }
-  const std::vector<float>& SkyInward() const { return sky_inward_; }
+  // How much of what comes in by the nearest ways out is skylight above a black ground, straight or
+  // from other walls, and its net flux into the cloud. A sky is taken for one whose radiance is
+  // linear in the sine of the elevation: x counts its irradiance from above over pi, y its mean
+  // radiance; x + y is that of an even sky.
+  const std::vector<glm::vec2>& SkySeen() const { return sky_seen_; }
+  const std::vector<glm::vec2>& SkyInward() const { return sky_inward_; }
 
   // For sunlight of irradiance 1 that arrives in each cell with the root of its optical depth
   // `arrived_root`: the net flux into the cloud that fluence (shaders/physics/light_transport.glsl,
   // diffuse_fluence) is made of. Starts from the last solution.
   const std::vector<float>& SolveSun(const glm::dvec3& towards_sun,
                                      const std::vector<float>& arrived_root);
+  // The fluence that other walls send in, of the last SolveSun.
+  const std::vector<float>& FromWalls() const { return from_walls_; }
 
   int Unknowns() const { return static_cast<int>(cell_of_.size()); }
   int LastIterations() const { return last_iterations_; }
@@ -56,7 +54,6 @@ class DiffuseLight {
     float slack[6];
   };
 
-  std::size_t Offset(const glm::ivec3& cell) const;
   void Number();
   void FindExits();
   void ScanExits(int axis, std::vector<float>* sum, std::vector<float>* all);
@@ -64,21 +61,25 @@ class DiffuseLight {
   void MakeLinks();
   void Factor();
   void SolveSky();
+  void SolveSkyPart(int part);
   void Precondition(const std::vector<float>& from, std::vector<float>* to) const;
   void Apply(const std::vector<float>& from, std::vector<float>* to) const;
   void Solve(const std::vector<float>& right, double tolerance, std::vector<float>* solution);
   // Gives empty cells beside others the mean of those.
-  void Spread(std::vector<float>* values) const;
+  template <typename Value>
+  void Spread(std::vector<Value>* values) const;
 
   DiffusionCells cells_;
+  WallLight walls_;
   std::vector<std::int32_t> number_;   // by cell; kNone where there is nothing
   std::vector<std::int32_t> cell_of_;  // by number
   std::vector<Links> links_;           // by number
   std::vector<float> diagonal_;        // by number
   std::vector<float> inverse_pivot_;   // of the incomplete Cholesky factor
   std::vector<float> exit_root_;
-  std::vector<float> sky_seen_;
-  std::vector<float> sky_inward_;
+  std::vector<glm::vec2> sky_seen_;
+  std::vector<glm::vec2> sky_inward_;
+  std::vector<float> from_walls_;
   std::vector<float> fluence_;  // by number
   std::vector<float> net_inward_;
   std::vector<float> residual_, direction_, image_, better_;

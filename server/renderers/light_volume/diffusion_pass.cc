@@ -39,7 +39,11 @@ absl::Status DiffusionPass::Solve(const ResidentMedium& medium, const GroupWeigh
     key_ = std::move(key);
   }
   THUNDERHEAD_RETURN_IF_ERROR(SampleLight(arrived));
-  net_inward_.Upload(GL_RED, GL_FLOAT, light_->SolveSun(towards_sun, arrived_root_).data());
+  const std::vector<float>& sun = light_->SolveSun(towards_sun, arrived_root_);
+  for (std::size_t i = 0; i < sun.size(); ++i) {
+    net_inward_texels_[i] = {sun[i], light_->FromWalls()[i], light_->SkyInward()[i].y, 0.0F};
+  }
+  net_inward_.Upload(GL_RGBA, GL_FLOAT, net_inward_texels_.data());
   return absl::OkStatus();
 }
 
@@ -58,7 +62,7 @@ absl::Status DiffusionPass::SampleCells(const ResidentMedium& medium, const Grou
     sampled_cells_ = gl::Texture3D(GL_RGBA32F, size);
     sampled_light_ = gl::Texture3D(GL_R32F, size);
     ways_out_ = gl::Texture3D(GL_RGBA16F, size);
-    net_inward_ = gl::Texture3D(GL_R16F, size);
+    net_inward_ = gl::Texture3D(GL_RGBA16F, size);
   }
   medium.Bind(*program);
   program->Set("cell_count", size);
@@ -83,11 +87,13 @@ absl::Status DiffusionPass::SampleCells(const ResidentMedium& medium, const Grou
   }
   light_.emplace(std::move(cells));
   arrived_root_.resize(count);
+  net_inward_texels_.resize(count);
   std::vector<float> ways_out(4 * count);
   for (std::size_t i = 0; i < count; ++i) {
     ways_out[4 * i] = light_->ExitRoot()[i];
-    ways_out[4 * i + 1] = light_->SkySeen()[i];
-    ways_out[4 * i + 2] = light_->SkyInward()[i];
+    ways_out[4 * i + 1] = light_->SkySeen()[i].x;
+    ways_out[4 * i + 2] = light_->SkySeen()[i].y;
+    ways_out[4 * i + 3] = light_->SkyInward()[i].x;
   }
   ways_out_.Upload(GL_RGBA, GL_FLOAT, ways_out.data());
   return absl::OkStatus();

@@ -56,9 +56,13 @@ class DiffusionPass {
   glm::ivec3 size_{0};
   gl::Texture3D sampled_cells_;
   gl::Texture3D sampled_light_;
-  gl::Texture3D ways_out_;    // root of the optical depth to the nearest way out, share of the sky
-  gl::Texture3D net_inward_;  // of sunlight
+  // Root of the optical depth to the nearest way out; sky seen (DiffuseLight::SkySeen), and the x
+  // of its net flux.
+  gl::Texture3D ways_out_;
+  // Of sunlight; the fluence from other walls; the y of the sky's.
+  gl::Texture3D net_inward_;
   std::vector<float> arrived_root_;
+  std::vector<glm::vec4> net_inward_texels_;
 };
 
 }  // namespace thunderhead::renderers

@@ -12,8 +12,8 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kMostLightTexels = 256;        // along each side
-constexpr double kLightTexelInCells = 0.75;  // across the sun's rays
+constexpr int kMostLightTexels = 256;        // along each side, of the usual detail
+constexpr double kLightTexelInCells = 0.75;  // across the sun's rays, of the usual detail
 constexpr double kLayerInCells = 1.5;        // along them, of the way through a cell
 constexpr GLuint kLightUnit = 4;
 constexpr GLuint kThicknessUnit = 5;
@@ -55,18 +55,19 @@ LightVolumeRenderer::LightBox::LightBox(const ResidentMedium& medium,
   frame = LightFrameOf({half_m}, towards_sun);
   reach_m = glm::dot(glm::abs(towards_sun), half_m);
   const glm::dvec2 across_m = 2.0 * frame.half_extent_m;
+  const int most_texels = std::max(static_cast<int>(kMostLightTexels * settings.light_detail), 1);
   // Finer texels than cells would carry no more detail.
-  texel_m = std::max(std::max(across_m.x, across_m.y) / kMostLightTexels,
-                     kLightTexelInCells * std::min(cell_m.x, cell_m.y));
+  texel_m = std::max(std::max(across_m.x, across_m.y) / most_texels,
+                     kLightTexelInCells / settings.light_detail * std::min(cell_m.x, cell_m.y));
   const glm::dvec3 through_m = cell_m / glm::max(glm::abs(towards_sun), glm::dvec3(1e-6));
-  const double layer_m =
-      std::min(texel_m, kLayerInCells * std::min({through_m.x, through_m.y, through_m.z}));
+  const double layer_m = std::min(texel_m, kLayerInCells / settings.light_detail *
+                                               std::min({through_m.x, through_m.y, through_m.z}));
   size = glm::clamp(glm::ivec3(glm::ceil(glm::dvec3(across_m / texel_m, 2.0 * reach_m / layer_m))),
-                    glm::ivec3(1), glm::ivec3(kMostLightTexels));
+                    glm::ivec3(1), glm::ivec3(most_texels));
   if (IsTranslucent(settings.rendering) && !IsConsistent(settings.rendering)) {
     // The paper's transport depends on the number of its steps: they are the scene's slices.
     const int slices = settings.rendering.slices;
-    size.z = std::clamp((slices + 1) / 2, 1, kMostLightTexels);
+    size.z = std::clamp((slices + 1) / 2, 1, most_texels);
     half_layer_steps = std::max(1, (slices + size.z) / (2 * size.z));
   }
   texel_m = std::max(texel_m, 2.0 * reach_m / size.z);
@@ -99,7 +100,9 @@ absl::Status LightVolumeRenderer::CarryLight(const ResidentMedium& medium,
   const LightBox box(medium, settings);
   const GroupWeights weights(medium.Content(), settings.rendering);
   const bool diffuse = IsDiffuse(settings.rendering);
-  Resize(box.size, medium.Bounds().grid.cells, diffuse ? GL_RG16F : GL_R16F);
+  const GLenum one = settings.single_precision ? GL_R32F : GL_R16F;
+  const GLenum two = settings.single_precision ? GL_RG32F : GL_RG16F;
+  Resize(box.size, medium.Bounds().grid.cells, diffuse ? two : one);
   const std::vector<gl::Define> variant = {
       {"GROUPS", static_cast<int>(medium.Content().groups.size())},
       {"DETAILS", medium.Details()},
@@ -166,7 +169,10 @@ void LightVolumeRenderer::BindDiffusion(const gl::Program& program, const Reside
                                         const GroupWeights& weights,
                                         const RenderSettings& settings) {
   program.Set("transport_weights", medium.Weights(weights.transport));
-  program.Set("from_sky", settings.illumination.from_sky);
+  program.Set("rest_of_sky", settings.illumination.rest_of_sky);
+  program.Set("rest_of_sky_level", settings.illumination.rest_of_sky_level);
+  program.Set("diffuse_sunlight",
+              settings.illumination.sunlight + settings.illumination.around_sun);
   program.Set("from_ground", settings.illumination.from_ground);
   constexpr const char* kTints[] = {"red_weights", "green_weights", "blue_weights"};
   for (int color = 0; color < 3; ++color) {
@@ -179,8 +185,10 @@ void LightVolumeRenderer::BindDiffusion(const gl::Program& program, const Reside
 
 absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
                                            const RenderSettings& settings) {
-  if (eye_.Size() != settings.eye_size) {
-    eye_ = gl::Texture2D(GL_RGBA16F, settings.eye_size);
+  const GLenum format = settings.single_precision ? GL_RGBA32F : GL_RGBA16F;
+  if (eye_.Size() != settings.eye_size || eye_format_ != format) {
+    eye_ = gl::Texture2D(format, settings.eye_size);
+    eye_format_ = format;
     eye_target_ = gl::Framebuffer(eye_);
   }
   const GroupWeights weights(medium.Content(), settings.rendering);

@@ -56,6 +56,7 @@ class LightVolumeRenderer {
   std::shared_ptr<gl::ProgramCache> programs_;
   gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
   gl::Texture2D eye_;
+  GLenum eye_format_ = 0;
   gl::Framebuffer eye_target_;
   gl::Texture3D carried_;  // along the sun's rays
   gl::Texture2D thickness_;

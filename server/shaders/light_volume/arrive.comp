@@ -9,11 +9,7 @@
 #include "physics/light_transport.glsl"
 
 layout(local_size_x = 32) in;
-#if DIFFUSE
-layout(binding = 0, rg16f) uniform writeonly image3D arrived;
-#else
-layout(binding = 0, r16f) uniform writeonly image3D arrived;
-#endif
+layout(binding = 0) uniform writeonly image3D arrived;
 
 layout(binding = 4) uniform sampler3D carried;
 layout(binding = 5) uniform sampler2D thickness;

@@ -9,11 +9,9 @@
 #include "common/bricks.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 0) uniform writeonly image3D carried;
 #if DIFFUSE
-layout(binding = 0, rg16f) uniform writeonly image3D carried;
 layout(binding = 1, r32f) uniform writeonly image2D thickness;
-#else
-layout(binding = 0, r16f) uniform writeonly image3D carried;
 #endif
 
 uniform ivec3 light_size;

@@ -29,11 +29,14 @@ uniform vec3 sunlight;                    // irradiance
 uniform vec3 ambient;                     // mean radiance from sky and ground
 
 #if DIFFUSION
-layout(binding = 5) uniform sampler3D ways_out;    // root of the optical depth to the nearest one, share of sky seen there, its net flux
-layout(binding = 6) uniform sampler3D net_inward;  // of sunlight
+// Root of the optical depth to the nearest way out; sky seen there, and the x of its net flux (DiffuseLight::SkySeen).
+layout(binding = 5) uniform sampler3D ways_out;
+layout(binding = 6) uniform sampler3D net_inward;  // of sunlight; fluence from other walls; the y of the sky's net flux
 
 uniform vec4 transport_weights[PLANES];  // texel to similarity-scaled extinction, 1/m
-uniform vec3 from_sky;                   // radiance
+uniform vec3 rest_of_sky;                // mean radiance, without the bright sky around the sun
+uniform vec3 rest_of_sky_level;          // its irradiance from above over pi
+uniform vec3 diffuse_sunlight;           // irradiance, with that
 uniform vec3 from_ground;
 #if TINTED
 uniform vec4 red_weights[PLANES];  // texel to similarity-scaled scattering, 1/m
@@ -96,10 +99,12 @@ void main() {
 #if DIFFUSION
   float diffuse_passing = 1.0;
   vec3 diffuse_sun = vec3(0.0);  // fluence, by the share of it that is seen
-  vec3 diffuse_sky = vec3(0.0);
+  vec3 diffuse_sky = vec3(0.0);  // by its mean radiance
+  vec3 diffuse_level = vec3(0.0);
   vec3 diffuse_all = vec3(0.0);
   float transport_before = 0.0;
-  vec4 diffuse_before = vec4(0.0);
+  vec4 out_before = vec4(0.0);
+  vec4 inward_before = vec4(0.0);
 #endif
   float multiple = 0.0;    // mean intensity of light scattered many times, by the share of it that is seen
   vec4 direct[PLANES];     // by group: what scatters of the sunlight that arrives
@@ -152,15 +157,18 @@ void main() {
     float per_extinction = seen / max(mix(start, extinction_here, at), 1e-30);
 #if DIFFUSION
     float transport_here = weigh(here, transport_weights);
-    vec4 diffuse_here = vec4(texture(ways_out, place).rgb, texture(net_inward, place).r);
+    vec4 out_here = texture(ways_out, place);
+    vec4 inward_here = texture(net_inward, place);
     Taken diffuse = taken_on(segment_m, extinction_before < 0.0 ? 0.0 : transport_before, transport_here);
-    vec4 between = mix(diffuse_before, diffuse_here, diffuse.at);
+    vec4 ways = mix(out_before, out_here, diffuse.at);
+    vec4 inward = mix(inward_before, inward_here, diffuse.at);
     float passed_root = mix(light_before.r, light_here.r, diffuse.at);
     float transport_there = mix(transport_before, transport_here, diffuse.at);
-    float exit_depth = between.x * between.x;
+    float exit_depth = ways.x * ways.x;
     float scale = transport_there / max(mix(start, extinction_here, diffuse.at), 1e-30);
-    float fluence = diffuse_fluence(exit_depth, passed_root * passed_root, scale * exit_depth, between.w);
-    float sky_share = clamp(between.y - between.z * (3.0 * scale * exit_depth + 2.0), 0.0, 1.0);
+    float fluence = diffuse_fluence(exit_depth, passed_root * passed_root, scale * exit_depth, inward.x, inward.y);
+    vec2 sky_shares = ways.yz - vec2(ways.w, inward.z) * (3.0 * scale * exit_depth + 2.0);
+    sky_shares *= clamp(sky_shares.x + sky_shares.y, 0.0, 1.0) / max(sky_shares.x + sky_shares.y, 1e-6);
     float passed_depth = passed_root * passed_root;
     fluence += forward_fluence(exit_depth, passed_depth, scale * passed_depth);
     float shown = diffuse_passing * diffuse.share;
@@ -172,11 +180,13 @@ void main() {
     const vec3 tint = vec3(1.0);
 #endif
     diffuse_sun += (shown * fluence) * tint;
-    diffuse_sky += (shown * sky_share) * tint;
+    diffuse_level += (shown * sky_shares.x) * tint;
+    diffuse_sky += (shown * sky_shares.y) * tint;
     diffuse_all += shown * tint;
     diffuse_passing *= 1.0 - diffuse.share;
     transport_before = transport_here;
-    diffuse_before = diffuse_here;
+    out_before = out_here;
+    inward_before = inward_here;
 #endif
 #if DIFFUSION
     for (int plane = 0; plane < PLANES; ++plane) {
@@ -218,7 +228,8 @@ void main() {
 #endif
   }
 #if DIFFUSION
-  radiance += sunlight * diffuse_sun / kFourPi + from_sky * diffuse_sky + from_ground * (diffuse_all - diffuse_sky);
+  radiance += diffuse_sunlight * diffuse_sun / kFourPi + rest_of_sky * diffuse_sky +
+              rest_of_sky_level * diffuse_level + from_ground * (diffuse_all - diffuse_sky - diffuse_level);
   passing = diffuse_passing;
 #elif CONSISTENT && EVEN_ALBEDO
   radiance += albedo * (ambient * (1.0 - passing) + sunlight * multiple);

@@ -51,8 +51,9 @@ PHYSICS_FUNCTION float forward_fluence(float exit, float passed, float transport
   return 1.3f * (1.0f - cosine * cosine) * (exp(-transport_passed) - exp(-passed));
 }
 
-// The same in a cloud into which `net_inward` of the sun's irradiance flows: light on its way to another face, or, below
-// zero, from one. `transport_exit` is the similarity-scaled optical depth below the surface.
-PHYSICS_FUNCTION float diffuse_fluence(float exit, float passed, float transport_exit, float net_inward) {
-  return max(lit_fluence(exit, passed) - net_inward * (3.0f * transport_exit + 2.0f), 0.0f);
+// The same in a cloud onto which other clouds send the fluence `from_walls`, and into which `net_inward` of the sun's
+// irradiance flows: light on its way to another face, or, below zero, from one. `transport_exit` is the similarity-scaled
+// optical depth below the surface.
+PHYSICS_FUNCTION float diffuse_fluence(float exit, float passed, float transport_exit, float net_inward, float from_walls) {
+  return max(lit_fluence(exit, passed) + from_walls - net_inward * (3.0f * transport_exit + 2.0f), 0.0f);
 }

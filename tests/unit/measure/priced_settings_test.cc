@@ -47,6 +47,14 @@ TEST(PricedSettings, OnlyTheCommonestJpegQualityIsKept) {
   for (const PricedSetting& row : table->rows) EXPECT_EQ(row.setting.jpeg_quality, 88);
 }
 
+TEST(PricedSettings, WhatScenesCannotAskForIsLeftOut) {
+  const std::string names = "light_detail,precision," + kNames;
+  const auto table =
+      ReadPricedSettings(kHead + names + "1,half," + kRow + "2,half," + kRow + "1,single," + kRow);
+  ASSERT_TRUE(table.ok()) << table.status();
+  EXPECT_EQ(table->rows.size(), 1U);
+}
+
 TEST(PricedSettings, WhatIsNotUnderstoodIsRefusedAndNamed) {
   EXPECT_THAT(Complaint(kHead + "light_color," + kNames + "blue," + kRow),
               HasSubstr("column 'light_color' is not known"));

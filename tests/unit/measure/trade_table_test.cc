@@ -26,7 +26,9 @@ TEST(TradeTable, RowsComeBackFromTheirText) {
                  scene::Transport::kPaper,
                  64,
                  0.5,
-                 60};
+                 60,
+                 2.0,
+                 true};
   row.bytes = 12345;
   row.relative_bias = -0.125;
   row.flip = 0.0625;

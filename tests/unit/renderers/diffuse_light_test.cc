@@ -72,9 +72,12 @@ TEST(DiffuseLight, SkyOverAThickLayerIsReflected) {
   const Layer layer(1000.0);
   const DiffuseLight light(layer.cells);
   const std::size_t top = Layer::Middle(kLayers);
-  EXPECT_GT(light.SkySeen()[top], 0.99);
+  const glm::vec2 seen = light.SkySeen()[top];
+  const glm::vec2 inward = light.SkyInward()[top];
+  EXPECT_GT(seen.x + seen.y, 0.99);
+  EXPECT_GT(seen.x, 0.99);  // a level top sees irradiance from above
   // Of fluence 1 - K (3 t + 2) at depth t, 2 K at the bottom, which a black ground lights not.
-  EXPECT_NEAR(light.SkyInward()[top], 1.0 / (4.0 + 750.0), 1e-4);
+  EXPECT_NEAR(inward.x + inward.y, 1.0 / (4.0 + 750.0), 1e-4);
 }
 
 TEST(DiffuseLight, AbsorptionTakesLight) {
@@ -104,7 +107,10 @@ TEST(DiffuseLight, NothingBreaks) {
       DiffuseLight light(layer.cells);
       const auto& net = light.SolveSun(Sun(sine), layer.ArrivedRoot(std::max(sine, 1e-4)));
       for (const float value : net) ASSERT_TRUE(std::isfinite(value)) << depth << " " << sine;
-      for (const float value : light.SkyInward()) ASSERT_TRUE(std::isfinite(value)) << depth;
+      for (const glm::vec2& value : light.SkyInward()) {
+        ASSERT_TRUE(std::isfinite(value.x) && std::isfinite(value.y)) << depth;
+      }
+      for (const float value : light.FromWalls()) ASSERT_TRUE(std::isfinite(value)) << depth;
     }
   }
 }

@@ -1,0 +1,181 @@
+#include "renderers/light_volume/wall_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "glm/common.hpp"
+
+namespace thunderhead::renderers {
+namespace {
+
+// A cell is a wall if light is turned so often on the way through it. Half or twice this changes
+// the errors of the sample storm by 0.01 to 0.03 (docs/decisions/0009-diffusion-transport.md).
+constexpr double kWallDepth = 1.0;
+// Shortest ways through a cell within which a wall belongs to the same slope of steps.
+constexpr double kSameSlope = 1.2;
+constexpr float kLeastPassing = 0.02F;
+constexpr int kTurns = 6;  // from wall to wall that are followed
+constexpr int kRings = 3;
+constexpr int kRaysInRing = 4;
+
+using Rays = std::array<glm::dvec3, static_cast<std::size_t>(kRings* kRaysInRing)>;
+
+// Directions that share what a white face sends out.
+Rays RaysFrom(int way) {
+  Rays rays;
+  const int axis = way / 2;
+  for (int ring = 0; ring < kRings; ++ring) {
+    const double across = std::sqrt((ring + 0.5) / kRings);
+    for (int i = 0; i < kRaysInRing; ++i) {
+      const double angle = 2.0 * std::numbers::pi * (i + (ring + 0.5) / kRings) / kRaysInRing;
+      glm::dvec3 ray(0.0);
+      ray[axis] = (way % 2 == 1 ? 1.0 : -1.0) * std::sqrt(1.0 - across * across);
+      ray[(axis + 1) % 3] = across * std::cos(angle);
+      ray[(axis + 2) % 3] = across * std::sin(angle);
+      rays[static_cast<std::size_t>(ring * kRaysInRing + i)] = ray;
+    }
+  }
+  return rays;
+}
+
+// Goes from cell to cell along a ray.
+class Walk {
+ public:
+  Walk(const glm::dvec3& cell_m, const glm::dvec3& start, const glm::ivec3& cell,
+       const glm::dvec3& ray)
+      : cell_(cell) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double per_m = ray[axis] / cell_m[axis];
+      step_[axis] = per_m > 0.0 ? 1 : -1;
+      const double way = (per_m > 0.0 ? cell[axis] + 1.0 : cell[axis]) - start[axis];
+      const bool across = std::abs(per_m) < 1e-12;
+      next_m_[axis] = across ? 1e30 : std::max(way / per_m, 0.0);
+      through_m_[axis] = across ? 1e30 : 1.0 / std::abs(per_m);
+    }
+    shortest_m_ = std::min({through_m_.x, through_m_.y, through_m_.z});
+  }
+
+  const glm::ivec3& Cell() const { return cell_; }
+  // Since the start, in the shortest way through a cell.
+  double CellsGone() const { return gone_m_ / shortest_m_; }
+
+  // Goes to the next cell; returns how long the way through this one was.
+  double Leave() {
+    int axis = next_m_.y < next_m_.x ? 1 : 0;
+    if (next_m_.z < next_m_[axis]) axis = 2;
+    const double way_m = next_m_[axis] - gone_m_;
+    gone_m_ = next_m_[axis];
+    next_m_[axis] += through_m_[axis];
+    cell_[axis] += step_[axis];
+    return way_m;
+  }
+
+ private:
+  glm::ivec3 cell_;
+  glm::ivec3 step_{0};
+  glm::dvec3 next_m_{0.0};
+  glm::dvec3 through_m_{0.0};
+  double shortest_m_ = 1.0;
+  double gone_m_ = 0.0;
+};
+
+}  // namespace
+
+WallLight::WallLight(const DiffusionCells& cells)
+    : cells_(cells), hidden_(cells.transport_per_m.size(), 0.0F) {
+  const double side_m = std::cbrt(cells.cell_m.x * cells.cell_m.y * cells.cell_m.z);
+  wall_per_m_ = static_cast<float>(kWallDepth / side_m);
+  for (std::size_t i = 0; i < hidden_.size(); ++i) {
+    if (IsWall(i)) Look(i);
+  }
+}
+
+bool WallLight::IsWall(std::size_t cell) const {
+  return cells_.transport_per_m[cell] > wall_per_m_;
+}
+
+void WallLight::Look(std::size_t wall) {
+  static const std::array<Rays, 6> kRays = {RaysFrom(0), RaysFrom(1), RaysFrom(2),
+                                            RaysFrom(3), RaysFrom(4), RaysFrom(5)};
+  const std::size_t before = seen_.size();
+  const glm::dvec3 face(cells_.cell_m.y * cells_.cell_m.z, cells_.cell_m.x * cells_.cell_m.z,
+                        cells_.cell_m.x * cells_.cell_m.y);
+  double open_m2 = 0.0;
+  for (int way = 0; way < 6; ++way) {
+    glm::ivec3 next = cells_.CellAt(wall);
+    next[way / 2] += way % 2 == 1 ? 1 : -1;
+    if (cells_.Contains(next) && IsWall(cells_.Offset(next))) continue;
+    open_m2 += face[way / 2];
+    if (!cells_.Contains(next)) continue;
+    for (const glm::dvec3& ray : kRays[static_cast<std::size_t>(way)]) Follow(wall, way, ray);
+  }
+  for (std::size_t i = before; i < seen_.size(); ++i) {
+    seen_[i].share /= static_cast<float>(open_m2);
+    hidden_[wall] += seen_[i].share;
+  }
+  if (seen_.size() > before) walls_.push_back(static_cast<std::int32_t>(wall));
+}
+
+void WallLight::Follow(std::size_t wall, int way, const glm::dvec3& ray) {
+  const int axis = way / 2;
+  glm::ivec3 first = cells_.CellAt(wall);
+  first[axis] += way % 2 == 1 ? 1 : -1;
+  glm::dvec3 start = glm::dvec3(first) + 0.5;
+  start[axis] += way % 2 == 1 ? -0.5 : 0.5;
+  Walk walk(cells_.cell_m, start, first, ray);
+  float passing = 1.0F;
+  while (cells_.Contains(walk.Cell()) && passing > kLeastPassing) {
+    const std::size_t here = cells_.Offset(walk.Cell());
+    if (IsWall(here)) {
+      if (walk.CellsGone() < kSameSlope) return;
+      const double face_m2 =
+          cells_.cell_m.x * cells_.cell_m.y * cells_.cell_m.z / cells_.cell_m[axis];
+      const auto share = static_cast<float>(face_m2 / (kRings * kRaysInRing)) * passing;
+      seen_.push_back({static_cast<std::int32_t>(wall), static_cast<std::int32_t>(here), share});
+      return;
+    }
+    passing *= std::exp(-static_cast<float>(walk.Leave()) * cells_.transport_per_m[here]);
+  }
+}
+
+std::vector<float> WallLight::Arriving(const std::vector<float>& own) const {
+  std::vector<float> arriving(own.size(), 0.0F);
+  for (int turn = 0; turn < kTurns && !seen_.empty(); ++turn) {
+    std::vector<float> next(own.size(), 0.0F);
+    for (const Seen& seen : seen_) {
+      const auto to = static_cast<std::size_t>(seen.to);
+      next[static_cast<std::size_t>(seen.from)] +=
+          seen.share * std::max(own[to] + arriving[to], 0.0F);
+    }
+    std::swap(arriving, next);
+  }
+  return WithNeighbours(std::move(arriving));
+}
+
+std::vector<float> WallLight::WithNeighbours(std::vector<float> values) const {
+  std::vector<std::uint8_t> times(values.size(), 0);
+  for (const std::int32_t wall : walls_) {
+    const glm::ivec3 at = cells_.CellAt(static_cast<std::size_t>(wall));
+    const float value = values[static_cast<std::size_t>(wall)];
+    const glm::ivec3 low = glm::max(at - 1, glm::ivec3(0));
+    const glm::ivec3 high = glm::min(at + 1, cells_.size - 1);
+    for (int z = low.z; z <= high.z; ++z) {
+      for (int y = low.y; y <= high.y; ++y) {
+        for (int x = low.x; x <= high.x; ++x) {
+          const std::size_t beside = cells_.Offset({x, y, z});
+          if (hidden_[beside] > 0.0F) continue;
+          values[beside] += value;
+          ++times[beside];
+        }
+      }
+    }
+  }
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (times[i] > 1) values[i] /= static_cast<float>(times[i]);
+  }
+  return values;
+}
+
+}  // namespace thunderhead::renderers

@@ -1,0 +1,47 @@
+// Light that thick clouds' walls send each other through air that scatters little: what the
+// diffusion equation, which knows no free flight, cannot carry. Walls are taken for white, so that
+// what they send on does not depend on how much comes in. Plain values on the CPU; knows no GL.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "renderers/light_volume/diffusion_cells.h"
+
+namespace thunderhead::renderers {
+
+class WallLight {
+ public:
+  explicit WallLight(const DiffusionCells& cells);
+
+  // For each cell, the share of what a wall's open faces see that is other walls; 0 elsewhere.
+  const std::vector<float>& Hidden() const { return hidden_; }
+
+  // The light that comes in from other walls, for each cell; for those beside walls, that of the
+  // walls there. `own` is what each cell sends out besides. Both are fluences that give the same
+  // flux to a white surface: four times it.
+  std::vector<float> Arriving(const std::vector<float>& own) const;
+
+ private:
+  // What one wall sees of another.
+  struct Seen {
+    std::int32_t from;
+    std::int32_t to;
+    float share;  // of all that its open faces see
+  };
+
+  bool IsWall(std::size_t cell) const;
+  void Look(std::size_t wall);
+  void Follow(std::size_t wall, int way, const glm::dvec3& ray);
+  std::vector<float> WithNeighbours(std::vector<float> values) const;
+
+  DiffusionCells cells_;
+  float wall_per_m_ = 0.0F;
+  std::vector<Seen> seen_;           // ordered by `from`
+  std::vector<std::int32_t> walls_;  // those that see others
+  std::vector<float> hidden_;
+};
+
+}  // namespace thunderhead::renderers

@@ -1,0 +1,93 @@
+// Which walls see each other, against view factors in closed form.
+#include "renderers/light_volume/wall_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gtest/gtest.h"
+
+namespace thunderhead::renderers {
+namespace {
+
+constexpr int kLong = 81;
+constexpr int kGap = 6;
+constexpr int kHigh = 12;
+constexpr int kThick = 3;
+
+DiffusionCells Empty(const glm::ivec3& size) {
+  DiffusionCells cells;
+  cells.size = size;
+  cells.cell_m = glm::dvec3(100.0);
+  cells.light_per_m.assign(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
+                               static_cast<std::size_t>(size.z),
+                           0.0F);
+  cells.transport_per_m = cells.absorption_per_m = cells.light_per_m;
+  return cells;
+}
+
+// Two long walls, `gap_per_m` between them.
+DiffusionCells Canyon(float gap_per_m) {
+  DiffusionCells cells = Empty({2 * kThick + kGap, kLong, kHigh});
+  for (std::size_t i = 0; i < cells.transport_per_m.size(); ++i) {
+    const int x = cells.CellAt(i).x;
+    const bool wall = x < kThick || x >= kThick + kGap;
+    cells.transport_per_m[i] = wall ? 1.0F : gap_per_m;
+  }
+  return cells;
+}
+
+std::size_t MiddleOfWall(const DiffusionCells& cells) {
+  return cells.Offset({kThick - 1, kLong / 2, kHigh / 2});
+}
+
+TEST(WallLight, FacingWallsSeeTheirViewFactor) {
+  const DiffusionCells cells = Canyon(0.0F);
+  const WallLight walls(cells);
+  // From a point of one endless strip, half the sum of the sines under which it sees the other.
+  const double up = std::atan2(kHigh - (kHigh / 2 + 0.5), kGap);
+  const double down = std::atan2(kHigh / 2 + 0.5, kGap);
+  // Twelve rays stand for all directions.
+  EXPECT_NEAR(walls.Hidden()[MiddleOfWall(cells)], 0.5 * (std::sin(up) + std::sin(down)), 0.09);
+  EXPECT_EQ(walls.Hidden()[cells.Offset({0, kLong / 2, kHigh / 2})], 0.0F);  // inside
+}
+
+TEST(WallLight, WhatComesAndGoesBetweenWhiteWallsAddsUp) {
+  const DiffusionCells cells = Canyon(0.0F);
+  const WallLight walls(cells);
+  std::vector<float> own(cells.transport_per_m.size(), 0.0F);
+  own[MiddleOfWall(cells)] = 1.0F;
+  const std::vector<float> one = walls.Arriving(own);
+  std::fill(own.begin(), own.end(), 1.0F);
+  const std::vector<float> all = walls.Arriving(own);
+  const float seen = walls.Hidden()[MiddleOfWall(cells)];
+  // All walls send 1: what is seen of them and, over and over, what they send on.
+  EXPECT_GT(all[MiddleOfWall(cells)], seen);
+  EXPECT_LT(all[MiddleOfWall(cells)], seen / (1.0F - seen));
+  EXPECT_GT(*std::max_element(one.begin(), one.end()), 0.0F);
+  EXPECT_LT(one[MiddleOfWall(cells)], all[MiddleOfWall(cells)]);
+}
+
+TEST(WallLight, HazeBetweenWallsHidesThem) {
+  const DiffusionCells clear = Canyon(0.0F);
+  const DiffusionCells hazy = Canyon(1e-3F);
+  const float seen = WallLight(clear).Hidden()[MiddleOfWall(clear)];
+  const float through = WallLight(hazy).Hidden()[MiddleOfWall(hazy)];
+  EXPECT_GT(through, 0.2F * seen);  // the longest ways are three gaps long
+  EXPECT_LT(through, std::exp(-0.6F) * seen);
+}
+
+TEST(WallLight, LevelTopsAndSlopesOfStepsSeeNoWalls) {
+  DiffusionCells level = Empty({20, 20, 12});
+  DiffusionCells slope = level;
+  for (std::size_t i = 0; i < level.transport_per_m.size(); ++i) {
+    const glm::ivec3 cell = level.CellAt(i);
+    level.transport_per_m[i] = cell.z < 5 ? 1.0F : 0.0F;
+    slope.transport_per_m[i] = cell.z <= cell.x / 2 ? 1.0F : 0.0F;
+  }
+  for (const float hidden : WallLight(level).Hidden()) ASSERT_EQ(hidden, 0.0F);
+  const WallLight walls(slope);
+  EXPECT_LT(*std::max_element(walls.Hidden().begin(), walls.Hidden().end()), 0.15F);
+}
+
+}  // namespace
+}  // namespace thunderhead::renderers
