@@ -66,6 +66,7 @@ class SlabView : public testing::Test {
     if (even_light_) {
       settings.illumination = {settings.illumination.towards_sun, glm::vec3(0.0F), glm::vec3(1.0F),
                                glm::vec3(1.0F), glm::vec3(1.0F)};
+      settings.illumination.rest_of_sky = settings.illumination.rest_of_sky_level = glm::vec3(1.0F);
     }
     settings.eye_size = {9, 9};
     settings.slices = scene_.rendering.slices;
