@@ -10,6 +10,7 @@
 #include "base/status.h"
 #include "gl/context.h"
 #include "measure/frame_rates.h"
+#include "measure/paths.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::app {
@@ -22,6 +23,7 @@ struct Flags {
   std::optional<int> time_index;
   std::string size = "300x300";
   int slices = 128;
+  std::string transport = "consistent";
   int runs = 5;
   std::string device = "auto";
   bool json = false;
@@ -61,6 +63,9 @@ absl::Status MeasureFrames(const Flags& flags) {
         absl::StrCat("--slices is ", flags.slices, "; it must be from 1 to 4096"));
   }
   options.slices = flags.slices;
+  for (const auto& transport : measure::kTransports) {
+    if (transport.name == flags.transport) options.transport = transport.value;
+  }
   if (flags.runs < 1) {
     return absl::InvalidArgumentError(
         absl::StrCat("--runs is ", flags.runs, "; it must be 1 or more"));
@@ -90,6 +95,9 @@ Command AddMeasureFrames(CLI::App& measure) {
                      "Which of its times, from 0; without it that with the most condensate");
   frames->add_option("--size", flags->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
   frames->add_option("--slices", flags->slices, "Slices, or samples along a ray")
+      ->capture_default_str();
+  frames->add_option("--transport", flags->transport, "paper, consistent or diffusion")
+      ->check(CLI::IsMember({"paper", "consistent", "diffusion"}))
       ->capture_default_str();
   frames->add_option("--runs", flags->runs, "Runs of which the medians are taken")
       ->capture_default_str();

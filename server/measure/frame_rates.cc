@@ -82,6 +82,7 @@ scene::Scene SceneOf(const volume::HydrometeorFields& fields, const FrameRateOpt
   scene.output.width_px = options.width_px;
   scene.output.height_px = options.height_px;
   scene.rendering.slices = options.slices;
+  scene.rendering.transport = options.transport;
   const volume::WorldBox box = volume::VisibleBox(fields);
   const double aspect_ratio = static_cast<double>(options.width_px) / options.height_px;
   scene.camera = scene::Framing(scene::OrbitCamera(), box.low_m, box.high_m, aspect_ratio);

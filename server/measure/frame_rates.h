@@ -20,6 +20,7 @@ struct FrameRateOptions {
   int width_px = 300;  // the papers' size and slices
   int height_px = 300;
   int slices = 128;
+  scene::Transport transport = scene::Transport::kConsistent;
   int runs = 5;  // of which the medians are taken
   double seconds_a_run = 0.4;
 };

@@ -49,10 +49,13 @@ in vec2 position;
 out vec4 radiance_and_transmittance;
 
 const int kMostSamples = 16384;
-const float kOpaque = 5e-3;  // share of the background below which a ray ends
+// Share of the background below which a ray ends. Diffuse light changes little so deep in a cloud: what has been seen stands
+// for the rest.
 #if DIFFUSION
+const float kOpaque = 0.02;
 #define SHOWING diffuse_passing
 #else
+const float kOpaque = 5e-3;
 #define SHOWING passing
 #endif
 
@@ -228,6 +231,14 @@ void main() {
 #endif
   }
 #if DIFFUSION
+  if (diffuse_passing <= kOpaque) {
+    float whole = 1.0 / (1.0 - diffuse_passing);
+    diffuse_sun *= whole;
+    diffuse_sky *= whole;
+    diffuse_level *= whole;
+    diffuse_all *= whole;
+    diffuse_passing = 0.0;
+  }
   radiance += diffuse_sunlight * diffuse_sun / kFourPi + rest_of_sky * diffuse_sky +
               rest_of_sky_level * diffuse_level + from_ground * (diffuse_all - diffuse_sky - diffuse_level);
   passing = diffuse_passing;
