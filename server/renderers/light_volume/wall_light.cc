@@ -10,11 +10,17 @@
 namespace thunderhead::renderers {
 namespace {
 
-// A cell is a wall if light is turned so often on the way through it. Half or twice this changes
-// the errors of the sample storm by 0.01 to 0.03 (docs/decisions/0009-diffusion-transport.md).
-constexpr double kWallDepth = 1.0;
-// Shortest ways through a cell within which a wall belongs to the same slope of steps.
-constexpr double kSameSlope = 1.2;
+// How large what counts as a wall is, over the medium's height: as far as light hops sideways
+// (diffuse_light.cc).
+constexpr double kWallSize = 0.05;
+// A cell belongs to a wall if light is turned so often on the way through one. Half or twice this
+// changes the errors of the sample storm by 0.01 to 0.03
+// (docs/decisions/0009-diffusion-transport.md).
+constexpr double kWallDepth = 1.345;
+// Shortest ways through a cell, and share of a wall's size, within which a wall belongs to the same
+// slope of steps.
+constexpr double kSameSlopeCells = 1.2;
+constexpr double kSameSlope = 0.3;
 constexpr float kLeastPassing = 0.02F;
 constexpr int kTurns = 6;  // from wall to wall that are followed
 constexpr int kRings = 3;
@@ -58,8 +64,8 @@ class Walk {
   }
 
   const glm::ivec3& Cell() const { return cell_; }
-  // Since the start, in the shortest way through a cell.
-  double CellsGone() const { return gone_m_ / shortest_m_; }
+  double Gone_m() const { return gone_m_; }
+  double ShortestWay_m() const { return shortest_m_; }  // through a cell
 
   // Goes to the next cell; returns how long the way through this one was.
   double Leave() {
@@ -85,8 +91,8 @@ class Walk {
 
 WallLight::WallLight(const DiffusionCells& cells)
     : cells_(cells), hidden_(cells.transport_per_m.size(), 0.0F) {
-  const double side_m = std::cbrt(cells.cell_m.x * cells.cell_m.y * cells.cell_m.z);
-  wall_per_m_ = static_cast<float>(kWallDepth / side_m);
+  wall_size_m_ = kWallSize * cells.cell_m.z * cells.size.z;
+  wall_per_m_ = static_cast<float>(kWallDepth / wall_size_m_);
   for (std::size_t i = 0; i < hidden_.size(); ++i) {
     if (IsWall(i)) Look(i);
   }
@@ -125,11 +131,12 @@ void WallLight::Follow(std::size_t wall, int way, const glm::dvec3& ray) {
   glm::dvec3 start = glm::dvec3(first) + 0.5;
   start[axis] += way % 2 == 1 ? -0.5 : 0.5;
   Walk walk(cells_.cell_m, start, first, ray);
+  const double near_m = std::max(kSameSlopeCells * walk.ShortestWay_m(), kSameSlope * wall_size_m_);
   float passing = 1.0F;
   while (cells_.Contains(walk.Cell()) && passing > kLeastPassing) {
     const std::size_t here = cells_.Offset(walk.Cell());
     if (IsWall(here)) {
-      if (walk.CellsGone() < kSameSlope) return;
+      if (walk.Gone_m() < near_m) return;
       const double face_m2 =
           cells_.cell_m.x * cells_.cell_m.y * cells_.cell_m.z / cells_.cell_m[axis];
       const auto share = static_cast<float>(face_m2 / (kRings * kRaysInRing)) * passing;

@@ -38,6 +38,7 @@ class WallLight {
   std::vector<float> WithNeighbours(std::vector<float> values) const;
 
   DiffusionCells cells_;
+  double wall_size_m_ = 0.0;
   float wall_per_m_ = 0.0F;
   std::vector<Seen> seen_;           // ordered by `from`
   std::vector<std::int32_t> walls_;  // those that see others
