@@ -216,12 +216,21 @@ void Gate::Open() {
   changed_.notify_all();
 }
 
+void Gate::LetOnePass() {
+  {
+    const std::lock_guard lock(mutex_);
+    ++may_pass_;
+  }
+  changed_.notify_all();
+}
+
 void Gate::Pass() {
   std::unique_lock lock(mutex_);
   ++waiting_;
   changed_.notify_all();
-  changed_.wait(lock, [this] { return open_; });
+  changed_.wait(lock, [this] { return open_ || may_pass_ > 0; });
   --waiting_;
+  if (!open_) --may_pass_;
 }
 
 bool Gate::AwaitWaiting(int count) {

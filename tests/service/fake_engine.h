@@ -27,6 +27,8 @@ class Gate {
  public:
   void Close();
   void Open();
+  // One that waits, or comes next, passes the closed gate.
+  void LetOnePass();
   // Called by the fake: waits until the gate is open.
   void Pass();
   // Called by the test: waits until `count` have come to the closed gate.
@@ -37,6 +39,7 @@ class Gate {
   std::condition_variable changed_;
   bool open_ = true;
   int waiting_ = 0;
+  int may_pass_ = 0;
 };
 
 // "anvil" has four times with cloud and rain in part of the domain; "clear" has one time without
