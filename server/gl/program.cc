@@ -3,11 +3,14 @@
 #include <set>
 #include <utility>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "base/status.h"
 #include "gl/embedded_shaders.h"
+#include "gl/flat_uniforms.h"
 #include "glm/gtc/type_ptr.hpp"
 
 namespace thunderhead::gl {
@@ -45,14 +48,17 @@ absl::Status AppendFile(const std::string& path, std::set<std::string>* included
   return absl::OkStatus();
 }
 
-absl::StatusOr<Shader> Compile(GLenum type, const std::string& path,
-                               const std::vector<Define>& defines) {
+absl::StatusOr<std::string> TextOf(const std::string& path, const std::vector<Define>& defines) {
   std::string text = "#version 450 core\n";
   for (const Define& define : defines) {
     absl::StrAppend(&text, "#define ", define.name, " ", define.value, "\n");
   }
   std::set<std::string> included;
   THUNDERHEAD_RETURN_IF_ERROR(AppendFile(path, &included, &text));
+  return text;
+}
+
+absl::StatusOr<Shader> Compile(GLenum type, const std::string& path, const std::string& text) {
   Shader shader(glCreateShader(type));
   const char* source = text.c_str();
   glShaderSource(shader.Get(), 1, &source, nullptr);
@@ -67,6 +73,54 @@ absl::StatusOr<Shader> Compile(GLenum type, const std::string& path,
     return absl::InternalError(absl::StrCat("shader ", path, " does not compile: ", log));
   }
   return shader;
+}
+
+// The program of `texts`, one a stage; `paths` are for messages.
+absl::StatusOr<Name<internal::DeleteProgram>> LinkTexts(
+    const std::vector<std::pair<GLenum, std::string>>& texts,
+    const std::vector<std::string>& paths) {
+  Name<internal::DeleteProgram> program(glCreateProgram());
+  std::vector<Shader> shaders;  // stay until the program is linked
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(Shader shader, Compile(texts[i].first, paths[i], texts[i].second));
+    glAttachShader(program.Get(), shader.Get());
+    shaders.push_back(std::move(shader));
+  }
+  glLinkProgram(program.Get());
+  GLint linked = 0;
+  glGetProgramiv(program.Get(), GL_LINK_STATUS, &linked);
+  if (linked == GL_FALSE) {
+    char log[4096];
+    glGetProgramInfoLog(program.Get(), sizeof(log), nullptr, log);
+    return absl::InternalError(
+        absl::StrCat("program ", absl::StrJoin(paths, " "), " does not link: ", log));
+  }
+  return program;
+}
+
+bool ReadsUniformsByPixel() {
+  const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  return renderer != nullptr && absl::StrContains(renderer, "llvmpipe");
+}
+
+absl::StatusOr<Name<internal::DeleteProgram>> LinkStages(const ProgramSource& source) {
+  if (!source.compute.empty()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(std::string text, TextOf(source.compute, source.defines));
+    return LinkTexts({{GL_COMPUTE_SHADER, std::move(text)}}, {source.compute});
+  }
+  StageTexts texts;
+  THUNDERHEAD_ASSIGN_OR_RETURN(texts.vertex, TextOf(source.vertex, source.defines));
+  THUNDERHEAD_ASSIGN_OR_RETURN(texts.fragment, TextOf(source.fragment, source.defines));
+  const auto link = [&](const StageTexts& stages) {
+    return LinkTexts({{GL_VERTEX_SHADER, stages.vertex}, {GL_FRAGMENT_SHADER, stages.fragment}},
+                     {source.vertex, source.fragment});
+  };
+  if (ReadsUniformsByPixel()) {
+    // More of them than there may be inputs stay uniforms.
+    auto program = link(WithFlatUniforms(texts));
+    if (program.ok()) return program;
+  }
+  return link(texts);
 }
 
 std::map<std::string, GLint, std::less<>> UniformLocations(GLuint program) {
@@ -91,28 +145,8 @@ std::map<std::string, GLint, std::less<>> UniformLocations(GLuint program) {
 
 absl::StatusOr<Program> Program::Link(const ProgramSource& source) {
   Program program;
-  program.name_ = Name<internal::DeleteProgram>(glCreateProgram());
-  const GLuint name = program.name_.Get();
-  std::vector<Shader> shaders;  // stay until the program is linked
-  for (const auto& [type, path] : {std::pair{GL_VERTEX_SHADER, &source.vertex},
-                                   std::pair{GL_FRAGMENT_SHADER, &source.fragment},
-                                   std::pair{GL_COMPUTE_SHADER, &source.compute}}) {
-    if (path->empty()) continue;
-    THUNDERHEAD_ASSIGN_OR_RETURN(Shader shader,
-                                 Compile(static_cast<GLenum>(type), *path, source.defines));
-    glAttachShader(name, shader.Get());
-    shaders.push_back(std::move(shader));
-  }
-  glLinkProgram(name);
-  GLint linked = 0;
-  glGetProgramiv(name, GL_LINK_STATUS, &linked);
-  if (linked == GL_FALSE) {
-    char log[4096];
-    glGetProgramInfoLog(name, sizeof(log), nullptr, log);
-    return absl::InternalError(absl::StrCat("program ", source.vertex, " ", source.fragment, " ",
-                                            source.compute, " does not link: ", log));
-  }
-  program.locations_ = UniformLocations(name);
+  THUNDERHEAD_ASSIGN_OR_RETURN(program.name_, LinkStages(source));
+  program.locations_ = UniformLocations(program.name_.Get());
   return program;
 }
 
