@@ -102,10 +102,17 @@ void Ground::TakeShadow(gl::Texture2D blocked, const LightFrame& frame,
   PlaceShadow(frame, middle_m);
 }
 
+void Ground::ShareShadow(const gl::Texture2D* blocked, const LightFrame& frame,
+                         const glm::dvec3& middle_m) {
+  PlaceShadow(frame, middle_m);
+  shared_shadow_ = blocked;
+}
+
 void Ground::PlaceShadow(const LightFrame& frame, const glm::dvec3& middle_m) {
   shadow_middle_m_ = middle_m;
   shadow_right_ = frame.right / frame.half_extent_m.x;
   shadow_up_ = frame.up / frame.half_extent_m.y;
+  shared_shadow_ = nullptr;
   has_shadow_ = true;
 }
 
@@ -156,7 +163,7 @@ void Ground::BindShadow(const gl::Program& program, const scene::View& view) con
   program.Set("shadow_up", glm::vec3(0.5 * shadow_up_));
   program.Set("shadow_offset", glm::vec2(0.5 - 0.5 * glm::dot(from_eye_m, shadow_right_),
                                          0.5 - 0.5 * glm::dot(from_eye_m, shadow_up_)));
-  shadow_.Bind(kShadowUnit);
+  (shared_shadow_ != nullptr ? *shared_shadow_ : shadow_).Bind(kShadowUnit);
 }
 
 }  // namespace thunderhead::renderers

@@ -27,6 +27,9 @@ class Ground {
   absl::Status CastShadow(const ResidentMedium& medium, const RenderSettings& settings);
   // Takes the shadow of something else: the share of sunlight kept, over `frame` around `middle_m`.
   void TakeShadow(gl::Texture2D blocked, const LightFrame& frame, const glm::dvec3& middle_m);
+  // The same of a texture that stays the caller's and is there as long as it is drawn.
+  void ShareShadow(const gl::Texture2D* blocked, const LightFrame& frame,
+                   const glm::dvec3& middle_m);
   void ClearShadow() { has_shadow_ = false; }
 
   // Of its lowest point, above sea level.
@@ -63,6 +66,7 @@ class Ground {
   gl::Texture2D terrain_;
 
   bool has_shadow_ = false;
+  const gl::Texture2D* shared_shadow_ = nullptr;  // in place of shadow_
   gl::Texture2D shadow_;
   gl::Framebuffer shadow_target_;
   glm::dvec3 shadow_middle_m_{0.0};

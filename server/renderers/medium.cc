@@ -15,6 +15,7 @@ namespace thunderhead::renderers {
 namespace {
 
 constexpr GLuint kBrickUnit = 2;
+constexpr std::size_t kMostBoxes = 8192;
 constexpr GLuint kDetailUnit = 8;  // binding of detail_noise in common/medium.glsl
 
 // Groups that differ only in their share are fetched together.
@@ -61,6 +62,25 @@ volume::ExtinctionVolume ExtinctionThatFits(const volume::HydrometeorFields& fie
   const glm::ivec3 factor = volume::CoarseningFor(fields, most_texels);
   if (factor == glm::ivec3(1)) return volume::ComputeExtinction(fields, medium.terms, channels);
   return volume::ComputeExtinction(volume::Coarsened(fields, factor), medium.terms, channels);
+}
+
+// Boxes around `bricks`, given as volume::BrickMap::Occupied does: of one brick each, or of two or
+// more along each axis.
+Boxes BoxesOf(std::vector<std::uint32_t> bricks, glm::dvec3 brick_m, const glm::dvec3& corner_m) {
+  while (bricks.size() > kMostBoxes) {
+    // Half of each coordinate.
+    for (std::uint32_t& brick : bricks) brick = brick >> 1U & ~(1U << 9U | 1U << 19U);
+    std::sort(bricks.begin(), bricks.end());
+    bricks.erase(std::unique(bricks.begin(), bricks.end()), bricks.end());
+    brick_m *= 2.0;
+  }
+  Boxes boxes{{}, brick_m / 2.0};
+  boxes.middles_m.reserve(bricks.size());
+  for (const std::uint32_t brick : bricks) {
+    const glm::dvec3 place(brick & 1023U, brick >> 10U & 1023U, brick >> 20U);
+    boxes.middles_m.push_back(corner_m + (place + 0.5) * brick_m);
+  }
+  return boxes;
 }
 
 }  // namespace
@@ -124,6 +144,8 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
   if (!occupied.empty()) {
     occupied_bricks_ = gl::Buffer(occupied.size() * sizeof(std::uint32_t), occupied.data(), 0);
   }
+  occupied_boxes_ = BoxesOf(occupied, glm::dvec3(cells_per_brick_) * bounds_.grid.spacing_m,
+                            bounds_.grid.low_corner_m);
   details_ = LayersOf(content_, noises);
   cost->upload_ms = stopwatch.ElapsedMs();
 }
@@ -149,8 +171,8 @@ void ResidentMedium::Bind(const gl::Program& program) const {
 }
 
 void ResidentMedium::BindDetails(const gl::Program& program) const {
-  std::vector<glm::vec3> scales;
-  std::vector<glm::vec3> offsets;
+  std::vector<glm::vec3> sizes;
+  std::vector<glm::vec3> corners;
   std::vector<float> fulls;
   std::vector<glm::vec4> shares;
   for (std::size_t i = 0; i < details_.size(); ++i) {
@@ -158,15 +180,16 @@ void ResidentMedium::BindDetails(const gl::Program& program) const {
     layer.noise->texture.Bind(kDetailUnit + static_cast<GLuint>(i));
     const double tile_m =
         static_cast<double>(layer.detail.wavelength_m) * physics::TurbulenceTile::kWaves;
+    const glm::dvec3 extent_m = glm::dvec3(bounds_.grid.cells) * bounds_.grid.spacing_m;
     const glm::dvec3 corner = bounds_.grid.low_corner_m / tile_m;
-    scales.emplace_back(glm::dvec3(bounds_.grid.cells) * bounds_.grid.spacing_m / tile_m);
-    offsets.emplace_back(corner - glm::floor(corner));
+    sizes.emplace_back(tile_m / extent_m);
+    corners.emplace_back((glm::floor(corner) - corner) * tile_m / extent_m);
     fulls.push_back(layer.noise->value_of_full);
     const std::vector<glm::vec4> packed = Packed(layer.share_by_group, 1.0);
     shares.insert(shares.end(), packed.begin(), packed.end());
   }
-  program.Set("detail_from_texture_scale", scales);
-  program.Set("detail_from_texture_offset", offsets);
+  program.Set("detail_tile_size", sizes);
+  program.Set("detail_tile_corner", corners);
   program.Set("detail_value_of_full", fulls);
   program.Set("detail_shares", shares);
 }

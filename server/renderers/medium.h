@@ -10,6 +10,7 @@
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "physics/hydrometeors.h"
+#include "renderers/cover.h"
 #include "renderers/detail_noises.h"
 #include "renderers/phase_curves.h"
 #include "scene/scene.h"
@@ -82,6 +83,9 @@ class ResidentMedium {
   int OccupiedCount() const { return occupied_count_; }
   void BindOccupied(GLuint binding) const { occupied_bricks_.BindStorage(binding); }
 
+  // Boxes around the occupied bricks, so few that going through them for each picture is nothing.
+  const Boxes& OccupiedBoxes() const { return occupied_boxes_; }
+
   // One weight a group as common/medium.glsl takes it: the value at which a texel counts, times the
   // extinction of a texel value of 1.
   std::vector<glm::vec4> Weights(const std::vector<double>& by_group) const;
@@ -97,6 +101,7 @@ class ResidentMedium {
   glm::ivec3 cells_per_brick_{1};
   gl::Buffer occupied_bricks_;
   int occupied_count_ = 0;
+  Boxes occupied_boxes_;
   std::vector<DetailLayer> details_;
   PhaseCurves phase_curves_;
 };

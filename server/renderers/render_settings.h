@@ -6,6 +6,7 @@
 #include "gl/objects.h"
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
+#include "renderers/cover.h"
 #include "scene/scene.h"
 #include "scene/view.h"
 
@@ -44,6 +45,8 @@ struct RenderSettings {
   bool single_precision = false;
   // How far the ground is along each pixel's ray; none where nothing hides a part of the medium.
   const gl::Texture2D* ground_distance = nullptr;
+  // Of the medium in the eye buffer; none where that may be anywhere.
+  const Cover* cover = nullptr;
 };
 
 }  // namespace thunderhead::renderers

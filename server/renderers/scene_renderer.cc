@@ -47,7 +47,9 @@ SceneRenderer::SceneRenderer(std::shared_ptr<gl::ProgramCache> programs,
       light_volume_(programs_),
       fits_(std::move(fits)),
       metaball_(programs_),
-      cumulus_(programs_) {}
+      cumulus_(programs_),
+      eye_cover_(programs_),
+      picture_cover_(programs_) {}
 
 scene::Stage SceneRenderer::FirstStage(
     const scene::Scene& scene,
@@ -64,7 +66,8 @@ bool SceneRenderer::OnlyLightsDiffer(
 
 std::size_t SceneRenderer::Bytes() const {
   return medium_.Bytes() + half_angle_.Bytes() + light_volume_.Bytes() + metaball_.Bytes() +
-         cumulus_.Bytes() + surroundings_.Bytes() + ground_.Bytes() + linear_.Bytes();
+         cumulus_.Bytes() + surroundings_.Bytes() + ground_.Bytes() + linear_.Texture().Bytes() +
+         eye_cover_.Bytes() + picture_cover_.Bytes();
 }
 
 absl::StatusOr<LinearFrame> SceneRenderer::Draw(
@@ -88,6 +91,7 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
     if (first <= scene::Stage::kStorm) ground_.SetTerrain(*fields);
     surroundings_.Update(scene, view, ground_);
     drawn_slices_ = 0;
+    const Cover* cover = nullptr;
     if (!Empty()) {
       const double wanted = std::ceil(scene.rendering.slices * quality.slice_share);
       drawn_slices_ = std::max(static_cast<int>(wanted), 1);
@@ -102,6 +106,8 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
         if (first <= scene::Stage::kLight) {
           THUNDERHEAD_RETURN_IF_ERROR(FitMetaballs(scene, fields, &stages));
         }
+        THUNDERHEAD_ASSIGN_OR_RETURN(cover, CoverOf(view, settings.eye_size, 1.0, &eye_cover_));
+        settings.cover = cover;
         THUNDERHEAD_RETURN_IF_ERROR(DrawMedium(settings, first, &stages));
       }
     } else {
@@ -109,7 +115,7 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
     }
     base::Stopwatch stopwatch;
     THUNDERHEAD_RETURN_IF_ERROR(
-        Composite(scene, view, quality.single_precision ? GL_RGBA32F : GL_RGBA16F));
+        Composite(scene, view, quality.single_precision ? GL_RGBA32F : GL_RGBA16F, cover));
     glFinish();
     stages.push_back({"composite", stopwatch.ElapsedMs()});
   }
@@ -172,10 +178,12 @@ absl::Status SceneRenderer::DrawCumulus(const scene::Scene& scene, RenderSetting
 }
 
 absl::Status SceneRenderer::DrawGround(RenderSettings* settings, std::vector<StageTime>* stages) {
+  // The light volume brings its own.
+  const bool casts = sunlight_changed_ && drawn_by_ != scene::Renderer::kLightVolume;
   const bool may_hide = ground_.MayHide(settings->view);
-  if (!sunlight_changed_ && !may_hide) return absl::OkStatus();
+  if (!casts && !may_hide) return absl::OkStatus();
   base::Stopwatch stopwatch;
-  if (sunlight_changed_) {
+  if (casts) {
     THUNDERHEAD_RETURN_IF_ERROR(ground_.CastShadow(medium_, *settings));
   }
   if (may_hide) {
@@ -185,6 +193,12 @@ absl::Status SceneRenderer::DrawGround(RenderSettings* settings, std::vector<Sta
   glFinish();
   stages->push_back({"ground", stopwatch.ElapsedMs()});
   return absl::OkStatus();
+}
+
+void SceneRenderer::ShareShadow(const glm::dvec3& towards_sun) {
+  if (towards_sun.z <= 0.0) return ground_.ClearShadow();
+  ground_.ShareShadow(&light_volume_.Shadow(), LightFrameOf({medium_.HalfExtent_m()}, towards_sun),
+                      medium_.Middle_m());
 }
 
 absl::Status SceneRenderer::FitMetaballs(
@@ -214,6 +228,7 @@ absl::Status SceneRenderer::DrawMedium(const RenderSettings& settings, scene::St
     case scene::Renderer::kLightVolume:
       if (light_changed) {
         THUNDERHEAD_RETURN_IF_ERROR(light_volume_.CarryLight(medium_, settings));
+        ShareShadow(settings.illumination.towards_sun);
         ran("light");
       }
       THUNDERHEAD_RETURN_IF_ERROR(light_volume_.DrawView(medium_, settings));
@@ -263,25 +278,37 @@ volume::WorldBox SceneRenderer::Box() const {
   return {medium_.Middle_m() - medium_.HalfExtent_m(), medium_.Middle_m() + medium_.HalfExtent_m()};
 }
 
-absl::Status SceneRenderer::Composite(const scene::Scene& scene, const scene::View& view,
-                                      GLenum format) {
-  const glm::ivec2 size(scene.output.width_px, scene.output.height_px);
-  if (linear_.Size() != size || linear_format_ != format) {
-    linear_ = gl::Texture2D(format, size);
-    linear_format_ = format;
-    linear_target_ = gl::Framebuffer(linear_);
+absl::StatusOr<const Cover*> SceneRenderer::CoverOf(const scene::View& view,
+                                                    const glm::ivec2& size_px, double margin_px,
+                                                    Cover* cover) {
+  if (drawn_by_ != scene::Renderer::kHalfAngle && drawn_by_ != scene::Renderer::kLightVolume) {
+    return nullptr;
   }
+  THUNDERHEAD_RETURN_IF_ERROR(cover->Draw(medium_.OccupiedBoxes(), view, size_px, margin_px));
+  return cover;
+}
+
+absl::Status SceneRenderer::Composite(const scene::Scene& scene, const scene::View& view,
+                                      GLenum format, const Cover* eye_cover) {
+  const glm::ivec2 size_px(scene.output.width_px, scene.output.height_px);
   if (nothing_.Get() == 0) {
     nothing_ = gl::Texture2D(GL_RGBA16F, glm::ivec2(1));
     gl::Framebuffer(nothing_).Clear(0.0F, 0.0F, 0.0F, 1.0F);
   }
-  return surroundings_.Composite(scene, view, ground_, Box(), Eye(), linear_target_);
+  const Cover* cover = eye_cover;
+  if (cover == nullptr || Eye().Size() != size_px) {
+    // A pixel takes in the eye buffer's pixels around it.
+    const double margin_px = 1.0 + std::ceil(static_cast<double>(size_px.x) / Eye().Size().x);
+    THUNDERHEAD_ASSIGN_OR_RETURN(cover, CoverOf(view, size_px, margin_px, &picture_cover_));
+  }
+  linear_.Resize(format, size_px, cover);
+  return surroundings_.Composite(scene, view, ground_, Box(), Eye(), linear_, cover);
 }
 
 LinearFrame SceneRenderer::Report(const scene::Scene& scene,
                                   const volume::HydrometeorFields& fields) const {
   LinearFrame frame;
-  frame.radiance = &linear_;
+  frame.radiance = &linear_.Texture();
   frame.fields = medium_.Content().hydrometeors;
   frame.slices = drawn_slices_;
   frame.device_bytes = Bytes();

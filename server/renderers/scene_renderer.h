@@ -81,6 +81,8 @@ class SceneRenderer {
                         const std::shared_ptr<const volume::HydrometeorFields>& fields) const;
   // The storm's shadow, and what of the storm the ground hides.
   absl::Status DrawGround(RenderSettings* settings, std::vector<StageTime>* stages);
+  // Gives the ground the shadow that the light volume has found.
+  void ShareShadow(const glm::dvec3& towards_sun);
   // The metaballs of the scene, if it is drawn by them.
   absl::Status FitMetaballs(const scene::Scene& scene,
                             const std::shared_ptr<const volume::HydrometeorFields>& fields,
@@ -94,7 +96,12 @@ class SceneRenderer {
   const gl::Texture2D& Eye() const;
   // Around what was drawn.
   volume::WorldBox Box() const;
-  absl::Status Composite(const scene::Scene& scene, const scene::View& view, GLenum format);
+  // Marks where the medium may be in a picture of `size_px`, if the renderer draws it nowhere else;
+  // `margin_px` is how far it is spread there.
+  absl::StatusOr<const Cover*> CoverOf(const scene::View& view, const glm::ivec2& size_px,
+                                       double margin_px, Cover* cover);
+  absl::Status Composite(const scene::Scene& scene, const scene::View& view, GLenum format,
+                         const Cover* eye_cover);
   LinearFrame Report(const scene::Scene& scene, const volume::HydrometeorFields& fields) const;
 
   std::shared_ptr<gl::ProgramCache> programs_;
@@ -110,9 +117,9 @@ class SceneRenderer {
   std::vector<physics::Hydrometeor> cumulus_fields_;  // that the surface was made of
   DetailNoises detail_noises_;
   ResidentMedium medium_;
-  gl::Texture2D linear_;
-  GLenum linear_format_ = 0;
-  gl::Framebuffer linear_target_;
+  Cover eye_cover_;      // of the medium in the eye buffer
+  Cover picture_cover_;  // and in a picture of another size
+  CoveredTarget linear_;
   gl::Texture2D nothing_;  // an eye buffer without medium
 
   // What the kept results were drawn from.

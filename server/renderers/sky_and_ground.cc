@@ -132,41 +132,54 @@ std::vector<glm::vec3> SkyAndGround::LightMap(const scene::Scene& scene) const {
   });
 }
 
-absl::Status SkyAndGround::Composite(const scene::Scene& scene, const scene::View& view,
-                                     const Ground& ground, const volume::WorldBox& box,
-                                     const gl::Texture2D& eye, const gl::Framebuffer& target) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
-                               programs_->Get({"common/whole_target.vert",
-                                               "post/composite.frag",
-                                               {{"RELIEF", ground.Relief() ? 1 : 0}}}));
-  BindRays(*program, view, view.eye_m);
-  ground.Bind(*program, view);
-  ground.BindShadow(*program, view);
+void SkyAndGround::BindAir(const gl::Program& program, const scene::Scene& scene,
+                           const scene::View& view, const Ground& ground,
+                           const volume::WorldBox& box) const {
+  BindRays(program, view, view.eye_m);
+  ground.Bind(program, view);
+  ground.BindShadow(program, view);
   const auto irradiance = static_cast<float>(scene.sun.irradiance);
   const auto sky_scale = irradiance * static_cast<float>(scene.sky.brightness);
   const auto altitude_m = static_cast<float>(std::max(view.altitude_m, 0.0));
-  program->Set("local_from_world", glm::mat3(view.local_from_world));
-  program->Set("towards_sun", glm::vec3(drawn_.towards_sun));
-  program->Set("towards_sun_local", glm::vec3(view.local_from_world * drawn_.towards_sun));
+  program.Set("local_from_world", glm::mat3(view.local_from_world));
+  program.Set("towards_sun", glm::vec3(drawn_.towards_sun));
+  program.Set("towards_sun_local", glm::vec3(view.local_from_world * drawn_.towards_sun));
   // The eye's own, not that of the height that the table was made for.
-  program->Set("horizon_sine",
-               physics::HorizonSine(altitude_m, static_cast<float>(drawn_.ground_m)));
-  program->Set("sky_scale", sky_scale);
-  program->Set("turbidity", static_cast<float>(scene.sky.turbidity));
-  program->Set("altitude_m", altitude_m);
-  program->Set("air_densities", physics::glsl::densities_of_air(altitude_m));
-  program->Set("ground_reflectance", GroundReflectance(scene));
-  program->Set("sunlight", irradiance * sky_->SunTransmittance());
-  program->Set("skylight", sky_scale * sky_->Light().irradiance);
-  program->Set("box_low_m", glm::vec3(box.low_m - view.eye_m));
-  program->Set("box_high_m", glm::vec3(box.high_m - view.eye_m));
+  program.Set("horizon_sine",
+              physics::HorizonSine(altitude_m, static_cast<float>(drawn_.ground_m)));
+  program.Set("sky_scale", sky_scale);
+  program.Set("turbidity", static_cast<float>(scene.sky.turbidity));
+  program.Set("altitude_m", altitude_m);
+  program.Set("air_densities", physics::glsl::densities_of_air(altitude_m));
+  program.Set("ground_reflectance", GroundReflectance(scene));
+  program.Set("sunlight", irradiance * sky_->SunTransmittance());
+  program.Set("skylight", sky_scale * sky_->Light().irradiance);
+  program.Set("box_low_m", glm::vec3(box.low_m - view.eye_m));
+  program.Set("box_high_m", glm::vec3(box.high_m - view.eye_m));
+}
+
+absl::Status SkyAndGround::Composite(const scene::Scene& scene, const scene::View& view,
+                                     const Ground& ground, const volume::WorldBox& box,
+                                     const gl::Texture2D& eye, const CoveredTarget& target,
+                                     const Cover* cover) {
   eye.Bind(kEyeUnit);
   sky_table_.Bind(kSkyUnit);
-  target.Bind();
-  program->Use();
+  target.Target().Bind();
   no_attributes_.Bind();
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  return absl::OkStatus();
+  const auto draw = [&](Where where) -> absl::Status {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
+                                 programs_->Get({"common/whole_target.vert",
+                                                 "post/composite.frag",
+                                                 {{"RELIEF", ground.Relief() ? 1 : 0},
+                                                  {"FRONT", where == Where::kCovered ? 1 : 0}}}));
+    BindAir(*program, scene, view, ground, box);
+    program->Use();
+    const LimitedTo limited(where, cover);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    return absl::OkStatus();
+  };
+  THUNDERHEAD_RETURN_IF_ERROR(draw(Where::kCovered));
+  return cover == nullptr ? absl::OkStatus() : draw(Where::kElsewhere);
 }
 
 }  // namespace thunderhead::renderers

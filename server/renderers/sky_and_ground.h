@@ -36,16 +36,18 @@ class SkyAndGround {
 
   // Draws what `eye` holds (rgb: radiance, a: share of the background that passes) in front of sky
   // and ground, all through the air, to `target`. `box` is around what was drawn and tells how far
-  // it is; it may be empty.
+  // it is; it may be empty. `cover`, if any, is the target's: nothing was drawn beyond it.
   absl::Status Composite(const scene::Scene& scene, const scene::View& view, const Ground& ground,
                          const volume::WorldBox& box, const gl::Texture2D& eye,
-                         const gl::Framebuffer& target);
+                         const CoveredTarget& target, const Cover* cover);
 
   std::size_t Bytes() const { return sky_table_.Bytes(); }
 
  private:
   void SetEyeSky(double altitude_m);
   glm::vec3 AroundSun() const;
+  void BindAir(const gl::Program& program, const scene::Scene& scene, const scene::View& view,
+               const Ground& ground, const volume::WorldBox& box) const;
 
   // What the sky's light depends on.
   struct Key {

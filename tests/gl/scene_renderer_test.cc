@@ -78,16 +78,15 @@ TEST_F(SceneRendererTest, AChangeRerunsOnlyWhatItDirties) {
 
 TEST_F(SceneRendererTest, TheLightVolumeIsKeptWhileOnlyTheCameraMoves) {
   scene_.rendering.renderer = scene::Renderer::kLightVolume;
-  EXPECT_THAT(StagesOf(),
-              ElementsAre("extinction", "upload", "ground", "light", "view", "composite"));
+  EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "light", "view", "composite"));
   Orbit().azimuth_deg += 5.0;
   EXPECT_THAT(StagesOf(), ElementsAre("view", "composite"));
   scene_.sun.elevation_deg += 5.0;
-  EXPECT_THAT(StagesOf(), ElementsAre("ground", "light", "view", "composite"));
+  EXPECT_THAT(StagesOf(), ElementsAre("light", "view", "composite"));
   scene_.rendering.renderer = scene::Renderer::kHalfAngle;
   EXPECT_THAT(StagesOf(), ElementsAre("ground", "slices", "composite"));
   scene_.rendering.renderer = scene::Renderer::kLightVolume;
-  EXPECT_THAT(StagesOf(), ElementsAre("ground", "light", "view", "composite"));
+  EXPECT_THAT(StagesOf(), ElementsAre("light", "view", "composite"));
 }
 
 TEST_F(SceneRendererTest, ACumulusRerunsOnlyWhatAChangeDirties) {
@@ -108,8 +107,7 @@ TEST_F(SceneRendererTest, ACumulusRerunsOnlyWhatAChangeDirties) {
   cumulus.seed = 2;
   EXPECT_THAT(StagesOf(), ElementsAre("surface", "light", "view", "composite"));
   scene_.rendering.renderer = scene::Renderer::kLightVolume;
-  EXPECT_THAT(StagesOf(),
-              ElementsAre("extinction", "upload", "ground", "light", "view", "composite"));
+  EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "light", "view", "composite"));
   cumulus.seed = 3;  // not looked at
   EXPECT_THAT(StagesOf(), IsEmpty());
 }

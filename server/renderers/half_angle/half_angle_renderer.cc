@@ -8,6 +8,7 @@
 #include "glm/geometric.hpp"
 #include "glm/trigonometric.hpp"
 #include "renderers/group_weights.h"
+#include "renderers/half_angle/slice_reach.h"
 #include "renderers/view_uniforms.h"
 
 namespace thunderhead::renderers {
@@ -22,32 +23,8 @@ constexpr GLuint kGroundUnit = 7;
 
 enum LightPass { kCarry = 0, kTransmit = 1, kAddDepth = 2 };
 
-// A rectangle of texels, `high` not included.
-struct TexelRect {
-  glm::ivec2 low{0};
-  glm::ivec2 high{0};
-};
-
-TexelRect Union(const TexelRect& a, const TexelRect& b) {
-  return {glm::min(a.low, b.low), glm::max(a.high, b.high)};
-}
-
-// The texels of the light buffer that a slice covers, with one around.
-TexelRect ShadowOf(const Slice& slice, const LightFrame& frame, const glm::ivec2& size) {
-  TexelRect rect{size, glm::ivec2(0)};
-  for (const glm::vec3& corner : slice.polygon) {
-    const glm::dvec2 across(glm::dot(glm::dvec3(corner), frame.right),
-                            glm::dot(glm::dvec3(corner), frame.up));
-    const glm::dvec2 texel = (0.5 * across / frame.half_extent_m + 0.5) * glm::dvec2(size);
-    rect.low = glm::min(rect.low, glm::ivec2(glm::floor(texel)) - 1);
-    rect.high = glm::max(rect.high, glm::ivec2(glm::ceil(texel)) + 1);
-  }
-  return {glm::max(rect.low, glm::ivec2(0)), glm::min(rect.high, size)};
-}
-
-void Scissor(const TexelRect& rect) {
-  glScissor(rect.low.x, rect.low.y, std::max(rect.high.x - rect.low.x, 0),
-            std::max(rect.high.y - rect.low.y, 0));
+void Scissor(const PixelRect& rect) {
+  glScissor(rect.low.x, rect.low.y, rect.high.x - rect.low.x, rect.high.y - rect.low.y);
 }
 
 }  // namespace
@@ -61,14 +38,10 @@ HalfAngleRenderer::HalfAngleRenderer(std::shared_ptr<gl::ProgramCache> programs)
     : programs_(std::move(programs)) {}
 
 std::size_t HalfAngleRenderer::Bytes() const {
-  return eye_.Bytes() + light_[0].Bytes() + light_[1].Bytes() + thickness_.Bytes();
+  return Eye().Bytes() + light_[0].Bytes() + light_[1].Bytes() + thickness_.Bytes();
 }
 
-void HalfAngleRenderer::Resize(const LightFrame& frame, double cell_m, const glm::ivec2& eye_size) {
-  if (eye_.Size() != eye_size) {
-    eye_ = gl::Texture2D(GL_RGBA32F, eye_size);
-    eye_target_ = gl::Framebuffer(eye_);
-  }
+void HalfAngleRenderer::Resize(const LightFrame& frame, double cell_m) {
   // Finer texels than cells would carry no more detail.
   const double longest_m = 2.0 * std::max(frame.half_extent_m.x, frame.half_extent_m.y);
   const double texel_m = std::max(longest_m / kMostLightTexels, kLightTexelInCells * cell_m);
@@ -95,7 +68,8 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
   const bool consistent = IsConsistent(rendering);
   const auto groups = static_cast<int>(medium.Content().groups.size());
   const glm::dvec3 cell_m = medium.Bounds().grid.spacing_m;
-  Resize(frame, std::min(cell_m.x, cell_m.y), settings.eye_size);
+  Resize(frame, std::min(cell_m.x, cell_m.y));
+  eye_.Resize(GL_RGBA32F, settings.eye_size, settings.cover);
   if (light_changed && translucent && consistent) {
     THUNDERHEAD_RETURN_IF_ERROR(DrawThickness(medium, settings, frame, weights));
   }
@@ -152,7 +126,9 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
   const double tap_m = reach_m * std::tan(glm::radians(rendering.theta_f_deg) * 3.0 / 8.0);
   light->Set("tap_offset", glm::vec2(0.5 * tap_m / frame.half_extent_m));
 
-  DrawSlices({eye, light}, settings, frame, slicing);
+  DrawSlices({eye, light}, settings, slicing,
+             ReachOf(slicing, medium.OccupiedBoxes(), middle_m, settings.view, settings.eye_size,
+                     frame, light_[0].Size()));
   return absl::OkStatus();
 }
 
@@ -187,9 +163,13 @@ absl::Status HalfAngleRenderer::DrawThickness(const ResidentMedium& medium,
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
   glEnable(GL_SCISSOR_TEST);
-  for (const Slice& slice : slicing.slices) {
-    Scissor(ShadowOf(slice, frame, thickness_.Size()));
-    program->Set("slice_distance_m", static_cast<float>(slice.distance_m));
+  const std::vector<SliceReach> reach =
+      ReachOf(slicing, medium.OccupiedBoxes(), medium.Middle_m(), settings.view, settings.eye_size,
+              frame, thickness_.Size());
+  for (std::size_t i = 0; i < reach.size(); ++i) {
+    if (reach[i].light.Empty()) continue;
+    Scissor(reach[i].light);
+    program->Set("slice_distance_m", static_cast<float>(slicing.slices[i].distance_m));
     glDrawArrays(GL_TRIANGLES, 0, 3);
   }
   glDisable(GL_SCISSOR_TEST);
@@ -198,7 +178,7 @@ absl::Status HalfAngleRenderer::DrawThickness(const ResidentMedium& medium,
 }
 
 void HalfAngleRenderer::DrawSlices(const Programs& programs, const RenderSettings& settings,
-                                   const LightFrame& frame, const Slicing& slicing) {
+                                   const Slicing& slicing, const std::vector<SliceReach>& reach) {
   std::vector<glm::vec3> corners;
   for (const Slice& slice : slicing.slices) {
     corners.insert(corners.end(), slice.polygon.begin(), slice.polygon.end());
@@ -208,52 +188,58 @@ void HalfAngleRenderer::DrawSlices(const Programs& programs, const RenderSetting
   const gl::VertexArray corner_array = gl::VertexArray::OfPositions(corner_buffer);
   const bool carries = IsTranslucent(settings.rendering);
 
-  eye_target_.Clear(0.0F, 0.0F, 0.0F, 1.0F);
+  eye_.Target().Clear(0.0F, 0.0F, 0.0F, 1.0F);
   for (const gl::Framebuffer& target : light_target_) target.Clear(1.0F, 0.0F, 0.0F, 0.0F);
   thickness_.Bind(kThicknessUnit);
   if (settings.ground_distance != nullptr) settings.ground_distance->Bind(kGroundUnit);
   glEnable(GL_DEPTH_CLAMP);
   int current = 0;
   GLint first = 0;
-  TexelRect stale{glm::ivec2(0), glm::ivec2(0)};
-  for (const Slice& slice : slicing.slices) {
+  PixelRect stale;
+  glEnable(GL_SCISSOR_TEST);
+  for (std::size_t i = 0; i < reach.size(); ++i) {
+    const Slice& slice = slicing.slices[i];
     const auto count = static_cast<GLsizei>(slice.polygon.size());
-    if (count == 0) continue;
-    light_[current].Bind(kLightUnit);
-    // The eye buffer keeps radiance in rgb and in alpha the share of what is behind that still
-    // shows.
-    glEnable(GL_BLEND);
-    if (slicing.front_to_back) {
-      glBlendFuncSeparate(GL_DST_ALPHA, GL_ONE, GL_ZERO, GL_SRC_ALPHA);
-    } else {
-      glBlendFuncSeparate(GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_SRC_ALPHA);
-    }
-    eye_target_.Bind();
-    programs.eye->Use();
-    corner_array.Bind();
-    glDrawArrays(GL_TRIANGLE_FAN, first, count);
+    const GLint start = first;
     first += count;
+    if (count == 0 || reach[i].light.Empty()) continue;
+    light_[current].Bind(kLightUnit);
+    if (!reach[i].eye.Empty()) {
+      // The eye buffer keeps radiance in rgb and in alpha the share of what is behind that still
+      // shows.
+      glEnable(GL_BLEND);
+      if (slicing.front_to_back) {
+        glBlendFuncSeparate(GL_DST_ALPHA, GL_ONE, GL_ZERO, GL_SRC_ALPHA);
+      } else {
+        glBlendFuncSeparate(GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_SRC_ALPHA);
+      }
+      eye_.Target().Bind();
+      programs.eye->Use();
+      corner_array.Bind();
+      Scissor(reach[i].eye);
+      const LimitedTo limited(Where::kCovered, settings.cover);
+      glDrawArrays(GL_TRIANGLE_FAN, start, count);
+    }
 
-    const TexelRect shadow = ShadowOf(slice, frame, light_[0].Size());
     programs.light->Set("slice_distance_m", static_cast<float>(slice.distance_m));
     programs.light->Use();
     no_attributes_.Bind();
-    glEnable(GL_SCISSOR_TEST);
     if (carries) {
       // The other buffer misses what the last slice changed here.
       glDisable(GL_BLEND);
       light_target_[1 - current].Bind();
-      Scissor(Union(shadow, stale));
-      stale = shadow;
+      Scissor(Around(reach[i].light, stale));
+      stale = reach[i].light;
       current = 1 - current;
     } else {
+      glEnable(GL_BLEND);
       glBlendFunc(GL_ZERO, GL_SRC_COLOR);
       light_target_[current].Bind();
-      Scissor(shadow);
+      Scissor(reach[i].light);
     }
     glDrawArrays(GL_TRIANGLES, 0, 3);
-    glDisable(GL_SCISSOR_TEST);
   }
+  glDisable(GL_SCISSOR_TEST);
   last_light_ = current;
   glDisable(GL_BLEND);
   glDisable(GL_DEPTH_CLAMP);

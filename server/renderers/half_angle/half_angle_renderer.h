@@ -13,6 +13,7 @@
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "renderers/group_weights.h"
+#include "renderers/half_angle/slice_reach.h"
 #include "renderers/half_angle/slicing.h"
 #include "renderers/medium.h"
 #include "renderers/render_settings.h"
@@ -30,7 +31,7 @@ class HalfAngleRenderer {
                       bool light_changed);
 
   // The result of the last Render.
-  const gl::Texture2D& Eye() const { return eye_; }
+  const gl::Texture2D& Eye() const { return eye_.Texture(); }
   // The light buffer after the last slice: r is the share of sunlight that comes through the
   // medium.
   const gl::Texture2D& Light() const { return light_[last_light_]; }
@@ -39,16 +40,15 @@ class HalfAngleRenderer {
  private:
   struct Programs;
 
-  void Resize(const LightFrame& frame, double cell_m, const glm::ivec2& eye_size);
+  void Resize(const LightFrame& frame, double cell_m);
   absl::Status DrawThickness(const ResidentMedium& medium, const RenderSettings& settings,
                              const LightFrame& frame, const GroupWeights& weights);
-  void DrawSlices(const Programs& programs, const RenderSettings& settings, const LightFrame& frame,
-                  const Slicing& slicing);
+  void DrawSlices(const Programs& programs, const RenderSettings& settings, const Slicing& slicing,
+                  const std::vector<SliceReach>& reach);
 
   std::shared_ptr<gl::ProgramCache> programs_;
   gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
-  gl::Texture2D eye_;
-  gl::Framebuffer eye_target_;
+  CoveredTarget eye_;
   gl::Texture2D light_[2];
   int last_light_ = 0;
   gl::Framebuffer light_target_[2];

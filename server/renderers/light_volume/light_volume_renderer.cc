@@ -86,6 +86,7 @@ void LightVolumeRenderer::Resize(const glm::ivec3& carried, const glm::ivec3& ce
     carried_ = gl::Texture3D(format, carried);
     carried_.Clear();
     thickness_ = gl::Texture2D(GL_R32F, glm::ivec2(carried));
+    blocked_ = gl::Texture2D(GL_R16F, glm::ivec2(carried), gl::Edge::kZero);
   }
   if (arrived_.Size() != cells || light_format_ != format) {
     arrived_ = gl::Texture3D(format, cells);
@@ -133,6 +134,7 @@ absl::Status LightVolumeRenderer::Carry(const ResidentMedium& medium, const Grou
   program->Set("cumulative_phase", weights.cumulative_phase);
   carried_.BindImage(0, GL_WRITE_ONLY);
   thickness_.BindImage(1, GL_WRITE_ONLY);
+  blocked_.BindImage(2, GL_WRITE_ONLY);
   program->Use();
   const glm::ivec3 groups = (box.size + kGroupSide - 1) / kGroupSide;
   glDispatchCompute(static_cast<GLuint>(groups.x), static_cast<GLuint>(groups.y), 1);
@@ -185,12 +187,8 @@ void LightVolumeRenderer::BindDiffusion(const gl::Program& program, const Reside
 
 absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
                                            const RenderSettings& settings) {
-  const GLenum format = settings.single_precision ? GL_RGBA32F : GL_RGBA16F;
-  if (eye_.Size() != settings.eye_size || eye_format_ != format) {
-    eye_ = gl::Texture2D(format, settings.eye_size);
-    eye_format_ = format;
-    eye_target_ = gl::Framebuffer(eye_);
-  }
+  eye_.Resize(settings.single_precision ? GL_RGBA32F : GL_RGBA16F, settings.eye_size,
+              settings.cover);
   const GroupWeights weights(medium.Content(), settings.rendering);
   const std::vector<MediumGroup>& groups = medium.Content().groups;
   const bool even_albedo =
@@ -225,9 +223,11 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
   if (diffusion) BindDiffusion(*program, medium, weights, settings);
   arrived_.Bind(kLightUnit);
   if (settings.ground_distance != nullptr) settings.ground_distance->Bind(kGroundUnit);
-  eye_target_.Bind();
+  if (settings.cover != nullptr) eye_.Target().Clear(0.0F, 0.0F, 0.0F, 1.0F);
+  eye_.Target().Bind();
   program->Use();
   no_attributes_.Bind();
+  const LimitedTo limited(Where::kCovered, settings.cover);
   glDrawArrays(GL_TRIANGLES, 0, 3);
   return absl::OkStatus();
 }

@@ -30,15 +30,19 @@ class LightVolumeRenderer {
   // Carries the light to the cells. `medium` must not be empty.
   absl::Status CarryLight(const ResidentMedium& medium, const RenderSettings& settings);
 
+  // The share of sunlight that the medium of the last CarryLight keeps from what lies behind it,
+  // over LightFrameOf its box.
+  const gl::Texture2D& Shadow() const { return blocked_; }
+
   // Draws `medium` with the light of the last CarryLight, which must have had the same medium, sun
   // and rendering.
   absl::Status DrawView(const ResidentMedium& medium, const RenderSettings& settings);
 
   // The result of the last DrawView.
-  const gl::Texture2D& Eye() const { return eye_; }
+  const gl::Texture2D& Eye() const { return eye_.Texture(); }
   std::size_t Bytes() const {
-    return eye_.Bytes() + carried_.Bytes() + thickness_.Bytes() + arrived_.Bytes() +
-           diffusion_.Bytes();
+    return Eye().Bytes() + carried_.Bytes() + thickness_.Bytes() + blocked_.Bytes() +
+           arrived_.Bytes() + diffusion_.Bytes();
   }
 
  private:
@@ -55,11 +59,10 @@ class LightVolumeRenderer {
 
   std::shared_ptr<gl::ProgramCache> programs_;
   gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
-  gl::Texture2D eye_;
-  GLenum eye_format_ = 0;
-  gl::Framebuffer eye_target_;
+  CoveredTarget eye_;
   gl::Texture3D carried_;  // along the sun's rays
   gl::Texture2D thickness_;
+  gl::Texture2D blocked_;
   gl::Texture3D arrived_;  // at the medium's cells
   GLenum light_format_ = 0;
   DiffusionPass diffusion_;

@@ -1,4 +1,4 @@
-// Leaps over empty bricks of the medium (volume/brick_map.h). Needs common/medium.glsl.
+// Rays through a medium that leap over its empty bricks (volume/brick_map.h). Needs common/medium.glsl.
 layout(binding = 2) uniform usampler3D bricks;  // volume::BrickMap::content
 
 uniform vec3 brick_from_local_scale;
@@ -8,16 +8,54 @@ uniform ivec3 brick_count;
 const uint kThickBrick = 0u;
 const uint kThinBrick = 255u;
 
-// What is in the brick at `brick_place` (in bricks); beyond the box what is in the nearest one.
-uint brick_content(vec3 brick_place) {
-  return texelFetch(bricks, clamp(ivec3(floor(brick_place)), ivec3(0), brick_count - 1), 0).r;
+// A ray in the coordinates of the medium's texture and of its bricks: where it starts, and what a metre adds.
+struct MediumRay {
+  vec3 start;
+  vec3 step;
+  vec3 brick_start;
+  vec3 brick_step;
+  vec3 per_brick_step;
+  vec3 highest_brick;
+};
+
+// No component is zero, so that it may be divided by.
+vec3 safe_direction(vec3 direction) { return mix(direction, vec3(1e-7), lessThan(abs(direction), vec3(1e-7))); }
+
+// `direction` is safe.
+MediumRay medium_ray(vec3 origin_m, vec3 direction) {
+  MediumRay ray;
+  ray.start = origin_m * texture_from_local_scale + texture_from_local_offset;
+  ray.step = direction * texture_from_local_scale;
+  ray.brick_start = origin_m * brick_from_local_scale + brick_from_local_offset;
+  ray.brick_step = direction * brick_from_local_scale;
+  ray.per_brick_step = 1.0 / ray.brick_step;
+  ray.highest_brick = vec3(brick_count) - 0.5;
+  return ray;
 }
 
-// How far along a ray from `brick_place` the cube of empty bricks reaches that `content` tells of. `per_step` is the
-// reciprocal of the ray's direction in bricks per unit.
-float empty_way(vec3 brick_place, uint content, vec3 per_step) {
-  vec3 middle = clamp(floor(brick_place), vec3(0.0), vec3(brick_count - 1)) + 0.5;
-  vec3 way = (middle - brick_place + (float(content) - 0.5) * sign(per_step)) * per_step;
-  float beyond = 1e-3 * min(abs(per_step.x), min(abs(per_step.y), abs(per_step.z)));
+// The part of the ray that is in the medium's box with `margin_m` around; x > y where it misses it. `direction` is safe.
+vec2 way_in_medium(vec3 origin_m, vec3 direction, float margin_m) {
+  vec3 low_m = (medium_low_m - margin_m - origin_m) / direction;
+  vec3 high_m = (medium_high_m + margin_m - origin_m) / direction;
+  vec3 nearest = min(low_m, high_m);
+  vec3 farthest = max(low_m, high_m);
+  return vec2(max(nearest.x, max(nearest.y, nearest.z)), min(farthest.x, min(farthest.y, farthest.z)));
+}
+
+vec3 medium_place(MediumRay ray, float way_m) { return ray.start + way_m * ray.step; }
+
+vec3 brick_place(MediumRay ray, float way_m) { return ray.brick_start + way_m * ray.brick_step; }
+
+// The brick at a place; beyond the box the nearest one.
+ivec3 brick_at(MediumRay ray, vec3 place) { return ivec3(clamp(place, vec3(0.0), ray.highest_brick)); }
+
+// What is in it.
+uint brick_content(MediumRay ray, vec3 place) { return texelFetch(bricks, brick_at(ray, place), 0).r; }
+
+// How far along the ray from `place`, in bricks, the cube of empty bricks reaches that `content` tells of.
+float empty_way(MediumRay ray, vec3 place, uint content) {
+  vec3 across = abs(ray.per_brick_step);  // the way through a brick
+  vec3 way = (vec3(brick_at(ray, place)) + 0.5 - place) * ray.per_brick_step + (float(content) - 0.5) * across;
+  float beyond = 1e-3 * min(across.x, min(across.y, across.z));
   return min(way.x, min(way.y, way.z)) + beyond;
 }

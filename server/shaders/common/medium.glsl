@@ -1,6 +1,8 @@
 // The extinction of a medium's groups at a point. A group is a channel: 0-3 of plane 0, 4-7 of plane 1; channels that a
 // plane does not have must be weighted with zero. GROUPS is the number of groups, DETAILS that of the turbulent noises
 // that multiply shares of them (physics/turbulence.h); without any there is no code for them.
+// What a loop needs of uniforms is computed before it: where some invocations may have ended, Mesa's software renderer
+// reads a uniform for each of the others one by one (gallivm 22.3).
 #ifndef DETAILS
 #error "DETAILS is not defined"
 #endif
@@ -20,11 +22,30 @@ uniform vec4 extinction_weights[PLANES];  // texel to extinction, 1/m; zero for 
 
 #if DETAILS > 0
 layout(binding = 8) uniform sampler3D detail_noise[DETAILS];
-uniform vec3 detail_from_texture_scale[DETAILS];   // tiles from the medium's texture coordinates: at rest in the world
-uniform vec3 detail_from_texture_offset[DETAILS];
+uniform vec3 detail_tile_size[DETAILS];    // of a tile in the medium's texture coordinates: at rest in the world
+uniform vec3 detail_tile_corner[DETAILS];  // and where one begins
 uniform float detail_value_of_full[DETAILS];       // of the noise, whose root is fetched, where a texel is 1
 uniform vec4 detail_shares[DETAILS * PLANES];      // of each channel that noise multiplies
+
+vec3 tiles_scale[DETAILS];
+vec3 tiles_offset[DETAILS];
+vec4 detail_rest[DETAILS * PLANES];  // what the noise leaves of each channel where it is zero
+vec4 detail_gain[DETAILS * PLANES];  // and what its square adds
 #endif
+
+// Call it first.
+void begin_medium() {
+#if DETAILS > 0
+  for (int i = 0; i < DETAILS; ++i) {
+    tiles_scale[i] = 1.0 / detail_tile_size[i];
+    tiles_offset[i] = -detail_tile_corner[i] * tiles_scale[i];
+    for (int plane = 0; plane < PLANES; ++plane) {
+      detail_rest[i * PLANES + plane] = 1.0 - detail_shares[i * PLANES + plane];
+      detail_gain[i * PLANES + plane] = detail_value_of_full[i] * detail_shares[i * PLANES + plane];
+    }
+  }
+#endif
+}
 
 struct Medium {
   vec4 plane[PLANES];
@@ -39,11 +60,9 @@ Medium medium_at_place(vec3 place) {
 #endif
 #if DETAILS > 0
   for (int i = 0; i < DETAILS; ++i) {
-    vec3 tiles = place * detail_from_texture_scale[i] + detail_from_texture_offset[i];
-    float root = texture(detail_noise[i], tiles).r;
-    float above_mean = root * root * detail_value_of_full[i] - 1.0;
+    float root = texture(detail_noise[i], place * tiles_scale[i] + tiles_offset[i]).r;
     for (int plane = 0; plane < PLANES; ++plane) {
-      medium.plane[plane] *= 1.0 + detail_shares[i * PLANES + plane] * above_mean;
+      medium.plane[plane] *= detail_rest[i * PLANES + plane] + detail_gain[i * PLANES + plane] * (root * root);
     }
   }
 #endif
@@ -66,6 +85,12 @@ float weigh(Medium medium, vec4 weights[PLANES]) {
   sum += dot(medium.plane[1], weights[1]);
 #endif
   return sum;
+}
+
+// `weights` times `factor`: what a loop takes in their place.
+vec4[PLANES] scaled(vec4 weights[PLANES], float factor) {
+  for (int plane = 0; plane < PLANES; ++plane) weights[plane] *= factor;
+  return weights;
 }
 
 // All groups' extinction, 1/m.

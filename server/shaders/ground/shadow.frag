@@ -15,27 +15,24 @@ const int kMostSamples = 4096;
 const float kOpaque = 12.0;
 
 void main() {
+  begin_medium();
   vec3 origin_m = position.x * light_right_m + position.y * light_up_m;
-  vec3 ray = mix(towards_sun, vec3(1e-7), lessThan(abs(towards_sun), vec3(1e-7)));
-  vec3 low_m = (medium_low_m - origin_m) / ray;
-  vec3 high_m = (medium_high_m - origin_m) / ray;
-  vec3 nearest = min(low_m, high_m);
-  vec3 farthest = max(low_m, high_m);
-  float way_m = max(nearest.x, max(nearest.y, nearest.z));
-  float end_m = min(farthest.x, min(farthest.y, farthest.z));
-  vec3 brick_step = ray * brick_from_local_scale;
-  vec3 brick_start = origin_m * brick_from_local_scale + brick_from_local_offset;
-  vec3 per_brick_step = 1.0 / brick_step;
+  vec3 direction = safe_direction(towards_sun);
+  MediumRay ray = medium_ray(origin_m, direction);
+  vec2 way = way_in_medium(origin_m, direction, 0.0);
+  vec4 depth_weights[PLANES] = scaled(light_weights, step_m);
+  float per_step = 1.0 / step_m;
+  float way_m = way.x;
   float depth = 0.0;
-  for (int i = 0; i < kMostSamples && way_m < end_m && depth < kOpaque; ++i) {
-    vec3 brick_place = brick_start + way_m * brick_step;
-    uint content = brick_content(brick_place);
+  for (int i = 0; i < kMostSamples && way_m < way.y && depth < kOpaque; ++i) {
+    vec3 place = brick_place(ray, way_m);
+    uint content = brick_content(ray, place);
     if (content != kThickBrick && content != kThinBrick) {
-      way_m += empty_way(brick_place, content, per_brick_step);
+      way_m += empty_way(ray, place, content);
       continue;
     }
-    float path_m = min(step_m, end_m - way_m);
-    depth += path_m * weigh(medium_at(origin_m + (way_m + 0.5 * path_m) * ray), light_weights);
+    float path_m = min(step_m, way.y - way_m);
+    depth += path_m * per_step * weigh(medium_at_place(medium_place(ray, way_m + 0.5 * path_m)), depth_weights);
     way_m += path_m;
   }
   blocked = 1.0 - exp(-depth);

@@ -31,9 +31,9 @@ in vec3 local_m;
 out vec4 radiance_and_transmittance;
 
 void main() {
+  begin_medium();
   Medium medium = medium_at(local_m);
   float extinction = weigh(medium, eye_weights);
-  if (extinction <= 0.0) discard;
 
   vec3 ray = normalize(local_m * eye_local_m.w - eye_local_m.xyz);
 #if GROUND

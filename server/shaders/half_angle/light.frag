@@ -37,6 +37,7 @@ vec2 peripheral(vec2 place) {
 }
 
 void main() {
+  begin_medium();
   vec3 local_m = slice_point();
   Medium medium = medium_at(local_m);
   float inside = inside_medium(local_m) ? 1.0 : 0.0;

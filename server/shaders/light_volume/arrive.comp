@@ -25,27 +25,30 @@ uniform vec4 light_weights[PLANES];
 
 const int kNearSamples = 4;
 
-void give_light(ivec3 cell, bool thick) {
-  vec3 place = (vec3(cell) + 0.5) / vec3(cell_count);
-  vec3 local_m = (place - texture_from_local_offset) / texture_from_local_scale;
-  // What is thin takes little light on the way past a cell; the paper's transport depends on the steps of carry.comp.
-  bool looks_near = thick && (CONSISTENT == 1 || TRANSLUCENT == 0);
-  int samples = looks_near ? kNearSamples : 0;
-  float reach_m = looks_near ? near_m : 0.0;
-  float step_m = near_m / float(kNearSamples);
+// What give_light needs in the coordinates of the medium's texture and of the light's volume.
+struct Surroundings {
+  vec3 low_place;  // of the medium's box
+  vec3 high_place;
+  int near_samples;
+  vec3 near_step;          // between samples towards the sun
+  vec4 near_depths[PLANES];  // texel to the optical depth of such a step
+  float light_layers;
+};
+
+// `far_place` is where the light's volume takes over, `here_place` the cell's own place in it.
+void give_light(ivec3 cell, vec3 place, vec3 here_place, vec3 far_place, Surroundings around) {
   float depth = 0.0;
-  for (int i = 0; i < samples; ++i) {
-    vec3 sample_m = local_m + (float(i) + 0.5) * step_m * towards_sun;
-    float inside = inside_medium(sample_m) ? step_m : 0.0;
-    depth += weigh(medium_at(sample_m), light_weights) * inside;
+  for (int i = 0; i < around.near_samples; ++i) {
+    vec3 sample_place = place + (float(i) + 0.5) * around.near_step;
+    bool inside = all(greaterThanEqual(sample_place, around.low_place)) &&
+                  all(lessThanEqual(sample_place, around.high_place));
+    depth += inside ? weigh(medium_at_place(sample_place), around.near_depths) : 0.0;
   }
-  vec3 far_place = light_from_local * vec4(local_m + reach_m * towards_sun, 1.0);
   // Between the sun's side of the volume and the middle of its first layer light begins to fade.
-  float begun = clamp(2.0 * float(textureSize(carried, 0).z) * far_place.z, 0.0, 1.0);
+  float begun = clamp(2.0 * around.light_layers * far_place.z, 0.0, 1.0);
   float far = begun * texture(carried, far_place).r;
   float multiple = 0.0;
 #if DIFFUSE
-  vec3 here_place = light_from_local * vec4(local_m, 1.0);
   float total = texture(thickness, here_place.xy).r;
   // Diffuse light that leaves a cloud comes from one transport mean free path (2/3 by Eddington) inside it.
   multiple = diffuse_mean_intensity(min(texture(carried, here_place).g + 2.0 / 3.0, total), total);
@@ -54,15 +57,43 @@ void give_light(ivec3 cell, bool thick) {
 }
 
 void main() {
+  begin_medium();
   uint listed = gl_WorkGroupID.x + gl_NumWorkGroups.x * gl_WorkGroupID.y;
   if (listed >= uint(occupied_count)) return;
   uint packed_brick = occupied_bricks[listed];
   ivec3 brick = ivec3(packed_brick & 1023u, packed_brick >> 10 & 1023u, packed_brick >> 20);
+  // What is thin takes little light on the way past a cell; the paper's transport depends on the steps of carry.comp.
   bool thick = texelFetch(bricks, brick, 0).r == kThickBrick;
+  bool looks_near = thick && (CONSISTENT == 1 || TRANSLUCENT == 0);
+  float step_m = near_m / float(kNearSamples);
+  Surroundings around;
+  around.low_place = medium_low_m * texture_from_local_scale + texture_from_local_offset;
+  around.high_place = medium_high_m * texture_from_local_scale + texture_from_local_offset;
+  around.near_samples = looks_near ? kNearSamples : 0;
+  around.near_step = step_m * towards_sun * texture_from_local_scale;
+  around.near_depths = scaled(light_weights, step_m);
+  around.light_layers = float(textureSize(carried, 0).z);
+
+  ivec3 first_cell = brick * cells_per_brick;
+  vec3 cell_size = 1.0 / vec3(cell_count);
+  vec3 cell_m = cell_size / texture_from_local_scale;
+  vec3 first_m = (vec3(first_cell) + 0.5) * cell_m - texture_from_local_offset / texture_from_local_scale;
+  mat3 light_step = mat3(light_from_local[0] * cell_m.x, light_from_local[1] * cell_m.y, light_from_local[2] * cell_m.z);
+  vec3 first_place = light_from_local * vec4(first_m, 1.0);
+  vec3 to_far = mat3(light_from_local) * (looks_near ? near_m * towards_sun : vec3(0.0));
+
+  ivec3 cells_left = min(cells_per_brick, cell_count - first_cell);
   int cells = cells_per_brick.x * cells_per_brick.y * cells_per_brick.z;
+  // Not by integers: software divides those one by one.
+  float per_row = 1.0 / float(cells_per_brick.x);
+  float per_layer = per_row / float(cells_per_brick.y);
   for (int i = int(gl_LocalInvocationIndex); i < cells; i += 32) {
-    ivec3 within = ivec3(i, i / cells_per_brick.x, i / (cells_per_brick.x * cells_per_brick.y)) % cells_per_brick;
-    ivec3 cell = brick * cells_per_brick + within;
-    if (all(lessThan(cell, cell_count))) give_light(cell, thick);
+    int row = int((float(i) + 0.5) * per_row);
+    int layer = int((float(i) + 0.5) * per_layer);
+    ivec3 within = ivec3(i - row * cells_per_brick.x, row - layer * cells_per_brick.y, layer);
+    if (any(greaterThanEqual(within, cells_left))) continue;
+    ivec3 cell = first_cell + within;
+    vec3 here_place = first_place + light_step * vec3(within);
+    give_light(cell, (vec3(cell) + 0.5) * cell_size, here_place, here_place + to_far, around);
   }
 }

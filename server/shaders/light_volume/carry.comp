@@ -1,6 +1,7 @@
 // Carries sunlight once through the medium into a volume whose depth runs along the sun's rays: one invocation a ray.
 // r: the square root of the light's effective optical depth, -log of the share that arrives; g: the similarity-scaled
 // optical depth passed, whose end is the ray's thickness.
+// `blocked` is the share of sunlight that the medium keeps from what lies behind all of it, for its shadow on the ground.
 // Layers that interpolation inside the medium's box does not reach are left as they are.
 // Variants: GROUPS, CONSISTENT, TRANSLUCENT, DIFFUSE. The light model is that of half_angle/light.frag but for the
 // exchange with neighbouring rays, whose width (one cell's path at 3/8 theta_f) is below a texel of this volume at the
@@ -10,6 +11,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform writeonly image3D carried;
+layout(binding = 2, r16f) uniform writeonly image2D blocked;
 #if DIFFUSE
 layout(binding = 1, r32f) uniform writeonly image2D thickness;
 #endif
@@ -29,72 +31,75 @@ uniform vec2 cumulative_phase;  // CP(theta_f / 4), CP(theta_f / 2)
 // interpolates over one more; a brick is at least 2 texels wide.
 const uint kReadBricks = 2u;
 
-// Optical depth that the light loses along `path_m` with extinction `extinction`.
-float lost(float extinction, float path_m) {
-  float depth = extinction * path_m;
+// Optical depth that the light loses where the medium's is `depth`; `turned` is the share of what is scattered that does
+// not go on with the light.
+float lost(float depth, float turned) {
 #if CONSISTENT || !TRANSLUCENT
   return depth;
 #else
   // Riley et al. 2003 (Vis), eq. 14 to 17 as printed, in a light that does not vary across the rays.
-  return depth < 1e-3 ? depth * (1.0 - cumulative_phase.y)
-                      : -log(mix(exp(-depth), 1.0, cumulative_phase.y));
+  return depth < 1e-3 ? depth * turned : -log(1.0 - turned * (1.0 - exp(-depth)));
 #endif
 }
 
 void main() {
-  ivec2 ray = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(ray, light_size.xy))) return;
-  vec2 across = (vec2(ray) + 0.5) / vec2(light_size.xy) * 2.0 - 1.0;
+  begin_medium();
+  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  vec2 across = (vec2(texel) + 0.5) / vec2(light_size.xy) * 2.0 - 1.0;
   vec3 start_m = across.x * light_right_m + across.y * light_up_m + light_reach_m * towards_sun;
   float layer_m = 2.0 * light_reach_m / float(light_size.z);
-  float step_m = 0.5 * layer_m / float(half_layer_steps);
-
+  float half_layer_m = 0.5 * layer_m;
+  float step_m = half_layer_m / float(half_layer_steps);
+  vec3 direction = safe_direction(-towards_sun);
+  MediumRay ray = medium_ray(start_m, direction);
+  vec2 inside = way_in_medium(start_m, direction, 0.0);
   // Where the ray passes through the box, or so near that interpolation in the box reaches it.
-  vec3 against_sun = mix(-towards_sun, vec3(1e-7), lessThan(abs(towards_sun), vec3(1e-7)));
-  vec3 low_m = (medium_low_m - 1.5 * texel_m - start_m) / against_sun;
-  vec3 high_m = (medium_high_m + 1.5 * texel_m - start_m) / against_sun;
-  vec3 nearest = min(low_m, high_m);
-  vec3 farthest = max(low_m, high_m);
-  float enters_m = max(nearest.x, max(nearest.y, nearest.z));
-  float leaves_m = min(farthest.x, min(farthest.y, farthest.z));
-  int first = clamp(int(floor(enters_m / layer_m)), 0, light_size.z);
-  int last = leaves_m < enters_m ? 0 : clamp(int(ceil(leaves_m / layer_m)), 0, light_size.z);
+  vec2 near = way_in_medium(start_m, direction, 1.5 * texel_m);
+  int first = clamp(int(floor(near.x / layer_m)), 0, light_size.z);
+  int last = near.y < near.x ? 0 : clamp(int(ceil(near.y / layer_m)), 0, light_size.z);
+  vec4 light_depths[PLANES] = scaled(light_weights, step_m);
+  vec4 transport_depths[PLANES] = scaled(transport_weights, step_m);
+  float turned = 1.0 - cumulative_phase.y;
+  float per_layer = 1.0 / layer_m;
+  int most_steps = max(half_layer_steps, 1);
 
   float depth = 0.0;
+  float medium_depth = 0.0;
   float transport = 0.0;
   float way_m = float(first) * layer_m + 0.5 * step_m;
-  float half_layer_m = 0.5 * layer_m;
-  vec3 per_brick_step = 1.0 / (against_sun * brick_from_local_scale);
   int half_layer = 2 * first;
+  if (any(greaterThanEqual(texel, light_size.xy))) return;
   while (half_layer < 2 * last) {
     if ((half_layer & 1) == 1) {
-      imageStore(carried, ivec3(ray, half_layer >> 1), vec4(sqrt(depth), transport, 0.0, 0.0));
+      imageStore(carried, ivec3(texel, half_layer >> 1), vec4(sqrt(depth), transport, 0.0, 0.0));
     }
-    vec3 brick_place = (start_m - way_m * towards_sun) * brick_from_local_scale + brick_from_local_offset;
-    ivec3 brick = ivec3(floor(brick_place));
-    bool outside = any(lessThan(brick, ivec3(0))) || any(greaterThanEqual(brick, brick_count));
-    uint content = brick_content(brick_place);
+    vec3 place = brick_place(ray, way_m);
+    bool outside = any(lessThan(place, vec3(0.0))) || any(greaterThan(place, ray.highest_brick + 0.5));
+    uint content = brick_content(ray, place);
     if (!outside && content != kThinBrick && content > kReadBricks) {
       // So far from all that scatters nothing reads the light.
-      float leap_m = empty_way(brick_place, content - kReadBricks, per_brick_step);
-      int leap = max(2 * int(leap_m / layer_m), 2);  // whole layers: stores keep their turn
+      float leap_m = empty_way(ray, place, content - kReadBricks);
+      int leap = max(2 * int(leap_m * per_layer), 2);  // whole layers: stores keep their turn
       half_layer += leap;
       way_m += float(leap) * half_layer_m;
       continue;
     }
-    int steps = outside || (content != kThickBrick && content != kThinBrick) ? 0 : half_layer_steps;
+    int steps = outside || (content != kThickBrick && content != kThinBrick) ? 0 : most_steps;
     for (int i = 0; i < steps; ++i) {
-      vec3 local_m = start_m - (way_m + float(i) * step_m) * towards_sun;
-      Medium medium = medium_at(local_m);
-      float inside = inside_medium(local_m) ? step_m : 0.0;
-      depth += lost(weigh(medium, light_weights), inside);
-      transport += weigh(medium, transport_weights) * inside;
+      float at_m = way_m + float(i) * step_m;
+      Medium medium = medium_at_place(medium_place(ray, at_m));
+      float counts = at_m >= inside.x && at_m <= inside.y ? 1.0 : 0.0;
+      float step_depth = weigh(medium, light_depths) * counts;
+      medium_depth += step_depth;
+      depth += lost(step_depth, turned);
+      transport += weigh(medium, transport_depths) * counts;
     }
     ++half_layer;
     way_m += half_layer_m;
   }
 
+  imageStore(blocked, texel, vec4(1.0 - exp(-medium_depth), 0.0, 0.0, 0.0));
 #if DIFFUSE
-  imageStore(thickness, ray, vec4(transport, 0.0, 0.0, 0.0));
+  imageStore(thickness, texel, vec4(transport, 0.0, 0.0, 0.0));
 #endif
 }

@@ -59,44 +59,57 @@ const float kOpaque = 5e-3;
 #define SHOWING passing
 #endif
 
-// What a segment of a ray takes of the light, from the extinction at its two ends: its share, and where on the segment
-// half of that is taken.
+// What a segment of a ray takes of the light: its share, where on the segment half of that is taken, and the reciprocal
+// of the extinction there. Lengths are in steps.
 struct Taken {
   float share;
   float at;
+  float per_extinction;
 };
 
-Taken taken_on(float segment_m, float start, float end) {
-  float rise = end - start;
-  float depth = 0.5 * segment_m * (start + end);
+// From the extinction at the segment's two ends.
+Taken taken_on(float segment, float start, float end) {
+  float start_depth = segment * start;  // of a segment that is everywhere as at its start
+  float rise = segment * (end - start);
+  float depth = start_depth + 0.5 * rise;
   float share = depth < 0.01 ? depth * (1.0 - 0.5 * depth) : 1.0 - exp(-depth);
-  // Half of what the segment takes is taken before the optical depth from its start reaches:
-  float seen_depth = share < 0.02 ? 0.5 * share : -log(1.0 - 0.5 * share);
-  // Where that is: the root of a quadratic.
-  float per_m = 2.0 * seen_depth / max(segment_m, 1e-6);
-  float at = min(per_m / (start + sqrt(max(start * start + rise * per_m, 1e-30))), 1.0);
-  return Taken(share, at);
+  // Half of what the segment takes is taken before the optical depth from its start reaches -log(1 - share / 2), off by
+  // less than 3e-5 of itself:
+  float seen_depth =
+      share * (0.5 + share * (0.12417144 + share * (0.04885293 + share * (-0.00297576 + share * 0.02306943))));
+  // Where that is: the root of a quadratic. There the depth grows by `slope` over the segment.
+  float slope = sqrt(max(start_depth * start_depth + 2.0 * rise * seen_depth, 1e-24));
+  float reciprocal = 1.0 / (slope * (start_depth + slope));
+  return Taken(share, min(2.0 * seen_depth * slope * reciprocal, 1.0),
+               segment * (start_depth + slope) * reciprocal);
 }
 
 void main() {
-  vec3 ray = ray_direction(position);
+  begin_medium();
+  vec3 direction = ray_direction(position);
   vec3 origin_m = ray_origin(position);
-  vec3 safe_ray = mix(ray, vec3(1e-7), lessThan(abs(ray), vec3(1e-7)));
-  vec3 low_m = (medium_low_m - origin_m) / safe_ray;
-  vec3 high_m = (medium_high_m - origin_m) / safe_ray;
-  vec3 nearest = min(low_m, high_m);
-  vec3 farthest = max(low_m, high_m);
-  float way_m = max(max(nearest.x, max(nearest.y, nearest.z)), 0.0);
-  float end_m = min(farthest.x, min(farthest.y, farthest.z));
+  vec3 safe = safe_direction(direction);
+  MediumRay ray = medium_ray(origin_m, safe);
+  vec2 way = way_in_medium(origin_m, safe, 0.0);
+  float way_m = max(way.x, 0.0);
+  float end_m = way.y;
 #if GROUND
   end_m = min(end_m, texelFetch(ground_distance, ivec2(gl_FragCoord.xy), 0).r);
 #endif
 
-  vec3 place_step = ray * texture_from_local_scale;
-  vec3 place_start = origin_m * texture_from_local_scale + texture_from_local_offset;
-  vec3 brick_step = safe_ray * brick_from_local_scale;
-  vec3 brick_start = origin_m * brick_from_local_scale + brick_from_local_offset;
-  vec3 per_brick_step = 1.0 / brick_step;
+  // Extinction by the step, not by the metre.
+  float per_step = 1.0 / step_m;
+  vec4 eye_depths[PLANES] = scaled(eye_weights, step_m);
+#if DIFFUSION
+  vec4 transport_depths[PLANES] = scaled(transport_weights, step_m);
+#if TINTED
+  vec4 red_depths[PLANES] = scaled(red_weights, step_m);
+  vec4 green_depths[PLANES] = scaled(green_weights, step_m);
+  vec4 blue_depths[PLANES] = scaled(blue_weights, step_m);
+#endif
+#elif !EVEN_ALBEDO
+  vec4 extinction_depths[PLANES] = scaled(extinction_weights, step_m);
+#endif
 
   float passing = 1.0;
 #if DIFFUSION
@@ -124,7 +137,7 @@ void main() {
 
   Medium before;
   for (int plane = 0; plane < PLANES; ++plane) before.plane[plane] = vec4(0.0);
-  vec3 through_m = abs(1.0 / (place_step * vec3(textureSize(medium_plane_0, 0))));
+  vec3 through_m = abs(1.0 / (ray.step * vec3(textureSize(medium_plane_0, 0))));
   float cell_m = max(step_m, min(through_m.x, min(through_m.y, through_m.z)));  // the way through a cell
   float extinction_before = -1.0;  // no sample yet
   vec2 light_before = vec2(0.0);
@@ -133,36 +146,36 @@ void main() {
     float from_m = way_m;
     float longest_m = step_m;
     while (way_m < end_m) {
-      vec3 brick_place = brick_start + way_m * brick_step;
-      uint content = brick_content(brick_place);
+      vec3 place = brick_place(ray, way_m);
+      uint content = brick_content(ray, place);
       if (content == kThickBrick) break;
       if (content == kThinBrick) {
         longest_m = cell_m;
         break;
       }
-      way_m += empty_way(brick_place, content, per_brick_step);
+      way_m += empty_way(ray, place, content);
     }
     // The first sample after a leap only starts a segment.
     float segment_m = way_m > from_m || extinction_before < 0.0 ? 0.0 : min(longest_m, end_m - way_m);
     way_m += segment_m;
 
-    vec3 place = place_start + way_m * place_step;
+    vec3 place = medium_place(ray, way_m);
     Medium here = medium_at_place(place);
     vec2 light_here = texture(arrived, place).rg;
-    float extinction_here = weigh(here, eye_weights);
+    float extinction_here = weigh(here, eye_depths);
     float start = max(extinction_before, 0.0);
-    Taken split = taken_on(segment_m, start, extinction_here);
+    Taken split = taken_on(segment_m * per_step, start, extinction_here);
     float taken = split.share;
     float at = split.at;
     vec2 light = mix(light_before, light_here, at);
     float arriving = exp(-light.r * light.r);
     float seen = passing * taken;
-    float per_extinction = seen / max(mix(start, extinction_here, at), 1e-30);
+    float per_extinction = seen * split.per_extinction;
 #if DIFFUSION
-    float transport_here = weigh(here, transport_weights);
+    float transport_here = weigh(here, transport_depths);
     vec4 out_here = texture(ways_out, place);
     vec4 inward_here = texture(net_inward, place);
-    Taken diffuse = taken_on(segment_m, extinction_before < 0.0 ? 0.0 : transport_before, transport_here);
+    Taken diffuse = taken_on(segment_m * per_step, extinction_before < 0.0 ? 0.0 : transport_before, transport_here);
     vec4 ways = mix(out_before, out_here, diffuse.at);
     vec4 inward = mix(inward_before, inward_here, diffuse.at);
     float passed_root = mix(light_before.r, light_here.r, diffuse.at);
@@ -176,8 +189,8 @@ void main() {
     fluence += forward_fluence(exit_depth, passed_depth, scale * passed_depth);
     float shown = diffuse_passing * diffuse.share;
 #if TINTED
-    vec3 tint = mix(vec3(weigh(before, red_weights), weigh(before, green_weights), weigh(before, blue_weights)),
-                    vec3(weigh(here, red_weights), weigh(here, green_weights), weigh(here, blue_weights)), diffuse.at) /
+    vec3 tint = mix(vec3(weigh(before, red_depths), weigh(before, green_depths), weigh(before, blue_depths)),
+                    vec3(weigh(here, red_depths), weigh(here, green_depths), weigh(here, blue_depths)), diffuse.at) /
                 max(transport_there, 1e-30);
 #else
     const vec3 tint = vec3(1.0);
@@ -206,7 +219,7 @@ void main() {
       between.plane[plane] = mix(before.plane[plane], here.plane[plane], at);
       direct[plane] += (per_extinction * arriving) * between.plane[plane];
     }
-    float per_total = seen / max(total_extinction(between), 1e-30);
+    float per_total = seen / max(weigh(between, extinction_depths), 1e-30);
     for (int plane = 0; plane < PLANES; ++plane) {
       ambient_scattered[plane] += per_total * between.plane[plane];
       multiple_scattered[plane] += (per_total * light.g) * between.plane[plane];
@@ -218,12 +231,12 @@ void main() {
     light_before = light_here;
   }
 
-  float mu = dot(ray, towards_sun);
+  float mu = dot(direction, towards_sun);
   vec3 radiance = vec3(0.0);
   for (int group = 0; group < GROUPS; ++group) {
     int plane = group / 4;
     int channel = group % 4;
-    float scattering = scattering_weights[plane][channel];
+    float scattering = scattering_weights[plane][channel] * step_m;
     radiance += sunlight * (direct[plane][channel] * scattering) * phase_term(group, mu);
 #if CONSISTENT && !EVEN_ALBEDO && !DIFFUSION
     vec3 isotropic = ambient * ambient_scattered[plane][channel] + sunlight * multiple_scattered[plane][channel];

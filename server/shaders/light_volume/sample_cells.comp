@@ -13,6 +13,7 @@ uniform vec4 transport_weights[PLANES];
 uniform vec4 absorption_weights[PLANES];
 
 void main() {
+  begin_medium();
   ivec3 cell = ivec3(gl_GlobalInvocationID);
   if (any(greaterThanEqual(cell, cell_count))) return;
   vec3 sum = vec3(0.0);

@@ -1,11 +1,13 @@
 // The linear frame: what the eye buffer holds in front of sky and ground, all through the air. Coordinates are metres from
-// the eye. Variant: RELIEF (terrain).
+// the eye. Variants: RELIEF (terrain), FRONT (there may be something in the eye buffer).
 #include "common/ground.glsl"
 #include "common/sky.glsl"
 #include "common/view.glsl"
 #include "physics/air.glsl"
 
+#if FRONT
 layout(binding = 4) uniform sampler2D eye;
+#endif
 layout(binding = 9) uniform sampler2D shadow;  // the share of sunlight that the storm keeps from the ground
 
 uniform mat3 local_from_world;   // to east, north and up where the eye is
@@ -90,6 +92,7 @@ void main() {
   if (ground_m > 0.0) {
     background = seen_ground(ground_radiance(origin_m + ground_m * world_ray), ray, ground_m, sky_radiance, sky_depth);
   }
+#if FRONT
   vec4 front = texture(eye, 0.5 * position + 0.5);
   float opacity = 1.0 - front.a;
   if (opacity > 0.0) {
@@ -99,4 +102,7 @@ void main() {
     front.rgb = through_air(front.rgb, opacity, depth_before(ray, distance_m), sky_radiance, sky_depth);
   }
   linear_rgb = vec4(front.rgb + front.a * background, 1.0);
+#else
+  linear_rgb = vec4(background, 1.0);
+#endif
 }
