@@ -50,7 +50,6 @@ ClearSky::ClearSky(const Atmosphere& atmosphere, const glm::vec3& towards_sun, c
       table_[at + glsl::kSkyAzimuths] = glm::vec4(gathered.haze, line.way.y);
     }
   }
-  light_ = Integrate();
 }
 
 ClearSky::Seen ClearSky::At(const glm::vec3& direction) const {
@@ -71,7 +70,7 @@ ClearSky::Seen ClearSky::At(const glm::vec3& direction) const {
   return {glm::vec3(air) + glm::vec3(haze) * phase, {air.a, haze.a}};
 }
 
-SkyLight ClearSky::Integrate() const {
+SkyLight ClearSky::Light() const {
   // Midpoints in sine of elevation and azimuth divide the hemisphere into equal solid angles.
   constexpr int kElevations = 24;
   constexpr int kAzimuths = 48;

@@ -55,7 +55,7 @@ class ClearSky {
   Seen At(const glm::vec3& direction) const;
 
   // Integrates the radiance over the upper hemisphere.
-  const SkyLight& Light() const { return light_; }
+  SkyLight Light() const;
 
   // Share of sunlight that reaches the ground.
   const glm::vec3& SunTransmittance() const { return sun_transmittance_; }
@@ -64,13 +64,10 @@ class ClearSky {
   const std::vector<glm::vec4>& Table() const { return table_; }
 
  private:
-  SkyLight Integrate() const;
-
   glm::vec3 towards_sun_;
   glm::vec3 sun_transmittance_;
   float horizon_sine_;
   std::vector<glm::vec4> table_;
-  SkyLight light_;
 };
 
 }  // namespace thunderhead::physics

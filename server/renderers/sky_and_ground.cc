@@ -13,9 +13,11 @@ namespace {
 
 constexpr GLuint kEyeUnit = 4;
 constexpr GLuint kSkyUnit = 6;
-// Heights that the sky is computed for: about 150 m apart near the ground, 6 % far above it.
+// Heights that the sky is computed for, so that a moving camera makes a table now and then only:
+// about 150 m apart near the ground, 6 % far above it. Between them tables are mixed.
 constexpr double kSkyStep_m = 2500.0;
 constexpr double kSkySteps = 16.0;
+constexpr std::size_t kMostTables = 32;
 
 constexpr glm::vec3 kGroundTint(1.0F, 0.93F, 0.78F);  // of bare soil and grass seen from far off
 
@@ -23,6 +25,8 @@ constexpr glm::vec3 kGroundTint(1.0F, 0.93F, 0.78F);  // of bare soil and grass 
 glm::vec3 GroundReflectance(const scene::Scene& scene) {
   return kGroundTint * static_cast<float>(scene.sky.ground_albedo * std::numbers::inv_pi);
 }
+
+double HeightOfStep(int step) { return kSkyStep_m * std::expm1(step / kSkySteps); }
 
 }  // namespace
 
@@ -38,32 +42,44 @@ void SkyAndGround::Update(const scene::Scene& scene, const scene::View& view,
     const auto ground_m = static_cast<float>(key.ground_m);
     sky_.emplace(*atmosphere_, glm::vec3(key.towards_sun),
                  physics::ClearSky::Site{ground_m, ground_m});
+    sky_light_ = sky_->Light();
     drawn_ = key;
     around_sun_ = AroundSun();
     eye_height_m_ = -1.0;
+    tables_.clear();
   }
   SetEyeSky(view.altitude_m);
 }
 
 void SkyAndGround::SetEyeSky(double altitude_m) {
-  // In steps, so that a moving camera makes a table now and then only.
   const double wanted_m = std::max(altitude_m - drawn_.ground_m, 0.0);
-  const double step = std::round(kSkySteps * std::log1p(wanted_m / kSkyStep_m));
-  const double height_m = kSkyStep_m * std::expm1(step / kSkySteps);
-  if (height_m == eye_height_m_) return;
-  eye_height_m_ = height_m;
+  if (wanted_m == eye_height_m_) return;
+  eye_height_m_ = wanted_m;
   if (sky_table_.Get() == 0) {
     sky_table_ =
         gl::Texture2D(GL_RGBA32F, {2 * physics::glsl::kSkyAzimuths, physics::glsl::kSkyElevations});
   }
-  const auto upload = [this](const physics::ClearSky& seen) {
-    sky_table_.Upload(GL_RGBA, GL_FLOAT, seen.Table().data());
-  };
-  if (height_m == 0.0) return upload(*sky_);
+  const int below = static_cast<int>(std::floor(kSkySteps * std::log1p(wanted_m / kSkyStep_m)));
+  const double low_m = HeightOfStep(below);
+  const auto above = static_cast<float>((wanted_m - low_m) / (HeightOfStep(below + 1) - low_m));
+  std::vector<glm::vec4> table = TableOfStep(below);
+  if (above > 0.0F) {
+    const std::vector<glm::vec4>& next = TableOfStep(below + 1);
+    for (std::size_t i = 0; i < table.size(); ++i) table[i] = glm::mix(table[i], next[i], above);
+  }
+  sky_table_.Upload(GL_RGBA, GL_FLOAT, table.data());
+}
+
+const std::vector<glm::vec4>& SkyAndGround::TableOfStep(int step) {
+  if (step == 0) return sky_->Table();
+  const auto found = tables_.find(step);
+  if (found != tables_.end()) return found->second;
+  if (tables_.size() >= kMostTables) tables_.clear();
   const auto ground_m = static_cast<float>(drawn_.ground_m);
-  upload({*atmosphere_,
-          glm::vec3(drawn_.towards_sun),
-          {ground_m + static_cast<float>(height_m), ground_m}});
+  const auto height_m = static_cast<float>(HeightOfStep(step));
+  const physics::ClearSky seen(*atmosphere_, glm::vec3(drawn_.towards_sun),
+                               {ground_m + height_m, ground_m});
+  return tables_.emplace(step, seen.Table()).first->second;
 }
 
 // Such that a surface that faces the sun receives what the sky sends it: irradiance of the sun's
@@ -91,8 +107,8 @@ glm::vec3 SkyAndGround::AroundSun() const {
       falling += (1.0F - sine) * turned;
     }
   }
-  const glm::vec3 level = sky_->Light().irradiance / kPi;
-  const glm::vec3 mean = sky_->Light().mean_radiance;
+  const glm::vec3 level = sky_light_.irradiance / kPi;
+  const glm::vec3 mean = sky_light_.mean_radiance;
   const glm::vec3 without = (3.0F * level - 2.0F * mean) * even + 6.0F * (mean - level) * falling;
   const float per_x = 1.0F + ((1.0F - 3.0F * sun.z) * even + (6.0F * sun.z - 3.0F) * falling) / kPi;
   // No more than leaves the rest bright everywhere.
@@ -105,12 +121,11 @@ Illumination SkyAndGround::IlluminationOf(const scene::Scene& scene) const {
   light.towards_sun = drawn_.towards_sun;
   const auto irradiance = static_cast<float>(scene.sun.irradiance);
   light.sunlight = irradiance * sky_->SunTransmittance();
-  light.from_sky =
-      sky_->Light().mean_radiance * irradiance * static_cast<float>(scene.sky.brightness);
+  light.from_sky = sky_light_.mean_radiance * irradiance * static_cast<float>(scene.sky.brightness);
   // Of ground without the storm's shadow: what shows of it around the storm is larger.
   const float sine = std::max(static_cast<float>(drawn_.towards_sun.z), 0.0F);
   const glm::vec3 diffuse =
-      sky_->Light().irradiance * irradiance * static_cast<float>(scene.sky.brightness);
+      sky_light_.irradiance * irradiance * static_cast<float>(scene.sky.brightness);
   constexpr float kInversePi = std::numbers::inv_pi_v<float>;
   light.around_sun = irradiance * static_cast<float>(scene.sky.brightness) * around_sun_;
   light.rest_of_sky = light.from_sky - light.around_sun * (0.5F * kInversePi);
@@ -153,7 +168,7 @@ void SkyAndGround::BindAir(const gl::Program& program, const scene::Scene& scene
   program.Set("air_densities", physics::glsl::densities_of_air(altitude_m));
   program.Set("ground_reflectance", GroundReflectance(scene));
   program.Set("sunlight", irradiance * sky_->SunTransmittance());
-  program.Set("skylight", sky_scale * sky_->Light().irradiance);
+  program.Set("skylight", sky_scale * sky_light_.irradiance);
   program.Set("box_low_m", glm::vec3(box.low_m - view.eye_m));
   program.Set("box_high_m", glm::vec3(box.high_m - view.eye_m));
 }

@@ -3,6 +3,7 @@
 // on the context's thread.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -45,6 +46,8 @@ class SkyAndGround {
 
  private:
   void SetEyeSky(double altitude_m);
+  // The sky's table from one of the heights that it is computed for.
+  const std::vector<glm::vec4>& TableOfStep(int step);
   glm::vec3 AroundSun() const;
   void BindAir(const gl::Program& program, const scene::Scene& scene, const scene::View& view,
                const Ground& ground, const volume::WorldBox& box) const;
@@ -62,10 +65,12 @@ class SkyAndGround {
   std::shared_ptr<gl::ProgramCache> programs_;
   gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
   std::optional<physics::Atmosphere> atmosphere_;
-  std::optional<physics::ClearSky> sky_;
+  std::optional<physics::ClearSky> sky_;  // from the ground
+  physics::SkyLight sky_light_;
   Key drawn_;
-  glm::vec3 around_sun_{0.0F};  // of Illumination, for a sun of irradiance 1
-  double eye_height_m_ = -1.0;  // that the table was made for
+  glm::vec3 around_sun_{0.0F};                    // of Illumination, for a sun of irradiance 1
+  std::map<int, std::vector<glm::vec4>> tables_;  // by step
+  double eye_height_m_ = -1.0;                    // that the table on the device is for
   gl::Texture2D sky_table_;
 };
 
