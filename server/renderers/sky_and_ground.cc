@@ -44,9 +44,13 @@ void SkyAndGround::Update(const scene::Scene& scene, const scene::View& view,
                  physics::ClearSky::Site{ground_m, ground_m});
     sky_light_ = sky_->Light();
     drawn_ = key;
-    around_sun_ = AroundSun();
+    around_sun_.reset();
     eye_height_m_ = -1.0;
     tables_.clear();
+  }
+  // Diffusion transport alone asks for it.
+  if (scene.rendering.transport == scene::Transport::kDiffusion && !around_sun_.has_value()) {
+    around_sun_ = AroundSun();
   }
   SetEyeSky(view.altitude_m);
 }
@@ -127,7 +131,8 @@ Illumination SkyAndGround::IlluminationOf(const scene::Scene& scene) const {
   const glm::vec3 diffuse =
       sky_light_.irradiance * irradiance * static_cast<float>(scene.sky.brightness);
   constexpr float kInversePi = std::numbers::inv_pi_v<float>;
-  light.around_sun = irradiance * static_cast<float>(scene.sky.brightness) * around_sun_;
+  light.around_sun =
+      irradiance * static_cast<float>(scene.sky.brightness) * around_sun_.value_or(glm::vec3(0.0F));
   light.rest_of_sky = light.from_sky - light.around_sun * (0.5F * kInversePi);
   light.rest_of_sky_level = (diffuse - light.around_sun * sine) * kInversePi;
   light.from_ground = GroundReflectance(scene) * (light.sunlight * sine + diffuse);

@@ -68,7 +68,7 @@ class SkyAndGround {
   std::optional<physics::ClearSky> sky_;  // from the ground
   physics::SkyLight sky_light_;
   Key drawn_;
-  glm::vec3 around_sun_{0.0F};                    // of Illumination, for a sun of irradiance 1
+  std::optional<glm::vec3> around_sun_;           // of Illumination, for a sun of irradiance 1
   std::map<int, std::vector<glm::vec4>> tables_;  // by step
   double eye_height_m_ = -1.0;                    // that the table on the device is for
   gl::Texture2D sky_table_;

@@ -1,4 +1,6 @@
 // Rays through a medium that leap over its empty bricks (volume/brick_map.h). Needs common/medium.glsl.
+#include "common/box.glsl"
+
 layout(binding = 2) uniform usampler3D bricks;  // volume::BrickMap::content
 
 uniform vec3 brick_from_local_scale;
@@ -18,9 +20,6 @@ struct MediumRay {
   vec3 highest_brick;
 };
 
-// No component is zero, so that it may be divided by.
-vec3 safe_direction(vec3 direction) { return mix(direction, vec3(1e-7), lessThan(abs(direction), vec3(1e-7))); }
-
 // `direction` is safe.
 MediumRay medium_ray(vec3 origin_m, vec3 direction) {
   MediumRay ray;
@@ -35,11 +34,7 @@ MediumRay medium_ray(vec3 origin_m, vec3 direction) {
 
 // The part of the ray that is in the medium's box with `margin_m` around; x > y where it misses it. `direction` is safe.
 vec2 way_in_medium(vec3 origin_m, vec3 direction, float margin_m) {
-  vec3 low_m = (medium_low_m - margin_m - origin_m) / direction;
-  vec3 high_m = (medium_high_m + margin_m - origin_m) / direction;
-  vec3 nearest = min(low_m, high_m);
-  vec3 farthest = max(low_m, high_m);
-  return vec2(max(nearest.x, max(nearest.y, nearest.z)), min(farthest.x, min(farthest.y, farthest.z)));
+  return way_through_box(medium_low_m - margin_m, medium_high_m + margin_m, origin_m, direction);
 }
 
 vec3 medium_place(MediumRay ray, float way_m) { return ray.start + way_m * ray.step; }

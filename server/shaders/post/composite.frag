@@ -1,5 +1,6 @@
 // The linear frame: what the eye buffer holds in front of sky and ground, all through the air. Coordinates are metres from
 // the eye. Variants: RELIEF (terrain), FRONT (there may be something in the eye buffer).
+#include "common/box.glsl"
 #include "common/ground.glsl"
 #include "common/sky.glsl"
 #include "common/view.glsl"
@@ -31,16 +32,6 @@ out vec4 linear_rgb;
 
 const float kJustBelow = 1e-5;
 const float kHardlyAnyHaze = 0.01;  // of its vertical depth
-
-// The part of the ray that is in the medium's box; x > y where it misses it.
-vec2 way_through_box(vec3 origin_m, vec3 ray) {
-  vec3 safe_ray = mix(ray, vec3(1e-7), lessThan(abs(ray), vec3(1e-7)));
-  vec3 a = (box_low_m - origin_m) / safe_ray;
-  vec3 b = (box_high_m - origin_m) / safe_ray;
-  vec3 nearest = min(a, b);
-  vec3 farthest = max(a, b);
-  return vec2(max(max(nearest.x, max(nearest.y, nearest.z)), 0.0), min(farthest.x, min(farthest.y, farthest.z)));
-}
 
 // Lambert's law under sun and sky. The storm shades the sun, not the sky; the terrain shades itself by its slope only.
 vec3 ground_radiance(vec3 point_m) {
@@ -96,7 +87,8 @@ void main() {
   vec4 front = texture(eye, 0.5 * position + 0.5);
   float opacity = 1.0 - front.a;
   if (opacity > 0.0) {
-    vec2 way_m = way_through_box(origin_m, world_ray);
+    vec2 way_m = way_through_box(box_low_m, box_high_m, origin_m, safe_direction(world_ray));
+    way_m.x = max(way_m.x, 0.0);
     float end_m = ground_m > 0.0 ? min(way_m.y, ground_m) : way_m.y;
     float distance_m = 0.5 * (way_m.x + max(end_m, way_m.x));
     front.rgb = through_air(front.rgb, opacity, depth_before(ray, distance_m), sky_radiance, sky_depth);

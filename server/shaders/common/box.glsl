@@ -1,0 +1,13 @@
+// Rays and boxes whose sides lie along the axes.
+
+// No component is zero, so that it may be divided by.
+vec3 safe_direction(vec3 direction) { return mix(direction, vec3(1e-7), lessThan(abs(direction), vec3(1e-7))); }
+
+// The part of the ray that is in the box; x > y where it misses it. `direction` is safe.
+vec2 way_through_box(vec3 low_m, vec3 high_m, vec3 origin_m, vec3 direction) {
+  vec3 a = (low_m - origin_m) / direction;
+  vec3 b = (high_m - origin_m) / direction;
+  vec3 nearest = min(a, b);
+  vec3 farthest = max(a, b);
+  return vec2(max(nearest.x, max(nearest.y, nearest.z)), min(farthest.x, min(farthest.y, farthest.z)));
+}
