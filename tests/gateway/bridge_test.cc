@@ -346,7 +346,7 @@ TEST_P(BridgeTest, FloodDuringAStreamEndsIt) {
   RawClient client(Site().Port());
   client.Send(CallRequest("Count", Frame(Counting(1, 3'600'000))));
   client.ReadHeaders();
-  client.Send(std::string(200'000, 'x'));
+  client.SendUntilClosed(std::string(200'000, 'x'));
   EXPECT_TRUE(Eventually([&] { return Record().cancelled == 1 && Record().done == 1; }));
 }
 

@@ -70,6 +70,14 @@ void RawClient::Send(const std::string& bytes) {
           "sending");
 }
 
+void RawClient::SendUntilClosed(const std::string& bytes) {
+  const boost::system::error_code error = Await(
+      [&](auto handler) { net::async_write(stream_, net::buffer(bytes), std::move(handler)); });
+  if (error != net::error::broken_pipe && error != net::error::connection_reset) {
+    ThrowOn(error, "sending");
+  }
+}
+
 Response RawClient::Read(bool to_head) {
   Parser parser;
   parser.skip(to_head);
