@@ -6,12 +6,16 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_replace.h"
 #include "app/commands.h"
 #include "app/interruption.h"
 #include "app/kept_truth.h"
 #include "app/local_scene.h"
+#include "app/progress_bar.h"
 #include "base/status.h"
+#include "base/stopwatch.h"
 #include "base/whole_file.h"
+#include "correction/light_corrector.h"
 #include "frame/image_codec.h"
 #include "frame/tone_map.h"
 #include "gl/context.h"
@@ -37,6 +41,7 @@ struct Flags {
   std::vector<std::string> transports;
   int samples_per_pixel = 512;
   int finer = 4;
+  std::vector<double> million_paths;
   double peak_cut_deg = reference::kPeakCut_deg;
 };
 
@@ -89,29 +94,76 @@ absl::Status WriteComparison(const measure::LinearImage& truth, const measure::L
   return base::WriteWholeFile(path, png);
 }
 
-absl::Status MeasureTransport(const Flags& flags, const LocalScene& local, LightPart part,
-                              const reference::Image& image,
+// One drawn picture against the truth: its row of the table, and the comparison.
+struct Compared {
+  const Flags& flags;
+  const LocalScene& local;
+  LightPart part;
+  measure::LinearImage truth;
+  double noise;
+  renderers::SceneRenderer& renderer;
+
+  absl::Status Print(const scene::Scene& scene, const std::string& name,
+                     const std::shared_ptr<const renderers::LightCorrection>& correction) const {
+    const auto error_of = [&](const measure::LinearImage& drawn) {
+      const double rmse = measure::RelativeRmse(drawn, truth);
+      return std::sqrt(std::max(rmse * rmse - noise * noise, 0.0));
+    };
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        const measure::LinearImage drawn,
+        measure::DrawPart(renderer, scene, local.fields, part, flags.finer, correction));
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        const measure::LinearImage single,
+        measure::DrawPart(renderer, scene, local.fields, part, 1, correction));
+    std::cout << absl::StrFormat("%-5s %-15s %8.4f %+8.4f %8.4f %8.4f\n", measure::NameOf(part),
+                                 name, error_of(drawn), measure::RelativeBias(drawn, truth),
+                                 error_of(single), noise)
+              << std::flush;
+    return WriteComparison(truth, drawn, local.scene.display,
+                           absl::StrCat(flags.output, ".", measure::NameOf(part), ".",
+                                        absl::StrReplaceAll(name, {{" ", "_"}}), ".png"));
+  }
+};
+
+absl::Status TraceUntil(double million_paths, const Interruption& interruption,
+                        correction::LightCorrector* corrector) {
+  ProgressBar bar("tracing light");
+  while (static_cast<double>(corrector->Paths()) < 1e6 * million_paths) {
+    if (interruption.Token().stop_requested()) return absl::CancelledError("stopped");
+    THUNDERHEAD_RETURN_IF_ERROR(corrector->Step());
+    bar.Set(static_cast<double>(corrector->Paths()) / (1e6 * million_paths));
+  }
+  return absl::OkStatus();
+}
+
+// All light again, after so many paths have been traced.
+absl::Status MeasureTracedLight(const Compared& compared, scene::Scene scene,
+                                const Interruption& interruption) {
+  scene.rendering.traced_light = true;
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const std::unique_ptr<correction::LightCorrector> corrector,
+      correction::LightCorrector::Create(scene, compared.local.fields,
+                                         std::make_shared<gl::ProgramCache>(), 0));
+  base::Stopwatch stopwatch;
+  double traced_ms = 0.0;
+  for (const double million_paths : compared.flags.million_paths) {
+    stopwatch.Restart();
+    THUNDERHEAD_RETURN_IF_ERROR(TraceUntil(million_paths, interruption, corrector.get()));
+    traced_ms += stopwatch.ElapsedMs();
+    const std::string name = absl::StrFormat("%g Mpaths %.0f s", million_paths, 1e-3 * traced_ms);
+    THUNDERHEAD_RETURN_IF_ERROR(compared.Print(scene, name, corrector->Correction()));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status MeasureTransport(const Compared& compared,
                               const measure::Named<scene::Transport>& transport,
-                              renderers::SceneRenderer& renderer) {
-  const measure::LinearImage truth{image.size_px, image.radiance};
-  const double noise = measure::RelativeNoise(image.standard_error, truth);
-  scene::Scene scene = local.scene;
+                              const Interruption& interruption) {
+  scene::Scene scene = compared.local.scene;
   scene.rendering.transport = transport.value;
-  const auto error_of = [&](const measure::LinearImage& drawn) {
-    const double rmse = measure::RelativeRmse(drawn, truth);
-    return std::sqrt(std::max(rmse * rmse - noise * noise, 0.0));
-  };
-  THUNDERHEAD_ASSIGN_OR_RETURN(const measure::LinearImage drawn,
-                               measure::DrawPart(renderer, scene, local.fields, part, flags.finer));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const measure::LinearImage single,
-                               measure::DrawPart(renderer, scene, local.fields, part, 1));
-  std::cout << absl::StrFormat("%-5s %-11s %8.4f %+8.4f %8.4f %8.4f\n", measure::NameOf(part),
-                               transport.name, error_of(drawn), measure::RelativeBias(drawn, truth),
-                               error_of(single), noise)
-            << std::flush;
-  return WriteComparison(truth, drawn, local.scene.display,
-                         absl::StrCat(flags.output, ".", measure::NameOf(part), ".",
-                                      std::string(transport.name), ".png"));
+  THUNDERHEAD_RETURN_IF_ERROR(compared.Print(scene, std::string(transport.name), nullptr));
+  const bool traces = compared.part == LightPart::kAll && scene::ShowsTracedLight(scene.rendering);
+  return traces ? MeasureTracedLight(compared, scene, interruption) : absl::OkStatus();
 }
 
 absl::Status MeasureLight(const Flags& flags) {
@@ -121,20 +173,23 @@ absl::Status MeasureLight(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,
                                gl::Context::Create(flags.device));
   renderers::SceneRenderer renderer;
-  std::cout << "part  transport       RMSE     bias   1 ray    noise\n";
+  std::cout << "part  transport           RMSE     bias    1 ray    noise\n";
   for (const LightPart part : kParts) {
     if (!Chosen(flags.parts, measure::NameOf(part))) continue;
     THUNDERHEAD_ASSIGN_OR_RETURN(
-        const reference::Image truth,
+        const reference::Image image,
         TruthOf(flags, local, part, absl::StrCat(flags.output, ".", measure::NameOf(part), ".exr"),
                 interruption));
+    const measure::LinearImage truth{image.size_px, image.radiance};
+    const double noise = measure::RelativeNoise(image.standard_error, truth);
+    const Compared compared{flags, local, part, truth, noise, renderer};
     for (const auto& transport : measure::kTransports) {
       const bool once = part == LightPart::kOnce;
       if (once ? transport.value != scene::Transport::kConsistent
                : !Chosen(flags.transports, transport.name)) {
         continue;
       }
-      THUNDERHEAD_RETURN_IF_ERROR(MeasureTransport(flags, local, part, truth, transport, renderer));
+      THUNDERHEAD_RETURN_IF_ERROR(MeasureTransport(compared, transport, interruption));
     }
   }
   return absl::OkStatus();
@@ -159,6 +214,11 @@ Command AddMeasureLight(CLI::App& measure) {
   light->add_option("--spp", flags->samples_per_pixel, "Samples a pixel of the truth")
       ->check(CLI::Range(16, 1 << 20))
       ->capture_default_str();
+  light
+      ->add_option("--million-paths", flags->million_paths,
+                   "Diffusion with traced light as well, after so many million paths; several "
+                   "from few to many")
+      ->check(CLI::Range(0.0, 1e3));
   light->add_option("--finer", flags->finer, "Rays across and along a pixel of the drawn picture")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();

@@ -28,6 +28,7 @@ struct Flags {
   std::string output = "trade";
   std::string device = "auto";
   int samples_per_pixel = 256;
+  std::vector<double> million_paths = {0.1, 0.3, 1.0, 3.0};
   bool json = false;
 };
 
@@ -68,8 +69,9 @@ absl::StatusOr<std::vector<measure::TradeRow>> RowsSoFar(const std::string& path
 }
 
 absl::Status MeasureRest(measure::Trade& trade, const std::string& path,
-                         const Interruption& interruption, std::vector<measure::TradeRow>* rows) {
-  const std::vector<measure::TradeSetting> sweep = measure::DefaultSweep();
+                         const Interruption& interruption,
+                         const std::vector<measure::TradeSetting>& sweep,
+                         std::vector<measure::TradeRow>* rows) {
   std::ofstream file(path, std::ios::binary | std::ios::app);
   ProgressBar bar("measuring settings");
   double done = 0.0;
@@ -79,29 +81,31 @@ absl::Status MeasureRest(measure::Trade& trade, const std::string& path,
                     [&](const measure::TradeRow& row) { return row.setting == setting; })) {
       continue;
     }
+    const auto row = trade.Measure(setting, interruption.Token());
     if (interruption.Token().stop_requested()) {
       return absl::CancelledError(absl::StrCat("stopped; the same command goes on from ", path));
     }
-    THUNDERHEAD_ASSIGN_OR_RETURN(const measure::TradeRow row, trade.Measure(setting));
-    file << measure::CsvLine(row) << std::flush;
+    THUNDERHEAD_RETURN_IF_ERROR(row.status());
+    file << measure::CsvLine(*row) << std::flush;
     if (!file) return absl::UnavailableError(absl::StrCat(path, " cannot be written"));
-    rows->push_back(row);
+    rows->push_back(*row);
   }
   return absl::OkStatus();
 }
 
 std::string Table(const std::vector<measure::TradeRow>& rows) {
-  std::string text = absl::StrFormat("%-13s %-28s %-11s %6s %5s %5s %-6s %4s %9s %8s %8s %7s\n",
+  std::string text = absl::StrFormat("%-13s %-28s %-11s %6s %5s %5s %-6s %6s %4s %9s %8s %8s %7s\n",
                                      "renderer", "mode", "transport", "slices", "scale", "light",
-                                     "bits", "jpeg", "ms", "RMSE", "bias", "FLIP");
+                                     "bits", "Mpaths", "jpeg", "ms", "RMSE", "bias", "FLIP");
   for (const measure::TradeRow& row : rows) {
     const measure::TradeSetting& setting = row.setting;
-    absl::StrAppendFormat(
-        &text, "%-13s %-28s %-11s %6d %5g %5g %-6s %4d %9.2f %8.4f %+8.4f %7.4f%s\n",
-        measure::NameOf(setting.renderer), measure::NameOf(setting.mode),
-        measure::NameOf(setting.transport), setting.slices, setting.image_scale,
-        setting.light_detail, setting.single_precision ? "single" : "half", setting.jpeg_quality,
-        row.milliseconds, row.relative_rmse, row.relative_bias, row.flip, row.pareto ? "  *" : "");
+    absl::StrAppendFormat(&text,
+                          "%-13s %-28s %-11s %6d %5g %5g %-6s %6g %4d %9.2f %8.4f %+8.4f %7.4f%s\n",
+                          measure::NameOf(setting.renderer), measure::NameOf(setting.mode),
+                          measure::NameOf(setting.transport), setting.slices, setting.image_scale,
+                          setting.light_detail, setting.single_precision ? "single" : "half",
+                          setting.million_paths, setting.jpeg_quality, row.milliseconds,
+                          row.relative_rmse, row.relative_bias, row.flip, row.pareto ? "  *" : "");
   }
   return text;
 }
@@ -126,7 +130,8 @@ absl::Status MeasureTrade(const Flags& flags) {
   const std::string csv = flags.output + ".csv";
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<measure::TradeRow> rows,
                                RowsSoFar(csv, measure::CsvHead(title)));
-  THUNDERHEAD_RETURN_IF_ERROR(MeasureRest(trade, csv, interruption, &rows));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      MeasureRest(trade, csv, interruption, measure::DefaultSweep(flags.million_paths), &rows));
   measure::MarkPareto(&rows);
   const std::string json = measure::TradeJson(title, rows);
   THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(flags.output + ".json", json));
@@ -150,6 +155,11 @@ Command AddMeasureTrade(CLI::App& measure) {
       ->capture_default_str();
   AddSceneOptions(*trade, flags->scene);
   trade->add_option("--spp", flags->samples_per_pixel, "Samples a pixel of the truth")
+      ->capture_default_str();
+  trade
+      ->add_option("--million-paths", flags->million_paths,
+                   "Traced light with so many million paths; several from few to many")
+      ->check(CLI::Range(0.0, 1e3))
       ->capture_default_str();
   trade->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();

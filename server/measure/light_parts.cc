@@ -1,5 +1,7 @@
 #include "measure/light_parts.h"
 
+#include <utility>
+
 #include "base/status.h"
 #include "measure/trade.h"
 
@@ -25,9 +27,9 @@ LinearImage Averaged(const LinearImage& image, int side) {
 
 absl::StatusOr<LinearImage> Draw(renderers::SceneRenderer& renderer, const scene::Scene& scene,
                                  const std::shared_ptr<const volume::HydrometeorFields>& fields,
-                                 int finer) {
+                                 const renderers::DrawQuality& quality, int finer) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame frame,
-                               renderer.Draw(scene, fields, {}));
+                               renderer.Draw(scene, fields, quality));
   return Averaged(ImageOf(*frame.radiance), finer);
 }
 
@@ -68,15 +70,18 @@ reference::TraceOptions TraceOptionsOf(LightPart part, double peak_cut_deg) {
 
 absl::StatusOr<LinearImage> DrawPart(renderers::SceneRenderer& renderer, const scene::Scene& scene,
                                      const std::shared_ptr<const volume::HydrometeorFields>& fields,
-                                     LightPart part, int finer) {
+                                     LightPart part, int finer,
+                                     std::shared_ptr<const renderers::LightCorrection> correction) {
+  renderers::DrawQuality quality;
+  quality.correction = std::move(correction);
   scene::Scene lit = SceneOf(part, scene);
   lit.output.width_px *= finer;
   lit.output.height_px *= finer;
-  THUNDERHEAD_ASSIGN_OR_RETURN(LinearImage image, Draw(renderer, lit, fields, finer));
+  THUNDERHEAD_ASSIGN_OR_RETURN(LinearImage image, Draw(renderer, lit, fields, quality, finer));
   if (part != LightPart::kSky) return image;
   // Light adds up: the sky's is what a black sky leaves out.
   lit.sky.brightness = 0.0;
-  THUNDERHEAD_ASSIGN_OR_RETURN(const LinearImage sun, Draw(renderer, lit, fields, finer));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const LinearImage sun, Draw(renderer, lit, fields, quality, finer));
   for (std::size_t i = 0; i < image.radiance.size(); ++i) image.radiance[i] -= sun.radiance[i];
   return image;
 }

@@ -29,9 +29,10 @@ scene::Scene SceneOf(LightPart part, scene::Scene scene);
 reference::TraceOptions TraceOptionsOf(LightPart part, double peak_cut_deg);
 
 // Draws one part with `scene`'s renderer and transport, `finer` times as wide and high as the
-// scene says and averaged, as the reference averages over a pixel.
+// scene says and averaged, as the reference averages over a pixel. `correction` may be null.
 absl::StatusOr<LinearImage> DrawPart(renderers::SceneRenderer& renderer, const scene::Scene& scene,
                                      const std::shared_ptr<const volume::HydrometeorFields>& fields,
-                                     LightPart part, int finer);
+                                     LightPart part, int finer,
+                                     std::shared_ptr<const renderers::LightCorrection> correction);
 
 }  // namespace thunderhead::measure

@@ -27,12 +27,14 @@ constexpr std::array<absl::string_view, 8> kNeeded = {
 constexpr std::array<absl::string_view, 4> kPassedOver = {"milliseconds_spread", "bytes",
                                                           "relative_bias", "flip"};
 
-// What scenes cannot ask for: rows that differ from these values are not offered.
+// What nothing is chosen by, or scenes cannot ask for: rows that differ from these values are not
+// offered.
 struct Fixed {
   absl::string_view column;
   absl::string_view value;
 };
-constexpr std::array<Fixed, 2> kFixed = {{{"light_detail", "1"}, {"precision", "half"}}};
+constexpr std::array<Fixed, 3> kFixed = {
+    {{"light_detail", "1"}, {"precision", "half"}, {"million_paths", "0"}}};
 
 bool IsFixed(absl::string_view name) {
   return std::any_of(kFixed.begin(), kFixed.end(),

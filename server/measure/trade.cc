@@ -98,7 +98,7 @@ std::string NameOf(scene::Transport transport) {
   THUNDERHEAD_CHECK(false, "no such transport");
 }
 
-std::vector<TradeSetting> DefaultSweep() {
+std::vector<TradeSetting> DefaultSweep(const std::vector<double>& million_paths) {
   std::vector<TradeSetting> settings;
   for (const auto renderer : {scene::Renderer::kLightVolume, scene::Renderer::kHalfAngle}) {
     for (const auto mode :
@@ -126,6 +126,12 @@ std::vector<TradeSetting> DefaultSweep() {
   }
   for (const auto transport : {scene::Transport::kConsistent, scene::Transport::kDiffusion}) {
     AddVariants(transport, &settings);
+  }
+  for (const double paths : million_paths) {
+    TradeSetting traced;
+    traced.transport = scene::Transport::kDiffusion;
+    traced.million_paths = paths;
+    settings.push_back(traced);
   }
   return settings;
 }
@@ -162,7 +168,25 @@ absl::StatusOr<DisplayImage> Trade::Display(const gl::Texture2D& linear) {
   return DisplayImage{linear.Size(), std::move(mapped.rgb)};
 }
 
-absl::StatusOr<TradeRow> Trade::Measure(const TradeSetting& setting) {
+absl::StatusOr<std::shared_ptr<const renderers::LightCorrection>> Trade::CorrectionOf(
+    const scene::Scene& scene, double million_paths, const std::stop_token& stop) {
+  if (million_paths <= 0.0) return nullptr;
+  if (corrector_ == nullptr || !corrector_->Serves(scene, fields_) ||
+      static_cast<double>(corrector_->Paths()) > 1e6 * million_paths) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        corrector_, correction::LightCorrector::Create(scene, fields_,
+                                                       std::make_shared<gl::ProgramCache>(), 0));
+  }
+  while (static_cast<double>(corrector_->Paths()) < 1e6 * million_paths) {
+    if (stop.stop_requested()) return absl::CancelledError("stopped");
+    const std::int64_t before = corrector_->Paths();
+    THUNDERHEAD_RETURN_IF_ERROR(corrector_->Step());
+    if (corrector_->Paths() == before) break;  // nothing of the storm is seen
+  }
+  return corrector_->Correction();
+}
+
+absl::StatusOr<TradeRow> Trade::Measure(const TradeSetting& setting, const std::stop_token& stop) {
   if (truth_display_.rgb.empty()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(truth_display_, Display(TextureOf(truth_)));
   }
@@ -177,8 +201,10 @@ absl::StatusOr<TradeRow> Trade::Measure(const TradeSetting& setting) {
   }
   TradeRow row;
   row.setting = setting;
-  const renderers::DrawQuality quality{setting.image_scale, 1.0, setting.light_detail,
-                                       setting.single_precision};
+  renderers::DrawQuality quality{setting.image_scale, 1.0, setting.light_detail,
+                                 setting.single_precision};
+  THUNDERHEAD_ASSIGN_OR_RETURN(quality.correction,
+                               CorrectionOf(scene, setting.million_paths, stop));
   std::vector<double> milliseconds;
   std::string jpeg;
   // A change too small to see makes the view run again; the first frame also compiles

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "correction/light_corrector.h"
 #include "frame/tone_map.h"
 #include "measure/image_error.h"
 #include "reference/path_tracer.h"
@@ -26,6 +28,7 @@ struct TradeSetting {
   int jpeg_quality = 88;
   double light_detail = 1.0;  // as in renderers::DrawQuality
   bool single_precision = false;
+  double million_paths = 0.0;  // traced light (scene::Rendering), by so many paths
 
   bool operator==(const TradeSetting&) const = default;
 };
@@ -42,9 +45,10 @@ struct TradeRow {
 };
 
 // Every renderer, mode, transport and number of slices at full size (of metaballs the default mode
-// and some numbers of them), then smaller pictures, and finer and coarser light volumes, single
-// precision and other JPEG qualities of the default renderer and mode.
-std::vector<TradeSetting> DefaultSweep();
+// and some numbers of them), then smaller pictures, finer and coarser light volumes, single
+// precision, other JPEG qualities and traced light, with so many `million_paths`, of the default
+// renderer and mode.
+std::vector<TradeSetting> DefaultSweep(const std::vector<double>& million_paths);
 
 // Marks the rows that no other beats in both milliseconds and relative RMSE.
 void MarkPareto(std::vector<TradeRow>* rows);
@@ -59,13 +63,18 @@ class Trade {
   Trade(scene::Scene scene, std::shared_ptr<const volume::HydrometeorFields> fields,
         const reference::Image& truth);
 
-  absl::StatusOr<TradeRow> Measure(const TradeSetting& setting);
+  // CANCELLED if `stop` asked to stop while paths were traced. Those are kept: settings that differ
+  // in their number alone are best measured from few to many.
+  absl::StatusOr<TradeRow> Measure(const TradeSetting& setting, const std::stop_token& stop);
 
   // What relative RMSE the truth's own noise amounts to.
   double TruthNoise() const { return truth_noise_; }
 
  private:
   absl::StatusOr<DisplayImage> Display(const gl::Texture2D& linear);
+  // What so many paths correct; null for none.
+  absl::StatusOr<std::shared_ptr<const renderers::LightCorrection>> CorrectionOf(
+      const scene::Scene& scene, double million_paths, const std::stop_token& stop);
 
   scene::Scene scene_;
   std::shared_ptr<const volume::HydrometeorFields> fields_;
@@ -73,6 +82,7 @@ class Trade {
   DisplayImage truth_display_;
   double truth_noise_ = 0.0;
   renderers::SceneRenderer renderer_;
+  std::unique_ptr<correction::LightCorrector> corrector_;
   frame::ToneMapper tone_mapper_;
 };
 

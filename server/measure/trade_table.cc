@@ -17,9 +17,10 @@ namespace thunderhead::measure {
 namespace {
 
 constexpr char kColumns[] =
-    "renderer,mode,transport,slices,image_scale,light_detail,precision,jpeg_quality,milliseconds,"
+    "renderer,mode,transport,slices,image_scale,light_detail,precision,million_paths,jpeg_quality,"
+    "milliseconds,"
     "milliseconds_spread,bytes,relative_rmse,relative_bias,flip";
-constexpr std::size_t kColumnCount = 14;
+constexpr std::size_t kColumnCount = 15;
 
 constexpr char kHalf[] = "half";
 constexpr char kSingle[] = "single";
@@ -64,11 +65,12 @@ std::optional<TradeRow> RowOf(absl::string_view line) {
       absl::SimpleAtod(cells[4], &setting.image_scale) &&
       absl::SimpleAtod(cells[5], &setting.light_detail) &&
       (cells[6] == kHalf || cells[6] == kSingle) &&
-      absl::SimpleAtoi(cells[7], &setting.jpeg_quality) &&
-      absl::SimpleAtod(cells[8], &row.milliseconds) &&
-      absl::SimpleAtod(cells[9], &row.milliseconds_spread) && absl::SimpleAtoi(cells[10], &bytes) &&
-      absl::SimpleAtod(cells[11], &row.relative_rmse) &&
-      absl::SimpleAtod(cells[12], &row.relative_bias) && absl::SimpleAtod(cells[13], &row.flip);
+      absl::SimpleAtod(cells[7], &setting.million_paths) &&
+      absl::SimpleAtoi(cells[8], &setting.jpeg_quality) &&
+      absl::SimpleAtod(cells[9], &row.milliseconds) &&
+      absl::SimpleAtod(cells[10], &row.milliseconds_spread) &&
+      absl::SimpleAtoi(cells[11], &bytes) && absl::SimpleAtod(cells[12], &row.relative_rmse) &&
+      absl::SimpleAtod(cells[13], &row.relative_bias) && absl::SimpleAtod(cells[14], &row.flip);
   setting.single_precision = cells[6] == kSingle;
   row.bytes = bytes;
   if (!read) return std::nullopt;
@@ -100,12 +102,13 @@ void AddDot(const TradeRow& row, LogPlot* plot) {
   const char* color = ColorOf(row.setting.renderer);
   const bool hollow = row.setting.transport == scene::Transport::kPaper;
   const std::string tip = absl::StrFormat(
-      "%s, %s, %s, %d %s, scale %g, light detail %g, %s precision, JPEG %d: %.2f ms, RMSE %.3f, "
-      "FLIP %.3f",
+      "%s, %s, %s, %d %s, scale %g, light detail %g, %s precision, %g million paths, JPEG %d: %.2f "
+      "ms, RMSE %.3f, FLIP %.3f",
       NameOf(row.setting.renderer), NameOf(row.setting.mode), NameOf(row.setting.transport),
       row.setting.slices, row.setting.renderer == scene::Renderer::kMetaball ? "balls" : "slices",
       row.setting.image_scale, row.setting.light_detail, PrecisionOf(row.setting),
-      row.setting.jpeg_quality, row.milliseconds, row.relative_rmse, row.flip);
+      row.setting.million_paths, row.setting.jpeg_quality, row.milliseconds, row.relative_rmse,
+      row.flip);
   plot->Dot(std::max(row.milliseconds, kLeastMilliseconds),
             std::max(row.relative_rmse, kLeastError), row.pareto ? 5 : 3,
             hollow ? "#ffffff" : color, color, tip);
@@ -135,11 +138,12 @@ std::string CsvHead(const TradeTitle& title) {
 
 std::string CsvLine(const TradeRow& row) {
   const TradeSetting& setting = row.setting;
-  return absl::StrFormat(
-      "%s,%s,%s,%d,%g,%g,%s,%d,%.3f,%.3f,%d,%.5f,%.5f,%.5f\n", NameOf(setting.renderer),
-      NameOf(setting.mode), NameOf(setting.transport), setting.slices, setting.image_scale,
-      setting.light_detail, PrecisionOf(setting), setting.jpeg_quality, row.milliseconds,
-      row.milliseconds_spread, row.bytes, row.relative_rmse, row.relative_bias, row.flip);
+  return absl::StrFormat("%s,%s,%s,%d,%g,%g,%s,%g,%d,%.3f,%.3f,%d,%.5f,%.5f,%.5f\n",
+                         NameOf(setting.renderer), NameOf(setting.mode), NameOf(setting.transport),
+                         setting.slices, setting.image_scale, setting.light_detail,
+                         PrecisionOf(setting), setting.million_paths, setting.jpeg_quality,
+                         row.milliseconds, row.milliseconds_spread, row.bytes, row.relative_rmse,
+                         row.relative_bias, row.flip);
 }
 
 absl::StatusOr<std::vector<TradeRow>> ReadCsv(std::string_view text, std::string_view head) {
@@ -174,13 +178,13 @@ std::string TradeJson(const TradeTitle& title, const std::vector<TradeRow>& rows
         out,
         "    {\"renderer\": \"%s\", \"mode\": \"%s\", \"transport\": \"%s\", \"slices\": %d, "
         "\"image_scale\": %g, \"light_detail\": %g, \"precision\": \"%s\", "
-        "\"jpeg_quality\": %d, \"milliseconds\": %.3f, "
+        "\"million_paths\": %g, \"jpeg_quality\": %d, \"milliseconds\": %.3f, "
         "\"milliseconds_spread\": %.3f, \"bytes\": %d, \"relative_rmse\": %.5f, "
         "\"relative_bias\": %.5f, \"flip\": %.5f, \"pareto\": %s}",
         NameOf(setting.renderer), NameOf(setting.mode), NameOf(setting.transport), setting.slices,
-        setting.image_scale, setting.light_detail, PrecisionOf(setting), setting.jpeg_quality,
-        row.milliseconds, row.milliseconds_spread, row.bytes, row.relative_rmse, row.relative_bias,
-        row.flip, row.pareto ? "true" : "false");
+        setting.image_scale, setting.light_detail, PrecisionOf(setting), setting.million_paths,
+        setting.jpeg_quality, row.milliseconds, row.milliseconds_spread, row.bytes,
+        row.relative_rmse, row.relative_bias, row.flip, row.pareto ? "true" : "false");
   }));
   return absl::StrCat(text, "\n  ]\n}\n");
 }

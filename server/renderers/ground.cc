@@ -15,6 +15,7 @@ namespace {
 
 constexpr GLuint kTerrainUnit = 8;
 constexpr GLuint kShadowUnit = 9;
+constexpr GLuint kSkylightUnit = 10;
 constexpr int kMostShadowTexels = 192;       // along the longer side
 constexpr double kShadowTexelInCells = 1.0;  // size of a texel
 constexpr double kShadowStepInCells = 1.0;   // between samples along the sun
@@ -149,7 +150,26 @@ void Ground::Bind(const gl::Program& program, const scene::View& view) const {
   terrain_.Bind(kTerrainUnit);
 }
 
+void Ground::SetCorrection(const std::shared_ptr<const LightCorrection>& correction) {
+  if (correction != nullptr && correction != correction_) {
+    if (skylight_factor_.Size() != correction->ground_size) {
+      skylight_factor_ = gl::Texture2D(GL_RGBA16F, correction->ground_size);
+    }
+    skylight_factor_.Upload(GL_RGBA, GL_FLOAT, correction->ground.data());
+  }
+  correction_ = correction;
+}
+
+void Ground::BindCorrection(const gl::Program& program, const scene::View& view) const {
+  const glm::dvec2 size_m = correction_->ground_high_m - correction_->ground_low_m;
+  program.Set("skylight_scale", glm::vec2(1.0 / size_m));
+  program.Set("skylight_offset",
+              glm::vec2((glm::dvec2(view.eye_m) - correction_->ground_low_m) / size_m));
+  skylight_factor_.Bind(kSkylightUnit);
+}
+
 void Ground::BindShadow(const gl::Program& program, const scene::View& view) const {
+  if (Corrected()) BindCorrection(program, view);
   if (!has_shadow_) {
     // Far outside the texture, where nothing is blocked.
     program.Set("shadow_right", glm::vec3(0.0F));

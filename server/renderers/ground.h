@@ -31,6 +31,10 @@ class Ground {
   void ShareShadow(const gl::Texture2D* blocked, const LightFrame& frame,
                    const glm::dvec3& middle_m);
   void ClearShadow() { has_shadow_ = false; }
+  // Puts a correction's ground on the device unless it is there; null is none.
+  void SetCorrection(const std::shared_ptr<const LightCorrection>& correction);
+  // True if there is one: the variant CORRECTED of post/composite.frag.
+  bool Corrected() const { return correction_ != nullptr; }
 
   // Of its lowest point, above sea level.
   double Lowest_m() const { return lowest_m_; }
@@ -48,12 +52,15 @@ class Ground {
 
   // Sets the uniforms and textures of common/ground.glsl for coordinates from the eye.
   void Bind(const gl::Program& program, const scene::View& view) const;
-  // Sets those of the shadow: its texture and where it lies.
+  // Sets those of the shadow, and of a correction: texture and place.
   void BindShadow(const gl::Program& program, const scene::View& view) const;
 
-  std::size_t Bytes() const { return terrain_.Bytes() + shadow_.Bytes() + distance_.Bytes(); }
+  std::size_t Bytes() const {
+    return terrain_.Bytes() + shadow_.Bytes() + skylight_factor_.Bytes() + distance_.Bytes();
+  }
 
  private:
+  void BindCorrection(const gl::Program& program, const scene::View& view) const;
   void PlaceShadow(const LightFrame& frame, const glm::dvec3& middle_m);
 
   std::shared_ptr<gl::ProgramCache> programs_;
@@ -72,6 +79,9 @@ class Ground {
   glm::dvec3 shadow_middle_m_{0.0};
   glm::dvec3 shadow_right_{0.0};  // 1 across its half width
   glm::dvec3 shadow_up_{0.0};
+
+  std::shared_ptr<const LightCorrection> correction_;
+  gl::Texture2D skylight_factor_;
 
   gl::Texture2D distance_;
   gl::Framebuffer distance_target_;

@@ -1,12 +1,14 @@
 // What every renderer of a medium is told besides the medium.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "gl/objects.h"
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 #include "renderers/cover.h"
+#include "renderers/light_volume/light_correction.h"
 #include "scene/scene.h"
 #include "scene/view.h"
 
@@ -43,6 +45,8 @@ struct RenderSettings {
   // Of the light volume, as DrawQuality has them.
   double light_detail = 1.0;
   bool single_precision = false;
+  std::shared_ptr<const LightCorrection> correction{};
+  bool places = false;
   // How far the ground is along each pixel's ray; none where nothing hides a part of the medium.
   const gl::Texture2D* ground_distance = nullptr;
   // Of the medium in the eye buffer; none where that may be anywhere.

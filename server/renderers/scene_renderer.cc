@@ -31,6 +31,11 @@ std::vector<std::string> NotShownByMetaballs(const scene::Rendering& rendering) 
   return not_shown;
 }
 
+void SayIfLightIsNotTraced(const scene::Scene& scene, std::vector<std::string>* not_shown) {
+  if (!scene.rendering.traced_light || scene::ShowsTracedLight(scene.rendering)) return;
+  not_shown->emplace_back("traced light (the light volume with diffusion transport shows it)");
+}
+
 void SayWhichLights(const scene::Scene& scene, std::vector<std::string>* not_shown) {
   if (scene.lights.empty() || scene::ShowsLights(scene.rendering.renderer)) return;
   not_shown->emplace_back("lights besides the sun (metaballs and the reference show them)");
@@ -90,15 +95,21 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
     const scene::View view = scene::ViewOf(scene, *fields);
     if (first <= scene::Stage::kStorm) ground_.SetTerrain(*fields);
     surroundings_.Update(scene, view, ground_);
+    ground_.SetCorrection(quality.correction);
     drawn_slices_ = 0;
     const Cover* cover = nullptr;
     if (!Empty()) {
       const double wanted = std::ceil(scene.rendering.slices * quality.slice_share);
       drawn_slices_ = std::max(static_cast<int>(wanted), 1);
-      RenderSettings settings{
-          scene.rendering,         view,          surroundings_.IlluminationOf(scene),
-          EyeSize(scene, quality), drawn_slices_, quality.light_detail,
-          quality.single_precision};
+      RenderSettings settings{scene.rendering,
+                              view,
+                              surroundings_.IlluminationOf(scene),
+                              EyeSize(scene, quality),
+                              drawn_slices_,
+                              quality.light_detail,
+                              quality.single_precision,
+                              quality.correction,
+                              quality.places};
       if (drawn_by_ == scene::Renderer::kCumulus) {
         THUNDERHEAD_RETURN_IF_ERROR(DrawCumulus(scene, &settings, first, &stages));
       } else {
@@ -123,6 +134,7 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
   drawn_fields_ = fields;
   drawn_quality_ = quality;
   LinearFrame frame = Report(scene, *fields);
+  if (quality.places) frame.radiance = &Eye();
   frame.stages = std::move(stages);
   return frame;
 }
@@ -318,6 +330,7 @@ LinearFrame SceneRenderer::Report(const scene::Scene& scene,
     frame.ellipsoids = cumulus_.BubbleCount();
     frame.not_shown = NotShownByCumulus(scene, fields);
     SayWhichLights(scene, &frame.not_shown);
+    SayIfLightIsNotTraced(scene, &frame.not_shown);
     return frame;
   }
   if (!medium_.Empty()) {
@@ -336,6 +349,7 @@ LinearFrame SceneRenderer::Report(const scene::Scene& scene,
     frame.not_shown = NotShownByMetaballs(scene.rendering);
   }
   SayWhichLights(scene, &frame.not_shown);
+  SayIfLightIsNotTraced(scene, &frame.not_shown);
   return frame;
 }
 

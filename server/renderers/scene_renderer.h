@@ -27,6 +27,11 @@ struct DrawQuality {
   // What sweeps vary besides; sessions draw with these.
   double light_detail = 1.0;      // texels of the light volume, over the usual ones, along a side
   bool single_precision = false;  // in the light volume's buffers and the frame; half is usual
+  // Of the light volume, for the light that the scene has.
+  std::shared_ptr<const LightCorrection> correction{};
+  // The frame is the light volume's eye buffer: for each pixel the place in the medium's box, 0 to
+  // 1, where its correction is looked up, and the share of the background that passes.
+  bool places = false;
 
   bool operator==(const DrawQuality&) const = default;
 };

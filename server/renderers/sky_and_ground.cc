@@ -191,6 +191,7 @@ absl::Status SkyAndGround::Composite(const scene::Scene& scene, const scene::Vie
                                  programs_->Get({"common/whole_target.vert",
                                                  "post/composite.frag",
                                                  {{"RELIEF", ground.Relief() ? 1 : 0},
+                                                  {"CORRECTED", ground.Corrected() ? 1 : 0},
                                                   {"FRONT", where == Where::kCovered ? 1 : 0}}}));
     BindAir(*program, scene, view, ground, box);
     program->Use();

@@ -38,6 +38,7 @@ bool SameContent(const Rendering& before, const Rendering& after) {
 bool SameLight(Rendering before, const Rendering& after) {
   if (BothCumulus(before, after)) return before.cumulus.corona == after.cumulus.corona;
   before.cumulus = after.cumulus;
+  before.traced_light = after.traced_light;
   return before == after;
 }
 
@@ -58,6 +59,7 @@ Stage DirtiedByTheRest(const Scene& before, const Scene& after) {
   const bool same_size = before.output.width_px == after.output.width_px &&
                          before.output.height_px == after.output.height_px;
   if (before.camera != after.camera || before.sky != after.sky || !same_size ||
+      before.rendering.traced_light != after.rendering.traced_light ||
       (BothCumulus(before.rendering, after.rendering) &&
        before.rendering.cumulus != after.rendering.cumulus)) {
     return Stage::kView;
@@ -101,6 +103,12 @@ bool HasDetail(Mode mode) { return mode == Mode::kPerFieldPhaseDetailTranslucent
 
 bool ShowsLights(Renderer renderer) {
   return renderer == Renderer::kMetaball || renderer == Renderer::kReference;
+}
+
+bool ShowsTracedLight(const Rendering& rendering) {
+  return rendering.renderer == Renderer::kLightVolume &&
+         rendering.transport == Transport::kDiffusion &&
+         rendering.mode != Mode::kUniformPhaseLowAlbedo;
 }
 
 Scene::Scene() {

@@ -196,12 +196,19 @@ struct Rendering {
   int slices = 128;
   double theta_f_deg = 20.0;
   bool false_colors = false;
+  // While light and storm rest, traced paths correct what a light volume by diffusion shows of
+  // them.
+  bool traced_light = false;
   Metaballs metaballs;
   Cumulus cumulus;
   double image_scale = 1.0;  // of the eye buffer at full quality, (0, 1]; pictures keep their size
 
   bool operator==(const Rendering&) const = default;
 };
+
+// Whether traced light changes the picture: a light volume by diffusion whose light is scattered
+// on.
+bool ShowsTracedLight(const Rendering& rendering);
 
 enum class ToneMap { kLinear, kFilmic };
 

@@ -274,6 +274,7 @@ void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
   rendering.set_mode(MessageOf(kModes, ValueOf(kModes, rendering.mode())));
   rendering.set_transport(MessageOf(kTransports, ValueOf(kTransports, rendering.transport())));
   if (!rendering.has_false_colors()) rendering.set_false_colors(false);
+  if (!rendering.has_traced_light()) rendering.set_traced_light(false);
   v1::Metaballs& metaballs = *rendering.mutable_metaballs();
   if (!metaballs.has_isotropic()) metaballs.set_isotropic(false);
   v1::Cumulus& cumulus = *rendering.mutable_cumulus();
@@ -311,6 +312,7 @@ scene::Scene ToScene(const v1::Scene& message) {
   scene.rendering.slices = static_cast<int>(rendering.slices());
   scene.rendering.theta_f_deg = rendering.theta_f_deg();
   scene.rendering.false_colors = rendering.false_colors();
+  scene.rendering.traced_light = rendering.traced_light();
   scene.rendering.metaballs = ToMetaballs(rendering.metaballs());
   scene.rendering.cumulus = ToCumulus(rendering.cumulus());
   scene.display.exposure_ev = message.display().exposure_ev();
@@ -332,6 +334,7 @@ void ToMessage(const session::Modelled& modelled, v1::Modelled& message) {
   message.set_fit_error(static_cast<float>(modelled.fit_error));
   for (const std::string& what : modelled.not_shown) message.add_not_shown(what);
   message.set_ellipsoids(static_cast<std::uint32_t>(modelled.ellipsoids));
+  message.set_traced_paths(static_cast<std::uint64_t>(modelled.traced_paths));
 }
 
 void ToMessage(const session::StageCost& cost, v1::StageCost& message) {

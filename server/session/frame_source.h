@@ -46,6 +46,7 @@ struct Modelled {
   double fit_error = 0.0;              // of those, over the extinction's root mean square
   std::vector<std::string> not_shown;  // what the renderer cannot show
   int ellipsoids = 0;                  // of a cumulus
+  std::int64_t traced_paths = 0;       // that corrected the light
 };
 
 // How far a picture by the reference has come.
@@ -137,6 +138,13 @@ class FrameSource {
 
   // Draws at full quality and with half the slices; a scene of one slice cannot be checked.
   virtual absl::StatusOr<CheckedFrame> DrawChecked(
+      const scene::Scene& scene,
+      const std::shared_ptr<const volume::HydrometeorFields>& fields) = 0;
+
+  // Traces some more paths for a scene with traced light, a tenth of a second long, so that the
+  // next Draw of it is better; gives how many there are by now. 0 if the scene's light is not
+  // corrected. RESOURCE_EXHAUSTED if too many other scenes' is.
+  virtual absl::StatusOr<std::int64_t> TraceLight(
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) = 0;
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/status.h"
+#include "correction/corrector_pool.h"
 #include "frame/tone_map.h"
 #include "gl/context.h"
 #include "renderers/renderer_pool.h"
@@ -64,25 +65,31 @@ class GlFrameSource final : public FrameSource {
   absl::StatusOr<DisplayFrame> Draw(const scene::Scene& scene,
                                     const std::shared_ptr<const volume::HydrometeorFields>& fields,
                                     const FrameQuality& quality) override {
-    THUNDERHEAD_ASSIGN_OR_RETURN(
-        const renderers::LinearFrame linear,
-        renderers_.Draw(scene, fields, {quality.image_scale, quality.slice_share}));
-    return Display(linear, scene);
+    THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame linear,
+                                 renderers_.Draw(scene, fields, QualityOf(scene, fields, quality)));
+    return Display(linear, scene, fields);
   }
 
   absl::StatusOr<CheckedFrame> DrawChecked(
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
     CheckedFrame checked;
-    THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame coarse,
-                                 renderers_.Draw(scene, fields, {1.0, 0.5}));
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        const renderers::LinearFrame coarse,
+        renderers_.Draw(scene, fields, QualityOf(scene, fields, {1.0, 0.5})));
     const std::vector<float> coarse_radiance = frame::ReadLinear(*coarse.radiance);
     THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame fine,
-                                 renderers_.Draw(scene, fields, {}));
+                                 renderers_.Draw(scene, fields, QualityOf(scene, fields, {})));
     checked.discretisation_error =
         RelativeDifference(coarse_radiance, frame::ReadLinear(*fine.radiance));
-    THUNDERHEAD_ASSIGN_OR_RETURN(checked.frame, Display(fine, scene));
+    THUNDERHEAD_ASSIGN_OR_RETURN(checked.frame, Display(fine, scene, fields));
     return checked;
+  }
+
+  absl::StatusOr<std::int64_t> TraceLight(
+      const scene::Scene& scene,
+      const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
+    return correctors_.Trace(scene, fields);
   }
 
   absl::StatusOr<DisplayFrame> Tone(const LinearPicture& picture,
@@ -96,8 +103,18 @@ class GlFrameSource final : public FrameSource {
   }
 
  private:
-  absl::StatusOr<DisplayFrame> Display(const renderers::LinearFrame& linear,
-                                       const scene::Scene& scene) {
+  renderers::DrawQuality QualityOf(const scene::Scene& scene,
+                                   const std::shared_ptr<const volume::HydrometeorFields>& fields,
+                                   const FrameQuality& quality) {
+    renderers::DrawQuality drawn{quality.image_scale, quality.slice_share};
+    correction::LightCorrector* const corrector = correctors_.Find(scene, fields);
+    if (corrector != nullptr) drawn.correction = corrector->Correction();
+    return drawn;
+  }
+
+  absl::StatusOr<DisplayFrame> Display(
+      const renderers::LinearFrame& linear, const scene::Scene& scene,
+      const std::shared_ptr<const volume::HydrometeorFields>& fields) {
     THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped,
                                  tone_mapper_.Map(*linear.radiance, scene.display));
     DisplayFrame frame;
@@ -114,6 +131,8 @@ class GlFrameSource final : public FrameSource {
                       linear.fit_error,
                       linear.not_shown,
                       linear.ellipsoids};
+    const correction::LightCorrector* const corrector = correctors_.Find(scene, fields);
+    if (corrector != nullptr) frame.modelled.traced_paths = corrector->Paths();
     return frame;
   }
 
@@ -128,6 +147,7 @@ class GlFrameSource final : public FrameSource {
   std::unique_ptr<gl::Context> context_;  // outlives what was made in it
   std::shared_ptr<renderers::BallFits> fits_ = std::make_shared<renderers::BallFits>();
   renderers::RendererPool renderers_{fits_};
+  correction::CorrectorPool correctors_;
   frame::ToneMapper tone_mapper_;
   frame::ToneMapper picture_tone_mapper_;  // of other sizes: each keeps its buffers
   DeviceInfo info_;

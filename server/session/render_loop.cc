@@ -181,7 +181,9 @@ RenderLoop::Outcome RenderLoop::TrySession(const std::shared_ptr<Session>& sessi
     return {true, std::nullopt};
   }
   if (decision.ask_again_at.has_value()) return {false, decision.ask_again_at};
-  return Check(session, track, *newest);
+  const Outcome checked = Check(session, track, *newest);
+  if (checked.drew || checked.look_again_at.has_value()) return checked;
+  return TraceLight(session, track, *shown);
 }
 
 void RenderLoop::TakeRead(Session& session, Track& track) {
@@ -271,7 +273,10 @@ void RenderLoop::DrawFor(const std::shared_ptr<Session>& session, Track& track,
   double total_ms = 0.0;
   auto picture = Draw(*shown.scene, track.fields, plan.quality, total_ms);
   if (!picture.ok()) return Fail(*session, track, shown.revision, picture.status());
-  picture->accuracy = offers_.Report(*shown.scene, plan.quality, std::nullopt);
+  // Tables know pictures that nothing corrects.
+  if (picture->modelled.traced_paths == 0) {
+    picture->accuracy = offers_.Report(*shown.scene, plan.quality, std::nullopt);
+  }
   track.planner.Drawn(shown.revision, *shown.scene, plan, total_ms,
                       was_warm ? picture->stages : std::vector<StageCost>());
   Send(track,
@@ -326,14 +331,33 @@ absl::StatusOr<DisplayFrame> RenderLoop::DrawImage(const ImageJob& job) {
   double total_ms = 0.0;
   THUNDERHEAD_ASSIGN_OR_RETURN(DisplayFrame picture,
                                Draw(scene, job.fields, FrameQuality{}, total_ms));
-  picture.accuracy = offers_.Report(scene, {}, std::nullopt);
+  if (picture.modelled.traced_paths == 0) {
+    picture.accuracy = offers_.Report(scene, {}, std::nullopt);
+  }
   return picture;
+}
+
+// A picture with traced light takes its turns until enough is traced; true if it is not yet.
+absl::StatusOr<bool> RenderLoop::TraceForImage(const ImageJob& job) {
+  if (!job.scene.rendering.traced_light) return false;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const scene::Scene scene, offers_.Decide(job.scene, std::nullopt));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::int64_t paths, source_->TraceLight(scene, job.fields));
+  last_drawn_.reset();
+  return paths > 0 && paths < kImagePaths;
 }
 
 RenderLoop::Outcome RenderLoop::TryImage() {
   std::optional<ImageJob> job = NextImage();
   if (!job.has_value()) return {};
-  job->done(DrawImage(*job));
+  const absl::StatusOr<bool> goes_on = TraceForImage(*job);
+  if (!goes_on.ok()) {
+    job->done(goes_on.status());
+  } else if (*goes_on) {
+    const std::lock_guard lock(images_mutex_);
+    images_.push_back(*std::move(job));  // others have their turn
+  } else {
+    job->done(DrawImage(*job));
+  }
   return {true, std::nullopt};
 }
 

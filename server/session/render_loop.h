@@ -19,6 +19,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "base/stopwatch.h"
 #include "base/wake_signal.h"
 #include "session/cost_model.h"
 #include "session/fields_reader.h"
@@ -50,6 +51,9 @@ struct ImageJob {
   // Called once, on the loop's thread or the one that asked; must not block.
   std::function<void(absl::StatusOr<DisplayFrame>)> done;
 };
+
+// Paths that a picture outside any session waits for if its scene has traced light.
+inline constexpr std::int64_t kImagePaths = 1'000'000;
 
 class RenderLoop {
  public:
@@ -91,6 +95,14 @@ class RenderLoop {
     bool checked = false;                       // drawn with half the slices as well
     bool settled = false;                       // nothing more is to be learnt of it
   };
+  // How far the light of a revision has been traced.
+  struct TracedLight {
+    std::uint64_t revision = 0;
+    std::int64_t begun_at = -1;  // paths that were there before; none known yet
+    std::int64_t shown = 0;      // paths of the newest picture
+    base::Stopwatch since_shown;
+    bool ended = false;
+  };
   // What the loop knows of a session.
   struct Track {
     FramePlanner planner;
@@ -105,6 +117,7 @@ class RenderLoop {
     std::optional<Decided> decided;
     std::optional<Traced> traced;
     std::uint64_t untraceable_revision = 0;
+    TracedLight traced_light;
   };
   // What came of looking at a session or the pictures that wait.
   struct Outcome {
@@ -132,6 +145,9 @@ class RenderLoop {
   std::optional<NewestScene> Decide(Session& session, Track& track, const NewestScene& shown);
   // At rest: decides again by what frames have cost, then finds out what few slices do.
   Outcome Check(const std::shared_ptr<Session>& session, Track& track, const NewestScene& asked);
+  // At rest: traces a while for a scene with traced light, and draws it when that shows.
+  Outcome TraceLight(const std::shared_ptr<Session>& session, Track& track,
+                     const NewestScene& shown);
   void DrawChecked(const std::shared_ptr<Session>& session, Track& track, std::uint64_t revision);
   void DrawFor(const std::shared_ptr<Session>& session, Track& track, const NewestScene& shown,
                const FramePlan& plan);
@@ -144,6 +160,7 @@ class RenderLoop {
   absl::StatusOr<bool> Trace(const std::string& session_id, Track& track, const NewestScene& shown);
   void Fail(Session& session, Track& track, std::uint64_t revision, const absl::Status& why);
   absl::StatusOr<DisplayFrame> DrawImage(const ImageJob& job);
+  absl::StatusOr<bool> TraceForImage(const ImageJob& job);
   Outcome TryImage();
   std::optional<ImageJob> NextImage();
   absl::StatusOr<DisplayFrame> Draw(const scene::Scene& scene,

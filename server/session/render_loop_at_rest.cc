@@ -70,6 +70,47 @@ RenderLoop::Outcome RenderLoop::Check(const std::shared_ptr<Session>& session, T
   return {};
 }
 
+RenderLoop::Outcome RenderLoop::TraceLight(const std::shared_ptr<Session>& session, Track& track,
+                                           const NewestScene& shown) {
+  // Of a view that rests; more changes what is seen by less than a hundredth.
+  constexpr std::int64_t kMostPaths = 4'000'000;
+  // A picture is drawn anew for so many times the paths, but not more often, nor less, than this.
+  constexpr double kWorthShowing = 1.5;
+  constexpr double kShownAtMost_ms = 500.0;
+  constexpr double kShownAtLeast_ms = 5000.0;
+  const scene::Scene& scene = *shown.scene;
+  if (!scene.rendering.traced_light) return {};
+  const Clock::time_point settled_at = shown.changed_at + options_.targets.settle_delay;
+  if (Clock::now() < settled_at) return {false, settled_at};
+  TracedLight& light = track.traced_light;
+  if (light.revision != shown.revision) light = {.revision = shown.revision};
+  if (light.ended) return {};
+  const auto paths = source_->TraceLight(scene, track.fields);
+  if (!paths.ok()) {
+    light.ended = true;
+    Fail(*session, track, shown.revision, paths.status());
+    return {};
+  }
+  if (light.begun_at < 0) light.begun_at = light.shown = *paths;
+  light.ended = *paths == 0 || *paths - light.begun_at >= kMostPaths;
+  if (*paths == 0) return {};
+  const double ms = light.since_shown.ElapsedMs();
+  const bool more = static_cast<double>(*paths) >= kWorthShowing * static_cast<double>(light.shown);
+  const bool show = light.ended || ms >= kShownAtLeast_ms || (more && ms >= kShownAtMost_ms);
+  if (!show) return {true, std::nullopt};
+  double total_ms = 0.0;
+  auto picture = Draw(scene, track.fields, FrameQuality{}, total_ms);
+  if (!picture.ok()) {
+    light.ended = true;
+    Fail(*session, track, shown.revision, picture.status());
+    return {};
+  }
+  light.shown = *paths;
+  light.since_shown.Restart();
+  Send(track, {session, shown.revision, scene, true, *std::move(picture), std::nullopt});
+  return {true, std::nullopt};
+}
+
 void RenderLoop::DrawChecked(const std::shared_ptr<Session>& session, Track& track,
                              std::uint64_t revision) {
   const std::shared_ptr<const scene::Scene> scene = track.decided->scene;

@@ -235,8 +235,9 @@ TEST_F(CommandLineTest, TheReferenceRendersToExrAndPng) {
 
 TEST_F(CommandLineTest, MeasureTradeGoesOnWhereItStopped) {
   const std::string trade = folder_.File("trade");
-  const std::string command =
-      "measure trade " + kSample + " --device software --size 24x16 --spp 16 -o " + trade;
+  const std::string command = "measure trade " + kSample +
+                              " --device software --size 24x16 --spp 16 --million-paths 0.01 -o " +
+                              trade;
   const Outcome first = Run(command);
   ASSERT_EQ(first.code, 0) << first.err;
   EXPECT_THAT(first.out, HasSubstr("half_angle    uniform_phase_low_albedo"));

@@ -102,6 +102,18 @@ class FakeFrameSource final : public session::FrameSource {
     return session::CheckedFrame{std::move(frame), 1.0 / scene.rendering.slices};
   }
 
+  absl::StatusOr<std::int64_t> TraceLight(
+      const scene::Scene& scene,
+      const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
+    THUNDERHEAD_CHECK(fields != nullptr, "traced without fields");
+    if (!scene::ShowsTracedLight(scene.rendering)) return 0;
+    if (scene.sun.azimuth_deg == machine_->cannot_trace_azimuth_deg) {
+      return absl::ResourceExhaustedError("the fake machine traces enough already");
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return machine_->traced_paths += 100'000;
+  }
+
   absl::StatusOr<session::DisplayFrame> Tone(const session::LinearPicture& picture,
                                              const scene::Display& display) override {
     session::DisplayFrame frame;
@@ -117,8 +129,8 @@ class FakeFrameSource final : public session::FrameSource {
   }
 
  private:
-  static session::DisplayFrame Paint(const scene::Scene& scene,
-                                     const session::FrameQuality& quality, double ms) {
+  session::DisplayFrame Paint(const scene::Scene& scene, const session::FrameQuality& quality,
+                              double ms) const {
     session::DisplayFrame frame;
     frame.width_px = scene.output.width_px;
     frame.height_px = scene.output.height_px;
@@ -133,6 +145,7 @@ class FakeFrameSource final : public session::FrameSource {
         std::max(1, static_cast<int>(std::lround(scene.rendering.slices * quality.slice_share)));
     frame.modelled.device_bytes = 4096;
     frame.modelled.occupied_share = 0.125;
+    if (scene.rendering.traced_light) frame.modelled.traced_paths = machine_->traced_paths;
     return frame;
   }
 

@@ -9,7 +9,7 @@ import {
   withSky,
 } from "../core/scene";
 import type { PageState } from "../core/state";
-import { Mode, Renderer, ToneMap, Transport } from "../gen/thunderhead/v1/scene_pb";
+import { Mode, Renderer, type Rendering, ToneMap, Transport } from "../gen/thunderhead/v1/scene_pb";
 import { AccuracySection } from "./accuracy_section";
 import { CameraSection } from "./camera_section";
 import { CloudSection } from "./cloud_section";
@@ -132,6 +132,14 @@ function DeleteCloud({ page }: { page: Page }) {
   );
 }
 
+function showsTracedLight(rendering: Rendering | undefined): boolean {
+  return (
+    rendering?.transport === Transport.DIFFUSION &&
+    (rendering.renderer || Renderer.LIGHT_VOLUME) === Renderer.LIGHT_VOLUME &&
+    rendering.mode !== Mode.UNIFORM_PHASE_LOW_ALBEDO
+  );
+}
+
 function RenderingSection({ state }: { state: PageState }) {
   const rendering = state.rendering.value;
   return (
@@ -160,6 +168,14 @@ function RenderingSection({ state }: { state: PageState }) {
         options={TRANSPORTS}
         onChange={(transport) => state.edit((scene) => withRendering(scene, { transport }))}
       />
+      {showsTracedLight(rendering) && (
+        <Switch
+          label="Trace the light at rest"
+          testId="traced-light"
+          checked={rendering?.tracedLight ?? false}
+          onChange={(tracedLight) => state.edit((scene) => withRendering(scene, { tracedLight }))}
+        />
+      )}
       <Slider
         label="Slices"
         limits={LIMITS.slices}

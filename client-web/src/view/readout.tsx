@@ -105,6 +105,13 @@ function Costs({ state }: { state: PageState }) {
                 {frame.modelled.slices > 0 && (
                   <Row name="Slices drawn" text={String(frame.modelled.slices)} />
                 )}
+                {frame.modelled.tracedPaths > 0n && (
+                  <Row
+                    name="Paths traced"
+                    testId="traced-paths"
+                    text={`${formatNumber(Number(frame.modelled.tracedPaths) / 1e6)} million`}
+                  />
+                )}
                 {frame.modelled.ellipsoids > 0 && (
                   <Row name="Ellipsoids" text={String(frame.modelled.ellipsoids)} />
                 )}
@@ -122,11 +129,13 @@ function Costs({ state }: { state: PageState }) {
   );
 }
 
-function Row({ name, text }: { name: string; text: string }) {
+function Row({ name, text, testId }: { name: string; text: string; testId?: string }) {
   return (
     <tr>
       <th scope="row">{name}</th>
-      <td colSpan={2}>{text}</td>
+      <td colSpan={2} data-testid={testId}>
+        {text}
+      </td>
     </tr>
   );
 }

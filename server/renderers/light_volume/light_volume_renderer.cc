@@ -18,6 +18,7 @@ constexpr double kLayerInCells = 1.5;        // along them, of the way through a
 constexpr GLuint kLightUnit = 4;
 constexpr GLuint kThicknessUnit = 5;
 constexpr GLuint kGroundUnit = 7;
+constexpr GLuint kCorrectionUnit = 13;   // and the two after
 constexpr double kNearInTexels = 1.5;    // sampled next to a cell
 constexpr int kMostGroupsInRow = 65535;  // what OpenGL 4.5 guarantees along each axis
 constexpr int kGroupSide = 8;            // of carry.comp
@@ -185,6 +186,20 @@ void LightVolumeRenderer::BindDiffusion(const gl::Program& program, const Reside
   diffusion_.Bind();
 }
 
+void LightVolumeRenderer::BindCorrection(const std::shared_ptr<const LightCorrection>& correction) {
+  for (std::size_t color = 0; color < correction_textures_.size(); ++color) {
+    gl::Texture3D& texture = correction_textures_[color];
+    if (correction_ != correction) {
+      if (texture.Size() != correction->size) {
+        texture = gl::Texture3D(GL_RGBA16F, correction->size);
+      }
+      texture.Upload(GL_RGBA, GL_FLOAT, correction->texels[color].data());
+    }
+    texture.Bind(kCorrectionUnit + static_cast<GLuint>(color));
+  }
+  correction_ = correction;
+}
+
 absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
                                            const RenderSettings& settings) {
   eye_.Resize(settings.single_precision ? GL_RGBA32F : GL_RGBA16F, settings.eye_size,
@@ -207,6 +222,8 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
                        {"GROUND", settings.ground_distance != nullptr ? 1 : 0},
                        {"EVEN_ALBEDO", even_albedo ? 1 : 0},
                        {"DIFFUSION", diffusion ? 1 : 0},
+                       {"CORRECTED", settings.correction != nullptr ? 1 : 0},
+                       {"PLACES", settings.places ? 1 : 0},
                        {"TINTED", diffusion && (weights.colored || weights.absorbs) ? 1 : 0}}}));
   medium.Bind(*program);
   weights.BindPhase(*program);
@@ -222,6 +239,7 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
   program->Set("ambient", settings.illumination.ambient);
   if (diffusion) BindDiffusion(*program, medium, weights, settings);
   arrived_.Bind(kLightUnit);
+  if (settings.correction != nullptr) BindCorrection(settings.correction);
   if (settings.ground_distance != nullptr) settings.ground_distance->Bind(kGroundUnit);
   if (settings.cover != nullptr) eye_.Target().Clear(0.0F, 0.0F, 0.0F, 1.0F);
   eye_.Target().Bind();

@@ -7,6 +7,7 @@
 // of light between neighbouring rays.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <utility>
 
@@ -57,6 +58,9 @@ class LightVolumeRenderer {
   void BindDiffusion(const gl::Program& program, const ResidentMedium& medium,
                      const GroupWeights& weights, const RenderSettings& settings);
 
+  // Puts it on the device unless it is there.
+  void BindCorrection(const std::shared_ptr<const LightCorrection>& correction);
+
   std::shared_ptr<gl::ProgramCache> programs_;
   gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
   CoveredTarget eye_;
@@ -66,6 +70,8 @@ class LightVolumeRenderer {
   gl::Texture3D arrived_;  // at the medium's cells
   GLenum light_format_ = 0;
   DiffusionPass diffusion_;
+  std::shared_ptr<const LightCorrection> correction_;  // that the textures hold
+  std::array<gl::Texture3D, 3> correction_textures_;   // by colour
 };
 
 }  // namespace thunderhead::renderers

@@ -8,7 +8,8 @@
 // medium scatters evenly but less, so that the ray loses this light, and what is behind, by similarity-scaled extinction;
 // light that is scattered just once keeps its own.
 // Variants: GROUND (a ray ends there), GROUPS, COLORED (per-group colours), CONSISTENT (transport), EVEN_ALBEDO (one albedo
-// and colour for all), DIFFUSION, TINTED (diffuse light is absorbed or coloured).
+// and colour for all), DIFFUSION, TINTED (diffuse light is absorbed or coloured), CORRECTED (by renderers::LightCorrection),
+// PLACES (in place of radiance the place where a correction is looked up, in the medium's box).
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
 #include "common/phase.glsl"
@@ -45,6 +46,12 @@ uniform vec4 blue_weights[PLANES];
 #endif
 #endif
 
+#if CORRECTED
+layout(binding = 13) uniform sampler3D correction_red;
+layout(binding = 14) uniform sampler3D correction_green;
+layout(binding = 15) uniform sampler3D correction_blue;
+#endif
+
 in vec2 position;
 out vec4 radiance_and_transmittance;
 
@@ -54,9 +61,11 @@ const int kMostSamples = 16384;
 #if DIFFUSION
 const float kOpaque = 0.02;
 #define SHOWING diffuse_passing
+#define SHOWN shown
 #else
 const float kOpaque = 5e-3;
 #define SHOWING passing
+#define SHOWN seen
 #endif
 
 // What a segment of a ray takes of the light: its share, where on the segment half of that is taken, and the reciprocal
@@ -121,6 +130,10 @@ void main() {
   float transport_before = 0.0;
   vec4 out_before = vec4(0.0);
   vec4 inward_before = vec4(0.0);
+#endif
+#if CORRECTED || PLACES
+  float shown_all = 0.0;
+  float shown_way = 0.0;  // by the share that is seen
 #endif
   float multiple = 0.0;    // mean intensity of light scattered many times, by the share of it that is seen
   vec4 direct[PLANES];     // by group: what scatters of the sunlight that arrives
@@ -225,6 +238,10 @@ void main() {
       multiple_scattered[plane] += (per_total * light.g) * between.plane[plane];
     }
 #endif
+#if CORRECTED || PLACES
+    shown_all += SHOWN;
+    shown_way += SHOWN * (way_m - 0.5 * segment_m);
+#endif
     passing *= 1.0 - taken;
     before = here;
     extinction_before = extinction_here;
@@ -257,6 +274,17 @@ void main() {
   passing = diffuse_passing;
 #elif CONSISTENT && EVEN_ALBEDO
   radiance += albedo * (ambient * (1.0 - passing) + sunlight * multiple);
+#endif
+#if CORRECTED || PLACES
+  vec3 seen_place = (origin_m + direction * (shown_way / max(shown_all, 1e-30)) - medium_low_m) / (medium_high_m - medium_low_m);
+#if PLACES
+  radiance = seen_place;
+#else
+  vec4 by = vec4(1.0, direction);
+  radiance *= max(vec3(dot(texture(correction_red, seen_place), by), dot(texture(correction_green, seen_place), by),
+                       dot(texture(correction_blue, seen_place), by)),
+                  vec3(0.0));
+#endif
 #endif
   radiance_and_transmittance = vec4(radiance, passing);
 }

@@ -1,5 +1,6 @@
 // The linear frame: what the eye buffer holds in front of sky and ground, all through the air. Coordinates are metres from
-// the eye. Variants: RELIEF (terrain), FRONT (there may be something in the eye buffer).
+// the eye. Variants: RELIEF (terrain), FRONT (there may be something in the eye buffer), CORRECTED (the ground's skylight by
+// renderers::LightCorrection).
 #include "common/box.glsl"
 #include "common/ground.glsl"
 #include "common/sky.glsl"
@@ -10,6 +11,13 @@
 layout(binding = 4) uniform sampler2D eye;
 #endif
 layout(binding = 9) uniform sampler2D shadow;  // the share of sunlight that the storm keeps from the ground
+
+#if CORRECTED
+layout(binding = 10) uniform sampler2D skylight_factor;
+
+uniform vec2 skylight_scale;  // texture coordinates per metre
+uniform vec2 skylight_offset;
+#endif
 
 uniform mat3 local_from_world;   // to east, north and up where the eye is
 uniform vec3 towards_sun;
@@ -42,7 +50,11 @@ vec3 ground_radiance(vec3 point_m) {
 #endif
   vec2 place = vec2(dot(point_m, shadow_right), dot(point_m, shadow_up)) + shadow_offset;
   float lit = max(dot(normal, towards_sun), 0.0) * (1.0 - texture(shadow, place).r);
-  return ground_reflectance * (sunlight * lit + skylight * (0.5 + 0.5 * normal.z));
+  vec3 sky = skylight * (0.5 + 0.5 * normal.z);
+#if CORRECTED
+  sky *= texture(skylight_factor, point_m.xy * skylight_scale + skylight_offset).rgb;
+#endif
+  return ground_reflectance * (sunlight * lit + sky);
 }
 
 // Optical depth of the air before a point of the ray, which is in the eye's local frame.

@@ -1,0 +1,32 @@
+#include "reference/trace_rays.h"
+
+#include <algorithm>
+
+#include "reference/parallel.h"
+#include "reference/path_radiance.h"
+
+namespace thunderhead::reference {
+namespace {
+
+constexpr std::size_t kRaysInPiece = 64;
+
+}  // namespace
+
+std::vector<glm::dvec3> TraceRays(const Medium& medium, const Surroundings& surroundings,
+                                  const std::vector<Ray>& rays, const TraceRaysOptions& options) {
+  std::vector<glm::dvec3> radiance(rays.size(), glm::dvec3(0.0));
+  const std::size_t pieces = (rays.size() + kRaysInPiece - 1) / kRaysInPiece;
+  ParallelFor(options.threads, static_cast<int>(pieces), [&](int piece) {
+    const std::size_t first = static_cast<std::size_t>(piece) * kRaysInPiece;
+    for (std::size_t i = first; i < std::min(first + kRaysInPiece, rays.size()); ++i) {
+      for (int path = 0; path < options.paths_per_ray; ++path) {
+        RandomStream random(options.seed, i, static_cast<std::uint32_t>(path));
+        radiance[i] += EstimateRadiance(medium, surroundings, rays[i], &random);
+      }
+      radiance[i] /= static_cast<double>(options.paths_per_ray);
+    }
+  });
+  return radiance;
+}
+
+}  // namespace thunderhead::reference

@@ -1,0 +1,29 @@
+// What the storm's radiance in a light volume's picture is multiplied by, by place and direction: a
+// plain value that whoever knows the light better makes (correction/correction_fit.h). Each ray
+// looks it up once, at the mean place of what it sees. Knows no GL.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "glm/vec2.hpp"
+#include "glm/vec3.hpp"
+#include "glm/vec4.hpp"
+
+namespace thunderhead::renderers {
+
+struct LightCorrection {
+  // Texels over the medium's box, x fastest.
+  glm::ivec3 size{0};
+  // Of red, green and blue: the factor for a ray of direction d is dot(texel, (1, d)).
+  std::array<std::vector<glm::vec4>, 3> texels;
+
+  // What skylight on level ground is multiplied by for what the storm hides of the sky and sends
+  // itself: red, green and blue of texels over a rectangle of the world, x fastest.
+  glm::ivec2 ground_size{0};
+  std::vector<glm::vec4> ground;
+  glm::dvec2 ground_low_m{0.0};
+  glm::dvec2 ground_high_m{0.0};
+};
+
+}  // namespace thunderhead::renderers

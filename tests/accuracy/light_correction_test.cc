@@ -1,0 +1,251 @@
+// Light volumes corrected by traced paths, against the reference.
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "correction/corrector_pool.h"
+#include "correction/light_corrector.h"
+#include "gl/context.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "measure/image_error.h"
+#include "measure/light_parts.h"
+#include "measure/trade.h"
+#include "reference/trace_scene.h"
+#include "tests/support/slab.h"
+
+namespace thunderhead::correction {
+namespace {
+
+using testing::HasSubstr;
+
+// A tower, five times as high as wide, in a wider domain.
+std::shared_ptr<const volume::HydrometeorFields> MakeTower() {
+  auto fields = std::make_shared<volume::HydrometeorFields>(
+      *support::MakeSlab(8000.0, 6000.0, 0.02, {20, 20, 15}));
+  const volume::RegularGrid& grid = fields->grid;
+  for (int z = 0; z < grid.cells.z; ++z) {
+    for (int y = 0; y < grid.cells.y; ++y) {
+      for (int x = 0; x < grid.cells.x; ++x) {
+        const bool inside = x >= 8 && x < 12 && y >= 8 && y < 12 && z >= 2 && z < 13;
+        if (!inside) fields->fields[0].concentration_kg_per_m3[grid.Offset(x, y, z)] = 0.0F;
+      }
+    }
+  }
+  fields->condensate = {{8, 8, 2}, {12, 12, 13}};
+  return fields;
+}
+
+class LightCorrection : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto context = gl::Context::Create("software");
+    ASSERT_TRUE(context.ok()) << context.status();
+    context_ = *std::move(context);
+    scene_.rendering.transport = scene::Transport::kDiffusion;
+    scene_.rendering.traced_light = true;
+    scene_.camera = scene::OrbitCamera{.target_m = {0.0, 0.0, 3000.0},
+                                       .azimuth_deg = 200.0,
+                                       .elevation_deg = 25.0,
+                                       .distance_m = 1.5e4,
+                                       .field_of_view_deg = 30.0};
+    scene_.output = {32, 24, 88};
+    renderer_ = std::make_unique<renderers::SceneRenderer>();
+  }
+
+  measure::LinearImage Draw(const renderers::DrawQuality& quality) {
+    const auto frame = renderer_->Draw(scene_, fields_, quality);
+    EXPECT_TRUE(frame.ok()) << frame.status();
+    return measure::ImageOf(*frame->radiance);
+  }
+
+  std::unique_ptr<LightCorrector> MakeCorrector(int threads) {
+    auto corrector =
+        LightCorrector::Create(scene_, fields_, std::make_shared<gl::ProgramCache>(), threads);
+    EXPECT_TRUE(corrector.ok()) << corrector.status();
+    return *std::move(corrector);
+  }
+
+  std::unique_ptr<gl::Context> context_;
+  std::unique_ptr<renderers::SceneRenderer> renderer_;
+  std::shared_ptr<const volume::HydrometeorFields> fields_ = MakeTower();
+  scene::Scene scene_;
+};
+
+TEST_F(LightCorrection, MultipliesTheStormsLightAlone) {
+  auto correction = std::make_shared<renderers::LightCorrection>();
+  correction->size = glm::ivec3(1);
+  correction->ground_size = glm::ivec2(1);
+  correction->ground.assign(1, glm::vec4(1.0F));
+  correction->ground_high_m = {1.0, 1.0};
+  const auto draw = [&](const glm::vec3& factor) {
+    auto used = std::make_shared<renderers::LightCorrection>(*correction);
+    for (int color = 0; color < 3; ++color) {
+      used->texels[static_cast<std::size_t>(color)].assign(1, {factor[color], 0.0F, 0.0F, 0.0F});
+    }
+    renderers::DrawQuality quality;
+    quality.single_precision = true;
+    quality.correction = used;
+    return Draw(quality).radiance;
+  };
+  renderers::DrawQuality plain;
+  plain.single_precision = true;
+  const std::vector<glm::vec3> drawn = Draw(plain).radiance;
+  const std::vector<glm::vec3> once = draw(glm::vec3(1.0F));
+  const std::vector<glm::vec3> black = draw(glm::vec3(0.0F));
+  const std::vector<glm::vec3> twice = draw({2.0F, 1.0F, 0.5F});
+  double storm = 0.0;
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    const glm::vec3 of_storm = once[i] - black[i];
+    storm += of_storm.x;
+    for (int color = 0; color < 3; ++color) {
+      EXPECT_NEAR(once[i][color], drawn[i][color], 1e-6F);
+      const float factor = color == 0 ? 2.0F : color == 1 ? 1.0F : 0.5F;
+      EXPECT_NEAR(twice[i][color] - black[i][color], factor * of_storm[color], 1e-5F);
+    }
+  }
+  EXPECT_GT(storm, 1.0);
+}
+
+TEST_F(LightCorrection, SkylightOnTheGroundIsMultipliedWhereItSays) {
+  auto correction = std::make_shared<renderers::LightCorrection>();
+  correction->size = glm::ivec3(1);
+  for (auto& texels : correction->texels) texels.assign(1, {1.0F, 0.0F, 0.0F, 0.0F});
+  correction->ground_size = {2, 1};  // twice as bright in the east
+  correction->ground = {glm::vec4(1.0F), glm::vec4(2.0F)};
+  correction->ground_low_m = {-1e4, -1e4};
+  correction->ground_high_m = {1e4, 1e4};
+  scene_.camera = scene::TopDownCamera{.width_m = 4e4};
+  const std::vector<glm::vec3> plain = Draw({}).radiance;
+  renderers::DrawQuality quality;
+  quality.correction = correction;
+  const std::vector<glm::vec3> corrected = Draw(quality).radiance;
+  const auto gain = [&](int x) {
+    const auto i = static_cast<std::size_t>(2 * scene_.output.width_px + x);
+    return corrected[i].z / plain[i].z;
+  };
+  EXPECT_NEAR(gain(2), 1.0F, 2e-3F);
+  EXPECT_GT(gain(29), 1.05F);
+}
+
+TEST_F(LightCorrection, PlacesAreWhereTheStormIsSeen) {
+  renderers::DrawQuality quality;
+  quality.single_precision = true;
+  quality.places = true;
+  const std::vector<glm::vec3> places = Draw(quality).radiance;
+  const glm::vec3 middle = places[static_cast<std::size_t>(12 * 32 + 16)];
+  // The eye stands in the south-south-west, above: it sees the face that is turned to it.
+  EXPECT_NEAR(middle.x, 0.4F, 0.15F);
+  EXPECT_LT(middle.y, 0.35F);
+  EXPECT_GT(middle.z, 0.2F);
+  EXPECT_LT(middle.z, 0.8F);
+}
+
+TEST_F(LightCorrection, TakesMostOfTheErrorAway) {
+  reference::RefineLimits limits;
+  limits.samples_per_pixel = 600;
+  const auto truth =
+      reference::TraceScene(scene_, *fields_, reference::kPeakCut_deg, limits, {}, {});
+  ASSERT_TRUE(truth.ok()) << truth.status();
+  const measure::LinearImage exact{truth->image.size_px, truth->image.radiance};
+  const double noise = measure::RelativeNoise(truth->image.standard_error, exact);
+  const auto error_of = [&](const measure::LinearImage& drawn) {
+    const double rmse = measure::RelativeRmse(drawn, exact);
+    return std::sqrt(std::max(rmse * rmse - noise * noise, 0.0));
+  };
+  // Means over 4 x 4 rays a pixel, as the truth's pixels are means.
+  const auto draw = [&](std::shared_ptr<const renderers::LightCorrection> correction) {
+    return *measure::DrawPart(*renderer_, scene_, fields_, measure::LightPart::kAll, 4,
+                              std::move(correction));
+  };
+  const measure::LinearImage drawn = draw(nullptr);
+  const auto corrector = MakeCorrector(0);
+  EXPECT_EQ(corrector->Correction(), nullptr);
+  while (corrector->Paths() < 150'000) ASSERT_TRUE(corrector->Step().ok());
+  const measure::LinearImage corrected = draw(corrector->Correction());
+  EXPECT_LT(error_of(corrected), 0.3 * error_of(drawn));
+  // Most of what is left is the ground, 2 % too bright with and without a correction.
+  EXPECT_NEAR(measure::RelativeBias(corrected, exact), 0.0, 0.03);
+}
+
+TEST_F(LightCorrection, IsTheSameForAnyNumberOfThreads) {
+  const auto one = MakeCorrector(1);
+  const auto two = MakeCorrector(2);
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(one->Step().ok());
+    ASSERT_TRUE(two->Step().ok());
+  }
+  EXPECT_EQ(one->Paths(), two->Paths());
+  EXPECT_EQ(one->Correction()->texels, two->Correction()->texels);
+  EXPECT_EQ(one->Correction()->ground, two->Correction()->ground);
+}
+
+TEST_F(LightCorrection, ServesScenesOfTheSameLight) {
+  const auto corrector = MakeCorrector(0);
+  scene::Scene other = scene_;
+  other.camera = scene::TopDownCamera{};
+  other.display.exposure_ev = 2.0;
+  other.output.width_px = 100;
+  EXPECT_TRUE(corrector->Serves(other, fields_));
+  EXPECT_FALSE(corrector->Serves(other, MakeTower()));
+  other.sun.azimuth_deg += 1.0;
+  EXPECT_FALSE(corrector->Serves(other, fields_));
+  other = scene_;
+  other.sky.brightness = 0.5;
+  EXPECT_FALSE(corrector->Serves(other, fields_));
+  other = scene_;
+  other.fields[0].scale = 2.0F;
+  EXPECT_FALSE(corrector->Serves(other, fields_));
+}
+
+TEST_F(LightCorrection, APoolKeepsWhatIsTracedAndRefusesOneTooMany) {
+  CorrectorPool pool(1, 1e9);
+  EXPECT_EQ(pool.Find(scene_, fields_), nullptr);
+  const auto paths = pool.Trace(scene_, fields_);
+  ASSERT_TRUE(paths.ok()) << paths.status();
+  EXPECT_GT(*paths, 100);
+  ASSERT_NE(pool.Find(scene_, fields_), nullptr);
+  EXPECT_EQ(pool.Find(scene_, fields_)->Paths(), *paths);
+  scene::Scene other = scene_;
+  other.sun.elevation_deg = 70.0;
+  EXPECT_THAT(std::string(pool.Trace(other, fields_).status().message()),
+              HasSubstr("the light of 1 other scenes already"));
+  EXPECT_EQ(*pool.Trace(scene_, fields_) > *paths, true);
+  CorrectorPool idle(1, 0.0);
+  ASSERT_TRUE(idle.Trace(scene_, fields_).ok());
+  ASSERT_TRUE(idle.Trace(other, fields_).ok());
+  EXPECT_EQ(idle.Find(scene_, fields_), nullptr);
+  EXPECT_NE(idle.Find(other, fields_), nullptr);
+}
+
+TEST_F(LightCorrection, NothingIsTracedWhereNothingCouldShowIt) {
+  CorrectorPool pool;
+  scene::Scene scene = scene_;
+  scene.rendering.traced_light = false;
+  EXPECT_EQ(*pool.Trace(scene, fields_), 0);
+  scene = scene_;
+  scene.rendering.transport = scene::Transport::kConsistent;
+  EXPECT_EQ(*pool.Trace(scene, fields_), 0);
+  scene = scene_;
+  scene.rendering.mode = scene::Mode::kUniformPhaseLowAlbedo;
+  EXPECT_EQ(*pool.Trace(scene, fields_), 0);
+  auto empty = std::make_shared<volume::HydrometeorFields>(*MakeTower());
+  empty->condensate = {};
+  EXPECT_EQ(*pool.Trace(scene_, empty), 0);
+}
+
+TEST_F(LightCorrection, NightAndBlackSkiesStayDark) {
+  scene_.sun.elevation_deg = -60.0;
+  scene_.sky.brightness = 0.0;
+  const auto corrector = MakeCorrector(0);
+  for (int i = 0; i < 2; ++i) ASSERT_TRUE(corrector->Step().ok());
+  renderers::DrawQuality quality;
+  quality.correction = corrector->Correction();
+  for (const glm::vec3& pixel : Draw(quality).radiance) {
+    EXPECT_GE(pixel.x, 0.0F);
+    EXPECT_LT(pixel.x, 1e-3F);
+  }
+}
+
+}  // namespace
+}  // namespace thunderhead::correction

@@ -1,0 +1,65 @@
+#include "reference/trace_rays.h"
+
+#include <memory>
+#include <vector>
+
+#include "gtest/gtest.h"
+#include "reference/scene_problem.h"
+#include "reference/trace_scene.h"
+#include "tests/support/slab.h"
+
+namespace thunderhead::reference {
+namespace {
+
+class TraceRaysTest : public testing::Test {
+ protected:
+  TraceRaysTest() {
+    scene_.camera = scene::OrbitCamera{.target_m = {0.0, 0.0, 1000.0}, .distance_m = 2e4};
+    scene_.output = {8, 6, 88};
+    MediumOptions options;
+    options.peak_cut_deg = kPeakCut_deg;
+    medium_ = *MediumOf(scene_, *fields_, options);
+    surroundings_ = SurroundingsOf(scene_, *fields_, GroundLight::kShaded);
+    const Camera camera = CameraOf(scene_, *fields_);
+    for (int i = 0; i < 200; ++i) rays_.push_back(camera.RayThrough(i / 100.0 - 1.0, 0.05));
+  }
+
+  scene::Scene scene_;
+  std::shared_ptr<const volume::HydrometeorFields> fields_ =
+      support::MakeSlab(6000.0, 2000.0, 0.002);
+  std::shared_ptr<const Medium> medium_;
+  Surroundings surroundings_;
+  std::vector<Ray> rays_;
+};
+
+TEST_F(TraceRaysTest, TheNumberOfThreadsChangesNothing) {
+  const auto one = TraceRays(*medium_, surroundings_, rays_, {5, 3, 1});
+  const auto two = TraceRays(*medium_, surroundings_, rays_, {5, 3, 2});
+  EXPECT_EQ(one, two);
+  EXPECT_NE(one, TraceRays(*medium_, surroundings_, rays_, {6, 3, 2}));
+}
+
+TEST_F(TraceRaysTest, MeansAreThoseOfThePicture) {
+  // A picture of one pixel so narrow that it is one ray; 5 standard errors of both.
+  scene::Scene narrow = scene_;
+  auto& camera = std::get<scene::OrbitCamera>(narrow.camera);
+  camera.field_of_view_deg = 0.01;
+  narrow.output = {1, 1, 88};
+  RefineLimits limits;
+  limits.samples_per_pixel = 20'000;
+  const Image picture = TraceScene(narrow, *fields_, kPeakCut_deg, limits, {}, {})->image;
+  const Ray ray = CameraOf(narrow, *fields_).RayThrough(0.0, 0.0);
+  const auto traced = TraceRays(*medium_, surroundings_, {ray}, {1, 20'000, 0});
+  for (int color = 0; color < 3; ++color) {
+    EXPECT_NEAR(traced.front()[color], picture.radiance.front()[color],
+                5.0 * 1.42 * picture.standard_error.front()[color]);
+  }
+  EXPECT_GT(traced.front().x, 0.0);
+}
+
+TEST_F(TraceRaysTest, NoRaysNoRadiance) {
+  EXPECT_TRUE(TraceRays(*medium_, surroundings_, {}, {}).empty());
+}
+
+}  // namespace
+}  // namespace thunderhead::reference

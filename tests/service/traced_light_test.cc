@@ -1,0 +1,115 @@
+// Sessions and pictures with traced light, on a made-up machine that traces a hundred thousand
+// paths at a time.
+#include <algorithm>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/service/fake_service.h"
+
+namespace thunderhead::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using Messages = std::vector<v1::WatchFramesResponse>;
+
+v1::Scene WithTracedLight() {
+  v1::Scene scene = SmallScene();
+  scene.mutable_rendering()->set_transport(v1::TRANSPORT_DIFFUSION);
+  scene.mutable_rendering()->set_traced_light(true);
+  return scene;
+}
+
+class TracedLightTest : public ::testing::Test {
+ protected:
+  static bool AwaitPaths(Watcher& watcher, std::uint64_t revision, std::uint64_t paths) {
+    return watcher.Await([=](const Messages& messages) {
+      return std::any_of(messages.begin(), messages.end(), [=](const auto& message) {
+        return message.has_frame() && message.frame().scene_revision() == revision &&
+               message.frame().modelled().traced_paths() >= paths;
+      });
+    });
+  }
+
+  FakeService service_;
+};
+
+TEST_F(TracedLightTest, FramesAreDrawnForMoreAndMorePathsUntilThereAreEnough) {
+  Watcher watcher(service_.stub(), service_.Open(WithTracedLight()));
+  ASSERT_TRUE(AwaitPaths(watcher, 1, 4'000'000));
+  std::uint64_t paths = 0;
+  for (const v1::WatchFramesResponse& message : watcher.Messages()) {
+    if (!message.has_frame() || message.frame().modelled().traced_paths() == 0) continue;
+    EXPECT_TRUE(message.frame().refined());
+    // No table knows what is corrected.
+    EXPECT_FALSE(message.frame().has_accuracy());
+    EXPECT_GT(message.frame().modelled().traced_paths(), paths);
+    paths = message.frame().modelled().traced_paths();
+  }
+  const std::int64_t traced = service_.machine->traced_paths;
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_EQ(service_.machine->traced_paths, traced) << "traced on after its end";
+}
+
+TEST_F(TracedLightTest, AnotherViewGoesOnFromWhatIsTraced) {
+  const std::string id = service_.Open(WithTracedLight());
+  Watcher watcher(service_.stub(), id);
+  ASSERT_TRUE(AwaitPaths(watcher, 1, 4'000'000));
+  v1::Scene scene = WithTracedLight();
+  scene.mutable_camera()->mutable_orbit()->set_azimuth_deg(80.0F);
+  const std::uint64_t revision = service_.Update(id, scene);
+  ASSERT_TRUE(AwaitPaths(watcher, revision, 8'000'000));
+}
+
+TEST_F(TracedLightTest, NothingIsTracedForScenesThatDoNotAskOrCannotShowIt) {
+  v1::Scene unasked = WithTracedLight();
+  unasked.mutable_rendering()->set_traced_light(false);
+  v1::Scene consistent = WithTracedLight();
+  consistent.mutable_rendering()->set_transport(v1::TRANSPORT_CONSISTENT);
+  for (const v1::Scene& scene : {unasked, consistent}) {
+    Watcher watcher(service_.stub(), service_.Open(scene));
+    ASSERT_TRUE(watcher.AwaitFrame(1, true));
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    EXPECT_EQ(service_.machine->traced_paths, 0);
+  }
+}
+
+TEST_F(TracedLightTest, WhatCannotBeTracedIsAProblemOnceAndThePictureStays) {
+  service_.machine->cannot_trace_azimuth_deg = 123.0;
+  v1::Scene scene = WithTracedLight();
+  scene.mutable_sun()->set_azimuth_deg(123.0F);
+  Watcher watcher(service_.stub(), service_.Open(scene));
+  ASSERT_TRUE(watcher.Await([](const Messages& messages) {
+    return std::any_of(messages.begin(), messages.end(),
+                       [](const auto& message) { return message.has_problem(); });
+  }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  int problems = 0;
+  for (const v1::WatchFramesResponse& message : watcher.Messages()) {
+    if (!message.has_problem()) continue;
+    ++problems;
+    EXPECT_THAT(message.problem().message(), HasSubstr("traces enough"));
+  }
+  EXPECT_EQ(problems, 1);
+  EXPECT_TRUE(watcher.AwaitFrame(1, true));
+}
+
+TEST_F(TracedLightTest, OtherSessionsAreDrawnMeanwhile) {
+  Watcher tracing(service_.stub(), service_.Open(WithTracedLight()));
+  ASSERT_TRUE(tracing.Await([&](const Messages&) { return service_.machine->traced_paths > 0; }));
+  Watcher other(service_.stub(), service_.Open(SmallScene()));
+  EXPECT_TRUE(other.AwaitFrame(1, true));
+}
+
+TEST_F(TracedLightTest, PicturesWaitForAMillionPaths) {
+  v1::RenderImageRequest request;
+  *request.mutable_scene() = WithTracedLight();
+  v1::RenderImageResponse response;
+  const grpc::Status status =
+      Call(service_.stub(), &v1::ThunderheadService::Stub::RenderImage, request, &response);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(response.modelled().traced_paths(), 1'000'000U);
+}
+
+}  // namespace
+}  // namespace thunderhead::testing
