@@ -128,18 +128,17 @@ struct Compared {
 absl::Status TraceUntil(double million_paths, const Interruption& interruption,
                         correction::LightCorrector* corrector) {
   ProgressBar bar("tracing light");
-  while (static_cast<double>(corrector->Paths()) < 1e6 * million_paths) {
+  while (!corrector->Progress().HasTraced(std::llround(1e6 * million_paths))) {
     if (interruption.Token().stop_requested()) return absl::CancelledError("stopped");
     THUNDERHEAD_RETURN_IF_ERROR(corrector->Step());
-    bar.Set(static_cast<double>(corrector->Paths()) / (1e6 * million_paths));
+    bar.Set(static_cast<double>(corrector->Progress().paths) / (1e6 * million_paths));
   }
   return absl::OkStatus();
 }
 
 // All light again, after so many paths have been traced.
-absl::Status MeasureTracedLight(const Compared& compared, scene::Scene scene,
+absl::Status MeasureTracedLight(const Compared& compared, const scene::Scene& scene,
                                 const Interruption& interruption) {
-  scene.rendering.traced_light = true;
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const std::unique_ptr<correction::LightCorrector> corrector,
       correction::LightCorrector::Create(scene, compared.local.fields,
@@ -162,7 +161,9 @@ absl::Status MeasureTransport(const Compared& compared,
   scene::Scene scene = compared.local.scene;
   scene.rendering.transport = transport.value;
   THUNDERHEAD_RETURN_IF_ERROR(compared.Print(scene, std::string(transport.name), nullptr));
-  const bool traces = compared.part == LightPart::kAll && scene::ShowsTracedLight(scene.rendering);
+  scene.rendering.traced_light = true;
+  const bool traces =
+      compared.part == LightPart::kAll && correction::TracesLight(scene, *compared.local.fields);
   return traces ? MeasureTracedLight(compared, scene, interruption) : absl::OkStatus();
 }
 

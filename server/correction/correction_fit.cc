@@ -17,6 +17,10 @@ constexpr double kDirectionStep = 0.05;
 constexpr double kColorShare = 0.2;
 
 constexpr double kLeastDrawn = 1e-9;
+// Of the mean of a ray's colours: a colour that is drawn darker has the factor of their mean.
+constexpr double kLeastOfColor = 0.05;
+// A ray that is off by more says no more of how far rays scatter.
+constexpr double kMostSpread = 10.0;
 
 std::size_t Offset(const glm::ivec3& size, const glm::ivec3& texel) {
   return (static_cast<std::size_t>(texel.z) * static_cast<std::size_t>(size.y) +
@@ -119,9 +123,15 @@ CorrectionFit::CorrectionFit(const glm::ivec3& size) {
 void CorrectionFit::Add(const CorrectedRay& ray) {
   const double brightness = (ray.drawn.x + ray.drawn.y + ray.drawn.z) / 3.0;
   if (!(brightness > kLeastDrawn)) return;
-  const glm::dvec3 factor = ray.estimate / glm::max(ray.drawn, glm::dvec3(1e-3 * brightness));
   const double gray = (ray.estimate.x + ray.estimate.y + ray.estimate.z) / 3.0 / brightness;
-  spread_ += brightness * (gray - 1.0) * (gray - 1.0);
+  glm::dvec3 factor(gray);
+  for (int color = 0; color < 3; ++color) {
+    if (ray.drawn[color] > kLeastOfColor * brightness) {
+      factor[color] = ray.estimate[color] / ray.drawn[color];
+    }
+  }
+  const double off = std::min(std::abs(gray - 1.0), kMostSpread);
+  spread_ += brightness * off * off;
   ++rays_;
   const double basis[4] = {1.0, ray.direction.x, ray.direction.y, ray.direction.z};
   for (const Corner& corner : CornersAt(finest_.size, ray.place)) {

@@ -31,19 +31,15 @@ absl::Status CorrectorPool::MakeRoom() {
       });
   if (oldest->since_traced.ElapsedMs() < 1e3 * busy_s_) {
     return absl::ResourceExhaustedError(
-        absl::StrCat("the server traces the light of ", kept_.size(),
-                     " other scenes already; try again later, or leave out traced_light"));
+        absl::StrCat("the server traces the light of ", kept_.size(), " other scenes already"));
   }
   kept_.erase(oldest);
   return absl::OkStatus();
 }
 
-absl::StatusOr<std::int64_t> CorrectorPool::Trace(
+absl::StatusOr<LightProgress> CorrectorPool::Trace(
     const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields) {
-  if (!scene.rendering.traced_light || !scene::ShowsTracedLight(scene.rendering) ||
-      fields->condensate.Empty()) {
-    return 0;
-  }
+  if (!TracesLight(scene, *fields)) return LightProgress{};
   Kept* kept = Serving(scene, fields);
   if (kept == nullptr) {
     THUNDERHEAD_RETURN_IF_ERROR(MakeRoom());
@@ -54,7 +50,7 @@ absl::StatusOr<std::int64_t> CorrectorPool::Trace(
   kept->corrector->LookAs(scene);
   THUNDERHEAD_RETURN_IF_ERROR(kept->corrector->Step());
   kept->since_traced.Restart();
-  return kept->corrector->Paths();
+  return kept->corrector->Progress();
 }
 
 }  // namespace thunderhead::correction

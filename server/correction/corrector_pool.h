@@ -20,7 +20,7 @@ class CorrectorPool {
  public:
   // Each takes up to a hundred megabytes. One that was traced for within `busy_s` does not make
   // room for another scene's.
-  explicit CorrectorPool(std::size_t most = 8, double busy_s = 10.0)
+  explicit CorrectorPool(std::size_t most = 8, double busy_s = 3.0)
       : most_(most), busy_s_(busy_s), programs_(std::make_shared<gl::ProgramCache>()) {}
 
   // The one that serves the scene, looking as it does; null if there is none, or the scene has no
@@ -28,9 +28,8 @@ class CorrectorPool {
   LightCorrector* Find(const scene::Scene& scene,
                        const std::shared_ptr<const volume::HydrometeorFields>& fields);
 
-  // Goes a step on for the scene; gives the paths so far, 0 if the scene shows no traced light or
-  // nothing can be traced. RESOURCE_EXHAUSTED if all that there may be are busy.
-  absl::StatusOr<std::int64_t> Trace(
+  // Goes a step on for the scene. RESOURCE_EXHAUSTED if all that there may be are busy.
+  absl::StatusOr<LightProgress> Trace(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields);
 
  private:

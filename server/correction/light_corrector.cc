@@ -13,6 +13,7 @@
 #include "reference/philox.h"
 #include "reference/scene_problem.h"
 #include "reference/trace_rays.h"
+#include "scene/drawn_fields.h"
 
 namespace thunderhead::correction {
 namespace {
@@ -30,6 +31,7 @@ constexpr double kPeakCut_deg = 20.0;
 
 constexpr int kGroundTexels = 64;
 constexpr int kGroundRays = 2048;       // of a pass
+constexpr int kGroundPassesOfStep = 2;  // of the first steps
 constexpr int kFirstGroundPasses = 32;  // before the storm is traced, whose background it is
 constexpr int kPicturesPerGround = 16;  // the storm's background is brought up to date after these
 constexpr double kAboveGround_m = 1.0;
@@ -68,6 +70,13 @@ scene::Scene ProbedScene(scene::Scene scene) {
 
 }  // namespace
 
+bool TracesLight(const scene::Scene& scene, const volume::HydrometeorFields& fields) {
+  return scene.rendering.traced_light && scene::ShowsTracedLight(scene.rendering) &&
+         std::any_of(
+             fields.fields.begin(), fields.fields.end(),
+             [&](const volume::HydrometeorField& field) { return scene::IsDrawn(scene, field); });
+}
+
 LightCorrector::LightCorrector(const scene::Scene& scene,
                                std::shared_ptr<const volume::HydrometeorFields> fields,
                                std::shared_ptr<const reference::Medium> medium,
@@ -89,6 +98,7 @@ LightCorrector::LightCorrector(const scene::Scene& scene,
 absl::StatusOr<std::unique_ptr<LightCorrector>> LightCorrector::Create(
     const scene::Scene& scene, std::shared_ptr<const volume::HydrometeorFields> fields,
     std::shared_ptr<gl::ProgramCache> programs, int threads) {
+  THUNDERHEAD_CHECK(TracesLight(scene, *fields), "nothing to be traced");
   reference::MediumOptions options;
   options.peak_cut_deg = kPeakCut_deg;
   THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<const reference::Medium> medium,
@@ -122,7 +132,11 @@ scene::Camera LightCorrector::NextCamera() const {
 }
 
 absl::Status LightCorrector::Step() {
-  while (ground_passes_ < kFirstGroundPasses) TraceGround();
+  ++progress_.steps;
+  if (ground_passes_ < kFirstGroundPasses) {
+    for (int i = 0; i < kGroundPassesOfStep; ++i) TraceGround();
+    return absl::OkStatus();
+  }
   if (pictures_ % kPicturesPerGround == 0) UpdateGround();
   TraceGround();
   scene_.camera = NextCamera();
@@ -176,7 +190,7 @@ void LightCorrector::TraceProbe(const Probe& probe) {
     storm_fit_.Add({value(probe.places, firsts[i]), rays[i].direction,
                     value(probe.whole, firsts[i]) - behind, traced[i] - behind});
   }
-  paths_ += static_cast<std::int64_t>(rays.size());
+  progress_.paths += static_cast<std::int64_t>(rays.size());
 }
 
 // Rays from anywhere on the ground, more of them the higher they go, so that their mean radiance is
@@ -232,7 +246,7 @@ void LightCorrector::UpdateGround() {
 }
 
 std::shared_ptr<const renderers::LightCorrection> LightCorrector::Correction() {
-  if (correction_ != nullptr || paths_ == 0) return correction_;
+  if (correction_ != nullptr || progress_.paths == 0) return correction_;
   std::shared_ptr<renderers::LightCorrection> correction = WithGround();
   correction->size = storm_fit_.Size();
   for (const Factors& factors : storm_fit_.Solve()) {

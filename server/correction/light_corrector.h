@@ -12,6 +12,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "correction/correction_fit.h"
+#include "correction/light_progress.h"
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 #include "reference/medium.h"
@@ -24,9 +25,12 @@
 
 namespace thunderhead::correction {
 
+// True if the scene asks for traced light, and there is something of which it can be traced.
+bool TracesLight(const scene::Scene& scene, const volume::HydrometeorFields& fields);
+
 class LightCorrector {
  public:
-  // `scene` shows traced light. Programs are linked in `programs`; `threads` trace, 0 takes all
+  // The scene traces light. Programs are linked in `programs`; `threads` trace, 0 takes all
   // cores.
   static absl::StatusOr<std::unique_ptr<LightCorrector>> Create(
       const scene::Scene& scene, std::shared_ptr<const volume::HydrometeorFields> fields,
@@ -39,10 +43,10 @@ class LightCorrector {
   // Another scene that it serves: half of the pictures look from its camera from now on.
   void LookAs(const scene::Scene& scene);
 
-  // Draws and traces one picture more: some thousand paths.
+  // Goes on by some thousand paths: over the ground alone at first, then one picture each time.
   absl::Status Step();
-  // Traced in all, the ground's not counted.
-  std::int64_t Paths() const { return paths_; }
+  // Paths in all, the ground's not counted.
+  const LightProgress& Progress() const { return progress_; }
 
   // What the paths so far say; null before the first.
   std::shared_ptr<const renderers::LightCorrection> Correction();
@@ -83,7 +87,7 @@ class LightCorrector {
   std::shared_ptr<const renderers::LightCorrection> correction_;  // null after a step
   std::uint64_t ground_passes_ = 0;
   std::uint64_t pictures_ = 0;
-  std::int64_t paths_ = 0;
+  LightProgress progress_;
 };
 
 }  // namespace thunderhead::correction

@@ -27,14 +27,16 @@ constexpr std::array<absl::string_view, 8> kNeeded = {
 constexpr std::array<absl::string_view, 4> kPassedOver = {"milliseconds_spread", "bytes",
                                                           "relative_bias", "flip"};
 
-// What nothing is chosen by, or scenes cannot ask for: rows that differ from these values are not
+// What scenes cannot ask for: rows that differ from these values are not
 // offered.
 struct Fixed {
   absl::string_view column;
   absl::string_view value;
 };
-constexpr std::array<Fixed, 3> kFixed = {
-    {{"light_detail", "1"}, {"precision", "half"}, {"million_paths", "0"}}};
+constexpr std::array<Fixed, 2> kFixed = {{{"light_detail", "1"}, {"precision", "half"}}};
+
+// Tables that lack it have rows without traced light only.
+constexpr absl::string_view kMillionPaths = "million_paths";
 
 bool IsFixed(absl::string_view name) {
   return std::any_of(kFixed.begin(), kFixed.end(),
@@ -61,6 +63,7 @@ bool IsIn(const Names& names, absl::string_view name) {
 absl::StatusOr<std::vector<std::size_t>> ColumnsOf(const Cells& names) {
   for (const absl::string_view name : names) {
     if (IsIn(kNeeded, name) || IsIn(kPassedOver, name) || IsFixed(name)) continue;
+    if (name == kMillionPaths) continue;
     return absl::InvalidArgumentError(absl::StrCat(
         "its column '", name, "' is not known: this program cannot tell what its rows differ by"));
   }
@@ -97,9 +100,16 @@ bool ReadRow(const Cells& cells, PricedSetting* row) {
          ReadName(kTransports, cells[2], &setting.transport) &&
          absl::SimpleAtoi(cells[3], &setting.slices) && setting.slices > 0 &&
          ReadNumber(cells[4], &setting.image_scale) && setting.image_scale > 0.0 &&
-         setting.image_scale <= 1.0 && absl::SimpleAtoi(cells[5], &setting.jpeg_quality) &&
+         setting.image_scale <= 2.0 && absl::SimpleAtoi(cells[5], &setting.jpeg_quality) &&
          ReadNumber(cells[6], &row->milliseconds) && row->milliseconds > 0.0 &&
          ReadNumber(cells[7], &row->relative_rmse);
+}
+
+// True if the row has no such cell.
+bool ReadMillionPaths(const Cells& names, const Cells& cells, double* value) {
+  const auto found = std::find(names.begin(), names.end(), kMillionPaths);
+  if (found == names.end()) return true;
+  return ReadNumber(cells[static_cast<std::size_t>(found - names.begin())], value);
 }
 
 absl::Status ReadSize(absl::string_view comment, glm::ivec2* size_px) {
@@ -148,7 +158,8 @@ absl::StatusOr<PricedSettings> ReadPricedSettings(std::string_view text) {
       if (cells.size() == names.size()) needed.push_back(cells[column]);
     }
     PricedSetting row;
-    if (needed.empty() || !ReadRow(needed, &row)) {
+    if (needed.empty() || !ReadRow(needed, &row) ||
+        !ReadMillionPaths(names, cells, &row.setting.million_paths)) {
       return absl::InvalidArgumentError(
           absl::StrCat("its line ", i + 1, ", '", line, "', is not a row of ",
                        absl::StrJoin(kNeeded, ", "), " that this program knows"));

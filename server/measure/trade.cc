@@ -33,6 +33,8 @@ void AddVariants(scene::Transport transport, std::vector<TradeSetting>* settings
       settings->back().slices = slices;
     }
   }
+  settings->push_back(usual);
+  settings->back().image_scale = 2.0;
   for (const double detail : {0.5, 2.0}) {
     settings->push_back(usual);
     settings->back().light_detail = detail;
@@ -131,7 +133,10 @@ std::vector<TradeSetting> DefaultSweep(const std::vector<double>& million_paths)
     TradeSetting traced;
     traced.transport = scene::Transport::kDiffusion;
     traced.million_paths = paths;
-    settings.push_back(traced);
+    for (const double scale : {1.0, 2.0}) {
+      traced.image_scale = scale;
+      settings.push_back(traced);
+    }
   }
   return settings;
 }
@@ -171,18 +176,22 @@ absl::StatusOr<DisplayImage> Trade::Display(const gl::Texture2D& linear) {
 absl::StatusOr<std::shared_ptr<const renderers::LightCorrection>> Trade::CorrectionOf(
     const scene::Scene& scene, double million_paths, const std::stop_token& stop) {
   if (million_paths <= 0.0) return nullptr;
-  if (corrector_ == nullptr || !corrector_->Serves(scene, fields_) ||
-      static_cast<double>(corrector_->Paths()) > 1e6 * million_paths) {
+  scene::Scene traced = scene;
+  traced.rendering.traced_light = true;
+  if (!correction::TracesLight(traced, *fields_)) return nullptr;
+  if (corrector_ == nullptr || !corrector_->Serves(traced, fields_) ||
+      corrected_by_ > million_paths) {
     THUNDERHEAD_ASSIGN_OR_RETURN(
-        corrector_, correction::LightCorrector::Create(scene, fields_,
+        corrector_, correction::LightCorrector::Create(traced, fields_,
                                                        std::make_shared<gl::ProgramCache>(), 0));
+    corrected_by_ = 0.0;
   }
-  while (static_cast<double>(corrector_->Paths()) < 1e6 * million_paths) {
+  while (corrected_by_ < million_paths &&
+         !corrector_->Progress().HasTraced(std::llround(1e6 * million_paths))) {
     if (stop.stop_requested()) return absl::CancelledError("stopped");
-    const std::int64_t before = corrector_->Paths();
     THUNDERHEAD_RETURN_IF_ERROR(corrector_->Step());
-    if (corrector_->Paths() == before) break;  // nothing of the storm is seen
   }
+  corrected_by_ = million_paths;
   return corrector_->Correction();
 }
 

@@ -22,7 +22,7 @@
 namespace thunderhead::renderers {
 
 struct DrawQuality {
-  double image_scale = 1.0;  // of the eye buffer's width and height, (0, 1]
+  double image_scale = 1.0;  // of the eye buffer's width and height, (0, 2]; 2 is 4 rays a pixel
   double slice_share = 1.0;  // of the scene's slices, (0, 1]
   // What sweeps vary besides; sessions draw with these.
   double light_detail = 1.0;      // texels of the light volume, over the usual ones, along a side

@@ -201,7 +201,7 @@ struct Rendering {
   bool traced_light = false;
   Metaballs metaballs;
   Cumulus cumulus;
-  double image_scale = 1.0;  // of the eye buffer at full quality, (0, 1]; pictures keep their size
+  double image_scale = 1.0;  // of the eye buffer at full quality, (0, 2]; pictures keep their size
 
   bool operator==(const Rendering&) const = default;
 };

@@ -48,7 +48,8 @@ std::optional<double> ViewMs(double total_ms, const std::vector<StageCost>& stag
   double other_ms = 0.0;
   bool drew = false;
   for (const StageCost& cost : stages) {
-    if (IsPreparation(cost) || cost.stage == "light") other_ms += cost.milliseconds;
+    const bool rare = cost.stage == "light" || cost.stage == "correction";
+    if (rare || IsPreparation(cost)) other_ms += cost.milliseconds;
     drew = drew || cost.stage == "slices" || cost.stage == "view";
   }
   if (!drew) return std::nullopt;

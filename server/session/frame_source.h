@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "correction/light_progress.h"
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 #include "physics/hydrometeors.h"
@@ -29,7 +30,7 @@ struct FrameQuality {
 };
 
 // One stage's wall time. Stages: "read", "extinction", "upload", "fit", "surface", "slices",
-// "light", "view", "ground", "composite", "trace", "tone", "read_back", "encode".
+// "light", "view", "ground", "composite", "trace", "correction", "tone", "read_back", "encode".
 struct StageCost {
   std::string stage;
   double milliseconds = 0.0;
@@ -141,10 +142,9 @@ class FrameSource {
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) = 0;
 
-  // Traces some more paths for a scene with traced light, a tenth of a second long, so that the
-  // next Draw of it is better; gives how many there are by now. 0 if the scene's light is not
-  // corrected. RESOURCE_EXHAUSTED if too many other scenes' is.
-  virtual absl::StatusOr<std::int64_t> TraceLight(
+  // Traces some more paths for a scene with traced light, about a tenth of a second long, so that
+  // the next Draw of it is better. RESOURCE_EXHAUSTED while too many other scenes are traced for.
+  virtual absl::StatusOr<correction::LightProgress> TraceLight(
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) = 0;
 

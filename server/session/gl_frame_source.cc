@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/status.h"
+#include "base/stopwatch.h"
 #include "correction/corrector_pool.h"
 #include "frame/tone_map.h"
 #include "gl/context.h"
@@ -34,6 +35,9 @@ class BallPreparation final : public Preparation {
  private:
   std::shared_ptr<renderers::BallFits> fits_;
 };
+
+// What took less is one that was there.
+constexpr double kWorthSaying_ms = 0.1;
 
 // Relative RMSE of red, green and blue; four values a pixel.
 double RelativeDifference(const std::vector<float>& pixels, const std::vector<float>& truth) {
@@ -86,7 +90,7 @@ class GlFrameSource final : public FrameSource {
     return checked;
   }
 
-  absl::StatusOr<std::int64_t> TraceLight(
+  absl::StatusOr<correction::LightProgress> TraceLight(
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
     return correctors_.Trace(scene, fields);
@@ -108,7 +112,9 @@ class GlFrameSource final : public FrameSource {
                                    const FrameQuality& quality) {
     renderers::DrawQuality drawn{quality.image_scale, quality.slice_share};
     correction::LightCorrector* const corrector = correctors_.Find(scene, fields);
+    const base::Stopwatch stopwatch;
     if (corrector != nullptr) drawn.correction = corrector->Correction();
+    correction_ms_ = stopwatch.ElapsedMs();
     return drawn;
   }
 
@@ -121,6 +127,7 @@ class GlFrameSource final : public FrameSource {
     for (const renderers::StageTime& stage : linear.stages) {
       frame.stages.push_back({stage.stage, stage.milliseconds});
     }
+    if (correction_ms_ >= kWorthSaying_ms) frame.stages.push_back({"correction", correction_ms_});
     Fill(linear.radiance->Size(), std::move(mapped), &frame);
     frame.modelled = {linear.fields,
                       linear.slices,
@@ -132,7 +139,7 @@ class GlFrameSource final : public FrameSource {
                       linear.not_shown,
                       linear.ellipsoids};
     const correction::LightCorrector* const corrector = correctors_.Find(scene, fields);
-    if (corrector != nullptr) frame.modelled.traced_paths = corrector->Paths();
+    if (corrector != nullptr) frame.modelled.traced_paths = corrector->Progress().paths;
     return frame;
   }
 
@@ -148,6 +155,7 @@ class GlFrameSource final : public FrameSource {
   std::shared_ptr<renderers::BallFits> fits_ = std::make_shared<renderers::BallFits>();
   renderers::RendererPool renderers_{fits_};
   correction::CorrectorPool correctors_;
+  double correction_ms_ = 0.0;  // that finding the last one took
   frame::ToneMapper tone_mapper_;
   frame::ToneMapper picture_tone_mapper_;  // of other sizes: each keeps its buffers
   DeviceInfo info_;

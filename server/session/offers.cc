@@ -20,6 +20,9 @@ constexpr std::array<const char*, std::variant_size_v<scene::Camera>> kViews = {
 // drawn already.
 constexpr double kLimitSlack = 1.1;
 constexpr double kWorthChanging = 1.25;
+// Tracing light costs a frame nothing, but takes the machine's time at rest: it is worth that where
+// nothing else is as accurate, not where it only seems a little faster.
+constexpr double kTracingIsDearer = 1.2;
 // The weight of a new measurement.
 constexpr double kFollow = 0.3;
 
@@ -62,7 +65,8 @@ double TableMs(const measure::PricedSettings& table, const measure::PricedSettin
 
 bool SameDrawing(const measure::TradeSetting& a, const measure::TradeSetting& b) {
   return a.renderer == b.renderer && a.mode == b.mode && a.transport == b.transport &&
-         a.slices == b.slices && a.image_scale == b.image_scale;
+         a.slices == b.slices && a.image_scale == b.image_scale &&
+         (a.million_paths > 0.0) == (b.million_paths > 0.0);
 }
 
 // Factors of two between slices and scales.
@@ -71,7 +75,8 @@ double Distance(const measure::TradeSetting& a, const measure::TradeSetting& b) 
          std::abs(std::log2(a.image_scale / b.image_scale));
 }
 
-// The row of the same renderer, mode and transport that is most like `setting`, if any.
+// The row of the same renderer, mode and transport that is most like `setting`, if any: where its
+// light is traced, of the rows with traced light and no more paths, if there are such.
 const measure::PricedSetting* Nearest(const measure::PricedSettings& table,
                                       const measure::TradeSetting& setting) {
   const measure::PricedSetting* nearest = nullptr;
@@ -79,12 +84,19 @@ const measure::PricedSetting* Nearest(const measure::PricedSettings& table,
     const measure::TradeSetting& other = row.setting;
     const bool alike = other.renderer == setting.renderer && other.mode == setting.mode &&
                        other.transport == setting.transport;
-    if (!alike) continue;
-    if (nearest == nullptr || Distance(other, setting) < Distance(nearest->setting, setting)) {
-      nearest = &row;
-    }
+    if (!alike || other.million_paths > setting.million_paths) continue;
+    const auto order = [&](const measure::TradeSetting& of) {
+      return std::tuple(of.million_paths == 0.0, Distance(of, setting), -of.million_paths);
+    };
+    if (nearest == nullptr || order(other) < order(nearest->setting)) nearest = &row;
   }
   return nearest;
+}
+
+// Paths cost a frame nothing.
+measure::TradeSetting Untraced(measure::TradeSetting setting) {
+  setting.million_paths = 0.0;
+  return setting;
 }
 
 absl::StatusOr<measure::PricedSettings> ReadBuiltIn(const char* view) {
@@ -108,10 +120,13 @@ Offer BestOffer(const std::vector<Offer>& offers, const scene::Accuracy& limit,
         return Better(MeasuresOf(a, limit), MeasuresOf(b, limit));
       });
   if (!current.has_value()) return *best;
-  const auto kept = std::find_if(offers.begin(), offers.end(), [&](const Offer& offer) {
-    return SameDrawing(offer.setting, *current);
-  });
-  if (kept == offers.end()) return *best;
+  const Offer* kept = nullptr;
+  for (const Offer& offer : offers) {
+    if (!SameDrawing(offer.setting, *current)) continue;
+    const bool first = kept == nullptr;
+    if (first || Better(MeasuresOf(offer, limit), MeasuresOf(*kept, limit))) kept = &offer;
+  }
+  if (kept == nullptr) return *best;
   const Measures of_best = MeasuresOf(*best, limit);
   const Measures of_kept = MeasuresOf(*kept, limit);
   const bool reachable = Within(of_best, 1.0);
@@ -166,8 +181,13 @@ OfferTables BuiltInOfferTables() {
 measure::TradeSetting SettingOf(const scene::Scene& scene) {
   const scene::Rendering& rendering = scene.rendering;
   const int slices = HasSlices(rendering.renderer) ? rendering.slices : rendering.metaballs.count;
-  return {rendering.renderer,    rendering.mode,           rendering.transport, slices,
-          rendering.image_scale, scene.output.jpeg_quality};
+  measure::TradeSetting setting{rendering.renderer,    rendering.mode,
+                                rendering.transport,   slices,
+                                rendering.image_scale, scene.output.jpeg_quality};
+  if (rendering.traced_light && scene::ShowsTracedLight(rendering)) {
+    setting.million_paths = kTracedPaths / 1e6;
+  }
+  return setting;
 }
 
 bool HasSlices(scene::Renderer renderer) {
@@ -177,9 +197,12 @@ bool HasSlices(scene::Renderer renderer) {
 std::vector<Offer> Offers::OffersFor(const measure::PricedSettings& table,
                                      const scene::Scene& scene) const {
   std::vector<Offer> offers;
+  const bool limits_time = std::holds_alternative<scene::MaxMilliseconds>(scene.accuracy);
   for (const measure::PricedSetting& row : table.rows) {
+    const bool traced = row.setting.million_paths > 0.0;
+    if (traced && limits_time) continue;
     const double ms = TableMs(table, row, scene) * correction_.Factor(row.setting);
-    offers.push_back({row.setting, ms, row.relative_rmse});
+    offers.push_back({row.setting, traced ? kTracingIsDearer * ms : ms, row.relative_rmse});
   }
   return offers;
 }
@@ -202,22 +225,23 @@ absl::StatusOr<scene::Scene> Offers::Decide(
     decided.rendering.metaballs.count = setting.slices;
   }
   decided.rendering.image_scale = setting.image_scale;
+  decided.rendering.traced_light = setting.million_paths > 0.0;
   return decided;
 }
 
 void Offers::Observe(const scene::Scene& scene, double milliseconds) {
   const auto& table = TableOf(scene);
   if (!table.ok()) return;
-  const measure::TradeSetting setting = SettingOf(scene);
+  const measure::TradeSetting setting = Untraced(SettingOf(scene));
   const measure::PricedSetting* row = Nearest(*table, setting);
   // Frames of settings that the table has no row for would teach the distance to the nearest.
   if (row == nullptr || Distance(row->setting, setting) > 0.0) return;
   correction_.Observe(setting, TableMs(*table, *row, scene), milliseconds);
 }
 
-std::optional<AccuracyReport> Offers::Report(
-    const scene::Scene& scene, const FrameQuality& quality,
-    const std::optional<double>& discretisation_error) const {
+std::optional<AccuracyReport> Offers::Report(const scene::Scene& scene, const FrameQuality& quality,
+                                             const std::optional<double>& discretisation_error,
+                                             std::int64_t traced_paths) const {
   const auto& table = TableOf(scene);
   if (!table.ok()) return std::nullopt;
   const measure::TradeSetting full = SettingOf(scene);
@@ -226,6 +250,7 @@ std::optional<AccuracyReport> Offers::Report(
     drawn.slices = std::max(static_cast<int>(std::ceil(full.slices * quality.slice_share)), 1);
   }
   drawn.image_scale *= quality.image_scale;
+  drawn.million_paths = static_cast<double>(traced_paths) / 1e6;
   const measure::PricedSetting* row = Nearest(*table, drawn);
   if (row == nullptr) return std::nullopt;
   AccuracyReport report;
@@ -241,11 +266,13 @@ std::optional<AccuracyReport> Offers::Report(
   report.estimated_error = std::hypot(row->relative_rmse, discretisation_error.value_or(0.0));
   const measure::PricedSetting* full_row = Nearest(*table, full);
   const bool asks = !std::holds_alternative<std::monostate>(scene.accuracy);
-  const double expected_ms =
-      TableMs(*table, *full_row, scene) * correction_.Factor(full_row->setting);
+  const measure::PricedSetting& timed = *Nearest(*table, Untraced(full));
+  const double expected_ms = TableMs(*table, timed, scene) * correction_.Factor(timed.setting);
   if (asks || correction_.Knows(full)) report.expected_ms = expected_ms;
-  // A coarse frame is on its way to the full one, which is what was asked for.
-  const bool is_full = quality == FrameQuality{};
+  // A coarse frame, or one with few paths, is on its way to the full one, which is what was asked
+  // for.
+  const bool is_full =
+      quality == FrameQuality{} && row->setting.million_paths == full_row->setting.million_paths;
   const double error = is_full ? report.estimated_error : full_row->relative_rmse;
   report.unmet = WhyUnmet(scene, {full, expected_ms, error});
   return report;

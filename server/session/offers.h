@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -82,10 +83,11 @@ class Offers {
   // A frame of `scene` (decided) at full quality took so long, view and all after it.
   void Observe(const scene::Scene& scene, double milliseconds);
 
-  // How accurate a frame of `scene` (decided) of that quality is believed to be; none where the
-  // tables do not know its renderer, mode and transport.
+  // How accurate a frame of `scene` (decided) of that quality, its light corrected by so many
+  // paths, is believed to be; none where the tables do not know its renderer, mode and transport.
   std::optional<AccuracyReport> Report(const scene::Scene& scene, const FrameQuality& quality,
-                                       const std::optional<double>& discretisation_error) const;
+                                       const std::optional<double>& discretisation_error,
+                                       std::int64_t traced_paths) const;
 
  private:
   const absl::StatusOr<measure::PricedSettings>& TableOf(const scene::Scene& scene) const {
@@ -99,8 +101,12 @@ class Offers {
   TableCorrection correction_;
 };
 
-// The setting that a decided scene is drawn with; of metaballs, `slices` is their number, as in the
-// tables.
+// Paths that are traced for a view that rests, if its light is traced; more change what is seen by
+// less than a hundredth.
+inline constexpr std::int64_t kTracedPaths = 4'000'000;
+
+// The setting that a decided scene is drawn with in the end; of metaballs, `slices` is their
+// number, as in the tables.
 measure::TradeSetting SettingOf(const scene::Scene& scene);
 
 // Whether its pictures depend on a number of slices or samples.

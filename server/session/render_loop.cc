@@ -273,10 +273,8 @@ void RenderLoop::DrawFor(const std::shared_ptr<Session>& session, Track& track,
   double total_ms = 0.0;
   auto picture = Draw(*shown.scene, track.fields, plan.quality, total_ms);
   if (!picture.ok()) return Fail(*session, track, shown.revision, picture.status());
-  // Tables know pictures that nothing corrects.
-  if (picture->modelled.traced_paths == 0) {
-    picture->accuracy = offers_.Report(*shown.scene, plan.quality, std::nullopt);
-  }
+  picture->accuracy =
+      offers_.Report(*shown.scene, plan.quality, std::nullopt, picture->modelled.traced_paths);
   track.planner.Drawn(shown.revision, *shown.scene, plan, total_ms,
                       was_warm ? picture->stages : std::vector<StageCost>());
   Send(track,
@@ -317,8 +315,10 @@ absl::StatusOr<DisplayFrame> RenderLoop::Draw(
     machine_costs_.Of(scene).Observe(MegaSamples(scene, quality), total_ms, picture->stages);
   }
   const scene::Rendering& rendering = scene.rendering;
-  const bool compiled =
-      !compiled_.emplace(rendering.renderer, rendering.mode, rendering.transport).second;
+  const bool compiled = !compiled_
+                             .emplace(rendering.renderer, rendering.mode, rendering.transport,
+                                      picture->modelled.traced_paths > 0)
+                             .second;
   if (compiled && quality == FrameQuality{}) {
     const std::optional<double> view_ms = ViewMs(total_ms, picture->stages);
     if (view_ms.has_value()) offers_.Observe(scene, *view_ms);
@@ -331,33 +331,31 @@ absl::StatusOr<DisplayFrame> RenderLoop::DrawImage(const ImageJob& job) {
   double total_ms = 0.0;
   THUNDERHEAD_ASSIGN_OR_RETURN(DisplayFrame picture,
                                Draw(scene, job.fields, FrameQuality{}, total_ms));
-  if (picture.modelled.traced_paths == 0) {
-    picture.accuracy = offers_.Report(scene, {}, std::nullopt);
-  }
+  picture.accuracy = offers_.Report(scene, {}, std::nullopt, picture.modelled.traced_paths);
   return picture;
 }
 
 // A picture with traced light takes its turns until enough is traced; true if it is not yet.
 absl::StatusOr<bool> RenderLoop::TraceForImage(const ImageJob& job) {
-  if (!job.scene.rendering.traced_light) return false;
   THUNDERHEAD_ASSIGN_OR_RETURN(const scene::Scene scene, offers_.Decide(job.scene, std::nullopt));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::int64_t paths, source_->TraceLight(scene, job.fields));
-  last_drawn_.reset();
-  return paths > 0 && paths < kImagePaths;
+  if (!scene.rendering.traced_light) return false;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const correction::LightProgress progress,
+                               source_->TraceLight(scene, job.fields));
+  return progress.steps > 0 && !progress.HasTraced(kImagePaths);
 }
 
 RenderLoop::Outcome RenderLoop::TryImage() {
   std::optional<ImageJob> job = NextImage();
   if (!job.has_value()) return {};
   const absl::StatusOr<bool> goes_on = TraceForImage(*job);
-  if (!goes_on.ok()) {
-    job->done(goes_on.status());
-  } else if (*goes_on) {
+  const bool waits = absl::IsResourceExhausted(goes_on.status());
+  if (waits || (goes_on.ok() && *goes_on)) {
     const std::lock_guard lock(images_mutex_);
     images_.push_back(*std::move(job));  // others have their turn
-  } else {
-    job->done(DrawImage(*job));
+    if (waits) return {false, Clock::now() + kTracingLater};
+    return {true, std::nullopt};
   }
+  job->done(goes_on.ok() ? DrawImage(*job) : goes_on.status());
   return {true, std::nullopt};
 }
 

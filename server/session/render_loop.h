@@ -54,6 +54,8 @@ struct ImageJob {
 
 // Paths that a picture outside any session waits for if its scene has traced light.
 inline constexpr std::int64_t kImagePaths = 1'000'000;
+// When tracing is tried again for what found too much of it going on.
+inline constexpr Clock::duration kTracingLater = std::chrono::milliseconds(500);
 
 class RenderLoop {
  public:
@@ -90,16 +92,17 @@ class RenderLoop {
   // The scene of a revision with the setting that reaches what it asks for.
   struct Decided {
     std::uint64_t revision = 0;
-    std::shared_ptr<const scene::Scene> scene;  // null if that failed
-    int decided_again = 0;                      // at rest, by what its frames have cost
-    bool checked = false;                       // drawn with half the slices as well
-    bool settled = false;                       // nothing more is to be learnt of it
+    std::shared_ptr<const scene::Scene> scene;   // null if that failed
+    int decided_again = 0;                       // at rest, by what its frames have cost
+    bool checked = false;                        // drawn with half the slices as well
+    std::optional<double> discretisation_error;  // found so
+    bool settled = false;                        // nothing more is to be learnt of it
   };
   // How far the light of a revision has been traced.
   struct TracedLight {
     std::uint64_t revision = 0;
-    std::int64_t begun_at = -1;  // paths that were there before; none known yet
-    std::int64_t shown = 0;      // paths of the newest picture
+    std::optional<correction::LightProgress> begun_at;  // what was there before
+    std::int64_t shown = 0;                             // paths of the newest picture
     base::Stopwatch since_shown;
     bool ended = false;
   };
@@ -188,8 +191,9 @@ class RenderLoop {
   bool warm_ = false;
   CostModels machine_costs_;
   Offers offers_;
-  // Whose shaders are compiled: what a renderer, mode and transport cost first foretells nothing.
-  std::set<std::tuple<scene::Renderer, scene::Mode, scene::Transport>> compiled_;
+  // Whose shaders are compiled: what a renderer, mode, transport and correction cost first
+  // foretells nothing.
+  std::set<std::tuple<scene::Renderer, scene::Mode, scene::Transport, bool>> compiled_;
 
   std::unique_ptr<FieldsReader> reader_;
   std::unique_ptr<FrameEncoder> encoder_;

@@ -72,8 +72,6 @@ RenderLoop::Outcome RenderLoop::Check(const std::shared_ptr<Session>& session, T
 
 RenderLoop::Outcome RenderLoop::TraceLight(const std::shared_ptr<Session>& session, Track& track,
                                            const NewestScene& shown) {
-  // Of a view that rests; more changes what is seen by less than a hundredth.
-  constexpr std::int64_t kMostPaths = 4'000'000;
   // A picture is drawn anew for so many times the paths, but not more often, nor less, than this.
   constexpr double kWorthShowing = 1.5;
   constexpr double kShownAtMost_ms = 500.0;
@@ -85,17 +83,24 @@ RenderLoop::Outcome RenderLoop::TraceLight(const std::shared_ptr<Session>& sessi
   TracedLight& light = track.traced_light;
   if (light.revision != shown.revision) light = {.revision = shown.revision};
   if (light.ended) return {};
-  const auto paths = source_->TraceLight(scene, track.fields);
-  if (!paths.ok()) {
+  const auto progress = source_->TraceLight(scene, track.fields);
+  if (absl::IsResourceExhausted(progress.status())) return {false, Clock::now() + kTracingLater};
+  if (!progress.ok()) {
     light.ended = true;
-    Fail(*session, track, shown.revision, paths.status());
+    Fail(*session, track, shown.revision, progress.status());
     return {};
   }
-  if (light.begun_at < 0) light.begun_at = light.shown = *paths;
-  light.ended = *paths == 0 || *paths - light.begun_at >= kMostPaths;
-  if (*paths == 0) return {};
+  const std::int64_t paths = progress->paths;
+  if (!light.begun_at.has_value()) {
+    light.begun_at = *progress;
+    light.shown = paths;
+  }
+  const correction::LightProgress since{paths - light.begun_at->paths,
+                                        progress->steps - light.begun_at->steps};
+  light.ended = progress->steps == 0 || since.HasTraced(kTracedPaths);
+  if (paths == 0) return {!light.ended, std::nullopt};
   const double ms = light.since_shown.ElapsedMs();
-  const bool more = static_cast<double>(*paths) >= kWorthShowing * static_cast<double>(light.shown);
+  const bool more = static_cast<double>(paths) >= kWorthShowing * static_cast<double>(light.shown);
   const bool show = light.ended || ms >= kShownAtLeast_ms || (more && ms >= kShownAtMost_ms);
   if (!show) return {true, std::nullopt};
   double total_ms = 0.0;
@@ -105,7 +110,9 @@ RenderLoop::Outcome RenderLoop::TraceLight(const std::shared_ptr<Session>& sessi
     Fail(*session, track, shown.revision, picture.status());
     return {};
   }
-  light.shown = *paths;
+  picture->accuracy = offers_.Report(scene, {}, track.decided->discretisation_error,
+                                     picture->modelled.traced_paths);
+  light.shown = paths;
   light.since_shown.Restart();
   Send(track, {session, shown.revision, scene, true, *std::move(picture), std::nullopt});
   return {true, std::nullopt};
@@ -124,7 +131,9 @@ void RenderLoop::DrawChecked(const std::shared_ptr<Session>& session, Track& tra
   if (const auto view_ms = ViewMs(total_ms, frame.stages); view_ms.has_value()) {
     offers_.Observe(*scene, *view_ms);
   }
-  frame.accuracy = offers_.Report(*scene, {}, checked->discretisation_error);
+  track.decided->discretisation_error = checked->discretisation_error;
+  frame.accuracy =
+      offers_.Report(*scene, {}, checked->discretisation_error, frame.modelled.traced_paths);
   Send(track, {session, revision, *scene, true, std::move(frame), std::nullopt});
 }
 

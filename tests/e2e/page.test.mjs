@@ -371,6 +371,35 @@ test("a cumulus as a surface, and the parts of its light", async () => {
   await page.getByTestId("rendering-section").locator("summary").click();
 });
 
+test("traced light corrects the picture while it rests, and stays when it turns", async () => {
+  await page.getByTestId("rendering-section").locator("summary").click();
+  const transport = page.getByTestId("transport");
+  const usual = await transport.inputValue();
+  assert.equal(await page.getByTestId("traced-light").count(), 0);
+  await changing(() => transport.selectOption({ label: "Diffusion" }));
+  const more = (than) =>
+    page.waitForFunction(
+      (least) => Number.parseFloat(document.querySelector("[data-testid=traced-paths]")?.textContent) > least,
+      than,
+      { timeout: PICTURE_TIMEOUT_MS, polling: 50 },
+    );
+  await page.getByTestId("traced-light").check();
+  await more(0);
+  const paths = Number.parseFloat(await page.getByTestId("traced-paths").textContent());
+  await more(paths);
+  await screenshot("9-traced-light");
+  await changing(() => drag(60, 0));
+  await more(paths);
+  await changing(() => page.getByTestId("traced-light").uncheck());
+  await rested();
+  assert.equal(await page.getByTestId("traced-paths").count(), 0);
+  await changing(async () => {
+    await drag(-60, 0);
+    await transport.selectOption(usual);
+  });
+  await page.getByTestId("rendering-section").locator("summary").click();
+});
+
 test("an accuracy asked for is reached by a setting that the server picks, or the nearest is told", async () => {
   await page.getByTestId("accuracy-section").locator("summary").click();
   const report = () => page.getByTestId("accuracy-report").evaluate((text) => ({ ...text.dataset }));

@@ -102,16 +102,17 @@ class FakeFrameSource final : public session::FrameSource {
     return session::CheckedFrame{std::move(frame), 1.0 / scene.rendering.slices};
   }
 
-  absl::StatusOr<std::int64_t> TraceLight(
+  absl::StatusOr<correction::LightProgress> TraceLight(
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
     THUNDERHEAD_CHECK(fields != nullptr, "traced without fields");
-    if (!scene::ShowsTracedLight(scene.rendering)) return 0;
+    if (!scene::ShowsTracedLight(scene.rendering)) return correction::LightProgress{};
+    if (machine_->traces_enough) return absl::ResourceExhaustedError("it traces enough already");
     if (scene.sun.azimuth_deg == machine_->cannot_trace_azimuth_deg) {
-      return absl::ResourceExhaustedError("the fake machine traces enough already");
+      return absl::InternalError("the fake machine cannot trace that");
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    return machine_->traced_paths += 100'000;
+    machine_->tracing.Pass();
+    return correction::LightProgress{machine_->traced_paths += 100'000, ++machine_->traced_steps};
   }
 
   absl::StatusOr<session::DisplayFrame> Tone(const session::LinearPicture& picture,

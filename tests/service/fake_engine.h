@@ -92,7 +92,10 @@ struct FakeMachine {
   std::atomic<int> cannot_prepare{-1};
   std::atomic<int> checked{0};                // frames drawn with half the slices as well
   std::atomic<std::int64_t> traced_paths{0};  // a hundred thousand more each time
+  std::atomic<std::int64_t> traced_steps{0};
   std::atomic<double> cannot_trace_azimuth_deg{-1.0};
+  std::atomic<bool> traces_enough{false};  // for others
+  Gate tracing;
 
   std::vector<Drawn> Log();
   void Add(Drawn drawn);

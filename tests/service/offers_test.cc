@@ -151,7 +151,7 @@ TEST_F(OffersTest, AViewWithoutATableIsTold) {
   scene_.accuracy = MaxError{0.35};
   EXPECT_THAT(std::string(offers_.Decide(scene_, std::nullopt).status().message()),
               HasSubstr("no accuracy can be offered"));
-  EXPECT_FALSE(offers_.Report(scene_, {}, std::nullopt).has_value());
+  EXPECT_FALSE(offers_.Report(scene_, {}, std::nullopt, 0).has_value());
 }
 
 TEST_F(OffersTest, LargerPicturesCostMore) {
@@ -174,20 +174,20 @@ TEST_F(OffersTest, TimesAreCorrectedByWhatFramesCost) {
 TEST_F(OffersTest, ReportsWhatItBelieves) {
   scene_.accuracy = MaxError{0.35};
   const scene::Scene decided = *offers_.Decide(scene_, std::nullopt);
-  AccuracyReport report = *offers_.Report(decided, {}, std::nullopt);
+  AccuracyReport report = *offers_.Report(decided, {}, std::nullopt, 0);
   EXPECT_EQ(report.slices, 64);
   EXPECT_EQ(report.expected_ms, 10.0);
   EXPECT_EQ(report.model_error, 0.30);
   EXPECT_EQ(report.estimated_error, 0.30);
   EXPECT_EQ(report.unmet, "");
   // A coarse frame tells its own error, and that of what follows meets the limit.
-  report = *offers_.Report(decided, {0.5, 0.5}, std::nullopt);
+  report = *offers_.Report(decided, {0.5, 0.5}, std::nullopt, 0);
   EXPECT_EQ(report.slices, 32);
   EXPECT_EQ(report.image_scale, 0.5);
   EXPECT_EQ(report.estimated_error, 0.40);
   EXPECT_EQ(report.unmet, "");
   // The view's own slices add so much that the limit is missed after all.
-  report = *offers_.Report(decided, {}, 0.4);
+  report = *offers_.Report(decided, {}, 0.4, 0);
   EXPECT_DOUBLE_EQ(report.estimated_error, 0.5);
   EXPECT_EQ(report.discretisation_error, 0.4);
   EXPECT_THAT(report.unmet, HasSubstr("the nearest is 0.5"));
@@ -196,25 +196,91 @@ TEST_F(OffersTest, ReportsWhatItBelieves) {
 TEST_F(OffersTest, SaysWhatIsOutOfReachAndWhatIsNearest) {
   scene_.accuracy = MaxError{0.05};
   scene::Scene decided = *offers_.Decide(scene_, std::nullopt);
-  EXPECT_EQ(offers_.Report(decided, {}, std::nullopt)->unmet,
+  EXPECT_EQ(offers_.Report(decided, {}, std::nullopt, 0)->unmet,
             "an error of 0.05 is out of reach for top-down views; the nearest is 0.2, in 20 ms a "
             "frame. The reference refines to any error");
   scene_.accuracy = MaxMilliseconds{1.0};
   decided = *offers_.Decide(scene_, std::nullopt);
-  EXPECT_EQ(offers_.Report(decided, {}, std::nullopt)->unmet,
+  EXPECT_EQ(offers_.Report(decided, {}, std::nullopt, 0)->unmet,
             "1 ms a frame are out of reach for top-down views of 200x100 on this machine; the "
             "nearest is 5 ms, with an error of 0.4");
 }
 
 TEST_F(OffersTest, FramesThatAskForNothingAreReportedWhereTheTableKnowsThem) {
   scene_.rendering.slices = 128;
-  AccuracyReport report = *offers_.Report(scene_, {}, std::nullopt);
+  AccuracyReport report = *offers_.Report(scene_, {}, std::nullopt, 0);
   EXPECT_EQ(report.model_error, 0.20);
   EXPECT_FALSE(report.expected_ms.has_value());
   offers_.Observe(scene_, 30.0);
-  EXPECT_NEAR(*offers_.Report(scene_, {}, std::nullopt)->expected_ms, 30.0, 1e-9);
+  EXPECT_NEAR(*offers_.Report(scene_, {}, std::nullopt, 0)->expected_ms, 30.0, 1e-9);
   scene_.rendering.transport = scene::Transport::kPaper;
-  EXPECT_FALSE(offers_.Report(scene_, {}, std::nullopt).has_value());
+  EXPECT_FALSE(offers_.Report(scene_, {}, std::nullopt, 0).has_value());
+}
+
+class TracedOffersTest : public ::testing::Test {
+ protected:
+  // Two settings of diffusion, the second also with traced light.
+  static OfferTables Tables() {
+    measure::PricedSettings table;
+    table.size_px = {200, 100};
+    TradeSetting setting = Slices(64);
+    setting.transport = scene::Transport::kDiffusion;
+    table.rows.push_back({setting, 9.0, 0.12});
+    setting.slices = 128;
+    table.rows.push_back({setting, 10.0, 0.11});
+    for (const auto& [paths, error] : {std::pair{0.1, 0.08}, std::pair{1.0, 0.05}}) {
+      setting.million_paths = paths;
+      table.rows.push_back({setting, 9.5, error});
+    }
+    OfferTables tables;
+    tables.fill(table);
+    return tables;
+  }
+
+  TracedOffersTest() { scene_.output = {200, 100, 88}; }
+
+  scene::Rendering RenderingFor(const scene::Accuracy& limit) {
+    scene_.accuracy = limit;
+    return offers_.Decide(scene_, std::nullopt)->rendering;
+  }
+
+  Offers offers_{Tables()};
+  scene::Scene scene_;
+};
+
+TEST_F(TracedOffersTest, LightIsTracedWhereNothingElseIsAsAccurate) {
+  EXPECT_FALSE(RenderingFor(MaxError{0.115}).traced_light);
+  EXPECT_TRUE(RenderingFor(MaxError{0.09}).traced_light);
+  EXPECT_TRUE(RenderingFor(MaxError{0.06}).traced_light);
+  EXPECT_TRUE(RenderingFor(MaxError{0.01}).traced_light);  // the nearest
+  EXPECT_EQ(RenderingFor(MaxError{0.01}).slices, 128);
+  // A limit of time takes no more of the machine than it says.
+  EXPECT_FALSE(RenderingFor(MaxMilliseconds{50.0}).traced_light);
+}
+
+TEST_F(TracedOffersTest, TheErrorIsThatOfThePathsSoFar) {
+  scene_.accuracy = MaxError{0.06};
+  const scene::Scene decided = *offers_.Decide(scene_, std::nullopt);
+  const auto error_after = [&](std::int64_t paths) {
+    return offers_.Report(decided, {}, std::nullopt, paths)->model_error;
+  };
+  EXPECT_EQ(error_after(0), 0.11);
+  EXPECT_EQ(error_after(90'000), 0.11);
+  EXPECT_EQ(error_after(100'000), 0.08);
+  EXPECT_EQ(error_after(4'000'000), 0.05);
+  // Few paths are on their way to what was asked for.
+  EXPECT_EQ(offers_.Report(decided, {}, std::nullopt, 0)->unmet, "");
+  scene_.accuracy = MaxError{0.01};
+  const scene::Scene nearest = *offers_.Decide(scene_, std::nullopt);
+  EXPECT_THAT(offers_.Report(nearest, {}, std::nullopt, 0)->unmet,
+              HasSubstr("the nearest is 0.05"));
+}
+
+TEST_F(TracedOffersTest, FramesOfTracedLightTeachTheirSettingsTime) {
+  scene_.accuracy = MaxError{0.06};
+  const scene::Scene decided = *offers_.Decide(scene_, std::nullopt);
+  offers_.Observe(decided, 19.0);
+  EXPECT_NEAR(*offers_.Report(decided, {}, std::nullopt, 0)->expected_ms, 19.0, 1e-9);
 }
 
 TEST(BuiltInOfferTablesTest, ServeEveryKindOfView) {

@@ -101,7 +101,7 @@ function Report({ report }: { report: AccuracyReport }) {
         {(Transport[report.transport] ?? "").toLowerCase()} transport
         {hasSlices(report.renderer) && `, ${report.slices} slices`}
         {report.renderer === Renderer.METABALL && `, ${report.slices} balls`}
-        {report.imageScale < 1 && ` at ${percent(report.imageScale)} of the size`}
+        {report.imageScale !== 1 && ` at ${percent(report.imageScale)} of the size`}
         {report.expectedMilliseconds !== undefined &&
           `; ${formatNumber(report.expectedMilliseconds)} ms a full frame`}
         .

@@ -15,6 +15,7 @@ const STAGE_NAMES: Readonly<Record<string, string>> = {
   view: "View",
   composite: "Sky and ground",
   trace: "Traced so far",
+  correction: "Light correction",
   tone: "Tone map",
   read_back: "Read back",
   encode: "Encode",

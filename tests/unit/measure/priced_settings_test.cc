@@ -55,6 +55,15 @@ TEST(PricedSettings, WhatScenesCannotAskForIsLeftOut) {
   EXPECT_EQ(table->rows.size(), 1U);
 }
 
+TEST(PricedSettings, TracedLightIsTold) {
+  const auto table =
+      ReadPricedSettings(kHead + "million_paths," + kNames + "0," + kRow + "0.3," + kRow);
+  ASSERT_TRUE(table.ok()) << table.status();
+  EXPECT_EQ(table->rows[0].setting.million_paths, 0.0);
+  EXPECT_EQ(table->rows[1].setting.million_paths, 0.3);
+  EXPECT_THAT(Complaint(kHead + "million_paths," + kNames + "many," + kRow), HasSubstr("line 4"));
+}
+
 TEST(PricedSettings, WhatIsNotUnderstoodIsRefusedAndNamed) {
   EXPECT_THAT(Complaint(kHead + "light_color," + kNames + "blue," + kRow),
               HasSubstr("column 'light_color' is not known"));
@@ -72,7 +81,7 @@ TEST(PricedSettings, ALineThatIsNoRowIsNamed) {
   };
   for (const std::string& text :
        {with("light_volume", "crystal_ball"), with("consistent", "magical"), with("32", "0"),
-        with("0.5", "1.5"), with("5.29", "nan"), with("5.29", "-1"), with("0.33", "inf"),
+        with("0.5", "2.5"), with("5.29", "nan"), with("5.29", "-1"), with("0.33", "inf"),
         with(",88", ""), with("0.33", "0.33,1")}) {
     EXPECT_THAT(Complaint(text), HasSubstr("its line 5")) << text;
   }
