@@ -335,13 +335,19 @@ absl::StatusOr<DisplayFrame> RenderLoop::DrawImage(const ImageJob& job) {
   return picture;
 }
 
-// A picture with traced light takes its turns until enough is traced; true if it is not yet.
+// A picture with traced light takes its turns until enough is traced: for the error that it asks
+// for, if it does. True if it is not yet.
 absl::StatusOr<bool> RenderLoop::TraceForImage(const ImageJob& job) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const scene::Scene scene, offers_.Decide(job.scene, std::nullopt));
   if (!scene.rendering.traced_light) return false;
   THUNDERHEAD_ASSIGN_OR_RETURN(const correction::LightProgress progress,
                                source_->TraceLight(scene, job.fields));
-  return progress.steps > 0 && !progress.HasTraced(kImagePaths);
+  if (progress.steps == 0) return false;
+  const auto* limit = std::get_if<scene::MaxError>(&scene.accuracy);
+  if (limit == nullptr) return !progress.HasTraced(kImagePaths);
+  const auto report = offers_.Report(scene, {}, std::nullopt, progress.paths);
+  const bool near = report.has_value() && report->estimated_error <= limit->relative_rmse;
+  return !near && !progress.HasTraced(kTracedPaths);
 }
 
 RenderLoop::Outcome RenderLoop::TryImage() {

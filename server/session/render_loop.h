@@ -52,7 +52,8 @@ struct ImageJob {
   std::function<void(absl::StatusOr<DisplayFrame>)> done;
 };
 
-// Paths that a picture outside any session waits for if its scene has traced light.
+// Paths that a picture outside any session waits for if its scene has traced light and asks for no
+// error.
 inline constexpr std::int64_t kImagePaths = 1'000'000;
 // When tracing is tried again for what found too much of it going on.
 inline constexpr Clock::duration kTracingLater = std::chrono::milliseconds(500);

@@ -131,5 +131,42 @@ TEST_F(TracedLightTest, PicturesWaitForAMillionPaths) {
   EXPECT_EQ(response.modelled().traced_paths(), 1'000'000U);
 }
 
+session::OfferTables TracedTables() {
+  measure::PricedSettings table;
+  table.size_px = {64, 36};
+  measure::TradeSetting setting;
+  setting.transport = scene::Transport::kDiffusion;
+  table.rows.push_back({setting, 10.0, 0.11});
+  for (const auto& [paths, error] : {std::pair{0.1, 0.08}, {0.5, 0.06}, {2.0, 0.05}}) {
+    setting.million_paths = paths;
+    table.rows.push_back({setting, 10.0, error});
+  }
+  session::OfferTables tables;
+  tables.fill(table);
+  return tables;
+}
+
+TEST(TracedImageTest, AnErrorTakesAsManyPathsAsItNeeds) {
+  service::ServerOptions options;
+  options.render_loop.offer_tables = TracedTables;
+  const auto paths_for = [&](float error) {
+    FakeService service(options);
+    v1::RenderImageRequest request;
+    *request.mutable_scene() = SmallScene();
+    request.mutable_scene()->mutable_accuracy()->set_max_error(error);
+    v1::RenderImageResponse response;
+    const grpc::Status status =
+        Call(service.stub(), &v1::ThunderheadService::Stub::RenderImage, request, &response);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    EXPECT_EQ(response.accuracy().unmet().empty(), error > 0.04F) << response.accuracy().unmet();
+    return response.modelled().traced_paths();
+  };
+  EXPECT_EQ(paths_for(0.2F), 0U);
+  EXPECT_EQ(paths_for(0.085F), 100'000U);
+  EXPECT_EQ(paths_for(0.07F), 500'000U);
+  EXPECT_EQ(paths_for(0.055F), 2'000'000U);
+  EXPECT_EQ(paths_for(0.01F), 4'000'000U);
+}
+
 }  // namespace
 }  // namespace thunderhead::testing

@@ -75,12 +75,14 @@ export function AccuracySection({ state }: { state: PageState }) {
           }
         />
       )}
-      {report !== undefined && <Report report={report} />}
+      {report !== undefined && (
+        <Report report={report} traced={(state.frame.value?.modelled?.tracedPaths ?? 0n) > 0n} />
+      )}
     </Section>
   );
 }
 
-function Report({ report }: { report: AccuracyReport }) {
+function Report({ report, traced }: { report: AccuracyReport; traced: boolean }) {
   const parts = [`light model ${percent(report.modelError)}`];
   if (report.discretisationError !== undefined) {
     parts.push(`few slices ${percent(report.discretisationError)}`);
@@ -99,6 +101,7 @@ function Report({ report }: { report: AccuracyReport }) {
         Believed error {percent(report.estimatedError)} ({parts.join(", ")}), by{" "}
         {RENDERER_NAMES[report.renderer] ?? Renderer[report.renderer]},{" "}
         {(Transport[report.transport] ?? "").toLowerCase()} transport
+        {traced && ", traced light"}
         {hasSlices(report.renderer) && `, ${report.slices} slices`}
         {report.renderer === Renderer.METABALL && `, ${report.slices} balls`}
         {report.imageScale !== 1 && ` at ${percent(report.imageScale)} of the size`}
