@@ -105,10 +105,6 @@ struct Compared {
 
   absl::Status Print(const scene::Scene& scene, const std::string& name,
                      const std::shared_ptr<const renderers::LightCorrection>& correction) const {
-    const auto error_of = [&](const measure::LinearImage& drawn) {
-      const double rmse = measure::RelativeRmse(drawn, truth);
-      return std::sqrt(std::max(rmse * rmse - noise * noise, 0.0));
-    };
     THUNDERHEAD_ASSIGN_OR_RETURN(
         const measure::LinearImage drawn,
         measure::DrawPart(renderer, scene, local.fields, part, flags.finer, correction));
@@ -116,25 +112,15 @@ struct Compared {
         const measure::LinearImage single,
         measure::DrawPart(renderer, scene, local.fields, part, 1, correction));
     std::cout << absl::StrFormat("%-5s %-15s %8.4f %+8.4f %8.4f %8.4f\n", measure::NameOf(part),
-                                 name, error_of(drawn), measure::RelativeBias(drawn, truth),
-                                 error_of(single), noise)
+                                 name, measure::RelativeRmseWithout(noise, drawn, truth),
+                                 measure::RelativeBias(drawn, truth),
+                                 measure::RelativeRmseWithout(noise, single, truth), noise)
               << std::flush;
     return WriteComparison(truth, drawn, local.scene.display,
                            absl::StrCat(flags.output, ".", measure::NameOf(part), ".",
                                         absl::StrReplaceAll(name, {{" ", "_"}}), ".png"));
   }
 };
-
-absl::Status TraceUntil(double million_paths, const Interruption& interruption,
-                        correction::LightCorrector* corrector) {
-  ProgressBar bar("tracing light");
-  while (!corrector->Progress().HasTraced(std::llround(1e6 * million_paths))) {
-    if (interruption.Token().stop_requested()) return absl::CancelledError("stopped");
-    THUNDERHEAD_RETURN_IF_ERROR(corrector->Step());
-    bar.Set(static_cast<double>(corrector->Progress().paths) / (1e6 * million_paths));
-  }
-  return absl::OkStatus();
-}
 
 // All light again, after so many paths have been traced.
 absl::Status MeasureTracedLight(const Compared& compared, const scene::Scene& scene,
@@ -147,7 +133,12 @@ absl::Status MeasureTracedLight(const Compared& compared, const scene::Scene& sc
   double traced_ms = 0.0;
   for (const double million_paths : compared.flags.million_paths) {
     stopwatch.Restart();
-    THUNDERHEAD_RETURN_IF_ERROR(TraceUntil(million_paths, interruption, corrector.get()));
+    {
+      ProgressBar bar("tracing light");
+      THUNDERHEAD_RETURN_IF_ERROR(corrector->TraceUntil(std::llround(1e6 * million_paths),
+                                                        interruption.Token(),
+                                                        [&](double share) { bar.Set(share); }));
+    }
     traced_ms += stopwatch.ElapsedMs();
     const std::string name = absl::StrFormat("%g Mpaths %.0f s", million_paths, 1e-3 * traced_ms);
     THUNDERHEAD_RETURN_IF_ERROR(compared.Print(scene, name, corrector->Correction()));
@@ -162,8 +153,8 @@ absl::Status MeasureTransport(const Compared& compared,
   scene.rendering.transport = transport.value;
   THUNDERHEAD_RETURN_IF_ERROR(compared.Print(scene, std::string(transport.name), nullptr));
   scene.rendering.traced_light = true;
-  const bool traces =
-      compared.part == LightPart::kAll && correction::TracesLight(scene, *compared.local.fields);
+  const bool traces = compared.part == LightPart::kAll && !compared.flags.million_paths.empty() &&
+                      correction::TracesLight(scene, *compared.local.fields);
   return traces ? MeasureTracedLight(compared, scene, interruption) : absl::OkStatus();
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 #include <variant>
 
@@ -13,6 +12,7 @@
 #include "reference/philox.h"
 #include "reference/scene_problem.h"
 #include "reference/trace_rays.h"
+#include "reference/tracking.h"
 #include "scene/drawn_fields.h"
 
 namespace thunderhead::correction {
@@ -147,6 +147,16 @@ absl::Status LightCorrector::Step() {
   return absl::OkStatus();
 }
 
+absl::Status LightCorrector::TraceUntil(std::int64_t paths, const std::stop_token& stop,
+                                        const std::function<void(double)>& observer) {
+  while (!progress_.HasTraced(paths)) {
+    if (stop.stop_requested()) return absl::CancelledError("stopped");
+    THUNDERHEAD_RETURN_IF_ERROR(Step());
+    if (observer) observer(static_cast<double>(progress_.paths) / static_cast<double>(paths));
+  }
+  return absl::OkStatus();
+}
+
 absl::StatusOr<LightCorrector::Probe> LightCorrector::DrawProbe() {
   renderers::DrawQuality quality;
   quality.single_precision = true;
@@ -204,13 +214,10 @@ void LightCorrector::TraceGround() {
   for (int i = 0; i < kGroundRays; ++i) {
     reference::RandomStream random(kGroundSeed, pass, static_cast<std::uint32_t>(i));
     const glm::dvec2 place(random.Uniform(), random.Uniform());
-    const double sine = std::sqrt(random.Uniform());
-    const double level = std::sqrt(1.0 - sine * sine);
-    const double azimuth = 2.0 * std::numbers::pi * random.Uniform();
     places.emplace_back(place, 0.5);
     const glm::dvec2 from_m = Middle_m(box_) + (2.0 * place - 1.0) * GroundReach_m(box_);
     rays.push_back({glm::dvec3(from_m, over_ground_.ground->height_m + kAboveGround_m),
-                    {level * std::cos(azimuth), level * std::sin(azimuth), sine}});
+                    reference::SampleCosine({0.0, 0.0, 1.0}, &random)});
     skies.push_back(over_ground_.sky(rays.back().direction));
     sky_sum_ += skies.back();
   }

@@ -6,7 +6,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <stop_token>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -45,6 +47,11 @@ class LightCorrector {
 
   // Goes on by some thousand paths: over the ground alone at first, then one picture each time.
   absl::Status Step();
+  // Steps until that is reached (LightProgress::HasTraced); CANCELLED if `stop` asked to stop
+  // before. `observer`, which may be null, is told the share of the paths that there are.
+  absl::Status TraceUntil(std::int64_t paths, const std::stop_token& stop,
+                          const std::function<void(double)>& observer);
+
   // Paths in all, the ground's not counted.
   const LightProgress& Progress() const { return progress_; }
 

@@ -1,5 +1,6 @@
 #include "measure/image_error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -35,6 +36,11 @@ double RelativeNoise(const std::vector<glm::vec3>& standard_error, const LinearI
     squares += Sum(glm::dvec3(error) * glm::dvec3(error));
   return std::sqrt(squares / (3.0 * static_cast<double>(standard_error.size()))) /
          MeanRadiance(truth);
+}
+
+double RelativeRmseWithout(double truth_noise, const LinearImage& image, const LinearImage& truth) {
+  const double rmse = RelativeRmse(image, truth);
+  return std::sqrt(std::max(rmse * rmse - truth_noise * truth_noise, 0.0));
 }
 
 double RelativeBias(const LinearImage& image, const LinearImage& truth) {

@@ -29,6 +29,10 @@ double RelativeRmse(const LinearImage& image, const LinearImage& truth);
 // this truth.
 double RelativeNoise(const std::vector<glm::vec3>& standard_error, const LinearImage& truth);
 
+// RelativeRmse without a noise of the truth of that RelativeNoise: the noise knows nothing of the
+// picture, so that mean squares add up. 0 where it is all noise.
+double RelativeRmseWithout(double truth_noise, const LinearImage& image, const LinearImage& truth);
+
 // Mean difference over the truth's mean radiance: above 0 where the picture is too bright.
 double RelativeBias(const LinearImage& image, const LinearImage& truth);
 

@@ -186,11 +186,8 @@ absl::StatusOr<std::shared_ptr<const renderers::LightCorrection>> Trade::Correct
                                                        std::make_shared<gl::ProgramCache>(), 0));
     corrected_by_ = 0.0;
   }
-  while (corrected_by_ < million_paths &&
-         !corrector_->Progress().HasTraced(std::llround(1e6 * million_paths))) {
-    if (stop.stop_requested()) return absl::CancelledError("stopped");
-    THUNDERHEAD_RETURN_IF_ERROR(corrector_->Step());
-  }
+  THUNDERHEAD_RETURN_IF_ERROR(
+      corrector_->TraceUntil(std::llround(1e6 * million_paths), stop, nullptr));
   corrected_by_ = million_paths;
   return corrector_->Correction();
 }
@@ -229,9 +226,7 @@ absl::StatusOr<TradeRow> Trade::Measure(const TradeSetting& setting, const std::
     if (i >= 0) milliseconds.push_back(stopwatch.ElapsedMs());
     if (i + 1 < kTimedFrames) continue;
     const LinearImage image = ImageOf(*linear.radiance);
-    const double rmse = RelativeRmse(image, truth_);
-    // The truth's noise knows nothing of the picture, so that mean squares add up.
-    row.relative_rmse = std::sqrt(std::max(rmse * rmse - truth_noise_ * truth_noise_, 0.0));
+    row.relative_rmse = RelativeRmseWithout(truth_noise_, image, truth_);
     row.relative_bias = RelativeBias(image, truth_);
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(const frame::RgbImage seen, frame::DecodeJpeg(jpeg));

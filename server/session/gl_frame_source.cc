@@ -69,24 +69,27 @@ class GlFrameSource final : public FrameSource {
   absl::StatusOr<DisplayFrame> Draw(const scene::Scene& scene,
                                     const std::shared_ptr<const volume::HydrometeorFields>& fields,
                                     const FrameQuality& quality) override {
-    THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame linear,
-                                 renderers_.Draw(scene, fields, QualityOf(scene, fields, quality)));
-    return Display(linear, scene, fields);
+    const Correction correction = CorrectionOf(scene, fields);
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        const renderers::LinearFrame linear,
+        renderers_.Draw(scene, fields,
+                        correction.Applied({quality.image_scale, quality.slice_share})));
+    return Display(linear, scene, correction);
   }
 
   absl::StatusOr<CheckedFrame> DrawChecked(
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
+    const Correction correction = CorrectionOf(scene, fields);
     CheckedFrame checked;
-    THUNDERHEAD_ASSIGN_OR_RETURN(
-        const renderers::LinearFrame coarse,
-        renderers_.Draw(scene, fields, QualityOf(scene, fields, {1.0, 0.5})));
+    THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame coarse,
+                                 renderers_.Draw(scene, fields, correction.Applied({1.0, 0.5})));
     const std::vector<float> coarse_radiance = frame::ReadLinear(*coarse.radiance);
     THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame fine,
-                                 renderers_.Draw(scene, fields, QualityOf(scene, fields, {})));
+                                 renderers_.Draw(scene, fields, correction.Applied({})));
     checked.discretisation_error =
         RelativeDifference(coarse_radiance, frame::ReadLinear(*fine.radiance));
-    THUNDERHEAD_ASSIGN_OR_RETURN(checked.frame, Display(fine, scene, fields));
+    THUNDERHEAD_ASSIGN_OR_RETURN(checked.frame, Display(fine, scene, correction));
     return checked;
   }
 
@@ -107,27 +110,38 @@ class GlFrameSource final : public FrameSource {
   }
 
  private:
-  renderers::DrawQuality QualityOf(const scene::Scene& scene,
-                                   const std::shared_ptr<const volume::HydrometeorFields>& fields,
-                                   const FrameQuality& quality) {
-    renderers::DrawQuality drawn{quality.image_scale, quality.slice_share};
+  // What traced paths correct of a scene's light; without any, nothing.
+  struct Correction {
+    std::shared_ptr<const renderers::LightCorrection> light;
+    std::int64_t paths = 0;
+    double milliseconds = 0.0;  // that finding it took
+
+    renderers::DrawQuality Applied(renderers::DrawQuality quality) const {
+      quality.correction = light;
+      return quality;
+    }
+  };
+
+  Correction CorrectionOf(const scene::Scene& scene,
+                          const std::shared_ptr<const volume::HydrometeorFields>& fields) {
     correction::LightCorrector* const corrector = correctors_.Find(scene, fields);
+    if (corrector == nullptr) return {};
     const base::Stopwatch stopwatch;
-    if (corrector != nullptr) drawn.correction = corrector->Correction();
-    correction_ms_ = stopwatch.ElapsedMs();
-    return drawn;
+    auto light = corrector->Correction();
+    return {std::move(light), corrector->Progress().paths, stopwatch.ElapsedMs()};
   }
 
-  absl::StatusOr<DisplayFrame> Display(
-      const renderers::LinearFrame& linear, const scene::Scene& scene,
-      const std::shared_ptr<const volume::HydrometeorFields>& fields) {
+  absl::StatusOr<DisplayFrame> Display(const renderers::LinearFrame& linear,
+                                       const scene::Scene& scene, const Correction& correction) {
     THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped,
                                  tone_mapper_.Map(*linear.radiance, scene.display));
     DisplayFrame frame;
     for (const renderers::StageTime& stage : linear.stages) {
       frame.stages.push_back({stage.stage, stage.milliseconds});
     }
-    if (correction_ms_ >= kWorthSaying_ms) frame.stages.push_back({"correction", correction_ms_});
+    if (correction.milliseconds >= kWorthSaying_ms) {
+      frame.stages.push_back({"correction", correction.milliseconds});
+    }
     Fill(linear.radiance->Size(), std::move(mapped), &frame);
     frame.modelled = {linear.fields,
                       linear.slices,
@@ -137,9 +151,8 @@ class GlFrameSource final : public FrameSource {
                       linear.balls,
                       linear.fit_error,
                       linear.not_shown,
-                      linear.ellipsoids};
-    const correction::LightCorrector* const corrector = correctors_.Find(scene, fields);
-    if (corrector != nullptr) frame.modelled.traced_paths = corrector->Progress().paths;
+                      linear.ellipsoids,
+                      correction.paths};
     return frame;
   }
 
@@ -155,7 +168,6 @@ class GlFrameSource final : public FrameSource {
   std::shared_ptr<renderers::BallFits> fits_ = std::make_shared<renderers::BallFits>();
   renderers::RendererPool renderers_{fits_};
   correction::CorrectorPool correctors_;
-  double correction_ms_ = 0.0;  // that finding the last one took
   frame::ToneMapper tone_mapper_;
   frame::ToneMapper picture_tone_mapper_;  // of other sizes: each keeps its buffers
   DeviceInfo info_;

@@ -150,8 +150,7 @@ TEST_F(LightCorrection, TakesMostOfTheErrorAway) {
   const measure::LinearImage exact{truth->image.size_px, truth->image.radiance};
   const double noise = measure::RelativeNoise(truth->image.standard_error, exact);
   const auto error_of = [&](const measure::LinearImage& drawn) {
-    const double rmse = measure::RelativeRmse(drawn, exact);
-    return std::sqrt(std::max(rmse * rmse - noise * noise, 0.0));
+    return measure::RelativeRmseWithout(noise, drawn, exact);
   };
   // Means over 4 x 4 rays a pixel, as the truth's pixels are means.
   const auto draw = [&](std::shared_ptr<const renderers::LightCorrection> correction) {
@@ -161,7 +160,8 @@ TEST_F(LightCorrection, TakesMostOfTheErrorAway) {
   const measure::LinearImage drawn = draw(nullptr);
   const auto corrector = MakeCorrector(0);
   EXPECT_EQ(corrector->Correction(), nullptr);
-  while (corrector->Progress().paths < 150'000) ASSERT_TRUE(corrector->Step().ok());
+  ASSERT_TRUE(corrector->TraceUntil(150'000, {}, nullptr).ok());
+  ASSERT_GE(corrector->Progress().paths, 150'000);
   const measure::LinearImage corrected = draw(corrector->Correction());
   EXPECT_LT(error_of(corrected), 0.3 * error_of(drawn));
   // Most of what is left is the ground, 2 % too bright with and without a correction.

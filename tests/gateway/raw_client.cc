@@ -63,16 +63,15 @@ error_code RawClient::Await(Start start) {
   return result;
 }
 
-void RawClient::Send(const std::string& bytes) {
-  ThrowOn(Await([&](auto handler) {
-            net::async_write(stream_, net::buffer(bytes), std::move(handler));
-          }),
-          "sending");
+boost::system::error_code RawClient::Write(const std::string& bytes) {
+  return Await(
+      [&](auto handler) { net::async_write(stream_, net::buffer(bytes), std::move(handler)); });
 }
 
+void RawClient::Send(const std::string& bytes) { ThrowOn(Write(bytes), "sending"); }
+
 void RawClient::SendUntilClosed(const std::string& bytes) {
-  const boost::system::error_code error = Await(
-      [&](auto handler) { net::async_write(stream_, net::buffer(bytes), std::move(handler)); });
+  const boost::system::error_code error = Write(bytes);
   if (error != net::error::broken_pipe && error != net::error::connection_reset) {
     ThrowOn(error, "sending");
   }

@@ -47,6 +47,7 @@ class RawClient {
   using Parser = boost::beast::http::response_parser<boost::beast::http::string_body>;
   template <typename Start>
   boost::system::error_code Await(Start start);
+  boost::system::error_code Write(const std::string& bytes);
 
   boost::asio::io_context io_;
   boost::beast::tcp_stream stream_;

@@ -34,6 +34,14 @@ TEST(ImageError, RelativeRmseAndBias) {
   EXPECT_DOUBLE_EQ(RelativeNoise({glm::vec3(0.2F), glm::vec3(0.2F)}, truth), 0.2F / 2.0);
 }
 
+TEST(ImageError, TheTruthsNoiseIsTakenOutInSquares) {
+  const LinearImage truth = Linear({1.0F, 3.0F});
+  const LinearImage image = Linear({2.0F, 2.0F});  // 0.5 off
+  EXPECT_NEAR(RelativeRmseWithout(0.3, image, truth), 0.4, 1e-12);
+  EXPECT_EQ(RelativeRmseWithout(0.0, image, truth), RelativeRmse(image, truth));
+  EXPECT_EQ(RelativeRmseWithout(0.6, image, truth), 0.0);
+}
+
 TEST(Flip, OfAPictureWithItselfIsZero) {
   const DisplayImage picture = Drawn([](int x, int y) { return (x * 7 + y * 13) % 256; });
   EXPECT_EQ(Flip(picture, picture), 0.0);
