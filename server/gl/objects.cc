@@ -1,5 +1,6 @@
 #include "gl/objects.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -94,6 +95,8 @@ void Texture3D::Upload(GLenum format, GLenum type, const void* texels) {
   glTextureSubImage3D(name_.Get(), 0, 0, 0, 0, size_.x, size_.y, size_.z, format, type, texels);
 }
 
+void Texture2D::Clear() { glClearTexImage(name_.Get(), 0, GL_RED, GL_FLOAT, nullptr); }
+
 void Texture2D::BindImage(GLuint unit, GLenum access) const {
   glBindImageTexture(unit, name_.Get(), 0, GL_FALSE, 0, access, internal_format_);
 }
@@ -108,6 +111,36 @@ void Texture3D::Clear() { glClearTexImage(name_.Get(), 0, GL_RED, GL_FLOAT, null
 
 void Texture3D::BindImage(GLuint unit, GLenum access) const {
   glBindImageTexture(unit, name_.Get(), 0, GL_TRUE, 0, access, internal_format_);
+}
+
+Texture2DArray::Texture2DArray(GLenum internal_format, glm::ivec2 size, int layers)
+    : name_(NewTexture(GL_TEXTURE_2D_ARRAY, Edge::kClamp)),
+      size_(size),
+      layers_(layers),
+      internal_format_(internal_format),
+      bytes_(BytesPerTexel(internal_format) * static_cast<std::size_t>(size.x) *
+             static_cast<std::size_t>(size.y) * static_cast<std::size_t>(layers)) {
+  glTextureStorage3D(name_.Get(), 1, internal_format, size.x, size.y, layers);
+}
+
+void Texture2DArray::BindImage(GLuint unit, GLenum access) const {
+  glBindImageTexture(unit, name_.Get(), 0, GL_TRUE, 0, access, internal_format_);
+}
+
+void Texture2DArray::Fill(const glm::ivec2& low, const glm::ivec2& high, float red,
+                          float green) const {
+  const std::array<float, 2> value = {red, green};
+  glClearTexSubImage(name_.Get(), 0, low.x, low.y, 0, high.x - low.x, high.y - low.y, layers_,
+                     GL_RG, GL_FLOAT, value.data());
+}
+
+std::vector<float> Texture2DArray::Download(int layer) const {
+  std::vector<float> values(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) *
+                            4);
+  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+  glGetTextureSubImage(name_.Get(), 0, 0, 0, layer, size_.x, size_.y, 1, GL_RGBA, GL_FLOAT,
+                       static_cast<GLsizei>(values.size() * sizeof(float)), values.data());
+  return values;
 }
 
 Framebuffer::Framebuffer(const Texture2D& color) : Framebuffer({&color}) {}

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <initializer_list>
 #include <utility>
+#include <vector>
 
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
@@ -58,6 +59,8 @@ class Texture2D {
   glm::ivec2 Size() const { return size_; }
   std::size_t Bytes() const { return bytes_; }
   void Bind(GLuint unit) const { glBindTextureUnit(unit, name_.Get()); }
+  // Fills it with zeros.
+  void Clear();
   // For imageLoad and imageStore.
   void BindImage(GLuint unit, GLenum access) const;
 
@@ -95,6 +98,31 @@ class Texture3D {
  private:
   Name<internal::DeleteTexture> name_;
   glm::ivec3 size_{0};
+  GLenum internal_format_ = 0;
+  std::size_t bytes_ = 0;
+};
+
+// Immutable two-dimensional textures of one size, with linear filtering within each.
+class Texture2DArray {
+ public:
+  Texture2DArray() = default;
+  Texture2DArray(GLenum internal_format, glm::ivec2 size, int layers);
+
+  glm::ivec2 Size() const { return size_; }
+  int Layers() const { return layers_; }
+  std::size_t Bytes() const { return bytes_; }
+  void Bind(GLuint unit) const { glBindTextureUnit(unit, name_.Get()); }
+  // For imageLoad and imageStore, all layers.
+  void BindImage(GLuint unit, GLenum access) const;
+  // Sets the texels of all layers from `low` to before `high`.
+  void Fill(const glm::ivec2& low, const glm::ivec2& high, float red, float green) const;
+  // One layer, as four floats a texel; waits for what draws it.
+  std::vector<float> Download(int layer) const;
+
+ private:
+  Name<internal::DeleteTexture> name_;
+  glm::ivec2 size_{0};
+  int layers_ = 0;
   GLenum internal_format_ = 0;
   std::size_t bytes_ = 0;
 };

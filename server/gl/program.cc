@@ -158,6 +158,9 @@ GLint Program::Location(std::string_view uniform) const {
 void Program::Set(std::string_view uniform, int value) const {
   glProgramUniform1i(name_.Get(), Location(uniform), value);
 }
+void Program::Set(std::string_view uniform, const glm::ivec2& value) const {
+  glProgramUniform2iv(name_.Get(), Location(uniform), 1, glm::value_ptr(value));
+}
 void Program::Set(std::string_view uniform, const glm::ivec3& value) const {
   glProgramUniform3iv(name_.Get(), Location(uniform), 1, glm::value_ptr(value));
 }

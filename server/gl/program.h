@@ -49,6 +49,7 @@ class Program {
 
   void Use() const { glUseProgram(name_.Get()); }
   void Set(std::string_view uniform, int value) const;
+  void Set(std::string_view uniform, const glm::ivec2& value) const;
   void Set(std::string_view uniform, const glm::ivec3& value) const;
   void Set(std::string_view uniform, float value) const;
   void Set(std::string_view uniform, const glm::vec2& value) const;

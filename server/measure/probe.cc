@@ -122,7 +122,7 @@ absl::StatusOr<Seen> Probe::Draw(const scene::Scene& scene, const volume::Hydrom
     renderers::HalfAngleRenderer renderer(programs_);
     THUNDERHEAD_RETURN_IF_ERROR(renderer.Render(medium, settings, true));
     seen.eye = frame::ReadLinear(renderer.Eye());
-    light = frame::ReadLinear(renderer.Light());
+    light = renderer.Light();
   } else if (scene.rendering.renderer == scene::Renderer::kMetaball) {
     renderers::MetaballRenderer renderer(programs_);
     THUNDERHEAD_ASSIGN_OR_RETURN(

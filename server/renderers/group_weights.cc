@@ -60,9 +60,11 @@ GroupWeights::GroupWeights(const Medium& medium, const scene::Rendering& renderi
                                 : DisplayNormalisation(group.phase, cut.cut_cosine));
     color.push_back(group.color);
     colored = colored || group.color != glm::vec3(1.0F);
+    even_albedo = even_albedo && group.albedo == medium.groups.front().albedo;
   }
+  even_albedo = even_albedo && !colored;
   const bool whole = IsConsistent(rendering) && !IsTranslucent(rendering);
-  phase_cut = whole ? 1.0F : static_cast<float>(std::cos(theta_f / 2.0));
+  phase_cut = whole ? 0.0F : static_cast<float>(std::pow(std::sin(theta_f / 4.0), 2.0));
   const physics::PhaseFunction& first = medium.groups.front().phase;
   cumulative_phase = {physics::CumulativePhase(first, theta_f / 4.0),
                       physics::CumulativePhase(first, theta_f / 2.0)};
@@ -72,6 +74,15 @@ void GroupWeights::BindPhase(const gl::Program& program) const {
   program.Set("phase_cut", phase_cut);
   program.Set("phase_display", phase_display);
   program.Set("group_color", color);
+}
+
+void GroupWeights::BindScattered(const gl::Program& program, const ResidentMedium& medium,
+                                 const Illumination& illumination) const {
+  BindPhase(program);
+  program.Set("scattering_weights", medium.Weights(scattering));
+  program.Set("albedo", medium.Content().groups.front().albedo);
+  program.Set("sunlight", illumination.sunlight);
+  program.Set("ambient", illumination.ambient);
 }
 
 }  // namespace thunderhead::renderers

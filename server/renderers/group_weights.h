@@ -10,6 +10,7 @@
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 #include "renderers/medium.h"
+#include "renderers/render_settings.h"
 #include "scene/scene.h"
 
 namespace thunderhead::renderers {
@@ -31,13 +32,17 @@ struct GroupWeights {
   std::vector<glm::vec3> color;
   bool colored = false;
   bool absorbs = false;
-  float phase_cut = 1.0F;            // cosine within which phase functions are held
+  bool even_albedo = true;           // one albedo for all groups, and no colours
+  float phase_cut = 0.0F;            // haversine within which phase functions are held
   glm::vec2 cumulative_phase{0.0F};  // CP(theta_f / 4), CP(theta_f / 2): Vis eq. 13
 
   GroupWeights(const Medium& medium, const scene::Rendering& rendering);
 
   // Sets the uniforms of common/phase.glsl.
   void BindPhase(const gl::Program& program) const;
+  // Those, and the ones of common/scattered.glsl. `medium` is the one that the weights are of.
+  void BindScattered(const gl::Program& program, const ResidentMedium& medium,
+                     const Illumination& illumination) const;
 };
 
 }  // namespace thunderhead::renderers

@@ -336,7 +336,7 @@ LinearFrame SceneRenderer::Report(const scene::Scene& scene,
   if (!medium_.Empty()) {
     const glm::dvec3 box_m = 2.0 * medium_.HalfExtent_m();
     const glm::dvec3 domain_m = fields.grid.HighCorner_m() - fields.grid.low_corner_m;
-    const bool leaps = drawn_by_ == scene::Renderer::kLightVolume;
+    const bool leaps = drawn_by_ != scene::Renderer::kMetaball;
     frame.occupied_share = (leaps ? medium_.OccupiedShare() : 1.0) * box_m.x * box_m.y * box_m.z /
                            (domain_m.x * domain_m.y * domain_m.z);
   }

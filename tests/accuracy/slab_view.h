@@ -75,7 +75,7 @@ class SlabView : public testing::Test {
       HalfAngleRenderer renderer(std::make_shared<gl::ProgramCache>());
       EXPECT_TRUE(renderer.Render(medium, settings, true).ok());
       seen.eye = frame::ReadLinear(renderer.Eye());
-      seen.light = frame::ReadLinear(renderer.Light());
+      seen.light = renderer.Light();
     } else {
       LightVolumeRenderer renderer(std::make_shared<gl::ProgramCache>());
       EXPECT_TRUE(renderer.CarryLight(medium, settings).ok());

@@ -9,6 +9,7 @@
 #include "glm/trigonometric.hpp"
 #include "renderers/group_weights.h"
 #include "renderers/half_angle/slice_reach.h"
+#include "renderers/half_angle/turns.h"
 #include "renderers/view_uniforms.h"
 
 namespace thunderhead::renderers {
@@ -17,17 +18,41 @@ namespace {
 constexpr int kMostLightTexels = 256;        // along the longer side of the light buffer
 constexpr double kLightTexelInCells = 0.75;  // size of a light texel
 constexpr int kThicknessSlices = 128;        // perpendicular to the light
+// Drawn to the picture in one pass. More change targets less often, but their light takes more
+// memory.
+constexpr int kSlabSlices = 16;
+// Way of the light between two exchanges with neighbouring texels, in the reach of one
+// (consistent transport).
+constexpr double kExchangeInReach = 3.0;
+constexpr int kGroupSide = 8;  // of carry.comp and thickness.comp
 constexpr GLuint kLightUnit = 4;
 constexpr GLuint kThicknessUnit = 5;
+constexpr GLuint kEyeUnit = 6;
 constexpr GLuint kGroundUnit = 7;
 
-enum LightPass { kCarry = 0, kTransmit = 1, kAddDepth = 2 };
+// Runs `program`, which is in use, for each texel of a rectangle.
+void Dispatch(const glm::ivec2& size) {
+  const glm::ivec2 groups = (size + kGroupSide - 1) / kGroupSide;
+  glDispatchCompute(static_cast<GLuint>(groups.x), static_cast<GLuint>(groups.y), 1);
+}
 
-void Scissor(const PixelRect& rect) {
-  glScissor(rect.low.x, rect.low.y, rect.high.x - rect.low.x, rect.high.y - rect.low.y);
+// Sets the uniforms of half_angle/slice_light.glsl.
+void BindSunRays(const gl::Program& program, const Slicing& slicing, const LightFrame& frame) {
+  program.Set("towards_sun", glm::vec3(frame.towards_sun));
+  program.Set("slice_normal", glm::vec3(slicing.normal));
+  program.Set("first_plane_m", static_cast<float>(slicing.first_m));
+  program.Set("light_path_m", static_cast<float>(slicing.light_path_m));
+  program.Set("light_right_m", glm::vec3(frame.right * frame.half_extent_m.x));
+  program.Set("light_up_m", glm::vec3(frame.up * frame.half_extent_m.y));
 }
 
 }  // namespace
+
+// Slices from `begin` to before `end`.
+struct HalfAngleRenderer::Slab {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
 
 struct HalfAngleRenderer::Programs {
   const gl::Program* eye;
@@ -38,7 +63,7 @@ HalfAngleRenderer::HalfAngleRenderer(std::shared_ptr<gl::ProgramCache> programs)
     : programs_(std::move(programs)) {}
 
 std::size_t HalfAngleRenderer::Bytes() const {
-  return Eye().Bytes() + light_[0].Bytes() + light_[1].Bytes() + thickness_.Bytes();
+  return 2 * Eye().Bytes() + light_.Bytes() + thickness_.Bytes() + turned_.Bytes();
 }
 
 void HalfAngleRenderer::Resize(const LightFrame& frame, double cell_m) {
@@ -47,13 +72,16 @@ void HalfAngleRenderer::Resize(const LightFrame& frame, double cell_m) {
   const double texel_m = std::max(longest_m / kMostLightTexels, kLightTexelInCells * cell_m);
   const glm::ivec2 light_size =
       glm::max(glm::ivec2(glm::ceil(2.0 * frame.half_extent_m / texel_m)), glm::ivec2(1));
-  if (light_[0].Size() == light_size) return;
-  for (int i = 0; i < 2; ++i) {
-    light_[i] = gl::Texture2D(GL_RG32F, light_size);
-    light_target_[i] = gl::Framebuffer(light_[i]);
+  if (light_.Size() != light_size) {
+    // A slab's light, and what leaves it.
+    light_ = gl::Texture2DArray(GL_RG32F, light_size, kSlabSlices + 1);
+    light_reach_ = {glm::ivec2(0), light_size};
+    thickness_ = gl::Texture2D(GL_R32F, light_size);
+    turned_ = gl::Texture2D(GL_R32F, light_size);
   }
-  thickness_ = gl::Texture2D(GL_R32F, light_size);
-  thickness_target_ = gl::Framebuffer(thickness_);
+  if (!light_reach_.Empty()) light_.Fill(light_reach_.low, light_reach_.high, 1.0F, 0.0F);
+  light_reach_ = PixelRect();
+  turned_.Clear();
 }
 
 absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const RenderSettings& settings,
@@ -69,54 +97,50 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
   const auto groups = static_cast<int>(medium.Content().groups.size());
   const glm::dvec3 cell_m = medium.Bounds().grid.spacing_m;
   Resize(frame, std::min(cell_m.x, cell_m.y));
-  eye_.Resize(GL_RGBA32F, settings.eye_size, settings.cover);
+  for (CoveredTarget& eye : eye_) {
+    eye.Resize(GL_RGBA32F, settings.eye_size, settings.cover);
+    eye.Target().Clear(0.0F, 0.0F, 0.0F, 1.0F);
+  }
   if (light_changed && translucent && consistent) {
-    THUNDERHEAD_RETURN_IF_ERROR(DrawThickness(medium, settings, frame, weights));
+    THUNDERHEAD_RETURN_IF_ERROR(SumThickness(medium, frame, weights));
   }
 
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* eye,
-      programs_->Get({"half_angle/slice.vert",
+      programs_->Get({"common/whole_target.vert",
                       "half_angle/eye.frag",
                       {{"GROUPS", groups},
                        {"DETAILS", medium.Details()},
                        {"COLORED", weights.colored ? 1 : 0},
+                       {"EVEN_ALBEDO", weights.even_albedo ? 1 : 0},
                        {"TRANSLUCENT", translucent ? 1 : 0},
                        {"CONSISTENT", consistent ? 1 : 0},
                        {"GROUND", settings.ground_distance != nullptr ? 1 : 0},
                        {"FRONT_TO_BACK", slicing.front_to_back ? 1 : 0}}}));
   medium.Bind(*eye);
-  const glm::dvec3 middle_m = medium.Middle_m();
-  eye->Set("clip_from_local", ClipFromLocal(settings.view, middle_m));
-  eye->Set("eye_middle_m", glm::vec3(settings.view.eye_m - middle_m));
-  eye->Set("eye_local_m", EyeOf(settings.view, middle_m));
+  BindRays(*eye, settings.view, medium.Middle_m());
   eye->Set("towards_sun", glm::vec3(frame.towards_sun));
   eye->Set("slice_normal", glm::vec3(slicing.normal));
+  eye->Set("first_plane_m", static_cast<float>(slicing.first_m));
   eye->Set("spacing_m", static_cast<float>(slicing.spacing_m));
   eye->Set("light_path_m", static_cast<float>(slicing.light_path_m));
   eye->Set("eye_weights", medium.Weights(weights.eye));
   eye->Set("light_weights", medium.Weights(weights.light));
-  eye->Set("scattering_weights", medium.Weights(weights.scattering));
   eye->Set("transport_weights", medium.Weights(weights.transport));
-  weights.BindPhase(*eye);
-  eye->Set("sunlight", settings.illumination.sunlight);
-  eye->Set("ambient", settings.illumination.ambient);
+  weights.BindScattered(*eye, medium, settings.illumination);
   eye->Set("light_u", glm::vec3(0.5 * frame.right / frame.half_extent_m.x));
   eye->Set("light_v", glm::vec3(0.5 * frame.up / frame.half_extent_m.y));
 
   THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* light,
-                               programs_->Get({"common/whole_target.vert",
-                                               "half_angle/light.frag",
+                               programs_->Get({{},
+                                               {},
                                                {{"GROUPS", groups},
                                                 {"DETAILS", medium.Details()},
                                                 {"CONSISTENT", consistent ? 1 : 0},
-                                                {"PASS", translucent ? kCarry : kTransmit}}}));
+                                                {"TRANSLUCENT", translucent ? 1 : 0}},
+                                               "half_angle/carry.comp"}));
   medium.Bind(*light);
-  light->Set("slice_normal", glm::vec3(slicing.normal));
-  light->Set("light_path_m", static_cast<float>(slicing.light_path_m));
-  light->Set("towards_sun", glm::vec3(frame.towards_sun));
-  light->Set("light_right_m", glm::vec3(frame.right * frame.half_extent_m.x));
-  light->Set("light_up_m", glm::vec3(frame.up * frame.half_extent_m.y));
+  BindSunRays(*light, slicing, frame);
   light->Set("light_weights", medium.Weights(weights.light));
   light->Set("transport_weights", medium.Weights(weights.transport));
   light->Set("peripheral_weights", medium.Weights(weights.peripheral));
@@ -126,123 +150,109 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
   const double tap_m = reach_m * std::tan(glm::radians(rendering.theta_f_deg) * 3.0 / 8.0);
   light->Set("tap_offset", glm::vec2(0.5 * tap_m / frame.half_extent_m));
 
-  DrawSlices({eye, light}, settings, slicing,
-             ReachOf(slicing, medium.OccupiedBoxes(), middle_m, settings.view, settings.eye_size,
-                     frame, light_[0].Size()));
+  std::size_t at_once = kSlabSlices;
+  if (translucent) {
+    const double exchange_m = consistent ? kExchangeInReach * reach_m : 0.0;
+    at_once = std::max(static_cast<std::size_t>(exchange_m / slicing.light_path_m), std::size_t{1});
+  }
+  DrawSlabs({eye, light}, settings, at_once,
+            ReachOf(slicing, medium.OccupiedBoxes(), medium.Middle_m(), settings.view,
+                    settings.eye_size, frame, light_.Size()));
   return absl::OkStatus();
 }
 
-absl::Status HalfAngleRenderer::DrawThickness(const ResidentMedium& medium,
-                                              const RenderSettings& settings,
-                                              const LightFrame& frame,
-                                              const GroupWeights& weights) {
+absl::Status HalfAngleRenderer::SumThickness(const ResidentMedium& medium, const LightFrame& frame,
+                                             const GroupWeights& weights) {
   // Slices across the sun's rays, so that the sum does not depend on the view and can be kept.
-  const glm::dvec3& towards_sun = settings.illumination.towards_sun;
   const Slicing slicing =
-      SliceBox({medium.HalfExtent_m()}, towards_sun, towards_sun, kThicknessSlices);
+      SliceBox({medium.HalfExtent_m()}, frame.towards_sun, frame.towards_sun, kThicknessSlices);
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_->Get({"common/whole_target.vert",
-                      "half_angle/light.frag",
+      programs_->Get({{},
+                      {},
                       {{"GROUPS", static_cast<int>(medium.Content().groups.size())},
-                       {"DETAILS", medium.Details()},
-                       {"CONSISTENT", 1},
-                       {"PASS", kAddDepth}}}));
+                       {"DETAILS", medium.Details()}},
+                      "half_angle/thickness.comp"}));
   medium.Bind(*program);
-  program->Set("slice_normal", glm::vec3(slicing.normal));
-  program->Set("light_path_m", static_cast<float>(slicing.light_path_m));
-  program->Set("towards_sun", glm::vec3(towards_sun));
-  program->Set("light_right_m", glm::vec3(frame.right * frame.half_extent_m.x));
-  program->Set("light_up_m", glm::vec3(frame.up * frame.half_extent_m.y));
-  program->Set("light_weights", medium.Weights(weights.light));
+  BindSunRays(*program, slicing, frame);
   program->Set("transport_weights", medium.Weights(weights.transport));
+  program->Set("texel_count", thickness_.Size());
+  program->Set("slice_count", slicing.count);
+  thickness_.BindImage(0, GL_WRITE_ONLY);
   program->Use();
-  no_attributes_.Bind();
-  thickness_target_.Bind();
-  thickness_target_.Clear(0.0F, 0.0F, 0.0F, 0.0F);
-  glEnable(GL_BLEND);
-  glBlendFunc(GL_ONE, GL_ONE);
-  glEnable(GL_SCISSOR_TEST);
-  const std::vector<SliceReach> reach =
-      ReachOf(slicing, medium.OccupiedBoxes(), medium.Middle_m(), settings.view, settings.eye_size,
-              frame, thickness_.Size());
-  for (std::size_t i = 0; i < reach.size(); ++i) {
-    if (reach[i].light.Empty()) continue;
-    Scissor(reach[i].light);
-    program->Set("slice_distance_m", static_cast<float>(slicing.slices[i].distance_m));
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-  }
-  glDisable(GL_SCISSOR_TEST);
-  glDisable(GL_BLEND);
+  Dispatch(thickness_.Size());
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   return absl::OkStatus();
 }
 
-void HalfAngleRenderer::DrawSlices(const Programs& programs, const RenderSettings& settings,
-                                   const Slicing& slicing, const std::vector<SliceReach>& reach) {
-  std::vector<glm::vec3> corners;
-  for (const Slice& slice : slicing.slices) {
-    corners.insert(corners.end(), slice.polygon.begin(), slice.polygon.end());
-  }
-  const gl::Buffer corner_buffer(std::max<std::size_t>(corners.size(), 1) * sizeof(glm::vec3),
-                                 corners.empty() ? nullptr : corners.data(), 0);
-  const gl::VertexArray corner_array = gl::VertexArray::OfPositions(corner_buffer);
-  const bool carries = IsTranslucent(settings.rendering);
-
-  eye_.Target().Clear(0.0F, 0.0F, 0.0F, 1.0F);
-  for (const gl::Framebuffer& target : light_target_) target.Clear(1.0F, 0.0F, 0.0F, 0.0F);
+void HalfAngleRenderer::DrawSlabs(const Programs& programs, const RenderSettings& settings,
+                                  std::size_t at_once, const std::vector<SliceReach>& reach) {
+  light_.Bind(kLightUnit);
+  light_.BindImage(0, GL_WRITE_ONLY);
+  turned_.BindImage(1, GL_READ_WRITE);
   thickness_.Bind(kThicknessUnit);
   if (settings.ground_distance != nullptr) settings.ground_distance->Bind(kGroundUnit);
-  glEnable(GL_DEPTH_CLAMP);
-  int current = 0;
-  GLint first = 0;
-  PixelRect stale;
-  glEnable(GL_SCISSOR_TEST);
-  for (std::size_t i = 0; i < reach.size(); ++i) {
-    const Slice& slice = slicing.slices[i];
-    const auto count = static_cast<GLsizei>(slice.polygon.size());
-    const GLint start = first;
-    first += count;
-    if (count == 0 || reach[i].light.Empty()) continue;
-    light_[current].Bind(kLightUnit);
-    if (!reach[i].eye.Empty()) {
-      // The eye buffer keeps radiance in rgb and in alpha the share of what is behind that still
-      // shows.
-      glEnable(GL_BLEND);
-      if (slicing.front_to_back) {
-        glBlendFuncSeparate(GL_DST_ALPHA, GL_ONE, GL_ZERO, GL_SRC_ALPHA);
-      } else {
-        glBlendFuncSeparate(GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_SRC_ALPHA);
-      }
-      eye_.Target().Bind();
-      programs.eye->Use();
-      corner_array.Bind();
-      Scissor(reach[i].eye);
-      const LimitedTo limited(Where::kCovered, settings.cover);
-      glDrawArrays(GL_TRIANGLE_FAN, start, count);
-    }
+  no_attributes_.Bind();
+  const auto meets = [](const SliceReach& slice) { return !slice.light.Empty(); };
+  const auto first = std::find_if(reach.begin(), reach.end(), meets) - reach.begin();
+  const auto end = reach.rend() - std::find_if(reach.rbegin(), reach.rend(), meets);
+  Turns layers(static_cast<std::size_t>(light_.Layers()));
+  Turns eyes(eye_.size());
+  std::size_t drawn = 0;
+  for (auto begin = static_cast<std::size_t>(first); begin < static_cast<std::size_t>(end);
+       begin += kSlabSlices) {
+    const Slab slab{begin,
+                    std::min<std::size_t>(begin + kSlabSlices, static_cast<std::size_t>(end))};
+    CarryThrough(slab, *programs.light, at_once, reach, &layers);
+    last_layer_ = layers.Of(slab.end);
+    PixelRect seen;
+    for (std::size_t i = slab.begin; i < slab.end; ++i) seen = Around(seen, reach[i].eye);
+    if (seen.Empty()) continue;
+    eye_[eyes.Of(drawn)].Texture().Bind(kEyeUnit);
+    ++drawn;
+    eye_[eyes.Of(drawn)].Target().Bind();
+    programs.eye->Set("begin_layer", static_cast<float>(layers.Of(slab.begin)));
+    DrawSlab(slab, *programs.eye, settings.cover, eyes.Write(drawn, seen));
+  }
+  last_eye_ = eyes.Of(drawn);
+}
 
-    programs.light->Set("slice_distance_m", static_cast<float>(slice.distance_m));
-    programs.light->Use();
-    no_attributes_.Bind();
-    if (carries) {
-      // The other buffer misses what the last slice changed here.
-      glDisable(GL_BLEND);
-      light_target_[1 - current].Bind();
-      Scissor(Around(reach[i].light, stale));
-      stale = reach[i].light;
-      current = 1 - current;
-    } else {
-      glEnable(GL_BLEND);
-      glBlendFunc(GL_ZERO, GL_SRC_COLOR);
-      light_target_[current].Bind();
-      Scissor(reach[i].light);
-    }
+void HalfAngleRenderer::CarryThrough(const Slab& slab, const gl::Program& light,
+                                     std::size_t at_once, const std::vector<SliceReach>& reach,
+                                     Turns* layers) {
+  light.Use();
+  light.Set("layer_count", light_.Layers());
+  for (std::size_t first = slab.begin; first < slab.end; first += at_once) {
+    const std::size_t end = std::min(first + at_once, slab.end);
+    PixelRect changed;
+    for (std::size_t i = first; i < end; ++i) changed = Around(changed, reach[i].light);
+    light_reach_ = Around(light_reach_, changed);
+    PixelRect rect;
+    for (std::size_t i = first; i < end; ++i) rect = Around(rect, layers->Write(i + 1, changed));
+    if (rect.Empty()) continue;
+    light.Set("first_texel", rect.low);
+    light.Set("end_texel", rect.high);
+    light.Set("first_slice", static_cast<int>(first));
+    light.Set("slice_count", static_cast<int>(end - first));
+    light.Set("first_layer", static_cast<int>(layers->Of(first)));
+    Dispatch(rect.high - rect.low);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  }
+}
+
+void HalfAngleRenderer::DrawSlab(const Slab& slab, const gl::Program& eye, const Cover* cover,
+                                 const PixelRect& rect) {
+  eye.Set("slab_begin", static_cast<float>(slab.begin));
+  eye.Set("slab_end", static_cast<float>(slab.end));
+  eye.Set("layer_count", static_cast<float>(light_.Layers()));
+  eye.Use();
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(rect.low.x, rect.low.y, rect.high.x - rect.low.x, rect.high.y - rect.low.y);
+  {
+    const LimitedTo limited(Where::kCovered, cover);
     glDrawArrays(GL_TRIANGLES, 0, 3);
   }
   glDisable(GL_SCISSOR_TEST);
-  last_light_ = current;
-  glDisable(GL_BLEND);
-  glDisable(GL_DEPTH_CLAMP);
 }
 
 }  // namespace thunderhead::renderers

@@ -1,13 +1,17 @@
 // Half-angle slicing: an eye buffer and a light buffer advance together through slices of the
-// medium. The result is what the medium sends to the eye (rgb) and the share of the background that
-// passes (a), before sky and ground.
+// medium, a slab of slices at a time: sunlight is carried through the slab, each slice's in a layer
+// of its own, and one pass adds the slab to the picture (docs/decisions/0013-slabs.md). The result
+// is what the medium sends to the eye (rgb) and the share of the background that passes (a), before
+// sky and ground.
 //
 // Riley et al. 2003 (Vis), section 4.4; transport `kPaper` is eq. 14-17 as printed, `kConsistent`
 // the same idea with the exact exponential of the effective extinction, delta scaling, and a
 // diffusion term (Eddington) for light scattered many times.
 #pragma once
 
+#include <array>
 #include <memory>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "gl/objects.h"
@@ -15,6 +19,7 @@
 #include "renderers/group_weights.h"
 #include "renderers/half_angle/slice_reach.h"
 #include "renderers/half_angle/slicing.h"
+#include "renderers/half_angle/turns.h"
 #include "renderers/medium.h"
 #include "renderers/render_settings.h"
 
@@ -31,29 +36,35 @@ class HalfAngleRenderer {
                       bool light_changed);
 
   // The result of the last Render.
-  const gl::Texture2D& Eye() const { return eye_.Texture(); }
-  // The light buffer after the last slice: r is the share of sunlight that comes through the
-  // medium.
-  const gl::Texture2D& Light() const { return light_[last_light_]; }
+  const gl::Texture2D& Eye() const { return eye_[last_eye_].Texture(); }
+  // What comes out of the last slice: four floats a texel of the light buffer, of which the first
+  // is the share of sunlight.
+  std::vector<float> Light() const { return light_.Download(static_cast<int>(last_layer_)); }
   std::size_t Bytes() const;
 
  private:
   struct Programs;
+  struct Slab;
 
   void Resize(const LightFrame& frame, double cell_m);
-  absl::Status DrawThickness(const ResidentMedium& medium, const RenderSettings& settings,
-                             const LightFrame& frame, const GroupWeights& weights);
-  void DrawSlices(const Programs& programs, const RenderSettings& settings, const Slicing& slicing,
-                  const std::vector<SliceReach>& reach);
+  absl::Status SumThickness(const ResidentMedium& medium, const LightFrame& frame,
+                            const GroupWeights& weights);
+  void DrawSlabs(const Programs& programs, const RenderSettings& settings, std::size_t at_once,
+                 const std::vector<SliceReach>& reach);
+  void CarryThrough(const Slab& slab, const gl::Program& light, std::size_t at_once,
+                    const std::vector<SliceReach>& reach, Turns* layers);
+  void DrawSlab(const Slab& slab, const gl::Program& eye, const Cover* cover,
+                const PixelRect& rect);
 
   std::shared_ptr<gl::ProgramCache> programs_;
   gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
-  CoveredTarget eye_;
-  gl::Texture2D light_[2];
-  int last_light_ = 0;
-  gl::Framebuffer light_target_[2];
+  std::array<CoveredTarget, 2> eye_;  // before and after a slab, in turn
+  std::size_t last_eye_ = 0;
+  gl::Texture2DArray light_;    // what enters slice after slice, in turn
+  std::size_t last_layer_ = 0;  // behind the last slice
+  PixelRect light_reach_;       // where it may differ from light that has met nothing
+  gl::Texture2D turned_;        // optical depth scattered to neighbours since the last exchange
   gl::Texture2D thickness_;
-  gl::Framebuffer thickness_target_;
 };
 
 }  // namespace thunderhead::renderers

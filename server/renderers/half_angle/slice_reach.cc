@@ -45,16 +45,15 @@ std::vector<SliceReach> ReachOf(const Slicing& slicing, const Boxes& boxes,
                                 const glm::dvec3& middle_m, const scene::View& view,
                                 const glm::ivec2& eye_px, const LightFrame& frame,
                                 const glm::ivec2& light_texels) {
-  std::vector<SliceReach> reach(slicing.slices.size());
+  std::vector<SliceReach> reach(static_cast<std::size_t>(slicing.count));
   if (reach.empty()) return reach;
   const BoxProjection projection(boxes.half_extent_m, view, eye_px, kMarginPx);
   const Shadow shadow(boxes.half_extent_m, frame, light_texels);
   const double half_m = glm::dot(glm::abs(slicing.normal), boxes.half_extent_m);
-  const double first_m = slicing.slices.front().distance_m;
   const double last = static_cast<double>(reach.size()) - 1.0;
   for (const glm::dvec3& box_m : boxes.middles_m) {
     const glm::dvec3 local_m = box_m - middle_m;
-    const double below_m = first_m - glm::dot(slicing.normal, local_m);
+    const double below_m = slicing.first_m - glm::dot(slicing.normal, local_m);
     const auto low = static_cast<std::size_t>(
         std::clamp(std::ceil((below_m - half_m) / slicing.spacing_m), 0.0, last + 1.0));
     const auto end = static_cast<std::size_t>(

@@ -28,32 +28,6 @@ std::array<glm::dvec3, 2> Across(const glm::dvec3& axis) {
   return {right, glm::cross(axis, right)};
 }
 
-// Where the plane dot(normal, x) = distance cuts the box's edges, in order around the normal.
-std::vector<glm::vec3> CutBox(const std::array<glm::dvec3, 8>& corners, const glm::dvec3& normal,
-                              double distance_m) {
-  std::vector<glm::dvec3> points;
-  for (std::size_t i = 0; i < 8; ++i) {
-    for (const std::size_t axis : {1U, 2U, 4U}) {
-      const std::size_t j = i | axis;
-      if (i == j) continue;
-      const double a = glm::dot(normal, corners[i]) - distance_m;
-      const double b = glm::dot(normal, corners[j]) - distance_m;
-      if ((a < 0.0) == (b < 0.0)) continue;
-      points.push_back(glm::mix(corners[i], corners[j], a / (a - b)));
-    }
-  }
-  if (points.size() < 3) return {};
-  glm::dvec3 middle(0.0);
-  for (const glm::dvec3& point : points) middle += point / static_cast<double>(points.size());
-  const auto [right, up] = Across(normal);
-  const auto angle = [&, right = right, up = up](const glm::dvec3& point) {
-    return std::atan2(glm::dot(point - middle, up), glm::dot(point - middle, right));
-  };
-  std::sort(points.begin(), points.end(),
-            [&](const glm::dvec3& a, const glm::dvec3& b) { return angle(a) < angle(b); });
-  return {points.begin(), points.end()};
-}
-
 }  // namespace
 
 LightFrame LightFrameOf(const LocalBox& box, const glm::dvec3& towards_sun) {
@@ -81,13 +55,10 @@ Slicing SliceBox(const LocalBox& box, const glm::dvec3& towards_sun, const glm::
   for (const glm::dvec3& corner : corners) {
     reach_m = std::max(reach_m, glm::dot(slicing.normal, corner));
   }
+  slicing.count = count;
   slicing.spacing_m = 2.0 * reach_m / count;
+  slicing.first_m = reach_m - 0.5 * slicing.spacing_m;
   slicing.light_path_m = slicing.spacing_m / glm::dot(slicing.normal, towards_sun);
-  slicing.slices.reserve(static_cast<std::size_t>(count));
-  for (int k = 0; k < count; ++k) {
-    const double distance_m = reach_m - (k + 0.5) * slicing.spacing_m;
-    slicing.slices.push_back({distance_m, CutBox(corners, slicing.normal, distance_m)});
-  }
   return slicing;
 }
 

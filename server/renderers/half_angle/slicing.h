@@ -3,8 +3,6 @@
 // Riley et al. 2003 (Vis), 4.4.1.
 #pragma once
 
-#include <vector>
-
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 
@@ -25,18 +23,16 @@ struct LightFrame {
 
 LightFrame LightFrameOf(const LocalBox& box, const glm::dvec3& towards_sun);
 
-// One slice: its plane and the part of it inside the box.
-struct Slice {
-  double distance_m = 0.0;         // of the plane from the origin, along the normal
-  std::vector<glm::vec3> polygon;  // 3 to 6 corners in order around it, or none
-};
-
+// Parallel planes, the same distance apart; sunlight meets the first one first.
 struct Slicing {
   glm::dvec3 normal{0.0, 0.0, 1.0};  // points to the sun's side
-  bool front_to_back = true;         // in the order of `slices`, seen from the eye
+  bool front_to_back = true;         // in the slices' order, seen from the eye
+  int count = 0;
+  double first_m = 0.0;  // of the first plane from the origin, along the normal
   double spacing_m = 1.0;
   double light_path_m = 1.0;  // of a sun ray between two slices
-  std::vector<Slice> slices;  // the sun meets the first one first
+
+  double Distance_m(int slice) const { return first_m - slice * spacing_m; }
 };
 
 // Cuts `box` into `count` slices. `towards_eye` is the unit vector against the view's axis. When

@@ -205,38 +205,29 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
   eye_.Resize(settings.single_precision ? GL_RGBA32F : GL_RGBA16F, settings.eye_size,
               settings.cover);
   const GroupWeights weights(medium.Content(), settings.rendering);
-  const std::vector<MediumGroup>& groups = medium.Content().groups;
-  const bool even_albedo =
-      !weights.colored && std::all_of(groups.begin(), groups.end(), [&](const MediumGroup& group) {
-        return group.albedo == groups.front().albedo;
-      });
   const bool diffusion = Diffuses(settings.rendering);
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
       programs_->Get({"common/whole_target.vert",
                       "light_volume/march.frag",
-                      {{"GROUPS", static_cast<int>(groups.size())},
+                      {{"GROUPS", static_cast<int>(medium.Content().groups.size())},
                        {"DETAILS", medium.Details()},
                        {"COLORED", weights.colored ? 1 : 0},
                        {"CONSISTENT", IsConsistent(settings.rendering) ? 1 : 0},
                        {"GROUND", settings.ground_distance != nullptr ? 1 : 0},
-                       {"EVEN_ALBEDO", even_albedo ? 1 : 0},
+                       {"EVEN_ALBEDO", weights.even_albedo ? 1 : 0},
                        {"DIFFUSION", diffusion ? 1 : 0},
                        {"CORRECTED", settings.correction != nullptr ? 1 : 0},
                        {"PLACES", settings.places ? 1 : 0},
                        {"TINTED", diffusion && (weights.colored || weights.absorbs) ? 1 : 0}}}));
   medium.Bind(*program);
-  weights.BindPhase(*program);
+  weights.BindScattered(*program, medium, settings.illumination);
   const scene::View& view = settings.view;
   const double reach_m = glm::dot(glm::abs(view.forward), medium.HalfExtent_m());
   BindRays(*program, view, medium.Middle_m());
   program->Set("towards_sun", glm::vec3(settings.illumination.towards_sun));
   program->Set("step_m", static_cast<float>(2.0 * reach_m / settings.slices));
   program->Set("eye_weights", medium.Weights(weights.eye));
-  program->Set("scattering_weights", medium.Weights(weights.scattering));
-  program->Set("albedo", groups.front().albedo);
-  program->Set("sunlight", settings.illumination.sunlight);
-  program->Set("ambient", settings.illumination.ambient);
   if (diffusion) BindDiffusion(*program, medium, weights, settings);
   arrived_.Bind(kLightUnit);
   if (settings.correction != nullptr) BindCorrection(settings.correction);

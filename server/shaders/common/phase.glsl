@@ -4,18 +4,23 @@
 
 layout(binding = 3) uniform sampler2D phase_curves;  // a row a group over phase_curve_place: red, green, blue
 
-uniform float phase_cut;             // cosine within which phase functions are held
+uniform float phase_cut;             // haversine within which phase functions are held
 uniform vec2 phase_display[GROUPS];  // offset and slope of the paper's display normalisation
 uniform vec3 group_color[GROUPS];
 
 const float kFourPi = 12.5663706;
 const float kPaperWhite = 0.5;  // radiance of the paper's display value 1
 
-// The phase function of a group for red, green and blue, its mean over the sphere 1; `mu` is the cosine of the scattering
-// angle. Two fetches and a mix: filtering units round the share to 8 bits, which shows in steep peaks.
-vec3 group_phase(int group, float mu) {
+// Of the angle between two unit vectors.
+float haversine_between(vec3 a, vec3 b) {
+  vec3 apart = a - b;
+  return 0.25 * dot(apart, apart);
+}
+
+// The phase function of a group for red, green and blue, its mean over the sphere 1. Two fetches and a mix: filtering units round the share to 8 bits, which shows in steep peaks.
+vec3 group_phase(int group, float haversine) {
   int last = textureSize(phase_curves, 0).x - 1;
-  float place = phase_curve_place(mu) * float(last);
+  float place = phase_curve_place(haversine) * float(last);
   int texel = min(int(place), last - 1);
   vec3 low = texelFetch(phase_curves, ivec2(texel, group), 0).rgb;
   vec3 high = texelFetch(phase_curves, ivec2(texel + 1, group), 0).rgb;
@@ -23,8 +28,8 @@ vec3 group_phase(int group, float mu) {
 }
 
 // Scattered radiance per unit of irradiance and optical depth, of one group.
-vec3 phase_term(int group, float mu) {
-  vec3 value = group_phase(group, min(mu, phase_cut));
+vec3 phase_term(int group, float haversine) {
+  vec3 value = group_phase(group, max(haversine, phase_cut));
 #if CONSISTENT
   value /= kFourPi;
 #else

@@ -14,6 +14,8 @@
 #include "common/bricks.glsl"
 #include "common/phase.glsl"
 #include "common/view.glsl"
+#define GLOWS (CONSISTENT && !DIFFUSION)
+#include "common/scattered.glsl"
 #include "physics/light_transport.glsl"
 
 #if GROUND
@@ -24,10 +26,6 @@ layout(binding = 4) uniform sampler3D arrived;  // of arrive.comp, cell by cell 
 uniform vec3 towards_sun;
 uniform float step_m;  // between samples
 uniform vec4 eye_weights[PLANES];         // texel to the extinction that the eye sees, 1/m
-uniform vec4 scattering_weights[PLANES];  // texel to scattering, 1/m
-uniform float albedo;                     // of every group
-uniform vec3 sunlight;                    // irradiance
-uniform vec3 ambient;                     // mean radiance from sky and ground
 
 #if DIFFUSION
 // Root of the optical depth to the nearest way out; sky seen there, and the x of its net flux (DiffuseLight::SkySeen).
@@ -116,7 +114,7 @@ void main() {
   vec4 green_depths[PLANES] = scaled(green_weights, step_m);
   vec4 blue_depths[PLANES] = scaled(blue_weights, step_m);
 #endif
-#elif !EVEN_ALBEDO
+#elif GLOWS
   vec4 extinction_depths[PLANES] = scaled(extinction_weights, step_m);
 #endif
 
@@ -135,18 +133,7 @@ void main() {
   float shown_all = 0.0;
   float shown_way = 0.0;  // by the share that is seen
 #endif
-  float multiple = 0.0;    // mean intensity of light scattered many times, by the share of it that is seen
-  vec4 direct[PLANES];     // by group: what scatters of the sunlight that arrives
-#if !EVEN_ALBEDO
-  vec4 ambient_scattered[PLANES];
-  vec4 multiple_scattered[PLANES];
-#endif
-  for (int plane = 0; plane < PLANES; ++plane) {
-    direct[plane] = vec4(0.0);
-#if !EVEN_ALBEDO
-    ambient_scattered[plane] = multiple_scattered[plane] = vec4(0.0);
-#endif
-  }
+  Scattered scattered = nothing_scattered();
 
   Medium before;
   for (int plane = 0; plane < PLANES; ++plane) before.plane[plane] = vec4(0.0);
@@ -217,26 +204,11 @@ void main() {
     out_before = out_here;
     inward_before = inward_here;
 #endif
-#if DIFFUSION
-    for (int plane = 0; plane < PLANES; ++plane) {
-      direct[plane] += (per_extinction * arriving) * mix(before.plane[plane], here.plane[plane], at);
-    }
-#elif EVEN_ALBEDO
-    multiple += seen * light.g;
-    for (int plane = 0; plane < PLANES; ++plane) {
-      direct[plane] += (per_extinction * arriving) * mix(before.plane[plane], here.plane[plane], at);
-    }
-#else
     Medium between;
-    for (int plane = 0; plane < PLANES; ++plane) {
-      between.plane[plane] = mix(before.plane[plane], here.plane[plane], at);
-      direct[plane] += (per_extinction * arriving) * between.plane[plane];
-    }
-    float per_total = seen / max(weigh(between, extinction_depths), 1e-30);
-    for (int plane = 0; plane < PLANES; ++plane) {
-      ambient_scattered[plane] += per_total * between.plane[plane];
-      multiple_scattered[plane] += (per_total * light.g) * between.plane[plane];
-    }
+    for (int plane = 0; plane < PLANES; ++plane) between.plane[plane] = mix(before.plane[plane], here.plane[plane], at);
+    add_direct(scattered, between, per_extinction * arriving);
+#if GLOWS
+    add_isotropic(scattered, between, extinction_depths, seen, light.g);
 #endif
 #if CORRECTED || PLACES
     shown_all += SHOWN;
@@ -248,18 +220,7 @@ void main() {
     light_before = light_here;
   }
 
-  float mu = dot(direction, towards_sun);
-  vec3 radiance = vec3(0.0);
-  for (int group = 0; group < GROUPS; ++group) {
-    int plane = group / 4;
-    int channel = group % 4;
-    float scattering = scattering_weights[plane][channel] * step_m;
-    radiance += sunlight * (direct[plane][channel] * scattering) * phase_term(group, mu);
-#if CONSISTENT && !EVEN_ALBEDO && !DIFFUSION
-    vec3 isotropic = ambient * ambient_scattered[plane][channel] + sunlight * multiple_scattered[plane][channel];
-    radiance += (COLORED == 1 ? group_color[group] : vec3(1.0)) * isotropic * scattering;
-#endif
-  }
+  vec3 radiance = radiance_of(scattered, step_m, haversine_between(direction, towards_sun), 1.0 - passing);
 #if DIFFUSION
   if (diffuse_passing <= kOpaque) {
     float whole = 1.0 / (1.0 - diffuse_passing);
@@ -272,8 +233,6 @@ void main() {
   radiance += diffuse_sunlight * diffuse_sun / kFourPi + rest_of_sky * diffuse_sky +
               rest_of_sky_level * diffuse_level + from_ground * (diffuse_all - diffuse_sky - diffuse_level);
   passing = diffuse_passing;
-#elif CONSISTENT && EVEN_ALBEDO
-  radiance += albedo * (ambient * (1.0 - passing) + sunlight * multiple);
 #endif
 #if CORRECTED || PLACES
   vec3 seen_place = (origin_m + direction * (shown_way / max(shown_all, 1e-30)) - medium_low_m) / (medium_high_m - medium_low_m);

@@ -30,8 +30,8 @@ void main() {
   vec3 radiance = vec3(0.0);
   for (int i = 0; i < LIGHTS; ++i) {
     vec2 light = arrived[uint(i * ball_count) + index];
-    float mu = dot(ray, towards_light[i]);
 #if PAPER
+    float mu = dot(ray, towards_light[i]);
     float phase = ISOTROPIC == 1 ? 1.0 : 0.75 * (1.0 + mu * mu);  // eq. 25
     radiance += irradiance[i] * (paper_albedo * phase * light.x / kFourPi);
 #else
@@ -39,8 +39,9 @@ void main() {
 #if ISOTROPIC
     scattered += ball.tint.rgb * (light.x / kFourPi);
 #else
+    float turned = haversine_between(ray, towards_light[i]);
     for (int group = 0; group < GROUPS; ++group) {
-      scattered += phase_term(group, mu) * (ball.scattering[group / 4][group % 4] * light.x);
+      scattered += phase_term(group, turned) * (ball.scattering[group / 4][group % 4] * light.x);
     }
 #endif
     radiance += irradiance[i] * scattered;

@@ -86,15 +86,18 @@ TEST(PhaseFunctions, WhatDoesNotMatterDoesNotMakeThemDiffer) {
 }
 
 TEST(PhaseFunctions, PlaceInACurveGoesEvenlyFromStraightOnToStraightBack) {
-  EXPECT_EQ(glsl::phase_curve_place(1.0F), 0.0F);
-  EXPECT_EQ(glsl::phase_curve_place(1.0000001F), 0.0F);
-  EXPECT_EQ(glsl::phase_curve_place(-1.0F), 1.0F);
-  EXPECT_EQ(glsl::phase_curve_place(-1.0000001F), 1.0F);
-  EXPECT_NEAR(glsl::phase_curve_place(0.0F), std::sqrt(0.5), 1e-6);
+  const auto haversine = [](double angle_deg) {
+    return static_cast<float>(std::pow(std::sin(glm::radians(angle_deg) / 2.0), 2.0));
+  };
+  EXPECT_EQ(glsl::phase_curve_place(0.0F), 0.0F);
+  EXPECT_EQ(glsl::phase_curve_place(1.0F), 1.0F);
+  EXPECT_EQ(glsl::phase_curve_place(1.0000001F), 1.0F);
+  EXPECT_NEAR(glsl::phase_curve_place(haversine(90.0)), std::sqrt(0.5), 1e-6);
+  // Where float cosines are all 1.
+  EXPECT_NEAR(glsl::phase_curve_place(haversine(1e-3)), std::sqrt(glm::radians(1e-3) / 2.0), 1e-6);
   double before = 0.0;
   for (double angle_deg = 0.1; angle_deg <= 180.0; angle_deg += 0.1) {
-    const double place =
-        glsl::phase_curve_place(static_cast<float>(std::cos(glm::radians(angle_deg))));
+    const double place = glsl::phase_curve_place(haversine(angle_deg));
     // A tenth of a degree is at least one of 4096 texels, and 120 next to straight on.
     EXPECT_GT(place - before, 1.1 / 4096.0) << angle_deg;
     EXPECT_LT(place - before, 0.03) << angle_deg;

@@ -162,7 +162,7 @@ TEST(SliceReach, HoldsWhatEachSliceCutsOfTheBoxes) {
       glm::dvec3 point_m = points.In(at);
       // Onto the nearest slice, if that cuts the box.
       const double along_m = glm::dot(slicing.normal, point_m - middle_m);
-      const double place = (slicing.slices[0].distance_m - along_m) / slicing.spacing_m;
+      const double place = (slicing.first_m - along_m) / slicing.spacing_m;
       const double slice = std::round(place);
       if (slice < 0.0 || slice > 63.0) continue;
       point_m += (place - slice) * slicing.spacing_m * slicing.normal;
@@ -193,7 +193,7 @@ TEST(SliceReach, IsEmptyWhereASliceCutsNothing) {
                                                 kSize_px, LightFrameOf(box, up), {20, 20});
   for (std::size_t i = 0; i < reach.size(); ++i) {
     // Slices are 1 km apart from 9.5 km down; the box lies around the one at -5.5 or -4.5 km.
-    const bool cuts = std::abs(slicing.slices[i].distance_m + 5e3) <= 500.0;
+    const bool cuts = std::abs(slicing.Distance_m(static_cast<int>(i)) + 5e3) <= 500.0;
     EXPECT_EQ(reach[i].light.Empty(), !cuts) << i;
   }
 }

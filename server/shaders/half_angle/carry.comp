@@ -1,0 +1,97 @@
+// Carries sunlight through consecutive slices of the light buffer: each layer is what enters a slice. r is the share of
+// sunlight, g the similarity-scaled optical depth passed. Neighbouring texels exchange light once a call, by what has been
+// scattered since the call before (CONSISTENT) or in its only slice (the paper's transport).
+// Variants: GROUPS, CONSISTENT, TRANSLUCENT (there is an exchange).
+#include "common/medium.glsl"
+#include "common/bricks.glsl"
+#include "half_angle/slice_light.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+#define EXCHANGES (TRANSLUCENT && CONSISTENT)
+layout(binding = 0) uniform writeonly image2DArray leaving;
+#if EXCHANGES
+layout(binding = 1, r32f) uniform image2D turned;  // optical depth scattered into the outer ring since the last exchange
+#endif
+
+layout(binding = 4) uniform sampler2DArray light;
+
+uniform ivec2 first_texel;
+uniform ivec2 end_texel;
+uniform int first_slice;
+uniform int slice_count;
+uniform int first_layer;
+uniform int layer_count;
+uniform vec4 light_weights[PLANES];
+uniform vec4 transport_weights[PLANES];
+uniform vec4 peripheral_weights[PLANES];  // scattering into the outer ring, 1/m
+uniform vec2 cumulative_phase;            // CP(theta_f / 4), CP(theta_f / 2)
+uniform vec2 tap_offset;                  // of a peripheral tap, in texture coordinates
+
+float peripheral(vec3 place) {
+  float sum = texture(light, place + vec3(tap_offset.x, 0.0, 0.0)).r;
+  sum += texture(light, place - vec3(tap_offset.x, 0.0, 0.0)).r;
+  sum += texture(light, place + vec3(0.0, tap_offset.y, 0.0)).r;
+  sum += texture(light, place - vec3(0.0, tap_offset.y, 0.0)).r;
+  return 0.25 * sum;
+}
+
+// What is left of the light `here` behind a medium that is not empty; `place` is in the light buffer.
+vec2 carried(vec2 here, vec3 place, Medium medium, vec4 light_depths[PLANES], vec4 transport_depths[PLANES]) {
+  float passed = exp(-weigh(medium, light_depths));
+#if TRANSLUCENT && !CONSISTENT
+  // Riley et al. 2003 (Vis), eq. 14 to 17 as printed.
+  float blocked = 1.0 - passed;
+  return vec2(here.r * (passed + blocked * cumulative_phase.x) +
+                  peripheral(place) * blocked * (cumulative_phase.y - cumulative_phase.x),
+              here.g);
+#elif TRANSLUCENT
+  return vec2(here.r * passed, here.g + weigh(medium, transport_depths));
+#else
+  return vec2(here.r * passed, here.g);
+#endif
+}
+
+void main() {
+  begin_medium();
+  ivec2 texel = first_texel + ivec2(gl_GlobalInvocationID.xy);
+  vec2 place = (vec2(texel) + 0.5) / vec2(textureSize(light, 0).xy);
+  SunRay ray = sun_ray(place);
+  vec4 light_depths[PLANES] = scaled(light_weights, light_path_m);
+  vec4 transport_depths[PLANES] = scaled(transport_weights, light_path_m);
+#if EXCHANGES
+  vec4 peripheral_depths[PLANES] = scaled(peripheral_weights, light_path_m);
+#endif
+  float path_m = light_path_m;
+  int layers = layer_count;
+  int layer = first_layer;
+  int end = any(greaterThanEqual(texel, end_texel)) ? 0 : slice_count;
+  float way_m = ray.first_m + float(first_slice) * path_m;
+  vec2 here = texelFetch(light, ivec3(texel, layer), 0).rg;
+  // Loops, as software GL runs the inside of an `if` wherever it is not met as well.
+#if EXCHANGES
+  // A fixed offset and a share that grows with the path make the spread a diffusion, whatever the number of slices.
+  float turned_depth = end > 0 ? imageLoad(turned, texel).r : 0.0;
+  while (turned_depth > 0.0) {
+    here.r = mix(here.r, peripheral(vec3(place, float(layer))), 1.0 - exp(-turned_depth));
+    turned_depth = 0.0;
+  }
+#endif
+  for (int i = 0; i < end; ++i) {
+    uint content = brick_content(ray.medium, brick_place(ray.medium, way_m));
+    bool meets = way_m >= ray.inside.x && way_m <= ray.inside.y && (content == kThickBrick || content == kThinBrick);
+    while (meets) {
+      Medium medium = medium_at_place(medium_place(ray.medium, way_m));
+      here = carried(here, vec3(place, float(layer)), medium, light_depths, transport_depths);
+#if EXCHANGES
+      turned_depth += weigh(medium, peripheral_depths);
+#endif
+      meets = false;
+    }
+    layer = layer + 1 < layers ? layer + 1 : 0;
+    imageStore(leaving, ivec3(texel, layer), vec4(here, 0.0, 0.0));
+    way_m += path_m;
+  }
+#if EXCHANGES
+  if (end > 0) imageStore(turned, texel, vec4(turned_depth, 0.0, 0.0, 0.0));
+#endif
+}

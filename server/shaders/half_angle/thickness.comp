@@ -1,0 +1,35 @@
+// The similarity-scaled optical depth of the whole way of each sun ray, added up over slices across it. Variant: GROUPS.
+#include "common/medium.glsl"
+#include "common/bricks.glsl"
+#include "half_angle/slice_light.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 0) uniform writeonly image2D thickness;
+
+uniform ivec2 texel_count;
+uniform int slice_count;
+uniform vec4 transport_weights[PLANES];
+
+void main() {
+  begin_medium();
+  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(texel, texel_count))) return;
+  SunRay ray = sun_ray((vec2(texel) + 0.5) / vec2(texel_count));
+  vec4 transport_depths[PLANES] = scaled(transport_weights, light_path_m);
+  float path_m = light_path_m;
+  float slice = max(ceil((ray.inside.x - ray.first_m) / path_m), 0.0);
+  float end = min(floor((ray.inside.y - ray.first_m) / path_m) + 1.0, float(slice_count));
+  float depth = 0.0;
+  while (slice < end) {
+    float way_m = ray.first_m + slice * path_m;
+    vec3 place = brick_place(ray.medium, way_m);
+    uint content = brick_content(ray.medium, place);
+    bool meets = content == kThickBrick || content == kThinBrick;
+    slice = max(slice + 1.0, meets ? 0.0 : ceil((way_m + empty_way(ray.medium, place, content) - ray.first_m) / path_m));
+    while (meets) {
+      depth += weigh(medium_at_place(medium_place(ray.medium, way_m)), transport_depths);
+      meets = false;
+    }
+  }
+  imageStore(thickness, texel, vec4(depth, 0.0, 0.0, 0.0));
+}
