@@ -67,11 +67,10 @@ void main() {
   int end = any(greaterThanEqual(texel, end_texel)) ? 0 : slice_count;
   float way_m = ray.first_m + float(first_slice) * path_m;
   vec2 here = texelFetch(light, ivec3(texel, layer), 0).rg;
-  // Loops, as software GL runs the inside of an `if` wherever it is not met as well.
 #if EXCHANGES
   // A fixed offset and a share that grows with the path make the spread a diffusion, whatever the number of slices.
   float turned_depth = end > 0 ? imageLoad(turned, texel).r : 0.0;
-  while (turned_depth > 0.0) {
+  if (turned_depth > 0.0) {
     here.r = mix(here.r, peripheral(vec3(place, float(layer))), 1.0 - exp(-turned_depth));
     turned_depth = 0.0;
   }
@@ -79,13 +78,12 @@ void main() {
   for (int i = 0; i < end; ++i) {
     uint content = brick_content(ray.medium, brick_place(ray.medium, way_m));
     bool meets = way_m >= ray.inside.x && way_m <= ray.inside.y && (content == kThickBrick || content == kThinBrick);
-    while (meets) {
+    if (meets) {
       Medium medium = medium_at_place(medium_place(ray.medium, way_m));
       here = carried(here, vec3(place, float(layer)), medium, light_depths, transport_depths);
 #if EXCHANGES
       turned_depth += weigh(medium, peripheral_depths);
 #endif
-      meets = false;
     }
     layer = layer + 1 < layers ? layer + 1 : 0;
     imageStore(leaving, ivec3(texel, layer), vec4(here, 0.0, 0.0));

@@ -26,10 +26,7 @@ void main() {
     uint content = brick_content(ray.medium, place);
     bool meets = content == kThickBrick || content == kThinBrick;
     slice = max(slice + 1.0, meets ? 0.0 : ceil((way_m + empty_way(ray.medium, place, content) - ray.first_m) / path_m));
-    while (meets) {
-      depth += weigh(medium_at_place(medium_place(ray.medium, way_m)), transport_depths);
-      meets = false;
-    }
+    if (meets) depth += weigh(medium_at_place(medium_place(ray.medium, way_m)), transport_depths);
   }
   imageStore(thickness, texel, vec4(depth, 0.0, 0.0, 0.0));
 }

@@ -12,8 +12,9 @@ vec3 srgb(vec3 linear) {
 }
 
 void main() {
-  vec2 place = vec2(0.5 * position.x + 0.5, 0.5 - 0.5 * position.y);
-  vec3 exposed = max(texture(linear_frame, place).rgb * exposure, vec3(0.0));
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  pixel.y = textureSize(linear_frame, 0).y - 1 - pixel.y;
+  vec3 exposed = max(texelFetch(linear_frame, pixel, 0).rgb * exposure, vec3(0.0));
 #if FILMIC
   exposed = vec3(1.0) - exp(-exposed);
 #endif
