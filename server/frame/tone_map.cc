@@ -30,10 +30,7 @@ absl::StatusOr<ToneMapped> ToneMapper::Map(const gl::Texture2D& linear,
                      {{"FILMIC", display.tone_map == scene::ToneMap::kFilmic ? 1 : 0}}}));
   program->Set("exposure", kExposureAtZeroEv * static_cast<float>(std::exp2(display.exposure_ev)));
   linear.Bind(kLinearUnit);
-  target_.Bind();
-  program->Use();
-  no_attributes_.Bind();
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  whole_target_.Draw(*program, target_);
   glFinish();
   ToneMapped mapped;
   mapped.tone_ms = stopwatch.Restart();

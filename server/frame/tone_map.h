@@ -8,6 +8,7 @@
 #include "absl/status/statusor.h"
 #include "gl/objects.h"
 #include "gl/program.h"
+#include "gl/whole_target.h"
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 #include "scene/scene.h"
@@ -31,7 +32,7 @@ class ToneMapper {
 
  private:
   gl::ProgramCache programs_;
-  gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
+  gl::WholeTarget whole_target_;
   gl::Texture2D display_;
   gl::Framebuffer target_;
 };

@@ -88,10 +88,7 @@ absl::Status Ground::CastShadow(const ResidentMedium& medium, const RenderSettin
   program->Set("light_up_m", glm::vec3(frame.up * frame.half_extent_m.y));
   program->Set("light_weights", medium.Weights(weights.light));
   program->Set("step_m", static_cast<float>(step_m));
-  shadow_target_.Bind();
-  program->Use();
-  no_attributes_.Bind();
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  whole_target_.Draw(*program, shadow_target_);
   PlaceShadow(frame, medium.Middle_m());
   return absl::OkStatus();
 }
@@ -128,10 +125,7 @@ absl::Status Ground::DrawDistance(const scene::View& view, const glm::ivec2& siz
           {"common/whole_target.vert", "ground/distance.frag", {{"RELIEF", relief_ ? 1 : 0}}}));
   BindRays(*program, view, view.eye_m);
   Bind(*program, view);
-  distance_target_.Bind();
-  program->Use();
-  no_attributes_.Bind();
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  whole_target_.Draw(*program, distance_target_);
   return absl::OkStatus();
 }
 

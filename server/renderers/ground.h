@@ -9,6 +9,7 @@
 #include "absl/status/status.h"
 #include "gl/objects.h"
 #include "gl/program.h"
+#include "gl/whole_target.h"
 #include "renderers/half_angle/slicing.h"
 #include "renderers/medium.h"
 #include "renderers/render_settings.h"
@@ -64,7 +65,7 @@ class Ground {
   void PlaceShadow(const LightFrame& frame, const glm::dvec3& middle_m);
 
   std::shared_ptr<gl::ProgramCache> programs_;
-  gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
+  gl::WholeTarget whole_target_;
   volume::RegularGrid grid_;
   bool relief_ = false;
   double lowest_m_ = 0.0;

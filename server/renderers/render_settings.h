@@ -36,17 +36,29 @@ struct Illumination {
   glm::vec3 rest_of_sky_level{0.0F};
 };
 
+// How well to draw a scene.
+struct DrawQuality {
+  double image_scale = 1.0;  // of the eye buffer's width and height, (0, 2]; 2 is 4 rays a pixel
+  double slice_share = 1.0;  // of the scene's slices, (0, 1]
+  // What sweeps vary besides; sessions draw with these.
+  double light_detail = 1.0;      // texels of the light volume, over the usual ones, along a side
+  bool single_precision = false;  // in the light volume's buffers and the frame; half is usual
+  // Of the light volume, for the light that the scene has.
+  std::shared_ptr<const LightCorrection> correction{};
+  // The frame is the light volume's eye buffer: for each pixel the place in the medium's box, 0 to
+  // 1, where its correction is looked up, and the share of the background that passes.
+  bool places = false;
+
+  bool operator==(const DrawQuality&) const = default;
+};
+
 struct RenderSettings {
   scene::Rendering rendering;
   scene::View view;
   Illumination illumination;
   glm::ivec2 eye_size{1};  // of the eye buffer in pixels
   int slices = 128;        // or samples along a ray
-  // Of the light volume, as DrawQuality has them.
-  double light_detail = 1.0;
-  bool single_precision = false;
-  std::shared_ptr<const LightCorrection> correction{};
-  bool places = false;
+  DrawQuality quality{};   // its shares are in the sizes above already
   // How far the ground is along each pixel's ray; none where nothing hides a part of the medium.
   const gl::Texture2D* ground_distance = nullptr;
   // Of the medium in the eye buffer; none where that may be anywhere.

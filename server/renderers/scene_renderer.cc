@@ -101,15 +101,9 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
     if (!Empty()) {
       const double wanted = std::ceil(scene.rendering.slices * quality.slice_share);
       drawn_slices_ = std::max(static_cast<int>(wanted), 1);
-      RenderSettings settings{scene.rendering,
-                              view,
-                              surroundings_.IlluminationOf(scene),
-                              EyeSize(scene, quality),
-                              drawn_slices_,
-                              quality.light_detail,
-                              quality.single_precision,
-                              quality.correction,
-                              quality.places};
+      RenderSettings settings{
+          scene.rendering,         view,          surroundings_.IlluminationOf(scene),
+          EyeSize(scene, quality), drawn_slices_, quality};
       if (drawn_by_ == scene::Renderer::kCumulus) {
         THUNDERHEAD_RETURN_IF_ERROR(DrawCumulus(scene, &settings, first, &stages));
       } else {
@@ -124,11 +118,13 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
     } else {
       ground_.ClearShadow();
     }
-    base::Stopwatch stopwatch;
-    THUNDERHEAD_RETURN_IF_ERROR(
-        Composite(scene, view, quality.single_precision ? GL_RGBA32F : GL_RGBA16F, cover));
-    glFinish();
-    stages.push_back({"composite", stopwatch.ElapsedMs()});
+    if (!quality.places) {
+      base::Stopwatch stopwatch;
+      THUNDERHEAD_RETURN_IF_ERROR(
+          Composite(scene, view, quality.single_precision ? GL_RGBA32F : GL_RGBA16F, cover));
+      glFinish();
+      stages.push_back({"composite", stopwatch.ElapsedMs()});
+    }
   }
   drawn_scene_ = scene;
   drawn_fields_ = fields;

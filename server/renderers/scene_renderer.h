@@ -21,21 +21,6 @@
 
 namespace thunderhead::renderers {
 
-struct DrawQuality {
-  double image_scale = 1.0;  // of the eye buffer's width and height, (0, 2]; 2 is 4 rays a pixel
-  double slice_share = 1.0;  // of the scene's slices, (0, 1]
-  // What sweeps vary besides; sessions draw with these.
-  double light_detail = 1.0;      // texels of the light volume, over the usual ones, along a side
-  bool single_precision = false;  // in the light volume's buffers and the frame; half is usual
-  // Of the light volume, for the light that the scene has.
-  std::shared_ptr<const LightCorrection> correction{};
-  // The frame is the light volume's eye buffer: for each pixel the place in the medium's box, 0 to
-  // 1, where its correction is looked up, and the share of the background that passes.
-  bool places = false;
-
-  bool operator==(const DrawQuality&) const = default;
-};
-
 // Wall time of one stage: "extinction", "upload"; "fit" of metaballs; "surface" of a cumulus;
 // "slices" of half-angle slicing, or "light" and "view" of the others; "ground", "composite".
 struct StageTime {

@@ -184,8 +184,6 @@ absl::Status SkyAndGround::Composite(const scene::Scene& scene, const scene::Vie
                                      const Cover* cover) {
   eye.Bind(kEyeUnit);
   sky_table_.Bind(kSkyUnit);
-  target.Target().Bind();
-  no_attributes_.Bind();
   const auto draw = [&](Where where) -> absl::Status {
     THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
                                  programs_->Get({"common/whole_target.vert",
@@ -194,9 +192,8 @@ absl::Status SkyAndGround::Composite(const scene::Scene& scene, const scene::Vie
                                                   {"CORRECTED", ground.Corrected() ? 1 : 0},
                                                   {"FRONT", where == Where::kCovered ? 1 : 0}}}));
     BindAir(*program, scene, view, ground, box);
-    program->Use();
     const LimitedTo limited(where, cover);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    whole_target_.Draw(*program, target.Target());
     return absl::OkStatus();
   };
   THUNDERHEAD_RETURN_IF_ERROR(draw(Where::kCovered));

@@ -12,6 +12,7 @@
 #include "absl/status/status.h"
 #include "gl/objects.h"
 #include "gl/program.h"
+#include "gl/whole_target.h"
 #include "physics/sky.h"
 #include "renderers/ground.h"
 #include "renderers/render_settings.h"
@@ -63,7 +64,7 @@ class SkyAndGround {
   };
 
   std::shared_ptr<gl::ProgramCache> programs_;
-  gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
+  gl::WholeTarget whole_target_;
   std::optional<physics::Atmosphere> atmosphere_;
   std::optional<physics::ClearSky> sky_;  // from the ground
   physics::SkyLight sky_light_;

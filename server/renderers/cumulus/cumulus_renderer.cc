@@ -191,10 +191,7 @@ absl::StatusOr<gl::Texture2D> CumulusRenderer::GroundShadow() {
       const gl::Program* program,
       programs_->Get({"common/whole_target.vert", "cumulus/ground_shadow.frag", {}}));
   shadow_depth_.Bind(kDepthUnit);
-  target.Bind();
-  program->Use();
-  no_attributes_.Bind();
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  whole_target_.Draw(*program, target);
   return shadow;
 }
 
@@ -291,10 +288,7 @@ absl::Status CumulusRenderer::Resolve() {
       programs_->Get({"common/whole_target.vert", "cumulus/resolve.frag", {}}));
   cores_.Bind(kDepthUnit);
   layer_.Bind(kShadowUnit);
-  eye_target_.Bind();
-  program->Use();
-  no_attributes_.Bind();
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  whole_target_.Draw(*program, eye_target_);
   return absl::OkStatus();
 }
 

@@ -12,6 +12,7 @@
 #include "clouds/cumulus_surface.h"
 #include "gl/objects.h"
 #include "gl/program.h"
+#include "gl/whole_target.h"
 #include "renderers/detail_noises.h"
 #include "renderers/half_angle/slicing.h"
 #include "renderers/render_settings.h"
@@ -58,6 +59,7 @@ class CumulusRenderer {
 
   std::shared_ptr<gl::ProgramCache> programs_;
   gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
+  gl::WholeTarget whole_target_;
 
   std::vector<glm::vec3> centres_m_;  // from the middle
   std::vector<float> radii_m_;

@@ -192,7 +192,6 @@ void HalfAngleRenderer::DrawSlabs(const Programs& programs, const RenderSettings
   turned_.BindImage(1, GL_READ_WRITE);
   thickness_.Bind(kThicknessUnit);
   if (settings.ground_distance != nullptr) settings.ground_distance->Bind(kGroundUnit);
-  no_attributes_.Bind();
   const auto meets = [](const SliceReach& slice) { return !slice.light.Empty(); };
   const auto first = std::find_if(reach.begin(), reach.end(), meets) - reach.begin();
   const auto end = reach.rend() - std::find_if(reach.rbegin(), reach.rend(), meets);
@@ -210,9 +209,9 @@ void HalfAngleRenderer::DrawSlabs(const Programs& programs, const RenderSettings
     if (seen.Empty()) continue;
     eye_[eyes.Of(drawn)].Texture().Bind(kEyeUnit);
     ++drawn;
-    eye_[eyes.Of(drawn)].Target().Bind();
     programs.eye->Set("begin_layer", static_cast<float>(layers.Of(slab.begin)));
-    DrawSlab(slab, *programs.eye, settings.cover, eyes.Write(drawn, seen));
+    DrawSlab(slab, *programs.eye, settings.cover, eyes.Write(drawn, seen),
+             eye_[eyes.Of(drawn)].Target());
   }
   last_eye_ = eyes.Of(drawn);
 }
@@ -241,16 +240,15 @@ void HalfAngleRenderer::CarryThrough(const Slab& slab, const gl::Program& light,
 }
 
 void HalfAngleRenderer::DrawSlab(const Slab& slab, const gl::Program& eye, const Cover* cover,
-                                 const PixelRect& rect) {
+                                 const PixelRect& rect, const gl::Framebuffer& target) {
   eye.Set("slab_begin", static_cast<float>(slab.begin));
   eye.Set("slab_end", static_cast<float>(slab.end));
   eye.Set("layer_count", static_cast<float>(light_.Layers()));
-  eye.Use();
   glEnable(GL_SCISSOR_TEST);
   glScissor(rect.low.x, rect.low.y, rect.high.x - rect.low.x, rect.high.y - rect.low.y);
   {
     const LimitedTo limited(Where::kCovered, cover);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    whole_target_.Draw(eye, target);
   }
   glDisable(GL_SCISSOR_TEST);
 }

@@ -16,6 +16,7 @@
 #include "absl/status/status.h"
 #include "gl/objects.h"
 #include "gl/program.h"
+#include "gl/whole_target.h"
 #include "renderers/group_weights.h"
 #include "renderers/half_angle/slice_reach.h"
 #include "renderers/half_angle/slicing.h"
@@ -53,11 +54,11 @@ class HalfAngleRenderer {
                  const std::vector<SliceReach>& reach);
   void CarryThrough(const Slab& slab, const gl::Program& light, std::size_t at_once,
                     const std::vector<SliceReach>& reach, Turns* layers);
-  void DrawSlab(const Slab& slab, const gl::Program& eye, const Cover* cover,
-                const PixelRect& rect);
+  void DrawSlab(const Slab& slab, const gl::Program& eye, const Cover* cover, const PixelRect& rect,
+                const gl::Framebuffer& target);
 
   std::shared_ptr<gl::ProgramCache> programs_;
-  gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
+  gl::WholeTarget whole_target_;
   std::array<CoveredTarget, 2> eye_;  // before and after a slab, in turn
   std::size_t last_eye_ = 0;
   gl::Texture2DArray light_;    // what enters slice after slice, in turn

@@ -56,12 +56,14 @@ LightVolumeRenderer::LightBox::LightBox(const ResidentMedium& medium,
   frame = LightFrameOf({half_m}, towards_sun);
   reach_m = glm::dot(glm::abs(towards_sun), half_m);
   const glm::dvec2 across_m = 2.0 * frame.half_extent_m;
-  const int most_texels = std::max(static_cast<int>(kMostLightTexels * settings.light_detail), 1);
+  const int most_texels =
+      std::max(static_cast<int>(kMostLightTexels * settings.quality.light_detail), 1);
   // Finer texels than cells would carry no more detail.
-  texel_m = std::max(std::max(across_m.x, across_m.y) / most_texels,
-                     kLightTexelInCells / settings.light_detail * std::min(cell_m.x, cell_m.y));
+  texel_m =
+      std::max(std::max(across_m.x, across_m.y) / most_texels,
+               kLightTexelInCells / settings.quality.light_detail * std::min(cell_m.x, cell_m.y));
   const glm::dvec3 through_m = cell_m / glm::max(glm::abs(towards_sun), glm::dvec3(1e-6));
-  const double layer_m = std::min(texel_m, kLayerInCells / settings.light_detail *
+  const double layer_m = std::min(texel_m, kLayerInCells / settings.quality.light_detail *
                                                std::min({through_m.x, through_m.y, through_m.z}));
   size = glm::clamp(glm::ivec3(glm::ceil(glm::dvec3(across_m / texel_m, 2.0 * reach_m / layer_m))),
                     glm::ivec3(1), glm::ivec3(most_texels));
@@ -102,8 +104,8 @@ absl::Status LightVolumeRenderer::CarryLight(const ResidentMedium& medium,
   const LightBox box(medium, settings);
   const GroupWeights weights(medium.Content(), settings.rendering);
   const bool diffuse = IsDiffuse(settings.rendering);
-  const GLenum one = settings.single_precision ? GL_R32F : GL_R16F;
-  const GLenum two = settings.single_precision ? GL_RG32F : GL_RG16F;
+  const GLenum one = settings.quality.single_precision ? GL_R32F : GL_R16F;
+  const GLenum two = settings.quality.single_precision ? GL_RG32F : GL_RG16F;
   Resize(box.size, medium.Bounds().grid.cells, diffuse ? two : one);
   const std::vector<gl::Define> variant = {
       {"GROUPS", static_cast<int>(medium.Content().groups.size())},
@@ -202,7 +204,7 @@ void LightVolumeRenderer::BindCorrection(const std::shared_ptr<const LightCorrec
 
 absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
                                            const RenderSettings& settings) {
-  eye_.Resize(settings.single_precision ? GL_RGBA32F : GL_RGBA16F, settings.eye_size,
+  eye_.Resize(settings.quality.single_precision ? GL_RGBA32F : GL_RGBA16F, settings.eye_size,
               settings.cover);
   const GroupWeights weights(medium.Content(), settings.rendering);
   const bool diffusion = Diffuses(settings.rendering);
@@ -217,8 +219,8 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
                        {"GROUND", settings.ground_distance != nullptr ? 1 : 0},
                        {"EVEN_ALBEDO", weights.even_albedo ? 1 : 0},
                        {"DIFFUSION", diffusion ? 1 : 0},
-                       {"CORRECTED", settings.correction != nullptr ? 1 : 0},
-                       {"PLACES", settings.places ? 1 : 0},
+                       {"CORRECTED", settings.quality.correction != nullptr ? 1 : 0},
+                       {"PLACES", settings.quality.places ? 1 : 0},
                        {"TINTED", diffusion && (weights.colored || weights.absorbs) ? 1 : 0}}}));
   medium.Bind(*program);
   weights.BindScattered(*program, medium, settings.illumination);
@@ -230,14 +232,11 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
   program->Set("eye_weights", medium.Weights(weights.eye));
   if (diffusion) BindDiffusion(*program, medium, weights, settings);
   arrived_.Bind(kLightUnit);
-  if (settings.correction != nullptr) BindCorrection(settings.correction);
+  if (settings.quality.correction != nullptr) BindCorrection(settings.quality.correction);
   if (settings.ground_distance != nullptr) settings.ground_distance->Bind(kGroundUnit);
   if (settings.cover != nullptr) eye_.Target().Clear(0.0F, 0.0F, 0.0F, 1.0F);
-  eye_.Target().Bind();
-  program->Use();
-  no_attributes_.Bind();
   const LimitedTo limited(Where::kCovered, settings.cover);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  whole_target_.Draw(*program, eye_.Target());
   return absl::OkStatus();
 }
 

@@ -14,6 +14,7 @@
 #include "absl/status/status.h"
 #include "gl/objects.h"
 #include "gl/program.h"
+#include "gl/whole_target.h"
 #include "renderers/group_weights.h"
 #include "renderers/half_angle/slicing.h"
 #include "renderers/light_volume/diffusion_pass.h"
@@ -62,7 +63,7 @@ class LightVolumeRenderer {
   void BindCorrection(const std::shared_ptr<const LightCorrection>& correction);
 
   std::shared_ptr<gl::ProgramCache> programs_;
-  gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
+  gl::WholeTarget whole_target_;
   CoveredTarget eye_;
   gl::Texture3D carried_;  // along the sun's rays
   gl::Texture2D thickness_;

@@ -340,10 +340,7 @@ absl::Status MetaballRenderer::Splat(const RenderSettings& settings) {
   order_.BindStorage(kOrderBinding);
   sources_.BindStorage(kSourceBinding);
   if (settings.ground_distance != nullptr) settings.ground_distance->Bind(kGroundUnit);
-  eye_target_.Bind();
-  program->Use();
-  no_attributes_.Bind();
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  whole_target_.Draw(*program, eye_target_);
   return absl::OkStatus();
 }
 

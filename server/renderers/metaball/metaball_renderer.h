@@ -14,6 +14,7 @@
 #include "absl/status/status.h"
 #include "gl/objects.h"
 #include "gl/program.h"
+#include "gl/whole_target.h"
 #include "renderers/group_weights.h"
 #include "renderers/medium.h"
 #include "renderers/metaball/ball_cloud.h"
@@ -78,7 +79,7 @@ class MetaballRenderer {
   absl::Status Splat(const RenderSettings& settings);
 
   std::shared_ptr<gl::ProgramCache> programs_;
-  gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
+  gl::WholeTarget whole_target_;
   std::vector<Ball> balls_;
   BallBox box_;
   std::vector<Light> lights_;  // that `arrived_` holds
