@@ -60,6 +60,24 @@ float DistanceDownTo_m(float target_m, float height_m, float sine) {
   return static_cast<float>(-across - std::sqrt(std::max(inside, 0.0)));
 }
 
+// Of a table whose rows are by the square root of height up to the atmosphere's top.
+TableRow RowAt(float height_m, int rows) {
+  const float high = std::sqrt(glm::clamp(height_m / kAtmosphereTop_m, 0.0F, 1.0F));
+  const float place = high * static_cast<float>(rows - 1);
+  const int low = std::min(static_cast<int>(place), rows - 2);
+  return {low, place - static_cast<float>(low)};
+}
+
+// A table with rows of `columns` at `column`, counted from the first, between two rows.
+glm::vec3 Between(const std::vector<glm::vec3>& table, int columns, float column,
+                  const TableRow& row) {
+  const int left = std::min(static_cast<int>(column), columns - 2);
+  const float share = column - static_cast<float>(left);
+  const glm::vec3* low = table.data() + row.low * columns + left;
+  const glm::vec3* high = low + columns;
+  return glm::mix(glm::mix(low[0], low[1], share), glm::mix(high[0], high[1], share), row.share);
+}
+
 // Air, haze and ozone from a point to space, in metres of their densest. The same for every
 // turbidity: a table by height and, from the horizon up, sine of elevation, both by square roots.
 class WaysToSpace {
@@ -69,19 +87,12 @@ class WaysToSpace {
     return ways;
   }
 
-  glm::vec3 From(const AirPlace& place) const {
-    const float horizon = HorizonSine(place.height_m);
-    const float up =
-        std::sqrt(glm::clamp((place.sun_sine - horizon) / (1.0F - horizon), 0.0F, 1.0F));
-    const float high = std::sqrt(glm::clamp(place.height_m / kAtmosphereTop_m, 0.0F, 1.0F));
-    const glm::vec2 cell(up * (kSines - 1), high * (kHeights - 1));
-    const glm::ivec2 low = glm::min(glm::ivec2(cell), glm::ivec2(kSines - 2, kHeights - 2));
-    const glm::vec2 share = cell - glm::vec2(low);
-    const auto at = [this](int x, int y) {
-      return ways_m_[static_cast<std::size_t>(y * kSines + x)];
-    };
-    return glm::mix(glm::mix(at(low.x, low.y), at(low.x + 1, low.y), share.x),
-                    glm::mix(at(low.x, low.y + 1), at(low.x + 1, low.y + 1), share.x), share.y);
+  static TableRow RowAt(float height_m) { return physics::RowAt(height_m, kHeights); }
+
+  glm::vec3 From(const AirLevel& level, float sun_sine) const {
+    const float horizon = level.horizon_sine;
+    const float up = std::sqrt(glm::clamp((sun_sine - horizon) / (1.0F - horizon), 0.0F, 1.0F));
+    return Between(ways_m_, kSines, up * (kSines - 1), level.ways);
   }
 
  private:
@@ -118,6 +129,10 @@ constexpr int kDiffuseHeights = 10;
 constexpr int kDiffuseSines = 24;
 constexpr float kLowestSine = -0.4F;  // below, no part of the atmosphere that matters is lit
 
+AirLevel LevelAt(float height_m) {
+  return {HorizonSine(height_m), WaysToSpace::RowAt(height_m), RowAt(height_m, kDiffuseHeights)};
+}
+
 }  // namespace
 
 float HorizonSine(float height_m, float ground_m) {
@@ -151,9 +166,13 @@ AirOptics Atmosphere::At(float height_m) const {
 }
 
 glm::vec3 Atmosphere::SunTransmittance(const AirPlace& place) const {
-  const float above = (place.sun_sine - HorizonSine(place.height_m)) / kSunRadius;
+  return SunTransmittance(LevelAt(place.height_m), place.sun_sine);
+}
+
+glm::vec3 Atmosphere::SunTransmittance(const AirLevel& level, float sun_sine) const {
+  const float above = (sun_sine - level.horizon_sine) / kSunRadius;
   if (above <= -1.0F) return glm::vec3(0.0F);
-  const glm::vec3 way_m = WaysToSpace::Get().From(place);
+  const glm::vec3 way_m = WaysToSpace::Get().From(level, sun_sine);
   const glm::vec3 depth = glsl::air_optical_depth() * (way_m.x / glsl::kAirScaleHeight_m) +
                           haze_depth_ * (way_m.y / glsl::kHazeScaleHeight_m) +
                           kOzoneDepth * (way_m.z / kOzoneHalfWidth_m);
@@ -161,18 +180,13 @@ glm::vec3 Atmosphere::SunTransmittance(const AirPlace& place) const {
 }
 
 glm::vec3 Atmosphere::DiffuseMeanRadiance(const AirPlace& place) const {
-  if (place.sun_sine <= kLowestSine) return glm::vec3(0.0F);
-  const float high = std::sqrt(glm::clamp(place.height_m / kAtmosphereTop_m, 0.0F, 1.0F));
-  const glm::vec2 cell((place.sun_sine - kLowestSine) / (1.0F - kLowestSine) * (kDiffuseSines - 1),
-                       high * (kDiffuseHeights - 1));
-  const glm::ivec2 low =
-      glm::min(glm::ivec2(cell), glm::ivec2(kDiffuseSines - 2, kDiffuseHeights - 2));
-  const glm::vec2 share = cell - glm::vec2(low);
-  const auto at = [this](int x, int y) {
-    return diffuse_[static_cast<std::size_t>(y * kDiffuseSines + x)];
-  };
-  return glm::mix(glm::mix(at(low.x, low.y), at(low.x + 1, low.y), share.x),
-                  glm::mix(at(low.x, low.y + 1), at(low.x + 1, low.y + 1), share.x), share.y);
+  return DiffuseMeanRadiance(LevelAt(place.height_m).diffuse, place.sun_sine);
+}
+
+glm::vec3 Atmosphere::DiffuseMeanRadiance(const TableRow& row, float sun_sine) const {
+  if (sun_sine <= kLowestSine) return glm::vec3(0.0F);
+  return Between(diffuse_, kDiffuseSines,
+                 (sun_sine - kLowestSine) / (1.0F - kLowestSine) * (kDiffuseSines - 1), row);
 }
 
 Atmosphere::Line Atmosphere::Along(const Ray& ray) const {
@@ -198,7 +212,8 @@ Atmosphere::Line Atmosphere::Along(const Ray& ray) const {
     // The step's light on its way through the step itself.
     const glm::vec3 seen =
         line.passed * (1.0F - passed) / glm::max(optics.extinction, glm::vec3(1e-20F));
-    line.steps.push_back({middle_m, height_m, seen * optics.air, seen * optics.haze});
+    line.steps.push_back(
+        {middle_m, height_m, seen * optics.air, seen * optics.haze, LevelAt(height_m)});
     line.passed *= passed;
     line.way += glsl::densities_of_air(height_m) * ((to_m - from_m) / kScaleHeights_m);
     from_m = to_m;
@@ -220,12 +235,15 @@ AirPlace PlaceOn(const Atmosphere::Line& line, const Atmosphere::Sunwards& sun, 
 Atmosphere::Gathered Atmosphere::Gather(const Line& line, const Sunwards& sun) const {
   Gathered gathered;
   for (const Line::Step& step : line.steps) {
-    const AirPlace place = PlaceOn(line, sun, step.distance_m, step.height_m);
-    const glm::vec3 sunlight = SunTransmittance(place);
+    const float sun_sine = PlaceOn(line, sun, step.distance_m, step.height_m).sun_sine;
+    const glm::vec3 sunlight = SunTransmittance(step.level, sun_sine);
     gathered.air += sunlight * step.air;
     gathered.haze += sunlight * step.haze;
     // While the orders are being summed there are none yet.
-    if (!diffuse_.empty()) gathered.diffuse += (step.air + step.haze) * DiffuseMeanRadiance(place);
+    if (!diffuse_.empty()) {
+      gathered.diffuse +=
+          (step.air + step.haze) * DiffuseMeanRadiance(step.level.diffuse, sun_sine);
+    }
   }
   return gathered;
 }

@@ -36,6 +36,19 @@ struct AirPlace {
 // sea level.
 float HorizonSine(float height_m, float ground_m = 0.0F);
 
+// What tables by height need of one: the row below, and the share of the one above.
+struct TableRow {
+  int low = 0;
+  float share = 0.0F;
+};
+
+// A height as looks towards the sun from it need it.
+struct AirLevel {
+  float horizon_sine = 0.0F;
+  TableRow ways;
+  TableRow diffuse;
+};
+
 class Atmosphere {
  public:
   Atmosphere(float turbidity, float ground_albedo);
@@ -61,6 +74,7 @@ class Atmosphere {
       float height_m = 0.0F;
       glm::vec3 air{0.0F};   // share of light arriving at the step that air scatters and
       glm::vec3 haze{0.0F};  // haze, of it what the start of the ray sees
+      AirLevel level;
     };
     float height_m = 0.0F;
     std::vector<Step> steps;
@@ -86,6 +100,8 @@ class Atmosphere {
   Gathered Gather(const Line& line, const Sunwards& sun) const;
 
  private:
+  glm::vec3 SunTransmittance(const AirLevel& level, float sun_sine) const;
+  glm::vec3 DiffuseMeanRadiance(const TableRow& row, float sun_sine) const;
   glm::vec3 SumOrders(const AirPlace& place, float ground_albedo) const;
 
   glm::vec3 haze_depth_;
