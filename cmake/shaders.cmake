@@ -1,5 +1,5 @@
 # Embeds every .glsl, .vert, .frag and .comp file of server/shaders as a string, found by its path below that
-# folder, e.g. "half_angle/slice.frag".
+# folder, e.g. "half_angle/eye.frag".
 function(thunderhead_embed_shaders target)
   file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/server/shaders
     ${CMAKE_SOURCE_DIR}/server/shaders/*.glsl ${CMAKE_SOURCE_DIR}/server/shaders/*.vert

@@ -34,10 +34,10 @@ struct Define {
 
 // Which files a program is made of, and its variant: vertex and fragment, or compute alone.
 struct ProgramSource {
-  std::string vertex;    // e.g. "half_angle/slice.vert"
-  std::string fragment;  // e.g. "half_angle/slice.frag"
+  std::string vertex;    // e.g. "common/whole_target.vert"
+  std::string fragment;  // e.g. "half_angle/eye.frag"
   std::vector<Define> defines;
-  std::string compute = {};  // e.g. "light_volume/light.comp"
+  std::string compute = {};  // e.g. "light_volume/carry.comp"
 
   auto operator<=>(const ProgramSource&) const = default;
 };

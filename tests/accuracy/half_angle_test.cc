@@ -98,6 +98,90 @@ TEST_F(SingleScattering, AlbedoScalesTheLight) {
   EXPECT_NEAR(Look(1.0, 80.0, 60.0).radiance / white, 0.5, kTextureError);
 }
 
+TEST_F(HalfAngle, ThinSlabsKeepTheirDigitsInLightFromAllAround) {
+  even_light_ = true;
+  scene_.rendering.mode = scene::Mode::kUniformPhaseTranslucent;
+  scene_.rendering.slices = 1024;
+  SetPhase(physics::PhaseKind::kRayleigh, 0.0F);
+  // What is left of a single-precision transmittance after a slice of 3e-7 is off by a fifth of it.
+  for (const double depth : {3e-4, 1e-3}) {
+    EXPECT_NEAR(Look(depth, 89.9, 89.9).radiance / depth, 1.0, 0.006 + depth) << depth;
+  }
+}
+
+TEST_F(HalfAngle, WideViewsKeepTheStormWhereRaysMeetSlicesAgainstTheirOrder) {
+  // From below the slab straight up, the sun on the horizon: slices face 45 degrees from the axis.
+  scene_.rendering.mode = scene::Mode::kUniformPhaseLowAlbedo;
+  scene_.rendering.slices = 200;
+  width_m_ = 10'000.0;
+  constexpr double kDepth = 1.0;
+  scene::View view;
+  view.eye_m = {0.0, 0.0, -500.0};
+  view.forward = {0.0, 0.0, 1.0};
+  view.right = {1.0, 0.0, 0.0};
+  view.up = {0.0, -1.0, 0.0};
+  view.tan_half_width = view.tan_half_height = 2.0;
+  for (const double sun_elevation_deg : {1.0, -1.0}) {
+    const Seen seen = Look(kDepth, view, sun_elevation_deg);
+    const glm::dvec3 sun = scene::Direction(kSunAzimuth_deg, sun_elevation_deg);
+    const Slicing slicing = SliceBox({glm::dvec3(width_m_, width_m_, kHeight_m) / 2.0}, sun,
+                                     -view.forward, scene_.rendering.slices);
+    ASSERT_EQ(OrderOf(slicing, view), SliceOrder::kBoth);
+    int along = 0;
+    int against = 0;
+    for (int i = 0; i < 81; ++i) {
+      const double x = ((i % 9 + 0.5) / 9 * 2 - 1) * view.tan_half_width;
+      const double y = ((i / 9 + 0.5) / 9 * 2 - 1) * view.tan_half_height;
+      const glm::dvec3 ray = glm::normalize(view.forward + x * view.right + y * view.up);
+      const double climb = glm::dot(ray, slicing.normal);
+      if (std::abs(climb) < 0.1) continue;
+      ++(climb < 0.0 ? along : against);
+      // No more slices than planes that the way holds, and no fewer by more than one.
+      const double path = slicing.spacing_m / std::abs(climb) / kHeight_m * kDepth;
+      const double depth = -std::log(seen.eye[4 * i + 3]);
+      EXPECT_NEAR(depth, kDepth / ray.z, path + 0.005) << i << ", sun " << sun_elevation_deg;
+    }
+    EXPECT_GT(std::min(along, against), 5);
+  }
+}
+
+TEST_F(HalfAngle, LightSpreadsFromClearAirIntoTheCloudsEdge) {
+  // Two clouds with a gap between them. A texel within has the light of its own ray and, at the
+  // edge, a part of its neighbours'.
+  scene_.rendering.mode = scene::Mode::kUniformPhaseTranslucent;
+  scene_.rendering.theta_f_deg = 80.0;
+  SetPhase(physics::PhaseKind::kHenyeyGreenstein, 0.6F);
+  with_gap_ = true;
+  struct Shares {
+    double within = 0.0;  // farthest from the gap
+    double edge = 0.0;    // the sum of what is more, in columns of texels with that light
+  };
+  const auto shares = [&](double depth) {
+    const Seen seen = Look(depth, 89.9, 89.9);
+    const auto texels = static_cast<std::size_t>(std::lround(std::sqrt(seen.light.size() / 4)));
+    std::vector<double> light;
+    for (std::size_t i = 0; i < texels * texels; ++i) light.push_back(seen.light[4 * i]);
+    Shares found{*std::min_element(light.begin(), light.end())};
+    EXPECT_NEAR(*std::max_element(light.begin(), light.end()), 1.0, 1e-6) << "in the gap";
+    for (const double share : light) {
+      if (share < 0.5 * (found.within + 1.0)) found.edge += (share / found.within - 1.0) / texels;
+    }
+    return found;
+  };
+  for (const int slices : {64, 256}) {
+    scene_.rendering.slices = slices;
+    for (scene::FieldParameters& field : scene_.fields) field.optics.albedo = 1.0F;
+    const Shares scattered = shares(4.0);
+    // The same light where none is scattered: its edge is the one cell over which extinction rises.
+    for (scene::FieldParameters& field : scene_.fields) field.optics.albedo = 0.0F;
+    const Shares straight = shares(-std::log(scattered.within));
+    // The sun is a tenth of a degree off: its rays may meet a slice more or fewer.
+    EXPECT_NEAR(std::log(straight.within / scattered.within), 0.0, 4.0 / slices);
+    EXPECT_GT(scattered.edge / straight.edge, 1.25) << slices;
+    EXPECT_LT(scattered.edge / straight.edge, 1.75) << slices;
+  }
+}
+
 TEST_F(HalfAngle, PaperTransportIsAsPrinted) {
   // One slice multiplies by T + (1 - T) c, c = CP(theta_f / 2), where light is uniform across the
   // slice: with optical depth 10 and c = 0.9, 16 slices leave 0.467 and 128 leave 0.381 (limit

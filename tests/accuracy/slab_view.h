@@ -57,7 +57,7 @@ class SlabView : public testing::Test {
                                 : support::MakeSlab(width_m_, kHeight_m, optical_depth / kHeight_m);
     ResidentMedium::Cost cost;
     DetailNoises noises;
-    const ResidentMedium medium(scene_, *fields, &noises, &cost);
+    const ResidentMedium medium(scene_, with_gap_ ? WithGap(*fields) : *fields, &noises, &cost);
     RenderSettings settings;
     settings.rendering = scene_.rendering;
     settings.view = view;
@@ -87,6 +87,16 @@ class SlabView : public testing::Test {
     return seen;
   }
 
+  static volume::HydrometeorFields WithGap(volume::HydrometeorFields fields) {
+    const int width = fields.grid.cells.x;
+    std::vector<float>& concentration = fields.fields[0].concentration_kg_per_m3;
+    for (std::size_t i = 0; i < concentration.size(); ++i) {
+      const int x = static_cast<int>(i) % width;
+      if (x >= width / 4 && x < width - width / 4) concentration[i] = 0.0F;
+    }
+    return fields;
+  }
+
   void SetPhase(physics::PhaseKind kind, float asymmetry) {
     for (scene::FieldParameters& field : scene_.fields) field.optics.phase = {kind, asymmetry};
   }
@@ -101,6 +111,7 @@ class SlabView : public testing::Test {
   scene::Scene scene_;
   bool in_air_ = false;  // a layer with soft faces instead of the slab
   double width_m_ = kWidth_m;
+  bool with_gap_ = false;    // nothing in the middle half of its width
   bool even_light_ = false;  // radiance 1 from everywhere instead of sunlight
 
  private:

@@ -54,6 +54,12 @@ struct HalfAngleRenderer::Slab {
   std::size_t end = 0;
 };
 
+struct HalfAngleRenderer::CarriedLight {
+  Turns layers;
+  bool exchanges_late = false;  // what one call scatters goes to neighbours in the next
+  PixelRect due{};              // where it does
+};
+
 struct HalfAngleRenderer::Programs {
   const gl::Program* eye;
   const gl::Program* light;
@@ -63,7 +69,7 @@ HalfAngleRenderer::HalfAngleRenderer(std::shared_ptr<gl::ProgramCache> programs)
     : programs_(std::move(programs)) {}
 
 std::size_t HalfAngleRenderer::Bytes() const {
-  return 2 * Eye().Bytes() + light_.Bytes() + thickness_.Bytes() + turned_.Bytes();
+  return 2 * Eye().Bytes() + light_.Bytes() + thickness_.Bytes() + ring_depth_.Bytes();
 }
 
 void HalfAngleRenderer::Resize(const LightFrame& frame, double cell_m) {
@@ -72,16 +78,18 @@ void HalfAngleRenderer::Resize(const LightFrame& frame, double cell_m) {
   const double texel_m = std::max(longest_m / kMostLightTexels, kLightTexelInCells * cell_m);
   const glm::ivec2 light_size =
       glm::max(glm::ivec2(glm::ceil(2.0 * frame.half_extent_m / texel_m)), glm::ivec2(1));
+  // The last frame's stores come before what fills here.
+  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
   if (light_.Size() != light_size) {
     // A slab's light, and what leaves it.
     light_ = gl::Texture2DArray(GL_RG32F, light_size, kSlabSlices + 1);
     light_reach_ = {glm::ivec2(0), light_size};
     thickness_ = gl::Texture2D(GL_R32F, light_size);
-    turned_ = gl::Texture2D(GL_R32F, light_size);
+    ring_depth_ = gl::Texture2D(GL_R32F, light_size);
   }
   if (!light_reach_.Empty()) light_.Fill(light_reach_.low, light_reach_.high, 1.0F, 0.0F);
   light_reach_ = PixelRect();
-  turned_.Clear();
+  ring_depth_.Clear();
 }
 
 absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const RenderSettings& settings,
@@ -116,7 +124,7 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
                        {"TRANSLUCENT", translucent ? 1 : 0},
                        {"CONSISTENT", consistent ? 1 : 0},
                        {"GROUND", settings.ground_distance != nullptr ? 1 : 0},
-                       {"FRONT_TO_BACK", slicing.front_to_back ? 1 : 0}}}));
+                       {"ORDER", static_cast<int>(OrderOf(slicing, settings.view))}}}));
   medium.Bind(*eye);
   BindRays(*eye, settings.view, medium.Middle_m());
   eye->Set("towards_sun", glm::vec3(frame.towards_sun));
@@ -189,51 +197,58 @@ void HalfAngleRenderer::DrawSlabs(const Programs& programs, const RenderSettings
                                   std::size_t at_once, const std::vector<SliceReach>& reach) {
   light_.Bind(kLightUnit);
   light_.BindImage(0, GL_WRITE_ONLY);
-  turned_.BindImage(1, GL_READ_WRITE);
+  ring_depth_.BindImage(1, GL_READ_WRITE);
   thickness_.Bind(kThicknessUnit);
   if (settings.ground_distance != nullptr) settings.ground_distance->Bind(kGroundUnit);
   const auto meets = [](const SliceReach& slice) { return !slice.light.Empty(); };
   const auto first = std::find_if(reach.begin(), reach.end(), meets) - reach.begin();
   const auto end = reach.rend() - std::find_if(reach.rbegin(), reach.rend(), meets);
-  Turns layers(static_cast<std::size_t>(light_.Layers()));
+  CarriedLight light{Turns(static_cast<std::size_t>(light_.Layers())),
+                     IsTranslucent(settings.rendering) && IsConsistent(settings.rendering)};
   Turns eyes(eye_.size());
   std::size_t drawn = 0;
   for (auto begin = static_cast<std::size_t>(first); begin < static_cast<std::size_t>(end);
        begin += kSlabSlices) {
     const Slab slab{begin,
                     std::min<std::size_t>(begin + kSlabSlices, static_cast<std::size_t>(end))};
-    CarryThrough(slab, *programs.light, at_once, reach, &layers);
-    last_layer_ = layers.Of(slab.end);
+    CarryThrough(slab, *programs.light, at_once, reach, &light);
+    last_layer_ = light.layers.Of(slab.end);
     PixelRect seen;
     for (std::size_t i = slab.begin; i < slab.end; ++i) seen = Around(seen, reach[i].eye);
     if (seen.Empty()) continue;
     eye_[eyes.Of(drawn)].Texture().Bind(kEyeUnit);
     ++drawn;
-    programs.eye->Set("begin_layer", static_cast<float>(layers.Of(slab.begin)));
+    programs.eye->Set("begin_layer", static_cast<float>(light.layers.Of(slab.begin)));
     DrawSlab(slab, *programs.eye, settings.cover, eyes.Write(drawn, seen),
              eye_[eyes.Of(drawn)].Target());
   }
   last_eye_ = eyes.Of(drawn);
 }
 
-void HalfAngleRenderer::CarryThrough(const Slab& slab, const gl::Program& light,
+void HalfAngleRenderer::CarryThrough(const Slab& slab, const gl::Program& program,
                                      std::size_t at_once, const std::vector<SliceReach>& reach,
-                                     Turns* layers) {
-  light.Use();
-  light.Set("layer_count", light_.Layers());
+                                     CarriedLight* light) {
+  program.Use();
+  program.Set("layer_count", light_.Layers());
+  // Layers are taken again that the last slab's pass has fetched from.
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   for (std::size_t first = slab.begin; first < slab.end; first += at_once) {
     const std::size_t end = std::min(first + at_once, slab.end);
-    PixelRect changed;
-    for (std::size_t i = first; i < end; ++i) changed = Around(changed, reach[i].light);
+    PixelRect scatters;
+    for (std::size_t i = first; i < end; ++i) scatters = Around(scatters, reach[i].light);
+    PixelRect changed = scatters;
+    if (light->exchanges_late) changed = Around(scatters, std::exchange(light->due, scatters));
     light_reach_ = Around(light_reach_, changed);
     PixelRect rect;
-    for (std::size_t i = first; i < end; ++i) rect = Around(rect, layers->Write(i + 1, changed));
+    for (std::size_t i = first; i < end; ++i) {
+      rect = Around(rect, light->layers.Write(i + 1, changed));
+    }
     if (rect.Empty()) continue;
-    light.Set("first_texel", rect.low);
-    light.Set("end_texel", rect.high);
-    light.Set("first_slice", static_cast<int>(first));
-    light.Set("slice_count", static_cast<int>(end - first));
-    light.Set("first_layer", static_cast<int>(layers->Of(first)));
+    program.Set("first_texel", rect.low);
+    program.Set("end_texel", rect.high);
+    program.Set("first_slice", static_cast<int>(first));
+    program.Set("slice_count", static_cast<int>(end - first));
+    program.Set("first_layer", static_cast<int>(light->layers.Of(first)));
     Dispatch(rect.high - rect.low);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   }

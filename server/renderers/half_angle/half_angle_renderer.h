@@ -46,14 +46,15 @@ class HalfAngleRenderer {
  private:
   struct Programs;
   struct Slab;
+  struct CarriedLight;
 
   void Resize(const LightFrame& frame, double cell_m);
   absl::Status SumThickness(const ResidentMedium& medium, const LightFrame& frame,
                             const GroupWeights& weights);
   void DrawSlabs(const Programs& programs, const RenderSettings& settings, std::size_t at_once,
                  const std::vector<SliceReach>& reach);
-  void CarryThrough(const Slab& slab, const gl::Program& light, std::size_t at_once,
-                    const std::vector<SliceReach>& reach, Turns* layers);
+  void CarryThrough(const Slab& slab, const gl::Program& program, std::size_t at_once,
+                    const std::vector<SliceReach>& reach, CarriedLight* light);
   void DrawSlab(const Slab& slab, const gl::Program& eye, const Cover* cover, const PixelRect& rect,
                 const gl::Framebuffer& target);
 
@@ -64,7 +65,7 @@ class HalfAngleRenderer {
   gl::Texture2DArray light_;    // what enters slice after slice, in turn
   std::size_t last_layer_ = 0;  // behind the last slice
   PixelRect light_reach_;       // where it may differ from light that has met nothing
-  gl::Texture2D turned_;        // optical depth scattered to neighbours since the last exchange
+  gl::Texture2D ring_depth_;    // optical depth scattered to neighbours since the last exchange
   gl::Texture2D thickness_;
 };
 

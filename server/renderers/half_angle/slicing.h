@@ -5,6 +5,7 @@
 
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
+#include "scene/view.h"
 
 namespace thunderhead::renderers {
 
@@ -26,7 +27,6 @@ LightFrame LightFrameOf(const LocalBox& box, const glm::dvec3& towards_sun);
 // Parallel planes, the same distance apart; sunlight meets the first one first.
 struct Slicing {
   glm::dvec3 normal{0.0, 0.0, 1.0};  // points to the sun's side
-  bool front_to_back = true;         // in the slices' order, seen from the eye
   int count = 0;
   double first_m = 0.0;  // of the first plane from the origin, along the normal
   double spacing_m = 1.0;
@@ -34,6 +34,10 @@ struct Slicing {
 
   double Distance_m(int slice) const { return first_m - slice * spacing_m; }
 };
+
+// In which order the rays of a view meet the slices.
+enum class SliceOrder { kAgainst, kAlong, kBoth };
+SliceOrder OrderOf(const Slicing& slicing, const scene::View& view);
 
 // Cuts `box` into `count` slices. `towards_eye` is the unit vector against the view's axis. When
 // the eye is on the sun's side the slices face halfway between the two; otherwise the view is

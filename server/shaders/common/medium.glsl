@@ -69,15 +69,6 @@ Medium medium_at_place(vec3 place) {
   return medium;
 }
 
-// Texel values at `local_m`.
-Medium medium_at(vec3 local_m) {
-  return medium_at_place(local_m * texture_from_local_scale + texture_from_local_offset);
-}
-
-bool inside_medium(vec3 local_m) {
-  return all(greaterThanEqual(local_m, medium_low_m)) && all(lessThanEqual(local_m, medium_high_m));
-}
-
 // The sum over groups of weight times value.
 float weigh(Medium medium, vec4 weights[PLANES]) {
   float sum = dot(medium.plane[0], weights[0]);
@@ -92,6 +83,3 @@ vec4[PLANES] scaled(vec4 weights[PLANES], float factor) {
   for (int plane = 0; plane < PLANES; ++plane) weights[plane] *= factor;
   return weights;
 }
-
-// All groups' extinction, 1/m.
-float total_extinction(Medium medium) { return weigh(medium, extinction_weights); }

@@ -1,6 +1,7 @@
 // What the samples of a ray scatter towards the eye, by group: phase functions, albedo and colour, which are the ray's or
 // the group's, are multiplied once it has ended. Needs common/medium.glsl and common/phase.glsl.
-// Variants: GROUPS, COLORED (per-group colours), CONSISTENT (transport), EVEN_ALBEDO (one albedo and colour for all).
+// Variants: GROUPS, COLORED (per-group colours), CONSISTENT (transport), EVEN_ALBEDO (one albedo and colour for all), GLOWS
+// (what add_isotropic gathers belongs to the radiance).
 uniform vec4 scattering_weights[PLANES];  // texel to scattering, 1/m
 uniform float albedo;                     // of every group
 uniform vec3 sunlight;                    // irradiance
@@ -9,6 +10,7 @@ uniform vec3 ambient;                     // mean radiance from sky and ground
 struct Scattered {
   vec4 direct[PLANES];  // texel values, by the share of the sunlight that arrives and of its light that is seen
 #if EVEN_ALBEDO
+  float ambient;        // share of the light from all around that is seen; summed, as differences lose thin slices
   float multiple;       // mean intensity of light scattered many times, by the share of it that is seen
 #else
   vec4 ambient[PLANES];   // texel values over extinction, by the share of the light from all around that is seen
@@ -25,7 +27,7 @@ Scattered nothing_scattered() {
 #endif
   }
 #if EVEN_ALBEDO
-  scattered.multiple = 0.0;
+  scattered.ambient = scattered.multiple = 0.0;
 #endif
   return scattered;
 }
@@ -40,6 +42,7 @@ void fade(inout Scattered scattered, float factor) {
 #endif
   }
 #if EVEN_ALBEDO
+  scattered.ambient *= factor;
   scattered.multiple *= factor;
 #endif
 }
@@ -48,10 +51,11 @@ void add_direct(inout Scattered scattered, Medium medium, float factor) {
   for (int plane = 0; plane < PLANES; ++plane) scattered.direct[plane] += factor * medium.plane[plane];
 }
 
-// Of a sample of which `seen` of what it sends shows: `mean_intensity` is that of light scattered many times, and
-// `extinction` weighs the medium as `extinctions` does.
+// Of a sample of which `seen` of what it sends shows: `mean_intensity` is that of light scattered many times,
+// `extinctions` are the weights of a texel's extinction.
 void add_isotropic(inout Scattered scattered, Medium medium, vec4 extinctions[PLANES], float seen, float mean_intensity) {
 #if EVEN_ALBEDO
+  scattered.ambient += seen;
   scattered.multiple += seen * mean_intensity;
 #else
   float per_total = seen / max(weigh(medium, extinctions), 1e-30);
@@ -62,9 +66,9 @@ void add_isotropic(inout Scattered scattered, Medium medium, vec4 extinctions[PL
 #endif
 }
 
-// Radiance of all that, of a ray whose samples' extinctions were by `step_m` and that hides `opacity` of what is behind;
-// `haversine` is that of the angle that sunlight turns by. GLOWS: what add_isotropic gathered belongs to it.
-vec3 radiance_of(Scattered scattered, float step_m, float haversine, float opacity) {
+// Radiance of all that, of a ray whose samples' extinctions were by `step_m`; `haversine` is that of the angle that
+// sunlight turns by.
+vec3 radiance_of(Scattered scattered, float step_m, float haversine) {
   vec3 radiance = vec3(0.0);
   for (int group = 0; group < GROUPS; ++group) {
     int plane = group / 4;
@@ -77,7 +81,7 @@ vec3 radiance_of(Scattered scattered, float step_m, float haversine, float opaci
 #endif
   }
 #if GLOWS && EVEN_ALBEDO
-  radiance += albedo * (ambient * opacity + sunlight * scattered.multiple);
+  radiance += albedo * (ambient * scattered.ambient + sunlight * scattered.multiple);
 #endif
   return radiance;
 }

@@ -10,7 +10,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #define EXCHANGES (TRANSLUCENT && CONSISTENT)
 layout(binding = 0) uniform writeonly image2DArray leaving;
 #if EXCHANGES
-layout(binding = 1, r32f) uniform image2D turned;  // optical depth scattered into the outer ring since the last exchange
+layout(binding = 1, r32f) uniform image2D ring_depth;  // optical depth scattered into the outer ring since the last exchange
 #endif
 
 layout(binding = 4) uniform sampler2DArray light;
@@ -69,10 +69,10 @@ void main() {
   vec2 here = texelFetch(light, ivec3(texel, layer), 0).rg;
 #if EXCHANGES
   // A fixed offset and a share that grows with the path make the spread a diffusion, whatever the number of slices.
-  float turned_depth = end > 0 ? imageLoad(turned, texel).r : 0.0;
-  if (turned_depth > 0.0) {
-    here.r = mix(here.r, peripheral(vec3(place, float(layer))), 1.0 - exp(-turned_depth));
-    turned_depth = 0.0;
+  float ring = end > 0 ? imageLoad(ring_depth, texel).r : 0.0;
+  if (ring > 0.0) {
+    here.r = mix(here.r, peripheral(vec3(place, float(layer))), 1.0 - exp(-ring));
+    ring = 0.0;
   }
 #endif
   for (int i = 0; i < end; ++i) {
@@ -82,7 +82,7 @@ void main() {
       Medium medium = medium_at_place(medium_place(ray.medium, way_m));
       here = carried(here, vec3(place, float(layer)), medium, light_depths, transport_depths);
 #if EXCHANGES
-      turned_depth += weigh(medium, peripheral_depths);
+      ring += weigh(medium, peripheral_depths);
 #endif
     }
     layer = layer + 1 < layers ? layer + 1 : 0;
@@ -90,6 +90,6 @@ void main() {
     way_m += path_m;
   }
 #if EXCHANGES
-  if (end > 0) imageStore(turned, texel, vec4(turned_depth, 0.0, 0.0, 0.0));
+  if (end > 0) imageStore(ring_depth, texel, vec4(ring, 0.0, 0.0, 0.0));
 #endif
 }

@@ -2,7 +2,8 @@
 // behind that passes (a). Goes through the points at which the ray meets the slices, in the order in which sunlight does, and leaps over
 // those in empty bricks. Riley et al. 2003 (Vis), eq. 5 with the phase of eq. 18; the light comes from carry.comp.
 // Variants: GROUND (what lies behind it is left out), GROUPS, COLORED (per-group colours), EVEN_ALBEDO (one albedo and
-// colour for all), TRANSLUCENT, CONSISTENT (transport), FRONT_TO_BACK (the eye is on the sun's side).
+// colour for all), TRANSLUCENT, CONSISTENT (transport), ORDER: 1 where all rays meet the slices in their order, 0 where all
+// meet them against it, 2 where a wide view has both.
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
 #include "common/phase.glsl"
@@ -51,17 +52,23 @@ void main() {
 #if GROUND
   way.y = min(way.y, texelFetch(ground_distance, ivec2(gl_FragCoord.xy), 0).r);
 #endif
-#if !FRONT_TO_BACK
-  // Sunlight meets the slices from behind: from here on ways are counted towards the eye.
-  safe = -safe;
-  way = -way.yx;
+  float climb = dot(safe, slice_normal);
+#if ORDER == 2
+  bool front_to_back = climb < 0.0;
+#else
+  const bool front_to_back = ORDER == 1;
 #endif
+  if (!front_to_back) {
+    // Sunlight meets the slices from behind: from here on ways are counted towards the eye.
+    safe = -safe;
+    way = -way.yx;
+  }
   MediumRay ray = medium_ray(origin_m, safe);
   vec2 light_start = vec2(dot(origin_m, light_u), dot(origin_m, light_v)) + 0.5;
   vec2 light_step = vec2(dot(safe, light_u), dot(safe, light_v));
 
   // The ray meets slice i, counted from 0, where its way is first_m + i * apart_m.
-  float falling = -dot(safe, slice_normal);
+  float falling = abs(climb);
   float per_falling = 1.0 / max(falling, 1e-4);
   float apart_m = spacing_m * per_falling;
   float first_m = (dot(origin_m, slice_normal) - first_plane_m) * per_falling;
@@ -69,7 +76,7 @@ void main() {
   float slice = max(slab_begin, ceil((way.x - first_m) * per_apart));
   float end = min(slab_end, floor((way.y - first_m) * per_apart) + 1.0);
 
-  // A ray along the slices would have no end; the limit is where perspective's corners lie in the widest view.
+  // A ray along the slices would have no end.
   float path_m = spacing_m / max(falling, 0.05);
   vec4 eye_depths[PLANES] = scaled(eye_weights, path_m);
   vec4 light_depths[PLANES] = scaled(light_weights, light_path_m);
@@ -79,12 +86,8 @@ void main() {
   float layers = layer_count;
 
   Scattered scattered = nothing_scattered();
-#if FRONT_TO_BACK
-  float passing = before.a;
-  if (passing < kOpaque) end = 0.0;
-#else
-  float passing = 1.0;
-#endif
+  float passing = front_to_back ? before.a : 1.0;
+  if (front_to_back && passing < kOpaque) end = 0.0;
   while (slice < end) {
     float way_m = first_m + slice * apart_m;
     while (slice < end) {
@@ -104,24 +107,20 @@ void main() {
     float passed = exp(-depth);
     float seen = mean_transmittance(depth);
 
-#if FRONT_TO_BACK
-    float shows = passing * counts;
-#else
-    fade(scattered, passed);
-    float shows = counts;
-#endif
+    float shows = front_to_back ? passing * counts : counts;
+    if (!front_to_back) fade(scattered, passed);
 #if CONSISTENT
     // The buffer holds the light that enters the slice; on its way through, light fades as the view does.
     float light_depth = weigh(medium, light_depths);
-    float lit_and_seen = FRONT_TO_BACK == 1 ? mean_transmittance(depth + light_depth)
-                                            : mean_counter_transmittance(depth, light_depth);
+    float lit_and_seen = front_to_back ? mean_transmittance(depth + light_depth)
+                                       : mean_counter_transmittance(depth, light_depth);
     add_direct(scattered, medium, shows * arrived.r * lit_and_seen);
     float mean_intensity = 0.0;
 #if TRANSLUCENT
     float total = texture(thickness, light_place).r;
     float slice_depth = weigh(medium, transport_depths);
     // Diffuse light that leaves a cloud comes from one transport mean free path (2/3 by Eddington) inside it.
-    float within = FRONT_TO_BACK == 1 ? mean_seen_place(depth) : 1.0 - mean_seen_place(depth);
+    float within = front_to_back ? mean_seen_place(depth) : 1.0 - mean_seen_place(depth);
     float tau = min(arrived.g + within * slice_depth + 2.0 / 3.0, total);
     mean_intensity = diffuse_mean_intensity(tau, total);
 #endif
@@ -131,15 +130,9 @@ void main() {
 #endif
     passing *= passed;
     slice += 1.0;
-#if FRONT_TO_BACK
-    if (passing < kOpaque) end = 0.0;
-#endif
+    if (front_to_back && passing < kOpaque) end = 0.0;
   }
-  float turned = haversine_between(direction, towards_sun);
-#if FRONT_TO_BACK
-  radiance_and_transmittance = vec4(before.rgb + radiance_of(scattered, path_m, turned, before.a - passing), passing);
-#else
-  vec3 radiance = radiance_of(scattered, path_m, turned, 1.0 - passing);
-  radiance_and_transmittance = vec4(radiance + passing * before.rgb, passing * before.a);
-#endif
+  vec3 radiance = radiance_of(scattered, path_m, haversine_between(direction, towards_sun));
+  radiance_and_transmittance = front_to_back ? vec4(before.rgb + radiance, passing)
+                                             : vec4(radiance + passing * before.rgb, passing * before.a);
 }

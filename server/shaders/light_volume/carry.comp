@@ -3,7 +3,7 @@
 // optical depth passed, whose end is the ray's thickness.
 // `blocked` is the share of sunlight that the medium keeps from what lies behind all of it, for its shadow on the ground.
 // Layers that interpolation inside the medium's box does not reach are left as they are.
-// Variants: GROUPS, CONSISTENT, TRANSLUCENT, DIFFUSE. The light model is that of half_angle/light.frag but for the
+// Variants: GROUPS, CONSISTENT, TRANSLUCENT, DIFFUSE. The light model is that of half_angle/carry.comp but for the
 // exchange with neighbouring rays, whose width (one cell's path at 3/8 theta_f) is below a texel of this volume at the
 // usual angles.
 #include "common/medium.glsl"

@@ -220,7 +220,7 @@ void main() {
     light_before = light_here;
   }
 
-  vec3 radiance = radiance_of(scattered, step_m, haversine_between(direction, towards_sun), 1.0 - passing);
+  vec3 radiance = radiance_of(scattered, step_m, haversine_between(direction, towards_sun));
 #if DIFFUSION
   if (diffuse_passing <= kOpaque) {
     float whole = 1.0 / (1.0 - diffuse_passing);

@@ -39,9 +39,9 @@ void main() {
 #if ISOTROPIC
     scattered += ball.tint.rgb * (light.x / kFourPi);
 #else
-    float turned = haversine_between(ray, towards_light[i]);
+    float haversine = haversine_between(ray, towards_light[i]);
     for (int group = 0; group < GROUPS; ++group) {
-      scattered += phase_term(group, turned) * (ball.scattering[group / 4][group % 4] * light.x);
+      scattered += phase_term(group, haversine) * (ball.scattering[group / 4][group % 4] * light.x);
     }
 #endif
     radiance += irradiance[i] * scattered;

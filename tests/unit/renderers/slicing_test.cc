@@ -28,7 +28,6 @@ TEST(Slicing, SlicesFillTheBox) {
 
 TEST(Slicing, FacesHalfwayBetweenLightAndView) {
   const Slicing slicing = SliceBox(kBox, scene::Direction(30, 0), scene::Direction(-10, 0), 10);
-  EXPECT_TRUE(slicing.front_to_back);
   EXPECT_NEAR(glm::dot(slicing.normal, scene::Direction(10, 0)), 1.0, 1e-12);
   // 20 degrees between the light and the normal.
   EXPECT_NEAR(slicing.light_path_m, slicing.spacing_m / std::cos(20 * M_PI / 180), 1e-9);
@@ -36,7 +35,6 @@ TEST(Slicing, FacesHalfwayBetweenLightAndView) {
 
 TEST(Slicing, ReversesTheViewWhenTheSunIsBehindTheStorm) {
   const Slicing slicing = SliceBox(kBox, scene::Direction(30, 0), scene::Direction(170, 0), 10);
-  EXPECT_FALSE(slicing.front_to_back);
   EXPECT_NEAR(glm::dot(slicing.normal, scene::Direction(10, 0)), 1.0, 1e-12);
 }
 
@@ -54,6 +52,26 @@ TEST(Slicing, TheSunMeetsTheFirstSliceFirst) {
   const Slicing slicing = SliceBox(kBox, scene::Direction(0, 45), scene::Direction(90, 45), 10);
   EXPECT_GT(slicing.Distance_m(0), slicing.Distance_m(9));
   EXPECT_GT(glm::dot(slicing.normal, scene::Direction(0, 45)), 0.0);
+}
+
+TEST(Slicing, NarrowViewsMeetAllSlicesInOneOrderAndWideOnesInBoth) {
+  scene::View view;
+  view.forward = {1.0, 0.0, 0.0};
+  view.right = {0.0, -1.0, 0.0};
+  view.up = {0.0, 0.0, 1.0};
+  const auto order = [&](double sun_azimuth_deg, double tan_half_width) {
+    view.tan_half_width = tan_half_width;
+    view.tan_half_height = 0.1;
+    const glm::dvec3 sun = scene::Direction(sun_azimuth_deg, 0.0);
+    return OrderOf(SliceBox(kBox, sun, -view.forward, 10), view);
+  };
+  // Azimuth 90 is along the view. Slices face 45 degrees from its axis when the sun is across it.
+  EXPECT_EQ(order(270.0, 0.5), SliceOrder::kAlong);
+  EXPECT_EQ(order(91.0, 0.5), SliceOrder::kAgainst);
+  EXPECT_EQ(order(181.0, 0.9), SliceOrder::kAlong);
+  EXPECT_EQ(order(181.0, 1.1), SliceOrder::kBoth);
+  EXPECT_EQ(order(179.0, 0.9), SliceOrder::kAgainst);
+  EXPECT_EQ(order(179.0, 1.1), SliceOrder::kBoth);
 }
 
 TEST(LightFrame, CoversTheShadow) {
