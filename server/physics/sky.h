@@ -54,6 +54,11 @@ class ClearSky {
   // In unit `direction`.
   Seen At(const glm::vec3& direction) const;
 
+  // Turns the sky with the sun, whose elevation stays: only the azimuth of `towards_sun` counts.
+  void TurnTo(const glm::vec3& towards_sun) {
+    towards_sun_ = {towards_sun.x, towards_sun.y, towards_sun_.z};
+  }
+
   // Integrates the radiance over the upper hemisphere.
   SkyLight Light() const;
 

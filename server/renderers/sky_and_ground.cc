@@ -32,16 +32,18 @@ double HeightOfStep(int step) { return kSkyStep_m * std::expm1(step / kSkySteps)
 
 void SkyAndGround::Update(const scene::Scene& scene, const scene::View& view,
                           const Ground& ground) {
-  const Key key{scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg),
-                scene.sky.turbidity, scene.sky.ground_albedo, ground.Lowest_m()};
+  towards_sun_ = scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg);
+  // What is summed over directions is summed from there: the same whatever came before.
+  const auto sine = static_cast<float>(towards_sun_.z);
+  const glm::vec3 eastern_sun(std::sqrt(std::max(1.0F - sine * sine, 0.0F)), 0.0F, sine);
+  const Key key{towards_sun_.z, scene.sky.turbidity, scene.sky.ground_albedo, ground.Lowest_m()};
   if (!sky_.has_value() || key != drawn_) {
     if (!atmosphere_.has_value() || key.turbidity != drawn_.turbidity ||
         key.ground_albedo != drawn_.ground_albedo) {
       atmosphere_.emplace(static_cast<float>(key.turbidity), static_cast<float>(key.ground_albedo));
     }
     const auto ground_m = static_cast<float>(key.ground_m);
-    sky_.emplace(*atmosphere_, glm::vec3(key.towards_sun),
-                 physics::ClearSky::Site{ground_m, ground_m});
+    sky_.emplace(*atmosphere_, eastern_sun, physics::ClearSky::Site{ground_m, ground_m});
     sky_light_ = sky_->Light();
     drawn_ = key;
     around_sun_.reset();
@@ -50,8 +52,10 @@ void SkyAndGround::Update(const scene::Scene& scene, const scene::View& view,
   }
   // Diffusion transport alone asks for it.
   if (scene.rendering.transport == scene::Transport::kDiffusion && !around_sun_.has_value()) {
-    around_sun_ = AroundSun();
+    sky_->TurnTo(eastern_sun);
+    around_sun_ = AroundSun(eastern_sun);
   }
+  sky_->TurnTo(glm::vec3(towards_sun_));
   SetEyeSky(view.altitude_m);
 }
 
@@ -81,7 +85,7 @@ const std::vector<glm::vec4>& SkyAndGround::TableOfStep(int step) {
   if (tables_.size() >= kMostTables) tables_.clear();
   const auto ground_m = static_cast<float>(drawn_.ground_m);
   const auto height_m = static_cast<float>(HeightOfStep(step));
-  const physics::ClearSky seen(*atmosphere_, glm::vec3(drawn_.towards_sun),
+  const physics::ClearSky seen(*atmosphere_, glm::vec3(towards_sun_),
                                {ground_m + height_m, ground_m});
   return tables_.emplace(step, seen.Table()).first->second;
 }
@@ -89,12 +93,11 @@ const std::vector<glm::vec4>& SkyAndGround::TableOfStep(int step) {
 // Such that a surface that faces the sun receives what the sky sends it: irradiance of the sun's
 // surroundings, x, and of the rest, of radiance a + b (1 - sine of the elevation), where
 // a = 3 I - 2 M and b = 6 (M - I) for the rest's irradiance from above over pi, I, and its mean M.
-glm::vec3 SkyAndGround::AroundSun() const {
+glm::vec3 SkyAndGround::AroundSun(const glm::vec3& sun) const {
   constexpr int kElevations = 24;
   constexpr int kAzimuths = 48;
   constexpr float kPi = std::numbers::pi_v<float>;
   constexpr float kSolidAngle = 2.0F * kPi / (kElevations * kAzimuths);
-  const glm::vec3 sun(drawn_.towards_sun);
   if (sun.z <= 0.0F) return glm::vec3(0.0F);
   glm::vec3 facing(0.0F);
   float even = 0.0F;     // what a sky of radiance 1 sends
@@ -122,12 +125,12 @@ glm::vec3 SkyAndGround::AroundSun() const {
 
 Illumination SkyAndGround::IlluminationOf(const scene::Scene& scene) const {
   Illumination light;
-  light.towards_sun = drawn_.towards_sun;
+  light.towards_sun = towards_sun_;
   const auto irradiance = static_cast<float>(scene.sun.irradiance);
   light.sunlight = irradiance * sky_->SunTransmittance();
   light.from_sky = sky_light_.mean_radiance * irradiance * static_cast<float>(scene.sky.brightness);
   // Of ground without the storm's shadow: what shows of it around the storm is larger.
-  const float sine = std::max(static_cast<float>(drawn_.towards_sun.z), 0.0F);
+  const float sine = std::max(static_cast<float>(towards_sun_.z), 0.0F);
   const glm::vec3 diffuse =
       sky_light_.irradiance * irradiance * static_cast<float>(scene.sky.brightness);
   constexpr float kInversePi = std::numbers::inv_pi_v<float>;
@@ -162,8 +165,8 @@ void SkyAndGround::BindAir(const gl::Program& program, const scene::Scene& scene
   const auto sky_scale = irradiance * static_cast<float>(scene.sky.brightness);
   const auto altitude_m = static_cast<float>(std::max(view.altitude_m, 0.0));
   program.Set("local_from_world", glm::mat3(view.local_from_world));
-  program.Set("towards_sun", glm::vec3(drawn_.towards_sun));
-  program.Set("towards_sun_local", glm::vec3(view.local_from_world * drawn_.towards_sun));
+  program.Set("towards_sun", glm::vec3(towards_sun_));
+  program.Set("towards_sun_local", glm::vec3(view.local_from_world * towards_sun_));
   // The eye's own, not that of the height that the table was made for.
   program.Set("horizon_sine",
               physics::HorizonSine(altitude_m, static_cast<float>(drawn_.ground_m)));

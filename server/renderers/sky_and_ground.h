@@ -49,13 +49,13 @@ class SkyAndGround {
   void SetEyeSky(double altitude_m);
   // The sky's table from one of the heights that it is computed for.
   const std::vector<glm::vec4>& TableOfStep(int step);
-  glm::vec3 AroundSun() const;
+  glm::vec3 AroundSun(const glm::vec3& sun) const;  // of `sky_`, which is turned to it
   void BindAir(const gl::Program& program, const scene::Scene& scene, const scene::View& view,
                const Ground& ground, const volume::WorldBox& box) const;
 
-  // What the sky's light depends on.
+  // What the sky's light depends on; with the sun's azimuth it only turns.
   struct Key {
-    glm::dvec3 towards_sun{0.0};
+    double sun_sine = 0.0;  // of its elevation
     double turbidity = 0.0;
     double ground_albedo = 0.0;
     double ground_m = 0.0;
@@ -69,6 +69,7 @@ class SkyAndGround {
   std::optional<physics::ClearSky> sky_;  // from the ground
   physics::SkyLight sky_light_;
   Key drawn_;
+  glm::dvec3 towards_sun_{0.0, 0.0, 1.0};
   std::optional<glm::vec3> around_sun_;           // of Illumination, for a sun of irradiance 1
   std::map<int, std::vector<glm::vec4>> tables_;  // by step
   double eye_height_m_ = -1.0;                    // that the table on the device is for

@@ -23,6 +23,7 @@ void RegisterModes() {
     }
     scene.rendering.mode = scene::Rendering().mode;
     Register(prefix + "sun_moves", scene, fields, Moving::kSun);
+    Register(prefix + "sun_climbs", scene, fields, Moving::kSunClimbs);
     Register(prefix + "field_scale_moves", scene, fields, Moving::kField);
     Register(prefix + "exposure_moves", scene, fields, Moving::kExposure);
   }

@@ -43,6 +43,10 @@ void Move(Moving moving, scene::Scene* scene) {
     case Moving::kSun:
       scene->sun.azimuth_deg += 1.0;
       break;
+    case Moving::kSunClimbs:
+      scene->sun.elevation_deg =
+          scene->sun.elevation_deg < 60.0 ? scene->sun.elevation_deg + 0.5 : 30.0;
+      break;
     case Moving::kField:
       scene->fields[0].scale *= 1.01F;
       break;

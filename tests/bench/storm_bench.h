@@ -22,7 +22,7 @@ struct Sample {
 };
 
 // What differs from frame to frame.
-enum class Moving { kCamera, kSun, kField, kExposure };
+enum class Moving { kCamera, kSun, kSunClimbs, kField, kExposure };
 
 // The storm as a whole at the papers' size, 300 x 300 pixels, 128 slices.
 scene::Scene PaperScene();

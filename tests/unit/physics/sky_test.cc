@@ -39,6 +39,25 @@ TEST(ClearSky, SunlightAndSkylightShareWhatCameIn) {
   }
 }
 
+TEST(ClearSky, TurnsWithTheSun) {
+  const Atmosphere atmosphere(2.5F, 0.2F);
+  const glm::vec3 elsewhere(0.6F * std::cos(0.5F), -0.8F * std::cos(0.5F), std::sin(0.5F));
+  ClearSky made(atmosphere, elsewhere, {.eye_m = 500.0F});
+  made.TurnTo({std::cos(0.5F), 0.0F, std::sin(0.5F)});
+  const ClearSky there(atmosphere, {std::cos(0.5F), 0.0F, std::sin(0.5F)}, {.eye_m = 500.0F});
+  for (const float azimuth : {0.0F, 1.0F, 3.0F, 5.0F}) {
+    for (const float sine : {-0.2F, 0.1F, 0.7F}) {
+      const float level = std::sqrt(1.0F - sine * sine);
+      const glm::vec3 direction(level * std::cos(azimuth), level * std::sin(azimuth), sine);
+      for (int channel = 0; channel < 3; ++channel) {
+        const float expected = there.At(direction).radiance[channel];
+        EXPECT_NEAR(made.At(direction).radiance[channel] / expected, 1.0F, 2e-3F)
+            << azimuth << " " << sine;
+      }
+    }
+  }
+}
+
 TEST(ClearSky, AirAloneScattersHalfOfWhatItTakesDown) {
   // Without haze, of the light that thin air scatters half comes down: Rayleigh's function is the
   // same forwards and backwards. Scattered twice, of that which went up half comes down again, so a
