@@ -231,22 +231,25 @@ TEST_F(HalfAngle, ThickSlabIsWhite) {
 class OpticalDepths : public HalfAngle, public testing::WithParamInterface<double> {};
 
 TEST_P(OpticalDepths, NothingBreaks) {
-  for (const auto mode :
-       {scene::Mode::kUniformPhaseLowAlbedo, scene::Mode::kPerFieldPhaseTranslucent}) {
-    for (const auto transport : {scene::Transport::kPaper, scene::Transport::kConsistent}) {
-      for (const double elevation_deg : {-80.0, 30.0, 89.0}) {
-        scene_.rendering.mode = mode;
-        scene_.rendering.transport = transport;
-        scene_.rendering.slices = 8;
-        const Seen seen = Look(GetParam() * 8, elevation_deg, 40.0);
-        for (std::size_t i = 0; i < seen.eye.size(); ++i) {
-          ASSERT_TRUE(std::isfinite(seen.eye[i]));
-          ASSERT_GE(seen.eye[i], 0.0F);
-        }
-        EXPECT_LE(seen.transmittance, 1.0);
-        for (std::size_t i = 0; i < seen.light.size(); i += 4) {
-          ASSERT_GE(seen.light[i], 0.0F);
-          ASSERT_LE(seen.light[i], 1.0F) << "a slice may not add light";
+  // The second number is of more than one slab.
+  for (const int slices : {8, 40}) {
+    for (const auto mode :
+         {scene::Mode::kUniformPhaseLowAlbedo, scene::Mode::kPerFieldPhaseTranslucent}) {
+      for (const auto transport : {scene::Transport::kPaper, scene::Transport::kConsistent}) {
+        for (const double elevation_deg : {-80.0, 30.0, 89.0}) {
+          scene_.rendering.mode = mode;
+          scene_.rendering.transport = transport;
+          scene_.rendering.slices = slices;
+          const Seen seen = Look(GetParam() * slices, elevation_deg, 40.0);
+          for (std::size_t i = 0; i < seen.eye.size(); ++i) {
+            ASSERT_TRUE(std::isfinite(seen.eye[i]));
+            ASSERT_GE(seen.eye[i], 0.0F);
+          }
+          EXPECT_LE(seen.transmittance, 1.0);
+          for (std::size_t i = 0; i < seen.light.size(); i += 4) {
+            ASSERT_GE(seen.light[i], 0.0F);
+            ASSERT_LE(seen.light[i], 1.0F) << "a slice may not add light";
+          }
         }
       }
     }
