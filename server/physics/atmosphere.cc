@@ -180,7 +180,7 @@ glm::vec3 Atmosphere::SunTransmittance(const AirLevel& level, float sun_sine) co
 }
 
 glm::vec3 Atmosphere::DiffuseMeanRadiance(const AirPlace& place) const {
-  return DiffuseMeanRadiance(LevelAt(place.height_m).diffuse, place.sun_sine);
+  return DiffuseMeanRadiance(RowAt(place.height_m, kDiffuseHeights), place.sun_sine);
 }
 
 glm::vec3 Atmosphere::DiffuseMeanRadiance(const TableRow& row, float sun_sine) const {

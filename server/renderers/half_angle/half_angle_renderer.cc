@@ -229,7 +229,6 @@ void HalfAngleRenderer::CarryThrough(const Slab& slab, const gl::Program& progra
                                      std::size_t at_once, const std::vector<SliceReach>& reach,
                                      CarriedLight* light) {
   program.Use();
-  program.Set("layer_count", light_.Layers());
   // Layers are taken again that the last slab's pass has fetched from.
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   for (std::size_t first = slab.begin; first < slab.end; first += at_once) {
@@ -258,7 +257,6 @@ void HalfAngleRenderer::DrawSlab(const Slab& slab, const gl::Program& eye, const
                                  const PixelRect& rect, const gl::Framebuffer& target) {
   eye.Set("slab_begin", static_cast<float>(slab.begin));
   eye.Set("slab_end", static_cast<float>(slab.end));
-  eye.Set("layer_count", static_cast<float>(light_.Layers()));
   glEnable(GL_SCISSOR_TEST);
   glScissor(rect.low.x, rect.low.y, rect.high.x - rect.low.x, rect.high.y - rect.low.y);
   {

@@ -47,6 +47,9 @@ ivec3 brick_at(MediumRay ray, vec3 place) { return ivec3(clamp(place, vec3(0.0),
 // What is in it.
 uint brick_content(MediumRay ray, vec3 place) { return texelFetch(bricks, brick_at(ray, place), 0).r; }
 
+// True where there is something in the brick.
+bool is_filled(uint content) { return content == kThickBrick || content == kThinBrick; }
+
 // How far along the ray from `place`, in bricks, the cube of empty bricks reaches that `content` tells of.
 float empty_way(MediumRay ray, vec3 place, uint content) {
   vec3 across = abs(ray.per_brick_step);  // the way through a brick

@@ -27,7 +27,7 @@ void main() {
   for (int i = 0; i < kMostSamples && way_m < way.y && depth < kOpaque; ++i) {
     vec3 place = brick_place(ray, way_m);
     uint content = brick_content(ray, place);
-    if (content != kThickBrick && content != kThinBrick) {
+    if (!is_filled(content)) {
       way_m += empty_way(ray, place, content);
       continue;
     }

@@ -20,7 +20,6 @@ uniform ivec2 end_texel;
 uniform int first_slice;
 uniform int slice_count;
 uniform int first_layer;
-uniform int layer_count;
 uniform vec4 light_weights[PLANES];
 uniform vec4 transport_weights[PLANES];
 uniform vec4 peripheral_weights[PLANES];  // scattering into the outer ring, 1/m
@@ -54,7 +53,8 @@ vec2 carried(vec2 here, vec3 place, Medium medium, vec4 light_depths[PLANES], ve
 void main() {
   begin_medium();
   ivec2 texel = first_texel + ivec2(gl_GlobalInvocationID.xy);
-  vec2 place = (vec2(texel) + 0.5) / vec2(textureSize(light, 0).xy);
+  ivec3 size = textureSize(light, 0);
+  vec2 place = (vec2(texel) + 0.5) / vec2(size.xy);
   SunRay ray = sun_ray(place);
   vec4 light_depths[PLANES] = scaled(light_weights, light_path_m);
   vec4 transport_depths[PLANES] = scaled(transport_weights, light_path_m);
@@ -62,7 +62,6 @@ void main() {
   vec4 peripheral_depths[PLANES] = scaled(peripheral_weights, light_path_m);
 #endif
   float path_m = light_path_m;
-  int layers = layer_count;
   int layer = first_layer;
   int end = any(greaterThanEqual(texel, end_texel)) ? 0 : slice_count;
   float way_m = ray.first_m + float(first_slice) * path_m;
@@ -77,7 +76,7 @@ void main() {
 #endif
   for (int i = 0; i < end; ++i) {
     uint content = brick_content(ray.medium, brick_place(ray.medium, way_m));
-    bool meets = way_m >= ray.inside.x && way_m <= ray.inside.y && (content == kThickBrick || content == kThinBrick);
+    bool meets = way_m >= ray.inside.x && way_m <= ray.inside.y && is_filled(content);
     if (meets) {
       Medium medium = medium_at_place(medium_place(ray.medium, way_m));
       here = carried(here, vec3(place, float(layer)), medium, light_depths, transport_depths);
@@ -85,7 +84,7 @@ void main() {
       ring += weigh(medium, peripheral_depths);
 #endif
     }
-    layer = layer + 1 < layers ? layer + 1 : 0;
+    layer = layer + 1 < size.z ? layer + 1 : 0;
     imageStore(leaving, ivec3(texel, layer), vec4(here, 0.0, 0.0));
     way_m += path_m;
   }

@@ -1,6 +1,6 @@
 // The eye buffer after a slab of consecutive slices: radiance scattered towards the eye (rgb) and the share of what lies
-// behind that passes (a). Goes through the points at which the ray meets the slices, in the order in which sunlight does, and leaps over
-// those in empty bricks. Riley et al. 2003 (Vis), eq. 5 with the phase of eq. 18; the light comes from carry.comp.
+// behind that passes (a). Goes through the points at which the ray meets the slices, in the order in which sunlight does, and leaps
+// over those in empty bricks. Riley et al. 2003 (Vis), eq. 5 with the phase of eq. 18; the light comes from carry.comp.
 // Variants: GROUND (what lies behind it is left out), GROUPS, COLORED (per-group colours), EVEN_ALBEDO (one albedo and
 // colour for all), TRANSLUCENT, CONSISTENT (transport), ORDER: 1 where all rays meet the slices in their order, 0 where all
 // meet them against it, 2 where a wide view has both.
@@ -28,7 +28,6 @@ uniform float light_path_m;   // length of a sun ray between two slices
 uniform float slab_begin;     // slices of the slab: from this
 uniform float slab_end;       // to before this
 uniform float begin_layer;    // of the light
-uniform float layer_count;
 uniform vec4 eye_weights[PLANES];        // texel to the extinction that the eye sees, 1/m
 uniform vec4 light_weights[PLANES];      // texel to the extinction that the light buffer sees, 1/m
 uniform vec4 transport_weights[PLANES];  // texel to similarity-scaled extinction, 1/m
@@ -83,7 +82,7 @@ void main() {
   vec4 transport_depths[PLANES] = scaled(transport_weights, light_path_m);
   vec4 extinction_depths[PLANES] = scaled(extinction_weights, path_m);
   float layer_of_first = begin_layer - slab_begin;
-  float layers = layer_count;
+  float layers = float(textureSize(light, 0).z);
 
   Scattered scattered = nothing_scattered();
   float passing = front_to_back ? before.a : 1.0;
@@ -93,7 +92,7 @@ void main() {
     while (slice < end) {
       vec3 brick = brick_place(ray, way_m);
       uint content = brick_content(ray, brick);
-      if (content == kThickBrick || content == kThinBrick) break;
+      if (is_filled(content)) break;
       slice = max(slice + 1.0, ceil((way_m + empty_way(ray, brick, content) - first_m) * per_apart));
       way_m = first_m + slice * apart_m;
     }

@@ -24,7 +24,7 @@ void main() {
     float way_m = ray.first_m + slice * path_m;
     vec3 place = brick_place(ray.medium, way_m);
     uint content = brick_content(ray.medium, place);
-    bool meets = content == kThickBrick || content == kThinBrick;
+    bool meets = is_filled(content);
     slice = max(slice + 1.0, meets ? 0.0 : ceil((way_m + empty_way(ray.medium, place, content) - ray.first_m) / path_m));
     if (meets) depth += weigh(medium_at_place(medium_place(ray.medium, way_m)), transport_depths);
   }

@@ -84,7 +84,7 @@ void main() {
       way_m += float(leap) * half_layer_m;
       continue;
     }
-    int steps = outside || (content != kThickBrick && content != kThinBrick) ? 0 : most_steps;
+    int steps = outside || !is_filled(content) ? 0 : most_steps;
     for (int i = 0; i < steps; ++i) {
       float at_m = way_m + float(i) * step_m;
       Medium medium = medium_at_place(medium_place(ray, at_m));
