@@ -64,21 +64,16 @@ volume::ExtinctionVolume ExtinctionThatFits(const volume::HydrometeorFields& fie
   return volume::ComputeExtinction(volume::Coarsened(fields, factor), medium.terms, channels);
 }
 
-// Boxes around `bricks`, given as volume::BrickMap::Occupied does: of one brick each, or of two or
-// more along each axis.
-Boxes BoxesOf(std::vector<std::uint32_t> bricks, glm::dvec3 brick_m, const glm::dvec3& corner_m) {
-  while (bricks.size() > kMostBoxes) {
-    // Half of each coordinate.
-    for (std::uint32_t& brick : bricks) brick = brick >> 1U & ~(1U << 9U | 1U << 19U);
-    std::sort(bricks.begin(), bricks.end());
-    bricks.erase(std::unique(bricks.begin(), bricks.end()), bricks.end());
-    brick_m *= 2.0;
-  }
-  Boxes boxes{{}, brick_m / 2.0};
-  boxes.middles_m.reserve(bricks.size());
-  for (const std::uint32_t brick : bricks) {
-    const glm::dvec3 place(brick & 1023U, brick >> 10U & 1023U, brick >> 20U);
-    boxes.middles_m.push_back(corner_m + (place + 0.5) * brick_m);
+// Around what is occupied; the first brick begins at `corner_m`.
+Boxes BoxesOf(const volume::BrickMap& bricks, const glm::dvec3& brick_m,
+              const glm::dvec3& corner_m) {
+  const volume::BrickCubes cubes = volume::OccupiedCubesOf(bricks, kMostBoxes);
+  const glm::dvec3 cube_m = static_cast<double>(cubes.bricks_across) * brick_m;
+  Boxes boxes{{}, cube_m / 2.0};
+  boxes.middles_m.reserve(cubes.occupied.size());
+  for (const std::uint32_t cube : cubes.occupied) {
+    const glm::dvec3 place(cube & 1023U, cube >> 10U & 1023U, cube >> 20U);
+    boxes.middles_m.push_back(corner_m + (place + 0.5) * cube_m);
   }
   return boxes;
 }
@@ -124,6 +119,7 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
   base::Stopwatch stopwatch;
   bounds_ = ExtinctionThatFits(fields, content_);
   const volume::BrickMap bricks = volume::BrickMapOf(bounds_);
+  const volume::CellBlocks blocks = volume::CellBlocksOf(bricks, bounds_.grid);
   cost->extinction_ms = stopwatch.Restart();
   std::vector<physics::PhaseFunction> phases;
   for (const MediumGroup& group : content_.groups) phases.push_back(group.phase);
@@ -139,13 +135,17 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
   bricks_ = gl::Texture3D(GL_R8UI, bricks.bricks, gl::Filter::kNearest);
   bricks_.Upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, bricks.content.data());
   cells_per_brick_ = bricks.cells_per_brick;
-  const std::vector<std::uint32_t> occupied = bricks.Occupied();
-  occupied_count_ = static_cast<int>(occupied.size());
-  if (!occupied.empty()) {
-    occupied_bricks_ = gl::Buffer(occupied.size() * sizeof(std::uint32_t), occupied.data(), 0);
+  occupied_count_ = static_cast<int>(
+      std::count_if(bricks.content.begin(), bricks.content.end(), [](std::uint8_t content) {
+        return content == volume::BrickMap::kThick || content == volume::BrickMap::kThin;
+      }));
+  occupied_boxes_ = BoxesOf(bricks, glm::dvec3(cells_per_brick_) * bounds_.grid.spacing_m,
+                            bounds_.grid.low_corner_m - 0.5 * bounds_.grid.spacing_m);
+  cells_per_block_ = blocks.cells_per_block;
+  block_count_ = static_cast<int>(blocks.occupied.size());
+  if (block_count_ > 0) {
+    blocks_ = gl::Buffer(blocks.occupied.size() * sizeof(std::uint32_t), blocks.occupied.data(), 0);
   }
-  occupied_boxes_ = BoxesOf(occupied, glm::dvec3(cells_per_brick_) * bounds_.grid.spacing_m,
-                            bounds_.grid.low_corner_m);
   details_ = LayersOf(content_, noises);
   cost->upload_ms = stopwatch.ElapsedMs();
 }
@@ -162,9 +162,9 @@ void ResidentMedium::Bind(const gl::Program& program) const {
   bricks_.Bind(kBrickUnit);
   const glm::dvec3 brick_m = glm::dvec3(cells_per_brick_) * bounds_.grid.spacing_m;
   program.Set("brick_from_local_scale", glm::vec3(1.0 / brick_m));
-  program.Set("brick_from_local_offset",
-              glm::vec3((Middle_m() - bounds_.grid.low_corner_m) / brick_m));
-  program.Set("cells_per_brick", cells_per_brick_);
+  program.Set(
+      "brick_from_local_offset",
+      glm::vec3((Middle_m() - bounds_.grid.low_corner_m + 0.5 * bounds_.grid.spacing_m) / brick_m));
   program.Set("brick_count", bricks_.Size());
   program.Set("extinction_weights", Weights(std::vector<double>(content_.groups.size(), 1.0)));
   if (!details_.empty()) BindDetails(program);
@@ -200,8 +200,19 @@ double ResidentMedium::OccupiedShare() const {
   return occupied_count_ / (bricks.x * bricks.y * bricks.z);
 }
 
+double ResidentMedium::ShortestBrickSide_m() const {
+  const glm::dvec3 side_m = glm::dvec3(cells_per_brick_) * bounds_.grid.spacing_m;
+  return std::min({side_m.x, side_m.y, side_m.z});
+}
+
+void ResidentMedium::BindBlocks(const gl::Program& program, GLuint binding) const {
+  blocks_.BindStorage(binding);
+  program.Set("cells_per_block", cells_per_block_);
+  program.Set("block_count", block_count_);
+}
+
 std::size_t ResidentMedium::Bytes() const {
-  std::size_t bytes = bricks_.Bytes() + occupied_bricks_.Bytes() + phase_curves_.Bytes();
+  std::size_t bytes = bricks_.Bytes() + blocks_.Bytes() + phase_curves_.Bytes();
   for (const gl::Texture3D& texture : textures_) bytes += texture.Bytes();
   for (const DetailLayer& layer : details_) bytes += layer.noise->texture.Bytes();
   return bytes;

@@ -79,9 +79,11 @@ class ResidentMedium {
   std::size_t Bytes() const;
   // Share of the box's bricks that are not empty, 0 to 1.
   double OccupiedShare() const;
-  // How many those are; BindOccupied gives a list of them (volume::BrickMap::Occupied) to a shader.
-  int OccupiedCount() const { return occupied_count_; }
-  void BindOccupied(GLuint binding) const { occupied_bricks_.BindStorage(binding); }
+  double ShortestBrickSide_m() const;
+  // The blocks of cells that a ray may meet (volume::CellBlocks): how many, and their list, bound
+  // for a shader whose cells_per_block is set.
+  int BlockCount() const { return block_count_; }
+  void BindBlocks(const gl::Program& program, GLuint binding) const;
 
   // Boxes around the occupied bricks, so few that going through them for each picture is nothing.
   const Boxes& OccupiedBoxes() const { return occupied_boxes_; }
@@ -99,8 +101,10 @@ class ResidentMedium {
   std::vector<gl::Texture3D> textures_;
   gl::Texture3D bricks_;
   glm::ivec3 cells_per_brick_{1};
-  gl::Buffer occupied_bricks_;
   int occupied_count_ = 0;
+  gl::Buffer blocks_;
+  glm::ivec3 cells_per_block_{1};
+  int block_count_ = 0;
   Boxes occupied_boxes_;
   std::vector<DetailLayer> details_;
   PhaseCurves phase_curves_;

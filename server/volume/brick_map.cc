@@ -1,7 +1,6 @@
 #include "volume/brick_map.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
@@ -9,30 +8,30 @@
 namespace thunderhead::volume {
 namespace {
 
-constexpr double kBrickInCoarsestCells = 2.0;
+constexpr double kBrickInCoarsestCells = 1.0;
+constexpr double kBlockInCoarsestCells = 2.0;
 constexpr int kMostCellsAcross = 16;
-constexpr int kMostBricks = 1024;  // along an axis
+constexpr int kMost = 1024;  // bricks or blocks along an axis
 constexpr int kFarthest = 254;
 
-std::size_t Offset(const glm::ivec3& size, int x, int y, int z) {
-  return (static_cast<std::size_t>(z) * static_cast<std::size_t>(size.y) +
-          static_cast<std::size_t>(y)) *
-             static_cast<std::size_t>(size.x) +
-         static_cast<std::size_t>(x);
+// What is in a cell or a brick, in increasing order.
+constexpr std::uint8_t kEmpty = 0;
+constexpr std::uint8_t kThin = 1;
+constexpr std::uint8_t kThick = 2;
+
+std::size_t Count(const glm::ivec3& size) {
+  return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
+         static_cast<std::size_t>(size.z);
 }
 
-// Marks the bricks in which interpolation meets `cell`.
-void Mark(const glm::ivec3& cell, std::uint8_t content, BrickMap* map) {
-  const glm::ivec3 low = glm::max(cell - 1, glm::ivec3(0)) / map->cells_per_brick;
-  const glm::ivec3 high = glm::min((cell + 1) / map->cells_per_brick, map->bricks - glm::ivec3(1));
-  for (int z = low.z; z <= high.z; ++z) {
-    for (int y = low.y; y <= high.y; ++y) {
-      for (int x = low.x; x <= high.x; ++x) {
-        std::uint8_t& brick = map->content[Offset(map->bricks, x, y, z)];
-        if (brick != BrickMap::kThick) brick = content;
-      }
-    }
-  }
+// Cells along each side of about a cube of `side_in_coarsest` of the longest side of a cell, of
+// which there are at most kMost along an axis, one more than whole ones included.
+glm::ivec3 CellsAcross(const RegularGrid& grid, double side_in_coarsest) {
+  const glm::dvec3& spacing_m = grid.spacing_m;
+  const double side_m = side_in_coarsest * std::max({spacing_m.x, spacing_m.y, spacing_m.z});
+  return glm::max(glm::clamp(glm::ivec3(glm::round(side_m / spacing_m)), glm::ivec3(1),
+                             glm::ivec3(kMostCellsAcross)),
+                  grid.cells / kMost + 1);
 }
 
 // Half floats from zero up are ordered as their bits are.
@@ -41,91 +40,233 @@ std::uint16_t TexelOf(double extinction_per_m, const ExtinctionVolume& volume) {
       std::min(static_cast<float>(extinction_per_m) / volume.extinction_per_m, 65504.0F));
 }
 
-// `thin_per_m` is the extinction of a thin brick at most.
-void MarkPlane(const ExtinctionPlane& plane, const ExtinctionVolume& volume, double thin_per_m,
-               BrickMap* map) {
-  const std::uint16_t empty = TexelOf(volume.negligible_per_m, volume);
-  const std::uint16_t thin = TexelOf(thin_per_m, volume);
-  const auto channels = static_cast<std::size_t>(plane.channels);
-  const glm::ivec3 cells = volume.grid.cells;
-  const std::uint16_t* texel = plane.texels.data();
-  for (int z = 0; z < cells.z; ++z) {
-    for (int y = 0; y < cells.y; ++y) {
-      for (int x = 0; x < cells.x; ++x, texel += channels) {
-        const std::uint16_t most = *std::max_element(texel, texel + channels);
-        if (most > empty) {
-          Mark({x, y, z}, most > thin ? BrickMap::kThick : BrickMap::kThin, map);
-        }
-      }
-    }
+// The most of each `channels` neighbours.
+template <int channels>
+void RaiseFillings(const std::vector<std::uint16_t>& texels, std::uint16_t empty,
+                   std::uint16_t thin, std::vector<std::uint8_t>* fillings) {
+  const std::uint16_t* texel = texels.data();
+  for (std::uint8_t& filling : *fillings) {
+    std::uint16_t most = texel[0];
+    for (int channel = 1; channel < channels; ++channel) most = std::max(most, texel[channel]);
+    const auto here = static_cast<std::uint8_t>((most > empty ? 1 : 0) + (most > thin ? 1 : 0));
+    filling = std::max(filling, here);
+    texel += channels;
   }
 }
 
-// One sweep over the bricks in order, or backwards: lowers each to the least distance of its
-// `neighbours` plus one.
-void LowerToNeighbours(const glm::ivec3& size, const std::vector<glm::ivec3>& neighbours,
-                       bool forward, std::vector<std::uint8_t>* contents) {
-  const int count = size.x * size.y * size.z;
-  for (int i = 0; i < count; ++i) {
-    const int at = forward ? i : count - 1 - i;
-    const glm::ivec3 brick(at % size.x, at / size.x % size.y, at / (size.x * size.y));
-    std::uint8_t& content = (*contents)[static_cast<std::size_t>(at)];
-    if (content == BrickMap::kThick || content == BrickMap::kThin) continue;
-    int lowest = content;
-    for (const glm::ivec3& offset : neighbours) {
-      const glm::ivec3 other = forward ? brick + offset : brick - offset;
-      if (glm::any(glm::lessThan(other, glm::ivec3(0))) ||
-          glm::any(glm::greaterThanEqual(other, size))) {
-        continue;
+// Of each cell; `thin_per_m` is the extinction of a thin channel at most.
+std::vector<std::uint8_t> FillingsOf(const ExtinctionVolume& volume, double thin_per_m) {
+  const std::uint16_t empty = TexelOf(volume.negligible_per_m, volume);
+  const std::uint16_t thin = std::max(TexelOf(thin_per_m, volume), empty);
+  std::vector<std::uint8_t> fillings(Count(volume.grid.cells), kEmpty);
+  for (const ExtinctionPlane& plane : volume.planes) {
+    if (plane.channels == 1) RaiseFillings<1>(plane.texels, empty, thin, &fillings);
+    if (plane.channels == 2) RaiseFillings<2>(plane.texels, empty, thin, &fillings);
+    if (plane.channels == 4) RaiseFillings<4>(plane.texels, empty, thin, &fillings);
+  }
+  return fillings;
+}
+
+struct Range {
+  int first;
+  int last;
+};
+
+// The most of what `reach` names, for each of `count` along one axis: `fillings` has `length` rows
+// of `stride` for each step along the axes after it.
+template <typename Reach>
+std::vector<std::uint8_t> MostAlong(const std::vector<std::uint8_t>& fillings, int stride,
+                                    int length, int count, const Reach& reach) {
+  const auto row = static_cast<std::size_t>(stride);
+  const auto layer = row * static_cast<std::size_t>(length);
+  std::vector<std::uint8_t> most(fillings.size() / layer * static_cast<std::size_t>(count) * row,
+                                 kEmpty);
+  std::uint8_t* out = most.data();
+  for (const std::uint8_t* in = fillings.data(); in != fillings.data() + fillings.size();
+       in += layer) {
+    for (int i = 0; i < count; ++i, out += row) {
+      const Range range = reach(i);
+      for (int j = std::max(range.first, 0); j <= std::min(range.last, length - 1); ++j) {
+        const std::uint8_t* from = in + static_cast<std::size_t>(j) * row;
+        for (std::size_t k = 0; k < row; ++k) out[k] = std::max(out[k], from[k]);
       }
-      const int there = (*contents)[Offset(size, other.x, other.y, other.z)];
-      lowest = std::min(lowest, there == BrickMap::kThin ? 1 : there + 1);
     }
-    content = static_cast<std::uint8_t>(lowest);
+  }
+  return most;
+}
+
+// Along all axes: from `size` to `count`; `reach` takes an axis too.
+template <typename Reach>
+std::vector<std::uint8_t> MostOf(const std::vector<std::uint8_t>& fillings, const glm::ivec3& size,
+                                 const glm::ivec3& count, const Reach& reach) {
+  const auto along = [&](int axis) { return [&, axis](int i) { return reach(axis, i); }; };
+  const auto by_z = MostAlong(fillings, size.x * size.y, size.z, count.z, along(2));
+  const auto by_y = MostAlong(by_z, size.x, size.y, count.y, along(1));
+  return MostAlong(by_y, 1, size.x, count.x, along(0));
+}
+
+// Of each brick.
+std::vector<std::uint8_t> FillingsOf(const BrickMap& map) {
+  std::vector<std::uint8_t> fillings(map.content.size());
+  std::transform(
+      map.content.begin(), map.content.end(), fillings.begin(), [](std::uint8_t content) {
+        return content == BrickMap::kThick ? kThick : content == BrickMap::kThin ? kThin : kEmpty;
+      });
+  return fillings;
+}
+
+// Where it is not empty, as x + 1024 (y + 1024 z); where it is thick with `thick_bits`.
+std::vector<std::uint32_t> Places(const std::vector<std::uint8_t>& fillings, const glm::ivec3& size,
+                                  std::uint32_t thick_bits) {
+  std::vector<std::uint32_t> places;
+  const std::uint8_t* filling = fillings.data();
+  for (int z = 0; z < size.z; ++z) {
+    for (int y = 0; y < size.y; ++y) {
+      const auto row = static_cast<std::uint32_t>(kMost * (y + kMost * z));
+      for (int x = 0; x < size.x; ++x, ++filling) {
+        if (*filling == kEmpty) continue;
+        places.push_back((row + static_cast<std::uint32_t>(x)) |
+                         (*filling == kThick ? thick_bits : 0U));
+      }
+    }
+  }
+  return places;
+}
+
+// Lowers each of a row to one more than the least of the three of another row beside it, `row` and
+// `beside` having `count` values and one more on both sides.
+void LowerToRow(const std::uint8_t* beside, std::size_t count, std::uint8_t* row) {
+  for (std::size_t x = 0; x < count; ++x) {
+    const std::uint8_t least = std::min(std::min(beside[x], beside[x + 1]), beside[x + 2]);
+    const auto one_more = static_cast<std::uint8_t>(least + 1);
+    row[x + 1] = std::min(row[x + 1], one_more);
   }
 }
+
+// Chebyshev distances to the nearest brick that is not empty, at most kFarthest: two sweeps over
+// the 13 neighbours before a brick and the 13 after it give them exactly (Rosenfeld and Pfaltz
+// 1966).
+class Distances {
+ public:
+  Distances(const std::vector<std::uint8_t>& fillings, const glm::ivec3& size)
+      : size_(size),
+        row_(static_cast<std::size_t>(size.x) + 2),
+        values_(row_ * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z),
+                kFarthest) {
+    const std::uint8_t* filling = fillings.data();
+    for (int z = 0; z < size.z; ++z) {
+      for (int y = 0; y < size.y; ++y) {
+        std::uint8_t* row = Row(y, z);
+        for (int x = 0; x < size.x; ++x) row[x + 1] = *filling++ == kEmpty ? kFarthest : 0;
+      }
+    }
+    for (int z = 0; z < size.z; ++z) {
+      for (int y = 0; y < size.y; ++y) Sweep(y, z, 1);
+    }
+    for (int z = size.z - 1; z >= 0; --z) {
+      for (int y = size.y - 1; y >= 0; --y) Sweep(y, z, -1);
+    }
+  }
+
+  // Of the bricks of a row.
+  const std::uint8_t* Of(int y, int z) { return Row(y, z) + 1; }
+
+ private:
+  // With one more on both sides, as far as can be.
+  std::uint8_t* Row(int y, int z) {
+    return values_.data() +
+           row_ * (static_cast<std::size_t>(y) +
+                   static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(z));
+  }
+
+  // Takes in the neighbours on one side: `before` is 1 for those before, -1 for those after.
+  void Sweep(int y, int z, int before) {
+    std::uint8_t* row = Row(y, z);
+    const auto count = static_cast<std::size_t>(size_.x);
+    const auto lower_to = [&](int other_y, int other_z) {
+      if (other_y < 0 || other_y >= size_.y || other_z < 0 || other_z >= size_.z) return;
+      LowerToRow(Row(other_y, other_z), count, row);
+    };
+    for (int dy = -1; dy <= 1; ++dy) lower_to(y + dy, z - before);
+    lower_to(y - before, z);
+    const int first = before > 0 ? 1 : size_.x;
+    const int end = before > 0 ? size_.x + 1 : 0;
+    for (int x = first; x != end; x += before) {
+      row[x] = static_cast<std::uint8_t>(std::min<int>(row[x], row[x - before] + 1));
+    }
+  }
+
+  glm::ivec3 size_;
+  std::size_t row_;
+  std::vector<std::uint8_t> values_;
+};
 
 }  // namespace
-
-std::vector<std::uint32_t> BrickMap::Occupied() const {
-  std::vector<std::uint32_t> occupied;
-  for (std::size_t i = 0; i < content.size(); ++i) {
-    if (content[i] != kThick && content[i] != kThin) continue;
-    const auto nx = static_cast<std::size_t>(bricks.x);
-    const auto ny = static_cast<std::size_t>(bricks.y);
-    occupied.push_back(
-        static_cast<std::uint32_t>(i % nx + 1024 * (i / nx % ny + 1024 * (i / (nx * ny)))));
-  }
-  return occupied;
-}
 
 BrickMap BrickMapOf(const ExtinctionVolume& volume) {
   BrickMap map;
   if (volume.Empty()) return map;
-  const glm::dvec3 spacing_m = volume.grid.spacing_m;
-  const double side_m = kBrickInCoarsestCells * std::max({spacing_m.x, spacing_m.y, spacing_m.z});
-  map.cells_per_brick = glm::clamp(glm::ivec3(glm::round(side_m / spacing_m)), glm::ivec3(1),
-                                   glm::ivec3(kMostCellsAcross));
-  const glm::ivec3 fewest = (volume.grid.cells + kMostBricks - 1) / kMostBricks;
-  map.cells_per_brick = glm::max(map.cells_per_brick, fewest);
-  map.bricks = (volume.grid.cells + map.cells_per_brick - 1) / map.cells_per_brick;
-  map.content.assign(Offset(map.bricks, 0, 0, map.bricks.z), kFarthest);
-  const double way_m = glm::length(glm::dvec3(map.cells_per_brick) * spacing_m);
+  const glm::ivec3 cells = volume.grid.cells;
+  const glm::ivec3 across = CellsAcross(volume.grid, kBrickInCoarsestCells);
+  map.cells_per_brick = across;
+  map.bricks = cells / across + 1;
+  const double way_m = glm::length(glm::dvec3(across) * volume.grid.spacing_m);
   int channels = 0;  // their extinctions add up
   for (const ExtinctionPlane& plane : volume.planes) channels += plane.channels;
-  const double thin_per_m = BrickMap::kThinOpticalDepth / way_m / channels;
-  for (const ExtinctionPlane& plane : volume.planes) MarkPlane(plane, volume, thin_per_m, &map);
-  // Two sweeps over the 13 neighbours before a brick, and the 13 after it, give the exact
-  // Chebyshev distance (Rosenfeld and Pfaltz 1966).
-  std::vector<glm::ivec3> before;
-  for (int z = -1; z <= 0; ++z) {
-    for (int y = -1; y <= (z < 0 ? 1 : 0); ++y) {
-      for (int x = -1; x <= (z < 0 || y < 0 ? 1 : -1); ++x) before.emplace_back(x, y, z);
+  const std::vector<std::uint8_t> fillings =
+      MostOf(FillingsOf(volume, BrickMap::kThinOpticalDepth / way_m / channels), cells, map.bricks,
+             [&](int axis, int brick) {
+               const int n = across[axis];
+               return Range{brick * n - 1, (brick + 1) * n - 1};
+             });
+  Distances distances(fillings, map.bricks);
+  map.content.reserve(fillings.size());
+  for (int z = 0; z < map.bricks.z; ++z) {
+    for (int y = 0; y < map.bricks.y; ++y) {
+      const std::uint8_t* distance = distances.Of(y, z);
+      map.content.insert(map.content.end(), distance, distance + map.bricks.x);
     }
   }
-  LowerToNeighbours(map.bricks, before, true, &map.content);
-  LowerToNeighbours(map.bricks, before, false, &map.content);
+  for (std::size_t i = 0; i < fillings.size(); ++i) {
+    if (fillings[i] == kThin) map.content[i] = BrickMap::kThin;
+  }
   return map;
+}
+
+BrickCubes OccupiedCubesOf(const BrickMap& map, std::size_t most) {
+  BrickCubes cubes;
+  glm::ivec3 size = map.bricks;
+  std::vector<std::uint8_t> fillings = FillingsOf(map);
+  const auto occupied = [&] {
+    return fillings.size() -
+           static_cast<std::size_t>(std::count(fillings.begin(), fillings.end(), kEmpty));
+  };
+  while (occupied() > most) {
+    const glm::ivec3 halved = (size + 1) / 2;
+    fillings = MostOf(fillings, size, halved, [](int, int cube) {
+      return Range{2 * cube, 2 * cube + 1};
+    });
+    size = halved;
+    cubes.bricks_across *= 2;
+  }
+  cubes.occupied = Places(fillings, size, 0U);
+  return cubes;
+}
+
+CellBlocks CellBlocksOf(const BrickMap& map, const RegularGrid& grid) {
+  CellBlocks blocks;
+  if (map.content.empty()) return blocks;
+  blocks.cells_per_block = CellsAcross(grid, kBlockInCoarsestCells);
+  const glm::ivec3 size = (grid.cells - 1) / blocks.cells_per_block + 1;
+  // A cell is met in the brick that begins after it too.
+  const std::vector<std::uint8_t> fillings =
+      MostOf(FillingsOf(map), map.bricks, size, [&](int axis, int block) {
+        const int side = blocks.cells_per_block[axis];
+        const int n = map.cells_per_brick[axis];
+        return Range{block * side / n, (block + 1) * side / n};
+      });
+  blocks.occupied = Places(fillings, size, CellBlocks::kThick);
+  return blocks;
 }
 
 }  // namespace thunderhead::volume

@@ -63,6 +63,23 @@ TEST_F(LightVolume, TransmittanceDoesNotDependOnTheNumberOfSamples) {
   }
 }
 
+TEST_F(LightVolume, AStepThroughHazeEndsWhereTheCloudBegins) {
+  // In thin bricks samples are a cell apart, but not so as to step over the beginning of what is
+  // thick. The haze is as high as the layer, half the domain.
+  SingleScattering();
+  in_air_ = true;
+  haze_per_m_ = 2e-5;
+  scene_.rendering.slices = 512;
+  for (const double depth : {0.5, 2.0}) {
+    for (const double elevation_deg : {89.9, 50.0, -25.0, -89.9}) {
+      const double through = (depth + haze_per_m_ * kHeight_m / 2) /
+                             std::sin(std::abs(elevation_deg) * std::numbers::pi / 180);
+      EXPECT_NEAR(Look(depth, elevation_deg, 45.0).transmittance, std::exp(-through), kTextureError)
+          << "depth " << depth << ", view " << elevation_deg;
+    }
+  }
+}
+
 TEST_F(LightVolume, ThinSlabsKeepTheirDigits) {
   SingleScattering();
   scene_.rendering.slices = 1024;

@@ -53,11 +53,14 @@ class SlabView : public testing::Test {
   }
 
   Seen Look(double optical_depth, const scene::View& view, double sun_elevation_deg) {
-    const auto fields = in_air_ ? support::MakeLayerInAir(width_m_, kHeight_m, 8, optical_depth)
-                                : support::MakeSlab(width_m_, kHeight_m, optical_depth / kHeight_m);
+    volume::HydrometeorFields fields =
+        in_air_ ? *support::MakeLayerInAir(width_m_, kHeight_m, 8, optical_depth)
+                : *support::MakeSlab(width_m_, kHeight_m, optical_depth / kHeight_m);
+    if (with_gap_) MakeGap(&fields);
+    if (haze_per_m_ > 0.0) AddHaze(&fields);
     ResidentMedium::Cost cost;
     DetailNoises noises;
-    const ResidentMedium medium(scene_, with_gap_ ? WithGap(*fields) : *fields, &noises, &cost);
+    const ResidentMedium medium(scene_, fields, &noises, &cost);
     RenderSettings settings;
     settings.rendering = scene_.rendering;
     settings.view = view;
@@ -87,14 +90,23 @@ class SlabView : public testing::Test {
     return seen;
   }
 
-  static volume::HydrometeorFields WithGap(volume::HydrometeorFields fields) {
-    const int width = fields.grid.cells.x;
-    std::vector<float>& concentration = fields.fields[0].concentration_kg_per_m3;
+  static void MakeGap(volume::HydrometeorFields* fields) {
+    const int width = fields->grid.cells.x;
+    std::vector<float>& concentration = fields->fields[0].concentration_kg_per_m3;
     for (std::size_t i = 0; i < concentration.size(); ++i) {
       const int x = static_cast<int>(i) % width;
       if (x >= width / 4 && x < width - width / 4) concentration[i] = 0.0F;
     }
-    return fields;
+  }
+
+  void AddHaze(volume::HydrometeorFields* fields) const {
+    const physics::ParticleOptics& cloud = physics::DefaultOptics(physics::Hydrometeor::kCloud);
+    const float mass_extinction =
+        physics::MassExtinction_m2_per_kg(cloud.density_kg_per_m3, cloud.radius_m);
+    for (float& concentration : fields->fields[0].concentration_kg_per_m3) {
+      if (concentration == 0.0F) concentration = static_cast<float>(haze_per_m_) / mass_extinction;
+    }
+    fields->condensate = {glm::ivec3(0), fields->grid.cells};
   }
 
   void SetPhase(physics::PhaseKind kind, float asymmetry) {
@@ -112,6 +124,7 @@ class SlabView : public testing::Test {
   bool in_air_ = false;  // a layer with soft faces instead of the slab
   double width_m_ = kWidth_m;
   bool with_gap_ = false;    // nothing in the middle half of its width
+  double haze_per_m_ = 0.0;  // extinction of what is otherwise empty
   bool even_light_ = false;  // radiance 1 from everywhere instead of sunlight
 
  private:

@@ -18,8 +18,11 @@ constexpr double kLayerInCells = 1.5;        // along them, of the way through a
 constexpr GLuint kLightUnit = 4;
 constexpr GLuint kThicknessUnit = 5;
 constexpr GLuint kGroundUnit = 7;
-constexpr GLuint kCorrectionUnit = 13;   // and the two after
-constexpr double kNearInTexels = 1.5;    // sampled next to a cell
+constexpr GLuint kCorrectionUnit = 13;  // and the two after
+constexpr double kNearInTexels = 1.5;   // sampled next to a cell
+// Texels from an occupied brick within which the carried light is read: towards the sun, and over
+// one more along each axis by interpolation.
+constexpr double kReadTexels = kNearInTexels + 1.74;
 constexpr int kMostGroupsInRow = 65535;  // what OpenGL 4.5 guarantees along each axis
 constexpr int kGroupSide = 8;            // of carry.comp
 
@@ -132,6 +135,8 @@ absl::Status LightVolumeRenderer::Carry(const ResidentMedium& medium, const Grou
   program->Set("light_reach_m", static_cast<float>(box.reach_m));
   program->Set("texel_m", static_cast<float>(box.texel_m));
   program->Set("half_layer_steps", box.half_layer_steps);
+  program->Set("read_bricks", static_cast<int>(std::ceil(kReadTexels * box.texel_m /
+                                                         medium.ShortestBrickSide_m())));
   program->Set("light_weights", medium.Weights(weights.light));
   program->Set("transport_weights", medium.Weights(weights.transport));
   program->Set("cumulative_phase", weights.cumulative_phase);
@@ -159,12 +164,11 @@ absl::Status LightVolumeRenderer::Arrive(const ResidentMedium& medium, const Gro
   program->Set("light_weights", medium.Weights(weights.light));
   carried_.Bind(kLightUnit);
   thickness_.Bind(kThicknessUnit);
-  medium.BindOccupied(0);
+  medium.BindBlocks(*program, 0);
   arrived_.BindImage(0, GL_WRITE_ONLY);
   program->Use();
-  const int rows = (medium.OccupiedCount() + kMostGroupsInRow - 1) / kMostGroupsInRow;
-  program->Set("occupied_count", medium.OccupiedCount());
-  glDispatchCompute(static_cast<GLuint>(std::min(medium.OccupiedCount(), kMostGroupsInRow)),
+  const int rows = (medium.BlockCount() + kMostGroupsInRow - 1) / kMostGroupsInRow;
+  glDispatchCompute(static_cast<GLuint>(std::min(medium.BlockCount(), kMostGroupsInRow)),
                     static_cast<GLuint>(rows), 1);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   return absl::OkStatus();

@@ -50,7 +50,8 @@ uint brick_content(MediumRay ray, vec3 place) { return texelFetch(bricks, brick_
 // True where there is something in the brick.
 bool is_filled(uint content) { return content == kThickBrick || content == kThinBrick; }
 
-// How far along the ray from `place`, in bricks, the cube of empty bricks reaches that `content` tells of.
+// How far along the ray from `place`, in bricks, the cube of empty bricks reaches that `content` tells of; with 1 the way to
+// the end of the brick itself.
 float empty_way(MediumRay ray, vec3 place, uint content) {
   vec3 across = abs(ray.per_brick_step);  // the way through a brick
   vec3 way = (vec3(brick_at(ray, place)) + 0.5 - place) * ray.per_brick_step + (float(content) - 0.5) * across;

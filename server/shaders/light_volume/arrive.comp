@@ -1,11 +1,11 @@
-// The light that arrives at the centres of the cells of occupied bricks: a work group for each brick. Next to the cell the medium is sampled towards the
-// sun; from there on the sun-aligned volume of carry.comp holds what the light has lost. Cells' centres are where the
-// medium's linear interpolation has its kinks, so that in a cloud's edge, where extinction rises linearly from such a
-// centre, the square root of the light's optical depth rises linearly too.
+// The light that arrives at the centres of cells that a ray may meet: a work group for each block of them
+// (volume::CellBlocks). Next to the cell the medium is sampled towards the sun; from there on the sun-aligned volume of
+// carry.comp holds what the light has lost. Cells' centres are where the medium's linear interpolation has its kinks, so
+// that in a cloud's edge, where extinction rises linearly from such a centre, the square root of the light's optical depth
+// rises linearly too.
 // r: the square root of the light's optical depth; g: the mean intensity of light scattered many times, over the sun's
 // irradiance. Variants: GROUPS, CONSISTENT, TRANSLUCENT, DIFFUSE.
 #include "common/medium.glsl"
-#include "common/bricks.glsl"
 #include "physics/light_transport.glsl"
 
 layout(local_size_x = 32) in;
@@ -13,17 +13,18 @@ layout(binding = 0) uniform writeonly image3D arrived;
 
 layout(binding = 4) uniform sampler3D carried;
 layout(binding = 5) uniform sampler2D thickness;
-layout(std430, binding = 0) readonly buffer Bricks { uint occupied_bricks[]; };  // x + 1024 (y + 1024 z)
+layout(std430, binding = 0) readonly buffer Blocks { uint blocks[]; };  // as volume::CellBlocks has them
 
 uniform ivec3 cell_count;
-uniform ivec3 cells_per_brick;
-uniform int occupied_count;
+uniform ivec3 cells_per_block;
+uniform int block_count;
 uniform mat4x3 light_from_local;
 uniform vec3 towards_sun;
 uniform float near_m;  // sampled next to the cell
 uniform vec4 light_weights[PLANES];
 
 const int kNearSamples = 4;
+const uint kThickBlock = 1u << 31;
 
 // What give_light needs in the coordinates of the medium's texture and of the light's volume.
 struct Surroundings {
@@ -59,11 +60,11 @@ void give_light(ivec3 cell, vec3 place, vec3 here_place, vec3 far_place, Surroun
 void main() {
   begin_medium();
   uint listed = gl_WorkGroupID.x + gl_NumWorkGroups.x * gl_WorkGroupID.y;
-  if (listed >= uint(occupied_count)) return;
-  uint packed_brick = occupied_bricks[listed];
-  ivec3 brick = ivec3(packed_brick & 1023u, packed_brick >> 10 & 1023u, packed_brick >> 20);
+  if (listed >= uint(block_count)) return;
+  uint packed_block = blocks[listed];
+  ivec3 block = ivec3(packed_block & 1023u, packed_block >> 10 & 1023u, packed_block >> 20 & 1023u);
   // What is thin takes little light on the way past a cell; the paper's transport depends on the steps of carry.comp.
-  bool thick = texelFetch(bricks, brick, 0).r == kThickBrick;
+  bool thick = (packed_block & kThickBlock) != 0u;
   bool looks_near = thick && (CONSISTENT == 1 || TRANSLUCENT == 0);
   float step_m = near_m / float(kNearSamples);
   Surroundings around;
@@ -74,7 +75,7 @@ void main() {
   around.near_depths = scaled(light_weights, step_m);
   around.light_layers = float(textureSize(carried, 0).z);
 
-  ivec3 first_cell = brick * cells_per_brick;
+  ivec3 first_cell = block * cells_per_block;
   vec3 cell_size = 1.0 / vec3(cell_count);
   vec3 cell_m = cell_size / texture_from_local_scale;
   vec3 first_m = (vec3(first_cell) + 0.5) * cell_m - texture_from_local_offset / texture_from_local_scale;
@@ -82,15 +83,15 @@ void main() {
   vec3 first_place = light_from_local * vec4(first_m, 1.0);
   vec3 to_far = mat3(light_from_local) * (looks_near ? near_m * towards_sun : vec3(0.0));
 
-  ivec3 cells_left = min(cells_per_brick, cell_count - first_cell);
-  int cells = cells_per_brick.x * cells_per_brick.y * cells_per_brick.z;
+  ivec3 cells_left = min(cells_per_block, cell_count - first_cell);
+  int cells = cells_per_block.x * cells_per_block.y * cells_per_block.z;
   // Not by integers: software divides those one by one.
-  float per_row = 1.0 / float(cells_per_brick.x);
-  float per_layer = per_row / float(cells_per_brick.y);
+  float per_row = 1.0 / float(cells_per_block.x);
+  float per_layer = per_row / float(cells_per_block.y);
   for (int i = int(gl_LocalInvocationIndex); i < cells; i += 32) {
     int row = int((float(i) + 0.5) * per_row);
     int layer = int((float(i) + 0.5) * per_layer);
-    ivec3 within = ivec3(i - row * cells_per_brick.x, row - layer * cells_per_brick.y, layer);
+    ivec3 within = ivec3(i - row * cells_per_block.x, row - layer * cells_per_block.y, layer);
     if (any(greaterThanEqual(within, cells_left))) continue;
     ivec3 cell = first_cell + within;
     vec3 here_place = first_place + light_step * vec3(within);

@@ -25,11 +25,8 @@ uniform float texel_m;        // the longest side of a texel
 uniform int half_layer_steps;  // samples in half a layer
 uniform vec4 light_weights[PLANES];
 uniform vec4 transport_weights[PLANES];
-uniform vec2 cumulative_phase;  // CP(theta_f / 4), CP(theta_f / 2)
-
-// Bricks from an occupied one within which arrive.comp reads this volume: it looks 1.5 texels towards the sun, and
-// interpolates over one more; a brick is at least 2 texels wide.
-const uint kReadBricks = 2u;
+uniform vec2 cumulative_phase;   // CP(theta_f / 4), CP(theta_f / 2)
+uniform int read_bricks;         // from an occupied one within which arrive.comp reads this volume
 
 // Optical depth that the light loses where the medium's is `depth`; `turned` is the share of what is scattered that does
 // not go on with the light.
@@ -62,6 +59,7 @@ void main() {
   float turned = 1.0 - cumulative_phase.y;
   float per_layer = 1.0 / layer_m;
   int most_steps = max(half_layer_steps, 1);
+  float further_m = float(most_steps - 1) * step_m;  // from its first sample to its last
 
   float depth = 0.0;
   float medium_depth = 0.0;
@@ -76,15 +74,17 @@ void main() {
     vec3 place = brick_place(ray, way_m);
     bool outside = any(lessThan(place, vec3(0.0))) || any(greaterThan(place, ray.highest_brick + 0.5));
     uint content = brick_content(ray, place);
-    if (!outside && content != kThinBrick && content > kReadBricks) {
+    if (!outside && content != kThinBrick && content > uint(read_bricks)) {
       // So far from all that scatters nothing reads the light.
-      float leap_m = empty_way(ray, place, content - kReadBricks);
-      int leap = max(2 * int(leap_m * per_layer), 2);  // whole layers: stores keep their turn
-      half_layer += leap;
-      way_m += float(leap) * half_layer_m;
-      continue;
+      float leap_m = empty_way(ray, place, content - uint(read_bricks));
+      int leap = 2 * int(leap_m * per_layer);  // whole layers: stores keep their turn
+      if (leap > 0) {
+        half_layer += leap;
+        way_m += float(leap) * half_layer_m;
+        continue;
+      }
     }
-    int steps = outside || !is_filled(content) ? 0 : most_steps;
+    int steps = !is_filled(content) && empty_way(ray, place, content) > further_m ? 0 : most_steps;
     for (int i = 0; i < steps; ++i) {
       float at_m = way_m + float(i) * step_m;
       Medium medium = medium_at_place(medium_place(ray, at_m));

@@ -150,7 +150,8 @@ void main() {
       uint content = brick_content(ray, place);
       if (content == kThickBrick) break;
       if (content == kThinBrick) {
-        longest_m = cell_m;
+        // Not into the next brick, which may be thick.
+        longest_m = clamp(empty_way(ray, place, 1u), step_m, cell_m);
         break;
       }
       way_m += empty_way(ray, place, content);
