@@ -135,8 +135,9 @@ void main() {
 #endif
   Scattered scattered = nothing_scattered();
 
-  Medium before;
-  for (int plane = 0; plane < PLANES; ++plane) before.plane[plane] = vec4(0.0);
+  Medium nothing;
+  for (int plane = 0; plane < PLANES; ++plane) nothing.plane[plane] = vec4(0.0);
+  Medium before = nothing;
   vec3 through_m = abs(1.0 / (ray.step * vec3(textureSize(medium_plane_0, 0))));
   float cell_m = max(step_m, min(through_m.x, min(through_m.y, through_m.z)));  // the way through a cell
   float extinction_before = -1.0;  // no sample yet
@@ -156,13 +157,22 @@ void main() {
       }
       way_m += empty_way(ray, place, content);
     }
-    // The first sample after a leap only starts a segment.
-    float segment_m = way_m > from_m || extinction_before < 0.0 ? 0.0 : min(longest_m, end_m - way_m);
+    // A leap ends where a filled brick begins, and there is nothing yet. A ray's first sample only starts a segment.
+    bool leapt = way_m > from_m;
+    if (leapt) {
+      extinction_before = 0.0;
+      before = nothing;
+#if DIFFUSION
+      transport_before = 0.0;
+#endif
+    }
+    float segment_m = extinction_before < 0.0 ? 0.0 : clamp(end_m - way_m, 0.0, longest_m);
     way_m += segment_m;
 
     vec3 place = medium_place(ray, way_m);
     Medium here = medium_at_place(place);
     vec2 light_here = texture(arrived, place).rg;
+    if (leapt) light_before = light_here;
     float extinction_here = weigh(here, eye_depths);
     float start = max(extinction_before, 0.0);
     Taken split = taken_on(segment_m * per_step, start, extinction_here);
@@ -176,6 +186,10 @@ void main() {
     float transport_here = weigh(here, transport_depths);
     vec4 out_here = texture(ways_out, place);
     vec4 inward_here = texture(net_inward, place);
+    if (leapt) {
+      out_before = out_here;
+      inward_before = inward_here;
+    }
     Taken diffuse = taken_on(segment_m * per_step, extinction_before < 0.0 ? 0.0 : transport_before, transport_here);
     vec4 ways = mix(out_before, out_here, diffuse.at);
     vec4 inward = mix(inward_before, inward_here, diffuse.at);
