@@ -135,10 +135,9 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
   bricks_ = gl::Texture3D(GL_R8UI, bricks.bricks, gl::Filter::kNearest);
   bricks_.Upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, bricks.content.data());
   cells_per_brick_ = bricks.cells_per_brick;
-  occupied_count_ = static_cast<int>(
-      std::count_if(bricks.content.begin(), bricks.content.end(), [](std::uint8_t content) {
-        return content == volume::BrickMap::kThick || content == volume::BrickMap::kThin;
-      }));
+  const auto empty =
+      std::count_if(bricks.content.begin(), bricks.content.end(), volume::BrickMap::IsEmpty);
+  occupied_count_ = static_cast<int>(bricks.content.size()) - static_cast<int>(empty);
   occupied_boxes_ = BoxesOf(bricks, glm::dvec3(cells_per_brick_) * bounds_.grid.spacing_m,
                             bounds_.grid.low_corner_m - 0.5 * bounds_.grid.spacing_m);
   cells_per_block_ = blocks.cells_per_block;
@@ -196,8 +195,10 @@ void ResidentMedium::BindDetails(const gl::Program& program) const {
 
 double ResidentMedium::OccupiedShare() const {
   if (Empty()) return 0.0;
-  const glm::dvec3 bricks(bricks_.Size());
-  return occupied_count_ / (bricks.x * bricks.y * bricks.z);
+  // Bricks reach beyond the box.
+  const glm::dvec3 sides =
+      glm::dvec3(cells_per_brick_) * bounds_.grid.spacing_m / (2.0 * HalfExtent_m());
+  return std::min(occupied_count_ * sides.x * sides.y * sides.z, 1.0);
 }
 
 double ResidentMedium::ShortestBrickSide_m() const {

@@ -77,7 +77,7 @@ class ResidentMedium {
   // common/medium.glsl and common/bricks.glsl. Local coordinates are metres from Middle_m().
   void Bind(const gl::Program& program) const;
   std::size_t Bytes() const;
-  // Share of the box's bricks that are not empty, 0 to 1.
+  // Share of the box that is in bricks that are not empty, 0 to 1.
   double OccupiedShare() const;
   double ShortestBrickSide_m() const;
   // The blocks of cells that a ray may meet (volume::CellBlocks): how many, and their list, bound

@@ -25,7 +25,9 @@ struct BrickMap {
   static constexpr std::uint8_t kThick = 0;
   // Not empty, but the way through the brick has an optical depth below kThinOpticalDepth.
   static constexpr std::uint8_t kThin = 255;
-  static constexpr double kThinOpticalDepth = 0.1;
+  static constexpr double kThinOpticalDepth = 0.05;
+
+  static bool IsEmpty(std::uint8_t content) { return content != kThick && content != kThin; }
 };
 
 // The bricks of `volume`, about cubes in metres, at most 1024 along an axis. Takes the planes'
@@ -38,7 +40,7 @@ struct BrickCubes {
   std::vector<std::uint32_t> occupied;
 };
 
-// As small as can be for them to be at most `most`.
+// As small as can be for them to be at most `most`, which is at least 1.
 BrickCubes OccupiedCubesOf(const BrickMap& map, std::size_t most);
 
 // Cells in blocks, about cubes in metres. Block i begins with cell i * cells_per_block.

@@ -400,8 +400,49 @@ TEST_F(SceneRendererTest, ACameraInsideTheCloudSeesCloudEverywhere) {
   for (std::size_t i = 0; i < pixels.size(); i += 4) ASSERT_TRUE(std::isfinite(pixels[i]));
 }
 
-TEST_F(SceneRendererTest, MoreBricksThanOneRowOfWorkGroupsHolds) {
-  // 48 x 48 x 48 bricks of two cells a side, against a coarse grid of the same cloud.
+TEST_F(SceneRendererTest, APictureDoesNotDependOnTheStormBefore) {
+  // A block, then two blobs at opposite corners of its box: a volume of the same size, but for
+  // light in fewer cells.
+  const auto block = [](bool corners_alone) {
+    auto fields = std::make_shared<volume::HydrometeorFields>(
+        *support::MakeSlab(8000.0, 4000.0, 0.01, {32, 32, 16}));
+    std::vector<float>& concentration = fields->fields[0].concentration_kg_per_m3;
+    for (int z = 0; z < 16; ++z) {
+      for (int y = 0; y < 32; ++y) {
+        for (int x = 0; x < 32; ++x) {
+          const bool in = std::min({x, y, z + 1}) >= 4 && std::max({x, y, z + 16}) < 28;
+          const bool corner = std::max(x, y) < 9 || std::min(x, y) >= 23;
+          if (!in || (corners_alone && !corner)) {
+            concentration[fields->grid.Offset(x, y, z)] = 0.0F;
+          }
+        }
+      }
+    }
+    fields->condensate = {{4, 4, 3}, {28, 28, 12}};
+    return fields;
+  };
+  const auto whole = block(false);
+  const auto corners = block(true);
+  for (const int slices : {5, 16, 64}) {
+    scene_.rendering.slices = slices;
+    for (const auto transport : {scene::Transport::kConsistent, scene::Transport::kPaper}) {
+      scene_.rendering.transport = transport;
+      for (const double sun_deg : {20.0, 55.0, 85.0}) {
+        scene_.sun.elevation_deg = sun_deg;
+        fields_ = whole;
+        Pixels(renderer_.get());
+        scene_.sun.azimuth_deg += 70.0;
+        Pixels(renderer_.get());
+        fields_ = corners;
+        SceneRenderer fresh;
+        EXPECT_EQ(Pixels(renderer_.get()), Pixels(&fresh)) << slices << ' ' << sun_deg;
+      }
+    }
+  }
+}
+
+TEST_F(SceneRendererTest, MoreBlocksThanOneRowOfWorkGroupsHolds) {
+  // 48 x 48 x 48 blocks of two cells a side, against a coarse grid of the same cloud.
   const auto brightness = [&](const glm::ivec3& cells) {
     fields_ = support::MakeSlab(4000.0, 2000.0, 0.01, cells);
     const std::vector<float> pixels = Pixels(renderer_.get());

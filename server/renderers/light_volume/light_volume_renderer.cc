@@ -20,7 +20,7 @@ constexpr GLuint kThicknessUnit = 5;
 constexpr GLuint kGroundUnit = 7;
 constexpr GLuint kCorrectionUnit = 13;  // and the two after
 constexpr double kNearInTexels = 1.5;   // sampled next to a cell
-// Texels from an occupied brick within which the carried light is read: towards the sun, and over
+// Texels from cells that scatter within which the carried light is read: towards the sun, and over
 // one more along each axis by interpolation.
 constexpr double kReadTexels = kNearInTexels + 1.74;
 constexpr int kMostGroupsInRow = 65535;  // what OpenGL 4.5 guarantees along each axis
@@ -96,7 +96,7 @@ void LightVolumeRenderer::Resize(const glm::ivec3& carried, const glm::ivec3& ce
   }
   if (arrived_.Size() != cells || light_format_ != format) {
     arrived_ = gl::Texture3D(format, cells);
-    // What is never written interpolation still multiplies by zero.
+    // The march leaves out what is never written, but might multiply it by zero.
     arrived_.Clear();
   }
   light_format_ = format;
@@ -133,10 +133,10 @@ absl::Status LightVolumeRenderer::Carry(const ResidentMedium& medium, const Grou
   program->Set("light_right_m", glm::vec3(box.frame.right * box.frame.half_extent_m.x));
   program->Set("light_up_m", glm::vec3(box.frame.up * box.frame.half_extent_m.y));
   program->Set("light_reach_m", static_cast<float>(box.reach_m));
-  program->Set("texel_m", static_cast<float>(box.texel_m));
+  const double read_m = kReadTexels * box.texel_m;
+  program->Set("read_m", static_cast<float>(read_m));
   program->Set("half_layer_steps", box.half_layer_steps);
-  program->Set("read_bricks", static_cast<int>(std::ceil(kReadTexels * box.texel_m /
-                                                         medium.ShortestBrickSide_m())));
+  program->Set("read_bricks", static_cast<int>(std::ceil(read_m / medium.ShortestBrickSide_m())));
   program->Set("light_weights", medium.Weights(weights.light));
   program->Set("transport_weights", medium.Weights(weights.transport));
   program->Set("cumulative_phase", weights.cumulative_phase);

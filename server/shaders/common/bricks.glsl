@@ -43,7 +43,7 @@ vec3 medium_place(MediumRay ray, float way_m) { return ray.start + way_m * ray.s
 
 vec3 brick_place(MediumRay ray, float way_m) { return ray.brick_start + way_m * ray.brick_step; }
 
-// The middle of the brick at a place; beyond the box of the nearest one.
+// The middle of the brick at a place; beyond all bricks of the nearest one.
 vec3 brick_middle(MediumRay ray, vec3 place) { return floor(clamp(place, vec3(0.0), ray.highest_brick)) + 0.5; }
 
 // What is in it. A look-up, as software takes twice as long for texelFetch.

@@ -2,7 +2,7 @@
 // r: the square root of the light's effective optical depth, -log of the share that arrives; g: the similarity-scaled
 // optical depth passed, whose end is the ray's thickness.
 // `blocked` is the share of sunlight that the medium keeps from what lies behind all of it, for its shadow on the ground.
-// Layers that interpolation inside the medium's box does not reach are left as they are.
+// Layers from which arrive.comp reads nothing that is used are left as they are.
 // Variants: GROUPS, CONSISTENT, TRANSLUCENT, DIFFUSE. The light model is that of half_angle/carry.comp but for the
 // exchange with neighbouring rays, whose width (one cell's path at 3/8 theta_f) is below a texel of this volume at the
 // usual angles.
@@ -21,12 +21,12 @@ uniform vec3 towards_sun;
 uniform vec3 light_right_m;  // metres across the volume's half width and height
 uniform vec3 light_up_m;
 uniform float light_reach_m;  // half its depth
-uniform float texel_m;        // the longest side of a texel
+uniform float read_m;         // from cells that scatter, within which arrive.comp reads this volume
 uniform int half_layer_steps;  // samples in half a layer
 uniform vec4 light_weights[PLANES];
 uniform vec4 transport_weights[PLANES];
 uniform vec2 cumulative_phase;   // CP(theta_f / 4), CP(theta_f / 2)
-uniform int read_bricks;         // from an occupied one within which arrive.comp reads this volume
+uniform int read_bricks;         // the same in bricks
 
 // Optical depth that the light loses where the medium's is `depth`; `turned` is the share of what is scattered that does
 // not go on with the light.
@@ -50,8 +50,7 @@ void main() {
   vec3 direction = safe_direction(-towards_sun);
   MediumRay ray = medium_ray(start_m, direction);
   vec2 inside = way_in_medium(start_m, direction, 0.0);
-  // Where the ray passes through the box, or so near that interpolation in the box reaches it.
-  vec2 near = way_in_medium(start_m, direction, 1.5 * texel_m);
+  vec2 near = way_in_medium(start_m, direction, read_m);
   int first = clamp(int(floor(near.x / layer_m)), 0, light_size.z);
   int last = near.y < near.x ? 0 : clamp(int(ceil(near.y / layer_m)), 0, light_size.z);
   vec4 light_depths[PLANES] = scaled(light_weights, step_m);

@@ -54,6 +54,7 @@ in vec2 position;
 out vec4 radiance_and_transmittance;
 
 const int kMostSamples = 16384;
+const float kOnwards = 1.0 + 2.4e-7;  // the next number but one: far away a way is coarser than an end of a leap is near
 // Share of the background below which a ray ends. Diffuse light changes little so deep in a cloud: what has been seen stands
 // for the rest.
 #if DIFFUSION
@@ -135,9 +136,8 @@ void main() {
 #endif
   Scattered scattered = nothing_scattered();
 
-  Medium nothing;
-  for (int plane = 0; plane < PLANES; ++plane) nothing.plane[plane] = vec4(0.0);
-  Medium before = nothing;
+  Medium before;
+  for (int plane = 0; plane < PLANES; ++plane) before.plane[plane] = vec4(0.0);
   vec3 through_m = abs(1.0 / (ray.step * vec3(textureSize(medium_plane_0, 0))));
   float cell_m = max(step_m, min(through_m.x, min(through_m.y, through_m.z)));  // the way through a cell
   float extinction_before = -1.0;  // no sample yet
@@ -151,34 +151,27 @@ void main() {
       uint content = brick_content(ray, place);
       if (content == kThickBrick) break;
       if (content == kThinBrick) {
-        // Not into the next brick, which may be thick.
+        // No farther than a sample of thick bricks into the next one, which may be thick.
         longest_m = clamp(empty_way(ray, place, 1u), step_m, cell_m);
         break;
       }
-      way_m += empty_way(ray, place, content);
+      way_m = max(way_m + empty_way(ray, place, content), way_m * kOnwards);
     }
-    // A leap ends where a filled brick begins, and there is nothing yet. A ray's first sample only starts a segment.
-    bool leapt = way_m > from_m;
-    if (leapt) {
-      extinction_before = 0.0;
-      before = nothing;
-#if DIFFUSION
-      transport_before = 0.0;
-#endif
-    }
-    float segment_m = extinction_before < 0.0 ? 0.0 : clamp(end_m - way_m, 0.0, longest_m);
+    // The first sample after a leap only starts a segment.
+    float segment_m = way_m > from_m || extinction_before < 0.0 ? 0.0 : min(longest_m, end_m - way_m);
     way_m += segment_m;
 
     vec3 place = medium_place(ray, way_m);
     Medium here = medium_at_place(place);
     vec2 light_here = texture(arrived, place).rg;
-    if (leapt) light_before = light_here;
     float extinction_here = weigh(here, eye_depths);
     float start = max(extinction_before, 0.0);
     Taken split = taken_on(segment_m * per_step, start, extinction_here);
     float taken = split.share;
     float at = split.at;
-    vec2 light = mix(light_before, light_here, at);
+    // Beyond a cloud's end there are cells that are given no light.
+    bool ends = extinction_here < 1e-3 * extinction_before;
+    vec2 light = ends ? light_before : mix(light_before, light_here, at);
     float arriving = exp(-light.r * light.r);
     float seen = passing * taken;
     float per_extinction = seen * split.per_extinction;
@@ -186,10 +179,6 @@ void main() {
     float transport_here = weigh(here, transport_depths);
     vec4 out_here = texture(ways_out, place);
     vec4 inward_here = texture(net_inward, place);
-    if (leapt) {
-      out_before = out_here;
-      inward_before = inward_here;
-    }
     Taken diffuse = taken_on(segment_m * per_step, extinction_before < 0.0 ? 0.0 : transport_before, transport_here);
     vec4 ways = mix(out_before, out_here, diffuse.at);
     vec4 inward = mix(inward_before, inward_here, diffuse.at);

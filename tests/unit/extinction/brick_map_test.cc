@@ -129,6 +129,38 @@ TEST(BrickMap, ThickStaysThickBesideThin) {
   EXPECT_EQ(ContentAt(map, 4, 5, 3), BrickMap::kThin);   // ends with the centre of the thin one
 }
 
+TEST(BrickMap, TakesTheMostOfAllChannelsOfAllPlanes) {
+  // Five channels: one plane of four and one of one.
+  ExtinctionVolume volume = VolumeWith({8, 8, 8}, {});
+  volume.planes.clear();
+  for (const int channels : {4, 1}) {
+    ExtinctionPlane plane;
+    plane.channels = channels;
+    plane.texels.assign(static_cast<std::size_t>(channels) * volume.grid.CellCount(), 0);
+    volume.planes.push_back(std::move(plane));
+  }
+  volume.planes[0].texels[4 * volume.grid.Offset(2, 2, 2) + 3] = HalfFromFloat(100.0F);
+  volume.planes[1].texels[volume.grid.Offset(6, 6, 6)] = HalfFromFloat(1e-3F);
+  const BrickMap map = BrickMapOf(volume);
+  EXPECT_EQ(ContentAt(map, 2, 2, 1), BrickMap::kThick);
+  EXPECT_EQ(ContentAt(map, 6, 6, 3), BrickMap::kThin);
+  EXPECT_EQ(ContentAt(map, 4, 4, 2), 1);
+}
+
+TEST(BrickMap, AtMost1024AlongAnAxis) {
+  for (const int cells : {1023, 1024, 2048, 16384}) {
+    const ExtinctionVolume volume = VolumeWith({cells, 1, 1}, {{{cells - 1, 0, 0}, 0.1F}});
+    const BrickMap map = BrickMapOf(volume);
+    EXPECT_LE(map.bricks.x, 1024) << cells;
+    EXPECT_EQ(ContentAt(map, map.bricks.x - 1, 0, 0), BrickMap::kThick) << cells;
+    const CellBlocks blocks = CellBlocksOf(map, volume.grid);
+    EXPECT_LE((cells - 1) / blocks.cells_per_block.x, 1023) << cells;
+    EXPECT_EQ(
+        blocks.occupied.back(),
+        CellBlocks::kThick + static_cast<std::uint32_t>((cells - 1) / blocks.cells_per_block.x));
+  }
+}
+
 TEST(BrickCubes, GrowUntilThereAreFewEnough) {
   // Three cells fill 4 bricks each, at both ends of x and one at the end of y too.
   const BrickMap map = BrickMapOf(
