@@ -134,12 +134,12 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
   bounds_.planes.clear();
   bricks_ = gl::Texture3D(GL_R8UI, bricks.bricks, gl::Filter::kNearest);
   bricks_.Upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, bricks.content.data());
-  cells_per_brick_ = bricks.cells_per_brick;
+  brick_m_ = glm::dvec3(bricks.cells_per_brick) * bounds_.grid.spacing_m;
+  bricks_low_m_ = bounds_.grid.low_corner_m - 0.5 * bounds_.grid.spacing_m;
   const auto empty =
       std::count_if(bricks.content.begin(), bricks.content.end(), volume::BrickMap::IsEmpty);
   occupied_count_ = static_cast<int>(bricks.content.size()) - static_cast<int>(empty);
-  occupied_boxes_ = BoxesOf(bricks, glm::dvec3(cells_per_brick_) * bounds_.grid.spacing_m,
-                            bounds_.grid.low_corner_m - 0.5 * bounds_.grid.spacing_m);
+  occupied_boxes_ = BoxesOf(bricks, brick_m_, bricks_low_m_);
   cells_per_block_ = blocks.cells_per_block;
   block_count_ = static_cast<int>(blocks.occupied.size());
   if (block_count_ > 0) {
@@ -159,11 +159,8 @@ void ResidentMedium::Bind(const gl::Program& program) const {
   program.Set("medium_low_m", glm::vec3(-HalfExtent_m()));
   program.Set("medium_high_m", glm::vec3(HalfExtent_m()));
   bricks_.Bind(kBrickUnit);
-  const glm::dvec3 brick_m = glm::dvec3(cells_per_brick_) * bounds_.grid.spacing_m;
-  program.Set("brick_from_local_scale", glm::vec3(1.0 / brick_m));
-  program.Set(
-      "brick_from_local_offset",
-      glm::vec3((Middle_m() - bounds_.grid.low_corner_m + 0.5 * bounds_.grid.spacing_m) / brick_m));
+  program.Set("brick_from_local_scale", glm::vec3(1.0 / brick_m_));
+  program.Set("brick_from_local_offset", glm::vec3((Middle_m() - bricks_low_m_) / brick_m_));
   program.Set("brick_count", bricks_.Size());
   program.Set("extinction_weights", Weights(std::vector<double>(content_.groups.size(), 1.0)));
   if (!details_.empty()) BindDetails(program);
@@ -196,14 +193,12 @@ void ResidentMedium::BindDetails(const gl::Program& program) const {
 double ResidentMedium::OccupiedShare() const {
   if (Empty()) return 0.0;
   // Bricks reach beyond the box.
-  const glm::dvec3 sides =
-      glm::dvec3(cells_per_brick_) * bounds_.grid.spacing_m / (2.0 * HalfExtent_m());
+  const glm::dvec3 sides = brick_m_ / (2.0 * HalfExtent_m());
   return std::min(occupied_count_ * sides.x * sides.y * sides.z, 1.0);
 }
 
 double ResidentMedium::ShortestBrickSide_m() const {
-  const glm::dvec3 side_m = glm::dvec3(cells_per_brick_) * bounds_.grid.spacing_m;
-  return std::min({side_m.x, side_m.y, side_m.z});
+  return std::min({brick_m_.x, brick_m_.y, brick_m_.z});
 }
 
 void ResidentMedium::BindBlocks(const gl::Program& program, GLuint binding) const {

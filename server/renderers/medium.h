@@ -100,7 +100,8 @@ class ResidentMedium {
   volume::ExtinctionVolume bounds_;
   std::vector<gl::Texture3D> textures_;
   gl::Texture3D bricks_;
-  glm::ivec3 cells_per_brick_{1};
+  glm::dvec3 brick_m_{0.0};
+  glm::dvec3 bricks_low_m_{0.0};  // where the first begins
   int occupied_count_ = 0;
   gl::Buffer blocks_;
   glm::ivec3 cells_per_block_{1};

@@ -22,11 +22,11 @@ uniform vec3 light_right_m;  // metres across the volume's half width and height
 uniform vec3 light_up_m;
 uniform float light_reach_m;  // half its depth
 uniform float read_m;         // from cells that scatter, within which arrive.comp reads this volume
+uniform int read_bricks;      // the same in bricks
 uniform int half_layer_steps;  // samples in half a layer
 uniform vec4 light_weights[PLANES];
 uniform vec4 transport_weights[PLANES];
-uniform vec2 cumulative_phase;   // CP(theta_f / 4), CP(theta_f / 2)
-uniform int read_bricks;         // the same in bricks
+uniform vec2 cumulative_phase;  // CP(theta_f / 4), CP(theta_f / 2)
 
 // Optical depth that the light loses where the medium's is `depth`; `turned` is the share of what is scattered that does
 // not go on with the light.
@@ -73,7 +73,7 @@ void main() {
     vec3 place = brick_place(ray, way_m);
     bool outside = any(lessThan(place, vec3(0.0))) || any(greaterThan(place, ray.highest_brick + 0.5));
     uint content = brick_content(ray, place);
-    if (!outside && content != kThinBrick && content > uint(read_bricks)) {
+    if (!outside && !is_filled(content) && content > uint(read_bricks)) {
       // So far from all that scatters nothing reads the light.
       float leap_m = empty_way(ray, place, content - uint(read_bricks));
       int leap = 2 * int(leap_m * per_layer);  // whole layers: stores keep their turn
