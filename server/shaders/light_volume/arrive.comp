@@ -6,6 +6,7 @@
 // r: the square root of the light's optical depth; g: the mean intensity of light scattered many times, over the sun's
 // irradiance. Variants: GROUPS, CONSISTENT, TRANSLUCENT, DIFFUSE.
 #include "common/medium.glsl"
+#include "common/box.glsl"
 #include "physics/light_transport.glsl"
 
 layout(local_size_x = 32) in;
@@ -23,27 +24,31 @@ uniform vec3 towards_sun;
 uniform float near_m;  // sampled next to the cell
 uniform vec4 light_weights[PLANES];
 
-const int kNearSamples = 4;
+// At Gauss and Legendre's two places. Against 64 samples no pixel of the mature storm changes by more than 1 of 255.
+const int kNearSamples = 2;
+const float kFirstNearSample = 0.21132487;
+const float kNearSamplesApart = 0.57735027;
 const uint kThickBlock = 1u << 31;
 
 // What give_light needs in the coordinates of the medium's texture and of the light's volume.
 struct Surroundings {
-  vec3 low_place;  // of the medium's box
-  vec3 high_place;
   int near_samples;
-  vec3 near_step;          // between samples towards the sun
-  vec4 near_depths[PLANES];  // texel to the optical depth of such a step
+  vec3 near_way;             // that is sampled towards the sun
+  vec3 per_near_way;
+  vec3 out_place;            // where the medium's box ends towards the sun
+  vec4 near_depths[PLANES];  // texel to a sample's share of the optical depth of that way
   float light_layers;
 };
 
 // `far_place` is where the light's volume takes over, `here_place` the cell's own place in it.
 void give_light(ivec3 cell, vec3 place, vec3 here_place, vec3 far_place, Surroundings around) {
+  // What is in the box of the way towards the sun; a block reaches beyond it.
+  vec3 inside = (around.out_place - place) * around.per_near_way;
+  float share = clamp(min(min(inside.x, inside.y), inside.z), 0.0, 1.0);
   float depth = 0.0;
   for (int i = 0; i < around.near_samples; ++i) {
-    vec3 sample_place = place + (float(i) + 0.5) * around.near_step;
-    bool inside = all(greaterThanEqual(sample_place, around.low_place)) &&
-                  all(lessThanEqual(sample_place, around.high_place));
-    depth += inside ? weigh(medium_at_place(sample_place), around.near_depths) : 0.0;
+    float at = share * (kFirstNearSample + kNearSamplesApart * float(i));
+    depth += share * weigh(medium_at_place(place + at * around.near_way), around.near_depths);
   }
   // Between the sun's side of the volume and the middle of its first layer light begins to fade.
   float begun = clamp(2.0 * around.light_layers * far_place.z, 0.0, 1.0);
@@ -66,13 +71,15 @@ void main() {
   // What is thin takes little light on the way past a cell; the paper's transport depends on the steps of carry.comp.
   bool thick = (packed_block & kThickBlock) != 0u;
   bool looks_near = thick && (CONSISTENT == 1 || TRANSLUCENT == 0);
-  float step_m = near_m / float(kNearSamples);
+  vec3 direction = safe_direction(towards_sun);
+  vec3 box_low = medium_low_m * texture_from_local_scale + texture_from_local_offset;
+  vec3 box_high = medium_high_m * texture_from_local_scale + texture_from_local_offset;
   Surroundings around;
-  around.low_place = medium_low_m * texture_from_local_scale + texture_from_local_offset;
-  around.high_place = medium_high_m * texture_from_local_scale + texture_from_local_offset;
   around.near_samples = looks_near ? kNearSamples : 0;
-  around.near_step = step_m * towards_sun * texture_from_local_scale;
-  around.near_depths = scaled(light_weights, step_m);
+  around.near_way = near_m * direction * texture_from_local_scale;
+  around.per_near_way = 1.0 / around.near_way;
+  around.out_place = mix(box_low, box_high, greaterThan(direction, vec3(0.0)));
+  around.near_depths = scaled(light_weights, near_m / float(kNearSamples));
   around.light_layers = float(textureSize(carried, 0).z);
 
   ivec3 first_cell = block * cells_per_block;
