@@ -14,9 +14,12 @@ function(thunderhead_room name)
   add_library(thunderhead::${name} ALIAS thunderhead_${name})
 endfunction()
 
+# The environment of tests that open a context, or start a program that does: Mesa unloads its driver at the end with
+# memory that it still holds, which LeakSanitizer cannot tell from ours by name.
+set(THUNDERHEAD_GL_ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
+
 # thunderhead_test(NAME DEPENDS libraries...) builds the .cc files of the current folder, or SOURCES, into one
-# GoogleTest program and registers each of its cases with ctest under LABEL. With GL the program opens a context: Mesa
-# unloads its driver at the end with memory that it still holds, which LeakSanitizer cannot tell from ours by name.
+# GoogleTest program and registers each of its cases with ctest under LABEL, those that are GL in its environment.
 function(thunderhead_test name)
   cmake_parse_arguments(TEST "GL" "LABEL" "DEPENDS;SOURCES;PROPERTIES" ${ARGN})
   if(NOT TEST_SOURCES)
@@ -27,7 +30,7 @@ function(thunderhead_test name)
   target_include_directories(${name} PRIVATE ${CMAKE_SOURCE_DIR})
   target_compile_definitions(${name} PRIVATE THUNDERHEAD_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
   if(TEST_GL)
-    list(APPEND TEST_PROPERTIES ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
+    list(APPEND TEST_PROPERTIES ENVIRONMENT ${THUNDERHEAD_GL_ENVIRONMENT})
   endif()
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS "${TEST_LABEL}" TIMEOUT 300
     ${TEST_PROPERTIES})

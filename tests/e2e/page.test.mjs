@@ -71,6 +71,14 @@ async function rested(of = page) {
   throw new Error(`no refined picture came to rest; the server said:\n${server.log().slice(-2000)}`);
 }
 
+async function until(what, holds) {
+  const deadline = Date.now() + PICTURE_TIMEOUT_MS;
+  while (!(await holds())) {
+    assert.ok(Date.now() < deadline, `never came: ${what}`);
+    await page.waitForTimeout(50);
+  }
+}
+
 // Does something that changes the scene, and waits for the refined picture of it.
 async function changing(action, of = page) {
   const revisionBefore = Number((await canvasData(of)).revision);
@@ -454,15 +462,13 @@ test("a link brings another viewer into the session, who sees it turn", async ()
   try {
     await guest.goto(link);
     await rested(guest);
-    const host = await changing(() => drag(120, 30));
-    await guest.waitForFunction(
-      (azimuth) => {
-        const canvas = document.querySelector("[data-testid=storm-canvas]");
-        return canvas?.dataset.azimuth === azimuth && canvas.dataset.refined === "true";
-      },
-      host.azimuth,
-      { timeout: PICTURE_TIMEOUT_MS },
-    );
+    const { azimuth } = await canvasData();
+    await changing(() => drag(120, 30));
+    await until("the guest's picture is the host's, turned", async () => {
+      const [host, seen] = await Promise.all([canvasData(), canvasData(guest)]);
+      const refined = host.refined === "true" && seen.refined === "true";
+      return refined && seen.azimuth === host.azimuth && seen.azimuth !== azimuth;
+    });
     // The guest's controls show what the host has set, before and after the guest came; and a change of the guest's
     // leaves the rest of the scene as the host set it.
     const exposure = guest.getByTestId("exposure-number");

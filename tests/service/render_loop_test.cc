@@ -94,6 +94,8 @@ class RenderLoopTest : public ::testing::Test {
     machine_->preparing.Open();
     store_.reading.Open();
     loop_.reset();
+    // A session keeps its viewers, and these keep it.
+    for (const auto& viewer : viewers_) viewer->Leave();
   }
 
   void Start(const RenderLoopOptions& options = {}) {
@@ -106,6 +108,7 @@ class RenderLoopTest : public ::testing::Test {
   std::shared_ptr<EagerViewer> Watch(const std::shared_ptr<Session>& session) {
     auto viewer = std::make_shared<EagerViewer>(session);
     viewer->Join();
+    viewers_.push_back(viewer);
     return viewer;
   }
 
@@ -141,6 +144,7 @@ class RenderLoopTest : public ::testing::Test {
   FakeStormStore store_;
   const std::shared_ptr<FakeMachine> machine_ = std::make_shared<FakeMachine>();
   Sessions sessions_{SessionsOptions{}, [this] { wake_.Notify(); }};
+  std::vector<std::shared_ptr<EagerViewer>> viewers_;
   std::unique_ptr<RenderLoop> loop_;
 };
 
