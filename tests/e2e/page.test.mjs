@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { after, before, test } from "node:test";
+import { setTimeout } from "node:timers/promises";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 import { boxMean, differingShare, difference, grabCanvas, greyShare, spread } from "./pictures.mjs";
@@ -57,26 +58,27 @@ function canvasData(of = page) {
   return of.getByTestId("storm-canvas").evaluate((canvas) => ({ ...canvas.dataset }));
 }
 
-// Waits until a refined frame stays on the canvas.
-async function rested(of = page) {
-  const deadline = Date.now() + PICTURE_TIMEOUT_MS;
-  let held = { sequence: undefined, since: 0 };
-  while (Date.now() < deadline) {
-    const { sequence, refined } = await canvasData(of);
-    const now = Date.now();
-    if (refined !== "true" || sequence !== held.sequence) held = { sequence, since: now };
-    else if (now - held.since >= REST_MS) return canvasData(of);
-    await of.waitForTimeout(50);
-  }
-  throw new Error(`no refined picture came to rest; the server said:\n${server.log().slice(-2000)}`);
-}
-
+// Waits until `holds` gives true.
 async function until(what, holds) {
   const deadline = Date.now() + PICTURE_TIMEOUT_MS;
   while (!(await holds())) {
-    assert.ok(Date.now() < deadline, `never came: ${what}`);
-    await page.waitForTimeout(50);
+    if (Date.now() >= deadline) {
+      throw new Error(`never came: ${what}; the server said:\n${server.log().slice(-2000)}`);
+    }
+    await setTimeout(50);
   }
+}
+
+// Waits until a refined frame stays on the canvas.
+async function rested(of = page) {
+  let held = { sequence: undefined, since: 0 };
+  await until("a refined picture that rests", async () => {
+    const { sequence, refined } = await canvasData(of);
+    const now = Date.now();
+    if (refined !== "true" || sequence !== held.sequence) held = { sequence, since: now };
+    return refined === "true" && now - held.since >= REST_MS;
+  });
+  return canvasData(of);
 }
 
 // Does something that changes the scene, and waits for the refined picture of it.
