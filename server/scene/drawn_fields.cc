@@ -1,10 +1,53 @@
 #include "scene/drawn_fields.h"
 
 namespace thunderhead::scene {
+namespace {
+
+// That of cloud water where the technique has one phase function for every field.
+physics::PhaseFunction PhaseShown(const Scene& scene, const volume::HydrometeorField& field,
+                                  const FieldLook& look) {
+  if (!look.per_field_phase) {
+    return physics::PhaseOf(scene.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].optics);
+  }
+  const FieldParameters& parameters = scene.fields[physics::IndexOf(field.hydrometeor)];
+  return physics::PhaseOf(
+      volume::WithDrawnRadius(field, parameters.optics, parameters.size_from_file));
+}
+
+}  // namespace
 
 bool IsDrawn(const Scene& scene, const volume::HydrometeorField& field) {
   const FieldParameters& look = scene.fields[physics::IndexOf(field.hydrometeor)];
   return look.visible && look.scale > 0.0F && !field.concentration_kg_per_m3.empty();
+}
+
+std::vector<DrawnField> DrawnFieldsOf(const Scene& scene, const volume::HydrometeorFields& fields) {
+  const FieldLook look = FieldLookOf(scene.rendering.technique);
+  std::vector<DrawnField> drawn;
+  for (std::size_t i = 0; i < fields.fields.size(); ++i) {
+    const volume::HydrometeorField& field = fields.fields[i];
+    if (!IsDrawn(scene, field)) continue;
+    const FieldParameters& parameters = scene.fields[physics::IndexOf(field.hydrometeor)];
+    DrawnField entry;
+    entry.index = i;
+    entry.hydrometeor = field.hydrometeor;
+    entry.mass_extinction =
+        volume::MassExtinctionOf(field, parameters.optics, parameters.size_from_file);
+    entry.mass_extinction.m2_per_kg *= parameters.scale;
+    entry.albedo = parameters.optics.albedo;
+    entry.phase = PhaseShown(scene, field, look);
+    if (look.false_colors) entry.color = parameters.optics.false_color;
+    entry.detail = DrawnDetail(scene, field.hydrometeor, fields.grid.spacing_m);
+    drawn.push_back(entry);
+  }
+  return drawn;
+}
+
+std::vector<physics::Hydrometeor> HydrometeorsOf(const std::vector<DrawnField>& drawn) {
+  std::vector<physics::Hydrometeor> hydrometeors;
+  hydrometeors.reserve(drawn.size());
+  for (const DrawnField& field : drawn) hydrometeors.push_back(field.hydrometeor);
+  return hydrometeors;
 }
 
 }  // namespace thunderhead::scene

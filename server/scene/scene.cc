@@ -10,43 +10,19 @@ bool SameOptics(const physics::ParticleOptics& a, const physics::ParticleOptics&
          a.albedo == b.albedo && a.phase == b.phase && a.false_color == b.false_color;
 }
 
-// The fields as they are drawn: without the detail that the mode ignores.
-std::array<FieldParameters, physics::kHydrometeorCount> DrawnFields(const Scene& scene) {
+// The fields as they are drawn: without the detail that the technique ignores.
+std::array<FieldParameters, physics::kHydrometeorCount> FieldsShown(const Scene& scene) {
   auto fields = scene.fields;
-  if (HasDetail(scene.rendering.mode)) return fields;
+  if (FieldLookOf(scene.rendering.technique).detail) return fields;
   for (FieldParameters& field : fields) field.detail = {};
   return fields;
 }
 
-bool BothCumulus(const Rendering& before, const Rendering& after) {
-  return before.renderer == Renderer::kCumulus && after.renderer == Renderer::kCumulus;
-}
-
-// The cumulus renderer draws a surface, all others a medium; each is made in the other's place.
-bool SameContent(const Rendering& before, const Rendering& after) {
-  if (BothCumulus(before, after)) {
-    const Cumulus& a = before.cumulus;
-    const Cumulus& b = after.cumulus;
-    return a.source == b.source && a.seed == b.seed && a.scales == b.scales &&
-           a.least_extinction_per_m == b.least_extinction_per_m;
-  }
-  if (before.renderer == Renderer::kCumulus || after.renderer == Renderer::kCumulus) return false;
-  return before.mode == after.mode && before.false_colors == after.false_colors;
-}
-
-// A surface shades what lies behind it, less its corona; the rest of its shading is the view's.
-bool SameLight(Rendering before, const Rendering& after) {
-  if (BothCumulus(before, after)) return before.cumulus.corona == after.cumulus.corona;
-  before.cumulus = after.cumulus;
-  before.traced_light = after.traced_light;
-  return before == after;
-}
-
-// What a change of the lights besides the sun dirties: their colours count once the light is
-// carried; where they are not shown, a frame only says so.
+// The stage that a change of the lights besides the sun dirties. Their colours count once the light
+// is carried; a technique that does not show them only reports that.
 Stage DirtiedByLights(const Scene& before, const Scene& after) {
   if (before.lights == after.lights) return Stage::kNothing;
-  if (!ShowsLights(after.rendering.renderer)) return Stage::kTone;
+  if (!CapabilitiesOf(after.rendering.technique).lights) return Stage::kTone;
   const bool same_directions =
       std::equal(before.lights.begin(), before.lights.end(), after.lights.begin(),
                  after.lights.end(), [](const DirectionalLight& a, const DirectionalLight& b) {
@@ -58,12 +34,7 @@ Stage DirtiedByLights(const Scene& before, const Scene& after) {
 Stage DirtiedByTheRest(const Scene& before, const Scene& after) {
   const bool same_size = before.output.width_px == after.output.width_px &&
                          before.output.height_px == after.output.height_px;
-  if (before.camera != after.camera || before.sky != after.sky || !same_size ||
-      before.rendering.traced_light != after.rendering.traced_light ||
-      (BothCumulus(before.rendering, after.rendering) &&
-       before.rendering.cumulus != after.rendering.cumulus)) {
-    return Stage::kView;
-  }
+  if (before.camera != after.camera || before.sky != after.sky || !same_size) return Stage::kView;
   if (before.display != after.display || before.output != after.output) return Stage::kTone;
   return Stage::kNothing;
 }
@@ -90,25 +61,9 @@ float DefaultDetailWavelength_m(const glm::dvec3& cell_m) {
 
 Detail DrawnDetail(const Scene& scene, physics::Hydrometeor hydrometeor, const glm::dvec3& cell_m) {
   Detail detail = scene.fields[physics::IndexOf(hydrometeor)].detail;
-  if (!HasDetail(scene.rendering.mode) || detail.share <= 0.0F) return {};
+  if (!FieldLookOf(scene.rendering.technique).detail || detail.share <= 0.0F) return {};
   if (detail.wavelength_m <= 0.0F) detail.wavelength_m = DefaultDetailWavelength_m(cell_m);
   return detail;
-}
-
-bool HasPerFieldPhase(Mode mode) {
-  return mode == Mode::kPerFieldPhaseTranslucent || mode == Mode::kPerFieldPhaseDetailTranslucent;
-}
-
-bool HasDetail(Mode mode) { return mode == Mode::kPerFieldPhaseDetailTranslucent; }
-
-bool ShowsLights(Renderer renderer) {
-  return renderer == Renderer::kMetaball || renderer == Renderer::kReference;
-}
-
-bool ShowsTracedLight(const Rendering& rendering) {
-  return rendering.renderer == Renderer::kLightVolume &&
-         rendering.transport == Transport::kDiffusion &&
-         rendering.mode != Mode::kUniformPhaseLowAlbedo;
 }
 
 Scene::Scene() {
@@ -123,14 +78,12 @@ Stage FirstDirtyStage(const Scene& before, const Scene& after) {
   if (before.storm_id != after.storm_id || before.time_index != after.time_index) {
     return Stage::kStorm;
   }
-  if (DrawnFields(before) != DrawnFields(after) ||
-      !SameContent(before.rendering, after.rendering)) {
-    return Stage::kExtinction;
+  if (FieldsShown(before) != FieldsShown(after)) return Stage::kExtinction;
+  Stage first = FirstDirtyStage(before.rendering.technique, after.rendering.technique);
+  if (before.sun != after.sun || before.rendering.image_scale != after.rendering.image_scale) {
+    first = std::min(first, Stage::kLight);
   }
-  if (before.sun != after.sun || !SameLight(before.rendering, after.rendering)) {
-    return Stage::kLight;
-  }
-  return std::min(DirtiedByLights(before, after), DirtiedByTheRest(before, after));
+  return std::min({first, DirtiedByLights(before, after), DirtiedByTheRest(before, after)});
 }
 
 }  // namespace thunderhead::scene

@@ -12,11 +12,13 @@
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 #include "physics/hydrometeors.h"
+#include "scene/stage.h"
+#include "scene/technique.h"
 
 namespace thunderhead::scene {
 
 // Turbulent structure finer than the grid (physics/turbulence.h), at rest in the world: noise with
-// a mean of 1 multiplies `share` of the field. Modes without detail ignore it.
+// a mean of 1 multiplies `share` of the field. Shown where the technique's look has detail.
 struct Detail {
   float share = 0.0F;
   float wavelength_m = 0.0F;  // of the first octave; 0 is kDetailWavelengthInCells of the storm's
@@ -109,74 +111,8 @@ struct Sky {
   bool operator==(const Sky&) const = default;
 };
 
-// The modes of Riley et al. 2003 (AMS), Table IV.
-enum class Mode {
-  kUniformPhaseLowAlbedo,
-  kUniformPhaseTranslucent,
-  kPerFieldPhaseTranslucent,
-  kPerFieldPhaseDetailTranslucent
-};
-
-bool HasPerFieldPhase(Mode mode);
-bool HasDetail(Mode mode);
-
-// The renderer: slices halfway between sun and eye; light carried once into a volume, which view
-// rays march through; metaballs fitted to the fields, lit and splatted (Man); the shading of a
-// cumulus' surface (Neyret); or the Monte Carlo reference, which is traced on the CPU, ever finer.
-enum class Renderer { kHalfAngle, kLightVolume, kReference, kMetaball, kCumulus };
-inline constexpr std::size_t kRendererCount = 5;
-
-// Whether it shows lights besides the sun.
-bool ShowsLights(Renderer renderer);
-
-// What becomes of scattered light: the papers' slices; an exact exponential with a closed form for
-// light scattered many times; or that light from the diffusion equation (light volume only: slices
-// draw it as consistent).
-enum class Transport { kPaper, kConsistent, kDiffusion };
-
-// How a storm is drawn by metaballs; other renderers ignore it.
-struct Metaballs {
-  int count = 1200;  // at most; the paper's first scene
-  bool isotropic = false;
-  double albedo = 0.9;         // a of Man's eq. 26; Transport::kPaper only
-  double optical_depth = 8.0;  // tau of the same
-
-  bool operator==(const Metaballs&) const = default;
-};
-
-// What the cumulus renderer draws: the storm's cloud water and ice, a heap of heaps of bubbles, the
-// ellipsoids of one of the generator's presets, or one ellipsoid. What is not the storm fills its
-// place.
-enum class CumulusSource {
-  kStorm,
-  kCauliflower,
-  kFairWeatherCumulus,
-  kCongestus,
-  kCumulusField,
-  kEllipsoid
-};
-
-// Which part of a cumulus' light is shown; balls are Lambert's law on bare ellipsoids, what the
-// shading's cost is compared with.
-enum class CumulusComponent { kAll, kDirect, kInterReflection, kAmbient, kCorona, kBalls };
-
-// Neyret 2000; used by the cumulus renderer alone.
-struct Cumulus {
-  CumulusSource source = CumulusSource::kStorm;
-  std::uint32_t seed = 1;
-  int scales = 3;                        // of ellipsoids
-  float least_extinction_per_m = 2e-3F;  // of a storm, inside the surface
-  float corona = 0.3F;                   // thickness over the radius of the finest ellipsoids
-  float trap = 0.45F;                    // share of the sky that the deepest valley hides
-  float transmission = 0.05F;            // share of sunlight that comes through
-  float roughness = 0.6F;
-  CumulusComponent component = CumulusComponent::kAll;
-
-  bool operator==(const Cumulus&) const = default;
-};
-
-// What the server is to reach, by whichever setting its tables say is best; neither leaves the
-// rendering as it is.
+// An accuracy or a speed to reach, by the setting that the server's tables say is best; neither
+// leaves the rendering as it is.
 struct MaxError {
   double relative_rmse = 0.0;  // of linear radiance, against the reference
 
@@ -189,26 +125,13 @@ struct MaxMilliseconds {
 };
 using Accuracy = std::variant<std::monostate, MaxError, MaxMilliseconds>;
 
+// How a picture is computed: the technique with its settings.
 struct Rendering {
-  Renderer renderer = Renderer::kLightVolume;
-  Mode mode = Mode::kPerFieldPhaseTranslucent;
-  Transport transport = Transport::kConsistent;
-  int slices = 128;
-  double theta_f_deg = 20.0;
-  bool false_colors = false;
-  // While light and storm rest, traced paths correct what a light volume by diffusion shows of
-  // them.
-  bool traced_light = false;
-  Metaballs metaballs;
-  Cumulus cumulus;
+  Technique technique;
   double image_scale = 1.0;  // of the eye buffer at full quality, (0, 2]; pictures keep their size
 
   bool operator==(const Rendering&) const = default;
 };
-
-// Whether traced light changes the picture: a light volume by diffusion whose light is scattered
-// on.
-bool ShowsTracedLight(const Rendering& rendering);
 
 enum class ToneMap { kLinear, kFilmic };
 
@@ -249,9 +172,6 @@ struct Scene {
 // A field's detail as it is drawn on a grid of such cells, its wavelength given; a share of 0 if
 // none.
 Detail DrawnDetail(const Scene& scene, physics::Hydrometeor hydrometeor, const glm::dvec3& cell_m);
-
-// The stages of rendering in order; a change reruns the first stage it dirties and every later one.
-enum class Stage { kStorm, kExtinction, kLight, kView, kTone, kNothing };
 
 // The first stage that must rerun when `before` becomes `after`.
 Stage FirstDirtyStage(const Scene& before, const Scene& after);

@@ -1,0 +1,17 @@
+// The parts of a scene that a technique can show; read by the server, the page and the tables.
+#pragma once
+
+namespace thunderhead::scene {
+
+struct Capabilities {
+  bool lights = false;        // lights besides the sun
+  bool detail = false;        // turbulent detail
+  bool field_optics = false;  // the fields' phase functions and false colours
+  bool traced_light = false;  // correction by traced paths
+  bool slices = false;        // pictures depend on a number of slices or samples
+  bool images = true;         // drawn by a renderer; false: traced beside the renderers
+
+  bool operator==(const Capabilities&) const = default;
+};
+
+}  // namespace thunderhead::scene

@@ -1,0 +1,91 @@
+#include "scene/technique.h"
+
+#include <type_traits>
+
+namespace thunderhead::scene {
+
+std::string_view NameOf(const Technique& technique) {
+  return std::visit(
+      [](const auto& settings) -> std::string_view {
+        if constexpr (std::is_same_v<std::decay_t<decltype(settings)>, OtherTechnique>) {
+          return settings.name;
+        } else {
+          return settings.kName;
+        }
+      },
+      technique);
+}
+
+const Capabilities& CapabilitiesOf(const Technique& technique) {
+  return std::visit(
+      [](const auto& settings) -> const Capabilities& { return settings.kCapabilities; },
+      technique);
+}
+
+const MediumSettings* MediumSettingsOf(const Technique& technique) {
+  return std::visit([](const auto& settings) { return settings.Medium(); }, technique);
+}
+
+MediumSettings* MediumSettingsOf(Technique* technique) {
+  return std::visit(
+      [](auto& settings) -> MediumSettings* {
+        if constexpr (requires { settings.medium; }) {
+          return &settings.medium;
+        } else {
+          return nullptr;
+        }
+      },
+      *technique);
+}
+
+FieldLook FieldLookOf(const Technique& technique) {
+  return std::visit([](const auto& settings) { return settings.Look(); }, technique);
+}
+
+std::optional<int> SlicesOf(const Technique& technique) {
+  return std::visit(
+      [](const auto& settings) -> std::optional<int> {
+        if constexpr (requires { settings.slices; }) {
+          return settings.slices;
+        } else {
+          return std::nullopt;
+        }
+      },
+      technique);
+}
+
+void SetSlices(Technique* technique, int slices) {
+  std::visit(
+      [slices](auto& settings) {
+        if constexpr (requires { settings.slices; }) settings.slices = slices;
+      },
+      *technique);
+}
+
+double SamplesPerPixel(const Technique& technique, double slice_share) {
+  return std::visit(
+      [slice_share](const auto& settings) { return settings.SamplesPerPixel(slice_share); },
+      technique);
+}
+
+TracedLight TracedLightOf(const Technique& technique) {
+  const auto* light_volume = std::get_if<LightVolume>(&technique);
+  return light_volume == nullptr ? TracedLight::kOff : light_volume->TracedLightShown();
+}
+
+Stage FirstDirtyStage(const Technique& before, const Technique& after) {
+  if (before.index() == after.index()) {
+    return std::visit(
+        [&before](const auto& settings) {
+          using Settings = std::decay_t<decltype(settings)>;
+          return settings.DirtiedSince(std::get<Settings>(before));
+        },
+        after);
+  }
+  // Techniques of a medium share it.
+  const bool media = MediumSettingsOf(before) != nullptr && MediumSettingsOf(after) != nullptr;
+  const bool same_look = FieldLookOf(before) == FieldLookOf(after);
+  return media && same_look ? Stage::kLight : Stage::kExtinction;
+}
+
+}  // namespace thunderhead::scene

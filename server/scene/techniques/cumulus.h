@@ -1,0 +1,63 @@
+// Settings of the cumulus technique: a surface of ellipsoids with phenomenological shading (Neyret
+// 2000).
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "scene/capabilities.h"
+#include "scene/stage.h"
+#include "scene/techniques/medium_settings.h"
+
+namespace thunderhead::scene {
+
+// What the surface is made from: the storm's cloud water and ice, a heap of heaps of bubbles, the
+// ellipsoids of one of the generator's presets, or one ellipsoid. A source other than the storm
+// fills the storm's place.
+enum class CumulusSource {
+  kStorm,
+  kCauliflower,
+  kFairWeatherCumulus,
+  kCongestus,
+  kCumulusField,
+  kEllipsoid
+};
+
+// The part of the light that is shown; balls are Lambert's law on bare ellipsoids, the baseline for
+// the cost of the shading.
+enum class CumulusComponent { kAll, kDirect, kInterReflection, kAmbient, kCorona, kBalls };
+
+struct Cumulus {
+  static constexpr std::string_view kName = "cumulus";
+  static constexpr Capabilities kCapabilities{};
+
+  CumulusSource source = CumulusSource::kStorm;
+  std::uint32_t seed = 1;
+  int scales = 3;                        // of ellipsoids
+  float least_extinction_per_m = 2e-3F;  // of a storm, inside the surface
+  float corona = 0.3F;                   // thickness over the radius of the finest ellipsoids
+  float trap = 0.45F;                    // share of the sky that the deepest valley hides
+  float transmission = 0.05F;            // share of sunlight that comes through
+  float roughness = 0.6F;
+  CumulusComponent component = CumulusComponent::kAll;
+
+  bool operator==(const Cumulus&) const = default;
+
+  const MediumSettings* Medium() const { return nullptr; }
+  FieldLook Look() const { return {}; }
+
+  // Fragments over a pixel, about the same for any surface of several scales.
+  double SamplesPerPixel(double /*slice_share*/) const { return 20.0; }
+
+  Stage DirtiedSince(const Cumulus& before) const {
+    if (source != before.source || seed != before.seed || scales != before.scales ||
+        least_extinction_per_m != before.least_extinction_per_m) {
+      return Stage::kExtinction;
+    }
+    // The surface shades the ground behind it, less its corona.
+    if (corona != before.corona) return Stage::kLight;
+    return *this == before ? Stage::kNothing : Stage::kView;
+  }
+};
+
+}  // namespace thunderhead::scene

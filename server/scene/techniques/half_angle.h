@@ -1,0 +1,33 @@
+// Settings of half-angle slicing (Riley et al. 2003): light and view advance together through
+// slices halfway between sun and eye.
+#pragma once
+
+#include <string_view>
+
+#include "scene/capabilities.h"
+#include "scene/stage.h"
+#include "scene/techniques/medium_settings.h"
+
+namespace thunderhead::scene {
+
+struct HalfAngle {
+  static constexpr std::string_view kName = "half_angle";
+  static constexpr Capabilities kCapabilities{
+      .detail = true, .field_optics = true, .slices = true};
+
+  MediumSettings medium;  // kDiffusion is drawn as kConsistent
+  int slices = 128;
+
+  bool operator==(const HalfAngle&) const = default;
+
+  const MediumSettings* Medium() const { return &medium; }
+  FieldLook Look() const { return medium.look; }
+  double SamplesPerPixel(double slice_share) const { return slices * slice_share; }
+
+  Stage DirtiedSince(const HalfAngle& before) const {
+    if (medium.look != before.medium.look) return Stage::kExtinction;
+    return *this == before ? Stage::kNothing : Stage::kLight;
+  }
+};
+
+}  // namespace thunderhead::scene

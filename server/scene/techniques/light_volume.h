@@ -1,0 +1,46 @@
+// Settings of the light volume: light carried once into a volume, through which view rays march.
+#pragma once
+
+#include <string_view>
+
+#include "scene/capabilities.h"
+#include "scene/stage.h"
+#include "scene/techniques/medium_settings.h"
+
+namespace thunderhead::scene {
+
+// When traced paths correct the light (docs/decisions/0012-traced-light.md).
+enum class TracedLight {
+  kOff,
+  kAtRest,   // in a session, while the view rests
+  kAwaited,  // as at rest; a picture outside a session waits for it
+};
+
+struct LightVolume {
+  static constexpr std::string_view kName = "light_volume";
+  static constexpr Capabilities kCapabilities{
+      .detail = true, .field_optics = true, .traced_light = true, .slices = true};
+
+  MediumSettings medium{.transport = Transport::kDiffusion, .look = {.detail = true}};
+  int slices = 128;  // samples along a ray through the medium
+  TracedLight traced_light = TracedLight::kAtRest;
+
+  bool operator==(const LightVolume&) const = default;
+
+  const MediumSettings* Medium() const { return &medium; }
+  FieldLook Look() const { return medium.look; }
+  double SamplesPerPixel(double slice_share) const { return slices * slice_share; }
+
+  Stage DirtiedSince(const LightVolume& before) const {
+    if (medium.look != before.medium.look) return Stage::kExtinction;
+    if (medium != before.medium || slices != before.slices) return Stage::kLight;
+    return traced_light == before.traced_light ? Stage::kNothing : Stage::kView;
+  }
+
+  // Traced paths correct light by diffusion alone.
+  TracedLight TracedLightShown() const {
+    return medium.transport == Transport::kDiffusion ? traced_light : TracedLight::kOff;
+  }
+};
+
+}  // namespace thunderhead::scene

@@ -1,0 +1,37 @@
+// Settings of the metaball technique (Man, Generating and Real-Time Rendering of Clouds).
+#pragma once
+
+#include <cmath>
+#include <string_view>
+
+#include "scene/capabilities.h"
+#include "scene/stage.h"
+#include "scene/techniques/medium_settings.h"
+
+namespace thunderhead::scene {
+
+struct Metaballs {
+  static constexpr std::string_view kName = "metaball";
+  static constexpr Capabilities kCapabilities{.lights = true, .field_optics = true};
+
+  MediumSettings medium;
+  int count = 1200;  // at most; the paper's first scene
+  bool isotropic = false;
+  double albedo = 0.9;         // a of Man's eq. 26; Transport::kPaper only
+  double optical_depth = 8.0;  // tau of the same
+
+  bool operator==(const Metaballs&) const = default;
+
+  const MediumSettings* Medium() const { return &medium; }
+  FieldLook Look() const { return medium.look; }
+
+  // Balls that a pixel lies under: they fill the volume, each as wide as its share of it.
+  double SamplesPerPixel(double /*slice_share*/) const { return 3.0 * std::cbrt(count); }
+
+  Stage DirtiedSince(const Metaballs& before) const {
+    if (medium.look != before.medium.look) return Stage::kExtinction;
+    return *this == before ? Stage::kNothing : Stage::kLight;
+  }
+};
+
+}  // namespace thunderhead::scene

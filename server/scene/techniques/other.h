@@ -1,0 +1,32 @@
+// Settings of a technique that the program was extended by (docs/extending.md): named numbers. Its
+// name and capabilities are in the registry of techniques (renderers/technique_registry.h).
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "scene/capabilities.h"
+#include "scene/stage.h"
+#include "scene/techniques/medium_settings.h"
+
+namespace thunderhead::scene {
+
+struct OtherTechnique {
+  // Until its registry entry says more: a change of the lights reruns it.
+  static constexpr Capabilities kCapabilities{.lights = true};
+
+  std::string name;
+  std::map<std::string, double> numbers;
+
+  bool operator==(const OtherTechnique&) const = default;
+
+  const MediumSettings* Medium() const { return nullptr; }
+  FieldLook Look() const { return {}; }
+  double SamplesPerPixel(double /*slice_share*/) const { return 64.0; }
+
+  Stage DirtiedSince(const OtherTechnique& before) const {
+    return *this == before ? Stage::kNothing : Stage::kExtinction;
+  }
+};
+
+}  // namespace thunderhead::scene
