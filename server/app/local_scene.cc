@@ -6,6 +6,7 @@
 #include "service/engine.h"
 #include "service/limits_check.h"
 #include "service/scene_messages.h"
+#include "session/gl_frame_source.h"
 
 namespace thunderhead::app {
 
@@ -14,7 +15,8 @@ absl::StatusOr<LocalScene> OpenScene(const std::string& path, const SceneFlags& 
   THUNDERHEAD_ASSIGN_OR_RETURN(local.message, ReadScene(flags));
   THUNDERHEAD_RETURN_IF_ERROR(service::CheckLimits(local.message));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store, OpenStorm(path));
-  THUNDERHEAD_RETURN_IF_ERROR(service::PrepareScene(*store, local.message));
+  THUNDERHEAD_RETURN_IF_ERROR(service::PrepareScene(
+      *store, session::TechniquesOf(renderers::TechniqueRegistry::BuiltIn()), local.message));
   const auto time_index = static_cast<int>(local.message.time_index());
   THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(*store, time_index));
   local.storm_id = local.message.storm_id();

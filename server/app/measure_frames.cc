@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "absl/strings/str_cat.h"
+#include "accuracy/named_settings.h"
 #include "app/commands.h"
 #include "app/local_service.h"
 #include "app/picture_size.h"
@@ -10,7 +11,6 @@
 #include "base/status.h"
 #include "gl/context.h"
 #include "measure/frame_rates.h"
-#include "measure/paths.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::app {
@@ -63,7 +63,7 @@ absl::Status MeasureFrames(const Flags& flags) {
         absl::StrCat("--slices is ", flags.slices, "; it must be from 1 to 4096"));
   }
   options.slices = flags.slices;
-  for (const auto& transport : measure::kTransports) {
+  for (const auto& transport : accuracy::kTransports) {
     if (transport.name == flags.transport) options.transport = transport.value;
   }
   if (flags.runs < 1) {
@@ -89,14 +89,14 @@ absl::Status MeasureFrames(const Flags& flags) {
 
 Command AddMeasureFrames(CLI::App& measure) {
   auto flags = std::make_shared<Flags>();
-  CLI::App* frames = measure.add_subcommand("frames", "Frames a second of each path and mode");
+  CLI::App* frames = measure.add_subcommand("frames", "Frames a second of each technique and preset");
   frames->add_option("STORM", flags->storm, "Storm file or folder")->required();
   frames->add_option("--time", flags->time_index,
                      "Which of its times, from 0; without it that with the most condensate");
   frames->add_option("--size", flags->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
-  frames->add_option("--slices", flags->slices, "Slices, or samples along a ray")
+  frames->add_option("--slices", flags->slices, "Slices, or samples along a ray, of the papers' modes")
       ->capture_default_str();
-  frames->add_option("--transport", flags->transport, "paper, consistent or diffusion")
+  frames->add_option("--transport", flags->transport, "Of the papers' modes: paper, consistent or diffusion")
       ->check(CLI::IsMember({"paper", "consistent", "diffusion"}))
       ->capture_default_str();
   frames->add_option("--runs", flags->runs, "Runs of which the medians are taken")

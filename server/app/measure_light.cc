@@ -15,12 +15,12 @@
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "base/whole_file.h"
-#include "correction/light_corrector.h"
+#include "accuracy/light_corrector.h"
 #include "frame/image_codec.h"
 #include "frame/tone_map.h"
 #include "gl/context.h"
 #include "measure/light_parts.h"
-#include "measure/paths.h"
+#include "accuracy/named_settings.h"
 #include "measure/trade.h"
 #include "spdlog/spdlog.h"
 
@@ -126,8 +126,8 @@ struct Compared {
 absl::Status MeasureTracedLight(const Compared& compared, const scene::Scene& scene,
                                 const Interruption& interruption) {
   THUNDERHEAD_ASSIGN_OR_RETURN(
-      const std::unique_ptr<correction::LightCorrector> corrector,
-      correction::LightCorrector::Create(scene, compared.local.fields,
+      const std::unique_ptr<accuracy::LightCorrector> corrector,
+      accuracy::LightCorrector::Create(scene, compared.local.fields,
                                          std::make_shared<gl::ProgramCache>(), 0));
   base::Stopwatch stopwatch;
   double traced_ms = 0.0;
@@ -147,14 +147,15 @@ absl::Status MeasureTracedLight(const Compared& compared, const scene::Scene& sc
 }
 
 absl::Status MeasureTransport(const Compared& compared,
-                              const measure::Named<scene::Transport>& transport,
+                              const accuracy::Named<scene::Transport>& transport,
                               const Interruption& interruption) {
   scene::Scene scene = compared.local.scene;
-  scene.rendering.transport = transport.value;
+  auto& technique = std::get<scene::LightVolume>(scene.rendering.technique);
+  technique.medium.transport = transport.value;
   THUNDERHEAD_RETURN_IF_ERROR(compared.Print(scene, std::string(transport.name), nullptr));
-  scene.rendering.traced_light = true;
+  technique.traced_light = scene::TracedLight::kAtRest;
   const bool traces = compared.part == LightPart::kAll && !compared.flags.million_paths.empty() &&
-                      correction::TracesLight(scene, *compared.local.fields);
+                      accuracy::TracesLight(scene, *compared.local.fields);
   return traces ? MeasureTracedLight(compared, scene, interruption) : absl::OkStatus();
 }
 
@@ -175,7 +176,7 @@ absl::Status MeasureLight(const Flags& flags) {
     const measure::LinearImage truth{image.size_px, image.radiance};
     const double noise = measure::RelativeNoise(image.standard_error, truth);
     const Compared compared{flags, local, part, truth, noise, renderer};
-    for (const auto& transport : measure::kTransports) {
+    for (const auto& transport : accuracy::kTransports) {
       const bool once = part == LightPart::kOnce;
       if (once ? transport.value != scene::Transport::kConsistent
                : !Chosen(flags.transports, transport.name)) {

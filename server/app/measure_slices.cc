@@ -6,6 +6,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "accuracy/named_settings.h"
 #include "app/commands.h"
 #include "app/local_scene.h"
 #include "app/progress_bar.h"
@@ -72,7 +73,9 @@ absl::Status MeasureSlices(const Flags& flags) {
   spdlog::set_level(spdlog::level::warn);
   THUNDERHEAD_RETURN_IF_ERROR(CheckFlags(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(Subject subject, SubjectOf(flags));
-  if (flags.scene.renderer.empty()) subject.scene.rendering.renderer = scene::Renderer::kHalfAngle;
+  // Detail has no limit that fewer slices could converge to.
+  const bool light_volume = flags.scene.technique == scene::LightVolume::kName;
+  subject.scene.rendering.technique = accuracy::kFieldPaths[light_volume ? 1 : 0].plain();
   subject.scene.output = {160, 160, 88};
   // Black sky and ground: what is measured is the light in the cloud.
   subject.scene.sky = {0.0, 0.0};
@@ -104,7 +107,7 @@ Command AddMeasureSlices(CLI::App& measure) {
   slices->add_option("--slab", flags->slab, "A smooth cloud of this optical depth instead");
   slices->add_option("--scene", flags->scene.file, "Scene as Protobuf JSON");
   slices->add_option("--time", flags->scene.time_index, "Which of the storm's times, from 0");
-  slices->add_option("--renderer", flags->scene.renderer,
+  slices->add_option("--renderer", flags->scene.technique,
                      "half_angle (the default) or light_volume");
   slices->add_option("-o,--output", flags->output, "A plot (.svg) or the figures (.csv)");
   slices->add_option("--device", flags->device, "auto, software or a GPU's number")

@@ -70,12 +70,12 @@ absl::StatusOr<std::vector<measure::TradeRow>> RowsSoFar(const std::string& path
 
 absl::Status MeasureRest(measure::Trade& trade, const std::string& path,
                          const Interruption& interruption,
-                         const std::vector<measure::TradeSetting>& sweep,
+                         const std::vector<measure::Setting>& sweep,
                          std::vector<measure::TradeRow>* rows) {
   std::ofstream file(path, std::ios::binary | std::ios::app);
   ProgressBar bar("measuring settings");
   double done = 0.0;
-  for (const measure::TradeSetting& setting : sweep) {
+  for (const measure::Setting& setting : sweep) {
     bar.Set(done++ / static_cast<double>(sweep.size()));
     if (std::any_of(rows->begin(), rows->end(),
                     [&](const measure::TradeRow& row) { return row.setting == setting; })) {
@@ -98,7 +98,7 @@ std::string Table(const std::vector<measure::TradeRow>& rows) {
                                      "renderer", "mode", "transport", "slices", "scale", "light",
                                      "bits", "Mpaths", "jpeg", "ms", "RMSE", "bias", "FLIP");
   for (const measure::TradeRow& row : rows) {
-    const measure::TradeSetting& setting = row.setting;
+    const measure::Setting& setting = row.setting;
     absl::StrAppendFormat(&text,
                           "%-13s %-28s %-11s %6d %5g %5g %-6s %6g %4d %9.2f %8.4f %+8.4f %7.4f%s\n",
                           measure::NameOf(setting.renderer), measure::NameOf(setting.mode),

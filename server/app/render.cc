@@ -7,6 +7,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "accuracy/named_settings.h"
 #include "app/address.h"
 #include "app/commands.h"
 #include "app/local_service.h"
@@ -17,6 +18,7 @@
 #include "base/whole_file.h"
 #include "grpcpp/create_channel.h"
 #include "grpcpp/security/credentials.h"
+#include "service/technique_messages.h"
 #include "spdlog/spdlog.h"
 #include "thunderhead/v1/thunderhead.grpc.pb.h"
 
@@ -79,16 +81,27 @@ absl::StatusOr<v1::RenderImageResponse> CallHere(const Flags& flags,
   return Call(server->LocalChannel(), request);
 }
 
-// What was decided for a scene that asks for an accuracy or a speed.
+// The setting and the error of a scene that asks for an accuracy or a speed, or waits for traced
+// light.
 void PrintAccuracy(const v1::RenderImageResponse& response) {
-  if (response.scene().accuracy().limit_case() == v1::Accuracy::LIMIT_NOT_SET) return;
+  const v1::Scene& scene = response.scene();
+  const bool awaited =
+      scene.rendering().light_volume().traced_light() == v1::TRACED_LIGHT_AWAITED;
+  const bool limited = scene.accuracy().limit_case() != v1::Accuracy::LIMIT_NOT_SET;
+  if (!response.has_accuracy() || (!awaited && !limited)) return;
   const v1::AccuracyReport& report = response.accuracy();
-  if (!report.unmet().empty()) std::cerr << "thunderhead: " << report.unmet() << "\n";
-  std::cout << absl::StrFormat(
-      "%s, %s, %s, %d slices, image scale %g: error about %.3g, about %.3g ms a frame\n",
-      v1::Renderer_Name(report.renderer()), v1::Mode_Name(report.mode()),
-      v1::Transport_Name(report.transport()), report.slices(), report.image_scale(),
-      report.estimated_error(), report.expected_milliseconds());
+  if (report.has_unmet()) std::cerr << "thunderhead: " << report.unmet().message() << "\n";
+  const scene::Technique technique = service::ToTechnique(report.rendering());
+  std::cout << absl::StrFormat("%s, %s, %s, %d slices, image scale %g: error about %.3g",
+                               scene::NameOf(technique), accuracy::ModeOf(technique).name,
+                               accuracy::TransportNameOf(technique), report.slices(),
+                               report.image_scale(), report.estimated_error());
+  if (limited) std::cout << absl::StrFormat(", about %.3g ms a frame", report.expected_milliseconds());
+  if (response.modelled().traced_paths() > 0) {
+    std::cout << absl::StrFormat(", %.3g million traced paths",
+                                 1e-6 * static_cast<double>(response.modelled().traced_paths()));
+  }
+  std::cout << "\n";
 }
 
 absl::Status ByReference(const Flags& flags) {
@@ -104,7 +117,7 @@ absl::Status ByReference(const Flags& flags) {
 
 absl::Status Render(const Flags& flags) {
   spdlog::set_level(spdlog::level::warn);
-  if (flags.scene.renderer == "reference") return ByReference(flags);
+  if (flags.scene.technique == scene::Reference::kName) return ByReference(flags);
   if (flags.reference.AnyLimit()) {
     return absl::InvalidArgumentError(
         "--spp, --seconds and --target-error are for --renderer reference");
@@ -112,7 +125,7 @@ absl::Status Render(const Flags& flags) {
   v1::RenderImageRequest request;
   THUNDERHEAD_ASSIGN_OR_RETURN(const v1::ImageFormat format, FormatOf(flags.output));
   THUNDERHEAD_ASSIGN_OR_RETURN(*request.mutable_scene(), ReadScene(flags.scene));
-  if (request.scene().rendering().renderer() == v1::RENDERER_REFERENCE) return ByReference(flags);
+  if (request.scene().rendering().has_reference()) return ByReference(flags);
   request.set_format(format);
   THUNDERHEAD_ASSIGN_OR_RETURN(v1::RenderImageResponse response, flags.server.empty()
                                                                      ? CallHere(flags, request)
@@ -143,10 +156,7 @@ Command AddRender(CLI::App& app) {
                    "The picture: .png, .jpg or .jpeg; .exr too with --renderer reference")
       ->required();
   AddSceneOptions(*render, flags->scene);
-  render->add_option("--slices", flags->scene.slices, "Number of slices");
-  render->add_option("--renderer", flags->scene.renderer,
-                     "half_angle, light_volume (the default), metaball, "
-                     "cumulus or reference");
+  AddTechniqueOptions(*render, flags->scene);
   render->add_option("--max-error", flags->scene.max_error,
                      "Draw with the cheapest setting of at most this error (relative RMSE)");
   render->add_option("--max-milliseconds", flags->scene.max_milliseconds,

@@ -81,7 +81,8 @@ absl::Status RenderReference(const std::string& storm, const SceneFlags& scene,
                              const std::string& device) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckFlags(limits));
   SceneFlags flags = scene;
-  flags.renderer.clear();
+  flags.technique = scene::Reference::kName;
+  flags.preset.clear();
   THUNDERHEAD_ASSIGN_OR_RETURN(const LocalScene local, OpenScene(storm, flags));
   reference::RefineLimits refine{limits.samples_per_pixel, limits.seconds, limits.target_error};
   if (!limits.AnyLimit()) refine.samples_per_pixel = kDefaultSamplesPerPixel;

@@ -8,8 +8,11 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "accuracy/presets.h"
 #include "app/picture_size.h"
 #include "base/status.h"
+#include "service/technique_messages.h"
 
 namespace thunderhead::app {
 namespace {
@@ -53,15 +56,63 @@ absl::Status SetCamera(const std::string& kind, v1::Camera& camera) {
   return absl::OkStatus();
 }
 
-absl::Status SetRenderer(const std::string& name, v1::Rendering& rendering) {
-  v1::Renderer renderer = v1::RENDERER_UNSPECIFIED;
-  const std::string value = absl::StrCat("RENDERER_", absl::AsciiStrToUpper(name));
-  if (!v1::Renderer_Parse(value, &renderer) || renderer == v1::RENDERER_UNSPECIFIED) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "--renderer is '", name, "'; it must be half_angle, light_volume, metaball or cumulus"));
+// Keeps what the file says of that technique; another one starts with its defaults.
+absl::Status SetTechnique(const std::string& name, v1::Rendering& rendering) {
+  const google::protobuf::OneofDescriptor* techniques =
+      v1::Rendering::descriptor()->FindOneofByName("technique");
+  const google::protobuf::FieldDescriptor* field = v1::Rendering::descriptor()->FindFieldByName(name);
+  const bool known = field != nullptr && field->containing_oneof() == techniques &&
+                     field->type() == google::protobuf::FieldDescriptor::TYPE_MESSAGE &&
+                     field->message_type() != v1::OtherTechnique::descriptor();
+  if (!known) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--renderer is '", name,
+                     "'; it must be half_angle, light_volume, metaball, cumulus or reference"));
   }
-  rendering.set_renderer(renderer);
+  rendering.GetReflection()->MutableMessage(&rendering, field);
   return absl::OkStatus();
+}
+
+absl::Status SetPreset(const std::string& name, v1::Rendering& rendering) {
+  v1::Preset preset = v1::PRESET_UNSPECIFIED;
+  const std::string value = absl::StrCat("PRESET_", absl::AsciiStrToUpper(name));
+  if (!v1::Preset_Parse(value, &preset) || preset == v1::PRESET_UNSPECIFIED) {
+    std::vector<std::string> names;
+    for (const accuracy::NamedPreset& known : accuracy::kPresets) names.emplace_back(known.name);
+    return absl::InvalidArgumentError(absl::StrCat("--preset (or --quality) is '", name,
+                                                   "'; it must be one of ",
+                                                   absl::StrJoin(names, ", ")));
+  }
+  rendering.set_preset(preset);
+  return absl::OkStatus();
+}
+
+absl::Status SetSlices(std::uint32_t slices, v1::Rendering& rendering) {
+  service::FillTechniqueDefaults(rendering);
+  if (rendering.has_light_volume()) {
+    rendering.mutable_light_volume()->set_slices(slices);
+  } else if (rendering.has_half_angle()) {
+    rendering.mutable_half_angle()->set_slices(slices);
+  } else {
+    return absl::InvalidArgumentError(
+        "--slices is for half_angle and light_volume; leave it out with other renderers");
+  }
+  return absl::OkStatus();
+}
+
+absl::Status SetRendering(const SceneFlags& flags, v1::Scene& scene) {
+  if (!flags.technique.empty() && !flags.preset.empty()) {
+    return absl::InvalidArgumentError(
+        "--renderer and --preset (or --quality) exclude one another: leave one out");
+  }
+  if (!flags.technique.empty()) {
+    THUNDERHEAD_RETURN_IF_ERROR(SetTechnique(flags.technique, *scene.mutable_rendering()));
+  }
+  if (!flags.preset.empty()) {
+    THUNDERHEAD_RETURN_IF_ERROR(SetPreset(flags.preset, *scene.mutable_rendering()));
+  }
+  if (!flags.slices.has_value()) return absl::OkStatus();
+  return SetSlices(*flags.slices, *scene.mutable_rendering());
 }
 
 }  // namespace
@@ -73,22 +124,33 @@ void AddSceneOptions(CLI::App& command, SceneFlags& flags) {
   command.add_option("--camera", flags.camera, "orbit, spotter or top-down");
 }
 
+void AddTechniqueOptions(CLI::App& command, SceneFlags& flags) {
+  CLI::Option* quality =
+      command.add_option("--quality", flags.preset, "fast, balanced (the default) or true")
+          ->check(CLI::IsMember({"fast", "balanced", "true"}));
+  CLI::Option* preset = command.add_option(
+      "--preset", flags.preset, "A named setting, such as per_field_phase_translucent of the papers");
+  CLI::Option* renderer =
+      command.add_option("--renderer", flags.technique,
+                         "half_angle, light_volume, metaball, cumulus or reference");
+  quality->excludes(preset)->excludes(renderer);
+  preset->excludes(renderer);
+  command.add_option("--slices", flags.slices, "Number of slices, or samples along a ray");
+}
+
 absl::StatusOr<v1::Scene> ReadScene(const SceneFlags& flags) {
   v1::Scene scene;
   if (!flags.file.empty()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(scene, ReadFile(flags.file));
   }
   if (flags.time_index.has_value()) scene.set_time_index(*flags.time_index);
-  if (flags.slices.has_value()) scene.mutable_rendering()->set_slices(*flags.slices);
   if (!flags.size.empty()) {
     THUNDERHEAD_RETURN_IF_ERROR(SetSize(flags.size, *scene.mutable_output()));
   }
   if (!flags.camera.empty()) {
     THUNDERHEAD_RETURN_IF_ERROR(SetCamera(flags.camera, *scene.mutable_camera()));
   }
-  if (!flags.renderer.empty()) {
-    THUNDERHEAD_RETURN_IF_ERROR(SetRenderer(flags.renderer, *scene.mutable_rendering()));
-  }
+  THUNDERHEAD_RETURN_IF_ERROR(SetRendering(flags, scene));
   if (flags.max_error.has_value() && flags.max_milliseconds.has_value()) {
     return absl::InvalidArgumentError(
         "--max-error and --max-milliseconds exclude one another: leave one out");

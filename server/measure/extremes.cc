@@ -23,11 +23,10 @@ Verdict Sound(const Seen& seen, Verdict verdict) {
   return {verdict.expected, absl::StrCat(verdict.got, ", but ", seen.unsound), false};
 }
 
-scene::Scene PlainScene(scene::Renderer renderer) {
+scene::Scene PlainScene(const accuracy::Path& path) {
   scene::Scene scene;
-  scene.rendering.renderer = renderer;
-  scene.rendering.mode = scene::Mode::kUniformPhaseLowAlbedo;
-  scene.rendering.transport = scene::Transport::kConsistent;
+  scene.rendering.technique =
+      InMode(path.plain(), accuracy::kModes[0], scene::Transport::kConsistent);
   for (scene::FieldParameters& field : scene.fields) {
     field.optics.phase = {physics::PhaseKind::kHenyeyGreenstein, 0.0F};
   }
@@ -39,7 +38,7 @@ scene::Scene PlainScene(scene::Renderer renderer) {
 std::vector<Extreme> Extremes() {
   std::vector<Extreme> extremes;
   internal::AppendInputExtremes(&extremes);
-  for (const auto& path : kFieldPaths) {
+  for (const auto& path : accuracy::kFieldPaths) {
     internal::AppendDepthExtremes(path, &extremes);
     internal::AppendShapeExtremes(path, &extremes);
     internal::AppendViewExtremes(path, &extremes);

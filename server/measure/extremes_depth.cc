@@ -34,55 +34,55 @@ Verdict TransmittanceNear(const Seen& seen, double depth) {
 // its profile.
 double Reflected(double depth) { return -std::expm1(-2.0 * depth) / 2.0 / (4 * std::numbers::pi); }
 
-Extreme DepthPerSlice(const Named<scene::Renderer>& path, double per_slice,
-                      const Named<scene::Transport>& transport) {
+Extreme DepthPerSlice(const accuracy::Path& path, double per_slice,
+                      const accuracy::Named<scene::Transport>& transport) {
   const std::string name =
       absl::StrFormat("%s: optical depth per slice %g, %s", path.name, per_slice, transport.name);
   return {name, [=](Probe& probe) -> absl::StatusOr<Verdict> {
             constexpr int kSlices = 8;
             scene::Scene scene;
-            scene.rendering.renderer = path.value;
-            scene.rendering.transport = transport.value;
-            scene.rendering.slices = kSlices;
+            scene.rendering.technique = path.plain();
+            scene::MediumSettingsOf(&scene.rendering.technique)->transport = transport.value;
+            scene::SetSlices(&scene.rendering.technique, kSlices);
             const auto fields = FieldsOf({.optical_depth = kSlices * per_slice});
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *fields, {}));
             // Delta scaling takes the forward peak out of what the eye loses, similarity scaling
             // all that goes on forward.
             const renderers::GroupWeights weights(renderers::MediumOf(scene, *fields),
-                                                  scene.rendering);
+                                                  *scene::MediumSettingsOf(scene.rendering.technique));
             const bool similar = transport.value == scene::Transport::kDiffusion &&
-                                 path.value == scene::Renderer::kLightVolume;
+                                 path.name == scene::LightVolume::kName;
             const std::vector<double>& lost = similar ? weights.transport : weights.eye;
             return TransmittanceNear(seen, kSlices * per_slice * lost.front());
           }};
 }
 
-Extreme ReflectedLight(const Named<scene::Renderer>& path, double depth, int slices) {
+Extreme ReflectedLight(const accuracy::Path& path, double depth, int slices) {
   const std::string name = absl::StrFormat("%s: reflected light, optical depth %g in %d slices",
                                            path.name, depth, slices);
   return {name, [=](Probe& probe) -> absl::StatusOr<Verdict> {
-            scene::Scene scene = PlainScene(path.value);
-            scene.rendering.slices = slices;
+            scene::Scene scene = PlainScene(path);
+            scene::SetSlices(&scene.rendering.technique, slices);
             const auto fields = FieldsOf({.optical_depth = depth, .shape = Box::Shape::kLayer});
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *fields, {}));
             return Sound(seen, Near(seen.radiance, Reflected(depth), 0.05 * Reflected(depth)));
           }};
 }
 
-Extreme Slices(const Named<scene::Renderer>& path, int slices) {
+Extreme Slices(const accuracy::Path& path, int slices) {
   return {absl::StrFormat("%s: %d slices, transmittance", path.name, slices),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
-            scene::Scene scene = PlainScene(path.value);
-            scene.rendering.slices = slices;
+            scene::Scene scene = PlainScene(path);
+            scene::SetSlices(&scene.rendering.technique, slices);
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *FieldsOf({}), {}));
             return TransmittanceNear(seen, 1.0);
           }};
 }
 
-Extreme Radius(const Named<scene::Renderer>& path, float radius_m) {
+Extreme Radius(const accuracy::Path& path, float radius_m) {
   return {absl::StrFormat("%s: radius %g m", path.name, radius_m),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
-            scene::Scene scene = PlainScene(path.value);
+            scene::Scene scene = PlainScene(path);
             physics::ParticleOptics& cloud =
                 scene.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].optics;
             // Extinction goes with one over the radius.
@@ -94,14 +94,14 @@ Extreme Radius(const Named<scene::Renderer>& path, float radius_m) {
 }
 
 // All light that is scattered goes on forwards, and not a bit more.
-Extreme LightEnergy(const Named<scene::Renderer>& path, const Named<scene::Transport>& transport) {
+Extreme LightEnergy(const accuracy::Path& path, const accuracy::Named<scene::Transport>& transport) {
   return {absl::StrFormat("%s: light is never more than came in, theta_f 90, %s", path.name,
                           transport.name),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
             scene::Scene scene;
-            scene.rendering.renderer = path.value;
-            scene.rendering.transport = transport.value;
-            scene.rendering.theta_f_deg = 90.0;
+            scene.rendering.technique = path.plain();
+            scene::MediumSettingsOf(&scene.rendering.technique)->transport = transport.value;
+            scene::MediumSettingsOf(&scene.rendering.technique)->theta_f_deg = 90.0;
             THUNDERHEAD_ASSIGN_OR_RETURN(
                 const Seen seen, probe.Draw(scene, *FieldsOf({.optical_depth = 100.0}), {}));
             const char* const sound = "light and transmittance within 0 to 1";
@@ -111,9 +111,9 @@ Extreme LightEnergy(const Named<scene::Renderer>& path, const Named<scene::Trans
 
 }  // namespace
 
-void AppendDepthExtremes(const Named<scene::Renderer>& path, std::vector<Extreme>* extremes) {
+void AppendDepthExtremes(const accuracy::Path& path, std::vector<Extreme>* extremes) {
   for (const double per_slice : {1e-8, 1e-4, 1e-2, 1.0, 1e4, 1e8}) {
-    for (const auto& transport : kTransports) {
+    for (const auto& transport : accuracy::kTransports) {
       extremes->push_back(DepthPerSlice(path, per_slice, transport));
     }
   }
@@ -125,7 +125,7 @@ void AppendDepthExtremes(const Named<scene::Renderer>& path, std::vector<Extreme
   for (const float radius_m : {1e-7F, 1e-6F, 1e-3F, 1e-1F}) {
     extremes->push_back(Radius(path, radius_m));
   }
-  for (const auto& transport : kTransports) extremes->push_back(LightEnergy(path, transport));
+  for (const auto& transport : accuracy::kTransports) extremes->push_back(LightEnergy(path, transport));
 }
 
 }  // namespace thunderhead::measure::internal

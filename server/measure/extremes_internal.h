@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "measure/extremes.h"
-#include "measure/paths.h"
+#include "accuracy/named_settings.h"
 
 namespace thunderhead::measure::internal {
 
@@ -24,12 +24,12 @@ Verdict Sound(const Seen& seen, Verdict verdict);
 
 // A scene of cloud water by one path: single scattering (low albedo, consistent) of a phase
 // function that is the same in all directions.
-scene::Scene PlainScene(scene::Renderer renderer);
+scene::Scene PlainScene(const accuracy::Path& path);
 
 void AppendInputExtremes(std::vector<Extreme>* extremes);
-void AppendDepthExtremes(const Named<scene::Renderer>& path, std::vector<Extreme>* extremes);
-void AppendShapeExtremes(const Named<scene::Renderer>& path, std::vector<Extreme>* extremes);
-void AppendViewExtremes(const Named<scene::Renderer>& path, std::vector<Extreme>* extremes);
+void AppendDepthExtremes(const accuracy::Path& path, std::vector<Extreme>* extremes);
+void AppendShapeExtremes(const accuracy::Path& path, std::vector<Extreme>* extremes);
+void AppendViewExtremes(const accuracy::Path& path, std::vector<Extreme>* extremes);
 void AppendMetaballExtremes(std::vector<Extreme>* extremes);
 
 }  // namespace thunderhead::measure::internal

@@ -11,7 +11,7 @@
 namespace thunderhead::measure::internal {
 namespace {
 
-constexpr Named<scene::Renderer> kPath = {scene::Renderer::kMetaball, "metaball"};
+constexpr const accuracy::Path& kPath = accuracy::kPaths[2];
 constexpr int kBalls = 200;
 
 // The middle ray's transmittance is between `least` and `highest`, whatever the fit.
@@ -20,9 +20,9 @@ Extreme Between(const std::string& what, const Box& box, const Look& look,
   const double most = std::max(highest, kOpaque);
   return {absl::StrFormat("%s: %s", kPath.name, what),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
-            scene::Scene scene = PlainScene(kPath.value);
-            scene.rendering.transport = transport;
-            scene.rendering.metaballs.count = kBalls;
+            scene::Scene scene = PlainScene(kPath);
+            scene.rendering.technique = accuracy::InMode(scene::Metaballs{.count = kBalls},
+                                                         accuracy::kModes[0], transport);
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *FieldsOf(box), look));
             return Sound(seen, {absl::StrFormat("%g to %g", least, most),
                                 absl::StrFormat("%g", seen.transmittance),

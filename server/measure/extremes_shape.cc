@@ -17,11 +17,11 @@ namespace {
 // may end at 0.005.
 constexpr double kSlantedError = 0.03;
 
-Extreme Transmittance(const Named<scene::Renderer>& path, const std::string& what, const Box& box,
+Extreme Transmittance(const accuracy::Path& path, const std::string& what, const Box& box,
                       double elevation_deg) {
   return {absl::StrFormat("%s: %s", path.name, what), [=](Probe& probe) -> absl::StatusOr<Verdict> {
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen,
-                                         probe.Draw(PlainScene(path.value), *FieldsOf(box),
+                                         probe.Draw(PlainScene(path), *FieldsOf(box),
                                                     {.view_elevation_deg = elevation_deg}));
             const double sine = std::sin(elevation_deg * std::numbers::pi / 180.0);
             return Sound(
@@ -29,28 +29,28 @@ Extreme Transmittance(const Named<scene::Renderer>& path, const std::string& wha
           }};
 }
 
-Extreme DomainSize(const Named<scene::Renderer>& path, double width_m) {
+Extreme DomainSize(const accuracy::Path& path, double width_m) {
   return Transmittance(path, absl::StrFormat("domain %g m wide", width_m),
                        {.size_m = glm::dvec3(width_m, width_m, width_m / 4)}, 89.9);
 }
 
-Extreme TooManyCells(const Named<scene::Renderer>& path) {
+Extreme TooManyCells(const accuracy::Path& path) {
   return {absl::StrFormat("%s: more cells than a 3D texture holds", path.name),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
             GLint most = 0;
             glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most);
             const auto fields = FieldsOf({.cells = glm::ivec3(most + 77, 2, 2)});
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen,
-                                         probe.Draw(PlainScene(path.value), *fields, {}));
+                                         probe.Draw(PlainScene(path), *fields, {}));
             return Sound(seen, Near(seen.transmittance, std::exp(-1.0), 0.01));
           }};
 }
 
 // Not drawn: transmittance is 1 and radiance 0, exactly.
-Extreme Nothing(const Named<scene::Renderer>& path, const std::string& what, const Box& box,
+Extreme Nothing(const accuracy::Path& path, const std::string& what, const Box& box,
                 bool visible) {
   return {absl::StrFormat("%s: %s", path.name, what), [=](Probe& probe) -> absl::StatusOr<Verdict> {
-            scene::Scene scene = PlainScene(path.value);
+            scene::Scene scene = PlainScene(path);
             for (scene::FieldParameters& field : scene.fields) field.visible = visible;
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *FieldsOf(box), {}));
             const bool clear = seen.transmittance == 1.0 && seen.radiance == 0.0;
@@ -63,7 +63,7 @@ Extreme Nothing(const Named<scene::Renderer>& path, const std::string& what, con
 
 }  // namespace
 
-void AppendShapeExtremes(const Named<scene::Renderer>& path, std::vector<Extreme>* extremes) {
+void AppendShapeExtremes(const accuracy::Path& path, std::vector<Extreme>* extremes) {
   for (const double width_m : {10.0, 1e3, 1e5, 1e7}) extremes->push_back(DomainSize(path, width_m));
   const glm::dvec3 flat_m(16e3, 16e3, 160.0);
   const glm::dvec3 tall_m(160.0, 160.0, 16e3);

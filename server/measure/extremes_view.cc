@@ -16,7 +16,7 @@ namespace {
 // See extremes_shape.cc.
 constexpr double kSlantedError = 0.03;
 
-Extreme AgainstLight(const Named<scene::Renderer>& path, const std::string& what,
+Extreme AgainstLight(const accuracy::Path& path, const std::string& what,
                      double azimuth_deg, double elevation_deg) {
   return {absl::StrFormat("%s: view %s the light", path.name, what),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
@@ -25,7 +25,7 @@ Extreme AgainstLight(const Named<scene::Renderer>& path, const std::string& what
                             .sun_azimuth_deg = 70.0,
                             .sun_elevation_deg = 45.0};
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen,
-                                         probe.Draw(PlainScene(path.value), *FieldsOf({}), look));
+                                         probe.Draw(PlainScene(path), *FieldsOf({}), look));
             const double sine = std::abs(std::sin(elevation_deg * std::numbers::pi / 180.0));
             return Sound(seen, Near(seen.transmittance, std::exp(-1.0 / sine), kSlantedError));
           }};
@@ -39,13 +39,13 @@ double MeanRadiance(const Seen& seen) {
 
 // Past 90 degrees from the sun half-angle slices turn round. The picture must not pop there: the
 // change over the step that does it is like the mean of the steps before and after.
-Extreme Sweep(const Named<scene::Renderer>& path, const Named<scene::Transport>& transport) {
+Extreme Sweep(const accuracy::Path& path, const accuracy::Named<scene::Transport>& transport) {
   return {absl::StrFormat("%s: pop when the view passes 90 degrees from the sun, %s", path.name,
                           transport.name),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
             scene::Scene scene;
-            scene.rendering.renderer = path.value;
-            scene.rendering.transport = transport.value;
+            scene.rendering.technique = path.plain();
+            scene::MediumSettingsOf(&scene.rendering.technique)->transport = transport.value;
             const auto fields = FieldsOf({.cells = glm::ivec3(24),
                                           .size_m = glm::dvec3(4000.0),
                                           .optical_depth = 20.0,
@@ -67,13 +67,13 @@ Extreme Sweep(const Named<scene::Renderer>& path, const Named<scene::Transport>&
           }};
 }
 
-Extreme InsideTheCloud(const Named<scene::Renderer>& path, double elevation_deg) {
+Extreme InsideTheCloud(const accuracy::Path& path, double elevation_deg) {
   return {absl::StrFormat("%s: camera in the middle of the cloud, looking %s", path.name,
                           elevation_deg > 0.0 ? "down" : "up"),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
             THUNDERHEAD_ASSIGN_OR_RETURN(
                 const Seen seen,
-                probe.Draw(PlainScene(path.value), *FieldsOf({.optical_depth = 2.0}),
+                probe.Draw(PlainScene(path), *FieldsOf({.optical_depth = 2.0}),
                            {.view_elevation_deg = elevation_deg, .distance_in_boxes = 1e-6}));
             // Half the box lies before the eye; of the slice that it is in, all or nothing counts.
             return Sound(seen, Near(seen.transmittance, std::exp(-1.0), 0.02));
@@ -81,12 +81,12 @@ Extreme InsideTheCloud(const Named<scene::Renderer>& path, double elevation_deg)
 }
 
 // A whole picture with sky and ground; below twilight it is dark.
-Extreme LowSun(const Named<scene::Renderer>& path, double elevation_deg) {
+Extreme LowSun(const accuracy::Path& path, double elevation_deg) {
   return {absl::StrFormat("%s: sun at %g degrees", path.name, elevation_deg),
           [=](Probe&) -> absl::StatusOr<Verdict> {
             scene::Scene scene;
-            scene.rendering.renderer = path.value;
-            scene.rendering.slices = 32;
+            scene.rendering.technique = path.plain();
+            scene::SetSlices(&scene.rendering.technique, 32);
             scene.sun.elevation_deg = elevation_deg;
             scene.output = {32, 18, 88};
             scene::OrbitCamera camera;
@@ -116,12 +116,12 @@ Extreme LowSun(const Named<scene::Renderer>& path, double elevation_deg) {
 
 }  // namespace
 
-void AppendViewExtremes(const Named<scene::Renderer>& path, std::vector<Extreme>* extremes) {
+void AppendViewExtremes(const accuracy::Path& path, std::vector<Extreme>* extremes) {
   extremes->push_back(AgainstLight(path, "along", 70.0, 45.0));
   extremes->push_back(AgainstLight(path, "against", 250.0, -45.0));
   extremes->push_back(AgainstLight(path, "across", 250.0, 45.0));
   extremes->push_back(AgainstLight(path, "a hair from across", 250.001, 45.0));
-  for (const auto& transport : kTransports) extremes->push_back(Sweep(path, transport));
+  for (const auto& transport : accuracy::kTransports) extremes->push_back(Sweep(path, transport));
   extremes->push_back(InsideTheCloud(path, 89.9));
   extremes->push_back(InsideTheCloud(path, -89.9));
   for (const double elevation_deg : {0.0, -0.5, -6.0, -18.0, -90.0}) {

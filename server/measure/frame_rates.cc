@@ -7,6 +7,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "accuracy/named_settings.h"
+#include "accuracy/presets.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "frame/image_codec.h"
@@ -22,7 +24,8 @@ constexpr int kWarmFrames = 2;    // the first also compiles shaders
 constexpr int kFewestFrames = 3;  // in a run
 constexpr double kStep_deg = 1.0;
 
-using Samples = std::map<std::string, std::vector<double>>;
+using scene::FrameStage;
+using Samples = std::map<FrameStage, std::vector<double>>;
 
 double Median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -49,12 +52,12 @@ class Frames {
     THUNDERHEAD_RETURN_IF_ERROR(frame::EncodeJpeg(scene_.output.width_px, scene_.output.height_px,
                                                   mapped.rgb, scene_.output.jpeg_quality)
                                     .status());
-    for (const renderers::StageTime& stage : linear.stages) {
+    for (const scene::StageTime& stage : linear.stages) {
       (*stages)[stage.stage].push_back(stage.milliseconds);
     }
-    (*stages)["tone"].push_back(mapped.tone_ms);
-    (*stages)["read_back"].push_back(mapped.read_back_ms);
-    (*stages)["encode"].push_back(stopwatch.ElapsedMs());
+    (*stages)[FrameStage::kTone].push_back(mapped.tone_ms);
+    (*stages)[FrameStage::kReadBack].push_back(mapped.read_back_ms);
+    (*stages)[FrameStage::kEncode].push_back(stopwatch.ElapsedMs());
     return absl::OkStatus();
   }
 
@@ -81,8 +84,6 @@ scene::Scene SceneOf(const volume::HydrometeorFields& fields, const FrameRateOpt
   scene::Scene scene;
   scene.output.width_px = options.width_px;
   scene.output.height_px = options.height_px;
-  scene.rendering.slices = options.slices;
-  scene.rendering.transport = options.transport;
   const volume::WorldBox box = volume::VisibleBox(fields);
   const double aspect_ratio = static_cast<double>(options.width_px) / options.height_px;
   scene.camera = scene::Framing(scene::OrbitCamera(), box.low_m, box.high_m, aspect_ratio);
@@ -110,16 +111,42 @@ absl::StatusOr<FrameRateRow> MeasureRow(
   }
   row.camera_fps = Median(camera_fps);
   row.sun_fps = Median(sun_fps);
-  if (sun_stages.contains("light")) camera_stages["light"] = sun_stages["light"];
+  if (sun_stages.contains(FrameStage::kLight)) {
+    camera_stages[FrameStage::kLight] = sun_stages[FrameStage::kLight];
+  }
   for (const auto& [stage, milliseconds] : camera_stages) {
     row.stages.push_back({stage, Median(milliseconds)});
   }
   return row;
 }
 
+struct Case {
+  scene::Technique technique;
+  std::string_view mode;
+};
+
+// Presets and the default as sessions draw them while something moves: without traced light, which
+// waits until the view rests.
+std::vector<Case> CasesOf(const FrameRateOptions& options) {
+  std::vector<Case> cases;
+  for (const accuracy::Path& path : accuracy::kPaths) {
+    for (const accuracy::Mode& mode : accuracy::kModes) {
+      scene::Technique technique = accuracy::InMode(path.plain(), mode, options.transport);
+      scene::SetSlices(&technique, options.slices);
+      cases.push_back({technique, mode.name});
+    }
+  }
+  for (const accuracy::Preset preset :
+       {accuracy::Preset::kFast, accuracy::Preset::kBalanced, accuracy::Preset::kTrue}) {
+    cases.push_back({accuracy::TechniqueOf(preset), accuracy::NameOf(preset)});
+  }
+  cases.push_back({accuracy::TechniqueOf(accuracy::kDefaultPreset), "default"});
+  return cases;
+}
+
 std::string StagesJson(const FrameRateRow& row) {
   return absl::StrJoin(row.stages, ", ", [](std::string* text, const StageMedian& stage) {
-    absl::StrAppendFormat(text, "\"%s\": %.4g", stage.stage, stage.milliseconds);
+    absl::StrAppendFormat(text, "\"%s\": %.4g", scene::NameOf(stage.stage), stage.milliseconds);
   });
 }
 
@@ -129,16 +156,16 @@ absl::StatusOr<std::vector<FrameRateRow>> MeasureFrameRates(
     const std::shared_ptr<const volume::HydrometeorFields>& fields, const FrameRateOptions& options,
     const std::function<void(double share)>& progress) {
   scene::Scene scene = SceneOf(*fields, options);
+  const std::vector<Case> cases = CasesOf(options);
   std::vector<FrameRateRow> rows;
-  for (const auto& path : kPaths) {
-    for (const auto& mode : kModes) {
-      scene.rendering.renderer = path.value;
-      scene.rendering.mode = mode.value;
-      THUNDERHEAD_ASSIGN_OR_RETURN(FrameRateRow row,
-                                   MeasureRow(scene, fields, options, {path, mode, 0.0, 0.0, {}}));
-      rows.push_back(std::move(row));
-      progress(static_cast<double>(rows.size()) / (kPaths.size() * kModes.size()));
-    }
+  for (const Case& measured : cases) {
+    scene.rendering.technique = measured.technique;
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        FrameRateRow row,
+        MeasureRow(scene, fields, options,
+                   {scene::NameOf(measured.technique), measured.mode, 0.0, 0.0, {}}));
+    rows.push_back(std::move(row));
+    progress(static_cast<double>(rows.size()) / static_cast<double>(cases.size()));
   }
   return rows;
 }
@@ -149,7 +176,7 @@ std::string ToJson(const Machine& machine, const std::vector<FrameRateRow>& rows
         absl::StrAppendFormat(text,
                               "    {\"renderer\": \"%s\", \"mode\": \"%s\", \"camera_fps\": %.4g, "
                               "\"sun_fps\": %.4g, \"stages_ms\": {%s}}",
-                              row.renderer.name, row.mode.name, row.camera_fps, row.sun_fps,
+                              row.technique, row.mode, row.camera_fps, row.sun_fps,
                               StagesJson(row));
       });
   return absl::StrCat("{\n  \"machine\": ", ToJson(machine), ",\n  \"rows\": [\n", lines,
@@ -161,10 +188,11 @@ std::string ToTable(const Machine& machine, const std::vector<FrameRateRow>& row
       "%s, %d threads; %s\n\n%-13s %-35s %10s %10s  %s\n", machine.processor, machine.threads,
       machine.gl_renderer, "renderer", "mode", "camera/s", "sun/s", "milliseconds by stage");
   for (const FrameRateRow& row : rows) {
-    absl::StrAppendFormat(&text, "%-13s %-35s %10.1f %10.1f  %s\n", row.renderer.name,
-                          row.mode.name, row.camera_fps, row.sun_fps,
+    absl::StrAppendFormat(&text, "%-13s %-35s %10.1f %10.1f  %s\n", row.technique,
+                          row.mode, row.camera_fps, row.sun_fps,
                           absl::StrJoin(row.stages, ", ", [](std::string* out, const auto& stage) {
-                            absl::StrAppendFormat(out, "%s %.2f", stage.stage, stage.milliseconds);
+                            absl::StrAppendFormat(out, "%s %.2f", scene::NameOf(stage.stage),
+                                                  stage.milliseconds);
                           }));
   }
   return text;

@@ -1,5 +1,5 @@
-// Frames a second of one storm by every renderer path in every mode: whole frames, from a changed
-// scene to a JPEG. Uses the current GL context.
+// Frames a second of one storm in every named setting: each technique in the papers' modes, and the
+// presets. Whole frames, from a changed scene to a JPEG. Uses the current GL context.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "measure/machine.h"
-#include "measure/paths.h"
+#include "scene/frame_stage.h"
 #include "scene/scene.h"
 #include "volume/hydrometeor_fields.h"
 
@@ -20,22 +20,22 @@ struct FrameRateOptions {
   int width_px = 300;  // the papers' size and slices
   int height_px = 300;
   int slices = 128;
-  scene::Transport transport = scene::Transport::kConsistent;
+  scene::Transport transport = scene::Transport::kConsistent;  // of the papers' translucent modes
   int runs = 5;  // of which the medians are taken
   double seconds_a_run = 0.4;
 };
 
 struct StageMedian {
-  std::string stage;
+  scene::FrameStage stage = scene::FrameStage::kRead;
   double milliseconds = 0.0;
 };
 
 struct FrameRateRow {
-  Named<scene::Renderer> renderer;
-  Named<scene::Mode> mode;
+  std::string_view technique;
+  std::string_view mode;  // the papers' mode or preset; "default" is what scenes start with
   double camera_fps = 0.0;  // the camera moves every frame
   double sun_fps = 0.0;     // the sun moves every frame
-  // What a camera move reruns, and "light", which only a sun move reruns.
+  // The stages that a camera move reruns, and the light, which only a sun move reruns.
   std::vector<StageMedian> stages;
 };
 
@@ -46,7 +46,7 @@ absl::StatusOr<std::vector<FrameRateRow>> MeasureFrameRates(
 std::string ToJson(const Machine& machine, const std::vector<FrameRateRow>& rows);
 std::string ToTable(const Machine& machine, const std::vector<FrameRateRow>& rows);
 
-// Kilograms of condensate: what tells a mature storm from one that begins or ends.
+// Kilograms of condensate: most in a mature storm.
 double Condensate_kg(const volume::HydrometeorFields& fields);
 
 }  // namespace thunderhead::measure

@@ -1,5 +1,7 @@
 #include "measure/light_parts.h"
 
+#include "accuracy/named_settings.h"
+
 #include <utility>
 
 #include "base/status.h"
@@ -55,8 +57,8 @@ scene::Scene SceneOf(LightPart part, scene::Scene scene) {
   if (part == LightPart::kSky) return scene;
   scene.sky.brightness = 0.0;
   if (part == LightPart::kSun) return scene;
-  scene.rendering.mode = scene::Mode::kUniformPhaseLowAlbedo;
-  scene.rendering.transport = scene::Transport::kConsistent;
+  scene.rendering.technique = accuracy::InMode(scene.rendering.technique, accuracy::kModes[0],
+                                               scene::Transport::kConsistent);
   return scene;
 }
 

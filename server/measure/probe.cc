@@ -49,12 +49,12 @@ renderers::RenderSettings SettingsOf(const scene::Scene& scene,
   camera.distance_m = std::max({size_m.x, size_m.y, size_m.z}) * look.distance_in_boxes;
   camera.field_of_view_deg = look.field_of_view_deg;
   renderers::RenderSettings settings;
-  settings.rendering = scene.rendering;
+  settings.technique = scene.rendering.technique;
   settings.view = scene::ViewOf(camera, 1.0);
   settings.illumination = {scene::Direction(look.sun_azimuth_deg, look.sun_elevation_deg),
                            glm::vec3(1.0F), glm::vec3(0.0F)};
   settings.eye_size = glm::ivec2(look.side_px);
-  settings.slices = scene.rendering.slices;
+  settings.slices = scene::SlicesOf(scene.rendering.technique).value_or(settings.slices);
   return settings;
 }
 
@@ -118,16 +118,17 @@ absl::StatusOr<Seen> Probe::Draw(const scene::Scene& scene, const volume::Hydrom
   const renderers::RenderSettings settings = SettingsOf(scene, fields, look);
   Seen seen;
   std::vector<float> light;
-  if (scene.rendering.renderer == scene::Renderer::kHalfAngle) {
+  const scene::Technique& technique = scene.rendering.technique;
+  if (std::holds_alternative<scene::HalfAngle>(technique)) {
     renderers::HalfAngleRenderer renderer(programs_);
     THUNDERHEAD_RETURN_IF_ERROR(renderer.Render(medium, settings, true));
     seen.eye = frame::ReadLinear(renderer.Eye());
     light = renderer.Light();
-  } else if (scene.rendering.renderer == scene::Renderer::kMetaball) {
+  } else if (const auto* metaballs = std::get_if<scene::Metaballs>(&technique)) {
     renderers::MetaballRenderer renderer(programs_);
     THUNDERHEAD_ASSIGN_OR_RETURN(
         const renderers::BallCloud balls,
-        renderers::FitBalls(medium.Content(), fields, scene.rendering.metaballs.count));
+        renderers::FitBalls(medium.Content(), fields, metaballs->count));
     THUNDERHEAD_RETURN_IF_ERROR(renderer.CarryLight(balls, medium.Content(), settings));
     THUNDERHEAD_RETURN_IF_ERROR(renderer.DrawView(settings));
     seen.eye = frame::ReadLinear(renderer.Eye());

@@ -28,7 +28,7 @@ constexpr double kLeastError = 1e-9;
 absl::StatusOr<LinearImage> DrawWith(
     renderers::SceneRenderer& renderer, scene::Scene scene, int slices,
     const std::shared_ptr<const volume::HydrometeorFields>& fields) {
-  scene.rendering.slices = slices;
+  scene::SetSlices(&scene.rendering.technique, slices);
   THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame frame,
                                renderer.Draw(scene, fields, {}));
   const std::vector<float> values = frame::ReadLinear(*frame.radiance);
@@ -74,16 +74,16 @@ absl::StatusOr<std::vector<SliceCurve>> MeasureSliceConvergence(
   std::vector<SliceCurve> curves;
   double done = 0.0;
   const auto step = [&] {
-    progress(++done / static_cast<double>(kTransports.size() * (kCounts.size() + 1)));
+    progress(++done / static_cast<double>(accuracy::kTransports.size() * (kCounts.size() + 1)));
   };
-  for (const auto& transport : kTransports) {
+  for (const auto& transport : accuracy::kTransports) {
     // Slices draw diffusion as consistent.
     if (transport.value == scene::Transport::kDiffusion &&
-        scene.rendering.renderer == scene::Renderer::kHalfAngle) {
+        std::holds_alternative<scene::HalfAngle>(scene.rendering.technique)) {
       continue;
     }
     scene::Scene drawn = scene;
-    drawn.rendering.transport = transport.value;
+    scene::MediumSettingsOf(&drawn.rendering.technique)->transport = transport.value;
     THUNDERHEAD_ASSIGN_OR_RETURN(const LinearImage limit,
                                  DrawWith(renderer, drawn, kLimit, fields));
     step();
@@ -143,8 +143,8 @@ std::string ToCsv(const std::vector<SliceCurve>& curves) {
 }
 
 std::string ToSvg(const std::string& title, const std::vector<SliceCurve>& curves) {
-  constexpr std::array<const char*, kTransports.size()> kColors = {"#d9730d", "#1f6fb4", "#3a8f4a"};
-  constexpr std::array<const char*, kTransports.size()> kColorNames = {"orange", "blue", "green"};
+  constexpr std::array<const char*, accuracy::kTransports.size()> kColors = {"#d9730d", "#1f6fb4", "#3a8f4a"};
+  constexpr std::array<const char*, accuracy::kTransports.size()> kColorNames = {"orange", "blue", "green"};
   std::vector<double> slices;
   std::vector<double> errors;
   std::vector<std::string> names;

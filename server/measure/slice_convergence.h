@@ -10,7 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "measure/machine.h"
-#include "measure/paths.h"
+#include "accuracy/named_settings.h"
 #include "scene/scene.h"
 #include "volume/hydrometeor_fields.h"
 
@@ -22,7 +22,7 @@ struct SlicePoint {
 };
 
 struct SliceCurve {
-  Named<scene::Transport> transport;
+  accuracy::Named<scene::Transport> transport;
   std::vector<SlicePoint> points;
   double order = 0.0;  // of a power law through the points: error goes with slices^-order
 };

@@ -1,13 +1,14 @@
 #include "measure/trade.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "frame/image_codec.h"
-#include "measure/paths.h"
+#include "accuracy/named_settings.h"
 
 namespace thunderhead::measure {
 namespace {
@@ -22,15 +23,23 @@ double Quantile(std::vector<double> values, double share) {
       std::lround(share * static_cast<double>(values.size() - 1)))];
 }
 
-// Of the default renderer and mode.
-void AddVariants(scene::Transport transport, std::vector<TradeSetting>* settings) {
-  TradeSetting usual;
-  usual.transport = transport;
+scene::Technique LightVolume(scene::Transport transport,
+                             const accuracy::Mode& mode = accuracy::kModes[2]) {
+  return InMode(accuracy::PathNamed(scene::LightVolume::kName)->plain(), mode, transport);
+}
+
+Setting WithCount(scene::Technique technique, int count) {
+  accuracy::SetCount(&technique, count);
+  return {technique};
+}
+
+// Of the light volume with each field's own phase function.
+void AddVariants(scene::Transport transport, std::vector<Setting>* settings) {
+  const Setting usual{LightVolume(transport)};
   for (const double scale : {0.25, 0.5, 0.75}) {
     for (const int slices : {32, 64, 128}) {
-      settings->push_back(usual);
+      settings->push_back(WithCount(usual.technique, slices));
       settings->back().image_scale = scale;
-      settings->back().slices = slices;
     }
   }
   settings->push_back(usual);
@@ -67,71 +76,32 @@ gl::Texture2D TextureOf(const LinearImage& image) {
   return frame::TextureOf(image.size_px, image.radiance);
 }
 
-std::string NameOf(scene::Renderer renderer) {
-  for (const auto& path : kPaths) {
-    if (path.value == renderer) return std::string(path.name);
-  }
-  THUNDERHEAD_CHECK(false, "no such renderer");
-}
-
-std::string NameOf(scene::Mode mode) {
-  switch (mode) {
-    case scene::Mode::kUniformPhaseLowAlbedo:
-      return "uniform_phase_low_albedo";
-    case scene::Mode::kUniformPhaseTranslucent:
-      return "uniform_phase_translucent";
-    case scene::Mode::kPerFieldPhaseTranslucent:
-      return "per_field_phase_translucent";
-    case scene::Mode::kPerFieldPhaseDetailTranslucent:
-      return "per_field_phase_detail_translucent";
-  }
-  THUNDERHEAD_CHECK(false, "no such mode");
-}
-
-std::string NameOf(scene::Transport transport) {
-  switch (transport) {
-    case scene::Transport::kPaper:
-      return "paper";
-    case scene::Transport::kConsistent:
-      return "consistent";
-    case scene::Transport::kDiffusion:
-      return "diffusion";
-  }
-  THUNDERHEAD_CHECK(false, "no such transport");
-}
-
-std::vector<TradeSetting> DefaultSweep(const std::vector<double>& million_paths) {
-  std::vector<TradeSetting> settings;
-  for (const auto renderer : {scene::Renderer::kLightVolume, scene::Renderer::kHalfAngle}) {
-    for (const auto mode :
-         {scene::Mode::kPerFieldPhaseTranslucent, scene::Mode::kUniformPhaseTranslucent,
-          scene::Mode::kUniformPhaseLowAlbedo}) {
-      for (const auto transport : {scene::Transport::kConsistent, scene::Transport::kPaper}) {
-        for (const int slices : {32, 64, 128, 256, 512}) {
-          settings.push_back({renderer, mode, transport, slices, 1.0, 88});
-        }
+std::vector<Setting> DefaultSweep(const std::vector<double>& million_paths) {
+  using scene::Transport;
+  constexpr std::array kCounts = {32, 64, 128, 256, 512};
+  std::vector<Setting> settings;
+  const auto add = [&](const scene::Technique& technique, const auto& counts) {
+    for (const int count : counts) settings.push_back(WithCount(technique, count));
+  };
+  for (const std::string_view name : {scene::LightVolume::kName, scene::HalfAngle::kName}) {
+    for (const std::size_t mode : {2, 1, 0}) {
+      for (const Transport transport : {Transport::kConsistent, Transport::kPaper}) {
+        const scene::Technique plain = accuracy::PathNamed(name)->plain();
+        add(accuracy::InMode(plain, accuracy::kModes[mode], transport), kCounts);
       }
     }
   }
-  for (const auto mode :
-       {scene::Mode::kPerFieldPhaseTranslucent, scene::Mode::kUniformPhaseTranslucent}) {
-    for (const int slices : {32, 64, 128, 256, 512}) {
-      settings.push_back(
-          {scene::Renderer::kLightVolume, mode, scene::Transport::kDiffusion, slices, 1.0, 88});
-    }
+  for (const std::size_t mode : {2, 1}) {
+    add(LightVolume(Transport::kDiffusion, accuracy::kModes[mode]), kCounts);
   }
-  for (const auto transport : {scene::Transport::kConsistent, scene::Transport::kPaper}) {
-    for (const int balls : {300, 1200, 3000, 10000}) {
-      settings.push_back({scene::Renderer::kMetaball, scene::Mode::kPerFieldPhaseTranslucent,
-                          transport, balls, 1.0, 88});
-    }
+  for (const Transport transport : {Transport::kConsistent, Transport::kPaper}) {
+    add(scene::Metaballs{.medium = {.transport = transport}}, std::array{300, 1200, 3000, 10000});
   }
-  for (const auto transport : {scene::Transport::kConsistent, scene::Transport::kDiffusion}) {
+  for (const Transport transport : {Transport::kConsistent, Transport::kDiffusion}) {
     AddVariants(transport, &settings);
   }
   for (const double paths : million_paths) {
-    TradeSetting traced;
-    traced.transport = scene::Transport::kDiffusion;
+    Setting traced{LightVolume(Transport::kDiffusion)};
     traced.million_paths = paths;
     for (const double scale : {1.0, 2.0}) {
       traced.image_scale = scale;
@@ -153,8 +123,7 @@ void MarkPareto(std::vector<TradeRow>* rows) {
 }
 
 scene::Scene TrueScene(scene::Scene scene) {
-  scene.rendering.mode = scene::Mode::kPerFieldPhaseTranslucent;
-  scene.rendering.false_colors = false;
+  scene.rendering.technique = scene::Reference{};
   return scene;
 }
 
@@ -177,12 +146,14 @@ absl::StatusOr<std::shared_ptr<const renderers::LightCorrection>> Trade::Correct
     const scene::Scene& scene, double million_paths, const std::stop_token& stop) {
   if (million_paths <= 0.0) return nullptr;
   scene::Scene traced = scene;
-  traced.rendering.traced_light = true;
-  if (!correction::TracesLight(traced, *fields_)) return nullptr;
+  if (auto* light_volume = std::get_if<scene::LightVolume>(&traced.rendering.technique)) {
+    light_volume->traced_light = scene::TracedLight::kAtRest;
+  }
+  if (!accuracy::TracesLight(traced, *fields_)) return nullptr;
   if (corrector_ == nullptr || !corrector_->Serves(traced, fields_) ||
       corrected_by_ > million_paths) {
     THUNDERHEAD_ASSIGN_OR_RETURN(
-        corrector_, correction::LightCorrector::Create(traced, fields_,
+        corrector_, accuracy::LightCorrector::Create(traced, fields_,
                                                        std::make_shared<gl::ProgramCache>(), 0));
     corrected_by_ = 0.0;
   }
@@ -192,19 +163,12 @@ absl::StatusOr<std::shared_ptr<const renderers::LightCorrection>> Trade::Correct
   return corrector_->Correction();
 }
 
-absl::StatusOr<TradeRow> Trade::Measure(const TradeSetting& setting, const std::stop_token& stop) {
+absl::StatusOr<TradeRow> Trade::Measure(const Setting& setting, const std::stop_token& stop) {
   if (truth_display_.rgb.empty()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(truth_display_, Display(TextureOf(truth_)));
   }
   scene::Scene scene = scene_;
-  scene.rendering.renderer = setting.renderer;
-  scene.rendering.mode = setting.mode;
-  scene.rendering.transport = setting.transport;
-  if (setting.renderer == scene::Renderer::kMetaball) {
-    scene.rendering.metaballs.count = setting.slices;
-  } else {
-    scene.rendering.slices = setting.slices;
-  }
+  scene.rendering.technique = setting.technique;
   TradeRow row;
   row.setting = setting;
   renderers::DrawQuality quality{setting.image_scale, 1.0, setting.light_detail,

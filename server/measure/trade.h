@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "correction/light_corrector.h"
+#include "accuracy/light_corrector.h"
+#include "accuracy/setting.h"
 #include "frame/tone_map.h"
 #include "measure/image_error.h"
 #include "reference/path_tracer.h"
@@ -18,23 +19,10 @@
 
 namespace thunderhead::measure {
 
-// What is swept.
-struct TradeSetting {
-  scene::Renderer renderer = scene::Renderer::kLightVolume;
-  scene::Mode mode = scene::Mode::kPerFieldPhaseTranslucent;
-  scene::Transport transport = scene::Transport::kConsistent;
-  int slices = 128;  // or samples, or metaballs
-  double image_scale = 1.0;
-  int jpeg_quality = 88;
-  double light_detail = 1.0;  // as in renderers::DrawQuality
-  bool single_precision = false;
-  double million_paths = 0.0;  // traced light (scene::Rendering), by so many paths
-
-  bool operator==(const TradeSetting&) const = default;
-};
+using accuracy::Setting;
 
 struct TradeRow {
-  TradeSetting setting;
+  Setting setting;
   double milliseconds = 0.0;         // a frame with a moved camera, JPEG included: median
   double milliseconds_spread = 0.0;  // between its quartiles
   std::size_t bytes = 0;             // of the JPEG
@@ -48,7 +36,7 @@ struct TradeRow {
 // and some numbers of them), then smaller pictures and 4 rays a pixel, finer and coarser light
 // volumes, single precision, other JPEG qualities and traced light, with so many `million_paths`,
 // of the default renderer and mode.
-std::vector<TradeSetting> DefaultSweep(const std::vector<double>& million_paths);
+std::vector<Setting> DefaultSweep(const std::vector<double>& million_paths);
 
 // Marks the rows that no other beats in both milliseconds and relative RMSE.
 void MarkPareto(std::vector<TradeRow>* rows);
@@ -65,7 +53,7 @@ class Trade {
 
   // CANCELLED if `stop` asked to stop while paths were traced. Those are kept: settings that differ
   // in their number alone are best measured from few to many.
-  absl::StatusOr<TradeRow> Measure(const TradeSetting& setting, const std::stop_token& stop);
+  absl::StatusOr<TradeRow> Measure(const Setting& setting, const std::stop_token& stop);
 
   // What relative RMSE the truth's own noise amounts to.
   double TruthNoise() const { return truth_noise_; }
@@ -82,7 +70,7 @@ class Trade {
   DisplayImage truth_display_;
   double truth_noise_ = 0.0;
   renderers::SceneRenderer renderer_;
-  std::unique_ptr<correction::LightCorrector> corrector_;
+  std::unique_ptr<accuracy::LightCorrector> corrector_;
   double corrected_by_ = 0.0;  // million paths that it was asked for last
   frame::ToneMapper tone_mapper_;
 };
@@ -91,10 +79,5 @@ class Trade {
 gl::Texture2D TextureOf(const LinearImage& image);
 // And back.
 LinearImage ImageOf(const gl::Texture2D& texture);
-
-// "half_angle" and so on, as in the tables.
-std::string NameOf(scene::Renderer renderer);
-std::string NameOf(scene::Mode mode);
-std::string NameOf(scene::Transport transport);
 
 }  // namespace thunderhead::measure

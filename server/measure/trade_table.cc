@@ -11,6 +11,7 @@
 #include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
+#include "accuracy/named_settings.h"
 #include "measure/log_plot.h"
 
 namespace thunderhead::measure {
@@ -25,7 +26,7 @@ constexpr std::size_t kColumnCount = 15;
 constexpr char kHalf[] = "half";
 constexpr char kSingle[] = "single";
 
-const char* PrecisionOf(const TradeSetting& setting) {
+const char* PrecisionOf(const Setting& setting) {
   return setting.single_precision ? kSingle : kHalf;
 }
 
@@ -33,35 +34,19 @@ const char* PrecisionOf(const TradeSetting& setting) {
 constexpr double kLeastMilliseconds = 1e-3;
 constexpr double kLeastError = 1e-6;
 
-template <typename Value>
-bool Named(absl::string_view name, std::initializer_list<Value> values, Value* found) {
-  for (const Value value : values) {
-    if (name != NameOf(value)) continue;
-    *found = value;
-    return true;
-  }
-  return false;
-}
-
 std::optional<TradeRow> RowOf(absl::string_view line) {
   const std::vector<absl::string_view> cells = absl::StrSplit(line, ',');
   if (cells.size() != kColumnCount) return std::nullopt;
   TradeRow row;
-  TradeSetting& setting = row.setting;
+  Setting& setting = row.setting;
   std::uint64_t bytes = 0;
+  const auto technique = accuracy::TechniqueNamed(std::string(cells[0]), std::string(cells[1]),
+                                                  std::string(cells[2]));
+  int count = 0;
+  if (!technique.has_value() || !absl::SimpleAtoi(cells[3], &count)) return std::nullopt;
+  setting.technique = *technique;
+  accuracy::SetCount(&setting.technique, count);
   const bool read =
-      Named(
-          cells[0],
-          {scene::Renderer::kHalfAngle, scene::Renderer::kLightVolume, scene::Renderer::kMetaball},
-          &setting.renderer) &&
-      Named(cells[1],
-            {scene::Mode::kUniformPhaseLowAlbedo, scene::Mode::kUniformPhaseTranslucent,
-             scene::Mode::kPerFieldPhaseTranslucent},
-            &setting.mode) &&
-      Named(cells[2],
-            {scene::Transport::kPaper, scene::Transport::kConsistent, scene::Transport::kDiffusion},
-            &setting.transport) &&
-      absl::SimpleAtoi(cells[3], &setting.slices) &&
       absl::SimpleAtod(cells[4], &setting.image_scale) &&
       absl::SimpleAtod(cells[5], &setting.light_detail) &&
       (cells[6] == kHalf || cells[6] == kSingle) &&
@@ -81,31 +66,26 @@ std::string Quoted(const std::string& text) {
   return absl::StrCat("\"", absl::StrReplaceAll(text, {{"\\", "\\\\"}, {"\"", "\\\""}}), "\"");
 }
 
-const char* ColorOf(scene::Renderer renderer) {
-  switch (renderer) {
-    case scene::Renderer::kLightVolume:
-      return "#1f6fb4";
-    case scene::Renderer::kHalfAngle:
-      return "#d9730d";
-    case scene::Renderer::kMetaball:
-      return "#3f9142";
-    case scene::Renderer::kCumulus:
-      return "#8a4fbf";
-    case scene::Renderer::kReference:
-      break;
-  }
+const char* ColorOf(const scene::Technique& technique) {
+  const std::string_view name = scene::NameOf(technique);
+  if (name == scene::LightVolume::kName) return "#1f6fb4";
+  if (name == scene::HalfAngle::kName) return "#d9730d";
+  if (name == scene::Metaballs::kName) return "#3f9142";
+  if (name == scene::Cumulus::kName) return "#8a4fbf";
   return "#000000";
 }
 
 // Blue marches, orange slices, green metaballs, violet surfaces; hollow for paper transport.
 void AddDot(const TradeRow& row, LogPlot* plot) {
-  const char* color = ColorOf(row.setting.renderer);
-  const bool hollow = row.setting.transport == scene::Transport::kPaper;
+  const scene::Technique& technique = row.setting.technique;
+  const char* color = ColorOf(technique);
+  const bool hollow = accuracy::TransportNameOf(technique) == "paper";
   const std::string tip = absl::StrFormat(
       "%s, %s, %s, %d %s, scale %g, light detail %g, %s precision, %g million paths, JPEG %d: %.2f "
       "ms, RMSE %.3f, FLIP %.3f",
-      NameOf(row.setting.renderer), NameOf(row.setting.mode), NameOf(row.setting.transport),
-      row.setting.slices, row.setting.renderer == scene::Renderer::kMetaball ? "balls" : "slices",
+      scene::NameOf(technique), accuracy::ModeOf(technique).name,
+      accuracy::TransportNameOf(technique), accuracy::CountOf(technique),
+      std::holds_alternative<scene::Metaballs>(technique) ? "balls" : "slices",
       row.setting.image_scale, row.setting.light_detail, PrecisionOf(row.setting),
       row.setting.million_paths, row.setting.jpeg_quality, row.milliseconds, row.relative_rmse,
       row.flip);
@@ -137,10 +117,12 @@ std::string CsvHead(const TradeTitle& title) {
 }
 
 std::string CsvLine(const TradeRow& row) {
-  const TradeSetting& setting = row.setting;
+  const Setting& setting = row.setting;
   return absl::StrFormat("%s,%s,%s,%d,%g,%g,%s,%g,%d,%.3f,%.3f,%d,%.5f,%.5f,%.5f\n",
-                         NameOf(setting.renderer), NameOf(setting.mode), NameOf(setting.transport),
-                         setting.slices, setting.image_scale, setting.light_detail,
+                         scene::NameOf(setting.technique), accuracy::ModeOf(setting.technique).name,
+                         accuracy::TransportNameOf(setting.technique),
+                         accuracy::CountOf(setting.technique), setting.image_scale,
+                         setting.light_detail,
                          PrecisionOf(setting), setting.million_paths, setting.jpeg_quality,
                          row.milliseconds, row.milliseconds_spread, row.bytes, row.relative_rmse,
                          row.relative_bias, row.flip);
@@ -173,7 +155,7 @@ std::string TradeJson(const TradeTitle& title, const std::vector<TradeRow>& rows
       Quoted(title.renderer), Quoted(title.storm), Quoted(title.view), title.size_px.x,
       title.size_px.y, title.truth_samples_per_pixel, title.truth_noise);
   absl::StrAppend(&text, absl::StrJoin(rows, ",\n", [](std::string* out, const TradeRow& row) {
-    const TradeSetting& setting = row.setting;
+    const Setting& setting = row.setting;
     absl::StrAppendFormat(
         out,
         "    {\"renderer\": \"%s\", \"mode\": \"%s\", \"transport\": \"%s\", \"slices\": %d, "
@@ -181,7 +163,8 @@ std::string TradeJson(const TradeTitle& title, const std::vector<TradeRow>& rows
         "\"million_paths\": %g, \"jpeg_quality\": %d, \"milliseconds\": %.3f, "
         "\"milliseconds_spread\": %.3f, \"bytes\": %d, \"relative_rmse\": %.5f, "
         "\"relative_bias\": %.5f, \"flip\": %.5f, \"pareto\": %s}",
-        NameOf(setting.renderer), NameOf(setting.mode), NameOf(setting.transport), setting.slices,
+        scene::NameOf(setting.technique), accuracy::ModeOf(setting.technique).name,
+        accuracy::TransportNameOf(setting.technique), accuracy::CountOf(setting.technique),
         setting.image_scale, setting.light_detail, PrecisionOf(setting), setting.million_paths,
         setting.jpeg_quality, row.milliseconds, row.milliseconds_spread, row.bytes,
         row.relative_rmse, row.relative_bias, row.flip, row.pareto ? "true" : "false");

@@ -24,14 +24,6 @@ namespace {
 // Bare soil and grass seen from far off; the scene's ground albedo is that of red.
 constexpr glm::dvec3 kGroundTint(1.0, 0.93, 0.78);
 
-physics::PhaseFunction PhaseOf(const scene::Scene& scene, const volume::HydrometeorField& field) {
-  if (!scene::HasPerFieldPhase(scene.rendering.mode)) {
-    return physics::PhaseOf(scene.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].optics);
-  }
-  const scene::FieldParameters& drawn = scene.fields[physics::IndexOf(field.hydrometeor)];
-  return physics::PhaseOf(volume::WithDrawnRadius(field, drawn.optics, drawn.size_from_file));
-}
-
 struct Box {
   volume::RegularGrid grid;
   glm::ivec3 first_cell{0};  // in the domain
@@ -86,11 +78,8 @@ struct GroupLook {
   bool operator==(const GroupLook&) const = default;
 };
 
-GroupLook LookOf(const scene::Scene& scene, const volume::HydrometeorField& field) {
-  const physics::ParticleOptics& optics = scene.fields[physics::IndexOf(field.hydrometeor)].optics;
-  GroupLook look{PhaseOf(scene, field), glm::dvec3(optics.albedo)};
-  if (scene.rendering.false_colors) look.albedo *= glm::dvec3(optics.false_color);
-  return look;
+GroupLook LookOf(const scene::DrawnField& field) {
+  return {field.phase, static_cast<double>(field.albedo) * glm::dvec3(field.color)};
 }
 
 // How a group scatters once its forward peak is cut off: `extinction` is a factor.
@@ -187,10 +176,8 @@ absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene
   description.sides = options.sides;
   std::vector<GroupLook> looks;
   std::vector<CutOptics> cuts;  // of each look
-  for (const volume::HydrometeorField& field : fields.fields) {
-    const scene::FieldParameters& drawn = scene.fields[physics::IndexOf(field.hydrometeor)];
-    if (!scene::IsDrawn(scene, field)) continue;
-    GroupLook look = LookOf(scene, field);
+  for (const scene::DrawnField& field : scene::DrawnFieldsOf(scene, fields)) {
+    GroupLook look = LookOf(field);
     if (options.phase != nullptr) look.phase = {};
     auto found = std::find(looks.begin(), looks.end(), look);
     if (found == looks.end()) {
@@ -200,10 +187,10 @@ absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene
       description.groups.push_back({{}, cuts.back().albedo, cuts.back().phase});
     }
     const auto group = static_cast<std::size_t>(found - looks.begin());
-    volume::MassExtinction mass_extinction =
-        volume::MassExtinctionOf(field, drawn.optics, drawn.size_from_file);
-    mass_extinction.m2_per_kg *= static_cast<float>(drawn.scale * cuts[group].extinction);
-    AddField(fields.grid, box, field, mass_extinction, &description.groups[group].extinction_per_m);
+    volume::MassExtinction mass_extinction = field.mass_extinction;
+    mass_extinction.m2_per_kg *= static_cast<float>(cuts[group].extinction);
+    AddField(fields.grid, box, fields.fields[field.index], mass_extinction,
+             &description.groups[group].extinction_per_m);
   }
   return Medium::Create(std::move(description));
 }

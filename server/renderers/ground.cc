@@ -79,7 +79,7 @@ absl::Status Ground::CastShadow(const ResidentMedium& medium, const RenderSettin
                       {{"GROUPS", static_cast<int>(medium.Content().groups.size())},
                        {"DETAILS", medium.Details()}}}));
   medium.Bind(*program);
-  const GroupWeights weights(medium.Content(), settings.rendering);
+  const GroupWeights weights(medium.Content(), settings.Medium());
   const glm::dvec3 through_m = cell_m / glm::max(glm::abs(towards_sun), glm::dvec3(1e-6));
   const double step_m = kShadowStepInCells * std::min({through_m.x, through_m.y, through_m.z});
   program->Set("towards_sun", glm::vec3(towards_sun));

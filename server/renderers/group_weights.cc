@@ -30,17 +30,11 @@ glm::vec2 DisplayNormalisation(const physics::PhaseFunction& phase, double cut_c
 
 }  // namespace
 
-bool IsTranslucent(const scene::Rendering& rendering) {
-  return rendering.mode != scene::Mode::kUniformPhaseLowAlbedo;
-}
-
-bool IsConsistent(const scene::Rendering& rendering) {
-  return rendering.transport != scene::Transport::kPaper;
-}
-
-GroupWeights::GroupWeights(const Medium& medium, const scene::Rendering& rendering) {
-  const double theta_f = glm::radians(rendering.theta_f_deg);
-  const bool delta_scaled = IsConsistent(rendering) && IsTranslucent(rendering);
+GroupWeights::GroupWeights(const Medium& medium, const scene::MediumSettings& settings) {
+  const double theta_f = glm::radians(settings.theta_f_deg);
+  const bool paper = scene::IsPaper(settings.transport);
+  const bool translucent = scene::IsTranslucent(settings.transport);
+  const bool delta_scaled = !paper && translucent;
   for (const MediumGroup& group : medium.groups) {
     const physics::DeltaScaling cut = physics::CutForwardPeak(group.phase, theta_f / 2.0);
     const double passed = delta_scaled ? group.albedo * cut.forward_share : 0.0;
@@ -55,15 +49,14 @@ GroupWeights::GroupWeights(const Medium& medium, const scene::Rendering& renderi
     absorption.push_back(1.0 - group.albedo);
     absorbs = absorbs || group.albedo < 1.0F;
     peripheral.push_back(group.albedo * ring);
-    phase_display.push_back(IsConsistent(rendering)
-                                ? glm::vec2(0.0F)
-                                : DisplayNormalisation(group.phase, cut.cut_cosine));
+    phase_display.push_back(paper ? DisplayNormalisation(group.phase, cut.cut_cosine)
+                                  : glm::vec2(0.0F));
     color.push_back(group.color);
     colored = colored || group.color != glm::vec3(1.0F);
     even_albedo = even_albedo && group.albedo == medium.groups.front().albedo;
   }
   even_albedo = even_albedo && !colored;
-  const bool whole = IsConsistent(rendering) && !IsTranslucent(rendering);
+  const bool whole = !paper && !translucent;
   phase_cut = whole ? 0.0F : static_cast<float>(std::pow(std::sin(theta_f / 4.0), 2.0));
   const physics::PhaseFunction& first = medium.groups.front().phase;
   cumulative_phase = {physics::CumulativePhase(first, theta_f / 4.0),

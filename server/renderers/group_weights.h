@@ -15,10 +15,6 @@
 
 namespace thunderhead::renderers {
 
-bool IsTranslucent(const scene::Rendering& rendering);
-// With an exact exponential and delta scaling: not the paper's transport.
-bool IsConsistent(const scene::Rendering& rendering);
-
 // One value a group, as a share of the group's extinction, where not said otherwise.
 struct GroupWeights {
   std::vector<double> eye;               // extinction of the eye's ray
@@ -36,7 +32,7 @@ struct GroupWeights {
   float phase_cut = 0.0F;            // haversine within which phase functions are held
   glm::vec2 cumulative_phase{0.0F};  // CP(theta_f / 4), CP(theta_f / 2): Vis eq. 13
 
-  GroupWeights(const Medium& medium, const scene::Rendering& rendering);
+  GroupWeights(const Medium& medium, const scene::MediumSettings& settings);
 
   // Sets the uniforms of common/phase.glsl.
   void BindPhase(const gl::Program& program) const;

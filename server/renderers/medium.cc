@@ -80,32 +80,15 @@ Boxes BoxesOf(const volume::BrickMap& bricks, const glm::dvec3& brick_m,
 
 }  // namespace
 
-physics::PhaseFunction UniformPhase(const scene::Scene& scene) {
-  return physics::PhaseOf(scene.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].optics);
-}
-
 Medium MediumOf(const scene::Scene& scene, const volume::HydrometeorFields& fields) {
-  const bool per_field_phase = scene::HasPerFieldPhase(scene.rendering.mode);
   Medium medium;
-  for (std::size_t i = 0; i < fields.fields.size(); ++i) {
-    const volume::HydrometeorField& field = fields.fields[i];
-    const scene::FieldParameters& look = scene.fields[physics::IndexOf(field.hydrometeor)];
-    if (!scene::IsDrawn(scene, field)) continue;
-    MediumGroup group;
-    group.albedo = look.optics.albedo;
-    group.phase =
-        per_field_phase
-            ? physics::PhaseOf(volume::WithDrawnRadius(field, look.optics, look.size_from_file))
-            : UniformPhase(scene);
-    if (scene.rendering.false_colors) group.color = look.optics.false_color;
-    group.detail = scene::DrawnDetail(scene, field.hydrometeor, fields.grid.spacing_m);
+  for (const scene::DrawnField& field : scene::DrawnFieldsOf(scene, fields)) {
+    const MediumGroup group{field.albedo, field.phase, field.color, field.detail};
     auto found = std::find(medium.groups.begin(), medium.groups.end(), group);
     if (found == medium.groups.end()) found = medium.groups.insert(found, group);
-    const volume::MassExtinction mass_extinction =
-        volume::MassExtinctionOf(field, look.optics, look.size_from_file);
-    medium.terms.push_back({static_cast<int>(i), look.scale * mass_extinction.m2_per_kg,
+    medium.terms.push_back({static_cast<int>(field.index), field.mass_extinction.m2_per_kg,
                             static_cast<int>(found - medium.groups.begin()),
-                            mass_extinction.by_cell});
+                            field.mass_extinction.by_cell});
     medium.hydrometeors.push_back(field.hydrometeor);
   }
   return medium;

@@ -35,9 +35,6 @@ struct Medium {
   std::vector<physics::Hydrometeor> hydrometeors;  // drawn
 };
 
-// The phase function of the "uniform phase" modes: that of cloud water in `scene`, for every field.
-physics::PhaseFunction UniformPhase(const scene::Scene& scene);
-
 Medium MediumOf(const scene::Scene& scene, const volume::HydrometeorFields& fields);
 
 // One noise, and how much of each group it multiplies.

@@ -53,7 +53,7 @@ struct DrawQuality {
 };
 
 struct RenderSettings {
-  scene::Rendering rendering;
+  scene::Technique technique;
   scene::View view;
   Illumination illumination;
   glm::ivec2 eye_size{1};  // of the eye buffer in pixels
@@ -63,6 +63,9 @@ struct RenderSettings {
   const gl::Texture2D* ground_distance = nullptr;
   // Of the medium in the eye buffer; none where that may be anywhere.
   const Cover* cover = nullptr;
+
+  // Of a technique that draws a medium.
+  const scene::MediumSettings& Medium() const;
 };
 
 }  // namespace thunderhead::renderers

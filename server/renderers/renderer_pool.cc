@@ -5,10 +5,11 @@
 
 namespace thunderhead::renderers {
 
-RendererPool::RendererPool(std::shared_ptr<BallFits> fits, std::size_t most, std::size_t most_bytes)
+RendererPool::RendererPool(std::shared_ptr<const TechniqueRegistry> registry, std::size_t most,
+                           std::size_t most_bytes)
     : most_(most),
       most_bytes_(most_bytes),
-      fits_(std::move(fits)),
+      registry_(std::move(registry)),
       programs_(std::make_shared<gl::ProgramCache>()) {}
 
 absl::StatusOr<LinearFrame> RendererPool::Draw(
@@ -30,7 +31,7 @@ SceneRenderer& RendererPool::Choose(
   // What must compute the extinction anew keeps nothing worth sharing.
   if (best == renderers_.end() || first_stage(*best) <= scene::Stage::kExtinction) {
     if (renderers_.size() < most_) {
-      renderers_.push_back(std::make_unique<SceneRenderer>(programs_, fits_));
+      renderers_.push_back(std::make_unique<SceneRenderer>(programs_, registry_));
     }
     best = renderers_.end() - 1;
   }

@@ -17,9 +17,10 @@ class RendererPool {
   // Keeps at most `most` renderers, and the least recently used of them only while all together
   // take no more than `most_bytes` on the device.
   explicit RendererPool(std::size_t most = 4, std::size_t most_bytes = std::size_t{1} << 30U)
-      : RendererPool(std::make_shared<BallFits>(), most, most_bytes) {}
-  // Metaballs are taken from and kept in `fits`.
-  explicit RendererPool(std::shared_ptr<BallFits> fits, std::size_t most = 4,
+      : RendererPool(std::make_shared<TechniqueRegistry>(TechniqueRegistry::BuiltIn()), most,
+                     most_bytes) {}
+  // The renderers draw with the techniques of `registry`.
+  explicit RendererPool(std::shared_ptr<const TechniqueRegistry> registry, std::size_t most = 4,
                         std::size_t most_bytes = std::size_t{1} << 30U);
 
   // Draws with the renderer that keeps most of what the scene needs. The frame lives until the next
@@ -35,7 +36,7 @@ class RendererPool {
 
   std::size_t most_;
   std::size_t most_bytes_;
-  std::shared_ptr<BallFits> fits_;
+  std::shared_ptr<const TechniqueRegistry> registry_;
   std::shared_ptr<gl::ProgramCache> programs_;
   std::vector<std::unique_ptr<SceneRenderer>> renderers_;  // the most recently used first
 };

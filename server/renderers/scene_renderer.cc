@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
-#include "renderers/cumulus/surface_of_scene.h"
 #include "scene/view.h"
 
 namespace thunderhead::renderers {
@@ -18,112 +18,104 @@ glm::ivec2 EyeSize(const scene::Scene& scene, const DrawQuality& quality) {
   return glm::max(glm::ivec2(glm::ceil(size * scale)), glm::ivec2(1));
 }
 
-std::vector<std::string> NotShownByMetaballs(const scene::Rendering& rendering) {
-  std::vector<std::string> not_shown = {"structure finer than the metaballs"};
-  if (scene::HasDetail(rendering.mode)) not_shown.emplace_back("turbulent detail");
-  if (rendering.transport == scene::Transport::kPaper) {
-    not_shown.emplace_back("the fields' albedo, phase functions and false colours");
-    not_shown.emplace_back("modes");
-  }
-  if (rendering.transport == scene::Transport::kDiffusion) {
-    not_shown.emplace_back("diffusion transport (it is drawn as consistent)");
-  }
-  return not_shown;
+// Of techniques that have a number of slices; 0 for others.
+int SlicesAt(const scene::Scene& scene, const DrawQuality& quality) {
+  const std::optional<int> slices = scene::SlicesOf(scene.rendering.technique);
+  if (!slices.has_value()) return 0;
+  return std::max(static_cast<int>(std::ceil(*slices * quality.slice_share)), 1);
 }
 
-void SayIfLightIsNotTraced(const scene::Scene& scene, std::vector<std::string>* not_shown) {
-  if (!scene.rendering.traced_light || scene::ShowsTracedLight(scene.rendering)) return;
-  not_shown->emplace_back("traced light (the light volume with diffusion transport shows it)");
-}
-
-void SayWhichLights(const scene::Scene& scene, std::vector<std::string>* not_shown) {
-  if (scene.lights.empty() || scene::ShowsLights(scene.rendering.renderer)) return;
-  not_shown->emplace_back("lights besides the sun (metaballs and the reference show them)");
+absl::Status UnknownTechnique(std::string_view name, const TechniqueRegistry& registry) {
+  std::string known;
+  for (const auto& technique : registry.All()) {
+    if (!technique->Capabilities().images) continue;
+    absl::StrAppend(&known, known.empty() ? "" : ", ", std::string(technique->Name()));
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat("there is no technique '", std::string(name), "' that draws; there are ", known));
 }
 
 }  // namespace
 
-SceneRenderer::SceneRenderer(std::shared_ptr<gl::ProgramCache> programs,
-                             std::shared_ptr<BallFits> fits)
-    : programs_(std::move(programs)),
-      surroundings_(programs_),
-      ground_(programs_),
-      half_angle_(programs_),
-      light_volume_(programs_),
-      fits_(std::move(fits)),
-      metaball_(programs_),
-      cumulus_(programs_),
-      eye_cover_(programs_),
-      picture_cover_(programs_) {}
+SceneRenderer::SceneRenderer(std::shared_ptr<gl::ProgramCache> programs, Registry registry)
+    : workspace_(std::move(programs)),
+      registry_(std::move(registry)),
+      eye_cover_(workspace_.programs),
+      picture_cover_(workspace_.programs) {}
 
-scene::Stage SceneRenderer::FirstStage(
-    const scene::Scene& scene,
-    const std::shared_ptr<const volume::HydrometeorFields>& fields) const {
+scene::Stage SceneRenderer::FirstStage(const scene::Scene& scene, const Fields& fields) const {
   if (!drawn_scene_.has_value() || drawn_fields_.lock() != fields) return scene::Stage::kStorm;
   return scene::FirstDirtyStage(*drawn_scene_, scene);
 }
 
-bool SceneRenderer::OnlyLightsDiffer(
-    scene::Scene scene, const std::shared_ptr<const volume::HydrometeorFields>& fields) const {
+scene::Stage SceneRenderer::FirstStageAt(const scene::Scene& scene, const Fields& fields,
+                                         const DrawQuality& quality) const {
+  const scene::Stage first = FirstStage(scene, fields);
+  if (quality.light_detail != drawn_quality_.light_detail ||
+      quality.single_precision != drawn_quality_.single_precision) {
+    return std::min(first, scene::Stage::kLight);
+  }
+  return quality == drawn_quality_ ? first : std::min(first, scene::Stage::kView);
+}
+
+bool SceneRenderer::OnlyLightsDiffer(scene::Scene scene, const Fields& fields) const {
   if (drawn_scene_.has_value()) scene.lights = drawn_scene_->lights;
   return FirstStage(scene, fields) > scene::Stage::kLight;
 }
 
 std::size_t SceneRenderer::Bytes() const {
-  return medium_.Bytes() + half_angle_.Bytes() + light_volume_.Bytes() + metaball_.Bytes() +
-         cumulus_.Bytes() + surroundings_.Bytes() + ground_.Bytes() + linear_.Texture().Bytes() +
-         eye_cover_.Bytes() + picture_cover_.Bytes();
+  std::size_t bytes = workspace_.medium.Bytes() + workspace_.surroundings.Bytes() +
+                      workspace_.ground.Bytes() + linear_.Texture().Bytes() + eye_cover_.Bytes() +
+                      picture_cover_.Bytes();
+  for (const auto& [name, technique] : techniques_) bytes += technique->Bytes();
+  return bytes;
 }
 
-absl::StatusOr<LinearFrame> SceneRenderer::Draw(
-    const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
-    const DrawQuality& quality) {
-  scene::Stage first = FirstStage(scene, fields);
-  sunlight_changed_ = first <= scene::Stage::kLight && !OnlyLightsDiffer(scene, fields);
-  if (quality != drawn_quality_) first = std::min(first, scene::Stage::kView);
-  if (quality.light_detail != drawn_quality_.light_detail ||
-      quality.single_precision != drawn_quality_.single_precision) {
-    first = std::min(first, scene::Stage::kLight);
+absl::StatusOr<Technique*> SceneRenderer::Choose(const scene::Scene& scene) {
+  const std::string_view name = scene::NameOf(scene.rendering.technique);
+  if (const auto made = techniques_.find(name); made != techniques_.end()) {
+    return made->second.get();
   }
+  const TechniqueFactory* factory = registry_->Find(name);
+  if (factory == nullptr) return UnknownTechnique(name, *registry_);
+  std::unique_ptr<Technique> technique = factory->Make(workspace_);
+  if (technique == nullptr) return UnknownTechnique(name, *registry_);
+  return techniques_.emplace(name, std::move(technique)).first->second.get();
+}
+
+absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& scene, const Fields& fields,
+                                                const DrawQuality& quality) {
+  const scene::Stage first = FirstStageAt(scene, fields, quality);
+  sunlight_changed_ = first <= scene::Stage::kLight && !OnlyLightsDiffer(scene, fields);
   drawn_scene_.reset();
-  std::vector<StageTime> stages;
-  drawn_by_ = scene.rendering.renderer;
+  THUNDERHEAD_ASSIGN_OR_RETURN(technique_, Choose(scene));
+  StageTimes times;
   if (first <= scene::Stage::kExtinction) {
-    THUNDERHEAD_RETURN_IF_ERROR(MakeContent(scene, *fields, &stages));
+    THUNDERHEAD_RETURN_IF_ERROR(MakeContent(scene, fields, &times));
   }
   if (first <= scene::Stage::kView) {
     const scene::View view = scene::ViewOf(scene, *fields);
-    if (first <= scene::Stage::kStorm) ground_.SetTerrain(*fields);
-    surroundings_.Update(scene, view, ground_);
-    ground_.SetCorrection(quality.correction);
+    if (first <= scene::Stage::kStorm) workspace_.ground.SetTerrain(*fields);
+    workspace_.surroundings.Update(scene, view, workspace_.ground);
+    workspace_.ground.SetCorrection(quality.correction);
     drawn_slices_ = 0;
     const Cover* cover = nullptr;
-    if (!Empty()) {
-      const double wanted = std::ceil(scene.rendering.slices * quality.slice_share);
-      drawn_slices_ = std::max(static_cast<int>(wanted), 1);
-      RenderSettings settings{
-          scene.rendering,         view,          surroundings_.IlluminationOf(scene),
-          EyeSize(scene, quality), drawn_slices_, quality};
-      if (drawn_by_ == scene::Renderer::kCumulus) {
-        THUNDERHEAD_RETURN_IF_ERROR(DrawCumulus(scene, &settings, first, &stages));
-      } else {
-        THUNDERHEAD_RETURN_IF_ERROR(DrawGround(&settings, &stages));
-        if (first <= scene::Stage::kLight) {
-          THUNDERHEAD_RETURN_IF_ERROR(FitMetaballs(scene, fields, &stages));
-        }
-        THUNDERHEAD_ASSIGN_OR_RETURN(cover, CoverOf(view, settings.eye_size, 1.0, &eye_cover_));
-        settings.cover = cover;
-        THUNDERHEAD_RETURN_IF_ERROR(DrawMedium(settings, first, &stages));
-      }
+    if (!technique_->Empty()) {
+      drawn_slices_ = SlicesAt(scene, quality);
+      THUNDERHEAD_ASSIGN_OR_RETURN(
+          cover,
+          DrawContent(scene, fields,
+                      {scene.rendering.technique, view,
+                       workspace_.surroundings.IlluminationOf(scene), EyeSize(scene, quality),
+                       drawn_slices_, quality},
+                      first, &times));
     } else {
-      ground_.ClearShadow();
+      workspace_.ground.ClearShadow();
     }
     if (!quality.places) {
-      base::Stopwatch stopwatch;
-      THUNDERHEAD_RETURN_IF_ERROR(
-          Composite(scene, view, quality.single_precision ? GL_RGBA32F : GL_RGBA16F, cover));
-      glFinish();
-      stages.push_back({"composite", stopwatch.ElapsedMs()});
+      THUNDERHEAD_RETURN_IF_ERROR(Timed(scene::FrameStage::kComposite, &times, [&] {
+        return Composite(scene, view, quality.single_precision ? GL_RGBA32F : GL_RGBA16F, cover);
+      }));
     }
   }
   drawn_scene_ = scene;
@@ -131,168 +123,71 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
   drawn_quality_ = quality;
   LinearFrame frame = Report(scene, *fields);
   if (quality.places) frame.radiance = &Eye();
-  frame.stages = std::move(stages);
+  frame.stages = std::move(times);
   return frame;
 }
 
-absl::Status SceneRenderer::MakeContent(const scene::Scene& scene,
-                                        const volume::HydrometeorFields& fields,
-                                        std::vector<StageTime>* stages) {
-  medium_ = ResidentMedium();
-  cumulus_.SetSurface({});
-  if (drawn_by_ == scene::Renderer::kCumulus) {
-    const base::Stopwatch stopwatch;
-    THUNDERHEAD_ASSIGN_OR_RETURN(const DrawnSurface drawn, SurfaceOf(scene, fields));
-    cumulus_.SetSurface(drawn.surface);
-    cumulus_fields_ = drawn.fields;
-    stages->push_back({"surface", stopwatch.ElapsedMs()});
-    return absl::OkStatus();
+absl::Status SceneRenderer::MakeContent(const scene::Scene& scene, const Fields& fields,
+                                        StageTimes* times) {
+  // Techniques of the medium share it; what others hold of another scene is given back.
+  std::erase_if(techniques_, [this](const auto& entry) {
+    return entry.second.get() != technique_ && !entry.second->DrawsMedium();
+  });
+  workspace_.medium = ResidentMedium();
+  if (technique_->DrawsMedium()) {
+    ResidentMedium::Cost cost;
+    workspace_.medium = ResidentMedium(scene, *fields, &workspace_.noises, &cost);
+    times->push_back({scene::FrameStage::kExtinction, cost.extinction_ms});
+    times->push_back({scene::FrameStage::kUpload, cost.upload_ms});
   }
-  ResidentMedium::Cost cost;
-  medium_ = ResidentMedium(scene, fields, &detail_noises_, &cost);
-  stages->push_back({"extinction", cost.extinction_ms});
-  stages->push_back({"upload", cost.upload_ms});
-  return absl::OkStatus();
+  return technique_->MakeContent(scene, fields, times);
 }
 
-bool SceneRenderer::Empty() const {
-  return drawn_by_ == scene::Renderer::kCumulus ? cumulus_.Empty() : medium_.Empty();
-}
-
-absl::Status SceneRenderer::DrawCumulus(const scene::Scene& scene, RenderSettings* settings,
-                                        scene::Stage first, std::vector<StageTime>* stages) {
-  base::Stopwatch stopwatch;
+absl::StatusOr<const Cover*> SceneRenderer::DrawContent(const scene::Scene& scene,
+                                                        const Fields& fields,
+                                                        RenderSettings settings, scene::Stage first,
+                                                        StageTimes* times) {
   if (first <= scene::Stage::kLight) {
-    THUNDERHEAD_RETURN_IF_ERROR(cumulus_.CastShadow(*settings));
-    ground_.ClearShadow();
-    if (settings->illumination.towards_sun.z > 0.0) {
-      THUNDERHEAD_ASSIGN_OR_RETURN(gl::Texture2D shadow, cumulus_.GroundShadow());
-      ground_.TakeShadow(std::move(shadow), cumulus_.ShadowFrame(), cumulus_.Middle_m());
-    }
-    glFinish();
-    stages->push_back({"light", stopwatch.Restart()});
+    THUNDERHEAD_RETURN_IF_ERROR(technique_->CarryLight(scene, fields, settings, times));
   }
-  if (ground_.MayHide(settings->view)) {
-    THUNDERHEAD_RETURN_IF_ERROR(ground_.DrawDistance(settings->view, settings->eye_size));
-    settings->ground_distance = &ground_.Distance();
-    glFinish();
-    stages->push_back({"ground", stopwatch.Restart()});
-  }
-  THUNDERHEAD_RETURN_IF_ERROR(
-      cumulus_.DrawView(*settings, surroundings_.LightMap(scene), &detail_noises_));
-  glFinish();
-  stages->push_back({"view", stopwatch.Restart()});
-  return absl::OkStatus();
+  THUNDERHEAD_RETURN_IF_ERROR(DrawGround(&settings, times));
+  THUNDERHEAD_ASSIGN_OR_RETURN(settings.cover,
+                               CoverOf(settings.view, settings.eye_size, 1.0, &eye_cover_));
+  THUNDERHEAD_RETURN_IF_ERROR(technique_->DrawView(scene, settings, times));
+  return settings.cover;
 }
 
-absl::Status SceneRenderer::DrawGround(RenderSettings* settings, std::vector<StageTime>* stages) {
-  // The light volume brings its own.
-  const bool casts = sunlight_changed_ && drawn_by_ != scene::Renderer::kLightVolume;
-  const bool may_hide = ground_.MayHide(settings->view);
+absl::Status SceneRenderer::DrawGround(RenderSettings* settings, StageTimes* times) {
+  Ground& ground = workspace_.ground;
+  const bool casts = sunlight_changed_ && !technique_->CastsShadow();
+  const bool may_hide = ground.MayHide(settings->view);
   if (!casts && !may_hide) return absl::OkStatus();
-  base::Stopwatch stopwatch;
-  if (casts) {
-    THUNDERHEAD_RETURN_IF_ERROR(ground_.CastShadow(medium_, *settings));
-  }
-  if (may_hide) {
-    THUNDERHEAD_RETURN_IF_ERROR(ground_.DrawDistance(settings->view, settings->eye_size));
-    settings->ground_distance = &ground_.Distance();
-  }
-  glFinish();
-  stages->push_back({"ground", stopwatch.ElapsedMs()});
-  return absl::OkStatus();
-}
-
-void SceneRenderer::ShareShadow(const glm::dvec3& towards_sun) {
-  if (towards_sun.z <= 0.0) return ground_.ClearShadow();
-  ground_.ShareShadow(&light_volume_.Shadow(), LightFrameOf({medium_.HalfExtent_m()}, towards_sun),
-                      medium_.Middle_m());
-}
-
-absl::Status SceneRenderer::FitMetaballs(
-    const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
-    std::vector<StageTime>* stages) {
-  if (scene.rendering.renderer != scene::Renderer::kMetaball) return absl::OkStatus();
-  const bool kept = fits_->Has(scene, fields);
-  const base::Stopwatch stopwatch;
-  THUNDERHEAD_ASSIGN_OR_RETURN(balls_, fits_->Get(scene, fields));
-  if (!kept) stages->push_back({"fit", stopwatch.ElapsedMs()});
-  return absl::OkStatus();
-}
-
-absl::Status SceneRenderer::DrawMedium(const RenderSettings& settings, scene::Stage first,
-                                       std::vector<StageTime>* stages) {
-  base::Stopwatch stopwatch;
-  const auto ran = [&](const char* stage) {
-    glFinish();
-    stages->push_back({stage, stopwatch.Restart()});
-  };
-  const bool light_changed = first <= scene::Stage::kLight;
-  switch (settings.rendering.renderer) {
-    case scene::Renderer::kHalfAngle:
-      THUNDERHEAD_RETURN_IF_ERROR(half_angle_.Render(medium_, settings, light_changed));
-      ran("slices");
-      break;
-    case scene::Renderer::kLightVolume:
-      if (light_changed) {
-        THUNDERHEAD_RETURN_IF_ERROR(light_volume_.CarryLight(medium_, settings));
-        ShareShadow(settings.illumination.towards_sun);
-        ran("light");
-      }
-      THUNDERHEAD_RETURN_IF_ERROR(light_volume_.DrawView(medium_, settings));
-      ran("view");
-      break;
-    case scene::Renderer::kMetaball:
-      if (light_changed) {
-        THUNDERHEAD_RETURN_IF_ERROR(metaball_.CarryLight(*balls_, medium_.Content(), settings));
-        ran("light");
-      }
-      THUNDERHEAD_RETURN_IF_ERROR(metaball_.DrawView(settings));
-      ran("view");
-      break;
-    case scene::Renderer::kReference:
-      return absl::InvalidArgumentError("the reference is traced, not drawn");
-    case scene::Renderer::kCumulus:
-      return absl::InternalError("a cumulus has no medium");
-  }
-  return absl::OkStatus();
+  return Timed(scene::FrameStage::kGround, times, [&]() -> absl::Status {
+    if (casts) {
+      THUNDERHEAD_RETURN_IF_ERROR(ground.CastShadow(workspace_.medium, *settings));
+    }
+    if (may_hide) {
+      THUNDERHEAD_RETURN_IF_ERROR(ground.DrawDistance(settings->view, settings->eye_size));
+      settings->ground_distance = &ground.Distance();
+    }
+    return absl::OkStatus();
+  });
 }
 
 const gl::Texture2D& SceneRenderer::Eye() const {
-  if (Empty()) return nothing_;
-  switch (drawn_by_) {
-    case scene::Renderer::kHalfAngle:
-      return half_angle_.Eye();
-    case scene::Renderer::kCumulus:
-      return cumulus_.Eye();
-    case scene::Renderer::kMetaball:
-      return metaball_.Eye();
-    case scene::Renderer::kLightVolume:
-    case scene::Renderer::kReference:
-      break;
-  }
-  return light_volume_.Eye();
+  return technique_->Empty() ? nothing_ : technique_->Eye();
 }
 
 volume::WorldBox SceneRenderer::Box() const {
-  if (Empty()) return {};
-  if (drawn_by_ == scene::Renderer::kCumulus) {
-    return {cumulus_.Middle_m() - cumulus_.HalfExtent_m(),
-            cumulus_.Middle_m() + cumulus_.HalfExtent_m()};
-  }
-  if (drawn_by_ == scene::Renderer::kMetaball && !metaball_.Box().Empty()) {
-    return {metaball_.Box().low_m, metaball_.Box().high_m};
-  }
-  return {medium_.Middle_m() - medium_.HalfExtent_m(), medium_.Middle_m() + medium_.HalfExtent_m()};
+  return technique_->Empty() ? volume::WorldBox{} : technique_->Box();
 }
 
 absl::StatusOr<const Cover*> SceneRenderer::CoverOf(const scene::View& view,
                                                     const glm::ivec2& size_px, double margin_px,
                                                     Cover* cover) {
-  if (drawn_by_ != scene::Renderer::kHalfAngle && drawn_by_ != scene::Renderer::kLightVolume) {
-    return nullptr;
-  }
-  THUNDERHEAD_RETURN_IF_ERROR(cover->Draw(medium_.OccupiedBoxes(), view, size_px, margin_px));
+  if (!technique_->KeepsToCover()) return nullptr;
+  THUNDERHEAD_RETURN_IF_ERROR(
+      cover->Draw(workspace_.medium.OccupiedBoxes(), view, size_px, margin_px));
   return cover;
 }
 
@@ -310,42 +205,23 @@ absl::Status SceneRenderer::Composite(const scene::Scene& scene, const scene::Vi
     THUNDERHEAD_ASSIGN_OR_RETURN(cover, CoverOf(view, size_px, margin_px, &picture_cover_));
   }
   linear_.Resize(format, size_px, cover);
-  return surroundings_.Composite(scene, view, ground_, Box(), Eye(), linear_, cover);
+  return workspace_.surroundings.Composite(scene, view, workspace_.ground, Box(), Eye(), linear_,
+                                           cover);
 }
 
 LinearFrame SceneRenderer::Report(const scene::Scene& scene,
                                   const volume::HydrometeorFields& fields) const {
   LinearFrame frame;
   frame.radiance = &linear_.Texture();
-  frame.fields = medium_.Content().hydrometeors;
+  frame.content = technique_->Describe(scene, fields);
   frame.slices = drawn_slices_;
   frame.device_bytes = Bytes();
-  if (drawn_by_ == scene::Renderer::kCumulus) {
-    frame.fields = cumulus_fields_;
-    frame.slices = 0;
-    frame.ellipsoids = cumulus_.BubbleCount();
-    frame.not_shown = NotShownByCumulus(scene, fields);
-    SayWhichLights(scene, &frame.not_shown);
-    SayIfLightIsNotTraced(scene, &frame.not_shown);
-    return frame;
+  const TechniqueFactory& factory = *registry_->Find(scene::NameOf(scene.rendering.technique));
+  if (!scene.lights.empty() && !factory.Capabilities().lights) {
+    frame.content.not_shown.push_back(
+        {scene::NotShown::Code::kLights,
+         "lights besides the sun (metaballs and the reference show them)"});
   }
-  if (!medium_.Empty()) {
-    const glm::dvec3 box_m = 2.0 * medium_.HalfExtent_m();
-    const glm::dvec3 domain_m = fields.grid.HighCorner_m() - fields.grid.low_corner_m;
-    const bool leaps = drawn_by_ != scene::Renderer::kMetaball;
-    frame.occupied_share = (leaps ? medium_.OccupiedShare() : 1.0) * box_m.x * box_m.y * box_m.z /
-                           (domain_m.x * domain_m.y * domain_m.z);
-  }
-  if (scene.rendering.renderer == scene::Renderer::kMetaball) {
-    frame.slices = 0;
-    if (!medium_.Empty()) {
-      frame.balls = static_cast<int>(balls_->balls.size());
-      frame.fit_error = balls_->relative_error;
-    }
-    frame.not_shown = NotShownByMetaballs(scene.rendering);
-  }
-  SayWhichLights(scene, &frame.not_shown);
-  SayIfLightIsNotTraced(scene, &frame.not_shown);
   return frame;
 }
 

@@ -2,6 +2,7 @@
 // the first stage that a change dirties. Owns GL objects: use it on the context's thread.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,84 +10,61 @@
 
 #include "absl/status/statusor.h"
 #include "gl/objects.h"
-#include "renderers/cumulus/cumulus_renderer.h"
-#include "renderers/half_angle/half_angle_renderer.h"
-#include "renderers/light_volume/light_volume_renderer.h"
-#include "renderers/medium.h"
-#include "renderers/metaball/ball_fit.h"
-#include "renderers/metaball/metaball_renderer.h"
-#include "renderers/sky_and_ground.h"
+#include "renderers/technique.h"
+#include "renderers/technique_registry.h"
 #include "scene/scene.h"
 #include "volume/hydrometeor_fields.h"
 
 namespace thunderhead::renderers {
 
-// Wall time of one stage: "extinction", "upload"; "fit" of metaballs; "surface" of a cumulus;
-// "slices" of half-angle slicing, or "light" and "view" of the others; "ground", "composite".
-struct StageTime {
-  std::string stage;
-  double milliseconds = 0.0;
-};
-
 struct LinearFrame {
   const gl::Texture2D* radiance = nullptr;  // RGBA float; lives until the next Draw
-  std::vector<StageTime> stages;            // those that ran
-  std::vector<physics::Hydrometeor> fields;
+  StageTimes stages;                        // those that ran
+  Content content;
   int slices = 0;
   std::size_t device_bytes = 0;
-  double occupied_share = 0.0;
-  int balls = 0;                       // metaballs drawn
-  double fit_error = 0.0;              // of those, root mean square over the extinction's own
-  int ellipsoids = 0;                  // of a cumulus
-  std::vector<std::string> not_shown;  // what the scene asks for and the renderer cannot show
 };
 
 class SceneRenderer {
  public:
-  // Programs are linked in `programs`, metaballs kept in `fits`, which several renderers may share.
+  using Fields = std::shared_ptr<const volume::HydrometeorFields>;
+  using Registry = std::shared_ptr<const TechniqueRegistry>;
+
+  // Programs are linked in `programs`; the techniques are those of `registry`, whose work on the CPU
+  // (metaballs) several renderers may share.
   explicit SceneRenderer(
       std::shared_ptr<gl::ProgramCache> programs = std::make_shared<gl::ProgramCache>(),
-      std::shared_ptr<BallFits> fits = std::make_shared<BallFits>());
+      Registry registry = std::make_shared<TechniqueRegistry>(TechniqueRegistry::BuiltIn()));
 
   // The first stage that Draw would rerun, at the quality of the last one.
-  scene::Stage FirstStage(const scene::Scene& scene,
-                          const std::shared_ptr<const volume::HydrometeorFields>& fields) const;
+  scene::Stage FirstStage(const scene::Scene& scene, const Fields& fields) const;
 
-  // Draws `scene` from the fields of its storm and time.
-  absl::StatusOr<LinearFrame> Draw(const scene::Scene& scene,
-                                   const std::shared_ptr<const volume::HydrometeorFields>& fields,
+  // Draws `scene` from the fields of its storm and time. INVALID_ARGUMENT for a technique that is
+  // not registered or cannot be drawn.
+  absl::StatusOr<LinearFrame> Draw(const scene::Scene& scene, const Fields& fields,
                                    const DrawQuality& quality);
 
   // On the device.
   std::size_t Bytes() const;
 
  private:
-  // Makes what the renderer draws: the medium, or the surface of a cumulus.
-  absl::Status MakeContent(const scene::Scene& scene, const volume::HydrometeorFields& fields,
-                           std::vector<StageTime>* stages);
-  bool Empty() const;
-  // True if what sunlight does is as it was drawn: only lights besides the sun may differ up to the
-  // stage of light.
-  bool OnlyLightsDiffer(scene::Scene scene,
-                        const std::shared_ptr<const volume::HydrometeorFields>& fields) const;
-  // The storm's shadow, and what of the storm the ground hides.
-  absl::Status DrawGround(RenderSettings* settings, std::vector<StageTime>* stages);
-  // Gives the ground the shadow that the light volume has found.
-  void ShareShadow(const glm::dvec3& towards_sun);
-  // The metaballs of the scene, if it is drawn by them.
-  absl::Status FitMetaballs(const scene::Scene& scene,
-                            const std::shared_ptr<const volume::HydrometeorFields>& fields,
-                            std::vector<StageTime>* stages);
-  // Reruns what `first` dirties of the light and the view; appends the times of what ran.
-  absl::Status DrawMedium(const RenderSettings& settings, scene::Stage first,
-                          std::vector<StageTime>* stages);
-  // Reruns what `first` dirties of a cumulus.
-  absl::Status DrawCumulus(const scene::Scene& scene, RenderSettings* settings, scene::Stage first,
-                           std::vector<StageTime>* stages);
+  // The scene's technique, made if it was not used before.
+  absl::StatusOr<Technique*> Choose(const scene::Scene& scene);
+  scene::Stage FirstStageAt(const scene::Scene& scene, const Fields& fields,
+                            const DrawQuality& quality) const;
+  absl::Status MakeContent(const scene::Scene& scene, const Fields& fields, StageTimes* times);
+  // Nothing but lights besides the sun differs up to the stage of light.
+  bool OnlyLightsDiffer(scene::Scene scene, const Fields& fields) const;
+  // Reruns what `first` dirties of the light and the view. Returns the eye buffer's cover, if any.
+  absl::StatusOr<const Cover*> DrawContent(const scene::Scene& scene, const Fields& fields,
+                                           RenderSettings settings, scene::Stage first,
+                                           StageTimes* times);
+  // The storm's shadow, and the distance of ground that hides a part of the storm.
+  absl::Status DrawGround(RenderSettings* settings, StageTimes* times);
   const gl::Texture2D& Eye() const;
   // Around what was drawn.
   volume::WorldBox Box() const;
-  // Marks where the medium may be in a picture of `size_px`, if the renderer draws it nowhere else;
+  // Marks where the medium may be in a picture of `size_px`, if the technique draws it nowhere else;
   // `margin_px` is how far it is spread there.
   absl::StatusOr<const Cover*> CoverOf(const scene::View& view, const glm::ivec2& size_px,
                                        double margin_px, Cover* cover);
@@ -94,21 +72,12 @@ class SceneRenderer {
                          const Cover* eye_cover);
   LinearFrame Report(const scene::Scene& scene, const volume::HydrometeorFields& fields) const;
 
-  std::shared_ptr<gl::ProgramCache> programs_;
-  SkyAndGround surroundings_;
-  Ground ground_;
-  HalfAngleRenderer half_angle_;
-  LightVolumeRenderer light_volume_;
-  std::shared_ptr<BallFits> fits_;
-  std::shared_ptr<const BallCloud> balls_;
-  MetaballRenderer metaball_;
-  CumulusRenderer cumulus_;
-  scene::Renderer drawn_by_ = scene::Renderer::kHalfAngle;
-  std::vector<physics::Hydrometeor> cumulus_fields_;  // that the surface was made of
-  DetailNoises detail_noises_;
-  ResidentMedium medium_;
-  Cover eye_cover_;      // of the medium in the eye buffer
-  Cover picture_cover_;  // and in a picture of another size
+  Workspace workspace_;
+  Registry registry_;
+  std::map<std::string, std::unique_ptr<Technique>, std::less<>> techniques_;
+  Technique* technique_ = nullptr;  // of the last Draw
+  Cover eye_cover_;                 // of the medium in the eye buffer
+  Cover picture_cover_;             // and in a picture of another size
   CoveredTarget linear_;
   gl::Texture2D nothing_;  // an eye buffer without medium
 

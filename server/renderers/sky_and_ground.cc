@@ -50,8 +50,10 @@ void SkyAndGround::Update(const scene::Scene& scene, const scene::View& view,
     eye_height_m_ = -1.0;
     tables_.clear();
   }
-  // Diffusion transport alone asks for it.
-  if (scene.rendering.transport == scene::Transport::kDiffusion && !around_sun_.has_value()) {
+  // Used by diffusion transport alone.
+  const scene::MediumSettings* medium = scene::MediumSettingsOf(scene.rendering.technique);
+  const bool diffuses = medium != nullptr && medium->transport == scene::Transport::kDiffusion;
+  if (diffuses && !around_sun_.has_value()) {
     sky_->TurnTo(eastern_sun);
     around_sun_ = AroundSun(eastern_sun);
   }

@@ -1,5 +1,7 @@
 #include "scene/drawn_fields.h"
 
+#include "physics/optics.h"
+
 namespace thunderhead::scene {
 namespace {
 

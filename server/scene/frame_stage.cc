@@ -1,6 +1,6 @@
 #include "scene/frame_stage.h"
 
-#include "base/check.h"
+#include "base/status.h"
 
 namespace thunderhead::scene {
 

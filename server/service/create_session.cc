@@ -24,7 +24,7 @@ grpc::ServerUnaryReactor* CreateSession(Engine& engine, grpc::CallbackServerCont
   absl::Status status = CheckLimits(*request);
   v1::Scene& scene = *response->mutable_scene();
   scene = request->scene();
-  if (status.ok()) status = PrepareScene(engine.store, scene);
+  if (status.ok()) status = PrepareScene(engine.store, engine.loop.Techniques(), scene);
   if (!status.ok()) return Finished(context, status);
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   FrameThen(engine, scene, [=, &engine](const absl::Status& framed) {

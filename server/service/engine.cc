@@ -8,6 +8,7 @@
 #include "base/status.h"
 #include "service/camera_messages.h"
 #include "service/scene_messages.h"
+#include "service/technique_messages.h"
 
 namespace thunderhead::service {
 namespace {
@@ -44,8 +45,10 @@ absl::Status CheckTime(const volume::StormInfo& storm, std::uint32_t time_index,
                                                  "' has times 0 to ", storm.times.size() - 1));
 }
 
-absl::Status PrepareScene(const volume::StormStore& store, v1::Scene& scene) {
+absl::Status PrepareScene(const volume::StormStore& store,
+                          const std::vector<session::TechniqueInfo>& techniques, v1::Scene& scene) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckScene(scene));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckRendering(scene.rendering(), techniques));
   THUNDERHEAD_ASSIGN_OR_RETURN(const volume::StormInfo* storm, FindStorm(store, scene.storm_id()));
   THUNDERHEAD_RETURN_IF_ERROR(CheckTime(*storm, scene.time_index(), "scene.time_index"));
   FillSceneDefaults(scene, *storm);

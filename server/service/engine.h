@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
@@ -36,7 +37,9 @@ absl::Status CheckTime(const volume::StormInfo& storm, std::uint32_t time_index,
                        const std::string& path);
 
 // Checks a scene (whose limits were checked) and fills in every default that needs no fields.
-absl::Status PrepareScene(const volume::StormStore& store, v1::Scene& scene);
+// `techniques` are those that can be chosen.
+absl::Status PrepareScene(const volume::StormStore& store,
+                          const std::vector<session::TechniqueInfo>& techniques, v1::Scene& scene);
 
 // Frames the condensate if the camera needs it, then calls `then`: at once when nothing must be
 // read, on the executor otherwise. `scene` must live until then.

@@ -26,8 +26,8 @@ absl::Status Encode(const session::DisplayFrame& picture, const v1::RenderImageR
   response.set_format(jpeg ? v1::IMAGE_FORMAT_JPEG : v1::IMAGE_FORMAT_PNG);
   response.set_width_px(static_cast<std::uint32_t>(picture.width_px));
   response.set_height_px(static_cast<std::uint32_t>(picture.height_px));
-  for (const session::StageCost& cost : picture.stages) ToMessage(cost, *response.add_stages());
-  ToMessage({"encode", stopwatch.ElapsedMs()}, *response.add_stages());
+  for (const scene::StageTime& time : picture.stages) ToMessage(time, *response.add_stages());
+  ToMessage({scene::FrameStage::kEncode, stopwatch.ElapsedMs()}, *response.add_stages());
   ToMessage(picture.modelled, *response.mutable_modelled());
   if (picture.accuracy.has_value()) ToMessage(*picture.accuracy, *response.mutable_accuracy());
   return absl::OkStatus();
@@ -63,13 +63,13 @@ class PictureReactor : public grpc::ServerUnaryReactor {
     base::Stopwatch stopwatch;
     THUNDERHEAD_ASSIGN_OR_RETURN(
         auto fields, engine_.store.Get(scene.storm_id(), static_cast<int>(scene.time_index()), {}));
-    ToMessage({"read", stopwatch.ElapsedMs()}, *response_.add_stages());
+    ToMessage({scene::FrameStage::kRead, stopwatch.ElapsedMs()}, *response_.add_stages());
     FrameCondensate(scene, *fields);
     const scene::Scene drawn = ToScene(scene);
     stopwatch.Restart();
     THUNDERHEAD_RETURN_IF_ERROR(engine_.loop.Prepare(drawn, fields));
-    if (drawn.rendering.renderer == scene::Renderer::kMetaball) {
-      ToMessage({"fit", stopwatch.ElapsedMs()}, *response_.add_stages());
+    if (std::holds_alternative<scene::Metaballs>(drawn.rendering.technique)) {
+      ToMessage({scene::FrameStage::kFit, stopwatch.ElapsedMs()}, *response_.add_stages());
     }
     engine_.loop.RenderImage(
         {drawn, std::move(fields), cancelled_,
@@ -98,11 +98,11 @@ grpc::ServerUnaryReactor* RenderImage(Engine& engine, grpc::CallbackServerContex
                                       v1::RenderImageResponse* response) {
   absl::Status status = CheckLimits(*request);
   *response->mutable_scene() = request->scene();
-  if (status.ok()) status = PrepareScene(engine.store, *response->mutable_scene());
+  if (status.ok()) status = PrepareScene(engine.store, engine.loop.Techniques(), *response->mutable_scene());
   if (!status.ok()) return Finished(context, status);
-  if (response->scene().rendering().renderer() == v1::RENDERER_REFERENCE) {
+  if (response->scene().rendering().has_reference()) {
     return Finished(context, absl::InvalidArgumentError(
-                                 "scene.rendering.renderer is RENDERER_REFERENCE, which only "
+                                 "scene.rendering.reference is given, which only "
                                  "sessions show; for a file use thunderhead render --renderer "
                                  "reference"));
   }

@@ -7,8 +7,10 @@
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "service/camera_messages.h"
+#include "service/enum_tables.h"
 #include "service/limits_check.h"
 #include "service/sun_messages.h"
+#include "service/technique_messages.h"
 #include "volume/visible_box.h"
 
 namespace thunderhead::service {
@@ -35,62 +37,49 @@ constexpr std::array kPhaseKinds = {
     std::pair{v1::PhaseFunction::KIND_ICE_PLATES, physics::PhaseKind::kIcePlates},
     std::pair{v1::PhaseFunction::KIND_ICE_ROUGH, physics::PhaseKind::kIceRough},
 };
-constexpr std::array kModes = {
-    std::pair{v1::MODE_PER_FIELD_PHASE_TRANSLUCENT, scene::Mode::kPerFieldPhaseTranslucent},
-    std::pair{v1::MODE_PER_FIELD_PHASE_DETAIL_TRANSLUCENT,
-              scene::Mode::kPerFieldPhaseDetailTranslucent},
-    std::pair{v1::MODE_UNIFORM_PHASE_LOW_ALBEDO, scene::Mode::kUniformPhaseLowAlbedo},
-    std::pair{v1::MODE_UNIFORM_PHASE_TRANSLUCENT, scene::Mode::kUniformPhaseTranslucent},
-};
-constexpr std::array kRenderers = {
-    std::pair{v1::RENDERER_LIGHT_VOLUME, scene::Renderer::kLightVolume},
-    std::pair{v1::RENDERER_HALF_ANGLE, scene::Renderer::kHalfAngle},
-    std::pair{v1::RENDERER_REFERENCE, scene::Renderer::kReference},
-    std::pair{v1::RENDERER_METABALL, scene::Renderer::kMetaball},
-    std::pair{v1::RENDERER_CUMULUS, scene::Renderer::kCumulus},
-};
-constexpr std::array kCumulusSources = {
-    std::pair{v1::Cumulus::SOURCE_STORM, scene::CumulusSource::kStorm},
-    std::pair{v1::Cumulus::SOURCE_CAULIFLOWER, scene::CumulusSource::kCauliflower},
-    std::pair{v1::Cumulus::SOURCE_FAIR_WEATHER_CUMULUS, scene::CumulusSource::kFairWeatherCumulus},
-    std::pair{v1::Cumulus::SOURCE_CONGESTUS, scene::CumulusSource::kCongestus},
-    std::pair{v1::Cumulus::SOURCE_CUMULUS_FIELD, scene::CumulusSource::kCumulusField},
-    std::pair{v1::Cumulus::SOURCE_ELLIPSOID, scene::CumulusSource::kEllipsoid},
-};
-constexpr std::array kCumulusComponents = {
-    std::pair{v1::Cumulus::COMPONENT_ALL, scene::CumulusComponent::kAll},
-    std::pair{v1::Cumulus::COMPONENT_DIRECT, scene::CumulusComponent::kDirect},
-    std::pair{v1::Cumulus::COMPONENT_INTER_REFLECTION, scene::CumulusComponent::kInterReflection},
-    std::pair{v1::Cumulus::COMPONENT_AMBIENT, scene::CumulusComponent::kAmbient},
-    std::pair{v1::Cumulus::COMPONENT_CORONA, scene::CumulusComponent::kCorona},
-    std::pair{v1::Cumulus::COMPONENT_BALLS, scene::CumulusComponent::kBalls},
-};
-constexpr std::array kTransports = {
-    std::pair{v1::TRANSPORT_CONSISTENT, scene::Transport::kConsistent},
-    std::pair{v1::TRANSPORT_PAPER, scene::Transport::kPaper},
-    std::pair{v1::TRANSPORT_DIFFUSION, scene::Transport::kDiffusion},
-};
 constexpr std::array kToneMaps = {
     std::pair{v1::TONE_MAP_FILMIC, scene::ToneMap::kFilmic},
     std::pair{v1::TONE_MAP_LINEAR, scene::ToneMap::kLinear},
 };
 
-// The value beside `message`; the first row is the default.
-template <typename Table, typename Message>
-auto ValueOf(const Table& table, Message message) {
-  for (const auto& [from, to] : table) {
-    if (from == message) return to;
-  }
-  return table.front().second;
-}
-
-template <typename Table, typename Value>
-auto MessageOf(const Table& table, Value value) {
-  for (const auto& [from, to] : table) {
-    if (to == value) return from;
-  }
-  return table.front().first;
-}
+constexpr std::array kStages = {
+    std::pair{v1::STAGE_READ, scene::FrameStage::kRead},
+    std::pair{v1::STAGE_EXTINCTION, scene::FrameStage::kExtinction},
+    std::pair{v1::STAGE_UPLOAD, scene::FrameStage::kUpload},
+    std::pair{v1::STAGE_FIT, scene::FrameStage::kFit},
+    std::pair{v1::STAGE_SURFACE, scene::FrameStage::kSurface},
+    std::pair{v1::STAGE_SLICES, scene::FrameStage::kSlices},
+    std::pair{v1::STAGE_LIGHT, scene::FrameStage::kLight},
+    std::pair{v1::STAGE_VIEW, scene::FrameStage::kView},
+    std::pair{v1::STAGE_GROUND, scene::FrameStage::kGround},
+    std::pair{v1::STAGE_COMPOSITE, scene::FrameStage::kComposite},
+    std::pair{v1::STAGE_TRACE, scene::FrameStage::kTrace},
+    std::pair{v1::STAGE_CORRECTION, scene::FrameStage::kCorrection},
+    std::pair{v1::STAGE_TONE, scene::FrameStage::kTone},
+    std::pair{v1::STAGE_READ_BACK, scene::FrameStage::kReadBack},
+    std::pair{v1::STAGE_ENCODE, scene::FrameStage::kEncode},
+};
+constexpr std::array kNotShownCodes = {
+    std::pair{v1::NotShown::CODE_FINE_STRUCTURE, scene::NotShown::Code::kFineStructure},
+    std::pair{v1::NotShown::CODE_DETAIL, scene::NotShown::Code::kDetail},
+    std::pair{v1::NotShown::CODE_FIELD_OPTICS, scene::NotShown::Code::kFieldOptics},
+    std::pair{v1::NotShown::CODE_TRACED_LIGHT, scene::NotShown::Code::kTracedLight},
+    std::pair{v1::NotShown::CODE_LIGHTS, scene::NotShown::Code::kLights},
+    std::pair{v1::NotShown::CODE_FIELDS, scene::NotShown::Code::kFields},
+    std::pair{v1::NotShown::CODE_STORM, scene::NotShown::Code::kStorm},
+    std::pair{v1::NotShown::CODE_OTHER, scene::NotShown::Code::kOther},
+};
+constexpr std::array kUnmetCodes = {
+    std::pair{v1::Unmet::CODE_ERROR_OUT_OF_REACH, accuracy::Unmet::Code::kErrorOutOfReach},
+    std::pair{v1::Unmet::CODE_TIME_OUT_OF_REACH, accuracy::Unmet::Code::kTimeOutOfReach},
+};
+constexpr std::array kProblemCodes = {
+    std::pair{v1::Problem::CODE_INTERNAL, session::Problem::Code::kInternal},
+    std::pair{v1::Problem::CODE_STORM_GONE, session::Problem::Code::kStormGone},
+    std::pair{v1::Problem::CODE_STORM_UNREADABLE, session::Problem::Code::kStormUnreadable},
+    std::pair{v1::Problem::CODE_SCENE, session::Problem::Code::kScene},
+    std::pair{v1::Problem::CODE_BUSY, session::Problem::Code::kBusy},
+};
 
 void FillFieldDefaults(v1::FieldParameters& field, physics::Hydrometeor hydrometeor) {
   const physics::ParticleOptics& optics = physics::DefaultOptics(hydrometeor);
@@ -154,25 +143,6 @@ scene::DirectionalLight ToLight(const v1::DirectionalLight& message) {
   const v1::Color& color = message.color();
   return {message.azimuth_deg(), message.elevation_deg(),
           glm::dvec3(color.red(), color.green(), color.blue()), message.irradiance()};
-}
-
-scene::Metaballs ToMetaballs(const v1::Metaballs& message) {
-  return {static_cast<int>(message.count()), message.isotropic(), message.albedo(),
-          message.optical_depth()};
-}
-
-scene::Cumulus ToCumulus(const v1::Cumulus& message) {
-  scene::Cumulus cumulus;
-  cumulus.source = ValueOf(kCumulusSources, message.source());
-  cumulus.seed = message.seed();
-  cumulus.scales = static_cast<int>(message.scales());
-  cumulus.least_extinction_per_m = message.least_extinction_per_m();
-  cumulus.corona = message.corona();
-  cumulus.trap = message.trap();
-  cumulus.transmission = message.transmission();
-  cumulus.roughness = message.roughness();
-  cumulus.component = ValueOf(kCumulusComponents, message.component());
-  return cumulus;
 }
 
 scene::Accuracy ToAccuracy(const v1::Accuracy& message) {
@@ -269,18 +239,7 @@ void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
     white.set_blue(1.0F);
   }
   scene.mutable_output();
-  v1::Rendering& rendering = *scene.mutable_rendering();
-  rendering.set_renderer(MessageOf(kRenderers, ValueOf(kRenderers, rendering.renderer())));
-  rendering.set_mode(MessageOf(kModes, ValueOf(kModes, rendering.mode())));
-  rendering.set_transport(MessageOf(kTransports, ValueOf(kTransports, rendering.transport())));
-  if (!rendering.has_false_colors()) rendering.set_false_colors(false);
-  if (!rendering.has_traced_light()) rendering.set_traced_light(false);
-  v1::Metaballs& metaballs = *rendering.mutable_metaballs();
-  if (!metaballs.has_isotropic()) metaballs.set_isotropic(false);
-  v1::Cumulus& cumulus = *rendering.mutable_cumulus();
-  cumulus.set_source(MessageOf(kCumulusSources, ValueOf(kCumulusSources, cumulus.source())));
-  cumulus.set_component(
-      MessageOf(kCumulusComponents, ValueOf(kCumulusComponents, cumulus.component())));
+  FillTechniqueDefaults(*scene.mutable_rendering());
   v1::Display& display = *scene.mutable_display();
   display.set_tone_map(MessageOf(kToneMaps, ValueOf(kToneMaps, display.tone_map())));
   for (physics::Hydrometeor hydrometeor : storm.fields) FieldOf(scene, hydrometeor);
@@ -305,16 +264,7 @@ scene::Scene ToScene(const v1::Scene& message) {
   for (const v1::DirectionalLight& light : message.lights()) {
     scene.lights.push_back(ToLight(light));
   }
-  const v1::Rendering& rendering = message.rendering();
-  scene.rendering.renderer = ValueOf(kRenderers, rendering.renderer());
-  scene.rendering.mode = ValueOf(kModes, rendering.mode());
-  scene.rendering.transport = ValueOf(kTransports, rendering.transport());
-  scene.rendering.slices = static_cast<int>(rendering.slices());
-  scene.rendering.theta_f_deg = rendering.theta_f_deg();
-  scene.rendering.false_colors = rendering.false_colors();
-  scene.rendering.traced_light = rendering.traced_light();
-  scene.rendering.metaballs = ToMetaballs(rendering.metaballs());
-  scene.rendering.cumulus = ToCumulus(rendering.cumulus());
+  scene.rendering.technique = ToTechnique(message.rendering());
   scene.display.exposure_ev = message.display().exposure_ev();
   scene.display.tone_map = ValueOf(kToneMaps, message.display().tone_map());
   scene.output.width_px = static_cast<int>(message.output().width_px());
@@ -325,21 +275,26 @@ scene::Scene ToScene(const v1::Scene& message) {
 }
 
 void ToMessage(const session::Modelled& modelled, v1::Modelled& message) {
-  for (physics::Hydrometeor field : modelled.fields) message.add_fields(ToMessage(field));
+  const renderers::Content& content = modelled.content;
+  for (physics::Hydrometeor field : content.fields) message.add_fields(ToMessage(field));
+  message.set_technique(modelled.technique);
   message.set_slices(static_cast<std::uint32_t>(modelled.slices));
   message.set_device_bytes(modelled.device_bytes);
-  message.set_occupied_share(static_cast<float>(modelled.occupied_share));
-  message.set_renderer(MessageOf(kRenderers, modelled.renderer));
-  message.set_balls(static_cast<std::uint32_t>(modelled.balls));
-  message.set_fit_error(static_cast<float>(modelled.fit_error));
-  for (const std::string& what : modelled.not_shown) message.add_not_shown(what);
-  message.set_ellipsoids(static_cast<std::uint32_t>(modelled.ellipsoids));
+  message.set_occupied_share(static_cast<float>(content.occupied_share));
+  message.set_balls(static_cast<std::uint32_t>(content.balls));
+  message.set_fit_error(static_cast<float>(content.fit_error));
+  message.set_ellipsoids(static_cast<std::uint32_t>(content.ellipsoids));
   message.set_traced_paths(static_cast<std::uint64_t>(modelled.traced_paths));
+  for (const scene::NotShown& not_shown : content.not_shown) {
+    v1::NotShown& entry = *message.add_not_shown();
+    entry.set_code(MessageOf(kNotShownCodes, not_shown.code));
+    entry.set_message(not_shown.message);
+  }
 }
 
-void ToMessage(const session::StageCost& cost, v1::StageCost& message) {
-  message.set_stage(cost.stage);
-  message.set_milliseconds(static_cast<float>(cost.milliseconds));
+void ToMessage(const scene::StageTime& time, v1::StageCost& message) {
+  message.set_stage(MessageOf(kStages, time.stage));
+  message.set_milliseconds(static_cast<float>(time.milliseconds));
 }
 
 void ToMessage(const session::Refinement& refinement, v1::Refinement& message) {
@@ -350,9 +305,7 @@ void ToMessage(const session::Refinement& refinement, v1::Refinement& message) {
 }
 
 void ToMessage(const session::AccuracyReport& report, v1::AccuracyReport& message) {
-  message.set_renderer(MessageOf(kRenderers, report.renderer));
-  message.set_mode(MessageOf(kModes, report.mode));
-  message.set_transport(MessageOf(kTransports, report.transport));
+  ToMessage(report.technique, *message.mutable_rendering());
   message.set_slices(static_cast<std::uint32_t>(report.slices));
   message.set_image_scale(static_cast<float>(report.image_scale));
   if (report.expected_ms.has_value()) {
@@ -363,7 +316,10 @@ void ToMessage(const session::AccuracyReport& report, v1::AccuracyReport& messag
     message.set_discretisation_error(static_cast<float>(*report.discretisation_error));
   }
   message.set_estimated_error(static_cast<float>(report.estimated_error));
-  message.set_unmet(report.unmet);
+  if (report.unmet.has_value()) {
+    message.mutable_unmet()->set_code(MessageOf(kUnmetCodes, report.unmet->code));
+    message.mutable_unmet()->set_message(report.unmet->message);
+  }
 }
 
 void ToMessage(const session::EncodedFrame& frame, v1::Frame& message) {
@@ -374,7 +330,7 @@ void ToMessage(const session::EncodedFrame& frame, v1::Frame& message) {
   message.set_height_px(static_cast<std::uint32_t>(frame.height_px));
   ToMessage(frame.camera, *message.mutable_camera());
   ToMessage(frame.sun, *message.mutable_sun());
-  for (const session::StageCost& cost : frame.stages) ToMessage(cost, *message.add_stages());
+  for (const scene::StageTime& time : frame.stages) ToMessage(time, *message.add_stages());
   ToMessage(frame.modelled, *message.mutable_modelled());
   message.set_refined(frame.refined);
   if (frame.refinement.has_value()) {
@@ -386,6 +342,7 @@ void ToMessage(const session::EncodedFrame& frame, v1::Frame& message) {
 void ToMessage(const session::Problem& problem, v1::Problem& message) {
   message.set_scene_revision(problem.scene_revision);
   message.set_message(problem.message);
+  message.set_code(MessageOf(kProblemCodes, problem.code));
 }
 
 void ToMessage(const volume::StormInfo& storm, v1::StormSummary& message) {

@@ -31,7 +31,7 @@ void ToMessage(const session::Refinement& refinement, v1::Refinement& message);
 void ToMessage(const session::AccuracyReport& report, v1::AccuracyReport& message);
 void ToMessage(const session::EncodedFrame& frame, v1::Frame& message);
 void ToMessage(const session::Problem& problem, v1::Problem& message);
-void ToMessage(const session::StageCost& cost, v1::StageCost& message);
+void ToMessage(const scene::StageTime& time, v1::StageCost& message);
 void ToMessage(const volume::StormInfo& storm, v1::StormSummary& message);
 void ToMessage(const volume::StormInfo& storm, const volume::HydrometeorFields& fields,
                int time_index, v1::StormDescription& message);

@@ -20,8 +20,7 @@ void EncodeAndPublish(DrawnFrame drawn) {
   const DisplayFrame& picture = drawn.picture;
   auto jpeg = frame::EncodeJpeg(picture.width_px, picture.height_px, picture.rgb, quality);
   if (!jpeg.ok()) {
-    drawn.session->hub().Publish(
-        Problem{drawn.scene_revision, std::string(jpeg.status().message())});
+    drawn.session->hub().Publish(ProblemOf(drawn.scene_revision, jpeg.status()));
     return;
   }
   EncodedFrame frame;
@@ -32,7 +31,7 @@ void EncodeAndPublish(DrawnFrame drawn) {
   frame.camera = drawn.scene.camera;
   frame.sun = drawn.scene.sun;
   frame.stages = std::move(drawn.picture.stages);
-  frame.stages.push_back({"encode", stopwatch.ElapsedMs()});
+  frame.stages.push_back({scene::FrameStage::kEncode, stopwatch.ElapsedMs()});
   frame.modelled = std::move(drawn.picture.modelled);
   frame.refined = drawn.refined;
   frame.refinement = drawn.refinement;

@@ -30,7 +30,7 @@ struct EncodedFrame {
   int height_px = 0;
   scene::Camera camera;
   scene::Sun sun;
-  std::vector<StageCost> stages;
+  std::vector<StageTime> stages;
   Modelled modelled;
   bool refined = false;
   std::optional<Refinement> refinement;  // of a picture by the reference
@@ -39,9 +39,23 @@ struct EncodedFrame {
 
 // Why the scene of a revision has no frame.
 struct Problem {
+  enum class Code {
+    kStormGone,
+    kStormUnreadable,
+    kScene,  // asks for something that cannot be drawn
+    kBusy,
+    kInternal,
+  };
+
   std::uint64_t scene_revision = 0;
   std::string message;
+  Code code = Code::kInternal;
 };
+
+// Of a scene that `why` kept from being drawn.
+Problem ProblemOf(std::uint64_t scene_revision, const absl::Status& why);
+// Of a scene whose storm could not be read.
+Problem UnreadableStorm(std::uint64_t scene_revision, const absl::Status& why);
 
 using FrameEvent = std::variant<std::shared_ptr<const EncodedFrame>, Problem>;
 

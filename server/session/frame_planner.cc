@@ -24,7 +24,7 @@ bool IsFull(const FrameQuality& quality) { return quality == FrameQuality{}; }
 
 }  // namespace
 
-FramePlanner::FramePlanner(const PlannerTargets& targets, const CostModels& costs)
+FramePlanner::FramePlanner(const PlannerTargets& targets, const accuracy::CostModels& costs)
     : targets_(targets), costs_(costs) {}
 
 Decision FramePlanner::Decide(const NewestScene& newest, Clock::time_point now,
@@ -64,11 +64,11 @@ Decision FramePlanner::AtRest(const NewestScene& newest, Clock::time_point now,
 }
 
 void FramePlanner::Drawn(std::uint64_t revision, const scene::Scene& scene, const FramePlan& plan,
-                         double total_ms, const std::vector<StageCost>& stages) {
+                         double total_ms, const std::vector<StageTime>& stages) {
   revision_ = revision;
   finished_ = IsFull(plan.quality);
   drawn_ = plan;
-  costs_.Of(scene).Observe(MegaSamples(scene, plan.quality), total_ms, stages);
+  costs_.Of(scene).Observe(accuracy::MegaSamples(scene, plan.quality), total_ms, stages);
 }
 
 void FramePlanner::GiveUp(std::uint64_t revision) {
@@ -85,7 +85,7 @@ FrameQuality FramePlanner::Finest(const scene::Scene& scene, scene::Stage first_
                                   double budget_ms) const {
   for (int step = kSteps; step > 0; --step) {
     const FrameQuality quality = Step(step);
-    if (costs_.Of(scene).EstimateMs(MegaSamples(scene, quality), first_dirty) <= budget_ms)
+    if (costs_.Of(scene).EstimateMs(accuracy::MegaSamples(scene, quality), first_dirty) <= budget_ms)
       return quality;
   }
   return Step(0);

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "scene/scene.h"
-#include "session/cost_model.h"
+#include "accuracy/cost_model.h"
 #include "session/frame_source.h"
 #include "session/sessions.h"
 
@@ -48,13 +48,13 @@ struct Decision {
 
 class FramePlanner {
  public:
-  FramePlanner(const PlannerTargets& targets, const CostModels& costs);
+  FramePlanner(const PlannerTargets& targets, const accuracy::CostModels& costs);
 
   Decision Decide(const NewestScene& newest, Clock::time_point now,
                   const std::optional<LastDrawn>& last_drawn) const;
 
   void Drawn(std::uint64_t revision, const scene::Scene& scene, const FramePlan& plan,
-             double total_ms, const std::vector<StageCost>& stages);
+             double total_ms, const std::vector<StageTime>& stages);
   // The scene of that revision cannot be drawn, or is shown by other means; it is not tried again.
   void GiveUp(std::uint64_t revision);
 
@@ -71,7 +71,7 @@ class FramePlanner {
   FrameQuality Finest(const scene::Scene& scene, scene::Stage first_dirty, double budget_ms) const;
 
   const PlannerTargets targets_;
-  CostModels costs_;
+  accuracy::CostModels costs_;
   std::uint64_t revision_ = 0;
   bool finished_ = false;  // nothing finer is to come for that revision
   FramePlan drawn_;

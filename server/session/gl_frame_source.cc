@@ -6,7 +6,7 @@
 
 #include "base/status.h"
 #include "base/stopwatch.h"
-#include "correction/corrector_pool.h"
+#include "accuracy/corrector_pool.h"
 #include "frame/tone_map.h"
 #include "gl/context.h"
 #include "renderers/renderer_pool.h"
@@ -14,29 +14,7 @@
 namespace thunderhead::session {
 namespace {
 
-// Fits metaballs.
-class BallPreparation final : public Preparation {
- public:
-  explicit BallPreparation(std::shared_ptr<renderers::BallFits> fits) : fits_(std::move(fits)) {}
-
-  bool IsNeeded(const scene::Scene& scene) const override {
-    return scene.rendering.renderer == scene::Renderer::kMetaball;
-  }
-
-  bool IsDone(const scene::Scene& scene, const Fields& fields) override {
-    return !IsNeeded(scene) || fits_->Has(scene, fields);
-  }
-
-  absl::Status Prepare(const scene::Scene& scene, const Fields& fields) override {
-    if (IsDone(scene, fields)) return absl::OkStatus();
-    return fits_->Get(scene, fields).status();
-  }
-
- private:
-  std::shared_ptr<renderers::BallFits> fits_;
-};
-
-// What took less is one that was there.
+// A correction that was kept takes less.
 constexpr double kWorthSaying_ms = 0.1;
 
 // Relative RMSE of red, green and blue; four values a pixel.
@@ -62,8 +40,12 @@ class GlFrameSource final : public FrameSource {
 
   const DeviceInfo& Device() const override { return info_; }
 
+  std::vector<TechniqueInfo> Techniques() const override {
+    return TechniquesOf(*registry_);
+  }
+
   std::shared_ptr<Preparation> PreparationOfScenes() const override {
-    return std::make_shared<BallPreparation>(fits_);
+    return registry_->PreparationOfScenes();
   }
 
   absl::StatusOr<DisplayFrame> Draw(const scene::Scene& scene,
@@ -93,7 +75,7 @@ class GlFrameSource final : public FrameSource {
     return checked;
   }
 
-  absl::StatusOr<correction::LightProgress> TraceLight(
+  absl::StatusOr<accuracy::LightProgress> TraceLight(
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
     return correctors_.Trace(scene, fields);
@@ -124,7 +106,7 @@ class GlFrameSource final : public FrameSource {
 
   Correction CorrectionOf(const scene::Scene& scene,
                           const std::shared_ptr<const volume::HydrometeorFields>& fields) {
-    correction::LightCorrector* const corrector = correctors_.Find(scene, fields);
+    accuracy::LightCorrector* const corrector = correctors_.Find(scene, fields);
     if (corrector == nullptr) return {};
     const base::Stopwatch stopwatch;
     auto light = corrector->Correction();
@@ -136,23 +118,13 @@ class GlFrameSource final : public FrameSource {
     THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped,
                                  tone_mapper_.Map(*linear.radiance, scene.display));
     DisplayFrame frame;
-    for (const renderers::StageTime& stage : linear.stages) {
-      frame.stages.push_back({stage.stage, stage.milliseconds});
-    }
+    frame.stages = linear.stages;
     if (correction.milliseconds >= kWorthSaying_ms) {
-      frame.stages.push_back({"correction", correction.milliseconds});
+      frame.stages.push_back({scene::FrameStage::kCorrection, correction.milliseconds});
     }
     Fill(linear.radiance->Size(), std::move(mapped), &frame);
-    frame.modelled = {linear.fields,
-                      linear.slices,
-                      linear.device_bytes,
-                      linear.occupied_share,
-                      scene.rendering.renderer,
-                      linear.balls,
-                      linear.fit_error,
-                      linear.not_shown,
-                      linear.ellipsoids,
-                      correction.paths};
+    frame.modelled = {std::string(scene::NameOf(scene.rendering.technique)), linear.content,
+                      linear.slices, linear.device_bytes, correction.paths};
     return frame;
   }
 
@@ -160,20 +132,29 @@ class GlFrameSource final : public FrameSource {
     frame->width_px = size_px.x;
     frame->height_px = size_px.y;
     frame->rgb = std::move(mapped.rgb);
-    frame->stages.push_back({"tone", mapped.tone_ms});
-    frame->stages.push_back({"read_back", mapped.read_back_ms});
+    frame->stages.push_back({scene::FrameStage::kTone, mapped.tone_ms});
+    frame->stages.push_back({scene::FrameStage::kReadBack, mapped.read_back_ms});
   }
 
   std::unique_ptr<gl::Context> context_;  // outlives what was made in it
-  std::shared_ptr<renderers::BallFits> fits_ = std::make_shared<renderers::BallFits>();
-  renderers::RendererPool renderers_{fits_};
-  correction::CorrectorPool correctors_;
+  std::shared_ptr<const renderers::TechniqueRegistry> registry_ =
+      std::make_shared<renderers::TechniqueRegistry>(renderers::TechniqueRegistry::BuiltIn());
+  renderers::RendererPool renderers_{registry_};
+  accuracy::CorrectorPool correctors_;
   frame::ToneMapper tone_mapper_;
   frame::ToneMapper picture_tone_mapper_;  // of other sizes: each keeps its buffers
   DeviceInfo info_;
 };
 
 }  // namespace
+
+std::vector<TechniqueInfo> TechniquesOf(const renderers::TechniqueRegistry& registry) {
+  std::vector<TechniqueInfo> techniques;
+  for (const auto& technique : registry.All()) {
+    techniques.push_back({std::string(technique->Name()), technique->Capabilities()});
+  }
+  return techniques;
+}
 
 absl::StatusOr<std::unique_ptr<FrameSource>> MakeGlFrameSource(const std::string& device) {
   THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<gl::Context> context, gl::Context::Create(device));

@@ -1,14 +1,19 @@
-// The engine that draws with OpenGL: a context, the scene renderer and the tone mapper behind
+// The engine that draws with OpenGL: a context, the scene renderers and the tone mapper behind
 // FrameSource.
 #pragma once
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
+#include "renderers/technique_registry.h"
 #include "session/frame_source.h"
 
 namespace thunderhead::session {
+
+// The techniques that can be chosen, in the order in which to offer them.
+std::vector<TechniqueInfo> TechniquesOf(const renderers::TechniqueRegistry& registry);
 
 // Opens the device (gl::Context::Create) on the calling thread, which must stay the one that draws.
 absl::StatusOr<std::unique_ptr<FrameSource>> MakeGlFrameSource(const std::string& device);

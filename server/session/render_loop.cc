@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "accuracy/named_settings.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 
@@ -91,6 +92,7 @@ void RenderLoop::Run(const FrameSourceFactory& make_source, std::promise<absl::S
   }
   source_ = *std::move(source);
   device_ = source_->Device();
+  techniques_ = source_->Techniques();
   preparation_ = source_->PreparationOfScenes();
   started.set_value(absl::OkStatus());
   while (!stopping_) {
@@ -172,7 +174,7 @@ RenderLoop::Outcome RenderLoop::TrySession(const std::shared_ptr<Session>& sessi
   if (!decided.has_value()) return {};
   const std::optional<NewestScene> shown = DrawableScene(*session, track, *decided);
   if (!shown.has_value()) return {};
-  if (shown->scene->rendering.renderer == scene::Renderer::kReference) {
+  if (std::holds_alternative<scene::Reference>(shown->scene->rendering.technique)) {
     return ShowTraced(session, track, *shown);
   }
   const Decision decision = track.planner.Decide(*shown, Clock::now(), last_drawn_);
@@ -193,8 +195,7 @@ void RenderLoop::TakeRead(Session& session, Track& track) {
   if (!read->fields.ok()) {
     track.planner.GiveUp(reading_for.revision);
     track.unreadable_revision = reading_for.revision;
-    session.hub().Publish(
-        Problem{reading_for.revision, std::string(read->fields.status().message())});
+    session.hub().Publish(UnreadableStorm(reading_for.revision, read->fields.status()));
     return;
   }
   track.fields = *std::move(read->fields);
@@ -276,18 +277,18 @@ void RenderLoop::DrawFor(const std::shared_ptr<Session>& session, Track& track,
   picture->accuracy =
       offers_.Report(*shown.scene, plan.quality, std::nullopt, picture->modelled.traced_paths);
   track.planner.Drawn(shown.revision, *shown.scene, plan, total_ms,
-                      was_warm ? picture->stages : std::vector<StageCost>());
+                      was_warm ? picture->stages : std::vector<StageTime>());
   Send(track,
        {session, shown.revision, *shown.scene, plan.refined, *std::move(picture), std::nullopt});
   PrepareNext(*session, track, *shown.scene);
 }
 
 void RenderLoop::Send(Track& track, DrawnFrame frame) {
-  std::vector<StageCost>& stages = frame.picture.stages;
-  if (track.prepare_ms > 1.0) stages.insert(stages.begin(), {"fit", track.prepare_ms});
+  std::vector<StageTime>& stages = frame.picture.stages;
+  if (track.prepare_ms > 1.0) stages.insert(stages.begin(), {scene::FrameStage::kFit, track.prepare_ms});
   track.prepare_ms = 0.0;
   if (track.read_ms > 0.0) {
-    stages.insert(stages.begin(), {"read", std::exchange(track.read_ms, 0.0)});
+    stages.insert(stages.begin(), {scene::FrameStage::kRead, std::exchange(track.read_ms, 0.0)});
   }
   encoder_->Encode(std::move(frame));
 }
@@ -296,7 +297,7 @@ void RenderLoop::Fail(Session& session, Track& track, std::uint64_t revision,
                       const absl::Status& why) {
   track.planner.GiveUp(revision);
   if (track.decided.has_value()) track.decided->settled = true;
-  session.hub().Publish(Problem{revision, std::string(why.message())});
+  session.hub().Publish(ProblemOf(revision, why));
 }
 
 absl::StatusOr<DisplayFrame> RenderLoop::Draw(
@@ -310,17 +311,18 @@ absl::StatusOr<DisplayFrame> RenderLoop::Draw(
     return picture;
   }
   last_drawn_ = LastDrawn{scene, quality};
-  // The first frame compiles shaders; its time foretells nothing.
+  // The time of the first frame is not representative: it includes shader compilation.
   if (std::exchange(warm_, true)) {
-    machine_costs_.Of(scene).Observe(MegaSamples(scene, quality), total_ms, picture->stages);
+    machine_costs_.Of(scene).Observe(accuracy::MegaSamples(scene, quality), total_ms, picture->stages);
   }
-  const scene::Rendering& rendering = scene.rendering;
-  const bool compiled = !compiled_
-                             .emplace(rendering.renderer, rendering.mode, rendering.transport,
-                                      picture->modelled.traced_paths > 0)
-                             .second;
+  const scene::Technique& technique = scene.rendering.technique;
+  const bool compiled =
+      !compiled_
+           .emplace(scene::NameOf(technique), accuracy::ModeOf(technique).name,
+                    accuracy::TransportNameOf(technique), picture->modelled.traced_paths > 0)
+           .second;
   if (compiled && quality == FrameQuality{}) {
-    const std::optional<double> view_ms = ViewMs(total_ms, picture->stages);
+    const std::optional<double> view_ms = accuracy::ViewMs(total_ms, picture->stages);
     if (view_ms.has_value()) offers_.Observe(scene, *view_ms);
   }
   return picture;
@@ -335,19 +337,19 @@ absl::StatusOr<DisplayFrame> RenderLoop::DrawImage(const ImageJob& job) {
   return picture;
 }
 
-// A picture with traced light takes its turns until enough is traced: for the error that it asks
-// for, if it does. True if it is not yet.
+// A picture that awaits traced light takes its turns until enough paths are traced: for the error
+// that it asks for, if it does. True if it has to go on.
 absl::StatusOr<bool> RenderLoop::TraceForImage(const ImageJob& job) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const scene::Scene scene, offers_.Decide(job.scene, std::nullopt));
-  if (!scene.rendering.traced_light) return false;
-  THUNDERHEAD_ASSIGN_OR_RETURN(const correction::LightProgress progress,
+  if (scene::TracedLightOf(scene.rendering.technique) != scene::TracedLight::kAwaited) return false;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const accuracy::LightProgress progress,
                                source_->TraceLight(scene, job.fields));
   if (progress.steps == 0) return false;
   const auto* limit = std::get_if<scene::MaxError>(&scene.accuracy);
   if (limit == nullptr) return !progress.HasTraced(kImagePaths);
   const auto report = offers_.Report(scene, {}, std::nullopt, progress.paths);
   const bool near = report.has_value() && report->estimated_error <= limit->relative_rmse;
-  return !near && !progress.HasTraced(kTracedPaths);
+  return !near && !progress.HasTraced(accuracy::kTracedPaths);
 }
 
 RenderLoop::Outcome RenderLoop::TryImage() {

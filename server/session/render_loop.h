@@ -14,19 +14,21 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <tuple>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "base/stopwatch.h"
 #include "base/wake_signal.h"
-#include "session/cost_model.h"
+#include "accuracy/cost_model.h"
 #include "session/fields_reader.h"
 #include "session/frame_encoder.h"
 #include "session/frame_planner.h"
 #include "session/frame_source.h"
-#include "session/offers.h"
+#include "accuracy/offers.h"
 #include "session/sessions.h"
 #include "session/truth_source.h"
 #include "session/truth_tracer.h"
@@ -39,7 +41,7 @@ struct RenderLoopOptions {
   int encoder_threads = 1;
   // Of sessions that show the reference; each takes some hundred bytes a pixel and the medium.
   std::size_t max_traced_sessions = 8;
-  std::function<OfferTables()> offer_tables = BuiltInOfferTables;
+  std::function<accuracy::OfferTables()> offer_tables = accuracy::BuiltInOfferTables;
   TruthSourceFactory make_truth_source = [] { return MakeReferenceTruthSource(); };
 };
 
@@ -72,6 +74,8 @@ class RenderLoop {
   RenderLoop& operator=(const RenderLoop&) = delete;
 
   const DeviceInfo& Device() const { return device_; }
+  // In the order in which to offer them.
+  const std::vector<TechniqueInfo>& Techniques() const { return techniques_; }
 
   // What drawing `scene` would hold the loop up with; blocks. From any thread.
   absl::Status Prepare(const scene::Scene& scene,
@@ -102,7 +106,7 @@ class RenderLoop {
   // How far the light of a revision has been traced.
   struct TracedLight {
     std::uint64_t revision = 0;
-    std::optional<correction::LightProgress> begun_at;  // what was there before
+    std::optional<accuracy::LightProgress> begun_at;  // what was there before
     std::int64_t shown = 0;                             // paths of the newest picture
     base::Stopwatch since_shown;
     bool ended = false;
@@ -177,6 +181,7 @@ class RenderLoop {
   Sessions& sessions_;
   base::WakeSignal& wake_;
   DeviceInfo device_;
+  std::vector<TechniqueInfo> techniques_;
   std::atomic<bool> stopping_{false};
 
   std::mutex images_mutex_;
@@ -190,11 +195,11 @@ class RenderLoop {
   std::string last_served_;  // the session looked at last; the pictures' turn is the empty string
   std::optional<LastDrawn> last_drawn_;
   bool warm_ = false;
-  CostModels machine_costs_;
-  Offers offers_;
-  // Whose shaders are compiled: what a renderer, mode, transport and correction cost first
-  // foretells nothing.
-  std::set<std::tuple<scene::Renderer, scene::Mode, scene::Transport, bool>> compiled_;
+  accuracy::CostModels machine_costs_;
+  accuracy::Offers offers_;
+  // The settings whose shaders are compiled, by technique, mode, transport and correction: the time
+  // of a first frame is not representative, as it includes compilation.
+  std::set<std::tuple<std::string, std::string_view, std::string_view, bool>> compiled_;
 
   std::unique_ptr<FieldsReader> reader_;
   std::unique_ptr<FrameEncoder> encoder_;

@@ -1,5 +1,5 @@
-// The parts of the render loop that are about what a scene asks for beyond being drawn: a setting
-// to be decided and checked, a truth to be refined.
+// The render loop's work for a view at rest: choosing and checking a setting, tracing light, and
+// refining a picture by the reference.
 #include <utility>
 #include <variant>
 #include <vector>
@@ -9,28 +9,15 @@
 #include "session/render_loop.h"
 
 namespace thunderhead::session {
-namespace {
-
-std::vector<physics::Hydrometeor> DrawnFields(const scene::Scene& scene,
-                                              const volume::HydrometeorFields& fields) {
-  std::vector<physics::Hydrometeor> drawn;
-  for (const volume::HydrometeorField& field : fields.fields) {
-    if (scene::IsDrawn(scene, field)) drawn.push_back(field.hydrometeor);
-  }
-  return drawn;
-}
-
-}  // namespace
-
 std::optional<NewestScene> RenderLoop::Decide(Session& session, Track& track,
                                               const NewestScene& shown) {
   if (!track.decided.has_value() || track.decided->revision != shown.revision) {
-    std::optional<measure::TradeSetting> current;
+    std::optional<accuracy::Setting> current;
     if (track.decided.has_value() && track.decided->scene != nullptr) {
       const scene::Scene& before = *track.decided->scene;
       const bool alike = before.accuracy == shown.scene->accuracy &&
                          before.camera.index() == shown.scene->camera.index();
-      if (alike) current = SettingOf(before);
+      if (alike) current = accuracy::SettingOf(before);
     }
     Decided decided;
     decided.revision = shown.revision;
@@ -51,15 +38,14 @@ RenderLoop::Outcome RenderLoop::Check(const std::shared_ptr<Session>& session, T
   if (std::holds_alternative<std::monostate>(asked.scene->accuracy) || decided.settled) return {};
   const Clock::time_point settled_at = asked.changed_at + options_.targets.settle_delay;
   if (Clock::now() < settled_at) return {false, settled_at};
-  const scene::Rendering& rendering = decided.scene->rendering;
-  const bool checkable = HasSlices(rendering.renderer) && rendering.slices >= 2;
+  const bool checkable = scene::SlicesOf(decided.scene->rendering.technique).value_or(0) >= 2;
   if (!std::exchange(decided.checked, true) && checkable) {
     DrawChecked(session, track, asked.revision);
     return {true, std::nullopt};
   }
-  const measure::TradeSetting current = SettingOf(*decided.scene);
+  const accuracy::Setting current = accuracy::SettingOf(*decided.scene);
   auto again = offers_.Decide(*asked.scene, current);
-  if (again.ok() && SettingOf(*again) != current && decided.decided_again < kMostDecidedAgain) {
+  if (again.ok() && accuracy::SettingOf(*again) != current && decided.decided_again < kMostDecidedAgain) {
     decided.scene = std::make_shared<const scene::Scene>(*std::move(again));
     decided.checked = false;
     ++decided.decided_again;
@@ -77,7 +63,7 @@ RenderLoop::Outcome RenderLoop::TraceLight(const std::shared_ptr<Session>& sessi
   constexpr double kShownAtMost_ms = 500.0;
   constexpr double kShownAtLeast_ms = 5000.0;
   const scene::Scene& scene = *shown.scene;
-  if (!scene.rendering.traced_light) return {};
+  if (scene::TracedLightOf(scene.rendering.technique) == scene::TracedLight::kOff) return {};
   const Clock::time_point settled_at = shown.changed_at + options_.targets.settle_delay;
   if (Clock::now() < settled_at) return {false, settled_at};
   TracedLight& light = track.traced_light;
@@ -95,9 +81,9 @@ RenderLoop::Outcome RenderLoop::TraceLight(const std::shared_ptr<Session>& sessi
     light.begun_at = *progress;
     light.shown = paths;
   }
-  const correction::LightProgress since{paths - light.begun_at->paths,
+  const accuracy::LightProgress since{paths - light.begun_at->paths,
                                         progress->steps - light.begun_at->steps};
-  light.ended = progress->steps == 0 || since.HasTraced(kTracedPaths);
+  light.ended = progress->steps == 0 || since.HasTraced(accuracy::kTracedPaths);
   if (paths == 0) return {!light.ended, std::nullopt};
   const double ms = light.since_shown.ElapsedMs();
   const bool more = static_cast<double>(paths) >= kWorthShowing * static_cast<double>(light.shown);
@@ -127,8 +113,8 @@ void RenderLoop::DrawChecked(const std::shared_ptr<Session>& session, Track& tra
   last_drawn_ = LastDrawn{*scene, FrameQuality{}};
   DisplayFrame& frame = checked->frame;
   double total_ms = 0.0;
-  for (const StageCost& cost : frame.stages) total_ms += cost.milliseconds;
-  if (const auto view_ms = ViewMs(total_ms, frame.stages); view_ms.has_value()) {
+  for (const StageTime& cost : frame.stages) total_ms += cost.milliseconds;
+  if (const auto view_ms = accuracy::ViewMs(total_ms, frame.stages); view_ms.has_value()) {
     offers_.Observe(*scene, *view_ms);
   }
   track.decided->discretisation_error = checked->discretisation_error;
@@ -139,7 +125,7 @@ void RenderLoop::DrawChecked(const std::shared_ptr<Session>& session, Track& tra
 
 void RenderLoop::EndTrace(const std::string& session_id, Track& track, const scene::Scene& newest) {
   if (!track.traced.has_value()) return;
-  if (newest.rendering.renderer != scene::Renderer::kReference) {
+  if (!std::holds_alternative<scene::Reference>(newest.rendering.technique)) {
     tracer_->Forget(session_id);
     track.traced.reset();
   } else if (scene::FirstDirtyStage(*track.traced->shown.scene, newest) < scene::Stage::kTone) {
@@ -183,9 +169,10 @@ RenderLoop::Outcome RenderLoop::ShowTraced(const std::shared_ptr<Session>& sessi
   const TruthPicture& traced = *track.traced->picture;
   auto picture = source_->Tone(traced.picture, shown.scene->display);
   if (!picture.ok()) return fail(picture.status());
-  picture->stages.insert(picture->stages.begin(), {"trace", traced.trace_ms});
-  picture->modelled.renderer = scene::Renderer::kReference;
-  picture->modelled.fields = DrawnFields(*shown.scene, *track.fields);
+  picture->stages.insert(picture->stages.begin(), {scene::FrameStage::kTrace, traced.trace_ms});
+  picture->modelled.technique = scene::Reference::kName;
+  picture->modelled.content.fields =
+      scene::HydrometeorsOf(scene::DrawnFieldsOf(*shown.scene, *track.fields));
   Send(track, {session, shown.revision, *shown.scene, traced.full_size, *std::move(picture),
                traced.refinement});
   return {true, std::nullopt};

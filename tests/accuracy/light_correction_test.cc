@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "correction/corrector_pool.h"
-#include "correction/light_corrector.h"
+#include "accuracy/corrector_pool.h"
+#include "accuracy/light_corrector.h"
 #include "gl/context.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -14,7 +14,7 @@
 #include "reference/trace_scene.h"
 #include "tests/support/slab.h"
 
-namespace thunderhead::correction {
+namespace thunderhead::accuracy {
 namespace {
 
 using testing::HasSubstr;
@@ -264,4 +264,4 @@ TEST_F(LightCorrection, NightAndBlackSkiesStayDark) {
 }
 
 }  // namespace
-}  // namespace thunderhead::correction
+}  // namespace thunderhead::accuracy

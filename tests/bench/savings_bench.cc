@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "glm/geometric.hpp"
-#include "measure/paths.h"
+#include "accuracy/named_settings.h"
 #include "tests/bench/storm_bench.h"
 #include "volume/coarsen.h"
 #include "volume/extinction.h"

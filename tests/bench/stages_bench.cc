@@ -3,7 +3,7 @@
 #include <array>
 #include <string>
 
-#include "measure/paths.h"
+#include "accuracy/named_settings.h"
 #include "tests/bench/storm_bench.h"
 
 namespace thunderhead::bench {

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "base/status.h"
-#include "session/cost_model.h"
+#include "accuracy/cost_model.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -102,17 +102,17 @@ class FakeFrameSource final : public session::FrameSource {
     return session::CheckedFrame{std::move(frame), 1.0 / scene.rendering.slices};
   }
 
-  absl::StatusOr<correction::LightProgress> TraceLight(
+  absl::StatusOr<accuracy::LightProgress> TraceLight(
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
     THUNDERHEAD_CHECK(fields != nullptr, "traced without fields");
-    if (!scene::ShowsTracedLight(scene.rendering)) return correction::LightProgress{};
+    if (!scene::ShowsTracedLight(scene.rendering)) return accuracy::LightProgress{};
     if (machine_->traces_enough) return absl::ResourceExhaustedError("it traces enough already");
     if (scene.sun.azimuth_deg == machine_->cannot_trace_azimuth_deg) {
       return absl::InternalError("the fake machine cannot trace that");
     }
     machine_->tracing.Pass();
-    return correction::LightProgress{machine_->traced_paths += 100'000, ++machine_->traced_steps};
+    return accuracy::LightProgress{machine_->traced_paths += 100'000, ++machine_->traced_steps};
   }
 
   absl::StatusOr<session::DisplayFrame> Tone(const session::LinearPicture& picture,

@@ -1,5 +1,5 @@
 // Choosing a setting from a table, on plain values.
-#include "session/offers.h"
+#include "accuracy/offers.h"
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"

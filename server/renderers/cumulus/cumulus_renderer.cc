@@ -45,8 +45,12 @@ DeviceBubble OnDevice(const clouds::Bubble& bubble, const glm::dvec3& middle_m) 
           glm::vec4(glm::vec3(bubble.outward), static_cast<float>(bubble.parent))};
 }
 
+const scene::Cumulus& SettingsOf(const RenderSettings& settings) {
+  return std::get<scene::Cumulus>(settings.technique);
+}
+
 bool IsPlain(const RenderSettings& settings) {
-  return settings.rendering.cumulus.component == scene::CumulusComponent::kBalls;
+  return SettingsOf(settings).component == scene::CumulusComponent::kBalls;
 }
 
 // Shares of direct light, inter-reflection, ambient light and corona.
@@ -180,7 +184,7 @@ absl::Status CumulusRenderer::CastShadow(const RenderSettings& settings) {
   from_sun.half_width_m = shadow_frame_.half_extent_m.x;
   from_sun.half_height_m = shadow_frame_.half_extent_m.y;
   Pass pass(from_sun, shadow_depth_.Size(), *this);
-  pass.corona_m = Corona_m(settings.rendering.cumulus);
+  pass.corona_m = Corona_m(SettingsOf(settings));
   return DrawDepth(pass, shadow_target_);
 }
 
@@ -209,7 +213,7 @@ void CumulusRenderer::Resize(const glm::ivec2& size) {
 
 void CumulusRenderer::SetShading(const gl::Program& program, const RenderSettings& settings,
                                  const std::vector<glm::vec3>& light_map, DetailNoises* noises) {
-  const scene::Cumulus& cumulus = settings.rendering.cumulus;
+  const scene::Cumulus& cumulus = SettingsOf(settings);
   const scene::View& view = settings.view;
   noise_ = noises->Get(kRoughnessOctaves, cumulus.seed);
   const double wave_m = kRoughnessInFinest * finest_m_;
@@ -251,7 +255,7 @@ absl::Status CumulusRenderer::DrawView(const RenderSettings& settings,
   Resize(settings.eye_size);
   const bool plain = IsPlain(settings);
   Pass pass(settings.view, settings.eye_size, *this);
-  pass.corona_m = plain ? 0.0 : Corona_m(settings.rendering.cumulus);
+  pass.corona_m = plain ? 0.0 : Corona_m(SettingsOf(settings));
   pass.ground_distance = settings.ground_distance;
   THUNDERHEAD_RETURN_IF_ERROR(DrawDepth(pass, core_target_));
   std::vector<gl::Define> variant = pass.Variant(*this);

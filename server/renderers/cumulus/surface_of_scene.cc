@@ -30,28 +30,28 @@ int CoarseningOf(const volume::RegularGrid& grid) {
   return factor;
 }
 
+const scene::Cumulus& SettingsOf(const scene::Scene& scene) {
+  return std::get<scene::Cumulus>(scene.rendering.technique);
+}
+
 DrawnSurface SurfaceOfStorm(const scene::Scene& scene, const volume::HydrometeorFields& fields) {
   DrawnSurface drawn;
   std::vector<float> extinction_per_m(fields.grid.CellCount(), 0.0F);
-  for (const volume::HydrometeorField& field : fields.fields) {
-    const scene::FieldParameters& look = scene.fields[physics::IndexOf(field.hydrometeor)];
-    if (!HasSurface(field.hydrometeor) || !scene::IsDrawn(scene, field)) continue;
-    volume::MassExtinction mass_extinction =
-        volume::MassExtinctionOf(field, look.optics, look.size_from_file);
-    mass_extinction.m2_per_kg *= look.scale;
-    volume::AddExtinction(field, mass_extinction, 0, extinction_per_m.size(),
-                          extinction_per_m.data());
+  for (const scene::DrawnField& field : scene::DrawnFieldsOf(scene, fields)) {
+    if (!HasSurface(field.hydrometeor)) continue;
+    volume::AddExtinction(fields.fields[field.index], field.mass_extinction, 0,
+                          extinction_per_m.size(), extinction_per_m.data());
     drawn.fields.push_back(field.hydrometeor);
   }
   clouds::InscribedBallsOptions options;
-  options.level = scene.rendering.cumulus.least_extinction_per_m;
+  options.level = SettingsOf(scene).least_extinction_per_m;
   options.most_balls = kMostBalls;
   drawn.surface = clouds::InscribedBalls(fields.grid, extinction_per_m, options);
   std::size_t first = 0;
-  for (int scale = 1; scale < scene.rendering.cumulus.scales; ++scale) {
+  for (int scale = 1; scale < SettingsOf(scene).scales; ++scale) {
     const std::size_t end = drawn.surface.bubbles.size();
     clouds::Sprouting sprouting;
-    sprouting.seed = scene.rendering.cumulus.seed;
+    sprouting.seed = SettingsOf(scene).seed;
     sprouting.least_radius_m = drawn.surface.finest_m;
     clouds::Sprout(sprouting, first, &drawn.surface);
     first = end;
@@ -90,32 +90,31 @@ absl::StatusOr<clouds::CumulusSurface> SurfaceFromSeed(const scene::Cumulus& cum
 
 absl::StatusOr<DrawnSurface> SurfaceOf(const scene::Scene& scene,
                                        const volume::HydrometeorFields& fields) {
-  if (scene.rendering.cumulus.source == scene::CumulusSource::kStorm) {
+  if (SettingsOf(scene).source == scene::CumulusSource::kStorm) {
     const int factor = CoarseningOf(fields.grid);
     if (factor == 1) return SurfaceOfStorm(scene, fields);
     return SurfaceOfStorm(scene, volume::Coarsened(fields, glm::ivec3(factor)));
   }
   DrawnSurface drawn;
-  THUNDERHEAD_ASSIGN_OR_RETURN(drawn.surface, SurfaceFromSeed(scene.rendering.cumulus));
+  THUNDERHEAD_ASSIGN_OR_RETURN(drawn.surface, SurfaceFromSeed(SettingsOf(scene)));
   clouds::FitInto(PlaceOf(fields), &drawn.surface);
   return drawn;
 }
 
-std::vector<std::string> NotShownByCumulus(const scene::Scene& scene,
-                                           const volume::HydrometeorFields& fields) {
-  std::vector<std::string> not_shown;
-  if (scene.rendering.cumulus.source != scene::CumulusSource::kStorm) {
-    not_shown.emplace_back("the storm: a cloud made from a seed stands in its place");
-  } else {
-    for (const volume::HydrometeorField& field : fields.fields) {
-      if (scene::IsDrawn(scene, field) && !HasSurface(field.hydrometeor)) {
-        not_shown.emplace_back(physics::NameOf(field.hydrometeor));
-      }
-    }
-    not_shown.emplace_back("what is inside the surface, and thinner than its extinction");
+std::vector<scene::NotShown> NotShownByCumulus(const scene::Scene& scene,
+                                               const volume::HydrometeorFields& fields) {
+  using Code = scene::NotShown::Code;
+  if (SettingsOf(scene).source != scene::CumulusSource::kStorm) {
+    return {{Code::kStorm, "the storm: a cloud made from a seed stands in its place"}};
   }
-  not_shown.emplace_back("slices, modes, transports and phase functions");
-  if (scene.rendering.false_colors) not_shown.emplace_back("false colours");
+  std::vector<scene::NotShown> not_shown;
+  for (const volume::HydrometeorField& field : fields.fields) {
+    if (scene::IsDrawn(scene, field) && !HasSurface(field.hydrometeor)) {
+      not_shown.push_back({Code::kFields, std::string(physics::NameOf(field.hydrometeor))});
+    }
+  }
+  not_shown.push_back(
+      {Code::kFineStructure, "cloud inside the surface, or thinner than its extinction"});
   return not_shown;
 }
 

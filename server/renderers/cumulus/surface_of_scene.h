@@ -2,11 +2,11 @@
 // made from a seed in the storm's place. Knows no GL.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "clouds/cumulus_surface.h"
+#include "scene/frame_stage.h"
 #include "scene/scene.h"
 #include "volume/hydrometeor_fields.h"
 
@@ -20,8 +20,8 @@ struct DrawnSurface {
 absl::StatusOr<DrawnSurface> SurfaceOf(const scene::Scene& scene,
                                        const volume::HydrometeorFields& fields);
 
-// What of the scene and its storm the cumulus renderer leaves out, a few words each.
-std::vector<std::string> NotShownByCumulus(const scene::Scene& scene,
+// The parts of the storm that the surface leaves out.
+std::vector<scene::NotShown> NotShownByCumulus(const scene::Scene& scene,
                                            const volume::HydrometeorFields& fields);
 
 }  // namespace thunderhead::renderers

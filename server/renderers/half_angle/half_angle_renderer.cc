@@ -98,10 +98,10 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
   const LightFrame frame = LightFrameOf(box, settings.illumination.towards_sun);
   const Slicing slicing =
       SliceBox(box, settings.illumination.towards_sun, -settings.view.forward, settings.slices);
-  const scene::Rendering& rendering = settings.rendering;
-  const GroupWeights weights(medium.Content(), rendering);
-  const bool translucent = IsTranslucent(rendering);
-  const bool consistent = IsConsistent(rendering);
+  const scene::MediumSettings& carried = settings.Medium();
+  const GroupWeights weights(medium.Content(), carried);
+  const bool translucent = scene::IsTranslucent(carried.transport);
+  const bool consistent = !scene::IsPaper(carried.transport);
   const auto groups = static_cast<int>(medium.Content().groups.size());
   const glm::dvec3 cell_m = medium.Bounds().grid.spacing_m;
   Resize(frame, std::min(cell_m.x, cell_m.y));
@@ -155,7 +155,7 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
   light->Set("cumulative_phase", weights.cumulative_phase);
   const double reach_m =
       consistent ? std::max({cell_m.x, cell_m.y, cell_m.z}) : slicing.light_path_m;
-  const double tap_m = reach_m * std::tan(glm::radians(rendering.theta_f_deg) * 3.0 / 8.0);
+  const double tap_m = reach_m * std::tan(glm::radians(carried.theta_f_deg) * 3.0 / 8.0);
   light->Set("tap_offset", glm::vec2(0.5 * tap_m / frame.half_extent_m));
 
   std::size_t at_once = kSlabSlices;
@@ -204,7 +204,8 @@ void HalfAngleRenderer::DrawSlabs(const Programs& programs, const RenderSettings
   const auto first = std::find_if(reach.begin(), reach.end(), meets) - reach.begin();
   const auto end = reach.rend() - std::find_if(reach.rbegin(), reach.rend(), meets);
   CarriedLight light{Turns(static_cast<std::size_t>(light_.Layers())),
-                     IsTranslucent(settings.rendering) && IsConsistent(settings.rendering)};
+                     settings.Medium().transport != scene::Transport::kLowAlbedo &&
+                         !scene::IsPaper(settings.Medium().transport)};
   Turns eyes(eye_.size());
   std::size_t drawn = 0;
   for (auto begin = static_cast<std::size_t>(first); begin < static_cast<std::size_t>(end);

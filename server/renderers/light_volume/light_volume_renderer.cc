@@ -26,14 +26,14 @@ constexpr double kReadTexels = kNearInTexels + 1.74;
 constexpr int kMostGroupsInRow = 65535;  // what OpenGL 4.5 guarantees along each axis
 constexpr int kGroupSide = 8;            // of carry.comp
 
-// Light scattered many times in closed form.
-bool IsDiffuse(const scene::Rendering& rendering) {
-  return rendering.transport == scene::Transport::kConsistent && IsTranslucent(rendering);
+// Multiple scattering in closed form.
+bool IsDiffuse(const RenderSettings& settings) {
+  return settings.Medium().transport == scene::Transport::kConsistent;
 }
 
 // The same from the diffusion equation.
-bool Diffuses(const scene::Rendering& rendering) {
-  return rendering.transport == scene::Transport::kDiffusion && IsTranslucent(rendering);
+bool Diffuses(const RenderSettings& settings) {
+  return settings.Medium().transport == scene::Transport::kDiffusion;
 }
 
 }  // namespace
@@ -70,9 +70,9 @@ LightVolumeRenderer::LightBox::LightBox(const ResidentMedium& medium,
                                                std::min({through_m.x, through_m.y, through_m.z}));
   size = glm::clamp(glm::ivec3(glm::ceil(glm::dvec3(across_m / texel_m, 2.0 * reach_m / layer_m))),
                     glm::ivec3(1), glm::ivec3(most_texels));
-  if (IsTranslucent(settings.rendering) && !IsConsistent(settings.rendering)) {
+  if (settings.Medium().transport == scene::Transport::kPaper) {
     // The paper's transport depends on the number of its steps: they are the scene's slices.
-    const int slices = settings.rendering.slices;
+    const int slices = *scene::SlicesOf(settings.technique);
     size.z = std::clamp((slices + 1) / 2, 1, most_texels);
     half_layer_steps = std::max(1, (slices + size.z) / (2 * size.z));
   }
@@ -105,20 +105,20 @@ void LightVolumeRenderer::Resize(const glm::ivec3& carried, const glm::ivec3& ce
 absl::Status LightVolumeRenderer::CarryLight(const ResidentMedium& medium,
                                              const RenderSettings& settings) {
   const LightBox box(medium, settings);
-  const GroupWeights weights(medium.Content(), settings.rendering);
-  const bool diffuse = IsDiffuse(settings.rendering);
+  const GroupWeights weights(medium.Content(), settings.Medium());
+  const bool diffuse = IsDiffuse(settings);
   const GLenum one = settings.quality.single_precision ? GL_R32F : GL_R16F;
   const GLenum two = settings.quality.single_precision ? GL_RG32F : GL_RG16F;
   Resize(box.size, medium.Bounds().grid.cells, diffuse ? two : one);
   const std::vector<gl::Define> variant = {
       {"GROUPS", static_cast<int>(medium.Content().groups.size())},
       {"DETAILS", medium.Details()},
-      {"CONSISTENT", IsConsistent(settings.rendering) ? 1 : 0},
-      {"TRANSLUCENT", IsTranslucent(settings.rendering) ? 1 : 0},
+      {"CONSISTENT", scene::IsPaper(settings.Medium().transport) ? 0 : 1},
+      {"TRANSLUCENT", scene::IsTranslucent(settings.Medium().transport) ? 1 : 0},
       {"DIFFUSE", diffuse ? 1 : 0}};
   THUNDERHEAD_RETURN_IF_ERROR(Carry(medium, weights, box, variant));
   THUNDERHEAD_RETURN_IF_ERROR(Arrive(medium, weights, box, variant));
-  if (!Diffuses(settings.rendering)) return absl::OkStatus();
+  if (!Diffuses(settings)) return absl::OkStatus();
   return diffusion_.Solve(medium, weights, arrived_, settings.illumination.towards_sun);
 }
 
@@ -210,8 +210,8 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
                                            const RenderSettings& settings) {
   eye_.Resize(settings.quality.single_precision ? GL_RGBA32F : GL_RGBA16F, settings.eye_size,
               settings.cover);
-  const GroupWeights weights(medium.Content(), settings.rendering);
-  const bool diffusion = Diffuses(settings.rendering);
+  const GroupWeights weights(medium.Content(), settings.Medium());
+  const bool diffusion = Diffuses(settings);
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
       programs_->Get({"common/whole_target.vert",
@@ -219,7 +219,7 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
                       {{"GROUPS", static_cast<int>(medium.Content().groups.size())},
                        {"DETAILS", medium.Details()},
                        {"COLORED", weights.colored ? 1 : 0},
-                       {"CONSISTENT", IsConsistent(settings.rendering) ? 1 : 0},
+                       {"CONSISTENT", scene::IsPaper(settings.Medium().transport) ? 0 : 1},
                        {"GROUND", settings.ground_distance != nullptr ? 1 : 0},
                        {"EVEN_ALBEDO", weights.even_albedo ? 1 : 0},
                        {"DIFFUSION", diffusion ? 1 : 0},

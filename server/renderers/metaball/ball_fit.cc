@@ -144,13 +144,13 @@ std::shared_ptr<const BallCloud> BallFits::Find(const Key& key) {
 
 bool BallFits::Has(const scene::Scene& scene,
                    const std::shared_ptr<const volume::HydrometeorFields>& fields) {
-  return Find({fields, MediumOf(scene, *fields).terms, scene.rendering.metaballs.count}) != nullptr;
+  return Find({fields, MediumOf(scene, *fields).terms, std::get<scene::Metaballs>(scene.rendering.technique).count}) != nullptr;
 }
 
 absl::StatusOr<std::shared_ptr<const BallCloud>> BallFits::Get(
     const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields) {
   const Medium medium = MediumOf(scene, *fields);
-  const Key key{fields, medium.terms, scene.rendering.metaballs.count};
+  const Key key{fields, medium.terms, std::get<scene::Metaballs>(scene.rendering.technique).count};
   if (auto kept = Find(key); kept != nullptr) return kept;
   const std::lock_guard fitting(fitting_);
   // Somebody else may have fitted it meanwhile.

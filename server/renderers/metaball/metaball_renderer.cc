@@ -36,7 +36,13 @@ struct DeviceBall {
   glm::vec4 tint;
 };
 
-bool IsPaper(const scene::Rendering& rendering) { return !IsConsistent(rendering); }
+bool IsPaper(const RenderSettings& settings) {
+  return scene::IsPaper(settings.Medium().transport);
+}
+
+const scene::Metaballs& SettingsOf(const RenderSettings& settings) {
+  return std::get<scene::Metaballs>(settings.technique);
+}
 
 absl::Status Check(const std::vector<Ball>& balls) {
   for (std::size_t i = 0; i < balls.size(); ++i) {
@@ -131,7 +137,7 @@ gl::Buffer BufferOf(const std::vector<std::uint32_t>& values) {
 std::vector<MetaballRenderer::Light> MetaballRenderer::LightsOf(const RenderSettings& settings) {
   const Illumination& from = settings.illumination;
   std::vector<Light> lights = {{from.towards_sun, from.sunlight, false}};
-  if (IsPaper(settings.rendering)) {
+  if (IsPaper(settings)) {
     // The paper has lights in directions only: the halves of the sky stand in as their middles.
     const float half_sky = std::numbers::pi_v<float>;
     lights.push_back({{0.0, 0.0, 1.0}, half_sky * from.from_sky, false});
@@ -139,7 +145,7 @@ std::vector<MetaballRenderer::Light> MetaballRenderer::LightsOf(const RenderSett
   }
   for (const Beam& beam : from.beams) lights.push_back({beam.towards, beam.irradiance, false});
   // The last: source.comp expects it there.
-  if (!IsPaper(settings.rendering)) {
+  if (!IsPaper(settings)) {
     lights.push_back({{0.0, 0.0, 1.0}, glm::vec3(0.0F), true});
   }
   return lights;
@@ -149,7 +155,7 @@ void MetaballRenderer::Upload(const BallCloud& cloud, const Medium& content,
                               const RenderSettings& settings) {
   balls_ = cloud.balls;
   box_ = BoxOf(balls_);
-  const GroupWeights weights(content, settings.rendering);
+  const GroupWeights weights(content, settings.Medium());
   content_ = content;
   groups_ = static_cast<int>(content.groups.size());
   colored_ = weights.colored;
@@ -160,14 +166,14 @@ void MetaballRenderer::Upload(const BallCloud& cloud, const Medium& content,
   std::vector<DeviceBall> device;
   for (const Ball& ball : balls_) {
     device.push_back(DeviceBallOf(ball, content, weights, box_.Middle_m()));
-    if (!IsPaper(settings.rendering)) continue;
+    if (!IsPaper(settings)) continue;
     const double density = std::min(paper_factor * ball.extinction_per_m, 1.0);
     device.back().optics.x =
-        static_cast<float>(settings.rendering.metaballs.optical_depth * density);
+        static_cast<float>(SettingsOf(settings).optical_depth * density);
   }
-  const bool paper = IsPaper(settings.rendering);
-  Optics optics{NumbersOf(device), paper, paper ? settings.rendering.metaballs.albedo : 0.0,
-                IsTranslucent(settings.rendering)};
+  const bool paper = IsPaper(settings);
+  Optics optics{NumbersOf(device), paper, paper ? SettingsOf(settings).albedo : 0.0,
+                scene::IsTranslucent(settings.Medium().transport)};
   if (optics == optics_) return;
   optics_ = std::move(optics);
   lights_.clear();
@@ -215,7 +221,7 @@ absl::Status MetaballRenderer::CarryLight(const BallCloud& cloud, const Medium& 
 
 absl::Status MetaballRenderer::Carry(const Light& light, int index,
                                      const RenderSettings& settings) {
-  const bool paper = IsPaper(settings.rendering);
+  const bool paper = IsPaper(settings);
   const auto program_of = [&](int pass) {
     return programs_->Get(
         {{},
@@ -252,8 +258,8 @@ absl::Status MetaballRenderer::Carry(const Light& light, int index,
     program->Set("light_up", glm::vec3(plane.frame.up * plane.texels_per_m));
     program->Set("texels_per_m", static_cast<float>(plane.texels_per_m));
     program->Set("light_middle", 0.5F * glm::vec2(plane.size));
-    program->Set("paper_albedo", static_cast<float>(settings.rendering.metaballs.albedo));
-    program->Set("scattered_often", IsTranslucent(settings.rendering) ? 1.0F : 0.0F);
+    program->Set("paper_albedo", static_cast<float>(SettingsOf(settings).albedo));
+    program->Set("scattered_often", scene::IsTranslucent(settings.Medium().transport) ? 1.0F : 0.0F);
     program->Use();
     if (pass == 1) {
       run(*program, 0, static_cast<std::uint32_t>(balls_.size()));
@@ -280,7 +286,7 @@ absl::Status MetaballRenderer::DrawView(const RenderSettings& settings) {
 }
 
 absl::Status MetaballRenderer::FindSources(const RenderSettings& settings) {
-  const bool paper = IsPaper(settings.rendering);
+  const bool paper = IsPaper(settings);
   std::vector<glm::vec3> towards;
   std::vector<glm::vec3> irradiance;
   // Another haze changes the lights' colours, not what arrives of them.
@@ -298,10 +304,10 @@ absl::Status MetaballRenderer::FindSources(const RenderSettings& settings) {
                        {"COLORED", colored_ ? 1 : 0},
                        {"CONSISTENT", paper ? 0 : 1},
                        {"PAPER", paper ? 1 : 0},
-                       {"ISOTROPIC", settings.rendering.metaballs.isotropic ? 1 : 0},
+                       {"ISOTROPIC", SettingsOf(settings).isotropic ? 1 : 0},
                        {"PARALLEL", settings.view.Orthographic() ? 1 : 0}},
                       "metaball/source.comp"}));
-  const GroupWeights weights(content_, settings.rendering);
+  const GroupWeights weights(content_, settings.Medium());
   weights.BindPhase(*program);
   program->Set("ball_count", static_cast<int>(balls_.size()));
   program->Set("eye_forward", glm::vec3(settings.view.forward));
@@ -310,7 +316,7 @@ absl::Status MetaballRenderer::FindSources(const RenderSettings& settings) {
   program->Set("irradiance", irradiance);
   program->Set("sky_radiance", settings.illumination.from_sky);
   program->Set("ground_radiance", settings.illumination.from_ground);
-  program->Set("paper_albedo", static_cast<float>(settings.rendering.metaballs.albedo));
+  program->Set("paper_albedo", static_cast<float>(SettingsOf(settings).albedo));
   phase_curves_.Bind();
   ball_buffer_.BindStorage(kBallBinding);
   arrived_.BindStorage(kArrivedBinding);
@@ -327,7 +333,7 @@ absl::Status MetaballRenderer::Splat(const RenderSettings& settings) {
       const gl::Program* program,
       programs_->Get({"common/whole_target.vert",
                       "metaball/splat.frag",
-                      {{"PAPER", IsPaper(settings.rendering) ? 1 : 0},
+                      {{"PAPER", IsPaper(settings) ? 1 : 0},
                        {"GROUND", settings.ground_distance != nullptr ? 1 : 0}}}));
   const BallTiles tiles = TilesOf(balls_, settings.view, settings.eye_size);
   tile_starts_ = BufferOf(tiles.starts);

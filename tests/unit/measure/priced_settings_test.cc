@@ -1,11 +1,11 @@
-#include "measure/priced_settings.h"
+#include "accuracy/priced_settings.h"
 
 #include <algorithm>
 #include <string>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "measure/embedded_trade_tables.h"
+#include "accuracy/embedded_trade_tables.h"
 
 namespace thunderhead::measure {
 namespace {

@@ -1,0 +1,63 @@
+// From rays whose radiance is known better than it was drawn to factors for what is drawn, by place
+// and direction: linear least squares for each texel of a pyramid, from one texel down to the
+// finest, where what a texel's rays leave open is taken from the texel above. Knows no GL and no
+// scene.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "glm/vec3.hpp"
+#include "glm/vec4.hpp"
+
+namespace thunderhead::accuracy {
+
+// A ray: how bright something was drawn along it, and an estimate of how bright it is. An estimate
+// may be as noisy as it likes, and below zero, if its mean is right.
+struct CorrectedRay {
+  glm::dvec3 place{0.0};      // where the ray looks the factor up, 0 to 1 along each side of a box
+  glm::dvec3 direction{0.0};  // unit vector, or zero where factors do not depend on it
+  glm::dvec3 drawn{0.0};
+  glm::dvec3 estimate{0.0};
+};
+
+// Of one texel, by colour: the factor for direction d is dot(coefficients, (1, d)).
+using Factors = std::array<glm::vec4, 3>;
+
+class CorrectionFit {
+ public:
+  // Texels of the finest level over the box.
+  explicit CorrectionFit(const glm::ivec3& size);
+
+  void Add(const CorrectedRay& ray);
+  std::int64_t Rays() const { return rays_; }
+  const glm::ivec3& Size() const { return finest_.size; }
+
+  // Of every texel, x fastest; 1 where there are no rays near.
+  std::vector<Factors> Solve() const;
+
+ private:
+  // Normal equations of one texel, for the basis (1, x, y, z) of the ray's direction. Rays count by
+  // how bright they were drawn, so that a texel's factor is the mean estimate over the mean drawn.
+  struct Normal {
+    std::array<float, 10> matrix{};  // upper triangle by rows
+    std::array<std::array<float, 4>, 3> right{};
+
+    void operator+=(const Normal& other);
+  };
+  struct Level {
+    glm::ivec3 size{0};
+    std::vector<Normal> normals;
+  };
+
+  static Level Coarser(const Level& fine);
+  static std::vector<Factors> SolveLevel(const Level& level, const std::vector<Factors>& above,
+                                         const glm::ivec3& size_above, double variance);
+
+  Level finest_;
+  std::int64_t rays_ = 0;
+  double spread_ = 0.0;  // sum of the rays' squared differences from a factor of 1, as they count
+};
+
+}  // namespace thunderhead::accuracy

@@ -1,0 +1,56 @@
+#include "accuracy/corrector_pool.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+
+namespace thunderhead::accuracy {
+
+CorrectorPool::Kept* CorrectorPool::Serving(
+    const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields) {
+  if (scene::TracedLightOf(scene.rendering.technique) == scene::TracedLight::kOff) return nullptr;
+  const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) {
+    return kept.corrector->Serves(scene, fields);
+  });
+  return found == kept_.end() ? nullptr : &*found;
+}
+
+LightCorrector* CorrectorPool::Find(
+    const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields) {
+  Kept* const kept = Serving(scene, fields);
+  return kept == nullptr ? nullptr : kept->corrector.get();
+}
+
+absl::Status CorrectorPool::MakeRoom() {
+  if (kept_.size() < most_) return absl::OkStatus();
+  const auto oldest =
+      std::max_element(kept_.begin(), kept_.end(), [](const Kept& a, const Kept& b) {
+        return a.since_traced.ElapsedMs() < b.since_traced.ElapsedMs();
+      });
+  if (oldest->since_traced.ElapsedMs() < 1e3 * busy_s_) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("the server traces the light of ", kept_.size(), " other scenes already"));
+  }
+  kept_.erase(oldest);
+  return absl::OkStatus();
+}
+
+absl::StatusOr<LightProgress> CorrectorPool::Trace(
+    const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields) {
+  if (!TracesLight(scene, *fields)) return LightProgress{};
+  Kept* kept = Serving(scene, fields);
+  if (kept == nullptr) {
+    THUNDERHEAD_RETURN_IF_ERROR(MakeRoom());
+    THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<LightCorrector> corrector,
+                                 LightCorrector::Create(scene, fields, programs_, 0));
+    kept = &kept_.emplace_back(Kept{std::move(corrector), base::Stopwatch()});
+  }
+  kept->corrector->LookAs(scene);
+  THUNDERHEAD_RETURN_IF_ERROR(kept->corrector->Step());
+  kept->since_traced.Restart();
+  return kept->corrector->Progress();
+}
+
+}  // namespace thunderhead::accuracy

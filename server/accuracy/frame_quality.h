@@ -1,0 +1,14 @@
+// How finely a frame is drawn; full quality is the scene's own slices at scale 1.
+#pragma once
+
+namespace thunderhead::accuracy {
+
+struct FrameQuality {
+  double image_scale =
+      1.0;  // of the eye buffer's width and height, (0, 1]; the frame keeps the scene's size
+  double slice_share = 1.0;  // of the scene's slices, (0, 1]
+
+  bool operator==(const FrameQuality&) const = default;
+};
+
+}  // namespace thunderhead::accuracy

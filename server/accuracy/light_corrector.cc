@@ -1,0 +1,267 @@
+#include "accuracy/light_corrector.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+#include "base/status.h"
+#include "accuracy/probe_cameras.h"
+#include "frame/tone_map.h"
+#include "glm/common.hpp"
+#include "reference/philox.h"
+#include "reference/scene_problem.h"
+#include "reference/trace_rays.h"
+#include "reference/tracking.h"
+#include "scene/drawn_fields.h"
+
+namespace thunderhead::accuracy {
+namespace {
+
+constexpr int kWidth_px = 128;
+constexpr int kHeight_px = 96;
+// More texels along a side were noisier after as many paths, and no better where many were traced.
+constexpr int kMostTexels = 96;
+constexpr double kMostTexelCount = 262144.0;
+// Rays that see more than this of what is behind the storm say little of the storm.
+constexpr double kMostPassing = 0.8;
+// Less noise than with a cut of 3 degrees; what that changes in pictures is below what could be
+// measured (docs/decisions/0012).
+constexpr double kPeakCut_deg = 20.0;
+
+constexpr int kGroundTexels = 64;
+constexpr int kGroundRays = 2048;       // of a pass
+constexpr int kGroundPassesOfStep = 2;  // of the first steps
+constexpr int kFirstGroundPasses = 32;  // before the storm is traced, whose background it is
+constexpr int kPicturesPerGround = 16;  // the storm's background is brought up to date after these
+constexpr double kAboveGround_m = 1.0;
+constexpr std::uint64_t kGroundSeed = 0x67726f756e64;
+
+glm::ivec3 TexelsFor(const volume::WorldBox& box, const glm::dvec3& cell_m) {
+  const glm::dvec3 size_m = glm::max(box.high_m - box.low_m, cell_m);
+  const double by_side_m = std::max({size_m.x, size_m.y, size_m.z}) / kMostTexels;
+  const double by_count_m = std::cbrt(size_m.x * size_m.y * size_m.z / kMostTexelCount);
+  const glm::dvec3 texel_m = glm::max(glm::dvec3(std::max(by_side_m, by_count_m)), cell_m);
+  return glm::clamp(glm::ivec3(glm::ceil(size_m / texel_m)), glm::ivec3(1),
+                    glm::ivec3(kMostTexels));
+}
+
+// Half the sides of the rectangle of ground around the storm that it changes the light on.
+glm::dvec2 GroundReach_m(const volume::WorldBox& box) {
+  const glm::dvec2 half_m = 0.5 * glm::dvec2(box.high_m - box.low_m);
+  return half_m + 0.5 * std::max(half_m.x, half_m.y);
+}
+
+glm::dvec2 Middle_m(const volume::WorldBox& box) {
+  return 0.5 * glm::dvec2(box.low_m + box.high_m);
+}
+
+// What probes show: nothing that the light volume cannot, and no structure finer than texels.
+scene::Scene ProbedScene(scene::Scene scene) {
+  scene.lights.clear();
+  scene::MediumSettingsOf(&scene.rendering.technique)->look.detail = false;
+  scene.rendering.image_scale = 1.0;
+  scene.output.width_px = kWidth_px;
+  scene.output.height_px = kHeight_px;
+  return scene;
+}
+
+}  // namespace
+
+bool TracesLight(const scene::Scene& scene, const volume::HydrometeorFields& fields) {
+  return scene::TracedLightOf(scene.rendering.technique) != scene::TracedLight::kOff &&
+         std::any_of(
+             fields.fields.begin(), fields.fields.end(),
+             [&](const volume::HydrometeorField& field) { return scene::IsDrawn(scene, field); });
+}
+
+LightCorrector::LightCorrector(const scene::Scene& scene,
+                               std::shared_ptr<const volume::HydrometeorFields> fields,
+                               std::shared_ptr<const reference::Medium> medium,
+                               std::shared_ptr<gl::ProgramCache> programs, int threads)
+    : scene_(ProbedScene(scene)),
+      asked_(scene),
+      fields_(std::move(fields)),
+      medium_(std::move(medium)),
+      box_(volume::VisibleBox(*fields_)),
+      over_ground_(reference::SurroundingsOf(scene_, *fields_, reference::GroundLight::kShaded)),
+      threads_(threads),
+      renderer_(std::move(programs)),
+      storm_fit_(TexelsFor(box_, fields_->grid.spacing_m)),
+      ground_fit_({kGroundTexels, kGroundTexels, 1}) {
+  over_ground_.air = nullptr;
+  over_ground_.seen_sky = nullptr;
+}
+
+absl::StatusOr<std::unique_ptr<LightCorrector>> LightCorrector::Create(
+    const scene::Scene& scene, std::shared_ptr<const volume::HydrometeorFields> fields,
+    std::shared_ptr<gl::ProgramCache> programs, int threads) {
+  THUNDERHEAD_CHECK(TracesLight(scene, *fields), "nothing to be traced");
+  reference::MediumOptions options;
+  options.peak_cut_deg = kPeakCut_deg;
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<const reference::Medium> medium,
+                               reference::MediumOf(ProbedScene(scene), *fields, options));
+  return std::unique_ptr<LightCorrector>(new LightCorrector(
+      scene, std::move(fields), std::move(medium), std::move(programs), threads));
+}
+
+bool LightCorrector::Serves(const scene::Scene& scene,
+                            const std::shared_ptr<const volume::HydrometeorFields>& fields) const {
+  const auto* asked = std::get_if<scene::LightVolume>(&asked_.rendering.technique);
+  scene::Scene alike = scene;
+  auto* technique = std::get_if<scene::LightVolume>(&alike.rendering.technique);
+  if (fields != fields_ || technique == nullptr) return false;
+  technique->traced_light = asked->traced_light;
+  alike.camera = asked_.camera;
+  alike.lights = asked_.lights;  // which it does not show
+  alike.display = asked_.display;
+  alike.output = asked_.output;
+  alike.accuracy = asked_.accuracy;
+  alike.rendering.image_scale = asked_.rendering.image_scale;
+  return alike == asked_;
+}
+
+void LightCorrector::LookAs(const scene::Scene& scene) {
+  asked_ = scene;
+  scene_ = ProbedScene(scene);
+}
+
+scene::Camera LightCorrector::NextCamera() const {
+  if (pictures_ % 2 == 1) return Nudged(asked_.camera, box_, pictures_);
+  return AroundStorm(box_, static_cast<double>(kWidth_px) / kHeight_px, pictures_);
+}
+
+absl::Status LightCorrector::Step() {
+  ++progress_.steps;
+  if (ground_passes_ < kFirstGroundPasses) {
+    for (int i = 0; i < kGroundPassesOfStep; ++i) TraceGround();
+    return absl::OkStatus();
+  }
+  if (pictures_ % kPicturesPerGround == 0) UpdateGround();
+  TraceGround();
+  scene_.camera = NextCamera();
+  ++pictures_;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Probe probe, DrawProbe());
+  TraceProbe(probe);
+  correction_.reset();
+  return absl::OkStatus();
+}
+
+absl::Status LightCorrector::TraceUntil(std::int64_t paths, const std::stop_token& stop,
+                                        const std::function<void(double)>& observer) {
+  while (!progress_.HasTraced(paths)) {
+    if (stop.stop_requested()) return absl::CancelledError("stopped");
+    THUNDERHEAD_RETURN_IF_ERROR(Step());
+    if (observer) observer(static_cast<double>(progress_.paths) / static_cast<double>(paths));
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<LightCorrector::Probe> LightCorrector::DrawProbe() {
+  renderers::DrawQuality quality;
+  quality.single_precision = true;
+  const auto draw = [&]() -> absl::StatusOr<std::vector<float>> {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame frame,
+                                 renderer_.Draw(scene_, fields_, quality));
+    return frame::ReadLinear(*frame.radiance);
+  };
+  Probe probe;
+  quality.correction = plain_;
+  THUNDERHEAD_ASSIGN_OR_RETURN(probe.whole, draw());
+  quality.correction = black_;
+  THUNDERHEAD_ASSIGN_OR_RETURN(probe.behind, draw());
+  quality.places = true;
+  THUNDERHEAD_ASSIGN_OR_RETURN(probe.places, draw());
+  return probe;
+}
+
+void LightCorrector::TraceProbe(const Probe& probe) {
+  const reference::Camera camera = reference::CameraOf(scene_, *fields_);
+  std::vector<reference::Ray> rays;
+  std::vector<std::size_t> firsts;  // of each ray's pixel
+  for (int y = 0; y < kHeight_px; ++y) {
+    for (int x = 0; x < kWidth_px; ++x) {
+      const std::size_t first = 4 * static_cast<std::size_t>(y * kWidth_px + x);
+      if (probe.places[first + 3] > kMostPassing) continue;
+      firsts.push_back(first);
+      rays.push_back(
+          camera.RayThrough(2.0 * (x + 0.5) / kWidth_px - 1.0, 2.0 * (y + 0.5) / kHeight_px - 1.0));
+    }
+  }
+  const reference::Surroundings surroundings =
+      reference::SurroundingsOf(scene_, *fields_, reference::GroundLight::kShaded);
+  const std::vector<glm::dvec3> traced =
+      reference::TraceRays(*medium_, surroundings, rays, {pictures_, 1, threads_});
+  const auto value = [](const std::vector<float>& values, std::size_t first) {
+    return glm::dvec3(values[first], values[first + 1], values[first + 2]);
+  };
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const glm::dvec3 behind = value(probe.behind, firsts[i]);
+    storm_fit_.Add({value(probe.places, firsts[i]), rays[i].direction,
+                    value(probe.whole, firsts[i]) - behind, traced[i] - behind});
+  }
+  progress_.paths += static_cast<std::int64_t>(rays.size());
+}
+
+// Rays from anywhere on the ground, more of them the higher they go, so that their mean radiance is
+// the ground's irradiance over pi.
+void LightCorrector::TraceGround() {
+  const std::uint64_t pass = ++ground_passes_;
+  if (!over_ground_.ground.has_value() || !over_ground_.sky) return;
+  std::vector<reference::Ray> rays;
+  std::vector<glm::dvec3> places;
+  std::vector<glm::dvec3> skies;
+  for (int i = 0; i < kGroundRays; ++i) {
+    reference::RandomStream random(kGroundSeed, pass, static_cast<std::uint32_t>(i));
+    const glm::dvec2 place(random.Uniform(), random.Uniform());
+    places.emplace_back(place, 0.5);
+    const glm::dvec2 from_m = Middle_m(box_) + (2.0 * place - 1.0) * GroundReach_m(box_);
+    rays.push_back({glm::dvec3(from_m, over_ground_.ground->height_m + kAboveGround_m),
+                    reference::SampleCosine({0.0, 0.0, 1.0}, &random)});
+    skies.push_back(over_ground_.sky(rays.back().direction));
+    sky_sum_ += skies.back();
+  }
+  const glm::dvec3 mean_sky = sky_sum_ / static_cast<double>(pass * kGroundRays);
+  const std::vector<glm::dvec3> traced =
+      reference::TraceRays(*medium_, over_ground_, rays, {kGroundSeed + pass, 1, threads_});
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    // What the storm changes: rays that miss it say nothing but the truth.
+    ground_fit_.Add({places[i], glm::dvec3(0.0), mean_sky, mean_sky + traced[i] - skies[i]});
+  }
+}
+
+std::shared_ptr<renderers::LightCorrection> LightCorrector::WithGround() const {
+  auto correction = std::make_shared<renderers::LightCorrection>();
+  correction->ground_size = glm::ivec2(kGroundTexels);
+  for (const Factors& factors : ground_fit_.Solve()) {
+    correction->ground.emplace_back(factors[0].x, factors[1].x, factors[2].x, 1.0F);
+  }
+  correction->ground_low_m = Middle_m(box_) - GroundReach_m(box_);
+  correction->ground_high_m = Middle_m(box_) + GroundReach_m(box_);
+  return correction;
+}
+
+void LightCorrector::UpdateGround() {
+  const auto even = [&](float factor) {
+    std::shared_ptr<renderers::LightCorrection> correction = WithGround();
+    correction->size = glm::ivec3(1);
+    for (auto& texels : correction->texels) texels.assign(1, {factor, 0.0F, 0.0F, 0.0F});
+    return correction;
+  };
+  plain_ = even(1.0F);
+  black_ = even(0.0F);
+}
+
+std::shared_ptr<const renderers::LightCorrection> LightCorrector::Correction() {
+  if (correction_ != nullptr || progress_.paths == 0) return correction_;
+  std::shared_ptr<renderers::LightCorrection> correction = WithGround();
+  correction->size = storm_fit_.Size();
+  for (const Factors& factors : storm_fit_.Solve()) {
+    for (std::size_t color = 0; color < factors.size(); ++color) {
+      correction->texels[color].push_back(factors[color]);
+    }
+  }
+  return correction_ = std::move(correction);
+}
+
+}  // namespace thunderhead::accuracy

@@ -1,0 +1,47 @@
+// Named settings: three that trade speed for accuracy, and the modes of the papers' frame-rate
+// table (Riley et al. 2003, AMS, Table IV) as settings of the light volume.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include "scene/technique.h"
+
+namespace thunderhead::accuracy {
+
+enum class Preset {
+  kFast,
+  kBalanced,
+  kTrue,
+  kUniformPhaseLowAlbedo,
+  kUniformPhaseTranslucent,
+  kPerFieldPhaseTranslucent,
+  kPerFieldPhaseDetailTranslucent,
+};
+
+struct NamedPreset {
+  Preset preset;
+  std::string_view name;
+};
+
+// In the order in which to offer them.
+inline constexpr std::array<NamedPreset, 7> kPresets = {{
+    {Preset::kFast, "fast"},
+    {Preset::kBalanced, "balanced"},
+    {Preset::kTrue, "true"},
+    {Preset::kUniformPhaseLowAlbedo, "uniform_phase_low_albedo"},
+    {Preset::kUniformPhaseTranslucent, "uniform_phase_translucent"},
+    {Preset::kPerFieldPhaseTranslucent, "per_field_phase_translucent"},
+    {Preset::kPerFieldPhaseDetailTranslucent, "per_field_phase_detail_translucent"},
+}};
+
+inline constexpr Preset kDefaultPreset = Preset::kBalanced;
+
+// The technique and settings that it stands for.
+scene::Technique TechniqueOf(Preset preset);
+
+std::string_view NameOf(Preset preset);
+std::optional<Preset> PresetNamed(std::string_view name);
+
+}  // namespace thunderhead::accuracy

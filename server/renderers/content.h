@@ -1,0 +1,20 @@
+// A frame's content as a technique reports it. Knows no GL.
+#pragma once
+
+#include <vector>
+
+#include "physics/hydrometeors.h"
+#include "scene/frame_stage.h"
+
+namespace thunderhead::renderers {
+
+struct Content {
+  std::vector<physics::Hydrometeor> fields;  // drawn
+  double occupied_share = 0.0;               // of the domain's volume
+  int balls = 0;                             // metaballs
+  double fit_error = 0.0;  // of those, root mean square over the extinction's own
+  int ellipsoids = 0;      // of a cumulus
+  std::vector<scene::NotShown> not_shown;
+};
+
+}  // namespace thunderhead::renderers

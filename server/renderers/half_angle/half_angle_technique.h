@@ -1,0 +1,12 @@
+// Half-angle slicing as a technique of the registry.
+#pragma once
+
+#include <memory>
+
+#include "renderers/technique.h"
+
+namespace thunderhead::renderers {
+
+std::shared_ptr<const TechniqueFactory> MakeHalfAngleFactory();
+
+}  // namespace thunderhead::renderers

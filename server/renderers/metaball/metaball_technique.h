@@ -1,0 +1,12 @@
+// Metaballs as a technique of the registry.
+#pragma once
+
+#include <memory>
+
+#include "renderers/technique.h"
+
+namespace thunderhead::renderers {
+
+std::shared_ptr<const TechniqueFactory> MakeMetaballFactory();
+
+}  // namespace thunderhead::renderers
