@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "accuracy/named_settings.h"
 #include "app/commands.h"
 #include "app/interruption.h"
 #include "app/kept_truth.h"
@@ -101,8 +102,10 @@ std::string Table(const std::vector<measure::TradeRow>& rows) {
     const measure::Setting& setting = row.setting;
     absl::StrAppendFormat(&text,
                           "%-13s %-28s %-11s %6d %5g %5g %-6s %6g %4d %9.2f %8.4f %+8.4f %7.4f%s\n",
-                          measure::NameOf(setting.renderer), measure::NameOf(setting.mode),
-                          measure::NameOf(setting.transport), setting.slices, setting.image_scale,
+                          scene::NameOf(setting.technique),
+                          accuracy::ModeOf(setting.technique).name,
+                          accuracy::TransportNameOf(setting.technique),
+                          accuracy::CountOf(setting.technique), setting.image_scale,
                           setting.light_detail, setting.single_precision ? "single" : "half",
                           setting.million_paths, setting.jpeg_quality, row.milliseconds,
                           row.relative_rmse, row.relative_bias, row.flip, row.pareto ? "  *" : "");
