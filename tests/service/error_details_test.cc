@@ -2,8 +2,8 @@
 // of refusal.
 #include <grpcpp/support/error_details.h>
 
-#include <filesystem>
 #include <map>
+#include <ostream>
 #include <thread>
 
 #include "base/error_details.h"
@@ -22,8 +22,6 @@ namespace thunderhead::testing {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using ::testing::Pair;
 using ::testing::StartsWith;
 using Stub = v1::ThunderheadService::Stub;
@@ -85,6 +83,8 @@ struct Case {
   const char* reason;
   std::map<std::string, std::string> metadata = {};
 };
+
+void PrintTo(const Case& wrong, std::ostream* out) { *out << wrong.scene; }
 
 class WrongFieldTest : public ::testing::TestWithParam<Case> {};
 
