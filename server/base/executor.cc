@@ -1,13 +1,24 @@
 #include "base/executor.h"
 
+#include <chrono>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "base/error_details.h"
 
 namespace thunderhead::base {
 namespace {
 
-absl::Status Stopping() { return absl::UnavailableError("the server is shutting down"); }
+// A task is a read or a picture's encoding; a few threads end hundreds of them in this time.
+constexpr std::chrono::seconds kRetryAfter{10};
+
+absl::Status Full(std::size_t max_waiting) {
+  return WithDetails(absl::ResourceExhaustedError(absl::StrCat("the server is busy: ", max_waiting,
+                                                               " requests wait; try again later")),
+                     {.reason = "REQUEST_QUEUE_FULL",
+                      .metadata = {{"maximum", absl::StrCat(max_waiting)}, {"unit", "requests"}},
+                      .retry_after = kRetryAfter});
+}
 
 }  // namespace
 
@@ -22,10 +33,9 @@ void Executor::Submit(Task task) {
   {
     const std::lock_guard lock(mutex_);
     if (stopping_) {
-      refusal = Stopping();
+      refusal = ShuttingDown();
     } else if (waiting_.size() >= max_waiting_) {
-      refusal = absl::ResourceExhaustedError(
-          absl::StrCat("the server is busy: ", max_waiting_, " requests wait; try again later"));
+      refusal = Full(max_waiting_);
     } else {
       waiting_.push_back(std::move(task));
     }
@@ -47,7 +57,7 @@ void Executor::Stop() {
     threads.swap(threads_);
   }
   changed_.notify_all();
-  for (Task& task : refused) task(Stopping());
+  for (Task& task : refused) task(ShuttingDown());
   for (std::thread& thread : threads) thread.join();
 }
 

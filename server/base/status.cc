@@ -3,14 +3,20 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "absl/strings/cord.h"
 #include "absl/strings/str_cat.h"
 
 namespace thunderhead::base {
 
 absl::Status Annotate(const absl::Status& status, std::string_view prefix) {
   if (status.ok()) return status;
-  return absl::Status(status.code(), absl::StrCat(absl::string_view(prefix.data(), prefix.size()),
-                                                  ": ", status.message()));
+  absl::Status annotated(
+      status.code(),
+      absl::StrCat(absl::string_view(prefix.data(), prefix.size()), ": ", status.message()));
+  status.ForEachPayload([&annotated](absl::string_view name, const absl::Cord& payload) {
+    annotated.SetPayload(name, payload);
+  });
+  return annotated;
 }
 
 void CheckFailed(const char* file, int line, const char* condition, const std::string& detail) {

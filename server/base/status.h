@@ -11,7 +11,7 @@
 
 namespace thunderhead::base {
 
-// `status` with `prefix` and ": " put before its message; OK stays OK.
+// `status` with `prefix` and ": " put before its message, and its payloads; OK stays OK.
 absl::Status Annotate(const absl::Status& status, std::string_view prefix);
 
 // Prints the failed condition with its place and `detail`, then aborts.

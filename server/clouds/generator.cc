@@ -5,6 +5,7 @@
 #include <string>
 
 #include "absl/strings/str_cat.h"
+#include "base/error_details.h"
 #include "base/status.h"
 #include "glm/common.hpp"
 #include "glm/vector_relational.hpp"
@@ -20,8 +21,12 @@ constexpr double kMostWater_kg_per_m3 = 0.05;
 // Detail finer than this share of a cell is not seen, and its lattice would be large.
 constexpr double kFinestDetail_cells = 0.25;
 
-absl::Status Wrong(const std::string& what, double value, const std::string& wanted) {
-  return absl::InvalidArgumentError(absl::StrCat(what, " is ", value, "; it must be ", wanted));
+// `field` is the parameter's name on the command line and in requests, if it has one there.
+absl::Status Wrong(const std::string& what, double value, const std::string& wanted,
+                   const std::string& field = "") {
+  return base::WithDetails(
+      absl::InvalidArgumentError(absl::StrCat(what, " is ", value, "; it must be ", wanted)),
+      {.reason = "VALUE_OUT_OF_RANGE", .field = field});
 }
 
 absl::Status CheckGrid(const volume::RegularGrid& grid) {
@@ -44,21 +49,24 @@ absl::Status CheckGrid(const volume::RegularGrid& grid) {
 absl::Status CheckNoise(const CloudShape& shape) {
   const NoiseParameters& noise = shape.noise;
   if (noise.octaves < 1 || noise.octaves > kMostOctaves) {
-    return Wrong("the number of octaves", noise.octaves, absl::StrCat("from 1 to ", kMostOctaves));
+    return Wrong("the number of octaves", noise.octaves, absl::StrCat("from 1 to ", kMostOctaves),
+                 "octaves");
   }
   if (!(noise.persistence > 0.0 && noise.persistence <= 1.0)) {
-    return Wrong("the persistence", noise.persistence, "above 0 and at most 1");
+    return Wrong("the persistence", noise.persistence, "above 0 and at most 1", "persistence");
   }
   if (!(shape.feature_m > 0.0 && std::isfinite(shape.feature_m))) {
-    return Wrong("the feature size in m", shape.feature_m, "above 0");
+    return Wrong("the feature size in m", shape.feature_m, "above 0", "feature_size_m");
   }
   const glm::dvec3& spacing_m = shape.grid.spacing_m;
   const double cell_m = std::max({spacing_m.x, spacing_m.y, spacing_m.z});
   const double finest_m = std::ldexp(shape.feature_m, 1 - noise.octaves);
   if (finest_m < kFinestDetail_cells * cell_m) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "the finest of ", noise.octaves, " octaves is ", finest_m, " m, too fine for cells of ",
-        cell_m, " m; give fewer octaves, a larger feature size or smaller cells"));
+    return base::WithDetails(
+        absl::InvalidArgumentError(absl::StrCat(
+            "the finest of ", noise.octaves, " octaves is ", finest_m, " m, too fine for cells of ",
+            cell_m, " m; give fewer octaves, a larger feature size or smaller cells")),
+        {.reason = "DETAIL_TOO_FINE", .field = "octaves"});
   }
   return absl::OkStatus();
 }
@@ -70,7 +78,7 @@ absl::Status CheckEllipsoid(const Ellipsoid& ellipsoid) {
     if (!finite)
       return absl::InvalidArgumentError("an ellipsoid's place or rotation is not finite");
     if (!(ellipsoid.radii_m[axis] > 0.0 && std::isfinite(ellipsoid.radii_m[axis]))) {
-      return Wrong("an ellipsoid's radius in m", ellipsoid.radii_m[axis], "above 0");
+      return Wrong("an ellipsoid's radius in m", ellipsoid.radii_m[axis], "above 0", "ellipsoids");
     }
   }
   return absl::OkStatus();
@@ -126,17 +134,18 @@ absl::Status CheckShape(const CloudShape& shape) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckGrid(shape.grid));
   THUNDERHEAD_RETURN_IF_ERROR(CheckNoise(shape));
   if (!(shape.threshold >= 0.0 && shape.threshold < 1.0)) {
-    return Wrong("the threshold", shape.threshold, "at least 0 and below 1");
+    return Wrong("the threshold", shape.threshold, "at least 0 and below 1", "threshold");
   }
   if (!(shape.dynamics > 0.0 && shape.dynamics <= 1.0)) {
-    return Wrong("the dynamics", shape.dynamics, "above 0 and at most 1");
+    return Wrong("the dynamics", shape.dynamics, "above 0 and at most 1", "dynamics");
   }
   if (!(shape.water_kg_per_m3 > 0.0 && shape.water_kg_per_m3 <= kMostWater_kg_per_m3)) {
     return Wrong("the liquid water in g/m3", 1e3 * shape.water_kg_per_m3,
-                 absl::StrCat("above 0 and at most ", 1e3 * kMostWater_kg_per_m3));
+                 absl::StrCat("above 0 and at most ", 1e3 * kMostWater_kg_per_m3),
+                 "water_kg_per_m3");
   }
   if (shape.base_m.has_value() && !std::isfinite(*shape.base_m)) {
-    return Wrong("the height of the base in m", *shape.base_m, "a finite number");
+    return Wrong("the height of the base in m", *shape.base_m, "a finite number", "base_m");
   }
   if (shape.ellipsoids.empty()) return absl::InvalidArgumentError("a cloud needs an ellipsoid");
   for (const Ellipsoid& ellipsoid : shape.ellipsoids) {
@@ -173,10 +182,12 @@ absl::StatusOr<std::vector<float>> Generate(const CloudShape& shape,
     }
   }
   if (any) return water_kg_per_m3;
-  return absl::InvalidArgumentError(
-      absl::StrCat("no cell holds any cloud: nowhere in the domain is the density above the "
-                   "threshold ",
-                   shape.threshold, "; lower it, or move the ellipsoids"));
+  return base::WithDetails(
+      absl::InvalidArgumentError(
+          absl::StrCat("no cell holds any cloud: nowhere in the domain is the density above the "
+                       "threshold ",
+                       shape.threshold, "; lower it, or move the ellipsoids")),
+      {.reason = "CLOUD_EMPTY", .field = "threshold"});
 }
 
 }  // namespace thunderhead::clouds

@@ -1,4 +1,5 @@
 #include "absl/strings/str_cat.h"
+#include "base/error_details.h"
 #include "base/status.h"
 #include "service/finished.h"
 #include "service/handlers.h"
@@ -11,9 +12,11 @@ absl::Status Acknowledge(Engine& engine, const v1::AcknowledgeFrameRequest& requ
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto session, engine.sessions.Find(request.session_id()));
   if (session->hub().Acknowledge(request.viewer_id(), request.sequence())) return absl::OkStatus();
-  return absl::NotFoundError(absl::StrCat("viewer_id is ", request.viewer_id(),
-                                          "; no such viewer watches the session (its stream may "
-                                          "have ended)"));
+  return base::WithDetails(absl::NotFoundError(absl::StrCat(
+                               "viewer_id is ", request.viewer_id(),
+                               "; no such viewer watches the session (its stream may have ended)")),
+                           {.reason = "VIEWER_NOT_FOUND",
+                            .metadata = {{"viewer_id", absl::StrCat(request.viewer_id())}}});
 }
 
 }  // namespace

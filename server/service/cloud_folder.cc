@@ -1,9 +1,11 @@
 #include "service/cloud_folder.h"
 
+#include <chrono>
 #include <filesystem>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "base/error_details.h"
 #include "base/status.h"
 
 namespace thunderhead::service {
@@ -13,6 +15,20 @@ namespace fs = std::filesystem;
 
 // A cloud of a preset takes up to a few megabytes.
 constexpr std::size_t kMostClouds = 64;
+
+constexpr std::chrono::seconds kOneCloud{3};
+// Somebody must delete one first.
+constexpr std::chrono::minutes kRetryWhenFull{1};
+
+absl::Status TooManyClouds() {
+  return base::WithDetails(
+      absl::ResourceExhaustedError(
+          absl::StrCat("this server holds its most clouds, ", kMostClouds,
+                       "; delete some, or make more with `thunderhead generate`")),
+      {.reason = "TOO_MANY_CLOUDS",
+       .metadata = {{"maximum", absl::StrCat(kMostClouds)}, {"unit", "clouds"}},
+       .retry_after = kRetryWhenFull});
+}
 
 bool LiesIn(const std::string& folder, const std::string& file) {
   std::error_code error;
@@ -35,20 +51,22 @@ absl::StatusOr<const volume::StormInfo*> CloudFolder::Make(const clouds::CloudSh
                                                            const clouds::GenerateObserver& observer,
                                                            const std::stop_token& stop) {
   if (path_.empty()) {
-    return absl::FailedPreconditionError(
-        "this server has no folder for clouds; start it with --clouds FOLDER");
+    return base::WithDetails(
+        absl::FailedPreconditionError(
+            "this server has no folder for clouds; start it with --clouds FOLDER"),
+        {.reason = "NO_CLOUDS_FOLDER"});
   }
   const std::unique_lock lock(making_, std::try_to_lock);
   if (!lock.owns_lock()) {
-    return absl::UnavailableError("another cloud is being made; try again in a few seconds");
+    return base::WithDetails(
+        absl::UnavailableError("another cloud is being made; try again in a few seconds"),
+        {.reason = "CLOUD_BEING_MADE", .retry_after = kOneCloud});
   }
   std::string path;
   {
     const std::lock_guard files(mutex_);
     if (files_.size() >= kMostClouds) {
-      return absl::ResourceExhaustedError(
-          absl::StrCat("this server holds its most clouds, ", kMostClouds,
-                       "; delete some, or make more with `thunderhead generate`"));
+      return TooManyClouds();
     }
     path = NewPath(origin);
   }
@@ -70,11 +88,15 @@ absl::Status CloudFolder::Delete(const std::string& storm_id) {
   const auto file = files_.find(storm_id);
   if (file == files_.end()) {
     if (store_.Find(storm_id) == nullptr) {
-      return absl::NotFoundError(absl::StrCat("no storm has the id '", storm_id, "'"));
+      return base::WithDetails(
+          absl::NotFoundError(absl::StrCat("no storm has the id '", storm_id, "'")),
+          {.reason = "STORM_NOT_FOUND", .metadata = {{"storm_id", storm_id}}});
     }
-    return absl::FailedPreconditionError(
-        absl::StrCat("storm '", storm_id, "' was not made by this server, which deletes only ",
-                     "clouds that it made; remove its files yourself"));
+    return base::WithDetails(
+        absl::FailedPreconditionError(
+            absl::StrCat("storm '", storm_id, "' was not made by this server, which deletes only ",
+                         "clouds that it made; remove its files yourself")),
+        {.reason = "STORM_NOT_DELETABLE", .metadata = {{"storm_id", storm_id}}});
   }
   std::error_code error;
   fs::remove(file->second, error);

@@ -18,7 +18,8 @@ absl::StatusOr<const volume::StormInfo*> Check(const Engine& engine,
 
 absl::Status Describe(Engine& engine, const volume::StormInfo& storm, int time_index,
                       v1::DescribeStormResponse& response) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, engine.store.Get(storm.id, time_index, {}));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields,
+                               ReadFields(engine.store, storm.id, time_index, "storm_id"));
   ToMessage(storm, *fields, time_index, *response.mutable_storm());
   return absl::OkStatus();
 }

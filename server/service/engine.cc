@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "base/error_details.h"
 #include "base/status.h"
 #include "service/camera_messages.h"
 #include "service/scene_messages.h"
@@ -15,6 +16,8 @@ namespace {
 
 // Enough names for a person to see a slip; a catalogue may hold thousands.
 constexpr std::size_t kMaxNamesListed = 10;
+
+constexpr char kStormNotFound[] = "STORM_NOT_FOUND";
 
 std::string NamesOf(const std::vector<const volume::StormInfo*>& storms) {
   const std::size_t listed = std::min(storms.size(), kMaxNamesListed);
@@ -30,19 +33,37 @@ std::string NamesOf(const std::vector<const volume::StormInfo*>& storms) {
 absl::StatusOr<const volume::StormInfo*> FindStorm(const volume::StormStore& store,
                                                    const std::string& id) {
   const std::vector<const volume::StormInfo*> storms = store.Storms();
-  if (storms.empty()) return absl::NotFoundError("the server holds no storm");
+  if (storms.empty()) {
+    return base::WithDetails(absl::NotFoundError("the server holds no storm"),
+                             {.reason = kStormNotFound});
+  }
   if (id.empty()) return storms.front();
   const auto at = std::ranges::find(storms, id, &volume::StormInfo::id);
   if (at != storms.end()) return *at;
-  return absl::NotFoundError(
-      absl::StrCat("no storm has the id '", id, "'; there is ", NamesOf(storms)));
+  return base::WithDetails(absl::NotFoundError(absl::StrCat("no storm has the id '", id,
+                                                            "'; there is ", NamesOf(storms))),
+                           {.reason = kStormNotFound, .metadata = {{"storm_id", id}}});
 }
 
 absl::Status CheckTime(const volume::StormInfo& storm, std::uint32_t time_index,
                        const std::string& path) {
   if (time_index < storm.times.size()) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat(path, " is ", time_index, "; storm '", storm.id,
-                                                 "' has times 0 to ", storm.times.size() - 1));
+  const std::size_t last = storm.times.size() - 1;
+  return base::InvalidField(
+      path, absl::StrCat("is ", time_index, "; storm '", storm.id, "' has times 0 to ", last),
+      "VALUE_OUT_OF_RANGE", {{"minimum", "0"}, {"maximum", absl::StrCat(last)}});
+}
+
+absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadFields(
+    volume::StormStore& store, const std::string& storm_id, int time_index,
+    const std::string& path) {
+  auto fields = store.Get(storm_id, time_index, {});
+  if (fields.ok()) return fields;
+  return base::WithDetails(
+      fields.status(),
+      {.reason = absl::IsNotFound(fields.status()) ? kStormNotFound : "STORM_UNREADABLE",
+       .field = path,
+       .metadata = {{"storm_id", storm_id}}});
 }
 
 absl::Status PrepareScene(const volume::StormStore& store,
@@ -62,14 +83,14 @@ void FrameThen(Engine& engine, v1::Scene& scene, std::function<void(const absl::
     FrameCondensate(scene, *fields);
     return then(absl::OkStatus());
   }
-  engine.executor.Submit(
-      [&engine, &scene, time_index, then = std::move(then)](const absl::Status& status) {
-        if (!status.ok()) return then(status);
-        const auto fields = engine.store.Get(scene.storm_id(), time_index, {});
-        if (!fields.ok()) return then(fields.status());
-        FrameCondensate(scene, **fields);
-        then(absl::OkStatus());
-      });
+  engine.executor.Submit([&engine, &scene, time_index,
+                          then = std::move(then)](const absl::Status& status) {
+    if (!status.ok()) return then(status);
+    const auto fields = ReadFields(engine.store, scene.storm_id(), time_index, "scene.storm_id");
+    if (!fields.ok()) return then(fields.status());
+    FrameCondensate(scene, **fields);
+    then(absl::OkStatus());
+  });
 }
 
 }  // namespace thunderhead::service

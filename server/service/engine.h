@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -35,6 +36,12 @@ absl::StatusOr<const volume::StormInfo*> FindStorm(const volume::StormStore& sto
 // asked.
 absl::Status CheckTime(const volume::StormInfo& storm, std::uint32_t time_index,
                        const std::string& path);
+
+// The storm's fields at that time. If they cannot be read, `path` is the field that named the
+// storm.
+absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadFields(
+    volume::StormStore& store, const std::string& storm_id, int time_index,
+    const std::string& path);
 
 // Checks a scene (whose limits were checked) and fills in every default that needs no fields.
 // `techniques` are those that can be chosen.

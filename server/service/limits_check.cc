@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "absl/strings/str_cat.h"
+#include "base/error_details.h"
 #include "base/status.h"
 #include "thunderhead/v1/limits.pb.h"
 
@@ -90,8 +91,9 @@ absl::Status CheckEnum(const Message& message, const FieldDescriptor& field, int
   const int value = index < 0 ? get.GetEnumValue(message, &field)
                               : get.GetRepeatedEnumValue(message, &field, index);
   if (field.enum_type()->FindValueByNumber(value) != nullptr) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrCat(path, " is ", value, "; it must be one of ", NamesOf(*field.enum_type())));
+  const std::string names = NamesOf(*field.enum_type());
+  return base::InvalidField(path, absl::StrCat("is ", value, "; it must be one of ", names),
+                            "VALUE_UNKNOWN", {{"allowed", names}});
 }
 
 absl::Status CheckString(const Message& message, const FieldDescriptor& field, int index,
@@ -104,8 +106,9 @@ absl::Status CheckString(const Message& message, const FieldDescriptor& field, i
                                  ? get.GetStringReference(message, &field, &scratch)
                                  : get.GetRepeatedStringReference(message, &field, index, &scratch);
   if (value.size() <= longest) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat(
-      path, " is ", value.size(), " bytes long; it may be at most ", longest, " bytes"));
+  return base::InvalidField(
+      path, absl::StrCat("is ", value.size(), " bytes long; it may be at most ", longest, " bytes"),
+      "TEXT_TOO_LONG", {{"maximum", absl::StrCat(longest)}, {"unit", "bytes"}});
 }
 
 absl::Status CheckMessage(const Message& message, const std::string& prefix);
@@ -130,8 +133,11 @@ absl::Status CheckValue(const Message& message, const FieldDescriptor& field, in
   const v1::NumberLimits& limits = field.options().GetExtension(v1::number);
   const Checked checked = CheckNumber(message, field, index, limits);
   if (checked.within) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrCat(path, " is ", checked.text, "; it must be ", Range(limits)));
+  return base::InvalidField(path, absl::StrCat("is ", checked.text, "; it must be ", Range(limits)),
+                            "VALUE_OUT_OF_RANGE",
+                            {{"minimum", Text(limits.minimum())},
+                             {"maximum", Text(limits.maximum())},
+                             {"unit", limits.unit()}});
 }
 
 absl::Status CheckRepeated(const Message& message, const FieldDescriptor& field,
@@ -140,8 +146,9 @@ absl::Status CheckRepeated(const Message& message, const FieldDescriptor& field,
   if (field.options().HasExtension(v1::max_items)) {
     const std::uint32_t most = field.options().GetExtension(v1::max_items);
     if (static_cast<std::uint32_t>(size) > most) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(path, " has ", size, " items; it may have at most ", most));
+      return base::InvalidField(
+          path, absl::StrCat("has ", size, " items; it may have at most ", most), "TOO_MANY_ITEMS",
+          {{"maximum", absl::StrCat(most)}, {"unit", "items"}});
     }
   }
   for (int i = 0; i < size; ++i) {

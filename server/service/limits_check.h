@@ -9,7 +9,7 @@
 namespace thunderhead::service {
 
 // INVALID_ARGUMENT names the first value outside its limits by its full path, e.g.
-// "scene.fields[1].radius_m is 5; it must be between 1e-07 and 0.1 m".
+// "scene.fields[1].radius_m is 5; it must be between 1e-07 and 0.1 m", with details.
 absl::Status CheckLimits(const google::protobuf::Message& message);
 
 // Sets every absent number that has a default in the schema, in `message` and the messages present

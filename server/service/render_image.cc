@@ -2,6 +2,7 @@
 #include <memory>
 #include <utility>
 
+#include "base/error_details.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "frame/image_codec.h"
@@ -33,6 +34,11 @@ absl::Status Encode(const session::DisplayFrame& picture, const v1::RenderImageR
   return absl::OkStatus();
 }
 
+// What drawing says is wrong, it says of the whole scene.
+absl::Status OfScene(const absl::Status& status) {
+  return base::WithDetails(status, {.reason = "SCENE_NOT_DRAWN", .field = "scene"});
+}
+
 // One picture on its way: read (executor), drawn (render loop), encoded (executor). Finish is
 // called by exactly one of these steps; gRPC deletes the reactor through OnDone, after which no
 // step runs.
@@ -62,12 +68,13 @@ class PictureReactor : public grpc::ServerUnaryReactor {
     v1::Scene& scene = *response_.mutable_scene();
     base::Stopwatch stopwatch;
     THUNDERHEAD_ASSIGN_OR_RETURN(
-        auto fields, engine_.store.Get(scene.storm_id(), static_cast<int>(scene.time_index()), {}));
+        auto fields, ReadFields(engine_.store, scene.storm_id(),
+                                static_cast<int>(scene.time_index()), "scene.storm_id"));
     ToMessage({scene::FrameStage::kRead, stopwatch.ElapsedMs()}, *response_.add_stages());
     FrameCondensate(scene, *fields);
     const scene::Scene drawn = ToScene(scene);
     stopwatch.Restart();
-    THUNDERHEAD_RETURN_IF_ERROR(engine_.loop.Prepare(drawn, fields));
+    THUNDERHEAD_RETURN_IF_ERROR(OfScene(engine_.loop.Prepare(drawn, fields)));
     if (std::holds_alternative<scene::Metaballs>(drawn.rendering.technique)) {
       ToMessage({scene::FrameStage::kFit, stopwatch.ElapsedMs()}, *response_.add_stages());
     }
@@ -78,7 +85,7 @@ class PictureReactor : public grpc::ServerUnaryReactor {
   }
 
   void Drawn(absl::StatusOr<session::DisplayFrame> picture) {
-    if (!picture.ok()) return Finish(ToGrpcStatus(picture.status()));
+    if (!picture.ok()) return Finish(ToGrpcStatus(OfScene(picture.status())));
     const auto drawn = std::make_shared<session::DisplayFrame>(*std::move(picture));
     engine_.executor.Submit([this, drawn](const absl::Status& status) {
       Finish(ToGrpcStatus(status.ok() ? Encode(*drawn, request_, response_) : status));
@@ -101,10 +108,11 @@ grpc::ServerUnaryReactor* RenderImage(Engine& engine, grpc::CallbackServerContex
   if (status.ok()) status = PrepareScene(engine.store, engine.loop.Techniques(), *response->mutable_scene());
   if (!status.ok()) return Finished(context, status);
   if (response->scene().rendering().has_reference()) {
-    return Finished(context, absl::InvalidArgumentError(
-                                 "scene.rendering.reference is given, which only "
-                                 "sessions show; for a file use thunderhead render --renderer "
-                                 "reference"));
+    return Finished(context, base::InvalidField(
+                                 "scene.rendering.reference",
+                                 "is given, which only sessions show; for a file use "
+                                 "thunderhead render --renderer reference",
+                                 "TECHNIQUE_FOR_SESSIONS_ONLY"));
   }
   auto* reactor = new PictureReactor(engine, *request, *response);
   reactor->Begin();

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "base/error_details.h"
 #include "base/status.h"
 #include "service/camera_messages.h"
 #include "service/enum_tables.h"
@@ -204,23 +205,29 @@ absl::Status CheckScene(const v1::Scene& scene) {
     const v1::Hydrometeor hydrometeor = scene.fields(i).hydrometeor();
     const std::string path = absl::StrCat("scene.fields[", i, "].hydrometeor");
     if (hydrometeor == v1::HYDROMETEOR_UNSPECIFIED) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(path, " is not given; it must say which field the settings are for"));
+      return base::InvalidField(path, "is not given; it must say which field the settings are for",
+                                "FIELD_MISSING");
     }
     const int first = *FirstWith(scene.fields(), hydrometeor);
     if (first != i) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(path, " is ", v1::Hydrometeor_Name(hydrometeor), ", which scene.fields[",
-                       first, "] already is; each hydrometeor may be listed once"));
+      return base::InvalidField(
+          path,
+          absl::StrCat("is ", v1::Hydrometeor_Name(hydrometeor), ", which scene.fields[", first,
+                       "] already is; each hydrometeor may be listed once"),
+          "HYDROMETEOR_REPEATED");
     }
   }
   v1::Output output = scene.output();
   FillNumberDefaults(output);
   const std::uint64_t pixels = std::uint64_t{output.width_px()} * output.height_px();
   if (pixels > kMaxPixels) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "scene.output.width_px times scene.output.height_px is ", output.width_px(), " x ",
-        output.height_px(), " = ", pixels, "; it must be at most ", kMaxPixels, " pixels"));
+    return base::WithDetails(
+        absl::InvalidArgumentError(absl::StrCat(
+            "scene.output.width_px times scene.output.height_px is ", output.width_px(), " x ",
+            output.height_px(), " = ", pixels, "; it must be at most ", kMaxPixels, " pixels")),
+        {.reason = "PICTURE_TOO_LARGE",
+         .field = "scene.output",
+         .metadata = {{"maximum", absl::StrCat(kMaxPixels)}, {"unit", "pixels"}}});
   }
   return absl::OkStatus();
 }

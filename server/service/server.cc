@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "base/error_details.h"
 #include "base/executor.h"
 #include "base/status.h"
 #include "base/wake_signal.h"
@@ -107,7 +108,7 @@ class RunningServer final : public Server {
     if (server_ != nullptr) server_->GetHealthCheckService()->Shutdown();
     // First, so that who sees its stream end also finds that no picture is begun any more.
     if (loop_ != nullptr) loop_->RequestStop();
-    sessions_.CloseAll(absl::UnavailableError("the server is shutting down"));
+    sessions_.CloseAll(base::ShuttingDown());
     if (loop_ != nullptr) loop_->Stop();
     executor_.Stop();
     if (server_ == nullptr) return;

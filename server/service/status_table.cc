@@ -1,42 +1,151 @@
 #include "service/status_table.h"
 
 #include <array>
+#include <chrono>
+#include <cstddef>
 #include <string>
+#include <string_view>
+
+#include "base/error_details.h"
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
 
 namespace thunderhead::service {
 namespace {
 
+using std::chrono::milliseconds;
+
+constexpr char kDomain[] = "thunderhead";
+
+// gRPC drops a status of more than 8 KiB, and a shader's log may be longer. The message is in it
+// twice, in the details as base64.
+constexpr std::size_t kMaxMessageBytes = 2000;
+constexpr std::size_t kMaxDetailBytes = 600;
+
 struct Row {
   absl::StatusCode engine;
   grpc::StatusCode wire;
+  const char* reason;             // where nobody gave a better one
+  milliseconds retry_after = {};  // likewise; 0: trying again does not help
 };
 
 // OUT_OF_RANGE is a wrong value like any other to a client, so it joins INVALID_ARGUMENT.
 constexpr std::array kTable = {
-    Row{absl::StatusCode::kOk, grpc::StatusCode::OK},
-    Row{absl::StatusCode::kCancelled, grpc::StatusCode::CANCELLED},
-    Row{absl::StatusCode::kInvalidArgument, grpc::StatusCode::INVALID_ARGUMENT},
-    Row{absl::StatusCode::kOutOfRange, grpc::StatusCode::INVALID_ARGUMENT},
-    Row{absl::StatusCode::kNotFound, grpc::StatusCode::NOT_FOUND},
-    Row{absl::StatusCode::kAlreadyExists, grpc::StatusCode::ALREADY_EXISTS},
-    Row{absl::StatusCode::kPermissionDenied, grpc::StatusCode::PERMISSION_DENIED},
-    Row{absl::StatusCode::kResourceExhausted, grpc::StatusCode::RESOURCE_EXHAUSTED},
-    Row{absl::StatusCode::kFailedPrecondition, grpc::StatusCode::FAILED_PRECONDITION},
-    Row{absl::StatusCode::kAborted, grpc::StatusCode::ABORTED},
-    Row{absl::StatusCode::kUnimplemented, grpc::StatusCode::UNIMPLEMENTED},
-    Row{absl::StatusCode::kDataLoss, grpc::StatusCode::DATA_LOSS},
-    Row{absl::StatusCode::kUnavailable, grpc::StatusCode::UNAVAILABLE},
-    Row{absl::StatusCode::kDeadlineExceeded, grpc::StatusCode::DEADLINE_EXCEEDED},
-    Row{absl::StatusCode::kInternal, grpc::StatusCode::INTERNAL},
+    Row{absl::StatusCode::kInvalidArgument, grpc::StatusCode::INVALID_ARGUMENT, "INVALID_ARGUMENT"},
+    Row{absl::StatusCode::kOutOfRange, grpc::StatusCode::INVALID_ARGUMENT, "VALUE_OUT_OF_RANGE"},
+    Row{absl::StatusCode::kNotFound, grpc::StatusCode::NOT_FOUND, "NOT_FOUND"},
+    Row{absl::StatusCode::kAlreadyExists, grpc::StatusCode::ALREADY_EXISTS, "ALREADY_EXISTS"},
+    Row{absl::StatusCode::kPermissionDenied, grpc::StatusCode::PERMISSION_DENIED,
+        "PERMISSION_DENIED"},
+    // Memory that is full now may be free in a while.
+    Row{absl::StatusCode::kResourceExhausted, grpc::StatusCode::RESOURCE_EXHAUSTED,
+        "RESOURCE_EXHAUSTED", std::chrono::seconds(30)},
+    Row{absl::StatusCode::kFailedPrecondition, grpc::StatusCode::FAILED_PRECONDITION,
+        "FAILED_PRECONDITION"},
+    Row{absl::StatusCode::kAborted, grpc::StatusCode::ABORTED, "ABORTED"},
+    Row{absl::StatusCode::kUnimplemented, grpc::StatusCode::UNIMPLEMENTED, "UNIMPLEMENTED"},
+    Row{absl::StatusCode::kDataLoss, grpc::StatusCode::DATA_LOSS, "DATA_LOSS"},
+    Row{absl::StatusCode::kUnavailable, grpc::StatusCode::UNAVAILABLE, "UNAVAILABLE",
+        std::chrono::seconds(5)},
+    Row{absl::StatusCode::kDeadlineExceeded, grpc::StatusCode::DEADLINE_EXCEEDED,
+        "DEADLINE_EXCEEDED"},
+    Row{absl::StatusCode::kInternal, grpc::StatusCode::INTERNAL, "INTERNAL"},
 };
+
+constexpr Row kOther{absl::StatusCode::kUnknown, grpc::StatusCode::UNKNOWN, "UNKNOWN"};
+
+const Row& RowOf(absl::StatusCode code) {
+  for (const Row& row : kTable) {
+    if (row.engine == code) return row;
+  }
+  return kOther;
+}
+
+// The bytes of the UTF-8 character that `text` begins with; 0 if it begins with none.
+std::size_t CharacterBytes(std::string_view text) {
+  const auto byte = [text](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
+  };
+  const unsigned lead = byte(0);
+  if (lead < 0x80) return 1;
+  if (lead < 0xc2 || lead > 0xf4) return 0;
+  const std::size_t bytes = lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : 4;
+  for (std::size_t i = 1; i < bytes; ++i) {
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  }
+  // A longer form than needed, half of a UTF-16 pair, or beyond Unicode.
+  const bool wrong = (lead == 0xe0 && byte(1) < 0xa0) || (lead == 0xed && byte(1) > 0x9f) ||
+                     (lead == 0xf0 && byte(1) < 0x90) || (lead == 0xf4 && byte(1) > 0x8f);
+  return wrong ? 0 : bytes;
+}
+
+// Text for a protobuf string, which must be UTF-8 (a file's name need not be), no longer than
+// `max_bytes` as grpc-message writes it: all but printable ASCII takes three for one.
+std::string Sendable(std::string_view text, std::size_t max_bytes) {
+  std::string sendable;
+  std::size_t bytes = 0;
+  while (!text.empty()) {
+    const std::size_t size = CharacterBytes(text);
+    const std::string_view character = size == 0 ? "?" : text.substr(0, size);
+    const bool printable = character[0] >= 0x20 && character[0] < 0x7f;
+    bytes += printable ? 1 : 3 * character.size();
+    if (bytes > max_bytes) return sendable + "...";
+    sendable += character;
+    text.remove_prefix(size == 0 ? 1 : size);
+  }
+  return sendable;
+}
+
+google::rpc::ErrorInfo ErrorInfoOf(const base::ErrorDetails& details, const Row& row) {
+  google::rpc::ErrorInfo info;
+  info.set_reason(details.reason.empty() ? row.reason : details.reason);
+  info.set_domain(kDomain);
+  for (const auto& [key, value] : details.metadata) {
+    (*info.mutable_metadata())[key] = Sendable(value, kMaxDetailBytes);
+  }
+  return info;
+}
+
+google::rpc::RetryInfo RetryInfoOf(milliseconds delay) {
+  google::rpc::RetryInfo retry;
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(delay);
+  retry.mutable_retry_delay()->set_seconds(seconds.count());
+  retry.mutable_retry_delay()->set_nanos(
+      static_cast<int>(std::chrono::nanoseconds(delay - seconds).count()));
+  return retry;
+}
+
+google::rpc::BadRequest BadRequestOf(const base::ErrorDetails& details,
+                                     const std::string& message) {
+  google::rpc::BadRequest request;
+  auto& violation = *request.add_field_violations();
+  violation.set_field(Sendable(details.field, kMaxDetailBytes));
+  violation.set_description(
+      Sendable(details.description.empty() ? message : details.description, kMaxDetailBytes));
+  return request;
+}
 
 }  // namespace
 
 grpc::Status ToGrpcStatus(const absl::Status& status) {
-  for (const Row& row : kTable) {
-    if (row.engine == status.code()) return {row.wire, std::string(status.message())};
+  const std::string message =
+      Sendable({status.message().data(), status.message().size()}, kMaxMessageBytes);
+  if (status.ok()) return grpc::Status::OK;
+  // Who cancelled a call does not wait for its details.
+  if (absl::IsCancelled(status)) return {grpc::StatusCode::CANCELLED, message};
+  const Row& row = RowOf(status.code());
+  const base::ErrorDetails details = base::DetailsOf(status);
+  google::rpc::Status all;
+  all.set_code(row.wire);
+  // Clients that read the details read code and message there too.
+  all.set_message(message);
+  all.add_details()->PackFrom(ErrorInfoOf(details, row));
+  const milliseconds retry_after = details.retry_after.value_or(row.retry_after);
+  if (retry_after > milliseconds::zero()) all.add_details()->PackFrom(RetryInfoOf(retry_after));
+  if (row.wire == grpc::StatusCode::INVALID_ARGUMENT) {
+    all.add_details()->PackFrom(BadRequestOf(details, message));
   }
-  return {grpc::StatusCode::UNKNOWN, std::string(status.message())};
+  return {row.wire, message, all.SerializeAsString()};
 }
 
 }  // namespace thunderhead::service

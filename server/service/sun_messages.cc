@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/time/civil_time.h"
 #include "absl/time/time.h"
+#include "base/error_details.h"
 #include "physics/sun_position.h"
 
 namespace thunderhead::service {
@@ -39,9 +40,10 @@ absl::Status CheckSun(const v1::Sun& sun) {
   absl::Time time;
   const std::string& text = sun.clock().date_time();
   if (text.empty() || ParseUtc(text, &time)) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrCat("scene.sun.clock.date_time is '", text,
-                   "'; it must be a date and time like 2013-05-20T20:00:00Z"));
+  return base::InvalidField(
+      "scene.sun.clock.date_time",
+      absl::StrCat("is '", text, "'; it must be a date and time like 2013-05-20T20:00:00Z"),
+      "DATE_TIME_MALFORMED");
 }
 
 void FillSunDefaults(v1::Sun& sun, const volume::StormInfo& storm, int time_index) {

@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "accuracy/presets.h"
+#include "base/error_details.h"
 #include "base/status.h"
 #include "service/enum_tables.h"
 
@@ -64,9 +65,11 @@ absl::Status CheckTransport(const std::string& path, v1::Transport given,
   const std::string names = absl::StrJoin(accepted, ", ", [](std::string* out, v1::Transport one) {
     out->append(v1::Transport_Name(one));
   });
-  return absl::InvalidArgumentError(
-      absl::StrCat("scene.rendering.", path, ".transport is ", v1::Transport_Name(given),
-                   ", which this technique does not show; it must be one of ", names));
+  return base::InvalidField(
+      absl::StrCat("scene.rendering.", path, ".transport"),
+      absl::StrCat("is ", v1::Transport_Name(given),
+                   ", which this technique does not show; it must be one of ", names),
+      "TRANSPORT_NOT_SHOWN");
 }
 
 absl::Status CheckOther(const v1::OtherTechnique& other,
@@ -77,10 +80,13 @@ absl::Status CheckOther(const v1::OtherTechnique& other,
   const v1::Rendering& fields = v1::Rendering::default_instance();
   const bool own = fields.GetDescriptor()->FindFieldByName(other.name()) != nullptr;
   if (found && !own) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat(
-      "scene.rendering.other.name is '", other.name(), "'; ",
-      found ? "that technique has a field of its own in scene.rendering"
-            : absl::StrCat("the server has the techniques ", absl::StrJoin(names, ", "))));
+  return base::InvalidField(
+      "scene.rendering.other.name",
+      absl::StrCat("is '", other.name(), "'; ",
+                   found ? "that technique has a field of its own in scene.rendering"
+                         : absl::StrCat("the server has the techniques ",
+                                        absl::StrJoin(names, ", "))),
+      "UNKNOWN_TECHNIQUE");
 }
 
 // The settings that the messages of media have in common.

@@ -6,13 +6,24 @@
 
 #include "absl/strings/str_cat.h"
 #include "accuracy/named_settings.h"
+#include "base/error_details.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 
 namespace thunderhead::session {
 namespace {
 
-absl::Status Stopping() { return absl::UnavailableError("the server is shutting down"); }
+// The time of a few pictures.
+constexpr std::chrono::seconds kRetryImageAfter{5};
+
+absl::Status TooManyImages(std::size_t waiting) {
+  return base::WithDetails(
+      absl::ResourceExhaustedError(absl::StrCat("the server is busy: ", waiting,
+                                                " pictures wait to be drawn; try again later")),
+      {.reason = "RENDER_QUEUE_FULL",
+       .metadata = {{"maximum", absl::StrCat(waiting)}, {"unit", "pictures"}},
+       .retry_after = kRetryImageAfter});
+}
 
 FieldsKey KeyOf(const scene::Scene& scene) { return {scene.storm_id, scene.time_index}; }
 
@@ -71,10 +82,9 @@ void RenderLoop::RenderImage(ImageJob job) {
   {
     const std::lock_guard lock(images_mutex_);
     if (refuses_images_) {
-      refusal = Stopping();
+      refusal = base::ShuttingDown();
     } else if (images_.size() >= options_.max_waiting_images) {
-      refusal = absl::ResourceExhaustedError(absl::StrCat(
-          "the server is busy: ", images_.size(), " pictures wait to be drawn; try again later"));
+      refusal = TooManyImages(images_.size());
     } else {
       images_.push_back(std::move(job));
     }
@@ -398,7 +408,7 @@ void RenderLoop::RefuseImages() {
     refuses_images_ = true;
     refused.swap(images_);
   }
-  for (const ImageJob& job : refused) job.done(Stopping());
+  for (const ImageJob& job : refused) job.done(base::ShuttingDown());
 }
 
 }  // namespace thunderhead::session

@@ -1,10 +1,12 @@
 #include "session/sessions.h"
 
+#include <chrono>
 #include <random>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "base/error_details.h"
 
 namespace thunderhead::session {
 namespace {
@@ -18,9 +20,25 @@ std::string RandomId() {
   return id;
 }
 
+// Abandoned sessions expire one by one.
+constexpr std::chrono::seconds kRetryAfter{30};
+
+absl::Status Gone(const std::string& message) {
+  return base::WithDetails(absl::NotFoundError(message), {.reason = "SESSION_NOT_FOUND"});
+}
+
 absl::Status NotFound(const std::string& id) {
-  return absl::NotFoundError(absl::StrCat("no session has the id '", id,
-                                          "': it was closed or has expired; create a new one"));
+  return Gone(absl::StrCat("no session has the id '", id,
+                           "': it was closed or has expired; create a new one"));
+}
+
+absl::Status TooMany(std::size_t max_sessions) {
+  return base::WithDetails(
+      absl::ResourceExhaustedError(absl::StrCat("the server holds its most sessions (",
+                                                max_sessions, "); close one, or try again later")),
+      {.reason = "TOO_MANY_SESSIONS",
+       .metadata = {{"maximum", absl::StrCat(max_sessions)}, {"unit", "sessions"}},
+       .retry_after = kRetryAfter});
 }
 
 }  // namespace
@@ -66,9 +84,7 @@ absl::StatusOr<std::shared_ptr<Session>> Sessions::Create() {
   if (!closed_because_.ok()) return closed_because_;
   DropExpired();
   if (sessions_.size() >= options_.max_sessions) {
-    return absl::ResourceExhaustedError(absl::StrCat("the server holds its most sessions (",
-                                                     options_.max_sessions,
-                                                     "); close one, or try again later"));
+    return TooMany(options_.max_sessions);
   }
   auto session = std::make_shared<Session>(RandomId(), on_work_);
   sessions_[session->id()] = session;
@@ -95,7 +111,7 @@ absl::Status Sessions::Close(const std::string& id) {
     session = std::move(found->second);
     sessions_.erase(found);
   }
-  session->hub().Close(absl::NotFoundError("the session was closed"));
+  session->hub().Close(Gone("the session was closed"));
   on_work_();
   return absl::OkStatus();
 }
@@ -124,7 +140,7 @@ void Sessions::DropExpired() {
     Session& session = *entry->second;
     if (!session.hub().HasViewers() && session.last_used() < oldest) {
       // One may be joining right now; it is told, as if the session had expired a moment earlier.
-      session.hub().Close(absl::NotFoundError("the session has expired; create a new one"));
+      session.hub().Close(Gone("the session has expired; create a new one"));
       entry = sessions_.erase(entry);
     } else {
       ++entry;

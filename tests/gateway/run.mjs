@@ -27,7 +27,10 @@ try {
   const plugin = `--plugin=protoc-gen-es=${here}node_modules/.bin/protoc-gen-es`;
   const made = spawnSync(
     protoc,
-    ["-I", here, plugin, `--es_out=${generated}`, "--es_opt=target=js", `${here}echo.proto`],
+    [
+      ...["-I", here, "-I", `${root}proto`, plugin, `--es_out=${generated}`, "--es_opt=target=js"],
+      ...["echo.proto", "google/rpc/status.proto", "google/rpc/error_details.proto"],
+    ],
     { stdio: "inherit" },
   );
   if (made.status !== 0) throw new Error("protoc could not generate the messages' code");

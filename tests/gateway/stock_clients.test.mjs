@@ -5,15 +5,18 @@ import { after, before, describe, test } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 import { pathToFileURL } from "node:url";
 import { create, fromBinary, toBinary } from "@bufbuild/protobuf";
+import { anyPack } from "@bufbuild/protobuf/wkt";
 import { Code, ConnectError, createClient, decodeBinaryHeader, encodeBinaryHeader } from "@connectrpc/connect";
 import { createGrpcWebTransport as createNodeTransport } from "@connectrpc/connect-node";
 import { createGrpcWebTransport as createWebTransport } from "@connectrpc/connect-web";
 import xhr2 from "xhr2";
 import { startEchoServer } from "./echo_server_process.mjs";
 
-// The code generated from echo.proto.
-const generated = pathToFileURL(`${process.env.THUNDERHEAD_GENERATED}/echo_pb.js`);
-const { Echo, SayRequestSchema, SayResponseSchema, FailRequestSchema, WaitRequestSchema } = await import(generated);
+// The code generated from echo.proto and from google.rpc as the server has it.
+const generated = (name) => import(pathToFileURL(`${process.env.THUNDERHEAD_GENERATED}/${name}_pb.js`));
+const { Echo, SayRequestSchema, SayResponseSchema, FailRequestSchema, WaitRequestSchema } = await generated("echo");
+const { StatusSchema } = await generated("google/rpc/status");
+const { BadRequestSchema, ErrorInfoSchema, RetryInfoSchema } = await generated("google/rpc/error_details");
 
 // grpc-web is made for browsers; xhr2 is their XMLHttpRequest for Node.js.
 globalThis.XMLHttpRequest = xhr2.XMLHttpRequest ?? xhr2;
@@ -103,6 +106,33 @@ for (const way of ["unix-socket", "in-process"]) {
         const plain = await failureOf(client.failOnce({ code: 3, message: "kein Sturm: 100 % ☀\n" }));
         assert.equal(plain.code, Code.InvalidArgument);
         assert.equal(plain.rawMessage, "kein Sturm: 100 % ☀\n");
+      });
+
+      test("google.rpc's details of an error are found by the client's own means", async () => {
+        const message = "scene.time_index ist 4 ☀; storm 'anvil' has times 0 to 3";
+        const violation = { field: "scene.time_index", description: "ist 4 ☀; storm 'anvil' has times 0 to 3" };
+        const reason = { reason: "VALUE_OUT_OF_RANGE", domain: "thunderhead", metadata: { maximum: "3", minimum: "0" } };
+        const details = [
+          anyPack(ErrorInfoSchema, create(ErrorInfoSchema, reason)),
+          anyPack(RetryInfoSchema, create(RetryInfoSchema, { retryDelay: { seconds: 5n } })),
+          anyPack(BadRequestSchema, create(BadRequestSchema, { fieldViolations: [violation] })),
+        ];
+        const status = toBinary(StatusSchema, create(StatusSchema, { code: 3, message, details }));
+        for (const call of [
+          client.failOnce({ code: 3, message, details: status }),
+          collect(client.fail({ code: 3, message, messages: 2, details: status })),
+        ]) {
+          const error = await failureOf(call);
+          assert.equal(error.code, Code.InvalidArgument);
+          assert.equal(error.rawMessage, message);
+          const [info] = error.findDetails(ErrorInfoSchema);
+          assert.deepEqual([info.reason, info.domain, { ...info.metadata }], Object.values(reason));
+          const [retry] = error.findDetails(RetryInfoSchema);
+          assert.equal(retry.retryDelay.seconds, 5n);
+          const [request] = error.findDetails(BadRequestSchema);
+          const [{ field, description }] = request.fieldViolations;
+          assert.deepEqual({ field, description }, violation);
+        }
       });
 
       test("an error in the middle of a stream keeps what came before", async () => {
