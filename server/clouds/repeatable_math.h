@@ -1,5 +1,5 @@
-// Sine, cosine and cube root from the four operations alone, so that they are the same, bit for bit,
-// on every machine with IEEE doubles; the C library's are not. Accurate to 1e-15.
+// Sine, cosine and cube root from the four operations alone, so that they are the same, bit for
+// bit, on every machine with IEEE doubles; the C library's are not. Accurate to 1e-15.
 #pragma once
 
 #include <cmath>

@@ -17,8 +17,8 @@ namespace {
 // Balls are far larger than the cells of a storm that has more, and a fit grows with them.
 constexpr double kMostCells = 2e6;
 
-// The paper's u. With more the fit is nearer, but balls reach farther beyond the cloud's edge, which
-// costs pictures more (docs/performance.md).
+// The paper's u. With more the fit is nearer, but balls reach farther beyond the cloud's edge,
+// which costs pictures more (docs/performance.md).
 constexpr double kOverlap = 2.0;
 
 glm::ivec3 CoarseningForFit(const volume::HydrometeorFields& fields) {
