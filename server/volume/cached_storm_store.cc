@@ -40,7 +40,8 @@ std::vector<const StormInfo*> CachedStormStore::Storms() const {
 }
 
 absl::StatusOr<const StormInfo*> CachedStormStore::Add(const std::string& path) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<CataloguedStorm> found, FindStorms({path}));
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<CataloguedStorm> found,
+                               FindStorms({path}, options_.formats));
   CataloguedStorm& storm = found.front();
   const Lock lock(mutex_);
   if (PlaceOf(storm.info.id).has_value()) {
@@ -165,9 +166,8 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, const TimeKey& k
   const TimeSource source = storm.sources[key.time];
   const std::optional<VerticalGrid> grid = VerticalGridOf(lock, key);
   lock.unlock();
-  absl::StatusOr<HydrometeorFields> fields =
-      ReadTime(storm.files[source.file], source.record, grid,
-               [&](double share) { return Checkpoint(key, read, share); });
+  absl::StatusOr<HydrometeorFields> fields = storm.files[source.file].reader->Read(
+      source.record, grid, [&](double share) { return Checkpoint(key, read, share); });
   lock.lock();
   if (!fields.ok()) return fields.status();
   if (!vertical_grids_[key.storm].has_value()) {
@@ -188,7 +188,7 @@ std::optional<VerticalGrid> CachedStormStore::VerticalGridOf(Lock& lock, const T
   const TimeSource first = storm.sources.front();
   lock.unlock();
   const absl::StatusOr<VerticalGrid> chosen =
-      ReadVerticalGrid(storm.files[first.file], first.record);
+      storm.files[first.file].reader->ReadVerticalGrid(first.record);
   lock.lock();
   if (!chosen.ok()) {
     spdlog::warn("the first time of {} cannot be read: {}", storm.info.id,

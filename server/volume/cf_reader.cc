@@ -34,8 +34,7 @@ class CfTimeReader {
     }
   }
 
-  absl::StatusOr<HydrometeorFields> Read(
-      const std::function<absl::Status(double share)>& checkpoint);
+  absl::StatusOr<HydrometeorFields> Read(const ReadCheckpoint& checkpoint);
 
  private:
   absl::StatusOr<std::vector<float>> ReadLayers(const CfVariable& variable) const;
@@ -220,8 +219,7 @@ absl::Status CfTimeReader::ReadTerrain(HydrometeorFields* fields) const {
   return absl::OkStatus();
 }
 
-absl::StatusOr<HydrometeorFields> CfTimeReader::Read(
-    const std::function<absl::Status(double share)>& checkpoint) {
+absl::StatusOr<HydrometeorFields> CfTimeReader::Read(const ReadCheckpoint& checkpoint) {
   const auto steps = static_cast<double>(metadata_.fields.size() + 1);
   const auto advance = [&](double done) {
     return checkpoint ? checkpoint(done / steps) : absl::OkStatus();
@@ -249,9 +247,8 @@ absl::StatusOr<HydrometeorFields> CfTimeReader::Read(
 
 }  // namespace
 
-absl::StatusOr<HydrometeorFields> ReadCfTime(
-    const CfMetadata& metadata, std::size_t record,
-    const std::function<absl::Status(double share)>& checkpoint) {
+absl::StatusOr<HydrometeorFields> ReadCfTime(const CfMetadata& metadata, std::size_t record,
+                                             const ReadCheckpoint& checkpoint) {
   try {
     THUNDERHEAD_ASSIGN_OR_RETURN(NetcdfFile file, NetcdfFile::Open(metadata.path));
     return CfTimeReader(metadata, record, std::move(file)).Read(checkpoint);

@@ -26,13 +26,18 @@ struct NamedStorm {
   std::vector<StormFile> files;
 };
 
-absl::StatusOr<StormFile> Probe(const fs::path& path) {
+absl::StatusOr<StormFile> Probe(const fs::path& path, const StormFormats& formats) {
   try {
-    return ReadStormFile(path.string());
+    return formats.Describe(path.string());
   } catch (const std::bad_alloc&) {
     return absl::ResourceExhaustedError(absl::StrCat(
         path.string(), ": its metadata does not fit in memory; the file is probably damaged"));
   }
+}
+
+// ISO 8601, e.g. "0001-01-01T00:40:00Z".
+std::string FormatValidTime(absl::Time time) {
+  return absl::FormatTime("%E4Y-%m-%dT%H:%M:%SZ", time, absl::UTCTimeZone());
 }
 
 // What is safe in a URL and on a command line: "wrfout_d01_0001-01-01_00:10:00" has its colons
@@ -133,12 +138,12 @@ std::vector<NamedStorm> GroupRuns(const fs::path& folder, std::vector<StormFile>
   return storms;
 }
 
-absl::Status SearchFolder(const fs::path& path, int depth, std::vector<NamedStorm>& storms,
-                          absl::Status& first_failure) {
+absl::Status SearchFolder(const fs::path& path, const StormFormats& formats, int depth,
+                          std::vector<NamedStorm>& storms, absl::Status& first_failure) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const Folder folder, List(path));
   std::vector<StormFile> files;
   for (const fs::path& file : folder.files) {
-    absl::StatusOr<StormFile> metadata = Probe(file);
+    absl::StatusOr<StormFile> metadata = Probe(file, formats);
     if (metadata.ok()) {
       files.push_back(*std::move(metadata));
       continue;
@@ -152,7 +157,8 @@ absl::Status SearchFolder(const fs::path& path, int depth, std::vector<NamedStor
   if (!files.empty()) std::ranges::move(GroupRuns(path, std::move(files)), back_inserter(storms));
   if (depth == kDeepestFolder) return absl::OkStatus();
   for (const fs::path& below : folder.folders) {
-    if (absl::Status status = SearchFolder(below, depth + 1, storms, first_failure); !status.ok()) {
+    if (absl::Status status = SearchFolder(below, formats, depth + 1, storms, first_failure);
+        !status.ok()) {
       first_failure.Update(status);
       spdlog::warn("left out: {}", std::string(status.message()));
     }
@@ -160,23 +166,24 @@ absl::Status SearchFolder(const fs::path& path, int depth, std::vector<NamedStor
   return absl::OkStatus();
 }
 
-absl::Status Search(const std::string& path, std::vector<NamedStorm>& storms) {
+absl::Status Search(const std::string& path, const StormFormats& formats,
+                    std::vector<NamedStorm>& storms) {
   std::error_code error;
   if (!fs::is_directory(path, error)) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(StormFile metadata, Probe(path));
+    THUNDERHEAD_ASSIGN_OR_RETURN(StormFile metadata, Probe(path, formats));
     storms.push_back({NameOfFile(path), {}});
     storms.back().files.push_back(std::move(metadata));
     return absl::OkStatus();
   }
   const std::size_t before = storms.size();
   absl::Status first_failure;
-  THUNDERHEAD_RETURN_IF_ERROR(SearchFolder(path, 0, storms, first_failure));
+  THUNDERHEAD_RETURN_IF_ERROR(SearchFolder(path, formats, 0, storms, first_failure));
   if (storms.size() > before) return absl::OkStatus();
   if (!first_failure.ok()) {
     return base::Annotate(first_failure, absl::StrCat(path, " holds no storm; its first file"));
   }
-  return absl::NotFoundError(absl::StrCat(
-      path, ": holds no storm; put the model's output files (wrfout_..., or CF netCDF) there"));
+  return absl::NotFoundError(absl::StrCat(path, ": holds no storm; put the model's output files (",
+                                          formats.Examples(), ") there"));
 }
 
 std::string TitleOf(const std::string& name, const StormFile& file) {
@@ -233,12 +240,13 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<StormFile> fi
   return storm;
 }
 
-absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths) {
+absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
+                                                        const StormFormats& formats) {
   std::vector<NamedStorm> named;
-  for (const std::string& path : paths) THUNDERHEAD_RETURN_IF_ERROR(Search(path, named));
+  for (const std::string& path : paths) THUNDERHEAD_RETURN_IF_ERROR(Search(path, formats, named));
   if (named.empty()) {
-    return absl::InvalidArgumentError(
-        "no storm to show; name a file or folder of model output (wrfout_..., or CF netCDF)");
+    return absl::InvalidArgumentError(absl::StrCat(
+        "no storm to show; name a file or folder of model output (", formats.Examples(), ")"));
   }
   DropRepeated(named);
   std::vector<CataloguedStorm> storms;

@@ -8,6 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "volume/storm_file.h"
+#include "volume/storm_format.h"
 #include "volume/storm_store.h"
 
 namespace thunderhead::volume {
@@ -25,7 +26,8 @@ struct CataloguedStorm {
 };
 
 // The storms under `paths`, in order of id; the rules and errors are those of StormStore::Open.
-absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths);
+absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
+                                                        const StormFormats& formats);
 
 // Files of one run as one storm: times in order; of a time that several files hold, the last file's
 // is kept. `files` must not be empty.

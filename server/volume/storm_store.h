@@ -14,6 +14,7 @@
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
 #include "volume/hydrometeor_fields.h"
+#include "volume/storm_format.h"
 
 namespace thunderhead::volume {
 
@@ -44,6 +45,7 @@ struct StormStoreOptions {
   std::size_t byte_budget =
       std::size_t{2} << 30;  // of cached times; the newest one is kept even if it alone is larger
   int read_ahead = 1;        // times read ahead after each Get
+  StormFormats formats = StormFormats::BuiltIn();
 };
 
 class StormStore {

@@ -328,8 +328,4 @@ absl::StatusOr<WrfMetadata> ReadWrfMetadata(const NetcdfFile& file) {
   return metadata;
 }
 
-std::string FormatValidTime(absl::Time time) {
-  return absl::FormatTime("%E4Y-%m-%dT%H:%M:%SZ", time, absl::UTCTimeZone());
-}
-
 }  // namespace thunderhead::volume

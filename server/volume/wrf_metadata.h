@@ -46,7 +46,4 @@ absl::StatusOr<WrfMetadata> ReadWrfMetadata(const std::string& path);
 // The same of a file that is open.
 absl::StatusOr<WrfMetadata> ReadWrfMetadata(const NetcdfFile& file);
 
-// Valid time as ISO 8601, e.g. "0001-01-01T00:40:00Z".
-std::string FormatValidTime(absl::Time time);
-
 }  // namespace thunderhead::volume
