@@ -163,7 +163,7 @@ absl::StatusOr<LightCorrector::Probe> LightCorrector::DrawProbe() {
   const auto draw = [&]() -> absl::StatusOr<std::vector<float>> {
     THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame frame,
                                  renderer_.Draw(scene_, fields_, quality));
-    return frame::ReadLinear(*frame.radiance);
+    return frame::ReadLinear(quality.places ? *frame.places : *frame.radiance);
   };
   Probe probe;
   quality.correction = plain_;

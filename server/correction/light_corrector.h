@@ -63,7 +63,7 @@ class LightCorrector {
   struct Probe {
     std::vector<float> whole;
     std::vector<float> behind;  // the storm lets as much pass, but sends no light
-    std::vector<float> places;  // DrawQuality::places
+    std::vector<float> places;  // LinearFrame::places
   };
 
   LightCorrector(const scene::Scene& scene, std::shared_ptr<const volume::HydrometeorFields> fields,

@@ -11,7 +11,7 @@
 #include "correction/light_corrector.h"
 #include "frame/tone_map.h"
 #include "measure/image_error.h"
-#include "reference/path_tracer.h"
+#include "picture/linear_picture.h"
 #include "renderers/scene_renderer.h"
 #include "scene/scene.h"
 #include "volume/hydrometeor_fields.h"
@@ -61,7 +61,7 @@ class Trade {
  public:
   // `scene` gives what is not swept; the truth has its size.
   Trade(scene::Scene scene, std::shared_ptr<const volume::HydrometeorFields> fields,
-        const reference::Image& truth);
+        picture::LinearPicture truth);
 
   // CANCELLED if `stop` asked to stop while paths were traced. Those are kept: settings that differ
   // in their number alone are best measured from few to many.
@@ -78,7 +78,7 @@ class Trade {
 
   scene::Scene scene_;
   std::shared_ptr<const volume::HydrometeorFields> fields_;
-  LinearImage truth_;
+  picture::LinearPicture truth_;
   DisplayImage truth_display_;
   double truth_noise_ = 0.0;
   renderers::SceneRenderer renderer_;
@@ -86,11 +86,6 @@ class Trade {
   double corrected_by_ = 0.0;  // million paths that it was asked for last
   frame::ToneMapper tone_mapper_;
 };
-
-// A linear frame as the renderers leave one, from rows from top to bottom.
-gl::Texture2D TextureOf(const LinearImage& image);
-// And back.
-LinearImage ImageOf(const gl::Texture2D& texture);
 
 // "half_angle" and so on, as in the tables.
 std::string NameOf(scene::Renderer renderer);

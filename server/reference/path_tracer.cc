@@ -156,8 +156,8 @@ RefineResult PathTracer::Refine(const RefineLimits& limits, const ImageObserver&
   }
 }
 
-Image PathTracer::Snapshot() const {
-  Image image;
+picture::LinearPicture PathTracer::Snapshot() const {
+  picture::LinearPicture image;
   image.size_px = size_px_;
   image.radiance.reserve(pixels_.size());
   image.standard_error.reserve(pixels_.size());

@@ -11,6 +11,7 @@
 
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
+#include "picture/linear_picture.h"
 #include "reference/camera.h"
 #include "reference/medium.h"
 #include "reference/surroundings.h"
@@ -51,13 +52,6 @@ struct RefineResult {
   ImageProgress progress;
 };
 
-// Rows from top to bottom.
-struct Image {
-  glm::ivec2 size_px{0};
-  std::vector<glm::vec3> radiance;
-  std::vector<glm::vec3> standard_error;  // infinite where a pixel has fewer than two samples
-};
-
 class PathTracer {
  public:
   PathTracer(std::shared_ptr<const Medium> medium, Surroundings surroundings, const Camera& camera,
@@ -69,7 +63,8 @@ class PathTracer {
   RefineResult Refine(const RefineLimits& limits, const ImageObserver& observer,
                       const std::stop_token& stop);
 
-  Image Snapshot() const;
+  // With its standard error: infinite where a pixel has fewer than two samples.
+  picture::LinearPicture Snapshot() const;
 
  private:
   // Mean and sum of squared differences from it (Welford 1962).

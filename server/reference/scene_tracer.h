@@ -27,7 +27,7 @@ class SceneTracer {
 
   // As PathTracer; needs a picture begun.
   RefineResult Refine(const RefineLimits& limits, const std::stop_token& stop);
-  Image Snapshot() const;
+  picture::LinearPicture Snapshot() const;
 
  private:
   absl::Status Prepare(const scene::Scene& scene,

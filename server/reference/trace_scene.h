@@ -14,7 +14,7 @@ namespace thunderhead::reference {
 inline constexpr double kPeakCut_deg = 3.0;
 
 struct TracedScene {
-  Image image;
+  picture::LinearPicture image;
   RefineResult result;
 };
 

@@ -130,7 +130,10 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(
   drawn_fields_ = fields;
   drawn_quality_ = quality;
   LinearFrame frame = Report(scene, *fields);
-  if (quality.places) frame.radiance = &Eye();
+  if (quality.places) {
+    frame.radiance = nullptr;
+    frame.places = &Eye();
+  }
   frame.stages = std::move(stages);
   return frame;
 }

@@ -15,6 +15,7 @@
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 #include "physics/hydrometeors.h"
+#include "picture/linear_picture.h"
 #include "scene/scene.h"
 #include "volume/hydrometeor_fields.h"
 
@@ -73,12 +74,6 @@ struct AccuracyReport {
   std::string unmet;  // why what the scene asks for is not reached; empty where it is
 
   bool operator==(const AccuracyReport&) const = default;
-};
-
-// Linear radiance, rows from top to bottom.
-struct LinearPicture {
-  glm::ivec2 size_px{0};
-  std::vector<glm::vec3> radiance;
 };
 
 // A finished picture: 8-bit sRGB, three bytes a pixel, rows from top to bottom.
@@ -149,7 +144,7 @@ class FrameSource {
       const std::shared_ptr<const volume::HydrometeorFields>& fields) = 0;
 
   // Tone maps what was computed elsewhere. What Draw keeps stays kept.
-  virtual absl::StatusOr<DisplayFrame> Tone(const LinearPicture& picture,
+  virtual absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
                                             const scene::Display& display) = 0;
 };
 

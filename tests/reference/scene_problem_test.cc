@@ -17,6 +17,8 @@
 namespace thunderhead::reference {
 namespace {
 
+using picture::LinearPicture;
+
 using physics::Hydrometeor;
 
 // Cloud water in cells 2..4 of each axis and rain in the lowest layer under it, of 8 x 7 x 6 cells.
@@ -178,7 +180,7 @@ TEST(MediumOf, ACutPeakLeavesThePicture) {
     RefineLimits limits;
     limits.samples_per_pixel = 2000;
     tracer.Refine(limits, {}, {});
-    const Image image = tracer.Snapshot();
+    const LinearPicture image = tracer.Snapshot();
     FluxShare mean;
     for (std::size_t i = 0; i < image.radiance.size(); ++i) {
       mean.value += image.radiance[i].y / 256.0;
@@ -218,8 +220,8 @@ TEST(SurroundingsOf, ShadedGroundWithoutCloudsIsUniform) {
     tracer.Refine(limits, {}, {});
     return tracer.Snapshot();
   };
-  const Image uniform = trace(GroundLight::kUniform, 2);
-  const Image shaded = trace(GroundLight::kShaded, 2000);
+  const LinearPicture uniform = trace(GroundLight::kUniform, 2);
+  const LinearPicture shaded = trace(GroundLight::kShaded, 2000);
   for (int color = 0; color < 3; ++color) {
     double sum = 0.0;
     double squares = 0.0;
