@@ -1,5 +1,5 @@
-// Finds the storms under some paths and which record of which file each of their times is. Reads
-// only metadata.
+// Finds the storms under some paths, and the file and record of each of their times. Reads only
+// metadata.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace thunderhead::volume {
 
-// Where a time of a storm is kept.
+// The file and record of one time of a storm.
 struct TimeSource {
   std::size_t file = 0;    // index into CataloguedStorm::files
   std::size_t record = 0;  // in that file
@@ -29,8 +29,8 @@ struct CataloguedStorm {
 absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
                                                         const StormFormats& formats);
 
-// Files of one run as one storm: times in order; of a time that several files hold, the last file's
-// is kept. `files` must not be empty.
+// Makes one storm of the files of one run: times in order; if several files have the same time, the
+// last file's is used. `files` must not be empty.
 CataloguedStorm AssembleStorm(const std::string& name, std::vector<StormFile> files);
 
 }  // namespace thunderhead::volume

@@ -85,7 +85,7 @@ class ToyFormat final : public StormFormat {
   }
 };
 
-// Takes whatever netCDF there is, as closely as it is told to; it reads none of it.
+// Fits every netCDF file with the given closeness; cannot describe any.
 class Greedy final : public StormFormat {
  public:
   explicit Greedy(FormatFit fit) : fit_(fit) {}
