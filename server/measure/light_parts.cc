@@ -64,7 +64,7 @@ scene::Scene SceneOf(LightPart part, scene::Scene scene) {
 reference::TraceOptions TraceOptionsOf(LightPart part, double peak_cut_deg) {
   reference::TraceOptions options;
   options.peak_cut_deg = part == LightPart::kOnce ? 0.0 : peak_cut_deg;
-  options.most_scatterings = part == LightPart::kOnce ? 1 : 0;
+  options.max_scatterings = part == LightPart::kOnce ? 1 : 0;
   options.sun = part != LightPart::kSky;
   return options;
 }

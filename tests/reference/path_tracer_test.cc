@@ -220,7 +220,7 @@ TEST(PathTracer, LightScatteredOnceIsTheClosedForm) {
     SCOPED_TRACE(mu);
     const glm::dvec3 down(std::sqrt(1.0 - mu * mu), 0.0, -mu);
     PathTracerOptions options;
-    options.most_scatterings = 1;
+    options.max_scatterings = 1;
     PathTracer tracer(slab, SunOnly(SunAt(0.0)), OverTheTop(*slab, down), {16, 16}, options);
     RefineLimits limits;
     limits.samples_per_pixel = 4000;
