@@ -239,9 +239,9 @@ Clusters Cluster(const std::vector<glm::vec3>& points_m, double min_sigma_m,
       std::to_string(options.centres));
   Adaptation adaptation(points_m, options);
   Clusters clusters;
-  while (clusters.epochs < options.most_epochs) {
+  while (clusters.epochs < options.max_epochs) {
     const auto report = [&](double share) {
-      if (observer) observer((clusters.epochs + share) / options.most_epochs);
+      if (observer) observer((clusters.epochs + share) / options.max_epochs);
     };
     if (!adaptation.RunEpoch(clusters.epochs, report, stop)) break;
     ++clusters.epochs;

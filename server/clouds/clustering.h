@@ -15,7 +15,7 @@ struct ClusteringOptions {
   double min_speed = 0.05;  // training ends after the epoch in which the median centre's learning
                             // rate falls below this
   int min_epochs = 4;
-  int most_epochs = 12;
+  int max_epochs = 12;
   std::uint64_t seed = 1;
   int threads = 1;
 };

@@ -171,7 +171,7 @@ CumulusSurface InscribedBalls(const volume::RegularGrid& grid, const std::vector
   CumulusSurface surface;
   std::vector<bool> covered(values.size(), false);
   for (const Candidate& candidate : CandidatesOf(grid, values, options.level)) {
-    if (static_cast<int>(surface.bubbles.size()) >= options.most_balls) break;
+    if (static_cast<int>(surface.bubbles.size()) >= options.max_balls) break;
     if (covered[candidate.cell]) continue;
     const Bubble bubble = BubbleOf(candidate, grid);
     Cover(grid, bubble, options.spacing, &covered);

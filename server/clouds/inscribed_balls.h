@@ -12,7 +12,7 @@ namespace thunderhead::clouds {
 
 struct InscribedBallsOptions {
   float level = 0.0F;  // cells with more than this are inside
-  int most_balls = 900;
+  int max_balls = 900;
   double spacing = 0.62;  // a ball's centre lies outside all earlier balls, scaled by this
 };
 

@@ -72,8 +72,8 @@ TEST(PathTracer, UpwardRadianceOfDisortTest3) {
   }
 }
 
-// Under uniform light from everywhere nothing that does not absorb can be seen. Where paths are too
-// short for Russian roulette every single one brings exactly that light.
+// Furnace test: under uniform light from all directions a medium that does not absorb is invisible.
+// Where paths are too short for Russian roulette, every single one returns exactly that light.
 TEST(PathTracer, WhiteFurnace) {
   constexpr glm::dvec3 kLight(0.7, 1.0, 3.0);
   Surroundings furnace;
@@ -120,8 +120,8 @@ TEST(PathTracer, ColorsOfDifferentPhaseFunctions) {
   for (int color = 0; color < 3; ++color) ExpectAgrees(MeanOf(white, color), 1.0, 0.0, 0.006);
 }
 
-// Two lights give what each gives alone, in its own colour; a light in the sun's place is the sun,
-// but for the ground, which it does not light.
+// Two lights together give the sum of each alone, in its own colour; a light in the sun's place
+// acts as the sun, except that it does not light the ground.
 TEST(PathTracer, LightsAddUp) {
   const auto cloud = Made(LumpyCloud(0.02, 1.0, 0.5));
   const auto look = [&](const std::vector<DirectionalLight>& lights, const Surroundings& around) {
@@ -155,8 +155,8 @@ TEST(PathTracer, WhiteFurnaceWithGround) {
   ExpectAgrees(MeanOf(image, 1), 1.0, 1e-6, 5e-3);
 }
 
-// An absorbing cloud in a furnace darkens; the mean over Russian roulette stays right: rays through
-// a purely absorbing slab see the sky through it.
+// Russian roulette keeps the mean of an absorbing medium unbiased: rays through a purely absorbing
+// slab see the attenuated sky.
 TEST(PathTracer, AbsorbingSlabInFurnace) {
   Surroundings furnace;
   furnace.sky = [](const glm::dvec3&) { return glm::dvec3(1.0); };
@@ -177,9 +177,9 @@ double OpticalDepth(const Medium& medium, const Ray& ray) {
   return sum * step_m;
 }
 
-// A lumpy cloud of optical depth up to 1 that absorbs nearly all: what is left is single
-// scattering, here by quadrature along the ray. Of what is scattered twice there is at most the
-// albedo's share, 1 %, times the ratio of phase functions, below 3.
+// A lumpy cloud of optical depth up to 1 that absorbs nearly all light: single scattering is left,
+// here computed by quadrature along the ray. Double scattering adds at most the albedo, 1 %, times
+// the ratio of phase functions, below 3.
 TEST(PathTracer, SingleScatteringByQuadrature) {
   constexpr double kAlbedo = 0.01;
   const auto cloud = Made(LumpyCloud(0.003, kAlbedo, 0.3));
@@ -245,8 +245,8 @@ TEST(PathTracer, ThinLimit) {
   ExpectAgrees(MeanOf(image, 1), expected, 0.01 * expected, 0.02 * expected);
 }
 
-// Helmholtz: the domain's mean radiance over the sunlight on its top is the same when sun and eye
-// change places. On a steep-walled, periodic chessboard.
+// Helmholtz reciprocity: the domain's mean radiance over the sunlight on its top is the same when
+// sun and eye are exchanged. On a steep-walled, periodic chessboard.
 TEST(PathTracer, Reciprocity) {
   const auto board = Made(Chessboard(2.0 / 250.0, 18.0 / 250.0, 0.99, 0.7));
   const glm::dvec3 a = SunAt(60.0);
@@ -290,7 +290,7 @@ TEST(PathTracer, SameForAnyNumberOfThreadsAndPasses) {
   }
 }
 
-// Pixels that see the same mean scatter about it as their standard errors say.
+// Pixels with the same mean vary about it as their standard errors predict.
 TEST(PathTracer, StandardErrorsAreHonest) {
   const auto slab = Slab(4.0, 0.5, 0.9);
   const LinearPicture image =

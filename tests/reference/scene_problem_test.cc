@@ -154,8 +154,8 @@ TEST(MediumOf, ModesChoosePhaseAndColor) {
 
 // Without a medium, the shaded ground is as bright as the uniform one, which the renderers draw.
 // Both see it through the same air. The uniform one's sky is a sum over 2048 directions: 0.3 %.
-// Light that turns by less than 3 degrees goes on as good as unscattered: away from the sun the
-// picture stays, while extinction falls by the share cut off.
+// Light scattered by less than 3 degrees is nearly unscattered: away from the sun the picture stays
+// the same, while extinction falls by the share cut off.
 TEST(MediumOf, ACutPeakLeavesThePicture) {
   const volume::HydrometeorFields fields = SmallStorm();
   scene::Scene scene;
@@ -244,8 +244,8 @@ TEST(SurroundingsOf, SunBelowTheHorizonGivesNoSunlight) {
   EXPECT_TRUE(glm::all(glm::greaterThan(sky, glm::dvec3(0.0))));
 }
 
-// The sample storm under sunlight alone: nothing that is not finite, and the middle of its sunlit
-// side, optically thick, is brighter than that of the other.
+// The sample storm under sunlight alone: all values are finite, and the middle of its sunlit side,
+// optically thick, is brighter than that of the other.
 TEST(Scene, SampleStorm) {
   const auto store = volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
   ASSERT_TRUE(store.ok()) << store.status();

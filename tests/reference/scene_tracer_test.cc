@@ -1,4 +1,4 @@
-// A picture begun over and over is the one that would be traced at once.
+// A picture traced after changes of the scene is the same as one traced from scratch.
 #include "reference/scene_tracer.h"
 
 #include <memory>
