@@ -9,18 +9,19 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// How far a texel's factor is thought to be from that of the texel above before any ray is seen
-// (docs/decisions/0012: the result hardly depends on them): of the mean of the colours, of what
-// depends on direction, and, over those, of single colours, whose estimates are the noisiest.
+// Prior standard deviations of a texel's factor from that of the texel above (docs/decisions/0012:
+// the result hardly depends on them): of the mean over colours; of the terms that depend on
+// direction; and, as a share of these, of single colours, whose estimates are the noisiest.
 constexpr double kStep = 0.1;
 constexpr double kDirectionStep = 0.05;
 constexpr double kColorShare = 0.2;
 
-constexpr double kLeastDrawn = 1e-9;
-// Of the mean of a ray's colours: a colour that is drawn darker has the factor of their mean.
-constexpr double kLeastOfColor = 0.05;
-// A ray that is off by more says no more of how far rays scatter.
-constexpr double kMostSpread = 10.0;
+constexpr double kMinDrawn = 1e-9;
+// Share of the mean over a ray's colours: a colour drawn darker than that uses the factor of the
+// mean.
+constexpr double kMinColorShare = 0.05;
+// Limit of a single ray's error in the estimate of the rays' spread, against outliers.
+constexpr double kMaxRayError = 10.0;
 
 std::size_t Offset(const glm::ivec3& size, const glm::ivec3& texel) {
   return (static_cast<std::size_t>(texel.z) * static_cast<std::size_t>(size.y) +
@@ -43,13 +44,13 @@ void ForEachTexel(const glm::ivec3& size, const Visit& visit) {
   }
 }
 
-// A texel and its share of a linear fetch.
+// A texel and its weight in a linear fetch.
 struct Corner {
   std::size_t offset = 0;
   float share = 0.0F;
 };
 
-// Of a fetch at `place`, clamped at the edges.
+// The texels of a linear fetch at `place`, clamped at the edges.
 std::array<Corner, 8> CornersAt(const glm::ivec3& size, const glm::dvec3& place) {
   const glm::dvec3 at = glm::clamp(place, 0.0, 1.0) * glm::dvec3(size) - 0.5;
   const glm::dvec3 low = glm::floor(at);
@@ -80,7 +81,7 @@ glm::vec4 SolveRidge(const std::array<float, 10>& matrix, const std::array<float
       for (int k = 0; k < column; ++k) factor[row][column] -= factor[row][k] * factor[column][k];
       if (column < row) factor[row][column] /= factor[column][column];
     }
-    // Rounding of single-precision sums cannot take more than the ridge adds.
+    // The ridge is larger than the rounding errors of single-precision sums.
     factor[row][row] = std::sqrt(std::max(factor[row][row], 1e-3 * ridge[row]));
     for (int k = 0; k < row; ++k) x[row] -= factor[row][k] * x[k];
     x[row] /= factor[row][row];
@@ -122,15 +123,15 @@ CorrectionFit::CorrectionFit(const glm::ivec3& size) {
 
 void CorrectionFit::Add(const CorrectedRay& ray) {
   const double brightness = (ray.drawn.x + ray.drawn.y + ray.drawn.z) / 3.0;
-  if (!(brightness > kLeastDrawn)) return;
+  if (!(brightness > kMinDrawn)) return;
   const double gray = (ray.estimate.x + ray.estimate.y + ray.estimate.z) / 3.0 / brightness;
   glm::dvec3 factor(gray);
   for (int color = 0; color < 3; ++color) {
-    if (ray.drawn[color] > kLeastOfColor * brightness) {
+    if (ray.drawn[color] > kMinColorShare * brightness) {
       factor[color] = ray.estimate[color] / ray.drawn[color];
     }
   }
-  const double off = std::min(std::abs(gray - 1.0), kMostSpread);
+  const double off = std::min(std::abs(gray - 1.0), kMaxRayError);
   spread_ += brightness * off * off;
   ++rays_;
   const double basis[4] = {1.0, ray.direction.x, ray.direction.y, ray.direction.z};
@@ -168,7 +169,7 @@ std::vector<Factors> CorrectionFit::SolveLevel(const Level& level,
   const glm::dvec4 color_ridge = ridge / (kColorShare * kColorShare);
   std::vector<Factors> factors(level.normals.size());
   ForEachTexel(level.size, [&](const glm::ivec3& texel) {
-    // Texels above cover two of these along each side, the last ones perhaps one.
+    // A texel above covers two of these along each side; the last one may cover one.
     const glm::dvec3 place = (glm::dvec3(texel) + 0.5) / (2.0 * glm::dvec3(size_above));
     const Factors prior = FetchedAt(above, size_above, place);
     const std::size_t offset = Offset(level.size, texel);
@@ -192,14 +193,14 @@ std::vector<Factors> CorrectionFit::SolveLevel(const Level& level,
 }
 
 std::vector<Factors> CorrectionFit::Solve() const {
-  std::vector<Level> coarser;  // than the finest
+  std::vector<Level> coarser;  // levels coarser than the finest
   const auto level = [&](std::size_t i) -> const Level& {
     return i == 0 ? finest_ : coarser[i - 1];
   };
   while (level(coarser.size()).size != glm::ivec3(1)) {
     coarser.push_back(Coarser(level(coarser.size())));
   }
-  // Of the factor that one ray of brightness 1 says.
+  // Variance of the factor estimated by one ray of drawn radiance 1.
   const double variance = std::max(spread_ / std::max(static_cast<double>(rays_), 1.0), 1e-9);
   std::vector<Factors> above(1, kNone);
   glm::ivec3 size_above(1);

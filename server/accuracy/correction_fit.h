@@ -1,7 +1,7 @@
-// From rays whose radiance is known better than it was drawn to factors for what is drawn, by place
-// and direction: linear least squares for each texel of a pyramid, from one texel down to the
-// finest, where what a texel's rays leave open is taken from the texel above. Knows no GL and no
-// scene.
+// Fits factors, by place and direction, that multiply drawn radiance so that it agrees with better
+// estimates along some rays: regularised linear least squares for each texel of a pyramid, from one
+// texel down to the finest. The texel above is the prior, which decides where a texel has few rays.
+// Knows no GL and no scene.
 #pragma once
 
 #include <array>
@@ -13,16 +13,16 @@
 
 namespace thunderhead::accuracy {
 
-// A ray: how bright something was drawn along it, and an estimate of how bright it is. An estimate
-// may be as noisy as it likes, and below zero, if its mean is right.
+// A ray with its drawn radiance and an estimate of the true one. The estimate may be noisy, even
+// negative, but must be unbiased.
 struct CorrectedRay {
-  glm::dvec3 place{0.0};      // where the ray looks the factor up, 0 to 1 along each side of a box
+  glm::dvec3 place{0.0};  // where the ray's factor is looked up, 0 to 1 along each side of a box
   glm::dvec3 direction{0.0};  // unit vector, or zero where factors do not depend on it
   glm::dvec3 drawn{0.0};
   glm::dvec3 estimate{0.0};
 };
 
-// Of one texel, by colour: the factor for direction d is dot(coefficients, (1, d)).
+// Coefficients of one texel, by colour: the factor for direction d is dot(coefficients, (1, d)).
 using Factors = std::array<glm::vec4, 3>;
 
 class CorrectionFit {
@@ -34,12 +34,13 @@ class CorrectionFit {
   std::int64_t Rays() const { return rays_; }
   const glm::ivec3& Size() const { return finest_.size; }
 
-  // Of every texel, x fastest; 1 where there are no rays near.
+  // The factors of all texels, x fastest; 1 where there are no rays nearby.
   std::vector<Factors> Solve() const;
 
  private:
-  // Normal equations of one texel, for the basis (1, x, y, z) of the ray's direction. Rays count by
-  // how bright they were drawn, so that a texel's factor is the mean estimate over the mean drawn.
+  // Normal equations of one texel, for the basis (1, x, y, z) of the ray's direction. Rays are
+  // weighted by their drawn radiance, so that a texel's factor is the mean estimate over the mean
+  // drawn radiance.
   struct Normal {
     std::array<float, 10> matrix{};  // upper triangle by rows
     std::array<std::array<float, 4>, 3> right{};
@@ -57,7 +58,7 @@ class CorrectionFit {
 
   Level finest_;
   std::int64_t rays_ = 0;
-  double spread_ = 0.0;  // sum of the rays' squared differences from a factor of 1, as they count
+  double spread_ = 0.0;  // weighted sum of the rays' squared differences from a factor of 1
 };
 
 }  // namespace thunderhead::accuracy

@@ -24,7 +24,7 @@ LightCorrector* CorrectorPool::Find(
 }
 
 absl::Status CorrectorPool::MakeRoom() {
-  if (kept_.size() < most_) return absl::OkStatus();
+  if (kept_.size() < max_correctors_) return absl::OkStatus();
   const auto oldest =
       std::max_element(kept_.begin(), kept_.end(), [](const Kept& a, const Kept& b) {
         return a.since_traced.ElapsedMs() < b.since_traced.ElapsedMs();

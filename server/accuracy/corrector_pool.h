@@ -1,5 +1,5 @@
-// Light correctors for viewers of different scenes: each keeps what it has traced. Owns GL objects:
-// use it on the context's thread.
+// Light correctors for several scenes in view at once; each keeps its traced light. Owns GL
+// objects: use it on the context's thread.
 #pragma once
 
 #include <cstddef>
@@ -18,17 +18,20 @@ namespace thunderhead::accuracy {
 
 class CorrectorPool {
  public:
-  // Each takes up to a hundred megabytes. One that was traced for within `busy_s` does not make
-  // room for another scene's.
-  explicit CorrectorPool(std::size_t most = 8, double busy_s = 3.0)
-      : most_(most), busy_s_(busy_s), programs_(std::make_shared<gl::ProgramCache>()) {}
+  // At most `max_correctors`, as each takes up to a hundred megabytes. One that was used within
+  // `busy_s` is not replaced.
+  explicit CorrectorPool(std::size_t max_correctors = 8, double busy_s = 3.0)
+      : max_correctors_(max_correctors),
+        busy_s_(busy_s),
+        programs_(std::make_shared<gl::ProgramCache>()) {}
 
-  // The one that serves the scene, looking as it does; null if there is none, or the scene has no
+  // The corrector for the scene, set to its camera; null if there is none, or the scene has no
   // traced light.
   LightCorrector* Find(const scene::Scene& scene,
                        const std::shared_ptr<const volume::HydrometeorFields>& fields);
 
-  // Goes a step on for the scene. RESOURCE_EXHAUSTED if all that there may be are busy.
+  // Traces one step for the scene. RESOURCE_EXHAUSTED if there are `max_correctors` already and all
+  // are busy.
   absl::StatusOr<LightProgress> Trace(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields);
 
@@ -42,7 +45,7 @@ class CorrectorPool {
                 const std::shared_ptr<const volume::HydrometeorFields>& fields);
   absl::Status MakeRoom();
 
-  std::size_t most_;
+  std::size_t max_correctors_;
   double busy_s_;
   std::shared_ptr<gl::ProgramCache> programs_;
   std::vector<Kept> kept_;

@@ -20,33 +20,33 @@ namespace {
 
 constexpr int kWidth_px = 128;
 constexpr int kHeight_px = 96;
-// More texels along a side were noisier after as many paths, and no better where many were traced.
-constexpr int kMostTexels = 96;
-constexpr double kMostTexelCount = 262144.0;
-// Rays that see more than this of what is behind the storm say little of the storm.
-constexpr double kMostPassing = 0.8;
-// Less noise than with a cut of 3 degrees; what that changes in pictures is below what could be
-// measured (docs/decisions/0012).
+// With more texels the result was noisier for the same number of paths, and no better after many.
+constexpr int kMaxTexels = 96;
+constexpr double kMaxTexelCount = 262144.0;
+// Rays with a higher transmittance through the storm carry little information on its light.
+constexpr double kMaxTransmittance = 0.8;
+// Gives less noise than a cut of 3 degrees; the change in pictures was too small to measure
+// (docs/decisions/0012).
 constexpr double kPeakCut_deg = 20.0;
 
 constexpr int kGroundTexels = 64;
 constexpr int kGroundRays = 2048;       // of a pass
 constexpr int kGroundPassesOfStep = 2;  // of the first steps
-constexpr int kFirstGroundPasses = 32;  // before the storm is traced, whose background it is
-constexpr int kPicturesPerGround = 16;  // the storm's background is brought up to date after these
+constexpr int kFirstGroundPasses =
+    32;  // before the first picture, in which the ground is background
+constexpr int kPicturesPerGround = 16;  // pictures after which the ground's correction is updated
 constexpr double kAboveGround_m = 1.0;
 constexpr std::uint64_t kGroundSeed = 0x67726f756e64;
 
 glm::ivec3 TexelsFor(const volume::WorldBox& box, const glm::dvec3& cell_m) {
   const glm::dvec3 size_m = glm::max(box.high_m - box.low_m, cell_m);
-  const double by_side_m = std::max({size_m.x, size_m.y, size_m.z}) / kMostTexels;
-  const double by_count_m = std::cbrt(size_m.x * size_m.y * size_m.z / kMostTexelCount);
+  const double by_side_m = std::max({size_m.x, size_m.y, size_m.z}) / kMaxTexels;
+  const double by_count_m = std::cbrt(size_m.x * size_m.y * size_m.z / kMaxTexelCount);
   const glm::dvec3 texel_m = glm::max(glm::dvec3(std::max(by_side_m, by_count_m)), cell_m);
-  return glm::clamp(glm::ivec3(glm::ceil(size_m / texel_m)), glm::ivec3(1),
-                    glm::ivec3(kMostTexels));
+  return glm::clamp(glm::ivec3(glm::ceil(size_m / texel_m)), glm::ivec3(1), glm::ivec3(kMaxTexels));
 }
 
-// Half the sides of the rectangle of ground around the storm that it changes the light on.
+// Half the sides of the rectangle of ground whose light the storm changes.
 glm::dvec2 GroundReach_m(const volume::WorldBox& box) {
   const glm::dvec2 half_m = 0.5 * glm::dvec2(box.high_m - box.low_m);
   return half_m + 0.5 * std::max(half_m.x, half_m.y);
@@ -56,7 +56,8 @@ glm::dvec2 Middle_m(const volume::WorldBox& box) {
   return 0.5 * glm::dvec2(box.low_m + box.high_m);
 }
 
-// What probes show: nothing that the light volume cannot, and no structure finer than texels.
+// The scene that probes draw: without light that the light volume cannot show, and without
+// structure finer than texels.
 scene::Scene ProbedScene(scene::Scene scene) {
   scene.lights.clear();
   scene::MediumSettingsOf(&scene.rendering.technique)->look.detail = false;
@@ -113,7 +114,7 @@ bool LightCorrector::Serves(const scene::Scene& scene,
   if (fields != fields_ || technique == nullptr) return false;
   technique->traced_light = asked->traced_light;
   alike.camera = asked_.camera;
-  alike.lights = asked_.lights;  // which it does not show
+  alike.lights = asked_.lights;  // which the correction does not include
   alike.display = asked_.display;
   alike.output = asked_.output;
   alike.accuracy = asked_.accuracy;
@@ -163,7 +164,7 @@ absl::StatusOr<LightCorrector::Probe> LightCorrector::DrawProbe() {
   const auto draw = [&]() -> absl::StatusOr<std::vector<float>> {
     THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame frame,
                                  renderer_.Draw(scene_, fields_, quality));
-    return frame::ReadLinear(*frame.radiance);
+    return frame::ReadLinear(quality.places ? *frame.places : *frame.radiance);
   };
   Probe probe;
   quality.correction = plain_;
@@ -182,7 +183,7 @@ void LightCorrector::TraceProbe(const Probe& probe) {
   for (int y = 0; y < kHeight_px; ++y) {
     for (int x = 0; x < kWidth_px; ++x) {
       const std::size_t first = 4 * static_cast<std::size_t>(y * kWidth_px + x);
-      if (probe.places[first + 3] > kMostPassing) continue;
+      if (probe.places[first + 3] > kMaxTransmittance) continue;
       firsts.push_back(first);
       rays.push_back(
           camera.RayThrough(2.0 * (x + 0.5) / kWidth_px - 1.0, 2.0 * (y + 0.5) / kHeight_px - 1.0));
@@ -203,8 +204,8 @@ void LightCorrector::TraceProbe(const Probe& probe) {
   progress_.paths += static_cast<std::int64_t>(rays.size());
 }
 
-// Rays from anywhere on the ground, more of them the higher they go, so that their mean radiance is
-// the ground's irradiance over pi.
+// Rays from random places on the ground in cosine-distributed directions, so that their mean
+// radiance is the ground's irradiance over pi.
 void LightCorrector::TraceGround() {
   const std::uint64_t pass = ++ground_passes_;
   if (!over_ground_.ground.has_value() || !over_ground_.sky) return;
@@ -225,7 +226,7 @@ void LightCorrector::TraceGround() {
   const std::vector<glm::dvec3> traced =
       reference::TraceRays(*medium_, over_ground_, rays, {kGroundSeed + pass, 1, threads_});
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    // What the storm changes: rays that miss it say nothing but the truth.
+    // Control variate: with the clear sky's known mean, rays that miss the storm add no noise.
     ground_fit_.Add({places[i], glm::dvec3(0.0), mean_sky, mean_sky + traced[i] - skies[i]});
   }
 }

@@ -1,8 +1,8 @@
-// Corrects a scene's light volume by the reference, step by step: draws small pictures of the
-// storm, half of them from near where the scene's camera stands and half from all around, traces
-// one path along each of their rays, and fits what the drawn radiance is to be multiplied by. Paths
-// from the ground correct its skylight. The result is the same for any number of threads. Owns GL
-// objects: use it on the context's thread.
+// Corrects a scene's light volume progressively by the reference: draws small pictures of the
+// storm, half of them from near the scene's camera and half from all around, traces one path along
+// each of their rays, and fits factors for the drawn radiance. Paths from the ground correct its
+// skylight. The result is the same for any number of threads. Owns GL objects: use it on the
+// context's thread.
 #pragma once
 
 #include <cstdint>
@@ -27,43 +27,45 @@
 
 namespace thunderhead::accuracy {
 
-// True if the scene asks for traced light, and there is something of which it can be traced.
+// True if the scene asks for traced light, its renderer can show it, and a field is drawn.
 bool TracesLight(const scene::Scene& scene, const volume::HydrometeorFields& fields);
 
 class LightCorrector {
  public:
-  // The scene traces light. Programs are linked in `programs`; `threads` trace, 0 takes all
-  // cores.
+  // TracesLight must be true. Programs are linked in `programs`; traces on `threads` threads, 0:
+  // all cores.
   static absl::StatusOr<std::unique_ptr<LightCorrector>> Create(
       const scene::Scene& scene, std::shared_ptr<const volume::HydrometeorFields> fields,
       std::shared_ptr<gl::ProgramCache> programs, int threads);
 
-  // True if the correction is one for this scene too: at most its camera and its display differ.
+  // True if the correction is valid for this scene: only its camera, display and the like may
+  // differ.
   bool Serves(const scene::Scene& scene,
               const std::shared_ptr<const volume::HydrometeorFields>& fields) const;
 
-  // Another scene that it serves: half of the pictures look from its camera from now on.
+  // Continues with the camera of `scene`, for which Serves must be true: half of the pictures are
+  // taken from near it from now on.
   void LookAs(const scene::Scene& scene);
 
-  // Goes on by some thousand paths: over the ground alone at first, then one picture each time.
+  // Traces some thousand paths: of the ground alone in the first steps, then one picture a step.
   absl::Status Step();
-  // Steps until that is reached (LightProgress::HasTraced); CANCELLED if `stop` asked to stop
-  // before. `observer`, which may be null, is told the share of the paths that there are.
+  // Steps until LightProgress::HasTraced(paths); CANCELLED if `stop` asks to stop before.
+  // `observer`, which may be null, gets the share of paths traced.
   absl::Status TraceUntil(std::int64_t paths, const std::stop_token& stop,
                           const std::function<void(double)>& observer);
 
-  // Paths in all, the ground's not counted.
+  // Total number of paths, without the ground's.
   const LightProgress& Progress() const { return progress_; }
 
-  // What the paths so far say; null before the first.
+  // The correction from all paths so far; null before the first.
   std::shared_ptr<const renderers::LightCorrection> Correction();
 
  private:
-  // What is drawn from one camera, four values a pixel, rows from bottom to top.
+  // Pictures drawn from one camera: four values a pixel, rows from bottom to top.
   struct Probe {
     std::vector<float> whole;
-    std::vector<float> behind;  // the storm lets as much pass, but sends no light
-    std::vector<float> places;  // DrawQuality::places
+    std::vector<float> behind;  // with the storm's transmittance, but black
+    std::vector<float> places;  // LinearFrame::places
   };
 
   LightCorrector(const scene::Scene& scene, std::shared_ptr<const volume::HydrometeorFields> fields,
@@ -77,21 +79,21 @@ class LightCorrector {
   std::shared_ptr<renderers::LightCorrection> WithGround() const;
   void UpdateGround();
 
-  scene::Scene scene_;  // as it is probed
+  scene::Scene scene_;  // as the probes draw it
   scene::Scene asked_;
   std::shared_ptr<const volume::HydrometeorFields> fields_;
   std::shared_ptr<const reference::Medium> medium_;
   volume::WorldBox box_;
-  reference::Surroundings over_ground_;  // as rays from the ground meet them: no air before them
+  reference::Surroundings over_ground_;  // as seen by rays from the ground: without air in front
   int threads_;
   renderers::SceneRenderer renderer_;
   CorrectionFit storm_fit_;
   CorrectionFit ground_fit_;
-  glm::dvec3 sky_sum_{0.0};  // radiance of the clear sky over the ground's rays
-  // The ground as it is known, with the storm as it is drawn and without light.
+  glm::dvec3 sky_sum_{0.0};  // sum of the clear sky's radiance over the ground's rays
+  // Corrections of the ground so far, with the storm unchanged and with a black storm.
   std::shared_ptr<const renderers::LightCorrection> plain_;
   std::shared_ptr<const renderers::LightCorrection> black_;
-  std::shared_ptr<const renderers::LightCorrection> correction_;  // null after a step
+  std::shared_ptr<const renderers::LightCorrection> correction_;  // null: must be computed again
   std::uint64_t ground_passes_ = 0;
   std::uint64_t pictures_ = 0;
   LightProgress progress_;

@@ -1,4 +1,4 @@
-// How far a scene's light has been traced. A plain value.
+// Progress of tracing a scene's light. A plain value.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@ struct LightProgress {
   std::int64_t paths = 0;
   std::int64_t steps = 0;  // 0 if there is nothing to trace
 
-  // True if as many paths have been traced, or so many steps gone that had hardly any to trace: of
-  // a storm so small or thin that few rays meet it, no more are waited for.
+  // True if `wanted` paths have been traced, or as many steps as should have sufficed: few rays
+  // meet a small or thin storm, and waiting for more would take too long.
   bool HasTraced(std::int64_t wanted) const {
-    constexpr std::int64_t kLeastPathsOfStep = 300;
-    return paths >= wanted || kLeastPathsOfStep * steps >= wanted;
+    constexpr std::int64_t kMinPathsPerStep = 300;
+    return paths >= wanted || kMinPathsPerStep * steps >= wanted;
   }
 };
 

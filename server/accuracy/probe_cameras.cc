@@ -13,13 +13,13 @@ namespace thunderhead::accuracy {
 namespace {
 
 constexpr double kFieldOfView_deg = 20.0;
-constexpr double kMostTurn_deg = 10.0;
-constexpr double kMostTilt_deg = 3.0;
-constexpr double kMostCloser = 0.05;
+constexpr double kMaxTurn_deg = 10.0;
+constexpr double kMaxTilt_deg = 3.0;
+constexpr double kMaxCloser = 0.05;
 constexpr double kHighest_deg = 89.0;
 
-// Three numbers from 0 to 1, together evenly spread: the R3 sequence (Roberts 2018, "The
-// unreasonable effectiveness of quasirandom sequences").
+// Quasirandom points in the unit cube: the R3 sequence (Roberts 2018, "The unreasonable
+// effectiveness of quasirandom sequences").
 glm::dvec3 Spread(std::uint64_t index) {
   constexpr double kRoot = 1.2207440846057596;  // of x^4 = x + 1
   const double n = static_cast<double>(index) + 0.5;
@@ -27,7 +27,7 @@ glm::dvec3 Spread(std::uint64_t index) {
   return turns - glm::floor(turns);
 }
 
-// How a camera moves.
+// Moves any kind of camera.
 struct Nudge {
   glm::dvec2 middle_m;
   double turn_deg;  // clockwise, seen from above
@@ -69,8 +69,8 @@ scene::Camera AroundStorm(const volume::WorldBox& box, double aspect_ratio, std:
 scene::Camera Nudged(const scene::Camera& camera, const volume::WorldBox& box,
                      std::uint64_t index) {
   const glm::dvec3 off = 2.0 * Spread(index) - 1.0;
-  return std::visit(Nudge{0.5 * glm::dvec2(box.low_m + box.high_m), kMostTurn_deg * off.x,
-                          kMostTilt_deg * off.y, 1.0 + kMostCloser * off.z},
+  return std::visit(Nudge{0.5 * glm::dvec2(box.low_m + box.high_m), kMaxTurn_deg * off.x,
+                          kMaxTilt_deg * off.y, 1.0 + kMaxCloser * off.z},
                     camera);
 }
 

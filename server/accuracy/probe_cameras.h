@@ -1,4 +1,4 @@
-// Where probes look from: low-discrepancy sequences of cameras. Pure functions.
+// Cameras of probes, as low-discrepancy sequences. Pure functions.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,12 @@
 
 namespace thunderhead::accuracy {
 
-// Number `index` of the cameras that frame the box from all sides, evenly over the upper half.
+// Camera `index` of a sequence that frames the box from all sides, evenly over the upper
+// hemisphere.
 scene::Camera AroundStorm(const volume::WorldBox& box, double aspect_ratio, std::uint64_t index);
 
-// `camera` moved about the box's middle by 10 degrees at most, nearer or farther by a twentieth.
+// `camera` turned around the box's middle by at most 10 degrees, and moved closer or farther by at
+// most a twentieth.
 scene::Camera Nudged(const scene::Camera& camera, const volume::WorldBox& box, std::uint64_t index);
 
 }  // namespace thunderhead::accuracy

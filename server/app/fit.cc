@@ -194,7 +194,7 @@ Command AddFit(CLI::App& app) {
   fit->add_option("--solver", flags->solver, "For the weights: direct or gradient")
       ->capture_default_str();
   fit->add_flag("--non-negative", flags->options.non_negative, "No ball takes away");
-  fit->add_option("--iterations", flags->options.most_iterations, "At most, for the weights")
+  fit->add_option("--iterations", flags->options.max_iterations, "At most, for the weights")
       ->capture_default_str();
   AddSeedFlag(*fit, "Of the first centres", &flags->options.seed);
   fit->add_option("--threads", flags->options.threads, "0: as many as the machine has")

@@ -6,19 +6,19 @@
 #include "app/progress_bar.h"
 #include "base/status.h"
 #include "base/whole_file.h"
-#include "reference/exr_file.h"
+#include "picture/exr_file.h"
 
 namespace thunderhead::app {
 
-absl::StatusOr<reference::Image> KeptTruth(const Truth& truth,
-                                           const volume::HydrometeorFields& fields,
-                                           const std::string& path,
-                                           const Interruption& interruption) {
+absl::StatusOr<picture::LinearPicture> KeptTruth(const Truth& truth,
+                                                 const volume::HydrometeorFields& fields,
+                                                 const std::string& path,
+                                                 const Interruption& interruption) {
   const std::string key = absl::StrCat(truth.scene_text, "\npeak cut: ", truth.options.peak_cut_deg,
                                        "\nsamples a pixel: ", truth.samples_per_pixel, "\n");
   const std::string key_path = path + ".scene";
   if (std::filesystem::exists(path) && base::ReadWholeFile(key_path).value_or("") == key) {
-    return reference::ReadExr(path);
+    return picture::ReadExr(path);
   }
   reference::RefineLimits limits;
   limits.samples_per_pixel = truth.samples_per_pixel;
@@ -34,7 +34,7 @@ absl::StatusOr<reference::Image> KeptTruth(const Truth& truth,
   if (traced.result.end == reference::RefineEnd::kStopped) {
     return absl::CancelledError("stopped before the truth was traced; nothing is kept of it");
   }
-  THUNDERHEAD_RETURN_IF_ERROR(reference::WriteExr(path, traced.image));
+  THUNDERHEAD_RETURN_IF_ERROR(picture::WriteExr(path, traced.image));
   THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(key_path, key));
   return traced.image;
 }

@@ -21,9 +21,9 @@ struct Truth {
 
 // The picture kept at `path` if it is of the same text, peak cut and samples, else a new one, which
 // is then kept there. CANCELLED if it was interrupted; nothing is kept of it.
-absl::StatusOr<reference::Image> KeptTruth(const Truth& truth,
-                                           const volume::HydrometeorFields& fields,
-                                           const std::string& path,
-                                           const Interruption& interruption);
+absl::StatusOr<picture::LinearPicture> KeptTruth(const Truth& truth,
+                                                 const volume::HydrometeorFields& fields,
+                                                 const std::string& path,
+                                                 const Interruption& interruption);
 
 }  // namespace thunderhead::app

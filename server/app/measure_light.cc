@@ -49,9 +49,9 @@ bool Chosen(const std::vector<std::string>& names, std::string_view name) {
   return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
 }
 
-absl::StatusOr<reference::Image> TruthOf(const Flags& flags, const LocalScene& local,
-                                         LightPart part, const std::string& path,
-                                         const Interruption& interruption) {
+absl::StatusOr<picture::LinearPicture> TruthOf(const Flags& flags, const LocalScene& local,
+                                               LightPart part, const std::string& path,
+                                               const Interruption& interruption) {
   v1::Scene message = local.message;
   message.clear_rendering();
   Truth truth;
@@ -64,13 +64,14 @@ absl::StatusOr<reference::Image> TruthOf(const Flags& flags, const LocalScene& l
 }
 
 // Truth, drawn, and 1/2 plus a quarter of their difference over the truth's mean, side by side.
-absl::Status WriteComparison(const measure::LinearImage& truth, const measure::LinearImage& drawn,
-                             const scene::Display& display, const std::string& path) {
+absl::Status WriteComparison(const picture::LinearPicture& truth,
+                             const picture::LinearPicture& drawn, const scene::Display& display,
+                             const std::string& path) {
   frame::ToneMapper tone_mapper;
   THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped left,
-                               tone_mapper.Map(measure::TextureOf(truth), display));
+                               tone_mapper.Map(frame::TextureOf(truth), display));
   THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped middle,
-                               tone_mapper.Map(measure::TextureOf(drawn), display));
+                               tone_mapper.Map(frame::TextureOf(drawn), display));
   double mean = 0.0;
   for (const glm::vec3& pixel : truth.radiance) mean += (pixel.x + pixel.y + pixel.z) / 3.0;
   mean /= static_cast<double>(truth.radiance.size());
@@ -99,17 +100,17 @@ struct Compared {
   const Flags& flags;
   const LocalScene& local;
   LightPart part;
-  measure::LinearImage truth;
+  picture::LinearPicture truth;
   double noise;
   renderers::SceneRenderer& renderer;
 
   absl::Status Print(const scene::Scene& scene, const std::string& name,
                      const std::shared_ptr<const renderers::LightCorrection>& correction) const {
     THUNDERHEAD_ASSIGN_OR_RETURN(
-        const measure::LinearImage drawn,
+        const picture::LinearPicture drawn,
         measure::DrawPart(renderer, scene, local.fields, part, flags.finer, correction));
     THUNDERHEAD_ASSIGN_OR_RETURN(
-        const measure::LinearImage single,
+        const picture::LinearPicture single,
         measure::DrawPart(renderer, scene, local.fields, part, 1, correction));
     std::cout << absl::StrFormat("%-5s %-15s %8.4f %+8.4f %8.4f %8.4f\n", measure::NameOf(part),
                                  name, measure::RelativeRmseWithout(noise, drawn, truth),
@@ -170,11 +171,10 @@ absl::Status MeasureLight(const Flags& flags) {
   for (const LightPart part : kParts) {
     if (!Chosen(flags.parts, measure::NameOf(part))) continue;
     THUNDERHEAD_ASSIGN_OR_RETURN(
-        const reference::Image image,
+        const picture::LinearPicture truth,
         TruthOf(flags, local, part, absl::StrCat(flags.output, ".", measure::NameOf(part), ".exr"),
                 interruption));
-    const measure::LinearImage truth{image.size_px, image.radiance};
-    const double noise = measure::RelativeNoise(image.standard_error, truth);
+    const double noise = measure::RelativeNoise(truth);
     const Compared compared{flags, local, part, truth, noise, renderer};
     for (const auto& transport : accuracy::kTransports) {
       const bool once = part == LightPart::kOnce;

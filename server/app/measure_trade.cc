@@ -39,9 +39,9 @@ absl::Status CheckFlags(const Flags& flags) {
                                                  "; a truth needs 16 samples a pixel at least"));
 }
 
-absl::StatusOr<reference::Image> TruthOf(const Flags& flags, const LocalScene& local,
-                                         const std::string& path,
-                                         const Interruption& interruption) {
+absl::StatusOr<picture::LinearPicture> TruthOf(const Flags& flags, const LocalScene& local,
+                                               const std::string& path,
+                                               const Interruption& interruption) {
   Truth truth;
   truth.name = "the truth";
   truth.scene = measure::TrueScene(local.scene);
@@ -120,7 +120,7 @@ absl::Status MeasureTrade(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const LocalScene local, OpenScene(flags.storm, flags.scene));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,
                                gl::Context::Create(flags.device));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const reference::Image truth,
+  THUNDERHEAD_ASSIGN_OR_RETURN(const picture::LinearPicture truth,
                                TruthOf(flags, local, flags.output + ".truth.exr", interruption));
   measure::Trade trade(local.scene, local.fields, truth);
   measure::TradeTitle title;

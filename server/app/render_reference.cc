@@ -17,8 +17,7 @@
 #include "frame/image_codec.h"
 #include "frame/tone_map.h"
 #include "gl/context.h"
-#include "measure/trade.h"
-#include "reference/exr_file.h"
+#include "picture/exr_file.h"
 #include "reference/trace_scene.h"
 
 namespace thunderhead::app {
@@ -57,15 +56,14 @@ double ShareDone(const reference::RefineLimits& limits, const reference::ImagePr
   return std::min(share, 1.0);
 }
 
-absl::Status WriteToneMapped(const reference::Image& image, const scene::Display& display,
+absl::Status WriteToneMapped(const picture::LinearPicture& image, const scene::Display& display,
                              int jpeg_quality, const std::string& output,
                              const std::string& device) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,
                                gl::Context::Create(device));
   frame::ToneMapper tone_mapper;
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      const frame::ToneMapped mapped,
-      tone_mapper.Map(measure::TextureOf({image.size_px, image.radiance}), display));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped mapped,
+                               tone_mapper.Map(frame::TextureOf(image), display));
   const glm::ivec2 size = image.size_px;
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::string bytes,
                                absl::EndsWithIgnoreCase(output, ".png")
@@ -97,7 +95,7 @@ absl::Status RenderReference(const std::string& storm, const SceneFlags& scene,
   }
   THUNDERHEAD_RETURN_IF_ERROR(traced.status());
   if (absl::EndsWithIgnoreCase(output, ".exr")) {
-    THUNDERHEAD_RETURN_IF_ERROR(reference::WriteExr(output, traced->image));
+    THUNDERHEAD_RETURN_IF_ERROR(picture::WriteExr(output, traced->image));
   } else {
     THUNDERHEAD_RETURN_IF_ERROR(WriteToneMapped(traced->image, local.scene.display,
                                                 local.scene.output.jpeg_quality, output, device));

@@ -15,8 +15,8 @@ namespace thunderhead::base {
 
 class Executor {
  public:
-  // Called once: with OK on one of the threads, or with the reason why it will not run (on the
-  // thread that submitted or stopped).
+  // Called exactly once: with OK on one of the threads, or, if it is refused, with the reason on
+  // the thread that called Submit or Stop.
   using Task = std::function<void(const absl::Status&)>;
 
   Executor(int threads, std::size_t max_waiting);
@@ -26,7 +26,7 @@ class Executor {
 
   void Submit(Task task);
 
-  // Waits for the tasks that run, and refuses those that wait. Further tasks are refused.
+  // Waits for running tasks to end; waiting and later tasks are refused.
   void Stop();
 
  private:

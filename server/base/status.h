@@ -1,6 +1,6 @@
-// Status values and the macros that pass them on. Errors from input or the environment are
-// absl::Status with what went wrong, where, and what to do next; a broken invariant of our own is
-// THUNDERHEAD_CHECK. No exception crosses a room.
+// Status values and the macros that pass them on. Errors from input or the environment are an
+// absl::Status that says what went wrong, where, and what to do next; a broken invariant of the
+// program's own is a THUNDERHEAD_CHECK. No exception leaves a room.
 #pragma once
 
 #include <string>
@@ -41,8 +41,8 @@ absl::Status Annotate(const absl::Status& status, std::string_view prefix);
   declaration = *std::move(THUNDERHEAD_CONCATENATE(thunderhead_or_, __LINE__))
 // NOLINTEND(bugprone-macro-parentheses)
 
-// Aborts with place, condition and `detail` (a string expression that shows the values) when
-// `condition` is false.
+// If `condition` is false, prints file, line, condition and `detail` (a string expression that
+// shows the values) and aborts.
 #define THUNDERHEAD_CHECK(condition, detail)                                    \
   do {                                                                          \
     if (!(condition)) {                                                         \

@@ -1,5 +1,5 @@
 // Wakes one thread that waits for work. A notification given while the thread is busy is kept until
-// it waits, so none is lost; several become one.
+// its next wait, so none is lost; several are merged into one.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// Files that are read and written whole.
+// Reading and writing whole files.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace thunderhead::base {
 
 absl::StatusOr<std::string> ReadWholeFile(const std::string& path);
 
-// Under a name of its own first, so that a reader never sees half a file.
+// Writes to a temporary name and renames, so that a reader never sees half a file.
 absl::Status WriteWholeFile(const std::string& path, const std::string& bytes);
 
 }  // namespace thunderhead::base

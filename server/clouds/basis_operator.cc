@@ -13,7 +13,7 @@ namespace {
 constexpr int kSlabLayers = 4;
 constexpr int kBallsAChunk = 64;
 
-// Sums of eight interleaved parts, which the compiler may keep in one register.
+// Eight partial sums, which the compiler can keep in one vector register.
 constexpr std::size_t kLanes = 8;
 
 // The values of one row of a ball: basis(x) for x in [0, count).
@@ -71,11 +71,11 @@ void BasisOperator::AddFootprint(const Metaball& ball) {
   footprint.reach_m = Reach_m(basis_, overlap_, ball.sigma_m);
   footprint.centre_cells = (ball.centre_m - grid_.low_corner_m) / grid_.spacing_m - 0.5;
   const glm::dvec3 reach_cells = footprint.reach_m / grid_.spacing_m;
-  const glm::dvec3 most(grid_.cells);
+  const glm::dvec3 cells(grid_.cells);
   footprint.low = glm::ivec3(
-      glm::clamp(glm::ceil(footprint.centre_cells - reach_cells), glm::dvec3(0.0), most));
+      glm::clamp(glm::ceil(footprint.centre_cells - reach_cells), glm::dvec3(0.0), cells));
   footprint.high = glm::ivec3(
-      glm::clamp(glm::floor(footprint.centre_cells + reach_cells) + 1.0, glm::dvec3(0.0), most));
+      glm::clamp(glm::floor(footprint.centre_cells + reach_cells) + 1.0, glm::dvec3(0.0), cells));
   footprint.tables = tables_.size();
   for (int axis = 0; axis < 3; ++axis) {
     for (int cell = footprint.low[axis]; cell < footprint.high[axis]; ++cell) {
@@ -143,7 +143,7 @@ void BasisOperator::Apply(const std::vector<double>& weights, std::vector<float>
   });
 }
 
-// For each ball the sum of sum(values, offset, count) over its rows.
+// For each ball, adds up sum(values, offset, count) over its rows.
 template <typename Sum>
 std::vector<double> BasisOperator::SumOverRows(const Sum& sum) const {
   std::vector<double> sums(footprints_.size(), 0.0);

@@ -1,5 +1,6 @@
-// The linear map from metaballs' weights to a field on a grid, and its transpose, without storing
-// it: rows of cells in reach of each ball. The same result for any number of threads.
+// The linear map from metaballs' weights to a field on a grid, and its transpose, applied without
+// storing a matrix, row by row of the cells that each ball reaches. The same result for any number
+// of threads.
 #pragma once
 
 #include <vector>
@@ -24,8 +25,8 @@ class BasisOperator {
   std::vector<double> SquaredNorms() const;
 
  private:
-  // The cells in reach of a ball, and where its tables begin: one value for each x, y and z of
-  // them.
+  // The box of cells that a ball reaches, and where its tables begin: one value for each x, y and z
+  // in the box.
   struct Footprint {
     glm::ivec3 low{0};
     glm::ivec3 high{0};  // one past the last
@@ -49,7 +50,8 @@ class BasisOperator {
   std::vector<Footprint> footprints_;
   // Along each axis: for a Gaussian its factor, for Wyvill's field the squared distance over R^2.
   std::vector<float> tables_;
-  std::vector<std::vector<std::uint32_t>> slabs_;  // the balls that reach each slab of layers
+  std::vector<std::vector<std::uint32_t>>
+      slabs_;  // indices of the balls that reach each slab of layers
 };
 
 }  // namespace thunderhead::clouds

@@ -12,19 +12,19 @@ namespace thunderhead::clouds {
 namespace {
 
 absl::Status CheckScales(int scales) {
-  if (scales >= 1 && scales <= kMostScales) return absl::OkStatus();
+  if (scales >= 1 && scales <= kMaxScales) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat("the number of scales of a cumulus is ", scales,
-                                                 "; it must be from 1 to ", kMostScales));
+                                                 "; it must be from 1 to ", kMaxScales));
 }
 
-// Further scales upon those that are there.
+// Adds finer scales of bubbles to the existing ones.
 void AddScales(const CauliflowerOptions& options, int scales, CumulusSurface* surface) {
   std::size_t first = 0;
   for (int scale = 0; scale < scales; ++scale) {
     const std::size_t end = surface->bubbles.size();
     Sprouting sprouting;
     sprouting.seed = options.seed;
-    sprouting.lowest_sine = -1.0;  // the base cuts off what hangs
+    sprouting.lowest_sine = -1.0;  // overhanging bubbles are cut off by the base
     Sprout(sprouting, first, surface);
     first = end;
   }
@@ -46,7 +46,7 @@ absl::StatusOr<CumulusSurface> Cauliflower(const CauliflowerOptions& options) {
   const auto between = [&random](double low, double high) {
     return low + (high - low) * random.Next();
   };
-  // A body, and towers that lean on it; wide ones at its rim, high ones in the middle.
+  // A body with towers leaning on it: wide ones at its rim, high ones in the middle.
   surface.bubbles.push_back(
       BubbleOf({{0.0, 0.0, 120.0}, {950.0, 800.0, 420.0}, {0.0, 0.0, between(0.0, 180.0)}}));
   constexpr int kTowers = 9;

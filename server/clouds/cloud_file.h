@@ -1,4 +1,4 @@
-// A generated cloud as a storm file that says how it was made.
+// A generated cloud as a storm file, with its parameters as an attribute.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,19 @@
 
 namespace thunderhead::clouds {
 
-// What a shape began as.
+// The preset and seed that a shape was made from.
 struct CloudOrigin {
   std::string preset;
   std::uint64_t seed = 1;
 };
 
-// Generates the cloud and writes it to `path`, a CF netCDF file. Nothing is left behind if it fails
-// or is stopped. Errors are those of Generate and of the file.
+// Generates the cloud and writes it to `path`, a CF netCDF file. No file is left if it fails or is
+// stopped. Errors are those of Generate and of writing the file.
 absl::Status WriteGenerated(const CloudShape& shape, const CloudOrigin& origin,
                             const std::string& path, const GenerateObserver& observer,
                             const std::stop_token& stop);
 
-// Whether a file says that WriteGenerated wrote it.
+// Whether WriteGenerated wrote the file, by its `source` attribute.
 bool IsGenerated(const std::string& path);
 
 }  // namespace thunderhead::clouds

@@ -1,4 +1,4 @@
-// What a generated cloud is: its grid, noise, ellipsoids and amount of water. Plain values.
+// The parameters of a generated cloud: grid, noise, ellipsoids and amount of water. Plain values.
 #pragma once
 
 #include <optional>
@@ -20,17 +20,17 @@ struct Ellipsoid {
   glm::dvec3 rotation_deg{0.0};
 };
 
-// Columns are unit vectors along the axes of what is rotated so.
+// Rotation matrix: its columns are the unit vectors of the rotated axes.
 glm::dmat3 AxesOf(const glm::dvec3& rotation_deg);
 
 struct CloudShape {
   volume::RegularGrid grid;
   NoiseParameters noise;
   double feature_m = 400.0;           // size of the coarsest octave's lattice cells
-  double threshold = 0.1;             // t: what is thinner is empty
+  double threshold = 0.1;             // t: density below this counts as zero
   double dynamics = 1.0;              // d: scales the whole range of density
   double water_kg_per_m3 = 2e-3;      // where the density is 1
-  std::optional<double> base_m;       // nothing lies lower
+  std::optional<double> base_m;       // the cloud is cut off below it
   std::vector<Ellipsoid> ellipsoids;  // the cloud is their union
 };
 
@@ -46,7 +46,7 @@ class Quadric {
     return 1.0 - (from_centre.x * m.x + from_centre.y * m.y + from_centre.z * m.z);
   }
 
-  // Half the size of the smallest level box around it.
+  // Half the size of its axis-aligned bounding box.
   const glm::dvec3& HalfExtent_m() const { return half_extent_m_; }
   const glm::dvec3& Centre_m() const { return centre_m_; }
 

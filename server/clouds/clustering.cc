@@ -15,11 +15,11 @@
 namespace thunderhead::clouds {
 namespace {
 
-// Patterns assigned at once, to the centres as they stand then: in between, a centre moves by a
-// small part of its cluster. Larger groups keep more threads busy.
+// Points assigned together, to the centres at that moment; within a group, a centre would move by a
+// small part of its cluster only. Larger groups keep more threads busy.
 constexpr std::size_t kGroup = 8192;
 
-// The nearest of some centres, by cells that hold about two each.
+// Finds the nearest centre, on a grid of cells with about two centres each.
 class NearestCentre {
  public:
   explicit NearestCentre(const std::vector<glm::dvec3>& centres_m) : centres_m_(centres_m) {
@@ -42,9 +42,9 @@ class NearestCentre {
     std::uint32_t nearest = 0;
     const int farthest = std::max({cells_.x, cells_.y, cells_.z});
     for (int ring = 0; ring <= farthest; ++ring) {
-      // Cells of this ring are at least so far away, the point lying in or outside of its own.
-      const double away_m = (ring - 1) * cell_m_;
-      if (ring > 0 && away_m > 0.0 && away_m * away_m > best) break;
+      // Lower bound of the distance to the cells of this ring.
+      const double aoffset_m = (ring - 1) * cell_m_;
+      if (ring > 0 && aoffset_m > 0.0 && aoffset_m * aoffset_m > best) break;
       SearchRing(home, ring, point_m, &best, &nearest);
     }
     return nearest;
@@ -98,9 +98,9 @@ class NearestCentre {
   void SearchCell(std::size_t cell, const glm::dvec3& point_m, double* best,
                   std::uint32_t* nearest) const {
     for (std::uint32_t i = starts_[cell]; i < starts_[cell + 1]; ++i) {
-      const glm::dvec3 way_m = centres_m_[members_[i]] - point_m;
-      const double square = glm::dot(way_m, way_m);
-      // Of equally near ones the first, whatever the order of the search.
+      const glm::dvec3 offset_m = centres_m_[members_[i]] - point_m;
+      const double square = glm::dot(offset_m, offset_m);
+      // Ties go to the lowest index, so that the order of the search does not matter.
       if (square < *best || (square == *best && members_[i] < *nearest)) {
         *best = square;
         *nearest = members_[i];
@@ -117,7 +117,7 @@ class NearestCentre {
   std::vector<std::uint32_t> members_;
 };
 
-// Fisher and Yates; the same order for a seed everywhere.
+// Fisher-Yates shuffle; the same order for a seed on every machine.
 std::vector<std::uint32_t> Shuffled(std::size_t count, std::uint64_t seed, std::uint64_t stream) {
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0U);
@@ -129,7 +129,7 @@ std::vector<std::uint32_t> Shuffled(std::size_t count, std::uint64_t seed, std::
   return order;
 }
 
-// Assigns points[order[first..last)] to `nearest`, by their place in the group.
+// Writes to `nearest` the centre nearest to each of points[order[first..last)].
 void Assign(const std::vector<glm::vec3>& points_m, const std::vector<std::uint32_t>& order,
             std::size_t first, std::size_t last, const std::vector<glm::dvec3>& centres_m,
             int threads, std::vector<std::uint32_t>* nearest) {
@@ -148,7 +148,8 @@ void Assign(const std::vector<glm::vec3>& points_m, const std::vector<std::uint3
   });
 }
 
-// Larger groups for many points: building the search costs as much as some thousand look-ups.
+// Larger groups where there are many centres: building the search structure, once a group, costs as
+// much as some thousand look-ups.
 std::size_t GroupSize(std::size_t points, std::size_t centres) {
   return std::clamp(std::max(kGroup, 2 * centres), std::size_t{1}, points);
 }
@@ -167,8 +168,8 @@ class Adaptation {
   // One epoch; false if it was stopped.
   bool RunEpoch(int epoch, const std::function<void(double)>& observer,
                 const std::stop_token& stop) {
-    // n(t) of eq. 22 counts what was assigned before; the first epoch has nothing to count and
-    // counts as it goes.
+    // n(t) of eq. 22 is the number of points assigned to the centre in all earlier epochs; the
+    // first epoch uses a running count.
     const std::vector<std::int64_t> before = assigned_;
     const std::vector<std::uint32_t> order =
         Shuffled(points_m_.size(), options_.seed, static_cast<std::uint64_t>(epoch) + 1);
@@ -189,7 +190,7 @@ class Adaptation {
     return true;
   }
 
-  // Of the median centre.
+  // The learning rate of the median centre.
   double Speed() const {
     std::vector<std::int64_t> counts = assigned_;
     const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
@@ -208,7 +209,7 @@ class Adaptation {
 };
 
 std::vector<double> Sigmas(const std::vector<glm::vec3>& points_m,
-                           const std::vector<glm::dvec3>& centres_m, double least_sigma_m,
+                           const std::vector<glm::dvec3>& centres_m, double min_sigma_m,
                            int threads) {
   std::vector<std::uint32_t> order(points_m.size());
   std::iota(order.begin(), order.end(), 0U);
@@ -217,20 +218,20 @@ std::vector<double> Sigmas(const std::vector<glm::vec3>& points_m,
   std::vector<double> squares(centres_m.size(), 0.0);
   std::vector<std::int64_t> counts(centres_m.size(), 0);
   for (std::size_t i = 0; i < points_m.size(); ++i) {
-    const glm::dvec3 way_m = glm::dvec3(points_m[i]) - centres_m[nearest[i]];
-    squares[nearest[i]] += glm::dot(way_m, way_m);
+    const glm::dvec3 offset_m = glm::dvec3(points_m[i]) - centres_m[nearest[i]];
+    squares[nearest[i]] += glm::dot(offset_m, offset_m);
     ++counts[nearest[i]];
   }
   for (std::size_t k = 0; k < squares.size(); ++k) {
     const double mean = counts[k] > 0 ? squares[k] / static_cast<double>(counts[k]) : 0.0;
-    squares[k] = std::max(std::sqrt(mean), least_sigma_m);
+    squares[k] = std::max(std::sqrt(mean), min_sigma_m);
   }
   return squares;
 }
 
 }  // namespace
 
-Clusters Cluster(const std::vector<glm::vec3>& points_m, double least_sigma_m,
+Clusters Cluster(const std::vector<glm::vec3>& points_m, double min_sigma_m,
                  const ClusteringOptions& options, const ClusteringObserver& observer,
                  const std::stop_token& stop) {
   THUNDERHEAD_CHECK(
@@ -238,17 +239,17 @@ Clusters Cluster(const std::vector<glm::vec3>& points_m, double least_sigma_m,
       std::to_string(options.centres));
   Adaptation adaptation(points_m, options);
   Clusters clusters;
-  while (clusters.epochs < options.most_epochs) {
+  while (clusters.epochs < options.max_epochs) {
     const auto report = [&](double share) {
-      if (observer) observer((clusters.epochs + share) / options.most_epochs);
+      if (observer) observer((clusters.epochs + share) / options.max_epochs);
     };
     if (!adaptation.RunEpoch(clusters.epochs, report, stop)) break;
     ++clusters.epochs;
-    const bool slow = adaptation.Speed() < options.least_speed;
-    if (slow && clusters.epochs >= options.least_epochs) break;
+    const bool slow = adaptation.Speed() < options.min_speed;
+    if (slow && clusters.epochs >= options.min_epochs) break;
   }
   clusters.centres_m = std::move(adaptation.Centres_m());
-  clusters.sigmas_m = Sigmas(points_m, clusters.centres_m, least_sigma_m, options.threads);
+  clusters.sigmas_m = Sigmas(points_m, clusters.centres_m, min_sigma_m, options.threads);
   return clusters;
 }
 

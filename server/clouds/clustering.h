@@ -1,5 +1,5 @@
 // The first two phases of Man's approximator: centres by adaptive k-means (eq. 21-22) and their
-// sizes (eq. 23). Unsupervised: sees positions only. The same for any number of threads.
+// sizes (eq. 23). Unsupervised: it uses positions only. The same for any number of threads.
 #pragma once
 
 #include <functional>
@@ -12,25 +12,26 @@ namespace thunderhead::clouds {
 
 struct ClusteringOptions {
   int centres = 1000;
-  double least_speed =
-      0.05;  // an epoch after which the median centre adapts more slowly is the last
-  int least_epochs = 4;
-  int most_epochs = 12;
+  double min_speed = 0.05;  // training ends after the epoch in which the median centre's learning
+                            // rate falls below this
+  int min_epochs = 4;
+  int max_epochs = 12;
   std::uint64_t seed = 1;
   int threads = 1;
 };
 
 struct Clusters {
   std::vector<glm::dvec3> centres_m;
-  std::vector<double> sigmas_m;  // root mean square distances; never below `least_sigma_m`
+  std::vector<double> sigmas_m;  // root mean square distances; never below `min_sigma_m`
   int epochs = 0;
 };
 
-// Called now and then with the share done.
+// Called from time to time with the share done.
 using ClusteringObserver = std::function<void(double share)>;
 
-// `points_m` must be at least as many as centres. Stops early, with what there is, if asked to.
-Clusters Cluster(const std::vector<glm::vec3>& points_m, double least_sigma_m,
+// There must be at least as many points as centres. If asked to stop, returns the centres found so
+// far.
+Clusters Cluster(const std::vector<glm::vec3>& points_m, double min_sigma_m,
                  const ClusteringOptions& options, const ClusteringObserver& observer,
                  const std::stop_token& stop);
 

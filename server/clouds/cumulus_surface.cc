@@ -14,15 +14,16 @@ namespace {
 
 using physics::CounterRandom;
 
-// A parent is so much larger than what lies on it.
+// Least ratio of a parent's radius to its child's.
 constexpr double kClearlyLarger = 1.4;
-// A bubble whose middle lies deeper in another than this share of it does not show.
+// A bubble is hidden if its centre is closer to another's centre than this share of that one's
+// radius.
 constexpr double kBuried = 0.82;
-// Bubbles of one parent come as close as this share of the sum of their radii.
+// Least distance of two bubbles of one parent, over the sum of their radii.
 constexpr double kCloseness = 0.55;
-// The middle of a bubble lies so far below its parent's surface, in its own radii.
+// Depth of a bubble's centre below its parent's surface, in its own radii.
 constexpr double kSunken = 0.4;
-// Darts thrown for each bubble that there is room for.
+// Attempts (darts thrown) for each bubble that fits.
 constexpr int kDarts = 8;
 
 glm::dvec3 NormalAt(const Bubble& bubble, const glm::dvec3& point_m) {
@@ -32,7 +33,7 @@ glm::dvec3 NormalAt(const Bubble& bubble, const glm::dvec3& point_m) {
   return length > 0.0 ? normal / length : glm::dvec3(0.0, 0.0, 1.0);
 }
 
-// How deep a point is in a bubble: 1 on its surface, 0 in its middle.
+// Relative distance of a point from a bubble's centre: 0 in the centre, 1 on the surface.
 double Depth(const Bubble& bubble, const glm::dvec3& point_m) {
   return glm::length(UnitFromWorld(bubble) * (point_m - bubble.centre_m));
 }
@@ -45,7 +46,7 @@ glm::dvec3 HalfExtent_m(const Bubble& bubble) {
   return half_m;
 }
 
-// Away from those of the first `count` bubbles that this one touches.
+// Direction away from those of the first `count` bubbles that this one touches.
 glm::dvec3 AwayFromNeighbours(const std::vector<Bubble>& bubbles, std::size_t self) {
   const Bubble& bubble = bubbles[self];
   const double radius_m = RadiusOf(bubble);
@@ -67,13 +68,13 @@ glm::dvec3 RandomDirection(CounterRandom* random) {
   return {across * CosineOfDegrees(azimuth_deg), across * SineOfDegrees(azimuth_deg), z};
 }
 
-// That cover a parent all around.
+// Number of bubbles that cover a whole parent.
 int Wanted(const Sprouting& sprouting) {
   return static_cast<int>(sprouting.cover * 4.0 /
                           (sprouting.relative_radius * sprouting.relative_radius));
 }
 
-// Throws darts at one parent.
+// Places bubbles on one parent by dart throwing.
 class Sprouter {
  public:
   Sprouter(const Sprouting& sprouting, std::size_t first, std::size_t parent,
@@ -83,15 +84,15 @@ class Sprouter {
         surface_(*surface),
         random_(sprouting.seed, StreamOf(first, parent)) {}
 
-  // Adds at most `most`.
-  void Run(const std::vector<std::size_t>& near, int most) {
+  // Adds at most `max` bubbles.
+  void Run(const std::vector<std::size_t>& near, int max) {
     const Bubble parent = surface_.bubbles[parent_];
     const double radius_m = sprouting_.relative_radius * RadiusOf(parent);
     const glm::dmat3 unit = UnitFromWorld(parent);
     const int wanted = Wanted(sprouting_);
     const std::size_t siblings = surface_.bubbles.size();
     for (int dart = 0; dart < kDarts * wanted; ++dart) {
-      if (static_cast<int>(surface_.bubbles.size() - siblings) >= most) return;
+      if (static_cast<int>(surface_.bubbles.size() - siblings) >= max) return;
       const glm::dvec3 direction = RandomDirection(&random_);
       const double size = 0.65 + 0.7 * random_.Next();
       const glm::dvec3 normal = glm::normalize(glm::transpose(unit) * direction);
@@ -122,8 +123,8 @@ class Sprouter {
   bool Crowded(const glm::dvec3& centre_m, double radius_m, std::size_t siblings) const {
     for (std::size_t i = siblings; i < surface_.bubbles.size(); ++i) {
       const Bubble& other = surface_.bubbles[i];
-      const double least_m = kCloseness * (radius_m + RadiusOf(other));
-      if (glm::distance(other.centre_m, centre_m) < least_m) return true;
+      const double min_m = kCloseness * (radius_m + RadiusOf(other));
+      if (glm::distance(other.centre_m, centre_m) < min_m) return true;
     }
     return false;
   }
@@ -176,7 +177,7 @@ void LayOnLarger(CumulusSurface* surface) {
     Bubble& bubble = bubbles[i];
     bubble.parent = -1;
     const double radius_m = RadiusOf(bubble);
-    // The last that fits is the smallest: the next larger scale.
+    // The last match is the smallest one: the next larger scale.
     for (std::size_t j = 0; j < i; ++j) {
       const double other_m = RadiusOf(bubbles[j]);
       if (other_m < kClearlyLarger * radius_m) break;
@@ -194,14 +195,14 @@ void LayOnLarger(CumulusSurface* surface) {
 void Sprout(const Sprouting& sprouting, std::size_t first, CumulusSurface* surface) {
   const std::size_t end = surface->bubbles.size();
   const auto sprouts = [&](std::size_t parent) {
-    return RadiusOf(surface->bubbles[parent]) >= sprouting.least_radius_m;
+    return RadiusOf(surface->bubbles[parent]) >= sprouting.min_radius_m;
   };
   int parents = 0;
   for (std::size_t parent = first; parent < end; ++parent) parents += sprouts(parent) ? 1 : 0;
-  const int room = sprouting.most_bubbles - static_cast<int>(end);
+  const int room = sprouting.max_bubbles - static_cast<int>(end);
   if (parents == 0 || room <= 0) return;
-  // The same for each, so that no part of the surface is left bare.
-  const int most = std::clamp(room / parents, 1, Wanted(sprouting));
+  // The same limit for each, so that no part of the surface is left bare.
+  const int max = std::clamp(room / parents, 1, Wanted(sprouting));
   std::vector<std::size_t> near;
   for (std::size_t parent = first; parent < end; ++parent) {
     if (!sprouts(parent)) continue;
@@ -215,7 +216,7 @@ void Sprout(const Sprouting& sprouting, std::size_t first, CumulusSurface* surfa
         near.push_back(other);
       }
     }
-    Sprouter(sprouting, first, parent, surface).Run(near, most);
+    Sprouter(sprouting, first, parent, surface).Run(near, max);
   }
 }
 

@@ -13,12 +13,12 @@
 namespace thunderhead::clouds {
 namespace {
 
-constexpr int kMostCellsAlong = 4096;
-constexpr std::size_t kMostCells = std::size_t{1} << 28;
-constexpr int kMostOctaves = 16;
-constexpr double kMostWater_kg_per_m3 = 0.05;
+constexpr int kMaxCellsAlong = 4096;
+constexpr std::size_t kMaxCells = std::size_t{1} << 28;
+constexpr int kMaxOctaves = 16;
+constexpr double kMaxWater_kg_per_m3 = 0.05;
 
-// Detail finer than this share of a cell is not seen, and its lattice would be large.
+// Detail finer than this share of a cell is not visible, and its lattice would be large.
 constexpr double kFinestDetail_cells = 0.25;
 
 // `field` is the parameter's name on the command line and in requests, if it has one there.
@@ -31,25 +31,25 @@ absl::Status Wrong(const std::string& what, double value, const std::string& wan
 
 absl::Status CheckGrid(const volume::RegularGrid& grid) {
   for (int axis = 0; axis < 3; ++axis) {
-    if (grid.cells[axis] < 1 || grid.cells[axis] > kMostCellsAlong) {
+    if (grid.cells[axis] < 1 || grid.cells[axis] > kMaxCellsAlong) {
       return Wrong("the number of cells along an axis", grid.cells[axis],
-                   absl::StrCat("from 1 to ", kMostCellsAlong));
+                   absl::StrCat("from 1 to ", kMaxCellsAlong));
     }
     if (!(grid.spacing_m[axis] > 0.0 && std::isfinite(grid.spacing_m[axis]))) {
       return Wrong("the size of a cell in m", grid.spacing_m[axis], "above 0");
     }
   }
-  if (grid.CellCount() > kMostCells) {
+  if (grid.CellCount() > kMaxCells) {
     return Wrong("the number of cells", static_cast<double>(grid.CellCount()),
-                 absl::StrCat("at most ", kMostCells));
+                 absl::StrCat("at most ", kMaxCells));
   }
   return absl::OkStatus();
 }
 
 absl::Status CheckNoise(const CloudShape& shape) {
   const NoiseParameters& noise = shape.noise;
-  if (noise.octaves < 1 || noise.octaves > kMostOctaves) {
-    return Wrong("the number of octaves", noise.octaves, absl::StrCat("from 1 to ", kMostOctaves),
+  if (noise.octaves < 1 || noise.octaves > kMaxOctaves) {
+    return Wrong("the number of octaves", noise.octaves, absl::StrCat("from 1 to ", kMaxOctaves),
                  "octaves");
   }
   if (!(noise.persistence > 0.0 && noise.persistence <= 1.0)) {
@@ -93,16 +93,16 @@ struct Range {
 Range CellsWithin(const volume::RegularGrid& grid, int axis, double centre_m, double half_m) {
   const double low = (centre_m - half_m - grid.low_corner_m[axis]) / grid.spacing_m[axis] - 0.5;
   const double high = (centre_m + half_m - grid.low_corner_m[axis]) / grid.spacing_m[axis] - 0.5;
-  const double most = grid.cells[axis] - 1;
-  return {static_cast<int>(std::clamp(std::floor(low), 0.0, most + 1.0)),
-          static_cast<int>(std::clamp(std::ceil(high), -1.0, most))};
+  const double last = grid.cells[axis] - 1;
+  return {static_cast<int>(std::clamp(std::floor(low), 0.0, last + 1.0)),
+          static_cast<int>(std::clamp(std::ceil(high), -1.0, last))};
 }
 
 double Middle_m(const volume::RegularGrid& grid, int axis, int cell) {
   return grid.low_corner_m[axis] + (cell + 0.5) * grid.spacing_m[axis];
 }
 
-// The largest modulation of any ellipsoid on the slice; 0 outside of all.
+// The maximum of all ellipsoids' modulations on the slice; 0 outside of all.
 void Modulate(const volume::RegularGrid& grid, const std::vector<Quadric>& quadrics, int z,
               std::vector<double>* modulation) {
   std::fill(modulation->begin(), modulation->end(), 0.0);
@@ -139,9 +139,9 @@ absl::Status CheckShape(const CloudShape& shape) {
   if (!(shape.dynamics > 0.0 && shape.dynamics <= 1.0)) {
     return Wrong("the dynamics", shape.dynamics, "above 0 and at most 1", "dynamics");
   }
-  if (!(shape.water_kg_per_m3 > 0.0 && shape.water_kg_per_m3 <= kMostWater_kg_per_m3)) {
+  if (!(shape.water_kg_per_m3 > 0.0 && shape.water_kg_per_m3 <= kMaxWater_kg_per_m3)) {
     return Wrong("the liquid water in g/m3", 1e3 * shape.water_kg_per_m3,
-                 absl::StrCat("above 0 and at most ", 1e3 * kMostWater_kg_per_m3),
+                 absl::StrCat("above 0 and at most ", 1e3 * kMaxWater_kg_per_m3),
                  "water_kg_per_m3");
   }
   if (shape.base_m.has_value() && !std::isfinite(*shape.base_m)) {

@@ -11,9 +11,9 @@
 namespace thunderhead::clouds {
 namespace {
 
-constexpr float kFar = 1e18F;           // squared metres
-constexpr float kFlatness = 3.0F;       // of the ellipsoids of layers
-constexpr double kLeastInCells = 0.75;  // so that neighbours of one cell each touch
+constexpr float kFar = 1e18F;         // squared metres
+constexpr float kFlatness = 3.0F;     // of the ellipsoids of layers
+constexpr double kMinInCells = 0.75;  // so that neighbours of one cell each touch
 
 // Lower envelope of parabolas along one line of squared distances.
 class LinePass {
@@ -52,7 +52,7 @@ class LinePass {
  private:
   static std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
-  // Where the parabolas of two places meet, in cells.
+  // Where the parabolas rooted at two cells intersect, in cells.
   float Meeting(int a, int b) const {
     const float scale = spacing_m_ * spacing_m_;
     const auto p = static_cast<float>(a);
@@ -74,7 +74,8 @@ struct Candidate {
   std::size_t cell;
 };
 
-// The roundest of those that fit around each cell and are largest.
+// For each cell the larger of the biggest ball and the biggest flat ellipsoid that fit around it,
+// by volume; sorted from large to small.
 std::vector<Candidate> CandidatesOf(const volume::RegularGrid& grid,
                                     const std::vector<float>& values, float level) {
   std::vector<Candidate> candidates;
@@ -105,21 +106,21 @@ glm::dvec3 MiddleOf(const volume::RegularGrid& grid, const glm::ivec3& cell) {
   return grid.low_corner_m + (glm::dvec3(cell) + 0.5) * grid.spacing_m;
 }
 
-// The distance ends at the middle of an outer cell, the cloud half a cell before; nothing is
-// smaller than a cell.
+// The distance ends at the centre of an outside cell, and the cloud half a cell before that;
+// nothing is smaller than a cell.
 Bubble BubbleOf(const Candidate& candidate, const volume::RegularGrid& grid) {
   const double flatness = candidate.flatness;
   const double height_m = candidate.radius_m / std::cbrt(flatness * flatness);
   const glm::dvec3 inner_m =
       glm::dvec3(flatness, flatness, 1.0) * (height_m - 0.5 * std::min(height_m, grid.spacing_m.z));
-  const glm::dvec3 radii_m = glm::max(inner_m, kLeastInCells * grid.spacing_m);
+  const glm::dvec3 radii_m = glm::max(inner_m, kMinInCells * grid.spacing_m);
   Bubble bubble;
   bubble.centre_m = MiddleOf(grid, CellAt(grid, candidate.cell));
   for (int axis = 0; axis < 3; ++axis) bubble.semi_axes_m[axis][axis] = radii_m[axis];
   return bubble;
 }
 
-// Marks the cells whose middles lie in `bubble` shrunk to `spacing`.
+// Marks the cells whose centres lie in `bubble` scaled by `spacing`.
 void Cover(const volume::RegularGrid& grid, const Bubble& bubble, double spacing,
            std::vector<bool>* covered) {
   const glm::dvec3 radii_m(bubble.semi_axes_m[0][0], bubble.semi_axes_m[1][1],
@@ -170,7 +171,7 @@ CumulusSurface InscribedBalls(const volume::RegularGrid& grid, const std::vector
   CumulusSurface surface;
   std::vector<bool> covered(values.size(), false);
   for (const Candidate& candidate : CandidatesOf(grid, values, options.level)) {
-    if (static_cast<int>(surface.bubbles.size()) >= options.most_balls) break;
+    if (static_cast<int>(surface.bubbles.size()) >= options.max_balls) break;
     if (covered[candidate.cell]) continue;
     const Bubble bubble = BubbleOf(candidate, grid);
     Cover(grid, bubble, options.spacing, &covered);

@@ -1,5 +1,5 @@
-// The shape of a field on a grid as balls inside it: the largest that fits first, then the largest
-// whose middle no earlier one covers, and so on. Their union nearly fills what is above a level;
+// Approximates the region where a field exceeds a level by balls inside it: greedily, each time the
+// largest that fits and whose centre no earlier one covers. Their union nearly fills the region;
 // thin layers get flat ellipsoids. Knows no storm and no GL.
 #pragma once
 
@@ -12,8 +12,8 @@ namespace thunderhead::clouds {
 
 struct InscribedBallsOptions {
   float level = 0.0F;  // cells with more than this are inside
-  int most_balls = 900;
-  double spacing = 0.62;  // a ball's middle lies outside every earlier one shrunk to this
+  int max_balls = 900;
+  double spacing = 0.62;  // a ball's centre lies outside all earlier balls, scaled by this
 };
 
 // `values` has grid.CellCount() values, x fastest. Empty if nothing is above the level; parents and
@@ -21,9 +21,9 @@ struct InscribedBallsOptions {
 CumulusSurface InscribedBalls(const volume::RegularGrid& grid, const std::vector<float>& values,
                               const InscribedBallsOptions& options);
 
-// Distance in metres from each cell's middle to the middle of the nearest cell that is not above
-// the level, the outside of the grid counted as such: Felzenszwalb and Huttenlocher 2012, a pass
-// along each axis.
+// Distance transform: metres from each cell's centre to the centre of the nearest cell that is not
+// above the level (as are all cells outside the grid), by one pass along each axis (Felzenszwalb
+// and Huttenlocher 2012).
 std::vector<float> DistanceInside_m(const volume::RegularGrid& grid,
                                     const std::vector<float>& values, float level);
 

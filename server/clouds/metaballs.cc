@@ -15,10 +15,10 @@ namespace {
 
 constexpr std::string_view kFirstLine = "thunderhead balls 1";
 
-// In units of the Gaussian's s: what is beyond is less than 1.3e-4 of the middle.
+// Cut-off radius in units of the Gaussian's s; values beyond are less than 1.3e-4 of the centre's.
 constexpr double kGaussianReach = 3.0;
 
-constexpr std::size_t kMostBalls = 10'000'000;
+constexpr std::size_t kMaxBalls = 10'000'000;
 
 using Words = std::vector<std::string>;
 
@@ -58,7 +58,7 @@ absl::Status ParseHeader(const std::vector<Words>& lines, MetaballCloud* cloud,
   cloud->low_m = {numbers[0], numbers[1], numbers[2]};
   if (!ParseNumbers(lines[5], 3, numbers)) return BadLine(5, "high_m X Y Z");
   cloud->high_m = {numbers[0], numbers[1], numbers[2]};
-  if (!ParseNumbers(lines[6], 1, numbers) || !(numbers[0] >= 1.0) || numbers[0] > kMostBalls) {
+  if (!ParseNumbers(lines[6], 1, numbers) || !(numbers[0] >= 1.0) || numbers[0] > kMaxBalls) {
     return BadLine(6, "balls N, from 1");
   }
   *count = static_cast<std::size_t>(numbers[0]);

@@ -1,5 +1,5 @@
-// A cloud as metaballs: centres, sizes and amounts (Man, eq. 11-19), their sum as a field, and the
-// text that they are saved as. Knows no storm and no rendering.
+// A cloud as metaballs: centres, sizes and amounts (Man, eq. 11-19), their sum as a field, and
+// their text format. Knows no storm and no rendering.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@
 
 namespace thunderhead::clouds {
 
-// What one ball spreads over: Gaussian exp(-r2 / s2) with s = u sigma / 2, which is eq. 15 for the
-// printed u = 2, cut off at 3 s; or Wyvill's field of eq. 12 with radius R = u sigma (eq. 16),
+// The basis function of one ball: Gaussian exp(-r2 / s2) with s = u sigma / 2, which is eq. 15 for
+// the printed u = 2, cut off at 3 s; or Wyvill's field of eq. 12 with radius R = u sigma (eq. 16),
 // without its constant k: 1 in the middle, 0 from R on.
 enum class Basis { kGaussian, kWyvill };
 
@@ -38,7 +38,7 @@ struct MetaballCloud {
   bool operator==(const MetaballCloud&) const = default;
 };
 
-// Beyond this distance from its middle a ball is nothing.
+// A ball's value is 0 from this distance on.
 double Reach_m(Basis basis, double overlap, double sigma_m);
 
 // The value of a ball of weight 1 at `distance_m` from its middle.
@@ -47,7 +47,7 @@ double BasisValue(Basis basis, double overlap, double sigma_m, double distance_m
 // The sum of all balls at a point: eq. 19.
 double ValueAt(const MetaballCloud& cloud, const glm::dvec3& point_m);
 
-// Text, and back without loss. Errors name the line.
+// Conversion to text and back, without loss. Errors name the line.
 std::string ToText(const MetaballCloud& cloud);
 absl::StatusOr<MetaballCloud> FromText(std::string_view text);
 

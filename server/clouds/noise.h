@@ -12,34 +12,35 @@ enum class NoiseInterpolation { kLinear, kCosine, kCubic };
 
 struct NoiseParameters {
   int octaves = 4;           // Z
-  double persistence = 0.5;  // s: amplitude of an octave over that of the one before
+  double persistence = 0.5;  // s: ratio of successive octaves' amplitudes
   NoiseInterpolation interpolation = NoiseInterpolation::kCosine;
-  std::uint64_t seed = 0;  // 0 gives the printed formula; others shift each octave's lattice
+  std::uint64_t seed = 0;  // 0 gives the paper's formula; others shift each octave's lattice
 };
 
-// g, eq. 2: from -1 (not reached) to 1. The scan garbles its operators; this is the 32-bit integer
-// noise with the same constants, with n = (m << 13) ^ m. `shift` is added to m.
+// g, eq. 2: in (-1, 1]. The operators are illegible in the scanned paper; this is the well-known
+// 32-bit integer noise with the same constants, with n = (m << 13) ^ m. `shift` is added to m.
 double LatticeNoise(std::int32_t x, std::int32_t y, std::int32_t z, std::uint32_t shift = 0);
 
 // f, eq. 3: the mean of g over 27 neighbours with weights 9/18 at the centre, 4/(6 18) for each of
 // 6 faces, 3/(12 18) for each of 12 edges, 2/(8 18) for each of 8 corners.
 double SmoothNoise(std::int32_t x, std::int32_t y, std::int32_t z, std::uint32_t shift = 0);
 
-// Weights of the lattice values at -1, 0, 1 and 2 for a place `fraction` (0 to 1) after 0:
-// eq. 4, 5 or 6.
+// Weights of the lattice values at -1, 0, 1 and 2 for interpolation at `fraction` (0 to 1): eq. 4,
+// 5 or 6.
 std::array<double, 4> InterpolationWeights(NoiseInterpolation interpolation, double fraction);
 
-// Eq. 1 at one point, in units of the coarsest lattice. The slow, plain form.
+// Eq. 1 at one point, in units of the coarsest lattice. Slow but simple; the tests compare
+// NoiseSlices with it.
 double Noise(const NoiseParameters& parameters, double x, double y, double z);
 
-// Places of cells along an axis, in units of the coarsest lattice.
+// Positions of cells along an axis, in units of the coarsest lattice.
 struct NoiseAxis {
   double first = 0.0;
   double step = 1.0;
   int count = 1;
 };
 
-// Eq. 1 on level slices of a grid: each lattice value is computed once for a plane.
+// Eq. 1 on horizontal slices of a grid; each lattice value is computed once a plane.
 class NoiseSlices {
  public:
   NoiseSlices(const NoiseParameters& parameters, const NoiseAxis& x, const NoiseAxis& y);

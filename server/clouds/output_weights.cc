@@ -9,7 +9,7 @@ namespace {
 constexpr int kGainOver = 10;  // iterations over which the gain is measured
 constexpr int kPowerIterations = 16;
 
-// The estimate of the largest eigenvalue comes from below.
+// The power method underestimates the largest eigenvalue.
 constexpr double kStepMargin = 1.05;
 
 double SumOfSquares(const std::vector<float>& field) {
@@ -24,10 +24,10 @@ double Dot(const std::vector<double>& a, const std::vector<double>& b) {
   return sum;
 }
 
-bool GainsLittle(const std::vector<double>& errors, double least_gain) {
+bool GainsLittle(const std::vector<double>& errors, double min_gain) {
   if (errors.size() <= kGainOver) return false;
   const double before = errors[errors.size() - 1 - kGainOver];
-  return before - errors.back() <= least_gain * before;
+  return before - errors.back() <= min_gain * before;
 }
 
 // The largest eigenvalue of A^T A, by the power method.
@@ -53,7 +53,7 @@ void Residual(const BasisOperator& basis, const std::vector<float>& target,
   for (std::size_t i = 0; i < target.size(); ++i) (*field)[i] = target[i] - (*field)[i];
 }
 
-// Steps of 1 / eigenvalue along the gradient, from weights pushed on by `momentum`.
+// Projected gradient step of 1 / eigenvalue, from weights extrapolated by `momentum`.
 OutputWeights Descend(const BasisOperator& basis, const std::vector<float>& target,
                       const WeightOptions& options, bool momentum, const WeightObserver& observer) {
   std::vector<double> sums;
@@ -66,7 +66,7 @@ OutputWeights Descend(const BasisOperator& basis, const std::vector<float>& targ
   std::vector<double> pushed = result.weights;
   std::vector<float> residual = target;
   double speed = 1.0;
-  for (int iteration = 0; iteration < options.most_iterations; ++iteration) {
+  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     Residual(basis, target, pushed, &residual);
     basis.ApplyTransposed(residual, &sums);
     const double next_speed = 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * speed * speed));
@@ -81,13 +81,13 @@ OutputWeights Descend(const BasisOperator& basis, const std::vector<float>& targ
     speed = next_speed;
     Residual(basis, target, result.weights, &residual);
     result.errors.push_back(SumOfSquares(residual));
-    // Momentum that leads uphill is lost.
+    // Momentum is reset when it leads uphill.
     if (momentum && result.errors.back() > result.errors[result.errors.size() - 2]) {
       pushed = result.weights;
       speed = 1.0;
     }
     if (!observer(iteration, result.errors.back())) break;
-    if (GainsLittle(result.errors, options.least_gain)) break;
+    if (GainsLittle(result.errors, options.min_gain)) break;
   }
   return result;
 }
@@ -117,7 +117,7 @@ OutputWeights ByLeastSquares(const BasisOperator& basis, const std::vector<float
   };
   double gamma = scale();
   std::vector<double> direction = scaled;
-  for (int iteration = 0; iteration < options.most_iterations && gamma > 0.0; ++iteration) {
+  for (int iteration = 0; iteration < options.max_iterations && gamma > 0.0; ++iteration) {
     basis.Apply(direction, &image);
     const double curvature = SumOfSquares(image);
     if (!(curvature > 0.0)) break;
@@ -127,7 +127,7 @@ OutputWeights ByLeastSquares(const BasisOperator& basis, const std::vector<float
     for (std::size_t i = 0; i < residual.size(); ++i) residual[i] -= field_step * image[i];
     result.errors.push_back(SumOfSquares(residual));
     if (!observer(iteration, result.errors.back())) break;
-    if (GainsLittle(result.errors, options.least_gain)) break;
+    if (GainsLittle(result.errors, options.min_gain)) break;
     basis.ApplyTransposed(residual, &sums);
     const double before = gamma;
     gamma = scale();
@@ -135,7 +135,7 @@ OutputWeights ByLeastSquares(const BasisOperator& basis, const std::vector<float
       direction[k] = scaled[k] + (gamma / before) * direction[k];
     }
   }
-  // Rounding gathers in the residual that was carried along.
+  // Rounding errors accumulate in the residual that is updated step by step.
   Residual(basis, target, result.weights, &residual);
   result.errors.back() = SumOfSquares(residual);
   return result;

@@ -1,5 +1,5 @@
-// The third phase of Man's approximator: the weights that make a sum of metaballs nearest to a
-// field, in the sense of least squares. Knows no clustering.
+// The third phase of Man's approximator: the metaballs' weights that approximate a field best, by
+// least squares. Knows no clustering.
 #pragma once
 
 #include <functional>
@@ -12,8 +12,8 @@ namespace thunderhead::clouds {
 
 struct WeightOptions {
   bool non_negative = false;
-  int most_iterations = 200;
-  double least_gain = 1e-4;  // ends when ten iterations lower H by less than this share
+  int max_iterations = 200;
+  double min_gain = 1e-4;  // ends when H falls by less than this share in ten iterations
 };
 
 struct OutputWeights {
@@ -24,8 +24,8 @@ struct OutputWeights {
 // Called after each iteration with H; false ends it.
 using WeightObserver = std::function<bool(int iteration, double error)>;
 
-// Eq. 24: steps against the gradient of H, of a length that cannot overshoot. Non-negative weights
-// are kept so after each step.
+// Eq. 24: gradient descent on H, with a step size that cannot overshoot. Non-negative weights are
+// kept so by projection after each step.
 OutputWeights ByGradient(const BasisOperator& basis, const std::vector<float>& target,
                          const WeightOptions& options, const WeightObserver& observer);
 

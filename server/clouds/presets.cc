@@ -17,7 +17,7 @@ double Between(CounterRandom* random, double low, double high) {
   return low + (high - low) * random->Next();
 }
 
-// A level grid with its middle at the origin, from sea level up.
+// A grid centred on the origin, from sea level up.
 volume::RegularGrid GridOf(const glm::ivec3& cells, double spacing_m) {
   volume::RegularGrid grid;
   grid.cells = cells;
@@ -26,7 +26,7 @@ volume::RegularGrid GridOf(const glm::ivec3& cells, double spacing_m) {
   return grid;
 }
 
-// One heap of bubbles on a level base: wide ones below, turrets above them.
+// One heap of bubbles on a flat base: wide ones below, turrets above.
 struct Heap {
   glm::dvec2 middle_m{0.0};
   double base_m = 1000.0;
@@ -43,7 +43,7 @@ void AddHeap(const Heap& heap, CounterRandom* random, std::vector<Ellipsoid>* el
   for (int i = 0; i < heap.bubbles; ++i) {
     const double rise = (i + random->Next()) / heap.bubbles;
     const double azimuth_deg = Between(random, 0.0, 360.0);
-    // Bubbles gather over the middle as they rise, and shrink.
+    // Higher bubbles are smaller and closer to the middle.
     const double away_m = heap.radius_m * (0.75 - 0.6 * rise) * Between(random, 0.3, 1.0);
     const double radius_m = heap.radius_m * (0.62 - 0.27 * rise) * Between(random, 0.8, 1.15);
     const double z_m = heap.base_m + heap.height_m * (0.15 + 0.65 * rise);
@@ -96,7 +96,7 @@ CloudShape CumulusField(std::uint64_t seed) {
   CounterRandom random(seed, 3);
   for (int i = 0; i < 60; ++i) {
     Heap heap;
-    // Small clouds are many and large ones few.
+    // Many small clouds and few large ones.
     const double size = random.Next();
     heap.radius_m = 220.0 + 700.0 * size * size * size;
     heap.height_m = heap.radius_m * Between(&random, 0.8, 1.3);

@@ -15,7 +15,8 @@
 namespace thunderhead::clouds {
 namespace {
 
-// Empty cells around the cloud that count in H, so that balls do not spread into the clear.
+// A margin of empty cells around the cloud counts in H too, so that balls do not spread into clear
+// air.
 constexpr int kBorderCells = 2;
 
 struct Training {
@@ -73,9 +74,9 @@ absl::Status Check(const FitOptions& options) {
     return absl::InvalidArgumentError(
         absl::StrCat("the overlap is ", options.overlap, "; it must be from 0.5 to 10"));
   }
-  if (options.most_iterations < 1) {
+  if (options.max_iterations < 1) {
     return absl::InvalidArgumentError(
-        absl::StrCat("the number of iterations is ", options.most_iterations, "; give 1 or more"));
+        absl::StrCat("the number of iterations is ", options.max_iterations, "; give 1 or more"));
   }
   return absl::OkStatus();
 }
@@ -131,9 +132,9 @@ absl::StatusOr<FitResult> Fit(const volume::RegularGrid& grid, const std::vector
   clustering.seed = options.seed;
   clustering.threads = ThreadsOf(options.threads);
   const glm::dvec3& spacing_m = grid.spacing_m;
-  const double least_sigma_m = 0.5 * std::max({spacing_m.x, spacing_m.y, spacing_m.z});
+  const double min_sigma_m = 0.5 * std::max({spacing_m.x, spacing_m.y, spacing_m.z});
   const Clusters clusters = Cluster(
-      training.points_m, least_sigma_m, clustering,
+      training.points_m, min_sigma_m, clustering,
       [&](double share) {
         tell({"clustering", share, 0.0});
       },
@@ -153,9 +154,9 @@ absl::StatusOr<FitResult> Fit(const volume::RegularGrid& grid, const std::vector
   }
   const BasisOperator basis(training.grid, cloud.balls, options.basis, options.overlap,
                             clustering.threads);
-  const WeightOptions weighing{options.non_negative, options.most_iterations, options.least_gain};
+  const WeightOptions weighing{options.non_negative, options.max_iterations, options.min_gain};
   const auto each = [&](int iteration, double error) {
-    tell({"weights", static_cast<double>(iteration + 1) / options.most_iterations, error});
+    tell({"weights", static_cast<double>(iteration + 1) / options.max_iterations, error});
     return !stop.stop_requested();
   };
   OutputWeights weights = options.solver == Solver::kGradient

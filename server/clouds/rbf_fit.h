@@ -1,7 +1,7 @@
 // Man's approximator: any field on a grid as a sum of metaballs, by a network of radial basis
-// functions in its three phases (eq. 11-24). The third, the output weights, which the paper left to
-// future work, by its gradient rule or by direct least squares (conjugate gradients). The same for
-// any number of threads.
+// functions in its three phases (eq. 11-24). The paper leaves the third, the output weights, to
+// future work; here they are found by its gradient rule or by least squares (conjugate gradients).
+// The same for any number of threads.
 #pragma once
 
 #include <functional>
@@ -22,14 +22,14 @@ struct FitOptions {
   Basis basis = Basis::kGaussian;
   double overlap = 2.5;  // u of eq. 16; the paper has 2
   Solver solver = Solver::kDirect;
-  bool non_negative = false;  // no ball takes away
-  int most_iterations = 200;  // of the third phase
-  double least_gain = 1e-4;   // it ends when ten iterations lower H by less than this share
+  bool non_negative = false;  // weights are 0 or more
+  int max_iterations = 200;   // of the third phase
+  double min_gain = 1e-4;     // it ends when H falls by less than this share in ten iterations
   std::uint64_t seed = 1;
   int threads = 0;  // 0: as many as the machine has
 };
 
-// Where the fit stands. `error` is H, eq. 20; 0 before the third phase.
+// Progress of the fit. `error` is H, eq. 20; 0 before the third phase.
 struct FitProgress {
   std::string_view phase;
   double share = 0.0;  // of this phase
@@ -47,14 +47,14 @@ struct FitResult {
 };
 
 // Approximates `values` (grid.CellCount(), x fastest, at least 0). INVALID_ARGUMENT if nothing is
-// above 0, or there are more balls than cells that are. If `stop` asks to stop, the result is as
-// far as it came; CANCELLED if no centres were found yet.
+// above 0, or there are more balls than such cells. If `stop` asks to stop, the result is the best
+// so far; CANCELLED if no centres were found yet.
 absl::StatusOr<FitResult> Fit(const volume::RegularGrid& grid, const std::vector<float>& values,
                               const FitOptions& options,
                               const std::function<void(const FitProgress&)>& observer,
                               const std::stop_token& stop);
 
-// The sum of all balls in every cell's middle, x fastest; below zero nowhere.
+// The sum of all balls at every cell's centre, x fastest; negative sums are set to zero.
 std::vector<float> Evaluate(const MetaballCloud& cloud, const volume::RegularGrid& grid,
                             int threads);
 

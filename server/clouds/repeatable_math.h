@@ -9,7 +9,7 @@ namespace thunderhead::clouds {
 
 // The sine of `degrees`, any finite number.
 inline double SineOfDegrees(double degrees) {
-  // remainder is exact; what is left lies within 180 of 0, then within 90.
+  // std::remainder is exact: reduces to within 180 degrees of 0, then 90.
   double rest = std::remainder(degrees, 360.0);
   if (rest > 90.0) rest = 180.0 - rest;
   if (rest < -90.0) rest = -180.0 - rest;

@@ -49,19 +49,32 @@ std::vector<float> ReadLinear(const gl::Texture2D& linear) {
   return values;
 }
 
-gl::Texture2D TextureOf(const glm::ivec2& size_px, const std::vector<glm::vec3>& radiance) {
-  const auto width = static_cast<std::size_t>(size_px.x);
+gl::Texture2D TextureOf(const picture::LinearPicture& picture) {
+  const auto width = static_cast<std::size_t>(picture.size_px.x);
   std::vector<float> texels;
-  texels.reserve(4 * radiance.size());
-  for (auto y = static_cast<std::size_t>(size_px.y); y-- > 0;) {
+  texels.reserve(4 * picture.radiance.size());
+  for (auto y = static_cast<std::size_t>(picture.size_px.y); y-- > 0;) {
     for (std::size_t x = 0; x < width; ++x) {
-      const glm::vec3& pixel = radiance[y * width + x];
+      const glm::vec3& pixel = picture.radiance[y * width + x];
       texels.insert(texels.end(), {pixel.x, pixel.y, pixel.z, 1.0F});
     }
   }
-  gl::Texture2D texture(GL_RGBA32F, size_px);
+  gl::Texture2D texture(GL_RGBA32F, picture.size_px);
   texture.Upload(GL_RGBA, GL_FLOAT, texels.data());
   return texture;
+}
+
+picture::LinearPicture PictureOf(const gl::Texture2D& linear) {
+  const std::vector<float> values = ReadLinear(linear);
+  picture::LinearPicture picture{linear.Size(), {}};
+  const auto width = static_cast<std::size_t>(picture.size_px.x);
+  for (auto y = static_cast<std::size_t>(picture.size_px.y); y-- > 0;) {
+    for (std::size_t x = 0; x < width; ++x) {
+      const float* pixel = &values[4 * (y * width + x)];
+      picture.radiance.emplace_back(pixel[0], pixel[1], pixel[2]);
+    }
+  }
+  return picture;
 }
 
 }  // namespace thunderhead::frame

@@ -9,8 +9,7 @@
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "gl/whole_target.h"
-#include "glm/vec2.hpp"
-#include "glm/vec3.hpp"
+#include "picture/linear_picture.h"
 #include "scene/scene.h"
 
 namespace thunderhead::frame {
@@ -40,7 +39,8 @@ class ToneMapper {
 // The texture's values, four floats a pixel, rows from bottom to top as GL keeps them.
 std::vector<float> ReadLinear(const gl::Texture2D& linear);
 
-// A linear frame as the renderers leave one, from pixels in rows from top to bottom.
-gl::Texture2D TextureOf(const glm::ivec2& size_px, const std::vector<glm::vec3>& radiance);
+// A linear frame as the renderers leave one, and back.
+gl::Texture2D TextureOf(const picture::LinearPicture& picture);
+picture::LinearPicture PictureOf(const gl::Texture2D& linear);
 
 }  // namespace thunderhead::frame

@@ -11,7 +11,7 @@ namespace {
 
 double Sum(const glm::dvec3& color) { return color.x + color.y + color.z; }
 
-double MeanRadiance(const LinearImage& image) {
+double MeanRadiance(const picture::LinearPicture& image) {
   double sum = 0.0;
   for (const glm::vec3& pixel : image.radiance) sum += Sum(pixel);
   return sum / (3.0 * static_cast<double>(image.radiance.size()));
@@ -19,7 +19,7 @@ double MeanRadiance(const LinearImage& image) {
 
 }  // namespace
 
-double RelativeRmse(const LinearImage& image, const LinearImage& truth) {
+double RelativeRmse(const picture::LinearPicture& image, const picture::LinearPicture& truth) {
   THUNDERHEAD_CHECK(image.size_px == truth.size_px, std::to_string(image.size_px.x));
   double squares = 0.0;
   for (std::size_t i = 0; i < truth.radiance.size(); ++i) {
@@ -30,20 +30,22 @@ double RelativeRmse(const LinearImage& image, const LinearImage& truth) {
          MeanRadiance(truth);
 }
 
-double RelativeNoise(const std::vector<glm::vec3>& standard_error, const LinearImage& truth) {
+double RelativeNoise(const picture::LinearPicture& truth) {
+  THUNDERHEAD_CHECK(!truth.standard_error.empty(), "a truth without its noise");
   double squares = 0.0;
-  for (const glm::vec3& error : standard_error)
+  for (const glm::vec3& error : truth.standard_error)
     squares += Sum(glm::dvec3(error) * glm::dvec3(error));
-  return std::sqrt(squares / (3.0 * static_cast<double>(standard_error.size()))) /
+  return std::sqrt(squares / (3.0 * static_cast<double>(truth.standard_error.size()))) /
          MeanRadiance(truth);
 }
 
-double RelativeRmseWithout(double truth_noise, const LinearImage& image, const LinearImage& truth) {
+double RelativeRmseWithout(double truth_noise, const picture::LinearPicture& image,
+                           const picture::LinearPicture& truth) {
   const double rmse = RelativeRmse(image, truth);
   return std::sqrt(std::max(rmse * rmse - truth_noise * truth_noise, 0.0));
 }
 
-double RelativeBias(const LinearImage& image, const LinearImage& truth) {
+double RelativeBias(const picture::LinearPicture& image, const picture::LinearPicture& truth) {
   return MeanRadiance(image) / MeanRadiance(truth) - 1.0;
 }
 

@@ -5,14 +5,14 @@
 #include <utility>
 
 #include "base/status.h"
-#include "measure/trade.h"
+#include "frame/tone_map.h"
 
 namespace thunderhead::measure {
 namespace {
 
 // The mean of squares of `side` pixels.
-LinearImage Averaged(const LinearImage& image, int side) {
-  LinearImage mean{image.size_px / side, {}};
+picture::LinearPicture Averaged(const picture::LinearPicture& image, int side) {
+  picture::LinearPicture mean{image.size_px / side, {}};
   const auto width = static_cast<std::size_t>(mean.size_px.x);
   mean.radiance.resize(width * static_cast<std::size_t>(mean.size_px.y));
   const float share = 1.0F / static_cast<float>(side * side);
@@ -27,12 +27,13 @@ LinearImage Averaged(const LinearImage& image, int side) {
   return mean;
 }
 
-absl::StatusOr<LinearImage> Draw(renderers::SceneRenderer& renderer, const scene::Scene& scene,
-                                 const std::shared_ptr<const volume::HydrometeorFields>& fields,
-                                 const renderers::DrawQuality& quality, int finer) {
+absl::StatusOr<picture::LinearPicture> Draw(
+    renderers::SceneRenderer& renderer, const scene::Scene& scene,
+    const std::shared_ptr<const volume::HydrometeorFields>& fields,
+    const renderers::DrawQuality& quality, int finer) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame frame,
                                renderer.Draw(scene, fields, quality));
-  return Averaged(ImageOf(*frame.radiance), finer);
+  return Averaged(frame::PictureOf(*frame.radiance), finer);
 }
 
 }  // namespace
@@ -65,25 +66,27 @@ scene::Scene SceneOf(LightPart part, scene::Scene scene) {
 reference::TraceOptions TraceOptionsOf(LightPart part, double peak_cut_deg) {
   reference::TraceOptions options;
   options.peak_cut_deg = part == LightPart::kOnce ? 0.0 : peak_cut_deg;
-  options.most_scatterings = part == LightPart::kOnce ? 1 : 0;
+  options.max_scatterings = part == LightPart::kOnce ? 1 : 0;
   options.sun = part != LightPart::kSky;
   return options;
 }
 
-absl::StatusOr<LinearImage> DrawPart(renderers::SceneRenderer& renderer, const scene::Scene& scene,
-                                     const std::shared_ptr<const volume::HydrometeorFields>& fields,
-                                     LightPart part, int finer,
-                                     std::shared_ptr<const renderers::LightCorrection> correction) {
+absl::StatusOr<picture::LinearPicture> DrawPart(
+    renderers::SceneRenderer& renderer, const scene::Scene& scene,
+    const std::shared_ptr<const volume::HydrometeorFields>& fields, LightPart part, int finer,
+    std::shared_ptr<const renderers::LightCorrection> correction) {
   renderers::DrawQuality quality;
   quality.correction = std::move(correction);
   scene::Scene lit = SceneOf(part, scene);
   lit.output.width_px *= finer;
   lit.output.height_px *= finer;
-  THUNDERHEAD_ASSIGN_OR_RETURN(LinearImage image, Draw(renderer, lit, fields, quality, finer));
+  THUNDERHEAD_ASSIGN_OR_RETURN(picture::LinearPicture image,
+                               Draw(renderer, lit, fields, quality, finer));
   if (part != LightPart::kSky) return image;
   // Light adds up: the sky's is what a black sky leaves out.
   lit.sky.brightness = 0.0;
-  THUNDERHEAD_ASSIGN_OR_RETURN(const LinearImage sun, Draw(renderer, lit, fields, quality, finer));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const picture::LinearPicture sun,
+                               Draw(renderer, lit, fields, quality, finer));
   for (std::size_t i = 0; i < image.radiance.size(); ++i) image.radiance[i] -= sun.radiance[i];
   return image;
 }

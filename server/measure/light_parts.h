@@ -30,9 +30,9 @@ reference::TraceOptions TraceOptionsOf(LightPart part, double peak_cut_deg);
 
 // Draws one part with `scene`'s renderer and transport, `finer` times as wide and high as the
 // scene says and averaged, as the reference averages over a pixel. `correction` may be null.
-absl::StatusOr<LinearImage> DrawPart(renderers::SceneRenderer& renderer, const scene::Scene& scene,
-                                     const std::shared_ptr<const volume::HydrometeorFields>& fields,
-                                     LightPart part, int finer,
-                                     std::shared_ptr<const renderers::LightCorrection> correction);
+absl::StatusOr<picture::LinearPicture> DrawPart(
+    renderers::SceneRenderer& renderer, const scene::Scene& scene,
+    const std::shared_ptr<const volume::HydrometeorFields>& fields, LightPart part, int finer,
+    std::shared_ptr<const renderers::LightCorrection> correction);
 
 }  // namespace thunderhead::measure

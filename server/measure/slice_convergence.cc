@@ -25,18 +25,13 @@ constexpr double kFrameRounding = 0x1p-12;
 // For a curve's line on a logarithmic axis.
 constexpr double kLeastError = 1e-9;
 
-absl::StatusOr<LinearImage> DrawWith(
+absl::StatusOr<picture::LinearPicture> DrawWith(
     renderers::SceneRenderer& renderer, scene::Scene scene, int slices,
     const std::shared_ptr<const volume::HydrometeorFields>& fields) {
   scene::SetSlices(&scene.rendering.technique, slices);
   THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame frame,
                                renderer.Draw(scene, fields, {}));
-  const std::vector<float> values = frame::ReadLinear(*frame.radiance);
-  LinearImage image{frame.radiance->Size(), {}};
-  for (std::size_t i = 0; i < values.size(); i += 4) {
-    image.radiance.emplace_back(values[i], values[i + 1], values[i + 2]);
-  }
-  return image;
+  return frame::PictureOf(*frame.radiance);
 }
 
 }  // namespace
@@ -84,12 +79,12 @@ absl::StatusOr<std::vector<SliceCurve>> MeasureSliceConvergence(
     }
     scene::Scene drawn = scene;
     scene::MediumSettingsOf(&drawn.rendering.technique)->transport = transport.value;
-    THUNDERHEAD_ASSIGN_OR_RETURN(const LinearImage limit,
+    THUNDERHEAD_ASSIGN_OR_RETURN(const picture::LinearPicture limit,
                                  DrawWith(renderer, drawn, kLimit, fields));
     step();
     SliceCurve curve{transport, {}, 0.0};
     for (const int slices : kCounts) {
-      THUNDERHEAD_ASSIGN_OR_RETURN(const LinearImage image,
+      THUNDERHEAD_ASSIGN_OR_RETURN(const picture::LinearPicture image,
                                    DrawWith(renderer, drawn, slices, fields));
       curve.points.push_back({slices, RelativeRmse(image, limit)});
       step();

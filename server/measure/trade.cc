@@ -15,8 +15,6 @@ namespace {
 
 constexpr int kTimedFrames = 9;
 
-LinearImage TruthImage(const reference::Image& image) { return {image.size_px, image.radiance}; }
-
 double Quantile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
   return values[static_cast<std::size_t>(
@@ -57,24 +55,6 @@ void AddVariants(scene::Transport transport, std::vector<Setting>* settings) {
 }
 
 }  // namespace
-
-LinearImage ImageOf(const gl::Texture2D& texture) {
-  const std::vector<float> values = frame::ReadLinear(texture);
-  // GL keeps rows from bottom to top, four floats a pixel.
-  LinearImage image{texture.Size(), {}};
-  const auto width = static_cast<std::size_t>(image.size_px.x);
-  for (auto y = static_cast<std::size_t>(image.size_px.y); y-- > 0;) {
-    for (std::size_t x = 0; x < width; ++x) {
-      const float* pixel = &values[4 * (y * width + x)];
-      image.radiance.emplace_back(pixel[0], pixel[1], pixel[2]);
-    }
-  }
-  return image;
-}
-
-gl::Texture2D TextureOf(const LinearImage& image) {
-  return frame::TextureOf(image.size_px, image.radiance);
-}
 
 std::vector<Setting> DefaultSweep(const std::vector<double>& million_paths) {
   using scene::Transport;
@@ -128,11 +108,11 @@ scene::Scene TrueScene(scene::Scene scene) {
 }
 
 Trade::Trade(scene::Scene scene, std::shared_ptr<const volume::HydrometeorFields> fields,
-             const reference::Image& truth)
+             picture::LinearPicture truth)
     : scene_(std::move(scene)),
       fields_(std::move(fields)),
-      truth_(TruthImage(truth)),
-      truth_noise_(RelativeNoise(truth.standard_error, truth_)) {
+      truth_(std::move(truth)),
+      truth_noise_(RelativeNoise(truth_)) {
   scene_.output.width_px = truth.size_px.x;
   scene_.output.height_px = truth.size_px.y;
 }
@@ -165,7 +145,7 @@ absl::StatusOr<std::shared_ptr<const renderers::LightCorrection>> Trade::Correct
 
 absl::StatusOr<TradeRow> Trade::Measure(const Setting& setting, const std::stop_token& stop) {
   if (truth_display_.rgb.empty()) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(truth_display_, Display(TextureOf(truth_)));
+    THUNDERHEAD_ASSIGN_OR_RETURN(truth_display_, Display(frame::TextureOf(truth_)));
   }
   scene::Scene scene = scene_;
   scene.rendering.technique = setting.technique;
@@ -189,7 +169,7 @@ absl::StatusOr<TradeRow> Trade::Measure(const Setting& setting, const std::stop_
                                                          display.rgb, setting.jpeg_quality));
     if (i >= 0) milliseconds.push_back(stopwatch.ElapsedMs());
     if (i + 1 < kTimedFrames) continue;
-    const LinearImage image = ImageOf(*linear.radiance);
+    const picture::LinearPicture image = frame::PictureOf(*linear.radiance);
     row.relative_rmse = RelativeRmseWithout(truth_noise_, image, truth_);
     row.relative_bias = RelativeBias(image, truth_);
   }

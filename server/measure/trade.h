@@ -12,7 +12,7 @@
 #include "accuracy/setting.h"
 #include "frame/tone_map.h"
 #include "measure/image_error.h"
-#include "reference/path_tracer.h"
+#include "picture/linear_picture.h"
 #include "renderers/scene_renderer.h"
 #include "scene/scene.h"
 #include "volume/hydrometeor_fields.h"
@@ -49,7 +49,7 @@ class Trade {
  public:
   // `scene` gives what is not swept; the truth has its size.
   Trade(scene::Scene scene, std::shared_ptr<const volume::HydrometeorFields> fields,
-        const reference::Image& truth);
+        picture::LinearPicture truth);
 
   // CANCELLED if `stop` asked to stop while paths were traced. Those are kept: settings that differ
   // in their number alone are best measured from few to many.
@@ -66,7 +66,7 @@ class Trade {
 
   scene::Scene scene_;
   std::shared_ptr<const volume::HydrometeorFields> fields_;
-  LinearImage truth_;
+  picture::LinearPicture truth_;
   DisplayImage truth_display_;
   double truth_noise_ = 0.0;
   renderers::SceneRenderer renderer_;
@@ -75,9 +75,5 @@ class Trade {
   frame::ToneMapper tone_mapper_;
 };
 
-// A linear frame as the renderers leave one, from rows from top to bottom.
-gl::Texture2D TextureOf(const LinearImage& image);
-// And back.
-LinearImage ImageOf(const gl::Texture2D& texture);
 
 }  // namespace thunderhead::measure

@@ -23,19 +23,20 @@ constexpr float kOzoneHalfWidth_m = 1.5e4F;
 
 const glm::vec2 kScaleHeights_m(glsl::kAirScaleHeight_m, glsl::kHazeScaleHeight_m);
 
-// Half the angle that the sun's disc fills.
+// Angular radius of the sun's disc in radians.
 constexpr float kSunRadius = 0.00465F;
 
 constexpr float kInverseFourPi = 0.25F * std::numbers::inv_pi_v<float>;
 
-// Densities of air, haze and ozone, over those at their densest.
+// Densities of air, haze and ozone relative to their largest ones.
 glm::vec3 Densities(float height_m) {
   const float ozone = 1.0F - std::abs(height_m - kOzoneMiddle_m) / kOzoneHalfWidth_m;
   return {std::exp(-height_m / glsl::kAirScaleHeight_m),
           std::exp(-height_m / glsl::kHazeScaleHeight_m), std::max(ozone, 0.0F)};
 }
 
-// Height at `distance_m` along a ray. In floats the radii's difference would lose metres.
+// Height at `distance_m` along a ray. In single precision the difference of radii would be wrong by
+// metres.
 float HeightAlong(float height_m, float sine, float distance_m) {
   const double radius = static_cast<double>(kEarthRadius_m) + height_m;
   const double d = distance_m;
@@ -43,7 +44,8 @@ float HeightAlong(float height_m, float sine, float distance_m) {
                             kEarthRadius_m);
 }
 
-// Along a ray to a sphere of the given height around the Earth, from below it; and from above it.
+// Distances along a ray to a sphere of the given height around the Earth: from inside it, and from
+// outside.
 float DistanceUpTo_m(float target_m, float height_m, float sine) {
   const double radius = static_cast<double>(kEarthRadius_m) + height_m;
   const double target = static_cast<double>(kEarthRadius_m) + target_m;
@@ -60,7 +62,8 @@ float DistanceDownTo_m(float target_m, float height_m, float sine) {
   return static_cast<float>(-across - std::sqrt(std::max(inside, 0.0)));
 }
 
-// Of a table whose rows are by the square root of height up to the atmosphere's top.
+// For a table whose rows are spaced evenly in the square root of height, up to the atmosphere's
+// top.
 TableRow RowAt(float height_m, int rows) {
   const float high = std::sqrt(glm::clamp(height_m / kAtmosphereTop_m, 0.0F, 1.0F));
   const float place = high * static_cast<float>(rows - 1);
@@ -68,7 +71,7 @@ TableRow RowAt(float height_m, int rows) {
   return {low, place - static_cast<float>(low)};
 }
 
-// A table with rows of `columns` at `column`, counted from the first, between two rows.
+// Bilinear look-up at a fractional column and between two rows of a table of `columns` columns.
 glm::vec3 Between(const std::vector<glm::vec3>& table, int columns, float column,
                   const TableRow& row) {
   const int left = std::min(static_cast<int>(column), columns - 2);
@@ -78,13 +81,14 @@ glm::vec3 Between(const std::vector<glm::vec3>& table, int columns, float column
   return glm::mix(glm::mix(low[0], low[1], share), glm::mix(high[0], high[1], share), row.share);
 }
 
-// Air, haze and ozone from a point to space, in metres of their densest. The same for every
-// turbidity: a table by height and, from the horizon up, sine of elevation, both by square roots.
-class WaysToSpace {
+// Amounts of air, haze and ozone from a point to space, in metres at their largest densities. They
+// do not depend on turbidity, so one table serves all: by height and, from the horizon up, sine of
+// elevation, both spaced evenly in the square root.
+class ColumnsToSpace {
  public:
-  static const WaysToSpace& Get() {
-    static const WaysToSpace ways;
-    return ways;
+  static const ColumnsToSpace& Get() {
+    static const ColumnsToSpace columns;
+    return columns;
   }
 
   static TableRow RowAt(float height_m) { return physics::RowAt(height_m, kHeights); }
@@ -92,21 +96,21 @@ class WaysToSpace {
   glm::vec3 From(const AirLevel& level, float sun_sine) const {
     const float horizon = level.horizon_sine;
     const float up = std::sqrt(glm::clamp((sun_sine - horizon) / (1.0F - horizon), 0.0F, 1.0F));
-    return Between(ways_m_, kSines, up * (kSines - 1), level.ways);
+    return Between(columns_m_, kSines, up * (kSines - 1), level.columns);
   }
 
  private:
   static constexpr int kSines = 64;
   static constexpr int kHeights = 32;
 
-  WaysToSpace() {
+  ColumnsToSpace() {
     for (int y = 0; y < kHeights; ++y) {
       const float high = static_cast<float>(y) / (kHeights - 1);
       const float height_m = high * high * kAtmosphereTop_m;
       const float horizon = HorizonSine(height_m);
       for (int x = 0; x < kSines; ++x) {
         const float up = static_cast<float>(x) / (kSines - 1);
-        ways_m_.push_back(Integrate(height_m, horizon + up * up * (1.0F - horizon)));
+        columns_m_.push_back(Integrate(height_m, horizon + up * up * (1.0F - horizon)));
       }
     }
   }
@@ -114,23 +118,23 @@ class WaysToSpace {
   static glm::vec3 Integrate(float height_m, float sine) {
     constexpr int kSteps = 200;
     const float end_m = DistanceUpTo_m(kAtmosphereTop_m, height_m, sine);
-    glm::vec3 way_m(0.0F);
+    glm::vec3 column_m(0.0F);
     for (int i = 0; i < kSteps; ++i) {
       const float at_m = end_m * (static_cast<float>(i) + 0.5F) / kSteps;
-      way_m += Densities(HeightAlong(height_m, sine, at_m)) * (end_m / kSteps);
+      column_m += Densities(HeightAlong(height_m, sine, at_m)) * (end_m / kSteps);
     }
-    return way_m;
+    return column_m;
   }
 
-  std::vector<glm::vec3> ways_m_;
+  std::vector<glm::vec3> columns_m_;
 };
 
 constexpr int kDiffuseHeights = 10;
 constexpr int kDiffuseSines = 24;
-constexpr float kLowestSine = -0.4F;  // below, no part of the atmosphere that matters is lit
+constexpr float kLowestSine = -0.4F;  // of the sun's elevation; below it the atmosphere is dark
 
 AirLevel LevelAt(float height_m) {
-  return {HorizonSine(height_m), WaysToSpace::RowAt(height_m), RowAt(height_m, kDiffuseHeights)};
+  return {HorizonSine(height_m), ColumnsToSpace::RowAt(height_m), RowAt(height_m, kDiffuseHeights)};
 }
 
 }  // namespace
@@ -172,10 +176,10 @@ glm::vec3 Atmosphere::SunTransmittance(const AirPlace& place) const {
 glm::vec3 Atmosphere::SunTransmittance(const AirLevel& level, float sun_sine) const {
   const float above = (sun_sine - level.horizon_sine) / kSunRadius;
   if (above <= -1.0F) return glm::vec3(0.0F);
-  const glm::vec3 way_m = WaysToSpace::Get().From(level, sun_sine);
-  const glm::vec3 depth = glsl::air_optical_depth() * (way_m.x / glsl::kAirScaleHeight_m) +
-                          haze_depth_ * (way_m.y / glsl::kHazeScaleHeight_m) +
-                          kOzoneDepth * (way_m.z / kOzoneHalfWidth_m);
+  const glm::vec3 column_m = ColumnsToSpace::Get().From(level, sun_sine);
+  const glm::vec3 depth = glsl::air_optical_depth() * (column_m.x / glsl::kAirScaleHeight_m) +
+                          haze_depth_ * (column_m.y / glsl::kHazeScaleHeight_m) +
+                          kOzoneDepth * (column_m.z / kOzoneHalfWidth_m);
   return glm::exp(-depth) * std::min(0.5F + 0.5F * above, 1.0F);
 }
 
@@ -202,20 +206,20 @@ Atmosphere::Line Atmosphere::Along(const Ray& ray) const {
   if (line.end_m <= 0.0F) return line;
   float from_m = 0.0F;
   for (int i = 1; i <= ray.steps; ++i) {
-    // Steps grow with the distance, as the air thins out with it.
+    // Steps grow with distance, as the air usually gets thinner.
     const float share = static_cast<float>(i) / static_cast<float>(ray.steps);
     const float to_m = line.end_m * share * share;
     const float middle_m = 0.5F * (from_m + to_m);
     const float height_m = height_at(middle_m);
     const AirOptics optics = At(height_m);
-    const glm::vec3 passed = glm::exp(-optics.extinction * (to_m - from_m));
-    // The step's light on its way through the step itself.
-    const glm::vec3 seen =
-        line.passed * (1.0F - passed) / glm::max(optics.extinction, glm::vec3(1e-20F));
+    const glm::vec3 transmittance = glm::exp(-optics.extinction * (to_m - from_m));
+    // Light from within the step is attenuated by the step itself.
+    const glm::vec3 seen = line.transmittance * (1.0F - transmittance) /
+                           glm::max(optics.extinction, glm::vec3(1e-20F));
     line.steps.push_back(
         {middle_m, height_m, seen * optics.air, seen * optics.haze, LevelAt(height_m)});
-    line.passed *= passed;
-    line.way += glsl::densities_of_air(height_m) * ((to_m - from_m) / kScaleHeights_m);
+    line.transmittance *= transmittance;
+    line.air_mass += glsl::densities_of_air(height_m) * ((to_m - from_m) / kScaleHeights_m);
     from_m = to_m;
   }
   return line;
@@ -223,7 +227,7 @@ Atmosphere::Line Atmosphere::Along(const Ray& ray) const {
 
 namespace {
 
-// A point of a line, whose upright leans with the distance.
+// A point of a ray; its vertical tilts with the distance, as the Earth is round.
 AirPlace PlaceOn(const Atmosphere::Line& line, const Atmosphere::Sunwards& sun, float distance_m,
                  float height_m) {
   const float above = distance_m * sun.mu + (kEarthRadius_m + line.height_m) * sun.sine;
@@ -239,7 +243,7 @@ Atmosphere::Gathered Atmosphere::Gather(const Line& line, const Sunwards& sun) c
     const glm::vec3 sunlight = SunTransmittance(step.level, sun_sine);
     gathered.air += sunlight * step.air;
     gathered.haze += sunlight * step.haze;
-    // While the orders are being summed there are none yet.
+    // Empty while the higher orders are still being computed.
     if (!diffuse_.empty()) {
       gathered.diffuse +=
           (step.air + step.haze) * DiffuseMeanRadiance(step.level.diffuse, sun_sine);
@@ -252,9 +256,9 @@ glm::vec3 Atmosphere::SumOrders(const AirPlace& place, float ground_albedo) cons
   constexpr int kDirections = 40;
   const float across = std::sqrt(std::max(1.0F - place.sun_sine * place.sun_sine, 0.0F));
   glm::vec3 second(0.0F);
-  glm::vec3 again(0.0F);  // share of uniform light that comes back after one more scattering
+  glm::vec3 again(0.0F);  // share of uniform light that returns after one more scattering
   for (int i = 0; i < kDirections; ++i) {
-    // A spiral of points, evenly over the sphere.
+    // Fibonacci spiral: directions spread evenly over the sphere.
     const float sine = 1.0F - 2.0F * (static_cast<float>(i) + 0.5F) / kDirections;
     const float cosine = std::sqrt(1.0F - sine * sine);
     const float azimuth = static_cast<float>(i) * 2.39996323F;
@@ -266,8 +270,8 @@ glm::vec3 Atmosphere::SumOrders(const AirPlace& place, float ground_albedo) cons
     if (line.meets_ground) {
       const AirPlace end = PlaceOn(line, sun, line.end_m, line.end_height_m);
       const float lit = std::max(end.sun_sine, 0.0F) * std::numbers::inv_pi_v<float>;
-      second += line.passed * SunTransmittance(end) * (ground_albedo * lit);
-      again += line.passed * ground_albedo;
+      second += line.transmittance * SunTransmittance(end) * (ground_albedo * lit);
+      again += line.transmittance * ground_albedo;
     }
   }
   return second / (static_cast<float>(kDirections) - again);

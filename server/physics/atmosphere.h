@@ -1,8 +1,8 @@
-// Clear air around a round Earth: how sunlight passes it, and how bright it is inside by light
+// Clear air around a round Earth: its transmittance for sunlight, and its radiance by light
 // scattered any number of times. Air (Rayleigh scattering), haze (optical depth from turbidity) and
 // ozone (absorption only). Light scattered twice and more is taken as isotropic and as if the air
-// were everywhere as bright as at the point, which sums all orders as a geometric series
-// (Hillaire 2020, A scalable and production ready sky and atmosphere rendering technique, 5.5).
+// were everywhere as bright as at the point, which sums all orders as a geometric series (Hillaire
+// 2020, A scalable and production ready sky and atmosphere rendering technique, 5.5).
 #pragma once
 
 #include <vector>
@@ -19,33 +19,33 @@ constexpr double kEffectiveEarthRadius_m = 7.0 / 6.0 * 6.371e6;
 constexpr float kEarthRadius_m = static_cast<float>(kEffectiveEarthRadius_m);
 constexpr float kAtmosphereTop_m = 8e4F;
 
-// What a metre of the atmosphere does at some height, 1/m.
+// Coefficients of the atmosphere at some height, 1/m.
 struct AirOptics {
   glm::vec3 air{0.0F};   // scattering
   glm::vec3 haze{0.0F};  // scattering
   glm::vec3 extinction{0.0F};
 };
 
-// A point above the Earth's middle.
+// A point in the atmosphere: only its height and the sun's elevation matter.
 struct AirPlace {
   float height_m = 0.0F;
   float sun_sine = 0.0F;  // of the sun's elevation there
 };
 
-// Of the elevation below which rays from a height meet the ground, which is at another; both above
-// sea level.
+// Sine of the elevation of the horizon: rays from `height_m` that go lower meet the ground at
+// `ground_m`. Both are above sea level.
 float HorizonSine(float height_m, float ground_m = 0.0F);
 
-// What tables by height need of one: the row below, and the share of the one above.
+// A height's place between two rows of a table: the lower row, and the weight of the upper one.
 struct TableRow {
   int low = 0;
   float share = 0.0F;
 };
 
-// A height as looks towards the sun from it need it.
+// A height, prepared for looking up the light that arrives there.
 struct AirLevel {
   float horizon_sine = 0.0F;
-  TableRow ways;
+  TableRow columns;  // of air towards space
   TableRow diffuse;
 };
 
@@ -55,7 +55,7 @@ class Atmosphere {
 
   AirOptics At(float height_m) const;
 
-  // Share of sunlight that arrives from above the atmosphere; fades while the disc sets.
+  // Transmittance from the point to the sun; falls gradually to zero while the disc sets.
   glm::vec3 SunTransmittance(const AirPlace& place) const;
 
   // Mean radiance from all directions of light scattered at least once, for a sun of irradiance 1.
@@ -72,14 +72,17 @@ class Atmosphere {
     struct Step {
       float distance_m = 0.0F;
       float height_m = 0.0F;
-      glm::vec3 air{0.0F};   // share of light arriving at the step that air scatters and
-      glm::vec3 haze{0.0F};  // haze, of it what the start of the ray sees
+      // Scattering coefficient integrated over the step, times the transmittance to the ray's
+      // start.
+      glm::vec3 air{0.0F};
+      glm::vec3 haze{0.0F};
       AirLevel level;
     };
     float height_m = 0.0F;
     std::vector<Step> steps;
-    glm::vec3 passed{1.0F};  // share of what lies at the ray's end
-    glm::vec2 way{0.0F};     // air and haze on the ray, in vertical depths of the whole
+    glm::vec3 transmittance{1.0F};  // over the whole ray
+    // Of air and haze: amounts on the ray over those of a vertical column from sea level.
+    glm::vec2 air_mass{0.0F};
     float end_m = 0.0F;
     float end_height_m = 0.0F;
     bool meets_ground = false;

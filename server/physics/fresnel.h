@@ -1,7 +1,6 @@
 // Reflection and refraction of polarised rays at a plane boundary between two transparent media
-// (Fresnel; signs as in Born and Wolf, chapter 1.5). Two fields, of waves that were polarised at
-// right angles when the ray set out, travel with each ray: half their energies together is that of
-// the unpolarised ray.
+// (Fresnel; signs as in Born and Wolf, chapter 1.5). An unpolarised ray is traced as two fields,
+// polarised at right angles where it began; its energy is the mean of theirs.
 #pragma once
 
 #include <array>
@@ -27,10 +26,10 @@ struct PolarizedRay {
 // An unpolarised ray of energy 1.
 PolarizedRay UnpolarizedRay(const glm::dvec3& direction);
 
-// What leaves a boundary that `incident` meets. `normal` points back to the side it comes from (its
-// dot product with the direction is below 0); `index_ratio` is the refractive index on that side
-// over the one beyond. Energy is scaled to flux through the boundary: that of the two parts adds up
-// to that of the incident ray.
+// The reflected and the refracted ray of `incident` at a boundary. `normal` points to the side it
+// comes from (its dot product with the direction is below 0); `index_ratio` is the refractive index
+// on that side over that beyond. Energies are fluxes through the boundary: the two add up to the
+// incident one.
 struct BoundaryRays {
   PolarizedRay reflected;
   PolarizedRay refracted;
@@ -39,7 +38,7 @@ struct BoundaryRays {
 BoundaryRays CrossBoundary(const PolarizedRay& incident, const glm::dvec3& normal,
                            double index_ratio);
 
-// The share of unpolarised light reflected at a cosine of incidence.
+// Reflectance for unpolarised light at a cosine of the angle of incidence.
 double Reflectance(double cosine, double index_ratio);
 
 }  // namespace thunderhead::physics

@@ -24,7 +24,7 @@ class HexagonalPrism {
   // The corners of a face in order around it.
   std::vector<glm::dvec3> Corners(std::size_t face) const;
 
-  // The area of the shadow in light of a direction.
+  // The area of the prism's projection along a direction.
   double ProjectedArea(const glm::dvec3& direction) const;
 
   // A point on a face: uniform over it for uniform `u` and `v` in [0, 1).

@@ -28,7 +28,7 @@ constexpr std::size_t IndexOf(Hydrometeor hydrometeor) {
 // "cloud", "rain", "ice", "snow", "graupel" or "hail".
 std::string_view NameOf(Hydrometeor hydrometeor);
 
-// The hydrometeor of that name, or nothing.
+// The hydrometeor of that name, if there is one.
 std::optional<Hydrometeor> HydrometeorNamed(std::string_view name);
 
 // Formulas, then tables (docs/phase_tables.md).
@@ -50,12 +50,12 @@ struct PhaseFunction {
   bool operator==(const PhaseFunction&) const = default;
 };
 
-// The optics of one particle of a field.
+// Optics of the particles of a field, as if all were alike.
 struct ParticleOptics {
   float radius_m;
   float density_kg_per_m3;
   float albedo;
-  PhaseFunction phase;    // without a radius: PhaseOf in optics.h puts in that of the particle
+  PhaseFunction phase;    // droplet_radius_m is not set; PhaseOf (optics.h) sets it from radius_m
   glm::vec3 false_color;  // linear sRGB
 };
 

@@ -21,9 +21,9 @@ using glm::dvec3;
 
 constexpr int kChunks = 128;
 
-// A ray is given up below this share of its energy, or after this many encounters with faces.
-constexpr double kLeastEnergy = 1e-5;
-constexpr int kMostEncounters = 200;
+// A ray ends below this share of its initial energy, or after this many encounters with faces.
+constexpr double kMinEnergy = 1e-5;
+constexpr int kMaxEncounters = 200;
 
 // Five numbers for each ray that fill the unit cube evenly: the additive recurrence whose step is
 // given by the powers of the root of r^6 = r + 1 (Roberts 2018). In 64-bit integers, so that it is
@@ -42,8 +42,8 @@ std::array<double, 5> EvenPoint(std::uint64_t index, std::uint64_t seed) {
   return point;
 }
 
-// The direction of light in the frame of the crystal, of which only a 24th of the sphere is
-// different.
+// The direction of light in the crystal's frame; by symmetry a 24th of the sphere covers all
+// orientations.
 dvec3 DirectionOf(double u, double v) {
   const double z = -u;
   const double azimuth = v * std::numbers::pi / 6.0;
@@ -81,8 +81,8 @@ dvec3 Tilted(const dvec3& normal, double roughness, CounterRandom& random) {
   return glm::normalize(normal + slope * (std::cos(azimuth) * a + std::sin(azimuth) * b));
 }
 
-// The rays from a boundary whose true normal is `normal`, tilted if the crystal is rough. A tilt
-// that would send either ray to the wrong side of the true face is drawn again.
+// Reflected and refracted rays at a face of normal `normal`, which is tilted at random if the
+// crystal is rough. A tilt that would send either ray to the wrong side of the face is drawn again.
 BoundaryRays CrossFace(const PolarizedRay& ray, const dvec3& normal, double index_ratio,
                        double roughness, CounterRandom& random) {
   constexpr int kTries = 20;
@@ -98,7 +98,8 @@ BoundaryRays CrossFace(const PolarizedRay& ray, const dvec3& normal, double inde
   return CrossBoundary(ray, normal, index_ratio);
 }
 
-// Follows single rays through a crystal, and adds what comes out to a result in one channel.
+// Follows single rays through a crystal, and adds the light that leaves it to one channel of a
+// result.
 class Tracer {
  public:
   Tracer(const HexagonalPrism& prism, double roughness, std::size_t channel, RayScattering& result)
@@ -108,7 +109,7 @@ class Tracer {
         index_(kIceRefractiveIndex[channel]),
         result_(result) {}
 
-  // A ray of energy `weight` that enters there.
+  // Follows a ray of energy `weight` from its entry.
   void Trace(const Entry& entry, const dvec3& direction, double weight, CounterRandom random) {
     BoundaryRays rays = CrossFace(UnpolarizedRay(direction), prism_.Normal(entry.face),
                                   1.0 / index_, roughness_, random);
@@ -117,7 +118,7 @@ class Tracer {
     PolarizedRay inside = rays.refracted;
     dvec3 point = entry.point;
     double energy = inside.Energy();
-    for (int i = 0; i < kMostEncounters && energy > kLeastEnergy; ++i) {
+    for (int i = 0; i < kMaxEncounters && energy > kMinEnergy; ++i) {
       const HexagonalPrism::Exit exit = prism_.ExitOf(point, inside.direction);
       point += exit.distance * inside.direction;
       rays = CrossFace(inside, -prism_.Normal(exit.face), index_, roughness_, random);
@@ -178,7 +179,8 @@ RayScattering TraceRays(const IceCrystal& crystal, const std::vector<double>& an
       const Entry entry = EntryOf(prism, direction, point[2], point[3], point[4]);
       const double shadow = prism.ProjectedArea(direction);
       for (std::size_t c = 0; c < kPhaseChannels; ++c) {
-        // The same tilts in every channel: colours then differ by refraction, not by chance.
+        // The same random tilts in every channel, so that colours differ by refraction and not by
+        // noise.
         Tracer(prism, crystal.roughness, c, part)
             .Trace(entry, direction, shadow, CounterRandom(seed, stream));
       }

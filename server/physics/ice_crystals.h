@@ -25,16 +25,16 @@ struct IceCrystal {
   double roughness = 0.0;
 };
 
-// Where the energy of the traced rays went: shares of it, which sum to 1.
+// Shares of the traced rays' energy by where it went; they sum to 1.
 struct RayBudget {
   PhaseRgb reflected{};  // by the outside of the crystal
   PhaseRgb straight{};   // came out exactly straight on, through parallel faces
   PhaseRgb scattered{};  // came out in other directions
-  PhaseRgb left{};       // still inside when it was given up
+  PhaseRgb left{};       // still inside when tracing stopped
 };
 
 struct RayScattering {
-  PhaseAccumulator light;  // what was reflected or scattered, by angle
+  PhaseAccumulator light;  // reflected and scattered light, by angle
   RayBudget budget;
 };
 
@@ -48,8 +48,8 @@ RayScattering TraceRays(const IceCrystal& crystal, const std::vector<double>& an
 PhaseAccumulator Diffract(const IceCrystal& crystal, const std::vector<double>& angles_deg,
                           int orientations, std::uint64_t seed, const WorkPlan& plan);
 
-// The phase function of both together. Light that came straight through is spread as by
-// diffraction, too: it passes through a window of about the shadow's size.
+// The phase function of both together. Light that came straight through is spread by diffraction
+// too, as through an aperture of about the shadow's size.
 std::vector<PhaseRgb> PhaseOf(const RayScattering& rays, const PhaseAccumulator& diffraction,
                               const std::vector<double>& angles_deg);
 

@@ -103,7 +103,8 @@ PhaseAccumulator Diffract(const IceCrystal& crystal, const std::vector<double>& 
       const std::vector<dvec2> shadow = ShadowOf(prism, direction);
       const double area = AreaOf(shadow);
       for (std::size_t j = 0; j < angles.angles_rad.size(); ++j) {
-        // One direction of scattering for each angle: over all orientations they fill the circle.
+        // One scattering direction for each angle is enough: random orientations cover all
+        // azimuths.
         const double turn = 2.0 * std::numbers::pi * random.Next();
         const double sine = std::sin(angles.angles_rad[j]);
         for (std::size_t c = 0; c < kPhaseChannels; ++c) {

@@ -16,9 +16,9 @@ using Complex = std::complex<double>;
 constexpr std::size_t kBlock = 256;
 
 // The logarithmic derivative D_n(z) of psi_n, n = 0 ... count: by downward recurrence (eq. 4.89),
-// which is stable whatever the absorption. It starts from 0, and forgets that on the way down to n
-// = |z| over a few times the cube root of |z|; starting the usual 15 terms above |z| leaves 1e-5 in
-// the efficiencies.
+// which is stable whatever the absorption. It starts from 0, an error that dies out before n = |z|
+// over a few times the cube root of |z|; starting the usual 15 terms above |z| leaves 1e-5 in the
+// efficiencies.
 std::vector<Complex> LogarithmicDerivatives(Complex z, std::size_t count) {
   const double turning = std::abs(z);
   const auto above = static_cast<std::size_t>(turning + 8.0 * std::cbrt(turning) + 16.0);
@@ -60,7 +60,7 @@ std::vector<double> PsiFunctions(double x, std::size_t count) {
 
 MieSeries::MieSeries(double x, Complex m) : x_(x) {
   THUNDERHEAD_CHECK(x > 0.0 && m.imag() >= 0.0, absl::StrCat(x, ", ", m.imag()));
-  // Where to stop: Wiscombe 1980 (Appl. Opt. 19, 1505), eq. 6.
+  // Number of terms: Wiscombe 1980 (Appl. Opt. 19, 1505), eq. 6.
   const auto count = static_cast<std::size_t>(x + 4.05 * std::cbrt(x) + 2.0);
   const std::vector<Complex> d = LogarithmicDerivatives(m * x, count);
   const std::vector<double> psi = PsiFunctions(x, count);

@@ -43,7 +43,7 @@ constexpr std::array<TableName, 7> kTableNames = {{
     {PhaseKind::kIceRough, 0.0F, "ice_rough"},
 }};
 
-// Which of kTableNames `phase` is; only droplets have a choice.
+// Index in kTableNames of the table for `phase`; droplets have one for each of several radii.
 std::size_t TableIndexOf(const PhaseFunction& phase) {
   std::size_t nearest = kTableNames.size();
   double least = std::numeric_limits<double>::infinity();

@@ -1,6 +1,6 @@
-// Phase functions, by formula and by table, and closed forms of light transport. What the GPU runs,
-// too, is GLSL that also compiles here, so that the tests check the same text; what only the CPU
-// needs (phase functions, which the GPU looks up, and their integrals) is beside it.
+// Phase functions, by formula and by table, and closed forms of light transport. Code that the GPU
+// runs as well is GLSL that also compiles as C++, so that the tests check the same text; code for
+// the CPU alone (phase functions, which the GPU looks up, and their integrals) is beside it.
 #pragma once
 
 #include "glm/common.hpp"
@@ -21,11 +21,12 @@ using glm::sqrt;
 
 }  // namespace glsl
 
-// The phase function of a field's particles, with all that does not matter to it set to zero and
-// droplets' radius to that of the table nearest in proportion, so that equal ones compare equal.
+// The phase function of a field's particles in canonical form, so that equal functions compare
+// equal: parameters that its kind does not use are zero, and the droplets' radius is that of the
+// nearest table (by ratio).
 PhaseFunction PhaseOf(const ParticleOptics& optics);
 
-// What a single value stands for where light has no colours: the luminance of linear sRGB. Formulas
+// Where light has no colours, one value stands for three: the luminance of linear sRGB. Formulas
 // have one value for all colours.
 inline constexpr glm::dvec3 kLuminance{0.2126, 0.7152, 0.0722};
 
@@ -36,16 +37,16 @@ glm::dvec3 PhaseColors(const PhaseFunction& phase, double mu);
 // The same as a single value, as all below: the luminance of the colours.
 double PhaseValue(const PhaseFunction& phase, double mu);
 
-// The share of light scattered within `angle_rad` of straight on: CP(theta) of Riley et al. 2003
-// (Vis), eq. 13. 0 at 0, 1 at pi.
+// The share of light scattered by less than `angle_rad`: CP(theta) of Riley et al. 2003 (Vis), eq.
+// 13. 0 at 0, 1 at pi.
 double CumulativePhase(const PhaseFunction& phase, double angle_rad);
 
 // The mean cosine of the scattering angle, from -1 to 1.
 double MeanCosine(const PhaseFunction& phase);
 
-// A phase function split into light that goes straight on and the rest: within `angle_rad` of
-// straight on the function is held at its value there, and what is cut off counts as not scattered
-// at all (delta scaling). `forward_share` is the share cut off, 0 to 1.
+// Delta scaling of a phase function: for angles below `angle_rad` it is held at its value there,
+// and the light so cut off counts as not scattered at all. `forward_share` is the share cut off, 0
+// to 1.
 struct DeltaScaling {
   double forward_share = 0.0;
   double cut_cosine = 1.0;

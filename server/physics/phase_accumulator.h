@@ -1,6 +1,6 @@
-// Gathers scattered light by angle into the values of a phase table: a ray that leaves at an angle
-// is shared between the two nearest angles of the grid, so that the table, linear in between, holds
-// exactly the energy put in. For ray tracing and for quadrature over the angle alike.
+// Histogram of scattered light by angle, from which a phase table is made. A ray's energy is
+// divided between the two nearest angles of the grid, so that the table, linear in between, has
+// exactly the energy put in. Serves ray tracing and quadrature over the angle.
 #pragma once
 
 #include <cstddef>
@@ -42,11 +42,11 @@ class PhaseAccumulator {
   PhaseRgb energy_{};
 };
 
-// Points and weights that integrate over sin(angle) d(angle) from 0 to pi: Gauss-Legendre with
-// `order` points between each two neighbouring angles of the grid.
+// Quadrature over sin(angle) d(angle) from 0 to pi: Gauss-Legendre with `order` points between each
+// two neighbouring angles of the grid.
 struct AngleQuadrature {
   std::vector<double> angles_rad;
-  std::vector<double> weights;  // they hold sin(angle); their sum is 2
+  std::vector<double> weights;  // include the factor sin(angle); their sum is 2
 };
 AngleQuadrature QuadratureOf(const std::vector<double>& angles_deg, int order);
 

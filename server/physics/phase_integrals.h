@@ -1,5 +1,5 @@
 // Closed-form integrals over the sphere of functions that are linear in the scattering angle
-// between two angles: what tables of phase functions are integrated, normalised and sampled with.
+// between two angles: used to integrate, normalise and sample tables of phase functions.
 #pragma once
 
 #include <cmath>
@@ -14,14 +14,14 @@ struct LinearPiece {
   double end_value;
 };
 
-// The integral of value(t) sin(k t) over the piece, for k = 1 or 2. Written about the middle of the
-// piece: the textbook form a difference of large numbers for the steep pieces next to 0.
+// The integral of value(t) sin(k t) over the piece, for k = 1 or 2. Expanded about the middle of
+// the piece; the textbook form cancels on the steep pieces next to 0.
 inline double IntegralOverSine(const LinearPiece& piece, double k) {
   const double middle = k * 0.5 * (piece.start_rad + piece.end_rad);
   const double half = k * 0.5 * (piece.end_rad - piece.start_rad);
   const double mean = 0.5 * (piece.start_value + piece.end_value);
   const double rise = 0.5 * (piece.end_value - piece.start_value);
-  // sin h - h cos h loses its digits when h is small.
+  // sin h - h cos h cancels when h is small.
   const double bend = half < 0.02 ? half * half * half * (1.0 / 3.0 - half * half / 30.0)
                                   : std::sin(half) - half * std::cos(half);
   const double tilt = half > 0.0 ? rise / half * bend : 0.0;

@@ -18,7 +18,7 @@ inline constexpr std::size_t kPhaseChannels = 3;  // red, green, blue
 // One value each for red, green and blue.
 using PhaseRgb = std::array<double, kPhaseChannels>;
 
-// What a table is made of, before it is checked.
+// The content of a table before it is checked.
 struct PhaseTableContent {
   std::string name;
   PhaseRgb wavelengths_um{};
@@ -45,11 +45,11 @@ class PhaseTable {
   const std::vector<double>& angles_deg() const { return content_.angles_deg; }
   const std::vector<PhaseRgb>& values() const { return content_.values; }
 
-  // The value at a scattering angle from 0 to pi, or at its cosine; beyond them that of the end.
+  // The value at a scattering angle, or at its cosine; clamped to 0 to pi.
   double Value(double angle_rad, std::size_t channel) const;
   double ValueAtCosine(double mu, std::size_t channel) const;
 
-  // The share of light scattered within `angle_rad` of straight on: 0 at 0, 1 at pi.
+  // The share of light scattered by less than `angle_rad`: 0 at 0, 1 at pi.
   double CumulativeShare(double angle_rad, std::size_t channel) const;
 
   // The angle within which the share `u` (0 to 1) of the light is scattered: the inverse of
@@ -62,7 +62,7 @@ class PhaseTable {
   // The share of light scattered within kForwardAngleDeg.
   double ForwardShare(std::size_t channel) const;
 
-  // What is cut off when the function is held at its value at `angle_rad` for all smaller angles:
+  // The share cut off if the function is held at its value at `angle_rad` for all smaller angles:
   // the `forward_share` of physics::DeltaScaling.
   double CutShare(double angle_rad, std::size_t channel) const;
 

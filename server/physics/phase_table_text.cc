@@ -22,8 +22,8 @@
 namespace thunderhead::physics {
 namespace {
 
-// Values are written with six digits, so a good file keeps its mean and its figures well within
-// this.
+// Tolerance for the mean and for the figures in the header; values are written with six digits, so
+// a sound file is well within it.
 constexpr double kFileTolerance = 1e-3;
 
 absl::string_view AbslView(std::string_view text) { return {text.data(), text.size()}; }
@@ -33,7 +33,7 @@ absl::Status LineError(int line, std::string_view what) {
       absl::StrFormat("line %d: %s; regenerate the file with ./dev tables", line, AbslView(what)));
 }
 
-// Hands out the lines of a text that are neither empty nor comments, split into words.
+// Iterates over the lines of a text that are neither empty nor comments, split into words.
 class Lines {
  public:
   explicit Lines(std::string_view text) : lines_(absl::StrSplit(AbslView(text), '\n')) {}
@@ -109,7 +109,7 @@ absl::StatusOr<Header> ReadHeader(Lines& lines, PhaseTableContent& content) {
   return header;
 }
 
-// Whether the figures in the header are those of the curve.
+// Checks the figures in the header against the curve.
 absl::Status CheckFigures(const Header& header, const PhaseTable& table) {
   if (header.forward_angle_deg != PhaseTable::kForwardAngleDeg) {
     return absl::InvalidArgumentError(

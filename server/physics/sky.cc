@@ -8,7 +8,7 @@ namespace thunderhead::physics {
 
 namespace {
 
-// Above this, the atmosphere looks as from here.
+// Eyes above this see the atmosphere as from here.
 constexpr float kHighestEye_m = 0.98F * kAtmosphereTop_m;
 
 // The sine of elevation in the middle of a row: the inverse of glsl::sky_cell.
@@ -46,8 +46,8 @@ ClearSky::ClearSky(const Atmosphere& atmosphere, const glm::vec3& towards_sun, c
       const Atmosphere::Gathered gathered = atmosphere.Gather(line, {towards_sun.z, mu});
       const float rayleigh = 0.75F * (1.0F + mu * mu) * kInverseFourPi;
       const auto at = static_cast<std::size_t>(y * 2 * glsl::kSkyAzimuths + x);
-      table_[at] = glm::vec4(gathered.air * rayleigh + gathered.diffuse, line.way.x);
-      table_[at + glsl::kSkyAzimuths] = glm::vec4(gathered.haze, line.way.y);
+      table_[at] = glm::vec4(gathered.air * rayleigh + gathered.diffuse, line.air_mass.x);
+      table_[at + glsl::kSkyAzimuths] = glm::vec4(gathered.haze, line.air_mass.y);
     }
   }
 }
@@ -71,7 +71,7 @@ ClearSky::Seen ClearSky::At(const glm::vec3& direction) const {
 }
 
 SkyLight ClearSky::Light() const {
-  // Midpoints in sine of elevation and azimuth divide the hemisphere into equal solid angles.
+  // Cells of equal size in sine of elevation and in azimuth have equal solid angles.
   constexpr int kElevations = 24;
   constexpr int kAzimuths = 48;
   SkyLight light;

@@ -1,6 +1,6 @@
-// The clear sky from a height above the ground and the light it sends: a table per direction of the
-// sun, looked up by the GLSL of shaders/physics/sky.glsl, compiled for the CPU here. Radiance is in
-// units of the sun's irradiance above the atmosphere. Air between eye and storm:
+// The clear sky seen from a height above the ground, and its light: a table for one direction of
+// the sun, looked up by the GLSL of shaders/physics/sky.glsl, compiled for the CPU here. Radiance
+// is in units of the sun's irradiance above the atmosphere. Air between eye and storm:
 // shaders/physics/air.glsl.
 #pragma once
 
@@ -46,15 +46,15 @@ class ClearSky {
   };
   ClearSky(const Atmosphere& atmosphere, const glm::vec3& towards_sun, const Site& site);
 
-  // What is seen in a direction; below the horizon, what the air sends in front of the ground.
+  // The sky in one direction; below the horizon, the air in front of the ground.
   struct Seen {
     glm::vec3 radiance{0.0F};
-    glm::vec2 way{0.0F};  // air and haze on the whole ray, in their vertical depths
+    glm::vec2 air_mass{0.0F};  // of air and haze, as in Atmosphere::Line
   };
-  // In unit `direction`.
+  // `direction` is a unit vector.
   Seen At(const glm::vec3& direction) const;
 
-  // Turns the sky with the sun, whose elevation stays: only the azimuth of `towards_sun` counts.
+  // Turns the sky with the sun, whose elevation is kept: only the azimuth of `towards_sun` matters.
   void TurnTo(const glm::vec3& towards_sun) {
     towards_sun_ = {towards_sun.x, towards_sun.y, towards_sun_.z};
   }
@@ -62,7 +62,7 @@ class ClearSky {
   // Integrates the radiance over the upper hemisphere.
   SkyLight Light() const;
 
-  // Share of sunlight that reaches the ground.
+  // Transmittance from the ground to the sun.
   const glm::vec3& SunTransmittance() const { return sun_transmittance_; }
 
   // 2 * kSkyAzimuths by kSkyElevations texels, rows from the nadir up.

@@ -21,7 +21,7 @@ constexpr std::size_t kOneInClear = 3;
 
 constexpr int kFadeBits = 12;
 constexpr std::int64_t kFadeOne = std::int64_t{1} << kFadeBits;
-// The finest subdivision of a cell that a texel's middle needs: half of 1 / 16.
+// Texels' middles lie at odd multiples of half a texel: with at most 16 texels a cell, of 1 / 32.
 constexpr std::int64_t kPlaceUnits = 2 * kLargestSide / TurbulenceTile::kWaves;
 
 struct Gradient {
@@ -41,7 +41,7 @@ constexpr std::array<Gradient, 12> kEdges = {{{1, 1, 0},
                                               {0, 1, -1},
                                               {0, -1, -1}}};
 
-// Where the texels of one octave lie in its cells, in units of 1 / kPlaceUnits of a cell.
+// Positions of an octave's texels in its lattice cells, in units of 1 / kPlaceUnits of a cell.
 struct Octave {
   int cells = 0;            // along an edge of the tile
   int texels_per_cell = 0;  // at least 1
@@ -124,8 +124,8 @@ void AddRow(const Octave& octave, int index, int y, int z, std::vector<std::uint
   }
 }
 
-// What is below the threshold becomes empty: sheets of clear air between the billows. The threshold
-// leaves kClearShare of the tile empty.
+// Noise below the threshold becomes zero: sheets of clear air between the billows. The threshold is
+// such that kClearShare of the tile is empty.
 void FillTexels(const std::vector<std::uint32_t>& sums, TurbulenceTile* tile) {
   std::vector<std::uint32_t> sorted = sums;
   const auto clear = sorted.begin() + static_cast<std::ptrdiff_t>(sums.size() / kOneInClear);
@@ -153,7 +153,7 @@ std::vector<std::uint32_t> Spread(const std::vector<std::uint32_t>& values, std:
   return spread;
 }
 
-// The mean square of what is fetched, 0 to 1: of the linear interpolant between texels, exactly.
+// Exact mean square of the linear interpolant between texels; texels count from 0 to 1.
 double MeanSquare(const TurbulenceTile& tile) {
   const auto side = static_cast<std::size_t>(tile.side);
   std::vector<std::uint32_t> spread(tile.texels.begin(), tile.texels.end());
@@ -169,7 +169,7 @@ double MeanSquare(const TurbulenceTile& tile) {
 }  // namespace
 
 TurbulenceTile MakeTurbulence(int octaves, std::uint32_t seed) {
-  THUNDERHEAD_CHECK(octaves >= 1 && octaves <= kMostTurbulenceOctaves, std::to_string(octaves));
+  THUNDERHEAD_CHECK(octaves >= 1 && octaves <= kMaxTurbulenceOctaves, std::to_string(octaves));
   TurbulenceTile tile;
   // Two texels a cell of the finest octave.
   tile.side = std::clamp(TurbulenceTile::kWaves << octaves, kSmallestSide, kLargestSide);

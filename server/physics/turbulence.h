@@ -1,9 +1,9 @@
 // Turbulent structure finer than a model's grid: billows with clear air between them, from Perlin's
 // turbulence (Perlin 1985; gradients along a cell's edges as in Perlin 2002), the sum over octaves
-// of |noise|, on a tile that repeats without a seam. What exceeds a threshold is squared, and a
-// third of the tile is empty: a cell of a storm can have an optical depth of 100, and only where it
-// is empty does one see into it. Its mean is 1 and it is never below 0: a field multiplied by it
-// keeps its mass on average. All integers up to the texel: the same bits on every machine. Knows no
+// of |noise|, on a tile that repeats without a seam. The excess over a threshold is squared, and a
+// third of the tile is empty: a cell of a storm can have an optical depth of 100, and only through
+// gaps can one see into it. Values have mean 1 and are never negative, so a field multiplied by
+// them keeps its mass on average. Computed in integers: the same bits on every machine. Knows no
 // fields and no GL.
 #pragma once
 
@@ -14,11 +14,11 @@
 
 namespace thunderhead::physics {
 
-inline constexpr int kMostTurbulenceOctaves = 5;
+inline constexpr int kMaxTurbulenceOctaves = 5;
 
 // A cube of samples at the middles of its texels: square roots, linear between texels.
 struct TurbulenceTile {
-  // Waves of the first octave along an edge: a tile is so many first wavelengths wide.
+  // Wavelengths of the first octave along an edge of the tile.
   static constexpr int kWaves = 8;
 
   int side = 0;                      // texels along an edge, a power of two
@@ -26,11 +26,11 @@ struct TurbulenceTile {
   float value_of_full = 0.0F;        // the noise where a texel is 255: its largest value
 };
 
-// `octaves` is 1 to kMostTurbulenceOctaves; each has half the wavelength and amplitude of the one
+// `octaves` is 1 to kMaxTurbulenceOctaves; each has half the wavelength and amplitude of the one
 // before.
 TurbulenceTile MakeTurbulence(int octaves, std::uint32_t seed);
 
-// The noise at `place`, which counts tiles; as from a repeating texture.
+// The noise at `place`, in units of a tile's edge; sampled as a repeating texture.
 double TurbulenceAt(const TurbulenceTile& tile, const glm::dvec3& place);
 
 }  // namespace thunderhead::physics

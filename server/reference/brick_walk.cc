@@ -9,9 +9,10 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// A level ray through the gaps of a periodic medium would never end: it is taken to leave after
-// this many periods. A scattered ray is that level with a probability of about 1e-6 at most.
-constexpr double kMostPeriods = 1e5;
+// A horizontal ray through gaps of a periodic medium would never end, so it is assumed to leave
+// after this many periods. The probability that a scattered ray is as horizontal as that is about
+// 1e-6 at most.
+constexpr double kMaxPeriods = 1e5;
 
 void ClipAxis(double origin, double direction, double low, double high, RayInterval* interval) {
   if (direction == 0.0) {
@@ -35,7 +36,7 @@ RayInterval Clip(const Medium& medium, const Ray& ray, double limit_m) {
   }
   if (medium.Periodic()) {
     const double period_m = std::max(high.x - low.x, high.y - low.y);
-    interval.end_m = std::min(interval.end_m, interval.begin_m + kMostPeriods * period_m);
+    interval.end_m = std::min(interval.end_m, interval.begin_m + kMaxPeriods * period_m);
   }
   return interval;
 }

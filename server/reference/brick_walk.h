@@ -1,4 +1,4 @@
-// Walks a ray through the lattice of a medium's bricks (Amanatides and Woo 1987): the stretches of
+// Traverses the lattice of a medium's bricks along a ray (Amanatides and Woo 1987): the segments of
 // constant majorant, in order. Knows no light.
 #pragma once
 
@@ -23,7 +23,7 @@ struct RayInterval {
 // The part of `ray` up to `limit_m` in the medium's box; in its range of heights if it is periodic.
 RayInterval Clip(const Medium& medium, const Ray& ray, double limit_m);
 
-// A piece of a ray in one brick that holds something.
+// A segment of a ray in one brick that is not empty.
 struct Stretch {
   double begin_m = 0.0;
   double end_m = 0.0;
@@ -35,7 +35,7 @@ class BrickWalk {
   // `medium` must outlive the walk.
   BrickWalk(const Medium& medium, const Ray& ray, double limit_m);
 
-  // The next stretch with something in it, or false at the end of the ray.
+  // Finds the next segment in a brick that is not empty; false at the end of the ray.
   bool Next(Stretch* stretch);
 
  private:
@@ -47,10 +47,10 @@ class BrickWalk {
   Ray ray_;
   double at_m_;
   double end_m_;
-  glm::ivec3 brick_{0};  // x and y run on beyond the lattice if periodic
+  glm::ivec3 brick_{0};  // x and y continue beyond the lattice if periodic
   glm::ivec3 step_{0};
-  glm::dvec3 next_m_{0.0};   // where the ray leaves the brick through each axis
-  glm::dvec3 delta_m_{0.0};  // between two faces of each axis
+  glm::dvec3 next_m_{0.0};   // distance at which the ray leaves the brick along each axis
+  glm::dvec3 delta_m_{0.0};  // distance along the ray between two faces of each axis
 };
 
 }  // namespace thunderhead::reference

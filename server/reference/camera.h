@@ -1,4 +1,4 @@
-// Which ray stands for which point of a picture: perspective, or parallel as seen from infinity.
+// The ray of each point of a picture: perspective, or parallel as from infinity.
 #pragma once
 
 #include "glm/geometric.hpp"
@@ -17,7 +17,7 @@ struct Camera {
   glm::dvec3 right{0.0};  // what x = 1 adds to the direction
   glm::dvec3 up{0.0};
 
-  // Also of a view without perspective.
+  // Also for a view without perspective.
   static Camera Of(const scene::View& view) {
     return {view.eye_m,   view.right * view.half_width_m,   view.up * view.half_height_m,
             view.forward, view.right * view.tan_half_width, view.up * view.tan_half_height};

@@ -23,10 +23,10 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Photons that one piece of work traces.
+// Photons in one chunk of work.
 constexpr std::int64_t kPiece = 256;
 
-// Rounds of pieces grow until one takes this long: progress is told between rounds.
+// Rounds of chunks grow until one takes this long; progress is reported between rounds.
 constexpr double kRound_ms = 200.0;
 
 enum Quantity {
@@ -40,8 +40,8 @@ enum Quantity {
   kQuantities
 };
 
-// How often each thing happened: to one photon, or in all. Whole numbers, so the order in which
-// threads add them does not matter.
+// Numbers of events, of one photon or in total. Integers, so the order in which threads add them
+// does not matter.
 using Counts = std::array<std::int64_t, kQuantities>;
 
 struct Sums {
@@ -69,7 +69,7 @@ struct Exit {
   Face face = Face::kSide;
 };
 
-// One photon on its way through the domain.
+// The path of one photon through the domain.
 class Photon {
  public:
   Photon(const FluxProblem& problem, RandomStream* random) : problem_(problem), random_(random) {
@@ -118,7 +118,7 @@ class Photon {
     const Scattering scattering = problem_.medium->ScatteringAt(ray_.origin_m, random_->Uniform());
     const double albedo = (scattering.weight.x + scattering.weight.y + scattering.weight.z) / 3.0;
     if (random_->Uniform() >= albedo) return End(kAbsorbed);
-    // A colour at random: photons turn by the mean of the three functions.
+    // A random colour: on average, the mean of the three phase functions.
     const auto color = static_cast<std::size_t>(3.0 * random_->Uniform());
     const double mu = scattering.phase->Sample(random_->Uniform(), color).mu;
     ray_.direction = Deflect(ray_.direction, mu, 2.0 * std::numbers::pi * random_->Uniform());
@@ -144,7 +144,7 @@ class Photon {
     return false;
   }
 
-  // Keeps coordinates small, so that they stay exact.
+  // Keeps coordinates small, and so precise.
   void Wrap() {
     for (int axis = 0; axis < 2; ++axis) {
       const double low_m = problem_.domain_low_m[axis];
@@ -192,7 +192,7 @@ absl::Status Check(const FluxProblem& problem, const FluxOptions& options) {
 
 struct Piece {
   Sums sums;
-  std::int64_t photons = 0;  // none if it was left out
+  std::int64_t photons = 0;  // 0 if the chunk was skipped
 };
 
 Piece TracePiece(const FluxProblem& problem, std::uint64_t seed, std::int64_t first,
@@ -206,7 +206,7 @@ Piece TracePiece(const FluxProblem& problem, std::uint64_t seed, std::int64_t fi
   return piece;
 }
 
-// Traces `count` pieces from photon `first` on; leaves out what has not begun once it must end.
+// Traces `count` chunks from photon `first` on; skips those not begun when it must end.
 std::vector<Piece> TraceRound(const FluxProblem& problem, const FluxOptions& options,
                               std::int64_t first, int count,
                               const std::function<bool()>& must_end) {

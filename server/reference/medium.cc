@@ -14,8 +14,8 @@
 namespace thunderhead::reference {
 namespace {
 
-// Cells along a brick's edge. The smallest follow dense cores best, which spares null collisions:
-// measured on the sample storm, bricks of 2 cells cost twice the time.
+// Cells along a brick's edge. Small bricks bound dense cores best, which saves null collisions: on
+// the sample storm, bricks of 2 cells took twice the time.
 constexpr int kBrickCells = 1;
 
 // Rounding of an interpolated value must not exceed the majorant.
@@ -103,8 +103,9 @@ int Medium::CellIndex(int axis, int cell) const {
   return std::clamp(cell, 0, grid_.cells[axis] - 1);
 }
 
-// Every cell that a point of the brick reads. Rounding may put a point beyond the brick's faces by
-// some 1e-12 cells: constant cells must then be known too; linear ones change too little to matter.
+// All cells that points of the brick read. Rounding may put a point some 1e-12 cells outside the
+// brick: constant cells there must be included, while linear interpolation changes too little to
+// matter.
 Medium::CellRange Medium::CellsOfBrick(int axis, int brick) const {
   constexpr double kSlack = 1e-9;
   const double low_m = low_m_[axis] + brick * brick_size_m_[axis] - grid_.low_corner_m[axis];

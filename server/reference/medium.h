@@ -1,5 +1,6 @@
-// What scatters: extinction on a grid for each group of fields that scatter alike, and a coarse
-// lattice of its local maxima (majorants) for null-collision sampling. Knows no light and no files.
+// The scattering medium: extinction on a grid for each group of fields with the same optics, and a
+// coarse lattice of local maxima (majorants) for null-collision sampling. Knows no light and no
+// files.
 #pragma once
 
 #include <array>
@@ -15,14 +16,14 @@
 
 namespace thunderhead::reference {
 
-// How extinction varies between cell centres: linearly, as the renderers draw it (beyond the outer
-// centres it is that of the nearest cell), or not at all inside each cell.
+// Extinction between cell centres: interpolated linearly, as the renderers draw it (beyond the
+// outer centres it is that of the nearest cell), or constant in each cell.
 enum class Interpolation { kLinear, kConstant };
 
-// What lies beyond the sides of the box: nothing, or the same box again and again.
+// Beyond the sides of the box: empty space, or periodic copies of the box.
 enum class Sides { kOpen, kPeriodic };
 
-// Fields that scatter alike.
+// Fields with the same optics.
 struct ScatteringGroup {
   std::vector<float> extinction_per_m;  // grid.CellCount() values, x fastest
   glm::dvec3 albedo{1.0};               // single-scattering, red, green, blue
@@ -40,8 +41,8 @@ struct MediumDescription {
   std::vector<ScatteringGroup> groups;  // may be none: empty space
 };
 
-// A collision with a particle: of which group, and by how much the light of a path that goes on is
-// multiplied so that choosing one group stands for all.
+// A collision with a particle of a randomly chosen group, with the weight that makes the choice
+// unbiased.
 struct Scattering {
   const SampledPhase* phase = nullptr;  // null if the light is absorbed
   glm::dvec3 weight{0.0};
@@ -56,7 +57,7 @@ class Medium {
   const glm::dvec3& High_m() const { return high_m_; }
   bool Periodic() const { return periodic_; }
 
-  // Total extinction at a point of the box or, if periodic, at any height of it.
+  // Total extinction at a point of the box; if periodic, of the box's range of heights.
   double Extinction_per_m(const glm::dvec3& point_m) const;
 
   // The group of a collision at `point_m`, chosen by `u` (uniform over (0, 1)) with a probability
@@ -68,11 +69,11 @@ class Medium {
   const glm::dvec3& BrickSize_m() const { return brick_size_m_; }
   // `brick` lies in the lattice.
   double Majorant_per_m(const glm::ivec3& brick) const { return majorants_[BrickOffset(brick)]; }
-  // No brick of this height holds anything.
+  // True if all bricks of this height are empty.
   bool EmptyLayer(int z) const { return empty_layers_[static_cast<std::size_t>(z)] != 0; }
 
  private:
-  // The eight (or fewer) cells around a point with their shares.
+  // The eight (or fewer) cells around a point with their interpolation weights.
   struct Place {
     std::array<std::size_t, 8> offsets;
     std::array<double, 8> shares;

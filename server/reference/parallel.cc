@@ -13,8 +13,8 @@ namespace thunderhead::reference {
 
 #ifdef __SANITIZE_THREAD__
 
-// ThreadSanitizer cannot see how the library that distributions ship synchronises its threads, and
-// takes its own data for races. Plain threads let it judge our data alone.
+// ThreadSanitizer cannot see the synchronisation inside oneTBB as distributions ship it, and
+// reports races in its data. With plain threads it checks only this program's data.
 void ParallelFor(int threads, int count, const std::function<void(int)>& work) {
   const int most = tbb::info::default_concurrency();
   std::atomic<int> next{0};
@@ -34,7 +34,7 @@ void ParallelFor(int threads, int count, const std::function<void(int)>& work) {
   const auto run = [&](const tbb::blocked_range<int>& range) {
     for (int i = range.begin(); i != range.end(); ++i) work(i);
   };
-  // Pieces differ much in cost: one at a time.
+  // Tasks differ much in cost, so threads take one at a time.
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<int>(0, count, 1), run, tbb::simple_partitioner());
   });

@@ -1,12 +1,12 @@
-// Independent pieces of work on all cores, or on a given number of threads.
+// Runs independent tasks on all cores or on a given number of threads.
 #pragma once
 
 #include <functional>
 
 namespace thunderhead::reference {
 
-// Runs work(0) to work(count - 1) in any order and returns when all are done. `threads` of 0 takes
-// as many as the machine has, which is also the most.
+// Runs work(0) to work(count - 1) in any order and returns when all are done. `threads` 0 means as
+// many as the machine has, which is also the maximum.
 void ParallelFor(int threads, int count, const std::function<void(int)>& work);
 
 }  // namespace thunderhead::reference

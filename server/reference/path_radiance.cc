@@ -14,30 +14,31 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Paths that carry less than this share go on by Russian roulette.
+// Below this throughput paths continue by Russian roulette.
 constexpr double kRouletteThroughput = 0.1;
 
-// In bright thick clouds the number of paths with more than n collisions falls only as 1 / sqrt(n):
-// a few endless ones would cost most of the time. At this many collisions, and whenever they have
-// become four times as many, every other path ends; then work and variance of all lengths balance.
+// In thick clouds of high albedo the number of paths with more than n collisions falls only as 1 /
+// sqrt(n): a few very long ones would take most of the time. At this many collisions, and each time
+// that number quadruples, paths survive with probability 1/2, which balances work and variance over
+// path lengths.
 constexpr int kLongPath = 64;
 
-// Sunlight that adds less than this to the path, over the light scattered evenly, is asked for by
+// Sunlight whose contribution, relative to isotropic scattering, is below this is sampled by
 // Russian roulette.
 constexpr double kRouletteSunlight = 0.5;
 
 double Largest(const glm::dvec3& color) { return std::max({color.x, color.y, color.z}); }
 
-// One path from the eye: what it has gathered and what it still carries.
+// One path from the eye: the radiance so far, and its throughput.
 class Path {
  public:
   Path(const Medium& medium, const Surroundings& surroundings, const Ray& ray, RandomStream* random,
-       int most_scatterings)
+       int max_scatterings)
       : medium_(medium),
         surroundings_(surroundings),
         ray_(ray),
         random_(random),
-        most_scatterings_(most_scatterings),
+        max_scatterings_(max_scatterings),
         hero_(static_cast<std::size_t>(3.0 * random->Uniform())) {}
 
   glm::dvec3 Follow() {
@@ -48,7 +49,7 @@ class Path {
   }
 
  private:
-  // One flight and what it meets; false when the path ends.
+  // One free flight and the event at its end; false when the path ends.
   bool Advance() {
     const double ground_m = GroundDistance_m();
     const std::optional<double> collision_m = SampleCollision(medium_, ray_, ground_m, random_);
@@ -83,7 +84,7 @@ class Path {
     return ground.height_m - 0.5 * ground.curvature_per_m * glm::dot(off_m, off_m);
   }
 
-  // Air matters on the way to the eye only.
+  // Air matters only on the segment to the eye.
   void PassAir(double distance_m, Behind behind) {
     if (seen_from_eye_ && surroundings_.air) {
       const Air air = surroundings_.air(ray_, distance_m, behind);
@@ -96,7 +97,7 @@ class Path {
   bool Scatter(const glm::dvec3& point_m) {
     const Scattering scattering = medium_.ScatteringAt(point_m, random_->Uniform());
     if (scattering.phase == nullptr) return false;
-    if (most_scatterings_ > 0 && collisions_ >= most_scatterings_) return false;
+    if (max_scatterings_ > 0 && collisions_ >= max_scatterings_) return false;
     throughput_ *= scattering.weight;
     if (!Survive() || !GoOnAtLength()) return false;
     ScatterLight(*scattering.phase, point_m,
@@ -110,7 +111,7 @@ class Path {
     return true;
   }
 
-  // Light that is scattered once, from where it comes to the path.
+  // Next-event estimation of light that arrives directly at the collision.
   void ScatterLight(const SampledPhase& phase, const glm::dvec3& point_m,
                     const DirectionalLight& light) {
     const glm::dvec3 value = phase.Value(glm::dot(ray_.direction, light.towards));
@@ -122,15 +123,15 @@ class Path {
 
   // Colours whose phase functions differ share one path, sampled from the hero colour's. Its weight
   // for a colour is the path's density by that colour's functions over the mean of all three:
-  // Wilkie et al. 2014, Hero Wavelength Spectral Sampling, eq. 8. It stays at most 3, where the
-  // product of single scatterings' ratios would grow without bound.
+  // Wilkie et al. 2014, Hero Wavelength Spectral Sampling, eq. 8. It is at most 3, whereas the
+  // product of each scattering's ratio would have no bound.
   double TurnBy(const PhaseSample& sample) {
     spectral_ *= sample.weight;
     spectral_ *= 3.0 / (spectral_.x + spectral_.y + spectral_.z);
     return sample.mu;
   }
 
-  // What light along the rest of the path counts for.
+  // Throughput of the rest of the path, by colour.
   glm::dvec3 Carried() const { return throughput_ * spectral_; }
 
   bool Reflect(double ground_m) {
@@ -148,13 +149,13 @@ class Path {
     return true;
   }
 
-  // `reflected` is radiance sent back along the path for each unit of irradiance.
+  // `reflected` is the radiance towards the path for unit irradiance.
   void AddLight(const glm::dvec3& point_m, const DirectionalLight& light,
                 const glm::dvec3& reflected) {
-    const glm::dvec3 most = Carried() * reflected * light.irradiance;
-    if (Largest(most) <= 0.0) return;
+    const glm::dvec3 unshadowed = Carried() * reflected * light.irradiance;
+    if (Largest(unshadowed) <= 0.0) return;
     const Ray ray{point_m, light.towards};
-    radiance_ += most * EstimateTransmittance(medium_, ray, kInfinity, random_);
+    radiance_ += unshadowed * EstimateTransmittance(medium_, ray, kInfinity, random_);
   }
 
   bool GoOnAtLength() {
@@ -176,12 +177,13 @@ class Path {
   const Surroundings& surroundings_;
   Ray ray_;
   RandomStream* random_;
-  int most_scatterings_;
+  int max_scatterings_;
   bool seen_from_eye_ = true;
   int collisions_ = 0;
   int next_roulette_ = kLongPath;
-  std::size_t hero_;          // the colour whose phase functions are sampled
-  glm::dvec3 spectral_{1.0};  // the path's weight by colour, for being sampled by the hero's
+  std::size_t hero_;  // the colour whose phase functions are sampled
+  glm::dvec3 spectral_{
+      1.0};  // the path's weight by colour, as the hero's phase functions are sampled
   glm::dvec3 radiance_{0.0};
   glm::dvec3 throughput_{1.0};
 };
@@ -189,8 +191,8 @@ class Path {
 }  // namespace
 
 glm::dvec3 EstimateRadiance(const Medium& medium, const Surroundings& surroundings, const Ray& ray,
-                            RandomStream* random, int most_scatterings) {
-  return Path(medium, surroundings, ray, random, most_scatterings).Follow();
+                            RandomStream* random, int max_scatterings) {
+  return Path(medium, surroundings, ray, random, max_scatterings).Follow();
 }
 
 }  // namespace thunderhead::reference

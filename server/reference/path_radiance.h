@@ -10,9 +10,9 @@
 
 namespace thunderhead::reference {
 
-// One estimate of the radiance that arrives at `ray`'s origin from its direction. Light that the
-// medium has scattered more than `most_scatterings` times is left out, unless that is 0.
+// One estimate of the radiance that arrives at `ray`'s origin from its direction. Light scattered
+// by the medium more than `max_scatterings` times is left out; 0 means no limit.
 glm::dvec3 EstimateRadiance(const Medium& medium, const Surroundings& surroundings, const Ray& ray,
-                            RandomStream* random, int most_scatterings = 0);
+                            RandomStream* random, int max_scatterings = 0);
 
 }  // namespace thunderhead::reference

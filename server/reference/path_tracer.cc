@@ -16,11 +16,11 @@ namespace thunderhead::reference {
 namespace {
 
 constexpr int kTile_px = 16;
-// Fewer samples say too little of their own spread to stop by it.
+// With fewer samples the error estimate is too uncertain to stop by.
 constexpr int kFewestForError = 16;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Which limit has been reached, if any.
+// The limit that has been reached, if any.
 std::optional<RefineEnd> EndAt(const RefineLimits& limits, const ImageProgress& progress) {
   const int samples = progress.samples_per_pixel;
   if (limits.samples_per_pixel > 0 && samples >= limits.samples_per_pixel) {
@@ -73,7 +73,7 @@ void PathTracer::RefinePixel(int x, int y, int until_samples) {
     const double right = 2.0 * (x + random.Uniform()) / size_px_.x - 1.0;
     const double up = 1.0 - 2.0 * (y + random.Uniform()) / size_px_.y;
     pixel.Add(EstimateRadiance(*medium_, surroundings_, camera_.RayThrough(right, up), &random,
-                               options_.most_scatterings));
+                               options_.max_scatterings));
   }
 }
 
@@ -117,12 +117,12 @@ double PathTracer::RelativeError() const {
   return std::sqrt(squares / values) / (radiance / values);
 }
 
-// Passes grow with what is there, so that the cost of looking at the result stays small; they stay
-// short enough for a viewer to see progress.
+// Passes grow with the number of samples, so that checking the result stays cheap, up to a limit
+// that lets a viewer see progress.
 int PathTracer::PassTarget(const RefineLimits& limits) const {
-  constexpr int kMostInPass = 16;
+  constexpr int kMaxInPass = 16;
   const int have = FewestSamples();
-  int target = have + std::clamp(have / 4, 1, kMostInPass);
+  int target = have + std::clamp(have / 4, 1, kMaxInPass);
   if (limits.samples_per_pixel > 0) target = std::min(target, limits.samples_per_pixel);
   return target;
 }
@@ -156,8 +156,8 @@ RefineResult PathTracer::Refine(const RefineLimits& limits, const ImageObserver&
   }
 }
 
-Image PathTracer::Snapshot() const {
-  Image image;
+picture::LinearPicture PathTracer::Snapshot() const {
+  picture::LinearPicture image;
   image.size_px = size_px_;
   image.radiance.reserve(pixels_.size());
   image.standard_error.reserve(pixels_.size());

@@ -1,4 +1,4 @@
-// The image of a medium, refined step by step: each pixel's mean radiance and standard error. The
+// A picture of a medium, refined progressively: each pixel's mean radiance and standard error. The
 // result after a number of samples is the same, bit for bit, for any number of threads and however
 // the samples were divided among calls. Knows no GL, files or messages.
 #pragma once
@@ -11,6 +11,7 @@
 
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
+#include "picture/linear_picture.h"
 #include "reference/camera.h"
 #include "reference/medium.h"
 #include "reference/surroundings.h"
@@ -20,16 +21,16 @@ namespace thunderhead::reference {
 struct PathTracerOptions {
   std::uint64_t seed = 0;
   int threads = 0;  // 0: as many as the machine has
-  // Light that the medium has scattered more often is left out; 0 leaves nothing out.
-  int most_scatterings = 0;
+  // Light scattered by the medium more often is left out; 0: no limit.
+  int max_scatterings = 0;
 };
 
-// Refining ends at the first limit that is reached. With none it goes on until it is stopped.
+// Refinement ends at the first limit reached; without limits it goes on until stopped.
 struct RefineLimits {
   int samples_per_pixel = 0;    // in all, over every call; 0: no limit
   double seconds = 0.0;         // of this call; 0: no limit. One sample a pixel is always finished
   double relative_error = 0.0;  // see ImageProgress; 0: no limit. Needs 16 samples at least
-  double pause_s = 0.0;         // of this call; 0: never. May leave pixels without any sample yet
+  double pause_s = 0.0;         // of this call; 0: no limit. May leave pixels without a sample
 };
 
 struct ImageProgress {
@@ -51,25 +52,19 @@ struct RefineResult {
   ImageProgress progress;
 };
 
-// Rows from top to bottom.
-struct Image {
-  glm::ivec2 size_px{0};
-  std::vector<glm::vec3> radiance;
-  std::vector<glm::vec3> standard_error;  // infinite where a pixel has fewer than two samples
-};
-
 class PathTracer {
  public:
   PathTracer(std::shared_ptr<const Medium> medium, Surroundings surroundings, const Camera& camera,
              const glm::ivec2& size_px, const PathTracerOptions& options);
 
   // Adds samples until a limit is reached or `stop` asks to stop, which may leave some pixels with
-  // more samples than others; their means stay right, and another call goes on from there.
-  // `observer` may be empty. Calls must not overlap.
+  // more samples than others; their means are still unbiased, and another call continues from
+  // there. `observer` may be empty. Calls must not overlap.
   RefineResult Refine(const RefineLimits& limits, const ImageObserver& observer,
                       const std::stop_token& stop);
 
-  Image Snapshot() const;
+  // With its standard error: infinite where a pixel has fewer than two samples.
+  picture::LinearPicture Snapshot() const;
 
  private:
   // Mean and sum of squared differences from it (Welford 1962).

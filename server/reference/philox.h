@@ -1,5 +1,5 @@
 // Random numbers by counter: Philox 4x32-10 (Salmon et al. 2011, "Parallel random numbers: as easy
-// as 1, 2, 3"). A number depends only on its key and its place in the sequence, so a result is the
+// as 1, 2, 3"). A number depends only on its key and its index in the sequence, so results are the
 // same for any number of threads. Knows nothing of light.
 #pragma once
 
@@ -37,7 +37,7 @@ class RandomStream {
   // Uniform over (0, 1), in steps of 2^-32; never 0 or 1.
   double Uniform() { return (Word() + 0.5) * 0x1p-32; }
 
-  // Exponential with mean 1. Uses 53 bits: optically thin media ask for its very small values.
+  // Exponential with mean 1. Uses 53 bits: optically thin media need very small values.
   double Exponential() {
     const std::uint64_t high = Word();
     const std::uint64_t bits = ((high << 32U) | Word()) >> 11U;

@@ -11,7 +11,7 @@
 namespace thunderhead::reference {
 namespace {
 
-// Diffraction peaks of millimetre drops are 0.02 degrees wide: nodes crowd towards angle 0.
+// Diffraction peaks of millimetre drops are 0.02 degrees wide, so nodes are denser towards angle 0.
 constexpr std::size_t kIntervals = 8192;
 
 // 1 - mu at node `i`, without the cancellation of 1 - cos.

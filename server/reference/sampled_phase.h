@@ -1,6 +1,6 @@
-// Phase functions that a path can sample: Henyey and Greenstein's in closed form, any other by a
-// table of its inverse cumulative distribution. Values and samples come from one and the same
-// function, so that sampled and evaluated light agree exactly. Knows no medium.
+// Phase functions that paths can sample: Henyey and Greenstein's in closed form, any other by a
+// table of its inverse cumulative distribution. Evaluation and sampling use exactly the same
+// function, so that both estimate the same light. Knows no medium.
 #pragma once
 
 #include <array>
@@ -39,8 +39,8 @@ class SampledPhase {
   // The phase function; its mean over the sphere is 1.
   glm::dvec3 Value(double mu) const;
 
-  // Maps `u`, uniform over (0, 1), to the scattering angle within which that share of the light of
-  // `color` (0 to 2) goes.
+  // Inverse of the cumulative distribution of the scattering angle of `color` (0 to 2) at `u`,
+  // uniform over (0, 1).
   PhaseSample Sample(double u, std::size_t color) const;
 
  private:
@@ -49,7 +49,7 @@ class SampledPhase {
   void Accumulate(std::size_t color);
   std::size_t IntervalOf(double u, std::size_t color) const;
 
-  // Henyey and Greenstein's parameter; unused where there is a table.
+  // Henyey and Greenstein's parameter; not used if there is a table.
   double asymmetry_ = 0.0;
   bool colored_ = false;
   // The table: piecewise linear in x = 1 - mu between nodes, which lie at angles pi (i / last)^2.
@@ -57,7 +57,7 @@ class SampledPhase {
   // By colour; only the first unless colored_.
   std::array<std::vector<double>, 3> values_;
   std::array<std::vector<double>, 3> cumulative_;    // 0 to 1
-  std::array<std::vector<std::uint32_t>, 3> guide_;  // interval in which to start the search for u
+  std::array<std::vector<std::uint32_t>, 3> guide_;  // interval at which the search for u starts
 };
 
 }  // namespace thunderhead::reference

@@ -31,8 +31,8 @@ struct Box {
   glm::dvec3 high_m{0.0};
 };
 
-// The cells to hold, and the box. A border of empty cells takes linear extinction to zero at its
-// centres.
+// The cells to use, and the box. In a border of empty cells linear extinction falls to zero at
+// their centres.
 Box BoxOf(const volume::HydrometeorFields& fields, const MediumOptions& options) {
   const volume::RegularGrid& domain = fields.grid;
   volume::CellBox occupied = fields.condensate;
@@ -70,7 +70,7 @@ void AddField(const volume::RegularGrid& domain, const Box& box,
   }
 }
 
-// What fields have in common that share a group.
+// The optics that all fields of a group share.
 struct GroupLook {
   physics::PhaseFunction phase;
   glm::dvec3 albedo{1.0};
@@ -82,7 +82,7 @@ GroupLook LookOf(const scene::DrawnField& field) {
   return {field.phase, static_cast<double>(field.albedo) * glm::dvec3(field.color)};
 }
 
-// How a group scatters once its forward peak is cut off: `extinction` is a factor.
+// A group's optics after delta scaling: `extinction` is a factor.
 struct CutOptics {
   std::shared_ptr<const SampledPhase> phase;
   glm::dvec3 albedo{1.0};
@@ -107,7 +107,7 @@ CutOptics CutPeak(const GroupLook& look, double peak_cut_deg) {
   return optics;
 }
 
-// Shared by the functions that look at it.
+// Shared by the functions of Surroundings.
 struct Around {
   Around(const scene::Scene& scene, const glm::vec3& towards_sun, const scene::View& seen_from,
          float ground_m)
@@ -135,11 +135,11 @@ struct Around {
   float turbidity;
 };
 
-// Air between the eye and what it sees: what is lost is filled up with the sky's light.
+// Air between the eye and an object: attenuated light is replaced by the sky's.
 Air AirBefore(const Around& around, const Ray& ray, double distance_m, Behind behind) {
   namespace air = physics::glsl;
   const physics::ClearSky::Seen sky = around.Seen(ray.direction);
-  const glm::vec3 sky_depth = air::depth_of_way(around.turbidity, sky.way);
+  const glm::vec3 sky_depth = air::depth_of_way(around.turbidity, sky.air_mass);
   // The sky's ray ends at the ground.
   if (behind == Behind::kGround) return {glm::exp(-sky_depth), sky.radiance};
   const scene::View& view = around.view;

@@ -1,6 +1,6 @@
-// From a scene and a storm's fields to what the reference computes: medium, surroundings, camera.
-// The same scene that the renderers draw, without their approximations: full-precision extinction,
-// each field's own phase function, a ground that clouds shade. Knows no renderer.
+// Converts a scene and a storm's fields into the reference's input: medium, surroundings, camera.
+// The same scene as the renderers draw, without their approximations: full-precision extinction,
+// each field's own phase function, shadows on the ground. Knows no renderer.
 #pragma once
 
 #include <memory>
@@ -18,11 +18,11 @@ struct MediumOptions {
   Sides sides = Sides::kOpen;
   // Constant cells fill the file's own boxes; linear ones are what the renderers draw.
   Interpolation interpolation = Interpolation::kLinear;
-  std::shared_ptr<const SampledPhase> phase;  // in place of every field's own, if given
-  // Light that a field scatters within this angle of straight on counts as not scattered (delta
-  // scaling), but for what a function held at its value there leaves. 0 changes nothing. The
-  // tables' diffraction peaks, a thousand times brighter than the rest, are what makes pictures
-  // noisy; what changes is seen within about this angle of the sun.
+  std::shared_ptr<const SampledPhase> phase;  // replaces every field's own, if set
+  // Delta scaling: for smaller scattering angles the phase function is held at its value at this
+  // angle, and the light so cut off counts as not scattered; 0: off. The tables' diffraction peaks,
+  // a thousand times brighter than the rest, cause most of the noise; the picture changes within
+  // about this angle of the sun.
   double peak_cut_deg = 0.0;
 };
 

@@ -41,7 +41,7 @@ RefineResult SceneTracer::Refine(const RefineLimits& limits, const std::stop_tok
   return tracer_->Refine(limits, {}, stop);
 }
 
-Image SceneTracer::Snapshot() const {
+picture::LinearPicture SceneTracer::Snapshot() const {
   THUNDERHEAD_CHECK(tracer_.has_value(), "no picture was begun");
   return tracer_->Snapshot();
 }

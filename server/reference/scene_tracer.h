@@ -1,5 +1,5 @@
-// A scene's picture by the reference that is begun over and over, coarse and fine, while the scene
-// changes: what a change leaves as it was (the medium above all) is kept. Knows no sessions.
+// Traces pictures of a scene that changes, at different sizes: parts that a change does not affect,
+// above all the medium, are kept. Knows no sessions.
 #pragma once
 
 #include <memory>
@@ -20,14 +20,14 @@ class SceneTracer {
   // `peak_cut_deg` as MediumOptions has it.
   SceneTracer(double peak_cut_deg, const PathTracerOptions& options);
 
-  // Begins a picture of `size_px`, whatever size the scene asks for, without any sample.
+  // Begins a picture of `size_px`, which may differ from the scene's size, without any samples.
   absl::Status Begin(const scene::Scene& scene,
                      const std::shared_ptr<const volume::HydrometeorFields>& fields,
                      const glm::ivec2& size_px);
 
-  // As PathTracer; needs a picture begun.
+  // As PathTracer's; a picture must have begun.
   RefineResult Refine(const RefineLimits& limits, const std::stop_token& stop);
-  Image Snapshot() const;
+  picture::LinearPicture Snapshot() const;
 
  private:
   absl::Status Prepare(const scene::Scene& scene,
@@ -35,7 +35,7 @@ class SceneTracer {
 
   const double peak_cut_deg_;
   const PathTracerOptions options_;
-  // What the kept parts were made from.
+  // The inputs from which the kept parts were made.
   std::optional<scene::Scene> prepared_scene_;
   std::weak_ptr<const volume::HydrometeorFields> prepared_fields_;
   std::shared_ptr<const Medium> medium_;

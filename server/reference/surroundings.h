@@ -1,6 +1,6 @@
-// Where light comes from around a medium: sun, sky, ground, and the air in front of what is
-// far away. Plain values and functions; knows no scene. Radiance and irradiance are per colour, in
-// any one unit.
+// The surroundings of a medium: sun, sky, ground, and the air in front of distant objects. Plain
+// values and functions; knows no scene. Radiance and irradiance are per colour, in any consistent
+// unit.
 #pragma once
 
 #include <functional>
@@ -13,26 +13,26 @@
 
 namespace thunderhead::reference {
 
-// Level, endless Lambertian ground: a plane, or one that falls away as d^2 curvature / 2 with the
-// distance from a place. Seen from above only.
+// Infinite Lambertian ground: a horizontal plane, or one that falls by d^2 curvature / 2 at a
+// distance d from `touch_m`. Seen from above only.
 struct Ground {
   double height_m = 0.0;     // at that place
-  glm::dvec3 albedo{0.0};    // reflects what reaches it, through the medium's shadows
-  glm::dvec3 radiance{0.0};  // sent up besides
+  glm::dvec3 albedo{0.0};    // for light that arrives through the medium
+  glm::dvec3 radiance{0.0};  // emitted upwards in addition
   glm::dvec2 touch_m{0.0};   // that place
   double curvature_per_m = 0.0;
 };
 
-// What may be behind the air.
+// The kinds of background behind the air.
 enum class Behind { kMedium, kGround };
 
-// What air does to what is behind it.
+// The effect of air on light from behind it.
 struct Air {
   glm::dvec3 transmittance{1.0};
   glm::dvec3 airlight{0.0};
 };
 
-// A light besides the sun. It reaches the medium only, and nothing else shades it.
+// A light besides the sun. It lights the medium only, and only the medium shades it.
 struct DirectionalLight {
   glm::dvec3 towards{0.0, 0.0, 1.0};
   glm::dvec3 irradiance{0.0};  // on a plane facing it
@@ -44,11 +44,11 @@ struct Surroundings {
   std::vector<DirectionalLight> lights;
   // Radiance that comes from a direction; black if not set.
   std::function<glm::dvec3(const glm::dvec3& direction)> sky;
-  // The same as the eye sees it; as `sky` if not set.
+  // The sky as seen from the eye; `sky` if not set.
   std::function<glm::dvec3(const glm::dvec3& direction)> seen_sky;
   std::optional<Ground> ground;
-  // Air between the eye and the ground or the medium; clear if not set. The sky needs none: what it
-  // sends is the air's.
+  // Air between the eye and the ground or the medium; clear if not set. The sky needs none: its
+  // light is the air's.
   std::function<Air(const Ray& ray, double distance_m, Behind behind)> air;
 };
 

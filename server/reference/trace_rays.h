@@ -1,4 +1,4 @@
-// The mean radiance along some rays, for whoever needs other rays than a picture's.
+// Mean radiance along any rays, not only a picture's.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ struct TraceRaysOptions {
   int threads = 0;  // 0: as many as the machine has
 };
 
-// What arrives along each of `rays`, the mean of `paths_per_ray` estimates. The same, bit for bit,
-// for any number of threads.
+// Radiance that arrives along each of `rays`: the mean of `paths_per_ray` estimates. The same, bit
+// for bit, for any number of threads.
 std::vector<glm::dvec3> TraceRays(const Medium& medium, const Surroundings& surroundings,
                                   const std::vector<Ray>& rays, const TraceRaysOptions& options);
 

@@ -17,7 +17,7 @@ absl::StatusOr<TracedScene> TraceScene(const scene::Scene& scene,
   Surroundings surroundings = SurroundingsOf(scene, fields, GroundLight::kShaded);
   if (!options.sun) surroundings.sun_irradiance = glm::dvec3(0.0);
   PathTracerOptions of_paths;
-  of_paths.most_scatterings = options.most_scatterings;
+  of_paths.max_scatterings = options.max_scatterings;
   PathTracer tracer(medium, std::move(surroundings), CameraOf(scene, fields),
                     {scene.output.width_px, scene.output.height_px}, of_paths);
   TracedScene traced;

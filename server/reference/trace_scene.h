@@ -1,4 +1,4 @@
-// A scene's picture by the reference, from its fields to pixels. Knows no files.
+// Traces a scene's picture, from its fields to pixels. Knows no files.
 #pragma once
 
 #include <stop_token>
@@ -14,19 +14,19 @@ namespace thunderhead::reference {
 inline constexpr double kPeakCut_deg = 3.0;
 
 struct TracedScene {
-  Image image;
+  picture::LinearPicture image;
   RefineResult result;
 };
 
-// What is left out, of use to find out where a picture is wrong.
+// Options to leave out parts of the light, for finding the cause of a picture's error.
 struct TraceOptions {
   double peak_cut_deg = kPeakCut_deg;  // MediumOptions::peak_cut_deg
-  int most_scatterings = 0;            // PathTracerOptions::most_scatterings
-  bool sun = true;                     // else the sky alone gives light
+  int max_scatterings = 0;             // PathTracerOptions::max_scatterings
+  bool sun = true;                     // false: only the sky gives light
 };
 
-// The picture that the renderers try to draw: their ground, each field's own phase function or the
-// one that the scene's mode gives all.
+// The picture that renderers approximate: with their ground, and each field's own phase function or
+// the one that the scene's mode gives to all.
 absl::StatusOr<TracedScene> TraceScene(const scene::Scene& scene,
                                        const volume::HydrometeorFields& fields,
                                        const TraceOptions& options, const RefineLimits& limits,

@@ -16,7 +16,7 @@ constexpr double kRouletteTransmittance = 0.1;
 std::optional<double> SampleCollision(const Medium& medium, const Ray& ray, double limit_m,
                                       RandomStream* random) {
   BrickWalk walk(medium, ray, limit_m);
-  double depth = random->Exponential();  // still to pass, in units of the majorant
+  double depth = random->Exponential();  // remaining optical depth of the majorant
   Stretch stretch;
   while (walk.Next(&stretch)) {
     double at_m = stretch.begin_m;

@@ -17,7 +17,7 @@ std::optional<double> SampleCollision(const Medium& medium, const Ray& ray, doub
                                       RandomStream* random);
 
 // An unbiased estimate, at least 0, of the transmittance along `ray` up to `limit_m`. Below 0.1 it
-// goes on by Russian roulette.
+// continues by Russian roulette.
 double EstimateTransmittance(const Medium& medium, const Ray& ray, double limit_m,
                              RandomStream* random);
 

@@ -45,8 +45,7 @@ struct DrawQuality {
   bool single_precision = false;  // in the light volume's buffers and the frame; half is usual
   // Of the light volume, for the light that the scene has.
   std::shared_ptr<const LightCorrection> correction{};
-  // The frame is the light volume's eye buffer: for each pixel the place in the medium's box, 0 to
-  // 1, where its correction is looked up, and the share of the background that passes.
+  // Of the light volume: LinearFrame::places in place of a picture.
   bool places = false;
 
   bool operator==(const DrawQuality&) const = default;

@@ -122,7 +122,10 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& scene, const
   drawn_fields_ = fields;
   drawn_quality_ = quality;
   LinearFrame frame = Report(scene, *fields);
-  if (quality.places) frame.radiance = &Eye();
+  if (quality.places) {
+    frame.radiance = nullptr;
+    frame.places = &Eye();
+  }
   frame.stages = std::move(times);
   return frame;
 }

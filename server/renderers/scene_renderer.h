@@ -18,8 +18,13 @@
 namespace thunderhead::renderers {
 
 struct LinearFrame {
-  const gl::Texture2D* radiance = nullptr;  // RGBA float; lives until the next Draw
-  StageTimes stages;                        // those that ran
+  // RGBA float; lives until the next Draw. None where places were asked for.
+  const gl::Texture2D* radiance = nullptr;
+  // Only if DrawQuality::places asked for it, and as long-lived: for each pixel of the eye buffer
+  // the point in the medium's box, 0 to 1 on each axis, where its correction is looked up, and in
+  // alpha the transmittance to the background.
+  const gl::Texture2D* places = nullptr;
+  StageTimes stages;  // those that ran
   Content content;
   int slices = 0;
   std::size_t device_bytes = 0;

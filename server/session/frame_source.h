@@ -17,6 +17,7 @@
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 #include "physics/hydrometeors.h"
+#include "picture/linear_picture.h"
 #include "renderers/content.h"
 #include "renderers/preparation.h"
 #include "scene/capabilities.h"
@@ -46,12 +47,6 @@ struct Refinement {
   std::optional<double> relative_error;
 
   bool operator==(const Refinement&) const = default;
-};
-
-// Linear radiance, rows from top to bottom.
-struct LinearPicture {
-  glm::ivec2 size_px{0};
-  std::vector<glm::vec3> radiance;
 };
 
 // A finished picture: 8-bit sRGB, three bytes a pixel, rows from top to bottom.
@@ -116,7 +111,7 @@ class FrameSource {
       const std::shared_ptr<const volume::HydrometeorFields>& fields) = 0;
 
   // Tone maps what was computed elsewhere. What Draw keeps stays kept.
-  virtual absl::StatusOr<DisplayFrame> Tone(const LinearPicture& picture,
+  virtual absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
                                             const scene::Display& display) = 0;
 };
 

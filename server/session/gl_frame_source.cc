@@ -81,11 +81,10 @@ class GlFrameSource final : public FrameSource {
     return correctors_.Trace(scene, fields);
   }
 
-  absl::StatusOr<DisplayFrame> Tone(const LinearPicture& picture,
+  absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
                                     const scene::Display& display) override {
-    THUNDERHEAD_ASSIGN_OR_RETURN(
-        frame::ToneMapped mapped,
-        picture_tone_mapper_.Map(frame::TextureOf(picture.size_px, picture.radiance), display));
+    THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped,
+                                 picture_tone_mapper_.Map(frame::TextureOf(picture), display));
     DisplayFrame frame;
     Fill(picture.size_px, std::move(mapped), &frame);
     return frame;

@@ -39,9 +39,10 @@ class ReferenceTruthSource final : public TruthSource {
     return refinement;
   }
 
-  LinearPicture Snapshot() override {
-    reference::Image image = tracer_.Snapshot();
-    return {image.size_px, std::move(image.radiance)};
+  picture::LinearPicture Snapshot() override {
+    picture::LinearPicture picture = tracer_.Snapshot();
+    picture.standard_error = {};  // sessions show the mean of it alone (Refinement)
+    return picture;
   }
 
  private:

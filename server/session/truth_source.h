@@ -27,7 +27,7 @@ class TruthSource {
   // to; goes on from there when it is called again.
   virtual Refinement Refine(int until_samples, double seconds, const std::stop_token& stop) = 0;
 
-  virtual LinearPicture Snapshot() = 0;
+  virtual picture::LinearPicture Snapshot() = 0;
 };
 
 using TruthSourceFactory = std::function<std::unique_ptr<TruthSource>()>;

@@ -25,7 +25,7 @@ namespace thunderhead::session {
 
 // As far as it has come.
 struct TruthPicture {
-  LinearPicture picture;
+  picture::LinearPicture picture;
   Refinement refinement;
   double trace_ms = 0.0;  // since it was asked for
   bool full_size = false;

@@ -10,11 +10,11 @@ namespace {
 
 constexpr double kBrickInCoarsestCells = 1.0;
 constexpr double kBlockInCoarsestCells = 2.0;
-constexpr int kMostCellsAcross = 16;
-constexpr int kMost = 1024;  // bricks or blocks along an axis
+constexpr int kMaxCellsAcross = 16;
+constexpr int kMaxAlong = 1024;  // bricks or blocks along an axis
 constexpr int kFarthest = 254;
 
-// What is in a cell or a brick, in increasing order.
+// Content of a cell or a brick, in increasing order.
 constexpr std::uint8_t kEmpty = 0;
 constexpr std::uint8_t kThin = 1;
 constexpr std::uint8_t kThick = 2;
@@ -24,37 +24,38 @@ std::size_t Count(const glm::ivec3& size) {
          static_cast<std::size_t>(size.z);
 }
 
-// Cells along each side of about a cube of `side_in_coarsest` of the longest side of a cell, of
-// which there are at most kMost along an axis, one more than whole ones included.
+// Cells along each side of a brick or block that is roughly a cube, its side `side_in_coarsest`
+// times the longest side of a cell; larger if more than kMaxAlong of them, with one for the
+// remainder, would lie along an axis.
 glm::ivec3 CellsAcross(const RegularGrid& grid, double side_in_coarsest) {
   const glm::dvec3& spacing_m = grid.spacing_m;
   const double side_m = side_in_coarsest * std::max({spacing_m.x, spacing_m.y, spacing_m.z});
   return glm::max(glm::clamp(glm::ivec3(glm::round(side_m / spacing_m)), glm::ivec3(1),
-                             glm::ivec3(kMostCellsAcross)),
-                  grid.cells / kMost + 1);
+                             glm::ivec3(kMaxCellsAcross)),
+                  grid.cells / kMaxAlong + 1);
 }
 
-// Half floats from zero up are ordered as their bits are.
+// Half floats of 0 or more compare as their bits do.
 std::uint16_t TexelOf(double extinction_per_m, const ExtinctionVolume& volume) {
   return HalfFromFloat(
       std::min(static_cast<float>(extinction_per_m) / volume.extinction_per_m, 65504.0F));
 }
 
-// The most of each `channels` neighbours.
+// Raises each cell's filling to that of the largest of its `channels` values.
 template <int channels>
 void RaiseFillings(const std::vector<std::uint16_t>& texels, std::uint16_t empty,
                    std::uint16_t thin, std::vector<std::uint8_t>* fillings) {
   const std::uint16_t* texel = texels.data();
   for (std::uint8_t& filling : *fillings) {
-    std::uint16_t most = texel[0];
-    for (int channel = 1; channel < channels; ++channel) most = std::max(most, texel[channel]);
-    const auto here = static_cast<std::uint8_t>((most > empty ? 1 : 0) + (most > thin ? 1 : 0));
+    std::uint16_t max = texel[0];
+    for (int channel = 1; channel < channels; ++channel) max = std::max(max, texel[channel]);
+    const auto here = static_cast<std::uint8_t>((max > empty ? 1 : 0) + (max > thin ? 1 : 0));
     filling = std::max(filling, here);
     texel += channels;
   }
 }
 
-// Of each cell; `thin_per_m` is the extinction of a thin channel at most.
+// Fillings of all cells; up to `thin_per_m` a channel's extinction is thin.
 std::vector<std::uint8_t> FillingsOf(const ExtinctionVolume& volume, double thin_per_m) {
   const std::uint16_t empty = TexelOf(volume.negligible_per_m, volume);
   const std::uint16_t thin = std::max(TexelOf(thin_per_m, volume), empty);
@@ -72,16 +73,16 @@ struct Range {
   int last;
 };
 
-// The most of what `reach` names, for each of `count` along one axis: `fillings` has `length` rows
-// of `stride` for each step along the axes after it.
+// Maximum filter and resampling along one axis: output i of `count` is the maximum over the input
+// range reach(i). `fillings` is an array of layers of `length` rows of `stride` values.
 template <typename Reach>
-std::vector<std::uint8_t> MostAlong(const std::vector<std::uint8_t>& fillings, int stride,
-                                    int length, int count, const Reach& reach) {
+std::vector<std::uint8_t> MaxAlong(const std::vector<std::uint8_t>& fillings, int stride,
+                                   int length, int count, const Reach& reach) {
   const auto row = static_cast<std::size_t>(stride);
   const auto layer = row * static_cast<std::size_t>(length);
-  std::vector<std::uint8_t> most(fillings.size() / layer * static_cast<std::size_t>(count) * row,
-                                 kEmpty);
-  std::uint8_t* out = most.data();
+  std::vector<std::uint8_t> result(fillings.size() / layer * static_cast<std::size_t>(count) * row,
+                                   kEmpty);
+  std::uint8_t* out = result.data();
   for (const std::uint8_t* in = fillings.data(); in != fillings.data() + fillings.size();
        in += layer) {
     for (int i = 0; i < count; ++i, out += row) {
@@ -92,20 +93,20 @@ std::vector<std::uint8_t> MostAlong(const std::vector<std::uint8_t>& fillings, i
       }
     }
   }
-  return most;
+  return result;
 }
 
-// Along all axes: from `size` to `count`; `reach` takes an axis too.
+// The same along all axes, from `size` to `count`; the range is reach(axis, i).
 template <typename Reach>
-std::vector<std::uint8_t> MostOf(const std::vector<std::uint8_t>& fillings, const glm::ivec3& size,
-                                 const glm::ivec3& count, const Reach& reach) {
+std::vector<std::uint8_t> MaxOf(const std::vector<std::uint8_t>& fillings, const glm::ivec3& size,
+                                const glm::ivec3& count, const Reach& reach) {
   const auto along = [&](int axis) { return [&, axis](int i) { return reach(axis, i); }; };
-  const auto by_z = MostAlong(fillings, size.x * size.y, size.z, count.z, along(2));
-  const auto by_y = MostAlong(by_z, size.x, size.y, count.y, along(1));
-  return MostAlong(by_y, 1, size.x, count.x, along(0));
+  const auto by_z = MaxAlong(fillings, size.x * size.y, size.z, count.z, along(2));
+  const auto by_y = MaxAlong(by_z, size.x, size.y, count.y, along(1));
+  return MaxAlong(by_y, 1, size.x, count.x, along(0));
 }
 
-// Of each brick.
+// Fillings of all bricks.
 std::vector<std::uint8_t> FillingsOf(const BrickMap& map) {
   std::vector<std::uint8_t> fillings(map.content.size());
   std::transform(
@@ -115,14 +116,15 @@ std::vector<std::uint8_t> FillingsOf(const BrickMap& map) {
   return fillings;
 }
 
-// Where it is not empty, as x + 1024 (y + 1024 z); where it is thick with `thick_bits`.
+// Encodes the places that are not empty as x + 1024 (y + 1024 z), with `thick_bits` set where it is
+// thick.
 std::vector<std::uint32_t> Places(const std::vector<std::uint8_t>& fillings, const glm::ivec3& size,
                                   std::uint32_t thick_bits) {
   std::vector<std::uint32_t> places;
   const std::uint8_t* filling = fillings.data();
   for (int z = 0; z < size.z; ++z) {
     for (int y = 0; y < size.y; ++y) {
-      const auto row = static_cast<std::uint32_t>(kMost * (y + kMost * z));
+      const auto row = static_cast<std::uint32_t>(kMaxAlong * (y + kMaxAlong * z));
       for (int x = 0; x < size.x; ++x, ++filling) {
         if (*filling == kEmpty) continue;
         places.push_back((row + static_cast<std::uint32_t>(x)) |
@@ -133,18 +135,18 @@ std::vector<std::uint32_t> Places(const std::vector<std::uint8_t>& fillings, con
   return places;
 }
 
-// Lowers each of a row to one more than the least of the three of another row beside it, `row` and
-// `beside` having `count` values and one more on both sides.
+// Lowers each value of a row to at most one more than the minimum of its three neighbours in
+// another row. Both have `count` values and one more on both sides.
 void LowerToRow(const std::uint8_t* beside, std::size_t count, std::uint8_t* row) {
   for (std::size_t x = 0; x < count; ++x) {
-    const std::uint8_t least = std::min(std::min(beside[x], beside[x + 1]), beside[x + 2]);
-    const auto one_more = static_cast<std::uint8_t>(least + 1);
+    const std::uint8_t min = std::min(std::min(beside[x], beside[x + 1]), beside[x + 2]);
+    const auto one_more = static_cast<std::uint8_t>(min + 1);
     row[x + 1] = std::min(row[x + 1], one_more);
   }
 }
 
-// Chebyshev distances to the nearest brick that is not empty, at most kFarthest: two sweeps over
-// the 13 neighbours before a brick and the 13 after it give them exactly (Rosenfeld and Pfaltz
+// Chebyshev distances to the nearest brick that is not empty, at most kFarthest, by two sweeps:
+// over the 13 neighbours before each brick, then the 13 after it. Exact (Rosenfeld and Pfaltz
 // 1966).
 class Distances {
  public:
@@ -168,18 +170,19 @@ class Distances {
     }
   }
 
-  // Of the bricks of a row.
+  // Distances of the bricks of a row.
   const std::uint8_t* Of(int y, int z) { return Row(y, z) + 1; }
 
  private:
-  // With one more on both sides, as far as can be.
+  // A row with a border of one value of kFarthest on both sides.
   std::uint8_t* Row(int y, int z) {
     return values_.data() +
            row_ * (static_cast<std::size_t>(y) +
                    static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(z));
   }
 
-  // Takes in the neighbours on one side: `before` is 1 for those before, -1 for those after.
+  // Updates a row from the neighbours on one side: `before` is 1 for those before it, -1 for those
+  // after.
   void Sweep(int y, int z, int before) {
     std::uint8_t* row = Row(y, z);
     const auto count = static_cast<std::size_t>(size_.x);
@@ -210,15 +213,15 @@ BrickMap BrickMapOf(const ExtinctionVolume& volume) {
   const glm::ivec3 across = CellsAcross(volume.grid, kBrickInCoarsestCells);
   map.cells_per_brick = across;
   map.bricks = cells / across + 1;
-  const double way_m = glm::length(glm::dvec3(across) * volume.grid.spacing_m);
+  const double diagonal_m = glm::length(glm::dvec3(across) * volume.grid.spacing_m);
   int channels = 0;  // their extinctions add up
   for (const ExtinctionPlane& plane : volume.planes) channels += plane.channels;
   const std::vector<std::uint8_t> fillings =
-      MostOf(FillingsOf(volume, BrickMap::kThinOpticalDepth / way_m / channels), cells, map.bricks,
-             [&](int axis, int brick) {
-               const int n = across[axis];
-               return Range{brick * n - 1, (brick + 1) * n - 1};
-             });
+      MaxOf(FillingsOf(volume, BrickMap::kThinOpticalDepth / diagonal_m / channels), cells,
+            map.bricks, [&](int axis, int brick) {
+              const int n = across[axis];
+              return Range{brick * n - 1, (brick + 1) * n - 1};
+            });
   Distances distances(fillings, map.bricks);
   map.content.reserve(fillings.size());
   for (int z = 0; z < map.bricks.z; ++z) {
@@ -233,7 +236,7 @@ BrickMap BrickMapOf(const ExtinctionVolume& volume) {
   return map;
 }
 
-BrickCubes OccupiedCubesOf(const BrickMap& map, std::size_t most) {
+BrickCubes OccupiedCubesOf(const BrickMap& map, std::size_t max_cubes) {
   BrickCubes cubes;
   glm::ivec3 size = map.bricks;
   std::vector<std::uint8_t> fillings = FillingsOf(map);
@@ -241,9 +244,9 @@ BrickCubes OccupiedCubesOf(const BrickMap& map, std::size_t most) {
     return fillings.size() -
            static_cast<std::size_t>(std::count(fillings.begin(), fillings.end(), kEmpty));
   };
-  while (occupied() > most) {
+  while (occupied() > max_cubes) {
     const glm::ivec3 halved = (size + 1) / 2;
-    fillings = MostOf(fillings, size, halved, [](int, int cube) {
+    fillings = MaxOf(fillings, size, halved, [](int, int cube) {
       return Range{2 * cube, 2 * cube + 1};
     });
     size = halved;
@@ -258,9 +261,9 @@ CellBlocks CellBlocksOf(const BrickMap& map, const RegularGrid& grid) {
   if (map.content.empty()) return blocks;
   blocks.cells_per_block = CellsAcross(grid, kBlockInCoarsestCells);
   const glm::ivec3 size = (grid.cells - 1) / blocks.cells_per_block + 1;
-  // A cell is met in the brick that begins after it too.
+  // The brick that begins after a cell reads it too.
   const std::vector<std::uint8_t> fillings =
-      MostOf(FillingsOf(map), map.bricks, size, [&](int axis, int block) {
+      MaxOf(FillingsOf(map), map.bricks, size, [&](int axis, int block) {
         const int side = blocks.cells_per_block[axis];
         const int n = map.cells_per_brick[axis];
         return Range{block * side / n, (block + 1) * side / n};

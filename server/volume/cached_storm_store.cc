@@ -40,7 +40,8 @@ std::vector<const StormInfo*> CachedStormStore::Storms() const {
 }
 
 absl::StatusOr<const StormInfo*> CachedStormStore::Add(const std::string& path) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<CataloguedStorm> found, FindStorms({path}));
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<CataloguedStorm> found,
+                               FindStorms({path}, options_.formats));
   CataloguedStorm& storm = found.front();
   const Lock lock(mutex_);
   if (PlaceOf(storm.info.id).has_value()) {
@@ -103,7 +104,7 @@ absl::StatusOr<std::shared_ptr<const HydrometeorFields>> CachedStormStore::Get(
       fields = at != pending_.end() ? WaitFor(lock, at->second, progress)
                                     : Read(lock, key, Purpose::kAsked, progress);
     }
-    // The read that was waited for may have been a read-ahead given up just then.
+    // The read may have been a read-ahead that was cancelled just now: try again.
     if (absl::IsCancelled(fields.status()) && !ending_) continue;
     if (fields.ok()) {
       cache_.Use(key);
@@ -129,10 +130,11 @@ std::size_t CachedStormStore::CachedBytes() const {
 CachedStormStore::Fields CachedStormStore::WaitFor(Lock& lock,
                                                    const std::shared_ptr<PendingRead>& read,
                                                    const ReadProgress& progress) {
-  const std::shared_ptr<PendingRead> shared = read;  // outlives its place in pending_
+  const std::shared_ptr<PendingRead> shared =
+      read;  // keeps it alive after its removal from pending_
   ++shared->waiters;
   if (progress) shared->listeners.push_back(progress);
-  changed_.notify_all();  // a read-ahead that stood back may now go on
+  changed_.notify_all();  // a paused read-ahead of this time may now go on
   changed_.wait(lock, [&shared] { return shared->result.has_value(); });
   return *shared->result;
 }
@@ -146,7 +148,7 @@ CachedStormStore::Fields CachedStormStore::Read(Lock& lock, const TimeKey& key, 
   if (purpose == Purpose::kAsked) ++asked_reads_;
   Fields fields = ReadFile(lock, key, *read);
   if (purpose == Purpose::kAsked) --asked_reads_;
-  // A storm that was removed meanwhile is given to those who asked before, and not kept.
+  // Fields of a storm that was removed meanwhile are returned to callers but not cached.
   const bool keep = fields.ok() && !removed_.contains(key.storm);
   if (keep && (purpose == Purpose::kAsked || read->waiters > 0)) {
     cache_.Insert(key, *fields);
@@ -165,9 +167,8 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, const TimeKey& k
   const TimeSource source = storm.sources[key.time];
   const std::optional<VerticalGrid> grid = VerticalGridOf(lock, key);
   lock.unlock();
-  absl::StatusOr<HydrometeorFields> fields =
-      ReadTime(storm.files[source.file], source.record, grid,
-               [&](double share) { return Checkpoint(key, read, share); });
+  absl::StatusOr<HydrometeorFields> fields = storm.files[source.file].reader->Read(
+      source.record, grid, [&](double share) { return Checkpoint(key, read, share); });
   lock.lock();
   if (!fields.ok()) return fields.status();
   if (!vertical_grids_[key.storm].has_value()) {
@@ -178,9 +179,9 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, const TimeKey& k
   return std::make_shared<const HydrometeorFields>(*std::move(fields));
 }
 
-// The storm's height grid comes from its first time, whichever time is read first, so that a
-// picture of a time does not depend on what was looked at before. Nothing if this is the first time
-// itself, or if that cannot be read.
+// The storm's height grid comes from its first time, whichever time is read first, so that a time's
+// picture does not depend on which times were viewed before. Nothing if this is the first time
+// itself, or if the first cannot be read.
 std::optional<VerticalGrid> CachedStormStore::VerticalGridOf(Lock& lock, const TimeKey& key) {
   std::optional<VerticalGrid>& grid = vertical_grids_[key.storm];
   if (grid.has_value() || key.time == 0) return grid;
@@ -188,7 +189,7 @@ std::optional<VerticalGrid> CachedStormStore::VerticalGridOf(Lock& lock, const T
   const TimeSource first = storm.sources.front();
   lock.unlock();
   const absl::StatusOr<VerticalGrid> chosen =
-      ReadVerticalGrid(storm.files[first.file], first.record);
+      storm.files[first.file].reader->ReadVerticalGrid(first.record);
   lock.lock();
   if (!chosen.ok()) {
     spdlog::warn("the first time of {} cannot be read: {}", storm.info.id,
@@ -205,7 +206,7 @@ absl::Status CachedStormStore::Checkpoint(const TimeKey& key, PendingRead& read,
     const auto unwanted = [&] { return read.waiters == 0 && !IsWanted(key); };
     changed_.wait(lock,
                   [&] { return ending_ || read.waiters > 0 || asked_reads_ == 0 || unwanted(); });
-    if (ending_ || unwanted()) return absl::CancelledError("reading ahead was given up");
+    if (ending_ || unwanted()) return absl::CancelledError("read-ahead was cancelled");
   }
   const std::vector<ReadProgress> listeners = read.listeners;
   lock.unlock();
@@ -223,7 +224,7 @@ void CachedStormStore::WantAfter(const TimeKey& key) {
   const int times = static_cast<int>(storms_[key.storm].info.times.size());
   std::size_t bytes = cache_.NewestBytes();
   for (int time = key.time + 1; time < times && time <= key.time + options_.read_ahead; ++time) {
-    // A time that would push out the one in view is not worth reading; times take about the same.
+    // Do not read a time that would evict the one in view; all times are taken to be equally large.
     bytes += cache_.NewestBytes();
     if (bytes > options_.byte_budget) break;
     wanted_.push_back({key.storm, time});

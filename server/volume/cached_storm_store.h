@@ -1,5 +1,6 @@
-// The store that StormStore::Open gives: a catalogue, a cache, and a thread that reads ahead. One
-// time is read once however many ask for it; who asks goes before what is read ahead.
+// The store that StormStore::Open gives: a catalogue, a cache, and a thread that reads ahead. A
+// time is read once however many callers ask for it; reads that a caller waits for go before
+// read-ahead.
 #pragma once
 
 #include <condition_variable>
@@ -40,10 +41,10 @@ class CachedStormStore final : public StormStore {
   using Fields = absl::StatusOr<std::shared_ptr<const HydrometeorFields>>;
   enum class Purpose { kAsked, kAhead };
 
-  // A read under way, shared by all who wait for it.
+  // A read in progress, shared by all callers that wait for it.
   struct PendingRead {
     Purpose purpose = Purpose::kAsked;
-    int waiters = 0;  // beside the thread that reads
+    int waiters = 0;  // callers that wait, besides the reading thread
     std::vector<ReadProgress> listeners;
     std::optional<Fields> result;
   };
@@ -68,19 +69,20 @@ class CachedStormStore final : public StormStore {
   const StormStoreOptions options_;
 
   mutable std::mutex mutex_;
-  // Of both nothing is ever taken out: what is in them stays where it is.
+  // Elements of both are never removed, so references to them stay valid.
   std::deque<CataloguedStorm> storms_;
   std::deque<std::optional<VerticalGrid>>
-      vertical_grids_;               // one for each storm, the same for all its times
-  std::set<std::size_t> removed_;    // of storms_
-  std::condition_variable changed_;  // a read ended, a wish or a waiter came, or the store ends
+      vertical_grids_;             // one for each storm, the same for all its times
+  std::set<std::size_t> removed_;  // of storms_
+  std::condition_variable
+      changed_;  // a read ended, a time was wanted, a caller waits, or the store ends
   FieldsCache cache_;
   std::map<TimeKey, std::shared_ptr<PendingRead>> pending_;
   std::vector<TimeKey> wanted_;  // to be read ahead, in order
   int asked_reads_ = 0;
   bool ending_ = false;
 
-  std::thread read_ahead_;  // last, so that it starts when all else is there
+  std::thread read_ahead_;  // last member, so that it starts after all others are initialised
 };
 
 }  // namespace thunderhead::volume

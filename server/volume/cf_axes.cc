@@ -10,14 +10,14 @@
 namespace thunderhead::volume {
 namespace {
 
-constexpr std::size_t kMostCells = 100'000;
+constexpr std::size_t kMaxCells = 100'000;
 
 // Coordinates are often stored as floats, and rounded when written.
 constexpr double kEvenTolerance = 1e-2;
 constexpr double kLatticeTolerance = 1e-4;
 
-// Uneven layers may become at most this many times as many cells.
-constexpr int kMostRefinement = 16;
+// Limit of the number of cells that uneven layers become, over the number of layers.
+constexpr int kMaxRefinement = 16;
 
 struct Coordinate {
   std::vector<double> centres_m;  // as in the file
@@ -38,7 +38,7 @@ absl::StatusOr<std::vector<double>> ReadBounds(const NetcdfFile& file, const std
                                                    ", 2)"));
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<double> pairs, file.ReadDoubles(*name));
-  // The pairs may run against the axis.
+  // Pairs may be in descending order on an ascending axis, and the other way round.
   if (cells > 1 && (pairs[0] < pairs[1]) != (pairs[0] < pairs[2])) {
     for (std::size_t i = 0; i < cells; ++i) std::swap(pairs[2 * i], pairs[2 * i + 1]);
   }
@@ -107,7 +107,7 @@ absl::Status CheckMonotonic(const NetcdfFile& file, const std::string& dimension
   return absl::OkStatus();
 }
 
-// Steps of `rising` differ by no more than rounding.
+// True if the steps of `rising` are equal up to rounding.
 bool IsEven(const std::vector<double>& rising) {
   const auto steps = static_cast<double>(rising.size() - 1);
   const double step = (rising.back() - rising.front()) / steps;
@@ -120,29 +120,29 @@ bool IsEven(const std::vector<double>& rising) {
 
 struct Faces {
   std::vector<double> faces_m;  // empty if there are none
-  double most_change = 1.0;     // of thickness from one cell to the next, as a factor
+  double max_change = 1.0;      // of thickness from one cell to the next, as a factor
 };
 
-// The faces of cells whose middles are `centres_m` and whose lowest face is `low_m`; none unless
-// their thickness is positive and changes by no more than a factor of two from one to the next.
+// The faces of cells with centres `centres_m` and lowest face `low_m`; none unless thicknesses are
+// positive and change by at most a factor of two from cell to cell.
 Faces FacesFrom(double low_m, const std::vector<double>& centres_m) {
-  constexpr double kMostChange = 2.001;
+  constexpr double kMaxChange = 2.001;
   Faces faces{{low_m}, 1.0};
   double before_m = 0.0;
   for (const double centre_m : centres_m) {
     const double thickness_m = 2.0 * (centre_m - faces.faces_m.back());
     if (!(thickness_m > 0.0)) return {};
     const double change = before_m > 0.0 ? thickness_m / before_m : 1.0;
-    faces.most_change = std::max({faces.most_change, change, 1.0 / change});
-    if (faces.most_change > kMostChange) return {};
+    faces.max_change = std::max({faces.max_change, change, 1.0 / change});
+    if (faces.max_change > kMaxChange) return {};
     before_m = thickness_m;
     faces.faces_m.push_back(faces.faces_m.back() + thickness_m);
   }
   return faces;
 }
 
-// The faces of two or more cells around `centres_m`: so that these are the cells' middles, from the
-// ground up if that can be; else half-way between neighbours.
+// The faces of two or more cells around `centres_m`: such that these are the cells' exact centres,
+// starting at the ground if possible; else half-way between neighbours.
 std::vector<double> FacesAround(const std::vector<double>& centres_m) {
   const double even_low_m = 1.5 * centres_m[0] - 0.5 * centres_m[1];
   std::vector<double> faces_m;
@@ -155,7 +155,7 @@ std::vector<double> FacesAround(const std::vector<double>& centres_m) {
   }
   const Faces even = FacesFrom(even_low_m, centres_m);
   const Faces grounded = FacesFrom(0.0, centres_m);
-  const bool prefer_even = grounded.faces_m.empty() || even.most_change < grounded.most_change;
+  const bool prefer_even = grounded.faces_m.empty() || even.max_change < grounded.max_change;
   if (!even.faces_m.empty() && prefer_even) return even.faces_m;
   if (!grounded.faces_m.empty()) return grounded.faces_m;
   faces_m.push_back(even_low_m);
@@ -166,7 +166,7 @@ std::vector<double> FacesAround(const std::vector<double>& centres_m) {
   return faces_m;
 }
 
-// A single cell without bounds is taken to begin at 0, as a layer that stands on the ground does.
+// A single cell without bounds is assumed to begin at 0, like a layer on the ground.
 absl::StatusOr<std::vector<double>> FacesOfOne(const NetcdfFile& file, const std::string& dimension,
                                                CfDirection direction, double centre_m,
                                                double size_without_bounds_m) {
@@ -194,13 +194,14 @@ double Thinnest_m(const std::vector<double>& faces_m) {
   return thinnest_m;
 }
 
-// The most cells per thinnest layer on whose faces all layers' faces lie; 0 if there is none.
-int CommonDivisor(const std::vector<double>& faces_m, int most_cells) {
+// The least number of cells per thinnest layer such that all layers' faces are faces of cells; 0 if
+// there is none.
+int CommonDivisor(const std::vector<double>& faces_m, int max_cells) {
   const double thinnest_m = Thinnest_m(faces_m);
   const double depth_m = faces_m.back() - faces_m.front();
-  for (int divisor = 1; divisor <= kMostRefinement; ++divisor) {
+  for (int divisor = 1; divisor <= kMaxRefinement; ++divisor) {
     const double spacing_m = thinnest_m / divisor;
-    if (depth_m / spacing_m > most_cells + 0.5) return 0;
+    if (depth_m / spacing_m > max_cells + 0.5) return 0;
     const bool fits = std::ranges::all_of(faces_m, [&](double face_m) {
       const double steps = (face_m - faces_m.front()) / spacing_m;
       return std::abs(steps - std::round(steps)) <= kLatticeTolerance * std::max(steps, 1.0);
@@ -222,8 +223,8 @@ CfDescription DescribeCf(const NetcdfFile& file, const std::string& variable) {
 void EvenOut(const std::vector<double>& faces_m, CfAxis* axis) {
   const int layers = static_cast<int>(faces_m.size()) - 1;
   const double depth_m = faces_m.back() - faces_m.front();
-  const int most_cells = std::max(kMostRefinement * layers, 256);
-  const int divisor = CommonDivisor(faces_m, most_cells);
+  const int max_cells = std::max(kMaxRefinement * layers, 256);
+  const int divisor = CommonDivisor(faces_m, max_cells);
   axis->exact = divisor > 0;
   const double thinnest_m = Thinnest_m(faces_m);
   const double wanted = axis->exact ? std::round(depth_m * divisor / thinnest_m)
@@ -249,9 +250,9 @@ void EvenOut(const std::vector<double>& faces_m, CfAxis* axis) {
 absl::StatusOr<CfAxis> ReadCfAxis(const NetcdfFile& file, const std::string& dimension,
                                   CfDirection direction, const CfSizes& sizes) {
   const std::size_t length = file.DimensionLength(dimension).value_or(0);
-  if (length < 1 || length > kMostCells) {
+  if (length < 1 || length > kMaxCells) {
     return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": dimension ", dimension, " is ",
-                                                   length, "; 1 to ", kMostCells, " can be read"));
+                                                   length, "; 1 to ", kMaxCells, " can be read"));
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(Coordinate coordinate,
                                ReadCoordinate(file, dimension, direction, sizes.metres_per_degree));

@@ -1,5 +1,5 @@
 // One spatial axis of a CF file: its cells in metres and, for heights, how layers of uneven
-// thickness go onto even ones. Knows no variables.
+// thickness are averaged onto even ones. Knows no variables.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace thunderhead::volume {
 
-// The part that a layer of the file has in a cell of the grid.
+// Share of a layer of the file in a cell of the grid.
 struct LayerShare {
   int layer = 0;       // counted upwards
   double share = 0.0;  // of the cell's height
@@ -20,21 +20,21 @@ struct LayerShare {
 struct CfAxis {
   std::string dimension;
   int file_cells = 0;     // in the file
-  bool reversed = false;  // the file runs west, south or down
+  bool reversed = false;  // in the file the axis runs west, south or down
   int cells = 0;          // of the grid
   double low_m = 0.0;     // the face of the first cell
   double spacing_m = 0.0;
-  // For each cell of the grid the layers in it; empty if they are the file's own.
+  // For each cell of the grid the layers in it; empty if cells are the file's own layers.
   std::vector<std::vector<LayerShare>> shares;
-  bool exact = true;  // no layer's face lies inside a cell
+  bool exact = true;  // no layer's boundary lies inside a cell
   // The middle, if the file gives degrees.
   std::optional<double> middle_deg;
 };
 
-// What a coordinate cannot tell by itself.
+// Information about an axis that its coordinate variable does not have.
 struct CfSizes {
   double metres_per_degree = 0.0;
-  double single_cell_m = 0.0;  // width of an axis's only cell, at 0 and without bounds; 0: unknown
+  double single_cell_m = 0.0;  // width of a single cell at 0 without bounds; 0: unknown
 };
 
 // The axis along `dimension`, from the coordinate variable of that name and its bounds. Errors name
@@ -42,11 +42,12 @@ struct CfSizes {
 absl::StatusOr<CfAxis> ReadCfAxis(const NetcdfFile& file, const std::string& dimension,
                                   CfDirection direction, const CfSizes& sizes);
 
-// What the file says of a variable, or of a dimension without one.
+// Attributes of a variable, or of a dimension without a coordinate variable.
 CfDescription DescribeCf(const NetcdfFile& file, const std::string& variable);
 
-// Even cells for layers between `faces_m`, which rise: as fine as the layers' common divisor where
-// there is one of a sensible number, else about as fine as the thinnest layer.
+// Chooses even cells for layers between `faces_m` (ascending): as thick as the largest common
+// divisor of the layers' thicknesses if that does not give too many cells, else about as the
+// thinnest layer.
 void EvenOut(const std::vector<double>& faces_m, CfAxis* axis);
 
 }  // namespace thunderhead::volume

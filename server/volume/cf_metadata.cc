@@ -18,7 +18,7 @@ namespace {
 constexpr double kEarthRadius_m = 6.371e6;
 constexpr double kMetresPerDegree = kEarthRadius_m * std::numbers::pi / 180.0;
 
-// Where axes stand among a variable's dimensions.
+// Finds the axes among a variable's dimensions.
 absl::StatusOr<CfVariable> Arrange(const NetcdfFile& file, const std::string& variable) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::string> names, file.Dimensions(variable));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, file.Shape(variable));
@@ -71,14 +71,14 @@ absl::Status CheckQuantityUnits(const NetcdfFile& file, const CfDescription& var
                     quantity.quantity == Quantity::kExtinction ? "'m-1'" : "'kg kg-1' or 'kg m-3'");
 }
 
-// The hydrometeors; or the extinction alone, which is that of them all.
+// The hydrometeors, or the extinction alone if there is one: it includes all of them.
 absl::Status FindFields(const NetcdfFile& file, const std::vector<CfDescription>& variables,
                         CfMetadata* metadata) {
   std::vector<CfField>& fields = metadata->fields;
   for (const CfDescription& variable : variables) {
     const std::optional<CfQuantity> quantity = QuantityOf(variable);
     if (!quantity.has_value()) continue;
-    // Column totals and the like share the names.
+    // Column totals and the like may have the same names.
     THUNDERHEAD_ASSIGN_OR_RETURN(const auto shape, file.Shape(variable.name));
     if (shape.size() < 3) continue;
     THUNDERHEAD_RETURN_IF_ERROR(CheckQuantityUnits(file, variable, *quantity));
@@ -113,7 +113,7 @@ bool Has(const CfMetadata& metadata, AirVariable variable) {
       metadata.air, [variable](const CfAirField& field) { return field.air.variable == variable; });
 }
 
-// What mixing ratios need to become masses per volume.
+// The variables needed to convert mixing ratios to masses per volume.
 absl::Status FindAir(const NetcdfFile& file, const std::vector<CfDescription>& variables,
                      CfMetadata* metadata) {
   const auto ratio = std::ranges::find_if(metadata->fields, [](const CfField& field) {
@@ -151,7 +151,7 @@ absl::Status ReadAxes(const NetcdfFile& file, CfMetadata* metadata) {
   };
   const bool single_y = file.DimensionLength(names[static_cast<std::size_t>(first.y)]) == 1U;
   CfSizes sizes{kMetresPerDegree, 0.0};
-  // A slice of one cell is as wide as the cells along it.
+  // A slice one cell wide is taken to be as wide as its other cells.
   if (single_y && read(first.x, CfDirection::kX, sizes, &x).ok()) sizes.single_cell_m = x.spacing_m;
   THUNDERHEAD_RETURN_IF_ERROR(read(first.y, CfDirection::kY, sizes, &y));
   const double latitude_deg = y.middle_deg.value_or(0.0);
@@ -217,7 +217,7 @@ std::optional<TimeUnits> ParseTimeUnits(const std::string& units) {
 }
 
 absl::Status ReadTimes(const NetcdfFile& file, CfMetadata* metadata) {
-  // Without a date a storm is idealised, as WRF dates such runs.
+  // A storm without a date counts as idealised and gets year 1, as in WRF.
   const absl::Time nowhen = absl::FromCivil(absl::CivilSecond(1, 1, 1), absl::UTCTimeZone());
   const CfVariable& first = metadata->fields.front().variable;
   if (first.time < 0) {

@@ -1,5 +1,5 @@
-// What a CF netCDF file says of itself before any field is read: its axes in metres, its times, its
-// hydrometeors or extinction, and the air they are in. Knows no cache and no series.
+// Metadata of a CF netCDF file: its axes in metres, times, hydrometeors or extinction, and state of
+// the air. Reads no fields. Knows no cache and no series.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace thunderhead::volume {
 // A variable on x, y and z, in any order.
 struct CfVariable {
   std::string name;
-  // Where each axis stands among its dimensions; `time` is -1 if it has none.
+  // Index of each axis among its dimensions; `time` is -1 if it has none.
   int x = -1;
   int y = -1;
   int z = -1;
@@ -41,15 +41,15 @@ struct CfMetadata {
   std::array<CfAxis, 3> axes;     // x, y, z
   std::vector<absl::Time> times;  // at least one; year 1 if the file gives none
   std::vector<CfField> fields;    // in the order of physics::kHydrometeors, or the extinction alone
-  std::vector<CfAirField> air;    // only what mixing ratios need
+  std::vector<CfAirField> air;    // only the variables that mixing ratios need
   std::optional<std::string> surface;  // height of the ground (m) on y, x
-  std::string source;                  // the title or source that the file gives
+  std::string source;                  // the file's title, else its source
 };
 
-// Whether the file has anything that could be drawn.
+// True if a variable's name or standard name is that of a quantity that can be drawn.
 bool LooksLikeCf(const NetcdfFile& file);
 
-// Reads and checks the metadata. Errors name the file, the variable and what it lacks.
+// Reads and checks the metadata. Errors name the file, the variable and what is missing.
 absl::StatusOr<CfMetadata> ReadCfMetadata(const NetcdfFile& file);
 
 }  // namespace thunderhead::volume

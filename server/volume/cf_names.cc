@@ -18,7 +18,7 @@ struct Named {
   Hydrometeor hydrometeor;
 };
 
-// What standard names call the substance: "mass_fraction_of_X_in_air", "X_mixing_ratio".
+// Substances X in standard names such as "mass_fraction_of_X_in_air" and "X_mixing_ratio".
 constexpr std::array kSubstances = {
     Named{"cloud_liquid_water", Hydrometeor::kCloud},
     Named{"liquid_water", Hydrometeor::kCloud},
@@ -37,7 +37,7 @@ constexpr std::array kSubstances = {
     Named{"hail", Hydrometeor::kHail},
 };
 
-// Names of variables without a standard name, as cloud models write them.
+// Variable names that cloud models commonly use, for variables without a standard name.
 constexpr std::array kVariables = {
     Named{"qc", Hydrometeor::kCloud},       Named{"qcloud", Hydrometeor::kCloud},
     Named{"ql", Hydrometeor::kCloud},       Named{"clw", Hydrometeor::kCloud},
@@ -61,8 +61,8 @@ bool IsOneOf(std::string_view text, std::initializer_list<std::string_view> list
   return std::ranges::find(list, text) != list.end();
 }
 
-// The substance in a standard name of one of the forms in which CF writes amounts, with whether it
-// is a share of moist air.
+// The substance in a standard name of an amount of water, and whether that is a fraction of moist
+// air.
 std::optional<CfQuantity> FromStandardName(const std::string& standard_name) {
   absl::string_view substance = standard_name;
   CfQuantity quantity;

@@ -1,5 +1,5 @@
-// Which quantity a variable of a CF file is, from its standard name, its name and its units, and
-// which way a dimension runs. Pure look-up: knows no files.
+// Recognises the quantity of a CF variable by its standard name, name and units, and the direction
+// of a dimension. Pure look-up: knows no files.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace thunderhead::volume {
 
-// What a file says of one variable; parts that it does not say are empty.
+// A variable's attributes; those that it lacks are empty.
 struct CfDescription {
   std::string name;
   std::string standard_name;
@@ -22,19 +22,19 @@ struct CfDescription {
 // Units without blanks, stars, hats, dots and brackets, in lower case: "kg m**-3" is "kgm-3".
 std::string PlainUnits(std::string_view units);
 
-// A variable that can be drawn. `scale` takes its values to the quantity's unit.
+// A variable that can be drawn. Values times `scale` are in the quantity's unit.
 struct CfQuantity {
   physics::Hydrometeor hydrometeor = physics::Hydrometeor::kCloud;
   Quantity quantity = Quantity::kMixingRatio;
   double scale = 1.0;
   bool of_moist_air = false;  // a mixing ratio that refers to moist, not dry air
-  bool known_units = true;    // false: it is drawable by name, but its units cannot be used
+  bool known_units = true;    // false: recognised by name, but in units that cannot be converted
 };
 
-// Nothing if the variable is no hydrometeor and no extinction.
+// Nothing if the variable is neither a hydrometeor nor extinction.
 std::optional<CfQuantity> QuantityOf(const CfDescription& variable);
 
-// What describes the air in a cell.
+// Variables of the state of the air.
 enum class AirVariable { kDensity, kPressure, kTemperature, kPotentialTemperature, kVapour };
 
 struct CfAir {
@@ -49,10 +49,10 @@ std::optional<CfAir> AirVariableOf(const CfDescription& variable);
 
 enum class CfDirection { kX, kY, kZ, kTime };
 
-// Which way a coordinate runs, from its axis attribute, standard name, units, `positive` or name.
+// The direction of a coordinate, from its axis attribute, standard name, units, `positive` or name.
 std::optional<CfDirection> DirectionOf(const CfDescription& coordinate);
 
-// Metres in one of the unit; nothing if it is no length. An empty unit means metres.
+// The unit in metres; nothing if it is not a length. An empty unit means metres.
 std::optional<double> MetresIn(std::string_view units);
 
 // Degrees of latitude or longitude.

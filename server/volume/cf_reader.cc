@@ -18,9 +18,9 @@
 namespace thunderhead::volume {
 namespace {
 
-// What is this far below zero is a code for "missing"; no air holds more than the other.
-constexpr float kLeastAmount = -0.5F;
-constexpr float kMostAmount = 0.5F;
+// Values below kMinAmount are codes for "missing"; air never holds more than kMaxAmount.
+constexpr float kMinAmount = -0.5F;
+constexpr float kMaxAmount = 0.5F;
 
 class CfTimeReader {
  public:
@@ -34,8 +34,7 @@ class CfTimeReader {
     }
   }
 
-  absl::StatusOr<HydrometeorFields> Read(
-      const std::function<absl::Status(double share)>& checkpoint);
+  absl::StatusOr<HydrometeorFields> Read(const ReadCheckpoint& checkpoint);
 
  private:
   absl::StatusOr<std::vector<float>> ReadLayers(const CfVariable& variable) const;
@@ -73,7 +72,7 @@ absl::StatusOr<std::vector<float>> CfTimeReader::ReadLayers(const CfVariable& va
   if (variable.time >= 0) start[static_cast<std::size_t>(variable.time)] = record_;
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> read,
                                file_.ReadPart(variable.name, start, count));
-  // Strides of x, y and z in what was read; a reversed axis is walked from its end.
+  // Strides of x, y and z in the array read; a reversed axis is traversed from its end.
   std::array<std::ptrdiff_t, 3> strides{};
   std::ptrdiff_t origin = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -111,7 +110,7 @@ absl::Status CfTimeReader::ReadAir() {
   return absl::OkStatus();
 }
 
-// The density (kg/m3) that a mixing ratio in `cell` refers to; NaN if it is not known there.
+// The density (kg/m3) by which to multiply a mixing ratio in `cell`; NaN if unknown.
 float CfTimeReader::AirDensity(std::size_t cell, bool moist) const {
   const std::vector<float>* vapour = Air(AirVariable::kVapour);
   const double q_v = vapour != nullptr ? std::max((*vapour)[cell], 0.0F) : 0.0;
@@ -177,7 +176,7 @@ absl::StatusOr<HydrometeorField> CfTimeReader::ReadField(const CfField& from) {
     const float value = values[cell] * scale;
     const float density = ratio ? AirDensity(cell, from.quantity.of_moist_air) : 1.0F;
     // Both comparisons fail for NaN.
-    const bool present = value > kLeastAmount && density > 0.0F;
+    const bool present = value > kMinAmount && density > 0.0F;
     values[cell] = present ? std::max(value, 0.0F) * density : 0.0F;
     statistics.missing_cells += present ? 0 : 1;
     if (!present) continue;
@@ -189,17 +188,17 @@ absl::StatusOr<HydrometeorField> CfTimeReader::ReadField(const CfField& from) {
     statistics.minimum = minimum;
     statistics.maximum = maximum;
   }
-  if (field.quantity != Quantity::kExtinction && statistics.maximum > kMostAmount) {
+  if (field.quantity != Quantity::kExtinction && statistics.maximum > kMaxAmount) {
     return absl::InvalidArgumentError(
         absl::StrCat(file_.Path(), ": ", field.variable, " of record ", record_, " reaches ",
                      statistics.maximum, " ", std::string(UnitOf(field.quantity)),
-                     ", which no air can hold; if it is in g, say so in its units attribute"));
+                     ", more than air can hold; if it is in g, set its units attribute"));
   }
   field.concentration_kg_per_m3 = OntoGrid(std::move(values));
   return field;
 }
 
-// The ground is where the file says, else at sea level or, if the domain reaches lower, its bottom.
+// The ground's height is the file's, else sea level or, if lower, the bottom of the domain.
 absl::Status CfTimeReader::ReadTerrain(HydrometeorFields* fields) const {
   const auto ground_m = static_cast<float>(std::min(0.0, grid_.low_corner_m.z));
   const auto nx = static_cast<std::size_t>(grid_.cells.x);
@@ -220,8 +219,7 @@ absl::Status CfTimeReader::ReadTerrain(HydrometeorFields* fields) const {
   return absl::OkStatus();
 }
 
-absl::StatusOr<HydrometeorFields> CfTimeReader::Read(
-    const std::function<absl::Status(double share)>& checkpoint) {
+absl::StatusOr<HydrometeorFields> CfTimeReader::Read(const ReadCheckpoint& checkpoint) {
   const auto steps = static_cast<double>(metadata_.fields.size() + 1);
   const auto advance = [&](double done) {
     return checkpoint ? checkpoint(done / steps) : absl::OkStatus();
@@ -249,9 +247,8 @@ absl::StatusOr<HydrometeorFields> CfTimeReader::Read(
 
 }  // namespace
 
-absl::StatusOr<HydrometeorFields> ReadCfTime(
-    const CfMetadata& metadata, std::size_t record,
-    const std::function<absl::Status(double share)>& checkpoint) {
+absl::StatusOr<HydrometeorFields> ReadCfTime(const CfMetadata& metadata, std::size_t record,
+                                             const ReadCheckpoint& checkpoint) {
   try {
     THUNDERHEAD_ASSIGN_OR_RETURN(NetcdfFile file, NetcdfFile::Open(metadata.path));
     return CfTimeReader(metadata, record, std::move(file)).Read(checkpoint);

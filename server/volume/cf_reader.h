@@ -3,18 +3,16 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 
 #include "absl/status/statusor.h"
 #include "volume/cf_metadata.h"
 #include "volume/hydrometeor_fields.h"
+#include "volume/storm_file.h"
 
 namespace thunderhead::volume {
 
-// Reads record `record`. `checkpoint` is called before each variable with the share done; an error
-// ends the reading with that error. Errors name the file, the variable and what to do.
-absl::StatusOr<HydrometeorFields> ReadCfTime(
-    const CfMetadata& metadata, std::size_t record,
-    const std::function<absl::Status(double share)>& checkpoint);
+// Reads record `record`. Errors name the file, the variable and what to do.
+absl::StatusOr<HydrometeorFields> ReadCfTime(const CfMetadata& metadata, std::size_t record,
+                                             const ReadCheckpoint& checkpoint);
 
 }  // namespace thunderhead::volume

@@ -13,7 +13,7 @@
 namespace thunderhead::volume {
 namespace {
 
-// A file being written; keeps the first error of netCDF-C and does nothing more after it.
+// A file being written; keeps the first error of netCDF-C, after which calls do nothing.
 class Writer {
  public:
   explicit Writer(const std::string& path) {

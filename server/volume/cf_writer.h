@@ -1,5 +1,5 @@
-// Writes a field on a regular grid as a CF netCDF storm file, which this room reads back as it was.
-// Under a name of its own first, so that a reader never sees half a file.
+// Writes a field on a regular grid as a CF netCDF storm file; reading it back gives the same
+// values. Writes to a temporary name and renames, so that a reader never sees half a file.
 #pragma once
 
 #include <string>
@@ -15,8 +15,8 @@ struct CfCloud {
   Quantity quantity = Quantity::kMassConcentration;  // cloud water (kg/m3), or extinction (1/m)
   std::vector<float> values;                         // grid.CellCount() values, x fastest
   std::string title;
-  std::string source;   // what made it
-  std::string comment;  // with which parameters
+  std::string source;   // the program that made it
+  std::string comment;  // its parameters
 };
 
 // The variable `lwc` (kg m-3) or `extinction` (m-1) on z, y, x in metres, compressed.

@@ -104,8 +104,8 @@ std::uintmax_t ClassicFileSize(int handle) {
     data += sizes.has_records ? sizes.data * records : sizes.data;
     record_variables += sizes.has_records ? 1 : 0;
   }
-  // A whole file may lack the padding of its last value, and a lone variable with records has none
-  // between them.
+  // A complete file may lack the padding after its last value, and a single record variable has
+  // none between records.
   const std::uintmax_t slack = 3 * (record_variables == 1 ? records + 1 : 1);
   return bytes + data - (data < slack ? data : slack);
 }

@@ -19,7 +19,7 @@ std::vector<float> BlockMeans(const RegularGrid& fine, const RegularGrid& coarse
   return means;
 }
 
-// Concentration over radius, what extinction goes with.
+// Concentration over radius, to which extinction is proportional.
 std::vector<float> PerRadius(const HydrometeorField& field) {
   std::vector<float> per_radius(field.concentration_kg_per_m3.size(), 0.0F);
   AddExtinction(field, {1.0F, true}, 0, per_radius.size(), per_radius.data());
@@ -28,15 +28,15 @@ std::vector<float> PerRadius(const HydrometeorField& field) {
 
 }  // namespace
 
-glm::ivec3 CoarseningFor(const HydrometeorFields& fields, int most_cells) {
+glm::ivec3 CoarseningFor(const HydrometeorFields& fields, int max_cells) {
   if (fields.condensate.Empty()) return glm::ivec3(1);
   // A border on either side, and blocks that the condensate fills in part.
   const glm::ivec3 extent = fields.condensate.high - fields.condensate.low;
-  const glm::ivec3 room(most_cells - 4);
+  const glm::ivec3 room(max_cells - 4);
   const glm::ivec3 fits = glm::min(extent + 2, fields.grid.cells);
   glm::ivec3 factor(1);
   for (int axis = 0; axis < 3; ++axis) {
-    if (fits[axis] > most_cells) factor[axis] = (extent[axis] + room[axis] - 1) / room[axis];
+    if (fits[axis] > max_cells) factor[axis] = (extent[axis] + room[axis] - 1) / room[axis];
   }
   return factor;
 }

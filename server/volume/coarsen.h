@@ -1,17 +1,16 @@
-// A storm on fewer cells, for devices that cannot hold all of them.
+// Downsamples a storm for devices that cannot hold all of its cells.
 #pragma once
 
 #include "volume/hydrometeor_fields.h"
 
 namespace thunderhead::volume {
 
-// How many cells must become one along each axis so that what is drawn of `fields`, with a border,
-// has at most `most_cells` along it. 1, 1, 1 if it has.
-glm::ivec3 CoarseningFor(const HydrometeorFields& fields, int most_cells);
+// The downsampling factor of each axis with which the drawn part of `fields`, with its border, has
+// at most `max_cells` cells along the axis; 1 where none is needed.
+glm::ivec3 CoarseningFor(const HydrometeorFields& fields, int max_cells);
 
 // Means over blocks of `factor` cells: each field keeps its mass and, by cell, its extinction.
-// Blocks that reach beyond the domain count what lies there as empty. Terrain and statistics are
-// not carried over.
+// Parts of blocks beyond the domain count as empty. Terrain and statistics are not copied.
 HydrometeorFields Coarsened(const HydrometeorFields& fields, const glm::ivec3& factor);
 
 }  // namespace thunderhead::volume

@@ -75,7 +75,7 @@ void PlaceBox(const RegularGrid& domain, const CellBox& occupied, ExtinctionVolu
   volume->grid.cells = high - low;
   volume->grid.spacing_m = domain.spacing_m;
   volume->grid.low_corner_m = domain.low_corner_m + glm::dvec3(low) * domain.spacing_m;
-  // A border cell is empty, so extinction has fallen to zero at its centre.
+  // A border cell is empty, so extinction falls to zero at its centre.
   const glm::dvec3 low_border(glm::notEqual(low, occupied.low));
   const glm::dvec3 high_border(glm::notEqual(high, occupied.high));
   volume->low_m = volume->grid.low_corner_m + 0.5 * low_border * domain.spacing_m;
@@ -123,7 +123,7 @@ std::uint16_t HalfFromFloat(float value) {
 
 ExtinctionVolume ComputeExtinction(const HydrometeorFields& fields,
                                    const std::vector<ExtinctionTerm>& terms, int channels) {
-  THUNDERHEAD_CHECK(channels >= 0 && channels <= kMostChannels, std::to_string(channels));
+  THUNDERHEAD_CHECK(channels >= 0 && channels <= kMaxChannels, std::to_string(channels));
   ExtinctionVolume volume;
   const std::vector<ExtinctionTerm> effective = EffectiveTerms(fields, terms);
   if (effective.empty() || fields.condensate.Empty()) return volume;
@@ -133,7 +133,7 @@ ExtinctionVolume ComputeExtinction(const HydrometeorFields& fields,
   if (occupied.cells.Empty()) return volume;
   PlaceBox(fields.grid, occupied.cells, &volume);
   volume.maximum_per_m = occupied.maximum_per_m;
-  // The largest value lands just below 2^15: the smallest normal half is then 3e-9 of it.
+  // Scales the largest value to just below 2^15; the smallest normal half is then 3e-9 of it.
   volume.extinction_per_m = std::ldexp(1.0F, std::ilogb(volume.maximum_per_m) - 14);
   const glm::ivec3 low = glm::max(occupied.cells.low - 1, glm::ivec3(0));
   for (int first = 0; first < channels; first += 4) {

@@ -1,5 +1,6 @@
 // Mixing ratios to extinction: adds up the fields of a storm into a few channels of extinction over
-// the smallest box that matters, as half floats ready for a texture. Knows no scene and no GL.
+// the smallest box with all cells that matter, as half floats ready for a texture. Knows no scene
+// and no GL.
 //
 // Extinction of field f is its mass extinction 3 / (2 rho_f R_f) times its concentration rho_air
 // q_f: Riley et al. 2003 (AMS), eq. 4.
@@ -12,7 +13,7 @@
 
 namespace thunderhead::volume {
 
-// One field's share in the volume.
+// One field's contribution to the volume.
 struct ExtinctionTerm {
   int field = 0;  // index into HydrometeorFields::fields
   float mass_extinction_m2_per_kg = 0.0F;
@@ -20,7 +21,7 @@ struct ExtinctionTerm {
   bool by_cell = false;  // as MassExtinction's
 };
 
-inline constexpr int kMostChannels = 8;
+inline constexpr int kMaxChannels = 8;
 
 // Up to four channels, interleaved, of the volume.
 struct ExtinctionPlane {
@@ -29,23 +30,23 @@ struct ExtinctionPlane {
 };
 
 // Extinction over a box of cells. A cell's value sits at its centre; between centres it is linear,
-// and outside the held cells it is that of the nearest one. That preserves each field's total:
-// inside the domain the box has a border of empty cells, at the domain's faces the last cell
-// reaches to the face.
+// and outside the stored cells it is that of the nearest one. Each field's total is kept: inside
+// the domain the box has a border of empty cells, and at the domain's faces the last cell extends
+// to the face.
 struct ExtinctionVolume {
-  RegularGrid grid;       // of the held cells; no cells if nothing is worth drawing
+  RegularGrid grid;       // of the stored cells; no cells if nothing is worth drawing
   glm::dvec3 low_m{0.0};  // the box outside of which extinction is zero
   glm::dvec3 high_m{0.0};
   std::vector<ExtinctionPlane> planes;  // channels 0-3, then 4-7
   float extinction_per_m = 0.0F;        // of a texel value of 1; a power of two
   float maximum_per_m = 0.0F;           // largest sum over all channels in a cell
-  float negligible_per_m = 0.0F;        // what is not more is not worth drawing
+  float negligible_per_m = 0.0F;        // extinction up to this is not worth drawing
 
   bool Empty() const { return grid.CellCount() == 0; }
 };
 
-// Cells whose extinction along the longest straight way through the domain adds up to less than
-// this optical depth in all are left out.
+// Cells are left out if their extinction, over the length of the domain's diagonal, gives less than
+// this optical depth.
 inline constexpr double kNegligibleOpticalDepth = 1e-3;
 
 // Adds up `terms`, which use channels 0 to `channels` - 1.

@@ -11,9 +11,8 @@ namespace {
 
 constexpr float kSmallestNormal = std::numeric_limits<float>::min();
 
-// Advection undershoots by 1e-13 or so; what is this far below zero is a code for "missing", like
-// -999.
-constexpr float kLeastMixingRatio = -0.5F;
+// Advection undershoots by 1e-13 or so; values below this are codes for "missing", such as -999.
+constexpr float kMinMixingRatio = -0.5F;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -34,7 +33,7 @@ void ScanLevel(const LayerAir& air, int level, float* values, FieldStatistics& s
   for (std::size_t i = 0; i < air.columns; ++i) {
     const float value = values[i];
     // All comparisons fail for NaN.
-    const bool present = value > kLeastMixingRatio && value < kInfinity && density[i] > 0.0F;
+    const bool present = value > kMinMixingRatio && value < kInfinity && density[i] > 0.0F;
     missing_cells += present ? 0 : 1;
     negative_cells += present && value < 0.0F ? 1 : 0;
     range.minimum = present ? std::min(range.minimum, value) : range.minimum;

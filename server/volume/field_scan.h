@@ -1,4 +1,4 @@
-// Turns a mixing ratio as found in a file into mass per volume of air, and notes what was found.
+// Converts a mixing ratio from a file into mass per volume of air, with statistics.
 #pragma once
 
 #include <vector>
@@ -12,10 +12,10 @@ namespace thunderhead::volume {
 // place: negatives and missing cells become zero, and are counted.
 FieldStatistics MixingRatioToConcentration(const LayerAir& air, std::vector<float>& values);
 
-// The smallest box of cells with condensate; takes what is too small for a normal float as zero.
+// The smallest box of cells with condensate; sets subnormal values to zero.
 CellBox FlushAndBound(const RegularGrid& grid, std::vector<float>& concentration_kg_per_m3);
 
-// The smallest box that holds both.
+// The smallest box that contains both.
 CellBox Union(const CellBox& a, const CellBox& b);
 
 }  // namespace thunderhead::volume

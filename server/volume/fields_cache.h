@@ -1,5 +1,5 @@
-// Times of storms held in memory within a byte budget; the least recently used go first. Not safe
-// for several threads.
+// A cache of storms' times with a byte budget; the least recently used are evicted first. Not
+// thread-safe.
 #pragma once
 
 #include <cstddef>
@@ -27,25 +27,24 @@ class FieldsCache {
  public:
   explicit FieldsCache(std::size_t byte_budget) : byte_budget_(byte_budget) {}
 
-  // The fields, which become the most recently used; null if they are not held.
+  // The fields, which become the most recently used; null if they are not cached.
   std::shared_ptr<const HydrometeorFields> Use(const TimeKey& key);
 
   bool Holds(const TimeKey& key) const { return entries_.contains(key); }
 
-  // Holds `fields` as the most recently used and lets others go until the budget is met or only
+  // Caches `fields` as the most recently used and evicts others until the budget is met or only
   // they are left.
   void Insert(const TimeKey& key, std::shared_ptr<const HydrometeorFields> fields);
 
-  // Holds `fields` as less recently used than the newest, which is what is being looked at, if both
-  // fit.
+  // Caches `fields` as less recently used than the newest entry (the one in view), if both fit.
   void InsertAhead(const TimeKey& key, std::shared_ptr<const HydrometeorFields> fields);
 
-  // Lets all times of a storm go.
+  // Evicts all times of a storm.
   void RemoveStorm(std::size_t storm);
 
   std::size_t Bytes() const { return bytes_; }
 
-  // Bytes of the most recently used.
+  // Bytes of the most recently used entry.
   std::size_t NewestBytes() const;
 
  private:

@@ -1,5 +1,5 @@
-// One time of a storm: the mass of each hydrometeor in every cell of a regular grid, with what was
-// found in the file. Knows nothing of optics' parameters (a scene's) and of GL.
+// One time of a storm: the mass of each hydrometeor in every cell of a regular grid, with
+// statistics of the file's values. Knows neither a scene's optics nor GL.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,14 @@
 
 namespace thunderhead::volume {
 
-// What a file says of a hydrometeor: its mass per mass of air (kg/kg), its mass per volume of air
-// (kg/m3), or at once the extinction of its particles (1/m).
+// The quantity that a file has of a hydrometeor: mass per mass of air (kg/kg), mass per volume of
+// air (kg/m3), or the extinction of its particles (1/m).
 enum class Quantity { kMixingRatio, kMassConcentration, kExtinction };
 
 // The unit of a quantity: "kg kg-1", "kg m-3" or "m-1".
 std::string_view UnitOf(Quantity quantity);
 
-// What was found in the file for one field at one time.
+// Statistics of the file's values for one field at one time.
 struct FieldStatistics {
   float minimum = 0.0F;  // in the quantity's unit; before negatives were clamped; missing left out
   float maximum = 0.0F;
@@ -40,7 +40,7 @@ struct HydrometeorField {
       concentration_kg_per_m3;  // grid.CellCount() values, x fastest; empty if all are zero. Of
                                 // Quantity::kExtinction: extinction in 1/m, a mass of 1 m2/kg
   FieldStatistics statistics;
-  ParticleSizes sizes;  // that the file gives, by cell
+  ParticleSizes sizes;  // from the file, by cell; may be empty
 };
 
 // Extinction (1/m) per concentration (kg/m3) of a field.
@@ -49,8 +49,8 @@ struct MassExtinction {
   bool by_cell = false;  // `m2_per_kg` is for a radius of 1 m and is divided by each cell's own
 };
 
-// Of `field` if its particles have `optics`, but radii from the file where it has them and
-// `size_from_file` says so. That of a field given as extinction is 1 m2/kg whatever the optics.
+// The mass extinction of `field` with `optics`, but with the file's radii where it has them and
+// `size_from_file` is true. 1 m2/kg for a field given as extinction, whatever the optics.
 MassExtinction MassExtinctionOf(const HydrometeorField& field,
                                 const physics::ParticleOptics& optics, bool size_from_file);
 
@@ -58,8 +58,8 @@ MassExtinction MassExtinctionOf(const HydrometeorField& field,
 void AddExtinction(const HydrometeorField& field, const MassExtinction& mass_extinction,
                    std::size_t offset, std::size_t count, float* sums, std::size_t stride = 1);
 
-// `optics` with the radius that stands for all of the field's particles: what their phase function
-// is chosen by.
+// `optics` with the mean radius of all the field's particles, by which their phase function is
+// chosen.
 physics::ParticleOptics WithDrawnRadius(const HydrometeorField& field,
                                         physics::ParticleOptics optics, bool size_from_file);
 
@@ -71,7 +71,7 @@ struct HydrometeorFields {
   std::vector<float> terrain_height_m;  // nx * ny values above sea level, x fastest
   CellBox condensate;                   // the smallest box that holds every cell with condensate
 
-  // Bytes that the arrays take.
+  // Memory of the arrays in bytes.
   std::size_t Bytes() const;
 };
 

@@ -1,4 +1,4 @@
-// The air of a WRF file's layers: where each lies and how dense its dry part is.
+// The air of a WRF file's layers: heights and density of dry air.
 #pragma once
 
 #include <cstddef>
@@ -10,9 +10,8 @@ namespace thunderhead::volume {
 struct LayerAir {
   int levels = 0;
   std::size_t columns = 0;
-  std::vector<float> interface_height_m;  // (levels + 1) * columns; NaN where missing
-  std::vector<float>
-      dry_air_density_kg_per_m3;  // levels * columns; NaN where anything it needs is missing
+  std::vector<float> interface_height_m;         // (levels + 1) * columns; NaN where missing
+  std::vector<float> dry_air_density_kg_per_m3;  // levels * columns; NaN where an input is missing
 };
 
 // Heights from the sum of perturbation and base geopotential (m2/s2), in place. Implausible ones
@@ -26,7 +25,7 @@ struct LayerState {
   std::vector<float> vapour_kg_per_kg;  // empty: dry air
 };
 
-// The density of dry air in every layer; takes the memory of `state.pressure_Pa`. The density of a
+// The density of dry air in every layer; reuses the memory of `state.pressure_Pa`. The density of a
 // layer with missing or unordered interfaces is NaN.
 std::vector<float> DryAirDensity(LayerState state, const std::vector<float>& interface_height_m,
                                  std::size_t columns);

@@ -44,7 +44,7 @@ absl::Status OpenError(const std::string& path, int code) {
   }
 }
 
-// What a variable says about its values; all in the packed domain.
+// A variable's packing attributes; fill values are packed ones.
 struct Packing {
   nc_type type = NC_FLOAT;
   double scale = 1.0;
@@ -93,8 +93,7 @@ Packing PackingOf(int handle, int variable) {
   return packing;
 }
 
-// Comparisons are written so that NaN fails them; `Real` is the type the file's values were read
-// as.
+// Comparisons are written so that NaN fails them. `Real` is the type as which values were read.
 template <typename Real>
 float Clean(Real packed, const Packing& packing) {
   constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
@@ -126,8 +125,7 @@ absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return OpenError(path, ENOENT);
   if (!std::filesystem::is_regular_file(path, error)) return OpenError(path, NC_ENOTNC);
-  // A file of no bytes is one that its writer has just created; HDF5 would call it "unknown
-  // format".
+  // An empty file has just been created by its writer; HDF5 would call it "unknown format".
   if (std::filesystem::file_size(path, error) == 0) return OpenError(path, NC_EHDFERR);
   int handle = kNoHandle;
   const NetcdfLock lock;
@@ -138,7 +136,7 @@ absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path) {
   const std::uintmax_t expected = ClassicFileSize(handle);
   const std::uintmax_t actual = std::filesystem::file_size(path, error);
   if (!error && actual >= expected) return file;
-  // ~NetcdfFile would take the lock again.
+  // Not by ~NetcdfFile, which would take the lock again.
   nc_close(std::exchange(file.handle_, kNoHandle));
   return absl::DataLossError(absl::StrCat(
       path, ": has ", actual, " bytes where its header promises ", expected,
@@ -357,8 +355,8 @@ absl::Status NetcdfFile::ReadFloats(const std::string& variable,
     int code = nc_inq_varid(handle_, variable.c_str(), &id);
     if (code != NC_NOERR) return ReadError(variable, code);
     packing = PackingOf(handle_, id);
-    // Every chunk is read once; the cache would only keep each variable a second time until the
-    // file is closed.
+    // No chunk cache: every chunk is read once, and the cache would keep a second copy of each
+    // variable.
     nc_set_var_chunk_cache(handle_, id, 0, 0, 0.0F);
     if (packing.PlainFloat()) {
       code = nc_get_vara_float(handle_, id, start.data(), count.data(), values.data());

@@ -1,6 +1,6 @@
-// One netCDF file, owned: text and numbers out of it, with everything that stands for "no value"
-// turned into NaN. Knows no model and no storm. NetCDF-C and HDF5 are not thread-safe, so every
-// call takes one lock of the process; nothing else may call netCDF-C.
+// One netCDF file, owned: reads text and numbers, with all codes for "no value" replaced by NaN.
+// Knows no model and no storm. NetCDF-C and HDF5 are not thread-safe, so every call holds a lock of
+// the whole process (NetcdfLock); no other code may call netCDF-C.
 #pragma once
 
 #include <cstddef>
@@ -38,7 +38,7 @@ class NetcdfFile {
   // Lengths of the variable's dimensions, slowest first.
   absl::StatusOr<std::vector<std::size_t>> Shape(const std::string& variable) const;
 
-  // Attributes; nothing if absent or of another kind. An empty `variable` means the file's own
+  // Attributes; nothing if absent or of another type. An empty `variable` means the global
   // attributes.
   std::optional<std::string> TextAttribute(const std::string& variable,
                                            const std::string& attribute) const;
@@ -50,14 +50,15 @@ class NetcdfFile {
 
   // One record (index of the slowest dimension) of a numeric variable: unpacked (scale_factor,
   // add_offset), missing values (the variable's fill values, anything of 1e30 or more, NaN,
-  // infinities) as NaN, denormals as zero. The memory of `values` is used again.
+  // infinities) as NaN, denormals as zero. Reuses the memory of `values`.
   absl::Status ReadRecord(const std::string& variable, std::size_t record,
                           std::vector<float>& values) const;
 
-  // A whole numeric variable in double precision, cleaned in the same way: coordinates.
+  // A whole numeric variable in double precision, for coordinates; missing values become NaN as
+  // above.
   absl::StatusOr<std::vector<double>> ReadDoubles(const std::string& variable) const;
 
-  // A part of a variable, cleaned in the same way.
+  // A hyperslab of a variable; missing values become NaN as above.
   absl::StatusOr<std::vector<float>> ReadPart(const std::string& variable,
                                               const std::vector<std::size_t>& start,
                                               const std::vector<std::size_t>& count) const;

@@ -12,8 +12,8 @@ namespace thunderhead::volume {
 class NetcdfLock {
  public:
   NetcdfLock() : lock_(Mutex()) {
-    // HDF5 keeps a setting a thread for printing every failed look-up; netCDF switches it off in
-    // the thread that opens the first file only.
+    // HDF5 prints failed look-ups unless switched off, thread by thread; netCDF does so only in the
+    // thread that opens the first file.
     thread_local const herr_t silenced = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     static_cast<void>(silenced);
   }

@@ -18,7 +18,7 @@ void ToInverseRadius(physics::Hydrometeor hydrometeor, const SizeVariable& varia
       radius_m =
           counted ? physics::EffectiveRadius_m(hydrometeor, mixing_ratios[i] / sizes[i]) : 0.0F;
     }
-    const bool usable = radius_m >= physics::kLeastRadius_m && radius_m <= physics::kMostRadius_m;
+    const bool usable = radius_m >= physics::kMinRadius_m && radius_m <= physics::kMaxRadius_m;
     sizes[i] = 1.0F / (usable ? radius_m : default_radius_m);
   }
 }
@@ -33,8 +33,8 @@ ParticleSizes SizesOf(const std::string& variable, const std::vector<float>& con
   for (std::size_t i = 0; i < concentration.size(); ++i) {
     if (!(concentration[i] > 0.0F)) continue;
     const float inverse_radius_per_m =
-        std::clamp(concentration_per_radius[i] / concentration[i], 1.0F / physics::kMostRadius_m,
-                   1.0F / physics::kLeastRadius_m);
+        std::clamp(concentration_per_radius[i] / concentration[i], 1.0F / physics::kMaxRadius_m,
+                   1.0F / physics::kMinRadius_m);
     sizes.inverse_radius[i] = HalfFromFloat(inverse_radius_per_m / kInverseRadiusUnit_per_m);
     mass += concentration[i];
     mass_per_radius += static_cast<double>(concentration[i]) * inverse_radius_per_m;

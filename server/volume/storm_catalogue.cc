@@ -19,24 +19,30 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kDeepestFolder = 8;  // below a path given by name; also ends loops of symbolic links
+constexpr int kDeepestFolder =
+    8;  // below a path given by the user; also ends loops of symbolic links
 
 struct NamedStorm {
   std::string name;
   std::vector<StormFile> files;
 };
 
-absl::StatusOr<StormFile> Probe(const fs::path& path) {
+absl::StatusOr<StormFile> Probe(const fs::path& path, const StormFormats& formats) {
   try {
-    return ReadStormFile(path.string());
+    return formats.Describe(path.string());
   } catch (const std::bad_alloc&) {
     return absl::ResourceExhaustedError(absl::StrCat(
         path.string(), ": its metadata does not fit in memory; the file is probably damaged"));
   }
 }
 
-// What is safe in a URL and on a command line: "wrfout_d01_0001-01-01_00:10:00" has its colons
-// replaced.
+// ISO 8601, e.g. "0001-01-01T00:40:00Z".
+std::string FormatValidTime(absl::Time time) {
+  return absl::FormatTime("%E4Y-%m-%dT%H:%M:%SZ", time, absl::UTCTimeZone());
+}
+
+// An id that is safe in a URL and on a command line: in "wrfout_d01_0001-01-01_00:10:00" colons
+// become hyphens.
 std::string IdFrom(const std::string& name) {
   constexpr std::size_t kLongest = 128;
   std::string id = name.substr(0, kLongest);
@@ -48,8 +54,7 @@ std::string IdFrom(const std::string& name) {
   return id.empty() ? "storm" : id;
 }
 
-// The file's name without the endings that netCDF files have; a date in the name may hold other
-// dots.
+// The file's name without a netCDF extension. Other dots stay: they may be part of a date.
 std::string NameOfFile(const fs::path& path) {
   const std::string extension = path.extension().string();
   const bool known = extension == ".nc" || extension == ".nc4" || extension == ".cdf";
@@ -62,14 +67,14 @@ std::string NameOfFolder(const fs::path& path) {
   return (error ? path : canonical).filename().string();
 }
 
-// Files of which two may be parts of one run agree in this.
+// Equal for files that may be parts of one run.
 auto RunKey(const StormFile& file) {
   return std::make_tuple(file.domain, file.cells.x, file.cells.y, file.cells.z, file.dx_m,
                          file.dy_m, file.run, file.fields);
 }
 
-// Runs on the same grid, an ensemble for example, share most of their times; the files of one run
-// overlap at most at their ends, as after a restart.
+// True for the files of one run, which overlap at most at their ends, as after a restart. Separate
+// runs on the same grid, such as an ensemble's, share most of their times.
 bool ContinueOneAnother(const std::vector<StormFile>& files) {
   std::set<absl::Time> distinct;
   std::size_t total = 0;
@@ -105,8 +110,8 @@ absl::StatusOr<Folder> List(const fs::path& path) {
   return folder;
 }
 
-// Groups a folder's files into runs; runs whose files do not continue one another fall apart into
-// single files.
+// Groups a folder's files into runs; files that do not continue one another become storms of their
+// own.
 std::vector<NamedStorm> GroupRuns(const fs::path& folder, std::vector<StormFile> files) {
   std::map<decltype(RunKey(files[0])), std::vector<StormFile>> runs;
   for (StormFile& file : files) runs[RunKey(file)].push_back(std::move(file));
@@ -124,7 +129,7 @@ std::vector<NamedStorm> GroupRuns(const fs::path& folder, std::vector<StormFile>
       storms.back().files.push_back(std::move(file));
     }
   }
-  // Nests of one run lie side by side in a folder and are told apart by their number.
+  // Nested domains of one run are often in one folder; their names get the domain's number.
   if (series.size() > 1) {
     for (const std::size_t i : series) {
       absl::StrAppend(&storms[i].name, "-d", absl::Dec(storms[i].files[0].domain, absl::kZeroPad2));
@@ -133,18 +138,19 @@ std::vector<NamedStorm> GroupRuns(const fs::path& folder, std::vector<StormFile>
   return storms;
 }
 
-absl::Status SearchFolder(const fs::path& path, int depth, std::vector<NamedStorm>& storms,
-                          absl::Status& first_failure) {
+absl::Status SearchFolder(const fs::path& path, const StormFormats& formats, int depth,
+                          std::vector<NamedStorm>& storms, absl::Status& first_failure) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const Folder folder, List(path));
   std::vector<StormFile> files;
   for (const fs::path& file : folder.files) {
-    absl::StatusOr<StormFile> metadata = Probe(file);
+    absl::StatusOr<StormFile> metadata = Probe(file, formats);
     if (metadata.ok()) {
       files.push_back(*std::move(metadata));
       continue;
     }
     first_failure.Update(metadata.status());
-    // A read-me beside the storms is nothing to worry about; a storm that cannot be read is.
+    // A file of another kind, such as a read-me, is normal; a storm that cannot be read deserves a
+    // warning.
     const bool other = absl::IsInvalidArgument(metadata.status());
     spdlog::log(other ? spdlog::level::info : spdlog::level::warn, "left out: {}",
                 std::string(metadata.status().message()));
@@ -152,7 +158,8 @@ absl::Status SearchFolder(const fs::path& path, int depth, std::vector<NamedStor
   if (!files.empty()) std::ranges::move(GroupRuns(path, std::move(files)), back_inserter(storms));
   if (depth == kDeepestFolder) return absl::OkStatus();
   for (const fs::path& below : folder.folders) {
-    if (absl::Status status = SearchFolder(below, depth + 1, storms, first_failure); !status.ok()) {
+    if (absl::Status status = SearchFolder(below, formats, depth + 1, storms, first_failure);
+        !status.ok()) {
       first_failure.Update(status);
       spdlog::warn("left out: {}", std::string(status.message()));
     }
@@ -160,30 +167,31 @@ absl::Status SearchFolder(const fs::path& path, int depth, std::vector<NamedStor
   return absl::OkStatus();
 }
 
-absl::Status Search(const std::string& path, std::vector<NamedStorm>& storms) {
+absl::Status Search(const std::string& path, const StormFormats& formats,
+                    std::vector<NamedStorm>& storms) {
   std::error_code error;
   if (!fs::is_directory(path, error)) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(StormFile metadata, Probe(path));
+    THUNDERHEAD_ASSIGN_OR_RETURN(StormFile metadata, Probe(path, formats));
     storms.push_back({NameOfFile(path), {}});
     storms.back().files.push_back(std::move(metadata));
     return absl::OkStatus();
   }
   const std::size_t before = storms.size();
   absl::Status first_failure;
-  THUNDERHEAD_RETURN_IF_ERROR(SearchFolder(path, 0, storms, first_failure));
+  THUNDERHEAD_RETURN_IF_ERROR(SearchFolder(path, formats, 0, storms, first_failure));
   if (storms.size() > before) return absl::OkStatus();
   if (!first_failure.ok()) {
     return base::Annotate(first_failure, absl::StrCat(path, " holds no storm; its first file"));
   }
-  return absl::NotFoundError(absl::StrCat(
-      path, ": holds no storm; put the model's output files (wrfout_..., or CF netCDF) there"));
+  return absl::NotFoundError(absl::StrCat(path, ": holds no storm; put the model's output files (",
+                                          formats.Examples(), ") there"));
 }
 
 std::string TitleOf(const std::string& name, const StormFile& file) {
   return file.about.empty() ? name : absl::StrCat(name, " (", file.about, ")");
 }
 
-// The file that comes again under another path, or through a link, is one file.
+// Drops files that were found before under another path or through a link.
 void DropRepeated(std::vector<NamedStorm>& storms) {
   std::set<std::string> seen;
   for (NamedStorm& storm : storms) {
@@ -233,12 +241,13 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<StormFile> fi
   return storm;
 }
 
-absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths) {
+absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
+                                                        const StormFormats& formats) {
   std::vector<NamedStorm> named;
-  for (const std::string& path : paths) THUNDERHEAD_RETURN_IF_ERROR(Search(path, named));
+  for (const std::string& path : paths) THUNDERHEAD_RETURN_IF_ERROR(Search(path, formats, named));
   if (named.empty()) {
-    return absl::InvalidArgumentError(
-        "no storm to show; name a file or folder of model output (wrfout_..., or CF netCDF)");
+    return absl::InvalidArgumentError(absl::StrCat(
+        "no storm to show; name a file or folder of model output (", formats.Examples(), ")"));
   }
   DropRepeated(named);
   std::vector<CataloguedStorm> storms;

@@ -1,22 +1,41 @@
-// One file of a storm, of whichever kind it is (WRF output, CF): what a catalogue of storms needs
-// to know of it, and its reading.
+// One file of a storm, whatever its format: its description, as a catalogue of storms needs it, and
+// the reader of its records.
 #pragma once
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
-#include "volume/cf_metadata.h"
 #include "volume/hydrometeor_fields.h"
 #include "volume/vertical_remap.h"
-#include "volume/wrf_metadata.h"
 
 namespace thunderhead::volume {
+
+// Called before each variable with the share done so far, 0 to 1; an error ends the reading with
+// that error. May be empty.
+using ReadCheckpoint = std::function<absl::Status(double share)>;
+
+// Reads the records of one file that its format has described. Holds no open file between calls;
+// safe to call from any thread. Errors name the file, the variable and what to do; there is never
+// half a result.
+class RecordReader {
+ public:
+  virtual ~RecordReader() = default;
+
+  // Reads record `record`. `grid` is the storm's height grid, chosen from this record if absent; a
+  // format whose heights are the same at all times need not look at it.
+  virtual absl::StatusOr<HydrometeorFields> Read(std::size_t record,
+                                                 const std::optional<VerticalGrid>& grid,
+                                                 const ReadCheckpoint& checkpoint) const = 0;
+
+  // The height grid of a storm whose first time is this record.
+  virtual absl::StatusOr<VerticalGrid> ReadVerticalGrid(std::size_t record) const = 0;
+};
 
 struct StormFile {
   std::string path;
@@ -30,19 +49,7 @@ struct StormFile {
   std::string run;                           // files of different runs differ in it
   std::optional<double> latitude_deg;        // of the middle
   std::optional<double> longitude_deg;
-  std::variant<WrfMetadata, CfMetadata> metadata;
+  std::shared_ptr<const RecordReader> reader;
 };
-
-// Finds out what kind of file is at `path` and whether it is fit to be read. Errors name the file,
-// the variable and what it lacks.
-absl::StatusOr<StormFile> ReadStormFile(const std::string& path);
-
-// Reads one record; `grid`, `checkpoint` and errors as for ReadWrfTime.
-absl::StatusOr<HydrometeorFields> ReadTime(
-    const StormFile& file, std::size_t record, const std::optional<VerticalGrid>& grid,
-    const std::function<absl::Status(double share)>& checkpoint);
-
-// The height grid that a storm whose first time is this record has.
-absl::StatusOr<VerticalGrid> ReadVerticalGrid(const StormFile& file, std::size_t record);
 
 }  // namespace thunderhead::volume

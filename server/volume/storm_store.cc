@@ -10,7 +10,8 @@ namespace thunderhead::volume {
 
 absl::StatusOr<std::unique_ptr<StormStore>> StormStore::Open(const std::vector<std::string>& paths,
                                                              const StormStoreOptions& options) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<CataloguedStorm> storms, FindStorms(paths));
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<CataloguedStorm> storms,
+                               FindStorms(paths, options.formats));
   return std::make_unique<CachedStormStore>(std::move(storms), options);
 }
 

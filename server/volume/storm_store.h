@@ -14,6 +14,7 @@
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
 #include "volume/hydrometeor_fields.h"
+#include "volume/storm_format.h"
 
 namespace thunderhead::volume {
 
@@ -23,7 +24,7 @@ struct StormTime {
   double elapsed_s = 0.0;  // since the storm's first time
 };
 
-// What is known of a storm without reading its fields.
+// Description of a storm, available without reading its fields.
 struct StormInfo {
   std::string id;     // unique in a store; from the file's or folder's name
   std::string title;  // for people, from the file's global attributes
@@ -37,47 +38,48 @@ struct StormInfo {
   std::optional<double> longitude_deg;
 };
 
-// Says how far a read has come: a share from 0 to 1. Called on the reading thread.
+// Called on the reading thread with the share done, 0 to 1.
 using ReadProgress = std::function<void(double)>;
 
 struct StormStoreOptions {
   std::size_t byte_budget =
       std::size_t{2} << 30;  // of cached times; the newest one is kept even if it alone is larger
   int read_ahead = 1;        // times read ahead after each Get
+  StormFormats formats = StormFormats::BuiltIn();
 };
 
 class StormStore {
  public:
   // Opens every storm under `paths`: a file is one storm; a folder is one series where its files
   // continue one another (same grid, different times), else one storm a file or sub-folder. Reads
-  // only metadata. Fails with one clear error (file, variable, what to do) if a path given by name
-  // cannot be used; a file inside a folder that is no storm is logged and left out; no storm at all
-  // is an error.
+  // only metadata. Fails with one clear error (file, variable, what to do) if a given path cannot
+  // be used. A file inside a folder that is not a storm is logged and skipped; finding no storm at
+  // all is an error.
   static absl::StatusOr<std::unique_ptr<StormStore>> Open(const std::vector<std::string>& paths,
                                                           const StormStoreOptions& options);
   virtual ~StormStore() = default;
 
-  // The storms: those opened in order of id, then those added, as they came. What is pointed to
-  // lives as long as the store.
+  // The storms: those opened, in order of id, then those added, in order of addition. Pointers stay
+  // valid as long as the store.
   virtual std::vector<const StormInfo*> Storms() const = 0;
 
   // Adds the storm of a file. ALREADY_EXISTS if another has its id; else as Open.
   virtual absl::StatusOr<const StormInfo*> Add(const std::string& path) = 0;
 
-  // Forgets a storm: it is neither listed nor found, and nothing of it is read, from now on. Its
-  // files stay. NOT_FOUND for an unknown id.
+  // Removes a storm from the store: it is no longer listed, found or read. Its files stay.
+  // NOT_FOUND for an unknown id.
   virtual absl::Status Remove(std::string_view id) = 0;
 
-  // The storm of that id, or nothing.
+  // The storm of that id, or null.
   const StormInfo* Find(std::string_view id) const;
 
   // The fields of one time: from the cache, or read now (blocking). `time_index` must be one of the
-  // storm's. Errors: NOT_FOUND (id), OUT_OF_RANGE (time), and what is wrong with the file.
+  // storm's. Errors: NOT_FOUND (id), OUT_OF_RANGE (time), and those of the file's reader.
   // `progress` may be empty.
   virtual absl::StatusOr<std::shared_ptr<const HydrometeorFields>> Get(
       std::string_view id, int time_index, const ReadProgress& progress) = 0;
 
-  // The same if it is in the cache; nothing is read.
+  // The fields if they are in the cache, else null; reads nothing.
   virtual std::shared_ptr<const HydrometeorFields> Peek(std::string_view id, int time_index) = 0;
 
   // Bytes of all cached times.

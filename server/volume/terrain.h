@@ -1,4 +1,5 @@
-// The height of the ground under a storm. Beyond the domain it goes on as at the domain's edge.
+// The height of the ground under a storm. Beyond the domain it is that of the nearest point of its
+// edge.
 #pragma once
 
 #include "glm/vec2.hpp"

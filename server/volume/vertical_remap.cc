@@ -83,7 +83,7 @@ double LimitedSlope_per_m(const Layers& layers, std::size_t column, int level, c
   return std::copysign(std::min(std::abs(central), limit), central);
 }
 
-// One tile of columns copied together, so that the strides of the big arrays are walked once.
+// A tile of columns copied together, so that the large arrays are traversed once.
 class Tile {
  public:
   Tile(int levels, const VerticalGrid& grid)
@@ -93,7 +93,7 @@ class Tile {
         concentration_(levels * kTile),
         target_(grid.cells * kTile) {}
 
-  // False if the tile holds nothing.
+  // False if the tile is empty.
   bool Load(const std::vector<float>& concentration, std::size_t columns, std::size_t first,
             std::size_t count) {
     float largest = 0.0F;
@@ -137,22 +137,23 @@ VerticalGrid ChooseVerticalGrid(const std::vector<float>& interface_height_m, in
   const HeightRange range = RangeOf(interface_height_m);
   const double thinnest_m = ThinnestLevel_m(interface_height_m, levels, columns);
   if (!(range.high_m > range.low_m) || !std::isfinite(thinnest_m)) return {};
-  // A quarter more cells than levels keeps what is held below 1.5 times the file's own bytes.
-  const int most_cells = std::max(1, levels * 5 / 4);
+  // With at most a quarter more cells than levels, memory stays below 1.5 times the file's
+  // uncompressed size.
+  const int max_cells = std::max(1, levels * 5 / 4);
   // Later times' layers stand a little higher or lower; room for that keeps the grid the same for
   // all of them.
   constexpr double kRoomAbove = 0.005;
   const double extent_m =
-      (range.high_m - range.low_m) * (most_cells > levels ? 1.0 + kRoomAbove : 1.0);
-  const double spacing_m = std::max(thinnest_m, extent_m / most_cells);
+      (range.high_m - range.low_m) * (max_cells > levels ? 1.0 + kRoomAbove : 1.0);
+  const double spacing_m = std::max(thinnest_m, extent_m / max_cells);
   constexpr double kRounding = 1e-6;
   const int cells = static_cast<int>(std::ceil(extent_m / spacing_m - kRounding));
-  return {range.low_m, spacing_m, std::clamp(cells, 1, most_cells)};
+  return {range.low_m, spacing_m, std::clamp(cells, 1, max_cells)};
 }
 
 VerticalGrid Extended(const VerticalGrid& grid, const std::vector<float>& interface_height_m) {
   const HeightRange range = RangeOf(interface_height_m);
-  // Heights are stored as floats, so a difference of centimetres is none.
+  // Heights are in single precision: differences of centimetres are rounding.
   constexpr double kSame_m = 0.05;
   VerticalGrid extended = grid;
   if (range.low_m < grid.low_m - kSame_m) {

@@ -1,6 +1,6 @@
-// Puts terrain-following layers on a regular height grid and keeps every column's mass: what a
-// target cell holds is the integral of the layers over it. Within a layer the profile is linear,
-// with the slope limited so that no new extreme appears (van Leer 1977). Pure arithmetic; knows no
+// Remaps terrain-following layers to a regular height grid, conserving every column's mass: a
+// target cell gets the integral of the layers over it. Within a layer the profile is linear, with
+// the slope limited so that no new extreme appears (van Leer 1977). Pure arithmetic; knows no
 // files.
 #pragma once
 
@@ -18,7 +18,7 @@ struct VerticalGrid {
 };
 
 // The layers of a block of columns, all arrays with the column running fastest, then upwards.
-// Heights that are NaN or do not rise mark a layer that is not there.
+// Heights that are NaN or do not rise mark a missing layer.
 struct Layers {
   const float* interface_height_m;  // (levels + 1) * stride values
   const float* concentration;       // levels * stride values, none below zero and none NaN
@@ -28,15 +28,15 @@ struct Layers {
 
 // A grid that reaches from the lowest to the highest interface of `columns` columns with a little
 // room above, as fine as the thinnest layer but with at most 1.25 times as many cells as levels.
-// `cells` is zero if no layer is there.
+// `cells` is zero if all layers are missing.
 VerticalGrid ChooseVerticalGrid(const std::vector<float>& interface_height_m, int levels,
                                 std::size_t columns);
 
-// `grid` with whole cells added below and above until it holds every interface.
+// `grid` extended by whole cells below and above until it contains every interface.
 VerticalGrid Extended(const VerticalGrid& grid, const std::vector<float>& interface_height_m);
 
 // Adds the column at `column` of `layers` to `target`, `grid.cells` means that start at zero and
-// lie `target_stride` apart. What lies outside the grid goes into its outermost cells.
+// lie `target_stride` apart. Mass outside the grid goes into its outermost cells.
 void RemapColumn(const Layers& layers, std::size_t column, const VerticalGrid& grid, float* target,
                  std::size_t target_stride);
 

@@ -35,14 +35,14 @@ void AddField(const HydrometeorFields& fields, const HydrometeorField& field, Pr
   }
 }
 
-// The first and one past the last plane that keep all but kShareLeftOut of the profile at either
-// end.
+// The first plane, and one past the last, of the part that leaves out kShareLeftOut of the profile
+// at either end.
 std::pair<int, int> Keep(const std::vector<double>& profile) {
-  const double most_left_out = kShareLeftOut * std::accumulate(profile.begin(), profile.end(), 0.0);
+  const double max_left_out = kShareLeftOut * std::accumulate(profile.begin(), profile.end(), 0.0);
   int low = 0;
-  for (double sum = profile.front(); sum < most_left_out;) sum += profile[++low];
+  for (double sum = profile.front(); sum < max_left_out;) sum += profile[++low];
   int high = static_cast<int>(profile.size());
-  for (double sum = profile.back(); sum < most_left_out;) sum += profile[--high - 1];
+  for (double sum = profile.back(); sum < max_left_out;) sum += profile[--high - 1];
   return {low, high};
 }
 

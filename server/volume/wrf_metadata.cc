@@ -22,7 +22,7 @@ using physics::Hydrometeor;
 constexpr std::array<std::string_view, physics::kHydrometeorCount> kHydrometeorVariables = {
     "QCLOUD", "QRAIN", "QICE", "QSNOW", "QGRAUP", "QHAIL"};
 
-// Spellings of a unit, without blanks, stars, hats, dots and brackets.
+// Accepted spellings of a unit, after removing blanks, stars, hats, dots and brackets.
 struct Unit {
   std::string_view name;
   std::array<std::string_view, 4> spellings;
@@ -34,7 +34,8 @@ constexpr Unit kTemperature = {"K", {"K", "kelvin", "Kelvin", "degK"}};
 constexpr Unit kLength = {"m", {"m", "meter", "meters", "metres"}};
 constexpr Unit kPerMass = {"kg-1", {"kg-1", "/kg", "#kg-1", "#/kg"}};
 
-// What tells particles' sizes: radii before numbers, which need a size distribution to be assumed.
+// Variables of particle sizes. Radii come before numbers, for which a size distribution must be
+// assumed.
 struct SizeName {
   Hydrometeor hydrometeor;
   std::string_view variable;
@@ -66,8 +67,8 @@ absl::Status CheckUnits(const NetcdfFile& file, const std::string& variable, con
                    std::string(wanted), "' is needed; convert it (and its units attribute) first"));
 }
 
-// `shape` in words, for errors.
-std::string InWords(const std::vector<std::size_t>& shape) {
+// `shape` as text, for errors.
+std::string AsText(const std::vector<std::size_t>& shape) {
   return absl::StrCat("(", absl::StrJoin(shape, ", "), ")");
 }
 
@@ -81,8 +82,8 @@ absl::Status CheckVariable(const NetcdfFile& file, const std::string& variable,
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> actual, file.Shape(variable));
   if (actual != shape) {
     return absl::InvalidArgumentError(
-        absl::StrCat(file.Path(), ": ", variable, " has dimensions ", InWords(actual), " where ",
-                     InWords(shape), " are needed (time, levels, south-north, west-east); ",
+        absl::StrCat(file.Path(), ": ", variable, " has dimensions ", AsText(actual), " where ",
+                     AsText(shape), " are needed (time, levels, south-north, west-east); ",
                      "give the model's own output file"));
   }
   return CheckUnits(file, variable, unit);
@@ -95,10 +96,10 @@ absl::StatusOr<int> Length(const NetcdfFile& file, const std::string& dimension)
         absl::StrCat(file.Path(), ": has no dimension ", dimension,
                      ", so it is no WRF output; give a history file of the model (wrfout_...)"));
   }
-  constexpr std::size_t kMost = 100'000;
-  if (*length < 1 || *length > kMost) {
+  constexpr std::size_t kMax = 100'000;
+  if (*length < 1 || *length > kMax) {
     return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": dimension ", dimension, " is ",
-                                                   *length, "; 1 to ", kMost, " can be read"));
+                                                   *length, "; 1 to ", kMax, " can be read"));
   }
   return static_cast<int>(*length);
 }
@@ -167,7 +168,7 @@ absl::StatusOr<std::vector<absl::Time>> TimesFromMinutes(const NetcdfFile& file)
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, file.Shape("XTIME"));
   if (shape.size() != 1) {
     return absl::InvalidArgumentError(
-        absl::StrCat(file.Path(), ": XTIME has dimensions ", InWords(shape), ", not (time)"));
+        absl::StrCat(file.Path(), ": XTIME has dimensions ", AsText(shape), ", not (time)"));
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> minutes,
                                file.ReadPart("XTIME", {0}, shape));
@@ -206,7 +207,7 @@ absl::StatusOr<std::vector<absl::Time>> ReadTimes(const NetcdfFile& file) {
   return times;
 }
 
-// A variable that is not as it should be is left out: the field has its constant radius then.
+// A variable of unexpected shape or units is skipped; its field then has a constant radius.
 void FindSizes(const NetcdfFile& file, const std::vector<std::size_t>& in_layers,
                WrfMetadata& metadata) {
   for (const SizeName& name : kSizeNames) {
@@ -326,10 +327,6 @@ absl::StatusOr<WrfMetadata> ReadWrfMetadata(const NetcdfFile& file) {
   metadata.domain = static_cast<int>(file.NumberAttribute("", "GRID_ID").value_or(1.0));
   metadata.simulation_start = file.TextAttribute("", "SIMULATION_START_DATE").value_or("");
   return metadata;
-}
-
-std::string FormatValidTime(absl::Time time) {
-  return absl::FormatTime("%E4Y-%m-%dT%H:%M:%SZ", time, absl::UTCTimeZone());
 }
 
 }  // namespace thunderhead::volume

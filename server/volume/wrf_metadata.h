@@ -1,5 +1,5 @@
-// What a WRF output file says of itself before any field is read: grid, times, fields, place; and
-// whether it is fit to be read at all (variables, dimensions, units). Knows no cache and no series.
+// Metadata of a WRF output file: grid, times, fields, place on Earth; and a check of the variables,
+// dimensions and units that reading needs. Reads no fields. Knows no cache and no series.
 #pragma once
 
 #include <array>
@@ -24,14 +24,15 @@ struct WrfMetadata {
   double dy_m = 0.0;
   std::vector<absl::Time> times;             // of each record of the file, in the file's order
   std::vector<physics::Hydrometeor> fields;  // in the order of physics::kHydrometeors
-  // By physics::IndexOf: what tells the size of that field's particles; no name if nothing does.
+  // Indexed by physics::IndexOf: the variable of the field's particle sizes; without a name if
+  // there is none.
   std::array<SizeVariable, physics::kHydrometeorCount> sizes;
   bool has_vapour = false;
   bool has_terrain = false;
   std::string model;                   // "WRF V4.7.1"
   bool idealised = false;              // no place on Earth
   int domain = 1;                      // GRID_ID, counted from 1
-  std::string simulation_start;        // as the file writes it; tells runs apart
+  std::string simulation_start;        // as in the file; differs between runs
   std::optional<double> latitude_deg;  // of the middle
   std::optional<double> longitude_deg;
 };
@@ -43,10 +44,7 @@ std::string_view WrfVariableOf(physics::Hydrometeor hydrometeor);
 // to do.
 absl::StatusOr<WrfMetadata> ReadWrfMetadata(const std::string& path);
 
-// The same of a file that is open.
+// The same for an open file.
 absl::StatusOr<WrfMetadata> ReadWrfMetadata(const NetcdfFile& file);
-
-// Valid time as ISO 8601, e.g. "0001-01-01T00:40:00Z".
-std::string FormatValidTime(absl::Time time);
 
 }  // namespace thunderhead::volume

@@ -21,17 +21,17 @@ using physics::Hydrometeor;
 
 constexpr float kBaseTheta_K = 300.0F;  // WRF's T is potential temperature less this
 
-// No air carries half its mass in condensate; a file that says so is in g/kg.
-constexpr float kMostMixingRatio = 0.5F;
+// Air never carries half its mass in condensate; a file with such values is in g/kg.
+constexpr float kMaxMixingRatio = 0.5F;
 
 struct RemappedField {
   HydrometeorField field;
   CellBox condensate;
-  std::vector<float> buffer;  // given back for the next variable
+  std::vector<float> buffer;  // returned for the next variable to reuse
 };
 
-// Reads one record. Variables are read on the calling thread, one at a time, while the one before
-// is worked on beside it: unpacking (netCDF) and remapping take about as long.
+// Reads one record. Variables are read on the calling thread, one at a time, while another thread
+// remaps the one before: unpacking (netCDF) and remapping take about equally long.
 class TimeReader {
  public:
   TimeReader(const WrfMetadata& metadata, std::size_t record, NetcdfFile file)
@@ -131,7 +131,7 @@ absl::StatusOr<LayerState> TimeReader::ReadState() {
   return state;
 }
 
-// Terrain that is missing is where the lowest layer begins.
+// Missing terrain is taken from the bottom of the lowest layer.
 absl::Status TimeReader::ReadTerrain(HydrometeorFields& result) {
   std::vector<float>& terrain = result.terrain_height_m;
   terrain.assign(air_.columns, std::nanf(""));
@@ -167,7 +167,7 @@ absl::StatusOr<RemappedField> TimeReader::Remap(Hydrometeor hydrometeor, std::ve
   field.hydrometeor = hydrometeor;
   field.variable = std::string(WrfVariableOf(hydrometeor));
   field.statistics = MixingRatioToConcentration(air_, values);
-  if (field.statistics.maximum > kMostMixingRatio) {
+  if (field.statistics.maximum > kMaxMixingRatio) {
     return absl::InvalidArgumentError(
         absl::StrCat(file_.Path(), ": ", field.variable, " of record ", record_, " reaches ",
                      field.statistics.maximum,
@@ -187,8 +187,8 @@ absl::StatusOr<RemappedField> TimeReader::Remap(Hydrometeor hydrometeor, std::ve
   return remapped;
 }
 
-// Extinction goes with concentration over radius: that is what is remapped, so that each column
-// keeps its optical depth.
+// Extinction is proportional to concentration over radius; that ratio is remapped, so that each
+// column keeps its optical depth.
 void TimeReader::RemapSizes(const SizeVariable& variable, const std::vector<float>& concentration,
                             std::vector<float> inverse_radius, HydrometeorField& field) const {
   for (std::size_t i = 0; i < concentration.size(); ++i) inverse_radius[i] *= concentration[i];
@@ -239,7 +239,7 @@ absl::Status TimeReader::ReadFields(HydrometeorFields& result) {
       " give no usable air density in any cell; check their values and units (Pa, K, kg kg-1)"));
 }
 
-// Drops the cells added above the storm's grid that turned out empty.
+// Removes the empty ones of the cells added above the storm's grid.
 void TrimTop(const VerticalGrid& storm_grid, HydrometeorFields& fields) {
   RegularGrid& grid = fields.grid;
   const double storm_top = (storm_grid.High_m() - grid.low_corner_m.z) / grid.spacing_m.z;
@@ -274,8 +274,8 @@ absl::StatusOr<HydrometeorFields> TimeReader::Read(const std::optional<VerticalG
   return result;
 }
 
-// Runs `read` on a reader of the file; memory that cannot be had is an error of the input, not the
-// end of the server.
+// Runs `read` on a reader of the file. Running out of memory is an error of the input and must not
+// end the server.
 template <typename Result, typename ReadFunction>
 absl::StatusOr<Result> WithReader(const WrfMetadata& metadata, std::size_t record,
                                   ReadFunction read) {

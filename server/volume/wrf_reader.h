@@ -4,19 +4,15 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <optional>
 
 #include "absl/status/statusor.h"
 #include "volume/hydrometeor_fields.h"
+#include "volume/storm_file.h"
 #include "volume/vertical_remap.h"
 #include "volume/wrf_metadata.h"
 
 namespace thunderhead::volume {
-
-// Called before each variable with the share done so far, 0 to 1; an error ends the reading with
-// that error.
-using ReadCheckpoint = std::function<absl::Status(double share)>;
 
 // Reads record `record` of the file that `metadata` describes. `grid` is the storm's height grid,
 // chosen from this time's heights if absent; a time whose condensate reaches beyond it gets more

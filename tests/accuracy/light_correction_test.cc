@@ -5,12 +5,12 @@
 
 #include "accuracy/corrector_pool.h"
 #include "accuracy/light_corrector.h"
+#include "frame/tone_map.h"
 #include "gl/context.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "measure/image_error.h"
 #include "measure/light_parts.h"
-#include "measure/trade.h"
 #include "reference/trace_scene.h"
 #include "tests/support/slab.h"
 
@@ -53,10 +53,10 @@ class LightCorrection : public testing::Test {
     renderer_ = std::make_unique<renderers::SceneRenderer>();
   }
 
-  measure::LinearImage Draw(const renderers::DrawQuality& quality) {
+  picture::LinearPicture Draw(const renderers::DrawQuality& quality) {
     const auto frame = renderer_->Draw(scene_, fields_, quality);
     EXPECT_TRUE(frame.ok()) << frame.status();
-    return measure::ImageOf(*frame->radiance);
+    return frame::PictureOf(*frame->radiance);
   }
 
   std::unique_ptr<LightCorrector> MakeCorrector(int threads) {
@@ -132,13 +132,18 @@ TEST_F(LightCorrection, PlacesAreWhereTheStormIsSeen) {
   renderers::DrawQuality quality;
   quality.single_precision = true;
   quality.places = true;
-  const std::vector<glm::vec3> places = Draw(quality).radiance;
-  const glm::vec3 middle = places[static_cast<std::size_t>(12 * 32 + 16)];
+  const auto frame = renderer_->Draw(scene_, fields_, quality);
+  ASSERT_TRUE(frame.ok()) << frame.status();
+  EXPECT_EQ(frame->radiance, nullptr) << "places are no light";
+  ASSERT_NE(frame->places, nullptr);
+  const glm::vec3 middle =
+      frame::PictureOf(*frame->places).radiance[static_cast<std::size_t>(12 * 32 + 16)];
   // The eye stands in the south-south-west, above: it sees the face that is turned to it.
   EXPECT_NEAR(middle.x, 0.4F, 0.15F);
   EXPECT_LT(middle.y, 0.35F);
   EXPECT_GT(middle.z, 0.2F);
   EXPECT_LT(middle.z, 0.8F);
+  EXPECT_EQ(renderer_->Draw(scene_, fields_, {})->places, nullptr) << "unless asked for";
 }
 
 TEST_F(LightCorrection, TakesMostOfTheErrorAway) {
@@ -147,9 +152,9 @@ TEST_F(LightCorrection, TakesMostOfTheErrorAway) {
   const auto truth =
       reference::TraceScene(scene_, *fields_, reference::kPeakCut_deg, limits, {}, {});
   ASSERT_TRUE(truth.ok()) << truth.status();
-  const measure::LinearImage exact{truth->image.size_px, truth->image.radiance};
-  const double noise = measure::RelativeNoise(truth->image.standard_error, exact);
-  const auto error_of = [&](const measure::LinearImage& drawn) {
+  const picture::LinearPicture& exact = truth->image;
+  const double noise = measure::RelativeNoise(exact);
+  const auto error_of = [&](const picture::LinearPicture& drawn) {
     return measure::RelativeRmseWithout(noise, drawn, exact);
   };
   // Means over 4 x 4 rays a pixel, as the truth's pixels are means.
@@ -157,12 +162,12 @@ TEST_F(LightCorrection, TakesMostOfTheErrorAway) {
     return *measure::DrawPart(*renderer_, scene_, fields_, measure::LightPart::kAll, 4,
                               std::move(correction));
   };
-  const measure::LinearImage drawn = draw(nullptr);
+  const picture::LinearPicture drawn = draw(nullptr);
   const auto corrector = MakeCorrector(0);
   EXPECT_EQ(corrector->Correction(), nullptr);
   ASSERT_TRUE(corrector->TraceUntil(150'000, {}, nullptr).ok());
   ASSERT_GE(corrector->Progress().paths, 150'000);
-  const measure::LinearImage corrected = draw(corrector->Correction());
+  const picture::LinearPicture corrected = draw(corrector->Correction());
   EXPECT_LT(error_of(corrected), 0.3 * error_of(drawn));
   // Most of what is left is the ground, 2 % too bright with and without a correction.
   EXPECT_NEAR(measure::RelativeBias(corrected, exact), 0.0, 0.03);

@@ -30,7 +30,7 @@ FluxResult Flux(std::shared_ptr<const Medium> medium, double zenith_deg, std::in
   return Flux(FluxProblem::Of(std::move(medium), SunAt(zenith_deg)), photons);
 }
 
-// Everything ends somewhere.
+// Every photon ends in exactly one place: the shares add up to 1.
 void ExpectBalance(const FluxResult& result) {
   EXPECT_NEAR(result.reflectance.value + result.absorptance.value + result.sides.value +
                   result.ground_absorptance.value,
@@ -84,8 +84,8 @@ double ChandrasekharH(double albedo, double at_mu) {
   return value(at_mu);
 }
 
-// The plane albedo of an endless isotropic atmosphere is 1 - sqrt(1 - w) H(mu0): exact, for a sun
-// at 60 and at 80 degrees. Beyond optical depth 40 nothing comes back (exp(-0.53 * 2 * 40)).
+// The plane albedo of a semi-infinite isotropic atmosphere is 1 - sqrt(1 - w) H(mu0): exact, for a
+// sun at 60 and at 80 degrees. Beyond optical depth 40 nothing comes back (exp(-0.53 * 2 * 40)).
 TEST(FluxSlab, DeepIsotropicAtmosphereUnderLowSun) {
   constexpr double kAlbedo = 0.9;
   const auto medium = Slab(40.0, 0.0, kAlbedo);
@@ -98,7 +98,7 @@ TEST(FluxSlab, DeepIsotropicAtmosphereUnderLowSun) {
   }
 }
 
-// In the thin limit a slab reflects what is scattered once: w tau / mu0 times the share of the
+// In the thin limit a slab reflects single scattering alone: w tau / mu0 times the share of the
 // phase function that points up. Twice scattered light is of relative order tau / mu0 = 2e-3.
 TEST(FluxSlab, ThinLimitIsSingleScattering) {
   constexpr double kOpticalDepth = 1e-3;
@@ -109,7 +109,7 @@ TEST(FluxSlab, ThinLimitIsSingleScattering) {
   ExpectAgrees(result.absorptance, 0.2 * kOpticalDepth / 0.5, 5e-3 * once, 1.5e-5);
 }
 
-// 2 E3(tau): what an absorbing slab lets through of diffuse light.
+// 2 E3(tau): the transmittance of an absorbing slab for diffuse light.
 double DiffuseTransmittance(double optical_depth) {
   constexpr int kSteps = 100000;
   double sum = 0.0;
@@ -216,7 +216,7 @@ TEST(FluxSteepWalls, DirectBeamAt60Degrees) {
   ExpectBalance(result);
 }
 
-// Irradiance through a level plane by paths traced backwards, over the sunlight on the top.
+// Irradiance through a horizontal plane by paths traced backwards, over the sunlight on the top.
 FluxShare BackwardShare(const Medium& medium, const glm::dvec3& towards_sun, bool at_top) {
   Surroundings around;
   around.towards_sun = towards_sun;
@@ -298,8 +298,9 @@ TEST(Flux, SameForAnyNumberOfThreads) {
   }
 }
 
-// The spread of 400 runs with different seeds is the standard error they state: the sum of squared
-// deviations over squared errors is chi-squared, within 4 of its standard deviations.
+// The standard deviation of 400 runs with different seeds is the standard error that they report:
+// the sum of squared deviations over squared errors is chi-squared, within 4 of its standard
+// deviations.
 TEST(Flux, StandardErrorsAreHonest) {
   FluxProblem problem = FluxProblem::Of(Slab(2.0, 0.75, 0.9), SunAt(60.0));
   problem.ground_albedo = 0.5;

@@ -118,8 +118,8 @@ std::vector<Case> Cases() {
   return cases;
 }
 
-// Along random rays, stretches follow one another, and extinction stays below the majorant and is
-// zero where there is no stretch.
+// Along random rays, segments do not overlap, extinction is at most the segment's majorant, and it
+// is zero outside of segments.
 TEST(BrickWalk, StretchesBoundExtinction) {
   for (const Case& test : Cases()) {
     SCOPED_TRACE(test.name);
@@ -184,7 +184,7 @@ TEST(Tracking, TransmittanceIsThatOfQuadrature) {
   }
 }
 
-// Thick media do not stop the ratio from being unbiased by roulette.
+// Ratio tracking with roulette is unbiased in thick media too.
 TEST(Tracking, SmallTransmittance) {
   const auto slab = Slab(6.0, 0.0, 1.0);
   const Ray down{{0.0, 0.0, slab->High_m().z}, {0.0, 0.0, -1.0}};

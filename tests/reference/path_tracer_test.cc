@@ -8,10 +8,12 @@
 #include "comparisons.h"
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
-#include "reference/exr_file.h"
+#include "picture/exr_file.h"
 
 namespace thunderhead::reference {
 namespace {
+
+using picture::LinearPicture;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -30,7 +32,7 @@ Surroundings SunOnly(const glm::dvec3& towards_sun) {
 }
 
 // The mean of one colour over an image whose pixels all estimate parts of the same mean.
-FluxShare MeanOf(const Image& image, int color) {
+FluxShare MeanOf(const LinearPicture& image, int color) {
   double sum = 0.0;
   double squares = 0.0;
   for (std::size_t i = 0; i < image.radiance.size(); ++i) {
@@ -41,8 +43,8 @@ FluxShare MeanOf(const Image& image, int color) {
   return {sum / pixels, std::sqrt(squares) / pixels};
 }
 
-Image Trace(std::shared_ptr<const Medium> medium, const Surroundings& around, const Camera& camera,
-            const glm::ivec2& size_px, int samples) {
+LinearPicture Trace(std::shared_ptr<const Medium> medium, const Surroundings& around,
+                    const Camera& camera, const glm::ivec2& size_px, int samples) {
   PathTracer tracer(std::move(medium), around, camera, size_px, {});
   RefineLimits limits;
   limits.samples_per_pixel = samples;
@@ -61,7 +63,8 @@ TEST(PathTracer, UpwardRadianceOfDisortTest3) {
        {Published{0.1, 0.379740}, Published{0.5, 0.519598}, Published{1.0, 0.493302}}) {
     SCOPED_TRACE(mu);
     const glm::dvec3 down(std::sqrt(1.0 - mu * mu), 0.0, -mu);
-    const Image image = Trace(slab, SunOnly(SunAt(0.0)), OverTheTop(*slab, down), {16, 16}, 900);
+    const LinearPicture image =
+        Trace(slab, SunOnly(SunAt(0.0)), OverTheTop(*slab, down), {16, 16}, 900);
     FluxShare share = MeanOf(image, 1);
     share.value *= std::numbers::pi;
     share.standard_error *= std::numbers::pi;
@@ -69,8 +72,8 @@ TEST(PathTracer, UpwardRadianceOfDisortTest3) {
   }
 }
 
-// Under uniform light from everywhere nothing that does not absorb can be seen. Where paths are too
-// short for Russian roulette every single one brings exactly that light.
+// Furnace test: under uniform light from all directions a medium that does not absorb is invisible.
+// Where paths are too short for Russian roulette, every single one returns exactly that light.
 TEST(PathTracer, WhiteFurnace) {
   constexpr glm::dvec3 kLight(0.7, 1.0, 3.0);
   Surroundings furnace;
@@ -81,7 +84,7 @@ TEST(PathTracer, WhiteFurnace) {
     scene::View view;
     view.eye_m = 0.5 * (cloud->Low_m() + cloud->High_m()) - glm::dvec3(0.0, 1500.0, 0.0);
     view.tan_half_width = view.tan_half_height = 0.5;
-    const Image image = Trace(cloud, furnace, Camera::Of(view), {24, 24}, 64);
+    const LinearPicture image = Trace(cloud, furnace, Camera::Of(view), {24, 24}, 64);
     for (int color = 0; color < 3; ++color) {
       ExpectAgrees(MeanOf(image, color), kLight[color], 1e-6, 5e-3 * kLight[color]);
     }
@@ -104,20 +107,21 @@ TEST(PathTracer, ColorsOfDifferentPhaseFunctions) {
     EXPECT_TRUE(slab.ok()) << slab.status();
     return Trace(*slab, SunOnly(SunAt(60.0)), OverTheTop(**slab, {0.6, 0.0, -0.8}), {16, 16}, 400);
   };
-  const Image together = look(colored);
+  const LinearPicture together = look(colored);
   for (std::size_t color = 0; color < 3; ++color) {
-    const Image alone = look(SampledPhase::HenyeyGreenstein(kAsymmetries[color]));
+    const LinearPicture alone = look(SampledPhase::HenyeyGreenstein(kAsymmetries[color]));
     ExpectAgree(MeanOf(together, static_cast<int>(color)), MeanOf(alone, 0), 0.006);
   }
   Surroundings furnace;
   furnace.sky = [](const glm::dvec3&) { return glm::dvec3(1.0); };
   auto slab = SlabMedium(20.0, colored, 1.0);
-  const Image white = Trace(*slab, furnace, OverTheTop(**slab, {0.6, 0.0, -0.8}), {16, 16}, 400);
+  const LinearPicture white =
+      Trace(*slab, furnace, OverTheTop(**slab, {0.6, 0.0, -0.8}), {16, 16}, 400);
   for (int color = 0; color < 3; ++color) ExpectAgrees(MeanOf(white, color), 1.0, 0.0, 0.006);
 }
 
-// Two lights give what each gives alone, in its own colour; a light in the sun's place is the sun,
-// but for the ground, which it does not light.
+// Two lights together give the sum of each alone, in its own colour; a light in the sun's place
+// acts as the sun, except that it does not light the ground.
 TEST(PathTracer, LightsAddUp) {
   const auto cloud = Made(LumpyCloud(0.02, 1.0, 0.5));
   const auto look = [&](const std::vector<DirectionalLight>& lights, const Surroundings& around) {
@@ -127,9 +131,9 @@ TEST(PathTracer, LightsAddUp) {
   };
   const DirectionalLight red{SunAt(50.0), {1.0, 0.0, 0.0}};
   const DirectionalLight white{{-0.6, 0.0, 0.8}, glm::dvec3(0.5)};
-  const Image both = look({red, white}, {});
-  const Image sun = look({}, SunOnly(SunAt(50.0)));
-  const Image second = look({white}, {});
+  const LinearPicture both = look({red, white}, {});
+  const LinearPicture sun = look({}, SunOnly(SunAt(50.0)));
+  const LinearPicture second = look({white}, {});
   ExpectAgree(MeanOf(both, 1), MeanOf(second, 1), 0.01);
   const FluxShare first = MeanOf(sun, 0);
   const FluxShare other = MeanOf(second, 0);
@@ -146,17 +150,19 @@ TEST(PathTracer, WhiteFurnaceWithGround) {
   furnace.sky = [](const glm::dvec3&) { return glm::dvec3(1.0); };
   const auto cloud = Made(LumpyCloud(0.02, 1.0, 0.5));
   furnace.ground = Ground{cloud->Low_m().z, glm::dvec3(1.0), glm::dvec3(0.0)};
-  const Image image = Trace(cloud, furnace, OverTheTop(*cloud, {0.6, 0.0, -0.8}), {16, 16}, 64);
+  const LinearPicture image =
+      Trace(cloud, furnace, OverTheTop(*cloud, {0.6, 0.0, -0.8}), {16, 16}, 64);
   ExpectAgrees(MeanOf(image, 1), 1.0, 1e-6, 5e-3);
 }
 
-// An absorbing cloud in a furnace darkens; the mean over Russian roulette stays right: rays through
-// a purely absorbing slab see the sky through it.
+// Russian roulette keeps the mean of an absorbing medium unbiased: rays through a purely absorbing
+// slab see the attenuated sky.
 TEST(PathTracer, AbsorbingSlabInFurnace) {
   Surroundings furnace;
   furnace.sky = [](const glm::dvec3&) { return glm::dvec3(1.0); };
   const auto slab = Slab(1.5, 0.0, 0.0);
-  const Image image = Trace(slab, furnace, OverTheTop(*slab, {0.6, 0.0, -0.8}), {16, 16}, 400);
+  const LinearPicture image =
+      Trace(slab, furnace, OverTheTop(*slab, {0.6, 0.0, -0.8}), {16, 16}, 400);
   ExpectAgrees(MeanOf(image, 0), std::exp(-1.5 / 0.8), 0.0, 2e-3);
 }
 
@@ -171,9 +177,9 @@ double OpticalDepth(const Medium& medium, const Ray& ray) {
   return sum * step_m;
 }
 
-// A lumpy cloud of optical depth up to 1 that absorbs nearly all: what is left is single
-// scattering, here by quadrature along the ray. Of what is scattered twice there is at most the
-// albedo's share, 1 %, times the ratio of phase functions, below 3.
+// A lumpy cloud of optical depth up to 1 that absorbs nearly all light: single scattering is left,
+// here computed by quadrature along the ray. Double scattering adds at most the albedo, 1 %, times
+// the ratio of phase functions, below 3.
 TEST(PathTracer, SingleScatteringByQuadrature) {
   constexpr double kAlbedo = 0.01;
   const auto cloud = Made(LumpyCloud(0.003, kAlbedo, 0.3));
@@ -181,7 +187,7 @@ TEST(PathTracer, SingleScatteringByQuadrature) {
   const glm::dvec3 direction = glm::normalize(glm::dvec3(0.3, 0.8, -0.2));
   const glm::dvec3 eye_m = cloud->Low_m() + glm::dvec3(200.0, -100.0, 250.0);
   const Camera camera = Camera::Parallel(eye_m, {}, {}, direction);
-  const Image image = Trace(cloud, around, camera, {64, 64}, 600);
+  const LinearPicture image = Trace(cloud, around, camera, {64, 64}, 600);
 
   const Ray ray{eye_m, direction};
   const RayInterval interval = Clip(*cloud, ray, kInfinity);
@@ -214,7 +220,7 @@ TEST(PathTracer, LightScatteredOnceIsTheClosedForm) {
     SCOPED_TRACE(mu);
     const glm::dvec3 down(std::sqrt(1.0 - mu * mu), 0.0, -mu);
     PathTracerOptions options;
-    options.most_scatterings = 1;
+    options.max_scatterings = 1;
     PathTracer tracer(slab, SunOnly(SunAt(0.0)), OverTheTop(*slab, down), {16, 16}, options);
     RefineLimits limits;
     limits.samples_per_pixel = 4000;
@@ -232,20 +238,21 @@ TEST(PathTracer, ThinLimit) {
   const auto slab = Slab(depth, 0.75, 1.0);
   const glm::dvec3 down(0.6, 0.0, -0.8);
   const glm::dvec3 towards_sun = SunAt(60.0);
-  const Image image = Trace(slab, SunOnly(towards_sun), OverTheTop(*slab, down), {64, 64}, 1000);
+  const LinearPicture image =
+      Trace(slab, SunOnly(towards_sun), OverTheTop(*slab, down), {64, 64}, 1000);
   const double phase = SampledPhase::HenyeyGreenstein(0.75).Value(glm::dot(down, towards_sun)).x;
   const double expected = phase / (4.0 * std::numbers::pi) * depth / 0.8;
   ExpectAgrees(MeanOf(image, 1), expected, 0.01 * expected, 0.02 * expected);
 }
 
-// Helmholtz: the domain's mean radiance over the sunlight on its top is the same when sun and eye
-// change places. On a steep-walled, periodic chessboard.
+// Helmholtz reciprocity: the domain's mean radiance over the sunlight on its top is the same when
+// sun and eye are exchanged. On a steep-walled, periodic chessboard.
 TEST(PathTracer, Reciprocity) {
   const auto board = Made(Chessboard(2.0 / 250.0, 18.0 / 250.0, 0.99, 0.7));
   const glm::dvec3 a = SunAt(60.0);
   const glm::dvec3 b = glm::normalize(glm::dvec3(-0.3, 0.5, 0.6));
   const auto reflected = [&](const glm::dvec3& towards_sun, const glm::dvec3& towards_eye) {
-    const Image image =
+    const LinearPicture image =
         Trace(board, SunOnly(towards_sun), OverTheTop(*board, -towards_eye), {32, 32}, 200);
     FluxShare share = MeanOf(image, 0);
     share.value /= towards_sun.z;
@@ -257,7 +264,7 @@ TEST(PathTracer, Reciprocity) {
   ExpectAgree(forth, reflected(b, a), 0.02 * forth.value);
 }
 
-Image SmallImage(int threads, const std::vector<int>& passes) {
+LinearPicture SmallPicture(int threads, const std::vector<int>& passes) {
   const auto cloud = Made(LumpyCloud(0.05, 0.97, 0.85));
   Surroundings around = SunOnly(SunAt(40.0));
   around.sky = [](const glm::dvec3& direction) { return glm::dvec3(0.1 + 0.05 * direction.z); };
@@ -275,17 +282,18 @@ Image SmallImage(int threads, const std::vector<int>& passes) {
 }
 
 TEST(PathTracer, SameForAnyNumberOfThreadsAndPasses) {
-  const Image image = SmallImage(1, {24});
-  for (const Image& other : {SmallImage(2, {24}), SmallImage(5, {24}), SmallImage(2, {3, 4, 24})}) {
+  const LinearPicture image = SmallPicture(1, {24});
+  for (const LinearPicture& other :
+       {SmallPicture(2, {24}), SmallPicture(5, {24}), SmallPicture(2, {3, 4, 24})}) {
     EXPECT_EQ(image.radiance, other.radiance);
     EXPECT_EQ(image.standard_error, other.standard_error);
   }
 }
 
-// Pixels that see the same mean scatter about it as their standard errors say.
+// Pixels with the same mean vary about it as their standard errors predict.
 TEST(PathTracer, StandardErrorsAreHonest) {
   const auto slab = Slab(4.0, 0.5, 0.9);
-  const Image image =
+  const LinearPicture image =
       Trace(slab, SunOnly(SunAt(30.0)), OverTheTop(*slab, {0.6, 0.0, -0.8}), {32, 32}, 100);
   const double mean = MeanOf(image, 0).value;
   double chi_squared = 0.0;
@@ -347,7 +355,8 @@ TEST(PathTracer, Extremes) {
       Surroundings around = SunOnly(SunAt(zenith_deg));
       around.sky = [](const glm::dvec3&) { return glm::dvec3(0.5); };
       const auto slab = Slab(optical_depth, 0.85, 0.999);
-      const Image image = Trace(slab, around, OverTheTop(*slab, {0.0, 0.0, -1.0}), {8, 8}, 4);
+      const LinearPicture image =
+          Trace(slab, around, OverTheTop(*slab, {0.0, 0.0, -1.0}), {8, 8}, 4);
       for (const glm::vec3& radiance : image.radiance) {
         EXPECT_TRUE(std::isfinite(radiance.x) && radiance.x >= 0.0F) << optical_depth;
       }
@@ -356,10 +365,10 @@ TEST(PathTracer, Extremes) {
 }
 
 TEST(ExrFile, RoundTrip) {
-  const Image image = SmallImage(2, {4});
+  const LinearPicture image = SmallPicture(2, {4});
   const std::string path = testing::TempDir() + "reference_round_trip.exr";
-  ASSERT_TRUE(WriteExr(path, image).ok());
-  const auto read = ReadExr(path);
+  ASSERT_TRUE(picture::WriteExr(path, image).ok());
+  const auto read = picture::ReadExr(path);
   ASSERT_TRUE(read.ok()) << read.status();
   EXPECT_EQ(read->size_px, image.size_px);
   EXPECT_EQ(read->radiance, image.radiance);
@@ -367,11 +376,11 @@ TEST(ExrFile, RoundTrip) {
 }
 
 TEST(ExrFile, SaysWhatIsWrong) {
-  const Image image = SmallImage(2, {2});
-  const absl::Status status = WriteExr("/nonexistent-folder/image.exr", image);
+  const LinearPicture image = SmallPicture(2, {2});
+  const absl::Status status = picture::WriteExr("/nonexistent-folder/image.exr", image);
   EXPECT_EQ(status.code(), absl::StatusCode::kUnavailable);
   EXPECT_NE(status.message().find("/nonexistent-folder/image.exr"), std::string::npos);
-  EXPECT_FALSE(ReadExr("/nonexistent-folder/image.exr").ok());
+  EXPECT_FALSE(picture::ReadExr("/nonexistent-folder/image.exr").ok());
 }
 
 }  // namespace

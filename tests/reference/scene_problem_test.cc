@@ -17,6 +17,8 @@
 namespace thunderhead::reference {
 namespace {
 
+using picture::LinearPicture;
+
 using physics::Hydrometeor;
 
 // Cloud water in cells 2..4 of each axis and rain in the lowest layer under it, of 8 x 7 x 6 cells.
@@ -152,8 +154,8 @@ TEST(MediumOf, ModesChoosePhaseAndColor) {
 
 // Without a medium, the shaded ground is as bright as the uniform one, which the renderers draw.
 // Both see it through the same air. The uniform one's sky is a sum over 2048 directions: 0.3 %.
-// Light that turns by less than 3 degrees goes on as good as unscattered: away from the sun the
-// picture stays, while extinction falls by the share cut off.
+// Light scattered by less than 3 degrees is nearly unscattered: away from the sun the picture stays
+// the same, while extinction falls by the share cut off.
 TEST(MediumOf, ACutPeakLeavesThePicture) {
   const volume::HydrometeorFields fields = SmallStorm();
   scene::Scene scene;
@@ -178,7 +180,7 @@ TEST(MediumOf, ACutPeakLeavesThePicture) {
     RefineLimits limits;
     limits.samples_per_pixel = 2000;
     tracer.Refine(limits, {}, {});
-    const Image image = tracer.Snapshot();
+    const LinearPicture image = tracer.Snapshot();
     FluxShare mean;
     for (std::size_t i = 0; i < image.radiance.size(); ++i) {
       mean.value += image.radiance[i].y / 256.0;
@@ -218,8 +220,8 @@ TEST(SurroundingsOf, ShadedGroundWithoutCloudsIsUniform) {
     tracer.Refine(limits, {}, {});
     return tracer.Snapshot();
   };
-  const Image uniform = trace(GroundLight::kUniform, 2);
-  const Image shaded = trace(GroundLight::kShaded, 2000);
+  const LinearPicture uniform = trace(GroundLight::kUniform, 2);
+  const LinearPicture shaded = trace(GroundLight::kShaded, 2000);
   for (int color = 0; color < 3; ++color) {
     double sum = 0.0;
     double squares = 0.0;
@@ -242,8 +244,8 @@ TEST(SurroundingsOf, SunBelowTheHorizonGivesNoSunlight) {
   EXPECT_TRUE(glm::all(glm::greaterThan(sky, glm::dvec3(0.0))));
 }
 
-// The sample storm under sunlight alone: nothing that is not finite, and the middle of its sunlit
-// side, optically thick, is brighter than that of the other.
+// The sample storm under sunlight alone: all values are finite, and the middle of its sunlit side,
+// optically thick, is brighter than that of the other.
 TEST(Scene, SampleStorm) {
   const auto store = volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
   ASSERT_TRUE(store.ok()) << store.status();

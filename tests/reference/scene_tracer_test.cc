@@ -1,4 +1,4 @@
-// A picture begun over and over is the one that would be traced at once.
+// A picture traced after changes of the scene is the same as one traced from scratch.
 #include "reference/scene_tracer.h"
 
 #include <memory>
@@ -8,6 +8,8 @@
 
 namespace thunderhead::reference {
 namespace {
+
+using picture::LinearPicture;
 
 using physics::Hydrometeor;
 
@@ -41,14 +43,15 @@ RefineLimits Until(int samples_per_pixel) {
   return limits;
 }
 
-Image AtOnce(const scene::Scene& scene, const volume::HydrometeorFields& fields, int samples) {
+LinearPicture AtOnce(const scene::Scene& scene, const volume::HydrometeorFields& fields,
+                     int samples) {
   return TraceScene(scene, fields, kPeakCut_deg, Until(samples), {}, {})->image;
 }
 
 class SceneTracerTest : public ::testing::Test {
  protected:
-  Image Traced(const scene::Scene& scene,
-               const std::shared_ptr<const volume::HydrometeorFields>& fields) {
+  LinearPicture Traced(const scene::Scene& scene,
+                       const std::shared_ptr<const volume::HydrometeorFields>& fields) {
     EXPECT_TRUE(tracer_.Begin(scene, fields, {24, 16}).ok());
     EXPECT_EQ(tracer_.Refine(Until(4), {}).end, RefineEnd::kSamples);
     return tracer_.Snapshot();
@@ -81,7 +84,7 @@ TEST_F(SceneTracerTest, SizesOfAPictureShowTheSameView) {
     EXPECT_TRUE(tracer_.Begin(scene, storm, size_px).ok());
     tracer_.Refine(Until(400 * 384 / (size_px.x * size_px.y)), {});
     glm::dvec3 sum(0.0);
-    const Image image = tracer_.Snapshot();
+    const LinearPicture image = tracer_.Snapshot();
     for (const glm::vec3& pixel : image.radiance) sum += glm::dvec3(pixel);
     return sum.y / static_cast<double>(image.radiance.size());
   };

@@ -11,6 +11,8 @@
 namespace thunderhead::reference {
 namespace {
 
+using picture::LinearPicture;
+
 class TraceRaysTest : public testing::Test {
  protected:
   TraceRaysTest() {
@@ -47,7 +49,7 @@ TEST_F(TraceRaysTest, MeansAreThoseOfThePicture) {
   narrow.output = {1, 1, 88};
   RefineLimits limits;
   limits.samples_per_pixel = 20'000;
-  const Image picture = TraceScene(narrow, *fields_, kPeakCut_deg, limits, {}, {})->image;
+  const LinearPicture picture = TraceScene(narrow, *fields_, kPeakCut_deg, limits, {}, {})->image;
   const Ray ray = CameraOf(narrow, *fields_).RayThrough(0.0, 0.0);
   const auto traced = TraceRays(*medium_, surroundings_, {ray}, {1, 20'000, 0});
   for (int color = 0; color < 3; ++color) {

@@ -115,7 +115,7 @@ class FakeFrameSource final : public session::FrameSource {
     return accuracy::LightProgress{machine_->traced_paths += 100'000, ++machine_->traced_steps};
   }
 
-  absl::StatusOr<session::DisplayFrame> Tone(const session::LinearPicture& picture,
+  absl::StatusOr<session::DisplayFrame> Tone(const picture::LinearPicture& picture,
                                              const scene::Display& display) override {
     session::DisplayFrame frame;
     frame.width_px = picture.size_px.x;
@@ -190,7 +190,7 @@ class FakeTruthSource final : public session::TruthSource {
     return refinement;
   }
 
-  session::LinearPicture Snapshot() override {
+  picture::LinearPicture Snapshot() override {
     const auto pixels = static_cast<std::size_t>(size_px_.x) * static_cast<std::size_t>(size_px_.y);
     return {size_px_, std::vector<glm::vec3>(pixels, glm::vec3(0.25F))};
   }

@@ -45,14 +45,14 @@ DrawnSurface SurfaceOfStorm(const scene::Scene& scene, const volume::Hydrometeor
   }
   clouds::InscribedBallsOptions options;
   options.level = SettingsOf(scene).least_extinction_per_m;
-  options.most_balls = kMostBalls;
+  options.max_balls = kMostBalls;
   drawn.surface = clouds::InscribedBalls(fields.grid, extinction_per_m, options);
   std::size_t first = 0;
   for (int scale = 1; scale < SettingsOf(scene).scales; ++scale) {
     const std::size_t end = drawn.surface.bubbles.size();
     clouds::Sprouting sprouting;
     sprouting.seed = SettingsOf(scene).seed;
-    sprouting.least_radius_m = drawn.surface.finest_m;
+    sprouting.min_radius_m = drawn.surface.finest_m;
     clouds::Sprout(sprouting, first, &drawn.surface);
     first = end;
   }

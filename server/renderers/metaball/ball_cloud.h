@@ -15,7 +15,7 @@ struct Ball {
   double radius_m = 1.0;          // R of Man, eq. 16
   double extinction_per_m = 0.0;  // in its middle, from 0
   // Of its extinction, by the medium's group; their sum is 1.
-  std::array<float, volume::kMostChannels> shares{1.0F};
+  std::array<float, volume::kMaxChannels> shares{1.0F};
 };
 
 struct BallCloud {

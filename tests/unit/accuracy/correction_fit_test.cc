@@ -25,7 +25,7 @@ class CorrectionFitTest : public testing::Test {
       ray.place = low + (high - low) * glm::dvec3(uniform(), uniform(), uniform());
       ray.direction = glm::normalize(glm::dvec3(uniform(), uniform(), uniform()) - glm::dvec3(0.5));
       ray.drawn = glm::dvec3(0.2 + 0.8 * uniform());
-      // As paths' are: mostly too small, sometimes far too large.
+      // Distributed like path estimates: mostly too small, sometimes far too large.
       const double luck = uniform() < 0.2 ? 1.0 + 4.0 * noise : 1.0 - noise;
       ray.estimate = luck * law(ray.place, ray.direction) * ray.drawn;
       fit_.Add(ray);
@@ -95,8 +95,7 @@ TEST_F(CorrectionFitTest, ManyNoisyRaysSettleATexelByItself) {
 }
 
 TEST_F(CorrectionFitTest, BrightRaysCountForMore) {
-  // A texel's factor keeps its light: that of the dim rays, which are three times as bright as they
-  // were drawn, hardly counts.
+  // A texel's factor conserves its total light: the factor 3 of the dim rays hardly counts.
   AddRays(
       20'000, [](const auto&, const auto&) { return glm::dvec3(1.0); }, 0.0);
   for (int i = 0; i < 640; ++i) {

@@ -100,7 +100,7 @@ TEST(LoneEllipsoid, IsOneAndBubblesOnIt) {
 }
 
 TEST(Cauliflower, RefusesNoScalesAndTooMany) {
-  for (const int scales : {-1, 0, kMostScales + 1}) {
+  for (const int scales : {-1, 0, kMaxScales + 1}) {
     const auto surface = Cauliflower({1, scales});
     ASSERT_FALSE(surface.ok());
     EXPECT_EQ(surface.status().code(), absl::StatusCode::kInvalidArgument);
@@ -197,7 +197,7 @@ TEST(InscribedBalls, StayInsideAndCoverWhatIsThere) {
     return glm::length(p) < 1200.0 || glm::length(p - glm::dvec3(1200.0, 300.0, 500.0)) < 500.0;
   };
   const auto values = Filled(grid, inside);
-  const CumulusSurface surface = InscribedBalls(grid, values, {.level = 0.5F, .most_balls = 5000});
+  const CumulusSurface surface = InscribedBalls(grid, values, {.level = 0.5F, .max_balls = 5000});
   int missed = 0;
   int outside = 0;
   int cells = 0;

@@ -10,7 +10,7 @@
 namespace thunderhead::clouds {
 namespace {
 
-// The formula in exact integers of 64 bits, taken modulo 2^31 at the end.
+// The same formula in 64-bit integers without overflow, taken modulo 2^31 at the end.
 double InWideIntegers(std::int64_t x, std::int64_t y, std::int64_t z) {
   const std::uint64_t m = static_cast<std::uint64_t>(x + 57 * y + 57 * 57 * z) & 0xffffffffU;
   const std::uint64_t n = ((m << 13U) ^ m) & 0xffffffffU;

@@ -80,7 +80,7 @@ TEST(BasisOperator, IsTheSumOfBallsInEveryCell) {
     for (int z = 0; z < grid.cells.z; ++z) {
       for (int y = 0; y < grid.cells.y; ++y) {
         for (int x = 0; x < grid.cells.x; ++x) {
-          // At the cut a ball is 1.2e-4: a cell there may fall on either side by rounding.
+          // At the cut-off a ball's value is 1.2e-4: rounding may put a cell there on either side.
           EXPECT_NEAR(field[grid.Offset(x, y, z)], ValueAt(cloud, Middle_m(grid, x, y, z)), 2e-6);
         }
       }
@@ -270,7 +270,7 @@ TEST(Fit, StopsWhenAsked) {
   std::stop_source stop;
   FitOptions options;
   options.balls = 20;
-  options.least_gain = 0.0;
+  options.min_gain = 0.0;
   const auto fit = Fit(
       Grid(), Cloud(Grid()), options,
       [&](const FitProgress& progress) {

@@ -8,8 +8,8 @@
 namespace thunderhead::measure {
 namespace {
 
-LinearImage Linear(const std::vector<float>& gray) {
-  LinearImage image{{static_cast<int>(gray.size()), 1}, {}};
+picture::LinearPicture Linear(const std::vector<float>& gray) {
+  picture::LinearPicture image{{static_cast<int>(gray.size()), 1}, {}};
   for (const float value : gray) image.radiance.emplace_back(value);
   return image;
 }
@@ -24,19 +24,21 @@ DisplayImage Drawn(const std::function<int(int x, int y)>& gray) {
 }
 
 TEST(ImageError, RelativeRmseAndBias) {
-  const LinearImage truth = Linear({1.0F, 3.0F});
+  const picture::LinearPicture truth = Linear({1.0F, 3.0F});
   EXPECT_EQ(RelativeRmse(truth, truth), 0.0);
   EXPECT_EQ(RelativeBias(truth, truth), 0.0);
   // Differences 1 and -1 of a mean of 2.
   EXPECT_DOUBLE_EQ(RelativeRmse(Linear({2.0F, 2.0F}), truth), 0.5);
   EXPECT_DOUBLE_EQ(RelativeBias(Linear({2.0F, 2.0F}), truth), 0.0);
   EXPECT_DOUBLE_EQ(RelativeBias(Linear({1.5F, 3.5F}), truth), 0.25);
-  EXPECT_DOUBLE_EQ(RelativeNoise({glm::vec3(0.2F), glm::vec3(0.2F)}, truth), 0.2F / 2.0);
+  picture::LinearPicture noisy = truth;
+  noisy.standard_error = {glm::vec3(0.2F), glm::vec3(0.2F)};
+  EXPECT_DOUBLE_EQ(RelativeNoise(noisy), 0.2F / 2.0);
 }
 
 TEST(ImageError, TheTruthsNoiseIsTakenOutInSquares) {
-  const LinearImage truth = Linear({1.0F, 3.0F});
-  const LinearImage image = Linear({2.0F, 2.0F});  // 0.5 off
+  const picture::LinearPicture truth = Linear({1.0F, 3.0F});
+  const picture::LinearPicture image = Linear({2.0F, 2.0F});  // 0.5 off
   EXPECT_NEAR(RelativeRmseWithout(0.3, image, truth), 0.4, 1e-12);
   EXPECT_EQ(RelativeRmseWithout(0.0, image, truth), RelativeRmse(image, truth));
   EXPECT_EQ(RelativeRmseWithout(0.6, image, truth), 0.0);

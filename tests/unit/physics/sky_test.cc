@@ -1,5 +1,5 @@
-// The clear sky against energy, plane-parallel limits and what is known of it, and the air between
-// eye and storm against its integral.
+// The clear sky against conservation of energy, plane-parallel limits and observations; the air
+// between eye and storm against its integral.
 #include "physics/sky.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ TEST(ClearSky, SunlightAndSkylightShareWhatCameIn) {
       const glm::vec3 direct = sine * sky.SunTransmittance();
       for (int channel = 0; channel < 3; ++channel) {
         EXPECT_GT(sky.Light().irradiance[channel], 0.0F);
-        // A low sun lights the air of a round Earth from the side as well: what comes in on level
+        // A low sun lights the air of a round Earth from the side as well: the irradiance on level
         // ground is no bound for it.
         if (elevation_deg >= 20.0F) {
           EXPECT_LE(direct[channel] + sky.Light().irradiance[channel], sine) << elevation_deg;
@@ -59,9 +59,9 @@ TEST(ClearSky, TurnsWithTheSun) {
 }
 
 TEST(ClearSky, AirAloneScattersHalfOfWhatItTakesDown) {
-  // Without haze, of the light that thin air scatters half comes down: Rayleigh's function is the
-  // same forwards and backwards. Scattered twice, of that which went up half comes down again, so a
-  // little more than half of what the direct beam lost; ozone's absorption (2 %) takes from it.
+  // Without haze, half of the light that thin air scatters comes down: Rayleigh's phase function is
+  // the same forwards and backwards. Of the light scattered up, a second scattering sends half down
+  // again, so skylight is a little more than half of the direct beam's loss; ozone absorbs 2 %.
   const Atmosphere atmosphere(1.0F, 0.0F);
   for (const float elevation_deg : {40.0F, 60.0F, 90.0F}) {
     const ClearSky sky(atmosphere, TowardsSun(elevation_deg), {.eye_m = 0.0F});
@@ -83,10 +83,10 @@ TEST(ClearSky, DirectSunlightIsThatOfThePlaneParallelAir) {
   const glm::vec3 depth = glsl::air_optical_depth() + glsl::haze_optical_depth(2.0F) + ozone;
   for (const auto& [elevation_deg, mass] :
        {std::pair(90.0F, 1.0F), std::pair(30.0F, 1.994F), std::pair(10.0F, 5.60F)}) {
-    const glm::vec3 passed =
+    const glm::vec3 transmittance =
         ClearSky(atmosphere, TowardsSun(elevation_deg), {.eye_m = 0.0F}).SunTransmittance();
     for (int channel = 0; channel < 3; ++channel) {
-      EXPECT_NEAR(-std::log(passed[channel]) / (depth[channel] * mass), 1.0, 0.03)
+      EXPECT_NEAR(-std::log(transmittance[channel]) / (depth[channel] * mass), 1.0, 0.03)
           << elevation_deg << ' ' << channel;
     }
   }
@@ -169,7 +169,7 @@ TEST(ClearSky, TableHoldsTheIntegral) {
     for (const float height_m : {0.0F, 3000.0F}) {
       const ClearSky sky(atmosphere, TowardsSun(sun_deg), {.eye_m = height_m});
       float worst = 0.0F;
-      float worst_way = 0.0F;
+      float worst_air_mass = 0.0F;
       for (float azimuth_deg = 0.0F; azimuth_deg <= 180.0F; azimuth_deg += 7.0F) {
         for (float elevation_deg = 0.03F; elevation_deg < 90.0F; elevation_deg *= 1.13F) {
           const glm::vec3 direction = Towards(azimuth_deg, elevation_deg);
@@ -182,13 +182,14 @@ TEST(ClearSky, TableHoldsTheIntegral) {
                                  gathered.diffuse.g + gathered.haze.g * glsl::haze_phase(mu);
           const ClearSky::Seen seen = sky.At(direction);
           worst = std::max(worst, std::abs(seen.radiance.g / expected - 1.0F));
-          worst_way = std::max(worst_way, std::abs(seen.way.x / line.way.x - 1.0F));
+          worst_air_mass =
+              std::max(worst_air_mass, std::abs(seen.air_mass.x / line.air_mass.x - 1.0F));
         }
       }
       // Linear between nodes in a light that is nearly exponential in elevation; most so in
       // twilight.
       EXPECT_LT(worst, sun_deg < 0.0F ? 0.10F : 0.04F) << sun_deg << ' ' << height_m;
-      EXPECT_LT(worst_way, 0.01F) << sun_deg << ' ' << height_m;
+      EXPECT_LT(worst_air_mass, 0.01F) << sun_deg << ' ' << height_m;
     }
   }
 }
@@ -199,7 +200,7 @@ TEST(ClearSky, FromAboveTheAirIsBlueAndTheSkyBlack) {
   const ClearSky above(atmosphere, TowardsSun(50.0F), {.eye_m = 1e5F});
   const glm::vec3 up(0.0F, 0.0F, 1.0F);
   EXPECT_LT(above.At(up).radiance.g, 0.01F * ground.At(up).radiance.g);
-  // Looked down upon, the air sends about as much as it does from below.
+  // Seen from above, the air is about as bright as from below.
   const glm::vec3 down = above.At(-up).radiance;
   EXPECT_GT(down.b, 2.0F * down.r);
   EXPECT_NEAR(down.b / ground.At(up).radiance.b, 1.0F, 0.35F);
@@ -228,7 +229,8 @@ TEST(Air, DepthIsTheIntegralOfItsDensity) {
       sums_m[1] += std::exp(-h / glsl::kHazeScaleHeight_m) * way.distance_m / kSteps;
     }
     const glm::vec2 densities = glsl::densities_of_air(way.height_m);
-    // Short ways have the error of scaled_erfc's slope, which is larger than its own.
+    // On short paths the error of scaled_erfc's slope counts, which is larger than that of its
+    // value.
     EXPECT_NEAR(glsl::equivalent_m(glsl::kAirScaleHeight_m, densities.x, way) / sums_m[0], 1.0,
                 0.01)
         << way.height_m << ' ' << way.sin_elevation;
@@ -259,7 +261,7 @@ TEST(Air, FarAwayEverythingIsTheSky) {
     EXPECT_NEAR(seen(1.0F, 0.0F, 0.1F)[channel], cloud[channel], 1e-6);
     EXPECT_NEAR(seen(1.0F, 5e5F, 0.0F)[channel], sky[channel], 0.01);
     EXPECT_NEAR(seen(0.25F, 5e5F, 0.0F)[channel], 0.25 * sky[channel], 0.01);
-    // Halfway, between the two, nearer to the sky the farther.
+    // In between, the farther, the closer to the sky's radiance.
     EXPECT_LT(seen(1.0F, 5e4F, 0.1F)[channel], cloud[channel]);
     EXPECT_GT(seen(1.0F, 5e4F, 0.1F)[channel], seen(1.0F, 1e5F, 0.1F)[channel]);
     EXPECT_EQ(seen(0.0F, 5e4F, 0.1F)[channel], 0.0F);

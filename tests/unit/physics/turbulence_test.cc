@@ -1,4 +1,4 @@
-// Turbulence tiles: what a field multiplied by one relies on.
+// The properties of turbulence tiles that multiplying a field by one relies on.
 #include "physics/turbulence.h"
 
 #include <algorithm>
@@ -59,7 +59,7 @@ TEST_P(Turbulence, RepeatsWithoutASeam) {
   EXPECT_NEAR(across / inside, 1.0, 0.25);
 }
 
-INSTANTIATE_TEST_SUITE_P(Octaves, Turbulence, testing::Range(1, kMostTurbulenceOctaves + 1));
+INSTANTIATE_TEST_SUITE_P(Octaves, Turbulence, testing::Range(1, kMaxTurbulenceOctaves + 1));
 
 TEST(Turbulence, IsTheSameOnEveryMachine) {
   // From the first run; integers throughout, so any difference is an error.
@@ -87,7 +87,7 @@ double RoughnessOf(const TurbulenceTile& tile) {
 
 TEST(Turbulence, OctavesAddFinerStructure) {
   double coarser = RoughnessOf(MakeTurbulence(1, 1));
-  for (int octaves = 2; octaves <= kMostTurbulenceOctaves; ++octaves) {
+  for (int octaves = 2; octaves <= kMaxTurbulenceOctaves; ++octaves) {
     const double roughness = RoughnessOf(MakeTurbulence(octaves, 1));
     EXPECT_GT(roughness, coarser) << octaves;
     coarser = roughness;

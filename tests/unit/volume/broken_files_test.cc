@@ -1,5 +1,5 @@
-// Files that cannot be read: one clear error each, that names the file and what is wrong; never a
-// crash, never half a storm.
+// Files that cannot be read give one clear error that names the file and the cause; never a crash,
+// never half a storm.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ using testing::WrfFormat;
 
 class BrokenFiles : public ::testing::Test {
  protected:
-  // The first error on the way from opening to the fields of the storm's first time.
+  // The first error from opening the storm to reading the fields of its first time.
   absl::Status Read() {
     auto store = StormStore::Open({path_}, {.read_ahead = 0});
     if (!store.ok()) return store.status();
@@ -168,7 +168,7 @@ TEST_F(BrokenFiles, CutShortAfterItWasOpened) {
   std::filesystem::resize_file(path_, std::filesystem::file_size(path_) / 2);
   ExpectError((*store)->Get("wrfout_d01", 0, {}).status(), "cut short");
   EXPECT_EQ((*store)->CachedBytes(), 0U);
-  // Whole again, it is read: an error is not remembered.
+  // Errors are not cached: the repaired file is read.
   testing::WriteWrf(Storm(), path_);
   EXPECT_TRUE((*store)->Get("wrfout_d01", 0, {}).ok());
 }

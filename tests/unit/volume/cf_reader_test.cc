@@ -1,5 +1,5 @@
 // CF files as storms: axes in any order and direction, quantities by standard name or name, clear
-// errors for what a file lacks.
+// errors for files that lack something.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -131,7 +131,7 @@ TEST_F(CfReader, DepthsPointDown) {
   ExpectValues(**fields);
 }
 
-// Names say nothing; one thing each tells the axis.
+// The names are meaningless; each axis has one other attribute that identifies it.
 TEST_F(CfReader, AxesAreKnownByAttributesStandardNamesOrUnits) {
   SyntheticCf file = Small();
   file.coordinates[0] = {"a", Middles(4, 0.0, 0.1), {{"units", "km"}, {"axis", "X"}}, {}};
@@ -344,7 +344,7 @@ TEST_F(CfReader, SaysWhatAFileLacks) {
   ExpectError(file, "'m-1' is needed");
   ExpectError(Water("qc", {{"units", "kg kg-1"}}, 1e-3), "lacks the air's density");
   ExpectError(Water("qc", {}, 1e-3), "has no units");
-  ExpectError(Water("lwc", {{"units", "kg m-3"}}, 0.8), "no air can hold");
+  ExpectError(Water("lwc", {{"units", "kg m-3"}}, 0.8), "more than air can hold");
   file = Small();
   file.coordinates.push_back({"member", {1.0, 2.0}, {}, {}});
   file.variables[0].dimensions = {"member", "z", "y", "x"};

@@ -155,7 +155,7 @@ TEST_F(ParticleSizesTest, NothingIsHeldWithoutThem) {
 }
 
 TEST(InverseRadius, HalvesHoldEveryRadiusThatASceneMayHave) {
-  for (double radius_m = physics::kLeastRadius_m; radius_m <= physics::kMostRadius_m;
+  for (double radius_m = physics::kMinRadius_m; radius_m <= physics::kMaxRadius_m;
        radius_m *= 1.07) {
     const auto per_radius = static_cast<float>(1.0 / radius_m);
     const ParticleSizes sizes = SizesOf("RE_CLOUD", {2e-3F}, {2e-3F * per_radius});

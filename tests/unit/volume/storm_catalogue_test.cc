@@ -33,7 +33,7 @@ class StormCatalogue : public ::testing::Test {
   }
 
   std::vector<CataloguedStorm> Find() {
-    auto storms = FindStorms({storms_.string()});
+    auto storms = FindStorms({storms_.string()}, StormFormats::BuiltIn());
     EXPECT_TRUE(storms.ok()) << storms.status();
     return storms.ok() ? *std::move(storms) : std::vector<CataloguedStorm>{};
   }
@@ -119,7 +119,8 @@ TEST_F(StormCatalogue, LooksIntoSubfoldersAndLeavesOutWhatIsNoStorm) {
 
 TEST_F(StormCatalogue, TakesAFileGivenTwiceOnce) {
   Write("one.nc", {"18"});
-  const auto storms = FindStorms({storms_.string(), (storms_ / "one.nc").string()});
+  const auto storms =
+      FindStorms({storms_.string(), (storms_ / "one.nc").string()}, StormFormats::BuiltIn());
   ASSERT_TRUE(storms.ok()) << storms.status();
   EXPECT_THAT(Ids(*storms), ElementsAre("one"));
 }
@@ -133,7 +134,7 @@ TEST_F(StormCatalogue, FailsForAFileGivenByNameThatIsNoStorm) {
   Write("one.nc", {"18"});
   const std::string notes = (storms_ / "notes.txt").string();
   std::ofstream(notes) << "notes";
-  const auto storms = FindStorms({(storms_ / "one.nc").string(), notes});
+  const auto storms = FindStorms({(storms_ / "one.nc").string(), notes}, StormFormats::BuiltIn());
   EXPECT_EQ(storms.status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_THAT(std::string(storms.status().message()), ::testing::HasSubstr(notes));
 }

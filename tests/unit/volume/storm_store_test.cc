@@ -52,7 +52,7 @@ class StormSeries : public ::testing::Test {
     return *std::move(store);
   }
 
-  // Whether `condition` comes true within a time that even a busy machine keeps.
+  // True if `condition` becomes true within a limit that is generous even on a busy machine.
   template <typename Condition>
   static bool Eventually(Condition condition) {
     for (int i = 0; i < 2000; ++i) {
@@ -157,7 +157,7 @@ TEST_F(StormSeries, KeepsTheNewestEvenIfItAloneIsTooLarge) {
   ASSERT_TRUE(store->Get("series", 1, {}).ok());
   EXPECT_EQ(store->Peek("series", 0), nullptr);
   EXPECT_EQ(store->CachedBytes(), one_time_);
-  // What was given out lives on.
+  // Evicted fields live on as long as a caller has them.
   EXPECT_EQ((*first)->fields.size(), 1U);
 }
 
@@ -189,7 +189,7 @@ TEST_F(StormSeries, NeverPushesOutTheTimeInViewByReadingAhead) {
   EXPECT_LE(store->CachedBytes(), 2 * one_time_);
 }
 
-// A broken next time spoils neither the time in view nor the thread.
+// A broken next time harms neither the time in view nor the read-ahead thread.
 TEST_F(StormSeries, OutlivesABrokenTimeWhenReadingAhead) {
   const auto store = Open({.read_ahead = 2});
   const std::string broken = store->Storms()[0]->files[1];

@@ -1,4 +1,4 @@
-#include "reference/exr_file.h"
+#include "picture/exr_file.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -13,7 +13,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
 
-namespace thunderhead::reference {
+namespace thunderhead::picture {
 namespace {
 
 struct Channel {
@@ -30,11 +30,11 @@ constexpr std::array<Channel, 6> kChannels = {{{"R", false, 0},
                                                {"stderr.B", true, 2}}};
 
 // OpenEXR takes addresses that it may write to, also to write a file from.
-Imf::FrameBuffer FrameBufferOf(Image* image) {
+Imf::FrameBuffer FrameBufferOf(LinearPicture* picture) {
   Imf::FrameBuffer buffer;
-  const auto width = static_cast<std::size_t>(image->size_px.x);
+  const auto width = static_cast<std::size_t>(picture->size_px.x);
   for (const Channel& channel : kChannels) {
-    auto& values = channel.error ? image->standard_error : image->radiance;
+    auto& values = channel.error ? picture->standard_error : picture->radiance;
     auto* first = reinterpret_cast<char*>(values.data()) + channel.color * sizeof(float);
     buffer.insert(channel.name,
                   Imf::Slice(Imf::FLOAT, first, sizeof(glm::vec3), width * sizeof(glm::vec3)));
@@ -44,18 +44,19 @@ Imf::FrameBuffer FrameBufferOf(Image* image) {
 
 }  // namespace
 
-absl::Status WriteExr(const std::string& path, const Image& image) {
-  THUNDERHEAD_CHECK(image.size_px.x > 0 && image.size_px.y > 0, "an image without pixels");
+absl::Status WriteExr(const std::string& path, const LinearPicture& picture) {
+  THUNDERHEAD_CHECK(picture.size_px.x > 0 && picture.size_px.y > 0, "a picture without pixels");
+  THUNDERHEAD_CHECK(picture.standard_error.size() == picture.radiance.size(), path);
   try {
-    Imf::Header header(image.size_px.x, image.size_px.y);
+    Imf::Header header(picture.size_px.x, picture.size_px.y);
     header.compression() = Imf::ZIP_COMPRESSION;
     for (const Channel& channel : kChannels) {
       header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
     }
-    Image copy = image;
+    LinearPicture copy = picture;
     Imf::OutputFile file(path.c_str(), header);
     file.setFrameBuffer(FrameBufferOf(&copy));
-    file.writePixels(image.size_px.y);
+    file.writePixels(picture.size_px.y);
   } catch (const std::exception& error) {
     return absl::UnavailableError(absl::StrCat("cannot write '", path, "': ", error.what(),
                                                "; check that the folder exists and has room"));
@@ -63,7 +64,7 @@ absl::Status WriteExr(const std::string& path, const Image& image) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<Image> ReadExr(const std::string& path) {
+absl::StatusOr<LinearPicture> ReadExr(const std::string& path) {
   try {
     Imf::InputFile file(path.c_str());
     for (const Channel& channel : kChannels) {
@@ -77,19 +78,19 @@ absl::StatusOr<Image> ReadExr(const std::string& path) {
       return absl::InvalidArgumentError(absl::StrCat(
           "'", path, "' does not begin at pixel (0, 0); give a file that the reference wrote"));
     }
-    Image image;
-    image.size_px = {window.max.x + 1, window.max.y + 1};
+    LinearPicture picture;
+    picture.size_px = {window.max.x + 1, window.max.y + 1};
     const auto pixels =
-        static_cast<std::size_t>(image.size_px.x) * static_cast<std::size_t>(image.size_px.y);
-    image.radiance.resize(pixels);
-    image.standard_error.resize(pixels);
-    file.setFrameBuffer(FrameBufferOf(&image));
-    file.readPixels(0, image.size_px.y - 1);
-    return image;
+        static_cast<std::size_t>(picture.size_px.x) * static_cast<std::size_t>(picture.size_px.y);
+    picture.radiance.resize(pixels);
+    picture.standard_error.resize(pixels);
+    file.setFrameBuffer(FrameBufferOf(&picture));
+    file.readPixels(0, picture.size_px.y - 1);
+    return picture;
   } catch (const std::exception& error) {
     return absl::InvalidArgumentError(
         absl::StrCat("cannot read '", path, "': ", error.what(), "; give an OpenEXR file"));
   }
 }
 
-}  // namespace thunderhead::reference
+}  // namespace thunderhead::picture

@@ -1,0 +1,20 @@
+// A picture as light: linear radiance, whether drawn or traced, before any tone mapping.
+#pragma once
+
+#include <vector>
+
+#include "glm/vec2.hpp"
+#include "glm/vec3.hpp"
+
+namespace thunderhead::picture {
+
+// Rows from top to bottom.
+struct LinearPicture {
+  glm::ivec2 size_px{0};
+  std::vector<glm::vec3> radiance;
+  // Of each pixel's radiance, where that is an estimate; infinite where it is not known. Empty for
+  // a picture without noise, or where nobody needs it.
+  std::vector<glm::vec3> standard_error{};
+};
+
+}  // namespace thunderhead::picture
