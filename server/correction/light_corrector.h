@@ -19,7 +19,7 @@
 #include "glm/vec3.hpp"
 #include "reference/medium.h"
 #include "reference/surroundings.h"
-#include "renderers/light_volume/light_correction.h"
+#include "renderers/light_correction.h"
 #include "renderers/scene_renderer.h"
 #include "scene/scene.h"
 #include "volume/hydrometeor_fields.h"

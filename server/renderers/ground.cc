@@ -7,7 +7,6 @@
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
 #include "renderers/group_weights.h"
-#include "renderers/half_angle/slicing.h"
 #include "renderers/view_uniforms.h"
 
 namespace thunderhead::renderers {

@@ -10,7 +10,7 @@
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "gl/whole_target.h"
-#include "renderers/half_angle/slicing.h"
+#include "renderers/light_frame.h"
 #include "renderers/medium.h"
 #include "renderers/render_settings.h"
 #include "volume/hydrometeor_fields.h"

@@ -8,7 +8,7 @@
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 #include "renderers/cover.h"
-#include "renderers/light_volume/light_correction.h"
+#include "renderers/light_correction.h"
 #include "scene/scene.h"
 #include "scene/view.h"
 

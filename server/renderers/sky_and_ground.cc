@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "base/status.h"
-#include "renderers/cumulus/light_map.h"
+#include "renderers/light_map.h"
 #include "renderers/view_uniforms.h"
 
 namespace thunderhead::renderers {

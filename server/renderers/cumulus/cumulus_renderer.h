@@ -14,7 +14,7 @@
 #include "gl/program.h"
 #include "gl/whole_target.h"
 #include "renderers/detail_noises.h"
-#include "renderers/half_angle/slicing.h"
+#include "renderers/light_frame.h"
 #include "renderers/render_settings.h"
 
 namespace thunderhead::renderers {

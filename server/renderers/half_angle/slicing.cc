@@ -8,41 +8,6 @@
 #include "glm/geometric.hpp"
 
 namespace thunderhead::renderers {
-namespace {
-
-std::array<glm::dvec3, 8> Corners(const LocalBox& box) {
-  std::array<glm::dvec3, 8> corners;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const glm::dvec3 sign((i & 1U) != 0 ? 1.0 : -1.0, (i & 2U) != 0 ? 1.0 : -1.0,
-                          (i & 4U) != 0 ? 1.0 : -1.0);
-    corners[i] = sign * box.half_m;
-  }
-  return corners;
-}
-
-// Two unit vectors that make a right-handed frame with `axis`.
-std::array<glm::dvec3, 2> Across(const glm::dvec3& axis) {
-  const glm::dvec3 other =
-      std::abs(axis.z) < 0.9 ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(0.0, 1.0, 0.0);
-  const glm::dvec3 right = glm::normalize(glm::cross(other, axis));
-  return {right, glm::cross(axis, right)};
-}
-
-}  // namespace
-
-LightFrame LightFrameOf(const LocalBox& box, const glm::dvec3& towards_sun) {
-  LightFrame frame;
-  frame.towards_sun = towards_sun;
-  const auto [right, up] = Across(towards_sun);
-  frame.right = right;
-  frame.up = up;
-  frame.half_extent_m = glm::dvec2(0.0);
-  for (const glm::dvec3& corner : Corners(box)) {
-    frame.half_extent_m = glm::max(
-        frame.half_extent_m, glm::abs(glm::dvec2(glm::dot(corner, right), glm::dot(corner, up))));
-  }
-  return frame;
-}
 
 Slicing SliceBox(const LocalBox& box, const glm::dvec3& towards_sun, const glm::dvec3& towards_eye,
                  int count) {
@@ -50,7 +15,7 @@ Slicing SliceBox(const LocalBox& box, const glm::dvec3& towards_sun, const glm::
   const bool eye_on_suns_side = glm::dot(towards_sun, towards_eye) >= 0.0;
   slicing.normal =
       glm::normalize(eye_on_suns_side ? towards_sun + towards_eye : towards_sun - towards_eye);
-  const std::array<glm::dvec3, 8> corners = Corners(box);
+  const std::array<glm::dvec3, 8> corners = CornersOf(box);
   double reach_m = 0.0;
   for (const glm::dvec3& corner : corners) {
     reach_m = std::max(reach_m, glm::dot(slicing.normal, corner));

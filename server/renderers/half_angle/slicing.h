@@ -3,26 +3,11 @@
 // Riley et al. 2003 (Vis), 4.4.1.
 #pragma once
 
-#include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
+#include "renderers/light_frame.h"
 #include "scene/view.h"
 
 namespace thunderhead::renderers {
-
-// A box around the origin of local coordinates (metres).
-struct LocalBox {
-  glm::dvec3 half_m{0.0};
-};
-
-// The light buffer's plane: its axes are perpendicular to the light and do not depend on the view.
-struct LightFrame {
-  glm::dvec3 towards_sun{0.0, 0.0, 1.0};
-  glm::dvec3 right{1.0, 0.0, 0.0};
-  glm::dvec3 up{0.0, 1.0, 0.0};
-  glm::dvec2 half_extent_m{1.0};  // covers the box's shadow
-};
-
-LightFrame LightFrameOf(const LocalBox& box, const glm::dvec3& towards_sun);
 
 // Parallel planes, the same distance apart; sunlight meets the first one first.
 struct Slicing {

@@ -16,7 +16,7 @@
 #include "gl/program.h"
 #include "gl/whole_target.h"
 #include "renderers/group_weights.h"
-#include "renderers/half_angle/slicing.h"
+#include "renderers/light_frame.h"
 #include "renderers/light_volume/diffusion_pass.h"
 #include "renderers/medium.h"
 #include "renderers/render_settings.h"

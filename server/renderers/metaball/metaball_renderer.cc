@@ -8,7 +8,7 @@
 #include "base/status.h"
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
-#include "renderers/half_angle/slicing.h"
+#include "renderers/light_frame.h"
 #include "renderers/metaball/light_order.h"
 #include "renderers/metaball/tiles.h"
 #include "renderers/view_uniforms.h"

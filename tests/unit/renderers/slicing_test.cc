@@ -74,16 +74,5 @@ TEST(Slicing, NarrowViewsMeetAllSlicesInOneOrderAndWideOnesInBoth) {
   EXPECT_EQ(order(179.0, 1.1), SliceOrder::kBoth);
 }
 
-TEST(LightFrame, CoversTheShadow) {
-  const LightFrame frame = LightFrameOf(kBox, scene::Direction(123, 33));
-  EXPECT_NEAR(glm::dot(frame.right, frame.up), 0.0, 1e-12);
-  EXPECT_NEAR(glm::dot(frame.right, frame.towards_sun), 0.0, 1e-12);
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 sign((corner & 1) ? 1 : -1, (corner & 2) ? 1 : -1, (corner & 4) ? 1 : -1);
-    EXPECT_LE(std::abs(glm::dot(sign * kBox.half_m, frame.right)), frame.half_extent_m.x + 1e-9);
-    EXPECT_LE(std::abs(glm::dot(sign * kBox.half_m, frame.up)), frame.half_extent_m.y + 1e-9);
-  }
-}
-
 }  // namespace
 }  // namespace thunderhead::renderers

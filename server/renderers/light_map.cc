@@ -1,4 +1,4 @@
-#include "renderers/cumulus/light_map.h"
+#include "renderers/light_map.h"
 
 #include <array>
 #include <cmath>
