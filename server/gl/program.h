@@ -5,6 +5,8 @@
 #include <epoxy/gl.h>
 
 #include <map>
+#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,17 +34,38 @@ struct Define {
   auto operator<=>(const Define&) const = default;
 };
 
+using Defines = std::vector<Define>;
+
+Defines Joined(Defines first, const Defines& more);
+
+// The value of a macro in a struct that describes a shader's variant. It has no default, so that a
+// variant that leaves one out does not compile.
+class DefineValue {
+ public:
+  DefineValue(int value) : value_(value) {}  // NOLINT(google-explicit-constructor)
+  operator int() const { return value_; }    // NOLINT(google-explicit-constructor)
+
+ private:
+  int value_;
+};
+
 // Which files a program is made of, and its variant: vertex and fragment, or compute alone.
 struct ProgramSource {
-  std::string vertex;    // e.g. "common/whole_target.vert"
+  std::string vertex;    // e.g. "cumulus/bubble.vert"
   std::string fragment;  // e.g. "half_angle/eye.frag"
-  std::vector<Define> defines;
-  std::string compute = {};  // e.g. "light_volume/carry.comp"
+  std::string compute;   // e.g. "light_volume/carry.comp"
+  Defines defines;
+
+  static ProgramSource Of(std::string vertex, std::string fragment, Defines defines = {});
+  // For gl::WholeTarget.
+  static ProgramSource WholeTarget(std::string fragment, Defines defines = {});
+  static ProgramSource Compute(std::string compute, Defines defines = {});
 
   auto operator<=>(const ProgramSource&) const = default;
 };
 
-// A linked program. Setting a uniform that the variant does not have does nothing.
+// A linked program. Setting a uniform that the variant does not have does nothing; one that no
+// variant has fails where programs are strict (gl/strict_programs.h).
 class Program {
  public:
   static absl::StatusOr<Program> Link(const ProgramSource& source);
@@ -64,10 +87,18 @@ class Program {
   void Set(std::string_view uniform, const std::vector<glm::vec4>& values) const;
 
  private:
+  // For checks by name.
+  struct Strict {
+    std::string paths;
+    std::set<std::string, std::less<>> uniforms;
+  };
+
+  absl::Status BecomeStrict(const ProgramSource& source, const std::vector<std::string>& texts);
   GLint Location(std::string_view uniform) const;
 
   Name<internal::DeleteProgram> name_;
   std::map<std::string, GLint, std::less<>> locations_;
+  std::optional<Strict> strict_;
 };
 
 // Programs linked so far, by source; links on first use.

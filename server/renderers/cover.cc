@@ -130,8 +130,9 @@ absl::Status Cover::Draw(const Boxes& boxes, const scene::View& view, const glm:
     }
   }
   if (corners.empty()) return absl::OkStatus();
-  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
-                               programs_->Get({"common/cover.vert", "common/cover.frag", {}}));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_->Get(gl::ProgramSource::Of("common/cover.vert", "common/cover.frag")));
   const gl::Buffer buffer(corners.size() * sizeof(glm::vec3), corners.data(), 0);
   const gl::VertexArray array = gl::VertexArray::OfPositions(buffer);
   target_.Bind();

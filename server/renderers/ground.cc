@@ -72,13 +72,10 @@ absl::Status Ground::CastShadow(const ResidentMedium& medium, const RenderSettin
     shadow_ = gl::Texture2D(GL_R16F, size, gl::Edge::kZero);
     shadow_target_ = gl::Framebuffer(shadow_);
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      const gl::Program* program,
-      programs_->Get({"common/whole_target.vert",
-                      "ground/shadow.frag",
-                      {{"GROUPS", static_cast<int>(medium.Content().groups.size())},
-                       {"DETAILS", medium.Details()}}}));
-  medium.Bind(*program);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
+                               programs_->Get(gl::ProgramSource::WholeTarget(
+                                   "ground/shadow.frag", medium.Variant().Defines())));
+  medium.BindWithBricks(*program);
   const GroupWeights weights(medium.Content(), settings.rendering);
   const glm::dvec3 through_m = cell_m / glm::max(glm::abs(towards_sun), glm::dvec3(1e-6));
   const double step_m = kShadowStepInCells * std::min({through_m.x, through_m.y, through_m.z});
@@ -120,8 +117,7 @@ absl::Status Ground::DrawDistance(const scene::View& view, const glm::ivec2& siz
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_->Get(
-          {"common/whole_target.vert", "ground/distance.frag", {{"RELIEF", relief_ ? 1 : 0}}}));
+      programs_->Get(gl::ProgramSource::WholeTarget("ground/distance.frag", Variant().Defines())));
   BindRays(*program, view, view.eye_m);
   Bind(*program, view);
   whole_target_.Draw(*program, distance_target_);

@@ -158,12 +158,16 @@ void ResidentMedium::Bind(const gl::Program& program) const {
               glm::vec3((Middle_m() - bounds_.grid.low_corner_m) / extent_m));
   program.Set("medium_low_m", glm::vec3(-HalfExtent_m()));
   program.Set("medium_high_m", glm::vec3(HalfExtent_m()));
+  program.Set("extinction_weights", Weights(std::vector<double>(content_.groups.size(), 1.0)));
+  if (!details_.empty()) BindDetails(program);
+}
+
+void ResidentMedium::BindWithBricks(const gl::Program& program) const {
+  Bind(program);
   bricks_.Bind(kBrickUnit);
   program.Set("brick_from_local_scale", glm::vec3(1.0 / brick_m_));
   program.Set("brick_from_local_offset", glm::vec3((Middle_m() - bricks_low_m_) / brick_m_));
   program.Set("brick_count", bricks_.Size());
-  program.Set("extinction_weights", Weights(std::vector<double>(content_.groups.size(), 1.0)));
-  if (!details_.empty()) BindDetails(program);
 }
 
 void ResidentMedium::BindDetails(const gl::Program& program) const {

@@ -21,6 +21,16 @@ constexpr std::size_t kMostTables = 32;
 
 constexpr glm::vec3 kGroundTint(1.0F, 0.93F, 0.78F);  // of bare soil and grass seen from far off
 
+struct CompositeVariant {
+  GroundVariant ground;
+  gl::DefineValue corrected;  // the ground's skylight, by renderers::LightCorrection
+  gl::DefineValue front;      // there may be something in the eye buffer
+
+  gl::Defines Defines() const {
+    return gl::Joined(ground.Defines(), {{"CORRECTED", corrected}, {"FRONT", front}});
+  }
+};
+
 // Radiance per irradiance of level ground.
 glm::vec3 GroundReflectance(const scene::Scene& scene) {
   return kGroundTint * static_cast<float>(scene.sky.ground_albedo * std::numbers::inv_pi);
@@ -188,12 +198,12 @@ absl::Status SkyAndGround::Composite(const scene::Scene& scene, const scene::Vie
   eye.Bind(kEyeUnit);
   sky_table_.Bind(kSkyUnit);
   const auto draw = [&](Where where) -> absl::Status {
-    THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
-                                 programs_->Get({"common/whole_target.vert",
-                                                 "post/composite.frag",
-                                                 {{"RELIEF", ground.Relief() ? 1 : 0},
-                                                  {"CORRECTED", ground.Corrected() ? 1 : 0},
-                                                  {"FRONT", where == Where::kCovered ? 1 : 0}}}));
+    const CompositeVariant variant{.ground = ground.Variant(),
+                                   .corrected = ground.Corrected(),
+                                   .front = where == Where::kCovered};
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        const gl::Program* program,
+        programs_->Get(gl::ProgramSource::WholeTarget("post/composite.frag", variant.Defines())));
     BindAir(*program, scene, view, ground, box);
     const LimitedTo limited(where, cover);
     whole_target_.Draw(*program, target.Target());

@@ -8,6 +8,7 @@
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
 #include "glm/matrix.hpp"
+#include "renderers/cumulus/variants.h"
 #include "renderers/view_uniforms.h"
 
 namespace thunderhead::renderers {
@@ -80,8 +81,10 @@ struct CumulusRenderer::Pass {
   gl::Buffer order;
 
   Pass(const scene::View& from, const glm::ivec2& target, const CumulusRenderer& renderer);
-  std::vector<gl::Define> Variant(const CumulusRenderer& renderer) const {
-    return {{"BASE", renderer.has_base_ ? 1 : 0}, {"GROUND", ground_distance != nullptr ? 1 : 0}};
+  BubbleVariant Variant(const CumulusRenderer& renderer, bool front_first) const {
+    return {.base = renderer.has_base_,
+            .ground = ground_distance != nullptr,
+            .front_first = front_first};
   }
 };
 
@@ -151,11 +154,10 @@ void CumulusRenderer::DrawBubbles(const gl::Program& program, const Pass& pass) 
 }
 
 absl::Status CumulusRenderer::DrawDepth(const Pass& pass, const gl::Framebuffer& target) {
-  std::vector<gl::Define> variant = pass.Variant(*this);
-  variant.push_back({"FRONT_FIRST", 1});
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_->Get({"cumulus/bubble.vert", "cumulus/depth.frag", variant}));
+      programs_->Get(gl::ProgramSource::Of("cumulus/bubble.vert", "cumulus/depth.frag",
+                                           pass.Variant(*this, true).Defines())));
   target.ClearDepth(1.0F);
   target.Bind();
   glEnable(GL_DEPTH_TEST);
@@ -189,7 +191,7 @@ absl::StatusOr<gl::Texture2D> CumulusRenderer::GroundShadow() {
   const gl::Framebuffer target(shadow);
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_->Get({"common/whole_target.vert", "cumulus/ground_shadow.frag", {}}));
+      programs_->Get(gl::ProgramSource::WholeTarget("cumulus/ground_shadow.frag")));
   shadow_depth_.Bind(kDepthUnit);
   whole_target_.Draw(*program, target);
   return shadow;
@@ -254,12 +256,11 @@ absl::Status CumulusRenderer::DrawView(const RenderSettings& settings,
   pass.corona_m = plain ? 0.0 : Corona_m(settings.rendering.cumulus);
   pass.ground_distance = settings.ground_distance;
   THUNDERHEAD_RETURN_IF_ERROR(DrawDepth(pass, core_target_));
-  std::vector<gl::Define> variant = pass.Variant(*this);
-  variant.push_back({"FRONT_FIRST", 0});
-  variant.push_back({"PLAIN", plain ? 1 : 0});
+  const ShadeVariant variant{.bubble = pass.Variant(*this, false), .plain = plain};
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_->Get({"cumulus/bubble.vert", "cumulus/shade.frag", variant}));
+      programs_->Get(
+          gl::ProgramSource::Of("cumulus/bubble.vert", "cumulus/shade.frag", variant.Defines())));
   SetShading(*program, settings, light_map, noises);
   shade_target_.Clear(0.0F, 0.0F, 0.0F, 0.0F, 0);
   shade_target_.Clear(0.0F, 0.0F, 0.0F, 1.0F, 1);
@@ -285,7 +286,7 @@ absl::Status CumulusRenderer::DrawView(const RenderSettings& settings,
 absl::Status CumulusRenderer::Resolve() {
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_->Get({"common/whole_target.vert", "cumulus/resolve.frag", {}}));
+      programs_->Get(gl::ProgramSource::WholeTarget("cumulus/resolve.frag")));
   cores_.Bind(kDepthUnit);
   layer_.Bind(kShadowUnit);
   whole_target_.Draw(*program, eye_target_);

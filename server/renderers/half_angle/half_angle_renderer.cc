@@ -10,6 +10,7 @@
 #include "renderers/group_weights.h"
 #include "renderers/half_angle/slice_reach.h"
 #include "renderers/half_angle/turns.h"
+#include "renderers/half_angle/variants.h"
 #include "renderers/view_uniforms.h"
 
 namespace thunderhead::renderers {
@@ -102,7 +103,6 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
   const GroupWeights weights(medium.Content(), rendering);
   const bool translucent = IsTranslucent(rendering);
   const bool consistent = IsConsistent(rendering);
-  const auto groups = static_cast<int>(medium.Content().groups.size());
   const glm::dvec3 cell_m = medium.Bounds().grid.spacing_m;
   Resize(frame, std::min(cell_m.x, cell_m.y));
   for (CoveredTarget& eye : eye_) {
@@ -113,19 +113,17 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
     THUNDERHEAD_RETURN_IF_ERROR(SumThickness(medium, frame, weights));
   }
 
+  const SliceEyeVariant eye_variant{.medium = medium.Variant(),
+                                    .colored = weights.colored,
+                                    .even_albedo = weights.even_albedo,
+                                    .translucent = translucent,
+                                    .consistent = consistent,
+                                    .ground = settings.ground_distance != nullptr,
+                                    .order = OrderOf(slicing, settings.view)};
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* eye,
-      programs_->Get({"common/whole_target.vert",
-                      "half_angle/eye.frag",
-                      {{"GROUPS", groups},
-                       {"DETAILS", medium.Details()},
-                       {"COLORED", weights.colored ? 1 : 0},
-                       {"EVEN_ALBEDO", weights.even_albedo ? 1 : 0},
-                       {"TRANSLUCENT", translucent ? 1 : 0},
-                       {"CONSISTENT", consistent ? 1 : 0},
-                       {"GROUND", settings.ground_distance != nullptr ? 1 : 0},
-                       {"ORDER", static_cast<int>(OrderOf(slicing, settings.view))}}}));
-  medium.Bind(*eye);
+      programs_->Get(gl::ProgramSource::WholeTarget("half_angle/eye.frag", eye_variant.Defines())));
+  medium.BindWithBricks(*eye);
   BindRays(*eye, settings.view, medium.Middle_m());
   eye->Set("towards_sun", glm::vec3(frame.towards_sun));
   eye->Set("slice_normal", glm::vec3(slicing.normal));
@@ -139,15 +137,12 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
   eye->Set("light_u", glm::vec3(0.5 * frame.right / frame.half_extent_m.x));
   eye->Set("light_v", glm::vec3(0.5 * frame.up / frame.half_extent_m.y));
 
-  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* light,
-                               programs_->Get({{},
-                                               {},
-                                               {{"GROUPS", groups},
-                                                {"DETAILS", medium.Details()},
-                                                {"CONSISTENT", consistent ? 1 : 0},
-                                                {"TRANSLUCENT", translucent ? 1 : 0}},
-                                               "half_angle/carry.comp"}));
-  medium.Bind(*light);
+  const SliceLightVariant light_variant{
+      .medium = medium.Variant(), .consistent = consistent, .translucent = translucent};
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* light,
+      programs_->Get(gl::ProgramSource::Compute("half_angle/carry.comp", light_variant.Defines())));
+  medium.BindWithBricks(*light);
   BindSunRays(*light, slicing, frame);
   light->Set("light_weights", medium.Weights(weights.light));
   light->Set("transport_weights", medium.Weights(weights.transport));
@@ -174,14 +169,10 @@ absl::Status HalfAngleRenderer::SumThickness(const ResidentMedium& medium, const
   // Slices across the sun's rays, so that the sum does not depend on the view and can be kept.
   const Slicing slicing =
       SliceBox({medium.HalfExtent_m()}, frame.towards_sun, frame.towards_sun, kThicknessSlices);
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      const gl::Program* program,
-      programs_->Get({{},
-                      {},
-                      {{"GROUPS", static_cast<int>(medium.Content().groups.size())},
-                       {"DETAILS", medium.Details()}},
-                      "half_angle/thickness.comp"}));
-  medium.Bind(*program);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
+                               programs_->Get(gl::ProgramSource::Compute(
+                                   "half_angle/thickness.comp", medium.Variant().Defines())));
+  medium.BindWithBricks(*program);
   BindSunRays(*program, slicing, frame);
   program->Set("transport_weights", medium.Weights(weights.transport));
   program->Set("texel_count", thickness_.Size());

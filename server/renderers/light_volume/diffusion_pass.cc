@@ -48,13 +48,9 @@ absl::Status DiffusionPass::Solve(const ResidentMedium& medium, const GroupWeigh
 }
 
 absl::Status DiffusionPass::SampleCells(const ResidentMedium& medium, const GroupWeights& weights) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      const gl::Program* program,
-      programs_->Get({{},
-                      {},
-                      {{"GROUPS", static_cast<int>(medium.Content().groups.size())},
-                       {"DETAILS", medium.Details()}},
-                      "light_volume/sample_cells.comp"}));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
+                               programs_->Get(gl::ProgramSource::Compute(
+                                   "light_volume/sample_cells.comp", medium.Variant().Defines())));
   const volume::RegularGrid& grid = medium.Bounds().grid;
   const glm::ivec3 size = SizeFor(grid.cells);
   if (size_ != size) {
@@ -100,8 +96,9 @@ absl::Status DiffusionPass::SampleCells(const ResidentMedium& medium, const Grou
 }
 
 absl::Status DiffusionPass::SampleLight(const gl::Texture3D& arrived) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
-                               programs_->Get({{}, {}, {}, "light_volume/sample_light.comp"}));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_->Get(gl::ProgramSource::Compute("light_volume/sample_light.comp")));
   program->Set("cell_count", size_);
   arrived.Bind(kLightUnit);
   sampled_light_.BindImage(0, GL_WRITE_ONLY);

@@ -110,12 +110,10 @@ absl::Status LightVolumeRenderer::CarryLight(const ResidentMedium& medium,
   const GLenum one = settings.quality.single_precision ? GL_R32F : GL_R16F;
   const GLenum two = settings.quality.single_precision ? GL_RG32F : GL_RG16F;
   Resize(box.size, medium.Bounds().grid.cells, diffuse ? two : one);
-  const std::vector<gl::Define> variant = {
-      {"GROUPS", static_cast<int>(medium.Content().groups.size())},
-      {"DETAILS", medium.Details()},
-      {"CONSISTENT", IsConsistent(settings.rendering) ? 1 : 0},
-      {"TRANSLUCENT", IsTranslucent(settings.rendering) ? 1 : 0},
-      {"DIFFUSE", diffuse ? 1 : 0}};
+  const CarryVariant variant{.medium = medium.Variant(),
+                             .consistent = IsConsistent(settings.rendering),
+                             .translucent = IsTranslucent(settings.rendering),
+                             .diffuse = diffuse};
   THUNDERHEAD_RETURN_IF_ERROR(Carry(medium, weights, box, variant));
   THUNDERHEAD_RETURN_IF_ERROR(Arrive(medium, weights, box, variant));
   if (!Diffuses(settings.rendering)) return absl::OkStatus();
@@ -123,11 +121,11 @@ absl::Status LightVolumeRenderer::CarryLight(const ResidentMedium& medium,
 }
 
 absl::Status LightVolumeRenderer::Carry(const ResidentMedium& medium, const GroupWeights& weights,
-                                        const LightBox& box,
-                                        const std::vector<gl::Define>& variant) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
-                               programs_->Get({{}, {}, variant, "light_volume/carry.comp"}));
-  medium.Bind(*program);
+                                        const LightBox& box, const CarryVariant& variant) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_->Get(gl::ProgramSource::Compute("light_volume/carry.comp", variant.Defines())));
+  medium.BindWithBricks(*program);
   program->Set("light_size", box.size);
   program->Set("towards_sun", glm::vec3(box.frame.towards_sun));
   program->Set("light_right_m", glm::vec3(box.frame.right * box.frame.half_extent_m.x));
@@ -151,10 +149,10 @@ absl::Status LightVolumeRenderer::Carry(const ResidentMedium& medium, const Grou
 }
 
 absl::Status LightVolumeRenderer::Arrive(const ResidentMedium& medium, const GroupWeights& weights,
-                                         const LightBox& box,
-                                         const std::vector<gl::Define>& variant) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
-                               programs_->Get({{}, {}, variant, "light_volume/arrive.comp"}));
+                                         const LightBox& box, const CarryVariant& variant) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_->Get(gl::ProgramSource::Compute("light_volume/arrive.comp", variant.Defines())));
   medium.Bind(*program);
   const glm::ivec3 cells = medium.Bounds().grid.cells;
   program->Set("cell_count", cells);
@@ -212,21 +210,19 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
               settings.cover);
   const GroupWeights weights(medium.Content(), settings.rendering);
   const bool diffusion = Diffuses(settings.rendering);
+  const MarchVariant variant{.medium = medium.Variant(),
+                             .colored = weights.colored,
+                             .consistent = IsConsistent(settings.rendering),
+                             .ground = settings.ground_distance != nullptr,
+                             .even_albedo = weights.even_albedo,
+                             .diffusion = diffusion,
+                             .tinted = diffusion && (weights.colored || weights.absorbs),
+                             .corrected = settings.quality.correction != nullptr,
+                             .places = settings.quality.places};
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_->Get({"common/whole_target.vert",
-                      "light_volume/march.frag",
-                      {{"GROUPS", static_cast<int>(medium.Content().groups.size())},
-                       {"DETAILS", medium.Details()},
-                       {"COLORED", weights.colored ? 1 : 0},
-                       {"CONSISTENT", IsConsistent(settings.rendering) ? 1 : 0},
-                       {"GROUND", settings.ground_distance != nullptr ? 1 : 0},
-                       {"EVEN_ALBEDO", weights.even_albedo ? 1 : 0},
-                       {"DIFFUSION", diffusion ? 1 : 0},
-                       {"CORRECTED", settings.quality.correction != nullptr ? 1 : 0},
-                       {"PLACES", settings.quality.places ? 1 : 0},
-                       {"TINTED", diffusion && (weights.colored || weights.absorbs) ? 1 : 0}}}));
-  medium.Bind(*program);
+      programs_->Get(gl::ProgramSource::WholeTarget("light_volume/march.frag", variant.Defines())));
+  medium.BindWithBricks(*program);
   weights.BindScattered(*program, medium, settings.illumination);
   const scene::View& view = settings.view;
   const double reach_m = glm::dot(glm::abs(view.forward), medium.HalfExtent_m());

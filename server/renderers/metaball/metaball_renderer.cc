@@ -11,6 +11,7 @@
 #include "renderers/light_frame.h"
 #include "renderers/metaball/light_order.h"
 #include "renderers/metaball/tiles.h"
+#include "renderers/metaball/variants.h"
 #include "renderers/view_uniforms.h"
 
 namespace thunderhead::renderers {
@@ -217,11 +218,8 @@ absl::Status MetaballRenderer::Carry(const Light& light, int index,
                                      const RenderSettings& settings) {
   const bool paper = IsPaper(settings.rendering);
   const auto program_of = [&](int pass) {
-    return programs_->Get(
-        {{},
-         {},
-         {{"PAPER", paper ? 1 : 0}, {"PASS", pass}, {"DIFFUSE", light.diffuse ? 1 : 0}},
-         "metaball/light.comp"});
+    const BallLightVariant variant{.paper = paper, .pass = pass, .diffuse = light.diffuse};
+    return programs_->Get(gl::ProgramSource::Compute("metaball/light.comp", variant.Defines()));
   };
   const LightPlane plane = LightPlaneOf(balls_, box_, light.towards);
   std::vector<LightDisc> discs;
@@ -289,18 +287,15 @@ absl::Status MetaballRenderer::FindSources(const RenderSettings& settings) {
     towards.emplace_back(light.towards);
     irradiance.push_back(light.irradiance);
   }
+  const BallSourceVariant variant{.lights = static_cast<int>(towards.size()),
+                                  .groups = groups_,
+                                  .colored = colored_,
+                                  .paper = paper,
+                                  .isotropic = settings.rendering.metaballs.isotropic,
+                                  .parallel = settings.view.Orthographic()};
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_->Get({{},
-                      {},
-                      {{"LIGHTS", static_cast<int>(towards.size())},
-                       {"GROUPS", groups_},
-                       {"COLORED", colored_ ? 1 : 0},
-                       {"CONSISTENT", paper ? 0 : 1},
-                       {"PAPER", paper ? 1 : 0},
-                       {"ISOTROPIC", settings.rendering.metaballs.isotropic ? 1 : 0},
-                       {"PARALLEL", settings.view.Orthographic() ? 1 : 0}},
-                      "metaball/source.comp"}));
+      programs_->Get(gl::ProgramSource::Compute("metaball/source.comp", variant.Defines())));
   const GroupWeights weights(content_, settings.rendering);
   weights.BindPhase(*program);
   program->Set("ball_count", static_cast<int>(balls_.size()));
@@ -323,12 +318,11 @@ absl::Status MetaballRenderer::FindSources(const RenderSettings& settings) {
 }
 
 absl::Status MetaballRenderer::Splat(const RenderSettings& settings) {
+  const SplatVariant variant{.paper = IsPaper(settings.rendering),
+                             .ground = settings.ground_distance != nullptr};
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_->Get({"common/whole_target.vert",
-                      "metaball/splat.frag",
-                      {{"PAPER", IsPaper(settings.rendering) ? 1 : 0},
-                       {"GROUND", settings.ground_distance != nullptr ? 1 : 0}}}));
+      programs_->Get(gl::ProgramSource::WholeTarget("metaball/splat.frag", variant.Defines())));
   const BallTiles tiles = TilesOf(balls_, settings.view, settings.eye_size);
   tile_starts_ = BufferOf(tiles.starts);
   order_ = BufferOf(tiles.balls);
