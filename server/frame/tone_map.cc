@@ -4,11 +4,11 @@
 
 #include "base/status.h"
 #include "base/stopwatch.h"
+#include "shaders/bindings.h"
+#include "shaders/uniforms.h"
 
 namespace thunderhead::frame {
 namespace {
-
-constexpr GLuint kLinearUnit = 4;
 
 struct ToneMapVariant {
   gl::DefineValue filmic;
@@ -33,8 +33,9 @@ absl::StatusOr<ToneMapped> ToneMapper::Map(const gl::Texture2D& linear,
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
       programs_.Get(gl::ProgramSource::WholeTarget("post/tone_map.frag", variant.Defines())));
-  program->Set("exposure", kExposureAtZeroEv * static_cast<float>(std::exp2(display.exposure_ev)));
-  linear.Bind(kLinearUnit);
+  program->Set(uniform::exposure,
+               kExposureAtZeroEv * static_cast<float>(std::exp2(display.exposure_ev)));
+  linear.Bind(shaders::kLinearFrameUnit);
   whole_target_.Draw(*program, target_);
   glFinish();
   ToneMapped mapped;

@@ -204,51 +204,51 @@ GLint Program::Location(std::string_view uniform) const {
   return -1;
 }
 
-void Program::Set(std::string_view uniform, int value) const {
-  glProgramUniform1i(name_.Get(), Location(uniform), value);
+void Program::SetAt(GLint location, bool value) const { SetAt(location, value ? 1 : 0); }
+void Program::SetAt(GLint location, int value) const {
+  glProgramUniform1i(name_.Get(), location, value);
 }
-void Program::Set(std::string_view uniform, const glm::ivec2& value) const {
-  glProgramUniform2iv(name_.Get(), Location(uniform), 1, glm::value_ptr(value));
+void Program::SetAt(GLint location, const glm::ivec2& value) const {
+  glProgramUniform2iv(name_.Get(), location, 1, glm::value_ptr(value));
 }
-void Program::Set(std::string_view uniform, const glm::ivec3& value) const {
-  glProgramUniform3iv(name_.Get(), Location(uniform), 1, glm::value_ptr(value));
+void Program::SetAt(GLint location, const glm::ivec3& value) const {
+  glProgramUniform3iv(name_.Get(), location, 1, glm::value_ptr(value));
 }
-void Program::Set(std::string_view uniform, float value) const {
-  glProgramUniform1f(name_.Get(), Location(uniform), value);
+void Program::SetAt(GLint location, float value) const {
+  glProgramUniform1f(name_.Get(), location, value);
 }
-void Program::Set(std::string_view uniform, const glm::vec2& value) const {
-  glProgramUniform2fv(name_.Get(), Location(uniform), 1, glm::value_ptr(value));
+void Program::SetAt(GLint location, const glm::vec2& value) const {
+  glProgramUniform2fv(name_.Get(), location, 1, glm::value_ptr(value));
 }
-void Program::Set(std::string_view uniform, const glm::vec3& value) const {
-  glProgramUniform3fv(name_.Get(), Location(uniform), 1, glm::value_ptr(value));
+void Program::SetAt(GLint location, const glm::vec3& value) const {
+  glProgramUniform3fv(name_.Get(), location, 1, glm::value_ptr(value));
 }
-void Program::Set(std::string_view uniform, const glm::vec4& value) const {
-  glProgramUniform4fv(name_.Get(), Location(uniform), 1, glm::value_ptr(value));
+void Program::SetAt(GLint location, const glm::vec4& value) const {
+  glProgramUniform4fv(name_.Get(), location, 1, glm::value_ptr(value));
 }
-void Program::Set(std::string_view uniform, const glm::mat3& value) const {
-  glProgramUniformMatrix3fv(name_.Get(), Location(uniform), 1, GL_FALSE, glm::value_ptr(value));
+void Program::SetAt(GLint location, const glm::mat3& value) const {
+  glProgramUniformMatrix3fv(name_.Get(), location, 1, GL_FALSE, glm::value_ptr(value));
 }
 
-void Program::Set(std::string_view uniform, const glm::mat4& value) const {
-  glProgramUniformMatrix4fv(name_.Get(), Location(uniform), 1, GL_FALSE, glm::value_ptr(value));
+void Program::SetAt(GLint location, const glm::mat4& value) const {
+  glProgramUniformMatrix4fv(name_.Get(), location, 1, GL_FALSE, glm::value_ptr(value));
 }
-void Program::Set(std::string_view uniform, const glm::mat4x3& value) const {
-  glProgramUniformMatrix4x3fv(name_.Get(), Location(uniform), 1, GL_FALSE, glm::value_ptr(value));
+void Program::SetAt(GLint location, const glm::mat4x3& value) const {
+  glProgramUniformMatrix4x3fv(name_.Get(), location, 1, GL_FALSE, glm::value_ptr(value));
 }
-void Program::Set(std::string_view uniform, const std::vector<float>& values) const {
-  glProgramUniform1fv(name_.Get(), Location(uniform), static_cast<GLsizei>(values.size()),
-                      values.data());
+void Program::SetAt(GLint location, const std::vector<float>& values) const {
+  glProgramUniform1fv(name_.Get(), location, static_cast<GLsizei>(values.size()), values.data());
 }
-void Program::Set(std::string_view uniform, const std::vector<glm::vec2>& values) const {
-  glProgramUniform2fv(name_.Get(), Location(uniform), static_cast<GLsizei>(values.size()),
+void Program::SetAt(GLint location, const std::vector<glm::vec2>& values) const {
+  glProgramUniform2fv(name_.Get(), location, static_cast<GLsizei>(values.size()),
                       glm::value_ptr(values.front()));
 }
-void Program::Set(std::string_view uniform, const std::vector<glm::vec3>& values) const {
-  glProgramUniform3fv(name_.Get(), Location(uniform), static_cast<GLsizei>(values.size()),
+void Program::SetAt(GLint location, const std::vector<glm::vec3>& values) const {
+  glProgramUniform3fv(name_.Get(), location, static_cast<GLsizei>(values.size()),
                       glm::value_ptr(values.front()));
 }
-void Program::Set(std::string_view uniform, const std::vector<glm::vec4>& values) const {
-  glProgramUniform4fv(name_.Get(), Location(uniform), static_cast<GLsizei>(values.size()),
+void Program::SetAt(GLint location, const std::vector<glm::vec4>& values) const {
+  glProgramUniform4fv(name_.Get(), location, static_cast<GLsizei>(values.size()),
                       glm::value_ptr(values.front()));
 }
 

@@ -64,6 +64,13 @@ struct ProgramSource {
   auto operator<=>(const ProgramSource&) const = default;
 };
 
+// The name of a uniform that takes a T, or an array of them. Those of the shaders are generated:
+// shaders/uniforms.h.
+template <typename T>
+struct Uniform {
+  std::string_view name;
+};
+
 // A linked program. Setting a uniform that the variant does not have does nothing; one that no
 // variant has fails where programs are strict (gl/strict_programs.h).
 class Program {
@@ -71,20 +78,14 @@ class Program {
   static absl::StatusOr<Program> Link(const ProgramSource& source);
 
   void Use() const { glUseProgram(name_.Get()); }
-  void Set(std::string_view uniform, int value) const;
-  void Set(std::string_view uniform, const glm::ivec2& value) const;
-  void Set(std::string_view uniform, const glm::ivec3& value) const;
-  void Set(std::string_view uniform, float value) const;
-  void Set(std::string_view uniform, const glm::vec2& value) const;
-  void Set(std::string_view uniform, const glm::vec3& value) const;
-  void Set(std::string_view uniform, const glm::vec4& value) const;
-  void Set(std::string_view uniform, const glm::mat3& value) const;
-  void Set(std::string_view uniform, const glm::mat4& value) const;
-  void Set(std::string_view uniform, const glm::mat4x3& value) const;
-  void Set(std::string_view uniform, const std::vector<float>& values) const;
-  void Set(std::string_view uniform, const std::vector<glm::vec2>& values) const;
-  void Set(std::string_view uniform, const std::vector<glm::vec3>& values) const;
-  void Set(std::string_view uniform, const std::vector<glm::vec4>& values) const;
+  template <typename T>
+  void Set(Uniform<T> uniform, const T& value) const {
+    SetAt(Location(uniform.name), value);
+  }
+  template <typename T>
+  void Set(Uniform<T[]> uniform, const std::vector<T>& values) const {
+    SetAt(Location(uniform.name), values);
+  }
 
  private:
   // For checks by name.
@@ -95,6 +96,21 @@ class Program {
 
   absl::Status BecomeStrict(const ProgramSource& source, const std::vector<std::string>& texts);
   GLint Location(std::string_view uniform) const;
+  void SetAt(GLint location, bool value) const;
+  void SetAt(GLint location, int value) const;
+  void SetAt(GLint location, const glm::ivec2& value) const;
+  void SetAt(GLint location, const glm::ivec3& value) const;
+  void SetAt(GLint location, float value) const;
+  void SetAt(GLint location, const glm::vec2& value) const;
+  void SetAt(GLint location, const glm::vec3& value) const;
+  void SetAt(GLint location, const glm::vec4& value) const;
+  void SetAt(GLint location, const glm::mat3& value) const;
+  void SetAt(GLint location, const glm::mat4& value) const;
+  void SetAt(GLint location, const glm::mat4x3& value) const;
+  void SetAt(GLint location, const std::vector<float>& values) const;
+  void SetAt(GLint location, const std::vector<glm::vec2>& values) const;
+  void SetAt(GLint location, const std::vector<glm::vec3>& values) const;
+  void SetAt(GLint location, const std::vector<glm::vec4>& values) const;
 
   Name<internal::DeleteProgram> name_;
   std::map<std::string, GLint, std::less<>> locations_;

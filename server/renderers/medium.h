@@ -92,9 +92,9 @@ class ResidentMedium {
   double OccupiedShare() const;
   double ShortestBrickSide_m() const;
   // The blocks of cells that a ray may meet (volume::CellBlocks): how many, and their list, bound
-  // for a shader whose cells_per_block is set.
+  // for light_volume/arrive.comp.
   int BlockCount() const { return block_count_; }
-  void BindBlocks(const gl::Program& program, GLuint binding) const;
+  void BindBlocks(const gl::Program& program) const;
 
   // Boxes around the occupied bricks, so few that going through them for each picture is nothing.
   const Boxes& OccupiedBoxes() const { return occupied_boxes_; }

@@ -4,6 +4,7 @@
 #include "gl/strict_programs.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "shaders/uniforms.h"
 
 namespace thunderhead::gl {
 namespace {
@@ -25,8 +26,9 @@ TEST(Program, FailsWhenAUniformIsSetThatItsShadersDoNotDeclare) {
   const auto program =
       Program::Link(ProgramSource::WholeTarget("post/tone_map.frag", {{"FILMIC", 0}}));
   ASSERT_TRUE(program.ok()) << program.status();
-  program->Set("exposure", 1.0F);
-  EXPECT_DEATH(program->Set("expsoure", 1.0F), "post/tone_map.frag has no uniform expsoure");
+  program->Set(uniform::exposure, 1.0F);
+  EXPECT_DEATH(program->Set(Uniform<float>{"expsoure"}, 1.0F),
+               "post/tone_map.frag has no uniform expsoure");
 }
 
 TEST(Program, NamesADefineThatItsShadersDoNotMention) {
