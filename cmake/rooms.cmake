@@ -19,11 +19,15 @@ endfunction()
 set(THUNDERHEAD_GL_ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
 
 # thunderhead_test(NAME DEPENDS libraries...) builds the .cc files of the current folder, or SOURCES, into one
-# GoogleTest program and registers each of its cases with ctest under LABEL, those that are GL in its environment.
+# GoogleTest program and registers each of its cases with ctest under LABEL, those that are GL in its environment and with
+# strict programs.
 function(thunderhead_test name)
   cmake_parse_arguments(TEST "GL" "LABEL" "DEPENDS;SOURCES;PROPERTIES" ${ARGN})
   if(NOT TEST_SOURCES)
     file(GLOB TEST_SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
+  endif()
+  if(TEST_GL)
+    list(APPEND TEST_SOURCES ${CMAKE_SOURCE_DIR}/tests/support/strict_programs.cc)
   endif()
   add_executable(${name} ${TEST_SOURCES})
   target_link_libraries(${name} PRIVATE thunderhead_options ${TEST_DEPENDS} GTest::gmock GTest::gtest_main)

@@ -1,5 +1,5 @@
 # Embeds every .glsl, .vert, .frag and .comp file of server/shaders as a string, found by its path below that
-# folder, e.g. "half_angle/eye.frag".
+# folder, e.g. "half_angle/eye.frag", and makes their uniforms' names known to C++ as shaders/uniforms.h.
 function(thunderhead_embed_shaders target)
   file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/server/shaders
     ${CMAKE_SOURCE_DIR}/server/shaders/*.glsl ${CMAKE_SOURCE_DIR}/server/shaders/*.vert
@@ -11,5 +11,11 @@ function(thunderhead_embed_shaders target)
     COMMAND ${CMAKE_COMMAND} -DOUTPUT=${output} "-DFILES=${files}" -DROOT=${CMAKE_SOURCE_DIR}/server/shaders
       -P ${CMAKE_SOURCE_DIR}/cmake/embed_shaders.cmake
     DEPENDS ${paths} ${CMAKE_SOURCE_DIR}/cmake/embed_shaders.cmake VERBATIM)
-  target_sources(${target} PRIVATE ${output})
+  set(header ${CMAKE_BINARY_DIR}/generated/shaders/uniforms.h)
+  add_custom_command(OUTPUT ${header}
+    COMMAND ${CMAKE_COMMAND} -DOUTPUT=${header} "-DFILES=${files}" -DROOT=${CMAKE_SOURCE_DIR}/server/shaders
+      -P ${CMAKE_SOURCE_DIR}/cmake/shader_uniforms.cmake
+    DEPENDS ${paths} ${CMAKE_SOURCE_DIR}/cmake/shader_uniforms.cmake VERBATIM)
+  target_sources(${target} PRIVATE ${output} ${header})
+  target_include_directories(${target} PUBLIC ${CMAKE_BINARY_DIR}/generated)
 endfunction()

@@ -4,11 +4,17 @@
 
 #include "base/status.h"
 #include "base/stopwatch.h"
+#include "shaders/bindings.h"
+#include "shaders/uniforms.h"
 
 namespace thunderhead::frame {
 namespace {
 
-constexpr GLuint kLinearUnit = 4;
+struct ToneMapVariant {
+  gl::DefineValue filmic;
+
+  gl::Defines Defines() const { return {{"FILMIC", filmic}}; }
+};
 
 std::size_t PixelCount(const gl::Texture2D& texture) {
   return static_cast<std::size_t>(texture.Size().x) * static_cast<std::size_t>(texture.Size().y);
@@ -23,13 +29,13 @@ absl::StatusOr<ToneMapped> ToneMapper::Map(const gl::Texture2D& linear,
     display_ = gl::Texture2D(GL_RGBA8, linear.Size());
     target_ = gl::Framebuffer(display_);
   }
+  const ToneMapVariant variant{.filmic = display.tone_map == scene::ToneMap::kFilmic};
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_.Get({"common/whole_target.vert",
-                     "post/tone_map.frag",
-                     {{"FILMIC", display.tone_map == scene::ToneMap::kFilmic ? 1 : 0}}}));
-  program->Set("exposure", kExposureAtZeroEv * static_cast<float>(std::exp2(display.exposure_ev)));
-  linear.Bind(kLinearUnit);
+      programs_.Get(gl::ProgramSource::WholeTarget("post/tone_map.frag", variant.Defines())));
+  program->Set(uniform::exposure,
+               kExposureAtZeroEv * static_cast<float>(std::exp2(display.exposure_ev)));
+  linear.Bind(shaders::kLinearFrameUnit);
   whole_target_.Draw(*program, target_);
   glFinish();
   ToneMapped mapped;

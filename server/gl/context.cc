@@ -16,7 +16,7 @@
 namespace thunderhead::gl {
 namespace {
 
-constexpr int kMostDevices = 64;
+constexpr int kMaxDevices = 64;
 
 std::string GlString(GLenum name) {
   const GLubyte* text = glGetString(name);
@@ -89,9 +89,9 @@ std::vector<EGLDeviceEXT> GpuDevices() {
       !epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration")) {
     return gpus;
   }
-  EGLDeviceEXT devices[kMostDevices];
+  EGLDeviceEXT devices[kMaxDevices];
   EGLint count = 0;
-  if (eglQueryDevicesEXT(kMostDevices, devices, &count) == EGL_FALSE) return gpus;
+  if (eglQueryDevicesEXT(kMaxDevices, devices, &count) == EGL_FALSE) return gpus;
   for (EGLint i = 0; i < count; ++i) {
     const char* extensions = eglQueryDeviceStringEXT(devices[i], EGL_EXTENSIONS);
     const absl::string_view text = extensions == nullptr ? "" : extensions;

@@ -11,6 +11,7 @@
 #include "base/status.h"
 #include "gl/embedded_shaders.h"
 #include "gl/flat_uniforms.h"
+#include "gl/strict_programs.h"
 #include "glm/gtc/type_ptr.hpp"
 
 namespace thunderhead::gl {
@@ -48,14 +49,19 @@ absl::Status AppendFile(const std::string& path, std::set<std::string>* included
   return absl::OkStatus();
 }
 
-absl::StatusOr<std::string> TextOf(const std::string& path, const std::vector<Define>& defines) {
-  std::string text = "#version 450 core\n";
-  for (const Define& define : defines) {
-    absl::StrAppend(&text, "#define ", define.name, " ", define.value, "\n");
-  }
+absl::StatusOr<std::string> TextOf(const std::string& path) {
+  std::string text;
   std::set<std::string> included;
   THUNDERHEAD_RETURN_IF_ERROR(AppendFile(path, &included, &text));
   return text;
+}
+
+std::string WithDefines(const std::string& text, const Defines& defines) {
+  std::string head = "#version 450 core\n";
+  for (const Define& define : defines) {
+    absl::StrAppend(&head, "#define ", define.name, " ", define.value, "\n");
+  }
+  return head + text;
 }
 
 absl::StatusOr<Shader> Compile(GLenum type, const std::string& path, const std::string& text) {
@@ -103,24 +109,29 @@ bool ReadsUniformsByPixel() {
   return renderer != nullptr && absl::StrContains(renderer, "llvmpipe");
 }
 
-absl::StatusOr<Name<internal::DeleteProgram>> LinkStages(const ProgramSource& source) {
+std::vector<std::string> PathsOf(const ProgramSource& source) {
+  if (!source.compute.empty()) return {source.compute};
+  return {source.vertex, source.fragment};
+}
+
+// `texts` are those of PathsOf(source).
+absl::StatusOr<Name<internal::DeleteProgram>> LinkStages(const ProgramSource& source,
+                                                         const std::vector<std::string>& texts) {
   if (!source.compute.empty()) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(std::string text, TextOf(source.compute, source.defines));
-    return LinkTexts({{GL_COMPUTE_SHADER, std::move(text)}}, {source.compute});
+    return LinkTexts({{GL_COMPUTE_SHADER, WithDefines(texts[0], source.defines)}}, PathsOf(source));
   }
-  StageTexts texts;
-  THUNDERHEAD_ASSIGN_OR_RETURN(texts.vertex, TextOf(source.vertex, source.defines));
-  THUNDERHEAD_ASSIGN_OR_RETURN(texts.fragment, TextOf(source.fragment, source.defines));
-  const auto link = [&](const StageTexts& stages) {
-    return LinkTexts({{GL_VERTEX_SHADER, stages.vertex}, {GL_FRAGMENT_SHADER, stages.fragment}},
-                     {source.vertex, source.fragment});
+  const StageTexts stages{WithDefines(texts[0], source.defines),
+                          WithDefines(texts[1], source.defines)};
+  const auto link = [&](const StageTexts& of) {
+    return LinkTexts({{GL_VERTEX_SHADER, of.vertex}, {GL_FRAGMENT_SHADER, of.fragment}},
+                     PathsOf(source));
   };
   if (ReadsUniformsByPixel()) {
     // More of them than there may be inputs stay uniforms.
-    auto program = link(WithFlatUniforms(texts));
+    auto program = link(WithFlatUniforms(stages));
     if (program.ok()) return program;
   }
-  return link(texts);
+  return link(stages);
 }
 
 std::map<std::string, GLint, std::less<>> UniformLocations(GLuint program) {
@@ -143,63 +154,101 @@ std::map<std::string, GLint, std::less<>> UniformLocations(GLuint program) {
 
 }  // namespace
 
+Defines Joined(Defines first, const Defines& more) {
+  first.insert(first.end(), more.begin(), more.end());
+  return first;
+}
+
+ProgramSource ProgramSource::Of(std::string vertex, std::string fragment, Defines defines) {
+  return {std::move(vertex), std::move(fragment), "", std::move(defines)};
+}
+
+ProgramSource ProgramSource::WholeTarget(std::string fragment, Defines defines) {
+  return Of("common/whole_target.vert", std::move(fragment), std::move(defines));
+}
+
+ProgramSource ProgramSource::Compute(std::string compute, Defines defines) {
+  return {"", "", std::move(compute), std::move(defines)};
+}
+
 absl::StatusOr<Program> Program::Link(const ProgramSource& source) {
+  std::vector<std::string> texts;
+  for (const std::string& path : PathsOf(source)) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(std::string text, TextOf(path));
+    texts.push_back(std::move(text));
+  }
   Program program;
-  THUNDERHEAD_ASSIGN_OR_RETURN(program.name_, LinkStages(source));
+  THUNDERHEAD_ASSIGN_OR_RETURN(program.name_, LinkStages(source, texts));
   program.locations_ = UniformLocations(program.name_.Get());
+  if (StrictPrograms()) THUNDERHEAD_RETURN_IF_ERROR(program.BecomeStrict(source, texts));
   return program;
+}
+
+absl::Status Program::BecomeStrict(const ProgramSource& source,
+                                   const std::vector<std::string>& texts) {
+  strict_.emplace();
+  strict_->paths = absl::StrJoin(PathsOf(source), " ");
+  for (const std::string& text : texts) strict_->uniforms.merge(DeclaredUniforms(text));
+  absl::Status checked = CheckDefines(texts, source.defines);
+  checked.Update(CheckBindings(name_.Get()));
+  return base::Annotate(checked, strict_->paths);
 }
 
 GLint Program::Location(std::string_view uniform) const {
   const auto found = locations_.find(uniform);
-  return found == locations_.end() ? -1 : found->second;
+  if (found != locations_.end()) return found->second;
+  if (strict_.has_value()) {
+    THUNDERHEAD_CHECK(strict_->uniforms.contains(uniform),
+                      absl::StrCat(strict_->paths, " has no uniform ", std::string(uniform)));
+  }
+  return -1;
 }
 
-void Program::Set(std::string_view uniform, int value) const {
-  glProgramUniform1i(name_.Get(), Location(uniform), value);
+void Program::SetAt(GLint location, bool value) const { SetAt(location, value ? 1 : 0); }
+void Program::SetAt(GLint location, int value) const {
+  glProgramUniform1i(name_.Get(), location, value);
 }
-void Program::Set(std::string_view uniform, const glm::ivec2& value) const {
-  glProgramUniform2iv(name_.Get(), Location(uniform), 1, glm::value_ptr(value));
+void Program::SetAt(GLint location, const glm::ivec2& value) const {
+  glProgramUniform2iv(name_.Get(), location, 1, glm::value_ptr(value));
 }
-void Program::Set(std::string_view uniform, const glm::ivec3& value) const {
-  glProgramUniform3iv(name_.Get(), Location(uniform), 1, glm::value_ptr(value));
+void Program::SetAt(GLint location, const glm::ivec3& value) const {
+  glProgramUniform3iv(name_.Get(), location, 1, glm::value_ptr(value));
 }
-void Program::Set(std::string_view uniform, float value) const {
-  glProgramUniform1f(name_.Get(), Location(uniform), value);
+void Program::SetAt(GLint location, float value) const {
+  glProgramUniform1f(name_.Get(), location, value);
 }
-void Program::Set(std::string_view uniform, const glm::vec2& value) const {
-  glProgramUniform2fv(name_.Get(), Location(uniform), 1, glm::value_ptr(value));
+void Program::SetAt(GLint location, const glm::vec2& value) const {
+  glProgramUniform2fv(name_.Get(), location, 1, glm::value_ptr(value));
 }
-void Program::Set(std::string_view uniform, const glm::vec3& value) const {
-  glProgramUniform3fv(name_.Get(), Location(uniform), 1, glm::value_ptr(value));
+void Program::SetAt(GLint location, const glm::vec3& value) const {
+  glProgramUniform3fv(name_.Get(), location, 1, glm::value_ptr(value));
 }
-void Program::Set(std::string_view uniform, const glm::vec4& value) const {
-  glProgramUniform4fv(name_.Get(), Location(uniform), 1, glm::value_ptr(value));
+void Program::SetAt(GLint location, const glm::vec4& value) const {
+  glProgramUniform4fv(name_.Get(), location, 1, glm::value_ptr(value));
 }
-void Program::Set(std::string_view uniform, const glm::mat3& value) const {
-  glProgramUniformMatrix3fv(name_.Get(), Location(uniform), 1, GL_FALSE, glm::value_ptr(value));
+void Program::SetAt(GLint location, const glm::mat3& value) const {
+  glProgramUniformMatrix3fv(name_.Get(), location, 1, GL_FALSE, glm::value_ptr(value));
 }
 
-void Program::Set(std::string_view uniform, const glm::mat4& value) const {
-  glProgramUniformMatrix4fv(name_.Get(), Location(uniform), 1, GL_FALSE, glm::value_ptr(value));
+void Program::SetAt(GLint location, const glm::mat4& value) const {
+  glProgramUniformMatrix4fv(name_.Get(), location, 1, GL_FALSE, glm::value_ptr(value));
 }
-void Program::Set(std::string_view uniform, const glm::mat4x3& value) const {
-  glProgramUniformMatrix4x3fv(name_.Get(), Location(uniform), 1, GL_FALSE, glm::value_ptr(value));
+void Program::SetAt(GLint location, const glm::mat4x3& value) const {
+  glProgramUniformMatrix4x3fv(name_.Get(), location, 1, GL_FALSE, glm::value_ptr(value));
 }
-void Program::Set(std::string_view uniform, const std::vector<float>& values) const {
-  glProgramUniform1fv(name_.Get(), Location(uniform), static_cast<GLsizei>(values.size()),
-                      values.data());
+void Program::SetAt(GLint location, const std::vector<float>& values) const {
+  glProgramUniform1fv(name_.Get(), location, static_cast<GLsizei>(values.size()), values.data());
 }
-void Program::Set(std::string_view uniform, const std::vector<glm::vec2>& values) const {
-  glProgramUniform2fv(name_.Get(), Location(uniform), static_cast<GLsizei>(values.size()),
+void Program::SetAt(GLint location, const std::vector<glm::vec2>& values) const {
+  glProgramUniform2fv(name_.Get(), location, static_cast<GLsizei>(values.size()),
                       glm::value_ptr(values.front()));
 }
-void Program::Set(std::string_view uniform, const std::vector<glm::vec3>& values) const {
-  glProgramUniform3fv(name_.Get(), Location(uniform), static_cast<GLsizei>(values.size()),
+void Program::SetAt(GLint location, const std::vector<glm::vec3>& values) const {
+  glProgramUniform3fv(name_.Get(), location, static_cast<GLsizei>(values.size()),
                       glm::value_ptr(values.front()));
 }
-void Program::Set(std::string_view uniform, const std::vector<glm::vec4>& values) const {
-  glProgramUniform4fv(name_.Get(), Location(uniform), static_cast<GLsizei>(values.size()),
+void Program::SetAt(GLint location, const std::vector<glm::vec4>& values) const {
+  glProgramUniform4fv(name_.Get(), location, static_cast<GLsizei>(values.size()),
                       glm::value_ptr(values.front()));
 }
 

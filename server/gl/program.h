@@ -5,6 +5,8 @@
 #include <epoxy/gl.h>
 
 #include <map>
+#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,42 +34,87 @@ struct Define {
   auto operator<=>(const Define&) const = default;
 };
 
+using Defines = std::vector<Define>;
+
+Defines Joined(Defines first, const Defines& more);
+
+// The value of a macro in a struct that describes a shader's variant. It has no default, so that a
+// variant that leaves one out does not compile.
+class DefineValue {
+ public:
+  DefineValue(int value) : value_(value) {}  // NOLINT(google-explicit-constructor)
+  operator int() const { return value_; }    // NOLINT(google-explicit-constructor)
+
+ private:
+  int value_;
+};
+
 // Which files a program is made of, and its variant: vertex and fragment, or compute alone.
 struct ProgramSource {
-  std::string vertex;    // e.g. "common/whole_target.vert"
+  std::string vertex;    // e.g. "cumulus/bubble.vert"
   std::string fragment;  // e.g. "half_angle/eye.frag"
-  std::vector<Define> defines;
-  std::string compute = {};  // e.g. "light_volume/carry.comp"
+  std::string compute;   // e.g. "light_volume/carry.comp"
+  Defines defines;
+
+  static ProgramSource Of(std::string vertex, std::string fragment, Defines defines = {});
+  // For gl::WholeTarget.
+  static ProgramSource WholeTarget(std::string fragment, Defines defines = {});
+  static ProgramSource Compute(std::string compute, Defines defines = {});
 
   auto operator<=>(const ProgramSource&) const = default;
 };
 
-// A linked program. Setting a uniform that the variant does not have does nothing.
+// The name of a uniform that takes a T, or an array of them. Those of the shaders are generated:
+// shaders/uniforms.h.
+template <typename T>
+struct Uniform {
+  std::string_view name;
+};
+
+// A linked program. Setting a uniform that the variant does not have does nothing; one that no
+// variant has fails where programs are strict (gl/strict_programs.h).
 class Program {
  public:
   static absl::StatusOr<Program> Link(const ProgramSource& source);
 
   void Use() const { glUseProgram(name_.Get()); }
-  void Set(std::string_view uniform, int value) const;
-  void Set(std::string_view uniform, const glm::ivec2& value) const;
-  void Set(std::string_view uniform, const glm::ivec3& value) const;
-  void Set(std::string_view uniform, float value) const;
-  void Set(std::string_view uniform, const glm::vec2& value) const;
-  void Set(std::string_view uniform, const glm::vec3& value) const;
-  void Set(std::string_view uniform, const glm::vec4& value) const;
-  void Set(std::string_view uniform, const glm::mat3& value) const;
-  void Set(std::string_view uniform, const glm::mat4& value) const;
-  void Set(std::string_view uniform, const glm::mat4x3& value) const;
-  void Set(std::string_view uniform, const std::vector<float>& values) const;
-  void Set(std::string_view uniform, const std::vector<glm::vec2>& values) const;
-  void Set(std::string_view uniform, const std::vector<glm::vec3>& values) const;
-  void Set(std::string_view uniform, const std::vector<glm::vec4>& values) const;
+  template <typename T>
+  void Set(Uniform<T> uniform, const T& value) const {
+    SetAt(Location(uniform.name), value);
+  }
+  template <typename T>
+  void Set(Uniform<T[]> uniform, const std::vector<T>& values) const {
+    SetAt(Location(uniform.name), values);
+  }
 
  private:
+  // For checks by name.
+  struct Strict {
+    std::string paths;
+    std::set<std::string, std::less<>> uniforms;
+  };
+
+  absl::Status BecomeStrict(const ProgramSource& source, const std::vector<std::string>& texts);
   GLint Location(std::string_view uniform) const;
+  void SetAt(GLint location, bool value) const;
+  void SetAt(GLint location, int value) const;
+  void SetAt(GLint location, const glm::ivec2& value) const;
+  void SetAt(GLint location, const glm::ivec3& value) const;
+  void SetAt(GLint location, float value) const;
+  void SetAt(GLint location, const glm::vec2& value) const;
+  void SetAt(GLint location, const glm::vec3& value) const;
+  void SetAt(GLint location, const glm::vec4& value) const;
+  void SetAt(GLint location, const glm::mat3& value) const;
+  void SetAt(GLint location, const glm::mat4& value) const;
+  void SetAt(GLint location, const glm::mat4x3& value) const;
+  void SetAt(GLint location, const std::vector<float>& values) const;
+  void SetAt(GLint location, const std::vector<glm::vec2>& values) const;
+  void SetAt(GLint location, const std::vector<glm::vec3>& values) const;
+  void SetAt(GLint location, const std::vector<glm::vec4>& values) const;
 
   Name<internal::DeleteProgram> name_;
   std::map<std::string, GLint, std::less<>> locations_;
+  std::optional<Strict> strict_;
 };
 
 // Programs linked so far, by source; links on first use.

@@ -11,8 +11,8 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kLeastTile_px = 8;
-constexpr int kMostTiles = 256;  // along each side
+constexpr int kMinTile_px = 8;
+constexpr int kMaxTiles = 256;  // along each side
 constexpr float kNowhere = 0.0F;
 constexpr double kBetween = 0.5;  // the depth of what is limited
 
@@ -27,7 +27,7 @@ struct Tiles {
   std::vector<std::uint8_t> marked;
 
   explicit Tiles(const glm::ivec2& size_px)
-      : side_px(std::max(kLeastTile_px, (std::max(size_px.x, size_px.y) / kMostTiles + 3) / 4 * 4)),
+      : side_px(std::max(kMinTile_px, (std::max(size_px.x, size_px.y) / kMaxTiles + 3) / 4 * 4)),
         count((size_px + side_px - 1) / side_px),
         marked(static_cast<std::size_t>(count.x) * static_cast<std::size_t>(count.y)) {}
 
@@ -130,8 +130,9 @@ absl::Status Cover::Draw(const Boxes& boxes, const scene::View& view, const glm:
     }
   }
   if (corners.empty()) return absl::OkStatus();
-  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
-                               programs_->Get({"common/cover.vert", "common/cover.frag", {}}));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_->Get(gl::ProgramSource::Of("common/cover.vert", "common/cover.frag")));
   const gl::Buffer buffer(corners.size() * sizeof(glm::vec3), corners.data(), 0);
   const gl::VertexArray array = gl::VertexArray::OfPositions(buffer);
   target_.Bind();

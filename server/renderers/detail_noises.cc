@@ -6,7 +6,7 @@ namespace thunderhead::renderers {
 namespace {
 
 // A seed that is tried and left costs memory only for a while.
-constexpr std::size_t kMostKept = 8;
+constexpr std::size_t kMaxKept = 8;
 
 std::shared_ptr<const DetailNoise> Bake(int octaves, std::uint32_t seed) {
   const physics::TurbulenceTile tile = physics::MakeTurbulence(octaves, seed);
@@ -28,7 +28,7 @@ std::shared_ptr<const DetailNoise> DetailNoises::Get(int octaves, std::uint32_t 
     std::rotate(found, found + 1, entries_.end());
   } else {
     entries_.push_back({octaves, seed, Bake(octaves, seed)});
-    if (entries_.size() > kMostKept) entries_.erase(entries_.begin());
+    if (entries_.size() > kMaxKept) entries_.erase(entries_.begin());
   }
   return entries_.back().noise;
 }

@@ -8,14 +8,13 @@
 #include "glm/geometric.hpp"
 #include "renderers/group_weights.h"
 #include "renderers/view_uniforms.h"
+#include "shaders/bindings.h"
+#include "shaders/uniforms.h"
 
 namespace thunderhead::renderers {
 namespace {
 
-constexpr GLuint kTerrainUnit = 8;
-constexpr GLuint kShadowUnit = 9;
-constexpr GLuint kSkylightUnit = 10;
-constexpr int kMostShadowTexels = 192;       // along the longer side
+constexpr int kMaxShadowTexels = 192;        // along the longer side
 constexpr double kShadowTexelInCells = 1.0;  // size of a texel
 constexpr double kShadowStepInCells = 1.0;   // between samples along the sun
 constexpr double kLevel_m = 1.0;             // terrain with less relief is level
@@ -65,28 +64,25 @@ absl::Status Ground::CastShadow(const ResidentMedium& medium, const RenderSettin
   const glm::dvec3 cell_m = medium.Bounds().grid.spacing_m;
   const double longest_m = 2.0 * std::max(frame.half_extent_m.x, frame.half_extent_m.y);
   const double texel_m =
-      std::max(longest_m / kMostShadowTexels, kShadowTexelInCells * std::min(cell_m.x, cell_m.y));
+      std::max(longest_m / kMaxShadowTexels, kShadowTexelInCells * std::min(cell_m.x, cell_m.y));
   const glm::ivec2 size =
       glm::max(glm::ivec2(glm::ceil(2.0 * frame.half_extent_m / texel_m)), glm::ivec2(1));
   if (shadow_.Size() != size) {
     shadow_ = gl::Texture2D(GL_R16F, size, gl::Edge::kZero);
     shadow_target_ = gl::Framebuffer(shadow_);
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      const gl::Program* program,
-      programs_->Get({"common/whole_target.vert",
-                      "ground/shadow.frag",
-                      {{"GROUPS", static_cast<int>(medium.Content().groups.size())},
-                       {"DETAILS", medium.Details()}}}));
-  medium.Bind(*program);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
+                               programs_->Get(gl::ProgramSource::WholeTarget(
+                                   "ground/shadow.frag", medium.Variant().Defines())));
+  medium.BindWithBricks(*program);
   const GroupWeights weights(medium.Content(), settings.Medium());
   const glm::dvec3 through_m = cell_m / glm::max(glm::abs(towards_sun), glm::dvec3(1e-6));
   const double step_m = kShadowStepInCells * std::min({through_m.x, through_m.y, through_m.z});
-  program->Set("towards_sun", glm::vec3(towards_sun));
-  program->Set("light_right_m", glm::vec3(frame.right * frame.half_extent_m.x));
-  program->Set("light_up_m", glm::vec3(frame.up * frame.half_extent_m.y));
-  program->Set("light_weights", medium.Weights(weights.light));
-  program->Set("step_m", static_cast<float>(step_m));
+  program->Set(uniform::towards_sun, glm::vec3(towards_sun));
+  program->Set(uniform::light_right_m, glm::vec3(frame.right * frame.half_extent_m.x));
+  program->Set(uniform::light_up_m, glm::vec3(frame.up * frame.half_extent_m.y));
+  program->Set(uniform::light_weights, medium.Weights(weights.light));
+  program->Set(uniform::step_m, static_cast<float>(step_m));
   whole_target_.Draw(*program, shadow_target_);
   PlaceShadow(frame, medium.Middle_m());
   return absl::OkStatus();
@@ -120,8 +116,7 @@ absl::Status Ground::DrawDistance(const scene::View& view, const glm::ivec2& siz
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_->Get(
-          {"common/whole_target.vert", "ground/distance.frag", {{"RELIEF", relief_ ? 1 : 0}}}));
+      programs_->Get(gl::ProgramSource::WholeTarget("ground/distance.frag", Variant().Defines())));
   BindRays(*program, view, view.eye_m);
   Bind(*program, view);
   whole_target_.Draw(*program, distance_target_);
@@ -129,18 +124,18 @@ absl::Status Ground::DrawDistance(const scene::View& view, const glm::ivec2& siz
 }
 
 void Ground::Bind(const gl::Program& program, const scene::View& view) const {
-  program.Set("lowest_ground_m", static_cast<float>(lowest_m_ - view.eye_m.z));
-  program.Set("ground_curvature_per_m", static_cast<float>(view.ground_curvature_per_m));
-  program.Set("touch_m", glm::vec2(view.touch_m - glm::dvec2(view.eye_m)));
+  program.Set(uniform::lowest_ground_m, static_cast<float>(lowest_m_ - view.eye_m.z));
+  program.Set(uniform::ground_curvature_per_m, static_cast<float>(view.ground_curvature_per_m));
+  program.Set(uniform::touch_m, glm::vec2(view.touch_m - glm::dvec2(view.eye_m)));
   if (!relief_) return;
   const glm::dvec2 size_m = glm::dvec2(grid_.cells) * glm::dvec2(grid_.spacing_m);
   const glm::dvec2 low_m = glm::dvec2(grid_.low_corner_m) - glm::dvec2(view.eye_m);
-  program.Set("terrain_from_ground_scale", glm::vec2(1.0 / size_m));
-  program.Set("terrain_from_ground_offset", glm::vec2(-low_m / size_m));
-  program.Set("terrain_offset_m", static_cast<float>(-view.eye_m.z));
-  program.Set("highest_ground_m", static_cast<float>(highest_m_ - view.eye_m.z));
-  program.Set("steepest_ground", static_cast<float>(steepest_));
-  terrain_.Bind(kTerrainUnit);
+  program.Set(uniform::terrain_from_ground_scale, glm::vec2(1.0 / size_m));
+  program.Set(uniform::terrain_from_ground_offset, glm::vec2(-low_m / size_m));
+  program.Set(uniform::terrain_offset_m, static_cast<float>(-view.eye_m.z));
+  program.Set(uniform::highest_ground_m, static_cast<float>(highest_m_ - view.eye_m.z));
+  program.Set(uniform::steepest_ground, static_cast<float>(steepest_));
+  terrain_.Bind(shaders::kTerrainUnit);
 }
 
 void Ground::SetCorrection(const std::shared_ptr<const LightCorrection>& correction) {
@@ -155,28 +150,28 @@ void Ground::SetCorrection(const std::shared_ptr<const LightCorrection>& correct
 
 void Ground::BindCorrection(const gl::Program& program, const scene::View& view) const {
   const glm::dvec2 size_m = correction_->ground_high_m - correction_->ground_low_m;
-  program.Set("skylight_scale", glm::vec2(1.0 / size_m));
-  program.Set("skylight_offset",
+  program.Set(uniform::skylight_scale, glm::vec2(1.0 / size_m));
+  program.Set(uniform::skylight_offset,
               glm::vec2((glm::dvec2(view.eye_m) - correction_->ground_low_m) / size_m));
-  skylight_factor_.Bind(kSkylightUnit);
+  skylight_factor_.Bind(shaders::kSkylightFactorUnit);
 }
 
 void Ground::BindShadow(const gl::Program& program, const scene::View& view) const {
   if (Corrected()) BindCorrection(program, view);
   if (!has_shadow_) {
     // Far outside the texture, where nothing is blocked.
-    program.Set("shadow_right", glm::vec3(0.0F));
-    program.Set("shadow_up", glm::vec3(0.0F));
-    program.Set("shadow_offset", glm::vec2(-9.0F));
-    shadow_.Bind(kShadowUnit);
+    program.Set(uniform::shadow_right, glm::vec3(0.0F));
+    program.Set(uniform::shadow_up, glm::vec3(0.0F));
+    program.Set(uniform::shadow_offset, glm::vec2(-9.0F));
+    shadow_.Bind(shaders::kGroundShadowUnit);
     return;
   }
   const glm::dvec3 from_eye_m = shadow_middle_m_ - view.eye_m;
-  program.Set("shadow_right", glm::vec3(0.5 * shadow_right_));
-  program.Set("shadow_up", glm::vec3(0.5 * shadow_up_));
-  program.Set("shadow_offset", glm::vec2(0.5 - 0.5 * glm::dot(from_eye_m, shadow_right_),
-                                         0.5 - 0.5 * glm::dot(from_eye_m, shadow_up_)));
-  (shared_shadow_ != nullptr ? *shared_shadow_ : shadow_).Bind(kShadowUnit);
+  program.Set(uniform::shadow_right, glm::vec3(0.5 * shadow_right_));
+  program.Set(uniform::shadow_up, glm::vec3(0.5 * shadow_up_));
+  program.Set(uniform::shadow_offset, glm::vec2(0.5 - 0.5 * glm::dot(from_eye_m, shadow_right_),
+                                                0.5 - 0.5 * glm::dot(from_eye_m, shadow_up_)));
+  (shared_shadow_ != nullptr ? *shared_shadow_ : shadow_).Bind(shaders::kGroundShadowUnit);
 }
 
 }  // namespace thunderhead::renderers

@@ -17,6 +17,13 @@
 
 namespace thunderhead::renderers {
 
+// The variant of common/ground.glsl.
+struct GroundVariant {
+  gl::DefineValue relief;  // terrain that is not level
+
+  gl::Defines Defines() const { return {{"RELIEF", relief}}; }
+};
+
 class Ground {
  public:
   explicit Ground(std::shared_ptr<gl::ProgramCache> programs) : programs_(std::move(programs)) {}
@@ -34,13 +41,12 @@ class Ground {
   void ClearShadow() { has_shadow_ = false; }
   // Puts a correction's ground on the device unless it is there; null is none.
   void SetCorrection(const std::shared_ptr<const LightCorrection>& correction);
-  // True if there is one: the variant CORRECTED of post/composite.frag.
+  // True if there is one.
   bool Corrected() const { return correction_ != nullptr; }
 
   // Of its lowest point, above sea level.
   double Lowest_m() const { return lowest_m_; }
-  // True where the terrain is not level: the variant RELIEF of common/ground.glsl.
-  bool Relief() const { return relief_; }
+  GroundVariant Variant() const { return {.relief = relief_}; }
   // True if ground may stand between the eye and a storm. Level ground falls away from below the
   // storm, so that it hides nothing from an eye above the world's plane.
   bool MayHide(const scene::View& view) const {

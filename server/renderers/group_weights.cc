@@ -6,6 +6,7 @@
 #include "glm/common.hpp"
 #include "glm/trigonometric.hpp"
 #include "physics/optics.h"
+#include "shaders/uniforms.h"
 
 namespace thunderhead::renderers {
 namespace {
@@ -64,18 +65,18 @@ GroupWeights::GroupWeights(const Medium& medium, const scene::MediumSettings& se
 }
 
 void GroupWeights::BindPhase(const gl::Program& program) const {
-  program.Set("phase_cut", phase_cut);
-  program.Set("phase_display", phase_display);
-  program.Set("group_color", color);
+  program.Set(uniform::phase_cut, phase_cut);
+  program.Set(uniform::phase_display, phase_display);
+  program.Set(uniform::group_color, color);
 }
 
 void GroupWeights::BindScattered(const gl::Program& program, const ResidentMedium& medium,
                                  const Illumination& illumination) const {
   BindPhase(program);
-  program.Set("scattering_weights", medium.Weights(scattering));
-  program.Set("albedo", medium.Content().groups.front().albedo);
-  program.Set("sunlight", illumination.sunlight);
-  program.Set("ambient", illumination.ambient);
+  program.Set(uniform::scattering_weights, medium.Weights(scattering));
+  program.Set(uniform::albedo, medium.Content().groups.front().albedo);
+  program.Set(uniform::sunlight, illumination.sunlight);
+  program.Set(uniform::ambient, illumination.ambient);
 }
 
 }  // namespace thunderhead::renderers

@@ -8,15 +8,15 @@
 #include "glm/common.hpp"
 #include "physics/optics.h"
 #include "scene/drawn_fields.h"
+#include "shaders/bindings.h"
+#include "shaders/uniforms.h"
 #include "volume/brick_map.h"
 #include "volume/coarsen.h"
 
 namespace thunderhead::renderers {
 namespace {
 
-constexpr GLuint kBrickUnit = 2;
-constexpr std::size_t kMostBoxes = 8192;
-constexpr GLuint kDetailUnit = 8;  // binding of detail_noise in common/medium.glsl
+constexpr std::size_t kMaxBoxes = 8192;
 
 // Groups that differ only in their share are fetched together.
 std::vector<DetailLayer> LayersOf(const Medium& medium, DetailNoises* noises) {
@@ -67,7 +67,7 @@ volume::ExtinctionVolume ExtinctionThatFits(const volume::HydrometeorFields& fie
 // Around what is occupied; the first brick begins at `corner_m`.
 Boxes BoxesOf(const volume::BrickMap& bricks, const glm::dvec3& brick_m,
               const glm::dvec3& corner_m) {
-  const volume::BrickCubes cubes = volume::OccupiedCubesOf(bricks, kMostBoxes);
+  const volume::BrickCubes cubes = volume::OccupiedCubesOf(bricks, kMaxBoxes);
   const glm::dvec3 cube_m = static_cast<double>(cubes.bricks_across) * brick_m;
   Boxes boxes{{}, cube_m / 2.0};
   boxes.middles_m.reserve(cubes.occupied.size());
@@ -133,20 +133,27 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
 }
 
 void ResidentMedium::Bind(const gl::Program& program) const {
-  for (std::size_t i = 0; i < textures_.size(); ++i) textures_[i].Bind(static_cast<GLuint>(i));
+  for (std::size_t i = 0; i < textures_.size(); ++i) {
+    textures_[i].Bind(shaders::kMediumPlaneUnit + static_cast<GLuint>(i));
+  }
   phase_curves_.Bind();
   const glm::dvec3 extent_m = glm::dvec3(bounds_.grid.cells) * bounds_.grid.spacing_m;
-  program.Set("texture_from_local_scale", glm::vec3(1.0 / extent_m));
-  program.Set("texture_from_local_offset",
+  program.Set(uniform::texture_from_local_scale, glm::vec3(1.0 / extent_m));
+  program.Set(uniform::texture_from_local_offset,
               glm::vec3((Middle_m() - bounds_.grid.low_corner_m) / extent_m));
-  program.Set("medium_low_m", glm::vec3(-HalfExtent_m()));
-  program.Set("medium_high_m", glm::vec3(HalfExtent_m()));
-  bricks_.Bind(kBrickUnit);
-  program.Set("brick_from_local_scale", glm::vec3(1.0 / brick_m_));
-  program.Set("brick_from_local_offset", glm::vec3((Middle_m() - bricks_low_m_) / brick_m_));
-  program.Set("brick_count", bricks_.Size());
-  program.Set("extinction_weights", Weights(std::vector<double>(content_.groups.size(), 1.0)));
+  program.Set(uniform::medium_low_m, glm::vec3(-HalfExtent_m()));
+  program.Set(uniform::medium_high_m, glm::vec3(HalfExtent_m()));
+  program.Set(uniform::extinction_weights,
+              Weights(std::vector<double>(content_.groups.size(), 1.0)));
   if (!details_.empty()) BindDetails(program);
+}
+
+void ResidentMedium::BindWithBricks(const gl::Program& program) const {
+  Bind(program);
+  bricks_.Bind(shaders::kBricksUnit);
+  program.Set(uniform::brick_from_local_scale, glm::vec3(1.0 / brick_m_));
+  program.Set(uniform::brick_from_local_offset, glm::vec3((Middle_m() - bricks_low_m_) / brick_m_));
+  program.Set(uniform::brick_count, bricks_.Size());
 }
 
 void ResidentMedium::BindDetails(const gl::Program& program) const {
@@ -156,7 +163,7 @@ void ResidentMedium::BindDetails(const gl::Program& program) const {
   std::vector<glm::vec4> shares;
   for (std::size_t i = 0; i < details_.size(); ++i) {
     const DetailLayer& layer = details_[i];
-    layer.noise->texture.Bind(kDetailUnit + static_cast<GLuint>(i));
+    layer.noise->texture.Bind(shaders::kDetailNoiseUnit + static_cast<GLuint>(i));
     const double tile_m =
         static_cast<double>(layer.detail.wavelength_m) * physics::TurbulenceTile::kWaves;
     const glm::dvec3 extent_m = glm::dvec3(bounds_.grid.cells) * bounds_.grid.spacing_m;
@@ -167,10 +174,10 @@ void ResidentMedium::BindDetails(const gl::Program& program) const {
     const std::vector<glm::vec4> packed = Packed(layer.share_by_group, 1.0);
     shares.insert(shares.end(), packed.begin(), packed.end());
   }
-  program.Set("detail_tile_size", sizes);
-  program.Set("detail_tile_corner", corners);
-  program.Set("detail_value_of_full", fulls);
-  program.Set("detail_shares", shares);
+  program.Set(uniform::detail_tile_size, sizes);
+  program.Set(uniform::detail_tile_corner, corners);
+  program.Set(uniform::detail_value_of_full, fulls);
+  program.Set(uniform::detail_shares, shares);
 }
 
 double ResidentMedium::OccupiedShare() const {
@@ -184,10 +191,10 @@ double ResidentMedium::ShortestBrickSide_m() const {
   return std::min({brick_m_.x, brick_m_.y, brick_m_.z});
 }
 
-void ResidentMedium::BindBlocks(const gl::Program& program, GLuint binding) const {
-  blocks_.BindStorage(binding);
-  program.Set("cells_per_block", cells_per_block_);
-  program.Set("block_count", block_count_);
+void ResidentMedium::BindBlocks(const gl::Program& program) const {
+  blocks_.BindStorage(shaders::kBlocksBinding);
+  program.Set(uniform::cells_per_block, cells_per_block_);
+  program.Set(uniform::block_count, block_count_);
 }
 
 std::size_t ResidentMedium::Bytes() const {

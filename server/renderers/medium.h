@@ -44,6 +44,14 @@ struct DetailLayer {
   std::vector<double> share_by_group;
 };
 
+// The variant of common/medium.glsl.
+struct MediumVariant {
+  gl::DefineValue groups;
+  gl::DefineValue details;  // noises to be fetched
+
+  gl::Defines Defines() const { return {{"GROUPS", groups}, {"DETAILS", details}}; }
+};
+
 // A medium with its extinction on the device.
 class ResidentMedium {
  public:
@@ -66,21 +74,24 @@ class ResidentMedium {
   glm::dvec3 Middle_m() const { return (bounds_.low_m + bounds_.high_m) / 2.0; }
   glm::dvec3 HalfExtent_m() const { return (bounds_.high_m - bounds_.low_m) / 2.0; }
 
-  // The DETAILS variant of common/medium.glsl: noises to be fetched.
-  int Details() const { return static_cast<int>(details_.size()); }
+  MediumVariant Variant() const {
+    return {.groups = static_cast<int>(content_.groups.size()),
+            .details = static_cast<int>(details_.size())};
+  }
 
-  // Binds the textures to units 0 and up, detail to kDetailUnit and up, those that
-  // common/bricks.glsl and common/phase.glsl name to theirs, and sets the uniforms of
-  // common/medium.glsl and common/bricks.glsl. Local coordinates are metres from Middle_m().
+  // Binds the textures and sets the uniforms of common/medium.glsl, and binds the texture of
+  // common/phase.glsl. Local coordinates are metres from Middle_m().
   void Bind(const gl::Program& program) const;
+  // The same, and those of common/bricks.glsl.
+  void BindWithBricks(const gl::Program& program) const;
   std::size_t Bytes() const;
   // Share of the box that is in bricks that are not empty, 0 to 1.
   double OccupiedShare() const;
   double ShortestBrickSide_m() const;
   // The blocks of cells that a ray may meet (volume::CellBlocks): how many, and their list, bound
-  // for a shader whose cells_per_block is set.
+  // for light_volume/arrive.comp.
   int BlockCount() const { return block_count_; }
-  void BindBlocks(const gl::Program& program, GLuint binding) const;
+  void BindBlocks(const gl::Program& program) const;
 
   // Boxes around the occupied bricks, so few that going through them for each picture is nothing.
   const Boxes& OccupiedBoxes() const { return occupied_boxes_; }

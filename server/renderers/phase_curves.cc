@@ -4,11 +4,10 @@
 
 #include "glm/vec4.hpp"
 #include "physics/optics.h"
+#include "shaders/bindings.h"
 
 namespace thunderhead::renderers {
 namespace {
-
-constexpr GLuint kPhaseCurvesUnit = 3;
 
 // Steps are 0.03 degrees at the 22 degree halo, 0.07 at the rainbow, and the first is 1e-5.
 constexpr int kTexels = 4096;
@@ -35,6 +34,6 @@ PhaseCurves::PhaseCurves(const std::vector<physics::PhaseFunction>& phases)
   texture_.Upload(GL_RGBA, GL_FLOAT, texels.data());
 }
 
-void PhaseCurves::Bind() const { texture_.Bind(kPhaseCurvesUnit); }
+void PhaseCurves::Bind() const { texture_.Bind(shaders::kPhaseCurvesUnit); }
 
 }  // namespace thunderhead::renderers

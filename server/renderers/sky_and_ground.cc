@@ -7,19 +7,29 @@
 #include "base/status.h"
 #include "renderers/light_map.h"
 #include "renderers/view_uniforms.h"
+#include "shaders/bindings.h"
+#include "shaders/uniforms.h"
 
 namespace thunderhead::renderers {
 namespace {
 
-constexpr GLuint kEyeUnit = 4;
-constexpr GLuint kSkyUnit = 6;
 // Heights that the sky is computed for, so that a moving camera makes a table now and then only:
 // about 150 m apart near the ground, 6 % far above it. Between them tables are mixed.
 constexpr double kSkyStep_m = 2500.0;
 constexpr double kSkySteps = 16.0;
-constexpr std::size_t kMostTables = 32;
+constexpr std::size_t kMaxTables = 32;
 
 constexpr glm::vec3 kGroundTint(1.0F, 0.93F, 0.78F);  // of bare soil and grass seen from far off
+
+struct CompositeVariant {
+  GroundVariant ground;
+  gl::DefineValue corrected;  // the ground's skylight, by renderers::LightCorrection
+  gl::DefineValue front;      // there may be something in the eye buffer
+
+  gl::Defines Defines() const {
+    return gl::Joined(ground.Defines(), {{"CORRECTED", corrected}, {"FRONT", front}});
+  }
+};
 
 // Radiance per irradiance of level ground.
 glm::vec3 GroundReflectance(const scene::Scene& scene) {
@@ -84,7 +94,7 @@ const std::vector<glm::vec4>& SkyAndGround::TableOfStep(int step) {
   if (step == 0) return sky_->Table();
   const auto found = tables_.find(step);
   if (found != tables_.end()) return found->second;
-  if (tables_.size() >= kMostTables) tables_.clear();
+  if (tables_.size() >= kMaxTables) tables_.clear();
   const auto ground_m = static_cast<float>(drawn_.ground_m);
   const auto height_m = static_cast<float>(HeightOfStep(step));
   const physics::ClearSky seen(*atmosphere_, glm::vec3(towards_sun_),
@@ -166,36 +176,36 @@ void SkyAndGround::BindAir(const gl::Program& program, const scene::Scene& scene
   const auto irradiance = static_cast<float>(scene.sun.irradiance);
   const auto sky_scale = irradiance * static_cast<float>(scene.sky.brightness);
   const auto altitude_m = static_cast<float>(std::max(view.altitude_m, 0.0));
-  program.Set("local_from_world", glm::mat3(view.local_from_world));
-  program.Set("towards_sun", glm::vec3(towards_sun_));
-  program.Set("towards_sun_local", glm::vec3(view.local_from_world * towards_sun_));
+  program.Set(uniform::local_from_world, glm::mat3(view.local_from_world));
+  program.Set(uniform::towards_sun, glm::vec3(towards_sun_));
+  program.Set(uniform::towards_sun_local, glm::vec3(view.local_from_world * towards_sun_));
   // The eye's own, not that of the height that the table was made for.
-  program.Set("horizon_sine",
+  program.Set(uniform::horizon_sine,
               physics::HorizonSine(altitude_m, static_cast<float>(drawn_.ground_m)));
-  program.Set("sky_scale", sky_scale);
-  program.Set("turbidity", static_cast<float>(scene.sky.turbidity));
-  program.Set("altitude_m", altitude_m);
-  program.Set("air_densities", physics::glsl::densities_of_air(altitude_m));
-  program.Set("ground_reflectance", GroundReflectance(scene));
-  program.Set("sunlight", irradiance * sky_->SunTransmittance());
-  program.Set("skylight", sky_scale * sky_light_.irradiance);
-  program.Set("box_low_m", glm::vec3(box.low_m - view.eye_m));
-  program.Set("box_high_m", glm::vec3(box.high_m - view.eye_m));
+  program.Set(uniform::sky_scale, sky_scale);
+  program.Set(uniform::turbidity, static_cast<float>(scene.sky.turbidity));
+  program.Set(uniform::altitude_m, altitude_m);
+  program.Set(uniform::air_densities, physics::glsl::densities_of_air(altitude_m));
+  program.Set(uniform::ground_reflectance, GroundReflectance(scene));
+  program.Set(uniform::sunlight, irradiance * sky_->SunTransmittance());
+  program.Set(uniform::skylight, sky_scale * sky_light_.irradiance);
+  program.Set(uniform::box_low_m, glm::vec3(box.low_m - view.eye_m));
+  program.Set(uniform::box_high_m, glm::vec3(box.high_m - view.eye_m));
 }
 
 absl::Status SkyAndGround::Composite(const scene::Scene& scene, const scene::View& view,
                                      const Ground& ground, const volume::WorldBox& box,
                                      const gl::Texture2D& eye, const CoveredTarget& target,
                                      const Cover* cover) {
-  eye.Bind(kEyeUnit);
-  sky_table_.Bind(kSkyUnit);
+  eye.Bind(shaders::kEyeUnit);
+  sky_table_.Bind(shaders::kSkyTableUnit);
   const auto draw = [&](Where where) -> absl::Status {
-    THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
-                                 programs_->Get({"common/whole_target.vert",
-                                                 "post/composite.frag",
-                                                 {{"RELIEF", ground.Relief() ? 1 : 0},
-                                                  {"CORRECTED", ground.Corrected() ? 1 : 0},
-                                                  {"FRONT", where == Where::kCovered ? 1 : 0}}}));
+    const CompositeVariant variant{.ground = ground.Variant(),
+                                   .corrected = ground.Corrected(),
+                                   .front = where == Where::kCovered};
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        const gl::Program* program,
+        programs_->Get(gl::ProgramSource::WholeTarget("post/composite.frag", variant.Defines())));
     BindAir(*program, scene, view, ground, box);
     const LimitedTo limited(where, cover);
     whole_target_.Draw(*program, target.Target());

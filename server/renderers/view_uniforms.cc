@@ -2,16 +2,17 @@
 
 #include "glm/ext/matrix_clip_space.hpp"
 #include "glm/ext/matrix_transform.hpp"
+#include "shaders/uniforms.h"
 
 namespace thunderhead::renderers {
 
 void BindRays(const gl::Program& program, const scene::View& view, const glm::dvec3& middle_m) {
-  program.Set("ray_origin_m", glm::vec3(view.eye_m - middle_m));
-  program.Set("ray_origin_right_m", glm::vec3(view.right * view.half_width_m));
-  program.Set("ray_origin_up_m", glm::vec3(view.up * view.half_height_m));
-  program.Set("ray_forward", glm::vec3(view.forward));
-  program.Set("ray_right", glm::vec3(view.right * view.tan_half_width));
-  program.Set("ray_up", glm::vec3(view.up * view.tan_half_height));
+  program.Set(uniform::ray_origin_m, glm::vec3(view.eye_m - middle_m));
+  program.Set(uniform::ray_origin_right_m, glm::vec3(view.right * view.half_width_m));
+  program.Set(uniform::ray_origin_up_m, glm::vec3(view.up * view.half_height_m));
+  program.Set(uniform::ray_forward, glm::vec3(view.forward));
+  program.Set(uniform::ray_right, glm::vec3(view.right * view.tan_half_width));
+  program.Set(uniform::ray_up, glm::vec3(view.up * view.tan_half_height));
 }
 
 glm::mat4 ClipFromLocal(const scene::View& view, const glm::dvec3& middle_m) {

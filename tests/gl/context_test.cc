@@ -1,7 +1,6 @@
 #include "gl/context.h"
 
 #include "gl/objects.h"
-#include "gl/program.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
@@ -34,14 +33,6 @@ TEST(Context, NamesWhatADeviceMayBe) {
   ASSERT_FALSE(context.ok());
   EXPECT_EQ(context.status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_THAT(std::string(context.status().message()), HasSubstr("'fast'"));
-}
-
-TEST(Program, NamesAMissingShader) {
-  const auto context = Context::Create("software");
-  ASSERT_TRUE(context.ok());
-  const auto program = Program::Link({"common/whole_target.vert", "common/nowhere.frag", {}});
-  ASSERT_FALSE(program.ok());
-  EXPECT_THAT(std::string(program.status().message()), HasSubstr("common/nowhere.frag"));
 }
 
 TEST(Framebuffer, KeepsWhatItIsClearedTo) {

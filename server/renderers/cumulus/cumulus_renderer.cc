@@ -8,20 +8,19 @@
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
 #include "glm/matrix.hpp"
+#include "renderers/cumulus/variants.h"
 #include "renderers/view_uniforms.h"
+#include "shaders/bindings.h"
+#include "shaders/uniforms.h"
 
 namespace thunderhead::renderers {
 namespace {
 
 constexpr int kShadowTexels = 1024;  // along each side
 constexpr int kGroundShadowTexels = 256;
-constexpr GLuint kDepthUnit = 4;
-constexpr GLuint kShadowUnit = 5;
-constexpr GLuint kGroundUnit = 7;
-constexpr GLuint kNoiseUnit = 8;
 constexpr int kRoughnessOctaves = 4;
 constexpr double kRoughnessInFinest = 1.6;  // wavelength over the radius of the finest bubbles
-constexpr double kLeastCorona = 1e-3;       // of the finest radius: thinner is a division by zero
+constexpr double kMinCorona = 1e-3;         // of the finest radius: thinner is a division by zero
 
 // As cumulus/bubble.glsl has it.
 struct DeviceBubble {
@@ -84,8 +83,10 @@ struct CumulusRenderer::Pass {
   gl::Buffer order;
 
   Pass(const scene::View& from, const glm::ivec2& target, const CumulusRenderer& renderer);
-  std::vector<gl::Define> Variant(const CumulusRenderer& renderer) const {
-    return {{"BASE", renderer.has_base_ ? 1 : 0}, {"GROUND", ground_distance != nullptr ? 1 : 0}};
+  BubbleVariant Variant(const CumulusRenderer& renderer, bool front_first) const {
+    return {.base = renderer.has_base_,
+            .ground = ground_distance != nullptr,
+            .front_first = front_first};
   }
 };
 
@@ -133,33 +134,32 @@ void CumulusRenderer::SetSurface(const clouds::CumulusSurface& surface) {
 }
 
 double CumulusRenderer::Corona_m(const scene::Cumulus& cumulus) const {
-  return finest_m_ * std::max(static_cast<double>(cumulus.corona), kLeastCorona);
+  return finest_m_ * std::max(static_cast<double>(cumulus.corona), kMinCorona);
 }
 
 void CumulusRenderer::DrawBubbles(const gl::Program& program, const Pass& pass) const {
   BindRays(program, pass.view, Middle_m());
-  program.Set("clip_from_local", ClipFromLocal(pass.view, Middle_m()));
-  program.Set("eye", EyeOf(pass.view, Middle_m()));
-  program.Set("last_rank", count_ - 1);
-  program.Set("per_pixel", 2.0F / glm::vec2(pass.size));
-  program.Set("base_m", base_m_);
-  program.Set("corona_m", static_cast<float>(pass.corona_m));
-  program.Set("slack_m", static_cast<float>(pass.slack_m));
-  program.Set("per_far", static_cast<float>(1.0 / pass.far_m));
-  bubbles_.BindStorage(0);
-  pass.order.BindStorage(1);
-  if (pass.ground_distance != nullptr) pass.ground_distance->Bind(kGroundUnit);
+  program.Set(uniform::clip_from_local, ClipFromLocal(pass.view, Middle_m()));
+  program.Set(uniform::eye, EyeOf(pass.view, Middle_m()));
+  program.Set(uniform::last_rank, count_ - 1);
+  program.Set(uniform::per_pixel, 2.0F / glm::vec2(pass.size));
+  program.Set(uniform::base_m, base_m_);
+  program.Set(uniform::corona_m, static_cast<float>(pass.corona_m));
+  program.Set(uniform::slack_m, static_cast<float>(pass.slack_m));
+  program.Set(uniform::per_far, static_cast<float>(1.0 / pass.far_m));
+  bubbles_.BindStorage(shaders::kBubblesBinding);
+  pass.order.BindStorage(shaders::kBubbleOrderBinding);
+  if (pass.ground_distance != nullptr) pass.ground_distance->Bind(shaders::kGroundDistanceUnit);
   program.Use();
   no_attributes_.Bind();
   glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, count_);
 }
 
 absl::Status CumulusRenderer::DrawDepth(const Pass& pass, const gl::Framebuffer& target) {
-  std::vector<gl::Define> variant = pass.Variant(*this);
-  variant.push_back({"FRONT_FIRST", 1});
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_->Get({"cumulus/bubble.vert", "cumulus/depth.frag", variant}));
+      programs_->Get(gl::ProgramSource::Of("cumulus/bubble.vert", "cumulus/depth.frag",
+                                           pass.Variant(*this, true).Defines())));
   target.ClearDepth(1.0F);
   target.Bind();
   glEnable(GL_DEPTH_TEST);
@@ -193,8 +193,8 @@ absl::StatusOr<gl::Texture2D> CumulusRenderer::GroundShadow() {
   const gl::Framebuffer target(shadow);
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_->Get({"common/whole_target.vert", "cumulus/ground_shadow.frag", {}}));
-  shadow_depth_.Bind(kDepthUnit);
+      programs_->Get(gl::ProgramSource::WholeTarget("cumulus/ground_shadow.frag")));
+  shadow_depth_.Bind(shaders::kSunDepthUnit);
   whole_target_.Draw(*program, target);
   return shadow;
 }
@@ -219,34 +219,34 @@ void CumulusRenderer::SetShading(const gl::Program& program, const RenderSetting
   const double wave_m = kRoughnessInFinest * finest_m_;
   const double tile_m = wave_m * physics::TurbulenceTile::kWaves;
   const glm::dvec3 corner = Middle_m() / tile_m;
-  program.Set("towards_sun", glm::vec3(settings.illumination.towards_sun));
-  program.Set("sunlight", settings.illumination.sunlight);
-  program.Set("light_map", light_map);
-  program.Set("component", SharesOf(cumulus.component));
-  program.Set("trap_share", cumulus.trap);
-  program.Set("transmission", cumulus.transmission);
-  program.Set("roughness", cumulus.roughness);
-  program.Set("noise_wave_m", static_cast<float>(wave_m));
-  program.Set("noise_per_m", static_cast<float>(1.0 / tile_m));
-  program.Set("noise_offset", glm::vec3(corner - glm::floor(corner)));
+  program.Set(uniform::towards_sun, glm::vec3(settings.illumination.towards_sun));
+  program.Set(uniform::sunlight, settings.illumination.sunlight);
+  program.Set(uniform::light_map, light_map);
+  program.Set(uniform::component, SharesOf(cumulus.component));
+  program.Set(uniform::trap_share, cumulus.trap);
+  program.Set(uniform::transmission, cumulus.transmission);
+  program.Set(uniform::roughness, cumulus.roughness);
+  program.Set(uniform::noise_wave_m, static_cast<float>(wave_m));
+  program.Set(uniform::noise_per_m, static_cast<float>(1.0 / tile_m));
+  program.Set(uniform::noise_offset, glm::vec3(corner - glm::floor(corner)));
   const double across = view.Orthographic() ? view.half_height_m : view.tan_half_height;
-  program.Set("pixel_share", static_cast<float>(2.0 * across / settings.eye_size.y));
-  program.Set("parallel", view.Orthographic() ? 1 : 0);
+  program.Set(uniform::pixel_share, static_cast<float>(2.0 * across / settings.eye_size.y));
+  program.Set(uniform::parallel, view.Orthographic());
   const glm::dvec3 right = 0.5 * shadow_frame_.right / shadow_frame_.half_extent_m.x;
   const glm::dvec3 up = 0.5 * shadow_frame_.up / shadow_frame_.half_extent_m.y;
   const double from_m = shadow_reach_m_ + 2.0;
   const double far_m = from_m + shadow_reach_m_;
   const glm::dvec3 down = -shadow_frame_.towards_sun / far_m;
-  program.Set("shadow_x", glm::vec4(right, 0.5));
-  program.Set("shadow_y", glm::vec4(up, 0.5));
-  program.Set("shadow_z", glm::vec4(down, from_m / far_m));
-  program.Set("shadow_texel_m",
+  program.Set(uniform::shadow_x, glm::vec4(right, 0.5));
+  program.Set(uniform::shadow_y, glm::vec4(up, 0.5));
+  program.Set(uniform::shadow_z, glm::vec4(down, from_m / far_m));
+  program.Set(uniform::shadow_texel_m,
               static_cast<float>(
                   2.0 * std::max(shadow_frame_.half_extent_m.x, shadow_frame_.half_extent_m.y) /
                   kShadowTexels));
-  noise_->texture.Bind(kNoiseUnit);
-  shadow_depth_.Bind(kShadowUnit);
-  core_depth_.Bind(kDepthUnit);
+  noise_->texture.Bind(shaders::kRoughnessNoiseUnit);
+  shadow_depth_.Bind(shaders::kSunDepthUnit);
+  core_depth_.Bind(shaders::kCoreDepthUnit);
 }
 
 absl::Status CumulusRenderer::DrawView(const RenderSettings& settings,
@@ -258,12 +258,11 @@ absl::Status CumulusRenderer::DrawView(const RenderSettings& settings,
   pass.corona_m = plain ? 0.0 : Corona_m(SettingsOf(settings));
   pass.ground_distance = settings.ground_distance;
   THUNDERHEAD_RETURN_IF_ERROR(DrawDepth(pass, core_target_));
-  std::vector<gl::Define> variant = pass.Variant(*this);
-  variant.push_back({"FRONT_FIRST", 0});
-  variant.push_back({"PLAIN", plain ? 1 : 0});
+  const ShadeVariant variant{.bubble = pass.Variant(*this, false), .plain = plain};
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_->Get({"cumulus/bubble.vert", "cumulus/shade.frag", variant}));
+      programs_->Get(
+          gl::ProgramSource::Of("cumulus/bubble.vert", "cumulus/shade.frag", variant.Defines())));
   SetShading(*program, settings, light_map, noises);
   shade_target_.Clear(0.0F, 0.0F, 0.0F, 0.0F, 0);
   shade_target_.Clear(0.0F, 0.0F, 0.0F, 1.0F, 1);
@@ -289,9 +288,9 @@ absl::Status CumulusRenderer::DrawView(const RenderSettings& settings,
 absl::Status CumulusRenderer::Resolve() {
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_->Get({"common/whole_target.vert", "cumulus/resolve.frag", {}}));
-  cores_.Bind(kDepthUnit);
-  layer_.Bind(kShadowUnit);
+      programs_->Get(gl::ProgramSource::WholeTarget("cumulus/resolve.frag")));
+  cores_.Bind(shaders::kCoresUnit);
+  layer_.Bind(shaders::kLayerUnit);
   whole_target_.Draw(*program, eye_target_);
   return absl::OkStatus();
 }

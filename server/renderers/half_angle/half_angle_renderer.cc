@@ -10,12 +10,15 @@
 #include "renderers/group_weights.h"
 #include "renderers/half_angle/slice_reach.h"
 #include "renderers/half_angle/turns.h"
+#include "renderers/half_angle/variants.h"
 #include "renderers/view_uniforms.h"
+#include "shaders/bindings.h"
+#include "shaders/uniforms.h"
 
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kMostLightTexels = 256;        // along the longer side of the light buffer
+constexpr int kMaxLightTexels = 256;         // along the longer side of the light buffer
 constexpr double kLightTexelInCells = 0.75;  // size of a light texel
 constexpr int kThicknessSlices = 128;        // perpendicular to the light
 // Drawn to the picture in one pass. More change targets less often, but their light takes more
@@ -24,26 +27,21 @@ constexpr int kSlabSlices = 16;
 // Way of the light between two exchanges with neighbouring texels, in the reach of one
 // (consistent transport).
 constexpr double kExchangeInReach = 3.0;
-constexpr int kGroupSide = 8;  // of carry.comp and thickness.comp
-constexpr GLuint kLightUnit = 4;
-constexpr GLuint kThicknessUnit = 5;
-constexpr GLuint kEyeUnit = 6;
-constexpr GLuint kGroundUnit = 7;
 
 // Runs `program`, which is in use, for each texel of a rectangle.
 void Dispatch(const glm::ivec2& size) {
-  const glm::ivec2 groups = (size + kGroupSide - 1) / kGroupSide;
+  const glm::ivec2 groups = (size + shaders::kLightGroupSide - 1) / shaders::kLightGroupSide;
   glDispatchCompute(static_cast<GLuint>(groups.x), static_cast<GLuint>(groups.y), 1);
 }
 
 // Sets the uniforms of half_angle/slice_light.glsl.
 void BindSunRays(const gl::Program& program, const Slicing& slicing, const LightFrame& frame) {
-  program.Set("towards_sun", glm::vec3(frame.towards_sun));
-  program.Set("slice_normal", glm::vec3(slicing.normal));
-  program.Set("first_plane_m", static_cast<float>(slicing.first_m));
-  program.Set("light_path_m", static_cast<float>(slicing.light_path_m));
-  program.Set("light_right_m", glm::vec3(frame.right * frame.half_extent_m.x));
-  program.Set("light_up_m", glm::vec3(frame.up * frame.half_extent_m.y));
+  program.Set(uniform::towards_sun, glm::vec3(frame.towards_sun));
+  program.Set(uniform::slice_normal, glm::vec3(slicing.normal));
+  program.Set(uniform::first_plane_m, static_cast<float>(slicing.first_m));
+  program.Set(uniform::light_path_m, static_cast<float>(slicing.light_path_m));
+  program.Set(uniform::light_right_m, glm::vec3(frame.right * frame.half_extent_m.x));
+  program.Set(uniform::light_up_m, glm::vec3(frame.up * frame.half_extent_m.y));
 }
 
 }  // namespace
@@ -75,7 +73,7 @@ std::size_t HalfAngleRenderer::Bytes() const {
 void HalfAngleRenderer::Resize(const LightFrame& frame, double cell_m) {
   // Finer texels than cells would carry no more detail.
   const double longest_m = 2.0 * std::max(frame.half_extent_m.x, frame.half_extent_m.y);
-  const double texel_m = std::max(longest_m / kMostLightTexels, kLightTexelInCells * cell_m);
+  const double texel_m = std::max(longest_m / kMaxLightTexels, kLightTexelInCells * cell_m);
   const glm::ivec2 light_size =
       glm::max(glm::ivec2(glm::ceil(2.0 * frame.half_extent_m / texel_m)), glm::ivec2(1));
   // The last frame's stores come before what fills here.
@@ -102,7 +100,6 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
   const GroupWeights weights(medium.Content(), carried);
   const bool translucent = scene::IsTranslucent(carried.transport);
   const bool consistent = !scene::IsPaper(carried.transport);
-  const auto groups = static_cast<int>(medium.Content().groups.size());
   const glm::dvec3 cell_m = medium.Bounds().grid.spacing_m;
   Resize(frame, std::min(cell_m.x, cell_m.y));
   for (CoveredTarget& eye : eye_) {
@@ -113,50 +110,45 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
     THUNDERHEAD_RETURN_IF_ERROR(SumThickness(medium, frame, weights));
   }
 
+  const SliceEyeVariant eye_variant{.medium = medium.Variant(),
+                                    .colored = weights.colored,
+                                    .even_albedo = weights.even_albedo,
+                                    .translucent = translucent,
+                                    .consistent = consistent,
+                                    .ground = settings.ground_distance != nullptr,
+                                    .order = OrderOf(slicing, settings.view)};
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* eye,
-      programs_->Get({"common/whole_target.vert",
-                      "half_angle/eye.frag",
-                      {{"GROUPS", groups},
-                       {"DETAILS", medium.Details()},
-                       {"COLORED", weights.colored ? 1 : 0},
-                       {"EVEN_ALBEDO", weights.even_albedo ? 1 : 0},
-                       {"TRANSLUCENT", translucent ? 1 : 0},
-                       {"CONSISTENT", consistent ? 1 : 0},
-                       {"GROUND", settings.ground_distance != nullptr ? 1 : 0},
-                       {"ORDER", static_cast<int>(OrderOf(slicing, settings.view))}}}));
-  medium.Bind(*eye);
+      programs_->Get(gl::ProgramSource::WholeTarget("half_angle/eye.frag", eye_variant.Defines())));
+  medium.BindWithBricks(*eye);
   BindRays(*eye, settings.view, medium.Middle_m());
-  eye->Set("towards_sun", glm::vec3(frame.towards_sun));
-  eye->Set("slice_normal", glm::vec3(slicing.normal));
-  eye->Set("first_plane_m", static_cast<float>(slicing.first_m));
-  eye->Set("spacing_m", static_cast<float>(slicing.spacing_m));
-  eye->Set("light_path_m", static_cast<float>(slicing.light_path_m));
-  eye->Set("eye_weights", medium.Weights(weights.eye));
-  eye->Set("light_weights", medium.Weights(weights.light));
-  eye->Set("transport_weights", medium.Weights(weights.transport));
+  eye->Set(uniform::towards_sun, glm::vec3(frame.towards_sun));
+  eye->Set(uniform::slice_normal, glm::vec3(slicing.normal));
+  eye->Set(uniform::first_plane_m, static_cast<float>(slicing.first_m));
+  eye->Set(uniform::spacing_m, static_cast<float>(slicing.spacing_m));
+  eye->Set(uniform::light_path_m, static_cast<float>(slicing.light_path_m));
+  eye->Set(uniform::eye_weights, medium.Weights(weights.eye));
+  eye->Set(uniform::light_weights, medium.Weights(weights.light));
+  eye->Set(uniform::transport_weights, medium.Weights(weights.transport));
   weights.BindScattered(*eye, medium, settings.illumination);
-  eye->Set("light_u", glm::vec3(0.5 * frame.right / frame.half_extent_m.x));
-  eye->Set("light_v", glm::vec3(0.5 * frame.up / frame.half_extent_m.y));
+  eye->Set(uniform::light_u, glm::vec3(0.5 * frame.right / frame.half_extent_m.x));
+  eye->Set(uniform::light_v, glm::vec3(0.5 * frame.up / frame.half_extent_m.y));
 
-  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* light,
-                               programs_->Get({{},
-                                               {},
-                                               {{"GROUPS", groups},
-                                                {"DETAILS", medium.Details()},
-                                                {"CONSISTENT", consistent ? 1 : 0},
-                                                {"TRANSLUCENT", translucent ? 1 : 0}},
-                                               "half_angle/carry.comp"}));
-  medium.Bind(*light);
+  const SliceLightVariant light_variant{
+      .medium = medium.Variant(), .consistent = consistent, .translucent = translucent};
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* light,
+      programs_->Get(gl::ProgramSource::Compute("half_angle/carry.comp", light_variant.Defines())));
+  medium.BindWithBricks(*light);
   BindSunRays(*light, slicing, frame);
-  light->Set("light_weights", medium.Weights(weights.light));
-  light->Set("transport_weights", medium.Weights(weights.transport));
-  light->Set("peripheral_weights", medium.Weights(weights.peripheral));
-  light->Set("cumulative_phase", weights.cumulative_phase);
+  light->Set(uniform::light_weights, medium.Weights(weights.light));
+  light->Set(uniform::transport_weights, medium.Weights(weights.transport));
+  light->Set(uniform::peripheral_weights, medium.Weights(weights.peripheral));
+  light->Set(uniform::cumulative_phase, weights.cumulative_phase);
   const double reach_m =
       consistent ? std::max({cell_m.x, cell_m.y, cell_m.z}) : slicing.light_path_m;
   const double tap_m = reach_m * std::tan(glm::radians(carried.theta_f_deg) * 3.0 / 8.0);
-  light->Set("tap_offset", glm::vec2(0.5 * tap_m / frame.half_extent_m));
+  light->Set(uniform::tap_offset, glm::vec2(0.5 * tap_m / frame.half_extent_m));
 
   std::size_t at_once = kSlabSlices;
   if (translucent) {
@@ -174,19 +166,15 @@ absl::Status HalfAngleRenderer::SumThickness(const ResidentMedium& medium, const
   // Slices across the sun's rays, so that the sum does not depend on the view and can be kept.
   const Slicing slicing =
       SliceBox({medium.HalfExtent_m()}, frame.towards_sun, frame.towards_sun, kThicknessSlices);
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      const gl::Program* program,
-      programs_->Get({{},
-                      {},
-                      {{"GROUPS", static_cast<int>(medium.Content().groups.size())},
-                       {"DETAILS", medium.Details()}},
-                      "half_angle/thickness.comp"}));
-  medium.Bind(*program);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
+                               programs_->Get(gl::ProgramSource::Compute(
+                                   "half_angle/thickness.comp", medium.Variant().Defines())));
+  medium.BindWithBricks(*program);
   BindSunRays(*program, slicing, frame);
-  program->Set("transport_weights", medium.Weights(weights.transport));
-  program->Set("texel_count", thickness_.Size());
-  program->Set("slice_count", slicing.count);
-  thickness_.BindImage(0, GL_WRITE_ONLY);
+  program->Set(uniform::transport_weights, medium.Weights(weights.transport));
+  program->Set(uniform::texel_count, thickness_.Size());
+  program->Set(uniform::slice_count, slicing.count);
+  thickness_.BindImage(shaders::kSliceThicknessImage, GL_WRITE_ONLY);
   program->Use();
   Dispatch(thickness_.Size());
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
@@ -195,11 +183,12 @@ absl::Status HalfAngleRenderer::SumThickness(const ResidentMedium& medium, const
 
 void HalfAngleRenderer::DrawSlabs(const Programs& programs, const RenderSettings& settings,
                                   std::size_t at_once, const std::vector<SliceReach>& reach) {
-  light_.Bind(kLightUnit);
-  light_.BindImage(0, GL_WRITE_ONLY);
-  ring_depth_.BindImage(1, GL_READ_WRITE);
-  thickness_.Bind(kThicknessUnit);
-  if (settings.ground_distance != nullptr) settings.ground_distance->Bind(kGroundUnit);
+  light_.Bind(shaders::kSliceLightUnit);
+  light_.BindImage(shaders::kLeavingLightImage, GL_WRITE_ONLY);
+  ring_depth_.BindImage(shaders::kRingDepthImage, GL_READ_WRITE);
+  thickness_.Bind(shaders::kSliceThicknessUnit);
+  if (settings.ground_distance != nullptr)
+    settings.ground_distance->Bind(shaders::kGroundDistanceUnit);
   const auto meets = [](const SliceReach& slice) { return !slice.light.Empty(); };
   const auto first = std::find_if(reach.begin(), reach.end(), meets) - reach.begin();
   const auto end = reach.rend() - std::find_if(reach.rbegin(), reach.rend(), meets);
@@ -217,9 +206,9 @@ void HalfAngleRenderer::DrawSlabs(const Programs& programs, const RenderSettings
     PixelRect seen;
     for (std::size_t i = slab.begin; i < slab.end; ++i) seen = Around(seen, reach[i].eye);
     if (seen.Empty()) continue;
-    eye_[eyes.Of(drawn)].Texture().Bind(kEyeUnit);
+    eye_[eyes.Of(drawn)].Texture().Bind(shaders::kEyeBeforeUnit);
     ++drawn;
-    programs.eye->Set("begin_layer", static_cast<float>(light.layers.Of(slab.begin)));
+    programs.eye->Set(uniform::begin_layer, static_cast<float>(light.layers.Of(slab.begin)));
     DrawSlab(slab, *programs.eye, settings.cover, eyes.Write(drawn, seen),
              eye_[eyes.Of(drawn)].Target());
   }
@@ -244,11 +233,11 @@ void HalfAngleRenderer::CarryThrough(const Slab& slab, const gl::Program& progra
       rect = Around(rect, light->layers.Write(i + 1, changed));
     }
     if (rect.Empty()) continue;
-    program.Set("first_texel", rect.low);
-    program.Set("end_texel", rect.high);
-    program.Set("first_slice", static_cast<int>(first));
-    program.Set("slice_count", static_cast<int>(end - first));
-    program.Set("first_layer", static_cast<int>(light->layers.Of(first)));
+    program.Set(uniform::first_texel, rect.low);
+    program.Set(uniform::end_texel, rect.high);
+    program.Set(uniform::first_slice, static_cast<int>(first));
+    program.Set(uniform::slice_count, static_cast<int>(end - first));
+    program.Set(uniform::first_layer, static_cast<int>(light->layers.Of(first)));
     Dispatch(rect.high - rect.low);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   }
@@ -256,8 +245,8 @@ void HalfAngleRenderer::CarryThrough(const Slab& slab, const gl::Program& progra
 
 void HalfAngleRenderer::DrawSlab(const Slab& slab, const gl::Program& eye, const Cover* cover,
                                  const PixelRect& rect, const gl::Framebuffer& target) {
-  eye.Set("slab_begin", static_cast<float>(slab.begin));
-  eye.Set("slab_end", static_cast<float>(slab.end));
+  eye.Set(uniform::slab_begin, static_cast<float>(slab.begin));
+  eye.Set(uniform::slab_end, static_cast<float>(slab.end));
   glEnable(GL_SCISSOR_TEST);
   glScissor(rect.low.x, rect.low.y, rect.high.x - rect.low.x, rect.high.y - rect.low.y);
   {

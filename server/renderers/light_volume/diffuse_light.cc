@@ -14,10 +14,10 @@ namespace {
 
 // Cells through which light loses less than this are empty.
 constexpr float kEmptyDepth = 1e-4F;
-constexpr int kMostIterations = 200;
+constexpr int kMaxIterations = 200;
 constexpr double kTolerance = 2e-4;
 // A face that light leaves aslant counts as at most so much farther from the surface.
-constexpr float kMostSlant = 4.0F;
+constexpr float kMaxSlant = 4.0F;
 
 // What faces receive of a sky of radiance a + b (1 - sine of the elevation), in shares of its
 // irradiance from above over pi and of its mean radiance: integrals over the half of the sphere,
@@ -31,7 +31,7 @@ constexpr std::array<glm::vec2, 6> kSkySeen = {kSideSees, kSideSees,       kSide
 // of the medium's height. Half or twice this changes the errors of the sample storm by
 // 0.01 to 0.03.
 constexpr double kFarthestHop = 0.05;
-constexpr float kLeastResistance = 1e-3F;
+constexpr float kMinResistance = 1e-3F;
 
 float MeanDecay(float from, float to) {
   const float least = std::min(from, to);
@@ -145,13 +145,13 @@ void DiffuseLight::MakeLinks() {
       const float depth = static_cast<float>(0.5 * cells_.cell_m[axis]) * (here + there);
       const float out = static_cast<float>(0.5 * cells_.cell_m[axis]) * cells_.light_per_m[i];
       if (links.to[way] == kNone) {
-        links.slack[way] = 2.0F * std::clamp(out / exit, 1.0F, kMostSlant);
+        links.slack[way] = 2.0F * std::clamp(out / exit, 1.0F, kMaxSlant);
       } else {
         links.slack[way] =
             axis == 2 ? 0.0F : static_cast<float>(cells_.cell_m[axis] / farthest_hop_m);
       }
       links.conductance[way] =
-          area_[axis] / std::max(3.0F * depth + links.slack[way], kLeastResistance);
+          area_[axis] / std::max(3.0F * depth + links.slack[way], kMinResistance);
       diagonal_[n] += links.conductance[way];
     }
     diagonal_[n] += static_cast<float>(cells_.cell_m.z) * cells_.absorption_per_m[i];
@@ -222,7 +222,7 @@ void DiffuseLight::Solve(const std::vector<float>& right, double tolerance,
   Precondition(right, &better_);
   const double goal = tolerance * tolerance * dot(right, better_);
   double before = 0.0;
-  for (last_iterations_ = 0; last_iterations_ < kMostIterations; ++last_iterations_) {
+  for (last_iterations_ = 0; last_iterations_ < kMaxIterations; ++last_iterations_) {
     Precondition(residual_, &better_);
     const double now = dot(residual_, better_);
     if (!(now > goal)) break;

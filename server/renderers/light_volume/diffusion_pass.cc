@@ -5,25 +5,23 @@
 
 #include "base/status.h"
 #include "glm/common.hpp"
+#include "shaders/bindings.h"
+#include "shaders/uniforms.h"
 
 namespace thunderhead::renderers {
 namespace {
 
-constexpr GLuint kLightUnit = 4;
-constexpr GLuint kWaysOutUnit = 5;
-constexpr GLuint kNetInwardUnit = 6;
-constexpr int kGroupSide = 8;  // of sample_cells.comp
 // Larger media are solved on fewer cells than their own.
-constexpr double kMostCells = 4e6;
+constexpr double kMaxCells = 4e6;
 
 glm::ivec3 SizeFor(const glm::ivec3& cells) {
   const double count = static_cast<double>(cells.x) * cells.y * cells.z;
-  const int factor = std::max(static_cast<int>(std::ceil(std::cbrt(count / kMostCells))), 1);
+  const int factor = std::max(static_cast<int>(std::ceil(std::cbrt(count / kMaxCells))), 1);
   return glm::max((cells + factor - 1) / factor, glm::ivec3(1));
 }
 
 void Dispatch(const glm::ivec3& cells) {
-  const glm::ivec3 groups = (cells + kGroupSide - 1) / kGroupSide;
+  const glm::ivec3 groups = (cells + shaders::kLightGroupSide - 1) / shaders::kLightGroupSide;
   glDispatchCompute(static_cast<GLuint>(groups.x), static_cast<GLuint>(groups.y),
                     static_cast<GLuint>(cells.z));
 }
@@ -48,13 +46,9 @@ absl::Status DiffusionPass::Solve(const ResidentMedium& medium, const GroupWeigh
 }
 
 absl::Status DiffusionPass::SampleCells(const ResidentMedium& medium, const GroupWeights& weights) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      const gl::Program* program,
-      programs_->Get({{},
-                      {},
-                      {{"GROUPS", static_cast<int>(medium.Content().groups.size())},
-                       {"DETAILS", medium.Details()}},
-                      "light_volume/sample_cells.comp"}));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
+                               programs_->Get(gl::ProgramSource::Compute(
+                                   "light_volume/sample_cells.comp", medium.Variant().Defines())));
   const volume::RegularGrid& grid = medium.Bounds().grid;
   const glm::ivec3 size = SizeFor(grid.cells);
   if (size_ != size) {
@@ -65,12 +59,12 @@ absl::Status DiffusionPass::SampleCells(const ResidentMedium& medium, const Grou
     net_inward_ = gl::Texture3D(GL_RGBA16F, size);
   }
   medium.Bind(*program);
-  program->Set("cell_count", size);
-  program->Set("samples", (grid.cells + size - 1) / size);
-  program->Set("light_weights", medium.Weights(weights.light));
-  program->Set("transport_weights", medium.Weights(weights.transport));
-  program->Set("absorption_weights", medium.Weights(weights.absorption));
-  sampled_cells_.BindImage(0, GL_WRITE_ONLY);
+  program->Set(uniform::cell_count, size);
+  program->Set(uniform::samples, (grid.cells + size - 1) / size);
+  program->Set(uniform::light_weights, medium.Weights(weights.light));
+  program->Set(uniform::transport_weights, medium.Weights(weights.transport));
+  program->Set(uniform::absorption_weights, medium.Weights(weights.absorption));
+  sampled_cells_.BindImage(shaders::kSampledCellsImage, GL_WRITE_ONLY);
   program->Use();
   Dispatch(size);
   const std::size_t count = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
@@ -100,11 +94,12 @@ absl::Status DiffusionPass::SampleCells(const ResidentMedium& medium, const Grou
 }
 
 absl::Status DiffusionPass::SampleLight(const gl::Texture3D& arrived) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
-                               programs_->Get({{}, {}, {}, "light_volume/sample_light.comp"}));
-  program->Set("cell_count", size_);
-  arrived.Bind(kLightUnit);
-  sampled_light_.BindImage(0, GL_WRITE_ONLY);
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_->Get(gl::ProgramSource::Compute("light_volume/sample_light.comp")));
+  program->Set(uniform::cell_count, size_);
+  arrived.Bind(shaders::kArrivedUnit);
+  sampled_light_.BindImage(shaders::kSampledLightImage, GL_WRITE_ONLY);
   program->Use();
   Dispatch(size_);
   sampled_light_.Download(GL_RED, GL_FLOAT, arrived_root_.size() * sizeof(float),
@@ -113,8 +108,8 @@ absl::Status DiffusionPass::SampleLight(const gl::Texture3D& arrived) {
 }
 
 void DiffusionPass::Bind() const {
-  ways_out_.Bind(kWaysOutUnit);
-  net_inward_.Bind(kNetInwardUnit);
+  ways_out_.Bind(shaders::kWaysOutUnit);
+  net_inward_.Bind(shaders::kNetInwardUnit);
 }
 
 }  // namespace thunderhead::renderers

@@ -1,6 +1,7 @@
 #include "renderers/light_volume/light_volume_renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/status.h"
@@ -8,23 +9,22 @@
 #include "glm/geometric.hpp"
 #include "glm/mat4x3.hpp"
 #include "renderers/view_uniforms.h"
+#include "shaders/bindings.h"
+#include "shaders/uniforms.h"
 
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kMostLightTexels = 256;        // along each side, of the usual detail
+constexpr int kMaxLightTexels = 256;         // along each side, of the usual detail
 constexpr double kLightTexelInCells = 0.75;  // across the sun's rays, of the usual detail
 constexpr double kLayerInCells = 1.5;        // along them, of the way through a cell
-constexpr GLuint kLightUnit = 4;
-constexpr GLuint kThicknessUnit = 5;
-constexpr GLuint kGroundUnit = 7;
-constexpr GLuint kCorrectionUnit = 13;  // and the two after
-constexpr double kNearInTexels = 1.5;   // sampled next to a cell
+constexpr std::array kCorrectionUnits = {shaders::kCorrectionRedUnit, shaders::kCorrectionGreenUnit,
+                                         shaders::kCorrectionBlueUnit};
+constexpr double kNearInTexels = 1.5;  // sampled next to a cell
 // Texels from cells that scatter within which the carried light is read: towards the sun, and over
 // one more along each axis by interpolation.
 constexpr double kReadTexels = kNearInTexels + 1.74;
-constexpr int kMostGroupsInRow = 65535;  // what OpenGL 4.5 guarantees along each axis
-constexpr int kGroupSide = 8;            // of carry.comp
+constexpr int kMaxGroupsInRow = 65535;  // what OpenGL 4.5 guarantees along each axis
 
 // Multiple scattering in closed form.
 bool IsDiffuse(const RenderSettings& settings) {
@@ -60,7 +60,7 @@ LightVolumeRenderer::LightBox::LightBox(const ResidentMedium& medium,
   reach_m = glm::dot(glm::abs(towards_sun), half_m);
   const glm::dvec2 across_m = 2.0 * frame.half_extent_m;
   const int most_texels =
-      std::max(static_cast<int>(kMostLightTexels * settings.quality.light_detail), 1);
+      std::max(static_cast<int>(kMaxLightTexels * settings.quality.light_detail), 1);
   // Finer texels than cells would carry no more detail.
   texel_m =
       std::max(std::max(across_m.x, across_m.y) / most_texels,
@@ -110,12 +110,10 @@ absl::Status LightVolumeRenderer::CarryLight(const ResidentMedium& medium,
   const GLenum one = settings.quality.single_precision ? GL_R32F : GL_R16F;
   const GLenum two = settings.quality.single_precision ? GL_RG32F : GL_RG16F;
   Resize(box.size, medium.Bounds().grid.cells, diffuse ? two : one);
-  const std::vector<gl::Define> variant = {
-      {"GROUPS", static_cast<int>(medium.Content().groups.size())},
-      {"DETAILS", medium.Details()},
-      {"CONSISTENT", scene::IsPaper(settings.Medium().transport) ? 0 : 1},
-      {"TRANSLUCENT", scene::IsTranslucent(settings.Medium().transport) ? 1 : 0},
-      {"DIFFUSE", diffuse ? 1 : 0}};
+  const CarryVariant variant{.medium = medium.Variant(),
+                             .consistent = !scene::IsPaper(settings.Medium().transport),
+                             .translucent = scene::IsTranslucent(settings.Medium().transport),
+                             .diffuse = diffuse};
   THUNDERHEAD_RETURN_IF_ERROR(Carry(medium, weights, box, variant));
   THUNDERHEAD_RETURN_IF_ERROR(Arrive(medium, weights, box, variant));
   if (!Diffuses(settings)) return absl::OkStatus();
@@ -123,52 +121,53 @@ absl::Status LightVolumeRenderer::CarryLight(const ResidentMedium& medium,
 }
 
 absl::Status LightVolumeRenderer::Carry(const ResidentMedium& medium, const GroupWeights& weights,
-                                        const LightBox& box,
-                                        const std::vector<gl::Define>& variant) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
-                               programs_->Get({{}, {}, variant, "light_volume/carry.comp"}));
-  medium.Bind(*program);
-  program->Set("light_size", box.size);
-  program->Set("towards_sun", glm::vec3(box.frame.towards_sun));
-  program->Set("light_right_m", glm::vec3(box.frame.right * box.frame.half_extent_m.x));
-  program->Set("light_up_m", glm::vec3(box.frame.up * box.frame.half_extent_m.y));
-  program->Set("light_reach_m", static_cast<float>(box.reach_m));
+                                        const LightBox& box, const CarryVariant& variant) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_->Get(gl::ProgramSource::Compute("light_volume/carry.comp", variant.Defines())));
+  medium.BindWithBricks(*program);
+  program->Set(uniform::light_size, box.size);
+  program->Set(uniform::towards_sun, glm::vec3(box.frame.towards_sun));
+  program->Set(uniform::light_right_m, glm::vec3(box.frame.right * box.frame.half_extent_m.x));
+  program->Set(uniform::light_up_m, glm::vec3(box.frame.up * box.frame.half_extent_m.y));
+  program->Set(uniform::light_reach_m, static_cast<float>(box.reach_m));
   const double read_m = kReadTexels * box.texel_m;
-  program->Set("read_m", static_cast<float>(read_m));
-  program->Set("half_layer_steps", box.half_layer_steps);
-  program->Set("read_bricks", static_cast<int>(std::ceil(read_m / medium.ShortestBrickSide_m())));
-  program->Set("light_weights", medium.Weights(weights.light));
-  program->Set("transport_weights", medium.Weights(weights.transport));
-  program->Set("cumulative_phase", weights.cumulative_phase);
-  carried_.BindImage(0, GL_WRITE_ONLY);
-  thickness_.BindImage(1, GL_WRITE_ONLY);
-  blocked_.BindImage(2, GL_WRITE_ONLY);
+  program->Set(uniform::read_m, static_cast<float>(read_m));
+  program->Set(uniform::half_layer_steps, box.half_layer_steps);
+  program->Set(uniform::read_bricks,
+               static_cast<int>(std::ceil(read_m / medium.ShortestBrickSide_m())));
+  program->Set(uniform::light_weights, medium.Weights(weights.light));
+  program->Set(uniform::transport_weights, medium.Weights(weights.transport));
+  program->Set(uniform::cumulative_phase, weights.cumulative_phase);
+  carried_.BindImage(shaders::kCarriedImage, GL_WRITE_ONLY);
+  thickness_.BindImage(shaders::kThicknessImage, GL_WRITE_ONLY);
+  blocked_.BindImage(shaders::kBlockedImage, GL_WRITE_ONLY);
   program->Use();
-  const glm::ivec3 groups = (box.size + kGroupSide - 1) / kGroupSide;
+  const glm::ivec3 groups = (box.size + shaders::kLightGroupSide - 1) / shaders::kLightGroupSide;
   glDispatchCompute(static_cast<GLuint>(groups.x), static_cast<GLuint>(groups.y), 1);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   return absl::OkStatus();
 }
 
 absl::Status LightVolumeRenderer::Arrive(const ResidentMedium& medium, const GroupWeights& weights,
-                                         const LightBox& box,
-                                         const std::vector<gl::Define>& variant) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
-                               programs_->Get({{}, {}, variant, "light_volume/arrive.comp"}));
+                                         const LightBox& box, const CarryVariant& variant) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_->Get(gl::ProgramSource::Compute("light_volume/arrive.comp", variant.Defines())));
   medium.Bind(*program);
   const glm::ivec3 cells = medium.Bounds().grid.cells;
-  program->Set("cell_count", cells);
-  program->Set("light_from_local", box.FromLocal());
-  program->Set("towards_sun", glm::vec3(box.frame.towards_sun));
-  program->Set("near_m", static_cast<float>(kNearInTexels * box.texel_m));
-  program->Set("light_weights", medium.Weights(weights.light));
-  carried_.Bind(kLightUnit);
-  thickness_.Bind(kThicknessUnit);
-  medium.BindBlocks(*program, 0);
-  arrived_.BindImage(0, GL_WRITE_ONLY);
+  program->Set(uniform::cell_count, cells);
+  program->Set(uniform::light_from_local, box.FromLocal());
+  program->Set(uniform::towards_sun, glm::vec3(box.frame.towards_sun));
+  program->Set(uniform::near_m, static_cast<float>(kNearInTexels * box.texel_m));
+  program->Set(uniform::light_weights, medium.Weights(weights.light));
+  carried_.Bind(shaders::kCarriedUnit);
+  thickness_.Bind(shaders::kThicknessUnit);
+  medium.BindBlocks(*program);
+  arrived_.BindImage(shaders::kArrivedImage, GL_WRITE_ONLY);
   program->Use();
-  const int rows = (medium.BlockCount() + kMostGroupsInRow - 1) / kMostGroupsInRow;
-  glDispatchCompute(static_cast<GLuint>(std::min(medium.BlockCount(), kMostGroupsInRow)),
+  const int rows = (medium.BlockCount() + kMaxGroupsInRow - 1) / kMaxGroupsInRow;
+  glDispatchCompute(static_cast<GLuint>(std::min(medium.BlockCount(), kMaxGroupsInRow)),
                     static_cast<GLuint>(rows), 1);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   return absl::OkStatus();
@@ -177,17 +176,18 @@ absl::Status LightVolumeRenderer::Arrive(const ResidentMedium& medium, const Gro
 void LightVolumeRenderer::BindDiffusion(const gl::Program& program, const ResidentMedium& medium,
                                         const GroupWeights& weights,
                                         const RenderSettings& settings) {
-  program.Set("transport_weights", medium.Weights(weights.transport));
-  program.Set("rest_of_sky", settings.illumination.rest_of_sky);
-  program.Set("rest_of_sky_level", settings.illumination.rest_of_sky_level);
-  program.Set("diffuse_sunlight",
+  program.Set(uniform::transport_weights, medium.Weights(weights.transport));
+  program.Set(uniform::rest_of_sky, settings.illumination.rest_of_sky);
+  program.Set(uniform::rest_of_sky_level, settings.illumination.rest_of_sky_level);
+  program.Set(uniform::diffuse_sunlight,
               settings.illumination.sunlight + settings.illumination.around_sun);
-  program.Set("from_ground", settings.illumination.from_ground);
-  constexpr const char* kTints[] = {"red_weights", "green_weights", "blue_weights"};
+  program.Set(uniform::from_ground, settings.illumination.from_ground);
+  constexpr std::array kTints = {uniform::red_weights, uniform::green_weights,
+                                 uniform::blue_weights};
   for (int color = 0; color < 3; ++color) {
     std::vector<double> tint = weights.diffusing;
     for (std::size_t i = 0; i < tint.size(); ++i) tint[i] *= weights.color[i][color];
-    program.Set(kTints[color], medium.Weights(tint));
+    program.Set(kTints[static_cast<std::size_t>(color)], medium.Weights(tint));
   }
   diffusion_.Bind();
 }
@@ -201,7 +201,7 @@ void LightVolumeRenderer::BindCorrection(const std::shared_ptr<const LightCorrec
       }
       texture.Upload(GL_RGBA, GL_FLOAT, correction->texels[color].data());
     }
-    texture.Bind(kCorrectionUnit + static_cast<GLuint>(color));
+    texture.Bind(kCorrectionUnits[color]);
   }
   correction_ = correction;
 }
@@ -212,32 +212,31 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
               settings.cover);
   const GroupWeights weights(medium.Content(), settings.Medium());
   const bool diffusion = Diffuses(settings);
+  const MarchVariant variant{.medium = medium.Variant(),
+                             .colored = weights.colored,
+                             .consistent = !scene::IsPaper(settings.Medium().transport),
+                             .ground = settings.ground_distance != nullptr,
+                             .even_albedo = weights.even_albedo,
+                             .diffusion = diffusion,
+                             .tinted = diffusion && (weights.colored || weights.absorbs),
+                             .corrected = settings.quality.correction != nullptr,
+                             .places = settings.quality.places};
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_->Get({"common/whole_target.vert",
-                      "light_volume/march.frag",
-                      {{"GROUPS", static_cast<int>(medium.Content().groups.size())},
-                       {"DETAILS", medium.Details()},
-                       {"COLORED", weights.colored ? 1 : 0},
-                       {"CONSISTENT", scene::IsPaper(settings.Medium().transport) ? 0 : 1},
-                       {"GROUND", settings.ground_distance != nullptr ? 1 : 0},
-                       {"EVEN_ALBEDO", weights.even_albedo ? 1 : 0},
-                       {"DIFFUSION", diffusion ? 1 : 0},
-                       {"CORRECTED", settings.quality.correction != nullptr ? 1 : 0},
-                       {"PLACES", settings.quality.places ? 1 : 0},
-                       {"TINTED", diffusion && (weights.colored || weights.absorbs) ? 1 : 0}}}));
-  medium.Bind(*program);
+      programs_->Get(gl::ProgramSource::WholeTarget("light_volume/march.frag", variant.Defines())));
+  medium.BindWithBricks(*program);
   weights.BindScattered(*program, medium, settings.illumination);
   const scene::View& view = settings.view;
   const double reach_m = glm::dot(glm::abs(view.forward), medium.HalfExtent_m());
   BindRays(*program, view, medium.Middle_m());
-  program->Set("towards_sun", glm::vec3(settings.illumination.towards_sun));
-  program->Set("step_m", static_cast<float>(2.0 * reach_m / settings.slices));
-  program->Set("eye_weights", medium.Weights(weights.eye));
+  program->Set(uniform::towards_sun, glm::vec3(settings.illumination.towards_sun));
+  program->Set(uniform::step_m, static_cast<float>(2.0 * reach_m / settings.slices));
+  program->Set(uniform::eye_weights, medium.Weights(weights.eye));
   if (diffusion) BindDiffusion(*program, medium, weights, settings);
-  arrived_.Bind(kLightUnit);
+  arrived_.Bind(shaders::kArrivedUnit);
   if (settings.quality.correction != nullptr) BindCorrection(settings.quality.correction);
-  if (settings.ground_distance != nullptr) settings.ground_distance->Bind(kGroundUnit);
+  if (settings.ground_distance != nullptr)
+    settings.ground_distance->Bind(shaders::kGroundDistanceUnit);
   if (settings.cover != nullptr) eye_.Target().Clear(0.0F, 0.0F, 0.0F, 1.0F);
   const LimitedTo limited(Where::kCovered, settings.cover);
   whole_target_.Draw(*program, eye_.Target());

@@ -18,6 +18,7 @@
 #include "renderers/group_weights.h"
 #include "renderers/light_frame.h"
 #include "renderers/light_volume/diffusion_pass.h"
+#include "renderers/light_volume/variants.h"
 #include "renderers/medium.h"
 #include "renderers/render_settings.h"
 
@@ -52,9 +53,9 @@ class LightVolumeRenderer {
 
   void Resize(const glm::ivec3& carried, const glm::ivec3& cells, GLenum format);
   absl::Status Carry(const ResidentMedium& medium, const GroupWeights& weights, const LightBox& box,
-                     const std::vector<gl::Define>& variant);
+                     const CarryVariant& variant);
   absl::Status Arrive(const ResidentMedium& medium, const GroupWeights& weights,
-                      const LightBox& box, const std::vector<gl::Define>& variant);
+                      const LightBox& box, const CarryVariant& variant);
 
   void BindDiffusion(const gl::Program& program, const ResidentMedium& medium,
                      const GroupWeights& weights, const RenderSettings& settings);

@@ -21,7 +21,7 @@ constexpr double kWallDepth = 1.345;
 // slope of steps.
 constexpr double kSameSlopeCells = 1.2;
 constexpr double kSameSlope = 0.3;
-constexpr float kLeastPassing = 0.02F;
+constexpr float kMinPassing = 0.02F;
 constexpr int kTurns = 6;  // from wall to wall that are followed
 constexpr int kRings = 3;
 constexpr int kRaysInRing = 4;
@@ -133,7 +133,7 @@ void WallLight::Follow(std::size_t wall, int way, const glm::dvec3& ray) {
   Walk walk(cells_.cell_m, start, first, ray);
   const double near_m = std::max(kSameSlopeCells * walk.ShortestWay_m(), kSameSlope * wall_size_m_);
   float passing = 1.0F;
-  while (cells_.Contains(walk.Cell()) && passing > kLeastPassing) {
+  while (cells_.Contains(walk.Cell()) && passing > kMinPassing) {
     const std::size_t here = cells_.Offset(walk.Cell());
     if (IsWall(here)) {
       if (walk.Gone_m() < near_m) return;

@@ -11,21 +11,16 @@
 #include "renderers/light_frame.h"
 #include "renderers/metaball/light_order.h"
 #include "renderers/metaball/tiles.h"
+#include "renderers/metaball/variants.h"
 #include "renderers/view_uniforms.h"
+#include "shaders/bindings.h"
+#include "shaders/uniforms.h"
 
 namespace thunderhead::renderers {
 namespace {
 
-constexpr GLuint kBallBinding = 0;
-constexpr GLuint kArrivedBinding = 1;
-constexpr GLuint kOrderBinding = 2;
-constexpr GLuint kTileBinding = 1;
-constexpr GLuint kSourceBinding = 3;
-constexpr std::size_t kGroupSize = 64;  // of source.comp
-constexpr GLuint kLightImage = 0;
-constexpr GLuint kGroundUnit = 7;
-constexpr int kLeastLightTexels = 64;  // along the longer side
-constexpr int kMostLightTexels = 1024;
+constexpr int kMinLightTexels = 64;  // along the longer side
+constexpr int kMaxLightTexels = 1024;
 constexpr double kTexelsAcrossBall = 8.0;  // of the smaller balls
 
 // As shaders/metaball/balls.glsl has it.
@@ -120,8 +115,8 @@ LightPlane LightPlaneOf(const std::vector<Ball>& balls, const BallBox& box,
   plane.frame = LightFrameOf({box.HalfExtent_m()}, towards);
   const glm::dvec2 across_m = 2.0 * plane.frame.half_extent_m;
   const double longest_m = std::max(across_m.x, across_m.y);
-  plane.texels_per_m = std::clamp(0.5 * kTexelsAcrossBall / *small, kLeastLightTexels / longest_m,
-                                  kMostLightTexels / longest_m);
+  plane.texels_per_m = std::clamp(0.5 * kTexelsAcrossBall / *small, kMinLightTexels / longest_m,
+                                  kMaxLightTexels / longest_m);
   plane.size = glm::max(glm::ivec2(glm::ceil(across_m * plane.texels_per_m)), glm::ivec2(1));
   return plane;
 }
@@ -223,11 +218,8 @@ absl::Status MetaballRenderer::Carry(const Light& light, int index,
                                      const RenderSettings& settings) {
   const bool paper = IsPaper(settings);
   const auto program_of = [&](int pass) {
-    return programs_->Get(
-        {{},
-         {},
-         {{"PAPER", paper ? 1 : 0}, {"PASS", pass}, {"DIFFUSE", light.diffuse ? 1 : 0}},
-         "metaball/light.comp"});
+    const BallLightVariant variant{.paper = paper, .pass = pass, .diffuse = light.diffuse};
+    return programs_->Get(gl::ProgramSource::Compute("metaball/light.comp", variant.Defines()));
   };
   const LightPlane plane = LightPlaneOf(balls_, box_, light.towards);
   std::vector<LightDisc> discs;
@@ -242,24 +234,24 @@ absl::Status MetaballRenderer::Carry(const Light& light, int index,
   // Depths begin at none, the paper's light at white.
   const float clear[2] = {paper ? 1.0F : 0.0F, 0.0F};
   glClearTexImage(light_.Get(), 0, GL_RG, GL_FLOAT, clear);
-  light_.BindImage(kLightImage, GL_READ_WRITE);
-  ball_buffer_.BindStorage(kBallBinding);
-  arrived_.BindStorage(kArrivedBinding);
-  order_.BindStorage(kOrderBinding);
+  light_.BindImage(shaders::kBallLightImage, GL_READ_WRITE);
+  ball_buffer_.BindStorage(shaders::kBallsBinding);
+  arrived_.BindStorage(shaders::kBallArrivedBinding);
+  order_.BindStorage(shaders::kBallOrderBinding);
   const auto run = [&](const gl::Program& program, std::uint32_t first, std::uint32_t end) {
-    program.Set("first", static_cast<int>(first));
+    program.Set(uniform::first, static_cast<int>(first));
     glDispatchCompute(end - first, 1, 1);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
   };
   for (int pass = 0; pass < (paper ? 1 : 2); ++pass) {
     THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program, program_of(pass));
-    program->Set("arrived_first", index * static_cast<int>(balls_.size()));
-    program->Set("light_right", glm::vec3(plane.frame.right * plane.texels_per_m));
-    program->Set("light_up", glm::vec3(plane.frame.up * plane.texels_per_m));
-    program->Set("texels_per_m", static_cast<float>(plane.texels_per_m));
-    program->Set("light_middle", 0.5F * glm::vec2(plane.size));
-    program->Set("paper_albedo", static_cast<float>(SettingsOf(settings).albedo));
-    program->Set("scattered_often", scene::IsTranslucent(settings.Medium().transport) ? 1.0F : 0.0F);
+    program->Set(uniform::arrived_first, index * static_cast<int>(balls_.size()));
+    program->Set(uniform::light_right, glm::vec3(plane.frame.right * plane.texels_per_m));
+    program->Set(uniform::light_up, glm::vec3(plane.frame.up * plane.texels_per_m));
+    program->Set(uniform::texels_per_m, static_cast<float>(plane.texels_per_m));
+    program->Set(uniform::light_middle, 0.5F * glm::vec2(plane.size));
+    program->Set(uniform::paper_albedo, static_cast<float>(SettingsOf(settings).albedo));
+    program->Set(uniform::scattered_often, scene::IsTranslucent(settings.Medium().transport) ? 1.0F : 0.0F);
     program->Use();
     if (pass == 1) {
       run(*program, 0, static_cast<std::uint32_t>(balls_.size()));
@@ -295,57 +287,54 @@ absl::Status MetaballRenderer::FindSources(const RenderSettings& settings) {
     towards.emplace_back(light.towards);
     irradiance.push_back(light.irradiance);
   }
+  const BallSourceVariant variant{.lights = static_cast<int>(towards.size()),
+                                  .groups = groups_,
+                                  .colored = colored_,
+                                  .paper = paper,
+                                  .isotropic = settings.rendering.metaballs.isotropic,
+                                  .parallel = settings.view.Orthographic()};
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_->Get({{},
-                      {},
-                      {{"LIGHTS", static_cast<int>(towards.size())},
-                       {"GROUPS", groups_},
-                       {"COLORED", colored_ ? 1 : 0},
-                       {"CONSISTENT", paper ? 0 : 1},
-                       {"PAPER", paper ? 1 : 0},
-                       {"ISOTROPIC", SettingsOf(settings).isotropic ? 1 : 0},
-                       {"PARALLEL", settings.view.Orthographic() ? 1 : 0}},
-                      "metaball/source.comp"}));
+      programs_->Get(gl::ProgramSource::Compute("metaball/source.comp", variant.Defines())));
   const GroupWeights weights(content_, settings.Medium());
   weights.BindPhase(*program);
-  program->Set("ball_count", static_cast<int>(balls_.size()));
-  program->Set("eye_forward", glm::vec3(settings.view.forward));
-  program->Set("eye_m", glm::vec3(settings.view.eye_m - box_.Middle_m()));
-  program->Set("towards_light", towards);
-  program->Set("irradiance", irradiance);
-  program->Set("sky_radiance", settings.illumination.from_sky);
-  program->Set("ground_radiance", settings.illumination.from_ground);
-  program->Set("paper_albedo", static_cast<float>(SettingsOf(settings).albedo));
+  program->Set(uniform::ball_count, static_cast<int>(balls_.size()));
+  program->Set(uniform::eye_forward, glm::vec3(settings.view.forward));
+  program->Set(uniform::eye_m, glm::vec3(settings.view.eye_m - box_.Middle_m()));
+  program->Set(uniform::towards_light, towards);
+  program->Set(uniform::irradiance, irradiance);
+  program->Set(uniform::sky_radiance, settings.illumination.from_sky);
+  program->Set(uniform::ground_radiance, settings.illumination.from_ground);
+  program->Set(uniform::paper_albedo, static_cast<float>(SettingsOf(settings).albedo));
   phase_curves_.Bind();
-  ball_buffer_.BindStorage(kBallBinding);
-  arrived_.BindStorage(kArrivedBinding);
-  sources_.BindStorage(kSourceBinding);
+  ball_buffer_.BindStorage(shaders::kBallsBinding);
+  arrived_.BindStorage(shaders::kBallArrivedBinding);
+  sources_.BindStorage(shaders::kBallSourcesBinding);
   program->Use();
-  const auto groups = (balls_.size() + kGroupSize - 1) / kGroupSize;
+  const auto groups = (balls_.size() + shaders::kBallGroupSize - 1) / shaders::kBallGroupSize;
   glDispatchCompute(static_cast<GLuint>(groups), 1, 1);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   return absl::OkStatus();
 }
 
 absl::Status MetaballRenderer::Splat(const RenderSettings& settings) {
+  const SplatVariant variant{.paper = IsPaper(settings.rendering),
+                             .ground = settings.ground_distance != nullptr};
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_->Get({"common/whole_target.vert",
-                      "metaball/splat.frag",
-                      {{"PAPER", IsPaper(settings) ? 1 : 0},
-                       {"GROUND", settings.ground_distance != nullptr ? 1 : 0}}}));
+      programs_->Get(gl::ProgramSource::WholeTarget("metaball/splat.frag", variant.Defines())));
   const BallTiles tiles = TilesOf(balls_, settings.view, settings.eye_size);
   tile_starts_ = BufferOf(tiles.starts);
   order_ = BufferOf(tiles.balls);
   BindRays(*program, settings.view, box_.Middle_m());
-  program->Set("tile_px", tiles.tile_px);
-  program->Set("tiles_across", tiles.tiles.x);
-  ball_buffer_.BindStorage(kBallBinding);
-  tile_starts_.BindStorage(kTileBinding);
-  order_.BindStorage(kOrderBinding);
-  sources_.BindStorage(kSourceBinding);
-  if (settings.ground_distance != nullptr) settings.ground_distance->Bind(kGroundUnit);
+  program->Set(uniform::tile_px, tiles.tile_px);
+  program->Set(uniform::tiles_across, tiles.tiles.x);
+  ball_buffer_.BindStorage(shaders::kBallsBinding);
+  tile_starts_.BindStorage(shaders::kBallTilesBinding);
+  order_.BindStorage(shaders::kBallOrderBinding);
+  sources_.BindStorage(shaders::kBallSourcesBinding);
+  if (settings.ground_distance != nullptr)
+    settings.ground_distance->Bind(shaders::kGroundDistanceUnit);
   whole_target_.Draw(*program, eye_target_);
   return absl::OkStatus();
 }

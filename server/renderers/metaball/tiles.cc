@@ -10,10 +10,10 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kLeastTile_px = 16;
+constexpr int kMinTile_px = 16;
 
 // Of all lists together: 16 MB on the device.
-constexpr std::size_t kMostListed = std::size_t{1} << 22U;
+constexpr std::size_t kMaxListed = std::size_t{1} << 22U;
 
 // What a ball covers of the picture, in normalised device coordinates; empty if low is above high.
 struct Cover {
@@ -93,7 +93,7 @@ BallTiles TilesOf(const std::vector<Ball>& balls, const scene::View& view,
   std::vector<Cover> covers;
   for (const Ball& ball : balls) covers.push_back(CoverOf(ball, view));
   BallTiles tiles;
-  tiles.tile_px = kLeastTile_px;
+  tiles.tile_px = kMinTile_px;
   std::vector<TileRange> ranges(balls.size());
   std::size_t listed = 0;
   while (true) {
@@ -102,7 +102,7 @@ BallTiles TilesOf(const std::vector<Ball>& balls, const scene::View& view,
       ranges[i] = RangeOf(covers[i], size_px, tiles.tile_px);
       listed += ranges[i].Count();
     }
-    if (listed <= kMostListed || tiles.tile_px >= std::max(size_px.x, size_px.y)) break;
+    if (listed <= kMaxListed || tiles.tile_px >= std::max(size_px.x, size_px.y)) break;
     tiles.tile_px *= 2;
   }
   tiles.tiles = (size_px + tiles.tile_px - 1) / tiles.tile_px;

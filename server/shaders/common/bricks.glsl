@@ -1,7 +1,8 @@
 // Rays through a medium that leap over its empty bricks (volume/brick_map.h). Needs common/medium.glsl.
+#include "common/bindings.glsl"
 #include "common/box.glsl"
 
-layout(binding = 2) uniform usampler3D bricks;  // volume::BrickMap::content
+layout(binding = kBricksUnit) uniform usampler3D bricks;  // volume::BrickMap::content
 
 uniform vec3 brick_from_local_scale;
 uniform vec3 brick_from_local_offset;

@@ -1,6 +1,8 @@
 // Where a view ray meets the ground, in metres from the middle of the medium's box or any other origin that the uniforms
 // have. The ground is level (RELIEF 0) or the terrain, which goes on beyond the domain as at its edge. It falls away from
 // where the world's plane touches the Earth (scene/view.h); curvature 0 is a plane.
+#include "common/bindings.glsl"
+
 uniform float lowest_ground_m;
 uniform float ground_curvature_per_m;
 uniform vec2 touch_m;  // where the plane touches
@@ -20,7 +22,7 @@ float level_distance_m(vec3 origin_m, vec3 ray, float level_m) {
 }
 
 #if RELIEF
-layout(binding = 8) uniform sampler2D terrain;  // height above sea level
+layout(binding = kTerrainUnit) uniform sampler2D terrain;  // height above sea level
 
 uniform vec2 terrain_from_ground_scale;  // texture coordinates from metres
 uniform vec2 terrain_from_ground_offset;

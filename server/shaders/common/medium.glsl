@@ -3,14 +3,16 @@
 // that multiply shares of them (physics/turbulence.h); without any there is no code for them.
 // What a loop needs of uniforms is computed before it: where some invocations may have ended, Mesa's software renderer
 // reads a uniform for each of the others one by one (gallivm 22.3).
+#include "common/bindings.glsl"
+
 #ifndef DETAILS
 #error "DETAILS is not defined"
 #endif
 #define PLANES ((GROUPS + 3) / 4)
 
-layout(binding = 0) uniform sampler3D medium_plane_0;
+layout(binding = kMediumPlaneUnit) uniform sampler3D medium_plane_0;
 #if PLANES > 1
-layout(binding = 1) uniform sampler3D medium_plane_1;
+layout(binding = kMediumPlaneUnit + 1) uniform sampler3D medium_plane_1;
 #endif
 
 uniform vec3 texture_from_local_scale;
@@ -21,7 +23,7 @@ uniform vec3 medium_high_m;
 uniform vec4 extinction_weights[PLANES];  // texel to extinction, 1/m; zero for channels that no group has
 
 #if DETAILS > 0
-layout(binding = 8) uniform sampler3D detail_noise[DETAILS];
+layout(binding = kDetailNoiseUnit) uniform sampler3D detail_noise[DETAILS];
 uniform vec3 detail_tile_size[DETAILS];    // of a tile in the medium's texture coordinates: at rest in the world
 uniform vec3 detail_tile_corner[DETAILS];  // and where one begins
 uniform float detail_value_of_full[DETAILS];       // of the noise, whose root is fetched, where a texel is 1
@@ -67,6 +69,11 @@ Medium medium_at_place(vec3 place) {
   }
 #endif
   return medium;
+}
+
+Medium mixed(Medium a, Medium b, float at) {
+  for (int plane = 0; plane < PLANES; ++plane) a.plane[plane] = mix(a.plane[plane], b.plane[plane], at);
+  return a;
 }
 
 // The sum over groups of weight times value.

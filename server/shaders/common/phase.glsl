@@ -1,8 +1,9 @@
 // What a group of a medium scatters towards the eye of light that turns by an angle. Variants: COLORED (per-group
 // colours), CONSISTENT (transport). GROUPS is the number of groups.
+#include "common/bindings.glsl"
 #include "physics/phase_curve.glsl"
 
-layout(binding = 3) uniform sampler2D phase_curves;  // a row a group over phase_curve_place: red, green, blue
+layout(binding = kPhaseCurvesUnit) uniform sampler2D phase_curves;  // a row a group over phase_curve_place: red, green, blue
 
 uniform float phase_cut;             // haversine within which phase functions are held
 uniform vec2 phase_display[GROUPS];  // offset and slope of the paper's display normalisation

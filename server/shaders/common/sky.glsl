@@ -1,7 +1,8 @@
 // The clear sky as the eye sees it, from its table; downwards, what the air sends in front of the ground.
+#include "common/bindings.glsl"
 #include "physics/sky.glsl"
 
-layout(binding = 6) uniform sampler2D sky_table;
+layout(binding = kSkyTableUnit) uniform sampler2D sky_table;
 
 uniform float horizon_sine;  // of the elevation of the horizon
 

@@ -1,4 +1,6 @@
 // The ellipsoids of a cumulus surface, and where a ray meets one. Metres from the middle of the surface's box.
+#include "common/bindings.glsl"
+
 struct Bubble {
   vec4 unit_x;   // rows of the matrix to where the bubble is the unit ball; w of this: radius of the ball of its volume
   vec4 unit_y;   // w: the longest semi-axis
@@ -7,7 +9,7 @@ struct Bubble {
   vec4 outward;  // normal of what it lies on; w: the index of that, or -1
 };
 
-layout(std430, binding = 0) readonly buffer Bubbles { Bubble bubbles[]; };
+layout(std430, binding = kBubblesBinding) readonly buffer Bubbles { Bubble bubbles[]; };
 
 // M v and its transpose, of a bubble's matrix.
 vec3 to_unit(vec3 unit_x, vec3 unit_y, vec3 unit_z, vec3 v) { return vec3(dot(unit_x, v), dot(unit_y, v), dot(unit_z, v)); }

@@ -1,5 +1,7 @@
 // The share of sunlight that the surface keeps from what lies behind it, from the sun's depths.
-layout(binding = 4) uniform sampler2D depth;
+#include "common/bindings.glsl"
+
+layout(binding = kSunDepthUnit) uniform sampler2D depth;
 
 in vec2 position;
 out float blocked;

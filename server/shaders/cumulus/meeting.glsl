@@ -1,11 +1,9 @@
 // Where the fragment's ray meets its bubble. Variants: BASE (the surface is cut off below base_m), GROUND (what it hides is
 // left out).
+#include "common/bindings.glsl"
+#include "common/ground_distance.glsl"
 #include "common/view.glsl"
 #include "cumulus/bubble.glsl"
-
-#if GROUND
-layout(binding = 7) uniform sampler2D ground_distance;
-#endif
 
 uniform vec2 per_pixel;  // 2 over the target's size
 uniform float base_m;
@@ -47,9 +45,7 @@ bool meet(out Meeting meeting) {
   if (rise > 0.0) entry_m = max(entry_m, at_base_m); else exit_m = min(exit_m, at_base_m);
 #endif
   if (exit_m <= entry_m) return false;
-#if GROUND
-  if (entry_m > texelFetch(ground_distance, ivec2(gl_FragCoord.xy), 0).r) return false;
-#endif
+  if (entry_m > until_ground(entry_m)) return false;
   meeting.entry_m = entry_m;
   meeting.exit_m = exit_m;
   // In the unit ball surfaces of even depth are balls; a metre there is as long as the normal's image says.

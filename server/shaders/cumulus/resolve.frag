@@ -1,6 +1,8 @@
 // The cores that lie together and the layer in front of them: radiance, and the share of the background that passes.
-layout(binding = 4) uniform sampler2D cores;
-layout(binding = 5) uniform sampler2D layer;
+#include "common/bindings.glsl"
+
+layout(binding = kCoresUnit) uniform sampler2D cores;
+layout(binding = kLayerUnit) uniform sampler2D layer;
 
 out vec4 radiance_and_transmittance;
 

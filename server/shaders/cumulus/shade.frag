@@ -3,11 +3,12 @@
 // deepest point, 0 to 1 through the corona; where two bubbles are closer than its thickness their cores are mixed too.
 // Writes the cores that lie together, weighted, and what lies in front of them as a layer.
 // Variants: PLAIN (Lambert's law alone), and those of cumulus/meeting.glsl.
+#include "common/bindings.glsl"
 #include "cumulus/meeting.glsl"
 
-layout(binding = 4) uniform sampler2D core_depth;    // of depth.frag
-layout(binding = 5) uniform sampler2D shadow_depth;  // the same from the sun
-layout(binding = 8) uniform sampler3D roughness_noise;
+layout(binding = kCoreDepthUnit) uniform sampler2D core_depth;    // of depth.frag
+layout(binding = kSunDepthUnit) uniform sampler2D shadow_depth;  // the same from the sun
+layout(binding = kRoughnessNoiseUnit) uniform sampler3D roughness_noise;
 
 uniform float corona_m;       // dR
 uniform float per_far;

@@ -11,7 +11,7 @@ uniform vec4 light_weights[PLANES];
 in vec2 position;
 out float blocked;
 
-const int kMostSamples = 4096;
+const int kMaxSamples = 4096;
 const float kOpaque = 12.0;
 
 void main() {
@@ -24,7 +24,7 @@ void main() {
   float per_step = 1.0 / step_m;
   float way_m = way.x;
   float depth = 0.0;
-  for (int i = 0; i < kMostSamples && way_m < way.y && depth < kOpaque; ++i) {
+  for (int i = 0; i < kMaxSamples && way_m < way.y && depth < kOpaque; ++i) {
     vec3 place = brick_place(ray, way_m);
     uint content = brick_content(ray, place);
     if (!is_filled(content)) {

@@ -2,18 +2,19 @@
 // sunlight, g the similarity-scaled optical depth passed. Neighbouring texels exchange light once a call, by what has been
 // scattered since the call before (CONSISTENT) or in its only slice (the paper's transport).
 // Variants: GROUPS, CONSISTENT, TRANSLUCENT (there is an exchange).
+#include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
 #include "half_angle/slice_light.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = kLightGroupSide, local_size_y = kLightGroupSide) in;
 #define EXCHANGES (TRANSLUCENT && CONSISTENT)
-layout(binding = 0) uniform writeonly image2DArray leaving;
+layout(binding = kLeavingLightImage) uniform writeonly image2DArray leaving;
 #if EXCHANGES
-layout(binding = 1, r32f) uniform image2D ring_depth;  // optical depth scattered into the outer ring since the last exchange
+layout(binding = kRingDepthImage, r32f) uniform image2D ring_depth;  // optical depth scattered into the outer ring since the last exchange
 #endif
 
-layout(binding = 4) uniform sampler2DArray light;
+layout(binding = kSliceLightUnit) uniform sampler2DArray light;
 
 uniform ivec2 first_texel;
 uniform ivec2 end_texel;

@@ -4,8 +4,10 @@
 // Variants: GROUND (what lies behind it is left out), GROUPS, COLORED (per-group colours), EVEN_ALBEDO (one albedo and
 // colour for all), TRANSLUCENT, CONSISTENT (transport), ORDER: 1 where all rays meet the slices in their order, 0 where all
 // meet them against it, 2 where a wide view has both.
+#include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
+#include "common/ground_distance.glsl"
 #include "common/phase.glsl"
 #include "common/view.glsl"
 #define GLOWS CONSISTENT
@@ -13,13 +15,10 @@
 #include "physics/light_transport.glsl"
 
 // What enters each slice of the slab, a layer a slice. r: share of sunlight, g: optical depth towards the sun.
-layout(binding = 4) uniform sampler2DArray light;
-layout(binding = 5) uniform sampler2D thickness;  // r: optical depth along the whole sun ray
+layout(binding = kSliceLightUnit) uniform sampler2DArray light;
+layout(binding = kSliceThicknessUnit) uniform sampler2D thickness;  // r: optical depth along the whole sun ray
 
-layout(binding = 6) uniform sampler2D eye;  // before the slab
-#if GROUND
-layout(binding = 7) uniform sampler2D ground_distance;
-#endif
+layout(binding = kEyeBeforeUnit) uniform sampler2D eye;  // before the slab
 uniform vec3 towards_sun;
 uniform vec3 slice_normal;    // to the sun's side
 uniform float first_plane_m;  // distance of the first slice's plane from the middle of the box, along the normal
@@ -48,9 +47,7 @@ void main() {
   vec3 safe = safe_direction(direction);
   vec2 way = way_in_medium(origin_m, safe, 0.0);
   way.x = max(way.x, 0.0);
-#if GROUND
-  way.y = min(way.y, texelFetch(ground_distance, ivec2(gl_FragCoord.xy), 0).r);
-#endif
+  way.y = until_ground(way.y);
   float climb = dot(safe, slice_normal);
 #if ORDER == 2
   bool front_to_back = climb < 0.0;

@@ -1,10 +1,11 @@
 // The similarity-scaled optical depth of the whole way of each sun ray, added up over slices across it. Variant: GROUPS.
+#include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
 #include "half_angle/slice_light.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 0) uniform writeonly image2D thickness;
+layout(local_size_x = kLightGroupSide, local_size_y = kLightGroupSide) in;
+layout(binding = kSliceThicknessImage) uniform writeonly image2D thickness;
 
 uniform ivec2 texel_count;
 uniform int slice_count;

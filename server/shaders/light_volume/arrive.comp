@@ -5,16 +5,17 @@
 // rises linearly too.
 // r: the square root of the light's optical depth; g: the mean intensity of light scattered many times, over the sun's
 // irradiance. Variants: GROUPS, CONSISTENT, TRANSLUCENT, DIFFUSE.
+#include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/box.glsl"
 #include "physics/light_transport.glsl"
 
-layout(local_size_x = 32) in;
-layout(binding = 0) uniform writeonly image3D arrived;
+layout(local_size_x = kArriveGroupSize) in;
+layout(binding = kArrivedImage) uniform writeonly image3D arrived;
 
-layout(binding = 4) uniform sampler3D carried;
-layout(binding = 5) uniform sampler2D thickness;
-layout(std430, binding = 0) readonly buffer Blocks { uint blocks[]; };  // as volume::CellBlocks has them
+layout(binding = kCarriedUnit) uniform sampler3D carried;
+layout(binding = kThicknessUnit) uniform sampler2D thickness;
+layout(std430, binding = kBlocksBinding) readonly buffer Blocks { uint blocks[]; };  // as volume::CellBlocks has them
 
 uniform ivec3 cell_count;
 uniform ivec3 cells_per_block;
@@ -95,7 +96,7 @@ void main() {
   // Not by integers: software divides those one by one.
   float per_row = 1.0 / float(cells_per_block.x);
   float per_layer = per_row / float(cells_per_block.y);
-  for (int i = int(gl_LocalInvocationIndex); i < cells; i += 32) {
+  for (int i = int(gl_LocalInvocationIndex); i < cells; i += kArriveGroupSize) {
     int row = int((float(i) + 0.5) * per_row);
     int layer = int((float(i) + 0.5) * per_layer);
     ivec3 within = ivec3(i - row * cells_per_block.x, row - layer * cells_per_block.y, layer);

@@ -6,14 +6,15 @@
 // Variants: GROUPS, CONSISTENT, TRANSLUCENT, DIFFUSE. The light model is that of half_angle/carry.comp but for the
 // exchange with neighbouring rays, whose width (one cell's path at 3/8 theta_f) is below a texel of this volume at the
 // usual angles.
+#include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 0) uniform writeonly image3D carried;
-layout(binding = 2, r16f) uniform writeonly image2D blocked;
+layout(local_size_x = kLightGroupSide, local_size_y = kLightGroupSide) in;
+layout(binding = kCarriedImage) uniform writeonly image3D carried;
+layout(binding = kBlockedImage, r16f) uniform writeonly image2D blocked;
 #if DIFFUSE
-layout(binding = 1, r32f) uniform writeonly image2D thickness;
+layout(binding = kThicknessImage, r32f) uniform writeonly image2D thickness;
 #endif
 
 uniform ivec3 light_size;

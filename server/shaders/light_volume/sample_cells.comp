@@ -1,10 +1,11 @@
 // The medium as the diffusion equation sees it: extinction in each of its cells, the mean over the medium's own cells
 // that one of them stands for. rgb: that of the light's, of transport (similarity scaled), and absorption.
 // Variants: GROUPS, DETAILS.
+#include "common/bindings.glsl"
 #include "common/medium.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 0, rgba32f) uniform writeonly image3D cells;
+layout(local_size_x = kLightGroupSide, local_size_y = kLightGroupSide) in;
+layout(binding = kSampledCellsImage, rgba32f) uniform writeonly image3D cells;
 
 uniform ivec3 cell_count;
 uniform ivec3 samples;  // of the medium, along each side of a cell

@@ -1,7 +1,9 @@
 // The light that has arrived (arrive.comp), at the cells of the diffusion equation: the root of its optical depth.
-layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 0, r32f) uniform writeonly image3D light;
-layout(binding = 4) uniform sampler3D arrived;
+#include "common/bindings.glsl"
+
+layout(local_size_x = kLightGroupSide, local_size_y = kLightGroupSide) in;
+layout(binding = kSampledLightImage, r32f) uniform writeonly image3D light;
+layout(binding = kArrivedUnit) uniform sampler3D arrived;
 
 uniform ivec3 cell_count;
 

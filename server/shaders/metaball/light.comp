@@ -5,15 +5,16 @@
 // g similarity scaled, so that what a ball takes from the light is what it scatters, however thick it is.
 // PASS: 0 splats; 1, after all levels, gives the light scattered many times, which depends on what is behind the ball too.
 // DIFFUSE (with PASS 1): the light is no beam but the sky above and the ground below: their shares.
+#include "common/bindings.glsl"
 #include "metaball/balls.glsl"
 #include "physics/light_transport.glsl"
 #include "physics/wyvill.glsl"
 
-layout(local_size_x = 64) in;
-layout(binding = 0, rg32f) uniform image2D light;
+layout(local_size_x = kBallGroupSize) in;
+layout(binding = kBallLightImage, rg32f) uniform image2D light;
 // By light and ball: x the share of the beam that arrives, or that of the sky; y the mean intensity of light scattered
 // many times over the beam's irradiance. Between the passes y is the scaled optical depth before the ball's middle.
-layout(std430, binding = 1) buffer Arrived { vec2 arrived[]; };
+layout(std430, binding = kBallArrivedBinding) buffer Arrived { vec2 arrived[]; };
 
 uniform int first;          // of this dispatch in `order`
 uniform int arrived_first;  // of this light
@@ -27,7 +28,7 @@ uniform float scattered_often;  // 1, or 0 where light that strikes a particle i
 const float kFourPi = 12.5663706;
 const float kForwardPhase = 1.5;  // Rayleigh's function straight on, eq. 25
 
-shared vec3 sums[64];
+shared vec3 sums[kBallGroupSize];
 
 void main() {
   uint listed = gl_WorkGroupID.x + uint(first);
@@ -46,7 +47,7 @@ void main() {
   float scaled_depth = ball.optics.z * radius_m * thinned;
 
   vec3 sum = vec3(0.0);
-  for (int i = int(gl_LocalInvocationIndex); i < size.x * size.y; i += 64) {
+  for (int i = int(gl_LocalInvocationIndex); i < size.x * size.y; i += kBallGroupSize) {
     ivec2 texel = low + ivec2(i % size.x, i / size.x);
     vec2 off = (vec2(texel) + 0.5 - middle) / reach;
     float s = 1.0 - dot(off, off);
@@ -65,7 +66,7 @@ void main() {
   }
   sums[gl_LocalInvocationIndex] = sum;
   barrier();
-  for (uint half_count = 32u; half_count > 0u; half_count >>= 1) {
+  for (uint half_count = uint(kBallGroupSize) / 2u; half_count > 0u; half_count >>= 1) {
     if (gl_LocalInvocationIndex < half_count) {
       sums[gl_LocalInvocationIndex] += sums[gl_LocalInvocationIndex + half_count];
     }
@@ -87,7 +88,7 @@ void main() {
 #endif
 #else
   if (gl_LocalInvocationIndex == 0u) arrived[slot] = mean;
-  for (int i = int(gl_LocalInvocationIndex); i < size.x * size.y; i += 64) {
+  for (int i = int(gl_LocalInvocationIndex); i < size.x * size.y; i += kBallGroupSize) {
     ivec2 texel = low + ivec2(i % size.x, i / size.x);
     vec2 off = (vec2(texel) + 0.5 - middle) / reach;
     float s = 1.0 - dot(off, off);

@@ -1,12 +1,13 @@
 // What each ball sends to the eye per share of the ray that it takes. The phase functions are looked up once a ball (Man,
 // 4.2): its light comes from one direction, and the eye sees it in one.
 // Variants: LIGHTS, GROUPS, COLORED, CONSISTENT (as common/phase.glsl has it), PAPER, ISOTROPIC, PARALLEL (view rays).
+#include "common/bindings.glsl"
 #include "common/phase.glsl"
 #include "metaball/balls.glsl"
 
-layout(local_size_x = 64) in;
-layout(std430, binding = 1) readonly buffer Arrived { vec2 arrived[]; };  // of light.comp
-layout(std430, binding = 3) writeonly buffer Sources { vec4 sources[]; };  // rgb: radiance; a: extinction in the middle
+layout(local_size_x = kBallGroupSize) in;
+layout(std430, binding = kBallArrivedBinding) readonly buffer Arrived { vec2 arrived[]; };  // of light.comp
+layout(std430, binding = kBallSourcesBinding) writeonly buffer Sources { vec4 sources[]; };  // rgb: radiance; a: extinction in the middle
 
 uniform int ball_count;
 uniform vec3 eye_forward;

@@ -3,16 +3,15 @@
 // their splats from back to front, without reading and writing the picture for each. A ball's optical depth is the
 // integral of its field along the ray, from the eye and up to the ground.
 // Variants: GROUND (what lies behind it is left out), PAPER (the field's own value is the depth: eq. 12 splatted as it is).
+#include "common/bindings.glsl"
+#include "common/ground_distance.glsl"
 #include "common/view.glsl"
 #include "metaball/balls.glsl"
 #include "physics/light_transport.glsl"
 #include "physics/wyvill.glsl"
 
-#if GROUND
-layout(binding = 7) uniform sampler2D ground_distance;
-#endif
-layout(std430, binding = 1) readonly buffer TileStarts { uint tile_starts[]; };  // in `order`; row by row, and the end
-layout(std430, binding = 3) readonly buffer Sources { vec4 sources[]; };         // of source.comp
+layout(std430, binding = kBallTilesBinding) readonly buffer TileStarts { uint tile_starts[]; };  // in `order`; row by row, and the end
+layout(std430, binding = kBallSourcesBinding) readonly buffer Sources { vec4 sources[]; };         // of source.comp
 
 uniform int tile_px;
 uniform int tiles_across;

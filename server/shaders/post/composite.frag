@@ -1,6 +1,7 @@
 // The linear frame: what the eye buffer holds in front of sky and ground, all through the air. Coordinates are metres from
 // the eye. Variants: RELIEF (terrain), FRONT (there may be something in the eye buffer), CORRECTED (the ground's skylight by
 // renderers::LightCorrection).
+#include "common/bindings.glsl"
 #include "common/box.glsl"
 #include "common/ground.glsl"
 #include "common/sky.glsl"
@@ -8,12 +9,12 @@
 #include "physics/air.glsl"
 
 #if FRONT
-layout(binding = 4) uniform sampler2D eye;
+layout(binding = kEyeUnit) uniform sampler2D eye;
 #endif
-layout(binding = 9) uniform sampler2D shadow;  // the share of sunlight that the storm keeps from the ground
+layout(binding = kGroundShadowUnit) uniform sampler2D shadow;  // the share of sunlight that the storm keeps from the ground
 
 #if CORRECTED
-layout(binding = 10) uniform sampler2D skylight_factor;
+layout(binding = kSkylightFactorUnit) uniform sampler2D skylight_factor;
 
 uniform vec2 skylight_scale;  // texture coordinates per metre
 uniform vec2 skylight_offset;

@@ -1,5 +1,7 @@
 // Linear radiance to 8-bit sRGB, top row first. FILMIC: 1 compresses highlights, 0 clips.
-layout(binding = 4) uniform sampler2D linear_frame;
+#include "common/bindings.glsl"
+
+layout(binding = kLinearFrameUnit) uniform sampler2D linear_frame;
 
 uniform float exposure;
 

@@ -1,0 +1,27 @@
+// The variants of the cumulus shaders.
+#pragma once
+
+#include "gl/program.h"
+
+namespace thunderhead::renderers {
+
+// Of cumulus/bubble.vert with cumulus/depth.frag.
+struct BubbleVariant {
+  gl::DefineValue base;         // the surface is cut off at a height
+  gl::DefineValue ground;       // may hide bubbles
+  gl::DefineValue front_first;  // the order of drawing
+
+  gl::Defines Defines() const {
+    return {{"BASE", base}, {"GROUND", ground}, {"FRONT_FIRST", front_first}};
+  }
+};
+
+// Of cumulus/bubble.vert with cumulus/shade.frag.
+struct ShadeVariant {
+  BubbleVariant bubble;
+  gl::DefineValue plain;  // Lambert's law alone
+
+  gl::Defines Defines() const { return gl::Joined(bubble.Defines(), {{"PLAIN", plain}}); }
+};
+
+}  // namespace thunderhead::renderers

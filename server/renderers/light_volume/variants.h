@@ -1,0 +1,47 @@
+// The variants of the light volume's shaders.
+#pragma once
+
+#include "gl/program.h"
+#include "renderers/medium.h"
+
+namespace thunderhead::renderers {
+
+// Of carry.comp and arrive.comp.
+struct CarryVariant {
+  MediumVariant medium;
+  gl::DefineValue consistent;   // transport
+  gl::DefineValue translucent;  // light that is scattered goes on
+  gl::DefineValue diffuse;      // light scattered many times is found in closed form
+
+  gl::Defines Defines() const {
+    return gl::Joined(
+        medium.Defines(),
+        {{"CONSISTENT", consistent}, {"TRANSLUCENT", translucent}, {"DIFFUSE", diffuse}});
+  }
+};
+
+// Of march.frag.
+struct MarchVariant {
+  MediumVariant medium;
+  gl::DefineValue colored;      // groups have colours
+  gl::DefineValue consistent;   // transport
+  gl::DefineValue ground;       // may hide a part of the medium
+  gl::DefineValue even_albedo;  // one albedo and colour for all groups
+  gl::DefineValue diffusion;    // light scattered many times comes from the diffusion equation
+  gl::DefineValue tinted;       // that light is absorbed or coloured
+  gl::DefineValue corrected;    // by renderers::LightCorrection
+  gl::DefineValue places;       // in place of radiance, where a correction is looked up
+
+  gl::Defines Defines() const {
+    return gl::Joined(medium.Defines(), {{"COLORED", colored},
+                                         {"CONSISTENT", consistent},
+                                         {"GROUND", ground},
+                                         {"EVEN_ALBEDO", even_albedo},
+                                         {"DIFFUSION", diffusion},
+                                         {"TINTED", tinted},
+                                         {"CORRECTED", corrected},
+                                         {"PLACES", places}});
+  }
+};
+
+}  // namespace thunderhead::renderers

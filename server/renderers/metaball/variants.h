@@ -1,0 +1,42 @@
+// The variants of the metaballs' shaders.
+#pragma once
+
+#include "gl/program.h"
+
+namespace thunderhead::renderers {
+
+// Of metaball/light.comp.
+struct BallLightVariant {
+  gl::DefineValue paper;    // transport as printed
+  gl::DefineValue pass;     // 0 splats, 1 gives the light scattered many times
+  gl::DefineValue diffuse;  // the light of sky and ground, not a beam
+
+  gl::Defines Defines() const { return {{"PAPER", paper}, {"PASS", pass}, {"DIFFUSE", diffuse}}; }
+};
+
+// Of metaball/source.comp.
+struct BallSourceVariant {
+  gl::DefineValue lights;  // beams
+  gl::DefineValue groups;
+  gl::DefineValue colored;    // groups have colours
+  gl::DefineValue paper;      // transport as printed
+  gl::DefineValue isotropic;  // phase function
+  gl::DefineValue parallel;   // view rays
+
+  gl::Defines Defines() const {
+    return {{"LIGHTS", lights},    {"GROUPS", groups},
+            {"COLORED", colored},  {"CONSISTENT", paper == 0 ? 1 : 0},
+            {"PAPER", paper},      {"ISOTROPIC", isotropic},
+            {"PARALLEL", parallel}};
+  }
+};
+
+// Of metaball/splat.frag.
+struct SplatVariant {
+  gl::DefineValue paper;   // transport as printed
+  gl::DefineValue ground;  // may hide balls
+
+  gl::Defines Defines() const { return {{"PAPER", paper}, {"GROUND", ground}}; }
+};
+
+}  // namespace thunderhead::renderers

@@ -1,0 +1,8 @@
+// common/bindings.glsl for C++.
+#pragma once
+
+namespace thunderhead::shaders {
+
+#include "shaders/common/bindings.glsl"
+
+}  // namespace thunderhead::shaders

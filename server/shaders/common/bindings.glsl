@@ -1,0 +1,65 @@
+// Where shaders and the C++ that runs them meet: texture units, image units, bindings of storage buffers, sides of work
+// groups. Compiles as GLSL and as C++ (shaders/bindings.h). Within a program each number of a kind is taken once, which
+// tests check (gl/strict_programs.h); programs of different techniques share numbers.
+
+// Textures of a medium.
+const int kMediumPlaneUnit = 0;  // and the one after
+const int kBricksUnit = 2;
+const int kPhaseCurvesUnit = 3;
+const int kDetailNoiseUnit = 8;  // and as many as there are noises
+
+// Of the ground and the picture.
+const int kGroundDistanceUnit = 7;
+const int kTerrainUnit = 8;
+const int kGroundShadowUnit = 9;
+const int kSkylightFactorUnit = 10;
+const int kSkyTableUnit = 6;
+const int kEyeUnit = 4;
+const int kLinearFrameUnit = 4;
+
+// Of half-angle slicing.
+const int kSliceLightUnit = 4;
+const int kSliceThicknessUnit = 5;
+const int kEyeBeforeUnit = 6;
+const int kLeavingLightImage = 0;
+const int kRingDepthImage = 1;
+const int kSliceThicknessImage = 2;
+
+// Of the light volume.
+const int kArrivedUnit = 4;
+const int kCarriedUnit = 5;
+const int kThicknessUnit = 6;
+const int kWaysOutUnit = 5;
+const int kNetInwardUnit = 6;
+const int kCorrectionRedUnit = 13;
+const int kCorrectionGreenUnit = 14;
+const int kCorrectionBlueUnit = 15;
+const int kCarriedImage = 0;
+const int kThicknessImage = 1;
+const int kBlockedImage = 2;
+const int kArrivedImage = 3;
+const int kSampledCellsImage = 4;
+const int kSampledLightImage = 5;
+const int kBlocksBinding = 0;
+
+// Of metaballs.
+const int kBallLightImage = 0;
+const int kBallsBinding = 0;
+const int kBallArrivedBinding = 1;
+const int kBallOrderBinding = 2;
+const int kBallSourcesBinding = 3;
+const int kBallTilesBinding = 4;
+
+// Of cumulus.
+const int kCoreDepthUnit = 4;
+const int kSunDepthUnit = 5;
+const int kCoresUnit = 4;
+const int kLayerUnit = 5;
+const int kRoughnessNoiseUnit = 8;
+const int kBubblesBinding = 0;
+const int kBubbleOrderBinding = 1;
+
+// Invocations of a work group: along each of two sides, or in all.
+const int kLightGroupSide = 8;
+const int kArriveGroupSize = 32;
+const int kBallGroupSize = 64;

@@ -1,0 +1,15 @@
+// How far the ground is along each pixel's ray, of ground/distance.frag. Variant: GROUND (it may hide something).
+#include "common/bindings.glsl"
+
+#if GROUND
+layout(binding = kGroundDistanceUnit) uniform sampler2D ground_distance;
+#endif
+
+// `end_m`, or where the ground hides what is farther along this pixel's ray.
+float until_ground(float end_m) {
+#if GROUND
+  return min(end_m, texelFetch(ground_distance, ivec2(gl_FragCoord.xy), 0).r);
+#else
+  return end_m;
+#endif
+}

@@ -1,0 +1,122 @@
+// What a view ray sees of light scattered many times, from the diffusion equation (renderers/light_volume/diffuse_light.h).
+// The medium scatters evenly but less there, so that the ray loses this light, and what is behind, by similarity-scaled
+// extinction. Extinctions are by the step. Needs common/medium.glsl,
+// common/phase.glsl and light_volume/segment.glsl.
+// Variant: TINTED (the light is absorbed or coloured).
+#include "common/bindings.glsl"
+#include "physics/light_transport.glsl"
+
+// Root of the optical depth to the nearest way out; sky seen there, and the x of its net flux (DiffuseLight::SkySeen).
+layout(binding = kWaysOutUnit) uniform sampler3D ways_out;
+// Of sunlight; fluence from other walls; the y of the sky's net flux.
+layout(binding = kNetInwardUnit) uniform sampler3D net_inward;
+
+uniform vec4 transport_weights[PLANES];  // texel to similarity-scaled extinction, 1/m
+uniform vec3 rest_of_sky;                // mean radiance, without the bright sky around the sun
+uniform vec3 rest_of_sky_level;          // its irradiance from above over pi
+uniform vec3 diffuse_sunlight;           // irradiance, with that
+uniform vec3 from_ground;
+#if TINTED
+uniform vec4 red_weights[PLANES];  // texel to similarity-scaled scattering, 1/m
+uniform vec4 green_weights[PLANES];
+uniform vec4 blue_weights[PLANES];
+#endif
+
+vec4 transport_depths[PLANES];
+#if TINTED
+vec4 red_depths[PLANES];
+vec4 green_depths[PLANES];
+vec4 blue_depths[PLANES];
+#endif
+
+// Call it first.
+void begin_diffuse(float step_m) {
+  transport_depths = scaled(transport_weights, step_m);
+#if TINTED
+  red_depths = scaled(red_weights, step_m);
+  green_depths = scaled(green_weights, step_m);
+  blue_depths = scaled(blue_weights, step_m);
+#endif
+}
+
+struct DiffuseSample {
+  float transport;  // extinction
+  vec4 ways_out;
+  vec4 inward;
+  vec3 tint;  // scattering of red, green and blue
+};
+
+DiffuseSample diffuse_at(vec3 place, Medium medium) {
+  vec3 tint = vec3(0.0);
+#if TINTED
+  tint = vec3(weigh(medium, red_depths), weigh(medium, green_depths), weigh(medium, blue_depths));
+#endif
+  return DiffuseSample(weigh(medium, transport_depths), texture(ways_out, place), texture(net_inward, place), tint);
+}
+
+DiffuseSample no_diffuse_sample() { return DiffuseSample(0.0, vec4(0.0), vec4(0.0), vec3(0.0)); }
+
+DiffuseSample mixed(DiffuseSample a, DiffuseSample b, float at) {
+  return DiffuseSample(mix(a.transport, b.transport, at), mix(a.ways_out, b.ways_out, at), mix(a.inward, b.inward, at),
+                       mix(a.tint, b.tint, at));
+}
+
+// Sums over the ray's segments, each by the share of it that is seen.
+struct DiffuseSeen {
+  float passing;  // share of what lies behind that passes
+  vec3 sun;       // fluence, over the sun's irradiance
+  vec3 sky;       // over the sky's mean radiance
+  vec3 level;     // over its irradiance from above
+  vec3 all;       // of light that is 1 everywhere
+};
+
+DiffuseSeen no_diffuse_seen() { return DiffuseSeen(1.0, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0)); }
+
+// Fluence of sunlight at optical depth `passed` from the sun; `scale` is transport's extinction over the eye's.
+float sun_fluence(DiffuseSample there, float passed, float scale) {
+  float exit_depth = there.ways_out.x * there.ways_out.x;
+  return diffuse_fluence(exit_depth, passed, scale * exit_depth, there.inward.x, there.inward.y) +
+         forward_fluence(exit_depth, passed, scale * passed);
+}
+
+// Shares of the sky's level and of its mean that are seen there.
+vec2 sky_shares_of(DiffuseSample there, float scale) {
+  float exit_depth = there.ways_out.x * there.ways_out.x;
+  vec2 shares = there.ways_out.yz - vec2(there.ways_out.w, there.inward.z) * (3.0 * scale * exit_depth + 2.0);
+  return shares * (clamp(shares.x + shares.y, 0.0, 1.0) / max(shares.x + shares.y, 1e-6));
+}
+
+// Adds a segment, of which `taken` is what it takes of this light. `passed_root` is the root of the sun's optical depth and
+// `extinction` the eye's extinction where half of that is taken. Returns the share that the segment is seen by.
+float see_diffuse(inout DiffuseSeen seen, Taken taken, DiffuseSample there, float passed_root, float extinction) {
+  float scale = there.transport / max(extinction, 1e-30);
+  float fluence = sun_fluence(there, passed_root * passed_root, scale);
+  vec2 sky_shares = sky_shares_of(there, scale);
+  float shown = seen.passing * taken.share;
+#if TINTED
+  vec3 tint = there.tint / max(there.transport, 1e-30);
+#else
+  const vec3 tint = vec3(1.0);
+#endif
+  seen.sun += (shown * fluence) * tint;
+  seen.level += (shown * sky_shares.x) * tint;
+  seen.sky += (shown * sky_shares.y) * tint;
+  seen.all += shown * tint;
+  seen.passing *= 1.0 - taken.share;
+  return shown;
+}
+
+// Diffuse light changes little deep in a cloud: what has been seen stands for the rest.
+void close_diffuse(inout DiffuseSeen seen) {
+  float whole = 1.0 / (1.0 - seen.passing);
+  seen.sun *= whole;
+  seen.sky *= whole;
+  seen.level *= whole;
+  seen.all *= whole;
+  seen.passing = 0.0;
+}
+
+vec3 diffuse_radiance(DiffuseSeen seen) {
+  return diffuse_sunlight * seen.sun / kFourPi + rest_of_sky * seen.sky + rest_of_sky_level * seen.level +
+         from_ground * (seen.all - seen.sky - seen.level);
+}
