@@ -14,10 +14,12 @@ import {
 import { StormDescriptionSchema } from "../src/gen/thunderhead/v1/storm_pb";
 import {
   type AcknowledgeFrameRequest,
+  Stage,
   ThunderheadService,
   type WatchFramesResponse,
   WatchFramesResponseSchema,
 } from "../src/gen/thunderhead/v1/thunderhead_pb";
+import { completeRendering, FAKE_PRESETS, FAKE_TECHNIQUES, modelledOf } from "./fake_techniques";
 
 const REFINE_AFTER_MS = 120;
 const MOST_IN_FLIGHT = 2;
@@ -66,6 +68,8 @@ export class FakeService {
         glVersion: "none",
         device: "software",
         maxSessions: 16,
+        techniques: FAKE_TECHNIQUES,
+        presets: FAKE_PRESETS,
       }),
       listStorms: () => ({ storms: this.#storms }),
       generateCloud: ({ seed }) => {
@@ -162,8 +166,8 @@ export class FakeService {
           widthPx,
           heightPx,
           camera: session.scene.camera,
-          stages: [{ stage: "slices", milliseconds: performance.now() - start }],
-          modelled: { slices: session.scene.rendering?.slices ?? 0, occupiedShare: 0.25 },
+          stages: [{ stage: Stage.VIEW, milliseconds: performance.now() - start }],
+          modelled: modelledOf(session.scene),
           refined,
         },
       },
@@ -269,9 +273,10 @@ const HOME = cameraOfPose({
 
 function complete(scene: Scene): Scene {
   const stormId = scene.stormId === "" ? "supercell" : scene.stormId;
+  const rendering = completeRendering(scene.rendering);
   const camera =
     scene.camera !== undefined && poseOfCamera(scene.camera) !== undefined ? scene.camera : HOME;
-  return withOutput(withCamera({ ...scene, stormId }, camera), {
+  return withOutput(withCamera({ ...scene, stormId, rendering }, camera), {
     widthPx: scene.output?.widthPx ?? LIMITS.width.defaultValue,
     heightPx: scene.output?.heightPx ?? LIMITS.height.defaultValue,
     jpegQuality: scene.output?.jpegQuality ?? LIMITS.jpegQuality.defaultValue,

@@ -5,7 +5,6 @@ import {
   type Accuracy,
   AccuracySchema,
   type Camera,
-  type Cumulus,
   CumulusSchema,
   type Detail,
   DetailSchema,
@@ -16,13 +15,12 @@ import {
   type FieldParameters,
   FieldParametersSchema,
   Hydrometeor,
-  type Metaballs,
   MetaballsSchema,
   type Output,
   OutputSchema,
   PhaseFunctionSchema,
+  type Preset,
   type Rendering,
-  RenderingSchema,
   type Scene,
   SceneSchema,
   type Sky,
@@ -33,6 +31,7 @@ import {
   SunSchema,
 } from "../gen/thunderhead/v1/scene_pb";
 import { clampToLimits, type Limits, limitsOf, mostItemsOf } from "./limits";
+import { renderingOfPreset } from "./rendering";
 
 export const LIMITS = {
   fieldScale: limitsOf(FieldParametersSchema.field.scale),
@@ -55,8 +54,6 @@ export const LIMITS = {
   skyBrightness: limitsOf(SkySchema.field.brightness),
   groundAlbedo: limitsOf(SkySchema.field.groundAlbedo),
   turbidity: limitsOf(SkySchema.field.turbidity),
-  slices: limitsOf(RenderingSchema.field.slices),
-  thetaF: limitsOf(RenderingSchema.field.thetaFDeg),
   metaballCount: limitsOf(MetaballsSchema.field.count),
   metaballAlbedo: limitsOf(MetaballsSchema.field.albedo),
   metaballOpticalDepth: limitsOf(MetaballsSchema.field.opticalDepth),
@@ -121,19 +118,14 @@ export function withSky(scene: Scene, change: Change<Sky>): Scene {
   return changed(scene, { sky: changed(scene.sky ?? create(SkySchema), change) });
 }
 
-export function withRendering(scene: Scene, change: Change<Rendering>): Scene {
-  return changed(scene, { rendering: changed(scene.rendering ?? create(RenderingSchema), change) });
+export function withRendering(scene: Scene, rendering: Rendering | undefined): Scene {
+  return changed(scene, { rendering });
 }
 
-export function withMetaballs(scene: Scene, change: Change<Metaballs>): Scene {
-  return withRendering(scene, {
-    metaballs: changed(scene.rendering?.metaballs ?? create(MetaballsSchema), change),
-  });
-}
-
-export function withCumulus(scene: Scene, change: Change<Cumulus>): Scene {
-  const cumulus = changed(scene.rendering?.cumulus ?? create(CumulusSchema), change);
-  return withRendering(scene, { cumulus });
+// A preset takes the place of technique, settings and any accuracy that the server was to reach by its own choice of
+// them.
+export function withPreset(scene: Scene, preset: Preset): Scene {
+  return changed(scene, { rendering: renderingOfPreset(preset), accuracy: undefined });
 }
 
 export function withDisplay(scene: Scene, change: Change<Display>): Scene {

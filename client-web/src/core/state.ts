@@ -1,10 +1,13 @@
 // All that the page knows, as signals: the scene being edited, what the server said of itself and its storms,
 // the frame on the screen, the connection, and what went wrong. Knows no network and no document.
 
-import { create } from "@bufbuild/protobuf";
+import { create, equals } from "@bufbuild/protobuf";
 import { batch, computed, type ReadonlySignal, signal } from "@preact/signals-core";
 import {
   type Camera,
+  type Preset,
+  type Rendering,
+  RenderingSchema,
   type Scene,
   SceneSchema,
   type Sun,
@@ -18,10 +21,22 @@ import type {
   Modelled,
   Refinement,
   StageCost,
+  TechniqueDescription,
 } from "../gen/thunderhead/v1/thunderhead_pb";
 import { cameraOfPose, type Pose, poseOfCamera } from "./camera";
 import { type CloudDraft, FIRST_CLOUD } from "./cloud";
-import { LIMITS, withCamera } from "./scene";
+import {
+  drawsDetail,
+  drawsFalseColors,
+  presetOf,
+  resolved,
+  type Settings,
+  type SettingsChange,
+  settingsOf,
+  techniqueNameOf,
+  withSettings,
+} from "./rendering";
+import { LIMITS, withCamera, withRendering } from "./scene";
 import type { SunDirection } from "./sun";
 
 export type Connection =
@@ -110,9 +125,30 @@ export class PageState {
   });
   readonly lights = computed(() => this.#scene.value.lights);
   readonly sky = computed(() => this.#scene.value.sky);
-  readonly rendering = computed(() => this.#scene.value.rendering);
+  // The scene's technique and settings, also where it names a preset; undefined until the server has told of either.
+  readonly rendering = computed(() =>
+    resolved(this.#scene.value.rendering, this.server.value?.presets ?? []),
+  );
+  readonly settings = computed(() => settingsOf(this.rendering.value));
+  readonly technique = computed(() => this.#describe(this.settings.value));
+  // The preset that the scene's technique and settings are, while no accuracy is asked for that changes them.
+  readonly preset = computed((): Preset | undefined =>
+    this.goal.value === undefined
+      ? presetOf(this.rendering.value, this.server.value?.presets ?? [])
+      : undefined,
+  );
   readonly display = computed(() => this.#scene.value.display);
   readonly accuracy = computed(() => this.#scene.value.accuracy);
+  // The accuracy or speed asked for; the server picks technique and settings while there is one.
+  readonly goal = computed(() => this.#scene.value.accuracy?.limit.case);
+  // The technique that draws, the scene's own or the one that the server picked, and what it shows of the fields.
+  readonly drawnTechnique = computed(() => this.#describe(this.#drawnSettings.value));
+  readonly detailShown = computed(() => this.#isDrawn(drawsDetail));
+  readonly falseColorsShown = computed(() => this.#isDrawn(drawsFalseColors));
+  readonly #drawnSettings = computed(() => {
+    const picked = this.goal.value === undefined ? undefined : this.frame.value?.accuracy;
+    return settingsOf(picked?.rendering) ?? this.settings.value;
+  });
   readonly output = computed(() => this.#scene.value.output);
   readonly timeIndex = computed(() => this.#scene.value.timeIndex ?? 0);
   readonly stormId = computed(() => this.#scene.value.stormId);
@@ -147,6 +183,17 @@ export class PageState {
     this.#onEdit?.(after);
   }
 
+  // The user's change of how the picture is computed.
+  editRendering(change: (rendering: Rendering) => Rendering): void {
+    const rendering = this.rendering.peek();
+    if (rendering !== undefined) this.edit((scene) => withRendering(scene, change(rendering)));
+  }
+
+  // The user's change of the technique's settings.
+  editSettings(change: SettingsChange): void {
+    this.editRendering((rendering) => withSettings(rendering, change));
+  }
+
   // A change of the camera, from where it stands now.
   move(motion: (pose: Pose) => Pose): void {
     const pose = this.pose.value;
@@ -156,6 +203,15 @@ export class PageState {
   // The server's word on the scene; not sent back to it.
   adoptScene(scene: Scene): void {
     this.#scene.value = scene;
+  }
+
+  // What the server made of the scene's own rendering: a technique with every setting filled in.
+  adoptRendering(rendering: Rendering | undefined): void {
+    const scene = this.#scene.value;
+    if (rendering === undefined) return;
+    if (scene.rendering !== undefined && equals(RenderingSchema, scene.rendering, rendering))
+      return;
+    this.#scene.value = withRendering(scene, rendering);
   }
 
   // The camera of a frame on the screen. It fills in what the scene leaves open; where another viewer moved the
@@ -195,5 +251,17 @@ export class PageState {
   dismiss(subject: string): void {
     if (!this.notices.value.some((notice) => notice.subject === subject)) return;
     this.notices.value = this.notices.value.filter((notice) => notice.subject !== subject);
+  }
+
+  #describe(settings: Settings | undefined): TechniqueDescription | undefined {
+    if (settings === undefined) return undefined;
+    const name = techniqueNameOf(settings);
+    return this.server.value?.techniques.find((technique) => technique.name === name);
+  }
+
+  #isDrawn(draws: (settings: Settings, technique: TechniqueDescription) => boolean): boolean {
+    const settings = this.#drawnSettings.value;
+    const technique = this.drawnTechnique.value;
+    return settings !== undefined && technique !== undefined && draws(settings, technique);
   }
 }

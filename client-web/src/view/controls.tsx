@@ -150,6 +150,80 @@ export function Choice<T extends string | number>(props: ChoiceProps<T>) {
   );
 }
 
+interface SegmentsProps<T extends string | number> {
+  readonly label: string;
+  // Undefined where it is none of them.
+  readonly value: T | undefined;
+  // Each with its name and a sentence about it.
+  readonly options: readonly (readonly [T, string, string])[];
+  // Shown where the value is none of them.
+  readonly otherwise: string;
+  readonly testId: string;
+  readonly onChange: (value: T) => void;
+}
+
+// One of two or three, side by side, with the sentence about the chosen one below; a screen reader has each one's.
+export function Segments<T extends string | number>(props: SegmentsProps<T>) {
+  const { label, value, options, otherwise, testId, onChange } = props;
+  const id = useId();
+  const chosen = options.find(([key]) => key === value);
+  return (
+    <div class="segments">
+      <div class="segments-row" role="radiogroup" aria-label={label} data-testid={testId}>
+        {options.map(([key, name, about]) => (
+          <label key={key} title={about}>
+            <input
+              type="radio"
+              name={id}
+              class="visually-hidden"
+              data-testid={`${testId}-${name.toLowerCase()}`}
+              aria-describedby={`${id}-${key}`}
+              checked={key === value}
+              onChange={() => onChange(key)}
+            />
+            <span>{name}</span>
+            <span id={`${id}-${key}`} hidden>
+              {about}
+            </span>
+          </label>
+        ))}
+      </div>
+      <p class="quiet" role="status" data-testid={`${testId}-about`}>
+        {chosen?.[2] ?? otherwise}
+      </p>
+    </div>
+  );
+}
+
+interface NumberInputProps {
+  readonly label: string;
+  readonly value: number;
+  readonly testId: string;
+  readonly onChange: (value: number) => void;
+}
+
+// A number without known limits.
+export function NumberInput({ label, value, testId, onChange }: NumberInputProps) {
+  const id = useId();
+  return (
+    <div class="choice">
+      <label for={id}>{label}</label>
+      <input
+        id={id}
+        type="number"
+        class="number"
+        step="any"
+        data-testid={testId}
+        value={value}
+        onChange={(event) => {
+          const typed = event.currentTarget.valueAsNumber;
+          if (!Number.isNaN(typed)) onChange(typed);
+        }}
+      />
+    </div>
+  );
+}
+
 interface TimeInputProps {
   readonly label: string;
   // As an input of type datetime-local has it; empty while it is not known.

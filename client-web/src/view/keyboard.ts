@@ -89,8 +89,8 @@ function act(event: KeyboardEvent, actions: KeyActions): boolean {
   }
 }
 
-// True where the focused control has its own use for the key: text takes all, a slider its arrows, a button
-// the space bar.
+// True where the focused control has its own use for the key: text takes all, a slider or a choice its arrows, a
+// button the space bar.
 function usesKey(target: EventTarget | null, key: string): boolean {
   if (!(target instanceof Element)) return false;
   const control = target.closest("input, select, textarea, button, summary, [role=slider]");
@@ -99,5 +99,6 @@ function usesKey(target: EventTarget | null, key: string): boolean {
   if (control.matches("input[type=range], [role=slider]")) {
     return key in ARROWS || key === "Home" || key === "End";
   }
+  if (control.matches("input[type=radio]")) return key in ARROWS || key === " ";
   return true;
 }

@@ -341,12 +341,15 @@ export class Page implements SessionListener {
     });
   }
 
-  // Another viewer's scene takes the place of ours once the server has answered all that this page has sent.
+  // Once the server has answered all that this page has sent, another viewer's scene takes the place of ours, and
+  // the settings that the server filled in complete ours.
   #adoptTold(): void {
     const told = this.#told;
     if (told === undefined || this.#sender.unsettled) return;
     this.#told = undefined;
-    if (told.revision <= this.#ledger.newestAccepted) return;
+    const ours = this.#ledger.newestAccepted;
+    if (told.revision === ours) this.state.adoptRendering(told.scene.rendering);
+    if (told.revision <= ours) return;
     this.#adoptedRevision = told.revision;
     this.state.adoptScene(told.scene);
   }
