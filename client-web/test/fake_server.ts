@@ -24,7 +24,7 @@ function flag(name: string, otherwise: string): string {
 
 const [host, port] = flag("http", "127.0.0.1:8099").split(":");
 const page = flag("page", "dist");
-const service = new FakeService(drawFakeStorm);
+const service = new FakeService(drawFakeStorm, true);
 const bridge = connectNodeAdapter({ routes: service.routes, grpc: false, connect: false });
 
 createServer((request, response) => {

@@ -19,9 +19,18 @@ import {
   type WatchFramesResponse,
   WatchFramesResponseSchema,
 } from "../src/gen/thunderhead/v1/thunderhead_pb";
-import { completeRendering, FAKE_PRESETS, FAKE_TECHNIQUES, modelledOf } from "./fake_techniques";
+import {
+  completeRendering,
+  FAKE_PRESETS,
+  FAKE_TECHNIQUES,
+  modelledOf,
+  tracesLight,
+} from "./fake_techniques";
 
 const REFINE_AFTER_MS = 120;
+const TRACE_EVERY_MS = 1000;
+const PATHS_A_TRACE = 100_000n;
+const MOST_PATHS = 1_000_000n;
 const MOST_IN_FLIGHT = 2;
 
 interface Viewer {
@@ -58,7 +67,11 @@ export class FakeService {
     { id: "single", title: "One time only", timeCount: 1, deletable: false },
   ];
 
-  constructor(readonly draw: Draw) {}
+  // Without tracing a session that rests is silent.
+  constructor(
+    readonly draw: Draw,
+    readonly tracing = false,
+  ) {}
 
   readonly routes = (router: ConnectRouter): void => {
     router.service(ThunderheadService, {
@@ -146,10 +159,20 @@ export class FakeService {
   #render(session: Session): void {
     clearTimeout(session.refine);
     this.#publish(session, false);
-    session.refine = setTimeout(() => this.#publish(session, true), REFINE_AFTER_MS);
+    session.refine = setTimeout(() => this.#rest(session, 0n), REFINE_AFTER_MS);
   }
 
-  #publish(session: Session, refined: boolean): void {
+  // Ever more paths correct the light, where the scene has it traced.
+  #rest(session: Session, tracedPaths: bigint): void {
+    this.#publish(session, true, tracedPaths);
+    if (!this.tracing || !tracesLight(session.scene) || tracedPaths >= MOST_PATHS) return;
+    session.refine = setTimeout(
+      () => this.#rest(session, tracedPaths + PATHS_A_TRACE),
+      TRACE_EVERY_MS,
+    );
+  }
+
+  #publish(session: Session, refined: boolean, tracedPaths = 0n): void {
     const share = refined ? 1 : 0.5;
     const widthPx = Math.max(1, Math.round((session.scene.output?.widthPx ?? 640) * share));
     const heightPx = Math.max(1, Math.round((session.scene.output?.heightPx ?? 360) * share));
@@ -166,8 +189,11 @@ export class FakeService {
           widthPx,
           heightPx,
           camera: session.scene.camera,
-          stages: [{ stage: Stage.VIEW, milliseconds: performance.now() - start }],
-          modelled: modelledOf(session.scene),
+          stages: [
+            { stage: Stage.VIEW, milliseconds: performance.now() - start },
+            { stage: Stage.TONE, milliseconds: 0.1 },
+          ],
+          modelled: { ...modelledOf(session.scene), tracedPaths },
           refined,
         },
       },

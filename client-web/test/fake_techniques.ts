@@ -124,11 +124,14 @@ export function completeRendering(rendering: Rendering | undefined): Rendering {
 export function modelledOf(scene: Scene) {
   const settings = settingsOf(scene.rendering);
   if (settings === undefined) throw new Error("the scene was not completed");
-  const { slices, tracedLight } = sharedSettingsOf(settings);
   return create(ModelledSchema, {
-    slices: slices ?? 0,
+    slices: sharedSettingsOf(settings).slices ?? 0,
     occupiedShare: 0.25,
     technique: techniqueNameOf(settings),
-    tracedPaths: tracedLight && tracedLight !== TracedLight.OFF ? 1_000_000n : 0n,
   });
+}
+
+export function tracesLight(scene: Scene): boolean {
+  const { tracedLight, transport } = sharedSettingsOf(settingsOf(scene.rendering));
+  return transport === Transport.DIFFUSION && tracedLight !== TracedLight.OFF;
 }
