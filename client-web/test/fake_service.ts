@@ -1,5 +1,5 @@
-// Test support: Thunderhead's service kept in memory, with sessions, revisions, acknowledged frames, a coarse
-// frame for each scene and a refined one after a rest; and with ways to make it fail.
+// Test support: a fake of Thunderhead's service in memory, with sessions, revisions, acknowledged frames, a coarse frame
+// for each scene and a refined one after a rest; tests can make it fail.
 import { create } from "@bufbuild/protobuf";
 import { Code, ConnectError, type ConnectRouter } from "@connectrpc/connect";
 import { cameraOfPose, poseOfCamera } from "../src/core/camera";
@@ -67,7 +67,7 @@ export class FakeService {
     { id: "single", title: "One time only", timeCount: 1, deletable: false },
   ];
 
-  // Without tracing a session that rests is silent.
+  // With `tracing`, a session at rest sends frames with ever more traced paths; without, it sends nothing.
   constructor(
     readonly draw: Draw,
     readonly tracing = false,
@@ -162,7 +162,7 @@ export class FakeService {
     session.refine = setTimeout(() => this.#rest(session, 0n), REFINE_AFTER_MS);
   }
 
-  // Ever more paths correct the light, where the scene has it traced.
+  // The refined frame, and then frames with ever more traced paths if the scene has traced light.
   #rest(session: Session, tracedPaths: bigint): void {
     this.#publish(session, true, tracedPaths);
     if (!this.tracing || !tracesLight(session.scene) || tracedPaths >= MOST_PATHS) return;

@@ -1,4 +1,4 @@
-// Test support: the techniques and presets that the fake service offers, and the settings that it fills in.
+// Test support: the techniques and presets of the fake service, and the defaults that it fills in.
 import { create, isMessage, type Message, type MessageInitShape } from "@bufbuild/protobuf";
 import {
   renderingOf,
@@ -32,7 +32,7 @@ const MEDIUM = { slices: 128, thetaFDeg: 20, perFieldPhase: true, falseColors: f
 
 const TOY = create(OtherTechniqueSchema, { name: "toy", numbers: { haze: 0.5 } });
 
-// Every setting of each technique that the page cannot read from the schema.
+// Each technique with the settings whose defaults are not in the schema.
 const DEFAULTS: readonly Settings[] = [
   create(LightVolumeSchema, {
     ...MEDIUM,
@@ -102,7 +102,7 @@ export const FAKE_PRESETS = [
   preset(Preset.PER_FIELD_PHASE_DETAIL_TRANSLUCENT, PAPER),
 ];
 
-// A technique with every setting, as the server completes a scene's.
+// Fills in defaults, as the server does for a scene's rendering.
 export function completeRendering(rendering: Rendering | undefined): Rendering {
   const technique = rendering?.technique;
   if (technique?.case === undefined || technique.case === "preset") {

@@ -125,7 +125,7 @@ describe("another technique", () => {
     const kept = { falseColors: true, perFieldPhase: false, thetaFDeg: 10 };
     const shared = sharedSettingsOf(halfAngle);
     expect(shared).toMatchObject({ slices: 77, ...kept });
-    // Diffusion would be refused, and detail is off there unless asked for.
+    // Not kept: half-angle slices refuse diffusion, and have no detail by default.
     expect(shared.transport).toBe(Transport.UNSPECIFIED);
     expect(shared.detail).toBeUndefined();
     const expected = create(HalfAngleSchema, { slices: 77, ...kept });
@@ -250,7 +250,7 @@ describe("the page's rendering", () => {
     state.adoptRendering(completeRendering(state.scene.value.rendering));
     expect(state.settings.value).toMatchObject({ perFieldPhase: true, falseColors: false });
     expect(state.technique.value).toMatchObject({ showsLights: true, drawsImages: false });
-    // The same again changes nothing, so that no control is drawn anew.
+    // The same rendering again does not change the scene, so no control is rendered again.
     const { value } = state.scene;
     state.adoptRendering(completeRendering(state.scene.value.rendering));
     expect(state.scene.value).toBe(value);
@@ -267,7 +267,7 @@ describe("the page's rendering", () => {
     expect(state.drawnTechnique.value?.name).toBe(NAME.metaballs);
     expect(state.falseColorsShown.value).toBe(true);
     expect(state.detailShown.value).toBe(false);
-    // The scene's own is what the controls show, and what comes back without the goal.
+    // The controls still show the scene's own technique, and it draws again without the goal.
     expect(state.technique.value?.name).toBe(NAME.lightVolume);
     state.edit((scene) => ({ ...scene, accuracy: undefined }));
     expect(state.drawnTechnique.value?.name).toBe(NAME.lightVolume);

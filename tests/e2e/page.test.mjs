@@ -1,5 +1,4 @@
-// The page as a person meets it: the real server, a real browser, the sample storm. Each part leaves a
-// screenshot in output/.
+// End-to-end test of the page: the real server, a real browser, the sample storm. Screenshots go to output/.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { after, before, test } from "node:test";
@@ -69,7 +68,7 @@ async function until(what, holds) {
   }
 }
 
-// Waits until a refined frame stays on the canvas.
+// Waits until a refined frame has stayed on the canvas for REST_MS.
 async function rested(of = page) {
   let held = { sequence: undefined, since: 0 };
   await until("a refined picture that rests", async () => {
@@ -81,7 +80,7 @@ async function rested(of = page) {
   return canvasData(of);
 }
 
-// Does something that changes the scene, and waits for the refined picture of it.
+// Runs an action that changes the scene, and waits for the refined picture of the new scene.
 async function changing(action, of = page) {
   const revisionBefore = Number((await canvasData(of)).revision);
   await action();
@@ -104,7 +103,7 @@ async function drag(rightPx, downPx, steps = 12) {
   await page.mouse.up();
 }
 
-// Fingers on the glass, from the first points to the second.
+// A touch gesture: fingers move from the first points to the second.
 async function slide(fingers, from, to) {
   const steps = 8;
   const at = (share) =>
@@ -119,7 +118,7 @@ async function slide(fingers, from, to) {
   await send("touchEnd", []);
 }
 
-// Types a number into the text of a slider, which may be folded away.
+// Sets the number field of a slider, which may be folded away.
 async function setNumber(of, name, value) {
   await of.getByTestId(`${name}-number`).evaluate((input, text) => {
     input.value = text;
@@ -127,7 +126,7 @@ async function setNumber(of, name, value) {
   }, String(value));
 }
 
-// The words of quality that are chosen: one or none.
+// The chosen quality: a list of one or none.
 function chosenQuality(of = page) {
   return of
     .locator("[data-testid=quality-choice] input:checked")
@@ -146,7 +145,7 @@ async function unfoldSettings(open = true) {
 
 const foldSettings = () => unfoldSettings(false);
 
-// Waits until more than so many million paths correct the light of the picture shown.
+// Waits until the readout shows more than this many million traced paths.
 function pathsBeyond(millions) {
   return page.waitForFunction(
     (least) => {
@@ -239,7 +238,7 @@ test("fast draws fewer samples without detail, and the arrow keys change the qua
   assert.equal(await page.getByTestId("traced-light").count(), 0);
   const darker = await grabCanvas(page);
   assert.ok(difference(fast, darker) > 1, "single scattering looks like diffusion");
-  // The tests that follow compare pictures, which fast ones allow: nothing changes them while they rest.
+  // The following tests compare pictures at rest; Fast has no traced light to change them.
   await changing(() => chooseQuality("Fast"));
   await foldSettings();
 });
@@ -368,7 +367,7 @@ test("the reference refines the picture while it rests, and begins again when it
   await unfoldSettings();
   await page.getByTestId("technique-choice").selectOption({ label: "Monte Carlo reference" });
   const refinement = () => page.getByTestId("refinement").evaluate((text) => ({ ...text.dataset }));
-  // The error of the smallest picture falls with its samples; larger ones begin again.
+  // The first, smallest pictures gather samples quickly; larger ones start over.
   const reached = (samples) =>
     page.waitForFunction(
       (least) => {
@@ -425,7 +424,7 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
   assert.ok(difference(balls, await grabCanvas(page)) > 0.01);
   await changing(() => page.getByTestId("metaball-isotropic").click());
 
-  // A slider that has balls fitted anew is told once it is let go.
+  // A slider that makes the server fit balls again reports its value on release only.
   let updates = 0;
   const count = (request) => {
     if (request.url().endsWith("/UpdateScene")) updates += 1;
@@ -514,7 +513,7 @@ test("an accuracy asked for is reached by a setting that the server picks, or th
       await page.getByTestId("max-error-number").fill(String(error));
       await page.getByTestId("max-error-number").press("Enter");
     });
-    // The slices' part is found out at rest, of renderers that have slices.
+    // The slices' part of the error is measured at rest, for techniques with slices.
     await page.waitForFunction(
       () => {
         const report = document.querySelector("[data-testid=accuracy-report]")?.dataset;
@@ -569,8 +568,8 @@ test("a link brings another viewer into the session, who sees it turn", async ()
       const refined = host.refined === "true" && seen.refined === "true";
       return refined && seen.azimuth === host.azimuth && seen.azimuth !== azimuth;
     });
-    // The guest's controls show what the host has set, before and after the guest came; and a change of the guest's
-    // leaves the rest of the scene as the host set it.
+    // The guest's controls show what the host set before and after the guest joined, and an edit by the guest keeps the
+    // host's other settings.
     const exposure = guest.getByTestId("exposure-number");
     await changing(() => setNumber(page, "turbidity", 2.5));
     await changing(() => setNumber(page, "exposure", 0.7));

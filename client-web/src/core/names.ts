@@ -1,4 +1,4 @@
-// Names for people of what the schema names by enums and identifiers.
+// Display names of enum values and techniques.
 import {
   CumulusSchema,
   HalfAngleSchema,
@@ -20,7 +20,7 @@ const TECHNIQUE_NAMES: Readonly<Record<string, string>> = {
   [ReferenceSchema.typeName]: "Monte Carlo reference",
 };
 
-// Of a name in TechniqueDescription; techniques that the server was extended by have no other.
+// `name` is that of TechniqueDescription. Techniques that the server was extended by have no other name.
 export function nameOfTechnique(name: string): string {
   const field = RenderingSchema.fields.find((each) => each.name === name);
   return TECHNIQUE_NAMES[field?.message?.typeName ?? ""] ?? name;

@@ -1,5 +1,5 @@
-// How the picture is computed: by a technique with its own settings, or by a preset that stands for one. Which
-// settings a technique has is read from the schema, so that a new one needs no list here.
+// Scene.rendering: a technique with its own settings, or a preset that stands for one. The settings that a technique has
+// are read from its message in the schema.
 import {
   create,
   type DescField,
@@ -30,7 +30,7 @@ export type Settings = Exclude<Rendering["technique"]["value"], Preset | undefin
 
 type FieldsOf<T extends Message> = Omit<T, keyof Message>;
 
-// Settings that more than one technique may have. One that is undefined is the technique's default, or it has none.
+// Settings that several techniques have. Undefined: the technique's default, or not one of its settings.
 export type SharedSettings = Partial<FieldsOf<LightVolume>>;
 
 export type SettingsChange = SharedSettings &
@@ -38,7 +38,7 @@ export type SettingsChange = SharedSettings &
   Partial<FieldsOf<Cumulus>> &
   Partial<FieldsOf<OtherTechnique>>;
 
-// The presets that trade speed for accuracy, fastest first. The others are those of the papers.
+// The presets that trade speed for accuracy, fastest first. The others are the papers'.
 export const QUALITY_PRESETS: readonly Preset[] = [Preset.FAST, Preset.BALANCED, Preset.TRUE];
 
 const TECHNIQUES: readonly (DescField & { readonly message: DescMessage })[] =
@@ -62,7 +62,7 @@ const TRANSPORTS: Readonly<Record<string, readonly Transport[]>> = {
   [MetaballsSchema.typeName]: [Transport.CONSISTENT, Transport.LOW_ALBEDO, Transport.PAPER],
 };
 
-// Kept when the technique changes; the others mean something else to each technique, or cost too much.
+// Settings kept when the technique changes. The others have another default in each technique, for a reason.
 const KEPT = ["slices", "thetaFDeg", "perFieldPhase", "falseColors"] as const;
 
 function fieldOf(settings: Settings) {
@@ -100,7 +100,7 @@ export function settingLimits(settings: Settings, name: keyof SharedSettings): L
   return field === undefined ? undefined : limitsOf(field);
 }
 
-// Empty for a technique that has no choice of transport.
+// Empty for a technique without a choice of transport.
 export function transportsOf(settings: Settings): readonly Transport[] {
   return TRANSPORTS[settings.$typeName] ?? [];
 }
@@ -109,7 +109,7 @@ export function transportOf(settings: Settings): Transport | undefined {
   return sharedSettingsOf(settings).transport || transportsOf(settings)[0];
 }
 
-// True where the choice of when to trace paths makes a difference.
+// True if the setting `traced_light` has an effect.
 export function tracesLight(settings: Settings, technique: TechniqueDescription): boolean {
   return (
     technique.showsTracedLight &&
@@ -118,13 +118,13 @@ export function tracesLight(settings: Settings, technique: TechniqueDescription)
   );
 }
 
-// True where the fields' turbulent detail is in the picture.
+// True if the picture shows the fields' turbulent detail.
 export function drawsDetail(settings: Settings, technique: TechniqueDescription): boolean {
   const asked = !hasSetting(settings, "detail") || sharedSettingsOf(settings).detail === true;
   return technique.showsDetail && asked;
 }
 
-// True where the fields' false colours are in the picture.
+// True if the picture shows the fields' false colours.
 export function drawsFalseColors(settings: Settings, technique: TechniqueDescription): boolean {
   return technique.showsFieldOptics && sharedSettingsOf(settings).falseColors === true;
 }
@@ -134,7 +134,7 @@ export function withSettings(rendering: Rendering, change: SettingsChange): Rend
   return settings === undefined ? rendering : renderingOf({ ...settings, ...change } as Settings);
 }
 
-// Another technique, which keeps of the present one's settings what both have. The server fills in the rest.
+// Changes the technique. Shared settings are kept; the server fills in the others.
 export function withTechnique(rendering: Rendering, name: string): Rendering {
   const field = TECHNIQUES.find((other) => other.name === name);
   if (field === undefined) return renderingOf(create(OtherTechniqueSchema, { name }));
@@ -151,7 +151,7 @@ export function renderingOfPreset(preset: Preset): Rendering {
   return create(RenderingSchema, { technique: { case: "preset", value: preset } });
 }
 
-// The technique and settings that a preset stands for; any other rendering is that already.
+// Replaces a preset by the technique and settings that it stands for; undefined if the server has not sent them.
 export function resolved(
   rendering: Rendering | undefined,
   presets: readonly PresetDescription[],
@@ -161,7 +161,7 @@ export function resolved(
   return presets.find(({ preset }) => preset === value)?.rendering;
 }
 
-// The preset that these settings are, if they are one's.
+// The preset with exactly this technique and these settings, if there is one.
 export function presetOf(
   rendering: Rendering | undefined,
   presets: readonly PresetDescription[],

@@ -1,5 +1,5 @@
-// All that the page knows, as signals: the scene being edited, what the server said of itself and its storms,
-// the frame on the screen, the connection, and what went wrong. Knows no network and no document.
+// The page's state as signals: the scene being edited, the server's descriptions of itself and its storms, the frame on
+// the screen, the connection, and notices. Independent of network and document.
 
 import { create, equals } from "@bufbuild/protobuf";
 import { batch, computed, type ReadonlySignal, signal } from "@preact/signals-core";
@@ -42,7 +42,7 @@ import type { SunDirection } from "./sun";
 export type Connection =
   | { readonly kind: "connecting" }
   | { readonly kind: "live" }
-  // `attempts` counts the tries since the loss; `retryInMs` is the wait before the next.
+  // `attempts` since the connection was lost; `retryInMs` is the wait before the next.
   | {
       readonly kind: "lost";
       readonly reason: string;
@@ -59,7 +59,7 @@ export interface ShownFrame {
   readonly bytes: number;
   readonly stages: readonly StageCost[];
   readonly modelled: Modelled | undefined;
-  // Of a picture by the reference.
+  // Only of pictures by the reference.
   readonly refinement: Refinement | undefined;
   readonly accuracy: AccuracyReport | undefined;
 }
@@ -71,7 +71,7 @@ export interface Pace {
 }
 
 export interface Notice {
-  // One notice a subject at a time; a newer one takes its place.
+  // A newer notice on the same subject replaces an older one.
   readonly subject: string;
   readonly text: string;
   readonly severity: "problem" | "note";
@@ -79,13 +79,13 @@ export interface Notice {
 
 export interface Session {
   readonly id: string;
-  // True where it was opened from a link, or a link to it was copied.
+  // True if it was opened from a link, or a link to it was copied.
   readonly shared: boolean;
 }
 
 export class PageState {
   readonly #scene = signal<Scene>(create(SceneSchema));
-  // The server's own pose of the camera on the screen, while the scene leaves it open.
+  // The camera pose of the frame on the screen, used while the scene leaves it open.
   readonly #shownPose = signal<Pose | undefined>(undefined);
   // The sun of the frame on the screen.
   readonly #shownSun = signal<Sun | undefined>(undefined);
@@ -99,10 +99,10 @@ export class PageState {
   readonly frame = signal<ShownFrame | undefined>(undefined);
   readonly pace = signal<Pace>({ framesPerSecond: 0, bytesPerSecond: 0, latencyMs: undefined });
   readonly notices = signal<readonly Notice[]>([]);
-  // Share of the canvas's device pixels that the picture has.
+  // The picture's width and height over the canvas's, in device pixels.
   readonly resolution = signal(1);
   readonly panelOpen = signal(true);
-  // What the user would have made, and whether the server is at it.
+  // The cloud set in the panel, and whether the server is making it.
   readonly cloud = signal<CloudDraft>(FIRST_CLOUD);
   readonly makingCloud = signal(false);
 
@@ -113,7 +113,7 @@ export class PageState {
   // Parts of the scene that change only when they are edited themselves.
   readonly fields = computed(() => this.#scene.value.fields);
   readonly sun = computed(() => this.#scene.value.sun);
-  // Where the sun stands: as set by hand, or where the server found it to be at the time.
+  // The sun's direction: as set by hand, or as the server computed it from the clock.
   readonly sunDirection = computed((): SunDirection => {
     const sun = this.#scene.value.sun;
     const byTime = sun?.source === Sun_Source.BY_TIME ? this.#shownSun.value : undefined;
@@ -125,13 +125,13 @@ export class PageState {
   });
   readonly lights = computed(() => this.#scene.value.lights);
   readonly sky = computed(() => this.#scene.value.sky);
-  // The scene's technique and settings, also where it names a preset; undefined until the server has told of either.
+  // The scene's technique and settings, with presets resolved; undefined until the server has sent them.
   readonly rendering = computed(() =>
     resolved(this.#scene.value.rendering, this.server.value?.presets ?? []),
   );
   readonly settings = computed(() => settingsOf(this.rendering.value));
   readonly technique = computed(() => this.#describe(this.settings.value));
-  // The preset that the scene's technique and settings are, while no accuracy is asked for that changes them.
+  // The preset that the scene's rendering equals; undefined if there is none, or while an accuracy goal overrides it.
   readonly preset = computed((): Preset | undefined =>
     this.goal.value === undefined
       ? presetOf(this.rendering.value, this.server.value?.presets ?? [])
@@ -139,9 +139,9 @@ export class PageState {
   );
   readonly display = computed(() => this.#scene.value.display);
   readonly accuracy = computed(() => this.#scene.value.accuracy);
-  // The accuracy or speed asked for; the server picks technique and settings while there is one.
+  // The kind of accuracy goal; while there is one the server picks technique and settings.
   readonly goal = computed(() => this.#scene.value.accuracy?.limit.case);
-  // The technique that draws, the scene's own or the one that the server picked, and what it shows of the fields.
+  // The technique that draws (the scene's own, or the one picked for the goal), and what it shows of the fields.
   readonly drawnTechnique = computed(() => this.#describe(this.#drawnSettings.value));
   readonly detailShown = computed(() => this.#isDrawn(drawsDetail));
   readonly falseColorsShown = computed(() => this.#isDrawn(drawsFalseColors));
@@ -156,7 +156,7 @@ export class PageState {
     const storm = this.storm.value;
     return storm !== undefined && storm.id === this.stormId.value ? storm.times.length : 0;
   });
-  // Where the camera stands: the scene's camera, or where the server put it.
+  // The camera's pose: the scene's, or where the scene leaves it open that of the frame on the screen.
   readonly pose = computed(() => {
     const { camera } = this.#scene.value;
     const shown = this.#shownPose.value;
@@ -169,12 +169,12 @@ export class PageState {
     () => this.#scene.value.camera?.kind.case ?? this.#shownPose.value?.kind ?? "orbit",
   );
 
-  // Called with each scene that the user makes.
+  // The listener is called with the new scene after each edit by the user.
   onEdit(listener: (scene: Scene) => void): void {
     this.#onEdit = listener;
   }
 
-  // The user's change.
+  // An edit by the user; sent to the server.
   edit(change: (scene: Scene) => Scene): void {
     const before = this.#scene.value;
     const after = change(before);
@@ -183,29 +183,29 @@ export class PageState {
     this.#onEdit?.(after);
   }
 
-  // The user's change of how the picture is computed.
+  // An edit of the technique; ignored until the server has sent the present one.
   editRendering(change: (rendering: Rendering) => Rendering): void {
     const rendering = this.rendering.peek();
     if (rendering !== undefined) this.edit((scene) => withRendering(scene, change(rendering)));
   }
 
-  // The user's change of the technique's settings.
+  // An edit of the technique's settings.
   editSettings(change: SettingsChange): void {
     this.editRendering((rendering) => withSettings(rendering, change));
   }
 
-  // A change of the camera, from where it stands now.
+  // An edit of the camera, relative to its present pose.
   move(motion: (pose: Pose) => Pose): void {
     const pose = this.pose.value;
     if (pose !== undefined) this.edit((scene) => withCamera(scene, cameraOfPose(motion(pose))));
   }
 
-  // The server's word on the scene; not sent back to it.
+  // A scene from the server; not sent back to it.
   adoptScene(scene: Scene): void {
     this.#scene.value = scene;
   }
 
-  // What the server made of the scene's own rendering: a technique with every setting filled in.
+  // The scene's own rendering as completed by the server: a technique with every setting filled in.
   adoptRendering(rendering: Rendering | undefined): void {
     const scene = this.#scene.value;
     if (rendering === undefined) return;
@@ -214,8 +214,8 @@ export class PageState {
     this.#scene.value = withRendering(scene, rendering);
   }
 
-  // The camera of a frame on the screen. It fills in what the scene leaves open; where another viewer moved the
-  // camera of a shared session it takes the place of ours.
+  // The camera of the frame on the screen. Fills in a camera that the scene leaves open, and replaces ours if another
+  // viewer of the session moved it.
   adoptCamera(camera: Camera | undefined, movedByOthers: boolean): void {
     const pose = poseOfCamera(camera);
     if (pose === undefined) return;

@@ -25,7 +25,7 @@ const GOALS = [
   ["maxMilliseconds", "At most this time a frame"],
 ] as const;
 
-// Where the sliders begin: a goal that every view of the tables reaches, and a frame that moves smoothly.
+// Initial values of the sliders: an error within reach for every view, and a time per frame that still moves smoothly.
 const FIRST_ERROR = 0.5;
 const FIRST_MILLISECONDS = 100;
 

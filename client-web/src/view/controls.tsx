@@ -1,27 +1,27 @@
-// The small controls that the panel is made of. Each shows one value and says when the user changes it.
+// The panel's controls. Each shows one value and reports the user's changes.
 import type { ComponentChildren } from "preact";
 import { useEffect, useId, useRef, useState } from "preact/hooks";
 import { clampToLimits, type Limits, positionOfValue, valueAtPosition } from "../core/limits";
 import { displayUnitOf, formatNumber, formatQuantity } from "../core/units";
 
 const SLIDER_STEPS = 400;
-// How long a slider is held still before what takes seconds is begun.
+// A slider whose change costs seconds reports it after being still for this long.
 const SLIDER_REST_MS = 500;
 
 interface SliderProps {
   readonly label: string;
   readonly limits: Limits;
-  // Undefined while the server has not said what it is.
+  // Undefined until the server has sent it.
   readonly value: number | undefined;
-  // What the reset button goes back to.
+  // The value that the reset button restores; absent is the schema's default.
   readonly initial?: number | undefined;
   readonly testId: string;
-  // True where a change costs seconds: it is told when the slider is let go or rests, not at each step.
+  // True if a change costs seconds: reported when the slider is released or rests, not at each step.
   readonly afterRest?: boolean;
   readonly onChange: (value: number) => void;
 }
 
-// What a slider is dragged to before that is told, and how it is told: once it is let go, or rests.
+// The value that a slider was dragged to but has not reported yet. It is reported on release, or after a rest.
 function useHeld(onChange: (value: number) => void) {
   const [held, setHeld] = useState<number | undefined>(undefined);
   const tellLater = useRef<ReturnType<typeof setTimeout> | undefined>(undefined);
@@ -152,17 +152,17 @@ export function Choice<T extends string | number>(props: ChoiceProps<T>) {
 
 interface SegmentsProps<T extends string | number> {
   readonly label: string;
-  // Undefined where it is none of them.
+  // Undefined if none is chosen.
   readonly value: T | undefined;
-  // Each with its name and a sentence about it.
+  // Value, name and explanation.
   readonly options: readonly (readonly [T, string, string])[];
-  // Shown where the value is none of them.
+  // Shown in place of an explanation while none is chosen.
   readonly otherwise: string;
   readonly testId: string;
   readonly onChange: (value: T) => void;
 }
 
-// One of two or three, side by side, with the sentence about the chosen one below; a screen reader has each one's.
+// A few options side by side, with the explanation of the chosen one below. Screen readers get each one's.
 export function Segments<T extends string | number>(props: SegmentsProps<T>) {
   const { label, value, options, otherwise, testId, onChange } = props;
   const id = useId();
@@ -256,7 +256,7 @@ interface SwitchProps {
   readonly checked: boolean;
   readonly testId: string;
   readonly onChange: (checked: boolean) => void;
-  // Where the label is shown by something else.
+  // True if something else on the screen shows the label.
   readonly labelHidden?: boolean;
 }
 
@@ -281,7 +281,7 @@ interface SectionProps {
   readonly children: ComponentChildren;
 }
 
-// A part of the panel that folds.
+// A section of the panel that folds.
 export function Section({ title, open, testId, children }: SectionProps) {
   return (
     <details class="section" open={open} data-testid={testId}>

@@ -87,7 +87,7 @@ export function CumulusControls({ state, cumulus }: CumulusProps) {
         onChange={(trap) => state.editSettings({ trap })}
       />
       <Slider
-        label="Light through"
+        label="Transmission"
         limits={LIMITS.cumulusTransmission}
         value={cumulus.transmission ?? LIMITS.cumulusTransmission.defaultValue}
         testId="cumulus-transmission"

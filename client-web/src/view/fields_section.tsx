@@ -44,7 +44,7 @@ export function FieldsSection({ state }: { state: PageState }) {
   );
 }
 
-// True where a change of extinction has metaballs fitted anew, which takes seconds.
+// True if a change of extinction makes the server fit metaballs again, which takes seconds.
 function fitsAnew(state: PageState): boolean {
   const settings = state.settings.value;
   return settings !== undefined && isMessage(settings, MetaballsSchema);
@@ -52,7 +52,7 @@ function fitsAnew(state: PageState): boolean {
 
 function FieldRow({ state, field }: { state: PageState; field: FieldDescription }) {
   const { hydrometeor, defaults } = field;
-  // Read so that the row is drawn anew when a field changes, and only then.
+  // Subscribes the row to changes of the fields, not to those of the whole scene.
   void state.fields.value;
   const shown = effectiveField(state.scene.peek(), hydrometeor, defaults);
   const name = hydrometeorName(hydrometeor);
@@ -106,7 +106,7 @@ function FieldRow({ state, field }: { state: PageState; field: FieldDescription 
   );
 }
 
-/** Fields of this unit are extinction already: a particle's size changes nothing. */
+// Fields in this unit are extinction already: particle size has no effect.
 const EXTINCTION_UNITS = "m-1";
 
 function amountOf(field: FieldDescription): string {

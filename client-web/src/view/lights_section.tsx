@@ -12,7 +12,7 @@ import {
 import { Section, Slider } from "./controls";
 
 const WHITE = { red: 1, green: 1, blue: 1 };
-// Of lights added one after the other, so that the second looks different from the first.
+// Colours of lights added one after the other, so that each looks different.
 const FIRST_COLORS = ["#ff9a4d", "#4d8dff", "#ffffff", "#c04dff"];
 
 export function LightsSection({ state }: { state: PageState }) {

@@ -1,4 +1,4 @@
-// How many metaballs there are, and how they scatter light (Man).
+// The number of metaballs and how they scatter light (Man).
 import { transportOf } from "../core/rendering";
 import { LIMITS } from "../core/scene";
 import type { PageState } from "../core/state";
@@ -22,7 +22,7 @@ export function MetaballControls({ state, metaballs }: MetaballProps) {
         onChange={(count) => state.editSettings({ count })}
       />
       <Switch
-        label="Scatter evenly to all sides"
+        label="Scatter isotropically"
         checked={metaballs.isotropic ?? false}
         testId="metaball-isotropic"
         onChange={(isotropic) => state.editSettings({ isotropic })}

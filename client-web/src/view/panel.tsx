@@ -88,7 +88,7 @@ function StormSection({ page }: { page: Page }) {
   );
 }
 
-// Asks once more before it deletes.
+// The first click asks for confirmation.
 function DeleteCloud({ page }: { page: Page }) {
   const [asked, setAsked] = useState(false);
   return (

@@ -1,4 +1,4 @@
-// How good the picture is to be: three words, and below them, folded, the technique and its settings.
+// Quality of the picture: three presets, and folded below them the technique and its settings.
 import { nameOfPreset } from "../core/names";
 import { withPreset } from "../core/scene";
 import type { PageState } from "../core/state";
@@ -33,7 +33,7 @@ export function QualitySection({ state }: { state: PageState }) {
   );
 }
 
-// In place of a quality's sentence where none is chosen.
+// Shown while none of the three presets is chosen.
 function otherwise(state: PageState): string {
   if (state.goal.value !== undefined) return "Chosen by the server for the accuracy asked for.";
   if (state.settings.value === undefined) return "Waiting for the server …";
@@ -43,7 +43,7 @@ function otherwise(state: PageState): string {
     : `As in the paper: ${nameOfPreset(preset)}.`;
 }
 
-// What the picture on the screen leaves out of the scene.
+// Properties of the scene that the picture on the screen leaves out.
 function NotShown({ state }: { state: PageState }) {
   const notShown = state.frame.value?.modelled?.notShown ?? [];
   if (notShown.length === 0) return null;

@@ -35,7 +35,7 @@ export function Readout({ state }: { state: PageState }) {
   );
 }
 
-// Progress of the reference. Whoever judges the picture must know it, so it is never folded away.
+// Progress of the reference. Always visible, as a picture cannot be judged without it.
 function RefinementBrief({ refinement }: { refinement: Refinement }) {
   const { samplesPerPixel, relativeError } = refinement;
   return (
@@ -79,14 +79,14 @@ function Costs({ state }: { state: PageState }) {
               testId="technique"
               text={nameOfTechnique(frame.modelled.technique)}
             />
-            {/* The reference has neither slices nor a place on the device. */}
+            {/* The reference is traced on the CPU: no slices, nothing on the device. */}
             {frame.refinement === undefined && (
               <>
                 {frame.modelled.balls > 0 && (
                   <>
                     <Row name="Metaballs" text={String(frame.modelled.balls)} />
                     <Row
-                      name="Fit off by"
+                      name="Fit error"
                       text={`${formatNumber(frame.modelled.fitError * 100)} %, root mean square`}
                     />
                   </>
@@ -104,9 +104,9 @@ function Costs({ state }: { state: PageState }) {
                 {frame.modelled.ellipsoids > 0 && (
                   <Row name="Ellipsoids" text={String(frame.modelled.ellipsoids)} />
                 )}
-                <Row name="On the device" text={formatBytes(Number(frame.modelled.deviceBytes))} />
+                <Row name="Device memory" text={formatBytes(Number(frame.modelled.deviceBytes))} />
                 <Row
-                  name="Of the domain"
+                  name="Domain drawn"
                   text={`${formatNumber(frame.modelled.occupiedShare * 100)} %`}
                 />
               </>

@@ -1,4 +1,4 @@
-// The technique that computes the picture, and those settings that it has.
+// The technique that computes the picture, and its settings.
 import { isMessage } from "@bufbuild/protobuf";
 import { nameOfPreset, nameOfTechnique, nameOfTracedLight, nameOfTransport } from "../core/names";
 import {
@@ -89,7 +89,7 @@ interface MediumProps {
   readonly technique: TechniqueDescription;
 }
 
-// Settings that several techniques have, each where this one has it.
+// The settings that several techniques share; only those that this one has.
 function MediumControls({ state, settings, technique }: MediumProps) {
   const shared = sharedSettingsOf(settings);
   const transport = transportOf(settings);
@@ -141,7 +141,7 @@ interface SettingSliderProps {
   readonly label: string;
 }
 
-// Nothing where the technique has no such setting.
+// Empty if the technique has no such setting.
 function SettingSlider({ state, settings, name, label }: SettingSliderProps) {
   const limits = settingLimits(settings, name);
   if (limits === undefined) return null;
