@@ -461,6 +461,11 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
     await page.getByTestId("lights-shown").innerText(),
     /Light volume does not show them.*Metaballs.*Monte Carlo/,
   );
+  // The server filled in the settings that metaballs do not have.
+  await until("the light volume has its own defaults", async () =>
+    (await chosenQuality()).includes("Balanced"),
+  );
+  assert.equal(await page.getByTestId("detail").isChecked(), true);
   await changing(() => page.getByTestId("light-1-remove").click());
   await changing(() => page.getByTestId("light-1-remove").click());
   assert.equal(await page.getByTestId("light-1").count(), 0);

@@ -188,7 +188,7 @@ export function Segments<T extends string | number>(props: SegmentsProps<T>) {
           </label>
         ))}
       </div>
-      <p class="quiet" role="status" data-testid={`${testId}-about`}>
+      <p class="quiet" data-testid={`${testId}-about`}>
         {chosen?.[2] ?? otherwise}
       </p>
     </div>
