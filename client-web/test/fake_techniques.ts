@@ -1,11 +1,13 @@
 // Test support: the techniques and presets of the fake service, and the defaults that it fills in.
 import { create, isMessage, type Message, type MessageInitShape } from "@bufbuild/protobuf";
 import {
+  hasSetting,
   renderingOf,
   type Settings,
   settingsOf,
   sharedSettingsOf,
   techniqueNameOf,
+  withSettings,
 } from "../src/core/rendering";
 import {
   CumulusSchema,
@@ -118,7 +120,13 @@ export function completeRendering(rendering: Rendering | undefined): Rendering {
     return renderingOf(create(OtherTechniqueSchema, { ...TOY, numbers }));
   }
   const set = Object.entries(given).filter(([, value]) => value !== undefined && value !== 0);
-  return renderingOf({ ...defaults, ...Object.fromEntries(set) } as Message as Settings);
+  const settings = { ...defaults, ...Object.fromEntries(set) } as Message as Settings;
+  const { transport, tracedLight } = sharedSettingsOf(given);
+  const untraced = transport && transport !== Transport.DIFFUSION && !tracedLight;
+  return withSettings(
+    renderingOf(settings),
+    untraced && hasSetting(settings, "tracedLight") ? { tracedLight: TracedLight.OFF } : {},
+  );
 }
 
 export function modelledOf(scene: Scene) {

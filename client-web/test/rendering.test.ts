@@ -18,6 +18,7 @@ import {
   transportsOf,
   withSettings,
   withTechnique,
+  withTransport,
 } from "../src/core/rendering";
 import { withPreset, withRendering } from "../src/core/scene";
 import { PageState } from "../src/core/state";
@@ -195,6 +196,22 @@ describe("a technique's settings", () => {
       const settings = mustSettings(withTechnique(balanced, name));
       expect(transportsOf(settings).length > 0).toBe(hasSetting(settings, "transport"));
     }
+  });
+
+  it("of traced light follow the transport", () => {
+    const consistent = withTransport(balanced, Transport.CONSISTENT);
+    expect(settingsOf(consistent)).toMatchObject({
+      transport: Transport.CONSISTENT,
+      tracedLight: TracedLight.UNSPECIFIED,
+      slices: 128,
+    });
+    expect(sharedSettingsOf(settingsOf(completeRendering(consistent))).tracedLight).toBe(
+      TracedLight.OFF,
+    );
+    const back = completeRendering(withTransport(consistent, Transport.DIFFUSION));
+    expect(presetOf(back, FAKE_PRESETS)).toBe(Preset.BALANCED);
+    const halfAngle = withTransport(withTechnique(balanced, NAME.halfAngle), Transport.PAPER);
+    expect("tracedLight" in mustSettings(halfAngle)).toBe(false);
   });
 
   it("take no part in the picture where the technique does not show them", () => {

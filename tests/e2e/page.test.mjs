@@ -230,6 +230,10 @@ test("fast draws fewer samples without detail, and the arrow keys change the qua
   await changing(() => setNumber(page, "slices", fine / 2));
   assert.deepEqual(await chosenQuality(), ["Fast"]);
 
+  const transport = page.getByTestId("transport");
+  await changing(() => transport.selectOption({ label: "Consistent" }));
+  assert.equal(await page.getByTestId("traced-light").count(), 0);
+  assert.equal(await page.getByTestId("not-shown").count(), 0, "nothing is asked for in vain");
   const paper = page.getByTestId("papers-choice");
   await changing(() => paper.selectOption({ label: "Uniform phase, low albedo" }));
   assert.deepEqual(await chosenQuality(), []);

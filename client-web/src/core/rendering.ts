@@ -20,6 +20,7 @@ import {
   Preset,
   type Rendering,
   RenderingSchema,
+  TracedLight,
   Transport,
 } from "../gen/thunderhead/v1/scene_pb";
 import type { PresetDescription, TechniqueDescription } from "../gen/thunderhead/v1/thunderhead_pb";
@@ -132,6 +133,14 @@ export function drawsFalseColors(settings: Settings, technique: TechniqueDescrip
 export function withSettings(rendering: Rendering, change: SettingsChange): Rendering {
   const settings = settingsOf(rendering);
   return settings === undefined ? rendering : renderingOf({ ...settings, ...change } as Settings);
+}
+
+// Changes the transport, and leaves it to the server when to trace light: not all transports are corrected by it.
+export function withTransport(rendering: Rendering, transport: Transport): Rendering {
+  const settings = settingsOf(rendering);
+  const traces = settings !== undefined && hasSetting(settings, "tracedLight");
+  const rest = traces ? { tracedLight: TracedLight.UNSPECIFIED } : {};
+  return withSettings(rendering, { transport, ...rest });
 }
 
 // Changes the technique. Shared settings are kept; the server fills in the others.

@@ -13,6 +13,7 @@ import {
   transportOf,
   transportsOf,
   withTechnique,
+  withTransport,
 } from "../core/rendering";
 import { withPreset } from "../core/scene";
 import type { PageState } from "../core/state";
@@ -110,7 +111,9 @@ function MediumControls({ state, settings, technique }: MediumProps) {
           testId="transport"
           value={transport}
           options={transportsOf(settings).map((each) => [each, nameOfTransport(each)] as const)}
-          onChange={(chosen) => state.editSettings({ transport: chosen })}
+          onChange={(chosen) =>
+            state.editRendering((rendering) => withTransport(rendering, chosen))
+          }
         />
       )}
       {tracesLight(settings, technique) && (
