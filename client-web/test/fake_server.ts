@@ -1,5 +1,5 @@
-// Test support: an HTTP server that serves the built page and the fake service over gRPC-Web, with the flags
-// of `thunderhead serve`, to look at the page and to try the browser test without the real program:
+// Test support: an HTTP server for the built page and the fake service over gRPC-Web, with the flags of `thunderhead
+// serve`, to try the page and the browser test without the real program:
 //   npm run fake -- serve --http 127.0.0.1:8099 --page dist
 import { createReadStream, existsSync, statSync } from "node:fs";
 import { createServer } from "node:http";
@@ -24,7 +24,7 @@ function flag(name: string, otherwise: string): string {
 
 const [host, port] = flag("http", "127.0.0.1:8099").split(":");
 const page = flag("page", "dist");
-const service = new FakeService(drawFakeStorm);
+const service = new FakeService(drawFakeStorm, true);
 const bridge = connectNodeAdapter({ routes: service.routes, grpc: false, connect: false });
 
 createServer((request, response) => {

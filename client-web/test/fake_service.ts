@@ -1,5 +1,5 @@
-// Test support: Thunderhead's service kept in memory, with sessions, revisions, acknowledged frames, a coarse
-// frame for each scene and a refined one after a rest; and with ways to make it fail.
+// Test support: a fake of Thunderhead's service in memory, with sessions, revisions, acknowledged frames, a coarse frame
+// for each scene and a refined one after a rest; tests can make it fail.
 import { create } from "@bufbuild/protobuf";
 import { Code, ConnectError, type ConnectRouter } from "@connectrpc/connect";
 import { cameraOfPose, poseOfCamera } from "../src/core/camera";
@@ -14,12 +14,23 @@ import {
 import { StormDescriptionSchema } from "../src/gen/thunderhead/v1/storm_pb";
 import {
   type AcknowledgeFrameRequest,
+  Stage,
   ThunderheadService,
   type WatchFramesResponse,
   WatchFramesResponseSchema,
 } from "../src/gen/thunderhead/v1/thunderhead_pb";
+import {
+  completeRendering,
+  FAKE_PRESETS,
+  FAKE_TECHNIQUES,
+  modelledOf,
+  tracesLight,
+} from "./fake_techniques";
 
 const REFINE_AFTER_MS = 120;
+const TRACE_EVERY_MS = 1000;
+const PATHS_A_TRACE = 100_000n;
+const MOST_PATHS = 1_000_000n;
 const MOST_IN_FLIGHT = 2;
 
 interface Viewer {
@@ -56,7 +67,11 @@ export class FakeService {
     { id: "single", title: "One time only", timeCount: 1, deletable: false },
   ];
 
-  constructor(readonly draw: Draw) {}
+  // With `tracing`, a session at rest sends frames with ever more traced paths; without, it sends nothing.
+  constructor(
+    readonly draw: Draw,
+    readonly tracing = false,
+  ) {}
 
   readonly routes = (router: ConnectRouter): void => {
     router.service(ThunderheadService, {
@@ -66,6 +81,8 @@ export class FakeService {
         glVersion: "none",
         device: "software",
         maxSessions: 16,
+        techniques: FAKE_TECHNIQUES,
+        presets: FAKE_PRESETS,
       }),
       listStorms: () => ({ storms: this.#storms }),
       generateCloud: ({ seed }) => {
@@ -142,10 +159,20 @@ export class FakeService {
   #render(session: Session): void {
     clearTimeout(session.refine);
     this.#publish(session, false);
-    session.refine = setTimeout(() => this.#publish(session, true), REFINE_AFTER_MS);
+    session.refine = setTimeout(() => this.#rest(session, 0n), REFINE_AFTER_MS);
   }
 
-  #publish(session: Session, refined: boolean): void {
+  // The refined frame, and then frames with ever more traced paths if the scene has traced light.
+  #rest(session: Session, tracedPaths: bigint): void {
+    this.#publish(session, true, tracedPaths);
+    if (!this.tracing || !tracesLight(session.scene) || tracedPaths >= MOST_PATHS) return;
+    session.refine = setTimeout(
+      () => this.#rest(session, tracedPaths + PATHS_A_TRACE),
+      TRACE_EVERY_MS,
+    );
+  }
+
+  #publish(session: Session, refined: boolean, tracedPaths = 0n): void {
     const share = refined ? 1 : 0.5;
     const widthPx = Math.max(1, Math.round((session.scene.output?.widthPx ?? 640) * share));
     const heightPx = Math.max(1, Math.round((session.scene.output?.heightPx ?? 360) * share));
@@ -162,8 +189,11 @@ export class FakeService {
           widthPx,
           heightPx,
           camera: session.scene.camera,
-          stages: [{ stage: "slices", milliseconds: performance.now() - start }],
-          modelled: { slices: session.scene.rendering?.slices ?? 0, occupiedShare: 0.25 },
+          stages: [
+            { stage: Stage.VIEW, milliseconds: performance.now() - start },
+            { stage: Stage.TONE, milliseconds: 0.1 },
+          ],
+          modelled: { ...modelledOf(session.scene), tracedPaths },
           refined,
         },
       },
@@ -269,9 +299,10 @@ const HOME = cameraOfPose({
 
 function complete(scene: Scene): Scene {
   const stormId = scene.stormId === "" ? "supercell" : scene.stormId;
+  const rendering = completeRendering(scene.rendering);
   const camera =
     scene.camera !== undefined && poseOfCamera(scene.camera) !== undefined ? scene.camera : HOME;
-  return withOutput(withCamera({ ...scene, stormId }, camera), {
+  return withOutput(withCamera({ ...scene, stormId, rendering }, camera), {
     widthPx: scene.output?.widthPx ?? LIMITS.width.defaultValue,
     heightPx: scene.output?.heightPx ?? LIMITS.height.defaultValue,
     jpegQuality: scene.output?.jpegQuality ?? LIMITS.jpegQuality.defaultValue,

@@ -1,9 +1,10 @@
-// Test support: pictures of a storm that is not there. A few soft blobs over a sky, placed by the scene's
-// camera, lit by its sun, switched by its fields; enough to see whether the page asks for the right thing.
+// Test support: pictures of a made-up storm. A few soft blobs over a sky that follow the scene's camera, sun and fields;
+// enough to see whether the page sends the right scene.
 import jpeg from "jpeg-js";
 import { poseOfCamera } from "../src/core/camera";
+import { settingsOf, sharedSettingsOf } from "../src/core/rendering";
 import { effectiveField } from "../src/core/scene";
-import { Hydrometeor, type Scene } from "../src/gen/thunderhead/v1/scene_pb";
+import { Hydrometeor, type Scene, Transport } from "../src/gen/thunderhead/v1/scene_pb";
 
 interface Blob3 {
   readonly hydrometeor: Hydrometeor;
@@ -26,6 +27,10 @@ export function drawFakeStorm(scene: Scene, widthPx: number, heightPx: number): 
   const elevation = scene.sun?.elevationDeg ?? 35;
   const light = Math.max(0.05, Math.sin((elevation * Math.PI) / 180)) ** 0.5;
   const gain = 2 ** (scene.display?.exposureEv ?? 0);
+  const { transport, detail, falseColors } = sharedSettingsOf(settingsOf(scene.rendering));
+  // Makes transport, detail and false colours visible, without looking like the real ones.
+  const brightness = (transport === Transport.DIFFUSION ? 100 : 20) + (detail ? 20 : 0);
+  const tint = falseColors ? [1, 0.2, 0.2] : [1, 1, 1];
   for (let y = 0; y < heightPx; y += 1) {
     const down = y / heightPx;
     for (let x = 0; x < widthPx; x += 1) {
@@ -34,8 +39,8 @@ export function drawFakeStorm(scene: Scene, widthPx: number, heightPx: number): 
         const distance = Math.hypot(x - blob.x, y - blob.y) / blob.r;
         if (distance >= 1) continue;
         const opacity = (1 - distance * distance) * blob.opacity;
-        const shade = 150 + (100 * (blob.y - y)) / blob.r;
-        color = color.map((c) => c * (1 - opacity) + opacity * light * shade);
+        const shade = 50 + brightness + (100 * (blob.y - y)) / blob.r;
+        color = color.map((c, k) => c * (1 - opacity) + opacity * light * shade * (tint[k] ?? 1));
       }
       const at = 4 * (y * widthPx + x);
       for (let k = 0; k < 3; k += 1)

@@ -3,7 +3,7 @@ import { FramePipeline, type Sequenced } from "../src/core/frame_pipeline";
 import { FrameRate } from "../src/core/frame_rate";
 import { RevisionLedger } from "../src/core/revision_ledger";
 
-// A pipeline whose decoder and screen are worked by hand.
+// A pipeline whose decoder and screen refresh the test controls.
 function bench() {
   const decoding: { frame: Sequenced; done(): void; fail(): void }[] = [];
   const paints: (() => void)[] = [];

@@ -3,14 +3,16 @@ import { clampToLimits, limitsOf, positionOfValue, valueAtPosition } from "../sr
 import { LIMITS } from "../src/core/scene";
 import {
   FieldParametersSchema,
+  LightVolumeSchema,
   PositionSchema,
-  RenderingSchema,
   SceneSchema,
 } from "../src/gen/thunderhead/v1/scene_pb";
 
+const SLICES = limitsOf(LightVolumeSchema.field.slices);
+
 describe("limits come from the schema", () => {
   it("reads range, default, unit and scale of a number", () => {
-    expect(limitsOf(RenderingSchema.field.slices)).toEqual({
+    expect(SLICES).toEqual({
       minimum: 1,
       maximum: 4096,
       defaultValue: 128,
@@ -47,21 +49,20 @@ describe("clamping", () => {
   });
 
   it("rounds integers and answers what is no number with the default", () => {
-    expect(clampToLimits(12.6, LIMITS.slices)).toBe(13);
-    expect(clampToLimits(1e9, LIMITS.slices)).toBe(4096);
-    expect(clampToLimits(Number.NaN, LIMITS.slices)).toBe(128);
+    expect(clampToLimits(12.6, SLICES)).toBe(13);
+    expect(clampToLimits(1e9, SLICES)).toBe(4096);
+    expect(clampToLimits(Number.NaN, SLICES)).toBe(128);
   });
 });
 
 describe("slider positions", () => {
   it("moves evenly in the logarithm where the schema says so", () => {
-    const { slices } = LIMITS;
-    expect(positionOfValue(64, slices)).toBeCloseTo(0.5, 12);
-    expect(valueAtPosition(0.5, slices)).toBe(64);
+    expect(positionOfValue(64, SLICES)).toBeCloseTo(0.5, 12);
+    expect(valueAtPosition(0.5, SLICES)).toBe(64);
   });
 
   it("reaches both ends exactly, also where a logarithmic range begins at zero", () => {
-    for (const limits of Object.values(LIMITS)) {
+    for (const limits of [...Object.values(LIMITS), SLICES]) {
       expect(valueAtPosition(0, limits)).toBeCloseTo(limits.minimum, 6);
       const end = valueAtPosition(1, limits);
       expect(Math.abs(end - limits.maximum)).toBeLessThanOrEqual(1e-6 * limits.maximum);
@@ -71,7 +72,7 @@ describe("slider positions", () => {
   });
 
   it("gives back the position it came from, to three digits of the value", () => {
-    for (const limits of Object.values(LIMITS)) {
+    for (const limits of [...Object.values(LIMITS), SLICES]) {
       for (const position of [0.1, 0.35, 0.5, 0.77, 0.99]) {
         const value = valueAtPosition(position, limits);
         // An integer may lie half a step from where the slider stands.
@@ -83,7 +84,7 @@ describe("slider positions", () => {
   });
 
   it("rises with its position", () => {
-    for (const limits of Object.values(LIMITS)) {
+    for (const limits of [...Object.values(LIMITS), SLICES]) {
       let before = valueAtPosition(0, limits);
       for (let step = 1; step <= 40; step += 1) {
         const value = valueAtPosition(step / 40, limits);

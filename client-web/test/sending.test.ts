@@ -90,7 +90,7 @@ describe("scenes on their way to the server", () => {
     const newest = sceneOf(2);
     b.sender.push(newest);
     b.sender.start(newest);
-    // The old one's fate is known only now.
+    // Only now does the old scene fail.
     b.sent[0]?.lost();
     await b.settle();
     await b.refresh();

@@ -1,4 +1,4 @@
-// The way to the server against the fake service, in memory, with failures where the network would have them.
+// The session client against the fake service in memory, with simulated network failures.
 import { create } from "@bufbuild/protobuf";
 import { Code, ConnectError, createRouterTransport, type Interceptor } from "@connectrpc/connect";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
@@ -88,7 +88,7 @@ describe("the session client", () => {
     expect(seen.frames).toHaveLength(2);
     client.acknowledge(seen.frames[1]?.sequence ?? 0n);
     await pass(10);
-    // Of the five frames made meanwhile only the newest comes.
+    // Of the five frames drawn meanwhile only the newest arrives.
     expect(seen.frames).toHaveLength(3);
     expect(seen.frames[2]?.sceneRevision).toBe(6n);
     expect(service.mostUnacknowledged).toBe(2);

@@ -1,5 +1,4 @@
-// The page as a person meets it: the real server, a real browser, the sample storm. Each part leaves a
-// screenshot in output/.
+// End-to-end test of the page: the real server, a real browser, the sample storm. Screenshots go to output/.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { after, before, test } from "node:test";
@@ -69,7 +68,7 @@ async function until(what, holds) {
   }
 }
 
-// Waits until a refined frame stays on the canvas.
+// Waits until a refined frame has stayed on the canvas for REST_MS.
 async function rested(of = page) {
   let held = { sequence: undefined, since: 0 };
   await until("a refined picture that rests", async () => {
@@ -81,7 +80,7 @@ async function rested(of = page) {
   return canvasData(of);
 }
 
-// Does something that changes the scene, and waits for the refined picture of it.
+// Runs an action that changes the scene, and waits for the refined picture of the new scene.
 async function changing(action, of = page) {
   const revisionBefore = Number((await canvasData(of)).revision);
   await action();
@@ -104,7 +103,7 @@ async function drag(rightPx, downPx, steps = 12) {
   await page.mouse.up();
 }
 
-// Fingers on the glass, from the first points to the second.
+// A touch gesture: fingers move from the first points to the second.
 async function slide(fingers, from, to) {
   const steps = 8;
   const at = (share) =>
@@ -119,12 +118,47 @@ async function slide(fingers, from, to) {
   await send("touchEnd", []);
 }
 
-// Types a number into the text of a slider, which may lie in a folded part.
+// Sets the number field of a slider, which may be folded away.
 async function setNumber(of, name, value) {
   await of.getByTestId(`${name}-number`).evaluate((input, text) => {
     input.value = text;
     input.dispatchEvent(new Event("change", { bubbles: true }));
   }, String(value));
+}
+
+// The chosen quality: a list of one or none.
+function chosenQuality(of = page) {
+  return of
+    .locator("[data-testid=quality-choice] input:checked")
+    .evaluateAll((radios) => radios.map((radio) => radio.labels[0].innerText));
+}
+
+const chooseQuality = (word) =>
+  page.getByTestId("quality-choice").getByText(word, { exact: true }).click();
+
+async function unfoldSettings(open = true) {
+  const settings = page.getByTestId("technique-settings");
+  if ((await settings.evaluate((details) => details.open)) !== open) {
+    await settings.locator("> summary").click();
+  }
+}
+
+const foldSettings = () => unfoldSettings(false);
+
+// Waits until the readout shows more than this many million traced paths.
+function pathsBeyond(millions) {
+  return page.waitForFunction(
+    (least) => {
+      const row = document.querySelector("[data-testid=traced-paths]");
+      return Number.parseFloat(row?.textContent) > least;
+    },
+    millions,
+    { timeout: PICTURE_TIMEOUT_MS, polling: 50 },
+  );
+}
+
+async function tracedPaths() {
+  return Number.parseFloat(await page.getByTestId("traced-paths").textContent());
 }
 
 const screenshot = (name, of = page) => of.screenshot({ path: `${OUTPUT}${name}.png` });
@@ -141,9 +175,96 @@ test("a storm is on the canvas, not a blank", async () => {
   assert.ok(grey > 0.005 && grey < 0.9, `share of bright cloud pixels is ${grey}`);
 });
 
+test("a fresh page is balanced: diffusion with detail", async () => {
+  assert.deepEqual(await chosenQuality(), ["Balanced"]);
+  assert.match(await page.getByTestId("quality-choice-about").innerText(), /Fine detail/);
+  await unfoldSettings();
+  const label = (choice) => choice.evaluate((select) => select.selectedOptions[0].label);
+  assert.equal(await page.getByTestId("technique-choice").inputValue(), "light_volume");
+  assert.equal(await label(page.getByTestId("transport")), "Diffusion");
+  assert.equal(await label(page.getByTestId("traced-light")), "At rest");
+  assert.equal(await page.getByTestId("detail").isChecked(), true);
+  assert.equal(await page.getByTestId("per-field-phase").isChecked(), true);
+  assert.equal(await page.getByTestId("field-cloud-color").count(), 0, "no colours that are not shown");
+  await screenshot("1-settings");
+  await foldSettings();
+});
+
+test("traced light corrects the picture while it rests, and stays when it turns", async () => {
+  await pathsBeyond(0);
+  const paths = await tracedPaths();
+  await pathsBeyond(paths);
+  await screenshot("1-traced-light");
+  await changing(() => drag(60, 0));
+  await pathsBeyond(paths);
+  await unfoldSettings();
+  await changing(() => page.getByTestId("traced-light").selectOption({ label: "Off" }));
+  await rested();
+  assert.equal(await page.getByTestId("traced-paths").count(), 0);
+  assert.deepEqual(await chosenQuality(), []);
+  assert.match(await page.getByTestId("quality-choice-about").innerText(), /Custom/);
+  await foldSettings();
+  await changing(() => drag(-60, 0));
+});
+
+test("fast draws fewer samples without detail, and the arrow keys change the quality", async () => {
+  await unfoldSettings();
+  await changing(() => chooseQuality("Balanced"));
+  assert.deepEqual(await chosenQuality(), ["Balanced"]);
+  const slices = () => page.getByTestId("slices-number").inputValue();
+  const [fine, balanced] = [Number(await slices()), await grabCanvas(page)];
+  assert.equal(await page.getByTestId("field-cloud").getByText("Detail").count(), 1);
+
+  await page.getByTestId("quality-choice-balanced").focus();
+  await changing(() => page.keyboard.press("ArrowLeft"));
+  assert.deepEqual(await chosenQuality(), ["Fast"]);
+  assert.equal(Number(await slices()), fine / 2);
+  assert.equal(await page.getByTestId("detail").isChecked(), false);
+  assert.equal(await page.getByTestId("field-cloud").getByText("Detail").count(), 0);
+  const fast = await grabCanvas(page);
+  await screenshot("2-fast");
+  assert.ok(difference(balanced, fast) > 0.1, "without detail the picture is the same");
+
+  await changing(() => setNumber(page, "slices", fine / 2 + 1));
+  assert.deepEqual(await chosenQuality(), []);
+  await changing(() => setNumber(page, "slices", fine / 2));
+  assert.deepEqual(await chosenQuality(), ["Fast"]);
+
+  const transport = page.getByTestId("transport");
+  await changing(() => transport.selectOption({ label: "Consistent" }));
+  assert.equal(await page.getByTestId("traced-light").count(), 0);
+  assert.equal(await page.getByTestId("not-shown").count(), 0, "nothing is asked for in vain");
+  const paper = page.getByTestId("papers-choice");
+  await changing(() => paper.selectOption({ label: "Uniform phase, low albedo" }));
+  assert.deepEqual(await chosenQuality(), []);
+  assert.match(await page.getByTestId("quality-choice-about").innerText(), /low albedo/);
+  assert.equal(await page.getByTestId("per-field-phase").isChecked(), false);
+  assert.equal(await page.getByTestId("traced-light").count(), 0);
+  const darker = await grabCanvas(page);
+  assert.ok(difference(fast, darker) > 1, "single scattering looks like diffusion");
+  // The following tests compare pictures at rest; Fast has no traced light to change them.
+  await changing(() => chooseQuality("Fast"));
+  await foldSettings();
+});
+
+test("fields in their false colours", async () => {
+  await unfoldSettings();
+  const usual = await grabCanvas(page);
+  await changing(() => page.getByTestId("false-colors").check());
+  assert.ok(difference(usual, await grabCanvas(page)) > 1, "false colours look like true ones");
+  const swatches = await page.locator("[data-testid^=field-][data-testid$=-color]").count();
+  assert.ok(swatches > 1, `there are ${swatches} colours to choose`);
+  await screenshot("2-false-colours");
+  await changing(() => page.getByTestId("false-colors").uncheck());
+  assert.deepEqual(await chosenQuality(), ["Fast"]);
+  await foldSettings();
+});
+
 test("the readout says what the picture costs, and on what", async () => {
   await page.getByTestId("readout-summary").click();
   const stages = await page.getByTestId("stages").innerText();
+  assert.match(stages, /Tone map\s+[\d.e-]+ ms/);
+  assert.match(stages, /Technique\s+Light volume/);
   assert.match(stages, /All stages\s+[\d.e-]+ ms/);
   assert.match(stages, /Bytes\s+[\d.]+ (kB|MB)/);
   assert.match(await page.getByTestId("renderer").innerText(), /\S{3,}/);
@@ -247,12 +368,10 @@ test("the sun set by the dome darkens the storm as it sinks", async () => {
 });
 
 test("the reference refines the picture while it rests, and begins again when it turns", async () => {
-  await page.getByTestId("rendering-section").locator("summary").click();
-  const choice = page.getByTestId("renderer-choice");
-  const usual = await choice.inputValue();
-  await choice.selectOption({ label: "Reference: refine to truth" });
+  await unfoldSettings();
+  await page.getByTestId("technique-choice").selectOption({ label: "Monte Carlo reference" });
   const refinement = () => page.getByTestId("refinement").evaluate((text) => ({ ...text.dataset }));
-  // The error of the smallest picture falls with its samples; larger ones begin again.
+  // The first, smallest pictures gather samples quickly; larger ones start over.
   const reached = (samples) =>
     page.waitForFunction(
       (least) => {
@@ -277,21 +396,24 @@ test("the reference refines the picture while it rests, and begins again when it
     { timeout: PICTURE_TIMEOUT_MS },
   );
   await reached(2);
+  assert.equal(await page.getByTestId("slices").count(), 0, "it has no slices");
+  assert.equal(await page.getByTestId("per-field-phase").isChecked(), true);
   await changing(async () => {
-    await choice.selectOption(usual);
+    await chooseQuality("Fast");
     await drag(-60, 0);
   });
   assert.equal(await page.getByTestId("refinement").count(), 0);
-  await page.getByTestId("rendering-section").locator("summary").click();
+  await foldSettings();
 });
 
 test("metaballs draw the storm, and the page says what they leave out", async () => {
-  await page.getByTestId("rendering-section").locator("summary").click();
-  const choice = page.getByTestId("renderer-choice");
-  const usual = await choice.inputValue();
+  await unfoldSettings();
+  const choice = page.getByTestId("technique-choice");
   const before = await grabCanvas(page);
   assert.equal(await page.getByTestId("metaball-count").count(), 0);
   await changing(() => choice.selectOption({ label: "Metaballs" }));
+  assert.deepEqual(await chosenQuality(), []);
+  assert.equal(await page.getByTestId("per-field-phase").isChecked(), true);
   const balls = await grabCanvas(page);
   await screenshot("9-metaballs");
   const { deviation } = spread(balls);
@@ -306,7 +428,7 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
   assert.ok(difference(balls, await grabCanvas(page)) > 0.01);
   await changing(() => page.getByTestId("metaball-isotropic").click());
 
-  // A slider that has balls fitted anew is told once it is let go.
+  // A slider that makes the server fit balls again reports its value on release only.
   let updates = 0;
   const count = (request) => {
     if (request.url().endsWith("/UpdateScene")) updates += 1;
@@ -336,23 +458,37 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
   assert.ok(difference(before2, warm) > 0.5, "a light more is seen");
   assert.ok(difference(warm, both) > 0.5, "and another one");
   assert.doesNotMatch(await page.getByTestId("not-shown").innerText(), /lights/);
+  assert.match(await page.getByTestId("lights-shown").innerText(), /Metaballs shows them/);
   await changing(() => choice.selectOption({ label: "Light volume" }));
   assert.match(await page.getByTestId("not-shown").innerText(), /lights besides the sun/);
+  assert.match(
+    await page.getByTestId("lights-shown").innerText(),
+    /Light volume does not show them.*Metaballs.*Monte Carlo/,
+  );
+  // The server filled in the settings that metaballs do not have.
+  await until("the light volume has its own defaults", async () =>
+    (await chosenQuality()).includes("Balanced"),
+  );
+  assert.equal(await page.getByTestId("detail").isChecked(), true);
   await changing(() => page.getByTestId("light-1-remove").click());
   await changing(() => page.getByTestId("light-1-remove").click());
   assert.equal(await page.getByTestId("light-1").count(), 0);
   await page.getByTestId("lights-section").locator("summary").click();
-  assert.equal(usual, await choice.inputValue());
+  await changing(() => chooseQuality("Fast"));
   assert.equal(await page.getByTestId("not-shown").count(), 0);
-  await page.getByTestId("rendering-section").locator("summary").click();
+  assert.ok(difference(before, await grabCanvas(page)) < 1, "the light volume is back");
+  await foldSettings();
 });
 
 test("a cumulus as a surface, and the parts of its light", async () => {
-  await page.getByTestId("rendering-section").locator("summary").click();
-  const choice = page.getByTestId("renderer-choice");
-  const usual = await choice.inputValue();
+  await unfoldSettings();
   assert.equal(await page.getByTestId("cumulus-component").count(), 0);
-  await changing(() => choice.selectOption({ label: "Cumulus surface" }));
+  await changing(() =>
+    page.getByTestId("technique-choice").selectOption({ label: "Cumulus surface" }),
+  );
+  for (const name of ["transport", "slices", "theta-f", "detail", "false-colors"]) {
+    assert.equal(await page.getByTestId(name).count(), 0, `a cumulus has no ${name}`);
+  }
   assert.match(await page.getByTestId("not-shown").innerText(), /snow/);
   await changing(() => page.getByTestId("cumulus-source").selectOption({ label: "Cauliflower" }));
   const whole = await grabCanvas(page);
@@ -374,40 +510,8 @@ test("a cumulus as a surface, and the parts of its light", async () => {
   }
   await changing(() => page.getByTestId("cumulus-component").selectOption({ label: "All" }));
   assert.ok(difference(whole, await grabCanvas(page)) < 1, "the whole is back");
-  await changing(() =>
-    page.getByTestId("cumulus-source").selectOption({ label: "The storm's cloud and ice" }),
-  );
-  await changing(() => choice.selectOption(usual));
-  await page.getByTestId("rendering-section").locator("summary").click();
-});
-
-test("traced light corrects the picture while it rests, and stays when it turns", async () => {
-  await page.getByTestId("rendering-section").locator("summary").click();
-  const transport = page.getByTestId("transport");
-  const usual = await transport.inputValue();
-  assert.equal(await page.getByTestId("traced-light").count(), 0);
-  await changing(() => transport.selectOption({ label: "Diffusion" }));
-  const more = (than) =>
-    page.waitForFunction(
-      (least) => Number.parseFloat(document.querySelector("[data-testid=traced-paths]")?.textContent) > least,
-      than,
-      { timeout: PICTURE_TIMEOUT_MS, polling: 50 },
-    );
-  await page.getByTestId("traced-light").check();
-  await more(0);
-  const paths = Number.parseFloat(await page.getByTestId("traced-paths").textContent());
-  await more(paths);
-  await screenshot("9-traced-light");
-  await changing(() => drag(60, 0));
-  await more(paths);
-  await changing(() => page.getByTestId("traced-light").uncheck());
-  await rested();
-  assert.equal(await page.getByTestId("traced-paths").count(), 0);
-  await changing(async () => {
-    await drag(-60, 0);
-    await transport.selectOption(usual);
-  });
-  await page.getByTestId("rendering-section").locator("summary").click();
+  await changing(() => chooseQuality("Fast"));
+  await foldSettings();
 });
 
 test("an accuracy asked for is reached by a setting that the server picks, or the nearest is told", async () => {
@@ -418,7 +522,7 @@ test("an accuracy asked for is reached by a setting that the server picks, or th
       await page.getByTestId("max-error-number").fill(String(error));
       await page.getByTestId("max-error-number").press("Enter");
     });
-    // The slices' part is found out at rest, of renderers that have slices.
+    // The slices' part of the error is measured at rest, for techniques with slices.
     await page.waitForFunction(
       () => {
         const report = document.querySelector("[data-testid=accuracy-report]")?.dataset;
@@ -431,6 +535,7 @@ test("an accuracy asked for is reached by a setting that the server picks, or th
   };
   await changing(() => page.getByTestId("accuracy-goal").selectOption("maxError"));
   await ask(3);
+  assert.deepEqual(await chosenQuality(), []);
   assert.ok(Number((await report()).estimatedError) <= 3);
   assert.ok(Number((await report()).expectedMilliseconds) > 0);
   assert.equal(await page.getByTestId("accuracy-unmet").count(), 0);
@@ -439,6 +544,7 @@ test("an accuracy asked for is reached by a setting that the server picks, or th
   assert.match(await page.getByTestId("accuracy-unmet").innerText(), /out of reach.*nearest is/);
   await screenshot("11-accuracy-unmet");
   await changing(() => page.getByTestId("accuracy-goal").selectOption("none"));
+  assert.deepEqual(await chosenQuality(), ["Fast"]);
   await page.getByTestId("accuracy-section").locator("summary").click();
 });
 
@@ -471,8 +577,8 @@ test("a link brings another viewer into the session, who sees it turn", async ()
       const refined = host.refined === "true" && seen.refined === "true";
       return refined && seen.azimuth === host.azimuth && seen.azimuth !== azimuth;
     });
-    // The guest's controls show what the host has set, before and after the guest came; and a change of the guest's
-    // leaves the rest of the scene as the host set it.
+    // The guest's controls show what the host set before and after the guest joined, and an edit by the guest keeps the
+    // host's other settings.
     const exposure = guest.getByTestId("exposure-number");
     await changing(() => setNumber(page, "turbidity", 2.5));
     await changing(() => setNumber(page, "exposure", 0.7));

@@ -1,7 +1,7 @@
-// What a test can say of a picture of the storm: how varied, how bright, how unlike another.
+// Measures of a picture: spread, brightness, difference from another picture.
 import { PNG } from "pngjs";
 
-// The canvas's own pixels, without what lies over it, read in the page as PNG.
+// The canvas's pixels as PNG, without the panels over it.
 export async function grabCanvas(page) {
   const dataUrl = await page.getByTestId("storm-canvas").evaluate((canvas) => canvas.toDataURL("image/png"));
   return PNG.sync.read(Buffer.from(dataUrl.split(",")[1], "base64"));

@@ -1,4 +1,4 @@
-// Checks that what the browser test needs is there, says plainly what is not, and runs it.
+// Checks the browser test's prerequisites, reports what is missing, and runs it.
 import { spawnSync } from "node:child_process";
 import { existsSync } from "node:fs";
 import { fileURLToPath } from "node:url";

@@ -10,7 +10,7 @@ const BINARY = process.env.THUNDERHEAD_BINARY ?? `${ROOT}build/release/bin/thund
 const START_TIMEOUT_MS = 60_000;
 const STOP_TIMEOUT_MS = 10_000;
 
-// A port that is free now, for the program to take and to take again after a restart.
+// A port that is free now; the program uses the same one again after a restart.
 export function freePort() {
   return new Promise((resolve, reject) => {
     const server = createServer();

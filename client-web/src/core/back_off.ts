@@ -1,4 +1,4 @@
-// How long to wait before trying again: doubling from a quarter of a second to four.
+// Exponential back-off: delays double from a quarter of a second to four seconds.
 
 export const FIRST_DELAY_MS = 250;
 export const LONGEST_DELAY_MS = 4000;

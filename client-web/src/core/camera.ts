@@ -1,4 +1,4 @@
-// The cameras' motions: what a drag of so many pixels does to where a camera stands and looks.
+// Camera motions: how a drag in pixels moves and turns each kind of camera.
 // World axes as in proto/thunderhead/v1/scene.proto: x east, y north, z up, azimuth clockwise from north.
 import { create } from "@bufbuild/protobuf";
 import {
@@ -37,7 +37,7 @@ export interface TopDownPose {
   readonly widthM: number;
 }
 
-// Of the picture that the pointer moves over, in any unit that its motions are in.
+// Size of the picture under the pointer, in the unit of the pointer's motions.
 export interface PictureSize {
   readonly widthPx: number;
   readonly heightPx: number;
@@ -75,10 +75,10 @@ const DEGREES_PER_HEIGHT = 180;
 // Dragging across the whole height of the picture walks a spotter this far.
 const WALK_PER_HEIGHT_M = 20_000;
 
-// Of the frame behind a spotter's lens.
+// Height of the frame behind a spotter's lens.
 const FRAME_HEIGHT_MM = 24;
 
-// The pose of a camera in which the server has filled in every value; undefined while some are missing.
+// The pose of a camera with every value filled in by the server; undefined while some are missing.
 export function poseOfCamera(camera: Camera | undefined): Pose | undefined {
   switch (camera?.kind.case) {
     case "orbit": {
@@ -170,14 +170,14 @@ export function standingAzimuthDeg(pose: Pose | undefined): number | undefined {
   return pose?.kind === "spotter" ? wrapDegrees(pose.azimuthDeg + 180) : undefined;
 }
 
-// The same direction between 0 and 360 degrees.
+// The same azimuth between 0 and 360 degrees.
 export function wrapDegrees(degrees: number): number {
   const wrapped = degrees % 360;
   return wrapped < 0 ? wrapped + 360 : wrapped;
 }
 
-// What the pointer holds follows it: an orbit camera goes around, a spotter turns its head, a map moves. Pixels are
-// right and down.
+// The scene follows the pointer: an orbit camera goes around, a spotter turns its head, a map moves. Pixels count right
+// and down.
 export function drag<P extends Pose>(
   pose: P,
   rightPx: number,
@@ -214,8 +214,8 @@ export function turn(pose: Pose, azimuthDeg: number, elevationDeg: number): Pose
   };
 }
 
-// Moves the camera across the line of sight, so that what lies at the target's distance follows the pointer. A spotter
-// walks instead: to the left of a drag to the right, backwards of one up.
+// Moves the camera across the line of sight, so that points at the target's distance follow the pointer. A spotter walks
+// instead: left for a drag to the right, backwards for a drag up.
 export function pan<P extends Pose>(
   pose: P,
   rightPx: number,

@@ -1,4 +1,4 @@
-// A cloud to be made by the server's generator, as the page edits it, and the request that it becomes.
+// Parameters of a cloud for the server's generator as the panel edits them, and the request made of them.
 import { create } from "@bufbuild/protobuf";
 import {
   type GenerateCloudRequest,
@@ -13,7 +13,7 @@ import { type Limits, limitsOf } from "./limits";
 export interface CloudDraft {
   readonly preset: Preset;
   readonly seed: number;
-  // False leaves all below to the preset.
+  // False: the preset decides all that follows.
   readonly ownShape: boolean;
   readonly octaves: number;
   readonly persistence: number;
@@ -22,8 +22,8 @@ export interface CloudDraft {
   readonly threshold: number;
   readonly dynamics: number;
   readonly waterKgPerM3: number;
-  // One a line: middle x, y, z, radii x, y, z in m, and turned about x, y, z by degrees, with commas. Empty for the
-  // preset's.
+  // One ellipsoid a line, numbers separated by commas: center x, y, z, radii x, y, z in m, and optionally rotation about
+  // x, y, z in degrees. Empty: the preset's.
   readonly ellipsoids: string;
 }
 
@@ -53,7 +53,7 @@ export const CLOUD_LIMITS = {
   water: limitsOf(field.waterKgPerM3),
 } as const satisfies Record<string, Limits>;
 
-// Throws an Error that names the line of an ellipsoid that is none.
+// Throws an Error that names the line if an ellipsoid is malformed.
 export function requestOfCloud(draft: CloudDraft): GenerateCloudRequest {
   const { preset, seed } = draft;
   if (!draft.ownShape) return create(GenerateCloudRequestSchema, { preset, seed });

@@ -1,6 +1,6 @@
-// Frames to the screen, the newest first: one frame is decoded at a time, one waits for it, one waits to be
-// painted, and a newer frame takes the place of whichever has not been painted yet. So the page holds three
-// frames at most and latency cannot grow, however slowly it decodes or paints.
+// Decodes frames and paints them, dropping old ones: one frame is being decoded, one waits to be decoded, one waits to
+// be painted, and a newer frame replaces a waiting one. So the page holds at most three frames, and latency cannot grow
+// however slow decoding or painting is.
 
 export interface Sequenced {
   readonly sequence: bigint;
@@ -8,11 +8,11 @@ export interface Sequenced {
 
 export interface PipelineSteps<F extends Sequenced, P> {
   decode(frame: F): Promise<P>;
-  // Asks for one call when the screen is about to be drawn; returns what withdraws it.
+  // Requests one call at the next screen refresh; returns a function that cancels it.
   onNextPaint(callback: () => void): () => void;
   // Draws the picture; the frame counts as shown when this returns.
   paint(frame: F, picture: P): void;
-  // Frees a picture that has been replaced or was never painted.
+  // Frees a picture that was replaced or never painted.
   release(picture: P): void;
   // The frame could not be decoded; a later one may.
   failed(frame: F, reason: unknown): void;
@@ -33,12 +33,12 @@ export class FramePipeline<F extends Sequenced, P> {
     this.#steps = steps;
   }
 
-  // Frames that came and were never painted, because a newer one was there.
+  // Number of frames that were received but never painted, because a newer one was there.
   get dropped(): number {
     return this.#dropped;
   }
 
-  // Another stream counts its frames anew; what is under way from the old one is forgotten.
+  // Sequence numbers restart with a new stream; frames of the old one are dropped.
   startStream(): void {
     this.#stream += 1;
     this.#newestDecoded = 0n;

@@ -1,5 +1,5 @@
-// What a number of the schema may be, read from the options beside its declaration in proto/, and how a
-// slider moves through that range. Knows no widget.
+// Range, default and unit of each number, read from the field options in proto/, and the mapping between a value and
+// its slider's position. Independent of widgets.
 import { type DescField, getOption, ScalarType } from "@bufbuild/protobuf";
 import {
   max_items as maxItemsOption,
@@ -9,13 +9,13 @@ import {
 export interface Limits {
   readonly minimum: number;
   readonly maximum: number;
-  // What an absent field means; undefined where that depends on the storm or the hydrometeor.
+  // Value of an absent field; undefined if it depends on the storm or the hydrometeor.
   readonly defaultValue: number | undefined;
-  // As UCUM writes it.
+  // In UCUM notation.
   readonly unit: string;
   readonly logarithmic: boolean;
   readonly integer: boolean;
-  // True where the wire holds 32-bit floats.
+  // True if the message stores a 32-bit float.
   readonly singlePrecision: boolean;
 }
 
@@ -42,7 +42,7 @@ export function limitsOf(field: DescField): Limits {
   };
 }
 
-// How many elements a list may have.
+// The most elements that a list may have.
 export function mostItemsOf(field: DescField): number {
   const most = getOption(field, maxItemsOption);
   if (field.fieldKind !== "list" || most < 1) {
@@ -80,7 +80,7 @@ function logarithmicFloor(limits: Limits): number {
   return limits.minimum > 0 ? limits.minimum : limits.maximum / LOGARITHMIC_SPAN;
 }
 
-// Where a value stands on its slider, 0 to 1.
+// The slider position of a value, 0 to 1.
 export function positionOfValue(value: number, limits: Limits): number {
   const { minimum, maximum } = limits;
   if (!limits.logarithmic) return share((value - minimum) / (maximum - minimum));
@@ -89,7 +89,7 @@ export function positionOfValue(value: number, limits: Limits): number {
   return share(Math.log(value / floor) / Math.log(maximum / floor));
 }
 
-// The value that a slider's position, 0 to 1, stands for, at most three digits long between the ends.
+// The value at a slider position, 0 to 1, rounded to three digits between the ends.
 export function valueAtPosition(position: number, limits: Limits): number {
   const { minimum, maximum } = limits;
   const along = share(position);

@@ -7,7 +7,7 @@ export interface PlaybackSteps {
   // True once the picture of this time is on the screen.
   isShown(index: number): boolean;
   showTime(index: number): void;
-  // Asks for one call at the next screen refresh; returns what withdraws it.
+  // Requests one call at the next screen refresh; returns a function that cancels it.
   onNextPaint(callback: (nowMs: number) => void): () => void;
 }
 
@@ -46,7 +46,7 @@ export class Playback {
     this.#withdrawPaint = undefined;
   }
 
-  // One time forward or back; past the end it begins again.
+  // One time forward or back, wrapping around at the ends.
   step(by: number): void {
     const count = this.#steps.timeCount();
     if (count < 1) return;

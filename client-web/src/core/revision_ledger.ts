@@ -1,5 +1,5 @@
-// Which revision of the scene was sent when, and what the frames shown say about it: the latency from sending
-// a revision to showing a frame of it or a later one, and which of the storm's times is on the screen.
+// Matches the scenes sent with the frames shown: the latency from sending a scene to showing a frame of it or of a later
+// one, and the storm's time that is on the screen.
 
 interface Sent {
   readonly sentAtMs: number;
@@ -7,7 +7,7 @@ interface Sent {
   revision: bigint | undefined;
 }
 
-// Revisions that may await their frame at a time; older ones are forgotten without a latency.
+// Sent scenes that may await their frame at a time; older ones are dropped without a latency.
 const MOST_OPEN = 64;
 const MOST_LATENCIES = 60;
 
@@ -19,12 +19,12 @@ export class RevisionLedger {
   #newestAccepted = -1n;
   #shownTimeIndex: number | undefined;
 
-  // The time of the newest revision of ours that the screen shows.
+  // The time index of our newest revision on the screen.
   get shownTimeIndex(): number | undefined {
     return this.#shownTimeIndex;
   }
 
-  // The newest revision that the server gave one of our scenes; -1 before the first.
+  // The newest revision of our own scenes; -1 before the first.
   get newestAccepted(): bigint {
     return this.#newestAccepted;
   }
@@ -39,7 +39,7 @@ export class RevisionLedger {
     return this.#latenciesMs[this.#latenciesMs.length - 1];
   }
 
-  // Another session counts its revisions anew.
+  // Revisions restart with a new session.
   startSession(): void {
     this.#open = [];
     this.#recentlyShown = [];
@@ -48,7 +48,7 @@ export class RevisionLedger {
     this.#shownTimeIndex = undefined;
   }
 
-  // A scene leaves; returns what tells its fate.
+  // A scene is sent; returns the functions to call with the server's answer.
   sent(timeIndex: number, nowMs: number): { accepted(revision: bigint): void; refused(): void } {
     const entry: Sent = { sentAtMs: nowMs, timeIndex, revision: undefined };
     this.#open.push(entry);
@@ -68,7 +68,7 @@ export class RevisionLedger {
     this.settled(revision);
   }
 
-  // This revision has all that it will get: a frame, or a problem in place of one.
+  // This revision will get no more: it has a frame, or a problem in its place.
   settled(revision: bigint): void {
     if (revision > this.#newestShown) this.#newestShown = revision;
     this.#close();
@@ -80,7 +80,7 @@ export class RevisionLedger {
     this.#close();
   }
 
-  // A frame may come before the reply that names its revision, so both ends look for pairs.
+  // Called by both ends, as a frame may arrive before the reply that names its revision.
   #close(): void {
     const stillOpen: Sent[] = [];
     for (const entry of this.#open) {

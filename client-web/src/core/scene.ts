@@ -1,11 +1,10 @@
-// Scenes as values: each change gives a new scene that shares what did not change, so that `===` tells what
-// did. Absent values mean their defaults, as in proto/thunderhead/v1/scene.proto.
+// Scenes as immutable values: a change returns a new scene that shares unchanged parts, so `===` detects changes. Absent
+// values mean their defaults, as in proto/thunderhead/v1/scene.proto.
 import { create, fromBinary, type Message, toBinary } from "@bufbuild/protobuf";
 import {
   type Accuracy,
   AccuracySchema,
   type Camera,
-  type Cumulus,
   CumulusSchema,
   type Detail,
   DetailSchema,
@@ -16,13 +15,12 @@ import {
   type FieldParameters,
   FieldParametersSchema,
   Hydrometeor,
-  type Metaballs,
   MetaballsSchema,
   type Output,
   OutputSchema,
   PhaseFunctionSchema,
+  type Preset,
   type Rendering,
-  RenderingSchema,
   type Scene,
   SceneSchema,
   type Sky,
@@ -33,6 +31,7 @@ import {
   SunSchema,
 } from "../gen/thunderhead/v1/scene_pb";
 import { clampToLimits, type Limits, limitsOf, mostItemsOf } from "./limits";
+import { renderingOfPreset } from "./rendering";
 
 export const LIMITS = {
   fieldScale: limitsOf(FieldParametersSchema.field.scale),
@@ -55,8 +54,6 @@ export const LIMITS = {
   skyBrightness: limitsOf(SkySchema.field.brightness),
   groundAlbedo: limitsOf(SkySchema.field.groundAlbedo),
   turbidity: limitsOf(SkySchema.field.turbidity),
-  slices: limitsOf(RenderingSchema.field.slices),
-  thetaF: limitsOf(RenderingSchema.field.thetaFDeg),
   metaballCount: limitsOf(MetaballsSchema.field.count),
   metaballAlbedo: limitsOf(MetaballsSchema.field.albedo),
   metaballOpticalDepth: limitsOf(MetaballsSchema.field.opticalDepth),
@@ -77,7 +74,7 @@ export const LIMITS = {
 
 export const MOST_LIGHTS = mostItemsOf(SceneSchema.field.lights);
 
-// What may be changed of a message.
+// The fields of a message, all optional.
 type Change<T extends Message> = Partial<Omit<T, keyof Message>>;
 
 function changed<T extends Message>(message: T, change: Change<T>): T {
@@ -102,7 +99,7 @@ export function withSunClock(scene: Scene, change: Change<SunClock>): Scene {
   });
 }
 
-// One light more, besides the sun.
+// Adds a light besides the sun.
 export function withLightAdded(scene: Scene, light: DirectionalLight): Scene {
   return changed(scene, { lights: [...scene.lights, light] });
 }
@@ -121,19 +118,14 @@ export function withSky(scene: Scene, change: Change<Sky>): Scene {
   return changed(scene, { sky: changed(scene.sky ?? create(SkySchema), change) });
 }
 
-export function withRendering(scene: Scene, change: Change<Rendering>): Scene {
-  return changed(scene, { rendering: changed(scene.rendering ?? create(RenderingSchema), change) });
+export function withRendering(scene: Scene, rendering: Rendering | undefined): Scene {
+  return changed(scene, { rendering });
 }
 
-export function withMetaballs(scene: Scene, change: Change<Metaballs>): Scene {
-  return withRendering(scene, {
-    metaballs: changed(scene.rendering?.metaballs ?? create(MetaballsSchema), change),
-  });
-}
-
-export function withCumulus(scene: Scene, change: Change<Cumulus>): Scene {
-  const cumulus = changed(scene.rendering?.cumulus ?? create(CumulusSchema), change);
-  return withRendering(scene, { cumulus });
+// Replaces technique and settings by a preset. Also drops an accuracy goal, for which the server would choose other
+// settings.
+export function withPreset(scene: Scene, preset: Preset): Scene {
+  return changed(scene, { rendering: renderingOfPreset(preset), accuracy: undefined });
 }
 
 export function withDisplay(scene: Scene, change: Change<Display>): Scene {
@@ -165,28 +157,28 @@ export function withField(
   });
 }
 
-// One field's phase function with another parameter.
+// Changes the parameter of one field's phase function.
 export function withAsymmetry(scene: Scene, hydrometeor: Hydrometeor, asymmetry: number): Scene {
   const field = scene.fields.find((other) => other.hydrometeor === hydrometeor);
   const phase = changed(field?.phase ?? create(PhaseFunctionSchema), { asymmetry });
   return withField(scene, hydrometeor, { phase });
 }
 
-// One field's turbulent detail, changed.
+// Changes one field's turbulent detail.
 export function withDetail(scene: Scene, hydrometeor: Hydrometeor, change: Change<Detail>): Scene {
   const field = scene.fields.find((other) => other.hydrometeor === hydrometeor);
   const detail = changed(field?.detail ?? create(DetailSchema), change);
   return withField(scene, hydrometeor, { detail });
 }
 
-// Another storm has other fields, another extent, place and date: what belongs to the old one goes, the light,
-// the rendering and the picture stay.
+// Shows another storm. Settings that belong to the old one (fields, time, camera, clock) are dropped; light, rendering and
+// picture stay.
 export function withStorm(scene: Scene, stormId: string): Scene {
   const next = changed(scene, { stormId, timeIndex: 0, camera: undefined, fields: [] });
   return next.sun?.clock === undefined ? next : withSun(next, { clock: undefined });
 }
 
-// A field's settings as drawn: the scene's, and where it is silent those the storm's description gives.
+// A field's settings as drawn: the scene's, else the defaults of the storm's description.
 export function effectiveField(
   scene: Scene,
   hydrometeor: Hydrometeor,
@@ -217,7 +209,7 @@ export function effectiveField(
   });
 }
 
-// The picture's size for a canvas of so many device pixels at a share of its resolution.
+// Picture size for a canvas in device pixels, scaled by `resolution`.
 export function outputSize(
   widthPx: number,
   heightPx: number,
@@ -248,7 +240,7 @@ export function hydrometeorName(hydrometeor: Hydrometeor): string {
   return HYDROMETEOR_NAMES[hydrometeor] ?? `Field ${hydrometeor}`;
 }
 
-// A scene in an address, base64 as RFC 4648 section 5 writes it for URLs.
+// A serialized scene for addresses, in the URL-safe base64 of RFC 4648, section 5.
 const URL_ALPHABET = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
 
 export function sceneToUrlText(scene: Scene): string {
@@ -262,7 +254,7 @@ export function sceneToUrlText(scene: Scene): string {
   return text;
 }
 
-// Undefined where the text is no scene, as in a link that was cut off.
+// Undefined if the text is not a scene, for example in a truncated link.
 export function sceneFromUrlText(text: string): Scene | undefined {
   const bytes = new Uint8Array(Math.floor((text.length * 3) / 4));
   let bits = 0;

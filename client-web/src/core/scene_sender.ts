@@ -1,11 +1,11 @@
-// Scenes to the server: at most one a screen refresh and one in flight; while one is in flight the newest
-// waits and replaces the one that waited before it.
+// Sends scenes to the server: at most one per screen refresh and one in flight. While one is in flight only the newest
+// other scene is kept.
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
 
 export interface SenderSteps {
-  // Resolves when the server took the scene or refused it for good, rejects when it should be sent again.
+  // Resolves once the server accepted or refused the scene; rejects if it should be sent again.
   send(scene: Scene): Promise<void>;
-  // Asks for one call at the next screen refresh; returns what withdraws it.
+  // Requests one call at the next screen refresh; returns a function that cancels it.
   onNextPaint(callback: () => void): () => void;
 }
 
@@ -22,7 +22,7 @@ export class SceneSender {
     this.#steps = steps;
   }
 
-  // True where the server has not yet answered the newest scene.
+  // True while the newest scene is unanswered.
   get unsettled(): boolean {
     return this.#inFlight || this.#waiting !== undefined;
   }
@@ -32,7 +32,7 @@ export class SceneSender {
     this.#schedule();
   }
 
-  // There is a session to send to. It already holds `known`, if given, and so nothing older than that.
+  // A session is ready. If `known` is given the session already has it, so older scenes are not sent.
   start(known?: Scene): void {
     this.#open = true;
     this.#starts += 1;
@@ -41,7 +41,7 @@ export class SceneSender {
     this.#schedule();
   }
 
-  // The session is out of reach; what waits is kept.
+  // The connection is lost; the waiting scene is kept.
   stop(): void {
     this.#open = false;
     this.#withdrawPaint?.();
@@ -67,7 +67,7 @@ export class SceneSender {
       await this.#steps.send(scene);
     } catch {
       if (!this.#staleInFlight) this.#waiting ??= scene;
-      // Whoever sends reports the loss and calls start() when there is a session again.
+      // The `send` step reports the loss; start() is called once there is a session again.
       if (starts === this.#starts) this.stop();
     }
     this.#inFlight = false;

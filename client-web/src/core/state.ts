@@ -1,10 +1,13 @@
-// All that the page knows, as signals: the scene being edited, what the server said of itself and its storms,
-// the frame on the screen, the connection, and what went wrong. Knows no network and no document.
+// The page's state as signals: the scene being edited, the server's descriptions of itself and its storms, the frame on
+// the screen, the connection, and notices. Independent of network and document.
 
-import { create } from "@bufbuild/protobuf";
+import { create, equals } from "@bufbuild/protobuf";
 import { batch, computed, type ReadonlySignal, signal } from "@preact/signals-core";
 import {
   type Camera,
+  type Preset,
+  type Rendering,
+  RenderingSchema,
   type Scene,
   SceneSchema,
   type Sun,
@@ -18,16 +21,28 @@ import type {
   Modelled,
   Refinement,
   StageCost,
+  TechniqueDescription,
 } from "../gen/thunderhead/v1/thunderhead_pb";
 import { cameraOfPose, type Pose, poseOfCamera } from "./camera";
 import { type CloudDraft, FIRST_CLOUD } from "./cloud";
-import { LIMITS, withCamera } from "./scene";
+import {
+  drawsDetail,
+  drawsFalseColors,
+  presetOf,
+  resolved,
+  type Settings,
+  type SettingsChange,
+  settingsOf,
+  techniqueNameOf,
+  withSettings,
+} from "./rendering";
+import { LIMITS, withCamera, withRendering } from "./scene";
 import type { SunDirection } from "./sun";
 
 export type Connection =
   | { readonly kind: "connecting" }
   | { readonly kind: "live" }
-  // `attempts` counts the tries since the loss; `retryInMs` is the wait before the next.
+  // `attempts` since the connection was lost; `retryInMs` is the wait before the next.
   | {
       readonly kind: "lost";
       readonly reason: string;
@@ -44,7 +59,7 @@ export interface ShownFrame {
   readonly bytes: number;
   readonly stages: readonly StageCost[];
   readonly modelled: Modelled | undefined;
-  // Of a picture by the reference.
+  // Only of pictures by the reference.
   readonly refinement: Refinement | undefined;
   readonly accuracy: AccuracyReport | undefined;
 }
@@ -56,7 +71,7 @@ export interface Pace {
 }
 
 export interface Notice {
-  // One notice a subject at a time; a newer one takes its place.
+  // A newer notice on the same subject replaces an older one.
   readonly subject: string;
   readonly text: string;
   readonly severity: "problem" | "note";
@@ -64,13 +79,13 @@ export interface Notice {
 
 export interface Session {
   readonly id: string;
-  // True where it was opened from a link, or a link to it was copied.
+  // True if it was opened from a link, or a link to it was copied.
   readonly shared: boolean;
 }
 
 export class PageState {
   readonly #scene = signal<Scene>(create(SceneSchema));
-  // The server's own pose of the camera on the screen, while the scene leaves it open.
+  // The camera pose of the frame on the screen, used while the scene leaves it open.
   readonly #shownPose = signal<Pose | undefined>(undefined);
   // The sun of the frame on the screen.
   readonly #shownSun = signal<Sun | undefined>(undefined);
@@ -84,10 +99,10 @@ export class PageState {
   readonly frame = signal<ShownFrame | undefined>(undefined);
   readonly pace = signal<Pace>({ framesPerSecond: 0, bytesPerSecond: 0, latencyMs: undefined });
   readonly notices = signal<readonly Notice[]>([]);
-  // Share of the canvas's device pixels that the picture has.
+  // The picture's width and height over the canvas's, in device pixels.
   readonly resolution = signal(1);
   readonly panelOpen = signal(true);
-  // What the user would have made, and whether the server is at it.
+  // The cloud set in the panel, and whether the server is making it.
   readonly cloud = signal<CloudDraft>(FIRST_CLOUD);
   readonly makingCloud = signal(false);
 
@@ -98,7 +113,7 @@ export class PageState {
   // Parts of the scene that change only when they are edited themselves.
   readonly fields = computed(() => this.#scene.value.fields);
   readonly sun = computed(() => this.#scene.value.sun);
-  // Where the sun stands: as set by hand, or where the server found it to be at the time.
+  // The sun's direction: as set by hand, or as the server computed it from the clock.
   readonly sunDirection = computed((): SunDirection => {
     const sun = this.#scene.value.sun;
     const byTime = sun?.source === Sun_Source.BY_TIME ? this.#shownSun.value : undefined;
@@ -110,9 +125,30 @@ export class PageState {
   });
   readonly lights = computed(() => this.#scene.value.lights);
   readonly sky = computed(() => this.#scene.value.sky);
-  readonly rendering = computed(() => this.#scene.value.rendering);
+  // The scene's technique and settings, with presets resolved; undefined until the server has sent them.
+  readonly rendering = computed(() =>
+    resolved(this.#scene.value.rendering, this.server.value?.presets ?? []),
+  );
+  readonly settings = computed(() => settingsOf(this.rendering.value));
+  readonly technique = computed(() => this.#describe(this.settings.value));
+  // The preset that the scene's rendering equals; undefined if there is none, or while an accuracy goal overrides it.
+  readonly preset = computed((): Preset | undefined =>
+    this.goal.value === undefined
+      ? presetOf(this.rendering.value, this.server.value?.presets ?? [])
+      : undefined,
+  );
   readonly display = computed(() => this.#scene.value.display);
   readonly accuracy = computed(() => this.#scene.value.accuracy);
+  // The kind of accuracy goal; while there is one the server picks technique and settings.
+  readonly goal = computed(() => this.#scene.value.accuracy?.limit.case);
+  // The technique that draws (the scene's own, or the one picked for the goal), and what it shows of the fields.
+  readonly drawnTechnique = computed(() => this.#describe(this.#drawnSettings.value));
+  readonly detailShown = computed(() => this.#isDrawn(drawsDetail));
+  readonly falseColorsShown = computed(() => this.#isDrawn(drawsFalseColors));
+  readonly #drawnSettings = computed(() => {
+    const picked = this.goal.value === undefined ? undefined : this.frame.value?.accuracy;
+    return settingsOf(picked?.rendering) ?? this.settings.value;
+  });
   readonly output = computed(() => this.#scene.value.output);
   readonly timeIndex = computed(() => this.#scene.value.timeIndex ?? 0);
   readonly stormId = computed(() => this.#scene.value.stormId);
@@ -120,7 +156,7 @@ export class PageState {
     const storm = this.storm.value;
     return storm !== undefined && storm.id === this.stormId.value ? storm.times.length : 0;
   });
-  // Where the camera stands: the scene's camera, or where the server put it.
+  // The camera's pose: the scene's, or where the scene leaves it open that of the frame on the screen.
   readonly pose = computed(() => {
     const { camera } = this.#scene.value;
     const shown = this.#shownPose.value;
@@ -133,12 +169,12 @@ export class PageState {
     () => this.#scene.value.camera?.kind.case ?? this.#shownPose.value?.kind ?? "orbit",
   );
 
-  // Called with each scene that the user makes.
+  // The listener is called with the new scene after each edit by the user.
   onEdit(listener: (scene: Scene) => void): void {
     this.#onEdit = listener;
   }
 
-  // The user's change.
+  // An edit by the user; sent to the server.
   edit(change: (scene: Scene) => Scene): void {
     const before = this.#scene.value;
     const after = change(before);
@@ -147,19 +183,39 @@ export class PageState {
     this.#onEdit?.(after);
   }
 
-  // A change of the camera, from where it stands now.
+  // An edit of the technique; ignored until the server has sent the present one.
+  editRendering(change: (rendering: Rendering) => Rendering): void {
+    const rendering = this.rendering.peek();
+    if (rendering !== undefined) this.edit((scene) => withRendering(scene, change(rendering)));
+  }
+
+  // An edit of the technique's settings.
+  editSettings(change: SettingsChange): void {
+    this.editRendering((rendering) => withSettings(rendering, change));
+  }
+
+  // An edit of the camera, relative to its present pose.
   move(motion: (pose: Pose) => Pose): void {
     const pose = this.pose.value;
     if (pose !== undefined) this.edit((scene) => withCamera(scene, cameraOfPose(motion(pose))));
   }
 
-  // The server's word on the scene; not sent back to it.
+  // A scene from the server; not sent back to it.
   adoptScene(scene: Scene): void {
     this.#scene.value = scene;
   }
 
-  // The camera of a frame on the screen. It fills in what the scene leaves open; where another viewer moved the
-  // camera of a shared session it takes the place of ours.
+  // The scene's own rendering as completed by the server: a technique with every setting filled in.
+  adoptRendering(rendering: Rendering | undefined): void {
+    const scene = this.#scene.value;
+    if (rendering === undefined) return;
+    if (scene.rendering !== undefined && equals(RenderingSchema, scene.rendering, rendering))
+      return;
+    this.#scene.value = withRendering(scene, rendering);
+  }
+
+  // The camera of the frame on the screen. Fills in a camera that the scene leaves open, and replaces ours if another
+  // viewer of the session moved it.
   adoptCamera(camera: Camera | undefined, movedByOthers: boolean): void {
     const pose = poseOfCamera(camera);
     if (pose === undefined) return;
@@ -195,5 +251,17 @@ export class PageState {
   dismiss(subject: string): void {
     if (!this.notices.value.some((notice) => notice.subject === subject)) return;
     this.notices.value = this.notices.value.filter((notice) => notice.subject !== subject);
+  }
+
+  #describe(settings: Settings | undefined): TechniqueDescription | undefined {
+    if (settings === undefined) return undefined;
+    const name = techniqueNameOf(settings);
+    return this.server.value?.techniques.find((technique) => technique.name === name);
+  }
+
+  #isDrawn(draws: (settings: Settings, technique: TechniqueDescription) => boolean): boolean {
+    const settings = this.#drawnSettings.value;
+    const technique = this.drawnTechnique.value;
+    return settings !== undefined && technique !== undefined && draws(settings, technique);
   }
 }

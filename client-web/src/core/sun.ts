@@ -8,10 +8,10 @@ export interface SunDirection {
 // The disc ends this far below the horizon, so that twilight can be dragged too.
 export const DOME_LOWEST_DEG = -18;
 
-// Where the disc's radius, 1 at its edge, meets the horizon.
+// Radius of the horizon; 1 is the disc's edge.
 export const DOME_HORIZON = 90 / (90 - DOME_LOWEST_DEG);
 
-// Right and down from the middle, in radii of the disc.
+// Offset from the middle, in radii of the disc.
 export function domePointOfSun(sun: SunDirection): { right: number; down: number } {
   const elevation = Math.max(DOME_LOWEST_DEG, sun.elevationDeg);
   const radius = (90 - elevation) / (90 - DOME_LOWEST_DEG);

@@ -2,9 +2,9 @@
 import type { Limits } from "./limits";
 
 export interface DisplayUnit {
-  // What one schema unit is in this one.
+  // Multiply a value in the schema's unit by this.
   readonly factor: number;
-  // What stands after the number; empty for a pure number.
+  // Printed after the number; empty for a pure number.
   readonly symbol: string;
 }
 

@@ -7,7 +7,7 @@ export function createSameOriginTransport(pageUrl: string): Transport {
   return createGrpcWebTransport({
     baseUrl: `${base.origin}${base.pathname}`.replace(/\/$/, ""),
     fetch: (input, init) => {
-      // A farewell must outlive the page that says it.
+      // `keepalive` lets the call that ends a session finish after the page is closed.
       const farewell = String(input).endsWith("/CloseSession");
       return globalThis.fetch(input, farewell ? { ...init, keepalive: true } : init);
     },

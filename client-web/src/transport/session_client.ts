@@ -1,6 +1,6 @@
-// One viewer's way to the server: opens or joins a session, follows its frames, sends scenes and
-// acknowledgements, and when the connection or the session is lost gets it back by itself. Knows neither
-// widgets nor what a scene looks like.
+// One viewer's connection to the server: opens or joins a session, receives its frames, sends scenes and
+// acknowledgements, and reconnects by itself when the connection or the session is lost. Independent of widgets and
+// of a scene's contents.
 import { type Client, Code, ConnectError, createClient, type Transport } from "@connectrpc/connect";
 import { BackOff } from "../core/back_off";
 import type { Connection } from "../core/state";
@@ -16,24 +16,24 @@ import {
 
 export interface OpenedSession {
   readonly id: string;
-  // The scene the session was asked to start with, the scene as the server completed it, and its revision.
+  // The scene that was sent, the same scene with the server's defaults filled in, and its revision.
   readonly asked: Scene;
   readonly completed: Scene;
   readonly revision: bigint;
-  // True where it takes the place of a session that the server no longer has.
+  // True if it replaces a session that the server no longer has.
   readonly replaces: boolean;
 }
 
 export interface SessionListener {
   // The scene that a new session is to start with.
   sceneToOpen(): Scene;
-  // The server will not open a session with that scene; another is asked for after a while.
+  // The server refuses to open a session with that scene; sceneToOpen() is called again after a delay.
   openingRefused(message: string): void;
   opened(session: OpenedSession): void;
-  // A stream has begun; its frames are counted anew and the session takes scenes again.
+  // A new stream of frames: sequence numbers restart, and the session accepts scenes again.
   streaming(sessionId: string): void;
   connection(connection: Connection): void;
-  // The session's whole scene at a revision, as it is or as somebody has just made it.
+  // The session's whole scene at a revision: at the start of a stream, and after any viewer changed it.
   scene(scene: Scene, revision: bigint): void;
   frame(frame: Frame): void;
   problem(problem: Problem): void;
@@ -44,16 +44,16 @@ export type SceneVerdict =
   | { readonly kind: "refused"; readonly message: string };
 
 const CALL_TIMEOUT_MS = 10_000;
-// Where the camera is left open the server reads the storm before it answers, which may take a while.
+// The server must read the storm before it can place a camera that the scene leaves open.
 const SCENE_TIMEOUT_MS = 120_000;
 const CLOUD_TIMEOUT_MS = 120_000;
-// A stream silent for this long is checked, so that a connection that died without a word is noticed.
+// After this long without a message the connection is checked: it may have been lost without an error.
 export const SILENCE_MS = 5_000;
 const CHECK_TIMEOUT_MS = 4_000;
-// A stream that lived for this long was a success; one that breaks sooner makes the next wait longer.
+// A stream that lasted this long resets the back-off; one that breaks sooner lengthens the next wait.
 const SOUND_MS = 2_000;
 
-// What a network says that fails, and a server that fails says as well.
+// Codes of network failures; some servers' failures have the same ones.
 const NETWORK_CODES = new Set([
   Code.Unknown,
   Code.Unavailable,
@@ -75,7 +75,7 @@ export class SessionClient {
   #retryNow: (() => void) | undefined;
   #retryInMs = 0;
 
-  // Joins `sessionId` where it is given and still there, and opens a new session otherwise.
+  // Joins `sessionId` if it is given and still exists, else opens a new session.
   constructor(transport: Transport, listener: SessionListener, sessionId?: string) {
     this.#client = createClient(ThunderheadService, transport);
     this.#listener = listener;
@@ -93,7 +93,7 @@ export class SessionClient {
       } catch (error) {
         if (this.#life.signal.aborted) return;
         if (this.#sessionId !== undefined && ConnectError.from(error).code === Code.NotFound) {
-          // Ended on the server. A new one takes its place at once, but only once until a stream has begun.
+          // The session ended on the server. Open a new one at once, but only once until a stream begins.
           this.#sessionId = undefined;
           if (!this.#reopened) {
             this.#reopened = true;
@@ -106,17 +106,17 @@ export class SessionClient {
     }
   }
 
-  // Tries again at once where it waits to.
+  // Ends the wait before the next attempt, if there is one.
   retryNow(): void {
     this.#retryNow?.();
   }
 
-  // Rejects where the connection is lost; the scene must then be sent again after streaming().
+  // Rejects if the connection is lost; the caller must send the scene again after streaming().
   async updateScene(scene: Scene): Promise<SceneVerdict> {
     const stream = this.#stream;
     const first = await this.#sendScene(scene);
     if (first instanceof ConnectError === false) return first;
-    // The network or the server: if the server still answers the scene gets a second chance, its last.
+    // It may be the network or the server. If the server still answers, the scene is sent a second and last time.
     if (stream !== undefined) await this.#check(stream);
     const second = stream?.signal.aborted ? first : await this.#sendScene(scene);
     if (second instanceof ConnectError === false) return second;
@@ -132,7 +132,7 @@ export class SessionClient {
     if (sessionId === undefined || viewerId === undefined || signal === undefined) return;
     this.#client
       .acknowledgeFrame({ sessionId, viewerId, sequence }, { signal, timeoutMs: CALL_TIMEOUT_MS })
-      // Without acknowledgements the stream would stand still, so it is opened again.
+      // Without acknowledgements the server sends no more frames, so the stream is reopened.
       .catch((error: unknown) => {
         if (this.#viewerId === viewerId) this.#stream?.abort(ConnectError.from(error));
       });
@@ -162,11 +162,11 @@ export class SessionClient {
     await this.#client.deleteCloud({ stormId }, { timeoutMs: CALL_TIMEOUT_MS });
   }
 
-  // Tells the server that the session is no longer needed; for a page that goes away.
+  // Ends the session on the server; called when the page is closed.
   closeSession(): void {
     const sessionId = this.#sessionId;
     if (sessionId === undefined) return;
-    // Nobody is left to hear of a failure.
+    // The page is going away: a failure cannot be shown.
     this.#client.closeSession({ sessionId }, { timeoutMs: CALL_TIMEOUT_MS }).catch(() => undefined);
   }
 
@@ -176,7 +176,7 @@ export class SessionClient {
     this.#retryNow?.();
   }
 
-  // The error where it says as little of the scene as a network's would.
+  // The error, if it is not about the scene.
   async #sendScene(scene: Scene): Promise<SceneVerdict | ConnectError> {
     const sessionId = this.#sessionId;
     if (sessionId === undefined) return new ConnectError("there is no session", Code.Unavailable);
@@ -187,7 +187,7 @@ export class SessionClient {
       return { kind: "taken", revision: response.sceneRevision };
     } catch (error) {
       const failure = ConnectError.from(error);
-      // A session that has ended closes its stream as well, which run() answers.
+      // A session that ended also closes its stream; run() handles that.
       if (NETWORK_CODES.has(failure.code)) return failure;
       return { kind: "refused", message: failure.rawMessage };
     }
@@ -245,7 +245,7 @@ export class SessionClient {
         if (message.event.case === "problem") this.#listener.problem(message.event.value);
       }
     } catch (error) {
-      // The reason for which this page gave the stream up says more than that it was given up.
+      // Where this page aborted the stream, its reason says more than the resulting error.
       throw stream.signal.aborted ? (stream.signal.reason ?? error) : error;
     } finally {
       silence.dispose();
@@ -288,7 +288,7 @@ export class SessionClient {
   }
 }
 
-// Calls back each time nothing was heard for SILENCE_MS.
+// Calls back whenever SILENCE_MS pass without a message.
 class SilenceWatch {
   readonly #onSilence: () => Promise<void>;
   #timer: ReturnType<typeof setTimeout> | undefined;
@@ -310,7 +310,7 @@ class SilenceWatch {
   }
 }
 
-// What the server said, where it said it; the network's own words help nobody.
+// The server's message, if it sent one; messages of network errors do not help a reader.
 function reasonOf(error: unknown): string {
   const failure = ConnectError.from(error);
   return NETWORK_CODES.has(failure.code) ? "The server cannot be reached" : failure.rawMessage;

@@ -1,32 +1,33 @@
-// What accuracy or speed the server is to reach, and what it says of the picture shown: which setting it picked,
-// what that costs, and how far from the truth the picture is believed to be.
-import { create } from "@bufbuild/protobuf";
+// The accuracy or speed that the server is to reach, and its report on the picture shown: technique and settings,
+// their cost, and the estimated error.
+import { create, isMessage } from "@bufbuild/protobuf";
+import { nameOfTechnique, nameOfTransport } from "../core/names";
+import {
+  hasSetting,
+  type Settings,
+  settingsOf,
+  sharedSettingsOf,
+  techniqueNameOf,
+  transportOf,
+} from "../core/rendering";
 import { LIMITS, withAccuracy } from "../core/scene";
 import type { PageState } from "../core/state";
 import { formatNumber } from "../core/units";
-import { type Accuracy, AccuracySchema, Renderer, Transport } from "../gen/thunderhead/v1/scene_pb";
+import { type Accuracy, AccuracySchema, MetaballsSchema } from "../gen/thunderhead/v1/scene_pb";
 import type { AccuracyReport } from "../gen/thunderhead/v1/thunderhead_pb";
 import { Choice, Section, Slider } from "./controls";
 
 type Goal = "none" | "maxError" | "maxMilliseconds";
 
 const GOALS = [
-  ["none", "As set below"],
+  ["none", "As set under picture quality"],
   ["maxError", "At most this error"],
   ["maxMilliseconds", "At most this time a frame"],
 ] as const;
 
-// Where the sliders begin: a goal that every view of the tables reaches, and a frame that moves smoothly.
+// Initial values of the sliders: an error within reach for every view, and a time per frame that still moves smoothly.
 const FIRST_ERROR = 0.5;
 const FIRST_MILLISECONDS = 100;
-
-// The reference has no setting to be picked, and says itself how far it has come.
-const RENDERER_NAMES: Readonly<Partial<Record<Renderer, string>>> = {
-  [Renderer.LIGHT_VOLUME]: "light volume",
-  [Renderer.HALF_ANGLE]: "half-angle slices",
-  [Renderer.METABALL]: "metaballs",
-  [Renderer.CUMULUS]: "cumulus surface",
-};
 
 function accuracyOf(goal: Goal): Accuracy | undefined {
   switch (goal) {
@@ -75,18 +76,26 @@ export function AccuracySection({ state }: { state: PageState }) {
           }
         />
       )}
-      {report !== undefined && (
-        <Report report={report} traced={(state.frame.value?.modelled?.tracedPaths ?? 0n) > 0n} />
-      )}
+      {report !== undefined && <Report state={state} report={report} />}
     </Section>
   );
 }
 
-function Report({ report, traced }: { report: AccuracyReport; traced: boolean }) {
+interface ReportProps {
+  readonly state: PageState;
+  readonly report: AccuracyReport;
+}
+
+function Report({ state, report }: ReportProps) {
+  const settings = settingsOf(report.rendering);
+  const name = settings === undefined ? "" : techniqueNameOf(settings);
+  const technique = state.server.value?.techniques.find((each) => each.name === name);
+  const hasSlices = technique?.hasSlices ?? false;
   const parts = [`light model ${percent(report.modelError)}`];
   if (report.discretisationError !== undefined) {
     parts.push(`few slices ${percent(report.discretisationError)}`);
   }
+  const traced = (state.frame.value?.modelled?.tracedPaths ?? 0n) > 0n;
   return (
     <>
       <p
@@ -95,31 +104,41 @@ function Report({ report, traced }: { report: AccuracyReport; traced: boolean })
         data-estimated-error={report.estimatedError}
         data-discretisation-error={report.discretisationError}
         data-slices={report.slices}
-        data-has-slices={hasSlices(report.renderer)}
+        data-has-slices={hasSlices}
         data-expected-milliseconds={report.expectedMilliseconds}
       >
-        Believed error {percent(report.estimatedError)} ({parts.join(", ")}), by{" "}
-        {RENDERER_NAMES[report.renderer] ?? Renderer[report.renderer]},{" "}
-        {(Transport[report.transport] ?? "").toLowerCase()} transport
+        Estimated error {percent(report.estimatedError)} ({parts.join(", ")}), by{" "}
+        {[nameOfTechnique(name), ...settingsInWords(settings)].join(", ").toLowerCase()}
         {traced && ", traced light"}
-        {hasSlices(report.renderer) && `, ${report.slices} slices`}
-        {report.renderer === Renderer.METABALL && `, ${report.slices} balls`}
+        {hasSlices && `, ${report.slices} slices`}
+        {settings !== undefined &&
+          isMessage(settings, MetaballsSchema) &&
+          `, ${report.slices} balls`}
         {report.imageScale !== 1 && ` at ${percent(report.imageScale)} of the size`}
         {report.expectedMilliseconds !== undefined &&
           `; ${formatNumber(report.expectedMilliseconds)} ms a full frame`}
         .
       </p>
-      {report.unmet !== "" && (
+      {report.unmet !== undefined && (
         <p class="unmet" role="status" data-testid="accuracy-unmet">
-          {report.unmet}.
+          {report.unmet.message}.
         </p>
       )}
     </>
   );
 }
 
-function hasSlices(renderer: Renderer): boolean {
-  return renderer !== Renderer.METABALL && renderer !== Renderer.CUMULUS;
+// The settings that decide the error, a few words each.
+function settingsInWords(settings: Settings | undefined): string[] {
+  if (settings === undefined) return [];
+  const shared = sharedSettingsOf(settings);
+  const transport = transportOf(settings);
+  return [
+    transport !== undefined && nameOfTransport(transport),
+    hasSetting(settings, "perFieldPhase") && !shared.perFieldPhase && "one phase function",
+    shared.detail === true && "detail",
+    shared.falseColors === true && "false colours",
+  ].filter((words) => words !== false);
 }
 
 function percent(share: number): string {

@@ -13,7 +13,7 @@ export class CanvasPainter {
     this.#context = context;
   }
 
-  // Takes the picture over.
+  // Takes ownership of the picture.
   paint(picture: ImageBitmap): void {
     this.#picture?.close();
     this.#picture = picture;

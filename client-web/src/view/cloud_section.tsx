@@ -52,7 +52,7 @@ export function CloudSection({ page }: { page: Page }) {
         onChange={(seed) => change({ seed })}
       />
       <Switch
-        label="Noise and ellipsoids of my own"
+        label="Set noise and ellipsoids"
         checked={cloud.ownShape}
         testId="cloud-own-shape"
         onChange={(ownShape) => change({ ownShape })}
@@ -103,8 +103,8 @@ function OwnShape({ cloud, change }: OwnShapeProps) {
         onChange={(interpolation) => change({ interpolation })}
       />
       <label class="lines">
-        Ellipsoids in place of the kind's, one a line: x, y, z, radii x, y, z in m, and rotation x,
-        y, z in degrees
+        Ellipsoids in place of the kind's, one a line: center x, y, z, radii x, y, z in m, rotation
+        x, y, z in degrees
         <textarea
           rows={3}
           data-testid="cloud-ellipsoids"

@@ -1,27 +1,27 @@
-// The small controls that the panel is made of. Each shows one value and says when the user changes it.
+// The panel's controls. Each shows one value and reports the user's changes.
 import type { ComponentChildren } from "preact";
 import { useEffect, useId, useRef, useState } from "preact/hooks";
 import { clampToLimits, type Limits, positionOfValue, valueAtPosition } from "../core/limits";
 import { displayUnitOf, formatNumber, formatQuantity } from "../core/units";
 
 const SLIDER_STEPS = 400;
-// How long a slider is held still before what takes seconds is begun.
+// A slider whose change costs seconds reports it after being still for this long.
 const SLIDER_REST_MS = 500;
 
 interface SliderProps {
   readonly label: string;
   readonly limits: Limits;
-  // Undefined while the server has not said what it is.
+  // Undefined until the server has sent it.
   readonly value: number | undefined;
-  // What the reset button goes back to.
+  // The value that the reset button restores; absent is the schema's default.
   readonly initial?: number | undefined;
   readonly testId: string;
-  // True where a change costs seconds: it is told when the slider is let go or rests, not at each step.
+  // True if a change costs seconds: reported when the slider is released or rests, not at each step.
   readonly afterRest?: boolean;
   readonly onChange: (value: number) => void;
 }
 
-// What a slider is dragged to before that is told, and how it is told: once it is let go, or rests.
+// The value that a slider was dragged to but has not reported yet. It is reported on release, or after a rest.
 function useHeld(onChange: (value: number) => void) {
   const [held, setHeld] = useState<number | undefined>(undefined);
   const tellLater = useRef<ReturnType<typeof setTimeout> | undefined>(undefined);
@@ -150,6 +150,80 @@ export function Choice<T extends string | number>(props: ChoiceProps<T>) {
   );
 }
 
+interface SegmentsProps<T extends string | number> {
+  readonly label: string;
+  // Undefined if none is chosen.
+  readonly value: T | undefined;
+  // Value, name and explanation.
+  readonly options: readonly (readonly [T, string, string])[];
+  // Shown in place of an explanation while none is chosen.
+  readonly otherwise: string;
+  readonly testId: string;
+  readonly onChange: (value: T) => void;
+}
+
+// A few options side by side, with the explanation of the chosen one below. Screen readers get each one's.
+export function Segments<T extends string | number>(props: SegmentsProps<T>) {
+  const { label, value, options, otherwise, testId, onChange } = props;
+  const id = useId();
+  const chosen = options.find(([key]) => key === value);
+  return (
+    <div class="segments">
+      <div class="segments-row" role="radiogroup" aria-label={label} data-testid={testId}>
+        {options.map(([key, name, about]) => (
+          <label key={key} title={about}>
+            <input
+              type="radio"
+              name={id}
+              class="visually-hidden"
+              data-testid={`${testId}-${name.toLowerCase()}`}
+              aria-describedby={`${id}-${key}`}
+              checked={key === value}
+              onChange={() => onChange(key)}
+            />
+            <span>{name}</span>
+            <span id={`${id}-${key}`} hidden>
+              {about}
+            </span>
+          </label>
+        ))}
+      </div>
+      <p class="quiet" data-testid={`${testId}-about`}>
+        {chosen?.[2] ?? otherwise}
+      </p>
+    </div>
+  );
+}
+
+interface NumberInputProps {
+  readonly label: string;
+  readonly value: number;
+  readonly testId: string;
+  readonly onChange: (value: number) => void;
+}
+
+// A number without known limits.
+export function NumberInput({ label, value, testId, onChange }: NumberInputProps) {
+  const id = useId();
+  return (
+    <div class="choice">
+      <label for={id}>{label}</label>
+      <input
+        id={id}
+        type="number"
+        class="number"
+        step="any"
+        data-testid={testId}
+        value={value}
+        onChange={(event) => {
+          const typed = event.currentTarget.valueAsNumber;
+          if (!Number.isNaN(typed)) onChange(typed);
+        }}
+      />
+    </div>
+  );
+}
+
 interface TimeInputProps {
   readonly label: string;
   // As an input of type datetime-local has it; empty while it is not known.
@@ -182,7 +256,7 @@ interface SwitchProps {
   readonly checked: boolean;
   readonly testId: string;
   readonly onChange: (checked: boolean) => void;
-  // Where the label is shown by something else.
+  // True if something else on the screen shows the label.
   readonly labelHidden?: boolean;
 }
 
@@ -207,7 +281,7 @@ interface SectionProps {
   readonly children: ComponentChildren;
 }
 
-// A part of the panel that folds.
+// A section of the panel that folds.
 export function Section({ title, open, testId, children }: SectionProps) {
   return (
     <details class="section" open={open} data-testid={testId}>

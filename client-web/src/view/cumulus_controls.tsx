@@ -1,8 +1,9 @@
-// What the cumulus renderer draws and how it shades it (Neyret 2000).
-import { LIMITS, withCumulus } from "../core/scene";
+// The surface of a cumulus and its shading (Neyret 2000).
+import { LIMITS } from "../core/scene";
 import type { PageState } from "../core/state";
 import {
   Cumulus_Component as Component,
+  type Cumulus,
   Cumulus_Source as Source,
 } from "../gen/thunderhead/v1/scene_pb";
 import { Choice, Slider } from "./controls";
@@ -25,9 +26,13 @@ const COMPONENTS = [
   [Component.BALLS, "Bare ellipsoids"],
 ] as const;
 
-export function CumulusControls({ state }: { state: PageState }) {
-  const cumulus = state.rendering.value?.cumulus;
-  const source = cumulus?.source || Source.STORM;
+interface CumulusProps {
+  readonly state: PageState;
+  readonly cumulus: Cumulus;
+}
+
+export function CumulusControls({ state, cumulus }: CumulusProps) {
+  const source = cumulus.source || Source.STORM;
   return (
     <>
       <Choice
@@ -35,67 +40,65 @@ export function CumulusControls({ state }: { state: PageState }) {
         testId="cumulus-source"
         value={source}
         options={SOURCES}
-        onChange={(next) => state.edit((scene) => withCumulus(scene, { source: next }))}
+        onChange={(next) => state.editSettings({ source: next })}
       />
       <Choice
         label="Light shown"
         testId="cumulus-component"
-        value={cumulus?.component || Component.ALL}
+        value={cumulus.component || Component.ALL}
         options={COMPONENTS}
-        onChange={(component) => state.edit((scene) => withCumulus(scene, { component }))}
+        onChange={(component) => state.editSettings({ component })}
       />
       <Slider
         label="Seed"
         limits={LIMITS.cumulusSeed}
-        value={cumulus?.seed ?? LIMITS.cumulusSeed.defaultValue}
+        value={cumulus.seed ?? LIMITS.cumulusSeed.defaultValue}
         testId="cumulus-seed"
-        onChange={(seed) => state.edit((scene) => withCumulus(scene, { seed }))}
+        onChange={(seed) => state.editSettings({ seed })}
       />
       <Slider
         label="Scales"
         limits={LIMITS.cumulusScales}
-        value={cumulus?.scales ?? LIMITS.cumulusScales.defaultValue}
+        value={cumulus.scales ?? LIMITS.cumulusScales.defaultValue}
         testId="cumulus-scales"
-        onChange={(scales) => state.edit((scene) => withCumulus(scene, { scales }))}
+        onChange={(scales) => state.editSettings({ scales })}
       />
       {source === Source.STORM && (
         <Slider
           label="Least extinction"
           limits={LIMITS.cumulusLeastExtinction}
-          value={cumulus?.leastExtinctionPerM ?? LIMITS.cumulusLeastExtinction.defaultValue}
+          value={cumulus.leastExtinctionPerM ?? LIMITS.cumulusLeastExtinction.defaultValue}
           testId="cumulus-least-extinction"
-          onChange={(leastExtinctionPerM) =>
-            state.edit((scene) => withCumulus(scene, { leastExtinctionPerM }))
-          }
+          onChange={(leastExtinctionPerM) => state.editSettings({ leastExtinctionPerM })}
         />
       )}
       <Slider
         label="Corona"
         limits={LIMITS.cumulusCorona}
-        value={cumulus?.corona ?? LIMITS.cumulusCorona.defaultValue}
+        value={cumulus.corona ?? LIMITS.cumulusCorona.defaultValue}
         testId="cumulus-corona"
-        onChange={(corona) => state.edit((scene) => withCumulus(scene, { corona }))}
+        onChange={(corona) => state.editSettings({ corona })}
       />
       <Slider
         label="Light traps"
         limits={LIMITS.cumulusTrap}
-        value={cumulus?.trap ?? LIMITS.cumulusTrap.defaultValue}
+        value={cumulus.trap ?? LIMITS.cumulusTrap.defaultValue}
         testId="cumulus-trap"
-        onChange={(trap) => state.edit((scene) => withCumulus(scene, { trap }))}
+        onChange={(trap) => state.editSettings({ trap })}
       />
       <Slider
-        label="Light through"
+        label="Transmission"
         limits={LIMITS.cumulusTransmission}
-        value={cumulus?.transmission ?? LIMITS.cumulusTransmission.defaultValue}
+        value={cumulus.transmission ?? LIMITS.cumulusTransmission.defaultValue}
         testId="cumulus-transmission"
-        onChange={(transmission) => state.edit((scene) => withCumulus(scene, { transmission }))}
+        onChange={(transmission) => state.editSettings({ transmission })}
       />
       <Slider
         label="Roughness"
         limits={LIMITS.cumulusRoughness}
-        value={cumulus?.roughness ?? LIMITS.cumulusRoughness.defaultValue}
+        value={cumulus.roughness ?? LIMITS.cumulusRoughness.defaultValue}
         testId="cumulus-roughness"
-        onChange={(roughness) => state.edit((scene) => withCumulus(scene, { roughness }))}
+        onChange={(roughness) => state.editSettings({ roughness })}
       />
     </>
   );

@@ -1,5 +1,5 @@
-// The storm's fields, one row each: on or off, scale, colour, and what its particles are like.
-import { create } from "@bufbuild/protobuf";
+// The storm's fields, one row each: visibility, scale, colour, particles and detail.
+import { create, isMessage } from "@bufbuild/protobuf";
 import { colorOfHex, hexOfColor } from "../core/color";
 import {
   effectiveField,
@@ -8,16 +8,14 @@ import {
   withAsymmetry,
   withDetail,
   withField,
-  withRendering,
 } from "../core/scene";
 import type { PageState } from "../core/state";
 import { formatNumber } from "../core/units";
 import {
   ColorSchema,
   PhaseFunction_Kind as Kind,
-  Mode,
+  MetaballsSchema,
   PhaseFunctionSchema,
-  Renderer,
 } from "../gen/thunderhead/v1/scene_pb";
 import type { FieldDescription } from "../gen/thunderhead/v1/storm_pb";
 import { Choice, Section, Slider, Switch } from "./controls";
@@ -36,17 +34,8 @@ const WITH_ASYMMETRY: readonly Kind[] = [Kind.HENYEY_GREENSTEIN, Kind.CORNETTE_S
 
 export function FieldsSection({ state }: { state: PageState }) {
   const storm = state.storm.value;
-  const falseColors = state.rendering.value?.falseColors ?? false;
   return (
     <Section title="Fields" open testId="fields">
-      <Switch
-        label="False colours"
-        testId="false-colors"
-        checked={falseColors}
-        onChange={(checked) =>
-          state.edit((scene) => withRendering(scene, { falseColors: checked }))
-        }
-      />
       {storm === undefined && <p class="quiet">Waiting for the storm's description …</p>}
       {storm?.fields.map((field) => (
         <FieldRow key={field.hydrometeor} state={state} field={field} />
@@ -55,14 +44,15 @@ export function FieldsSection({ state }: { state: PageState }) {
   );
 }
 
-// True where another extinction is fitted anew, which takes seconds.
+// True if a change of extinction makes the server fit metaballs again, which takes seconds.
 function fitsAnew(state: PageState): boolean {
-  return state.rendering.value?.renderer === Renderer.METABALL;
+  const settings = state.settings.value;
+  return settings !== undefined && isMessage(settings, MetaballsSchema);
 }
 
 function FieldRow({ state, field }: { state: PageState; field: FieldDescription }) {
   const { hydrometeor, defaults } = field;
-  // Read so that the row is drawn anew when a field changes, and only then.
+  // Subscribes the row to changes of the fields, not to those of the whole scene.
   void state.fields.value;
   const shown = effectiveField(state.scene.peek(), hydrometeor, defaults);
   const name = hydrometeorName(hydrometeor);
@@ -80,16 +70,18 @@ function FieldRow({ state, field }: { state: PageState; field: FieldDescription 
           checked={shown.visible ?? true}
           onChange={(visible) => edit({ visible })}
         />
-        <input
-          type="color"
-          aria-label={`${name}: false colour`}
-          title="False colour"
-          data-testid={`field-${id}-color`}
-          value={color}
-          onInput={(event) =>
-            edit({ falseColor: create(ColorSchema, colorOfHex(event.currentTarget.value)) })
-          }
-        />
+        {state.falseColorsShown.value && (
+          <input
+            type="color"
+            aria-label={`${name}: false colour`}
+            title="False colour"
+            data-testid={`field-${id}-color`}
+            value={color}
+            onInput={(event) =>
+              edit({ falseColor: create(ColorSchema, colorOfHex(event.currentTarget.value)) })
+            }
+          />
+        )}
       </div>
       <Slider
         label="Scale"
@@ -100,12 +92,12 @@ function FieldRow({ state, field }: { state: PageState; field: FieldDescription 
         afterRest={fitsAnew(state)}
         onChange={(scale) => edit({ scale })}
       />
-      <details class="particles">
+      <details class="folded">
         <summary>Particles</summary>
         <ParticleSettings state={state} field={field} />
       </details>
-      {state.rendering.value?.mode === Mode.PER_FIELD_PHASE_DETAIL_TRANSLUCENT && (
-        <details class="particles">
+      {state.detailShown.value && (
+        <details class="folded">
           <summary>Detail</summary>
           <DetailSettings state={state} field={field} />
         </details>
@@ -114,7 +106,7 @@ function FieldRow({ state, field }: { state: PageState; field: FieldDescription 
   );
 }
 
-/** Fields of this unit are extinction already: a particle's size changes nothing. */
+// Fields in this unit are extinction already: particle size has no effect.
 const EXTINCTION_UNITS = "m-1";
 
 function amountOf(field: FieldDescription): string {
@@ -133,7 +125,6 @@ function ParticleSettings({ state, field }: { state: PageState; field: FieldDesc
   const id = hydrometeorName(hydrometeor).toLowerCase();
   const edit = (change: Parameters<typeof withField>[2]) =>
     state.edit((scene) => withField(scene, hydrometeor, change));
-  const { phase } = shown;
   return (
     <>
       {field.units !== EXTINCTION_UNITS && (
@@ -166,6 +157,28 @@ function ParticleSettings({ state, field }: { state: PageState; field: FieldDesc
           />
         </>
       )}
+      {state.drawnTechnique.value?.showsFieldOptics && (
+        <OpticsSettings state={state} field={field} />
+      )}
+      <p class="quiet">
+        {amountOf(field)} at this time
+        {field.missingCells > 0n && `; ${field.missingCells} cells missing`}
+      </p>
+    </>
+  );
+}
+
+// How the field's particles scatter light.
+function OpticsSettings({ state, field }: { state: PageState; field: FieldDescription }) {
+  const { hydrometeor, defaults } = field;
+  void state.fields.value;
+  const shown = effectiveField(state.scene.peek(), hydrometeor, defaults);
+  const id = hydrometeorName(hydrometeor).toLowerCase();
+  const edit = (change: Parameters<typeof withField>[2]) =>
+    state.edit((scene) => withField(scene, hydrometeor, change));
+  const { phase } = shown;
+  return (
+    <>
       <Slider
         label="Albedo"
         limits={LIMITS.fieldAlbedo}
@@ -193,10 +206,6 @@ function ParticleSettings({ state, field }: { state: PageState; field: FieldDesc
           onChange={(g) => state.edit((scene) => withAsymmetry(scene, hydrometeor, g))}
         />
       )}
-      <p class="quiet">
-        {amountOf(field)} at this time
-        {field.missingCells > 0n && `; ${field.missingCells} cells missing`}
-      </p>
     </>
   );
 }

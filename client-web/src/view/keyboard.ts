@@ -1,4 +1,4 @@
-// The page's keys. attachKeyboard() returns what takes the listener off again.
+// The page's keys. attachKeyboard() returns a function that removes the listener.
 import { type Pose, pan, turn, zoom } from "../core/camera";
 
 export interface KeyActions {
@@ -20,7 +20,7 @@ export const KEYS: readonly (readonly [string, string])[] = [
 ];
 
 const TURN_DEG = 3;
-// Moves by this share of a picture.
+// Moves by this many hundredths of the picture.
 const PAN_PX = 5;
 const PICTURE = { widthPx: 100, heightPx: 100 };
 const ZOOM_FACTOR = 0.88;
@@ -45,7 +45,7 @@ export function attachKeyboard(window: Window, actions: KeyActions): () => void 
   return () => listening.abort();
 }
 
-// The arrow's way: around the storm, of the spotter's head, or over the map.
+// An arrow key turns an orbit camera around the storm or a spotter's head, and moves a map.
 function look(pose: Pose, right: number, down: number): Pose {
   if (pose.kind === "topDown") return pan(pose, -right * PAN_PX, -down * PAN_PX, PICTURE);
   return turn(pose, right * TURN_DEG, -down * TURN_DEG);
@@ -89,8 +89,8 @@ function act(event: KeyboardEvent, actions: KeyActions): boolean {
   }
 }
 
-// True where the focused control has its own use for the key: text takes all, a slider its arrows, a button
-// the space bar.
+// True if the focused control uses the key itself: a text uses all keys, a slider or a radio button the arrows, a
+// button the space bar.
 function usesKey(target: EventTarget | null, key: string): boolean {
   if (!(target instanceof Element)) return false;
   const control = target.closest("input, select, textarea, button, summary, [role=slider]");
@@ -99,5 +99,6 @@ function usesKey(target: EventTarget | null, key: string): boolean {
   if (control.matches("input[type=range], [role=slider]")) {
     return key in ARROWS || key === "Home" || key === "End";
   }
+  if (control.matches("input[type=radio]")) return key in ARROWS || key === " ";
   return true;
 }

@@ -1,6 +1,7 @@
 // Lights besides the sun, each from its own direction and in its own colour.
 import { create } from "@bufbuild/protobuf";
 import { colorOfHex, hexOfColor } from "../core/color";
+import { nameOfTechnique } from "../core/names";
 import { LIMITS, MOST_LIGHTS, withLight, withLightAdded, withoutLight } from "../core/scene";
 import type { PageState } from "../core/state";
 import {
@@ -11,14 +12,16 @@ import {
 import { Section, Slider } from "./controls";
 
 const WHITE = { red: 1, green: 1, blue: 1 };
-// Of lights added one after the other, so that the second looks different from the first.
+// Colours of lights added one after the other, so that each looks different.
 const FIRST_COLORS = ["#ff9a4d", "#4d8dff", "#ffffff", "#c04dff"];
 
 export function LightsSection({ state }: { state: PageState }) {
   const lights = state.lights.value;
   return (
     <Section title="Lights besides the sun" testId="lights-section">
-      <p class="quiet">Shown by metaballs and by the reference. They light the storm alone.</p>
+      <p class="quiet" data-testid="lights-shown">
+        They light the storm alone. {whereShown(state)}
+      </p>
       {lights.map((light, index) => (
         <LightSettings key={index} state={state} light={light} index={index} />
       ))}
@@ -34,6 +37,16 @@ export function LightsSection({ state }: { state: PageState }) {
       </div>
     </Section>
   );
+}
+
+function whereShown(state: PageState): string {
+  const drawn = state.drawnTechnique.value;
+  if (drawn === undefined) return "";
+  const name = nameOfTechnique(drawn.name);
+  if (drawn.showsLights) return `${name} shows them.`;
+  const able = (state.server.value?.techniques ?? []).filter(({ showsLights }) => showsLights);
+  const names = able.map((technique) => nameOfTechnique(technique.name)).join("; ");
+  return `${name} does not show them; these techniques do: ${names}.`;
 }
 
 function newLight(count: number): DirectionalLight {

@@ -1,5 +1,5 @@
-// Links to a session: ?session=ID names it, #scene=... carries the scene for a session of one's own, should that
-// one have ended. The fragment stays in the browser.
+// Links to a session: ?session=ID names it; #scene=... is a copy of the scene, to open a new session with if that one
+// has ended. Browsers do not send the fragment to the server.
 import { sceneFromUrlText, sceneToUrlText } from "../core/scene";
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
 
@@ -24,7 +24,7 @@ export function linkTo(address: string, sessionId: string, scene: Scene): string
   return link.href;
 }
 
-// The same page without a session.
+// The page's address without session and scene.
 export function withoutLink(address: string): string {
   const link = new URL(address);
   link.search = "";

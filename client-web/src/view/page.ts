@@ -1,5 +1,5 @@
-// Ties the parts together: edits go to the server, frames go to the canvas, and each frame shown is accounted
-// for and acknowledged. Owns them all; dispose() ends them all.
+// Connects the parts: sends edits to the server, paints frames on the canvas, acknowledges them and measures their
+// latency. Owns the parts; dispose() ends them.
 
 import { create } from "@bufbuild/protobuf";
 import type { Transport } from "@connectrpc/connect";
@@ -46,13 +46,13 @@ export class Page implements SessionListener {
   #canvas: HTMLCanvasElement | undefined;
   #painter: CanvasPainter | undefined;
   #canvasSize = { widthPx: 1280, heightPx: 720 };
-  // A viewer who joined somebody's session takes its pictures in the size that it has.
+  // False for a viewer who joined another's session, which keeps its picture size.
   #setsOutput: boolean;
   #shown: Frame | undefined;
   #problemRevision = 0n;
-  // The newest scene that the server told of, until it is known whether it is ours.
+  // The newest scene that the server sent, until it is known whether this page made it.
   #told: { scene: Scene; revision: bigint } | undefined;
-  // The newest scene by another that the controls show.
+  // The newest revision by another viewer that the controls show.
   #adoptedRevision = -1n;
   #running = false;
 
@@ -88,7 +88,7 @@ export class Page implements SessionListener {
     this.#listen();
   }
 
-  // The canvas is in the document: pictures go there from now on. Returns what lets go of it.
+  // Paints pictures on this canvas from now on. Returns the function that detaches it.
   attachCanvas(canvas: HTMLCanvasElement): () => void {
     const painter = new CanvasPainter(canvas);
     this.#canvas = canvas;
@@ -129,7 +129,7 @@ export class Page implements SessionListener {
     this.state.edit((scene) => withStorm(scene, stormId));
   }
 
-  // Has the server make the cloud that was drafted, and shows it.
+  // Asks the server to make the cloud set in the panel, and shows it.
   async makeCloud(): Promise<void> {
     const stormId = await this.#storms.makeCloud();
     if (stormId === undefined) return;
@@ -179,7 +179,7 @@ export class Page implements SessionListener {
       await navigator.clipboard.writeText(address);
       this.#note("link", "Link copied");
     } catch {
-      // Browsers keep the clipboard from pages without HTTPS, and from those without the focus.
+      // Browsers deny the clipboard to pages without HTTPS or without focus.
       this.state.notify({ subject: "link", text: address, severity: "note" });
     }
   }
@@ -194,7 +194,7 @@ export class Page implements SessionListener {
     this.#pipeline.dispose();
   }
 
-  // SessionListener: what the connection reports.
+  // SessionListener.
 
   sceneToOpen(): Scene {
     this.#setsOutput = true;
@@ -221,7 +221,7 @@ export class Page implements SessionListener {
     this.#ledger.sent(session.asked.timeIndex ?? 0, this.#now()).accepted(session.revision);
     if (this.state.scene.value === session.asked) this.state.adoptScene(session.completed);
     this.#sender.start(session.asked);
-    // An address whose session has ended must not be kept: reloading would look for that session again.
+    // Without this, reloading would look for a session that has ended.
     this.#window.history.replaceState(null, "", withoutLink(this.#window.location.href));
     if (session.replaces) {
       const text =
@@ -293,7 +293,7 @@ export class Page implements SessionListener {
     );
   }
 
-  // A page that goes away for good gives its session back, unless others may be watching it.
+  // A page that is closed ends its session, unless others may be watching it.
   #leave(event: PageTransitionEvent): void {
     if (!event.persisted && this.state.session.value?.shared === false) this.#client.closeSession();
   }
@@ -341,17 +341,20 @@ export class Page implements SessionListener {
     });
   }
 
-  // Another viewer's scene takes the place of ours once the server has answered all that this page has sent.
+  // Once the server has answered every scene sent, another viewer's scene replaces ours; for our own scene, the settings
+  // that the server filled in are adopted.
   #adoptTold(): void {
     const told = this.#told;
     if (told === undefined || this.#sender.unsettled) return;
     this.#told = undefined;
-    if (told.revision <= this.#ledger.newestAccepted) return;
+    const ours = this.#ledger.newestAccepted;
+    if (told.revision === ours) this.state.adoptRendering(told.scene.rendering);
+    if (told.revision <= ours) return;
     this.#adoptedRevision = told.revision;
     this.state.adoptScene(told.scene);
   }
 
-  // A frame says where the camera stands; it counts once it shows all that this page has sent.
+  // Adopts a frame's camera once the frame shows the newest scene sent.
   #adoptCamera(): void {
     const frame = this.#shown;
     if (frame === undefined || this.#sender.unsettled) return;
@@ -360,7 +363,7 @@ export class Page implements SessionListener {
     this.state.adoptCamera(frame.camera, frame.sceneRevision > ours);
   }
 
-  // Not shown, but acknowledged: the server must not wait for it.
+  // Acknowledged although not shown: the server would wait for it.
   #undecodable(frame: Frame): void {
     this.#client.acknowledge(frame.sequence);
     const text = `Frame ${frame.sequence} is no picture that this browser can read`;
@@ -376,7 +379,7 @@ export class Page implements SessionListener {
     this.state.edit((scene) => withOutput(scene, size));
   }
 
-  // Before the first scene of our own, whatever is shown is the time that the page has.
+  // Before this page sends a first scene, the frame shown is of the scene's time.
   #isTimeShown(index: number): boolean {
     if (this.#sender.unsettled || this.#shown === undefined) return false;
     return (this.#ledger.shownTimeIndex ?? index) === index;
@@ -384,7 +387,7 @@ export class Page implements SessionListener {
 
   #takePace(): void {
     const now = this.#now();
-    // The frame may have come before the reply that says which revision it shows.
+    // A frame may arrive before the reply that names its revision.
     if (poseOfCamera(this.state.scene.value.camera) === undefined) this.#adoptCamera();
     this.#adoptTold();
     this.state.pace.value = {
@@ -394,7 +397,7 @@ export class Page implements SessionListener {
     };
   }
 
-  // Says something that needs no answer, for a while.
+  // Shows a notice that disappears by itself.
   #note(subject: string, text: string): void {
     this.state.notify({ subject, text, severity: "note" });
     const timer = setTimeout(() => this.state.dismiss(subject), NOTE_MS);
@@ -403,7 +406,7 @@ export class Page implements SessionListener {
 }
 
 function decodeJpeg(jpeg: Uint8Array): Promise<ImageBitmap> {
-  // Messages lie in plain buffers, never in shared ones, which a Blob would refuse.
+  // Blob does not accept shared buffers; decoded messages never use them.
   const bytes = jpeg as Uint8Array<ArrayBuffer>;
   return createImageBitmap(new Blob([bytes], { type: "image/jpeg" }));
 }

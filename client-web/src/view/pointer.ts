@@ -1,5 +1,5 @@
 // Mouse and touch over the storm: a drag turns, with the right button, shift or two fingers it moves, the
-// wheel or a pinch comes nearer. attachPointer() returns what takes the listeners off again.
+// wheel or a pinch comes nearer. attachPointer() returns a function that removes the listeners.
 import { drag, type PictureSize, type Pose, pan, zoom } from "../core/camera";
 
 type Move = (motion: (pose: Pose) => Pose) => void;

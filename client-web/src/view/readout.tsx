@@ -1,25 +1,8 @@
-// What the pictures cost: frames a second and latency at a glance, the rest when opened.
+// The cost of the pictures: frames a second and latency at a glance, the rest when opened.
+import { nameOfStage, nameOfTechnique } from "../core/names";
 import type { PageState } from "../core/state";
 import { formatBytes, formatNumber } from "../core/units";
 import type { Refinement } from "../gen/thunderhead/v1/thunderhead_pb";
-
-const STAGE_NAMES: Readonly<Record<string, string>> = {
-  read: "Read file",
-  extinction: "Extinction",
-  upload: "Upload",
-  fit: "Fit metaballs",
-  surface: "Surface",
-  ground: "Ground",
-  slices: "Slices",
-  light: "Light",
-  view: "View",
-  composite: "Sky and ground",
-  trace: "Traced so far",
-  correction: "Light correction",
-  tone: "Tone map",
-  read_back: "Read back",
-  encode: "Encode",
-};
 
 export function Readout({ state }: { state: PageState }) {
   const frame = state.frame.value;
@@ -52,7 +35,7 @@ export function Readout({ state }: { state: PageState }) {
   );
 }
 
-// How far the reference has come: what a reader of the picture must know, so it is never folded away.
+// Progress of the reference. Always visible, as a picture cannot be judged without it.
 function RefinementBrief({ refinement }: { refinement: Refinement }) {
   const { samplesPerPixel, relativeError } = refinement;
   return (
@@ -78,7 +61,7 @@ function Costs({ state }: { state: PageState }) {
       <tbody>
         {frame.stages.map((stage) => (
           <tr key={stage.stage}>
-            <th scope="row">{STAGE_NAMES[stage.stage] ?? stage.stage}</th>
+            <th scope="row">{nameOfStage(stage.stage)}</th>
             <td>{formatNumber(stage.milliseconds)} ms</td>
             <td class="bar" aria-hidden="true">
               <meter min={0} max={Math.max(total, 1e-3)} value={stage.milliseconds} />
@@ -91,14 +74,19 @@ function Costs({ state }: { state: PageState }) {
         <Row name="Rate" text={`${formatBytes(state.pace.value.bytesPerSecond)}/s`} />
         {frame.modelled !== undefined && (
           <>
-            {/* The reference has neither slices nor a place on the device. */}
+            <Row
+              name="Technique"
+              testId="technique"
+              text={nameOfTechnique(frame.modelled.technique)}
+            />
+            {/* The reference is traced on the CPU: no slices, nothing on the device. */}
             {frame.refinement === undefined && (
               <>
                 {frame.modelled.balls > 0 && (
                   <>
                     <Row name="Metaballs" text={String(frame.modelled.balls)} />
                     <Row
-                      name="Fit off by"
+                      name="Fit error"
                       text={`${formatNumber(frame.modelled.fitError * 100)} %, root mean square`}
                     />
                   </>
@@ -116,9 +104,9 @@ function Costs({ state }: { state: PageState }) {
                 {frame.modelled.ellipsoids > 0 && (
                   <Row name="Ellipsoids" text={String(frame.modelled.ellipsoids)} />
                 )}
-                <Row name="On the device" text={formatBytes(Number(frame.modelled.deviceBytes))} />
+                <Row name="Device memory" text={formatBytes(Number(frame.modelled.deviceBytes))} />
                 <Row
-                  name="Of the domain"
+                  name="Domain drawn"
                   text={`${formatNumber(frame.modelled.occupiedShare * 100)} %`}
                 />
               </>

@@ -1,4 +1,4 @@
-// What the server is and which storms it holds: learns of them, has the one shown described, has clouds made.
+// Fetches what the server offers: its description, its storms, details of the storm shown; makes and deletes clouds.
 import { ConnectError } from "@connectrpc/connect";
 import { requestOfCloud } from "../core/cloud";
 import type { PageState } from "../core/state";
@@ -17,7 +17,7 @@ export class StormsOnServer {
     this.#state = state;
   }
 
-  // Asked again with each new session, as it may be another server.
+  // Called for each new session, as the server may be another one.
   async learn(): Promise<void> {
     const { server, storms, scene } = this.#state;
     try {
@@ -28,11 +28,12 @@ export class StormsOnServer {
         this.#state.adoptScene({ ...scene.value, stormId: first.id });
       }
     } catch {
-      // The stream notices the loss as well, and its recovery asks again.
+      // The stream notices the lost connection too; after reconnecting this is called again.
     }
   }
 
-  // Asks for the storm at the time shown; at once for another storm, after a rest for another time. Reads signals.
+  // Fetches the description of the storm at the time shown: at once for another storm, after a delay for another time.
+  // Reads signals, to be called from an effect.
   describeAfterRest(playing: boolean): void {
     const stormId = this.#state.stormId.value;
     const timeIndex = this.#state.timeIndex.value;
@@ -46,7 +47,7 @@ export class StormsOnServer {
     }
   }
 
-  // Has the cloud made that was drafted; the id of the storm that it is then.
+  // Makes the cloud set in the panel. Returns the id of its storm, or undefined if it failed or was stopped.
   async makeCloud(): Promise<string | undefined> {
     const making = new AbortController();
     this.#making = making;
@@ -67,7 +68,7 @@ export class StormsOnServer {
     }
   }
 
-  // Has a cloud deleted that was made. Says what went wrong.
+  // Deletes a cloud that the server made; a failure becomes a notice.
   async deleteCloud(stormId: string): Promise<void> {
     try {
       await this.#client.deleteCloud(stormId);

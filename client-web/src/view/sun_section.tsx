@@ -16,7 +16,7 @@ export function SunSection({ state }: { state: PageState }) {
   const sun = state.sun.value;
   const byTime = sun?.source === Sun_Source.BY_TIME;
   const direction = state.sunDirection.value;
-  // A hand on the sun takes it off the clock, from where it stands.
+  // Moving the sun by hand stops the clock; the other angle stays.
   const point = (change: { azimuthDeg?: number; elevationDeg?: number }) =>
     state.edit((scene) => withSun(scene, { ...direction, ...change, source: Sun_Source.BY_HAND }));
   return (

@@ -1,0 +1,89 @@
+// Display names of enum values and techniques.
+import {
+  CumulusSchema,
+  HalfAngleSchema,
+  LightVolumeSchema,
+  MetaballsSchema,
+  Preset,
+  ReferenceSchema,
+  RenderingSchema,
+  TracedLight,
+  Transport,
+} from "../gen/thunderhead/v1/scene_pb";
+import { Stage } from "../gen/thunderhead/v1/thunderhead_pb";
+
+const TECHNIQUE_NAMES: Readonly<Record<string, string>> = {
+  [LightVolumeSchema.typeName]: "Light volume",
+  [HalfAngleSchema.typeName]: "Half-angle slices",
+  [MetaballsSchema.typeName]: "Metaballs",
+  [CumulusSchema.typeName]: "Cumulus surface",
+  [ReferenceSchema.typeName]: "Monte Carlo reference",
+};
+
+// `name` is that of TechniqueDescription. Techniques that the server was extended by have no other name.
+export function nameOfTechnique(name: string): string {
+  const field = RenderingSchema.fields.find((each) => each.name === name);
+  return TECHNIQUE_NAMES[field?.message?.typeName ?? ""] ?? name;
+}
+
+const TRANSPORT_NAMES: Readonly<Record<Transport, string>> = {
+  [Transport.UNSPECIFIED]: "Default",
+  [Transport.DIFFUSION]: "Diffusion",
+  [Transport.CONSISTENT]: "Consistent",
+  [Transport.LOW_ALBEDO]: "Single scattering",
+  [Transport.PAPER]: "As in the paper",
+  [Transport.PAPER_LOW_ALBEDO]: "Single scattering, as in the paper",
+};
+
+export function nameOfTransport(transport: Transport): string {
+  return TRANSPORT_NAMES[transport] ?? `Transport ${transport}`;
+}
+
+const TRACED_LIGHT_NAMES: Readonly<Record<TracedLight, string>> = {
+  [TracedLight.UNSPECIFIED]: "Default",
+  [TracedLight.OFF]: "Off",
+  [TracedLight.AT_REST]: "At rest",
+  [TracedLight.AWAITED]: "At rest; files wait for it",
+};
+
+export function nameOfTracedLight(tracedLight: TracedLight): string {
+  return TRACED_LIGHT_NAMES[tracedLight] ?? `Choice ${tracedLight}`;
+}
+
+const PRESET_NAMES: Readonly<Record<Preset, string>> = {
+  [Preset.UNSPECIFIED]: "None",
+  [Preset.FAST]: "Fast",
+  [Preset.BALANCED]: "Balanced",
+  [Preset.TRUE]: "True",
+  [Preset.UNIFORM_PHASE_LOW_ALBEDO]: "Uniform phase, low albedo",
+  [Preset.UNIFORM_PHASE_TRANSLUCENT]: "Uniform phase, translucent",
+  [Preset.PER_FIELD_PHASE_TRANSLUCENT]: "Phase per field, translucent",
+  [Preset.PER_FIELD_PHASE_DETAIL_TRANSLUCENT]: "Phase per field, detail, translucent",
+};
+
+export function nameOfPreset(preset: Preset): string {
+  return PRESET_NAMES[preset] ?? `Preset ${preset}`;
+}
+
+const STAGE_NAMES: Readonly<Record<Stage, string>> = {
+  [Stage.UNSPECIFIED]: "Other",
+  [Stage.READ]: "Read file",
+  [Stage.EXTINCTION]: "Extinction",
+  [Stage.UPLOAD]: "Upload",
+  [Stage.FIT]: "Fit metaballs",
+  [Stage.SURFACE]: "Surface",
+  [Stage.SLICES]: "Slices",
+  [Stage.LIGHT]: "Light",
+  [Stage.VIEW]: "View",
+  [Stage.GROUND]: "Ground",
+  [Stage.COMPOSITE]: "Sky and ground",
+  [Stage.TRACE]: "Traced so far",
+  [Stage.CORRECTION]: "Light correction",
+  [Stage.TONE]: "Tone map",
+  [Stage.READ_BACK]: "Read back",
+  [Stage.ENCODE]: "Encode",
+};
+
+export function nameOfStage(stage: Stage): string {
+  return STAGE_NAMES[stage] ?? `Stage ${stage}`;
+}

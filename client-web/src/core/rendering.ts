@@ -1,0 +1,183 @@
+// Scene.rendering: a technique with its own settings, or a preset that stands for one. The settings that a technique has
+// are read from its message in the schema.
+import {
+  create,
+  type DescField,
+  type DescMessage,
+  equals,
+  isMessage,
+  type Message,
+} from "@bufbuild/protobuf";
+import {
+  type Cumulus,
+  HalfAngleSchema,
+  type LightVolume,
+  LightVolumeSchema,
+  type Metaballs,
+  MetaballsSchema,
+  type OtherTechnique,
+  OtherTechniqueSchema,
+  Preset,
+  type Rendering,
+  RenderingSchema,
+  TracedLight,
+  Transport,
+} from "../gen/thunderhead/v1/scene_pb";
+import type { PresetDescription, TechniqueDescription } from "../gen/thunderhead/v1/thunderhead_pb";
+import { type Limits, limitsOf } from "./limits";
+
+// The settings of any one technique.
+export type Settings = Exclude<Rendering["technique"]["value"], Preset | undefined>;
+
+type FieldsOf<T extends Message> = Omit<T, keyof Message>;
+
+// Settings that several techniques have. Undefined: the technique's default, or not one of its settings.
+export type SharedSettings = Partial<FieldsOf<LightVolume>>;
+
+export type SettingsChange = SharedSettings &
+  Partial<FieldsOf<Metaballs>> &
+  Partial<FieldsOf<Cumulus>> &
+  Partial<FieldsOf<OtherTechnique>>;
+
+// The presets that trade speed for accuracy, fastest first. The others are the papers'.
+export const QUALITY_PRESETS: readonly Preset[] = [Preset.FAST, Preset.BALANCED, Preset.TRUE];
+
+const TECHNIQUES: readonly (DescField & { readonly message: DescMessage })[] =
+  RenderingSchema.fields.flatMap((field) => (field.fieldKind === "message" ? [field] : []));
+
+// The transports that each technique accepts, its default first.
+const TRANSPORTS: Readonly<Record<string, readonly Transport[]>> = {
+  [LightVolumeSchema.typeName]: [
+    Transport.DIFFUSION,
+    Transport.CONSISTENT,
+    Transport.LOW_ALBEDO,
+    Transport.PAPER,
+    Transport.PAPER_LOW_ALBEDO,
+  ],
+  [HalfAngleSchema.typeName]: [
+    Transport.CONSISTENT,
+    Transport.LOW_ALBEDO,
+    Transport.PAPER,
+    Transport.PAPER_LOW_ALBEDO,
+  ],
+  [MetaballsSchema.typeName]: [Transport.CONSISTENT, Transport.LOW_ALBEDO, Transport.PAPER],
+};
+
+// Settings kept when the technique changes. The others have another default in each technique, for a reason.
+const KEPT = ["slices", "thetaFDeg", "perFieldPhase", "falseColors"] as const;
+
+function fieldOf(settings: Settings) {
+  return TECHNIQUES.find((field) => field.message.typeName === settings.$typeName);
+}
+
+// Undefined for a preset.
+export function settingsOf(rendering: Rendering | undefined): Settings | undefined {
+  const value = rendering?.technique.value;
+  return typeof value === "object" ? value : undefined;
+}
+
+export function sharedSettingsOf(settings: Settings | undefined): SharedSettings {
+  return (settings ?? {}) as SharedSettings;
+}
+
+export function renderingOf(settings: Settings): Rendering {
+  const technique = { case: fieldOf(settings)?.localName, value: settings };
+  return { ...create(RenderingSchema), technique: technique as Rendering["technique"] };
+}
+
+// The technique's name, as in TechniqueDescription.
+export function techniqueNameOf(settings: Settings): string {
+  if (isMessage(settings, OtherTechniqueSchema)) return settings.name;
+  return fieldOf(settings)?.name ?? "";
+}
+
+export function hasSetting(settings: Settings, name: keyof SharedSettings): boolean {
+  return fieldOf(settings)?.message.field[name] !== undefined;
+}
+
+// Undefined where the technique has no such setting.
+export function settingLimits(settings: Settings, name: keyof SharedSettings): Limits | undefined {
+  const field = fieldOf(settings)?.message.field[name];
+  return field === undefined ? undefined : limitsOf(field);
+}
+
+// Empty for a technique without a choice of transport.
+export function transportsOf(settings: Settings): readonly Transport[] {
+  return TRANSPORTS[settings.$typeName] ?? [];
+}
+
+export function transportOf(settings: Settings): Transport | undefined {
+  return sharedSettingsOf(settings).transport || transportsOf(settings)[0];
+}
+
+// True if the setting `traced_light` has an effect.
+export function tracesLight(settings: Settings, technique: TechniqueDescription): boolean {
+  return (
+    technique.showsTracedLight &&
+    hasSetting(settings, "tracedLight") &&
+    transportOf(settings) === Transport.DIFFUSION
+  );
+}
+
+// True if the picture shows the fields' turbulent detail.
+export function drawsDetail(settings: Settings, technique: TechniqueDescription): boolean {
+  const asked = !hasSetting(settings, "detail") || sharedSettingsOf(settings).detail === true;
+  return technique.showsDetail && asked;
+}
+
+// True if the picture shows the fields' false colours.
+export function drawsFalseColors(settings: Settings, technique: TechniqueDescription): boolean {
+  return technique.showsFieldOptics && sharedSettingsOf(settings).falseColors === true;
+}
+
+export function withSettings(rendering: Rendering, change: SettingsChange): Rendering {
+  const settings = settingsOf(rendering);
+  return settings === undefined ? rendering : renderingOf({ ...settings, ...change } as Settings);
+}
+
+// Changes the transport, and leaves it to the server when to trace light: not all transports are corrected by it.
+export function withTransport(rendering: Rendering, transport: Transport): Rendering {
+  const settings = settingsOf(rendering);
+  const traces = settings !== undefined && hasSetting(settings, "tracedLight");
+  const rest = traces ? { tracedLight: TracedLight.UNSPECIFIED } : {};
+  return withSettings(rendering, { transport, ...rest });
+}
+
+// Changes the technique. Shared settings are kept; the server fills in the others.
+export function withTechnique(rendering: Rendering, name: string): Rendering {
+  const field = TECHNIQUES.find((other) => other.name === name);
+  if (field === undefined) return renderingOf(create(OtherTechniqueSchema, { name }));
+  const old = sharedSettingsOf(settingsOf(rendering));
+  const kept = KEPT.filter((key) => old[key] !== undefined && key in field.message.field);
+  const settings = {
+    ...create(field.message),
+    ...Object.fromEntries(kept.map((key) => [key, old[key]])),
+  };
+  return renderingOf(settings as Message as Settings);
+}
+
+export function renderingOfPreset(preset: Preset): Rendering {
+  return create(RenderingSchema, { technique: { case: "preset", value: preset } });
+}
+
+// Replaces a preset by the technique and settings that it stands for; undefined if the server has not sent them.
+export function resolved(
+  rendering: Rendering | undefined,
+  presets: readonly PresetDescription[],
+): Rendering | undefined {
+  if (rendering?.technique.case !== "preset") return rendering;
+  const { value } = rendering.technique;
+  return presets.find(({ preset }) => preset === value)?.rendering;
+}
+
+// The preset with exactly this technique and these settings, if there is one.
+export function presetOf(
+  rendering: Rendering | undefined,
+  presets: readonly PresetDescription[],
+): Preset | undefined {
+  const plain = resolved(rendering, presets);
+  if (plain === undefined) return undefined;
+  return presets.find(
+    (each) => each.rendering !== undefined && equals(RenderingSchema, each.rendering, plain),
+  )?.preset;
+}

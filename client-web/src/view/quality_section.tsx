@@ -1,0 +1,55 @@
+// Quality of the picture: three presets, and folded below them the technique and its settings.
+import { nameOfPreset } from "../core/names";
+import { withPreset } from "../core/scene";
+import type { PageState } from "../core/state";
+import { Preset } from "../gen/thunderhead/v1/scene_pb";
+import { Section, Segments } from "./controls";
+import { TechniqueSettings } from "./technique_settings";
+
+const QUALITIES = [
+  [Preset.FAST, nameOfPreset(Preset.FAST), "Fewer samples and no fine detail."],
+  [Preset.BALANCED, nameOfPreset(Preset.BALANCED), "Fine detail; traced light while it rests."],
+  [Preset.TRUE, nameOfPreset(Preset.TRUE), "As Balanced; files wait for traced light."],
+] as const;
+
+export function QualitySection({ state }: { state: PageState }) {
+  const preset = state.preset.value;
+  return (
+    <Section title="Picture quality" open testId="quality-section">
+      <Segments
+        label="Picture quality"
+        testId="quality-choice"
+        value={preset}
+        options={QUALITIES}
+        otherwise={otherwise(state)}
+        onChange={(chosen) => state.edit((scene) => withPreset(scene, chosen))}
+      />
+      <NotShown state={state} />
+      <details class="folded" data-testid="technique-settings">
+        <summary>Technique and settings</summary>
+        <TechniqueSettings state={state} />
+      </details>
+    </Section>
+  );
+}
+
+// Shown while none of the three presets is chosen.
+function otherwise(state: PageState): string {
+  if (state.goal.value !== undefined) return "Chosen by the server for the accuracy asked for.";
+  if (state.settings.value === undefined) return "Waiting for the server …";
+  const preset = state.preset.value;
+  return preset === undefined
+    ? "Custom: as set below."
+    : `As in the paper: ${nameOfPreset(preset)}.`;
+}
+
+// Properties of the scene that the picture on the screen leaves out.
+function NotShown({ state }: { state: PageState }) {
+  const notShown = state.frame.value?.modelled?.notShown ?? [];
+  if (notShown.length === 0) return null;
+  return (
+    <p class="quiet" data-testid="not-shown">
+      Not shown: {notShown.map(({ message }) => message).join(", ")}.
+    </p>
+  );
+}
