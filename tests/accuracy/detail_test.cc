@@ -5,17 +5,18 @@
 #include "gtest/gtest.h"
 #include "physics/turbulence.h"
 #include "tests/accuracy/slab_view.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::renderers {
 namespace {
 
-class DetailInSlab : public SlabView, public testing::WithParamInterface<scene::Renderer> {
+class DetailInSlab : public SlabView, public testing::WithParamInterface<accuracy::Path> {
  protected:
   void SetUp() override {
-    scene_.rendering.renderer = GetParam();
-    scene_.rendering.mode = scene::Mode::kPerFieldPhaseDetailTranslucent;
-    scene_.rendering.transport = scene::Transport::kPaper;  // the eye sees the whole extinction
-    scene_.rendering.slices = 512;
+    test_support::SetPath(&scene_.rendering.technique, GetParam());
+    test_support::SetMode(&scene_.rendering.technique, test_support::kWithDetail);
+    test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);  // the eye sees the whole extinction
+    scene::SetSlices(&scene_.rendering.technique, 512);
   }
 
   // The mean noise along the middle ray, by the midpoint rule.
@@ -53,16 +54,16 @@ TEST_P(DetailInSlab, IsAtRestInTheWorld) {
 }
 
 TEST_P(DetailInSlab, OtherModesDoNotHaveIt) {
-  scene_.rendering.mode = scene::Mode::kPerFieldPhaseTranslucent;
+  test_support::SetMode(&scene_.rendering.technique, test_support::kPerFieldPhase);
   scene_.fields[0].detail = {.share = 1.0F, .wavelength_m = 700.0F, .octaves = 2, .seed = 5};
   EXPECT_NEAR(-std::log(Look(1.0, 89.9, 80.0).transmittance), 1.0, 0.01);
 }
 
 INSTANTIATE_TEST_SUITE_P(Renderers, DetailInSlab,
-                         testing::Values(scene::Renderer::kHalfAngle,
-                                         scene::Renderer::kLightVolume),
+                         testing::Values(test_support::kHalfAngle,
+                                         test_support::kLightVolume),
                          [](const auto& renderer) {
-                           return renderer.param == scene::Renderer::kHalfAngle ? "HalfAngle"
+                           return renderer.param == test_support::kHalfAngle ? "HalfAngle"
                                                                                 : "LightVolume";
                          });
 

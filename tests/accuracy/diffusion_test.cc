@@ -4,6 +4,7 @@
 
 #include "gtest/gtest.h"
 #include "tests/accuracy/slab_view.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::renderers {
 namespace {
@@ -11,10 +12,10 @@ namespace {
 class Diffusion : public SlabView {
  protected:
   void SetUp() override {
-    scene_.rendering.renderer = scene::Renderer::kLightVolume;
-    scene_.rendering.mode = scene::Mode::kPerFieldPhaseTranslucent;
-    scene_.rendering.transport = scene::Transport::kDiffusion;
-    scene_.rendering.slices = 1024;  // steps shorter than the cells are high
+    test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);
+    test_support::SetMode(&scene_.rendering.technique, test_support::kPerFieldPhase);
+    test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kDiffusion);
+    scene::SetSlices(&scene_.rendering.technique, 1024);  // steps shorter than the cells are high
     in_air_ = true;
     width_m_ = 6e3;  // so wide that what leaves by the sides is not seen
     SetPhase(physics::PhaseKind::kHenyeyGreenstein, 0.75F);

@@ -6,13 +6,14 @@
 #include "gtest/gtest.h"
 #include "physics/optics.h"
 #include "tests/accuracy/slab_view.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::renderers {
 namespace {
 
 class HalfAngle : public SlabView {
  protected:
-  void SetUp() override { scene_.rendering.renderer = scene::Renderer::kHalfAngle; }
+  void SetUp() override { test_support::SetPath(&scene_.rendering.technique, test_support::kHalfAngle); }
 };
 
 // The slab's hard faces cut tilted slices: a ray counts its path in whole slices, off by up to half
@@ -25,8 +26,8 @@ class SingleScattering : public HalfAngle {
  protected:
   void SetUp() override {
     HalfAngle::SetUp();
-    scene_.rendering.mode = scene::Mode::kUniformPhaseLowAlbedo;
-    scene_.rendering.transport = scene::Transport::kConsistent;
+    test_support::SetMode(&scene_.rendering.technique, test_support::kLowAlbedo);
+    test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kConsistent);
     SetPhase(physics::PhaseKind::kCornetteShanks, 0.0F);
   }
 };
@@ -34,7 +35,7 @@ class SingleScattering : public HalfAngle {
 TEST_F(SingleScattering, ReflectedLightOfASlab) {
   // Sun and eye above: the integral of exp(-t (1 / sin e + 1 / sin s)) dt / sin e.
   for (const int slices : {64, 256}) {
-    scene_.rendering.slices = slices;
+    scene::SetSlices(&scene_.rendering.technique, slices);
     for (const double depth : {0.01, 0.5, 3.0, 20.0}) {
       for (const auto& [view_deg, sun_deg] :
            {std::pair(89.9, 89.9), std::pair(88.0, 45.0), std::pair(50.0, 60.0)}) {
@@ -63,7 +64,7 @@ TEST_F(SingleScattering, SeenFromAboveWithoutPerspective) {
     const double sun = 1.0 / std::sin(60.0 * std::numbers::pi / 180);
     const double expected = PhaseTerm(90.0, 60.0) * -std::expm1(-depth * (1.0 + sun)) / (1.0 + sun);
     const Seen seen = Look(depth, view, 60.0);
-    const double error = kTextureError + HardFaceError(scene_.rendering.slices, depth);
+    const double error = kTextureError + HardFaceError(*scene::SlicesOf(scene_.rendering.technique), depth);
     for (std::size_t pixel = 0; pixel < seen.eye.size(); pixel += 4) {
       EXPECT_NEAR(seen.eye[pixel] / expected, 1.0, error) << depth;
       EXPECT_NEAR(seen.eye[pixel + 3], std::exp(-depth), error) << depth;
@@ -85,7 +86,7 @@ TEST_F(SingleScattering, TransmittedLightOfASlab) {
 
 TEST_F(SingleScattering, ThinSlabsKeepTheirDigits) {
   // With half-float buffers each of the 256 slices lost 1 - 1e-6, or took 5e-4 for it.
-  scene_.rendering.slices = 256;
+  scene::SetSlices(&scene_.rendering.technique, 256);
   for (const double depth : {3e-4, 1e-3}) {
     const double expected = PhaseTerm(89.9, 89.9) * depth;
     EXPECT_NEAR(Look(depth, 89.9, 89.9).radiance / expected, 1.0, 0.006 + depth);
@@ -100,8 +101,8 @@ TEST_F(SingleScattering, AlbedoScalesTheLight) {
 
 TEST_F(HalfAngle, ThinSlabsKeepTheirDigitsInLightFromAllAround) {
   even_light_ = true;
-  scene_.rendering.mode = scene::Mode::kUniformPhaseTranslucent;
-  scene_.rendering.slices = 1024;
+  test_support::SetMode(&scene_.rendering.technique, test_support::kUniformPhase);
+  scene::SetSlices(&scene_.rendering.technique, 1024);
   SetPhase(physics::PhaseKind::kRayleigh, 0.0F);
   // What is left of a single-precision transmittance after a slice of 3e-7 is off by a fifth of it.
   for (const double depth : {3e-4, 1e-3}) {
@@ -111,8 +112,8 @@ TEST_F(HalfAngle, ThinSlabsKeepTheirDigitsInLightFromAllAround) {
 
 TEST_F(HalfAngle, WideViewsKeepTheStormWhereRaysMeetSlicesAgainstTheirOrder) {
   // From below the slab straight up, the sun on the horizon: slices face 45 degrees from the axis.
-  scene_.rendering.mode = scene::Mode::kUniformPhaseLowAlbedo;
-  scene_.rendering.slices = 200;
+  test_support::SetMode(&scene_.rendering.technique, test_support::kLowAlbedo);
+  scene::SetSlices(&scene_.rendering.technique, 200);
   width_m_ = 10'000.0;
   constexpr double kDepth = 1.0;
   scene::View view;
@@ -125,7 +126,7 @@ TEST_F(HalfAngle, WideViewsKeepTheStormWhereRaysMeetSlicesAgainstTheirOrder) {
     const Seen seen = Look(kDepth, view, sun_elevation_deg);
     const glm::dvec3 sun = scene::Direction(kSunAzimuth_deg, sun_elevation_deg);
     const Slicing slicing = SliceBox({glm::dvec3(width_m_, width_m_, kHeight_m) / 2.0}, sun,
-                                     -view.forward, scene_.rendering.slices);
+                                     -view.forward, *scene::SlicesOf(scene_.rendering.technique));
     ASSERT_EQ(OrderOf(slicing, view), SliceOrder::kBoth);
     int along = 0;
     int against = 0;
@@ -148,8 +149,8 @@ TEST_F(HalfAngle, WideViewsKeepTheStormWhereRaysMeetSlicesAgainstTheirOrder) {
 TEST_F(HalfAngle, LightSpreadsFromClearAirIntoTheCloudsEdge) {
   // Two clouds with a gap between them. A texel within has the light of its own ray and, at the
   // edge, a part of its neighbours'.
-  scene_.rendering.mode = scene::Mode::kUniformPhaseTranslucent;
-  scene_.rendering.theta_f_deg = 80.0;
+  test_support::SetMode(&scene_.rendering.technique, test_support::kUniformPhase);
+  scene::MediumSettingsOf(&scene_.rendering.technique)->theta_f_deg = 80.0;
   SetPhase(physics::PhaseKind::kHenyeyGreenstein, 0.6F);
   with_gap_ = true;
   struct Shares {
@@ -169,7 +170,7 @@ TEST_F(HalfAngle, LightSpreadsFromClearAirIntoTheCloudsEdge) {
     return found;
   };
   for (const int slices : {64, 256}) {
-    scene_.rendering.slices = slices;
+    scene::SetSlices(&scene_.rendering.technique, slices);
     for (scene::FieldParameters& field : scene_.fields) field.optics.albedo = 1.0F;
     const Shares scattered = shares(4.0);
     // The same light where none is scattered: its edge is the one cell over which extinction rises.
@@ -186,8 +187,8 @@ TEST_F(HalfAngle, PaperTransportIsAsPrinted) {
   // One slice multiplies by T + (1 - T) c, c = CP(theta_f / 2), where light is uniform across the
   // slice: with optical depth 10 and c = 0.9, 16 slices leave 0.467 and 128 leave 0.381 (limit
   // 0.368).
-  scene_.rendering.mode = scene::Mode::kUniformPhaseTranslucent;
-  scene_.rendering.transport = scene::Transport::kPaper;
+  test_support::SetMode(&scene_.rendering.technique, test_support::kUniformPhase);
+  test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
   SetPhase(physics::PhaseKind::kCornetteShanks, 0.979F);
   double angle_deg = 5.0;  // bisection for CP(angle) = 0.9
   for (double step = 4.0; step > 1e-6; step /= 2) {
@@ -195,9 +196,9 @@ TEST_F(HalfAngle, PaperTransportIsAsPrinted) {
         physics::CumulativePhase(UniformPhase(scene_), angle_deg * std::numbers::pi / 180);
     angle_deg += within < 0.9 ? step : -step;
   }
-  scene_.rendering.theta_f_deg = 2.0 * angle_deg;
+  scene::MediumSettingsOf(&scene_.rendering.technique)->theta_f_deg = 2.0 * angle_deg;
   for (const auto& [slices, expected] : {std::pair(16, 0.467), std::pair(128, 0.381)}) {
-    scene_.rendering.slices = slices;
+    scene::SetSlices(&scene_.rendering.technique, slices);
     const Seen seen = Look(10.0, 89.9, 89.9);
     // The middle of the light buffer, away from the slab's sides.
     const auto middle = [&] {
@@ -209,10 +210,10 @@ TEST_F(HalfAngle, PaperTransportIsAsPrinted) {
 }
 
 TEST_F(HalfAngle, ConsistentTransportDoesNotDependOnTheNumberOfSlices) {
-  scene_.rendering.mode = scene::Mode::kPerFieldPhaseTranslucent;
-  scene_.rendering.slices = 16;
+  test_support::SetMode(&scene_.rendering.technique, test_support::kPerFieldPhase);
+  scene::SetSlices(&scene_.rendering.technique, 16);
   const double coarse = Look(10.0, 60.0, 45.0).radiance;
-  scene_.rendering.slices = 128;
+  scene::SetSlices(&scene_.rendering.technique, 128);
   const double fine = Look(10.0, 60.0, 45.0).radiance;
   // The diffusion term is evaluated once a slice: second order, 0.6 of a mean free path here.
   EXPECT_NEAR(coarse / fine, 1.0, 0.02);
@@ -222,7 +223,7 @@ TEST_F(HalfAngle, ThickSlabIsWhite) {
   // Eddington's reflectance of a semi-infinite conservative layer is 1: under a high sun it must
   // come near a white Lambertian's 1 / pi. Milne's exact law is 10-20 % brighter at the zenith than
   // its mean; the single-scattered share counted beside the diffusion term adds to that.
-  scene_.rendering.mode = scene::Mode::kPerFieldPhaseTranslucent;
+  test_support::SetMode(&scene_.rendering.technique, test_support::kPerFieldPhase);
   const double radiance = Look(5000.0, 89.0, 89.0).radiance;
   EXPECT_GT(radiance, 0.7 / std::numbers::pi);
   EXPECT_LT(radiance, 1.3 / std::numbers::pi);
@@ -234,12 +235,12 @@ TEST_P(OpticalDepths, NothingBreaks) {
   // The second number is of more than one slab.
   for (const int slices : {8, 40}) {
     for (const auto mode :
-         {scene::Mode::kUniformPhaseLowAlbedo, scene::Mode::kPerFieldPhaseTranslucent}) {
+         {test_support::kLowAlbedo, test_support::kPerFieldPhase}) {
       for (const auto transport : {scene::Transport::kPaper, scene::Transport::kConsistent}) {
         for (const double elevation_deg : {-80.0, 30.0, 89.0}) {
-          scene_.rendering.mode = mode;
-          scene_.rendering.transport = transport;
-          scene_.rendering.slices = slices;
+          test_support::SetMode(&scene_.rendering.technique, mode);
+          test_support::SetTransport(&scene_.rendering.technique, transport);
+          scene::SetSlices(&scene_.rendering.technique, slices);
           const Seen seen = Look(GetParam() * slices, elevation_deg, 40.0);
           for (std::size_t i = 0; i < seen.eye.size(); ++i) {
             ASSERT_TRUE(std::isfinite(seen.eye[i]));

@@ -13,6 +13,7 @@
 #include "measure/light_parts.h"
 #include "reference/trace_scene.h"
 #include "tests/support/slab.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::accuracy {
 namespace {
@@ -42,7 +43,7 @@ class LightCorrection : public testing::Test {
     auto context = gl::Context::Create("software");
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
-    scene_.rendering.transport = scene::Transport::kDiffusion;
+    test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kDiffusion);
     scene_.rendering.traced_light = true;
     scene_.camera = scene::OrbitCamera{.target_m = {0.0, 0.0, 3000.0},
                                        .azimuth_deg = 200.0,
@@ -69,7 +70,7 @@ class LightCorrection : public testing::Test {
   std::unique_ptr<gl::Context> context_;
   std::unique_ptr<renderers::SceneRenderer> renderer_;
   std::shared_ptr<const volume::HydrometeorFields> fields_ = MakeTower();
-  scene::Scene scene_;
+  scene::Scene scene_ = test_support::PlainScene();
 };
 
 TEST_F(LightCorrection, MultipliesTheStormsLightAlone) {
@@ -230,10 +231,10 @@ TEST_F(LightCorrection, NothingIsTracedWhereNothingCouldShowIt) {
   scene.rendering.traced_light = false;
   EXPECT_EQ(pool.Trace(scene, fields_)->steps, 0);
   scene = scene_;
-  scene.rendering.transport = scene::Transport::kConsistent;
+  test_support::SetTransport(&scene.rendering.technique, scene::Transport::kConsistent);
   EXPECT_EQ(pool.Trace(scene, fields_)->steps, 0);
   scene = scene_;
-  scene.rendering.mode = scene::Mode::kUniformPhaseLowAlbedo;
+  test_support::SetMode(&scene.rendering.technique, test_support::kLowAlbedo);
   EXPECT_EQ(pool.Trace(scene, fields_)->steps, 0);
   scene = scene_;
   for (scene::FieldParameters& field : scene.fields) field.visible = false;

@@ -5,17 +5,18 @@
 
 #include "gtest/gtest.h"
 #include "tests/accuracy/slab_view.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::renderers {
 namespace {
 
 class LightVolume : public SlabView {
  protected:
-  void SetUp() override { scene_.rendering.renderer = scene::Renderer::kLightVolume; }
+  void SetUp() override { test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume); }
 
   void SingleScattering() {
-    scene_.rendering.mode = scene::Mode::kUniformPhaseLowAlbedo;
-    scene_.rendering.transport = scene::Transport::kConsistent;
+    test_support::SetMode(&scene_.rendering.technique, test_support::kLowAlbedo);
+    test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kConsistent);
     SetPhase(physics::PhaseKind::kCornetteShanks, 0.0F);
   }
 };
@@ -56,7 +57,7 @@ TEST_F(LightVolume, HardFaces) {
 TEST_F(LightVolume, TransmittanceDoesNotDependOnTheNumberOfSamples) {
   SingleScattering();
   for (const int samples : {1, 3, 16, 500}) {
-    scene_.rendering.slices = samples;
+    scene::SetSlices(&scene_.rendering.technique, samples);
     EXPECT_NEAR(Look(1.0, 60.0, 45.0).transmittance,
                 std::exp(-1.0 / std::sin(std::numbers::pi / 3)), kTextureError)
         << samples;
@@ -69,7 +70,7 @@ TEST_F(LightVolume, AStepThroughHazeEndsWhereTheCloudBegins) {
   SingleScattering();
   in_air_ = true;
   haze_per_m_ = 2e-5;
-  scene_.rendering.slices = 512;
+  scene::SetSlices(&scene_.rendering.technique, 512);
   for (const double depth : {0.5, 2.0}) {
     for (const double elevation_deg : {89.9, 50.0, -25.0, -89.9}) {
       const double through = (depth + haze_per_m_ * kHeight_m / 2) /
@@ -82,7 +83,7 @@ TEST_F(LightVolume, AStepThroughHazeEndsWhereTheCloudBegins) {
 
 TEST_F(LightVolume, ThinSlabsKeepTheirDigits) {
   SingleScattering();
-  scene_.rendering.slices = 1024;
+  scene::SetSlices(&scene_.rendering.technique, 1024);
   for (const double depth : {3e-4, 1e-2}) {
     const double expected = PhaseTerm(89.9, 89.9) * depth;
     EXPECT_NEAR(Look(depth, 89.9, 89.9).radiance / expected, 1.0, 0.006 + depth);
@@ -100,15 +101,15 @@ TEST_F(LightVolume, AgreesWithHalfAngleSlicing) {
   in_air_ = true;
   SetPhase(physics::PhaseKind::kCornetteShanks, 0.85F);
   for (const auto mode :
-       {scene::Mode::kUniformPhaseTranslucent, scene::Mode::kPerFieldPhaseTranslucent}) {
-    scene_.rendering.mode = mode;
+       {test_support::kUniformPhase, test_support::kPerFieldPhase}) {
+    test_support::SetMode(&scene_.rendering.technique, mode);
     for (const double depth : {0.1, 1.0, 10.0, 100.0}) {
       for (const double elevation_deg : {-60.0, 30.0, 80.0}) {
-        scene_.rendering.renderer = scene::Renderer::kHalfAngle;
-        scene_.rendering.slices = 512;
+        test_support::SetPath(&scene_.rendering.technique, test_support::kHalfAngle);
+        scene::SetSlices(&scene_.rendering.technique, 512);
         const double slices = Look(depth, elevation_deg, 50.0).radiance;
-        scene_.rendering.renderer = scene::Renderer::kLightVolume;
-        scene_.rendering.slices = 128;
+        test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);
+        scene::SetSlices(&scene_.rendering.technique, 128);
         const double volume = Look(depth, elevation_deg, 50.0).radiance;
         // Diffuse light is linear from cell to cell here; where a cell's optical depth is 12 that
         // shows most on the dark side.
@@ -121,25 +122,25 @@ TEST_F(LightVolume, AgreesWithHalfAngleSlicing) {
 
 TEST_F(LightVolume, PaperTransportDependsOnTheNumberOfSlicesAsPrinted) {
   // Seen from below, the light that has passed the slab: more slices, less light (physics.md, 3).
-  scene_.rendering.mode = scene::Mode::kUniformPhaseTranslucent;
-  scene_.rendering.transport = scene::Transport::kPaper;
-  const auto seen = [&](int slices, scene::Renderer renderer) {
-    scene_.rendering.slices = slices;
-    scene_.rendering.renderer = renderer;
+  test_support::SetMode(&scene_.rendering.technique, test_support::kUniformPhase);
+  test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
+  const auto seen = [&](int slices, const accuracy::Path& renderer) {
+    scene::SetSlices(&scene_.rendering.technique, slices);
+    test_support::SetPath(&scene_.rendering.technique, renderer);
     return Look(10.0, -89.9, 89.9).radiance;
   };
-  const double coarse = seen(16, scene::Renderer::kLightVolume);
-  const double fine = seen(128, scene::Renderer::kLightVolume);
+  const double coarse = seen(16, test_support::kLightVolume);
+  const double fine = seen(128, test_support::kLightVolume);
   EXPECT_GT(coarse, 1.05 * fine);
   const double slicing =
-      seen(16, scene::Renderer::kHalfAngle) / seen(128, scene::Renderer::kHalfAngle);
+      seen(16, test_support::kHalfAngle) / seen(128, test_support::kHalfAngle);
   // A slice's own share of the light is counted at its middle here, before it there.
   EXPECT_NEAR(coarse / fine / slicing, 1.0, 0.05);
 }
 
 TEST_F(LightVolume, ThickSlabIsWhite) {
   // The bounds of half-angle slicing's test, for the same reasons.
-  scene_.rendering.mode = scene::Mode::kPerFieldPhaseTranslucent;
+  test_support::SetMode(&scene_.rendering.technique, test_support::kPerFieldPhase);
   const double radiance = Look(5000.0, 89.0, 89.0).radiance;
   EXPECT_GT(radiance, 0.7 / std::numbers::pi);
   EXPECT_LT(radiance, 1.3 / std::numbers::pi);
@@ -149,13 +150,13 @@ class MarchedDepths : public LightVolume, public testing::WithParamInterface<dou
 
 TEST_P(MarchedDepths, NothingBreaks) {
   for (const auto mode :
-       {scene::Mode::kUniformPhaseLowAlbedo, scene::Mode::kPerFieldPhaseTranslucent}) {
+       {test_support::kLowAlbedo, test_support::kPerFieldPhase}) {
     for (const auto transport :
          {scene::Transport::kPaper, scene::Transport::kConsistent, scene::Transport::kDiffusion}) {
       for (const double elevation_deg : {-80.0, 30.0, 89.0}) {
-        scene_.rendering.mode = mode;
-        scene_.rendering.transport = transport;
-        scene_.rendering.slices = 8;
+        test_support::SetMode(&scene_.rendering.technique, mode);
+        test_support::SetTransport(&scene_.rendering.technique, transport);
+        scene::SetSlices(&scene_.rendering.technique, 8);
         const Seen seen = Look(GetParam() * 8, elevation_deg, 40.0);
         for (std::size_t i = 0; i < seen.eye.size(); ++i) {
           ASSERT_TRUE(std::isfinite(seen.eye[i]));

@@ -13,6 +13,7 @@
 #include "renderers/half_angle/half_angle_renderer.h"
 #include "renderers/light_volume/light_volume_renderer.h"
 #include "tests/support/slab.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::renderers {
 namespace {
@@ -41,7 +42,7 @@ class PhaseTables : public testing::TestWithParam<physics::PhaseFunction> {
     auto context = gl::Context::Create("software");
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
-    scene_.rendering.mode = scene::Mode::kUniformPhaseLowAlbedo;
+    test_support::SetMode(&scene_.rendering.technique, test_support::kLowAlbedo);
   }
 
   // The angle between the middle of the picture and pixel `i`.
@@ -52,13 +53,13 @@ class PhaseTables : public testing::TestWithParam<physics::PhaseFunction> {
 
   // A row of pixels from below a slab of cloud: straight up in its middle, where the sun is, or
   // where it would be if it shone straight from below (which needs no ground).
-  std::vector<float> LookUp(double sun_elevation_deg, scene::Renderer renderer) {
+  std::vector<float> LookUp(double sun_elevation_deg, const accuracy::Path& renderer) {
     const auto fields = support::MakeSlab(kWidth_m, kHeight_m, kOpticalDepth / kHeight_m);
     ResidentMedium::Cost cost;
     DetailNoises noises;
     const ResidentMedium medium(scene_, *fields, &noises, &cost);
     RenderSettings settings;
-    settings.rendering = scene_.rendering;
+    settings.technique = scene_.rendering.technique;
     settings.view.eye_m = {0.0, 0.0, -3000.0};
     settings.view.forward = {0.0, 0.0, 1.0};
     settings.view.up = {0.0, -1.0, 0.0};
@@ -69,7 +70,7 @@ class PhaseTables : public testing::TestWithParam<physics::PhaseFunction> {
     settings.eye_size = {kPixels, 1};
     settings.slices = 64;
     const auto programs = std::make_shared<gl::ProgramCache>();
-    if (renderer == scene::Renderer::kHalfAngle) {
+    if (renderer == test_support::kHalfAngle) {
       HalfAngleRenderer half_angle(programs);
       EXPECT_TRUE(half_angle.Render(medium, settings, true).ok());
       return frame::ReadLinear(half_angle.Eye());
@@ -80,7 +81,7 @@ class PhaseTables : public testing::TestWithParam<physics::PhaseFunction> {
     return frame::ReadLinear(light_volume.Eye());
   }
 
-  scene::Scene scene_;
+  scene::Scene scene_ = test_support::PlainScene();
 
  private:
   std::unique_ptr<gl::Context> context_;
@@ -96,11 +97,11 @@ TEST_P(PhaseTables, SingleScatteringFollowsTheCurve) {
   const double depth = kOpticalDepth / radius_ratio;
   const physics::PhaseFunction phase = physics::PhaseOf(cloud);
   for (const auto& [sun_elevation_deg, renderer] :
-       {std::pair(90.0, scene::Renderer::kHalfAngle), std::pair(-90.0, scene::Renderer::kHalfAngle),
-        std::pair(90.0, scene::Renderer::kLightVolume),
-        std::pair(-90.0, scene::Renderer::kLightVolume)}) {
+       {std::pair(90.0, test_support::kHalfAngle), std::pair(-90.0, test_support::kHalfAngle),
+        std::pair(90.0, test_support::kLightVolume),
+        std::pair(-90.0, test_support::kLightVolume)}) {
     const std::vector<float> eye = LookUp(sun_elevation_deg, renderer);
-    const double error = renderer == scene::Renderer::kHalfAngle ? kSlicingError : kMarchingError;
+    const double error = renderer == test_support::kHalfAngle ? kSlicingError : kMarchingError;
     double squares = 0.0;
     for (int i = 0; i < kPixels; ++i) {
       const double up = std::cos(Angle_rad(i));
@@ -168,11 +169,11 @@ class Halos : public PhaseTables {
 
 TEST_F(Halos, OfAThinIceCloudBeforeTheSun) {
   // Translucent light with its forward peak cut, as the default scene draws it.
-  scene_.rendering.mode = scene::Mode::kPerFieldPhaseTranslucent;
+  test_support::SetMode(&scene_.rendering.technique, test_support::kPerFieldPhase);
   for (const auto& [kind, renderer] :
-       {std::pair(physics::PhaseKind::kIceColumns, scene::Renderer::kHalfAngle),
-        std::pair(physics::PhaseKind::kIcePlates, scene::Renderer::kHalfAngle),
-        std::pair(physics::PhaseKind::kIceColumns, scene::Renderer::kLightVolume)}) {
+       {std::pair(physics::PhaseKind::kIceColumns, test_support::kHalfAngle),
+        std::pair(physics::PhaseKind::kIcePlates, test_support::kHalfAngle),
+        std::pair(physics::PhaseKind::kIceColumns, test_support::kLightVolume)}) {
     scene_.fields[0].optics.phase = {kind};
     const std::vector<float> eye = LookUp(90.0, renderer);
     const Halo inner = Brightest(eye, 20.0, 30.0);
@@ -184,7 +185,7 @@ TEST_F(Halos, OfAThinIceCloudBeforeTheSun) {
   }
   scene_.fields[0].optics.phase = {physics::PhaseKind::kIceRough};
   // Rough crystals have none: the brightest is next to the sun.
-  EXPECT_NEAR(Brightest(LookUp(90.0, scene::Renderer::kHalfAngle), 20.0, 30.0).angle_deg, 20.0,
+  EXPECT_NEAR(Brightest(LookUp(90.0, test_support::kHalfAngle), 20.0, 30.0).angle_deg, 20.0,
               0.3);
 }
 

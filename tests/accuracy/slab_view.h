@@ -14,6 +14,7 @@
 #include "renderers/half_angle/half_angle_renderer.h"
 #include "renderers/light_volume/light_volume_renderer.h"
 #include "tests/support/slab.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::renderers {
 
@@ -62,7 +63,7 @@ class SlabView : public testing::Test {
     DetailNoises noises;
     const ResidentMedium medium(scene_, fields, &noises, &cost);
     RenderSettings settings;
-    settings.rendering = scene_.rendering;
+    settings.technique = scene_.rendering.technique;
     settings.view = view;
     settings.illumination = {scene::Direction(kSunAzimuth_deg, sun_elevation_deg), glm::vec3(1.0F),
                              glm::vec3(0.0F)};
@@ -72,9 +73,9 @@ class SlabView : public testing::Test {
       settings.illumination.rest_of_sky = settings.illumination.rest_of_sky_level = glm::vec3(1.0F);
     }
     settings.eye_size = {9, 9};
-    settings.slices = scene_.rendering.slices;
+    settings.slices = *scene::SlicesOf(scene_.rendering.technique);
     Seen seen;
-    if (scene_.rendering.renderer == scene::Renderer::kHalfAngle) {
+    if (accuracy::PathOf(scene_.rendering.technique) == test_support::kHalfAngle) {
       HalfAngleRenderer renderer(std::make_shared<gl::ProgramCache>());
       EXPECT_TRUE(renderer.Render(medium, settings, true).ok());
       seen.eye = frame::ReadLinear(renderer.Eye());
@@ -120,7 +121,7 @@ class SlabView : public testing::Test {
     return physics::PhaseValue(UniformPhase(scene_), mu) / (4 * std::numbers::pi);
   }
 
-  scene::Scene scene_;
+  scene::Scene scene_ = test_support::PlainScene();
   bool in_air_ = false;  // a layer with soft faces instead of the slab
   double width_m_ = kWidth_m;
   bool with_gap_ = false;    // nothing in the middle half of its width

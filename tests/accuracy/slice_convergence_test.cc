@@ -7,6 +7,7 @@
 #include "gtest/gtest.h"
 #include "measure/probe.h"
 #include "scene/view.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::measure {
 namespace {
@@ -21,8 +22,8 @@ TEST(SliceConvergence, OrderOfAPowerLaw) {
 TEST(SliceConvergence, PaperIsFirstOrderConsistentSecond) {
   auto context = gl::Context::Create("software");
   ASSERT_TRUE(context.ok()) << context.status();
-  scene::Scene scene;
-  scene.rendering.renderer = scene::Renderer::kHalfAngle;
+  scene::Scene scene = test_support::PlainScene();
+  test_support::SetPath(&scene.rendering.technique, test_support::kHalfAngle);
   scene.output = {48, 48, 88};
   scene.sky = {0.0, 0.0};
   const auto fields = SmoothCloud(5.0);

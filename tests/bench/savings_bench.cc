@@ -9,6 +9,7 @@
 #include "tests/bench/storm_bench.h"
 #include "volume/coarsen.h"
 #include "volume/extinction.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::bench {
 namespace {
@@ -74,7 +75,7 @@ std::string Name(const std::string& part, const measure::Named<scene::Renderer>&
 // The camera moves; and, where light is kept apart from the view, the sun.
 void RegisterBoth(const std::string& name, const scene::Scene& scene, const Fields& fields) {
   Register(name, scene, fields, Moving::kCamera);
-  if (scene.rendering.renderer != scene::Renderer::kHalfAngle) {
+  if (scene.rendering.renderer != test_support::kHalfAngle) {
     Register(name + "/light", scene, fields, Moving::kSun);
   }
 }
@@ -84,13 +85,13 @@ void RegisterBoth(const std::string& name, const scene::Scene& scene, const Fiel
 void RegisterSavings() {
   const Fields& fields = Sample::Get().fields;
   const Fields hazy = InHaze(fields);
-  for (const auto& path : measure::kFieldPaths) {
+  for (const auto& path : accuracy::kFieldPaths) {
     scene::Scene scene = PaperScene();
-    scene.rendering.renderer = path.value;
+    test_support::SetPath(&scene.rendering.technique, path.value);
     RegisterBoth(Name("saving", path, "five_fields_as_they_merge"), scene, fields);
     RegisterBoth(Name("saving", path, "empty_space_drawn"), scene, hazy);
     scene::Scene detailed = scene;
-    detailed.rendering.mode = scene::Mode::kPerFieldPhaseDetailTranslucent;
+    test_support::SetMode(&detailed.rendering.technique, test_support::kWithDetail);
     RegisterBoth(Name("saving", path, "detail_on"), detailed, fields);
     scene::Scene parted = scene;
     PartFields(&parted);
@@ -102,12 +103,12 @@ void RegisterSavings() {
 
 void RegisterGrowth() {
   const Fields& fields = Sample::Get().fields;
-  for (const auto& path : measure::kFieldPaths) {
+  for (const auto& path : accuracy::kFieldPaths) {
     scene::Scene paper = PaperScene();
-    paper.rendering.renderer = path.value;
+    test_support::SetPath(&paper.rendering.technique, path.value);
     for (const int slices : {32, 64, 128, 256, 512}) {
       scene::Scene scene = paper;
-      scene.rendering.slices = slices;
+      scene::SetSlices(&scene.rendering.technique, slices);
       Register(Name("growth", path, "slices_" + std::to_string(slices)), scene, fields,
                Moving::kCamera);
     }

@@ -5,23 +5,24 @@
 
 #include "accuracy/named_settings.h"
 #include "tests/bench/storm_bench.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::bench {
 
 void RegisterModes() {
-  // Riley et al. 2003 (AMS), Table IV, in the order of measure::kModes.
+  // Riley et al. 2003 (AMS), Table IV, in the order of accuracy::kModes.
   constexpr std::array kPaperFps = {5.1, 4.3, 1.7, 1.2};
   const Fields& fields = Sample::Get().fields;
-  for (const auto& path : measure::kFieldPaths) {
+  for (const auto& path : accuracy::kFieldPaths) {
     scene::Scene scene = PaperScene();
-    scene.rendering.renderer = path.value;
+    test_support::SetPath(&scene.rendering.technique, path.value);
     const std::string prefix = std::string(path.name) + "/";
-    for (std::size_t i = 0; i < measure::kModes.size(); ++i) {
-      scene.rendering.mode = measure::kModes[i].value;
-      Register(prefix + std::string(measure::kModes[i].name), scene, fields, Moving::kCamera,
+    for (std::size_t i = 0; i < accuracy::kModes.size(); ++i) {
+      test_support::SetMode(&scene.rendering.technique, accuracy::kModes[i].value);
+      Register(prefix + std::string(accuracy::kModes[i].name), scene, fields, Moving::kCamera,
                kPaperFps[i]);
     }
-    scene.rendering.mode = scene::Rendering().mode;
+    test_support::SetMode(&scene.rendering.technique, scene::Rendering().mode);
     Register(prefix + "sun_moves", scene, fields, Moving::kSun);
     Register(prefix + "sun_climbs", scene, fields, Moving::kSunClimbs);
     Register(prefix + "field_scale_moves", scene, fields, Moving::kField);
@@ -32,7 +33,7 @@ void RegisterModes() {
 void RegisterMetaballs() {
   scene::Scene scene = PaperScene();
   scene.output = {1024, 768, 88};
-  scene.rendering.renderer = scene::Renderer::kMetaball;
+  test_support::SetPath(&scene.rendering.technique, test_support::kMetaball);
   struct Row {
     const char* name;
     int asked;
@@ -40,10 +41,10 @@ void RegisterMetaballs() {
   };
   const Fields& fields = Sample::Get().fields;
   for (const Row& row : {Row{"1200", 1660, 43.0}, Row{"10000", 11900, 7.0}}) {
-    scene.rendering.metaballs.count = row.asked;
-    for (const auto& transport : measure::kTransports) {
+    test_support::MetaballsOf(scene.rendering.technique).count = row.asked;
+    for (const auto& transport : accuracy::kTransports) {
       if (transport.value == scene::Transport::kDiffusion) continue;  // drawn as consistent
-      scene.rendering.transport = transport.value;
+      test_support::SetTransport(&scene.rendering.technique, transport.value);
       const std::string path =
           std::string("metaball/") + row.name + '/' + std::string(transport.name);
       Register(path, scene, fields, Moving::kCamera, row.paper_fps);
@@ -55,7 +56,7 @@ void RegisterMetaballs() {
 void RegisterCumulus() {
   scene::Scene scene = PaperScene();
   scene.output = {600, 600, 88};
-  scene.rendering.renderer = scene::Renderer::kCumulus;
+  test_support::SetPath(&scene.rendering.technique, test_support::kCumulus);
   struct Row {
     const char* name;
     scene::CumulusSource source;
@@ -66,12 +67,12 @@ void RegisterCumulus() {
                          Row{"cauliflower", scene::CumulusSource::kCauliflower, 4},
                          Row{"storm", scene::CumulusSource::kStorm, 3}}) {
     const std::string name = std::string("cumulus/") + row.name;
-    scene.rendering.cumulus = {};
-    scene.rendering.cumulus.source = row.source;
-    scene.rendering.cumulus.scales = row.scales;
+    test_support::CumulusOf(scene.rendering.technique) = {};
+    test_support::CumulusOf(scene.rendering.technique).source = row.source;
+    test_support::CumulusOf(scene.rendering.technique).scales = row.scales;
     Register(name + "/shaded", scene, fields, Moving::kCamera);
     Register(name + "/sun_moves", scene, fields, Moving::kSun);
-    scene.rendering.cumulus.component = scene::CumulusComponent::kBalls;
+    test_support::CumulusOf(scene.rendering.technique).component = scene::CumulusComponent::kBalls;
     Register(name + "/lambert_balls", scene, fields, Moving::kCamera);
   }
 }

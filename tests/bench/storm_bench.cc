@@ -10,6 +10,7 @@
 #include "spdlog/spdlog.h"
 #include "volume/storm_store.h"
 #include "volume/visible_box.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::bench {
 namespace {
@@ -69,7 +70,7 @@ void DrawFrames(benchmark::State& state, scene::Scene scene, const Fields& field
         frame::EncodeJpeg(scene.output.width_px, scene.output.height_px, mapped->rgb, 88);
     benchmark::DoNotOptimize(jpeg);
     balls = linear->balls;
-    for (const renderers::StageTime& stage : linear->stages) {
+    for (const scene::StageTime& stage : linear->stages) {
       total_ms[stage.stage + "_ms"] += stage.milliseconds;
     }
     total_ms["tone_ms"] += mapped->tone_ms;
@@ -94,7 +95,7 @@ Sample& Sample::Get() {
 }
 
 scene::Scene PaperScene() {
-  scene::Scene scene;
+  scene::Scene scene = test_support::PlainScene();
   scene.output = {300, 300, 88};
   const volume::WorldBox box = volume::VisibleBox(*Sample::Get().fields);
   scene.camera = scene::Framing(scene::OrbitCamera(), box.low_m, box.high_m, 1.0);

@@ -15,6 +15,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "scene/view.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::renderers {
 namespace {
@@ -32,9 +33,9 @@ class CumulusRendererTest : public testing::Test {
     context_ = *std::move(context);
     renderer_ = std::make_unique<CumulusRenderer>(std::make_shared<gl::ProgramCache>());
     noises_ = std::make_unique<DetailNoises>();
-    settings_.rendering.cumulus.roughness = 0.0F;
-    settings_.rendering.cumulus.transmission = 0.0F;
-    settings_.rendering.cumulus.corona = 0.1F;
+    test_support::CumulusOf(settings_.technique).roughness = 0.0F;
+    test_support::CumulusOf(settings_.technique).transmission = 0.0F;
+    test_support::CumulusOf(settings_.technique).corona = 0.1F;
     settings_.eye_size = glm::ivec2(kSide_px);
     settings_.illumination.towards_sun = scene::Direction(230.0, 40.0);
     settings_.illumination.sunlight = glm::vec3(1.0F, 0.9F, 0.8F);
@@ -71,7 +72,7 @@ class CumulusRendererTest : public testing::Test {
     return *surface;
   }
 
-  scene::Cumulus& Cumulus() { return settings_.rendering.cumulus; }
+  scene::Cumulus& Cumulus() { return test_support::CumulusOf(settings_.technique); }
 
   // Texels of the eye buffer: rgb sent, share of the background that passes.
   std::vector<glm::vec4> Draw(const clouds::CumulusSurface& surface,

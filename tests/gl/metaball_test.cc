@@ -16,6 +16,7 @@
 #include "renderers/scene_renderer.h"
 #include "scene/view.h"
 #include "tests/support/slab.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::renderers {
 namespace {
@@ -52,9 +53,9 @@ class MetaballTest : public testing::Test {
     MediumGroup group;
     group.phase = {physics::PhaseKind::kHenyeyGreenstein, 0.0};
     content_.groups = {group};
-    settings_.rendering.renderer = scene::Renderer::kMetaball;
+    test_support::SetPath(&settings_.technique, test_support::kMetaball);
     // Light that is scattered is lost, and no direction is special: single scattering.
-    settings_.rendering.mode = scene::Mode::kUniformPhaseLowAlbedo;
+    test_support::SetMode(&settings_.technique, test_support::kLowAlbedo);
     settings_.illumination = {{0.0, 0.0, 1.0}, glm::vec3(1.0F), glm::vec3(0.0F)};
     settings_.eye_size = glm::ivec2(kSide);
     LookDown(3000.0);
@@ -238,18 +239,18 @@ TEST_F(MetaballTest, TheNearestBallIsDrawnLast) {
 }
 
 TEST_F(MetaballTest, PaperTransportIsAsPrinted) {
-  settings_.rendering.transport = scene::Transport::kPaper;
-  settings_.rendering.metaballs.isotropic = true;
+  test_support::SetTransport(&settings_.technique, scene::Transport::kPaper);
+  test_support::MetaballsOf(settings_.technique).isotropic = true;
   LookDown(8000.0);
-  const double albedo = settings_.rendering.metaballs.albedo;
-  const double tau = settings_.rendering.metaballs.optical_depth;
+  const double albedo = test_support::MetaballsOf(settings_.technique).albedo;
+  const double tau = test_support::MetaballsOf(settings_.technique).optical_depth;
   const Ball ball = At({0.0, 0.0, 5000.0}, 1000.0, 1.0);
   // One ball: white light, eq. 26 with p = 1, and eq. 12 splatted as it is.
   const std::vector<float> one = Draw({ball});
   EXPECT_NEAR(one[kMiddle], albedo * tau / (4 * kPi), 1e-3);
   EXPECT_NEAR(one[kMiddle + 3], std::exp(-tau), 1e-5);
   // Straight back Rayleigh's function is 3/2, across it is 3/4.
-  settings_.rendering.metaballs.isotropic = false;
+  test_support::MetaballsOf(settings_.technique).isotropic = false;
   EXPECT_NEAR(Draw({ball})[kMiddle] / one[kMiddle], 1.5, 1e-4);
   settings_.illumination.towards_sun = {1.0, 0.0, 0.0};
   EXPECT_NEAR(Draw({ball})[kMiddle] / one[kMiddle], 0.75, 1e-4);
@@ -266,7 +267,7 @@ TEST_F(MetaballTest, PaperTransportIsAsPrinted) {
     mean += u * (albedo * depth * 1.5 / (4 * kPi) + std::exp(-depth));
     area += u;
   }
-  settings_.rendering.metaballs.isotropic = true;
+  test_support::MetaballsOf(settings_.technique).isotropic = true;
   const std::vector<float> two = Draw({ball, behind});
   const int x = static_cast<int>((0.5 - 3000.0 / 8000.0) * kSide);
   const double off = (3000.0 + 8000.0 * ((x + 0.5) / kSide - 0.5)) / 1000.0;
@@ -298,7 +299,7 @@ class MetaballLightsTest : public MetaballTest {
  protected:
   void SetUp() override {
     MetaballTest::SetUp();
-    settings_.rendering.mode = scene::Mode::kPerFieldPhaseTranslucent;
+    test_support::SetMode(&settings_.technique, test_support::kPerFieldPhase);
     settings_.illumination = {{0.0, 0.6, 0.8}, glm::vec3(0.0F), glm::vec3(0.0F)};
     balls_.push_back(At({0.0, 0.0, 5200.0}, 500.0, 4e-3));
     for (int i = 0; i < 30; ++i) {
@@ -320,7 +321,7 @@ class MetaballLightsTest : public MetaballTest {
 
 TEST_F(MetaballLightsTest, LightsAddUp) {
   for (const auto transport : {scene::Transport::kConsistent, scene::Transport::kPaper}) {
-    settings_.rendering.transport = transport;
+    test_support::SetTransport(&settings_.technique, transport);
     settings_.illumination.sunlight = glm::vec3(0.0F);
     const std::vector<float> red = DrawWith({red_});
     const std::vector<float> blue = DrawWith({blue_});
@@ -359,7 +360,7 @@ TEST_F(MetaballLightsTest, LightsFromAnywhereStaySound) {
                                    {-settings_.view.forward, glm::vec3(0.0F)},
                                    {settings_.illumination.towards_sun, strongest}};
   for (const auto transport : {scene::Transport::kConsistent, scene::Transport::kPaper}) {
-    settings_.rendering.transport = transport;
+    test_support::SetTransport(&settings_.technique, transport);
     const std::vector<float> pixels = DrawWith(beams);
     float brightest = 0.0F;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
@@ -395,23 +396,23 @@ TEST_F(MetaballLightsTest, OnlyWhatChangedIsCarriedAgain) {
   check({red_}, 1, "the sun");
   settings_.illumination.from_sky = {0.1F, 0.2F, 0.3F};
   check({red_}, 0, "the sky's colour");
-  settings_.rendering.metaballs.isotropic = true;
+  test_support::MetaballsOf(settings_.technique).isotropic = true;
   check({red_}, 0, "what the eye sees of it");
   balls_[3].radius_m += 1.0;
   check({red_}, 3, "a ball");
-  settings_.rendering.mode = scene::Mode::kUniformPhaseLowAlbedo;
+  test_support::SetMode(&settings_.technique, test_support::kLowAlbedo);
   check({red_}, 3, "how light goes on");
-  settings_.rendering.transport = scene::Transport::kPaper;
+  test_support::SetTransport(&settings_.technique, scene::Transport::kPaper);
   check({red_, blue_}, 5, "the paper's, with two lights for sky and ground");
-  settings_.rendering.metaballs.albedo = 0.5;
+  test_support::MetaballsOf(settings_.technique).albedo = 0.5;
   check({red_, blue_}, 5, "the paper's albedo");
-  settings_.rendering.metaballs.optical_depth = 5.0;
+  test_support::MetaballsOf(settings_.technique).optical_depth = 5.0;
   check({red_, blue_}, 5, "the paper's depth");
 }
 
 TEST_F(MetaballTest, NoBallsAreNothing) {
   for (const auto transport : {scene::Transport::kPaper, scene::Transport::kConsistent}) {
-    settings_.rendering.transport = transport;
+    test_support::SetTransport(&settings_.technique, transport);
     const std::vector<float> pixels = Draw({});
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       ASSERT_EQ(pixels[i], i % 4 == 3 ? 1.0F : 0.0F);
@@ -443,7 +444,7 @@ TEST_F(MetaballTest, ExtremesStaySound) {
     }
   };
   for (const auto transport : {scene::Transport::kPaper, scene::Transport::kConsistent}) {
-    settings_.rendering.transport = transport;
+    test_support::SetTransport(&settings_.technique, transport);
     sound({At({0.0, 0.0, 0.0}, 1e7, 1.0)}, "one huge ball");
     sound({At({0.0, 0.0, 0.0}, 1e7, 1e-3), At({0.0, 0.0, 5000.0}, 1e-2, 1e3)}, "huge and tiny");
     sound(std::vector<Ball>(500, At({0.0, 0.0, 5000.0}, 500.0, 1e-3)), "all in one place");
@@ -462,8 +463,8 @@ class MetaballSceneTest : public testing::Test {
     context_ = *std::move(context);
     renderer_ = std::make_unique<SceneRenderer>();
     scene_.output = {48, 32, 90};
-    scene_.rendering.renderer = scene::Renderer::kMetaball;
-    scene_.rendering.metaballs.count = 60;
+    test_support::SetPath(&scene_.rendering.technique, test_support::kMetaball);
+    test_support::MetaballsOf(scene_.rendering.technique).count = 60;
     auto& orbit = std::get<scene::OrbitCamera>(scene_.camera);
     orbit.target_m = {0.0, 0.0, 1000.0};
     orbit.distance_m = 12e3;
@@ -480,7 +481,7 @@ class MetaballSceneTest : public testing::Test {
   }
   std::vector<std::string> Stages() {
     std::vector<std::string> names;
-    for (const StageTime& stage : Draw().stages) names.push_back(stage.stage);
+    for (const scene::StageTime& stage : Draw().stages) names.push_back(std::string(scene::NameOf(stage.stage)));
     return names;
   }
 
@@ -488,7 +489,7 @@ class MetaballSceneTest : public testing::Test {
   std::unique_ptr<SceneRenderer> renderer_;
   std::shared_ptr<const volume::HydrometeorFields> fields_ =
       support::MakeLayerInAir(4000.0, 2000.0, 8, 5.0);
-  scene::Scene scene_;
+  scene::Scene scene_ = test_support::PlainScene();
 };
 
 TEST_F(MetaballSceneTest, AChangeRerunsOnlyWhatItDirties) {
@@ -499,11 +500,11 @@ TEST_F(MetaballSceneTest, AChangeRerunsOnlyWhatItDirties) {
   EXPECT_THAT(Stages(), ElementsAre("view", "composite"));
   scene_.sun.elevation_deg += 5.0;
   EXPECT_THAT(Stages(), ElementsAre("ground", "light", "view", "composite"));
-  scene_.rendering.metaballs.isotropic = true;
+  test_support::MetaballsOf(scene_.rendering.technique).isotropic = true;
   EXPECT_THAT(Stages(), Not(Contains("fit")));
-  scene_.rendering.metaballs.count = 80;
+  test_support::MetaballsOf(scene_.rendering.technique).count = 80;
   EXPECT_THAT(Stages(), ElementsAre("ground", "fit", "light", "view", "composite"));
-  scene_.rendering.metaballs.count = 60;
+  test_support::MetaballsOf(scene_.rendering.technique).count = 60;
   EXPECT_THAT(Stages(), Not(Contains("fit"))) << "it is kept";
   scene_.fields[0].scale = 2.0F;
   EXPECT_THAT(Stages(), Contains("fit"));
@@ -520,7 +521,7 @@ TEST_F(MetaballSceneTest, KeptStagesGiveThePictureThatAFreshRendererGives) {
     EXPECT_EQ(pixels(renderer_.get()), pixels(&fresh)) << what;
   };
   for (const auto transport : {scene::Transport::kConsistent, scene::Transport::kPaper}) {
-    scene_.rendering.transport = transport;
+    test_support::SetTransport(&scene_.rendering.technique, transport);
     check("transport");
     scene_.sky.turbidity += 2.0;
     check("turbidity");
@@ -530,17 +531,17 @@ TEST_F(MetaballSceneTest, KeptStagesGiveThePictureThatAFreshRendererGives) {
     check("camera");
     scene_.sun.azimuth_deg += 90.0;
     check("sun");
-    scene_.rendering.false_colors = !scene_.rendering.false_colors;
+    scene::MediumSettingsOf(&scene_.rendering.technique)->look.false_colors = !scene::MediumSettingsOf(&scene_.rendering.technique)->look.false_colors;
     check("false colours");
-    scene_.rendering.renderer = scene::Renderer::kLightVolume;
+    test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);
     check("another renderer");
-    scene_.rendering.renderer = scene::Renderer::kMetaball;
+    test_support::SetPath(&scene_.rendering.technique, test_support::kMetaball);
     check("and back");
   }
 }
 
 TEST_F(MetaballSceneTest, TheFrameSaysWhatItIs) {
-  scene_.rendering.mode = scene::Mode::kPerFieldPhaseDetailTranslucent;
+  test_support::SetMode(&scene_.rendering.technique, test_support::kWithDetail);
   const LinearFrame frame = Draw();
   EXPECT_GT(frame.balls, 10);
   EXPECT_LE(frame.balls, 60);
@@ -548,7 +549,7 @@ TEST_F(MetaballSceneTest, TheFrameSaysWhatItIs) {
   EXPECT_LT(frame.fit_error, 0.5);
   EXPECT_EQ(frame.slices, 0);
   EXPECT_THAT(frame.not_shown, Contains("turbulent detail"));
-  scene_.rendering.renderer = scene::Renderer::kLightVolume;
+  test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);
   EXPECT_THAT(Draw().not_shown, IsEmpty());
   EXPECT_EQ(Draw().balls, 0);
 }
@@ -571,8 +572,8 @@ TEST_F(MetaballSceneTest, LightsBesidesTheSunAreShownOrSaidNotToBe) {
   EXPECT_THAT(Stages(), ElementsAre("light", "view", "composite"))
       << "the ground has no part in it";
   for (const auto renderer :
-       {scene::Renderer::kLightVolume, scene::Renderer::kHalfAngle, scene::Renderer::kCumulus}) {
-    scene_.rendering.renderer = renderer;
+       {test_support::kLightVolume, test_support::kHalfAngle, test_support::kCumulus}) {
+    test_support::SetPath(&scene_.rendering.technique, renderer);
     EXPECT_THAT(Draw().not_shown, Contains(HasSubstr("lights besides the sun")));
     scene_.lights.clear();
     EXPECT_THAT(Stages(), IsEmpty()) << "none to draw again";
@@ -589,9 +590,9 @@ TEST_F(MetaballSceneTest, NothingVisibleNeedsNoBalls) {
 
 TEST_F(MetaballSceneTest, IsNearTheLightVolume) {
   scene_.camera = scene::TopDownCamera{{0.0, 0.0}, 8e3};
-  scene_.rendering.metaballs.count = 2000;
-  const auto mean = [&](scene::Renderer renderer) {
-    scene_.rendering.renderer = renderer;
+  test_support::MetaballsOf(scene_.rendering.technique).count = 2000;
+  const auto mean = [&](const accuracy::Path& renderer) {
+    test_support::SetPath(&scene_.rendering.technique, renderer);
     const std::vector<float> pixels = frame::ReadLinear(*Draw().radiance);
     double sum = 0.0;
     for (int y = 10; y < 22; ++y) {
@@ -600,13 +601,13 @@ TEST_F(MetaballSceneTest, IsNearTheLightVolume) {
     return sum / 144.0;
   };
   // Of the fit, and of balls that are lit and dark as wholes.
-  EXPECT_NEAR(mean(scene::Renderer::kMetaball) / mean(scene::Renderer::kLightVolume), 1.0, 0.15);
+  EXPECT_NEAR(mean(test_support::kMetaball) / mean(test_support::kLightVolume), 1.0, 0.15);
 }
 
 TEST(BallFits, KeepsWhatItsStormAndOpticsAskFor) {
   BallFits fits(2);
-  scene::Scene scene;
-  scene.rendering.metaballs.count = 20;
+  scene::Scene scene = test_support::PlainScene();
+  test_support::MetaballsOf(scene.rendering.technique).count = 20;
   auto fields = support::MakeLayerInAir(4000.0, 2000.0, 8, 5.0);
   EXPECT_FALSE(fits.Has(scene, fields));
   const auto first = fits.Get(scene, fields);
@@ -625,7 +626,7 @@ TEST(BallFits, KeepsWhatItsStormAndOpticsAskFor) {
 
 TEST(FitBalls, TheSumOfBallsIsTheMedium) {
   const auto fields = support::MakeLayerInAir(4000.0, 2000.0, 8, 5.0);
-  scene::Scene scene;
+  scene::Scene scene = test_support::PlainScene();
   const Medium medium = MediumOf(scene, *fields);
   const auto cloud = FitBalls(medium, *fields, 300);
   ASSERT_TRUE(cloud.ok());

@@ -8,6 +8,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/support/slab.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::renderers {
 namespace {
@@ -23,14 +24,14 @@ class RendererPoolTest : public testing::Test {
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
     scene_.output = {16, 16, 90};
-    scene_.rendering.slices = 4;
+    scene::SetSlices(&scene_.rendering.technique, 4);
   }
 
   std::vector<std::string> Stages(RendererPool& pool, const scene::Scene& scene) {
     const auto frame = pool.Draw(scene, fields_, {});
     EXPECT_TRUE(frame.ok()) << frame.status();
     std::vector<std::string> names;
-    for (const StageTime& stage : frame->stages) names.push_back(stage.stage);
+    for (const scene::StageTime& stage : frame->stages) names.push_back(std::string(scene::NameOf(stage.stage)));
     return names;
   }
 
@@ -44,7 +45,7 @@ class RendererPoolTest : public testing::Test {
   std::unique_ptr<gl::Context> context_;
   std::shared_ptr<const volume::HydrometeorFields> fields_ =
       support::MakeSlab(4000.0, 2000.0, 0.01);
-  scene::Scene scene_;
+  scene::Scene scene_ = test_support::PlainScene();
 };
 
 TEST_F(RendererPoolTest, ViewersWhoAlternateKeepTheirStages) {

@@ -12,6 +12,7 @@
 #include "gtest/gtest.h"
 #include "scene/view.h"
 #include "tests/support/slab.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::renderers {
 namespace {
@@ -27,7 +28,7 @@ class SceneRendererTest : public testing::Test {
     context_ = *std::move(context);
     renderer_ = std::make_unique<SceneRenderer>();
     scene_.output = {48, 32, 90};
-    scene_.rendering.slices = 16;
+    scene::SetSlices(&scene_.rendering.technique, 16);
     Orbit().target_m = {0.0, 0.0, 1000.0};
     Orbit().distance_m = 12e3;
   }
@@ -42,7 +43,7 @@ class SceneRendererTest : public testing::Test {
     const auto frame = renderer_->Draw(scene_, fields_, quality);
     EXPECT_TRUE(frame.ok()) << frame.status();
     std::vector<std::string> names;
-    for (const StageTime& stage : frame->stages) names.push_back(stage.stage);
+    for (const scene::StageTime& stage : frame->stages) names.push_back(std::string(scene::NameOf(stage.stage)));
     return names;
   }
 
@@ -56,11 +57,11 @@ class SceneRendererTest : public testing::Test {
   std::unique_ptr<SceneRenderer> renderer_;
   std::shared_ptr<const volume::HydrometeorFields> fields_ =
       support::MakeSlab(4000.0, 2000.0, 0.01);
-  scene::Scene scene_;
+  scene::Scene scene_ = test_support::PlainScene();
 };
 
 TEST_F(SceneRendererTest, AChangeRerunsOnlyWhatItDirties) {
-  scene_.rendering.renderer = scene::Renderer::kHalfAngle;
+  test_support::SetPath(&scene_.rendering.technique, test_support::kHalfAngle);
   EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "ground", "slices", "composite"));
   EXPECT_THAT(StagesOf(), IsEmpty());
   scene_.display.exposure_ev = 1.0;
@@ -77,21 +78,21 @@ TEST_F(SceneRendererTest, AChangeRerunsOnlyWhatItDirties) {
 }
 
 TEST_F(SceneRendererTest, TheLightVolumeIsKeptWhileOnlyTheCameraMoves) {
-  scene_.rendering.renderer = scene::Renderer::kLightVolume;
+  test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);
   EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "light", "view", "composite"));
   Orbit().azimuth_deg += 5.0;
   EXPECT_THAT(StagesOf(), ElementsAre("view", "composite"));
   scene_.sun.elevation_deg += 5.0;
   EXPECT_THAT(StagesOf(), ElementsAre("light", "view", "composite"));
-  scene_.rendering.renderer = scene::Renderer::kHalfAngle;
+  test_support::SetPath(&scene_.rendering.technique, test_support::kHalfAngle);
   EXPECT_THAT(StagesOf(), ElementsAre("ground", "slices", "composite"));
-  scene_.rendering.renderer = scene::Renderer::kLightVolume;
+  test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);
   EXPECT_THAT(StagesOf(), ElementsAre("light", "view", "composite"));
 }
 
 TEST_F(SceneRendererTest, ACumulusRerunsOnlyWhatAChangeDirties) {
-  scene_.rendering.renderer = scene::Renderer::kCumulus;
-  scene::Cumulus& cumulus = scene_.rendering.cumulus;
+  test_support::SetPath(&scene_.rendering.technique, test_support::kCumulus);
+  scene::Cumulus& cumulus = test_support::CumulusOf(scene_.rendering.technique);
   EXPECT_THAT(StagesOf(), ElementsAre("surface", "light", "view", "composite"));
   EXPECT_THAT(StagesOf(), IsEmpty());
   Orbit().azimuth_deg += 5.0;
@@ -102,18 +103,18 @@ TEST_F(SceneRendererTest, ACumulusRerunsOnlyWhatAChangeDirties) {
   EXPECT_THAT(StagesOf(), ElementsAre("light", "view", "composite"));
   scene_.sun.elevation_deg += 5.0;
   EXPECT_THAT(StagesOf(), ElementsAre("light", "view", "composite"));
-  scene_.rendering.slices = 17;  // it has none
+  scene::SetSlices(&scene_.rendering.technique, 17);  // it has none
   EXPECT_THAT(StagesOf(), IsEmpty());
   cumulus.seed = 2;
   EXPECT_THAT(StagesOf(), ElementsAre("surface", "light", "view", "composite"));
-  scene_.rendering.renderer = scene::Renderer::kLightVolume;
+  test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);
   EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "light", "view", "composite"));
   cumulus.seed = 3;  // not looked at
   EXPECT_THAT(StagesOf(), IsEmpty());
 }
 
 TEST_F(SceneRendererTest, ACumulusOfAStormStandsWhereTheStormIs) {
-  scene_.rendering.renderer = scene::Renderer::kCumulus;
+  test_support::SetPath(&scene_.rendering.technique, test_support::kCumulus);
   scene_.camera = scene::TopDownCamera{{4000.0, 0.0}, 16e3};
   scene_.sun.elevation_deg = 90.0;  // its shadow lies below it
   const std::vector<float> with = Pixels(renderer_.get());
@@ -138,10 +139,10 @@ TEST_F(SceneRendererTest, ACumulusOfAStormStandsWhereTheStormIs) {
 TEST_F(SceneRendererTest, ACumulusWithoutSurfaceIsTheSkyAlone) {
   scene_.fields[0].visible = false;
   const std::vector<float> sky = Pixels(renderer_.get());
-  scene_.rendering.renderer = scene::Renderer::kCumulus;
+  test_support::SetPath(&scene_.rendering.technique, test_support::kCumulus);
   EXPECT_EQ(Pixels(renderer_.get()), sky);
   scene_.fields[0].visible = true;
-  scene_.rendering.cumulus.least_extinction_per_m = 1.0F;
+  test_support::CumulusOf(scene_.rendering.technique).least_extinction_per_m = 1.0F;
   const auto frame = renderer_->Draw(scene_, fields_, {});
   ASSERT_TRUE(frame.ok());
   EXPECT_EQ(frame->ellipsoids, 0);
@@ -149,8 +150,8 @@ TEST_F(SceneRendererTest, ACumulusWithoutSurfaceIsTheSkyAlone) {
 }
 
 TEST_F(SceneRendererTest, ACumulusIsDarkAtNight) {
-  scene_.rendering.renderer = scene::Renderer::kCumulus;
-  scene_.rendering.cumulus.source = scene::CumulusSource::kCauliflower;
+  test_support::SetPath(&scene_.rendering.technique, test_support::kCumulus);
+  test_support::CumulusOf(scene_.rendering.technique).source = scene::CumulusSource::kCauliflower;
   scene_.sun.elevation_deg = -1.0;
   const std::vector<float> dusk = Pixels(renderer_.get());
   scene_.sun.elevation_deg = -40.0;
@@ -165,7 +166,7 @@ TEST_F(SceneRendererTest, ACumulusIsDarkAtNight) {
 }
 
 TEST_F(SceneRendererTest, ACumulusSaysWhatItCannotShow) {
-  scene_.rendering.renderer = scene::Renderer::kCumulus;
+  test_support::SetPath(&scene_.rendering.technique, test_support::kCumulus);
   auto rainy = std::make_shared<volume::HydrometeorFields>(*fields_);
   rainy->fields.push_back(rainy->fields.front());
   rainy->fields.back().hydrometeor = physics::Hydrometeor::kRain;
@@ -187,16 +188,16 @@ TEST_F(SceneRendererTest, KeptStagesGiveThePictureThatAFreshRendererGives) {
         scene_.sun.azimuth_deg = 20.0;
         break;
       case 2:
-        scene_.rendering.mode = scene::Mode::kUniformPhaseLowAlbedo;
+        test_support::SetMode(&scene_.rendering.technique, test_support::kLowAlbedo);
         break;
       case 3:
-        scene_.rendering.false_colors = true;
+        scene::MediumSettingsOf(&scene_.rendering.technique)->look.false_colors = true;
         break;
       case 4:
         scene_.fields[0].scale = 0.1F;
         break;
       case 5:
-        scene_.rendering.mode = scene::Mode::kPerFieldPhaseTranslucent;
+        test_support::SetMode(&scene_.rendering.technique, test_support::kPerFieldPhase);
         break;
       case 6:
         scene_.sky.brightness = 0.2;
@@ -282,7 +283,7 @@ class GroundTest : public SceneRendererTest {
   void SetUp() override {
     SceneRendererTest::SetUp();
     scene_.sky = {0.0, 1.0, 1.0};
-    scene_.rendering.mode = scene::Mode::kUniformPhaseLowAlbedo;
+    test_support::SetMode(&scene_.rendering.technique, test_support::kLowAlbedo);
     scene_.camera = scene::TopDownCamera{{0.0, 0.0}, 24e3};
     scene_.output = {96, 32, 90};
     scene_.sun = {270.0, 45.0, 1.0};
@@ -353,8 +354,8 @@ TEST_F(GroundTest, AMountainHidesWhatIsBehindIt) {
   camera.elevation_deg = 2.0;
   camera.focal_length_mm = 60.0;
   scene_.camera = camera;
-  for (const auto renderer : {scene::Renderer::kHalfAngle, scene::Renderer::kLightVolume}) {
-    scene_.rendering.renderer = renderer;
+  for (const auto renderer : {test_support::kHalfAngle, test_support::kLightVolume}) {
+    test_support::SetPath(&scene_.rendering.technique, renderer);
     const auto storm_shows = [&] {
       scene_.fields[0].visible = true;
       const std::vector<float> with = Pixels(renderer_.get());
@@ -424,9 +425,9 @@ TEST_F(SceneRendererTest, APictureDoesNotDependOnTheStormBefore) {
   const auto whole = block(false);
   const auto corners = block(true);
   for (const int slices : {5, 16, 64}) {
-    scene_.rendering.slices = slices;
+    scene::SetSlices(&scene_.rendering.technique, slices);
     for (const auto transport : {scene::Transport::kConsistent, scene::Transport::kPaper}) {
-      scene_.rendering.transport = transport;
+      test_support::SetTransport(&scene_.rendering.technique, transport);
       for (const double sun_deg : {20.0, 55.0, 85.0}) {
         scene_.sun.elevation_deg = sun_deg;
         fields_ = whole;

@@ -13,6 +13,7 @@
 #include "volume/extinction.h"
 #include "volume/storm_store.h"
 #include "volume/visible_box.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::reference {
 namespace {
@@ -87,7 +88,7 @@ TEST(MediumOf, PeriodicSpansTheDomain) {
 
 TEST(MediumOf, FollowsTheScenesFields) {
   const volume::HydrometeorFields fields = SmallStorm();
-  scene::Scene scene;
+  scene::Scene scene = test_support::PlainScene();
   const glm::dvec3 cloud_m =
       fields.grid.low_corner_m + glm::dvec3(3.5, 3.5, 3.5) * fields.grid.spacing_m;
   const double whole = (*MediumOf(scene, fields, Sides::kOpen))->Extinction_per_m(cloud_m);
@@ -108,7 +109,7 @@ TEST(MediumOf, TakesSizesFromTheFileUnlessToldNotTo) {
   volume::HydrometeorFields fields = SmallStorm();
   const glm::dvec3 cloud_m =
       fields.grid.low_corner_m + glm::dvec3(3.5, 3.5, 3.5) * fields.grid.spacing_m;
-  scene::Scene scene;
+  scene::Scene scene = test_support::PlainScene();
   const double plain = (*MediumOf(scene, fields, Sides::kOpen))->Extinction_per_m(cloud_m);
   volume::HydrometeorField& cloud = fields.fields[0];
   std::vector<float> per_radius = cloud.concentration_kg_per_m3;
@@ -134,16 +135,16 @@ TEST(MediumOf, ModesChoosePhaseAndColor) {
       fields.grid.low_corner_m + glm::dvec3(3.5, 3.5, 3.5) * fields.grid.spacing_m;
   const glm::dvec3 rain_m =
       fields.grid.low_corner_m + glm::dvec3(3.5, 3.5, 0.4) * fields.grid.spacing_m;
-  scene::Scene scene;
+  scene::Scene scene = test_support::PlainScene();
   auto& rain = scene.fields[physics::IndexOf(Hydrometeor::kRain)].optics;
   rain.phase = {physics::PhaseKind::kHenyeyGreenstein, 0.3F};
   rain.albedo = 0.5F;
-  scene.rendering.false_colors = true;
+  scene::MediumSettingsOf(&scene.rendering.technique)->look.false_colors = true;
   auto medium = *MediumOf(scene, fields, Sides::kOpen);
   EXPECT_NEAR(medium->ScatteringAt(rain_m, 0.5).phase->Value(0.2).x,
               physics::PhaseValue(rain.phase, 0.2), 1e-5);
   EXPECT_EQ(medium->ScatteringAt(rain_m, 0.5).weight, 0.5 * glm::dvec3(rain.false_color));
-  scene.rendering.mode = scene::Mode::kUniformPhaseTranslucent;
+  test_support::SetMode(&scene.rendering.technique, test_support::kUniformPhase);
   medium = *MediumOf(scene, fields, Sides::kOpen);
   const auto& cloud = scene.fields[physics::IndexOf(Hydrometeor::kCloud)].optics;
   const double expected = physics::PhaseColors(physics::PhaseOf(cloud), 0.2).r;
@@ -158,7 +159,7 @@ TEST(MediumOf, ModesChoosePhaseAndColor) {
 // the same, while extinction falls by the share cut off.
 TEST(MediumOf, ACutPeakLeavesThePicture) {
   const volume::HydrometeorFields fields = SmallStorm();
-  scene::Scene scene;
+  scene::Scene scene = test_support::PlainScene();
   for (scene::FieldParameters& field : scene.fields) {
     field.optics.phase = {physics::PhaseKind::kHenyeyGreenstein, 0.9F};
     field.scale = 0.05F;  // some optical depths
@@ -205,7 +206,7 @@ TEST(MediumOf, ACutPeakLeavesThePicture) {
 TEST(SurroundingsOf, ShadedGroundWithoutCloudsIsUniform) {
   volume::HydrometeorFields fields = SmallStorm();
   fields.fields.clear();
-  scene::Scene scene;
+  scene::Scene scene = test_support::PlainScene();
   scene.sky.brightness = 1.7;
   scene.sun.irradiance = 2.0;
   // As high as the camera below, which takes the place of this one.
@@ -236,7 +237,7 @@ TEST(SurroundingsOf, ShadedGroundWithoutCloudsIsUniform) {
 }
 
 TEST(SurroundingsOf, SunBelowTheHorizonGivesNoSunlight) {
-  scene::Scene scene;
+  scene::Scene scene = test_support::PlainScene();
   scene.sun.elevation_deg = -5.0;
   const Surroundings around = SurroundingsOf(scene, SmallStorm(), GroundLight::kShaded);
   EXPECT_EQ(around.sun_irradiance, glm::dvec3(0.0));
@@ -251,7 +252,7 @@ TEST(Scene, SampleStorm) {
   ASSERT_TRUE(store.ok()) << store.status();
   const auto fields = (*store)->Get((*store)->Storms().front()->id, 1, {});
   ASSERT_TRUE(fields.ok()) << fields.status();
-  scene::Scene scene;
+  scene::Scene scene = test_support::PlainScene();
   scene.output = {16, 9, 88};
   scene.sky = {0.0, 0.0};
   const volume::WorldBox box = volume::VisibleBox(**fields);

@@ -5,6 +5,7 @@
 
 #include "gtest/gtest.h"
 #include "reference/trace_scene.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::reference {
 namespace {
@@ -30,7 +31,7 @@ std::shared_ptr<const volume::HydrometeorFields> SmallStorm() {
 }
 
 scene::Scene SceneFrom(double azimuth_deg) {
-  scene::Scene scene;
+  scene::Scene scene = test_support::PlainScene();
   scene.camera = scene::OrbitCamera{
       .target_m = {0.0, 0.0, 1000.0}, .azimuth_deg = azimuth_deg, .distance_m = 6000.0};
   scene.output = {24, 16, 88};

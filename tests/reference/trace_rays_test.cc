@@ -7,6 +7,7 @@
 #include "reference/scene_problem.h"
 #include "reference/trace_scene.h"
 #include "tests/support/slab.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::reference {
 namespace {
@@ -26,7 +27,7 @@ class TraceRaysTest : public testing::Test {
     for (int i = 0; i < 200; ++i) rays_.push_back(camera.RayThrough(i / 100.0 - 1.0, 0.05));
   }
 
-  scene::Scene scene_;
+  scene::Scene scene_ = test_support::PlainScene();
   std::shared_ptr<const volume::HydrometeorFields> fields_ =
       support::MakeSlab(6000.0, 2000.0, 0.002);
   std::shared_ptr<const Medium> medium_;

@@ -7,6 +7,7 @@
 
 #include "base/status.h"
 #include "accuracy/cost_model.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -47,7 +48,7 @@ class FakePreparation final : public session::Preparation {
   explicit FakePreparation(std::shared_ptr<FakeMachine> machine) : machine_(std::move(machine)) {}
 
   bool IsNeeded(const scene::Scene& scene) const override {
-    return scene.rendering.renderer == scene::Renderer::kMetaball;
+    return accuracy::PathOf(scene.rendering.technique) == test_support::kMetaball;
   }
 
   bool IsDone(const scene::Scene& scene, const Fields& fields) override {
@@ -58,7 +59,7 @@ class FakePreparation final : public session::Preparation {
   absl::Status Prepare(const scene::Scene& scene, const Fields& fields) override {
     if (IsDone(scene, fields)) return absl::OkStatus();
     machine_->preparing.Pass();
-    if (scene.rendering.metaballs.count == machine_->cannot_prepare) {
+    if (test_support::MetaballsOf(scene.rendering.technique).count == machine_->cannot_prepare) {
       return absl::InternalError("it cannot be fitted");
     }
     machine_->Prepared(scene);
@@ -99,7 +100,7 @@ class FakeFrameSource final : public session::FrameSource {
       const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
     ++machine_->checked;
     THUNDERHEAD_ASSIGN_OR_RETURN(session::DisplayFrame frame, Draw(scene, fields, {}));
-    return session::CheckedFrame{std::move(frame), 1.0 / scene.rendering.slices};
+    return session::CheckedFrame{std::move(frame), 1.0 / *scene::SlicesOf(scene.rendering.technique)};
   }
 
   absl::StatusOr<accuracy::LightProgress> TraceLight(
@@ -143,7 +144,7 @@ class FakeFrameSource final : public session::FrameSource {
     frame.stages = {{"slices", ms}};
     frame.modelled.fields = {physics::Hydrometeor::kCloud};
     frame.modelled.slices =
-        std::max(1, static_cast<int>(std::lround(scene.rendering.slices * quality.slice_share)));
+        std::max(1, static_cast<int>(std::lround(*scene::SlicesOf(scene.rendering.technique) * quality.slice_share)));
     frame.modelled.device_bytes = 4096;
     frame.modelled.occupied_share = 0.125;
     if (scene.rendering.traced_light) frame.modelled.traced_paths = machine_->traced_paths;
@@ -318,20 +319,20 @@ std::vector<FakeMachine::Drawn> FakeMachine::Log() {
 
 bool FakeMachine::IsPrepared(const scene::Scene& scene) {
   const std::lock_guard lock(mutex_);
-  return prepared_.contains({scene.rendering.metaballs.count, scene.time_index});
+  return prepared_.contains({test_support::MetaballsOf(scene.rendering.technique).count, scene.time_index});
 }
 
 bool FakeMachine::AwaitPrepared(const scene::Scene& scene) {
   std::unique_lock lock(mutex_);
   return changed_.wait_for(lock, kPatience, [&] {
-    return prepared_.contains({scene.rendering.metaballs.count, scene.time_index});
+    return prepared_.contains({test_support::MetaballsOf(scene.rendering.technique).count, scene.time_index});
   });
 }
 
 void FakeMachine::Prepared(const scene::Scene& scene) {
   {
     const std::lock_guard lock(mutex_);
-    prepared_.insert({scene.rendering.metaballs.count, scene.time_index});
+    prepared_.insert({test_support::MetaballsOf(scene.rendering.technique).count, scene.time_index});
   }
   changed_.notify_all();
 }

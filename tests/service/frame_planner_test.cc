@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gtest/gtest.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::session {
 namespace {
@@ -172,10 +173,10 @@ TEST(CostModelTest, CarryingLightCountsOnlyWhenItMustBeCarried) {
 
 TEST(CostModelTest, RenderersAreEstimatedApart) {
   CostModels models;
-  scene::Scene slices;
-  slices.rendering.renderer = scene::Renderer::kHalfAngle;
-  scene::Scene light;
-  light.rendering.renderer = scene::Renderer::kLightVolume;
+  scene::Scene slices = test_support::PlainScene();
+  test_support::SetPath(&slices.rendering.technique, test_support::kHalfAngle);
+  scene::Scene light = test_support::PlainScene();
+  test_support::SetPath(&light.rendering.technique, test_support::kLightVolume);
   models.Of(slices).Observe(10.0, 80.0, {{"slices", 80.0}});
   models.Of(light).Observe(10.0, 20.0, {{"view", 20.0}});
   EXPECT_NEAR(models.Of(slices).EstimateMs(10.0, scene::Stage::kView), 80.0, 1e-6);

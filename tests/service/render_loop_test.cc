@@ -8,6 +8,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/service/fake_engine.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::session {
 namespace {
@@ -17,10 +18,10 @@ using testing::FakeStormStore;
 using ::testing::HasSubstr;
 
 scene::Scene Small(double sun_azimuth_deg) {
-  scene::Scene scene;
+  scene::Scene scene = test_support::PlainScene();
   scene.storm_id = "anvil";
   scene.output = {64, 36, 88};
-  scene.rendering.slices = 16;
+  scene::SetSlices(&scene.rendering.technique, 16);
   scene.sun.azimuth_deg = sun_azimuth_deg;
   return scene;
 }
@@ -115,8 +116,8 @@ class RenderLoopTest : public ::testing::Test {
   static scene::Scene OfMetaballs(int count, int time_index = 0) {
     scene::Scene scene = Small(0.0);
     scene.time_index = time_index;
-    scene.rendering.renderer = scene::Renderer::kMetaball;
-    scene.rendering.metaballs.count = count;
+    test_support::SetPath(&scene.rendering.technique, test_support::kMetaball);
+    test_support::MetaballsOf(scene.rendering.technique).count = count;
     return scene;
   }
 
@@ -205,7 +206,7 @@ TEST_F(RenderLoopTest, WhatAScenePreparesHoldsUpNobodyElse) {
   const std::uint64_t last = Show(*fitting, OfMetaballs(200));
   machine_->preparing.Open();
   ASSERT_TRUE(fitting_viewer->Await(last, true));
-  EXPECT_EQ(machine_->Log().back().scene.rendering.metaballs.count, 200);
+  EXPECT_EQ(machine_->Log().back().test_support::MetaballsOf(scene.rendering.technique).count, 200);
 }
 
 TEST_F(RenderLoopTest, ASeriesThatGoesOnIsPreparedAheadOfItsPictures) {
@@ -337,7 +338,7 @@ TEST(SessionTest, OlderRevisionNeverReplacesANewer) {
   Session session("id", [] {});
   const std::uint64_t early = session.TakeRevision();
   const std::uint64_t late = session.TakeRevision();
-  scene::Scene scene;
+  scene::Scene scene = test_support::PlainScene();
   scene.time_index = 2;
   session.Show(late, scene);
   scene.time_index = 1;

@@ -291,7 +291,7 @@ absl::Status MetaballRenderer::FindSources(const RenderSettings& settings) {
                                   .groups = groups_,
                                   .colored = colored_,
                                   .paper = paper,
-                                  .isotropic = settings.rendering.metaballs.isotropic,
+                                  .isotropic = SettingsOf(settings).isotropic,
                                   .parallel = settings.view.Orthographic()};
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
@@ -318,7 +318,7 @@ absl::Status MetaballRenderer::FindSources(const RenderSettings& settings) {
 }
 
 absl::Status MetaballRenderer::Splat(const RenderSettings& settings) {
-  const SplatVariant variant{.paper = IsPaper(settings.rendering),
+  const SplatVariant variant{.paper = IsPaper(settings),
                              .ground = settings.ground_distance != nullptr};
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,

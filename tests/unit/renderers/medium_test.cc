@@ -2,11 +2,12 @@
 #include "renderers/medium.h"
 
 #include "gtest/gtest.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::renderers {
 namespace {
 
-constexpr auto kWithDetail = scene::Mode::kPerFieldPhaseDetailTranslucent;
+constexpr auto kWithDetail = test_support::kWithDetail;
 
 volume::HydrometeorFields FieldsOf(const std::vector<physics::Hydrometeor>& hydrometeors) {
   volume::HydrometeorFields fields;
@@ -26,25 +27,25 @@ class MediumGroups : public testing::Test {
     return scene_.fields[physics::IndexOf(hydrometeor)];
   }
   std::size_t Groups(scene::Mode mode) {
-    scene_.rendering.mode = mode;
+    test_support::SetMode(&scene_.rendering.technique, mode);
     return MediumOf(scene_, fields_).groups.size();
   }
 
-  scene::Scene scene_;
+  scene::Scene scene_ = test_support::PlainScene();
   volume::HydrometeorFields fields_ =
       FieldsOf({physics::Hydrometeor::kSnow, physics::Hydrometeor::kGraupel});
 };
 
 TEST_F(MediumGroups, FieldsWithOneLookShareAGroup) {
-  EXPECT_EQ(Groups(scene::Mode::kPerFieldPhaseTranslucent), 1U);
+  EXPECT_EQ(Groups(test_support::kPerFieldPhase), 1U);
   Of(physics::Hydrometeor::kSnow).optics.albedo = 0.5F;
-  EXPECT_EQ(Groups(scene::Mode::kPerFieldPhaseTranslucent), 2U);
+  EXPECT_EQ(Groups(test_support::kPerFieldPhase), 2U);
 }
 
 TEST_F(MediumGroups, DetailPartsThemOnlyWhereItIsDrawn) {
   Of(physics::Hydrometeor::kSnow).detail = {.share = 0.2F};
   Of(physics::Hydrometeor::kGraupel).detail = {.share = 0.4F};
-  EXPECT_EQ(Groups(scene::Mode::kPerFieldPhaseTranslucent), 1U);
+  EXPECT_EQ(Groups(test_support::kPerFieldPhase), 1U);
   EXPECT_EQ(Groups(kWithDetail), 2U);
   Of(physics::Hydrometeor::kSnow).detail.share = 0.4F;
   EXPECT_EQ(Groups(kWithDetail), 1U);
@@ -59,7 +60,7 @@ TEST_F(MediumGroups, ADetailOfNoShareIsNone) {
 }
 
 TEST_F(MediumGroups, WavelengthComesFromTheGridIfNotGiven) {
-  scene_.rendering.mode = kWithDetail;
+  test_support::SetMode(&scene_.rendering.technique, kWithDetail);
   EXPECT_EQ(MediumOf(scene_, fields_).groups.front().detail.wavelength_m, 1500.0F);
   Of(physics::Hydrometeor::kSnow).detail.wavelength_m = 70.0F;
   EXPECT_EQ(MediumOf(scene_, fields_).groups.front().detail.wavelength_m, 70.0F);
