@@ -458,12 +458,12 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
   assert.ok(difference(before2, warm) > 0.5, "a light more is seen");
   assert.ok(difference(warm, both) > 0.5, "and another one");
   assert.doesNotMatch(await page.getByTestId("not-shown").innerText(), /lights/);
-  assert.match(await page.getByTestId("lights-shown").innerText(), /Metaballs shows them/);
+  assert.match(await page.getByTestId("lights-shown").innerText(), / Shown by this technique \(Metaballs\)/);
   await changing(() => choice.selectOption({ label: "Light volume" }));
   assert.match(await page.getByTestId("not-shown").innerText(), /lights besides the sun/);
   assert.match(
     await page.getByTestId("lights-shown").innerText(),
-    /Light volume does not show them.*Metaballs.*Monte Carlo/,
+    /Not shown by this technique \(Light volume\).*Metaballs.*Monte Carlo/,
   );
   // The server filled in the settings that metaballs do not have.
   await until("the light volume has its own defaults", async () =>

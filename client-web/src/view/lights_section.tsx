@@ -43,10 +43,10 @@ function whereShown(state: PageState): string {
   const drawn = state.drawnTechnique.value;
   if (drawn === undefined) return "";
   const name = nameOfTechnique(drawn.name);
-  if (drawn.showsLights) return `${name} shows them.`;
+  if (drawn.showsLights) return `Shown by this technique (${name}).`;
   const able = (state.server.value?.techniques ?? []).filter(({ showsLights }) => showsLights);
-  const names = able.map((technique) => nameOfTechnique(technique.name)).join("; ");
-  return `${name} does not show them; these techniques do: ${names}.`;
+  const names = able.map((technique) => nameOfTechnique(technique.name)).join(", ");
+  return `Not shown by this technique (${name}), but by: ${names}.`;
 }
 
 function newLight(count: number): DirectionalLight {

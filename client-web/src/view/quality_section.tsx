@@ -35,7 +35,7 @@ export function QualitySection({ state }: { state: PageState }) {
 
 // Shown while none of the three presets is chosen.
 function otherwise(state: PageState): string {
-  if (state.goal.value !== undefined) return "Chosen by the server for the accuracy asked for.";
+  if (state.goal.value !== undefined) return "Set by the goal under Accuracy.";
   if (state.settings.value === undefined) return "Waiting for the server …";
   const preset = state.preset.value;
   return preset === undefined
