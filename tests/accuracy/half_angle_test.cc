@@ -193,7 +193,8 @@ TEST_F(HalfAngle, PaperTransportIsAsPrinted) {
   double angle_deg = 5.0;  // bisection for CP(angle) = 0.9
   for (double step = 4.0; step > 1e-6; step /= 2) {
     const double within =
-        physics::CumulativePhase(UniformPhase(scene_), angle_deg * std::numbers::pi / 180);
+        physics::CumulativePhase(physics::PhaseOf(
+            scene_.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].optics), angle_deg * std::numbers::pi / 180);
     angle_deg += within < 0.9 ? step : -step;
   }
   scene::MediumSettingsOf(&scene_.rendering.technique)->theta_f_deg = 2.0 * angle_deg;

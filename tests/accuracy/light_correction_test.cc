@@ -44,7 +44,8 @@ class LightCorrection : public testing::Test {
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
     test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kDiffusion);
-    scene_.rendering.traced_light = true;
+    std::get<scene::LightVolume>(scene_.rendering.technique).traced_light =
+        scene::TracedLight::kAtRest;
     scene_.camera = scene::OrbitCamera{.target_m = {0.0, 0.0, 3000.0},
                                        .azimuth_deg = 200.0,
                                        .elevation_deg = 25.0,
@@ -228,7 +229,7 @@ TEST_F(LightCorrection, APoolKeepsWhatIsTracedAndRefusesOneTooMany) {
 TEST_F(LightCorrection, NothingIsTracedWhereNothingCouldShowIt) {
   CorrectorPool pool;
   scene::Scene scene = scene_;
-  scene.rendering.traced_light = false;
+  std::get<scene::LightVolume>(scene.rendering.technique).traced_light = scene::TracedLight::kOff;
   EXPECT_EQ(pool.Trace(scene, fields_)->steps, 0);
   scene = scene_;
   test_support::SetTransport(&scene.rendering.technique, scene::Transport::kConsistent);

@@ -7,7 +7,9 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "accuracy/named_settings.h"
 #include "tests/service/fake_service.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -19,16 +21,16 @@ using Stub = v1::ThunderheadService::Stub;
 // 64 x 36 pixels and 100 slices are 0.23 million samples.
 constexpr double kMegaSamplesAt100Slices = 64 * 36 * 100 * 1e-6;
 
-session::OfferTables Tables() {
-  measure::PricedSettings table;
+accuracy::OfferTables Tables() {
+  accuracy::PricedSettings table;
   table.size_px = {64, 36};
-  measure::TradeSetting setting;
+  accuracy::Setting setting{test_support::PlainScene().rendering.technique};
   for (const auto& [slices, milliseconds, error] :
        {std::tuple{25, 5.0, 0.4}, std::tuple{50, 10.0, 0.3}, std::tuple{100, 20.0, 0.2}}) {
-    setting.slices = slices;
+    accuracy::SetCount(&setting.technique, slices);
     table.rows.push_back({setting, milliseconds, error});
   }
-  session::OfferTables tables;
+  accuracy::OfferTables tables;
   tables.fill(table);
   tables[1] = absl::FailedPreconditionError("no accuracy can be offered for spotter views");
   return tables;
@@ -73,12 +75,13 @@ TEST_F(AccuracyTest, EveryFrameSaysItsSettingAndError) {
   ASSERT_TRUE(AwaitChecked(watcher, 1, 50));
   for (const v1::WatchFramesResponse& message : watcher.Messages()) {
     const v1::AccuracyReport& report = message.frame().accuracy();
-    EXPECT_EQ(report.renderer(), v1::RENDERER_LIGHT_VOLUME);
-    EXPECT_EQ(report.mode(), v1::MODE_PER_FIELD_PHASE_TRANSLUCENT);
-    EXPECT_EQ(report.transport(), v1::TRANSPORT_CONSISTENT);
+    const v1::LightVolume& light_volume = report.rendering().light_volume();
+    EXPECT_EQ(light_volume.transport(), v1::TRANSPORT_CONSISTENT);
+    EXPECT_TRUE(light_volume.per_field_phase());
+    EXPECT_TRUE(light_volume.detail());  // as the scene asks
     EXPECT_GT(report.estimated_error(), 0.0F);
     EXPECT_TRUE(report.has_expected_milliseconds());
-    EXPECT_EQ(report.unmet(), "");
+    EXPECT_FALSE(report.has_unmet());
   }
   const v1::AccuracyReport report = watcher.NewestFrame().accuracy();
   EXPECT_EQ(report.slices(), 50U);
@@ -95,7 +98,7 @@ TEST_F(AccuracyTest, UnreachableErrorsGetTheNearestAndSaySo) {
   ASSERT_TRUE(watcher.AwaitFrame(1, true));
   const v1::AccuracyReport report = watcher.NewestFrame().accuracy();
   EXPECT_EQ(report.slices(), 100U);
-  EXPECT_THAT(report.unmet(), HasSubstr("out of reach for orbit views; the nearest is 0.2"));
+  EXPECT_THAT(report.unmet().message(), HasSubstr("out of reach for orbit views; the nearest is 0.2"));
 }
 
 TEST_F(AccuracyTest, TimesAreCorrectedByWhatThisMachineTakes) {
@@ -109,7 +112,7 @@ TEST_F(AccuracyTest, TimesAreCorrectedByWhatThisMachineTakes) {
   EXPECT_NEAR(report.expected_milliseconds(), 20.0, 6.0);
   const std::vector<FakeMachine::Drawn> log = service_.machine->Log();
   EXPECT_TRUE(std::any_of(log.begin(), log.end(), [](const FakeMachine::Drawn& drawn) {
-    return drawn.scene.rendering.slices == 100;
+    return *scene::SlicesOf(drawn.scene.rendering.technique) == 100;
   }));
 }
 

@@ -130,14 +130,14 @@ TEST_F(CommandLineTest, RenderWritesThePictureAndItsCosts) {
 }
 
 TEST_F(CommandLineTest, FlagsOverrideTheSceneFile) {
-  const std::string scene = Scene(R"({"timeIndex": 3, "rendering": {"slices": 9},
+  const std::string scene = Scene(R"({"timeIndex": 3, "rendering": {"lightVolume": {"slices": 9}},
                                       "output": {"widthPx": 64, "heightPx": 36}})");
   const Outcome outcome = Run(render_ + " --scene " + scene + " --slices 12 --json");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   v1::RenderImageResponse said;
   ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(outcome.out, &said).ok());
   EXPECT_EQ(said.scene().time_index(), 3U);
-  EXPECT_EQ(said.scene().rendering().slices(), 12U);
+  EXPECT_EQ(said.scene().rendering().light_volume().slices(), 12U);
   EXPECT_EQ(said.width_px(), 64U);
 }
 

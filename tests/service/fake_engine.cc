@@ -43,6 +43,20 @@ std::shared_ptr<const volume::HydrometeorFields> Fields(bool empty) {
   return fields;
 }
 
+// Of techniques that have none, as many as others have by default.
+int SlicesOf(const scene::Scene& scene) {
+  return scene::SlicesOf(scene.rendering.technique).value_or(scene::LightVolume().slices);
+}
+
+bool Traces(const scene::Scene& scene) {
+  return scene::TracedLightOf(scene.rendering.technique) != scene::TracedLight::kOff;
+}
+
+// How many balls, and which time.
+std::pair<int, int> KeyOf(const scene::Scene& scene) {
+  return {std::get<scene::Metaballs>(scene.rendering.technique).count, scene.time_index};
+}
+
 class FakePreparation final : public session::Preparation {
  public:
   explicit FakePreparation(std::shared_ptr<FakeMachine> machine) : machine_(std::move(machine)) {}
@@ -59,7 +73,7 @@ class FakePreparation final : public session::Preparation {
   absl::Status Prepare(const scene::Scene& scene, const Fields& fields) override {
     if (IsDone(scene, fields)) return absl::OkStatus();
     machine_->preparing.Pass();
-    if (test_support::MetaballsOf(scene.rendering.technique).count == machine_->cannot_prepare) {
+    if (std::get<scene::Metaballs>(scene.rendering.technique).count == machine_->cannot_prepare) {
       return absl::InternalError("it cannot be fitted");
     }
     machine_->Prepared(scene);
@@ -76,6 +90,14 @@ class FakeFrameSource final : public session::FrameSource {
 
   const session::DeviceInfo& Device() const override { return info_; }
 
+  std::vector<session::TechniqueInfo> Techniques() const override {
+    return {{std::string(scene::LightVolume::kName), scene::LightVolume::kCapabilities},
+            {std::string(scene::HalfAngle::kName), scene::HalfAngle::kCapabilities},
+            {std::string(scene::Metaballs::kName), scene::Metaballs::kCapabilities},
+            {std::string(scene::Reference::kName), scene::Reference::kCapabilities},
+            {"toy", {}}};
+  }
+
   std::shared_ptr<session::Preparation> PreparationOfScenes() const override {
     return std::make_shared<FakePreparation>(machine_);
   }
@@ -90,7 +112,7 @@ class FakeFrameSource final : public session::FrameSource {
     if (scene.display.exposure_ev > machine_->fails_above_exposure_ev) {
       return absl::InternalError("the fake machine does not like this exposure");
     }
-    const double ms = machine_->ms_per_mega_sample * session::MegaSamples(scene, quality);
+    const double ms = machine_->ms_per_mega_sample * accuracy::MegaSamples(scene, quality);
     std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(ms));
     return Paint(scene, quality, ms);
   }
@@ -100,14 +122,14 @@ class FakeFrameSource final : public session::FrameSource {
       const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
     ++machine_->checked;
     THUNDERHEAD_ASSIGN_OR_RETURN(session::DisplayFrame frame, Draw(scene, fields, {}));
-    return session::CheckedFrame{std::move(frame), 1.0 / *scene::SlicesOf(scene.rendering.technique)};
+    return session::CheckedFrame{std::move(frame), 1.0 / SlicesOf(scene)};
   }
 
   absl::StatusOr<accuracy::LightProgress> TraceLight(
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
     THUNDERHEAD_CHECK(fields != nullptr, "traced without fields");
-    if (!scene::ShowsTracedLight(scene.rendering)) return accuracy::LightProgress{};
+    if (!Traces(scene)) return accuracy::LightProgress{};
     if (machine_->traces_enough) return absl::ResourceExhaustedError("it traces enough already");
     if (scene.sun.azimuth_deg == machine_->cannot_trace_azimuth_deg) {
       return absl::InternalError("the fake machine cannot trace that");
@@ -126,7 +148,7 @@ class FakeFrameSource final : public session::FrameSource {
       const double level = std::min(255.0 * exposure * radiance.x, 255.0);
       frame.rgb.insert(frame.rgb.end(), 3, static_cast<std::uint8_t>(level));
     }
-    frame.stages = {{"tone", 0.1}};
+    frame.stages = {{scene::FrameStage::kTone, 0.1}};
     return frame;
   }
 
@@ -141,13 +163,14 @@ class FakeFrameSource final : public session::FrameSource {
       frame.rgb.push_back(GreenOf(scene.sun.azimuth_deg));
       frame.rgb.push_back(static_cast<std::uint8_t>(255 * (i % frame.width_px) / frame.width_px));
     }
-    frame.stages = {{"slices", ms}};
-    frame.modelled.fields = {physics::Hydrometeor::kCloud};
+    frame.stages = {{scene::FrameStage::kSlices, ms}};
+    frame.modelled.technique = scene::NameOf(scene.rendering.technique);
+    frame.modelled.content.fields = {physics::Hydrometeor::kCloud};
     frame.modelled.slices =
-        std::max(1, static_cast<int>(std::lround(*scene::SlicesOf(scene.rendering.technique) * quality.slice_share)));
+        std::max(1, static_cast<int>(std::lround(SlicesOf(scene) * quality.slice_share)));
     frame.modelled.device_bytes = 4096;
-    frame.modelled.occupied_share = 0.125;
-    if (scene.rendering.traced_light) frame.modelled.traced_paths = machine_->traced_paths;
+    frame.modelled.content.occupied_share = 0.125;
+    if (Traces(scene)) frame.modelled.traced_paths = machine_->traced_paths;
     return frame;
   }
 
@@ -319,20 +342,20 @@ std::vector<FakeMachine::Drawn> FakeMachine::Log() {
 
 bool FakeMachine::IsPrepared(const scene::Scene& scene) {
   const std::lock_guard lock(mutex_);
-  return prepared_.contains({test_support::MetaballsOf(scene.rendering.technique).count, scene.time_index});
+  return prepared_.contains(KeyOf(scene));
 }
 
 bool FakeMachine::AwaitPrepared(const scene::Scene& scene) {
   std::unique_lock lock(mutex_);
   return changed_.wait_for(lock, kPatience, [&] {
-    return prepared_.contains({test_support::MetaballsOf(scene.rendering.technique).count, scene.time_index});
+    return prepared_.contains(KeyOf(scene));
   });
 }
 
 void FakeMachine::Prepared(const scene::Scene& scene) {
   {
     const std::lock_guard lock(mutex_);
-    prepared_.insert({test_support::MetaballsOf(scene.rendering.technique).count, scene.time_index});
+    prepared_.insert(KeyOf(scene));
   }
   changed_.notify_all();
 }

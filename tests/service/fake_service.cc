@@ -46,7 +46,10 @@ v1::Scene SmallScene() {
   v1::Scene scene;
   scene.mutable_output()->set_width_px(64);
   scene.mutable_output()->set_height_px(36);
-  scene.mutable_rendering()->set_slices(16);
+  // Nothing goes on at rest: tests of traced light ask for it.
+  v1::LightVolume& light_volume = *scene.mutable_rendering()->mutable_light_volume();
+  light_volume.set_slices(16);
+  light_volume.set_traced_light(v1::TRACED_LIGHT_OFF);
   return scene;
 }
 

@@ -85,14 +85,28 @@ INSTANTIATE_TEST_SUITE_P(
              "scene.lights[0].color.blue is 2; it must be between 0 and 1"},
         Case{R"({"lights": [{}, {}, {}, {}, {}]})",
              "scene.lights has 5 items; it may have at most 4"},
-        Case{R"({"rendering": {"slices": 0}})",
-             "scene.rendering.slices is 0; it must be between 1 and 4096"},
-        Case{R"({"rendering": {"slices": 4294967295}})",
-             "scene.rendering.slices is 4294967295; it must be between 1 and 4096"},
-        Case{R"({"rendering": {"mode": 77}})",
-             "scene.rendering.mode is 77; it must be one of MODE_UNSPECIFIED, "
-             "MODE_UNIFORM_PHASE_LOW_ALBEDO, MODE_UNIFORM_PHASE_TRANSLUCENT, "
-             "MODE_PER_FIELD_PHASE_TRANSLUCENT, MODE_PER_FIELD_PHASE_DETAIL_TRANSLUCENT"},
+        Case{R"({"rendering": {"lightVolume": {"slices": 0}}})",
+             "scene.rendering.light_volume.slices is 0; it must be between 1 and 4096"},
+        Case{R"({"rendering": {"halfAngle": {"slices": 4294967295}}})",
+             "scene.rendering.half_angle.slices is 4294967295; it must be between 1 and 4096"},
+        Case{R"({"rendering": {"lightVolume": {"tracedLight": 77}}})",
+             "scene.rendering.light_volume.traced_light is 77; it must be one of "
+             "TRACED_LIGHT_UNSPECIFIED, TRACED_LIGHT_OFF, TRACED_LIGHT_AT_REST, "
+             "TRACED_LIGHT_AWAITED"},
+        Case{R"({"rendering": {"halfAngle": {"transport": "TRANSPORT_DIFFUSION"}}})",
+             "scene.rendering.half_angle.transport is TRANSPORT_DIFFUSION, which this technique "
+             "does not show; it must be one of TRANSPORT_CONSISTENT, TRANSPORT_PAPER, "
+             "TRANSPORT_LOW_ALBEDO, TRANSPORT_PAPER_LOW_ALBEDO"},
+        Case{R"({"rendering": {"metaball": {"transport": "TRANSPORT_PAPER_LOW_ALBEDO"}}})",
+             "scene.rendering.metaball.transport is TRANSPORT_PAPER_LOW_ALBEDO, which this "
+             "technique does not show; it must be one of TRANSPORT_CONSISTENT, TRANSPORT_PAPER, "
+             "TRANSPORT_LOW_ALBEDO"},
+        Case{R"({"rendering": {"other": {"name": "voxels"}}})",
+             "scene.rendering.other.name is 'voxels'; the server has the techniques light_volume, "
+             "half_angle, metaball, reference, toy"},
+        Case{R"({"rendering": {"other": {"name": "half_angle"}}})",
+             "scene.rendering.other.name is 'half_angle'; that technique has a field of its own in "
+             "scene.rendering"},
         Case{R"({"output": {"widthPx": 8193}})",
              "scene.output.width_px is 8193; it must be between 1 and 8192"},
         Case{

@@ -18,7 +18,7 @@ using Messages = std::vector<v1::WatchFramesResponse>;
 
 v1::Scene Traced() {
   v1::Scene scene = SmallScene();
-  scene.mutable_rendering()->set_renderer(v1::RENDERER_REFERENCE);
+  scene.mutable_rendering()->mutable_reference();
   return scene;
 }
 
@@ -77,9 +77,9 @@ TEST_F(RefineTest, SamplesGrowAndTheErrorFallsWhileTheSceneRests) {
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const v1::Refinement& refinement = frames[i].refinement();
     EXPECT_TRUE(frames[i].refined());
-    EXPECT_EQ(frames[i].modelled().renderer(), v1::RENDERER_REFERENCE);
+    EXPECT_EQ(frames[i].modelled().technique(), "reference");
     EXPECT_EQ(frames[i].modelled().fields_size(), 1);
-    EXPECT_EQ(frames[i].stages(0).stage(), "trace");
+    EXPECT_EQ(frames[i].stages(0).stage(), v1::STAGE_TRACE);
     EXPECT_EQ(refinement.has_relative_error(), refinement.samples_per_pixel() > 1);
     if (i < 2) continue;
     EXPECT_GT(refinement.samples_per_pixel(), frames[i - 1].refinement().samples_per_pixel());

@@ -31,8 +31,8 @@ TEST(RenderImageTest, PngHoldsEveryPixelAtFullQuality) {
   EXPECT_EQ(image->rgb[0], RedOf(1));
   EXPECT_EQ(image->rgb[1], GreenOf(255.0));
   EXPECT_EQ(response.modelled().slices(), 16U);
-  EXPECT_EQ(response.stages(0).stage(), "read");
-  EXPECT_EQ(response.stages(response.stages_size() - 1).stage(), "encode");
+  EXPECT_EQ(response.stages(0).stage(), v1::STAGE_READ);
+  EXPECT_EQ(response.stages(response.stages_size() - 1).stage(), v1::STAGE_ENCODE);
   EXPECT_EQ(response.scene().storm_id(), "anvil");
   EXPECT_TRUE(response.scene().camera().orbit().has_distance_m());
   EXPECT_EQ(service.machine->Log().at(0).quality, session::FrameQuality{});

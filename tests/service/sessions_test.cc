@@ -46,10 +46,13 @@ TEST(SessionsTest, EmptySceneComesBackWithEveryDefault) {
   EXPECT_GT(camera.distance_m(), 1000.0F);
   EXPECT_EQ(scene.sun().elevation_deg(), 35.0F);
   EXPECT_TRUE(scene.sky().has_brightness());
-  EXPECT_EQ(scene.rendering().mode(), v1::MODE_PER_FIELD_PHASE_TRANSLUCENT);
-  EXPECT_EQ(scene.rendering().transport(), v1::TRANSPORT_CONSISTENT);
-  EXPECT_EQ(scene.rendering().slices(), 128U);
-  EXPECT_TRUE(scene.rendering().has_false_colors());
+  const v1::LightVolume& light_volume = scene.rendering().light_volume();
+  EXPECT_EQ(light_volume.transport(), v1::TRANSPORT_DIFFUSION);
+  EXPECT_EQ(light_volume.traced_light(), v1::TRACED_LIGHT_AT_REST);
+  EXPECT_EQ(light_volume.slices(), 128U);
+  EXPECT_TRUE(light_volume.per_field_phase());
+  EXPECT_TRUE(light_volume.detail());
+  EXPECT_TRUE(light_volume.has_false_colors());
   EXPECT_EQ(scene.display().tone_map(), v1::TONE_MAP_FILMIC);
   EXPECT_EQ(scene.output().width_px(), 1280U);
   EXPECT_EQ(scene.output().jpeg_quality(), 88U);

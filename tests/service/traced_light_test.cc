@@ -5,7 +5,9 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "accuracy/named_settings.h"
 #include "tests/service/fake_service.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -15,8 +17,9 @@ using Messages = std::vector<v1::WatchFramesResponse>;
 
 v1::Scene WithTracedLight() {
   v1::Scene scene = SmallScene();
-  scene.mutable_rendering()->set_transport(v1::TRANSPORT_DIFFUSION);
-  scene.mutable_rendering()->set_traced_light(true);
+  v1::LightVolume& light_volume = *scene.mutable_rendering()->mutable_light_volume();
+  light_volume.set_transport(v1::TRANSPORT_DIFFUSION);
+  light_volume.set_traced_light(v1::TRACED_LIGHT_AT_REST);
   return scene;
 }
 
@@ -63,9 +66,10 @@ TEST_F(TracedLightTest, AnotherViewGoesOnFromWhatIsTraced) {
 
 TEST_F(TracedLightTest, NothingIsTracedForScenesThatDoNotAskOrCannotShowIt) {
   v1::Scene unasked = WithTracedLight();
-  unasked.mutable_rendering()->set_traced_light(false);
+  unasked.mutable_rendering()->mutable_light_volume()->set_traced_light(v1::TRACED_LIGHT_OFF);
   v1::Scene consistent = WithTracedLight();
-  consistent.mutable_rendering()->set_transport(v1::TRANSPORT_CONSISTENT);
+  consistent.mutable_rendering()->mutable_light_volume()->set_transport(
+      v1::TRANSPORT_CONSISTENT);
   for (const v1::Scene& scene : {unasked, consistent}) {
     Watcher watcher(service_.stub(), service_.Open(scene));
     ASSERT_TRUE(watcher.AwaitFrame(1, true));
@@ -121,27 +125,32 @@ TEST_F(TracedLightTest, OneSceneTooManyWaitsForItsTurn) {
   }
 }
 
-TEST_F(TracedLightTest, PicturesWaitForAMillionPaths) {
-  v1::RenderImageRequest request;
-  *request.mutable_scene() = WithTracedLight();
-  v1::RenderImageResponse response;
-  const grpc::Status status =
-      Call(service_.stub(), &v1::ThunderheadService::Stub::RenderImage, request, &response);
-  ASSERT_TRUE(status.ok()) << status.error_message();
-  EXPECT_EQ(response.modelled().traced_paths(), 1'000'000U);
+TEST_F(TracedLightTest, PicturesThatAwaitItWaitForAMillionPaths) {
+  const auto paths_with = [&](v1::TracedLight traced_light) {
+    v1::RenderImageRequest request;
+    *request.mutable_scene() = WithTracedLight();
+    request.mutable_scene()->mutable_rendering()->mutable_light_volume()->set_traced_light(
+        traced_light);
+    v1::RenderImageResponse response;
+    const grpc::Status status =
+        Call(service_.stub(), &v1::ThunderheadService::Stub::RenderImage, request, &response);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    return response.modelled().traced_paths();
+  };
+  EXPECT_EQ(paths_with(v1::TRACED_LIGHT_AT_REST), 0U);
+  EXPECT_EQ(paths_with(v1::TRACED_LIGHT_AWAITED), 1'000'000U);
 }
 
-session::OfferTables TracedTables() {
-  measure::PricedSettings table;
+accuracy::OfferTables TracedTables() {
+  accuracy::PricedSettings table;
   table.size_px = {64, 36};
-  measure::TradeSetting setting;
-  setting.transport = scene::Transport::kDiffusion;
+  accuracy::Setting setting{scene::LightVolume{}};
   table.rows.push_back({setting, 10.0, 0.11});
   for (const auto& [paths, error] : {std::pair{0.1, 0.08}, {0.5, 0.06}, {2.0, 0.05}}) {
     setting.million_paths = paths;
     table.rows.push_back({setting, 10.0, error});
   }
-  session::OfferTables tables;
+  accuracy::OfferTables tables;
   tables.fill(table);
   return tables;
 }
@@ -158,7 +167,8 @@ TEST(TracedImageTest, AnErrorTakesAsManyPathsAsItNeeds) {
     const grpc::Status status =
         Call(service.stub(), &v1::ThunderheadService::Stub::RenderImage, request, &response);
     EXPECT_TRUE(status.ok()) << status.error_message();
-    EXPECT_EQ(response.accuracy().unmet().empty(), error > 0.04F) << response.accuracy().unmet();
+    EXPECT_EQ(response.accuracy().has_unmet(), error < 0.04F)
+        << response.accuracy().unmet().message();
     return response.modelled().traced_paths();
   };
   EXPECT_EQ(paths_for(0.2F), 0U);

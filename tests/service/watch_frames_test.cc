@@ -54,7 +54,7 @@ TEST(WatchFramesTest, FrameShowsTheSceneAndSaysWhatItCost) {
   EXPECT_EQ(frame.modelled().fields(0), v1::HYDROMETEOR_CLOUD);
   EXPECT_EQ(frame.modelled().device_bytes(), 4096U);
   EXPECT_EQ(frame.modelled().occupied_share(), 0.125F);
-  EXPECT_EQ(frame.stages(frame.stages_size() - 1).stage(), "encode");
+  EXPECT_EQ(frame.stages(frame.stages_size() - 1).stage(), v1::STAGE_ENCODE);
   ExpectPainted(frame, RedOf(2), GreenOf(180.0));
 }
 
@@ -87,7 +87,7 @@ TEST(WatchFramesTest, WhoJoinsIsToldTheWholeSceneAndThenEveryChange) {
     EXPECT_EQ(told.scene().sun().azimuth_deg(), 180.0F);
     // Complete, as CreateSession answers.
     EXPECT_EQ(told.scene().storm_id(), "anvil");
-    EXPECT_EQ(told.scene().rendering().renderer(), v1::RENDERER_LIGHT_VOLUME);
+    EXPECT_TRUE(told.scene().rendering().light_volume().has_theta_f_deg());
     EXPECT_TRUE(told.scene().camera().orbit().has_distance_m());
   }
 }
@@ -233,7 +233,7 @@ TEST(WatchFramesTest, LongReadOfOneSessionDoesNotHoldUpAnother) {
   const auto first = std::find_if(messages.begin(), messages.end(), [&](const auto& message) {
     return message.frame().scene_revision() == unread;
   });
-  EXPECT_EQ(first->frame().stages(0).stage(), "read");
+  EXPECT_EQ(first->frame().stages(0).stage(), v1::STAGE_READ);
 }
 
 TEST(WatchFramesTest, TimesScrubbedFasterThanTheDiskAreStillShown) {

@@ -13,7 +13,7 @@ TradeRow Row(double milliseconds, double relative_rmse) {
   TradeRow row;
   row.milliseconds = milliseconds;
   row.relative_rmse = relative_rmse;
-  row.setting.slices = static_cast<int>(milliseconds);
+  scene::SetSlices(&row.setting.technique, static_cast<int>(milliseconds));
   return row;
 }
 
@@ -21,10 +21,9 @@ const TradeTitle kTitle{"storm", "orbit", "a \"machine\"", {320, 200}, 64, 0.01}
 
 TEST(TradeTable, RowsComeBackFromTheirText) {
   TradeRow row = Row(12.5, 0.25);
-  row.setting = {scene::Renderer::kHalfAngle,
-                 scene::Mode::kUniformPhaseLowAlbedo,
-                 scene::Transport::kPaper,
-                 64,
+  row.setting = {scene::HalfAngle{.medium = {.transport = scene::Transport::kPaperLowAlbedo,
+                                             .look = {.per_field_phase = false}},
+                                  .slices = 64},
                  0.5,
                  60,
                  2.0,

@@ -25,9 +25,9 @@ TEST(Scene, EachChangeRerunsFromItsOwnStage) {
   EXPECT_EQ(After([](Scene* s) { s->fields[0].scale = 2; }), Stage::kExtinction);
   EXPECT_EQ(After([](Scene* s) { s->fields[2].visible = false; }), Stage::kExtinction);
   EXPECT_EQ(After([](Scene* s) { s->fields[2].size_from_file = false; }), Stage::kExtinction);
-  EXPECT_EQ(After([](Scene* s) { s->rendering.false_colors = true; }), Stage::kExtinction);
+  EXPECT_EQ(After([](Scene* s) { MediumSettingsOf(&s->rendering.technique)->look.false_colors = true; }), Stage::kExtinction);
   EXPECT_EQ(After([](Scene* s) { s->sun.azimuth_deg = 10; }), Stage::kLight);
-  EXPECT_EQ(After([](Scene* s) { s->rendering.slices = 64; }), Stage::kLight);
+  EXPECT_EQ(After([](Scene* s) { SetSlices(&s->rendering.technique, 64); }), Stage::kLight);
   EXPECT_EQ(After([](Scene* s) { std::get<OrbitCamera>(s->camera).azimuth_deg = 10; }),
             Stage::kView);
   EXPECT_EQ(After([](Scene* s) { s->camera = SpotterCamera(); }), Stage::kView);
@@ -35,21 +35,28 @@ TEST(Scene, EachChangeRerunsFromItsOwnStage) {
   EXPECT_EQ(After([](Scene* s) { s->display.exposure_ev = 1; }), Stage::kTone);
 }
 
-TEST(Scene, ACumulusLooksAtItsOwnSettingsOnly) {
-  Scene before;
-  before.rendering.renderer = Renderer::kCumulus;
-  const auto first = [&](const auto& change) {
-    Scene after = before;
-    change(&after.rendering);
-    return FirstDirtyStage(before, after);
+TEST(Scene, EachTechniqueRerunsFromItsOwnStage) {
+  const auto first = [](const Technique& before, const Technique& after) {
+    Scene a;
+    a.rendering.technique = before;
+    Scene b = a;
+    b.rendering.technique = after;
+    return FirstDirtyStage(a, b);
   };
-  EXPECT_EQ(first([](Rendering* r) { r->cumulus.scales = 4; }), Stage::kExtinction);
-  EXPECT_EQ(first([](Rendering* r) { r->cumulus.corona = 0.9F; }), Stage::kLight);
-  EXPECT_EQ(first([](Rendering* r) { r->cumulus.trap = 0.1F; }), Stage::kView);
-  EXPECT_EQ(first([](Rendering* r) { r->slices = 7; }), Stage::kNothing);
-  EXPECT_EQ(first([](Rendering* r) { r->renderer = Renderer::kLightVolume; }), Stage::kExtinction);
-  before.rendering.renderer = Renderer::kLightVolume;
-  EXPECT_EQ(first([](Rendering* r) { r->cumulus.scales = 4; }), Stage::kNothing);
+  EXPECT_EQ(first(Cumulus{}, Cumulus{}), Stage::kNothing);
+  EXPECT_EQ(first(Cumulus{}, Cumulus{.scales = 4}), Stage::kExtinction);
+  EXPECT_EQ(first(Cumulus{}, Cumulus{.corona = 0.9F}), Stage::kLight);
+  EXPECT_EQ(first(Cumulus{}, Cumulus{.trap = 0.1F}), Stage::kView);
+  EXPECT_EQ(first(Cumulus{}, LightVolume{}), Stage::kExtinction);
+  EXPECT_EQ(first(LightVolume{}, Cumulus{}), Stage::kExtinction);
+  EXPECT_EQ(first(LightVolume{}, LightVolume{.traced_light = TracedLight::kOff}), Stage::kView);
+  EXPECT_EQ(first(HalfAngle{}, HalfAngle{.slices = 7}), Stage::kLight);
+  EXPECT_EQ(first(Metaballs{}, Metaballs{.count = 7}), Stage::kLight);
+  EXPECT_EQ(first(Reference{}, Reference{.false_colors = true}), Stage::kExtinction);
+  EXPECT_EQ(first(OtherTechnique{"a", {}}, OtherTechnique{"b", {}}), Stage::kExtinction);
+  // Techniques of a medium share it where they show the same of its fields.
+  EXPECT_EQ(first(HalfAngle{}, Metaballs{}), Stage::kLight);
+  EXPECT_EQ(first(HalfAngle{}, LightVolume{}), Stage::kExtinction);  // which has detail
 }
 
 TEST(Scene, LightsCountWhereTheyAreShown) {
@@ -60,9 +67,9 @@ TEST(Scene, LightsCountWhereTheyAreShown) {
     return FirstDirtyStage(before, after);
   };
   using Lights = std::vector<DirectionalLight>;
-  for (const Renderer renderer : {Renderer::kMetaball, Renderer::kReference}) {
+  for (const Technique& technique : {Technique(Metaballs{}), Technique(Reference{})}) {
     before.lights = {{75.0, 20.0, glm::dvec3(1.0), 1.0}};
-    before.rendering.renderer = renderer;
+    before.rendering.technique = technique;
     EXPECT_EQ(first([](Lights*) {}), Stage::kNothing);
     EXPECT_EQ(first([](Lights* lights) { lights->clear(); }), Stage::kLight);
     EXPECT_EQ(first([](Lights* lights) { lights->emplace_back(); }), Stage::kLight);
@@ -71,23 +78,22 @@ TEST(Scene, LightsCountWhereTheyAreShown) {
     EXPECT_EQ(first([](Lights* lights) { lights->front().irradiance = 0.5; }), Stage::kView);
   }
   // A frame that says that they are not shown.
-  for (const Renderer renderer :
-       {Renderer::kLightVolume, Renderer::kHalfAngle, Renderer::kCumulus}) {
-    before.rendering.renderer = renderer;
+  for (const Technique& technique :
+       {Technique(LightVolume{}), Technique(HalfAngle{}), Technique(Cumulus{})}) {
+    before.rendering.technique = technique;
     EXPECT_EQ(first([](Lights* lights) { lights->front().elevation_deg = 3.0; }), Stage::kTone);
     EXPECT_EQ(first([](Lights* lights) { lights->clear(); }), Stage::kTone);
   }
 }
 
-TEST(Scene, DetailCountsOnlyInTheModeThatDrawsIt) {
-  EXPECT_EQ(After([](Scene* s) { s->fields[0].detail.seed = 7; }), Stage::kNothing);
+TEST(Scene, DetailCountsOnlyWhereItIsShown) {
   Scene before;
-  before.rendering.mode = Mode::kPerFieldPhaseDetailTranslucent;
+  before.rendering.technique = HalfAngle{};
   Scene after = before;
   after.fields[0].detail.seed = 7;
+  EXPECT_EQ(FirstDirtyStage(before, after), Stage::kNothing);
+  before.rendering.technique = after.rendering.technique = HalfAngle{.medium = {.look = {.detail = true}}};
   EXPECT_EQ(FirstDirtyStage(before, after), Stage::kExtinction);
-  EXPECT_EQ(After([](Scene* s) { s->rendering.mode = Mode::kPerFieldPhaseDetailTranslucent; }),
-            Stage::kExtinction);
 }
 
 TEST(View, AzimuthsAreClockwiseFromNorth) {

@@ -7,7 +7,7 @@
 #include "gtest/gtest.h"
 #include "accuracy/embedded_trade_tables.h"
 
-namespace thunderhead::measure {
+namespace thunderhead::accuracy {
 namespace {
 
 using testing::HasSubstr;
@@ -32,8 +32,10 @@ TEST(PricedSettings, AreReadByTheNamesOfTheirColumns) {
   ASSERT_EQ(table->rows.size(), 1U);
   const PricedSetting& row = table->rows.front();
   EXPECT_EQ(row.setting,
-            (TradeSetting{scene::Renderer::kHalfAngle, scene::Mode::kUniformPhaseLowAlbedo,
-                          scene::Transport::kPaper, 64, 0.75, 88}));
+            (Setting{scene::HalfAngle{.medium = {.transport = scene::Transport::kPaperLowAlbedo,
+                                                 .look = {.per_field_phase = false}},
+                                      .slices = 64},
+                     0.75, 88}));
   EXPECT_EQ(row.milliseconds, 12.5);
   EXPECT_EQ(row.relative_rmse, 0.25);
 }
@@ -99,4 +101,4 @@ TEST(PricedSettings, TheTablesOfTheProjectAreUnderstood) {
 }
 
 }  // namespace
-}  // namespace thunderhead::measure
+}  // namespace thunderhead::accuracy

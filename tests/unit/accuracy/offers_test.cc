@@ -3,19 +3,18 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/techniques.h"
 
-namespace thunderhead::session {
+namespace thunderhead::accuracy {
 namespace {
 
-using measure::TradeSetting;
 using scene::MaxError;
 using scene::MaxMilliseconds;
 using ::testing::HasSubstr;
 
-TradeSetting Slices(int slices, scene::Renderer renderer = scene::Renderer::kLightVolume) {
-  TradeSetting setting;
-  setting.slices = slices;
-  setting.renderer = renderer;
+Setting Slices(int slices, const Path& path = test_support::kLightVolume) {
+  Setting setting{path.plain()};
+  SetCount(&setting.technique, slices);
   return setting;
 }
 
@@ -26,7 +25,7 @@ const std::vector<Offer> kOffers = {{Slices(32), 5.0, 0.40},
                                     {Slices(256), 40.0, 0.25}};
 
 Offer Best(const scene::Accuracy& limit,
-           const std::optional<TradeSetting>& current = std::nullopt) {
+           const std::optional<Setting>& current = std::nullopt) {
   return BestOffer(kOffers, limit, current);
 }
 
@@ -74,13 +73,13 @@ TEST(TableCorrectionTest, TheMostSpecialKnowledgeCounts) {
   correction.Observe(Slices(64), 10.0, 30.0);
   EXPECT_NEAR(correction.Factor(Slices(64)), 3.0, 1e-9);
   EXPECT_NEAR(correction.Factor(Slices(128)), 3.0, 1e-9);
-  const TradeSetting half_angle = Slices(64, scene::Renderer::kHalfAngle);
+  const Setting half_angle = Slices(64, test_support::kHalfAngle);
   EXPECT_NEAR(correction.Factor(half_angle), 3.0, 1e-9);
   EXPECT_FALSE(correction.Knows(half_angle));
   correction.Observe(half_angle, 10.0, 5.0);
   EXPECT_TRUE(correction.Knows(half_angle));
   EXPECT_NEAR(correction.Factor(half_angle), 0.5, 1e-9);
-  EXPECT_NEAR(correction.Factor(Slices(512, scene::Renderer::kHalfAngle)), 0.5, 1e-9);
+  EXPECT_NEAR(correction.Factor(Slices(512, test_support::kHalfAngle)), 0.5, 1e-9);
   EXPECT_NEAR(correction.Factor(Slices(64)), 3.0, 1e-9);
 }
 
@@ -103,7 +102,7 @@ class OffersTest : public ::testing::Test {
   }
 
   static OfferTables Tables() {
-    measure::PricedSettings table;
+    PricedSettings table;
     table.size_px = {200, 100};
     for (const Offer& offer : kOffers) {
       table.rows.push_back({offer.setting, offer.milliseconds, offer.error});
@@ -116,31 +115,31 @@ class OffersTest : public ::testing::Test {
 
   int SlicesFor(const scene::Accuracy& limit) {
     scene_.accuracy = limit;
-    return offers_.Decide(scene_, std::nullopt)->rendering.slices;
+    return CountOf(offers_.Decide(scene_, std::nullopt)->rendering.technique);
   }
 
   Offers offers_{Tables()};
-  scene::Scene scene_;
+  scene::Scene scene_ = test_support::PlainScene();
 };
 
 TEST_F(OffersTest, DecidesWhatTheSceneLeavesToThem) {
-  scene_.rendering.renderer = scene::Renderer::kHalfAngle;
-  scene_.rendering.mode = scene::Mode::kUniformPhaseLowAlbedo;
-  scene_.rendering.false_colors = true;
+  scene_.rendering.technique =
+      InMode(scene::HalfAngle{}, test_support::kLowAlbedo, scene::Transport::kConsistent);
+  scene::MediumSettingsOf(&scene_.rendering.technique)->look.false_colors = true;
   scene_.output.jpeg_quality = 40;
   scene_.accuracy = MaxError{0.35};
   const scene::Scene decided = *offers_.Decide(scene_, std::nullopt);
-  EXPECT_EQ(decided.rendering.renderer, scene::Renderer::kLightVolume);
-  EXPECT_EQ(decided.rendering.mode, scene::Mode::kPerFieldPhaseTranslucent);
-  EXPECT_EQ(decided.rendering.slices, 64);
-  EXPECT_TRUE(decided.rendering.false_colors);
+  EXPECT_EQ(PathOf(decided.rendering.technique), test_support::kLightVolume);
+  EXPECT_EQ(ModeOf(decided.rendering.technique).name, "per_field_phase_translucent");
+  EXPECT_EQ(CountOf(decided.rendering.technique), 64);
+  EXPECT_TRUE(scene::FieldLookOf(decided.rendering.technique).false_colors);
   EXPECT_EQ(decided.output.jpeg_quality, 40);
 }
 
 TEST_F(OffersTest, LeavesASceneThatAsksForNothingAndTheReference) {
-  scene_.rendering.slices = 7;
+  scene::SetSlices(&scene_.rendering.technique, 7);
   EXPECT_EQ(*offers_.Decide(scene_, std::nullopt), scene_);
-  scene_.rendering.renderer = scene::Renderer::kReference;
+  scene_.rendering.technique = scene::Reference{};
   scene_.accuracy = MaxError{0.35};
   EXPECT_EQ(*offers_.Decide(scene_, std::nullopt), scene_);
 }
@@ -163,7 +162,7 @@ TEST_F(OffersTest, LargerPicturesCostMore) {
 TEST_F(OffersTest, TimesAreCorrectedByWhatFramesCost) {
   scene_.accuracy = MaxMilliseconds{20.0};
   const scene::Scene decided = *offers_.Decide(scene_, std::nullopt);
-  EXPECT_EQ(decided.rendering.slices, 128);
+  EXPECT_EQ(CountOf(decided.rendering.technique), 128);
   offers_.Observe(decided, 45.0);
   EXPECT_EQ(SlicesFor(MaxMilliseconds{20.0}), 32);
   // A cheaper machine than the table's, once that is known of the setting itself.
@@ -179,41 +178,41 @@ TEST_F(OffersTest, ReportsWhatItBelieves) {
   EXPECT_EQ(report.expected_ms, 10.0);
   EXPECT_EQ(report.model_error, 0.30);
   EXPECT_EQ(report.estimated_error, 0.30);
-  EXPECT_EQ(report.unmet, "");
+  EXPECT_FALSE(report.unmet.has_value());
   // A coarse frame tells its own error, and that of what follows meets the limit.
   report = *offers_.Report(decided, {0.5, 0.5}, std::nullopt, 0);
   EXPECT_EQ(report.slices, 32);
   EXPECT_EQ(report.image_scale, 0.5);
   EXPECT_EQ(report.estimated_error, 0.40);
-  EXPECT_EQ(report.unmet, "");
+  EXPECT_FALSE(report.unmet.has_value());
   // The view's own slices add so much that the limit is missed after all.
   report = *offers_.Report(decided, {}, 0.4, 0);
   EXPECT_DOUBLE_EQ(report.estimated_error, 0.5);
   EXPECT_EQ(report.discretisation_error, 0.4);
-  EXPECT_THAT(report.unmet, HasSubstr("the nearest is 0.5"));
+  EXPECT_THAT(report.unmet->message, HasSubstr("the nearest is 0.5"));
 }
 
 TEST_F(OffersTest, SaysWhatIsOutOfReachAndWhatIsNearest) {
   scene_.accuracy = MaxError{0.05};
   scene::Scene decided = *offers_.Decide(scene_, std::nullopt);
-  EXPECT_EQ(offers_.Report(decided, {}, std::nullopt, 0)->unmet,
+  EXPECT_EQ(offers_.Report(decided, {}, std::nullopt, 0)->unmet->message,
             "an error of 0.05 is out of reach for top-down views; the nearest is 0.2, in 20 ms a "
             "frame. The reference refines to any error");
   scene_.accuracy = MaxMilliseconds{1.0};
   decided = *offers_.Decide(scene_, std::nullopt);
-  EXPECT_EQ(offers_.Report(decided, {}, std::nullopt, 0)->unmet,
+  EXPECT_EQ(offers_.Report(decided, {}, std::nullopt, 0)->unmet->message,
             "1 ms a frame are out of reach for top-down views of 200x100 on this machine; the "
             "nearest is 5 ms, with an error of 0.4");
 }
 
 TEST_F(OffersTest, FramesThatAskForNothingAreReportedWhereTheTableKnowsThem) {
-  scene_.rendering.slices = 128;
+  scene::SetSlices(&scene_.rendering.technique, 128);
   AccuracyReport report = *offers_.Report(scene_, {}, std::nullopt, 0);
   EXPECT_EQ(report.model_error, 0.20);
   EXPECT_FALSE(report.expected_ms.has_value());
   offers_.Observe(scene_, 30.0);
   EXPECT_NEAR(*offers_.Report(scene_, {}, std::nullopt, 0)->expected_ms, 30.0, 1e-9);
-  scene_.rendering.transport = scene::Transport::kPaper;
+  test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
   EXPECT_FALSE(offers_.Report(scene_, {}, std::nullopt, 0).has_value());
 }
 
@@ -221,12 +220,12 @@ class TracedOffersTest : public ::testing::Test {
  protected:
   // Two settings of diffusion, the second also with traced light.
   static OfferTables Tables() {
-    measure::PricedSettings table;
+    PricedSettings table;
     table.size_px = {200, 100};
-    TradeSetting setting = Slices(64);
-    setting.transport = scene::Transport::kDiffusion;
+    Setting setting = Slices(64);
+    test_support::SetTransport(&setting.technique, scene::Transport::kDiffusion);
     table.rows.push_back({setting, 9.0, 0.12});
-    setting.slices = 128;
+    SetCount(&setting.technique, 128);
     table.rows.push_back({setting, 10.0, 0.11});
     for (const auto& [paths, error] : {std::pair{0.1, 0.08}, std::pair{1.0, 0.05}}) {
       setting.million_paths = paths;
@@ -239,23 +238,23 @@ class TracedOffersTest : public ::testing::Test {
 
   TracedOffersTest() { scene_.output = {200, 100, 88}; }
 
-  scene::Rendering RenderingFor(const scene::Accuracy& limit) {
+  scene::Technique TechniqueFor(const scene::Accuracy& limit) {
     scene_.accuracy = limit;
-    return offers_.Decide(scene_, std::nullopt)->rendering;
+    return offers_.Decide(scene_, std::nullopt)->rendering.technique;
   }
 
   Offers offers_{Tables()};
-  scene::Scene scene_;
+  scene::Scene scene_ = test_support::PlainScene();
 };
 
 TEST_F(TracedOffersTest, LightIsTracedWhereNothingElseIsAsAccurate) {
-  EXPECT_FALSE(RenderingFor(MaxError{0.115}).traced_light);
-  EXPECT_TRUE(RenderingFor(MaxError{0.09}).traced_light);
-  EXPECT_TRUE(RenderingFor(MaxError{0.06}).traced_light);
-  EXPECT_TRUE(RenderingFor(MaxError{0.01}).traced_light);  // the nearest
-  EXPECT_EQ(RenderingFor(MaxError{0.01}).slices, 128);
+  EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxError{0.115})), scene::TracedLight::kOff);
+  EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxError{0.09})), scene::TracedLight::kAwaited);
+  EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxError{0.06})), scene::TracedLight::kAwaited);
+  EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxError{0.01})), scene::TracedLight::kAwaited);  // the nearest
+  EXPECT_EQ(CountOf(TechniqueFor(MaxError{0.01})), 128);
   // A limit of time takes no more of the machine than it says.
-  EXPECT_FALSE(RenderingFor(MaxMilliseconds{50.0}).traced_light);
+  EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxMilliseconds{50.0})), scene::TracedLight::kOff);
 }
 
 TEST_F(TracedOffersTest, TheErrorIsThatOfThePathsSoFar) {
@@ -269,10 +268,10 @@ TEST_F(TracedOffersTest, TheErrorIsThatOfThePathsSoFar) {
   EXPECT_EQ(error_after(100'000), 0.08);
   EXPECT_EQ(error_after(4'000'000), 0.05);
   // Few paths are on their way to what was asked for.
-  EXPECT_EQ(offers_.Report(decided, {}, std::nullopt, 0)->unmet, "");
+  EXPECT_EQ(offers_.Report(decided, {}, std::nullopt, 0)->unmet, std::nullopt);
   scene_.accuracy = MaxError{0.01};
   const scene::Scene nearest = *offers_.Decide(scene_, std::nullopt);
-  EXPECT_THAT(offers_.Report(nearest, {}, std::nullopt, 0)->unmet,
+  EXPECT_THAT(offers_.Report(nearest, {}, std::nullopt, 0)->unmet->message,
               HasSubstr("the nearest is 0.05"));
 }
 
@@ -288,4 +287,4 @@ TEST(BuiltInOfferTablesTest, ServeEveryKindOfView) {
 }
 
 }  // namespace
-}  // namespace thunderhead::session
+}  // namespace thunderhead::accuracy
