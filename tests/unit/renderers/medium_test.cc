@@ -26,7 +26,7 @@ class MediumGroups : public testing::Test {
   scene::FieldParameters& Of(physics::Hydrometeor hydrometeor) {
     return scene_.fields[physics::IndexOf(hydrometeor)];
   }
-  std::size_t Groups(scene::Mode mode) {
+  std::size_t Groups(const accuracy::Mode& mode) {
     test_support::SetMode(&scene_.rendering.technique, mode);
     return MediumOf(scene_, fields_).groups.size();
   }
