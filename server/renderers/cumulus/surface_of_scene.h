@@ -20,7 +20,7 @@ struct DrawnSurface {
 absl::StatusOr<DrawnSurface> SurfaceOf(const scene::Scene& scene,
                                        const volume::HydrometeorFields& fields);
 
-// What of the scene and its storm the cumulus renderer leaves out, a few words each.
+// Parts of the scene and its storm that the cumulus renderer leaves out, a few words each.
 std::vector<std::string> NotShownByCumulus(const scene::Scene& scene,
                                            const volume::HydrometeorFields& fields);
 
