@@ -23,7 +23,7 @@ struct Declaration {
   std::string size;  // "[SIZE]" of an array
 };
 
-// What `row` declares if that is a uniform that can be handed on.
+// The uniform that `row` declares, if it can be passed on as a flat input.
 std::optional<Declaration> UniformIn(absl::string_view row) {
   constexpr std::array<std::string_view, 10> kTypes = {"float", "vec2",  "vec3",  "vec4", "int",
                                                        "ivec2", "ivec3", "ivec4", "mat3", "mat4"};

@@ -49,7 +49,7 @@ class DefineValue {
   int value_;
 };
 
-// Which files a program is made of, and its variant: vertex and fragment, or compute alone.
+// The files and the variant of a program: vertex and fragment, or compute alone.
 struct ProgramSource {
   std::string vertex;    // e.g. "cumulus/bubble.vert"
   std::string fragment;  // e.g. "half_angle/eye.frag"

@@ -14,7 +14,7 @@ namespace {
 constexpr int kMinTile_px = 8;
 constexpr int kMaxTiles = 256;  // along each side
 constexpr float kNowhere = 0.0F;
-constexpr double kBetween = 0.5;  // the depth of what is limited
+constexpr double kBetween = 0.5;  // depth of whatever a cover limits
 
 int Pixel(double place_px, int size_px) {
   return static_cast<int>(std::clamp(place_px, 0.0, static_cast<double>(size_px)));

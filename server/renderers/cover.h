@@ -98,7 +98,7 @@ class CoveredTarget {
 
 enum class Where { kCovered, kElsewhere };
 
-// While it lives, draws reach only this part of covered targets, or, without a cover, all of them.
+// While it lives, drawing is limited to this part of covered targets; without a cover it is not.
 class LimitedTo {
  public:
   LimitedTo(Where where, const Cover* cover);

@@ -53,7 +53,7 @@ class Ground {
     return relief_ || (view.ground_curvature_per_m > 0.0 && view.eye_m.z < lowest_m_);
   }
 
-  // How far the ground is along each pixel's ray, for renderers of media to end at.
+  // Distance of the ground along each pixel's ray, where rays through media end.
   absl::Status DrawDistance(const scene::View& view, const glm::ivec2& size);
   const gl::Texture2D& Distance() const { return distance_; }
 

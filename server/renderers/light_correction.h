@@ -1,6 +1,6 @@
-// What the storm's radiance in a light volume's picture is multiplied by, by place and direction: a
-// plain value that whoever knows the light better makes (correction/correction_fit.h). Each ray
-// looks it up once, at the mean place of what it sees. Knows no GL.
+// Factors for the storm's radiance in a light volume's picture, by place and direction, fitted to
+// the reference (correction/correction_fit.h): a plain value. Each ray looks its factor up once, at
+// the mean place of what it sees. Knows no GL.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ struct LightCorrection {
   // Of red, green and blue: the factor for a ray of direction d is dot(texel, (1, d)).
   std::array<std::vector<glm::vec4>, 3> texels;
 
-  // What skylight on level ground is multiplied by for what the storm hides of the sky and sends
-  // itself: red, green and blue of texels over a rectangle of the world, x fastest.
+  // Factors for skylight on level ground, which the storm hides in part and to which it adds its
+  // own: red, green and blue of texels over a rectangle of the world, x fastest.
   glm::ivec2 ground_size{0};
   std::vector<glm::vec4> ground;
   glm::dvec2 ground_low_m{0.0};

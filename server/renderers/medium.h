@@ -1,4 +1,4 @@
-// What of a storm a scene needs drawn: its visible, non-empty fields, with those merged into one
+// The part of a storm that a scene draws: its visible, non-empty fields, with those merged into one
 // group that share albedo, phase function and colour. Each group is a channel of the extinction
 // textures. Shared by every renderer.
 #pragma once
@@ -55,7 +55,7 @@ struct MediumVariant {
 // A medium with its extinction on the device.
 class ResidentMedium {
  public:
-  // What making it cost, in milliseconds of wall time.
+  // Wall time of making it, in milliseconds.
   struct Cost {
     double extinction_ms = 0.0;
     double upload_ms = 0.0;

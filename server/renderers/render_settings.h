@@ -1,4 +1,4 @@
-// What every renderer of a medium is told besides the medium.
+// Inputs of every renderer of a medium, besides the medium.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,7 @@ struct Beam {
   glm::vec3 irradiance{1.0F};
 };
 
-// What the sun, the sky and the scene's own lights send into the medium.
+// The light of the sun, the sky and the scene's own lights on the medium.
 struct Illumination {
   glm::dvec3 towards_sun{0.0, 0.0, 1.0};
   glm::vec3 sunlight{1.0F};  // irradiance on a plane facing the sun
@@ -40,7 +40,7 @@ struct Illumination {
 struct DrawQuality {
   double image_scale = 1.0;  // of the eye buffer's width and height, (0, 2]; 2 is 4 rays a pixel
   double slice_share = 1.0;  // of the scene's slices, (0, 1]
-  // What sweeps vary besides; sessions draw with these.
+  // Varied by sweeps only; sessions draw with these.
   double light_detail = 1.0;      // texels of the light volume, over the usual ones, along a side
   bool single_precision = false;  // in the light volume's buffers and the frame; half is usual
   // Of the light volume, for the light that the scene has.
@@ -58,7 +58,7 @@ struct RenderSettings {
   glm::ivec2 eye_size{1};  // of the eye buffer in pixels
   int slices = 128;        // or samples along a ray
   DrawQuality quality{};   // its shares are in the sizes above already
-  // How far the ground is along each pixel's ray; none where nothing hides a part of the medium.
+  // Distance of the ground along each pixel's ray; none where nothing hides a part of the medium.
   const gl::Texture2D* ground_distance = nullptr;
   // Of the medium in the eye buffer; none where that may be anywhere.
   const Cover* cover = nullptr;

@@ -28,7 +28,7 @@ SceneRenderer& RendererPool::Choose(
   auto best = std::max_element(
       renderers_.begin(), renderers_.end(),
       [&](const auto& a, const auto& b) { return first_stage(a) < first_stage(b); });
-  // What must compute the extinction anew keeps nothing worth sharing.
+  // A scene that needs another extinction has nothing to share.
   if (best == renderers_.end() || first_stage(*best) <= scene::Stage::kExtinction) {
     if (renderers_.size() < most_) {
       renderers_.push_back(std::make_unique<SceneRenderer>(programs_, registry_));

@@ -43,7 +43,7 @@ double HeightOfStep(int step) { return kSkyStep_m * std::expm1(step / kSkySteps)
 void SkyAndGround::Update(const scene::Scene& scene, const scene::View& view,
                           const Ground& ground) {
   towards_sun_ = scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg);
-  // What is summed over directions is summed from there: the same whatever came before.
+  // Sums over directions start there, so that they do not depend on earlier scenes.
   const auto sine = static_cast<float>(towards_sun_.z);
   const glm::vec3 eastern_sun(std::sqrt(std::max(1.0F - sine * sine, 0.0F)), 0.0F, sine);
   const Key key{towards_sun_.z, scene.sky.turbidity, scene.sky.ground_albedo, ground.Lowest_m()};

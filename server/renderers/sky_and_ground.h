@@ -53,7 +53,7 @@ class SkyAndGround {
   void BindAir(const gl::Program& program, const scene::Scene& scene, const scene::View& view,
                const Ground& ground, const volume::WorldBox& box) const;
 
-  // What the sky's light depends on; with the sun's azimuth it only turns.
+  // Inputs of the sky's light; with the sun's azimuth it only turns.
   struct Key {
     double sun_sine = 0.0;  // of its elevation
     double turbidity = 0.0;

@@ -1,5 +1,7 @@
 #include "gl/program.h"
 
+#include <type_traits>
+
 #include "gl/context.h"
 #include "gl/strict_programs.h"
 #include "gmock/gmock.h"
@@ -10,6 +12,14 @@ namespace thunderhead::gl {
 namespace {
 
 using testing::HasSubstr;
+
+// A macro left out of a variant, or a uniform's value of another type, does not compile.
+static_assert(!std::is_default_constructible_v<DefineValue>);
+template <typename T>
+concept IsExposure = requires(const Program& program, const T& value) {
+  program.Set(uniform::exposure, value);
+};
+static_assert(IsExposure<float> && !IsExposure<double> && !IsExposure<int>);
 
 TEST(Program, NamesAMissingShader) {
   const auto context = Context::Create("software");

@@ -72,7 +72,7 @@ glm::vec4 SharesOf(scene::CumulusComponent component) {
 
 }  // namespace
 
-// What both passes over the bubbles need.
+// Inputs of both passes over the bubbles.
 struct CumulusRenderer::Pass {
   scene::View view;
   glm::ivec2 size{1};
@@ -266,7 +266,7 @@ absl::Status CumulusRenderer::DrawView(const RenderSettings& settings,
   SetShading(*program, settings, light_map, noises);
   shade_target_.Clear(0.0F, 0.0F, 0.0F, 0.0F, 0);
   shade_target_.Clear(0.0F, 0.0F, 0.0F, 1.0F, 1);
-  // What the shader reads must not be what it is tested against.
+  // The shader reads one copy of the depths and is tested against the other.
   glCopyImageSubData(core_depth_.Get(), GL_TEXTURE_2D, 0, 0, 0, 0, tested_depth_.Get(),
                      GL_TEXTURE_2D, 0, 0, 0, 0, settings.eye_size.x, settings.eye_size.y, 1);
   shade_target_.Bind();

@@ -32,7 +32,7 @@ class CumulusRenderer {
   glm::dvec3 Middle_m() const { return (box_.low_m + box_.high_m) / 2.0; }
   glm::dvec3 HalfExtent_m() const { return (box_.high_m - box_.low_m) / 2.0; }
 
-  // How deep the surface is seen from the sun: what is in shadow. Must not be empty.
+  // Draws the surface's depth as the sun sees it, a shadow map. Must not be empty.
   absl::Status CastShadow(const RenderSettings& settings);
   // The share of sunlight that the surface keeps from the ground, over `frame` around the middle;
   // after CastShadow.

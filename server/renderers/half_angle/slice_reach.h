@@ -1,4 +1,4 @@
-// What each slice has to draw: where the occupied bricks that it cuts lie in the picture and in the
+// Bounds of each slice: where the occupied bricks that it cuts lie in the picture and in the
 // light buffer. Pure geometry: no GL.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Buffers that hold the states of something in turn, each written only where it must be. Pure
+// A ring of buffers with dirty rectangles: each holds every n-th state of something. Pure
 // bookkeeping: no GL.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What the diffusion equation knows of the medium: extinction in cells of one size.
+// The medium as the diffusion equation sees it: extinction in cells of one size.
 #pragma once
 
 #include <cstddef>

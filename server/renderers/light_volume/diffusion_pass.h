@@ -37,7 +37,7 @@ class DiffusionPass {
   }
 
  private:
-  // What the cells depend on.
+  // Inputs of the cells.
   struct Key {
     std::uint64_t medium = 0;
     std::vector<double> light;

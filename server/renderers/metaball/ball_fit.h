@@ -36,7 +36,7 @@ class BallFits {
            const std::shared_ptr<const volume::HydrometeorFields>& fields);
 
  private:
-  // What the balls depend on.
+  // Inputs of the fit.
   struct Key {
     std::weak_ptr<const volume::HydrometeorFields> fields;
     std::vector<volume::ExtinctionTerm> terms;

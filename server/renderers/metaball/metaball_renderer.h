@@ -59,7 +59,7 @@ class MetaballRenderer {
     }
   };
 
-  // What decides how light passes through the balls, besides its direction.
+  // Everything but its direction that the transmittance of a light through the balls depends on.
   struct Optics {
     std::vector<glm::vec4> balls;  // as the device has them
     bool paper = false;

@@ -15,7 +15,7 @@ constexpr int kMinTile_px = 16;
 // Of all lists together: 16 MB on the device.
 constexpr std::size_t kMaxListed = std::size_t{1} << 22U;
 
-// What a ball covers of the picture, in normalised device coordinates; empty if low is above high.
+// The rectangle around a ball in normalised device coordinates; empty if low is above high.
 struct Cover {
   glm::dvec2 low{-1.0};
   glm::dvec2 high{1.0};

@@ -1,5 +1,5 @@
-// Where shaders and the C++ that runs them meet: texture units, image units, bindings of storage buffers, sides of work
-// groups. Compiles as GLSL and as C++ (shaders/bindings.h). Within a program each number of a kind is taken once, which
+// Numbers that shaders share with the C++ that runs them: texture units, image units, bindings of storage buffers, sizes
+// of work groups. Compiles as GLSL and as C++ (shaders/bindings.h). Within a program each number of a kind is taken once, which
 // tests check (gl/strict_programs.h); programs of different techniques share numbers.
 
 // Textures of a medium.

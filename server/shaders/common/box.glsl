@@ -4,7 +4,7 @@
 vec3 safe_direction(vec3 direction) { return mix(direction, vec3(1e-7), lessThan(abs(direction), vec3(1e-7))); }
 
 // The part of the ray that is in the box; x > y where it misses it. `direction` is safe.
-vec2 way_through_box(vec3 low_m, vec3 high_m, vec3 origin_m, vec3 direction) {
+vec2 path_through_box(vec3 low_m, vec3 high_m, vec3 origin_m, vec3 direction) {
   vec3 a = (low_m - origin_m) / direction;
   vec3 b = (high_m - origin_m) / direction;
   vec3 nearest = min(a, b);

@@ -36,28 +36,28 @@ MediumRay medium_ray(vec3 origin_m, vec3 direction) {
 }
 
 // The part of the ray that is in the medium's box with `margin_m` around; x > y where it misses it. `direction` is safe.
-vec2 way_in_medium(vec3 origin_m, vec3 direction, float margin_m) {
-  return way_through_box(medium_low_m - margin_m, medium_high_m + margin_m, origin_m, direction);
+vec2 path_in_medium(vec3 origin_m, vec3 direction, float margin_m) {
+  return path_through_box(medium_low_m - margin_m, medium_high_m + margin_m, origin_m, direction);
 }
 
-vec3 medium_place(MediumRay ray, float way_m) { return ray.start + way_m * ray.step; }
+vec3 medium_place(MediumRay ray, float distance_m) { return ray.start + distance_m * ray.step; }
 
-vec3 brick_place(MediumRay ray, float way_m) { return ray.brick_start + way_m * ray.brick_step; }
+vec3 brick_place(MediumRay ray, float distance_m) { return ray.brick_start + distance_m * ray.brick_step; }
 
 // The middle of the brick at a place; beyond all bricks of the nearest one.
 vec3 brick_middle(MediumRay ray, vec3 place) { return floor(clamp(place, vec3(0.0), ray.highest_brick)) + 0.5; }
 
-// What is in it. A look-up, as software takes twice as long for texelFetch.
+// The brick's content. By texture(): texelFetch takes software twice as long.
 uint brick_content(MediumRay ray, vec3 place) { return texture(bricks, brick_middle(ray, place) * ray.per_brick).r; }
 
 // True where there is something in the brick.
 bool is_filled(uint content) { return content == kThickBrick || content == kThinBrick; }
 
-// How far along the ray from `place`, in bricks, the cube of empty bricks reaches that `content` tells of; with 1 the way to
-// the end of the brick itself.
-float empty_way(MediumRay ray, vec3 place, uint content) {
-  vec3 across = abs(ray.per_brick_step);  // the way through a brick
-  vec3 way = (brick_middle(ray, place) - place) * ray.per_brick_step + (float(content) - 0.5) * across;
+// The distance along the ray from `place` (in bricks) to the end of the cube of empty bricks around it, whose size is
+// `content`; with 1, to the end of the brick itself.
+float empty_path(MediumRay ray, vec3 place, uint content) {
+  vec3 across = abs(ray.per_brick_step);  // the path through a brick
+  vec3 path = (brick_middle(ray, place) - place) * ray.per_brick_step + (float(content) - 0.5) * across;
   float beyond = 1e-3 * min(across.x, min(across.y, across.z));
-  return min(way.x, min(way.y, way.z)) + beyond;
+  return min(path.x, min(path.y, path.z)) + beyond;
 }

@@ -9,7 +9,7 @@ uniform vec2 touch_m;  // where the plane touches
 
 const float kFarthestGround_m = 5e5;
 
-// How far along a ray the level surface is that has the given height where the plane touches; below zero where the ray,
+// Distance along a ray of the level surface that has the given height where the plane touches; below zero where the ray,
 // coming from above, misses it, 0 under it.
 float level_distance_m(vec3 origin_m, vec3 ray, float level_m) {
   vec2 off_m = origin_m.xy - touch_m;
@@ -47,25 +47,25 @@ vec3 ground_normal(vec2 place_m) {
 }
 #endif
 
-// How far along the ray the ground is; below zero where the ray misses it or starts under it. No step is longer than the
+// Distance of the ground along the ray; below zero where the ray misses it or starts under it. No step is longer than the
 // steepest slope allows, so that no mountain is missed; rays that graze for very long end where they are.
 float ground_distance_m(vec3 origin_m, vec3 ray) {
   float lowest = level_distance_m(origin_m, ray, lowest_ground_m);
 #if !RELIEF
   return lowest > 0.0 ? min(lowest, kFarthestGround_m) : -1.0;
 #else
-  float way_m = level_distance_m(origin_m, ray, highest_ground_m);
-  if (way_m < 0.0 || above_ground_m(origin_m) <= 0.0) return -1.0;
+  float distance_m = level_distance_m(origin_m, ray, highest_ground_m);
+  if (distance_m < 0.0 || above_ground_m(origin_m) <= 0.0) return -1.0;
   float end_m = lowest > 0.0 ? lowest : kFarthestGround_m;
   float level = length(ray.xy);
   float bend = ground_curvature_per_m * (length(origin_m.xy - touch_m) + end_m) * level;
   float closing = max(steepest_ground * level - ray.z + bend, 1e-4);
-  for (int i = 0; i < 128 && way_m < end_m; ++i) {
-    float gap_m = above_ground_m(origin_m + way_m * ray);
-    if (gap_m < 0.5 + 1e-4 * way_m) return way_m;
-    way_m += gap_m / closing;
+  for (int i = 0; i < 128 && distance_m < end_m; ++i) {
+    float gap_m = above_ground_m(origin_m + distance_m * ray);
+    if (gap_m < 0.5 + 1e-4 * distance_m) return distance_m;
+    distance_m += gap_m / closing;
   }
-  if (way_m < end_m) return way_m;
+  if (distance_m < end_m) return distance_m;
   return lowest > 0.0 ? min(lowest, kFarthestGround_m) : -1.0;
 #endif
 }

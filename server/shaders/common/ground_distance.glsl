@@ -1,4 +1,4 @@
-// How far the ground is along each pixel's ray, of ground/distance.frag. Variant: GROUND (it may hide something).
+// Distance of the ground along each pixel's ray, from ground/distance.frag. Variant: GROUND (it may hide something).
 #include "common/bindings.glsl"
 
 #if GROUND

@@ -1,8 +1,8 @@
 // The extinction of a medium's groups at a point. A group is a channel: 0-3 of plane 0, 4-7 of plane 1; channels that a
 // plane does not have must be weighted with zero. GROUPS is the number of groups, DETAILS that of the turbulent noises
 // that multiply shares of them (physics/turbulence.h); without any there is no code for them.
-// What a loop needs of uniforms is computed before it: where some invocations may have ended, Mesa's software renderer
-// reads a uniform for each of the others one by one (gallivm 22.3).
+// Uniforms that a loop needs are read before it: inside, where some invocations may have ended, Mesa's software renderer
+// reads a uniform once for every invocation (gallivm 22.3).
 #include "common/bindings.glsl"
 
 #ifndef DETAILS
@@ -26,16 +26,16 @@ uniform vec4 extinction_weights[PLANES];  // texel to extinction, 1/m; zero for 
 layout(binding = kDetailNoiseUnit) uniform sampler3D detail_noise[DETAILS];
 uniform vec3 detail_tile_size[DETAILS];    // of a tile in the medium's texture coordinates: at rest in the world
 uniform vec3 detail_tile_corner[DETAILS];  // and where one begins
-uniform float detail_value_of_full[DETAILS];       // of the noise, whose root is fetched, where a texel is 1
+uniform float detail_value_of_full[DETAILS];       // of the noise (its root is fetched) where a texel is 1
 uniform vec4 detail_shares[DETAILS * PLANES];      // of each channel that noise multiplies
 
 vec3 tiles_scale[DETAILS];
 vec3 tiles_offset[DETAILS];
-vec4 detail_rest[DETAILS * PLANES];  // what the noise leaves of each channel where it is zero
-vec4 detail_gain[DETAILS * PLANES];  // and what its square adds
+vec4 detail_rest[DETAILS * PLANES];  // factor of each channel where the noise is zero
+vec4 detail_gain[DETAILS * PLANES];  // and the slope with the square of what is fetched
 #endif
 
-// Call it first.
+// Call first.
 void begin_medium() {
 #if DETAILS > 0
   for (int i = 0; i < DETAILS; ++i) {
@@ -85,7 +85,7 @@ float weigh(Medium medium, vec4 weights[PLANES]) {
   return sum;
 }
 
-// `weights` times `factor`: what a loop takes in their place.
+// `weights` times `factor`, for a loop to use in their place.
 vec4[PLANES] scaled(vec4 weights[PLANES], float factor) {
   for (int plane = 0; plane < PLANES; ++plane) weights[plane] *= factor;
   return weights;

@@ -1,5 +1,5 @@
-// What a group of a medium scatters towards the eye of light that turns by an angle. Variants: COLORED (per-group
-// colours), CONSISTENT (transport). GROUPS is the number of groups.
+// Phase functions of a medium's groups, looked up by scattering angle. Variants: COLORED (per-group colours), CONSISTENT
+// (transport). GROUPS is the number of groups.
 #include "common/bindings.glsl"
 #include "physics/phase_curve.glsl"
 
@@ -18,7 +18,8 @@ float haversine_between(vec3 a, vec3 b) {
   return 0.25 * dot(apart, apart);
 }
 
-// The phase function of a group for red, green and blue, its mean over the sphere 1. Two fetches and a mix: filtering units round the share to 8 bits, which shows in steep peaks.
+// The phase function of a group for red, green and blue, its mean over the sphere 1. Two fetches and a mix:
+// filtering units round weights to 8 bits, which shows in steep peaks.
 vec3 group_phase(int group, float haversine) {
   int last = textureSize(phase_curves, 0).x - 1;
   float place = phase_curve_place(haversine) * float(last);

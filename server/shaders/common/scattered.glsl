@@ -1,7 +1,7 @@
-// What the samples of a ray scatter towards the eye, by group: phase functions, albedo and colour, which are the ray's or
-// the group's, are multiplied once it has ended. Needs common/medium.glsl and common/phase.glsl.
-// Variants: GROUPS, COLORED (per-group colours), CONSISTENT (transport), EVEN_ALBEDO (one albedo and colour for all), GLOWS
-// (what add_isotropic gathers belongs to the radiance).
+// Light scattered towards the eye along a ray, summed by group: phase functions, albedo and colour depend on the ray or
+// the group alone, so they are multiplied in after the last sample. Needs common/medium.glsl and common/phase.glsl.
+// Variants: GROUPS, COLORED (per-group colours), CONSISTENT (transport), EVEN_ALBEDO (one albedo and colour for all),
+// GLOWS (the radiance includes what add_isotropic adds).
 uniform vec4 scattering_weights[PLANES];  // texel to scattering, 1/m
 uniform float albedo;                     // of every group
 uniform vec3 sunlight;                    // irradiance
@@ -32,7 +32,7 @@ Scattered nothing_scattered() {
   return scattered;
 }
 
-// What `factor` leaves of it.
+// Multiplies all sums by `factor`.
 void fade(inout Scattered scattered, float factor) {
   for (int plane = 0; plane < PLANES; ++plane) {
     scattered.direct[plane] *= factor;
@@ -66,8 +66,8 @@ void add_isotropic(inout Scattered scattered, Medium medium, vec4 extinctions[PL
 #endif
 }
 
-// Radiance of all that, of a ray whose samples' extinctions were by `step_m`; `haversine` is that of the angle that
-// sunlight turns by.
+// The radiance of a ray whose samples' extinctions were by `step_m`; `haversine` is that of the scattering angle of
+// sunlight.
 vec3 radiance_of(Scattered scattered, float step_m, float haversine) {
   vec3 radiance = vec3(0.0);
   for (int group = 0; group < GROUPS; ++group) {

@@ -1,4 +1,4 @@
-// Which ray stands for a place in the picture; perspective and parallel rays alike (scene/view.h).
+// The view ray of a place in the picture; perspective and parallel rays alike (scene/view.h).
 uniform vec3 ray_origin_m;        // of the middle's ray
 uniform vec3 ray_origin_right_m;  // what x = 1 adds to the origin
 uniform vec3 ray_origin_up_m;

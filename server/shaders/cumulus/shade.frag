@@ -67,8 +67,8 @@ vec3 from_surroundings(vec3 n) {
 }
 
 // The normal of a rough surface. Roughness finer than pixels is left out.
-vec3 roughened(vec3 normal, vec3 point_m, float way_m) {
-  float pixel_m = parallel ? pixel_share : pixel_share * way_m;
+vec3 roughened(vec3 normal, vec3 point_m, float distance_m) {
+  float pixel_m = parallel ? pixel_share : pixel_share * distance_m;
   float relief = roughness * kRelief * noise_wave_m * clamp(1.5 - 3.0 * pixel_m / noise_wave_m, 0.0, 1.0);
   if (relief <= 0.0) return normal;
   float step_m = max(noise_wave_m / 16.0, 0.5 * pixel_m);
@@ -114,7 +114,7 @@ vec3 trapped(vec3 point_m, out float sky_share) {
   return sum;
 }
 
-// What the core sends.
+// Radiance of the core.
 vec3 core(Meeting meeting, vec3 point_m) {
 #if PLAIN
   return sunlight * (max(dot(meeting.normal, towards_sun), 0.0) / kPi);
@@ -129,7 +129,7 @@ vec3 core(Meeting meeting, vec3 point_m) {
 #endif
 }
 
-// What the corona sends to the eye of the sunlight behind it (section 4.2, appendix A): the variance of the angle grows
+// Radiance of the corona with the sun behind it (section 4.2, appendix A): the variance of the angle grows
 // with the droplets passed, and the lobe is a power of the cosine, scaled so that it sends as much as it takes.
 vec3 corona(Meeting meeting, float rho) {
   float mu = dot(meeting.ray, towards_sun);

@@ -1,4 +1,4 @@
-// How far the ground is along each pixel's ray; very far where the ray meets none. Variant: RELIEF.
+// Distance of the ground along each pixel's ray; very large where the ray meets none. Variant: RELIEF.
 #include "common/view.glsl"
 #include "common/ground.glsl"
 

@@ -1,4 +1,4 @@
-// The share of sunlight that the whole medium keeps from what lies behind it, along one sun ray a texel. Variants: GROUPS, DETAILS.
+// Opacity of the whole medium along one sun ray a texel, for its shadow on the ground. Variants: GROUPS, DETAILS.
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
 
@@ -12,28 +12,28 @@ in vec2 position;
 out float blocked;
 
 const int kMaxSamples = 4096;
-const float kOpaque = 12.0;
+const float kOpaqueDepth = 12.0;  // optical depth at which a ray ends
 
 void main() {
   begin_medium();
   vec3 origin_m = position.x * light_right_m + position.y * light_up_m;
   vec3 direction = safe_direction(towards_sun);
   MediumRay ray = medium_ray(origin_m, direction);
-  vec2 way = way_in_medium(origin_m, direction, 0.0);
+  vec2 path = path_in_medium(origin_m, direction, 0.0);
   vec4 depth_weights[PLANES] = scaled(light_weights, step_m);
   float per_step = 1.0 / step_m;
-  float way_m = way.x;
+  float distance_m = path.x;
   float depth = 0.0;
-  for (int i = 0; i < kMaxSamples && way_m < way.y && depth < kOpaque; ++i) {
-    vec3 place = brick_place(ray, way_m);
+  for (int i = 0; i < kMaxSamples && distance_m < path.y && depth < kOpaqueDepth; ++i) {
+    vec3 place = brick_place(ray, distance_m);
     uint content = brick_content(ray, place);
     if (!is_filled(content)) {
-      way_m += empty_way(ray, place, content);
+      distance_m += empty_path(ray, place, content);
       continue;
     }
-    float path_m = min(step_m, way.y - way_m);
-    depth += path_m * per_step * weigh(medium_at_place(medium_place(ray, way_m + 0.5 * path_m)), depth_weights);
-    way_m += path_m;
+    float path_m = min(step_m, path.y - distance_m);
+    depth += path_m * per_step * weigh(medium_at_place(medium_place(ray, distance_m + 0.5 * path_m)), depth_weights);
+    distance_m += path_m;
   }
   blocked = 1.0 - exp(-depth);
 }

@@ -1,6 +1,6 @@
 // Carries sunlight through consecutive slices of the light buffer: each layer is what enters a slice. r is the share of
-// sunlight, g the similarity-scaled optical depth passed. Neighbouring texels exchange light once a call, by what has been
-// scattered since the call before (CONSISTENT) or in its only slice (the paper's transport).
+// sunlight, g the similarity-scaled optical depth passed. Neighbouring texels exchange light once a call, by the light
+// scattered since the last call (CONSISTENT) or in its only slice (the paper's transport).
 // Variants: GROUPS, CONSISTENT, TRANSLUCENT (there is an exchange).
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
@@ -11,7 +11,8 @@ layout(local_size_x = kLightGroupSide, local_size_y = kLightGroupSide) in;
 #define EXCHANGES (TRANSLUCENT && CONSISTENT)
 layout(binding = kLeavingLightImage) uniform writeonly image2DArray leaving;
 #if EXCHANGES
-layout(binding = kRingDepthImage, r32f) uniform image2D ring_depth;  // optical depth scattered into the outer ring since the last exchange
+// Optical depth scattered into the outer ring since the last exchange.
+layout(binding = kRingDepthImage, r32f) uniform image2D ring_depth;
 #endif
 
 layout(binding = kSliceLightUnit) uniform sampler2DArray light;
@@ -35,7 +36,7 @@ float peripheral(vec3 place) {
   return 0.25 * sum;
 }
 
-// What is left of the light `here` behind a medium that is not empty; `place` is in the light buffer.
+// The light `here` after it has passed the medium; `place` is in the light buffer.
 vec2 carried(vec2 here, vec3 place, Medium medium, vec4 light_depths[PLANES], vec4 transport_depths[PLANES]) {
   float passed = exp(-weigh(medium, light_depths));
 #if TRANSLUCENT && !CONSISTENT
@@ -65,7 +66,7 @@ void main() {
   float path_m = light_path_m;
   int layer = first_layer;
   int end = any(greaterThanEqual(texel, end_texel)) ? 0 : slice_count;
-  float way_m = ray.first_m + float(first_slice) * path_m;
+  float distance_m = ray.first_m + float(first_slice) * path_m;
   vec2 here = texelFetch(light, ivec3(texel, layer), 0).rg;
 #if EXCHANGES
   // A fixed offset and a share that grows with the path make the spread a diffusion, whatever the number of slices.
@@ -76,10 +77,10 @@ void main() {
   }
 #endif
   for (int i = 0; i < end; ++i) {
-    uint content = brick_content(ray.medium, brick_place(ray.medium, way_m));
-    bool meets = way_m >= ray.inside.x && way_m <= ray.inside.y && is_filled(content);
+    uint content = brick_content(ray.medium, brick_place(ray.medium, distance_m));
+    bool meets = distance_m >= ray.inside.x && distance_m <= ray.inside.y && is_filled(content);
     if (meets) {
-      Medium medium = medium_at_place(medium_place(ray.medium, way_m));
+      Medium medium = medium_at_place(medium_place(ray.medium, distance_m));
       here = carried(here, vec3(place, float(layer)), medium, light_depths, transport_depths);
 #if EXCHANGES
       ring += weigh(medium, peripheral_depths);
@@ -87,7 +88,7 @@ void main() {
     }
     layer = layer + 1 < size.z ? layer + 1 : 0;
     imageStore(leaving, ivec3(texel, layer), vec4(here, 0.0, 0.0));
-    way_m += path_m;
+    distance_m += path_m;
   }
 #if EXCHANGES
   if (end > 0) imageStore(ring_depth, texel, vec4(ring, 0.0, 0.0, 0.0));

@@ -1,9 +1,10 @@
-// The eye buffer after a slab of consecutive slices: radiance scattered towards the eye (rgb) and the share of what lies
-// behind that passes (a). Goes through the points at which the ray meets the slices, in the order in which sunlight does, and leaps
-// over those in empty bricks. Riley et al. 2003 (Vis), eq. 5 with the phase of eq. 18; the light comes from carry.comp.
+// The eye buffer after a slab of consecutive slices: radiance scattered towards the eye (rgb) and transmittance of what
+// lies behind (a). Goes through the points at which the ray meets the slices, in the order in which sunlight does, and
+// leaps over those in empty bricks. Riley et al. 2003 (Vis), eq. 5 with the phase of eq. 18; the light comes from
+// carry.comp.
 // Variants: GROUND (what lies behind it is left out), GROUPS, COLORED (per-group colours), EVEN_ALBEDO (one albedo and
-// colour for all), TRANSLUCENT, CONSISTENT (transport), ORDER: 1 where all rays meet the slices in their order, 0 where all
-// meet them against it, 2 where a wide view has both.
+// colour for all), TRANSLUCENT, CONSISTENT (transport), ORDER: 1 where all rays meet the slices in their order, 0 where
+// all meet them against it, 2 where a wide view has both.
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
@@ -14,7 +15,7 @@
 #include "common/scattered.glsl"
 #include "physics/light_transport.glsl"
 
-// What enters each slice of the slab, a layer a slice. r: share of sunlight, g: optical depth towards the sun.
+// Light that enters each slice of the slab, a layer a slice. r: share of sunlight, g: optical depth towards the sun.
 layout(binding = kSliceLightUnit) uniform sampler2DArray light;
 layout(binding = kSliceThicknessUnit) uniform sampler2D thickness;  // r: optical depth along the whole sun ray
 
@@ -36,8 +37,7 @@ uniform vec3 light_v;
 in vec2 position;
 out vec4 radiance_and_transmittance;
 
-// Share of the background below which a ray ends.
-const float kOpaque = 2e-3;
+const float kOpaqueTransmittance = 2e-3;  // below which a ray ends
 
 void main() {
   begin_medium();
@@ -45,9 +45,9 @@ void main() {
   vec3 direction = ray_direction(position);
   vec3 origin_m = ray_origin(position);
   vec3 safe = safe_direction(direction);
-  vec2 way = way_in_medium(origin_m, safe, 0.0);
-  way.x = max(way.x, 0.0);
-  way.y = until_ground(way.y);
+  vec2 path = path_in_medium(origin_m, safe, 0.0);
+  path.x = max(path.x, 0.0);
+  path.y = until_ground(path.y);
   float climb = dot(safe, slice_normal);
 #if ORDER == 2
   bool front_to_back = climb < 0.0;
@@ -55,22 +55,22 @@ void main() {
   const bool front_to_back = ORDER == 1;
 #endif
   if (!front_to_back) {
-    // Sunlight meets the slices from behind: from here on ways are counted towards the eye.
+    // Sunlight meets the slices from behind: from here on distances are counted towards the eye.
     safe = -safe;
-    way = -way.yx;
+    path = -path.yx;
   }
   MediumRay ray = medium_ray(origin_m, safe);
   vec2 light_start = vec2(dot(origin_m, light_u), dot(origin_m, light_v)) + 0.5;
   vec2 light_step = vec2(dot(safe, light_u), dot(safe, light_v));
 
-  // The ray meets slice i, counted from 0, where its way is first_m + i * apart_m.
+  // The ray meets slice i, counted from 0, at the distance first_m + i * apart_m.
   float falling = abs(climb);
   float per_falling = 1.0 / max(falling, 1e-4);
   float apart_m = spacing_m * per_falling;
   float first_m = (dot(origin_m, slice_normal) - first_plane_m) * per_falling;
   float per_apart = 1.0 / apart_m;
-  float slice = max(slab_begin, ceil((way.x - first_m) * per_apart));
-  float end = min(slab_end, floor((way.y - first_m) * per_apart) + 1.0);
+  float slice = max(slab_begin, ceil((path.x - first_m) * per_apart));
+  float end = min(slab_end, floor((path.y - first_m) * per_apart) + 1.0);
 
   // A ray along the slices would have no end.
   float path_m = spacing_m / max(falling, 0.05);
@@ -82,31 +82,31 @@ void main() {
   float layers = float(textureSize(light, 0).z);
 
   Scattered scattered = nothing_scattered();
-  float passing = front_to_back ? before.a : 1.0;
-  if (front_to_back && passing < kOpaque) end = 0.0;
+  float transmittance = front_to_back ? before.a : 1.0;
+  if (front_to_back && transmittance < kOpaqueTransmittance) end = 0.0;
   while (slice < end) {
-    float way_m = first_m + slice * apart_m;
+    float distance_m = first_m + slice * apart_m;
     while (slice < end) {
-      vec3 brick = brick_place(ray, way_m);
+      vec3 brick = brick_place(ray, distance_m);
       uint content = brick_content(ray, brick);
       if (is_filled(content)) break;
-      slice = max(slice + 1.0, ceil((way_m + empty_way(ray, brick, content) - first_m) * per_apart));
-      way_m = first_m + slice * apart_m;
+      slice = max(slice + 1.0, ceil((distance_m + empty_path(ray, brick, content) - first_m) * per_apart));
+      distance_m = first_m + slice * apart_m;
     }
     float counts = slice < end ? 1.0 : 0.0;
-    Medium medium = medium_at_place(medium_place(ray, way_m));
+    Medium medium = medium_at_place(medium_place(ray, distance_m));
     float depth = counts * weigh(medium, eye_depths);
     float layer = layer_of_first + slice;
     layer -= layer < layers ? 0.0 : layers;
-    vec2 light_place = light_start + way_m * light_step;
+    vec2 light_place = light_start + distance_m * light_step;
     vec2 arrived = texture(light, vec3(light_place, layer)).rg;
     float passed = exp(-depth);
     float seen = mean_transmittance(depth);
 
-    float shows = front_to_back ? passing * counts : counts;
+    float shows = front_to_back ? transmittance * counts : counts;
     if (!front_to_back) fade(scattered, passed);
 #if CONSISTENT
-    // The buffer holds the light that enters the slice; on its way through, light fades as the view does.
+    // The buffer holds the light that enters the slice; inside, light fades as the view does.
     float light_depth = weigh(medium, light_depths);
     float lit_and_seen = front_to_back ? mean_transmittance(depth + light_depth)
                                        : mean_counter_transmittance(depth, light_depth);
@@ -124,11 +124,11 @@ void main() {
 #else
     add_direct(scattered, medium, shows * arrived.r * seen);
 #endif
-    passing *= passed;
+    transmittance *= passed;
     slice += 1.0;
-    if (front_to_back && passing < kOpaque) end = 0.0;
+    if (front_to_back && transmittance < kOpaqueTransmittance) end = 0.0;
   }
   vec3 radiance = radiance_of(scattered, path_m, haversine_between(direction, towards_sun));
-  radiance_and_transmittance = front_to_back ? vec4(before.rgb + radiance, passing)
-                                             : vec4(radiance + passing * before.rgb, passing * before.a);
+  radiance_and_transmittance = front_to_back ? vec4(before.rgb + radiance, transmittance)
+                                             : vec4(radiance + transmittance * before.rgb, transmittance * before.a);
 }

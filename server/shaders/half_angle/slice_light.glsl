@@ -7,7 +7,7 @@ uniform float light_path_m;   // length of a sun ray between two slices
 uniform vec3 light_right_m;   // metres across the buffer's half width and height
 uniform vec3 light_up_m;
 
-// A ray's way through the slices, counted from 0 for the first: it meets slice i at first_m + i * light_path_m.
+// A ray's path through the slices, counted from 0 for the first: it meets slice i at first_m + i * light_path_m.
 struct SunRay {
   MediumRay medium;
   float first_m;
@@ -22,6 +22,6 @@ SunRay sun_ray(vec2 place) {
   SunRay ray;
   ray.medium = medium_ray(origin_m, direction);
   ray.first_m = (dot(slice_normal, origin_m) - first_plane_m) / dot(slice_normal, towards_sun);
-  ray.inside = way_in_medium(origin_m, direction, 0.0);
+  ray.inside = path_in_medium(origin_m, direction, 0.0);
   return ray;
 }

@@ -1,4 +1,4 @@
-// The similarity-scaled optical depth of the whole way of each sun ray, added up over slices across it. Variant: GROUPS.
+// The similarity-scaled optical depth along each whole sun ray, added up over slices across it. Variant: GROUPS.
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
@@ -22,12 +22,12 @@ void main() {
   float end = min(floor((ray.inside.y - ray.first_m) / path_m) + 1.0, float(slice_count));
   float depth = 0.0;
   while (slice < end) {
-    float way_m = ray.first_m + slice * path_m;
-    vec3 place = brick_place(ray.medium, way_m);
+    float distance_m = ray.first_m + slice * path_m;
+    vec3 place = brick_place(ray.medium, distance_m);
     uint content = brick_content(ray.medium, place);
     bool meets = is_filled(content);
-    slice = max(slice + 1.0, meets ? 0.0 : ceil((way_m + empty_way(ray.medium, place, content) - ray.first_m) / path_m));
-    if (meets) depth += weigh(medium_at_place(medium_place(ray.medium, way_m)), transport_depths);
+    slice = max(slice + 1.0, meets ? 0.0 : ceil((distance_m + empty_path(ray.medium, place, content) - ray.first_m) / path_m));
+    if (meets) depth += weigh(medium_at_place(medium_place(ray.medium, distance_m)), transport_depths);
   }
   imageStore(thickness, texel, vec4(depth, 0.0, 0.0, 0.0));
 }

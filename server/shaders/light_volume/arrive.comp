@@ -31,25 +31,25 @@ const float kFirstNearSample = 0.21132487;
 const float kNearSamplesApart = 0.57735027;
 const uint kThickBlock = 1u << 31;
 
-// What give_light needs in the coordinates of the medium's texture and of the light's volume.
+// Inputs of give_light that cells share, in the coordinates of the medium's texture and of the light's volume.
 struct Surroundings {
   int near_samples;
-  vec3 near_way;             // that is sampled towards the sun
-  vec3 per_near_way;
+  vec3 near_path;            // sampled towards the sun
+  vec3 per_near_path;
   vec3 out_place;            // where the medium's box ends towards the sun
-  vec4 near_depths[PLANES];  // texel to a sample's share of the optical depth of that way
+  vec4 near_depths[PLANES];  // texel to a sample's share of the optical depth of that path
   float light_layers;
 };
 
 // `far_place` is where the light's volume takes over, `here_place` the cell's own place in it.
 void give_light(ivec3 cell, vec3 place, vec3 here_place, vec3 far_place, Surroundings around) {
-  // What is in the box of the way towards the sun; a block reaches beyond it.
-  vec3 inside = (around.out_place - place) * around.per_near_way;
+  // The part of that path inside the medium's box; a block reaches beyond it.
+  vec3 inside = (around.out_place - place) * around.per_near_path;
   float share = clamp(min(min(inside.x, inside.y), inside.z), 0.0, 1.0);
   float depth = 0.0;
   for (int i = 0; i < around.near_samples; ++i) {
     float at = share * (kFirstNearSample + kNearSamplesApart * float(i));
-    depth += share * weigh(medium_at_place(place + at * around.near_way), around.near_depths);
+    depth += share * weigh(medium_at_place(place + at * around.near_path), around.near_depths);
   }
   // Between the sun's side of the volume and the middle of its first layer light begins to fade.
   float begun = clamp(2.0 * around.light_layers * far_place.z, 0.0, 1.0);
@@ -69,7 +69,7 @@ void main() {
   if (listed >= uint(block_count)) return;
   uint packed_block = blocks[listed];
   ivec3 block = ivec3(packed_block & 1023u, packed_block >> 10 & 1023u, packed_block >> 20 & 1023u);
-  // What is thin takes little light on the way past a cell; the paper's transport depends on the steps of carry.comp.
+  // A thin block takes little light near a cell; the paper's transport depends on the steps of carry.comp.
   bool thick = (packed_block & kThickBlock) != 0u;
   bool looks_near = thick && (CONSISTENT == 1 || TRANSLUCENT == 0);
   vec3 direction = safe_direction(towards_sun);
@@ -77,8 +77,8 @@ void main() {
   vec3 box_high = medium_high_m * texture_from_local_scale + texture_from_local_offset;
   Surroundings around;
   around.near_samples = looks_near ? kNearSamples : 0;
-  around.near_way = near_m * direction * texture_from_local_scale;
-  around.per_near_way = 1.0 / around.near_way;
+  around.near_path = near_m * direction * texture_from_local_scale;
+  around.per_near_path = 1.0 / around.near_path;
   around.out_place = mix(box_low, box_high, greaterThan(direction, vec3(0.0)));
   around.near_depths = scaled(light_weights, near_m / float(kNearSamples));
   around.light_layers = float(textureSize(carried, 0).z);

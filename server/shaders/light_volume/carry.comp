@@ -1,8 +1,7 @@
 // Carries sunlight once through the medium into a volume whose depth runs along the sun's rays: one invocation a ray.
 // r: the square root of the light's effective optical depth, -log of the share that arrives; g: the similarity-scaled
-// optical depth passed, whose end is the ray's thickness.
-// `blocked` is the share of sunlight that the medium keeps from what lies behind all of it, for its shadow on the ground.
-// Layers from which arrive.comp reads nothing that is used are left as they are.
+// optical depth passed, whose end is the ray's thickness. `blocked` is the opacity of the whole medium, for its shadow on
+// the ground. Layers that arrive.comp does not use are left as they are.
 // Variants: GROUPS, CONSISTENT, TRANSLUCENT, DIFFUSE. The light model is that of half_angle/carry.comp but for the
 // exchange with neighbouring rays, whose width (one cell's path at 3/8 theta_f) is below a texel of this volume at the
 // usual angles.
@@ -29,8 +28,8 @@ uniform vec4 light_weights[PLANES];
 uniform vec4 transport_weights[PLANES];
 uniform vec2 cumulative_phase;  // CP(theta_f / 4), CP(theta_f / 2)
 
-// Optical depth that the light loses where the medium's is `depth`; `turned` is the share of what is scattered that does
-// not go on with the light.
+// Optical depth that the light loses where the medium's is `depth`; `turned` is the share of scattered light that leaves
+// the beam.
 float lost(float depth, float turned) {
 #if CONSISTENT || !TRANSLUCENT
   return depth;
@@ -50,8 +49,8 @@ void main() {
   float step_m = half_layer_m / float(half_layer_steps);
   vec3 direction = safe_direction(-towards_sun);
   MediumRay ray = medium_ray(start_m, direction);
-  vec2 inside = way_in_medium(start_m, direction, 0.0);
-  vec2 near = way_in_medium(start_m, direction, read_m);
+  vec2 inside = path_in_medium(start_m, direction, 0.0);
+  vec2 near = path_in_medium(start_m, direction, read_m);
   int first = clamp(int(floor(near.x / layer_m)), 0, light_size.z);
   int last = near.y < near.x ? 0 : clamp(int(ceil(near.y / layer_m)), 0, light_size.z);
   vec4 light_depths[PLANES] = scaled(light_weights, step_m);
@@ -64,29 +63,29 @@ void main() {
   float depth = 0.0;
   float medium_depth = 0.0;
   float transport = 0.0;
-  float way_m = float(first) * layer_m + 0.5 * step_m;
+  float distance_m = float(first) * layer_m + 0.5 * step_m;
   int half_layer = 2 * first;
   if (any(greaterThanEqual(texel, light_size.xy))) return;
   while (half_layer < 2 * last) {
     if ((half_layer & 1) == 1) {
       imageStore(carried, ivec3(texel, half_layer >> 1), vec4(sqrt(depth), transport, 0.0, 0.0));
     }
-    vec3 place = brick_place(ray, way_m);
+    vec3 place = brick_place(ray, distance_m);
     bool outside = any(lessThan(place, vec3(0.0))) || any(greaterThan(place, ray.highest_brick + 0.5));
     uint content = brick_content(ray, place);
     if (!outside && !is_filled(content) && content > uint(read_bricks)) {
-      // So far from all that scatters nothing reads the light.
-      float leap_m = empty_way(ray, place, content - uint(read_bricks));
+      // So far from anything that scatters, nobody reads the light.
+      float leap_m = empty_path(ray, place, content - uint(read_bricks));
       int leap = 2 * int(leap_m * per_layer);  // whole layers: stores keep their turn
       if (leap > 0) {
         half_layer += leap;
-        way_m += float(leap) * half_layer_m;
+        distance_m += float(leap) * half_layer_m;
         continue;
       }
     }
-    int steps = !is_filled(content) && empty_way(ray, place, content) > further_m ? 0 : most_steps;
+    int steps = !is_filled(content) && empty_path(ray, place, content) > further_m ? 0 : most_steps;
     for (int i = 0; i < steps; ++i) {
-      float at_m = way_m + float(i) * step_m;
+      float at_m = distance_m + float(i) * step_m;
       Medium medium = medium_at_place(medium_place(ray, at_m));
       float counts = at_m >= inside.x && at_m <= inside.y ? 1.0 : 0.0;
       float step_depth = weigh(medium, light_depths) * counts;
@@ -95,7 +94,7 @@ void main() {
       transport += weigh(medium, transport_depths) * counts;
     }
     ++half_layer;
-    way_m += half_layer_m;
+    distance_m += half_layer_m;
   }
 
   imageStore(blocked, texel, vec4(1.0 - exp(-medium_depth), 0.0, 0.0, 0.0));

@@ -1,12 +1,12 @@
-// What a view ray sees of light scattered many times, from the diffusion equation (renderers/light_volume/diffuse_light.h).
-// The medium scatters evenly but less there, so that the ray loses this light, and what is behind, by similarity-scaled
-// extinction. Extinctions are by the step. Needs common/medium.glsl,
-// common/phase.glsl and light_volume/segment.glsl.
+// Light scattered many times along a view ray, from the diffusion equation (renderers/light_volume/diffuse_light.h). That
+// treats the medium as one that scatters isotropically but less, so this light and the background are attenuated by the
+// similarity-scaled extinction. Extinctions are by the step. Needs common/medium.glsl, common/phase.glsl and
+// light_volume/segment.glsl.
 // Variant: TINTED (the light is absorbed or coloured).
 #include "common/bindings.glsl"
 #include "physics/light_transport.glsl"
 
-// Root of the optical depth to the nearest way out; sky seen there, and the x of its net flux (DiffuseLight::SkySeen).
+// Root of the optical depth to the nearest surface; sky seen there, and the x of its net flux (DiffuseLight::SkySeen).
 layout(binding = kWaysOutUnit) uniform sampler3D ways_out;
 // Of sunlight; fluence from other walls; the y of the sky's net flux.
 layout(binding = kNetInwardUnit) uniform sampler3D net_inward;
@@ -29,7 +29,7 @@ vec4 green_depths[PLANES];
 vec4 blue_depths[PLANES];
 #endif
 
-// Call it first.
+// Call first.
 void begin_diffuse(float step_m) {
   transport_depths = scaled(transport_weights, step_m);
 #if TINTED
@@ -63,7 +63,7 @@ DiffuseSample mixed(DiffuseSample a, DiffuseSample b, float at) {
 
 // Sums over the ray's segments, each by the share of it that is seen.
 struct DiffuseSeen {
-  float passing;  // share of what lies behind that passes
+  float transmittance;  // for this light and the background
   vec3 sun;       // fluence, over the sun's irradiance
   vec3 sky;       // over the sky's mean radiance
   vec3 level;     // over its irradiance from above
@@ -92,7 +92,7 @@ float see_diffuse(inout DiffuseSeen seen, Taken taken, DiffuseSample there, floa
   float scale = there.transport / max(extinction, 1e-30);
   float fluence = sun_fluence(there, passed_root * passed_root, scale);
   vec2 sky_shares = sky_shares_of(there, scale);
-  float shown = seen.passing * taken.share;
+  float shown = seen.transmittance * taken.share;
 #if TINTED
   vec3 tint = there.tint / max(there.transport, 1e-30);
 #else
@@ -102,18 +102,19 @@ float see_diffuse(inout DiffuseSeen seen, Taken taken, DiffuseSample there, floa
   seen.level += (shown * sky_shares.x) * tint;
   seen.sky += (shown * sky_shares.y) * tint;
   seen.all += shown * tint;
-  seen.passing *= 1.0 - taken.share;
+  seen.transmittance *= 1.0 - taken.share;
   return shown;
 }
 
-// Diffuse light changes little deep in a cloud: what has been seen stands for the rest.
+// For a ray that ends before the medium does: deep in a cloud diffuse light changes little, so what has been seen stands for
+// the rest.
 void close_diffuse(inout DiffuseSeen seen) {
-  float whole = 1.0 / (1.0 - seen.passing);
+  float whole = 1.0 / (1.0 - seen.transmittance);
   seen.sun *= whole;
   seen.sky *= whole;
   seen.level *= whole;
   seen.all *= whole;
-  seen.passing = 0.0;
+  seen.transmittance = 0.0;
 }
 
 vec3 diffuse_radiance(DiffuseSeen seen) {

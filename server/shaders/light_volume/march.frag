@@ -1,11 +1,10 @@
-// What the medium sends to the eye: radiance (rgb) and the share of the background that passes (a). Marches through the
-// medium along the view ray; the light comes from arrive.comp. Riley et al. 2003 (Vis), eq. 5 with the phase of
-// eq. 18.
-// Between two samples extinction, scattering and the square root of the light's optical depth are linear. A segment shows
-// what scatters at the middle of the share of light that it takes: exact for a source that is linear in that share,
-// whatever the segment's optical depth. Errors against many samples: docs/performance.md.
-// With DIFFUSION light scattered many times, and what lies behind, are seen as light_volume/diffuse_seen.glsl says; light that
-// is scattered just once keeps its own extinction.
+// Radiance of the medium (rgb) and transmittance of the background (a). Marches through the medium along the view ray;
+// the light comes from arrive.comp. Riley et al. 2003 (Vis), eq. 5 with the phase of eq. 18.
+// Between two samples extinction, scattering and the square root of the light's optical depth are linear. A segment's
+// source is taken where half of its opacity is reached: exact for a source that is linear in opacity, whatever the
+// segment's optical depth. Errors against many samples: docs/performance.md.
+// With DIFFUSION, light scattered many times and the background are attenuated as light_volume/diffuse_seen.glsl says;
+// light scattered once keeps the medium's own extinction.
 // Variants: those of renderers::MarchVariant.
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
@@ -32,7 +31,7 @@ in vec2 position;
 out vec4 radiance_and_transmittance;
 
 const int kMaxSamples = 16384;
-const float kOnwards = 1.0 + 2.4e-7;  // the next number but one: far away a way is coarser than an end of a leap is near
+const float kOnwards = 1.0 + 2.4e-7;  // the next number but one: far away a distance has coarser steps than a leap's margin
 const float kOpaqueTransmittance = DIFFUSION == 1 ? 0.02 : 5e-3;  // below which a ray ends
 
 // Weights of extinctions by the step, not by the metre.
@@ -81,12 +80,12 @@ Sample sample_at(vec3 place) {
   return here;
 }
 
-// What the ray has seen so far.
+// Sums over the ray so far.
 struct Seen {
   Scattered scattered;
-  float passing;      // of light that is scattered once
-  float shown;        // shares of the segments, summed,
-  float shown_way_m;  // and by their way
+  float transmittance;      // for light scattered once
+  float shown;              // sum of the weights that segments are seen with
+  float shown_distance_m;   // and of weight times distance
 #if DIFFUSION
   DiffuseSeen diffuse;
 #endif
@@ -95,71 +94,72 @@ struct Seen {
 Seen nothing_seen() {
   Seen seen;
   seen.scattered = nothing_scattered();
-  seen.passing = 1.0;
-  seen.shown = seen.shown_way_m = 0.0;
+  seen.transmittance = 1.0;
+  seen.shown = seen.shown_distance_m = 0.0;
 #if DIFFUSION
   seen.diffuse = no_diffuse_seen();
 #endif
   return seen;
 }
 
-// Share of the background that passes what has been seen.
-float background_passing(Seen seen) {
+// For the background.
+float background_transmittance(Seen seen) {
 #if DIFFUSION
-  return seen.diffuse.passing;
+  return seen.diffuse.transmittance;
 #else
-  return seen.passing;
+  return seen.transmittance;
 #endif
 }
 
-// Goes on from `way_m` to the next sample, leaping over empty bricks, and returns how long the segment is that ends there: 0
-// after a leap, where a sample only starts a segment, and for the first sample.
-float advance(inout float way_m, float end_m, MediumRay ray, float cell_m, bool first) {
-  float from_m = way_m;
+// Advances `distance_m` to the next sample, leaping over empty bricks. Returns the length of the segment that ends there: 0
+// for the first sample and after a leap, where a sample only starts a segment.
+float advance(inout float distance_m, float end_m, MediumRay ray, float cell_m, bool first) {
+  float from_m = distance_m;
   float longest_m = step_m;
-  while (way_m < end_m) {
-    vec3 place = brick_place(ray, way_m);
+  while (distance_m < end_m) {
+    vec3 place = brick_place(ray, distance_m);
     uint content = brick_content(ray, place);
     if (content == kThickBrick) break;
     if (content == kThinBrick) {
       // No farther than a sample of thick bricks into the next one, which may be thick.
-      longest_m = clamp(empty_way(ray, place, 1u), step_m, cell_m);
+      longest_m = clamp(empty_path(ray, place, 1u), step_m, cell_m);
       break;
     }
-    way_m = max(way_m + empty_way(ray, place, content), way_m * kOnwards);
+    distance_m = max(distance_m + empty_path(ray, place, content), distance_m * kOnwards);
   }
-  float segment_m = way_m > from_m || first ? 0.0 : min(longest_m, end_m - way_m);
-  way_m += segment_m;
+  float segment_m = distance_m > from_m || first ? 0.0 : min(longest_m, end_m - distance_m);
+  distance_m += segment_m;
   return segment_m;
 }
 
-// Adds what the segment between two samples shows; `end_m` is the way of the second.
+// Adds the segment between two samples; `end_m` is the distance of the second.
 void see_segment(inout Seen seen, Sample before, Sample here, float segment_m, float end_m) {
   float segment = segment_m * per_step;
   float start = max(before.extinction, 0.0);
   Taken taken = taken_on(segment, start, here.extinction);
-  // Beyond a cloud's end there are cells that are given no light.
+  // Cells beyond a cloud's edge hold no light.
   bool ends = here.extinction < 1e-3 * before.extinction;
   vec2 light = ends ? before.light : mix(before.light, here.light, taken.at);
-  float shown = seen.passing * taken.share;
+  float shown = seen.transmittance * taken.share;
   Medium between = mixed(before.medium, here.medium, taken.at);
   add_direct(seen.scattered, between, shown * taken.per_extinction * exp(-light.r * light.r));
 #if GLOWS
   add_isotropic(seen.scattered, between, extinction_depths, shown, light.g);
 #endif
-  seen.passing *= 1.0 - taken.share;
+  seen.transmittance *= 1.0 - taken.share;
 #if DIFFUSION
   Taken diffuse = taken_on(segment, before.diffuse.transport, here.diffuse.transport);
   shown = see_diffuse(seen.diffuse, diffuse, mixed(before.diffuse, here.diffuse, diffuse.at),
                       mix(before.light.r, here.light.r, diffuse.at), mix(start, here.extinction, diffuse.at));
 #endif
   seen.shown += shown;
-  seen.shown_way_m += shown * (end_m - 0.5 * segment_m);
+  seen.shown_distance_m += shown * (end_m - 0.5 * segment_m);
 }
 
-// In the medium's box, the mean place of what has been seen.
+// The mean place of what has been seen, 0 to 1 in the medium's box.
 vec3 seen_place(Seen seen, vec3 origin_m, vec3 direction) {
-  return (origin_m + direction * (seen.shown_way_m / max(seen.shown, 1e-30)) - medium_low_m) / (medium_high_m - medium_low_m);
+  vec3 place_m = origin_m + direction * (seen.shown_distance_m / max(seen.shown, 1e-30));
+  return (place_m - medium_low_m) / (medium_high_m - medium_low_m);
 }
 
 void main() {
@@ -168,24 +168,24 @@ void main() {
   vec3 origin_m = ray_origin(position);
   vec3 safe = safe_direction(direction);
   MediumRay ray = medium_ray(origin_m, safe);
-  vec2 way = way_in_medium(origin_m, safe, 0.0);
-  float way_m = max(way.x, 0.0);
-  float end_m = until_ground(way.y);
+  vec2 path = path_in_medium(origin_m, safe, 0.0);
+  float distance_m = max(path.x, 0.0);
+  float end_m = until_ground(path.y);
   vec3 through_m = abs(1.0 / (ray.step * vec3(textureSize(medium_plane_0, 0))));
-  float cell_m = max(step_m, min(through_m.x, min(through_m.y, through_m.z)));  // the way through a cell
+  float cell_m = max(step_m, min(through_m.x, min(through_m.y, through_m.z)));  // the path through a cell
 
   Seen seen = nothing_seen();
   Sample before = no_sample();
-  for (int i = 0; i < kMaxSamples && way_m < end_m && background_passing(seen) > kOpaqueTransmittance; ++i) {
-    float segment_m = advance(way_m, end_m, ray, cell_m, before.extinction < 0.0);
-    Sample here = sample_at(medium_place(ray, way_m));
-    see_segment(seen, before, here, segment_m, way_m);
+  for (int i = 0; i < kMaxSamples && distance_m < end_m && background_transmittance(seen) > kOpaqueTransmittance; ++i) {
+    float segment_m = advance(distance_m, end_m, ray, cell_m, before.extinction < 0.0);
+    Sample here = sample_at(medium_place(ray, distance_m));
+    see_segment(seen, before, here, segment_m, distance_m);
     before = here;
   }
 
   vec3 radiance = radiance_of(seen.scattered, step_m, haversine_between(direction, towards_sun));
 #if DIFFUSION
-  if (seen.diffuse.passing <= kOpaqueTransmittance) close_diffuse(seen.diffuse);
+  if (seen.diffuse.transmittance <= kOpaqueTransmittance) close_diffuse(seen.diffuse);
   radiance += diffuse_radiance(seen.diffuse);
 #endif
 #if PLACES
@@ -193,5 +193,5 @@ void main() {
 #elif CORRECTED
   radiance = corrected(radiance, seen_place(seen, origin_m, direction), direction);
 #endif
-  radiance_and_transmittance = vec4(radiance, background_passing(seen));
+  radiance_and_transmittance = vec4(radiance, background_transmittance(seen));
 }

@@ -1,6 +1,6 @@
 // A ray's segment between two samples, on which extinction is linear.
 
-// What a segment takes of the light: its share, where on the segment half of that is taken, and the reciprocal of the
+// A segment's opacity (share), the place on it where half of that is reached (at), and the reciprocal of the
 // extinction there. Lengths are in steps.
 struct Taken {
   float share;

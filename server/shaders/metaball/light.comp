@@ -36,7 +36,7 @@ void main() {
   Ball ball = balls[index];
   float radius_m = ball.middle_radius.w;
   vec2 middle = light_middle + vec2(dot(ball.middle_radius.xyz, light_right), dot(ball.middle_radius.xyz, light_up));
-  // What is smaller than the texels is spread over them.
+  // Balls smaller than a texel are spread over it.
   float reach = max(radius_m * texels_per_m, 1.0);
   float spread = radius_m * texels_per_m / reach;
   float thinned = spread * spread;

@@ -1,5 +1,5 @@
-// What each ball sends to the eye per share of the ray that it takes. The phase functions are looked up once a ball (Man,
-// 4.2): its light comes from one direction, and the eye sees it in one.
+// The radiance of each ball per opacity. The phase functions are looked up once a ball (Man, 4.2): its light comes from
+// one direction, and the eye sees it in one.
 // Variants: LIGHTS, GROUPS, COLORED, CONSISTENT (as common/phase.glsl has it), PAPER, ISOTROPIC, PARALLEL (view rays).
 #include "common/bindings.glsl"
 #include "common/phase.glsl"
@@ -7,7 +7,8 @@
 
 layout(local_size_x = kBallGroupSize) in;
 layout(std430, binding = kBallArrivedBinding) readonly buffer Arrived { vec2 arrived[]; };  // of light.comp
-layout(std430, binding = kBallSourcesBinding) writeonly buffer Sources { vec4 sources[]; };  // rgb: radiance; a: extinction in the middle
+// rgb: radiance; a: extinction in the middle.
+layout(std430, binding = kBallSourcesBinding) writeonly buffer Sources { vec4 sources[]; };
 
 uniform int ball_count;
 uniform vec3 eye_forward;

@@ -1,8 +1,9 @@
-// The second pass (Man, 4.2): the balls over a pixel, put together as eq. 29 says, the nearest first, until nothing more
-// shows. Each tile of the picture has a list of the balls that may lie over it, in that order: the same sum as blending
-// their splats from back to front, without reading and writing the picture for each. A ball's optical depth is the
-// integral of its field along the ray, from the eye and up to the ground.
-// Variants: GROUND (what lies behind it is left out), PAPER (the field's own value is the depth: eq. 12 splatted as it is).
+// The second pass (Man, 4.2): the balls over a pixel, composited by eq. 29 from front to back until the pixel is opaque.
+// Each tile of the picture has a list of the balls that may lie over it, in that order: the same sum as blending their
+// splats from back to front, without reading and writing the picture for each. A ball's optical depth is the integral of
+// its field along the ray, from the eye and up to the ground.
+// Variants: GROUND (what lies behind it is left out), PAPER (the field's own value is the depth: eq. 12 splatted as it
+// is).
 #include "common/bindings.glsl"
 #include "common/ground_distance.glsl"
 #include "common/view.glsl"
@@ -10,8 +11,9 @@
 #include "physics/light_transport.glsl"
 #include "physics/wyvill.glsl"
 
-layout(std430, binding = kBallTilesBinding) readonly buffer TileStarts { uint tile_starts[]; };  // in `order`; row by row, and the end
-layout(std430, binding = kBallSourcesBinding) readonly buffer Sources { vec4 sources[]; };         // of source.comp
+// Each tile's first place in `order`, row by row, and the end.
+layout(std430, binding = kBallTilesBinding) readonly buffer TileStarts { uint tile_starts[]; };
+layout(std430, binding = kBallSourcesBinding) readonly buffer Sources { vec4 sources[]; };  // of source.comp
 
 uniform int tile_px;
 uniform int tiles_across;
@@ -19,7 +21,7 @@ uniform int tiles_across;
 in vec2 position;
 out vec4 radiance_and_transmittance;
 
-const float kOpaque = 5e-3;  // share of the background below which a ray ends, as in light_volume/march.frag
+const float kOpaqueTransmittance = 5e-3;  // below which a ray ends, as in light_volume/march.frag
 
 void main() {
   ivec2 tile = ivec2(gl_FragCoord.xy) / tile_px;
@@ -32,8 +34,8 @@ void main() {
   float end_m = texelFetch(ground_distance, ivec2(gl_FragCoord.xy), 0).r;
 #endif
   vec3 radiance = vec3(0.0);
-  float passing = 1.0;
-  for (uint i = first; i < end && passing > kOpaque; ++i) {
+  float transmittance = 1.0;
+  for (uint i = first; i < end && transmittance > kOpaqueTransmittance; ++i) {
     uint index = order[i];
     vec4 middle_radius = balls[index].middle_radius;
     vec3 off_m = middle_radius.xyz - origin_m;
@@ -61,8 +63,8 @@ void main() {
     float depth = source.a * middle_radius.w * max(column, 0.0);
     float taken = depth * mean_transmittance(depth);  // 1 - exp(-depth)
 #endif
-    radiance += passing * taken * source.rgb;
-    passing *= exp(-depth);
+    radiance += transmittance * taken * source.rgb;
+    transmittance *= exp(-depth);
   }
-  radiance_and_transmittance = vec4(radiance, passing);
+  radiance_and_transmittance = vec4(radiance, transmittance);
 }

@@ -100,10 +100,10 @@ void main() {
   vec4 front = texture(eye, 0.5 * position + 0.5);
   float opacity = 1.0 - front.a;
   if (opacity > 0.0) {
-    vec2 way_m = way_through_box(box_low_m, box_high_m, origin_m, safe_direction(world_ray));
-    way_m.x = max(way_m.x, 0.0);
-    float end_m = ground_m > 0.0 ? min(way_m.y, ground_m) : way_m.y;
-    float distance_m = 0.5 * (way_m.x + max(end_m, way_m.x));
+    vec2 path_m = path_through_box(box_low_m, box_high_m, origin_m, safe_direction(world_ray));
+    path_m.x = max(path_m.x, 0.0);
+    float end_m = ground_m > 0.0 ? min(path_m.y, ground_m) : path_m.y;
+    float distance_m = 0.5 * (path_m.x + max(end_m, path_m.x));
     front.rgb = through_air(front.rgb, opacity, depth_before(ray, distance_m), sky_radiance, sky_depth);
   }
   linear_rgb = vec4(front.rgb + front.a * background, 1.0);
