@@ -52,7 +52,7 @@ class LinePass {
  private:
   static std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
-  // Where the parabolas rooted at two cells intersect, in cells.
+  // The intersection of the parabolas rooted at two cells, in cells.
   float Meeting(int a, int b) const {
     const float scale = spacing_m_ * spacing_m_;
     const auto p = static_cast<float>(a);

@@ -16,7 +16,8 @@ namespace {
 // Single-scattering albedo of continental haze.
 constexpr float kHazeAlbedo = 0.95F;
 
-// Of 300 Dobson units at 650, 550 and 450 nm, in a layer around 25 km (Chappuis bands).
+// Vertical optical depth of 300 Dobson units of ozone at 650, 550 and 450 nm, in a layer around 25
+// km (Chappuis bands).
 const glm::vec3 kOzoneDepth(0.020F, 0.027F, 0.0014F);
 constexpr float kOzoneMiddle_m = 2.5e4F;
 constexpr float kOzoneHalfWidth_m = 1.5e4F;

@@ -51,7 +51,7 @@ dvec3 DirectionOf(double u, double v) {
   return {radius * std::cos(azimuth), radius * std::sin(azimuth), z};
 }
 
-// Where a ray enters: a lit face chosen by its share of the shadow, and a point on it.
+// The entry of a ray: a lit face, chosen in proportion to its projected area, and a point on it.
 struct Entry {
   std::size_t face;
   dvec3 point;

@@ -8,7 +8,7 @@
 namespace thunderhead::physics {
 namespace {
 
-// Where the sun stands among the stars.
+// Equatorial coordinates of the sun.
 struct Equatorial {
   double right_ascension = 0.0;  // radians
   double declination = 0.0;

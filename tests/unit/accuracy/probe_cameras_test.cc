@@ -28,7 +28,7 @@ TEST(ProbeCameras, AroundTheStormAllSidesAreSeenAlike) {
     highest_deg = std::max(highest_deg, camera.elevation_deg);
     sum += scene::Direction(camera.azimuth_deg, camera.elevation_deg);
   }
-  // Of directions spread evenly over the upper half.
+  // The mean over directions distributed evenly over the upper hemisphere.
   EXPECT_NEAR(sum.x / kMany, 0.0, 0.02);
   EXPECT_NEAR(sum.y / kMany, 0.0, 0.02);
   EXPECT_NEAR(sum.z / kMany, 0.5, 0.02);

@@ -186,7 +186,7 @@ TEST(Presets, AreCloudsInsideTheirDomains) {
   }
 }
 
-// What is written is what our own reader reads.
+// This program's reader reads back what WriteCfCloud writes.
 TEST(WriteCfCloud, ReadsBackAsItWas) {
   const testing::TemporaryFolder folder;
   const std::string path = folder.File("ball.nc");

@@ -34,7 +34,7 @@ TEST(Coarsened, KeepsMassAndPlace) {
   EXPECT_EQ(coarse.grid.low_corner_m, fine.grid.low_corner_m);
   EXPECT_EQ(coarse.condensate, (CellBox{glm::ivec3(0), glm::ivec3(3, 2, 5)}));
   EXPECT_NEAR(Mass_kg(coarse) / Mass_kg(fine), 1.0, 1e-6);
-  // Of x 0 to 2 and y 0 to 1: values 1, 2, 3 and 8, 9, 10.
+  // The cells with x 0 to 2 and y 0 to 1: values 1, 2, 3 and 8, 9, 10.
   EXPECT_NEAR(coarse.fields[0].concentration_kg_per_m3[0], 5.5F, 1e-5F);
   EXPECT_TRUE(coarse.fields[1].concentration_kg_per_m3.empty());
 }

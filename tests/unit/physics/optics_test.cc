@@ -93,7 +93,7 @@ TEST(PhaseFunctions, PlaceInACurveGoesEvenlyFromStraightOnToStraightBack) {
   EXPECT_EQ(glsl::phase_curve_place(1.0F), 1.0F);
   EXPECT_EQ(glsl::phase_curve_place(1.0000001F), 1.0F);
   EXPECT_NEAR(glsl::phase_curve_place(haversine(90.0)), std::sqrt(0.5), 1e-6);
-  // Where float cosines are all 1.
+  // Angles so small that their cosine is 1 in single precision.
   EXPECT_NEAR(glsl::phase_curve_place(haversine(1e-3)), std::sqrt(glm::radians(1e-3) / 2.0), 1e-6);
   double before = 0.0;
   for (double angle_deg = 0.1; angle_deg <= 180.0; angle_deg += 0.1) {

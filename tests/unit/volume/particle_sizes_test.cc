@@ -19,7 +19,7 @@ using physics::Hydrometeor;
 using testing::SyntheticWrf;
 using testing::WrfCell;
 
-// Of SyntheticWrf's air (see layer_air_test).
+// Density of SyntheticWrf's air (see layer_air_test).
 constexpr double kDensity_kg_per_m3 = 0.94321;
 
 class ParticleSizesTest : public ::testing::Test {

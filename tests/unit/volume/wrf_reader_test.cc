@@ -21,7 +21,7 @@ using testing::TemporaryFolder;
 using testing::WrfCell;
 using testing::WrfFormat;
 
-// Of SyntheticWrf's air: 80 kPa, 310 K, 10 g/kg (see layer_air_test).
+// Density of SyntheticWrf's air: 80 kPa, 310 K, 10 g/kg (see layer_air_test).
 constexpr double kDensity_kg_per_m3 = 0.94321;
 
 class WrfReader : public ::testing::Test {
