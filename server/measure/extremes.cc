@@ -9,9 +9,36 @@
 namespace thunderhead::measure {
 namespace internal {
 
-Verdict Near(double got, double expected, double tolerance) {
-  return {absl::StrFormat("%.6g +- %.2g", expected, tolerance), absl::StrFormat("%.6g", got),
-          std::abs(got - expected) <= tolerance};
+namespace {
+
+// Of a number near 1 as the light volume's buffers hold it.
+constexpr double kHalfStep = 0x1p-11;
+
+// Of each of the factors that multiply to a transmittance.
+constexpr double kSingleStep = 0x1p-24;
+
+}  // namespace
+
+Verdict Near(double got, double expected, double tolerance, double without) {
+  Verdict verdict = {absl::StrFormat("%.6g +- %.2g", expected, tolerance),
+                     absl::StrFormat("%.6g", got), std::abs(got - expected) <= tolerance};
+  if (std::abs(without - expected) <= tolerance) {
+    absl::StrAppendFormat(&verdict.got, ", but %.6g would pass without any medium", without);
+    verdict.passed = false;
+  }
+  return verdict;
+}
+
+Verdict TransmittanceNear(const accuracy::Path& path, const Seen& seen, double depth,
+                          const DepthErrors& errors, int slices, bool single_precision) {
+  const bool light_volume = path.name == scene::LightVolume::kName;
+  const double expected = std::exp(-depth);
+  const double depth_error = light_volume ? errors.light_volume : errors.half_angle;
+  const double rounding =
+      slices * kSingleStep + (light_volume && !single_precision ? kHalfStep : 0);
+  const double opaque = expected < 2.0 * kOpaque ? kOpaque : 0.0;
+  return Sound(seen, Near(seen.transmittance, expected,
+                          depth_error * depth * expected + rounding + opaque, 1.0));
 }
 
 Verdict AtMost(double got, double most) {
@@ -38,7 +65,7 @@ scene::Scene PlainScene(const accuracy::Path& path) {
 std::vector<Extreme> Extremes() {
   std::vector<Extreme> extremes;
   internal::AppendInputExtremes(&extremes);
-  for (const auto& path : accuracy::kFieldPaths) {
+  for (const auto& path : accuracy::accuracy::kFieldPaths) {
     internal::AppendDepthExtremes(path, &extremes);
     internal::AppendShapeExtremes(path, &extremes);
     internal::AppendViewExtremes(path, &extremes);

@@ -12,40 +12,30 @@
 namespace thunderhead::measure::internal {
 namespace {
 
-// A camera 0.1 degrees off the zenith tilts slices by as much: they extend 0.4 % beyond the box.
-// Extinction is stored in half floats.
-constexpr double kDepthError = 0.005;
-
-// Of a transmittance near 1 in a half-float buffer.
-constexpr double kHalfStep = 0x1p-11;
-
-// Optical depth that is not drawn (volume/extinction.h).
-constexpr double kNegligible = volume::kNegligibleOpticalDepth;
-
-Verdict TransmittanceNear(const Seen& seen, double depth) {
-  const double expected = std::exp(-depth);
-  const double left_out = depth < kNegligible ? depth : 0.0;
-  const double opaque = expected < 0.5 ? kOpaque : 0.0;
-  return Sound(seen, Near(seen.transmittance, expected,
-                          kDepthError * depth * expected + kHalfStep + opaque + left_out));
-}
+// Thinner media are drawn in single precision: a half float holds no opacity below 5e-4, and no
+// radiance below 6e-8.
+constexpr double kThin = 0.01;
 
 // Single scattering, same in all directions, of a layer lit and seen from straight above, whatever
 // its profile.
 double Reflected(double depth) { return -std::expm1(-2.0 * depth) / 2.0 / (4 * std::numbers::pi); }
+
+constexpr int kFewSlices = 8;
 
 Extreme DepthPerSlice(const accuracy::Path& path, double per_slice,
                       const accuracy::Named<scene::Transport>& transport) {
   const std::string name =
       absl::StrFormat("%s: optical depth per slice %g, %s", path.name, per_slice, transport.name);
   return {name, [=](Probe& probe) -> absl::StatusOr<Verdict> {
-            constexpr int kSlices = 8;
             scene::Scene scene;
             scene.rendering.technique = path.plain();
             scene::MediumSettingsOf(&scene.rendering.technique)->transport = transport.value;
-            scene::SetSlices(&scene.rendering.technique, kSlices);
-            const auto fields = FieldsOf({.optical_depth = kSlices * per_slice});
-            THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *fields, {}));
+            scene::SetSlices(&scene.rendering.technique, kFewSlices);
+            const double depth = kFewSlices * per_slice;
+            const bool thin = depth < kThin;
+            const auto fields = FieldsOf({.optical_depth = depth});
+            THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen,
+                                         probe.Draw(scene, *fields, {.single_precision = thin}));
             // Delta scaling takes the forward peak out of what the eye loses, similarity scaling
             // all that goes on forward.
             const renderers::GroupWeights weights(renderers::MediumOf(scene, *fields),
@@ -53,7 +43,35 @@ Extreme DepthPerSlice(const accuracy::Path& path, double per_slice,
             const bool similar = transport.value == scene::Transport::kDiffusion &&
                                  path.name == scene::LightVolume::kName;
             const std::vector<double>& lost = similar ? weights.transport : weights.eye;
-            return TransmittanceNear(seen, kSlices * per_slice * lost.front());
+            return TransmittanceNear(path, seen, depth * lost.front(), kUpright, kFewSlices,
+                                     thin);
+          }};
+}
+
+// What a thin layer reflects by the paper's transport, over what it does: its display normalisation
+// shows a phase function that is the same in all directions as white, 1/2 (common/phase.glsl), in
+// place of 1 / (4 pi).
+constexpr double kPaperBrightness = 2.0 * std::numbers::pi;
+
+// Where slices are so thin that light is scattered once, radiance is in proportion to the depth. It
+// shows what no transmittance does: 1 - 1e-8 has no number of its own in single precision.
+Extreme ThinSlices(const accuracy::Path& path, double per_slice,
+                   const accuracy::Named<scene::Transport>& transport) {
+  const std::string name = absl::StrFormat("%s: light scattered by slices of optical depth %g, %s",
+                                           path.name, per_slice, transport.name);
+  return {name, [=](Probe& probe) -> absl::StatusOr<Verdict> {
+            scene::Scene scene = PlainScene(path);
+            scene.rendering.technique =
+                accuracy::InMode(path.plain(), accuracy::kModes[1], transport.value);
+            scene::SetSlices(&scene.rendering.technique, kFewSlices);
+            const double depth = kFewSlices * per_slice;
+            THUNDERHEAD_ASSIGN_OR_RETURN(
+                const Seen seen,
+                probe.Draw(scene, *FieldsOf({.optical_depth = depth}), {.single_precision = true}));
+            const double expected =
+                Reflected(depth) *
+                (transport.value == scene::Transport::kPaper ? kPaperBrightness : 1.0);
+            return Sound(seen, Near(seen.radiance, expected, 0.01 * expected, 0.0));
           }};
 }
 
@@ -65,7 +83,7 @@ Extreme ReflectedLight(const accuracy::Path& path, double depth, int slices) {
             scene::SetSlices(&scene.rendering.technique, slices);
             const auto fields = FieldsOf({.optical_depth = depth, .shape = Box::Shape::kLayer});
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *fields, {}));
-            return Sound(seen, Near(seen.radiance, Reflected(depth), 0.05 * Reflected(depth)));
+            return Sound(seen, Near(seen.radiance, Reflected(depth), 0.05 * Reflected(depth), 0.0));
           }};
 }
 
@@ -75,7 +93,7 @@ Extreme Slices(const accuracy::Path& path, int slices) {
             scene::Scene scene = PlainScene(path);
             scene::SetSlices(&scene.rendering.technique, slices);
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *FieldsOf({}), {}));
-            return TransmittanceNear(seen, 1.0);
+            return TransmittanceNear(path, seen, 1.0, kUpright, slices);
           }};
 }
 
@@ -87,9 +105,12 @@ Extreme Radius(const accuracy::Path& path, float radius_m) {
                 scene.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].optics;
             // Extinction goes with one over the radius.
             const double depth = static_cast<double>(cloud.radius_m) / radius_m;
+            const bool thin = depth < kThin;
             cloud.radius_m = radius_m;
-            THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *FieldsOf({}), {}));
-            return TransmittanceNear(seen, depth);
+            THUNDERHEAD_ASSIGN_OR_RETURN(
+                const Seen seen, probe.Draw(scene, *FieldsOf({}), {.single_precision = thin}));
+            return TransmittanceNear(path, seen, depth, kUpright, *scene::SlicesOf(scene.rendering.technique),
+                                     thin);
           }};
 }
 
@@ -104,16 +125,21 @@ Extreme LightEnergy(const accuracy::Path& path, const accuracy::Named<scene::Tra
             scene::MediumSettingsOf(&scene.rendering.technique)->theta_f_deg = 90.0;
             THUNDERHEAD_ASSIGN_OR_RETURN(
                 const Seen seen, probe.Draw(scene, *FieldsOf({.optical_depth = 100.0}), {}));
-            const char* const sound = "light and transmittance within 0 to 1";
-            return Sound(seen, Verdict{sound, seen.unsound.empty() ? sound : "", true});
+            // Of the light that comes in some is left out of the beam: there is a medium.
+            const bool lit = seen.least_light < 0.999;
+            return Sound(seen, {"light and transmittance within 0 to 1, not all is left",
+                                absl::StrFormat("least light %g", seen.least_light), lit});
           }};
 }
 
 }  // namespace
 
 void AppendDepthExtremes(const accuracy::Path& path, std::vector<Extreme>* extremes) {
-  for (const double per_slice : {1e-8, 1e-4, 1e-2, 1.0, 1e4, 1e8}) {
-    for (const auto& transport : accuracy::kTransports) {
+  for (const auto& transport : accuracy::kTransports) {
+    for (const double per_slice : {1e-8, 1e-4}) {
+      extremes->push_back(ThinSlices(path, per_slice, transport));
+    }
+    for (const double per_slice : {1e-4, 1e-2, 1.0, 1e4, 1e8}) {
       extremes->push_back(DepthPerSlice(path, per_slice, transport));
     }
   }

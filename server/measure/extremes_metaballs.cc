@@ -2,11 +2,16 @@
 // of a box, so that what is asked for is soundness, and a bound.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "absl/strings/str_format.h"
 #include "base/status.h"
+#include "glm/geometric.hpp"
 #include "measure/extremes_internal.h"
+#include "renderers/metaball/ball_fit.h"
+#include "renderers/metaball/wyvill.h"
+#include "scene/view.h"
 
 namespace thunderhead::measure::internal {
 namespace {
@@ -14,54 +19,125 @@ namespace {
 constexpr const accuracy::Path& kPath = accuracy::kPaths[2];
 constexpr int kBalls = 200;
 
+scene::Scene BallScene(scene::Transport transport) {
+  scene::Scene scene = PlainScene(kPath);
+  scene.rendering.technique =
+      accuracy::InMode(scene::Metaballs{.count = kBalls}, accuracy::kModes[0], transport);
+  return scene;
+}
+
+// `got` lies between `least` and `most`, where `without`, what a picture without balls shows, does
+// not lie.
+Verdict Within(double got, double least, double most, double without) {
+  Verdict verdict{absl::StrFormat("%g to %g", least, most), absl::StrFormat("%g", got),
+                  got >= least && got <= most};
+  if (without >= least && without <= most) {
+    verdict.got += ", but no balls at all would pass";
+    verdict.passed = false;
+  }
+  return verdict;
+}
+
 // The middle ray's transmittance is between `least` and `highest`, whatever the fit.
-Extreme Between(const std::string& what, const Box& box, const Look& look,
-                scene::Transport transport, double least, double highest) {
-  const double most = std::max(highest, kOpaque);
+Extreme Between(const std::string& what, const Box& box, const Look& look, double least,
+                double highest) {
   return {absl::StrFormat("%s: %s", kPath.name, what),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
-            scene::Scene scene = PlainScene(kPath);
-            scene.rendering.technique = accuracy::InMode(scene::Metaballs{.count = kBalls},
-                                                         accuracy::kModes[0], transport);
-            THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *FieldsOf(box), look));
-            return Sound(seen, {absl::StrFormat("%g to %g", least, most),
-                                absl::StrFormat("%g", seen.transmittance),
-                                seen.transmittance >= least && seen.transmittance <= most});
+            THUNDERHEAD_ASSIGN_OR_RETURN(
+                const Seen seen,
+                probe.Draw(BallScene(scene::Transport::kConsistent), *FieldsOf(box), look));
+            return Sound(seen, Within(seen.transmittance, least, std::max(highest, kOpaque), 1.0));
           }};
 }
 
 // Of a full box, in the middle of which the fit is within a fifth of the depth.
 Extreme Depth(double depth) {
-  const double off = 0.2 * depth + (depth < 2e-3 ? 2e-3 : 0.0);
   return Between(absl::StrFormat("optical depth %g", depth), {.optical_depth = depth}, {},
-                 scene::Transport::kConsistent, std::exp(-depth - off),
-                 std::min(std::exp(-depth + off), 1.0));
+                 std::exp(-1.2 * depth), std::exp(-0.8 * depth));
+}
+
+// The same of the light that so thin a box scatters, once: also where 1 less the depth has no
+// number of its own.
+Extreme ThinLight(double depth) {
+  return {absl::StrFormat("%s: light scattered at optical depth %g", kPath.name, depth),
+          [=](Probe& probe) -> absl::StatusOr<Verdict> {
+            THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen,
+                                         probe.Draw(BallScene(scene::Transport::kConsistent),
+                                                    *FieldsOf({.optical_depth = depth}), {}));
+            const double once = depth / (4.0 * std::numbers::pi);
+            return Sound(seen, Within(seen.radiance, 0.8 * once, 1.2 * once, 0.0));
+          }};
+}
+
+Extreme Empty() {
+  return {absl::StrFormat("%s: empty volume", kPath.name),
+          [=](Probe& probe) -> absl::StatusOr<Verdict> {
+            THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen,
+                                         probe.Draw(BallScene(scene::Transport::kConsistent),
+                                                    *FieldsOf({.optical_depth = 0.0}), {}));
+            return Sound(
+                seen, {"1", absl::StrFormat("%g", seen.transmittance), seen.transmittance == 1.0});
+          }};
+}
+
+// Optical depth of the balls along a ray from `origin_m`, as Man prints it: of each ball tau, times
+// its density, at most 1 and 1 for the mean one, times the field where the ray is nearest.
+double PaperDepth(const std::vector<renderers::Ball>& balls, double tau, const glm::dvec3& origin_m,
+                  const glm::dvec3& direction) {
+  double sum = 0.0;
+  for (const renderers::Ball& ball : balls) sum += ball.extinction_per_m;
+  double depth = 0.0;
+  for (const renderers::Ball& ball : balls) {
+    const glm::dvec3 off_m = ball.middle_m - origin_m;
+    const glm::dvec3 across_m = off_m - glm::dot(off_m, direction) * direction;
+    const double s = 1.0 - glm::dot(across_m, across_m) / (ball.radius_m * ball.radius_m);
+    const double density =
+        std::min(ball.extinction_per_m * static_cast<double>(balls.size()) / sum, 1.0);
+    depth += tau * density * renderers::glsl::wyvill_field(static_cast<float>(s));
+  }
+  return depth;
+}
+
+// Man's densities are in proportion to the extinction, his optical depth is a setting: whatever the
+// storm's own, the picture is the same.
+Extreme Paper(double depth) {
+  return {absl::StrFormat("%s: paper transport, optical depth %g", kPath.name, depth),
+          [=](Probe& probe) -> absl::StatusOr<Verdict> {
+            scene::Scene scene = BallScene(scene::Transport::kPaper);
+            auto& metaballs = std::get<scene::Metaballs>(scene.rendering.technique);
+            metaballs.optical_depth = 0.5;
+            const auto fields = FieldsOf({.optical_depth = depth});
+            const Look look;
+            THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *fields, look));
+            THUNDERHEAD_ASSIGN_OR_RETURN(
+                const renderers::BallCloud cloud,
+                renderers::FitBalls(renderers::MediumOf(scene, *fields), *fields, kBalls));
+            const volume::RegularGrid& grid = fields->grid;
+            const double expected = std::exp(
+                -PaperDepth(cloud.balls, metaballs.optical_depth,
+                            0.5 * (grid.low_corner_m + grid.HighCorner_m()),
+                            scene::Direction(look.view_azimuth_deg, look.view_elevation_deg)));
+            return Sound(seen, Near(seen.transmittance, expected, 1e-3, 1.0));
+          }};
 }
 
 }  // namespace
 
 void AppendMetaballExtremes(std::vector<Extreme>* extremes) {
-  for (const double depth : {1e-8, 1e-4, 1e-2, 1.0, 10.0, 1e4, 1e8}) {
-    extremes->push_back(Depth(depth));
-  }
-  constexpr auto kConsistent = scene::Transport::kConsistent;
+  for (const double depth : {1e-8, 1e-4, 1e-2}) extremes->push_back(ThinLight(depth));
+  for (const double depth : {1e-4, 1e-2, 1.0, 10.0, 1e4, 1e8}) extremes->push_back(Depth(depth));
   for (const double width_m : {10.0, 1e3, 1e5, 1e7}) {
     extremes->push_back(Between(absl::StrFormat("domain %g m wide", width_m),
-                                {.size_m = {width_m, width_m, width_m / 4}}, {}, kConsistent,
-                                std::exp(-1.2), std::exp(-0.8)));
+                                {.size_m = {width_m, width_m, width_m / 4}}, {}, std::exp(-1.2),
+                                std::exp(-0.8)));
   }
-  extremes->push_back(
-      Between("one cell", {.cells = glm::ivec3(1)}, {}, kConsistent, 0.0, std::exp(-0.5)));
+  extremes->push_back(Between("one cell", {.cells = glm::ivec3(1)}, {}, 0.0, std::exp(-0.5)));
   extremes->push_back(Between("camera inside", {.optical_depth = 10.0},
-                              {.distance_in_boxes = 0.01, .field_of_view_deg = 60.0}, kConsistent,
-                              0.0, 0.1));
+                              {.distance_in_boxes = 0.01, .field_of_view_deg = 60.0}, 0.0, 0.1));
   extremes->push_back(Between("sun on the horizon", {.optical_depth = 10.0},
-                              {.sun_elevation_deg = 0.0}, kConsistent, 0.0, 1e-3));
-  extremes->push_back(Between("empty volume", {.optical_depth = 0.0}, {}, kConsistent, 1.0, 1.0));
-  for (const double depth : {1e-4, 1.0, 1e8}) {
-    extremes->push_back(Between(absl::StrFormat("paper transport, optical depth %g", depth),
-                                {.optical_depth = depth}, {}, scene::Transport::kPaper, 0.0, 1.0));
-  }
+                              {.sun_elevation_deg = 0.0}, 0.0, 1e-3));
+  extremes->push_back(Empty());
+  for (const double depth : {1e-4, 1.0, 1e8}) extremes->push_back(Paper(depth));
 }
 
 }  // namespace thunderhead::measure::internal

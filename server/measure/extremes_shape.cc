@@ -12,20 +12,17 @@
 namespace thunderhead::measure::internal {
 namespace {
 
-// Where a slanted ray crosses the box's hard faces half-angle slices count whole or not at all: off
-// by up to one of 128, over a box that fills a third of what is sliced. A ray of the light volume
-// may end at 0.005.
-constexpr double kSlantedError = 0.03;
-
 Extreme Transmittance(const accuracy::Path& path, const std::string& what, const Box& box,
                       double elevation_deg) {
   return {absl::StrFormat("%s: %s", path.name, what), [=](Probe& probe) -> absl::StatusOr<Verdict> {
-            THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen,
-                                         probe.Draw(PlainScene(path), *FieldsOf(box),
-                                                    {.view_elevation_deg = elevation_deg}));
+            const scene::Scene scene = PlainScene(path);
+            THUNDERHEAD_ASSIGN_OR_RETURN(
+                const Seen seen,
+                probe.Draw(scene, *FieldsOf(box), {.view_elevation_deg = elevation_deg}));
             const double sine = std::sin(elevation_deg * std::numbers::pi / 180.0);
-            return Sound(
-                seen, Near(seen.transmittance, std::exp(-box.optical_depth / sine), kSlantedError));
+            return TransmittanceNear(path, seen, box.optical_depth / sine,
+                                     elevation_deg > 89.0 ? kUpright : kSlanted,
+                                     *scene::SlicesOf(scene.rendering.technique));
           }};
 }
 
@@ -40,9 +37,9 @@ Extreme TooManyCells(const accuracy::Path& path) {
             GLint most = 0;
             glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most);
             const auto fields = FieldsOf({.cells = glm::ivec3(most + 77, 2, 2)});
-            THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen,
-                                         probe.Draw(PlainScene(path), *fields, {}));
-            return Sound(seen, Near(seen.transmittance, std::exp(-1.0), 0.01));
+            const scene::Scene scene = PlainScene(path);
+            THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *fields, {}));
+            return TransmittanceNear(path, seen, 1.0, kUpright, *scene::SlicesOf(scene.rendering.technique));
           }};
 }
 

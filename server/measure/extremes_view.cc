@@ -8,13 +8,12 @@
 #include "base/status.h"
 #include "frame/tone_map.h"
 #include "measure/extremes_internal.h"
+#include "physics/sky.h"
 #include "renderers/scene_renderer.h"
+#include "scene/view.h"
 
 namespace thunderhead::measure::internal {
 namespace {
-
-// See extremes_shape.cc.
-constexpr double kSlantedError = 0.03;
 
 Extreme AgainstLight(const accuracy::Path& path, const std::string& what,
                      double azimuth_deg, double elevation_deg) {
@@ -24,10 +23,11 @@ Extreme AgainstLight(const accuracy::Path& path, const std::string& what,
                             .view_elevation_deg = elevation_deg,
                             .sun_azimuth_deg = 70.0,
                             .sun_elevation_deg = 45.0};
-            THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen,
-                                         probe.Draw(PlainScene(path), *FieldsOf({}), look));
+            const scene::Scene scene = PlainScene(path);
+            THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *FieldsOf({}), look));
             const double sine = std::abs(std::sin(elevation_deg * std::numbers::pi / 180.0));
-            return Sound(seen, Near(seen.transmittance, std::exp(-1.0 / sine), kSlantedError));
+            return TransmittanceNear(path, seen, 1.0 / sine, kSlanted,
+                                     *scene::SlicesOf(scene.rendering.technique));
           }};
 }
 
@@ -67,50 +67,107 @@ Extreme Sweep(const accuracy::Path& path, const accuracy::Named<scene::Transport
           }};
 }
 
+// The same picture from half-float and from float buffers.
+Extreme HalfAgainstSingle(const accuracy::Path& path) {
+  return {absl::StrFormat("%s: half-float buffers against float buffers", path.name),
+          [=](Probe& probe) -> absl::StatusOr<Verdict> {
+            const auto fields = SmoothCloud(20.0);
+            Look look{.distance_in_boxes = 3.0, .field_of_view_deg = 25.0, .side_px = 33};
+            scene::Scene scene;
+            scene.rendering.technique = path.plain();
+            THUNDERHEAD_ASSIGN_OR_RETURN(const Seen half, probe.Draw(scene, *fields, look));
+            look.single_precision = true;
+            THUNDERHEAD_ASSIGN_OR_RETURN(const Seen single, probe.Draw(scene, *fields, look));
+            if (half.eye == single.eye) {
+              return Verdict{"two pictures", "one: both buffers are the same", false};
+            }
+            // Of 2^-11 in the root of the light's depth, where a few optical depths have been
+            // passed.
+            return Sound(half, Near(MeanRadiance(half) / MeanRadiance(single), 1.0, 0.002, 0.0));
+          }};
+}
+
 Extreme InsideTheCloud(const accuracy::Path& path, double elevation_deg) {
   return {absl::StrFormat("%s: camera in the middle of the cloud, looking %s", path.name,
                           elevation_deg > 0.0 ? "down" : "up"),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
+            const scene::Scene scene = PlainScene(path);
             THUNDERHEAD_ASSIGN_OR_RETURN(
                 const Seen seen,
-                probe.Draw(PlainScene(path), *FieldsOf({.optical_depth = 2.0}),
+                probe.Draw(scene, *FieldsOf({.optical_depth = 2.0}),
                            {.view_elevation_deg = elevation_deg, .distance_in_boxes = 1e-6}));
-            // Half the box lies before the eye; of the slice that it is in, all or nothing counts.
-            return Sound(seen, Near(seen.transmittance, std::exp(-1.0), 0.02));
+            // Half the box lies before the eye. Of the slice of half-angle that it is in, one of 64
+            // before it, all or nothing counts.
+            constexpr DepthErrors kInside = {.half_angle = 1.0 / 64.0 + kUpright.half_angle,
+                                             .light_volume = kUpright.light_volume};
+            return TransmittanceNear(path, seen, 1.0, kInside, *scene::SlicesOf(scene.rendering.technique));
           }};
 }
 
-// A whole picture with sky and ground; below twilight it is dark.
+// A whole picture with sky and ground, red, green and blue of each pixel.
+absl::StatusOr<std::vector<float>> WholePicture(const scene::Scene& scene) {
+  const std::shared_ptr<const volume::HydrometeorFields> fields =
+      FieldsOf({.size_m = glm::dvec3(4000.0), .optical_depth = 20.0, .shape = Box::Shape::kRound});
+  renderers::SceneRenderer renderer;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame frame,
+                               renderer.Draw(scene, fields, {.single_precision = true}));
+  std::vector<float> colors;
+  const std::vector<float> linear = frame::ReadLinear(*frame.radiance);
+  for (std::size_t i = 0; i < linear.size(); ++i) {
+    if (i % 4 != 3) colors.push_back(linear[i]);
+  }
+  return colors;
+}
+
+scene::Scene LowSunScene(const accuracy::Path& path, double elevation_deg) {
+  scene::Scene scene;
+  scene.rendering.technique = path.plain();
+  scene::SetSlices(&scene.rendering.technique, 32);
+  scene.sun.elevation_deg = elevation_deg;
+  scene.output = {32, 18, 88};
+  scene::OrbitCamera camera;
+  camera.target_m.z = 2000.0;
+  camera.distance_m = 12e3;
+  scene.camera = camera;
+  return scene;
+}
+
+// The picture's brightest is of the order of the sky's mean light (10 times that near a setting
+// sun). The storm shows, by a tenth of the mean at least, and is lit wherever it does: nothing is
+// darker than a tenth of what stands behind. Deep in the night all is black.
+Verdict LowSunVerdict(const scene::Scene& scene, const std::vector<float>& storm,
+                      const std::vector<float>& bare) {
+  double brightest = 0.0;
+  double changed = 0.0;
+  double darkest = 1.0;  // over what stands behind
+  for (std::size_t i = 0; i < storm.size(); ++i) {
+    if (!std::isfinite(storm[i]) || storm[i] < 0.0F) {
+      return {"radiances", absl::StrFormat("%g in the picture", storm[i]), false};
+    }
+    brightest = std::max<double>(brightest, storm[i]);
+    changed = std::max<double>(changed, std::abs(storm[i] - bare[i]));
+    if (bare[i] > 0.0F) darkest = std::min<double>(darkest, storm[i] / bare[i]);
+  }
+  const physics::ClearSky sky(physics::Atmosphere(static_cast<float>(scene.sky.turbidity),
+                                                  static_cast<float>(scene.sky.ground_albedo)),
+                              glm::vec3(scene::Direction(0.0, scene.sun.elevation_deg)),
+                              {.eye_m = 0.0F});
+  const glm::vec3 light = sky.Light().mean_radiance;
+  const double mean = scene.sky.brightness * std::max({light.x, light.y, light.z});
+  return {absl::StrFormat("%.3g to %.3g, storm %.3g", 0.5 * mean, 10.0 * mean, 0.1 * mean),
+          absl::StrFormat("%.3g, storm %.3g, darkest %.2g", brightest, changed, darkest),
+          brightest >= 0.5 * mean && brightest <= 10.0 * mean && changed >= 0.1 * mean &&
+              darkest >= 0.1};
+}
+
 Extreme LowSun(const accuracy::Path& path, double elevation_deg) {
   return {absl::StrFormat("%s: sun at %g degrees", path.name, elevation_deg),
           [=](Probe&) -> absl::StatusOr<Verdict> {
-            scene::Scene scene;
-            scene.rendering.technique = path.plain();
-            scene::SetSlices(&scene.rendering.technique, 32);
-            scene.sun.elevation_deg = elevation_deg;
-            scene.output = {32, 18, 88};
-            scene::OrbitCamera camera;
-            camera.target_m.z = 2000.0;
-            camera.distance_m = 12e3;
-            scene.camera = camera;
-            const std::shared_ptr<const volume::HydrometeorFields> fields = FieldsOf(
-                {.size_m = glm::dvec3(4000.0), .optical_depth = 20.0, .shape = Box::Shape::kRound});
-            renderers::SceneRenderer renderer;
-            THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame frame,
-                                         renderer.Draw(scene, fields, {}));
-            const std::vector<float> linear = frame::ReadLinear(*frame.radiance);
-            const bool usable = std::all_of(linear.begin(), linear.end(), [](float value) {
-              return std::isfinite(value) && value >= 0.0F;
-            });
-            float brightest = 0.0F;
-            for (std::size_t i = 0; i < linear.size(); ++i) {
-              if (i % 4 != 3) brightest = std::max(brightest, linear[i]);
-            }
-            // A white surface facing the sun is at most 1 / pi; the sky beside it may be brighter.
-            Verdict verdict = AtMost(brightest, elevation_deg <= -18.0 ? 1e-3 : 2.0);
-            verdict.passed = verdict.passed && usable;
-            if (!usable) verdict.got += ", and values that are no radiance";
-            return verdict;
+            scene::Scene scene = LowSunScene(path, elevation_deg);
+            THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> storm, WholePicture(scene));
+            for (scene::FieldParameters& field : scene.fields) field.visible = false;
+            THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> bare, WholePicture(scene));
+            return LowSunVerdict(scene, storm, bare);
           }};
 }
 
@@ -122,6 +179,8 @@ void AppendViewExtremes(const accuracy::Path& path, std::vector<Extreme>* extrem
   extremes->push_back(AgainstLight(path, "across", 250.0, 45.0));
   extremes->push_back(AgainstLight(path, "a hair from across", 250.001, 45.0));
   for (const auto& transport : accuracy::kTransports) extremes->push_back(Sweep(path, transport));
+  // Half-angle's buffers are floats always.
+  if (path.name == scene::LightVolume::kName) extremes->push_back(HalfAgainstSingle(path));
   extremes->push_back(InsideTheCloud(path, 89.9));
   extremes->push_back(InsideTheCloud(path, -89.9));
   for (const double elevation_deg : {0.0, -0.5, -6.0, -18.0, -90.0}) {

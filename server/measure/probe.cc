@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "absl/strings/str_format.h"
 #include "base/status.h"
 #include "frame/tone_map.h"
 #include "glm/geometric.hpp"
+#include "measure/soundness.h"
 #include "renderers/half_angle/half_angle_renderer.h"
 #include "renderers/light_volume/light_volume_renderer.h"
 #include "renderers/metaball/ball_fit.h"
@@ -19,24 +19,6 @@ namespace {
 
 // Of the round box: it is 0.25 % of its middle at its faces.
 constexpr double kSteepness = 24.0;
-
-// A ray's transmittance is a product of rounded factors.
-constexpr float kMost = 1.0F + 1e-5F;
-
-std::string Unsound(const std::vector<float>& eye, const std::vector<float>& light) {
-  for (std::size_t i = 0; i < eye.size(); ++i) {
-    const bool share = i % 4 == 3;
-    if (std::isfinite(eye[i]) && eye[i] >= 0.0F && (!share || eye[i] <= kMost)) continue;
-    return absl::StrFormat("%s %g in pixel %d", share ? "transmittance" : "radiance", eye[i],
-                           i / 4);
-  }
-  for (std::size_t i = 0; i < light.size(); ++i) {
-    if (i % 4 > 1) continue;  // the share of sunlight, and the depth it has passed
-    if (std::isfinite(light[i]) && light[i] >= 0.0F && (i % 4 == 1 || light[i] <= kMost)) continue;
-    return absl::StrFormat("%s %g in the light buffer", i % 4 == 0 ? "light" : "depth", light[i]);
-  }
-  return {};
-}
 
 renderers::RenderSettings SettingsOf(const scene::Scene& scene,
                                      const volume::HydrometeorFields& fields, const Look& look) {
@@ -55,6 +37,7 @@ renderers::RenderSettings SettingsOf(const scene::Scene& scene,
                            glm::vec3(1.0F), glm::vec3(0.0F)};
   settings.eye_size = glm::ivec2(look.side_px);
   settings.slices = scene::SlicesOf(scene.rendering.technique).value_or(settings.slices);
+  settings.quality.single_precision = look.single_precision;
   return settings;
 }
 
@@ -117,13 +100,13 @@ absl::StatusOr<Seen> Probe::Draw(const scene::Scene& scene, const volume::Hydrom
   if (medium.Empty()) return Seen{};
   const renderers::RenderSettings settings = SettingsOf(scene, fields, look);
   Seen seen;
-  std::vector<float> light;
+  Soundness light;
   const scene::Technique& technique = scene.rendering.technique;
   if (std::holds_alternative<scene::HalfAngle>(technique)) {
     renderers::HalfAngleRenderer renderer(programs_);
     THUNDERHEAD_RETURN_IF_ERROR(renderer.Render(medium, settings, true));
     seen.eye = frame::ReadLinear(renderer.Eye());
-    light = renderer.Light();
+    light = LightBufferSoundness(renderer.Light());
   } else if (const auto* metaballs = std::get_if<scene::Metaballs>(&technique)) {
     renderers::MetaballRenderer renderer(programs_);
     THUNDERHEAD_ASSIGN_OR_RETURN(
@@ -135,10 +118,13 @@ absl::StatusOr<Seen> Probe::Draw(const scene::Scene& scene, const volume::Hydrom
   } else {
     renderers::LightVolumeRenderer renderer(programs_);
     THUNDERHEAD_RETURN_IF_ERROR(renderer.CarryLight(medium, settings));
+    light = LightVolumeSoundness(renderer);
     THUNDERHEAD_RETURN_IF_ERROR(renderer.DrawView(medium, settings));
     seen.eye = frame::ReadLinear(renderer.Eye());
   }
-  seen.unsound = Unsound(seen.eye, light);
+  seen.unsound = UnsoundPicture(seen.eye);
+  if (seen.unsound.empty()) seen.unsound = light.unsound;
+  seen.least_light = light.least_light;
   const std::size_t middle = seen.eye.size() / 4 / 2 * 4;
   seen.radiance = seen.eye[middle];
   seen.transmittance = seen.eye[middle + 3];

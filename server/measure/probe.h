@@ -39,12 +39,15 @@ struct Look {
   double distance_in_boxes = 5.0;  // of the camera from the middle, in the box's longest side
   double field_of_view_deg = 2.0;
   int side_px = 9;  // odd: a pixel lies in the middle
+  // Of the light volume's buffers; the other paths' pictures always are.
+  bool single_precision = false;
 };
 
 struct Seen {
   double radiance = 0.0;       // of the middle pixel's red, in units of the sun's irradiance
   double transmittance = 1.0;  // of the middle pixel
   std::vector<float> eye;      // four floats a pixel
+  double least_light = 1.0;    // smallest share of sunlight in the light's buffers; 1 for metaballs
   std::string unsound;         // what is wrong with any value; empty if nothing is
 };
 

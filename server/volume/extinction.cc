@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "base/status.h"
@@ -39,6 +40,7 @@ void SumRow(const HydrometeorFields& fields, const std::vector<ExtinctionTerm>& 
 struct Occupied {
   CellBox cells;
   float maximum_per_m = 0.0F;
+  float negligible_per_m = 0.0F;
 };
 
 void Include(int x, int y, int z, CellBox* box) {
@@ -46,26 +48,39 @@ void Include(int x, int y, int z, CellBox* box) {
   box->high = glm::max(box->high, glm::ivec3(x + 1, y + 1, z + 1));
 }
 
-Occupied FindOccupied(const HydrometeorFields& fields, const std::vector<ExtinctionTerm>& terms,
-                      float threshold_per_m) {
-  const RegularGrid& grid = fields.grid;
+// The box around the cells above `negligible_per_m`, and the largest of them.
+Occupied FindAbove(const HydrometeorFields& fields, const std::vector<ExtinctionTerm>& terms,
+                   float negligible_per_m) {
   const CellBox& search = fields.condensate;
-  Occupied occupied{{grid.cells, glm::ivec3(0)}, 0.0F};
+  Occupied found{{fields.grid.cells, glm::ivec3(0)}, 0.0F, negligible_per_m};
+  const auto above = [&](float value) { return value > negligible_per_m; };
   std::vector<float> row(static_cast<std::size_t>(search.high.x - search.low.x));
   for (int z = search.low.z; z < search.high.z; ++z) {
     for (int y = search.low.y; y < search.high.y; ++y) {
       SumRow(fields, terms, search.low.x, y, z, &row);
-      const auto above = [&](float value) { return value > threshold_per_m; };
       const auto first = std::find_if(row.begin(), row.end(), above);
       if (first == row.end()) continue;
       const auto last = std::find_if(row.rbegin(), row.rend(), above);
-      Include(search.low.x + static_cast<int>(first - row.begin()), y, z, &occupied.cells);
-      Include(search.low.x + static_cast<int>(row.rend() - last) - 1, y, z, &occupied.cells);
-      occupied.maximum_per_m =
-          std::max(occupied.maximum_per_m, *std::max_element(row.begin(), row.end()));
+      Include(search.low.x + static_cast<int>(first - row.begin()), y, z, &found.cells);
+      Include(search.low.x + static_cast<int>(row.rend() - last) - 1, y, z, &found.cells);
+      found.maximum_per_m =
+          std::max(found.maximum_per_m, *std::max_element(row.begin(), row.end()));
     }
   }
-  return occupied;
+  return found;
+}
+
+Occupied FindOccupied(const HydrometeorFields& fields, const std::vector<ExtinctionTerm>& terms) {
+  // For a thick medium first: only one that is thin everywhere is looked through again.
+  Occupied found =
+      FindAbove(fields, terms,
+                NegligibleExtinction_per_m(fields.grid, std::numeric_limits<float>::infinity()));
+  if (found.cells.Empty()) {
+    found.maximum_per_m = FindAbove(fields, terms, 0.0F).maximum_per_m;
+  }
+  const float negligible_per_m = NegligibleExtinction_per_m(fields.grid, found.maximum_per_m);
+  if (negligible_per_m == found.negligible_per_m) return found;
+  return FindAbove(fields, terms, negligible_per_m);
 }
 
 // Grows the box by one cell inside the domain and places it in the world.
@@ -121,16 +136,23 @@ std::uint16_t HalfFromFloat(float value) {
   return static_cast<std::uint16_t>(bits < 0x38800000U ? subnormal : normal);
 }
 
+float NegligibleExtinction_per_m(const RegularGrid& grid, float maximum_per_m) {
+  const double diagonal_m = glm::length(glm::dvec3(grid.cells) * grid.spacing_m);
+  const double least_per_m = kFaintestOpticalDepth / diagonal_m;
+  if (maximum_per_m <= least_per_m) return static_cast<float>(least_per_m);
+  return static_cast<float>(kNegligibleOpticalDepth *
+                            std::min<double>(1.0 / diagonal_m, maximum_per_m));
+}
+
 ExtinctionVolume ComputeExtinction(const HydrometeorFields& fields,
                                    const std::vector<ExtinctionTerm>& terms, int channels) {
   THUNDERHEAD_CHECK(channels >= 0 && channels <= kMaxChannels, std::to_string(channels));
   ExtinctionVolume volume;
   const std::vector<ExtinctionTerm> effective = EffectiveTerms(fields, terms);
   if (effective.empty() || fields.condensate.Empty()) return volume;
-  const double diagonal_m = glm::length(glm::dvec3(fields.grid.cells) * fields.grid.spacing_m);
-  volume.negligible_per_m = static_cast<float>(kNegligibleOpticalDepth / diagonal_m);
-  const Occupied occupied = FindOccupied(fields, effective, volume.negligible_per_m);
+  const Occupied occupied = FindOccupied(fields, effective);
   if (occupied.cells.Empty()) return volume;
+  volume.negligible_per_m = occupied.negligible_per_m;
   PlaceBox(fields.grid, occupied.cells, &volume);
   volume.maximum_per_m = occupied.maximum_per_m;
   // Scales the largest value to just below 2^15; the smallest normal half is then 3e-9 of it.

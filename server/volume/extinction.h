@@ -40,14 +40,24 @@ struct ExtinctionVolume {
   std::vector<ExtinctionPlane> planes;  // channels 0-3, then 4-7
   float extinction_per_m = 0.0F;        // of a texel value of 1; a power of two
   float maximum_per_m = 0.0F;           // largest sum over all channels in a cell
-  float negligible_per_m = 0.0F;        // extinction up to this is not worth drawing
+  float negligible_per_m = 0.0F;        // NegligibleExtinction_per_m of it
 
   bool Empty() const { return grid.CellCount() == 0; }
 };
 
-// Cells are left out if their extinction, over the length of the domain's diagonal, gives less than
-// this optical depth.
+// A cell is left out if its extinction, along the domain's diagonal, adds up to less than this
+// optical depth; in a medium that is thinner than an optical depth of 1 there, to less than this
+// share of the thickest cell's. A thin medium is drawn as a thick one is: its light is thin, but it
+// is all there is to see.
 inline constexpr double kNegligibleOpticalDepth = 1e-3;
+
+// A medium whose thickest cell adds up to less is left out as a whole: no picture shows it, and
+// marching rays soon has no numbers for it.
+inline constexpr double kFaintestOpticalDepth = 1e-9;
+
+// The extinction up to which a cell of `grid` is left out, where the thickest cell's is
+// `maximum_per_m`.
+float NegligibleExtinction_per_m(const RegularGrid& grid, float maximum_per_m);
 
 // Adds up `terms`, which use channels 0 to `channels` - 1.
 ExtinctionVolume ComputeExtinction(const HydrometeorFields& fields,

@@ -39,6 +39,12 @@ TEST_F(Diffusion, EvenLightShowsNothing) {
     for (const double elevation_deg : {-60.0, 20.0, 80.0}) {
       const Seen seen = Look(depth, elevation_deg, 40.0);
       EXPECT_NEAR(seen.radiance + seen.transmittance, 1.0, 0.005) << depth << " " << elevation_deg;
+      // That something is there shows in what passes: similarity scaled, by 1 - g.
+      const double sine = std::sin(std::abs(elevation_deg) * std::numbers::pi / 180.0);
+      const double passes = std::exp(-0.25 * depth / sine);
+      EXPECT_NEAR(seen.transmittance, passes,
+                  passes < 0.02 ? 0.02 : 0.05 * (1.0 - passes) + 0x1p-11)
+          << depth << " " << elevation_deg;
     }
   }
 }

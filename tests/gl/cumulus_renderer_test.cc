@@ -272,9 +272,12 @@ TEST_F(CumulusRendererTest, AWhiteFurnaceHidesTheCloud) {
   Cumulus().trap = 0.9F;
   std::vector<glm::vec3> light_map(9, glm::vec3(0.0F));
   light_map[0] = glm::vec3(1.0F);
+  int hidden = 0;
   for (const glm::vec4& texel : Draw(SmallCauliflower(), light_map)) {
     for (int k = 0; k < 3; ++k) ASSERT_NEAR(texel[k] + texel.a, 1.0, 0.01);
+    hidden += texel.a < 0.01F ? 1 : 0;
   }
+  EXPECT_GT(hidden, kSide_px * kSide_px / 8) << "there is a cloud";
 }
 
 TEST_F(CumulusRendererTest, NothingIsBrighterThanItsTrapsAllow) {
@@ -287,6 +290,7 @@ TEST_F(CumulusRendererTest, NothingIsBrighterThanItsTrapsAllow) {
   for (const double azimuth_deg : {180.0, 270.0, 355.0}) {
     for (const double elevation_deg : {90.0, 30.0, 0.0}) {
       settings_.illumination.towards_sun = scene::Direction(azimuth_deg, elevation_deg);
+      float brightest = 0.0F;
       for (const glm::vec4& texel : Draw(surface, light_map)) {
         ASSERT_TRUE(std::isfinite(texel.r + texel.g + texel.b + texel.a));
         ASSERT_GE(std::min({texel.r, texel.g, texel.b}), 0.0F);
@@ -297,7 +301,10 @@ TEST_F(CumulusRendererTest, NothingIsBrighterThanItsTrapsAllow) {
         const double core = std::numbers::inv_pi * (1.0 + 1.0 / 0.4 + 0.2) + 0.3;
         const double corona = 0.25 * 401.0 * 0.5 * std::numbers::inv_pi;
         ASSERT_LE(texel.r, core + corona);
+        brightest = std::max(brightest, texel.r);
       }
+      // More than the surroundings alone: the sun reaches it.
+      EXPECT_GT(brightest, 0.35F) << azimuth_deg << ' ' << elevation_deg;
     }
   }
 }
@@ -322,7 +329,8 @@ TEST_F(CumulusRendererTest, ValleysAreBrighterThanWithoutTraps) {
   EXPECT_EQ(sum_of(Draw(two)), 0.0);
 }
 
-// 100 : 1 axes, seen from the side that looks thin and from the one that does not.
+// 100 : 1 axes, seen from the side that looks thin and from the one that does not. Pixels are as
+// flat as the ellipsoid: as many lie across it upwards as sidewards.
 TEST_F(CumulusRendererTest, AFlatEllipsoidKeepsItsShape) {
   for (const bool upright : {false, true}) {
     clouds::Ellipsoid ellipsoid;
@@ -332,14 +340,16 @@ TEST_F(CumulusRendererTest, AFlatEllipsoidKeepsItsShape) {
     surface.finest_m = 1.0;
     Cumulus().component = scene::CumulusComponent::kBalls;
     settings_.illumination.towards_sun = scene::Direction(180.0, 0.0);
+    const double half_height_m = upright ? 100.0 : 1.0;
+    settings_.view.half_height_m = 1.3 * half_height_m;
     double covered = 0.0;
     for (const glm::vec4& texel : Draw(surface)) {
       ASSERT_TRUE(std::isfinite(texel.r));
       covered += 1.0 - texel.a;
     }
-    const double texel_m = 260.0 / kSide_px;
-    const double area_m2 = std::numbers::pi * 100.0 * (upright ? 100.0 : 1.0);
-    EXPECT_NEAR(covered * texel_m * texel_m, area_m2, upright ? 0.02 * area_m2 : area_m2);
+    const double texel_m2 = 260.0 / kSide_px * (2.6 * half_height_m / kSide_px);
+    const double area_m2 = std::numbers::pi * 100.0 * half_height_m;
+    EXPECT_NEAR(covered * texel_m2 / area_m2, 1.0, 0.02) << upright;
   }
 }
 

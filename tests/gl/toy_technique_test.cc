@@ -10,6 +10,7 @@
 #include "gtest/gtest.h"
 #include "measure/probe.h"
 #include "renderers/scene_renderer.h"
+#include "tests/support/techniques.h"
 
 namespace thunderhead::renderers {
 namespace {
@@ -104,7 +105,7 @@ class ToyTechniqueTest : public testing::Test {
   std::unique_ptr<gl::Context> context_;
   std::unique_ptr<SceneRenderer> renderer_;
   std::shared_ptr<const volume::HydrometeorFields> fields_ = measure::FieldsOf({});
-  scene::Scene scene_;
+  scene::Scene scene_ = test_support::PlainScene();
 };
 
 TEST_F(ToyTechniqueTest, IsChosenByItsNameAndDrawn) {

@@ -1,22 +1,18 @@
 // compare_images EXPECTED ACTUAL DIFFERENCE: exits 0 when two PNG pictures are the same to the eye,
 // else says how they differ, writes the difference times eight, and exits 1.
-#include <cmath>
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <iterator>
 #include <string>
+#include <vector>
 
 #include "frame/image_codec.h"
+#include "picture_difference.h"
 
 namespace thunderhead {
 namespace {
-
-// Mesa's versions differ in the last bits of a texture fetch: a step of two in 255 anywhere, more
-// only in pixels where a slice's edge falls to the other side.
-constexpr double kMeanStep = 0.5;
-constexpr int kLargeStep = 8;
-constexpr double kShareOfLargeSteps = 0.002;
 
 absl::StatusOr<frame::RgbImage> Read(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -39,22 +35,16 @@ int Compare(const std::string& expected_path, const std::string& actual_path,
               << actual->width_px << "x" << actual->height_px << "\n";
     return 1;
   }
-  std::vector<std::uint8_t> difference(actual->rgb.size());
-  double sum = 0.0;
-  double large = 0.0;
-  for (std::size_t i = 0; i < difference.size(); ++i) {
-    const int step = std::abs(int{expected->rgb[i]} - int{actual->rgb[i]});
-    sum += step;
-    large += step > kLargeStep ? 1.0 : 0.0;
-    difference[i] = static_cast<std::uint8_t>(std::min(step * 8, 255));
-  }
-  const auto count = static_cast<double>(difference.size());
-  if (sum / count <= kMeanStep && large / count <= kShareOfLargeSteps) return 0;
-  std::cerr << "mean step " << sum / count << " of at most " << kMeanStep
-            << ", share of steps over " << kLargeStep << " " << large / count << " of at most "
-            << kShareOfLargeSteps << "\nexpected   " << expected_path << "\nactual     "
+  const golden::PictureDifference difference = golden::Difference(*expected, *actual);
+  if (golden::IsTheSame(difference)) return 0;
+  std::cerr << difference.Text() << "\nexpected   " << expected_path << "\nactual     "
             << actual_path << "\ndifference " << difference_path << "\n";
-  const auto png = frame::EncodePng(actual->width_px, actual->height_px, difference);
+  std::vector<std::uint8_t> steps(actual->rgb.size());
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const int step = std::abs(int{expected->rgb[i]} - int{actual->rgb[i]});
+    steps[i] = static_cast<std::uint8_t>(std::min(step * 8, 255));
+  }
+  const auto png = frame::EncodePng(actual->width_px, actual->height_px, steps);
   if (png.ok()) std::ofstream(difference_path, std::ios::binary) << *png;
   return 1;
 }

@@ -125,6 +125,7 @@ TEST(BrickWalk, StretchesBoundExtinction) {
     SCOPED_TRACE(test.name);
     const auto medium = Made(test.description);
     RandomStream random(3, 0, 0);
+    int bounded = 0;
     for (int i = 0; i < 300; ++i) {
       const Ray ray = RandomRay(*medium, &random);
       const RayInterval interval = Clip(*medium, ray, 5000.0);
@@ -144,8 +145,12 @@ TEST(BrickWalk, StretchesBoundExtinction) {
         const double extinction = medium->Extinction_per_m(ray.At(at_m));
         const bool within = more && at_m >= stretch.begin_m;
         ASSERT_LE(extinction, within ? stretch.majorant_per_m : 1e-12) << i << " at " << at_m;
+        // No cell has more than 0.02: a larger majorant would be none.
+        ASSERT_LE(within ? stretch.majorant_per_m : 0.0, 0.0201);
+        bounded += extinction > 0.0 ? 1 : 0;
       }
     }
+    EXPECT_GT(bounded, 10'000) << "rays meet the medium";
   }
 }
 
@@ -160,8 +165,8 @@ double OpticalDepth(const Medium& medium, const Ray& ray, double limit_m) {
   return sum * step_m;
 }
 
-// Ratio tracking, and the share of flights without collision, against quadrature along 6 rays in
-// each of 5 media. Midpoints across walls of constant cells miss up to 4 steps of 200000.
+// Ratio tracking, and the share of flights without collision, against quadrature along 6 rays that
+// meet each of 5 media. Midpoints across walls of constant cells miss up to 4 steps of 200000.
 TEST(Tracking, TransmittanceIsThatOfQuadrature) {
   constexpr double kLimit_m = 1500.0;
   for (const Case& test : Cases()) {
@@ -170,7 +175,12 @@ TEST(Tracking, TransmittanceIsThatOfQuadrature) {
     RandomStream rays(11, 0, 0);
     for (int r = 0; r < 6; ++r) {
       Ray ray = RandomRay(*medium, &rays);
-      const double depth = OpticalDepth(*medium, ray, kLimit_m);
+      double depth = OpticalDepth(*medium, ray, kLimit_m);
+      for (int i = 0; i < 200 && depth < 0.1; ++i) {
+        ray = RandomRay(*medium, &rays);
+        depth = OpticalDepth(*medium, ray, kLimit_m);
+      }
+      ASSERT_GE(depth, 0.1);
       SampleMean ratio;
       SampleMean flights;
       for (std::uint32_t i = 0; i < 20000; ++i) {

@@ -360,6 +360,8 @@ TEST(PathTracer, Extremes) {
       for (const glm::vec3& radiance : image.radiance) {
         EXPECT_TRUE(std::isfinite(radiance.x) && radiance.x >= 0.0F) << optical_depth;
       }
+      // Of the even sky hardly anything is absorbed.
+      EXPECT_GT(MeanOf(image, 0).value, 0.3) << optical_depth << ' ' << zenith_deg;
     }
   }
 }

@@ -37,6 +37,11 @@ class LightVolumeRenderer {
   // over LightFrameOf its box.
   const gl::Texture2D& Shadow() const { return blocked_; }
 
+  // The light of the last CarryLight, for checks: along the sun's rays, from the sun on, and at the
+  // medium's cells, as carry.comp and arrive.comp write them.
+  const gl::Texture3D& Carried() const { return carried_; }
+  const gl::Texture3D& Arrived() const { return arrived_; }
+
   // Draws `medium` with the light of the last CarryLight, which must have had the same medium, sun
   // and rendering.
   absl::Status DrawView(const ResidentMedium& medium, const RenderSettings& settings);

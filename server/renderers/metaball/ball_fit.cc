@@ -8,8 +8,8 @@
 #include "clouds/basis_operator.h"
 #include "clouds/rbf_fit.h"
 #include "glm/common.hpp"
-#include "glm/geometric.hpp"
 #include "volume/coarsen.h"
+#include "volume/extinction.h"
 
 namespace thunderhead::renderers {
 namespace {
@@ -93,8 +93,8 @@ absl::StatusOr<BallCloud> FitBalls(const Medium& medium, const volume::Hydromete
   const glm::ivec3 factor = CoarseningForFit(fields);
   if (factor != glm::ivec3(1)) return FitBalls(medium, volume::Coarsened(fields, factor), count);
   std::vector<float> values = ExtinctionOf(fields, medium, -1);
-  const double diagonal_m = glm::length(glm::dvec3(fields.grid.cells) * fields.grid.spacing_m);
-  const auto negligible_per_m = static_cast<float>(volume::kNegligibleOpticalDepth / diagonal_m);
+  const float negligible_per_m = volume::NegligibleExtinction_per_m(
+      fields.grid, *std::max_element(values.begin(), values.end()));
   int worth = 0;
   for (float& value : values) {
     if (value <= negligible_per_m) value = 0.0F;

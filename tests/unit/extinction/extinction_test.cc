@@ -75,6 +75,24 @@ TEST(Extinction, LeavesOutWhatAddsUpToNothing) {
       << "the domain's corner needs no border outside";
 }
 
+TEST(Extinction, AThinMediumIsHeldInProportionToItsThickestCell) {
+  // The domain's diagonal is 1020 m. All of this is thinner than what is left out of a thick
+  // medium.
+  for (const float thickest : {1e-9F, 1e-11F}) {
+    HydrometeorFields fields = TwoFields();
+    std::vector<float>& concentration = fields.fields[0].concentration_kg_per_m3;
+    concentration.assign(fields.grid.CellCount(), 1e-4F * thickest);
+    concentration[fields.grid.Offset(3, 2, 1)] = thickest;
+    concentration[fields.grid.Offset(4, 2, 1)] = 2e-3F * thickest;
+    const ExtinctionVolume volume = ComputeExtinction(fields, {{0, 150.0F, 0}}, 1);
+    ASSERT_EQ(volume.grid.cells, glm::ivec3(4, 3, 3)) << "two cells with one around";
+    EXPECT_NEAR(TexelPerM(volume, 1, 1, 1, 0) / (150.0F * thickest), 1.0F, 5e-4F);
+  }
+  HydrometeorFields fields = TwoFields();
+  fields.fields[0].concentration_kg_per_m3[fields.grid.Offset(3, 2, 1)] = 5e-15F;
+  EXPECT_TRUE(ComputeExtinction(fields, {{0, 150.0F, 0}}, 1).Empty()) << "not even that";
+}
+
 TEST(Extinction, TheBoxEndsWhereLinearFilteringDoes) {
   HydrometeorFields fields = TwoFields();
   fields.fields[0].concentration_kg_per_m3[fields.grid.Offset(3, 2, 0)] = 1e-3F;
@@ -89,7 +107,7 @@ TEST(Extinction, SurvivesExtremes) {
   fields.fields[0].concentration_kg_per_m3[fields.grid.Offset(3, 2, 1)] = 1e-3F;
   for (const float mass_extinction : {1e-6F, 1.0F, 1.5e10F}) {
     const ExtinctionVolume volume = ComputeExtinction(fields, {{0, mass_extinction, 0}}, 1);
-    if (volume.Empty()) continue;
+    ASSERT_FALSE(volume.Empty()) << mass_extinction;
     EXPECT_NEAR(TexelPerM(volume, 1, 1, 1, 0) / (1e-3F * mass_extinction), 1.0F, 5e-4F);
   }
 }
