@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "base/stopwatch.h"
 #include "accuracy/light_corrector.h"
+#include "base/stopwatch.h"
 #include "gl/program.h"
 #include "scene/scene.h"
 #include "volume/hydrometeor_fields.h"

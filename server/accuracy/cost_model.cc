@@ -38,11 +38,11 @@ std::optional<double> ViewMs(double total_ms, const std::vector<scene::StageTime
   double other_ms = 0.0;
   bool drew = false;
   for (const scene::StageTime& cost : stages) {
-    const bool rare = cost.stage == scene::FrameStage::kLight ||
-                      cost.stage == scene::FrameStage::kCorrection;
+    const bool rare =
+        cost.stage == scene::FrameStage::kLight || cost.stage == scene::FrameStage::kCorrection;
     if (rare || IsPreparation(cost)) other_ms += cost.milliseconds;
-    drew = drew || cost.stage == scene::FrameStage::kSlices ||
-           cost.stage == scene::FrameStage::kView;
+    drew =
+        drew || cost.stage == scene::FrameStage::kSlices || cost.stage == scene::FrameStage::kView;
   }
   if (!drew) return std::nullopt;
   return std::max(0.0, total_ms - other_ms);

@@ -1,6 +1,6 @@
 // Predicts the cost of a frame from the costs of earlier frames: milliseconds = a + b pixels x
-// slices, fitted by least squares in which older frames count for less, plus the time that preparing
-// the fields and carrying the light took when they changed. Plain values, no clock.
+// slices, fitted by least squares in which older frames count for less, plus the time that
+// preparing the fields and carrying the light took when they changed. Plain values, no clock.
 #pragma once
 
 #include <array>
@@ -8,9 +8,9 @@
 #include <variant>
 #include <vector>
 
+#include "accuracy/frame_quality.h"
 #include "scene/frame_stage.h"
 #include "scene/scene.h"
-#include "accuracy/frame_quality.h"
 
 namespace thunderhead::accuracy {
 

@@ -5,8 +5,8 @@
 #include <utility>
 #include <variant>
 
-#include "base/status.h"
 #include "accuracy/probe_cameras.h"
+#include "base/status.h"
 #include "frame/tone_map.h"
 #include "glm/common.hpp"
 #include "reference/philox.h"

@@ -7,8 +7,8 @@
 namespace thunderhead::accuracy {
 
 std::optional<Path> PathNamed(std::string_view name) {
-  const auto* const found =
-      std::find_if(kPaths.begin(), kPaths.end(), [&](const Path& path) { return path.name == name; });
+  const auto* const found = std::find_if(kPaths.begin(), kPaths.end(),
+                                         [&](const Path& path) { return path.name == name; });
   if (found == kPaths.end()) return std::nullopt;
   return *found;
 }

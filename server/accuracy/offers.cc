@@ -7,9 +7,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "base/status.h"
 #include "accuracy/embedded_trade_tables.h"
 #include "accuracy/named_settings.h"
+#include "base/status.h"
 
 namespace thunderhead::accuracy {
 namespace {
@@ -51,15 +51,15 @@ bool Within(const Measures& measures, double slack) {
 bool Better(const Measures& a, const Measures& b) {
   const bool a_within = Within(a, 1.0);
   if (a_within != Within(b, 1.0)) return a_within;
-  if (a_within) return std::pair(a.objective, a.constrained) < std::pair(b.objective, b.constrained);
+  if (a_within)
+    return std::pair(a.objective, a.constrained) < std::pair(b.objective, b.constrained);
   return std::pair(a.constrained, a.objective) < std::pair(b.constrained, b.objective);
 }
 
 double PixelsOf(const glm::ivec2& size_px) { return static_cast<double>(size_px.x) * size_px.y; }
 
 // What the table says of a picture of that size: what grows with the pixels is nearly all.
-double TableMs(const PricedSettings& table, const PricedSetting& row,
-               const scene::Scene& scene) {
+double TableMs(const PricedSettings& table, const PricedSetting& row, const scene::Scene& scene) {
   const glm::ivec2 size_px(scene.output.width_px, scene.output.height_px);
   return row.milliseconds * PixelsOf(size_px) / PixelsOf(table.size_px);
 }
@@ -89,8 +89,7 @@ double Distance(const Setting& a, const Setting& b) {
 
 // The row of the same technique and model that is most like `setting`, if any: where its
 // light is traced, of the rows with traced light and no more paths, if there are such.
-const PricedSetting* Nearest(const PricedSettings& table,
-                                      const Setting& setting) {
+const PricedSetting* Nearest(const PricedSettings& table, const Setting& setting) {
   const PricedSetting* nearest = nullptr;
   for (const PricedSetting& row : table.rows) {
     const Setting& other = row.setting;
@@ -141,10 +140,9 @@ Offer BestOffer(const std::vector<Offer>& offers, const scene::Accuracy& limit,
   const Measures of_best = MeasuresOf(*best, limit);
   const Measures of_kept = MeasuresOf(*kept, limit);
   const bool reachable = Within(of_best, 1.0);
-  const bool stays =
-      reachable ? Within(of_kept, kLimitSlack) &&
-                            of_kept.objective <= kWorthChanging * of_best.objective
-                : of_kept.constrained <= kLimitSlack * of_best.constrained;
+  const bool stays = reachable ? Within(of_kept, kLimitSlack) &&
+                                     of_kept.objective <= kWorthChanging * of_best.objective
+                               : of_kept.constrained <= kLimitSlack * of_best.constrained;
   return stays ? *kept : *best;
 }
 
@@ -158,8 +156,7 @@ TableCorrection::Key TableCorrection::KeyOf(const Setting& setting) {
           TransportNameOf(setting.technique), CountOf(setting.technique), setting.image_scale};
 }
 
-void TableCorrection::Observe(const Setting& setting, double table_ms,
-                              double measured_ms) {
+void TableCorrection::Observe(const Setting& setting, double table_ms, double measured_ms) {
   if (!(table_ms > 0.0) || !(measured_ms > 0.0)) return;
   const double log_factor = std::log(measured_ms / table_ms);
   settings_[KeyOf(setting)].Follow(log_factor);
@@ -211,8 +208,7 @@ scene::Technique WithTasteOf(const scene::Technique& asked, scene::Technique tec
   return technique;
 }
 
-std::vector<Offer> Offers::OffersFor(const PricedSettings& table,
-                                     const scene::Scene& scene) const {
+std::vector<Offer> Offers::OffersFor(const PricedSettings& table, const scene::Scene& scene) const {
   std::vector<Offer> offers;
   const bool limits_time = std::holds_alternative<scene::MaxMilliseconds>(scene.accuracy);
   for (const PricedSetting& row : table.rows) {
@@ -224,14 +220,13 @@ std::vector<Offer> Offers::OffersFor(const PricedSettings& table,
   return offers;
 }
 
-absl::StatusOr<scene::Scene> Offers::Decide(
-    const scene::Scene& scene, const std::optional<Setting>& current) const {
+absl::StatusOr<scene::Scene> Offers::Decide(const scene::Scene& scene,
+                                            const std::optional<Setting>& current) const {
   if (std::holds_alternative<std::monostate>(scene.accuracy)) return scene;
   if (std::holds_alternative<scene::Reference>(scene.rendering.technique)) return scene;
   const auto& table = TableOf(scene);
   if (!table.ok()) return table.status();
-  const Setting setting =
-      BestOffer(OffersFor(*table, scene), scene.accuracy, current).setting;
+  const Setting setting = BestOffer(OffersFor(*table, scene), scene.accuracy, current).setting;
   scene::Scene decided = scene;
   decided.rendering.technique = WithTasteOf(scene.rendering.technique, setting.technique);
   decided.rendering.image_scale = setting.image_scale;
@@ -302,13 +297,12 @@ std::optional<Unmet> Offers::WhyUnmet(const scene::Scene& scene, const Offer& of
                                  "%.3g, in %.3g ms a frame. The reference refines to any error",
                                  limit->relative_rmse, view, offer.error, offer.milliseconds)};
   }
-  return Unmet{
-      Unmet::Code::kTimeOutOfReach,
-      absl::StrFormat("%.3g ms a frame are out of reach for %s views of %dx%d on this machine; the "
-                      "nearest is %.3g ms, with an error of %.3g",
-                      std::get<scene::MaxMilliseconds>(scene.accuracy).milliseconds, view,
-                      scene.output.width_px, scene.output.height_px, offer.milliseconds,
-                      offer.error)};
+  return Unmet{Unmet::Code::kTimeOutOfReach,
+               absl::StrFormat(
+                   "%.3g ms a frame are out of reach for %s views of %dx%d on this machine; the "
+                   "nearest is %.3g ms, with an error of %.3g",
+                   std::get<scene::MaxMilliseconds>(scene.accuracy).milliseconds, view,
+                   scene.output.width_px, scene.output.height_px, offer.milliseconds, offer.error)};
 }
 
 }  // namespace thunderhead::accuracy

@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "accuracy/priced_settings.h"
-#include "scene/scene.h"
 #include "accuracy/accuracy_report.h"
 #include "accuracy/frame_quality.h"
+#include "accuracy/priced_settings.h"
 #include "accuracy/setting.h"
+#include "scene/scene.h"
 
 namespace thunderhead::accuracy {
 
@@ -41,8 +41,8 @@ Offer BestOffer(const std::vector<Offer>& offers, const scene::Accuracy& limit,
 // Whether it is within the limit.
 bool Meets(const Offer& offer, const scene::Accuracy& limit);
 
-// How much longer frames take here than a table says: by each setting that was drawn, each technique
-// and the machine, the most specific that is known.
+// How much longer frames take here than a table says: by each setting that was drawn, each
+// technique and the machine, the most specific that is known.
 class TableCorrection {
  public:
   // A frame of `setting` took `measured_ms` where the table says `table_ms`.
@@ -69,8 +69,7 @@ class TableCorrection {
 };
 
 // A table for each kind of camera, in the order of scene::Camera; why there is none otherwise.
-using OfferTables =
-    std::array<absl::StatusOr<PricedSettings>, std::variant_size_v<scene::Camera>>;
+using OfferTables = std::array<absl::StatusOr<PricedSettings>, std::variant_size_v<scene::Camera>>;
 
 // Those that the program is built with.
 OfferTables BuiltInOfferTables();
@@ -97,8 +96,7 @@ class Offers {
   const absl::StatusOr<PricedSettings>& TableOf(const scene::Scene& scene) const {
     return tables_[scene.camera.index()];
   }
-  std::vector<Offer> OffersFor(const PricedSettings& table,
-                               const scene::Scene& scene) const;
+  std::vector<Offer> OffersFor(const PricedSettings& table, const scene::Scene& scene) const;
   std::optional<Unmet> WhyUnmet(const scene::Scene& scene, const Offer& offer) const;
 
   OfferTables tables_;

@@ -12,8 +12,8 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
-#include "base/status.h"
 #include "accuracy/named_settings.h"
+#include "base/status.h"
 
 namespace thunderhead::accuracy {
 namespace {
@@ -78,7 +78,6 @@ absl::StatusOr<std::vector<std::size_t>> ColumnsOf(const Cells& names) {
   return columns;
 }
 
-
 bool ReadNumber(absl::string_view text, double* value) {
   return absl::SimpleAtod(text, value) && std::isfinite(*value) && *value >= 0.0;
 }
@@ -86,14 +85,13 @@ bool ReadNumber(absl::string_view text, double* value) {
 // `cells` in the order of kNeeded.
 bool ReadRow(const Cells& cells, PricedSetting* row) {
   Setting& setting = row->setting;
-  const auto technique = TechniqueNamed(std::string(cells[0]), std::string(cells[1]),
-                                        std::string(cells[2]));
+  const auto technique =
+      TechniqueNamed(std::string(cells[0]), std::string(cells[1]), std::string(cells[2]));
   int count = 0;
   if (!technique.has_value() || !absl::SimpleAtoi(cells[3], &count) || count <= 0) return false;
   setting.technique = *technique;
   SetCount(&setting.technique, count);
-  return
-         ReadNumber(cells[4], &setting.image_scale) && setting.image_scale > 0.0 &&
+  return ReadNumber(cells[4], &setting.image_scale) && setting.image_scale > 0.0 &&
          setting.image_scale <= 2.0 && absl::SimpleAtoi(cells[5], &setting.jpeg_quality) &&
          ReadNumber(cells[6], &row->milliseconds) && row->milliseconds > 0.0 &&
          ReadNumber(cells[7], &row->relative_rmse);

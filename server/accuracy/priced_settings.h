@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "glm/vec2.hpp"
 #include "accuracy/setting.h"
+#include "glm/vec2.hpp"
 
 namespace thunderhead::accuracy {
 

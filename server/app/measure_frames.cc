@@ -89,14 +89,19 @@ absl::Status MeasureFrames(const Flags& flags) {
 
 Command AddMeasureFrames(CLI::App& measure) {
   auto flags = std::make_shared<Flags>();
-  CLI::App* frames = measure.add_subcommand("frames", "Frames a second of each technique and preset");
+  CLI::App* frames =
+      measure.add_subcommand("frames", "Frames a second of each technique and preset");
   frames->add_option("STORM", flags->storm, "Storm file or folder")->required();
   frames->add_option("--time", flags->time_index,
                      "Which of its times, from 0; without it that with the most condensate");
   frames->add_option("--size", flags->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
-  frames->add_option("--slices", flags->slices, "Slices, or samples along a ray, of the papers' modes")
+  frames
+      ->add_option("--slices", flags->slices,
+                   "Slices, or samples along a ray, of the papers' modes")
       ->capture_default_str();
-  frames->add_option("--transport", flags->transport, "Of the papers' modes: paper, consistent or diffusion")
+  frames
+      ->add_option("--transport", flags->transport,
+                   "Of the papers' modes: paper, consistent or diffusion")
       ->check(CLI::IsMember({"paper", "consistent", "diffusion"}))
       ->capture_default_str();
   frames->add_option("--runs", flags->runs, "Runs of which the medians are taken")

@@ -7,6 +7,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_replace.h"
+#include "accuracy/light_corrector.h"
+#include "accuracy/named_settings.h"
 #include "app/commands.h"
 #include "app/interruption.h"
 #include "app/kept_truth.h"
@@ -15,12 +17,10 @@
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "base/whole_file.h"
-#include "accuracy/light_corrector.h"
 #include "frame/image_codec.h"
 #include "frame/tone_map.h"
 #include "gl/context.h"
 #include "measure/light_parts.h"
-#include "accuracy/named_settings.h"
 #include "measure/trade.h"
 #include "spdlog/spdlog.h"
 
@@ -129,7 +129,7 @@ absl::Status MeasureTracedLight(const Compared& compared, const scene::Scene& sc
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const std::unique_ptr<accuracy::LightCorrector> corrector,
       accuracy::LightCorrector::Create(scene, compared.local.fields,
-                                         std::make_shared<gl::ProgramCache>(), 0));
+                                       std::make_shared<gl::ProgramCache>(), 0));
   base::Stopwatch stopwatch;
   double traced_ms = 0.0;
   for (const double million_paths : compared.flags.million_paths) {

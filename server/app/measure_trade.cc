@@ -100,15 +100,13 @@ std::string Table(const std::vector<measure::TradeRow>& rows) {
                                      "bits", "Mpaths", "jpeg", "ms", "RMSE", "bias", "FLIP");
   for (const measure::TradeRow& row : rows) {
     const measure::Setting& setting = row.setting;
-    absl::StrAppendFormat(&text,
-                          "%-13s %-28s %-11s %6d %5g %5g %-6s %6g %4d %9.2f %8.4f %+8.4f %7.4f%s\n",
-                          scene::NameOf(setting.technique),
-                          accuracy::ModeOf(setting.technique).name,
-                          accuracy::TransportNameOf(setting.technique),
-                          accuracy::CountOf(setting.technique), setting.image_scale,
-                          setting.light_detail, setting.single_precision ? "single" : "half",
-                          setting.million_paths, setting.jpeg_quality, row.milliseconds,
-                          row.relative_rmse, row.relative_bias, row.flip, row.pareto ? "  *" : "");
+    absl::StrAppendFormat(
+        &text, "%-13s %-28s %-11s %6d %5g %5g %-6s %6g %4d %9.2f %8.4f %+8.4f %7.4f%s\n",
+        scene::NameOf(setting.technique), accuracy::ModeOf(setting.technique).name,
+        accuracy::TransportNameOf(setting.technique), accuracy::CountOf(setting.technique),
+        setting.image_scale, setting.light_detail, setting.single_precision ? "single" : "half",
+        setting.million_paths, setting.jpeg_quality, row.milliseconds, row.relative_rmse,
+        row.relative_bias, row.flip, row.pareto ? "  *" : "");
   }
   return text;
 }

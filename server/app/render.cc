@@ -85,8 +85,7 @@ absl::StatusOr<v1::RenderImageResponse> CallHere(const Flags& flags,
 // light.
 void PrintAccuracy(const v1::RenderImageResponse& response) {
   const v1::Scene& scene = response.scene();
-  const bool awaited =
-      scene.rendering().light_volume().traced_light() == v1::TRACED_LIGHT_AWAITED;
+  const bool awaited = scene.rendering().light_volume().traced_light() == v1::TRACED_LIGHT_AWAITED;
   const bool limited = scene.accuracy().limit_case() != v1::Accuracy::LIMIT_NOT_SET;
   if (!response.has_accuracy() || (!awaited && !limited)) return;
   const v1::AccuracyReport& report = response.accuracy();
@@ -96,7 +95,8 @@ void PrintAccuracy(const v1::RenderImageResponse& response) {
                                scene::NameOf(technique), accuracy::ModeOf(technique).name,
                                accuracy::TransportNameOf(technique), report.slices(),
                                report.image_scale(), report.estimated_error());
-  if (limited) std::cout << absl::StrFormat(", about %.3g ms a frame", report.expected_milliseconds());
+  if (limited)
+    std::cout << absl::StrFormat(", about %.3g ms a frame", report.expected_milliseconds());
   if (response.modelled().traced_paths() > 0) {
     std::cout << absl::StrFormat(", %.3g million traced paths",
                                  1e-6 * static_cast<double>(response.modelled().traced_paths()));

@@ -60,7 +60,8 @@ absl::Status SetCamera(const std::string& kind, v1::Camera& camera) {
 absl::Status SetTechnique(const std::string& name, v1::Rendering& rendering) {
   const google::protobuf::OneofDescriptor* techniques =
       v1::Rendering::descriptor()->FindOneofByName("technique");
-  const google::protobuf::FieldDescriptor* field = v1::Rendering::descriptor()->FindFieldByName(name);
+  const google::protobuf::FieldDescriptor* field =
+      v1::Rendering::descriptor()->FindFieldByName(name);
   const bool known = field != nullptr && field->containing_oneof() == techniques &&
                      field->type() == google::protobuf::FieldDescriptor::TYPE_MESSAGE &&
                      field->message_type() != v1::OtherTechnique::descriptor();
@@ -79,9 +80,8 @@ absl::Status SetPreset(const std::string& name, v1::Rendering& rendering) {
   if (!v1::Preset_Parse(value, &preset) || preset == v1::PRESET_UNSPECIFIED) {
     std::vector<std::string> names;
     for (const accuracy::NamedPreset& known : accuracy::kPresets) names.emplace_back(known.name);
-    return absl::InvalidArgumentError(absl::StrCat("--preset (or --quality) is '", name,
-                                                   "'; it must be one of ",
-                                                   absl::StrJoin(names, ", ")));
+    return absl::InvalidArgumentError(absl::StrCat(
+        "--preset (or --quality) is '", name, "'; it must be one of ", absl::StrJoin(names, ", ")));
   }
   rendering.set_preset(preset);
   return absl::OkStatus();
@@ -128,11 +128,11 @@ void AddTechniqueOptions(CLI::App& command, SceneFlags& flags) {
   CLI::Option* quality =
       command.add_option("--quality", flags.preset, "fast, balanced (the default) or true")
           ->check(CLI::IsMember({"fast", "balanced", "true"}));
-  CLI::Option* preset = command.add_option(
-      "--preset", flags.preset, "A named setting, such as per_field_phase_translucent of the papers");
-  CLI::Option* renderer =
-      command.add_option("--renderer", flags.technique,
-                         "half_angle, light_volume, metaball, cumulus or reference");
+  CLI::Option* preset =
+      command.add_option("--preset", flags.preset,
+                         "A named setting, such as per_field_phase_translucent of the papers");
+  CLI::Option* renderer = command.add_option(
+      "--renderer", flags.technique, "half_angle, light_volume, metaball, cumulus or reference");
   quality->excludes(preset)->excludes(renderer);
   preset->excludes(renderer);
   command.add_option("--slices", flags.slices, "Number of slices, or samples along a ray");

@@ -14,8 +14,8 @@ struct SceneFlags {
   std::string file;  // may be empty
   std::optional<std::uint32_t> time_index;
   std::optional<std::uint32_t> slices;
-  std::string size;      // WxH, may be empty
-  std::string camera;    // orbit, spotter or top-down; may be empty
+  std::string size;       // WxH, may be empty
+  std::string camera;     // orbit, spotter or top-down; may be empty
   std::string technique;  // "half_angle" and so on; may be empty
   std::string preset;     // "balanced" and so on; may be empty, and is if `technique` is not
   std::optional<float> max_error;

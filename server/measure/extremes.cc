@@ -65,7 +65,7 @@ scene::Scene PlainScene(const accuracy::Path& path) {
 std::vector<Extreme> Extremes() {
   std::vector<Extreme> extremes;
   internal::AppendInputExtremes(&extremes);
-  for (const auto& path : accuracy::accuracy::kFieldPaths) {
+  for (const auto& path : accuracy::kFieldPaths) {
     internal::AppendDepthExtremes(path, &extremes);
     internal::AppendShapeExtremes(path, &extremes);
     internal::AppendViewExtremes(path, &extremes);

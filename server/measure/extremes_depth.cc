@@ -38,13 +38,13 @@ Extreme DepthPerSlice(const accuracy::Path& path, double per_slice,
                                          probe.Draw(scene, *fields, {.single_precision = thin}));
             // Delta scaling takes the forward peak out of what the eye loses, similarity scaling
             // all that goes on forward.
-            const renderers::GroupWeights weights(renderers::MediumOf(scene, *fields),
-                                                  *scene::MediumSettingsOf(scene.rendering.technique));
+            const renderers::GroupWeights weights(
+                renderers::MediumOf(scene, *fields),
+                *scene::MediumSettingsOf(scene.rendering.technique));
             const bool similar = transport.value == scene::Transport::kDiffusion &&
                                  path.name == scene::LightVolume::kName;
             const std::vector<double>& lost = similar ? weights.transport : weights.eye;
-            return TransmittanceNear(path, seen, depth * lost.front(), kUpright, kFewSlices,
-                                     thin);
+            return TransmittanceNear(path, seen, depth * lost.front(), kUpright, kFewSlices, thin);
           }};
 }
 
@@ -109,13 +109,14 @@ Extreme Radius(const accuracy::Path& path, float radius_m) {
             cloud.radius_m = radius_m;
             THUNDERHEAD_ASSIGN_OR_RETURN(
                 const Seen seen, probe.Draw(scene, *FieldsOf({}), {.single_precision = thin}));
-            return TransmittanceNear(path, seen, depth, kUpright, *scene::SlicesOf(scene.rendering.technique),
-                                     thin);
+            return TransmittanceNear(path, seen, depth, kUpright,
+                                     *scene::SlicesOf(scene.rendering.technique), thin);
           }};
 }
 
 // All light that is scattered goes on forwards, and not a bit more.
-Extreme LightEnergy(const accuracy::Path& path, const accuracy::Named<scene::Transport>& transport) {
+Extreme LightEnergy(const accuracy::Path& path,
+                    const accuracy::Named<scene::Transport>& transport) {
   return {absl::StrFormat("%s: light is never more than came in, theta_f 90, %s", path.name,
                           transport.name),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
@@ -151,7 +152,8 @@ void AppendDepthExtremes(const accuracy::Path& path, std::vector<Extreme>* extre
   for (const float radius_m : {1e-7F, 1e-6F, 1e-3F, 1e-1F}) {
     extremes->push_back(Radius(path, radius_m));
   }
-  for (const auto& transport : accuracy::kTransports) extremes->push_back(LightEnergy(path, transport));
+  for (const auto& transport : accuracy::kTransports)
+    extremes->push_back(LightEnergy(path, transport));
 }
 
 }  // namespace thunderhead::measure::internal

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "measure/extremes.h"
 #include "accuracy/named_settings.h"
+#include "measure/extremes.h"
 
 namespace thunderhead::measure::internal {
 

@@ -101,24 +101,24 @@ double PaperDepth(const std::vector<renderers::Ball>& balls, double tau, const g
 // Man's densities are in proportion to the extinction, his optical depth is a setting: whatever the
 // storm's own, the picture is the same.
 Extreme Paper(double depth) {
-  return {absl::StrFormat("%s: paper transport, optical depth %g", kPath.name, depth),
-          [=](Probe& probe) -> absl::StatusOr<Verdict> {
-            scene::Scene scene = BallScene(scene::Transport::kPaper);
-            auto& metaballs = std::get<scene::Metaballs>(scene.rendering.technique);
-            metaballs.optical_depth = 0.5;
-            const auto fields = FieldsOf({.optical_depth = depth});
-            const Look look;
-            THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *fields, look));
-            THUNDERHEAD_ASSIGN_OR_RETURN(
-                const renderers::BallCloud cloud,
-                renderers::FitBalls(renderers::MediumOf(scene, *fields), *fields, kBalls));
-            const volume::RegularGrid& grid = fields->grid;
-            const double expected = std::exp(
-                -PaperDepth(cloud.balls, metaballs.optical_depth,
-                            0.5 * (grid.low_corner_m + grid.HighCorner_m()),
-                            scene::Direction(look.view_azimuth_deg, look.view_elevation_deg)));
-            return Sound(seen, Near(seen.transmittance, expected, 1e-3, 1.0));
-          }};
+  return {
+      absl::StrFormat("%s: paper transport, optical depth %g", kPath.name, depth),
+      [=](Probe& probe) -> absl::StatusOr<Verdict> {
+        scene::Scene scene = BallScene(scene::Transport::kPaper);
+        auto& metaballs = std::get<scene::Metaballs>(scene.rendering.technique);
+        metaballs.optical_depth = 0.5;
+        const auto fields = FieldsOf({.optical_depth = depth});
+        const Look look;
+        THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *fields, look));
+        THUNDERHEAD_ASSIGN_OR_RETURN(
+            const renderers::BallCloud cloud,
+            renderers::FitBalls(renderers::MediumOf(scene, *fields), *fields, kBalls));
+        const volume::RegularGrid& grid = fields->grid;
+        const double expected = std::exp(-PaperDepth(
+            cloud.balls, metaballs.optical_depth, 0.5 * (grid.low_corner_m + grid.HighCorner_m()),
+            scene::Direction(look.view_azimuth_deg, look.view_elevation_deg)));
+        return Sound(seen, Near(seen.transmittance, expected, 1e-3, 1.0));
+      }};
 }
 
 }  // namespace

@@ -39,13 +39,13 @@ Extreme TooManyCells(const accuracy::Path& path) {
             const auto fields = FieldsOf({.cells = glm::ivec3(most + 77, 2, 2)});
             const scene::Scene scene = PlainScene(path);
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *fields, {}));
-            return TransmittanceNear(path, seen, 1.0, kUpright, *scene::SlicesOf(scene.rendering.technique));
+            return TransmittanceNear(path, seen, 1.0, kUpright,
+                                     *scene::SlicesOf(scene.rendering.technique));
           }};
 }
 
 // Not drawn: transmittance is 1 and radiance 0, exactly.
-Extreme Nothing(const accuracy::Path& path, const std::string& what, const Box& box,
-                bool visible) {
+Extreme Nothing(const accuracy::Path& path, const std::string& what, const Box& box, bool visible) {
   return {absl::StrFormat("%s: %s", path.name, what), [=](Probe& probe) -> absl::StatusOr<Verdict> {
             scene::Scene scene = PlainScene(path);
             for (scene::FieldParameters& field : scene.fields) field.visible = visible;

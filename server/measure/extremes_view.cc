@@ -15,8 +15,8 @@
 namespace thunderhead::measure::internal {
 namespace {
 
-Extreme AgainstLight(const accuracy::Path& path, const std::string& what,
-                     double azimuth_deg, double elevation_deg) {
+Extreme AgainstLight(const accuracy::Path& path, const std::string& what, double azimuth_deg,
+                     double elevation_deg) {
   return {absl::StrFormat("%s: view %s the light", path.name, what),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
             const Look look{.view_azimuth_deg = azimuth_deg,
@@ -100,7 +100,8 @@ Extreme InsideTheCloud(const accuracy::Path& path, double elevation_deg) {
             // before it, all or nothing counts.
             constexpr DepthErrors kInside = {.half_angle = 1.0 / 64.0 + kUpright.half_angle,
                                              .light_volume = kUpright.light_volume};
-            return TransmittanceNear(path, seen, 1.0, kInside, *scene::SlicesOf(scene.rendering.technique));
+            return TransmittanceNear(path, seen, 1.0, kInside,
+                                     *scene::SlicesOf(scene.rendering.technique));
           }};
 }
 

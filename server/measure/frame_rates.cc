@@ -188,12 +188,11 @@ std::string ToTable(const Machine& machine, const std::vector<FrameRateRow>& row
       "%s, %d threads; %s\n\n%-13s %-35s %10s %10s  %s\n", machine.processor, machine.threads,
       machine.gl_renderer, "renderer", "mode", "camera/s", "sun/s", "milliseconds by stage");
   for (const FrameRateRow& row : rows) {
-    absl::StrAppendFormat(&text, "%-13s %-35s %10.1f %10.1f  %s\n", row.technique,
-                          row.mode, row.camera_fps, row.sun_fps,
-                          absl::StrJoin(row.stages, ", ", [](std::string* out, const auto& stage) {
-                            absl::StrAppendFormat(out, "%s %.2f", scene::NameOf(stage.stage),
-                                                  stage.milliseconds);
-                          }));
+    absl::StrAppendFormat(
+        &text, "%-13s %-35s %10.1f %10.1f  %s\n", row.technique, row.mode, row.camera_fps,
+        row.sun_fps, absl::StrJoin(row.stages, ", ", [](std::string* out, const auto& stage) {
+          absl::StrAppendFormat(out, "%s %.2f", scene::NameOf(stage.stage), stage.milliseconds);
+        }));
   }
   return text;
 }

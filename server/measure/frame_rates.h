@@ -21,7 +21,7 @@ struct FrameRateOptions {
   int height_px = 300;
   int slices = 128;
   scene::Transport transport = scene::Transport::kConsistent;  // of the papers' translucent modes
-  int runs = 5;  // of which the medians are taken
+  int runs = 5;                                                // of which the medians are taken
   double seconds_a_run = 0.4;
 };
 
@@ -32,7 +32,7 @@ struct StageMedian {
 
 struct FrameRateRow {
   std::string_view technique;
-  std::string_view mode;  // the papers' mode or preset; "default" is what scenes start with
+  std::string_view mode;    // the papers' mode or preset; "default" is what scenes start with
   double camera_fps = 0.0;  // the camera moves every frame
   double sun_fps = 0.0;     // the sun moves every frame
   // The stages that a camera move reruns, and the light, which only a sun move reruns.

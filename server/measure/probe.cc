@@ -109,9 +109,8 @@ absl::StatusOr<Seen> Probe::Draw(const scene::Scene& scene, const volume::Hydrom
     light = LightBufferSoundness(renderer.Light());
   } else if (const auto* metaballs = std::get_if<scene::Metaballs>(&technique)) {
     renderers::MetaballRenderer renderer(programs_);
-    THUNDERHEAD_ASSIGN_OR_RETURN(
-        const renderers::BallCloud balls,
-        renderers::FitBalls(medium.Content(), fields, metaballs->count));
+    THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::BallCloud balls,
+                                 renderers::FitBalls(medium.Content(), fields, metaballs->count));
     THUNDERHEAD_RETURN_IF_ERROR(renderer.CarryLight(balls, medium.Content(), settings));
     THUNDERHEAD_RETURN_IF_ERROR(renderer.DrawView(settings));
     seen.eye = frame::ReadLinear(renderer.Eye());

@@ -138,8 +138,10 @@ std::string ToCsv(const std::vector<SliceCurve>& curves) {
 }
 
 std::string ToSvg(const std::string& title, const std::vector<SliceCurve>& curves) {
-  constexpr std::array<const char*, accuracy::kTransports.size()> kColors = {"#d9730d", "#1f6fb4", "#3a8f4a"};
-  constexpr std::array<const char*, accuracy::kTransports.size()> kColorNames = {"orange", "blue", "green"};
+  constexpr std::array<const char*, accuracy::kTransports.size()> kColors = {"#d9730d", "#1f6fb4",
+                                                                             "#3a8f4a"};
+  constexpr std::array<const char*, accuracy::kTransports.size()> kColorNames = {"orange", "blue",
+                                                                                 "green"};
   std::vector<double> slices;
   std::vector<double> errors;
   std::vector<std::string> names;

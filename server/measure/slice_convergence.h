@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "measure/machine.h"
 #include "accuracy/named_settings.h"
+#include "measure/machine.h"
 #include "scene/scene.h"
 #include "volume/hydrometeor_fields.h"
 

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include "accuracy/named_settings.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "frame/image_codec.h"
-#include "accuracy/named_settings.h"
 
 namespace thunderhead::measure {
 namespace {
@@ -133,8 +133,8 @@ absl::StatusOr<std::shared_ptr<const renderers::LightCorrection>> Trade::Correct
   if (corrector_ == nullptr || !corrector_->Serves(traced, fields_) ||
       corrected_by_ > million_paths) {
     THUNDERHEAD_ASSIGN_OR_RETURN(
-        corrector_, accuracy::LightCorrector::Create(traced, fields_,
-                                                       std::make_shared<gl::ProgramCache>(), 0));
+        corrector_,
+        accuracy::LightCorrector::Create(traced, fields_, std::make_shared<gl::ProgramCache>(), 0));
     corrected_by_ = 0.0;
   }
   THUNDERHEAD_RETURN_IF_ERROR(

@@ -75,5 +75,4 @@ class Trade {
   frame::ToneMapper tone_mapper_;
 };
 
-
 }  // namespace thunderhead::measure

@@ -40,8 +40,8 @@ std::optional<TradeRow> RowOf(absl::string_view line) {
   TradeRow row;
   Setting& setting = row.setting;
   std::uint64_t bytes = 0;
-  const auto technique = accuracy::TechniqueNamed(std::string(cells[0]), std::string(cells[1]),
-                                                  std::string(cells[2]));
+  const auto technique =
+      accuracy::TechniqueNamed(std::string(cells[0]), std::string(cells[1]), std::string(cells[2]));
   int count = 0;
   if (!technique.has_value() || !absl::SimpleAtoi(cells[3], &count)) return std::nullopt;
   setting.technique = *technique;
@@ -118,14 +118,12 @@ std::string CsvHead(const TradeTitle& title) {
 
 std::string CsvLine(const TradeRow& row) {
   const Setting& setting = row.setting;
-  return absl::StrFormat("%s,%s,%s,%d,%g,%g,%s,%g,%d,%.3f,%.3f,%d,%.5f,%.5f,%.5f\n",
-                         scene::NameOf(setting.technique), accuracy::ModeOf(setting.technique).name,
-                         accuracy::TransportNameOf(setting.technique),
-                         accuracy::CountOf(setting.technique), setting.image_scale,
-                         setting.light_detail,
-                         PrecisionOf(setting), setting.million_paths, setting.jpeg_quality,
-                         row.milliseconds, row.milliseconds_spread, row.bytes, row.relative_rmse,
-                         row.relative_bias, row.flip);
+  return absl::StrFormat(
+      "%s,%s,%s,%d,%g,%g,%s,%g,%d,%.3f,%.3f,%d,%.5f,%.5f,%.5f\n", scene::NameOf(setting.technique),
+      accuracy::ModeOf(setting.technique).name, accuracy::TransportNameOf(setting.technique),
+      accuracy::CountOf(setting.technique), setting.image_scale, setting.light_detail,
+      PrecisionOf(setting), setting.million_paths, setting.jpeg_quality, row.milliseconds,
+      row.milliseconds_spread, row.bytes, row.relative_rmse, row.relative_bias, row.flip);
 }
 
 absl::StatusOr<std::vector<TradeRow>> ReadCsv(std::string_view text, std::string_view head) {

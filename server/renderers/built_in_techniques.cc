@@ -21,9 +21,9 @@ class ReferenceFactory final : public TechniqueFactory {
 
 TechniqueRegistry TechniqueRegistry::BuiltIn() {
   TechniqueRegistry registry;
-  for (auto&& technique : {MakeLightVolumeFactory(), MakeHalfAngleFactory(), MakeMetaballFactory(),
-                           MakeCumulusFactory(),
-                           std::shared_ptr<const TechniqueFactory>(new ReferenceFactory())}) {
+  for (auto&& technique :
+       {MakeLightVolumeFactory(), MakeHalfAngleFactory(), MakeMetaballFactory(),
+        MakeCumulusFactory(), std::shared_ptr<const TechniqueFactory>(new ReferenceFactory())}) {
     const absl::Status added = registry.Add(technique);
     THUNDERHEAD_CHECK(added.ok(), std::string(added.message()));
   }

@@ -12,8 +12,8 @@ struct Content {
   std::vector<physics::Hydrometeor> fields;  // drawn
   double occupied_share = 0.0;               // of the domain's volume
   int balls = 0;                             // metaballs
-  double fit_error = 0.0;  // of those, root mean square over the extinction's own
-  int ellipsoids = 0;      // of a cumulus
+  double fit_error = 0.0;                    // of those, root mean square over the extinction's own
+  int ellipsoids = 0;                        // of a cumulus
   std::vector<scene::NotShown> not_shown;
 };
 

@@ -31,8 +31,8 @@ absl::Status UnknownTechnique(std::string_view name, const TechniqueRegistry& re
     if (!technique->Capabilities().images) continue;
     absl::StrAppend(&known, known.empty() ? "" : ", ", std::string(technique->Name()));
   }
-  return absl::InvalidArgumentError(
-      absl::StrCat("there is no technique '", std::string(name), "' that draws; there are ", known));
+  return absl::InvalidArgumentError(absl::StrCat("there is no technique '", std::string(name),
+                                                 "' that draws; there are ", known));
 }
 
 }  // namespace
@@ -102,13 +102,12 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& scene, const
     const Cover* cover = nullptr;
     if (!technique_->Empty()) {
       drawn_slices_ = SlicesAt(scene, quality);
-      THUNDERHEAD_ASSIGN_OR_RETURN(
-          cover,
-          DrawContent(scene, fields,
-                      {scene.rendering.technique, view,
-                       workspace_.surroundings.IlluminationOf(scene), EyeSize(scene, quality),
-                       drawn_slices_, quality},
-                      first, &times));
+      THUNDERHEAD_ASSIGN_OR_RETURN(cover,
+                                   DrawContent(scene, fields,
+                                               {scene.rendering.technique, view,
+                                                workspace_.surroundings.IlluminationOf(scene),
+                                                EyeSize(scene, quality), drawn_slices_, quality},
+                                               first, &times));
     } else {
       workspace_.ground.ClearShadow();
     }

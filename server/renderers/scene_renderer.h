@@ -35,8 +35,8 @@ class SceneRenderer {
   using Fields = std::shared_ptr<const volume::HydrometeorFields>;
   using Registry = std::shared_ptr<const TechniqueRegistry>;
 
-  // Programs are linked in `programs`; the techniques are those of `registry`, whose work on the CPU
-  // (metaballs) several renderers may share.
+  // Programs are linked in `programs`; the techniques are those of `registry`, whose work on the
+  // CPU (metaballs) several renderers may share.
   explicit SceneRenderer(
       std::shared_ptr<gl::ProgramCache> programs = std::make_shared<gl::ProgramCache>(),
       Registry registry = std::make_shared<TechniqueRegistry>(TechniqueRegistry::BuiltIn()));
@@ -69,8 +69,8 @@ class SceneRenderer {
   const gl::Texture2D& Eye() const;
   // Around what was drawn.
   volume::WorldBox Box() const;
-  // Marks where the medium may be in a picture of `size_px`, if the technique draws it nowhere else;
-  // `margin_px` is how far it is spread there.
+  // Marks where the medium may be in a picture of `size_px`, if the technique draws it nowhere
+  // else; `margin_px` is how far it is spread there.
   absl::StatusOr<const Cover*> CoverOf(const scene::View& view, const glm::ivec2& size_px,
                                        double margin_px, Cover* cover);
   absl::Status Composite(const scene::Scene& scene, const scene::View& view, GLenum format,

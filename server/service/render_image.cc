@@ -105,14 +105,15 @@ grpc::ServerUnaryReactor* RenderImage(Engine& engine, grpc::CallbackServerContex
                                       v1::RenderImageResponse* response) {
   absl::Status status = CheckLimits(*request);
   *response->mutable_scene() = request->scene();
-  if (status.ok()) status = PrepareScene(engine.store, engine.loop.Techniques(), *response->mutable_scene());
+  if (status.ok())
+    status = PrepareScene(engine.store, engine.loop.Techniques(), *response->mutable_scene());
   if (!status.ok()) return Finished(context, status);
   if (response->scene().rendering().has_reference()) {
-    return Finished(context, base::InvalidField(
-                                 "scene.rendering.reference",
-                                 "is given, which only sessions show; for a file use "
-                                 "thunderhead render --renderer reference",
-                                 "TECHNIQUE_FOR_SESSIONS_ONLY"));
+    return Finished(context,
+                    base::InvalidField("scene.rendering.reference",
+                                       "is given, which only sessions show; for a file use "
+                                       "thunderhead render --renderer reference",
+                                       "TECHNIQUE_FOR_SESSIONS_ONLY"));
   }
   auto* reactor = new PictureReactor(engine, *request, *response);
   reactor->Begin();

@@ -82,10 +82,10 @@ absl::Status CheckOther(const v1::OtherTechnique& other,
   if (found && !own) return absl::OkStatus();
   return base::InvalidField(
       "scene.rendering.other.name",
-      absl::StrCat("is '", other.name(), "'; ",
-                   found ? "that technique has a field of its own in scene.rendering"
-                         : absl::StrCat("the server has the techniques ",
-                                        absl::StrJoin(names, ", "))),
+      absl::StrCat(
+          "is '", other.name(), "'; ",
+          found ? "that technique has a field of its own in scene.rendering"
+                : absl::StrCat("the server has the techniques ", absl::StrJoin(names, ", "))),
       "UNKNOWN_TECHNIQUE");
 }
 

@@ -16,7 +16,8 @@ grpc::ServerUnaryReactor* UpdateScene(Engine& engine, grpc::CallbackServerContex
   const auto session = engine.sessions.Find(request->session_id());
   if (!session.ok()) return Finished(context, session.status());
   const auto scene = std::make_shared<v1::Scene>(request->scene());
-  if (const absl::Status status = PrepareScene(engine.store, engine.loop.Techniques(), *scene); !status.ok()) {
+  if (const absl::Status status = PrepareScene(engine.store, engine.loop.Techniques(), *scene);
+      !status.ok()) {
     return Finished(context, status);
   }
   // Taken before the scene is framed, which may wait for a read: a later update must win.

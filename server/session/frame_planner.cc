@@ -85,7 +85,8 @@ FrameQuality FramePlanner::Finest(const scene::Scene& scene, scene::Stage first_
                                   double budget_ms) const {
   for (int step = kSteps; step > 0; --step) {
     const FrameQuality quality = Step(step);
-    if (costs_.Of(scene).EstimateMs(accuracy::MegaSamples(scene, quality), first_dirty) <= budget_ms)
+    if (costs_.Of(scene).EstimateMs(accuracy::MegaSamples(scene, quality), first_dirty) <=
+        budget_ms)
       return quality;
   }
   return Step(0);

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "scene/scene.h"
 #include "accuracy/cost_model.h"
+#include "scene/scene.h"
 #include "session/frame_source.h"
 #include "session/sessions.h"
 

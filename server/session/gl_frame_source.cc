@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
+#include "accuracy/corrector_pool.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
-#include "accuracy/corrector_pool.h"
 #include "frame/tone_map.h"
 #include "gl/context.h"
 #include "renderers/renderer_pool.h"
@@ -40,9 +40,7 @@ class GlFrameSource final : public FrameSource {
 
   const DeviceInfo& Device() const override { return info_; }
 
-  std::vector<TechniqueInfo> Techniques() const override {
-    return TechniquesOf(*registry_);
-  }
+  std::vector<TechniqueInfo> Techniques() const override { return TechniquesOf(*registry_); }
 
   std::shared_ptr<Preparation> PreparationOfScenes() const override {
     return registry_->PreparationOfScenes();

@@ -295,7 +295,8 @@ void RenderLoop::DrawFor(const std::shared_ptr<Session>& session, Track& track,
 
 void RenderLoop::Send(Track& track, DrawnFrame frame) {
   std::vector<StageTime>& stages = frame.picture.stages;
-  if (track.prepare_ms > 1.0) stages.insert(stages.begin(), {scene::FrameStage::kFit, track.prepare_ms});
+  if (track.prepare_ms > 1.0)
+    stages.insert(stages.begin(), {scene::FrameStage::kFit, track.prepare_ms});
   track.prepare_ms = 0.0;
   if (track.read_ms > 0.0) {
     stages.insert(stages.begin(), {scene::FrameStage::kRead, std::exchange(track.read_ms, 0.0)});
@@ -323,7 +324,8 @@ absl::StatusOr<DisplayFrame> RenderLoop::Draw(
   last_drawn_ = LastDrawn{scene, quality};
   // The time of the first frame is not representative: it includes shader compilation.
   if (std::exchange(warm_, true)) {
-    machine_costs_.Of(scene).Observe(accuracy::MegaSamples(scene, quality), total_ms, picture->stages);
+    machine_costs_.Of(scene).Observe(accuracy::MegaSamples(scene, quality), total_ms,
+                                     picture->stages);
   }
   const scene::Technique& technique = scene.rendering.technique;
   const bool compiled =

@@ -21,14 +21,14 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "accuracy/cost_model.h"
+#include "accuracy/offers.h"
 #include "base/stopwatch.h"
 #include "base/wake_signal.h"
-#include "accuracy/cost_model.h"
 #include "session/fields_reader.h"
 #include "session/frame_encoder.h"
 #include "session/frame_planner.h"
 #include "session/frame_source.h"
-#include "accuracy/offers.h"
 #include "session/sessions.h"
 #include "session/truth_source.h"
 #include "session/truth_tracer.h"
@@ -107,7 +107,7 @@ class RenderLoop {
   struct TracedLight {
     std::uint64_t revision = 0;
     std::optional<accuracy::LightProgress> begun_at;  // what was there before
-    std::int64_t shown = 0;                             // paths of the newest picture
+    std::int64_t shown = 0;                           // paths of the newest picture
     base::Stopwatch since_shown;
     bool ended = false;
   };

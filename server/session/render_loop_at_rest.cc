@@ -45,7 +45,8 @@ RenderLoop::Outcome RenderLoop::Check(const std::shared_ptr<Session>& session, T
   }
   const accuracy::Setting current = accuracy::SettingOf(*decided.scene);
   auto again = offers_.Decide(*asked.scene, current);
-  if (again.ok() && accuracy::SettingOf(*again) != current && decided.decided_again < kMostDecidedAgain) {
+  if (again.ok() && accuracy::SettingOf(*again) != current &&
+      decided.decided_again < kMostDecidedAgain) {
     decided.scene = std::make_shared<const scene::Scene>(*std::move(again));
     decided.checked = false;
     ++decided.decided_again;
@@ -82,7 +83,7 @@ RenderLoop::Outcome RenderLoop::TraceLight(const std::shared_ptr<Session>& sessi
     light.shown = paths;
   }
   const accuracy::LightProgress since{paths - light.begun_at->paths,
-                                        progress->steps - light.begun_at->steps};
+                                      progress->steps - light.begun_at->steps};
   light.ended = progress->steps == 0 || since.HasTraced(accuracy::kTracedPaths);
   if (paths == 0) return {!light.ended, std::nullopt};
   const double ms = light.since_shown.ElapsedMs();

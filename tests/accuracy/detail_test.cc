@@ -15,7 +15,8 @@ class DetailInSlab : public SlabView, public testing::WithParamInterface<accurac
   void SetUp() override {
     test_support::SetPath(&scene_.rendering.technique, GetParam());
     test_support::SetMode(&scene_.rendering.technique, test_support::kWithDetail);
-    test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);  // the eye sees the whole extinction
+    test_support::SetTransport(&scene_.rendering.technique,
+                               scene::Transport::kPaper);  // the eye sees the whole extinction
     scene::SetSlices(&scene_.rendering.technique, 512);
   }
 
@@ -60,11 +61,10 @@ TEST_P(DetailInSlab, OtherModesDoNotHaveIt) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Renderers, DetailInSlab,
-                         testing::Values(test_support::kHalfAngle,
-                                         test_support::kLightVolume),
+                         testing::Values(test_support::kHalfAngle, test_support::kLightVolume),
                          [](const auto& renderer) {
                            return renderer.param == test_support::kHalfAngle ? "HalfAngle"
-                                                                                : "LightVolume";
+                                                                             : "LightVolume";
                          });
 
 }  // namespace

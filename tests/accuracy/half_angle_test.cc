@@ -13,7 +13,9 @@ namespace {
 
 class HalfAngle : public SlabView {
  protected:
-  void SetUp() override { test_support::SetPath(&scene_.rendering.technique, test_support::kHalfAngle); }
+  void SetUp() override {
+    test_support::SetPath(&scene_.rendering.technique, test_support::kHalfAngle);
+  }
 };
 
 // The slab's hard faces cut tilted slices: a ray counts its path in whole slices, off by up to half
@@ -65,7 +67,8 @@ TEST_F(SingleScattering, SeenFromAboveWithoutPerspective) {
     const double sun = 1.0 / std::sin(60.0 * std::numbers::pi / 180);
     const double expected = PhaseTerm(90.0, 60.0) * -std::expm1(-depth * (1.0 + sun)) / (1.0 + sun);
     const Seen seen = Look(depth, view, 60.0);
-    const double error = kTextureError + HardFaceError(*scene::SlicesOf(scene_.rendering.technique), depth);
+    const double error =
+        kTextureError + HardFaceError(*scene::SlicesOf(scene_.rendering.technique), depth);
     for (std::size_t pixel = 0; pixel < seen.eye.size(); pixel += 4) {
       EXPECT_NEAR(seen.eye[pixel] / expected, 1.0, error) << depth;
       EXPECT_NEAR(seen.eye[pixel + 3], std::exp(-depth), error * std::min(depth, 1.0)) << depth;
@@ -193,9 +196,9 @@ TEST_F(HalfAngle, PaperTransportIsAsPrinted) {
   SetPhase(physics::PhaseKind::kCornetteShanks, 0.979F);
   double angle_deg = 5.0;  // bisection for CP(angle) = 0.9
   for (double step = 4.0; step > 1e-6; step /= 2) {
-    const double within =
-        physics::CumulativePhase(physics::PhaseOf(
-            scene_.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].optics), angle_deg * std::numbers::pi / 180);
+    const double within = physics::CumulativePhase(
+        physics::PhaseOf(scene_.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].optics),
+        angle_deg * std::numbers::pi / 180);
     angle_deg += within < 0.9 ? step : -step;
   }
   scene::MediumSettingsOf(&scene_.rendering.technique)->theta_f_deg = 2.0 * angle_deg;
@@ -236,8 +239,7 @@ class OpticalDepths : public HalfAngle, public testing::WithParamInterface<doubl
 TEST_P(OpticalDepths, NothingBreaks) {
   // The second number is of more than one slab.
   for (const int slices : {8, 40}) {
-    for (const auto mode :
-         {test_support::kLowAlbedo, test_support::kPerFieldPhase}) {
+    for (const auto mode : {test_support::kLowAlbedo, test_support::kPerFieldPhase}) {
       for (const auto transport : {scene::Transport::kPaper, scene::Transport::kConsistent}) {
         for (const double elevation_deg : {-80.0, 30.0, 89.0}) {
           test_support::SetMode(&scene_.rendering.technique, mode);

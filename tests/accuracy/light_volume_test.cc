@@ -12,7 +12,9 @@ namespace {
 
 class LightVolume : public SlabView {
  protected:
-  void SetUp() override { test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume); }
+  void SetUp() override {
+    test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);
+  }
 
   void SingleScattering() {
     test_support::SetMode(&scene_.rendering.technique, test_support::kLowAlbedo);
@@ -100,8 +102,7 @@ TEST_F(LightVolume, AlbedoScalesSingleScattering) {
 TEST_F(LightVolume, AgreesWithHalfAngleSlicing) {
   in_air_ = true;
   SetPhase(physics::PhaseKind::kCornetteShanks, 0.85F);
-  for (const auto mode :
-       {test_support::kUniformPhase, test_support::kPerFieldPhase}) {
+  for (const auto mode : {test_support::kUniformPhase, test_support::kPerFieldPhase}) {
     test_support::SetMode(&scene_.rendering.technique, mode);
     for (const double depth : {0.1, 1.0, 10.0, 100.0}) {
       for (const double elevation_deg : {-60.0, 30.0, 80.0}) {
@@ -132,8 +133,7 @@ TEST_F(LightVolume, PaperTransportDependsOnTheNumberOfSlicesAsPrinted) {
   const double coarse = seen(16, test_support::kLightVolume);
   const double fine = seen(128, test_support::kLightVolume);
   EXPECT_GT(coarse, 1.05 * fine);
-  const double slicing =
-      seen(16, test_support::kHalfAngle) / seen(128, test_support::kHalfAngle);
+  const double slicing = seen(16, test_support::kHalfAngle) / seen(128, test_support::kHalfAngle);
   // A slice's own share of the light is counted at its middle here, before it there.
   EXPECT_NEAR(coarse / fine / slicing, 1.0, 0.05);
 }
@@ -149,8 +149,7 @@ TEST_F(LightVolume, ThickSlabIsWhite) {
 class MarchedDepths : public LightVolume, public testing::WithParamInterface<double> {};
 
 TEST_P(MarchedDepths, NothingBreaks) {
-  for (const auto mode :
-       {test_support::kLowAlbedo, test_support::kPerFieldPhase}) {
+  for (const auto mode : {test_support::kLowAlbedo, test_support::kPerFieldPhase}) {
     for (const auto transport :
          {scene::Transport::kPaper, scene::Transport::kConsistent, scene::Transport::kDiffusion}) {
       for (const double elevation_deg : {-80.0, 30.0, 89.0}) {

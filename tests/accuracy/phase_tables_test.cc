@@ -185,8 +185,7 @@ TEST_F(Halos, OfAThinIceCloudBeforeTheSun) {
   }
   scene_.fields[0].optics.phase = {physics::PhaseKind::kIceRough};
   // Rough crystals have none: the brightest is next to the sun.
-  EXPECT_NEAR(Brightest(LookUp(90.0, test_support::kHalfAngle), 20.0, 30.0).angle_deg, 20.0,
-              0.3);
+  EXPECT_NEAR(Brightest(LookUp(90.0, test_support::kHalfAngle), 20.0, 30.0).angle_deg, 20.0, 0.3);
 }
 
 }  // namespace

@@ -118,8 +118,11 @@ class SlabView : public testing::Test {
   double PhaseTerm(double elevation_deg, double sun_elevation_deg) {
     const double mu = -glm::dot(scene::Direction(kViewAzimuth_deg, elevation_deg),
                                 scene::Direction(kSunAzimuth_deg, sun_elevation_deg));
-    return physics::PhaseValue(physics::PhaseOf(
-            scene_.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].optics), mu) / (4 * std::numbers::pi);
+    return physics::PhaseValue(
+               physics::PhaseOf(
+                   scene_.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].optics),
+               mu) /
+           (4 * std::numbers::pi);
   }
 
   scene::Scene scene_ = test_support::PlainScene();

@@ -54,6 +54,7 @@ int Run(int argc, char** argv) {
   if (benchmark::ReportUnrecognizedArguments(count, pointers.data())) return 2;
   benchmark::AddCustomContext("gl_renderer", Sample::Get().context->Info().renderer);
   RegisterModes();
+  RegisterPresets();
   RegisterMetaballs();
   RegisterCumulus();
   RegisterSavings();

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "glm/geometric.hpp"
 #include "accuracy/named_settings.h"
+#include "glm/geometric.hpp"
 #include "tests/bench/storm_bench.h"
+#include "tests/support/techniques.h"
 #include "volume/coarsen.h"
 #include "volume/extinction.h"
-#include "tests/support/techniques.h"
 
 namespace thunderhead::bench {
 namespace {
@@ -67,15 +67,14 @@ Fields Refined(const Fields& fields, int factor) {
   return fine;
 }
 
-std::string Name(const std::string& part, const measure::Named<scene::Renderer>& path,
-                 const std::string& what) {
+std::string Name(const std::string& part, const accuracy::Path& path, const std::string& what) {
   return part + "/" + std::string(path.name) + "/" + what;
 }
 
 // The camera moves; and, where light is kept apart from the view, the sun.
 void RegisterBoth(const std::string& name, const scene::Scene& scene, const Fields& fields) {
   Register(name, scene, fields, Moving::kCamera);
-  if (scene.rendering.renderer != test_support::kHalfAngle) {
+  if (accuracy::PathOf(scene.rendering.technique) != test_support::kHalfAngle) {
     Register(name + "/light", scene, fields, Moving::kSun);
   }
 }
@@ -87,7 +86,7 @@ void RegisterSavings() {
   const Fields hazy = InHaze(fields);
   for (const auto& path : accuracy::kFieldPaths) {
     scene::Scene scene = PaperScene();
-    test_support::SetPath(&scene.rendering.technique, path.value);
+    test_support::SetPath(&scene.rendering.technique, path);
     RegisterBoth(Name("saving", path, "five_fields_as_they_merge"), scene, fields);
     RegisterBoth(Name("saving", path, "empty_space_drawn"), scene, hazy);
     scene::Scene detailed = scene;
@@ -105,7 +104,7 @@ void RegisterGrowth() {
   const Fields& fields = Sample::Get().fields;
   for (const auto& path : accuracy::kFieldPaths) {
     scene::Scene paper = PaperScene();
-    test_support::SetPath(&paper.rendering.technique, path.value);
+    test_support::SetPath(&paper.rendering.technique, path);
     for (const int slices : {32, 64, 128, 256, 512}) {
       scene::Scene scene = paper;
       scene::SetSlices(&scene.rendering.technique, slices);

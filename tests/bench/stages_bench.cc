@@ -4,6 +4,7 @@
 #include <string>
 
 #include "accuracy/named_settings.h"
+#include "accuracy/presets.h"
 #include "tests/bench/storm_bench.h"
 #include "tests/support/techniques.h"
 
@@ -15,18 +16,29 @@ void RegisterModes() {
   const Fields& fields = Sample::Get().fields;
   for (const auto& path : accuracy::kFieldPaths) {
     scene::Scene scene = PaperScene();
-    test_support::SetPath(&scene.rendering.technique, path.value);
+    test_support::SetPath(&scene.rendering.technique, path);
     const std::string prefix = std::string(path.name) + "/";
     for (std::size_t i = 0; i < accuracy::kModes.size(); ++i) {
-      test_support::SetMode(&scene.rendering.technique, accuracy::kModes[i].value);
+      test_support::SetMode(&scene.rendering.technique, accuracy::kModes[i]);
       Register(prefix + std::string(accuracy::kModes[i].name), scene, fields, Moving::kCamera,
                kPaperFps[i]);
     }
-    test_support::SetMode(&scene.rendering.technique, scene::Rendering().mode);
+    test_support::SetMode(&scene.rendering.technique, test_support::kPerFieldPhase);
     Register(prefix + "sun_moves", scene, fields, Moving::kSun);
     Register(prefix + "sun_climbs", scene, fields, Moving::kSunClimbs);
     Register(prefix + "field_scale_moves", scene, fields, Moving::kField);
     Register(prefix + "exposure_moves", scene, fields, Moving::kExposure);
+  }
+}
+
+void RegisterPresets() {
+  const Fields& fields = Sample::Get().fields;
+  for (const accuracy::Preset preset : {accuracy::Preset::kFast, accuracy::kDefaultPreset}) {
+    scene::Scene scene = PaperScene();
+    scene.rendering.technique = accuracy::TechniqueOf(preset);
+    const std::string name = "preset/" + std::string(accuracy::NameOf(preset));
+    Register(name, scene, fields, Moving::kCamera);
+    Register(name + "/sun_moves", scene, fields, Moving::kSun);
   }
 }
 

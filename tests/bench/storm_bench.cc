@@ -8,9 +8,9 @@
 #include "renderers/scene_renderer.h"
 #include "scene/view.h"
 #include "spdlog/spdlog.h"
+#include "tests/support/techniques.h"
 #include "volume/storm_store.h"
 #include "volume/visible_box.h"
-#include "tests/support/techniques.h"
 
 namespace thunderhead::bench {
 namespace {
@@ -71,7 +71,7 @@ void DrawFrames(benchmark::State& state, scene::Scene scene, const Fields& field
     benchmark::DoNotOptimize(jpeg);
     balls = linear->balls;
     for (const scene::StageTime& stage : linear->stages) {
-      total_ms[stage.stage + "_ms"] += stage.milliseconds;
+      total_ms[std::string(scene::NameOf(stage.stage)) + "_ms"] += stage.milliseconds;
     }
     total_ms["tone_ms"] += mapped->tone_ms;
     total_ms["read_back_ms"] += mapped->read_back_ms;

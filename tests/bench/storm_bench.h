@@ -35,6 +35,9 @@ void Register(const std::string& name, const scene::Scene& scene, const Fields& 
 // The modes of the papers' table by both paths, and what a change reruns.
 void RegisterModes();
 
+// The presets that sessions draw with while something moves.
+void RegisterPresets();
+
 // The scenes and the picture of P. Man, Generating and Real-Time Rendering of Clouds, section 5;
 // his figures are from a GeForce 4. Balls of no weight are dropped from a fit, so that more are
 // asked for.

@@ -1,3 +1,4 @@
+#include "renderers/metaball/ball_fit.h"
 #include "renderers/metaball/metaball_renderer.h"
 
 #include <algorithm>
@@ -484,7 +485,8 @@ class MetaballSceneTest : public testing::Test {
   }
   std::vector<std::string> Stages() {
     std::vector<std::string> names;
-    for (const scene::StageTime& stage : Draw().stages) names.push_back(std::string(scene::NameOf(stage.stage)));
+    for (const scene::StageTime& stage : Draw().stages)
+      names.push_back(std::string(scene::NameOf(stage.stage)));
     return names;
   }
 
@@ -534,27 +536,36 @@ TEST_F(MetaballSceneTest, KeptStagesGiveThePictureThatAFreshRendererGives) {
     check("camera");
     scene_.sun.azimuth_deg += 90.0;
     check("sun");
-    scene::MediumSettingsOf(&scene_.rendering.technique)->look.false_colors = !scene::MediumSettingsOf(&scene_.rendering.technique)->look.false_colors;
+    bool& false_colors = scene::MediumSettingsOf(&scene_.rendering.technique)->look.false_colors;
+    false_colors = !false_colors;
     check("false colours");
     test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);
     check("another renderer");
     test_support::SetPath(&scene_.rendering.technique, test_support::kMetaball);
+    test_support::MetaballsOf(scene_.rendering.technique).count = 60;
     check("and back");
   }
 }
 
+std::vector<std::string> NotShown(const LinearFrame& frame) {
+  std::vector<std::string> messages;
+  for (const scene::NotShown& entry : frame.content.not_shown) messages.push_back(entry.message);
+  return messages;
+}
+
 TEST_F(MetaballSceneTest, TheFrameSaysWhatItIs) {
-  test_support::SetMode(&scene_.rendering.technique, test_support::kWithDetail);
   const LinearFrame frame = Draw();
-  EXPECT_GT(frame.balls, 10);
-  EXPECT_LE(frame.balls, 60);
-  EXPECT_GT(frame.fit_error, 0.0);
-  EXPECT_LT(frame.fit_error, 0.5);
+  EXPECT_GT(frame.content.balls, 10);
+  EXPECT_LE(frame.content.balls, 60);
+  EXPECT_GT(frame.content.fit_error, 0.0);
+  EXPECT_LT(frame.content.fit_error, 0.5);
   EXPECT_EQ(frame.slices, 0);
-  EXPECT_THAT(frame.not_shown, Contains("turbulent detail"));
+  EXPECT_THAT(NotShown(frame), ElementsAre("structure finer than the metaballs"));
+  test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
+  EXPECT_THAT(NotShown(Draw()), Contains(HasSubstr("albedo")));
   test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);
-  EXPECT_THAT(Draw().not_shown, IsEmpty());
-  EXPECT_EQ(Draw().balls, 0);
+  EXPECT_THAT(NotShown(Draw()), IsEmpty());
+  EXPECT_EQ(Draw().content.balls, 0);
 }
 
 TEST_F(MetaballSceneTest, LightsBesidesTheSunAreShownOrSaidNotToBe) {
@@ -566,7 +577,7 @@ TEST_F(MetaballSceneTest, LightsBesidesTheSunAreShownOrSaidNotToBe) {
   const float plain = blue_over_red(Draw());
   scene_.lights = {{200.0, 10.0, {0.0, 0.0, 1.0}, 1.0}};
   const LinearFrame lit = Draw();
-  EXPECT_THAT(lit.not_shown, Not(Contains(HasSubstr("lights"))));
+  EXPECT_THAT(NotShown(lit), Not(Contains(HasSubstr("lights"))));
   EXPECT_GT(blue_over_red(lit), 1.5F * plain);
   EXPECT_THAT(Stages(), IsEmpty());
   scene_.lights[0].color = {0.0, 1.0, 0.0};
@@ -577,10 +588,10 @@ TEST_F(MetaballSceneTest, LightsBesidesTheSunAreShownOrSaidNotToBe) {
   for (const auto renderer :
        {test_support::kLightVolume, test_support::kHalfAngle, test_support::kCumulus}) {
     test_support::SetPath(&scene_.rendering.technique, renderer);
-    EXPECT_THAT(Draw().not_shown, Contains(HasSubstr("lights besides the sun")));
+    EXPECT_THAT(NotShown(Draw()), Contains(HasSubstr("lights besides the sun")));
     scene_.lights.clear();
     EXPECT_THAT(Stages(), IsEmpty()) << "none to draw again";
-    EXPECT_THAT(Draw().not_shown, Not(Contains(HasSubstr("lights"))));
+    EXPECT_THAT(NotShown(Draw()), Not(Contains(HasSubstr("lights"))));
     scene_.lights.emplace_back();
   }
 }
@@ -588,14 +599,16 @@ TEST_F(MetaballSceneTest, LightsBesidesTheSunAreShownOrSaidNotToBe) {
 TEST_F(MetaballSceneTest, NothingVisibleNeedsNoBalls) {
   scene_.fields[0].visible = false;
   EXPECT_THAT(Stages(), Not(Contains("light")));
-  EXPECT_EQ(Draw().balls, 0);
+  EXPECT_EQ(Draw().content.balls, 0);
 }
 
 TEST_F(MetaballSceneTest, IsNearTheLightVolume) {
   scene_.camera = scene::TopDownCamera{{0.0, 0.0}, 8e3};
-  test_support::MetaballsOf(scene_.rendering.technique).count = 2000;
   const auto mean = [&](const accuracy::Path& renderer) {
     test_support::SetPath(&scene_.rendering.technique, renderer);
+    if (auto* metaballs = std::get_if<scene::Metaballs>(&scene_.rendering.technique)) {
+      metaballs->count = 2000;
+    }
     const std::vector<float> pixels = frame::ReadLinear(*Draw().radiance);
     double sum = 0.0;
     for (int y = 10; y < 22; ++y) {

@@ -31,7 +31,8 @@ class RendererPoolTest : public testing::Test {
     const auto frame = pool.Draw(scene, fields_, {});
     EXPECT_TRUE(frame.ok()) << frame.status();
     std::vector<std::string> names;
-    for (const scene::StageTime& stage : frame->stages) names.push_back(std::string(scene::NameOf(stage.stage)));
+    for (const scene::StageTime& stage : frame->stages)
+      names.push_back(std::string(scene::NameOf(stage.stage)));
     return names;
   }
 

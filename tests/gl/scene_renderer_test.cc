@@ -43,7 +43,8 @@ class SceneRendererTest : public testing::Test {
     const auto frame = renderer_->Draw(scene_, fields_, quality);
     EXPECT_TRUE(frame.ok()) << frame.status();
     std::vector<std::string> names;
-    for (const scene::StageTime& stage : frame->stages) names.push_back(std::string(scene::NameOf(stage.stage)));
+    for (const scene::StageTime& stage : frame->stages)
+      names.push_back(std::string(scene::NameOf(stage.stage)));
     return names;
   }
 
@@ -145,7 +146,7 @@ TEST_F(SceneRendererTest, ACumulusWithoutSurfaceIsTheSkyAlone) {
   test_support::CumulusOf(scene_.rendering.technique).least_extinction_per_m = 1.0F;
   const auto frame = renderer_->Draw(scene_, fields_, {});
   ASSERT_TRUE(frame.ok());
-  EXPECT_EQ(frame->ellipsoids, 0);
+  EXPECT_EQ(frame->content.ellipsoids, 0);
   EXPECT_EQ(frame::ReadLinear(*frame->radiance), sky);
 }
 
@@ -172,10 +173,11 @@ TEST_F(SceneRendererTest, ACumulusSaysWhatItCannotShow) {
   rainy->fields.back().hydrometeor = physics::Hydrometeor::kRain;
   const auto frame = renderer_->Draw(scene_, rainy, {});
   ASSERT_TRUE(frame.ok()) << frame.status();
-  EXPECT_THAT(frame->fields, ElementsAre(physics::Hydrometeor::kCloud));
-  EXPECT_THAT(frame->not_shown, testing::Contains("rain"));
+  EXPECT_THAT(frame->content.fields, ElementsAre(physics::Hydrometeor::kCloud));
+  EXPECT_THAT(frame->content.not_shown,
+              testing::Contains(scene::NotShown{scene::NotShown::Code::kFields, "rain"}));
   EXPECT_EQ(frame->slices, 0);
-  EXPECT_GT(frame->ellipsoids, 0);
+  EXPECT_GT(frame->content.ellipsoids, 0);
 }
 
 TEST_F(SceneRendererTest, KeptStagesGiveThePictureThatAFreshRendererGives) {
@@ -217,9 +219,9 @@ TEST_F(SceneRendererTest, FieldsOutOfSightCostNothing) {
   scene_.fields[0].visible = false;
   const auto frame = renderer_->Draw(scene_, fields_, {});
   ASSERT_TRUE(frame.ok());
-  EXPECT_THAT(frame->fields, IsEmpty());
+  EXPECT_THAT(frame->content.fields, IsEmpty());
   EXPECT_EQ(frame->slices, 0);
-  EXPECT_EQ(frame->occupied_share, 0.0);
+  EXPECT_EQ(frame->content.occupied_share, 0.0);
 }
 
 TEST_F(SceneRendererTest, ACloudIsBrighterThanTheGroundBehindIt) {

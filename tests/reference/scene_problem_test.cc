@@ -10,10 +10,10 @@
 #include "physics/optics.h"
 #include "physics/sky.h"
 #include "reference/path_tracer.h"
+#include "tests/support/techniques.h"
 #include "volume/extinction.h"
 #include "volume/storm_store.h"
 #include "volume/visible_box.h"
-#include "tests/support/techniques.h"
 
 namespace thunderhead::reference {
 namespace {

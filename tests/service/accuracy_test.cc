@@ -5,9 +5,9 @@
 #include <tuple>
 #include <vector>
 
+#include "accuracy/named_settings.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "accuracy/named_settings.h"
 #include "tests/service/fake_service.h"
 #include "tests/support/techniques.h"
 
@@ -98,7 +98,8 @@ TEST_F(AccuracyTest, UnreachableErrorsGetTheNearestAndSaySo) {
   ASSERT_TRUE(watcher.AwaitFrame(1, true));
   const v1::AccuracyReport report = watcher.NewestFrame().accuracy();
   EXPECT_EQ(report.slices(), 100U);
-  EXPECT_THAT(report.unmet().message(), HasSubstr("out of reach for orbit views; the nearest is 0.2"));
+  EXPECT_THAT(report.unmet().message(),
+              HasSubstr("out of reach for orbit views; the nearest is 0.2"));
 }
 
 TEST_F(AccuracyTest, TimesAreCorrectedByWhatThisMachineTakes) {

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <thread>
 
-#include "base/status.h"
 #include "accuracy/cost_model.h"
+#include "base/status.h"
 #include "tests/support/techniques.h"
 
 namespace thunderhead::testing {
@@ -347,9 +347,7 @@ bool FakeMachine::IsPrepared(const scene::Scene& scene) {
 
 bool FakeMachine::AwaitPrepared(const scene::Scene& scene) {
   std::unique_lock lock(mutex_);
-  return changed_.wait_for(lock, kPatience, [&] {
-    return prepared_.contains(KeyOf(scene));
-  });
+  return changed_.wait_for(lock, kPatience, [&] { return prepared_.contains(KeyOf(scene)); });
 }
 
 void FakeMachine::Prepared(const scene::Scene& scene) {

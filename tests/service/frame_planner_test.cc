@@ -153,13 +153,17 @@ TEST_F(FramePlannerTest, FailedSceneIsNotTriedAgain) {
 
 TEST(CostModelTest, TellsFixedFromGrowingCost) {
   accuracy::CostModel model;
-  for (const double x : {1.0, 10.0, 100.0}) model.Observe(x, 7.0 + 2.0 * x, {{scene::FrameStage::kSlices, 1.0}});
+  for (const double x : {1.0, 10.0, 100.0})
+    model.Observe(x, 7.0 + 2.0 * x, {{scene::FrameStage::kSlices, 1.0}});
   EXPECT_NEAR(model.EstimateMs(50.0, scene::Stage::kView), 107.0, 1e-6);
 }
 
 TEST(CostModelTest, PreparationCountsOnlyWhenFieldsChange) {
   accuracy::CostModel model;
-  model.Observe(10.0, 70.0, {{scene::FrameStage::kExtinction, 30.0}, {scene::FrameStage::kUpload, 20.0}, {scene::FrameStage::kSlices, 20.0}});
+  model.Observe(10.0, 70.0,
+                {{scene::FrameStage::kExtinction, 30.0},
+                 {scene::FrameStage::kUpload, 20.0},
+                 {scene::FrameStage::kSlices, 20.0}});
   EXPECT_NEAR(model.EstimateMs(10.0, scene::Stage::kView), 20.0, 1e-6);
   EXPECT_NEAR(model.EstimateMs(10.0, scene::Stage::kExtinction), 70.0, 1e-6);
 }

@@ -107,9 +107,9 @@ TEST(SceneDefaults, OfTechniquesAreTheirOptionsAndTheValuesOwn) {
   }
   EXPECT_GE(compared, 15);
   // Without regard to floats and doubles: these have only exact numbers.
-  for (const scene::Technique& own : {scene::Technique(scene::LightVolume{}),
-                                      scene::Technique(scene::HalfAngle{}),
-                                      scene::Technique(scene::Reference{})}) {
+  for (const scene::Technique& own :
+       {scene::Technique(scene::LightVolume{}), scene::Technique(scene::HalfAngle{}),
+        scene::Technique(scene::Reference{})}) {
     v1::Rendering rendering;
     ToMessage(own, rendering);
     EXPECT_TRUE(ToTechnique(rendering) == own);

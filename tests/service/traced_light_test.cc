@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "accuracy/named_settings.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "accuracy/named_settings.h"
 #include "tests/service/fake_service.h"
 #include "tests/support/techniques.h"
 
@@ -68,8 +68,7 @@ TEST_F(TracedLightTest, NothingIsTracedForScenesThatDoNotAskOrCannotShowIt) {
   v1::Scene unasked = WithTracedLight();
   unasked.mutable_rendering()->mutable_light_volume()->set_traced_light(v1::TRACED_LIGHT_OFF);
   v1::Scene consistent = WithTracedLight();
-  consistent.mutable_rendering()->mutable_light_volume()->set_transport(
-      v1::TRANSPORT_CONSISTENT);
+  consistent.mutable_rendering()->mutable_light_volume()->set_transport(v1::TRANSPORT_CONSISTENT);
   for (const v1::Scene& scene : {unasked, consistent}) {
     Watcher watcher(service_.stub(), service_.Open(scene));
     ASSERT_TRUE(watcher.AwaitFrame(1, true));

@@ -45,7 +45,9 @@ inline void SetTransport(scene::Technique* technique, scene::Transport transport
   *technique = accuracy::InMode(*technique, accuracy::ModeOf(*technique), transport);
 }
 
+// Its own settings, such as the number of metaballs, are the path's plain ones.
 inline void SetPath(scene::Technique* technique, const accuracy::Path& path) {
+  if (accuracy::PathOf(*technique) == path) return;
   const scene::Technique before = *technique;
   *technique = path.plain();
   const scene::MediumSettings* from = scene::MediumSettingsOf(before);

@@ -22,6 +22,6 @@ absl::StatusOr<DrawnSurface> SurfaceOf(const scene::Scene& scene,
 
 // The parts of the storm that the surface leaves out.
 std::vector<scene::NotShown> NotShownByCumulus(const scene::Scene& scene,
-                                           const volume::HydrometeorFields& fields);
+                                               const volume::HydrometeorFields& fields);
 
 }  // namespace thunderhead::renderers

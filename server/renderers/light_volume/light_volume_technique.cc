@@ -50,9 +50,8 @@ class LightVolumeTechnique final : public Technique {
   void ShareShadow(const glm::dvec3& towards_sun) {
     const ResidentMedium& medium = workspace_.medium;
     if (towards_sun.z <= 0.0) return workspace_.ground.ClearShadow();
-    workspace_.ground.ShareShadow(&renderer_.Shadow(),
-                                  LightFrameOf({medium.HalfExtent_m()}, towards_sun),
-                                  medium.Middle_m());
+    workspace_.ground.ShareShadow(
+        &renderer_.Shadow(), LightFrameOf({medium.HalfExtent_m()}, towards_sun), medium.Middle_m());
   }
 
   Workspace& workspace_;

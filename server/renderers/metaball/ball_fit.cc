@@ -144,7 +144,8 @@ std::shared_ptr<const BallCloud> BallFits::Find(const Key& key) {
 
 bool BallFits::Has(const scene::Scene& scene,
                    const std::shared_ptr<const volume::HydrometeorFields>& fields) {
-  return Find({fields, MediumOf(scene, *fields).terms, std::get<scene::Metaballs>(scene.rendering.technique).count}) != nullptr;
+  return Find({fields, MediumOf(scene, *fields).terms,
+               std::get<scene::Metaballs>(scene.rendering.technique).count}) != nullptr;
 }
 
 absl::StatusOr<std::shared_ptr<const BallCloud>> BallFits::Get(

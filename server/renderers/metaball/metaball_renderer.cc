@@ -31,9 +31,7 @@ struct DeviceBall {
   glm::vec4 tint;
 };
 
-bool IsPaper(const RenderSettings& settings) {
-  return scene::IsPaper(settings.Medium().transport);
-}
+bool IsPaper(const RenderSettings& settings) { return scene::IsPaper(settings.Medium().transport); }
 
 const scene::Metaballs& SettingsOf(const RenderSettings& settings) {
   return std::get<scene::Metaballs>(settings.technique);
@@ -163,8 +161,7 @@ void MetaballRenderer::Upload(const BallCloud& cloud, const Medium& content,
     device.push_back(DeviceBallOf(ball, content, weights, box_.Middle_m()));
     if (!IsPaper(settings)) continue;
     const double density = std::min(paper_factor * ball.extinction_per_m, 1.0);
-    device.back().optics.x =
-        static_cast<float>(SettingsOf(settings).optical_depth * density);
+    device.back().optics.x = static_cast<float>(SettingsOf(settings).optical_depth * density);
   }
   const bool paper = IsPaper(settings);
   Optics optics{NumbersOf(device), paper, paper ? SettingsOf(settings).albedo : 0.0,
@@ -251,7 +248,8 @@ absl::Status MetaballRenderer::Carry(const Light& light, int index,
     program->Set(uniform::texels_per_m, static_cast<float>(plane.texels_per_m));
     program->Set(uniform::light_middle, 0.5F * glm::vec2(plane.size));
     program->Set(uniform::paper_albedo, static_cast<float>(SettingsOf(settings).albedo));
-    program->Set(uniform::scattered_often, scene::IsTranslucent(settings.Medium().transport) ? 1.0F : 0.0F);
+    program->Set(uniform::scattered_often,
+                 scene::IsTranslucent(settings.Medium().transport) ? 1.0F : 0.0F);
     program->Use();
     if (pass == 1) {
       run(*program, 0, static_cast<std::uint32_t>(balls_.size()));

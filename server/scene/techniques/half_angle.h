@@ -12,8 +12,7 @@ namespace thunderhead::scene {
 
 struct HalfAngle {
   static constexpr std::string_view kName = "half_angle";
-  static constexpr Capabilities kCapabilities{
-      .detail = true, .field_optics = true, .slices = true};
+  static constexpr Capabilities kCapabilities{.detail = true, .field_optics = true, .slices = true};
 
   MediumSettings medium;  // kDiffusion is drawn as kConsistent
   int slices = 128;

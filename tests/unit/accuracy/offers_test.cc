@@ -24,8 +24,7 @@ const std::vector<Offer> kOffers = {{Slices(32), 5.0, 0.40},
                                     {Slices(128), 20.0, 0.20},
                                     {Slices(256), 40.0, 0.25}};
 
-Offer Best(const scene::Accuracy& limit,
-           const std::optional<Setting>& current = std::nullopt) {
+Offer Best(const scene::Accuracy& limit, const std::optional<Setting>& current = std::nullopt) {
   return BestOffer(kOffers, limit, current);
 }
 
@@ -251,7 +250,8 @@ TEST_F(TracedOffersTest, LightIsTracedWhereNothingElseIsAsAccurate) {
   EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxError{0.115})), scene::TracedLight::kOff);
   EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxError{0.09})), scene::TracedLight::kAwaited);
   EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxError{0.06})), scene::TracedLight::kAwaited);
-  EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxError{0.01})), scene::TracedLight::kAwaited);  // the nearest
+  EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxError{0.01})),
+            scene::TracedLight::kAwaited);  // the nearest
   EXPECT_EQ(CountOf(TechniqueFor(MaxError{0.01})), 128);
   // A limit of time takes no more of the machine than it says.
   EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxMilliseconds{50.0})), scene::TracedLight::kOff);

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <string>
 
+#include "accuracy/embedded_trade_tables.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "accuracy/embedded_trade_tables.h"
 
 namespace thunderhead::accuracy {
 namespace {

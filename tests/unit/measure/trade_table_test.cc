@@ -24,10 +24,7 @@ TEST(TradeTable, RowsComeBackFromTheirText) {
   row.setting = {scene::HalfAngle{.medium = {.transport = scene::Transport::kPaperLowAlbedo,
                                              .look = {.per_field_phase = false}},
                                   .slices = 64},
-                 0.5,
-                 60,
-                 2.0,
-                 true};
+                 0.5, 60, 2.0, true};
   row.bytes = 12345;
   row.relative_bias = -0.125;
   row.flip = 0.0625;

@@ -25,7 +25,9 @@ TEST(Scene, EachChangeRerunsFromItsOwnStage) {
   EXPECT_EQ(After([](Scene* s) { s->fields[0].scale = 2; }), Stage::kExtinction);
   EXPECT_EQ(After([](Scene* s) { s->fields[2].visible = false; }), Stage::kExtinction);
   EXPECT_EQ(After([](Scene* s) { s->fields[2].size_from_file = false; }), Stage::kExtinction);
-  EXPECT_EQ(After([](Scene* s) { MediumSettingsOf(&s->rendering.technique)->look.false_colors = true; }), Stage::kExtinction);
+  EXPECT_EQ(
+      After([](Scene* s) { MediumSettingsOf(&s->rendering.technique)->look.false_colors = true; }),
+      Stage::kExtinction);
   EXPECT_EQ(After([](Scene* s) { s->sun.azimuth_deg = 10; }), Stage::kLight);
   EXPECT_EQ(After([](Scene* s) { SetSlices(&s->rendering.technique, 64); }), Stage::kLight);
   EXPECT_EQ(After([](Scene* s) { std::get<OrbitCamera>(s->camera).azimuth_deg = 10; }),
@@ -92,7 +94,8 @@ TEST(Scene, DetailCountsOnlyWhereItIsShown) {
   Scene after = before;
   after.fields[0].detail.seed = 7;
   EXPECT_EQ(FirstDirtyStage(before, after), Stage::kNothing);
-  before.rendering.technique = after.rendering.technique = HalfAngle{.medium = {.look = {.detail = true}}};
+  before.rendering.technique = after.rendering.technique =
+      HalfAngle{.medium = {.look = {.detail = true}}};
   EXPECT_EQ(FirstDirtyStage(before, after), Stage::kExtinction);
 }
 
