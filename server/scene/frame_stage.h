@@ -7,7 +7,6 @@
 
 namespace thunderhead::scene {
 
-// In the order in which they run.
 enum class FrameStage {
   kRead,
   kExtinction,

@@ -33,6 +33,7 @@ class CumulusRendererTest : public testing::Test {
     context_ = *std::move(context);
     renderer_ = std::make_unique<CumulusRenderer>(std::make_shared<gl::ProgramCache>());
     noises_ = std::make_unique<DetailNoises>();
+    settings_.technique = scene::Cumulus{};
     test_support::CumulusOf(settings_.technique).roughness = 0.0F;
     test_support::CumulusOf(settings_.technique).transmission = 0.0F;
     test_support::CumulusOf(settings_.technique).corona = 0.1F;

@@ -499,16 +499,16 @@ class MetaballSceneTest : public testing::Test {
 
 TEST_F(MetaballSceneTest, AChangeRerunsOnlyWhatItDirties) {
   EXPECT_THAT(Stages(),
-              ElementsAre("extinction", "upload", "ground", "fit", "light", "view", "composite"));
+              ElementsAre("extinction", "upload", "fit", "light", "ground", "view", "composite"));
   EXPECT_THAT(Stages(), IsEmpty());
   std::get<scene::OrbitCamera>(scene_.camera).azimuth_deg += 5.0;
   EXPECT_THAT(Stages(), ElementsAre("view", "composite"));
   scene_.sun.elevation_deg += 5.0;
-  EXPECT_THAT(Stages(), ElementsAre("ground", "light", "view", "composite"));
+  EXPECT_THAT(Stages(), ElementsAre("light", "ground", "view", "composite"));
   test_support::MetaballsOf(scene_.rendering.technique).isotropic = true;
   EXPECT_THAT(Stages(), Not(Contains("fit")));
   test_support::MetaballsOf(scene_.rendering.technique).count = 80;
-  EXPECT_THAT(Stages(), ElementsAre("ground", "fit", "light", "view", "composite"));
+  EXPECT_THAT(Stages(), ElementsAre("fit", "light", "ground", "view", "composite"));
   test_support::MetaballsOf(scene_.rendering.technique).count = 60;
   EXPECT_THAT(Stages(), Not(Contains("fit"))) << "it is kept";
   scene_.fields[0].scale = 2.0F;
@@ -623,6 +623,7 @@ TEST_F(MetaballSceneTest, IsNearTheLightVolume) {
 TEST(BallFits, KeepsWhatItsStormAndOpticsAskFor) {
   BallFits fits(2);
   scene::Scene scene = test_support::PlainScene();
+  test_support::SetPath(&scene.rendering.technique, test_support::kMetaball);
   test_support::MetaballsOf(scene.rendering.technique).count = 20;
   auto fields = support::MakeLayerInAir(4000.0, 2000.0, 8, 5.0);
   EXPECT_FALSE(fits.Has(scene, fields));

@@ -130,7 +130,9 @@ TEST_F(AccuracyTest, ChangesKeepTheSettingAndAnotherRequestChangesIt) {
   ASSERT_TRUE(watcher.AwaitFrame(revision, true));
   EXPECT_EQ(watcher.NewestFrame().accuracy().slices(), 100U);
   // Without a request the scene's own setting is drawn, and what the table knows is told.
-  revision = service_.Update(id, SmallScene());
+  v1::Scene own = SmallScene();
+  own.mutable_rendering()->mutable_light_volume()->set_transport(v1::TRANSPORT_CONSISTENT);
+  revision = service_.Update(id, own);
   ASSERT_TRUE(watcher.AwaitFrame(revision, true));
   EXPECT_EQ(watcher.NewestFrame().modelled().slices(), 16U);
   EXPECT_EQ(watcher.NewestFrame().accuracy().model_error(), 0.4F);

@@ -25,7 +25,7 @@ struct Machine {
   double ms_per_mega_sample = 0.0;
 
   double Cost(const scene::Scene& scene, const FrameQuality& quality) const {
-    return fixed_ms + ms_per_mega_sample * MegaSamples(scene, quality);
+    return fixed_ms + ms_per_mega_sample * accuracy::MegaSamples(scene, quality);
   }
 };
 
@@ -54,7 +54,7 @@ class FramePlannerTest : public ::testing::Test {
     return planner_.Decide(At(revision_, scene_, kStart), kStart + since_change, last_drawn_);
   }
 
-  FramePlanner planner_{PlannerTargets{}, CostModels{}};
+  FramePlanner planner_{PlannerTargets{}, accuracy::CostModels{}};
   scene::Scene scene_ = Hd();
   std::uint64_t revision_ = 0;
   std::optional<LastDrawn> last_drawn_;

@@ -8,6 +8,7 @@
 #include "gtest/gtest.h"
 #include "service/limits_check.h"
 #include "service/scene_messages.h"
+#include "service/technique_messages.h"
 #include "tests/service/fake_service.h"
 
 namespace thunderhead::testing {
@@ -22,6 +23,13 @@ std::string Complaint(const v1::Scene& scene) {
   *request.mutable_scene() = scene;
   absl::Status status = service::CheckLimits(request);
   if (status.ok()) status = service::CheckScene(scene);
+  if (status.ok()) {
+    status = service::CheckRendering(scene.rendering(), {{"light_volume", {}},
+                                                         {"half_angle", {}},
+                                                         {"metaball", {}},
+                                                         {"reference", {}},
+                                                         {"toy", {}}});
+  }
   EXPECT_TRUE(status.ok() || status.code() == absl::StatusCode::kInvalidArgument);
   return std::string(status.message());
 }

@@ -206,7 +206,8 @@ TEST_F(RenderLoopTest, WhatAScenePreparesHoldsUpNobodyElse) {
   const std::uint64_t last = Show(*fitting, OfMetaballs(200));
   machine_->preparing.Open();
   ASSERT_TRUE(fitting_viewer->Await(last, true));
-  EXPECT_EQ(machine_->Log().back().test_support::MetaballsOf(scene.rendering.technique).count, 200);
+  EXPECT_EQ(std::get<scene::Metaballs>(machine_->Log().back().scene.rendering.technique).count,
+            200);
 }
 
 TEST_F(RenderLoopTest, ASeriesThatGoesOnIsPreparedAheadOfItsPictures) {
