@@ -69,7 +69,7 @@ void DrawFrames(benchmark::State& state, scene::Scene scene, const Fields& field
     const auto jpeg =
         frame::EncodeJpeg(scene.output.width_px, scene.output.height_px, mapped->rgb, 88);
     benchmark::DoNotOptimize(jpeg);
-    balls = linear->balls;
+    balls = linear->content.balls;
     for (const scene::StageTime& stage : linear->stages) {
       total_ms[std::string(scene::NameOf(stage.stage)) + "_ms"] += stage.milliseconds;
     }
