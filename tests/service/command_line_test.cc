@@ -153,7 +153,7 @@ TEST_F(CommandLineTest, FailedRenderNamesTheCauseAndLeavesNoFile) {
               1, "no/folder.png");
 }
 
-TEST_F(CommandLineTest, MeasureFramesHasARowForEachPathAndMode) {
+TEST_F(CommandLineTest, MeasureFramesHasARowForEachNamedSetting) {
   const Outcome outcome =
       Run("measure frames " + kSample +
           " --time 0 --size 24x16 --slices 8 --runs 1 --device software --json");
@@ -176,7 +176,10 @@ TEST_F(CommandLineTest, MeasureFramesHasARowForEachPathAndMode) {
     EXPECT_FALSE(stages.contains("extinction")) << "neither camera nor sun changes the fields";
     rows.insert(fields.at("renderer").string_value() + " " + fields.at("mode").string_value());
   }
-  EXPECT_EQ(rows.size(), 16U) << "four renderers in four modes";
+  EXPECT_EQ(rows.size(), 20U) << "four techniques in four modes, three presets and the default";
+  EXPECT_TRUE(rows.contains("light_volume default"));
+  EXPECT_TRUE(rows.contains("light_volume balanced"));
+  EXPECT_TRUE(rows.contains("half_angle uniform_phase_low_albedo"));
   ExpectError("measure frames " + kSample + " --size 5", 2, "WIDTHxHEIGHT");
   ExpectError("measure frames " + kSample + " --time 9", 2, "times 0 to 3");
 }
