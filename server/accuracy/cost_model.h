@@ -3,9 +3,7 @@
 // preparing the fields and carrying the light took when they changed. Plain values, no clock.
 #pragma once
 
-#include <array>
 #include <optional>
-#include <variant>
 #include <vector>
 
 #include "accuracy/frame_quality.h"
@@ -45,18 +43,6 @@ class CostModel {
   double ms_per_mega_sample_ = 2.0;
   double preparation_ms_ = 0.0;
   double light_ms_ = 0.0;
-};
-
-// One for each kind of technique: their costs have nothing in common.
-class CostModels {
- public:
-  CostModel& Of(const scene::Scene& scene) { return models_[scene.rendering.technique.index()]; }
-  const CostModel& Of(const scene::Scene& scene) const {
-    return models_[scene.rendering.technique.index()];
-  }
-
- private:
-  std::array<CostModel, std::variant_size_v<scene::Technique>> models_;
 };
 
 }  // namespace thunderhead::accuracy

@@ -1,22 +1,15 @@
 // Chooses the setting that reaches the accuracy or speed that a scene asks for, by tables measured
-// against the reference (accuracy/priced_settings.h), corrected by the cost of frames on this
-// machine. Plain values, no clock, no threads.
+// against the reference (accuracy/priced_settings.h) and the cost of frames on this machine. Plain
+// values, no clock, no threads.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <map>
 #include <optional>
-#include <string>
-#include <string_view>
-#include <tuple>
-#include <variant>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "accuracy/accuracy_report.h"
-#include "accuracy/frame_quality.h"
-#include "accuracy/priced_settings.h"
+#include "accuracy/machine_costs.h"
+#include "accuracy/offer_tables.h"
 #include "accuracy/setting.h"
 #include "scene/scene.h"
 
@@ -41,75 +34,25 @@ Offer BestOffer(const std::vector<Offer>& offers, const scene::Accuracy& limit,
 // Whether it is within the limit.
 bool Meets(const Offer& offer, const scene::Accuracy& limit);
 
-// How much longer frames take here than a table says: by each setting that was drawn, each
-// technique and the machine, the most specific that is known.
-class TableCorrection {
- public:
-  // A frame of `setting` took `measured_ms` where the table says `table_ms`.
-  void Observe(const Setting& setting, double table_ms, double measured_ms);
-  double Factor(const Setting& setting) const;
-  // True if a frame of that setting was observed.
-  bool Knows(const Setting& setting) const;
-
- private:
-  // A running mean of logarithms: times scatter by factors.
-  struct Mean {
-    double log_factor = 0.0;
-    int count = 0;
-
-    void Follow(double log_measured);
-  };
-  // Names of technique, mode and transport; the number of slices; the image scale.
-  using Key = std::tuple<std::string_view, std::string_view, std::string_view, int, double>;
-  static Key KeyOf(const Setting& setting);
-
-  std::map<Key, Mean> settings_;
-  std::map<std::string_view, Mean> techniques_;
-  Mean machine_;
-};
-
-// A table for each kind of camera, in the order of scene::Camera; why there is none otherwise.
-using OfferTables = std::array<absl::StatusOr<PricedSettings>, std::variant_size_v<scene::Camera>>;
-
-// Those that the program is built with.
-OfferTables BuiltInOfferTables();
+// Why `offer`, which the scene is drawn with, misses what the scene asks for; none if it does not.
+std::optional<Unmet> WhyUnmet(const scene::Scene& scene, const Offer& offer);
 
 class Offers {
  public:
-  explicit Offers(OfferTables tables) : tables_(std::move(tables)) {}
+  // Both must outlive it.
+  Offers(const OfferTables& tables, const MachineCosts& costs) : tables_(tables), costs_(costs) {}
 
   // The scene with the setting that reaches what it asks for, or as it is if it asks for nothing.
   // `current` is the setting that its view is drawn with so far. Fails where there is no table.
   absl::StatusOr<scene::Scene> Decide(const scene::Scene& scene,
                                       const std::optional<Setting>& current) const;
 
-  // A frame of `scene` (decided) at full quality took so long, view and all after it.
-  void Observe(const scene::Scene& scene, double milliseconds);
-
-  // How accurate a frame of `scene` (decided) of that quality, its light corrected by so many
-  // paths, is believed to be; none where the tables do not know its renderer, mode and transport.
-  std::optional<AccuracyReport> Report(const scene::Scene& scene, const FrameQuality& quality,
-                                       const std::optional<double>& discretisation_error,
-                                       std::int64_t traced_paths) const;
-
  private:
-  const absl::StatusOr<PricedSettings>& TableOf(const scene::Scene& scene) const {
-    return tables_[scene.camera.index()];
-  }
   std::vector<Offer> OffersFor(const PricedSettings& table, const scene::Scene& scene) const;
-  std::optional<Unmet> WhyUnmet(const scene::Scene& scene, const Offer& offer) const;
 
-  OfferTables tables_;
-  TableCorrection correction_;
+  const OfferTables& tables_;
+  const MachineCosts& costs_;
 };
-
-// Paths that are traced for a view that rests, if its light is traced; more change what is seen by
-// less than a hundredth.
-inline constexpr std::int64_t kTracedPaths = 4'000'000;
-
-// The setting that a decided scene is drawn with in the end; of metaballs, `slices` is their
-// number, as in the tables.
-Setting SettingOf(const scene::Scene& scene);
 
 // The table's settings know nothing of the scene's taste: turbulent detail, false colours and
 // theta_f stay those of `asked`.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace thunderhead::session {
 namespace {
@@ -24,8 +25,9 @@ bool IsFull(const FrameQuality& quality) { return quality == FrameQuality{}; }
 
 }  // namespace
 
-FramePlanner::FramePlanner(const PlannerTargets& targets, const accuracy::CostModels& costs)
-    : targets_(targets), costs_(costs) {}
+FramePlanner::FramePlanner(const PlannerTargets& targets, const accuracy::MachineCosts& costs,
+                           std::string view)
+    : targets_(targets), costs_(costs), view_(std::move(view)) {}
 
 Decision FramePlanner::Decide(const NewestScene& newest, Clock::time_point now,
                               const std::optional<LastDrawn>& last_drawn) const {
@@ -63,12 +65,10 @@ Decision FramePlanner::AtRest(const NewestScene& newest, Clock::time_point now,
   return {FramePlan{FrameQuality{}, true}, std::nullopt};
 }
 
-void FramePlanner::Drawn(std::uint64_t revision, const scene::Scene& scene, const FramePlan& plan,
-                         double total_ms, const std::vector<StageTime>& stages) {
+void FramePlanner::Drawn(std::uint64_t revision, const FramePlan& plan) {
   revision_ = revision;
   finished_ = IsFull(plan.quality);
   drawn_ = plan;
-  costs_.Of(scene).Observe(accuracy::MegaSamples(scene, plan.quality), total_ms, stages);
 }
 
 void FramePlanner::GiveUp(std::uint64_t revision) {
@@ -85,9 +85,7 @@ FrameQuality FramePlanner::Finest(const scene::Scene& scene, scene::Stage first_
                                   double budget_ms) const {
   for (int step = kSteps; step > 0; --step) {
     const FrameQuality quality = Step(step);
-    if (costs_.Of(scene).EstimateMs(accuracy::MegaSamples(scene, quality), first_dirty) <=
-        budget_ms)
-      return quality;
+    if (costs_.FrameMs(view_, scene, quality, first_dirty) <= budget_ms) return quality;
   }
   return Step(0);
 }

@@ -5,8 +5,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
-#include "accuracy/cost_model.h"
+#include "accuracy/machine_costs.h"
 #include "scene/scene.h"
 #include "session/frame_source.h"
 #include "session/sessions.h"
@@ -48,13 +49,14 @@ struct Decision {
 
 class FramePlanner {
  public:
-  FramePlanner(const PlannerTargets& targets, const accuracy::CostModels& costs);
+  // Of the frames of `view`, as it is called in `costs`, which must outlive the planner.
+  FramePlanner(const PlannerTargets& targets, const accuracy::MachineCosts& costs,
+               std::string view);
 
   Decision Decide(const NewestScene& newest, Clock::time_point now,
                   const std::optional<LastDrawn>& last_drawn) const;
 
-  void Drawn(std::uint64_t revision, const scene::Scene& scene, const FramePlan& plan,
-             double total_ms, const std::vector<StageTime>& stages);
+  void Drawn(std::uint64_t revision, const FramePlan& plan);
   // The scene of that revision cannot be drawn, or is shown by other means; it is not tried again.
   void GiveUp(std::uint64_t revision);
 
@@ -71,7 +73,8 @@ class FramePlanner {
   FrameQuality Finest(const scene::Scene& scene, scene::Stage first_dirty, double budget_ms) const;
 
   const PlannerTargets targets_;
-  accuracy::CostModels costs_;
+  const accuracy::MachineCosts& costs_;
+  const std::string view_;
   std::uint64_t revision_ = 0;
   bool finished_ = false;  // nothing finer is to come for that revision
   FramePlan drawn_;

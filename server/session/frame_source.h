@@ -59,11 +59,10 @@ struct DisplayFrame {
   std::optional<AccuracyReport> accuracy;
 };
 
-// A picture at full quality, and how much it differs from one with half the slices: no less than
-// its own distance from endlessly many, where that falls with the slices at first order or faster.
+// A picture at full quality, and how much it differs from one with half the slices.
 struct CheckedFrame {
   DisplayFrame frame;
-  double discretisation_error = 0.0;  // relative RMSE of linear radiance
+  double discretisation_error = 0.0;  // accuracy::DiscretisationError
 };
 
 // What the source draws on.

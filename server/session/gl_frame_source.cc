@@ -1,10 +1,10 @@
 #include "session/gl_frame_source.h"
 
-#include <cmath>
 #include <utility>
 #include <vector>
 
 #include "accuracy/corrector_pool.h"
+#include "accuracy/estimator.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "frame/tone_map.h"
@@ -16,21 +16,6 @@ namespace {
 
 // A correction that was kept takes less.
 constexpr double kWorthSaying_ms = 0.1;
-
-// Relative RMSE of red, green and blue; four values a pixel.
-double RelativeDifference(const std::vector<float>& pixels, const std::vector<float>& truth) {
-  double squares = 0.0;
-  double sum = 0.0;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    if (i % 4 == 3) continue;
-    squares += std::pow(static_cast<double>(pixels[i]) - truth[i], 2);
-    sum += truth[i];
-    ++count;
-  }
-  const double values = static_cast<double>(count);
-  return sum > 0.0 ? std::sqrt(squares / values) / (sum / values) : 0.0;
-}
 
 class GlFrameSource final : public FrameSource {
  public:
@@ -68,7 +53,7 @@ class GlFrameSource final : public FrameSource {
     THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame fine,
                                  renderers_.Draw(scene, fields, correction.Applied({})));
     checked.discretisation_error =
-        RelativeDifference(coarse_radiance, frame::ReadLinear(*fine.radiance));
+        accuracy::DiscretisationError(coarse_radiance, frame::ReadLinear(*fine.radiance));
     THUNDERHEAD_ASSIGN_OR_RETURN(checked.frame, Display(fine, scene, correction));
     return checked;
   }

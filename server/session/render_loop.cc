@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "accuracy/named_settings.h"
 #include "base/error_details.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
@@ -56,7 +55,7 @@ RenderLoop::RenderLoop(const RenderLoopOptions& options, volume::StormStore& sto
       store_(store),
       sessions_(sessions),
       wake_(wake),
-      offers_(options.offer_tables()),
+      tables_(options.offer_tables()),
       reader_(std::make_unique<FieldsReader>(store, [&wake] { wake.Notify(); })),
       encoder_(std::make_unique<FrameEncoder>(options.encoder_threads, [&wake] { wake.Notify(); })),
       tracer_(std::make_unique<TruthTracer>(options.make_truth_source, options.max_traced_sessions,
@@ -166,6 +165,7 @@ void RenderLoop::DropEndedTracks(const std::vector<std::shared_ptr<Session>>& se
       // It may be watched again.
       ++track;
     } else {
+      costs_.Forget(track->first);
       track = tracks_.erase(track);
     }
   }
@@ -174,8 +174,8 @@ void RenderLoop::DropEndedTracks(const std::vector<std::shared_ptr<Session>>& se
 RenderLoop::Outcome RenderLoop::TrySession(const std::shared_ptr<Session>& session) {
   const std::optional<NewestScene> newest = session->Newest();
   if (!newest.has_value() || !session->hub().HasViewers()) return {};
-  const auto [entry, is_new] =
-      tracks_.try_emplace(session->id(), Track{FramePlanner(options_.targets, machine_costs_)});
+  const auto [entry, is_new] = tracks_.try_emplace(
+      session->id(), Track{FramePlanner(options_.targets, costs_, session->id())});
   Track& track = entry->second;
   TakeRead(*session, track);
   EndTrace(session->id(), track, *newest->scene);
@@ -280,14 +280,9 @@ std::optional<NewestScene> RenderLoop::DrawableScene(const Session& session, Tra
 
 void RenderLoop::DrawFor(const std::shared_ptr<Session>& session, Track& track,
                          const NewestScene& shown, const FramePlan& plan) {
-  const bool was_warm = warm_;
-  double total_ms = 0.0;
-  auto picture = Draw(*shown.scene, track.fields, plan.quality, total_ms);
+  auto picture = Draw(session->id(), *shown.scene, track.fields, plan.quality, std::nullopt);
   if (!picture.ok()) return Fail(*session, track, shown.revision, picture.status());
-  picture->accuracy =
-      offers_.Report(*shown.scene, plan.quality, std::nullopt, picture->modelled.traced_paths);
-  track.planner.Drawn(shown.revision, *shown.scene, plan, total_ms,
-                      was_warm ? picture->stages : std::vector<StageTime>());
+  track.planner.Drawn(shown.revision, plan);
   Send(track,
        {session, shown.revision, *shown.scene, plan.refined, *std::move(picture), std::nullopt});
   PrepareNext(*session, track, *shown.scene);
@@ -312,41 +307,26 @@ void RenderLoop::Fail(Session& session, Track& track, std::uint64_t revision,
 }
 
 absl::StatusOr<DisplayFrame> RenderLoop::Draw(
-    const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
-    const FrameQuality& quality, double& total_ms) {
+    const std::string& view, const scene::Scene& scene,
+    const std::shared_ptr<const volume::HydrometeorFields>& fields, const FrameQuality& quality,
+    const std::optional<double>& discretisation_error) {
   const base::Stopwatch stopwatch;
   auto picture = source_->Draw(scene, fields, quality);
-  total_ms = stopwatch.ElapsedMs();
+  const double total_ms = stopwatch.ElapsedMs();
   if (!picture.ok()) {
     last_drawn_.reset();
     return picture;
   }
   last_drawn_ = LastDrawn{scene, quality};
-  // The time of the first frame is not representative: it includes shader compilation.
-  if (std::exchange(warm_, true)) {
-    machine_costs_.Of(scene).Observe(accuracy::MegaSamples(scene, quality), total_ms,
-                                     picture->stages);
-  }
-  const scene::Technique& technique = scene.rendering.technique;
-  const bool compiled =
-      !compiled_
-           .emplace(scene::NameOf(technique), accuracy::ModeOf(technique).name,
-                    accuracy::TransportNameOf(technique), picture->modelled.traced_paths > 0)
-           .second;
-  if (compiled && quality == FrameQuality{}) {
-    const std::optional<double> view_ms = accuracy::ViewMs(total_ms, picture->stages);
-    if (view_ms.has_value()) offers_.Observe(scene, *view_ms);
-  }
+  const std::int64_t paths = picture->modelled.traced_paths;
+  costs_.Observe(view, {scene, quality, total_ms, picture->stages, paths > 0});
+  picture->accuracy = estimator_.Report(scene, quality, {paths, discretisation_error});
   return picture;
 }
 
 absl::StatusOr<DisplayFrame> RenderLoop::DrawImage(const ImageJob& job) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const scene::Scene scene, offers_.Decide(job.scene, std::nullopt));
-  double total_ms = 0.0;
-  THUNDERHEAD_ASSIGN_OR_RETURN(DisplayFrame picture,
-                               Draw(scene, job.fields, FrameQuality{}, total_ms));
-  picture.accuracy = offers_.Report(scene, {}, std::nullopt, picture.modelled.traced_paths);
-  return picture;
+  return Draw("", scene, job.fields, FrameQuality{}, std::nullopt);
 }
 
 // A picture that awaits traced light takes its turns until enough paths are traced: for the error
@@ -359,7 +339,7 @@ absl::StatusOr<bool> RenderLoop::TraceForImage(const ImageJob& job) {
   if (progress.steps == 0) return false;
   const auto* limit = std::get_if<scene::MaxError>(&scene.accuracy);
   if (limit == nullptr) return !progress.HasTraced(kImagePaths);
-  const auto report = offers_.Report(scene, {}, std::nullopt, progress.paths);
+  const auto report = estimator_.Report(scene, {}, {progress.paths, std::nullopt});
   const bool near = report.has_value() && report->estimated_error <= limit->relative_rmse;
   return !near && !progress.HasTraced(accuracy::kTracedPaths);
 }

@@ -12,16 +12,14 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <string>
-#include <string_view>
 #include <thread>
-#include <tuple>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "accuracy/cost_model.h"
+#include "accuracy/estimator.h"
+#include "accuracy/machine_costs.h"
 #include "accuracy/offers.h"
 #include "base/stopwatch.h"
 #include "base/wake_signal.h"
@@ -171,9 +169,11 @@ class RenderLoop {
   absl::StatusOr<bool> TraceForImage(const ImageJob& job);
   Outcome TryImage();
   std::optional<ImageJob> NextImage();
-  absl::StatusOr<DisplayFrame> Draw(const scene::Scene& scene,
+  // For a session, or a picture, whose view is the empty string.
+  absl::StatusOr<DisplayFrame> Draw(const std::string& view, const scene::Scene& scene,
                                     const std::shared_ptr<const volume::HydrometeorFields>& fields,
-                                    const FrameQuality& quality, double& total_ms);
+                                    const FrameQuality& quality,
+                                    const std::optional<double>& discretisation_error);
   void RefuseImages();
 
   const RenderLoopOptions options_;
@@ -194,12 +194,10 @@ class RenderLoop {
   std::map<std::string, Track> tracks_;  // by session id
   std::string last_served_;  // the session looked at last; the pictures' turn is the empty string
   std::optional<LastDrawn> last_drawn_;
-  bool warm_ = false;
-  accuracy::CostModels machine_costs_;
-  accuracy::Offers offers_;
-  // The settings whose shaders are compiled, by technique, mode, transport and correction: the time
-  // of a first frame is not representative, as it includes compilation.
-  std::set<std::tuple<std::string, std::string_view, std::string_view, bool>> compiled_;
+  const accuracy::OfferTables tables_;
+  accuracy::MachineCosts costs_{tables_};
+  const accuracy::Offers offers_{tables_, costs_};
+  const accuracy::Estimator estimator_{tables_, costs_};
 
   std::unique_ptr<FieldsReader> reader_;
   std::unique_ptr<FrameEncoder> encoder_;

@@ -90,15 +90,13 @@ RenderLoop::Outcome RenderLoop::TraceLight(const std::shared_ptr<Session>& sessi
   const bool more = static_cast<double>(paths) >= kWorthShowing * static_cast<double>(light.shown);
   const bool show = light.ended || ms >= kShownAtLeast_ms || (more && ms >= kShownAtMost_ms);
   if (!show) return {true, std::nullopt};
-  double total_ms = 0.0;
-  auto picture = Draw(scene, track.fields, FrameQuality{}, total_ms);
+  auto picture =
+      Draw(session->id(), scene, track.fields, FrameQuality{}, track.decided->discretisation_error);
   if (!picture.ok()) {
     light.ended = true;
     Fail(*session, track, shown.revision, picture.status());
     return {};
   }
-  picture->accuracy = offers_.Report(scene, {}, track.decided->discretisation_error,
-                                     picture->modelled.traced_paths);
   light.shown = paths;
   light.since_shown.Restart();
   Send(track, {session, shown.revision, scene, true, *std::move(picture), std::nullopt});
@@ -115,12 +113,10 @@ void RenderLoop::DrawChecked(const std::shared_ptr<Session>& session, Track& tra
   DisplayFrame& frame = checked->frame;
   double total_ms = 0.0;
   for (const StageTime& cost : frame.stages) total_ms += cost.milliseconds;
-  if (const auto view_ms = accuracy::ViewMs(total_ms, frame.stages); view_ms.has_value()) {
-    offers_.Observe(*scene, *view_ms);
-  }
+  const std::int64_t paths = frame.modelled.traced_paths;
+  costs_.Observe(session->id(), {*scene, FrameQuality{}, total_ms, frame.stages, paths > 0});
   track.decided->discretisation_error = checked->discretisation_error;
-  frame.accuracy =
-      offers_.Report(*scene, {}, checked->discretisation_error, frame.modelled.traced_paths);
+  frame.accuracy = estimator_.Report(*scene, {}, {paths, checked->discretisation_error});
   Send(track, {session, revision, *scene, true, std::move(frame), std::nullopt});
 }
 

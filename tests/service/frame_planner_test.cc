@@ -12,6 +12,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr Clock::time_point kStart{};
+constexpr const char* kView = "view";
 
 scene::Scene Hd() { return {}; }  // 1280 x 720, 128 slices: 118 million samples
 
@@ -44,7 +45,8 @@ class FramePlannerTest : public ::testing::Test {
 
   void Draw(const Machine& machine, const FramePlan& plan) {
     const double ms = machine.Cost(scene_, plan.quality);
-    planner_.Drawn(revision_, scene_, plan, ms, {{scene::FrameStage::kSlices, ms}});
+    costs_.Observe(kView, {scene_, plan.quality, ms, {{scene::FrameStage::kSlices, ms}}});
+    planner_.Drawn(revision_, plan);
     last_drawn_ = LastDrawn{scene_, plan.quality};
     last_plan_ = plan;
     last_ms_ = ms;
@@ -54,7 +56,9 @@ class FramePlannerTest : public ::testing::Test {
     return planner_.Decide(At(revision_, scene_, kStart), kStart + since_change, last_drawn_);
   }
 
-  FramePlanner planner_{PlannerTargets{}, accuracy::CostModels{}};
+  const accuracy::OfferTables tables_;
+  accuracy::MachineCosts costs_{tables_};
+  FramePlanner planner_{PlannerTargets{}, costs_, kView};
   scene::Scene scene_ = Hd();
   std::uint64_t revision_ = 0;
   std::optional<LastDrawn> last_drawn_;
@@ -149,58 +153,6 @@ TEST_F(FramePlannerTest, FailedSceneIsNotTriedAgain) {
   EXPECT_FALSE(Ask(milliseconds(10000)).plan.has_value());
   revision_ = 2;
   EXPECT_TRUE(Ask(milliseconds(0)).plan.has_value());
-}
-
-TEST(CostModelTest, TellsFixedFromGrowingCost) {
-  accuracy::CostModel model;
-  for (const double x : {1.0, 10.0, 100.0})
-    model.Observe(x, 7.0 + 2.0 * x, {{scene::FrameStage::kSlices, 1.0}});
-  EXPECT_NEAR(model.EstimateMs(50.0, scene::Stage::kView), 107.0, 1e-6);
-}
-
-TEST(CostModelTest, PreparationCountsOnlyWhenFieldsChange) {
-  accuracy::CostModel model;
-  model.Observe(10.0, 70.0,
-                {{scene::FrameStage::kExtinction, 30.0},
-                 {scene::FrameStage::kUpload, 20.0},
-                 {scene::FrameStage::kSlices, 20.0}});
-  EXPECT_NEAR(model.EstimateMs(10.0, scene::Stage::kView), 20.0, 1e-6);
-  EXPECT_NEAR(model.EstimateMs(10.0, scene::Stage::kExtinction), 70.0, 1e-6);
-}
-
-TEST(CostModelTest, CarryingLightCountsOnlyWhenItMustBeCarried) {
-  accuracy::CostModel model;
-  model.Observe(10.0, 35.0, {{scene::FrameStage::kLight, 15.0}, {scene::FrameStage::kView, 20.0}});
-  EXPECT_NEAR(model.EstimateMs(10.0, scene::Stage::kView), 20.0, 1e-6);
-  EXPECT_NEAR(model.EstimateMs(10.0, scene::Stage::kLight), 35.0, 1e-6);
-}
-
-TEST(CostModelTest, RenderersAreEstimatedApart) {
-  accuracy::CostModels models;
-  scene::Scene slices = test_support::PlainScene();
-  test_support::SetPath(&slices.rendering.technique, test_support::kHalfAngle);
-  scene::Scene light = test_support::PlainScene();
-  test_support::SetPath(&light.rendering.technique, test_support::kLightVolume);
-  models.Of(slices).Observe(10.0, 80.0, {{scene::FrameStage::kSlices, 80.0}});
-  models.Of(light).Observe(10.0, 20.0, {{scene::FrameStage::kView, 20.0}});
-  EXPECT_NEAR(models.Of(slices).EstimateMs(10.0, scene::Stage::kView), 80.0, 1e-6);
-  EXPECT_NEAR(models.Of(light).EstimateMs(10.0, scene::Stage::kView), 20.0, 1e-6);
-}
-
-TEST(CostModelTest, FollowsAMachineThatSlowsDown) {
-  accuracy::CostModel model;
-  for (int i = 0; i < 10; ++i) model.Observe(10.0, 10.0, {{scene::FrameStage::kSlices, 1.0}});
-  for (int i = 0; i < 10; ++i) model.Observe(10.0, 40.0, {{scene::FrameStage::kSlices, 1.0}});
-  // What is left of the ten fast frames weighs 0.8^10 = 0.11.
-  EXPECT_NEAR(model.EstimateMs(10.0, scene::Stage::kView), 40.0, 30.0 * 0.11);
-}
-
-TEST(CostModelTest, NoiseGivesNoNegativeEstimate) {
-  accuracy::CostModel model;
-  model.Observe(1.0, 50.0, {{scene::FrameStage::kSlices, 1.0}});
-  model.Observe(10.0, 5.0, {{scene::FrameStage::kSlices, 1.0}});
-  EXPECT_GE(model.EstimateMs(0.0, scene::Stage::kView), 0.0);
-  EXPECT_GE(model.EstimateMs(1000.0, scene::Stage::kView), 0.0);
 }
 
 }  // namespace

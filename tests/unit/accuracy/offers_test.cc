@@ -1,6 +1,11 @@
 // Choosing a setting from a table, on plain values.
 #include "accuracy/offers.h"
 
+#include <cmath>
+#include <utility>
+
+#include "accuracy/estimator.h"
+#include "accuracy/named_settings.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/support/techniques.h"
@@ -63,35 +68,28 @@ TEST(BestOfferTest, WhatIsDrawnStaysWhileItIsLittleWorse) {
   EXPECT_EQ(Best(MaxError{0.5}, Slices(7)), kOffers[0]);
 }
 
-TEST(TableCorrectionTest, WithoutMeasurementsTheTableIsBelieved) {
-  EXPECT_EQ(TableCorrection().Factor(Slices(64)), 1.0);
-}
+// A machine's choice and estimates by `tables`.
+struct Desk {
+  explicit Desk(OfferTables offer_tables) : tables(std::move(offer_tables)) {}
 
-TEST(TableCorrectionTest, TheMostSpecialKnowledgeCounts) {
-  TableCorrection correction;
-  correction.Observe(Slices(64), 10.0, 30.0);
-  EXPECT_NEAR(correction.Factor(Slices(64)), 3.0, 1e-9);
-  EXPECT_NEAR(correction.Factor(Slices(128)), 3.0, 1e-9);
-  const Setting half_angle = Slices(64, test_support::kHalfAngle);
-  EXPECT_NEAR(correction.Factor(half_angle), 3.0, 1e-9);
-  EXPECT_FALSE(correction.Knows(half_angle));
-  correction.Observe(half_angle, 10.0, 5.0);
-  EXPECT_TRUE(correction.Knows(half_angle));
-  EXPECT_NEAR(correction.Factor(half_angle), 0.5, 1e-9);
-  EXPECT_NEAR(correction.Factor(Slices(512, test_support::kHalfAngle)), 0.5, 1e-9);
-  EXPECT_NEAR(correction.Factor(Slices(64)), 3.0, 1e-9);
-}
+  // A full frame of `scene` took so long, and was not the first of its setting.
+  void Observe(const scene::Scene& scene, double milliseconds) {
+    const int frames = std::exchange(compiled, true) ? 1 : 2;
+    for (int i = 0; i < frames; ++i) {
+      costs.Observe("", {scene, {}, milliseconds, {{scene::FrameStage::kView, milliseconds}}});
+    }
+  }
 
-TEST(TableCorrectionTest, FollowsAMachineAndForgetsAnOutlier) {
-  TableCorrection correction;
-  for (int i = 0; i < 20; ++i) correction.Observe(Slices(64), 10.0, 20.0);
-  correction.Observe(Slices(64), 10.0, 2000.0);
-  for (int i = 0; i < 10; ++i) correction.Observe(Slices(64), 10.0, 20.0);
-  // 0.7^10 = 0.028 of 0.3 times the outlier's logarithm is left.
-  EXPECT_NEAR(correction.Factor(Slices(64)), 2.0, 2.0 * 0.05);
-  for (const double nonsense_ms : {0.0, -1.0}) correction.Observe(Slices(64), 10.0, nonsense_ms);
-  EXPECT_NEAR(correction.Factor(Slices(64)), 2.0, 2.0 * 0.05);
-}
+  absl::StatusOr<scene::Scene> Decide(const scene::Scene& scene) const {
+    return offers.Decide(scene, std::nullopt);
+  }
+
+  const OfferTables tables;
+  MachineCosts costs{tables};
+  const Offers offers{tables, costs};
+  const Estimator estimator{tables, costs};
+  bool compiled = false;
+};
 
 class OffersTest : public ::testing::Test {
  protected:
@@ -114,10 +112,10 @@ class OffersTest : public ::testing::Test {
 
   int SlicesFor(const scene::Accuracy& limit) {
     scene_.accuracy = limit;
-    return CountOf(offers_.Decide(scene_, std::nullopt)->rendering.technique);
+    return CountOf(desk_.Decide(scene_)->rendering.technique);
   }
 
-  Offers offers_{Tables()};
+  Desk desk_{Tables()};
   scene::Scene scene_ = test_support::PlainScene();
 };
 
@@ -127,7 +125,7 @@ TEST_F(OffersTest, DecidesWhatTheSceneLeavesToThem) {
   scene::MediumSettingsOf(&scene_.rendering.technique)->look.false_colors = true;
   scene_.output.jpeg_quality = 40;
   scene_.accuracy = MaxError{0.35};
-  const scene::Scene decided = *offers_.Decide(scene_, std::nullopt);
+  const scene::Scene decided = *desk_.Decide(scene_);
   EXPECT_EQ(PathOf(decided.rendering.technique), test_support::kLightVolume);
   EXPECT_EQ(ModeOf(decided.rendering.technique).name, "per_field_phase_translucent");
   EXPECT_EQ(CountOf(decided.rendering.technique), 64);
@@ -137,19 +135,19 @@ TEST_F(OffersTest, DecidesWhatTheSceneLeavesToThem) {
 
 TEST_F(OffersTest, LeavesASceneThatAsksForNothingAndTheReference) {
   scene::SetSlices(&scene_.rendering.technique, 7);
-  EXPECT_EQ(*offers_.Decide(scene_, std::nullopt), scene_);
+  EXPECT_EQ(*desk_.Decide(scene_), scene_);
   scene_.rendering.technique = scene::Reference{};
   scene_.accuracy = MaxError{0.35};
-  EXPECT_EQ(*offers_.Decide(scene_, std::nullopt), scene_);
+  EXPECT_EQ(*desk_.Decide(scene_), scene_);
 }
 
 TEST_F(OffersTest, AViewWithoutATableIsTold) {
   scene_.camera = scene::SpotterCamera{};
-  EXPECT_TRUE(offers_.Decide(scene_, std::nullopt).ok());
+  EXPECT_TRUE(desk_.Decide(scene_).ok());
   scene_.accuracy = MaxError{0.35};
-  EXPECT_THAT(std::string(offers_.Decide(scene_, std::nullopt).status().message()),
+  EXPECT_THAT(std::string(desk_.Decide(scene_).status().message()),
               HasSubstr("no accuracy can be offered"));
-  EXPECT_FALSE(offers_.Report(scene_, {}, std::nullopt, 0).has_value());
+  EXPECT_FALSE(desk_.estimator.Report(scene_, {}, {}).has_value());
 }
 
 TEST_F(OffersTest, LargerPicturesCostMore) {
@@ -160,32 +158,32 @@ TEST_F(OffersTest, LargerPicturesCostMore) {
 
 TEST_F(OffersTest, TimesAreCorrectedByWhatFramesCost) {
   scene_.accuracy = MaxMilliseconds{20.0};
-  const scene::Scene decided = *offers_.Decide(scene_, std::nullopt);
+  const scene::Scene decided = *desk_.Decide(scene_);
   EXPECT_EQ(CountOf(decided.rendering.technique), 128);
-  offers_.Observe(decided, 45.0);
+  desk_.Observe(decided, 45.0);
   EXPECT_EQ(SlicesFor(MaxMilliseconds{20.0}), 32);
   // A cheaper machine than the table's, once that is known of the setting itself.
-  for (int i = 0; i < 30; ++i) offers_.Observe(decided, 10.0);
+  for (int i = 0; i < 30; ++i) desk_.Observe(decided, 10.0);
   EXPECT_EQ(SlicesFor(MaxMilliseconds{20.0}), 128);
 }
 
 TEST_F(OffersTest, ReportsWhatItBelieves) {
   scene_.accuracy = MaxError{0.35};
-  const scene::Scene decided = *offers_.Decide(scene_, std::nullopt);
-  AccuracyReport report = *offers_.Report(decided, {}, std::nullopt, 0);
+  const scene::Scene decided = *desk_.Decide(scene_);
+  AccuracyReport report = *desk_.estimator.Report(decided, {}, {});
   EXPECT_EQ(report.slices, 64);
   EXPECT_EQ(report.expected_ms, 10.0);
   EXPECT_EQ(report.model_error, 0.30);
   EXPECT_EQ(report.estimated_error, 0.30);
   EXPECT_FALSE(report.unmet.has_value());
   // A coarse frame tells its own error, and that of what follows meets the limit.
-  report = *offers_.Report(decided, {0.5, 0.5}, std::nullopt, 0);
+  report = *desk_.estimator.Report(decided, {0.5, 0.5}, {});
   EXPECT_EQ(report.slices, 32);
   EXPECT_EQ(report.image_scale, 0.5);
   EXPECT_EQ(report.estimated_error, 0.40);
   EXPECT_FALSE(report.unmet.has_value());
   // The view's own slices add so much that the limit is missed after all.
-  report = *offers_.Report(decided, {}, 0.4, 0);
+  report = *desk_.estimator.Report(decided, {}, {0, 0.4});
   EXPECT_DOUBLE_EQ(report.estimated_error, 0.5);
   EXPECT_EQ(report.discretisation_error, 0.4);
   EXPECT_THAT(report.unmet->message, HasSubstr("the nearest is 0.5"));
@@ -193,26 +191,26 @@ TEST_F(OffersTest, ReportsWhatItBelieves) {
 
 TEST_F(OffersTest, SaysWhatIsOutOfReachAndWhatIsNearest) {
   scene_.accuracy = MaxError{0.05};
-  scene::Scene decided = *offers_.Decide(scene_, std::nullopt);
-  EXPECT_EQ(offers_.Report(decided, {}, std::nullopt, 0)->unmet->message,
+  scene::Scene decided = *desk_.Decide(scene_);
+  EXPECT_EQ(desk_.estimator.Report(decided, {}, {})->unmet->message,
             "an error of 0.05 is out of reach for top-down views; the nearest is 0.2, in 20 ms a "
             "frame. The reference refines to any error");
   scene_.accuracy = MaxMilliseconds{1.0};
-  decided = *offers_.Decide(scene_, std::nullopt);
-  EXPECT_EQ(offers_.Report(decided, {}, std::nullopt, 0)->unmet->message,
+  decided = *desk_.Decide(scene_);
+  EXPECT_EQ(desk_.estimator.Report(decided, {}, {})->unmet->message,
             "1 ms a frame are out of reach for top-down views of 200x100 on this machine; the "
             "nearest is 5 ms, with an error of 0.4");
 }
 
 TEST_F(OffersTest, FramesThatAskForNothingAreReportedWhereTheTableKnowsThem) {
   scene::SetSlices(&scene_.rendering.technique, 128);
-  AccuracyReport report = *offers_.Report(scene_, {}, std::nullopt, 0);
+  AccuracyReport report = *desk_.estimator.Report(scene_, {}, {});
   EXPECT_EQ(report.model_error, 0.20);
   EXPECT_FALSE(report.expected_ms.has_value());
-  offers_.Observe(scene_, 30.0);
-  EXPECT_NEAR(*offers_.Report(scene_, {}, std::nullopt, 0)->expected_ms, 30.0, 1e-9);
+  desk_.Observe(scene_, 30.0);
+  EXPECT_NEAR(*desk_.estimator.Report(scene_, {}, {})->expected_ms, 30.0, 1e-9);
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
-  EXPECT_FALSE(offers_.Report(scene_, {}, std::nullopt, 0).has_value());
+  EXPECT_FALSE(desk_.estimator.Report(scene_, {}, {}).has_value());
 }
 
 class TracedOffersTest : public ::testing::Test {
@@ -239,10 +237,10 @@ class TracedOffersTest : public ::testing::Test {
 
   scene::Technique TechniqueFor(const scene::Accuracy& limit) {
     scene_.accuracy = limit;
-    return offers_.Decide(scene_, std::nullopt)->rendering.technique;
+    return desk_.Decide(scene_)->rendering.technique;
   }
 
-  Offers offers_{Tables()};
+  Desk desk_{Tables()};
   scene::Scene scene_ = test_support::PlainScene();
 };
 
@@ -259,27 +257,34 @@ TEST_F(TracedOffersTest, LightIsTracedWhereNothingElseIsAsAccurate) {
 
 TEST_F(TracedOffersTest, TheErrorIsThatOfThePathsSoFar) {
   scene_.accuracy = MaxError{0.06};
-  const scene::Scene decided = *offers_.Decide(scene_, std::nullopt);
+  const scene::Scene decided = *desk_.Decide(scene_);
   const auto error_after = [&](std::int64_t paths) {
-    return offers_.Report(decided, {}, std::nullopt, paths)->model_error;
+    return desk_.estimator.Report(decided, {}, {paths, std::nullopt})->model_error;
   };
   EXPECT_EQ(error_after(0), 0.11);
   EXPECT_EQ(error_after(90'000), 0.11);
   EXPECT_EQ(error_after(100'000), 0.08);
   EXPECT_EQ(error_after(4'000'000), 0.05);
   // Few paths are on their way to what was asked for.
-  EXPECT_EQ(offers_.Report(decided, {}, std::nullopt, 0)->unmet, std::nullopt);
+  EXPECT_EQ(desk_.estimator.Report(decided, {}, {})->unmet, std::nullopt);
   scene_.accuracy = MaxError{0.01};
-  const scene::Scene nearest = *offers_.Decide(scene_, std::nullopt);
-  EXPECT_THAT(offers_.Report(nearest, {}, std::nullopt, 0)->unmet->message,
+  const scene::Scene nearest = *desk_.Decide(scene_);
+  EXPECT_THAT(desk_.estimator.Report(nearest, {}, {})->unmet->message,
               HasSubstr("the nearest is 0.05"));
 }
 
 TEST_F(TracedOffersTest, FramesOfTracedLightTeachTheirSettingsTime) {
   scene_.accuracy = MaxError{0.06};
-  const scene::Scene decided = *offers_.Decide(scene_, std::nullopt);
-  offers_.Observe(decided, 19.0);
-  EXPECT_NEAR(*offers_.Report(decided, {}, std::nullopt, 0)->expected_ms, 19.0, 1e-9);
+  const scene::Scene decided = *desk_.Decide(scene_);
+  desk_.Observe(decided, 19.0);
+  EXPECT_NEAR(*desk_.estimator.Report(decided, {}, {})->expected_ms, 19.0, 1e-9);
+}
+
+TEST(DiscretisationErrorTest, IsTheRelativeDifferenceOfColours) {
+  // Differences of 1 and 0 where the mean is 2; the fourth value is none.
+  EXPECT_NEAR(DiscretisationError({3.0F, 2.0F, 2.0F, 9.0F}, {2.0F, 2.0F, 2.0F, 1.0F}),
+              std::sqrt(1.0 / 3.0) / 2.0, 1e-7);
+  EXPECT_EQ(DiscretisationError({0.0F, 0.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F, 0.0F}), 0.0);
 }
 
 TEST(BuiltInOfferTablesTest, ServeEveryKindOfView) {

@@ -1,0 +1,72 @@
+#include "accuracy/estimator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "accuracy/named_settings.h"
+#include "accuracy/offers.h"
+
+namespace thunderhead::accuracy {
+namespace {
+
+// The setting of a frame of that quality, its light corrected by so many paths.
+Setting DrawnWith(Setting setting, const FrameQuality& quality, std::int64_t traced_paths) {
+  if (const auto slices = scene::SlicesOf(setting.technique); slices.has_value()) {
+    const int drawn = static_cast<int>(std::ceil(*slices * quality.slice_share));
+    scene::SetSlices(&setting.technique, std::max(drawn, 1));
+  }
+  setting.image_scale *= quality.image_scale;
+  setting.million_paths = static_cast<double>(traced_paths) / 1e6;
+  return setting;
+}
+
+}  // namespace
+
+double DiscretisationError(const std::vector<float>& half, const std::vector<float>& full) {
+  double squares = 0.0;
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < full.size(); ++i) {
+    if (i % 4 == 3) continue;
+    squares += std::pow(static_cast<double>(half[i]) - full[i], 2);
+    sum += full[i];
+    ++count;
+  }
+  const double values = static_cast<double>(count);
+  return sum > 0.0 ? std::sqrt(squares / values) / (sum / values) : 0.0;
+}
+
+std::optional<AccuracyReport> Estimator::Report(const scene::Scene& scene,
+                                                const FrameQuality& quality,
+                                                const Evidence& evidence) const {
+  const auto& table = TableFor(tables_, scene);
+  if (!table.ok()) return std::nullopt;
+  const Setting full = SettingOf(scene);
+  const Setting drawn = DrawnWith(full, quality, evidence.traced_paths);
+  const PricedSetting* const row = NearestRow(*table, drawn);
+  if (row == nullptr) return std::nullopt;
+  AccuracyReport report;
+  report.technique = full.technique;
+  report.slices = CountOf(drawn.technique);
+  report.image_scale = drawn.image_scale;
+  report.model_error = row->relative_rmse;
+  report.discretisation_error = evidence.discretisation_error;
+  // The table's error has some of the slices' in it already; counting it twice errs on the safe
+  // side.
+  report.estimated_error =
+      std::hypot(row->relative_rmse, evidence.discretisation_error.value_or(0.0));
+  const double expected_ms = costs_.SettingMs(*table, *NearestRow(*table, Untraced(full)), scene);
+  const bool asks = !std::holds_alternative<std::monostate>(scene.accuracy);
+  if (asks || costs_.Knows(full)) report.expected_ms = expected_ms;
+  // A coarse frame, or one with few paths, is on its way to the full one, which is what was asked
+  // for.
+  const PricedSetting& full_row = *NearestRow(*table, full);
+  const bool is_full =
+      quality == FrameQuality{} && row->setting.million_paths == full_row.setting.million_paths;
+  const double error = is_full ? report.estimated_error : full_row.relative_rmse;
+  report.unmet = WhyUnmet(scene, {full, expected_ms, error});
+  return report;
+}
+
+}  // namespace thunderhead::accuracy

@@ -1,0 +1,45 @@
+// Estimates the error of a picture from everything that is known without the reference: the row of
+// its setting in the table (the error of the light model), the paths that corrected its light, and
+// how much half the slices change it. Plain values.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "accuracy/accuracy_report.h"
+#include "accuracy/frame_quality.h"
+#include "accuracy/machine_costs.h"
+#include "accuracy/offer_tables.h"
+#include "scene/scene.h"
+
+namespace thunderhead::accuracy {
+
+// What a picture itself tells of its error.
+struct Evidence {
+  std::int64_t traced_paths = 0;               // that corrected its light
+  std::optional<double> discretisation_error;  // by DiscretisationError
+};
+
+// Relative RMSE between a picture with half the slices and the full one, four values a pixel of
+// which the last does not count. No less than the full one's distance from endlessly many slices,
+// where that falls with their number at first order or faster.
+double DiscretisationError(const std::vector<float>& half, const std::vector<float>& full);
+
+class Estimator {
+ public:
+  // Both must outlive it.
+  Estimator(const OfferTables& tables, const MachineCosts& costs)
+      : tables_(tables), costs_(costs) {}
+
+  // Of a frame of `scene` (decided) with that quality; none where the tables do not know its
+  // technique, mode and transport.
+  std::optional<AccuracyReport> Report(const scene::Scene& scene, const FrameQuality& quality,
+                                       const Evidence& evidence) const;
+
+ private:
+  const OfferTables& tables_;
+  const MachineCosts& costs_;
+};
+
+}  // namespace thunderhead::accuracy
