@@ -1,32 +1,26 @@
-// The loop that draws: one thread makes the frame source, owns it, and draws with it in turn the
-// newest scene of every session that has a viewer ready for a frame, and the pictures that were
-// asked for one by one. Reads, encoding and the reference run on other threads beside it. Knows no
-// GL (that is the frame source's) and no messages.
+// The loop that draws: one thread makes the frame source, owns it, and gives turns to the sessions
+// that have a viewer ready for a frame, and to the pictures that were asked for one by one. Reads,
+// encoding and the reference run on other threads beside it. Knows no GL (that is the frame
+// source's) and no messages.
 #pragma once
 
 #include <atomic>
-#include <deque>
+#include <cstddef>
 #include <functional>
 #include <future>
-#include <map>
 #include <memory>
-#include <mutex>
-#include <optional>
-#include <string>
 #include <thread>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "accuracy/estimator.h"
-#include "accuracy/machine_costs.h"
-#include "accuracy/offers.h"
-#include "base/stopwatch.h"
+#include "accuracy/offer_tables.h"
 #include "base/wake_signal.h"
 #include "session/fields_reader.h"
 #include "session/frame_encoder.h"
 #include "session/frame_planner.h"
 #include "session/frame_source.h"
+#include "session/image_queue.h"
 #include "session/sessions.h"
 #include "session/truth_source.h"
 #include "session/truth_tracer.h"
@@ -42,21 +36,6 @@ struct RenderLoopOptions {
   std::function<accuracy::OfferTables()> offer_tables = accuracy::BuiltInOfferTables;
   TruthSourceFactory make_truth_source = [] { return MakeReferenceTruthSource(); };
 };
-
-// One picture at full quality, outside any session.
-struct ImageJob {
-  scene::Scene scene;
-  std::shared_ptr<const volume::HydrometeorFields> fields;
-  std::shared_ptr<const std::atomic<bool>> cancelled;  // true drops the job while it waits
-  // Called once, on the loop's thread or the one that asked; must not block.
-  std::function<void(absl::StatusOr<DisplayFrame>)> done;
-};
-
-// Paths that a picture outside any session waits for if its scene has traced light and asks for no
-// error.
-inline constexpr std::int64_t kImagePaths = 1'000'000;
-// When tracing is tried again for what found too much of it going on.
-inline constexpr Clock::duration kTracingLater = std::chrono::milliseconds(500);
 
 class RenderLoop {
  public:
@@ -87,118 +66,22 @@ class RenderLoop {
   void Stop();
 
  private:
-  // A session's picture by the reference.
-  struct Traced {
-    NewestScene shown;
-    std::shared_ptr<const TruthPicture> picture;  // none yet
-  };
-  // The scene of a revision with the setting that reaches what it asks for.
-  struct Decided {
-    std::uint64_t revision = 0;
-    std::shared_ptr<const scene::Scene> scene;   // null if that failed
-    int decided_again = 0;                       // at rest, by what its frames have cost
-    bool checked = false;                        // drawn with half the slices as well
-    std::optional<double> discretisation_error;  // found so
-    bool settled = false;                        // nothing more is to be learnt of it
-  };
-  // How far the light of a revision has been traced.
-  struct TracedLight {
-    std::uint64_t revision = 0;
-    std::optional<accuracy::LightProgress> begun_at;  // what was there before
-    std::int64_t shown = 0;                           // paths of the newest picture
-    base::Stopwatch since_shown;
-    bool ended = false;
-  };
-  // What the loop knows of a session.
-  struct Track {
-    FramePlanner planner;
-    std::optional<FieldsKey> fields_key;
-    std::shared_ptr<const volume::HydrometeorFields> fields;
-    std::optional<NewestScene> reading_for;  // the scene whose fields are being read
-    std::optional<NewestScene> arrived_for;  // the scene whose fields have just been read
-    std::uint64_t unreadable_revision = 0;
-    std::optional<FieldsKey> drawn_key;
-    double read_ms = 0.0;  // to be reported with the next frame
-    double prepare_ms = 0.0;
-    std::optional<Decided> decided;
-    std::optional<Traced> traced;
-    std::uint64_t untraceable_revision = 0;
-    TracedLight traced_light;
-  };
-  // What came of looking at a session or the pictures that wait.
-  struct Outcome {
-    bool drew = false;
-    std::optional<Clock::time_point> look_again_at;
-  };
-
   RenderLoop(const RenderLoopOptions& options, volume::StormStore& store, Sessions& sessions,
              base::WakeSignal& wake);
 
   void Run(const FrameSourceFactory& make_source, std::promise<absl::Status> started);
-  std::optional<Clock::time_point> DrawOne();
-  void LetGo(const std::string& session_id, Track& track);
-  void DropEndedTracks(const std::vector<std::shared_ptr<Session>>& sessions);
-  Outcome TrySession(const std::shared_ptr<Session>& session);
-  void TakeRead(Session& session, Track& track);
-  bool IsPrepared(const scene::Scene& scene,
-                  const std::shared_ptr<const volume::HydrometeorFields>& fields) const;
-  void AskFor(const Session& session, const NewestScene& newest);
-  // What a series that goes on, a step at a time, will need next, done before it is asked for.
-  void PrepareNext(const Session& session, Track& track, const scene::Scene& shown);
-  std::optional<NewestScene> DrawableScene(const Session& session, Track& track,
-                                           const NewestScene& newest);
-  // `shown` with what it asks for decided; null if that failed, which its viewers are told once.
-  std::optional<NewestScene> Decide(Session& session, Track& track, const NewestScene& shown);
-  // At rest: decides again by what frames have cost, then finds out what few slices do.
-  Outcome Check(const std::shared_ptr<Session>& session, Track& track, const NewestScene& asked);
-  // At rest: traces a while for a scene with traced light, and draws it when that shows.
-  Outcome TraceLight(const std::shared_ptr<Session>& session, Track& track,
-                     const NewestScene& shown);
-  void DrawChecked(const std::shared_ptr<Session>& session, Track& track, std::uint64_t revision);
-  void DrawFor(const std::shared_ptr<Session>& session, Track& track, const NewestScene& shown,
-               const FramePlan& plan);
-  void Send(Track& track, DrawnFrame frame);
-  // Ends the tracing of what the scene no longer shows.
-  void EndTrace(const std::string& session_id, Track& track, const scene::Scene& newest);
-  Outcome ShowTraced(const std::shared_ptr<Session>& session, Track& track,
-                     const NewestScene& shown);
-  // True if there is something that its viewers have not seen.
-  absl::StatusOr<bool> Trace(const std::string& session_id, Track& track, const NewestScene& shown);
-  void Fail(Session& session, Track& track, std::uint64_t revision, const absl::Status& why);
-  absl::StatusOr<DisplayFrame> DrawImage(const ImageJob& job);
-  absl::StatusOr<bool> TraceForImage(const ImageJob& job);
-  Outcome TryImage();
-  std::optional<ImageJob> NextImage();
-  // For a session, or a picture, whose view is the empty string.
-  absl::StatusOr<DisplayFrame> Draw(const std::string& view, const scene::Scene& scene,
-                                    const std::shared_ptr<const volume::HydrometeorFields>& fields,
-                                    const FrameQuality& quality,
-                                    const std::optional<double>& discretisation_error);
-  void RefuseImages();
+  void DrawWith(std::unique_ptr<FrameSource> source);
 
   const RenderLoopOptions options_;
   volume::StormStore& store_;
   Sessions& sessions_;
   base::WakeSignal& wake_;
-  DeviceInfo device_;
+  DeviceInfo device_;  // set, as the next two, before Start returns
   std::vector<TechniqueInfo> techniques_;
+  std::shared_ptr<Preparation> preparation_;
   std::atomic<bool> stopping_{false};
 
-  std::mutex images_mutex_;
-  std::deque<ImageJob> images_;
-  bool refuses_images_ = false;
-
-  // Used by the loop's thread only.
-  std::shared_ptr<Preparation> preparation_;  // set before Start returns
-  std::unique_ptr<FrameSource> source_;
-  std::map<std::string, Track> tracks_;  // by session id
-  std::string last_served_;  // the session looked at last; the pictures' turn is the empty string
-  std::optional<LastDrawn> last_drawn_;
-  const accuracy::OfferTables tables_;
-  accuracy::MachineCosts costs_{tables_};
-  const accuracy::Offers offers_{tables_, costs_};
-  const accuracy::Estimator estimator_{tables_, costs_};
-
+  ImageQueue images_;
   std::unique_ptr<FieldsReader> reader_;
   std::unique_ptr<FrameEncoder> encoder_;
   std::unique_ptr<TruthTracer> tracer_;

@@ -1,0 +1,57 @@
+#include "session/decided_setting.h"
+
+#include <utility>
+#include <variant>
+
+namespace thunderhead::session {
+namespace {
+
+// Prices are learnt as frames are drawn; after these the times are known, or do not settle.
+constexpr int kMaxDecidedAgain = 3;
+
+}  // namespace
+
+absl::StatusOr<std::optional<NewestScene>> DecidedSetting::Decide(const NewestScene& asked) {
+  if (revision_ != asked.revision) {
+    auto scene = offers_.Decide(*asked.scene, SettingKeptFor(*asked.scene));
+    revision_ = asked.revision;
+    scene_ = scene.ok() ? std::make_shared<const scene::Scene>(*std::move(scene)) : nullptr;
+    decided_again_ = 0;
+    checked_ = false;
+    discretisation_error_.reset();
+    settled_ = std::holds_alternative<std::monostate>(asked.scene->accuracy);
+    if (!scene.ok()) return scene.status();
+  }
+  if (scene_ == nullptr) return std::optional<NewestScene>();
+  return std::optional(NewestScene{asked.revision, scene_, asked.changed_at});
+}
+
+// The setting of the scene before, if `asked` asks for the same of the same kind of view.
+std::optional<accuracy::Setting> DecidedSetting::SettingKeptFor(const scene::Scene& asked) const {
+  if (scene_ == nullptr) return std::nullopt;
+  const bool alike =
+      scene_->accuracy == asked.accuracy && scene_->camera.index() == asked.camera.index();
+  if (!alike) return std::nullopt;
+  return accuracy::SettingOf(*scene_);
+}
+
+bool DecidedSetting::TakeCheck() {
+  if (std::exchange(checked_, true)) return false;
+  return scene::SlicesOf(scene_->rendering.technique).value_or(0) >= 2;
+}
+
+bool DecidedSetting::DecideAgain(const NewestScene& asked) {
+  const accuracy::Setting current = accuracy::SettingOf(*scene_);
+  auto again = offers_.Decide(*asked.scene, current);
+  const bool better = again.ok() && accuracy::SettingOf(*again) != current;
+  if (!better || decided_again_ >= kMaxDecidedAgain) {
+    settled_ = true;
+    return false;
+  }
+  scene_ = std::make_shared<const scene::Scene>(*std::move(again));
+  checked_ = false;
+  ++decided_again_;
+  return true;
+}
+
+}  // namespace thunderhead::session

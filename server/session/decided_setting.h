@@ -1,0 +1,47 @@
+// The setting that a session's scene is drawn with: decided at once, by what it asks for, and again
+// at rest, by what its frames have cost and by how much half the slices change them. A plain value.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "absl/status/status.h"
+#include "accuracy/offers.h"
+#include "scene/scene.h"
+#include "session/sessions.h"
+
+namespace thunderhead::session {
+
+class DecidedSetting {
+ public:
+  // `offers` must outlive it.
+  explicit DecidedSetting(const accuracy::Offers& offers) : offers_(offers) {}
+
+  // The newest scene with its setting decided. The error is returned once; afterwards, none.
+  absl::StatusOr<std::optional<NewestScene>> Decide(const NewestScene& asked);
+
+  // True once for each setting that can be drawn with half the slices as well.
+  bool TakeCheck();
+  void Checked(double discretisation_error) { discretisation_error_ = discretisation_error; }
+  const std::optional<double>& discretisation_error() const { return discretisation_error_; }
+
+  // Decides again. True if another setting is better now, which happens a few times at most.
+  bool DecideAgain(const NewestScene& asked);
+
+  // Nothing more is to be learnt of it.
+  bool settled() const { return settled_; }
+
+ private:
+  std::optional<accuracy::Setting> SettingKeptFor(const scene::Scene& asked) const;
+
+  const accuracy::Offers& offers_;
+  std::optional<std::uint64_t> revision_;
+  std::shared_ptr<const scene::Scene> scene_;  // null if that failed
+  int decided_again_ = 0;
+  bool checked_ = false;
+  std::optional<double> discretisation_error_;
+  bool settled_ = false;
+};
+
+}  // namespace thunderhead::session

@@ -1,0 +1,48 @@
+#include "session/image_drawer.h"
+
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "base/status.h"
+#include "session/light_tracing.h"
+
+namespace thunderhead::session {
+
+TurnOutcome ImageDrawer::TakeTurn() {
+  std::optional<ImageJob> job = queue_.Take();
+  if (!job.has_value()) return {};
+  const absl::StatusOr<bool> goes_on = Trace(*job);
+  if (absl::IsResourceExhausted(goes_on.status())) {
+    queue_.PutBack(*std::move(job));
+    return {false, Clock::now() + kTraceAgainAfter};
+  }
+  if (goes_on.ok() && *goes_on) {
+    queue_.PutBack(*std::move(job));
+  } else {
+    job->done(goes_on.ok() ? Draw(*job) : goes_on.status());
+  }
+  return {true, std::nullopt};
+}
+
+absl::StatusOr<bool> ImageDrawer::Trace(const ImageJob& job) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const scene::Scene scene,
+                               source_.Offers().Decide(job.scene, std::nullopt));
+  if (scene::TracedLightOf(scene.rendering.technique) != scene::TracedLight::kAwaited) return false;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const accuracy::LightProgress progress,
+                               source_.TraceLight(scene, job.fields));
+  if (progress.steps == 0) return false;
+  const auto* limit = std::get_if<scene::MaxError>(&scene.accuracy);
+  if (limit == nullptr) return !progress.HasTraced(kImagePaths);
+  const auto report = source_.Estimator().Report(scene, {}, {progress.paths, std::nullopt});
+  const bool near = report.has_value() && report->estimated_error <= limit->relative_rmse;
+  return !near && !progress.HasTraced(accuracy::kTracedPaths);
+}
+
+absl::StatusOr<DisplayFrame> ImageDrawer::Draw(const ImageJob& job) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const scene::Scene scene,
+                               source_.Offers().Decide(job.scene, std::nullopt));
+  return source_.Draw("", scene, job.fields, FrameQuality{});
+}
+
+}  // namespace thunderhead::session

@@ -1,0 +1,48 @@
+// The pictures that were asked for outside any session and wait to be drawn. Safe from any thread.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "absl/status/statusor.h"
+#include "scene/scene.h"
+#include "session/frame_source.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::session {
+
+// One picture at full quality, outside any session.
+struct ImageJob {
+  scene::Scene scene;
+  std::shared_ptr<const volume::HydrometeorFields> fields;
+  std::shared_ptr<const std::atomic<bool>> cancelled;  // true drops the job while it waits
+  // Called once, on the loop's thread or the one that asked; must not block.
+  std::function<void(absl::StatusOr<DisplayFrame>)> done;
+};
+
+class ImageQueue {
+ public:
+  explicit ImageQueue(std::size_t max_waiting) : max_waiting_(max_waiting) {}
+
+  // False if the job was refused, which it has been told: there are too many, or the server stops.
+  bool Add(ImageJob job);
+  // Begun, but not done: it waits behind the others.
+  void PutBack(ImageJob job);
+  // The job whose turn it is; those that were cancelled are told so and dropped.
+  std::optional<ImageJob> Take();
+  // Refuses those that wait and all to come.
+  void RefuseAll();
+
+ private:
+  const std::size_t max_waiting_;
+  std::mutex mutex_;
+  std::deque<ImageJob> waiting_;
+  bool refuses_ = false;
+};
+
+}  // namespace thunderhead::session

@@ -1,0 +1,42 @@
+#include "session/light_tracing.h"
+
+#include "accuracy/setting.h"
+
+namespace thunderhead::session {
+namespace {
+
+// A picture is drawn anew for so many times the paths, but not more often, nor less, than this.
+constexpr double kWorthShowing = 1.5;
+constexpr Clock::duration kMinBetween = std::chrono::milliseconds(500);
+constexpr Clock::duration kMaxBetween = std::chrono::seconds(5);
+
+}  // namespace
+
+void LightTracing::BeginFor(std::uint64_t revision, Clock::time_point now) {
+  if (revision_ == revision) return;
+  *this = LightTracing();
+  revision_ = revision;
+  shown_at_ = now;
+}
+
+bool LightTracing::Traced(const accuracy::LightProgress& progress, Clock::time_point now) {
+  paths_ = progress.paths;
+  if (!begun_at_.has_value()) {
+    begun_at_ = progress;
+    shown_paths_ = paths_;
+  }
+  const accuracy::LightProgress since{paths_ - begun_at_->paths, progress.steps - begun_at_->steps};
+  ended_ = progress.steps == 0 || since.HasTraced(accuracy::kTracedPaths);
+  if (paths_ == 0) return false;
+  const Clock::duration since_shown = now - shown_at_;
+  const bool more =
+      static_cast<double>(paths_) >= kWorthShowing * static_cast<double>(shown_paths_);
+  return ended_ || since_shown >= kMaxBetween || (more && since_shown >= kMinBetween);
+}
+
+void LightTracing::Shown(Clock::time_point now) {
+  shown_paths_ = paths_;
+  shown_at_ = now;
+}
+
+}  // namespace thunderhead::session

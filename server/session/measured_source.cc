@@ -1,0 +1,53 @@
+#include "session/measured_source.h"
+
+#include <utility>
+
+#include "base/status.h"
+#include "base/stopwatch.h"
+
+namespace thunderhead::session {
+
+MeasuredSource::MeasuredSource(std::unique_ptr<FrameSource> source, accuracy::OfferTables tables)
+    : source_(std::move(source)), tables_(std::move(tables)) {}
+
+absl::StatusOr<DisplayFrame> MeasuredSource::Draw(
+    const std::string& view, const scene::Scene& scene, const Fields& fields,
+    const FrameQuality& quality, const std::optional<double>& discretisation_error) {
+  last_drawn_.reset();
+  const base::Stopwatch stopwatch;
+  THUNDERHEAD_ASSIGN_OR_RETURN(DisplayFrame frame, source_->Draw(scene, fields, quality));
+  Learn(view, scene, quality, stopwatch.ElapsedMs(), discretisation_error, &frame);
+  return frame;
+}
+
+absl::StatusOr<CheckedFrame> MeasuredSource::DrawChecked(const std::string& view,
+                                                         const scene::Scene& scene,
+                                                         const Fields& fields) {
+  last_drawn_.reset();
+  THUNDERHEAD_ASSIGN_OR_RETURN(CheckedFrame checked, source_->DrawChecked(scene, fields));
+  double total_ms = 0.0;
+  for (const StageTime& cost : checked.frame.stages) total_ms += cost.milliseconds;
+  Learn(view, scene, FrameQuality{}, total_ms, checked.discretisation_error, &checked.frame);
+  return checked;
+}
+
+absl::StatusOr<accuracy::LightProgress> MeasuredSource::TraceLight(const scene::Scene& scene,
+                                                                   const Fields& fields) {
+  return source_->TraceLight(scene, fields);
+}
+
+absl::StatusOr<DisplayFrame> MeasuredSource::Tone(const picture::LinearPicture& picture,
+                                                  const scene::Display& display) {
+  return source_->Tone(picture, display);
+}
+
+void MeasuredSource::Learn(const std::string& view, const scene::Scene& scene,
+                           const FrameQuality& quality, double total_ms,
+                           const std::optional<double>& discretisation_error, DisplayFrame* frame) {
+  last_drawn_ = LastDrawn{scene, quality};
+  const std::int64_t paths = frame->modelled.traced_paths;
+  costs_.Observe(view, {scene, quality, total_ms, frame->stages, paths > 0});
+  frame->accuracy = estimator_.Report(scene, quality, {paths, discretisation_error});
+}
+
+}  // namespace thunderhead::session

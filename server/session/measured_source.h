@@ -1,0 +1,60 @@
+// A frame source together with what its frames teach: every frame is reported to the cost model
+// once, and carries the estimate of its error. Used by the render loop's thread only.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "accuracy/estimator.h"
+#include "accuracy/machine_costs.h"
+#include "accuracy/offers.h"
+#include "session/frame_planner.h"
+#include "session/frame_source.h"
+
+namespace thunderhead::session {
+
+class MeasuredSource {
+ public:
+  using Fields = std::shared_ptr<const volume::HydrometeorFields>;
+
+  MeasuredSource(std::unique_ptr<FrameSource> source, accuracy::OfferTables tables);
+  MeasuredSource(const MeasuredSource&) = delete;
+  MeasuredSource& operator=(const MeasuredSource&) = delete;
+
+  // A frame of `view`: a session's id, or the empty string for pictures outside any session.
+  absl::StatusOr<DisplayFrame> Draw(
+      const std::string& view, const scene::Scene& scene, const Fields& fields,
+      const FrameQuality& quality,
+      const std::optional<double>& discretisation_error = std::nullopt);
+  absl::StatusOr<CheckedFrame> DrawChecked(const std::string& view, const scene::Scene& scene,
+                                           const Fields& fields);
+  // As FrameSource's.
+  absl::StatusOr<accuracy::LightProgress> TraceLight(const scene::Scene& scene,
+                                                     const Fields& fields);
+  absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
+                                    const scene::Display& display);
+
+  // The view draws no more.
+  void Forget(const std::string& view) { costs_.Forget(view); }
+
+  const std::optional<LastDrawn>& Last() const { return last_drawn_; }
+  const accuracy::MachineCosts& Costs() const { return costs_; }
+  const accuracy::Offers& Offers() const { return offers_; }
+  const accuracy::Estimator& Estimator() const { return estimator_; }
+
+ private:
+  void Learn(const std::string& view, const scene::Scene& scene, const FrameQuality& quality,
+             double total_ms, const std::optional<double>& discretisation_error,
+             DisplayFrame* frame);
+
+  const std::unique_ptr<FrameSource> source_;
+  const accuracy::OfferTables tables_;
+  accuracy::MachineCosts costs_{tables_};
+  const accuracy::Offers offers_{tables_, costs_};
+  const accuracy::Estimator estimator_{tables_, costs_};
+  std::optional<LastDrawn> last_drawn_;  // none after a failure
+};
+
+}  // namespace thunderhead::session

@@ -1,0 +1,164 @@
+#include "session/session_drawer.h"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+#include "base/status.h"
+#include "scene/drawn_fields.h"
+
+namespace thunderhead::session {
+
+SessionDrawer::SessionDrawer(const PlannerTargets& targets, const FieldsAccess& fields,
+                             MeasuredSource& source, FrameEncoder& encoder, TruthTracer& tracer)
+    : targets_(targets), fields_(fields), source_(source), encoder_(encoder), tracer_(tracer) {}
+
+TurnOutcome SessionDrawer::TakeTurn(const std::shared_ptr<Session>& session) {
+  const std::optional<NewestScene> newest = session->Newest();
+  if (!newest.has_value() || !session->hub().HasViewers()) return {};
+  const Turn turn{session, KeptFor(session->id())};
+  TakeRead(turn);
+  turn.kept.reference.EndUnless(*newest->scene);
+  if (!session->hub().HasReadyViewer() || encoder_.IsFullFor(*session)) return {};
+  return std::visit([&](const auto& work) { return Do(turn, work); }, NextWork(turn, *newest));
+}
+
+SessionDrawer::Kept& SessionDrawer::KeptFor(const std::string& session_id) {
+  const auto found = kept_.find(session_id);
+  if (found != kept_.end()) return found->second;
+  return kept_
+      .emplace(session_id,
+               Kept{SessionView(targets_, source_.Costs(), source_.Offers(), session_id),
+                    SessionFields(fields_, session_id), SessionReference(tracer_, session_id)})
+      .first->second;
+}
+
+void SessionDrawer::LetGoOfUnwatched(const std::vector<std::shared_ptr<Session>>& sessions) {
+  for (auto kept = kept_.begin(); kept != kept_.end();) {
+    const auto found = std::lower_bound(
+        sessions.begin(), sessions.end(), kept->first,
+        [](const auto& session, const std::string& id) { return session->id() < id; });
+    const bool exists = found != sessions.end() && (*found)->id() == kept->first;
+    if (!exists || !(*found)->hub().HasViewers()) {
+      kept->second.fields.LetGo();
+      kept->second.reference.LetGo();
+    }
+    if (exists) {
+      ++kept;  // it may be watched again
+    } else {
+      source_.Forget(kept->first);
+      kept = kept_.erase(kept);
+    }
+  }
+}
+
+void SessionDrawer::TakeRead(const Turn& turn) {
+  const auto unreadable = turn.kept.fields.TakeRead();
+  if (!unreadable.has_value()) return;
+  turn.kept.view.Failed(unreadable->revision);
+  turn.session->hub().Publish(UnreadableStorm(unreadable->revision, unreadable->why));
+}
+
+SessionWork SessionDrawer::NextWork(const Turn& turn, const NewestScene& newest) {
+  const auto decided = turn.kept.view.Decide(newest);
+  if (!decided.ok()) turn.session->hub().Publish(ProblemOf(newest.revision, decided.status()));
+  if (!decided.ok() || !decided->has_value()) return WaitUntil{};
+  const auto drawable = turn.kept.fields.Drawable(**decided, turn.kept.view.shown_revision());
+  return turn.kept.view.Next(newest, drawable, Clock::now(), source_.Last());
+}
+
+TurnOutcome SessionDrawer::Do(const Turn& /*turn*/, const WaitUntil& work) {
+  return {false, work.time};
+}
+
+TurnOutcome SessionDrawer::Do(const Turn& turn, const DrawFrame& work) {
+  const NewestScene& shown = work.shown;
+  auto picture =
+      source_.Draw(turn.session->id(), *shown.scene, turn.kept.fields.Fields(), work.plan.quality);
+  if (!picture.ok()) {
+    Fail(turn, shown.revision, picture.status());
+    return {true, std::nullopt};
+  }
+  turn.kept.view.Drawn(work);
+  Send(turn, {turn.session, shown.revision, *shown.scene, work.plan.refined, *std::move(picture),
+              std::nullopt});
+  turn.kept.fields.PrepareNext(*shown.scene);
+  return {true, std::nullopt};
+}
+
+TurnOutcome SessionDrawer::Do(const Turn& turn, const CheckSlices& work) {
+  const NewestScene& shown = work.shown;
+  auto checked = source_.DrawChecked(turn.session->id(), *shown.scene, turn.kept.fields.Fields());
+  if (!checked.ok()) {
+    Fail(turn, shown.revision, checked.status());
+    return {true, std::nullopt};
+  }
+  turn.kept.view.Checked(checked->discretisation_error);
+  Send(turn,
+       {turn.session, shown.revision, *shown.scene, true, std::move(checked->frame), std::nullopt});
+  return {true, std::nullopt};
+}
+
+TurnOutcome SessionDrawer::Do(const Turn& turn, const TraceLight& work) {
+  const NewestScene& shown = work.shown;
+  const auto progress = source_.TraceLight(*shown.scene, turn.kept.fields.Fields());
+  if (absl::IsResourceExhausted(progress.status())) return {false, Clock::now() + kTraceAgainAfter};
+  if (!progress.ok()) {
+    Fail(turn, shown.revision, progress.status());
+    return {};
+  }
+  const bool show = turn.kept.view.LightTraced(*progress, Clock::now());
+  if (!show) return {!turn.kept.view.LightIsTraced(), std::nullopt};
+  if (const absl::Status shows = ShowLight(turn, shown); !shows.ok()) {
+    Fail(turn, shown.revision, shows);
+    return {};
+  }
+  return {true, std::nullopt};
+}
+
+absl::Status SessionDrawer::ShowLight(const Turn& turn, const NewestScene& shown) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      DisplayFrame picture,
+      source_.Draw(turn.session->id(), *shown.scene, turn.kept.fields.Fields(), FrameQuality{},
+                   turn.kept.view.discretisation_error()));
+  turn.kept.view.LightShown(Clock::now());
+  Send(turn, {turn.session, shown.revision, *shown.scene, true, std::move(picture), std::nullopt});
+  return absl::OkStatus();
+}
+
+TurnOutcome SessionDrawer::Do(const Turn& turn, const ShowReference& work) {
+  const absl::StatusOr<bool> showed = ShowTraced(turn, work.shown);
+  if (showed.ok()) return {*showed, std::nullopt};
+  turn.kept.reference.LetGo();
+  Fail(turn, work.shown.revision, showed.status());
+  return {};
+}
+
+absl::StatusOr<bool> SessionDrawer::ShowTraced(const Turn& turn, const NewestScene& shown) {
+  const auto& fields = turn.kept.fields.Fields();
+  THUNDERHEAD_ASSIGN_OR_RETURN(const bool news, turn.kept.reference.Trace(shown, fields));
+  turn.kept.view.ReferenceShown(shown.revision);
+  if (!news) return false;
+  const TruthPicture& traced = turn.kept.reference.picture();
+  THUNDERHEAD_ASSIGN_OR_RETURN(DisplayFrame picture,
+                               source_.Tone(traced.picture, shown.scene->display));
+  picture.stages.insert(picture.stages.begin(), {scene::FrameStage::kTrace, traced.trace_ms});
+  picture.modelled.technique = scene::Reference::kName;
+  picture.modelled.content.fields =
+      scene::HydrometeorsOf(scene::DrawnFieldsOf(*shown.scene, *fields));
+  Send(turn, {turn.session, shown.revision, *shown.scene, traced.full_size, std::move(picture),
+              traced.refinement});
+  return true;
+}
+
+void SessionDrawer::Send(const Turn& turn, DrawnFrame frame) {
+  turn.kept.fields.AddStages(&frame.picture.stages);
+  encoder_.Encode(std::move(frame));
+}
+
+void SessionDrawer::Fail(const Turn& turn, std::uint64_t revision, const absl::Status& why) {
+  turn.kept.view.Failed(revision);
+  turn.session->hub().Publish(ProblemOf(revision, why));
+}
+
+}  // namespace thunderhead::session

@@ -1,0 +1,68 @@
+// Does the work that sessions' views ask for, one piece a turn: draws with the source, and hands
+// frames to the encoder. Used by the render loop's thread only.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "session/frame_encoder.h"
+#include "session/measured_source.h"
+#include "session/session_fields.h"
+#include "session/session_reference.h"
+#include "session/session_view.h"
+#include "session/sessions.h"
+#include "session/turns.h"
+
+namespace thunderhead::session {
+
+class SessionDrawer {
+ public:
+  // All references must outlive it.
+  SessionDrawer(const PlannerTargets& targets, const FieldsAccess& fields, MeasuredSource& source,
+                FrameEncoder& encoder, TruthTracer& tracer);
+
+  TurnOutcome TakeTurn(const std::shared_ptr<Session>& session);
+
+  // Gives back what is kept for sessions that nobody watches, or that are not among `sessions`,
+  // which are in order of id.
+  void LetGoOfUnwatched(const std::vector<std::shared_ptr<Session>>& sessions);
+
+ private:
+  // What is kept for a session while it may be watched.
+  struct Kept {
+    SessionView view;
+    SessionFields fields;
+    SessionReference reference;
+  };
+  // A session whose turn it is.
+  struct Turn {
+    const std::shared_ptr<Session>& session;
+    Kept& kept;
+  };
+
+  Kept& KeptFor(const std::string& session_id);
+  void TakeRead(const Turn& turn);
+  SessionWork NextWork(const Turn& turn, const NewestScene& newest);
+
+  TurnOutcome Do(const Turn& turn, const WaitUntil& work);
+  TurnOutcome Do(const Turn& turn, const DrawFrame& work);
+  TurnOutcome Do(const Turn& turn, const CheckSlices& work);
+  TurnOutcome Do(const Turn& turn, const TraceLight& work);
+  TurnOutcome Do(const Turn& turn, const ShowReference& work);
+
+  absl::Status ShowLight(const Turn& turn, const NewestScene& shown);
+  absl::StatusOr<bool> ShowTraced(const Turn& turn, const NewestScene& shown);
+  void Send(const Turn& turn, DrawnFrame frame);
+  void Fail(const Turn& turn, std::uint64_t revision, const absl::Status& why);
+
+  const PlannerTargets targets_;
+  const FieldsAccess fields_;
+  MeasuredSource& source_;
+  FrameEncoder& encoder_;
+  TruthTracer& tracer_;
+  std::map<std::string, Kept> kept_;  // by session id
+};
+
+}  // namespace thunderhead::session

@@ -1,0 +1,104 @@
+#include "session/session_fields.h"
+
+#include <utility>
+
+namespace thunderhead::session {
+namespace {
+
+// A preparation that took less was done before.
+constexpr double kWorthSaying_ms = 1.0;
+
+FieldsKey KeyOf(const scene::Scene& scene) { return {scene.storm_id, scene.time_index}; }
+
+}  // namespace
+
+std::optional<SessionFields::Unreadable> SessionFields::TakeRead() {
+  std::optional<FieldsRead> read = access_.reader.Take(id_);
+  if (!read.has_value() || !reading_for_.has_value()) return std::nullopt;
+  const NewestScene reading_for = *std::exchange(reading_for_, std::nullopt);
+  if (!read->fields.ok()) {
+    unreadable_revision_ = reading_for.revision;
+    return Unreadable{reading_for.revision, read->fields.status()};
+  }
+  fields_ = *std::move(read->fields);
+  key_ = KeyOf(*reading_for.scene);
+  arrived_for_ = reading_for;
+  read_ms_ += read->milliseconds;
+  prepare_ms_ += read->prepare_ms;
+  return std::nullopt;
+}
+
+std::optional<NewestScene> SessionFields::Drawable(const NewestScene& newest,
+                                                   std::uint64_t shown_revision) {
+  const FieldsKey key = KeyOf(*newest.scene);
+  const std::optional<NewestScene> arrived_for = std::exchange(arrived_for_, std::nullopt);
+  if (key_ == key && IsPrepared(*newest.scene, fields_)) return newest;
+  if (unreadable_revision_ == newest.revision) return std::nullopt;
+  if (auto cached = access_.store.Peek(key.storm_id, key.time_index);
+      cached != nullptr && IsPrepared(*newest.scene, cached)) {
+    fields_ = std::move(cached);
+    key_ = key;
+    // Asked for all the same: it is the store's Get that reads the next times ahead.
+    reading_for_.reset();
+    access_.reader.Ask(id_, key);
+    return newest;
+  }
+  if (!reading_for_.has_value()) {
+    reading_for_ = newest;
+    Ask(newest);
+  }
+  const bool is_news = arrived_for.has_value() && arrived_for->revision > shown_revision;
+  return is_news ? arrived_for : std::nullopt;
+}
+
+bool SessionFields::IsPrepared(
+    const scene::Scene& scene,
+    const std::shared_ptr<const volume::HydrometeorFields>& fields) const {
+  return access_.preparation == nullptr || access_.preparation->IsDone(scene, fields);
+}
+
+void SessionFields::Ask(const NewestScene& newest) {
+  PrepareFields prepare;
+  if (access_.preparation != nullptr) {
+    prepare = [preparation = access_.preparation, scene = newest.scene](const auto& fields) {
+      return preparation->Prepare(*scene, fields);
+    };
+  }
+  access_.reader.Ask(id_, KeyOf(*newest.scene), std::move(prepare));
+}
+
+void SessionFields::PrepareNext(const scene::Scene& shown) {
+  const FieldsKey key = KeyOf(shown);
+  const std::optional<FieldsKey> before = std::exchange(drawn_key_, key);
+  const bool goes_on = before.has_value() && before->storm_id == key.storm_id &&
+                       before->time_index + 1 == key.time_index;
+  if (!goes_on || access_.preparation == nullptr || !access_.preparation->IsNeeded(shown)) return;
+  const volume::StormInfo* storm = access_.store.Find(key.storm_id);
+  if (storm == nullptr || key.time_index + 1 >= static_cast<int>(storm->times.size())) return;
+  auto next = std::make_shared<scene::Scene>(shown);
+  ++next->time_index;
+  access_.reader.AskAhead(id_, KeyOf(*next),
+                          [preparation = access_.preparation, next](const auto& fields) {
+                            return preparation->Prepare(*next, fields);
+                          });
+}
+
+void SessionFields::AddStages(std::vector<StageTime>* stages) {
+  const double prepare_ms = std::exchange(prepare_ms_, 0.0);
+  const double read_ms = std::exchange(read_ms_, 0.0);
+  if (prepare_ms > kWorthSaying_ms) {
+    stages->insert(stages->begin(), {scene::FrameStage::kFit, prepare_ms});
+  }
+  if (read_ms > 0.0) stages->insert(stages->begin(), {scene::FrameStage::kRead, read_ms});
+}
+
+void SessionFields::LetGo() {
+  access_.reader.Forget(id_);
+  fields_.reset();
+  key_.reset();
+  reading_for_.reset();
+  arrived_for_.reset();
+  drawn_key_.reset();
+}
+
+}  // namespace thunderhead::session

@@ -1,0 +1,73 @@
+// The fields of the storm that a session shows: asked for, read beside the render loop, and for a
+// series that plays, prepared ahead. Used by the render loop's thread only. Knows no GL.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "session/fields_reader.h"
+#include "session/frame_source.h"
+#include "session/sessions.h"
+#include "volume/storm_store.h"
+
+namespace thunderhead::session {
+
+// Where fields come from; all must outlive who uses it.
+struct FieldsAccess {
+  volume::StormStore& store;
+  FieldsReader& reader;
+  std::shared_ptr<Preparation> preparation;  // null if no scene needs any
+};
+
+class SessionFields {
+ public:
+  SessionFields(const FieldsAccess& access, std::string session_id)
+      : access_(access), id_(std::move(session_id)) {}
+
+  // A read that failed.
+  struct Unreadable {
+    std::uint64_t revision = 0;
+    absl::Status why;
+  };
+  // Takes what has been read meanwhile.
+  std::optional<Unreadable> TakeRead();
+
+  // The scene to draw now: the newest if its fields are at hand. If they are not they are asked
+  // for, and meanwhile the scene whose fields have just been read is drawn, if it is newer than
+  // `shown_revision`: so a time slider that moves faster than the disk still shows something.
+  std::optional<NewestScene> Drawable(const NewestScene& newest, std::uint64_t shown_revision);
+
+  // Of the scene that is drawable.
+  const std::shared_ptr<const volume::HydrometeorFields>& Fields() const { return fields_; }
+
+  // `shown` was drawn: what a series that goes on, a step at a time, needs next is prepared.
+  void PrepareNext(const scene::Scene& shown);
+
+  // Adds the time that reading and preparing took since the last frame.
+  void AddStages(std::vector<StageTime>* stages);
+
+  // Gives back the memory, and ends its work in progress.
+  void LetGo();
+
+ private:
+  bool IsPrepared(const scene::Scene& scene,
+                  const std::shared_ptr<const volume::HydrometeorFields>& fields) const;
+  void Ask(const NewestScene& newest);
+
+  const FieldsAccess& access_;
+  const std::string id_;
+  std::optional<FieldsKey> key_;
+  std::shared_ptr<const volume::HydrometeorFields> fields_;
+  std::optional<NewestScene> reading_for_;  // the scene whose fields are being read
+  std::optional<NewestScene> arrived_for_;  // the scene whose fields have just been read
+  std::uint64_t unreadable_revision_ = 0;
+  std::optional<FieldsKey> drawn_key_;
+  double read_ms_ = 0.0;  // to be reported with the next frame
+  double prepare_ms_ = 0.0;
+};
+
+}  // namespace thunderhead::session

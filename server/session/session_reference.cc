@@ -1,0 +1,42 @@
+#include "session/session_reference.h"
+
+#include <utility>
+#include <variant>
+
+#include "base/status.h"
+
+namespace thunderhead::session {
+
+void SessionReference::EndUnless(const scene::Scene& newest) {
+  if (!traced_.has_value()) return;
+  if (!std::holds_alternative<scene::Reference>(newest.rendering.technique)) {
+    LetGo();
+  } else if (scene::FirstDirtyStage(*traced_->shown.scene, newest) < scene::Stage::kTone) {
+    tracer_.Stop(id_);
+    traced_.reset();
+  }
+}
+
+absl::StatusOr<bool> SessionReference::Trace(
+    const NewestScene& shown, const std::shared_ptr<const volume::HydrometeorFields>& fields) {
+  if (!traced_.has_value()) {
+    traced_ = Traced{shown, nullptr};
+    THUNDERHEAD_RETURN_IF_ERROR(tracer_.Trace(id_, shown.scene, fields));
+    return false;
+  }
+  // Another exposure shows what was traced so far in another light.
+  bool news = traced_->picture != nullptr && shown.revision > traced_->shown.revision;
+  traced_->shown = shown;
+  if (auto taken = tracer_.Take(id_); taken.has_value()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(traced_->picture, *std::move(taken));
+    news = true;
+  }
+  return news;
+}
+
+void SessionReference::LetGo() {
+  tracer_.Forget(id_);
+  traced_.reset();
+}
+
+}  // namespace thunderhead::session

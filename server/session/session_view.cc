@@ -1,0 +1,119 @@
+#include "session/session_view.h"
+
+#include "base/status.h"
+
+namespace thunderhead::session {
+
+SessionView::SessionView(const PlannerTargets& targets, const accuracy::MachineCosts& costs,
+                         const accuracy::Offers& offers, const std::string& view)
+    : targets_(targets), planner_(targets, costs, view), setting_(offers) {}
+
+absl::StatusOr<std::optional<NewestScene>> SessionView::Decide(const NewestScene& newest) {
+  auto decided = setting_.Decide(newest);
+  if (!decided.ok()) Failed(newest.revision);
+  return decided;
+}
+
+SessionWork SessionView::Next(const NewestScene& newest, const std::optional<NewestScene>& drawable,
+                              Clock::time_point now, const std::optional<LastDrawn>& last_drawn) {
+  state_ = EnteredFor(newest, drawable);
+  if (!drawable.has_value()) return WaitUntil{};
+  std::optional<SessionWork> work;
+  while (!work.has_value()) work = In(state_, {newest, *drawable, now, last_drawn});
+  return *work;
+}
+
+SessionView::State SessionView::EnteredFor(const NewestScene& newest,
+                                           const std::optional<NewestScene>& drawable) const {
+  const NewestScene& scene = drawable.has_value() ? *drawable : newest;
+  if (scene.revision == failed_revision_) return State::kFailed;
+  if (!drawable.has_value()) return State::kWaitingForFields;
+  const scene::Technique& technique = scene.scene->rendering.technique;
+  if (std::holds_alternative<scene::Reference>(technique)) return State::kReference;
+  if (scene.revision > planner_.revision()) return State::kMoving;
+  // Its fields had been given back while nobody watched.
+  return state_ == State::kWaitingForFields ? State::kRefining : state_;
+}
+
+std::optional<SessionWork> SessionView::In(State state, const Now& now) {
+  switch (state) {
+    case State::kMoving:
+      return Move(now);
+    case State::kRefining:
+      return Refine(now);
+    case State::kChecking:
+      return Check(now);
+    case State::kTracingLight:
+      return Trace(now);
+    case State::kReference:
+      return ShowReference{now.shown};
+    case State::kWaitingForFields:
+    case State::kSettled:
+    case State::kFailed:
+      return WaitUntil{};
+  }
+  THUNDERHEAD_CHECK(false, "no such state");
+}
+
+SessionWork SessionView::Move(const Now& now) {
+  return DrawFrame{now.shown, *planner_.Decide(now.shown, now.time, now.last_drawn).plan};
+}
+
+std::optional<SessionWork> SessionView::Refine(const Now& now) {
+  const Decision decision = planner_.Decide(now.shown, now.time, now.last_drawn);
+  if (decision.plan.has_value()) return DrawFrame{now.shown, *decision.plan};
+  if (decision.ask_again_at.has_value()) return WaitUntil{decision.ask_again_at};
+  state_ = State::kChecking;
+  return std::nullopt;
+}
+
+std::optional<SessionWork> SessionView::Check(const Now& now) {
+  if (!setting_.settled()) {
+    const Clock::time_point settled_at = SettledAt(now.newest);
+    if (now.time < settled_at) return WaitUntil{settled_at};
+    if (setting_.TakeCheck()) return CheckSlices{now.shown};
+    if (setting_.DecideAgain(now.newest)) {
+      planner_.Again();
+      state_ = State::kRefining;
+      return WaitUntil{now.time};  // the scene to draw is another one
+    }
+  }
+  state_ = State::kTracingLight;
+  return std::nullopt;
+}
+
+std::optional<SessionWork> SessionView::Trace(const Now& now) {
+  const scene::Technique& technique = now.shown.scene->rendering.technique;
+  if (scene::TracedLightOf(technique) != scene::TracedLight::kOff) {
+    const Clock::time_point settled_at = SettledAt(now.shown);
+    if (now.time < settled_at) return WaitUntil{settled_at};
+    light_.BeginFor(now.shown.revision, now.time);
+    if (!light_.ended()) return TraceLight{now.shown};
+  }
+  state_ = State::kSettled;
+  return std::nullopt;
+}
+
+Clock::time_point SessionView::SettledAt(const NewestScene& scene) const {
+  return scene.changed_at + targets_.settle_delay;
+}
+
+void SessionView::Drawn(const DrawFrame& work) {
+  planner_.Drawn(work.shown.revision, work.plan);
+  state_ = State::kRefining;
+}
+
+void SessionView::Checked(double discretisation_error) { setting_.Checked(discretisation_error); }
+
+bool SessionView::LightTraced(const accuracy::LightProgress& progress, Clock::time_point now) {
+  return light_.Traced(progress, now);
+}
+
+void SessionView::Failed(std::uint64_t revision) {
+  if (revision < planner_.revision()) return;  // a newer one is shown
+  planner_.GiveUp(revision);
+  failed_revision_ = revision;
+  state_ = State::kFailed;
+}
+
+}  // namespace thunderhead::session

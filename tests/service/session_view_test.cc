@@ -1,0 +1,238 @@
+// What is to be done next for a session, with a made-up clock and no GL.
+#include "session/session_view.h"
+
+#include <chrono>
+#include <tuple>
+
+#include "gtest/gtest.h"
+#include "tests/support/techniques.h"
+
+namespace thunderhead::session {
+namespace {
+
+using std::chrono::milliseconds;
+using State = SessionView::State;
+
+constexpr Clock::time_point kStart{};
+constexpr const char* kView = "view";
+
+// Settings of 64 and 128 slices for every kind of camera.
+accuracy::OfferTables Tables() {
+  accuracy::PricedSettings table;
+  table.size_px = {64, 36};
+  accuracy::Setting setting{test_support::PlainScene().rendering.technique};
+  for (const auto& [slices, ms, error] : {std::tuple{64, 10.0, 0.3}, std::tuple{128, 20.0, 0.2}}) {
+    accuracy::SetCount(&setting.technique, slices);
+    table.rows.push_back({setting, ms, error});
+  }
+  accuracy::OfferTables tables;
+  tables.fill(table);
+  tables[1] = absl::FailedPreconditionError("no table");
+  return tables;
+}
+
+class SessionViewTest : public ::testing::Test {
+ protected:
+  SessionViewTest() { scene_.output = {64, 36, 88}; }
+
+  // A change of the scene: the camera turns, if it can.
+  void Change() {
+    if (auto* orbit = std::get_if<scene::OrbitCamera>(&scene_.camera)) orbit->azimuth_deg += 1.0;
+    newest_ = {++revision_, std::make_shared<const scene::Scene>(scene_), kStart};
+  }
+
+  // The next work so long after the change, with the scene's fields at hand.
+  SessionWork Next(milliseconds since_change) {
+    decided_ = **view_.Decide(newest_);
+    return view_.Next(newest_, decided_, kStart + since_change, last_drawn_);
+  }
+
+  // Does the drawing that is asked for. False if other work is.
+  bool DrawNext(milliseconds since_change) {
+    const SessionWork work = Next(since_change);
+    const auto* draw = std::get_if<DrawFrame>(&work);
+    if (draw == nullptr) return false;
+    last_plan_ = draw->plan;
+    Observe(draw->plan.quality, 1000.0);
+    view_.Drawn(*draw);
+    return true;
+  }
+
+  void Observe(const FrameQuality& quality, double ms_per_mega_sample) {
+    const scene::Scene& scene = *decided_->scene;
+    const double ms = ms_per_mega_sample * accuracy::MegaSamples(scene, quality);
+    costs_.Observe(kView, {scene, quality, ms, {{scene::FrameStage::kView, ms}}});
+    last_drawn_ = LastDrawn{scene, quality};
+  }
+
+  // Moves until frames are known to be so slow that they are coarse.
+  void Drag() {
+    for (int i = 0; i < 3; ++i) {
+      Change();
+      ASSERT_TRUE(DrawNext(milliseconds(0)));
+    }
+    ASSERT_FALSE(last_plan_.refined);
+  }
+
+  // Draws what comes before the checks, from coarse to full.
+  void ComeToRest() {
+    do {
+      ASSERT_TRUE(DrawNext(milliseconds(600)));
+    } while (last_plan_ != FramePlan{FrameQuality{}, true});
+  }
+
+  template <typename Work>
+  bool NextIs(milliseconds since_change) {
+    return std::holds_alternative<Work>(Next(since_change));
+  }
+  bool NextIsNothing(milliseconds since_change) {
+    const SessionWork work = Next(since_change);
+    const auto* wait = std::get_if<WaitUntil>(&work);
+    return wait != nullptr && !wait->time.has_value();
+  }
+
+  const accuracy::OfferTables tables_ = Tables();
+  accuracy::MachineCosts costs_{tables_};
+  const accuracy::Offers offers_{tables_, costs_};
+  SessionView view_{PlannerTargets{}, costs_, offers_, kView};
+  scene::Scene scene_ = test_support::PlainScene();
+  std::uint64_t revision_ = 0;
+  NewestScene newest_;
+  std::optional<NewestScene> decided_;
+  std::optional<LastDrawn> last_drawn_;
+  FramePlan last_plan_;
+};
+
+TEST_F(SessionViewTest, ASceneWithoutFieldsWaitsAndThenMoves) {
+  Change();
+  decided_ = **view_.Decide(newest_);
+  const SessionWork work = view_.Next(newest_, std::nullopt, kStart, std::nullopt);
+  EXPECT_TRUE(std::holds_alternative<WaitUntil>(work));
+  EXPECT_EQ(view_.state(), State::kWaitingForFields);
+  EXPECT_TRUE(NextIs<DrawFrame>(milliseconds(0)));
+  EXPECT_EQ(view_.state(), State::kMoving);
+}
+
+TEST_F(SessionViewTest, FromMovingToRefiningToSettled) {
+  Drag();
+  EXPECT_EQ(view_.state(), State::kRefining);
+  EXPECT_EQ(std::get<WaitUntil>(Next(milliseconds(10))).time, kStart + PlannerTargets{}.rest_delay);
+  ComeToRest();
+  EXPECT_TRUE(NextIsNothing(milliseconds(10000)));
+  EXPECT_EQ(view_.state(), State::kSettled);
+  Change();
+  EXPECT_TRUE(NextIs<DrawFrame>(milliseconds(0)));
+  EXPECT_EQ(view_.state(), State::kMoving);
+}
+
+TEST_F(SessionViewTest, WhatAsksForAnErrorIsCheckedOnceItHasSettled) {
+  scene_.accuracy = scene::MaxError{0.25};
+  Change();
+  ComeToRest();
+  EXPECT_EQ(std::get<WaitUntil>(Next(milliseconds(400))).time,
+            kStart + PlannerTargets{}.settle_delay);
+  EXPECT_TRUE(NextIs<CheckSlices>(milliseconds(600)));
+  EXPECT_EQ(view_.state(), State::kChecking);
+  view_.Checked(0.02);
+  EXPECT_EQ(view_.discretisation_error(), 0.02);
+  EXPECT_TRUE(NextIsNothing(milliseconds(600)));
+  EXPECT_EQ(view_.state(), State::kSettled);
+}
+
+TEST_F(SessionViewTest, ASettingThatProvesTooSlowIsReplacedAndDrawnAnew) {
+  scene_.accuracy = scene::MaxMilliseconds{22.0};
+  Change();
+  ComeToRest();
+  EXPECT_EQ(scene::SlicesOf(decided_->scene->rendering.technique), 128);
+  Observe(FrameQuality{}, 1000.0);  // 295 ms
+  EXPECT_TRUE(NextIs<CheckSlices>(milliseconds(600)));
+  const SessionWork again = Next(milliseconds(600));
+  EXPECT_EQ(std::get<WaitUntil>(again).time, kStart + milliseconds(600));
+  EXPECT_EQ(view_.state(), State::kRefining);
+  ASSERT_TRUE(DrawNext(milliseconds(600)));
+  EXPECT_EQ(scene::SlicesOf(decided_->scene->rendering.technique), 64);
+}
+
+TEST_F(SessionViewTest, LightIsTracedAtRestUntilItHasEnoughPaths) {
+  test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kDiffusion);
+  std::get<scene::LightVolume>(scene_.rendering.technique).traced_light =
+      scene::TracedLight::kAtRest;
+  Change();
+  ComeToRest();
+  EXPECT_EQ(std::get<WaitUntil>(Next(milliseconds(400))).time,
+            kStart + PlannerTargets{}.settle_delay);
+  ASSERT_TRUE(NextIs<TraceLight>(milliseconds(600)));
+  EXPECT_EQ(view_.state(), State::kTracingLight);
+  EXPECT_FALSE(view_.LightTraced({1000, 1}, kStart + milliseconds(700))) << "too soon to show";
+  EXPECT_FALSE(view_.LightTraced({1400, 2}, kStart + milliseconds(1200))) << "too few more";
+  EXPECT_TRUE(view_.LightTraced({1500, 2}, kStart + milliseconds(1200)));
+  view_.LightShown(kStart + milliseconds(1200));
+  EXPECT_FALSE(view_.LightTraced({1600, 3}, kStart + milliseconds(6100)));
+  EXPECT_TRUE(view_.LightTraced({1600, 3}, kStart + milliseconds(6200))) << "after five seconds";
+  ASSERT_TRUE(NextIs<TraceLight>(milliseconds(6200)));
+  EXPECT_TRUE(view_.LightTraced({1000 + accuracy::kTracedPaths, 4}, kStart + milliseconds(6300)));
+  EXPECT_TRUE(NextIsNothing(milliseconds(6300)));
+  EXPECT_EQ(view_.state(), State::kSettled);
+  Change();
+  ComeToRest();
+  EXPECT_TRUE(NextIs<TraceLight>(milliseconds(600)));
+}
+
+TEST_F(SessionViewTest, TheReferenceIsShownAndNothingDrawn) {
+  scene_.rendering.technique = scene::Reference{};
+  Change();
+  EXPECT_TRUE(NextIs<ShowReference>(milliseconds(0)));
+  view_.ReferenceShown(revision_);
+  EXPECT_TRUE(NextIs<ShowReference>(milliseconds(10000)));
+  EXPECT_EQ(view_.state(), State::kReference);
+}
+
+TEST_F(SessionViewTest, AFailureIsNotTriedAgainUntilTheSceneChanges) {
+  Change();
+  ASSERT_TRUE(NextIs<DrawFrame>(milliseconds(0)));
+  view_.Failed(revision_);
+  EXPECT_TRUE(NextIsNothing(milliseconds(10000)));
+  EXPECT_EQ(view_.state(), State::kFailed);
+  Change();
+  EXPECT_TRUE(NextIs<DrawFrame>(milliseconds(0)));
+}
+
+TEST_F(SessionViewTest, AFailedReferenceIsNotShownAgain) {
+  scene_.rendering.technique = scene::Reference{};
+  Change();
+  EXPECT_TRUE(NextIs<ShowReference>(milliseconds(0)));
+  view_.Failed(revision_);
+  EXPECT_TRUE(NextIsNothing(milliseconds(0)));
+  EXPECT_EQ(view_.state(), State::kFailed);
+}
+
+TEST_F(SessionViewTest, AnOlderFailureDoesNotStopTheNewest) {
+  Drag();
+  view_.Failed(revision_ - 1);
+  EXPECT_EQ(view_.state(), State::kRefining);
+  EXPECT_FALSE(NextIsNothing(milliseconds(10)));
+}
+
+TEST_F(SessionViewTest, ASettingThatCannotBeDecidedIsAnErrorOnce) {
+  scene_.accuracy = scene::MaxError{0.25};
+  scene_.camera = scene::SpotterCamera{};
+  Change();
+  EXPECT_FALSE(view_.Decide(newest_).ok());
+  EXPECT_EQ(view_.state(), State::kFailed);
+  const auto again = view_.Decide(newest_);
+  ASSERT_TRUE(again.ok());
+  EXPECT_FALSE(again->has_value());
+}
+
+TEST_F(SessionViewTest, FieldsThatComeBackBeginNothingAnew) {
+  Change();
+  ComeToRest();
+  EXPECT_TRUE(NextIsNothing(milliseconds(10000)));
+  view_.Next(newest_, std::nullopt, kStart, last_drawn_);
+  EXPECT_EQ(view_.state(), State::kWaitingForFields);
+  EXPECT_TRUE(NextIsNothing(milliseconds(10000)));
+  EXPECT_EQ(view_.state(), State::kSettled);
+}
+
+}  // namespace
+}  // namespace thunderhead::session

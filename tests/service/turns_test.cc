@@ -1,0 +1,73 @@
+// Whose turn it is, on plain values.
+#include "session/turns.h"
+
+#include <map>
+#include <set>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+
+namespace thunderhead::session {
+namespace {
+
+using ::testing::ElementsAre;
+
+class TurnsTest : public ::testing::Test {
+ protected:
+  // Who uses the next turn; the empty string if nobody does.
+  std::string Serve() {
+    std::string served;
+    asked_.clear();
+    look_again_at_ = turns_.Next(ids_, [&](std::size_t i) -> TurnOutcome {
+      asked_.push_back(ids_[i]);
+      if (busy_.count(ids_[i]) == 0) return {false, waits_until_[ids_[i]]};
+      served = ids_[i];
+      return {true, std::nullopt};
+    });
+    return served;
+  }
+
+  Turns turns_;
+  std::vector<std::string> ids_{"", "a", "b", "c"};
+  std::set<std::string> busy_;
+  std::map<std::string, std::optional<Clock::time_point>> waits_until_;
+  std::vector<std::string> asked_;
+  std::optional<Clock::time_point> look_again_at_;
+};
+
+TEST_F(TurnsTest, AllWhoHaveWorkAreServedInTurn) {
+  busy_ = {"", "a", "c"};
+  std::vector<std::string> served;
+  for (int i = 0; i < 6; ++i) served.push_back(Serve());
+  EXPECT_THAT(served, ElementsAre("a", "c", "", "a", "c", ""));
+}
+
+TEST_F(TurnsTest, TheRoundGoesOnWhereTheLastServedHasGone) {
+  busy_ = {"a", "b", "c"};
+  EXPECT_EQ(Serve(), "a");
+  EXPECT_EQ(Serve(), "b");
+  ids_ = {"", "a", "c"};
+  EXPECT_EQ(Serve(), "c");
+  EXPECT_EQ(Serve(), "a");
+}
+
+TEST_F(TurnsTest, ATurnThatIsUsedEndsTheRoundAndItGoesOnAtOnce) {
+  busy_ = {"b"};
+  const Clock::time_point before = Clock::now();
+  EXPECT_EQ(Serve(), "b");
+  EXPECT_THAT(asked_, ElementsAre("a", "b"));
+  EXPECT_GE(*look_again_at_, before);
+}
+
+TEST_F(TurnsTest, WithoutWorkTheEarliestWishCounts) {
+  EXPECT_EQ(Serve(), "");
+  EXPECT_FALSE(look_again_at_.has_value());
+  const Clock::time_point early{std::chrono::seconds(1)};
+  waits_until_ = {{"a", early + std::chrono::seconds(1)}, {"b", early}};
+  EXPECT_EQ(Serve(), "");
+  EXPECT_EQ(asked_.size(), ids_.size());
+  EXPECT_EQ(look_again_at_, early);
+}
+
+}  // namespace
+}  // namespace thunderhead::session
