@@ -85,7 +85,7 @@ RenderLoop::Outcome RenderLoop::TraceLight(const std::shared_ptr<Session>& sessi
   const accuracy::LightProgress since{paths - light.begun_at->paths,
                                       progress->steps - light.begun_at->steps};
   light.ended = progress->steps == 0 || since.HasTraced(accuracy::kTracedPaths);
-  if (paths == 0) return {!light.ended, std::nullopt};
+  if (!progress->Corrects()) return {!light.ended, std::nullopt};
   const double ms = light.since_shown.ElapsedMs();
   const bool more = static_cast<double>(paths) >= kWorthShowing * static_cast<double>(light.shown);
   const bool show = light.ended || ms >= kShownAtLeast_ms || (more && ms >= kShownAtMost_ms);
