@@ -286,6 +286,20 @@ std::optional<AccuracyReport> Offers::Report(const scene::Scene& scene, const Fr
   return report;
 }
 
+std::int64_t Offers::PathsFor(const scene::Scene& scene) const {
+  const auto* limit = std::get_if<scene::MaxError>(&scene.accuracy);
+  const auto& table = TableOf(scene);
+  if (limit == nullptr || !table.ok()) return kImagePaths;
+  std::int64_t fewest = kTracedPaths;
+  for (const PricedSetting& row : table->rows) {
+    const std::int64_t paths = std::llround(1e6 * row.setting.million_paths);
+    if (row.relative_rmse > limit->relative_rmse || paths >= fewest) continue;
+    const auto report = Report(scene, {}, std::nullopt, paths);
+    if (report.has_value() && report->estimated_error <= limit->relative_rmse) fewest = paths;
+  }
+  return fewest;
+}
+
 std::optional<Unmet> Offers::WhyUnmet(const scene::Scene& scene, const Offer& offer) const {
   if (std::holds_alternative<std::monostate>(scene.accuracy) || Meets(offer, scene.accuracy)) {
     return std::nullopt;

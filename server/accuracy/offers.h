@@ -92,6 +92,10 @@ class Offers {
                                        const std::optional<double>& discretisation_error,
                                        std::int64_t traced_paths) const;
 
+  // The paths that a picture of `scene` (decided) outside any session waits for, if it waits: the
+  // fewest with which it keeps within the error that it asks for.
+  std::int64_t PathsFor(const scene::Scene& scene) const;
+
  private:
   const absl::StatusOr<PricedSettings>& TableOf(const scene::Scene& scene) const {
     return tables_[scene.camera.index()];
@@ -106,6 +110,8 @@ class Offers {
 // Paths that are traced for a view that rests, if its light is traced; more change what is seen by
 // less than a hundredth.
 inline constexpr std::int64_t kTracedPaths = 4'000'000;
+// Paths that a picture outside any session waits for if it asks for no error.
+inline constexpr std::int64_t kImagePaths = 1'000'000;
 
 // The setting that a decided scene is drawn with in the end; of metaballs, `slices` is their
 // number, as in the tables.

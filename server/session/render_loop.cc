@@ -357,11 +357,13 @@ absl::StatusOr<bool> RenderLoop::TraceForImage(const ImageJob& job) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const accuracy::LightProgress progress,
                                source_->TraceLight(scene, job.fields));
   if (progress.steps == 0) return false;
-  const auto* limit = std::get_if<scene::MaxError>(&scene.accuracy);
-  if (limit == nullptr) return !progress.HasTraced(kImagePaths);
-  const auto report = offers_.Report(scene, {}, std::nullopt, progress.paths);
-  const bool near = report.has_value() && report->estimated_error <= limit->relative_rmse;
-  return !near && !progress.HasTraced(accuracy::kTracedPaths);
+  const std::int64_t wanted = offers_.PathsFor(scene);
+  if (job.on_progress) {
+    const auto report = offers_.Report(scene, {}, std::nullopt, progress.paths);
+    job.on_progress({progress.ShareOf(wanted), progress.paths,
+                     report.has_value() ? std::optional(report->estimated_error) : std::nullopt});
+  }
+  return !progress.HasTraced(wanted);
 }
 
 RenderLoop::Outcome RenderLoop::TryImage() {

@@ -45,6 +45,13 @@ struct RenderLoopOptions {
   TruthSourceFactory make_truth_source = [] { return MakeReferenceTruthSource(); };
 };
 
+// How far the light of a picture has been traced.
+struct ImageProgress {
+  double share = 0.0;  // of the paths that it waits for, 0 to 1
+  std::int64_t traced_paths = 0;
+  std::optional<double> estimated_error;  // that it would have now
+};
+
 // One picture at full quality, outside any session.
 struct ImageJob {
   scene::Scene scene;
@@ -52,11 +59,11 @@ struct ImageJob {
   std::shared_ptr<const std::atomic<bool>> cancelled;  // true drops the job while it waits
   // Called once, on the loop's thread or the one that asked; must not block.
   std::function<void(absl::StatusOr<DisplayFrame>)> done;
+  // If given, called on the loop's thread after each step of tracing light for the picture, and not
+  // after `done`; must not block.
+  std::function<void(const ImageProgress&)> on_progress = nullptr;
 };
 
-// Paths that a picture outside any session waits for if its scene has traced light and asks for no
-// error.
-inline constexpr std::int64_t kImagePaths = 1'000'000;
 // When tracing is tried again for what found too much of it going on.
 inline constexpr Clock::duration kTracingLater = std::chrono::milliseconds(500);
 
