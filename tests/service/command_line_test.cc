@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -166,11 +167,14 @@ TEST_F(CommandLineTest, RenderWaitsForTracedLightAndPrintsTheErrorReached) {
 }
 
 TEST_F(CommandLineTest, AnInterruptedRenderLeavesNoFile) {
+  const auto begun_at = std::chrono::steady_clock::now();
   const Outcome outcome = Shell(std::string(PROGRAM) + " " + render_ +
                                 " --time 1 --size 48x27 --quality true & render=$!; sleep 3; "
                                 "kill -TERM $render; wait $render");
   EXPECT_EQ(outcome.code, 1);
   EXPECT_EQ(outcome.err, "thunderhead: interrupted: no picture was written\n");
+  // A million paths are some 300 pictures to draw and trace, whatever the machine.
+  EXPECT_LT(std::chrono::steady_clock::now() - begun_at, std::chrono::seconds(10)) << "waited";
   EXPECT_THAT(outcome.out, IsEmpty());
   EXPECT_FALSE(std::filesystem::exists(picture_));
 }
