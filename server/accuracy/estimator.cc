@@ -69,4 +69,18 @@ std::optional<AccuracyReport> Estimator::Report(const scene::Scene& scene,
   return report;
 }
 
+std::int64_t Estimator::PathsFor(const scene::Scene& scene) const {
+  const auto* limit = std::get_if<scene::MaxError>(&scene.accuracy);
+  const auto& table = TableFor(tables_, scene);
+  if (limit == nullptr || !table.ok()) return kImagePaths;
+  std::int64_t fewest = kTracedPaths;
+  for (const PricedSetting& row : table->rows) {
+    const std::int64_t paths = std::llround(1e6 * row.setting.million_paths);
+    if (row.relative_rmse > limit->relative_rmse || paths >= fewest) continue;
+    const auto report = Report(scene, {}, {paths, std::nullopt});
+    if (report.has_value() && report->estimated_error <= limit->relative_rmse) fewest = paths;
+  }
+  return fewest;
+}
+
 }  // namespace thunderhead::accuracy

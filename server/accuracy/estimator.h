@@ -37,6 +37,10 @@ class Estimator {
   std::optional<AccuracyReport> Report(const scene::Scene& scene, const FrameQuality& quality,
                                        const Evidence& evidence) const;
 
+  // The paths that a picture of `scene` (decided) outside any session waits for, if it waits: the
+  // fewest with which it keeps within the error that it asks for.
+  std::int64_t PathsFor(const scene::Scene& scene) const;
+
  private:
   const OfferTables& tables_;
   const MachineCosts& costs_;

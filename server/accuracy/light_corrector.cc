@@ -254,7 +254,7 @@ void LightCorrector::UpdateGround() {
 }
 
 std::shared_ptr<const renderers::LightCorrection> LightCorrector::Correction() {
-  if (correction_ != nullptr || progress_.paths == 0) return correction_;
+  if (correction_ != nullptr || !progress_.Corrects()) return correction_;
   std::shared_ptr<renderers::LightCorrection> correction = WithGround();
   correction->size = storm_fit_.Size();
   for (const Factors& factors : storm_fit_.Solve()) {

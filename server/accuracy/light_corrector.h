@@ -57,7 +57,8 @@ class LightCorrector {
   // Total number of paths, without the ground's.
   const LightProgress& Progress() const { return progress_; }
 
-  // The correction from all paths so far; null before the first.
+  // The correction from all paths so far; null while these are too few to be worth it
+  // (LightProgress::Corrects).
   std::shared_ptr<const renderers::LightCorrection> Correction();
 
  private:

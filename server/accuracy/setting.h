@@ -12,6 +12,8 @@ namespace thunderhead::accuracy {
 // Paths that are traced for a view that rests, if its light is traced; more change what is seen by
 // less than a hundredth.
 inline constexpr std::int64_t kTracedPaths = 4'000'000;
+// Paths that a picture outside any session waits for if it asks for no error.
+inline constexpr std::int64_t kImagePaths = 1'000'000;
 
 struct Setting {
   scene::Technique technique;

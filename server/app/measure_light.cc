@@ -153,6 +153,7 @@ absl::Status MeasureTransport(const Compared& compared,
   scene::Scene scene = compared.local.scene;
   auto& technique = std::get<scene::LightVolume>(scene.rendering.technique);
   technique.medium.transport = transport.value;
+  technique.medium.look.detail = false;  // the truth has none
   THUNDERHEAD_RETURN_IF_ERROR(compared.Print(scene, std::string(transport.name), nullptr));
   technique.traced_light = scene::TracedLight::kAtRest;
   const bool traces = compared.part == LightPart::kAll && !compared.flags.million_paths.empty() &&

@@ -2,7 +2,9 @@
 
 #include <iostream>
 #include <memory>
+#include <stop_token>
 #include <string>
+#include <utility>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -10,6 +12,7 @@
 #include "accuracy/named_settings.h"
 #include "app/address.h"
 #include "app/commands.h"
+#include "app/interruption.h"
 #include "app/local_service.h"
 #include "app/progress_bar.h"
 #include "app/render_reference.h"
@@ -46,30 +49,58 @@ absl::StatusOr<v1::ImageFormat> FormatOf(const std::string& output) {
       absl::StrCat("-o is '", output, "'; its name must end in .png, .jpg or .jpeg"));
 }
 
+absl::Status Interrupted() { return absl::CancelledError("interrupted: no picture was written"); }
+
+void Show(const v1::RenderImageProgress& progress, ProgressBar& bar) {
+  bar.Set(progress.share());
+  std::string note =
+      absl::StrFormat("%.2f million paths", 1e-6 * static_cast<double>(progress.traced_paths()));
+  if (progress.has_estimated_error()) {
+    absl::StrAppendFormat(&note, ", error about %.2g", progress.estimated_error());
+  }
+  bar.Note(std::move(note));
+}
+
 absl::StatusOr<v1::RenderImageResponse> Call(const std::shared_ptr<grpc::Channel>& channel,
-                                             const v1::RenderImageRequest& request) {
-  const ProgressBar bar("rendering");
-  v1::RenderImageResponse response;
+                                             const v1::RenderImageRequest& request,
+                                             const Interruption& interruption) {
+  ProgressBar bar("rendering");
   grpc::ClientContext context;
-  const grpc::Status status =
-      v1::ThunderheadService::NewStub(channel)->RenderImage(&context, request, &response);
+  const std::stop_callback cancel(interruption.Token(), [&context] { context.TryCancel(); });
+  const auto stub = v1::ThunderheadService::NewStub(channel);
+  const auto reader = stub->RenderImageWithProgress(&context, request);
+  v1::RenderImageEvent event;
+  v1::RenderImageResponse picture;
+  while (reader->Read(&event)) {
+    if (event.has_progress()) Show(event.progress(), bar);
+    if (event.has_image()) picture = std::move(*event.mutable_image());
+  }
+  const grpc::Status status = reader->Finish();
+  if (interruption.Token().stop_requested()) return Interrupted();
+  if (status.error_code() == grpc::StatusCode::UNIMPLEMENTED) {
+    return absl::UnimplementedError(
+        "the server is older than this program and lacks the call that it needs "
+        "(RenderImageWithProgress): run both in the same version");
+  }
   THUNDERHEAD_RETURN_IF_ERROR(FromGrpc(status));
-  return response;
+  return picture;
 }
 
 absl::StatusOr<v1::RenderImageResponse> CallServer(const Flags& flags,
-                                                   v1::RenderImageRequest request) {
+                                                   v1::RenderImageRequest request,
+                                                   const Interruption& interruption) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const Address address, ParseAddress("--server", flags.server));
   request.mutable_scene()->set_storm_id(flags.storm);
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(kMaxResponseBytes);
   return Call(
       grpc::CreateCustomChannel(ToString(address), grpc::InsecureChannelCredentials(), arguments),
-      request);
+      request, interruption);
 }
 
 absl::StatusOr<v1::RenderImageResponse> CallHere(const Flags& flags,
-                                                 const v1::RenderImageRequest& request) {
+                                                 const v1::RenderImageRequest& request,
+                                                 const Interruption& interruption) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store,
                                OpenStorm(flags.storm));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<service::Server> server,
@@ -78,7 +109,8 @@ absl::StatusOr<v1::RenderImageResponse> CallHere(const Flags& flags,
     THUNDERHEAD_RETURN_IF_ERROR(
         ReadWithProgress(*store, static_cast<int>(request.scene().time_index())));
   }
-  return Call(server->LocalChannel(), request);
+  if (interruption.Token().stop_requested()) return Interrupted();
+  return Call(server->LocalChannel(), request, interruption);
 }
 
 // The setting and the error of a scene that asks for an accuracy or a speed, or waits for traced
@@ -127,9 +159,10 @@ absl::Status Render(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(*request.mutable_scene(), ReadScene(flags.scene));
   if (request.scene().rendering().has_reference()) return ByReference(flags);
   request.set_format(format);
-  THUNDERHEAD_ASSIGN_OR_RETURN(v1::RenderImageResponse response, flags.server.empty()
-                                                                     ? CallHere(flags, request)
-                                                                     : CallServer(flags, request));
+  const Interruption interruption;
+  THUNDERHEAD_ASSIGN_OR_RETURN(v1::RenderImageResponse response,
+                               flags.server.empty() ? CallHere(flags, request, interruption)
+                                                    : CallServer(flags, request, interruption));
   THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(flags.output, response.image()));
   if (!flags.json) {
     PrintAccuracy(response);

@@ -40,5 +40,7 @@ grpc::ServerUnaryReactor* CloseSession(Engine& engine, grpc::CallbackServerConte
 grpc::ServerUnaryReactor* RenderImage(Engine& engine, grpc::CallbackServerContext* context,
                                       const v1::RenderImageRequest* request,
                                       v1::RenderImageResponse* response);
+grpc::ServerWriteReactor<v1::RenderImageEvent>* RenderImageWithProgress(
+    Engine& engine, grpc::CallbackServerContext* context, const v1::RenderImageRequest* request);
 
 }  // namespace thunderhead::service

@@ -1,5 +1,7 @@
 #include <atomic>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <utility>
 
 #include "base/error_details.h"
@@ -7,10 +9,10 @@
 #include "base/stopwatch.h"
 #include "frame/image_codec.h"
 #include "service/camera_messages.h"
-#include "service/finished.h"
 #include "service/handlers.h"
 #include "service/limits_check.h"
 #include "service/scene_messages.h"
+#include "service/status_table.h"
 
 namespace thunderhead::service {
 namespace {
@@ -39,30 +41,52 @@ absl::Status OfScene(const absl::Status& status) {
   return base::WithDetails(status, {.reason = "SCENE_NOT_DRAWN", .field = "scene"});
 }
 
-// One picture on its way: read (executor), drawn (render loop), encoded (executor). Finish is
-// called by exactly one of these steps; gRPC deletes the reactor through OnDone, after which no
-// step runs.
-class PictureReactor : public grpc::ServerUnaryReactor {
+// Who waits for a picture.
+class PictureListener {
  public:
-  PictureReactor(Engine& engine, const v1::RenderImageRequest& request,
-                 v1::RenderImageResponse& response)
-      : engine_(engine), request_(request), response_(response) {}
+  // Light is being traced for it. Must not block.
+  virtual void Progressed(const session::ImageProgress& /*progress*/) {}
+  // Called once, and last: the response is complete, or why there is none.
+  virtual void Ended(const absl::Status& status) = 0;
+
+ protected:
+  ~PictureListener() = default;
+};
+
+// One picture on its way: read (executor), drawn (render loop), encoded (executor). Exactly one of
+// these steps ends it; what is passed to the job must live until then.
+class PictureJob {
+ public:
+  PictureJob(Engine& engine, const v1::RenderImageRequest& request,
+             v1::RenderImageResponse& response, PictureListener& listener)
+      : engine_(engine), request_(request), response_(response), listener_(listener) {}
 
   void Begin() {
+    if (const absl::Status wrong = CompleteScene(); !wrong.ok()) return listener_.Ended(wrong);
     engine_.executor.Submit([this](const absl::Status& status) {
       const absl::Status submitted = status.ok() ? ReadAndSubmit() : status;
-      if (!submitted.ok()) Finish(ToGrpcStatus(submitted));
+      if (!submitted.ok()) listener_.Ended(submitted);
     });
   }
 
-  void OnCancel() override {
+  void Cancel() {
     *cancelled_ = true;
     engine_.wake.Notify();
   }
 
-  void OnDone() override { delete this; }
-
  private:
+  absl::Status CompleteScene() {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request_));
+    v1::Scene& scene = *response_.mutable_scene();
+    scene = request_.scene();
+    THUNDERHEAD_RETURN_IF_ERROR(PrepareScene(engine_.store, engine_.loop.Techniques(), scene));
+    if (!scene.rendering().has_reference()) return absl::OkStatus();
+    return base::InvalidField("scene.rendering.reference",
+                              "is given, which only sessions show; for a file use "
+                              "thunderhead render --renderer reference",
+                              "TECHNIQUE_FOR_SESSIONS_ONLY");
+  }
+
   absl::Status ReadAndSubmit() {
     if (*cancelled_) return absl::CancelledError("the picture was no longer wanted");
     v1::Scene& scene = *response_.mutable_scene();
@@ -80,42 +104,124 @@ class PictureReactor : public grpc::ServerUnaryReactor {
     }
     engine_.loop.RenderImage(
         {drawn, std::move(fields), cancelled_,
-         [this](absl::StatusOr<session::DisplayFrame> picture) { Drawn(std::move(picture)); }});
+         [this](absl::StatusOr<session::DisplayFrame> picture) { Drawn(std::move(picture)); },
+         [this](const session::ImageProgress& progress) { listener_.Progressed(progress); }});
     return absl::OkStatus();
   }
 
   void Drawn(absl::StatusOr<session::DisplayFrame> picture) {
-    if (!picture.ok()) return Finish(ToGrpcStatus(OfScene(picture.status())));
+    if (!picture.ok()) return listener_.Ended(OfScene(picture.status()));
     const auto drawn = std::make_shared<session::DisplayFrame>(*std::move(picture));
     engine_.executor.Submit([this, drawn](const absl::Status& status) {
-      Finish(ToGrpcStatus(status.ok() ? Encode(*drawn, request_, response_) : status));
+      listener_.Ended(status.ok() ? Encode(*drawn, request_, response_) : status);
     });
   }
 
   Engine& engine_;
   const v1::RenderImageRequest& request_;
   v1::RenderImageResponse& response_;
+  PictureListener& listener_;
   const std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
+};
+
+// A picture as the answer of a unary call.
+class PictureReactor final : public grpc::ServerUnaryReactor, private PictureListener {
+ public:
+  PictureReactor(Engine& engine, const v1::RenderImageRequest& request,
+                 v1::RenderImageResponse& response)
+      : job_(engine, request, response, *this) {}
+
+  void Begin() { job_.Begin(); }
+  void OnCancel() override { job_.Cancel(); }
+  void OnDone() override { delete this; }
+
+ private:
+  void Ended(const absl::Status& status) override { Finish(ToGrpcStatus(status)); }
+
+  PictureJob job_;
+};
+
+// A picture as the last event of a stream. At most one write is under way: progress that comes
+// meanwhile, or too soon after the last, is dropped, as the next step brings newer.
+class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent>,
+                            private PictureListener {
+ public:
+  PictureStream(Engine& engine, const v1::RenderImageRequest& request)
+      : job_(engine, request, *image_.mutable_image(), *this) {}
+
+  void Begin() { job_.Begin(); }
+  void OnCancel() override { job_.Cancel(); }
+  void OnDone() override { delete this; }
+
+  void OnWriteDone(bool /*ok: a client that is gone cancels as well*/) override {
+    {
+      const std::lock_guard lock(mutex_);
+      writing_ = false;
+      if (!end_.has_value()) return;
+    }
+    WriteEnd();
+  }
+
+ private:
+  static constexpr double kMinInterval_ms = 200.0;
+
+  void Progressed(const session::ImageProgress& progress) override {
+    {
+      const std::lock_guard lock(mutex_);
+      const bool too_soon =
+          since_progress_.has_value() && since_progress_->ElapsedMs() < kMinInterval_ms;
+      if (writing_ || too_soon) return;
+      writing_ = true;
+      since_progress_.emplace();
+    }
+    v1::RenderImageProgress& message = *progress_.mutable_progress();
+    message.set_share(static_cast<float>(progress.share));
+    message.set_traced_paths(static_cast<std::uint64_t>(progress.traced_paths));
+    message.clear_estimated_error();
+    if (progress.estimated_error.has_value()) {
+      message.set_estimated_error(static_cast<float>(*progress.estimated_error));
+    }
+    StartWrite(&progress_);
+  }
+
+  void Ended(const absl::Status& status) override {
+    {
+      const std::lock_guard lock(mutex_);
+      end_ = ToGrpcStatus(status);
+      if (writing_) return;  // OnWriteDone goes on
+    }
+    WriteEnd();
+  }
+
+  // Called once, when nothing is being written any more.
+  void WriteEnd() {
+    if (!end_->ok()) return Finish(*end_);
+    StartWriteAndFinish(&image_, grpc::WriteOptions(), *end_);
+  }
+
+  v1::RenderImageEvent image_;
+  v1::RenderImageEvent progress_;  // being written while `writing_`
+  std::mutex mutex_;
+  bool writing_ = false;
+  std::optional<base::Stopwatch> since_progress_;
+  std::optional<grpc::Status> end_;
+  PictureJob job_;
 };
 
 }  // namespace
 
-grpc::ServerUnaryReactor* RenderImage(Engine& engine, grpc::CallbackServerContext* context,
+grpc::ServerUnaryReactor* RenderImage(Engine& engine, grpc::CallbackServerContext* /*context*/,
                                       const v1::RenderImageRequest* request,
                                       v1::RenderImageResponse* response) {
-  absl::Status status = CheckLimits(*request);
-  *response->mutable_scene() = request->scene();
-  if (status.ok())
-    status = PrepareScene(engine.store, engine.loop.Techniques(), *response->mutable_scene());
-  if (!status.ok()) return Finished(context, status);
-  if (response->scene().rendering().has_reference()) {
-    return Finished(context,
-                    base::InvalidField("scene.rendering.reference",
-                                       "is given, which only sessions show; for a file use "
-                                       "thunderhead render --renderer reference",
-                                       "TECHNIQUE_FOR_SESSIONS_ONLY"));
-  }
   auto* reactor = new PictureReactor(engine, *request, *response);
+  reactor->Begin();
+  return reactor;
+}
+
+grpc::ServerWriteReactor<v1::RenderImageEvent>* RenderImageWithProgress(
+    Engine& engine, grpc::CallbackServerContext* /*context*/,
+    const v1::RenderImageRequest* request) {
+  auto* reactor = new PictureStream(engine, *request);
   reactor->Begin();
   return reactor;
 }

@@ -64,6 +64,11 @@ grpc::ServerUnaryReactor* ThunderheadService::RenderImage(grpc::CallbackServerCo
   return service::RenderImage(engine_, context, request, response);
 }
 
+grpc::ServerWriteReactor<v1::RenderImageEvent>* ThunderheadService::RenderImageWithProgress(
+    grpc::CallbackServerContext* context, const v1::RenderImageRequest* request) {
+  return service::RenderImageWithProgress(engine_, context, request);
+}
+
 grpc::ServerWriteReactor<v1::WatchFramesResponse>* ThunderheadService::WatchFrames(
     grpc::CallbackServerContext* context, const v1::WatchFramesRequest* request) {
   return service::WatchFrames(engine_, context, request);

@@ -40,6 +40,8 @@ class ThunderheadService final : public v1::ThunderheadService::CallbackService 
   grpc::ServerUnaryReactor* RenderImage(grpc::CallbackServerContext* context,
                                         const v1::RenderImageRequest* request,
                                         v1::RenderImageResponse* response) override;
+  grpc::ServerWriteReactor<v1::RenderImageEvent>* RenderImageWithProgress(
+      grpc::CallbackServerContext* context, const v1::RenderImageRequest* request) override;
   grpc::ServerWriteReactor<v1::WatchFramesResponse>* WatchFrames(
       grpc::CallbackServerContext* context, const v1::WatchFramesRequest* request) override;
 

@@ -92,6 +92,7 @@ class GlFrameSource final : public FrameSource {
     if (corrector == nullptr) return {};
     const base::Stopwatch stopwatch;
     auto light = corrector->Correction();
+    if (light == nullptr) return {};
     return {std::move(light), corrector->Progress().paths, stopwatch.ElapsedMs()};
   }
 

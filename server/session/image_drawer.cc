@@ -32,11 +32,13 @@ absl::StatusOr<bool> ImageDrawer::Trace(const ImageJob& job) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const accuracy::LightProgress progress,
                                source_.TraceLight(scene, job.fields));
   if (progress.steps == 0) return false;
-  const auto* limit = std::get_if<scene::MaxError>(&scene.accuracy);
-  if (limit == nullptr) return !progress.HasTraced(kImagePaths);
-  const auto report = source_.Estimator().Report(scene, {}, {progress.paths, std::nullopt});
-  const bool near = report.has_value() && report->estimated_error <= limit->relative_rmse;
-  return !near && !progress.HasTraced(accuracy::kTracedPaths);
+  const std::int64_t wanted = source_.Estimator().PathsFor(scene);
+  if (job.on_progress) {
+    const auto report = source_.Estimator().Report(scene, {}, {progress.paths, std::nullopt});
+    job.on_progress({progress.ShareOf(wanted), progress.paths,
+                     report.has_value() ? std::optional(report->estimated_error) : std::nullopt});
+  }
+  return !progress.HasTraced(wanted);
 }
 
 absl::StatusOr<DisplayFrame> ImageDrawer::Draw(const ImageJob& job) {

@@ -2,18 +2,12 @@
 // many, and others have theirs in between. Used by the render loop's thread only.
 #pragma once
 
-#include <cstdint>
-
 #include "absl/status/statusor.h"
 #include "session/image_queue.h"
 #include "session/measured_source.h"
 #include "session/turns.h"
 
 namespace thunderhead::session {
-
-// Paths that a picture outside any session waits for if its scene has traced light and asks for no
-// error.
-inline constexpr std::int64_t kImagePaths = 1'000'000;
 
 class ImageDrawer {
  public:

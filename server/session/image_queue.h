@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -16,6 +17,13 @@
 
 namespace thunderhead::session {
 
+// Progress of tracing the light of a picture.
+struct ImageProgress {
+  double share = 0.0;  // of the paths that it waits for, 0 to 1
+  std::int64_t traced_paths = 0;
+  std::optional<double> estimated_error;  // that it would have now
+};
+
 // One picture at full quality, outside any session.
 struct ImageJob {
   scene::Scene scene;
@@ -23,6 +31,9 @@ struct ImageJob {
   std::shared_ptr<const std::atomic<bool>> cancelled;  // true drops the job while it waits
   // Called once, on the loop's thread or the one that asked; must not block.
   std::function<void(absl::StatusOr<DisplayFrame>)> done;
+  // If given, called on the loop's thread after each step of tracing light for the picture, and not
+  // after `done`; must not block.
+  std::function<void(const ImageProgress&)> on_progress = nullptr;
 };
 
 class ImageQueue {

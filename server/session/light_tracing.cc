@@ -27,7 +27,7 @@ bool LightTracing::Traced(const accuracy::LightProgress& progress, Clock::time_p
   }
   const accuracy::LightProgress since{paths_ - begun_at_->paths, progress.steps - begun_at_->steps};
   ended_ = progress.steps == 0 || since.HasTraced(accuracy::kTracedPaths);
-  if (paths_ == 0) return false;
+  if (!progress.Corrects()) return false;
   const Clock::duration since_shown = now - shown_at_;
   const bool more =
       static_cast<double>(paths_) >= kWorthShowing * static_cast<double>(shown_paths_);

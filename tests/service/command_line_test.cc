@@ -1,7 +1,9 @@
 // The program as a user runs it, on the sample storm: what it prints, writes and returns.
+#include <grpcpp/grpcpp.h>
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -16,11 +18,12 @@
 #include "google/protobuf/util/json_util.h"
 #include "gtest/gtest.h"
 #include "tests/support/temporary_folder.h"
-#include "thunderhead/v1/thunderhead.pb.h"
+#include "thunderhead/v1/thunderhead.grpc.pb.h"
 
 namespace thunderhead::testing {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::MatchesRegex;
@@ -151,6 +154,42 @@ TEST_F(CommandLineTest, FailedRenderNamesTheCauseAndLeavesNoFile) {
   ExpectError("render " + kSample + " --device software --size 16x9 --slices 4 -o " +
                   folder_.File("no/folder.png"),
               1, "no/folder.png");
+}
+
+TEST_F(CommandLineTest, RenderWaitsForTracedLightAndPrintsTheErrorReached) {
+  // An error that takes a tenth of the paths of `--quality true`, which is too long for a test.
+  const Outcome outcome = Run(render_ + " --time 1 --size 48x27 --max-error 0.09");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_THAT(outcome.out, ContainsRegex("diffusion, .* error about 0\\.0[78][0-9]*, .*, "
+                                         "0\\.1[0-9]* million traced paths\n"));
+  EXPECT_TRUE(frame::DecodePng(Contents(picture_)).ok());
+}
+
+TEST_F(CommandLineTest, AnInterruptedRenderLeavesNoFile) {
+  const auto begun_at = std::chrono::steady_clock::now();
+  const Outcome outcome = Shell(std::string(PROGRAM) + " " + render_ +
+                                " --time 1 --size 48x27 --quality true & render=$!; sleep 3; "
+                                "kill -TERM $render; wait $render");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_EQ(outcome.err, "thunderhead: interrupted: no picture was written\n");
+  // A million paths are some 300 pictures to draw and trace, whatever the machine.
+  EXPECT_LT(std::chrono::steady_clock::now() - begun_at, std::chrono::seconds(10)) << "waited";
+  EXPECT_THAT(outcome.out, IsEmpty());
+  EXPECT_FALSE(std::filesystem::exists(picture_));
+}
+
+TEST_F(CommandLineTest, AnOlderServerIsNamed) {
+  v1::ThunderheadService::Service knows_no_call;
+  int port = 0;
+  grpc::ServerBuilder builder;
+  builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &port);
+  builder.RegisterService(&knows_no_call);
+  const auto server = builder.BuildAndStart();
+  ASSERT_NE(server, nullptr);
+  ExpectError("render storm --server 127.0.0.1:" + std::to_string(port) + " -o " + picture_, 1,
+              "the server is older than this program");
+  EXPECT_FALSE(std::filesystem::exists(picture_));
 }
 
 TEST_F(CommandLineTest, MeasureFramesHasARowForEachNamedSetting) {

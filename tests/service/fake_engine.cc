@@ -135,7 +135,8 @@ class FakeFrameSource final : public session::FrameSource {
       return absl::InternalError("the fake machine cannot trace that");
     }
     machine_->tracing.Pass();
-    return accuracy::LightProgress{machine_->traced_paths += 100'000, ++machine_->traced_steps};
+    return accuracy::LightProgress{machine_->traced_paths += machine_->paths_per_step,
+                                   ++machine_->traced_steps};
   }
 
   absl::StatusOr<session::DisplayFrame> Tone(const picture::LinearPicture& picture,

@@ -90,8 +90,9 @@ struct FakeMachine {
   std::atomic<double> fails_above_exposure_ev{1e9};
   Gate preparing;  // of scenes of metaballs; each number of them once a time
   std::atomic<int> cannot_prepare{-1};
-  std::atomic<int> checked{0};                // frames drawn with half the slices as well
-  std::atomic<std::int64_t> traced_paths{0};  // a hundred thousand more each time
+  std::atomic<int> checked{0};  // frames drawn with half the slices as well
+  std::atomic<std::int64_t> paths_per_step{100'000};
+  std::atomic<std::int64_t> traced_paths{0};
   std::atomic<std::int64_t> traced_steps{0};
   std::atomic<double> cannot_trace_azimuth_deg{-1.0};
   std::atomic<bool> traces_enough{false};  // for others

@@ -124,6 +124,24 @@ TEST_F(TracedLightTest, OneSceneTooManyWaitsForItsTurn) {
   }
 }
 
+TEST_F(TracedLightTest, NoPictureIsDrawnForTooFewPaths) {
+  service_.machine->paths_per_step = 10'000;
+  service_.machine->tracing.Close();
+  Watcher watcher(service_.stub(), service_.Open(WithTracedLight()));
+  // Long enough after one another that each would be worth a picture by its time.
+  for (int step = 0; step < 3; ++step) {
+    ASSERT_TRUE(service_.machine->tracing.AwaitWaiting(1));
+    std::this_thread::sleep_for(std::chrono::milliseconds(600));
+    service_.machine->tracing.LetOnePass();
+  }
+  EXPECT_TRUE(AwaitPaths(watcher, 1, 30'000));
+  for (const v1::WatchFramesResponse& message : watcher.Messages()) {
+    const std::uint64_t paths = message.frame().modelled().traced_paths();
+    EXPECT_TRUE(paths == 0 || paths == 30'000) << paths;
+  }
+  service_.machine->tracing.Open();
+}
+
 TEST_F(TracedLightTest, PicturesThatAwaitItWaitForAMillionPaths) {
   const auto paths_with = [&](v1::TracedLight traced_light) {
     v1::RenderImageRequest request;

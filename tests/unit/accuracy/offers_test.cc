@@ -273,6 +273,17 @@ TEST_F(TracedOffersTest, TheErrorIsThatOfThePathsSoFar) {
               HasSubstr("the nearest is 0.05"));
 }
 
+TEST_F(TracedOffersTest, APictureWaitsForTheFewestPathsThatItsErrorNeeds) {
+  const auto paths_for = [&](const scene::Accuracy& limit) {
+    scene_.accuracy = limit;
+    return desk_.estimator.PathsFor(*desk_.Decide(scene_));
+  };
+  EXPECT_EQ(paths_for(MaxError{0.09}), 100'000);
+  EXPECT_EQ(paths_for(MaxError{0.06}), 1'000'000);
+  EXPECT_EQ(paths_for(MaxError{0.01}), kTracedPaths) << "out of reach";
+  EXPECT_EQ(paths_for(std::monostate()), kImagePaths);
+}
+
 TEST_F(TracedOffersTest, FramesOfTracedLightTeachTheirSettingsTime) {
   scene_.accuracy = MaxError{0.06};
   const scene::Scene decided = *desk_.Decide(scene_);
