@@ -1,6 +1,8 @@
 // What is to be done next for a session, with a made-up clock and no GL.
 #include "session/session_view.h"
 
+#include "session/light_tracing.h"
+
 #include <chrono>
 #include <tuple>
 
@@ -153,6 +155,16 @@ TEST_F(SessionViewTest, ASettingThatProvesTooSlowIsReplacedAndDrawnAnew) {
   EXPECT_EQ(scene::SlicesOf(decided_->scene->rendering.technique), 64);
 }
 
+TEST(LightTracingTest, NothingIsShownBeforeThePathsCorrectTheLight) {
+  LightTracing tracing;
+  const Clock::time_point start;
+  tracing.BeginFor(1, start);
+  EXPECT_FALSE(tracing.Traced({1000, 1}, start));
+  const Clock::time_point later = start + std::chrono::seconds(9);
+  EXPECT_FALSE(tracing.Traced({accuracy::kMinCorrectingPaths - 1, 2}, later));
+  EXPECT_TRUE(tracing.Traced({accuracy::kMinCorrectingPaths, 3}, later));
+}
+
 TEST_F(SessionViewTest, LightIsTracedAtRestUntilItHasEnoughPaths) {
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kDiffusion);
   std::get<scene::LightVolume>(scene_.rendering.technique).traced_light =
@@ -163,14 +175,15 @@ TEST_F(SessionViewTest, LightIsTracedAtRestUntilItHasEnoughPaths) {
             kStart + PlannerTargets{}.settle_delay);
   ASSERT_TRUE(NextIs<TraceLight>(milliseconds(600)));
   EXPECT_EQ(view_.state(), State::kTracingLight);
-  EXPECT_FALSE(view_.LightTraced({1000, 1}, kStart + milliseconds(700))) << "too soon to show";
-  EXPECT_FALSE(view_.LightTraced({1400, 2}, kStart + milliseconds(1200))) << "too few more";
-  EXPECT_TRUE(view_.LightTraced({1500, 2}, kStart + milliseconds(1200)));
+  EXPECT_FALSE(view_.LightTraced({100'000, 1}, kStart + milliseconds(700))) << "too soon to show";
+  EXPECT_FALSE(view_.LightTraced({140'000, 2}, kStart + milliseconds(1200))) << "too few more";
+  EXPECT_TRUE(view_.LightTraced({150'000, 2}, kStart + milliseconds(1200)));
   view_.LightShown(kStart + milliseconds(1200));
-  EXPECT_FALSE(view_.LightTraced({1600, 3}, kStart + milliseconds(6100)));
-  EXPECT_TRUE(view_.LightTraced({1600, 3}, kStart + milliseconds(6200))) << "after five seconds";
+  EXPECT_FALSE(view_.LightTraced({160'000, 3}, kStart + milliseconds(6100)));
+  EXPECT_TRUE(view_.LightTraced({160'000, 3}, kStart + milliseconds(6200))) << "after five seconds";
   ASSERT_TRUE(NextIs<TraceLight>(milliseconds(6200)));
-  EXPECT_TRUE(view_.LightTraced({1000 + accuracy::kTracedPaths, 4}, kStart + milliseconds(6300)));
+  EXPECT_TRUE(
+      view_.LightTraced({100'000 + accuracy::kTracedPaths, 4}, kStart + milliseconds(6300)));
   EXPECT_TRUE(NextIsNothing(milliseconds(6300)));
   EXPECT_EQ(view_.state(), State::kSettled);
   Change();
