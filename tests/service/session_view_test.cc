@@ -1,12 +1,11 @@
 // What is to be done next for a session, with a made-up clock and no GL.
 #include "session/session_view.h"
 
-#include "session/light_tracing.h"
-
 #include <chrono>
 #include <tuple>
 
 #include "gtest/gtest.h"
+#include "session/light_tracing.h"
 #include "tests/support/techniques.h"
 
 namespace thunderhead::session {
