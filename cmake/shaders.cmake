@@ -17,5 +17,6 @@ function(thunderhead_embed_shaders target)
       -P ${CMAKE_SOURCE_DIR}/cmake/shader_uniforms.cmake
     DEPENDS ${paths} ${CMAKE_SOURCE_DIR}/cmake/shader_uniforms.cmake VERBATIM)
   target_sources(${target} PRIVATE ${output} ${header})
+  add_custom_target(${target}_generated DEPENDS ${header})
   target_include_directories(${target} PUBLIC ${CMAKE_BINARY_DIR}/generated)
 endfunction()

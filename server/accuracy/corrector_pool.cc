@@ -20,7 +20,15 @@ CorrectorPool::Kept* CorrectorPool::Serving(
 LightCorrector* CorrectorPool::Find(
     const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields) {
   Kept* const kept = Serving(scene, fields);
-  return kept == nullptr ? nullptr : kept->corrector.get();
+  if (kept != nullptr) kept->since_used.Restart();
+  LightCorrector* const corrector = kept == nullptr ? nullptr : kept->corrector.get();
+  DropUnused();
+  return corrector;
+}
+
+void CorrectorPool::DropUnused() {
+  std::erase_if(kept_,
+                [this](const Kept& kept) { return kept.since_used.ElapsedMs() > 1e3 * unused_s_; });
 }
 
 absl::Status CorrectorPool::MakeRoom() {
@@ -45,12 +53,15 @@ absl::StatusOr<LightProgress> CorrectorPool::Trace(
     THUNDERHEAD_RETURN_IF_ERROR(MakeRoom());
     THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<LightCorrector> corrector,
                                  LightCorrector::Create(scene, fields, programs_, 0));
-    kept = &kept_.emplace_back(Kept{std::move(corrector), base::Stopwatch()});
+    kept = &kept_.emplace_back(Kept{std::move(corrector), base::Stopwatch(), base::Stopwatch()});
   }
   kept->corrector->LookAs(scene);
   THUNDERHEAD_RETURN_IF_ERROR(kept->corrector->Step());
   kept->since_traced.Restart();
-  return kept->corrector->Progress();
+  kept->since_used.Restart();
+  const LightProgress progress = kept->corrector->Progress();
+  DropUnused();
+  return progress;
 }
 
 }  // namespace thunderhead::accuracy

@@ -18,11 +18,13 @@ namespace thunderhead::accuracy {
 
 class CorrectorPool {
  public:
-  // At most `max_correctors`, as each takes up to a hundred megabytes. One that was used within
-  // `busy_s` is not replaced.
-  explicit CorrectorPool(std::size_t max_correctors = 8, double busy_s = 3.0)
+  // At most `max_correctors`, as each takes up to a hundred megabytes. One that was traced within
+  // `busy_s` is not replaced; one that was not used for `unused_s` goes with the next call.
+  explicit CorrectorPool(std::size_t max_correctors = 8, double busy_s = 3.0,
+                         double unused_s = 300.0)
       : max_correctors_(max_correctors),
         busy_s_(busy_s),
+        unused_s_(unused_s),
         programs_(std::make_shared<gl::ProgramCache>()) {}
 
   // The corrector for the scene, set to its camera; null if there is none, or the scene has no
@@ -39,14 +41,17 @@ class CorrectorPool {
   struct Kept {
     std::unique_ptr<LightCorrector> corrector;
     base::Stopwatch since_traced;
+    base::Stopwatch since_used;  // traced or found
   };
 
   Kept* Serving(const scene::Scene& scene,
                 const std::shared_ptr<const volume::HydrometeorFields>& fields);
   absl::Status MakeRoom();
+  void DropUnused();
 
   std::size_t max_correctors_;
   double busy_s_;
+  double unused_s_;
   std::shared_ptr<gl::ProgramCache> programs_;
   std::vector<Kept> kept_;
 };

@@ -45,7 +45,8 @@ std::optional<AccuracyReport> Estimator::Report(const scene::Scene& scene,
   const Setting full = SettingOf(scene);
   const Setting drawn = DrawnWith(full, quality, evidence.traced_paths);
   const PricedSetting* const row = NearestRow(*table, drawn);
-  if (row == nullptr) return std::nullopt;
+  const PricedSetting* const timed = NearestRow(*table, Untraced(full));
+  if (row == nullptr || timed == nullptr) return std::nullopt;
   AccuracyReport report;
   report.technique = full.technique;
   report.slices = CountOf(drawn.technique);
@@ -56,7 +57,7 @@ std::optional<AccuracyReport> Estimator::Report(const scene::Scene& scene,
   // side.
   report.estimated_error =
       std::hypot(row->relative_rmse, evidence.discretisation_error.value_or(0.0));
-  const double expected_ms = costs_.SettingMs(*table, *NearestRow(*table, Untraced(full)), scene);
+  const double expected_ms = costs_.SettingMs(*table, *timed, scene);
   const bool asks = !std::holds_alternative<std::monostate>(scene.accuracy);
   if (asks || costs_.Knows(full)) report.expected_ms = expected_ms;
   // A coarse frame, or one with few paths, is on its way to the full one, which is what was asked

@@ -153,7 +153,7 @@ absl::Status LightCorrector::TraceUntil(std::int64_t paths, const std::stop_toke
   while (!progress_.HasTraced(paths)) {
     if (stop.stop_requested()) return absl::CancelledError("stopped");
     THUNDERHEAD_RETURN_IF_ERROR(Step());
-    if (observer) observer(static_cast<double>(progress_.paths) / static_cast<double>(paths));
+    if (observer) observer(progress_.ShareOf(paths));
   }
   return absl::OkStatus();
 }

@@ -19,7 +19,12 @@ void TableCorrection::Mean::Follow(double log_measured) {
 }
 
 TableCorrection::Key TableCorrection::KeyOf(const Setting& setting) {
-  return {scene::NameOf(setting.technique), ModeOf(setting.technique).name,
+  // Rows of the tables have no detail, and stand for settings with it.
+  scene::Technique technique = setting.technique;
+  if (scene::MediumSettings* medium = scene::MediumSettingsOf(&technique); medium != nullptr) {
+    medium->look.detail = false;
+  }
+  return {scene::NameOf(setting.technique), ModeOf(technique).name,
           TransportNameOf(setting.technique), CountOf(setting.technique), setting.image_scale};
 }
 

@@ -149,15 +149,14 @@ absl::Status ByReference(const Flags& flags) {
 
 absl::Status Render(const Flags& flags) {
   spdlog::set_level(spdlog::level::warn);
-  if (flags.scene.technique == scene::Reference::kName) return ByReference(flags);
+  v1::RenderImageRequest request;
+  THUNDERHEAD_ASSIGN_OR_RETURN(*request.mutable_scene(), ReadScene(flags.scene));
+  if (request.scene().rendering().has_reference()) return ByReference(flags);
   if (flags.reference.AnyLimit()) {
     return absl::InvalidArgumentError(
         "--spp, --seconds and --target-error are for --renderer reference");
   }
-  v1::RenderImageRequest request;
   THUNDERHEAD_ASSIGN_OR_RETURN(const v1::ImageFormat format, FormatOf(flags.output));
-  THUNDERHEAD_ASSIGN_OR_RETURN(*request.mutable_scene(), ReadScene(flags.scene));
-  if (request.scene().rendering().has_reference()) return ByReference(flags);
   request.set_format(format);
   const Interruption interruption;
   THUNDERHEAD_ASSIGN_OR_RETURN(v1::RenderImageResponse response,

@@ -79,6 +79,7 @@ absl::Status SetPreset(const std::string& name, v1::Rendering& rendering) {
   const std::string value = absl::StrCat("PRESET_", absl::AsciiStrToUpper(name));
   if (!v1::Preset_Parse(value, &preset) || preset == v1::PRESET_UNSPECIFIED) {
     std::vector<std::string> names;
+    names.reserve(accuracy::kPresets.size());
     for (const accuracy::NamedPreset& known : accuracy::kPresets) names.emplace_back(known.name);
     return absl::InvalidArgumentError(absl::StrCat(
         "--preset (or --quality) is '", name, "'; it must be one of ", absl::StrJoin(names, ", ")));

@@ -113,8 +113,8 @@ Trade::Trade(scene::Scene scene, std::shared_ptr<const volume::HydrometeorFields
       fields_(std::move(fields)),
       truth_(std::move(truth)),
       truth_noise_(RelativeNoise(truth_)) {
-  scene_.output.width_px = truth.size_px.x;
-  scene_.output.height_px = truth.size_px.y;
+  scene_.output.width_px = truth_.size_px.x;
+  scene_.output.height_px = truth_.size_px.y;
 }
 
 absl::StatusOr<DisplayImage> Trade::Display(const gl::Texture2D& linear) {

@@ -222,6 +222,7 @@ Scattering Medium::ScatteringAt(const glm::dvec3& point_m, double u) const {
     chosen = &groups_[i];
     left -= share;
   }
+  THUNDERHEAD_CHECK(chosen != nullptr, "a point that scatters has a group that does");
   // Albedo times the group's share of extinction, over the probability that it was chosen.
   return {chosen->phase.get(),
           chosen->albedo * (scattering / (extinction * chosen->choice_albedo))};

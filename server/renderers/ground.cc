@@ -75,7 +75,9 @@ absl::Status Ground::CastShadow(const ResidentMedium& medium, const RenderSettin
                                programs_->Get(gl::ProgramSource::WholeTarget(
                                    "ground/shadow.frag", medium.Variant().Defines())));
   medium.BindWithBricks(*program);
-  const GroupWeights weights(medium.Content(), settings.Medium());
+  // Techniques that the program was extended by have no such settings.
+  const scene::MediumSettings* own = scene::MediumSettingsOf(settings.technique);
+  const GroupWeights weights(medium.Content(), own != nullptr ? *own : scene::MediumSettings{});
   const glm::dvec3 through_m = cell_m / glm::max(glm::abs(towards_sun), glm::dvec3(1e-6));
   const double step_m = kShadowStepInCells * std::min({through_m.x, through_m.y, through_m.z});
   program->Set(uniform::towards_sun, glm::vec3(towards_sun));

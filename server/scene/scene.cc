@@ -28,7 +28,9 @@ Stage DirtiedByLights(const Scene& before, const Scene& after) {
                  after.lights.end(), [](const DirectionalLight& a, const DirectionalLight& b) {
                    return a.azimuth_deg == b.azimuth_deg && a.elevation_deg == b.elevation_deg;
                  });
-  return same_directions ? Stage::kView : Stage::kLight;
+  // Only the program's own techniques are known to colour light as late as that.
+  const bool own = !std::holds_alternative<OtherTechnique>(after.rendering.technique);
+  return same_directions && own ? Stage::kView : Stage::kLight;
 }
 
 Stage DirtiedByTheRest(const Scene& before, const Scene& after) {

@@ -75,6 +75,7 @@ absl::Status CheckTransport(const std::string& path, v1::Transport given,
 absl::Status CheckOther(const v1::OtherTechnique& other,
                         const std::vector<session::TechniqueInfo>& known) {
   std::vector<std::string> names;
+  names.reserve(known.size());
   for (const session::TechniqueInfo& technique : known) names.push_back(technique.name);
   const bool found = std::find(names.begin(), names.end(), other.name()) != names.end();
   const v1::Rendering& fields = v1::Rendering::default_instance();

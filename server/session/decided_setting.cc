@@ -15,12 +15,13 @@ absl::StatusOr<std::optional<NewestScene>> DecidedSetting::Decide(const NewestSc
   if (revision_ != asked.revision) {
     auto scene = offers_.Decide(*asked.scene, SettingKeptFor(*asked.scene));
     revision_ = asked.revision;
-    scene_ = scene.ok() ? std::make_shared<const scene::Scene>(*std::move(scene)) : nullptr;
+    scene_ = nullptr;
     decided_again_ = 0;
     checked_ = false;
     discretisation_error_.reset();
     settled_ = std::holds_alternative<std::monostate>(asked.scene->accuracy);
     if (!scene.ok()) return scene.status();
+    scene_ = std::make_shared<const scene::Scene>(*std::move(scene));
   }
   if (scene_ == nullptr) return std::optional<NewestScene>();
   return std::optional(NewestScene{asked.revision, scene_, asked.changed_at});

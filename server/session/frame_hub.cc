@@ -10,9 +10,8 @@ Problem::Code CodeOf(absl::StatusCode code) {
   switch (code) {
     case absl::StatusCode::kInvalidArgument:
     case absl::StatusCode::kFailedPrecondition:
+    case absl::StatusCode::kOutOfRange:
       return Problem::Code::kScene;
-    case absl::StatusCode::kNotFound:
-      return Problem::Code::kStormGone;
     case absl::StatusCode::kResourceExhausted:
     case absl::StatusCode::kUnavailable:
       return Problem::Code::kBusy;

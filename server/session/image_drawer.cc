@@ -12,6 +12,14 @@ namespace thunderhead::session {
 TurnOutcome ImageDrawer::TakeTurn() {
   std::optional<ImageJob> job = queue_.Take();
   if (!job.has_value()) return {};
+  if (!job->decided.has_value()) {
+    auto decided = source_.Offers().Decide(job->scene, std::nullopt);
+    if (!decided.ok()) {
+      job->done(decided.status());
+      return {true, std::nullopt};
+    }
+    job->decided = *std::move(decided);
+  }
   const absl::StatusOr<bool> goes_on = Trace(*job);
   if (absl::IsResourceExhausted(goes_on.status())) {
     queue_.PutBack(*std::move(job));
@@ -20,14 +28,14 @@ TurnOutcome ImageDrawer::TakeTurn() {
   if (goes_on.ok() && *goes_on) {
     queue_.PutBack(*std::move(job));
   } else {
-    job->done(goes_on.ok() ? Draw(*job) : goes_on.status());
+    job->done(goes_on.ok() ? source_.Draw("", *job->decided, job->fields, FrameQuality{})
+                           : goes_on.status());
   }
   return {true, std::nullopt};
 }
 
 absl::StatusOr<bool> ImageDrawer::Trace(const ImageJob& job) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const scene::Scene scene,
-                               source_.Offers().Decide(job.scene, std::nullopt));
+  const scene::Scene& scene = *job.decided;
   if (scene::TracedLightOf(scene.rendering.technique) != scene::TracedLight::kAwaited) return false;
   THUNDERHEAD_ASSIGN_OR_RETURN(const accuracy::LightProgress progress,
                                source_.TraceLight(scene, job.fields));
@@ -39,12 +47,6 @@ absl::StatusOr<bool> ImageDrawer::Trace(const ImageJob& job) {
                      report.has_value() ? std::optional(report->estimated_error) : std::nullopt});
   }
   return !progress.HasTraced(wanted);
-}
-
-absl::StatusOr<DisplayFrame> ImageDrawer::Draw(const ImageJob& job) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const scene::Scene scene,
-                               source_.Offers().Decide(job.scene, std::nullopt));
-  return source_.Draw("", scene, job.fields, FrameQuality{});
 }
 
 }  // namespace thunderhead::session

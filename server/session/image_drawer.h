@@ -17,9 +17,9 @@ class ImageDrawer {
   TurnOutcome TakeTurn();
 
  private:
-  // True if the picture awaits more paths: enough for the error that it asks for, if it does.
+  // True if the picture, its setting decided, awaits more paths: enough for the error that it asks
+  // for, if it does.
   absl::StatusOr<bool> Trace(const ImageJob& job);
-  absl::StatusOr<DisplayFrame> Draw(const ImageJob& job);
 
   ImageQueue& queue_;
   MeasuredSource& source_;

@@ -35,10 +35,11 @@ bool ImageQueue::Add(ImageJob job) {
       refusal = TooMany(waiting_.size());
     } else {
       waiting_.push_back(std::move(job));
+      return true;
     }
   }
-  if (!refusal.ok()) job.done(refusal);
-  return refusal.ok();
+  job.done(refusal);
+  return false;
 }
 
 void ImageQueue::PutBack(ImageJob job) {

@@ -34,6 +34,8 @@ struct ImageJob {
   // If given, called on the loop's thread after each step of tracing light for the picture, and not
   // after `done`; must not block.
   std::function<void(const ImageProgress&)> on_progress = nullptr;
+  // With the setting that it is drawn by; none before its first turn.
+  std::optional<scene::Scene> decided = std::nullopt;
 };
 
 class ImageQueue {

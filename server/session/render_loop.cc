@@ -87,8 +87,8 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source) {
     // The pictures' id, the empty string, is before every session's.
     std::vector<std::string> ids{""};
     for (const auto& session : sessions) ids.push_back(session->id());
-    const auto look_again_at = turns.Next(ids, [&](std::size_t i) {
-      return i == 0 ? image_drawer.TakeTurn() : drawer.TakeTurn(sessions[i - 1]);
+    const auto look_again_at = turns.Next(ids, [&](std::size_t i, TurnKind kind) {
+      return i == 0 ? image_drawer.TakeTurn() : drawer.TakeTurn(sessions[i - 1], kind);
     });
     if (!look_again_at.has_value() || *look_again_at > Clock::now()) wake_.Wait(look_again_at);
   }

@@ -13,10 +13,10 @@ SessionDrawer::SessionDrawer(const PlannerTargets& targets, const FieldsAccess& 
                              MeasuredSource& source, FrameEncoder& encoder, TruthTracer& tracer)
     : targets_(targets), fields_(fields), source_(source), encoder_(encoder), tracer_(tracer) {}
 
-TurnOutcome SessionDrawer::TakeTurn(const std::shared_ptr<Session>& session) {
+TurnOutcome SessionDrawer::TakeTurn(const std::shared_ptr<Session>& session, TurnKind kind) {
   const std::optional<NewestScene> newest = session->Newest();
   if (!newest.has_value() || !session->hub().HasViewers()) return {};
-  const Turn turn{session, KeptFor(session->id())};
+  const Turn turn{session, KeptFor(session->id()), kind};
   TakeRead(turn);
   turn.kept.reference.EndUnless(*newest->scene);
   if (!session->hub().HasReadyViewer() || encoder_.IsFullFor(*session)) return {};
@@ -100,6 +100,7 @@ TurnOutcome SessionDrawer::Do(const Turn& turn, const CheckSlices& work) {
 }
 
 TurnOutcome SessionDrawer::Do(const Turn& turn, const TraceLight& work) {
+  if (turn.kind != TurnKind::kBackground) return {.has_background_work = true};
   const NewestScene& shown = work.shown;
   const auto progress = source_.TraceLight(*shown.scene, turn.kept.fields.Fields());
   if (absl::IsResourceExhausted(progress.status())) return {false, Clock::now() + kTraceAgainAfter};

@@ -23,7 +23,7 @@ class SessionDrawer {
   SessionDrawer(const PlannerTargets& targets, const FieldsAccess& fields, MeasuredSource& source,
                 FrameEncoder& encoder, TruthTracer& tracer);
 
-  TurnOutcome TakeTurn(const std::shared_ptr<Session>& session);
+  TurnOutcome TakeTurn(const std::shared_ptr<Session>& session, TurnKind kind);
 
   // Gives back what is kept for sessions that nobody watches, or that are not among `sessions`,
   // which are in order of id.
@@ -40,6 +40,7 @@ class SessionDrawer {
   struct Turn {
     const std::shared_ptr<Session>& session;
     Kept& kept;
+    TurnKind kind;
   };
 
   Kept& KeptFor(const std::string& session_id);

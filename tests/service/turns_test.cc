@@ -3,6 +3,7 @@
 
 #include <map>
 #include <set>
+#include <thread>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -18,9 +19,12 @@ class TurnsTest : public ::testing::Test {
   std::string Serve() {
     std::string served;
     asked_.clear();
-    look_again_at_ = turns_.Next(ids_, [&](std::size_t i) -> TurnOutcome {
+    look_again_at_ = turns_.Next(ids_, [&](std::size_t i, TurnKind kind) -> TurnOutcome {
       asked_.push_back(ids_[i]);
-      if (busy_.count(ids_[i]) == 0) return {false, waits_until_[ids_[i]]};
+      const bool in_background = in_background_.count(ids_[i]) > 0;
+      if (busy_.count(ids_[i]) == 0 && !(in_background && kind == TurnKind::kBackground)) {
+        return {false, waits_until_[ids_[i]], in_background};
+      }
       served = ids_[i];
       return {true, std::nullopt};
     });
@@ -30,6 +34,7 @@ class TurnsTest : public ::testing::Test {
   Turns turns_;
   std::vector<std::string> ids_{"", "a", "b", "c"};
   std::set<std::string> busy_;
+  std::set<std::string> in_background_;  // who have work that nobody waits for
   std::map<std::string, std::optional<Clock::time_point>> waits_until_;
   std::vector<std::string> asked_;
   std::optional<Clock::time_point> look_again_at_;
@@ -57,6 +62,26 @@ TEST_F(TurnsTest, ATurnThatIsUsedEndsTheRoundAndItGoesOnAtOnce) {
   EXPECT_EQ(Serve(), "b");
   EXPECT_THAT(asked_, ElementsAre("a", "b"));
   EXPECT_GE(*look_again_at_, before);
+}
+
+TEST_F(TurnsTest, BackgroundWorkIsDoneInTurnWhileNothingElseIs) {
+  in_background_ = {"a", "c"};
+  std::vector<std::string> served;
+  for (int i = 0; i < 4; ++i) served.push_back(Serve());
+  EXPECT_THAT(served, ElementsAre("a", "c", "a", "c"));
+}
+
+TEST_F(TurnsTest, BackgroundWorkDoesNotComeBetweenAnothersFrames) {
+  in_background_ = {"a"};
+  busy_ = {"b"};
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(Serve(), "b");
+  busy_.clear();
+  const Clock::time_point drew_at = Clock::now();
+  EXPECT_EQ(Serve(), "") << "it may draw again at once";
+  ASSERT_TRUE(look_again_at_.has_value());
+  EXPECT_LE(*look_again_at_, drew_at + kQuietBeforeBackground);
+  std::this_thread::sleep_until(*look_again_at_);
+  EXPECT_EQ(Serve(), "a");
 }
 
 TEST_F(TurnsTest, WithoutWorkTheEarliestWishCounts) {

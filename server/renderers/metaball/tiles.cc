@@ -91,6 +91,7 @@ std::vector<std::uint32_t> NearestFirst(const std::vector<Ball>& balls, const sc
 BallTiles TilesOf(const std::vector<Ball>& balls, const scene::View& view,
                   const glm::ivec2& size_px) {
   std::vector<Cover> covers;
+  covers.reserve(balls.size());
   for (const Ball& ball : balls) covers.push_back(CoverOf(ball, view));
   BallTiles tiles;
   tiles.tile_px = kMinTile_px;
