@@ -1,5 +1,6 @@
 // A technique that this file alone knows, registered as docs/extending.md says: chosen by its name
 // and drawn like any other.
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -18,7 +19,7 @@ namespace {
 using ::testing::HasSubstr;
 
 // Fills the picture with one grey in front of everything.
-class Toy final : public Technique {
+class Toy : public Technique {
  public:
   absl::Status MakeContent(const scene::Scene& scene, const Fields& /*fields*/,
                            StageTimes* /*times*/) override {
@@ -63,6 +64,33 @@ class Toy final : public Technique {
   gl::Texture2D eye_;
 };
 
+// The same in front of the storm's medium, whose shadow falls on the ground.
+class ToyOfMedium final : public Toy {
+ public:
+  explicit ToyOfMedium(Workspace& workspace) : workspace_(workspace) {}
+
+  bool DrawsMedium() const override { return true; }
+  bool CastsShadow() const override { return false; }
+  bool Empty() const override { return workspace_.medium.Empty(); }
+  volume::WorldBox Box() const override { return BoxOf(workspace_.medium); }
+  Content Describe(const scene::Scene& /*scene*/,
+                   const volume::HydrometeorFields& fields) const override {
+    return DescribeMedium(workspace_.medium, fields, false);
+  }
+
+ private:
+  Workspace& workspace_;
+};
+
+class ToyOfMediumFactory final : public TechniqueFactory {
+ public:
+  std::string_view Name() const override { return "toy_of_medium"; }
+  scene::Capabilities Capabilities() const override { return {}; }
+  std::unique_ptr<Technique> Make(Workspace& workspace) const override {
+    return std::make_unique<ToyOfMedium>(workspace);
+  }
+};
+
 class ToyFactory final : public TechniqueFactory {
  public:
   std::string_view Name() const override { return "toy"; }
@@ -80,6 +108,7 @@ class ToyTechniqueTest : public testing::Test {
     context_ = *std::move(context);
     auto registry = std::make_shared<TechniqueRegistry>(TechniqueRegistry::BuiltIn());
     ASSERT_TRUE(registry->Add(std::make_shared<ToyFactory>()).ok());
+    ASSERT_TRUE(registry->Add(std::make_shared<ToyOfMediumFactory>()).ok());
     renderer_ =
         std::make_unique<SceneRenderer>(std::make_shared<gl::ProgramCache>(), std::move(registry));
     scene_.output.width_px = 16;
@@ -125,6 +154,19 @@ TEST_F(ToyTechniqueTest, IsChosenByItsNameAndDrawn) {
   EXPECT_GT(MiddleRed(), 1.5F * cloud);
 }
 
+TEST_F(ToyTechniqueTest, MayDrawTheStormsMedium) {
+  Choose("toy_of_medium");
+  const auto frame = renderer_->Draw(scene_, fields_, {});
+  ASSERT_TRUE(frame.ok()) << frame.status();
+  EXPECT_THAT(frame->content.fields, testing::ElementsAre(physics::Hydrometeor::kCloud));
+  // Its shadow is that of the medium, which nobody else computes.
+  EXPECT_EQ(std::count_if(frame->stages.begin(), frame->stages.end(),
+                          [](const scene::StageTime& time) {
+                            return time.stage == scene::FrameStage::kGround;
+                          }),
+            1);
+}
+
 TEST_F(ToyTechniqueTest, RefusesASettingThatItDoesNotHave) {
   Choose("toy", {{"colour", 1.0}});
   EXPECT_THAT(std::string(renderer_->Draw(scene_, fields_, {}).status().message()),
@@ -146,7 +188,7 @@ TEST_F(ToyTechniqueTest, AnUnknownNameGetsTheListOfThoseThatDraw) {
   EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
   EXPECT_EQ(std::string(status.message()),
             "there is no technique 'voxels' that draws; there are light_volume, half_angle, "
-            "metaball, cumulus, toy");
+            "metaball, cumulus, toy, toy_of_medium");
   scene_.rendering.technique = scene::Reference{};  // traced, not drawn
   EXPECT_EQ(renderer_->Draw(scene_, fields_, {}).status().code(),
             absl::StatusCode::kInvalidArgument);
