@@ -144,10 +144,11 @@ absl::Status ReadAxes(const NetcdfFile& file, CfMetadata* metadata) {
   const CfVariable& first = metadata->fields.front().variable;
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto names, file.Dimensions(first.name));
   auto& [x, y, z] = metadata->axes;
-  const auto read = [&](int place, CfDirection direction, const CfSizes& sizes, CfAxis* axis) {
-    auto result = ReadCfAxis(file, names[static_cast<std::size_t>(place)], direction, sizes);
-    if (result.ok()) *axis = *std::move(result);
-    return result.status();
+  const auto read = [&](int place, CfDirection direction, const CfSizes& sizes,
+                        CfAxis* axis) -> absl::Status {
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        *axis, ReadCfAxis(file, names[static_cast<std::size_t>(place)], direction, sizes));
+    return absl::OkStatus();
   };
   const bool single_y = file.DimensionLength(names[static_cast<std::size_t>(first.y)]) == 1U;
   CfSizes sizes{kMetresPerDegree, 0.0};

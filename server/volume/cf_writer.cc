@@ -55,6 +55,7 @@ class Writer {
 
   void Middles(int variable, double low_m, double spacing_m, int cells) {
     std::vector<double> values;
+    values.reserve(static_cast<std::size_t>(cells));
     for (int i = 0; i < cells; ++i) values.push_back(low_m + (i + 0.5) * spacing_m);
     if (Good()) Keep(nc_put_var_double(file_, variable, values.data()));
   }

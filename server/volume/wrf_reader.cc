@@ -228,7 +228,7 @@ absl::Status TimeReader::ReadFields(HydrometeorFields& result) {
       air_ready.get();
       return Remap(hydrometeor, std::move(values), std::move(sizes));
     });
-    next = std::move(buffer_);
+    next = std::exchange(buffer_, {});
   }
   THUNDERHEAD_RETURN_IF_ERROR(Take(pending, result));
   if (std::ranges::any_of(air_.dry_air_density_kg_per_m3, [](float rho) { return rho > 0.0F; })) {

@@ -106,6 +106,7 @@ struct LightPlane {
 LightPlane LightPlaneOf(const std::vector<Ball>& balls, const BallBox& box,
                         const glm::dvec3& towards) {
   std::vector<double> radii_m;
+  radii_m.reserve(balls.size());
   for (const Ball& ball : balls) radii_m.push_back(ball.radius_m);
   const auto small = radii_m.begin() + static_cast<std::ptrdiff_t>(radii_m.size() / 10);
   std::nth_element(radii_m.begin(), small, radii_m.end());
