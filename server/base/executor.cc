@@ -38,13 +38,11 @@ void Executor::Submit(Task task) {
       refusal = Full(max_waiting_);
     } else {
       waiting_.push_back(std::move(task));
+      changed_.notify_one();
+      return;
     }
   }
-  if (refusal.ok()) {
-    changed_.notify_one();
-  } else {
-    task(refusal);
-  }
+  task(refusal);
 }
 
 void Executor::Stop() {

@@ -87,7 +87,7 @@ absl::Status CheckUniformBindings(GLuint program) {
     GLint binding = 0;
     glGetUniformiv(program, glGetUniformLocation(program, name), &binding);
     for (GLint element = 0; element < size; ++element) {
-      const absl::Status taken =
+      absl::Status taken =
           (kind == Kind::kSampler ? samplers : images).Take(binding + element, name);
       if (!taken.ok()) return taken;
     }
@@ -107,7 +107,7 @@ absl::Status CheckStorageBindings(GLuint program) {
     GLint binding = 0;
     glGetProgramResourceiv(program, GL_SHADER_STORAGE_BLOCK, index, 1, &property, 1, nullptr,
                            &binding);
-    const absl::Status taken = buffers.Take(binding, name);
+    absl::Status taken = buffers.Take(binding, name);
     if (!taken.ok()) return taken;
   }
   return absl::OkStatus();

@@ -175,6 +175,7 @@ TurbulenceTile MakeTurbulence(int octaves, std::uint32_t seed) {
   tile.side = std::clamp(TurbulenceTile::kWaves << octaves, kSmallestSide, kLargestSide);
   const auto side = static_cast<std::size_t>(tile.side);
   std::vector<Octave> parts;
+  parts.reserve(static_cast<std::size_t>(octaves));
   for (int i = 0; i < octaves; ++i) parts.push_back(MakeOctave(i, tile.side, seed));
   std::vector<std::uint32_t> sums;
   sums.reserve(side * side * side);
