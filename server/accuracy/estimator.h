@@ -15,7 +15,7 @@
 
 namespace thunderhead::accuracy {
 
-// What a picture itself tells of its error.
+// Properties of a picture that its error is estimated from.
 struct Evidence {
   std::int64_t traced_paths = 0;               // that corrected its light
   std::optional<double> discretisation_error;  // by DiscretisationError

@@ -31,7 +31,7 @@ struct Offer {
 Offer BestOffer(const std::vector<Offer>& offers, const scene::Accuracy& limit,
                 const std::optional<Setting>& current);
 
-// Whether it is within the limit.
+// True if the offer is within the limit.
 bool Meets(const Offer& offer, const scene::Accuracy& limit);
 
 // Why `offer`, which the scene is drawn with, misses what the scene asks for; none if it does not.

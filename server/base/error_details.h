@@ -1,4 +1,4 @@
-// What a program needs to know of an error, beside the words for a person: a reason that stays the
+// Details of an error for programs, beside the message for people: a reason that stays the
 // same when the words change, the field of the request that is at fault, limits, when to try again.
 // It travels with an absl::Status as payloads of plain text, attached where the error is made; the
 // service turns it into gRPC's form (service/status_table.h). This room knows no messages.

@@ -23,7 +23,7 @@ absl::Status WriteGenerated(const CloudShape& shape, const CloudOrigin& origin,
                             const std::string& path, const GenerateObserver& observer,
                             const std::stop_token& stop);
 
-// Whether WriteGenerated wrote the file, by its `source` attribute.
+// True if WriteGenerated wrote the file, by its `source` attribute.
 bool IsGenerated(const std::string& path);
 
 }  // namespace thunderhead::clouds

@@ -48,9 +48,9 @@ Extreme DepthPerSlice(const accuracy::Path& path, double per_slice,
           }};
 }
 
-// What a thin layer reflects by the paper's transport, over what it does: its display normalisation
-// shows a phase function that is the same in all directions as white, 1/2 (common/phase.glsl), in
-// place of 1 / (4 pi).
+// Reflectance of a thin layer in the paper's transport, over the true one: its display
+// normalisation shows a phase function that is the same in all directions as white, 1/2
+// (common/phase.glsl), in place of 1 / (4 pi).
 constexpr double kPaperBrightness = 2.0 * std::numbers::pi;
 
 // Where slices are so thin that light is scattered once, radiance is in proportion to the depth. It

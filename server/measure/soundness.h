@@ -18,7 +18,7 @@ struct Soundness {
   double least_light = 1.0;  // smallest share of the sunlight that is left anywhere
 };
 
-// What is wrong with radiance and transmittance, four floats a pixel; empty if nothing is.
+// The first fault of radiance or transmittance, four floats a pixel; empty if there is none.
 std::string UnsoundPicture(const std::vector<float>& eye);
 
 // Of half-angle slicing's light buffer: four floats a texel, the share of sunlight and the optical

@@ -118,13 +118,21 @@ function amountOf(field: FieldDescription): string {
   return `${field.variable}: up to ${formatNumber(field.maximum * 1000)} ${unit}, column mean ${path} kg/m²`;
 }
 
-function ParticleSettings({ state, field }: { state: PageState; field: FieldDescription }) {
-  const { hydrometeor, defaults } = field;
+// A field's settings as the scene has them, the prefix of its test ids, and how to change them. Draws again
+// with every change of the fields.
+function controlsOf(state: PageState, { hydrometeor, defaults }: FieldDescription) {
   void state.fields.value;
-  const shown = effectiveField(state.scene.peek(), hydrometeor, defaults);
-  const id = hydrometeorName(hydrometeor).toLowerCase();
-  const edit = (change: Parameters<typeof withField>[2]) =>
-    state.edit((scene) => withField(scene, hydrometeor, change));
+  return {
+    shown: effectiveField(state.scene.peek(), hydrometeor, defaults),
+    id: hydrometeorName(hydrometeor).toLowerCase(),
+    edit: (change: Parameters<typeof withField>[2]) =>
+      state.edit((scene) => withField(scene, hydrometeor, change)),
+  };
+}
+
+function ParticleSettings({ state, field }: { state: PageState; field: FieldDescription }) {
+  const { defaults } = field;
+  const { shown, id, edit } = controlsOf(state, field);
   return (
     <>
       {field.units !== EXTINCTION_UNITS && (
@@ -170,12 +178,8 @@ function ParticleSettings({ state, field }: { state: PageState; field: FieldDesc
 
 // How the field's particles scatter light.
 function OpticsSettings({ state, field }: { state: PageState; field: FieldDescription }) {
-  const { hydrometeor, defaults } = field;
-  void state.fields.value;
-  const shown = effectiveField(state.scene.peek(), hydrometeor, defaults);
-  const id = hydrometeorName(hydrometeor).toLowerCase();
-  const edit = (change: Parameters<typeof withField>[2]) =>
-    state.edit((scene) => withField(scene, hydrometeor, change));
+  const { defaults } = field;
+  const { shown, id, edit } = controlsOf(state, field);
   const { phase } = shown;
   return (
     <>
@@ -203,7 +207,7 @@ function OpticsSettings({ state, field }: { state: PageState; field: FieldDescri
           value={phase?.asymmetry}
           initial={defaults?.phase?.asymmetry}
           testId={`field-${id}-asymmetry`}
-          onChange={(g) => state.edit((scene) => withAsymmetry(scene, hydrometeor, g))}
+          onChange={(g) => state.edit((scene) => withAsymmetry(scene, field.hydrometeor, g))}
         />
       )}
     </>
