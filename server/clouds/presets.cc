@@ -122,6 +122,7 @@ constexpr std::array kPresets = {Preset{"congestus", Congestus},
 
 std::vector<std::string> PresetNames() {
   std::vector<std::string> names;
+  names.reserve(kPresets.size());
   for (const Preset& preset : kPresets) names.emplace_back(preset.name);
   return names;
 }
