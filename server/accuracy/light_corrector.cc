@@ -91,6 +91,7 @@ LightCorrector::LightCorrector(const scene::Scene& scene,
       storm_fit_(TexelsFor(box_, fields_->grid.spacing_m)),
       ground_fit_({kGroundTexels, kGroundTexels, 1}) {
   over_ground_.air = nullptr;
+  over_ground_.shaded_air.reset();
   over_ground_.seen_sky = nullptr;
 }
 

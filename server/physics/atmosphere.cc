@@ -13,9 +13,6 @@
 namespace thunderhead::physics {
 namespace {
 
-// Single-scattering albedo of continental haze.
-constexpr float kHazeAlbedo = 0.95F;
-
 // Vertical optical depth of 300 Dobson units of ozone at 650, 550 and 450 nm, in a layer around 25
 // km (Chappuis bands).
 const glm::vec3 kOzoneDepth(0.020F, 0.027F, 0.0014F);
@@ -163,9 +160,9 @@ Atmosphere::Atmosphere(float turbidity, float ground_albedo)
 AirOptics Atmosphere::At(float height_m) const {
   const glm::vec3 density = Densities(height_m);
   AirOptics optics;
-  optics.air = glsl::air_optical_depth() * (density.x / glsl::kAirScaleHeight_m);
+  optics.air = glsl::air_scattering_per_m(glm::vec2(density));
   const glm::vec3 haze = haze_depth_ * (density.y / glsl::kHazeScaleHeight_m);
-  optics.haze = haze * kHazeAlbedo;
+  optics.haze = haze * glsl::kHazeAlbedo;
   optics.extinction = optics.air + haze + kOzoneDepth * (density.z / kOzoneHalfWidth_m);
   return optics;
 }

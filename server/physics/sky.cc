@@ -29,7 +29,6 @@ ClearSky::ClearSky(const Atmosphere& atmosphere, const glm::vec3& towards_sun, c
     : towards_sun_(towards_sun),
       sun_transmittance_(atmosphere.SunTransmittance(
           {glm::clamp(site.ground_m, 0.0F, kHighestEye_m), towards_sun.z})) {
-  constexpr float kInverseFourPi = 0.25F * std::numbers::inv_pi_v<float>;
   const float ground_m = glm::clamp(site.ground_m, 0.0F, kHighestEye_m);
   const float height_m = glm::clamp(site.eye_m, ground_m, kHighestEye_m);
   horizon_sine_ = physics::HorizonSine(height_m, ground_m);
@@ -44,9 +43,8 @@ ClearSky::ClearSky(const Atmosphere& atmosphere, const glm::vec3& towards_sun, c
       const float east = 1.0F - 2.0F * static_cast<float>(x) / (glsl::kSkyAzimuths - 1);
       const float mu = cosine * east * sun_across + sine * towards_sun.z;
       const Atmosphere::Gathered gathered = atmosphere.Gather(line, {towards_sun.z, mu});
-      const float rayleigh = 0.75F * (1.0F + mu * mu) * kInverseFourPi;
       const auto at = static_cast<std::size_t>(y * 2 * glsl::kSkyAzimuths + x);
-      table_[at] = glm::vec4(gathered.air * rayleigh + gathered.diffuse, line.air_mass.x);
+      table_[at] = glm::vec4(gathered.air * glsl::air_phase(mu) + gathered.diffuse, line.air_mass.x);
       table_[at + glsl::kSkyAzimuths] = glm::vec4(gathered.haze, line.air_mass.y);
     }
   }

@@ -28,6 +28,8 @@ using glm::vec2;
 using glm::vec3;
 #include "shaders/physics/air.glsl"
 #include "shaders/physics/sky.glsl"
+// Uses both.
+#include "shaders/physics/air_light.glsl"
 
 }  // namespace glsl
 

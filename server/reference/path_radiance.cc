@@ -27,6 +27,9 @@ constexpr int kLongPath = 64;
 // Russian roulette.
 constexpr double kRouletteSunlight = 0.5;
 
+// Share of paths from the eye that also follow light that the medium sends to the air.
+constexpr double kAirPathShare = 0.25;
+
 double Largest(const glm::dvec3& color) { return std::max({color.x, color.y, color.z}); }
 
 // One path from the eye: the radiance so far, and its throughput.
@@ -54,9 +57,11 @@ class Path {
     const double ground_m = GroundDistance_m();
     const std::optional<double> collision_m = SampleCollision(medium_, ray_, ground_m, random_);
     if (collision_m.has_value()) {
+      ShadeAir(*collision_m);
       PassAir(*collision_m, Behind::kMedium);
       return Scatter(ray_.At(*collision_m));
     }
+    ShadeAir(ground_m);
     if (ground_m < kInfinity) return Reflect(ground_m);
     const auto& sky =
         seen_from_eye_ && surroundings_.seen_sky ? surroundings_.seen_sky : surroundings_.sky;
@@ -92,6 +97,61 @@ class Path {
       throughput_ *= air.transmittance;
     }
     seen_from_eye_ = false;
+  }
+
+  // Takes the medium's shadow from the light of the air before `distance_m`, seen at one random
+  // place. The light that air has scattered before comes there from a random direction of the upper
+  // half: where that meets the medium, what comes is the medium's light in place of the sky's.
+  void ShadeAir(double distance_m) {
+    if (!seen_from_eye_ || !surroundings_.shaded_air.has_value()) return;
+    const ShadedAir& air = *surroundings_.shaded_air;
+    const Interval shaded = IntervalIn(air.boxes, distance_m);
+    const double length_m = shaded.end_m - shaded.begin_m;
+    if (length_m <= 0.0) return;
+    const double at_m = shaded.begin_m + length_m * random_->Uniform();
+    const AirLight light = air.light(ray_, at_m);
+    const glm::dvec3 point_m = ray_.At(at_m);
+    const glm::dvec3 weight = Carried() * length_m;
+    const double of_sun = 1.0 - EstimateTransmittance(medium_, {point_m, surroundings_.towards_sun},
+                                                      kInfinity, random_);
+    radiance_ -= weight * light.of_sun * of_sun;
+    if (random_->Uniform() >= kAirPathShare) return;
+    const Ray upward{point_m, SampleUpward(random_)};
+    const std::optional<double> collision_m = SampleCollision(medium_, upward, kInfinity, random_);
+    if (!collision_m.has_value()) return;
+    Path path(medium_, surroundings_, upward, random_, max_scatterings_);
+    const glm::dvec3 from_storm = path.FollowFrom(*collision_m);
+    radiance_ -= weight / kAirPathShare * (light.of_sky - light.per_radiance * from_storm);
+  }
+
+  // The light of a path that does not come from an eye and meets the medium there.
+  glm::dvec3 FollowFrom(double collision_m) {
+    seen_from_eye_ = false;
+    return Scatter(ray_.At(collision_m)) && Survive() ? Follow() : radiance_;
+  }
+
+  struct Interval {
+    double begin_m = 0.0;
+    double end_m = 0.0;
+  };
+
+  // The part of the ray up to `distance_m` from the first of the boxes to the last.
+  Interval IntervalIn(const std::vector<Box>& boxes, double distance_m) const {
+    Interval all{kInfinity, 0.0};
+    for (const Box& box : boxes) {
+      Interval in{0.0, distance_m};
+      for (int axis = 0; axis < 3; ++axis) {
+        // A ray along a side divides by zero, and is then inside or outside for all its length.
+        const double a = (box.low_m[axis] - ray_.origin_m[axis]) / ray_.direction[axis];
+        const double b = (box.high_m[axis] - ray_.origin_m[axis]) / ray_.direction[axis];
+        in.begin_m = std::max(in.begin_m, std::min(a, b));
+        in.end_m = std::min(in.end_m, std::max(a, b));
+      }
+      if (in.begin_m >= in.end_m) continue;
+      all.begin_m = std::min(all.begin_m, in.begin_m);
+      all.end_m = std::max(all.end_m, in.end_m);
+    }
+    return all.begin_m < all.end_m ? all : Interval{};
   }
 
   bool Scatter(const glm::dvec3& point_m) {

@@ -15,6 +15,7 @@
 #include "physics/optics.h"
 #include "physics/sky.h"
 #include "scene/drawn_fields.h"
+#include "scene/shaded_air.h"
 #include "scene/view.h"
 #include "volume/terrain.h"
 
@@ -24,7 +25,7 @@ namespace {
 // Bare soil and grass seen from far off; the scene's ground albedo is that of red.
 constexpr glm::dvec3 kGroundTint(1.0, 0.93, 0.78);
 
-struct Box {
+struct GridBox {
   volume::RegularGrid grid;
   glm::ivec3 first_cell{0};  // in the domain
   glm::dvec3 low_m{0.0};
@@ -33,7 +34,7 @@ struct Box {
 
 // The cells to use, and the box. In a border of empty cells linear extinction falls to zero at
 // their centres.
-Box BoxOf(const volume::HydrometeorFields& fields, const MediumOptions& options) {
+GridBox BoxOf(const volume::HydrometeorFields& fields, const MediumOptions& options) {
   const volume::RegularGrid& domain = fields.grid;
   volume::CellBox occupied = fields.condensate;
   if (occupied.Empty()) occupied = {glm::ivec3(0), glm::ivec3(1)};
@@ -44,7 +45,7 @@ Box BoxOf(const volume::HydrometeorFields& fields, const MediumOptions& options)
   const int border = options.interpolation == Interpolation::kLinear ? 1 : 0;
   const glm::ivec3 low = glm::max(occupied.low - border, glm::ivec3(0));
   const glm::ivec3 high = glm::min(occupied.high + border, domain.cells);
-  Box box;
+  GridBox box;
   box.first_cell = low;
   box.grid = {high - low, domain.spacing_m,
               domain.low_corner_m + glm::dvec3(low) * domain.spacing_m};
@@ -55,7 +56,7 @@ Box BoxOf(const volume::HydrometeorFields& fields, const MediumOptions& options)
   return box;
 }
 
-void AddField(const volume::RegularGrid& domain, const Box& box,
+void AddField(const volume::RegularGrid& domain, const GridBox& box,
               const volume::HydrometeorField& field, const volume::MassExtinction& mass_extinction,
               std::vector<float>* extinction_per_m) {
   const glm::ivec3& cells = box.grid.cells;
@@ -149,9 +150,35 @@ Air AirBefore(const Around& around, const Ray& ray, double distance_m, Behind be
       around.turbidity, air::densities_of_air(height_m),
       {height_m, static_cast<float>(sine), static_cast<float>(view.ground_curvature_per_m),
        static_cast<float>(distance_m)});
-  const glm::vec3 none(0.0F);
-  return {glm::dvec3(air::through_air(glm::vec3(1.0F), 0.0F, depth, none, sky_depth)),
-          glm::dvec3(air::through_air(none, 1.0F, depth, sky.radiance, sky_depth))};
+  const glm::vec3 transmittance = glm::exp(-depth);
+  return {glm::dvec3(transmittance),
+          glm::dvec3(air::airlight_before(transmittance, sky.radiance, sky_depth))};
+}
+
+// Light that a metre of lit air at `distance_m` on a ray from the eye sends there.
+AirLight LightOfAir(const Around& around, const Ray& ray, double distance_m,
+                    const glm::dvec3& towards_sun) {
+  namespace air = physics::glsl;
+  const scene::View& view = around.view;
+  const air::Way way{static_cast<float>(std::max(view.altitude_m, 0.0)),
+                     static_cast<float>((view.local_from_world * ray.direction).z),
+                     static_cast<float>(view.ground_curvature_per_m),
+                     static_cast<float>(distance_m)};
+  const float height_m = std::max(air::height_on_way_m(way, way.distance_m), 0.0F);
+  const glm::vec2 densities = air::densities_of_air(height_m);
+  const physics::AirPlace place{height_m, static_cast<float>(towards_sun.z)};
+  const auto mu = static_cast<float>(glm::dot(ray.direction, towards_sun));
+  const glm::vec3 seen =
+      static_cast<float>(around.scale) *
+      glm::exp(-air::depth_of_air(around.turbidity, air::densities_of_air(way.height_m), way));
+  const glm::vec3 scattered = air::skylight_scattered_per_m(around.turbidity, densities);
+  AirLight light;
+  light.of_sun = seen * air::sunlight_scattered_per_m(around.turbidity, densities, mu) *
+                 around.atmosphere.SunTransmittance(place);
+  light.of_sky = seen * scattered * around.atmosphere.DiffuseMeanRadiance(place);
+  // The medium's light has the sun's irradiance in it.
+  light.per_radiance = seen / static_cast<float>(around.scale) * scattered;
+  return light;
 }
 
 }  // namespace
@@ -167,7 +194,7 @@ absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene
 absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene,
                                                        const volume::HydrometeorFields& fields,
                                                        const MediumOptions& options) {
-  const Box box = BoxOf(fields, options);
+  const GridBox box = BoxOf(fields, options);
   MediumDescription description;
   description.grid = box.grid;
   description.low_m = box.low_m;
@@ -231,6 +258,17 @@ Surroundings SurroundingsOf(const scene::Scene& scene, const volume::Hydrometeor
   around.air = [shared](const Ray& ray, double distance_m, Behind behind) {
     return AirBefore(*shared, ray, distance_m, behind);
   };
+  const GridBox storm = BoxOf(fields, MediumOptions{});
+  if (around.towards_sun.z > 0.0 && !fields.condensate.Empty()) {
+    const scene::ShadedAir shaded =
+        scene::ShadedAirOf({storm.low_m, storm.high_m}, around.towards_sun, lowest_m);
+    around.shaded_air =
+        ShadedAir{{{shaded.from_sun.low_m, shaded.from_sun.high_m},
+                   {shaded.from_sky.low_m, shaded.from_sky.high_m}},
+                  [shared, towards_sun = around.towards_sun](const Ray& ray, double distance_m) {
+                    return LightOfAir(*shared, ray, distance_m, towards_sun);
+                  }};
+  }
   return around;
 }
 

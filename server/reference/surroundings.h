@@ -23,6 +23,11 @@ struct Ground {
   double curvature_per_m = 0.0;
 };
 
+struct Box {
+  glm::dvec3 low_m{0.0};
+  glm::dvec3 high_m{0.0};
+};
+
 // The kinds of background behind the air.
 enum class Behind { kMedium, kGround };
 
@@ -30,6 +35,19 @@ enum class Behind { kMedium, kGround };
 struct Air {
   glm::dvec3 transmittance{1.0};
   glm::dvec3 airlight{0.0};
+};
+
+// Radiance that a metre of lit air on a ray adds to what its eye sees.
+struct AirLight {
+  glm::dvec3 of_sun{0.0};
+  glm::dvec3 of_sky{0.0};        // of light that air has scattered before
+  glm::dvec3 per_radiance{0.0};  // of even light of radiance 1 from everywhere
+};
+
+// The air that the medium shades.
+struct ShadedAir {
+  std::vector<Box> boxes;  // air outside all of them counts as lit
+  std::function<AirLight(const Ray& ray, double distance_m)> light;
 };
 
 // A light besides the sun. It lights the medium only, and only the medium shades it.
@@ -50,6 +68,8 @@ struct Surroundings {
   // Air between the eye and the ground or the medium; clear if not set. The sky needs none: its
   // light is the air's.
   std::function<Air(const Ray& ray, double distance_m, Behind behind)> air;
+  // Takes the medium's shadow from the light of that air and of the seen sky; lit if not set.
+  std::optional<ShadedAir> shaded_air;
 };
 
 }  // namespace thunderhead::reference

@@ -76,6 +76,11 @@ glm::dvec3 Deflect(const glm::dvec3& direction, double mu, double azimuth_rad) {
                         (sine * std::sin(azimuth_rad)) * other);
 }
 
+glm::dvec3 SampleUpward(RandomStream* random) {
+  const double sine = random->Uniform();
+  return Deflect({0.0, 0.0, 1.0}, sine, 2.0 * std::numbers::pi * random->Uniform());
+}
+
 glm::dvec3 SampleCosine(const glm::dvec3& normal, RandomStream* random) {
   const double mu = std::sqrt(random->Uniform());
   return Deflect(normal, mu, 2.0 * std::numbers::pi * random->Uniform());

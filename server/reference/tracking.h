@@ -24,6 +24,9 @@ double EstimateTransmittance(const Medium& medium, const Ray& ray, double limit_
 // The unit vector at an angle of cosine `mu` from `direction`, turned about it by `azimuth_rad`.
 glm::dvec3 Deflect(const glm::dvec3& direction, double mu, double azimuth_rad);
 
+// A unit vector spread evenly over the upper half.
+glm::dvec3 SampleUpward(RandomStream* random);
+
 // A unit vector about `normal` with a density in proportion to the cosine between the two.
 glm::dvec3 SampleCosine(const glm::dvec3& normal, RandomStream* random);
 

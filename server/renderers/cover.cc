@@ -146,15 +146,21 @@ absl::Status Cover::Draw(const Boxes& boxes, const scene::View& view, const glm:
   return absl::OkStatus();
 }
 
-void CoveredTarget::Resize(GLenum format, const glm::ivec2& size_px, const Cover* cover) {
+void CoveredTarget::Resize(GLenum format, const glm::ivec2& size_px, const Cover* cover,
+                           bool with_distances) {
   const GLuint depth = cover == nullptr ? 0 : cover->Depth().Get();
-  const bool same_texture = texture_.Size() == size_px && format_ == format;
+  const bool same_texture =
+      texture_.Size() == size_px && format_ == format && with_distances == (distances_.Get() != 0);
   if (same_texture && depth_ == depth) return;
-  if (!same_texture) texture_ = gl::Texture2D(format, size_px);
+  if (!same_texture) {
+    texture_ = gl::Texture2D(format, size_px);
+    distances_ = with_distances ? gl::Texture2D(GL_R32F, size_px) : gl::Texture2D();
+  }
   format_ = format;
   depth_ = depth;
-  target_ =
-      cover == nullptr ? gl::Framebuffer(texture_) : gl::Framebuffer({&texture_}, &cover->Depth());
+  const gl::Texture2D* limit = cover == nullptr ? nullptr : &cover->Depth();
+  target_ = with_distances ? gl::Framebuffer({&texture_, &distances_}, limit)
+                           : gl::Framebuffer({&texture_}, limit);
 }
 
 LimitedTo::LimitedTo(Where where, const Cover* cover) : limited_(cover != nullptr) {

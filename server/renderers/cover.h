@@ -84,13 +84,17 @@ class Cover {
 // A picture that a cover may limit.
 class CoveredTarget {
  public:
-  // `cover`, if any, is of this size.
-  void Resize(GLenum format, const glm::ivec2& size_px, const Cover* cover);
+  // `cover`, if any, is of this size. With distances, a second colour attachment holds one float a
+  // pixel.
+  void Resize(GLenum format, const glm::ivec2& size_px, const Cover* cover,
+              bool with_distances = false);
   const gl::Texture2D& Texture() const { return texture_; }
+  const gl::Texture2D& Distances() const { return distances_; }
   const gl::Framebuffer& Target() const { return target_; }
 
  private:
   gl::Texture2D texture_;
+  gl::Texture2D distances_;
   GLenum format_ = 0;
   GLuint depth_ = 0;  // the cover's
   gl::Framebuffer target_;

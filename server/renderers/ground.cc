@@ -68,7 +68,7 @@ absl::Status Ground::CastShadow(const ResidentMedium& medium, const RenderSettin
   const glm::ivec2 size =
       glm::max(glm::ivec2(glm::ceil(2.0 * frame.half_extent_m / texel_m)), glm::ivec2(1));
   if (shadow_.Size() != size) {
-    shadow_ = gl::Texture2D(GL_R16F, size, gl::Edge::kZero);
+    shadow_ = gl::Texture2D(GL_RGBA32F, size, gl::Edge::kZero);
     shadow_target_ = gl::Framebuffer(shadow_);
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
@@ -84,29 +84,30 @@ absl::Status Ground::CastShadow(const ResidentMedium& medium, const RenderSettin
   program->Set(uniform::light_right_m, glm::vec3(frame.right * frame.half_extent_m.x));
   program->Set(uniform::light_up_m, glm::vec3(frame.up * frame.half_extent_m.y));
   program->Set(uniform::light_weights, medium.Weights(weights.light));
+  program->Set(uniform::half_depth_m, static_cast<float>(frame.half_depth_m));
   program->Set(uniform::step_m, static_cast<float>(step_m));
   whole_target_.Draw(*program, shadow_target_);
   PlaceShadow(frame, medium.Middle_m());
   return absl::OkStatus();
 }
 
-void Ground::TakeShadow(gl::Texture2D blocked, const LightFrame& frame,
-                        const glm::dvec3& middle_m) {
-  shadow_ = std::move(blocked);
+void Ground::TakeShadow(gl::Texture2D shadow, const LightFrame& frame, const glm::dvec3& middle_m) {
+  shadow_ = std::move(shadow);
   shadow_target_ = gl::Framebuffer(shadow_);
   PlaceShadow(frame, middle_m);
 }
 
-void Ground::ShareShadow(const gl::Texture2D* blocked, const LightFrame& frame,
+void Ground::ShareShadow(const gl::Texture2D* shadow, const LightFrame& frame,
                          const glm::dvec3& middle_m) {
   PlaceShadow(frame, middle_m);
-  shared_shadow_ = blocked;
+  shared_shadow_ = shadow;
 }
 
 void Ground::PlaceShadow(const LightFrame& frame, const glm::dvec3& middle_m) {
   shadow_middle_m_ = middle_m;
   shadow_right_ = frame.right / frame.half_extent_m.x;
   shadow_up_ = frame.up / frame.half_extent_m.y;
+  shadow_down_ = -frame.towards_sun / frame.half_depth_m;
   shared_shadow_ = nullptr;
   has_shadow_ = true;
 }
@@ -151,6 +152,7 @@ void Ground::SetCorrection(const std::shared_ptr<const LightCorrection>& correct
 }
 
 void Ground::BindCorrection(const gl::Program& program, const scene::View& view) const {
+  if (!Corrected()) return;
   const glm::dvec2 size_m = correction_->ground_high_m - correction_->ground_low_m;
   program.Set(uniform::skylight_scale, glm::vec2(1.0 / size_m));
   program.Set(uniform::skylight_offset,
@@ -159,20 +161,22 @@ void Ground::BindCorrection(const gl::Program& program, const scene::View& view)
 }
 
 void Ground::BindShadow(const gl::Program& program, const scene::View& view) const {
-  if (Corrected()) BindCorrection(program, view);
   if (!has_shadow_) {
     // Far outside the texture, where nothing is blocked.
     program.Set(uniform::shadow_right, glm::vec3(0.0F));
     program.Set(uniform::shadow_up, glm::vec3(0.0F));
-    program.Set(uniform::shadow_offset, glm::vec2(-9.0F));
+    program.Set(uniform::shadow_down, glm::vec3(0.0F));
+    program.Set(uniform::shadow_offset, glm::vec3(-9.0F));
     shadow_.Bind(shaders::kGroundShadowUnit);
     return;
   }
   const glm::dvec3 from_eye_m = shadow_middle_m_ - view.eye_m;
   program.Set(uniform::shadow_right, glm::vec3(0.5 * shadow_right_));
   program.Set(uniform::shadow_up, glm::vec3(0.5 * shadow_up_));
-  program.Set(uniform::shadow_offset, glm::vec2(0.5 - 0.5 * glm::dot(from_eye_m, shadow_right_),
-                                                0.5 - 0.5 * glm::dot(from_eye_m, shadow_up_)));
+  program.Set(uniform::shadow_down, glm::vec3(shadow_down_));
+  program.Set(uniform::shadow_offset, glm::vec3(0.5 - 0.5 * glm::dot(from_eye_m, shadow_right_),
+                                                0.5 - 0.5 * glm::dot(from_eye_m, shadow_up_),
+                                                -glm::dot(from_eye_m, shadow_down_)));
   (shared_shadow_ != nullptr ? *shared_shadow_ : shadow_).Bind(shaders::kGroundShadowUnit);
 }
 

@@ -33,12 +33,14 @@ class Ground {
 
   // Computes the shadow of `medium`, if it is not empty, under the settings' sun.
   absl::Status CastShadow(const ResidentMedium& medium, const RenderSettings& settings);
-  // Takes the shadow of something else: the share of sunlight kept, over `frame` around `middle_m`.
-  void TakeShadow(gl::Texture2D blocked, const LightFrame& frame, const glm::dvec3& middle_m);
+  // Takes the shadow of something else, as common/storm_shadow.glsl has it, over `frame` around
+  // `middle_m`.
+  void TakeShadow(gl::Texture2D shadow, const LightFrame& frame, const glm::dvec3& middle_m);
   // The same of a texture that stays the caller's and is there as long as it is drawn.
-  void ShareShadow(const gl::Texture2D* blocked, const LightFrame& frame,
+  void ShareShadow(const gl::Texture2D* shadow, const LightFrame& frame,
                    const glm::dvec3& middle_m);
   void ClearShadow() { has_shadow_ = false; }
+  bool HasShadow() const { return has_shadow_; }
   // Puts a correction's ground on the device unless it is there; null is none.
   void SetCorrection(const std::shared_ptr<const LightCorrection>& correction);
   // True if there is one.
@@ -59,15 +61,16 @@ class Ground {
 
   // Sets the uniforms and textures of common/ground.glsl for coordinates from the eye.
   void Bind(const gl::Program& program, const scene::View& view) const;
-  // Sets those of the shadow, and of a correction: texture and place.
+  // Sets those of common/storm_shadow.glsl.
   void BindShadow(const gl::Program& program, const scene::View& view) const;
+  // Sets those of a correction, if there is one.
+  void BindCorrection(const gl::Program& program, const scene::View& view) const;
 
   std::size_t Bytes() const {
     return terrain_.Bytes() + shadow_.Bytes() + skylight_factor_.Bytes() + distance_.Bytes();
   }
 
  private:
-  void BindCorrection(const gl::Program& program, const scene::View& view) const;
   void PlaceShadow(const LightFrame& frame, const glm::dvec3& middle_m);
 
   std::shared_ptr<gl::ProgramCache> programs_;
@@ -86,6 +89,7 @@ class Ground {
   glm::dvec3 shadow_middle_m_{0.0};
   glm::dvec3 shadow_right_{0.0};  // 1 across its half width
   glm::dvec3 shadow_up_{0.0};
+  glm::dvec3 shadow_down_{0.0};  // 1 across its half depth, away from the sun
 
   std::shared_ptr<const LightCorrection> correction_;
   gl::Texture2D skylight_factor_;

@@ -34,6 +34,7 @@ LightFrame LightFrameOf(const LocalBox& box, const glm::dvec3& towards_sun) {
   const auto [right, up] = Across(towards_sun);
   frame.right = right;
   frame.up = up;
+  frame.half_depth_m = glm::dot(glm::abs(towards_sun), box.half_m);
   frame.half_extent_m = glm::dvec2(0.0);
   for (const glm::dvec3& corner : CornersOf(box)) {
     frame.half_extent_m = glm::max(

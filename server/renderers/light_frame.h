@@ -22,6 +22,7 @@ struct LightFrame {
   glm::dvec3 right{1.0, 0.0, 0.0};
   glm::dvec3 up{0.0, 1.0, 0.0};
   glm::dvec2 half_extent_m{1.0};  // covers the box's shadow
+  double half_depth_m = 1.0;      // of the box, along the light
 };
 
 LightFrame LightFrameOf(const LocalBox& box, const glm::dvec3& towards_sun);

@@ -112,6 +112,10 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& scene, const
       workspace_.ground.ClearShadow();
     }
     if (!quality.places) {
+      THUNDERHEAD_RETURN_IF_ERROR(Timed(scene::FrameStage::kAir, &times, [&] {
+        return workspace_.surroundings.ShadeAir(scene, view, workspace_.ground, Box(),
+                                                workspace_.medium);
+      }));
       THUNDERHEAD_RETURN_IF_ERROR(Timed(scene::FrameStage::kComposite, &times, [&] {
         return Composite(scene, view, quality.single_precision ? GL_RGBA32F : GL_RGBA16F, cover);
       }));
@@ -207,8 +211,9 @@ absl::Status SceneRenderer::Composite(const scene::Scene& scene, const scene::Vi
     THUNDERHEAD_ASSIGN_OR_RETURN(cover, CoverOf(view, size_px, margin_px, &picture_cover_));
   }
   linear_.Resize(format, size_px, cover);
-  return workspace_.surroundings.Composite(scene, view, workspace_.ground, Box(), Eye(), linear_,
-                                           cover);
+  const gl::Texture2D* distances_m = technique_->Empty() ? nullptr : technique_->Distances_m();
+  return workspace_.surroundings.Composite(scene, view, workspace_.ground,
+                                           {Eye(), distances_m, Box()}, linear_, cover);
 }
 
 LinearFrame SceneRenderer::Report(const scene::Scene& scene,

@@ -21,13 +21,18 @@ constexpr std::size_t kMaxTables = 32;
 
 constexpr glm::vec3 kGroundTint(1.0F, 0.93F, 0.78F);  // of bare soil and grass seen from far off
 
+// Of post/composite.frag.
 struct CompositeVariant {
   GroundVariant ground;
   gl::DefineValue corrected;  // the ground's skylight, by renderers::LightCorrection
+  gl::DefineValue shaded;     // air and skylight, by AirShade
   gl::DefineValue front;      // there may be something in the eye buffer
+  gl::DefineValue distances;  // its distance is known
 
   gl::Defines Defines() const {
-    return gl::Joined(ground.Defines(), {{"CORRECTED", corrected}, {"FRONT", front}});
+    return gl::Joined(
+        ground.Defines(),
+        {{"CORRECTED", corrected}, {"SHADED", shaded}, {"FRONT", front}, {"DISTANCES", distances}});
   }
 };
 
@@ -56,6 +61,10 @@ void SkyAndGround::Update(const scene::Scene& scene, const scene::View& view,
     sky_.emplace(*atmosphere_, eastern_sun, physics::ClearSky::Site{ground_m, ground_m});
     sky_light_ = sky_->Light();
     drawn_ = key;
+    air_shade_.SetLight(
+        *atmosphere_, towards_sun_.z,
+        sky_light_.irradiance +
+            sky_->SunTransmittance() * std::max(static_cast<float>(towards_sun_.z), 0.0F));
     around_sun_.reset();
     eye_height_m_ = -1.0;
     tables_.clear();
@@ -173,6 +182,8 @@ void SkyAndGround::BindAir(const gl::Program& program, const scene::Scene& scene
   BindRays(program, view, view.eye_m);
   ground.Bind(program, view);
   ground.BindShadow(program, view);
+  ground.BindCorrection(program, view);
+  air_shade_.Bind(program, view);
   const auto irradiance = static_cast<float>(scene.sun.irradiance);
   const auto sky_scale = irradiance * static_cast<float>(scene.sky.brightness);
   const auto altitude_m = static_cast<float>(std::max(view.altitude_m, 0.0));
@@ -193,20 +204,32 @@ void SkyAndGround::BindAir(const gl::Program& program, const scene::Scene& scene
   program.Set(uniform::box_high_m, glm::vec3(box.high_m - view.eye_m));
 }
 
+absl::Status SkyAndGround::ShadeAir(const scene::Scene& scene, const scene::View& view,
+                                    const Ground& ground, const volume::WorldBox& box,
+                                    const ResidentMedium& medium) {
+  air_shade_.Clear();
+  if (!ground.HasShadow()) return absl::OkStatus();
+  THUNDERHEAD_RETURN_IF_ERROR(air_shade_.HideSky(medium, scene, ground.Lowest_m()));
+  return air_shade_.Cast(scene, view, ground, box);
+}
+
 absl::Status SkyAndGround::Composite(const scene::Scene& scene, const scene::View& view,
-                                     const Ground& ground, const volume::WorldBox& box,
-                                     const gl::Texture2D& eye, const CoveredTarget& target,
-                                     const Cover* cover) {
-  eye.Bind(shaders::kEyeUnit);
+                                     const Ground& ground, const Front& front,
+                                     const CoveredTarget& target, const Cover* cover) {
+  front.eye.Bind(shaders::kEyeUnit);
+  if (front.distances_m != nullptr) front.distances_m->Bind(shaders::kEyeDistanceUnit);
   sky_table_.Bind(shaders::kSkyTableUnit);
   const auto draw = [&](Where where) -> absl::Status {
-    const CompositeVariant variant{.ground = ground.Variant(),
-                                   .corrected = ground.Corrected(),
-                                   .front = where == Where::kCovered};
+    const CompositeVariant variant{
+        .ground = ground.Variant(),
+        .corrected = ground.Corrected(),
+        .shaded = air_shade_.Present(),
+        .front = where == Where::kCovered,
+        .distances = where == Where::kCovered && front.distances_m != nullptr};
     THUNDERHEAD_ASSIGN_OR_RETURN(
         const gl::Program* program,
         programs_->Get(gl::ProgramSource::WholeTarget("post/composite.frag", variant.Defines())));
-    BindAir(*program, scene, view, ground, box);
+    BindAir(*program, scene, view, ground, front.box);
     const LimitedTo limited(where, cover);
     whole_target_.Draw(*program, target.Target());
     return absl::OkStatus();

@@ -14,6 +14,7 @@
 #include "gl/program.h"
 #include "gl/whole_target.h"
 #include "physics/sky.h"
+#include "renderers/air_shade.h"
 #include "renderers/ground.h"
 #include "renderers/render_settings.h"
 #include "scene/scene.h"
@@ -25,7 +26,7 @@ namespace thunderhead::renderers {
 class SkyAndGround {
  public:
   explicit SkyAndGround(std::shared_ptr<gl::ProgramCache> programs)
-      : programs_(std::move(programs)) {}
+      : programs_(std::move(programs)), air_shade_(programs_) {}
 
   // Brings the sky up to date with the scene's sun and air, the ground's height and the eye's. Call
   // it before the others.
@@ -36,14 +37,22 @@ class SkyAndGround {
   // The light of sky and ground on a white surface, as LightMapOf gives it.
   std::vector<glm::vec3> LightMap(const scene::Scene& scene) const;
 
-  // Draws what `eye` holds (rgb: radiance, a: share of the background that passes) in front of sky
-  // and ground, all through the air, to `target`. `box` is around what was drawn and tells how far
-  // it is; it may be empty. `cover`, if any, is the target's: nothing was drawn beyond it.
-  absl::Status Composite(const scene::Scene& scene, const scene::View& view, const Ground& ground,
-                         const volume::WorldBox& box, const gl::Texture2D& eye,
-                         const CoveredTarget& target, const Cover* cover);
+  // Shades the air by what is in `box`, whose shadow on the ground is known; `medium` may be empty.
+  absl::Status ShadeAir(const scene::Scene& scene, const scene::View& view, const Ground& ground,
+                        const volume::WorldBox& box, const ResidentMedium& medium);
 
-  std::size_t Bytes() const { return sky_table_.Bytes(); }
+  // What was drawn before sky and ground.
+  struct Front {
+    const gl::Texture2D& eye;                    // as Technique::Eye
+    const gl::Texture2D* distances_m = nullptr;  // as Technique::Distances_m
+    volume::WorldBox box;                        // around it; may be empty
+  };
+  // Draws `front` in front of sky and ground, all through the air, to `target`. `cover`, if any, is
+  // the target's: nothing was drawn beyond it.
+  absl::Status Composite(const scene::Scene& scene, const scene::View& view, const Ground& ground,
+                         const Front& front, const CoveredTarget& target, const Cover* cover);
+
+  std::size_t Bytes() const { return sky_table_.Bytes() + air_shade_.Bytes(); }
 
  private:
   void SetEyeSky(double altitude_m);
@@ -74,6 +83,7 @@ class SkyAndGround {
   std::map<int, std::vector<glm::vec4>> tables_;  // by step
   double eye_height_m_ = -1.0;                    // that the table on the device is for
   gl::Texture2D sky_table_;
+  AirShade air_shade_;
 };
 
 }  // namespace thunderhead::renderers

@@ -76,6 +76,9 @@ class Technique {
   virtual bool KeepsToCover() const { return false; }
   // The result of the last DrawView.
   virtual const gl::Texture2D& Eye() const = 0;
+  // Its mean distance from the eye, weighted by what each part of the ray shows, times its opacity:
+  // one channel, of Eye's size. Null if that is not known: the middle of Box is taken.
+  virtual const gl::Texture2D* Distances_m() const { return nullptr; }
 
   virtual Content Describe(const scene::Scene& scene,
                            const volume::HydrometeorFields& fields) const = 0;

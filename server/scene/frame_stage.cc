@@ -24,6 +24,8 @@ std::string_view NameOf(FrameStage stage) {
       return "view";
     case FrameStage::kGround:
       return "ground";
+    case FrameStage::kAir:
+      return "air";
     case FrameStage::kComposite:
       return "composite";
     case FrameStage::kTrace:

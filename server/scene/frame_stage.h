@@ -17,6 +17,7 @@ enum class FrameStage {
   kLight,
   kView,
   kGround,
+  kAir,
   kComposite,
   kTrace,       // paths of the reference
   kCorrection,  // by traced paths

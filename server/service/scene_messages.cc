@@ -53,6 +53,7 @@ constexpr std::array kStages = {
     std::pair{v1::STAGE_LIGHT, scene::FrameStage::kLight},
     std::pair{v1::STAGE_VIEW, scene::FrameStage::kView},
     std::pair{v1::STAGE_GROUND, scene::FrameStage::kGround},
+    std::pair{v1::STAGE_AIR, scene::FrameStage::kAir},
     std::pair{v1::STAGE_COMPOSITE, scene::FrameStage::kComposite},
     std::pair{v1::STAGE_TRACE, scene::FrameStage::kTrace},
     std::pair{v1::STAGE_CORRECTION, scene::FrameStage::kCorrection},

@@ -18,6 +18,7 @@ namespace {
 
 constexpr int kShadowTexels = 1024;  // along each side
 constexpr int kGroundShadowTexels = 256;
+constexpr double kBeforeSurface_m = 2.0;  // from the sun\'s eye
 constexpr int kRoughnessOctaves = 4;
 constexpr double kRoughnessInFinest = 1.6;  // wavelength over the radius of the finest bubbles
 constexpr double kMinCorona = 1e-3;         // of the finest radius: thinner is a division by zero
@@ -176,7 +177,7 @@ absl::Status CumulusRenderer::CastShadow(const RenderSettings& settings) {
   shadow_frame_ = LightFrameOf({HalfExtent_m()}, settings.illumination.towards_sun);
   shadow_reach_m_ = glm::length(HalfExtent_m());
   scene::View from_sun;
-  from_sun.eye_m = Middle_m() + (shadow_reach_m_ + 2.0) * shadow_frame_.towards_sun;
+  from_sun.eye_m = Middle_m() + (shadow_reach_m_ + kBeforeSurface_m) * shadow_frame_.towards_sun;
   from_sun.forward = -shadow_frame_.towards_sun;
   from_sun.right = shadow_frame_.right;
   from_sun.up = shadow_frame_.up;
@@ -189,11 +190,14 @@ absl::Status CumulusRenderer::CastShadow(const RenderSettings& settings) {
 }
 
 absl::StatusOr<gl::Texture2D> CumulusRenderer::GroundShadow() {
-  gl::Texture2D shadow(GL_R16F, glm::ivec2(kGroundShadowTexels), gl::Edge::kZero);
+  gl::Texture2D shadow(GL_RGBA32F, glm::ivec2(kGroundShadowTexels), gl::Edge::kZero);
   const gl::Framebuffer target(shadow);
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
       programs_->Get(gl::ProgramSource::WholeTarget("cumulus/ground_shadow.frag")));
+  const double from_m = shadow_reach_m_ + kBeforeSurface_m;
+  program->Set(uniform::place_of_depth, glm::vec2(from_m + shadow_reach_m_, -from_m) /
+                                            static_cast<float>(shadow_frame_.half_depth_m));
   shadow_depth_.Bind(shaders::kSunDepthUnit);
   whole_target_.Draw(*program, target);
   return shadow;
@@ -234,7 +238,7 @@ void CumulusRenderer::SetShading(const gl::Program& program, const RenderSetting
   program.Set(uniform::parallel, view.Orthographic());
   const glm::dvec3 right = 0.5 * shadow_frame_.right / shadow_frame_.half_extent_m.x;
   const glm::dvec3 up = 0.5 * shadow_frame_.up / shadow_frame_.half_extent_m.y;
-  const double from_m = shadow_reach_m_ + 2.0;
+  const double from_m = shadow_reach_m_ + kBeforeSurface_m;
   const double far_m = from_m + shadow_reach_m_;
   const glm::dvec3 down = -shadow_frame_.towards_sun / far_m;
   program.Set(uniform::shadow_x, glm::vec4(right, 0.5));

@@ -57,7 +57,7 @@ LightVolumeRenderer::LightBox::LightBox(const ResidentMedium& medium,
   const glm::dvec3 half_m = medium.HalfExtent_m();
   const glm::dvec3 cell_m = medium.Bounds().grid.spacing_m;
   frame = LightFrameOf({half_m}, towards_sun);
-  reach_m = glm::dot(glm::abs(towards_sun), half_m);
+  reach_m = frame.half_depth_m;
   const glm::dvec2 across_m = 2.0 * frame.half_extent_m;
   const int most_texels =
       std::max(static_cast<int>(kMaxLightTexels * settings.quality.light_detail), 1);
@@ -92,7 +92,7 @@ void LightVolumeRenderer::Resize(const glm::ivec3& carried, const glm::ivec3& ce
     carried_ = gl::Texture3D(format, carried);
     carried_.Clear();
     thickness_ = gl::Texture2D(GL_R32F, glm::ivec2(carried));
-    blocked_ = gl::Texture2D(GL_R16F, glm::ivec2(carried), gl::Edge::kZero);
+    shadow_ = gl::Texture2D(GL_RGBA32F, glm::ivec2(carried), gl::Edge::kZero);
   }
   if (arrived_.Size() != cells || light_format_ != format) {
     arrived_ = gl::Texture3D(format, cells);
@@ -141,7 +141,7 @@ absl::Status LightVolumeRenderer::Carry(const ResidentMedium& medium, const Grou
   program->Set(uniform::cumulative_phase, weights.cumulative_phase);
   carried_.BindImage(shaders::kCarriedImage, GL_WRITE_ONLY);
   thickness_.BindImage(shaders::kThicknessImage, GL_WRITE_ONLY);
-  blocked_.BindImage(shaders::kBlockedImage, GL_WRITE_ONLY);
+  shadow_.BindImage(shaders::kShadowImage, GL_WRITE_ONLY);
   program->Use();
   const glm::ivec3 groups = (box.size + shaders::kLightGroupSide - 1) / shaders::kLightGroupSide;
   glDispatchCompute(static_cast<GLuint>(groups.x), static_cast<GLuint>(groups.y), 1);
@@ -209,7 +209,7 @@ void LightVolumeRenderer::BindCorrection(const std::shared_ptr<const LightCorrec
 absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
                                            const RenderSettings& settings) {
   eye_.Resize(settings.quality.single_precision ? GL_RGBA32F : GL_RGBA16F, settings.eye_size,
-              settings.cover);
+              settings.cover, true);
   const GroupWeights weights(medium.Content(), settings.Medium());
   const bool diffusion = Diffuses(settings);
   const MarchVariant variant{.medium = medium.Variant(),
@@ -237,7 +237,10 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
   if (settings.quality.correction != nullptr) BindCorrection(settings.quality.correction);
   if (settings.ground_distance != nullptr)
     settings.ground_distance->Bind(shaders::kGroundDistanceUnit);
-  if (settings.cover != nullptr) eye_.Target().Clear(0.0F, 0.0F, 0.0F, 1.0F);
+  if (settings.cover != nullptr) {
+    eye_.Target().Clear(0.0F, 0.0F, 0.0F, 1.0F);
+    eye_.Target().Clear(0.0F, 0.0F, 0.0F, 0.0F, 1);
+  }
   const LimitedTo limited(Where::kCovered, settings.cover);
   whole_target_.Draw(*program, eye_.Target());
   return absl::OkStatus();

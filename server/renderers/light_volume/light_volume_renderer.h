@@ -33,9 +33,9 @@ class LightVolumeRenderer {
   // Carries the light to the cells. `medium` must not be empty.
   absl::Status CarryLight(const ResidentMedium& medium, const RenderSettings& settings);
 
-  // The share of sunlight that the medium of the last CarryLight keeps from what lies behind it,
-  // over LightFrameOf its box.
-  const gl::Texture2D& Shadow() const { return blocked_; }
+  // The shadow of the last CarryLight's medium, as common/storm_shadow.glsl has it, over
+  // LightFrameOf its box.
+  const gl::Texture2D& Shadow() const { return shadow_; }
 
   // The light of the last CarryLight, for checks: along the sun's rays, from the sun on, and at the
   // medium's cells, as carry.comp and arrive.comp write them.
@@ -48,9 +48,10 @@ class LightVolumeRenderer {
 
   // The result of the last DrawView.
   const gl::Texture2D& Eye() const { return eye_.Texture(); }
+  const gl::Texture2D& Distances_m() const { return eye_.Distances(); }
   std::size_t Bytes() const {
-    return Eye().Bytes() + carried_.Bytes() + thickness_.Bytes() + blocked_.Bytes() +
-           arrived_.Bytes() + diffusion_.Bytes();
+    return Eye().Bytes() + Distances_m().Bytes() + carried_.Bytes() + thickness_.Bytes() +
+           shadow_.Bytes() + arrived_.Bytes() + diffusion_.Bytes();
   }
 
  private:
@@ -73,7 +74,7 @@ class LightVolumeRenderer {
   CoveredTarget eye_;
   gl::Texture3D carried_;  // along the sun's rays
   gl::Texture2D thickness_;
-  gl::Texture2D blocked_;
+  gl::Texture2D shadow_;
   gl::Texture3D arrived_;  // at the medium's cells
   GLenum light_format_ = 0;
   DiffusionPass diffusion_;

@@ -1,20 +1,24 @@
-// The share of sunlight that the surface keeps from what lies behind it, from the sun's depths.
+// The surface's shadow from the sun's depths, as common/storm_shadow.glsl takes it.
 #include "common/bindings.glsl"
 
 layout(binding = kSunDepthUnit) uniform sampler2D depth;
 
+uniform vec2 place_of_depth;  // slope and offset
+
 in vec2 position;
-out float blocked;
+out vec4 shadow;
 
 const int kAlong = 4;  // depths a texel along each side
 
 void main() {
   vec2 size = vec2(textureSize(depth, 0));
   ivec2 low = ivec2((0.5 * position + 0.5) * size) - kAlong / 2;
-  float sum = 0.0;
+  vec3 sum = vec3(0.0);
   for (int i = 0; i < kAlong * kAlong; ++i) {
     ivec2 at = clamp(low + ivec2(i % kAlong, i / kAlong), ivec2(0), ivec2(size) - 1);
-    sum += texelFetch(depth, at, 0).r < 1.0 ? 1.0 : 0.0;
+    float along = texelFetch(depth, at, 0).r;
+    float place = along * place_of_depth.x + place_of_depth.y;
+    if (along < 1.0) sum += vec3(1.0, place, place * place);
   }
-  blocked = sum / float(kAlong * kAlong);
+  shadow = vec4(sum / float(kAlong * kAlong), 0.0);
 }

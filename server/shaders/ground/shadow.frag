@@ -1,15 +1,16 @@
-// Opacity of the whole medium along one sun ray a texel, for its shadow on the ground. Variants: GROUPS, DETAILS.
+// The medium's shadow, one sun ray a texel, as common/storm_shadow.glsl takes it. Variants: GROUPS, DETAILS.
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
 
 uniform vec3 towards_sun;
 uniform vec3 light_right_m;  // metres across the picture's half width and height, from the middle of the box
 uniform vec3 light_up_m;
+uniform float half_depth_m;  // of the box, along the sun's rays
 uniform float step_m;
 uniform vec4 light_weights[PLANES];
 
 in vec2 position;
-out float blocked;
+out vec4 shadow;
 
 const int kMaxSamples = 4096;
 const float kOpaqueDepth = 12.0;  // optical depth at which a ray ends
@@ -17,13 +18,15 @@ const float kOpaqueDepth = 12.0;  // optical depth at which a ray ends
 void main() {
   begin_medium();
   vec3 origin_m = position.x * light_right_m + position.y * light_up_m;
-  vec3 direction = safe_direction(towards_sun);
+  vec3 direction = safe_direction(-towards_sun);
   MediumRay ray = medium_ray(origin_m, direction);
   vec2 path = path_in_medium(origin_m, direction, 0.0);
   vec4 depth_weights[PLANES] = scaled(light_weights, step_m);
   float per_step = 1.0 / step_m;
   float distance_m = path.x;
   float depth = 0.0;
+  float before = 1.0;  // transmittance
+  vec2 moments = vec2(0.0);
   for (int i = 0; i < kMaxSamples && distance_m < path.y && depth < kOpaqueDepth; ++i) {
     vec3 place = brick_place(ray, distance_m);
     uint content = brick_content(ray, place);
@@ -33,7 +36,11 @@ void main() {
     }
     float path_m = min(step_m, path.y - distance_m);
     depth += path_m * per_step * weigh(medium_at_place(medium_place(ray, distance_m + 0.5 * path_m)), depth_weights);
+    float after = exp(-depth);
+    float place = (distance_m + 0.5 * path_m) / half_depth_m;
+    moments += (before - after) * vec2(place, place * place);
+    before = after;
     distance_m += path_m;
   }
-  blocked = 1.0 - exp(-depth);
+  shadow = vec4(1.0 - before, moments, 0.0);
 }

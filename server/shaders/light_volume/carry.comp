@@ -1,7 +1,7 @@
 // Carries sunlight once through the medium into a volume whose depth runs along the sun's rays: one invocation a ray.
 // r: the square root of the light's effective optical depth, -log of the share that arrives; g: the similarity-scaled
-// optical depth passed, whose end is the ray's thickness. `blocked` is the opacity of the whole medium, for its shadow on
-// the ground. Layers that arrive.comp does not use are left as they are.
+// optical depth passed, whose end is the ray's thickness. `shadow` is that of the whole medium (common/storm_shadow.glsl).
+// Layers that arrive.comp does not use are left as they are.
 // Variants: GROUPS, CONSISTENT, TRANSLUCENT, DIFFUSE. The light model is that of half_angle/carry.comp but for the
 // exchange with neighbouring rays, whose width (one cell's path at 3/8 theta_f) is below a texel of this volume at the
 // usual angles.
@@ -11,7 +11,7 @@
 
 layout(local_size_x = kLightGroupSide, local_size_y = kLightGroupSide) in;
 layout(binding = kCarriedImage) uniform writeonly image3D carried;
-layout(binding = kBlockedImage, r16f) uniform writeonly image2D blocked;
+layout(binding = kShadowImage, rgba32f) uniform writeonly image2D shadow;
 #if DIFFUSE
 layout(binding = kThicknessImage, r32f) uniform writeonly image2D thickness;
 #endif
@@ -62,6 +62,9 @@ void main() {
 
   float depth = 0.0;
   float medium_depth = 0.0;
+  float lit = 1.0;  // share of sunlight that has passed the medium
+  vec2 moments = vec2(0.0);
+  float per_reach = 1.0 / light_reach_m;
   float transport = 0.0;
   float distance_m = float(first) * layer_m + 0.5 * step_m;
   int half_layer = 2 * first;
@@ -93,11 +96,17 @@ void main() {
       depth += lost(step_depth, turned);
       transport += weigh(medium, transport_depths) * counts;
     }
+    if (steps > 0) {
+      float left = exp(-medium_depth);
+      float place = (distance_m + 0.5 * further_m) * per_reach - 1.0;
+      moments += (lit - left) * vec2(place, place * place);
+      lit = left;
+    }
     ++half_layer;
     distance_m += half_layer_m;
   }
 
-  imageStore(blocked, texel, vec4(1.0 - exp(-medium_depth), 0.0, 0.0, 0.0));
+  imageStore(shadow, texel, vec4(1.0 - lit, moments, 0.0));
 #if DIFFUSE
   imageStore(thickness, texel, vec4(transport, 0.0, 0.0, 0.0));
 #endif

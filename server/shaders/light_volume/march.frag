@@ -28,7 +28,8 @@ uniform float step_m;  // between samples
 uniform vec4 eye_weights[PLANES];  // texel to the extinction that the eye sees, 1/m
 
 in vec2 position;
-out vec4 radiance_and_transmittance;
+layout(location = 0) out vec4 radiance_and_transmittance;
+layout(location = 1) out float opacity_distance_m;  // the opacity times the mean distance of what shows
 
 const int kMaxSamples = 16384;
 const float kOnwards = 1.0 + 2.4e-7;  // the next number but one: far away a distance has coarser steps than a leap's margin
@@ -156,9 +157,11 @@ void see_segment(inout Seen seen, Sample before, Sample here, float segment_m, f
   seen.shown_distance_m += shown * (end_m - 0.5 * segment_m);
 }
 
+float mean_distance_m(Seen seen) { return seen.shown_distance_m / max(seen.shown, 1e-30); }
+
 // The mean place of what has been seen, 0 to 1 in the medium's box.
 vec3 seen_place(Seen seen, vec3 origin_m, vec3 direction) {
-  vec3 place_m = origin_m + direction * (seen.shown_distance_m / max(seen.shown, 1e-30));
+  vec3 place_m = origin_m + direction * mean_distance_m(seen);
   return (place_m - medium_low_m) / (medium_high_m - medium_low_m);
 }
 
@@ -194,4 +197,5 @@ void main() {
   radiance = corrected(radiance, seen_place(seen, origin_m, direction), direction);
 #endif
   radiance_and_transmittance = vec4(radiance, background_transmittance(seen));
+  opacity_distance_m = (1.0 - background_transmittance(seen)) * mean_distance_m(seen);
 }

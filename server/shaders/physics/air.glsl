@@ -67,12 +67,9 @@ PHYSICS_FUNCTION vec3 depth_of_air(float turbidity, vec2 densities, Way way) {
                            equivalent_m(kHazeScaleHeight_m, densities.y, way) / kHazeScaleHeight_m));
 }
 
-// What the eye sees of something that sends `radiance` (already weighted by its opacity) and hides `opacity` of what is
-// behind it, through air of optical depth `depth`. The clear sky in that direction has radiance `sky` and the optical
-// depth `sky_depth` down to the ground or out of the atmosphere: the air gathers it in step with the light that it takes
-// away, beyond `sky_depth` too.
-PHYSICS_FUNCTION vec3 through_air(vec3 radiance, float opacity, vec3 depth, vec3 sky, vec3 sky_depth) {
-  vec3 passed = exp(-depth);
-  vec3 gathered = (vec3(1.0f) - passed) / max(vec3(1.0f) - exp(-sky_depth), vec3(1e-6f));
-  return passed * radiance + opacity * gathered * sky;
+// Light that air of this transmittance sends to the eye. The clear sky in that direction has radiance `sky` and the
+// optical depth `sky_depth` down to the ground or out of the atmosphere: the air gathers it in step with the light that it
+// takes away, beyond `sky_depth` too.
+PHYSICS_FUNCTION vec3 airlight_before(vec3 transmittance, vec3 sky, vec3 sky_depth) {
+  return sky * (vec3(1.0f) - transmittance) / max(vec3(1.0f) - exp(-sky_depth), vec3(1e-6f));
 }

@@ -1,17 +1,24 @@
 // The linear frame: what the eye buffer holds in front of sky and ground, all through the air. Coordinates are metres from
-// the eye. Variants: RELIEF (terrain), FRONT (there may be something in the eye buffer), CORRECTED (the ground's skylight by
-// renderers::LightCorrection).
+// the eye. Variants: those of renderers::CompositeVariant.
 #include "common/bindings.glsl"
 #include "common/box.glsl"
 #include "common/ground.glsl"
 #include "common/sky.glsl"
+#include "common/storm_shadow.glsl"
 #include "common/view.glsl"
 #include "physics/air.glsl"
+#if SHADED
+#include "common/air_shade.glsl"
+#include "common/sky_hidden.glsl"
+#endif
 
 #if FRONT
 layout(binding = kEyeUnit) uniform sampler2D eye;
 #endif
-layout(binding = kGroundShadowUnit) uniform sampler2D shadow;  // the share of sunlight that the storm keeps from the ground
+#if DISTANCES
+// Distance of what is in the eye buffer, times its opacity.
+layout(binding = kEyeDistanceUnit) uniform sampler2D eye_distance;
+#endif
 
 #if CORRECTED
 layout(binding = kSkylightFactorUnit) uniform sampler2D skylight_factor;
@@ -30,9 +37,6 @@ uniform vec2 air_densities;      // there
 uniform vec3 ground_reflectance;  // radiance per irradiance
 uniform vec3 sunlight;           // irradiance on a plane facing the sun
 uniform vec3 skylight;           // irradiance on level ground
-uniform vec3 shadow_right;       // texture coordinates per metre
-uniform vec3 shadow_up;
-uniform vec2 shadow_offset;
 uniform vec3 box_low_m;          // the medium's
 uniform vec3 box_high_m;
 
@@ -42,18 +46,25 @@ out vec4 linear_rgb;
 const float kJustBelow = 1e-5;
 const float kHardlyAnyHaze = 0.01;  // of its vertical depth
 
-// Lambert's law under sun and sky. The storm shades the sun, not the sky; the terrain shades itself by its slope only.
+// Lambert's law under sun and sky, which the storm shades both; the terrain shades itself by its slope only.
 vec3 ground_radiance(vec3 point_m) {
 #if RELIEF
   vec3 normal = ground_normal(point_m.xy);
 #else
   vec3 normal = vec3(0.0, 0.0, 1.0);
 #endif
-  vec2 place = vec2(dot(point_m, shadow_right), dot(point_m, shadow_up)) + shadow_offset;
-  float lit = max(dot(normal, towards_sun), 0.0) * (1.0 - texture(shadow, place).r);
+#if RELIEF
+  float blocked = blocked_at(point_m);
+#else
+  float blocked = blocked_behind(point_m);
+#endif
+  float lit = max(dot(normal, towards_sun), 0.0) * (1.0 - blocked);
   vec3 sky = skylight * (0.5 + 0.5 * normal.z);
 #if CORRECTED
   sky *= texture(skylight_factor, point_m.xy * skylight_scale + skylight_offset).rgb;
+#elif SHADED
+  vec2 storm = storm_in_sky(point_m);
+  sky += (storm.y * blocked) * (sunlight * towards_sun.z + skylight) - storm.x * sky;
 #endif
   return ground_reflectance * (sunlight * lit + sky);
 }
@@ -75,14 +86,45 @@ Sky sky_behind(vec3 ray, float ground_m) {
   return sky;
 }
 
+// Light that the air up to a distance sends to the eye, less what the storm's shadow takes from it.
+vec3 shaded_airlight(vec3 airlight, float distance_m) {
+#if SHADED
+  return max(airlight - air_shade_before(position, distance_m), vec3(0.0));
+#else
+  return airlight;
+#endif
+}
+
 // The ground through the air.
 vec3 seen_ground(vec3 radiance, vec3 ray, float ground_m, vec3 sky_radiance, vec3 sky_depth) {
 #if RELIEF
-  return through_air(radiance, 1.0, depth_before(ray, ground_m), sky_radiance, sky_depth);
+  vec3 transmittance = exp(-depth_before(ray, ground_m));
+  return transmittance * radiance + shaded_airlight(airlight_before(transmittance, sky_radiance, sky_depth), ground_m);
 #else
-  return exp(-sky_depth) * radiance + sky_radiance;
+  return exp(-sky_depth) * radiance + shaded_airlight(sky_radiance, ground_m);
 #endif
 }
+
+#if FRONT
+// What is in the eye buffer, through the air, and the transmittance of the background.
+vec4 seen_front(vec3 origin_m, vec3 world_ray, vec3 ray, float ground_m, vec3 sky_radiance, vec3 sky_depth) {
+  vec4 front = texture(eye, 0.5 * position + 0.5);
+  float opacity = 1.0 - front.a;
+  if (opacity <= 0.0) return front;
+#if DISTANCES
+  float distance_m = texture(eye_distance, 0.5 * position + 0.5).r / opacity;
+#else
+  // The middle of the ray's path through the box.
+  vec2 path_m = path_through_box(box_low_m, box_high_m, origin_m, safe_direction(world_ray));
+  path_m.x = max(path_m.x, 0.0);
+  float end_m = ground_m > 0.0 ? min(path_m.y, ground_m) : path_m.y;
+  float distance_m = 0.5 * (path_m.x + max(end_m, path_m.x));
+#endif
+  vec3 transmittance = exp(-depth_before(ray, distance_m));
+  vec3 airlight = shaded_airlight(airlight_before(transmittance, sky_radiance, sky_depth), distance_m);
+  return vec4(transmittance * front.rgb + opacity * airlight, front.a);
+}
+#endif
 
 void main() {
   vec3 origin_m = ray_origin(position);
@@ -92,20 +134,11 @@ void main() {
   Sky sky = sky_behind(ray, ground_m);
   vec3 sky_radiance = sky_scale * sky.radiance;
   vec3 sky_depth = depth_of_way(turbidity, sky.way);
-  vec3 background = sky_radiance;
-  if (ground_m > 0.0) {
-    background = seen_ground(ground_radiance(origin_m + ground_m * world_ray), ray, ground_m, sky_radiance, sky_depth);
-  }
+  vec3 background = ground_m > 0.0 ? seen_ground(ground_radiance(origin_m + ground_m * world_ray), ray, ground_m,
+                                                 sky_radiance, sky_depth)
+                                   : shaded_airlight(sky_radiance, kFarthestGround_m);
 #if FRONT
-  vec4 front = texture(eye, 0.5 * position + 0.5);
-  float opacity = 1.0 - front.a;
-  if (opacity > 0.0) {
-    vec2 path_m = path_through_box(box_low_m, box_high_m, origin_m, safe_direction(world_ray));
-    path_m.x = max(path_m.x, 0.0);
-    float end_m = ground_m > 0.0 ? min(path_m.y, ground_m) : path_m.y;
-    float distance_m = 0.5 * (path_m.x + max(end_m, path_m.x));
-    front.rgb = through_air(front.rgb, opacity, depth_before(ray, distance_m), sky_radiance, sky_depth);
-  }
+  vec4 front = seen_front(origin_m, world_ray, ray, ground_m, sky_radiance, sky_depth);
   linear_rgb = vec4(front.rgb + front.a * background, 1.0);
 #else
   linear_rgb = vec4(background, 1.0);

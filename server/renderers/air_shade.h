@@ -1,0 +1,71 @@
+// Air that the storm shades: the light that is missing from what the air sends to the eye, on each
+// ray of a coarse picture up to each of a number of distances. The sun is shaded as the ground is
+// (common/storm_shadow.glsl); of light that the air has scattered before, a place in the shadow
+// gets what the part of the sky sends that the storm leaves open, and from the storm what a layer
+// of its depth would let through. How the storm stands in the sky is found once for a medium. Owns
+// GL objects: use it on the context's thread.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "gl/objects.h"
+#include "gl/program.h"
+#include "physics/atmosphere.h"
+#include "renderers/ground.h"
+#include "renderers/medium.h"
+#include "scene/scene.h"
+#include "scene/shaded_air.h"
+#include "scene/view.h"
+#include "volume/visible_box.h"
+
+namespace thunderhead::renderers {
+
+class AirShade {
+ public:
+  explicit AirShade(std::shared_ptr<gl::ProgramCache> programs) : programs_(std::move(programs)) {}
+
+  // Takes the light of the air by height, for a sun whose elevation has this sine;
+  // `level_irradiance` is that of clear sky and sun on the ground, for a sun of irradiance 1.
+  void SetLight(const physics::Atmosphere& atmosphere, double sun_sine,
+                const glm::vec3& level_irradiance);
+
+  // Finds how much of the sky `medium` hides, unless it is known. An empty medium hides nothing.
+  absl::Status HideSky(const ResidentMedium& medium, const scene::Scene& scene, double ground_m);
+
+  // Finds the missing light for a view, under the shadow that `ground` has. `box` is around what
+  // casts it. SetLight and HideSky come first.
+  absl::Status Cast(const scene::Scene& scene, const scene::View& view, const Ground& ground,
+                    const volume::WorldBox& box);
+  // Nothing is missing.
+  void Clear() { present_ = false; }
+  bool Present() const { return present_; }
+
+  // Sets the uniforms and textures of common/air_shade.glsl and common/sky_hidden.glsl, for
+  // coordinates from the eye.
+  void Bind(const gl::Program& program, const scene::View& view) const;
+
+  std::size_t Bytes() const { return light_.Bytes() + sky_hidden_.Bytes() + shade_.Bytes(); }
+
+ private:
+  void BindSkyHidden(const gl::Program& program, const scene::View& view) const;
+  // Distances along the rays between which air is shaded.
+  void SetDistances(const scene::View& view, const scene::ShadedAir& air);
+
+  std::shared_ptr<gl::ProgramCache> programs_;
+  bool present_ = false;
+  gl::Texture2D light_;
+  glm::vec3 level_irradiance_{0.0F};
+  gl::Texture3D sky_hidden_;
+  std::uint64_t hidden_by_ = 0;  // ResidentMedium::Id
+  std::vector<double> hidden_weights_;
+  volume::WorldBox hidden_box_;
+  gl::Texture3D shade_;
+  double near_m_ = 0.0;
+  double far_m_ = 1.0;
+};
+
+}  // namespace thunderhead::renderers

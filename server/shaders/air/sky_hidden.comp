@@ -1,0 +1,66 @@
+// The storm in the sky of each point of a coarse lattice around it, as common/sky_hidden.glsl has it: means over directions
+// spread evenly over the upper half of its opacity, and of that times the transmittance of a level layer of as much
+// vertical depth for diffuse light (two-stream, no absorption: 1 / (1 + 3/4 of the similarity-scaled depth)).
+// Variants: GROUPS, DETAILS (none: the noise has a mean of 1).
+#include "common/bindings.glsl"
+#include "common/medium.glsl"
+#include "common/bricks.glsl"
+
+layout(local_size_x = kLightGroupSide, local_size_y = kLightGroupSide) in;
+layout(binding = kSkyHiddenImage, rg16f) uniform writeonly image3D hidden;
+
+uniform ivec3 point_count;
+uniform vec3 lattice_low_m;   // of the lattice's box, from the medium's middle
+uniform vec3 lattice_size_m;
+uniform float step_m;
+uniform vec4 light_weights[PLANES];
+uniform vec4 transport_weights[PLANES];
+
+const int kDirections = 16;
+const int kMaxSamples = 512;
+const float kGoldenAngle = 2.39996323;
+
+// Optical depths of the light's extinction and of transport.
+vec2 depths_along(vec3 origin_m, vec3 direction, vec4 light_depths[PLANES], vec4 transport_depths[PLANES]) {
+  MediumRay ray = medium_ray(origin_m, direction);
+  vec2 path = path_in_medium(origin_m, direction, 0.0);
+  float distance_m = max(path.x, 0.0);
+  vec2 depths = vec2(0.0);
+  for (int i = 0; i < kMaxSamples && distance_m < path.y; ++i) {
+    vec3 place = brick_place(ray, distance_m);
+    uint content = brick_content(ray, place);
+    if (!is_filled(content)) {
+      distance_m += empty_path(ray, place, content);
+      continue;
+    }
+    Medium medium = medium_at_place(medium_place(ray, distance_m + 0.5 * step_m));
+    depths += vec2(weigh(medium, light_depths), weigh(medium, transport_depths));
+    distance_m += step_m;
+  }
+  return depths;
+}
+
+void main() {
+  begin_medium();
+  ivec3 point = ivec3(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(point, point_count))) return;
+  vec3 origin_m = lattice_low_m + (vec3(point) + 0.5) / vec3(point_count) * lattice_size_m;
+  vec4 light_depths[PLANES] = scaled(light_weights, step_m);
+  vec4 transport_depths[PLANES] = scaled(transport_weights, step_m);
+  vec2 sum = vec2(0.0);
+  for (int i = 0; i < kDirections; ++i) {
+    // Fibonacci spiral; its turn differs from point to point, so that all together miss nothing.
+    float sine = 1.0 - (float(i) + 0.5) / float(kDirections);
+    float azimuth = kGoldenAngle * (float(i) + float(point.x) + 3.0 * float(point.y) + 7.0 * float(point.z));
+    float cosine = sqrt(1.0 - sine * sine);
+    vec3 direction = safe_direction(vec3(cosine * cos(azimuth), cosine * sin(azimuth), sine));
+    vec2 depths = depths_along(origin_m, direction, light_depths, transport_depths);
+    float opacity = 1.0 - exp(-depths.x);
+    sum += opacity * vec2(1.0, 1.0 / (1.0 + 0.75 * depths.y * sine));
+  }
+  // The outermost points are beyond where air is shaded.
+  bvec3 first = equal(point, ivec3(0));
+  bvec3 last = equal(point, point_count - 1);
+  bool rim = first.x || first.y || last.x || last.y || last.z;
+  imageStore(hidden, point, vec4(rim ? vec2(0.0) : sum / float(kDirections), 0.0, 0.0));
+}
