@@ -65,13 +65,14 @@ absl::StatusOr<picture::LinearPicture> TruthOf(const Flags& flags, const LocalSc
 
 // Truth, drawn, and 1/2 plus a quarter of their difference over the truth's mean, side by side.
 absl::Status WriteComparison(const picture::LinearPicture& truth,
-                             const picture::LinearPicture& drawn, const scene::Display& display,
+                             const picture::LinearPicture& drawn, scene::Scene scene,
                              const std::string& path) {
   frame::ToneMapper tone_mapper;
   THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped left,
-                               tone_mapper.Map(frame::TextureOf(truth), display));
+                               tone_mapper.Map(frame::TextureOf(truth), scene));
+  scene.display.exposure_ev = left.exposure_ev;
   THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped middle,
-                               tone_mapper.Map(frame::TextureOf(drawn), display));
+                               tone_mapper.Map(frame::TextureOf(drawn), scene));
   double mean = 0.0;
   for (const glm::vec3& pixel : truth.radiance) mean += (pixel.x + pixel.y + pixel.z) / 3.0;
   mean /= static_cast<double>(truth.radiance.size());
@@ -117,7 +118,7 @@ struct Compared {
                                  measure::RelativeBias(drawn, truth),
                                  measure::RelativeRmseWithout(noise, single, truth), noise)
               << std::flush;
-    return WriteComparison(truth, drawn, local.scene.display,
+    return WriteComparison(truth, drawn, local.scene,
                            absl::StrCat(flags.output, ".", measure::NameOf(part), ".",
                                         absl::StrReplaceAll(name, {{" ", "_"}}), ".png"));
   }

@@ -56,19 +56,19 @@ double ShareDone(const reference::RefineLimits& limits, const reference::ImagePr
   return std::min(share, 1.0);
 }
 
-absl::Status WriteToneMapped(const picture::LinearPicture& image, const scene::Display& display,
-                             int jpeg_quality, const std::string& output,
-                             const std::string& device) {
+absl::Status WriteToneMapped(const picture::LinearPicture& image, const scene::Scene& scene,
+                             const std::string& output, const std::string& device) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,
                                gl::Context::Create(device));
   frame::ToneMapper tone_mapper;
   THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped mapped,
-                               tone_mapper.Map(frame::TextureOf(image), display));
+                               tone_mapper.Map(frame::TextureOf(image), scene));
   const glm::ivec2 size = image.size_px;
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::string bytes,
-                               absl::EndsWithIgnoreCase(output, ".png")
-                                   ? frame::EncodePng(size.x, size.y, mapped.rgb)
-                                   : frame::EncodeJpeg(size.x, size.y, mapped.rgb, jpeg_quality));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const std::string bytes,
+      absl::EndsWithIgnoreCase(output, ".png")
+          ? frame::EncodePng(size.x, size.y, mapped.rgb)
+          : frame::EncodeJpeg(size.x, size.y, mapped.rgb, scene.output.jpeg_quality));
   return base::WriteWholeFile(output, bytes);
 }
 
@@ -97,8 +97,7 @@ absl::Status RenderReference(const std::string& storm, const SceneFlags& scene,
   if (absl::EndsWithIgnoreCase(output, ".exr")) {
     THUNDERHEAD_RETURN_IF_ERROR(picture::WriteExr(output, traced->image));
   } else {
-    THUNDERHEAD_RETURN_IF_ERROR(WriteToneMapped(traced->image, local.scene.display,
-                                                local.scene.output.jpeg_quality, output, device));
+    THUNDERHEAD_RETURN_IF_ERROR(WriteToneMapped(traced->image, local.scene, output, device));
   }
   const reference::ImageProgress& last = traced->result.progress;
   std::cout << absl::StrFormat("%d samples a pixel, relative standard error %.4f, %.1f s\n",

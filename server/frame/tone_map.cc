@@ -1,5 +1,6 @@
 #include "frame/tone_map.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/status.h"
@@ -9,6 +10,10 @@
 
 namespace thunderhead::frame {
 namespace {
+
+// Automatic exposures lie between these factors of 0 EV: nights stay dark.
+constexpr float kLeastFactor = 1.0F / 16.0F;
+constexpr float kMostFactor = 64.0F;
 
 struct ToneMapVariant {
   gl::DefineValue filmic;
@@ -22,9 +27,34 @@ std::size_t PixelCount(const gl::Texture2D& texture) {
 
 }  // namespace
 
-absl::StatusOr<ToneMapped> ToneMapper::Map(const gl::Texture2D& linear,
-                                           const scene::Display& display) {
+absl::StatusOr<float> ToneMapper::ExposureOf(const gl::Texture2D& linear,
+                                             const scene::Display& display,
+                                             const glm::vec3& balance, const WhiteCard& card) {
+  if (display.exposure_ev.has_value()) {
+    return kExposureAtZeroEv * static_cast<float>(std::exp2(*display.exposure_ev));
+  }
+  if (brightest_.Get() == 0) brightest_ = gl::Texture2D(GL_R32F, glm::ivec2(1));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
+                               programs_.Get(gl::ProgramSource::Compute("post/meter.comp")));
+  program->Set(uniform::luminance_weights, kLuminance * balance);
+  linear.Bind(shaders::kLinearFrameUnit);
+  brightest_.BindImage(shaders::kMeterImage, GL_WRITE_ONLY);
+  program->Use();
+  glDispatchCompute(1, 1, 1);
+  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+  float brightest = 0.0F;
+  glGetTextureImage(brightest_.Get(), 0, GL_RED, GL_FLOAT, sizeof(brightest), &brightest);
+  if (brightest <= 0.0F) brightest = LuminanceOf(card.radiance);
+  return std::clamp(kJustBelowWhite / std::max(brightest, 1e-12F), kExposureAtZeroEv * kLeastFactor,
+                    kExposureAtZeroEv * kMostFactor);
+}
+
+absl::StatusOr<ToneMapped> ToneMapper::Map(const gl::Texture2D& linear, const scene::Scene& scene) {
+  const scene::Display& display = scene.display;
   base::Stopwatch stopwatch;
+  const WhiteCard& card = white_cards_.Of(scene);
+  const glm::vec3 balance = display.white_balance ? card.balance : glm::vec3(1.0F);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const float exposure, ExposureOf(linear, display, balance, card));
   if (display_.Size() != linear.Size()) {
     display_ = gl::Texture2D(GL_RGBA8, linear.Size());
     target_ = gl::Framebuffer(display_);
@@ -33,12 +63,12 @@ absl::StatusOr<ToneMapped> ToneMapper::Map(const gl::Texture2D& linear,
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
       programs_.Get(gl::ProgramSource::WholeTarget("post/tone_map.frag", variant.Defines())));
-  program->Set(uniform::exposure,
-               kExposureAtZeroEv * static_cast<float>(std::exp2(display.exposure_ev)));
+  program->Set(uniform::gain, exposure * balance);
   linear.Bind(shaders::kLinearFrameUnit);
   whole_target_.Draw(*program, target_);
   glFinish();
   ToneMapped mapped;
+  mapped.exposure_ev = std::log2(exposure / kExposureAtZeroEv);
   mapped.tone_ms = stopwatch.Restart();
   mapped.rgb.resize(PixelCount(linear) * 3);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
@@ -62,7 +92,8 @@ gl::Texture2D TextureOf(const picture::LinearPicture& picture) {
   for (auto y = static_cast<std::size_t>(picture.size_px.y); y-- > 0;) {
     for (std::size_t x = 0; x < width; ++x) {
       const glm::vec3& pixel = picture.radiance[y * width + x];
-      texels.insert(texels.end(), {pixel.x, pixel.y, pixel.z, 1.0F});
+      const float opacity = picture.opacity.empty() ? 1.0F : picture.opacity[y * width + x];
+      texels.insert(texels.end(), {pixel.x, pixel.y, pixel.z, opacity});
     }
   }
   gl::Texture2D texture(GL_RGBA32F, picture.size_px);
@@ -72,12 +103,14 @@ gl::Texture2D TextureOf(const picture::LinearPicture& picture) {
 
 picture::LinearPicture PictureOf(const gl::Texture2D& linear) {
   const std::vector<float> values = ReadLinear(linear);
-  picture::LinearPicture picture{linear.Size(), {}};
+  picture::LinearPicture picture;
+  picture.size_px = linear.Size();
   const auto width = static_cast<std::size_t>(picture.size_px.x);
   for (auto y = static_cast<std::size_t>(picture.size_px.y); y-- > 0;) {
     for (std::size_t x = 0; x < width; ++x) {
       const float* pixel = &values[4 * (y * width + x)];
       picture.radiance.emplace_back(pixel[0], pixel[1], pixel[2]);
+      picture.opacity.push_back(pixel[3]);
     }
   }
   return picture;

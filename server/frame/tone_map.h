@@ -1,11 +1,12 @@
-// The last stage on the device: exposure, tone map and read-back of a linear frame. Owns GL
-// objects: use it on the context's thread. Knows no storms.
+// The last stage on the device: exposure, white balance, tone map and read-back of a linear frame.
+// Owns GL objects: use it on the context's thread.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "frame/white_balance.h"
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "gl/whole_target.h"
@@ -17,21 +18,30 @@ namespace thunderhead::frame {
 // 8-bit sRGB, three bytes a pixel, rows from top to bottom.
 struct ToneMapped {
   std::vector<std::uint8_t> rgb;
+  double exposure_ev = 0.0;
   double tone_ms = 0.0;
   double read_back_ms = 0.0;
 };
 
-// Exposure 0 EV multiplies radiance by this: a sunlit white cloud, about 0.25 of the sun's
-// irradiance, comes out bright but not burnt.
+// Exposure 0 EV multiplies radiance by this.
 inline constexpr float kExposureAtZeroEv = 6.0F;
+// Exposed luminance that the film's curve shows just below white, at 0.9 of it.
+inline constexpr float kJustBelowWhite = 1.85F;
 
 class ToneMapper {
  public:
-  absl::StatusOr<ToneMapped> Map(const gl::Texture2D& linear, const scene::Display& display);
+  // Maps `linear`, a picture of `scene` with the storm's opacity in alpha.
+  absl::StatusOr<ToneMapped> Map(const gl::Texture2D& linear, const scene::Scene& scene);
 
  private:
+  // The factor for radiance of the given balance.
+  absl::StatusOr<float> ExposureOf(const gl::Texture2D& linear, const scene::Display& display,
+                                   const glm::vec3& balance, const WhiteCard& card);
+
+  WhiteCards white_cards_;
   gl::ProgramCache programs_;
   gl::WholeTarget whole_target_;
+  gl::Texture2D brightest_;
   gl::Texture2D display_;
   gl::Framebuffer target_;
 };
@@ -39,7 +49,8 @@ class ToneMapper {
 // The texture's values, four floats a pixel, rows from bottom to top as GL keeps them.
 std::vector<float> ReadLinear(const gl::Texture2D& linear);
 
-// A linear frame as the renderers leave one, and back.
+// A linear frame as the renderers leave one, and back. The storm of a picture of unknown opacity
+// is everywhere.
 gl::Texture2D TextureOf(const picture::LinearPicture& picture);
 picture::LinearPicture PictureOf(const gl::Texture2D& linear);
 

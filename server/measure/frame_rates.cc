@@ -47,7 +47,7 @@ class Frames {
     THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame linear,
                                  renderer_.Draw(scene_, fields_, {}));
     THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped mapped,
-                                 tone_mapper_.Map(*linear.radiance, scene_.display));
+                                 tone_mapper_.Map(*linear.radiance, scene_));
     const base::Stopwatch stopwatch;
     THUNDERHEAD_RETURN_IF_ERROR(frame::EncodeJpeg(scene_.output.width_px, scene_.output.height_px,
                                                   mapped.rgb, scene_.output.jpeg_quality)

@@ -118,7 +118,7 @@ Trade::Trade(scene::Scene scene, std::shared_ptr<const volume::HydrometeorFields
 }
 
 absl::StatusOr<DisplayImage> Trade::Display(const gl::Texture2D& linear) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped, tone_mapper_.Map(linear, scene_.display));
+  THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped, tone_mapper_.Map(linear, scene_));
   return DisplayImage{linear.Size(), std::move(mapped.rgb)};
 }
 

@@ -15,6 +15,8 @@ struct LinearPicture {
   // Of each pixel's radiance, where that is an estimate; infinite where it is not known. Empty for
   // a picture without noise, or where nobody needs it.
   std::vector<glm::vec3> standard_error{};
+  // Share of each pixel that the storm covers, 0 to 1; empty where that is not known.
+  std::vector<float> opacity{};
 };
 
 }  // namespace thunderhead::picture

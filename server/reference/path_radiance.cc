@@ -51,12 +51,15 @@ class Path {
     return radiance_;
   }
 
+  bool MetMedium() const { return met_medium_; }
+
  private:
   // One free flight and the event at its end; false when the path ends.
   bool Advance() {
     const double ground_m = GroundDistance_m();
     const std::optional<double> collision_m = SampleCollision(medium_, ray_, ground_m, random_);
     if (collision_m.has_value()) {
+      if (seen_from_eye_) met_medium_ = true;
       ShadeAir(*collision_m);
       PassAir(*collision_m, Behind::kMedium);
       return Scatter(ray_.At(*collision_m));
@@ -239,6 +242,7 @@ class Path {
   RandomStream* random_;
   int max_scatterings_;
   bool seen_from_eye_ = true;
+  bool met_medium_ = false;
   int collisions_ = 0;
   int next_roulette_ = kLongPath;
   std::size_t hero_;  // the colour whose phase functions are sampled
@@ -250,9 +254,11 @@ class Path {
 
 }  // namespace
 
-glm::dvec3 EstimateRadiance(const Medium& medium, const Surroundings& surroundings, const Ray& ray,
-                            RandomStream* random, int max_scatterings) {
-  return Path(medium, surroundings, ray, random, max_scatterings).Follow();
+PathEstimate EstimateRadiance(const Medium& medium, const Surroundings& surroundings,
+                              const Ray& ray, RandomStream* random, int max_scatterings) {
+  Path path(medium, surroundings, ray, random, max_scatterings);
+  const glm::dvec3 radiance = path.Follow();
+  return {radiance, path.MetMedium()};
 }
 
 }  // namespace thunderhead::reference

@@ -10,9 +10,14 @@
 
 namespace thunderhead::reference {
 
+struct PathEstimate {
+  glm::dvec3 radiance{0.0};
+  bool met_medium = false;  // before anything else
+};
+
 // One estimate of the radiance that arrives at `ray`'s origin from its direction. Light scattered
 // by the medium more than `max_scatterings` times is left out; 0 means no limit.
-glm::dvec3 EstimateRadiance(const Medium& medium, const Surroundings& surroundings, const Ray& ray,
-                            RandomStream* random, int max_scatterings = 0);
+PathEstimate EstimateRadiance(const Medium& medium, const Surroundings& surroundings,
+                              const Ray& ray, RandomStream* random, int max_scatterings = 0);
 
 }  // namespace thunderhead::reference

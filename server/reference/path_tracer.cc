@@ -40,11 +40,12 @@ double Sum(const glm::dvec3& color) { return color.x + color.y + color.z; }
 
 }  // namespace
 
-void PathTracer::Pixel::Add(const glm::dvec3& value) {
+void PathTracer::Pixel::Add(const PathEstimate& path) {
   ++samples;
-  const glm::dvec3 before = value - mean;
+  met_medium += path.met_medium ? 1 : 0;
+  const glm::dvec3 before = path.radiance - mean;
   mean += before / static_cast<double>(samples);
-  squares += before * (value - mean);
+  squares += before * (path.radiance - mean);
 }
 
 glm::dvec3 PathTracer::Pixel::SquaredError() const {
@@ -161,9 +162,12 @@ picture::LinearPicture PathTracer::Snapshot() const {
   image.size_px = size_px_;
   image.radiance.reserve(pixels_.size());
   image.standard_error.reserve(pixels_.size());
+  image.opacity.reserve(pixels_.size());
   for (const Pixel& pixel : pixels_) {
     image.radiance.emplace_back(pixel.mean);
     image.standard_error.emplace_back(glm::sqrt(pixel.SquaredError()));
+    image.opacity.push_back(static_cast<float>(pixel.met_medium) /
+                            static_cast<float>(std::max(pixel.samples, 1)));
   }
   return image;
 }

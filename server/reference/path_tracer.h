@@ -14,6 +14,7 @@
 #include "picture/linear_picture.h"
 #include "reference/camera.h"
 #include "reference/medium.h"
+#include "reference/path_radiance.h"
 #include "reference/surroundings.h"
 
 namespace thunderhead::reference {
@@ -63,7 +64,8 @@ class PathTracer {
   RefineResult Refine(const RefineLimits& limits, const ImageObserver& observer,
                       const std::stop_token& stop);
 
-  // With its standard error: infinite where a pixel has fewer than two samples.
+  // With its standard error, infinite where a pixel has fewer than two samples, and the share of
+  // samples that met the medium first as opacity.
   picture::LinearPicture Snapshot() const;
 
  private:
@@ -72,8 +74,9 @@ class PathTracer {
     glm::dvec3 mean{0.0};
     glm::dvec3 squares{0.0};
     int samples = 0;
+    int met_medium = 0;
 
-    void Add(const glm::dvec3& value);
+    void Add(const PathEstimate& path);
     glm::dvec3 SquaredError() const;
   };
   struct Pass {

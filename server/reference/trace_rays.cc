@@ -21,7 +21,7 @@ std::vector<glm::dvec3> TraceRays(const Medium& medium, const Surroundings& surr
     for (std::size_t i = first; i < std::min(first + kRaysInPiece, rays.size()); ++i) {
       for (int path = 0; path < options.paths_per_ray; ++path) {
         RandomStream random(options.seed, i, static_cast<std::uint32_t>(path));
-        radiance[i] += EstimateRadiance(medium, surroundings, rays[i], &random);
+        radiance[i] += EstimateRadiance(medium, surroundings, rays[i], &random).radiance;
       }
       radiance[i] /= static_cast<double>(options.paths_per_ray);
     }

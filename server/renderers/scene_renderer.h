@@ -18,7 +18,8 @@
 namespace thunderhead::renderers {
 
 struct LinearFrame {
-  // RGBA float; lives until the next Draw. None where places were asked for.
+  // Float, the storm's opacity in alpha; lives until the next Draw. None where places were asked
+  // for.
   const gl::Texture2D* radiance = nullptr;
   // Only if DrawQuality::places asked for it, and as long-lived: for each pixel of the eye buffer
   // the point in the medium's box, 0 to 1 on each axis, where its correction is looked up, and in

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -136,8 +137,10 @@ struct Rendering {
 enum class ToneMap { kLinear, kFilmic };
 
 struct Display {
-  double exposure_ev = 0.0;
+  // In stops; without one, such that the storm's brightest hundredth is just below white.
+  std::optional<double> exposure_ev{};
   ToneMap tone_map = ToneMap::kFilmic;
+  bool white_balance = true;  // to the scene's sun and sky
 
   bool operator==(const Display&) const = default;
 };

@@ -250,6 +250,7 @@ void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
   FillTechniqueDefaults(*scene.mutable_rendering());
   v1::Display& display = *scene.mutable_display();
   display.set_tone_map(MessageOf(kToneMaps, ValueOf(kToneMaps, display.tone_map())));
+  if (!display.has_white_balance()) display.set_white_balance(scene::Display{}.white_balance);
   for (physics::Hydrometeor hydrometeor : storm.fields) FieldOf(scene, hydrometeor);
   for (v1::FieldParameters& field : *scene.mutable_fields()) {
     FillFieldDefaults(field, physics::kHydrometeors[IndexOf(field.hydrometeor())]);
@@ -273,8 +274,11 @@ scene::Scene ToScene(const v1::Scene& message) {
     scene.lights.push_back(ToLight(light));
   }
   scene.rendering.technique = ToTechnique(message.rendering());
-  scene.display.exposure_ev = message.display().exposure_ev();
+  if (message.display().has_exposure_ev()) {
+    scene.display.exposure_ev = message.display().exposure_ev();
+  }
   scene.display.tone_map = ValueOf(kToneMaps, message.display().tone_map());
+  scene.display.white_balance = message.display().white_balance();
   scene.output.width_px = static_cast<int>(message.output().width_px());
   scene.output.height_px = static_cast<int>(message.output().height_px());
   scene.output.jpeg_quality = static_cast<int>(message.output().jpeg_quality());
@@ -293,6 +297,7 @@ void ToMessage(const session::Modelled& modelled, v1::Modelled& message) {
   message.set_fit_error(static_cast<float>(content.fit_error));
   message.set_ellipsoids(static_cast<std::uint32_t>(content.ellipsoids));
   message.set_traced_paths(static_cast<std::uint64_t>(modelled.traced_paths));
+  message.set_exposure_ev(static_cast<float>(modelled.exposure_ev));
   for (const scene::NotShown& not_shown : content.not_shown) {
     v1::NotShown& entry = *message.add_not_shown();
     entry.set_code(MessageOf(kNotShownCodes, not_shown.code));

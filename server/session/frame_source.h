@@ -38,6 +38,7 @@ struct Modelled {
   int slices = 0;
   std::uint64_t device_bytes = 0;
   std::int64_t traced_paths = 0;  // that corrected the light
+  double exposure_ev = 0.0;
 };
 
 // How far a picture by the reference has come.
@@ -109,9 +110,9 @@ class FrameSource {
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) = 0;
 
-  // Tone maps what was computed elsewhere. What Draw keeps stays kept.
+  // Tone maps a picture of `scene` that was computed elsewhere. What Draw keeps stays kept.
   virtual absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
-                                            const scene::Display& display) = 0;
+                                            const scene::Scene& scene) = 0;
 };
 
 // Makes the source on the thread that will use it.

@@ -65,9 +65,9 @@ class GlFrameSource final : public FrameSource {
   }
 
   absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
-                                    const scene::Display& display) override {
+                                    const scene::Scene& scene) override {
     THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped,
-                                 picture_tone_mapper_.Map(frame::TextureOf(picture), display));
+                                 picture_tone_mapper_.Map(frame::TextureOf(picture), scene));
     DisplayFrame frame;
     Fill(picture.size_px, std::move(mapped), &frame);
     return frame;
@@ -99,15 +99,15 @@ class GlFrameSource final : public FrameSource {
   absl::StatusOr<DisplayFrame> Display(const renderers::LinearFrame& linear,
                                        const scene::Scene& scene, const Correction& correction) {
     THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped,
-                                 tone_mapper_.Map(*linear.radiance, scene.display));
+                                 tone_mapper_.Map(*linear.radiance, scene));
     DisplayFrame frame;
     frame.stages = linear.stages;
     if (correction.milliseconds >= kWorthSaying_ms) {
       frame.stages.push_back({scene::FrameStage::kCorrection, correction.milliseconds});
     }
-    Fill(linear.radiance->Size(), std::move(mapped), &frame);
     frame.modelled = {std::string(scene::NameOf(scene.rendering.technique)), linear.content,
                       linear.slices, linear.device_bytes, correction.paths};
+    Fill(linear.radiance->Size(), std::move(mapped), &frame);
     return frame;
   }
 
@@ -115,6 +115,7 @@ class GlFrameSource final : public FrameSource {
     frame->width_px = size_px.x;
     frame->height_px = size_px.y;
     frame->rgb = std::move(mapped.rgb);
+    frame->modelled.exposure_ev = mapped.exposure_ev;
     frame->stages.push_back({scene::FrameStage::kTone, mapped.tone_ms});
     frame->stages.push_back({scene::FrameStage::kReadBack, mapped.read_back_ms});
   }

@@ -37,8 +37,8 @@ absl::StatusOr<accuracy::LightProgress> MeasuredSource::TraceLight(const scene::
 }
 
 absl::StatusOr<DisplayFrame> MeasuredSource::Tone(const picture::LinearPicture& picture,
-                                                  const scene::Display& display) {
-  return source_->Tone(picture, display);
+                                                  const scene::Scene& scene) {
+  return source_->Tone(picture, scene);
 }
 
 void MeasuredSource::Learn(const std::string& view, const scene::Scene& scene,

@@ -34,7 +34,7 @@ class MeasuredSource {
   absl::StatusOr<accuracy::LightProgress> TraceLight(const scene::Scene& scene,
                                                      const Fields& fields);
   absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
-                                    const scene::Display& display);
+                                    const scene::Scene& scene);
 
   // The view draws no more.
   void Forget(const std::string& view) { costs_.Forget(view); }

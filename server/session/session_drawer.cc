@@ -141,8 +141,7 @@ absl::StatusOr<bool> SessionDrawer::ShowTraced(const Turn& turn, const NewestSce
   turn.kept.view.ReferenceShown(shown.revision);
   if (!news) return false;
   const TruthPicture& traced = turn.kept.reference.picture();
-  THUNDERHEAD_ASSIGN_OR_RETURN(DisplayFrame picture,
-                               source_.Tone(traced.picture, shown.scene->display));
+  THUNDERHEAD_ASSIGN_OR_RETURN(DisplayFrame picture, source_.Tone(traced.picture, *shown.scene));
   picture.stages.insert(picture.stages.begin(), {scene::FrameStage::kTrace, traced.trace_ms});
   picture.modelled.technique = scene::Reference::kName;
   picture.modelled.content.fields =

@@ -16,7 +16,7 @@ void EncodeJpeg(benchmark::State& state) {
   scene.output = {1280, 720, 88};
   renderers::SceneRenderer renderer;
   const auto linear = renderer.Draw(scene, Sample::Get().fields, {});
-  const auto mapped = frame::ToneMapper().Map(*linear->radiance, scene.display);
+  const auto mapped = frame::ToneMapper().Map(*linear->radiance, scene);
   std::size_t bytes = 0;
   for (auto _ : state) {
     const auto jpeg = frame::EncodeJpeg(1280, 720, mapped->rgb, 88);

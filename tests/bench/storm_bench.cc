@@ -65,7 +65,7 @@ void DrawFrames(benchmark::State& state, scene::Scene scene, const Fields& field
   const auto draw = [&] {
     Move(moving, &scene);
     const auto linear = renderer.Draw(scene, fields, {});
-    const auto mapped = tone_mapper.Map(*linear->radiance, scene.display);
+    const auto mapped = tone_mapper.Map(*linear->radiance, scene);
     const auto jpeg =
         frame::EncodeJpeg(scene.output.width_px, scene.output.height_px, mapped->rgb, 88);
     benchmark::DoNotOptimize(jpeg);

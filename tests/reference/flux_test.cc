@@ -229,7 +229,7 @@ FluxShare BackwardShare(const Medium& medium, const glm::dvec3& towards_sun, boo
     ray.origin_m =
         medium.Low_m() + size * glm::dvec3(random.Uniform(), random.Uniform(), at_top ? 1.0 : 0.0);
     ray.direction = SampleCosine({0.0, 0.0, at_top ? -1.0 : 1.0}, &random);
-    const double radiance = EstimateRadiance(medium, around, ray, &random).x;
+    const double radiance = EstimateRadiance(medium, around, ray, &random).radiance.x;
     mean.Add(std::numbers::pi * radiance / towards_sun.z);
   }
   return mean.Share();

@@ -140,11 +140,11 @@ class FakeFrameSource final : public session::FrameSource {
   }
 
   absl::StatusOr<session::DisplayFrame> Tone(const picture::LinearPicture& picture,
-                                             const scene::Display& display) override {
+                                             const scene::Scene& scene) override {
     session::DisplayFrame frame;
     frame.width_px = picture.size_px.x;
     frame.height_px = picture.size_px.y;
-    const double exposure = std::exp2(display.exposure_ev);
+    const double exposure = std::exp2(scene.display.exposure_ev.value_or(0.0));
     for (const glm::vec3& radiance : picture.radiance) {
       const double level = std::min(255.0 * exposure * radiance.x, 255.0);
       frame.rgb.insert(frame.rgb.end(), 3, static_cast<std::uint8_t>(level));

@@ -41,7 +41,7 @@ uniform vec3 box_low_m;          // the medium's
 uniform vec3 box_high_m;
 
 in vec2 position;
-out vec4 linear_rgb;
+out vec4 rgb_and_opacity;  // the opacity is that of the storm
 
 const float kJustBelow = 1e-5;
 const float kHardlyAnyHaze = 0.01;  // of its vertical depth
@@ -139,8 +139,8 @@ void main() {
                                    : shaded_airlight(sky_radiance, kFarthestGround_m);
 #if FRONT
   vec4 front = seen_front(origin_m, world_ray, ray, ground_m, sky_radiance, sky_depth);
-  linear_rgb = vec4(front.rgb + front.a * background, 1.0);
+  rgb_and_opacity = vec4(front.rgb + front.a * background, 1.0 - front.a);
 #else
-  linear_rgb = vec4(background, 1.0);
+  rgb_and_opacity = vec4(background, 0.0);
 #endif
 }

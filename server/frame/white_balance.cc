@@ -1,0 +1,56 @@
+#include "frame/white_balance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "glm/geometric.hpp"
+#include "glm/trigonometric.hpp"
+#include "physics/sky.h"
+
+namespace thunderhead::frame {
+namespace {
+
+constexpr double kLowestBalanced_deg = 10.0;
+
+// For a sun of irradiance 1 above the atmosphere. The upper half of what the card sees is taken for
+// an even sky, the lower for level ground.
+glm::vec3 RadianceOfCard(const physics::Atmosphere& atmosphere, const scene::Sky& sky,
+                         double elevation_deg) {
+  constexpr float kInversePi = std::numbers::inv_pi_v<float>;
+  const auto sine = static_cast<float>(std::sin(glm::radians(elevation_deg)));
+  const glm::vec3 sun(std::sqrt(std::max(1.0F - sine * sine, 0.0F)), 0.0F, sine);
+  const physics::ClearSky clear(atmosphere, sun, {0.0F, 0.0F});
+  const physics::SkyLight light = clear.Light();
+  const auto brightness = static_cast<float>(sky.brightness);
+  const glm::vec3 level =
+      brightness * light.irradiance + clear.SunTransmittance() * std::max(sine, 0.0F);
+  const glm::vec3 from_ground = level * (static_cast<float>(sky.ground_albedo) * kInversePi);
+  return clear.SunTransmittance() * kInversePi +
+         brightness * light.mean_radiance * (0.5F + 0.5F * sine) +
+         from_ground * (0.5F - 0.5F * sine);
+}
+
+}  // namespace
+
+float LuminanceOf(const glm::vec3& rgb) { return glm::dot(rgb, kLuminance); }
+
+const WhiteCard& WhiteCards::Of(const scene::Scene& scene) {
+  const Key key{scene.sun, scene.sky};
+  if (key_ == key) return card_;
+  if (!key_.has_value() || key_->sky != key.sky) {
+    atmosphere_.emplace(static_cast<float>(scene.sky.turbidity),
+                        static_cast<float>(scene.sky.ground_albedo));
+  }
+  const double elevation_deg = scene.sun.elevation_deg;
+  const glm::vec3 here = RadianceOfCard(*atmosphere_, scene.sky, elevation_deg);
+  const glm::vec3 balanced = elevation_deg < kLowestBalanced_deg
+                                 ? RadianceOfCard(*atmosphere_, scene.sky, kLowestBalanced_deg)
+                                 : here;
+  card_.radiance = here * static_cast<float>(scene.sun.irradiance);
+  card_.balance = LuminanceOf(balanced) / glm::max(balanced, glm::vec3(1e-12F));
+  key_ = key;
+  return card_;
+}
+
+}  // namespace thunderhead::frame

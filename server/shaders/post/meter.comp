@@ -1,0 +1,57 @@
+// The luminance of the storm's brightest hundredth in a linear frame, whose alpha is the storm's opacity: one work group
+// makes a histogram of means over cells of the picture, so that noise and single bright pixels do not count. 0 where there
+// is next to no storm.
+#include "common/bindings.glsl"
+
+layout(local_size_x = kMeterGroupSize) in;
+layout(binding = kLinearFrameUnit) uniform sampler2D linear_frame;
+layout(binding = kMeterImage, r32f) uniform writeonly image2D brightest;
+
+uniform vec3 luminance_weights;  // of each colour, white balance included
+
+const int kCells = 48;         // along each side of the picture
+const int kPlaces = 4;         // of samples in a cell, along each side
+const int kBins = 192;
+const float kBinsPerStop = 8.0;
+const float kLowestLog2 = -18.0;
+const uint kFullWeight = 255u;
+const float kFewestCells = 0.001;  // share of all cells
+
+shared uint histogram[kBins];
+
+void count_cell(int cell) {
+  vec2 corner = vec2(cell % kCells, cell / kCells);
+  vec2 sum = vec2(0.0);  // of luminance times opacity, and of opacity
+  for (int i = 0; i < kPlaces * kPlaces; ++i) {
+    vec2 within = (vec2(i % kPlaces, i / kPlaces) + 0.5) / float(kPlaces);
+    vec4 pixel = textureLod(linear_frame, (corner + within) / float(kCells), 0.0);
+    sum += pixel.a * vec2(max(dot(pixel.rgb, luminance_weights), 0.0), 1.0);
+  }
+  uint weight = uint(sum.y / float(kPlaces * kPlaces) * float(kFullWeight));
+  if (weight == 0u) return;
+  float log2_luminance = log2(max(sum.x / sum.y, 1e-9));
+  int bin = clamp(int((log2_luminance - kLowestLog2) * kBinsPerStop), 0, kBins - 1);
+  atomicAdd(histogram[bin], weight);
+}
+
+float brightest_hundredth() {
+  uint all = 0u;
+  for (int bin = 0; bin < kBins; ++bin) all += histogram[bin];
+  if (float(all) < kFewestCells * float(kCells * kCells) * float(kFullWeight)) return 0.0;
+  float left = 0.01 * float(all);
+  for (int bin = kBins - 1; bin >= 0; --bin) {
+    float here = float(histogram[bin]);
+    if (here >= left) return exp2(kLowestLog2 + (float(bin + 1) - left / here) / kBinsPerStop);
+    left -= here;
+  }
+  return 0.0;
+}
+
+void main() {
+  int first = int(gl_LocalInvocationIndex);
+  for (int i = first; i < kBins; i += kMeterGroupSize) histogram[i] = 0u;
+  barrier();
+  for (int i = first; i < kCells * kCells; i += kMeterGroupSize) count_cell(i);
+  barrier();
+  if (first == 0) imageStore(brightest, ivec2(0), vec4(brightest_hundredth(), 0.0, 0.0, 0.0));
+}
