@@ -298,7 +298,7 @@ TEST_F(CommandLineTest, MeasureTradeGoesOnWhereItStopped) {
   const Outcome other =
       Run("measure trade " + kSample + " --device software --size 30x16 --spp 16 -o " + trade);
   EXPECT_EQ(other.code, 2);
-  EXPECT_THAT(other.err, HasSubstr("no file to go on from"));
+  EXPECT_THAT(other.err, HasSubstr("cannot be continued"));
   EXPECT_EQ(Contents(trade + ".csv"), again);
 }
 
