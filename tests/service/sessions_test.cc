@@ -275,7 +275,7 @@ TEST(SessionsTest, NoMoreThanTheMost) {
       Call(service.stub(), &Stub::CreateSession, v1::CreateSessionRequest(), &response);
   EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
   EXPECT_EQ(status.error_message(),
-            "the server holds its most sessions (2); close one, or try again later");
+            "the server already has the maximum of 2 sessions; close one, or try again later");
   ASSERT_TRUE(Close(service, first).ok());
   service.Open(SmallScene());
 }
