@@ -20,7 +20,7 @@ using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 using google::protobuf::Reflection;
 
-// The shortest text that reads back as the same number.
+// The shortest text that parses to the same number.
 template <typename Number>
 std::string Text(Number value) {
   char buffer[64];
@@ -35,8 +35,8 @@ std::string Range(const v1::NumberLimits& limits) {
   return text;
 }
 
-// The value, and the limits rounded to its type: 0.1 as float is above 0.1 as double, and yet is
-// within.
+// The value, and the limits rounded to its type: 0.1 as a float is above 0.1 as a double, but must
+// pass.
 struct Checked {
   std::string text;
   bool within = false;

@@ -13,7 +13,7 @@
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "gtest/gtest.h"
-#include "service/cloud_folder.h"
+#include "service/cloud_store.h"
 #include "service/status_table.h"
 #include "tests/service/fake_service.h"
 #include "tests/support/temporary_folder.h"
@@ -135,10 +135,10 @@ INSTANTIATE_TEST_SUITE_P(
              "is 'noon'; it must be a date and time like 2013-05-20T20:00:00Z",
              "DATE_TIME_MALFORMED"},
         Case{R"({"fields": [{"scale": 1}]})", "scene.fields[0].hydrometeor",
-             "is not given; it must say which field the settings are for", "FIELD_MISSING"},
+             "is not given; it must name the field that the settings are for", "FIELD_MISSING"},
         Case{R"({"fields": [{"hydrometeor": 2}, {"hydrometeor": 1}, {"hydrometeor": 2}]})",
              "scene.fields[2].hydrometeor",
-             "is HYDROMETEOR_RAIN, which scene.fields[0] already is; each hydrometeor may be "
+             "is HYDROMETEOR_RAIN, as is scene.fields[0]; each hydrometeor may be "
              "listed once",
              "HYDROMETEOR_REPEATED"},
         Case{R"({"output": {"widthPx": 8192, "heightPx": 8192}})",
@@ -276,7 +276,7 @@ TEST(ErrorDetailsTest, CloudsThatAreNotMadeOrDeletedHaveTheirReason) {
 TEST(ErrorDetailsTest, OneCloudIsMadeAtATime) {
   const TemporaryFolder folder;
   FakeStormStore store;
-  service::CloudFolder clouds(folder.Path().string(), store);
+  service::CloudStore clouds(folder.Path().string(), store);
   const auto shape = clouds::PresetNamed("fair-weather-cumulus", 1);
   ASSERT_TRUE(shape.ok());
   absl::Status second;
@@ -292,7 +292,7 @@ TEST(ErrorDetailsTest, OneCloudIsMadeAtATime) {
 TEST(ErrorDetailsTest, NoMoreCloudsThanTheMost) {
   const TemporaryFolder folder;
   FakeStormStore store;
-  service::CloudFolder clouds(folder.Path().string(), store);
+  service::CloudStore clouds(folder.Path().string(), store);
   auto shape = clouds::PresetNamed("fair-weather-cumulus", 1);
   ASSERT_TRUE(shape.ok());
   shape->grid.cells = {8, 8, 8};
