@@ -21,8 +21,8 @@ struct ToneMapped {
   double read_back_ms = 0.0;
 };
 
-// Exposure 0 EV multiplies radiance by this: a sunlit white cloud, about 0.25 of the sun's
-// irradiance, comes out bright but not burnt.
+// Factor of radiance at an exposure of 0 EV: a sunlit white cloud, about 0.25 of the sun's
+// irradiance, is then bright but not overexposed.
 inline constexpr float kExposureAtZeroEv = 6.0F;
 
 class ToneMapper {
@@ -39,7 +39,7 @@ class ToneMapper {
 // The texture's values, four floats a pixel, rows from bottom to top as GL keeps them.
 std::vector<float> ReadLinear(const gl::Texture2D& linear);
 
-// A linear frame as the renderers leave one, and back.
+// A linear frame in the renderers' texture format, and back.
 gl::Texture2D TextureOf(const picture::LinearPicture& picture);
 picture::LinearPicture PictureOf(const gl::Texture2D& linear);
 
