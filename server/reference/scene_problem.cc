@@ -139,7 +139,7 @@ struct Around {
 Air AirBefore(const Around& around, const Ray& ray, double distance_m, Behind behind) {
   namespace air = physics::glsl;
   const physics::ClearSky::Seen sky = around.Seen(ray.direction);
-  const glm::vec3 sky_depth = air::depth_of_way(around.turbidity, sky.air_mass);
+  const glm::vec3 sky_depth = air::depth_of_air_mass(around.turbidity, sky.air_mass);
   // The sky's ray ends at the ground.
   if (behind == Behind::kGround) return {glm::exp(-sky_depth), sky.radiance};
   const scene::View& view = around.view;
