@@ -144,11 +144,11 @@ absl::Status CheckRepeated(const Message& message, const FieldDescriptor& field,
                            const std::string& path) {
   const int size = message.GetReflection()->FieldSize(message, &field);
   if (field.options().HasExtension(v1::max_items)) {
-    const std::uint32_t most = field.options().GetExtension(v1::max_items);
-    if (static_cast<std::uint32_t>(size) > most) {
+    const std::uint32_t max_items = field.options().GetExtension(v1::max_items);
+    if (static_cast<std::uint32_t>(size) > max_items) {
       return base::InvalidField(
-          path, absl::StrCat("has ", size, " items; it may have at most ", most), "TOO_MANY_ITEMS",
-          {{"maximum", absl::StrCat(most)}, {"unit", "items"}});
+          path, absl::StrCat("has ", size, " items; it may have at most ", max_items),
+          "TOO_MANY_ITEMS", {{"maximum", absl::StrCat(max_items)}, {"unit", "items"}});
     }
   }
   for (int i = 0; i < size; ++i) {

@@ -1,5 +1,5 @@
-// What programs read of a refusal: google.rpc's details in grpc-status-details-bin, for each class
-// of refusal.
+// Machine-readable errors: google.rpc's details in grpc-status-details-bin, for each class of
+// error.
 #include <grpcpp/support/error_details.h>
 
 #include <map>
@@ -26,7 +26,7 @@ using ::testing::Pair;
 using ::testing::StartsWith;
 using Stub = v1::ThunderheadService::Stub;
 
-// The details of a refusal, taken apart.
+// The decoded details of an error.
 struct Decoded {
   std::string reason;
   std::map<std::string, std::string> metadata;
@@ -65,7 +65,7 @@ Decoded Decode(const grpc::Status& refusal) {
   return decoded;
 }
 
-// A refusal that names no field.
+// An error that names no field.
 void ExpectRefusal(const grpc::Status& refusal, grpc::StatusCode code, const std::string& reason) {
   EXPECT_EQ(refusal.error_code(), code) << refusal.error_message();
   const Decoded decoded = Decode(refusal);
@@ -289,7 +289,7 @@ TEST(ErrorDetailsTest, OneCloudIsMadeAtATime) {
   EXPECT_EQ(Decode(busy).retry_s, 3.0);
 }
 
-TEST(ErrorDetailsTest, NoMoreCloudsThanTheMost) {
+TEST(ErrorDetailsTest, NoMoreCloudsThanTheMaximum) {
   const TemporaryFolder folder;
   FakeStormStore store;
   service::CloudStore clouds(folder.Path().string(), store);

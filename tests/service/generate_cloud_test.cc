@@ -1,4 +1,4 @@
-// Clouds made on request: files in the server's folder, and storms like any other.
+// Clouds generated on request: files in the server's folder, and storms like any other.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -93,7 +93,7 @@ TEST_F(GenerateCloudTest, ACloudThatWasMadeCanBeDeleted) {
   EXPECT_EQ(refused.error_code(), grpc::StatusCode::NOT_FOUND);
   EXPECT_THAT(refused.error_message(), HasSubstr(id));
   EXPECT_EQ(Delete(id).error_code(), grpc::StatusCode::NOT_FOUND);
-  // Who still shows the old one must not get another under its name.
+  // A viewer of the deleted cloud must not get another one under its id.
   ASSERT_TRUE(Make(Request()).ok());
   EXPECT_NE(response_.storm().id(), id);
 }
@@ -127,7 +127,7 @@ TEST(CloudStore, KnowsTheCloudsOfAnEarlierServerFromOtherFiles) {
   EXPECT_FALSE(std::filesystem::exists(path + "/kept.nc"));
   EXPECT_TRUE(std::filesystem::exists(path + "/other.nc"));
   EXPECT_EQ((*store)->Find("kept"), nullptr);
-  // The same file outside the folder is nobody's to delete.
+  // The same file outside the folder must not be deleted.
   const TemporaryFolder elsewhere;
   EXPECT_FALSE(service::CloudStore(elsewhere.Path().string(), **store).Holds("other"));
 }
