@@ -182,9 +182,10 @@ Command AddFlux(CLI::App& app) {
                        "; by default each field's own, for a slab that of cloud water");
   flux->add_option("--albedo", flags->albedo,
                    "Single-scattering albedo, 0 to 1; by default each field's own");
-  flux->add_option("--sun-elevation", flags->sun_elevation_deg, "Degrees above the horizon")
+  flux->add_option("--sun-elevation", flags->sun_elevation_deg, "Elevation of the sun in degrees")
       ->capture_default_str();
-  flux->add_option("--sun-azimuth", flags->sun_azimuth_deg, "Degrees clockwise from north")
+  flux->add_option("--sun-azimuth", flags->sun_azimuth_deg,
+                   "Azimuth of the sun, clockwise from north")
       ->capture_default_str();
   flux->add_flag("--periodic", flags->periodic, "Periodic boundaries in x and y");
   flux->add_option("--ground-albedo", flags->ground_albedo, "Albedo of the ground, 0 to 1")

@@ -163,7 +163,7 @@ Command AddGenerate(CLI::App& app) {
                    "X,Y,Z,RX,RY,RZ[,AX,AY,AZ] in m and degrees instead of the preset's; "
                    "repeat for several")
       ->allow_extra_args(false);
-  generate->add_option("--cells", flags->cells, "NXxNYxNZ" + otherwise);
+  generate->add_option("--cells", flags->cells, "Number of cells, NXxNYxNZ" + otherwise);
   generate->add_option("--spacing", flags->spacing_m, "Size of a cell in m" + otherwise);
   return {generate, [flags] { return Generate(*flags); }};
 }

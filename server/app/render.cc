@@ -204,7 +204,7 @@ Command AddRender(CLI::App& app) {
                    "Reference: treat light scattered by less than this angle in degrees as "
                    "unscattered; 0 is exact but noisy")
       ->capture_default_str();
-  render->add_option("--server", flags->server, "HOST:PORT of the gRPC port of a running server");
+  render->add_option("--server", flags->server, "HOST:PORT of a running server's gRPC service");
   render->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();
   render->add_flag("--json", flags->json, "Print costs and the completed scene as JSON");

@@ -103,7 +103,7 @@ absl::Status Serve(const Flags& flags) {
   int signal = 0;
   sigwait(&signals, &signal);
   spdlog::info("stopping");
-  // First, because it has calls to the service under way.
+  // First, because its calls to the service must end before the service does.
   gateway.reset();
   server->Shutdown();
   warm_up.join();

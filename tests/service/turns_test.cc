@@ -15,7 +15,7 @@ using ::testing::ElementsAre;
 
 class TurnsTest : public ::testing::Test {
  protected:
-  // Who uses the next turn; the empty string if nobody does.
+  // The session that uses the next turn; the empty string if none does.
   std::string Serve() {
     std::string served;
     asked_.clear();
