@@ -1,4 +1,4 @@
-// HOST:PORT as the command line gives it.
+// Parses and prints HOST:PORT.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ struct Address {
   std::uint16_t port = 0;
 };
 
-// INVALID_ARGUMENT names `flag` and shows the form.
+// INVALID_ARGUMENT names `flag` and the expected format.
 absl::StatusOr<Address> ParseAddress(const std::string& flag, const std::string& text);
 
 // HOST:PORT, with brackets around an IPv6 address.

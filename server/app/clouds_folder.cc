@@ -29,15 +29,16 @@ absl::StatusOr<CloudsFolder> CloudsFolder::Open(const std::string& path) {
     std::string name = (fs::temp_directory_path(error) / "thunderhead-clouds-XXXXXX").string();
     if (error || mkdtemp(name.data()) == nullptr) {
       return absl::FailedPreconditionError(
-          absl::StrCat("no temporary folder can be made for clouds (", std::strerror(errno),
+          absl::StrCat("cannot create a temporary folder for clouds (", std::strerror(errno),
                        "); name a folder with --clouds"));
     }
     return CloudsFolder(std::move(name), true);
   }
   fs::create_directories(path, error);
   if (error || !fs::is_directory(path)) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "--clouds is '", path, "', which is no folder and cannot be made one: ", error.message()));
+    return absl::InvalidArgumentError(
+        absl::StrCat("--clouds is '", path,
+                     "', which is not a folder and cannot be created: ", error.message()));
   }
   return CloudsFolder(path, false);
 }

@@ -1,4 +1,4 @@
-// The folder that a server keeps generated clouds in: the user's, or one that goes with the server.
+// The folder for generated clouds: the user's, or a temporary one.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@ namespace thunderhead::app {
 
 class CloudsFolder {
  public:
-  // Makes the folder if it is not there; an empty `path` makes a temporary one.
+  // Creates the folder if it does not exist; an empty `path` creates a temporary one.
   static absl::StatusOr<CloudsFolder> Open(const std::string& path);
   CloudsFolder(CloudsFolder&& other) noexcept;
   CloudsFolder& operator=(CloudsFolder&&) = delete;
-  // A temporary folder goes, with what is in it.
+  // Deletes a temporary folder with its contents.
   ~CloudsFolder();
 
   const std::string& Path() const { return path_; }

@@ -1,6 +1,6 @@
-// The program's subcommands. Each adds its flags to `app` and returns what to run once they are
-// parsed; what it runs returns OK, or an error to print: INVALID_ARGUMENT for what the user wrote,
-// anything else for what went wrong.
+// The program's subcommands. Each adds its flags to `app` and returns the function to run once they
+// are parsed. That returns OK or the error to print: INVALID_ARGUMENT for a wrong command line, any
+// other code for a failure.
 #pragma once
 
 #include <functional>

@@ -33,8 +33,8 @@ struct Flags {
   clouds::FitOptions options;
 };
 
-// What is approximated: extinction (1/m) of all fields with their default optics, or the mass of
-// one (kg/m3).
+// The quantity to approximate: extinction (1/m) of all fields with their default optics, or the
+// mass of one (kg/m3).
 struct Target {
   std::string quantity;
   std::string units;
@@ -92,9 +92,8 @@ absl::StatusOr<clouds::FitOptions> OptionsOf(const Flags& flags) {
         absl::StrCat("--balls is ", options.balls, "; it must be 1 or more"));
   }
   if (options.threads < 0) {
-    return absl::InvalidArgumentError(absl::StrCat("--threads is ", options.threads,
-                                                   "; it must be 1 or more, or 0 for as many as "
-                                                   "the machine has"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        "--threads is ", options.threads, "; it must be 1 or more, or 0 for one per core"));
   }
   return options;
 }
@@ -136,7 +135,7 @@ absl::StatusOr<clouds::FitResult> FitWithProgress(const volume::RegularGrid& gri
       interruption.Token());
 }
 
-// The balls' sum as a storm file, to look at beside what they approximate.
+// Writes the balls' sum as a storm file, for comparison with the original.
 absl::Status WriteVolume(const Flags& flags, const clouds::MetaballCloud& cloud,
                          const volume::RegularGrid& grid) {
   volume::CfCloud file;
@@ -179,25 +178,27 @@ Command AddFit(CLI::App& app) {
   auto flags = std::make_shared<Flags>();
   CLI::App* fit = app.add_subcommand("fit", "Approximate a storm by metaballs");
   fit->add_option("STORM", flags->storm, "Storm file or folder")->required();
-  fit->add_option("--balls", flags->options.balls, "How many")->required();
-  fit->add_option("-o,--output", flags->output, "The file of metaballs: .balls")->required();
+  fit->add_option("--balls", flags->options.balls, "Number of balls")->required();
+  fit->add_option("-o,--output", flags->output, "File of metaballs to write: .balls")->required();
   fit->add_option("--volume", flags->volume, "Also write the balls' sum as a storm file: .nc");
-  fit->add_option("--time", flags->time_index, "Which of the storm's times, from 0")
+  fit->add_option("--time", flags->time_index, "Index of the storm's time, from 0")
       ->capture_default_str();
   fit->add_option("--field", flags->field,
                   "extinction (of all fields), or a field's mass: cloud, rain, ice, ...")
       ->capture_default_str();
-  fit->add_option("--basis", flags->basis, "What a ball spreads over: gaussian or wyvill")
+  fit->add_option("--basis", flags->basis, "Radial basis function of a ball: gaussian or wyvill")
       ->capture_default_str();
-  fit->add_option("--overlap", flags->options.overlap, "Radius of a ball over its cluster's sigma")
+  fit->add_option("--overlap", flags->options.overlap,
+                  "Ratio of a ball's radius to its cluster's sigma")
       ->capture_default_str();
-  fit->add_option("--solver", flags->solver, "For the weights: direct or gradient")
+  fit->add_option("--solver", flags->solver, "Solver for the weights: direct or gradient")
       ->capture_default_str();
-  fit->add_flag("--non-negative", flags->options.non_negative, "No ball takes away");
-  fit->add_option("--iterations", flags->options.max_iterations, "At most, for the weights")
+  fit->add_flag("--non-negative", flags->options.non_negative, "Allow no negative weights");
+  fit->add_option("--iterations", flags->options.max_iterations,
+                  "Maximum number of iterations for the weights")
       ->capture_default_str();
-  AddSeedFlag(*fit, "Of the first centres", &flags->options.seed);
-  fit->add_option("--threads", flags->options.threads, "0: as many as the machine has")
+  AddSeedFlag(*fit, "Seed of the first centres", &flags->options.seed);
+  fit->add_option("--threads", flags->options.threads, "Number of threads; 0: one per core")
       ->capture_default_str();
   fit->add_flag("--json", flags->json, "Print JSON, with H after every iteration");
   return {fit, [flags] { return Fit(*flags); }};

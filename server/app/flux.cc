@@ -79,8 +79,8 @@ absl::StatusOr<reference::FluxProblem> SlabProblem(const Flags& flags,
   return reference::FluxProblem::Of(std::move(medium), towards_sun);
 }
 
-// Extinction that the file gives directly fills the file's cells evenly; that of hydrometeors
-// varies between their centres, as it is drawn.
+// Extinction that the file gives directly is constant in each cell; that of hydrometeors is
+// interpolated linearly, as it is drawn.
 reference::Interpolation InterpolationOf(const volume::HydrometeorFields& fields) {
   const bool direct =
       !fields.fields.empty() && fields.fields.front().quantity == volume::Quantity::kExtinction;
@@ -171,25 +171,28 @@ absl::Status Flux(const Flags& flags) {
 
 Command AddFlux(CLI::App& app) {
   auto flags = std::make_shared<Flags>();
-  CLI::App* flux = app.add_subcommand("flux", "Say where the sunlight on a storm goes");
+  CLI::App* flux = app.add_subcommand("flux", "Compute the fluxes of sunlight through a storm");
   flux->add_option("STORM", flags->storm, "Storm file or folder");
-  flux->add_option("--slab", flags->slab, "A plane-parallel layer of this optical depth instead");
-  flux->add_option("--time", flags->time_index, "Which of the storm's times, from 0")
+  flux->add_option("--slab", flags->slab,
+                   "A plane-parallel slab of this optical depth instead of a storm");
+  flux->add_option("--time", flags->time_index, "Index of the storm's time, from 0")
       ->capture_default_str();
-  flux->add_option(
-      "--phase", flags->phase,
-      std::string(kPhaseFlagHelp) + "; without it each field's own, for a slab cloud water's");
+  flux->add_option("--phase", flags->phase,
+                   std::string(kPhaseFlagHelp) +
+                       "; by default each field's own, for a slab that of cloud water");
   flux->add_option("--albedo", flags->albedo,
-                   "Single-scattering albedo, 0 to 1; without it each field's own");
-  flux->add_option("--sun-elevation", flags->sun_elevation_deg, "Degrees above the horizon")
+                   "Single-scattering albedo, 0 to 1; by default each field's own");
+  flux->add_option("--sun-elevation", flags->sun_elevation_deg, "Elevation of the sun in degrees")
       ->capture_default_str();
-  flux->add_option("--sun-azimuth", flags->sun_azimuth_deg, "Degrees clockwise from north")
+  flux->add_option("--sun-azimuth", flags->sun_azimuth_deg,
+                   "Azimuth of the sun, clockwise from north")
       ->capture_default_str();
-  flux->add_flag("--periodic", flags->periodic, "The domain repeats sideways without end");
-  flux->add_option("--ground-albedo", flags->ground_albedo, "Of the domain's bottom, 0 to 1")
+  flux->add_flag("--periodic", flags->periodic, "Periodic boundaries in x and y");
+  flux->add_option("--ground-albedo", flags->ground_albedo, "Albedo of the ground, 0 to 1")
       ->capture_default_str();
-  flux->add_option("--photons", flags->photons, "How many to trace")->capture_default_str();
-  AddSeedFlag(*flux, "Of the random numbers", &flags->seed);
+  flux->add_option("--photons", flags->photons, "Number of photons to trace")
+      ->capture_default_str();
+  AddSeedFlag(*flux, "Seed of the random numbers", &flags->seed);
   flux->add_flag("--json", flags->json, "Print JSON");
   return {flux, [flags] { return Flux(*flags); }};
 }

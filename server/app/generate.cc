@@ -43,7 +43,7 @@ absl::StatusOr<std::vector<double>> Numbers(const std::string& text, char separa
   std::vector<double> numbers;
   for (const auto part : absl::StrSplit(text, separator)) {
     if (!absl::SimpleAtod(part, &numbers.emplace_back())) {
-      return absl::InvalidArgumentError(absl::StrCat("'", part, "' is no number"));
+      return absl::InvalidArgumentError(absl::StrCat("'", part, "' is not a number"));
     }
   }
   return numbers;
@@ -52,9 +52,9 @@ absl::StatusOr<std::vector<double>> Numbers(const std::string& text, char separa
 absl::StatusOr<clouds::Ellipsoid> ParseEllipsoid(const std::string& text) {
   const auto numbers = Numbers(text, ',');
   if (!numbers.ok() || (numbers->size() != 6 && numbers->size() != 9)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("--ellipsoid is '", text,
-                     "'; it must be X,Y,Z,RX,RY,RZ in m, or with ,AX,AY,AZ in degrees after it"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        "--ellipsoid is '", text,
+        "'; it must be X,Y,Z,RX,RY,RZ in m, optionally followed by ,AX,AY,AZ in degrees"));
   }
   const std::vector<double>& n = *numbers;
   clouds::Ellipsoid ellipsoid{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {}};
@@ -110,7 +110,7 @@ absl::StatusOr<CloudShape> ShapeOf(const Flags& flags) {
   if (flags.water_g_per_m3.has_value()) shape.water_kg_per_m3 = 1e-3 * *flags.water_g_per_m3;
   if (!flags.ellipsoids.empty()) {
     shape.ellipsoids.clear();
-    shape.base_m.reset();  // the preset's belongs to the preset's
+    shape.base_m.reset();  // the preset's is that of its own ellipsoids
   }
   for (const std::string& text : flags.ellipsoids) {
     THUNDERHEAD_ASSIGN_OR_RETURN(const clouds::Ellipsoid ellipsoid, ParseEllipsoid(text));
@@ -137,33 +137,33 @@ absl::Status Generate(const Flags& flags) {
 
 Command AddGenerate(CLI::App& app) {
   auto flags = std::make_shared<Flags>();
-  CLI::App* generate = app.add_subcommand("generate", "Make a cloud without a model run");
-  generate->add_option("-o,--output", flags->output, "The storm file: .nc")->required();
+  CLI::App* generate = app.add_subcommand("generate", "Generate a cloud without a model run");
+  generate->add_option("-o,--output", flags->output, "Storm file to write: .nc")->required();
   generate->add_option("--preset", flags->preset, absl::StrJoin(clouds::PresetNames(), ", "))
       ->capture_default_str();
-  AddSeedFlag(*generate, "Which cloud of its kind", &flags->seed);
-  const std::string otherwise = "; without it the preset's";
-  generate->add_option("--octaves", flags->octaves, "Scales of noise, 1 to 16" + otherwise);
-  generate->add_option("--persistence", flags->persistence,
-                       "Amplitude of a scale over the next coarser, up to 1" + otherwise);
+  AddSeedFlag(*generate, "Seed of the noise", &flags->seed);
+  const std::string otherwise = "; by default the preset's";
+  generate->add_option("--octaves", flags->octaves, "Octaves of noise, 1 to 16" + otherwise);
+  generate->add_option(
+      "--persistence", flags->persistence,
+      "Ratio of an octave's amplitude to that of the next coarser, up to 1" + otherwise);
   generate->add_option("--interpolation", flags->interpolation,
-                       "Of the noise: linear, cosine or cubic" + otherwise);
+                       "Interpolation of the noise: linear, cosine or cubic" + otherwise);
   generate->add_option("--feature-size", flags->feature_m,
-                       "The noise's coarsest scale in m" + otherwise);
+                       "Coarsest scale of the noise in m" + otherwise);
   generate->add_option("--threshold", flags->threshold,
-                       "Density below which there is nothing, from 0 to 1" + otherwise);
+                       "Density below which the air is clear, from 0 to 1" + otherwise);
   generate->add_option("--dynamics", flags->dynamics,
-                       "Scales density, above 0 up to 1" + otherwise);
+                       "Factor of the density, above 0 up to 1" + otherwise);
   generate->add_option("--water", flags->water_g_per_m3,
-                       "Liquid water where density is 1, g/m3" + otherwise);
-  generate->add_option("--base", flags->base_m,
-                       "Height in m below which there is none" + otherwise);
+                       "Liquid water content at density 1, g/m3" + otherwise);
+  generate->add_option("--base", flags->base_m, "Height of the cloud base in m" + otherwise);
   generate
       ->add_option("--ellipsoid", flags->ellipsoids,
-                   "X,Y,Z,RX,RY,RZ[,AX,AY,AZ] in m and degrees, in place of the preset's; "
-                   "again for each")
+                   "X,Y,Z,RX,RY,RZ[,AX,AY,AZ] in m and degrees instead of the preset's; "
+                   "repeat for several")
       ->allow_extra_args(false);
-  generate->add_option("--cells", flags->cells, "NXxNYxNZ" + otherwise);
+  generate->add_option("--cells", flags->cells, "Number of cells, NXxNYxNZ" + otherwise);
   generate->add_option("--spacing", flags->spacing_m, "Size of a cell in m" + otherwise);
   return {generate, [flags] { return Generate(*flags); }};
 }

@@ -98,9 +98,9 @@ absl::Status Inspect(const Flags& flags) {
 
 Command AddInspect(CLI::App& app) {
   auto flags = std::make_shared<Flags>();
-  CLI::App* inspect = app.add_subcommand("inspect", "Say what a storm file or folder holds");
+  CLI::App* inspect = app.add_subcommand("inspect", "Describe a storm file or folder");
   inspect->add_option("STORM", flags->storm, "Storm file or folder")->required();
-  inspect->add_option("--time", flags->time_index, "Which of its times to describe, from 0")
+  inspect->add_option("--time", flags->time_index, "Index of the time to describe, from 0")
       ->capture_default_str();
   inspect->add_flag("--json", flags->json, "Print the StormDescription message as JSON");
   return {inspect, [flags] { return Inspect(*flags); }};

@@ -17,14 +17,14 @@ sigset_t Signals() {
   return signals;
 }
 
-// One of `signals`, taken within `wait`; false if none came.
+// Waits for one of `signals`; false if none came within `wait`.
 bool Taken(const sigset_t& signals, milliseconds wait) {
   const timespec limit{0, std::chrono::nanoseconds(wait).count()};
   return sigtimedwait(&signals, nullptr, &limit) > 0;
 }
 
-// One request may come as several signals: a terminal, a shell and coreutils' timeout each send
-// theirs to the program and to its group.
+// One request may arrive as several signals: a terminal, a shell and coreutils' timeout each signal
+// the program and its process group.
 constexpr milliseconds kOneRequest(250);
 
 }  // namespace
@@ -39,7 +39,7 @@ Interruption::Interruption() {
     stop_.request_stop();
     const auto whole = steady_clock::now() + kOneRequest;
     while (steady_clock::now() < whole) Taken(signals, milliseconds(20));
-    // This is then the one thread that does not hold the next signal back.
+    // Only this thread does not block the next signal, which ends the program.
     pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
     while (!ended.stop_requested()) std::this_thread::sleep_for(milliseconds(20));
   });

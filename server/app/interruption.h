@@ -1,6 +1,5 @@
-// Ctrl-C (SIGINT) and SIGTERM as a request to stop, for work that then reports what it has. What
-// follows within a quarter of a second is the same request; a later signal ends the program as
-// usual.
+// Ctrl-C (SIGINT) and SIGTERM as a request to stop, for work that then reports its partial result.
+// Signals within a quarter of a second count as one request; a later one ends the program as usual.
 #pragma once
 
 #include <csignal>
@@ -11,10 +10,10 @@ namespace thunderhead::app {
 
 class Interruption {
  public:
-  // From here on the signals are taken; threads started later leave them to this one.
+  // Blocks the signals in this thread and in those it starts later, and waits for them in another.
   Interruption();
-  // The signals are as they were. Waits until a request has come whole, so that its rest does not
-  // end the program before it has written what it reports.
+  // Restores the signal mask. Waits until all signals of a request have arrived, so that a late one
+  // does not end the program before it has written its result.
   ~Interruption();
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;

@@ -32,7 +32,8 @@ absl::StatusOr<picture::LinearPicture> KeptTruth(const Truth& truth,
           },
           interruption.Token()));
   if (traced.result.end == reference::RefineEnd::kStopped) {
-    return absl::CancelledError("stopped before the truth was traced; nothing is kept of it");
+    return absl::CancelledError(
+        "interrupted: the reference picture was not finished and is not kept");
   }
   THUNDERHEAD_RETURN_IF_ERROR(picture::WriteExr(path, traced.image));
   THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(key_path, key));

@@ -1,4 +1,4 @@
-// Pictures by the reference that others are measured against, kept between runs.
+// The reference's pictures that others are compared with, kept between runs.
 #pragma once
 
 #include <string>
@@ -12,15 +12,15 @@
 namespace thunderhead::app {
 
 struct Truth {
-  std::string name;  // what the progress bar says is traced
+  std::string name;  // for the progress bar
   scene::Scene scene;
-  std::string scene_text;  // of all of the scene that the picture depends on
+  std::string scene_text;  // of every setting that the picture depends on
   reference::TraceOptions options;
   int samples_per_pixel = 0;
 };
 
-// The picture kept at `path` if it is of the same text, peak cut and samples, else a new one, which
-// is then kept there. CANCELLED if it was interrupted; nothing is kept of it.
+// The picture kept at `path` if it has the same scene text, peak cut and samples; otherwise traces
+// and keeps a new one there. CANCELLED if interrupted, and then nothing is written.
 absl::StatusOr<picture::LinearPicture> KeptTruth(const Truth& truth,
                                                  const volume::HydrometeorFields& fields,
                                                  const std::string& path,

@@ -1,5 +1,5 @@
-// A scene with its storm's fields at hand, for commands that draw or trace in this process without
-// the service.
+// A scene with its storm's fields, for commands that draw or trace in this process without the
+// service.
 #pragma once
 
 #include <memory>

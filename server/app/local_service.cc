@@ -11,7 +11,7 @@
 namespace thunderhead::app {
 namespace {
 
-// What is wrong with a file is no mistake in the command line, whatever the store calls it.
+// A bad file is not a usage error, whatever code the store gives it.
 absl::Status AsFileProblem(const absl::Status& status) {
   if (!absl::IsInvalidArgument(status)) return status;
   return absl::FailedPreconditionError(status.message());

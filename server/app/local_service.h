@@ -13,24 +13,24 @@
 
 namespace thunderhead::app {
 
-// The store of `path`, which must hold one storm.
+// Opens the file or folder at `path`, which must contain exactly one storm.
 absl::StatusOr<std::shared_ptr<volume::StormStore>> OpenStorm(const std::string& path);
 
-// INVALID_ARGUMENT unless the store's storm, which the user named `path`, has that time.
+// INVALID_ARGUMENT if the storm, which the user named by `path`, does not have that time.
 absl::Status CheckTime(const volume::StormStore& store, const std::string& path, int time_index);
 
 // Reads one time of the store's storm into its cache, with a progress bar.
 absl::Status ReadWithProgress(volume::StormStore& store, int time_index);
 
-// The fields of one time of the storm at `path`, read with a progress bar; errors as of the above.
+// The fields of one time of the storm at `path`, read with a progress bar; errors as above.
 absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadStorm(const std::string& path,
                                                                            int time_index);
 
-// The service on `store`, drawing on `device`, listening nowhere.
+// The service on `store`, drawing on `device`, without a listening port.
 absl::StatusOr<std::unique_ptr<service::Server>> StartLocalService(
     std::shared_ptr<volume::StormStore> store, const std::string& device);
 
-// A call's outcome as this program reports it.
+// The same code and message.
 absl::Status FromGrpc(const grpc::Status& status);
 
 }  // namespace thunderhead::app

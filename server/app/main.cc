@@ -1,5 +1,5 @@
-// thunderhead: storms from weather models as they would look in the sky. Exit codes: 0 done, 1 it
-// went wrong, 2 the command line is wrong.
+// thunderhead: storms from weather models as they would look in the sky. Exit codes: 0 done, 1
+// failed, 2 the command line is wrong.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -27,7 +27,7 @@ int Report(const absl::Status& status) {
   return status.code() == absl::StatusCode::kInvalidArgument ? kWrongUsage : kFailed;
 }
 
-// The parser would only say that some subcommand is needed.
+// The parser would only report that a subcommand is required.
 absl::Status CheckSubcommand(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return absl::OkStatus();
   std::vector<std::string> names;
@@ -38,7 +38,7 @@ absl::Status CheckSubcommand(const CLI::App& app, int argc, char** argv) {
 }
 
 int Main(int argc, char** argv) {
-  // Standard output is for results; what happens on the way goes to standard error.
+  // Standard output is for results, so the log goes to standard error.
   spdlog::set_default_logger(spdlog::stderr_color_mt("thunderhead"));
   CLI::App app("Storms from weather models as they would look in the sky.", "thunderhead");
   app.set_version_flag("--version", "thunderhead " + base::Version());

@@ -78,8 +78,7 @@ absl::Status MeasureExtremes(const Flags& flags) {
 
 Command AddMeasureExtremes(CLI::App& measure) {
   auto flags = std::make_shared<Flags>();
-  CLI::App* extremes =
-      measure.add_subcommand("extremes", "Every extreme with its expected answer, and the verdict");
+  CLI::App* extremes = measure.add_subcommand("extremes", "Check the response to extreme inputs");
   extremes->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();
   extremes->add_flag("--json", flags->json, "Print JSON");

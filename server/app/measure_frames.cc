@@ -34,7 +34,7 @@ absl::StatusOr<Fields> Read(volume::StormStore& store, int time_index) {
   return store.Get(store.Storms().front()->id, time_index, {});
 }
 
-// The time asked for, or that with the most condensate.
+// The requested time, or the one with the most condensate.
 absl::StatusOr<Fields> Choose(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store,
                                OpenStorm(flags.storm));
@@ -90,21 +90,21 @@ absl::Status MeasureFrames(const Flags& flags) {
 Command AddMeasureFrames(CLI::App& measure) {
   auto flags = std::make_shared<Flags>();
   CLI::App* frames =
-      measure.add_subcommand("frames", "Frames a second of each technique and preset");
+      measure.add_subcommand("frames", "Measure the frame rate of each technique and preset");
   frames->add_option("STORM", flags->storm, "Storm file or folder")->required();
   frames->add_option("--time", flags->time_index,
-                     "Which of its times, from 0; without it that with the most condensate");
+                     "Index of the time, from 0; by default the one with the most condensate");
   frames->add_option("--size", flags->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
   frames
       ->add_option("--slices", flags->slices,
-                   "Slices, or samples along a ray, of the papers' modes")
+                   "Slices, or samples along a ray, in the papers' modes")
       ->capture_default_str();
   frames
       ->add_option("--transport", flags->transport,
-                   "Of the papers' modes: paper, consistent or diffusion")
+                   "Transport in the papers' modes: paper, consistent or diffusion")
       ->check(CLI::IsMember({"paper", "consistent", "diffusion"}))
       ->capture_default_str();
-  frames->add_option("--runs", flags->runs, "Runs of which the medians are taken")
+  frames->add_option("--runs", flags->runs, "Number of runs; their medians are printed")
       ->capture_default_str();
   frames->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();

@@ -63,7 +63,8 @@ absl::StatusOr<picture::LinearPicture> TruthOf(const Flags& flags, const LocalSc
   return KeptTruth(truth, *local.fields, path, interruption);
 }
 
-// Truth, drawn, and 1/2 plus a quarter of their difference over the truth's mean, side by side.
+// Writes side by side: the truth, the drawn picture, and their difference, as 1/2 plus a quarter of
+// the difference over the truth's mean.
 absl::Status WriteComparison(const picture::LinearPicture& truth,
                              const picture::LinearPicture& drawn, scene::Scene scene,
                              const std::string& path) {
@@ -96,7 +97,7 @@ absl::Status WriteComparison(const picture::LinearPicture& truth,
   return base::WriteWholeFile(path, png);
 }
 
-// One drawn picture against the truth: its row of the table, and the comparison.
+// Prints the table row of one drawn picture against the truth and writes the comparison.
 struct Compared {
   const Flags& flags;
   const LocalScene& local;
@@ -124,7 +125,7 @@ struct Compared {
   }
 };
 
-// All light again, after so many paths have been traced.
+// Repeats the part "all" with light corrected by traced paths.
 absl::Status MeasureTracedLight(const Compared& compared, const scene::Scene& scene,
                                 const Interruption& interruption) {
   THUNDERHEAD_ASSIGN_OR_RETURN(
@@ -154,7 +155,7 @@ absl::Status MeasureTransport(const Compared& compared,
   scene::Scene scene = compared.local.scene;
   auto& technique = std::get<scene::LightVolume>(scene.rendering.technique);
   technique.medium.transport = transport.value;
-  technique.medium.look.detail = false;  // the truth has none
+  technique.medium.look.detail = false;  // as in the truth
   THUNDERHEAD_RETURN_IF_ERROR(compared.Print(scene, std::string(transport.name), nullptr));
   technique.traced_light = scene::TracedLight::kAtRest;
   const bool traces = compared.part == LightPart::kAll && !compared.flags.million_paths.empty() &&
@@ -196,28 +197,31 @@ Command AddMeasureLight(CLI::App& measure) {
   auto flags = std::make_shared<Flags>();
   flags->scene.size = "96x64";
   CLI::App* light = measure.add_subcommand(
-      "light", "Error of sunlight scattered once, of all sunlight, of skylight, and of all light");
+      "light",
+      "Measure the errors of sunlight scattered once, all sunlight, skylight, and all light");
   light->add_option("STORM", flags->storm, "Storm file or folder")->required();
   light
       ->add_option("-o,--output", flags->output,
-                   "Where truths (.PART.exr) and pictures (.PART.TRANSPORT.png: truth, drawn, "
-                   "difference) go")
+                   "Prefix of the files to write: truths (.PART.exr) and comparisons "
+                   "(.PART.TRANSPORT.png: truth, drawn, difference)")
       ->capture_default_str();
-  light->add_option("--part", flags->parts, "once, sun, sky, all; every one if not given");
-  light->add_option("--transport", flags->transports, "Which transports; every one if not given");
+  light->add_option("--part", flags->parts, "once, sun, sky or all; by default each");
+  light->add_option("--transport", flags->transports, "Transports to measure; by default each");
   AddSceneOptions(*light, flags->scene);
   light->add_option("--spp", flags->samples_per_pixel, "Samples a pixel of the truth")
       ->check(CLI::Range(16, 1 << 20))
       ->capture_default_str();
   light
       ->add_option("--million-paths", flags->million_paths,
-                   "Diffusion with traced light as well, after so many million paths; several "
-                   "from few to many")
+                   "Also measure diffusion with traced light, after this many million paths; "
+                   "several in ascending order")
       ->check(CLI::Range(0.0, 1e3));
-  light->add_option("--finer", flags->finer, "Rays across and along a pixel of the drawn picture")
+  light
+      ->add_option("--finer", flags->finer,
+                   "Supersampling of the drawn picture: N x N rays per pixel")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
-  light->add_option("--peak-cut", flags->peak_cut_deg, "As of render")
+  light->add_option("--peak-cut", flags->peak_cut_deg, "As in thunderhead render")
       ->check(CLI::Range(0.0, 30.0))
       ->capture_default_str();
   light->add_option("--device", flags->device, "auto, software or a GPU's number")

@@ -73,11 +73,11 @@ absl::Status MeasureSlices(const Flags& flags) {
   spdlog::set_level(spdlog::level::warn);
   THUNDERHEAD_RETURN_IF_ERROR(CheckFlags(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(Subject subject, SubjectOf(flags));
-  // Detail has no limit that fewer slices could converge to.
+  // Procedural detail does not converge with the number of slices.
   const bool light_volume = flags.scene.technique == scene::LightVolume::kName;
   subject.scene.rendering.technique = accuracy::kFieldPaths[light_volume ? 1 : 0].plain();
   subject.scene.output = {160, 160, 88};
-  // Black sky and ground: what is measured is the light in the cloud.
+  // Black sky and ground, so that only the light of the cloud is measured.
   subject.scene.sky = {0.0, 0.0};
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,
                                gl::Context::Create(flags.device));
@@ -102,14 +102,17 @@ absl::Status MeasureSlices(const Flags& flags) {
 
 Command AddMeasureSlices(CLI::App& measure) {
   auto flags = std::make_shared<Flags>();
-  CLI::App* slices = measure.add_subcommand("slices", "How pictures converge as slices grow");
+  CLI::App* slices = measure.add_subcommand(
+      "slices", "Measure the convergence of pictures with the number of slices");
   slices->add_option("STORM", flags->storm, "Storm file or folder");
-  slices->add_option("--slab", flags->slab, "A smooth cloud of this optical depth instead");
+  slices->add_option("--slab", flags->slab,
+                     "A smooth cloud of this optical depth instead of a storm");
   slices->add_option("--scene", flags->scene.file, "Scene as Protobuf JSON");
-  slices->add_option("--time", flags->scene.time_index, "Which of the storm's times, from 0");
+  slices->add_option("--time", flags->scene.time_index, "Index of the storm's time, from 0");
   slices->add_option("--renderer", flags->scene.technique,
                      "half_angle (the default) or light_volume");
-  slices->add_option("-o,--output", flags->output, "A plot (.svg) or the figures (.csv)");
+  slices->add_option("-o,--output", flags->output,
+                     "File to write: a plot (.svg) or a table (.csv)");
   slices->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();
   slices->add_flag("--json", flags->json, "Print JSON");

@@ -36,7 +36,7 @@ struct Flags {
 absl::Status CheckFlags(const Flags& flags) {
   if (flags.samples_per_pixel >= 16) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat("--spp is ", flags.samples_per_pixel,
-                                                 "; a truth needs 16 samples a pixel at least"));
+                                                 "; the truth needs at least 16 samples a pixel"));
 }
 
 absl::StatusOr<picture::LinearPicture> TruthOf(const Flags& flags, const LocalScene& local,
@@ -50,7 +50,7 @@ absl::StatusOr<picture::LinearPicture> TruthOf(const Flags& flags, const LocalSc
   return KeptTruth(truth, *local.fields, path, interruption);
 }
 
-// The rows that an earlier run left in `path`, or none; the file then holds exactly those.
+// The rows of an earlier run in `path`, if any. Rewrites the file with the complete rows only.
 absl::StatusOr<std::vector<measure::TradeRow>> RowsSoFar(const std::string& path,
                                                          const std::string& head) {
   std::vector<measure::TradeRow> rows;
@@ -60,7 +60,7 @@ absl::StatusOr<std::vector<measure::TradeRow>> RowsSoFar(const std::string& path
     auto earlier = measure::ReadCsv(kept, head);
     if (!earlier.ok()) {
       return absl::InvalidArgumentError(
-          absl::StrCat(path, " is no file to go on from: ", earlier.status().message()));
+          absl::StrCat(path, " cannot be continued: ", earlier.status().message()));
     }
     rows = *std::move(earlier);
     for (const measure::TradeRow& row : rows) absl::StrAppend(&text, measure::CsvLine(row));
@@ -84,7 +84,8 @@ absl::Status MeasureRest(measure::Trade& trade, const std::string& path,
     }
     const auto row = trade.Measure(setting, interruption.Token());
     if (interruption.Token().stop_requested()) {
-      return absl::CancelledError(absl::StrCat("stopped; the same command goes on from ", path));
+      return absl::CancelledError(
+          absl::StrCat("interrupted; run the same command again to continue ", path));
     }
     THUNDERHEAD_RETURN_IF_ERROR(row.status());
     file << measure::CsvLine(*row) << std::flush;
@@ -148,18 +149,19 @@ Command AddMeasureTrade(CLI::App& measure) {
   auto flags = std::make_shared<Flags>();
   flags->scene.size = "240x160";
   CLI::App* trade = measure.add_subcommand(
-      "trade", "Time and error of every setting against the reference; goes on where it stopped");
+      "trade", "Measure time and error of every setting; continues an interrupted run");
   trade->add_option("STORM", flags->storm, "Storm file or folder")->required();
   trade
       ->add_option("-o,--output", flags->output,
-                   "Where results go: .csv, .json, .svg and .truth.exr are added")
+                   "Prefix of the files to write: .csv, .json, .svg and .truth.exr")
       ->capture_default_str();
   AddSceneOptions(*trade, flags->scene);
   trade->add_option("--spp", flags->samples_per_pixel, "Samples a pixel of the truth")
       ->capture_default_str();
   trade
-      ->add_option("--million-paths", flags->million_paths,
-                   "Traced light with so many million paths; several from few to many")
+      ->add_option(
+          "--million-paths", flags->million_paths,
+          "Also measure traced light, after this many million paths; several in ascending order")
       ->check(CLI::Range(0.0, 1e3))
       ->capture_default_str();
   trade->add_option("--device", flags->device, "auto, software or a GPU's number")

@@ -15,14 +15,14 @@ namespace {
 
 using reference::SampledPhase;
 
-// Beyond this the forward peak is narrower than the tables' steps.
-constexpr float kMostAsymmetry = 0.99F;
+// Beyond this the forward peak is narrower than the tables' angular steps.
+constexpr float kMaxAsymmetry = 0.99F;
 
 absl::StatusOr<SampledPhase> FromTable(absl::string_view name) {
   const auto table = physics::EmbeddedPhaseTable({name.data(), name.size()});
   if (!table.ok()) {
     return absl::InvalidArgumentError(
-        absl::StrCat("--phase names a table '", name, "'; the tables are ",
+        absl::StrCat("--phase names the unknown table '", name, "'; the tables are ",
                      absl::StrJoin(physics::PhaseTableNames(), ", ")));
   }
   std::array<SampledPhase::Function, 3> by_color;
@@ -52,7 +52,7 @@ absl::StatusOr<SampledPhase> Parse(const std::string& text) {
     return absl::InvalidArgumentError(absl::StrCat(
         "--phase is '", text, "'; it must be hg:G, cs:G, rayleigh or table:NAME, e.g. hg:0.85"));
   }
-  if (!(phase.asymmetry >= -kMostAsymmetry && phase.asymmetry <= kMostAsymmetry)) {
+  if (!(phase.asymmetry >= -kMaxAsymmetry && phase.asymmetry <= kMaxAsymmetry)) {
     return absl::InvalidArgumentError(
         absl::StrCat("--phase is '", text, "'; its asymmetry must be from -0.99 to 0.99"));
   }

@@ -1,4 +1,4 @@
-// A phase function as the command line gives it.
+// The flag --phase.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@ namespace thunderhead::app {
 inline constexpr char kPhaseFlagHelp[] =
     "Phase function: hg:G (Henyey-Greenstein), cs:G (Cornette-Shanks), rayleigh, or table:NAME";
 
-// "hg:0.85", "cs:0.85", "rayleigh" or "table:cloud_re10". INVALID_ARGUMENT shows the forms.
+// "hg:0.85", "cs:0.85", "rayleigh" or "table:cloud_re10". INVALID_ARGUMENT lists the formats.
 absl::StatusOr<std::shared_ptr<const reference::SampledPhase>> ParsePhase(const std::string& text);
 
 }  // namespace thunderhead::app

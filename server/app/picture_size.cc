@@ -9,7 +9,7 @@
 namespace thunderhead::app {
 namespace {
 
-constexpr int kMostPixels = 8192;  // along a side, as in proto/thunderhead/v1/scene.proto
+constexpr int kMaxSide_px = 8192;  // as in proto/thunderhead/v1/scene.proto
 
 }  // namespace
 
@@ -22,9 +22,9 @@ absl::StatusOr<PictureSize> ParsePictureSize(const std::string& size) {
         absl::StrCat("--size is '", size, "'; it must be WIDTHxHEIGHT, for example 1280x720"));
   }
   for (const int side_px : {parsed.width_px, parsed.height_px}) {
-    if (side_px >= 1 && side_px <= kMostPixels) continue;
+    if (side_px >= 1 && side_px <= kMaxSide_px) continue;
     return absl::InvalidArgumentError(absl::StrCat(
-        "--size is '", size, "'; each side must be from 1 to ", kMostPixels, " pixels"));
+        "--size is '", size, "'; each side must be from 1 to ", kMaxSide_px, " pixels"));
   }
   return parsed;
 }

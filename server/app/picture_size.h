@@ -1,4 +1,4 @@
-// A picture's size as flags give it.
+// The flag --size.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ struct PictureSize {
   int height_px = 0;
 };
 
-// Of `size`, WIDTHxHEIGHT; INVALID_ARGUMENT names the flag --size.
+// Parses WIDTHxHEIGHT; INVALID_ARGUMENT names the flag.
 absl::StatusOr<PictureSize> ParsePictureSize(const std::string& size);
 
 }  // namespace thunderhead::app

@@ -1,5 +1,5 @@
-// A progress bar on standard error, for what takes more than a second, if that is a terminal. Draws
-// from a thread of its own, so that it also moves while the work is silent.
+// A progress bar on standard error if that is a terminal, for work of more than a second. Draws in
+// a thread of its own, so that it also moves while the work reports nothing.
 #pragma once
 
 #include <atomic>
@@ -13,18 +13,17 @@ namespace thunderhead::app {
 
 class ProgressBar {
  public:
-  // `label` says what is going on, e.g. "reading supercell".
+  // `label` names the work, e.g. "reading supercell".
   explicit ProgressBar(std::string label);
-  // Wipes the bar.
+  // Erases the bar.
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  // How much is done, 0 to 1; until the first call the bar shows only that work goes on. From any
-  // thread.
+  // Sets the share done, 0 to 1; until the first call the bar only shows activity. From any thread.
   void Set(double share) { share_ = share; }
 
-  // What is shown after the share, e.g. an error that falls. From any thread.
+  // Sets the text after the share, e.g. the current error. From any thread.
   void Note(std::string note) {
     const std::lock_guard lock(mutex_);
     note_ = std::move(note);

@@ -113,7 +113,7 @@ absl::StatusOr<v1::RenderImageResponse> CallHere(const Flags& flags,
   return Call(server->LocalChannel(), request, interruption);
 }
 
-// The setting and the error of a scene that asks for an accuracy or a speed, or waits for traced
+// Prints the setting and the error if the scene asks for an accuracy or a speed, or for traced
 // light.
 void PrintAccuracy(const v1::RenderImageResponse& response) {
   const v1::Scene& scene = response.scene();
@@ -139,7 +139,7 @@ void PrintAccuracy(const v1::RenderImageResponse& response) {
 absl::Status ByReference(const Flags& flags) {
   if (!flags.server.empty() || flags.json) {
     return absl::InvalidArgumentError(
-        "--renderer reference works in this process only: leave out --server and --json");
+        "--renderer reference works only in this process: omit --server and --json");
   }
   if (!absl::EndsWithIgnoreCase(flags.output, ".exr")) {
     THUNDERHEAD_RETURN_IF_ERROR(FormatOf(flags.output).status());
@@ -185,7 +185,7 @@ Command AddRender(CLI::App& app) {
       ->required();
   render
       ->add_option("-o,--output", flags->output,
-                   "The picture: .png, .jpg or .jpeg; .exr too with --renderer reference")
+                   "Picture to write: .png, .jpg or .jpeg; also .exr with --renderer reference")
       ->required();
   AddSceneOptions(*render, flags->scene);
   AddTechniqueOptions(*render, flags->scene);
@@ -194,19 +194,20 @@ Command AddRender(CLI::App& app) {
   render->add_option("--max-milliseconds", flags->scene.max_milliseconds,
                      "Draw with the most accurate setting of at most this time a frame");
   render->add_option("--spp", flags->reference.samples_per_pixel,
-                     "Reference: stop after so many samples a pixel");
-  render->add_option("--seconds", flags->reference.seconds, "Reference: stop after this time");
+                     "Reference: stop after this many samples a pixel");
+  render->add_option("--seconds", flags->reference.seconds,
+                     "Reference: stop after this many seconds");
   render->add_option("--target-error", flags->reference.target_error,
                      "Reference: stop at this relative standard error");
   render
       ->add_option("--peak-cut", flags->reference.peak_cut_deg,
-                   "Reference: light scattered by less than these degrees counts as not scattered; "
-                   "0 scatters all, noisily")
+                   "Reference: treat light scattered by less than this angle in degrees as "
+                   "unscattered; 0 is exact but noisy")
       ->capture_default_str();
-  render->add_option("--server", flags->server, "HOST:PORT of a running server's gRPC");
+  render->add_option("--server", flags->server, "HOST:PORT of a running server's gRPC service");
   render->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();
-  render->add_flag("--json", flags->json, "Print what it cost and the completed scene");
+  render->add_flag("--json", flags->json, "Print costs and the completed scene as JSON");
   return {render, [flags] { return Render(*flags); }};
 }
 

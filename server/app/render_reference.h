@@ -9,8 +9,7 @@
 
 namespace thunderhead::app {
 
-// When the reference stops, with none of them after kDefaultSamplesPerPixel; and what it leaves
-// out.
+// Limits of the reference, kDefaultSamplesPerPixel if none is given, and its peak cut.
 struct ReferenceFlags {
   int samples_per_pixel = 0;
   double seconds = 0.0;
@@ -23,7 +22,7 @@ struct ReferenceFlags {
 inline constexpr int kDefaultSamplesPerPixel = 64;
 
 // Writes `output`: .exr with linear radiance and its standard error, or .png or .jpg tone mapped on
-// `device`. Ctrl-C stops early and writes what there is.
+// `device`. Ctrl-C stops early and writes the picture so far.
 absl::Status RenderReference(const std::string& storm, const SceneFlags& scene,
                              const ReferenceFlags& limits, const std::string& output,
                              const std::string& device);

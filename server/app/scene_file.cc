@@ -26,7 +26,7 @@ absl::StatusOr<v1::Scene> ReadFile(const std::string& path) {
   v1::Scene scene;
   const auto status = google::protobuf::util::JsonStringToMessage(json, &scene);
   if (status.ok()) return scene;
-  // The parser quotes the file, line ends and all.
+  // The parser quotes the file with its line breaks.
   std::string why(status.message());
   absl::RemoveExtraAsciiWhitespace(&why);
   return absl::InvalidArgumentError(
@@ -41,7 +41,7 @@ absl::Status SetSize(const std::string& size, v1::Output& output) {
   return absl::OkStatus();
 }
 
-// Keeps what the file says of that kind of camera; another kind starts with its defaults.
+// Keeps the file's settings if its camera is of that kind; otherwise starts with the defaults.
 absl::Status SetCamera(const std::string& kind, v1::Camera& camera) {
   if (kind == "orbit") {
     camera.mutable_orbit();
@@ -56,7 +56,7 @@ absl::Status SetCamera(const std::string& kind, v1::Camera& camera) {
   return absl::OkStatus();
 }
 
-// Keeps what the file says of that technique; another one starts with its defaults.
+// Keeps the file's settings if it has that technique; otherwise starts with the defaults.
 absl::Status SetTechnique(const std::string& name, v1::Rendering& rendering) {
   const google::protobuf::OneofDescriptor* techniques =
       v1::Rendering::descriptor()->FindOneofByName("technique");
@@ -96,7 +96,7 @@ absl::Status SetSlices(std::uint32_t slices, v1::Rendering& rendering) {
     rendering.mutable_half_angle()->set_slices(slices);
   } else {
     return absl::InvalidArgumentError(
-        "--slices is for half_angle and light_volume; leave it out with other renderers");
+        "--slices is for half_angle and light_volume; omit it with other renderers");
   }
   return absl::OkStatus();
 }
@@ -104,7 +104,7 @@ absl::Status SetSlices(std::uint32_t slices, v1::Rendering& rendering) {
 absl::Status SetRendering(const SceneFlags& flags, v1::Scene& scene) {
   if (!flags.technique.empty() && !flags.preset.empty()) {
     return absl::InvalidArgumentError(
-        "--renderer and --preset (or --quality) exclude one another: leave one out");
+        "--renderer and --preset (or --quality) exclude each other: omit one");
   }
   if (!flags.technique.empty()) {
     THUNDERHEAD_RETURN_IF_ERROR(SetTechnique(flags.technique, *scene.mutable_rendering()));
@@ -120,7 +120,7 @@ absl::Status SetRendering(const SceneFlags& flags, v1::Scene& scene) {
 
 void AddSceneOptions(CLI::App& command, SceneFlags& flags) {
   command.add_option("--scene", flags.file, "Scene as Protobuf JSON");
-  command.add_option("--time", flags.time_index, "Which of the storm's times, from 0");
+  command.add_option("--time", flags.time_index, "Index of the storm's time, from 0");
   command.add_option("--size", flags.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
   command.add_option("--camera", flags.camera, "orbit, spotter or top-down");
 }
@@ -129,9 +129,8 @@ void AddTechniqueOptions(CLI::App& command, SceneFlags& flags) {
   CLI::Option* quality =
       command.add_option("--quality", flags.preset, "fast, balanced (the default) or true")
           ->check(CLI::IsMember({"fast", "balanced", "true"}));
-  CLI::Option* preset =
-      command.add_option("--preset", flags.preset,
-                         "A named setting, such as per_field_phase_translucent of the papers");
+  CLI::Option* preset = command.add_option(
+      "--preset", flags.preset, "A named setting, such as the papers' per_field_phase_translucent");
   CLI::Option* renderer = command.add_option(
       "--renderer", flags.technique, "half_angle, light_volume, metaball, cumulus or reference");
   quality->excludes(preset)->excludes(renderer);
@@ -154,7 +153,7 @@ absl::StatusOr<v1::Scene> ReadScene(const SceneFlags& flags) {
   THUNDERHEAD_RETURN_IF_ERROR(SetRendering(flags, scene));
   if (flags.max_error.has_value() && flags.max_milliseconds.has_value()) {
     return absl::InvalidArgumentError(
-        "--max-error and --max-milliseconds exclude one another: leave one out");
+        "--max-error and --max-milliseconds exclude each other: omit one");
   }
   if (flags.max_error.has_value()) scene.mutable_accuracy()->set_max_error(*flags.max_error);
   if (flags.max_milliseconds.has_value()) {

@@ -1,4 +1,4 @@
-// A scene as commands are given it: a file of Protobuf JSON, and flags that override it.
+// A command's scene: a file of Protobuf JSON, and flags that override it.
 #pragma once
 
 #include <optional>
@@ -11,23 +11,23 @@
 namespace thunderhead::app {
 
 struct SceneFlags {
-  std::string file;  // may be empty
+  std::string file;  // may be empty, like the other strings
   std::optional<std::uint32_t> time_index;
   std::optional<std::uint32_t> slices;
-  std::string size;       // WxH, may be empty
-  std::string camera;     // orbit, spotter or top-down; may be empty
-  std::string technique;  // "half_angle" and so on; may be empty
-  std::string preset;     // "balanced" and so on; may be empty, and is if `technique` is not
+  std::string size;       // WIDTHxHEIGHT
+  std::string camera;     // orbit, spotter or top-down
+  std::string technique;  // "half_angle" and so on
+  std::string preset;     // "balanced" and so on; not together with `technique`
   std::optional<float> max_error;
   std::optional<float> max_milliseconds;  // at most one of the two
 };
 
-// The options of every command that takes a scene: --scene, --time, --size, --camera.
+// Adds the options of every command that takes a scene: --scene, --time, --size, --camera.
 void AddSceneOptions(CLI::App& command, SceneFlags& flags);
-// Those of commands that draw it: --quality, --preset, --renderer, --slices.
+// Adds the options of commands that draw it: --quality, --preset, --renderer, --slices.
 void AddTechniqueOptions(CLI::App& command, SceneFlags& flags);
 
-// INVALID_ARGUMENT names the file or flag and what is wrong with it.
+// INVALID_ARGUMENT names the file or flag and the error in it.
 absl::StatusOr<v1::Scene> ReadScene(const SceneFlags& flags);
 
 }  // namespace thunderhead::app

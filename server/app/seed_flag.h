@@ -1,4 +1,4 @@
-// The flag --seed: a whole number from 0. What reads numbers would take a negative one for a large
+// The flag --seed: an integer from 0. The flag parser alone would wrap a negative number to a large
 // one.
 #pragma once
 

@@ -31,7 +31,7 @@ struct Flags {
   double memory_budget_gib = 2.0;
 };
 
-// Beside the program as installed, or where the build leaves the page.
+// The installed page, or the one in the build tree; empty if there is neither.
 std::string DefaultPageFolder() {
   std::error_code error;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
@@ -53,7 +53,7 @@ void WarmUp(const std::shared_ptr<grpc::Channel>& channel) {
     v1::RenderImageResponse response;
     grpc::ClientContext context;
     const grpc::Status status = stub->RenderImage(&context, request, &response);
-    if (!status.ok()) spdlog::warn("the first storm cannot be drawn: {}", status.error_message());
+    if (!status.ok()) spdlog::warn("cannot draw the first storm: {}", status.error_message());
   }
 }
 
@@ -74,7 +74,7 @@ absl::Status Serve(const Flags& flags) {
                                volume::StormStore::Open(flags.data, store_options));
   for (const std::string& file : clouds.Files()) {
     if (const auto added = store->Add(file); !added.ok()) {
-      spdlog::warn("{} is left out: {}", file, std::string(added.status().message()));
+      spdlog::warn("skipping {}: {}", file, std::string(added.status().message()));
     }
   }
   service::ServerOptions server_options;
@@ -90,7 +90,7 @@ absl::Status Serve(const Flags& flags) {
   gateway_options.page_directory = flags.page.empty() ? DefaultPageFolder() : flags.page;
   gateway_options.allowed_origins = flags.allowed_origins;
   if (gateway_options.page_directory.empty()) {
-    spdlog::warn("no page is served: none is built beside the program; name one with --page");
+    spdlog::warn("serving no page: none is installed with the program; name one with --page");
   }
   const std::shared_ptr<grpc::Channel> channel = server->LocalChannel();
   THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<gateway::Gateway> gateway,
@@ -103,7 +103,7 @@ absl::Status Serve(const Flags& flags) {
   int signal = 0;
   sigwait(&signals, &signal);
   spdlog::info("stopping");
-  // First: it calls the service, which must not end under its calls.
+  // First, because its calls to the service must end before the service does.
   gateway.reset();
   server->Shutdown();
   warm_up.join();
@@ -116,16 +116,17 @@ Command AddServe(CLI::App& app) {
   auto flags = std::make_shared<Flags>();
   CLI::App* serve = app.add_subcommand("serve", "Serve storms to browsers and gRPC clients");
   serve->add_option("--data", flags->data, "Storm files, or folders of them")->required();
-  serve->add_option("--http", flags->http, "HOST:PORT of the page")->capture_default_str();
-  serve->add_option("--grpc", flags->grpc, "HOST:PORT of gRPC")->capture_default_str();
+  serve->add_option("--http", flags->http, "HOST:PORT to serve the page on")->capture_default_str();
+  serve->add_option("--grpc", flags->grpc, "HOST:PORT to serve gRPC on")->capture_default_str();
   serve->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();
-  serve->add_option("--page", flags->page, "Folder of the built page");
-  serve->add_option("--clouds", flags->clouds,
-                    "Folder that generated clouds are kept in and served from; without it they go "
-                    "when the server ends");
+  serve->add_option("--page", flags->page, "Folder with the built page");
+  serve->add_option(
+      "--clouds", flags->clouds,
+      "Folder in which generated clouds are kept; without it they are deleted when the "
+      "server stops");
   serve->add_option("--allow-origin", flags->allowed_origins,
-                    "Origins of other sites whose pages may call");
+                    "Origins of other sites whose pages may call the server");
   serve->add_option("--memory-budget", flags->memory_budget_gib, "GiB of storms kept in memory")
       ->check(CLI::Range(0.01, 1e6))
       ->capture_default_str();

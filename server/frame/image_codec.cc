@@ -12,7 +12,7 @@ namespace thunderhead::frame {
 namespace {
 
 constexpr int kChannels = 3;
-// The largest side that JPEG can hold.
+// The largest side that JPEG allows.
 constexpr int kMaxSide_px = 65535;
 
 struct TurboDeleter {
@@ -24,7 +24,7 @@ struct TurboBufferDeleter {
   void operator()(unsigned char* buffer) const { tjFree(buffer); }
 };
 
-// Frees what libpng holds for an image however the function ends.
+// Frees libpng's memory of an image at the end of a function.
 struct PngImage {
   png_image image{};
   PngImage() { image.version = PNG_IMAGE_VERSION; }
@@ -85,7 +85,7 @@ absl::StatusOr<RgbImage> DecodeJpeg(const std::string& jpeg) {
   int colorspace = 0;
   if (tjDecompressHeader3(handle.get(), data, jpeg.size(), &image.width_px, &image.height_px,
                           &subsampling, &colorspace) != 0) {
-    return absl::InvalidArgumentError(absl::StrCat("no JPEG: ", tjGetErrorStr2(handle.get())));
+    return absl::InvalidArgumentError(absl::StrCat("not a JPEG: ", tjGetErrorStr2(handle.get())));
   }
   image.rgb.resize(ByteCount(image.width_px, image.height_px));
   if (tjDecompress2(handle.get(), data, jpeg.size(), image.rgb.data(), image.width_px,
@@ -118,7 +118,7 @@ absl::StatusOr<std::string> EncodePng(int width_px, int height_px,
 absl::StatusOr<RgbImage> DecodePng(const std::string& png_file) {
   PngImage png;
   if (png_image_begin_read_from_memory(&png.image, png_file.data(), png_file.size()) == 0) {
-    return absl::InvalidArgumentError(absl::StrCat("no PNG: ", png.image.message));
+    return absl::InvalidArgumentError(absl::StrCat("not a PNG: ", png.image.message));
   }
   png.image.format = PNG_FORMAT_RGB;
   RgbImage image;

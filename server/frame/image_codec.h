@@ -1,5 +1,5 @@
-// Pixels to files and back: JPEG by libjpeg-turbo, PNG by libpng. Pixels are 8-bit sRGB, three
-// bytes each, rows from top to bottom. Pure functions, safe from any thread.
+// Encodes and decodes JPEG (libjpeg-turbo) and PNG (libpng). Pixels are 8-bit sRGB, three bytes
+// each, rows from top to bottom. Pure functions, safe from any thread.
 #pragma once
 
 #include <cstdint>

@@ -23,7 +23,7 @@ struct ToneMapped {
   double read_back_ms = 0.0;
 };
 
-// Exposure 0 EV multiplies radiance by this.
+// Factor of radiance at an exposure of 0 EV.
 inline constexpr float kExposureAtZeroEv = 6.0F;
 // Exposed luminance that the film's curve shows just below white, at 0.9 of it.
 inline constexpr float kJustBelowWhite = 1.85F;
@@ -49,8 +49,8 @@ class ToneMapper {
 // The texture's values, four floats a pixel, rows from bottom to top as GL keeps them.
 std::vector<float> ReadLinear(const gl::Texture2D& linear);
 
-// A linear frame as the renderers leave one, and back. The storm of a picture of unknown opacity
-// is everywhere.
+// A linear frame in the renderers' texture format, and back. A picture of unknown opacity counts
+// as all storm.
 gl::Texture2D TextureOf(const picture::LinearPicture& picture);
 picture::LinearPicture PictureOf(const gl::Texture2D& linear);
 

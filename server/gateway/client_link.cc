@@ -18,19 +18,19 @@ constexpr size_t kWatchRead = 4 << 10;
 constexpr std::chrono::seconds kLinger{2};
 
 void SetOption(int socket, int level, int name, int value) {
-  // Each of these only improves behaviour, so a kernel without one is served all the same.
+  // Each option is only an improvement, so errors of a kernel without it are ignored.
   static_cast<void>(::setsockopt(socket, level, name, &value, sizeof(value)));
 }
 
 void TuneSocket(int socket) {
   SetOption(socket, IPPROTO_TCP, TCP_NODELAY, 1);
-  // A client that vanished without a word is noticed after about a minute even while its stream is
-  // quiet.
+  // A client that disappeared without closing is detected after about a minute even while its
+  // stream is idle.
   SetOption(socket, SOL_SOCKET, SO_KEEPALIVE, 1);
   SetOption(socket, IPPROTO_TCP, TCP_KEEPIDLE, 30);
   SetOption(socket, IPPROTO_TCP, TCP_KEEPINTVL, 10);
   SetOption(socket, IPPROTO_TCP, TCP_KEEPCNT, 3);
-  // Old frames shall not pile up in the kernel before a slow client; what waits there is latency.
+  // Limits the frames queued in the kernel for a slow client, which would only add latency.
   SetOption(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, 128 << 10);
 }
 

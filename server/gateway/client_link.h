@@ -1,5 +1,5 @@
-// One client's TCP connection: writes that give up only when nothing moves, and a watch that
-// notices a client that leaves while its call is quiet. Knows neither HTTP nor gRPC. Runs on one
+// One client's TCP connection: writes that time out only when they make no progress, and detection
+// of a client that disconnects while its call is idle. Knows neither HTTP nor gRPC. Runs on one
 // thread.
 #pragma once
 
@@ -24,23 +24,24 @@ class ClientLink : public std::enable_shared_from_this<ClientLink> {
   // The stream, for requests read through `Received()` and for responses; call ExpireIdleWrite()
   // before each write.
   boost::beast::tcp_stream& Stream() { return stream_; }
-  // What has been read and not yet parsed.
+  // Bytes that were read but not yet parsed.
   boost::beast::flat_buffer& Received() { return received_; }
 
   void ExpireIdleWrite() { stream_.expires_after(write_stall_timeout_); }
-  // False where the client is gone or took nothing for the stall timeout.
+  // False if the client is gone or accepted nothing for the stall timeout.
   boost::asio::awaitable<bool> WriteAll(std::vector<boost::asio::const_buffer> buffers);
 
-  // Calls `on_gone` once if the client closes or half closes its side before StopWatching(). What
-  // it sends meanwhile is kept in Received(), up to a limit beyond which it counts as gone too.
+  // Calls `on_gone` once if the client closes or half-closes its side before StopWatching(). Bytes
+  // that it sends meanwhile are kept in Received(), up to a limit beyond which it counts as gone
+  // too.
   void StartWatching(std::function<void()> on_gone);
   boost::asio::awaitable<void> StopWatching();
   bool Gone() const { return gone_; }
 
-  // Ends the sending side and waits a moment for the client's, so that a client still sending reads
-  // the answer instead of a connection reset.
+  // Closes the sending side and waits briefly for the client to close its own, so that a client
+  // still sending reads the response instead of a connection reset.
   boost::asio::awaitable<void> LingeringClose();
-  // At once; everything under way on the link fails.
+  // Closes at once; pending operations on the link fail.
   void Close();
 
  private:

@@ -99,8 +99,8 @@ class Gateway::Listener {
         Admit(std::move(socket));
         continue;
       }
-      // Out of file descriptors, most likely; trying again at once would only burn the processor.
-      spdlog::warn("cannot take a browser's connection: {}", error.message());
+      // Probably out of file descriptors; trying again at once would waste processor time.
+      spdlog::warn("cannot accept a browser's connection: {}", error.message());
       net::steady_timer pause(io_, kAcceptPause);
       co_await pause.async_wait(net::redirect_error(net::use_awaitable, error));
     }
@@ -108,8 +108,7 @@ class Gateway::Listener {
 
   void Admit(tcp::socket socket) {
     if (links_.size() >= site_.options.max_connections) {
-      spdlog::warn("a browser's connection is turned away: {} are open, the most allowed",
-                   links_.size());
+      spdlog::warn("refusing a browser's connection: the maximum of {} are open", links_.size());
       return;
     }
     auto link = std::make_shared<ClientLink>(std::move(socket), site_.options.write_stall_timeout);
@@ -152,7 +151,7 @@ uint16_t Gateway::Port() const { return listener_->Endpoint().port(); }
 
 std::string Gateway::Url() const {
   const net::ip::address address = listener_->Endpoint().address();
-  // A wildcard address is for listening only.
+  // A browser cannot connect to a wildcard address.
   if (address.is_unspecified() || address == net::ip::address_v4::loopback()) {
     return absl::StrCat("http://localhost:", Port(), "/");
   }

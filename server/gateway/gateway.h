@@ -1,6 +1,6 @@
 // Thunderhead for browsers: one HTTP/1.1 port with the built page, /healthz, and gRPC-Web (binary,
 // unary and server streaming) bridged to a gRPC channel. Knows no message type and nothing of
-// storms. Needs no proxy in front of it; deploy/envoy.yaml shows how to put one there.
+// storms. Needs no proxy in front of it; deploy/envoy.yaml shows how to add one.
 #pragma once
 
 #include <chrono>
@@ -17,45 +17,44 @@ namespace thunderhead::gateway {
 
 struct GatewayOptions {
   // An IP address or "localhost". On a loopback address only requests for localhost, 127.0.0.1 and
-  // [::1] are answered, so that a foreign web site cannot reach the server by pointing its own name
-  // here.
+  // [::1] are answered, so that a foreign web site cannot reach the server by resolving its own
+  // name to it (DNS rebinding).
   std::string address = "127.0.0.1";
-  // 0 takes a free one; see Gateway::Port().
+  // 0 chooses a free one; see Gateway::Port().
   uint16_t port = 0;
-  // The built page; empty serves none.
+  // The built page; empty: none.
   std::string page_directory;
   // Origins of other pages that may call, for example "http://localhost:5173". The page served here
   // needs none.
   std::vector<std::string> allowed_origins;
-  // Largest request message; larger ones get RESOURCE_EXHAUSTED. Replies are limited by the channel
-  // alone.
+  // Largest request message; larger ones get RESOURCE_EXHAUSTED. Responses are limited only by the
+  // channel.
   size_t max_message_bytes = 4u << 20;
-  // Connections beyond these are closed at once.
+  // More connections than these are closed at once.
   size_t max_connections = 256;
-  // Closes a connection that has no call and brings no request within this time.
+  // Closes a connection without a call on which no request arrives within this time.
   std::chrono::milliseconds idle_timeout = std::chrono::seconds(60);
-  // Closes a connection whose client takes none of what is written to it for this time, and cancels
-  // its call.
+  // Closes a connection whose client accepts no bytes for this time, and cancels its call.
   std::chrono::milliseconds write_stall_timeout = std::chrono::seconds(120);
 };
 
 class Gateway {
  public:
-  // Listens and serves on a thread of its own until destroyed. `channel` is that of any gRPC
-  // server; give it SetMaxReceiveMessageSize(-1) where replies may exceed gRPC's 4 MiB. For a
-  // server in the same process a Unix socket is better than Server::InProcessChannel(): in
-  // gRPC 1.51 the latter crashes on calls made after Server::Shutdown(), and leaves calls open for
-  // ever whose handler ends while its last message has not been asked for.
+  // Listens and serves on a thread of its own until destroyed. `channel` may be that of any gRPC
+  // server; it needs SetMaxReceiveMessageSize(-1) if responses may exceed gRPC's 4 MiB. For a
+  // server in the same process use a Unix socket rather than Server::InProcessChannel(): in
+  // gRPC 1.51 the latter crashes on calls made after Server::Shutdown(), and never ends a call
+  // whose handler finishes before its last message was read.
   static absl::StatusOr<std::unique_ptr<Gateway>> Start(const GatewayOptions& options,
                                                         std::shared_ptr<grpc::Channel> channel);
 
-  // Stops listening, closes every connection, cancels the calls they run and waits for their end.
+  // Stops listening, closes every connection, cancels the calls on them and waits for their end.
   ~Gateway();
   Gateway(const Gateway&) = delete;
   Gateway& operator=(const Gateway&) = delete;
 
   uint16_t Port() const;
-  // Where a browser finds the page, for example "http://localhost:8080/".
+  // The page's address, for example "http://localhost:8080/".
   std::string Url() const;
 
  private:

@@ -19,11 +19,11 @@ namespace {
 namespace net = boost::asio;
 namespace http = boost::beast::http;
 
-// A deadline so far away is none; adding it to the clock could overflow.
+// A longer timeout counts as none; adding it to the clock could overflow.
 constexpr absl::Duration kLongestTimeout = absl::Hours(24 * 365);
 
 Metadata TrailersOf(const grpc::Status& status, const Metadata& metadata) {
-  // Codes outside the canonical ones are the server's to choose.
+  // A server may send codes outside the canonical ones.
   return Trailers(static_cast<absl::StatusCode>(status.error_code()), status.error_message(),
                   metadata);
 }

@@ -1,6 +1,6 @@
-// One gRPC-Web request, answered on its connection: headers, messages and trailers in their frames,
-// each message read from the server only when the client has taken the one before. Errors are
-// trailers with HTTP status 200, as clients expect. Knows no message type.
+// One gRPC-Web request and its response: headers, messages and trailers in their frames. Reads each
+// message from the server only when the client has accepted the previous one. Errors are trailers
+// with HTTP status 200, as clients expect. Knows no message type.
 #pragma once
 
 #include <boost/beast/http/message.hpp>
@@ -19,14 +19,13 @@ class GrpcWebExchange {
  public:
   using Request = boost::beast::http::request<boost::beast::http::string_body>;
 
-  // All three outlive the exchange.
+  // All three must outlive the exchange.
   GrpcWebExchange(Site& site, ClientLink& link, const Request& request)
       : site_(site), link_(link), request_(request) {}
 
-  // Makes the call that the complete request asks for. False where the connection is of no more
-  // use.
+  // Makes the call of the complete request. False if the connection cannot be used again.
   boost::asio::awaitable<bool> Run();
-  // Answers without a call; `keep_alive` says whether the connection may go on.
+  // Responds without a call; `keep_alive`: the connection may be used again.
   boost::asio::awaitable<bool> Refuse(const absl::Status& status, bool keep_alive);
 
  private:

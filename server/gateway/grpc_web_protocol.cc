@@ -52,9 +52,8 @@ bool IsPrintable(std::string_view value) {
                      [](unsigned char c) { return c >= 0x20 && c <= 0x7e; });
 }
 
-// Headers that carry HTTP itself or the browser's own chatter. Cookies are left out because a
-// browser shares them between all ports of a host, so those of any program on localhost would come
-// along.
+// Headers of HTTP itself or of the browser. Cookies are among them because a browser shares them
+// between all ports of a host, so it would send those of any program on localhost.
 bool IsNotMetadata(std::string_view name) {
   static constexpr std::string_view kNames[] = {"accept",
                                                 "cache-control",
@@ -114,7 +113,7 @@ absl::StatusOr<std::string_view> TakeSingleMessage(std::string_view body) {
   if (body.size() < kFrameHeaderBytes) {
     return absl::InvalidArgumentError(
         absl::StrCat("the request body has ", body.size(),
-                     " bytes, fewer than the 5 that begin a gRPC-Web frame; send one message"));
+                     " bytes, fewer than the 5 of a gRPC-Web frame's header; send one message"));
   }
   const auto flags = static_cast<uint8_t>(body[0]);
   if (flags == kCompressedFlag) {
@@ -122,9 +121,9 @@ absl::StatusOr<std::string_view> TakeSingleMessage(std::string_view body) {
         "the request message is compressed; send it uncompressed (grpc-encoding: identity)");
   }
   if (flags != 0) {
-    return absl::InvalidArgumentError(absl::StrCat("the request body begins with frame flags 0x",
-                                                   absl::Hex(flags),
-                                                   "; only uncompressed messages (0x0) are read"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("the request body begins with frame flags 0x", absl::Hex(flags),
+                     "; only uncompressed messages (0x0) are supported"));
   }
   const uint32_t size = FrameSize(body);
   const size_t held = body.size() - kFrameHeaderBytes;
@@ -134,8 +133,8 @@ absl::StatusOr<std::string_view> TakeSingleMessage(std::string_view body) {
   }
   if (size < held) {
     return absl::InvalidArgumentError(
-        absl::StrCat("the request body goes on for ", held - size,
-                     " bytes after its first message; gRPC-Web sends one message a call"));
+        absl::StrCat("the request body has ", held - size,
+                     " bytes after its first message; gRPC-Web sends one message per call"));
   }
   return body.substr(kFrameHeaderBytes);
 }
@@ -207,15 +206,16 @@ absl::StatusOr<absl::Duration> ParseTimeout(std::string_view text) {
 absl::Status AddRequestHeader(std::string_view name, std::string_view value, Metadata& metadata) {
   const std::string key = absl::AsciiStrToLower(Absl(name));
   if (IsNotMetadata(key)) return absl::OkStatus();
-  // gRPC aborts the process on metadata that breaks its rules, so none may pass.
+  // gRPC aborts the process on metadata that breaks its rules, so such headers are rejected.
   if (!IsLegalName(key)) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "header '", key, "' cannot be gRPC metadata; its name may hold a-z, 0-9, '-', '_', '.'"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("header '", key,
+                     "' cannot be gRPC metadata; its name may contain a-z, 0-9, '-', '_', '.'"));
   }
   if (!IsPrintable(value)) {
     return absl::InvalidArgumentError(
         absl::StrCat("the value of header '", key,
-                     "' holds bytes outside printable ASCII; use a name ending in -bin"));
+                     "' has bytes outside printable ASCII; use a name ending in -bin"));
   }
   if (!IsBinaryName(key)) {
     metadata.emplace_back(key, std::string(value));

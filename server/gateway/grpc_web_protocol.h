@@ -1,5 +1,5 @@
-// The bytes of gRPC-Web: frames, trailers, metadata as HTTP headers, timeouts. Pure functions that
-// know no socket, no call and no message type.
+// The wire format of gRPC-Web: frames, trailers, metadata as HTTP headers, timeouts. Pure functions
+// that know no socket, no call and no message type.
 // https://github.com/grpc/grpc/blob/master/doc/PROTOCOL-WEB.md and PROTOCOL-HTTP2.md
 #pragma once
 
@@ -26,7 +26,7 @@ using Metadata = std::vector<std::pair<std::string, std::string>>;
 // True for application/grpc-web and application/grpc-web+proto, the binary kinds.
 bool IsBinaryGrpcWeb(std::string_view content_type);
 
-// True for everything that begins with application/grpc, whether it can be served or not.
+// True for every type that begins with application/grpc, supported or not.
 bool IsAnyGrpc(std::string_view content_type);
 
 // True for "/package.Service/Method".
@@ -35,29 +35,29 @@ bool IsMethodPath(std::string_view path);
 // The one message of a request body.
 absl::StatusOr<std::string_view> TakeSingleMessage(std::string_view body);
 
-// Goes before a message of `size` bytes.
+// The header of the frame of a message of `size` bytes.
 std::array<uint8_t, kFrameHeaderBytes> MessageFrameHeader(uint32_t size);
 
 // The last frame of a response body.
 std::string TrailerFrame(const Metadata& trailers);
 
-// What ends a call: grpc-status, grpc-message where there is one, then `metadata`, values ready for
-// the wire.
+// The trailers of a call: grpc-status, grpc-message unless empty, then `metadata`, encoded for the
+// wire.
 Metadata Trailers(absl::StatusCode code, std::string_view message, const Metadata& metadata);
 
-// `message` as grpc-message carries it.
+// `message` in the encoding of grpc-message.
 std::string PercentEncode(std::string_view message);
 
-// A grpc-timeout such as "250m".
+// Parses a grpc-timeout such as "250m".
 absl::StatusOr<absl::Duration> ParseTimeout(std::string_view text);
 
-// Adds a request's header to `metadata` unless it is HTTP's, the browser's or gRPC's own business.
+// Adds a request's header to `metadata` unless it belongs to HTTP, the browser or gRPC itself.
 absl::Status AddRequestHeader(std::string_view name, std::string_view value, Metadata& metadata);
 
-// True for response metadata that a handler may send to the browser.
+// True for response metadata that is forwarded to the browser.
 bool IsForwardedToBrowser(std::string_view name);
 
-// `value` of metadata `name` as an HTTP header carries it.
+// `value` of metadata `name` in the encoding of an HTTP header.
 std::string EncodeValue(std::string_view name, std::string_view value);
 
 }  // namespace thunderhead::gateway

@@ -37,9 +37,9 @@ class HttpConnection {
  public:
   HttpConnection(ClientLink& link, Site& site) : link_(link), site_(site) {}
 
-  // False where it was the last request of the connection.
+  // False if it was the last request of the connection.
   net::awaitable<bool> ServeOne();
-  // True where the client may still be sending.
+  // True if the client may still be sending.
   bool HasUnreadInput() const { return unread_input_; }
 
  private:
@@ -67,8 +67,8 @@ class HttpConnection {
 net::awaitable<bool> HttpConnection::ServeOne() {
   Parser parser;
   parser.header_limit(kMaxHeaderBytes);
-  // The body's limit comes once the header says whose answer it is; boost::none would refuse every
-  // body in Beast 1.74.
+  // The body's limit is set after the header has been read; boost::none would refuse every body in
+  // Beast 1.74.
   parser.body_limit(std::numeric_limits<uint64_t>::max());
   link_.Stream().expires_after(site_.options.idle_timeout);
   error_code error;
@@ -104,7 +104,7 @@ net::awaitable<bool> HttpConnection::Answer(Parser& parser) {
     keep = co_await AnswerOptions(request);
   } else {
     keep = co_await SendText(request, http::status::method_not_allowed,
-                             "Only GET, HEAD, POST and OPTIONS are answered.\n",
+                             "Only GET, HEAD, POST and OPTIONS are supported.\n",
                              "GET, HEAD, POST, OPTIONS");
   }
   co_return keep;
@@ -131,19 +131,19 @@ net::awaitable<bool> HttpConnection::AnswerPost(Parser& parser, const std::strin
   bool keep = false;
   if (path == "/healthz" || site_.files.Find(path).has_value()) {
     keep = co_await SendText(request, http::status::method_not_allowed,
-                             "This path is read with GET.\n", kPageMethods);
+                             "Read this path with GET.\n", kPageMethods);
   } else if (!IsMethodPath(path)) {
     keep = co_await SendText(request, http::status::not_found,
                              "There is nothing at this path; gRPC methods are at "
                              "/package.Service/Method.\n");
   } else if (!IsBinaryGrpcWeb(View(request[http::field::content_type]))) {
     keep = co_await SendText(request, http::status::unsupported_media_type,
-                             "Calls are made as application/grpc-web or "
+                             "Send calls as application/grpc-web or "
                              "application/grpc-web+proto; grpc-web-text, JSON and plain gRPC are "
-                             "not served on this port.\n");
+                             "not supported on this port.\n");
   } else if (request.version() < 11) {
     keep = co_await SendText(request, http::status::http_version_not_supported,
-                             "Calls need HTTP/1.1, whose chunks carry streams.\n");
+                             "Calls need HTTP/1.1, as responses are streamed in chunks.\n");
   } else {
     keep = co_await AnswerCall(parser);
   }
@@ -153,9 +153,9 @@ net::awaitable<bool> HttpConnection::AnswerPost(Parser& parser, const std::strin
 net::awaitable<bool> HttpConnection::AnswerOptions(const Request& request) {
   const std::string_view origin = View(request[http::field::origin]);
   if (!origin.empty() && !site_.policy.AllowsOrigin(origin)) {
-    const std::string text = absl::StrCat("Pages of ", std::string(origin),
-                                          " may not call this server; start it with that origin "
-                                          "among those allowed.\n");
+    const std::string text =
+        absl::StrCat("Pages of ", std::string(origin), " may not call this server; start it with ",
+                     "--allow-origin ", std::string(origin), " to allow that.\n");
     const bool keep = co_await SendText(request, http::status::forbidden, text);
     co_return keep;
   }
@@ -207,14 +207,14 @@ net::awaitable<error_code> HttpConnection::ReadBody(Parser& parser) {
 net::awaitable<bool> HttpConnection::RefuseLargeCall(const Request& request) {
   const absl::Status status = absl::ResourceExhaustedError(
       absl::StrCat("the request message is larger than the ", site_.options.max_message_bytes,
-                   " bytes that this server takes"));
+                   " bytes that this server accepts"));
   GrpcWebExchange exchange(site_, link_, request);
   const bool keep = co_await exchange.Refuse(status, /*keep_alive=*/false);
   co_return keep;
 }
 
 net::awaitable<bool> HttpConnection::AnswerBadHeader(error_code error) {
-  // The client's own end of a connection, a timeout or a broken network needs no answer.
+  // No response if the client closed the connection, or after a timeout or network error.
   if (error.category() != http::make_error_code(http::error::bad_method).category() ||
       error == http::error::end_of_stream || error == http::error::partial_message) {
     co_return false;
@@ -228,7 +228,7 @@ net::awaitable<bool> HttpConnection::AnswerBadHeader(error_code error) {
   const bool keep = co_await SendText(
       request,
       too_large ? http::status::request_header_fields_too_large : http::status::bad_request,
-      absl::StrCat("The request's header cannot be read: ", error.message(), ".\n"));
+      absl::StrCat("Cannot parse the request's header: ", error.message(), ".\n"));
   co_return keep;
 }
 
@@ -246,7 +246,7 @@ net::awaitable<bool> HttpConnection::SendFile(const Request& request, const Stat
   error_code error;
   body.open(file.path.c_str(), boost::beast::file_mode::scan, error);
   if (error) {
-    spdlog::warn("{} cannot be read: {}", file.path.string(), error.message());
+    spdlog::warn("cannot read {}: {}", file.path.string(), error.message());
     keep = co_await SendText(request, http::status::not_found, "This file cannot be read.\n");
     co_return keep;
   }
@@ -285,7 +285,7 @@ net::awaitable<bool> HttpConnection::Send(const Request& request, http::response
   site_.policy.Decorate(View(request[http::field::origin]), response);
   response.keep_alive(keep_alive);
   http::response_serializer<Body> serializer(response);
-  // Part by part, so that a large file on a slow line is given up only when nothing moves.
+  // In parts, so that a large file on a slow connection times out only without any progress.
   while (!serializer.is_done()) {
     link_.ExpireIdleWrite();
     error_code error;
@@ -305,7 +305,7 @@ net::awaitable<void> ServeConnection(std::shared_ptr<ClientLink> link, Site& sit
     while (keep) keep = co_await connection.ServeOne();
     if (connection.HasUnreadInput()) co_await link->LingeringClose();
   } catch (const std::exception& error) {
-    spdlog::error("a browser's connection is closed after an internal error: {}", error.what());
+    spdlog::error("closing a browser's connection after an internal error: {}", error.what());
   }
   link->Close();
 }

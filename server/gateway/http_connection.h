@@ -1,5 +1,5 @@
-// One HTTP/1.1 connection from its first request to its end: reads requests within their limits and
-// gives each to the page, the health check, the cross-origin preflight or the gRPC-Web bridge.
+// Serves one HTTP/1.1 connection: reads requests within their limits and dispatches each to the
+// page, the health check, the cross-origin preflight or the gRPC-Web bridge.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace thunderhead::gateway {
 
-// Ends with `link` closed and throws nothing. `site` outlives it.
+// At the end `link` is closed. Throws nothing. `site` must outlive it.
 boost::asio::awaitable<void> ServeConnection(std::shared_ptr<ClientLink> link, Site& site);
 
 }  // namespace thunderhead::gateway

@@ -13,8 +13,8 @@ namespace {
 
 namespace http = boost::beast::http;
 
-// Pictures arrive as blobs, decoding may run in a worker made from one, and sliders are styled
-// inline.
+// Pictures are blobs, decoding may run in a worker created from a blob, and sliders have inline
+// styles.
 constexpr char kContentSecurityPolicy[] =
     "default-src 'self'; img-src 'self' blob: data:; worker-src 'self' blob:; "
     "style-src 'self' 'unsafe-inline'; object-src 'none'; base-uri 'self'; frame-ancestors 'self'";
@@ -50,7 +50,7 @@ void HttpPolicy::Decorate(std::string_view origin, http::fields& response) const
   response.set(http::field::vary, "Origin");
   if (!AllowsOrigin(origin)) return;
   response.set(http::field::access_control_allow_origin, BeastView(origin));
-  // Metadata may have any name; without credentials the asterisk stands for all of them.
+  // Metadata may have any name; without credentials the asterisk matches all.
   response.set(http::field::access_control_expose_headers, "*");
 }
 

@@ -1,5 +1,5 @@
-// Who may ask and what every answer says about it: the Host check against DNS rebinding,
-// cross-origin rules and security headers. Knows no socket and no route.
+// Access rules and their response headers: the Host check against DNS rebinding, cross-origin rules
+// and security headers. Knows no socket and no route.
 #pragma once
 
 #include <boost/beast/http/fields.hpp>
@@ -11,17 +11,17 @@ namespace thunderhead::gateway {
 
 class HttpPolicy {
  public:
-  // `loopback` turns the Host check on: only names of this machine's loopback are answered.
+  // `loopback` enables the Host check: only names of this machine's loopback address are allowed.
   HttpPolicy(bool loopback, std::vector<std::string> allowed_origins);
 
   bool AllowsHost(std::string_view host) const;
-  // True for an origin, other than the page's own, that may call.
+  // True for an origin, other than the page's own, whose pages may call.
   bool AllowsOrigin(std::string_view origin) const;
 
-  // Adds the headers that every answer to a request with `origin` carries.
+  // Adds the headers of every response to a request from `origin`.
   void Decorate(std::string_view origin, boost::beast::http::fields& response) const;
-  // Adds what the answer to a preflight says beyond that; `asked_headers` is what the browser wants
-  // to send.
+  // Adds the further headers of the response to a preflight; `asked_headers` are those that the
+  // browser wants to send.
   void DecoratePreflight(std::string_view asked_headers,
                          boost::beast::http::fields& response) const;
 

@@ -1,4 +1,4 @@
-// What every connection of a gateway shares.
+// Shared by all connections of a gateway.
 #pragma once
 
 #include "gateway/gateway.h"

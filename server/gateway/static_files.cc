@@ -111,7 +111,7 @@ absl::StatusOr<StaticFiles> StaticFiles::Open(const std::string& directory) {
   if (!files.Find("/").has_value()) {
     return absl::NotFoundError(
         absl::StrCat("the page's directory ", directory,
-                     " holds no readable index.html; build the page with ./dev build"));
+                     " has no readable index.html; build the page with ./dev build"));
   }
   return files;
 }
@@ -122,7 +122,7 @@ std::optional<StaticFile> StaticFiles::Find(std::string_view url_path) const {
   if (!relative.has_value()) return std::nullopt;
   std::error_code error;
   fs::path path = fs::canonical(root_ / *relative, error);
-  // Symbolic links may point around inside the page but not out of it.
+  // Symbolic links may point inside the page's directory but not out of it.
   if (error || !IsInside(path, root_)) return std::nullopt;
   struct stat information = {};
   if (::stat(path.c_str(), &information) != 0 || !S_ISREG(information.st_mode)) return std::nullopt;
@@ -132,8 +132,8 @@ std::optional<StaticFile> StaticFiles::Find(std::string_view url_path) const {
   file.entity_tag =
       absl::StrCat("\"", absl::Hex(information.st_size), "-", absl::Hex(information.st_mtim.tv_sec),
                    "-", absl::Hex(information.st_mtim.tv_nsec), "\"");
-  // The build puts a hash of their content into the names of assets; every other name must be asked
-  // for anew.
+  // The names of assets contain a hash of their content, so browsers need to revalidate only the
+  // others.
   const bool is_hashed = *relative->begin() == "assets";
   file.cache_control = is_hashed ? "public, max-age=31536000, immutable" : "no-cache";
   file.path = std::move(path);

@@ -1,5 +1,5 @@
-// The built page's files: finds the one that a request's path names, with what HTTP says of it.
-// Never leaves the page's directory. Knows no socket.
+// The files of the built page: finds the file for a request's path, with its HTTP headers. Never
+// leaves the page's directory. Knows no socket.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +21,7 @@ struct StaticFile {
 
 class StaticFiles {
  public:
-  // An empty `directory` is a server without a page; any other must hold index.html.
+  // An empty `directory` means a server without a page; any other must contain index.html.
   static absl::StatusOr<StaticFiles> Open(const std::string& directory);
 
   // The file for a percent-encoded URL path, without its query; "/" is index.html.
@@ -33,7 +33,7 @@ class StaticFiles {
   std::filesystem::path root_;  // canonical, or empty
 };
 
-// True where the If-None-Match header `candidates` names `entity_tag`.
+// True if the If-None-Match header `candidates` names `entity_tag`.
 bool MatchesEntityTag(std::string_view candidates, std::string_view entity_tag);
 
 }  // namespace thunderhead::gateway

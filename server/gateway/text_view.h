@@ -1,4 +1,4 @@
-// Beast 1.74's text as the standard library's.
+// Converts between the string views of Beast 1.74 and of the standard library.
 #pragma once
 
 #include <boost/beast/core/string.hpp>

@@ -43,11 +43,11 @@ UpstreamCall::Lease UpstreamCall::Start(grpc::GenericStub& stub,
   // message.
   stub.PrepareBidiStreamingCall(&call->context_, request.method, {}, call.get());
   call->self_ = call;
-  // Reads start outside gRPC's callbacks, which needs a hold until the last of them.
+  // Reads start outside gRPC's callbacks, which requires a hold until the last of them.
   call->AddHold();
   // gRPC 1.51's in-process transport never ends the server's side of a call whose handler sends a
   // message together with its status, as unary ones do, while no read is pending. So the first read
-  // is there before the call.
+  // starts before the call.
   call->StartRead(&call->message_);
   call->StartWriteLast(&call->request_, grpc::WriteOptions());
   call->StartCall();

@@ -1,5 +1,5 @@
-// One call to the gRPC server, as seen from the thread of an executor: start it, await what comes,
-// one message at a time, and its end. Messages are bytes; knows neither their types nor HTTP.
+// One call to the gRPC server, used from the thread of an executor: start it, await its messages
+// one at a time, and its end. Messages are bytes; knows neither their types nor HTTP.
 #pragma once
 
 #include <boost/asio/any_io_executor.hpp>
@@ -30,7 +30,7 @@ struct UpstreamRequest {
 
 class UpstreamCall : private grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
  public:
-  // Ends its call when it goes, so that none outlives the connection that asked for it.
+  // Ends its call when destroyed, so that no call outlives its connection.
   class Lease {
    public:
     explicit Lease(std::shared_ptr<UpstreamCall> call) : call_(std::move(call)) {}
@@ -38,7 +38,7 @@ class UpstreamCall : private grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::Byt
     Lease& operator=(const Lease&) = delete;
     ~Lease() { call_->Release(); }
     UpstreamCall* operator->() const { return call_.get(); }
-    // For those who may still want to cancel the call after the lease.
+    // For a caller that may still cancel the call after the lease.
     std::shared_ptr<UpstreamCall> Share() const { return call_; }
 
    private:
@@ -49,14 +49,14 @@ class UpstreamCall : private grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::Byt
   static Lease Start(grpc::GenericStub& stub, const boost::asio::any_io_executor& executor,
                      const UpstreamRequest& request);
 
-  // False where the server sent only trailers.
+  // False if the server sent only trailers.
   boost::asio::awaitable<bool> AwaitHeaders();
-  // Asks the server for its next message; nothing once there are no more.
+  // Reads the server's next message; none after the last.
   boost::asio::awaitable<std::optional<grpc::ByteBuffer>> ReadMessage();
-  // The call's outcome; cancels the call where messages are left.
+  // The call's outcome; cancels the call if not all messages were read.
   boost::asio::awaitable<grpc::Status> Finish();
 
-  // Valid after AwaitHeaders() and Finish(); values ready for the wire.
+  // Valid after AwaitHeaders() and Finish(); encoded for the wire.
   Metadata InitialMetadata() const;
   Metadata TrailingMetadata() const;
 
@@ -75,9 +75,9 @@ class UpstreamCall : private grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::Byt
   void Release();
 
   boost::asio::any_io_executor executor_;
-  // Keeps the executor running until gRPC has let go of the call.
+  // Keeps the executor running until gRPC has released the call.
   boost::asio::executor_work_guard<boost::asio::any_io_executor> work_;
-  // Never expires: cancelled to wake who awaits a change.
+  // Never expires: cancelled to wake AwaitTrue().
   boost::asio::steady_timer changed_;
   std::shared_ptr<UpstreamCall> self_;  // held until gRPC is done with it
   grpc::ClientContext context_;

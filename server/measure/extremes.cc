@@ -11,10 +11,10 @@ namespace internal {
 
 namespace {
 
-// Of a number near 1 as the light volume's buffers hold it.
+// Rounding of a number near 1 in the light volume's half-float buffers.
 constexpr double kHalfStep = 0x1p-11;
 
-// Of each of the factors that multiply to a transmittance.
+// Rounding of each factor of a transmittance.
 constexpr double kSingleStep = 0x1p-24;
 
 }  // namespace
@@ -36,13 +36,13 @@ Verdict TransmittanceNear(const accuracy::Path& path, const Seen& seen, double d
   const double depth_error = light_volume ? errors.light_volume : errors.half_angle;
   const double rounding =
       slices * kSingleStep + (light_volume && !single_precision ? kHalfStep : 0);
-  const double opaque = expected < 2.0 * kOpaque ? kOpaque : 0.0;
+  const double opaque = expected < 2.0 * kOpaqueTransmittance ? kOpaqueTransmittance : 0.0;
   return Sound(seen, Near(seen.transmittance, expected,
                           depth_error * depth * expected + rounding + opaque, 1.0));
 }
 
-Verdict AtMost(double got, double most) {
-  return {absl::StrFormat("<= %.3g", most), absl::StrFormat("%.4g", got), got <= most};
+Verdict AtMost(double got, double bound) {
+  return {absl::StrFormat("<= %.3g", bound), absl::StrFormat("%.4g", got), got <= bound};
 }
 
 Verdict Sound(const Seen& seen, Verdict verdict) {

@@ -1,6 +1,6 @@
-// The extremes that a storm or a user can bring, each as a case with its analytic or limiting
-// answer. `thunderhead measure extremes` prints them; tests/accuracy runs the same list. Uses the
-// current GL context.
+// Cases with extreme input of storms or users, each with its analytic or limiting answer.
+// `thunderhead measure extremes` prints them; tests/accuracy runs the same list. Uses the current
+// GL context.
 #pragma once
 
 #include <functional>
@@ -23,7 +23,7 @@ struct Extreme {
   std::function<absl::StatusOr<Verdict>(Probe& probe)> check;
 };
 
-// Those of files and numbers, then those of pictures by every path.
+// Cases of files and numbers, then cases of pictures by every path.
 std::vector<Extreme> Extremes();
 
 }  // namespace thunderhead::measure

@@ -1,4 +1,4 @@
-// Optical depths, numbers of slices, radii.
+// Extreme optical depths, numbers of slices, particle radii.
 #include <cmath>
 #include <numbers>
 
@@ -12,12 +12,11 @@
 namespace thunderhead::measure::internal {
 namespace {
 
-// Thinner media are drawn in single precision: a half float holds no opacity below 5e-4, and no
-// radiance below 6e-8.
+// Thinner media are drawn in single precision: half floats cannot represent opacities below 5e-4 or
+// radiances below 6e-8.
 constexpr double kThin = 0.01;
 
-// Single scattering, same in all directions, of a layer lit and seen from straight above, whatever
-// its profile.
+// Isotropic single scattering of a layer of any profile, lit and seen from the zenith.
 double Reflected(double depth) { return -std::expm1(-2.0 * depth) / 2.0 / (4 * std::numbers::pi); }
 
 constexpr int kFewSlices = 8;
@@ -36,8 +35,8 @@ Extreme DepthPerSlice(const accuracy::Path& path, double per_slice,
             const auto fields = FieldsOf({.optical_depth = depth});
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen,
                                          probe.Draw(scene, *fields, {.single_precision = thin}));
-            // Delta scaling takes the forward peak out of what the eye loses, similarity scaling
-            // all that goes on forward.
+            // Of the extinction towards the eye, delta scaling removes the forward peak, similarity
+            // scaling all forward scattering.
             const renderers::GroupWeights weights(
                 renderers::MediumOf(scene, *fields),
                 *scene::MediumSettingsOf(scene.rendering.technique));
@@ -49,12 +48,12 @@ Extreme DepthPerSlice(const accuracy::Path& path, double per_slice,
 }
 
 // Reflectance of a thin layer in the paper's transport, over the true one: its display
-// normalisation shows a phase function that is the same in all directions as white, 1/2
-// (common/phase.glsl), in place of 1 / (4 pi).
+// normalisation shows an isotropic phase function as white, 1/2 (common/phase.glsl), instead of
+// 1 / (4 pi).
 constexpr double kPaperBrightness = 2.0 * std::numbers::pi;
 
-// Where slices are so thin that light is scattered once, radiance is in proportion to the depth. It
-// shows what no transmittance does: 1 - 1e-8 has no number of its own in single precision.
+// With slices so thin that light is scattered only once, radiance is proportional to the optical
+// depth. Transmittance could not show that: 1 - 1e-8 rounds to 1 in single precision.
 Extreme ThinSlices(const accuracy::Path& path, double per_slice,
                    const accuracy::Named<scene::Transport>& transport) {
   const std::string name = absl::StrFormat("%s: light scattered by slices of optical depth %g, %s",
@@ -103,7 +102,7 @@ Extreme Radius(const accuracy::Path& path, float radius_m) {
             scene::Scene scene = PlainScene(path);
             physics::ParticleOptics& cloud =
                 scene.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].optics;
-            // Extinction goes with one over the radius.
+            // Extinction is inversely proportional to the radius.
             const double depth = static_cast<double>(cloud.radius_m) / radius_m;
             const bool thin = depth < kThin;
             cloud.radius_m = radius_m;
@@ -114,7 +113,7 @@ Extreme Radius(const accuracy::Path& path, float radius_m) {
           }};
 }
 
-// All light that is scattered goes on forwards, and not a bit more.
+// All scattered light continues forwards; energy must not grow.
 Extreme LightEnergy(const accuracy::Path& path,
                     const accuracy::Named<scene::Transport>& transport) {
   return {absl::StrFormat("%s: light is never more than came in, theta_f 90, %s", path.name,
@@ -126,7 +125,7 @@ Extreme LightEnergy(const accuracy::Path& path,
             scene::MediumSettingsOf(&scene.rendering.technique)->theta_f_deg = 90.0;
             THUNDERHEAD_ASSIGN_OR_RETURN(
                 const Seen seen, probe.Draw(scene, *FieldsOf({.optical_depth = 100.0}), {}));
-            // Of the light that comes in some is left out of the beam: there is a medium.
+            // Some light must be lost, or there would be no medium.
             const bool lit = seen.least_light < 0.999;
             return Sound(seen, {"light and transmittance within 0 to 1, not all is left",
                                 absl::StrFormat("least light %g", seen.least_light), lit});

@@ -1,4 +1,5 @@
-// What a file may hold: nothing, negatives, missing values; and half floats over all their range.
+// Extreme contents of files: empty, negative and missing values; and the whole range of half
+// floats.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,7 +15,7 @@ namespace {
 constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// One layer of air, 1 m deep and 1 kg/m3 dense, a column for each of `values`.
+// One layer of air, 1 m thick and of 1 kg/m3, with a column for each of `values`.
 volume::LayerAir AirOver(const std::vector<float>& values) {
   volume::LayerAir air;
   air.levels = 1;
@@ -25,8 +26,8 @@ volume::LayerAir AirOver(const std::vector<float>& values) {
   return air;
 }
 
-// Reads mixing ratios as from a file, expects how many are negative and missing, and that only good
-// ones are left to be drawn.
+// Reads mixing ratios as from a file and checks how many are negative and missing, and that only
+// valid ones remain.
 Extreme MixingRatios(const std::string& name, std::vector<float> values, int negative, int missing,
                      float left_kg_per_m3) {
   return {name, [=](Probe&) -> absl::StatusOr<Verdict> {

@@ -1,4 +1,4 @@
-// What the files of extremes share.
+// Shared by the files with cases of extreme input.
 #pragma once
 
 #include <string>
@@ -9,41 +9,41 @@
 
 namespace thunderhead::measure::internal {
 
-// A ray may end where less than this of the background shows (light_volume/march.frag,
-// metaball/splat.frag).
-inline constexpr double kOpaque = 0.005;
+// The transmittance below which a ray may end, as in light_volume/march.frag and
+// metaball/splat.frag.
+inline constexpr double kOpaqueTransmittance = 0.005;
 
-// Passes if `got` is within `tolerance` of `expected`. `without` is what a picture without the
-// medium shows: a tolerance that takes it in fails, as such a case could not.
+// Passes if `got` is within `tolerance` of `expected`. `without` is the value of a picture without
+// the medium: if that would pass too, the case fails, as it would test nothing.
 Verdict Near(double got, double expected, double tolerance, double without);
 
-// How far off a ray's optical depth may be, as a share of it.
+// Tolerances of a ray's optical depth, relative.
 struct DepthErrors {
   double half_angle;
   double light_volume;
 };
 
-// Where a ray crosses the box's faces upright. Extinction is stored in half floats (2^-12). A
-// camera 0.1 degrees off the zenith tilts slices by as much: they extend 0.4 % beyond the box.
+// For a vertical ray. Extinction is stored in half floats (2^-12). A camera 0.1 degrees off the
+// zenith tilts slices by as much: they extend 0.4 % beyond the box.
 inline constexpr DepthErrors kUpright = {.half_angle = 0.005, .light_volume = 0.0005};
 
-// Where it crosses them aslant. Half-angle slices count whole or not at all: off by up to two of
-// 128, over a box that fills a third of what is sliced. The light volume's rays end where the box
-// does, whatever their direction.
+// For a slanted ray. Half-angle slices count completely or not at all: an error of up to two of
+// 128, over a box that fills a third of the sliced depth. The light volume's rays end at the box's
+// faces in every direction.
 inline constexpr DepthErrors kSlanted = {.half_angle = 0.05, .light_volume = 0.0005};
 
 // The transmittance of `seen`, drawn by `path` with `slices`, is that of `depth`.
 Verdict TransmittanceNear(const accuracy::Path& path, const Seen& seen, double depth,
                           const DepthErrors& errors, int slices, bool single_precision = false);
 
-// Passes if `got` is at most `most`.
-Verdict AtMost(double got, double most);
+// Passes if `got` is at most `bound`.
+Verdict AtMost(double got, double bound);
 
-// `verdict`, failed if what was seen is not sound.
+// `verdict`, but failed if `seen` is not sound.
 Verdict Sound(const Seen& seen, Verdict verdict);
 
-// A scene of cloud water by one path: single scattering (low albedo, consistent) of a phase
-// function that is the same in all directions.
+// A scene of cloud water by one path: single scattering (low albedo, consistent) with an isotropic
+// phase function.
 scene::Scene PlainScene(const accuracy::Path& path);
 
 void AppendInputExtremes(std::vector<Extreme>* extremes);

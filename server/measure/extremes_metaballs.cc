@@ -1,5 +1,5 @@
-// What metaballs make of optical depths, domains and cells of all sizes. A fit is no exact picture
-// of a box, so that what is asked for is soundness, and a bound.
+// Metaballs at extreme optical depths, domains and cells. A fit does not represent a box exactly,
+// so the cases check soundness and bounds.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -26,38 +26,38 @@ scene::Scene BallScene(scene::Transport transport) {
   return scene;
 }
 
-// `got` lies between `least` and `most`, where `without`, what a picture without balls shows, does
-// not lie.
-Verdict Within(double got, double least, double most, double without) {
-  Verdict verdict{absl::StrFormat("%g to %g", least, most), absl::StrFormat("%g", got),
-                  got >= least && got <= most};
-  if (without >= least && without <= most) {
+// Passes if `got` is from `low` to `high` and `without`, the value of a picture without balls, is
+// not.
+Verdict Within(double got, double low, double high, double without) {
+  Verdict verdict{absl::StrFormat("%g to %g", low, high), absl::StrFormat("%g", got),
+                  got >= low && got <= high};
+  if (without >= low && without <= high) {
     verdict.got += ", but no balls at all would pass";
     verdict.passed = false;
   }
   return verdict;
 }
 
-// The middle ray's transmittance is between `least` and `highest`, whatever the fit.
-Extreme Between(const std::string& what, const Box& box, const Look& look, double least,
-                double highest) {
+// The middle ray's transmittance is from `low` to `high` for any fit.
+Extreme Between(const std::string& what, const Box& box, const Look& look, double low,
+                double high) {
   return {absl::StrFormat("%s: %s", kPath.name, what),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
             THUNDERHEAD_ASSIGN_OR_RETURN(
                 const Seen seen,
                 probe.Draw(BallScene(scene::Transport::kConsistent), *FieldsOf(box), look));
-            return Sound(seen, Within(seen.transmittance, least, std::max(highest, kOpaque), 1.0));
+            return Sound(
+                seen, Within(seen.transmittance, low, std::max(high, kOpaqueTransmittance), 1.0));
           }};
 }
 
-// Of a full box, in the middle of which the fit is within a fifth of the depth.
+// In the middle of a full box the fit's optical depth is off by at most a fifth.
 Extreme Depth(double depth) {
   return Between(absl::StrFormat("optical depth %g", depth), {.optical_depth = depth}, {},
                  std::exp(-1.2 * depth), std::exp(-0.8 * depth));
 }
 
-// The same of the light that so thin a box scatters, once: also where 1 less the depth has no
-// number of its own.
+// The same for the light scattered once by a thin box, even where 1 minus the depth rounds to 1.
 Extreme ThinLight(double depth) {
   return {absl::StrFormat("%s: light scattered at optical depth %g", kPath.name, depth),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
@@ -80,8 +80,9 @@ Extreme Empty() {
           }};
 }
 
-// Optical depth of the balls along a ray from `origin_m`, as Man prints it: of each ball tau, times
-// its density, at most 1 and 1 for the mean one, times the field where the ray is nearest.
+// Optical depth of the balls along a ray from `origin_m`, as in Man's paper: the sum over the balls
+// of tau, times the ball's density over the mean density (at most 1), times the ball's field where
+// the ray is nearest.
 double PaperDepth(const std::vector<renderers::Ball>& balls, double tau, const glm::dvec3& origin_m,
                   const glm::dvec3& direction) {
   double sum = 0.0;
@@ -98,8 +99,8 @@ double PaperDepth(const std::vector<renderers::Ball>& balls, double tau, const g
   return depth;
 }
 
-// Man's densities are in proportion to the extinction, his optical depth is a setting: whatever the
-// storm's own, the picture is the same.
+// Man's densities are relative and his optical depth is a setting, so the picture does not depend
+// on the storm's own optical depth.
 Extreme Paper(double depth) {
   return {
       absl::StrFormat("%s: paper transport, optical depth %g", kPath.name, depth),

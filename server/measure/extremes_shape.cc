@@ -1,4 +1,4 @@
-// Domains of all sizes, cells of all shapes, volumes of one cell, of too many, and of none.
+// Domains of extreme sizes, cells of extreme shapes, volumes of one cell, too many cells, and none.
 #include <epoxy/gl.h>
 
 #include <algorithm>
@@ -34,9 +34,9 @@ Extreme DomainSize(const accuracy::Path& path, double width_m) {
 Extreme TooManyCells(const accuracy::Path& path) {
   return {absl::StrFormat("%s: more cells than a 3D texture holds", path.name),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
-            GLint most = 0;
-            glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most);
-            const auto fields = FieldsOf({.cells = glm::ivec3(most + 77, 2, 2)});
+            GLint max_cells = 0;
+            glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &max_cells);
+            const auto fields = FieldsOf({.cells = glm::ivec3(max_cells + 77, 2, 2)});
             const scene::Scene scene = PlainScene(path);
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *fields, {}));
             return TransmittanceNear(path, seen, 1.0, kUpright,
@@ -44,7 +44,7 @@ Extreme TooManyCells(const accuracy::Path& path) {
           }};
 }
 
-// Not drawn: transmittance is 1 and radiance 0, exactly.
+// Nothing is drawn: transmittance is exactly 1 and radiance exactly 0.
 Extreme Nothing(const accuracy::Path& path, const std::string& what, const Box& box, bool visible) {
   return {absl::StrFormat("%s: %s", path.name, what), [=](Probe& probe) -> absl::StatusOr<Verdict> {
             scene::Scene scene = PlainScene(path);

@@ -1,5 +1,5 @@
-// Views along, against and across the light, a sweep past 90 degrees, a camera inside the cloud, a
-// sun at the horizon and below.
+// Views along, against and across the light, a sweep past 90 degrees, a camera inside the cloud,
+// the sun at the horizon and below.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -37,8 +37,8 @@ double MeanRadiance(const Seen& seen) {
   return sum / (static_cast<double>(seen.eye.size()) / 4.0);
 }
 
-// Past 90 degrees from the sun half-angle slices turn round. The picture must not pop there: the
-// change over the step that does it is like the mean of the steps before and after.
+// At 90 degrees from the sun half-angle slices change their orientation. The picture must not pop
+// there: the change over that step is like the mean of the steps before and after.
 Extreme Sweep(const accuracy::Path& path, const accuracy::Named<scene::Transport>& transport) {
   return {absl::StrFormat("%s: pop when the view passes 90 degrees from the sun, %s", path.name,
                           transport.name),
@@ -67,7 +67,7 @@ Extreme Sweep(const accuracy::Path& path, const accuracy::Named<scene::Transport
           }};
 }
 
-// The same picture from half-float and from float buffers.
+// Half-float and float buffers give the same picture.
 Extreme HalfAgainstSingle(const accuracy::Path& path) {
   return {absl::StrFormat("%s: half-float buffers against float buffers", path.name),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
@@ -81,8 +81,8 @@ Extreme HalfAgainstSingle(const accuracy::Path& path) {
             if (half.eye == single.eye) {
               return Verdict{"two pictures", "one: both buffers are the same", false};
             }
-            // Of 2^-11 in the root of the light's depth, where a few optical depths have been
-            // passed.
+            // From 2^-11 in the square root of the light's optical depth, after a few optical
+            // depths.
             return Sound(half, Near(MeanRadiance(half) / MeanRadiance(single), 1.0, 0.002, 0.0));
           }};
 }
@@ -96,8 +96,8 @@ Extreme InsideTheCloud(const accuracy::Path& path, double elevation_deg) {
                 const Seen seen,
                 probe.Draw(scene, *FieldsOf({.optical_depth = 2.0}),
                            {.view_elevation_deg = elevation_deg, .distance_in_boxes = 1e-6}));
-            // Half the box lies before the eye. Of the slice of half-angle that it is in, one of 64
-            // before it, all or nothing counts.
+            // Half the box lies in front of the eye. Of the 64 half-angle slices there, the one
+            // with the eye counts completely or not at all.
             constexpr DepthErrors kInside = {.half_angle = 1.0 / 64.0 + kUpright.half_angle,
                                              .light_volume = kUpright.light_volume};
             return TransmittanceNear(path, seen, 1.0, kInside,
@@ -133,14 +133,14 @@ scene::Scene LowSunScene(const accuracy::Path& path, double elevation_deg) {
   return scene;
 }
 
-// The picture's brightest is of the order of the sky's mean light (10 times that near a setting
-// sun). The storm shows, by a tenth of the mean at least, and is lit wherever it does: nothing is
-// darker than a tenth of what stands behind. Deep in the night all is black.
+// The maximum radiance is of the order of the sky's mean (10 times that near a setting sun). The
+// storm is visible, by at least a tenth of the mean, and lit everywhere: no pixel is darker than a
+// tenth of its background. Deep in the night the whole picture is black.
 Verdict LowSunVerdict(const scene::Scene& scene, const std::vector<float>& storm,
                       const std::vector<float>& bare) {
   double brightest = 0.0;
   double changed = 0.0;
-  double darkest = 1.0;  // over what stands behind
+  double darkest = 1.0;  // over its background
   for (std::size_t i = 0; i < storm.size(); ++i) {
     if (!std::isfinite(storm[i]) || storm[i] < 0.0F) {
       return {"radiances", absl::StrFormat("%g in the picture", storm[i]), false};
@@ -180,7 +180,7 @@ void AppendViewExtremes(const accuracy::Path& path, std::vector<Extreme>* extrem
   extremes->push_back(AgainstLight(path, "across", 250.0, 45.0));
   extremes->push_back(AgainstLight(path, "a hair from across", 250.001, 45.0));
   for (const auto& transport : accuracy::kTransports) extremes->push_back(Sweep(path, transport));
-  // Half-angle's buffers are floats always.
+  // Half-angle's buffers are always floats.
   if (path.name == scene::LightVolume::kName) extremes->push_back(HalfAgainstSingle(path));
   extremes->push_back(InsideTheCloud(path, 89.9));
   extremes->push_back(InsideTheCloud(path, -89.9));

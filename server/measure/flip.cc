@@ -21,7 +21,7 @@ constexpr double kColorExponent = 0.7;       // q_c
 constexpr double kFeatureExponent = 0.5;     // q_f
 constexpr double kCutOff = 0.4;              // p_c
 constexpr double kCutOffValue = 0.95;        // p_t
-constexpr double kFeatureWidth_deg = 0.082;  // of an edge that the eye's cells respond to
+constexpr double kFeatureWidth_deg = 0.082;  // of an edge that the eye detects
 
 // Three planes of a picture's size.
 struct Planes {
@@ -53,7 +53,8 @@ const glm::dmat3 kXyzFromRgb(0.4124564, 0.2126729, 0.0193339, 0.3575761, 0.71515
                              0.1804375, 0.0721750, 0.9503041);
 const glm::dvec3 kWhite = kXyzFromRgb * glm::dvec3(1.0);
 
-// Luminance, red against green, blue against yellow: linear in radiance, so that filtering is too.
+// Opponent colours (luminance, red-green, blue-yellow), linear in radiance, so that they can be
+// filtered.
 glm::dvec3 OpponentOf(const glm::dvec3& rgb) {
   const glm::dvec3 xyz = kXyzFromRgb * rgb / kWhite;
   return {116.0 * xyz.y - 16.0, 500.0 * (xyz.x - xyz.y), 200.0 * (xyz.y - xyz.z)};
@@ -65,7 +66,7 @@ glm::dvec3 RgbOf(const glm::dvec3& opponent) {
   return glm::inverse(kXyzFromRgb) * (xyz * kWhite);
 }
 
-// CIE L*a*b*, with the chroma that dim colours lose (Hunt).
+// CIE L*a*b* with the Hunt effect: dim colours have less chroma.
 glm::dvec3 LabOf(const glm::dvec3& rgb) {
   const glm::dvec3 xyz = kXyzFromRgb * rgb / kWhite;
   const auto f = [](double t) {
@@ -135,15 +136,15 @@ std::vector<double> ColorDifference(const Planes& image, const Planes& truth) {
   };
   const Planes a = seen(image);
   const Planes b = seen(truth);
-  const double most =
+  const double max_distance =
       std::pow(HybridDistance(LabOf({0.0, 1.0, 0.0}), LabOf({0.0, 0.0, 1.0})), kColorExponent);
   std::vector<double> difference;
   difference.reserve(a.values.size());
   for (std::size_t i = 0; i < a.values.size(); ++i) {
     const double distance = std::pow(HybridDistance(a.values[i], b.values[i]), kColorExponent);
-    const double cut = kCutOff * most;
+    const double cut = kCutOff * max_distance;
     difference.push_back(distance < cut ? kCutOffValue / cut * distance
-                                        : kCutOffValue + (distance - cut) / (most - cut) *
+                                        : kCutOffValue + (distance - cut) / (max_distance - cut) *
                                                              (1.0 - kCutOffValue));
   }
   return difference;
@@ -180,7 +181,7 @@ Kernels KernelsOf(bool edges) {
 std::vector<double> Features(const Planes& opponent, bool edges) {
   const Kernels kernels = KernelsOf(edges);
   const int radius = static_cast<int>(kernels.smooth.size() / 2);
-  // x: smoothed across, y: its derivative across.
+  // x: smoothed horizontally, y: horizontal derivative.
   Planes rows{opponent.size, std::vector<glm::dvec3>(opponent.values.size())};
   std::vector<double> strength(opponent.values.size());
   const auto each = [&](const auto& visit) {

@@ -20,8 +20,8 @@
 namespace thunderhead::measure {
 namespace {
 
-constexpr int kWarmFrames = 2;    // the first also compiles shaders
-constexpr int kFewestFrames = 3;  // in a run
+constexpr int kWarmFrames = 2;  // not measured: the first compiles shaders
+constexpr int kMinFrames = 3;   // in a run
 constexpr double kStep_deg = 1.0;
 
 using scene::FrameStage;
@@ -33,7 +33,7 @@ double Median(std::vector<double> values) {
   return *middle;
 }
 
-// Draws one scene again and again while something moves in it.
+// Draws a scene repeatedly while the camera or the sun moves.
 class Frames {
  public:
   Frames(scene::Scene scene, std::shared_ptr<const volume::HydrometeorFields> fields)
@@ -42,7 +42,7 @@ class Frames {
   void MoveCamera() { std::get<scene::OrbitCamera>(scene_.camera).azimuth_deg += kStep_deg; }
   void MoveSun() { scene_.sun.azimuth_deg += kStep_deg; }
 
-  // From the scene to a JPEG; appends each stage's milliseconds to `stages`.
+  // Draws and encodes a frame; appends each stage's milliseconds to `stages`.
   absl::Status Draw(Samples* stages) {
     THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame linear,
                                  renderer_.Draw(scene_, fields_, {}));
@@ -65,7 +65,7 @@ class Frames {
   absl::StatusOr<double> Rate(void (Frames::*move)(), double seconds, Samples* stages) {
     const base::Stopwatch stopwatch;
     int frames = 0;
-    while (frames < kFewestFrames || stopwatch.ElapsedMs() < 1e3 * seconds) {
+    while (frames < kMinFrames || stopwatch.ElapsedMs() < 1e3 * seconds) {
       (this->*move)();
       THUNDERHEAD_RETURN_IF_ERROR(Draw(stages));
       ++frames;

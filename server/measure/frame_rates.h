@@ -1,5 +1,5 @@
-// Frames a second of one storm in every named setting: each technique in the papers' modes, and the
-// presets. Whole frames, from a changed scene to a JPEG. Uses the current GL context.
+// Frame rates of one storm in every named setting: each technique in the papers' modes, and the
+// presets. Measures whole frames, from a changed scene to a JPEG. Uses the current GL context.
 #pragma once
 
 #include <functional>
@@ -21,7 +21,7 @@ struct FrameRateOptions {
   int height_px = 300;
   int slices = 128;
   scene::Transport transport = scene::Transport::kConsistent;  // of the papers' translucent modes
-  int runs = 5;                                                // of which the medians are taken
+  int runs = 5;                                                // results are their medians
   double seconds_a_run = 0.4;
 };
 
@@ -32,7 +32,7 @@ struct StageMedian {
 
 struct FrameRateRow {
   std::string_view technique;
-  std::string_view mode;    // the papers' mode or preset; "default" is what scenes start with
+  std::string_view mode;    // the papers' mode or preset; "default": the setting of a new scene
   double camera_fps = 0.0;  // the camera moves every frame
   double sun_fps = 0.0;     // the sun moves every frame
   // The stages that a camera move reruns, and the light, which only a sun move reruns.
@@ -46,7 +46,7 @@ absl::StatusOr<std::vector<FrameRateRow>> MeasureFrameRates(
 std::string ToJson(const Machine& machine, const std::vector<FrameRateRow>& rows);
 std::string ToTable(const Machine& machine, const std::vector<FrameRateRow>& rows);
 
-// Kilograms of condensate: most in a mature storm.
+// Mass of all condensate, largest in a mature storm.
 double Condensate_kg(const volume::HydrometeorFields& fields);
 
 }  // namespace thunderhead::measure

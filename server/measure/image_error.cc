@@ -31,7 +31,7 @@ double RelativeRmse(const picture::LinearPicture& image, const picture::LinearPi
 }
 
 double RelativeNoise(const picture::LinearPicture& truth) {
-  THUNDERHEAD_CHECK(!truth.standard_error.empty(), "a truth without its noise");
+  THUNDERHEAD_CHECK(!truth.standard_error.empty(), "the truth has no standard error");
   double squares = 0.0;
   for (const glm::vec3& error : truth.standard_error)
     squares += Sum(glm::dvec3(error) * glm::dvec3(error));

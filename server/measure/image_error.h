@@ -1,4 +1,4 @@
-// How far a picture is from the truth: error of linear radiance, and of what a viewer sees. Pure
+// Differences between a picture and the truth: errors of linear radiance, and perceived ones. Pure
 // functions of pixels; images are rows from top to bottom.
 #pragma once
 
@@ -16,20 +16,20 @@ struct DisplayImage {
   std::vector<std::uint8_t> rgb;
 };
 
-// Root of the mean squared difference over pixels and colours, over the truth's mean radiance. The
-// images have one size; the truth is not black.
+// Root mean square of the difference over pixels and colours, relative to the truth's mean
+// radiance. The images must have the same size and the truth must not be black.
 double RelativeRmse(const picture::LinearPicture& image, const picture::LinearPicture& truth);
 
-// The same of the truth's standard error, which it has: the RelativeRmse to expect between the
-// exact picture and this truth.
+// The same of the truth's standard error, which must be present: the expected RelativeRmse between
+// the exact picture and this truth.
 double RelativeNoise(const picture::LinearPicture& truth);
 
-// RelativeRmse without a noise of the truth of that RelativeNoise: the noise knows nothing of the
-// picture, so that mean squares add up. 0 where it is all noise.
+// RelativeRmse after subtracting the truth's RelativeNoise: the noise is independent of the
+// picture, so mean squares add up. 0 if the difference is all noise.
 double RelativeRmseWithout(double truth_noise, const picture::LinearPicture& image,
                            const picture::LinearPicture& truth);
 
-// Mean difference over the truth's mean radiance: above 0 where the picture is too bright.
+// Mean difference, relative to the truth's mean radiance: above 0 if the picture is too bright.
 double RelativeBias(const picture::LinearPicture& image, const picture::LinearPicture& truth);
 
 // The mean of the perceived difference, 0 to 1, by FLIP (Andersson et al. 2020, A Difference

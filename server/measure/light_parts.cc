@@ -10,7 +10,7 @@
 namespace thunderhead::measure {
 namespace {
 
-// The mean of squares of `side` pixels.
+// Averages blocks of `side` x `side` pixels.
 picture::LinearPicture Averaged(const picture::LinearPicture& image, int side) {
   picture::LinearPicture mean{image.size_px / side, {}};
   const auto width = static_cast<std::size_t>(mean.size_px.x);
@@ -49,7 +49,7 @@ std::string NameOf(LightPart part) {
     case LightPart::kAll:
       return "all";
   }
-  THUNDERHEAD_CHECK(false, "no such part");
+  THUNDERHEAD_CHECK(false, "unknown part");
 }
 
 scene::Scene SceneOf(LightPart part, scene::Scene scene) {
@@ -83,7 +83,7 @@ absl::StatusOr<picture::LinearPicture> DrawPart(
   THUNDERHEAD_ASSIGN_OR_RETURN(picture::LinearPicture image,
                                Draw(renderer, lit, fields, quality, finer));
   if (part != LightPart::kSky) return image;
-  // Light adds up: the sky's is what a black sky leaves out.
+  // Light is additive: the sky's is the difference from a black sky.
   lit.sky.brightness = 0.0;
   THUNDERHEAD_ASSIGN_OR_RETURN(const picture::LinearPicture sun,
                                Draw(renderer, lit, fields, quality, finer));

@@ -1,5 +1,6 @@
-// Which part of the light a renderer gets wrong: the same scene lit by less, or scattering less,
-// drawn and traced alike. Owns GL objects: use it on the context's thread.
+// Parts of the light, to find which one a renderer gets wrong: the same scene with fewer light
+// sources, or with single scattering only, for renderer and reference alike. Owns GL objects: use
+// it on the context's thread.
 #pragma once
 
 #include <memory>
@@ -24,12 +25,12 @@ enum class LightPart {
 
 std::string NameOf(LightPart part);
 
-// What the reference traces for that part of `scene`.
+// The scene that the reference traces for that part of `scene`, and its options.
 scene::Scene SceneOf(LightPart part, scene::Scene scene);
 reference::TraceOptions TraceOptionsOf(LightPart part, double peak_cut_deg);
 
-// Draws one part with `scene`'s renderer and transport, `finer` times as wide and high as the
-// scene says and averaged, as the reference averages over a pixel. `correction` may be null.
+// Draws one part with `scene`'s renderer and transport at `finer` times its width and height and
+// averages blocks of pixels, as the reference averages over a pixel. `correction` may be null.
 absl::StatusOr<picture::LinearPicture> DrawPart(
     renderers::SceneRenderer& renderer, const scene::Scene& scene,
     const std::shared_ptr<const volume::HydrometeorFields>& fields, LightPart part, int finer,

@@ -11,16 +11,16 @@ namespace thunderhead::measure {
 
 LogPlot::Axis::Axis(const std::vector<double>& values, double from, double to)
     : from_px(from), to_px(to) {
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  low = std::log10(*least) - 0.1;
-  high = std::log10(*most) + 0.1;
+  const auto [min, max] = std::minmax_element(values.begin(), values.end());
+  low = std::log10(*min) - 0.1;
+  high = std::log10(*max) + 0.1;
 }
 
 double LogPlot::Axis::At(double value) const {
   return from_px + (std::log10(value) - low) / (high - low) * (to_px - from_px);
 }
 
-// 1, 2 and 5 times powers of ten; over more than three decades the powers alone.
+// 1, 2 and 5 times powers of ten; over more than three decades only the powers.
 std::vector<double> LogPlot::Axis::Ticks() const {
   std::vector<double> ticks;
   for (int power = static_cast<int>(std::floor(low)); power <= std::ceil(high); ++power) {

@@ -9,14 +9,14 @@ namespace thunderhead::measure {
 
 class LogPlot {
  public:
-  // Axes that hold every point of `x` and `y`, all above 0 and at least one. `title` stands above,
-  // `note` below.
+  // Axes that contain every point of `x` and `y`, all above 0 and at least one. `title` is above
+  // the plot, `note` below.
   LogPlot(const std::vector<double>& x, const std::vector<double>& y, const std::string& title,
           const std::string& note);
 
-  // Joins the points in their order.
+  // Connects the points in their order.
   void Line(const std::vector<std::pair<double, double>>& points, const std::string& color);
-  // A dot of `radius` pixels, described by `tip` where the mouse is.
+  // A dot of `radius` pixels with the tool tip `tip`.
   void Dot(double x, double y, int radius, const std::string& fill, const std::string& stroke,
            const std::string& tip);
 

@@ -1,4 +1,4 @@
-// What a figure was measured on.
+// The machine of a measurement.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@ namespace thunderhead::measure {
 
 struct Machine {
   std::string processor;  // as the system names it
-  int threads = 0;        // that it runs at once
+  int threads = 0;        // that it runs in parallel
   std::string device;     // "software" or "gpu 0"
   std::string gl_renderer;
   std::string gl_version;
@@ -19,7 +19,7 @@ Machine MachineOf(const gl::ContextInfo& context);
 
 std::string ToJson(const Machine& machine);
 
-// `text` in quotes, as JSON wants it.
+// `text` as a JSON string.
 std::string JsonText(const std::string& text);
 
 }  // namespace thunderhead::measure

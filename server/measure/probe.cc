@@ -17,7 +17,7 @@
 namespace thunderhead::measure {
 namespace {
 
-// Of the round box: it is 0.25 % of its middle at its faces.
+// Of the round box, whose extinction falls to 0.25 % at its faces.
 constexpr double kSteepness = 24.0;
 
 renderers::RenderSettings SettingsOf(const scene::Scene& scene,
@@ -41,7 +41,8 @@ renderers::RenderSettings SettingsOf(const scene::Scene& scene,
   return settings;
 }
 
-// Of the extinction of a full box of the same optical depth; `place` runs from -1/2 to 1/2.
+// Ratio of the extinction to that of a full box with the same optical depth; `place` is from -1/2
+// to 1/2.
 double ShareAt(Box::Shape shape, const glm::dvec3& place) {
   switch (shape) {
     case Box::Shape::kFull:
@@ -84,7 +85,7 @@ std::shared_ptr<volume::HydrometeorFields> FieldsOf(const Box& box) {
 }
 
 std::shared_ptr<const volume::HydrometeorFields> SmoothCloud(double optical_depth) {
-  // Of a Gaussian over a side, whose ends are as good as infinitely far.
+  // Of a Gaussian over a side, whose ends are practically infinitely far.
   const double mean = std::sqrt(std::numbers::pi / kSteepness);
   return FieldsOf({.cells = glm::ivec3(32),
                    .size_m = glm::dvec3(4000.0),

@@ -1,6 +1,7 @@
-// A small picture of a medium alone, drawn by one path without sky and ground, and a check that it
-// is sound whatever the scene: nothing but finite numbers, no radiance below 0, transmittance and
-// light within 0 to 1. Uses the current GL context.
+// A small picture of a medium, drawn by one path without sky and ground, and a check that holds for
+// every scene: all numbers are finite, no radiance is below 0, transmittance and light are from 0
+// to
+// 1. Uses the current GL context.
 #pragma once
 
 #include <memory>
@@ -18,10 +19,10 @@ namespace thunderhead::measure {
 struct Box {
   glm::ivec3 cells{16};
   glm::dvec3 size_m{4000.0, 4000.0, 1000.0};
-  double optical_depth = 1.0;  // straight up, with the default radius
+  double optical_depth = 1.0;  // vertical, with the default particle radius
   enum class Shape {
-    kFull,   // everywhere the same, up to the domain's faces
-    kLayer,  // the middle half of the height, its faces soft: extinction falls to zero over a cell
+    kFull,   // homogeneous, up to the domain's faces
+    kLayer,  // the middle half of the height; extinction falls to zero over a cell at its faces
     kRound,  // a Gaussian around the middle
   } shape = Shape::kFull;
 };
@@ -32,14 +33,15 @@ std::shared_ptr<volume::HydrometeorFields> FieldsOf(const Box& box);
 std::shared_ptr<const volume::HydrometeorFields> SmoothCloud(double optical_depth);
 
 struct Look {
-  double view_azimuth_deg = 200.0;  // at which the camera stands, seen from the target
+  double view_azimuth_deg = 200.0;  // of the camera, seen from the target
   double view_elevation_deg = 89.9;
   double sun_azimuth_deg = 70.0;
   double sun_elevation_deg = 89.9;
-  double distance_in_boxes = 5.0;  // of the camera from the middle, in the box's longest side
+  double distance_in_boxes =
+      5.0;  // of the camera from the middle, in units of the box's longest side
   double field_of_view_deg = 2.0;
   int side_px = 9;  // odd: a pixel lies in the middle
-  // Of the light volume's buffers; the other paths' pictures always are.
+  // Of the light volume's buffers; those of other paths always are.
   bool single_precision = false;
 };
 
@@ -48,7 +50,7 @@ struct Seen {
   double transmittance = 1.0;  // of the middle pixel
   std::vector<float> eye;      // four floats a pixel
   double least_light = 1.0;    // smallest share of sunlight in the light's buffers; 1 for metaballs
-  std::string unsound;         // what is wrong with any value; empty if nothing is
+  std::string unsound;         // the first invalid value; empty if there is none
 };
 
 class Probe {

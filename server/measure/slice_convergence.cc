@@ -17,12 +17,12 @@ namespace thunderhead::measure {
 namespace {
 
 constexpr std::array kCounts = {8, 16, 32, 64, 128, 256};
-constexpr int kLimit = 2048;  // slices that stand for infinitely many
+constexpr int kLimit = 2048;  // slices, in place of infinitely many
 
-// Half a step of a half float, relative.
+// Relative rounding of half floats.
 constexpr double kFrameRounding = 0x1p-12;
 
-// For a curve's line on a logarithmic axis.
+// In place of zero on a logarithmic axis.
 constexpr double kLeastError = 1e-9;
 
 absl::StatusOr<picture::LinearPicture> DrawWith(
@@ -72,7 +72,7 @@ absl::StatusOr<std::vector<SliceCurve>> MeasureSliceConvergence(
     progress(++done / static_cast<double>(accuracy::kTransports.size() * (kCounts.size() + 1)));
   };
   for (const auto& transport : accuracy::kTransports) {
-    // Slices draw diffusion as consistent.
+    // Half-angle slices have no diffusion transport.
     if (transport.value == scene::Transport::kDiffusion &&
         std::holds_alternative<scene::HalfAngle>(scene.rendering.technique)) {
       continue;

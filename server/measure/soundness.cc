@@ -9,8 +9,9 @@
 namespace thunderhead::measure {
 namespace {
 
-// Mean intensity of light scattered many times, over the sun's irradiance: deep in an endless white
-// cloud under an overhead sun the fluence is five times what came in (Eddington).
+// Mean intensity of multiply scattered light, over the sun's irradiance: deep in an infinite
+// conservative cloud with the sun in the zenith the fluence is five times the incident flux
+// (Eddington).
 constexpr double kMaxMeanIntensity = 5.0 / (4.0 * std::numbers::pi);
 
 // Two floats a texel, x fastest.
@@ -31,8 +32,8 @@ void InspectRoot(float root, const char* where, Soundness* found) {
   }
 }
 
-// Both what the light has lost and what it has passed only grow. Layers that no cell reads are
-// never written and hold 0.
+// Both optical depths only grow along the ray. Layers that no cell reads are never written and are
+// 0.
 void InspectRays(const gl::Texture3D& carried, Soundness* found) {
   const std::vector<float> texels = TwoChannels(carried);
   const glm::ivec3 size = carried.Size();
@@ -41,7 +42,7 @@ void InspectRays(const gl::Texture3D& carried, Soundness* found) {
     if (i % 2 == 0) InspectRoot(texels[i], "along the sun's rays", found);
     const bool grows = i < layer || texels[i] == 0.0F || texels[i] >= texels[i - layer];
     if (grows || !found->unsound.empty()) continue;
-    found->unsound = absl::StrFormat("light that has passed %g after %g on its ray", texels[i],
+    found->unsound = absl::StrFormat("light's optical depth %g after %g on its ray", texels[i],
                                      texels[i - layer]);
   }
 }

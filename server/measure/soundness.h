@@ -1,5 +1,5 @@
 // Checks that hold for every scene: numbers are finite, no radiance is below 0, and neither
-// transmittance nor light is ever more than what came in.
+// transmittance nor the share of sunlight exceeds 1.
 #pragma once
 
 #include <string>
@@ -9,24 +9,24 @@
 
 namespace thunderhead::measure {
 
-// A ray's transmittance is a product of rounded factors.
+// 1 plus tolerance: a ray's transmittance is a product of rounded factors.
 inline constexpr float kMaxShare = 1.0F + 1e-5F;
 
-// Of what was looked at.
+// The result of a check.
 struct Soundness {
-  std::string unsound;       // the first thing that is wrong; empty if nothing is
-  double least_light = 1.0;  // smallest share of the sunlight that is left anywhere
+  std::string unsound;       // the first invalid value; empty if there is none
+  double least_light = 1.0;  // smallest share of sunlight anywhere
 };
 
 // The first fault of radiance or transmittance, four floats a pixel; empty if there is none.
 std::string UnsoundPicture(const std::vector<float>& eye);
 
-// Of half-angle slicing's light buffer: four floats a texel, the share of sunlight and the optical
-// depth passed first.
+// Checks half-angle slicing's light buffer: four floats a texel, of which the first two are the
+// share of sunlight and its optical depth.
 Soundness LightBufferSoundness(const std::vector<float>& light);
 
-// Of the light volume, as carry.comp and arrive.comp leave it: the depth that light has passed is
-// not below 0 anywhere and does not fall along any ray of the sun.
+// Checks the light volume after carry.comp and arrive.comp: the optical depth of sunlight is
+// nowhere below 0 and does not fall along any ray of the sun.
 Soundness LightVolumeSoundness(const renderers::LightVolumeRenderer& renderer);
 
 }  // namespace thunderhead::measure

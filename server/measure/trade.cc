@@ -31,7 +31,7 @@ Setting WithCount(scene::Technique technique, int count) {
   return {technique};
 }
 
-// Of the light volume with each field's own phase function.
+// Adds variants of the light volume with each field's own phase function.
 void AddVariants(scene::Transport transport, std::vector<Setting>* settings) {
   const Setting usual{LightVolume(transport)};
   for (const double scale : {0.25, 0.5, 0.75}) {
@@ -157,8 +157,8 @@ absl::StatusOr<TradeRow> Trade::Measure(const Setting& setting, const std::stop_
                                CorrectionOf(scene, setting.million_paths, stop));
   std::vector<double> milliseconds;
   std::string jpeg;
-  // A change too small to see makes the view run again; the first frame also compiles
-  // shaders and carries the light.
+  // An invisible change makes the view stage run again. The first frame is not measured, as it also
+  // compiles shaders and carries the light.
   for (int i = -1; i < kTimedFrames; ++i) {
     scene.sky.brightness = scene_.sky.brightness * (1.0 + 1e-9 * (i + 1));
     const base::Stopwatch stopwatch;

@@ -1,5 +1,5 @@
-// Speed against accuracy: what each setting of the renderers costs for one scene, and how far its
-// picture is from the reference. Owns GL objects: use it on the context's thread.
+// Speed against accuracy: the cost of each setting of the renderers for one scene, and the error of
+// its picture against the reference. Owns GL objects: use it on the context's thread.
 #pragma once
 
 #include <memory>
@@ -29,38 +29,37 @@ struct TradeRow {
   double relative_rmse = 0.0;        // of linear radiance, without the truth's own noise
   double relative_bias = 0.0;
   double flip = 0.0;    // of the decoded JPEG
-  bool pareto = false;  // no other setting is both faster and closer
+  bool pareto = false;  // no other setting is both faster and more accurate
 };
 
-// Every renderer, mode, transport and number of slices at full size (of metaballs the default mode
-// and some numbers of them), then smaller pictures and 4 rays a pixel, finer and coarser light
-// volumes, single precision, other JPEG qualities and traced light, with so many `million_paths`,
-// of the default renderer and mode.
+// Every renderer, mode, transport and number of slices at full size (for metaballs the default mode
+// and several numbers of balls). Then for the default renderer and mode: smaller pictures and 4
+// rays a pixel, finer and coarser light volumes, single precision, other JPEG qualities, and light
+// traced with each of `million_paths`.
 std::vector<Setting> DefaultSweep(const std::vector<double>& million_paths);
 
-// Marks the rows that no other beats in both milliseconds and relative RMSE.
+// Marks the Pareto front of milliseconds and relative RMSE.
 void MarkPareto(std::vector<TradeRow>* rows);
 
-// The scene whose picture by the reference is the truth: every field's own phase function, true
-// colours.
+// The scene that the reference traces as the truth: every field's own phase function, true colours.
 scene::Scene TrueScene(scene::Scene scene);
 
 class Trade {
  public:
-  // `scene` gives what is not swept; the truth has its size.
+  // `scene` gives the settings that are not swept; the truth has its size.
   Trade(scene::Scene scene, std::shared_ptr<const volume::HydrometeorFields> fields,
         picture::LinearPicture truth);
 
-  // CANCELLED if `stop` asked to stop while paths were traced. Those are kept: settings that differ
-  // in their number alone are best measured from few to many.
+  // CANCELLED if `stop` was requested while paths were traced. Traced paths are kept for the next
+  // setting, so settings that differ only in their number are best measured in ascending order.
   absl::StatusOr<TradeRow> Measure(const Setting& setting, const std::stop_token& stop);
 
-  // What relative RMSE the truth's own noise amounts to.
+  // Relative RMSE of the truth's own noise.
   double TruthNoise() const { return truth_noise_; }
 
  private:
   absl::StatusOr<DisplayImage> Display(const gl::Texture2D& linear);
-  // What so many paths correct; null for none.
+  // The correction by that many paths; null for none.
   absl::StatusOr<std::shared_ptr<const renderers::LightCorrection>> CorrectionOf(
       const scene::Scene& scene, double million_paths, const std::stop_token& stop);
 
@@ -71,7 +70,7 @@ class Trade {
   double truth_noise_ = 0.0;
   renderers::SceneRenderer renderer_;
   std::unique_ptr<accuracy::LightCorrector> corrector_;
-  double corrected_by_ = 0.0;  // million paths that it was asked for last
+  double corrected_by_ = 0.0;  // million paths of the last request
   frame::ToneMapper tone_mapper_;
 };
 

@@ -30,7 +30,7 @@ const char* PrecisionOf(const Setting& setting) {
   return setting.single_precision ? kSingle : kHalf;
 }
 
-// Where a logarithmic axis begins for what is zero.
+// In place of zero on a logarithmic axis.
 constexpr double kLeastMilliseconds = 1e-3;
 constexpr double kLeastError = 1e-6;
 
@@ -75,7 +75,8 @@ const char* ColorOf(const scene::Technique& technique) {
   return "#000000";
 }
 
-// Blue marches, orange slices, green metaballs, violet surfaces; hollow for paper transport.
+// Blue: light volume, orange: half-angle slices, green: metaballs, violet: surfaces; hollow: paper
+// transport.
 void AddDot(const TradeRow& row, LogPlot* plot) {
   const scene::Technique& technique = row.setting.technique;
   const char* color = ColorOf(technique);
@@ -134,11 +135,12 @@ absl::StatusOr<std::vector<TradeRow>> ReadCsv(std::string_view text, std::string
   }
   std::vector<TradeRow> rows;
   const std::vector<absl::string_view> lines = absl::StrSplit(rest, '\n');
-  // What follows the last line's end is empty, or half a line.
+  // After the last line's end there is nothing or an incomplete line.
   for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
     const std::optional<TradeRow> row = RowOf(lines[i]);
     if (!row.has_value()) {
-      return absl::InvalidArgumentError(absl::StrCat("'", lines[i], "' is not a row of it"));
+      return absl::InvalidArgumentError(
+          absl::StrCat("'", lines[i], "' is not a row of this table"));
     }
     rows.push_back(*row);
   }

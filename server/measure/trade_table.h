@@ -1,4 +1,4 @@
-// Rows of the trade as text: CSV that a later run goes on from, JSON, and an SVG plot. Pure
+// Rows of the trade as text: CSV from which a later run continues, JSON, and an SVG plot. Pure
 // functions.
 #pragma once
 
@@ -11,10 +11,10 @@
 
 namespace thunderhead::measure {
 
-// What the rows belong to.
+// The subject of the rows.
 struct TradeTitle {
   std::string storm;
-  std::string view;      // what was looked at, for people
+  std::string view;      // a name for people
   std::string renderer;  // OpenGL's renderer string
   glm::ivec2 size_px{0};
   int truth_samples_per_pixel = 0;
@@ -25,9 +25,8 @@ struct TradeTitle {
 std::string CsvHead(const TradeTitle& title);
 std::string CsvLine(const TradeRow& row);
 
-// The rows of a file that begins with `head`. INVALID_ARGUMENT if it begins otherwise, or names the
-// line that cannot be read; a last line without its end is left out, as an interrupted run leaves
-// it.
+// The rows of a file that begins with `head`. INVALID_ARGUMENT if it does not, or names the line
+// that cannot be parsed. A last line without its end, from an interrupted run, is ignored.
 absl::StatusOr<std::vector<TradeRow>> ReadCsv(std::string_view text, std::string_view head);
 
 std::string TradeJson(const TradeTitle& title, const std::vector<TradeRow>& rows);

@@ -140,7 +140,7 @@ struct Around {
 Air AirBefore(const Around& around, const Ray& ray, double distance_m, Behind behind) {
   namespace air = physics::glsl;
   const physics::ClearSky::Seen sky = around.Seen(ray.direction);
-  const glm::vec3 sky_depth = air::depth_of_way(around.turbidity, sky.air_mass);
+  const glm::vec3 sky_depth = air::depth_of_air_mass(around.turbidity, sky.air_mass);
   // The sky's ray ends at the ground.
   if (behind == Behind::kGround) return {glm::exp(-sky_depth), sky.radiance};
   const scene::View& view = around.view;
@@ -160,17 +160,17 @@ AirLight LightOfAir(const Around& around, const Ray& ray, double distance_m,
                     const glm::dvec3& towards_sun) {
   namespace air = physics::glsl;
   const scene::View& view = around.view;
-  const air::Way way{static_cast<float>(std::max(view.altitude_m, 0.0)),
-                     static_cast<float>((view.local_from_world * ray.direction).z),
-                     static_cast<float>(view.ground_curvature_per_m),
-                     static_cast<float>(distance_m)};
-  const float height_m = std::max(air::height_on_way_m(way, way.distance_m), 0.0F);
+  const air::AirPath path{static_cast<float>(std::max(view.altitude_m, 0.0)),
+                          static_cast<float>((view.local_from_world * ray.direction).z),
+                          static_cast<float>(view.ground_curvature_per_m),
+                          static_cast<float>(distance_m)};
+  const float height_m = std::max(air::height_on_path_m(path, path.distance_m), 0.0F);
   const glm::vec2 densities = air::densities_of_air(height_m);
   const physics::AirPlace place{height_m, static_cast<float>(towards_sun.z)};
   const auto mu = static_cast<float>(glm::dot(ray.direction, towards_sun));
   const glm::vec3 seen =
       static_cast<float>(around.scale) *
-      glm::exp(-air::depth_of_air(around.turbidity, air::densities_of_air(way.height_m), way));
+      glm::exp(-air::depth_of_air(around.turbidity, air::densities_of_air(path.height_m), path));
   const glm::vec3 scattered = air::skylight_scattered_per_m(around.turbidity, densities);
   AirLight light;
   light.of_sun = seen * air::sunlight_scattered_per_m(around.turbidity, densities, mu) *

@@ -57,9 +57,9 @@ std::uint64_t NextId() {
 volume::ExtinctionVolume ExtinctionThatFits(const volume::HydrometeorFields& fields,
                                             const Medium& medium) {
   const auto channels = static_cast<int>(medium.groups.size());
-  GLint most_texels = 0;
-  glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most_texels);
-  const glm::ivec3 factor = volume::CoarseningFor(fields, most_texels);
+  GLint max_texels = 0;
+  glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &max_texels);
+  const glm::ivec3 factor = volume::CoarseningFor(fields, max_texels);
   if (factor == glm::ivec3(1)) return volume::ComputeExtinction(fields, medium.terms, channels);
   return volume::ComputeExtinction(volume::Coarsened(fields, factor), medium.terms, channels);
 }

@@ -5,10 +5,10 @@
 
 namespace thunderhead::renderers {
 
-RendererPool::RendererPool(std::shared_ptr<const TechniqueRegistry> registry, std::size_t most,
-                           std::size_t most_bytes)
-    : most_(most),
-      most_bytes_(most_bytes),
+RendererPool::RendererPool(std::shared_ptr<const TechniqueRegistry> registry,
+                           std::size_t max_renderers, std::size_t max_bytes)
+    : max_renderers_(max_renderers),
+      max_bytes_(max_bytes),
       registry_(std::move(registry)),
       programs_(std::make_shared<gl::ProgramCache>()) {}
 
@@ -30,7 +30,7 @@ SceneRenderer& RendererPool::Choose(
       [&](const auto& a, const auto& b) { return first_stage(a) < first_stage(b); });
   // A scene that needs another extinction has nothing to share.
   if (best == renderers_.end() || first_stage(*best) <= scene::Stage::kExtinction) {
-    if (renderers_.size() < most_) {
+    if (renderers_.size() < max_renderers_) {
       renderers_.push_back(std::make_unique<SceneRenderer>(programs_, registry_));
     }
     best = renderers_.end() - 1;
@@ -42,7 +42,7 @@ SceneRenderer& RendererPool::Choose(
 void RendererPool::Shrink() {
   std::size_t bytes = 0;
   for (const auto& renderer : renderers_) bytes += renderer->Bytes();
-  while (renderers_.size() > 1 && bytes > most_bytes_) {
+  while (renderers_.size() > 1 && bytes > max_bytes_) {
     bytes -= renderers_.back()->Bytes();
     renderers_.pop_back();
   }

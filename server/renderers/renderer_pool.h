@@ -14,14 +14,16 @@ namespace thunderhead::renderers {
 
 class RendererPool {
  public:
-  // Keeps at most `most` renderers, and the least recently used of them only while all together
-  // take no more than `most_bytes` on the device.
-  explicit RendererPool(std::size_t most = 4, std::size_t most_bytes = std::size_t{1} << 30U)
-      : RendererPool(std::make_shared<TechniqueRegistry>(TechniqueRegistry::BuiltIn()), most,
-                     most_bytes) {}
+  // Keeps at most `max_renderers`, and drops the least recently used ones while all together take
+  // more than `max_bytes` on the device.
+  explicit RendererPool(std::size_t max_renderers = 4,
+                        std::size_t max_bytes = std::size_t{1} << 30U)
+      : RendererPool(std::make_shared<TechniqueRegistry>(TechniqueRegistry::BuiltIn()),
+                     max_renderers, max_bytes) {}
   // The renderers draw with the techniques of `registry`.
-  explicit RendererPool(std::shared_ptr<const TechniqueRegistry> registry, std::size_t most = 4,
-                        std::size_t most_bytes = std::size_t{1} << 30U);
+  explicit RendererPool(std::shared_ptr<const TechniqueRegistry> registry,
+                        std::size_t max_renderers = 4,
+                        std::size_t max_bytes = std::size_t{1} << 30U);
 
   // Draws with the renderer that keeps most of what the scene needs. The frame lives until the next
   // Draw.
@@ -34,8 +36,8 @@ class RendererPool {
                         const std::shared_ptr<const volume::HydrometeorFields>& fields);
   void Shrink();
 
-  std::size_t most_;
-  std::size_t most_bytes_;
+  std::size_t max_renderers_;
+  std::size_t max_bytes_;
   std::shared_ptr<const TechniqueRegistry> registry_;
   std::shared_ptr<gl::ProgramCache> programs_;
   std::vector<std::unique_ptr<SceneRenderer>> renderers_;  // the most recently used first

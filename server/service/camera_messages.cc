@@ -32,7 +32,7 @@ scene::TopDownCamera ToTopDown(const v1::TopDownCamera& message) {
   return {{message.x_m(), message.y_m()}, message.width_m()};
 }
 
-// The length as the nearest that the field's limits allow.
+// Clamps the length to the field's limits.
 float WithinLimits(const google::protobuf::Descriptor& message, const char* field, double value) {
   const auto& limits = message.FindFieldByName(field)->options().GetExtension(v1::number);
   return static_cast<float>(std::clamp(value, limits.minimum(), limits.maximum()));

@@ -1,4 +1,5 @@
-// Cameras as messages and values, and the framing of what a camera message leaves open.
+// Converts cameras between messages and values, and frames the storm where a camera message sets no
+// position.
 #pragma once
 
 #include "scene/scene.h"
@@ -10,8 +11,8 @@ namespace thunderhead::service {
 // True if the camera's defaults depend on where the storm is.
 bool NeedsFraming(const v1::Scene& scene);
 
-// Fills in where the camera stands and looks, where absent, so that what is to be seen of `fields`
-// (volume::VisibleBox) is framed.
+// Fills in absent positions and directions of the camera so that the picture frames the visible
+// part of `fields` (volume::VisibleBox).
 void FrameCondensate(v1::Scene& scene, const volume::HydrometeorFields& fields);
 
 // The value of a camera whose defaults are filled in.

@@ -1,4 +1,4 @@
-// Requests for clouds as the generator's values.
+// Converts requests for clouds to the generator's values.
 #pragma once
 
 #include "absl/status/statusor.h"
@@ -10,8 +10,8 @@ namespace thunderhead::service {
 
 clouds::CloudOrigin OriginOf(const v1::GenerateCloudRequest& request);
 
-// The preset's shape with what the request says in place of it. INVALID_ARGUMENT if it makes no
-// sense together; limits were checked before.
+// The preset's shape with the request's overrides. INVALID_ARGUMENT if the values contradict each
+// other; limits were checked before.
 absl::StatusOr<clouds::CloudShape> ShapeOf(const v1::GenerateCloudRequest& request);
 
 }  // namespace thunderhead::service

@@ -7,7 +7,7 @@
 namespace thunderhead::service {
 namespace {
 
-// Those who watch it keep its last picture; nothing else of it can be drawn.
+// Reports the deletion to sessions that show the cloud. Their viewers keep the last frame.
 void TellSessions(session::Sessions& sessions, const std::string& storm_id) {
   for (const std::shared_ptr<session::Session>& session : sessions.All()) {
     const std::optional<session::NewestScene> newest = session->Newest();

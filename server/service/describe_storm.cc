@@ -35,7 +35,7 @@ grpc::ServerUnaryReactor* DescribeStorm(Engine& engine, grpc::CallbackServerCont
   engine.executor.Submit([=, &engine](const absl::Status& status) {
     const bool abandoned = context->IsCancelled();
     const int time_index = static_cast<int>(request->time_index());
-    reactor->Finish(ToGrpcStatus(abandoned     ? absl::CancelledError("no longer wanted")
+    reactor->Finish(ToGrpcStatus(abandoned     ? absl::CancelledError("the call was cancelled")
                                  : status.ok() ? Describe(engine, **storm, time_index, *response)
                                                : status));
   });

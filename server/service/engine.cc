@@ -14,7 +14,7 @@
 namespace thunderhead::service {
 namespace {
 
-// Enough names for a person to see a slip; a catalogue may hold thousands.
+// Names in an error message: enough to recognise a typing error; there may be thousands of storms.
 constexpr std::size_t kMaxNamesListed = 10;
 
 constexpr char kStormNotFound[] = "STORM_NOT_FOUND";
@@ -34,7 +34,7 @@ absl::StatusOr<const volume::StormInfo*> FindStorm(const volume::StormStore& sto
                                                    const std::string& id) {
   const std::vector<const volume::StormInfo*> storms = store.Storms();
   if (storms.empty()) {
-    return base::WithDetails(absl::NotFoundError("the server holds no storm"),
+    return base::WithDetails(absl::NotFoundError("the server has no storms"),
                              {.reason = kStormNotFound});
   }
   if (id.empty()) return storms.front();

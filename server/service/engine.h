@@ -1,5 +1,5 @@
-// What the handlers work with: the storms, the sessions, the loop that draws, threads for work
-// that blocks, and the folder for clouds. Handlers run on gRPC's threads and must not block there.
+// The objects that the handlers use: storms, sessions, the render loop, threads for blocking work,
+// and generated clouds. Handlers run on gRPC's threads and must not block there.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@
 #include "absl/status/statusor.h"
 #include "base/executor.h"
 #include "base/wake_signal.h"
-#include "service/cloud_folder.h"
+#include "service/cloud_store.h"
 #include "session/render_loop.h"
 #include "session/sessions.h"
 #include "thunderhead/v1/thunderhead.pb.h"
@@ -25,31 +25,29 @@ struct Engine {
   session::RenderLoop& loop;
   base::WakeSignal& wake;
   base::Executor& executor;
-  CloudFolder& clouds;
+  CloudStore& clouds;
 };
 
-// The storm of that id, or the first for an empty id. NOT_FOUND names those there are.
+// The storm of that id, or the first for an empty id. NOT_FOUND lists the storms.
 absl::StatusOr<const volume::StormInfo*> FindStorm(const volume::StormStore& store,
                                                    const std::string& id);
 
-// INVALID_ARGUMENT, naming the range, if the storm has no such time. `path` is the field that
-// asked.
+// INVALID_ARGUMENT, naming the range, if the storm has no such time. `path` is the request's field.
 absl::Status CheckTime(const volume::StormInfo& storm, std::uint32_t time_index,
                        const std::string& path);
 
-// The storm's fields at that time. If they cannot be read, `path` is the field that named the
-// storm.
+// The storm's fields at that time. An error names `path`, the request's field with the storm's id.
 absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadFields(
     volume::StormStore& store, const std::string& storm_id, int time_index,
     const std::string& path);
 
 // Checks a scene (whose limits were checked) and fills in every default that needs no fields.
-// `techniques` are those that can be chosen.
+// `techniques` are the available ones.
 absl::Status PrepareScene(const volume::StormStore& store,
                           const std::vector<session::TechniqueInfo>& techniques, v1::Scene& scene);
 
-// Frames the condensate if the camera needs it, then calls `then`: at once when nothing must be
-// read, on the executor otherwise. `scene` must live until then.
+// Frames the condensate if the camera needs it, then calls `then`: at once if no fields are needed,
+// else on the executor after reading them. `scene` must live until then.
 void FrameThen(Engine& engine, v1::Scene& scene, std::function<void(const absl::Status&)> then);
 
 }  // namespace thunderhead::service

@@ -1,9 +1,9 @@
-// Pairs of a message's enumerator and a value, looked up both ways.
+// Tables of pairs (enumerator of a message, value), looked up in both directions.
 #pragma once
 
 namespace thunderhead::service {
 
-// The value beside `message`; that of the first row if there is none.
+// The value paired with `message`; that of the first row if there is none.
 template <typename Table, typename Message>
 auto ValueOf(const Table& table, Message message) {
   for (const auto& [from, to] : table) {

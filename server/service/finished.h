@@ -1,4 +1,4 @@
-// The reactor of a unary call that is answered at once.
+// The reactor of a unary call that finishes at once.
 #pragma once
 
 #include <grpcpp/server_context.h>

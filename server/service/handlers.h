@@ -1,4 +1,4 @@
-// One handler a remote call, each in the file named after it.
+// One handler for each rpc, in the file named after it.
 #pragma once
 
 #include <grpcpp/support/server_callback.h>

@@ -20,7 +20,7 @@ using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 using google::protobuf::Reflection;
 
-// The shortest text that reads back as the same number.
+// The shortest text that parses to the same number.
 template <typename Number>
 std::string Text(Number value) {
   char buffer[64];
@@ -35,8 +35,8 @@ std::string Range(const v1::NumberLimits& limits) {
   return text;
 }
 
-// The value, and the limits rounded to its type: 0.1 as float is above 0.1 as double, and yet is
-// within.
+// The value, and the limits rounded to its type: 0.1 as a float is above 0.1 as a double, but must
+// pass.
 struct Checked {
   std::string text;
   bool within = false;
@@ -144,11 +144,11 @@ absl::Status CheckRepeated(const Message& message, const FieldDescriptor& field,
                            const std::string& path) {
   const int size = message.GetReflection()->FieldSize(message, &field);
   if (field.options().HasExtension(v1::max_items)) {
-    const std::uint32_t most = field.options().GetExtension(v1::max_items);
-    if (static_cast<std::uint32_t>(size) > most) {
+    const std::uint32_t max_items = field.options().GetExtension(v1::max_items);
+    if (static_cast<std::uint32_t>(size) > max_items) {
       return base::InvalidField(
-          path, absl::StrCat("has ", size, " items; it may have at most ", most), "TOO_MANY_ITEMS",
-          {{"maximum", absl::StrCat(most)}, {"unit", "items"}});
+          path, absl::StrCat("has ", size, " items; it may have at most ", max_items),
+          "TOO_MANY_ITEMS", {{"maximum", absl::StrCat(max_items)}, {"unit", "items"}});
     }
   }
   for (int i = 0; i < size; ++i) {

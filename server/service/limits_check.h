@@ -1,5 +1,5 @@
-// Checks any message against the limits that its schema states (proto/thunderhead/v1/limits.proto),
-// and fills in the defaults stated there. Knows the options, but no message by name.
+// Checks any message against the limits in its schema (proto/thunderhead/v1/limits.proto), and
+// fills in the defaults given there. Knows the options, but no message by name.
 #pragma once
 
 #include <google/protobuf/message.h>
@@ -12,8 +12,8 @@ namespace thunderhead::service {
 // "scene.fields[1].radius_m is 5; it must be between 1e-07 and 0.1 m", with details.
 absl::Status CheckLimits(const google::protobuf::Message& message);
 
-// Sets every absent number that has a default in the schema, in `message` and the messages present
-// in it.
+// Sets every absent number that has a default in the schema, in `message` and its submessages that
+// are present.
 void FillNumberDefaults(google::protobuf::Message& message);
 
 }  // namespace thunderhead::service

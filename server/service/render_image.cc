@@ -36,25 +36,25 @@ absl::Status Encode(const session::DisplayFrame& picture, const v1::RenderImageR
   return absl::OkStatus();
 }
 
-// What drawing says is wrong, it says of the whole scene.
+// Errors of drawing are not about one field, so they name the whole scene.
 absl::Status OfScene(const absl::Status& status) {
   return base::WithDetails(status, {.reason = "SCENE_NOT_DRAWN", .field = "scene"});
 }
 
-// Who waits for a picture.
+// The call that waits for a picture.
 class PictureListener {
  public:
-  // Light is being traced for it. Must not block.
+  // Progress of tracing light. Must not block.
   virtual void Progressed(const session::ImageProgress& /*progress*/) {}
-  // Called once, and last: the response is complete, or why there is none.
+  // Called once, and last. If `status` is OK the response is complete.
   virtual void Ended(const absl::Status& status) = 0;
 
  protected:
   ~PictureListener() = default;
 };
 
-// One picture on its way: read (executor), drawn (render loop), encoded (executor). Exactly one of
-// these steps ends it; what is passed to the job must live until then.
+// One picture: read (executor), drawn (render loop), encoded (executor). Exactly one of these steps
+// ends the job; everything passed to the job must live until then.
 class PictureJob {
  public:
   PictureJob(Engine& engine, const v1::RenderImageRequest& request,
@@ -82,13 +82,13 @@ class PictureJob {
     THUNDERHEAD_RETURN_IF_ERROR(PrepareScene(engine_.store, engine_.loop.Techniques(), scene));
     if (!scene.rendering().has_reference()) return absl::OkStatus();
     return base::InvalidField("scene.rendering.reference",
-                              "is given, which only sessions show; for a file use "
+                              "is given, which only sessions can show; for a file use "
                               "thunderhead render --renderer reference",
                               "TECHNIQUE_FOR_SESSIONS_ONLY");
   }
 
   absl::Status ReadAndSubmit() {
-    if (*cancelled_) return absl::CancelledError("the picture was no longer wanted");
+    if (*cancelled_) return absl::CancelledError("the call was cancelled");
     v1::Scene& scene = *response_.mutable_scene();
     base::Stopwatch stopwatch;
     THUNDERHEAD_ASSIGN_OR_RETURN(
@@ -124,7 +124,7 @@ class PictureJob {
   const std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
 };
 
-// A picture as the answer of a unary call.
+// A picture as the response of a unary call.
 class PictureReactor final : public grpc::ServerUnaryReactor, private PictureListener {
  public:
   PictureReactor(Engine& engine, const v1::RenderImageRequest& request,
@@ -141,8 +141,8 @@ class PictureReactor final : public grpc::ServerUnaryReactor, private PictureLis
   PictureJob job_;
 };
 
-// A picture as the last event of a stream. At most one write is under way: progress that comes
-// meanwhile, or too soon after the last, is dropped, as the next step brings newer.
+// A picture as the last event of a stream. There is at most one pending write: progress that
+// arrives meanwhile, or too soon after the last, is dropped, as newer progress will follow.
 class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent>,
                             private PictureListener {
  public:
@@ -188,19 +188,19 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
     {
       const std::lock_guard lock(mutex_);
       end_ = ToGrpcStatus(status);
-      if (writing_) return;  // OnWriteDone goes on
+      if (writing_) return;  // OnWriteDone writes it
     }
     WriteEnd();
   }
 
-  // Called once, when nothing is being written any more.
+  // Called once, when no write is pending.
   void WriteEnd() {
     if (!end_->ok()) return Finish(*end_);
     StartWriteAndFinish(&image_, grpc::WriteOptions(), *end_);
   }
 
   v1::RenderImageEvent image_;
-  v1::RenderImageEvent progress_;  // being written while `writing_`
+  v1::RenderImageEvent progress_;  // gRPC reads it while `writing_`
   std::mutex mutex_;
   bool writing_ = false;
   std::optional<base::Stopwatch> since_progress_;

@@ -20,7 +20,7 @@ namespace {
 // More than 8K UHD; a limit on the memory that one request can ask for.
 constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 25;
 
-// HYDROMETEOR_UNSPECIFIED is 0, so the values' order is the messages' less one.
+// HYDROMETEOR_UNSPECIFIED is 0, so the enumerators are offset by one.
 v1::Hydrometeor ToMessage(physics::Hydrometeor hydrometeor) {
   return static_cast<v1::Hydrometeor>(physics::IndexOf(hydrometeor) + 1);
 }
@@ -206,15 +206,15 @@ absl::Status CheckScene(const v1::Scene& scene) {
     const v1::Hydrometeor hydrometeor = scene.fields(i).hydrometeor();
     const std::string path = absl::StrCat("scene.fields[", i, "].hydrometeor");
     if (hydrometeor == v1::HYDROMETEOR_UNSPECIFIED) {
-      return base::InvalidField(path, "is not given; it must say which field the settings are for",
-                                "FIELD_MISSING");
+      return base::InvalidField(
+          path, "is not given; it must name the field that the settings are for", "FIELD_MISSING");
     }
     const int first = *FirstWith(scene.fields(), hydrometeor);
     if (first != i) {
       return base::InvalidField(
           path,
-          absl::StrCat("is ", v1::Hydrometeor_Name(hydrometeor), ", which scene.fields[", first,
-                       "] already is; each hydrometeor may be listed once"),
+          absl::StrCat("is ", v1::Hydrometeor_Name(hydrometeor), ", as is scene.fields[", first,
+                       "]; each hydrometeor may be listed once"),
           "HYDROMETEOR_REPEATED");
     }
   }

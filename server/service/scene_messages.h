@@ -1,6 +1,5 @@
-// Messages to values and back: scenes, storms, frames. The one place that knows both. Limits are
-// checked elsewhere (limits_check.h); what is checked here are the rules that no number's limits
-// can state.
+// Converts scenes, storms and frames between messages and values. Limits are checked elsewhere
+// (limits_check.h); here the rules are checked that limits of numbers cannot express.
 #pragma once
 
 #include <optional>
@@ -16,11 +15,11 @@
 
 namespace thunderhead::service {
 
-// Rules on a scene that its fields' limits do not state: each hydrometeor once, the sun's date,
-// the size of the picture.
+// Checks the rules that limits do not express: each hydrometeor at most once, a valid date of the
+// sun, the number of pixels.
 absl::Status CheckScene(const v1::Scene& scene);
 
-// Fills in every default but those that depend on the storm's fields.
+// Fills in every default except those that depend on the storm's fields.
 void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm);
 
 // The value of a scene whose defaults are filled in.

@@ -22,23 +22,23 @@
 namespace thunderhead::service {
 namespace {
 
-// Blocking work: reading fields, encoding pictures. Reads wait for one another in the store, so a
-// few are enough.
+// For blocking work: reading fields, encoding pictures. The storm store reads one after another, so
+// a few are enough.
 constexpr int kExecutorThreads = 4;
 constexpr std::size_t kMaxWaitingTasks = 256;
 // A scene is at most a few kilobytes.
 constexpr int kMaxRequestBytes = 1 << 20;
 // The largest picture that CheckScene allows, uncompressed, with room to spare.
 constexpr int kMaxResponseBytes = 128 << 20;
-// A viewer that vanished without closing is noticed after these.
+// A viewer that disappeared without closing its connection is detected after the sum of these.
 constexpr int kKeepaliveTimeMs = 20'000;
 constexpr int kKeepaliveTimeoutMs = 10'000;
-// How long calls under way may take to end once they were told to.
+// Time for running calls to end by themselves before they are cancelled.
 constexpr std::chrono::seconds kShutdownGrace{2};
 
-// A socket in Linux's abstract namespace, which needs no file and is gone with the process.
-// gRPC 1.51's own in-process transport drops a message that has not been asked for when the call
-// ends, which is what a bridge that reads no faster than its browser does.
+// A socket in Linux's abstract namespace, which needs no file and disappears with the process.
+// gRPC 1.51's own in-process transport is no alternative: when a call ends, it drops messages that
+// were not yet read, as they are by a bridge that reads no faster than its browser.
 std::string NewLocalAddress() {
   static std::atomic<int> count{0};
   return absl::StrCat("unix-abstract:thunderhead-", getpid(), "-", ++count);
@@ -65,7 +65,7 @@ class RunningServer final : public Server {
   }
 
   absl::Status Listen(const std::string& address) {
-    // Both work on the next server built, so they are said once for all.
+    // Global settings, which apply to every server built later.
     static std::once_flag plugins;
     std::call_once(plugins, [] {
       grpc::EnableDefaultHealthCheckService(true);
@@ -75,7 +75,7 @@ class RunningServer final : public Server {
     builder.RegisterService(service_.get());
     builder.SetMaxReceiveMessageSize(kMaxRequestBytes);
     builder.SetMaxSendMessageSize(kMaxResponseBytes);
-    // Without this a second server would share the port instead of being told that it is taken.
+    // Otherwise a second server would share the port instead of failing.
     builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveTimeMs);
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
@@ -87,7 +87,7 @@ class RunningServer final : public Server {
     if (server_ == nullptr || (!address.empty() && port_ == 0)) {
       return absl::UnavailableError(absl::StrCat(
           "cannot listen for gRPC on ", address,
-          ": the address is not this machine's, or the port is taken; choose another"));
+          ": it is not an address of this machine, or the port is in use; choose another"));
     }
     server_->GetHealthCheckService()->SetServingStatus(true);
     server_->GetHealthCheckService()->SetServingStatus(v1::ThunderheadService::service_full_name(),
@@ -106,7 +106,7 @@ class RunningServer final : public Server {
 
   void Shutdown() override {
     if (server_ != nullptr) server_->GetHealthCheckService()->Shutdown();
-    // First, so that who sees its stream end also finds that no picture is begun any more.
+    // First, so that no picture is begun after a client has seen its stream end.
     if (loop_ != nullptr) loop_->RequestStop();
     sessions_.CloseAll(base::ShuttingDown());
     if (loop_ != nullptr) loop_->Stop();
@@ -121,7 +121,7 @@ class RunningServer final : public Server {
   const std::shared_ptr<volume::StormStore> store_;
   session::Sessions sessions_;
   base::Executor executor_;
-  CloudFolder clouds_;
+  CloudStore clouds_;
   std::unique_ptr<session::RenderLoop> loop_;
   std::unique_ptr<Engine> engine_;
   std::unique_ptr<ThunderheadService> service_;

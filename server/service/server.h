@@ -1,6 +1,5 @@
 // The gRPC server: the service, standard health and reflection, on a port or in process, with the
-// loop that draws. Takes its storms and its frame source from outside, so that tests run it without
-// files or GL.
+// render loop. Its storms and frame source are injected, so that tests run it without files or GL.
 #pragma once
 
 #include <grpcpp/channel.h>
@@ -17,28 +16,28 @@
 namespace thunderhead::service {
 
 struct ServerOptions {
-  std::string address;        // HOST:PORT, port 0 for a free one; empty listens nowhere
-  std::string clouds_folder;  // of generated clouds; empty makes none
+  std::string address;        // HOST:PORT, port 0 for a free one; empty: no port
+  std::string clouds_folder;  // for generated clouds; empty: none can be generated
   session::SessionsOptions sessions;
   session::RenderLoopOptions render_loop;
 };
 
 class Server {
  public:
-  // Returns when the frame source is made and the port is open.
+  // Returns when the frame source is ready and the port is open.
   static absl::StatusOr<std::unique_ptr<Server>> Start(
       const ServerOptions& options, std::shared_ptr<volume::StormStore> store,
       const session::FrameSourceFactory& make_source);
   virtual ~Server() = default;
 
-  // The port that is listened on, 0 if none.
+  // The listening port, 0 if none.
   virtual int Port() const = 0;
-  // What the server draws on.
+  // The device that the server draws on.
   virtual const session::DeviceInfo& Device() const = 0;
-  // A channel to this server from its own process, by a local socket.
+  // A channel to this server from its own process, through a local socket.
   virtual std::shared_ptr<grpc::Channel> LocalChannel() = 0;
-  // Ends every stream with UNAVAILABLE, drops what waits, and waits for what runs. The destructor
-  // does it too.
+  // Ends every stream with UNAVAILABLE, refuses queued work, and waits for running work. The
+  // destructor does it too.
   virtual void Shutdown() = 0;
 };
 

@@ -17,19 +17,19 @@ using std::chrono::milliseconds;
 
 constexpr char kDomain[] = "thunderhead";
 
-// gRPC drops a status of more than 8 KiB, and a shader's log may be longer. The message is in it
-// twice, in the details as base64.
+// gRPC drops a status of more than 8 KiB, and a shader's log may be longer. A status contains its
+// message twice, the second time as base64 in the details.
 constexpr std::size_t kMaxMessageBytes = 2000;
 constexpr std::size_t kMaxDetailBytes = 600;
 
 struct Row {
   absl::StatusCode engine;
   grpc::StatusCode wire;
-  const char* reason;             // where nobody gave a better one
-  milliseconds retry_after = {};  // likewise; 0: trying again does not help
+  const char* reason;             // if the status has none
+  milliseconds retry_after = {};  // likewise; 0: a retry does not help
 };
 
-// OUT_OF_RANGE is a wrong value like any other to a client, so it joins INVALID_ARGUMENT.
+// To a client OUT_OF_RANGE is a wrong value like any other, hence INVALID_ARGUMENT.
 constexpr std::array kTable = {
     Row{absl::StatusCode::kInvalidArgument, grpc::StatusCode::INVALID_ARGUMENT, "INVALID_ARGUMENT"},
     Row{absl::StatusCode::kOutOfRange, grpc::StatusCode::INVALID_ARGUMENT, "VALUE_OUT_OF_RANGE"},
@@ -37,7 +37,7 @@ constexpr std::array kTable = {
     Row{absl::StatusCode::kAlreadyExists, grpc::StatusCode::ALREADY_EXISTS, "ALREADY_EXISTS"},
     Row{absl::StatusCode::kPermissionDenied, grpc::StatusCode::PERMISSION_DENIED,
         "PERMISSION_DENIED"},
-    // Memory that is full now may be free in a while.
+    // Memory may become free later.
     Row{absl::StatusCode::kResourceExhausted, grpc::StatusCode::RESOURCE_EXHAUSTED,
         "RESOURCE_EXHAUSTED", std::chrono::seconds(30)},
     Row{absl::StatusCode::kFailedPrecondition, grpc::StatusCode::FAILED_PRECONDITION,
@@ -61,7 +61,7 @@ const Row& RowOf(absl::StatusCode code) {
   return kOther;
 }
 
-// The bytes of the UTF-8 character that `text` begins with; 0 if it begins with none.
+// Length in bytes of the UTF-8 character at the start of `text`; 0 if it is invalid.
 std::size_t CharacterBytes(std::string_view text) {
   const auto byte = [text](std::size_t i) {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
@@ -73,14 +73,15 @@ std::size_t CharacterBytes(std::string_view text) {
   for (std::size_t i = 1; i < bytes; ++i) {
     if ((byte(i) & 0xc0) != 0x80) return 0;
   }
-  // A longer form than needed, half of a UTF-16 pair, or beyond Unicode.
+  // Rejects overlong encodings, UTF-16 surrogates and values beyond Unicode.
   const bool wrong = (lead == 0xe0 && byte(1) < 0xa0) || (lead == 0xed && byte(1) > 0x9f) ||
                      (lead == 0xf0 && byte(1) < 0x90) || (lead == 0xf4 && byte(1) > 0x8f);
   return wrong ? 0 : bytes;
 }
 
-// Text for a protobuf string, which must be UTF-8 (a file's name need not be), no longer than
-// `max_bytes` as grpc-message writes it: all but printable ASCII takes three for one.
+// Makes the text valid UTF-8, as protobuf strings must be (file names need not be), and truncates
+// it to `max_bytes` in the encoding of grpc-message, where all but printable ASCII takes three
+// bytes for one.
 std::string Sendable(std::string_view text, std::size_t max_bytes) {
   std::string sendable;
   std::size_t bytes = 0;
@@ -131,13 +132,13 @@ grpc::Status ToGrpcStatus(const absl::Status& status) {
   const std::string message =
       Sendable({status.message().data(), status.message().size()}, kMaxMessageBytes);
   if (status.ok()) return grpc::Status::OK;
-  // Who cancelled a call does not wait for its details.
+  // A client that cancelled its call does not read details.
   if (absl::IsCancelled(status)) return {grpc::StatusCode::CANCELLED, message};
   const Row& row = RowOf(status.code());
   const base::ErrorDetails details = base::DetailsOf(status);
   google::rpc::Status all;
   all.set_code(row.wire);
-  // Clients that read the details read code and message there too.
+  // Clients that read the details expect code and message there too.
   all.set_message(message);
   all.add_details()->PackFrom(ErrorInfoOf(details, row));
   const milliseconds retry_after = details.retry_after.value_or(row.retry_after);

@@ -1,6 +1,7 @@
-// How the engine's status becomes gRPC's: one table, so that every rpc speaks alike. What
-// base/error_details.h attached becomes google.rpc's ErrorInfo, RetryInfo and BadRequest; every
-// refusal has the first, RESOURCE_EXHAUSTED and UNAVAILABLE the second, INVALID_ARGUMENT the third.
+// Converts the engine's status to gRPC's by one table, so that all rpcs report errors alike.
+// Details attached by base/error_details.h become google.rpc's ErrorInfo, RetryInfo and BadRequest:
+// every error has the first, RESOURCE_EXHAUSTED and UNAVAILABLE the second, INVALID_ARGUMENT the
+// third.
 #pragma once
 
 #include <grpcpp/support/status.h>

@@ -11,7 +11,7 @@
 namespace thunderhead::service {
 namespace {
 
-// An afternoon of the storm season in Oklahoma, for runs that have no date and place of their own.
+// An afternoon of the storm season in Oklahoma, for runs without a date and place.
 constexpr char kStormSeason[] = "2013-05-20T20:00:00Z";
 constexpr float kOklahomaLatitude_deg = 35.25F;
 constexpr float kOklahomaLongitude_deg = -97.5F;
@@ -56,7 +56,7 @@ void FillSunDefaults(v1::Sun& sun, const volume::StormInfo& storm, int time_inde
   v1::SunClock& clock = *sun.mutable_clock();
   FillClockDefaults(clock, storm);
   absl::Time first;
-  if (!ParseUtc(clock.date_time(), &first)) return;  // refused by CheckSun
+  if (!ParseUtc(clock.date_time(), &first)) return;  // CheckSun reports it
   const double unix_s = absl::ToDoubleSeconds(first - absl::UnixEpoch()) +
                         storm.times[static_cast<std::size_t>(time_index)].elapsed_s;
   const physics::SunPosition position =

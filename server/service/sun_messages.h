@@ -1,4 +1,5 @@
-// The sun of a scene message: where its direction comes from, and what it is by the clock.
+// The sun of a scene message: the source of its direction, and its position by date, time and
+// place.
 #pragma once
 
 #include "absl/status/status.h"
@@ -8,11 +9,11 @@
 
 namespace thunderhead::service {
 
-// INVALID_ARGUMENT where the clock's date is none.
+// INVALID_ARGUMENT if the clock's date is malformed.
 absl::Status CheckSun(const v1::Sun& sun);
 
 // Fills in the source, and for a sun that follows the clock its time, place and direction at
-// `time_index`, whatever direction the message had.
+// `time_index`, replacing the message's direction.
 void FillSunDefaults(v1::Sun& sun, const volume::StormInfo& storm, int time_index);
 
 // Fills in the time and place of the storm where absent.

@@ -68,7 +68,7 @@ absl::Status CheckTransport(const std::string& path, v1::Transport given,
   return base::InvalidField(
       absl::StrCat("scene.rendering.", path, ".transport"),
       absl::StrCat("is ", v1::Transport_Name(given),
-                   ", which this technique does not show; it must be one of ", names),
+                   ", which this technique does not support; it must be one of ", names),
       "TRANSPORT_NOT_SHOWN");
 }
 
@@ -90,7 +90,7 @@ absl::Status CheckOther(const v1::OtherTechnique& other,
       "UNKNOWN_TECHNIQUE");
 }
 
-// The settings that the messages of media have in common.
+// The settings that the techniques of a medium share.
 template <typename Message>
 void SetMedium(const scene::MediumSettings& settings, Message& message) {
   message.set_transport(MessageOf(kTransports, settings.transport));
@@ -203,7 +203,7 @@ scene::OtherTechnique ToSettings(const v1::OtherTechnique& message) {
   return {message.name(), {message.numbers().begin(), message.numbers().end()}};
 }
 
-// The technique that `rendering` names, with its own defaults.
+// The technique in `rendering`, with its defaults.
 scene::Technique DefaultsOf(const v1::Rendering& rendering) {
   switch (rendering.technique_case()) {
     case v1::Rendering::kHalfAngle:
@@ -252,7 +252,7 @@ void FillTechniqueDefaults(v1::Rendering& rendering) {
   if (rendering.technique_case() != v1::Rendering::kPreset) {
     const bool traced_light_given =
         rendering.light_volume().traced_light() != v1::TRACED_LIGHT_UNSPECIFIED;
-    // Settings that are given replace the defaults; an enumerator of 0 is not given.
+    // Given settings replace the defaults; an enumerator of 0 counts as not given.
     filled.MergeFrom(rendering);
     const bool diffuses = filled.light_volume().transport() == v1::TRANSPORT_DIFFUSION;
     if (filled.has_light_volume() && !traced_light_given && !diffuses) {

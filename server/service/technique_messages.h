@@ -1,4 +1,5 @@
-// Techniques between messages and values: defaults, presets and the transports that each accepts.
+// Converts techniques between messages and values, with their defaults, presets and supported
+// transports.
 #pragma once
 
 #include <vector>
@@ -10,23 +11,23 @@
 
 namespace thunderhead::service {
 
-// INVALID_ARGUMENT names a transport that the technique cannot show, or a technique that is none of
-// `known`. Whether a technique takes its numbers is known when it draws.
+// INVALID_ARGUMENT names a transport that the technique does not support, or a technique that is
+// not among `known`. Settings of techniques outside the schema are checked when they draw.
 absl::Status CheckRendering(const v1::Rendering& rendering,
                             const std::vector<session::TechniqueInfo>& known);
 
-// Replaces a preset, or no technique at all, by the technique that it stands for, and fills in the
+// Replaces a preset by its technique, an absent technique by the default preset's, and fills in the
 // technique's defaults.
 void FillTechniqueDefaults(v1::Rendering& rendering);
 
 // The value of a technique whose defaults are filled in.
 scene::Technique ToTechnique(const v1::Rendering& rendering);
 
-// With every setting.
+// Sets every field of the technique's message.
 void ToMessage(const scene::Technique& technique, v1::Rendering& message);
 void ToMessage(const session::TechniqueInfo& technique, v1::TechniqueDescription& message);
 
-// Every preset with the technique that it stands for.
+// Adds every preset with its technique.
 void AddPresets(v1::GetServerInfoResponse& response);
 
 }  // namespace thunderhead::service

@@ -1,4 +1,4 @@
-// The service as gRPC calls it: hands every call to its handler.
+// The service as gRPC calls it: dispatches every call to its handler.
 #pragma once
 
 #include "service/engine.h"

@@ -20,7 +20,7 @@ grpc::ServerUnaryReactor* UpdateScene(Engine& engine, grpc::CallbackServerContex
       !status.ok()) {
     return Finished(context, status);
   }
-  // Taken before the scene is framed, which may wait for a read: a later update must win.
+  // Taken before the scene is framed, which may wait for a read, so that the last update wins.
   const std::uint64_t revision = (*session)->TakeRevision();
   response->set_scene_revision(revision);
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();

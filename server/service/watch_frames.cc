@@ -15,8 +15,8 @@ namespace {
 
 using Reactor = grpc::ServerWriteReactor<v1::WatchFramesResponse>;
 
-// One viewer's stream. It lives until both gRPC and the hub have let go of it. At most one write is
-// under way, and Finish is called when none is, once.
+// One viewer's stream. It lives until both gRPC and the hub have released it. There is at most one
+// pending write; Finish is called once, when there is none.
 class FrameStream : public Reactor,
                     public session::Viewer,
                     public std::enable_shared_from_this<FrameStream> {
@@ -80,15 +80,15 @@ class FrameStream : public Reactor,
   }
 
  private:
-  // Why the stream must end now, if it must. Needs mutex_.
+  // The status to end the stream with, if it must end now. Needs mutex_.
   std::optional<grpc::Status> End() {
-    if (disconnected_) return grpc::Status(grpc::StatusCode::CANCELLED, "the viewer left");
+    if (disconnected_) return grpc::Status(grpc::StatusCode::CANCELLED, "the viewer disconnected");
     const absl::Status closed = session_->hub().ClosedBecause();
     if (closed.ok()) return std::nullopt;
     return ToGrpcStatus(closed);
   }
 
-  // `writing_` is set, so nobody else touches the response.
+  // `writing_` is set, so no other thread accesses the response.
   void SetResponse(const session::FrameEvent& event) {
     response_.set_viewer_id(viewer_id_);
     if (const auto* frame = std::get_if<std::shared_ptr<const session::EncodedFrame>>(&event)) {
@@ -104,16 +104,16 @@ class FrameStream : public Reactor,
     response_.clear_scene();
     response_.clear_scene_revision();
     const std::optional<session::NewestScene> newest = session_->Newest();
-    if (!newest.has_value() || newest->revision == told_revision_) return;
-    told_revision_ = newest->revision;
+    if (!newest.has_value() || newest->revision == sent_revision_) return;
+    sent_revision_ = newest->revision;
     response_.set_scene_revision(newest->revision);
-    if (!response_.mutable_scene()->ParseFromString(*newest->words)) response_.clear_scene();
+    if (!response_.mutable_scene()->ParseFromString(*newest->serialized)) response_.clear_scene();
   }
 
   const std::shared_ptr<session::Session> session_;
   std::shared_ptr<FrameStream> held_by_grpc_;
   v1::WatchFramesResponse response_;
-  std::uint64_t told_revision_ = 0;  // of the scene told last; used as `response_` is
+  std::uint64_t sent_revision_ = 0;  // of the scene sent last; accessed only while `response_` is
   std::mutex mutex_;
   std::uint64_t viewer_id_ = 0;
   bool writing_ = false;
@@ -121,7 +121,7 @@ class FrameStream : public Reactor,
   bool finished_ = false;
 };
 
-// A stream that never began.
+// A stream that is refused.
 class RefusedStream : public Reactor {
  public:
   explicit RefusedStream(const absl::Status& why) { Finish(ToGrpcStatus(why)); }
@@ -139,7 +139,7 @@ absl::StatusOr<std::shared_ptr<session::Session>> Find(Engine& engine,
 Reactor* WatchFrames(Engine& engine, grpc::CallbackServerContext* /*context*/,
                      const v1::WatchFramesRequest* request) {
   auto session = Find(engine, *request);
-  // gRPC calls OnDone of what is given to it, which deletes it.
+  // Deletes itself when gRPC calls OnDone.
   if (!session.ok()) return new RefusedStream(session.status());
   return FrameStream::Start(*std::move(session));
 }

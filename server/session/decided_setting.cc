@@ -6,7 +6,7 @@
 namespace thunderhead::session {
 namespace {
 
-// Prices are learnt as frames are drawn; after these the times are known, or do not settle.
+// Costs are learnt from drawn frames; after this many decisions they are known, or do not converge.
 constexpr int kMaxDecidedAgain = 3;
 
 }  // namespace
@@ -27,7 +27,7 @@ absl::StatusOr<std::optional<NewestScene>> DecidedSetting::Decide(const NewestSc
   return std::optional(NewestScene{asked.revision, scene_, asked.changed_at});
 }
 
-// The setting of the scene before, if `asked` asks for the same of the same kind of view.
+// The previous scene's setting, if `asked` has the same accuracy request and kind of camera.
 std::optional<accuracy::Setting> DecidedSetting::SettingKeptFor(const scene::Scene& asked) const {
   if (scene_ == nullptr) return std::nullopt;
   const bool alike =

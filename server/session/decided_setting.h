@@ -1,5 +1,5 @@
-// The setting that a session's scene is drawn with: decided at once, by what it asks for, and again
-// at rest, by what its frames have cost and by how much half the slices change them. A plain value.
+// The setting that a session's scene is drawn with: decided at once for the accuracy or speed that
+// it asks for, and again at rest with the measured costs and discretisation error. A plain value.
 #pragma once
 
 #include <cstdint>
@@ -26,10 +26,10 @@ class DecidedSetting {
   void Checked(double discretisation_error) { discretisation_error_ = discretisation_error; }
   const std::optional<double>& discretisation_error() const { return discretisation_error_; }
 
-  // Decides again. True if another setting is better now, which happens a few times at most.
+  // Decides again. True if another setting is better now, which happens at most a few times.
   bool DecideAgain(const NewestScene& asked);
 
-  // Nothing more is to be learnt of it.
+  // True if the setting is final for this revision.
   bool settled() const { return settled_; }
 
  private:

@@ -73,7 +73,7 @@ void FieldsReader::ServeFirst(std::unique_lock<std::mutex>& lock) {
   lock.unlock();
   FieldsRead read = Read(work);
   lock.lock();
-  // Forgotten, or asked for something else, while it was read.
+  // The owner was forgotten, or made another request, during the read.
   const auto asked = asked_.find(owner);
   if (asked == asked_.end() || asked->second.count != work.count) return;
   asked_.erase(asked);
@@ -86,7 +86,7 @@ void FieldsReader::ServeFirst(std::unique_lock<std::mutex>& lock) {
 void FieldsReader::ServeAhead(std::unique_lock<std::mutex>& lock) {
   const Asked work = std::move(ahead_.extract(ahead_.begin()).mapped());
   lock.unlock();
-  // Whoever wants it is told of its errors when it is asked for in earnest.
+  // An error will be reported by the request, if it follows.
   Read(work);
   lock.lock();
 }

@@ -1,6 +1,6 @@
-// Reads storms' fields for the render loop on a thread of its own, so that a long read holds up
-// only the session that waits for it. Each owner (a session) has at most one read, so nothing
-// queues without bound.
+// Reads storms' fields for the render loop on a thread of its own, so that a long read delays only
+// the session that waits for it. Each owner (a session) has at most one pending read, which bounds
+// the queue.
 #pragma once
 
 #include <condition_variable>
@@ -19,7 +19,7 @@
 
 namespace thunderhead::session {
 
-// Which fields: one time of one storm.
+// Identifies fields: one time of one storm.
 struct FieldsKey {
   std::string storm_id;
   int time_index = 0;
@@ -33,39 +33,38 @@ struct FieldsRead {
   double prepare_ms = 0.0;
 };
 
-// What is to be made of fields that were read, on the same thread; may be empty.
+// Prepares fields after they were read, on the same thread; may be empty.
 using PrepareFields =
     std::function<absl::Status(const std::shared_ptr<const volume::HydrometeorFields>&)>;
 
 class FieldsReader {
  public:
-  // `on_read` is called on the reading thread when a read has ended.
+  // `on_read` is called on the reading thread after each read.
   FieldsReader(volume::StormStore& store, std::function<void()> on_read);
-  // Waits for the read that runs.
+  // Waits for the running read.
   ~FieldsReader();
   FieldsReader(const FieldsReader&) = delete;
   FieldsReader& operator=(const FieldsReader&) = delete;
 
-  // Asks for a read and what `prepare` makes of it; replaces the owner's earlier one if it has not
-  // begun.
+  // Requests a read followed by `prepare`; replaces the owner's earlier request.
   void Ask(const std::string& owner, const FieldsKey& key, PrepareFields prepare = {});
-  // As Ask, of what the owner may want next: begun when nobody waits, and given to nobody; what
-  // counts is what the store and `prepare` keep of it. Replaces the owner's earlier one.
+  // Prefetches what the owner may request next, when no request waits. There is no result: it only
+  // fills the caches of the store and of `prepare`. Replaces the owner's earlier prefetch.
   void AskAhead(const std::string& owner, const FieldsKey& key, PrepareFields prepare);
-  // What the owner's read gave, once.
+  // Takes the result of the owner's read, if there is one.
   std::optional<FieldsRead> Take(const std::string& owner);
-  // The owner wants nothing any more.
+  // Drops the owner's requests and result.
   void Forget(const std::string& owner);
 
  private:
   struct Asked {
     FieldsKey key;
     PrepareFields prepare;
-    std::uint64_t count = 0;  // tells one asking from the next
+    std::uint64_t count = 0;  // identifies the request
   };
 
   FieldsRead Read(const Asked& work);
-  // Both with `lock` held, before and after.
+  // `lock` is held on entry and on return.
   void ServeFirst(std::unique_lock<std::mutex>& lock);
   void ServeAhead(std::unique_lock<std::mutex>& lock);
   void Run();
@@ -75,7 +74,7 @@ class FieldsReader {
   std::mutex mutex_;
   std::condition_variable changed_;
   bool stopping_ = false;
-  std::deque<std::string> waiting_;  // owners, in the order in which they asked
+  std::deque<std::string> waiting_;  // owners, in order of their requests
   std::uint64_t count_ = 0;
   std::map<std::string, Asked> asked_;
   std::map<std::string, FieldsRead> read_;

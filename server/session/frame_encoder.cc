@@ -9,8 +9,8 @@
 namespace thunderhead::session {
 namespace {
 
-// A coarse frame is blurred by its smaller buffer anyway and is replaced at once; fewer bytes bring
-// it sooner.
+// A coarse frame is blurred by its smaller buffer anyway and is soon replaced; fewer bytes make it
+// arrive sooner.
 constexpr int kCoarseJpegQuality = 75;
 
 void EncodeAndPublish(DrawnFrame drawn) {
@@ -93,7 +93,7 @@ void FrameEncoder::Run() {
     lock.lock();
     encoding_.erase(std::find(encoding_.begin(), encoding_.end(), session.get()));
     lock.unlock();
-    // A frame of the same session may have waited for this one.
+    // Another frame of the same session may have waited for this one.
     changed_.notify_one();
     on_encoded_();
     lock.lock();

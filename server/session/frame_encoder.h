@@ -1,6 +1,6 @@
-// Encodes sessions' frames as JPEG beside the thread that draws, and publishes them in the order in
-// which they were drawn. The render loop keeps at most two frames of a session here, so nothing
-// queues without bound.
+// Encodes sessions' frames as JPEG on other threads than the render loop's, and publishes them in
+// the order in which they were drawn. The render loop submits at most two frames of a session at a
+// time, which bounds the queue.
 #pragma once
 
 #include <condition_variable>
@@ -34,13 +34,13 @@ class FrameEncoder {
 
   // `on_encoded` is called on an encoding thread when a frame has been published.
   FrameEncoder(int threads, std::function<void()> on_encoded);
-  // Waits for the frames being encoded; those that wait are dropped.
+  // Waits for the frames being encoded and drops the queued ones.
   ~FrameEncoder();
   FrameEncoder(const FrameEncoder&) = delete;
   FrameEncoder& operator=(const FrameEncoder&) = delete;
 
   void Encode(DrawnFrame frame);
-  // True if the session has as many frames here as it may.
+  // True if the session has the maximum number of pending frames.
   bool IsFullFor(const Session& session);
 
  private:
@@ -53,7 +53,7 @@ class FrameEncoder {
   bool stopping_ = false;
   std::deque<DrawnFrame> waiting_;
   std::vector<const Session*>
-      encoding_;  // whose frames are being encoded: one each, which keeps their order
+      encoding_;  // sessions with a frame being encoded: at most one each, which keeps the order
   std::vector<std::thread> threads_;
 };
 

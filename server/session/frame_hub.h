@@ -1,6 +1,6 @@
-// Hands one session's newest frame to its viewers. Each viewer has at most two unacknowledged
-// frames; one that is slow skips frames and never slows another, and nothing queues: the hub keeps
-// one frame and one problem. Safe from any thread. Knows nothing of how frames are made or sent.
+// Distributes a session's newest frame to its viewers. Each viewer has at most two unacknowledged
+// frames; a slow one skips frames and never slows another. The hub keeps only one frame and one
+// problem. Safe from any thread. Does not know how frames are drawn or sent.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ struct EncodedFrame {
   std::optional<AccuracyReport> accuracy;
 };
 
-// Why the scene of a revision has no frame.
+// The reason why the scene of a revision has no frame.
 struct Problem {
   enum class Code {
     kStormGone,
@@ -52,15 +52,15 @@ struct Problem {
   Code code = Code::kInternal;
 };
 
-// Of a scene that `why` kept from being drawn.
+// The problem of a scene that could not be drawn.
 Problem ProblemOf(std::uint64_t scene_revision, const absl::Status& why);
-// Of a scene whose storm could not be read.
+// The problem of a scene whose storm could not be read.
 Problem UnreadableStorm(std::uint64_t scene_revision, const absl::Status& why);
 
 using FrameEvent = std::variant<std::shared_ptr<const EncodedFrame>, Problem>;
 
-// One who watches. Wake is called from any thread, without the hub's lock, when Take may have
-// something or the hub has closed.
+// A viewer of the session. Wake is called from any thread, without the hub's lock, when Take may
+// have something or the hub has closed.
 class Viewer {
  public:
   virtual ~Viewer() = default;
@@ -71,16 +71,16 @@ class FrameHub {
  public:
   static constexpr std::size_t kMaxInFlight = 2;
 
-  // `on_demand` is called, without the lock, whenever a viewer comes to be ready for another frame,
-  // or has left.
+  // `on_demand` is called, without the lock, whenever a viewer becomes ready for another frame, or
+  // leaves.
   explicit FrameHub(std::function<void()> on_demand);
 
-  // Gives the viewer's id, or the reason given to Close. Does not call Wake.
+  // Returns the viewer's id, or the reason given to Close. Does not call Wake.
   absl::StatusOr<std::uint64_t> Join(std::shared_ptr<Viewer> viewer);
   void Leave(std::uint64_t viewer_id);
 
-  // Takes the newest frame or problem that the viewer has not had, if it may have one now. A frame
-  // taken is in flight until it is acknowledged.
+  // Takes the newest frame or problem that the viewer has not had, unless too many of its frames
+  // are in flight, i.e. taken and not yet acknowledged.
   std::optional<FrameEvent> Take(std::uint64_t viewer_id);
 
   // Acknowledges every frame up to `sequence`. False if there is no such viewer.
@@ -91,13 +91,13 @@ class FrameHub {
   // Replaces the newest problem; a frame of the same or a newer revision ends it.
   void Publish(Problem problem);
 
-  // Ends every watch with `why`; the first reason given stays.
+  // Ends every viewer's stream with `why`; the first reason counts.
   void Close(const absl::Status& why);
   // OK while open.
   absl::Status ClosedBecause() const;
 
   bool HasViewers() const;
-  // True if some viewer could be sent another frame now.
+  // True if a viewer can be sent another frame now.
   bool HasReadyViewer() const;
 
  private:

@@ -7,8 +7,8 @@
 namespace thunderhead::session {
 namespace {
 
-// Steps between the coarsest and full quality, a factor of 2^(1/4) apart: small changes of the
-// estimate must not change the size of the buffers.
+// Steps between the coarsest and full quality, a factor of 2^(1/4) apart, so that small changes of
+// the estimate do not change the size of the buffers.
 constexpr int kSteps = 8;
 
 FrameQuality Step(int step) {
@@ -43,7 +43,7 @@ FramePlan FramePlanner::Coarse(const scene::Scene& scene,
     const FrameQuality quality = Finest(scene, first_dirty, targets_.coarse_ms);
     return {quality, IsFull(quality)};
   }
-  // Only the tone changes: the slices that are there already, however fine, cost nothing again.
+  // Only the tone changes: the linear frame is reused at its quality, at no cost.
   const bool as_refined_as_before = drawn_.refined && drawn_.quality == last_drawn->quality;
   return {last_drawn->quality, IsFull(last_drawn->quality) || as_refined_as_before};
 }

@@ -1,6 +1,6 @@
-// Decides which frame of a session is due: coarse while its scene keeps changing, refined when it
-// rests, always ending at full quality. Plain values; the time is given. Knows no threads and no
-// GL.
+// Decides which frame of a session to draw next: coarse while its scene keeps changing, refined
+// when it rests, and finally at full quality. Plain values; the time is an argument. Knows no
+// threads and no GL.
 #pragma once
 
 #include <cstdint>
@@ -16,19 +16,18 @@ namespace thunderhead::session {
 
 struct PlannerTargets {
   double coarse_ms = 33.0;  // a frame while the scene changes
-  double refined_ms =
-      180.0;  // the first frame at rest; with the delay, encoding and the way within 300 ms
+  // The first frame at rest: with the delay, encoding and network it is shown within 300 ms.
+  double refined_ms = 180.0;
   Clock::duration rest_delay = std::chrono::milliseconds(80);
   // A full-quality frame that takes longer than refined_ms blocks the next change, so it waits
-  // until the scene has surely come to rest.
+  // until the scene has very likely come to rest.
   Clock::duration settle_delay = std::chrono::milliseconds(500);
 };
 
-// The coarsest and the finest a frame may be; image_scale and slice_share move together between
-// them.
+// The smallest image_scale and slice_share of a coarse frame; both vary together up to 1.
 inline constexpr double kCoarsest = 0.25;
 
-// What the frame source drew last, from which it can go on.
+// The frame that the source drew last, whose stages it can reuse.
 struct LastDrawn {
   scene::Scene scene;
   FrameQuality quality;
@@ -41,7 +40,8 @@ struct FramePlan {
   bool operator==(const FramePlan&) const = default;
 };
 
-// A frame to draw now, or when to ask again, or neither: nothing until the scene changes.
+// A frame to draw now, or when to ask again; neither if there is nothing to draw until the scene
+// changes.
 struct Decision {
   std::optional<FramePlan> plan;
   std::optional<Clock::time_point> ask_again_at;
@@ -49,7 +49,7 @@ struct Decision {
 
 class FramePlanner {
  public:
-  // Of the frames of `view`, as it is called in `costs`, which must outlive the planner.
+  // `view` is the name of the session in `costs`, which must outlive the planner.
   FramePlanner(const PlannerTargets& targets, const accuracy::MachineCosts& costs,
                std::string view);
 
@@ -57,10 +57,10 @@ class FramePlanner {
                   const std::optional<LastDrawn>& last_drawn) const;
 
   void Drawn(std::uint64_t revision, const FramePlan& plan);
-  // The scene of that revision cannot be drawn, or is shown by other means; it is not tried again.
+  // Plans no more frames of that revision: it cannot be drawn, or is not drawn by this planner.
   void GiveUp(std::uint64_t revision);
 
-  // The scene of the revision drawn last is to be drawn otherwise: it begins anew.
+  // Starts again with the revision drawn last, as its setting has changed.
   void Again();
 
   // The newest revision drawn or given up.
@@ -76,7 +76,7 @@ class FramePlanner {
   const accuracy::MachineCosts& costs_;
   const std::string view_;
   std::uint64_t revision_ = 0;
-  bool finished_ = false;  // nothing finer is to come for that revision
+  bool finished_ = false;  // no finer frame follows for that revision
   FramePlan drawn_;
 };
 

@@ -1,6 +1,6 @@
-// What the render loop asks of the engine that draws: a scene and a storm's fields in, display
-// pixels out. The GL engine implements it; service tests use a fake one. A FrameSource lives and
-// works on one thread.
+// The interface between the render loop and the engine that draws: a scene and a storm's fields in,
+// display pixels out. The GL engine implements it; service tests use a fake one. A FrameSource is
+// created, used and destroyed on one thread.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ using accuracy::AccuracyReport;
 using accuracy::FrameQuality;
 using scene::StageTime;
 
-// What a frame modelled.
+// The content of a frame and the technique that drew it.
 struct Modelled {
   std::string technique;  // its name
   renderers::Content content;
@@ -41,10 +41,11 @@ struct Modelled {
   double exposure_ev = 0.0;
 };
 
-// How far a picture by the reference has come.
+// Progress of a picture by the reference.
 struct Refinement {
-  int samples_per_pixel = 0;  // that every pixel has
-  // Root of the mean squared standard error over the mean radiance; none where samples are too few.
+  int samples_per_pixel = 0;  // of every pixel
+  // Root of the mean squared standard error over the mean radiance; none if there are too few
+  // samples.
   std::optional<double> relative_error;
 
   bool operator==(const Refinement&) const = default;
@@ -60,20 +61,20 @@ struct DisplayFrame {
   std::optional<AccuracyReport> accuracy;
 };
 
-// A picture at full quality, and how much it differs from one with half the slices.
+// A picture at full quality, and its difference from one with half the slices.
 struct CheckedFrame {
   DisplayFrame frame;
   double discretisation_error = 0.0;  // accuracy::DiscretisationError
 };
 
-// What the source draws on.
+// The device that the source draws on.
 struct DeviceInfo {
   std::string device;       // "software" or "gpu 0"
   std::string gl_renderer;  // OpenGL's renderer string
   std::string gl_version;
 };
 
-// A technique that can be chosen.
+// An available technique.
 struct TechniqueInfo {
   std::string name;
   scene::Capabilities capabilities;
@@ -90,7 +91,7 @@ class FrameSource {
   // In the order in which to offer them.
   virtual std::vector<TechniqueInfo> Techniques() const = 0;
 
-  // Null if no scene needs any.
+  // Null if no scene needs preparation.
   virtual std::shared_ptr<Preparation> PreparationOfScenes() const { return nullptr; }
 
   // Draws `scene` from `fields` (of the scene's storm and time). Reruns only the stages that differ
@@ -104,13 +105,13 @@ class FrameSource {
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) = 0;
 
-  // Traces some more paths for a scene with traced light, about a tenth of a second long, so that
-  // the next Draw of it is better. RESOURCE_EXHAUSTED while too many other scenes are traced for.
+  // Traces paths for a scene with traced light for about a tenth of a second, which improves the
+  // next Draw of it. RESOURCE_EXHAUSTED while light is traced for too many other scenes.
   virtual absl::StatusOr<accuracy::LightProgress> TraceLight(
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) = 0;
 
-  // Tone maps a picture of `scene` that was computed elsewhere. What Draw keeps stays kept.
+  // Tone maps a picture of `scene` computed elsewhere. Does not disturb the stages that Draw keeps.
   virtual absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
                                             const scene::Scene& scene) = 0;
 };

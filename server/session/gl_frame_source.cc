@@ -14,8 +14,8 @@
 namespace thunderhead::session {
 namespace {
 
-// A correction that was kept takes less.
-constexpr double kWorthSaying_ms = 0.1;
+// A cached correction takes less.
+constexpr double kMinReported_ms = 0.1;
 
 class GlFrameSource final : public FrameSource {
  public:
@@ -74,11 +74,11 @@ class GlFrameSource final : public FrameSource {
   }
 
  private:
-  // What traced paths correct of a scene's light; without any, nothing.
+  // The correction of a scene's light by traced paths; null light without any.
   struct Correction {
     std::shared_ptr<const renderers::LightCorrection> light;
     std::int64_t paths = 0;
-    double milliseconds = 0.0;  // that finding it took
+    double milliseconds = 0.0;  // to compute it
 
     renderers::DrawQuality Applied(renderers::DrawQuality quality) const {
       quality.correction = light;
@@ -102,7 +102,7 @@ class GlFrameSource final : public FrameSource {
                                  tone_mapper_.Map(*linear.radiance, scene));
     DisplayFrame frame;
     frame.stages = linear.stages;
-    if (correction.milliseconds >= kWorthSaying_ms) {
+    if (correction.milliseconds >= kMinReported_ms) {
       frame.stages.push_back({scene::FrameStage::kCorrection, correction.milliseconds});
     }
     frame.modelled = {std::string(scene::NameOf(scene.rendering.technique)), linear.content,
@@ -120,13 +120,13 @@ class GlFrameSource final : public FrameSource {
     frame->stages.push_back({scene::FrameStage::kReadBack, mapped.read_back_ms});
   }
 
-  std::unique_ptr<gl::Context> context_;  // outlives what was made in it
+  std::unique_ptr<gl::Context> context_;  // must outlive the GL objects below
   std::shared_ptr<const renderers::TechniqueRegistry> registry_ =
       std::make_shared<renderers::TechniqueRegistry>(renderers::TechniqueRegistry::BuiltIn());
   renderers::RendererPool renderers_{registry_};
   accuracy::CorrectorPool correctors_;
   frame::ToneMapper tone_mapper_;
-  frame::ToneMapper picture_tone_mapper_;  // of other sizes: each keeps its buffers
+  frame::ToneMapper picture_tone_mapper_;  // of Tone, whose pictures have other sizes
   DeviceInfo info_;
 };
 

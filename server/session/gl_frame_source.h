@@ -12,7 +12,7 @@
 
 namespace thunderhead::session {
 
-// The techniques that can be chosen, in the order in which to offer them.
+// The available techniques, in the order in which to offer them.
 std::vector<TechniqueInfo> TechniquesOf(const renderers::TechniqueRegistry& registry);
 
 // Opens the device (gl::Context::Create) on the calling thread, which must stay the one that draws.

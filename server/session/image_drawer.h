@@ -1,5 +1,5 @@
-// Draws the pictures of an ImageQueue, one turn at a time: a picture that awaits traced light takes
-// many, and others have theirs in between. Used by the render loop's thread only.
+// Draws the pictures of an ImageQueue. A picture that awaits traced light takes many turns, with
+// other pictures and sessions in between. Used by the render loop's thread only.
 #pragma once
 
 #include "absl/status/statusor.h"
@@ -17,8 +17,7 @@ class ImageDrawer {
   TurnOutcome TakeTurn();
 
  private:
-  // True if the picture, its setting decided, awaits more paths: enough for the error that it asks
-  // for, if it does.
+  // Traces a step. True if the picture needs more paths, for the requested error if there is one.
   absl::StatusOr<bool> Trace(const ImageJob& job);
 
   ImageQueue& queue_;

@@ -11,7 +11,7 @@
 namespace thunderhead::session {
 namespace {
 
-// The time of a few pictures.
+// Time to draw a few pictures.
 constexpr std::chrono::seconds kRetryAfter{5};
 
 absl::Status TooMany(std::size_t waiting) {
@@ -66,7 +66,7 @@ std::optional<ImageJob> ImageQueue::Take() {
     }
   }
   for (const ImageJob& job : cancelled) {
-    job.done(absl::CancelledError("the picture was no longer wanted"));
+    job.done(absl::CancelledError("the call was cancelled"));
   }
   return next;
 }

@@ -1,4 +1,4 @@
-// The pictures that were asked for outside any session and wait to be drawn. Safe from any thread.
+// Pictures requested outside any session, waiting to be drawn. Safe from any thread.
 #pragma once
 
 #include <atomic>
@@ -19,9 +19,9 @@ namespace thunderhead::session {
 
 // Progress of tracing the light of a picture.
 struct ImageProgress {
-  double share = 0.0;  // of the paths that it waits for, 0 to 1
+  double share = 0.0;  // of the required paths, 0 to 1
   std::int64_t traced_paths = 0;
-  std::optional<double> estimated_error;  // that it would have now
+  std::optional<double> estimated_error;  // of the picture with these paths
 };
 
 // One picture at full quality, outside any session.
@@ -29,12 +29,12 @@ struct ImageJob {
   scene::Scene scene;
   std::shared_ptr<const volume::HydrometeorFields> fields;
   std::shared_ptr<const std::atomic<bool>> cancelled;  // true drops the job while it waits
-  // Called once, on the loop's thread or the one that asked; must not block.
+  // Called once, on the loop's thread or on the one that calls Add; must not block.
   std::function<void(absl::StatusOr<DisplayFrame>)> done;
-  // If given, called on the loop's thread after each step of tracing light for the picture, and not
-  // after `done`; must not block.
+  // If set, called on the loop's thread after each step of tracing light, and not after `done`;
+  // must not block.
   std::function<void(const ImageProgress&)> on_progress = nullptr;
-  // With the setting that it is drawn by; none before its first turn.
+  // The scene with its decided setting; none before the first turn.
   std::optional<scene::Scene> decided = std::nullopt;
 };
 
@@ -42,13 +42,14 @@ class ImageQueue {
  public:
   explicit ImageQueue(std::size_t max_waiting) : max_waiting_(max_waiting) {}
 
-  // False if the job was refused, which it has been told: there are too many, or the server stops.
+  // False if the job was refused, as the queue is full or the server is stopping; `done` was called
+  // with the reason.
   bool Add(ImageJob job);
-  // Begun, but not done: it waits behind the others.
+  // Queues a job that was begun but is not done behind the others.
   void PutBack(ImageJob job);
-  // The job whose turn it is; those that were cancelled are told so and dropped.
+  // Takes the next job; drops cancelled ones and calls their `done`.
   std::optional<ImageJob> Take();
-  // Refuses those that wait and all to come.
+  // Refuses all waiting and future jobs.
   void RefuseAll();
 
  private:

@@ -5,8 +5,9 @@
 namespace thunderhead::session {
 namespace {
 
-// A picture is drawn anew for so many times the paths, but not more often, nor less, than this.
-constexpr double kWorthShowing = 1.5;
+// The picture is drawn again when the number of paths has grown by this factor, within these bounds
+// of the time since the last.
+constexpr double kShownGrowth = 1.5;
 constexpr Clock::duration kMinBetween = std::chrono::milliseconds(500);
 constexpr Clock::duration kMaxBetween = std::chrono::seconds(5);
 
@@ -29,8 +30,7 @@ bool LightTracing::Traced(const accuracy::LightProgress& progress, Clock::time_p
   ended_ = progress.steps == 0 || since.HasTraced(accuracy::kTracedPaths);
   if (!progress.Corrects()) return false;
   const Clock::duration since_shown = now - shown_at_;
-  const bool more =
-      static_cast<double>(paths_) >= kWorthShowing * static_cast<double>(shown_paths_);
+  const bool more = static_cast<double>(paths_) >= kShownGrowth * static_cast<double>(shown_paths_);
   return ended_ || since_shown >= kMaxBetween || (more && since_shown >= kMinBetween);
 }
 

@@ -1,5 +1,5 @@
-// How far the light of a view at rest has been traced, and when that is worth showing. A plain
-// value; the time is given.
+// The progress of tracing light for a view at rest, and when to show it. A plain value; the time is
+// an argument.
 #pragma once
 
 #include <chrono>
@@ -11,25 +11,25 @@
 
 namespace thunderhead::session {
 
-// When tracing is tried again for what found too much of it going on.
+// Delay before tracing is tried again when light is traced for too many other scenes.
 inline constexpr Clock::duration kTraceAgainAfter = std::chrono::milliseconds(500);
 
 class LightTracing {
  public:
-  // Begins anew if it was another revision's.
+  // Starts again if the revision is a new one.
   void BeginFor(std::uint64_t revision, Clock::time_point now);
 
-  // Tracing has come so far. True if that is to be shown.
+  // Records progress. True if the picture should be drawn again with it.
   bool Traced(const accuracy::LightProgress& progress, Clock::time_point now);
-  // It has been, at `now`.
+  // Records that the picture was drawn with the light traced so far.
   void Shown(Clock::time_point now);
 
-  // Nothing more is to be traced for the revision.
+  // True if no more light is traced for the revision.
   bool ended() const { return ended_; }
 
  private:
   std::uint64_t revision_ = 0;
-  std::optional<accuracy::LightProgress> begun_at_;  // what was there before
+  std::optional<accuracy::LightProgress> begun_at_;  // progress before this view, from earlier ones
   std::int64_t paths_ = 0;
   std::int64_t shown_paths_ = 0;
   Clock::time_point shown_at_;

@@ -1,5 +1,5 @@
-// A frame source together with what its frames teach: every frame is reported to the cost model
-// once, and carries the estimate of its error. Used by the render loop's thread only.
+// A frame source with the cost model and error estimator: reports every frame to the cost model
+// once and adds the estimate of its error. Used by the render loop's thread only.
 #pragma once
 
 #include <memory>
@@ -23,7 +23,7 @@ class MeasuredSource {
   MeasuredSource(const MeasuredSource&) = delete;
   MeasuredSource& operator=(const MeasuredSource&) = delete;
 
-  // A frame of `view`: a session's id, or the empty string for pictures outside any session.
+  // Draws a frame of `view`: a session's id, or the empty string for pictures outside any session.
   absl::StatusOr<DisplayFrame> Draw(
       const std::string& view, const scene::Scene& scene, const Fields& fields,
       const FrameQuality& quality,
@@ -36,7 +36,7 @@ class MeasuredSource {
   absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
                                     const scene::Scene& scene);
 
-  // The view draws no more.
+  // Forgets the costs of a view that is no longer drawn.
   void Forget(const std::string& view) { costs_.Forget(view); }
 
   const std::optional<LastDrawn>& Last() const { return last_drawn_; }

@@ -41,7 +41,7 @@ class ReferenceTruthSource final : public TruthSource {
 
   picture::LinearPicture Snapshot() override {
     picture::LinearPicture picture = tracer_.Snapshot();
-    picture.standard_error = {};  // sessions show the mean of it alone (Refinement)
+    picture.standard_error = {};  // sessions show only its mean (Refinement)
     return picture;
   }
 

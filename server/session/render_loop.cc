@@ -83,8 +83,8 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source) {
   Turns turns;
   while (!stopping_) {
     const std::vector<std::shared_ptr<Session>> sessions = sessions_.All();
-    drawer.LetGoOfUnwatched(sessions);
-    // The pictures' id, the empty string, is before every session's.
+    drawer.ReleaseUnwatched(sessions);
+    // The empty id stands for the single pictures; it sorts before the sessions'.
     std::vector<std::string> ids{""};
     for (const auto& session : sessions) ids.push_back(session->id());
     const auto look_again_at = turns.Next(ids, [&](std::size_t i, TurnKind kind) {

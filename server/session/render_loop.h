@@ -1,7 +1,6 @@
-// The loop that draws: one thread makes the frame source, owns it, and gives turns to the sessions
-// that have a viewer ready for a frame, and to the pictures that were asked for one by one. Reads,
-// encoding and the reference run on other threads beside it. Knows no GL (that is the frame
-// source's) and no messages.
+// The render loop: one thread creates and owns the frame source, and schedules the sessions that
+// have a viewer ready for a frame, and the single pictures. Reads, encoding and the reference run
+// on other threads. Knows no GL (only the frame source does) and no messages.
 #pragma once
 
 #include <atomic>
@@ -31,7 +30,7 @@ struct RenderLoopOptions {
   PlannerTargets targets;
   std::size_t max_waiting_images = 16;
   int encoder_threads = 1;
-  // Of sessions that show the reference; each takes some hundred bytes a pixel and the medium.
+  // Sessions that show the reference; each takes some hundred bytes a pixel and the medium.
   std::size_t max_traced_sessions = 8;
   std::function<accuracy::OfferTables()> offer_tables = accuracy::BuiltInOfferTables;
   TruthSourceFactory make_truth_source = [] { return MakeReferenceTruthSource(); };
@@ -39,8 +38,8 @@ struct RenderLoopOptions {
 
 class RenderLoop {
  public:
-  // Returns once the frame source is made, or could not be. `sessions` calls `wake.Notify()` when
-  // there is work; all three references must outlive the loop.
+  // Returns once the frame source is created, or its error. `sessions` must call `wake.Notify()`
+  // when there is work; the store, the sessions and the signal must outlive the loop.
   static absl::StatusOr<std::unique_ptr<RenderLoop>> Start(const RenderLoopOptions& options,
                                                            volume::StormStore& store,
                                                            Sessions& sessions,
@@ -54,15 +53,16 @@ class RenderLoop {
   // In the order in which to offer them.
   const std::vector<TechniqueInfo>& Techniques() const { return techniques_; }
 
-  // What drawing `scene` would hold the loop up with; blocks. From any thread.
+  // Does in advance the work on the CPU that drawing `scene` needs, so that it does not hold up the
+  // loop; blocks. From any thread.
   absl::Status Prepare(const scene::Scene& scene,
                        const std::shared_ptr<const volume::HydrometeorFields>& fields) const;
 
   void RenderImage(ImageJob job);
 
-  // Nothing is drawn any more after the frame being drawn. Returns at once.
+  // Stops drawing after the current frame. Returns at once.
   void RequestStop();
-  // Waits for the frame being drawn, refuses the pictures that wait and ends every thread.
+  // Waits for the current frame, refuses the waiting pictures and ends every thread.
   void Stop();
 
  private:
@@ -76,7 +76,7 @@ class RenderLoop {
   volume::StormStore& store_;
   Sessions& sessions_;
   base::WakeSignal& wake_;
-  DeviceInfo device_;  // set, as the next two, before Start returns
+  DeviceInfo device_;  // like the next two, constant after Start
   std::vector<TechniqueInfo> techniques_;
   std::shared_ptr<Preparation> preparation_;
   std::atomic<bool> stopping_{false};

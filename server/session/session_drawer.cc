@@ -33,18 +33,18 @@ SessionDrawer::Kept& SessionDrawer::KeptFor(const std::string& session_id) {
       .first->second;
 }
 
-void SessionDrawer::LetGoOfUnwatched(const std::vector<std::shared_ptr<Session>>& sessions) {
+void SessionDrawer::ReleaseUnwatched(const std::vector<std::shared_ptr<Session>>& sessions) {
   for (auto kept = kept_.begin(); kept != kept_.end();) {
     const auto found = std::lower_bound(
         sessions.begin(), sessions.end(), kept->first,
         [](const auto& session, const std::string& id) { return session->id() < id; });
     const bool exists = found != sessions.end() && (*found)->id() == kept->first;
     if (!exists || !(*found)->hub().HasViewers()) {
-      kept->second.fields.LetGo();
-      kept->second.reference.LetGo();
+      kept->second.fields.Release();
+      kept->second.reference.Release();
     }
     if (exists) {
-      ++kept;  // it may be watched again
+      ++kept;  // keeps its view, as it may be watched again
     } else {
       source_.Forget(kept->first);
       kept = kept_.erase(kept);
@@ -130,7 +130,7 @@ absl::Status SessionDrawer::ShowLight(const Turn& turn, const NewestScene& shown
 TurnOutcome SessionDrawer::Do(const Turn& turn, const ShowReference& work) {
   const absl::StatusOr<bool> showed = ShowTraced(turn, work.shown);
   if (showed.ok()) return {*showed, std::nullopt};
-  turn.kept.reference.LetGo();
+  turn.kept.reference.Release();
   Fail(turn, work.shown.revision, showed.status());
   return {};
 }

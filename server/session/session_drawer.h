@@ -1,5 +1,5 @@
-// Does the work that sessions' views ask for, one piece a turn: draws with the source, and hands
-// frames to the encoder. Used by the render loop's thread only.
+// Does the work that sessions' views ask for, one item in each turn: draws with the source and
+// passes frames to the encoder. Used by the render loop's thread only.
 #pragma once
 
 #include <map>
@@ -25,12 +25,12 @@ class SessionDrawer {
 
   TurnOutcome TakeTurn(const std::shared_ptr<Session>& session, TurnKind kind);
 
-  // Gives back what is kept for sessions that nobody watches, or that are not among `sessions`,
-  // which are in order of id.
-  void LetGoOfUnwatched(const std::vector<std::shared_ptr<Session>>& sessions);
+  // Frees the resources of sessions without viewers and of those not in `sessions`, which are in
+  // order of id.
+  void ReleaseUnwatched(const std::vector<std::shared_ptr<Session>>& sessions);
 
  private:
-  // What is kept for a session while it may be watched.
+  // The state kept for a session.
   struct Kept {
     SessionView view;
     SessionFields fields;

@@ -5,8 +5,8 @@
 namespace thunderhead::session {
 namespace {
 
-// A preparation that took less was done before.
-constexpr double kWorthSaying_ms = 1.0;
+// A preparation that took less was already done.
+constexpr double kMinReported_ms = 1.0;
 
 FieldsKey KeyOf(const scene::Scene& scene) { return {scene.storm_id, scene.time_index}; }
 
@@ -38,7 +38,7 @@ std::optional<NewestScene> SessionFields::Drawable(const NewestScene& newest,
       cached != nullptr && IsPrepared(*newest.scene, cached)) {
     fields_ = std::move(cached);
     key_ = key;
-    // Asked for all the same: it is the store's Get that reads the next times ahead.
+    // Requested all the same, because the store prefetches the next times in Get.
     reading_for_.reset();
     access_.reader.Ask(id_, key);
     return newest;
@@ -86,13 +86,13 @@ void SessionFields::PrepareNext(const scene::Scene& shown) {
 void SessionFields::AddStages(std::vector<StageTime>* stages) {
   const double prepare_ms = std::exchange(prepare_ms_, 0.0);
   const double read_ms = std::exchange(read_ms_, 0.0);
-  if (prepare_ms > kWorthSaying_ms) {
+  if (prepare_ms > kMinReported_ms) {
     stages->insert(stages->begin(), {scene::FrameStage::kFit, prepare_ms});
   }
   if (read_ms > 0.0) stages->insert(stages->begin(), {scene::FrameStage::kRead, read_ms});
 }
 
-void SessionFields::LetGo() {
+void SessionFields::Release() {
   access_.reader.Forget(id_);
   fields_.reset();
   key_.reset();

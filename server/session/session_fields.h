@@ -1,5 +1,5 @@
-// The fields of the storm that a session shows: asked for, read beside the render loop, and for a
-// series that plays, prepared ahead. Used by the render loop's thread only. Knows no GL.
+// The fields of the storm that a session shows: requested, read on another thread than the render
+// loop's, and prefetched while a series plays. Used by the render loop's thread only. Knows no GL.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace thunderhead::session {
 
-// Where fields come from; all must outlive who uses it.
+// The sources of fields; all must outlive their users.
 struct FieldsAccess {
   volume::StormStore& store;
   FieldsReader& reader;
@@ -33,25 +33,25 @@ class SessionFields {
     std::uint64_t revision = 0;
     absl::Status why;
   };
-  // Takes what has been read meanwhile.
+  // Takes the result of a finished read; returns its error, if any.
   std::optional<Unreadable> TakeRead();
 
-  // The scene to draw now: the newest if its fields are at hand. If they are not they are asked
-  // for, and meanwhile the scene whose fields have just been read is drawn, if it is newer than
-  // `shown_revision`: so a time slider that moves faster than the disk still shows something.
+  // The scene to draw now: the newest if its fields are available. Otherwise requests them, and
+  // returns the scene whose fields have just been read, if it is newer than `shown_revision`, so
+  // that a time slider that moves faster than the disk still shows something.
   std::optional<NewestScene> Drawable(const NewestScene& newest, std::uint64_t shown_revision);
 
-  // Of the scene that is drawable.
+  // The fields of the scene that Drawable returned last.
   const std::shared_ptr<const volume::HydrometeorFields>& Fields() const { return fields_; }
 
-  // `shown` was drawn: what a series that goes on, a step at a time, needs next is prepared.
+  // Called after `shown` was drawn: if a series is playing step by step, prefetches the next time.
   void PrepareNext(const scene::Scene& shown);
 
   // Adds the time that reading and preparing took since the last frame.
   void AddStages(std::vector<StageTime>* stages);
 
-  // Gives back the memory, and ends its work in progress.
-  void LetGo();
+  // Frees the memory and drops pending requests.
+  void Release();
 
  private:
   bool IsPrepared(const scene::Scene& scene,

@@ -10,7 +10,7 @@ namespace thunderhead::session {
 void SessionReference::EndUnless(const scene::Scene& newest) {
   if (!traced_.has_value()) return;
   if (!std::holds_alternative<scene::Reference>(newest.rendering.technique)) {
-    LetGo();
+    Release();
   } else if (scene::FirstDirtyStage(*traced_->shown.scene, newest) < scene::Stage::kTone) {
     tracer_.Stop(id_);
     traced_.reset();
@@ -24,7 +24,7 @@ absl::StatusOr<bool> SessionReference::Trace(
     THUNDERHEAD_RETURN_IF_ERROR(tracer_.Trace(id_, shown.scene, fields));
     return false;
   }
-  // Another exposure shows what was traced so far in another light.
+  // A changed exposure shows the same picture differently.
   bool news = traced_->picture != nullptr && shown.revision > traced_->shown.revision;
   traced_->shown = shown;
   if (auto taken = tracer_.Take(id_); taken.has_value()) {
@@ -34,7 +34,7 @@ absl::StatusOr<bool> SessionReference::Trace(
   return news;
 }
 
-void SessionReference::LetGo() {
+void SessionReference::Release() {
   tracer_.Forget(id_);
   traced_.reset();
 }

@@ -1,5 +1,5 @@
-// A session's picture by the reference, refined by the tracer beside the render loop. Used by the
-// render loop's thread only. Knows no GL.
+// A session's picture by the reference, refined by the tracer on another thread. Used by the render
+// loop's thread only. Knows no GL.
 #pragma once
 
 #include <memory>
@@ -19,16 +19,15 @@ class SessionReference {
   SessionReference(TruthTracer& tracer, std::string session_id)
       : tracer_(tracer), id_(std::move(session_id)) {}
 
-  // Ends what is traced if the newest scene shows something else.
+  // Ends tracing if the newest scene shows something else.
   void EndUnless(const scene::Scene& newest);
 
-  // Begins `shown`, or takes what was traced meanwhile. True if there is something in picture()
-  // that its viewers have not seen.
+  // Begins tracing `shown`, or takes the newest picture of it. True if picture() has changed.
   absl::StatusOr<bool> Trace(const NewestScene& shown,
                              const std::shared_ptr<const volume::HydrometeorFields>& fields);
   const TruthPicture& picture() const { return *traced_->picture; }
 
-  void LetGo();
+  void Release();
 
  private:
   struct Traced {

@@ -31,7 +31,7 @@ SessionView::State SessionView::EnteredFor(const NewestScene& newest,
   const scene::Technique& technique = scene.scene->rendering.technique;
   if (std::holds_alternative<scene::Reference>(technique)) return State::kReference;
   if (scene.revision > planner_.revision()) return State::kMoving;
-  // Its fields had been given back while nobody watched.
+  // Its fields were released while nobody watched.
   return state_ == State::kWaitingForFields ? State::kRefining : state_;
 }
 
@@ -52,7 +52,7 @@ std::optional<SessionWork> SessionView::In(State state, const Now& now) {
     case State::kFailed:
       return WaitUntil{};
   }
-  THUNDERHEAD_CHECK(false, "no such state");
+  THUNDERHEAD_CHECK(false, "unknown state");
 }
 
 SessionWork SessionView::Move(const Now& now) {
@@ -75,7 +75,7 @@ std::optional<SessionWork> SessionView::Check(const Now& now) {
     if (setting_.DecideAgain(now.newest)) {
       planner_.Again();
       state_ = State::kRefining;
-      return WaitUntil{now.time};  // the scene to draw is another one
+      return WaitUntil{now.time};  // with a new decision
     }
   }
   state_ = State::kTracingLight;

@@ -1,6 +1,6 @@
-// What is to be done next for a session: a state machine from a scene that has just changed, to a
-// picture of which nothing finer is to come. Asks for work, and is told of its outcome; the time is
-// given. Knows no threads and no GL.
+// The next work for a session: a state machine from a scene that has just changed to its final
+// picture. Returns work and is notified of its outcome; the time is an argument. Knows no threads
+// and no GL.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace thunderhead::session {
 
-// Nothing, before that time, unless something changes.
+// No work before that time, unless something changes.
 struct WaitUntil {
   std::optional<Clock::time_point> time;
 };
@@ -24,15 +24,15 @@ struct DrawFrame {
   NewestScene shown;
   FramePlan plan;
 };
-// At full quality and with half the slices.
+// Draw at full quality and with half the slices.
 struct CheckSlices {
   NewestScene shown;
 };
-// One step.
+// One step of tracing light.
 struct TraceLight {
   NewestScene shown;
 };
-// The reference's picture, as far as it has come.
+// Show the reference's picture so far.
 struct ShowReference {
   NewestScene shown;
 };
@@ -42,40 +42,40 @@ class SessionView {
  public:
   enum class State {
     kWaitingForFields,
-    kMoving,        // the scene is newer than what is shown: a frame at once, maybe coarse
-    kRefining,      // it rests, and a finer frame is to come
-    kChecking,      // drawn in full: its error and time are found, and the setting decided again
-    kTracingLight,  // its light is corrected by more and more paths
-    kReference,     // the tracer refines it beside the loop
-    kSettled,       // nothing finer is to come
-    kFailed,        // it cannot be drawn
+    kMoving,        // the scene is newer than the shown frame: draw at once, possibly coarse
+    kRefining,      // the scene rests and a finer frame follows
+    kChecking,      // drawn at full quality: measure error and time, and decide the setting again
+    kTracingLight,  // correct the light by more and more paths
+    kReference,     // refined by the tracer
+    kSettled,       // final
+    kFailed,        // cannot be drawn
   };
 
-  // `costs` and `offers` must outlive it; `view` is what the session is called in `costs`.
+  // `costs` and `offers` must outlive it; `view` is the session's name in `costs`.
   SessionView(const PlannerTargets& targets, const accuracy::MachineCosts& costs,
               const accuracy::Offers& offers, const std::string& view);
 
-  // The newest scene as it is to be drawn; none if its setting could not be decided, which is an
-  // error the first time.
+  // The newest scene with its decided setting. If that cannot be decided, returns an error the
+  // first time and none afterwards.
   absl::StatusOr<std::optional<NewestScene>> Decide(const NewestScene& newest);
 
-  // The work to do now. `newest` is the scene as it was asked for; `drawable` is the decided scene
-  // whose fields are at hand, if any: the newest, or one shortly before.
+  // The work to do now. `newest` is the scene as requested; `drawable` is the decided scene whose
+  // fields are available, if any: the newest, or a slightly older one.
   SessionWork Next(const NewestScene& newest, const std::optional<NewestScene>& drawable,
                    Clock::time_point now, const std::optional<LastDrawn>& last_drawn);
 
-  // Outcomes of work.
+  // Notifications of the outcome of work.
   void Drawn(const DrawFrame& work);
   void Checked(double discretisation_error);
-  // True if the picture is to be drawn with the light traced so far, and LightShown called.
+  // True if the caller should draw the picture with the light traced so far and call LightShown.
   bool LightTraced(const accuracy::LightProgress& progress, Clock::time_point now);
   void LightShown(Clock::time_point now) { light_.Shown(now); }
   void ReferenceShown(std::uint64_t revision) { planner_.GiveUp(revision); }
-  // It is not tried again for that revision.
+  // That revision is not tried again.
   void Failed(std::uint64_t revision);
 
   State state() const { return state_; }
-  // The newest revision that was shown, or could not be.
+  // The newest revision that was shown, or has failed.
   std::uint64_t shown_revision() const { return planner_.revision(); }
   bool LightIsTraced() const { return light_.ended(); }
   const std::optional<double>& discretisation_error() const {
@@ -83,7 +83,7 @@ class SessionView {
   }
 
  private:
-  // What a state's transition looks at.
+  // The inputs of a state's transition.
   struct Now {
     const NewestScene& newest;
     const NewestScene& shown;
@@ -92,7 +92,7 @@ class SessionView {
   };
 
   State EnteredFor(const NewestScene& newest, const std::optional<NewestScene>& drawable) const;
-  // Each returns work, or none if it has moved on to another state.
+  // Each returns work, or none after a transition to another state.
   std::optional<SessionWork> In(State state, const Now& now);
   SessionWork Move(const Now& now);
   std::optional<SessionWork> Refine(const Now& now);

@@ -11,8 +11,8 @@
 namespace thunderhead::session {
 namespace {
 
-// 128 bits of the operating system's randomness: who knows an id may steer the session, so it must
-// not be guessable.
+// 128 random bits of the operating system: a client that knows an id may control the session, so
+// ids must not be guessable.
 std::string RandomId() {
   std::random_device device;
   std::string id;
@@ -20,7 +20,7 @@ std::string RandomId() {
   return id;
 }
 
-// Abandoned sessions expire one by one.
+// Abandoned sessions expire one after another.
 constexpr std::chrono::seconds kRetryAfter{30};
 
 absl::Status Gone(const std::string& message) {
@@ -34,8 +34,9 @@ absl::Status NotFound(const std::string& id) {
 
 absl::Status TooMany(std::size_t max_sessions) {
   return base::WithDetails(
-      absl::ResourceExhaustedError(absl::StrCat("the server holds its most sessions (",
-                                                max_sessions, "); close one, or try again later")),
+      absl::ResourceExhaustedError(absl::StrCat("the server already has the maximum of ",
+                                                max_sessions,
+                                                " sessions; close one, or try again later")),
       {.reason = "TOO_MANY_SESSIONS",
        .metadata = {{"maximum", absl::StrCat(max_sessions)}, {"unit", "sessions"}},
        .retry_after = kRetryAfter});
@@ -51,12 +52,12 @@ std::uint64_t Session::TakeRevision() {
   return ++revision_count_;
 }
 
-void Session::Show(std::uint64_t revision, scene::Scene scene, std::string words) {
+void Session::Show(std::uint64_t revision, scene::Scene scene, std::string serialized) {
   {
     const std::lock_guard lock(mutex_);
     if (newest_.has_value() && newest_->revision > revision) return;
     newest_ = {revision, std::make_shared<const scene::Scene>(std::move(scene)), Clock::now(),
-               std::make_shared<const std::string>(std::move(words))};
+               std::make_shared<const std::string>(std::move(serialized))};
   }
   on_work_();
 }
@@ -139,7 +140,7 @@ void Sessions::DropExpired() {
   for (auto entry = sessions_.begin(); entry != sessions_.end();) {
     Session& session = *entry->second;
     if (!session.hub().HasViewers() && session.last_used() < oldest) {
-      // One may be joining right now; it is told, as if the session had expired a moment earlier.
+      // Also ends the stream of a viewer that is joining right now.
       session.hub().Close(Gone("the session has expired; create a new one"));
       entry = sessions_.erase(entry);
     } else {

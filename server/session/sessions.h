@@ -1,6 +1,6 @@
-// The sessions a server holds: each shows one scene, replaced by every update, to any number of
-// viewers. A session without viewers expires when nobody has used it for a while. Safe from any
-// thread. Knows no GL and no messages.
+// The sessions of a server: each shows one scene, replaced by every update, to any number of
+// viewers. A session without viewers expires after a while without use. Safe from any thread. Knows
+// no GL and no messages.
 #pragma once
 
 #include <chrono>
@@ -28,8 +28,8 @@ struct NewestScene {
   std::uint64_t revision = 0;
   std::shared_ptr<const scene::Scene> scene;
   Clock::time_point changed_at;
-  // The scene in the words of the service, which tells it to viewers; nothing here reads them.
-  std::shared_ptr<const std::string> words;
+  // The scene as the service serialized it for viewers; opaque here.
+  std::shared_ptr<const std::string> serialized;
 };
 
 class Session {
@@ -40,11 +40,11 @@ class Session {
   const std::string& id() const { return id_; }
   FrameHub& hub() { return hub_; }
 
-  // A new revision, larger than all before: taken when an update arrives, before its scene is
+  // A new revision, larger than all before. Taken when an update arrives, before its scene is
   // complete, so that the update that arrived last wins.
   std::uint64_t TakeRevision();
-  // Puts the scene into the mailbox unless a newer revision is there.
-  void Show(std::uint64_t revision, scene::Scene scene, std::string words = "");
+  // Replaces the newest scene unless that has a newer revision.
+  void Show(std::uint64_t revision, scene::Scene scene, std::string serialized = "");
   std::optional<NewestScene> Newest() const;
 
   void Touch();
@@ -69,17 +69,17 @@ class Sessions {
  public:
   Sessions(const SessionsOptions& options, std::function<void()> on_work);
 
-  // RESOURCE_EXHAUSTED when there are too many, UNAVAILABLE after CloseAll.
+  // RESOURCE_EXHAUSTED if there are too many, UNAVAILABLE after CloseAll.
   absl::StatusOr<std::shared_ptr<Session>> Create();
-  // NOT_FOUND when it never was, was closed or has expired; UNAVAILABLE after CloseAll. Counts as
+  // NOT_FOUND if it never existed, was closed or has expired; UNAVAILABLE after CloseAll. Counts as
   // use.
   absl::StatusOr<std::shared_ptr<Session>> Find(const std::string& id);
-  // Ends the session and every watch of it. NOT_FOUND as Find.
+  // Ends the session and its viewers' streams. NOT_FOUND as Find.
   absl::Status Close(const std::string& id);
   // Ends every session with `why`; none can be created or found afterwards.
   void CloseAll(const absl::Status& why);
 
-  // Those that have not expired, in order of id.
+  // The sessions that have not expired, in order of id.
   std::vector<std::shared_ptr<Session>> All();
 
   std::size_t max_sessions() const { return options_.max_sessions; }

@@ -9,16 +9,16 @@
 namespace thunderhead::session {
 namespace {
 
-// A tenth of a second's work for a slow core.
+// Take a tenth of a second on a slow core.
 constexpr std::int64_t kFirstPixels = 4096;
-// Of each size before the full one; together they cost a third as much as these at full size.
+// At each smaller size; together these sizes cost a third of as many samples at full size.
 constexpr int kSamplesOfSize = 8;
 // A larger picture with a single sample a pixel is noisier than the smaller one that it follows.
-constexpr int kFewestShown = 2;
+constexpr int kMinShownSamples = 2;
 constexpr double kShowEvery_s = 1.0;
-// Far below a level of an 8-bit display.
+// Relative error far below one level of an 8-bit display.
 constexpr double kFinished = 1e-3;
-constexpr int kMostSamples = 1 << 16;
+constexpr int kMaxSamples = 1 << 16;
 
 }  // namespace
 
@@ -36,13 +36,13 @@ glm::ivec2 TruthSchedule::SizePx() const {
 }
 
 int TruthSchedule::UntilSamples() const {
-  const int next_shown = std::max(2 * shown_samples_, any_shown_ ? kFewestShown : 1);
-  return std::min(next_shown, IsFull() ? kMostSamples : kSamplesOfSize);
+  const int next_shown = std::max(2 * shown_samples_, any_shown_ ? kMinShownSamples : 1);
+  return std::min(next_shown, IsFull() ? kMaxSamples : kSamplesOfSize);
 }
 
 bool TruthSchedule::ShowNow(const Refinement& refinement, double shown_ago_s) {
   const int samples = refinement.samples_per_pixel;
-  const bool enough = samples >= (any_shown_ ? kFewestShown : 1);
+  const bool enough = samples >= (any_shown_ ? kMinShownSamples : 1);
   const bool last_of_size = !IsFull() && samples >= kSamplesOfSize;
   const bool due = samples >= 2 * shown_samples_ || last_of_size || shown_ago_s >= kShowEvery_s;
   if (!enough || !due) return false;
@@ -62,7 +62,7 @@ bool TruthSchedule::Finished(const Refinement& refinement) const {
   if (!IsFull()) return false;
   const bool exact =
       refinement.samples_per_pixel >= 16 && refinement.relative_error.value_or(1.0) <= kFinished;
-  return exact || refinement.samples_per_pixel >= kMostSamples;
+  return exact || refinement.samples_per_pixel >= kMaxSamples;
 }
 
 }  // namespace thunderhead::session

@@ -1,6 +1,6 @@
-// In which sizes a picture is refined towards the truth, and when it is shown: small at first, so
-// that something is seen within a fraction of a second, then twice as large each time, and at the
-// full size for as long as it is looked at. Plain values; the time is given.
+// The sizes at which a picture by the reference is refined, and when it is shown: small at first,
+// so that something is visible within a fraction of a second, then twice as large each time, and at
+// full size as long as somebody watches. Plain values; the time is an argument.
 #pragma once
 
 #include "glm/vec2.hpp"
@@ -12,21 +12,20 @@ class TruthSchedule {
  public:
   explicit TruthSchedule(const glm::ivec2& full_size_px);
 
-  // Of the picture to be refined now.
+  // Size of the picture to refine now.
   glm::ivec2 SizePx() const;
   bool IsFull() const { return halvings_ == 0; }
-  // How many samples to ask for, of each pixel.
+  // Number of samples per pixel to refine to.
   int UntilSamples() const;
 
-  // The picture has come that far; `shown_ago_s` is the time since one was shown, or since the
-  // beginning. True if it is to be shown now, and is then taken as shown.
+  // True if the picture should be shown now, and then assumes that it is. `shown_ago_s` is the time
+  // since the last was shown, or since the beginning.
   bool ShowNow(const Refinement& refinement, double shown_ago_s);
 
-  // True if the picture has come far enough to begin the next larger one, which is then the one to
-  // refine.
+  // True if the picture has enough samples to begin the next larger one; SizePx is then its size.
   bool GrowAt(const Refinement& refinement);
 
-  // Nobody could see a difference any more.
+  // True if more samples would make no visible difference.
   bool Finished(const Refinement& refinement) const;
 
  private:

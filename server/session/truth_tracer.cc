@@ -10,12 +10,12 @@
 namespace thunderhead::session {
 namespace {
 
-// How long one owner's picture is refined before it is another's turn.
+// Length of a turn.
 constexpr double kTurn_s = 0.25;
 
 }  // namespace
 
-// One picture on its way. Used by the tracing thread, except for `stop`.
+// A picture being traced. Used by the tracing thread, except for `stop`.
 struct TruthTracer::Job {
   Job(std::string of_owner, std::shared_ptr<const scene::Scene> of_scene,
       std::shared_ptr<const volume::HydrometeorFields> of_fields,
@@ -26,7 +26,7 @@ struct TruthTracer::Job {
         source(std::move(with_source)),
         schedule({scene->output.width_px, scene->output.height_px}) {}
 
-  // Refines for a turn. Gives a picture if one is to be shown, and whether that was the last.
+  // Refines for a turn. Returns a picture if one is due, and whether it is the last.
   std::pair<Found, bool> Refine();
 
   const std::string owner;
@@ -61,10 +61,10 @@ std::pair<TruthTracer::Found, bool> TruthTracer::Job::Refine() {
   return {std::move(found), full_size && schedule.Finished(refinement)};
 }
 
-TruthTracer::TruthTracer(TruthSourceFactory make_source, std::size_t most_owners,
+TruthTracer::TruthTracer(TruthSourceFactory make_source, std::size_t max_owners,
                          std::function<void()> on_picture)
     : make_source_(std::move(make_source)),
-      most_owners_(most_owners),
+      max_owners_(max_owners),
       on_picture_(std::move(on_picture)),
       thread_([this] { Run(); }) {}
 
@@ -85,10 +85,10 @@ absl::Status TruthTracer::Trace(const std::string& owner, std::shared_ptr<const 
   Stop(owner);
   {
     const std::lock_guard lock(mutex_);
-    if (owned_.count(owner) == 0 && owned_.size() >= most_owners_) {
+    if (owned_.count(owner) == 0 && owned_.size() >= max_owners_) {
       return absl::ResourceExhaustedError(
-          absl::StrCat("the server traces ", owned_.size(),
-                       " pictures by the reference already; choose another renderer"));
+          absl::StrCat("the server is already tracing ", owned_.size(),
+                       " pictures by the reference; choose another renderer"));
     }
     Owned& owned = owned_[owner];
     if (owned.source == nullptr) owned.source = make_source_();
@@ -121,7 +121,7 @@ void TruthTracer::Forget(const std::string& owner) {
   owned_.erase(owner);
 }
 
-// The job of the owner after the last served.
+// Round robin: the job of the owner after the one served last.
 std::shared_ptr<TruthTracer::Job> TruthTracer::NextJob() {
   const auto after_last = owned_.upper_bound(last_served_);
   const auto has_job = [](const auto& entry) { return entry.second.job != nullptr; };
@@ -130,7 +130,7 @@ std::shared_ptr<TruthTracer::Job> TruthTracer::NextJob() {
   return next == owned_.end() ? nullptr : next->second.job;
 }
 
-// Unless the job has been replaced.
+// Keeps the result unless the job has been replaced.
 void TruthTracer::Keep(Job& job, Found found, bool ended) {
   {
     const std::lock_guard lock(mutex_);
@@ -153,7 +153,7 @@ void TruthTracer::Run() {
     lock.unlock();
     auto [found, ended] = job->Refine();
     Keep(*job, std::move(found), ended);
-    // Its fields and pictures may be many megabytes: freed before the lock is taken.
+    // Frees its fields and pictures, maybe many megabytes, before taking the lock.
     job.reset();
     lock.lock();
   }

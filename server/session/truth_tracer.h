@@ -1,6 +1,6 @@
-// Refines sessions' pictures towards the truth on a thread of its own, beside the one that draws, a
-// short while each in turn. What is asked for replaces what was asked for before and ends it at
-// once, so nothing queues; a picture that nobody took is replaced by the next.
+// Refines sessions' pictures towards the truth on a thread of its own, in short turns. A request
+// replaces the owner's earlier one and ends it at once, so nothing queues; a picture that was not
+// taken is replaced by the next.
 #pragma once
 
 #include <condition_variable>
@@ -23,21 +23,21 @@
 
 namespace thunderhead::session {
 
-// As far as it has come.
+// A picture so far.
 struct TruthPicture {
   picture::LinearPicture picture;
   Refinement refinement;
-  double trace_ms = 0.0;  // since it was asked for
+  double trace_ms = 0.0;  // since the request
   bool full_size = false;
 };
 
 class TruthTracer {
  public:
-  // Each owner has a source of its own, which keeps what it made; `most_owners` bounds their
-  // memory. `on_picture` is called on the tracing thread when a picture can be taken.
-  TruthTracer(TruthSourceFactory make_source, std::size_t most_owners,
+  // Each owner has a source of its own, which keeps its buffers; `max_owners` bounds their memory.
+  // `on_picture` is called on the tracing thread when a picture can be taken.
+  TruthTracer(TruthSourceFactory make_source, std::size_t max_owners,
               std::function<void()> on_picture);
-  // Ends what is traced, at once.
+  // Ends tracing at once.
   ~TruthTracer();
   TruthTracer(const TruthTracer&) = delete;
   TruthTracer& operator=(const TruthTracer&) = delete;
@@ -45,17 +45,17 @@ class TruthTracer {
   // Begins the owner's picture; RESOURCE_EXHAUSTED if there are too many owners.
   absl::Status Trace(const std::string& owner, std::shared_ptr<const scene::Scene> scene,
                      std::shared_ptr<const volume::HydrometeorFields> fields);
-  // The owner's newest picture, once, or why there is none.
+  // Takes the owner's newest picture, or its error, if there is one.
   std::optional<absl::StatusOr<std::shared_ptr<const TruthPicture>>> Take(const std::string& owner);
-  // The owner's picture is not traced on; what was made for it is kept for the next.
+  // Stops tracing the owner's picture; keeps its source for the next.
   void Stop(const std::string& owner);
-  // The owner wants nothing any more.
+  // Stops tracing and frees the owner's source.
   void Forget(const std::string& owner);
 
  private:
   struct Job;
   using Found = std::optional<absl::StatusOr<std::shared_ptr<const TruthPicture>>>;
-  // What an owner has. Its source is used by the tracing thread only.
+  // Only the tracing thread uses the source.
   struct Owned {
     std::shared_ptr<TruthSource> source;
     std::shared_ptr<Job> job;
@@ -67,7 +67,7 @@ class TruthTracer {
   void Keep(Job& job, Found found, bool ended);
 
   const TruthSourceFactory make_source_;
-  const std::size_t most_owners_;
+  const std::size_t max_owners_;
   const std::function<void()> on_picture_;
   std::mutex mutex_;
   std::condition_variable changed_;

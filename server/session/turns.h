@@ -1,5 +1,5 @@
-// Whose turn it is to have something drawn. Goes round all who may want it, so that nobody starves,
-// however often others have work. A plain value.
+// Round-robin scheduling of drawing, so that nobody starves however often others have work. A plain
+// value.
 #pragma once
 
 #include <cstddef>
@@ -12,27 +12,27 @@
 
 namespace thunderhead::session {
 
-// The outcome of somebody's turn.
+// The outcome of a turn.
 struct TurnOutcome {
   bool drew = false;  // the turn is used
   std::optional<Clock::time_point> look_again_at;
-  bool has_background_work = false;  // which it may do in a turn for that
+  bool has_background_work = false;  // to be done in a kBackground turn
 };
 
-// Background work (traced light) is what nobody waits for: it is done while nothing else is.
+// Background work (traced light) is done only while there is no other work.
 enum class TurnKind { kAny, kBackground };
 
-// Nothing else has been done for so long before background work begins, so that it does not come
-// between the frames of somebody else's moving camera.
+// Background work begins only after this long without other work, so that it does not delay the
+// frames of another session's moving camera.
 inline constexpr Clock::duration kQuietBeforeBackground = std::chrono::milliseconds(300);
 
 class Turns {
  public:
   using TakeTurn = std::function<TurnOutcome(std::size_t index, TurnKind kind)>;
 
-  // Offers a turn to each of `ids`, which are sorted, from the one after the last that used it,
-  // until one uses it; then, if all have been quiet, turns for background work. Returns when to
-  // look again without being woken.
+  // Offers a turn to each of `ids` (sorted), starting after the one that used the last, until one
+  // uses it; then, if all have been quiet, offers turns for background work. Returns when to call
+  // again without a wake-up.
   std::optional<Clock::time_point> Next(const std::vector<std::string>& ids,
                                         const TakeTurn& take_turn);
 

@@ -16,7 +16,7 @@ class DetailInSlab : public SlabView, public testing::WithParamInterface<accurac
     test_support::SetPath(&scene_.rendering.technique, GetParam());
     test_support::SetMode(&scene_.rendering.technique, test_support::kWithDetail);
     test_support::SetTransport(&scene_.rendering.technique,
-                               scene::Transport::kPaper);  // the eye sees the whole extinction
+                               scene::Transport::kPaper);  // unscaled extinction towards the eye
     scene::SetSlices(&scene_.rendering.technique, 512);
   }
 
@@ -38,7 +38,7 @@ class DetailInSlab : public SlabView, public testing::WithParamInterface<accurac
 };
 
 TEST_P(DetailInSlab, IsAtRestInTheWorld) {
-  // Whatever the view, the optical depth is that of the noise at the world's places along the ray.
+  // In every view the optical depth is that of the noise at the ray's points in world coordinates.
   for (const float share : {1.0F, 0.3F}) {
     for (const double elevation_deg : {89.9, 60.0, 45.0}) {
       const scene::Detail detail{.share = share, .wavelength_m = 700.0F, .octaves = 2, .seed = 5};

@@ -17,7 +17,7 @@ class Diffusion : public SlabView {
     test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kDiffusion);
     scene::SetSlices(&scene_.rendering.technique, 1024);  // steps shorter than the cells are high
     in_air_ = true;
-    width_m_ = 6e3;  // so wide that what leaves by the sides is not seen
+    width_m_ = 6e3;  // so wide that light lost through the sides is not seen
     SetPhase(physics::PhaseKind::kHenyeyGreenstein, 0.75F);
   }
 };
@@ -27,8 +27,8 @@ TEST_F(Diffusion, UpwardRadianceOfDisortsThirdTest) {
   // mu = 0.5 and 1 for an irradiance of pi.
   const double at_half = Look(8.0, 30.0, 89.9).radiance * std::numbers::pi;
   const double at_one = Look(8.0, 89.9, 89.9).radiance * std::numbers::pi;
-  // Eddington's source is a straight line near the surface, where the true one bends down: a ray
-  // aslant sees it 12 % too bright.
+  // Eddington's source is linear near the surface, where the true one bends down: a slanted ray is
+  // 12 % too bright.
   EXPECT_NEAR(at_half / 0.519598, 1.0, 0.15);
   EXPECT_NEAR(at_one / 0.493302, 1.0, 0.05);
 }
@@ -39,7 +39,7 @@ TEST_F(Diffusion, EvenLightShowsNothing) {
     for (const double elevation_deg : {-60.0, 20.0, 80.0}) {
       const Seen seen = Look(depth, elevation_deg, 40.0);
       EXPECT_NEAR(seen.radiance + seen.transmittance, 1.0, 0.005) << depth << " " << elevation_deg;
-      // That something is there shows in what passes: similarity scaled, by 1 - g.
+      // The transmittance shows that there is a medium: similarity-scaled, by 1 - g.
       const double sine = std::sin(std::abs(elevation_deg) * std::numbers::pi / 180.0);
       const double passes = std::exp(-0.25 * depth / sine);
       EXPECT_NEAR(seen.transmittance, passes,

@@ -18,10 +18,10 @@ class HalfAngle : public SlabView {
   }
 };
 
-// The slab's hard faces cut tilted slices: a ray counts its path in whole slices, off by up to half
-// of one at each face, and light is late or early by as much. The slab is 1 / 2.5 of the sliced
-// extent at the steepest tilt tested. Storms have no hard faces: their extinction falls to zero
-// linearly over a cell.
+// The slab's hard faces cut tilted slices: a ray counts its path in whole slices, with an error of
+// up to half of one at each face, and so does the light. The slab is 1 / 2.5 of the sliced extent
+// at the steepest tilt tested. Storms have no hard faces: their extinction falls to zero linearly
+// over a cell.
 double HardFaceError(int slices, double depth) { return 3.3 * (1.0 + depth / 2.0) / slices; }
 
 class SingleScattering : public HalfAngle {
@@ -77,7 +77,7 @@ TEST_F(SingleScattering, SeenFromAboveWithoutPerspective) {
 }
 
 TEST_F(SingleScattering, TransmittedLightOfASlab) {
-  // Sun above, eye below, both upright: d exp(-d).
+  // Sun above, eye below, both vertical: d exp(-d).
   for (const double depth : {0.01, 0.5, 3.0}) {
     const Seen seen = Look(depth, -89.9, 89.9);
     const double expected = PhaseTerm(-89.9, 89.9) * depth * std::exp(-depth);
@@ -108,7 +108,7 @@ TEST_F(HalfAngle, ThinSlabsKeepTheirDigitsInLightFromAllAround) {
   test_support::SetMode(&scene_.rendering.technique, test_support::kUniformPhase);
   scene::SetSlices(&scene_.rendering.technique, 1024);
   SetPhase(physics::PhaseKind::kRayleigh, 0.0F);
-  // What is left of a single-precision transmittance after a slice of 3e-7 is off by a fifth of it.
+  // In single precision the opacity of a slice of 3e-7 is off by a fifth.
   for (const double depth : {3e-4, 1e-3}) {
     EXPECT_NEAR(Look(depth, 89.9, 89.9).radiance / depth, 1.0, 0.006 + depth) << depth;
   }
@@ -141,7 +141,7 @@ TEST_F(HalfAngle, WideViewsKeepTheStormWhereRaysMeetSlicesAgainstTheirOrder) {
       const double climb = glm::dot(ray, slicing.normal);
       if (std::abs(climb) < 0.1) continue;
       ++(climb < 0.0 ? along : against);
-      // No more slices than planes that the way holds, and no fewer by more than one.
+      // The number of slices is that of the planes on the path, or one less.
       const double path = slicing.spacing_m / std::abs(climb) / kHeight_m * kDepth;
       const double depth = -std::log(seen.eye[4 * i + 3]);
       EXPECT_NEAR(depth, kDepth / ray.z, path + 0.005) << i << ", sun " << sun_elevation_deg;
@@ -159,7 +159,7 @@ TEST_F(HalfAngle, LightSpreadsFromClearAirIntoTheCloudsEdge) {
   with_gap_ = true;
   struct Shares {
     double within = 0.0;  // farthest from the gap
-    double edge = 0.0;    // the sum of what is more, in columns of texels with that light
+    double edge = 0.0;    // the sum of the excess, in columns of texels with that light
   };
   const auto shares = [&](double depth) {
     const Seen seen = Look(depth, 89.9, 89.9);
@@ -177,7 +177,7 @@ TEST_F(HalfAngle, LightSpreadsFromClearAirIntoTheCloudsEdge) {
     scene::SetSlices(&scene_.rendering.technique, slices);
     for (scene::FieldParameters& field : scene_.fields) field.optics.albedo = 1.0F;
     const Shares scattered = shares(4.0);
-    // The same light where none is scattered: its edge is the one cell over which extinction rises.
+    // The same without scattered light: the edge is the one cell over which extinction rises.
     for (scene::FieldParameters& field : scene_.fields) field.optics.albedo = 0.0F;
     const Shares straight = shares(-std::log(scattered.within));
     // The sun is a tenth of a degree off: its rays may meet a slice more or fewer.
@@ -246,9 +246,10 @@ TEST_P(OpticalDepths, NothingBreaks) {
           test_support::SetTransport(&scene_.rendering.technique, transport);
           scene::SetSlices(&scene_.rendering.technique, slices);
           const Seen seen = Look(GetParam() * slices, elevation_deg, 40.0);
-          // 1 less a depth below 1e-7 is 1 in single precision, but its light has a number.
+          // 1 minus a depth below 1e-7 rounds to 1 in single precision, but its light does not
+          // round to 0.
           EXPECT_TRUE(seen.transmittance < 1.0 || GetParam() < 1e-7);
-          // No light comes through thick slices to where a ray meets the first of them.
+          // No light reaches the first of several thick slices on a ray.
           if (GetParam() < 10.0 && elevation_deg > 0.0) {
             EXPECT_GT(seen.radiance, 0.0) << elevation_deg;
           }

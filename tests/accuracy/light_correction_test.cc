@@ -140,7 +140,7 @@ TEST_F(LightCorrection, PlacesAreWhereTheStormIsSeen) {
   ASSERT_NE(frame->places, nullptr);
   const glm::vec3 middle =
       frame::PictureOf(*frame->places).radiance[static_cast<std::size_t>(12 * 32 + 16)];
-  // The eye stands in the south-south-west, above: it sees the face that is turned to it.
+  // The eye is above in the south-south-west and sees the face towards it.
   EXPECT_NEAR(middle.x, 0.4F, 0.15F);
   EXPECT_LT(middle.y, 0.35F);
   EXPECT_GT(middle.z, 0.2F);
@@ -159,7 +159,7 @@ TEST_F(LightCorrection, TakesMostOfTheErrorAway) {
   const auto error_of = [&](const picture::LinearPicture& drawn) {
     return measure::RelativeRmseWithout(noise, drawn, exact);
   };
-  // Means over 4 x 4 rays a pixel, as the truth's pixels are means.
+  // Means over 4 x 4 rays a pixel, because the truth's pixels are means too.
   const auto draw = [&](std::shared_ptr<const renderers::LightCorrection> correction) {
     return *measure::DrawPart(*renderer_, scene_, fields_, measure::LightPart::kAll, 4,
                               std::move(correction));
@@ -171,7 +171,7 @@ TEST_F(LightCorrection, TakesMostOfTheErrorAway) {
   ASSERT_GE(corrector->Progress().paths, 150'000);
   const picture::LinearPicture corrected = draw(corrector->Correction());
   EXPECT_LT(error_of(corrected), 0.3 * error_of(drawn));
-  // Most of what is left is the ground, 2 % too bright with and without a correction.
+  // Most of the residual is the ground, 2 % too bright with and without a correction.
   EXPECT_NEAR(measure::RelativeBias(corrected, exact), 0.0, 0.03);
 }
 
@@ -254,7 +254,7 @@ TEST_F(LightCorrection, NothingIsTracedWhereNothingCouldShowIt) {
 }
 
 TEST_F(LightCorrection, WhereHardlyAnyRayMeetsTheStormItEnds) {
-  // So thin that most of what is behind passes everywhere.
+  // So thin that the background dominates everywhere.
   scene_.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].scale = 1e-3F;
   const auto corrector = MakeCorrector(0);
   for (int i = 0; i < 20; ++i) ASSERT_TRUE(corrector->Step().ok());

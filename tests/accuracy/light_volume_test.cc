@@ -24,9 +24,9 @@ class LightVolume : public SlabView {
 };
 
 TEST_F(LightVolume, ReflectedLightOfALayer) {
-  // Sun and eye above: the integral of exp(-t (1 / sin e + 1 / sin s)) dt / sin e, whatever way
-  // extinction rises. The light volume's texels (94 m) are wider than the layer's cells are high
-  // (62 m): what is left is interpolation over a texel, in which a ray's optical depth is up to 20.
+  // Sun and eye above: the integral of exp(-t (1 / sin e + 1 / sin s)) dt / sin e, for any profile
+  // of extinction. The light volume's texels (94 m) are wider than the layer's cells are high
+  // (62 m): the residual is interpolation over a texel, in which a ray's optical depth is up to 20.
   SingleScattering();
   in_air_ = true;
   for (const double depth : {0.01, 0.5, 3.0, 20.0, 100.0}) {
@@ -67,8 +67,8 @@ TEST_F(LightVolume, TransmittanceDoesNotDependOnTheNumberOfSamples) {
 }
 
 TEST_F(LightVolume, AStepThroughHazeEndsWhereTheCloudBegins) {
-  // In thin bricks samples are a cell apart, but not so as to step over the beginning of what is
-  // thick. The haze is as high as the layer, half the domain.
+  // In thin bricks samples are a cell apart, but must not step over the beginning of a thick one.
+  // The haze is as high as the layer, half the domain.
   SingleScattering();
   in_air_ = true;
   haze_per_m_ = 2e-5;
@@ -122,7 +122,7 @@ TEST_F(LightVolume, AgreesWithHalfAngleSlicing) {
 }
 
 TEST_F(LightVolume, PaperTransportDependsOnTheNumberOfSlicesAsPrinted) {
-  // Seen from below, the light that has passed the slab: more slices, less light (physics.md, 3).
+  // Seen from below, the light transmitted by the slab: more slices, less light (physics.md, 3).
   test_support::SetMode(&scene_.rendering.technique, test_support::kUniformPhase);
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
   const auto seen = [&](int slices, const accuracy::Path& renderer) {
@@ -157,10 +157,10 @@ TEST_P(MarchedDepths, NothingBreaks) {
         test_support::SetTransport(&scene_.rendering.technique, transport);
         scene::SetSlices(&scene_.rendering.technique, 8);
         const Seen seen = Look(GetParam() * 8, elevation_deg, 40.0);
-        // Half floats hold neither 1 less a depth below 5e-4 nor radiances below 6e-8.
+        // Half floats can represent neither 1 minus a depth below 5e-4 nor radiances below 6e-8.
         if (GetParam() * 8 > 5e-4) {
           EXPECT_LT(seen.transmittance, 1.0);
-          // At a hard face no light comes through to the middle of thick cells.
+          // At a hard face no light reaches the middle of thick cells.
           if (GetParam() < 10.0 && elevation_deg > 0.0) {
             EXPECT_GT(seen.radiance, 0.0) << elevation_deg;
           }

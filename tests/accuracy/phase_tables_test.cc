@@ -24,8 +24,9 @@ constexpr double kOpticalDepth = 0.02;
 constexpr int kPixels = 801;
 constexpr double kHalfWidth_deg = 60.0;
 
-// Extinction is stored in half floats, 2^-12 off at most. The light volume's light and picture are,
-// too: each adds as much, and the share of its optical depth that rounds down at the slab's face.
+// Extinction is stored in half floats, with an error of at most 2^-12. So are the light volume's
+// light and picture: each adds as much, and the share of its optical depth that rounds down at the
+// slab's face.
 constexpr double kSlicingError = 1e-3;
 constexpr double kMarchingError = 4e-3;
 
@@ -90,7 +91,8 @@ class PhaseTables : public testing::TestWithParam<physics::PhaseFunction> {
 TEST_P(PhaseTables, SingleScatteringFollowsTheCurve) {
   physics::ParticleOptics& cloud = scene_.fields[0].optics;
   cloud.phase = GetParam();
-  // The slab's extinction is for the default radius; droplets of another one are as thin.
+  // The slab's water content is for the default radius; its optical depth is inversely proportional
+  // to the radius.
   const double radius_ratio =
       cloud.phase.droplet_radius_m > 0.0F ? cloud.phase.droplet_radius_m / cloud.radius_m : 1.0;
   cloud.radius_m *= static_cast<float>(radius_ratio);
@@ -106,7 +108,8 @@ TEST_P(PhaseTables, SingleScatteringFollowsTheCurve) {
     for (int i = 0; i < kPixels; ++i) {
       const double up = std::cos(Angle_rad(i));
       const double mu = sun_elevation_deg > 0.0 ? up : -up;
-      // Light comes from above, or from below: the integral of exp(-t / up) exp(-way to the sun).
+      // Light comes from above, or from below: the integral of exp(-t / up) exp(-depth towards the
+      // sun).
       const double longer = std::fmax(1.0 / up - 1.0, 1e-9);
       const double seen = sun_elevation_deg > 0.0
                               ? std::exp(-depth) * -std::expm1(-depth * longer) / longer / up

@@ -1,5 +1,5 @@
-// A homogeneous slab seen through a narrow lens by any renderer of a medium: what the closed forms
-// are compared with.
+// A homogeneous slab in a narrow field of view, drawn by any renderer of a medium, for comparison
+// with closed forms.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,7 @@
 
 namespace thunderhead::renderers {
 
-// Extinction is stored in half floats, 2^-12 off at most.
+// Extinction is stored in half floats, with an error of at most 2^-12.
 inline constexpr double kTextureError = 1e-3;
 
 class SlabView : public testing::Test {
@@ -128,8 +128,8 @@ class SlabView : public testing::Test {
   scene::Scene scene_ = test_support::PlainScene();
   bool in_air_ = false;  // a layer with soft faces instead of the slab
   double width_m_ = kWidth_m;
-  bool with_gap_ = false;    // nothing in the middle half of its width
-  double haze_per_m_ = 0.0;  // extinction of what is otherwise empty
+  bool with_gap_ = false;    // no cloud in the middle half of its width
+  double haze_per_m_ = 0.0;  // extinction of the otherwise empty cells
   bool even_light_ = false;  // radiance 1 from everywhere instead of sunlight
 
  private:

@@ -1,4 +1,4 @@
-// The orders at which both transports converge as slices grow.
+// The orders of convergence of both transports with the number of slices.
 #include "measure/slice_convergence.h"
 
 #include <memory>
@@ -15,7 +15,7 @@ namespace {
 TEST(SliceConvergence, OrderOfAPowerLaw) {
   EXPECT_NEAR(OrderOf({{10, 0.9}, {20, 0.45}, {40, 0.225}}), 1.0, 1e-12);
   EXPECT_NEAR(OrderOf({{8, 0.64}, {16, 0.16}, {64, 0.01}}), 2.0, 1e-12);
-  // The last has reached the rounding of the frame.
+  // The last is at the rounding of the frame's half floats.
   EXPECT_NEAR(OrderOf({{8, 0.64}, {16, 0.16}, {1024, 3e-4}}), 2.0, 1e-12);
 }
 

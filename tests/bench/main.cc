@@ -27,7 +27,7 @@ void EncodeJpeg(benchmark::State& state) {
   state.counters["bytes"] = static_cast<double>(bytes);
 }
 
-// Prints the medians alone.
+// Prints only the medians.
 class MedianReporter : public benchmark::ConsoleReporter {
  public:
   MedianReporter() : ConsoleReporter(OO_Tabular) {}

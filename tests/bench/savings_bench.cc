@@ -1,6 +1,6 @@
-// What is saved by drawing only what a scene requires, each row with and without; and how time
-// grows with slices, pixels, fields and cells. The camera moves every frame, unless a row says
-// "light": then the sun does.
+// Savings by drawing only what a scene requires, each row with and without; and the growth of time
+// with slices, pixels, fields and cells. The camera moves every frame, or the sun if the row says
+// "light".
 #include <algorithm>
 #include <utility>
 
@@ -34,7 +34,7 @@ Fields InHaze(const Fields& fields) {
   volume::HydrometeorField& cloud = hazy->fields.front();
   const float mass_extinction =
       volume::MassExtinctionOf(cloud, physics::DefaultOptics(cloud.hydrometeor), false).m2_per_kg;
-  // Twice what is left out as negligible.
+  // Twice the limit below which extinction is skipped as negligible.
   const auto least = static_cast<float>(2.0 * volume::kNegligibleOpticalDepth /
                                         (glm::length(size_m) * mass_extinction));
   cloud.concentration_kg_per_m3.resize(hazy->grid.CellCount());
@@ -43,7 +43,7 @@ Fields InHaze(const Fields& fields) {
   return hazy;
 }
 
-// Every cell as `factor` cells along each axis.
+// Divides every cell into `factor` cells along each axis.
 Fields Refined(const Fields& fields, int factor) {
   auto fine = std::make_shared<volume::HydrometeorFields>(*fields);
   fine->grid.cells *= factor;

@@ -1,5 +1,5 @@
-// What each stage of a frame costs by each path in each mode of the papers' table, and what a
-// change reruns.
+// The cost of each stage of a frame by each path in each mode of the papers' table, and the stages
+// that a change reruns.
 #include <array>
 #include <string>
 

@@ -21,7 +21,7 @@ struct Sample {
   static Sample& Get();
 };
 
-// What differs from frame to frame.
+// The parameter that changes with every frame.
 enum class Moving { kCamera, kSun, kSunClimbs, kField, kExposure };
 
 // The storm as a whole at the papers' size, 300 x 300 pixels, 128 slices.
@@ -32,22 +32,22 @@ scene::Scene PaperScene();
 void Register(const std::string& name, const scene::Scene& scene, const Fields& fields,
               Moving moving, double paper_fps = 0.0);
 
-// The modes of the papers' table by both paths, and what a change reruns.
+// The modes of the papers' table by both paths, and the stages that a change reruns.
 void RegisterModes();
 
 // The presets that sessions draw with while something moves.
 void RegisterPresets();
 
 // The scenes and the picture of P. Man, Generating and Real-Time Rendering of Clouds, section 5;
-// his figures are from a GeForce 4. Balls of no weight are dropped from a fit, so that more are
-// asked for.
+// his figures are from a GeForce 4. A fit drops balls without weight, so more are
+// requested.
 void RegisterMetaballs();
 
 // Neyret's shader against Lambert's law on the same ellipsoids, at his 600 x 600 pixels; "paper"
 // has twice his 87.
 void RegisterCumulus();
 
-// What is saved by drawing only what a scene requires, and how time grows.
+// Savings by drawing only what a scene requires, and the growth of time.
 void RegisterSavings();
 void RegisterGrowth();
 

@@ -19,8 +19,7 @@ using std::chrono::seconds;
 using ::testing::HasSubstr;
 using Clock = std::chrono::steady_clock;
 
-// Waits for what another thread is about to do; generous, because sanitizers and busy machines are
-// slow.
+// Waits for an effect of another thread; long, because sanitizers and busy machines are slow.
 bool Eventually(const std::function<bool()>& condition) {
   const auto patience = Clock::now() + seconds(10);
   while (Clock::now() < patience) {
@@ -199,7 +198,7 @@ TEST_P(BridgeTest, DeadlinesEndCalls) {
   EXPECT_EQ(stream.Trailer("grpc-status"), "4");
   EXPECT_GE(stream.messages.size(), 1u);
   EXPECT_EQ(MakeCall("Say", "", {{"grpc-timeout", "soon"}}).Trailer("grpc-status"), "3");
-  // Centuries are as good as no deadline.
+  // A deadline in centuries counts as none.
   EXPECT_EQ(MakeCall("Say", "", {{"grpc-timeout", "99999999H"}}).Trailer("grpc-status"), "0");
 }
 
@@ -303,14 +302,15 @@ TEST_P(BridgeTest, SlowReaderHoldsTheHandlerBack) {
   client.Send(CallRequest("Count", Frame(Counting(2000, 0, 100'000))));
   client.ReadHeaders();
   int before = -1;
-  // Until it stands still.
+  // Until the handler makes no more progress.
   ASSERT_TRUE(Eventually([&] {
     std::this_thread::sleep_for(milliseconds(300));
     return std::exchange(before, Record().written.load()) == Record().written;
   }));
-  // Of 200 MB, what the kernel holds for a client that reads nothing, and a few messages of gRPC's.
+  // Of 200 MB, only the kernel's buffers for a client that reads nothing, and a few messages in
+  // gRPC.
   EXPECT_LT(Record().written, 60);
-  // It goes on when the client does.
+  // It continues when the client does.
   client.ReadBody(20'000'000);
   EXPECT_GE(Record().written, 190);
   client.Close();
@@ -378,8 +378,8 @@ TEST_P(BridgeTest, StoppingTheServerEndsStreamsWithAStatus) {
   const std::string status = ParseResult(response).Trailer("grpc-status");
   EXPECT_TRUE(status == "1" || status == "14") << status;
   EXPECT_EQ(RawClient(Site().Port()).Ask("GET", "/healthz").result(), http::status::ok);
-  // gRPC 1.51 crashes on a call by an in-process channel whose server was shut down, bridge or no
-  // bridge.
+  // gRPC 1.51 crashes on a call through an in-process channel whose server was shut down, even
+  // without a bridge.
   if (GetParam() == Path::kInProcess) return;
   EXPECT_EQ(MakeCall("Say", "").Trailer("grpc-status"), "14");
 }

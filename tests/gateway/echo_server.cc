@@ -1,6 +1,6 @@
-// A gateway before the test service, for clients in other languages: prints its port, then what its
-// calls came to for every line read, and ends at the end of its input. An argument "in-process"
-// reaches the service without HTTP/2.
+// A gateway for the test service, for clients in other languages: prints its port, then the counts
+// of its calls for every line read, and ends at the end of its input. With the argument
+// "in-process" it calls the service without HTTP/2.
 #include <cstdio>
 #include <iostream>
 #include <string>

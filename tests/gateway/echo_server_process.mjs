@@ -14,7 +14,7 @@ export async function startEchoServer(...args) {
   const { port } = await nextLine();
   return {
     url: `http://localhost:${port}`,
-    // What its calls came to so far.
+    // The counts of its calls so far.
     async record() {
       child.stdin.write("\n");
       return nextLine();

@@ -24,7 +24,7 @@ grpc::Status FailureOf(const FailRequest& request) {
   return {static_cast<grpc::StatusCode>(request.code()), request.message(), request.details()};
 }
 
-// Writes `count` answers with a pause before each, then finishes with `end`.
+// Writes `count` responses with a pause before each, then finishes with `end`.
 class Counter final : public grpc::ServerWriteReactor<CountResponse> {
  public:
   Counter(EchoRecord& record, CountRequest request, grpc::Status end)

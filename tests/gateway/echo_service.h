@@ -1,4 +1,4 @@
-// The test service of echo.proto behind a gateway, and what its calls came to.
+// The test service of echo.proto behind a gateway, and the counts of its calls.
 #pragma once
 
 #include <atomic>
@@ -43,11 +43,11 @@ class EchoService final : public Echo::CallbackService {
   EchoRecord record_;
 };
 
-// The way from the gateway to the service: HTTP/2 on a Unix socket, as the program has it, or
+// The transport between the gateway and the service: HTTP/2 on a Unix socket, as in the program, or
 // gRPC's in-process transport.
 enum class Path { kUnixSocket, kInProcess };
 
-// The service, its server and a gateway before it.
+// The service, its server and a gateway to it.
 class EchoSite {
  public:
   static std::unique_ptr<EchoSite> Start(const GatewayOptions& options = {},

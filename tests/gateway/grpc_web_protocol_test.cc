@@ -47,7 +47,7 @@ TEST(TakeSingleMessage, SaysWhatIsWrong) {
   const auto error = [](const std::string& body) { return TakeSingleMessage(body).status(); };
   EXPECT_EQ(error("").code(), absl::StatusCode::kInvalidArgument);
   EXPECT_EQ(error(Bytes({0, 0, 0, 0})).code(), absl::StatusCode::kInvalidArgument);
-  // Announces more than follows, by one byte and by four gigabytes.
+  // The announced size exceeds the body by one byte and by four gigabytes.
   EXPECT_THAT(error(Bytes({0, 0, 0, 0, 2, 'a'})).message().data(), HasSubstr("announces 2 bytes"));
   EXPECT_THAT(error(Bytes({0, 255, 255, 255, 255, 'a'})).message().data(),
               HasSubstr("announces 4294967295 bytes"));
@@ -55,7 +55,7 @@ TEST(TakeSingleMessage, SaysWhatIsWrong) {
   EXPECT_THAT(error(Bytes({0, 0, 0, 0, 0, 0, 0, 0, 0, 0})).message().data(),
               HasSubstr("5 bytes after its first message"));
   EXPECT_EQ(error(Bytes({1, 0, 0, 0, 0})).code(), absl::StatusCode::kUnimplemented);
-  // A trailer frame is the server's to send.
+  // Only servers send trailer frames.
   EXPECT_THAT(error(Bytes({0x80, 0, 0, 0, 0})).message().data(), HasSubstr("0x80"));
 }
 
@@ -106,7 +106,7 @@ TEST(RequestHeaders, OfHttpAndTheBrowserStayBehind) {
         "Accept-Language", "Sec-Fetch-Mode", "Referer"}) {
     EXPECT_THAT(Added(name, "x"), IsEmpty()) << name;
   }
-  // Not even with bytes that no metadata may hold.
+  // Not even with bytes that are invalid in metadata.
   EXPECT_THAT(Added("Cookie", "caf\xc3\xa9"), IsEmpty());
 }
 

@@ -30,7 +30,7 @@ class HttpTest : public ::testing::Test {
   HttpTest() {
     std::filesystem::create_directories(folder_.Path() / "assets");
     std::ofstream(folder_.File("index.html")) << "<html>storm</html>";
-    // Larger than what the kernel takes at once.
+    // Larger than the kernel's buffers.
     std::ofstream(folder_.File("assets/big-1a2b.js")) << std::string(9'000'000, 'x');
     options_.page_directory = folder_.Path().string();
   }
@@ -76,7 +76,7 @@ TEST_F(HttpTest, HeadHasTheHeadersOfGetAndNoBody) {
   EXPECT_EQ(Header(head, "Content-Length"), "18");
   EXPECT_EQ(Header(head, "Content-Type"), "text/html; charset=utf-8");
   EXPECT_EQ(client.Ask("HEAD", "/nothing").result(), http::status::not_found);
-  // Whatever followed a header would be read as this response.
+  // A body after the header would be read as part of this response.
   EXPECT_EQ(client.Ask("GET", "/").body(), "<html>storm</html>");
 }
 
@@ -289,7 +289,7 @@ TEST_F(HttpTest, AddressesAreChecked) {
     return std::string(Gateway::Start(options, nullptr).status().message());
   };
   EXPECT_THAT(start("storms.example"), HasSubstr("'storms.example' is not an IP address"));
-  // Kept for documentation, so of no machine.
+  // Reserved for documentation, so no machine has it.
   EXPECT_THAT(start("192.0.2.1"), HasSubstr("choose an address of this machine"));
   EXPECT_EQ(start("localhost"), "");
 }

@@ -1,5 +1,5 @@
-// An HTTP/1.1 client that sends exactly the bytes it is given, and reads gRPC-Web without a
-// library. Every wait ends after ten seconds.
+// An HTTP/1.1 client that sends exactly the given bytes, and parses gRPC-Web without a library.
+// Every wait ends after ten seconds.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -21,11 +21,11 @@ using Headers = std::vector<std::pair<std::string, std::string>>;
 
 class RawClient {
  public:
-  // `receive_buffer_bytes` above 0 makes a client whose kernel takes little ahead of it.
+  // `receive_buffer_bytes` above 0 limits the bytes that the kernel buffers for the client.
   explicit RawClient(uint16_t port, int receive_buffer_bytes = 0);
 
   void Send(const std::string& bytes);
-  // The same to a server that may close before it has taken them all.
+  // The same to a server that may close before it has read them all.
   void SendUntilClosed(const std::string& bytes);
   // The next response; one to a HEAD request has no body.
   Response Read(bool to_head = false);
@@ -33,12 +33,12 @@ class RawClient {
   Response Ask(const std::string& method, const std::string& target, const Headers& headers = {},
                const std::string& body = "");
 
-  // A response whose body is read as it comes.
+  // A response whose body is read as it arrives.
   Response ReadHeaders();
-  // Reads until the body so far holds `bytes`, or has ended; the body so far.
+  // Reads until the body has `bytes` bytes, or has ended; returns the body so far.
   const std::string& ReadBody(size_t bytes);
 
-  // True where the server ends the connection within the wait, and sent nothing more.
+  // True if the server ends the connection within the wait and sends nothing more.
   bool IsClosed();
   void ShutdownSending();
   void Close();
@@ -62,10 +62,10 @@ std::string CallRequest(const std::string& method, const std::string& body,
 // `message` in a frame.
 std::string Frame(const std::string& message, uint8_t flags = 0);
 
-// What a response body holds.
+// The parsed body of a response.
 struct CallResult {
   std::vector<std::string> messages;
-  std::multimap<std::string, std::string> trailers;  // or the headers, where there is no body
+  std::multimap<std::string, std::string> trailers;  // or the headers, if there is no body
   bool trailers_only = false;
 
   std::string Trailer(const std::string& name) const;

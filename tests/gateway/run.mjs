@@ -1,5 +1,5 @@
-// Checks that what the stock clients' test needs is there, says plainly what is not, generates the messages' code and
-// runs the test.
+// Checks the prerequisites of the stock clients' test, reports what is missing, generates the messages' code and runs
+// the test.
 import { spawnSync } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
@@ -22,7 +22,7 @@ if (missing.length > 0) process.exit(1);
 // Below node_modules, so that the generated code finds its runtime and git does not find the code.
 const generated = mkdtempSync(`${here}node_modules/.generated-`);
 try {
-  // Node.js 18 takes a .js file for a module only where a package.json says so.
+  // Node.js 18 treats a .js file as a module only if a package.json says so.
   writeFileSync(`${generated}/package.json`, '{ "type": "module" }');
   const plugin = `--plugin=protoc-gen-es=${here}node_modules/.bin/protoc-gen-es`;
   const made = spawnSync(

@@ -19,7 +19,7 @@ void Write(const fs::path& path, const std::string& text) {
   std::ofstream(path) << text;
 }
 
-// A page beside secrets that no request may reach.
+// A page next to secret files that no request may reach.
 class StaticFilesTest : public ::testing::Test {
  protected:
   StaticFilesTest() {
@@ -92,7 +92,7 @@ TEST_F(StaticFilesTest, OpenWantsAPage) {
   EXPECT_THAT(std::string(missing.message()), HasSubstr("./dev build"));
   const absl::Status empty = StaticFiles::Open((root_ / "assets").string()).status();
   EXPECT_THAT(std::string(empty.message()), HasSubstr("index.html"));
-  // No directory is no page, and no error.
+  // Without a directory there is no page, which is not an error.
   ASSERT_TRUE(StaticFiles::Open("").ok());
   EXPECT_FALSE(StaticFiles::Open("")->Find("/").has_value());
   EXPECT_FALSE(StaticFiles::Open("")->Find("/etc/passwd").has_value());

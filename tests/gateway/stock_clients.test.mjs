@@ -1,5 +1,5 @@
-// The clients that others write, as npm has them, against the gateway: connect-web (as in the page), its node twin and
-// grpc-web. They know nothing of the gateway and the gateway nothing of their messages.
+// The gateway with third-party clients from npm: connect-web (as in the page), connect-node and grpc-web. They do not
+// know the gateway, and the gateway does not know their messages.
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
@@ -31,7 +31,7 @@ async function eventually(condition) {
   assert.fail("what was waited for did not happen");
 }
 
-// The server's counts once no call is under way: a call that a client has left ends a moment later.
+// The server's counts once no call is running: a call that a client has cancelled ends a moment later.
 async function recordAtRest(server) {
   let record;
   await eventually(async () => {
@@ -219,8 +219,8 @@ for (const way of ["unix-socket", "in-process"]) {
   }
 }
 
-// In its binary format grpc-web serves unary calls alone: it waits for the whole body, and streams only as
-// grpc-web-text, which the gateway does not speak.
+// In its binary format grpc-web supports only unary calls: it waits for the whole body, and streams only as
+// grpc-web-text, which the gateway does not support.
 describe("grpc-web", () => {
   let server;
   let client;
@@ -239,7 +239,7 @@ describe("grpc-web", () => {
       (message) => toBinary(request, message),
       (bytes) => fromBinary(response, bytes),
     );
-  // The callback's word is the call's end; the status comes beside it.
+  // The callback reports the call's end; the status is a separate event.
   const call = (descriptor, request, metadata = {}) =>
     new Promise((resolve) => {
       const outcome = {};

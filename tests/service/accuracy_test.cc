@@ -103,7 +103,7 @@ TEST_F(AccuracyTest, UnreachableErrorsGetTheNearestAndSaySo) {
 }
 
 TEST_F(AccuracyTest, TimesAreCorrectedByWhatThisMachineTakes) {
-  // Four times as long as the table says; it is found out while the view rests.
+  // Four times as long as the table says, which is learnt while the view rests.
   service_.machine->ms_per_mega_sample = 80.0 / kMegaSamplesAt100Slices;
   const std::string id = service_.Open(WithMaxMilliseconds(22.0F));
   Watcher watcher(service_.stub(), id);
@@ -129,7 +129,7 @@ TEST_F(AccuracyTest, ChangesKeepTheSettingAndAnotherRequestChangesIt) {
   revision = service_.Update(id, WithMaxError(0.25F));
   ASSERT_TRUE(watcher.AwaitFrame(revision, true));
   EXPECT_EQ(watcher.NewestFrame().accuracy().slices(), 100U);
-  // Without a request the scene's own setting is drawn, and what the table knows is told.
+  // Without a request the scene's own setting is drawn and the table's estimates are reported.
   v1::Scene own = SmallScene();
   own.mutable_rendering()->mutable_light_volume()->set_transport(v1::TRANSPORT_CONSISTENT);
   revision = service_.Update(id, own);

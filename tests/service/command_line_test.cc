@@ -1,4 +1,4 @@
-// The program as a user runs it, on the sample storm: what it prints, writes and returns.
+// The program as a user runs it, on the sample storm: its output, files and exit codes.
 #include <grpcpp/grpcpp.h>
 #include <sys/wait.h>
 
@@ -45,7 +45,7 @@ struct Outcome {
 
 class CommandLineTest : public ::testing::Test {
  protected:
-  // Runs the program by the shell, with ARGUMENTS as one would type them.
+  // Runs the program in the shell, with ARGUMENTS as typed on a command line.
   Outcome Run(const std::string& arguments) const { return Shell(PROGRAM + (" " + arguments)); }
 
   Outcome Shell(const std::string& command) const {
@@ -60,7 +60,7 @@ class CommandLineTest : public ::testing::Test {
     EXPECT_EQ(outcome.code, code) << arguments;
     EXPECT_THAT(outcome.err, StartsWith("thunderhead: ")) << arguments;
     EXPECT_THAT(outcome.err, HasSubstr(text)) << arguments;
-    // One line, and nothing of it where a picture's costs or a description would be.
+    // One line on standard error, and nothing on standard output.
     EXPECT_EQ(outcome.err.find('\n'), outcome.err.size() - 1) << outcome.err;
     EXPECT_THAT(outcome.out, IsEmpty()) << arguments;
   }
@@ -119,7 +119,7 @@ TEST_F(CommandLineTest, MissingAndForeignFilesAreNamed) {
 TEST_F(CommandLineTest, RenderWritesThePictureAndItsCosts) {
   const Outcome outcome = Run(render_ + " --time 1 --size 80x45 --slices 16 --json");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, IsEmpty());  // no progress bars where there is no terminal
+  EXPECT_THAT(outcome.err, IsEmpty());  // no progress bar without a terminal
   const auto image = frame::DecodePng(Contents(picture_));
   ASSERT_TRUE(image.ok()) << image.status();
   EXPECT_EQ(image->width_px, 80);
@@ -275,7 +275,7 @@ TEST_F(CommandLineTest, TheReferenceRendersToExrAndPng) {
   ExpectError(reference + picture_ + " --seconds -1", 2, "--seconds is -1");
 }
 
-TEST_F(CommandLineTest, MeasureTradeGoesOnWhereItStopped) {
+TEST_F(CommandLineTest, MeasureTradeContinuesWhereItStopped) {
   const std::string trade = folder_.File("trade");
   const std::string command = "measure trade " + kSample +
                               " --device software --size 24x16 --spp 16 --million-paths 0.01 -o " +
@@ -285,7 +285,7 @@ TEST_F(CommandLineTest, MeasureTradeGoesOnWhereItStopped) {
   EXPECT_THAT(first.out, HasSubstr("half_angle    uniform_phase_low_albedo"));
   EXPECT_THAT(Contents(trade + ".svg"), HasSubstr("<polyline"));
   EXPECT_THAT(Contents(trade + ".json"), HasSubstr("\"pareto\": true"));
-  // A row and a half lost: the rest is not measured again, so its times are the same.
+  // With a row and a half lost, the others are not measured again, so their times are the same.
   const std::string whole = Contents(trade + ".csv");
   const std::string kept = whole.substr(0, whole.size() - 150);
   std::ofstream(trade + ".csv") << kept;
@@ -298,7 +298,7 @@ TEST_F(CommandLineTest, MeasureTradeGoesOnWhereItStopped) {
   const Outcome other =
       Run("measure trade " + kSample + " --device software --size 30x16 --spp 16 -o " + trade);
   EXPECT_EQ(other.code, 2);
-  EXPECT_THAT(other.err, HasSubstr("no file to go on from"));
+  EXPECT_THAT(other.err, HasSubstr("cannot be continued"));
   EXPECT_EQ(Contents(trade + ".csv"), again);
 }
 

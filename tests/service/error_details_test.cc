@@ -1,5 +1,5 @@
-// What programs read of a refusal: google.rpc's details in grpc-status-details-bin, for each class
-// of refusal.
+// Machine-readable errors: google.rpc's details in grpc-status-details-bin, for each class of
+// error.
 #include <grpcpp/support/error_details.h>
 
 #include <map>
@@ -13,7 +13,7 @@
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "gtest/gtest.h"
-#include "service/cloud_folder.h"
+#include "service/cloud_store.h"
 #include "service/status_table.h"
 #include "tests/service/fake_service.h"
 #include "tests/support/temporary_folder.h"
@@ -26,7 +26,7 @@ using ::testing::Pair;
 using ::testing::StartsWith;
 using Stub = v1::ThunderheadService::Stub;
 
-// The details of a refusal, taken apart.
+// The decoded details of an error.
 struct Decoded {
   std::string reason;
   std::map<std::string, std::string> metadata;
@@ -65,7 +65,7 @@ Decoded Decode(const grpc::Status& refusal) {
   return decoded;
 }
 
-// A refusal that names no field.
+// An error that names no field.
 void ExpectRefusal(const grpc::Status& refusal, grpc::StatusCode code, const std::string& reason) {
   EXPECT_EQ(refusal.error_code(), code) << refusal.error_message();
   const Decoded decoded = Decode(refusal);
@@ -135,10 +135,10 @@ INSTANTIATE_TEST_SUITE_P(
              "is 'noon'; it must be a date and time like 2013-05-20T20:00:00Z",
              "DATE_TIME_MALFORMED"},
         Case{R"({"fields": [{"scale": 1}]})", "scene.fields[0].hydrometeor",
-             "is not given; it must say which field the settings are for", "FIELD_MISSING"},
+             "is not given; it must name the field that the settings are for", "FIELD_MISSING"},
         Case{R"({"fields": [{"hydrometeor": 2}, {"hydrometeor": 1}, {"hydrometeor": 2}]})",
              "scene.fields[2].hydrometeor",
-             "is HYDROMETEOR_RAIN, which scene.fields[0] already is; each hydrometeor may be "
+             "is HYDROMETEOR_RAIN, as is scene.fields[0]; each hydrometeor may be "
              "listed once",
              "HYDROMETEOR_REPEATED"},
         Case{R"({"output": {"widthPx": 8192, "heightPx": 8192}})",
@@ -276,7 +276,7 @@ TEST(ErrorDetailsTest, CloudsThatAreNotMadeOrDeletedHaveTheirReason) {
 TEST(ErrorDetailsTest, OneCloudIsMadeAtATime) {
   const TemporaryFolder folder;
   FakeStormStore store;
-  service::CloudFolder clouds(folder.Path().string(), store);
+  service::CloudStore clouds(folder.Path().string(), store);
   const auto shape = clouds::PresetNamed("fair-weather-cumulus", 1);
   ASSERT_TRUE(shape.ok());
   absl::Status second;
@@ -289,10 +289,10 @@ TEST(ErrorDetailsTest, OneCloudIsMadeAtATime) {
   EXPECT_EQ(Decode(busy).retry_s, 3.0);
 }
 
-TEST(ErrorDetailsTest, NoMoreCloudsThanTheMost) {
+TEST(ErrorDetailsTest, NoMoreCloudsThanTheMaximum) {
   const TemporaryFolder folder;
   FakeStormStore store;
-  service::CloudFolder clouds(folder.Path().string(), store);
+  service::CloudStore clouds(folder.Path().string(), store);
   auto shape = clouds::PresetNamed("fair-weather-cumulus", 1);
   ASSERT_TRUE(shape.ok());
   shape->grid.cells = {8, 8, 8};

@@ -43,7 +43,7 @@ std::shared_ptr<const volume::HydrometeorFields> Fields(bool empty) {
   return fields;
 }
 
-// Of techniques that have none, as many as others have by default.
+// The default number for techniques without slices.
 int SlicesOf(const scene::Scene& scene) {
   return scene::SlicesOf(scene.rendering.technique).value_or(scene::LightVolume().slices);
 }
@@ -52,7 +52,7 @@ bool Traces(const scene::Scene& scene) {
   return scene::TracedLightOf(scene.rendering.technique) != scene::TracedLight::kOff;
 }
 
-// How many balls, and which time.
+// The number of balls, and the time.
 std::pair<int, int> KeyOf(const scene::Scene& scene) {
   return {std::get<scene::Metaballs>(scene.rendering.technique).count, scene.time_index};
 }

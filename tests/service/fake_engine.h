@@ -1,5 +1,5 @@
-// What the render loop runs on in tests instead of files and GL: storms made up in memory, and a
-// frame source that paints scene values as colours and takes as long as it is told to.
+// Fakes for the render loop instead of files and GL: storms in memory, and a frame source that
+// paints scene values as colours and takes a given time.
 #pragma once
 
 #include <atomic>
@@ -22,16 +22,16 @@ namespace thunderhead::testing {
 
 inline constexpr std::chrono::seconds kPatience{20};
 
-// A gate that a fake's thread passes only while it is open; it starts open.
+// A gate that blocks a fake's thread while it is closed; it starts open.
 class Gate {
  public:
   void Close();
   void Open();
-  // One that waits, or comes next, passes the closed gate.
+  // Lets one waiting, or the next, thread pass the closed gate.
   void LetOnePass();
   // Called by the fake: waits until the gate is open.
   void Pass();
-  // Called by the test: waits until `count` have come to the closed gate.
+  // Called by the test: waits until `count` threads wait at the closed gate.
   bool AwaitWaiting(int count);
 
  private:
@@ -49,7 +49,7 @@ class FakeStormStore final : public volume::StormStore {
   FakeStormStore();
 
   std::vector<const volume::StormInfo*> Storms() const override;
-  // A storm of the file's name, if the file is there.
+  // Adds a storm with the file's name, if the file exists.
   absl::StatusOr<const volume::StormInfo*> Add(const std::string& path) override;
   absl::Status Remove(std::string_view id) override;
   absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> Get(
@@ -90,7 +90,7 @@ struct FakeMachine {
   std::atomic<double> fails_above_exposure_ev{1e9};
   Gate preparing;  // of scenes of metaballs; each number of them once a time
   std::atomic<int> cannot_prepare{-1};
-  std::atomic<int> checked{0};  // frames drawn with half the slices as well
+  std::atomic<int> checked{0};  // frames also drawn with half the slices
   std::atomic<std::int64_t> paths_per_step{100'000};
   std::atomic<std::int64_t> traced_paths{0};
   std::atomic<std::int64_t> traced_steps{0};
@@ -101,7 +101,7 @@ struct FakeMachine {
   std::vector<Drawn> Log();
   void Add(Drawn drawn);
   bool IsPrepared(const scene::Scene& scene);
-  // Waits until it is, or patience ends.
+  // Waits until it is, for at most kPatience.
   bool AwaitPrepared(const scene::Scene& scene);
   void Prepared(const scene::Scene& scene);
 
@@ -114,8 +114,8 @@ struct FakeMachine {
 
 session::FrameSourceFactory FakeFrameSources(std::shared_ptr<FakeMachine> machine);
 
-// What fake references do, shared with the test: each sample takes `ms_per_sample`, and the error
-// is one over the root of the samples. Their pictures are of even radiance.
+// The behaviour of fake references, shared with the test: each sample takes `ms_per_sample`, and
+// the error is one over the square root of the samples. Their pictures have uniform radiance.
 struct FakeTruth {
   struct Begun {
     scene::Scene scene;

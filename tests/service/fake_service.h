@@ -1,4 +1,4 @@
-// A server on fakes, and a viewer that collects what a stream brings.
+// A server on fakes, and a viewer that collects the messages of a stream.
 #pragma once
 
 #include <grpcpp/grpcpp.h>
@@ -48,7 +48,7 @@ class Watcher {
   Watcher(v1::ThunderheadService::Stub& stub, std::string session_id, bool acknowledges = true);
   ~Watcher();
 
-  // Waits until `wanted` is true of the messages so far, or patience ends.
+  // Waits until `wanted` is true for the messages so far, for at most kPatience.
   bool Await(const std::function<bool(const std::vector<v1::WatchFramesResponse>&)>& wanted);
   // Waits for a frame of at least that revision, at full quality if `refined`.
   bool AwaitFrame(std::uint64_t revision, bool refined);

@@ -1,7 +1,7 @@
 // `thunderhead flux` as a user runs it, on files written here: shares of sunlight against closed
 // forms and against rays traced through the same cells. Sampled shares must lie within 4 standard
-// errors of what is expected: of the 60 or so compared, one would fail by chance in 250 runs if the
-// seed were not fixed.
+// errors of the expected value: of the 60 or so comparisons, one would fail by chance in 250 runs
+// if the seed were not fixed.
 #include <google/protobuf/struct.pb.h>
 #include <google/protobuf/util/json_util.h>
 #include <sys/wait.h>
@@ -209,8 +209,8 @@ TEST_F(FluxCommand, LayoutOfTheFileDoesNotMatter) {
   EXPECT_NEAR(Of("reflectance").value, expected, 1e-12);
 }
 
-// A black tower, opaque: it stops what falls on its top and on its sunlit wall. The domain is the
-// file's, not the tower's.
+// A black, opaque tower absorbs the light on its top and its sunlit wall. The domain is the file's,
+// not the tower's.
 TEST_F(FluxCommand, TallBlackBoxStopsItsShadow) {
   const std::string path =
       Write(ExtinctionFile(40, 10, 10, 100.0, 100.0, 100.0, [](Cell x, Cell y, Cell z) {
@@ -225,11 +225,12 @@ TEST_F(FluxCommand, TallBlackBoxStopsItsShadow) {
     ExpectShare("absorptance", shadow / area, edges);
   }
   Flux(path + " --photons 200000 --albedo 0 --sun-elevation 30 --sun-azimuth 270");
-  // What falls within tan 60 times the height of the east side leaves there.
+  // Light that falls within tan 60 times the height of the east side leaves there.
   ExpectShare("sides", 1000.0 * std::sqrt(3.0) / 4000.0);
 }
 
-// Far from the sides, a domain that repeats and one that does not differ only by what leaves.
+// If the cloud is far from the sides, periodic and open domains differ only by the light that
+// leaves.
 TEST_F(FluxCommand, WideDomainAgreesWithPeriodic) {
   const std::string path =
       Write(ExtinctionFile(41, 41, 4, 250.0, 250.0, 50.0, [](Cell x, Cell y, Cell z) {
@@ -245,14 +246,14 @@ TEST_F(FluxCommand, WideDomainAgreesWithPeriodic) {
   ExpectShare("absorptance", absorbed.value, 4.0 * absorbed.standard_error + 0.05 * sides.value);
 }
 
-// Nothing scatters: all arrives.
+// Without a medium all light arrives.
 TEST_F(FluxCommand, EmptyFileLetsAllThrough) {
   Flux(Write(ExtinctionFile(3, 3, 3, 10.0, 10.0, 10.0, [](Cell, Cell, Cell) { return 0.0; })) +
        " --photons 1000");
   EXPECT_EQ(Of("transmittance_direct").value, 1.0);
 }
 
-// One column of one layer, as an ocean under a deck of cloud: the slab's numbers.
+// One column of one layer, periodic, has the same fluxes as the slab.
 TEST_F(FluxCommand, SingleColumnIsASlab) {
   Flux(Write(ExtinctionFile(1, 1, 1, 500.0, 500.0, 250.0,
                             [](Cell, Cell, Cell) { return 8.0 / 250.0; })) +
@@ -284,11 +285,11 @@ TEST_F(FluxCommand, SaysWhatIsWrong) {
   }
 }
 
-// Ctrl-C after some seconds, so that the tracing has begun on a busy machine, too: what is known by
-// then, marked as not complete.
+// Ctrl-C prints the result so far, marked as incomplete. It comes after some seconds, so that
+// tracing has begun even on a busy machine.
 TEST_F(FluxCommand, InterruptedRunsReportWhatTheyHave) {
-  // Three signals are one request: so ask coreutils' timeout, which sends its own twice, and
-  // terminals, which signal a whole group.
+  // Three signals are one request, because coreutils' timeout sends its signal twice, and terminals
+  // signal a whole process group.
   const int status = std::system((std::string(PROGRAM) +
                                   " flux --slab 1 --phase hg:0.5 --photons 1000000000000 --json >" +
                                   folder_.File("out") +

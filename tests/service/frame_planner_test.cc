@@ -1,4 +1,4 @@
-// Which frame is due, with a made-up clock and made-up costs.
+// The frame planner with a fake clock and fake costs.
 #include "session/frame_planner.h"
 
 #include <cmath>

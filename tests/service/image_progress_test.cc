@@ -1,5 +1,4 @@
-// Pictures asked for one by one that say how far they are, on a made-up machine that traces a
-// hundred thousand paths at a time.
+// Progress of single pictures, on a fake machine that traces a hundred thousand paths at a time.
 #include <algorithm>
 #include <chrono>
 #include <functional>
@@ -41,7 +40,7 @@ class PictureCall {
     if (thread_.joinable()) thread_.join();
   }
 
-  // Waits until there are as many events, or patience ends.
+  // Waits until there are as many events, for at most kPatience.
   bool Await(std::size_t count) {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, kPatience, [&] { return events_.size() >= count; });
@@ -76,7 +75,7 @@ class PictureCall {
   std::thread thread_;
 };
 
-// Whose machine traces a step when it is told to.
+// With a machine that traces a step when the test lets it.
 class ImageProgressTest : public ::testing::Test {
  protected:
   ImageProgressTest() { service_.machine->tracing.Close(); }
@@ -131,7 +130,7 @@ TEST_F(ImageProgressTest, ACancelledPictureIsTracedNoFurtherAndWaitsNoMore) {
   ASSERT_TRUE(service_.machine->tracing.AwaitWaiting(1)) << "the second step";
   call.Cancel();
   EXPECT_EQ(call.End().error_code(), grpc::StatusCode::CANCELLED);
-  // The server hears of it a moment later, while that step is under way.
+  // The server notices a moment later, during that step.
   std::this_thread::sleep_for(milliseconds(200));
   service_.machine->tracing.Open();
   std::this_thread::sleep_for(milliseconds(200));
@@ -162,7 +161,7 @@ TEST_F(ImageProgressTest, ThePictureIsThatOfTheCallWithoutProgress) {
   v1::RenderImageResponse told = call.AllEvents().back().image();
   EXPECT_EQ(told.image(), plain.image());
   EXPECT_EQ(told.stages_size(), plain.stages_size());
-  // What is left is the same but for the times.
+  // The rest is the same except for the times.
   told.clear_stages();
   plain.clear_stages();
   told.clear_accuracy();

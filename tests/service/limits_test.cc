@@ -1,5 +1,5 @@
-// Every limit of the schema is checked, with the value's whole path, the value and its range in the
-// text.
+// Every limit of the schema is checked, and the error has the value's full path, the value and its
+// range.
 #include <cmath>
 #include <limits>
 
@@ -17,7 +17,7 @@ namespace {
 using ::testing::HasSubstr;
 using Stub = v1::ThunderheadService::Stub;
 
-// What the server says to a scene; empty if it takes it.
+// The server's error for a scene; empty if it accepts it.
 std::string Complaint(const v1::Scene& scene) {
   v1::CreateSessionRequest request;
   *request.mutable_scene() = scene;
@@ -103,11 +103,11 @@ INSTANTIATE_TEST_SUITE_P(
              "TRACED_LIGHT_AWAITED"},
         Case{R"({"rendering": {"halfAngle": {"transport": "TRANSPORT_DIFFUSION"}}})",
              "scene.rendering.half_angle.transport is TRANSPORT_DIFFUSION, which this technique "
-             "does not show; it must be one of TRANSPORT_CONSISTENT, TRANSPORT_PAPER, "
+             "does not support; it must be one of TRANSPORT_CONSISTENT, TRANSPORT_PAPER, "
              "TRANSPORT_LOW_ALBEDO, TRANSPORT_PAPER_LOW_ALBEDO"},
         Case{R"({"rendering": {"metaball": {"transport": "TRANSPORT_PAPER_LOW_ALBEDO"}}})",
              "scene.rendering.metaball.transport is TRANSPORT_PAPER_LOW_ALBEDO, which this "
-             "technique does not show; it must be one of TRANSPORT_CONSISTENT, TRANSPORT_PAPER, "
+             "technique does not support; it must be one of TRANSPORT_CONSISTENT, TRANSPORT_PAPER, "
              "TRANSPORT_LOW_ALBEDO"},
         Case{R"({"rendering": {"other": {"name": "voxels"}}})",
              "scene.rendering.other.name is 'voxels'; the server has the techniques light_volume, "
@@ -122,10 +122,10 @@ INSTANTIATE_TEST_SUITE_P(
             "scene.output.width_px times scene.output.height_px is 8192 x 8192 = 67108864; it must "
             "be at most 33554432 pixels"},
         Case{R"({"fields": [{"scale": 1}]})",
-             "scene.fields[0].hydrometeor is not given; it must say which field the settings are "
-             "for"},
+             "scene.fields[0].hydrometeor is not given; it must name the field that the settings "
+             "are for"},
         Case{R"({"fields": [{"hydrometeor": 2}, {"hydrometeor": 1}, {"hydrometeor": 2}]})",
-             "scene.fields[2].hydrometeor is HYDROMETEOR_RAIN, which scene.fields[0] already is; "
+             "scene.fields[2].hydrometeor is HYDROMETEOR_RAIN, as is scene.fields[0]; "
              "each hydrometeor may be listed once"}));
 
 TEST(LimitsTest, TooManyItemsAndTooLongStrings) {

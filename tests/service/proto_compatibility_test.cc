@@ -1,6 +1,6 @@
-// The wire format of thunderhead.v1 as clients out there know it: tests/service/v1_wire_format.txt
-// lists every field, enumerator and call. One that is gone, renamed, renumbered or of another type
-// breaks them. A new one belongs in the list: run this test with THUNDERHEAD_UPDATE=1 set.
+// The wire format of thunderhead.v1 that existing clients rely on: tests/service/v1_wire_format.txt
+// lists every field, enumerator and call. Removing, renaming or renumbering one, or changing its
+// type, breaks them. A new one belongs in the list: run this test with THUNDERHEAD_UPDATE=1 set.
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -100,7 +100,7 @@ TEST(ProtoCompatibility, WhatClientsKnowStaysAsItIs) {
   EXPECT_EQ(Without(current, listed), "") << "these are new; add them by THUNDERHEAD_UPDATE=1";
 }
 
-// A number or name that was given up is not used again.
+// A removed number or name is not reused.
 TEST(ProtoCompatibility, RenderingKeepsItsFormerNumbersReserved) {
   const Descriptor& rendering = *v1::Rendering::descriptor();
   for (int number = 1; number <= 10; ++number) EXPECT_TRUE(rendering.IsReservedNumber(number));

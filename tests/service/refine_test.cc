@@ -1,5 +1,5 @@
-// Sessions that show the reference, over gRPC: pictures that get better while the scene rests,
-// begin again when it changes and end when nobody looks; other sessions go on beside them.
+// Sessions that show the reference, over gRPC: pictures that improve while the scene rests, start
+// again when it changes and stop when nobody watches; other sessions are not delayed.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -85,7 +85,7 @@ TEST_F(RefineTest, SamplesGrowAndTheErrorFallsWhileTheSceneRests) {
     EXPECT_GT(refinement.samples_per_pixel(), frames[i - 1].refinement().samples_per_pixel());
     EXPECT_LT(refinement.relative_error(), frames[i - 1].refinement().relative_error());
   }
-  // Nothing was drawn the other way.
+  // The frame source drew nothing.
   EXPECT_TRUE(service_.machine->Log().empty());
 }
 
@@ -112,7 +112,7 @@ TEST_F(RefineTest, AChangeBeginsAgainAtOnce) {
   const std::vector<v1::Frame> frames = FramesOf(watcher, revision);
   EXPECT_LE(frames.front().refinement().samples_per_pixel(), 2U);
   EXPECT_EQ(frames.front().camera().orbit().azimuth_deg(), 40.0F);
-  // What was made for the first picture is kept for the second.
+  // The source of the first picture is kept for the second.
   EXPECT_EQ(truth_->sources, 1);
   EXPECT_EQ(truth_->Log().size(), 2U);
 }
@@ -144,7 +144,7 @@ TEST_F(RefineTest, LeavingEndsItAndComingBackBeginsAnew) {
   const int samples = truth_->samples;
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   EXPECT_EQ(truth_->samples, samples);
-  // The first frame that comes may be the last one of before.
+  // The first frame may still be the last one of the previous scene.
   Watcher again(service_.stub(), id);
   EXPECT_TRUE(Await([&] { return truth_->Log().size() == 2U; }));
   EXPECT_TRUE(AwaitSamples(again, 1, 8));
@@ -188,7 +188,7 @@ TEST_F(RefineTest, OtherSessionsAreDrawnMeanwhile) {
     scene.mutable_sun()->set_azimuth_deg(static_cast<float>(10 * i));
     ASSERT_TRUE(other.AwaitFrame(service_.Update(id, scene), false));
   }
-  // Each would wait for a turn of 250 ms if the pictures were traced where others are drawn.
+  // Each would wait for a turn of 250 ms if pictures were traced on the render loop's thread.
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(2000));
   EXPECT_TRUE(AwaitSamples(traced, 1, 16));
 }
@@ -266,7 +266,7 @@ TEST(RefineByReferenceTest, SamplesGrowErrorFallsChangeRestartsLeavingCancels) {
     if (first_error == 0.0) first_error = last_error;
   }
   EXPECT_GT(first_error, 0.0);
-  // The root of 32; an estimate from two samples is itself uncertain.
+  // The square root of 32; an estimate from two samples is itself uncertain.
   EXPECT_LT(last_error, first_error / 2.0);
   EXPECT_GT(last_error, first_error / 16.0);
   const std::uint64_t revision = service.Update(id, from(120.0F));

@@ -1,4 +1,4 @@
-// Pictures asked for one by one.
+// Single pictures.
 #include "frame/image_codec.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -104,13 +104,12 @@ TEST(RenderImageTest, CancelledPictureIsNeverDrawn) {
   Request first(service, 1.0F);
   ASSERT_TRUE(service.machine->drawing.AwaitWaiting(1));
   Request second(service, 2.0F, 1);
-  // It waits in the queue a moment after its read, or sees that it is cancelled when it comes
-  // there.
+  // It waits briefly in the queue after its read, or notices the cancellation on entering it.
   ASSERT_TRUE(service.store->AwaitReads(2));
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   second.Cancel();
   EXPECT_EQ(second.End().error_code(), grpc::StatusCode::CANCELLED);
-  // The server hears of the cancellation a moment after the client has given up.
+  // The server notices the cancellation a moment after the client has ended the call.
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   service.machine->drawing.Open();
   EXPECT_TRUE(first.End().ok());
@@ -129,7 +128,7 @@ TEST(RenderImageTest, TooManyWaitingPicturesAreRefused) {
   std::vector<std::unique_ptr<Request>> others;
   others.push_back(std::make_unique<Request>(service, 2.0F, 1));
   others.push_back(std::make_unique<Request>(service, 3.0F, 2));
-  // One of the two waits, the other is refused while the drawing goes on.
+  // One of the two waits, the other is refused while the first picture is drawn.
   ASSERT_TRUE(service.store->AwaitReads(3));
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   service.machine->drawing.Open();

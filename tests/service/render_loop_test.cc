@@ -1,4 +1,4 @@
-// The render loop with its reader and encoder, without gRPC: so that ThreadSanitizer sees every
+// The render loop with its reader and encoder, without gRPC, so that ThreadSanitizer sees every
 // lock.
 #include "session/render_loop.h"
 
@@ -26,7 +26,7 @@ scene::Scene Small(double sun_azimuth_deg) {
   return scene;
 }
 
-// Takes and acknowledges whatever comes, at once.
+// Takes and acknowledges every event at once.
 class EagerViewer : public Viewer, public std::enable_shared_from_this<EagerViewer> {
  public:
   explicit EagerViewer(std::shared_ptr<Session> session) : session_(std::move(session)) {}
@@ -194,7 +194,7 @@ TEST_F(RenderLoopTest, WhatAScenePreparesHoldsUpNobodyElse) {
   const auto other = *sessions_.Create();
   const auto fitting_viewer = Watch(fitting);
   const auto other_viewer = Watch(other);
-  // Its fields are at hand: only the fit is missing.
+  // Its fields are available: only the fit is missing.
   Show(*fitting, Small(0.0));
   ASSERT_TRUE(fitting_viewer->Await(1, true));
   machine_->preparing.Close();
@@ -202,7 +202,7 @@ TEST_F(RenderLoopTest, WhatAScenePreparesHoldsUpNobodyElse) {
   ASSERT_TRUE(machine_->preparing.AwaitWaiting(1));
   Show(*other, Small(5.0));
   ASSERT_TRUE(other_viewer->Await(1, true));
-  // Another number while the first is fitted: the first may be shown, the last must be.
+  // Another number during the first fit: the first may be shown, the last must be.
   const std::uint64_t last = Show(*fitting, OfMetaballs(200));
   machine_->preparing.Open();
   ASSERT_TRUE(fitting_viewer->Await(last, true));

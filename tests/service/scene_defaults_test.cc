@@ -1,5 +1,5 @@
-// The defaults of a scene stand once: the options of the messages' fields, the values in
-// scene/scene.h and the messages that the server completes are the same.
+// The defaults of a scene agree everywhere: in the options of the messages' fields, in
+// scene/scene.h and in the messages that the server completes.
 #include <string>
 
 #include "absl/strings/str_cat.h"
@@ -159,7 +159,7 @@ TEST(SceneDefaults, LightIsTracedByDefaultWhereItIsShown) {
   rendering.mutable_light_volume()->set_transport(v1::TRANSPORT_PAPER);
   FillTechniqueDefaults(rendering);
   EXPECT_EQ(rendering.light_volume().traced_light(), v1::TRACED_LIGHT_OFF);
-  // Asked for in vain: the frame says so.
+  // It cannot be shown, and the frame says so.
   rendering.mutable_light_volume()->set_traced_light(v1::TRACED_LIGHT_AT_REST);
   FillTechniqueDefaults(rendering);
   EXPECT_EQ(rendering.light_volume().traced_light(), v1::TRACED_LIGHT_AT_REST);

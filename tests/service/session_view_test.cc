@@ -1,4 +1,4 @@
-// What is to be done next for a session, with a made-up clock and no GL.
+// The state machine of a session, with a fake clock and no GL.
 #include "session/session_view.h"
 
 #include <chrono>
@@ -42,13 +42,13 @@ class SessionViewTest : public ::testing::Test {
     newest_ = {++revision_, std::make_shared<const scene::Scene>(scene_), kStart};
   }
 
-  // The next work so long after the change, with the scene's fields at hand.
+  // The next work at that time after the change, with the scene's fields available.
   SessionWork Next(milliseconds since_change) {
     decided_ = **view_.Decide(newest_);
     return view_.Next(newest_, decided_, kStart + since_change, last_drawn_);
   }
 
-  // Does the drawing that is asked for. False if other work is.
+  // Draws a frame if that is the next work; false otherwise.
   bool DrawNext(milliseconds since_change) {
     const SessionWork work = Next(since_change);
     const auto* draw = std::get_if<DrawFrame>(&work);
@@ -75,7 +75,7 @@ class SessionViewTest : public ::testing::Test {
     ASSERT_FALSE(last_plan_.refined);
   }
 
-  // Draws what comes before the checks, from coarse to full.
+  // Draws all frames before the checks, from coarse to full.
   void ComeToRest() {
     do {
       ASSERT_TRUE(DrawNext(milliseconds(600)));

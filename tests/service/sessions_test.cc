@@ -161,7 +161,7 @@ TEST(SessionsTest, TheSunFollowsTheClockWhereAsked) {
   const v1::Scene noon = Create(service, wanted).scene();
   EXPECT_GT(noon.sun().elevation_deg(), 87.0F);
   EXPECT_EQ(Create(service, noon).scene().SerializeAsString(), noon.SerializeAsString());
-  // It moves on with the storm's times, a quarter of a degree a minute.
+  // It moves with the storm's times, a quarter of a degree per minute.
   wanted.set_time_index(3);
   sun.mutable_clock()->set_date_time("2013-03-20T06:20:00Z");
   const float later_deg = Create(service, wanted).scene().sun().elevation_deg();
@@ -170,7 +170,7 @@ TEST(SessionsTest, TheSunFollowsTheClockWhereAsked) {
   const double elapsed_min = service.store->Find("anvil")->times[3].elapsed_s / 60.0;
   EXPECT_GT(elapsed_min, 0.0);
   EXPECT_NEAR(later_deg - first_deg, elapsed_min / 4.0, 0.02);
-  // What the clock leaves open is an afternoon in Oklahoma.
+  // The clock's defaults are an afternoon in Oklahoma.
   sun.clear_clock();
   const v1::Sun open = Create(service, wanted).scene().sun();
   EXPECT_EQ(open.clock().date_time(), "2013-05-20T20:00:00Z");
@@ -199,7 +199,7 @@ TEST(SunMessages, ARealStormsSunFollowsItsTimeAndPlace) {
   const physics::SunPosition expected = physics::SunPositionAt(1369080000.0, 35.3, -97.6);
   EXPECT_NEAR(sun.azimuth_deg(), expected.azimuth_deg, 1e-3);
   EXPECT_NEAR(sun.elevation_deg(), expected.elevation_deg, 1e-3);
-  // A hand on it takes it off the clock.
+  // Setting its direction by hand ends following the clock.
   v1::Sun held;
   held.set_elevation_deg(10.0F);
   service::FillSunDefaults(held, storm, 1);
@@ -275,7 +275,7 @@ TEST(SessionsTest, NoMoreThanTheMost) {
       Call(service.stub(), &Stub::CreateSession, v1::CreateSessionRequest(), &response);
   EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
   EXPECT_EQ(status.error_message(),
-            "the server holds its most sessions (2); close one, or try again later");
+            "the server already has the maximum of 2 sessions; close one, or try again later");
   ASSERT_TRUE(Close(service, first).ok());
   service.Open(SmallScene());
 }

@@ -1,4 +1,4 @@
-// What the server knows: itself, its storms.
+// Descriptions of the server and its storms.
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/service/fake_service.h"

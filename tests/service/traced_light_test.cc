@@ -1,5 +1,5 @@
-// Sessions and pictures with traced light, on a made-up machine that traces a hundred thousand
-// paths at a time.
+// Sessions and pictures with traced light, on a fake machine that traces a hundred thousand paths
+// at a time.
 #include <algorithm>
 #include <vector>
 
@@ -101,7 +101,7 @@ TEST_F(TracedLightTest, OtherSessionsAreDrawnMeanwhile) {
   service_.machine->tracing.Close();
   Watcher tracing(service_.stub(), service_.Open(WithTracedLight()));
   ASSERT_TRUE(service_.machine->tracing.AwaitWaiting(1));
-  // It comes while a step is under way, and has its turn after that.
+  // It arrives during a step and has its turn after that.
   Watcher other(service_.stub(), service_.Open(SmallScene()));
   const auto is_seen = [&] { return other.NewestFrame().scene_revision() > 0; };
   for (int step = 0; step < 38 && !is_seen(); ++step) {
@@ -128,7 +128,7 @@ TEST_F(TracedLightTest, NoPictureIsDrawnForTooFewPaths) {
   service_.machine->paths_per_step = 10'000;
   service_.machine->tracing.Close();
   Watcher watcher(service_.stub(), service_.Open(WithTracedLight()));
-  // Long enough after one another that each would be worth a picture by its time.
+  // So far apart in time that each alone would be due for a picture.
   for (int step = 0; step < 3; ++step) {
     ASSERT_TRUE(service_.machine->tracing.AwaitWaiting(1));
     std::this_thread::sleep_for(std::chrono::milliseconds(600));

@@ -1,4 +1,4 @@
-// In which sizes a truth is refined and when it is shown, on plain values.
+// The sizes at which a truth is refined and when it is shown, on plain values.
 #include "session/truth_schedule.h"
 
 #include <cmath>
@@ -33,7 +33,7 @@ TEST(TruthScheduleTest, BeginsSmallAndDoublesUpToTheFullSize) {
 TEST(TruthScheduleTest, SmallPicturesAreFullAtOnce) {
   EXPECT_TRUE(TruthSchedule({64, 36}).IsFull());
   EXPECT_EQ(TruthSchedule({1, 1}).SizePx(), glm::ivec2(1, 1));
-  // So narrow that halving leaves nothing.
+  // So narrow that halving would leave no pixels.
   const TruthSchedule line({8192, 1});
   EXPECT_EQ(line.SizePx(), glm::ivec2(4096, 1));
 }
@@ -86,7 +86,7 @@ TEST(TruthScheduleTest, EndsWhenNobodyCouldSeeADifference) {
   Refinement exact = After(1000);
   exact.relative_error = 0.0005;
   EXPECT_TRUE(schedule.Finished(exact));
-  // An empty sky says that it is exact after two samples; it may be a cloud's edge that was missed.
+  // An empty sky has an error of 0 after two samples, but they may have missed a cloud's edge.
   exact.samples_per_pixel = 2;
   EXPECT_FALSE(schedule.Finished(exact));
   EXPECT_TRUE(schedule.Finished(After(1 << 16)));

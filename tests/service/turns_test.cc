@@ -1,4 +1,4 @@
-// Whose turn it is, on plain values.
+// Round-robin scheduling, on plain values.
 #include "session/turns.h"
 
 #include <map>
@@ -15,7 +15,7 @@ using ::testing::ElementsAre;
 
 class TurnsTest : public ::testing::Test {
  protected:
-  // Who uses the next turn; the empty string if nobody does.
+  // The session that uses the next turn; the empty string if none does.
   std::string Serve() {
     std::string served;
     asked_.clear();
@@ -34,7 +34,7 @@ class TurnsTest : public ::testing::Test {
   Turns turns_;
   std::vector<std::string> ids_{"", "a", "b", "c"};
   std::set<std::string> busy_;
-  std::set<std::string> in_background_;  // who have work that nobody waits for
+  std::set<std::string> in_background_;  // who have background work
   std::map<std::string, std::optional<Clock::time_point>> waits_until_;
   std::vector<std::string> asked_;
   std::optional<Clock::time_point> look_again_at_;

@@ -1,4 +1,4 @@
-// Frames on their way to viewers: order, skipping, coarse and refined, problems, ends.
+// Streams of frames to viewers: order, skipping, coarse and refined, problems, ends.
 #include <algorithm>
 #include <cstdlib>
 
@@ -85,7 +85,7 @@ TEST(WatchFramesTest, WhoJoinsIsToldTheWholeSceneAndThenEveryChange) {
     EXPECT_EQ(told.scene().sky().turbidity(), 3.0F);
     EXPECT_EQ(told.scene().display().exposure_ev(), 1.5F);
     EXPECT_EQ(told.scene().sun().azimuth_deg(), 180.0F);
-    // Complete, as CreateSession answers.
+    // Complete, as in CreateSession's response.
     EXPECT_EQ(told.scene().storm_id(), "anvil");
     EXPECT_TRUE(told.scene().rendering().light_volume().has_theta_f_deg());
     EXPECT_TRUE(told.scene().camera().orbit().has_distance_m());
@@ -228,7 +228,7 @@ TEST(WatchFramesTest, LongReadOfOneSessionDoesNotHoldUpAnother) {
   service.store->reading.Open();
   ASSERT_TRUE(waiting.AwaitFrame(unread, true));
   EXPECT_THAT(waiting.NewestFrame().jpeg(), ::testing::Not(::testing::IsEmpty()));
-  // The read is told with the first frame that needed it.
+  // The time of the read is reported with the first frame that needed it.
   const auto messages = waiting.Messages();
   const auto first = std::find_if(messages.begin(), messages.end(), [&](const auto& message) {
     return message.frame().scene_revision() == unread;

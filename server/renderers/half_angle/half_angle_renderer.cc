@@ -8,8 +8,8 @@
 #include "glm/geometric.hpp"
 #include "glm/trigonometric.hpp"
 #include "renderers/group_weights.h"
+#include "renderers/half_angle/buffer_ring.h"
 #include "renderers/half_angle/slice_reach.h"
-#include "renderers/half_angle/turns.h"
 #include "renderers/half_angle/variants.h"
 #include "renderers/view_uniforms.h"
 #include "shaders/bindings.h"
@@ -24,7 +24,7 @@ constexpr int kThicknessSlices = 128;        // perpendicular to the light
 // Drawn to the picture in one pass. More change targets less often, but their light takes more
 // memory.
 constexpr int kSlabSlices = 16;
-// Way of the light between two exchanges with neighbouring texels, in the reach of one
+// Path length of the light between two exchanges with neighbouring texels, in the reach of one
 // (consistent transport).
 constexpr double kExchangeInReach = 3.0;
 
@@ -53,7 +53,7 @@ struct HalfAngleRenderer::Slab {
 };
 
 struct HalfAngleRenderer::CarriedLight {
-  Turns layers;
+  BufferRing layers;
   bool exchanges_late = false;  // what one call scatters goes to neighbours in the next
   PixelRect due{};              // where it does
 };
@@ -192,10 +192,10 @@ void HalfAngleRenderer::DrawSlabs(const Programs& programs, const RenderSettings
   const auto meets = [](const SliceReach& slice) { return !slice.light.Empty(); };
   const auto first = std::find_if(reach.begin(), reach.end(), meets) - reach.begin();
   const auto end = reach.rend() - std::find_if(reach.rbegin(), reach.rend(), meets);
-  CarriedLight light{Turns(static_cast<std::size_t>(light_.Layers())),
+  CarriedLight light{BufferRing(static_cast<std::size_t>(light_.Layers())),
                      settings.Medium().transport != scene::Transport::kLowAlbedo &&
                          !scene::IsPaper(settings.Medium().transport)};
-  Turns eyes(eye_.size());
+  BufferRing eyes(eye_.size());
   std::size_t drawn = 0;
   for (auto begin = static_cast<std::size_t>(first); begin < static_cast<std::size_t>(end);
        begin += kSlabSlices) {

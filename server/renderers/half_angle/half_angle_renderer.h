@@ -18,9 +18,9 @@
 #include "gl/program.h"
 #include "gl/whole_target.h"
 #include "renderers/group_weights.h"
+#include "renderers/half_angle/buffer_ring.h"
 #include "renderers/half_angle/slice_reach.h"
 #include "renderers/half_angle/slicing.h"
-#include "renderers/half_angle/turns.h"
 #include "renderers/medium.h"
 #include "renderers/render_settings.h"
 

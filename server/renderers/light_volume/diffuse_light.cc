@@ -64,7 +64,7 @@ void DiffuseLight::Number() {
   }
 }
 
-// Adds 1 / depth^2 of the nearer way out along an axis.
+// Adds 1 / depth^2 of the nearer exit along an axis.
 void DiffuseLight::ScanExits(int axis, std::vector<float>* sum, std::vector<float>* all) {
   const int length = cells_.size[axis];
   const std::array<int, 2> other = {(axis + 1) % 3, (axis + 2) % 3};
@@ -106,8 +106,8 @@ void DiffuseLight::ScanExits(int axis, std::vector<float>* sum, std::vector<floa
   }
 }
 
-// Of a plane surface with normal n, the way out along axis k is t / |n_k|, so that squares of
-// reciprocals add up to that of the shortest way t, whichever way the surface faces.
+// For a plane surface with normal n, the distance out along axis k is t / |n_k|, so that squares of
+// reciprocals add up to that of the shortest distance t, in whatever direction the surface faces.
 void DiffuseLight::FindExits() {
   std::vector<float> sum(number_.size(), 0.0F);
   std::vector<float> all(number_.size(), 0.0F);
@@ -133,26 +133,26 @@ void DiffuseLight::MakeLinks() {
     const glm::ivec3 cell = cells_.CellAt(i);
     const float here = cells_.transport_per_m[i];
     const float exit = exit_root_[i] * exit_root_[i];  // of light, as are the ways out below
-    for (int way = 0; way < 6; ++way) {
-      const int axis = way / 2;
+    for (int side = 0; side < 6; ++side) {
+      const int axis = side / 2;
       glm::ivec3 next = cell;
-      next[axis] += way % 2 == 1 ? 1 : -1;
+      next[axis] += side % 2 == 1 ? 1 : -1;
       const bool inside = next[axis] >= 0 && next[axis] < cells_.size[axis];
       const std::size_t j = inside ? cells_.Offset(next) : 0;
       Links& links = links_[n];
-      links.to[way] = inside ? number_[j] : kNone;
-      const float there = links.to[way] == kNone ? 0.0F : cells_.transport_per_m[j];
+      links.to[side] = inside ? number_[j] : kNone;
+      const float there = links.to[side] == kNone ? 0.0F : cells_.transport_per_m[j];
       const float depth = static_cast<float>(0.5 * cells_.cell_m[axis]) * (here + there);
       const float out = static_cast<float>(0.5 * cells_.cell_m[axis]) * cells_.light_per_m[i];
-      if (links.to[way] == kNone) {
-        links.slack[way] = 2.0F * std::clamp(out / exit, 1.0F, kMaxSlant);
+      if (links.to[side] == kNone) {
+        links.slack[side] = 2.0F * std::clamp(out / exit, 1.0F, kMaxSlant);
       } else {
-        links.slack[way] =
+        links.slack[side] =
             axis == 2 ? 0.0F : static_cast<float>(cells_.cell_m[axis] / farthest_hop_m);
       }
-      links.conductance[way] =
-          area_[axis] / std::max(3.0F * depth + links.slack[way], kMinResistance);
-      diagonal_[n] += links.conductance[way];
+      links.conductance[side] =
+          area_[axis] / std::max(3.0F * depth + links.slack[side], kMinResistance);
+      diagonal_[n] += links.conductance[side];
     }
     diagonal_[n] += static_cast<float>(cells_.cell_m.z) * cells_.absorption_per_m[i];
   }
@@ -163,10 +163,10 @@ void DiffuseLight::Factor() {
   inverse_pivot_.resize(diagonal_.size());
   for (std::size_t n = 0; n < diagonal_.size(); ++n) {
     float pivot = diagonal_[n];
-    for (const int way : {0, 2, 4}) {
-      const std::int32_t to = links_[n].to[way];
+    for (const int side : {0, 2, 4}) {
+      const std::int32_t to = links_[n].to[side];
       if (to == kNone) continue;
-      const float conductance = links_[n].conductance[way];
+      const float conductance = links_[n].conductance[side];
       pivot -= conductance * conductance * inverse_pivot_[static_cast<std::size_t>(to)];
     }
     inverse_pivot_[n] = 1.0F / pivot;
@@ -177,17 +177,17 @@ void DiffuseLight::Precondition(const std::vector<float>& from, std::vector<floa
   std::vector<float>& x = *to;
   for (std::size_t n = 0; n < x.size(); ++n) {
     float sum = from[n];
-    for (const int way : {0, 2, 4}) {
-      const std::int32_t other = links_[n].to[way];
-      if (other != kNone) sum += links_[n].conductance[way] * x[static_cast<std::size_t>(other)];
+    for (const int side : {0, 2, 4}) {
+      const std::int32_t other = links_[n].to[side];
+      if (other != kNone) sum += links_[n].conductance[side] * x[static_cast<std::size_t>(other)];
     }
     x[n] = sum * inverse_pivot_[n];
   }
   for (std::size_t n = x.size(); n-- > 0;) {
     float sum = 0.0F;
-    for (const int way : {1, 3, 5}) {
-      const std::int32_t other = links_[n].to[way];
-      if (other != kNone) sum += links_[n].conductance[way] * x[static_cast<std::size_t>(other)];
+    for (const int side : {1, 3, 5}) {
+      const std::int32_t other = links_[n].to[side];
+      if (other != kNone) sum += links_[n].conductance[side] * x[static_cast<std::size_t>(other)];
     }
     x[n] += sum * inverse_pivot_[n];
   }
@@ -196,9 +196,10 @@ void DiffuseLight::Precondition(const std::vector<float>& from, std::vector<floa
 void DiffuseLight::Apply(const std::vector<float>& from, std::vector<float>* to) const {
   for (std::size_t n = 0; n < from.size(); ++n) {
     float sum = diagonal_[n] * from[n];
-    for (int way = 0; way < 6; ++way) {
-      const std::int32_t other = links_[n].to[way];
-      if (other != kNone) sum -= links_[n].conductance[way] * from[static_cast<std::size_t>(other)];
+    for (int side = 0; side < 6; ++side) {
+      const std::int32_t other = links_[n].to[side];
+      if (other != kNone)
+        sum -= links_[n].conductance[side] * from[static_cast<std::size_t>(other)];
     }
     (*to)[n] = sum;
   }
@@ -255,9 +256,9 @@ void DiffuseLight::SolveSky() {
 void DiffuseLight::SolveSkyPart(int part) {
   std::vector<float> right(cell_of_.size(), 0.0F);
   for (std::size_t n = 0; n < right.size(); ++n) {
-    for (std::size_t way = 0; way < 6; ++way) {
-      if (links_[n].to[way] != kNone) continue;
-      right[n] += links_[n].conductance[way] * kSkySeen[way][part];
+    for (std::size_t side = 0; side < 6; ++side) {
+      if (links_[n].to[side] != kNone) continue;
+      right[n] += links_[n].conductance[side] * kSkySeen[side][part];
     }
   }
   std::vector<float> share(right.size(), 0.5F * static_cast<float>(part));
@@ -289,30 +290,30 @@ const std::vector<float>& DiffuseLight::SolveSun(const glm::dvec3& towards_sun,
     const auto i = static_cast<std::size_t>(cell_of_[n]);
     const float depth = arrived_root[i] * arrived_root[i];
     float mean_decay = 0.0F;
-    for (int way = 0; way < 6; ++way) {
-      const int axis = way / 2;
-      const float outward = way % 2 == 1 ? 1.0F : -1.0F;
-      // How much of the sun's direction of travel this way out has.
+    for (int side = 0; side < 6; ++side) {
+      const int axis = side / 2;
+      const float outward = side % 2 == 1 ? 1.0F : -1.0F;
+      // Component of the sunlight's direction of travel along this side's outward normal.
       const auto along = -outward * static_cast<float>(towards_sun[axis]);
       const Links& links = links_[n];
       const auto half_m = static_cast<float>(0.5 * cells_.cell_m[axis]);
       float flux = 0.0F;
       float decay = 0.0F;
-      if (links.to[way] != kNone) {
+      if (links.to[side] != kNone) {
         const auto j = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) +
-                                                (way % 2 == 1 ? stride[axis] : -stride[axis]));
+                                                (side % 2 == 1 ? stride[axis] : -stride[axis]));
         const float between = half_m * (cells_.light_per_m[i] + cells_.light_per_m[j]);
         decay = MeanDecay(depth, arrived_root[j] * arrived_root[j]);
-        flux = along * (3.0F * between + links.slack[way]) * decay;
+        flux = along * (3.0F * between + links.slack[side]) * decay;
       } else {
         const float out = half_m * cells_.light_per_m[i];
-        // Light has lost so much at the surface on the way in, or will have on the way out.
+        // The optical depth of sunlight at the surface, where it enters or leaves.
         const float surface = along < 0.0F ? std::max(depth + out / std::min(along, -1e-3F), 0.0F)
                                            : depth + out / std::max(along, 1e-3F);
         decay = MeanDecay(depth, surface);
-        flux = along * (3.0F * out * decay + links.slack[way] * std::exp(-surface));
+        flux = along * (3.0F * out * decay + links.slack[side] * std::exp(-surface));
       }
-      right[n] -= links.conductance[way] * flux;
+      right[n] -= links.conductance[side] * flux;
       mean_decay += decay / 6.0F;
     }
     right[n] -= static_cast<float>(cells_.cell_m.z) * cells_.absorption_per_m[i] * mean_decay;

@@ -22,7 +22,7 @@ class DiffuseLight {
   explicit DiffuseLight(DiffusionCells cells);
 
   // What follows from the cells alone, for each of them.
-  // The root of the optical depth of `light` to the nearest way out.
+  // The square root of the optical depth of `light` to the nearest exit.
   const std::vector<float>& ExitRoot() const { return exit_root_; }
   // How much of what comes in by the nearest ways out is skylight above a black ground, straight or
   // from other walls, and its net flux into the cloud. A sky is taken for one whose radiance is
@@ -44,13 +44,12 @@ class DiffuseLight {
 
  private:
   static constexpr std::int32_t kNone = -1;
-  // The six ways out of a cell: even numbers down, odd ones up an axis.
+  // The six sides of a cell: even numbers down, odd ones up an axis.
   struct Links {
     std::int32_t to[6];
     float conductance[6];
-    // What resists diffuse light besides three times the optical depth: at a way out twice the
-    // reciprocal of the face's cosine to the surface (Marshak's condition), else the limit of a
-    // hop.
+    // Resistance to diffuse light besides three times the optical depth: at a surface twice the
+    // reciprocal of the face's cosine to it (Marshak's condition), else the limit of a hop.
     float slack[6];
   };
 

@@ -56,8 +56,8 @@ class DiffusionPass {
   glm::ivec3 size_{0};
   gl::Texture3D sampled_cells_;
   gl::Texture3D sampled_light_;
-  // Root of the optical depth to the nearest way out; sky seen (DiffuseLight::SkySeen), and the x
-  // of its net flux.
+  // Square root of the optical depth to the nearest exit; sky seen (DiffuseLight::SkySeen), and the
+  // x of its net flux.
   gl::Texture3D ways_out_;
   // Of sunlight; the fluence from other walls; the y of the sky's.
   gl::Texture3D net_inward_;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kMaxLightTexels = 256;         // along each side, of the usual detail
 constexpr double kLightTexelInCells = 0.75;  // across the sun's rays, of the usual detail
-constexpr double kLayerInCells = 1.5;        // along them, of the way through a cell
+constexpr double kLayerInCells = 1.5;        // along them, of the path through a cell
 constexpr std::array kCorrectionUnits = {shaders::kCorrectionRedUnit, shaders::kCorrectionGreenUnit,
                                          shaders::kCorrectionBlueUnit};
 constexpr double kNearInTexels = 1.5;  // sampled next to a cell
@@ -59,21 +59,21 @@ LightVolumeRenderer::LightBox::LightBox(const ResidentMedium& medium,
   frame = LightFrameOf({half_m}, towards_sun);
   reach_m = frame.half_depth_m;
   const glm::dvec2 across_m = 2.0 * frame.half_extent_m;
-  const int most_texels =
+  const int max_texels =
       std::max(static_cast<int>(kMaxLightTexels * settings.quality.light_detail), 1);
   // Finer texels than cells would carry no more detail.
   texel_m =
-      std::max(std::max(across_m.x, across_m.y) / most_texels,
+      std::max(std::max(across_m.x, across_m.y) / max_texels,
                kLightTexelInCells / settings.quality.light_detail * std::min(cell_m.x, cell_m.y));
   const glm::dvec3 through_m = cell_m / glm::max(glm::abs(towards_sun), glm::dvec3(1e-6));
   const double layer_m = std::min(texel_m, kLayerInCells / settings.quality.light_detail *
                                                std::min({through_m.x, through_m.y, through_m.z}));
   size = glm::clamp(glm::ivec3(glm::ceil(glm::dvec3(across_m / texel_m, 2.0 * reach_m / layer_m))),
-                    glm::ivec3(1), glm::ivec3(most_texels));
+                    glm::ivec3(1), glm::ivec3(max_texels));
   if (settings.Medium().transport == scene::Transport::kPaper) {
     // The paper's transport depends on the number of its steps: they are the scene's slices.
     const int slices = *scene::SlicesOf(settings.technique);
-    size.z = std::clamp((slices + 1) / 2, 1, most_texels);
+    size.z = std::clamp((slices + 1) / 2, 1, max_texels);
     half_layer_steps = std::max(1, (slices + size.z) / (2 * size.z));
   }
   texel_m = std::max(texel_m, 2.0 * reach_m / size.z);

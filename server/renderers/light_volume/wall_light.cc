@@ -10,34 +10,33 @@
 namespace thunderhead::renderers {
 namespace {
 
-// How large what counts as a wall is, over the medium's height: as far as light hops sideways
-// (diffuse_light.cc).
+// Size of a wall over the medium's height: as far as light hops sideways (diffuse_light.cc).
 constexpr double kWallSize = 0.05;
-// A cell belongs to a wall if light is turned so often on the way through one. Half or twice this
-// changes the errors of the sample storm by 0.01 to 0.03
+// A cell belongs to a wall if its transport extinction times a wall's size is at least this. Half
+// or twice this changes the errors of the sample storm by 0.01 to 0.03
 // (docs/decisions/0009-diffusion-transport.md).
 constexpr double kWallDepth = 1.345;
-// Shortest ways through a cell, and share of a wall's size, within which a wall belongs to the same
-// slope of steps.
+// Shortest paths through a cell, and share of a wall's size, within which a wall belongs to the
+// same slope of steps.
 constexpr double kSameSlopeCells = 1.2;
 constexpr double kSameSlope = 0.3;
-constexpr float kMinPassing = 0.02F;
+constexpr float kMinTransmittance = 0.02F;
 constexpr int kTurns = 6;  // from wall to wall that are followed
 constexpr int kRings = 3;
 constexpr int kRaysInRing = 4;
 
 using Rays = std::array<glm::dvec3, static_cast<std::size_t>(kRings* kRaysInRing)>;
 
-// Directions that share what a white face sends out.
-Rays RaysFrom(int way) {
+// Directions of equal shares of the light that a white face sends out.
+Rays RaysFrom(int side) {
   Rays rays;
-  const int axis = way / 2;
+  const int axis = side / 2;
   for (int ring = 0; ring < kRings; ++ring) {
     const double across = std::sqrt((ring + 0.5) / kRings);
     for (int i = 0; i < kRaysInRing; ++i) {
       const double angle = 2.0 * std::numbers::pi * (i + (ring + 0.5) / kRings) / kRaysInRing;
       glm::dvec3 ray(0.0);
-      ray[axis] = (way % 2 == 1 ? 1.0 : -1.0) * std::sqrt(1.0 - across * across);
+      ray[axis] = (side % 2 == 1 ? 1.0 : -1.0) * std::sqrt(1.0 - across * across);
       ray[(axis + 1) % 3] = across * std::cos(angle);
       ray[(axis + 2) % 3] = across * std::sin(angle);
       rays[static_cast<std::size_t>(ring * kRaysInRing + i)] = ray;
@@ -55,9 +54,9 @@ class Walk {
     for (int axis = 0; axis < 3; ++axis) {
       const double per_m = ray[axis] / cell_m[axis];
       step_[axis] = per_m > 0.0 ? 1 : -1;
-      const double way = (per_m > 0.0 ? cell[axis] + 1.0 : cell[axis]) - start[axis];
+      const double to_face = (per_m > 0.0 ? cell[axis] + 1.0 : cell[axis]) - start[axis];
       const bool across = std::abs(per_m) < 1e-12;
-      next_m_[axis] = across ? 1e30 : std::max(way / per_m, 0.0);
+      next_m_[axis] = across ? 1e30 : std::max(to_face / per_m, 0.0);
       through_m_[axis] = across ? 1e30 : 1.0 / std::abs(per_m);
     }
     shortest_m_ = std::min({through_m_.x, through_m_.y, through_m_.z});
@@ -67,7 +66,7 @@ class Walk {
   double Gone_m() const { return gone_m_; }
   double ShortestWay_m() const { return shortest_m_; }  // through a cell
 
-  // Goes to the next cell; returns how long the way through this one was.
+  // Goes to the next cell; returns the path length through this one.
   double Leave() {
     int axis = next_m_.y < next_m_.x ? 1 : 0;
     if (next_m_.z < next_m_[axis]) axis = 2;
@@ -109,13 +108,13 @@ void WallLight::Look(std::size_t wall) {
   const glm::dvec3 face(cells_.cell_m.y * cells_.cell_m.z, cells_.cell_m.x * cells_.cell_m.z,
                         cells_.cell_m.x * cells_.cell_m.y);
   double open_m2 = 0.0;
-  for (int way = 0; way < 6; ++way) {
+  for (int side = 0; side < 6; ++side) {
     glm::ivec3 next = cells_.CellAt(wall);
-    next[way / 2] += way % 2 == 1 ? 1 : -1;
+    next[side / 2] += side % 2 == 1 ? 1 : -1;
     if (cells_.Contains(next) && IsWall(cells_.Offset(next))) continue;
-    open_m2 += face[way / 2];
+    open_m2 += face[side / 2];
     if (!cells_.Contains(next)) continue;
-    for (const glm::dvec3& ray : kRays[static_cast<std::size_t>(way)]) Follow(wall, way, ray);
+    for (const glm::dvec3& ray : kRays[static_cast<std::size_t>(side)]) Follow(wall, side, ray);
   }
   for (std::size_t i = before; i < seen_.size(); ++i) {
     seen_[i].share /= static_cast<float>(open_m2);
@@ -124,26 +123,26 @@ void WallLight::Look(std::size_t wall) {
   if (seen_.size() > before) walls_.push_back(static_cast<std::int32_t>(wall));
 }
 
-void WallLight::Follow(std::size_t wall, int way, const glm::dvec3& ray) {
-  const int axis = way / 2;
+void WallLight::Follow(std::size_t wall, int side, const glm::dvec3& ray) {
+  const int axis = side / 2;
   glm::ivec3 first = cells_.CellAt(wall);
-  first[axis] += way % 2 == 1 ? 1 : -1;
+  first[axis] += side % 2 == 1 ? 1 : -1;
   glm::dvec3 start = glm::dvec3(first) + 0.5;
-  start[axis] += way % 2 == 1 ? -0.5 : 0.5;
+  start[axis] += side % 2 == 1 ? -0.5 : 0.5;
   Walk walk(cells_.cell_m, start, first, ray);
   const double near_m = std::max(kSameSlopeCells * walk.ShortestWay_m(), kSameSlope * wall_size_m_);
-  float passing = 1.0F;
-  while (cells_.Contains(walk.Cell()) && passing > kMinPassing) {
+  float transmittance = 1.0F;
+  while (cells_.Contains(walk.Cell()) && transmittance > kMinTransmittance) {
     const std::size_t here = cells_.Offset(walk.Cell());
     if (IsWall(here)) {
       if (walk.Gone_m() < near_m) return;
       const double face_m2 =
           cells_.cell_m.x * cells_.cell_m.y * cells_.cell_m.z / cells_.cell_m[axis];
-      const auto share = static_cast<float>(face_m2 / (kRings * kRaysInRing)) * passing;
+      const auto share = static_cast<float>(face_m2 / (kRings * kRaysInRing)) * transmittance;
       seen_.push_back({static_cast<std::int32_t>(wall), static_cast<std::int32_t>(here), share});
       return;
     }
-    passing *= std::exp(-static_cast<float>(walk.Leave()) * cells_.transport_per_m[here]);
+    transmittance *= std::exp(-static_cast<float>(walk.Leave()) * cells_.transport_per_m[here]);
   }
 }
 

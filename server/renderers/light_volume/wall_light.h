@@ -34,7 +34,7 @@ class WallLight {
 
   bool IsWall(std::size_t cell) const;
   void Look(std::size_t wall);
-  void Follow(std::size_t wall, int way, const glm::dvec3& ray);
+  void Follow(std::size_t wall, int side, const glm::dvec3& ray);
   std::vector<float> WithNeighbours(std::vector<float> values) const;
 
   DiffusionCells cells_;

@@ -160,7 +160,7 @@ absl::StatusOr<std::shared_ptr<const BallCloud>> BallFits::Get(
   auto balls = std::make_shared<const BallCloud>(std::move(cloud));
   const std::lock_guard lock(mutex_);
   kept_.push_front({key, balls});
-  if (kept_.size() > most_) kept_.pop_back();
+  if (kept_.size() > max_fits_) kept_.pop_back();
   return balls;
 }
 

@@ -25,7 +25,7 @@ absl::StatusOr<BallCloud> FitBalls(const Medium& medium, const volume::Hydromete
 class BallFits {
  public:
   // Keeps the `most` fits used last.
-  explicit BallFits(std::size_t most = 64) : most_(most) {}
+  explicit BallFits(std::size_t max_fits = 64) : max_fits_(max_fits) {}
 
   // The balls of `scene`, kept or fitted now: then it takes seconds.
   absl::StatusOr<std::shared_ptr<const BallCloud>> Get(
@@ -50,7 +50,7 @@ class BallFits {
   static bool Same(const Key& a, const Key& b);
   std::shared_ptr<const BallCloud> Find(const Key& key);
 
-  const std::size_t most_;
+  const std::size_t max_fits_;
   std::mutex fitting_;    // one fit at a time: each uses every core
   std::mutex mutex_;      // of `kept_`
   std::list<Kept> kept_;  // the most recently used first

@@ -45,8 +45,8 @@ void main() {
   imageStore(shade, ivec3(texel, 0), vec4(0.0));
   for (int i = 0; i < steps; ++i) {
     float distance_m = near_m + (float(i) + 0.5) * step_m;
-    Way way = Way(altitude_m, sine, ground_curvature_per_m, distance_m);
-    float height_m = max(height_on_way_m(way, distance_m), lowest_air_m);
+    AirPath path = AirPath(altitude_m, sine, ground_curvature_per_m, distance_m);
+    float height_m = max(height_on_path_m(path, distance_m), lowest_air_m);
     vec3 point_m = origin_m + distance_m * ray;
     vec2 densities = densities_of_air(height_m);
     float column = (height_m * air_light_per_m * (size.x - 1.0) + 0.5) / size.x;
@@ -56,7 +56,7 @@ void main() {
     vec3 sky_lost = storm.x * skylight - storm.y * kInversePi * level_irradiance;
     vec3 lost = blocked_at(point_m) * (sunlight_scattered_per_m(turbidity, densities, mu) * sunlight +
                                        skylight_scattered_per_m(turbidity, densities) * sky_lost);
-    missing += sky_scale * step_m * exp(-depth_of_air(turbidity, air_densities, way)) * lost;
+    missing += sky_scale * step_m * exp(-depth_of_air(turbidity, air_densities, path)) * lost;
     imageStore(shade, ivec3(texel, i + 1), vec4(missing, 0.0));
   }
 }

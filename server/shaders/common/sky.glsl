@@ -8,7 +8,7 @@ uniform float horizon_sine;  // of the elevation of the horizon
 
 struct Sky {
   vec3 radiance;  // in units of the sun's irradiance above the atmosphere
-  vec2 way;       // vertical depths of air and haze on the whole ray
+  vec2 air_mass;  // of air and haze along the whole ray
 };
 
 // In unit `direction` (z up).

@@ -30,41 +30,41 @@ PHYSICS_FUNCTION float scaled_erfc(float x) {
   return 1.12837917f / (x + sqrt(x * x + bound));
 }
 
-// A straight way above the Earth's curve.
-struct Way {
-  float height_m;         // where it starts, above sea level
-  float sin_elevation;    // there
+// A straight path above the curved Earth.
+struct AirPath {
+  float height_m;         // of its start, above sea level
+  float sin_elevation;    // at its start
   float curvature_per_m;  // of the Earth
   float distance_m;       // its length
 };
 
-// What `way` holds of air or haze, in metres of its density at sea level; `density` is that where the way starts. The
-// height is quadratic in the distance, so that the integral is a difference of error functions.
-PHYSICS_FUNCTION float equivalent_m(float scale_height_m, float density, Way way) {
+// The column of air or haze along `path`, in metres at the density of sea level; `density` is the relative one at the
+// path's start. The height is quadratic in the distance, so that the integral is a difference of error functions.
+PHYSICS_FUNCTION float equivalent_m(float scale_height_m, float density, AirPath path) {
   // Without curvature the error functions would end in 0 / 0: a millionth of the Earth's is none.
-  float bend = max(way.curvature_per_m * (1.0f - way.sin_elevation * way.sin_elevation), 1e-13f);
+  float bend = max(path.curvature_per_m * (1.0f - path.sin_elevation * path.sin_elevation), 1e-13f);
   float per_m = sqrt(0.5f * bend / scale_height_m);
-  float low = per_m * way.sin_elevation / bend;  // from the way's lowest place
-  float high = low + per_m * way.distance_m;
-  float climb_m = way.distance_m * (way.sin_elevation + 0.5f * bend * way.distance_m);
+  float low = per_m * path.sin_elevation / bend;  // from the path's lowest point
+  float high = low + per_m * path.distance_m;
+  float climb_m = path.distance_m * (path.sin_elevation + 0.5f * bend * path.distance_m);
   float from = density * scaled_erfc(abs(low));
-  float to = exp(-(way.height_m + climb_m) / scale_height_m) * scaled_erfc(abs(high));
+  float to = exp(-(path.height_m + climb_m) / scale_height_m) * scaled_erfc(abs(high));
   float difference = low >= 0.0f ? from - to : to - from;
-  // The lowest place is on the way.
+  // The lowest point is on the path.
   if (low < 0.0f && high > 0.0f) difference = 2.0f * density * exp(low * low) - from - to;
   return 0.886226925f / per_m * difference;
 }
 
-// Optical depth of `way`, vertical depths of the whole air (x) and haze (y).
-PHYSICS_FUNCTION vec3 depth_of_way(float turbidity, vec2 way) {
-  return air_optical_depth() * way.x + haze_optical_depth(turbidity) * way.y;
+// Optical depth of the air masses of air (x) and haze (y), in units of the vertical ones of the whole atmosphere.
+PHYSICS_FUNCTION vec3 depth_of_air_mass(float turbidity, vec2 air_mass) {
+  return air_optical_depth() * air_mass.x + haze_optical_depth(turbidity) * air_mass.y;
 }
 
-// Optical depth of air and haze on a straight way; `densities` are those where it starts.
-PHYSICS_FUNCTION vec3 depth_of_air(float turbidity, vec2 densities, Way way) {
-  return depth_of_way(turbidity,
-                      vec2(equivalent_m(kAirScaleHeight_m, densities.x, way) / kAirScaleHeight_m,
-                           equivalent_m(kHazeScaleHeight_m, densities.y, way) / kHazeScaleHeight_m));
+// Optical depth of air and haze along a straight path; `densities` are those at its start.
+PHYSICS_FUNCTION vec3 depth_of_air(float turbidity, vec2 densities, AirPath path) {
+  return depth_of_air_mass(turbidity,
+                           vec2(equivalent_m(kAirScaleHeight_m, densities.x, path) / kAirScaleHeight_m,
+                                equivalent_m(kHazeScaleHeight_m, densities.y, path) / kHazeScaleHeight_m));
 }
 
 // Light that air of this transmittance sends to the eye. The clear sky in that direction has radiance `sky` and the

@@ -32,8 +32,8 @@ PHYSICS_FUNCTION vec3 skylight_scattered_per_m(float turbidity, vec2 densities) 
   return air_scattering_per_m(densities) + haze_scattering_per_m(turbidity, densities);
 }
 
-// Height above sea level at a distance on `way`.
-PHYSICS_FUNCTION float height_on_way_m(Way way, float distance_m) {
-  float bend = way.curvature_per_m * (1.0f - way.sin_elevation * way.sin_elevation);
-  return way.height_m + distance_m * (way.sin_elevation + 0.5f * bend * distance_m);
+// Height above sea level at a distance on `path`.
+PHYSICS_FUNCTION float height_on_path_m(AirPath path, float distance_m) {
+  float bend = path.curvature_per_m * (1.0f - path.sin_elevation * path.sin_elevation);
+  return path.height_m + distance_m * (path.sin_elevation + 0.5f * bend * distance_m);
 }

@@ -71,7 +71,7 @@ vec3 ground_radiance(vec3 point_m) {
 
 // Optical depth of the air before a point of the ray, which is in the eye's local frame.
 vec3 depth_before(vec3 ray, float distance_m) {
-  return depth_of_air(turbidity, air_densities, Way(altitude_m, ray.z, ground_curvature_per_m, distance_m));
+  return depth_of_air(turbidity, air_densities, AirPath(altitude_m, ray.z, ground_curvature_per_m, distance_m));
 }
 
 // The clear sky behind a ray. The horizon is that of a sphere, the ground a paraboloid or rough.
@@ -81,7 +81,7 @@ Sky sky_behind(vec3 ray, float ground_m) {
   Sky sky = sky_at(ray, towards_sun_local);
 #if RELIEF
   // Where the table's ray ends before it is lit, the air beyond is taken to be as bright as above the horizon.
-  if (sky.way.y < kHardlyAnyHaze) sky = sky_at(vec3(ray.xy, max(ray.z, horizon_sine)), towards_sun_local);
+  if (sky.air_mass.y < kHardlyAnyHaze) sky = sky_at(vec3(ray.xy, max(ray.z, horizon_sine)), towards_sun_local);
 #endif
   return sky;
 }
@@ -133,7 +133,7 @@ void main() {
   float ground_m = ground_distance_m(origin_m, world_ray);
   Sky sky = sky_behind(ray, ground_m);
   vec3 sky_radiance = sky_scale * sky.radiance;
-  vec3 sky_depth = depth_of_way(turbidity, sky.way);
+  vec3 sky_depth = depth_of_air_mass(turbidity, sky.air_mass);
   vec3 background = ground_m > 0.0 ? seen_ground(ground_radiance(origin_m + ground_m * world_ray), ray, ground_m,
                                                  sky_radiance, sky_depth)
                                    : shaded_airlight(sky_radiance, kFarthestGround_m);

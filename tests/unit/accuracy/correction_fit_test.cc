@@ -77,7 +77,7 @@ TEST_F(CorrectionFitTest, FactorsFollowPlaceAndDirection) {
 }
 
 TEST_F(CorrectionFitTest, NoiseIsAveragedOverMoreThanATexel) {
-  // 50 rays a texel that are off by twice their value: alone, a texel would be off by 0.28.
+  // 50 rays a texel with a standard error of twice their value: a texel alone would be off by 0.28.
   AddRays(
       50 * 1024, [](const auto&, const auto&) { return glm::dvec3(1.4); }, 1.0);
   double squares = 0.0;

@@ -1,4 +1,4 @@
-// How much of the tracing of light is done, on plain values.
+// The progress of tracing light, on plain values.
 #include "accuracy/light_progress.h"
 
 #include "gtest/gtest.h"

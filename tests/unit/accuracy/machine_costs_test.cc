@@ -1,4 +1,4 @@
-// What a machine learns from the frames that it draws, on made-up times.
+// The costs that a machine learns from its frames, on fake times.
 #include "accuracy/machine_costs.h"
 
 #include "gtest/gtest.h"

@@ -23,7 +23,7 @@ Setting Slices(int slices, const Path& path = test_support::kLightVolume) {
   return setting;
 }
 
-// Dearer ones are closer, but for the last.
+// More expensive ones are more accurate, except for the last.
 const std::vector<Offer> kOffers = {{Slices(32), 5.0, 0.40},
                                     {Slices(64), 10.0, 0.30},
                                     {Slices(128), 20.0, 0.20},
@@ -43,7 +43,7 @@ TEST(BestOfferTest, CheapestThatMeetsAnError) {
 TEST(BestOfferTest, MostAccurateThatMeetsATime) {
   EXPECT_EQ(Best(MaxMilliseconds{5.0}), kOffers[0]);
   EXPECT_EQ(Best(MaxMilliseconds{19.9}), kOffers[1]);
-  // More time than the best needs buys nothing worse.
+  // More time than the best needs does not lead to a worse one.
   EXPECT_EQ(Best(MaxMilliseconds{1000.0}), kOffers[2]);
 }
 
@@ -56,15 +56,15 @@ TEST(BestOfferTest, NearestWhereNoneMeets) {
 }
 
 TEST(BestOfferTest, WhatIsDrawnStaysWhileItIsLittleWorse) {
-  // Within a tenth of the limit; but twice as dear as the best.
+  // Within a tenth of the limit, but twice as expensive as the best.
   EXPECT_EQ(Best(MaxError{0.5}, Slices(64)), kOffers[0]);
   // 10.5 ms would give the second; the third is within a tenth of 18.5.
   EXPECT_EQ(Best(MaxMilliseconds{18.5}), kOffers[1]);
   EXPECT_EQ(Best(MaxMilliseconds{18.5}, Slices(128)), kOffers[2]);
   EXPECT_EQ(Best(MaxMilliseconds{18.0}, Slices(128)), kOffers[1]);
-  // The fourth is a quarter worse than the best, no more.
+  // The fourth is a quarter worse than the best, which is the tolerance.
   EXPECT_EQ(Best(MaxMilliseconds{100.0}, Slices(256)), kOffers[3]);
-  // What the table does not know cannot stay.
+  // A setting outside the table is not kept.
   EXPECT_EQ(Best(MaxError{0.5}, Slices(7)), kOffers[0]);
 }
 
@@ -72,7 +72,7 @@ TEST(BestOfferTest, WhatIsDrawnStaysWhileItIsLittleWorse) {
 struct Desk {
   explicit Desk(OfferTables offer_tables) : tables(std::move(offer_tables)) {}
 
-  // A full frame of `scene` took so long, and was not the first of its setting.
+  // Records the time of a full frame of `scene` that was not the first of its setting.
   void Observe(const scene::Scene& scene, double milliseconds) {
     const int frames = std::exchange(compiled, true) ? 1 : 2;
     for (int i = 0; i < frames; ++i) {
@@ -176,13 +176,13 @@ TEST_F(OffersTest, ReportsWhatItBelieves) {
   EXPECT_EQ(report.model_error, 0.30);
   EXPECT_EQ(report.estimated_error, 0.30);
   EXPECT_FALSE(report.unmet.has_value());
-  // A coarse frame tells its own error, and that of what follows meets the limit.
+  // A coarse frame reports its own error, and that of the full frame meets the limit.
   report = *desk_.estimator.Report(decided, {0.5, 0.5}, {});
   EXPECT_EQ(report.slices, 32);
   EXPECT_EQ(report.image_scale, 0.5);
   EXPECT_EQ(report.estimated_error, 0.40);
   EXPECT_FALSE(report.unmet.has_value());
-  // The view's own slices add so much that the limit is missed after all.
+  // The discretisation error of this view is so large that the limit is missed after all.
   report = *desk_.estimator.Report(decided, {}, {0, 0.4});
   EXPECT_DOUBLE_EQ(report.estimated_error, 0.5);
   EXPECT_EQ(report.discretisation_error, 0.4);
@@ -251,7 +251,7 @@ TEST_F(TracedOffersTest, LightIsTracedWhereNothingElseIsAsAccurate) {
   EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxError{0.01})),
             scene::TracedLight::kAwaited);  // the nearest
   EXPECT_EQ(CountOf(TechniqueFor(MaxError{0.01})), 128);
-  // A limit of time takes no more of the machine than it says.
+  // With a limit of time no light is traced.
   EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxMilliseconds{50.0})), scene::TracedLight::kOff);
 }
 
@@ -265,7 +265,7 @@ TEST_F(TracedOffersTest, TheErrorIsThatOfThePathsSoFar) {
   EXPECT_EQ(error_after(90'000), 0.11);
   EXPECT_EQ(error_after(100'000), 0.08);
   EXPECT_EQ(error_after(4'000'000), 0.05);
-  // Few paths are on their way to what was asked for.
+  // A picture with few paths is not yet the requested one.
   EXPECT_EQ(desk_.estimator.Report(decided, {}, {})->unmet, std::nullopt);
   scene_.accuracy = MaxError{0.01};
   const scene::Scene nearest = *desk_.Decide(scene_);
@@ -292,7 +292,7 @@ TEST_F(TracedOffersTest, FramesOfTracedLightTeachTheirSettingsTime) {
 }
 
 TEST(DiscretisationErrorTest, IsTheRelativeDifferenceOfColours) {
-  // Differences of 1 and 0 where the mean is 2; the fourth value is none.
+  // Differences of 1 and 0 at a mean of 2; the fourth value is not a colour.
   EXPECT_NEAR(DiscretisationError({3.0F, 2.0F, 2.0F, 9.0F}, {2.0F, 2.0F, 2.0F, 1.0F}),
               std::sqrt(1.0 / 3.0) / 2.0, 1e-7);
   EXPECT_EQ(DiscretisationError({0.0F, 0.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F, 0.0F}), 0.0);

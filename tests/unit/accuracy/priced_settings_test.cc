@@ -89,7 +89,7 @@ TEST(PricedSettings, ALineThatIsNoRowIsNamed) {
   }
 }
 
-// The server's own data: whoever adds a column or a name sees here that nothing reads it yet.
+// The server's own data: fails if a column or name is added that nothing reads yet.
 TEST(PricedSettings, TheTablesOfTheProjectAreUnderstood) {
   for (const std::string_view view : {"orbit", "spotter", "top-down"}) {
     const auto text = EmbeddedTradeTableTexts().find(view);

@@ -275,32 +275,33 @@ TEST(ClearSky, FromAboveTheAirIsBlueAndTheSkyBlack) {
 
 TEST(Air, DepthIsTheIntegralOfItsDensity) {
   const float curvature = 1.0F / kEarthRadius_m;
-  for (const glsl::Way& way :
-       {glsl::Way{2.0F, 0.0F, 0.0F, 1e5F}, glsl::Way{2.0F, 0.1F, 0.0F, 8e4F},
-        glsl::Way{9000.0F, -0.1F, 0.0F, 8e4F}, glsl::Way{500.0F, 1.0F, curvature, 5e4F},
-        glsl::Way{1e5F, -1.0F, curvature, 1e5F}, glsl::Way{300.0F, 1e-6F, curvature, 3e5F},
-        glsl::Way{100.0F, 0.02F, curvature, 300.0F}, glsl::Way{2.0F, 0.0F, curvature, 5e5F},
+  for (const glsl::AirPath& path :
+       {glsl::AirPath{2.0F, 0.0F, 0.0F, 1e5F}, glsl::AirPath{2.0F, 0.1F, 0.0F, 8e4F},
+        glsl::AirPath{9000.0F, -0.1F, 0.0F, 8e4F}, glsl::AirPath{500.0F, 1.0F, curvature, 5e4F},
+        glsl::AirPath{1e5F, -1.0F, curvature, 1e5F}, glsl::AirPath{300.0F, 1e-6F, curvature, 3e5F},
+        glsl::AirPath{100.0F, 0.02F, curvature, 300.0F}, glsl::AirPath{2.0F, 0.0F, curvature, 5e5F},
         // From high up to the ground, past it, and down to the lowest place and up again.
-        glsl::Way{7000.0F, -0.05F, curvature, 1.6e5F}, glsl::Way{7000.0F, -0.035F, curvature, 5e5F},
-        glsl::Way{2000.0F, -0.01F, curvature, 3e5F}}) {
+        glsl::AirPath{7000.0F, -0.05F, curvature, 1.6e5F},
+        glsl::AirPath{7000.0F, -0.035F, curvature, 5e5F},
+        glsl::AirPath{2000.0F, -0.01F, curvature, 3e5F}}) {
     double sums_m[2] = {0.0, 0.0};
     constexpr int kSteps = 200000;
-    const double bend = way.curvature_per_m * (1.0 - way.sin_elevation * way.sin_elevation);
+    const double bend = path.curvature_per_m * (1.0 - path.sin_elevation * path.sin_elevation);
     for (int i = 0; i < kSteps; ++i) {
-      const double at_m = way.distance_m * (i + 0.5) / kSteps;
-      const double h = way.height_m + way.sin_elevation * at_m + 0.5 * bend * at_m * at_m;
-      sums_m[0] += std::exp(-h / glsl::kAirScaleHeight_m) * way.distance_m / kSteps;
-      sums_m[1] += std::exp(-h / glsl::kHazeScaleHeight_m) * way.distance_m / kSteps;
+      const double at_m = path.distance_m * (i + 0.5) / kSteps;
+      const double h = path.height_m + path.sin_elevation * at_m + 0.5 * bend * at_m * at_m;
+      sums_m[0] += std::exp(-h / glsl::kAirScaleHeight_m) * path.distance_m / kSteps;
+      sums_m[1] += std::exp(-h / glsl::kHazeScaleHeight_m) * path.distance_m / kSteps;
     }
-    const glm::vec2 densities = glsl::densities_of_air(way.height_m);
+    const glm::vec2 densities = glsl::densities_of_air(path.height_m);
     // On short paths the error of scaled_erfc's slope counts, which is larger than that of its
     // value.
-    EXPECT_NEAR(glsl::equivalent_m(glsl::kAirScaleHeight_m, densities.x, way) / sums_m[0], 1.0,
+    EXPECT_NEAR(glsl::equivalent_m(glsl::kAirScaleHeight_m, densities.x, path) / sums_m[0], 1.0,
                 0.01)
-        << way.height_m << ' ' << way.sin_elevation;
-    EXPECT_NEAR(glsl::equivalent_m(glsl::kHazeScaleHeight_m, densities.y, way) / sums_m[1], 1.0,
+        << path.height_m << ' ' << path.sin_elevation;
+    EXPECT_NEAR(glsl::equivalent_m(glsl::kHazeScaleHeight_m, densities.y, path) / sums_m[1], 1.0,
                 0.01)
-        << way.height_m << ' ' << way.sin_elevation;
+        << path.height_m << ' ' << path.sin_elevation;
   }
 }
 

@@ -1,4 +1,4 @@
-#include "renderers/half_angle/turns.h"
+#include "renderers/half_angle/buffer_ring.h"
 
 #include <random>
 #include <vector>
@@ -22,11 +22,11 @@ void Copy(const Picture& from, const PixelRect& rect, Picture* to) {
   }
 }
 
-TEST(Turns, EachBufferHoldsItsStateWhole) {
+TEST(BufferRing, EachBufferHoldsItsStateWhole) {
   std::mt19937 random(3);
   std::uniform_int_distribution<int> place(0, kSide);
   for (const std::size_t count : {1U, 2U, 5U}) {
-    Turns turns(count);
+    BufferRing ring(count);
     Picture truth(kSide * kSide, 0);
     std::vector<Picture> buffers(count, truth);
     int written = 0;
@@ -35,23 +35,23 @@ TEST(Turns, EachBufferHoldsItsStateWhole) {
       PixelRect changed{{place(random), place(random)}, {place(random), place(random)}};
       if (changed.Empty()) changed = {};
       Copy(Picture(kSide * kSide, state), changed, &truth);
-      const PixelRect rect = turns.Write(index, changed);
-      Copy(truth, rect, &buffers[turns.Of(index)]);
-      EXPECT_EQ(buffers[turns.Of(index)], truth) << count << " buffers, state " << state;
+      const PixelRect rect = ring.Write(index, changed);
+      Copy(truth, rect, &buffers[ring.Of(index)]);
+      EXPECT_EQ(buffers[ring.Of(index)], truth) << count << " buffers, state " << state;
       written += rect.Empty() ? 0 : (rect.high.x - rect.low.x) * (rect.high.y - rect.low.y);
     }
     EXPECT_LT(written, 60 * kSide * kSide) << "some of it was left as it was";
   }
 }
 
-TEST(Turns, NothingIsWrittenBeforeAnythingChanges) {
-  Turns turns(3);
-  EXPECT_TRUE(turns.Write(1, {}).Empty());
+TEST(BufferRing, NothingIsWrittenBeforeAnythingChanges) {
+  BufferRing ring(3);
+  EXPECT_TRUE(ring.Write(1, {}).Empty());
   const PixelRect changed{{1, 2}, {3, 4}};
-  EXPECT_EQ(turns.Write(2, changed), changed);
-  EXPECT_EQ(turns.Write(3, {}), changed);
-  EXPECT_EQ(turns.Write(4, {}), changed);
-  EXPECT_TRUE(turns.Write(5, {}).Empty());
+  EXPECT_EQ(ring.Write(2, changed), changed);
+  EXPECT_EQ(ring.Write(3, {}), changed);
+  EXPECT_EQ(ring.Write(4, {}), changed);
+  EXPECT_TRUE(ring.Write(5, {}).Empty());
 }
 
 }  // namespace

@@ -10,17 +10,17 @@
 
 namespace thunderhead::renderers {
 
-// State 0 is in all buffers at first, and each state follows from the one before.
-class Turns {
+// Initially all buffers hold state 0; each state follows from the one before.
+class BufferRing {
  public:
-  explicit Turns(std::size_t buffers) : missing_(buffers) {}
+  explicit BufferRing(std::size_t buffers) : missing_(buffers) {}
 
-  // Which buffer holds a state.
+  // The buffer that holds a state.
   std::size_t Of(std::size_t state) const { return state % missing_.size(); }
 
-  // Where the buffer of `state` is to be written: in `changed`, where that state may differ from
-  // the one before, and wherever it has missed changes since its last turn. To be called for each
-  // state from 1 on.
+  // The rectangle to write in the buffer of `state`: `changed`, where the state may differ from the
+  // one before, and all changes since that buffer was last written. Call it for each state from 1
+  // on.
   PixelRect Write(std::size_t state, const PixelRect& changed) {
     for (PixelRect& rect : missing_) rect = Around(rect, changed);
     return std::exchange(missing_[Of(state)], PixelRect());

@@ -1,0 +1,49 @@
+// The clouds that a server generated on request: a folder of storm files, to which one cloud at a
+// time is added and from which clouds can be deleted. Safe to call from any thread.
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <set>
+#include <stop_token>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "clouds/cloud_file.h"
+#include "volume/storm_store.h"
+
+namespace thunderhead::service {
+
+class CloudStore {
+ public:
+  // `path` is the folder; if empty, no clouds are generated. Generated clouds that the storm store
+  // has already loaded from the folder are those of an earlier server, and can be deleted too.
+  CloudStore(std::string path, volume::StormStore& store);
+
+  // Generates the cloud into a file of its own and adds it to the storm store. FAILED_PRECONDITION
+  // without a folder, RESOURCE_EXHAUSTED at the maximum number, UNAVAILABLE during another call.
+  absl::StatusOr<const volume::StormInfo*> Make(const clouds::CloudShape& shape,
+                                                const clouds::CloudOrigin& origin,
+                                                const clouds::GenerateObserver& observer,
+                                                const std::stop_token& stop);
+
+  // True if the storm is one of these clouds.
+  bool Holds(const std::string& storm_id) const;
+
+  // Removes a cloud's file, and the cloud from the storm store. NOT_FOUND for an unknown id,
+  // FAILED_PRECONDITION for another storm, PERMISSION_DENIED if the file cannot be removed.
+  absl::Status Delete(const std::string& storm_id);
+
+ private:
+  std::string NewPath(const clouds::CloudOrigin& origin) const;
+
+  const std::string path_;
+  volume::StormStore& store_;
+  std::mutex making_;  // held while a cloud is generated
+  mutable std::mutex mutex_;
+  std::map<std::string, std::string> files_;  // of the clouds, by storm id
+  std::set<std::string> used_ids_;            // not reused: a viewer may still show a deleted cloud
+};
+
+}  // namespace thunderhead::service
