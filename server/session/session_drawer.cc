@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "base/status.h"
+#include "renderers/content.h"
 #include "scene/drawn_fields.h"
 
 namespace thunderhead::session {
@@ -147,6 +148,7 @@ absl::StatusOr<bool> SessionDrawer::ShowTraced(const Turn& turn, const NewestSce
   picture.modelled.technique = scene::Reference::kName;
   picture.modelled.content.fields =
       scene::HydrometeorsOf(scene::DrawnFieldsOf(*shown.scene, *fields));
+  renderers::AddNotShown(*shown.scene, scene::Reference::kCapabilities, &picture.modelled.content);
   Send(turn, {turn.session, shown.revision, *shown.scene, traced.full_size, std::move(picture),
               traced.refinement});
   return true;

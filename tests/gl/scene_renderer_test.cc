@@ -178,6 +178,18 @@ TEST_F(SceneRendererTest, ACumulusSaysWhatItCannotShow) {
               testing::Contains(scene::NotShown{scene::NotShown::Code::kFields, "rain"}));
   EXPECT_EQ(frame->slices, 0);
   EXPECT_GT(frame->content.ellipsoids, 0);
+  const auto leaves_out_detail = [&] {
+    const auto drawn = renderer_->Draw(scene_, rainy, {});
+    return std::ranges::any_of(drawn->content.not_shown, [](const scene::NotShown& entry) {
+      return entry.code == scene::NotShown::Code::kDetail;
+    });
+  };
+  EXPECT_TRUE(leaves_out_detail());
+  scene_.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].detail.share = 0.0F;
+  EXPECT_FALSE(leaves_out_detail()) << "the rain's, which is not drawn";
+  scene_.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].detail.share = 1.0F;
+  test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);
+  EXPECT_FALSE(leaves_out_detail()) << "where it is a setting";
 }
 
 TEST_F(SceneRendererTest, KeptStagesGiveThePictureThatAFreshRendererGives) {
