@@ -24,6 +24,9 @@ class LightTracing {
   // It has been, at `now`.
   void Shown(Clock::time_point now);
 
+  // A step failed: no more is traced for the revision.
+  void GiveUp() { ended_ = true; }
+
   // Nothing more is to be traced for the revision.
   bool ended() const { return ended_; }
 

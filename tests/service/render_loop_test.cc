@@ -75,6 +75,27 @@ class EagerViewer : public Viewer, public std::enable_shared_from_this<EagerView
     });
   }
 
+  // The newest frame that says that it leaves out traced light.
+  std::shared_ptr<const EncodedFrame> AwaitUntraced() {
+    std::unique_lock lock(mutex_);
+    std::shared_ptr<const EncodedFrame> untraced;
+    changed_.wait_for(lock, testing::kPatience, [&] {
+      for (const FrameEvent& event : events_) {
+        const auto* frame = std::get_if<std::shared_ptr<const EncodedFrame>>(&event);
+        if (frame == nullptr || (*frame)->modelled.content.not_shown.empty()) continue;
+        untraced = *frame;
+      }
+      return untraced != nullptr;
+    });
+    return untraced;
+  }
+
+  std::size_t ProblemCount() {
+    const std::lock_guard lock(mutex_);
+    return static_cast<std::size_t>(std::ranges::count_if(
+        events_, [](const FrameEvent& event) { return std::holds_alternative<Problem>(event); }));
+  }
+
   std::size_t EventCount() {
     const std::lock_guard lock(mutex_);
     return events_.size();
@@ -237,6 +258,27 @@ TEST_F(RenderLoopTest, APreparationThatFailsIsAProblemOfItsScene) {
   ASSERT_TRUE(viewer->AwaitProblem("it cannot be fitted"));
   const std::uint64_t revision = Show(*session, OfMetaballs(200));
   EXPECT_TRUE(viewer->Await(revision, true));
+}
+
+TEST_F(RenderLoopTest, LightThatCannotBeTracedIsSaidByThePictureItself) {
+  Start();
+  machine_->cannot_trace_azimuth_deg = 123.0;
+  const auto session = *sessions_.Create();
+  const auto viewer = Watch(session);
+  scene::Scene scene = Small(123.0);
+  scene.rendering.technique = scene::LightVolume{};
+  const std::uint64_t revision = Show(*session, scene);
+  const auto frame = viewer->AwaitUntraced();
+  ASSERT_NE(frame, nullptr);
+  EXPECT_EQ(frame->scene_revision, revision);
+  EXPECT_TRUE(frame->refined);
+  const scene::NotShown& entry = frame->modelled.content.not_shown.front();
+  EXPECT_EQ(entry.code, scene::NotShown::Code::kTracedLight);
+  EXPECT_THAT(entry.message, HasSubstr("cannot trace that"));
+  const std::size_t events = viewer->EventCount();
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  EXPECT_EQ(viewer->EventCount(), events) << "it is not tried again";
+  EXPECT_EQ(viewer->ProblemCount(), 0U);
 }
 
 TEST_F(RenderLoopTest, CancelledPicturesAreDroppedAndSayso) {
