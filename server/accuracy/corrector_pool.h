@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -18,14 +19,15 @@ namespace thunderhead::accuracy {
 
 class CorrectorPool {
  public:
-  // At most `max_correctors`, as each takes up to a hundred megabytes. One that was traced within
-  // `busy_s` is not replaced; one that was not used for `unused_s` goes with the next call.
-  explicit CorrectorPool(std::size_t max_correctors = 8, double busy_s = 3.0,
-                         double unused_s = 300.0)
+  // Programs are linked in `programs`. At most `max_correctors`, as each takes up to a hundred
+  // megabytes. One that was traced within `busy_s` is not replaced; one that was not used for
+  // `unused_s` goes with the next call.
+  explicit CorrectorPool(std::shared_ptr<gl::ProgramCache> programs, std::size_t max_correctors = 8,
+                         double busy_s = 3.0, double unused_s = 300.0)
       : max_correctors_(max_correctors),
         busy_s_(busy_s),
         unused_s_(unused_s),
-        programs_(std::make_shared<gl::ProgramCache>()) {}
+        programs_(std::move(programs)) {}
 
   // The corrector for the scene, set to its camera; null if there is none, or the scene has no
   // traced light.

@@ -123,7 +123,7 @@ class GlFrameSource final : public FrameSource {
   std::shared_ptr<const renderers::TechniqueRegistry> registry_ =
       std::make_shared<renderers::TechniqueRegistry>(renderers::TechniqueRegistry::BuiltIn());
   renderers::RendererPool renderers_{registry_};
-  accuracy::CorrectorPool correctors_;
+  accuracy::CorrectorPool correctors_{renderers_.Programs()};
   frame::ToneMapper tone_mapper_;
   frame::ToneMapper picture_tone_mapper_;  // of other sizes: each keeps its buffers
   DeviceInfo info_;
