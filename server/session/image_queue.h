@@ -24,6 +24,13 @@ struct ImageProgress {
   std::optional<double> estimated_error;  // that it would have now
 };
 
+// What a picture needs once before it is drawn (renderers::Preparation), done on another thread.
+struct ImagePreparation {
+  std::atomic<bool> ended{false};  // set last
+  absl::Status status;
+  double milliseconds = 0.0;
+};
+
 // One picture at full quality, outside any session.
 struct ImageJob {
   scene::Scene scene;
@@ -36,6 +43,8 @@ struct ImageJob {
   std::function<void(const ImageProgress&)> on_progress = nullptr;
   // With the setting that it is drawn by; none before its first turn.
   std::optional<scene::Scene> decided = std::nullopt;
+  // Of the decided scene; null while it has not begun, or is not needed.
+  std::shared_ptr<const ImagePreparation> preparation = nullptr;
 };
 
 class ImageQueue {
@@ -46,6 +55,8 @@ class ImageQueue {
   bool Add(ImageJob job);
   // Begun, but not done: it waits behind the others.
   void PutBack(ImageJob job);
+  // Of those that wait.
+  std::size_t Count();
   // The job whose turn it is; those that were cancelled are told so and dropped.
   std::optional<ImageJob> Take();
   // Refuses those that wait and all to come.

@@ -54,10 +54,6 @@ class RenderLoop {
   // In the order in which to offer them.
   const std::vector<TechniqueInfo>& Techniques() const { return techniques_; }
 
-  // What drawing `scene` would hold the loop up with; blocks. From any thread.
-  absl::Status Prepare(const scene::Scene& scene,
-                       const std::shared_ptr<const volume::HydrometeorFields>& fields) const;
-
   void RenderImage(ImageJob job);
 
   // Nothing is drawn any more after the frame being drawn. Returns at once.

@@ -151,10 +151,16 @@ class RenderLoopTest : public ::testing::Test {
   std::future<absl::StatusOr<DisplayFrame>> Picture(
       double exposure_ev,
       std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false)) {
-    auto promise = std::make_shared<std::promise<absl::StatusOr<DisplayFrame>>>();
-    auto future = promise->get_future();
     scene::Scene scene = Small(0.0);
     scene.display.exposure_ev = exposure_ev;
+    return Picture(scene, std::move(cancelled));
+  }
+
+  std::future<absl::StatusOr<DisplayFrame>> Picture(
+      const scene::Scene& scene,
+      std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false)) {
+    auto promise = std::make_shared<std::promise<absl::StatusOr<DisplayFrame>>>();
+    auto future = promise->get_future();
     loop_->RenderImage({scene, *store_.Get("anvil", 0, {}), std::move(cancelled),
                         [promise](absl::StatusOr<DisplayFrame> picture) {
                           promise->set_value(std::move(picture));
@@ -279,6 +285,33 @@ TEST_F(RenderLoopTest, LightThatCannotBeTracedIsSaidByThePictureItself) {
   std::this_thread::sleep_for(std::chrono::milliseconds(700));
   EXPECT_EQ(viewer->EventCount(), events) << "it is not tried again";
   EXPECT_EQ(viewer->ProblemCount(), 0U);
+}
+
+// Whatever the scene asks for, the table has metaballs alone.
+TEST_F(RenderLoopTest, APictureIsPreparedForTheSettingDecidedAndHoldsUpNobody) {
+  RenderLoopOptions options;
+  options.offer_tables = [] {
+    accuracy::PricedSettings table;
+    table.size_px = {64, 36};
+    table.rows.push_back({{OfMetaballs(300).rendering.technique}, 10.0, 0.3});
+    accuracy::OfferTables tables;
+    tables.fill(table);
+    return tables;
+  };
+  Start(options);
+  machine_->preparing.Close();
+  scene::Scene scene = Small(0.0);
+  scene.accuracy = scene::MaxError{0.4};
+  auto fitted = Picture(scene);
+  ASSERT_TRUE(machine_->preparing.AwaitWaiting(1));
+  EXPECT_TRUE(Picture(1.0).get().ok());
+  machine_->preparing.Open();
+  const auto picture = fitted.get();
+  ASSERT_TRUE(picture.ok()) << picture.status();
+  EXPECT_EQ(picture->modelled.technique, "metaball");
+  EXPECT_EQ(picture->stages.front().stage, scene::FrameStage::kFit);
+  machine_->cannot_prepare = 200;
+  EXPECT_EQ(Picture(OfMetaballs(200)).get().status().message(), "it cannot be fitted");
 }
 
 TEST_F(RenderLoopTest, CancelledPicturesAreDroppedAndSayso) {
