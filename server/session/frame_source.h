@@ -105,9 +105,10 @@ class FrameSource {
 
   // Traces some more paths for a scene with traced light, about a tenth of a second long, so that
   // the next Draw of it is better. RESOURCE_EXHAUSTED while too many other scenes are traced for.
+  // `claim`, which may be null, is given a claim on what is traced for the scene.
   virtual absl::StatusOr<accuracy::LightProgress> TraceLight(
-      const scene::Scene& scene,
-      const std::shared_ptr<const volume::HydrometeorFields>& fields) = 0;
+      const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
+      accuracy::LightClaim* claim) = 0;
 
   // Tone maps what was computed elsewhere. What Draw keeps stays kept.
   virtual absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,

@@ -59,9 +59,9 @@ class GlFrameSource final : public FrameSource {
   }
 
   absl::StatusOr<accuracy::LightProgress> TraceLight(
-      const scene::Scene& scene,
-      const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
-    return correctors_.Trace(scene, fields);
+      const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
+      accuracy::LightClaim* claim) override {
+    return correctors_.Trace(scene, fields, claim);
   }
 
   absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,

@@ -89,7 +89,7 @@ absl::StatusOr<bool> ImageDrawer::Trace(ImageJob& job) {
   const scene::Scene& scene = *job.decided;
   if (scene::TracedLightOf(scene.rendering.technique) != scene::TracedLight::kAwaited) return false;
   THUNDERHEAD_ASSIGN_OR_RETURN(const accuracy::LightProgress progress,
-                               source_.TraceLight(scene, job.fields));
+                               source_.TraceLight(scene, job.fields, &job.light));
   if (progress.steps == 0) return false;
   const std::int64_t wanted = source_.Estimator().PathsFor(scene);
   if (job.on_progress) {

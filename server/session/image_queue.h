@@ -45,6 +45,8 @@ struct ImageJob {
   std::optional<scene::Scene> decided = std::nullopt;
   // Of the decided scene; null while it has not begun, or is not needed.
   std::shared_ptr<const ImagePreparation> preparation = nullptr;
+  // On the light that it waits for.
+  accuracy::LightClaim light = nullptr;
 };
 
 class ImageQueue {

@@ -234,6 +234,19 @@ TEST_F(LightCorrection, APoolKeepsWhatIsTracedAndRefusesOneTooMany) {
   EXPECT_NE(idle.Find(other, fields_), nullptr);
 }
 
+TEST_F(LightCorrection, APoolKeepsWhatIsClaimed) {
+  CorrectorPool pool(programs_, 1, 0.0, 0.0);
+  LightClaim claim;
+  ASSERT_TRUE(pool.Trace(scene_, fields_, &claim).ok());
+  scene::Scene other = scene_;
+  other.sun.elevation_deg = 70.0;
+  EXPECT_TRUE(absl::IsResourceExhausted(pool.Trace(other, fields_).status()));
+  EXPECT_EQ(pool.Trace(scene_, fields_, &claim)->steps, 2);
+  claim.reset();
+  EXPECT_TRUE(pool.Trace(other, fields_).ok());
+  EXPECT_EQ(pool.Find(scene_, fields_), nullptr);
+}
+
 TEST_F(LightCorrection, NothingIsTracedWhereNothingCouldShowIt) {
   CorrectorPool pool(programs_);
   scene::Scene scene = scene_;

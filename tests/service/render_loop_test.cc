@@ -7,6 +7,7 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "session/image_drawer.h"
 #include "tests/service/fake_engine.h"
 #include "tests/support/techniques.h"
 
@@ -312,6 +313,34 @@ TEST_F(RenderLoopTest, APictureIsPreparedForTheSettingDecidedAndHoldsUpNobody) {
   EXPECT_EQ(picture->stages.front().stage, scene::FrameStage::kFit);
   machine_->cannot_prepare = 200;
   EXPECT_EQ(Picture(OfMetaballs(200)).get().status().message(), "it cannot be fitted");
+}
+
+// One that waits for light that it may not have traced yet lets the next have the turn.
+TEST_F(RenderLoopTest, PicturesClaimTheLightThatTheyAwait) {
+  scene::Scene scene = Small(0.0);
+  scene.rendering.technique = scene::LightVolume{.traced_light = scene::TracedLight::kAwaited};
+  machine_->waits_to_trace_azimuth_deg = 200.0;
+  MeasuredSource source(*testing::FakeFrameSources(machine_)(), accuracy::BuiltInOfferTables());
+  ImageQueue queue(9);
+  ImageDrawer drawer(queue, source, nullptr, [] {});
+  int done = 0;
+  for (const double azimuth_deg : {200.0, 100.0}) {
+    scene.sun.azimuth_deg = azimuth_deg;
+    queue.Add({scene, *store_.Get("anvil", 0, {}), std::make_shared<std::atomic<bool>>(false),
+               [&done](const absl::StatusOr<DisplayFrame>& picture) { done += picture.ok(); }});
+  }
+  EXPECT_TRUE(drawer.TakeTurn().drew);
+  EXPECT_EQ(machine_->traced_steps, 1);
+  EXPECT_EQ(machine_->light.use_count(), 2) << "the second's claim";
+  for (int turn = 1; turn < 10; ++turn) EXPECT_TRUE(drawer.TakeTurn().drew);
+  EXPECT_EQ(done, 1);
+  EXPECT_EQ(machine_->light.use_count(), 1) << "it is done";
+  const TurnOutcome waits = drawer.TakeTurn();
+  EXPECT_FALSE(waits.drew);
+  EXPECT_TRUE(waits.look_again_at.has_value());
+  machine_->waits_to_trace_azimuth_deg = -1.0;
+  EXPECT_TRUE(drawer.TakeTurn().drew);  // the fake counts all scenes' paths together
+  EXPECT_EQ(done, 2);
 }
 
 TEST_F(RenderLoopTest, CancelledPicturesAreDroppedAndSayso) {
