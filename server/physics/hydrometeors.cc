@@ -22,13 +22,6 @@ const std::array<ParticleOptics, kHydrometeorCount> kDefaults = {{
 
 std::string_view NameOf(Hydrometeor hydrometeor) { return kNames[IndexOf(hydrometeor)]; }
 
-std::optional<Hydrometeor> HydrometeorNamed(std::string_view name) {
-  for (Hydrometeor hydrometeor : kHydrometeors) {
-    if (NameOf(hydrometeor) == name) return hydrometeor;
-  }
-  return std::nullopt;
-}
-
 const ParticleOptics& DefaultOptics(Hydrometeor hydrometeor) {
   return kDefaults[IndexOf(hydrometeor)];
 }

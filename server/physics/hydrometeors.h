@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cstddef>
-#include <optional>
 #include <string_view>
 
 #include "glm/vec3.hpp"
@@ -27,9 +26,6 @@ constexpr std::size_t IndexOf(Hydrometeor hydrometeor) {
 
 // "cloud", "rain", "ice", "snow", "graupel" or "hail".
 std::string_view NameOf(Hydrometeor hydrometeor);
-
-// The hydrometeor of that name, if there is one.
-std::optional<Hydrometeor> HydrometeorNamed(std::string_view name);
 
 // Formulas, then tables (docs/phase_tables.md).
 enum class PhaseKind {

@@ -224,11 +224,7 @@ LinearFrame SceneRenderer::Report(const scene::Scene& scene,
   frame.slices = drawn_slices_;
   frame.device_bytes = Bytes();
   const TechniqueFactory& factory = *registry_->Find(scene::NameOf(scene.rendering.technique));
-  if (!scene.lights.empty() && !factory.Capabilities().lights) {
-    frame.content.not_shown.push_back(
-        {scene::NotShown::Code::kLights,
-         "lights besides the sun (metaballs and the reference show them)"});
-  }
+  AddNotShown(scene, factory.Capabilities(), &frame.content);
   return frame;
 }
 

@@ -69,6 +69,7 @@ class LightCorrection : public testing::Test {
   }
 
   std::unique_ptr<gl::Context> context_;
+  const std::shared_ptr<gl::ProgramCache> programs_ = std::make_shared<gl::ProgramCache>();
   std::unique_ptr<renderers::SceneRenderer> renderer_;
   std::shared_ptr<const volume::HydrometeorFields> fields_ = MakeTower();
   scene::Scene scene_ = test_support::PlainScene();
@@ -214,7 +215,7 @@ TEST_F(LightCorrection, ServesScenesOfTheSameLight) {
 }
 
 TEST_F(LightCorrection, APoolKeepsWhatIsTracedAndRefusesOneTooMany) {
-  CorrectorPool pool(1, 1e9);
+  CorrectorPool pool(programs_, 1, 1e9);
   EXPECT_EQ(pool.Find(scene_, fields_), nullptr);
   const auto progress = pool.Trace(scene_, fields_);
   ASSERT_TRUE(progress.ok()) << progress.status();
@@ -226,15 +227,28 @@ TEST_F(LightCorrection, APoolKeepsWhatIsTracedAndRefusesOneTooMany) {
   EXPECT_THAT(std::string(pool.Trace(other, fields_).status().message()),
               HasSubstr("the light of 1 other scenes already"));
   EXPECT_EQ(pool.Trace(scene_, fields_)->steps, 2);
-  CorrectorPool idle(1, 0.0);
+  CorrectorPool idle(programs_, 1, 0.0);
   ASSERT_TRUE(idle.Trace(scene_, fields_).ok());
   ASSERT_TRUE(idle.Trace(other, fields_).ok());
   EXPECT_EQ(idle.Find(scene_, fields_), nullptr);
   EXPECT_NE(idle.Find(other, fields_), nullptr);
 }
 
+TEST_F(LightCorrection, APoolKeepsWhatIsClaimed) {
+  CorrectorPool pool(programs_, 1, 0.0, 0.0);
+  LightClaim claim;
+  ASSERT_TRUE(pool.Trace(scene_, fields_, &claim).ok());
+  scene::Scene other = scene_;
+  other.sun.elevation_deg = 70.0;
+  EXPECT_TRUE(absl::IsResourceExhausted(pool.Trace(other, fields_).status()));
+  EXPECT_EQ(pool.Trace(scene_, fields_, &claim)->steps, 2);
+  claim.reset();
+  EXPECT_TRUE(pool.Trace(other, fields_).ok());
+  EXPECT_EQ(pool.Find(scene_, fields_), nullptr);
+}
+
 TEST_F(LightCorrection, NothingIsTracedWhereNothingCouldShowIt) {
-  CorrectorPool pool;
+  CorrectorPool pool(programs_);
   scene::Scene scene = scene_;
   std::get<scene::LightVolume>(scene.rendering.technique).traced_light = scene::TracedLight::kOff;
   EXPECT_EQ(pool.Trace(scene, fields_)->steps, 0);

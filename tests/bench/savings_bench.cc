@@ -74,7 +74,7 @@ std::string Name(const std::string& part, const accuracy::Path& path, const std:
 // The camera moves; and, where light is kept apart from the view, the sun.
 void RegisterBoth(const std::string& name, const scene::Scene& scene, const Fields& fields) {
   Register(name, scene, fields, Moving::kCamera);
-  if (accuracy::PathOf(scene.rendering.technique) != test_support::kHalfAngle) {
+  if (test_support::PathOf(scene.rendering.technique) != test_support::kHalfAngle) {
     Register(name + "/light", scene, fields, Moving::kSun);
   }
 }

@@ -560,7 +560,8 @@ TEST_F(MetaballSceneTest, TheFrameSaysWhatItIs) {
   EXPECT_GT(frame.content.fit_error, 0.0);
   EXPECT_LT(frame.content.fit_error, 0.5);
   EXPECT_EQ(frame.slices, 0);
-  EXPECT_THAT(NotShown(frame), ElementsAre("structure finer than the metaballs"));
+  EXPECT_THAT(NotShown(frame), ElementsAre("structure finer than the metaballs",
+                                           "turbulent detail finer than the grid"));
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
   EXPECT_THAT(NotShown(Draw()), Contains(HasSubstr("albedo")));
   test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);

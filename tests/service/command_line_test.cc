@@ -89,6 +89,9 @@ TEST_F(CommandLineTest, WrongUsageReturnsTwo) {
   ExpectError("render " + kSample, 2, "--output");
   ExpectError("render " + kSample + " -o storm.gif", 2, "must end in .png");
   ExpectError(render_ + " --size 12", 2, "WIDTHxHEIGHT");
+  ExpectError(render_ + " --renderer voxels", 2,
+              "'voxels'; it must be light_volume, half_angle, metaball, cumulus or reference");
+  ExpectError(render_ + " --renderer metaball --slices 9", 2, "for light_volume and half_angle;");
   ExpectError(render_ + " --camera kite", 2, "orbit, spotter or top-down");
   ExpectError("serve --data " + kSample + " --http nowhere", 2, "--http");
 }
