@@ -112,10 +112,7 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& scene, const
       workspace_.ground.ClearShadow();
     }
     if (!quality.places) {
-      THUNDERHEAD_RETURN_IF_ERROR(Timed(scene::FrameStage::kAir, &times, [&] {
-        return workspace_.surroundings.ShadeAir(scene, view, workspace_.ground, Box(),
-                                                workspace_.medium);
-      }));
+      THUNDERHEAD_RETURN_IF_ERROR(ShadeAir(scene, view, &times));
       THUNDERHEAD_RETURN_IF_ERROR(Timed(scene::FrameStage::kComposite, &times, [&] {
         return Composite(scene, view, quality.single_precision ? GL_RGBA32F : GL_RGBA16F, cover);
       }));
@@ -177,6 +174,18 @@ absl::Status SceneRenderer::DrawGround(RenderSettings* settings, StageTimes* tim
       settings->ground_distance = &ground.Distance();
     }
     return absl::OkStatus();
+  });
+}
+
+absl::Status SceneRenderer::ShadeAir(const scene::Scene& scene, const scene::View& view,
+                                     StageTimes* times) {
+  if (!workspace_.ground.HasShadow()) {
+    workspace_.surroundings.LightAllAir();
+    return absl::OkStatus();
+  }
+  return Timed(scene::FrameStage::kAir, times, [&] {
+    return workspace_.surroundings.ShadeAir(scene, view, workspace_.ground, Box(),
+                                            workspace_.medium);
   });
 }
 
