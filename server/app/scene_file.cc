@@ -12,6 +12,7 @@
 #include "accuracy/presets.h"
 #include "app/picture_size.h"
 #include "base/status.h"
+#include "service/scene_messages.h"
 #include "service/technique_messages.h"
 
 namespace thunderhead::app {
@@ -88,7 +89,9 @@ absl::Status SetPreset(const std::string& name, v1::Rendering& rendering) {
   return absl::OkStatus();
 }
 
-absl::Status SetSlices(std::uint32_t slices, v1::Rendering& rendering) {
+absl::Status SetSlices(std::uint32_t slices, v1::Scene& scene) {
+  v1::Rendering& rendering = *scene.mutable_rendering();
+  service::FillSizesDefault(scene);
   service::FillTechniqueDefaults(rendering);
   if (rendering.has_light_volume()) {
     rendering.mutable_light_volume()->set_slices(slices);
@@ -113,7 +116,7 @@ absl::Status SetRendering(const SceneFlags& flags, v1::Scene& scene) {
     THUNDERHEAD_RETURN_IF_ERROR(SetPreset(flags.preset, *scene.mutable_rendering()));
   }
   if (!flags.slices.has_value()) return absl::OkStatus();
-  return SetSlices(*flags.slices, *scene.mutable_rendering());
+  return SetSlices(*flags.slices, scene);
 }
 
 }  // namespace

@@ -88,6 +88,7 @@ class PhaseTables : public testing::TestWithParam<physics::PhaseFunction> {
 };
 
 TEST_P(PhaseTables, SingleScatteringFollowsTheCurve) {
+  scene_.fields[0].sizes = physics::SizeSource::kGiven;
   physics::ParticleOptics& cloud = scene_.fields[0].optics;
   cloud.phase = GetParam();
   // The slab's extinction is for the default radius; droplets of another one are as thin.
