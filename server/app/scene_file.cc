@@ -14,6 +14,7 @@
 #include "accuracy/presets.h"
 #include "app/picture_size.h"
 #include "base/status.h"
+#include "service/scene_messages.h"
 #include "service/technique_messages.h"
 
 namespace thunderhead::app {
@@ -111,7 +112,9 @@ absl::Status SetPreset(const std::string& name, v1::Rendering& rendering) {
   return absl::OkStatus();
 }
 
-absl::Status SetSlices(std::uint32_t slices, v1::Rendering& rendering) {
+absl::Status SetSlices(std::uint32_t slices, v1::Scene& scene) {
+  v1::Rendering& rendering = *scene.mutable_rendering();
+  service::FillSizesDefault(scene);
   service::FillTechniqueDefaults(rendering);
   Fields sliced;
   for (const auto* field : TechniqueFields()) {
@@ -139,7 +142,7 @@ absl::Status SetRendering(const SceneFlags& flags, v1::Scene& scene) {
     THUNDERHEAD_RETURN_IF_ERROR(SetPreset(flags.preset, *scene.mutable_rendering()));
   }
   if (!flags.slices.has_value()) return absl::OkStatus();
-  return SetSlices(*flags.slices, *scene.mutable_rendering());
+  return SetSlices(*flags.slices, scene);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "scene/view.h"
+#include "service/scene_messages.h"
 #include "thunderhead/v1/limits.pb.h"
 #include "volume/visible_box.h"
 
@@ -114,7 +115,7 @@ bool NeedsFraming(const v1::Scene& scene) {
 
 void FrameCondensate(v1::Scene& scene, const volume::HydrometeorFields& fields) {
   v1::Camera& camera = *scene.mutable_camera();
-  const volume::WorldBox box = volume::VisibleBox(fields);
+  const volume::WorldBox box = volume::VisibleBox(fields, SizesOf(scene));
   const double aspect_ratio =
       static_cast<double>(scene.output().width_px()) / scene.output().height_px();
   if (camera.has_spotter()) {

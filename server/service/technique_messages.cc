@@ -264,6 +264,11 @@ void FillTechniqueDefaults(v1::Rendering& rendering) {
   rendering = filled;
 }
 
+bool IsOfThePapers(const v1::Rendering& rendering) {
+  return rendering.technique_case() == v1::Rendering::kPreset &&
+         accuracy::IsOfThePapers(ValueOf(kPresets, rendering.preset()));
+}
+
 scene::Technique ToTechnique(const v1::Rendering& rendering) {
   switch (rendering.technique_case()) {
     case v1::Rendering::kLightVolume:

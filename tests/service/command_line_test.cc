@@ -108,9 +108,16 @@ TEST_F(CommandLineTest, InspectDescribesTheSample) {
   EXPECT_EQ(storm.grid().ny(), 160U);
   EXPECT_EQ(storm.fields_size(), 5);
   EXPECT_GT(storm.bytes_per_time(), 1U << 20);
+  for (const v1::FieldDescription& field : storm.fields()) {
+    EXPECT_EQ(field.size_origin(), v1::FieldDescription::SIZE_ORIGIN_SCHEME);
+    EXPECT_EQ(field.size_scheme(), "WSM6");
+    EXPECT_EQ(field.size_variable(), "");
+    EXPECT_GT(field.mean_radius_m(), 1e-5F);
+  }
   const Outcome table = Run("inspect " + kSample);
   EXPECT_EQ(table.code, 0);
   EXPECT_THAT(table.out, HasSubstr("QGRAUP"));
+  EXPECT_THAT(table.out, HasSubstr("snow     scheme WSM6"));
 }
 
 TEST_F(CommandLineTest, MissingAndForeignFilesAreNamed) {

@@ -33,6 +33,8 @@ std::shared_ptr<const volume::HydrometeorFields> Fields(bool empty) {
   volume::HydrometeorField rain;
   rain.hydrometeor = physics::Hydrometeor::kRain;
   rain.variable = "QRAIN";
+  rain.sizes.origin = volume::SizeOrigin::kNumber;
+  rain.sizes.name = "QNRAIN";
   if (!empty) {
     cloud.concentration_kg_per_m3.assign(fields->grid.CellCount(), 0.0F);
     cloud.concentration_kg_per_m3[fields->grid.Offset(4, 4, 2)] = 1e-3F;

@@ -255,5 +255,11 @@ TEST(LimitsTest, EveryRpcChecksItsRequest) {
   expect(watcher.End(), "session_id is 65 bytes long; it may be at most 64 bytes");
 }
 
+TEST(Limits, AGivenRadiusIsAFieldsAlone) {
+  EXPECT_EQ(Complaint(SceneFrom(R"({"particleSizes": "PARTICLE_SIZES_PAPERS"})")), "");
+  EXPECT_THAT(Complaint(SceneFrom(R"({"particleSizes": "PARTICLE_SIZES_GIVEN"})")),
+              HasSubstr("scene.particle_sizes is PARTICLE_SIZES_GIVEN, which is for a field"));
+}
+
 }  // namespace
 }  // namespace thunderhead::testing
