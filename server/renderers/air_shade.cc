@@ -38,8 +38,11 @@ glm::ivec3 HiddenPoints(const volume::WorldBox& box) {
 }  // namespace
 
 void AirShade::SetLight(const physics::Atmosphere& atmosphere, double sun_sine,
-                        const glm::vec3& level_irradiance) {
-  level_irradiance_ = level_irradiance;
+                        const glm::vec3& sky_irradiance) {
+  const glm::vec3 sun = atmosphere.SunTransmittance({0.0F, static_cast<float>(sun_sine)});
+  level_irradiance_ = sky_irradiance + sun * static_cast<float>(std::max(sun_sine, 0.0));
+  // Faces turned every way around the sun's direction have half of its light in the mean.
+  face_irradiance_ = 0.5F * (sky_irradiance + sun);
   std::vector<glm::vec3> texels;
   texels.reserve(2 * static_cast<std::size_t>(kHeights));
   const auto at = [&](int i) {
@@ -131,6 +134,7 @@ absl::Status AirShade::Cast(const scene::Scene& scene, const scene::View& view,
   program->Set(uniform::towards_sun, glm::vec3(towards_sun));
   program->Set(uniform::sky_scale, static_cast<float>(scene.sun.irradiance * scene.sky.brightness));
   program->Set(uniform::level_irradiance, level_irradiance_);
+  program->Set(uniform::face_irradiance, face_irradiance_);
   program->Set(uniform::turbidity, static_cast<float>(scene.sky.turbidity));
   program->Set(uniform::altitude_m, altitude_m);
   program->Set(uniform::air_densities, physics::glsl::densities_of_air(altitude_m));

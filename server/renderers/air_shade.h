@@ -1,8 +1,9 @@
 // Air that the storm shades: the light that is missing from what the air sends to the eye, on each
 // ray of a coarse picture up to each of a number of distances. The sun is shaded as the ground is
-// (common/storm_shadow.glsl); of light that the air has scattered before, a place in the shadow
-// gets what the part of the sky sends that the storm leaves open, and from the storm what a layer
-// of its depth would let through. How the storm stands in the sky is found once for a medium. Owns
+// (common/storm_shadow.glsl). Of light that the air has scattered before, a place gets what the
+// part of the sky sends that the storm leaves open, and from the storm what a layer of its depth
+// lets through, in its shadow, or reflects. How the storm stands in the sky is found once for a
+// medium. Owns
 // GL objects: use it on the context's thread.
 #pragma once
 
@@ -28,10 +29,10 @@ class AirShade {
  public:
   explicit AirShade(std::shared_ptr<gl::ProgramCache> programs) : programs_(std::move(programs)) {}
 
-  // Takes the light of the air by height, for a sun whose elevation has this sine;
-  // `level_irradiance` is that of clear sky and sun on the ground, for a sun of irradiance 1.
+  // Takes the light of the air by height, for a sun whose elevation has this sine; `sky_irradiance`
+  // is that of the clear sky on the ground, for a sun of irradiance 1.
   void SetLight(const physics::Atmosphere& atmosphere, double sun_sine,
-                const glm::vec3& level_irradiance);
+                const glm::vec3& sky_irradiance);
 
   // Finds how much of the sky `medium` hides, unless it is known. An empty medium hides nothing.
   absl::Status HideSky(const ResidentMedium& medium, const scene::Scene& scene, double ground_m);
@@ -59,6 +60,7 @@ class AirShade {
   bool present_ = false;
   gl::Texture2D light_;
   glm::vec3 level_irradiance_{0.0F};
+  glm::vec3 face_irradiance_{0.0F};
   gl::Texture3D sky_hidden_;
   std::uint64_t hidden_by_ = 0;  // ResidentMedium::Id
   std::vector<double> hidden_weights_;

@@ -61,10 +61,7 @@ void SkyAndGround::Update(const scene::Scene& scene, const scene::View& view,
     sky_.emplace(*atmosphere_, eastern_sun, physics::ClearSky::Site{ground_m, ground_m});
     sky_light_ = sky_->Light();
     drawn_ = key;
-    air_shade_.SetLight(
-        *atmosphere_, towards_sun_.z,
-        sky_light_.irradiance +
-            sky_->SunTransmittance() * std::max(static_cast<float>(towards_sun_.z), 0.0F));
+    air_shade_.SetLight(*atmosphere_, towards_sun_.z, sky_light_.irradiance);
     around_sun_.reset();
     eye_height_m_ = -1.0;
     tables_.clear();

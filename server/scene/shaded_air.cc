@@ -12,6 +12,8 @@ namespace {
 constexpr double kSkyMargin_m = 1.5e4;
 // The shadow of a low sun goes on for longer, in air that is hardly seen any more.
 constexpr double kLongestShadow_m = 1.5e5;
+// Of the round Earth's ground below the world's plane, 200 km away.
+constexpr double kFallOfGround_m = 2700.0;
 
 }  // namespace
 
@@ -27,7 +29,7 @@ ShadedAir ShadedAirOf(const volume::WorldBox& storm, const glm::dvec3& towards_s
   air.from_sun.high_m = glm::max(storm.high_m, storm.high_m + shift_m);
   air.from_sky.low_m -= glm::dvec3(kSkyMargin_m, kSkyMargin_m, 0.0);
   air.from_sky.high_m += glm::dvec3(kSkyMargin_m, kSkyMargin_m, 0.0);
-  air.from_sun.low_m.z = air.from_sky.low_m.z = low_m;
+  air.from_sun.low_m.z = air.from_sky.low_m.z = low_m - kFallOfGround_m;
   return air;
 }
 

@@ -212,7 +212,8 @@ void CumulusRenderer::Resize(const glm::ivec2& size) {
   tested_depth_ = gl::Texture2D(GL_DEPTH_COMPONENT32F, size);
   shade_target_ = gl::Framebuffer({&cores_, &layer_}, &tested_depth_);
   eye_ = gl::Texture2D(GL_RGBA16F, size);
-  eye_target_ = gl::Framebuffer(eye_);
+  distances_m_ = gl::Texture2D(GL_R32F, size);
+  eye_target_ = gl::Framebuffer({&eye_, &distances_m_});
 }
 
 void CumulusRenderer::SetShading(const gl::Program& program, const RenderSettings& settings,
@@ -286,22 +287,25 @@ absl::Status CumulusRenderer::DrawView(const RenderSettings& settings,
   glDepthMask(GL_TRUE);
   glDepthFunc(GL_LESS);
   glDisable(GL_DEPTH_TEST);
-  return Resolve();
+  return Resolve(pass.far_m, glm::length(Middle_m() - settings.view.eye_m));
 }
 
-absl::Status CumulusRenderer::Resolve() {
+absl::Status CumulusRenderer::Resolve(double far_m, double middle_m) {
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
       programs_->Get(gl::ProgramSource::WholeTarget("cumulus/resolve.frag")));
   cores_.Bind(shaders::kCoresUnit);
   layer_.Bind(shaders::kLayerUnit);
+  core_depth_.Bind(shaders::kResolvedDepthUnit);
+  program->Set(uniform::far_m, static_cast<float>(far_m));
+  program->Set(uniform::middle_m, static_cast<float>(middle_m));
   whole_target_.Draw(*program, eye_target_);
   return absl::OkStatus();
 }
 
 std::size_t CumulusRenderer::Bytes() const {
   return bubbles_.Bytes() + shadow_depth_.Bytes() + core_depth_.Bytes() + tested_depth_.Bytes() +
-         cores_.Bytes() + layer_.Bytes() + eye_.Bytes() +
+         cores_.Bytes() + layer_.Bytes() + eye_.Bytes() + distances_m_.Bytes() +
          (noise_ != nullptr ? noise_->texture.Bytes() : 0);
 }
 

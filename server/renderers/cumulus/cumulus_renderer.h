@@ -44,6 +44,7 @@ class CumulusRenderer {
                         DetailNoises* noises);
 
   const gl::Texture2D& Eye() const { return eye_; }
+  const gl::Texture2D& Distances_m() const { return distances_m_; }
   std::size_t Bytes() const;
 
  private:
@@ -53,7 +54,8 @@ class CumulusRenderer {
   void SetShading(const gl::Program& program, const RenderSettings& settings,
                   const std::vector<glm::vec3>& light_map, DetailNoises* noises);
   absl::Status DrawDepth(const Pass& pass, const gl::Framebuffer& target);
-  absl::Status Resolve();
+  // `far_m` is the distance of depth 1, `middle_m` that of the surface.
+  absl::Status Resolve(double far_m, double middle_m);
   void DrawBubbles(const gl::Program& program, const Pass& pass) const;
   double Corona_m(const scene::Cumulus& cumulus) const;
 
@@ -82,6 +84,7 @@ class CumulusRenderer {
   gl::Texture2D layer_;
   gl::Framebuffer shade_target_;
   gl::Texture2D eye_;
+  gl::Texture2D distances_m_;
   gl::Framebuffer eye_target_;
   std::shared_ptr<const DetailNoise> noise_;
 };

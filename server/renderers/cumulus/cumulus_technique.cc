@@ -16,6 +16,7 @@ class CumulusTechnique final : public Technique {
   bool Empty() const override { return renderer_.Empty(); }
   bool CastsShadow() const override { return true; }
   const gl::Texture2D& Eye() const override { return renderer_.Eye(); }
+  const gl::Texture2D* Distances_m() const override { return &renderer_.Distances_m(); }
   std::size_t Bytes() const override { return renderer_.Bytes(); }
 
   volume::WorldBox Box() const override {

@@ -103,8 +103,9 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
   const glm::dvec3 cell_m = medium.Bounds().grid.spacing_m;
   Resize(frame, std::min(cell_m.x, cell_m.y));
   for (CoveredTarget& eye : eye_) {
-    eye.Resize(GL_RGBA32F, settings.eye_size, settings.cover);
+    eye.Resize(GL_RGBA32F, settings.eye_size, settings.cover, true);
     eye.Target().Clear(0.0F, 0.0F, 0.0F, 1.0F);
+    eye.Target().Clear(0.0F, 0.0F, 0.0F, 0.0F, 1);
   }
   if (light_changed && translucent && consistent) {
     THUNDERHEAD_RETURN_IF_ERROR(SumThickness(medium, frame, weights));
@@ -207,6 +208,7 @@ void HalfAngleRenderer::DrawSlabs(const Programs& programs, const RenderSettings
     for (std::size_t i = slab.begin; i < slab.end; ++i) seen = Around(seen, reach[i].eye);
     if (seen.Empty()) continue;
     eye_[eyes.Of(drawn)].Texture().Bind(shaders::kEyeBeforeUnit);
+    eye_[eyes.Of(drawn)].Distances().Bind(shaders::kDistanceBeforeUnit);
     ++drawn;
     programs.eye->Set(uniform::begin_layer, static_cast<float>(light.layers.Of(slab.begin)));
     DrawSlab(slab, *programs.eye, settings.cover, eyes.Write(drawn, seen),

@@ -18,6 +18,7 @@ class HalfAngleTechnique final : public Technique {
   volume::WorldBox Box() const override { return BoxOf(workspace_.medium); }
   bool KeepsToCover() const override { return true; }
   const gl::Texture2D& Eye() const override { return renderer_.Eye(); }
+  const gl::Texture2D* Distances_m() const override { return &renderer_.Distances_m(); }
   std::size_t Bytes() const override { return renderer_.Bytes(); }
 
   absl::Status CarryLight(const scene::Scene& /*scene*/, const Fields& /*fields*/,

@@ -266,10 +266,12 @@ absl::Status MetaballRenderer::Carry(const Light& light, int index,
 absl::Status MetaballRenderer::DrawView(const RenderSettings& settings) {
   if (eye_.Size() != settings.eye_size) {
     eye_ = gl::Texture2D(GL_RGBA32F, settings.eye_size);
-    eye_target_ = gl::Framebuffer(eye_);
+    distances_m_ = gl::Texture2D(GL_R32F, settings.eye_size);
+    eye_target_ = gl::Framebuffer({&eye_, &distances_m_});
   }
   if (balls_.empty()) {
     eye_target_.Clear(0.0F, 0.0F, 0.0F, 1.0F);
+    eye_target_.Clear(0.0F, 0.0F, 0.0F, 0.0F, 1);
     return absl::OkStatus();
   }
   THUNDERHEAD_RETURN_IF_ERROR(FindSources(settings));
@@ -340,7 +342,8 @@ absl::Status MetaballRenderer::Splat(const RenderSettings& settings) {
 
 std::size_t MetaballRenderer::Bytes() const {
   return ball_buffer_.Bytes() + arrived_.Bytes() + sources_.Bytes() + order_.Bytes() +
-         tile_starts_.Bytes() + light_.Bytes() + eye_.Bytes() + phase_curves_.Bytes();
+         tile_starts_.Bytes() + light_.Bytes() + eye_.Bytes() + distances_m_.Bytes() +
+         phase_curves_.Bytes();
 }
 
 }  // namespace thunderhead::renderers

@@ -41,6 +41,7 @@ class MetaballRenderer {
 
   // The result of the last DrawView.
   const gl::Texture2D& Eye() const { return eye_; }
+  const gl::Texture2D& Distances_m() const { return distances_m_; }
   // Around the balls of the last CarryLight.
   const BallBox& Box() const { return box_; }
   // How many lights the last CarryLight carried; what arrived of the others was kept.
@@ -96,6 +97,7 @@ class MetaballRenderer {
   gl::Texture2D light_;
   PhaseCurves phase_curves_;
   gl::Texture2D eye_;
+  gl::Texture2D distances_m_;
   gl::Framebuffer eye_target_;
 };
 

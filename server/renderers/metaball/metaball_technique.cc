@@ -37,6 +37,7 @@ class MetaballTechnique final : public Technique {
   bool DrawsMedium() const override { return true; }
   bool Empty() const override { return workspace_.medium.Empty(); }
   const gl::Texture2D& Eye() const override { return renderer_.Eye(); }
+  const gl::Texture2D* Distances_m() const override { return &renderer_.Distances_m(); }
   std::size_t Bytes() const override { return renderer_.Bytes(); }
 
   volume::WorldBox Box() const override {

@@ -19,6 +19,7 @@ uniform mat3 local_from_world;
 uniform vec3 towards_sun;
 uniform float sky_scale;
 uniform vec3 level_irradiance;  // of clear sky and sun on level ground
+uniform vec3 face_irradiance;   // and on the storm's sunlit faces
 uniform float turbidity;
 uniform float altitude_m;
 uniform vec2 air_densities;  // there
@@ -53,9 +54,13 @@ void main() {
     vec3 sunlight = texture(air_light, vec2(column, 0.25)).rgb;
     vec3 skylight = texture(air_light, vec2(column, 0.75)).rgb;
     vec2 storm = storm_in_sky(point_m);
-    vec3 sky_lost = storm.x * skylight - storm.y * kInversePi * level_irradiance;
-    vec3 lost = blocked_at(point_m) * (sunlight_scattered_per_m(turbidity, densities, mu) * sunlight +
-                                       skylight_scattered_per_m(turbidity, densities) * sky_lost);
+    // In its shadow the storm shows what comes through it; elsewhere half of it is what it reflects.
+    float blocked = blocked_at(point_m);
+    vec3 through = storm.y * level_irradiance;
+    vec3 reflected = (storm.x - storm.y) * face_irradiance;
+    vec3 of_storm = mix(0.5 * (through + reflected), through, blocked) * kInversePi;
+    vec3 lost = blocked * sunlight_scattered_per_m(turbidity, densities, mu) * sunlight +
+                skylight_scattered_per_m(turbidity, densities) * (storm.x * skylight - of_storm);
     missing += sky_scale * step_m * exp(-depth_of_air(turbidity, air_densities, path)) * lost;
     imageStore(shade, ivec3(texel, i + 1), vec4(missing, 0.0));
   }

@@ -28,6 +28,7 @@ const int kLinearFrameUnit = 4;
 const int kSliceLightUnit = 4;
 const int kSliceThicknessUnit = 5;
 const int kEyeBeforeUnit = 6;
+const int kDistanceBeforeUnit = 13;
 const int kLeavingLightImage = 0;
 const int kRingDepthImage = 1;
 const int kSliceThicknessImage = 2;
@@ -60,6 +61,7 @@ const int kBallTilesBinding = 4;
 // Of cumulus.
 const int kCoreDepthUnit = 4;
 const int kSunDepthUnit = 5;
+const int kResolvedDepthUnit = 6;
 const int kCoresUnit = 4;
 const int kLayerUnit = 5;
 const int kRoughnessNoiseUnit = 8;

@@ -3,8 +3,13 @@
 
 layout(binding = kCoresUnit) uniform sampler2D cores;
 layout(binding = kLayerUnit) uniform sampler2D layer;
+layout(binding = kResolvedDepthUnit) uniform sampler2D core_depth;
 
-out vec4 radiance_and_transmittance;
+uniform float far_m;     // the distance that is depth 1
+uniform float middle_m;  // of the surface, where there is no core
+
+layout(location = 0) out vec4 radiance_and_transmittance;
+layout(location = 1) out float opacity_distance_m;
 
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
@@ -14,4 +19,6 @@ void main() {
   float covered = sum.a > 0.0 ? 1.0 : 0.0;
   vec3 core = sum.a > 0.0 ? sum.rgb / sum.a : vec3(0.0);
   radiance_and_transmittance = vec4(front.rgb + front.a * core, front.a * (1.0 - covered));
+  float depth = texelFetch(core_depth, at, 0).r;
+  opacity_distance_m = (1.0 - radiance_and_transmittance.a) * (depth < 1.0 ? depth * far_m : middle_m);
 }

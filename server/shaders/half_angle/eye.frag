@@ -20,6 +20,7 @@ layout(binding = kSliceLightUnit) uniform sampler2DArray light;
 layout(binding = kSliceThicknessUnit) uniform sampler2D thickness;  // r: optical depth along the whole sun ray
 
 layout(binding = kEyeBeforeUnit) uniform sampler2D eye;  // before the slab
+layout(binding = kDistanceBeforeUnit) uniform sampler2D distance_before;
 uniform vec3 towards_sun;
 uniform vec3 slice_normal;    // to the sun's side
 uniform float first_plane_m;  // distance of the first slice's plane from the middle of the box, along the normal
@@ -35,13 +36,15 @@ uniform vec3 light_u;                // light buffer axes, scaled to its texture
 uniform vec3 light_v;
 
 in vec2 position;
-out vec4 radiance_and_transmittance;
+layout(location = 0) out vec4 radiance_and_transmittance;
+layout(location = 1) out float opacity_distance_m;  // the opacity times the mean distance of what shows
 
 const float kOpaqueTransmittance = 2e-3;  // below which a ray ends
 
 void main() {
   begin_medium();
   vec4 before = texelFetch(eye, ivec2(gl_FragCoord.xy), 0);
+  float before_m = texelFetch(distance_before, ivec2(gl_FragCoord.xy), 0).r;
   vec3 direction = ray_direction(position);
   vec3 origin_m = ray_origin(position);
   vec3 safe = safe_direction(direction);
@@ -82,6 +85,8 @@ void main() {
   float layers = float(textureSize(light, 0).z);
 
   Scattered scattered = nothing_scattered();
+  float shown_m = 0.0;
+  float towards = front_to_back ? 1.0 : -1.0;
   float transmittance = front_to_back ? before.a : 1.0;
   if (front_to_back && transmittance < kOpaqueTransmittance) end = 0.0;
   while (slice < end) {
@@ -104,7 +109,11 @@ void main() {
     float seen = mean_transmittance(depth);
 
     float shows = front_to_back ? transmittance * counts : counts;
-    if (!front_to_back) fade(scattered, passed);
+    if (!front_to_back) {
+      fade(scattered, passed);
+      shown_m *= passed;
+    }
+    shown_m += shows * (1.0 - passed) * (towards * distance_m);
 #if CONSISTENT
     // The buffer holds the light that enters the slice; inside, light fades as the view does.
     float light_depth = weigh(medium, light_depths);
@@ -131,4 +140,5 @@ void main() {
   vec3 radiance = radiance_of(scattered, path_m, haversine_between(direction, towards_sun));
   radiance_and_transmittance = front_to_back ? vec4(before.rgb + radiance, transmittance)
                                              : vec4(radiance + transmittance * before.rgb, transmittance * before.a);
+  opacity_distance_m = front_to_back ? before_m + shown_m : shown_m + transmittance * before_m;
 }

@@ -19,7 +19,8 @@ uniform int tile_px;
 uniform int tiles_across;
 
 in vec2 position;
-out vec4 radiance_and_transmittance;
+layout(location = 0) out vec4 radiance_and_transmittance;
+layout(location = 1) out float opacity_distance_m;  // the opacity times the mean distance of what shows
 
 const float kOpaqueTransmittance = 5e-3;  // below which a ray ends, as in light_volume/march.frag
 
@@ -35,6 +36,7 @@ void main() {
 #endif
   vec3 radiance = vec3(0.0);
   float transmittance = 1.0;
+  float shown_m = 0.0;
   for (uint i = first; i < end && transmittance > kOpaqueTransmittance; ++i) {
     uint index = order[i];
     vec4 middle_radius = balls[index].middle_radius;
@@ -64,7 +66,10 @@ void main() {
     float taken = depth * mean_transmittance(depth);  // 1 - exp(-depth)
 #endif
     radiance += transmittance * taken * source.rgb;
-    transmittance *= exp(-depth);
+    float passed = exp(-depth);
+    shown_m += transmittance * (1.0 - passed) * max(along_m + 0.5 * (max(from, -half_chord) + to) * middle_radius.w, 0.0);
+    transmittance *= passed;
   }
   radiance_and_transmittance = vec4(radiance, transmittance);
+  opacity_distance_m = shown_m;
 }

@@ -1,0 +1,162 @@
+// Air that a storm shades, against the reference, on rays that do not meet the storm.
+#include "renderers/air_shade.h"
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "frame/tone_map.h"
+#include "gl/context.h"
+#include "glm/geometric.hpp"
+#include "gtest/gtest.h"
+#include "reference/path_tracer.h"
+#include "reference/scene_problem.h"
+#include "reference/trace_rays.h"
+#include "renderers/scene_renderer.h"
+#include "scene/view.h"
+#include "tests/support/slab.h"
+#include "tests/support/techniques.h"
+
+namespace thunderhead::renderers {
+namespace {
+
+// A layer of cloud 40 km wide between 4 and 8 km above the ground.
+std::shared_ptr<const volume::HydrometeorFields> MakeRoof(double extinction_per_m) {
+  const auto slab = support::MakeSlab(40e3, 16e3, extinction_per_m, {32, 32, 16});
+  auto roof = std::make_shared<volume::HydrometeorFields>(*slab);
+  std::vector<float>& concentration = roof->fields[0].concentration_kg_per_m3;
+  for (std::size_t i = 0; i < concentration.size(); ++i) {
+    const std::size_t layer = i / (32 * 32);
+    if (layer < 4 || layer >= 8) concentration[i] = 0.0F;
+  }
+  roof->condensate = {{0, 0, 4}, {32, 32, 8}};
+  return roof;
+}
+
+class AirShadeTest : public testing::Test {
+ protected:
+  static constexpr int kWidth_px = 192;
+  static constexpr int kHeight_px = 128;
+
+  void SetUp() override {
+    auto context = gl::Context::Create("software");
+    ASSERT_TRUE(context.ok()) << context.status();
+    context_ = *std::move(context);
+    renderer_ = std::make_unique<SceneRenderer>();
+    scene_.output = {kWidth_px, kHeight_px, 90};
+    // From the south, against the sun: through the air in the roof's shadow, and below the roof.
+    scene_.sun = {0.0, 40.0, 1.0};
+    scene_.camera = scene::SpotterCamera{{0.0, -34e3}, 1.7, 0.0, 6.0, 40.0};
+  }
+  void TearDown() override {
+    renderer_.reset();
+    context_.reset();
+  }
+
+  std::vector<glm::vec3> Drawn() {
+    DrawQuality quality;
+    quality.single_precision = true;
+    const auto frame = renderer_->Draw(scene_, fields_, quality);
+    EXPECT_TRUE(frame.ok()) << frame.status();
+    return frame::PictureOf(*frame->radiance).radiance;
+  }
+
+  // The mean over each row of the picture's middle third by the reference, for rows from the top.
+  glm::dvec3 TracedRow(int row, bool with_storm) const {
+    const auto medium =
+        reference::MediumOf(scene_, *fields_, reference::MediumOptions{.peak_cut_deg = 20.0});
+    EXPECT_TRUE(medium.ok());
+    reference::Surroundings surroundings =
+        reference::SurroundingsOf(scene_, *fields_, reference::GroundLight::kShaded);
+    if (!with_storm) surroundings.shaded_air.reset();
+    const reference::Camera camera = reference::CameraOf(scene_, *fields_);
+    std::vector<reference::Ray> rays;
+    for (int x = kWidth_px / 3; x < 2 * kWidth_px / 3; x += 4) {
+      rays.push_back(camera.RayThrough(2.0 * (x + 0.5) / kWidth_px - 1.0,
+                                       1.0 - 2.0 * (row + 0.5) / kHeight_px));
+    }
+    glm::dvec3 sum(0.0);
+    for (const glm::dvec3& radiance :
+         reference::TraceRays(**medium, surroundings, rays, {7, 1500, 0})) {
+      sum += radiance;
+    }
+    return sum / static_cast<double>(rays.size());
+  }
+
+  static glm::dvec3 DrawnRow(const std::vector<glm::vec3>& picture, int row) {
+    glm::dvec3 sum(0.0);
+    int count = 0;
+    for (int x = kWidth_px / 3; x < 2 * kWidth_px / 3; x += 4, ++count) {
+      sum += picture[static_cast<std::size_t>(kWidth_px * row + x)];
+    }
+    return sum / static_cast<double>(count);
+  }
+
+  std::unique_ptr<gl::Context> context_;
+  std::unique_ptr<SceneRenderer> renderer_;
+  std::shared_ptr<const volume::HydrometeorFields> fields_ = MakeRoof(0.02);
+  scene::Scene scene_ = test_support::PlainScene();
+};
+
+// Above the horizon, where rays pass the whole shadow and miss the roof.
+constexpr int kRowsBelowRoof[] = {80, 83, 86};
+
+TEST_F(AirShadeTest, AirBelowAStormIsAsDarkAsTheReferenceHasIt) {
+  test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kDiffusion);
+  const std::vector<glm::vec3> picture = Drawn();
+  for (const int row : kRowsBelowRoof) {
+    const glm::dvec3 traced = TracedRow(row, true);
+    const glm::dvec3 lit = TracedRow(row, false);
+    const glm::dvec3 drawn = DrawnRow(picture, row);
+    for (int color = 0; color < 3; ++color) {
+      EXPECT_LT(traced[color], 0.85 * lit[color]) << row;
+      // Samples 4 km apart, and the roof's light on the air from a two-stream layer.
+      EXPECT_NEAR(drawn[color], traced[color], 0.04 * lit[color]) << row << ' ' << color;
+    }
+  }
+}
+
+TEST_F(AirShadeTest, WithoutAStormAirIsLit) {
+  fields_ = MakeRoof(0.0);
+  const std::vector<glm::vec3> picture = Drawn();
+  for (const int row : kRowsBelowRoof) {
+    const glm::dvec3 lit = TracedRow(row, false);
+    const glm::dvec3 drawn = DrawnRow(picture, row);
+    for (int color = 0; color < 3; ++color) {
+      EXPECT_NEAR(drawn[color], lit[color], 0.01 * lit[color]) << row << ' ' << color;
+    }
+  }
+}
+
+// A second cloud behind the first, which hides it, moves the middle of the box by 20 km.
+TEST_F(AirShadeTest, AirStandsBeforeTheStormNotBeforeTheMiddleOfItsBox) {
+  const auto near_cloud = [&](bool another_behind) {
+    auto fields = std::make_shared<volume::HydrometeorFields>(*support::MakeSlab(40e3, 10e3, 0.02));
+    std::vector<float>& concentration = fields->fields[0].concentration_kg_per_m3;
+    for (int z = 0; z < 16; ++z) {
+      for (int y = 0; y < 32; ++y) {
+        for (int x = 0; x < 32; ++x) {
+          const bool near_part = y < 4;
+          const bool far_part = another_behind && y >= 30 && z < 3;
+          if (!near_part && !far_part) concentration[fields->grid.Offset(x, y, z)] = 0.0F;
+        }
+      }
+    }
+    fields->condensate = {{0, 0, 0}, {32, another_behind ? 32 : 4, 16}};
+    return fields;
+  };
+  scene_.sky.turbidity = 6.0;
+  for (const accuracy::Path& path : {test_support::kHalfAngle, test_support::kLightVolume}) {
+    test_support::SetPath(&scene_.rendering.technique, path);
+    fields_ = near_cloud(false);
+    const glm::dvec3 alone = DrawnRow(Drawn(), kHeight_px / 2);
+    fields_ = near_cloud(true);
+    const glm::dvec3 with_another = DrawnRow(Drawn(), kHeight_px / 2);
+    for (int color = 0; color < 3; ++color) {
+      EXPECT_NEAR(with_another[color], alone[color], 0.05 * alone[color]) << path.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace thunderhead::renderers
