@@ -168,16 +168,17 @@ AirLight LightOfAir(const Around& around, const Ray& ray, double distance_m,
   const glm::vec2 densities = air::densities_of_air(height_m);
   const physics::AirPlace place{height_m, static_cast<float>(towards_sun.z)};
   const auto mu = static_cast<float>(glm::dot(ray.direction, towards_sun));
-  const glm::vec3 seen =
-      static_cast<float>(around.scale) *
+  const glm::vec3 transmittance =
       glm::exp(-air::depth_of_air(around.turbidity, air::densities_of_air(path.height_m), path));
-  const glm::vec3 scattered = air::skylight_scattered_per_m(around.turbidity, densities);
+  const glm::vec3 scattered =
+      transmittance * air::skylight_scattered_per_m(around.turbidity, densities);
+  const auto scale = static_cast<float>(around.scale);
   AirLight light;
-  light.of_sun = seen * air::sunlight_scattered_per_m(around.turbidity, densities, mu) *
+  light.of_sun = scale * transmittance *
+                 air::sunlight_scattered_per_m(around.turbidity, densities, mu) *
                  around.atmosphere.SunTransmittance(place);
-  light.of_sky = seen * scattered * around.atmosphere.DiffuseMeanRadiance(place);
-  // The medium's light has the sun's irradiance in it.
-  light.per_radiance = seen / static_cast<float>(around.scale) * scattered;
+  light.of_sky = scale * scattered * around.atmosphere.DiffuseMeanRadiance(place);
+  light.per_radiance = scattered;  // the medium's light has the sun's irradiance in it
   return light;
 }
 

@@ -590,8 +590,9 @@ test("a link brings another viewer into the session, who sees it turn", async ()
     assert.equal(await page.getByTestId("ground-albedo-number").inputValue(), "0.4");
     assert.equal(await page.getByTestId("turbidity-number").inputValue(), "2.5");
     await screenshot("12-guest", guest);
+    assert.equal(await guest.getByTestId("automatic-exposure").isChecked(), false);
     await changing(async () => {
-      await setNumber(page, "exposure", 0);
+      await page.getByTestId("automatic-exposure").check();
       await setNumber(page, "turbidity", 1.5);
       await setNumber(page, "ground-albedo", 0.2);
     });

@@ -5,7 +5,7 @@ import { ToneMap } from "../gen/thunderhead/v1/scene_pb";
 import { AccuracySection } from "./accuracy_section";
 import { CameraSection } from "./camera_section";
 import { CloudSection } from "./cloud_section";
-import { Choice, Section, Slider } from "./controls";
+import { Choice, Section, Slider, Switch } from "./controls";
 import { FieldsSection } from "./fields_section";
 import { KEYS } from "./keyboard";
 import { LightsSection } from "./lights_section";
@@ -107,14 +107,33 @@ function PictureSection({ page }: { page: Page }) {
   const { state } = page;
   const sky = state.sky.value;
   const display = state.display.value;
+  // That of the picture, where it is automatic.
+  const shownExposureEv =
+    display?.exposureEv ?? Math.round(100 * (state.frame.value?.modelled?.exposureEv ?? 0)) / 100;
   return (
     <Section title="Sky and picture" testId="picture-section">
+      <Switch
+        label="Automatic exposure"
+        checked={display?.exposureEv === undefined}
+        testId="automatic-exposure"
+        onChange={(automatic) =>
+          state.edit((scene) =>
+            withDisplay(scene, { exposureEv: automatic ? undefined : shownExposureEv }),
+          )
+        }
+      />
       <Slider
         label="Exposure"
         limits={LIMITS.exposure}
-        value={display?.exposureEv ?? LIMITS.exposure.defaultValue}
+        value={shownExposureEv}
         testId="exposure"
         onChange={(exposureEv) => state.edit((scene) => withDisplay(scene, { exposureEv }))}
+      />
+      <Switch
+        label="White balance"
+        checked={display?.whiteBalance ?? true}
+        testId="white-balance"
+        onChange={(whiteBalance) => state.edit((scene) => withDisplay(scene, { whiteBalance }))}
       />
       <Choice
         label="Tone map"

@@ -10,7 +10,7 @@
 #include "physics/air_light.glsl"
 
 layout(local_size_x = kLightGroupSide, local_size_y = kLightGroupSide) in;
-layout(binding = kAirShadeImage, rgba16f) uniform writeonly image3D shade;
+layout(binding = kAirShadeImage, rgba32f) uniform writeonly image3D shade;
 // By height: row 0, the sunlight; row 1, the mean radiance of light that air has scattered.
 layout(binding = kAirLightUnit) uniform sampler2D air_light;
 
@@ -43,10 +43,15 @@ void main() {
   float step_m = (far_m - near_m) / float(steps);
   vec2 size = vec2(textureSize(air_light, 0));
   vec3 missing = vec3(0.0);
+  vec3 air_per_m = air_optical_depth() / kAirScaleHeight_m;
+  vec3 haze_per_m = haze_optical_depth(turbidity) / kHazeScaleHeight_m;
+  AirPath path = AirPath(altitude_m, sine, ground_curvature_per_m, near_m);
+  vec3 depth = depth_of_air(turbidity, air_densities, path);  // before the step
+  float air_phase_here = air_phase(mu);
+  float haze_phase_here = kHazeAlbedo * haze_phase(mu);
   imageStore(shade, ivec3(texel, 0), vec4(0.0));
   for (int i = 0; i < steps; ++i) {
     float distance_m = near_m + (float(i) + 0.5) * step_m;
-    AirPath path = AirPath(altitude_m, sine, ground_curvature_per_m, distance_m);
     float height_m = max(height_on_path_m(path, distance_m), lowest_air_m);
     vec3 point_m = origin_m + distance_m * ray;
     vec2 densities = densities_of_air(height_m);
@@ -59,9 +64,13 @@ void main() {
     vec3 through = storm.y * level_irradiance;
     vec3 reflected = (storm.x - storm.y) * face_irradiance;
     vec3 of_storm = mix(0.5 * (through + reflected), through, blocked) * kInversePi;
-    vec3 lost = blocked * sunlight_scattered_per_m(turbidity, densities, mu) * sunlight +
-                skylight_scattered_per_m(turbidity, densities) * (storm.x * skylight - of_storm);
-    missing += sky_scale * step_m * exp(-depth_of_air(turbidity, air_densities, path)) * lost;
+    vec3 air = densities.x * air_per_m;
+    vec3 haze = densities.y * haze_per_m;
+    vec3 lost = blocked * (air_phase_here * air + haze_phase_here * haze) * sunlight +
+                (air + kHazeAlbedo * haze) * (storm.x * skylight - of_storm);
+    vec3 of_step = step_m * (air + haze);
+    missing += sky_scale * step_m * exp(-depth - 0.5 * of_step) * lost;
+    depth += of_step;
     imageStore(shade, ivec3(texel, i + 1), vec4(missing, 0.0));
   }
 }

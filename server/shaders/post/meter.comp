@@ -9,8 +9,8 @@ layout(binding = kMeterImage, r32f) uniform writeonly image2D brightest;
 
 uniform vec3 luminance_weights;  // of each colour, white balance included
 
-const int kCells = 48;         // along each side of the picture
-const int kPlaces = 4;         // of samples in a cell, along each side
+const int kCells = 32;         // along each side of the picture
+const int kPlaces = 3;         // of samples in a cell, along each side
 const int kBins = 192;
 const float kBinsPerStop = 8.0;
 const float kLowestLog2 = -18.0;
