@@ -38,7 +38,7 @@ TEST(SessionsTest, EmptySceneComesBackWithEveryDefault) {
   EXPECT_EQ(created.scene_revision(), 1U);
   const v1::Scene& scene = created.scene();
   EXPECT_EQ(scene.storm_id(), "anvil");
-  EXPECT_TRUE(scene.has_time_index());
+  EXPECT_EQ(scene.time_index(), 3U) << "the last";
   const v1::OrbitCamera& camera = scene.camera().orbit();
   EXPECT_EQ(camera.azimuth_deg(), 200.0F);
   EXPECT_EQ(camera.field_of_view_deg(), 35.0F);
