@@ -11,7 +11,10 @@ import {
   type Scene,
   SceneSchema,
 } from "../src/gen/thunderhead/v1/scene_pb";
-import { StormDescriptionSchema } from "../src/gen/thunderhead/v1/storm_pb";
+import {
+  FieldDescription_SizeOrigin,
+  StormDescriptionSchema,
+} from "../src/gen/thunderhead/v1/storm_pb";
 import {
   type AcknowledgeFrameRequest,
   Stage,
@@ -273,11 +276,14 @@ function describe(stormId: string, timeIndex: number) {
       units: "kg kg-1",
       maximum: 4e-3,
       meanWaterPathKgPerM2: 0.8,
+      sizeOrigin: FieldDescription_SizeOrigin.SCHEME,
+      sizeScheme: "WSM6",
+      meanRadiusM: 2e-5 * 10 ** i,
+      papersRadiusM: 1e-5 * 10 ** i,
       defaults: create(FieldParametersSchema, {
         hydrometeor,
         visible: true,
         scale: 1,
-        radiusM: 1e-5 * 10 ** i,
         densityKgPerM3: 1000,
         albedo: 1,
         phase: { kind: Kind.CORNETTE_SHANKS, asymmetry: 0.85 },

@@ -32,6 +32,14 @@ import {
 
 const MEDIUM = { slices: 128, thetaFDeg: 20, perFieldPhase: true, falseColors: false };
 
+// That techniques of the medium accept.
+const TRANSPORTS = [
+  Transport.CONSISTENT,
+  Transport.LOW_ALBEDO,
+  Transport.PAPER,
+  Transport.PAPER_LOW_ALBEDO,
+] as const;
+
 const TOY = create(OtherTechniqueSchema, { name: "toy", numbers: { haze: 0.5 } });
 
 // Each technique with the settings whose defaults are not in the schema.
@@ -62,14 +70,21 @@ const CAPABILITIES: Readonly<Record<string, Partial<Omit<TechniqueDescription, k
     showsTracedLight: true,
     hasSlices: true,
     drawsImages: true,
+    transports: [Transport.DIFFUSION, ...TRANSPORTS],
   },
   [HalfAngleSchema.typeName]: {
     showsDetail: true,
     showsFieldOptics: true,
     hasSlices: true,
     drawsImages: true,
+    transports: [...TRANSPORTS],
   },
-  [MetaballsSchema.typeName]: { showsLights: true, showsFieldOptics: true, drawsImages: true },
+  [MetaballsSchema.typeName]: {
+    showsLights: true,
+    showsFieldOptics: true,
+    drawsImages: true,
+    transports: [Transport.CONSISTENT, Transport.LOW_ALBEDO, Transport.PAPER],
+  },
   [CumulusSchema.typeName]: { drawsImages: true },
   [ReferenceSchema.typeName]: { showsLights: true, showsFieldOptics: true },
   [OtherTechniqueSchema.typeName]: { drawsImages: true },

@@ -15,7 +15,7 @@ import {
   sharedSettingsOf,
   techniqueNameOf,
   tracesLight,
-  transportsOf,
+  transportOf,
   withSettings,
   withTechnique,
   withTransport,
@@ -182,20 +182,16 @@ describe("a technique's settings", () => {
     expect(settingLimits(create(CumulusSchema), "slices")).toBeUndefined();
   });
 
-  it("offer the transports that it accepts", () => {
-    expect(transportsOf(create(LightVolumeSchema))).toHaveLength(5);
-    expect(transportsOf(create(HalfAngleSchema))).not.toContain(Transport.DIFFUSION);
-    expect(transportsOf(create(MetaballsSchema))).toEqual([
-      Transport.CONSISTENT,
-      Transport.LOW_ALBEDO,
-      Transport.PAPER,
-    ]);
-    expect(transportsOf(create(CumulusSchema))).toEqual([]);
-    // Every technique with a transport has a list of them.
-    for (const { name } of FAKE_TECHNIQUES) {
-      const settings = mustSettings(withTechnique(balanced, name));
-      expect(transportsOf(settings).length > 0).toBe(hasSetting(settings, "transport"));
-    }
+  it("have the transport that is given, or else the technique's default", () => {
+    const given = create(HalfAngleSchema, { transport: Transport.PAPER });
+    expect(transportOf(given, described(given))).toBe(Transport.PAPER);
+    const open = create(HalfAngleSchema);
+    const transports = [Transport.LOW_ALBEDO, Transport.CONSISTENT];
+    const technique = create(TechniqueDescriptionSchema, { transports });
+    expect(transportOf(open, technique)).toBe(Transport.LOW_ALBEDO);
+    expect(transportOf(open, undefined)).toBeUndefined();
+    const cumulus = create(CumulusSchema);
+    expect(transportOf(cumulus, described(cumulus))).toBeUndefined();
   });
 
   it("of traced light follow the transport", () => {

@@ -11,9 +11,12 @@ import {
   withAsymmetry,
   withDetail,
   withField,
+  withFieldSizes,
   withLight,
   withLightAdded,
   withoutLight,
+  withParticleSizes,
+  withPreset,
   withStorm,
   withSun,
   withSunClock,
@@ -37,7 +40,10 @@ import {
   DirectionalLightSchema,
   FieldParametersSchema,
   Hydrometeor,
+  ParticleSizes,
   PhaseFunction_Kind,
+  Preset,
+  type Scene,
   SceneSchema,
 } from "../src/gen/thunderhead/v1/scene_pb";
 import { linkTo, readLink } from "../src/view/link";
@@ -94,6 +100,25 @@ describe("scenes", () => {
     expect(effectiveField(after, Hydrometeor.RAIN, defaults).detail).toMatchObject(detail);
   });
 
+  it("say where particles' sizes come from: a given radius, else the field, else the scene", () => {
+    const sizes = (of: Scene) => effectiveField(of, Hydrometeor.RAIN, undefined).sizes;
+    const papers = withParticleSizes(scene, ParticleSizes.PAPERS);
+    expect(sizes(papers)).toBe(ParticleSizes.PAPERS);
+    const model = withFieldSizes(papers, Hydrometeor.RAIN, ParticleSizes.MODEL, 1e-3);
+    expect(sizes(model)).toBe(ParticleSizes.MODEL);
+    expect(model.fields[0]?.radiusM).toBeUndefined();
+    const given = withFieldSizes(papers, Hydrometeor.RAIN, ParticleSizes.GIVEN, 1e-3);
+    expect(given.fields[0]?.radiusM).toBe(1e-3);
+    expect(sizes(withField(papers, Hydrometeor.RAIN, { radiusM: 1e-4 }))).toBe(ParticleSizes.GIVEN);
+    expect(sizes(withParticleSizes(given, ParticleSizes.MODEL))).toBe(ParticleSizes.MODEL);
+  });
+
+  it("take the papers' constants with their presets", () => {
+    const preset = (chosen: Preset) => withPreset(scene, chosen).particleSizes;
+    expect(preset(Preset.PER_FIELD_PHASE_TRANSLUCENT)).toBe(ParticleSizes.PAPERS);
+    expect(preset(Preset.BALANCED)).toBe(ParticleSizes.MODEL);
+  });
+
   it("drop what belongs to a storm with the storm", () => {
     const after = withStorm(scene, "b", 3);
     expect(after).toMatchObject({ stormId: "b", timeIndex: 3, camera: undefined, fields: [] });
@@ -102,13 +127,15 @@ describe("scenes", () => {
 
   it("fall back on the storm's settings, then on the schema's", () => {
     const defaults = create(FieldParametersSchema, {
-      radiusM: 0.001,
+      densityKgPerM3: 500,
       scale: 7,
       phase: { asymmetry: 0.8 },
     });
     const rain = effectiveField(scene, Hydrometeor.RAIN, defaults);
     expect(rain).toMatchObject({ visible: true, scale: 2, albedo: 1, phase: { asymmetry: 0.8 } });
-    expect(rain.radiusM).toBeCloseTo(0.001);
+    expect(rain.densityKgPerM3).toBe(500);
+    expect(rain.sizes).toBe(ParticleSizes.MODEL);
+    expect(rain.radiusM).toBeUndefined();
     expect(effectiveField(scene, Hydrometeor.ICE, undefined).scale).toBe(1);
   });
 

@@ -27,17 +27,20 @@ LightCorrector* CorrectorPool::Find(
 }
 
 void CorrectorPool::DropUnused() {
-  std::erase_if(kept_,
-                [this](const Kept& kept) { return kept.since_used.ElapsedMs() > 1e3 * unused_s_; });
+  std::erase_if(kept_, [this](const Kept& kept) {
+    return !kept.IsClaimed() && kept.since_used.ElapsedMs() > 1e3 * unused_s_;
+  });
 }
 
 absl::Status CorrectorPool::MakeRoom() {
   if (kept_.size() < max_correctors_) return absl::OkStatus();
+  const auto idle_ms = [](const Kept& kept) {
+    return kept.IsClaimed() ? -1.0 : kept.since_traced.ElapsedMs();
+  };
   const auto oldest =
-      std::max_element(kept_.begin(), kept_.end(), [](const Kept& a, const Kept& b) {
-        return a.since_traced.ElapsedMs() < b.since_traced.ElapsedMs();
-      });
-  if (oldest->since_traced.ElapsedMs() < 1e3 * busy_s_) {
+      std::max_element(kept_.begin(), kept_.end(),
+                       [&](const Kept& a, const Kept& b) { return idle_ms(a) < idle_ms(b); });
+  if (idle_ms(*oldest) < 1e3 * busy_s_) {
     return absl::ResourceExhaustedError(
         absl::StrCat("the server traces the light of ", kept_.size(), " other scenes already"));
   }
@@ -46,7 +49,8 @@ absl::Status CorrectorPool::MakeRoom() {
 }
 
 absl::StatusOr<LightProgress> CorrectorPool::Trace(
-    const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields) {
+    const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
+    LightClaim* claim) {
   if (!TracesLight(scene, *fields)) return LightProgress{};
   Kept* kept = Serving(scene, fields);
   if (kept == nullptr) {
@@ -55,6 +59,7 @@ absl::StatusOr<LightProgress> CorrectorPool::Trace(
                                  LightCorrector::Create(scene, fields, programs_, 0));
     kept = &kept_.emplace_back(Kept{std::move(corrector), base::Stopwatch(), base::Stopwatch()});
   }
+  if (claim != nullptr) *claim = kept->claim;
   kept->corrector->LookAs(scene);
   THUNDERHEAD_RETURN_IF_ERROR(kept->corrector->Step());
   kept->since_traced.Restart();

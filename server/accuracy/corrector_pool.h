@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -18,14 +19,15 @@ namespace thunderhead::accuracy {
 
 class CorrectorPool {
  public:
-  // At most `max_correctors`, as each takes up to a hundred megabytes. One that was traced within
-  // `busy_s` is not replaced; one that was not used for `unused_s` goes with the next call.
-  explicit CorrectorPool(std::size_t max_correctors = 8, double busy_s = 3.0,
-                         double unused_s = 300.0)
+  // Programs are linked in `programs`. At most `max_correctors`, as each takes up to a hundred
+  // megabytes. One that was traced within `busy_s`, or that is claimed, is not replaced; one that
+  // was not used for `unused_s` goes with the next call.
+  explicit CorrectorPool(std::shared_ptr<gl::ProgramCache> programs, std::size_t max_correctors = 8,
+                         double busy_s = 3.0, double unused_s = 300.0)
       : max_correctors_(max_correctors),
         busy_s_(busy_s),
         unused_s_(unused_s),
-        programs_(std::make_shared<gl::ProgramCache>()) {}
+        programs_(std::move(programs)) {}
 
   // The corrector for the scene, set to its camera; null if there is none, or the scene has no
   // traced light.
@@ -33,15 +35,19 @@ class CorrectorPool {
                        const std::shared_ptr<const volume::HydrometeorFields>& fields);
 
   // Traces one step for the scene. RESOURCE_EXHAUSTED if there are `max_correctors` already and all
-  // are busy.
+  // are busy or claimed. `claim`, which may be null, is given a claim on the scene's light.
   absl::StatusOr<LightProgress> Trace(
-      const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields);
+      const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
+      LightClaim* claim = nullptr);
 
  private:
   struct Kept {
     std::unique_ptr<LightCorrector> corrector;
     base::Stopwatch since_traced;
-    base::Stopwatch since_used;  // traced or found
+    base::Stopwatch since_used;                  // traced or found
+    LightClaim claim = std::make_shared<int>();  // of which others may have copies
+
+    bool IsClaimed() const { return claim.use_count() > 1; }
   };
 
   Kept* Serving(const scene::Scene& scene,

@@ -67,6 +67,14 @@ scene::Scene ProbedScene(scene::Scene scene) {
   return scene;
 }
 
+// Of which the storm's box is: fields that differ are taken as the model has them.
+physics::SizeSource SizesOf(const scene::Scene& scene) {
+  const bool papers = std::ranges::all_of(scene.fields, [](const scene::FieldParameters& field) {
+    return field.sizes == physics::SizeSource::kPapers;
+  });
+  return papers ? physics::SizeSource::kPapers : physics::SizeSource::kModel;
+}
+
 }  // namespace
 
 bool TracesLight(const scene::Scene& scene, const volume::HydrometeorFields& fields) {
@@ -84,7 +92,7 @@ LightCorrector::LightCorrector(const scene::Scene& scene,
       asked_(scene),
       fields_(std::move(fields)),
       medium_(std::move(medium)),
-      box_(volume::VisibleBox(*fields_)),
+      box_(volume::VisibleBox(*fields_, SizesOf(scene_))),
       over_ground_(reference::SurroundingsOf(scene_, *fields_, reference::GroundLight::kShaded)),
       threads_(threads),
       renderer_(std::move(programs)),

@@ -1,8 +1,9 @@
-// Progress of tracing a scene's light. A plain value.
+// Progress of tracing a scene's light, and a claim on it. Plain values.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 
 namespace thunderhead::accuracy {
 
@@ -10,6 +11,9 @@ namespace thunderhead::accuracy {
 // by 21 to 48 % on two storms of three; with so many it was 14 to 47 % less on all
 // (docs/decisions/0012).
 inline constexpr std::int64_t kMinCorrectingPaths = 25'000;
+
+// While one exists, the light traced for its scene is not given up for another's.
+using LightClaim = std::shared_ptr<const void>;
 
 struct LightProgress {
   std::int64_t paths = 0;

@@ -13,10 +13,6 @@ std::optional<Path> PathNamed(std::string_view name) {
   return *found;
 }
 
-std::optional<Path> PathOf(const scene::Technique& technique) {
-  return PathNamed(scene::NameOf(technique));
-}
-
 scene::Technique InMode(scene::Technique technique, const Mode& mode, scene::Transport transport) {
   scene::MediumSettings* medium = scene::MediumSettingsOf(&technique);
   if (medium == nullptr) return technique;

@@ -39,9 +39,8 @@ inline constexpr std::array<Path, 4> kPaths = {{
 // Those that draw the fields cell by cell, so that their pictures have exact answers.
 inline constexpr std::array<Path, 2> kFieldPaths = {{kPaths[0], kPaths[1]}};
 
-// The path of that name, or of a technique; none for others.
+// The path of that name; none for others.
 std::optional<Path> PathNamed(std::string_view name);
-std::optional<Path> PathOf(const scene::Technique& technique);
 
 // A mode of the papers' frame-rate table.
 struct Mode {

@@ -40,6 +40,8 @@ scene::Technique TechniqueOf(Preset preset) {
   THUNDERHEAD_CHECK(false, "no such preset");
 }
 
+bool IsOfThePapers(Preset preset) { return preset >= Preset::kUniformPhaseLowAlbedo; }
+
 std::string_view NameOf(Preset preset) {
   for (const NamedPreset& named : kPresets) {
     if (named.preset == preset) return named.name;

@@ -41,6 +41,9 @@ inline constexpr Preset kDefaultPreset = Preset::kBalanced;
 // The technique and settings that it stands for.
 scene::Technique TechniqueOf(Preset preset);
 
+// True if it is one of the modes of the papers' table.
+bool IsOfThePapers(Preset preset);
+
 std::string_view NameOf(Preset preset);
 std::optional<Preset> PresetNamed(std::string_view name);
 

@@ -52,8 +52,8 @@ std::string FieldNames(const volume::HydrometeorFields& fields) {
 Target TotalExtinction(const volume::HydrometeorFields& fields) {
   Target target{"extinction", "m-1", std::vector<float>(fields.grid.CellCount(), 0.0F)};
   for (const volume::HydrometeorField& field : fields.fields) {
-    const volume::MassExtinction mass_extinction =
-        volume::MassExtinctionOf(field, physics::DefaultOptics(field.hydrometeor), true);
+    const volume::MassExtinction mass_extinction = volume::MassExtinctionOf(
+        field, physics::DefaultOptics(field.hydrometeor), physics::SizeSource::kModel);
     volume::AddExtinction(field, mass_extinction, 0, field.concentration_kg_per_m3.size(),
                           target.values.data());
   }

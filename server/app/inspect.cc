@@ -29,6 +29,32 @@ std::string NameOf(v1::Hydrometeor hydrometeor) {
       absl::StripPrefix(v1::Hydrometeor_Name(hydrometeor), "HYDROMETEOR_"));
 }
 
+std::string SizesOf(const v1::FieldDescription& field) {
+  switch (field.size_origin()) {
+    case v1::FieldDescription::SIZE_ORIGIN_EFFECTIVE_RADIUS:
+      return absl::StrCat("effective radius ", field.size_variable());
+    case v1::FieldDescription::SIZE_ORIGIN_NUMBER:
+      return absl::StrCat("number ", field.size_variable());
+    case v1::FieldDescription::SIZE_ORIGIN_SCHEME:
+      return absl::StrCat("scheme ", field.size_scheme());
+    case v1::FieldDescription::SIZE_ORIGIN_OBSERVED:
+      return "observed constant";
+    default:
+      return "none: the field is extinction";
+  }
+}
+
+void AppendSizes(const v1::StormDescription& storm, std::string& text) {
+  absl::StrAppend(&text, "\nfield    sizes from                  effective radius of all\n");
+  for (const v1::FieldDescription& field : storm.fields()) {
+    absl::StrAppendFormat(&text, "%-8s %-27s", NameOf(field.hydrometeor()), SizesOf(field));
+    if (field.mean_radius_m() > 0.0F) {
+      absl::StrAppendFormat(&text, " %.4g um", field.mean_radius_m() * 1e6);
+    }
+    absl::StrAppend(&text, "\n");
+  }
+}
+
 std::string Table(const v1::StormDescription& storm) {
   const v1::Grid& grid = storm.grid();
   std::string text = absl::StrFormat(
@@ -63,12 +89,7 @@ std::string Table(const v1::StormDescription& storm) {
                           field.maximum_water_path_kg_per_m2(), field.negative_cells(),
                           field.missing_cells());
   }
-  for (const v1::FieldDescription& field : storm.fields()) {
-    if (field.size_variable().empty()) continue;
-    absl::StrAppendFormat(&text, "sizes of %s from %s, effective radius of all %.3g m\n",
-                          NameOf(field.hydrometeor()), field.size_variable(),
-                          field.mean_radius_m());
-  }
+  AppendSizes(storm, text);
   return text;
 }
 

@@ -2,9 +2,11 @@
 
 #include <google/protobuf/util/json_util.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
@@ -12,6 +14,7 @@
 #include "accuracy/presets.h"
 #include "app/picture_size.h"
 #include "base/status.h"
+#include "service/scene_messages.h"
 #include "service/technique_messages.h"
 
 namespace thunderhead::app {
@@ -56,21 +59,42 @@ absl::Status SetCamera(const std::string& kind, v1::Camera& camera) {
   return absl::OkStatus();
 }
 
+using Fields = std::vector<const google::protobuf::FieldDescriptor*>;
+
+// The fields of the techniques that have their own in Rendering.
+Fields TechniqueFields() {
+  const google::protobuf::OneofDescriptor& techniques =
+      *v1::Rendering::descriptor()->FindOneofByName("technique");
+  Fields fields;
+  for (int i = 0; i < techniques.field_count(); ++i) {
+    const google::protobuf::FieldDescriptor* field = techniques.field(i);
+    const google::protobuf::Descriptor* settings = field->message_type();
+    if (settings != nullptr && settings != v1::OtherTechnique::descriptor()) {
+      fields.push_back(field);
+    }
+  }
+  return fields;
+}
+
+// "a, b or c".
+std::string NamesOf(const Fields& fields, const std::string& before_last) {
+  std::string names;
+  for (const auto* field : fields) {
+    if (!names.empty()) names += field == fields.back() ? before_last : ", ";
+    names += field->name();
+  }
+  return names;
+}
+
 // Keeps the file's settings if it has that technique; otherwise starts with the defaults.
 absl::Status SetTechnique(const std::string& name, v1::Rendering& rendering) {
-  const google::protobuf::OneofDescriptor* techniques =
-      v1::Rendering::descriptor()->FindOneofByName("technique");
-  const google::protobuf::FieldDescriptor* field =
-      v1::Rendering::descriptor()->FindFieldByName(name);
-  const bool known = field != nullptr && field->containing_oneof() == techniques &&
-                     field->type() == google::protobuf::FieldDescriptor::TYPE_MESSAGE &&
-                     field->message_type() != v1::OtherTechnique::descriptor();
-  if (!known) {
+  const Fields fields = TechniqueFields();
+  const auto field = std::ranges::find(fields, name, [](const auto* each) { return each->name(); });
+  if (field == fields.end()) {
     return absl::InvalidArgumentError(
-        absl::StrCat("--renderer is '", name,
-                     "'; it must be half_angle, light_volume, metaball, cumulus or reference"));
+        absl::StrCat("--renderer is '", name, "'; it must be ", NamesOf(fields, " or ")));
   }
-  rendering.GetReflection()->MutableMessage(&rendering, field);
+  rendering.GetReflection()->MutableMessage(&rendering, *field);
   return absl::OkStatus();
 }
 
@@ -88,17 +112,22 @@ absl::Status SetPreset(const std::string& name, v1::Rendering& rendering) {
   return absl::OkStatus();
 }
 
-absl::Status SetSlices(std::uint32_t slices, v1::Rendering& rendering) {
+absl::Status SetSlices(std::uint32_t slices, v1::Scene& scene) {
+  v1::Rendering& rendering = *scene.mutable_rendering();
+  service::FillSizesDefault(scene);
   service::FillTechniqueDefaults(rendering);
-  if (rendering.has_light_volume()) {
-    rendering.mutable_light_volume()->set_slices(slices);
-  } else if (rendering.has_half_angle()) {
-    rendering.mutable_half_angle()->set_slices(slices);
-  } else {
-    return absl::InvalidArgumentError(
-        "--slices is for half_angle and light_volume; omit it with other renderers");
+  Fields sliced;
+  for (const auto* field : TechniqueFields()) {
+    const auto* setting = field->message_type()->FindFieldByName("slices");
+    if (setting == nullptr) continue;
+    sliced.push_back(field);
+    if (!rendering.GetReflection()->HasField(rendering, field)) continue;
+    auto* settings = rendering.GetReflection()->MutableMessage(&rendering, field);
+    settings->GetReflection()->SetUInt32(settings, setting, slices);
+    return absl::OkStatus();
   }
-  return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("--slices is for ", NamesOf(sliced, " and "), "; omit it with other renderers"));
 }
 
 absl::Status SetRendering(const SceneFlags& flags, v1::Scene& scene) {
@@ -113,7 +142,7 @@ absl::Status SetRendering(const SceneFlags& flags, v1::Scene& scene) {
     THUNDERHEAD_RETURN_IF_ERROR(SetPreset(flags.preset, *scene.mutable_rendering()));
   }
   if (!flags.slices.has_value()) return absl::OkStatus();
-  return SetSlices(*flags.slices, *scene.mutable_rendering());
+  return SetSlices(*flags.slices, scene);
 }
 
 }  // namespace
@@ -132,8 +161,8 @@ void AddTechniqueOptions(CLI::App& command, SceneFlags& flags) {
           ->check(CLI::IsMember({"fast", "balanced", "true"}));
   CLI::Option* preset = command.add_option(
       "--preset", flags.preset, "A named setting, such as the papers' per_field_phase_translucent");
-  CLI::Option* renderer = command.add_option(
-      "--renderer", flags.technique, "half_angle, light_volume, metaball, cumulus or reference");
+  CLI::Option* renderer =
+      command.add_option("--renderer", flags.technique, NamesOf(TechniqueFields(), " or "));
   quality->excludes(preset)->excludes(renderer);
   preset->excludes(renderer);
   command.add_option("--slices", flags.slices, "Number of slices, or samples along a ray");

@@ -44,14 +44,9 @@ double Reach_m(Basis basis, double overlap, double sigma_m);
 // The value of a ball of weight 1 at `distance_m` from its middle.
 double BasisValue(Basis basis, double overlap, double sigma_m, double distance_m);
 
-// The sum of all balls at a point: eq. 19.
-double ValueAt(const MetaballCloud& cloud, const glm::dvec3& point_m);
-
-// Conversion to text and back, without loss. Errors name the line.
+// As text, without loss.
 std::string ToText(const MetaballCloud& cloud);
-absl::StatusOr<MetaballCloud> FromText(std::string_view text);
 
 absl::Status SaveBalls(const MetaballCloud& cloud, const std::string& path);
-absl::StatusOr<MetaballCloud> LoadBalls(const std::string& path);
 
 }  // namespace thunderhead::clouds

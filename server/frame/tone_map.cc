@@ -14,6 +14,8 @@ namespace {
 // Automatic exposures lie between these factors of 0 EV: nights stay dark.
 constexpr float kLeastFactor = 1.0F / 16.0F;
 constexpr float kMostFactor = 64.0F;
+// And at most this times the exposure of a white card in the sun: what is all in shadow stays dark.
+constexpr float kMostAboveCard = 2.0F;
 
 struct ToneMapVariant {
   gl::DefineValue filmic;
@@ -44,8 +46,10 @@ absl::StatusOr<float> ToneMapper::ExposureOf(const gl::Texture2D& linear,
   glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
   float brightest = 0.0F;
   glGetTextureImage(brightest_.Get(), 0, GL_RED, GL_FLOAT, sizeof(brightest), &brightest);
-  if (brightest <= 0.0F) brightest = LuminanceOf(card.radiance);
-  return std::clamp(kJustBelowWhite / std::max(brightest, 1e-12F), kExposureAtZeroEv * kLeastFactor,
+  const float of_card = std::max(LuminanceOf(card.radiance), 1e-12F);
+  if (brightest <= 0.0F) brightest = of_card;
+  brightest = std::max(brightest, of_card / kMostAboveCard);
+  return std::clamp(kJustBelowWhite / brightest, kExposureAtZeroEv * kLeastFactor,
                     kExposureAtZeroEv * kMostFactor);
 }
 

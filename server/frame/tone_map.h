@@ -26,7 +26,7 @@ struct ToneMapped {
 // Factor of radiance at an exposure of 0 EV.
 inline constexpr float kExposureAtZeroEv = 6.0F;
 // Exposed luminance that the film's curve shows just below white, at 0.9 of it.
-inline constexpr float kJustBelowWhite = 1.85F;
+inline constexpr float kJustBelowWhite = 1.25F;
 
 class ToneMapper {
  public:

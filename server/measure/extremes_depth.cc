@@ -100,12 +100,13 @@ Extreme Radius(const accuracy::Path& path, float radius_m) {
   return {absl::StrFormat("%s: radius %g m", path.name, radius_m),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
             scene::Scene scene = PlainScene(path);
-            physics::ParticleOptics& cloud =
-                scene.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].optics;
+            scene::FieldParameters& cloud =
+                scene.fields[physics::IndexOf(physics::Hydrometeor::kCloud)];
             // Extinction is inversely proportional to the radius.
-            const double depth = static_cast<double>(cloud.radius_m) / radius_m;
+            const double depth = static_cast<double>(cloud.optics.radius_m) / radius_m;
             const bool thin = depth < kThin;
-            cloud.radius_m = radius_m;
+            cloud.sizes = physics::SizeSource::kGiven;
+            cloud.optics.radius_m = radius_m;
             THUNDERHEAD_ASSIGN_OR_RETURN(
                 const Seen seen, probe.Draw(scene, *FieldsOf({}), {.single_precision = thin}));
             return TransmittanceNear(path, seen, depth, kUpright,

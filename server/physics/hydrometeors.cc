@@ -11,23 +11,16 @@ constexpr std::array<std::string_view, kHydrometeorCount> kNames = {"cloud", "ra
 // rimed ice 0.76.
 const std::array<ParticleOptics, kHydrometeorCount> kDefaults = {{
     {1e-5F, 1000.0F, 1.0F, {PhaseKind::kWaterDroplets, 0.85F}, {1.0F, 0.0F, 0.0F}},
-    {1e-3F, 1000.0F, 1.0F, {PhaseKind::kWaterDroplets, 0.85F}, {0.0F, 0.0F, 1.0F}},
-    {1e-3F, 917.0F, 1.0F, {PhaseKind::kIceColumns, 0.78F}, {1.0F, 0.0F, 1.0F}},
-    {2e-3F, 100.0F, 1.0F, {PhaseKind::kIceRough, 0.76F}, {1.0F, 1.0F, 0.0F}},
-    {2.5e-3F, 500.0F, 1.0F, {PhaseKind::kIceRough, 0.76F}, {0.0F, 1.0F, 0.0F}},
-    {1e-2F, 900.0F, 1.0F, {PhaseKind::kIceRough, 0.76F}, {0.0F, 1.0F, 1.0F}},
+    {6.7e-4F, 1000.0F, 1.0F, {PhaseKind::kWaterDroplets, 0.85F}, {0.0F, 0.0F, 1.0F}},
+    {3e-5F, 917.0F, 1.0F, {PhaseKind::kIceColumns, 0.78F}, {1.0F, 0.0F, 1.0F}},
+    {9.2e-4F, 100.0F, 1.0F, {PhaseKind::kIceRough, 0.76F}, {1.0F, 1.0F, 0.0F}},
+    {9.5e-4F, 500.0F, 1.0F, {PhaseKind::kIceRough, 0.76F}, {0.0F, 1.0F, 0.0F}},
+    {2.6e-3F, 900.0F, 1.0F, {PhaseKind::kIceRough, 0.76F}, {0.0F, 1.0F, 1.0F}},
 }};
 
 }  // namespace
 
 std::string_view NameOf(Hydrometeor hydrometeor) { return kNames[IndexOf(hydrometeor)]; }
-
-std::optional<Hydrometeor> HydrometeorNamed(std::string_view name) {
-  for (Hydrometeor hydrometeor : kHydrometeors) {
-    if (NameOf(hydrometeor) == name) return hydrometeor;
-  }
-  return std::nullopt;
-}
 
 const ParticleOptics& DefaultOptics(Hydrometeor hydrometeor) {
   return kDefaults[IndexOf(hydrometeor)];

@@ -1,13 +1,15 @@
 // The kinds of hydrometeors and the optics of one particle of each: radius, bulk density, albedo,
 // phase function, false colour. Knows no files and no GL.
 //
-// Radii: Riley et al. 2003 (AMS), Table II; false colours: Table III; densities as in common bulk
-// microphysics.
+// Radii: observed. Cloud droplets 10 um, ice crystals 30 um; the others are effective radii of the
+// exponential distributions that were observed, at 1 g/m3: rain by Marshall and Palmer 1948, snow
+// by Houze et al. 1979 at -20 C, graupel as in Rutledge and Hobbs 1984, hail by Federer and
+// Waldvogel 1975. The papers' radii are in particle_size.h. False colours: Riley et al. 2003 (AMS),
+// Table III; densities as in common bulk microphysics.
 #pragma once
 
 #include <array>
 #include <cstddef>
-#include <optional>
 #include <string_view>
 
 #include "glm/vec3.hpp"
@@ -27,9 +29,6 @@ constexpr std::size_t IndexOf(Hydrometeor hydrometeor) {
 
 // "cloud", "rain", "ice", "snow", "graupel" or "hail".
 std::string_view NameOf(Hydrometeor hydrometeor);
-
-// The hydrometeor of that name, if there is one.
-std::optional<Hydrometeor> HydrometeorNamed(std::string_view name);
 
 // Formulas, then tables (docs/phase_tables.md).
 enum class PhaseKind {

@@ -1,9 +1,30 @@
 #include "physics/particle_size.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
 namespace thunderhead::physics {
+namespace {
+
+constexpr std::array<float, kHydrometeorCount> kPapersRadii_m = {1e-5F, 1e-3F,   1e-3F,
+                                                                 2e-3F, 2.5e-3F, 1e-2F};
+
+}  // namespace
+
+float PapersRadius_m(Hydrometeor hydrometeor) { return kPapersRadii_m[IndexOf(hydrometeor)]; }
+
+float ConstantRadius_m(Hydrometeor hydrometeor, SizeSource source, float given_m) {
+  switch (source) {
+    case SizeSource::kPapers:
+      return PapersRadius_m(hydrometeor);
+    case SizeSource::kGiven:
+      return given_m;
+    case SizeSource::kModel:
+      break;
+  }
+  return DefaultOptics(hydrometeor).radius_m;
+}
 
 float EffectiveRadius_m(Hydrometeor hydrometeor, float mass_kg) {
   constexpr double kDropletRatio = 1.1157;      // 0.72^(-1/3)

@@ -1,5 +1,5 @@
-// Effective radii from the mass of a mean particle, for models that count particles. Knows no
-// files.
+// Effective radii of particles: which of them a scene shows, the papers' constants, and those that
+// follow from the mass of a mean particle where a model counts particles. Knows no files.
 #pragma once
 
 #include "physics/hydrometeors.h"
@@ -9,6 +9,21 @@ namespace thunderhead::physics {
 // Radii outside are taken as missing; the same limits as for a scene's own radii.
 inline constexpr float kMinRadius_m = 1e-7F;
 inline constexpr float kMaxRadius_m = 0.1F;
+
+// Where the sizes of a field's particles come from.
+enum class SizeSource {
+  // The file or the scheme of its model, for each cell; else an observed constant, the radius of
+  // DefaultOptics.
+  kModel,
+  kPapers,  // the constants of the papers
+  kGiven    // one radius that the scene gives
+};
+
+// Riley et al. 2003 (AMS), Table II; hail, which it leaves out, 1 cm.
+float PapersRadius_m(Hydrometeor hydrometeor);
+
+// The radius of all particles by `source` where no cell has its own; `given_m` is the scene's.
+float ConstantRadius_m(Hydrometeor hydrometeor, SizeSource source, float given_m);
 
 // The effective radius of particles of default density whose mean mass is `mass_kg`. It is larger
 // than the radius r_v of the sphere of that mass, depending on the size distribution. Droplets:

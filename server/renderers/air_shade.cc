@@ -86,6 +86,7 @@ absl::Status AirShade::HideSky(const ResidentMedium& medium, const scene::Scene&
                static_cast<float>(kHiddenStepInCells * std::min({cell_m.x, cell_m.y, cell_m.z})));
   program->Set(uniform::light_weights, medium.Weights(weights.light));
   program->Set(uniform::transport_weights, medium.Weights(weights.transport));
+  program->Set(uniform::absorption_weights, medium.Weights(weights.absorption));
   sky_hidden_.BindImage(shaders::kSkyHiddenImage, GL_WRITE_ONLY);
   program->Use();
   const glm::ivec3 groups = (points + shaders::kLightGroupSide - 1) / shaders::kLightGroupSide;

@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "physics/hydrometeors.h"
+#include "scene/capabilities.h"
 #include "scene/frame_stage.h"
+#include "scene/scene.h"
 
 namespace thunderhead::renderers {
 
@@ -16,5 +18,9 @@ struct Content {
   int ellipsoids = 0;                        // of a cumulus
   std::vector<scene::NotShown> not_shown;
 };
+
+// Adds the parts of `scene` that its technique, which shows `shows`, leaves out. `content` has its
+// fields.
+void AddNotShown(const scene::Scene& scene, const scene::Capabilities& shows, Content* content);
 
 }  // namespace thunderhead::renderers

@@ -31,6 +31,8 @@ class RendererPool {
                                    const std::shared_ptr<const volume::HydrometeorFields>& fields,
                                    const DrawQuality& quality);
 
+  const std::shared_ptr<gl::ProgramCache>& Programs() const { return programs_; }
+
  private:
   SceneRenderer& Choose(const scene::Scene& scene,
                         const std::shared_ptr<const volume::HydrometeorFields>& fields);

@@ -112,10 +112,7 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& scene, const
       workspace_.ground.ClearShadow();
     }
     if (!quality.places) {
-      THUNDERHEAD_RETURN_IF_ERROR(Timed(scene::FrameStage::kAir, &times, [&] {
-        return workspace_.surroundings.ShadeAir(scene, view, workspace_.ground, Box(),
-                                                workspace_.medium);
-      }));
+      THUNDERHEAD_RETURN_IF_ERROR(ShadeAir(scene, view, &times));
       THUNDERHEAD_RETURN_IF_ERROR(Timed(scene::FrameStage::kComposite, &times, [&] {
         return Composite(scene, view, quality.single_precision ? GL_RGBA32F : GL_RGBA16F, cover);
       }));
@@ -180,6 +177,18 @@ absl::Status SceneRenderer::DrawGround(RenderSettings* settings, StageTimes* tim
   });
 }
 
+absl::Status SceneRenderer::ShadeAir(const scene::Scene& scene, const scene::View& view,
+                                     StageTimes* times) {
+  if (!workspace_.ground.HasShadow()) {
+    workspace_.surroundings.LightAllAir();
+    return absl::OkStatus();
+  }
+  return Timed(scene::FrameStage::kAir, times, [&] {
+    return workspace_.surroundings.ShadeAir(scene, view, workspace_.ground, Box(),
+                                            workspace_.medium);
+  });
+}
+
 const gl::Texture2D& SceneRenderer::Eye() const {
   return technique_->Empty() ? nothing_ : technique_->Eye();
 }
@@ -224,11 +233,7 @@ LinearFrame SceneRenderer::Report(const scene::Scene& scene,
   frame.slices = drawn_slices_;
   frame.device_bytes = Bytes();
   const TechniqueFactory& factory = *registry_->Find(scene::NameOf(scene.rendering.technique));
-  if (!scene.lights.empty() && !factory.Capabilities().lights) {
-    frame.content.not_shown.push_back(
-        {scene::NotShown::Code::kLights,
-         "lights besides the sun (metaballs and the reference show them)"});
-  }
+  AddNotShown(scene, factory.Capabilities(), &frame.content);
   return frame;
 }
 

@@ -67,6 +67,7 @@ class SceneRenderer {
                                            StageTimes* times);
   // The storm's shadow, and the distance of ground that hides a part of the storm.
   absl::Status DrawGround(RenderSettings* settings, StageTimes* times);
+  absl::Status ShadeAir(const scene::Scene& scene, const scene::View& view, StageTimes* times);
   const gl::Texture2D& Eye() const;
   // Around what was drawn.
   volume::WorldBox Box() const;

@@ -207,8 +207,6 @@ void SkyAndGround::BindAir(const gl::Program& program, const scene::Scene& scene
 absl::Status SkyAndGround::ShadeAir(const scene::Scene& scene, const scene::View& view,
                                     const Ground& ground, const volume::WorldBox& box,
                                     const ResidentMedium& medium) {
-  air_shade_.Clear();
-  if (!ground.HasShadow()) return absl::OkStatus();
   THUNDERHEAD_RETURN_IF_ERROR(air_shade_.HideSky(medium, scene, ground.Lowest_m()));
   return air_shade_.Cast(scene, view, ground, box);
 }

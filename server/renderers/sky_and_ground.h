@@ -37,7 +37,9 @@ class SkyAndGround {
   // The light of sky and ground on a white surface, as LightMapOf gives it.
   std::vector<glm::vec3> LightMap(const scene::Scene& scene) const;
 
-  // Shades the air by what is in `box`, whose shadow on the ground is known; `medium` may be empty.
+  // Air and skylight without a storm's shadow.
+  void LightAllAir() { air_shade_.Clear(); }
+  // Shades them by what is in `box`, whose shadow the ground has; `medium` may be empty.
   absl::Status ShadeAir(const scene::Scene& scene, const scene::View& view, const Ground& ground,
                         const volume::WorldBox& box, const ResidentMedium& medium);
 

@@ -1,6 +1,10 @@
 // The parts of a scene that a technique can show; read by the server, the page and the tables.
 #pragma once
 
+#include <span>
+
+#include "scene/transport.h"
+
 namespace thunderhead::scene {
 
 struct Capabilities {
@@ -10,8 +14,7 @@ struct Capabilities {
   bool traced_light = false;  // correction by traced paths
   bool slices = false;        // pictures depend on a number of slices or samples
   bool images = true;         // drawn by a renderer; false: traced beside the renderers
-
-  bool operator==(const Capabilities&) const = default;
+  std::span<const Transport> transports = {};  // that it accepts, its default first; static
 };
 
 }  // namespace thunderhead::scene

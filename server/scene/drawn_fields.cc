@@ -12,8 +12,7 @@ physics::PhaseFunction PhaseShown(const Scene& scene, const volume::HydrometeorF
     return physics::PhaseOf(scene.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].optics);
   }
   const FieldParameters& parameters = scene.fields[physics::IndexOf(field.hydrometeor)];
-  return physics::PhaseOf(
-      volume::WithDrawnRadius(field, parameters.optics, parameters.size_from_file));
+  return physics::PhaseOf(volume::WithDrawnRadius(field, parameters.optics, parameters.sizes));
 }
 
 }  // namespace
@@ -33,8 +32,7 @@ std::vector<DrawnField> DrawnFieldsOf(const Scene& scene, const volume::Hydromet
     DrawnField entry;
     entry.index = i;
     entry.hydrometeor = field.hydrometeor;
-    entry.mass_extinction =
-        volume::MassExtinctionOf(field, parameters.optics, parameters.size_from_file);
+    entry.mass_extinction = volume::MassExtinctionOf(field, parameters.optics, parameters.sizes);
     entry.mass_extinction.m2_per_kg *= parameters.scale;
     entry.albedo = parameters.optics.albedo;
     entry.phase = PhaseShown(scene, field, look);

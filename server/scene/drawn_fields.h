@@ -19,7 +19,7 @@ struct DrawnField {
   std::size_t index = 0;  // into HydrometeorFields::fields
   physics::Hydrometeor hydrometeor{};
   // Of the mixing ratio in the file: the scene's scale is in it. By cell where the sizes are the
-  // file's.
+  // model's.
   volume::MassExtinction mass_extinction;
   float albedo = 1.0F;
   physics::PhaseFunction phase;  // by physics::PhaseOf

@@ -45,7 +45,7 @@ Stage DirtiedByTheRest(const Scene& before, const Scene& after) {
 
 bool FieldParameters::operator==(const FieldParameters& other) const {
   return visible == other.visible && scale == other.scale && SameOptics(optics, other.optics) &&
-         size_from_file == other.size_from_file && detail == other.detail;
+         sizes == other.sizes && detail == other.detail;
 }
 
 Detail DefaultDetail(physics::Hydrometeor hydrometeor) {

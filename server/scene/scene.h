@@ -13,6 +13,7 @@
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 #include "physics/hydrometeors.h"
+#include "physics/particle_size.h"
 #include "scene/stage.h"
 #include "scene/technique.h"
 
@@ -40,10 +41,9 @@ Detail DefaultDetail(physics::Hydrometeor hydrometeor);
 // How one hydrometeor field is drawn.
 struct FieldParameters {
   bool visible = true;
-  float scale = 1.0F;  // multiplies the mixing ratio
-  physics::ParticleOptics optics{};
-  bool size_from_file =
-      true;  // radii of each cell in place of optics.radius_m, if the file has any
+  float scale = 1.0F;                // multiplies the mixing ratio
+  physics::ParticleOptics optics{};  // whose radius counts if the sizes are given
+  physics::SizeSource sizes = physics::SizeSource::kModel;
   Detail detail;
 
   bool operator==(const FieldParameters&) const;

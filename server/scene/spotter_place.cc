@@ -69,12 +69,12 @@ CoreView CoreViewOf(const SpotterCamera& camera, const volume::HydrometeorFields
 class Stands {
  public:
   Stands(const volume::HydrometeorFields& fields, const volume::StormCore& core,
-         double aspect_ratio)
+         physics::SizeSource sizes, double aspect_ratio)
       : fields_(fields),
         core_(core),
         aspect_ratio_(aspect_ratio),
         scale_(std::min(core.Height_m() / kTallTower_m, 1.0)),
-        sight_(fields, core) {}
+        sight_(fields, core, sizes) {}
 
   // `camera` on the side from which it looks to `azimuth_deg`, as near as shows the top and is
   // clear of cloud and rain.
@@ -136,8 +136,8 @@ SpotterCamera OnBestSide(const Stands& stands, const SpotterCamera& camera) {
 
 SpotterCamera SpottingCore(SpotterCamera camera, SpottersSide side,
                            const volume::HydrometeorFields& fields, const volume::StormCore& core,
-                           double aspect_ratio) {
-  const Stands stands(fields, core, aspect_ratio);
+                           physics::SizeSource sizes, double aspect_ratio) {
+  const Stands stands(fields, core, sizes, aspect_ratio);
   camera = side == SpottersSide::kBest ? OnBestSide(stands, camera)
                                        : stands.Standing(camera, camera.azimuth_deg);
   return LookingAt(camera, fields, core, aspect_ratio);

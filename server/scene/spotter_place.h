@@ -20,7 +20,7 @@ enum class SpottersSide { kBest, kOppositeAzimuth };
 // cloud or rain around the eye. If the lens is too long for that, the top is cut off.
 SpotterCamera SpottingCore(SpotterCamera camera, SpottersSide side,
                            const volume::HydrometeorFields& fields, const volume::StormCore& core,
-                           double aspect_ratio);
+                           physics::SizeSource sizes, double aspect_ratio);
 
 // The spotter where it stands, its head turned to the core, as above.
 SpotterCamera LookingAt(SpotterCamera camera, const volume::HydrometeorFields& fields,

@@ -90,20 +90,14 @@ class PictureJob {
   absl::Status ReadAndSubmit() {
     if (*cancelled_) return absl::CancelledError("the call was cancelled");
     v1::Scene& scene = *response_.mutable_scene();
-    base::Stopwatch stopwatch;
+    const base::Stopwatch stopwatch;
     THUNDERHEAD_ASSIGN_OR_RETURN(
         auto fields, ReadFields(engine_.store, scene.storm_id(),
                                 static_cast<int>(scene.time_index()), "scene.storm_id"));
     ToMessage({scene::FrameStage::kRead, stopwatch.ElapsedMs()}, *response_.add_stages());
     FrameCondensate(scene, *fields);
-    const scene::Scene drawn = ToScene(scene);
-    stopwatch.Restart();
-    THUNDERHEAD_RETURN_IF_ERROR(OfScene(engine_.loop.Prepare(drawn, fields)));
-    if (std::holds_alternative<scene::Metaballs>(drawn.rendering.technique)) {
-      ToMessage({scene::FrameStage::kFit, stopwatch.ElapsedMs()}, *response_.add_stages());
-    }
     engine_.loop.RenderImage(
-        {drawn, std::move(fields), cancelled_,
+        {ToScene(scene), std::move(fields), cancelled_,
          [this](absl::StatusOr<session::DisplayFrame> picture) { Drawn(std::move(picture)); },
          [this](const session::ImageProgress& progress) { listener_.Progressed(progress); }});
     return absl::OkStatus();

@@ -38,6 +38,18 @@ constexpr std::array kPhaseKinds = {
     std::pair{v1::PhaseFunction::KIND_ICE_PLATES, physics::PhaseKind::kIcePlates},
     std::pair{v1::PhaseFunction::KIND_ICE_ROUGH, physics::PhaseKind::kIceRough},
 };
+constexpr std::array kSizeSources = {
+    std::pair{v1::PARTICLE_SIZES_MODEL, physics::SizeSource::kModel},
+    std::pair{v1::PARTICLE_SIZES_PAPERS, physics::SizeSource::kPapers},
+    std::pair{v1::PARTICLE_SIZES_GIVEN, physics::SizeSource::kGiven},
+};
+constexpr std::array kSizeOrigins = {
+    std::pair{v1::FieldDescription::SIZE_ORIGIN_EFFECTIVE_RADIUS,
+              volume::SizeOrigin::kEffectiveRadius},
+    std::pair{v1::FieldDescription::SIZE_ORIGIN_NUMBER, volume::SizeOrigin::kNumber},
+    std::pair{v1::FieldDescription::SIZE_ORIGIN_SCHEME, volume::SizeOrigin::kScheme},
+    std::pair{v1::FieldDescription::SIZE_ORIGIN_OBSERVED, volume::SizeOrigin::kObserved},
+};
 constexpr std::array kToneMaps = {
     std::pair{v1::TONE_MAP_FILMIC, scene::ToneMap::kFilmic},
     std::pair{v1::TONE_MAP_LINEAR, scene::ToneMap::kLinear},
@@ -87,8 +99,11 @@ void FillFieldDefaults(v1::FieldParameters& field, physics::Hydrometeor hydromet
   const physics::ParticleOptics& optics = physics::DefaultOptics(hydrometeor);
   field.set_hydrometeor(ToMessage(hydrometeor));
   if (!field.has_visible()) field.set_visible(true);
-  if (!field.has_size_from_file()) field.set_size_from_file(true);
-  if (!field.has_radius_m()) field.set_radius_m(optics.radius_m);
+  if (field.has_radius_m()) {
+    field.set_sizes(v1::PARTICLE_SIZES_GIVEN);
+  } else if (field.sizes() == v1::PARTICLE_SIZES_GIVEN) {
+    field.set_radius_m(optics.radius_m);
+  }
   if (!field.has_density_kg_per_m3()) field.set_density_kg_per_m3(optics.density_kg_per_m3);
   if (!field.has_albedo()) field.set_albedo(optics.albedo);
   v1::PhaseFunction& phase = *field.mutable_phase();
@@ -124,12 +139,14 @@ std::optional<int> FirstWith(const Repeated& fields, v1::Hydrometeor hydrometeor
   return std::nullopt;
 }
 
-scene::FieldParameters ToField(const v1::FieldParameters& message) {
-  scene::FieldParameters field;
+// `field` is of the message's hydrometeor and has the scene's sizes.
+void SetField(const v1::FieldParameters& message, scene::FieldParameters& field) {
   field.visible = message.visible();
-  field.size_from_file = message.size_from_file();
+  if (message.sizes() != v1::PARTICLE_SIZES_UNSPECIFIED) {
+    field.sizes = ValueOf(kSizeSources, message.sizes());
+  }
   field.scale = message.scale();
-  field.optics.radius_m = message.radius_m();
+  if (message.has_radius_m()) field.optics.radius_m = message.radius_m();
   field.optics.density_kg_per_m3 = message.density_kg_per_m3();
   field.optics.albedo = message.albedo();
   field.optics.phase = {ValueOf(kPhaseKinds, message.phase().kind()), message.phase().asymmetry()};
@@ -138,7 +155,6 @@ scene::FieldParameters ToField(const v1::FieldParameters& message) {
   const v1::Detail& detail = message.detail();
   field.detail = {detail.share(), detail.wavelength_m(), static_cast<int>(detail.octaves()),
                   detail.seed()};
-  return field;
 }
 
 scene::DirectionalLight ToLight(const v1::DirectionalLight& message) {
@@ -175,6 +191,18 @@ void SetGrid(const volume::RegularGrid& grid, v1::Grid& message) {
   SetPosition(grid.HighCorner_m(), *message.mutable_high());
 }
 
+void SetSizes(const volume::HydrometeorField& field, v1::FieldDescription& message) {
+  const volume::ParticleSizes& sizes = field.sizes;
+  const bool by_scheme = sizes.origin == volume::SizeOrigin::kScheme;
+  message.set_size_origin(MessageOf(kSizeOrigins, sizes.origin));
+  *(by_scheme ? message.mutable_size_scheme() : message.mutable_size_variable()) = sizes.name;
+  message.set_papers_radius_m(physics::PapersRadius_m(field.hydrometeor));
+  if (field.concentration_kg_per_m3.empty()) return;
+  const physics::ParticleOptics& optics = physics::DefaultOptics(field.hydrometeor);
+  message.set_mean_radius_m(
+      volume::WithDrawnRadius(field, optics, physics::SizeSource::kModel).radius_m);
+}
+
 void SetField(const volume::HydrometeorField& field, const volume::RegularGrid& grid,
               v1::FieldDescription& message) {
   const volume::FieldStatistics& statistics = field.statistics;
@@ -191,8 +219,7 @@ void SetField(const volume::HydrometeorField& field, const volume::RegularGrid& 
   message.set_maximum_water_path_kg_per_m2(statistics.maximum_water_path_kg_per_m2);
   message.set_negative_cells(static_cast<std::uint64_t>(statistics.negative_cells));
   message.set_missing_cells(static_cast<std::uint64_t>(statistics.missing_cells));
-  message.set_size_variable(field.sizes.variable);
-  message.set_mean_radius_m(field.sizes.mean_radius_m);
+  if (field.quantity != volume::Quantity::kExtinction) SetSizes(field, message);
   FillFieldDefaults(*message.mutable_defaults(), field.hydrometeor);
   message.mutable_defaults()->mutable_detail()->set_wavelength_m(
       scene::DefaultDetailWavelength_m(grid.spacing_m));
@@ -202,6 +229,11 @@ void SetField(const volume::HydrometeorField& field, const volume::RegularGrid& 
 
 absl::Status CheckScene(const v1::Scene& scene) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckSun(scene.sun()));
+  if (scene.particle_sizes() == v1::PARTICLE_SIZES_GIVEN) {
+    return base::InvalidField("scene.particle_sizes",
+                              "is PARTICLE_SIZES_GIVEN, which is for a field with its radius_m",
+                              "VALUE_UNKNOWN");
+  }
   for (int i = 0; i < scene.fields_size(); ++i) {
     const v1::Hydrometeor hydrometeor = scene.fields(i).hydrometeor();
     const std::string path = absl::StrCat("scene.fields[", i, "].hydrometeor");
@@ -233,6 +265,12 @@ absl::Status CheckScene(const v1::Scene& scene) {
   return absl::OkStatus();
 }
 
+void FillSizesDefault(v1::Scene& scene) {
+  if (scene.particle_sizes() != v1::PARTICLE_SIZES_UNSPECIFIED) return;
+  scene.set_particle_sizes(IsOfThePapers(scene.rendering()) ? v1::PARTICLE_SIZES_PAPERS
+                                                            : v1::PARTICLE_SIZES_MODEL);
+}
+
 void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
   scene.set_storm_id(storm.id);
   v1::Camera& camera = *scene.mutable_camera();
@@ -247,6 +285,7 @@ void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
     white.set_blue(1.0F);
   }
   scene.mutable_output();
+  FillSizesDefault(scene);
   FillTechniqueDefaults(*scene.mutable_rendering());
   v1::Display& display = *scene.mutable_display();
   display.set_tone_map(MessageOf(kToneMaps, ValueOf(kToneMaps, display.tone_map())));
@@ -258,6 +297,10 @@ void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
   FillNumberDefaults(scene);
 }
 
+physics::SizeSource SizesOf(const v1::Scene& scene) {
+  return ValueOf(kSizeSources, scene.particle_sizes());
+}
+
 scene::Scene ToScene(const v1::Scene& message) {
   scene::Scene scene;
   scene.storm_id = message.storm_id();
@@ -267,8 +310,9 @@ scene::Scene ToScene(const v1::Scene& message) {
                message.sun().irradiance()};
   scene.sky = {message.sky().brightness(), message.sky().ground_albedo(),
                message.sky().turbidity()};
+  for (scene::FieldParameters& field : scene.fields) field.sizes = SizesOf(message);
   for (const v1::FieldParameters& field : message.fields()) {
-    scene.fields[IndexOf(field.hydrometeor())] = ToField(field);
+    SetField(field, scene.fields[IndexOf(field.hydrometeor())]);
   }
   for (const v1::DirectionalLight& light : message.lights()) {
     scene.lights.push_back(ToLight(light));

@@ -19,8 +19,15 @@ namespace thunderhead::service {
 // sun, the number of pixels.
 absl::Status CheckScene(const v1::Scene& scene);
 
+// Fills in the source of the particles' sizes: a preset of the papers stands for their constants.
+// Comes before the technique's defaults, which replace the preset.
+void FillSizesDefault(v1::Scene& scene);
+
 // Fills in every default except those that depend on the storm's fields.
 void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm);
+
+// Where the particles' sizes of a scene come from whose defaults are filled in.
+physics::SizeSource SizesOf(const v1::Scene& scene);
 
 // The value of a scene whose defaults are filled in.
 scene::Scene ToScene(const v1::Scene& message);

@@ -54,10 +54,13 @@ constexpr std::array kPresets = {
               accuracy::Preset::kPerFieldPhaseDetailTranslucent},
 };
 
-using Transports = std::initializer_list<v1::Transport>;
-
-absl::Status CheckTransport(const std::string& path, v1::Transport given,
-                            const Transports& accepted) {
+// `path` is the field of the technique, whose settings are `Settings`.
+template <typename Settings>
+absl::Status CheckTransport(const std::string& path, v1::Transport given) {
+  std::vector<v1::Transport> accepted;
+  for (const scene::Transport transport : Settings::kCapabilities.transports) {
+    accepted.push_back(MessageOf(kTransports, transport));
+  }
   if (given == v1::TRANSPORT_UNSPECIFIED ||
       std::find(accepted.begin(), accepted.end(), given) != accepted.end()) {
     return absl::OkStatus();
@@ -231,14 +234,13 @@ scene::Technique DefaultsOf(const v1::Rendering& rendering) {
 absl::Status CheckRendering(const v1::Rendering& rendering,
                             const std::vector<session::TechniqueInfo>& known) {
   switch (rendering.technique_case()) {
+    case v1::Rendering::kLightVolume:
+      return CheckTransport<scene::LightVolume>("light_volume",
+                                                rendering.light_volume().transport());
     case v1::Rendering::kHalfAngle:
-      return CheckTransport("half_angle", rendering.half_angle().transport(),
-                            {v1::TRANSPORT_CONSISTENT, v1::TRANSPORT_PAPER,
-                             v1::TRANSPORT_LOW_ALBEDO, v1::TRANSPORT_PAPER_LOW_ALBEDO});
+      return CheckTransport<scene::HalfAngle>("half_angle", rendering.half_angle().transport());
     case v1::Rendering::kMetaball:
-      return CheckTransport(
-          "metaball", rendering.metaball().transport(),
-          {v1::TRANSPORT_CONSISTENT, v1::TRANSPORT_PAPER, v1::TRANSPORT_LOW_ALBEDO});
+      return CheckTransport<scene::Metaballs>("metaball", rendering.metaball().transport());
     case v1::Rendering::kOther:
       return CheckOther(rendering.other(), known);
     default:
@@ -260,6 +262,11 @@ void FillTechniqueDefaults(v1::Rendering& rendering) {
     }
   }
   rendering = filled;
+}
+
+bool IsOfThePapers(const v1::Rendering& rendering) {
+  return rendering.technique_case() == v1::Rendering::kPreset &&
+         accuracy::IsOfThePapers(ValueOf(kPresets, rendering.preset()));
 }
 
 scene::Technique ToTechnique(const v1::Rendering& rendering) {
@@ -296,6 +303,9 @@ void ToMessage(const session::TechniqueInfo& technique, v1::TechniqueDescription
   message.set_shows_traced_light(technique.capabilities.traced_light);
   message.set_has_slices(technique.capabilities.slices);
   message.set_draws_images(technique.capabilities.images);
+  for (const scene::Transport transport : technique.capabilities.transports) {
+    message.add_transports(MessageOf(kTransports, transport));
+  }
 }
 
 void AddPresets(v1::GetServerInfoResponse& response) {

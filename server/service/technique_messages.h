@@ -20,6 +20,9 @@ absl::Status CheckRendering(const v1::Rendering& rendering,
 // technique's defaults.
 void FillTechniqueDefaults(v1::Rendering& rendering);
 
+// True if a preset of the papers is asked for.
+bool IsOfThePapers(const v1::Rendering& rendering);
+
 // The value of a technique whose defaults are filled in.
 scene::Technique ToTechnique(const v1::Rendering& rendering);
 

@@ -106,10 +106,11 @@ class FrameSource {
       const std::shared_ptr<const volume::HydrometeorFields>& fields) = 0;
 
   // Traces paths for a scene with traced light for about a tenth of a second, which improves the
-  // next Draw of it. RESOURCE_EXHAUSTED while light is traced for too many other scenes.
+  // next Draw of it. RESOURCE_EXHAUSTED while light is traced for too many other scenes. `claim`,
+  // which may be null, is given a claim on what is traced for the scene.
   virtual absl::StatusOr<accuracy::LightProgress> TraceLight(
-      const scene::Scene& scene,
-      const std::shared_ptr<const volume::HydrometeorFields>& fields) = 0;
+      const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
+      accuracy::LightClaim* claim) = 0;
 
   // Tone maps a picture of `scene` computed elsewhere. Does not disturb the stages that Draw keeps.
   virtual absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,

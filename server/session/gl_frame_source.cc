@@ -59,9 +59,9 @@ class GlFrameSource final : public FrameSource {
   }
 
   absl::StatusOr<accuracy::LightProgress> TraceLight(
-      const scene::Scene& scene,
-      const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
-    return correctors_.Trace(scene, fields);
+      const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
+      accuracy::LightClaim* claim) override {
+    return correctors_.Trace(scene, fields, claim);
   }
 
   absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
@@ -124,7 +124,7 @@ class GlFrameSource final : public FrameSource {
   std::shared_ptr<const renderers::TechniqueRegistry> registry_ =
       std::make_shared<renderers::TechniqueRegistry>(renderers::TechniqueRegistry::BuiltIn());
   renderers::RendererPool renderers_{registry_};
-  accuracy::CorrectorPool correctors_;
+  accuracy::CorrectorPool correctors_{renderers_.Programs()};
   frame::ToneMapper tone_mapper_;
   frame::ToneMapper picture_tone_mapper_;  // of Tone, whose pictures have other sizes
   DeviceInfo info_;

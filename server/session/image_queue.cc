@@ -47,6 +47,11 @@ void ImageQueue::PutBack(ImageJob job) {
   waiting_.push_back(std::move(job));
 }
 
+std::size_t ImageQueue::Count() {
+  const std::lock_guard lock(mutex_);
+  return waiting_.size();
+}
+
 std::optional<ImageJob> ImageQueue::Take() {
   std::vector<ImageJob> cancelled;
   std::optional<ImageJob> next;

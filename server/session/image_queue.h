@@ -24,6 +24,13 @@ struct ImageProgress {
   std::optional<double> estimated_error;  // of the picture with these paths
 };
 
+// What a picture needs once before it is drawn (renderers::Preparation), done on another thread.
+struct ImagePreparation {
+  std::atomic<bool> ended{false};  // set last
+  absl::Status status;
+  double milliseconds = 0.0;
+};
+
 // One picture at full quality, outside any session.
 struct ImageJob {
   scene::Scene scene;
@@ -36,6 +43,10 @@ struct ImageJob {
   std::function<void(const ImageProgress&)> on_progress = nullptr;
   // The scene with its decided setting; none before the first turn.
   std::optional<scene::Scene> decided = std::nullopt;
+  // Of the decided scene; null while it has not begun, or is not needed.
+  std::shared_ptr<const ImagePreparation> preparation = nullptr;
+  // On the light that it waits for.
+  accuracy::LightClaim light = nullptr;
 };
 
 class ImageQueue {
@@ -47,6 +58,8 @@ class ImageQueue {
   bool Add(ImageJob job);
   // Queues a job that was begun but is not done behind the others.
   void PutBack(ImageJob job);
+  // The number of waiting jobs.
+  std::size_t Count();
   // Takes the next job; drops cancelled ones and calls their `done`.
   std::optional<ImageJob> Take();
   // Refuses all waiting and future jobs.

@@ -24,6 +24,9 @@ class LightTracing {
   // Records that the picture was drawn with the light traced so far.
   void Shown(Clock::time_point now);
 
+  // Ends tracing for the revision after a step that failed.
+  void GiveUp() { ended_ = true; }
+
   // True if no more light is traced for the revision.
   bool ended() const { return ended_; }
 

@@ -32,8 +32,9 @@ absl::StatusOr<CheckedFrame> MeasuredSource::DrawChecked(const std::string& view
 }
 
 absl::StatusOr<accuracy::LightProgress> MeasuredSource::TraceLight(const scene::Scene& scene,
-                                                                   const Fields& fields) {
-  return source_->TraceLight(scene, fields);
+                                                                   const Fields& fields,
+                                                                   accuracy::LightClaim* claim) {
+  return source_->TraceLight(scene, fields, claim);
 }
 
 absl::StatusOr<DisplayFrame> MeasuredSource::Tone(const picture::LinearPicture& picture,

@@ -32,7 +32,8 @@ class MeasuredSource {
                                            const Fields& fields);
   // As FrameSource's.
   absl::StatusOr<accuracy::LightProgress> TraceLight(const scene::Scene& scene,
-                                                     const Fields& fields);
+                                                     const Fields& fields,
+                                                     accuracy::LightClaim* claim = nullptr);
   absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
                                     const scene::Scene& scene);
 

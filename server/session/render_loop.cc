@@ -53,12 +53,6 @@ void RenderLoop::Stop() {
   encoder_.reset();
 }
 
-absl::Status RenderLoop::Prepare(
-    const scene::Scene& scene,
-    const std::shared_ptr<const volume::HydrometeorFields>& fields) const {
-  return preparation_ == nullptr ? absl::OkStatus() : preparation_->Prepare(scene, fields);
-}
-
 void RenderLoop::RenderImage(ImageJob job) {
   if (images_.Add(std::move(job))) wake_.Notify();
 }
@@ -79,7 +73,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source) {
   MeasuredSource measured(std::move(source), options_.offer_tables());
   SessionDrawer drawer(options_.targets, {store_, *reader_, preparation_}, measured, *encoder_,
                        *tracer_);
-  ImageDrawer image_drawer(images_, measured);
+  ImageDrawer image_drawer(images_, measured, preparation_, [this] { wake_.Notify(); });
   Turns turns;
   while (!stopping_) {
     const std::vector<std::shared_ptr<Session>> sessions = sessions_.All();

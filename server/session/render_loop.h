@@ -53,11 +53,6 @@ class RenderLoop {
   // In the order in which to offer them.
   const std::vector<TechniqueInfo>& Techniques() const { return techniques_; }
 
-  // Does in advance the work on the CPU that drawing `scene` needs, so that it does not hold up the
-  // loop; blocks. From any thread.
-  absl::Status Prepare(const scene::Scene& scene,
-                       const std::shared_ptr<const volume::HydrometeorFields>& fields) const;
-
   void RenderImage(ImageJob job);
 
   // Stops drawing after the current frame. Returns at once.

@@ -4,7 +4,10 @@
 #include <utility>
 #include <variant>
 
+#include "absl/strings/str_cat.h"
+#include "base/log.h"
 #include "base/status.h"
+#include "renderers/content.h"
 #include "scene/drawn_fields.h"
 
 namespace thunderhead::session {
@@ -104,24 +107,31 @@ TurnOutcome SessionDrawer::Do(const Turn& turn, const TraceLight& work) {
   const NewestScene& shown = work.shown;
   const auto progress = source_.TraceLight(*shown.scene, turn.kept.fields.Fields());
   if (absl::IsResourceExhausted(progress.status())) return {false, Clock::now() + kTraceAgainAfter};
-  if (!progress.ok()) {
-    Fail(turn, shown.revision, progress.status());
-    return {};
+  std::optional<scene::NotShown> not_shown;
+  if (progress.ok()) {
+    const bool show = turn.kept.view.LightTraced(*progress, Clock::now());
+    if (!show) return {!turn.kept.view.LightIsTraced(), std::nullopt};
+  } else {
+    base::LogError(base::Annotate(
+        progress.status(), absl::StrCat("tracing the light of storm ", shown.scene->storm_id)));
+    turn.kept.view.LightFailed();
+    not_shown = {scene::NotShown::Code::kTracedLight,
+                 absl::StrCat("traced light: ", progress.status().message())};
   }
-  const bool show = turn.kept.view.LightTraced(*progress, Clock::now());
-  if (!show) return {!turn.kept.view.LightIsTraced(), std::nullopt};
-  if (const absl::Status shows = ShowLight(turn, shown); !shows.ok()) {
+  if (const absl::Status shows = ShowLight(turn, shown, not_shown); !shows.ok()) {
     Fail(turn, shown.revision, shows);
     return {};
   }
   return {true, std::nullopt};
 }
 
-absl::Status SessionDrawer::ShowLight(const Turn& turn, const NewestScene& shown) {
+absl::Status SessionDrawer::ShowLight(const Turn& turn, const NewestScene& shown,
+                                      const std::optional<scene::NotShown>& not_shown) {
   THUNDERHEAD_ASSIGN_OR_RETURN(
       DisplayFrame picture,
       source_.Draw(turn.session->id(), *shown.scene, turn.kept.fields.Fields(), FrameQuality{},
                    turn.kept.view.discretisation_error()));
+  if (not_shown.has_value()) picture.modelled.content.not_shown.push_back(*not_shown);
   turn.kept.view.LightShown(Clock::now());
   Send(turn, {turn.session, shown.revision, *shown.scene, true, std::move(picture), std::nullopt});
   return absl::OkStatus();
@@ -146,6 +156,7 @@ absl::StatusOr<bool> SessionDrawer::ShowTraced(const Turn& turn, const NewestSce
   picture.modelled.technique = scene::Reference::kName;
   picture.modelled.content.fields =
       scene::HydrometeorsOf(scene::DrawnFieldsOf(*shown.scene, *fields));
+  renderers::AddNotShown(*shown.scene, scene::Reference::kCapabilities, &picture.modelled.content);
   Send(turn, {turn.session, shown.revision, *shown.scene, traced.full_size, std::move(picture),
               traced.refinement});
   return true;

@@ -53,7 +53,9 @@ class SessionDrawer {
   TurnOutcome Do(const Turn& turn, const TraceLight& work);
   TurnOutcome Do(const Turn& turn, const ShowReference& work);
 
-  absl::Status ShowLight(const Turn& turn, const NewestScene& shown);
+  // The picture once more, with the light traced so far; it says that `not_shown` is missing.
+  absl::Status ShowLight(const Turn& turn, const NewestScene& shown,
+                         const std::optional<scene::NotShown>& not_shown);
   absl::StatusOr<bool> ShowTraced(const Turn& turn, const NewestScene& shown);
   void Send(const Turn& turn, DrawnFrame frame);
   void Fail(const Turn& turn, std::uint64_t revision, const absl::Status& why);

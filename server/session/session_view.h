@@ -69,6 +69,8 @@ class SessionView {
   void Checked(double discretisation_error);
   // True if the caller should draw the picture with the light traced so far and call LightShown.
   bool LightTraced(const accuracy::LightProgress& progress, Clock::time_point now);
+  // The picture stays, with the light traced before.
+  void LightFailed() { light_.GiveUp(); }
   void LightShown(Clock::time_point now) { light_.Shown(now); }
   void ReferenceShown(std::uint64_t revision) { planner_.GiveUp(revision); }
   // That revision is not tried again.

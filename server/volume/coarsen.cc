@@ -55,7 +55,7 @@ HydrometeorFields Coarsened(const HydrometeorFields& fields, const glm::ivec3& f
     mean.concentration_kg_per_m3 =
         BlockMeans(fields.grid, coarse.grid, factor, field.concentration_kg_per_m3);
     if (field.sizes.Empty()) continue;
-    mean.sizes = SizesOf(field.sizes.variable, mean.concentration_kg_per_m3,
+    mean.sizes = SizesOf(field.sizes, mean.concentration_kg_per_m3,
                          BlockMeans(fields.grid, coarse.grid, factor, PerRadius(field)));
   }
   if (!fields.condensate.Empty()) {

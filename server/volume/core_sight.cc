@@ -33,12 +33,13 @@ bool Falls(physics::Hydrometeor hydrometeor) {
 
 }  // namespace
 
-CoreSight::CoreSight(const HydrometeorFields& fields, const StormCore& core)
+CoreSight::CoreSight(const HydrometeorFields& fields, const StormCore& core,
+                     physics::SizeSource sizes)
     : fields_(fields), core_(core) {
   for (const HydrometeorField& field : fields.fields) {
     if (field.concentration_kg_per_m3.empty()) continue;
     const Term term{&field,
-                    MassExtinctionOf(field, physics::DefaultOptics(field.hydrometeor), true)};
+                    MassExtinctionOf(field, physics::DefaultOptics(field.hydrometeor), sizes)};
     all_.push_back(term);
     if (Falls(field.hydrometeor)) precipitation_.push_back(term);
   }

@@ -1,5 +1,5 @@
 // What an eye sees of a storm's core: how much of its base and of its tower condensate or terrain
-// hides. Uses the default optics; knows no scene.
+// hides. Of the optics only the particles' sizes are a scene's; knows no scene.
 #pragma once
 
 #include <vector>
@@ -15,7 +15,8 @@ namespace thunderhead::volume {
 class CoreSight {
  public:
   // `fields` must outlive it.
-  CoreSight(const HydrometeorFields& fields, const StormCore& core);
+  CoreSight(const HydrometeorFields& fields, const StormCore& core,
+            physics::SizeSource sizes = physics::SizeSource::kModel);
 
   // The share of the light from the lowest quarter of the tower, and at most 2 km, that rain, snow,
   // graupel and hail keep from `eye_m`.

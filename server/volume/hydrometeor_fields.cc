@@ -1,5 +1,7 @@
 #include "volume/hydrometeor_fields.h"
 
+#include <algorithm>
+
 namespace thunderhead::volume {
 
 std::string_view UnitOf(Quantity quantity) {
@@ -15,10 +17,11 @@ std::string_view UnitOf(Quantity quantity) {
 }
 
 MassExtinction MassExtinctionOf(const HydrometeorField& field,
-                                const physics::ParticleOptics& optics, bool size_from_file) {
+                                const physics::ParticleOptics& optics, physics::SizeSource sizes) {
   if (field.quantity == Quantity::kExtinction) return {1.0F, false};
-  const bool by_cell = size_from_file && !field.sizes.Empty();
-  const float radius_m = by_cell ? 1.0F : optics.radius_m;
+  const bool by_cell = sizes == physics::SizeSource::kModel && !field.sizes.Empty();
+  const float radius_m =
+      by_cell ? 1.0F : physics::ConstantRadius_m(field.hydrometeor, sizes, optics.radius_m);
   return {physics::MassExtinction_m2_per_kg(optics.density_kg_per_m3, radius_m), by_cell};
 }
 
@@ -30,17 +33,20 @@ void AddExtinction(const HydrometeorField& field, const MassExtinction& mass_ext
     for (std::size_t i = 0; i < count; ++i) sums[i * stride] += concentration[i] * weight;
     return;
   }
-  const std::uint16_t* inverse_radius = field.sizes.inverse_radius.data() + offset;
-  for (std::size_t i = 0; i < count; ++i) {
-    sums[i * stride] += concentration[i] * weight * InverseRadius_per_m(inverse_radius[i]);
+  // Cells beyond those that have sizes are empty.
+  const std::size_t low = std::max(offset, field.sizes.first_cell);
+  const std::size_t high = std::min(offset + count, field.sizes.EndCell());
+  for (std::size_t cell = low; cell < high; ++cell) {
+    const std::size_t i = cell - offset;
+    sums[i * stride] += concentration[i] * weight * InverseRadius_per_m(field.sizes, cell);
   }
 }
 
 physics::ParticleOptics WithDrawnRadius(const HydrometeorField& field,
-                                        physics::ParticleOptics optics, bool size_from_file) {
-  if (size_from_file && field.sizes.mean_radius_m > 0.0F) {
-    optics.radius_m = field.sizes.mean_radius_m;
-  }
+                                        physics::ParticleOptics optics, physics::SizeSource sizes) {
+  const bool by_cell = sizes == physics::SizeSource::kModel && field.sizes.mean_radius_m > 0.0F;
+  optics.radius_m = by_cell ? field.sizes.mean_radius_m
+                            : physics::ConstantRadius_m(field.hydrometeor, sizes, optics.radius_m);
   return optics;
 }
 

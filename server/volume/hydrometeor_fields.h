@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "physics/hydrometeors.h"
+#include "physics/particle_size.h"
 #include "volume/grid.h"
 #include "volume/particle_sizes.h"
 
@@ -40,7 +41,7 @@ struct HydrometeorField {
       concentration_kg_per_m3;  // grid.CellCount() values, x fastest; empty if all are zero. Of
                                 // Quantity::kExtinction: extinction in 1/m, a mass of 1 m2/kg
   FieldStatistics statistics;
-  ParticleSizes sizes;  // from the file, by cell; may be empty
+  ParticleSizes sizes;  // as the model has them
 };
 
 // Extinction (1/m) per concentration (kg/m3) of a field.
@@ -49,19 +50,19 @@ struct MassExtinction {
   bool by_cell = false;  // `m2_per_kg` is for a radius of 1 m and is divided by each cell's own
 };
 
-// The mass extinction of `field` with `optics`, but with the file's radii where it has them and
-// `size_from_file` is true. 1 m2/kg for a field given as extinction, whatever the optics.
+// The mass extinction of `field` with `optics` and the radii that `sizes` tells; that of `optics`
+// counts if they are given. 1 m2/kg for a field given as extinction, whatever the optics.
 MassExtinction MassExtinctionOf(const HydrometeorField& field,
-                                const physics::ParticleOptics& optics, bool size_from_file);
+                                const physics::ParticleOptics& optics, physics::SizeSource sizes);
 
 // Adds the extinction (1/m) of `count` cells from `offset` on to `sums`, which lie `stride` apart.
 void AddExtinction(const HydrometeorField& field, const MassExtinction& mass_extinction,
                    std::size_t offset, std::size_t count, float* sums, std::size_t stride = 1);
 
-// `optics` with the mean radius of all the field's particles, by which their phase function is
-// chosen.
+// `optics` with the effective radius of all the field's particles together, by which their phase
+// function is chosen.
 physics::ParticleOptics WithDrawnRadius(const HydrometeorField& field,
-                                        physics::ParticleOptics optics, bool size_from_file);
+                                        physics::ParticleOptics optics, physics::SizeSource sizes);
 
 // One time of a storm.
 struct HydrometeorFields {

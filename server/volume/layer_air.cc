@@ -38,6 +38,15 @@ void GeopotentialToHeight(const std::vector<float>& base, std::vector<float>& ge
   }
 }
 
+std::vector<float> Temperature(const LayerState& state) {
+  std::vector<float> temperature_K(state.pressure_Pa.size());
+  for (std::size_t i = 0; i < temperature_K.size(); ++i) {
+    temperature_K[i] = static_cast<float>(
+        physics::Temperature_K(state.potential_temperature_K[i], state.pressure_Pa[i]));
+  }
+  return temperature_K;
+}
+
 std::vector<float> DryAirDensity(LayerState state, const std::vector<float>& interface_height_m,
                                  std::size_t columns) {
   std::vector<float> density = std::move(state.pressure_Pa);

@@ -1,4 +1,5 @@
-// Effective radii from a file, cell by cell, instead of one radius for a whole field.
+// Effective radii cell by cell, from a file or the scheme of its model, instead of one radius for a
+// whole field.
 #pragma once
 
 #include <bit>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "physics/hydrometeors.h"
+#include "physics/size_distributions.h"
 
 namespace thunderhead::volume {
 
@@ -17,15 +19,21 @@ struct SizeVariable {
   bool is_count = false;  // particles per kg of dry air, not radii in m
 };
 
-// The radii of one field; empty if the file has none.
+// What a model's sizes follow from, in the order in which the first that there is counts.
+enum class SizeOrigin { kEffectiveRadius, kNumber, kScheme, kObserved };
+
+// The radii of one field; empty if all have the observed constant.
 struct ParticleSizes {
-  std::string variable;  // empty: none
-  // For each cell the half float of 1 / R over kInverseRadiusUnit_per_m; relative error at most
-  // 2^-12.
+  SizeOrigin origin = SizeOrigin::kObserved;
+  std::string name;  // of the file's variable, or of the scheme
+  // For each cell from the first to the last with particles the half float of 1 / R over
+  // kInverseRadiusUnit_per_m; relative error at most 2^-12.
   std::vector<std::uint16_t> inverse_radius;
+  std::size_t first_cell = 0;
   float mean_radius_m = 0.0F;  // effective radius of the whole field
 
   bool Empty() const { return inverse_radius.empty(); }
+  std::size_t EndCell() const { return first_cell + inverse_radius.size(); }
 };
 
 // Radii from 1e-7 to 0.1 m are normal half floats.
@@ -37,15 +45,27 @@ inline float InverseRadius_per_m(std::uint16_t half) {
          std::bit_cast<float>((static_cast<std::uint32_t>(half) << 13U) + 0x38000000U);
 }
 
-// Converts each cell's size variable (a radius or a number of particles) into 1 / R (1/m), in
-// place; cells with an impossible value get the hydrometeor's default radius. `mixing_ratios` are
-// kg per kg of dry air.
-void ToInverseRadius(physics::Hydrometeor hydrometeor, const SizeVariable& variable,
-                     const std::vector<float>& mixing_ratios, std::vector<float>& sizes);
+// 1 / R in 1/m of a cell that has particles.
+inline float InverseRadius_per_m(const ParticleSizes& sizes, std::size_t cell) {
+  return InverseRadius_per_m(sizes.inverse_radius[cell - sizes.first_cell]);
+}
+
+// Converts each cell's size variable (a radius or a number of particles) into a radius (m), in
+// place; impossible values become NaN. `mixing_ratios` are kg per kg of dry air.
+void ToRadius(physics::Hydrometeor hydrometeor, const SizeVariable& variable,
+              const std::vector<float>& mixing_ratios, std::vector<float>& sizes);
+
+// Converts each cell's radius into concentration over radius (kg/m4), in place. A cell whose radius
+// is NaN has that of the scheme's distribution, or else the observed constant.
+// `temperature_K` may be empty where the scheme does not need it.
+void ToConcentrationPerRadius(physics::Hydrometeor hydrometeor, physics::Microphysics microphysics,
+                              const std::vector<float>& concentration_kg_per_m3,
+                              const std::vector<float>& temperature_K, std::vector<float>& radii);
 
 // Sizes of cells from `concentration` (kg/m3) and `concentration_per_radius` (kg/m4) after
-// remapping: R is their ratio, so that extinction, proportional to the latter, is kept.
-ParticleSizes SizesOf(const std::string& variable, const std::vector<float>& concentration,
+// remapping: R is their ratio, so that extinction, proportional to the latter, is kept. `origin`
+// has the origin and its name.
+ParticleSizes SizesOf(const ParticleSizes& origin, const std::vector<float>& concentration,
                       const std::vector<float>& concentration_per_radius);
 
 }  // namespace thunderhead::volume

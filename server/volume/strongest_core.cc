@@ -27,9 +27,9 @@ struct Sums {
 };
 
 void AddField(const HydrometeorField& field, const RegularGrid& grid, const CellBox& box,
-              Sums* sums) {
+              physics::SizeSource sizes, Sums* sums) {
   const MassExtinction mass_extinction =
-      MassExtinctionOf(field, physics::DefaultOptics(field.hydrometeor), true);
+      MassExtinctionOf(field, physics::DefaultOptics(field.hydrometeor), sizes);
   std::vector<float> row(static_cast<std::size_t>(box.high.x - box.low.x));
   for (int z = box.low.z; z < box.high.z; ++z) {
     for (int y = box.low.y; y < box.high.y; ++y) {
@@ -42,13 +42,13 @@ void AddField(const HydrometeorField& field, const RegularGrid& grid, const Cell
   }
 }
 
-Sums SumsOf(const HydrometeorFields& fields, const CellBox& box) {
+Sums SumsOf(const HydrometeorFields& fields, const CellBox& box, physics::SizeSource sizes) {
   Sums sums;
   sums.columns.assign(fields.grid.Offset(0, 0, 1), 0.0);
   sums.levels.assign(static_cast<std::size_t>(fields.grid.cells.z), 0.0);
   if (box.Empty()) return sums;
   for (const HydrometeorField& field : fields.fields) {
-    if (!field.concentration_kg_per_m3.empty()) AddField(field, fields.grid, box, &sums);
+    if (!field.concentration_kg_per_m3.empty()) AddField(field, fields.grid, box, sizes, &sums);
   }
   return sums;
 }
@@ -95,9 +95,9 @@ CellBox Around(const glm::ivec2& column, const glm::ivec2& radius, CellBox box) 
 
 }  // namespace
 
-std::optional<StormCore> StrongestCore(const HydrometeorFields& fields) {
+std::optional<StormCore> StrongestCore(const HydrometeorFields& fields, physics::SizeSource sizes) {
   const RegularGrid& grid = fields.grid;
-  Sums storm = SumsOf(fields, fields.condensate);
+  Sums storm = SumsOf(fields, fields.condensate, sizes);
   if (*std::max_element(storm.columns.begin(), storm.columns.end()) <= 0.0) return std::nullopt;
   const double height_m = TopOf(storm.levels, grid) - LowestTerrain_m(fields);
   const double smoothing_m = std::min(kSmoothingPerHeight * height_m, kWidestSmoothing_m);
@@ -114,7 +114,8 @@ std::optional<StormCore> StrongestCore(const HydrometeorFields& fields) {
   core.ground_m = TerrainHeight_m(fields, core.place_m);
   // A tower in shear leans.
   const glm::ivec2 reach(glm::round(0.5 * height_m / glm::dvec2(grid.spacing_m)));
-  const double top_m = TopOf(SumsOf(fields, Around(column, reach, fields.condensate)).levels, grid);
+  const double top_m =
+      TopOf(SumsOf(fields, Around(column, reach, fields.condensate), sizes).levels, grid);
   core.top_m = std::max(top_m, core.ground_m + grid.spacing_m.z);
   return core;
 }

@@ -1,4 +1,5 @@
-// The strongest core of a storm, for a camera to look at. Uses the default optics; knows no scene.
+// The strongest core of a storm, for a camera to look at. Of the optics
+// only the particles' sizes are a scene's; knows no scene.
 #pragma once
 
 #include <optional>
@@ -22,6 +23,7 @@ struct StormCore {
 // height and at most 3 km, so that no single column decides. Cloud water makes up most of an
 // optical depth, so this is an updraught rather than the rain beside it. The top is the highest
 // within half the storm's height, since a tower in shear leans. Nothing if there is no condensate.
-std::optional<StormCore> StrongestCore(const HydrometeorFields& fields);
+std::optional<StormCore> StrongestCore(const HydrometeorFields& fields,
+                                       physics::SizeSource sizes = physics::SizeSource::kModel);
 
 }  // namespace thunderhead::volume

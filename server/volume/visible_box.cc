@@ -13,9 +13,10 @@ constexpr double kShareLeftOut = 1e-3;
 // Extinction summed over planes across each axis.
 using Profiles = std::array<std::vector<double>, 3>;
 
-void AddField(const HydrometeorFields& fields, const HydrometeorField& field, Profiles* profiles) {
+void AddField(const HydrometeorFields& fields, const HydrometeorField& field,
+              physics::SizeSource sizes, Profiles* profiles) {
   const physics::ParticleOptics& optics = physics::DefaultOptics(field.hydrometeor);
-  const MassExtinction mass_extinction = MassExtinctionOf(field, optics, true);
+  const MassExtinction mass_extinction = MassExtinctionOf(field, optics, sizes);
   const CellBox& box = fields.condensate;
   std::vector<float> row(static_cast<std::size_t>(box.high.x - box.low.x));
   for (int z = box.low.z; z < box.high.z; ++z) {
@@ -48,7 +49,7 @@ std::pair<int, int> Keep(const std::vector<double>& profile) {
 
 }  // namespace
 
-WorldBox VisibleBox(const HydrometeorFields& fields) {
+WorldBox VisibleBox(const HydrometeorFields& fields, physics::SizeSource sizes) {
   const RegularGrid& grid = fields.grid;
   Profiles profiles;
   for (int axis = 0; axis < 3; ++axis) {
@@ -56,7 +57,7 @@ WorldBox VisibleBox(const HydrometeorFields& fields) {
                                                     0.0);
   }
   for (const HydrometeorField& field : fields.fields) {
-    if (!field.concentration_kg_per_m3.empty()) AddField(fields, field, &profiles);
+    if (!field.concentration_kg_per_m3.empty()) AddField(fields, field, sizes, &profiles);
   }
   WorldBox box{grid.low_corner_m, grid.HighCorner_m()};
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,5 @@
-// The box of a domain in which the storm is visible, for a camera to frame. Uses the default
-// optics; knows no scene.
+// The box of a domain in which the storm is visible, for a camera to frame. Of the optics only the
+// particles' sizes are a scene's; knows no scene.
 #pragma once
 
 #include "volume/hydrometeor_fields.h"
@@ -13,6 +13,7 @@ struct WorldBox {
 
 // The box with 0.1 % of the storm's extinction beyond each of its faces; the whole domain if there
 // is no condensate.
-WorldBox VisibleBox(const HydrometeorFields& fields);
+WorldBox VisibleBox(const HydrometeorFields& fields,
+                    physics::SizeSource sizes = physics::SizeSource::kModel);
 
 }  // namespace thunderhead::volume

@@ -207,7 +207,7 @@ absl::StatusOr<std::vector<absl::Time>> ReadTimes(const NetcdfFile& file) {
   return times;
 }
 
-// A variable of unexpected shape or units is skipped; its field then has a constant radius.
+// A variable of unexpected shape or units is skipped.
 void FindSizes(const NetcdfFile& file, const std::vector<std::size_t>& in_layers,
                WrfMetadata& metadata) {
   for (const SizeName& name : kSizeNames) {
@@ -296,6 +296,15 @@ absl::Status ReadPlace(const NetcdfFile& file, WrfMetadata& metadata) {
   return absl::OkStatus();
 }
 
+// The schemes by their numbers in WRF.
+physics::Microphysics MicrophysicsOf(const NetcdfFile& file) {
+  const double scheme = file.NumberAttribute("", "MP_PHYSICS").value_or(0.0);
+  if (scheme == 8.0) return physics::Microphysics::kThompson;
+  if (scheme != 6.0) return physics::Microphysics::kUnknown;
+  const bool with_hail = file.NumberAttribute("", "HAIL_OPT").value_or(0.0) == 1.0;
+  return with_hail ? physics::Microphysics::kWsm6WithHail : physics::Microphysics::kWsm6;
+}
+
 // " OUTPUT FROM WRF V4.7.1 MODEL" -> "WRF V4.7.1".
 std::string ModelName(const NetcdfFile& file) {
   const std::string title = file.TextAttribute("", "TITLE").value_or("");
@@ -324,6 +333,7 @@ absl::StatusOr<WrfMetadata> ReadWrfMetadata(const NetcdfFile& file) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckVariables(file, metadata));
   THUNDERHEAD_RETURN_IF_ERROR(ReadPlace(file, metadata));
   metadata.model = ModelName(file);
+  metadata.microphysics = MicrophysicsOf(file);
   metadata.domain = static_cast<int>(file.NumberAttribute("", "GRID_ID").value_or(1.0));
   metadata.simulation_start = file.TextAttribute("", "SIMULATION_START_DATE").value_or("");
   return metadata;

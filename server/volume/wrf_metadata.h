@@ -11,6 +11,7 @@
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
 #include "physics/hydrometeors.h"
+#include "physics/size_distributions.h"
 #include "volume/grid.h"
 #include "volume/netcdf_file.h"
 #include "volume/particle_sizes.h"
@@ -27,6 +28,7 @@ struct WrfMetadata {
   // Indexed by physics::IndexOf: the variable of the field's particle sizes; without a name if
   // there is none.
   std::array<SizeVariable, physics::kHydrometeorCount> sizes;
+  physics::Microphysics microphysics = physics::Microphysics::kUnknown;
   bool has_vapour = false;
   bool has_terrain = false;
   std::string model;                   // "WRF V4.7.1"

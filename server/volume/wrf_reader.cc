@@ -55,10 +55,12 @@ class TimeReader {
   absl::StatusOr<VerticalGrid> GridFor(const std::optional<VerticalGrid>& storm_grid) const;
   absl::StatusOr<RemappedField> Remap(Hydrometeor hydrometeor, std::vector<float> values,
                                       std::vector<float> sizes) const;
-  void RemapSizes(const SizeVariable& variable, const std::vector<float>& concentration,
-                  std::vector<float> inverse_radius, HydrometeorField& field) const;
+  ParticleSizes OriginOf(Hydrometeor hydrometeor) const;
+  void RemapSizes(const std::vector<float>& concentration, std::vector<float> radii,
+                  HydrometeorField& field) const;
   absl::Status Take(std::future<absl::StatusOr<RemappedField>>& pending, HydrometeorFields& result);
   absl::Status Advance();
+  bool NeedsTemperature() const;
 
   const WrfMetadata& metadata_;
   std::size_t record_;
@@ -160,12 +162,14 @@ absl::StatusOr<VerticalGrid> TimeReader::GridFor(
 
 absl::StatusOr<RemappedField> TimeReader::Remap(Hydrometeor hydrometeor, std::vector<float> values,
                                                 std::vector<float> sizes) const {
-  const SizeVariable& size = metadata_.sizes[physics::IndexOf(hydrometeor)];
-  if (!sizes.empty()) ToInverseRadius(hydrometeor, size, values, sizes);
+  if (!sizes.empty()) {
+    ToRadius(hydrometeor, metadata_.sizes[physics::IndexOf(hydrometeor)], values, sizes);
+  }
   RemappedField remapped;
   HydrometeorField& field = remapped.field;
   field.hydrometeor = hydrometeor;
   field.variable = std::string(WrfVariableOf(hydrometeor));
+  field.sizes = OriginOf(hydrometeor);
   field.statistics = MixingRatioToConcentration(air_, values);
   if (field.statistics.maximum > kMaxMixingRatio) {
     return absl::InvalidArgumentError(
@@ -180,21 +184,37 @@ absl::StatusOr<RemappedField> TimeReader::Remap(Hydrometeor hydrometeor, std::ve
     remapped.condensate = FlushAndBound(regular_, field.concentration_kg_per_m3);
     if (remapped.condensate.Empty()) field.concentration_kg_per_m3 = {};
   }
-  if (!sizes.empty() && !field.concentration_kg_per_m3.empty()) {
-    RemapSizes(size, values, std::move(sizes), field);
+  if (field.sizes.origin != SizeOrigin::kObserved && !field.concentration_kg_per_m3.empty()) {
+    RemapSizes(values, std::move(sizes), field);
   }
   remapped.buffer = std::move(values);
   return remapped;
 }
 
+// The origin of a field's sizes, still without sizes.
+ParticleSizes TimeReader::OriginOf(Hydrometeor hydrometeor) const {
+  ParticleSizes sizes;
+  const SizeVariable& variable = metadata_.sizes[physics::IndexOf(hydrometeor)];
+  if (!variable.name.empty()) {
+    sizes.origin = variable.is_count ? SizeOrigin::kNumber : SizeOrigin::kEffectiveRadius;
+    sizes.name = variable.name;
+  } else if (physics::HasDistribution(metadata_.microphysics, hydrometeor)) {
+    sizes.origin = SizeOrigin::kScheme;
+    sizes.name = std::string(physics::NameOf(metadata_.microphysics));
+  }
+  return sizes;
+}
+
 // Extinction is proportional to concentration over radius; that ratio is remapped, so that each
-// column keeps its optical depth.
-void TimeReader::RemapSizes(const SizeVariable& variable, const std::vector<float>& concentration,
-                            std::vector<float> inverse_radius, HydrometeorField& field) const {
-  for (std::size_t i = 0; i < concentration.size(); ++i) inverse_radius[i] *= concentration[i];
-  field.sizes = SizesOf(
-      variable.name, field.concentration_kg_per_m3,
-      RemapColumns(air_.interface_height_m, inverse_radius, air_.levels, air_.columns, grid_));
+// column keeps its optical depth. `radii` is empty if the file has none.
+void TimeReader::RemapSizes(const std::vector<float>& concentration, std::vector<float> radii,
+                            HydrometeorField& field) const {
+  radii.resize(concentration.size(), std::nanf(""));
+  ToConcentrationPerRadius(field.hydrometeor, metadata_.microphysics, concentration,
+                           air_.temperature_K, radii);
+  field.sizes =
+      SizesOf(field.sizes, field.concentration_kg_per_m3,
+              RemapColumns(air_.interface_height_m, radii, air_.levels, air_.columns, grid_));
 }
 
 absl::Status TimeReader::Take(std::future<absl::StatusOr<RemappedField>>& pending,
@@ -207,11 +227,18 @@ absl::Status TimeReader::Take(std::future<absl::StatusOr<RemappedField>>& pendin
   return absl::OkStatus();
 }
 
+// True if the scheme's distribution of snow is asked for.
+bool TimeReader::NeedsTemperature() const {
+  return physics::HasDistribution(metadata_.microphysics, Hydrometeor::kSnow) &&
+         std::ranges::find(metadata_.fields, Hydrometeor::kSnow) != metadata_.fields.end();
+}
+
 absl::Status TimeReader::ReadFields(HydrometeorFields& result) {
   const std::size_t cells = air_.levels * air_.columns;
   THUNDERHEAD_ASSIGN_OR_RETURN(LayerState state, ReadState());
   std::shared_future<void> air_ready =
       std::async([this, state = std::move(state)]() mutable {
+        if (NeedsTemperature()) air_.temperature_K = Temperature(state);
         air_.dry_air_density_kg_per_m3 =
             DryAirDensity(std::move(state), air_.interface_height_m, air_.columns);
       }).share();
@@ -250,9 +277,6 @@ void TrimTop(const VerticalGrid& storm_grid, HydrometeorFields& fields) {
     if (field.concentration_kg_per_m3.empty()) continue;
     field.concentration_kg_per_m3.resize(grid.CellCount());
     field.concentration_kg_per_m3.shrink_to_fit();
-    if (field.sizes.Empty()) continue;
-    field.sizes.inverse_radius.resize(grid.CellCount());
-    field.sizes.inverse_radius.shrink_to_fit();
   }
 }
 

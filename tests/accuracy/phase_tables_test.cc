@@ -89,6 +89,7 @@ class PhaseTables : public testing::TestWithParam<physics::PhaseFunction> {
 };
 
 TEST_P(PhaseTables, SingleScatteringFollowsTheCurve) {
+  scene_.fields[0].sizes = physics::SizeSource::kGiven;
   physics::ParticleOptics& cloud = scene_.fields[0].optics;
   cloud.phase = GetParam();
   // The slab's water content is for the default radius; its optical depth is inversely proportional

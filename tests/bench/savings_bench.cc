@@ -33,7 +33,9 @@ Fields InHaze(const Fields& fields) {
   const glm::dvec3 size_m = hazy->grid.HighCorner_m() - hazy->grid.low_corner_m;
   volume::HydrometeorField& cloud = hazy->fields.front();
   const float mass_extinction =
-      volume::MassExtinctionOf(cloud, physics::DefaultOptics(cloud.hydrometeor), false).m2_per_kg;
+      volume::MassExtinctionOf(cloud, physics::DefaultOptics(cloud.hydrometeor),
+                               physics::SizeSource::kGiven)
+          .m2_per_kg;
   // Twice the limit below which extinction is skipped as negligible.
   const auto least = static_cast<float>(2.0 * volume::kNegligibleOpticalDepth /
                                         (glm::length(size_m) * mass_extinction));
@@ -74,7 +76,7 @@ std::string Name(const std::string& part, const accuracy::Path& path, const std:
 // The camera moves; and, where light is kept apart from the view, the sun.
 void RegisterBoth(const std::string& name, const scene::Scene& scene, const Fields& fields) {
   Register(name, scene, fields, Moving::kCamera);
-  if (accuracy::PathOf(scene.rendering.technique) != test_support::kHalfAngle) {
+  if (test_support::PathOf(scene.rendering.technique) != test_support::kHalfAngle) {
     Register(name + "/light", scene, fields, Moving::kSun);
   }
 }

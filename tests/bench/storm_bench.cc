@@ -52,7 +52,7 @@ void Move(Moving moving, scene::Scene* scene) {
       scene->fields[0].scale *= 1.01F;
       break;
     case Moving::kExposure:
-      scene->display.exposure_ev += 0.01;
+      scene->display.exposure_ev = scene->display.exposure_ev.value_or(0.0) + 0.01;
       break;
   }
 }

@@ -498,17 +498,17 @@ class MetaballSceneTest : public testing::Test {
 };
 
 TEST_F(MetaballSceneTest, AChangeRerunsOnlyWhatItDirties) {
-  EXPECT_THAT(Stages(),
-              ElementsAre("extinction", "upload", "fit", "light", "ground", "view", "composite"));
+  EXPECT_THAT(Stages(), ElementsAre("extinction", "upload", "fit", "light", "ground", "view", "air",
+                                    "composite"));
   EXPECT_THAT(Stages(), IsEmpty());
   std::get<scene::OrbitCamera>(scene_.camera).azimuth_deg += 5.0;
-  EXPECT_THAT(Stages(), ElementsAre("view", "composite"));
+  EXPECT_THAT(Stages(), ElementsAre("view", "air", "composite"));
   scene_.sun.elevation_deg += 5.0;
-  EXPECT_THAT(Stages(), ElementsAre("light", "ground", "view", "composite"));
+  EXPECT_THAT(Stages(), ElementsAre("light", "ground", "view", "air", "composite"));
   test_support::MetaballsOf(scene_.rendering.technique).isotropic = true;
   EXPECT_THAT(Stages(), Not(Contains("fit")));
   test_support::MetaballsOf(scene_.rendering.technique).count = 80;
-  EXPECT_THAT(Stages(), ElementsAre("fit", "light", "ground", "view", "composite"));
+  EXPECT_THAT(Stages(), ElementsAre("fit", "light", "ground", "view", "air", "composite"));
   test_support::MetaballsOf(scene_.rendering.technique).count = 60;
   EXPECT_THAT(Stages(), Not(Contains("fit"))) << "it is kept";
   scene_.fields[0].scale = 2.0F;
@@ -560,7 +560,8 @@ TEST_F(MetaballSceneTest, TheFrameSaysWhatItIs) {
   EXPECT_GT(frame.content.fit_error, 0.0);
   EXPECT_LT(frame.content.fit_error, 0.5);
   EXPECT_EQ(frame.slices, 0);
-  EXPECT_THAT(NotShown(frame), ElementsAre("structure finer than the metaballs"));
+  EXPECT_THAT(NotShown(frame), ElementsAre("structure finer than the metaballs",
+                                           "turbulent detail finer than the grid"));
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
   EXPECT_THAT(NotShown(Draw()), Contains(HasSubstr("albedo")));
   test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);
@@ -581,9 +582,9 @@ TEST_F(MetaballSceneTest, LightsBesidesTheSunAreShownOrSaidNotToBe) {
   EXPECT_GT(blue_over_red(lit), 1.5F * plain);
   EXPECT_THAT(Stages(), IsEmpty());
   scene_.lights[0].color = {0.0, 1.0, 0.0};
-  EXPECT_THAT(Stages(), ElementsAre("view", "composite"));
+  EXPECT_THAT(Stages(), ElementsAre("view", "air", "composite"));
   scene_.lights[0].azimuth_deg += 10.0;
-  EXPECT_THAT(Stages(), ElementsAre("light", "view", "composite"))
+  EXPECT_THAT(Stages(), ElementsAre("light", "view", "air", "composite"))
       << "the ground has no part in it";
   for (const auto renderer :
        {test_support::kLightVolume, test_support::kHalfAngle, test_support::kCumulus}) {

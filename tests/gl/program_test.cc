@@ -16,10 +16,10 @@ using testing::HasSubstr;
 // A macro left out of a variant, or a uniform's value of another type, does not compile.
 static_assert(!std::is_default_constructible_v<DefineValue>);
 template <typename T>
-concept IsExposure = requires(const Program& program, const T& value) {
-  program.Set(uniform::exposure, value);
+concept IsGain = requires(const Program& program, const T& value) {
+  program.Set(uniform::gain, value);
 };
-static_assert(IsExposure<float> && !IsExposure<double> && !IsExposure<int>);
+static_assert(IsGain<glm::vec3> && !IsGain<glm::dvec3> && !IsGain<float>);
 
 TEST(Program, NamesAMissingShader) {
   const auto context = Context::Create("software");
@@ -36,9 +36,9 @@ TEST(Program, FailsWhenAUniformIsSetThatItsShadersDoNotDeclare) {
   const auto program =
       Program::Link(ProgramSource::WholeTarget("post/tone_map.frag", {{"FILMIC", 0}}));
   ASSERT_TRUE(program.ok()) << program.status();
-  program->Set(uniform::exposure, 1.0F);
-  EXPECT_DEATH(program->Set(Uniform<float>{"expsoure"}, 1.0F),
-               "post/tone_map.frag has no uniform expsoure");
+  program->Set(uniform::gain, glm::vec3(1.0F));
+  EXPECT_DEATH(program->Set(Uniform<float>{"gian"}, 1.0F),
+               "post/tone_map.frag has no uniform gian");
 }
 
 TEST(Program, NamesADefineThatItsShadersDoNotMention) {

@@ -94,6 +94,7 @@ TEST(MediumOf, FollowsTheScenesFields) {
   const double whole = (*MediumOf(scene, fields, Sides::kOpen))->Extinction_per_m(cloud_m);
   auto& cloud = scene.fields[physics::IndexOf(Hydrometeor::kCloud)];
   cloud.scale = 0.5F;
+  cloud.sizes = physics::SizeSource::kGiven;
   cloud.optics.radius_m *= 2.0F;
   EXPECT_NEAR((*MediumOf(scene, fields, Sides::kOpen))->Extinction_per_m(cloud_m), 0.25 * whole,
               1e-6 * whole);
@@ -105,7 +106,7 @@ TEST(MediumOf, FollowsTheScenesFields) {
       MediumOf(scene, volume::HydrometeorFields{fields.grid, {}, {}, {}}, Sides::kOpen).ok());
 }
 
-TEST(MediumOf, TakesSizesFromTheFileUnlessToldNotTo) {
+TEST(MediumOf, TakesTheModelsSizesUnlessToldNotTo) {
   volume::HydrometeorFields fields = SmallStorm();
   const glm::dvec3 cloud_m =
       fields.grid.low_corner_m + glm::dvec3(3.5, 3.5, 3.5) * fields.grid.spacing_m;
@@ -114,17 +115,21 @@ TEST(MediumOf, TakesSizesFromTheFileUnlessToldNotTo) {
   volume::HydrometeorField& cloud = fields.fields[0];
   std::vector<float> per_radius = cloud.concentration_kg_per_m3;
   for (float& value : per_radius) value /= 5e-6F;  // half the constant radius
-  cloud.sizes = volume::SizesOf("RE_CLOUD", cloud.concentration_kg_per_m3, per_radius);
+  cloud.sizes = volume::SizesOf({volume::SizeOrigin::kEffectiveRadius, "RE_CLOUD"},
+                                cloud.concentration_kg_per_m3, per_radius);
   const auto sized = *MediumOf(scene, fields, Sides::kOpen);
   EXPECT_NEAR(sized->Extinction_per_m(cloud_m) / plain, 2.0, 1e-3);
   const double small =
       physics::PhaseColors({physics::PhaseKind::kWaterDroplets, 0.0F, 5e-6F}, 0.9).r;
   EXPECT_NEAR(sized->ScatteringAt(cloud_m, 0.5).phase->Value(0.9).r, small, 1e-3 * small);
   const std::vector<volume::ExtinctionTerm> terms = {
-      {0, volume::MassExtinctionOf(cloud, scene.fields[0].optics, true).m2_per_kg, 0, true}};
+      {0,
+       volume::MassExtinctionOf(cloud, scene.fields[0].optics, physics::SizeSource::kModel)
+           .m2_per_kg,
+       0, true}};
   const volume::ExtinctionVolume drawn = volume::ComputeExtinction(fields, terms, 1);
   EXPECT_NEAR(drawn.maximum_per_m / (1e-4 * 25.0 * 300.0), 1.0, 1e-3) << "of the densest cell";
-  scene.fields[0].size_from_file = false;
+  scene.fields[0].sizes = physics::SizeSource::kGiven;
   EXPECT_NEAR((*MediumOf(scene, fields, Sides::kOpen))->Extinction_per_m(cloud_m) / plain, 1.0,
               1e-6);
 }

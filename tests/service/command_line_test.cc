@@ -89,6 +89,9 @@ TEST_F(CommandLineTest, WrongUsageReturnsTwo) {
   ExpectError("render " + kSample, 2, "--output");
   ExpectError("render " + kSample + " -o storm.gif", 2, "must end in .png");
   ExpectError(render_ + " --size 12", 2, "WIDTHxHEIGHT");
+  ExpectError(render_ + " --renderer voxels", 2,
+              "'voxels'; it must be light_volume, half_angle, metaball, cumulus or reference");
+  ExpectError(render_ + " --renderer metaball --slices 9", 2, "for light_volume and half_angle;");
   ExpectError(render_ + " --camera kite", 2, "orbit, spotter or top-down");
   ExpectError("serve --data " + kSample + " --http nowhere", 2, "--http");
 }
@@ -105,10 +108,17 @@ TEST_F(CommandLineTest, InspectDescribesTheSample) {
   EXPECT_EQ(storm.grid().ny(), 160U);
   EXPECT_EQ(storm.fields_size(), 5);
   EXPECT_GT(storm.bytes_per_time(), 1U << 20);
+  for (const v1::FieldDescription& field : storm.fields()) {
+    EXPECT_EQ(field.size_origin(), v1::FieldDescription::SIZE_ORIGIN_SCHEME);
+    EXPECT_EQ(field.size_scheme(), "WSM6");
+    EXPECT_EQ(field.size_variable(), "");
+    EXPECT_GT(field.mean_radius_m(), 1e-5F);
+  }
   const Outcome table = Run("inspect " + kSample);
   EXPECT_EQ(table.code, 0);
   EXPECT_THAT(table.out, HasSubstr("QGRAUP"));
   EXPECT_THAT(table.out, HasSubstr("   3  0001-01-01T01:20:00Z     60.0  described below"));
+  EXPECT_THAT(table.out, HasSubstr("snow     scheme WSM6"));
 }
 
 TEST_F(CommandLineTest, MissingAndForeignFilesAreNamed) {

@@ -33,6 +33,8 @@ std::shared_ptr<const volume::HydrometeorFields> Fields(bool empty) {
   volume::HydrometeorField rain;
   rain.hydrometeor = physics::Hydrometeor::kRain;
   rain.variable = "QRAIN";
+  rain.sizes.origin = volume::SizeOrigin::kNumber;
+  rain.sizes.name = "QNRAIN";
   if (!empty) {
     cloud.concentration_kg_per_m3.assign(fields->grid.CellCount(), 0.0F);
     cloud.concentration_kg_per_m3[fields->grid.Offset(4, 4, 2)] = 1e-3F;
@@ -62,7 +64,7 @@ class FakePreparation final : public session::Preparation {
   explicit FakePreparation(std::shared_ptr<FakeMachine> machine) : machine_(std::move(machine)) {}
 
   bool IsNeeded(const scene::Scene& scene) const override {
-    return accuracy::PathOf(scene.rendering.technique) == test_support::kMetaball;
+    return test_support::PathOf(scene.rendering.technique) == test_support::kMetaball;
   }
 
   bool IsDone(const scene::Scene& scene, const Fields& fields) override {
@@ -126,14 +128,18 @@ class FakeFrameSource final : public session::FrameSource {
   }
 
   absl::StatusOr<accuracy::LightProgress> TraceLight(
-      const scene::Scene& scene,
-      const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
+      const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
+      accuracy::LightClaim* claim) override {
     THUNDERHEAD_CHECK(fields != nullptr, "traced without fields");
     if (!Traces(scene)) return accuracy::LightProgress{};
-    if (machine_->traces_enough) return absl::ResourceExhaustedError("it traces enough already");
+    const double waits = machine_->waits_to_trace_azimuth_deg;
+    if (machine_->traces_enough || scene.sun.azimuth_deg == waits) {
+      return absl::ResourceExhaustedError("it traces enough already");
+    }
     if (scene.sun.azimuth_deg == machine_->cannot_trace_azimuth_deg) {
       return absl::InternalError("the fake machine cannot trace that");
     }
+    if (claim != nullptr) *claim = machine_->light;
     machine_->tracing.Pass();
     return accuracy::LightProgress{machine_->traced_paths += machine_->paths_per_step,
                                    ++machine_->traced_steps};

@@ -95,7 +95,9 @@ struct FakeMachine {
   std::atomic<std::int64_t> traced_paths{0};
   std::atomic<std::int64_t> traced_steps{0};
   std::atomic<double> cannot_trace_azimuth_deg{-1.0};
-  std::atomic<bool> traces_enough{false};  // for others
+  std::atomic<bool> traces_enough{false};                // for others
+  std::atomic<double> waits_to_trace_azimuth_deg{-1.0};  // as others have their turn
+  const accuracy::LightClaim light = std::make_shared<int>();
   Gate tracing;
 
   std::vector<Drawn> Log();

@@ -127,7 +127,7 @@ TEST_F(FramePlannerTest, AChangeOfToneKeepsTheQualityThatIsThere) {
   const Machine machine{5.0, 10.0};
   Drag(machine, 5);
   Draw(machine, {FrameQuality{}, true});
-  scene_.display.exposure_ev += 1.0;
+  scene_.display.exposure_ev = scene_.display.exposure_ev.value_or(0.0) + 1.0;
   ++revision_;
   const Decision decision = Ask(milliseconds(0));
   ASSERT_TRUE(decision.plan.has_value());
@@ -139,7 +139,7 @@ TEST_F(FramePlannerTest, AChangeOfToneAfterAnotherSessionDrewIsCoarse) {
   Drag(machine, 5);
   Draw(machine, {FrameQuality{}, true});
   std::get<scene::OrbitCamera>(last_drawn_->scene.camera).azimuth_deg += 90.0;
-  scene_.display.exposure_ev += 1.0;
+  scene_.display.exposure_ev = scene_.display.exposure_ev.value_or(0.0) + 1.0;
   ++revision_;
   const Decision decision = Ask(milliseconds(0));
   ASSERT_TRUE(decision.plan.has_value());

@@ -1,5 +1,6 @@
 // Every limit of the schema is checked, and the error has the value's full path, the value and its
 // range.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -103,12 +104,13 @@ INSTANTIATE_TEST_SUITE_P(
              "TRACED_LIGHT_AWAITED"},
         Case{R"({"rendering": {"halfAngle": {"transport": "TRANSPORT_DIFFUSION"}}})",
              "scene.rendering.half_angle.transport is TRANSPORT_DIFFUSION, which this technique "
-             "does not support; it must be one of TRANSPORT_CONSISTENT, TRANSPORT_PAPER, "
-             "TRANSPORT_LOW_ALBEDO, TRANSPORT_PAPER_LOW_ALBEDO"},
+             "does not support; it must be one of TRANSPORT_CONSISTENT, TRANSPORT_LOW_ALBEDO, "
+             "TRANSPORT_PAPER, TRANSPORT_PAPER_LOW_ALBEDO"},
         Case{R"({"rendering": {"metaball": {"transport": "TRANSPORT_PAPER_LOW_ALBEDO"}}})",
              "scene.rendering.metaball.transport is TRANSPORT_PAPER_LOW_ALBEDO, which this "
-             "technique does not support; it must be one of TRANSPORT_CONSISTENT, TRANSPORT_PAPER, "
-             "TRANSPORT_LOW_ALBEDO"},
+             "technique does not support; it must be one of TRANSPORT_CONSISTENT, "
+             "TRANSPORT_LOW_ALBEDO, "
+             "TRANSPORT_PAPER"},
         Case{R"({"rendering": {"other": {"name": "voxels"}}})",
              "scene.rendering.other.name is 'voxels'; the server has the techniques light_volume, "
              "half_angle, metaball, reference, toy"},
@@ -156,6 +158,37 @@ TEST(LimitsTest, TheLimitsThemselvesAreAllowed) {
   scene.mutable_output()->set_width_px(8192);
   scene.mutable_output()->set_height_px(4096);
   EXPECT_EQ(Complaint(scene), "");
+}
+
+// The transports that GetServerInfo offers for a technique are those that a scene may have, its
+// default first.
+TEST(LimitsTest, TransportsOnOfferAreThoseAllowed) {
+  FakeService service;
+  v1::GetServerInfoResponse info;
+  ASSERT_TRUE(Call(service.stub(), &Stub::GetServerInfo, v1::GetServerInfoRequest(), &info).ok());
+  int with_transport = 0;
+  for (const v1::TechniqueDescription& technique : info.techniques()) {
+    const auto* field = v1::Rendering::descriptor()->FindFieldByName(technique.name());
+    if (field == nullptr) continue;  // an OtherTechnique
+    v1::Scene scene;
+    v1::Rendering& rendering = *scene.mutable_rendering();
+    google::protobuf::Message* settings =
+        rendering.GetReflection()->MutableMessage(&rendering, field);
+    const auto* transport = settings->GetDescriptor()->FindFieldByName("transport");
+    EXPECT_EQ(transport == nullptr, technique.transports().empty()) << technique.name();
+    if (transport == nullptr) continue;
+    ++with_transport;
+    v1::Rendering filled = rendering;
+    service::FillTechniqueDefaults(filled);
+    const auto& defaults = filled.GetReflection()->GetMessage(filled, field);
+    EXPECT_EQ(technique.transports(0), defaults.GetReflection()->GetEnumValue(defaults, transport));
+    for (int i = v1::Transport_MIN + 1; i <= v1::Transport_MAX; ++i) {
+      settings->GetReflection()->SetEnumValue(settings, transport, i);
+      const bool offered = std::ranges::count(technique.transports(), i) == 1;
+      EXPECT_EQ(Complaint(scene).empty(), offered) << technique.name() << " by " << i;
+    }
+  }
+  EXPECT_EQ(with_transport, 3);
 }
 
 TEST(SceneMessages, LightsAreWhatTheMessageSaysAndWhiteWhereItIsSilent) {
@@ -220,6 +253,12 @@ TEST(LimitsTest, EveryRpcChecksItsRequest) {
          "session_id is 65 bytes long; it may be at most 64 bytes");
   Watcher watcher(service.stub(), std::string(65, 'a'));
   expect(watcher.End(), "session_id is 65 bytes long; it may be at most 64 bytes");
+}
+
+TEST(Limits, AGivenRadiusIsAFieldsAlone) {
+  EXPECT_EQ(Complaint(SceneFrom(R"({"particleSizes": "PARTICLE_SIZES_PAPERS"})")), "");
+  EXPECT_THAT(Complaint(SceneFrom(R"({"particleSizes": "PARTICLE_SIZES_GIVEN"})")),
+              HasSubstr("scene.particle_sizes is PARTICLE_SIZES_GIVEN, which is for a field"));
 }
 
 }  // namespace

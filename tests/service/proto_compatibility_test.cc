@@ -101,11 +101,13 @@ TEST(ProtoCompatibility, WhatClientsKnowStaysAsItIs) {
 }
 
 // A removed number or name is not reused.
-TEST(ProtoCompatibility, RenderingKeepsItsFormerNumbersReserved) {
+TEST(ProtoCompatibility, FormerNumbersStayReserved) {
   const Descriptor& rendering = *v1::Rendering::descriptor();
   for (int number = 1; number <= 10; ++number) EXPECT_TRUE(rendering.IsReservedNumber(number));
   EXPECT_TRUE(rendering.IsReservedName("mode"));
   EXPECT_TRUE(rendering.IsReservedName("renderer"));
+  EXPECT_TRUE(v1::FieldParameters::descriptor()->IsReservedNumber(10));
+  EXPECT_TRUE(v1::FieldParameters::descriptor()->IsReservedName("size_from_file"));
   EXPECT_TRUE(v1::StageCost::descriptor()->IsReservedNumber(1));
   EXPECT_TRUE(v1::Modelled::descriptor()->IsReservedNumber(5));
   EXPECT_TRUE(v1::AccuracyReport::descriptor()->IsReservedNumber(10));

@@ -79,6 +79,8 @@ TEST_F(RefineTest, SamplesGrowAndTheErrorFallsWhileTheSceneRests) {
     EXPECT_TRUE(frames[i].refined());
     EXPECT_EQ(frames[i].modelled().technique(), "reference");
     EXPECT_EQ(frames[i].modelled().fields_size(), 1);
+    ASSERT_EQ(frames[i].modelled().not_shown_size(), 1);
+    EXPECT_EQ(frames[i].modelled().not_shown(0).code(), v1::NotShown::CODE_DETAIL);
     EXPECT_EQ(frames[i].stages(0).stage(), v1::STAGE_TRACE);
     EXPECT_EQ(refinement.has_relative_error(), refinement.samples_per_pixel() > 1);
     if (i < 2) continue;

@@ -7,6 +7,7 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "session/image_drawer.h"
 #include "tests/service/fake_engine.h"
 #include "tests/support/techniques.h"
 
@@ -75,6 +76,27 @@ class EagerViewer : public Viewer, public std::enable_shared_from_this<EagerView
     });
   }
 
+  // The newest frame that says that it leaves out traced light.
+  std::shared_ptr<const EncodedFrame> AwaitUntraced() {
+    std::unique_lock lock(mutex_);
+    std::shared_ptr<const EncodedFrame> untraced;
+    changed_.wait_for(lock, testing::kPatience, [&] {
+      for (const FrameEvent& event : events_) {
+        const auto* frame = std::get_if<std::shared_ptr<const EncodedFrame>>(&event);
+        if (frame == nullptr || (*frame)->modelled.content.not_shown.empty()) continue;
+        untraced = *frame;
+      }
+      return untraced != nullptr;
+    });
+    return untraced;
+  }
+
+  std::size_t ProblemCount() {
+    const std::lock_guard lock(mutex_);
+    return static_cast<std::size_t>(std::ranges::count_if(
+        events_, [](const FrameEvent& event) { return std::holds_alternative<Problem>(event); }));
+  }
+
   std::size_t EventCount() {
     const std::lock_guard lock(mutex_);
     return events_.size();
@@ -130,10 +152,16 @@ class RenderLoopTest : public ::testing::Test {
   std::future<absl::StatusOr<DisplayFrame>> Picture(
       double exposure_ev,
       std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false)) {
-    auto promise = std::make_shared<std::promise<absl::StatusOr<DisplayFrame>>>();
-    auto future = promise->get_future();
     scene::Scene scene = Small(0.0);
     scene.display.exposure_ev = exposure_ev;
+    return Picture(scene, std::move(cancelled));
+  }
+
+  std::future<absl::StatusOr<DisplayFrame>> Picture(
+      const scene::Scene& scene,
+      std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false)) {
+    auto promise = std::make_shared<std::promise<absl::StatusOr<DisplayFrame>>>();
+    auto future = promise->get_future();
     loop_->RenderImage({scene, *store_.Get("anvil", 0, {}), std::move(cancelled),
                         [promise](absl::StatusOr<DisplayFrame> picture) {
                           promise->set_value(std::move(picture));
@@ -237,6 +265,82 @@ TEST_F(RenderLoopTest, APreparationThatFailsIsAProblemOfItsScene) {
   ASSERT_TRUE(viewer->AwaitProblem("it cannot be fitted"));
   const std::uint64_t revision = Show(*session, OfMetaballs(200));
   EXPECT_TRUE(viewer->Await(revision, true));
+}
+
+TEST_F(RenderLoopTest, LightThatCannotBeTracedIsSaidByThePictureItself) {
+  Start();
+  machine_->cannot_trace_azimuth_deg = 123.0;
+  const auto session = *sessions_.Create();
+  const auto viewer = Watch(session);
+  scene::Scene scene = Small(123.0);
+  scene.rendering.technique = scene::LightVolume{};
+  const std::uint64_t revision = Show(*session, scene);
+  const auto frame = viewer->AwaitUntraced();
+  ASSERT_NE(frame, nullptr);
+  EXPECT_EQ(frame->scene_revision, revision);
+  EXPECT_TRUE(frame->refined);
+  const scene::NotShown& entry = frame->modelled.content.not_shown.front();
+  EXPECT_EQ(entry.code, scene::NotShown::Code::kTracedLight);
+  EXPECT_THAT(entry.message, HasSubstr("cannot trace that"));
+  const std::size_t events = viewer->EventCount();
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  EXPECT_EQ(viewer->EventCount(), events) << "it is not tried again";
+  EXPECT_EQ(viewer->ProblemCount(), 0U);
+}
+
+// Whatever the scene asks for, the table has metaballs alone.
+TEST_F(RenderLoopTest, APictureIsPreparedForTheSettingDecidedAndHoldsUpNobody) {
+  RenderLoopOptions options;
+  options.offer_tables = [] {
+    accuracy::PricedSettings table;
+    table.size_px = {64, 36};
+    table.rows.push_back({{OfMetaballs(300).rendering.technique}, 10.0, 0.3});
+    accuracy::OfferTables tables;
+    tables.fill(table);
+    return tables;
+  };
+  Start(options);
+  machine_->preparing.Close();
+  scene::Scene scene = Small(0.0);
+  scene.accuracy = scene::MaxError{0.4};
+  auto fitted = Picture(scene);
+  ASSERT_TRUE(machine_->preparing.AwaitWaiting(1));
+  EXPECT_TRUE(Picture(1.0).get().ok());
+  machine_->preparing.Open();
+  const auto picture = fitted.get();
+  ASSERT_TRUE(picture.ok()) << picture.status();
+  EXPECT_EQ(picture->modelled.technique, "metaball");
+  EXPECT_EQ(picture->stages.front().stage, scene::FrameStage::kFit);
+  machine_->cannot_prepare = 200;
+  EXPECT_EQ(Picture(OfMetaballs(200)).get().status().message(), "it cannot be fitted");
+}
+
+// One that waits for light that it may not have traced yet lets the next have the turn.
+TEST_F(RenderLoopTest, PicturesClaimTheLightThatTheyAwait) {
+  scene::Scene scene = Small(0.0);
+  scene.rendering.technique = scene::LightVolume{.traced_light = scene::TracedLight::kAwaited};
+  machine_->waits_to_trace_azimuth_deg = 200.0;
+  MeasuredSource source(*testing::FakeFrameSources(machine_)(), accuracy::BuiltInOfferTables());
+  ImageQueue queue(9);
+  ImageDrawer drawer(queue, source, nullptr, [] {});
+  int done = 0;
+  for (const double azimuth_deg : {200.0, 100.0}) {
+    scene.sun.azimuth_deg = azimuth_deg;
+    queue.Add({scene, *store_.Get("anvil", 0, {}), std::make_shared<std::atomic<bool>>(false),
+               [&done](const absl::StatusOr<DisplayFrame>& picture) { done += picture.ok(); }});
+  }
+  EXPECT_TRUE(drawer.TakeTurn().drew);
+  EXPECT_EQ(machine_->traced_steps, 1);
+  EXPECT_EQ(machine_->light.use_count(), 2) << "the second's claim";
+  for (int turn = 1; turn < 10; ++turn) EXPECT_TRUE(drawer.TakeTurn().drew);
+  EXPECT_EQ(done, 1);
+  EXPECT_EQ(machine_->light.use_count(), 1) << "it is done";
+  const TurnOutcome waits = drawer.TakeTurn();
+  EXPECT_FALSE(waits.drew);
+  EXPECT_TRUE(waits.look_again_at.has_value());
+  machine_->waits_to_trace_azimuth_deg = -1.0;
+  EXPECT_TRUE(drawer.TakeTurn().drew);  // the fake counts all scenes' paths together
+  EXPECT_EQ(done, 2);
 }
 
 TEST_F(RenderLoopTest, CancelledPicturesAreDroppedAndSayso) {

@@ -141,6 +141,58 @@ TEST(SceneDefaults, OfTheValueAreThoseOfTheCompletedMessage) {
   }
 }
 
+// The sizes of cloud's particles in a scene as it is drawn.
+scene::FieldParameters Cloud(const v1::Scene& scene) { return ToScene(Completed(scene)).fields[0]; }
+
+TEST(SceneDefaults, ARadiusWinsOverTheFieldsSizesAndThoseOverTheScenes) {
+  using physics::SizeSource;
+  v1::Scene scene;
+  EXPECT_EQ(Cloud(scene).sizes, SizeSource::kModel);
+  scene.set_particle_sizes(v1::PARTICLE_SIZES_PAPERS);
+  EXPECT_EQ(Cloud(scene).sizes, SizeSource::kPapers);
+  v1::FieldParameters& cloud = *scene.add_fields();
+  cloud.set_hydrometeor(v1::HYDROMETEOR_CLOUD);
+  EXPECT_EQ(Cloud(scene).sizes, SizeSource::kPapers);
+  cloud.set_sizes(v1::PARTICLE_SIZES_MODEL);
+  EXPECT_EQ(Cloud(scene).sizes, SizeSource::kModel);
+  cloud.set_radius_m(3e-5F);
+  EXPECT_EQ(Cloud(scene).sizes, SizeSource::kGiven);
+  EXPECT_EQ(Cloud(scene).optics.radius_m, 3e-5F);
+  EXPECT_EQ(Completed(scene).fields(0).sizes(), v1::PARTICLE_SIZES_GIVEN);
+  EXPECT_EQ(Completed(scene).fields(0).radius_m(), 3e-5F);
+  cloud.clear_radius_m();
+  cloud.set_sizes(v1::PARTICLE_SIZES_GIVEN);
+  EXPECT_EQ(Cloud(scene).sizes, SizeSource::kGiven);
+  EXPECT_EQ(Completed(scene).fields(0).radius_m(), 1e-5F);
+  EXPECT_EQ(ToScene(Completed(scene)).fields[1].sizes, SizeSource::kPapers);
+}
+
+// What is filled in stays when it comes back, and gives no radius that nobody gave.
+TEST(SceneDefaults, OfSizesAreFilledInOnce) {
+  const v1::Scene once = Completed();
+  EXPECT_EQ(once.particle_sizes(), v1::PARTICLE_SIZES_MODEL);
+  for (const v1::FieldParameters& field : once.fields()) EXPECT_FALSE(field.has_radius_m());
+  EXPECT_TRUE(MessageDifferencer::Equals(Completed(once), once));
+}
+
+TEST(SceneDefaults, ThePapersPresetsStandForTheirConstants) {
+  const auto sizes = [](v1::Preset preset, v1::ParticleSizes given) {
+    v1::Scene scene;
+    scene.mutable_rendering()->set_preset(preset);
+    scene.set_particle_sizes(given);
+    return Completed(scene).particle_sizes();
+  };
+  for (const v1::Preset preset :
+       {v1::PRESET_UNIFORM_PHASE_LOW_ALBEDO, v1::PRESET_UNIFORM_PHASE_TRANSLUCENT,
+        v1::PRESET_PER_FIELD_PHASE_TRANSLUCENT, v1::PRESET_PER_FIELD_PHASE_DETAIL_TRANSLUCENT}) {
+    EXPECT_EQ(sizes(preset, v1::PARTICLE_SIZES_UNSPECIFIED), v1::PARTICLE_SIZES_PAPERS);
+    EXPECT_EQ(sizes(preset, v1::PARTICLE_SIZES_MODEL), v1::PARTICLE_SIZES_MODEL);
+  }
+  for (const v1::Preset preset : {v1::PRESET_FAST, v1::PRESET_BALANCED, v1::PRESET_TRUE}) {
+    EXPECT_EQ(sizes(preset, v1::PARTICLE_SIZES_UNSPECIFIED), v1::PARTICLE_SIZES_MODEL);
+  }
+}
+
 TEST(SceneDefaults, APresetIsReplacedByItsTechnique) {
   for (const auto& [preset, technique] :
        {std::pair{v1::PRESET_FAST, accuracy::TechniqueOf(accuracy::Preset::kFast)},

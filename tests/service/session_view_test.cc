@@ -190,6 +190,20 @@ TEST_F(SessionViewTest, LightIsTracedAtRestUntilItHasEnoughPaths) {
   EXPECT_TRUE(NextIs<TraceLight>(milliseconds(600)));
 }
 
+TEST_F(SessionViewTest, LightThatCannotBeTracedLeavesThePictureSettled) {
+  scene_.rendering.technique = scene::LightVolume{};
+  Change();
+  ComeToRest();
+  ASSERT_TRUE(NextIs<TraceLight>(milliseconds(600)));
+  view_.LightFailed();
+  EXPECT_TRUE(NextIsNothing(milliseconds(600)));
+  EXPECT_EQ(view_.state(), State::kSettled);
+  EXPECT_TRUE(NextIsNothing(milliseconds(9000))) << "it is not tried again";
+  Change();
+  ComeToRest();
+  EXPECT_TRUE(NextIs<TraceLight>(milliseconds(600)));
+}
+
 TEST_F(SessionViewTest, TheReferenceIsShownAndNothingDrawn) {
   scene_.rendering.technique = scene::Reference{};
   Change();

@@ -61,11 +61,12 @@ TEST(SessionsTest, EmptySceneComesBackWithEveryDefault) {
   EXPECT_EQ(scene.output().jpeg_quality(), 88U);
   ASSERT_EQ(scene.fields_size(), 2);
   EXPECT_EQ(scene.fields(0).hydrometeor(), v1::HYDROMETEOR_CLOUD);
-  EXPECT_EQ(scene.fields(0).radius_m(), 1e-5F);
+  EXPECT_FALSE(scene.fields(0).has_radius_m());
+  EXPECT_EQ(scene.particle_sizes(), v1::PARTICLE_SIZES_MODEL);
   EXPECT_EQ(scene.fields(0).phase().kind(), v1::PhaseFunction::KIND_WATER_DROPLETS);
   EXPECT_EQ(scene.fields(1).false_color().blue(), 1.0F);
   EXPECT_TRUE(scene.fields(1).visible());
-  EXPECT_TRUE(scene.fields(1).size_from_file());
+  EXPECT_EQ(scene.fields(1).sizes(), v1::PARTICLE_SIZES_UNSPECIFIED) << "the scene's";
 }
 
 TEST(SessionsTest, ValuesGivenAreKept) {

@@ -68,7 +68,14 @@ TEST(StormsTest, DescriptionHoldsGridTimesFieldsAndDefaults) {
   EXPECT_EQ(cloud.maximum_water_path_kg_per_m2(), 7.5);
   EXPECT_EQ(cloud.negative_cells(), 3U);
   EXPECT_EQ(cloud.missing_cells(), 1U);
-  EXPECT_EQ(cloud.defaults().radius_m(), 1e-5F);
+  EXPECT_FALSE(cloud.defaults().has_radius_m());
+  EXPECT_EQ(cloud.size_origin(), v1::FieldDescription::SIZE_ORIGIN_OBSERVED);
+  EXPECT_EQ(cloud.mean_radius_m(), 1e-5F);
+  EXPECT_EQ(cloud.papers_radius_m(), 1e-5F);
+  EXPECT_EQ(storm.fields(1).size_origin(), v1::FieldDescription::SIZE_ORIGIN_NUMBER);
+  EXPECT_EQ(storm.fields(1).size_variable(), "QNRAIN");
+  EXPECT_EQ(storm.fields(1).papers_radius_m(), 1e-3F);
+  EXPECT_EQ(storm.fields(1).mean_radius_m(), 0.0F) << "there are no drops";
   EXPECT_TRUE(cloud.defaults().visible());
   EXPECT_EQ(cloud.defaults().scale(), 1.0F);
   EXPECT_EQ(cloud.defaults().detail().share(), 1.0F);

@@ -105,6 +105,8 @@ class Writer {
     Number("DY", file_.dy_m);
     Number("MAP_PROJ", file_.map_projection);
     Number("GRID_ID", file_.domain);
+    if (file_.microphysics != 0) Number("MP_PHYSICS", file_.microphysics);
+    if (file_.hail_option != 0) Number("HAIL_OPT", file_.hail_option);
   }
 
   // Classic files are declared in one mode and written in another; netCDF-4 changes by itself.

@@ -51,6 +51,8 @@ struct SyntheticWrf {
   double longitude_deg = -97.0;
   int map_projection = 1;
   int domain = 1;
+  int microphysics = 0;  // MP_PHYSICS; 0: not in the file
+  int hail_option = 0;   // HAIL_OPT; the same
   std::string simulation_start = "2013-05-20_12:00:00";
 
   WrfFormat format = WrfFormat::kNetcdf4;

@@ -2,6 +2,7 @@
 // keeps the others, as far as the technique has them.
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 #include "accuracy/named_settings.h"
@@ -27,6 +28,11 @@ inline constexpr accuracy::Mode kUniformPhase = accuracy::kModes[1];
 inline constexpr accuracy::Mode kPerFieldPhase = accuracy::kModes[2];
 inline constexpr accuracy::Mode kWithDetail = accuracy::kModes[3];
 
+// None for the reference and techniques that the program was extended by.
+inline std::optional<accuracy::Path> PathOf(const scene::Technique& technique) {
+  return accuracy::PathNamed(scene::NameOf(technique));
+}
+
 // The transport of the technique's translucent variant.
 inline scene::Transport TransportOf(const scene::Technique& technique) {
   const std::string_view name = accuracy::TransportNameOf(technique);
@@ -47,7 +53,7 @@ inline void SetTransport(scene::Technique* technique, scene::Transport transport
 
 // Its own settings, such as the number of metaballs, are the path's plain ones.
 inline void SetPath(scene::Technique* technique, const accuracy::Path& path) {
-  if (accuracy::PathOf(*technique) == path) return;
+  if (PathOf(*technique) == path) return;
   const scene::Technique before = *technique;
   *technique = path.plain();
   const scene::MediumSettings* from = scene::MediumSettingsOf(before);

@@ -10,11 +10,8 @@ import {
 } from "@bufbuild/protobuf";
 import {
   type Cumulus,
-  HalfAngleSchema,
   type LightVolume,
-  LightVolumeSchema,
   type Metaballs,
-  MetaballsSchema,
   type OtherTechnique,
   OtherTechniqueSchema,
   Preset,
@@ -44,24 +41,6 @@ export const QUALITY_PRESETS: readonly Preset[] = [Preset.FAST, Preset.BALANCED,
 
 const TECHNIQUES: readonly (DescField & { readonly message: DescMessage })[] =
   RenderingSchema.fields.flatMap((field) => (field.fieldKind === "message" ? [field] : []));
-
-// The transports that each technique accepts, its default first.
-const TRANSPORTS: Readonly<Record<string, readonly Transport[]>> = {
-  [LightVolumeSchema.typeName]: [
-    Transport.DIFFUSION,
-    Transport.CONSISTENT,
-    Transport.LOW_ALBEDO,
-    Transport.PAPER,
-    Transport.PAPER_LOW_ALBEDO,
-  ],
-  [HalfAngleSchema.typeName]: [
-    Transport.CONSISTENT,
-    Transport.LOW_ALBEDO,
-    Transport.PAPER,
-    Transport.PAPER_LOW_ALBEDO,
-  ],
-  [MetaballsSchema.typeName]: [Transport.CONSISTENT, Transport.LOW_ALBEDO, Transport.PAPER],
-};
 
 // Settings kept when the technique changes. The others have another default in each technique, for a reason.
 const KEPT = ["slices", "thetaFDeg", "perFieldPhase", "falseColors"] as const;
@@ -101,13 +80,12 @@ export function settingLimits(settings: Settings, name: keyof SharedSettings): L
   return field === undefined ? undefined : limitsOf(field);
 }
 
-// Empty for a technique without a choice of transport.
-export function transportsOf(settings: Settings): readonly Transport[] {
-  return TRANSPORTS[settings.$typeName] ?? [];
-}
-
-export function transportOf(settings: Settings): Transport | undefined {
-  return sharedSettingsOf(settings).transport || transportsOf(settings)[0];
+// Undefined for a technique without a choice of transport.
+export function transportOf(
+  settings: Settings,
+  technique: TechniqueDescription | undefined,
+): Transport | undefined {
+  return sharedSettingsOf(settings).transport || technique?.transports[0];
 }
 
 // True if the setting `traced_light` has an effect.
@@ -115,7 +93,7 @@ export function tracesLight(settings: Settings, technique: TechniqueDescription)
   return (
     technique.showsTracedLight &&
     hasSetting(settings, "tracedLight") &&
-    transportOf(settings) === Transport.DIFFUSION
+    transportOf(settings, technique) === Transport.DIFFUSION
   );
 }
 

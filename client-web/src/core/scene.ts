@@ -18,6 +18,7 @@ import {
   MetaballsSchema,
   type Output,
   OutputSchema,
+  ParticleSizes,
   PhaseFunctionSchema,
   type Preset,
   type Rendering,
@@ -31,7 +32,7 @@ import {
   SunSchema,
 } from "../gen/thunderhead/v1/scene_pb";
 import { clampToLimits, type Limits, limitsOf, mostItemsOf } from "./limits";
-import { renderingOfPreset } from "./rendering";
+import { QUALITY_PRESETS, renderingOfPreset } from "./rendering";
 
 export const LIMITS = {
   fieldScale: limitsOf(FieldParametersSchema.field.scale),
@@ -122,10 +123,14 @@ export function withRendering(scene: Scene, rendering: Rendering | undefined): S
   return changed(scene, { rendering });
 }
 
-// Replaces technique and settings by a preset. Also drops an accuracy goal, for which the server would choose other
-// settings.
+// Replaces technique and settings by a preset, which also stands for where particles' sizes come from. Also drops an
+// accuracy goal, for which the server would choose other settings.
 export function withPreset(scene: Scene, preset: Preset): Scene {
-  return changed(scene, { rendering: renderingOfPreset(preset), accuracy: undefined });
+  return changed(scene, {
+    rendering: renderingOfPreset(preset),
+    particleSizes: QUALITY_PRESETS.includes(preset) ? ParticleSizes.MODEL : ParticleSizes.PAPERS,
+    accuracy: undefined,
+  });
 }
 
 export function withDisplay(scene: Scene, change: Change<Display>): Scene {
@@ -178,6 +183,34 @@ export function withStorm(scene: Scene, stormId: string, timeIndex: number): Sce
   return next.sun?.clock === undefined ? next : withSun(next, { clock: undefined });
 }
 
+// Where the sizes of a field's particles come from: a radius that is given comes first, then the field's own choice,
+// then the scene's.
+function sizesOf(scene: Scene, set: FieldParameters | undefined): ParticleSizes {
+  if (set?.radiusM !== undefined) return ParticleSizes.GIVEN;
+  return set?.sizes || scene.particleSizes || ParticleSizes.MODEL;
+}
+
+// Chooses where all particles' sizes come from. Fields no longer say so themselves.
+export function withParticleSizes(scene: Scene, particleSizes: ParticleSizes): Scene {
+  return changed(scene, {
+    particleSizes,
+    fields: scene.fields.map((field) =>
+      changed(field, { sizes: ParticleSizes.UNSPECIFIED, radiusM: undefined }),
+    ),
+  });
+}
+
+// Chooses where one field's sizes come from; `radiusM` is for sizes that are given.
+export function withFieldSizes(
+  scene: Scene,
+  hydrometeor: Hydrometeor,
+  sizes: ParticleSizes,
+  radiusM: number,
+): Scene {
+  const given = sizes === ParticleSizes.GIVEN;
+  return withField(scene, hydrometeor, { sizes, radiusM: given ? radiusM : undefined });
+}
+
 // A field's settings as drawn: the scene's, else the defaults of the storm's description.
 export function effectiveField(
   scene: Scene,
@@ -198,9 +231,9 @@ export function effectiveField(
   return create(FieldParametersSchema, {
     hydrometeor,
     visible: set?.visible ?? defaults?.visible ?? true,
-    sizeFromFile: set?.sizeFromFile ?? defaults?.sizeFromFile ?? true,
+    sizes: sizesOf(scene, set),
     scale: set?.scale ?? defaults?.scale ?? LIMITS.fieldScale.defaultValue,
-    radiusM: set?.radiusM ?? defaults?.radiusM,
+    radiusM: set?.radiusM,
     densityKgPerM3: set?.densityKgPerM3 ?? defaults?.densityKgPerM3,
     albedo: set?.albedo ?? defaults?.albedo ?? LIMITS.fieldAlbedo.defaultValue,
     phase,

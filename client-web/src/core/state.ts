@@ -112,6 +112,7 @@ export class PageState {
 
   // Parts of the scene that change only when they are edited themselves.
   readonly fields = computed(() => this.#scene.value.fields);
+  readonly particleSizes = computed(() => this.#scene.value.particleSizes);
   readonly sun = computed(() => this.#scene.value.sun);
   // The sun's direction: as set by hand, or as the server computed it from the clock.
   readonly sunDirection = computed((): SunDirection => {

@@ -14,7 +14,7 @@ import { LIMITS, withAccuracy } from "../core/scene";
 import type { PageState } from "../core/state";
 import { formatNumber } from "../core/units";
 import { type Accuracy, AccuracySchema, MetaballsSchema } from "../gen/thunderhead/v1/scene_pb";
-import type { AccuracyReport } from "../gen/thunderhead/v1/thunderhead_pb";
+import type { AccuracyReport, TechniqueDescription } from "../gen/thunderhead/v1/thunderhead_pb";
 import { Choice, Section, Slider } from "./controls";
 
 type Goal = "none" | "maxError" | "maxMilliseconds";
@@ -108,7 +108,7 @@ function Report({ state, report }: ReportProps) {
         data-expected-milliseconds={report.expectedMilliseconds}
       >
         Estimated error {percent(report.estimatedError)} ({parts.join(", ")}), by{" "}
-        {[nameOfTechnique(name), ...settingsInWords(settings)].join(", ").toLowerCase()}
+        {[nameOfTechnique(name), ...settingsInWords(settings, technique)].join(", ").toLowerCase()}
         {traced && ", traced light"}
         {hasSlices && `, ${report.slices} slices`}
         {settings !== undefined &&
@@ -129,10 +129,13 @@ function Report({ state, report }: ReportProps) {
 }
 
 // The settings that decide the error, a few words each.
-function settingsInWords(settings: Settings | undefined): string[] {
+function settingsInWords(
+  settings: Settings | undefined,
+  technique: TechniqueDescription | undefined,
+): string[] {
   if (settings === undefined) return [];
   const shared = sharedSettingsOf(settings);
-  const transport = transportOf(settings);
+  const transport = transportOf(settings, technique);
   return [
     transport !== undefined && nameOfTransport(transport),
     hasSetting(settings, "perFieldPhase") && !shared.perFieldPhase && "one phase function",

@@ -8,6 +8,8 @@ import {
   withAsymmetry,
   withDetail,
   withField,
+  withFieldSizes,
+  withParticleSizes,
 } from "../core/scene";
 import type { PageState } from "../core/state";
 import { formatNumber } from "../core/units";
@@ -15,9 +17,13 @@ import {
   ColorSchema,
   PhaseFunction_Kind as Kind,
   MetaballsSchema,
+  ParticleSizes,
   PhaseFunctionSchema,
 } from "../gen/thunderhead/v1/scene_pb";
-import type { FieldDescription } from "../gen/thunderhead/v1/storm_pb";
+import {
+  type FieldDescription,
+  FieldDescription_SizeOrigin as SizeOrigin,
+} from "../gen/thunderhead/v1/storm_pb";
 import { Choice, Section, Slider, Switch } from "./controls";
 
 const PHASE_KINDS = [
@@ -37,6 +43,18 @@ export function FieldsSection({ state }: { state: PageState }) {
   return (
     <Section title="Fields" open testId="fields">
       {storm === undefined && <p class="quiet">Waiting for the storm's description …</p>}
+      {storm?.fields.some((field) => field.units !== EXTINCTION_UNITS) && (
+        <Choice
+          label="Particle sizes"
+          testId="particle-sizes"
+          value={state.particleSizes.value || ParticleSizes.MODEL}
+          options={[
+            [ParticleSizes.MODEL, "As the model has them"],
+            [ParticleSizes.PAPERS, "The papers' constants"],
+          ]}
+          onChange={(sizes) => state.edit((scene) => withParticleSizes(scene, sizes))}
+        />
+      )}
       {storm?.fields.map((field) => (
         <FieldRow key={field.hydrometeor} state={state} field={field} />
       ))}
@@ -118,10 +136,29 @@ function amountOf(field: FieldDescription): string {
   return `${field.variable}: up to ${formatNumber(field.maximum * 1000)} ${unit}, column mean ${path} kg/m²`;
 }
 
+function micrometres(radiusM: number): string {
+  return `${formatNumber(radiusM * 1e6)} µm`;
+}
+
+// What the model's sizes follow from, with the effective radius of all particles.
+function originOf(field: FieldDescription): string {
+  const radius = field.meanRadiusM > 0 ? `, ${micrometres(field.meanRadiusM)}` : "";
+  switch (field.sizeOrigin) {
+    case SizeOrigin.EFFECTIVE_RADIUS:
+    case SizeOrigin.NUMBER:
+      return `${field.sizeVariable}${radius}`;
+    case SizeOrigin.SCHEME:
+      return `${field.sizeScheme}${radius}`;
+    default:
+      return `as observed${radius}`;
+  }
+}
+
 // A field's settings as the scene has them, the prefix of its test ids, and how to change them. Draws again
 // with every change of the fields.
 function controlsOf(state: PageState, { hydrometeor, defaults }: FieldDescription) {
   void state.fields.value;
+  void state.particleSizes.value;
   return {
     shown: effectiveField(state.scene.peek(), hydrometeor, defaults),
     id: hydrometeorName(hydrometeor).toLowerCase(),
@@ -137,23 +174,37 @@ function ParticleSettings({ state, field }: { state: PageState; field: FieldDesc
     <>
       {field.units !== EXTINCTION_UNITS && (
         <>
-          {field.sizeVariable !== "" && (
-            <Switch
-              label={`Sizes from the file (${field.sizeVariable}, ${formatNumber(field.meanRadiusM * 1e6)} µm)`}
-              testId={`field-${id}-size-from-file`}
-              checked={shown.sizeFromFile ?? true}
-              onChange={(sizeFromFile) => edit({ sizeFromFile })}
+          <Choice
+            label="Sizes"
+            testId={`field-${id}-sizes`}
+            value={shown.sizes}
+            options={[
+              [ParticleSizes.MODEL, `Model: ${originOf(field)}`],
+              [ParticleSizes.PAPERS, `Papers: ${micrometres(field.papersRadiusM)}`],
+              [ParticleSizes.GIVEN, "One radius"],
+            ]}
+            onChange={(sizes) =>
+              state.edit((scene) =>
+                withFieldSizes(
+                  scene,
+                  field.hydrometeor,
+                  sizes,
+                  field.meanRadiusM || field.papersRadiusM,
+                ),
+              )
+            }
+          />
+          {shown.sizes === ParticleSizes.GIVEN && (
+            <Slider
+              label="Radius"
+              limits={LIMITS.fieldRadius}
+              value={shown.radiusM}
+              initial={field.meanRadiusM || undefined}
+              testId={`field-${id}-radius`}
+              afterRest={fitsAnew(state)}
+              onChange={(radiusM) => edit({ radiusM })}
             />
           )}
-          <Slider
-            label="Radius"
-            limits={LIMITS.fieldRadius}
-            value={shown.radiusM}
-            initial={defaults?.radiusM}
-            testId={`field-${id}-radius`}
-            afterRest={fitsAnew(state)}
-            onChange={(radiusM) => edit({ radiusM })}
-          />
           <Slider
             label="Density"
             limits={LIMITS.fieldDensity}

@@ -3,14 +3,16 @@ import { transportOf } from "../core/rendering";
 import { LIMITS } from "../core/scene";
 import type { PageState } from "../core/state";
 import { type Metaballs, Transport } from "../gen/thunderhead/v1/scene_pb";
+import type { TechniqueDescription } from "../gen/thunderhead/v1/thunderhead_pb";
 import { Slider, Switch } from "./controls";
 
 interface MetaballProps {
   readonly state: PageState;
   readonly metaballs: Metaballs;
+  readonly technique: TechniqueDescription | undefined;
 }
 
-export function MetaballControls({ state, metaballs }: MetaballProps) {
+export function MetaballControls({ state, metaballs, technique }: MetaballProps) {
   return (
     <>
       <Slider
@@ -27,7 +29,7 @@ export function MetaballControls({ state, metaballs }: MetaballProps) {
         testId="metaball-isotropic"
         onChange={(isotropic) => state.editSettings({ isotropic })}
       />
-      {transportOf(metaballs) === Transport.PAPER && (
+      {transportOf(metaballs, technique) === Transport.PAPER && (
         <>
           <Slider
             label="Albedo a"

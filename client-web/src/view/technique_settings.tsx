@@ -11,7 +11,6 @@ import {
   techniqueNameOf,
   tracesLight,
   transportOf,
-  transportsOf,
   withTechnique,
   withTransport,
 } from "../core/rendering";
@@ -53,7 +52,7 @@ export function TechniqueSettings({ state }: { state: PageState }) {
         <MediumControls state={state} settings={settings} technique={technique} />
       )}
       {isMessage(settings, MetaballsSchema) && (
-        <MetaballControls state={state} metaballs={settings} />
+        <MetaballControls state={state} metaballs={settings} technique={technique} />
       )}
       {isMessage(settings, CumulusSchema) && <CumulusControls state={state} cumulus={settings} />}
       {isMessage(settings, OtherTechniqueSchema) && (
@@ -93,7 +92,7 @@ interface MediumProps {
 // The settings that several techniques share; only those that this one has.
 function MediumControls({ state, settings, technique }: MediumProps) {
   const shared = sharedSettingsOf(settings);
-  const transport = transportOf(settings);
+  const transport = transportOf(settings, technique);
   const flag = (name: "perFieldPhase" | "detail" | "falseColors", label: string, testId: string) =>
     hasSetting(settings, name) && (
       <Switch
@@ -110,7 +109,7 @@ function MediumControls({ state, settings, technique }: MediumProps) {
           label="Transport"
           testId="transport"
           value={transport}
-          options={transportsOf(settings).map((each) => [each, nameOfTransport(each)] as const)}
+          options={technique.transports.map((each) => [each, nameOfTransport(each)] as const)}
           onChange={(chosen) =>
             state.editRendering((rendering) => withTransport(rendering, chosen))
           }

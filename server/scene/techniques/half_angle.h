@@ -2,6 +2,7 @@
 // slices halfway between sun and eye.
 #pragma once
 
+#include <array>
 #include <string_view>
 
 #include "scene/capabilities.h"
@@ -12,9 +13,13 @@ namespace thunderhead::scene {
 
 struct HalfAngle {
   static constexpr std::string_view kName = "half_angle";
-  static constexpr Capabilities kCapabilities{.detail = true, .field_optics = true, .slices = true};
+  static constexpr std::array kTransports = {Transport::kConsistent, Transport::kLowAlbedo,
+                                             Transport::kPaper, Transport::kPaperLowAlbedo};
+  static constexpr Capabilities kCapabilities{
+      .detail = true, .field_optics = true, .slices = true, .transports = kTransports};
 
-  MediumSettings medium;  // kDiffusion is drawn as kConsistent
+  // kDiffusion is drawn as kConsistent
+  MediumSettings medium{.transport = kTransports.front()};
   int slices = 128;
 
   bool operator==(const HalfAngle&) const = default;

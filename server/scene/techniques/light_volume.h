@@ -1,6 +1,7 @@
 // Settings of the light volume: light carried once into a volume, through which view rays march.
 #pragma once
 
+#include <array>
 #include <string_view>
 
 #include "scene/capabilities.h"
@@ -18,10 +19,16 @@ enum class TracedLight {
 
 struct LightVolume {
   static constexpr std::string_view kName = "light_volume";
-  static constexpr Capabilities kCapabilities{
-      .detail = true, .field_optics = true, .traced_light = true, .slices = true};
+  static constexpr std::array kTransports = {Transport::kDiffusion, Transport::kConsistent,
+                                             Transport::kLowAlbedo, Transport::kPaper,
+                                             Transport::kPaperLowAlbedo};
+  static constexpr Capabilities kCapabilities{.detail = true,
+                                              .field_optics = true,
+                                              .traced_light = true,
+                                              .slices = true,
+                                              .transports = kTransports};
 
-  MediumSettings medium{.transport = Transport::kDiffusion, .look = {.detail = true}};
+  MediumSettings medium{.transport = kTransports.front(), .look = {.detail = true}};
   int slices = 128;  // samples along a ray through the medium
   TracedLight traced_light = TracedLight::kAtRest;
 

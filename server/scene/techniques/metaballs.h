@@ -1,6 +1,7 @@
 // Settings of the metaball technique (Man, Generating and Real-Time Rendering of Clouds).
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <string_view>
 
@@ -12,9 +13,12 @@ namespace thunderhead::scene {
 
 struct Metaballs {
   static constexpr std::string_view kName = "metaball";
-  static constexpr Capabilities kCapabilities{.lights = true, .field_optics = true};
+  static constexpr std::array kTransports = {Transport::kConsistent, Transport::kLowAlbedo,
+                                             Transport::kPaper};
+  static constexpr Capabilities kCapabilities{
+      .lights = true, .field_optics = true, .transports = kTransports};
 
-  MediumSettings medium;
+  MediumSettings medium{.transport = kTransports.front()};
   int count = 1200;  // at most; the paper's first scene
   bool isotropic = false;
   double albedo = 0.9;         // a of Man's eq. 26; Transport::kPaper only

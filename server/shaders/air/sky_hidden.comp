@@ -1,6 +1,7 @@
 // The storm in the sky of each point of a coarse lattice around it, as common/sky_hidden.glsl has it: means over directions
-// spread evenly over the upper half of its opacity, and of that times the transmittance of a level layer of as much
-// vertical depth for diffuse light (two-stream, no absorption: 1 / (1 + 3/4 of the similarity-scaled depth)).
+// spread evenly over the upper half of its opacity, and of that times the transmittance for diffuse light of a level layer of
+// as much vertical depth: two-stream, (1 - a / r) exp(-sqrt(3 a r)) / (1 + 3/4 r) for the depths r of transport (similarity
+// scaled) and a of absorption.
 // Variants: GROUPS, DETAILS (none: the noise has a mean of 1).
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
@@ -15,17 +16,24 @@ uniform vec3 lattice_size_m;
 uniform float step_m;
 uniform vec4 light_weights[PLANES];
 uniform vec4 transport_weights[PLANES];
+uniform vec4 absorption_weights[PLANES];
 
 const int kDirections = 16;
 const int kMaxSamples = 512;
 const float kGoldenAngle = 2.39996323;
 
-// Optical depths of the light's extinction and of transport.
-vec2 depths_along(vec3 origin_m, vec3 direction, vec4 light_depths[PLANES], vec4 transport_depths[PLANES]) {
+// Optical depths of the light's extinction, of transport and of absorption, a step each.
+struct Depths {
+  vec4 light[PLANES];
+  vec4 transport[PLANES];
+  vec4 absorption[PLANES];
+};
+
+vec3 depths_along(vec3 origin_m, vec3 direction, Depths of_step) {
   MediumRay ray = medium_ray(origin_m, direction);
   vec2 path = path_in_medium(origin_m, direction, 0.0);
   float distance_m = max(path.x, 0.0);
-  vec2 depths = vec2(0.0);
+  vec3 depths = vec3(0.0);
   for (int i = 0; i < kMaxSamples && distance_m < path.y; ++i) {
     vec3 place = brick_place(ray, distance_m);
     uint content = brick_content(ray, place);
@@ -34,7 +42,7 @@ vec2 depths_along(vec3 origin_m, vec3 direction, vec4 light_depths[PLANES], vec4
       continue;
     }
     Medium medium = medium_at_place(medium_place(ray, distance_m + 0.5 * step_m));
-    depths += vec2(weigh(medium, light_depths), weigh(medium, transport_depths));
+    depths += vec3(weigh(medium, of_step.light), weigh(medium, of_step.transport), weigh(medium, of_step.absorption));
     distance_m += step_m;
   }
   return depths;
@@ -45,8 +53,8 @@ void main() {
   ivec3 point = ivec3(gl_GlobalInvocationID);
   if (any(greaterThanEqual(point, point_count))) return;
   vec3 origin_m = lattice_low_m + (vec3(point) + 0.5) / vec3(point_count) * lattice_size_m;
-  vec4 light_depths[PLANES] = scaled(light_weights, step_m);
-  vec4 transport_depths[PLANES] = scaled(transport_weights, step_m);
+  Depths of_step = Depths(scaled(light_weights, step_m), scaled(transport_weights, step_m),
+                          scaled(absorption_weights, step_m));
   vec2 sum = vec2(0.0);
   for (int i = 0; i < kDirections; ++i) {
     // Fibonacci spiral; its turn differs from point to point, so that all together miss nothing.
@@ -54,9 +62,11 @@ void main() {
     float azimuth = kGoldenAngle * (float(i) + float(point.x) + 3.0 * float(point.y) + 7.0 * float(point.z));
     float cosine = sqrt(1.0 - sine * sine);
     vec3 direction = safe_direction(vec3(cosine * cos(azimuth), cosine * sin(azimuth), sine));
-    vec2 depths = depths_along(origin_m, direction, light_depths, transport_depths);
+    vec3 depths = depths_along(origin_m, direction, of_step);
     float opacity = 1.0 - exp(-depths.x);
-    sum += opacity * vec2(1.0, 1.0 / (1.0 + 0.75 * depths.y * sine));
+    float scattered = 1.0 - depths.z / max(depths.y, 1e-9);
+    float diffuse = scattered * exp(-sqrt(3.0 * depths.y * depths.z) * sine) / (1.0 + 0.75 * depths.y * sine);
+    sum += opacity * vec2(1.0, diffuse);
   }
   // The outermost points are beyond where air is shaded.
   bvec3 first = equal(point, ivec3(0));

@@ -37,8 +37,8 @@ void main() {
     float path_m = min(step_m, path.y - distance_m);
     depth += path_m * per_step * weigh(medium_at_place(medium_place(ray, distance_m + 0.5 * path_m)), depth_weights);
     float after = exp(-depth);
-    float place = (distance_m + 0.5 * path_m) / half_depth_m;
-    moments += (before - after) * vec2(place, place * place);
+    float along = (distance_m + 0.5 * path_m) / half_depth_m;
+    moments += (before - after) * vec2(along, along * along);
     before = after;
     distance_m += path_m;
   }

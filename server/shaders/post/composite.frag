@@ -53,18 +53,15 @@ vec3 ground_radiance(vec3 point_m) {
 #else
   vec3 normal = vec3(0.0, 0.0, 1.0);
 #endif
-#if RELIEF
-  float blocked = blocked_at(point_m);
-#else
   float blocked = blocked_behind(point_m);
-#endif
   float lit = max(dot(normal, towards_sun), 0.0) * (1.0 - blocked);
   vec3 sky = skylight * (0.5 + 0.5 * normal.z);
 #if CORRECTED
   sky *= texture(skylight_factor, point_m.xy * skylight_scale + skylight_offset).rgb;
 #elif SHADED
   vec2 storm = storm_in_sky(point_m);
-  sky += (storm.y * blocked) * (sunlight * towards_sun.z + skylight) - storm.x * sky;
+  vec3 of_storm = (storm.y * blocked * (0.5 + 0.5 * normal.z)) * (sunlight * towards_sun.z + skylight);
+  sky = (1.0 - storm.x) * sky + of_storm;
 #endif
   return ground_reflectance * (sunlight * lit + sky);
 }

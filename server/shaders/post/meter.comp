@@ -1,6 +1,6 @@
 // The luminance of the storm's brightest hundredth in a linear frame, whose alpha is the storm's opacity: one work group
-// makes a histogram of means over cells of the picture, so that noise and single bright pixels do not count. 0 where there
-// is next to no storm.
+// makes a histogram of means over cells of the picture, each without its brightest sample, so that noise and single bright
+// pixels do not count. 0 where there is next to no storm.
 #include "common/bindings.glsl"
 
 layout(local_size_x = kMeterGroupSize) in;
@@ -22,11 +22,15 @@ shared uint histogram[kBins];
 void count_cell(int cell) {
   vec2 corner = vec2(cell % kCells, cell / kCells);
   vec2 sum = vec2(0.0);  // of luminance times opacity, and of opacity
+  vec2 brightest_sample = vec2(0.0);
   for (int i = 0; i < kPlaces * kPlaces; ++i) {
     vec2 within = (vec2(i % kPlaces, i / kPlaces) + 0.5) / float(kPlaces);
     vec4 pixel = textureLod(linear_frame, (corner + within) / float(kCells), 0.0);
-    sum += pixel.a * vec2(max(dot(pixel.rgb, luminance_weights), 0.0), 1.0);
+    vec2 here = pixel.a * vec2(max(dot(pixel.rgb, luminance_weights), 0.0), 1.0);
+    sum += here;
+    if (here.x > brightest_sample.x) brightest_sample = here;
   }
+  sum -= brightest_sample;
   uint weight = uint(sum.y / float(kPlaces * kPlaces) * float(kFullWeight));
   if (weight == 0u) return;
   float log2_luminance = log2(max(sum.x / sum.y, 1e-9));

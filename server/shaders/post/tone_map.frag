@@ -8,9 +8,17 @@ uniform vec3 gain;  // exposure times white balance
 in vec2 position;
 out vec4 display;
 
-// A toe that darkens the dark and a shoulder that keeps highlights apart, by each colour, so that bright light loses its
-// colour as on film: Narkowicz 2016, "ACES Filmic Tone Mapping Curve", y = x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14).
-vec3 film(vec3 x) { return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14); }
+// The film's curve, by each colour: a toe m (x / m)^c below m, y = x up to s = m + l (1 - m), and above it a shoulder
+// 1 - (1 - s) exp((s - x) / (1 - s)) that tends to 1. Uchimura 2017, "HDR theory and practice" (CEDEC), with P = a = 1 and b = 0.
+vec3 film(vec3 x) {
+  const float m = 0.22;
+  const float l = 0.4;
+  const float c = 1.33;
+  const float s = m + l * (1.0 - m);
+  vec3 toe = m * pow(x / m, vec3(c));
+  vec3 shoulder = 1.0 - (1.0 - s) * exp((s - x) / (1.0 - s));
+  return mix(mix(toe, x, smoothstep(0.0, m, x)), shoulder, greaterThan(x, vec3(s)));
+}
 
 vec3 srgb(vec3 linear) {
   return mix(12.92 * linear, 1.055 * pow(max(linear, vec3(1e-6)), vec3(1.0 / 2.4)) - 0.055,

@@ -46,7 +46,8 @@ TEST(Coarsened, KeepsTheExtinctionOfCellsOfDifferentSizes) {
   for (std::size_t i = 0; i < per_radius.size(); ++i) {
     per_radius[i] /= 1e-6F * static_cast<float>(1 + i % 11);
   }
-  field.sizes = SizesOf("RE_CLOUD", field.concentration_kg_per_m3, per_radius);
+  field.sizes = SizesOf({SizeOrigin::kEffectiveRadius, "RE_CLOUD"}, field.concentration_kg_per_m3,
+                        per_radius);
   const HydrometeorFields coarse = Coarsened(fine, {4, 2, 1});
   const auto mean = [](const HydrometeorFields& fields) {
     float sum = 0.0F;
@@ -56,7 +57,8 @@ TEST(Coarsened, KeepsTheExtinctionOfCellsOfDifferentSizes) {
   };
   // Half floats in both: 2^-12 each.
   EXPECT_NEAR(mean(coarse) / mean(fine), 1.0F, 6e-4F);
-  EXPECT_EQ(coarse.fields[0].sizes.variable, "RE_CLOUD");
+  EXPECT_EQ(coarse.fields[0].sizes.origin, SizeOrigin::kEffectiveRadius);
+  EXPECT_EQ(coarse.fields[0].sizes.name, "RE_CLOUD");
 }
 
 TEST(Coarsened, OnlyAsMuchAsIsNeeded) {

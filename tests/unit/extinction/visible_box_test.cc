@@ -30,6 +30,20 @@ TEST(VisibleBox, LeavesTracesOut) {
   EXPECT_EQ(box.high_m, glm::dvec3(100, -100, 250));
 }
 
+// Ice of 30 um is visible where the papers' crystals of 1 mm are not.
+TEST(VisibleBox, FollowsTheSizesOfTheParticles) {
+  HydrometeorFields fields = EmptyStorm();
+  fields.fields.resize(2);
+  fields.fields[1].hydrometeor = physics::Hydrometeor::kIce;
+  for (HydrometeorField& field : fields.fields) {
+    field.concentration_kg_per_m3.assign(fields.grid.CellCount(), 0.0F);
+  }
+  fields.fields[0].concentration_kg_per_m3[fields.grid.Offset(3, 2, 4)] = 1e-3F;
+  fields.fields[1].concentration_kg_per_m3[fields.grid.Offset(8, 2, 4)] = 3e-5F;
+  EXPECT_EQ(VisibleBox(fields, physics::SizeSource::kModel).high_m, glm::dvec3(400, -100, 250));
+  EXPECT_EQ(VisibleBox(fields, physics::SizeSource::kPapers).high_m, glm::dvec3(-100, -100, 250));
+}
+
 TEST(VisibleBox, OfAFullDomainIsTheDomain) {
   HydrometeorFields fields = EmptyStorm();
   fields.fields[0].concentration_kg_per_m3.assign(fields.grid.CellCount(), 1e-3F);

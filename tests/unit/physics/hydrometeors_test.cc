@@ -1,6 +1,8 @@
 #include "physics/hydrometeors.h"
 
 #include <cmath>
+#include <set>
+#include <string_view>
 
 #include "gtest/gtest.h"
 #include "physics/air.h"
@@ -53,21 +55,45 @@ TEST(Hydrometeors, DefaultPhasesAreTables) {
   EXPECT_EQ(kind(Hydrometeor::kHail), PhaseKind::kIceRough);
 }
 
-TEST(Hydrometeors, DefaultsAreThePapersTables) {
-  EXPECT_FLOAT_EQ(DefaultOptics(Hydrometeor::kCloud).radius_m, 1e-5F);
-  EXPECT_FLOAT_EQ(DefaultOptics(Hydrometeor::kRain).radius_m, 1e-3F);
-  EXPECT_FLOAT_EQ(DefaultOptics(Hydrometeor::kIce).radius_m, 1e-3F);
-  EXPECT_FLOAT_EQ(DefaultOptics(Hydrometeor::kSnow).radius_m, 2e-3F);
-  EXPECT_FLOAT_EQ(DefaultOptics(Hydrometeor::kGraupel).radius_m, 2.5e-3F);
+TEST(Hydrometeors, PapersConstantsAreTheirTables) {
+  EXPECT_FLOAT_EQ(PapersRadius_m(Hydrometeor::kCloud), 1e-5F);
+  EXPECT_FLOAT_EQ(PapersRadius_m(Hydrometeor::kRain), 1e-3F);
+  EXPECT_FLOAT_EQ(PapersRadius_m(Hydrometeor::kIce), 1e-3F);
+  EXPECT_FLOAT_EQ(PapersRadius_m(Hydrometeor::kSnow), 2e-3F);
+  EXPECT_FLOAT_EQ(PapersRadius_m(Hydrometeor::kGraupel), 2.5e-3F);
   EXPECT_EQ(DefaultOptics(Hydrometeor::kIce).false_color, glm::vec3(1, 0, 1));
   EXPECT_EQ(DefaultOptics(Hydrometeor::kSnow).false_color, glm::vec3(1, 1, 0));
 }
 
-TEST(Hydrometeors, NamesGoBothWays) {
-  for (Hydrometeor hydrometeor : kHydrometeors) {
-    EXPECT_EQ(HydrometeorNamed(NameOf(hydrometeor)), hydrometeor);
+// Exponential distributions as observed, at 1 g/m3: 3/2 over the fourth root of pi rho N0 / 1e-3.
+TEST(Hydrometeors, DefaultRadiiAreObserved) {
+  struct Row {
+    Hydrometeor hydrometeor;
+    double intercept_per_m4;
+  };
+  for (const Row& row :
+       {Row{Hydrometeor::kRain, 8e6}, Row{Hydrometeor::kSnow, 2e6 * std::exp(0.12 * 20.0)},
+        Row{Hydrometeor::kGraupel, 4e6}, Row{Hydrometeor::kHail, 4e4}}) {
+    const ParticleOptics& optics = DefaultOptics(row.hydrometeor);
+    const double slope_per_m =
+        std::pow(3.14159265 * optics.density_kg_per_m3 * row.intercept_per_m4 / 1e-3, 0.25);
+    EXPECT_NEAR(optics.radius_m * slope_per_m / 1.5, 1.0, 0.01) << NameOf(row.hydrometeor);
   }
-  EXPECT_FALSE(HydrometeorNamed("fog").has_value());
+  EXPECT_FLOAT_EQ(DefaultOptics(Hydrometeor::kCloud).radius_m, 1e-5F);
+  EXPECT_FLOAT_EQ(DefaultOptics(Hydrometeor::kIce).radius_m, 3e-5F);
+}
+
+TEST(Hydrometeors, TheConstantRadiusIsThatOfTheSource) {
+  EXPECT_FLOAT_EQ(ConstantRadius_m(Hydrometeor::kIce, SizeSource::kModel, 7e-5F), 3e-5F);
+  EXPECT_FLOAT_EQ(ConstantRadius_m(Hydrometeor::kIce, SizeSource::kPapers, 7e-5F), 1e-3F);
+  EXPECT_FLOAT_EQ(ConstantRadius_m(Hydrometeor::kIce, SizeSource::kGiven, 7e-5F), 7e-5F);
+}
+
+TEST(Hydrometeors, EachHasItsOwnName) {
+  std::set<std::string_view> names;
+  for (Hydrometeor hydrometeor : kHydrometeors) names.insert(NameOf(hydrometeor));
+  EXPECT_EQ(names.size(), kHydrometeorCount);
+  EXPECT_FALSE(names.contains(""));
 }
 
 TEST(Air, DensityOfDryAndMoistAir) {

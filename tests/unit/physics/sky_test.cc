@@ -318,9 +318,12 @@ TEST(Air, FarAwayEverythingIsTheSky) {
   const glm::vec3 cloud(0.5F, 0.6F, 0.7F);
   const glm::vec2 densities = glsl::densities_of_air(2.0F);
   const auto seen = [&](float opacity, float distance_m, float sine) {
-    return glsl::through_air(opacity * cloud, opacity,
-                             glsl::depth_of_air(2.0F, densities, {2.0F, sine, 0.0F, distance_m}),
-                             sky, glsl::depth_of_air(2.0F, densities, {2.0F, sine, 0.0F, 5e5F}));
+    const glm::vec3 transmittance =
+        glm::exp(-glsl::depth_of_air(2.0F, densities, {2.0F, sine, 0.0F, distance_m}));
+    return opacity *
+           (transmittance * cloud +
+            glsl::airlight_before(transmittance, sky,
+                                  glsl::depth_of_air(2.0F, densities, {2.0F, sine, 0.0F, 5e5F})));
   };
   for (int channel = 0; channel < 3; ++channel) {
     EXPECT_NEAR(seen(1.0F, 0.0F, 0.1F)[channel], cloud[channel], 1e-6);

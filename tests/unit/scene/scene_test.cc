@@ -24,7 +24,8 @@ TEST(Scene, EachChangeRerunsFromItsOwnStage) {
   EXPECT_EQ(After([](Scene* s) { s->storm_id = "b"; }), Stage::kStorm);
   EXPECT_EQ(After([](Scene* s) { s->fields[0].scale = 2; }), Stage::kExtinction);
   EXPECT_EQ(After([](Scene* s) { s->fields[2].visible = false; }), Stage::kExtinction);
-  EXPECT_EQ(After([](Scene* s) { s->fields[2].size_from_file = false; }), Stage::kExtinction);
+  EXPECT_EQ(After([](Scene* s) { s->fields[2].sizes = physics::SizeSource::kPapers; }),
+            Stage::kExtinction);
   EXPECT_EQ(
       After([](Scene* s) { MediumSettingsOf(&s->rendering.technique)->look.false_colors = true; }),
       Stage::kExtinction);

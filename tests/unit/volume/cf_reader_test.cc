@@ -79,9 +79,9 @@ TEST_F(CfReader, ReadsExtinctionAsOneFieldOnItsGrid) {
   EXPECT_EQ(field.quantity, Quantity::kExtinction);
   EXPECT_EQ(field.variable, "extinction");
   physics::ParticleOptics optics = physics::DefaultOptics(field.hydrometeor);
-  EXPECT_EQ(MassExtinctionOf(field, optics, true).m2_per_kg, 1.0F);
+  EXPECT_EQ(MassExtinctionOf(field, optics, physics::SizeSource::kModel).m2_per_kg, 1.0F);
   optics.radius_m *= 7.0F;
-  EXPECT_EQ(MassExtinctionOf(field, optics, true).m2_per_kg, 1.0F);
+  EXPECT_EQ(MassExtinctionOf(field, optics, physics::SizeSource::kGiven).m2_per_kg, 1.0F);
   EXPECT_NEAR(field.statistics.maximum_water_path_kg_per_m2,
               50.0 * (Value(3, 2, 0) + Value(3, 2, 1)), 1e-4);
   EXPECT_EQ((*fields)->condensate, (CellBox{{0, 0, 0}, {4, 3, 2}}));

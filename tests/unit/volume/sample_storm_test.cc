@@ -34,23 +34,37 @@ std::vector<float> Raw(const char* name, std::size_t record, std::size_t levels)
   return values;
 }
 
-// Mass per area of dry air in every layer, from first principles and in double precision.
-std::vector<double> AirMass(std::size_t record) {
+// In SI units; the density is that of dry air.
+struct Layer {
+  double density;
+  double temperature;
+  double thickness;
+};
+
+// Every layer from first principles and in double precision.
+std::vector<Layer> LayersOf(std::size_t record) {
   const auto ph = Raw("PH", record, kLevels + 1);
   const auto phb = Raw("PHB", record, kLevels + 1);
   const auto p = Raw("P", record, kLevels);
   const auto pb = Raw("PB", record, kLevels);
   const auto t = Raw("T", record, kLevels);
   const auto qv = Raw("QVAPOR", record, kLevels);
-  std::vector<double> mass(kLevels * kColumns);
-  for (std::size_t i = 0; i < mass.size(); ++i) {
+  std::vector<Layer> layers(kLevels * kColumns);
+  for (std::size_t i = 0; i < layers.size(); ++i) {
     const double pressure = double{p[i]} + pb[i];
     const double temperature = (double{t[i]} + 300.0) * std::pow(pressure / 1e5, 2.0 / 7.0);
     const double density = pressure / (287.0 * temperature * (1.0 + 1.608 * qv[i]));
     const double bottom = (double{ph[i]} + phb[i]) / 9.81;
     const double top = (double{ph[i + kColumns]} + phb[i + kColumns]) / 9.81;
-    mass[i] = density * (top - bottom);
+    layers[i] = {density, temperature, top - bottom};
   }
+  return layers;
+}
+
+// Mass per area of dry air in every layer.
+std::vector<double> AirMass(std::size_t record) {
+  std::vector<double> mass;
+  for (const Layer& layer : LayersOf(record)) mass.push_back(layer.density * layer.thickness);
   return mass;
 }
 
@@ -122,6 +136,64 @@ TEST(SampleStorm, KeepsTheWaterPathOfEveryColumnAndField) {
   }
 }
 
+// 3 rho q / (2 rho_f R) by the distributions of WSM6, from first principles.
+double Wsm6Extinction_per_m(const std::string& variable, double content, double temperature) {
+  const auto exponential = [content](double density, double intercept, double largest_slope) {
+    const double slope = std::pow(M_PI * density * intercept / content, 0.25);
+    return content * std::min(slope, largest_slope) / density;
+  };
+  if (variable == "QRAIN") return exponential(1000.0, 8e6, 8e4);
+  if (variable == "QGRAUP") return exponential(500.0, 4e6, 6e4);
+  if (variable == "QSNOW") {
+    const double intercept = 2e6 * std::exp(0.12 * (273.16 - temperature));
+    return exponential(100.0, std::clamp(intercept, 2e6, 1e11), 1e5);
+  }
+  if (variable == "QCLOUD") {
+    const double radius = 1.5 / std::cbrt(M_PI * 1000.0 * 3e8 / content);
+    return 1.5 * content / (1000.0 * std::clamp(radius, 2.51e-6, 50e-6));
+  }
+  const double crystals = std::clamp(5.38e7 * std::pow(content, 0.75), 1e3, 1e6);
+  const double radius = 0.75 * 0.163 * 11.9 * std::sqrt(content / crystals);
+  return 1.5 * content / (917.0 * std::clamp(radius, 10e-6, 125e-6));
+}
+
+// Its microphysics is WSM6, and no size is in the file. What is left of the difference are half
+// floats.
+TEST(SampleStorm, KeepsTheOpticalDepthOfEveryColumnByItsScheme) {
+  constexpr std::size_t kRecord = 1;
+  const auto metadata = ReadWrfMetadata(kSample);
+  ASSERT_TRUE(metadata.ok()) << metadata.status();
+  const auto fields = ReadWrfTime(*metadata, kRecord, std::nullopt, {});
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  const std::vector<Layer> layers = LayersOf(kRecord);
+  for (const HydrometeorField& field : fields->fields) {
+    EXPECT_EQ(field.sizes.origin, SizeOrigin::kScheme);
+    EXPECT_EQ(field.sizes.name, "WSM6");
+    const auto q = Raw(field.variable.c_str(), kRecord, kLevels);
+    std::vector<double> expected(kColumns, 0.0);
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      const Layer& layer = layers[i];
+      if (q[i] <= 0.0F) continue;
+      expected[i % kColumns] +=
+          layer.thickness *
+          Wsm6Extinction_per_m(field.variable, layer.density * q[i], layer.temperature);
+    }
+    std::vector<float> extinction(field.concentration_kg_per_m3.size(), 0.0F);
+    const auto mass_extinction = MassExtinctionOf(field, physics::DefaultOptics(field.hydrometeor),
+                                                  physics::SizeSource::kModel);
+    AddExtinction(field, mass_extinction, 0, extinction.size(), extinction.data());
+    std::vector<double> actual(kColumns, 0.0);
+    for (std::size_t i = 0; i < extinction.size(); ++i) {
+      actual[i % kColumns] += extinction[i] * fields->grid.spacing_m.z;
+    }
+    for (std::size_t i = 0; i < kColumns; ++i) {
+      // Below this a column holds nothing but traces.
+      if (expected[i] < 1e-3) continue;
+      ASSERT_NEAR(actual[i] / expected[i], 1.0, 1e-3) << field.variable << " " << i;
+    }
+  }
+}
+
 // Peaks over all times, as known of this run.
 TEST(SampleStorm, HasThePeaksOfItsRun) {
   const auto store = StormStore::Open({kSample}, {.read_ahead = 0});
@@ -163,7 +235,13 @@ TEST(SampleStorm, LiesOnOneGridThatIsCentredAndSmall) {
     ASSERT_TRUE(fields.ok()) << fields.status();
     EXPECT_EQ((*fields)->grid, grid);
     constexpr std::size_t kRawBytes = 5 * kLevels * kColumns * sizeof(float);
-    EXPECT_LE((*fields)->Bytes(), kRawBytes * 3 / 2);
+    std::size_t size_bytes = 0;
+    for (const HydrometeorField& field : (*fields)->fields) {
+      size_bytes += field.sizes.inverse_radius.size() * sizeof(std::uint16_t);
+    }
+    EXPECT_LE((*fields)->Bytes() - size_bytes, kRawBytes * 3 / 2);
+    // At most two bytes a cell, and nothing above and below a field's particles.
+    EXPECT_LE(size_bytes, 5 * grid.CellCount() * sizeof(std::uint16_t) * 3 / 4);
   }
 }
 
