@@ -19,7 +19,7 @@ RUN ./dev install runtime && rm -rf /var/lib/apt/lists/* dev deploy \
     && useradd --system --no-create-home thunderhead
 COPY --from=build /src/build/release/bin/thunderhead bin/
 COPY --from=build /src/client-web/dist share/thunderhead/page/
-COPY --from=build /src/samples /data/
+COPY --from=build /src/samples/supercell-500m.nc /data/
 ENV PATH=/opt/thunderhead/bin:$PATH \
     NVIDIA_DRIVER_CAPABILITIES=graphics,utility
 USER thunderhead

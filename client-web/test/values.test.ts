@@ -120,8 +120,8 @@ describe("scenes", () => {
   });
 
   it("drop what belongs to a storm with the storm", () => {
-    const after = withStorm(scene, "b");
-    expect(after).toMatchObject({ stormId: "b", timeIndex: 0, camera: undefined, fields: [] });
+    const after = withStorm(scene, "b", 3);
+    expect(after).toMatchObject({ stormId: "b", timeIndex: 3, camera: undefined, fields: [] });
     expect(after.sun).toBe(scene.sun);
   });
 
@@ -234,6 +234,6 @@ describe("the sun's clock", () => {
   it("belongs to the storm", () => {
     const clocked = withSunClock(create(SceneSchema, { stormId: "a" }), { latitudeDeg: 12 });
     expect(clocked.sun?.clock?.latitudeDeg).toBe(12);
-    expect(withStorm(clocked, "b").sun?.clock).toBeUndefined();
+    expect(withStorm(clocked, "b", 0).sun?.clock).toBeUndefined();
   });
 });

@@ -1,5 +1,6 @@
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,7 @@ struct Flags {
   std::string storm;
   std::string output;
   std::string volume;
-  int time_index = 0;
+  std::optional<int> time_index;
   std::string field = "extinction";
   std::string basis = "gaussian";
   std::string solver = "direct";
@@ -181,8 +182,8 @@ Command AddFit(CLI::App& app) {
   fit->add_option("--balls", flags->options.balls, "Number of balls")->required();
   fit->add_option("-o,--output", flags->output, "File of metaballs to write: .balls")->required();
   fit->add_option("--volume", flags->volume, "Also write the balls' sum as a storm file: .nc");
-  fit->add_option("--time", flags->time_index, "Index of the storm's time, from 0")
-      ->capture_default_str();
+  fit->add_option("--time", flags->time_index,
+                  "Index of the storm's time, from 0; by default the last");
   fit->add_option("--field", flags->field,
                   "extinction (of all fields), or a field's mass: cloud, rain, ice, ...")
       ->capture_default_str();

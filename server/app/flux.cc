@@ -27,7 +27,7 @@ namespace {
 struct Flags {
   std::string storm;
   std::optional<double> slab;
-  int time_index = 0;
+  std::optional<int> time_index;
   std::string phase;
   std::optional<double> albedo;
   double sun_elevation_deg = 90.0;
@@ -175,8 +175,8 @@ Command AddFlux(CLI::App& app) {
   flux->add_option("STORM", flags->storm, "Storm file or folder");
   flux->add_option("--slab", flags->slab,
                    "A plane-parallel slab of this optical depth instead of a storm");
-  flux->add_option("--time", flags->time_index, "Index of the storm's time, from 0")
-      ->capture_default_str();
+  flux->add_option("--time", flags->time_index,
+                   "Index of the storm's time, from 0; by default the last");
   flux->add_option("--phase", flags->phase,
                    std::string(kPhaseFlagHelp) +
                        "; by default each field's own, for a slab that of cloud water");

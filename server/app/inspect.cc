@@ -2,6 +2,7 @@
 
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "absl/strings/ascii.h"
@@ -19,7 +20,7 @@ namespace {
 
 struct Flags {
   std::string storm;
-  int time_index = 0;
+  std::optional<int> time_index;
   bool json = false;
 };
 
@@ -106,11 +107,11 @@ absl::Status Inspect(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store,
                                OpenStorm(flags.storm));
   const volume::StormInfo& storm = *store->Storms().front();
-  THUNDERHEAD_RETURN_IF_ERROR(CheckTime(*store, flags.storm, flags.time_index));
-  THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(*store, flags.time_index));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, store->Get(storm.id, flags.time_index, {}));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const int time_index, TimeOf(*store, flags.storm, flags.time_index));
+  THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(*store, time_index));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, store->Get(storm.id, time_index, {}));
   v1::StormDescription description;
-  service::ToMessage(storm, *fields, flags.time_index, description);
+  service::ToMessage(storm, *fields, time_index, description);
   std::cout << (flags.json ? Json(description) : Table(description));
   return absl::OkStatus();
 }
@@ -121,8 +122,8 @@ Command AddInspect(CLI::App& app) {
   auto flags = std::make_shared<Flags>();
   CLI::App* inspect = app.add_subcommand("inspect", "Describe a storm file or folder");
   inspect->add_option("STORM", flags->storm, "Storm file or folder")->required();
-  inspect->add_option("--time", flags->time_index, "Index of the time to describe, from 0")
-      ->capture_default_str();
+  inspect->add_option("--time", flags->time_index,
+                      "Index of the time to describe, from 0; by default the last");
   inspect->add_flag("--json", flags->json, "Print the StormDescription message as JSON");
   return {inspect, [flags] { return Inspect(*flags); }};
 }

@@ -35,11 +35,13 @@ absl::StatusOr<std::shared_ptr<volume::StormStore>> OpenStorm(const std::string&
       absl::StrCat(path, " holds ", storms.size(), " storms; name one of ", names));
 }
 
-absl::Status CheckTime(const volume::StormStore& store, const std::string& path, int time_index) {
-  const std::size_t times = store.Storms().front()->times.size();
-  if (time_index >= 0 && static_cast<std::size_t>(time_index) < times) return absl::OkStatus();
+absl::StatusOr<int> TimeOf(const volume::StormStore& store, const std::string& path,
+                           std::optional<int> wanted) {
+  const int last = static_cast<int>(store.Storms().front()->times.size()) - 1;
+  const int time_index = wanted.value_or(last);
+  if (time_index >= 0 && time_index <= last) return time_index;
   return absl::InvalidArgumentError(
-      absl::StrCat("--time is ", time_index, "; ", path, " has times 0 to ", times - 1));
+      absl::StrCat("--time is ", time_index, "; ", path, " has times 0 to ", last));
 }
 
 absl::Status ReadWithProgress(volume::StormStore& store, int time_index) {
@@ -49,10 +51,10 @@ absl::Status ReadWithProgress(volume::StormStore& store, int time_index) {
       store.Get(storm.id, time_index, [&bar](double share) { bar.Set(share); }).status());
 }
 
-absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadStorm(const std::string& path,
-                                                                           int time_index) {
+absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadStorm(
+    const std::string& path, std::optional<int> wanted) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store, OpenStorm(path));
-  THUNDERHEAD_RETURN_IF_ERROR(CheckTime(*store, path, time_index));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const int time_index, TimeOf(*store, path, wanted));
   THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(*store, time_index));
   return store->Get(store->Storms().front()->id, time_index, {});
 }

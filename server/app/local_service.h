@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "absl/status/status.h"
@@ -16,15 +17,17 @@ namespace thunderhead::app {
 // Opens the file or folder at `path`, which must contain exactly one storm.
 absl::StatusOr<std::shared_ptr<volume::StormStore>> OpenStorm(const std::string& path);
 
-// INVALID_ARGUMENT if the storm, which the user named by `path`, does not have that time.
-absl::Status CheckTime(const volume::StormStore& store, const std::string& path, int time_index);
+// The index of the time wanted of the storm, which the user named by `path`; if none is, of the
+// last. INVALID_ARGUMENT if it does not have that time.
+absl::StatusOr<int> TimeOf(const volume::StormStore& store, const std::string& path,
+                           std::optional<int> wanted);
 
 // Reads one time of the store's storm into its cache, with a progress bar.
 absl::Status ReadWithProgress(volume::StormStore& store, int time_index);
 
 // The fields of one time of the storm at `path`, read with a progress bar; errors as above.
-absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadStorm(const std::string& path,
-                                                                           int time_index);
+absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadStorm(
+    const std::string& path, std::optional<int> wanted);
 
 // The service on `store`, drawing on `device`, without a listening port.
 absl::StatusOr<std::unique_ptr<service::Server>> StartLocalService(

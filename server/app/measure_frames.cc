@@ -39,8 +39,9 @@ absl::StatusOr<Fields> Choose(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store,
                                OpenStorm(flags.storm));
   if (flags.time_index.has_value()) {
-    THUNDERHEAD_RETURN_IF_ERROR(CheckTime(*store, flags.storm, *flags.time_index));
-    return Read(*store, *flags.time_index);
+    THUNDERHEAD_ASSIGN_OR_RETURN(const int time_index,
+                                 TimeOf(*store, flags.storm, flags.time_index));
+    return Read(*store, time_index);
   }
   Fields best;
   for (std::size_t i = 0; i < store->Storms().front()->times.size(); ++i) {

@@ -108,7 +108,8 @@ Command AddMeasureSlices(CLI::App& measure) {
   slices->add_option("--slab", flags->slab,
                      "A smooth cloud of this optical depth instead of a storm");
   slices->add_option("--scene", flags->scene.file, "Scene as Protobuf JSON");
-  slices->add_option("--time", flags->scene.time_index, "Index of the storm's time, from 0");
+  slices->add_option("--time", flags->scene.time_index,
+                     "Index of the storm's time, from 0; by default the last");
   slices->add_option("--renderer", flags->scene.technique,
                      "half_angle (the default) or light_volume");
   slices->add_option("-o,--output", flags->output,

@@ -105,9 +105,11 @@ absl::StatusOr<v1::RenderImageResponse> CallHere(const Flags& flags,
                                OpenStorm(flags.storm));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<service::Server> server,
                                StartLocalService(store, flags.device));
-  if (request.scene().time_index() < store->Storms().front()->times.size()) {
-    THUNDERHEAD_RETURN_IF_ERROR(
-        ReadWithProgress(*store, static_cast<int>(request.scene().time_index())));
+  const std::size_t times = store->Storms().front()->times.size();
+  const std::size_t time_index =
+      request.scene().has_time_index() ? request.scene().time_index() : times - 1;
+  if (time_index < times) {
+    THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(*store, static_cast<int>(time_index)));
   }
   if (interruption.Token().stop_requested()) return Interrupted();
   return Call(server->LocalChannel(), request, interruption);

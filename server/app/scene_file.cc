@@ -149,7 +149,8 @@ absl::Status SetRendering(const SceneFlags& flags, v1::Scene& scene) {
 
 void AddSceneOptions(CLI::App& command, SceneFlags& flags) {
   command.add_option("--scene", flags.file, "Scene as Protobuf JSON");
-  command.add_option("--time", flags.time_index, "Index of the storm's time, from 0");
+  command.add_option("--time", flags.time_index,
+                     "Index of the storm's time, from 0; by default the last");
   command.add_option("--size", flags.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
   command.add_option("--camera", flags.camera, "orbit, spotter or top-down");
 }

@@ -115,7 +115,10 @@ absl::Status Serve(const Flags& flags) {
 Command AddServe(CLI::App& app) {
   auto flags = std::make_shared<Flags>();
   CLI::App* serve = app.add_subcommand("serve", "Serve storms to browsers and gRPC clients");
-  serve->add_option("--data", flags->data, "Storm files, or folders of them")->required();
+  serve
+      ->add_option("--data", flags->data,
+                   "Storm files, or folders of them; the page opens the first")
+      ->required();
   serve->add_option("--http", flags->http, "HOST:PORT to serve the page on")->capture_default_str();
   serve->add_option("--grpc", flags->grpc, "HOST:PORT to serve gRPC on")->capture_default_str();
   serve->add_option("--device", flags->device, "auto, software or a GPU's number")

@@ -109,23 +109,25 @@ View ViewOf(const TopDownCamera& camera, double aspect_ratio) {
   return view;
 }
 
+Site SiteOf(const volume::HydrometeorFields& fields, const glm::dvec2& place_m) {
+  const volume::RegularGrid& grid = fields.grid;
+  const volume::CellBox& cells = fields.condensate;
+  const glm::dvec3 middle_cell =
+      cells.Empty() ? glm::dvec3(grid.cells) / 2.0 : glm::dvec3(cells.low + cells.high) / 2.0;
+  return {volume::TerrainHeight_m(fields, place_m),
+          glm::dvec2(grid.low_corner_m + middle_cell * grid.spacing_m)};
+}
+
 View ViewOf(const Scene& scene, const volume::HydrometeorFields& fields) {
   const double aspect_ratio = static_cast<double>(scene.output.width_px) / scene.output.height_px;
   if (const auto* top_down = std::get_if<TopDownCamera>(&scene.camera)) {
     return ViewOf(*top_down, aspect_ratio);
   }
-  const volume::RegularGrid& grid = fields.grid;
-  const volume::CellBox& cells = fields.condensate;
-  const glm::dvec3 middle_cell =
-      cells.Empty() ? glm::dvec3(grid.cells) / 2.0 : glm::dvec3(cells.low + cells.high) / 2.0;
-  Site site;
-  site.storm_middle_m = glm::dvec2(grid.low_corner_m + middle_cell * grid.spacing_m);
   if (const auto* orbit = std::get_if<OrbitCamera>(&scene.camera)) {
-    return ViewOf(*orbit, site, aspect_ratio);
+    return ViewOf(*orbit, SiteOf(fields, glm::dvec2(0.0)), aspect_ratio);
   }
   const auto& spotter = std::get<SpotterCamera>(scene.camera);
-  site.ground_height_m = volume::TerrainHeight_m(fields, spotter.place_m);
-  return ViewOf(spotter, site, aspect_ratio);
+  return ViewOf(spotter, SiteOf(fields, spotter.place_m), aspect_ratio);
 }
 
 OrbitCamera Framing(OrbitCamera camera, const glm::dvec3& low_m, const glm::dvec3& high_m,

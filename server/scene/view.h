@@ -56,6 +56,9 @@ View ViewOf(const OrbitCamera& camera, const Site& site, double aspect_ratio);
 View ViewOf(const SpotterCamera& camera, const Site& site, double aspect_ratio);
 View ViewOf(const TopDownCamera& camera, double aspect_ratio);
 
+// Where the storm is, for a spotter at `place_m`.
+Site SiteOf(const volume::HydrometeorFields& fields, const glm::dvec2& place_m);
+
 // The view of the scene's camera on its storm.
 View ViewOf(const Scene& scene, const volume::HydrometeorFields& fields);
 

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <variant>
 
+#include "scene/spotter_place.h"
 #include "scene/view.h"
 #include "service/scene_messages.h"
 #include "thunderhead/v1/limits.pb.h"
+#include "volume/strongest_core.h"
 #include "volume/visible_box.h"
 
 namespace thunderhead::service {
@@ -47,18 +49,41 @@ void Frame(v1::OrbitCamera& camera, const volume::WorldBox& box, double aspect_r
   camera.set_distance_m(WithinLimits(*camera.GetDescriptor(), "distance_m", framing.distance_m));
 }
 
-void Frame(v1::SpotterCamera& camera, const volume::WorldBox& box, double aspect_ratio) {
-  if (!camera.has_x_m() || !camera.has_y_m()) {
-    scene::SpotterCamera standing = ToSpotter(camera);
-    if (!camera.has_azimuth_deg()) standing.azimuth_deg = scene::SpotterCamera().azimuth_deg;
-    standing = scene::Framing(standing, box.low_m, box.high_m, aspect_ratio);
-    if (!camera.has_x_m()) camera.set_x_m(static_cast<float>(standing.place_m.x));
-    if (!camera.has_y_m()) camera.set_y_m(static_cast<float>(standing.place_m.y));
+// The spotter who is given no place.
+scene::SpotterCamera Placed(const v1::SpotterCamera& message,
+                            const volume::HydrometeorFields& fields, const volume::StormCore& core,
+                            physics::SizeSource sizes, double aspect_ratio) {
+  scene::SpotterCamera camera = ToSpotter(message);
+  const bool looks_somewhere = message.has_azimuth_deg();
+  if (!looks_somewhere) camera.azimuth_deg = scene::SpotterCamera().azimuth_deg;
+  camera = scene::SpottingCore(
+      camera, looks_somewhere ? scene::SpottersSide::kOppositeAzimuth : scene::SpottersSide::kBest,
+      fields, core, sizes, aspect_ratio);
+  if (!message.has_x_m() && !message.has_y_m()) return camera;
+  if (message.has_x_m()) camera.place_m.x = message.x_m();
+  if (message.has_y_m()) camera.place_m.y = message.y_m();
+  return scene::LookingAt(camera, fields, core, aspect_ratio);
+}
+
+void Frame(v1::SpotterCamera& camera, const volume::HydrometeorFields& fields,
+           physics::SizeSource sizes, double aspect_ratio) {
+  const bool has_place = camera.has_x_m() && camera.has_y_m();
+  scene::SpotterCamera framing = ToSpotter(camera);
+  if (const auto core = volume::StrongestCore(fields, sizes); core.has_value() && !has_place) {
+    framing = Placed(camera, fields, *core, sizes, aspect_ratio);
+  } else {
+    const volume::WorldBox box = volume::VisibleBox(fields, sizes);
+    if (!camera.has_azimuth_deg()) framing.azimuth_deg = scene::SpotterCamera().azimuth_deg;
+    if (!has_place) framing = scene::Framing(framing, box.low_m, box.high_m, aspect_ratio);
+    if (camera.has_x_m()) framing.place_m.x = camera.x_m();
+    if (camera.has_y_m()) framing.place_m.y = camera.y_m();
+    framing = scene::LookingAt(framing, box.low_m, box.high_m);
   }
-  const scene::SpotterCamera looking = scene::LookingAt(ToSpotter(camera), box.low_m, box.high_m);
-  if (!camera.has_azimuth_deg()) camera.set_azimuth_deg(static_cast<float>(looking.azimuth_deg));
+  if (!camera.has_x_m()) camera.set_x_m(static_cast<float>(framing.place_m.x));
+  if (!camera.has_y_m()) camera.set_y_m(static_cast<float>(framing.place_m.y));
+  if (!camera.has_azimuth_deg()) camera.set_azimuth_deg(static_cast<float>(framing.azimuth_deg));
   if (!camera.has_elevation_deg()) {
-    camera.set_elevation_deg(static_cast<float>(looking.elevation_deg));
+    camera.set_elevation_deg(static_cast<float>(framing.elevation_deg));
   }
 }
 
@@ -115,15 +140,15 @@ bool NeedsFraming(const v1::Scene& scene) {
 
 void FrameCondensate(v1::Scene& scene, const volume::HydrometeorFields& fields) {
   v1::Camera& camera = *scene.mutable_camera();
-  const volume::WorldBox box = volume::VisibleBox(fields, SizesOf(scene));
+  const physics::SizeSource sizes = SizesOf(scene);
   const double aspect_ratio =
       static_cast<double>(scene.output().width_px()) / scene.output().height_px();
   if (camera.has_spotter()) {
-    Frame(*camera.mutable_spotter(), box, aspect_ratio);
+    Frame(*camera.mutable_spotter(), fields, sizes, aspect_ratio);
   } else if (camera.has_top_down()) {
-    Frame(*camera.mutable_top_down(), box, aspect_ratio);
+    Frame(*camera.mutable_top_down(), volume::VisibleBox(fields, sizes), aspect_ratio);
   } else {
-    Frame(*camera.mutable_orbit(), box, aspect_ratio);
+    Frame(*camera.mutable_orbit(), volume::VisibleBox(fields, sizes), aspect_ratio);
   }
 }
 

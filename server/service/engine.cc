@@ -71,6 +71,9 @@ absl::Status PrepareScene(const volume::StormStore& store,
   THUNDERHEAD_RETURN_IF_ERROR(CheckScene(scene));
   THUNDERHEAD_RETURN_IF_ERROR(CheckRendering(scene.rendering(), techniques));
   THUNDERHEAD_ASSIGN_OR_RETURN(const volume::StormInfo* storm, FindStorm(store, scene.storm_id()));
+  if (!scene.has_time_index()) {
+    scene.set_time_index(static_cast<std::uint32_t>(storm->times.size() - 1));
+  }
   THUNDERHEAD_RETURN_IF_ERROR(CheckTime(*storm, scene.time_index(), "scene.time_index"));
   FillSceneDefaults(scene, *storm);
   return absl::OkStatus();

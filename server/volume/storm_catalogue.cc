@@ -25,6 +25,7 @@ constexpr int kDeepestFolder =
 struct NamedStorm {
   std::string name;
   std::vector<StormFile> files;
+  std::size_t path = 0;  // which of those the user gave
 };
 
 absl::StatusOr<StormFile> Probe(const fs::path& path, const StormFormats& formats) {
@@ -244,7 +245,11 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<StormFile> fi
 absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
                                                         const StormFormats& formats) {
   std::vector<NamedStorm> named;
-  for (const std::string& path : paths) THUNDERHEAD_RETURN_IF_ERROR(Search(path, formats, named));
+  for (std::size_t path = 0; path < paths.size(); ++path) {
+    const std::size_t before = named.size();
+    THUNDERHEAD_RETURN_IF_ERROR(Search(paths[path], formats, named));
+    for (std::size_t i = before; i < named.size(); ++i) named[i].path = path;
+  }
   if (named.empty()) {
     return absl::InvalidArgumentError(absl::StrCat(
         "no storm to show; name a file or folder of model output (", formats.Examples(), ")"));
@@ -258,7 +263,13 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
     const std::string stem = id;
     for (int copy = 2; !ids.insert(id).second; ++copy) id = absl::StrCat(stem, "-", copy);
   }
-  std::ranges::sort(storms, {}, [](const CataloguedStorm& storm) { return storm.info.id; });
+  for (std::size_t first = 0, last = 0; first < storms.size(); first = last) {
+    while (last < storms.size() && named[last].path == named[first].path) ++last;
+    const auto begin = storms.begin();
+    std::ranges::sort(begin + static_cast<std::ptrdiff_t>(first),
+                      begin + static_cast<std::ptrdiff_t>(last), {},
+                      [](const CataloguedStorm& storm) { return storm.info.id; });
+  }
   return storms;
 }
 

@@ -25,7 +25,8 @@ struct CataloguedStorm {
   std::vector<TimeSource> sources;  // one for each of info.times
 };
 
-// The storms under `paths`, in order of id; the rules and errors are those of StormStore::Open.
+// The storms under `paths`: those of the first path first, and those of one path in order of id.
+// The rules and errors are those of StormStore::Open.
 absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
                                                         const StormFormats& formats);
 

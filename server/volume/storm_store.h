@@ -59,8 +59,8 @@ class StormStore {
                                                           const StormStoreOptions& options);
   virtual ~StormStore() = default;
 
-  // The storms: those opened, in order of id, then those added, in order of addition. Pointers stay
-  // valid as long as the store.
+  // The storms: those opened, in the order of the paths and within a path of id, then those added,
+  // in order of addition. Pointers stay valid as long as the store.
   virtual std::vector<const StormInfo*> Storms() const = 0;
 
   // Adds the storm of a file. ALREADY_EXISTS if another has its id; else as Open.

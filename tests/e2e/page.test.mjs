@@ -163,6 +163,11 @@ async function tracedPaths() {
 
 const screenshot = (name, of = page) => of.screenshot({ path: `${OUTPUT}${name}.png` });
 
+test("the storm's last time is shown first", async () => {
+  assert.equal((await rested()).time, "3");
+  await changing(() => page.getByTestId("time").fill("0"));
+});
+
 test("a storm is on the canvas, not a blank", async () => {
   await rested();
   const picture = await grabCanvas(page);

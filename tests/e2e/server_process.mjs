@@ -1,4 +1,4 @@
-// Starts the real program on the sample storms, and stops it. The program's path is THUNDERHEAD_BINARY, or
+// Starts the real program on the smaller sample storm, and stops it. The program's path is THUNDERHEAD_BINARY, or
 // build/release/bin/thunderhead.
 import { spawn } from "node:child_process";
 import { existsSync } from "node:fs";
@@ -27,7 +27,7 @@ export async function startServer({ httpPort, grpcPort }) {
   if (!existsSync(BINARY)) throw new Error(`no program at ${BINARY}; build it, or set THUNDERHEAD_BINARY`);
   if (!existsSync(`${page}/index.html`)) throw new Error(`no page in ${page}; run npm run build in client-web`);
   const address = (port) => `127.0.0.1:${port}`;
-  const flags = ["--data", `${ROOT}samples`, "--http", address(httpPort), "--grpc", address(grpcPort)];
+  const flags = ["--data", `${ROOT}samples/supercell.nc`, "--http", address(httpPort), "--grpc", address(grpcPort)];
   const child = spawn(BINARY, ["serve", ...flags, "--page", page], { cwd: ROOT });
   let said = "";
   const url = await new Promise((resolve, reject) => {

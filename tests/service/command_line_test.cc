@@ -117,6 +117,7 @@ TEST_F(CommandLineTest, InspectDescribesTheSample) {
   const Outcome table = Run("inspect " + kSample);
   EXPECT_EQ(table.code, 0);
   EXPECT_THAT(table.out, HasSubstr("QGRAUP"));
+  EXPECT_THAT(table.out, HasSubstr("   3  0001-01-01T01:20:00Z     60.0  described below"));
   EXPECT_THAT(table.out, HasSubstr("snow     scheme WSM6"));
 }
 

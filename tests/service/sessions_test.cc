@@ -1,4 +1,7 @@
 // Sessions: opening, completing scenes, closing, expiring, and how many there may be.
+#include <cmath>
+
+#include "glm/trigonometric.hpp"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "physics/sun_position.h"
@@ -35,7 +38,7 @@ TEST(SessionsTest, EmptySceneComesBackWithEveryDefault) {
   EXPECT_EQ(created.scene_revision(), 1U);
   const v1::Scene& scene = created.scene();
   EXPECT_EQ(scene.storm_id(), "anvil");
-  EXPECT_TRUE(scene.has_time_index());
+  EXPECT_EQ(scene.time_index(), 3U) << "the last";
   const v1::OrbitCamera& camera = scene.camera().orbit();
   EXPECT_EQ(camera.azimuth_deg(), 200.0F);
   EXPECT_EQ(camera.field_of_view_deg(), 35.0F);
@@ -123,14 +126,31 @@ TEST(SessionsTest, OtherCamerasAreFramedToo) {
   EXPECT_EQ(spotter.focal_length_mm(), 24.0F);
   // Due south of the one cell with condensate.
   EXPECT_NEAR(spotter.x_m(), -5500.0F, 0.01);
-  EXPECT_LT(spotter.y_m(), -1000.0F);
+  // Its top is at 1.5 km: 1.25 to 2.1 times as far.
+  EXPECT_LT(spotter.y_m(), -500.0F - 1875.0F + 1.0F);
+  EXPECT_GT(spotter.y_m(), -500.0F - 3150.0F);
   EXPECT_GT(spotter.elevation_deg(), 0.0F);
   EXPECT_EQ(Create(service, spotted).scene().SerializeAsString(), spotted.SerializeAsString());
-  // From a place of its own it looks at the storm.
+  // Half a place stays, and it looks at the storm from there.
   wanted.mutable_camera()->mutable_spotter()->clear_azimuth_deg();
+  wanted.mutable_camera()->mutable_spotter()->set_x_m(-4000.0F);
+  wanted.mutable_camera()->mutable_spotter()->set_elevation_deg(3.0F);
+  const v1::SpotterCamera beside = Create(service, wanted).scene().camera().spotter();
+  EXPECT_EQ(beside.x_m(), -4000.0F);
+  EXPECT_EQ(beside.elevation_deg(), 3.0F);
+  EXPECT_NEAR(std::tan(glm::radians(beside.azimuth_deg())),
+              (-5500.0F + 4000.0F) / (-500.0F - beside.y_m()), 1e-3);
+  // From a place of its own it looks at the storm.
   wanted.mutable_camera()->mutable_spotter()->set_x_m(-50000.0F);
   wanted.mutable_camera()->mutable_spotter()->set_y_m(-500.0F);
   EXPECT_NEAR(Create(service, wanted).scene().camera().spotter().azimuth_deg(), 90.0F, 0.01);
+
+  wanted.set_storm_id("clear");
+  wanted.mutable_camera()->mutable_spotter()->Clear();
+  const v1::SpotterCamera clear = Create(service, wanted).scene().camera().spotter();
+  EXPECT_LT(clear.y_m(), -10000.0F);
+  EXPECT_EQ(clear.azimuth_deg(), 20.0F);
+  wanted.clear_storm_id();
 
   wanted.mutable_camera()->mutable_top_down();
   const v1::Scene map = Create(service, wanted).scene();

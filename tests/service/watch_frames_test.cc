@@ -15,6 +15,7 @@ using Stub = v1::ThunderheadService::Stub;
 
 v1::Scene Facing(float sun_azimuth_deg) {
   v1::Scene scene = SmallScene();
+  scene.set_time_index(0);
   scene.mutable_sun()->set_azimuth_deg(sun_azimuth_deg);
   return scene;
 }

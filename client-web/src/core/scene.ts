@@ -176,10 +176,10 @@ export function withDetail(scene: Scene, hydrometeor: Hydrometeor, change: Chang
   return withField(scene, hydrometeor, { detail });
 }
 
-// Shows another storm. Settings that belong to the old one (fields, time, camera, clock) are dropped; light, rendering and
+// Shows one of another storm's times. Settings that belong to the old one (fields, time, camera, clock) are dropped; light, rendering and
 // picture stay.
-export function withStorm(scene: Scene, stormId: string): Scene {
-  const next = changed(scene, { stormId, timeIndex: 0, camera: undefined, fields: [] });
+export function withStorm(scene: Scene, stormId: string, timeIndex: number): Scene {
+  const next = changed(scene, { stormId, timeIndex, camera: undefined, fields: [] });
   return next.sun?.clock === undefined ? next : withSun(next, { clock: undefined });
 }
 

@@ -124,9 +124,12 @@ export class Page implements SessionListener {
     if (index !== this.state.timeIndex.value) this.state.edit((scene) => withTime(scene, index));
   }
 
+  // Shows a storm's last time, as the server does by default.
   showStorm(stormId: string): void {
     this.playback.pause();
-    this.state.edit((scene) => withStorm(scene, stormId));
+    const shown = this.state.storms.value.find((storm) => storm.id === stormId);
+    const last = (shown?.timeCount ?? 1) - 1;
+    this.state.edit((scene) => withStorm(scene, stormId, last));
   }
 
   // Asks the server to make the cloud set in the panel, and shows it.
@@ -218,7 +221,7 @@ export class Page implements SessionListener {
     this.#ledger.startSession();
     this.#adoptedRevision = -1n;
     this.#told = undefined;
-    this.#ledger.sent(session.asked.timeIndex ?? 0, this.#now()).accepted(session.revision);
+    this.#ledger.sent(session.completed.timeIndex ?? 0, this.#now()).accepted(session.revision);
     if (this.state.scene.value === session.asked) this.state.adoptScene(session.completed);
     this.#sender.start(session.asked);
     // Without this, reloading would look for a session that has ended.

@@ -125,6 +125,14 @@ TEST_F(StormCatalogue, TakesAFileGivenTwiceOnce) {
   EXPECT_THAT(Ids(*storms), ElementsAre("one"));
 }
 
+TEST_F(StormCatalogue, BeginsWithThePathGivenFirst) {
+  for (const char* name : {"a.nc", "b.nc", "c.nc"}) Write(name, {"18"});
+  const auto storms =
+      FindStorms({(storms_ / "b.nc").string(), storms_.string()}, StormFormats::BuiltIn());
+  ASSERT_TRUE(storms.ok()) << storms.status();
+  EXPECT_THAT(Ids(*storms), ElementsAre("b", "a", "c"));
+}
+
 TEST_F(StormCatalogue, MakesIdsOfColons) {
   Write("wrfout_d01_2013-05-20_18:00:00", {"18"});
   EXPECT_THAT(Ids(Find()), ElementsAre("wrfout_d01_2013-05-20_18-00-00"));

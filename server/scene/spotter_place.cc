@@ -1,0 +1,156 @@
+#include "scene/spotter_place.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "glm/geometric.hpp"
+#include "glm/trigonometric.hpp"
+#include "scene/view.h"
+#include "volume/core_sight.h"
+#include "volume/terrain.h"
+
+namespace thunderhead::scene {
+namespace {
+
+// A tower as high or higher is seen from kNearest_m to kFarthest_m, a lower one from
+// proportionally nearer.
+constexpr double kTallTower_m = 12e3;
+constexpr double kNearest_m = 15e3;
+constexpr double kFarthest_m = 25e3;
+constexpr double kStep_m = 500.0;
+constexpr double kMaxSteps = 4000.0;  // to outside the domain
+
+// Shares of the picture's height.
+constexpr double kLeastGround = 1.0 / 6.0;
+constexpr double kMostGround = 0.25;
+constexpr double kSkyAboveTop = 0.05;
+
+constexpr int kDirections = 24;
+
+// What hides the tower, and the sky above it, counts less than what hides its base.
+constexpr double kTowerWeight = 0.5;
+constexpr double kSkyWeight = 0.5;
+
+// A place beyond the farthest, clear of a cloud that surrounds the core, is the last choice: 500 m
+// count as much as half of the base.
+constexpr double kDistanceWeight = 25.0;
+
+// By which a side must be better than one that is nearer to the camera's own azimuth.
+constexpr double kNearEqual = 0.02;
+
+// The storm's core as a camera sees it. Angles are elevations in radians.
+struct CoreView {
+  double lowest_tilt = 0.0;   // of the camera: shows kMostGround
+  double highest_tilt = 0.0;  // shows kLeastGround
+  double to_sky = 0.0;        // from the picture's middle to kSkyAboveTop below its upper edge
+  double top = 0.0;           // of the core
+
+  bool TopFits() const { return top <= highest_tilt + to_sky; }
+  double Tilt() const { return std::clamp(top - to_sky, lowest_tilt, highest_tilt); }
+};
+
+CoreView CoreViewOf(const SpotterCamera& camera, const volume::HydrometeorFields& fields,
+                    const volume::StormCore& core, double aspect_ratio) {
+  const View view = ViewOf(camera, SiteOf(fields, camera.place_m), aspect_ratio);
+  const auto to_band = [&view](double share) {
+    return std::atan((1.0 - 2.0 * share) * view.tan_half_height);
+  };
+  const double dip =
+      std::acos(kEffectiveEarthRadius_m / (kEffectiveEarthRadius_m + camera.eye_height_m));
+  const glm::dvec3 top =
+      view.local_from_world * (glm::dvec3(core.place_m, core.top_m) - view.eye_m);
+  // Its near side hides the top's middle.
+  const double distance_m = std::max(glm::length(glm::dvec2(top)) - core.Radius_m(), 1.0);
+  return {to_band(kMostGround) - dip, to_band(kLeastGround) - dip, to_band(kSkyAboveTop),
+          std::atan2(top.z, distance_m)};
+}
+
+// Finds places to stand. Sight lines are those of a flat Earth.
+class Stands {
+ public:
+  Stands(const volume::HydrometeorFields& fields, const volume::StormCore& core,
+         physics::SizeSource sizes, double aspect_ratio)
+      : fields_(fields),
+        core_(core),
+        aspect_ratio_(aspect_ratio),
+        scale_(std::min(core.Height_m() / kTallTower_m, 1.0)),
+        sight_(fields, core, sizes) {}
+
+  // `camera` on the side from which it looks to `azimuth_deg`, as near as shows the top and is
+  // clear of cloud and rain.
+  SpotterCamera Standing(SpotterCamera camera, double azimuth_deg) const {
+    camera.azimuth_deg = azimuth_deg;
+    const glm::dvec2 towards(Direction(azimuth_deg, 0.0));
+    const glm::dvec2 domain_m(fields_.grid.HighCorner_m() - fields_.grid.low_corner_m);
+    const double outside_m = Farthest_m() + glm::length(domain_m);
+    const double step_m = std::max(scale_ * kStep_m, outside_m / kMaxSteps);
+    for (double distance_m = scale_ * kNearest_m;; distance_m += step_m) {
+      camera.place_m = core_.place_m - distance_m * towards;
+      if (distance_m >= outside_m) return camera;
+      const bool far_enough =
+          distance_m >= Farthest_m() || CoreViewOf(camera, fields_, core_, aspect_ratio_).TopFits();
+      if (far_enough && sight_.IsClear(Eye(camera))) return camera;
+    }
+  }
+
+  // What speaks against standing there.
+  double Cost(const SpotterCamera& camera) const {
+    const glm::dvec3 eye_m = Eye(camera);
+    const double distance_m = glm::length(camera.place_m - core_.place_m);
+    const CoreView view = CoreViewOf(camera, fields_, core_, aspect_ratio_);
+    const double hidden = sight_.HiddenBase(eye_m) + kTowerWeight * sight_.HiddenTower(eye_m) +
+                          kSkyWeight * sight_.HiddenSky(eye_m, view.top);
+    return hidden + kDistanceWeight * std::max(distance_m / Farthest_m() - 1.0, 0.0);
+  }
+
+ private:
+  double Farthest_m() const { return scale_ * kFarthest_m; }
+  glm::dvec3 Eye(const SpotterCamera& camera) const {
+    return {camera.place_m, volume::TerrainHeight_m(fields_, camera.place_m) + camera.eye_height_m};
+  }
+
+  const volume::HydrometeorFields& fields_;
+  const volume::StormCore& core_;
+  double aspect_ratio_;
+  double scale_;  // of lengths, where the tower is low
+  volume::CoreSight sight_;
+};
+
+SpotterCamera OnBestSide(const Stands& stands, const SpotterCamera& camera) {
+  SpotterCamera best = stands.Standing(camera, camera.azimuth_deg);
+  double least_cost = stands.Cost(best);
+  for (int i = 1; i < kDirections; ++i) {
+    // To the right and to the left in turns, ever farther from the camera's own azimuth.
+    const int turn = i % 2 == 1 ? (i + 1) / 2 : -i / 2;
+    const SpotterCamera standing =
+        stands.Standing(camera, camera.azimuth_deg + turn * 360.0 / kDirections);
+    const double cost = stands.Cost(standing);
+    if (cost >= least_cost - kNearEqual) continue;
+    best = standing;
+    least_cost = cost;
+  }
+  return best;
+}
+
+}  // namespace
+
+SpotterCamera SpottingCore(SpotterCamera camera, SpottersSide side,
+                           const volume::HydrometeorFields& fields, const volume::StormCore& core,
+                           physics::SizeSource sizes, double aspect_ratio) {
+  const Stands stands(fields, core, sizes, aspect_ratio);
+  camera = side == SpottersSide::kBest ? OnBestSide(stands, camera)
+                                       : stands.Standing(camera, camera.azimuth_deg);
+  return LookingAt(camera, fields, core, aspect_ratio);
+}
+
+SpotterCamera LookingAt(SpotterCamera camera, const volume::HydrometeorFields& fields,
+                        const volume::StormCore& core, double aspect_ratio) {
+  const glm::dvec2 towards_m = core.place_m - camera.place_m;
+  if (glm::length(towards_m) > 0.0) {
+    camera.azimuth_deg = glm::degrees(std::atan2(towards_m.x, towards_m.y));
+  }
+  camera.elevation_deg = glm::degrees(CoreViewOf(camera, fields, core, aspect_ratio).Tilt());
+  return camera;
+}
+
+}  // namespace thunderhead::scene
