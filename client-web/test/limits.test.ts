@@ -24,8 +24,9 @@ describe("limits come from the schema", () => {
     expect(LIMITS.sunAzimuth).toMatchObject({ minimum: -360, maximum: 360, unit: "deg" });
   });
 
-  it("tells a default of zero from none", () => {
-    expect(LIMITS.exposure.defaultValue).toBe(0);
+  it("tells a default from none", () => {
+    expect(LIMITS.turbidity.defaultValue).toBe(1.5);
+    expect(LIMITS.exposure.defaultValue).toBeUndefined();
     expect(limitsOf(FieldParametersSchema.field.radiusM).defaultValue).toBeUndefined();
     expect(limitsOf(PositionSchema.field.xM).defaultValue).toBeUndefined();
   });

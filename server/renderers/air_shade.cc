@@ -59,7 +59,7 @@ absl::Status AirShade::HideSky(const ResidentMedium& medium, const scene::Scene&
                                double ground_m) {
   if (medium.Empty()) {
     if (hidden_by_ != 0 || sky_hidden_.Get() == 0) {
-      sky_hidden_ = gl::Texture3D(GL_RG32F, glm::ivec3(1));
+      sky_hidden_ = gl::Texture3D(GL_RG16F, glm::ivec3(1));
       sky_hidden_.Clear();
       hidden_box_ = {glm::dvec3(0.0), glm::dvec3(1.0)};
       hidden_by_ = 0;
@@ -74,7 +74,7 @@ absl::Status AirShade::HideSky(const ResidentMedium& medium, const scene::Scene&
                              medium.Middle_m() + medium.HalfExtent_m()};
   hidden_box_ = scene::ShadedAirOf(box, {0.0, 0.0, 1.0}, ground_m).from_sky;
   const glm::ivec3 points = HiddenPoints(hidden_box_);
-  if (sky_hidden_.Size() != points) sky_hidden_ = gl::Texture3D(GL_RG32F, points);
+  if (sky_hidden_.Size() != points) sky_hidden_ = gl::Texture3D(GL_RG16F, points);
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
       programs_->Get(gl::ProgramSource::Compute(
@@ -122,7 +122,7 @@ absl::Status AirShade::Cast(const scene::Scene& scene, const scene::View& view,
   const glm::ivec3 size(
       glm::clamp((picture_px + kPixelsPerRay - 1) / kPixelsPerRay, glm::ivec2(1), kMaxRays),
       kDistances);
-  if (shade_.Size() != size) shade_ = gl::Texture3D(GL_RGBA32F, size);
+  if (shade_.Size() != size) shade_ = gl::Texture3D(GL_RGBA16F, size);
   THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
                                programs_->Get(gl::ProgramSource::Compute("air/shade.comp")));
   BindRays(*program, view, view.eye_m);

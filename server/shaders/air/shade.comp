@@ -1,6 +1,6 @@
 // What the storm's shadow takes from the light of the air: for each ray of a coarse picture, the radiance that is missing
-// from the eye up to each of a number of distances, a layer each. The first layer is at `near_m` and holds nothing.
-// Coordinates are metres from the eye.
+// from the eye up to each of a number of distances, a layer each. The first layer is at `near_m` and holds nothing. Rays go
+// on below the ground, so that layers change smoothly across the picture. Coordinates are metres from the eye.
 #include "common/bindings.glsl"
 #include "common/sky_hidden.glsl"
 #include "common/storm_shadow.glsl"
@@ -10,7 +10,7 @@
 #include "physics/air_light.glsl"
 
 layout(local_size_x = kLightGroupSide, local_size_y = kLightGroupSide) in;
-layout(binding = kAirShadeImage, rgba32f) uniform writeonly image3D shade;
+layout(binding = kAirShadeImage, rgba16f) uniform writeonly image3D shade;
 // By height: row 0, the sunlight; row 1, the mean radiance of light that air has scattered.
 layout(binding = kAirLightUnit) uniform sampler2D air_light;
 
@@ -30,6 +30,15 @@ uniform float far_m;
 uniform float air_light_per_m;  // texture coordinates of a metre of height
 
 const float kInversePi = 0.318309886;
+const float kBelowGround_m = 4000.0;  // to which the air goes on
+
+// Around a point, along a step; with one place for it the shadow's edge would show as many edges as there are steps.
+float mean_blocked(vec3 point_m, vec3 step) {
+  const int kPlaces = 4;
+  float sum = 0.0;
+  for (int i = 0; i < kPlaces; ++i) sum += blocked_at(point_m + ((float(i) + 0.5) / float(kPlaces) - 0.5) * step);
+  return sum / float(kPlaces);
+}
 
 void main() {
   ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
@@ -52,7 +61,7 @@ void main() {
   imageStore(shade, ivec3(texel, 0), vec4(0.0));
   for (int i = 0; i < steps; ++i) {
     float distance_m = near_m + (float(i) + 0.5) * step_m;
-    float height_m = max(height_on_path_m(path, distance_m), lowest_air_m);
+    float height_m = max(height_on_path_m(path, distance_m), lowest_air_m - kBelowGround_m);
     vec3 point_m = origin_m + distance_m * ray;
     vec2 densities = densities_of_air(height_m);
     float column = (height_m * air_light_per_m * (size.x - 1.0) + 0.5) / size.x;
@@ -60,7 +69,7 @@ void main() {
     vec3 skylight = texture(air_light, vec2(column, 0.75)).rgb;
     vec2 storm = storm_in_sky(point_m);
     // In its shadow the storm shows what comes through it; elsewhere half of it is what it reflects.
-    float blocked = blocked_at(point_m);
+    float blocked = mean_blocked(point_m, step_m * ray);
     vec3 through = storm.y * level_irradiance;
     vec3 reflected = (storm.x - storm.y) * face_irradiance;
     vec3 of_storm = mix(0.5 * (through + reflected), through, blocked) * kInversePi;

@@ -8,7 +8,7 @@
 #include "common/bricks.glsl"
 
 layout(local_size_x = kLightGroupSide, local_size_y = kLightGroupSide) in;
-layout(binding = kSkyHiddenImage, rg32f) uniform writeonly image3D hidden;
+layout(binding = kSkyHiddenImage, rg16f) uniform writeonly image3D hidden;
 
 uniform ivec3 point_count;
 uniform vec3 lattice_low_m;   // of the lattice's box, from the medium's middle

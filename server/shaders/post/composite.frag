@@ -84,9 +84,9 @@ Sky sky_behind(vec3 ray, float ground_m) {
 }
 
 // Light that the air up to a distance sends to the eye, less what the storm's shadow takes from it.
-vec3 shaded_airlight(vec3 airlight, float distance_m) {
+vec3 shaded_airlight(vec3 airlight, float sine, float distance_m) {
 #if SHADED
-  return max(airlight - air_shade_before(position, distance_m), vec3(0.0));
+  return max(airlight - air_shade_before(position, sine, distance_m), vec3(0.0));
 #else
   return airlight;
 #endif
@@ -96,9 +96,9 @@ vec3 shaded_airlight(vec3 airlight, float distance_m) {
 vec3 seen_ground(vec3 radiance, vec3 ray, float ground_m, vec3 sky_radiance, vec3 sky_depth) {
 #if RELIEF
   vec3 transmittance = exp(-depth_before(ray, ground_m));
-  return transmittance * radiance + shaded_airlight(airlight_before(transmittance, sky_radiance, sky_depth), ground_m);
+  return transmittance * radiance + shaded_airlight(airlight_before(transmittance, sky_radiance, sky_depth), ray.z, ground_m);
 #else
-  return exp(-sky_depth) * radiance + shaded_airlight(sky_radiance, ground_m);
+  return exp(-sky_depth) * radiance + shaded_airlight(sky_radiance, ray.z, ground_m);
 #endif
 }
 
@@ -118,7 +118,7 @@ vec4 seen_front(vec3 origin_m, vec3 world_ray, vec3 ray, float ground_m, vec3 sk
   float distance_m = 0.5 * (path_m.x + max(end_m, path_m.x));
 #endif
   vec3 transmittance = exp(-depth_before(ray, distance_m));
-  vec3 airlight = shaded_airlight(airlight_before(transmittance, sky_radiance, sky_depth), distance_m);
+  vec3 airlight = shaded_airlight(airlight_before(transmittance, sky_radiance, sky_depth), ray.z, distance_m);
   return vec4(transmittance * front.rgb + opacity * airlight, front.a);
 }
 #endif
@@ -133,7 +133,7 @@ void main() {
   vec3 sky_depth = depth_of_air_mass(turbidity, sky.air_mass);
   vec3 background = ground_m > 0.0 ? seen_ground(ground_radiance(origin_m + ground_m * world_ray), ray, ground_m,
                                                  sky_radiance, sky_depth)
-                                   : shaded_airlight(sky_radiance, kFarthestGround_m);
+                                   : shaded_airlight(sky_radiance, ray.z, kFarthestGround_m);
 #if FRONT
   vec4 front = seen_front(origin_m, world_ray, ray, ground_m, sky_radiance, sky_depth);
   rgb_and_opacity = vec4(front.rgb + front.a * background, 1.0 - front.a);
