@@ -47,7 +47,6 @@ absl::StatusOr<float> ToneMapper::ExposureOf(const gl::Texture2D& linear,
   float brightest = 0.0F;
   glGetTextureImage(brightest_.Get(), 0, GL_RED, GL_FLOAT, sizeof(brightest), &brightest);
   const float of_card = std::max(LuminanceOf(card.radiance), 1e-12F);
-  if (brightest <= 0.0F) brightest = of_card;
   brightest = std::max(brightest, of_card / kMostAboveCard);
   return std::clamp(kJustBelowWhite / brightest, kExposureAtZeroEv * kLeastFactor,
                     kExposureAtZeroEv * kMostFactor);

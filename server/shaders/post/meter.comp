@@ -1,6 +1,7 @@
-// The luminance of the storm's brightest hundredth in a linear frame, whose alpha is the storm's opacity: one work group
+// The luminance of the storm's brightest hundredth in a linear frame, whose alpha is the storm's opacity, or of the whole
+// picture's where there is next to no storm: one work group
 // makes a histogram of means over cells of the picture, each without its brightest sample, so that noise and single bright
-// pixels do not count. 0 where there is next to no storm.
+// pixels do not count.
 #include "common/bindings.glsl"
 
 layout(local_size_x = kMeterGroupSize) in;
@@ -19,14 +20,14 @@ const float kFewestCells = 0.001;  // share of all cells
 
 shared uint histogram[kBins];
 
-void count_cell(int cell) {
+void count_cell(int cell, float least_opacity) {
   vec2 corner = vec2(cell % kCells, cell / kCells);
   vec2 sum = vec2(0.0);  // of luminance times opacity, and of opacity
   vec2 brightest_sample = vec2(0.0);
   for (int i = 0; i < kPlaces * kPlaces; ++i) {
     vec2 within = (vec2(i % kPlaces, i / kPlaces) + 0.5) / float(kPlaces);
     vec4 pixel = textureLod(linear_frame, (corner + within) / float(kCells), 0.0);
-    vec2 here = pixel.a * vec2(max(dot(pixel.rgb, luminance_weights), 0.0), 1.0);
+    vec2 here = max(pixel.a, least_opacity) * vec2(max(dot(pixel.rgb, luminance_weights), 0.0), 1.0);
     sum += here;
     if (here.x > brightest_sample.x) brightest_sample = here;
   }
@@ -38,10 +39,23 @@ void count_cell(int cell) {
   atomicAdd(histogram[bin], weight);
 }
 
-float brightest_hundredth() {
+uint counted() {
   uint all = 0u;
   for (int bin = 0; bin < kBins; ++bin) all += histogram[bin];
-  if (float(all) < kFewestCells * float(kCells * kCells) * float(kFullWeight)) return 0.0;
+  return all;
+}
+
+// By all invocations.
+void count(float least_opacity) {
+  int first = int(gl_LocalInvocationIndex);
+  for (int i = first; i < kBins; i += kMeterGroupSize) histogram[i] = 0u;
+  barrier();
+  for (int i = first; i < kCells * kCells; i += kMeterGroupSize) count_cell(i, least_opacity);
+  barrier();
+}
+
+float brightest_hundredth() {
+  uint all = counted();
   float left = 0.01 * float(all);
   for (int bin = kBins - 1; bin >= 0; --bin) {
     float here = float(histogram[bin]);
@@ -52,10 +66,9 @@ float brightest_hundredth() {
 }
 
 void main() {
-  int first = int(gl_LocalInvocationIndex);
-  for (int i = first; i < kBins; i += kMeterGroupSize) histogram[i] = 0u;
+  count(0.0);
+  bool no_storm = float(counted()) < kFewestCells * float(kCells * kCells) * float(kFullWeight);
   barrier();
-  for (int i = first; i < kCells * kCells; i += kMeterGroupSize) count_cell(i);
-  barrier();
-  if (first == 0) imageStore(brightest, ivec2(0), vec4(brightest_hundredth(), 0.0, 0.0, 0.0));
+  if (no_storm) count(1.0);
+  if (gl_LocalInvocationIndex == 0u) imageStore(brightest, ivec2(0), vec4(brightest_hundredth(), 0.0, 0.0, 0.0));
 }
