@@ -116,6 +116,20 @@ TEST_F(AirShadeTest, AirBelowAStormIsAsDarkAsTheReferenceHasIt) {
   }
 }
 
+TEST_F(AirShadeTest, AirAboveAStormIsLit) {
+  test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kDiffusion);
+  scene_.camera = scene::SpotterCamera{{0.0, -34e3}, 9500.0, 0.0, 4.0, 40.0};
+  const std::vector<glm::vec3> picture = Drawn();
+  constexpr int kRowAboveRoof = 74;
+  const glm::dvec3 traced = TracedRow(kRowAboveRoof, true);
+  const glm::dvec3 lit = TracedRow(kRowAboveRoof, false);
+  const glm::dvec3 drawn = DrawnRow(picture, kRowAboveRoof);
+  for (int color = 0; color < 3; ++color) {
+    EXPECT_GT(traced[color], 0.97 * lit[color]);
+    EXPECT_NEAR(drawn[color], traced[color], 0.04 * lit[color]) << color;
+  }
+}
+
 TEST_F(AirShadeTest, WithoutAStormAirIsLit) {
   fields_ = MakeRoof(0.0);
   const std::vector<glm::vec3> picture = Drawn();
@@ -146,6 +160,7 @@ TEST_F(AirShadeTest, AirStandsBeforeTheStormNotBeforeTheMiddleOfItsBox) {
     return fields;
   };
   scene_.sky.turbidity = 6.0;
+  scene_.sun.azimuth_deg = 180.0;  // on the cloud, which is then brighter than the air
   for (const accuracy::Path& path : {test_support::kHalfAngle, test_support::kLightVolume}) {
     test_support::SetPath(&scene_.rendering.technique, path);
     fields_ = near_cloud(false);
