@@ -44,7 +44,8 @@ ClearSky::ClearSky(const Atmosphere& atmosphere, const glm::vec3& towards_sun, c
       const float mu = cosine * east * sun_across + sine * towards_sun.z;
       const Atmosphere::Gathered gathered = atmosphere.Gather(line, {towards_sun.z, mu});
       const auto at = static_cast<std::size_t>(y * 2 * glsl::kSkyAzimuths + x);
-      table_[at] = glm::vec4(gathered.air * glsl::air_phase(mu) + gathered.diffuse, line.air_mass.x);
+      table_[at] =
+          glm::vec4(gathered.air * glsl::air_phase(mu) + gathered.diffuse, line.air_mass.x);
       table_[at + glsl::kSkyAzimuths] = glm::vec4(gathered.haze, line.air_mass.y);
     }
   }
