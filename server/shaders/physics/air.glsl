@@ -50,8 +50,11 @@ PHYSICS_FUNCTION float equivalent_m(float scale_height_m, float density, AirPath
   float from = density * scaled_erfc(abs(low));
   float to = exp(-(path.height_m + climb_m) / scale_height_m) * scaled_erfc(abs(high));
   float difference = low >= 0.0f ? from - to : to - from;
-  // The lowest point is on the path.
-  if (low < 0.0f && high > 0.0f) difference = 2.0f * density * exp(low * low) - from - to;
+  if (low < 0.0f && high > 0.0f) {
+    // The lowest point is on the path; the density there, as that of the start may be zero.
+    float lowest_m = path.height_m - 0.5f * path.sin_elevation * path.sin_elevation / bend;
+    difference = 2.0f * exp(-lowest_m / scale_height_m) - from - to;
+  }
   return 0.886226925f / per_m * difference;
 }
 

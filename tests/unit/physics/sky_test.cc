@@ -283,7 +283,9 @@ TEST(Air, DepthIsTheIntegralOfItsDensity) {
         // From high up to the ground, past it, and down to the lowest place and up again.
         glsl::AirPath{7000.0F, -0.05F, curvature, 1.6e5F},
         glsl::AirPath{7000.0F, -0.035F, curvature, 5e5F},
-        glsl::AirPath{2000.0F, -0.01F, curvature, 3e5F}}) {
+        glsl::AirPath{2000.0F, -0.01F, curvature, 3e5F},
+        // From space, where no haze is left, to the lowest place and beyond.
+        glsl::AirPath{2e5F, -0.222F, curvature, 2.2e6F}}) {
     double sums_m[2] = {0.0, 0.0};
     constexpr int kSteps = 200000;
     const double bend = path.curvature_per_m * (1.0 - path.sin_elevation * path.sin_elevation);
