@@ -18,7 +18,8 @@ namespace {
 constexpr int kHeights = 64;
 constexpr double kHighest_m = 3e4;  // air above is taken for as bright as there
 
-constexpr int kPixelsPerRay = 6;  // along each side
+constexpr int kPixelsPerRay = 6;        // along each side
+constexpr glm::ivec2 kMinRays(48, 36);  // of pictures that have so many pixels
 constexpr glm::ivec2 kMaxRays(160, 120);
 constexpr int kDistances = 25;
 
@@ -119,9 +120,9 @@ absl::Status AirShade::Cast(const scene::Scene& scene, const scene::View& view,
   const glm::dvec3 towards_sun = scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg);
   SetDistances(view, scene::ShadedAirOf(box, towards_sun, ground.Lowest_m()));
   const glm::ivec2 picture_px(scene.output.width_px, scene.output.height_px);
-  const glm::ivec3 size(
-      glm::clamp((picture_px + kPixelsPerRay - 1) / kPixelsPerRay, glm::ivec2(1), kMaxRays),
-      kDistances);
+  const glm::ivec3 size(glm::clamp((picture_px + kPixelsPerRay - 1) / kPixelsPerRay,
+                                   glm::min(picture_px, kMinRays), kMaxRays),
+                        kDistances);
   if (shade_.Size() != size) shade_ = gl::Texture3D(GL_RGBA16F, size);
   THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
                                programs_->Get(gl::ProgramSource::Compute("air/shade.comp")));
