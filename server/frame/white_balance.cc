@@ -36,21 +36,24 @@ glm::vec3 RadianceOfCard(const physics::Atmosphere& atmosphere, const scene::Sky
 float LuminanceOf(const glm::vec3& rgb) { return glm::dot(rgb, kLuminance); }
 
 const WhiteCard& WhiteCards::Of(const scene::Scene& scene) {
-  const Key key{scene.sun, scene.sky};
-  if (key_ == key) return card_;
-  if (!key_.has_value() || key_->sky != key.sky) {
-    atmosphere_.emplace(static_cast<float>(scene.sky.turbidity),
-                        static_cast<float>(scene.sky.ground_albedo));
+  const Key key{scene.sun.elevation_deg, scene.sky};
+  if (key_ != key) Find(key);
+  card_.radiance = radiance_ * static_cast<float>(scene.sun.irradiance);
+  return card_;
+}
+
+void WhiteCards::Find(const Key& key) {
+  if (!key_.has_value() || key_->sky.turbidity != key.sky.turbidity ||
+      key_->sky.ground_albedo != key.sky.ground_albedo) {
+    atmosphere_.emplace(static_cast<float>(key.sky.turbidity),
+                        static_cast<float>(key.sky.ground_albedo));
   }
-  const double elevation_deg = scene.sun.elevation_deg;
-  const glm::vec3 here = RadianceOfCard(*atmosphere_, scene.sky, elevation_deg);
-  const glm::vec3 balanced = elevation_deg < kLowestBalanced_deg
-                                 ? RadianceOfCard(*atmosphere_, scene.sky, kLowestBalanced_deg)
-                                 : here;
-  card_.radiance = here * static_cast<float>(scene.sun.irradiance);
+  radiance_ = RadianceOfCard(*atmosphere_, key.sky, key.elevation_deg);
+  const glm::vec3 balanced = key.elevation_deg < kLowestBalanced_deg
+                                 ? RadianceOfCard(*atmosphere_, key.sky, kLowestBalanced_deg)
+                                 : radiance_;
   card_.balance = LuminanceOf(balanced) / glm::max(balanced, glm::vec3(1e-12F));
   key_ = key;
-  return card_;
 }
 
 }  // namespace thunderhead::frame

@@ -27,15 +27,19 @@ class WhiteCards {
   const WhiteCard& Of(const scene::Scene& scene);
 
  private:
+  // The sun's azimuth turns the light and its irradiance scales it; neither changes the colour.
   struct Key {
-    scene::Sun sun;
+    double elevation_deg = 0.0;
     scene::Sky sky;
 
     bool operator==(const Key&) const = default;
   };
 
+  void Find(const Key& key);
+
   std::optional<Key> key_;
   std::optional<physics::Atmosphere> atmosphere_;
+  glm::vec3 radiance_{1.0F};  // for a sun of irradiance 1
   WhiteCard card_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "base/status.h"
 #include "glm/common.hpp"
@@ -67,10 +68,9 @@ absl::Status AirShade::HideSky(const ResidentMedium& medium, const scene::Scene&
     }
     return absl::OkStatus();
   }
-  // Techniques that the program was extended by have no such settings.
-  const scene::MediumSettings* own = scene::MediumSettingsOf(scene.rendering.technique);
-  const GroupWeights weights(medium.Content(), own != nullptr ? *own : scene::MediumSettings{});
-  if (hidden_by_ == medium.Id() && hidden_weights_ == weights.light) return absl::OkStatus();
+  const scene::MediumSettings settings = scene::MediumSettingsOrDefault(scene.rendering.technique);
+  if (hidden_by_ == medium.Id() && hidden_settings_ == settings) return absl::OkStatus();
+  const GroupWeights weights(medium.Content(), settings);
   const volume::WorldBox box{medium.Middle_m() - medium.HalfExtent_m(),
                              medium.Middle_m() + medium.HalfExtent_m()};
   hidden_box_ = scene::ShadedAirOf(box, {0.0, 0.0, 1.0}, ground_m).from_sky;
@@ -98,7 +98,7 @@ absl::Status AirShade::HideSky(const ResidentMedium& medium, const scene::Scene&
                     static_cast<GLuint>(points.z));
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   hidden_by_ = medium.Id();
-  hidden_weights_ = weights.light;
+  hidden_settings_ = settings;
   return absl::OkStatus();
 }
 

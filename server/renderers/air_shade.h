@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <memory>
 #include <utility>
-#include <vector>
 
 #include "absl/status/status.h"
 #include "gl/objects.h"
@@ -63,7 +62,7 @@ class AirShade {
   glm::vec3 face_irradiance_{0.0F};
   gl::Texture3D sky_hidden_;
   std::uint64_t hidden_by_ = 0;  // ResidentMedium::Id
-  std::vector<double> hidden_weights_;
+  scene::MediumSettings hidden_settings_;
   volume::WorldBox hidden_box_;
   gl::Texture3D shade_;
   double near_m_ = 0.0;

@@ -75,9 +75,7 @@ absl::Status Ground::CastShadow(const ResidentMedium& medium, const RenderSettin
                                programs_->Get(gl::ProgramSource::WholeTarget(
                                    "ground/shadow.frag", medium.Variant().Defines())));
   medium.BindWithBricks(*program);
-  // Techniques that the program was extended by have no such settings.
-  const scene::MediumSettings* own = scene::MediumSettingsOf(settings.technique);
-  const GroupWeights weights(medium.Content(), own != nullptr ? *own : scene::MediumSettings{});
+  const GroupWeights weights(medium.Content(), scene::MediumSettingsOrDefault(settings.technique));
   const glm::dvec3 through_m = cell_m / glm::max(glm::abs(towards_sun), glm::dvec3(1e-6));
   const double step_m = kShadowStepInCells * std::min({through_m.x, through_m.y, through_m.z});
   program->Set(uniform::towards_sun, glm::vec3(towards_sun));

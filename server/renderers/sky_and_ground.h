@@ -43,7 +43,7 @@ class SkyAndGround {
   absl::Status ShadeAir(const scene::Scene& scene, const scene::View& view, const Ground& ground,
                         const volume::WorldBox& box, const ResidentMedium& medium);
 
-  // What was drawn before sky and ground.
+  // The eye buffer, drawn before sky and ground.
   struct Front {
     const gl::Texture2D& eye;                    // as Technique::Eye
     const gl::Texture2D* distances_m = nullptr;  // as Technique::Distances_m

@@ -27,7 +27,7 @@ constexpr double kSkyAboveTop = 0.05;
 
 constexpr int kDirections = 24;
 
-// What hides the tower, and the sky above it, counts less than what hides its base.
+// Weights of the hidden tower and of the hidden sky above it; the hidden base counts as 1.
 constexpr double kTowerWeight = 0.5;
 constexpr double kSkyWeight = 0.5;
 
@@ -93,7 +93,7 @@ class Stands {
     }
   }
 
-  // What speaks against standing there.
+  // Cost of a place: its distance and the weighted shares of the view that are hidden from it.
   double Cost(const SpotterCamera& camera) const {
     const glm::dvec3 eye_m = Eye(camera);
     const double distance_m = glm::length(camera.place_m - core_.place_m);

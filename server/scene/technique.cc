@@ -26,6 +26,11 @@ const MediumSettings* MediumSettingsOf(const Technique& technique) {
   return std::visit([](const auto& settings) { return settings.Medium(); }, technique);
 }
 
+MediumSettings MediumSettingsOrDefault(const Technique& technique) {
+  const MediumSettings* own = MediumSettingsOf(technique);
+  return own != nullptr ? *own : MediumSettings{};
+}
+
 MediumSettings* MediumSettingsOf(Technique* technique) {
   return std::visit(
       [](auto& settings) -> MediumSettings* {

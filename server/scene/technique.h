@@ -26,6 +26,8 @@ const Capabilities& CapabilitiesOf(const Technique& technique);
 // None for techniques that do not draw a medium by these settings.
 const MediumSettings* MediumSettingsOf(const Technique& technique);
 MediumSettings* MediumSettingsOf(Technique* technique);
+// Default ones for techniques without; one that the program was extended by may draw a medium.
+MediumSettings MediumSettingsOrDefault(const Technique& technique);
 
 // Which of the fields' own properties it shows.
 FieldLook FieldLookOf(const Technique& technique);

@@ -140,7 +140,7 @@ function micrometres(radiusM: number): string {
   return `${formatNumber(radiusM * 1e6)} µm`;
 }
 
-// What the model's sizes follow from, with the effective radius of all particles.
+// The source of the model's sizes, with the effective radius of all particles.
 function originOf(field: FieldDescription): string {
   const radius = field.meanRadiusM > 0 ? `, ${micrometres(field.meanRadiusM)}` : "";
   switch (field.sizeOrigin) {

@@ -107,7 +107,7 @@ function PictureSection({ page }: { page: Page }) {
   const { state } = page;
   const sky = state.sky.value;
   const display = state.display.value;
-  // That of the picture, where it is automatic.
+  // An automatic exposure is the newest frame's.
   const shownExposureEv =
     display?.exposureEv ?? Math.round(100 * (state.frame.value?.modelled?.exposureEv ?? 0)) / 100;
   return (
