@@ -67,6 +67,7 @@ absl::StatusOr<ToneMapped> ToneMapper::Map(const gl::Texture2D& linear, const sc
       const gl::Program* program,
       programs_.Get(gl::ProgramSource::WholeTarget("post/tone_map.frag", variant.Defines())));
   program->Set(uniform::gain, exposure * balance);
+  program->Set(uniform::just_below_white, kJustBelowWhite);
   linear.Bind(shaders::kLinearFrameUnit);
   whole_target_.Draw(*program, target_);
   glFinish();

@@ -25,7 +25,8 @@ struct ToneMapped {
 
 // Factor of radiance at an exposure of 0 EV.
 inline constexpr float kExposureAtZeroEv = 6.0F;
-// Exposed luminance that the film's curve shows just below white, at 0.9 of it.
+// Exposed luminance that the film's curve shows just below white, at 0.9 of it; its contrast leaves
+// it as it is.
 inline constexpr float kJustBelowWhite = 1.25F;
 
 class ToneMapper {

@@ -28,8 +28,8 @@ volume::LayerAir AirOver(const std::vector<float>& values) {
 
 // Reads mixing ratios as from a file and checks how many are negative and missing, and that only
 // valid ones remain.
-Extreme MixingRatios(const std::string& name, std::vector<float> values, int negative, int missing,
-                     float left_kg_per_m3) {
+Extreme MixingRatios(const std::string& name, const std::vector<float>& values, int negative,
+                     int missing, float left_kg_per_m3) {
   return {name, [=](Probe&) -> absl::StatusOr<Verdict> {
             std::vector<float> held = values;
             const volume::FieldStatistics found =

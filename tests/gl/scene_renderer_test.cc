@@ -547,9 +547,24 @@ TEST_F(ToneMapTest, MapsKnownRadiances) {
   EXPECT_EQ(mapped.exposure_ev, 0.0);
   scene_.display.exposure_ev = 1.0;
   EXPECT_NEAR(Map(linear).rgb[1], 255, 1);
+}
+
+TEST_F(ToneMapTest, FilmHasContrastAToeAndAShoulder) {
   scene_.display.tone_map = scene::ToneMap::kFilmic;
-  EXPECT_NEAR(Map(linear).rgb[1], 234, 1);  // sRGB of 0.828, the film's curve at 1
-  EXPECT_NEAR(Map(linear).rgb[2], 255, 1);
+  scene_.display.exposure_ev = 0.0;
+  const auto shown = [this](float exposed) {
+    const gl::Texture2D grey(GL_RGBA32F, {1, 1});
+    const float radiance = exposed / frame::kExposureAtZeroEv;
+    gl::Framebuffer(grey).Clear(radiance, radiance, radiance, 1.0F);
+    const double coded = Map(grey).rgb[1] / 255.0;
+    return coded <= 0.04045 ? coded / 12.92 : std::pow((coded + 0.055) / 1.055, 2.4);
+  };
+  // The curve itself has a slope of 1 here: what is left is contrast.
+  EXPECT_NEAR(std::log2(shown(0.62F) / shown(0.4F)) / std::log2(0.62 / 0.4), 1.35, 0.03);
+  EXPECT_NEAR(shown(frame::kJustBelowWhite), 0.9, 0.01);
+  EXPECT_GT(shown(4.0F), shown(2.0F));  // the shoulder: above just below white, and not clipped
+  EXPECT_LT(shown(0.04F), 0.5 * shown(0.08F) * std::exp2(-0.35));  // the toe is steeper still
+  EXPECT_GT(shown(0.02F), 0.0);
 }
 
 TEST_F(ToneMapTest, TheStormsBrightestHundredthIsJustBelowWhite) {

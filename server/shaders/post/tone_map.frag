@@ -4,6 +4,7 @@
 layout(binding = kLinearFrameUnit) uniform sampler2D linear_frame;
 
 uniform vec3 gain;  // exposure times white balance
+uniform float just_below_white;  // luminance that contrast leaves as it is
 
 in vec2 position;
 out vec4 display;
@@ -20,6 +21,15 @@ vec3 film(vec3 x) {
   return mix(mix(toe, x, smoothstep(0.0, m, x)), shoulder, greaterThan(x, vec3(s)));
 }
 
+// Photographs have more contrast than what they show, to make up for the glare and the surroundings that they are looked at
+// in (Bartleson and Breneman 1967 on the contrast of prints and slides). Half by luminance, half by each colour: by each
+// colour alone a blue sky is too pure, by luminance alone it is grey.
+vec3 contrasty(vec3 x) {
+  const float kContrast = 1.35;
+  float luminance = dot(x, vec3(0.2126, 0.7152, 0.0722));
+  return x * pow(sqrt(x * luminance) / just_below_white, vec3(kContrast - 1.0));
+}
+
 vec3 srgb(vec3 linear) {
   return mix(12.92 * linear, 1.055 * pow(max(linear, vec3(1e-6)), vec3(1.0 / 2.4)) - 0.055,
              greaterThan(linear, vec3(0.0031308)));
@@ -30,7 +40,7 @@ void main() {
   pixel.y = textureSize(linear_frame, 0).y - 1 - pixel.y;
   vec3 exposed = clamp(texelFetch(linear_frame, pixel, 0).rgb * gain, vec3(0.0), vec3(1e4));
 #if FILMIC
-  exposed = film(exposed);
+  exposed = film(contrasty(exposed));
 #endif
   vec3 coded = srgb(min(exposed, vec3(1.0)));
   // Half a step of ordered noise, so that a clear sky does not band.
