@@ -130,6 +130,19 @@ View ViewOf(const Scene& scene, const volume::HydrometeorFields& fields) {
   return ViewOf(spotter, SiteOf(fields, spotter.place_m), aspect_ratio);
 }
 
+double FramingElevation_deg(const glm::dvec3& low_m, const glm::dvec3& high_m) {
+  constexpr double kStormElevation_deg = OrbitCamera().elevation_deg;
+  constexpr double kDomainElevation_deg = 35.0;
+  constexpr double kStormHeight = 0.1;  // over the width
+  constexpr double kDomainHeight = 0.02;
+  const glm::dvec3 size_m = high_m - low_m;
+  const double height = size_m.z / std::max(std::max(size_m.x, size_m.y), 1.0);
+  const double flatness = std::clamp(
+      std::log(kStormHeight / std::max(height, 1e-6)) / std::log(kStormHeight / kDomainHeight), 0.0,
+      1.0);
+  return std::lerp(kStormElevation_deg, kDomainElevation_deg, flatness);
+}
+
 OrbitCamera Framing(OrbitCamera camera, const glm::dvec3& low_m, const glm::dvec3& high_m,
                     double aspect_ratio) {
   camera.target_m = (low_m + high_m) / 2.0;

@@ -62,6 +62,10 @@ Site SiteOf(const volume::HydrometeorFields& fields, const glm::dvec2& place_m);
 // The view of the scene's camera on its storm.
 View ViewOf(const Scene& scene, const volume::HydrometeorFields& fields);
 
+// The elevation from which an orbit shows the box `low_m` to `high_m` well: 4 degrees where it is
+// at least a tenth as high as wide, as single storms are, 35 where it is at most a fiftieth.
+double FramingElevation_deg(const glm::dvec3& low_m, const glm::dvec3& high_m);
+
 // The camera that frames the box `low_m` to `high_m` whole, standing and looking as `camera` does.
 OrbitCamera Framing(OrbitCamera camera, const glm::dvec3& low_m, const glm::dvec3& high_m,
                     double aspect_ratio);

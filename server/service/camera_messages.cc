@@ -42,6 +42,10 @@ float WithinLimits(const google::protobuf::Descriptor& message, const char* fiel
 }
 
 void Frame(v1::OrbitCamera& camera, const volume::WorldBox& box, double aspect_ratio) {
+  if (!camera.has_elevation_deg()) {
+    camera.set_elevation_deg(
+        static_cast<float>(scene::FramingElevation_deg(box.low_m, box.high_m)));
+  }
   const scene::OrbitCamera framing =
       scene::Framing(ToOrbit(camera), box.low_m, box.high_m, aspect_ratio);
   if (!camera.has_target()) SetPosition(framing.target_m, *camera.mutable_target());
@@ -134,7 +138,8 @@ bool NeedsFraming(const v1::Scene& scene) {
       return !camera.top_down().has_x_m() || !camera.top_down().has_y_m() ||
              !camera.top_down().has_width_m();
     default:
-      return !camera.orbit().has_target() || !camera.orbit().has_distance_m();
+      return !camera.orbit().has_target() || !camera.orbit().has_elevation_deg() ||
+             !camera.orbit().has_distance_m();
   }
 }
 

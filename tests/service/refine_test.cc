@@ -172,6 +172,7 @@ TEST_F(RefineTest, AnotherTimeIsReadAndTraced) {
   scene.set_time_index(2);
   // The camera is complete, so that only the render loop reads.
   scene.mutable_camera()->mutable_orbit()->mutable_target();
+  scene.mutable_camera()->mutable_orbit()->set_elevation_deg(4.0F);
   scene.mutable_camera()->mutable_orbit()->set_distance_m(50000.0F);
   const std::uint64_t revision = service_.Update(id, scene);
   ASSERT_TRUE(AwaitSamples(watcher, revision, 8));

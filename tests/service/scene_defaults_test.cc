@@ -125,7 +125,6 @@ TEST(SceneDefaults, OfTheValueAreThoseOfTheCompletedMessage) {
   const auto& camera = std::get<scene::OrbitCamera>(value.camera);
   const scene::OrbitCamera own_camera = std::get<scene::OrbitCamera>(own.camera);
   EXPECT_EQ(camera.azimuth_deg, own_camera.azimuth_deg);
-  EXPECT_EQ(camera.elevation_deg, own_camera.elevation_deg);
   EXPECT_EQ(camera.field_of_view_deg, own_camera.field_of_view_deg);
   EXPECT_EQ(value.sun, own.sun);
   EXPECT_FLOAT_EQ(value.sky.brightness, own.sky.brightness);

@@ -110,6 +110,7 @@ TEST(SessionsTest, CompleteCameraNeedsNoRead) {
   FakeService service;
   v1::Scene scene = SmallScene();
   scene.mutable_camera()->mutable_orbit()->mutable_target();
+  scene.mutable_camera()->mutable_orbit()->set_elevation_deg(4.0F);
   scene.mutable_camera()->mutable_orbit()->set_distance_m(50000.0F);
   Create(service, scene);
   EXPECT_EQ(service.store->Reads(), 0);

@@ -25,6 +25,7 @@ v1::Scene AtTime(std::uint32_t time_index) {
   scene.set_time_index(time_index);
   // With the camera complete only the render loop reads.
   scene.mutable_camera()->mutable_orbit()->mutable_target();
+  scene.mutable_camera()->mutable_orbit()->set_elevation_deg(4.0F);
   scene.mutable_camera()->mutable_orbit()->set_distance_m(50000.0F);
   return scene;
 }

@@ -83,12 +83,12 @@ export function poseOfCamera(camera: Camera | undefined): Pose | undefined {
   switch (camera?.kind.case) {
     case "orbit": {
       const { target, azimuthDeg, elevationDeg, distanceM, fieldOfViewDeg } = camera.kind.value;
-      if (target === undefined || distanceM === undefined) return undefined;
+      if (target === undefined || elevationDeg === undefined || distanceM === undefined) return undefined;
       return {
         kind: "orbit",
         targetM: [target.xM, target.yM, target.zM],
         azimuthDeg: azimuthDeg ?? AZIMUTH.defaultValue ?? 0,
-        elevationDeg: elevationDeg ?? ELEVATION.defaultValue ?? 0,
+        elevationDeg,
         distanceM,
         fieldOfViewDeg: fieldOfViewDeg ?? FIELD_OF_VIEW.defaultValue ?? 35,
       };

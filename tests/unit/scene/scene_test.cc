@@ -205,6 +205,17 @@ TEST(OrbitView, SeesTheGroundFallAwayFromTheStorm) {
   EXPECT_NEAR((view.local_from_world * view.forward).z, -100e3 / kEffectiveEarthRadius_m, 1e-5);
 }
 
+TEST(OrbitView, LooksDownOnWideDomains) {
+  const glm::dvec3 low_m(-100.0, -200.0, 1000.0);
+  EXPECT_DOUBLE_EQ(FramingElevation_deg(low_m, low_m + glm::dvec3(80e3, 40e3, 14e3)), 4.0);
+  EXPECT_DOUBLE_EQ(FramingElevation_deg(low_m, low_m + glm::dvec3(10e3, 9e3, 1e3)), 4.0);
+  EXPECT_DOUBLE_EQ(FramingElevation_deg(low_m, low_m + glm::dvec3(500e3, 1000e3, 14e3)), 35.0);
+  const double between_deg = FramingElevation_deg(low_m, low_m + glm::dvec3(300e3, 40e3, 14e3));
+  EXPECT_GT(between_deg, 15.0);
+  EXPECT_LT(between_deg, 25.0);
+  EXPECT_DOUBLE_EQ(FramingElevation_deg(low_m, low_m), 35.0) << "of nothing, and finite";
+}
+
 TEST(SpotterView, ThePictureIsCutOutOfTheFrame) {
   SpotterCamera camera;
   camera.focal_length_mm = 36.0;
