@@ -59,6 +59,7 @@ int Run(int argc, char** argv) {
   RegisterCumulus();
   RegisterSavings();
   RegisterGrowth();
+  RegisterWideDomain();
   benchmark::RegisterBenchmark("encode_jpeg/1280x720", EncodeJpeg)
       ->Unit(benchmark::kMillisecond)
       ->UseRealTime();

@@ -57,6 +57,21 @@ void Move(Moving moving, scene::Scene* scene) {
   }
 }
 
+}  // namespace
+
+Sample& Sample::Get() {
+  static Sample sample = Open();
+  return sample;
+}
+
+scene::Scene PaperScene() {
+  scene::Scene scene = test_support::PlainScene();
+  scene.output = {300, 300, 88};
+  const volume::WorldBox box = volume::VisibleBox(*Sample::Get().fields);
+  scene.camera = scene::Framing(scene::OrbitCamera(), box.low_m, box.high_m, 1.0);
+  return scene;
+}
+
 void DrawFrames(benchmark::State& state, scene::Scene scene, const Fields& fields, Moving moving) {
   renderers::SceneRenderer renderer;
   frame::ToneMapper tone_mapper;
@@ -85,21 +100,6 @@ void DrawFrames(benchmark::State& state, scene::Scene scene, const Fields& field
   if (balls > 0) state.counters["balls"] = balls;
   state.counters["fps"] =
       benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
-}
-
-}  // namespace
-
-Sample& Sample::Get() {
-  static Sample sample = Open();
-  return sample;
-}
-
-scene::Scene PaperScene() {
-  scene::Scene scene = test_support::PlainScene();
-  scene.output = {300, 300, 88};
-  const volume::WorldBox box = volume::VisibleBox(*Sample::Get().fields);
-  scene.camera = scene::Framing(scene::OrbitCamera(), box.low_m, box.high_m, 1.0);
-  return scene;
 }
 
 void Register(const std::string& name, const scene::Scene& scene, const Fields& fields,

@@ -27,6 +27,9 @@ enum class Moving { kCamera, kSun, kSunClimbs, kField, kExposure };
 // The storm as a whole at the papers' size, 300 x 300 pixels, 128 slices.
 scene::Scene PaperScene();
 
+// Draws whole frames, JPEG included, after two that are not counted.
+void DrawFrames(benchmark::State& state, scene::Scene scene, const Fields& fields, Moving moving);
+
 // Registers whole frames, JPEG included; the columns `*_ms` split them by stage. `paper_fps` is the
 // papers' own on a GeForce FX 5800 (Riley et al. 2003, AMS, Table IV), 0 for none.
 void Register(const std::string& name, const scene::Scene& scene, const Fields& fields,
@@ -46,6 +49,10 @@ void RegisterMetaballs();
 // Neyret's shader against Lambert's law on the same ellipsoids, at his 600 x 600 pixels; "paper"
 // has twice his 87.
 void RegisterCumulus();
+
+// A domain of 1000 x 960 x 60 cells, the sample storm 30 times, at 1280 x 720: the first frame, and
+// frames while the camera or the sun moves; with the memory of fields and textures.
+void RegisterWideDomain();
 
 // Savings by drawing only what a scene requires, and the growth of time.
 void RegisterSavings();
