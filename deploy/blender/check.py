@@ -32,26 +32,26 @@ class Case:
     scatterings: int
     asymmetry: float = 0.85
     only: str = ""  # the one field that is visible, with its own asymmetry
-    step: float = 0.125
+    step: float = 0.125  # of Cycles, in edges of the smallest voxel
     picture: bool = False
 
 
 CASES = [
     # One scattering: extinction, place, phase function and shadow.
-    Case("1-km storm, once, ice alone", "supercell.nc", "orbit", 1, 0.7, only="ice"),
-    Case("1-km storm, once, graupel alone", "supercell.nc", "orbit", 1, 0.3, only="graupel"),
-    Case("1-km storm, once", "supercell.nc", "orbit", 1),
-    Case("1-km storm, once, from above", "supercell.nc", "top-down", 1),
+    Case("1-km storm, ice alone", "supercell.nc", "orbit", 1, 0.7, only="ice"),
+    Case("1-km storm, graupel alone", "supercell.nc", "orbit", 1, 0.3, only="graupel"),
+    Case("1-km storm", "supercell.nc", "orbit", 1),
+    Case("1-km storm", "supercell.nc", "top-down", 1),
     # Several: the transport of light.
-    Case("1-km storm, isotropic", "supercell.nc", "orbit", 64, 0.0),
-    Case("1-km storm, step of 1 voxel", "supercell.nc", "orbit", 64, step=1.0),
-    Case("1-km storm, step of 1/2 voxel", "supercell.nc", "orbit", 64, step=0.5),
-    Case("1-km storm, step of 1/4 voxel", "supercell.nc", "orbit", 64, step=0.25),
-    Case("1-km storm", "supercell.nc", "orbit", 64),
-    Case("1-km storm, all light", "supercell.nc", "orbit", WITHOUT_LIMIT, picture=True),
-    Case("1-km storm, all light", "supercell.nc", "spotter", WITHOUT_LIMIT, picture=True),
-    Case("congestus, all light", "congestus", "orbit", WITHOUT_LIMIT, picture=True),
-    Case("congestus, all light", "congestus", "spotter", WITHOUT_LIMIT, picture=True),
+    Case("1-km storm", "supercell.nc", "orbit", 64, 0.0),
+    Case("1-km storm", "supercell.nc", "orbit", 64, 0.5, step=1.0),
+    Case("1-km storm", "supercell.nc", "orbit", 64, 0.5, step=0.5),
+    Case("1-km storm", "supercell.nc", "orbit", 64, 0.5, step=0.25),
+    Case("1-km storm", "supercell.nc", "orbit", 64, 0.5),
+    Case("1-km storm", "supercell.nc", "orbit", WITHOUT_LIMIT, step=0.25, picture=True),
+    Case("1-km storm", "supercell.nc", "spotter", WITHOUT_LIMIT, step=0.25, picture=True),
+    Case("congestus", "congestus", "orbit", WITHOUT_LIMIT, step=0.25, picture=True),
+    Case("congestus", "congestus", "spotter", WITHOUT_LIMIT, step=0.25, picture=True),
 ]
 
 
@@ -121,7 +121,7 @@ def excess(halves, truth, variance):
                                                np.copysign(np.sqrt(abs(left)), left))]
 
 
-def row_of(case, halves, truth, error, seconds):
+def row_of(case, samples, halves, truth, error, seconds):
     mean = truth.mean()
     cycles = 0.5 * (halves[0] + halves[1])
     of_cycles = np.sqrt(np.sum((halves[0] - halves[1]) ** 2) / 4) / truth.size
@@ -132,13 +132,13 @@ def row_of(case, halves, truth, error, seconds):
     block = excess([blocks(half) for half in halves], blocks(truth), blocks(error ** 2) / BLOCK ** 2)
     light = "all" if case.scatterings == WITHOUT_LIMIT else str(case.scatterings)
     return (f"| {case.name} | {case.camera} | {light} | {case.asymmetry:g} | {case.step:g} | "
-            f"{100 * bias:+.2f} ± {100 * of_bias:.2f} % | {pixel[0]:.3f} | {pixel[1]:.3f} | {pixel[2]:+.3f} | "
+            f"{samples[0]}, {samples[1]} | {100 * bias:+.2f} ± {100 * of_bias:.2f} % | {pixel[0]:.3f} | {pixel[1]:.3f} | {pixel[2]:+.3f} | "
             f"{block[0]:.3f} | {block[1]:.3f} | {block[2]:+.3f} | {seconds[0]:.0f}, {seconds[1]:.0f} s |")
 
 
-HEADER = ("| case | camera | scatterings | g | step | mean, Cycles over reference | RMSE | noise | without noise | "
+HEADER = ("| case | camera | scatterings | g | step | samples | mean, Cycles over reference | RMSE | noise | without noise | "
           "RMSE of blocks | noise | without noise | Cycles, reference |\n"
-          "|---|---|---|---|---|---|---|---|---|---|---|---|---|")
+          "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|")
 
 
 def write_picture(path, halves, truth):
@@ -167,8 +167,8 @@ def main():
     parser.add_argument("--work", required=True, help="folder for what is rendered")
     parser.add_argument("--output", required=True, help="folder of blender.md, whose table it writes, and of the pictures")
     parser.add_argument("--size", default="160x100")
-    parser.add_argument("--cycles-samples", type=int, default=64)
-    parser.add_argument("--reference-samples", type=int, default=1024)
+    parser.add_argument("--cycles-samples", type=int, default=64, help="a pixel; even")
+    parser.add_argument("--reference-samples", type=int, default=512)
     parser.add_argument("--only", type=int, nargs="*", help="numbers of the cases to run, from 0")
     arguments = parser.parse_args()
     os.makedirs(arguments.work, exist_ok=True)
@@ -178,7 +178,7 @@ def main():
         if arguments.only and number not in arguments.only:
             continue
         halves, truth, error, *seconds = render_both(number, case, arguments)
-        rows.append(row_of(case, halves, truth, error, seconds))
+        rows.append(row_of(case, (arguments.cycles_samples, arguments.reference_samples), halves, truth, error, seconds))
         print(rows[-1], flush=True)
         if case.picture:
             storm = case.storm.removesuffix(".nc")
