@@ -28,5 +28,6 @@ Command AddMeasureTrade(CLI::App& measure);
 Command AddMeasureLight(CLI::App& measure);
 Command AddGenerate(CLI::App& app);
 Command AddFit(CLI::App& app);
+Command AddExport(CLI::App& app);
 
 }  // namespace thunderhead::app

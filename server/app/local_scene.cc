@@ -20,6 +20,7 @@ absl::StatusOr<LocalScene> OpenScene(const std::string& path, const SceneFlags& 
   const auto time_index = static_cast<int>(local.message.time_index());
   THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(*store, time_index));
   local.storm_id = local.message.storm_id();
+  local.storm = *store->Find(local.storm_id);
   THUNDERHEAD_ASSIGN_OR_RETURN(local.fields, store->Get(local.storm_id, time_index, {}));
   service::FrameCondensate(local.message, *local.fields);
   local.scene = service::ToScene(local.message);

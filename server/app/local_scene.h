@@ -9,11 +9,13 @@
 #include "app/scene_file.h"
 #include "scene/scene.h"
 #include "volume/hydrometeor_fields.h"
+#include "volume/storm_store.h"
 
 namespace thunderhead::app {
 
 struct LocalScene {
   std::string storm_id;
+  volume::StormInfo storm;
   v1::Scene message;  // completed: every default filled in
   scene::Scene scene;
   std::shared_ptr<const volume::HydrometeorFields> fields;

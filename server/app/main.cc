@@ -44,7 +44,7 @@ int Main(int argc, char** argv) {
   app.set_version_flag("--version", "thunderhead " + base::Version());
   app.require_subcommand(1);
   const std::array commands = {AddServe(app),   AddRender(app),   AddInspect(app), AddFlux(app),
-                               AddMeasure(app), AddGenerate(app), AddFit(app)};
+                               AddMeasure(app), AddGenerate(app), AddFit(app),     AddExport(app)};
   if (const absl::Status status = CheckSubcommand(app, argc, argv); !status.ok()) {
     return Report(status);
   }

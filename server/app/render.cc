@@ -154,9 +154,11 @@ absl::Status Render(const Flags& flags) {
   v1::RenderImageRequest request;
   THUNDERHEAD_ASSIGN_OR_RETURN(*request.mutable_scene(), ReadScene(flags.scene));
   if (request.scene().rendering().has_reference()) return ByReference(flags);
-  if (flags.reference.AnyLimit()) {
+  if (flags.reference.AnyLimit() || !flags.reference.light.air ||
+      flags.reference.light.max_scatterings != 0) {
     return absl::InvalidArgumentError(
-        "--spp, --seconds and --target-error are for --renderer reference");
+        "--spp, --seconds, --target-error, --max-scatterings and --no-air are for --renderer "
+        "reference");
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(const v1::ImageFormat format, FormatOf(flags.output));
   request.set_format(format);
@@ -202,10 +204,15 @@ Command AddRender(CLI::App& app) {
   render->add_option("--target-error", flags->reference.target_error,
                      "Reference: stop at this relative standard error");
   render
-      ->add_option("--peak-cut", flags->reference.peak_cut_deg,
+      ->add_option("--peak-cut", flags->reference.light.peak_cut_deg,
                    "Reference: treat light scattered by less than this angle in degrees as "
                    "unscattered; 0 is exact but noisy")
       ->capture_default_str();
+  render->add_option("--max-scatterings", flags->reference.light.max_scatterings,
+                     "Reference: leave out light that is scattered more often; by default none");
+  render->add_flag(
+      "--no-air{false}", flags->reference.light.air,
+      "Reference: leave out the air: a black sky, and sunlight as above the atmosphere");
   render->add_option("--server", flags->server, "HOST:PORT of a running server's gRPC service");
   render->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();

@@ -36,9 +36,14 @@ absl::Status CheckFlags(const ReferenceFlags& limits) {
     return absl::InvalidArgumentError(
         absl::StrCat("--target-error is ", limits.target_error, "; it must be above 0"));
   }
-  if (!(limits.peak_cut_deg >= 0.0 && limits.peak_cut_deg <= 30.0)) {
+  const double peak_cut_deg = limits.light.peak_cut_deg;
+  if (!(peak_cut_deg >= 0.0 && peak_cut_deg <= 30.0)) {
     return absl::InvalidArgumentError(
-        absl::StrCat("--peak-cut is ", limits.peak_cut_deg, "; it must be from 0 to 30 degrees"));
+        absl::StrCat("--peak-cut is ", peak_cut_deg, "; it must be from 0 to 30 degrees"));
+  }
+  if (limits.light.max_scatterings < 0) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "--max-scatterings is ", limits.light.max_scatterings, "; it must be 1 or more"));
   }
   return absl::OkStatus();
 }
@@ -89,7 +94,7 @@ absl::Status RenderReference(const std::string& storm, const SceneFlags& scene,
   {
     ProgressBar bar("tracing");
     traced = reference::TraceScene(
-        local.scene, *local.fields, limits.peak_cut_deg, refine,
+        local.scene, *local.fields, limits.light, refine,
         [&](const reference::ImageProgress& progress) { bar.Set(ShareDone(refine, progress)); },
         interruption.Token());
   }

@@ -9,12 +9,12 @@
 
 namespace thunderhead::app {
 
-// Limits of the reference, kDefaultSamplesPerPixel if none is given, and its peak cut.
+// Limits of the reference, kDefaultSamplesPerPixel if none is given, and the light that it traces.
 struct ReferenceFlags {
   int samples_per_pixel = 0;
   double seconds = 0.0;
-  double target_error = 0.0;                      // relative standard error of the whole picture
-  double peak_cut_deg = reference::kPeakCut_deg;  // MediumOptions::peak_cut_deg
+  double target_error = 0.0;  // relative standard error of the whole picture
+  reference::TraceOptions light;
 
   bool AnyLimit() const { return samples_per_pixel != 0 || seconds != 0.0 || target_error != 0.0; }
 };

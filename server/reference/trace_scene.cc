@@ -6,6 +6,17 @@
 #include "reference/scene_problem.h"
 
 namespace thunderhead::reference {
+namespace {
+
+void TakeAwayAir(const scene::Scene& scene, Surroundings* surroundings) {
+  surroundings->sun_irradiance = glm::dvec3(scene.sun.irradiance);
+  surroundings->sky = nullptr;
+  surroundings->seen_sky = nullptr;
+  surroundings->air = nullptr;
+  surroundings->shaded_air.reset();
+}
+
+}  // namespace
 
 absl::StatusOr<TracedScene> TraceScene(const scene::Scene& scene,
                                        const volume::HydrometeorFields& fields,
@@ -15,6 +26,7 @@ absl::StatusOr<TracedScene> TraceScene(const scene::Scene& scene,
   of_medium.peak_cut_deg = options.peak_cut_deg;
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto medium, MediumOf(scene, fields, of_medium));
   Surroundings surroundings = SurroundingsOf(scene, fields, GroundLight::kShaded);
+  if (!options.air) TakeAwayAir(scene, &surroundings);
   if (!options.sun) surroundings.sun_irradiance = glm::dvec3(0.0);
   PathTracerOptions of_paths;
   of_paths.max_scatterings = options.max_scatterings;

@@ -23,6 +23,9 @@ struct TraceOptions {
   double peak_cut_deg = kPeakCut_deg;  // MediumOptions::peak_cut_deg
   int max_scatterings = 0;             // PathTracerOptions::max_scatterings
   bool sun = true;                     // false: only the sky gives light
+  // False: as if there were no air. The sky is black, and the sun shines with the irradiance that
+  // it has above the atmosphere. The ground stays.
+  bool air = true;
 };
 
 // The picture that renderers approximate: with their ground, and each field's own phase function or

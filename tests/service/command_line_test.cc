@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <set>
 #include <sstream>
 #include <string>
@@ -282,8 +284,55 @@ TEST_F(CommandLineTest, TheReferenceRendersToExrAndPng) {
   ASSERT_TRUE(png.ok());
   EXPECT_EQ(png->width_px, 24);
   ExpectError(render_ + " --spp 4", 2, "for --renderer reference");
+  ExpectError(render_ + " --no-air", 2, "for --renderer reference");
+  ExpectError(reference + picture_ + " --max-scatterings -2", 2, "--max-scatterings is -2");
   ExpectError(reference + "truth.txt", 2, "must end in");
   ExpectError(reference + picture_ + " --seconds -1", 2, "--seconds is -1");
+}
+
+TEST_F(CommandLineTest, ExportWritesGridsAndTheView) {
+  const std::string vdb = folder_.File("storm.vdb");
+  const std::string view = folder_.File("storm.json");
+  const Outcome outcome = Run("export " + kSample + " --time 1 --camera top-down --size 80x40 -o " +
+                              vdb + " --view " + view);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("cloud    extinction (1/m), 200 x 160 x"));
+  EXPECT_THAT(Contents(vdb), HasSubstr("graupel"));
+  EXPECT_FALSE(std::filesystem::exists(vdb + ".partial"));
+  google::protobuf::Struct json;
+  ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(Contents(view), &json).ok());
+  const auto& camera = json.fields().at("camera").struct_value().fields();
+  EXPECT_DOUBLE_EQ(camera.at("halfWidthM").number_value(),
+                   2.0 * camera.at("halfHeightM").number_value());
+  EXPECT_DOUBLE_EQ(camera.at("forward").list_value().values(2).number_value(), -1.0);
+  const auto& sun = json.fields().at("sun").struct_value().fields();
+  EXPECT_NEAR(sun.at("towards").list_value().values(2).number_value(),
+              std::sin(35.0 * std::numbers::pi / 180.0), 1e-9);
+  EXPECT_EQ(json.fields().at("image").struct_value().fields().at("widthPx").number_value(), 80.0);
+  EXPECT_EQ(json.fields().at("grids").list_value().values_size(), 5);
+}
+
+TEST_F(CommandLineTest, ExportNamesWhatIsWrong) {
+  const std::string vdb = folder_.File("storm.vdb");
+  ExpectError("export " + kSample + " -o storm.nc", 2, "must end in .vdb");
+  ExpectError("export " + kSample + " --time 9 -o " + vdb, 2, "9");
+  ExpectError("export " + folder_.File("none.nc") + " -o " + vdb, 1, "none.nc");
+  ExpectError("export " + kSample + " -o " + folder_.File("no/storm.vdb"), 1,
+              "no/storm.vdb cannot be written");
+  ExpectError("export " + kSample + " -o " + vdb + " --view " + folder_.File("no/storm.json"), 1,
+              "no/storm.json");
+}
+
+TEST_F(CommandLineTest, AnInterruptedExportLeavesNoFile) {
+  const std::string vdb = folder_.File("storm.vdb");
+  const Outcome outcome =
+      Shell(std::string(PROGRAM) + " export " + kSample + " --detail -o " + vdb +
+            " & export=$!; while ! [ -e " + vdb +
+            ".partial ]; do sleep 0.01; done; kill -TERM $export; wait $export");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_EQ(outcome.err, "thunderhead: interrupted: no file was written\n");
+  EXPECT_FALSE(std::filesystem::exists(vdb));
+  EXPECT_FALSE(std::filesystem::exists(vdb + ".partial"));
 }
 
 TEST_F(CommandLineTest, MeasureTradeContinuesWhereItStopped) {
