@@ -37,26 +37,41 @@ const float kTrapSharpness = 4.0;       // the paper's k
 const int kTrapScales = 6;
 const float kCoronaVariance = 0.16;     // of the scattering angle at the deepest corona: sigma_max 0.4 rad
 const float kNarrowest = 400.0;         // power of the cosine of droplets' own forward lobe
-const float kRelief = 0.35;             // height of the roughness over its wavelength
+const int kReliefScales = 3;
+// Wavelengths of the roughness over the noise's, and its heights over them. Light that is scattered inside the cloud evens out
+// what is smaller than the way it goes, so the finest is the lowest.
+const vec3 kReliefWave = vec3(4.0, 1.0, 0.25);
+const vec3 kReliefHeight = vec3(0.35, 0.2, 0.06);
 
 float noise_root(vec3 point_m) { return texture(roughness_noise, point_m * noise_per_m + noise_offset).r; }
 
-// The share of sunlight that other bubbles let through to a point.
-float lit(vec3 point_m) {
-  vec4 p = vec4(point_m, 1.0);
-  vec2 size = vec2(textureSize(shadow_depth, 0));
-  vec2 texel = vec2(dot(shadow_x, p), dot(shadow_y, p)) * size - 0.5;
-  float depth = dot(shadow_z, p);
+// The share of sunlight that other bubbles let through to a texel of the shadow and the next ones.
+float lit_texels(vec2 texel, float depth) {
+  ivec2 size = textureSize(shadow_depth, 0);
   ivec2 low = ivec2(floor(texel));
   vec2 share = texel - floor(texel);
-  vec4 sum;
+  vec4 open;
   for (int i = 0; i < 4; ++i) {
     ivec2 at = low + ivec2(i & 1, i >> 1);
-    bool outside = any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(size)));
-    sum[i] = outside || texelFetch(shadow_depth, at, 0).r >= depth ? 1.0 : 0.0;
+    bool outside = any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size));
+    open[i] = outside || texelFetch(shadow_depth, at, 0).r >= depth ? 1.0 : 0.0;
   }
-  vec2 rows = mix(sum.xz, sum.yw, share.x);
+  vec2 rows = mix(open.xz, open.yw, share.x);
   return mix(rows.x, rows.y, share.y);
+}
+
+// To a point, as the mean over `taps` x `taps` places that are together twice as wide as the corona: inside the cloud light
+// goes sideways, so that no shadow on it is sharper.
+float lit(vec3 point_m, int taps) {
+  vec4 p = vec4(point_m, 1.0);
+  vec2 texel = vec2(dot(shadow_x, p), dot(shadow_y, p)) * vec2(textureSize(shadow_depth, 0)) - 0.5;
+  float depth = dot(shadow_z, p);
+  if (taps == 1) return lit_texels(texel, depth);
+  float spacing = 2.0 * corona_m / (shadow_texel_m * float(taps - 1));
+  texel -= 0.5 * spacing * float(taps - 1);
+  float sum = 0.0;
+  for (int i = 0; i < taps * taps; ++i) sum += lit_texels(texel + spacing * vec2(i % taps, i / taps), depth);
+  return sum / float(taps * taps);
 }
 
 vec3 from_surroundings(vec3 n) {
@@ -66,17 +81,27 @@ vec3 from_surroundings(vec3 n) {
   return max(sum, vec3(0.0));
 }
 
-// The normal of a rough surface. Roughness finer than pixels is left out.
-vec3 roughened(vec3 normal, vec3 point_m, float distance_m) {
-  float pixel_m = parallel ? pixel_share : pixel_share * distance_m;
-  float relief = roughness * kRelief * noise_wave_m * clamp(1.5 - 3.0 * pixel_m / noise_wave_m, 0.0, 1.0);
-  if (relief <= 0.0) return normal;
-  float step_m = max(noise_wave_m / 16.0, 0.5 * pixel_m);
+// How far noise of a wavelength shows in pixels of a size.
+float resolved(float wave_m, float pixel_m) { return clamp(1.5 - 3.0 * pixel_m / wave_m, 0.0, 1.0); }
+
+// The normal of a surface that is rough at all scales. Roughness finer than pixels is left out.
+vec3 roughened(vec3 normal, vec3 point_m, float pixel_m) {
+  if (roughness <= 0.0) return normal;
   vec3 right = normalize(cross(normal, abs(normal.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));
   vec3 up = cross(normal, right);
-  float here = noise_root(point_m);
-  vec2 rise = vec2(noise_root(point_m + step_m * right), noise_root(point_m + step_m * up)) - here;
-  return normalize(normal - relief / step_m * (rise.x * right + rise.y * up));
+  vec3 rough = normal;
+  for (int scale = 0; scale < kReliefScales; ++scale) {
+    float wave_m = kReliefWave[scale] * noise_wave_m;
+    float height = roughness * kReliefHeight[scale] * resolved(wave_m, pixel_m);
+    if (height <= 0.0) break;
+    float step_m = max(wave_m / 16.0, 0.5 * pixel_m);
+    vec3 place = point_m / kReliefWave[scale];
+    float step = step_m / kReliefWave[scale];
+    float here = noise_root(place);
+    vec2 rise = vec2(noise_root(place + step * right), noise_root(place + step * up)) - here;
+    rough -= height * wave_m / step_m * (rise.x * right + rise.y * up);
+  }
+  return normalize(rough);
 }
 
 // Light that comes back between bubbles (section 4.3). At each scale the valley around a bubble hides a share of the sky
@@ -104,7 +129,7 @@ vec3 trapped(vec3 point_m, out float sky_share) {
     }
     float received = max(dot(underlying, towards_sun), 0.0);
     if (valley > 0.0 && received > 0.0) {
-      received *= lit(point_m + bubble.unit_x.w * underlying);
+      received *= lit(point_m + bubble.unit_x.w * underlying, 1);
       sum += sunlight * (sky_share * received / kPi * valley / (1.0 - valley));
     }
     sum += sky_share * valley * from_surroundings(underlying);
@@ -115,13 +140,13 @@ vec3 trapped(vec3 point_m, out float sky_share) {
 }
 
 // Radiance of the core.
-vec3 core(Meeting meeting, vec3 point_m) {
+vec3 core(Meeting meeting, vec3 point_m, float pixel_m) {
 #if PLAIN
   return sunlight * (max(dot(meeting.normal, towards_sun), 0.0) / kPi);
 #else
-  vec3 normal = roughened(meeting.normal, point_m, meeting.entry_m);
+  vec3 normal = roughened(meeting.normal, point_m, pixel_m);
   float cosine = max(dot(normal, towards_sun), 0.0);
-  if (cosine > 0.0) cosine *= lit(point_m + (1.5 * shadow_texel_m + corona_m) * meeting.normal);
+  if (cosine > 0.0) cosine *= lit(point_m + (1.5 * shadow_texel_m + corona_m) * meeting.normal, 3);
   float sky_share;
   vec3 trap = trapped(point_m, sky_share);
   vec3 ambient = sky_share * from_surroundings(normal) + sunlight * (transmission / kPi);
@@ -138,7 +163,7 @@ vec3 corona(Meeting meeting, float rho) {
   float variance = kCoronaVariance * rho * (meeting.exit_m - meeting.entry_m) / most;
   float power = clamp(1.0 / max(variance, 1e-6), 1.0, kNarrowest);
   vec3 point_m = meeting.origin_m + meeting.exit_m * meeting.ray;
-  float arriving = lit(point_m + (1.5 * shadow_texel_m + corona_m) * towards_sun);
+  float arriving = lit(point_m + (1.5 * shadow_texel_m + corona_m) * towards_sun, 1);
   return sunlight * (rho * arriving * (power + 1.0) / (2.0 * kPi) * pow(mu, power));
 }
 
@@ -148,18 +173,22 @@ void main() {
   float core_m = texelFetch(core_depth, ivec2(gl_FragCoord.xy), 0).r / per_far;
 #if PLAIN
   if (meeting.entry_m > core_m * (1.0 + 1e-5)) discard;
-  cores = vec4(core(meeting, vec3(0.0)), 1.0);
+  cores = vec4(core(meeting, vec3(0.0), 0.0), 1.0);
   layer = vec4(0.0, 0.0, 0.0, 1.0);
 #else
   float behind_m = meeting.entry_m - core_m;
   if (behind_m > corona_m || meeting.depth_m <= 0.0) discard;
   vec3 point_m = meeting.origin_m + meeting.entry_m * meeting.ray;
+  float pixel_m = parallel ? pixel_share : pixel_share * meeting.entry_m;
   float rho = min(meeting.depth_m / corona_m, 1.0);
   // Thinner where the noise is low; 0 stays 0 and 1 stays 1.
-  if (rho < 1.0 && roughness > 0.0) rho = pow(rho, exp(2.0 * roughness * (0.8 - noise_root(point_m))));
+  if (rho < 1.0 && roughness > 0.0) {
+    float fine = mix(0.7, noise_root(4.0 * point_m), resolved(0.25 * noise_wave_m, pixel_m));
+    rho = pow(rho, exp(3.0 * roughness * (1.4 - noise_root(point_m) - fine)));
+  }
   float together = max(1.0 - abs(behind_m) / corona_m, 0.0);
   together = rho < 1.0 ? together * together : max(together * together, 1e-3);
-  vec3 radiance = core(meeting, point_m);
+  vec3 radiance = core(meeting, point_m, pixel_m);
   cores = together * rho * vec4(radiance, 1.0);
   float apart = behind_m < 0.0 ? 1.0 - together : 0.0;
   vec3 scattered = component.w * (1.0 - rho) * corona(meeting, rho);
