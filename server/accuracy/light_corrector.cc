@@ -14,6 +14,7 @@
 #include "reference/trace_rays.h"
 #include "reference/tracking.h"
 #include "scene/drawn_fields.h"
+#include "scene/ground.h"
 
 namespace thunderhead::accuracy {
 namespace {
@@ -56,9 +57,11 @@ glm::dvec2 Middle_m(const volume::WorldBox& box) {
   return 0.5 * glm::dvec2(box.low_m + box.high_m);
 }
 
-// The scene that probes draw: without light that the light volume cannot show, and without
-// structure finer than texels.
-scene::Scene ProbedScene(scene::Scene scene) {
+// The scene that probes draw: without light that the light volume cannot show, without structure
+// finer than texels, and on plain ground as bright as the scene's.
+scene::Scene ProbedScene(const scene::Scene& asked, const volume::HydrometeorFields& fields) {
+  scene::Scene scene = scene::WithGroundOf(asked, fields);
+  scene.ground = {};
   scene.lights.clear();
   scene::MediumSettingsOf(&scene.rendering.technique)->look.detail = false;
   scene.rendering.image_scale = 1.0;
@@ -88,7 +91,7 @@ LightCorrector::LightCorrector(const scene::Scene& scene,
                                std::shared_ptr<const volume::HydrometeorFields> fields,
                                std::shared_ptr<const reference::Medium> medium,
                                std::shared_ptr<gl::ProgramCache> programs, int threads)
-    : scene_(ProbedScene(scene)),
+    : scene_(ProbedScene(scene, *fields)),
       asked_(scene),
       fields_(std::move(fields)),
       medium_(std::move(medium)),
@@ -110,7 +113,7 @@ absl::StatusOr<std::unique_ptr<LightCorrector>> LightCorrector::Create(
   reference::MediumOptions options;
   options.peak_cut_deg = kPeakCut_deg;
   THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<const reference::Medium> medium,
-                               reference::MediumOf(ProbedScene(scene), *fields, options));
+                               reference::MediumOf(ProbedScene(scene, *fields), *fields, options));
   return std::unique_ptr<LightCorrector>(new LightCorrector(
       scene, std::move(fields), std::move(medium), std::move(programs), threads));
 }
@@ -127,13 +130,14 @@ bool LightCorrector::Serves(const scene::Scene& scene,
   alike.display = asked_.display;
   alike.output = asked_.output;
   alike.accuracy = asked_.accuracy;
+  alike.ground.rings = asked_.ground.rings;
   alike.rendering.image_scale = asked_.rendering.image_scale;
   return alike == asked_;
 }
 
 void LightCorrector::LookAs(const scene::Scene& scene) {
   asked_ = scene;
-  scene_ = ProbedScene(scene);
+  scene_ = ProbedScene(scene, *fields_);
 }
 
 scene::Camera LightCorrector::NextCamera() const {

@@ -1,5 +1,6 @@
 #include "gl/objects.h"
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -56,6 +57,7 @@ std::size_t BytesPerTexel(GLenum internal_format) {
     case GL_R32F:
     case GL_DEPTH_COMPONENT32F:
     case GL_RGBA8:
+    case GL_SRGB8_ALPHA8:
       return 4;
     case GL_RGBA16F:
     case GL_RG32F:
@@ -68,17 +70,32 @@ std::size_t BytesPerTexel(GLenum internal_format) {
 }
 
 Texture2D::Texture2D(GLenum internal_format, glm::ivec2 size, Edge edge)
+    : Texture2D(internal_format, size, edge, 1) {}
+
+Texture2D Texture2D::WithMips(GLenum internal_format, glm::ivec2 size, Edge edge) {
+  int levels = 1;
+  while ((std::max(size.x, size.y) >> levels) > 0) ++levels;
+  Texture2D texture(internal_format, size, edge, levels);
+  glTextureParameteri(texture.Get(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  // A third more, to within the rounding of odd sizes.
+  texture.bytes_ += texture.bytes_ / 3;
+  return texture;
+}
+
+Texture2D::Texture2D(GLenum internal_format, glm::ivec2 size, Edge edge, int levels)
     : name_(NewTexture(GL_TEXTURE_2D, edge)),
       internal_format_(internal_format),
       size_(size),
+      levels_(levels),
       bytes_(BytesPerTexel(internal_format) * static_cast<std::size_t>(size.x) *
              static_cast<std::size_t>(size.y)) {
-  glTextureStorage2D(name_.Get(), 1, internal_format, size.x, size.y);
+  glTextureStorage2D(name_.Get(), levels, internal_format, size.x, size.y);
 }
 
 void Texture2D::Upload(GLenum format, GLenum type, const void* texels) {
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTextureSubImage2D(name_.Get(), 0, 0, 0, size_.x, size_.y, format, type, texels);
+  if (levels_ > 1) glGenerateTextureMipmap(name_.Get());
 }
 
 Texture3D::Texture3D(GLenum internal_format, glm::ivec3 size, Filter filter, Edge edge)

@@ -52,7 +52,10 @@ class Texture2D {
   Texture2D() = default;
   Texture2D(GLenum internal_format, glm::ivec2 size, Edge edge = Edge::kClamp);
 
-  // Fills the whole texture, as Texture3D::Upload.
+  // With all levels down to one texel, for textureLod.
+  static Texture2D WithMips(GLenum internal_format, glm::ivec2 size, Edge edge);
+
+  // Fills the whole texture, as Texture3D::Upload, and its other levels from it.
   void Upload(GLenum format, GLenum type, const void* texels);
 
   GLuint Get() const { return name_.Get(); }
@@ -65,9 +68,12 @@ class Texture2D {
   void BindImage(GLuint unit, GLenum access) const;
 
  private:
+  Texture2D(GLenum internal_format, glm::ivec2 size, Edge edge, int levels);
+
   Name<internal::DeleteTexture> name_;
   GLenum internal_format_ = 0;
   glm::ivec2 size_{0};
+  int levels_ = 1;
   std::size_t bytes_ = 0;
 };
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "glm/geometric.hpp"
+#include "physics/water.h"
 #include "reference/tracking.h"
 
 namespace thunderhead::reference {
@@ -201,14 +202,53 @@ class Path {
     const Ground& ground = *surroundings_.ground;
     glm::dvec3 point_m = ray_.At(ground_m);
     point_m.z = GroundHeight_m(point_m);
+    SeenGround here{ground.albedo};
+    if (seen_from_eye_ && ground.seen) here = ground.seen(glm::dvec2(point_m));
     PassAir(ground_m, Behind::kGround);
     radiance_ += Carried() * ground.radiance;
-    throughput_ *= ground.albedo;
+    if (here.water > 0.0) {
+      if (random_->Uniform() < here.water) return ReflectByWater(point_m);
+    }
+    return ReflectDiffusely(point_m, here.albedo);
+  }
+
+  bool ReflectDiffusely(const glm::dvec3& point_m, const glm::dvec3& albedo) {
+    throughput_ *= albedo;
     if (Largest(Carried()) <= 0.0) return false;
     const double sine = std::max(surroundings_.towards_sun.z, 0.0);
     AddLight(point_m, {surroundings_.towards_sun, surroundings_.sun_irradiance},
              glm::dvec3(sine * std::numbers::inv_pi));
     ray_ = {point_m, SampleCosine({0.0, 0.0, 1.0}, random_)};
+    return true;
+  }
+
+  // Half of the paths are reflected by the surface, half by what is below.
+  bool ReflectByWater(const glm::dvec3& point_m) {
+    throughput_ *= 2.0;
+    if (random_->Uniform() < 0.5) {
+      return ReflectDiffusely(point_m, glm::dvec3(physics::glsl::water_albedo()));
+    }
+    glm::dvec3 towards_eye = -ray_.direction;
+    towards_eye.z = std::max(towards_eye.z, 1e-3);
+    towards_eye = glm::normalize(towards_eye);
+    AddLight(point_m, {surroundings_.towards_sun, surroundings_.sun_irradiance},
+             glm::dvec3(physics::glsl::glint(glm::vec3(towards_eye),
+                                             glm::vec3(surroundings_.towards_sun))));
+    // A facet by the density of facets on level ground, exp(-tan^2 / kWaterSlopes).
+    const double slope =
+        std::sqrt(-physics::glsl::kWaterSlopes * std::log(1.0 - random_->Uniform()));
+    const double azimuth_rad = 2.0 * std::numbers::pi * random_->Uniform();
+    const glm::dvec3 facet = glm::normalize(
+        glm::dvec3(slope * std::cos(azimuth_rad), slope * std::sin(azimuth_rad), 1.0));
+    const double facing = glm::dot(facet, towards_eye);
+    const glm::dvec3 reflected = 2.0 * facing * facet - towards_eye;
+    if (facing <= 0.0 || reflected.z <= 0.0) return false;
+    const auto cosine = [](const glm::dvec3& direction) { return static_cast<float>(direction.z); };
+    // Walter et al. 2007, eq. 41.
+    throughput_ *= physics::glsl::facet_reflectance(static_cast<float>(facing)) * facing *
+                   physics::glsl::facets_unhidden(cosine(towards_eye)) *
+                   physics::glsl::facets_unhidden(cosine(reflected)) / (towards_eye.z * facet.z);
+    ray_ = {point_m, reflected};
     return true;
   }
 

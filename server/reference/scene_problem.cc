@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -12,18 +13,17 @@
 #include "glm/geometric.hpp"
 #include "glm/trigonometric.hpp"
 #include "glm/vector_relational.hpp"
+#include "physics/field_pattern.h"
 #include "physics/optics.h"
 #include "physics/sky.h"
 #include "scene/drawn_fields.h"
+#include "scene/ground.h"
 #include "scene/shaded_air.h"
 #include "scene/view.h"
 #include "volume/terrain.h"
 
 namespace thunderhead::reference {
 namespace {
-
-// Bare soil and grass seen from far off; the scene's ground albedo is that of red.
-constexpr glm::dvec3 kGroundTint(1.0, 0.93, 0.78);
 
 struct GridBox {
   volume::RegularGrid grid;
@@ -182,6 +182,47 @@ AirLight LightOfAir(const Around& around, const Ray& ray, double distance_m,
   return light;
 }
 
+// The ground where rays from the eye meet it, null where it is the same everywhere. A ray shows a
+// point of it, no footprint; but rings are as wide as pixels demand.
+std::function<SeenGround(const glm::dvec2&)> SeenGroundOf(const scene::Scene& scene,
+                                                          const volume::HydrometeorFields& fields,
+                                                          const scene::View& view) {
+  const scene::Ground look = scene::DrawnGround(scene, fields);
+  if (look == scene::Ground{}) return nullptr;
+  const glm::vec3 plain = scene::PlainReflectance(scene);
+  const bool by_land_use = look.cover == scene::GroundCover::kLandUse;
+  const float contrast = physics::FieldContrast(by_land_use ? fields.land.mean_reflectance : plain);
+  const glm::dvec2 middle_m = scene::RingMiddle_m(fields);
+  const double height_px = scene.output.height_px;
+  const double ground_m = volume::LowestTerrain_m(fields);
+  return [=, land = by_land_use ? fields.land : volume::LandSurface{},
+          grid = fields.grid](const glm::dvec2& place_m) {
+    const auto& pattern = physics::FieldPattern::Plains();
+    const glm::vec2 place(place_m);
+    const glm::vec2 point(0.0F);
+    SeenGround seen;
+    if (by_land_use) {
+      const volume::LandSample sample = volume::LandAt(land, grid, place_m);
+      seen.albedo = glm::dvec3(sample.reflectance * pattern.Grain(place, point, contrast));
+      seen.water = sample.water;
+    } else if (look.cover == scene::GroundCover::kFields) {
+      seen.albedo = glm::dvec3(plain * pattern.Reflectance(place, point, contrast));
+    } else {
+      seen.albedo = glm::dvec3(plain);
+    }
+    if (look.rings) {
+      const double distance_m = glm::distance(view.eye_m, glm::dvec3(place_m, ground_m));
+      const double across_m =
+          2.0 * (view.half_height_m + view.tan_half_height * distance_m) / height_px;
+      const double paint = physics::glsl::ring_paint(glm::vec2(place_m - middle_m), point,
+                                                     static_cast<float>(across_m));
+      seen.albedo = glm::mix(seen.albedo, glm::dvec3(physics::glsl::ring_reflectance()), paint);
+      seen.water *= 1.0 - paint;
+    }
+    return seen;
+  };
+}
+
 }  // namespace
 
 absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene,
@@ -223,8 +264,9 @@ absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene
   return Medium::Create(std::move(description));
 }
 
-Surroundings SurroundingsOf(const scene::Scene& scene, const volume::HydrometeorFields& fields,
+Surroundings SurroundingsOf(const scene::Scene& asked, const volume::HydrometeorFields& fields,
                             GroundLight ground_light) {
+  const scene::Scene scene = scene::WithGroundOf(asked, fields);
   Surroundings around;
   around.towards_sun = scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg);
   const glm::vec3 towards_sun(around.towards_sun);
@@ -247,9 +289,10 @@ Surroundings SurroundingsOf(const scene::Scene& scene, const volume::Hydrometeor
   ground.height_m = lowest_m;
   ground.touch_m = view.touch_m;
   ground.curvature_per_m = view.ground_curvature_per_m;
-  const glm::dvec3 albedo = scene.sky.ground_albedo * kGroundTint;
+  const glm::dvec3 albedo(scene::PlainReflectance(scene));
   if (ground_light == GroundLight::kShaded) {
     ground.albedo = albedo;
+    ground.seen = SeenGroundOf(scene, fields, view);
   } else {
     const glm::dvec3 direct = around.sun_irradiance * std::max(around.towards_sun.z, 0.0);
     const glm::dvec3 diffuse = shared->scale * glm::dvec3(shared->sky.Light().irradiance);

@@ -13,6 +13,12 @@
 
 namespace thunderhead::reference {
 
+// A place of the ground as an eye sees it.
+struct SeenGround {
+  glm::dvec3 albedo{0.0};  // Lambertian
+  double water = 0.0;      // the share of it that is rough water in place of that (physics/water.h)
+};
+
 // Infinite Lambertian ground: a horizontal plane, or one that falls by d^2 curvature / 2 at a
 // distance d from `touch_m`. Seen from above only.
 struct Ground {
@@ -21,6 +27,8 @@ struct Ground {
   glm::dvec3 radiance{0.0};  // emitted upwards in addition
   glm::dvec2 touch_m{0.0};   // that place
   double curvature_per_m = 0.0;
+  // For rays from the eye; `albedo` if not set.
+  std::function<SeenGround(const glm::dvec2& place_m)> seen;
 };
 
 struct Box {

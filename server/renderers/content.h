@@ -16,6 +16,7 @@ struct Content {
   int balls = 0;                             // metaballs
   double fit_error = 0.0;                    // of those, root mean square over the extinction's own
   int ellipsoids = 0;                        // of a cumulus
+  scene::Ground ground;                      // as drawn
   std::vector<scene::NotShown> not_shown;
 };
 

@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
+#include "scene/ground.h"
 #include "scene/view.h"
 
 namespace thunderhead::renderers {
@@ -65,8 +66,8 @@ bool SceneRenderer::OnlyLightsDiffer(scene::Scene scene, const Fields& fields) c
 
 std::size_t SceneRenderer::Bytes() const {
   std::size_t bytes = workspace_.medium.Bytes() + workspace_.surroundings.Bytes() +
-                      workspace_.ground.Bytes() + linear_.Texture().Bytes() + eye_cover_.Bytes() +
-                      picture_cover_.Bytes();
+                      workspace_.ground.Bytes() + workspace_.ground_cover.Bytes() +
+                      linear_.Texture().Bytes() + eye_cover_.Bytes() + picture_cover_.Bytes();
   for (const auto& [name, technique] : techniques_) bytes += technique->Bytes();
   return bytes;
 }
@@ -83,10 +84,11 @@ absl::StatusOr<Technique*> SceneRenderer::Choose(const scene::Scene& scene) {
   return techniques_.emplace(name, std::move(technique)).first->second.get();
 }
 
-absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& scene, const Fields& fields,
+absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const Fields& fields,
                                                 const DrawQuality& quality) {
-  const scene::Stage first = FirstStageAt(scene, fields, quality);
-  sunlight_changed_ = first <= scene::Stage::kLight && !OnlyLightsDiffer(scene, fields);
+  const scene::Scene scene = scene::WithGroundOf(asked, *fields);
+  const scene::Stage first = FirstStageAt(asked, fields, quality);
+  sunlight_changed_ = first <= scene::Stage::kLight && !OnlyLightsDiffer(asked, fields);
   drawn_scene_.reset();
   THUNDERHEAD_ASSIGN_OR_RETURN(technique_, Choose(scene));
   StageTimes times;
@@ -95,7 +97,11 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& scene, const
   }
   if (first <= scene::Stage::kView) {
     const scene::View view = scene::ViewOf(scene, *fields);
-    if (first <= scene::Stage::kStorm) workspace_.ground.SetTerrain(*fields);
+    if (first <= scene::Stage::kStorm) {
+      workspace_.ground.SetTerrain(*fields);
+      workspace_.ground_cover.SetLand(*fields);
+    }
+    workspace_.ground_cover.Prepare(scene, *fields);
     workspace_.surroundings.Update(scene, view, workspace_.ground);
     workspace_.ground.SetCorrection(quality.correction);
     drawn_slices_ = 0;
@@ -118,7 +124,7 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& scene, const
       }));
     }
   }
-  drawn_scene_ = scene;
+  drawn_scene_ = asked;
   drawn_fields_ = fields;
   drawn_quality_ = quality;
   LinearFrame frame = Report(scene, *fields);
@@ -221,7 +227,7 @@ absl::Status SceneRenderer::Composite(const scene::Scene& scene, const scene::Vi
   }
   linear_.Resize(format, size_px, cover);
   const gl::Texture2D* distances_m = technique_->Empty() ? nullptr : technique_->Distances_m();
-  return workspace_.surroundings.Composite(scene, view, workspace_.ground,
+  return workspace_.surroundings.Composite(scene, view, workspace_.ground, workspace_.ground_cover,
                                            {Eye(), distances_m, Box()}, linear_, cover);
 }
 
@@ -234,6 +240,7 @@ LinearFrame SceneRenderer::Report(const scene::Scene& scene,
   frame.device_bytes = Bytes();
   const TechniqueFactory& factory = *registry_->Find(scene::NameOf(scene.rendering.technique));
   AddNotShown(scene, factory.Capabilities(), &frame.content);
+  frame.content.ground = scene::DrawnGround(scene, fields);
   return frame;
 }
 

@@ -7,6 +7,7 @@
 #include "base/status.h"
 #include "renderers/light_map.h"
 #include "renderers/view_uniforms.h"
+#include "scene/ground.h"
 #include "shaders/bindings.h"
 #include "shaders/uniforms.h"
 
@@ -19,11 +20,10 @@ constexpr double kSkyStep_m = 2500.0;
 constexpr double kSkySteps = 16.0;
 constexpr std::size_t kMaxTables = 32;
 
-constexpr glm::vec3 kGroundTint(1.0F, 0.93F, 0.78F);  // of bare soil and grass seen from far off
-
 // Of post/composite.frag.
 struct CompositeVariant {
   GroundVariant ground;
+  GroundCoverVariant ground_cover;
   gl::DefineValue corrected;  // the ground's skylight, by renderers::LightCorrection
   gl::DefineValue shaded;     // air and skylight, by AirShade
   gl::DefineValue front;      // there may be something in the eye buffer
@@ -31,14 +31,14 @@ struct CompositeVariant {
 
   gl::Defines Defines() const {
     return gl::Joined(
-        ground.Defines(),
+        gl::Joined(ground.Defines(), ground_cover.Defines()),
         {{"CORRECTED", corrected}, {"SHADED", shaded}, {"FRONT", front}, {"DISTANCES", distances}});
   }
 };
 
-// Radiance per irradiance of level ground.
+// Radiance per irradiance of level ground, on average.
 glm::vec3 GroundReflectance(const scene::Scene& scene) {
-  return kGroundTint * static_cast<float>(scene.sky.ground_albedo * std::numbers::inv_pi);
+  return scene::PlainReflectance(scene) * std::numbers::inv_pi_v<float>;
 }
 
 double HeightOfStep(int step) { return kSkyStep_m * std::expm1(step / kSkySteps); }
@@ -64,6 +64,7 @@ void SkyAndGround::Update(const scene::Scene& scene, const scene::View& view,
     air_shade_.SetLight(*atmosphere_, towards_sun_.z, sky_light_.irradiance);
     around_sun_.reset();
     eye_height_m_ = -1.0;
+    ground_sky_is_new_ = true;
     tables_.clear();
   }
   // Used by diffusion transport alone.
@@ -94,6 +95,16 @@ void SkyAndGround::SetEyeSky(double altitude_m) {
     for (std::size_t i = 0; i < table.size(); ++i) table[i] = glm::mix(table[i], next[i], above);
   }
   sky_table_.Upload(GL_RGBA, GL_FLOAT, table.data());
+}
+
+void SkyAndGround::BindGroundSky() {
+  if (ground_sky_table_.Get() == 0) {
+    ground_sky_table_ =
+        gl::Texture2D(GL_RGBA32F, {2 * physics::glsl::kSkyAzimuths, physics::glsl::kSkyElevations});
+  }
+  if (ground_sky_is_new_) ground_sky_table_.Upload(GL_RGBA, GL_FLOAT, sky_->Table().data());
+  ground_sky_is_new_ = false;
+  ground_sky_table_.Bind(shaders::kGroundSkyUnit);
 }
 
 const std::vector<glm::vec4>& SkyAndGround::TableOfStep(int step) {
@@ -194,7 +205,6 @@ void SkyAndGround::BindAir(const gl::Program& program, const scene::Scene& scene
   program.Set(uniform::turbidity, static_cast<float>(scene.sky.turbidity));
   program.Set(uniform::altitude_m, altitude_m);
   program.Set(uniform::air_densities, physics::glsl::densities_of_air(altitude_m));
-  program.Set(uniform::ground_reflectance, GroundReflectance(scene));
   program.Set(uniform::sunlight, irradiance * sky_->SunTransmittance());
   program.Set(uniform::skylight, sky_scale * sky_light_.irradiance);
   program.Set(uniform::box_low_m, glm::vec3(box.low_m - view.eye_m));
@@ -209,14 +219,17 @@ absl::Status SkyAndGround::ShadeAir(const scene::Scene& scene, const scene::View
 }
 
 absl::Status SkyAndGround::Composite(const scene::Scene& scene, const scene::View& view,
-                                     const Ground& ground, const Front& front,
-                                     const CoveredTarget& target, const Cover* cover) {
+                                     const Ground& ground, const GroundCover& ground_cover,
+                                     const Front& front, const CoveredTarget& target,
+                                     const Cover* cover) {
   front.eye.Bind(shaders::kEyeUnit);
   if (front.distances_m != nullptr) front.distances_m->Bind(shaders::kEyeDistanceUnit);
   sky_table_.Bind(shaders::kSkyTableUnit);
+  if (scene.ground.cover == scene::GroundCover::kLandUse) BindGroundSky();
   const auto draw = [&](Where where) -> absl::Status {
     const CompositeVariant variant{
         .ground = ground.Variant(),
+        .ground_cover = ground_cover.Variant(),
         .corrected = ground.Corrected(),
         .shaded = air_shade_.Present(),
         .front = where == Where::kCovered,
@@ -225,6 +238,7 @@ absl::Status SkyAndGround::Composite(const scene::Scene& scene, const scene::Vie
         const gl::Program* program,
         programs_->Get(gl::ProgramSource::WholeTarget("post/composite.frag", variant.Defines())));
     BindAir(*program, scene, view, ground, front.box);
+    ground_cover.Bind(*program, scene, view, scene.output.height_px);
     const LimitedTo limited(where, cover);
     whole_target_.Draw(*program, target.Target());
     return absl::OkStatus();

@@ -16,6 +16,7 @@
 #include "physics/sky.h"
 #include "renderers/air_shade.h"
 #include "renderers/ground.h"
+#include "renderers/ground_cover.h"
 #include "renderers/render_settings.h"
 #include "scene/scene.h"
 #include "scene/view.h"
@@ -49,15 +50,20 @@ class SkyAndGround {
     const gl::Texture2D* distances_m = nullptr;  // as Technique::Distances_m
     volume::WorldBox box;                        // around it; may be empty
   };
-  // Draws `front` in front of sky and ground, all through the air, to `target`. `cover`, if any, is
-  // the target's: nothing was drawn beyond it.
+  // Draws `front` in front of sky and covered ground, all through the air, to `target`. `cover`, if
+  // any, is the target's: nothing was drawn beyond it.
   absl::Status Composite(const scene::Scene& scene, const scene::View& view, const Ground& ground,
-                         const Front& front, const CoveredTarget& target, const Cover* cover);
+                         const GroundCover& ground_cover, const Front& front,
+                         const CoveredTarget& target, const Cover* cover);
 
-  std::size_t Bytes() const { return sky_table_.Bytes() + air_shade_.Bytes(); }
+  std::size_t Bytes() const {
+    return sky_table_.Bytes() + ground_sky_table_.Bytes() + air_shade_.Bytes();
+  }
 
  private:
   void SetEyeSky(double altitude_m);
+  // The sky that water reflects.
+  void BindGroundSky();
   // The sky's table from one of the heights that it is computed for.
   const std::vector<glm::vec4>& TableOfStep(int step);
   glm::vec3 AroundSun(const glm::vec3& sun) const;  // of `sky_`, which is turned to it
@@ -85,6 +91,8 @@ class SkyAndGround {
   std::map<int, std::vector<glm::vec4>> tables_;  // by step
   double eye_height_m_ = -1.0;                    // that the table on the device is for
   gl::Texture2D sky_table_;
+  bool ground_sky_is_new_ = false;
+  gl::Texture2D ground_sky_table_;
   AirShade air_shade_;
 };
 

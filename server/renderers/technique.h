@@ -18,6 +18,7 @@
 #include "renderers/content.h"
 #include "renderers/detail_noises.h"
 #include "renderers/ground.h"
+#include "renderers/ground_cover.h"
 #include "renderers/medium.h"
 #include "renderers/preparation.h"
 #include "renderers/render_settings.h"
@@ -41,6 +42,7 @@ struct Workspace {
   DetailNoises noises;
   ResidentMedium medium;  // the scene's, for techniques that draw a medium
   Ground ground;
+  GroundCover ground_cover;
   SkyAndGround surroundings;
 };
 

@@ -36,7 +36,10 @@ Stage DirtiedByLights(const Scene& before, const Scene& after) {
 Stage DirtiedByTheRest(const Scene& before, const Scene& after) {
   const bool same_size = before.output.width_px == after.output.width_px &&
                          before.output.height_px == after.output.height_px;
-  if (before.camera != after.camera || before.sky != after.sky || !same_size) return Stage::kView;
+  if (before.camera != after.camera || before.sky != after.sky || before.ground != after.ground ||
+      !same_size) {
+    return Stage::kView;
+  }
   if (before.display != after.display || before.output != after.output) return Stage::kTone;
   return Stage::kNothing;
 }

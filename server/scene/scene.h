@@ -112,6 +112,20 @@ struct Sky {
   bool operator==(const Sky&) const = default;
 };
 
+enum class GroundCover {
+  kPlain,    // of one colour
+  kFields,   // crops on a one-mile grid, made up (physics/field_pattern.h)
+  kLandUse,  // the file's; plain if it has none
+};
+
+// The look of the ground. Which cover is the default depends on the storm.
+struct Ground {
+  GroundCover cover = GroundCover::kPlain;
+  bool rings = false;  // of distance, every 10 km around the storm's middle, and an arrow to north
+
+  bool operator==(const Ground&) const = default;
+};
+
 // An accuracy or a speed to reach, by the setting that the server's tables say is best; neither
 // leaves the rendering as it is.
 struct MaxError {
@@ -159,6 +173,7 @@ struct Scene {
   Camera camera;
   Sun sun;
   Sky sky;
+  Ground ground;
   std::vector<DirectionalLight> lights;
   std::array<FieldParameters, physics::kHydrometeorCount> fields;  // by physics::IndexOf
   Rendering rendering;

@@ -55,6 +55,12 @@ constexpr std::array kToneMaps = {
     std::pair{v1::TONE_MAP_LINEAR, scene::ToneMap::kLinear},
 };
 
+constexpr std::array kGroundCovers = {
+    std::pair{v1::Ground::COVER_PLAIN, scene::GroundCover::kPlain},
+    std::pair{v1::Ground::COVER_FIELDS, scene::GroundCover::kFields},
+    std::pair{v1::Ground::COVER_LAND_USE, scene::GroundCover::kLandUse},
+};
+
 constexpr std::array kStages = {
     std::pair{v1::STAGE_READ, scene::FrameStage::kRead},
     std::pair{v1::STAGE_EXTINCTION, scene::FrameStage::kExtinction},
@@ -271,6 +277,26 @@ void FillSizesDefault(v1::Scene& scene) {
                                                             : v1::PARTICLE_SIZES_MODEL);
 }
 
+namespace {
+
+// The particles' sizes are known by now.
+void FillGroundDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
+  v1::Ground& ground = *scene.mutable_ground();
+  if (!ground.has_rings()) ground.set_rings(scene::Ground{}.rings);
+  if (ground.cover() != v1::Ground::COVER_UNSPECIFIED) return;
+  const bool of_the_papers = scene.particle_sizes() == v1::PARTICLE_SIZES_PAPERS;
+  ground.set_cover(of_the_papers                    ? v1::Ground::COVER_PLAIN
+                   : storm.latitude_deg.has_value() ? v1::Ground::COVER_LAND_USE
+                                                    : v1::Ground::COVER_FIELDS);
+}
+
+void ToMessage(const scene::Ground& ground, v1::Ground& message) {
+  message.set_cover(MessageOf(kGroundCovers, ground.cover));
+  message.set_rings(ground.rings);
+}
+
+}  // namespace
+
 void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
   scene.set_storm_id(storm.id);
   v1::Camera& camera = *scene.mutable_camera();
@@ -286,6 +312,7 @@ void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
   }
   scene.mutable_output();
   FillSizesDefault(scene);
+  FillGroundDefaults(scene, storm);
   FillTechniqueDefaults(*scene.mutable_rendering());
   v1::Display& display = *scene.mutable_display();
   display.set_tone_map(MessageOf(kToneMaps, ValueOf(kToneMaps, display.tone_map())));
@@ -310,6 +337,7 @@ scene::Scene ToScene(const v1::Scene& message) {
                message.sun().irradiance()};
   scene.sky = {message.sky().brightness(), message.sky().ground_albedo(),
                message.sky().turbidity()};
+  scene.ground = {ValueOf(kGroundCovers, message.ground().cover()), message.ground().rings()};
   for (scene::FieldParameters& field : scene.fields) field.sizes = SizesOf(message);
   for (const v1::FieldParameters& field : message.fields()) {
     SetField(field, scene.fields[IndexOf(field.hydrometeor())]);
@@ -342,6 +370,7 @@ void ToMessage(const session::Modelled& modelled, v1::Modelled& message) {
   message.set_ellipsoids(static_cast<std::uint32_t>(content.ellipsoids));
   message.set_traced_paths(static_cast<std::uint64_t>(modelled.traced_paths));
   message.set_exposure_ev(static_cast<float>(modelled.exposure_ev));
+  ToMessage(content.ground, *message.mutable_ground());
   for (const scene::NotShown& not_shown : content.not_shown) {
     v1::NotShown& entry = *message.add_not_shown();
     entry.set_code(MessageOf(kNotShownCodes, not_shown.code));

@@ -9,6 +9,7 @@
 #include "base/status.h"
 #include "renderers/content.h"
 #include "scene/drawn_fields.h"
+#include "scene/ground.h"
 
 namespace thunderhead::session {
 
@@ -157,6 +158,7 @@ absl::StatusOr<bool> SessionDrawer::ShowTraced(const Turn& turn, const NewestSce
   picture.modelled.content.fields =
       scene::HydrometeorsOf(scene::DrawnFieldsOf(*shown.scene, *fields));
   renderers::AddNotShown(*shown.scene, scene::Reference::kCapabilities, &picture.modelled.content);
+  picture.modelled.content.ground = scene::DrawnGround(*shown.scene, *fields);
   Send(turn, {turn.session, shown.revision, *shown.scene, traced.full_size, std::move(picture),
               traced.refinement});
   return true;

@@ -57,7 +57,8 @@ std::size_t HydrometeorFields::Bytes() const {
     values += field.concentration_kg_per_m3.capacity();
     halves += field.sizes.inverse_radius.capacity();
   }
-  return values * sizeof(float) + halves * sizeof(std::uint16_t);
+  return values * sizeof(float) + halves * sizeof(std::uint16_t) +
+         land.texels.capacity() * sizeof(glm::u8vec4);
 }
 
 }  // namespace thunderhead::volume

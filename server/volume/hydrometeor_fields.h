@@ -10,6 +10,7 @@
 #include "physics/hydrometeors.h"
 #include "physics/particle_size.h"
 #include "volume/grid.h"
+#include "volume/land_surface.h"
 #include "volume/particle_sizes.h"
 
 namespace thunderhead::volume {
@@ -70,6 +71,7 @@ struct HydrometeorFields {
   std::vector<HydrometeorField>
       fields;  // every field the file has, in the order of physics::kHydrometeors
   std::vector<float> terrain_height_m;  // nx * ny values above sea level, x fastest
+  LandSurface land;                     // empty if the file has no land use of a real place
   CellBox condensate;                   // the smallest box that holds every cell with condensate
 
   // Memory of the arrays in bytes.

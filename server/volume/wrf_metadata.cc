@@ -8,6 +8,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/escaping.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/strip.h"
@@ -296,6 +297,55 @@ absl::Status ReadPlace(const NetcdfFile& file, WrfMetadata& metadata) {
   return absl::OkStatus();
 }
 
+// WRF's tables of classes by their name, else by how many classes they have.
+std::optional<physics::LandUseScheme> LandUseSchemeOf(const NetcdfFile& file) {
+  const std::string name = file.TextAttribute("", "MMINLU").value_or("");
+  if (absl::StrContains(name, "MODI")) return physics::LandUseScheme::kModis;
+  if (absl::StrContains(name, "USGS")) return physics::LandUseScheme::kUsgs;
+  const double classes = file.NumberAttribute("", "NUM_LAND_CAT").value_or(0.0);
+  if (classes == 20.0 || classes == 21.0) return physics::LandUseScheme::kModis;
+  if (classes == 24.0) return physics::LandUseScheme::kUsgs;
+  return std::nullopt;
+}
+
+// The ground's cover of a run with a place. Classes of an unknown table are left out, and so is a
+// variable of unexpected shape.
+WrfLand FindLand(const NetcdfFile& file, const WrfMetadata& metadata) {
+  WrfLand land;
+  if (metadata.idealised || !metadata.latitude_deg.has_value()) return land;
+  const auto find = [&](std::initializer_list<const char*> names) -> std::string {
+    const std::vector<std::size_t> columns = {metadata.times.size(),
+                                              static_cast<std::size_t>(metadata.cells.y),
+                                              static_cast<std::size_t>(metadata.cells.x)};
+    for (const char* name : names) {
+      if (!file.HasVariable(name)) continue;
+      const auto shape = file.Shape(name);
+      if (shape.ok() && *shape == columns) return name;
+      spdlog::warn("{}: {} has not one value a column and is not read", file.Path(), name);
+    }
+    return "";
+  };
+  const std::optional<physics::LandUseScheme> scheme = LandUseSchemeOf(file);
+  if (!scheme.has_value()) {
+    if (file.HasVariable("LU_INDEX")) {
+      spdlog::warn(
+          "{}: the ground is drawn plain, as LU_INDEX counts classes of an unknown table; MMINLU "
+          "is to name USGS or MODIS",
+          file.Path());
+    }
+    return land;
+  }
+  land.scheme = *scheme;
+  land.land_use = find({"LU_INDEX"});
+  if (land.land_use.empty()) return land;
+  land.mask = find({"XLAND", "LANDMASK"});
+  land.albedo = find({"ALBEDO"});
+  land.green = find({"VEGFRA"});
+  land.snow_share = find({"SNOWC"});
+  if (land.snow_share.empty()) land.snow_depth = find({"SNOWH"});
+  return land;
+}
+
 // The schemes by their numbers in WRF.
 physics::Microphysics MicrophysicsOf(const NetcdfFile& file) {
   const double scheme = file.NumberAttribute("", "MP_PHYSICS").value_or(0.0);
@@ -332,6 +382,7 @@ absl::StatusOr<WrfMetadata> ReadWrfMetadata(const NetcdfFile& file) {
   THUNDERHEAD_ASSIGN_OR_RETURN(metadata.times, ReadTimes(file));
   THUNDERHEAD_RETURN_IF_ERROR(CheckVariables(file, metadata));
   THUNDERHEAD_RETURN_IF_ERROR(ReadPlace(file, metadata));
+  metadata.land = FindLand(file, metadata);
   metadata.model = ModelName(file);
   metadata.microphysics = MicrophysicsOf(file);
   metadata.domain = static_cast<int>(file.NumberAttribute("", "GRID_ID").value_or(1.0));

@@ -11,12 +11,24 @@
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
 #include "physics/hydrometeors.h"
+#include "physics/land_use.h"
 #include "physics/size_distributions.h"
 #include "volume/grid.h"
 #include "volume/netcdf_file.h"
 #include "volume/particle_sizes.h"
 
 namespace thunderhead::volume {
+
+// Variables of the ground's cover, by name; empty those that the file does not have.
+struct WrfLand {
+  physics::LandUseScheme scheme = physics::LandUseScheme::kUsgs;
+  std::string land_use;
+  std::string mask;  // XLAND (2 is water) or LANDMASK (0 is water)
+  std::string albedo;
+  std::string green;       // percent
+  std::string snow_share;  // of the cell
+  std::string snow_depth;  // in m, in place of the share
+};
 
 struct WrfMetadata {
   std::string path;
@@ -31,6 +43,7 @@ struct WrfMetadata {
   physics::Microphysics microphysics = physics::Microphysics::kUnknown;
   bool has_vapour = false;
   bool has_terrain = false;
+  WrfLand land;                        // without names for an idealised run
   std::string model;                   // "WRF V4.7.1"
   bool idealised = false;              // no place on Earth
   int domain = 1;                      // GRID_ID, counted from 1

@@ -24,6 +24,9 @@ constexpr float kBaseTheta_K = 300.0F;  // WRF's T is potential temperature less
 // Air never carries half its mass in condensate; a file with such values is in g/kg.
 constexpr float kMaxMixingRatio = 0.5F;
 
+// Snow as deep as this hides short plants.
+constexpr float kCoveringSnow_m = 0.1F;
+
 struct RemappedField {
   HydrometeorField field;
   CellBox condensate;
@@ -51,6 +54,7 @@ class TimeReader {
                        std::vector<float>& sum, std::vector<float>& base_values);
   absl::StatusOr<LayerState> ReadState();
   absl::Status ReadTerrain(HydrometeorFields& result);
+  absl::Status ReadLand(HydrometeorFields& result);
   absl::Status ReadFields(HydrometeorFields& result);
   absl::StatusOr<VerticalGrid> GridFor(const std::optional<VerticalGrid>& storm_grid) const;
   absl::StatusOr<RemappedField> Remap(Hydrometeor hydrometeor, std::vector<float> values,
@@ -145,6 +149,32 @@ absl::Status TimeReader::ReadTerrain(HydrometeorFields& result) {
     if (std::isnan(terrain[i])) terrain[i] = air_.interface_height_m[i];
     if (std::isnan(terrain[i])) terrain[i] = static_cast<float>(grid_.low_m);
   }
+  return absl::OkStatus();
+}
+
+// Of the ground's cover only that of this time is kept: snow changes.
+absl::Status TimeReader::ReadLand(HydrometeorFields& result) {
+  const WrfLand& names = metadata_.land;
+  if (names.land_use.empty()) return absl::OkStatus();
+  LandColumns columns;
+  columns.scheme = names.scheme;
+  const auto read = [&](const std::string& name, std::vector<float>& values) -> absl::Status {
+    if (name.empty()) return absl::OkStatus();
+    THUNDERHEAD_RETURN_IF_ERROR(file_.ReadRecord(name, record_, values));
+    values.resize(air_.columns, std::nanf(""));
+    return absl::OkStatus();
+  };
+  THUNDERHEAD_RETURN_IF_ERROR(read(names.land_use, columns.land_use));
+  THUNDERHEAD_RETURN_IF_ERROR(read(names.mask, columns.water));
+  THUNDERHEAD_RETURN_IF_ERROR(read(names.albedo, columns.albedo));
+  THUNDERHEAD_RETURN_IF_ERROR(read(names.green, columns.green_percent));
+  THUNDERHEAD_RETURN_IF_ERROR(read(names.snow_share, columns.snow_share));
+  THUNDERHEAD_RETURN_IF_ERROR(read(names.snow_depth, columns.snow_share));
+  for (float& water : columns.water) water = names.mask == "XLAND" ? water - 1.0F : 1.0F - water;
+  if (!names.snow_depth.empty()) {
+    for (float& snow : columns.snow_share) snow /= kCoveringSnow_m;
+  }
+  result.land = MakeLandSurface(columns, glm::ivec2(metadata_.cells));
   return absl::OkStatus();
 }
 
@@ -292,6 +322,7 @@ absl::StatusOr<HydrometeorFields> TimeReader::Read(const std::optional<VerticalG
   HydrometeorFields result;
   result.grid = regular_;
   THUNDERHEAD_RETURN_IF_ERROR(ReadTerrain(result));
+  THUNDERHEAD_RETURN_IF_ERROR(ReadLand(result));
   THUNDERHEAD_RETURN_IF_ERROR(ReadFields(result));
   if (grid.has_value()) TrimTop(*grid, result);
   THUNDERHEAD_RETURN_IF_ERROR(Advance());

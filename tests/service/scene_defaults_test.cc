@@ -192,6 +192,30 @@ TEST(SceneDefaults, ThePapersPresetsStandForTheirConstants) {
   }
 }
 
+// The ground that is the default follows from the storm; rings are as the value has them.
+TEST(SceneDefaults, TheGroundIsThatOfTheStormAndPlainInThePapersLook) {
+  const auto cover = [](const volume::StormInfo& storm, v1::Scene scene = {}) {
+    FillSceneDefaults(scene, storm);
+    EXPECT_EQ(scene.ground().rings(), scene::Ground{}.rings);
+    EXPECT_EQ(ToScene(scene).ground.rings, scene::Ground{}.rings);
+    return ToScene(scene).ground.cover;
+  };
+  volume::StormInfo real = Storm();
+  real.latitude_deg = 35.0;
+  real.longitude_deg = -97.0;
+  EXPECT_EQ(cover(Storm()), scene::GroundCover::kFields);
+  EXPECT_EQ(cover(real), scene::GroundCover::kLandUse);
+  v1::Scene papers;
+  papers.mutable_rendering()->set_preset(v1::PRESET_UNIFORM_PHASE_TRANSLUCENT);
+  EXPECT_EQ(cover(Storm(), papers), scene::GroundCover::kPlain);
+  EXPECT_EQ(cover(real, papers), scene::GroundCover::kPlain);
+  papers.mutable_ground()->set_cover(v1::Ground::COVER_FIELDS);
+  EXPECT_EQ(cover(Storm(), papers), scene::GroundCover::kFields);
+  v1::Scene plain;
+  plain.mutable_ground()->set_cover(v1::Ground::COVER_PLAIN);
+  EXPECT_EQ(cover(Storm(), plain), scene::GroundCover::kPlain);
+}
+
 TEST(SceneDefaults, APresetIsReplacedByItsTechnique) {
   for (const auto& [preset, technique] :
        {std::pair{v1::PRESET_FAST, accuracy::TechniqueOf(accuracy::Preset::kFast)},

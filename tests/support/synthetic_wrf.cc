@@ -107,6 +107,8 @@ class Writer {
     Number("GRID_ID", file_.domain);
     if (file_.microphysics != 0) Number("MP_PHYSICS", file_.microphysics);
     if (file_.hail_option != 0) Number("HAIL_OPT", file_.hail_option);
+    if (!file_.land_use_table.empty()) Text(NC_GLOBAL, "MMINLU", file_.land_use_table);
+    if (file_.land_use_classes != 0) Number("NUM_LAND_CAT", file_.land_use_classes);
   }
 
   // Classic files are declared in one mode and written in another; netCDF-4 changes by itself.
@@ -208,6 +210,7 @@ void WriteWrf(const SyntheticWrf& file, const std::string& path) {
                [&](const WrfCell& cell) { return file.latitude_deg + 0.1 * cell.y; });
   writer.Field("XLONG", "", "degree_east",
                [&](const WrfCell& cell) { return file.longitude_deg + 0.1 * cell.x; });
+  for (const auto& [name, value] : file.columns) writer.Field(name, "", "", value);
   for (const auto& [name, value] : file.mixing_ratios) {
     writer.Field(name, "bottom_top", "kg kg-1", value);
   }

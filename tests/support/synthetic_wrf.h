@@ -47,6 +47,11 @@ struct SyntheticWrf {
   // Mixing ratios by variable name; a variable that is not here is not in the file.
   std::map<std::string, std::function<double(const WrfCell&)>> mixing_ratios;
 
+  // Fields of columns besides HGT, XLAT and XLONG by variable name, such as LU_INDEX.
+  std::map<std::string, std::function<double(const WrfCell&)>> columns;
+  std::string land_use_table;  // MMINLU; empty: not in the file
+  int land_use_classes = 0;    // NUM_LAND_CAT; 0: not in the file
+
   double latitude_deg = 35.0;  // of the south-west cell; 0.1 degrees more a cell
   double longitude_deg = -97.0;
   int map_projection = 1;

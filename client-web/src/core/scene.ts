@@ -14,6 +14,8 @@ import {
   DisplaySchema,
   type FieldParameters,
   FieldParametersSchema,
+  type Ground,
+  GroundSchema,
   Hydrometeor,
   MetaballsSchema,
   type Output,
@@ -117,6 +119,10 @@ export function withoutLight(scene: Scene, index: number): Scene {
 
 export function withSky(scene: Scene, change: Change<Sky>): Scene {
   return changed(scene, { sky: changed(scene.sky ?? create(SkySchema), change) });
+}
+
+export function withGround(scene: Scene, change: Change<Ground>): Scene {
+  return changed(scene, { ground: changed(scene.ground ?? create(GroundSchema), change) });
 }
 
 export function withRendering(scene: Scene, rendering: Rendering | undefined): Scene {

@@ -126,6 +126,7 @@ export class PageState {
   });
   readonly lights = computed(() => this.#scene.value.lights);
   readonly sky = computed(() => this.#scene.value.sky);
+  readonly ground = computed(() => this.#scene.value.ground);
   // The scene's technique and settings, with presets resolved; undefined until the server has sent them.
   readonly rendering = computed(() =>
     resolved(this.#scene.value.rendering, this.server.value?.presets ?? []),

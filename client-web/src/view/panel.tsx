@@ -1,7 +1,7 @@
 // The panel at the side: every setting, section by section.
 import { useState } from "preact/hooks";
-import { LIMITS, withDisplay, withOutput, withSky } from "../core/scene";
-import { ToneMap } from "../gen/thunderhead/v1/scene_pb";
+import { LIMITS, withDisplay, withGround, withOutput, withSky } from "../core/scene";
+import { Ground_Cover, ToneMap } from "../gen/thunderhead/v1/scene_pb";
 import { AccuracySection } from "./accuracy_section";
 import { CameraSection } from "./camera_section";
 import { CloudSection } from "./cloud_section";
@@ -16,6 +16,12 @@ import { SunSection } from "./sun_section";
 const TONE_MAPS = [
   [ToneMap.FILMIC, "Filmic"],
   [ToneMap.LINEAR, "Linear"],
+] as const;
+
+const GROUND_COVERS = [
+  [Ground_Cover.PLAIN, "Plain"],
+  [Ground_Cover.FIELDS, "Fields (made up)"],
+  [Ground_Cover.LAND_USE, "Land use of the file"],
 ] as const;
 
 const RESOLUTIONS = [
@@ -106,6 +112,8 @@ function DeleteCloud({ page }: { page: Page }) {
 function PictureSection({ page }: { page: Page }) {
   const { state } = page;
   const sky = state.sky.value;
+  const ground = state.ground.value;
+  const modelledGround = state.frame.value?.modelled?.ground;
   const display = state.display.value;
   // An automatic exposure is the newest frame's.
   const shownExposureEv =
@@ -162,6 +170,24 @@ function PictureSection({ page }: { page: Page }) {
         value={sky?.groundAlbedo ?? LIMITS.groundAlbedo.defaultValue}
         testId="ground-albedo"
         onChange={(groundAlbedo) => state.edit((scene) => withSky(scene, { groundAlbedo }))}
+      />
+      <Choice
+        label="Ground"
+        testId="ground-cover"
+        value={ground?.cover || modelledGround?.cover || Ground_Cover.PLAIN}
+        options={GROUND_COVERS}
+        onChange={(cover) => state.edit((scene) => withGround(scene, { cover }))}
+      />
+      {ground?.cover === Ground_Cover.LAND_USE && modelledGround?.cover === Ground_Cover.PLAIN && (
+        <p class="quiet" data-testid="no-land-use">
+          This file has no land use.
+        </p>
+      )}
+      <Switch
+        label="Rings every 10 km"
+        checked={ground?.rings ?? false}
+        testId="rings"
+        onChange={(rings) => state.edit((scene) => withGround(scene, { rings }))}
       />
       <Choice
         label="Resolution"

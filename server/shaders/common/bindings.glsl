@@ -21,6 +21,9 @@ const int kAirShadeImage = 0;
 const int kSkyHiddenImage = 0;
 const int kMeterImage = 0;
 const int kSkyTableUnit = 6;
+const int kGroundCoverUnit = 13;
+const int kGroundGrainUnit = 14;
+const int kGroundSkyUnit = 15;
 const int kEyeUnit = 4;
 const int kLinearFrameUnit = 4;
 

@@ -3,6 +3,7 @@
 #include "common/bindings.glsl"
 #include "common/box.glsl"
 #include "common/ground.glsl"
+#include "common/ground_cover.glsl"
 #include "common/sky.glsl"
 #include "common/storm_shadow.glsl"
 #include "common/view.glsl"
@@ -34,7 +35,6 @@ uniform float sky_scale;         // irradiance times brightness
 uniform float turbidity;
 uniform float altitude_m;        // of the eye above sea level, not below 0
 uniform vec2 air_densities;      // there
-uniform vec3 ground_reflectance;  // radiance per irradiance
 uniform vec3 sunlight;           // irradiance on a plane facing the sun
 uniform vec3 skylight;           // irradiance on level ground
 uniform vec3 box_low_m;          // the medium's
@@ -46,8 +46,22 @@ out vec4 rgb_and_opacity;  // the opacity is that of the storm
 const float kJustBelow = 1e-5;
 const float kHardlyAnyHaze = 0.01;  // of its vertical depth
 
-// Lambert's law under sun and sky, which the storm shades both; the terrain shades itself by its slope only.
-vec3 ground_radiance(vec3 point_m) {
+#if COVER == 2
+// Of level water under `sky`, the light of the sky on level ground, and the share of the sun that the storm leaves.
+vec3 water_radiance(vec3 towards_eye, vec3 sky, float open) {
+  vec3 sun = sunlight * open;
+  towards_eye = normalize(vec3(towards_eye.xy, max(towards_eye.z, 1e-3)));
+  vec3 below = water_albedo() / 3.14159265 * (sun * max(towards_sun.z, 0.0) + sky);
+  vec3 clear = sky_scale * sky_of_ground(water_reflected(towards_eye), towards_sun);
+  // The storm dims the reflected sky as it dims all of it.
+  vec3 reflected = water_reflectance(towards_eye.z) * clear * sky / max(skylight, vec3(1e-9));
+  return below + reflected + glint(towards_eye, towards_sun) * sun;
+}
+#endif
+
+// Lambert's law under sun and sky, which the storm shades both; the terrain shades itself by its slope only. Water reflects
+// besides, the clear sky alone.
+vec3 ground_radiance(vec3 point_m, vec3 ray, float distance_m) {
 #if RELIEF
   vec3 normal = ground_normal(point_m.xy);
 #else
@@ -63,7 +77,12 @@ vec3 ground_radiance(vec3 point_m) {
   vec3 of_storm = (storm.y * blocked * (0.5 + 0.5 * normal.z)) * (sunlight * towards_sun.z + skylight);
   sky = (1.0 - storm.x) * sky + of_storm;
 #endif
-  return ground_reflectance * (sunlight * lit + sky);
+  Cover cover = ground_cover(point_m, ray, distance_m);
+  vec3 land = cover.reflectance * (sunlight * lit + sky);
+#if COVER == 2
+  if (cover.water > 0.0) return mix(land, water_radiance(-ray, sky, 1.0 - blocked), cover.water);
+#endif
+  return land;
 }
 
 // Optical depth of the air before a point of the ray, which is in the eye's local frame.
@@ -131,7 +150,7 @@ void main() {
   Sky sky = sky_behind(ray, ground_m);
   vec3 sky_radiance = sky_scale * sky.radiance;
   vec3 sky_depth = depth_of_air_mass(turbidity, sky.air_mass);
-  vec3 background = ground_m > 0.0 ? seen_ground(ground_radiance(origin_m + ground_m * world_ray), ray, ground_m,
+  vec3 background = ground_m > 0.0 ? seen_ground(ground_radiance(origin_m + ground_m * world_ray, world_ray, ground_m), ray, ground_m,
                                                  sky_radiance, sky_depth)
                                    : shaded_airlight(sky_radiance, ray.z, kFarthestGround_m);
 #if FRONT

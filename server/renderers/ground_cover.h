@@ -1,0 +1,50 @@
+// What covers the ground, on the device: a map of the storm's land use, or the pattern of fields;
+// and the rings. Owns GL objects: use it on the context's thread.
+#pragma once
+
+#include "gl/objects.h"
+#include "gl/program.h"
+#include "glm/vec2.hpp"
+#include "scene/ground.h"
+#include "scene/scene.h"
+#include "scene/view.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::renderers {
+
+// The variant of common/ground_cover.glsl.
+struct GroundCoverVariant {
+  gl::DefineValue cover;  // as scene::GroundCover counts
+  gl::DefineValue rings;
+
+  gl::Defines Defines() const { return {{"COVER", cover}, {"RINGS", rings}}; }
+};
+
+class GroundCover {
+ public:
+  // Takes the land of these fields, uploaded when it is first drawn.
+  void SetLand(const volume::HydrometeorFields& fields);
+
+  // Puts on the device what `scene` shows of these fields, those of SetLand.
+  void Prepare(const scene::Scene& scene, const volume::HydrometeorFields& fields);
+
+  GroundCoverVariant Variant() const;
+
+  // Sets the uniforms and textures of common/ground_cover.glsl but that of the sky for coordinates
+  // from the eye; `height_px` is the picture's.
+  void Bind(const gl::Program& program, const scene::Scene& scene, const scene::View& view,
+            int height_px) const;
+
+  std::size_t Bytes() const { return fields_.Bytes() + land_.Bytes(); }
+
+ private:
+  scene::Ground drawn_;
+  glm::dvec2 ring_middle_m_{0.0};
+  gl::Texture2D fields_;  // physics::FieldPattern
+  bool land_is_new_ = false;
+  gl::Texture2D land_;
+  volume::RegularGrid grid_;
+  glm::vec3 land_mean_{0.0F};
+};
+
+}  // namespace thunderhead::renderers

@@ -1,0 +1,109 @@
+// What covers the ground where a view ray meets it. Coordinates are metres from the eye. Variants: COVER (0 plain, 1 fields,
+// 2 land use), RINGS.
+#include "common/bindings.glsl"
+#include "common/ground.glsl"
+#include "physics/ground_cover.glsl"
+#include "physics/sky.glsl"
+#include "physics/water.glsl"
+
+uniform vec3 ground_reflectance;  // radiance per irradiance; for land use that of a reflectance of 1
+
+#if COVER != 0 || RINGS
+uniform vec2 pixel_width;  // of a pixel: at the eye, and what a metre of distance adds
+#endif
+
+#if COVER != 0
+layout(binding = kGroundGrainUnit) uniform sampler2D fields;  // physics::FieldPattern
+
+uniform vec2 pattern_origin_m;  // of the eye
+uniform float ground_contrast;
+#endif
+
+#if COVER == 2
+layout(binding = kGroundCoverUnit) uniform sampler2D land;  // volume::LandSurface
+layout(binding = kGroundSkyUnit) uniform sampler2D ground_sky_table;
+
+uniform vec2 land_scale;  // texture coordinates per metre
+uniform vec2 land_offset;
+uniform vec3 land_mean;   // reflectance of all land
+uniform float land_fades_cells;  // beyond the domain's edge, by e
+uniform float coast_cells;       // width of a coast
+#endif
+
+#if RINGS
+uniform vec2 ring_middle_m;
+#endif
+
+struct Cover {
+  vec3 reflectance;  // radiance per irradiance
+  float water;       // share
+};
+
+#if COVER != 0 || RINGS
+vec2 footprint_of(vec3 point_m, vec3 ray, float across_m) {
+  float grazing = -(ray.z + ground_curvature_per_m * dot(point_m.xy - touch_m, ray.xy));
+  return ground_footprint(ray, grazing, across_m);
+}
+#endif
+
+#if COVER != 0
+float grain_at(vec2 place_m, vec2 footprint_m) {
+  if (max(footprint_m.x, footprint_m.y) > kCoarsestGrain_m) return 1.0;
+  float level = mip_level(footprint_m / kGrainCell_m);
+  return grain_factor(textureLod(fields, grain_cell(place_m) / float(kFieldMapCells), level).a, ground_contrast);
+}
+#endif
+
+#if COVER == 1
+Cover cover_of(vec2 place_m, vec2 footprint_m) {
+  vec2 footprint = footprint_m / kFieldCell_m;
+  vec2 cell = sharp_cell(place_m / kFieldCell_m, footprint);
+  vec3 field = textureLod(fields, cell / float(kFieldMapCells), mip_level(footprint)).rgb;
+  vec3 relative = field_reflectance(field, pivot(place_m, footprint_m), roads(place_m, footprint_m), ground_contrast);
+  return Cover(ground_reflectance * relative * grain_at(place_m, footprint_m), 0.0);
+}
+#elif COVER == 2
+// Beyond the domain the coast goes on as at its edge, and land takes its mean colour (volume/land_surface.h).
+Cover cover_of(vec2 place_m, vec2 footprint_m, vec2 from_eye_m) {
+  vec2 place = from_eye_m * land_scale + land_offset;
+  vec2 cells = vec2(textureSize(land, 0));
+  vec2 outside = max(max(-place, place - 1.0), 0.0) * cells;
+  vec2 footprint = abs(land_scale) * footprint_m * cells;
+  vec4 texel = textureLod(land, place, mip_level(footprint));
+  texel.rgb = mix(texel.rgb, land_mean, 1.0 - exp(-max(outside.x, outside.y) / land_fades_cells));
+  // The coast is where half is water.
+  float softness = clamp(max(footprint.x, footprint.y), coast_cells, 1.0);
+  float water = clamp((texel.a - 0.5) / softness + 0.5, 0.0, 1.0);
+  return Cover(ground_reflectance * texel.rgb * grain_at(place_m, footprint_m), water);
+}
+
+// The clear sky as the ground sees it.
+vec3 sky_of_ground(vec3 direction, vec3 towards_sun) {
+  vec2 size = vec2(2 * kSkyAzimuths, kSkyElevations);
+  vec2 cell = sky_cell(direction, towards_sun, 0.0) + 0.5;
+  vec3 air = texture(ground_sky_table, cell / size).rgb;
+  vec3 haze = texture(ground_sky_table, (cell + vec2(kSkyAzimuths, 0.0)) / size).rgb;
+  return air + haze * haze_phase(dot(direction, towards_sun));
+}
+#endif
+
+// Of the ground at a point of the view ray.
+Cover ground_cover(vec3 point_m, vec3 ray, float distance_m) {
+#if COVER != 0 || RINGS
+  float across_m = pixel_width.x + pixel_width.y * distance_m;
+  vec2 footprint_m = footprint_of(point_m, ray, across_m);
+#endif
+#if COVER == 0
+  Cover cover = Cover(ground_reflectance, 0.0);
+#elif COVER == 1
+  Cover cover = cover_of(point_m.xy + pattern_origin_m, footprint_m);
+#else
+  Cover cover = cover_of(point_m.xy + pattern_origin_m, footprint_m, point_m.xy);
+#endif
+#if RINGS
+  float paint = ring_paint(point_m.xy - ring_middle_m, footprint_m, across_m);
+  cover.reflectance = mix(cover.reflectance, ring_reflectance() / 3.14159265, paint);
+  cover.water *= 1.0 - paint;
+#endif
+  return cover;
+}

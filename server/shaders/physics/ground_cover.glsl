@@ -1,0 +1,136 @@
+// What covers the ground where a view ray meets it: fields of crops on the section grid of the Great Plains, and rings of
+// distance. Everything is averaged over a footprint, the axis-parallel rectangle of ground that a pixel shows, so that
+// nothing is finer than a pixel. Compiles as GLSL and as C++ (physics/field_pattern.h). Lengths in metres.
+#ifdef __cplusplus
+#define PHYSICS_FUNCTION inline
+#else
+#define PHYSICS_FUNCTION
+#endif
+
+// The Public Land Survey System: sections of a mile, of four quarters, each of four cells of 40 acres, of which fields are
+// made. The map of cells repeats itself.
+const float kSection_m = 1609.344f;
+const float kQuarter_m = 804.672f;
+const float kFieldCell_m = 402.336f;
+const int kFieldMapCells = 256;
+
+const float kRoad_m = 12.0f;          // width of the road on each section line
+const float kPivotRadius_m = 395.0f;  // of what a centre pivot waters
+
+// Grain: uneven soil and plants within a field. Its map is that of the cells at another scale, turned so that it does not
+// follow the roads.
+const float kGrainCell_m = 0.8f;
+const float kCoarsestGrain_m = 51.2f;
+
+// The rectangle that a pixel `across_m` wide shows where its ray of unit direction `ray`, at the sine `grazing`, meets
+// level ground.
+PHYSICS_FUNCTION vec2 ground_footprint(vec3 ray, float grazing, float across_m) {
+  float level = length(vec2(ray));
+  vec2 along = level > 1e-4f ? abs(vec2(ray)) / level : vec2(1.0f, 0.0f);
+  float along_m = across_m / max(grazing, 1e-3f);
+  return vec2(along_m * along.x + across_m * along.y, along_m * along.y + across_m * along.x);
+}
+
+// Where to look up a map of cells with linear filtering so that each cell is even and its edges are as wide as the footprint;
+// all in cells.
+PHYSICS_FUNCTION vec2 sharp_cell(vec2 place, vec2 footprint) {
+  vec2 corner = floor(place - 0.5f);
+  vec2 within = (place - 0.5f - corner - 0.5f) / clamp(footprint, vec2(1e-3f), vec2(1.0f)) + 0.5f;
+  return corner + 0.5f + clamp(within, vec2(0.0f), vec2(1.0f));
+}
+
+// The level of the mip chain whose texels are as large as the footprint.
+PHYSICS_FUNCTION float mip_level(vec2 footprint) { return log2(max(max(footprint.x, footprint.y), 1.0f)); }
+
+// The share of [0, x] that stripes cover: one of width `stripe` around each multiple of `period`, from -period/2 on.
+PHYSICS_FUNCTION float striped_length(float x, float period, float stripe) {
+  float periods = x / period + 0.5f;
+  float whole = floor(periods);
+  return whole * stripe + clamp((periods - whole - 0.5f) * period + 0.5f * stripe, 0.0f, stripe);
+}
+
+// The share of a footprint that stripes cover.
+PHYSICS_FUNCTION float stripes(float x, float footprint, float period, float stripe) {
+  float width = max(footprint, 0.5f);  // less would end in rounding errors
+  // From the nearest multiple of the period, so that differences are of small numbers.
+  float near = x - period * floor(x / period + 0.5f);
+  return (striped_length(near + 0.5f * width, period, stripe) - striped_length(near - 0.5f * width, period, stripe)) / width;
+}
+
+// The share of the footprint that roads cover, less its mean over the world in y.
+PHYSICS_FUNCTION vec2 roads(vec2 place, vec2 footprint) {
+  float x = stripes(place.x, footprint.x, kSection_m, kRoad_m);
+  float y = stripes(place.y, footprint.y, kSection_m, kRoad_m);
+  const float one = kRoad_m / kSection_m;
+  float covered = x + y - x * y;
+  return vec2(covered, covered - (2.0f * one - one * one));
+}
+
+// How much more of the footprint the circle of a centre pivot covers than of its quarter section.
+PHYSICS_FUNCTION float pivot(vec2 place, vec2 footprint) {
+  vec2 quarters = place / kQuarter_m;
+  vec2 from_middle = (quarters - floor(quarters) - 0.5f) * kQuarter_m;
+  float radius = max(length(from_middle), 1.0f);
+  float width = max(dot(abs(from_middle), footprint) / radius, 0.01f);
+  float inside = clamp((kPivotRadius_m - radius) / width + 0.5f, 0.0f, 1.0f);
+  const float share = 3.14159265f * kPivotRadius_m * kPivotRadius_m / (kQuarter_m * kQuarter_m);
+  return (inside - share) * clamp(1.5f - 2.0f * max(footprint.x, footprint.y) / kQuarter_m, 0.0f, 1.0f);
+}
+
+// Reflectance by colour over the ground's on average, from which the mean of all fields differs in hue, not in luminance.
+// `field` is the map's texel: how bright the field is, how ripe or dry, whether it is
+// watered by a centre pivot, each from 0 to 1; the first two have a mean of 128 / 255, which stands for none. `contrast` of 1
+// leaves all of it.
+PHYSICS_FUNCTION vec3 field_reflectance(vec3 field, float pivot_circle, vec2 road, float contrast) {
+  vec3 brighter = vec3(0.45f, 0.40f, 0.40f);
+  vec3 drier = vec3(0.26f, -0.01f, 0.22f);
+  vec3 watered = -0.7f * brighter - 1.1f * drier;
+  vec2 signs = (vec2(field) - 128.0f / 255.0f) * 2.0f;
+  vec3 fields = brighter * signs.x + drier * signs.y + watered * (field.z * pivot_circle);
+  vec3 gravel = vec3(0.35f, 0.33f, 0.30f);
+  vec3 green = mix(vec3(1.0f), vec3(0.950f, 1.050f, 0.620f), contrast);  // plants on plain ground
+  return green * (vec3(1.0f) + contrast * ((1.0f - road.x) * fields + road.y * gravel));
+}
+
+// Where in the grain's map a place is, in cells.
+PHYSICS_FUNCTION vec2 grain_cell(vec2 place) {
+  return vec2(0.891f * place.x - 0.454f * place.y, 0.454f * place.x + 0.891f * place.y) / kGrainCell_m;
+}
+
+// The grain's factor of reflectance; `grain` is the map's, of mean 128 / 255.
+PHYSICS_FUNCTION float grain_factor(float grain, float contrast) {
+  return 1.0f + contrast * 0.7f * (grain - 128.0f / 255.0f);
+}
+
+// Rings around a middle, every 10 km up to 200; to the north of it a line, and an arrowhead on each ring.
+const float kRing_m = 10000.0f;
+const float kLastRing_m = 200000.0f;
+const float kRingLine_m = 120.0f;  // width of a line
+const float kArrow = 0.25f;        // length of an arrowhead, in distances between rings
+
+// The share of the footprint that a line of width `line` covers, the middle of which is `off` away.
+PHYSICS_FUNCTION float line_share(float off, float width, float line) {
+  float low = max(off - 0.5f * width, -0.5f * line);
+  float high = min(off + 0.5f * width, 0.5f * line);
+  return clamp((high - low) / width, 0.0f, 1.0f);
+}
+
+// The share of the footprint that is painted, at a place from the middle. Lines are at least as wide as `across_m`, that of
+// a pixel, so that they can be seen from afar.
+PHYSICS_FUNCTION float ring_paint(vec2 place, vec2 footprint, float across_m) {
+  float radius = max(length(place), 1.0f);
+  float line = max(kRingLine_m, 1.5f * across_m);
+  float width = max(dot(abs(place), footprint) / radius, 0.01f);
+  float nearest = clamp(floor(radius / kRing_m + 0.5f), 1.0f, kLastRing_m / kRing_m);
+  float ring = line_share(abs(radius - nearest * kRing_m), width, line);
+  float north = place.y > 0.0f && place.y < kLastRing_m ? 1.0f : 0.0f;
+  float shaft = line_share(abs(place.x), max(footprint.x, 0.01f), line);
+  float up = place.y / kRing_m - max(floor(place.y / kRing_m), 1.0f);
+  float half_width = 0.09f * kRing_m * (1.0f - up / kArrow);
+  float head =
+      up > 0.0f && up < kArrow ? clamp((half_width - abs(place.x)) / max(footprint.x, 0.01f) + 0.5f, 0.0f, 1.0f) : 0.0f;
+  return max(ring, north * max(shaft, head));
+}
+
+// Orange: unlike crops, water and snow.
+PHYSICS_FUNCTION vec3 ring_reflectance() { return vec3(0.85f, 0.27f, 0.03f); }

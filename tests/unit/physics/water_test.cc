@@ -1,0 +1,94 @@
+#include "physics/water.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "gtest/gtest.h"
+#include "physics/counter_random.h"
+#include "physics/fresnel.h"
+
+namespace thunderhead::physics {
+namespace {
+
+using glm::vec3;
+
+vec3 Towards(double elevation_deg, double azimuth_deg = 0.0) {
+  const double elevation = elevation_deg * std::numbers::pi / 180.0;
+  const double azimuth = azimuth_deg * std::numbers::pi / 180.0;
+  return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+          std::sin(elevation)};
+}
+
+// Schlick's form is off by up to 0.021, at cosines about 0.1 (where a facet reflects half).
+TEST(Water, FacetsReflectByFresnel) {
+  for (int i = 0; i <= 20; ++i) {
+    const double cosine = 0.05 * i;
+    EXPECT_NEAR(glsl::facet_reflectance(static_cast<float>(cosine)),
+                i == 0 ? 1.0 : Reflectance(cosine, 1.0 / 1.33), 0.06)
+        << cosine;
+  }
+  EXPECT_NEAR(glsl::facet_reflectance(1.0F), 0.02F, 1e-6F);
+}
+
+// The mean over facets that an eye sees, from sampled slopes.
+double SampledReflectance(const vec3& towards_eye) {
+  CounterRandom random(1, 9);
+  double reflected = 0.0;
+  double seen = 0.0;
+  for (int i = 0; i < 100'000; ++i) {
+    const double slope = std::sqrt(-glsl::kWaterSlopes * std::log(1.0 - random.Next()));
+    const double azimuth = 2.0 * std::numbers::pi * random.Next();
+    const vec3 facet =
+        glm::normalize(vec3(slope * std::cos(azimuth), slope * std::sin(azimuth), 1.0));
+    const float facing = glm::dot(facet, towards_eye);
+    if (facing <= 0.0F) continue;
+    const double weight = facing / facet.z;
+    seen += weight;
+    reflected += weight * glsl::facet_reflectance(facing);
+  }
+  return reflected / seen;
+}
+
+// Bruneton's fit; from low elevations it leaves out that facets hide each other.
+TEST(Water, MeanReflectanceIsThatOfItsFacets) {
+  for (const double elevation_deg : {5.0, 10.0, 20.0, 40.0, 90.0}) {
+    const vec3 towards_eye = Towards(elevation_deg);
+    EXPECT_NEAR(glsl::water_reflectance(towards_eye.z), SampledReflectance(towards_eye), 0.06)
+        << elevation_deg;
+  }
+  EXPECT_GT(glsl::water_reflectance(Towards(3.0).z), 0.3F);
+  EXPECT_LT(glsl::water_reflectance(1.0F), 0.03F);
+}
+
+TEST(Water, GlintIsBrightestNearTheMirroredSun) {
+  const vec3 sun = Towards(40.0, 180.0);
+  const float mirrored = glsl::glint(Towards(40.0, 0.0), sun);
+  EXPECT_GT(mirrored, 20.0F * glsl::glint(Towards(40.0, 90.0), sun));
+  EXPECT_GT(mirrored, 20.0F * glsl::glint(Towards(40.0, 180.0), sun));
+  EXPECT_EQ(glsl::glint(Towards(40.0), Towards(-1.0)), 0.0F);
+  EXPECT_TRUE(std::isfinite(glsl::glint(Towards(0.01), Towards(0.01, 180.0))));
+}
+
+// Over all directions it is the reflectance of water for the sun's irradiance on level ground.
+TEST(Water, GlintHoldsTheSunlightThatFacetsReflect) {
+  for (const double elevation_deg : {30.0, 45.0, 80.0}) {
+    const vec3 sun = Towards(elevation_deg, 180.0);
+    double flux = 0.0;
+    constexpr int kRows = 400;
+    for (int i = 0; i < kRows; ++i) {
+      const double sine = (i + 0.5) / kRows;
+      for (int j = 0; j < kRows; ++j) {
+        const double azimuth_deg = 360.0 * (j + 0.5) / kRows;
+        const vec3 out = Towards(std::asin(sine) * 180.0 / std::numbers::pi, azimuth_deg);
+        flux += glsl::glint(out, sun) * sine * 2.0 * std::numbers::pi / (kRows * kRows);
+      }
+    }
+    const double received = sun.z;
+    // Facets that hide each other lose what they would reflect twice: a seventh at 20 degrees.
+    EXPECT_NEAR(flux / received, SampledReflectance(sun), 0.1 * SampledReflectance(sun))
+        << elevation_deg;
+  }
+}
+
+}  // namespace
+}  // namespace thunderhead::physics
