@@ -35,7 +35,7 @@ struct Cumulus {
   std::uint32_t seed = 1;
   int scales = 3;                        // of ellipsoids
   float least_extinction_per_m = 2e-3F;  // of a storm, inside the surface
-  float corona = 0.45F;                   // thickness over the radius of the finest ellipsoids
+  float corona = 0.45F;                  // thickness over the radius of the finest ellipsoids
   float trap = 0.45F;                    // share of the sky that the deepest valley hides
   float transmission = 0.05F;            // share of sunlight that comes through
   float roughness = 0.6F;

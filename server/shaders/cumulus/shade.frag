@@ -60,18 +60,31 @@ float lit_texels(vec2 texel, float depth) {
   return mix(rows.x, rows.y, share.y);
 }
 
-// To a point, as the mean over `taps` x `taps` places that are together twice as wide as the corona: inside the cloud light
-// goes sideways, so that no shadow on it is sharper.
-float lit(vec3 point_m, int taps) {
+// Texel of the shadow (xy) and depth from the sun of a point.
+vec3 shadow_place(vec3 point_m) {
   vec4 p = vec4(point_m, 1.0);
-  vec2 texel = vec2(dot(shadow_x, p), dot(shadow_y, p)) * vec2(textureSize(shadow_depth, 0)) - 0.5;
-  float depth = dot(shadow_z, p);
-  if (taps == 1) return lit_texels(texel, depth);
-  float spacing = 2.0 * corona_m / (shadow_texel_m * float(taps - 1));
-  texel -= 0.5 * spacing * float(taps - 1);
+  return vec3(vec2(dot(shadow_x, p), dot(shadow_y, p)) * vec2(textureSize(shadow_depth, 0)) - 0.5, dot(shadow_z, p));
+}
+
+// To a point.
+float lit(vec3 point_m) {
+  vec3 place = shadow_place(point_m);
+  return lit_texels(place.xy, place.z);
+}
+
+// To a surface, as the mean over places of it that are two coronas apart: inside the cloud light goes sideways, so that no
+// shadow on it is sharper. `cosine` is that of the sun's angle to it.
+float lit_softly(vec3 point_m, vec3 normal, float cosine) {
+  const float kLeastCosine = 0.05;  // a steeper surface's places lie too far apart in depth
+  vec3 place = shadow_place(point_m);
+  vec2 tilt = vec2(dot(normalize(shadow_x.xyz), normal), dot(normalize(shadow_y.xyz), normal)) / max(cosine, kLeastCosine);
+  float per_m = length(shadow_z.xyz);
   float sum = 0.0;
-  for (int i = 0; i < taps * taps; ++i) sum += lit_texels(texel + spacing * vec2(i % taps, i / taps), depth);
-  return sum / float(taps * taps);
+  for (int i = 0; i < 4; ++i) {
+    vec2 aside_m = corona_m * (2.0 * vec2(i & 1, i >> 1) - 1.0);
+    sum += lit_texels(place.xy + aside_m / shadow_texel_m, place.z + per_m * dot(aside_m, tilt));
+  }
+  return 0.25 * sum;
 }
 
 vec3 from_surroundings(vec3 n) {
@@ -129,7 +142,7 @@ vec3 trapped(vec3 point_m, out float sky_share) {
     }
     float received = max(dot(underlying, towards_sun), 0.0);
     if (valley > 0.0 && received > 0.0) {
-      received *= lit(point_m + bubble.unit_x.w * underlying, 1);
+      received *= lit(point_m + bubble.unit_x.w * underlying);
       sum += sunlight * (sky_share * received / kPi * valley / (1.0 - valley));
     }
     sum += sky_share * valley * from_surroundings(underlying);
@@ -146,7 +159,10 @@ vec3 core(Meeting meeting, vec3 point_m, float pixel_m) {
 #else
   vec3 normal = roughened(meeting.normal, point_m, pixel_m);
   float cosine = max(dot(normal, towards_sun), 0.0);
-  if (cosine > 0.0) cosine *= lit(point_m + (1.5 * shadow_texel_m + corona_m) * meeting.normal, 3);
+  if (cosine > 0.0) {
+    float straight = dot(meeting.normal, towards_sun);
+    cosine *= lit_softly(point_m + (1.5 * shadow_texel_m + corona_m) * meeting.normal, meeting.normal, straight);
+  }
   float sky_share;
   vec3 trap = trapped(point_m, sky_share);
   vec3 ambient = sky_share * from_surroundings(normal) + sunlight * (transmission / kPi);
@@ -163,7 +179,7 @@ vec3 corona(Meeting meeting, float rho) {
   float variance = kCoronaVariance * rho * (meeting.exit_m - meeting.entry_m) / most;
   float power = clamp(1.0 / max(variance, 1e-6), 1.0, kNarrowest);
   vec3 point_m = meeting.origin_m + meeting.exit_m * meeting.ray;
-  float arriving = lit(point_m + (1.5 * shadow_texel_m + corona_m) * towards_sun, 1);
+  float arriving = lit(point_m + (1.5 * shadow_texel_m + corona_m) * towards_sun);
   return sunlight * (rho * arriving * (power + 1.0) / (2.0 * kPi) * pow(mu, power));
 }
 
