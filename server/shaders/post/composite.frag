@@ -45,6 +45,7 @@ out vec4 rgb_and_opacity;  // the opacity is that of the storm
 
 const float kJustBelow = 1e-5;
 const float kHardlyAnyHaze = 0.01;  // of its vertical depth
+const float kFarFromTheGround_m = 2e4;
 
 #if COVER == 2
 // Of level water under `sky`, the light of the sky on level ground, and the share of the sun that the storm leaves.
@@ -102,6 +103,14 @@ Sky sky_behind(vec3 ray, float ground_m) {
   return sky;
 }
 
+// Distance of the round Earth along a ray that meets it.
+float sphere_distance_m(float sine) {
+  float from_middle_m = 1.0 / ground_curvature_per_m + altitude_m;
+  float nearest_m = -from_middle_m * sine;
+  float inside = nearest_m * nearest_m - altitude_m * (altitude_m + 2.0 / ground_curvature_per_m);
+  return nearest_m - sqrt(max(inside, 0.0));
+}
+
 // Light that the air up to a distance sends to the eye, less what the storm's shadow takes from it.
 vec3 shaded_airlight(vec3 airlight, float sine, float distance_m) {
 #if SHADED
@@ -147,6 +156,10 @@ void main() {
   vec3 world_ray = ray_direction(position);
   vec3 ray = local_from_world * world_ray;
   float ground_m = ground_distance_m(origin_m, world_ray);
+#if !RELIEF
+  // Seen from space the sphere is wider than the paraboloid: between their rims the picture had a band.
+  if (altitude_m > kFarFromTheGround_m && ground_m <= 0.0 && ray.z < horizon_sine) ground_m = sphere_distance_m(ray.z);
+#endif
   Sky sky = sky_behind(ray, ground_m);
   vec3 sky_radiance = sky_scale * sky.radiance;
   vec3 sky_depth = depth_of_air_mass(turbidity, sky.air_mass);
