@@ -15,7 +15,10 @@ absl::StatusOr<TracedScene> TraceScene(const scene::Scene& scene,
   of_medium.peak_cut_deg = options.peak_cut_deg;
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto medium, MediumOf(scene, fields, of_medium));
   Surroundings surroundings = SurroundingsOf(scene, fields, GroundLight::kShaded);
-  if (!options.sun) surroundings.sun_irradiance = glm::dvec3(0.0);
+  if (!options.sun) {
+    surroundings.sun_irradiance = glm::dvec3(0.0);
+    surroundings.disc.reset();
+  }
   PathTracerOptions of_paths;
   of_paths.max_scatterings = options.max_scatterings;
   PathTracer tracer(medium, std::move(surroundings), CameraOf(scene, fields),

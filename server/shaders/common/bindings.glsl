@@ -23,6 +23,7 @@ const int kMeterImage = 0;
 const int kSkyTableUnit = 6;
 const int kEyeUnit = 4;
 const int kLinearFrameUnit = 4;
+const int kAureoleUnit = 4;
 
 // Of half-angle slicing.
 const int kSliceLightUnit = 4;
