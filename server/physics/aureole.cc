@@ -85,6 +85,7 @@ Aureole Aureole::Of(const PhaseFunction& phase, double cut_rad) {
     const double depth = kMaxDepth * Squared(d, kDepths);
     const double scattered = depth / aureole.share;
     std::vector<glm::dvec3> blurred;
+    blurred.reserve(transform.size());
     for (const glm::dvec3& once : transform) {
       blurred.emplace_back(std::exp(-depth) * glm::dvec3(TwiceAndMore(scattered * once.x),
                                                          TwiceAndMore(scattered * once.y),
