@@ -104,6 +104,7 @@ LightCorrector::LightCorrector(const scene::Scene& scene,
   over_ground_.air = nullptr;
   over_ground_.shaded_air.reset();
   over_ground_.seen_sky = nullptr;
+  over_ground_.disc.reset();
 }
 
 absl::StatusOr<std::unique_ptr<LightCorrector>> LightCorrector::Create(
@@ -174,6 +175,7 @@ absl::Status LightCorrector::TraceUntil(std::int64_t paths, const std::stop_toke
 absl::StatusOr<LightCorrector::Probe> LightCorrector::DrawProbe() {
   renderers::DrawQuality quality;
   quality.single_precision = true;
+  quality.sun_seen = false;  // a peak cut as wide as this leaves no aureole
   const auto draw = [&]() -> absl::StatusOr<std::vector<float>> {
     THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame frame,
                                  renderer_.Draw(scene_, fields_, quality));
@@ -202,8 +204,9 @@ void LightCorrector::TraceProbe(const Probe& probe) {
           camera.RayThrough(2.0 * (x + 0.5) / kWidth_px - 1.0, 2.0 * (y + 0.5) / kHeight_px - 1.0));
     }
   }
-  const reference::Surroundings surroundings =
+  reference::Surroundings surroundings =
       reference::SurroundingsOf(scene_, *fields_, reference::GroundLight::kShaded);
+  surroundings.disc.reset();
   const std::vector<glm::dvec3> traced =
       reference::TraceRays(*medium_, surroundings, rays, {pictures_, 1, threads_});
   const auto value = [](const std::vector<float>& values, std::size_t first) {

@@ -21,9 +21,6 @@ constexpr float kOzoneHalfWidth_m = 1.5e4F;
 
 const glm::vec2 kScaleHeights_m(glsl::kAirScaleHeight_m, glsl::kHazeScaleHeight_m);
 
-// Angular radius of the sun's disc in radians.
-constexpr float kSunRadius = 0.00465F;
-
 constexpr float kInverseFourPi = 0.25F * std::numbers::inv_pi_v<float>;
 
 // Densities of air, haze and ozone relative to their largest ones.
@@ -172,7 +169,7 @@ glm::vec3 Atmosphere::SunTransmittance(const AirPlace& place) const {
 }
 
 glm::vec3 Atmosphere::SunTransmittance(const AirLevel& level, float sun_sine) const {
-  const float above = (sun_sine - level.horizon_sine) / kSunRadius;
+  const float above = (sun_sine - level.horizon_sine) / static_cast<float>(kSunRadius_rad);
   if (above <= -1.0F) return glm::vec3(0.0F);
   const glm::vec3 column_m = ColumnsToSpace::Get().From(level, sun_sine);
   const glm::vec3 depth = glsl::air_optical_depth() * (column_m.x / glsl::kAirScaleHeight_m) +

@@ -19,6 +19,9 @@ constexpr double kEffectiveEarthRadius_m = 7.0 / 6.0 * 6.371e6;
 constexpr float kEarthRadius_m = static_cast<float>(kEffectiveEarthRadius_m);
 constexpr float kAtmosphereTop_m = 8e4F;
 
+// Angular radius of the sun's disc.
+constexpr double kSunRadius_rad = 0.00465;
+
 // Coefficients of the atmosphere at some height, 1/m.
 struct AirOptics {
   glm::vec3 air{0.0F};   // scattering

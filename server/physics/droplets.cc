@@ -11,12 +11,12 @@
 namespace thunderhead::physics {
 namespace {
 
-double SizeParameter(double radius_um, std::size_t channel) {
-  return 2.0 * std::numbers::pi * radius_um / kWavelengthsUm[channel];
+double SizeParameter(double radius_um, std::size_t channel, double shift_um = 0.0) {
+  return 2.0 * std::numbers::pi * radius_um / (kWavelengthsUm[channel] + shift_um);
 }
 
-std::complex<double> WaterIndex(std::size_t channel) {
-  return {WaterRefractiveIndex(kWavelengthsUm[channel]), kWaterAbsorption[channel]};
+std::complex<double> WaterIndex(std::size_t channel, double shift_um = 0.0) {
+  return {WaterRefractiveIndex(kWavelengthsUm[channel] + shift_um), kWaterAbsorption[channel]};
 }
 
 // The cross section per logarithm of the radius, r^3 n(r), at r = radius / effective radius, up to
@@ -74,7 +74,7 @@ double MassExtinction_m2_per_kg(const DropletSizes& sizes, double efficiency) {
 }
 
 PhaseAccumulator ScatterByDroplets(const DropletSizes& sizes, const std::vector<double>& angles_deg,
-                                   int radii, int points, const WorkPlan& plan) {
+                                   int radii, int points, const WorkPlan& plan, double shift_um) {
   const SizeQuadrature drops = QuadratureOf(sizes, radii);
   const AngleQuadrature angles = QuadratureOf(angles_deg, points);
   std::vector<double> cosines;
@@ -90,9 +90,9 @@ PhaseAccumulator ScatterByDroplets(const DropletSizes& sizes, const std::vector<
       sums[c].assign(cosines.size(), 0.0);
       for (std::size_t i = static_cast<std::size_t>(chunk); i < drops.radii_um.size();
            i += kChunks) {
-        const double x = SizeParameter(drops.radii_um[i], c);
+        const double x = SizeParameter(drops.radii_um[i], c, shift_um);
         // |s|^2 / x^2 is scattering per geometric cross section.
-        MieSeries(x, WaterIndex(c))
+        MieSeries(x, WaterIndex(c, shift_um))
             .AddIntensities(cosines, drops.area_shares[i] / (x * x), sums[c]);
       }
     }

@@ -35,8 +35,10 @@ DropletOptics OpticsOf(const DropletSizes& sizes, int radii);
 double MassExtinction_m2_per_kg(const DropletSizes& sizes, double efficiency);
 
 // The light that water drops scatter, by angle, at kWavelengthsUm. `radii` and `points` (within
-// each step of the grid) set the fineness of the quadratures over size and angle.
+// each step of the grid) set the fineness of the quadratures over size and angle. `shift_um` is
+// added to all three wavelengths.
 PhaseAccumulator ScatterByDroplets(const DropletSizes& sizes, const std::vector<double>& angles_deg,
-                                   int radii, int points, const WorkPlan& plan);
+                                   int radii, int points, const WorkPlan& plan,
+                                   double shift_um = 0.0);
 
 }  // namespace thunderhead::physics

@@ -38,7 +38,8 @@ enum class PhaseKind {
   kWaterDroplets,
   kIceColumns,
   kIcePlates,
-  kIceRough
+  kIceRough,
+  kWaterNarrow
 };
 
 struct PhaseFunction {

@@ -33,7 +33,7 @@ struct TableName {
   float droplet_radius_m;
   const char* name;
 };
-constexpr std::array<TableName, 7> kTableNames = {{
+constexpr std::array<TableName, 8> kTableNames = {{
     {PhaseKind::kWaterDroplets, 5e-6F, "cloud_re05"},
     {PhaseKind::kWaterDroplets, 1e-5F, "cloud_re10"},
     {PhaseKind::kWaterDroplets, 2e-5F, "cloud_re20"},
@@ -41,6 +41,7 @@ constexpr std::array<TableName, 7> kTableNames = {{
     {PhaseKind::kIceColumns, 0.0F, "ice_columns"},
     {PhaseKind::kIcePlates, 0.0F, "ice_plates"},
     {PhaseKind::kIceRough, 0.0F, "ice_rough"},
+    {PhaseKind::kWaterNarrow, 0.0F, "cloud_re05_narrow"},
 }};
 
 // Index in kTableNames of the table for `phase`; droplets have one for each of several radii.

@@ -70,7 +70,16 @@ class Path {
     const auto& sky =
         seen_from_eye_ && surroundings_.seen_sky ? surroundings_.seen_sky : surroundings_.sky;
     if (sky) radiance_ += Carried() * sky(ray_.direction);
+    if (seen_from_eye_) SeeSun();
     return false;
+  }
+
+  void SeeSun() {
+    if (!surroundings_.disc.has_value()) return;
+    const SunDisc& disc = *surroundings_.disc;
+    if (glm::dot(ray_.direction, surroundings_.towards_sun) >= disc.cosine) {
+      radiance_ += Carried() * disc.radiance;
+    }
   }
 
   double GroundDistance_m() const {

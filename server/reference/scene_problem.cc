@@ -275,6 +275,12 @@ Surroundings SurroundingsOf(const scene::Scene& asked, const volume::Hydrometeor
   const auto shared =
       std::make_shared<const Around>(scene, towards_sun, view, static_cast<float>(lowest_m));
   around.sun_irradiance = scene.sun.irradiance * glm::dvec3(shared->sky.SunTransmittance());
+  const physics::AirPlace eye{static_cast<float>(std::max(view.altitude_m, 0.0)),
+                              static_cast<float>((view.local_from_world * around.towards_sun).z)};
+  const double solid_angle = 2.0 * std::numbers::pi * (1.0 - std::cos(physics::kSunRadius_rad));
+  around.disc = SunDisc{
+      std::cos(physics::kSunRadius_rad),
+      scene.sun.irradiance / solid_angle * glm::dvec3(shared->atmosphere.SunTransmittance(eye))};
   for (const scene::DirectionalLight& light : scene.lights) {
     around.lights.push_back(
         {scene::Direction(light.azimuth_deg, light.elevation_deg), light.irradiance * light.color});

@@ -64,6 +64,12 @@ struct DirectionalLight {
   glm::dvec3 irradiance{0.0};  // on a plane facing it
 };
 
+// The sun as an eye sees it directly. Its light comes from one direction everywhere else.
+struct SunDisc {
+  double cosine = 1.0;       // of its angular radius
+  glm::dvec3 radiance{0.0};  // evenly bright
+};
+
 struct Surroundings {
   glm::dvec3 towards_sun{0.0, 0.0, 1.0};
   glm::dvec3 sun_irradiance{0.0};  // on a plane facing the sun; all from one direction
@@ -72,6 +78,8 @@ struct Surroundings {
   std::function<glm::dvec3(const glm::dvec3& direction)> sky;
   // The sky as seen from the eye; `sky` if not set.
   std::function<glm::dvec3(const glm::dvec3& direction)> seen_sky;
+  // Black if not set.
+  std::optional<SunDisc> disc;
   std::optional<Ground> ground;
   // Air between the eye and the ground or the medium; clear if not set. The sky needs none: its
   // light is the air's.

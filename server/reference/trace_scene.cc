@@ -14,6 +14,7 @@ void TakeAwayAir(const scene::Scene& scene, Surroundings* surroundings) {
   surroundings->seen_sky = nullptr;
   surroundings->air = nullptr;
   surroundings->shaded_air.reset();
+  surroundings->disc.reset();
 }
 
 }  // namespace
@@ -27,7 +28,10 @@ absl::StatusOr<TracedScene> TraceScene(const scene::Scene& scene,
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto medium, MediumOf(scene, fields, of_medium));
   Surroundings surroundings = SurroundingsOf(scene, fields, GroundLight::kShaded);
   if (!options.air) TakeAwayAir(scene, &surroundings);
-  if (!options.sun) surroundings.sun_irradiance = glm::dvec3(0.0);
+  if (!options.sun) {
+    surroundings.sun_irradiance = glm::dvec3(0.0);
+    surroundings.disc.reset();
+  }
   PathTracerOptions of_paths;
   of_paths.max_scatterings = options.max_scatterings;
   PathTracer tracer(medium, std::move(surroundings), CameraOf(scene, fields),

@@ -42,7 +42,8 @@ SceneRenderer::SceneRenderer(std::shared_ptr<gl::ProgramCache> programs, Registr
     : workspace_(std::move(programs)),
       registry_(std::move(registry)),
       eye_cover_(workspace_.programs),
-      picture_cover_(workspace_.programs) {}
+      picture_cover_(workspace_.programs),
+      sun_glow_(workspace_.programs) {}
 
 scene::Stage SceneRenderer::FirstStage(const scene::Scene& scene, const Fields& fields) const {
   if (!drawn_scene_.has_value() || drawn_fields_.lock() != fields) return scene::Stage::kStorm;
@@ -67,7 +68,8 @@ bool SceneRenderer::OnlyLightsDiffer(scene::Scene scene, const Fields& fields) c
 std::size_t SceneRenderer::Bytes() const {
   std::size_t bytes = workspace_.medium.Bytes() + workspace_.surroundings.Bytes() +
                       workspace_.ground.Bytes() + workspace_.ground_cover.Bytes() +
-                      linear_.Texture().Bytes() + eye_cover_.Bytes() + picture_cover_.Bytes();
+                      linear_.Texture().Bytes() + eye_cover_.Bytes() + picture_cover_.Bytes() +
+                      sun_glow_.Bytes();
   for (const auto& [name, technique] : techniques_) bytes += technique->Bytes();
   return bytes;
 }
@@ -119,9 +121,8 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
     }
     if (!quality.places) {
       THUNDERHEAD_RETURN_IF_ERROR(ShadeAir(scene, view, &times));
-      THUNDERHEAD_RETURN_IF_ERROR(Timed(scene::FrameStage::kComposite, &times, [&] {
-        return Composite(scene, view, quality.single_precision ? GL_RGBA32F : GL_RGBA16F, cover);
-      }));
+      THUNDERHEAD_RETURN_IF_ERROR(Timed(scene::FrameStage::kComposite, &times,
+                                        [&] { return Composite(scene, view, quality, cover); }));
     }
   }
   drawn_scene_ = asked;
@@ -213,7 +214,7 @@ absl::StatusOr<const Cover*> SceneRenderer::CoverOf(const scene::View& view,
 }
 
 absl::Status SceneRenderer::Composite(const scene::Scene& scene, const scene::View& view,
-                                      GLenum format, const Cover* eye_cover) {
+                                      const DrawQuality& quality, const Cover* eye_cover) {
   const glm::ivec2 size_px(scene.output.width_px, scene.output.height_px);
   if (nothing_.Get() == 0) {
     nothing_ = gl::Texture2D(GL_RGBA16F, glm::ivec2(1));
@@ -225,10 +226,25 @@ absl::Status SceneRenderer::Composite(const scene::Scene& scene, const scene::Vi
     const double margin_px = 1.0 + std::ceil(static_cast<double>(size_px.x) / Eye().Size().x);
     THUNDERHEAD_ASSIGN_OR_RETURN(cover, CoverOf(view, size_px, margin_px, &picture_cover_));
   }
-  linear_.Resize(format, size_px, cover);
+  linear_.Resize(quality.single_precision ? GL_RGBA32F : GL_RGBA16F, size_px, cover);
   const gl::Texture2D* distances_m = technique_->Empty() ? nullptr : technique_->Distances_m();
-  return workspace_.surroundings.Composite(scene, view, workspace_.ground, workspace_.ground_cover,
-                                           {Eye(), distances_m, Box()}, linear_, cover);
+  THUNDERHEAD_RETURN_IF_ERROR(workspace_.surroundings.Composite(
+      scene, view, workspace_.ground, workspace_.ground_cover, {Eye(), distances_m, Box()}, linear_,
+      cover));
+  return quality.sun_seen ? AddSun(scene, view) : absl::OkStatus();
+}
+
+absl::Status SceneRenderer::AddSun(const scene::Scene& scene, const scene::View& view) {
+  const SunGlow::Sun sun = workspace_.surroundings.SunFrom(scene, view);
+  const SunGlow::Picture picture{linear_.Target(), linear_.Texture().Size()};
+  const scene::MediumSettings* settings = scene::MediumSettingsOf(scene.rendering.technique);
+  // By the paper's transport radiance is on the paper's scale of display.
+  if (technique_->DrawsMedium() && !technique_->Empty() && settings != nullptr &&
+      !scene::IsPaper(settings->transport)) {
+    return sun_glow_.AddThrough(workspace_.medium, *settings, drawn_slices_, sun, view,
+                                &workspace_.ground, picture);
+  }
+  return sun_glow_.AddBehind(Eye(), sun, view, workspace_.ground, picture);
 }
 
 LinearFrame SceneRenderer::Report(const scene::Scene& scene,

@@ -10,6 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "gl/objects.h"
+#include "renderers/sun_glow.h"
 #include "renderers/technique.h"
 #include "renderers/technique_registry.h"
 #include "scene/scene.h"
@@ -75,8 +76,10 @@ class SceneRenderer {
   // else; `margin_px` is how far it is spread there.
   absl::StatusOr<const Cover*> CoverOf(const scene::View& view, const glm::ivec2& size_px,
                                        double margin_px, Cover* cover);
-  absl::Status Composite(const scene::Scene& scene, const scene::View& view, GLenum format,
-                         const Cover* eye_cover);
+  absl::Status Composite(const scene::Scene& scene, const scene::View& view,
+                         const DrawQuality& quality, const Cover* eye_cover);
+  // Adds the sun to the composed frame.
+  absl::Status AddSun(const scene::Scene& scene, const scene::View& view);
   LinearFrame Report(const scene::Scene& scene, const volume::HydrometeorFields& fields) const;
 
   Workspace workspace_;
@@ -86,6 +89,7 @@ class SceneRenderer {
   Cover eye_cover_;                 // of the medium in the eye buffer
   Cover picture_cover_;             // and in a picture of another size
   CoveredTarget linear_;
+  SunGlow sun_glow_;
   gl::Texture2D nothing_;  // an eye buffer without medium
 
   // What the kept results were drawn from.

@@ -152,6 +152,13 @@ glm::vec3 SkyAndGround::AroundSun(const glm::vec3& sun) const {
   return glm::clamp((facing - without) / std::max(per_x, 0.1F), glm::vec3(0.0F), most);
 }
 
+SunGlow::Sun SkyAndGround::SunFrom(const scene::Scene& scene, const scene::View& view) const {
+  const auto altitude_m = static_cast<float>(std::max(view.altitude_m, 0.0));
+  const auto sine = static_cast<float>((view.local_from_world * towards_sun_).z);
+  return {towards_sun_, static_cast<float>(scene.sun.irradiance) *
+                            atmosphere_->SunTransmittance({altitude_m, sine})};
+}
+
 Illumination SkyAndGround::IlluminationOf(const scene::Scene& scene) const {
   Illumination light;
   light.towards_sun = towards_sun_;

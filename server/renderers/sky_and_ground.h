@@ -18,6 +18,7 @@
 #include "renderers/ground.h"
 #include "renderers/ground_cover.h"
 #include "renderers/render_settings.h"
+#include "renderers/sun_glow.h"
 #include "scene/scene.h"
 #include "scene/view.h"
 #include "volume/visible_box.h"
@@ -32,6 +33,9 @@ class SkyAndGround {
   // Brings the sky up to date with the scene's sun and air, the ground's height and the eye's. Call
   // it before the others.
   void Update(const scene::Scene& scene, const scene::View& view, const Ground& ground);
+
+  // As the eye of `view` sees it through the air.
+  SunGlow::Sun SunFrom(const scene::Scene& scene, const scene::View& view) const;
 
   Illumination IlluminationOf(const scene::Scene& scene) const;
 

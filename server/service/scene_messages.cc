@@ -37,6 +37,7 @@ constexpr std::array kPhaseKinds = {
     std::pair{v1::PhaseFunction::KIND_ICE_COLUMNS, physics::PhaseKind::kIceColumns},
     std::pair{v1::PhaseFunction::KIND_ICE_PLATES, physics::PhaseKind::kIcePlates},
     std::pair{v1::PhaseFunction::KIND_ICE_ROUGH, physics::PhaseKind::kIceRough},
+    std::pair{v1::PhaseFunction::KIND_WATER_NARROW, physics::PhaseKind::kWaterNarrow},
 };
 constexpr std::array kSizeSources = {
     std::pair{v1::PARTICLE_SIZES_MODEL, physics::SizeSource::kModel},

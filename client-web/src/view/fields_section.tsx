@@ -28,6 +28,7 @@ import { Choice, Section, Slider, Switch } from "./controls";
 
 const PHASE_KINDS = [
   [Kind.WATER_DROPLETS, "Water droplets"],
+  [Kind.WATER_NARROW, "Water droplets, all of 5 µm"],
   [Kind.ICE_COLUMNS, "Ice columns"],
   [Kind.ICE_PLATES, "Ice plates"],
   [Kind.ICE_ROUGH, "Rough ice"],

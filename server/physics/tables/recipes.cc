@@ -1,10 +1,12 @@
 #include "physics/tables/recipes.h"
 
+#include <array>
 #include <utility>
 
 #include "absl/strings/str_format.h"
 #include "base/status.h"
 #include "physics/refractive_index.h"
+#include "physics/tables/sun_disc.h"
 
 namespace thunderhead::physics {
 namespace {
@@ -26,15 +28,17 @@ std::vector<GridSpan> IceGrid() {
   return {{2, 0.05}, {6, 0.1}, {50, 0.25}, {60, 0.5}, {176, 1}, {180, 0.5}};
 }
 
-PhaseTable TableOf(const std::string& name, std::vector<double> angles_deg,
-                   std::vector<PhaseRgb> values) {
-  absl::StatusOr<PhaseTable> table = PhaseTable::Create({.name = name,
-                                                         .wavelengths_um = kWavelengthsUm,
-                                                         .angles_deg = std::move(angles_deg),
-                                                         .values = std::move(values)},
-                                                        1e-9);
+// Wavelengths of equal weight that stand for a channel's band, relative to its middle: the three
+// channels together are sunlight from 0.4 to 0.7 um.
+constexpr std::array kBandShiftsUm = {-0.1 / 3.0, 0.0, 0.1 / 3.0};
+
+PhaseTable TableOf(const std::string& name, const std::vector<double>& angles_deg,
+                   const std::vector<PhaseRgb>& values) {
+  absl::StatusOr<PhaseTable> table = PhaseTable::Create(
+      {.name = name, .wavelengths_um = kWavelengthsUm, .angles_deg = angles_deg, .values = values},
+      1e-9);
   THUNDERHEAD_CHECK(table.ok(), std::string(table.status().message()));
-  return *std::move(table);
+  return UnderSunDisc(*table);
 }
 
 }  // namespace
@@ -48,6 +52,11 @@ std::vector<DropletRecipe> DropletRecipes() {
                        .radii = 4000,
                        .points = 3});
   }
+  recipes.push_back({.name = "cloud_re05_narrow",
+                     .sizes = {5.0, 0.01},
+                     .grid = CloudGrid(),
+                     .radii = 4000,
+                     .points = 3});
   recipes.push_back(
       {.name = "rain", .sizes = {500.0, 0.1}, .grid = RainGrid(), .radii = 800, .points = 4});
   return recipes;
@@ -72,15 +81,20 @@ std::vector<IceRecipe> IceRecipes() {
 
 BuiltTable Build(const DropletRecipe& recipe, const WorkPlan& plan) {
   const std::vector<double> angles_deg = AngleGrid(recipe.grid);
-  const PhaseAccumulator light =
-      ScatterByDroplets(recipe.sizes, angles_deg, recipe.radii, recipe.points, plan);
+  PhaseAccumulator light(angles_deg);
+  for (const double shift_um : kBandShiftsUm) {
+    light.Add(
+        ScatterByDroplets(recipe.sizes, angles_deg, recipe.radii, recipe.points, plan, shift_um),
+        {1.0, 1.0, 1.0});
+  }
   PhaseRgb index{};
   for (std::size_t c = 0; c < kPhaseChannels; ++c)
     index[c] = WaterRefractiveIndex(kWavelengthsUm[c]);
   const std::string provenance = absl::StrFormat(
       "Mie theory; water drops, gamma distribution of effective radius %g um and effective "
       "variance "
-      "%g\n(%d radii); refractive index %.4f, %.4f, %.4f. See docs/phase_tables.md.",
+      "%g\n(%d radii); refractive index %.4f, %.4f, %.4f. Bands of 0.1 um, under the sun's disc.\n"
+      "See docs/phase_tables.md.",
       recipe.sizes.effective_radius_um, recipe.sizes.effective_variance, recipe.radii, index[0],
       index[1], index[2]);
   return {TableOf(recipe.name, angles_deg, light.Values()), provenance};
@@ -96,7 +110,7 @@ BuiltTable Build(const IceRecipe& recipe, const WorkPlan& plan) {
       "um,\nroughness %g; refractive index %.4f, %.4f, %.4f; %d rays, seed %d. Of the rays' "
       "energy\n"
       "%.4f went straight on and is spread as diffraction; %.1e was left inside and is dropped.\n"
-      "See docs/phase_tables.md.",
+      "Under the sun's disc. See docs/phase_tables.md.",
       recipe.crystal.width_um, recipe.crystal.length_um, recipe.crystal.roughness,
       kIceRefractiveIndex[0], kIceRefractiveIndex[1], kIceRefractiveIndex[2], recipe.rays,
       recipe.seed, rays.budget.straight[1], rays.budget.left[1]);

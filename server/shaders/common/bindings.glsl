@@ -26,6 +26,7 @@ const int kGroundGrainUnit = 14;
 const int kGroundSkyUnit = 15;
 const int kEyeUnit = 4;
 const int kLinearFrameUnit = 4;
+const int kAureoleUnit = 4;
 
 // Of half-angle slicing.
 const int kSliceLightUnit = 4;

@@ -122,8 +122,9 @@ TEST(PhaseTable, UnknownNameListsTheKnownOnes) {
 }
 
 TEST(EmbeddedTables, AreAllThereAndSound) {
-  EXPECT_THAT(PhaseTableNames(), ElementsAre("cloud_re05", "cloud_re10", "cloud_re20",
-                                             "ice_columns", "ice_plates", "ice_rough", "rain"));
+  EXPECT_THAT(PhaseTableNames(),
+              ElementsAre("cloud_re05", "cloud_re05_narrow", "cloud_re10", "cloud_re20",
+                          "ice_columns", "ice_plates", "ice_rough", "rain"));
   for (const std::string& name : PhaseTableNames()) {
     const auto table = EmbeddedPhaseTable(name);
     ASSERT_TRUE(table.ok()) << table.status();

@@ -1,0 +1,71 @@
+// The sun as a viewer sees it: its disc, and in a medium the aureole of light that is scattered
+// within the cut forward peaks, which the medium's techniques count as unscattered
+// (physics/aureole.h). Added to the linear frame around the sun; a view that is turned away costs
+// nothing. Owns GL objects: use it on the context's thread.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "gl/objects.h"
+#include "gl/program.h"
+#include "gl/whole_target.h"
+#include "glm/vec2.hpp"
+#include "physics/hydrometeors.h"
+#include "renderers/cover.h"
+#include "renderers/ground.h"
+#include "renderers/medium.h"
+#include "scene/scene.h"
+#include "scene/view.h"
+
+namespace thunderhead::renderers {
+
+// The pixels of a picture of `size_px` that may show a place within `angle_rad` of a direction;
+// nothing if none does.
+PixelRect RectAround(const glm::dvec3& direction, double angle_rad, const scene::View& view,
+                     const glm::ivec2& size_px);
+
+class SunGlow {
+ public:
+  explicit SunGlow(std::shared_ptr<gl::ProgramCache> programs) : programs_(std::move(programs)) {}
+
+  struct Sun {
+    glm::dvec3 towards{0.0, 0.0, 1.0};
+    glm::vec3 irradiance{0.0F};  // at the eye
+  };
+  struct Picture {
+    const gl::Framebuffer& target;  // the linear frame
+    glm::ivec2 size_px{1};
+  };
+
+  // The disc and the aureole seen through `medium`, which is drawn with `settings`, `slices`
+  // samples along a ray; it may be empty. `ground`'s distances are drawn anew.
+  absl::Status AddThrough(const ResidentMedium& medium, const scene::MediumSettings& settings,
+                          int slices, const Sun& sun, const scene::View& view, Ground* ground,
+                          const Picture& picture);
+
+  // The disc alone, behind what `eye` has (Technique::Eye).
+  absl::Status AddBehind(const gl::Texture2D& eye, const Sun& sun, const scene::View& view,
+                         const Ground& ground, const Picture& picture);
+
+  std::size_t Bytes() const { return table_.Bytes(); }
+
+ private:
+  // Finds the aureoles of the medium's groups, unless they are known.
+  void Tabulate(const Medium& medium, double cut_rad);
+  absl::Status Add(const gl::Program& program, const PixelRect& rect, const Picture& picture);
+  void BindSun(const gl::Program& program, const Sun& sun, const scene::View& view,
+               const Picture& picture) const;
+
+  std::shared_ptr<gl::ProgramCache> programs_;
+  gl::WholeTarget whole_target_;
+  std::vector<physics::PhaseFunction> tabulated_;  // by group
+  double tabulated_cut_rad_ = -1.0;
+  gl::Texture3D table_;
+  std::vector<float> shares_;  // by group
+};
+
+}  // namespace thunderhead::renderers
