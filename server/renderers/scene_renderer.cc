@@ -228,9 +228,9 @@ absl::Status SceneRenderer::Composite(const scene::Scene& scene, const scene::Vi
   }
   linear_.Resize(quality.single_precision ? GL_RGBA32F : GL_RGBA16F, size_px, cover);
   const gl::Texture2D* distances_m = technique_->Empty() ? nullptr : technique_->Distances_m();
-  THUNDERHEAD_RETURN_IF_ERROR(workspace_.surroundings.Composite(
-      scene, view, workspace_.ground, workspace_.ground_cover, {Eye(), distances_m, Box()}, linear_,
-      cover));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      workspace_.surroundings.Composite(scene, view, workspace_.ground, workspace_.ground_cover,
+                                        {Eye(), distances_m, Box()}, linear_, cover));
   return quality.sun_seen ? AddSun(scene, view) : absl::OkStatus();
 }
 

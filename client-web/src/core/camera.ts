@@ -83,7 +83,8 @@ export function poseOfCamera(camera: Camera | undefined): Pose | undefined {
   switch (camera?.kind.case) {
     case "orbit": {
       const { target, azimuthDeg, elevationDeg, distanceM, fieldOfViewDeg } = camera.kind.value;
-      if (target === undefined || elevationDeg === undefined || distanceM === undefined) return undefined;
+      if (target === undefined || elevationDeg === undefined || distanceM === undefined)
+        return undefined;
       return {
         kind: "orbit",
         targetM: [target.xM, target.yM, target.zM],
