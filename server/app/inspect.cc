@@ -55,6 +55,17 @@ void AppendSizes(const v1::StormDescription& storm, std::string& text) {
   }
 }
 
+std::string TurbulenceOf(const v1::StormDescription& storm) {
+  switch (storm.turbulence_source()) {
+    case v1::StormDescription::TURBULENCE_SOURCE_ENERGY:
+      return absl::StrCat("energy ", storm.turbulence_variable());
+    case v1::StormDescription::TURBULENCE_SOURCE_DEFORMATION:
+      return "deformation of the wind";
+    default:
+      return "contrasts of the fields (no energy or wind in the file)";
+  }
+}
+
 std::string Table(const v1::StormDescription& storm) {
   const v1::Grid& grid = storm.grid();
   std::string text = absl::StrFormat(
@@ -90,6 +101,7 @@ std::string Table(const v1::StormDescription& storm) {
                           field.missing_cells());
   }
   AppendSizes(storm, text);
+  absl::StrAppend(&text, "\nturbulence from ", TurbulenceOf(storm), "\n");
   return text;
 }
 

@@ -51,6 +51,7 @@ std::size_t BytesPerTexel(GLenum internal_format) {
     case GL_R8UI:
     case GL_R8:
       return 1;
+    case GL_RG8:
     case GL_R16F:
       return 2;
     case GL_RG16F:

@@ -1,14 +1,13 @@
 #include "physics/turbulence.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <string>
 
 #include "base/status.h"
 #include "glm/common.hpp"
-#include "physics/counter_random.h"
+#include "physics/perlin.h"
 
 namespace thunderhead::physics {
 namespace {
@@ -16,113 +15,9 @@ namespace {
 // Finer octaves would need more texels than they are worth: the finest of five has one a cell.
 constexpr int kSmallestSide = 64;
 constexpr int kLargestSide = 128;
+static_assert(kLargestSide <= kMaxPerlinSide);
 
 constexpr std::size_t kOneInClear = 3;
-
-constexpr int kFadeBits = 12;
-constexpr std::int64_t kFadeOne = std::int64_t{1} << kFadeBits;
-// Texels' middles lie at odd multiples of half a texel: with at most 16 texels a cell, of 1 / 32.
-constexpr std::int64_t kPlaceUnits = 2 * kLargestSide / TurbulenceTile::kWaves;
-
-struct Gradient {
-  std::int8_t x, y, z;
-};
-
-constexpr std::array<Gradient, 12> kEdges = {{{1, 1, 0},
-                                              {-1, 1, 0},
-                                              {1, -1, 0},
-                                              {-1, -1, 0},
-                                              {1, 0, 1},
-                                              {-1, 0, 1},
-                                              {1, 0, -1},
-                                              {-1, 0, -1},
-                                              {0, 1, 1},
-                                              {0, -1, 1},
-                                              {0, 1, -1},
-                                              {0, -1, -1}}};
-
-// Positions of an octave's texels in its lattice cells, in units of 1 / kPlaceUnits of a cell.
-struct Octave {
-  int cells = 0;            // along an edge of the tile
-  int texels_per_cell = 0;  // at least 1
-  std::vector<Gradient> gradients;
-  std::vector<std::int64_t> place;  // of texel i in its cell
-  std::vector<std::int64_t> fade;   // 6 t^5 - 15 t^4 + 10 t^3, in units of 1 / kFadeOne
-
-  const Gradient& At(int x, int y, int z) const {
-    const auto wrap = [this](int i) { return static_cast<std::size_t>(i % cells); };
-    const auto side = static_cast<std::size_t>(cells);
-    return gradients[(wrap(z) * side + wrap(y)) * side + wrap(x)];
-  }
-};
-
-Octave MakeOctave(int index, int side, std::uint32_t seed) {
-  Octave octave;
-  octave.cells = TurbulenceTile::kWaves << index;
-  octave.texels_per_cell = side / octave.cells;
-  const auto count = static_cast<std::size_t>(octave.cells) *
-                     static_cast<std::size_t>(octave.cells) *
-                     static_cast<std::size_t>(octave.cells);
-  for (std::size_t i = 0; i < count; ++i) {
-    CounterRandom random(seed, (static_cast<std::uint64_t>(index) << 32U) | i);
-    octave.gradients.push_back(kEdges[static_cast<std::size_t>(random.Next() * kEdges.size())]);
-  }
-  constexpr std::int64_t kFifth =
-      kPlaceUnits * kPlaceUnits * kPlaceUnits * kPlaceUnits * kPlaceUnits;
-  for (int i = 0; i < octave.texels_per_cell; ++i) {
-    const std::int64_t p = (2 * i + 1) * kPlaceUnits / (2 * octave.texels_per_cell);
-    octave.place.push_back(p);
-    const std::int64_t fade =
-        p * p * p * (6 * p * p - 15 * p * kPlaceUnits + 10 * kPlaceUnits * kPlaceUnits);
-    octave.fade.push_back((fade * kFadeOne + kFifth / 2) / kFifth);
-  }
-  return octave;
-}
-
-// The gradients at one lattice point of a row, already interpolated across the row: noise along it
-// is slope * place + offset.
-struct RowCorner {
-  std::int64_t slope = 0;
-  std::int64_t offset = 0;
-};
-
-RowCorner CornerOf(const Octave& octave, int cell_x, int y, int z) {
-  const int in_y = y % octave.texels_per_cell;
-  const int in_z = z % octave.texels_per_cell;
-  RowCorner corner;
-  for (int step = 0; step < 4; ++step) {
-    const int step_y = step & 1;
-    const int step_z = step >> 1;
-    const Gradient& gradient =
-        octave.At(cell_x, y / octave.texels_per_cell + step_y, z / octave.texels_per_cell + step_z);
-    const std::int64_t fade_y = octave.fade[static_cast<std::size_t>(in_y)];
-    const std::int64_t fade_z = octave.fade[static_cast<std::size_t>(in_z)];
-    const std::int64_t weight =
-        (step_y == 1 ? fade_y : kFadeOne - fade_y) * (step_z == 1 ? fade_z : kFadeOne - fade_z);
-    const std::int64_t from_y = octave.place[static_cast<std::size_t>(in_y)] - step_y * kPlaceUnits;
-    const std::int64_t from_z = octave.place[static_cast<std::size_t>(in_z)] - step_z * kPlaceUnits;
-    corner.slope += weight * gradient.x;
-    corner.offset += weight * (gradient.y * from_y + gradient.z * from_z);
-  }
-  return corner;
-}
-
-// Adds |noise| of one octave along the row (y, z), halved `index` times.
-void AddRow(const Octave& octave, int index, int y, int z, std::vector<std::uint64_t>* row) {
-  RowCorner low = CornerOf(octave, 0, y, z);
-  std::size_t texel = 0;
-  for (int cell = 0; cell < octave.cells; ++cell) {
-    const RowCorner high = CornerOf(octave, cell + 1, y, z);
-    for (std::size_t i = 0; i < octave.place.size(); ++i, ++texel) {
-      const std::int64_t at_low = low.slope * octave.place[i] + low.offset;
-      const std::int64_t at_high = high.slope * (octave.place[i] - kPlaceUnits) + high.offset;
-      const std::int64_t noise = at_low * (kFadeOne - octave.fade[i]) + at_high * octave.fade[i];
-      (*row)[texel] +=
-          static_cast<std::uint64_t>(noise < 0 ? -noise : noise) >> static_cast<unsigned>(index);
-    }
-    low = high;
-  }
-}
 
 // Noise below the threshold becomes zero: sheets of clear air between the billows. The threshold is
 // such that kClearShare of the tile is empty.
@@ -174,9 +69,9 @@ TurbulenceTile MakeTurbulence(int octaves, std::uint32_t seed) {
   // Two texels a cell of the finest octave.
   tile.side = std::clamp(TurbulenceTile::kWaves << octaves, kSmallestSide, kLargestSide);
   const auto side = static_cast<std::size_t>(tile.side);
-  std::vector<Octave> parts;
+  std::vector<PerlinOctave> parts;
   parts.reserve(static_cast<std::size_t>(octaves));
-  for (int i = 0; i < octaves; ++i) parts.push_back(MakeOctave(i, tile.side, seed));
+  for (int i = 0; i < octaves; ++i) parts.push_back(MakePerlinOctave(i, tile.side, seed));
   std::vector<std::uint32_t> sums;
   sums.reserve(side * side * side);
   std::vector<std::uint64_t> row(side);
@@ -184,7 +79,11 @@ TurbulenceTile MakeTurbulence(int octaves, std::uint32_t seed) {
     for (int y = 0; y < tile.side; ++y) {
       std::fill(row.begin(), row.end(), 0);
       for (int i = 0; i < octaves; ++i) {
-        AddRow(parts[static_cast<std::size_t>(i)], i, y, z, &row);
+        AddPerlinRow(parts[static_cast<std::size_t>(i)], y, z,
+                     [&](std::size_t texel, std::int64_t noise) {
+                       row[texel] += static_cast<std::uint64_t>(noise < 0 ? -noise : noise) >>
+                                     static_cast<unsigned>(i);
+                     });
       }
       // Below 2^43 before: three fades of 12 bits, a place of 5, and a factor of 4.
       for (const std::uint64_t sum : row) sums.push_back(static_cast<std::uint32_t>(sum >> 12U));

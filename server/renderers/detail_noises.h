@@ -1,31 +1,39 @@
-// Turbulence tiles on the device, each baked once for its octaves and seed and kept while in use or
+// Noises on the device, each baked once for its octaves and seed and kept while in use or
 // recent. Owns GL objects: use it on the context's thread.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "gl/objects.h"
-#include "physics/turbulence.h"
 
 namespace thunderhead::renderers {
 
 struct DetailNoise {
-  gl::Texture3D texture;  // repeats
-  float value_of_full = 0.0F;
+  std::vector<gl::Texture3D> levels;  // repeat; each after the first is half as fine
+
+  std::size_t Bytes() const;
 };
 
 class DetailNoises {
  public:
+  // Of a medium: physics::DetailTile, down to one texel.
   std::shared_ptr<const DetailNoise> Get(int octaves, std::uint32_t seed);
+  // Of a surface: physics::TurbulenceTile, one level.
+  std::shared_ptr<const DetailNoise> Roughness(int octaves, std::uint32_t seed);
 
  private:
+  enum class Kind { kDetail, kRoughness };
   struct Entry {
+    Kind kind;
     int octaves;
     std::uint32_t seed;
     std::shared_ptr<const DetailNoise> noise;
   };
+
+  std::shared_ptr<const DetailNoise> Find(Kind kind, int octaves, std::uint32_t seed);
 
   std::vector<Entry> entries_;  // the one asked for last comes last
 };

@@ -3,20 +3,30 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 
 #include "base/stopwatch.h"
 #include "glm/common.hpp"
+#include "glm/geometric.hpp"
+#include "physics/detail_tile.h"
 #include "physics/optics.h"
 #include "scene/drawn_fields.h"
 #include "shaders/bindings.h"
 #include "shaders/uniforms.h"
 #include "volume/brick_map.h"
 #include "volume/coarsen.h"
+#include "volume/detail_control.h"
 
 namespace thunderhead::renderers {
 namespace {
 
 constexpr std::size_t kMaxBoxes = 8192;
+constexpr double kLevelsOfBillows = 4.0;  // that tell octaves apart; the coarsest is all but even
+constexpr double kWarpInCells = 1.0;
+constexpr double kUpwardWarpInCells = 2.0;  // layers are thin
+constexpr double kWarpInWavelengths = 0.25;
+// Light is given to cells: what they cannot tell apart must not flicker from one to the next.
+constexpr double kLightFootprintInCells = 1.0;
 
 // Groups that differ only in their share are fetched together.
 std::vector<DetailLayer> LayersOf(const Medium& medium, DetailNoises* noises) {
@@ -53,15 +63,32 @@ std::uint64_t NextId() {
   return ++last;
 }
 
+struct Computed {
+  volume::ExtinctionVolume extinction;
+  std::vector<std::uint8_t> detail_control;  // empty without detail
+};
+
+Computed ComputedOf(const volume::HydrometeorFields& fields, const Medium& medium) {
+  Computed computed;
+  computed.extinction =
+      volume::ComputeExtinction(fields, medium.terms, static_cast<int>(medium.groups.size()));
+  std::vector<float> shares;
+  for (const MediumGroup& group : medium.groups) shares.push_back(group.detail.share);
+  const bool has_detail = std::ranges::any_of(shares, [](float share) { return share > 0.0F; });
+  if (has_detail && !computed.extinction.Empty()) {
+    computed.detail_control = volume::DetailControlOf(fields, medium.terms, computed.extinction);
+    volume::KeepWaterPaths(computed.detail_control, shares, &computed.extinction);
+  }
+  return computed;
+}
+
 // On fewer cells if a texture cannot hold all.
-volume::ExtinctionVolume ExtinctionThatFits(const volume::HydrometeorFields& fields,
-                                            const Medium& medium) {
-  const auto channels = static_cast<int>(medium.groups.size());
+Computed ComputedThatFits(const volume::HydrometeorFields& fields, const Medium& medium) {
   GLint max_texels = 0;
   glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &max_texels);
   const glm::ivec3 factor = volume::CoarseningFor(fields, max_texels);
-  if (factor == glm::ivec3(1)) return volume::ComputeExtinction(fields, medium.terms, channels);
-  return volume::ComputeExtinction(volume::Coarsened(fields, factor), medium.terms, channels);
+  return factor == glm::ivec3(1) ? ComputedOf(fields, medium)
+                                 : ComputedOf(volume::Coarsened(fields, factor), medium);
 }
 
 // Around what is occupied; the first brick begins at `corner_m`.
@@ -100,7 +127,8 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
   constexpr std::array<GLenum, 5> kFormats = {0, GL_R16F, GL_RG16F, 0, GL_RGBA16F};
   constexpr std::array<GLenum, 5> kTransferFormats = {0, GL_RED, GL_RG, 0, GL_RGBA};
   base::Stopwatch stopwatch;
-  bounds_ = ExtinctionThatFits(fields, content_);
+  Computed computed = ComputedThatFits(fields, content_);
+  bounds_ = std::move(computed.extinction);
   const volume::BrickMap bricks = volume::BrickMapOf(bounds_);
   const volume::CellBlocks blocks = volume::CellBlocksOf(bricks, bounds_.grid);
   cost->extinction_ms = stopwatch.Restart();
@@ -129,6 +157,11 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
     blocks_ = gl::Buffer(blocks.occupied.size() * sizeof(std::uint32_t), blocks.occupied.data(), 0);
   }
   details_ = LayersOf(content_, noises);
+  if (!computed.detail_control.empty()) {
+    detail_control_ = gl::Texture3D(GL_RG8, bounds_.grid.cells);
+    detail_control_.Upload(GL_RG, GL_UNSIGNED_BYTE, computed.detail_control.data());
+    detail_fibres_ = glm::mat3(physics::FibresAlong(fields.motion.shear_m_per_s));
+  }
   cost->upload_ms = stopwatch.ElapsedMs();
 }
 
@@ -157,27 +190,71 @@ void ResidentMedium::BindWithBricks(const gl::Program& program) const {
 }
 
 void ResidentMedium::BindDetails(const gl::Program& program) const {
+  const glm::dvec3& cell_m = bounds_.grid.spacing_m;
+  const glm::dvec3 extent_m = glm::dvec3(bounds_.grid.cells) * cell_m;
   std::vector<glm::vec3> sizes;
   std::vector<glm::vec3> corners;
-  std::vector<float> fulls;
   std::vector<glm::vec4> shares;
   for (std::size_t i = 0; i < details_.size(); ++i) {
     const DetailLayer& layer = details_[i];
-    layer.noise->texture.Bind(shaders::kDetailNoiseUnit + static_cast<GLuint>(i));
     const double tile_m =
-        static_cast<double>(layer.detail.wavelength_m) * physics::TurbulenceTile::kWaves;
-    const glm::dvec3 extent_m = glm::dvec3(bounds_.grid.cells) * bounds_.grid.spacing_m;
-    const glm::dvec3 corner = bounds_.grid.low_corner_m / tile_m;
+        static_cast<double>(layer.detail.wavelength_m) * physics::DetailTile::kWaves;
     sizes.emplace_back(tile_m / extent_m);
-    corners.emplace_back((glm::floor(corner) - corner) * tile_m / extent_m);
-    fulls.push_back(layer.noise->value_of_full);
+    // Not less whole tiles: fibres have others.
+    corners.emplace_back(-bounds_.grid.low_corner_m / extent_m);
     const std::vector<glm::vec4> packed = Packed(layer.share_by_group, 1.0);
     shares.insert(shares.end(), packed.begin(), packed.end());
   }
+  detail_control_.Bind(shaders::kDetailControlUnit);
   program.Set(uniform::detail_tile_size, sizes);
   program.Set(uniform::detail_tile_corner, corners);
-  program.Set(uniform::detail_value_of_full, fulls);
   program.Set(uniform::detail_shares, shares);
+  program.Set(uniform::detail_fibres, detail_fibres_);
+  // The largest displacement leaves neighbouring cells in their order.
+  const double across_m = std::min({kWarpInCells * cell_m.x, kWarpInCells * cell_m.y,
+                                    kWarpInWavelengths * details_[0].detail.wavelength_m});
+  const double up_m = std::min(across_m, kUpwardWarpInCells * cell_m.z);
+  program.Set(uniform::detail_warp, glm::vec3(glm::dvec3(across_m, across_m, up_m) / extent_m));
+  BindNoises(program, {kLightFootprintInCells * std::max(cell_m.x, cell_m.y), 0.0}, 0.0);
+}
+
+void ResidentMedium::BindPixel(const gl::Program& program, const scene::View& view,
+                               const glm::ivec2& size_px) const {
+  if (details_.empty()) return;
+  const glm::dvec3 nearest_m =
+      glm::max(glm::abs(view.eye_m - Middle_m()) - HalfExtent_m(), glm::dvec3(0.0));
+  BindNoises(program,
+             {2.0 * view.half_height_m / size_px.y, 2.0 * view.tan_half_height / size_px.y},
+             glm::length(nearest_m));
+}
+
+// Takes the level that suits the nearest part of the medium.
+void ResidentMedium::BindNoises(const gl::Program& program, const Footprint& footprint,
+                                double nearest_m) const {
+  std::vector<float> left_out;
+  std::vector<float> fades_at_start;
+  std::vector<float> fades_per_m;
+  for (std::size_t i = 0; i < details_.size(); ++i) {
+    const DetailLayer& layer = details_[i];
+    const double texel_m = static_cast<double>(layer.detail.wavelength_m) *
+                           physics::DetailTile::kWaves / physics::DetailTile::kSide;
+    const double texels = (footprint.at_start_m + footprint.per_m * nearest_m) / texel_m;
+    const std::vector<gl::Texture3D>& levels = layer.noise->levels;
+    const int level = std::clamp(static_cast<int>(std::floor(std::log2(std::max(texels, 1.0)))), 0,
+                                 static_cast<int>(levels.size()) - 1);
+    levels[static_cast<std::size_t>(level)].Bind(shaders::kDetailNoiseUnit +
+                                                 static_cast<GLuint>(i));
+    left_out.push_back(static_cast<float>(std::min(level / kLevelsOfBillows, 1.0)));
+    // From a footprint of a texel of that level on, up to where its last octave is as fine.
+    const double level_texel_m = texel_m * std::ldexp(1.0, level);
+    const double reach = std::ldexp(1.0, static_cast<int>(kLevelsOfBillows)) - 1.0;
+    fades_at_start.push_back(
+        static_cast<float>((footprint.at_start_m / level_texel_m - 1.0) / reach));
+    fades_per_m.push_back(static_cast<float>(footprint.per_m / level_texel_m / reach));
+  }
+  program.Set(uniform::detail_left_out, left_out);
+  program.Set(uniform::detail_fade_at_start, fades_at_start);
+  program.Set(uniform::detail_fade_per_m, fades_per_m);
 }
 
 double ResidentMedium::OccupiedShare() const {
@@ -198,9 +275,10 @@ void ResidentMedium::BindBlocks(const gl::Program& program) const {
 }
 
 std::size_t ResidentMedium::Bytes() const {
-  std::size_t bytes = bricks_.Bytes() + blocks_.Bytes() + phase_curves_.Bytes();
+  std::size_t bytes =
+      bricks_.Bytes() + blocks_.Bytes() + phase_curves_.Bytes() + detail_control_.Bytes();
   for (const gl::Texture3D& texture : textures_) bytes += texture.Bytes();
-  for (const DetailLayer& layer : details_) bytes += layer.noise->texture.Bytes();
+  for (const DetailLayer& layer : details_) bytes += layer.noise->Bytes();
   return bytes;
 }
 

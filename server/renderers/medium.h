@@ -9,11 +9,13 @@
 
 #include "gl/objects.h"
 #include "gl/program.h"
+#include "glm/mat3x3.hpp"
 #include "physics/hydrometeors.h"
 #include "renderers/cover.h"
 #include "renderers/detail_noises.h"
 #include "renderers/phase_curves.h"
 #include "scene/scene.h"
+#include "scene/view.h"
 #include "volume/extinction.h"
 #include "volume/hydrometeor_fields.h"
 
@@ -84,6 +86,10 @@ class ResidentMedium {
   void Bind(const gl::Program& program) const;
   // The same, and those of common/bricks.glsl.
   void BindWithBricks(const gl::Program& program) const;
+  // After either: detail that is finer than a pixel of a picture of that size fades out. By default
+  // what is finer than cells does, as light needs it.
+  void BindPixel(const gl::Program& program, const scene::View& view,
+                 const glm::ivec2& size_px) const;
   std::size_t Bytes() const;
   // Share of the box that is in bricks that are not empty, 0 to 1.
   double OccupiedShare() const;
@@ -101,7 +107,14 @@ class ResidentMedium {
   std::vector<glm::vec4> Weights(const std::vector<double>& by_group) const;
 
  private:
+  // What a sample stands for, across: at a distance of 0, and what a metre of distance adds.
+  struct Footprint {
+    double at_start_m;
+    double per_m;
+  };
+
   void BindDetails(const gl::Program& program) const;
+  void BindNoises(const gl::Program& program, const Footprint& footprint, double nearest_m) const;
 
   std::uint64_t id_ = 0;
   Medium content_;
@@ -116,6 +129,8 @@ class ResidentMedium {
   int block_count_ = 0;
   Boxes occupied_boxes_;
   std::vector<DetailLayer> details_;
+  gl::Texture3D detail_control_;  // volume::DetailControlOf
+  glm::mat3 detail_fibres_{1.0F};
   PhaseCurves phase_curves_;
 };
 

@@ -126,6 +126,7 @@ absl::Status SunGlow::AddThrough(const ResidentMedium& medium,
   medium.BindWithBricks(*program);
   weights.BindPhase(*program);
   BindRays(*program, view, medium.Middle_m());
+  medium.BindPixel(*program, view, picture.size_px);
   BindSun(*program, sun, view, picture);
   const double depth_m = 2.0 * glm::dot(glm::abs(view.forward), medium.HalfExtent_m());
   program->Set(uniform::step_m, static_cast<float>(depth_m / slices));

@@ -53,11 +53,9 @@ bool FieldParameters::operator==(const FieldParameters& other) const {
 
 Detail DefaultDetail(physics::Hydrometeor hydrometeor) {
   // One seed and wavelength for all, as one turbulent flow carries them all: the noise is then
-  // fetched once. Equal shares leave fields that scatter alike in one group.
-  const bool water =
-      hydrometeor == physics::Hydrometeor::kCloud || hydrometeor == physics::Hydrometeor::kRain;
-  // A cell of cloud water is opaque: what was left of its even part would hide the rest.
-  return {.share = water ? 1.0F : 0.8F};
+  // fetched once. Equal shares leave fields that scatter alike in one group. Rain falls through the
+  // eddies.
+  return {.share = hydrometeor == physics::Hydrometeor::kRain ? 0.0F : 1.0F};
 }
 
 float DefaultDetailWavelength_m(const glm::dvec3& cell_m) {

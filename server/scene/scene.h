@@ -19,8 +19,9 @@
 
 namespace thunderhead::scene {
 
-// Turbulent structure finer than the grid (physics/turbulence.h), at rest in the world: noise with
-// a mean of 1 multiplies `share` of the field. Shown where the technique's look has detail.
+// Structure finer than the grid (shaders/physics/detail.glsl), at rest in the world, that changes
+// `share` of the field where the model's air is turbulent. Shown where the technique's look has
+// detail.
 struct Detail {
   float share = 0.0F;
   float wavelength_m = 0.0F;  // of the first octave; 0 is kDetailWavelengthInCells of the storm's

@@ -51,6 +51,13 @@ constexpr std::array kSizeOrigins = {
     std::pair{v1::FieldDescription::SIZE_ORIGIN_SCHEME, volume::SizeOrigin::kScheme},
     std::pair{v1::FieldDescription::SIZE_ORIGIN_OBSERVED, volume::SizeOrigin::kObserved},
 };
+constexpr std::array kTurbulenceSources = {
+    std::pair{v1::StormDescription::TURBULENCE_SOURCE_GRADIENT,
+              volume::TurbulenceSource::kGradient},
+    std::pair{v1::StormDescription::TURBULENCE_SOURCE_DEFORMATION,
+              volume::TurbulenceSource::kDeformation},
+    std::pair{v1::StormDescription::TURBULENCE_SOURCE_ENERGY, volume::TurbulenceSource::kEnergy},
+};
 constexpr std::array kToneMaps = {
     std::pair{v1::TONE_MAP_FILMIC, scene::ToneMap::kFilmic},
     std::pair{v1::TONE_MAP_LINEAR, scene::ToneMap::kLinear},
@@ -457,6 +464,8 @@ void ToMessage(const volume::StormInfo& storm, const volume::HydrometeorFields& 
   if (storm.longitude_deg.has_value()) message.set_longitude_deg(*storm.longitude_deg);
   FillClockDefaults(*message.mutable_sun_clock(), storm);
   message.set_bytes_per_time(fields.Bytes());
+  message.set_turbulence_source(MessageOf(kTurbulenceSources, fields.motion.source));
+  message.set_turbulence_variable(fields.motion.variable);
   if (!fields.condensate.Empty()) {
     const volume::WorldBox box = BoxOf(fields.grid, fields.condensate);
     SetPosition(box.low_m, *message.mutable_condensate_low());

@@ -58,6 +58,13 @@ HydrometeorFields Coarsened(const HydrometeorFields& fields, const glm::ivec3& f
     mean.sizes = SizesOf(field.sizes, mean.concentration_kg_per_m3,
                          BlockMeans(fields.grid, coarse.grid, factor, PerRadius(field)));
   }
+  coarse.motion = fields.motion;
+  for (std::vector<std::uint8_t>* values : {&coarse.motion.turbulence, &coarse.motion.ascent}) {
+    if (values->empty()) continue;
+    const std::vector<float> means = BlockMeans(fields.grid, coarse.grid, factor,
+                                                std::vector<float>(values->begin(), values->end()));
+    values->assign(means.begin(), means.end());
+  }
   if (!fields.condensate.Empty()) {
     coarse.condensate = {fields.condensate.low / factor,
                          (fields.condensate.high + factor - 1) / factor};

@@ -58,7 +58,8 @@ std::size_t HydrometeorFields::Bytes() const {
     halves += field.sizes.inverse_radius.capacity();
   }
   return values * sizeof(float) + halves * sizeof(std::uint16_t) +
-         land.texels.capacity() * sizeof(glm::u8vec4);
+         land.texels.capacity() * sizeof(glm::u8vec4) + motion.turbulence.capacity() +
+         motion.ascent.capacity();
 }
 
 }  // namespace thunderhead::volume

@@ -31,6 +31,8 @@ struct Unit {
 constexpr Unit kMixingRatio = {"kg kg-1", {"kgkg-1", "kg/kg", "kg-1kg", "1"}};
 constexpr Unit kPressure = {"Pa", {"Pa", "pascal", "pascals", "Nm-2"}};
 constexpr Unit kGeopotential = {"m2 s-2", {"m2s-2", "m2/s2", "Jkg-1", "J/kg"}};
+constexpr Unit kEnergy = kGeopotential;
+constexpr Unit kVelocity = {"m s-1", {"ms-1", "m/s", "meters/s", "metres/s"}};
 constexpr Unit kTemperature = {"K", {"K", "kelvin", "Kelvin", "degK"}};
 constexpr Unit kLength = {"m", {"m", "meter", "meters", "metres"}};
 constexpr Unit kPerMass = {"kg-1", {"kg-1", "/kg", "#kg-1", "#/kg"}};
@@ -227,6 +229,27 @@ void FindSizes(const NetcdfFile& file, const std::vector<std::size_t>& in_layers
   }
 }
 
+// A variable of unexpected shape or units is skipped.
+void FindMotion(const NetcdfFile& file, WrfMetadata& metadata) {
+  const std::size_t records = metadata.times.size();
+  const auto nx = static_cast<std::size_t>(metadata.cells.x);
+  const auto ny = static_cast<std::size_t>(metadata.cells.y);
+  const auto nz = static_cast<std::size_t>(metadata.cells.z);
+  const auto fits = [&](const std::string& variable, const std::vector<std::size_t>& shape,
+                        const Unit& unit) {
+    return file.HasVariable(variable) && CheckVariable(file, variable, shape, unit).ok();
+  };
+  for (const char* name : {"TKE", "QKE", "TKE_PBL"}) {
+    const bool in_layers = fits(name, {records, nz, ny, nx}, kEnergy);
+    if (!in_layers && !fits(name, {records, nz + 1, ny, nx}, kEnergy)) continue;
+    metadata.energy = {name, !in_layers, std::string_view(name) == "QKE"};
+    break;
+  }
+  metadata.has_wind = fits("U", {records, nz, ny, nx + 1}, kVelocity) &&
+                      fits("V", {records, nz, ny + 1, nx}, kVelocity) &&
+                      fits("W", {records, nz + 1, ny, nx}, kVelocity);
+}
+
 absl::Status CheckVariables(const NetcdfFile& file, WrfMetadata& metadata) {
   const std::size_t records = metadata.times.size();
   const auto nx = static_cast<std::size_t>(metadata.cells.x);
@@ -256,6 +279,7 @@ absl::Status CheckVariables(const NetcdfFile& file, WrfMetadata& metadata) {
     metadata.fields.push_back(hydrometeor);
   }
   FindSizes(file, in_layers, metadata);
+  FindMotion(file, metadata);
   if (!metadata.fields.empty()) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat(
       file.Path(), ": has none of the variables ",

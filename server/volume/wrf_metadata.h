@@ -41,6 +41,15 @@ struct WrfMetadata {
   // there is none.
   std::array<SizeVariable, physics::kHydrometeorCount> sizes;
   physics::Microphysics microphysics = physics::Microphysics::kUnknown;
+  // Of turbulent kinetic energy, without a name if there is none: on interfaces, and doubled, as
+  // boundary layer schemes have it.
+  struct Energy {
+    std::string name;
+    bool at_interfaces = false;
+    bool doubled = false;
+  };
+  Energy energy;
+  bool has_wind = false;  // U, V and W
   bool has_vapour = false;
   bool has_terrain = false;
   WrfLand land;                        // without names for an idealised run

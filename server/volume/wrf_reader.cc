@@ -4,6 +4,7 @@
 #include <cmath>
 #include <future>
 #include <new>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "volume/field_scan.h"
 #include "volume/layer_air.h"
 #include "volume/netcdf_file.h"
+#include "volume/wrf_motion.h"
 
 namespace thunderhead::volume {
 namespace {
@@ -56,6 +58,10 @@ class TimeReader {
   absl::Status ReadTerrain(HydrometeorFields& result);
   absl::Status ReadLand(HydrometeorFields& result);
   absl::Status ReadFields(HydrometeorFields& result);
+  absl::Status ReadMotion(HydrometeorFields& result);
+  absl::StatusOr<StaggeredWind> ReadWind();
+  absl::StatusOr<std::vector<float>> ReadEnergy();
+  std::vector<std::uint8_t> RemapBytes(const std::vector<float>& values) const;
   absl::StatusOr<VerticalGrid> GridFor(const std::optional<VerticalGrid>& storm_grid) const;
   absl::StatusOr<RemappedField> Remap(Hydrometeor hydrometeor, std::vector<float> values,
                                       std::vector<float> sizes) const;
@@ -83,7 +89,8 @@ absl::Status TimeReader::Advance() {
   const auto sizes = std::ranges::count_if(
       metadata_.sizes, [](const SizeVariable& size) { return !size.name.empty(); });
   const int variables = 5 + (metadata_.has_vapour ? 1 : 0) +
-                        static_cast<int>(metadata_.fields.size()) + static_cast<int>(sizes);
+                        static_cast<int>(metadata_.fields.size()) + static_cast<int>(sizes) +
+                        (metadata_.energy.name.empty() ? 0 : 1) + (metadata_.has_wind ? 3 : 0);
   return checkpoint_(std::min(1.0, static_cast<double>(variables_read_++) / variables));
 }
 
@@ -296,6 +303,106 @@ absl::Status TimeReader::ReadFields(HydrometeorFields& result) {
       " give no usable air density in any cell; check their values and units (Pa, K, kg kg-1)"));
 }
 
+absl::StatusOr<StaggeredWind> TimeReader::ReadWind() {
+  StaggeredWind wind;
+  wind.cells = metadata_.cells;
+  wind.dx_m = metadata_.dx_m;
+  wind.dy_m = metadata_.dy_m;
+  const std::size_t cells = air_.levels * air_.columns;
+  const std::size_t walls = static_cast<std::size_t>(metadata_.cells.z);
+  const std::size_t more_u = walls * static_cast<std::size_t>(metadata_.cells.y);
+  const std::size_t more_v = walls * static_cast<std::size_t>(metadata_.cells.x);
+  THUNDERHEAD_RETURN_IF_ERROR(ReadVariable("U", cells + more_u, wind.u_m_per_s));
+  THUNDERHEAD_RETURN_IF_ERROR(ReadVariable("V", cells + more_v, wind.v_m_per_s));
+  THUNDERHEAD_RETURN_IF_ERROR(ReadVariable("W", cells + air_.columns, wind.w_m_per_s));
+  return wind;
+}
+
+// Turbulent kinetic energy in layers, m2/s2.
+absl::StatusOr<std::vector<float>> TimeReader::ReadEnergy() {
+  const WrfMetadata::Energy& variable = metadata_.energy;
+  const int levels = air_.levels + (variable.at_interfaces ? 1 : 0);
+  std::vector<float> energy;
+  THUNDERHEAD_RETURN_IF_ERROR(ReadVariable(variable.name, levels * air_.columns, energy));
+  if (variable.at_interfaces) energy = LayerMeans(energy, air_.levels, air_.columns);
+  if (!variable.doubled) return energy;
+  for (float& value : energy) value *= 0.5F;
+  return energy;
+}
+
+// Values from 0 to 255 in layers, on the regular grid; missing ones are 0.
+std::vector<std::uint8_t> TimeReader::RemapBytes(const std::vector<float>& values) const {
+  const std::vector<float> remapped =
+      RemapColumns(air_.interface_height_m, values, air_.levels, air_.columns, grid_);
+  std::vector<std::uint8_t> bytes(remapped.size());
+  std::ranges::transform(remapped, bytes.begin(), [](float value) {
+    return static_cast<std::uint8_t>(std::min(value + 0.5F, 255.0F));
+  });
+  return bytes;
+}
+
+// The mean height of the mass of cloud water, or of all that is frozen.
+std::optional<double> MeanHeight_m(const HydrometeorFields& fields, bool frozen) {
+  double mass = 0.0;
+  double moment = 0.0;
+  const RegularGrid& grid = fields.grid;
+  const std::size_t layer = grid.Offset(0, 0, 1);
+  for (const HydrometeorField& field : fields.fields) {
+    const bool cloud = field.hydrometeor == Hydrometeor::kCloud;
+    const bool rain = field.hydrometeor == Hydrometeor::kRain;
+    if (field.concentration_kg_per_m3.empty() || (frozen ? cloud || rain : !cloud)) continue;
+    for (int z = 0; z < grid.cells.z; ++z) {
+      const float* first =
+          field.concentration_kg_per_m3.data() + static_cast<std::size_t>(z) * layer;
+      const double sum = std::accumulate(first, first + layer, 0.0);
+      mass += sum;
+      moment += sum * (grid.low_corner_m.z + (z + 0.5) * grid.spacing_m.z);
+    }
+  }
+  if (mass <= 0.0) return std::nullopt;
+  return moment / mass;
+}
+
+// The wind at a height of the first column's layers, by `winds` of each level.
+glm::dvec2 WindAt(double height_m, const std::vector<glm::dvec2>& winds, const LayerAir& air) {
+  std::size_t level = 0;
+  const auto top_m = [&](std::size_t i) { return air.interface_height_m[(i + 1) * air.columns]; };
+  while (level + 1 < winds.size() && static_cast<double>(top_m(level)) < height_m) ++level;
+  return winds[level];
+}
+
+absl::Status TimeReader::ReadMotion(HydrometeorFields& result) {
+  AirMotion& motion = result.motion;
+  std::vector<float> energy;
+  if (!metadata_.energy.name.empty()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(energy, ReadEnergy());
+    motion.source = TurbulenceSource::kEnergy;
+    motion.variable = metadata_.energy.name;
+  }
+  if (metadata_.has_wind) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const StaggeredWind wind, ReadWind());
+    if (energy.empty()) {
+      energy = EnergyOfDeformation(wind, air_.interface_height_m);
+      motion.source = TurbulenceSource::kDeformation;
+    }
+    std::vector<float> ascent = LayerMeans(wind.w_m_per_s, air_.levels, air_.columns);
+    for (float& value : ascent) value = value > 0.0F ? value / kAscentUnit_m_per_s : 0.0F;
+    motion.ascent = RemapBytes(ascent);
+    const std::optional<double> cloud_m = MeanHeight_m(result, false);
+    const std::optional<double> ice_m = MeanHeight_m(result, true);
+    if (cloud_m.has_value() && ice_m.has_value()) {
+      const std::vector<glm::dvec2> winds = MeanWinds(wind);
+      motion.shear_m_per_s = WindAt(*ice_m, winds, air_) - WindAt(*cloud_m, winds, air_);
+    }
+  }
+  if (energy.empty()) return absl::OkStatus();
+  for (float& value : energy) {
+    value = value > 0.0F ? 255.0F * TurbulentAmplitude(std::min(value, 1e6F)) : 0.0F;
+  }
+  motion.turbulence = RemapBytes(energy);
+  return absl::OkStatus();
+}
+
 // Removes the empty ones of the cells added above the storm's grid.
 void TrimTop(const VerticalGrid& storm_grid, HydrometeorFields& fields) {
   RegularGrid& grid = fields.grid;
@@ -303,6 +410,9 @@ void TrimTop(const VerticalGrid& storm_grid, HydrometeorFields& fields) {
   const int cells = std::max(static_cast<int>(std::lround(storm_top)), fields.condensate.high.z);
   if (cells >= grid.cells.z) return;
   grid.cells.z = cells;
+  for (std::vector<std::uint8_t>* values : {&fields.motion.turbulence, &fields.motion.ascent}) {
+    if (!values->empty()) values->resize(grid.CellCount());
+  }
   for (HydrometeorField& field : fields.fields) {
     if (field.concentration_kg_per_m3.empty()) continue;
     field.concentration_kg_per_m3.resize(grid.CellCount());
@@ -324,6 +434,7 @@ absl::StatusOr<HydrometeorFields> TimeReader::Read(const std::optional<VerticalG
   THUNDERHEAD_RETURN_IF_ERROR(ReadTerrain(result));
   THUNDERHEAD_RETURN_IF_ERROR(ReadLand(result));
   THUNDERHEAD_RETURN_IF_ERROR(ReadFields(result));
+  THUNDERHEAD_RETURN_IF_ERROR(ReadMotion(result));
   if (grid.has_value()) TrimTop(*grid, result);
   THUNDERHEAD_RETURN_IF_ERROR(Advance());
   return result;

@@ -59,6 +59,7 @@ class SlabView : public testing::Test {
                 : *support::MakeSlab(width_m_, kHeight_m, optical_depth / kHeight_m);
     if (with_gap_) MakeGap(&fields);
     if (haze_per_m_ > 0.0) AddHaze(&fields);
+    if (stirred_) Stir(&fields);
     ResidentMedium::Cost cost;
     DetailNoises noises;
     const ResidentMedium medium(scene_, fields, &noises, &cost);
@@ -89,6 +90,14 @@ class SlabView : public testing::Test {
     seen.radiance = seen.eye[4 * 40];
     seen.transmittance = seen.eye[4 * 40 + 3];
     return seen;
+  }
+
+  // Ice in weak turbulence, which has fibres.
+  static constexpr std::uint8_t kTurbulence = 76;
+  static void Stir(volume::HydrometeorFields* fields) {
+    fields->fields[0].hydrometeor = physics::Hydrometeor::kIce;
+    fields->motion.source = volume::TurbulenceSource::kEnergy;
+    fields->motion.turbulence.assign(fields->grid.CellCount(), kTurbulence);
   }
 
   static void MakeGap(volume::HydrometeorFields* fields) {
@@ -128,6 +137,7 @@ class SlabView : public testing::Test {
   scene::Scene scene_ = test_support::PlainScene();
   bool in_air_ = false;  // a layer with soft faces instead of the slab
   double width_m_ = kWidth_m;
+  bool stirred_ = false;
   bool with_gap_ = false;    // no cloud in the middle half of its width
   double haze_per_m_ = 0.0;  // extinction of the otherwise empty cells
   bool even_light_ = false;  // radiance 1 from everywhere instead of sunlight

@@ -77,5 +77,50 @@ TEST_F(WideDomainTest, StormsAreBrightAsFarAsTheHorizon) {
   }
 }
 
+TEST_F(WideDomainTest, OneRayAPixelIsNearlyAsGoodAs64) {
+  constexpr int kRays = 8;  // along each side of a pixel
+  const glm::ivec2 size_px(320, 180);
+  const scene::Scene scene = SceneFrom(std::nullopt, size_px);
+  const picture::LinearPicture one = Draw(scene);
+  scene::Scene finer = scene;
+  finer.output.width_px *= kRays;
+  finer.output.height_px *= kRays;
+  const picture::LinearPicture many = Draw(finer);
+  picture::LinearPicture mean;
+  mean.size_px = size_px;
+  mean.radiance.assign(one.radiance.size(), glm::vec3(0.0F));
+  mean.opacity.assign(one.radiance.size(), 0.0F);
+  for (int y = 0; y < size_px.y * kRays; ++y) {
+    for (int x = 0; x < size_px.x * kRays; ++x) {
+      const int from = y * size_px.x * kRays + x;
+      const int to = y / kRays * size_px.x + x / kRays;
+      mean.radiance[to] += many.radiance[from] / static_cast<float>(kRays * kRays);
+      mean.opacity[to] += many.opacity[from] / static_cast<float>(kRays * kRays);
+    }
+  }
+  frame::ToneMapper tone_mapper;
+  scene::Scene shown = scene;
+  const auto displayed = [&](const picture::LinearPicture& picture) {
+    const auto mapped = tone_mapper.Map(frame::TextureOf(picture), shown);
+    EXPECT_TRUE(mapped.ok()) << mapped.status();
+    shown.display.exposure_ev = mapped->exposure_ev;  // the first's counts for both
+    return mapped->rgb;
+  };
+  const std::vector<std::uint8_t> expected = displayed(mean);
+  const std::vector<std::uint8_t> drawn = displayed(one);
+  double squares = 0.0;
+  double storm_squares = 0.0;
+  double storm_values = 0.0;
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    const double square = std::pow((drawn[i] - expected[i]) / 255.0, 2);
+    squares += square;
+    storm_squares += mean.opacity[i / 3] * square;
+    storm_values += mean.opacity[i / 3];
+  }
+  EXPECT_LE(std::sqrt(squares / static_cast<double>(drawn.size())), 0.02);
+  // Storms cover little of the picture.
+  EXPECT_LE(std::sqrt(storm_squares / storm_values), 0.1);
+}
+
 }  // namespace
 }  // namespace thunderhead

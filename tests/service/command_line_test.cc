@@ -121,6 +121,8 @@ TEST_F(CommandLineTest, InspectDescribesTheSample) {
   EXPECT_THAT(table.out, HasSubstr("QGRAUP"));
   EXPECT_THAT(table.out, HasSubstr("   3  0001-01-01T01:20:00Z     60.0  described below"));
   EXPECT_THAT(table.out, HasSubstr("snow     scheme WSM6"));
+  EXPECT_EQ(storm.turbulence_source(), v1::StormDescription::TURBULENCE_SOURCE_GRADIENT);
+  EXPECT_THAT(table.out, HasSubstr("turbulence from contrasts of the fields"));
 }
 
 TEST_F(CommandLineTest, MissingAndForeignFilesAreNamed) {

@@ -40,6 +40,8 @@ std::shared_ptr<const volume::HydrometeorFields> Fields(bool empty) {
     cloud.concentration_kg_per_m3[fields->grid.Offset(4, 4, 2)] = 1e-3F;
     cloud.statistics = {-1e-13F, 2e-3F, 0.25, 7.5, 3, 1};
     fields->condensate = {{4, 4, 2}, {5, 5, 3}};
+    fields->motion.source = volume::TurbulenceSource::kEnergy;
+    fields->motion.variable = "QKE";
   }
   fields->fields = {cloud, rain};
   return fields;

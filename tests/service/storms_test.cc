@@ -56,6 +56,8 @@ TEST(StormsTest, DescriptionHoldsGridTimesFieldsAndDefaults) {
   EXPECT_EQ(storm.grid().low().x_m(), -10000.0F);
   EXPECT_EQ(storm.grid().high().y_m(), 5000.0F);
   EXPECT_FALSE(storm.has_latitude_deg());
+  EXPECT_EQ(storm.turbulence_source(), v1::StormDescription::TURBULENCE_SOURCE_ENERGY);
+  EXPECT_EQ(storm.turbulence_variable(), "QKE");
   ASSERT_EQ(storm.fields_size(), 2);
   const v1::FieldDescription& cloud = storm.fields(0);
   EXPECT_EQ(cloud.hydrometeor(), v1::HYDROMETEOR_CLOUD);

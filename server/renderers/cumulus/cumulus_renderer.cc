@@ -220,7 +220,7 @@ void CumulusRenderer::SetShading(const gl::Program& program, const RenderSetting
                                  const std::vector<glm::vec3>& light_map, DetailNoises* noises) {
   const scene::Cumulus& cumulus = SettingsOf(settings);
   const scene::View& view = settings.view;
-  noise_ = noises->Get(kRoughnessOctaves, cumulus.seed);
+  noise_ = noises->Roughness(kRoughnessOctaves, cumulus.seed);
   const double wave_m = kRoughnessInFinest * finest_m_;
   const double tile_m = wave_m * physics::TurbulenceTile::kWaves;
   const glm::dvec3 corner = Middle_m() / tile_m;
@@ -249,7 +249,7 @@ void CumulusRenderer::SetShading(const gl::Program& program, const RenderSetting
               static_cast<float>(
                   2.0 * std::max(shadow_frame_.half_extent_m.x, shadow_frame_.half_extent_m.y) /
                   kShadowTexels));
-  noise_->texture.Bind(shaders::kRoughnessNoiseUnit);
+  noise_->levels.front().Bind(shaders::kRoughnessNoiseUnit);
   shadow_depth_.Bind(shaders::kSunDepthUnit);
   core_depth_.Bind(shaders::kCoreDepthUnit);
 }
@@ -306,7 +306,7 @@ absl::Status CumulusRenderer::Resolve(double far_m, double middle_m) {
 std::size_t CumulusRenderer::Bytes() const {
   return bubbles_.Bytes() + shadow_depth_.Bytes() + core_depth_.Bytes() + tested_depth_.Bytes() +
          cores_.Bytes() + layer_.Bytes() + eye_.Bytes() + distances_m_.Bytes() +
-         (noise_ != nullptr ? noise_->texture.Bytes() : 0);
+         (noise_ != nullptr ? noise_->Bytes() : 0);
 }
 
 }  // namespace thunderhead::renderers

@@ -13,6 +13,7 @@
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "gl/whole_target.h"
+#include "physics/turbulence.h"
 #include "renderers/detail_noises.h"
 #include "renderers/light_frame.h"
 #include "renderers/render_settings.h"

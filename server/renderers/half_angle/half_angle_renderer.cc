@@ -123,6 +123,7 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
       programs_->Get(gl::ProgramSource::WholeTarget("half_angle/eye.frag", eye_variant.Defines())));
   medium.BindWithBricks(*eye);
   BindRays(*eye, settings.view, medium.Middle_m());
+  medium.BindPixel(*eye, settings.view, settings.eye_size);
   eye->Set(uniform::towards_sun, glm::vec3(frame.towards_sun));
   eye->Set(uniform::slice_normal, glm::vec3(slicing.normal));
   eye->Set(uniform::first_plane_m, static_cast<float>(slicing.first_m));
@@ -141,6 +142,7 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
       const gl::Program* light,
       programs_->Get(gl::ProgramSource::Compute("half_angle/carry.comp", light_variant.Defines())));
   medium.BindWithBricks(*light);
+  medium.BindPixel(*light, settings.view, settings.eye_size);  // drawn in turns with the eye
   BindSunRays(*light, slicing, frame);
   light->Set(uniform::light_weights, medium.Weights(weights.light));
   light->Set(uniform::transport_weights, medium.Weights(weights.transport));

@@ -229,6 +229,7 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
   const scene::View& view = settings.view;
   const double reach_m = glm::dot(glm::abs(view.forward), medium.HalfExtent_m());
   BindRays(*program, view, medium.Middle_m());
+  medium.BindPixel(*program, view, settings.eye_size);
   program->Set(uniform::towards_sun, glm::vec3(settings.illumination.towards_sun));
   program->Set(uniform::step_m, static_cast<float>(2.0 * reach_m / settings.slices));
   program->Set(uniform::eye_weights, medium.Weights(weights.eye));

@@ -41,7 +41,7 @@ vec3 depths_along(vec3 origin_m, vec3 direction, Depths of_step) {
       distance_m += empty_path(ray, place, content);
       continue;
     }
-    Medium medium = medium_at_place(medium_place(ray, distance_m + 0.5 * step_m));
+    Medium medium = medium_at_place(medium_place(ray, distance_m + 0.5 * step_m), 0.0);
     depths += vec3(weigh(medium, of_step.light), weigh(medium, of_step.transport), weigh(medium, of_step.absorption));
     distance_m += step_m;
   }

@@ -7,6 +7,7 @@ const int kMediumPlaneUnit = 0;  // and the one after
 const int kBricksUnit = 2;
 const int kPhaseCurvesUnit = 3;
 const int kDetailNoiseUnit = 8;  // and as many as there are noises
+const int kDetailControlUnit = 16;
 
 // Of the ground and the picture.
 const int kGroundDistanceUnit = 7;

@@ -1,9 +1,10 @@
 // The extinction of a medium's groups at a point. A group is a channel: 0-3 of plane 0, 4-7 of plane 1; channels that a
-// plane does not have must be weighted with zero. GROUPS is the number of groups, DETAILS that of the turbulent noises
-// that multiply shares of them (physics/turbulence.h); without any there is no code for them.
+// plane does not have must be weighted with zero. GROUPS is the number of groups, DETAILS that of the noises that change
+// shares of them (physics/detail.glsl): the first displaces the medium, all multiply it. Without any there is no code for them.
 // Uniforms that a loop needs are read before it: inside, where some invocations may have ended, Mesa's software renderer
 // reads a uniform once for every invocation (gallivm 22.3).
 #include "common/bindings.glsl"
+#include "physics/detail.glsl"
 
 #ifndef DETAILS
 #error "DETAILS is not defined"
@@ -24,15 +25,18 @@ uniform vec4 extinction_weights[PLANES];  // texel to extinction, 1/m; zero for 
 
 #if DETAILS > 0
 layout(binding = kDetailNoiseUnit) uniform sampler3D detail_noise[DETAILS];
+layout(binding = kDetailControlUnit) uniform sampler3D detail_control;  // cell by cell as the medium
 uniform vec3 detail_tile_size[DETAILS];    // of a tile in the medium's texture coordinates: at rest in the world
 uniform vec3 detail_tile_corner[DETAILS];  // and where one begins
-uniform float detail_value_of_full[DETAILS];       // of the noise (its root is fetched) where a texel is 1
-uniform vec4 detail_shares[DETAILS * PLANES];      // of each channel that noise multiplies
+uniform mat3 detail_fibres;                // tiles of fibres from those of billows
+uniform vec3 detail_warp;                  // the full displacement, in the medium's texture coordinates
+uniform vec4 detail_shares[DETAILS * PLANES];  // of each channel that noise multiplies
+uniform float detail_left_out[DETAILS];        // share of the noise that is not in its texture
+uniform float detail_fade_at_start[DETAILS];   // and share of the rest that fades, at a distance of 0
+uniform float detail_fade_per_m[DETAILS];      // and what a metre adds
 
 vec3 tiles_scale[DETAILS];
 vec3 tiles_offset[DETAILS];
-vec4 detail_rest[DETAILS * PLANES];  // factor of each channel where the noise is zero
-vec4 detail_gain[DETAILS * PLANES];  // and the slope with the square of what is fetched
 #endif
 
 // Call first.
@@ -41,10 +45,6 @@ void begin_medium() {
   for (int i = 0; i < DETAILS; ++i) {
     tiles_scale[i] = 1.0 / detail_tile_size[i];
     tiles_offset[i] = -detail_tile_corner[i] * tiles_scale[i];
-    for (int plane = 0; plane < PLANES; ++plane) {
-      detail_rest[i * PLANES + plane] = 1.0 - detail_shares[i * PLANES + plane];
-      detail_gain[i * PLANES + plane] = detail_value_of_full[i] * detail_shares[i * PLANES + plane];
-    }
   }
 #endif
 }
@@ -53,8 +53,22 @@ struct Medium {
   vec4 plane[PLANES];
 };
 
-// Texel values at `place` in texture coordinates.
-Medium medium_at_place(vec3 place) {
+// Texel values at `place` in texture coordinates, `distance_m` from the eye.
+Medium medium_at_place(vec3 place, float distance_m) {
+#if DETAILS > 0
+  // An amplitude of 0 is a texel of 128 of 255.
+  vec2 control = texture(detail_control, place).rg * vec2(1.0, 255.0 / 127.0) - vec2(0.0, 128.0 / 127.0);
+  vec4 noise[DETAILS];
+  float faded[DETAILS];
+  for (int i = 0; i < DETAILS; ++i) {
+    vec3 tile = place * tiles_scale[i] + tiles_offset[i];
+    tile = control.y < 0.0 ? detail_fibres * tile : tile;
+    float fade = clamp(detail_fade_at_start[i] + detail_fade_per_m[i] * distance_m, 0.0, 1.0);
+    noise[i] = mix(texture(detail_noise[i], tile), vec4(0.5), fade);
+    faded[i] = max(detail_left_out[i], fade);
+  }
+  place += detail_warp_share(control) * detail_warp * (noise[0].gba * 2.0 - 1.0);
+#endif
   Medium medium;
   medium.plane[0] = texture(medium_plane_0, place);
 #if PLANES > 1
@@ -62,9 +76,9 @@ Medium medium_at_place(vec3 place) {
 #endif
 #if DETAILS > 0
   for (int i = 0; i < DETAILS; ++i) {
-    float root = texture(detail_noise[i], place * tiles_scale[i] + tiles_offset[i]).r;
+    float change = detail_factor(control, noise[i].r, faded[i]) - 1.0;
     for (int plane = 0; plane < PLANES; ++plane) {
-      medium.plane[plane] *= detail_rest[i * PLANES + plane] + detail_gain[i * PLANES + plane] * (root * root);
+      medium.plane[plane] *= 1.0 + change * detail_shares[i * PLANES + plane];
     }
   }
 #endif

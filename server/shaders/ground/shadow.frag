@@ -35,7 +35,7 @@ void main() {
       continue;
     }
     float path_m = min(step_m, path.y - distance_m);
-    depth += path_m * per_step * weigh(medium_at_place(medium_place(ray, distance_m + 0.5 * path_m)), depth_weights);
+    depth += path_m * per_step * weigh(medium_at_place(medium_place(ray, distance_m + 0.5 * path_m), 0.0), depth_weights);
     float after = exp(-depth);
     float along = (distance_m + 0.5 * path_m) / half_depth_m;
     moments += (before - after) * vec2(along, along * along);

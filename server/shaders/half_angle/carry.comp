@@ -80,7 +80,7 @@ void main() {
     uint content = brick_content(ray.medium, brick_place(ray.medium, distance_m));
     bool meets = distance_m >= ray.inside.x && distance_m <= ray.inside.y && is_filled(content);
     if (meets) {
-      Medium medium = medium_at_place(medium_place(ray.medium, distance_m));
+      Medium medium = medium_at_place(medium_place(ray.medium, distance_m), 0.0);
       here = carried(here, vec3(place, float(layer)), medium, light_depths, transport_depths);
 #if EXCHANGES
       ring += weigh(medium, peripheral_depths);

@@ -99,7 +99,7 @@ void main() {
       distance_m = first_m + slice * apart_m;
     }
     float counts = slice < end ? 1.0 : 0.0;
-    Medium medium = medium_at_place(medium_place(ray, distance_m));
+    Medium medium = medium_at_place(medium_place(ray, distance_m), abs(distance_m));
     float depth = counts * weigh(medium, eye_depths);
     float layer = layer_of_first + slice;
     layer -= layer < layers ? 0.0 : layers;

@@ -27,7 +27,7 @@ void main() {
     uint content = brick_content(ray.medium, place);
     bool meets = is_filled(content);
     slice = max(slice + 1.0, meets ? 0.0 : ceil((distance_m + empty_path(ray.medium, place, content) - ray.first_m) / path_m));
-    if (meets) depth += weigh(medium_at_place(medium_place(ray.medium, distance_m)), transport_depths);
+    if (meets) depth += weigh(medium_at_place(medium_place(ray.medium, distance_m), 0.0), transport_depths);
   }
   imageStore(thickness, texel, vec4(depth, 0.0, 0.0, 0.0));
 }

@@ -49,7 +49,7 @@ void give_light(ivec3 cell, vec3 place, vec3 here_place, vec3 far_place, Surroun
   float depth = 0.0;
   for (int i = 0; i < around.near_samples; ++i) {
     float at = share * (kFirstNearSample + kNearSamplesApart * float(i));
-    depth += share * weigh(medium_at_place(place + at * around.near_path), around.near_depths);
+    depth += share * weigh(medium_at_place(place + at * around.near_path, 0.0), around.near_depths);
   }
   // Between the sun's side of the volume and the middle of its first layer light begins to fade.
   float begun = clamp(2.0 * around.light_layers * far_place.z, 0.0, 1.0);

@@ -89,7 +89,7 @@ void main() {
     int steps = !is_filled(content) && empty_path(ray, place, content) > further_m ? 0 : most_steps;
     for (int i = 0; i < steps; ++i) {
       float at_m = distance_m + float(i) * step_m;
-      Medium medium = medium_at_place(medium_place(ray, at_m));
+      Medium medium = medium_at_place(medium_place(ray, at_m), 0.0);
       float counts = at_m >= inside.x && at_m <= inside.y ? 1.0 : 0.0;
       float step_depth = weigh(medium, light_depths) * counts;
       medium_depth += step_depth;

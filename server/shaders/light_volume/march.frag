@@ -70,9 +70,9 @@ Sample no_sample() {
   return none;
 }
 
-Sample sample_at(vec3 place) {
+Sample sample_at(vec3 place, float distance_m) {
   Sample here;
-  here.medium = medium_at_place(place);
+  here.medium = medium_at_place(place, distance_m);
   here.extinction = weigh(here.medium, eye_depths);
   here.light = texture(arrived, place).rg;
 #if DIFFUSION
@@ -181,7 +181,7 @@ void main() {
   Sample before = no_sample();
   for (int i = 0; i < kMaxSamples && distance_m < end_m && background_transmittance(seen) > kOpaqueTransmittance; ++i) {
     float segment_m = advance(distance_m, end_m, ray, cell_m, before.extinction < 0.0);
-    Sample here = sample_at(medium_place(ray, distance_m));
+    Sample here = sample_at(medium_place(ray, distance_m), distance_m);
     see_segment(seen, before, here, segment_m, distance_m);
     before = here;
   }

@@ -22,7 +22,7 @@ void main() {
     for (int y = 0; y < samples.y; ++y) {
       for (int x = 0; x < samples.x; ++x) {
         vec3 within = (vec3(x, y, z) + 0.5) / vec3(samples);
-        Medium medium = medium_at_place((vec3(cell) + within) / vec3(cell_count));
+        Medium medium = medium_at_place((vec3(cell) + within) / vec3(cell_count), 0.0);
         sum += vec3(weigh(medium, light_weights), weigh(medium, transport_weights), weigh(medium, absorption_weights));
       }
     }

@@ -48,7 +48,8 @@ Medium medium_along(vec3 origin_m, vec3 direction) {
       continue;
     }
     float segment_m = min(step_m, end_m - distance_m);
-    Medium here = medium_at_place(medium_place(ray, distance_m + 0.5 * segment_m));
+    float middle_m = distance_m + 0.5 * segment_m;
+    Medium here = medium_at_place(medium_place(ray, middle_m), middle_m);
     for (int plane = 0; plane < PLANES; ++plane) sum.plane[plane] += segment_m * here.plane[plane];
     distance_m += segment_m;
     if (weigh(sum, extinction_weights) > kOpaqueDepth) break;

@@ -278,5 +278,50 @@ TEST(SampleStorm, SaysHowFarItsReadingHasCome) {
   EXPECT_EQ(shares.back(), 1.0);
 }
 
+TEST(FinerSampleStorm, TellsTheMotionOfItsAir) {
+  auto metadata = ReadWrfMetadata(std::string(THUNDERHEAD_SOURCE_DIR "/samples/supercell-500m.nc"));
+  ASSERT_TRUE(metadata.ok()) << metadata.status();
+  EXPECT_EQ(metadata->energy.name, "TKE");
+  EXPECT_TRUE(metadata->has_wind);
+  const auto fields = ReadWrfTime(*metadata, 1, std::nullopt, {});
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  const AirMotion& motion = fields->motion;
+  EXPECT_EQ(motion.source, TurbulenceSource::kEnergy);
+  ASSERT_EQ(motion.turbulence.size(), fields->grid.CellCount());
+  ASSERT_EQ(motion.ascent.size(), fields->grid.CellCount());
+  // The file's largest energy and updraught at that time, in m2/s2 and m/s.
+  EXPECT_GT(*std::ranges::max_element(motion.turbulence), 250);
+  EXPECT_NEAR(*std::ranges::max_element(motion.ascent) * kAscentUnit_m_per_s, 55.0, 8.0);
+  // The storm was made with westerly shear, and its anvil lies in the east.
+  EXPECT_GT(motion.shear_m_per_s.x, 10.0);
+  EXPECT_LT(std::abs(motion.shear_m_per_s.y), motion.shear_m_per_s.x);
+  // Without its energy the wind's deformation counts.
+  metadata->energy = {};
+  const auto deformed = ReadWrfTime(*metadata, 1, std::nullopt, {});
+  ASSERT_TRUE(deformed.ok()) << deformed.status();
+  EXPECT_EQ(deformed->motion.source, TurbulenceSource::kDeformation);
+  // Deformation makes the energy that the model has.
+  double stirred = 0.0;
+  double calm = 0.0;
+  double stirred_count = 0.0;
+  double calm_count = 0.0;
+  for (std::size_t i = 0; i < motion.turbulence.size(); ++i) {
+    const double value = deformed->motion.turbulence[i];
+    (motion.turbulence[i] > 200 ? stirred : calm) += value;
+    (motion.turbulence[i] > 200 ? stirred_count : calm_count) += 1.0;
+  }
+  EXPECT_GT(stirred / stirred_count, 1.5 * calm / calm_count);
+}
+
+TEST(SampleStorm, WithoutWindTellsNothingOfTheAir) {
+  const auto metadata = ReadWrfMetadata(std::string(kSample));
+  ASSERT_TRUE(metadata.ok()) << metadata.status();
+  const auto fields = ReadWrfTime(*metadata, 1, std::nullopt, {});
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ(fields->motion.source, TurbulenceSource::kGradient);
+  EXPECT_TRUE(fields->motion.turbulence.empty());
+  EXPECT_TRUE(fields->motion.ascent.empty());
+}
+
 }  // namespace
 }  // namespace thunderhead::volume

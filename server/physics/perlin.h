@@ -1,0 +1,68 @@
+// Octaves of Perlin's gradient noise (Perlin 1985; gradients along a cell's edges as in Perlin
+// 2002) on a cube of texels that repeats without a seam. Computed in integers: the same bits on
+// every machine. Knows no fields and no GL.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace thunderhead::physics {
+
+inline constexpr int kMaxPerlinSide = 128;  // texels along an edge of a tile
+inline constexpr int kPerlinWaves = 8;      // wavelengths of the first octave along it
+inline constexpr std::int64_t kPerlinOne = std::int64_t{1} << 12U;  // a weight of 1
+// Texels' middles lie at odd multiples of half a texel: with at most 16 texels a cell, of 1 / 32.
+inline constexpr std::int64_t kPerlinPlaceUnits = 2 * kMaxPerlinSide / kPerlinWaves;
+
+struct PerlinGradient {
+  std::int8_t x, y, z;
+};
+
+// Positions of an octave's texels in its lattice cells, in units of 1 / kPerlinPlaceUnits of a
+// cell.
+struct PerlinOctave {
+  int cells = 0;            // along an edge of the tile
+  int texels_per_cell = 0;  // at least 1
+  std::vector<PerlinGradient> gradients;
+  std::vector<std::int64_t> place;  // of texel i in its cell
+  std::vector<std::int64_t> fade;   // 6 t^5 - 15 t^4 + 10 t^3, in units of 1 / kPerlinOne
+
+  const PerlinGradient& At(int x, int y, int z) const {
+    const auto wrap = [this](int i) { return static_cast<std::size_t>(i % cells); };
+    const auto side = static_cast<std::size_t>(cells);
+    return gradients[(wrap(z) * side + wrap(y)) * side + wrap(x)];
+  }
+};
+
+// Octave `index`, from 0, of a tile of `side` texels; it has 2^index times kPerlinWaves cells along
+// an edge, at most `side`.
+PerlinOctave MakePerlinOctave(int index, int side, std::uint32_t seed);
+
+// The gradients at one lattice point of a row of texels, interpolated across the row: noise along
+// it is slope * place + offset.
+struct PerlinCorner {
+  std::int64_t slope = 0;
+  std::int64_t offset = 0;
+};
+
+PerlinCorner CornerOf(const PerlinOctave& octave, int cell_x, int y, int z);
+
+// Calls take(texel, noise) for each texel of the row (y, z). The noise is below 2^43: three weights
+// of 12 bits, a place of 5, and a factor of 4.
+template <typename Take>
+void AddPerlinRow(const PerlinOctave& octave, int y, int z, const Take& take) {
+  PerlinCorner low = CornerOf(octave, 0, y, z);
+  std::size_t texel = 0;
+  for (int cell = 0; cell < octave.cells; ++cell) {
+    const PerlinCorner high = CornerOf(octave, cell + 1, y, z);
+    for (std::size_t i = 0; i < octave.place.size(); ++i, ++texel) {
+      const std::int64_t at_low = low.slope * octave.place[i] + low.offset;
+      const std::int64_t at_high = high.slope * (octave.place[i] - kPerlinPlaceUnits) + high.offset;
+      take(texel, at_low * (kPerlinOne - octave.fade[i]) + at_high * octave.fade[i]);
+    }
+    low = high;
+  }
+}
+
+}  // namespace thunderhead::physics

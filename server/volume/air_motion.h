@@ -1,0 +1,34 @@
+// The motion of the air that a file has, as far as detail finer than its grid depends on it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "glm/vec2.hpp"
+
+namespace thunderhead::volume {
+
+// What the amplitude of turbulence follows from: contrasts of the condensate between cells, the
+// deformation of the wind, or turbulent kinetic energy in the file.
+enum class TurbulenceSource { kGradient, kDeformation, kEnergy };
+
+struct AirMotion {
+  TurbulenceSource source = TurbulenceSource::kGradient;
+  std::string variable;  // of the energy
+  // grid.CellCount() values each, x fastest; empty if the file does not tell.
+  std::vector<std::uint8_t> turbulence;  // TurbulentAmplitude of the kinetic energy, of 255
+  std::vector<std::uint8_t> ascent;  // upward velocity in kAscentUnit_m_per_s; 0 where air sinks
+  glm::dvec2 shear_m_per_s{0.0};     // wind at the height of ice less that at cloud water's
+};
+
+// Turbulence of this energy (m2/s2) has half of the full amplitude: gusts of 0.4 m/s.
+inline constexpr float kHalfAmplitudeEnergy_m2_per_s2 = 0.25F;
+inline constexpr float kAscentUnit_m_per_s = 0.25F;
+
+// Amplitude of detail, 0 to 1, where turbulence has this kinetic energy (at least 0).
+inline float TurbulentAmplitude(float energy_m2_per_s2) {
+  return energy_m2_per_s2 / (energy_m2_per_s2 + kHalfAmplitudeEnergy_m2_per_s2);
+}
+
+}  // namespace thunderhead::volume

@@ -1,0 +1,356 @@
+#include "volume/detail_control.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+
+#include "glm/common.hpp"
+#include "physics/detail_tile.h"
+
+namespace thunderhead::volume {
+namespace {
+
+using Values = std::vector<float>;
+
+constexpr float kHalfOpaqueDepth = 4.0F;  // optical depth of a cell, at which it is half opaque
+constexpr float kFullShare = 0.7F;        // of the neighbours' opacity, at which a cell is inside
+constexpr float kGradientAmplitude = 0.8F;
+constexpr int kProfileSmoothings = 2;  // surfaces move by a cell either way
+// Vertical velocities (m/s) between which cloud water begins to condense, and between which ice
+// still looks like the liquid towers that it rises from.
+constexpr std::array<float, 2> kCondensing_m_per_s = {0.0F, 1.0F};
+constexpr std::array<float, 2> kIceBillows_m_per_s = {1.0F, 5.0F};
+constexpr std::array<float, 2> kIceBillowsTurbulence = {0.3F,
+                                                        0.7F};  // or opacities, if it is not known
+constexpr int kTurbulenceReach = 2;                             // cells
+// Where this opacity is not reached around a place, along a cell or this length, detail is weaker.
+constexpr float kThinOpacity = 0.3F;
+constexpr double kThinLength_m = 200.0;
+
+float Between(const std::array<float, 2>& range, float value) {
+  return std::clamp((value - range[0]) / (range[1] - range[0]), 0.0F, 1.0F);
+}
+
+// Replaces each value by of(before, here, after) along one axis; at the ends the outermost value
+// counts again.
+template <typename Of>
+void Along(const glm::ivec3& cells, int axis, const Of& of, Values* values) {
+  const std::array<std::size_t, 3> size = {static_cast<std::size_t>(cells.x),
+                                           static_cast<std::size_t>(cells.y),
+                                           static_cast<std::size_t>(cells.z)};
+  const std::array<std::size_t, 3> strides = {1, size[0], size[0] * size[1]};
+  const auto along = static_cast<std::size_t>(axis);
+  const std::size_t stride = strides[along];
+  const std::size_t count = size[along];
+  const std::size_t inner = axis == 0 ? 1 : stride;
+  const std::size_t outer = values->size() / (count * inner);
+  Values before(inner);
+  Values here(inner);
+  for (std::size_t block = 0; block < outer; ++block) {
+    float* row = values->data() + block * count * inner;
+    std::copy(row, row + inner, before.begin());
+    for (std::size_t i = 0; i < count; ++i, row += inner) {
+      const float* after = i + 1 < count ? row + inner : row;
+      std::copy(row, row + inner, here.begin());
+      for (std::size_t k = 0; k < inner; ++k) row[k] = of(before[k], here[k], after[k]);
+      std::swap(before, here);
+    }
+  }
+}
+
+template <typename Of>
+void AlongAll(const glm::ivec3& cells, const Of& of, Values* values) {
+  for (int axis = 0; axis < 3; ++axis) Along(cells, axis, of, values);
+}
+
+void Spread(const glm::ivec3& cells, Values* values) {
+  AlongAll(
+      cells, [](float a, float b, float c) { return std::max(std::max(a, b), c); }, values);
+}
+
+void Smooth(const glm::ivec3& cells, Values* values) {
+  AlongAll(
+      cells, [](float a, float b, float c) { return 0.25F * a + 0.5F * b + 0.25F * c; }, values);
+}
+
+double CellSize_m(const RegularGrid& grid) {
+  return std::cbrt(grid.spacing_m.x * grid.spacing_m.y * grid.spacing_m.z);
+}
+
+float OpacityOf(float depth) { return depth / (kHalfOpaqueDepth + depth); }
+
+// The opacity along a path `times` as long.
+float OnLongerPath(float opacity, float times) {
+  const float opaque = times * opacity;
+  return opaque / (1.0F - opacity + opaque);
+}
+
+struct Opacities {
+  Values all;    // along a cell, tau / (kHalfOpaqueDepth + tau) for its optical depth tau
+  Values cloud;  // optical depths of cloud water
+  Values ice;    // of ice, snow, graupel and hail
+};
+
+Opacities OpacitiesOf(const HydrometeorFields& fields, const std::vector<ExtinctionTerm>& terms,
+                      const ExtinctionVolume& volume) {
+  const RegularGrid& grid = volume.grid;
+  const auto cell_m = static_cast<float>(CellSize_m(grid));
+  const glm::ivec3 low(
+      glm::round((grid.low_corner_m - fields.grid.low_corner_m) / fields.grid.spacing_m));
+  const std::size_t count = grid.CellCount();
+  Opacities opacities{Values(count), Values(count), Values(count)};
+  for (const ExtinctionTerm& term : terms) {
+    const HydrometeorField& field = fields.fields[static_cast<std::size_t>(term.field)];
+    if (field.concentration_kg_per_m3.empty()) continue;
+    const bool cloud = field.hydrometeor == physics::Hydrometeor::kCloud;
+    const bool rain = field.hydrometeor == physics::Hydrometeor::kRain;
+    Values& into = cloud ? opacities.cloud : rain ? opacities.all : opacities.ice;
+    for (int z = 0; z < grid.cells.z; ++z) {
+      for (int y = 0; y < grid.cells.y; ++y) {
+        AddExtinction(field, {term.mass_extinction_m2_per_kg * cell_m, term.by_cell},
+                      fields.grid.Offset(low.x, low.y + y, low.z + z),
+                      static_cast<std::size_t>(grid.cells.x), into.data() + grid.Offset(0, y, z));
+      }
+    }
+  }
+  const float negligible = volume.negligible_per_m * cell_m;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float depth = opacities.all[i] + opacities.cloud[i] + opacities.ice[i];
+    opacities.all[i] = depth > negligible ? OpacityOf(depth) : 0.0F;
+  }
+  return opacities;
+}
+
+// The values of the volume's cells.
+Values Cut(const HydrometeorFields& fields, const std::vector<std::uint8_t>& values,
+           const RegularGrid& grid) {
+  const glm::ivec3 low(
+      glm::round((grid.low_corner_m - fields.grid.low_corner_m) / fields.grid.spacing_m));
+  Values cut(grid.CellCount());
+  for (int z = 0; z < grid.cells.z; ++z) {
+    for (int y = 0; y < grid.cells.y; ++y) {
+      const std::uint8_t* row = values.data() + fields.grid.Offset(low.x, low.y + y, low.z + z);
+      std::copy(row, row + grid.cells.x, cut.data() + grid.Offset(0, y, z));
+    }
+  }
+  return cut;
+}
+
+// Where condensate differs from cell to cell, clear air is being mixed in.
+Values ContrastOf(const RegularGrid& grid, const Values& opacity, const Values& around) {
+  Values contrast = opacity;
+  AlongAll(
+      grid.cells, [](float a, float b, float c) { return std::min(std::min(a, b), c); }, &contrast);
+  for (std::size_t i = 0; i < contrast.size(); ++i) {
+    contrast[i] = around[i] > 0.0F ? kGradientAmplitude * (1.0F - contrast[i] / around[i]) : 0.0F;
+  }
+  return contrast;
+}
+
+// Amplitude of turbulence, 0 to 1, where the medium's opacity is `opacity`, the largest of its
+// neighbourhood `around`.
+Values TurbulenceOf(const HydrometeorFields& fields, const RegularGrid& grid, const Values& opacity,
+                    const Values& around) {
+  Values turbulence;
+  if (!fields.motion.turbulence.empty()) {
+    turbulence = Cut(fields, fields.motion.turbulence, grid);
+    for (float& value : turbulence) value /= 255.0F;
+  } else {
+    turbulence = ContrastOf(grid, opacity, around);
+  }
+  // Eddies reach beyond the cells that make them.
+  for (int i = 0; i < kTurbulenceReach; ++i) Spread(grid.cells, &turbulence);
+  return turbulence;
+}
+
+std::uint8_t ByteOf(float value) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0F, 255.0F)));
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> DetailControlOf(const HydrometeorFields& fields,
+                                          const std::vector<ExtinctionTerm>& terms,
+                                          const ExtinctionVolume& volume) {
+  const RegularGrid& grid = volume.grid;
+  const Opacities opacities = OpacitiesOf(fields, terms, volume);
+  const Values& opacity = opacities.all;
+  Values around = opacity;
+  Spread(grid.cells, &around);
+  Values profile(opacity.size());
+  for (std::size_t i = 0; i < profile.size(); ++i) {
+    if (opacity[i] > 0.0F) profile[i] = std::min(opacity[i] / (kFullShare * around[i]), 1.0F);
+  }
+  for (int i = 0; i < kProfileSmoothings; ++i) Smooth(grid.cells, &profile);
+
+  Values amplitude = TurbulenceOf(fields, grid, opacity, around);
+  Values ascent_m_per_s;
+  if (!fields.motion.ascent.empty()) {
+    ascent_m_per_s = Cut(fields, fields.motion.ascent, grid);
+    for (float& value : ascent_m_per_s) value *= kAscentUnit_m_per_s;
+    Spread(grid.cells, &ascent_m_per_s);
+  }
+  const auto lengthening = static_cast<float>(std::max(kThinLength_m / CellSize_m(grid), 1.0));
+  const bool measured = fields.motion.source != TurbulenceSource::kGradient;
+  // Empty cells take the amplitude of those beside them: detail is drawn between the two.
+  Values weight(amplitude.size());
+  for (std::size_t i = 0; i < amplitude.size(); ++i) {
+    const float cloud = opacities.cloud[i];
+    const float ice = opacities.ice[i];
+    const bool rises = !ascent_m_per_s.empty();
+    const float condenses = rises ? Between(kCondensing_m_per_s, ascent_m_per_s[i]) : 1.0F;
+    const float towers = rises ? Between(kIceBillows_m_per_s, ascent_m_per_s[i]) : 0.0F;
+    const float shown = cloud + ice;
+    // Half of the extinction decides how it looks.
+    const float liquid = shown > 0.0F ? std::min(2.0F * cloud / shown, 1.0F) : 0.0F;
+    const float stirred = Between(kIceBillowsTurbulence, measured ? amplitude[i] : around[i]);
+    const float billows = std::max({liquid * condenses, towers, stirred});
+    // Neither in rain.
+    const float kind = shown > 0.0F ? billows - (1.0F - liquid) * (1.0F - billows) : 0.0F;
+    weight[i] = opacity[i];
+    const float thick = std::min(OnLongerPath(around[i], lengthening) / kThinOpacity, 1.0F);
+    amplitude[i] *= thick * kind * weight[i];
+  }
+  Smooth(grid.cells, &amplitude);
+  Smooth(grid.cells, &weight);
+  std::vector<std::uint8_t> texels(2 * amplitude.size());
+  for (std::size_t i = 0; i < amplitude.size(); ++i) {
+    texels[2 * i] = opacity[i] > 0.0F ? ByteOf(255.0F * profile[i]) : std::uint8_t{0};
+    texels[2 * i + 1] =
+        ByteOf(128.0F + (weight[i] > 0.0F ? 127.0F * amplitude[i] / weight[i] : 0.0F));
+  }
+  return texels;
+}
+
+namespace {
+
+float FloatFromHalf(std::uint16_t half) {
+  if (half < 0x400U) return std::ldexp(static_cast<float>(half), -24);
+  return std::bit_cast<float>((static_cast<std::uint32_t>(half) << 13U) + 0x38000000U);
+}
+
+// The mean factor of billows of full amplitude over all noises, by profile from 0 to 255.
+std::array<float, 256> MeanBillows() {
+  constexpr int kNoises = 64;
+  std::array<float, 256> means{};
+  for (std::size_t i = 0; i < means.size(); ++i) {
+    for (int noise = 0; noise < kNoises; ++noise) {
+      means[i] += physics::glsl::detail_factor({static_cast<float>(i) / 255.0F, 1.0F},
+                                               (static_cast<float>(noise) + 0.5F) / kNoises, 0.0F) /
+                  kNoises;
+    }
+  }
+  return means;
+}
+
+// What is interpolated between cells.
+struct Cell {
+  float extinction = 0.0F;  // weighted by the shares of detail
+  float profile = 0.0F;     // 0 to 255
+  float amplitude = 0.0F;   // -1 to 1
+};
+
+Cell Mixed(const Cell& a, const Cell& b, float at) {
+  const auto mix = [at](float x, float y) { return x + (y - x) * at; };
+  return {mix(a.extinction, b.extinction), mix(a.profile, b.profile),
+          mix(a.amplitude, b.amplitude)};
+}
+
+// Sums a column over points between cells with detail and without.
+class ColumnSums {
+ public:
+  ColumnSums(const std::vector<Cell>& cells, const glm::ivec3& size)
+      : cells_(cells), size_(size), mean_billows_(MeanBillows()) {}
+
+  // The factor that makes up for what detail takes from column (x, y) on average.
+  float FactorOf(int x, int y) {
+    float without = 0.0F;
+    float with = 0.0F;
+    // At a quarter of a cell from the column's middle; vertically in the middle between levels and
+    // at them.
+    for (const int beside_x : {-1, 1}) {
+      for (const int beside_y : {-1, 1}) {
+        Cell below = At(x, beside_x, y, beside_y, 0);
+        Add(below, &without, &with);
+        for (int z = 1; z < size_.z; ++z) {
+          const Cell here = At(x, beside_x, y, beside_y, z);
+          Add(Mixed(below, here, 0.5F), &without, &with);
+          Add(here, &without, &with);
+          below = here;
+        }
+      }
+    }
+    return with > 0.0F ? std::min(without / with, kMaxColumnFactor) : 1.0F;
+  }
+
+ private:
+  const Cell& CellAt(int x, int y, int z) const {
+    x = std::clamp(x, 0, size_.x - 1);
+    y = std::clamp(y, 0, size_.y - 1);
+    return cells_[(static_cast<std::size_t>(z) * static_cast<std::size_t>(size_.y) +
+                   static_cast<std::size_t>(y)) *
+                      static_cast<std::size_t>(size_.x) +
+                  static_cast<std::size_t>(x)];
+  }
+
+  Cell At(int x, int beside_x, int y, int beside_y, int z) const {
+    return Mixed(Mixed(CellAt(x, y, z), CellAt(x + beside_x, y, z), 0.25F),
+                 Mixed(CellAt(x, y + beside_y, z), CellAt(x + beside_x, y + beside_y, z), 0.25F),
+                 0.25F);
+  }
+
+  void Add(const Cell& cell, float* without, float* with) const {
+    *without += cell.extinction;
+    const float lost =
+        1.0F - mean_billows_[static_cast<std::size_t>(std::clamp(cell.profile, 0.0F, 255.0F))];
+    *with += cell.extinction * (1.0F - std::max(cell.amplitude, 0.0F) * lost);
+  }
+
+  const std::vector<Cell>& cells_;
+  glm::ivec3 size_;
+  std::array<float, 256> mean_billows_;
+};
+
+}  // namespace
+
+void KeepWaterPaths(const std::vector<std::uint8_t>& control,
+                    const std::vector<float>& detail_shares, ExtinctionVolume* volume) {
+  const glm::ivec3& size = volume->grid.cells;
+  std::vector<Cell> cells(volume->grid.CellCount());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    cells[i].profile = control[2 * i];
+    cells[i].amplitude = (static_cast<float>(control[2 * i + 1]) - 128.0F) / 127.0F;
+  }
+  const auto for_channels = [&](const auto& visit) {
+    for (std::size_t group = 0; group < detail_shares.size(); ++group) {
+      if (detail_shares[group] <= 0.0F) continue;
+      ExtinctionPlane& plane = volume->planes[group / 4];
+      visit(detail_shares[group], plane.texels.data() + group % 4,
+            static_cast<std::size_t>(plane.channels));
+    }
+  };
+  for_channels([&](float share, const std::uint16_t* texels, std::size_t stride) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      cells[i].extinction += share * FloatFromHalf(texels[i * stride]);
+    }
+  });
+  ColumnSums sums(cells, size);
+  std::vector<float> factors(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
+  for (int y = 0; y < size.y; ++y) {
+    for (int x = 0; x < size.x; ++x) {
+      factors[volume->grid.Offset(x, y, 0)] = sums.FactorOf(x, y);
+    }
+  }
+  for_channels([&](float share, std::uint16_t* texels, std::size_t stride) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      std::uint16_t& texel = texels[i * stride];
+      if (texel == 0) continue;
+      const float factor = 1.0F + share * (factors[i % factors.size()] - 1.0F);
+      texel = HalfFromFloat(std::min(FloatFromHalf(texel) * factor, 65504.0F));
+    }
+  });
+}
+
+}  // namespace thunderhead::volume

@@ -1,0 +1,36 @@
+// What a model allows of detail finer than its grid, cell by cell: how far inside a cloud a cell
+// is, and how strong billows or fibres are there, as shaders/physics/detail.glsl takes them. Knows
+// no scene and no GL.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "volume/extinction.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::volume {
+
+// Two bytes a cell of the extinction's grid, x fastest: the profile, 0 to 255; and the amplitude,
+// billows from 129 to 255, fibres from 127 to 1, none at 128.
+//
+// The profile is a binomial mean over 27 cells of their opacity along a cell against the largest of
+// their neighbours'; it is 0 where the cell holds nothing, so that it rises from the faces of empty
+// space. The amplitude is that of turbulence (AirMotion) nearby, less where the medium is thin;
+// billows where cloud water condenses (air rises, or its motion is not known) and where ice is in
+// fast updraughts or strong turbulence (is opaque, if that is not known), fibres in other ice,
+// neither in rain.
+std::vector<std::uint8_t> DetailControlOf(const HydrometeorFields& fields,
+                                          const std::vector<ExtinctionTerm>& terms,
+                                          const ExtinctionVolume& volume);
+
+// Multiplies each column of the channels whose share in `detail_shares` is above zero by one
+// factor, so that the mean of its water path over its area and over all noises is the one without
+// detail; by at most kMaxColumnFactor. With the noise that is drawn a column may differ by what its
+// own surface catches of it. `control` is DetailControlOf the volume.
+void KeepWaterPaths(const std::vector<std::uint8_t>& control,
+                    const std::vector<float>& detail_shares, ExtinctionVolume* volume);
+
+inline constexpr float kMaxColumnFactor = 4.0F;
+
+}  // namespace thunderhead::volume

@@ -1,0 +1,137 @@
+#include "volume/wrf_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <tuple>
+
+namespace thunderhead::volume {
+namespace {
+
+constexpr float kEnergyOfDeformation = 0.4F;  // root of the energy over l |D|: 0.2^2 / 0.1
+
+// One component of the wind at the middles of cells, and how a cell's offset changes along axes.
+struct Centred {
+  std::vector<float> values;
+  glm::ivec3 cells;
+
+  float At(int x, int y, int z) const {
+    x = std::clamp(x, 0, cells.x - 1);
+    y = std::clamp(y, 0, cells.y - 1);
+    z = std::clamp(z, 0, cells.z - 1);
+    return values[(static_cast<std::size_t>(z) * static_cast<std::size_t>(cells.y) +
+                   static_cast<std::size_t>(y)) *
+                      static_cast<std::size_t>(cells.x) +
+                  static_cast<std::size_t>(x)];
+  }
+};
+
+// From faces that lie along `axis`.
+Centred CentredOf(const std::vector<float>& faces, const glm::ivec3& cells, int axis) {
+  glm::ivec3 size = cells;
+  size[axis] += 1;
+  const auto width = static_cast<std::size_t>(size.x);
+  const auto layer = width * static_cast<std::size_t>(size.y);
+  const std::size_t stride = axis == 0 ? 1 : axis == 1 ? width : layer;
+  Centred centred{{}, cells};
+  centred.values.reserve(static_cast<std::size_t>(cells.x) * static_cast<std::size_t>(cells.y) *
+                         static_cast<std::size_t>(cells.z));
+  for (int z = 0; z < cells.z; ++z) {
+    for (int y = 0; y < cells.y; ++y) {
+      const float* row =
+          faces.data() + static_cast<std::size_t>(z) * layer + static_cast<std::size_t>(y) * width;
+      for (int x = 0; x < cells.x; ++x) centred.values.push_back(0.5F * (row[x] + row[x + stride]));
+    }
+  }
+  return centred;
+}
+
+// Distances of the middles of a cell's neighbours.
+struct Spans {
+  float x_m;
+  float y_m;
+  float z_m;
+};
+
+glm::vec3 GradientAt(const Centred& component, const glm::ivec3& cell, const Spans& spans) {
+  const auto [x, y, z] = std::tuple(cell.x, cell.y, cell.z);
+  return {(component.At(x + 1, y, z) - component.At(x - 1, y, z)) / spans.x_m,
+          (component.At(x, y + 1, z) - component.At(x, y - 1, z)) / spans.y_m,
+          (component.At(x, y, z + 1) - component.At(x, y, z - 1)) / spans.z_m};
+}
+
+// |D|^2 = 2 S_ij S_ij.
+float DeformationSquared(const glm::vec3& u, const glm::vec3& v, const glm::vec3& w) {
+  const float xy = u.y + v.x;
+  const float xz = u.z + w.x;
+  const float yz = v.z + w.y;
+  return 2.0F * (u.x * u.x + v.y * v.y + w.z * w.z) + xy * xy + xz * xz + yz * yz;
+}
+
+}  // namespace
+
+std::vector<float> EnergyOfDeformation(const StaggeredWind& wind,
+                                       const std::vector<float>& interface_height_m) {
+  const glm::ivec3& cells = wind.cells;
+  const Centred u = CentredOf(wind.u_m_per_s, cells, 0);
+  const Centred v = CentredOf(wind.v_m_per_s, cells, 1);
+  const Centred w = CentredOf(wind.w_m_per_s, cells, 2);
+  const Centred height_m = CentredOf(interface_height_m, cells, 2);
+  const auto between = [](int at, int count) {
+    return static_cast<float>(std::min(at + 1, count - 1) - std::max(at - 1, 0));
+  };
+  const auto dx_m = static_cast<float>(wind.dx_m);
+  const auto dy_m = static_cast<float>(wind.dy_m);
+  std::vector<float> energy;
+  energy.reserve(u.values.size());
+  for (int z = 0; z < cells.z; ++z) {
+    for (int y = 0; y < cells.y; ++y) {
+      for (int x = 0; x < cells.x; ++x) {
+        const float span_z_m = height_m.At(x, y, z + 1) - height_m.At(x, y, z - 1);
+        const Spans spans{std::max(between(x, cells.x), 1.0F) * dx_m,
+                          std::max(between(y, cells.y), 1.0F) * dy_m, span_z_m};
+        const float depth_m = span_z_m / std::max(between(z, cells.z), 1.0F);
+        const glm::ivec3 cell(x, y, z);
+        const float squared = DeformationSquared(
+            GradientAt(u, cell, spans), GradientAt(v, cell, spans), GradientAt(w, cell, spans));
+        const float length_m = std::cbrt(dx_m * dy_m * depth_m);
+        const float e = kEnergyOfDeformation * kEnergyOfDeformation * length_m * length_m * squared;
+        energy.push_back(std::isfinite(e) ? e : 0.0F);
+      }
+    }
+  }
+  return energy;
+}
+
+std::vector<float> LayerMeans(const std::vector<float>& at_interfaces, int levels,
+                              std::size_t columns) {
+  std::vector<float> means(static_cast<std::size_t>(levels) * columns);
+  for (std::size_t i = 0; i < means.size(); ++i) {
+    means[i] = 0.5F * (at_interfaces[i] + at_interfaces[i + columns]);
+  }
+  return means;
+}
+
+std::vector<glm::dvec2> MeanWinds(const StaggeredWind& wind) {
+  const auto mean = [](const std::vector<float>& values, std::size_t first, std::size_t count) {
+    double sum = 0.0;
+    std::size_t present = 0;
+    for (std::size_t i = first; i < first + count; ++i) {
+      if (!std::isfinite(values[i])) continue;
+      sum += static_cast<double>(values[i]);
+      ++present;
+    }
+    return present > 0 ? sum / static_cast<double>(present) : 0.0;
+  };
+  const auto levels = static_cast<std::size_t>(wind.cells.z);
+  std::vector<glm::dvec2> winds;
+  for (std::size_t level = 0; level < levels; ++level) {
+    const std::size_t u_count = wind.u_m_per_s.size() / levels;
+    const std::size_t v_count = wind.v_m_per_s.size() / levels;
+    winds.emplace_back(mean(wind.u_m_per_s, level * u_count, u_count),
+                       mean(wind.v_m_per_s, level * v_count, v_count));
+  }
+  return winds;
+}
+
+}  // namespace thunderhead::volume

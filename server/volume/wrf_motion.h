@@ -1,0 +1,36 @@
+// Turbulence, ascent and shear from the winds on a WRF file's staggered grid (Arakawa C). Pure
+// arithmetic; knows no files.
+#pragma once
+
+#include <vector>
+
+#include "glm/vec2.hpp"
+#include "glm/vec3.hpp"
+
+namespace thunderhead::volume {
+
+// All arrays have x running fastest, then y, then levels upwards; missing values are NaN.
+struct StaggeredWind {
+  glm::ivec3 cells{0};
+  double dx_m = 0.0;
+  double dy_m = 0.0;
+  std::vector<float> u_m_per_s;  // (x + 1) * y * z values, on the cells' western and eastern faces
+  std::vector<float> v_m_per_s;  // x * (y + 1) * z, on southern and northern ones
+  std::vector<float> w_m_per_s;  // x * y * (z + 1), on lower and upper ones
+};
+
+// Turbulent kinetic energy (m2/s2) of each cell that subgrid eddies have in equilibrium with the
+// deformation |D| of the resolved wind: (0.4 l |D|)^2, l being the cube root of the cell's volume,
+// by Smagorinsky's eddy viscosity (0.2 l)^2 |D| and Deardorff's 0.1 l e^(1/2) (Smagorinsky 1963,
+// Deardorff 1980). 0 where an input is missing.
+std::vector<float> EnergyOfDeformation(const StaggeredWind& wind,
+                                       const std::vector<float>& interface_height_m);
+
+// Means of values on `levels` + 1 interfaces of `columns` columns, below and above each layer.
+std::vector<float> LayerMeans(const std::vector<float>& at_interfaces, int levels,
+                              std::size_t columns);
+
+// The mean wind over all cells of each level; 0 where all are missing.
+std::vector<glm::dvec2> MeanWinds(const StaggeredWind& wind);
+
+}  // namespace thunderhead::volume
