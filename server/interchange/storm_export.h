@@ -20,8 +20,9 @@ inline constexpr int kDetailVoxelsPerCell = 4;
 struct ExportOptions {
   // False: a voxel is a cell of the storm's grid, so that every column keeps its water path. True:
   // kDetailVoxelsPerCell along each of its edges, linear between the cells' centres, times the
-  // turbulent detail of the scene's fields (physics/turbulence.h). Columns then keep their water
-  // path only as far as the noise has a mean of 1 in them.
+  // noise of physics/turbulence.h with the settings of the scene's fields, which is not the detail
+  // that pictures have (docs/decisions/0020). Columns then keep their water path only as far as the
+  // noise has a mean of 1 in them.
   bool detail = false;
 };
 
