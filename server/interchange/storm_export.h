@@ -35,7 +35,7 @@ absl::StatusOr<VdbFile> ExportOf(const scene::Scene& scene,
                                  std::shared_ptr<const volume::HydrometeorFields> fields,
                                  const volume::StormInfo& storm, const ExportOptions& options);
 
-// What a program needs to show the grids of `file` as the scene does, as JSON: the view as in
+// The scene's settings for showing the grids of `file` in another program, as JSON: the view as in
 // scene/view.h, the sun, the picture's size, and albedo and asymmetry of each grid. World metres.
 std::string ViewJson(const scene::Scene& scene, const volume::HydrometeorFields& fields,
                      const VdbFile& file);

@@ -15,7 +15,7 @@ constexpr std::uint64_t kFieldSeed = 1862;
 constexpr std::uint64_t kGrainSeed = 1803;
 constexpr float kBrightest = 2.35F;  // the largest factor of reflectance, grain included
 
-// What grows in a field, from -1 (dark, green) to 1 (bright, dry).
+// The crop of a field, from -1 (dark, green) to 1 (bright, dry).
 struct Crop {
   float brightness = 0.0F;
   float dryness = 0.0F;

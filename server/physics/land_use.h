@@ -1,4 +1,4 @@
-// What the classes of land use look like: the 24 of the U.S. Geological Survey and the 21 of MODIS
+// Reflectances of the classes of land use: the 24 of the U.S. Geological Survey and the 21 of MODIS
 // (modified IGBP) that WRF's LU_INDEX counts, with the summer albedos of WRF's LANDUSE.TBL.
 #pragma once
 
@@ -18,7 +18,7 @@ struct LandUse {
 // Class `index`, from 1 on; of an unknown one, grassland.
 LandUse LandUseOf(LandUseScheme scheme, int index);
 
-// What a model knows of the land besides its class; NaN where it does not know.
+// A model's state of the land besides its class; NaN where it has none.
 struct LandState {
   float albedo = 0.0F;         // broadband, with its snow; 0 counts as unknown
   float green_percent = 0.0F;  // share that green plants cover

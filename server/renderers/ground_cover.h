@@ -1,4 +1,4 @@
-// What covers the ground, on the device: a map of the storm's land use, or the pattern of fields;
+// The ground's cover on the device: a map of the storm's land use, or the pattern of fields;
 // and the rings. Owns GL objects: use it on the context's thread.
 #pragma once
 

@@ -107,7 +107,7 @@ class ResidentMedium {
   std::vector<glm::vec4> Weights(const std::vector<double>& by_group) const;
 
  private:
-  // What a sample stands for, across: at a distance of 0, and what a metre of distance adds.
+  // The width that a sample stands for: at a distance of 0, and what a metre of distance adds.
   struct Footprint {
     double at_start_m;
     double per_m;

@@ -95,8 +95,7 @@ void SunGlow::BindSun(const gl::Program& program, const Sun& sun, const scene::V
   program.Set(uniform::pixel_rad, static_cast<float>(PixelAngle_rad(view, picture.size_px)));
 }
 
-absl::Status SunGlow::Add(const gl::Program& program, const PixelRect& rect,
-                          const Picture& picture) {
+void SunGlow::Add(const gl::Program& program, const PixelRect& rect, const Picture& picture) {
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
   glEnable(GL_SCISSOR_TEST);
@@ -104,7 +103,6 @@ absl::Status SunGlow::Add(const gl::Program& program, const PixelRect& rect,
   whole_target_.Draw(program, picture.target);
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_BLEND);
-  return absl::OkStatus();
 }
 
 absl::Status SunGlow::AddThrough(const ResidentMedium& medium,
@@ -138,7 +136,8 @@ absl::Status SunGlow::AddThrough(const ResidentMedium& medium,
   program->Set(uniform::aureole_max_depth, static_cast<float>(Aureole::kMaxDepth));
   table_.Bind(shaders::kAureoleUnit);
   ground->Distance().Bind(shaders::kGroundDistanceUnit);
-  return Add(*program, rect, picture);
+  Add(*program, rect, picture);
+  return absl::OkStatus();
 }
 
 absl::Status SunGlow::AddBehind(const gl::Texture2D& eye, const Sun& sun, const scene::View& view,
@@ -153,7 +152,8 @@ absl::Status SunGlow::AddBehind(const gl::Texture2D& eye, const Sun& sun, const 
   ground.Bind(*program, view);
   BindSun(*program, sun, view, picture);
   eye.Bind(shaders::kEyeUnit);
-  return Add(*program, rect, picture);
+  Add(*program, rect, picture);
+  return absl::OkStatus();
 }
 
 }  // namespace thunderhead::renderers

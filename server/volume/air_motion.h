@@ -9,7 +9,7 @@
 
 namespace thunderhead::volume {
 
-// What the amplitude of turbulence follows from: contrasts of the condensate between cells, the
+// The source of the amplitude of turbulence: contrasts of the condensate between cells, the
 // deformation of the wind, or turbulent kinetic energy in the file.
 enum class TurbulenceSource { kGradient, kDeformation, kEnergy };
 

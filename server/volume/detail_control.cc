@@ -245,7 +245,7 @@ std::array<float, 256> MeanBillows() {
   return means;
 }
 
-// What is interpolated between cells.
+// Values that are interpolated between cells.
 struct Cell {
   float extinction = 0.0F;  // weighted by the shares of detail
   float profile = 0.0F;     // 0 to 255

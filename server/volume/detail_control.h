@@ -1,4 +1,4 @@
-// What a model allows of detail finer than its grid, cell by cell: how far inside a cloud a cell
+// The model's control of detail finer than its grid, cell by cell: how far inside a cloud a cell
 // is, and how strong billows or fibres are there, as shaders/physics/detail.glsl takes them. Knows
 // no scene and no GL.
 #pragma once

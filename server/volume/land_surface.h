@@ -12,7 +12,7 @@
 
 namespace thunderhead::volume {
 
-// What a file has of each column, x fastest; empty what it does not have, NaN where it is missing.
+// A file's values for each column, x fastest; empty where it has none of a kind, NaN where missing.
 struct LandColumns {
   physics::LandUseScheme scheme = physics::LandUseScheme::kUsgs;
   std::vector<float> land_use;  // classes, counted from 1

@@ -1,4 +1,4 @@
-// What the sun's disc makes of a phase function. Renderers and reference take the sun for a point;
+// A phase function's mean over the sun's disc. Renderers and reference take the sun for a point;
 // tables that hold the mean over its disc give them bows, halos and coronas of the right sharpness.
 #pragma once
 

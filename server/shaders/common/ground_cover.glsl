@@ -1,4 +1,4 @@
-// What covers the ground where a view ray meets it. Coordinates are metres from the eye. Variants: COVER (0 plain, 1 fields,
+// The ground's cover where a view ray meets it. Coordinates are metres from the eye. Variants: COVER (0 plain, 1 fields,
 // 2 land use), RINGS.
 #include "common/bindings.glsl"
 #include "common/ground.glsl"

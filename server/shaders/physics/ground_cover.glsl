@@ -1,4 +1,4 @@
-// What covers the ground where a view ray meets it: fields of crops on the section grid of the Great Plains, and rings of
+// The ground's cover where a view ray meets it: fields of crops on the section grid of the Great Plains, and rings of
 // distance. Everything is averaged over a footprint, the axis-parallel rectangle of ground that a pixel shows, so that
 // nothing is finer than a pixel. Compiles as GLSL and as C++ (physics/field_pattern.h). Lengths in metres.
 #ifdef __cplusplus
