@@ -4,6 +4,7 @@ import { create } from "@bufbuild/protobuf";
 import { Code, ConnectError, type ConnectRouter } from "@connectrpc/connect";
 import { cameraOfPose, poseOfCamera } from "../src/core/camera";
 import { LIMITS, withCamera, withOutput } from "../src/core/scene";
+import { Stage } from "../src/gen/thunderhead/v1/frame_pb";
 import {
   FieldParametersSchema,
   Hydrometeor,
@@ -17,7 +18,6 @@ import {
 } from "../src/gen/thunderhead/v1/storm_pb";
 import {
   type AcknowledgeFrameRequest,
-  Stage,
   ThunderheadService,
   type WatchFramesResponse,
   WatchFramesResponseSchema,

@@ -9,6 +9,7 @@ import {
   techniqueNameOf,
   withSettings,
 } from "../src/core/rendering";
+import { ModelledSchema } from "../src/gen/thunderhead/v1/frame_pb";
 import {
   CumulusSchema,
   HalfAngleSchema,
@@ -24,7 +25,6 @@ import {
   Transport,
 } from "../src/gen/thunderhead/v1/scene_pb";
 import {
-  ModelledSchema,
   PresetDescriptionSchema,
   type TechniqueDescription,
   TechniqueDescriptionSchema,

@@ -22,6 +22,7 @@ import {
 } from "../src/core/rendering";
 import { withPreset, withRendering } from "../src/core/scene";
 import { PageState } from "../src/core/state";
+import { FrameSchema, Stage } from "../src/gen/thunderhead/v1/frame_pb";
 import {
   AccuracySchema,
   CumulusSchema,
@@ -38,9 +39,7 @@ import {
   Transport,
 } from "../src/gen/thunderhead/v1/scene_pb";
 import {
-  FrameSchema,
   GetServerInfoResponseSchema,
-  Stage,
   type TechniqueDescription,
   TechniqueDescriptionSchema,
 } from "../src/gen/thunderhead/v1/thunderhead_pb";

@@ -3,8 +3,8 @@ import { create } from "@bufbuild/protobuf";
 import { Code, ConnectError, createRouterTransport, type Interceptor } from "@connectrpc/connect";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import type { Connection } from "../src/core/state";
+import type { Frame } from "../src/gen/thunderhead/v1/frame_pb";
 import { type Scene, SceneSchema } from "../src/gen/thunderhead/v1/scene_pb";
-import type { Frame } from "../src/gen/thunderhead/v1/thunderhead_pb";
 import { type OpenedSession, SessionClient, SILENCE_MS } from "../src/transport/session_client";
 import { FakeService } from "./fake_service";
 

@@ -1,4 +1,6 @@
 // Display names of enum values and techniques.
+
+import { Stage } from "../gen/thunderhead/v1/frame_pb";
 import {
   CumulusSchema,
   HalfAngleSchema,
@@ -10,7 +12,6 @@ import {
   TracedLight,
   Transport,
 } from "../gen/thunderhead/v1/scene_pb";
-import { Stage } from "../gen/thunderhead/v1/thunderhead_pb";
 
 const TECHNIQUE_NAMES: Readonly<Record<string, string>> = {
   [LightVolumeSchema.typeName]: "Light volume",

@@ -3,6 +3,13 @@
 
 import { create, equals } from "@bufbuild/protobuf";
 import { batch, computed, type ReadonlySignal, signal } from "@preact/signals-core";
+import type {
+  AccuracyReport,
+  Frame,
+  Modelled,
+  Refinement,
+  StageCost,
+} from "../gen/thunderhead/v1/frame_pb";
 import {
   type Camera,
   type Preset,
@@ -15,12 +22,7 @@ import {
 } from "../gen/thunderhead/v1/scene_pb";
 import type { StormDescription, StormSummary } from "../gen/thunderhead/v1/storm_pb";
 import type {
-  AccuracyReport,
-  Frame,
   GetServerInfoResponse,
-  Modelled,
-  Refinement,
-  StageCost,
   TechniqueDescription,
 } from "../gen/thunderhead/v1/thunderhead_pb";
 import { cameraOfPose, type Pose, poseOfCamera } from "./camera";

@@ -5,12 +5,11 @@ import { type Client, Code, ConnectError, createClient, type Transport } from "@
 import { BackOff } from "../core/back_off";
 import type { Connection } from "../core/state";
 import type { GenerateCloudRequest } from "../gen/thunderhead/v1/cloud_pb";
+import type { Frame, Problem } from "../gen/thunderhead/v1/frame_pb";
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
 import type { StormDescription, StormSummary } from "../gen/thunderhead/v1/storm_pb";
 import {
-  type Frame,
   type GetServerInfoResponse,
-  type Problem,
   ThunderheadService,
 } from "../gen/thunderhead/v1/thunderhead_pb";
 

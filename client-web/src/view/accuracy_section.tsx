@@ -13,8 +13,9 @@ import {
 import { LIMITS, withAccuracy } from "../core/scene";
 import type { PageState } from "../core/state";
 import { formatNumber } from "../core/units";
+import type { AccuracyReport } from "../gen/thunderhead/v1/frame_pb";
 import { type Accuracy, AccuracySchema, MetaballsSchema } from "../gen/thunderhead/v1/scene_pb";
-import type { AccuracyReport, TechniqueDescription } from "../gen/thunderhead/v1/thunderhead_pb";
+import type { TechniqueDescription } from "../gen/thunderhead/v1/thunderhead_pb";
 import { Choice, Section, Slider } from "./controls";
 
 type Goal = "none" | "maxError" | "maxMilliseconds";

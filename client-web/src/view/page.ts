@@ -12,8 +12,8 @@ import { RevisionLedger } from "../core/revision_ledger";
 import { outputSize, withCamera, withOutput, withStorm, withTime } from "../core/scene";
 import { SceneSender } from "../core/scene_sender";
 import { PageState } from "../core/state";
+import type { Frame, Problem } from "../gen/thunderhead/v1/frame_pb";
 import { type Scene, SceneSchema } from "../gen/thunderhead/v1/scene_pb";
-import type { Frame, Problem } from "../gen/thunderhead/v1/thunderhead_pb";
 import {
   type OpenedSession,
   SessionClient,

@@ -2,7 +2,7 @@
 import { nameOfStage, nameOfTechnique } from "../core/names";
 import type { PageState } from "../core/state";
 import { formatBytes, formatNumber } from "../core/units";
-import type { Refinement } from "../gen/thunderhead/v1/thunderhead_pb";
+import type { Refinement } from "../gen/thunderhead/v1/frame_pb";
 
 export function Readout({ state }: { state: PageState }) {
   const frame = state.frame.value;
