@@ -83,6 +83,63 @@ class Counter final : public grpc::ServerWriteReactor<CountResponse> {
   uint32_t next_ = 0;
 };
 
+// Reads a request when the responses to the one before are written.
+class Conversation final : public grpc::ServerBidiReactor<ConverseRequest, ConverseResponse> {
+ public:
+  explicit Conversation(EchoRecord& record) : record_(record) {
+    ++record_.started;
+    StartRead(&request_);
+  }
+
+ private:
+  void OnReadDone(bool ok) override {
+    if (!ok) {
+      End(grpc::Status::OK);
+      return;
+    }
+    ++record_.read;
+    response_.set_payload(request_.payload());
+    responses_left_ = request_.has_end() ? request_.repeats() : request_.repeats() + 1;
+    Next();
+  }
+  void OnWriteDone(bool ok) override {
+    if (!ok) {
+      End(grpc::Status::CANCELLED);
+      return;
+    }
+    ++record_.written;
+    Next();
+  }
+  void OnCancel() override {
+    ++record_.cancelled;
+    End(grpc::Status::CANCELLED);
+  }
+  void OnDone() override {
+    ++record_.done;
+    delete this;
+  }
+
+  void Next() {
+    if (responses_left_ > 0) {
+      --responses_left_;
+      StartWrite(&response_);
+    } else if (request_.has_end()) {
+      End(FailureOf(request_.end()));
+    } else if (!request_.read_no_more()) {
+      StartRead(&request_);
+    }
+  }
+  void End(const grpc::Status& status) {
+    if (!ended_.exchange(true)) Finish(status);
+  }
+
+  EchoRecord& record_;
+  ConverseRequest request_;
+  ConverseResponse response_;
+  uint32_t responses_left_ = 0;
+  std::atomic<bool> ended_ = false;
+};
+
 class Waiter final : public grpc::ServerUnaryReactor {
  public:
   explicit Waiter(EchoRecord& record) : record_(record) { ++record_.started; }
@@ -149,6 +206,12 @@ grpc::ServerUnaryReactor* EchoService::Metadata(grpc::CallbackServerContext* con
   grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
   reactor->Finish(grpc::Status::OK);
   return reactor;
+}
+
+grpc::ServerBidiReactor<ConverseRequest, ConverseResponse>* EchoService::Converse(
+    grpc::CallbackServerContext* context) {
+  context->AddTrailingMetadata("conversed", "yes");
+  return new Conversation(record_);
 }
 
 grpc::ServerUnaryReactor* EchoService::Wait(grpc::CallbackServerContext*, const WaitRequest*,
