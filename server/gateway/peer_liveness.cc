@@ -6,10 +6,10 @@ namespace thunderhead::gateway {
 
 PeerLiveness::PeerLiveness(const Limits& limits, Clock::time_point now)
     : limits_(limits),
-      last_received_(now),
+      last_sign_(now),
       last_sent_(now),
       last_delivered_(now),
-      ping_delivered_(now),
+      ping_progress_(now),
       closing_since_(now) {}
 
 PeerLiveness::Verdict PeerLiveness::Judge(const Observation& seen, Clock::time_point now) {
@@ -22,34 +22,38 @@ PeerLiveness::Verdict PeerLiveness::Judge(const Observation& seen, Clock::time_p
     return now - since >= limits_.close_timeout ? Verdict::kDrop : Verdict::kFine;
   }
   if (awaits_pong_) {
-    return now - ping_delivered_ >= limits_.ping_interval ? Verdict::kDrop : Verdict::kFine;
+    return now - ping_progress_ >= limits_.ping_interval ? Verdict::kDrop : Verdict::kFine;
   }
-  if (now - last_received_ < limits_.ping_interval) return Verdict::kFine;
+  if (now - last_sign_ < limits_.ping_interval) return Verdict::kFine;
   awaits_pong_ = true;
   ping_unsent_ = true;
-  ping_delivered_ = now;
+  ping_progress_ = now;
   return Verdict::kPing;
 }
 
 void PeerLiveness::Note(const Observation& seen, Clock::time_point now) {
-  // While nothing is read, silence says nothing about the peer.
-  if (seen.received_bytes != last_.received_bytes || !seen.is_reading) {
-    last_received_ = now;
-    awaits_pong_ = false;
-  }
   const bool was_sending = last_.is_writing || last_.is_pinging;
   if (seen.sent_bytes != last_.sent_bytes || !was_sending) last_sent_ = now;
-  if (seen.delivered_bytes != last_.delivered_bytes) {
-    last_delivered_ = now;
-    // The ping waits behind what was sent before it. A peer that takes that in is there.
-    if (ping_unsent_ || last_.delivered_bytes < ping_end_bytes_) ping_delivered_ = now;
-  }
+  if (seen.delivered_bytes != last_.delivered_bytes) last_delivered_ = now;
+  NotePing(seen, now);
+  if (!last_.is_closing && seen.is_closing) closing_since_ = now;
+  last_ = seen;
+}
+
+void PeerLiveness::NotePing(const Observation& seen, Clock::time_point now) {
+  // The ping waits behind what was sent before it. A peer that takes that in is there.
+  const bool was_delivered = !ping_unsent_ && last_.delivered_bytes >= ping_end_bytes_;
+  if (seen.delivered_bytes != last_.delivered_bytes && !was_delivered) ping_progress_ = now;
   if (ping_unsent_ && !seen.is_pinging) {
     ping_unsent_ = false;
     ping_end_bytes_ = seen.sent_bytes;
   }
-  if (!last_.is_closing && seen.is_closing) closing_since_ = now;
-  last_ = seen;
+  const bool is_delivered = !ping_unsent_ && seen.delivered_bytes >= ping_end_bytes_;
+  if (seen.received_bytes != last_.received_bytes ||
+      (awaits_pong_ && !seen.is_reading && is_delivered)) {
+    last_sign_ = now;
+    awaits_pong_ = false;
+  }
 }
 
 }  // namespace thunderhead::gateway

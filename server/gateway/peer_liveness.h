@@ -13,7 +13,8 @@ class PeerLiveness {
 
   struct Limits {
     // A peer that sends nothing for this time is pinged; one that then sends nothing for this time
-    // again is dropped.
+    // again is dropped. While the server holds the peer back and reads nothing, it is enough that
+    // the ping is delivered.
     std::chrono::milliseconds ping_interval;
     // A peer that accepts no bytes of a write for this time is dropped.
     std::chrono::milliseconds write_stall_timeout;
@@ -39,16 +40,17 @@ class PeerLiveness {
 
  private:
   void Note(const Observation& seen, Clock::time_point now);
+  void NotePing(const Observation& seen, Clock::time_point now);
 
   Limits limits_;
   Observation last_;
   bool awaits_pong_ = false;
   bool ping_unsent_ = false;
   uint64_t ping_end_bytes_ = 0;  // the ping is delivered when these are
-  Clock::time_point last_received_;
+  Clock::time_point last_sign_;  // of life
   Clock::time_point last_sent_;
   Clock::time_point last_delivered_;
-  Clock::time_point ping_delivered_;
+  Clock::time_point ping_progress_;  // last step of its delivery
   Clock::time_point closing_since_;
 };
 

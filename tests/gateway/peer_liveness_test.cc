@@ -60,26 +60,35 @@ TEST_F(PeerLivenessTest, PingThatCannotBeSentYetIsNotUnanswered) {
   EXPECT_EQ(At(1100), Verdict::kDrop);
 }
 
-TEST_F(PeerLivenessTest, SilenceOfAPeerThatIsHeldBackSaysNothing) {
-  EXPECT_EQ(At(100), Verdict::kPing);
+TEST_F(PeerLivenessTest, PeerThatIsHeldBackNeedOnlyTakePings) {
   seen_.is_reading = false;
-  EXPECT_EQ(At(1000), Verdict::kFine);
-  EXPECT_EQ(At(2000), Verdict::kFine);
-  seen_.is_reading = true;
-  EXPECT_EQ(At(2099), Verdict::kFine);
-  EXPECT_EQ(At(2100), Verdict::kPing);
+  for (int i = 1; i <= 5; ++i) {
+    EXPECT_EQ(At(100 * i), Verdict::kPing);
+    seen_.sent_bytes += 2;
+    EXPECT_EQ(At(100 * i + 1), Verdict::kFine);
+    seen_.delivered_bytes += 2;
+    EXPECT_EQ(At(100 * i), Verdict::kFine);
+  }
+  EXPECT_EQ(At(600), Verdict::kPing);
+  seen_.sent_bytes += 2;
+  EXPECT_EQ(At(699), Verdict::kFine);
+  EXPECT_EQ(At(700), Verdict::kDrop);
 }
 
 TEST_F(PeerLivenessTest, WriteWithoutProgressIsStalled) {
-  seen_.is_reading = false;
+  seen_.received_bytes = 1;
   EXPECT_EQ(At(1000), Verdict::kFine);
   seen_.is_writing = true;
-  EXPECT_EQ(At(1010), Verdict::kFine);
-  EXPECT_EQ(At(1300), Verdict::kFine);
+  const auto judge_answering_peer = [&](int ms) {
+    ++seen_.received_bytes;
+    return At(ms);
+  };
+  EXPECT_EQ(judge_answering_peer(1010), Verdict::kFine);
+  EXPECT_EQ(judge_answering_peer(1300), Verdict::kFine);
   seen_.sent_bytes = 1;
-  EXPECT_EQ(At(1305), Verdict::kFine);
-  EXPECT_EQ(At(1604), Verdict::kFine);
-  EXPECT_EQ(At(1605), Verdict::kDrop);
+  EXPECT_EQ(judge_answering_peer(1305), Verdict::kFine);
+  EXPECT_EQ(judge_answering_peer(1604), Verdict::kFine);
+  EXPECT_EQ(judge_answering_peer(1605), Verdict::kDrop);
 }
 
 TEST_F(PeerLivenessTest, ClosingEndsUnlessSomethingIsStillBeingDelivered) {

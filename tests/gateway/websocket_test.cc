@@ -224,6 +224,8 @@ TEST_P(WebSocketTest, VanishingCancelsTheCall) {
 }
 
 TEST_P(WebSocketTest, VanishingIsNoticedWhileTheServerReadsNothing) {
+  // The end of the connection is behind messages that are not read; only a ping finds it.
+  options_.websocket_ping_interval = milliseconds(200);
   WebSocketClient client(Site().Port());
   client.Send(ReadingNoMore());
   ASSERT_EQ(PayloadOf(client.Receive()), "");
@@ -235,6 +237,8 @@ TEST_P(WebSocketTest, VanishingIsNoticedWhileTheServerReadsNothing) {
 TEST_P(WebSocketTest, TooLargeMessagesAreRefused) {
   options_.max_message_bytes = 1000;
   WebSocketClient client(Site().Port());
+  client.Send(Saying("hello"));
+  EXPECT_EQ(PayloadOf(client.Receive()), "hello");
   client.Send(kMessage + std::string(1001, 'x'));
   EXPECT_EQ(client.CloseCode(), 1009);
   EXPECT_TRUE(AllCancelled(1));
@@ -324,7 +328,6 @@ TEST_F(UpgradeTest, OnlyTheOwnAndAllowedOriginsMayCall) {
         "http://localhost:8080.evil.example", "ftp://localhost:8080", "localhost:8080"}) {
     EXPECT_EQ(result(foreign), http::status::forbidden) << foreign;
   }
-  EXPECT_EQ(site_->Record().started, 4);
 }
 
 TEST_F(UpgradeTest, ForeignHostsAreRefused) {
