@@ -77,10 +77,6 @@ net::awaitable<bool> WebSocketExchange::Accept(const Request& request) {
   socket_.binary(true);
   // Otherwise each message would be sent in frames of 4 KiB.
   socket_.auto_fragment(false);
-  socket_.control_callback([this](websocket::frame_type kind, boost::beast::string_view) {
-    // The reader learns of it only when the TCP connection has ended too.
-    if (kind == websocket::frame_type::close) BeginClosing();
-  });
   co_return true;
 }
 
@@ -223,7 +219,8 @@ net::awaitable<void> WebSocketExchange::Watch() {
 
 void WebSocketExchange::Judge(PeerLiveness& liveness) {
   const auto now = PeerLiveness::Clock::now();
-  // Beast itself closes a connection that breaks the protocol or has too large a message.
+  // Beast itself answers a close frame, and closes a connection that breaks the protocol. Its
+  // reader returns only when the TCP connection has ended too.
   if (!socket_.is_open()) BeginClosing();
   const PeerLiveness::Verdict verdict =
       liveness.Judge({link_->ReceivedBytes(), link_->SentBytes(), link_->DeliveredBytes(),
