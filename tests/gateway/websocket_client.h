@@ -1,6 +1,6 @@
 // A WebSocket client for tests, with nothing of grpc-websocket.v1 but the subprotocol's name. It
 // reads, and answers pings and closing, only within Receive() and the like. Every wait ends after
-// ten seconds.
+// a minute.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
