@@ -103,14 +103,10 @@ Texels ExtinctionOf(const ExtinctionVolume& volume) {
   return {volume.grid, std::move(values)};
 }
 
-class WaterPathsTest : public testing::TestWithParam<std::string> {
+class WaterPathsTest : public testing::Test {
  protected:
-  void SetUp() override {
-    auto store = StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/" + GetParam() + ".nc"}, {});
-    ASSERT_TRUE(store.ok()) << store.status();
-    const auto storm = (*store)->Get((*store)->Storms().front()->id, 1, {});
-    ASSERT_TRUE(storm.ok()) << storm.status();
-    const HydrometeorFields& fields = **storm;
+  // Draws detail in `fields`.
+  void Draw(const HydrometeorFields& fields) {
     std::vector<ExtinctionTerm> terms;
     for (std::size_t i = 0; i < fields.fields.size(); ++i) {
       const HydrometeorField& field = fields.fields[i];
@@ -189,7 +185,18 @@ class WaterPathsTest : public testing::TestWithParam<std::string> {
   PlacedDetail detail_;
 };
 
-TEST_P(WaterPathsTest, AreThoseWithoutDetail) {
+class WaterPathsOfStorm : public WaterPathsTest, public testing::WithParamInterface<std::string> {
+ protected:
+  void SetUp() override {
+    auto store = StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/" + GetParam() + ".nc"}, {});
+    ASSERT_TRUE(store.ok()) << store.status();
+    const auto storm = (*store)->Get((*store)->Storms().front()->id, 1, {});
+    ASSERT_TRUE(storm.ok()) << storm.status();
+    Draw(**storm);
+  }
+};
+
+TEST_P(WaterPathsOfStorm, AreThoseWithoutDetail) {
   const Paths kept = PathsOf(kept_);
   for (int channel = 0; channel < 3; ++channel) {
     EXPECT_NEAR(kept.Ratio()[channel], 1.0, 0.01) << channel;
@@ -203,7 +210,7 @@ TEST_P(WaterPathsTest, AreThoseWithoutDetail) {
   EXPECT_GT(lost.InBlocks(8).Deviation(0), 0.1);
 }
 
-TEST_P(WaterPathsTest, FactorsAreBounded) {
+TEST_P(WaterPathsOfStorm, FactorsAreBounded) {
   for (std::size_t i = 0; i < plain_.planes[0].texels.size(); ++i) {
     const double before = FloatOf(plain_.planes[0].texels[i]);
     const double after = FloatOf(kept_.planes[0].texels[i]);
@@ -213,7 +220,25 @@ TEST_P(WaterPathsTest, FactorsAreBounded) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Storms, WaterPathsTest,
+// Ice in weak turbulence has fibres along the shear.
+TEST_F(WaterPathsTest, AreKeptInFibres) {
+  HydrometeorFields fields;
+  fields.grid.cells = glm::ivec3(24, 24, 8);
+  fields.grid.spacing_m = glm::dvec3(500.0, 500.0, 200.0);
+  fields.condensate = {glm::ivec3(0), fields.grid.cells};
+  fields.motion.source = TurbulenceSource::kEnergy;
+  fields.motion.turbulence.assign(fields.grid.CellCount(), 100);
+  fields.motion.shear_m_per_s = {20.0, 20.0};
+  fields.fields.resize(3);  // the third is of a channel with detail
+  fields.fields[2].hydrometeor = physics::Hydrometeor::kIce;
+  fields.fields[2].concentration_kg_per_m3.assign(fields.grid.CellCount(), 1e-2F);
+  Draw(fields);
+  EXPECT_GT(PathsOf(plain_).Deviation(2), 0.03);
+  // Between the points that are evaluated noise differs.
+  EXPECT_LT(PathsOf(kept_).Deviation(2), 0.02);
+}
+
+INSTANTIATE_TEST_SUITE_P(Storms, WaterPathsOfStorm,
                          testing::Values(std::string("supercell"), std::string("supercell-500m")),
                          [](const auto& storm) {
                            return storm.param == "supercell" ? "Supercell" : "Supercell500m";
