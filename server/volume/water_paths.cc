@@ -62,8 +62,10 @@ class DrawnMedium {
         warp_(detail.warp_m / volume.grid.spacing_m),
         fibres_(detail.fibres),
         levels_(volume.grid.Offset(0, 0, 1)) {
-    for (std::size_t i = 0; i < kCorners; ++i) {
-      corners_[i] = volume.grid.Offset(i & 1U, i >> 1U & 1U, static_cast<int>(i >> 2U));
+    const glm::ivec3 last = size_ - 1;
+    for (int i = 0; i < static_cast<int>(kCorners); ++i) {
+      const glm::ivec3 corner = glm::min(glm::ivec3(i & 1, i >> 1 & 1, i >> 2), last);
+      corners_[static_cast<std::size_t>(i)] = volume.grid.Offset(corner.x, corner.y, corner.z);
     }
     for (const PlacedDetail::Layer& layer : detail.layers) {
       Channels shares{};
@@ -126,7 +128,8 @@ class DrawnMedium {
   Place PlaceAt(const glm::vec3& in_cells) const {
     const glm::vec3 from_middle =
         glm::clamp(in_cells - 0.5F, glm::vec3(0.0F), glm::vec3(size_ - 1));
-    const glm::ivec3 low = glm::min(glm::ivec3(from_middle), size_ - 2);
+    const glm::ivec3 low =
+        glm::clamp(glm::ivec3(from_middle), glm::ivec3(0), glm::max(size_ - 2, 0));
     return {volume_.grid.Offset(low.x, low.y, low.z), Weights(from_middle - glm::vec3(low))};
   }
 
@@ -284,7 +287,6 @@ std::vector<float> SumsWith(const std::vector<std::uint8_t>& control, const Plac
 
 void KeepWaterPaths(const std::vector<std::uint8_t>& control, const PlacedDetail& detail,
                     ExtinctionVolume* volume) {
-  if (glm::any(glm::lessThan(volume->grid.cells, glm::ivec3(2)))) return;
   const std::vector<float> with = SumsWith(control, detail, *volume);
   std::vector<float> factors = SumsWithout(*volume);
   std::transform(factors.begin(), factors.end(), with.begin(), factors.begin(), FactorOf);

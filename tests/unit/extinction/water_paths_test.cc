@@ -75,13 +75,13 @@ class Texels {
   Values At(const glm::dvec3& place) const {
     const glm::dvec3 last = glm::dvec3(grid_.cells - 1);
     const glm::dvec3 from_middle = glm::clamp(place - 0.5, glm::dvec3(0.0), last);
-    const glm::dvec3 low = glm::min(glm::floor(from_middle), last - 1.0);
+    const glm::dvec3 low = glm::max(glm::min(glm::floor(from_middle), last - 1.0), 0.0);
     const glm::dvec3 share = from_middle - low;
     Values sum(0.0);
     for (int corner = 0; corner < 8; ++corner) {
       const glm::ivec3 step(corner & 1, corner >> 1 & 1, corner >> 2);
       const glm::dvec3 weights = glm::mix(1.0 - share, share, glm::dvec3(step));
-      const glm::ivec3 cell = glm::ivec3(low) + step;
+      const glm::ivec3 cell = glm::min(glm::ivec3(low) + step, grid_.cells - 1);
       sum += weights.x * weights.y * weights.z * values_[grid_.Offset(cell.x, cell.y, cell.z)];
     }
     return sum;
@@ -236,6 +236,24 @@ TEST_F(WaterPathsTest, AreKeptInFibres) {
   EXPECT_GT(PathsOf(plain_).Deviation(2), 0.03);
   // Between the points that are evaluated noise differs.
   EXPECT_LT(PathsOf(kept_).Deviation(2), 0.02);
+}
+
+// A single column, and a single cell.
+TEST_F(WaterPathsTest, AreKeptInTheSmallestGrids) {
+  for (const int levels : {1, 8}) {
+    HydrometeorFields fields;
+    fields.grid.cells = glm::ivec3(1, 1, levels);
+    fields.grid.spacing_m = glm::dvec3(500.0);
+    fields.condensate = {glm::ivec3(0), fields.grid.cells};
+    fields.motion.source = TurbulenceSource::kEnergy;
+    fields.motion.turbulence.assign(fields.grid.CellCount(), 100);
+    fields.fields.resize(3);
+    fields.fields[2].hydrometeor = physics::Hydrometeor::kIce;
+    fields.fields[2].concentration_kg_per_m3.assign(fields.grid.CellCount(), 1e-2F);
+    Draw(fields);
+    // Two points a cell are few.
+    EXPECT_NEAR(PathsOf(kept_).Ratio()[2], 1.0, 0.2) << levels;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Storms, WaterPathsOfStorm,
