@@ -67,6 +67,7 @@ class InteriorsTest : public testing::Test {
     EXPECT_TRUE(frame.ok()) << frame.status();
     const picture::LinearPicture picture = frame::PictureOf(*frame->radiance);
     std::vector<double> luminances;
+    luminances.reserve(picture.radiance.size());
     for (const glm::vec3& radiance : picture.radiance) {
       luminances.push_back(double{frame::LuminanceOf(radiance)} / kWallLuminance);
       EXPECT_TRUE(std::isfinite(luminances.back()));
@@ -101,6 +102,7 @@ std::vector<double> RowsOf(const std::vector<double>& values) {
 
 TEST_F(InteriorsTest, NothingPopsAsTheCameraMoves) {
   std::vector<std::vector<double>> frames;
+  frames.reserve(kSteps);
   for (int step = 0; step < kSteps; ++step) frames.push_back(Draw(OnPath(step)));
   double worst_mean = 0.0;
   double squares = 0.0;
