@@ -297,9 +297,9 @@ TEST_P(BridgeTest, SlowReaderHoldsTheHandlerBack) {
     std::this_thread::sleep_for(milliseconds(300));
     return std::exchange(before, Record().written.load()) == Record().written;
   }));
-  // Of 200 MB, only the kernel's buffers for a client that reads nothing, and a few messages in
-  // gRPC.
-  EXPECT_LT(Record().written, 60);
+  // Of 200 MB, what the kernel buffers for a client that reads nothing (tcp_wmem: mostly 4 MB, 42
+  // messages) and gRPC's windows, which grow with speed (24 messages were seen).
+  EXPECT_LT(Record().written, 100);
   // It continues when the client does.
   client.ReadBody(20'000'000);
   EXPECT_GE(Record().written, 190);
