@@ -80,9 +80,11 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source) {
     const std::vector<std::shared_ptr<Session>> sessions = sessions_.AllDrawn();
     drawer.ReleaseUnwatched(sessions);
     // The empty id stands for the single pictures; it sorts before the sessions'.
-    std::vector<std::string> ids{""};
-    for (const auto& session : sessions) ids.push_back(session->id());
-    const auto look_again_at = turns.Next(ids, [&](std::size_t i, TurnKind kind) {
+    std::vector<Contender> contenders{{""}};
+    for (const auto& session : sessions) {
+      contenders.push_back({session->id(), session->IsOwnView()});
+    }
+    const auto look_again_at = turns.Next(contenders, [&](std::size_t i, TurnKind kind) {
       return i == 0 ? image_drawer.TakeTurn() : drawer.TakeTurn(sessions[i - 1], kind);
     });
     if (!look_again_at.has_value() || *look_again_at > Clock::now()) wake_.Wait(look_again_at);

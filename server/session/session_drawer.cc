@@ -105,6 +105,11 @@ TurnOutcome SessionDrawer::Do(const Turn& turn, const CheckSlices& work) {
 }
 
 TurnOutcome SessionDrawer::Do(const Turn& turn, const TraceLight& work) {
+  // It shows the light that is traced for its session.
+  if (turn.session->IsOwnView()) {
+    turn.kept.view.LightFailed();
+    return {};
+  }
   if (turn.kind != TurnKind::kBackground) return {.has_background_work = true};
   const NewestScene& shown = work.shown;
   const auto progress = source_.TraceLight(*shown.scene, turn.kept.fields.Fields());

@@ -58,6 +58,8 @@ class Session {
   // Names it in this process; not a secret.
   const std::string& id() const { return id_; }
   const SessionKeys& keys() const { return keys_; }
+  // True for what an OwnView draws, which nobody finds by a key.
+  bool IsOwnView() const { return keys_.viewer.empty(); }
   FrameHub& hub() { return hub_; }
   Audience& audience() { return audience_; }
 

@@ -14,17 +14,36 @@ std::optional<Clock::time_point> Earlier(const std::optional<Clock::time_point>&
 
 }  // namespace
 
-std::optional<Clock::time_point> Turns::Next(const std::vector<std::string>& ids,
+std::vector<std::size_t> Turns::Order(const std::vector<Contender>& contenders) const {
+  std::vector<std::size_t> order;
+  const auto add = [&](bool own_view, const std::string& last_served) {
+    const auto begin = static_cast<std::ptrdiff_t>(order.size());
+    std::ptrdiff_t until_last = 0;
+    for (std::size_t i = 0; i < contenders.size(); ++i) {
+      if (contenders[i].own_view != own_view) continue;
+      if (contenders[i].id <= last_served) ++until_last;
+      order.push_back(i);
+    }
+    std::rotate(order.begin() + begin, order.begin() + begin + until_last, order.end());
+  };
+  add(own_views_first_, own_views_first_ ? last_own_view_served_ : last_served_);
+  add(!own_views_first_, own_views_first_ ? last_served_ : last_own_view_served_);
+  return order;
+}
+
+void Turns::Served(const Contender& contender) {
+  (contender.own_view ? last_own_view_served_ : last_served_) = contender.id;
+  own_views_first_ = !contender.own_view;
+}
+
+std::optional<Clock::time_point> Turns::Next(const std::vector<Contender>& contenders,
                                              const TakeTurn& take_turn) {
-  const auto after_last = std::upper_bound(ids.begin(), ids.end(), last_served_);
-  const auto first = static_cast<std::size_t>(after_last - ids.begin());
   std::optional<Clock::time_point> look_again_at;
   std::vector<std::size_t> with_background_work;
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    const std::size_t index = (first + i) % ids.size();
+  for (const std::size_t index : Order(contenders)) {
     const TurnOutcome outcome = take_turn(index, TurnKind::kAny);
     if (outcome.drew) {
-      last_served_ = ids[index];
+      Served(contenders[index]);
       last_drew_at_ = Clock::now();
       return last_drew_at_;
     }
@@ -38,7 +57,7 @@ std::optional<Clock::time_point> Turns::Next(const std::vector<std::string>& ids
   for (const std::size_t index : with_background_work) {
     const TurnOutcome outcome = take_turn(index, TurnKind::kBackground);
     if (outcome.drew) {
-      last_served_ = ids[index];
+      Served(contenders[index]);
       return Clock::now();
     }
     look_again_at = Earlier(look_again_at, outcome.look_again_at);

@@ -1,5 +1,6 @@
-// Round-robin scheduling of drawing, so that nobody starves however often others have work. A plain
-// value.
+// Round-robin scheduling of drawing, so that nobody starves however often others have work. What
+// many people see and what one sees for himself come in turn, so that a class that looks around
+// takes at most half of the time. A plain value.
 #pragma once
 
 #include <cstddef>
@@ -26,18 +27,30 @@ enum class TurnKind { kAny, kBackground };
 // frames of another session's moving camera.
 inline constexpr Clock::duration kQuietBeforeBackground = std::chrono::milliseconds(300);
 
+// Who may have a turn.
+struct Contender {
+  std::string id;
+  bool own_view = false;  // of one person
+};
+
 class Turns {
  public:
   using TakeTurn = std::function<TurnOutcome(std::size_t index, TurnKind kind)>;
 
-  // Offers a turn to each of `ids` (sorted), starting after the one that used the last, until one
-  // uses it; then, if all have been quiet, offers turns for background work. Returns when to call
-  // again without a wake-up.
-  std::optional<Clock::time_point> Next(const std::vector<std::string>& ids,
+  // Offers a turn to each contender (sorted by id), first to those of the kind that did not use the
+  // last, and of each kind starting after the one that was last served, until one uses it; then, if
+  // all have been quiet, offers turns for background work. Returns when to call again without a
+  // wake-up.
+  std::optional<Clock::time_point> Next(const std::vector<Contender>& contenders,
                                         const TakeTurn& take_turn);
 
  private:
+  std::vector<std::size_t> Order(const std::vector<Contender>& contenders) const;
+  void Served(const Contender& contender);
+
   std::string last_served_;
+  std::string last_own_view_served_;
+  bool own_views_first_ = false;
   std::optional<Clock::time_point> last_drew_at_;  // not counting background work
 };
 

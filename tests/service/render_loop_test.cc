@@ -440,7 +440,7 @@ TEST_F(RenderLoopTest, StopsAmidWork) {
 }
 
 TEST(SessionTest, OlderRevisionNeverReplacesANewer) {
-  Session session("id", {}, {}, {}, {}, {[] {}, [] {}});
+  Session session("id", {"p", "v"}, {}, {}, {}, {[] {}, [] {}});
   const std::uint64_t early = session.TakeRevision();
   const std::uint64_t late = session.TakeRevision();
   scene::Scene scene = test_support::PlainScene();

@@ -19,7 +19,11 @@ class TurnsTest : public ::testing::Test {
   std::string Serve() {
     std::string served;
     asked_.clear();
-    look_again_at_ = turns_.Next(ids_, [&](std::size_t i, TurnKind kind) -> TurnOutcome {
+    std::vector<Contender> contenders;
+    for (const std::string& id : ids_) {
+      contenders.push_back({id, id.find('/') != std::string::npos});
+    }
+    look_again_at_ = turns_.Next(contenders, [&](std::size_t i, TurnKind kind) -> TurnOutcome {
       asked_.push_back(ids_[i]);
       const bool in_background = in_background_.count(ids_[i]) > 0;
       if (busy_.count(ids_[i]) == 0 && !(in_background && kind == TurnKind::kBackground)) {
@@ -45,6 +49,22 @@ TEST_F(TurnsTest, AllWhoHaveWorkAreServedInTurn) {
   std::vector<std::string> served;
   for (int i = 0; i < 6; ++i) served.push_back(Serve());
   EXPECT_THAT(served, ElementsAre("a", "c", "", "a", "c", ""));
+}
+
+TEST_F(TurnsTest, OwnViewsTogetherTakeHalfOfTheTurns) {
+  ids_ = {"", "a", "a/1", "a/2", "a/3", "b"};
+  busy_ = {"a", "a/1", "a/2", "a/3", "b"};
+  std::vector<std::string> served;
+  for (int i = 0; i < 8; ++i) served.push_back(Serve());
+  EXPECT_THAT(served, ElementsAre("a", "a/1", "b", "a/2", "a", "a/3", "b", "a/1"));
+}
+
+TEST_F(TurnsTest, OwnViewsTakeEveryTurnThatNobodyElseUses) {
+  ids_ = {"", "a", "a/1", "a/2"};
+  busy_ = {"a/1", "a/2"};
+  std::vector<std::string> served;
+  for (int i = 0; i < 3; ++i) served.push_back(Serve());
+  EXPECT_THAT(served, ElementsAre("a/1", "a/2", "a/1"));
 }
 
 TEST_F(TurnsTest, TheRoundGoesOnWhereTheLastServedHasGone) {
