@@ -11,7 +11,7 @@ export type SceneVerdict =
   // The session's scene is another one than the edits were made to.
   | { readonly kind: "stale" }
   // The server has too much to do; the same scene may be taken later.
-  | { readonly kind: "busy" }
+  | { readonly kind: "busy"; readonly message: string }
   | { readonly kind: "refused"; readonly message: string };
 
 export interface SyncSteps {
@@ -26,6 +26,7 @@ export interface SyncSteps {
   // Rejects if the connection is lost.
   send(scene: Scene, expectedRevision: bigint): Promise<SceneVerdict>;
   taken(): void;
+  // A scene was refused, or is sent again later as the server is busy.
   refused(message: string): void;
   // Requests one call at the next screen refresh; returns a function that cancels it.
   onNextPaint(callback: () => void): () => void;
@@ -81,7 +82,7 @@ export class SceneSync {
     this.#rebase(completed, revision);
   }
 
-  // Another session was joined: its revisions are others.
+  // Joined, again or another session: its next scene is taken whatever its revision.
   forget(): void {
     this.#revision = -1n;
     this.#told = undefined;
@@ -110,7 +111,9 @@ export class SceneSync {
   // The session's scene.
   told(scene: Scene, revision: bigint): void {
     this.#told = { scene, revision };
+    this.#stale = false;
     this.#adoptTold();
+    this.#schedule();
   }
 
   dispose(): void {
@@ -174,6 +177,7 @@ export class SceneSync {
         this.#stale = true;
         break;
       case "busy":
+        this.#steps.refused(verdict.message);
         this.#withdrawRest = this.#steps.later(BUSY_REST_MS, () => {
           this.#withdrawRest = undefined;
           this.#schedule();

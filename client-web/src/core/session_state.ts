@@ -71,6 +71,7 @@ export class SessionState {
     if (this.steering.value) return undefined;
     if (this.me.value === undefined)
       return this.viewerKey.value === undefined ? undefined : "Joining the session …";
+    if (this.person(this.me.value.viewerId) === undefined) return "Joining the session …";
     const steerer = this.steerer.value;
     if (steerer !== undefined) return `${this.nameOf(steerer)} steers.`;
     if (this.presenterAway.value) return "The presenter is away, and keeps control.";
@@ -96,13 +97,14 @@ export class SessionState {
     return person === undefined ? "" : this.nameOf(person);
   }
 
+  // Who steered before the connection was lost is taken to steer until the next presence, so that controls stay usable.
   joined(joined: Joined): void {
+    const steered = this.steering.peek();
     batch(() => {
       this.ended.value = undefined;
       this.me.value = { viewerId: joined.viewerId, role: joined.role };
       this.viewerKey.value = joined.viewerKey;
-      this.steeringId.value = 0n;
-      this.people.value = [];
+      this.steeringId.value = steered ? joined.viewerId : 0n;
       this.pointers.value = [];
       this.marks.value = [];
       this.pendingMarks.value = [];

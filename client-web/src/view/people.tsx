@@ -1,0 +1,110 @@
+// Who is there: names, roles, who steers, who asks.
+import { useEffect, useRef } from "preact/hooks";
+import { LONGEST_NAME } from "../core/own_keys";
+import { type Person, Role } from "../gen/thunderhead/v1/interact_pb";
+import type { Page } from "./page";
+
+export function PeopleList({ page }: { page: Page }) {
+  const { session } = page.state;
+  const dialog = useRef<HTMLElement>(null);
+  useEffect(() => dialog.current?.focus(), []);
+  const asking = session.asking.value;
+  const others = session.people.value.filter((person) => !asking.includes(person));
+  return (
+    <section
+      id="people"
+      ref={dialog}
+      class="popover people"
+      role="dialog"
+      aria-label="People in this session"
+      tabIndex={-1}
+      data-testid="people-panel"
+    >
+      <header>
+        <h2>People</h2>
+        <button
+          type="button"
+          class="close"
+          aria-label="Close"
+          onClick={() => page.togglePopover("people")}
+        >
+          ×
+        </button>
+      </header>
+      <OwnName page={page} />
+      <ul data-testid="people-list">
+        {[...asking, ...others].map((person) => (
+          <PersonRow key={person.viewerId} page={page} person={person} />
+        ))}
+      </ul>
+    </section>
+  );
+}
+
+function OwnName({ page }: { page: Page }) {
+  const { session } = page.state;
+  // A new name means to join again, and a viewer would lose control by that.
+  const busy = session.steering.value && !session.presenting.value;
+  return (
+    <label class="own-name">
+      Your name
+      <input
+        type="text"
+        maxLength={LONGEST_NAME}
+        data-testid="own-name"
+        placeholder="None"
+        disabled={busy}
+        title={busy ? "Give control back to change your name" : undefined}
+        value={page.keys.name}
+        onChange={(event) => page.rename(event.currentTarget.value)}
+      />
+    </label>
+  );
+}
+
+function PersonRow({ page, person }: { page: Page; person: Person }) {
+  const { session } = page.state;
+  const { viewerId } = person;
+  const steers = session.steeringId.value === viewerId;
+  const notes = [
+    person.role === Role.PRESENTER && person.name !== "" && "presenter",
+    person.hidden && "away",
+    !person.follows && "looking around",
+    person.asksControl && "asks to steer",
+  ].filter((note) => note !== false);
+  const answers = session.answersAsking.value && person.asksControl;
+  const gives =
+    session.answersAsking.value && !person.asksControl && !steers && !session.isMe(viewerId);
+  return (
+    <li class={steers ? "steers" : undefined} data-testid="person">
+      <span class="person-name">
+        {session.nameOf(person)}
+        {session.isMe(viewerId) && <span class="quiet"> (you)</span>}
+        {steers && <span class="tag">steers</span>}
+        {notes.length > 0 && <span class="quiet"> {notes.join(", ")}</span>}
+      </span>
+      {(answers || gives) && (
+        <span class="person-buttons">
+          <button
+            type="button"
+            data-testid={answers ? "give" : "give-unasked"}
+            aria-label={`Give control to ${session.nameOf(person)}`}
+            onClick={() => page.giveControl(viewerId)}
+          >
+            {answers ? "Give" : "Give control"}
+          </button>
+          {answers && (
+            <button
+              type="button"
+              data-testid="not-now"
+              aria-label={`Do not give control to ${session.nameOf(person)} now`}
+              onClick={() => page.refuseControl(viewerId)}
+            >
+              Not now
+            </button>
+          )}
+        </span>
+      )}
+    </li>
+  );
+}
