@@ -5,7 +5,7 @@ import type { PageState } from "../core/state";
 import { Overlay } from "./overlay";
 import type { Page } from "./page";
 import { Panel } from "./panel";
-import { PeopleList } from "./people";
+import { Asking, PeopleList } from "./people";
 import { Readout } from "./readout";
 import { SessionBar } from "./session_bar";
 import { Share } from "./share";
@@ -28,6 +28,7 @@ export function App({ page }: { page: Page }) {
       <div class="messages">
         <ConnectionBanner state={state} />
         <SessionEnded page={page} />
+        <Asking page={page} />
         <Notices state={state} />
       </div>
     </main>
@@ -46,6 +47,7 @@ function TopBar({ page }: { page: Page }) {
         <button
           type="button"
           data-testid="share"
+          aria-haspopup="dialog"
           aria-expanded={popover === "share"}
           aria-controls="share"
           disabled={session.viewerKey.value === undefined || session.ended.value !== undefined}
@@ -56,6 +58,7 @@ function TopBar({ page }: { page: Page }) {
         <button
           type="button"
           data-testid="people"
+          aria-haspopup="dialog"
           aria-expanded={popover === "people"}
           aria-controls="people"
           onClick={() => page.togglePopover("people")}

@@ -495,6 +495,10 @@ export class Page implements SessionListener {
         if (!this.state.session.mayLookAround.value) untracked(() => this.follow());
       }),
       effect(() => {
+        this.state.session.lookingAround.value;
+        untracked(() => this.#flow.viewChanged());
+      }),
+      effect(() => {
         if (!this.state.session.mayMark.value) this.state.session.tool.value = "camera";
       }),
     );

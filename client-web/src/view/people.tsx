@@ -83,28 +83,59 @@ function PersonRow({ page, person }: { page: Page; person: Person }) {
         {steers && <span class="tag">steers</span>}
         {notes.length > 0 && <span class="quiet"> {notes.join(", ")}</span>}
       </span>
-      {(answers || gives) && (
-        <span class="person-buttons">
-          <button
-            type="button"
-            data-testid={answers ? "give" : "give-unasked"}
-            aria-label={`Give control to ${session.nameOf(person)}`}
-            onClick={() => page.giveControl(viewerId)}
-          >
-            {answers ? "Give" : "Give control"}
-          </button>
-          {answers && (
-            <button
-              type="button"
-              data-testid="not-now"
-              aria-label={`Do not give control to ${session.nameOf(person)} now`}
-              onClick={() => page.refuseControl(viewerId)}
-            >
-              Not now
-            </button>
-          )}
-        </span>
+      {answers && <AnswerButtons page={page} person={person} testId="give" />}
+      {gives && (
+        <button
+          type="button"
+          class="give-unasked"
+          data-testid="give-unasked"
+          aria-label={`Give control to ${session.nameOf(person)}`}
+          onClick={() => page.giveControl(viewerId)}
+        >
+          Give control
+        </button>
       )}
     </li>
+  );
+}
+
+// Those who ask, for the people who answer: a request ends after 20 seconds.
+export function Asking({ page }: { page: Page }) {
+  const { session } = page.state;
+  if (!session.answersAsking.value) return null;
+  return (
+    <>
+      {session.asking.value.map((person) => (
+        <p key={person.viewerId} class="banner asking" data-testid="asks">
+          <span>{session.nameOf(person)} asks to steer</span>
+          <AnswerButtons page={page} person={person} testId="asks-give" />
+        </p>
+      ))}
+    </>
+  );
+}
+
+function AnswerButtons(props: { page: Page; person: Person; testId: string }) {
+  const { page, person, testId } = props;
+  const name = page.state.session.nameOf(person);
+  return (
+    <span class="person-buttons">
+      <button
+        type="button"
+        data-testid={testId}
+        aria-label={`Give control to ${name}`}
+        onClick={() => page.giveControl(person.viewerId)}
+      >
+        Give
+      </button>
+      <button
+        type="button"
+        data-testid={`${testId}-not`}
+        aria-label={`Do not give control to ${name} now`}
+        onClick={() => page.refuseControl(person.viewerId)}
+      >
+        Not now
+      </button>
+    </span>
   );
 }

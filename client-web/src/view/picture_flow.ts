@@ -22,6 +22,8 @@ export class PictureFlow {
   #painter: CanvasPainter | undefined;
   #showsOwnView = false;
   #newestSequence: bigint | undefined;
+  // The newest frame of the session's view that came while the own one was shown.
+  #unwanted: Frame | undefined;
 
   constructor(steps: PictureFlowSteps) {
     this.#steps = steps;
@@ -48,16 +50,25 @@ export class PictureFlow {
   startCall(): void {
     this.#pipeline.startStream();
     this.#newestSequence = undefined;
+    this.#unwanted = undefined;
   }
 
   offer(frame: Frame): void {
     if (frame.ownView !== this.#steps.wantsOwnView()) {
       this.#steps.acknowledge(frame.sequence, frame.ownView);
+      if (!frame.ownView) this.#unwanted = frame;
       return;
     }
     if (frame.ownView !== this.#showsOwnView) this.#switchTo(frame.ownView);
     this.#newestSequence = frame.sequence;
     this.#pipeline.offer(frame);
+  }
+
+  // Another view is wanted now. The server may have sent its frame before it said so.
+  viewChanged(): void {
+    const frame = this.#unwanted;
+    this.#unwanted = undefined;
+    if (frame !== undefined && !this.#steps.wantsOwnView()) this.offer(frame);
   }
 
   dispose(): void {

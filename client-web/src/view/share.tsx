@@ -44,7 +44,7 @@ export function Share({ page }: { page: Page }) {
           ×
         </button>
       </header>
-      <p class="quiet">Who opens this link watches with you.</p>
+      <p class="quiet">Who opens this link watches with you. The code grows with a click.</p>
       <QrCode text={link} />
       <div class="link-row">
         <input
@@ -70,20 +70,31 @@ export function Share({ page }: { page: Page }) {
   );
 }
 
+// A click shows it as large as the window, for those at the back.
 function QrCode({ text }: { text: string }) {
+  const [large, setLarge] = useState(false);
   const { size, path } = useMemo(() => qrPath(text), [text]);
   return (
-    <svg
-      class="qr"
-      role="img"
-      aria-label="QR code of the link"
+    <button
+      type="button"
+      class={large ? "qr large" : "qr"}
+      aria-pressed={large}
+      aria-label="QR code of the link, larger"
+      title={large ? "Smaller" : "Larger"}
       data-testid="qr"
-      viewBox={`0 0 ${size} ${size}`}
-      shape-rendering="crispEdges"
+      onClick={() => setLarge(!large)}
     >
-      <rect width={size} height={size} fill="#fff" />
-      <path d={path} fill="#000" />
-    </svg>
+      <svg
+        class="qr-code"
+        viewBox={`0 0 ${size} ${size}`}
+        shape-rendering="crispEdges"
+        aria-hidden="true"
+      >
+        <rect width={size} height={size} fill="#fff" />
+        <path d={path} fill="#000" />
+      </svg>
+      {large && <span class="qr-text">{text}</span>}
+    </button>
   );
 }
 
