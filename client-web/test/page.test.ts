@@ -2,7 +2,7 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { poseOfCamera } from "../src/core/camera";
 import { withSky, withTime } from "../src/core/scene";
-import type { InteractRequest } from "../src/gen/thunderhead/v1/interact_pb";
+import { type InteractRequest, Role } from "../src/gen/thunderhead/v1/interact_pb";
 import { Page } from "../src/view/page";
 import { FakeNetwork } from "./fake_network";
 import { FakeService } from "./fake_service";
@@ -363,7 +363,8 @@ describe("the page in a session", () => {
     network.break();
     await pass(3000);
     expect(viewer.canvas.dataset).toMatchObject({ ownView: "true", azimuth: "218.00" });
-    expect(saidOf("detach")).toHaveLength(1);
+    const [joined] = session().people.filter(({ role }) => role === Role.VIEWER);
+    expect(joined?.heard.filter(({ message }) => message.case === "detach")).toHaveLength(1);
   });
 
   it("gives an edit up that it may not make any more, and says so", async () => {
