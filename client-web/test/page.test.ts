@@ -64,7 +64,7 @@ describe("the page in a session", () => {
 
   const classroom = async () => {
     const teacher = await visit();
-    const viewer = await visit(teacher.page.viewersLink(true));
+    const viewer = await visit(teacher.page.addresses.viewersLink(true));
     return { teacher, viewer };
   };
 
@@ -82,7 +82,7 @@ describe("the page in a session", () => {
     expect(address.searchParams.get("session")).toBe(session().viewerKey);
     expect(window.location.href).not.toContain(session().presenterKey);
     expect([...storage.items.values()].join()).toContain(session().presenterKey);
-    expect(page.viewersLink()).toBe(`${HOME}?session=${session().viewerKey}`);
+    expect(page.addresses.viewersLink()).toBe(`${HOME}?session=${session().viewerKey}`);
     expect(page.state.session.steering.value).toBe(true);
   });
 
@@ -155,7 +155,7 @@ describe("the page in a session", () => {
     viewer.page.move((pose) => pose);
     await pass(200);
     expect(viewer.page.state.session.lookingAround.value).toBe(true);
-    teacher.page.setRules({ followingLocked: true });
+    teacher.page.actions.setRules({ followingLocked: true });
     await pass(200);
     expect(viewer.page.state.session.lookingAround.value).toBe(false);
     expect(viewer.canvas.dataset.ownView).toBe("false");
@@ -167,11 +167,11 @@ describe("the page in a session", () => {
 
   it("asks for control, is given it, changes the scene and gives it back", async () => {
     const { teacher, viewer } = await classroom();
-    viewer.page.askControl();
+    viewer.page.actions.askControl();
     await pass(50);
     expect(teacher.page.state.session.asking.value).toHaveLength(1);
     const asking = teacher.page.state.session.asking.value[0];
-    teacher.page.giveControl(asking?.viewerId);
+    teacher.page.actions.giveControl(asking?.viewerId);
     await pass(50);
     expect(viewer.page.state.session.steering.value).toBe(true);
     expect(teacher.page.state.session.editBlock.value).toBe("Viewer 2 steers.");
@@ -180,10 +180,10 @@ describe("the page in a session", () => {
     expect(teacher.page.state.timeIndex.value).toBe(3);
     // Who steers another's session does not change its picture's size.
     expect(session().scene.output).toMatchObject({ widthPx: 640, heightPx: 360 });
-    viewer.page.giveControl();
+    viewer.page.actions.giveControl();
     await pass(50);
     expect(viewer.page.state.session.editBlock.value).toBe("Nobody steers.");
-    teacher.page.takeControl();
+    teacher.page.actions.takeControl();
     await pass(50);
     expect(teacher.page.state.session.steering.value).toBe(true);
   });
@@ -270,7 +270,7 @@ describe("the page in a session", () => {
     expect(marks).toMatchObject([{ viewerId: 1n }]);
     expect(marks[0]?.positions).toHaveLength(3);
     expect(teacher.canvas.dataset.azimuth).toBe("200.00");
-    teacher.page.eraseMarks();
+    teacher.page.actions.eraseMarks();
     await pass(20);
     expect(viewer.page.state.session.marks.value).toEqual([]);
   });
@@ -297,7 +297,7 @@ describe("the page in a session", () => {
     const { teacher, viewer } = await classroom();
     viewer.page.toggleTool("pen");
     expect(viewer.page.state.session.tool.value).toBe("pen");
-    teacher.page.setRules({ viewersMayMark: false });
+    teacher.page.actions.setRules({ viewersMayMark: false });
     await pass(20);
     expect(viewer.page.state.session.tool.value).toBe("camera");
     viewer.page.toggleTool("pen");
@@ -306,14 +306,14 @@ describe("the page in a session", () => {
 
   it("ends for everybody when the presenter says so, and opens a new one only by the button", async () => {
     const { teacher, viewer } = await classroom();
-    await teacher.page.endSession();
+    await teacher.page.actions.endSession();
     await pass(20_000);
     for (const { page } of [teacher, viewer]) {
       expect(page.state.session.ended.value).toBe("The presenter has ended the session");
       expect(page.state.connection.value).toEqual({ kind: "gone" });
     }
     expect(service.sessions).toEqual([]);
-    viewer.page.openNewSession();
+    viewer.page.actions.openNewSession();
     await pass(500);
     expect(viewer.page.state.session.steering.value).toBe(true);
     expect(viewer.window.location.href).toContain(session().viewerKey);
@@ -332,7 +332,7 @@ describe("the page in a session", () => {
     const stranger = await visit(address);
     expect(stranger.page.state.session.ended.value).toMatch(/does not have this session/);
     expect(service.sessions).toEqual([]);
-    stranger.page.openNewSession();
+    stranger.page.actions.openNewSession();
     await pass(500);
     expect(session().scene.timeIndex).toBe(3);
     leave(stranger);
@@ -346,7 +346,7 @@ describe("the page in a session", () => {
 
   it("joins again under a new name, and keeps it for the next time", async () => {
     const { viewer } = await classroom();
-    viewer.page.rename("  Ben ");
+    viewer.page.actions.rename("  Ben ");
     await pass(100);
     expect(session().people.map(({ name }) => name)).toEqual(["", "Ben"]);
     const again = await reload(viewer);
@@ -369,7 +369,7 @@ describe("the page in a session", () => {
 
   it("gives an edit up that it may not make any more, and says so", async () => {
     const { teacher, viewer } = await classroom();
-    teacher.page.giveControl(2n);
+    teacher.page.actions.giveControl(2n);
     await pass(50);
     network.break();
     viewer.page.showTime(3);

@@ -130,8 +130,8 @@ function SessionEnded({ page }: { page: Page }) {
   if (ended.value === undefined) return null;
   return (
     <section class="ended" aria-label="The session has ended" data-testid="session-ended">
-      <p>{ended.value}.</p>
-      <button type="button" data-testid="open-new" onClick={() => page.openNewSession()}>
+      <p>{ended.value.replace(/\.$/, "")}.</p>
+      <button type="button" data-testid="open-new" onClick={() => page.actions.openNewSession()}>
         Open a new session with this scene
       </button>
     </section>

@@ -45,7 +45,9 @@ export function attachKeyboard(window: Window, actions: KeyActions): () => void 
   window.addEventListener(
     "keydown",
     (event) => {
-      if (event.key === "Escape" && actions.escape()) event.preventDefault();
+      if (event.key === "Escape" && !event.defaultPrevented && actions.escape()) {
+        event.preventDefault();
+      }
       if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
       if (!usesKey(event.target, event.key) && act(event, actions)) event.preventDefault();
     },

@@ -30,7 +30,6 @@ import {
   type Joined,
   type Presence,
   Role,
-  type SessionRules,
 } from "../gen/thunderhead/v1/interact_pb";
 import { type Scene, SceneSchema } from "../gen/thunderhead/v1/scene_pb";
 import { ServerCalls } from "../transport/server_calls";
@@ -42,17 +41,16 @@ import {
   SessionClient,
   type SessionListener,
 } from "../transport/session_client";
+import { Addresses } from "./addresses";
+import { CanvasPlace } from "./canvas_place";
 import { attachKeyboard } from "./keyboard";
-import { linkTo, readLink } from "./link";
-import { boxInWindow, PictureFlow } from "./picture_flow";
-import { attachPointer } from "./pointer";
+import { readLink } from "./link";
+import { PictureFlow } from "./picture_flow";
+import { SessionActions } from "./session_actions";
 import { StormsOnServer } from "./storms_on_server";
 
-const RESIZE_REST_MS = 150;
 const PACE_EVERY_MS = 500;
 const NOTE_MS = 6000;
-// The address has the scene of so long ago at least; browsers limit how often it changes.
-const ADDRESS_REST_MS = 1000;
 // A page that is looked at says so, so that the session does not expire under a still picture.
 const STILL_HERE_EVERY_MS = 30_000;
 // Narrower windows start with the panel closed.
@@ -64,20 +62,21 @@ export class Page implements SessionListener {
   readonly state = new PageState();
   readonly playback: Playback;
   readonly marking: Marking;
-  readonly keys: OwnKeys;
+  readonly actions: SessionActions;
+  readonly addresses: Addresses;
+  readonly #keys: OwnKeys;
   readonly #window: Window;
   readonly #calls: ServerCalls;
   readonly #client: SessionClient;
   readonly #storms: StormsOnServer;
   readonly #sync: SceneSync;
   readonly #flow: PictureFlow;
+  readonly #place: CanvasPlace;
   readonly #ownView: OwnView;
   readonly #ledger = new RevisionLedger();
   readonly #rate = new FrameRate();
   readonly #listening = new AbortController();
   readonly #disposals: (() => void)[] = [];
-  #canvas: HTMLCanvasElement | undefined;
-  #canvasSize = { widthPx: 1280, heightPx: 720 };
   // The key that the page joins with, if it is the presenter's.
   #presenterKey: string | undefined;
   // True until the first presence of a session that this page opened.
@@ -87,22 +86,23 @@ export class Page implements SessionListener {
   #shown: Frame | undefined;
   #problemRevision = 0n;
   #running = false;
-  #addressTimer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(transport: Transport, openInteract: OpenInteract, window: Window) {
     this.#window = window;
     const { session } = this.state;
     const link = readLink(window.location.href);
     if (link.scene !== undefined) this.state.adoptScene(link.scene);
-    this.keys = new OwnKeys(storageOf(window));
+    this.#keys = new OwnKeys(storageOf(window));
     session.viewerKey.value = link.viewerKey;
-    if (link.viewerKey !== undefined) this.#presenterKey = this.keys.presenterKey(link.viewerKey);
+    if (link.viewerKey !== undefined) this.#presenterKey = this.#keys.presenterKey(link.viewerKey);
     this.#setsOutput = link.viewerKey === undefined || this.#presenterKey !== undefined;
     this.state.panelOpen.value = window.innerWidth >= NARROW_PX;
 
     this.#calls = new ServerCalls(transport);
     const key = this.#presenterKey ?? link.viewerKey;
     this.#client = new SessionClient(this.#calls, openInteract, this, key);
+    this.actions = new SessionActions(this.#client, this.#calls, this.#keys, this.state);
+    this.addresses = new Addresses(window, this.state);
     this.#storms = new StormsOnServer(this.#calls, this.state);
     const onNextPaint = (callback: (nowMs: number) => void) => {
       const request = window.requestAnimationFrame(callback);
@@ -129,6 +129,17 @@ export class Page implements SessionListener {
       painted: (frame) => this.#painted(frame),
       undecodable: (frame) => this.#undecodable(frame),
       onNextPaint,
+    });
+    this.#place = new CanvasPlace(window, this.#flow, {
+      move: (motion) => this.move(motion),
+      tool: () => this.marking.tool(),
+      resized: () => {
+        if (this.#shown !== undefined) this.state.pictureBox.value = this.#place.boxOf(this.#shown);
+      },
+      resizeRested: () => {
+        this.#sendWindow();
+        this.#sendOutputSize();
+      },
     });
     this.#ownView = new OwnView(session.lookingAround, {
       detach: (camera) => this.#client.send({ case: "detach", value: { camera } }),
@@ -160,40 +171,12 @@ export class Page implements SessionListener {
 
   // Paints pictures on this canvas from now on. Returns the function that detaches it.
   attachCanvas(canvas: HTMLCanvasElement): () => void {
-    const painter = this.#flow.attach(canvas);
-    this.#canvas = canvas;
-    const detachPointer = attachPointer(
-      canvas,
-      (motion) => this.move(motion),
-      () => this.marking.tool(),
-    );
-    let resting: ReturnType<typeof setTimeout> | undefined;
-    const measure = () => {
-      const ratio = this.#window.devicePixelRatio;
-      const widthPx = Math.max(1, Math.round(canvas.clientWidth * ratio));
-      const heightPx = Math.max(1, Math.round(canvas.clientHeight * ratio));
-      this.#canvasSize = { widthPx, heightPx };
-      painter.resize(widthPx, heightPx);
-      if (this.#shown !== undefined) this.state.pictureBox.value = boxInWindow(canvas, this.#shown);
-    };
-    const observer = new ResizeObserver(() => {
-      measure();
-      clearTimeout(resting);
-      resting = setTimeout(() => {
-        this.#sendWindow();
-        this.#sendOutputSize();
-      }, RESIZE_REST_MS);
-    });
-    observer.observe(canvas);
-    measure();
-    this.#start();
-    return () => {
-      observer.disconnect();
-      clearTimeout(resting);
-      detachPointer();
-      this.#flow.detach();
-      this.#canvas = undefined;
-    };
+    const detach = this.#place.attach(canvas);
+    if (!this.#running) {
+      this.#running = true;
+      void this.#client.run();
+    }
+    return detach;
   }
 
   // The camera of the session for who steers, else the own view's.
@@ -272,81 +255,17 @@ export class Page implements SessionListener {
     this.#sendOutputSize();
   }
 
-  // The link for viewers; with the scene, to open a new session when this one has ended.
-  viewersLink(withScene = false): string | undefined {
-    const viewerKey = this.state.session.viewerKey.value;
-    if (viewerKey === undefined) return undefined;
-    const scene = withScene ? this.state.scene.value : undefined;
-    return linkTo(this.#window.location.href, viewerKey, scene);
-  }
-
   async copyLink(): Promise<void> {
-    const address = this.viewersLink(true);
-    if (address === undefined) return;
-    try {
-      await this.#window.navigator.clipboard.writeText(address);
-      this.#note("link", "Link copied");
-    } catch {
-      // Browsers deny the clipboard to pages without HTTPS or without focus.
-      this.state.notify({ subject: "link", text: address, severity: "note" });
+    if (await this.addresses.copyLink()) this.#note("link", "Link copied");
+    else {
+      const text = this.addresses.viewersLink(true) ?? "";
+      this.state.notify({ subject: "link", text, severity: "note" });
     }
-  }
-
-  // The name that others see.
-  rename(name: string): void {
-    const before = this.keys.name;
-    this.keys.name = name;
-    if (this.keys.name !== before) this.#client.rejoin();
-  }
-
-  askControl(): void {
-    this.#client.send({ case: "askControl", value: {} });
-  }
-
-  takeControl(): void {
-    this.#client.send({ case: "takeControl", value: {} });
-  }
-
-  // To nobody: control is free.
-  giveControl(viewerId = 0n): void {
-    this.#client.send({ case: "giveControl", value: { viewerId } });
-  }
-
-  refuseControl(viewerId: bigint): void {
-    this.#client.send({ case: "refuseControl", value: { viewerId } });
-  }
-
-  setRules(rules: Partial<Omit<SessionRules, "$typeName" | "$unknown">>): void {
-    this.#client.send({ case: "setRules", value: { rules } });
-  }
-
-  eraseMarks(): void {
-    this.#client.send({ case: "eraseMarks", value: {} });
-  }
-
-  // Ends the session for everybody.
-  async endSession(): Promise<void> {
-    if (this.#presenterKey === undefined) return;
-    this.state.popover.value = undefined;
-    try {
-      await this.#calls.closeSession(this.#presenterKey);
-    } catch (error) {
-      const text = `The session goes on: ${String(error)}`;
-      this.state.notify({ subject: "session", text, severity: "problem" });
-    }
-  }
-
-  // In place of one that has ended.
-  openNewSession(): void {
-    const { session, connection } = this.state;
-    session.ended.value = undefined;
-    session.viewerKey.value = undefined;
-    connection.value = { kind: "connecting" };
-    this.#client.openNew();
   }
 
   dispose(): void {
     this.#storms.dispose();
+    this.addresses.dispose();
     this.#listening.abort();
     for (const dispose of this.#disposals) dispose();
     this.playback.dispose();
@@ -363,7 +282,7 @@ export class Page implements SessionListener {
   sceneToOpen(): Scene {
     this.#setsOutput = true;
     const { scene, resolution } = this.state;
-    const { widthPx, heightPx } = this.#canvasSize;
+    const { widthPx, heightPx } = this.#place.size;
     const size = outputSize(widthPx, heightPx, resolution.value);
     this.state.adoptScene(withOutput(scene.value, size));
     this.#sync.opening();
@@ -378,14 +297,14 @@ export class Page implements SessionListener {
   opened(opened: OpenedSession): void {
     this.#presenterKey = opened.presenterKey;
     this.#opened = true;
-    this.keys.keep(opened.viewerKey, opened.presenterKey);
+    this.#keys.keep(opened.viewerKey, opened.presenterKey);
     this.state.session.viewerKey.value = opened.viewerKey;
     this.#sync.opened(opened.completed, opened.revision);
-    this.#writeAddress();
+    this.addresses.write();
   }
 
   joining(): JoinDetails {
-    return { name: this.keys.name, window: this.#windowMessage(), codecs: [Codec.JPEG] };
+    return { name: this.#keys.name, window: this.#windowMessage(), codecs: [Codec.JPEG] };
   }
 
   joined(joined: Joined): void {
@@ -393,7 +312,7 @@ export class Page implements SessionListener {
     const presenting = joined.role === Role.PRESENTER;
     session.joined(joined);
     if (presenting && this.#presenterKey !== undefined)
-      this.keys.keep(joined.viewerKey, this.#presenterKey);
+      this.#keys.keep(joined.viewerKey, this.#presenterKey);
     this.#ledger.startSession();
     this.#sync.forget();
     this.#flow.startCall();
@@ -444,7 +363,7 @@ export class Page implements SessionListener {
     const { session } = this.state;
     const presented = this.#presenterKey !== undefined;
     this.#presenterKey = undefined;
-    if (session.viewerKey.peek() !== undefined) this.keys.forget(session.viewerKey.peek() ?? "");
+    if (session.viewerKey.peek() !== undefined) this.#keys.forget(session.viewerKey.peek() ?? "");
     if (presented && why.forgotten) {
       this.#note(
         "session",
@@ -455,12 +374,6 @@ export class Page implements SessionListener {
     session.end(why.message);
     this.playback.pause();
     return false;
-  }
-
-  #start(): void {
-    if (this.#running) return;
-    this.#running = true;
-    void this.#client.run();
   }
 
   #now(): number {
@@ -479,7 +392,6 @@ export class Page implements SessionListener {
     this.#disposals.push(
       () => clearInterval(pace),
       () => clearInterval(stillHere),
-      () => clearTimeout(this.#addressTimer),
       attachKeyboard(window, {
         move: (motion) => this.move(motion),
         home: () => this.home(),
@@ -490,7 +402,6 @@ export class Page implements SessionListener {
         escape: () => this.#escape(),
       }),
       effect(() => this.#storms.describeAfterRest(this.playback.playing.value)),
-      effect(() => this.#writeAddressAfterRest(this.state.scene.value)),
       effect(() => {
         if (!this.state.session.mayLookAround.value) untracked(() => this.follow());
       }),
@@ -516,7 +427,7 @@ export class Page implements SessionListener {
     } else {
       this.#sync.hold();
       this.playback.pause();
-      if (this.#opened && presence.steeringViewerId === 0n) this.takeControl();
+      if (this.#opened && presence.steeringViewerId === 0n) this.actions.takeControl();
       else if (this.#sync.unsettled) {
         this.#sync.discard();
         this.#note("control", `Your last change was not taken. ${session.editBlock.peek() ?? ""}`);
@@ -582,12 +493,12 @@ export class Page implements SessionListener {
   }
 
   #painted(frame: Frame): void {
-    const canvas = this.#canvas;
+    const { canvas } = this.#place;
     if (canvas === undefined) return;
     const now = this.#now();
     this.#shown = frame;
     this.#rate.shown(frame.jpeg.byteLength, now);
-    this.state.pictureBox.value = boxInWindow(canvas, frame);
+    this.state.pictureBox.value = this.#place.boxOf(frame);
     this.state.showFrame(frame);
     if (frame.ownView) this.#ownView.placed(frame.camera);
     else {
@@ -622,7 +533,7 @@ export class Page implements SessionListener {
   }
 
   #windowMessage() {
-    return { ...this.#canvasSize, hidden: this.#window.document.hidden };
+    return { ...this.#place.size, hidden: this.#window.document.hidden };
   }
 
   #sendWindow(): void {
@@ -631,7 +542,7 @@ export class Page implements SessionListener {
 
   #sendOutputSize(): void {
     const { output } = this.state.scene.value;
-    const { widthPx, heightPx } = this.#canvasSize;
+    const { widthPx, heightPx } = this.#place.size;
     const size = outputSize(widthPx, heightPx, this.state.resolution.value);
     if (!this.#setsOutput || this.state.session.me.value === undefined) return;
     if (output?.widthPx === size.widthPx && output?.heightPx === size.heightPx) return;
@@ -642,20 +553,6 @@ export class Page implements SessionListener {
   #isTimeShown(index: number): boolean {
     if (this.#sync.unsettled || this.#shown === undefined) return false;
     return (this.#ledger.shownTimeIndex ?? index) === index;
-  }
-
-  // The address of the presenter's page always opens the session, or a new one with the same scene.
-  #writeAddress(): void {
-    const address = this.viewersLink(true);
-    if (address === undefined || this.#presenterKey === undefined) return;
-    this.#window.history.replaceState(null, "", address);
-  }
-
-  #writeAddressAfterRest(_scene: Scene): void {
-    this.#addressTimer ??= setTimeout(() => {
-      this.#addressTimer = undefined;
-      this.#writeAddress();
-    }, ADDRESS_REST_MS);
   }
 
   #takePace(): void {

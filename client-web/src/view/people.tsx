@@ -1,43 +1,22 @@
 // Who is there: names, roles, who steers, who asks.
-import { useEffect, useRef } from "preact/hooks";
 import { LONGEST_NAME } from "../core/own_keys";
 import { type Person, Role } from "../gen/thunderhead/v1/interact_pb";
 import type { Page } from "./page";
+import { Popover } from "./popover";
 
 export function PeopleList({ page }: { page: Page }) {
   const { session } = page.state;
-  const dialog = useRef<HTMLElement>(null);
-  useEffect(() => dialog.current?.focus(), []);
   const asking = session.asking.value;
   const others = session.people.value.filter((person) => !asking.includes(person));
   return (
-    <section
-      id="people"
-      ref={dialog}
-      class="popover people"
-      role="dialog"
-      aria-label="People in this session"
-      tabIndex={-1}
-      data-testid="people-panel"
-    >
-      <header>
-        <h2>People</h2>
-        <button
-          type="button"
-          class="close"
-          aria-label="Close"
-          onClick={() => page.togglePopover("people")}
-        >
-          ×
-        </button>
-      </header>
+    <Popover page={page} name="people" title="People" label="People in this session">
       <OwnName page={page} />
       <ul data-testid="people-list">
         {[...asking, ...others].map((person) => (
           <PersonRow key={person.viewerId} page={page} person={person} />
         ))}
       </ul>
-    </section>
+    </Popover>
   );
 }
 
@@ -55,8 +34,8 @@ function OwnName({ page }: { page: Page }) {
         placeholder="None"
         disabled={busy}
         title={busy ? "Give control back to change your name" : undefined}
-        value={page.keys.name}
-        onChange={(event) => page.rename(event.currentTarget.value)}
+        value={page.actions.name}
+        onChange={(event) => page.actions.rename(event.currentTarget.value)}
       />
     </label>
   );
@@ -90,7 +69,7 @@ function PersonRow({ page, person }: { page: Page; person: Person }) {
           class="give-unasked"
           data-testid="give-unasked"
           aria-label={`Give control to ${session.nameOf(person)}`}
-          onClick={() => page.giveControl(viewerId)}
+          onClick={() => page.actions.giveControl(viewerId)}
         >
           Give control
         </button>
@@ -124,7 +103,7 @@ function AnswerButtons(props: { page: Page; person: Person; testId: string }) {
         type="button"
         data-testid={testId}
         aria-label={`Give control to ${name}`}
-        onClick={() => page.giveControl(person.viewerId)}
+        onClick={() => page.actions.giveControl(person.viewerId)}
       >
         Give
       </button>
@@ -132,7 +111,7 @@ function AnswerButtons(props: { page: Page; person: Person; testId: string }) {
         type="button"
         data-testid={`${testId}-not`}
         aria-label={`Do not give control to ${name} now`}
-        onClick={() => page.refuseControl(person.viewerId)}
+        onClick={() => page.actions.refuseControl(person.viewerId)}
       >
         Not now
       </button>

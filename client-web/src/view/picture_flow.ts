@@ -2,8 +2,6 @@
 // acknowledged, shown or not: the server sends no third one before.
 
 import { FramePipeline } from "../core/frame_pipeline";
-import type { Box } from "../core/picture_box";
-import { pictureBox } from "../core/picture_box";
 import type { Frame } from "../gen/thunderhead/v1/frame_pb";
 import { CanvasPainter } from "./canvas_painter";
 
@@ -98,12 +96,6 @@ export class PictureFlow {
     this.#steps.acknowledge(frame.sequence, frame.ownView);
     this.#steps.undecodable(frame);
   }
-}
-
-// Where a frame's picture lies in the canvas, in CSS pixels.
-export function boxInWindow(canvas: HTMLCanvasElement, frame: Frame): Box {
-  const size = { width: canvas.clientWidth, height: canvas.clientHeight };
-  return pictureBox(size, { width: frame.widthPx, height: frame.heightPx });
 }
 
 function decodeJpeg(jpeg: Uint8Array): Promise<ImageBitmap> {

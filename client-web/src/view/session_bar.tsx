@@ -58,7 +58,7 @@ function Tools({ page }: { page: Page }) {
         </button>
       ))}
       {marks && (
-        <button type="button" data-testid="clear-marks" onClick={() => page.eraseMarks()}>
+        <button type="button" data-testid="clear-marks" onClick={() => page.actions.eraseMarks()}>
           Clear marks
         </button>
       )}
@@ -72,7 +72,7 @@ function Control({ page }: { page: Page }) {
   if (session.steering.value) {
     if (session.presenting.value) return session.alone.value ? null : <Said text="You steer" />;
     return (
-      <button type="button" data-testid="give-back" onClick={() => page.giveControl()}>
+      <button type="button" data-testid="give-back" onClick={() => page.actions.giveControl()}>
         You steer · give back
       </button>
     );
@@ -85,7 +85,7 @@ function Control({ page }: { page: Page }) {
           type="button"
           class="primary"
           data-testid="take-control"
-          onClick={() => page.takeControl()}
+          onClick={() => page.actions.takeControl()}
         >
           Take control
         </button>
@@ -95,7 +95,7 @@ function Control({ page }: { page: Page }) {
           data-testid="ask-control"
           disabled={session.iAsk.value || session.rules.value.controlLocked === true}
           title={session.rules.value.controlLocked ? "The presenter has locked control" : undefined}
-          onClick={() => page.askControl()}
+          onClick={() => page.actions.askControl()}
         >
           {session.iAsk.value ? "Asked to steer …" : "Ask to steer"}
         </button>

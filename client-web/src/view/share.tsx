@@ -1,9 +1,10 @@
 // The viewers' link as text and as a QR code for a projector, and for the presenter the rules.
 
-import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { useMemo, useState } from "preact/hooks";
 import qrcode from "qrcode-generator";
 import type { SessionRules } from "../gen/thunderhead/v1/interact_pb";
 import type { Page } from "./page";
+import { Popover } from "./popover";
 
 type RuleName = Exclude<keyof SessionRules, "$typeName" | "$unknown">;
 
@@ -19,31 +20,10 @@ const RULES: readonly (readonly [RuleName, string, string])[] = [
 const QUIET = 4;
 
 export function Share({ page }: { page: Page }) {
-  const link = page.viewersLink();
-  const dialog = useRef<HTMLElement>(null);
-  useEffect(() => dialog.current?.focus(), []);
+  const link = page.addresses.viewersLink();
   if (link === undefined) return null;
   return (
-    <section
-      id="share"
-      ref={dialog}
-      class="popover share"
-      role="dialog"
-      aria-label="Share this session"
-      tabIndex={-1}
-      data-testid="share-panel"
-    >
-      <header>
-        <h2>Share</h2>
-        <button
-          type="button"
-          class="close"
-          aria-label="Close"
-          onClick={() => page.togglePopover("share")}
-        >
-          ×
-        </button>
-      </header>
+    <Popover page={page} name="share" title="Share" label="Share this session">
       <p class="quiet">Who opens this link watches with you. The code grows with a click.</p>
       <QrCode text={link} />
       <div class="link-row">
@@ -66,7 +46,7 @@ export function Share({ page }: { page: Page }) {
           <EndSession page={page} />
         </>
       )}
-    </section>
+    </Popover>
   );
 }
 
@@ -124,7 +104,7 @@ function Rules({ page }: { page: Page }) {
             type="checkbox"
             data-testid={`rule-${name}`}
             checked={rules[name] ?? false}
-            onChange={(event) => page.setRules({ [name]: event.currentTarget.checked })}
+            onChange={(event) => page.actions.setRules({ [name]: event.currentTarget.checked })}
           />
           <span>
             {label}
@@ -145,7 +125,7 @@ function EndSession({ page }: { page: Page }) {
       class="danger"
       data-testid="end-session"
       onBlur={() => setAsked(false)}
-      onClick={() => (asked ? void page.endSession() : setAsked(true))}
+      onClick={() => (asked ? void page.actions.endSession() : setAsked(true))}
     >
       {asked ? "End it for everybody?" : "End session"}
     </button>
