@@ -10,8 +10,10 @@ namespace {
 
 absl::Status Acknowledge(Engine& engine, const v1::AcknowledgeFrameRequest& request) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const auto session, engine.sessions.Find(request.session_id()));
-  if (session->hub().Acknowledge(request.viewer_id(), request.sequence())) return absl::OkStatus();
+  THUNDERHEAD_ASSIGN_OR_RETURN(const session::FoundSession found,
+                               engine.sessions.Find(request.session_id()));
+  if (found.session->hub().Acknowledge(request.viewer_id(), request.sequence()))
+    return absl::OkStatus();
   return base::WithDetails(absl::NotFoundError(absl::StrCat(
                                "viewer_id is ", request.viewer_id(),
                                "; no such viewer watches the session (its stream may have ended)")),

@@ -172,6 +172,20 @@ void ToMessage(const scene::Camera& camera, v1::Camera& message) {
   std::visit([&message](const auto& kind) { SetCamera(kind, message); }, camera);
 }
 
+void ToMessage(const scene::View& view, v1::View& message) {
+  const auto set = [](const glm::dvec3& value, v1::Vector& vector) {
+    vector.set_x(static_cast<float>(value.x));
+    vector.set_y(static_cast<float>(value.y));
+    vector.set_z(static_cast<float>(value.z));
+  };
+  const bool parallel = view.Orthographic();
+  SetPosition(view.eye_m, *message.mutable_eye());
+  set(view.forward, *message.mutable_forward());
+  set((parallel ? view.half_width_m : view.tan_half_width) * view.right, *message.mutable_right());
+  set((parallel ? view.half_height_m : view.tan_half_height) * view.up, *message.mutable_up());
+  message.set_parallel(parallel);
+}
+
 void SetPosition(const glm::dvec3& position_m, v1::Position& message) {
   message.set_x_m(static_cast<float>(position_m.x));
   message.set_y_m(static_cast<float>(position_m.y));

@@ -3,6 +3,8 @@
 #pragma once
 
 #include "scene/scene.h"
+#include "scene/view.h"
+#include "thunderhead/v1/frame.pb.h"
 #include "thunderhead/v1/scene.pb.h"
 #include "volume/hydrometeor_fields.h"
 
@@ -19,6 +21,7 @@ void FrameCondensate(v1::Scene& scene, const volume::HydrometeorFields& fields);
 scene::Camera ToCamera(const v1::Camera& message);
 
 void ToMessage(const scene::Camera& camera, v1::Camera& message);
+void ToMessage(const scene::View& view, v1::View& message);
 void SetPosition(const glm::dvec3& position_m, v1::Position& message);
 
 }  // namespace thunderhead::service

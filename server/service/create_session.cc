@@ -1,17 +1,20 @@
 #include "base/status.h"
 #include "service/finished.h"
 #include "service/handlers.h"
+#include "service/interact_messages.h"
 #include "service/limits_check.h"
 #include "service/scene_messages.h"
 
 namespace thunderhead::service {
 namespace {
 
-absl::Status Open(Engine& engine, v1::CreateSessionResponse& response) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const auto session, engine.sessions.Create());
+absl::Status Open(Engine& engine, const session::Rules& rules,
+                  v1::CreateSessionResponse& response) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const auto session, engine.sessions.Create(rules));
   const std::uint64_t revision = session->TakeRevision();
   session->Show(revision, ToScene(response.scene()), response.scene().SerializeAsString());
-  response.set_session_id(session->id());
+  response.set_session_id(session->keys().presenter);
+  response.set_viewer_key(session->keys().viewer);
   response.set_scene_revision(revision);
   return absl::OkStatus();
 }
@@ -27,8 +30,9 @@ grpc::ServerUnaryReactor* CreateSession(Engine& engine, grpc::CallbackServerCont
   if (status.ok()) status = PrepareScene(engine.store, engine.loop.Techniques(), scene);
   if (!status.ok()) return Finished(context, status);
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  const session::Rules rules = RulesOf(request->rules(), {});
   FrameThen(engine, scene, [=, &engine](const absl::Status& framed) {
-    reactor->Finish(ToGrpcStatus(framed.ok() ? Open(engine, *response) : framed));
+    reactor->Finish(ToGrpcStatus(framed.ok() ? Open(engine, rules, *response) : framed));
   });
   return reactor;
 }

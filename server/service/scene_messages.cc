@@ -423,6 +423,7 @@ void ToMessage(const session::EncodedFrame& frame, v1::Frame& message) {
   message.set_width_px(static_cast<std::uint32_t>(frame.width_px));
   message.set_height_px(static_cast<std::uint32_t>(frame.height_px));
   ToMessage(frame.camera, *message.mutable_camera());
+  ToMessage(frame.view, *message.mutable_view());
   ToMessage(frame.sun, *message.mutable_sun());
   for (const scene::StageTime& time : frame.stages) ToMessage(time, *message.add_stages());
   ToMessage(frame.modelled, *message.mutable_modelled());

@@ -17,7 +17,9 @@
 #include "base/status.h"
 #include "base/wake_signal.h"
 #include "service/engine.h"
+#include "service/interact_messages.h"
 #include "service/thunderhead_service.h"
+#include "session/upkeep.h"
 
 namespace thunderhead::service {
 namespace {
@@ -44,18 +46,25 @@ std::string NewLocalAddress() {
   return absl::StrCat("unix-abstract:thunderhead-", getpid(), "-", ++count);
 }
 
+session::SessionsOptions WithFormat(session::SessionsOptions options) {
+  options.format = InteractFormat();
+  return options;
+}
+
 class RunningServer final : public Server {
  public:
   RunningServer(const ServerOptions& options, std::shared_ptr<volume::StormStore> store)
       : store_(std::move(store)),
-        sessions_(options.sessions, [this] { wake_.Notify(); }),
+        sessions_(WithFormat(options.sessions),
+                  {[this] { wake_.Notify(); }, [this] { due_.Notify(); }}),
         executor_(kExecutorThreads, kMaxWaitingTasks),
         clouds_(options.clouds_folder, *store_) {}
 
   ~RunningServer() override { RunningServer::Shutdown(); }
 
-  absl::Status StartLoop(const session::RenderLoopOptions& options,
+  absl::Status StartLoop(session::RenderLoopOptions options,
                          const session::FrameSourceFactory& make_source) {
+    options.serialize_frame = SerializedFrame;
     THUNDERHEAD_ASSIGN_OR_RETURN(
         loop_, session::RenderLoop::Start(options, *store_, sessions_, wake_, make_source));
     engine_ =
@@ -118,8 +127,10 @@ class RunningServer final : public Server {
 
  private:
   base::WakeSignal wake_;
+  base::WakeSignal due_;
   const std::shared_ptr<volume::StormStore> store_;
   session::Sessions sessions_;
+  session::Upkeep upkeep_{sessions_, *store_, due_};
   base::Executor executor_;
   CloudStore clouds_;
   std::unique_ptr<session::RenderLoop> loop_;

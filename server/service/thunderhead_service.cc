@@ -40,6 +40,10 @@ grpc::ServerUnaryReactor* ThunderheadService::CreateSession(grpc::CallbackServer
   return service::CreateSession(engine_, context, request, response);
 }
 
+InteractReactor* ThunderheadService::Interact(grpc::CallbackServerContext* /*context*/) {
+  return service::Interact(engine_);
+}
+
 grpc::ServerUnaryReactor* ThunderheadService::UpdateScene(grpc::CallbackServerContext* context,
                                                           const v1::UpdateSceneRequest* request,
                                                           v1::UpdateSceneResponse* response) {

@@ -2,11 +2,25 @@
 #pragma once
 
 #include "service/engine.h"
+#include "service/interact.h"
 #include "thunderhead/v1/thunderhead.grpc.pb.h"
 
 namespace thunderhead::service {
 
-class ThunderheadService final : public v1::ThunderheadService::CallbackService {
+// The calls by messages, and Interact by bytes. This takes gRPC's generated class for each call.
+using Generated = v1::ThunderheadService;
+using Calls = Generated::WithCallbackMethod_GetServerInfo<Generated::WithCallbackMethod_ListStorms<
+    Generated::WithCallbackMethod_DescribeStorm<Generated::WithCallbackMethod_GenerateCloud<
+        Generated::WithCallbackMethod_DeleteCloud<Generated::WithCallbackMethod_CreateSession<
+            Generated::WithCallbackMethod_UpdateScene<Generated::WithCallbackMethod_WatchFrames<
+                Generated::WithCallbackMethod_AcknowledgeFrame<
+                    Generated::WithCallbackMethod_CloseSession<
+                        Generated::WithCallbackMethod_RenderImage<
+                            Generated::WithCallbackMethod_RenderImageWithProgress<
+                                Generated::WithRawCallbackMethod_Interact<
+                                    Generated::Service>>>>>>>>>>>>>;
+
+class ThunderheadService final : public Calls {
  public:
   explicit ThunderheadService(Engine& engine) : engine_(engine) {}
 
@@ -28,6 +42,7 @@ class ThunderheadService final : public v1::ThunderheadService::CallbackService 
   grpc::ServerUnaryReactor* CreateSession(grpc::CallbackServerContext* context,
                                           const v1::CreateSessionRequest* request,
                                           v1::CreateSessionResponse* response) override;
+  InteractReactor* Interact(grpc::CallbackServerContext* context) override;
   grpc::ServerUnaryReactor* UpdateScene(grpc::CallbackServerContext* context,
                                         const v1::UpdateSceneRequest* request,
                                         v1::UpdateSceneResponse* response) override;

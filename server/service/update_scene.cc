@@ -1,33 +1,41 @@
-#include <memory>
-
+#include "base/error_details.h"
+#include "base/status.h"
 #include "service/finished.h"
 #include "service/handlers.h"
 #include "service/limits_check.h"
-#include "service/scene_messages.h"
+#include "service/scene_update.h"
 
 namespace thunderhead::service {
+namespace {
+
+absl::StatusOr<std::shared_ptr<session::Session>> FindToSteer(
+    Engine& engine, const v1::UpdateSceneRequest& request) {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const session::FoundSession found,
+                               engine.sessions.Find(request.session_id()));
+  if (found.role != session::Role::kPresenter) {
+    return base::WithDetails(
+        absl::PermissionDeniedError("viewers steer by Interact, after asking for control; this "
+                                    "call takes the presenter's key"),
+        {.reason = "NOT_PRESENTER"});
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(found.session->audience().PresenterMaySteer());
+  return found.session;
+}
+
+}  // namespace
 
 grpc::ServerUnaryReactor* UpdateScene(Engine& engine, grpc::CallbackServerContext* context,
                                       const v1::UpdateSceneRequest* request,
                                       v1::UpdateSceneResponse* response) {
-  if (const absl::Status status = CheckLimits(*request); !status.ok()) {
-    return Finished(context, status);
-  }
-  const auto session = engine.sessions.Find(request->session_id());
+  const auto session = FindToSteer(engine, *request);
   if (!session.ok()) return Finished(context, session.status());
-  const auto scene = std::make_shared<v1::Scene>(request->scene());
-  if (const absl::Status status = PrepareScene(engine.store, engine.loop.Techniques(), *scene);
-      !status.ok()) {
-    return Finished(context, status);
-  }
-  // Taken before the scene is framed, which may wait for a read, so that the last update wins.
-  const std::uint64_t revision = (*session)->TakeRevision();
-  response->set_scene_revision(revision);
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  FrameThen(engine, *scene, [=, session = *session](const absl::Status& framed) {
-    if (framed.ok()) session->Show(revision, ToScene(*scene), scene->SerializeAsString());
-    reactor->Finish(ToGrpcStatus(framed));
-  });
+  ChangeScene(engine, *session, SceneChangeOf(*request),
+              [=](const absl::StatusOr<std::uint64_t>& revision) {
+                if (revision.ok()) response->set_scene_revision(*revision);
+                reactor->Finish(ToGrpcStatus(revision.status()));
+              });
   return reactor;
 }
 

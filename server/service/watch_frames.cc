@@ -131,7 +131,9 @@ class RefusedStream : public Reactor {
 absl::StatusOr<std::shared_ptr<session::Session>> Find(Engine& engine,
                                                        const v1::WatchFramesRequest& request) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
-  return engine.sessions.Find(request.session_id());
+  THUNDERHEAD_ASSIGN_OR_RETURN(const session::FoundSession found,
+                               engine.sessions.Find(request.session_id()));
+  return found.session;
 }
 
 }  // namespace

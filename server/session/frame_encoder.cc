@@ -13,7 +13,7 @@ namespace {
 // arrive sooner.
 constexpr int kCoarseJpegQuality = 75;
 
-void EncodeAndPublish(DrawnFrame drawn) {
+void EncodeAndPublish(DrawnFrame drawn, const SerializeFrame& serialize) {
   const base::Stopwatch stopwatch;
   const int wanted_quality = drawn.scene.output.jpeg_quality;
   const int quality = drawn.refined ? wanted_quality : std::min(wanted_quality, kCoarseJpegQuality);
@@ -36,13 +36,15 @@ void EncodeAndPublish(DrawnFrame drawn) {
   frame.refined = drawn.refined;
   frame.refinement = drawn.refinement;
   frame.accuracy = std::move(drawn.picture.accuracy);
+  frame.view = drawn.view;
+  frame.serialized = serialize(frame);
   drawn.session->hub().Publish(std::move(frame));
 }
 
 }  // namespace
 
-FrameEncoder::FrameEncoder(int threads, std::function<void()> on_encoded)
-    : on_encoded_(std::move(on_encoded)) {
+FrameEncoder::FrameEncoder(int threads, SerializeFrame serialize, std::function<void()> on_encoded)
+    : serialize_(std::move(serialize)), on_encoded_(std::move(on_encoded)) {
   for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { Run(); });
 }
 
@@ -89,7 +91,7 @@ void FrameEncoder::Run() {
     const std::shared_ptr<Session> session = drawn.session;
     encoding_.push_back(session.get());
     lock.unlock();
-    EncodeAndPublish(std::move(drawn));
+    EncodeAndPublish(std::move(drawn), serialize_);
     lock.lock();
     encoding_.erase(std::find(encoding_.begin(), encoding_.end(), session.get()));
     lock.unlock();

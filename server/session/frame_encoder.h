@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "scene/view.h"
 #include "session/frame_source.h"
 #include "session/sessions.h"
 
@@ -26,14 +27,18 @@ struct DrawnFrame {
   bool refined = false;
   DisplayFrame picture;
   std::optional<Refinement> refinement;  // of a picture by the reference
+  scene::View view;
 };
+
+// Makes the bytes of a frame that every viewer is sent.
+using SerializeFrame = std::function<std::string(const EncodedFrame&)>;
 
 class FrameEncoder {
  public:
   static constexpr int kMaxPending = 2;
 
   // `on_encoded` is called on an encoding thread when a frame has been published.
-  FrameEncoder(int threads, std::function<void()> on_encoded);
+  FrameEncoder(int threads, SerializeFrame serialize, std::function<void()> on_encoded);
   // Waits for the frames being encoded and drops the queued ones.
   ~FrameEncoder();
   FrameEncoder(const FrameEncoder&) = delete;
@@ -47,6 +52,7 @@ class FrameEncoder {
   void Run();
   std::deque<DrawnFrame>::iterator NextFrame();  // needs mutex_
 
+  const SerializeFrame serialize_;
   const std::function<void()> on_encoded_;
   std::mutex mutex_;
   std::condition_variable changed_;

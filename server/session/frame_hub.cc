@@ -59,8 +59,7 @@ std::optional<FrameEvent> FrameHub::Take(std::uint64_t viewer_id) {
   const auto found = watches_.find(viewer_id);
   if (found == watches_.end() || !closed_because_.ok()) return std::nullopt;
   Watch& watch = found->second;
-  const bool may_have_frame = watch.in_flight.size() < kMaxInFlight;
-  if (may_have_frame && frame_ != nullptr && frame_->sequence > watch.last_sequence) {
+  if (HasFrameFor(watch)) {
     watch.last_sequence = frame_->sequence;
     watch.in_flight.push_back(frame_->sequence);
     return frame_;
@@ -72,18 +71,30 @@ std::optional<FrameEvent> FrameHub::Take(std::uint64_t viewer_id) {
   return std::nullopt;
 }
 
+bool FrameHub::HasFrameFor(const Watch& watch) const {
+  return watch.in_flight.size() < kMaxInFlight && frame_ != nullptr &&
+         frame_->sequence > watch.last_sequence;
+}
+
+bool FrameHub::HasFor(const Watch& watch) const {
+  return HasFrameFor(watch) || (problem_.has_value() && problem_count_ > watch.last_problem);
+}
+
 bool FrameHub::Acknowledge(std::uint64_t viewer_id, std::uint64_t sequence) {
   std::shared_ptr<Viewer> viewer;
+  bool became_ready = false;
   {
     const std::lock_guard lock(mutex_);
     const auto found = watches_.find(viewer_id);
     if (found == watches_.end()) return false;
     auto& in_flight = found->second.in_flight;
+    const bool was_full = in_flight.size() >= kMaxInFlight;
     while (!in_flight.empty() && in_flight.front() <= sequence) in_flight.pop_front();
-    viewer = found->second.viewer;
+    became_ready = was_full && in_flight.size() < kMaxInFlight;
+    if (HasFor(found->second)) viewer = found->second.viewer;
   }
-  viewer->Wake();
-  on_demand_();
+  if (viewer != nullptr) viewer->Wake();
+  if (became_ready) on_demand_();
   return true;
 }
 

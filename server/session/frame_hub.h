@@ -17,6 +17,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "scene/scene.h"
+#include "scene/view.h"
 #include "session/frame_source.h"
 
 namespace thunderhead::session {
@@ -29,12 +30,15 @@ struct EncodedFrame {
   int width_px = 0;
   int height_px = 0;
   scene::Camera camera;
+  scene::View view;
   scene::Sun sun;
   std::vector<StageTime> stages;
   Modelled modelled;
   bool refined = false;
   std::optional<Refinement> refinement;  // of a picture by the reference
   std::optional<AccuracyReport> accuracy;
+  // The frame without its sequence as the service serialized it, once for all viewers; opaque here.
+  std::string serialized;
 };
 
 // The reason why the scene of a revision has no frame.
@@ -71,8 +75,8 @@ class FrameHub {
  public:
   static constexpr std::size_t kMaxInFlight = 2;
 
-  // `on_demand` is called, without the lock, whenever a viewer becomes ready for another frame, or
-  // leaves.
+  // `on_demand` is called, without the lock, whenever a viewer joins, leaves or becomes ready for
+  // another frame.
   explicit FrameHub(std::function<void()> on_demand);
 
   // Returns the viewer's id, or the reason given to Close. Does not call Wake.
@@ -83,7 +87,8 @@ class FrameHub {
   // are in flight, i.e. taken and not yet acknowledged.
   std::optional<FrameEvent> Take(std::uint64_t viewer_id);
 
-  // Acknowledges every frame up to `sequence`. False if there is no such viewer.
+  // Acknowledges every frame up to `sequence`. Wakes the viewer only if it may now take something,
+  // and demands a frame only if it could take none before. False if there is no such viewer.
   bool Acknowledge(std::uint64_t viewer_id, std::uint64_t sequence);
 
   // Replaces the newest frame.
@@ -108,6 +113,9 @@ class FrameHub {
     std::uint64_t last_problem = 0;
   };
 
+  // Needs mutex_.
+  bool HasFor(const Watch& watch) const;
+  bool HasFrameFor(const Watch& watch) const;
   void WakeAll();
 
   const std::function<void()> on_demand_;

@@ -34,7 +34,8 @@ RenderLoop::RenderLoop(const RenderLoopOptions& options, volume::StormStore& sto
       wake_(wake),
       images_(options.max_waiting_images),
       reader_(std::make_unique<FieldsReader>(store, [&wake] { wake.Notify(); })),
-      encoder_(std::make_unique<FrameEncoder>(options.encoder_threads, [&wake] { wake.Notify(); })),
+      encoder_(std::make_unique<FrameEncoder>(options.encoder_threads, options.serialize_frame,
+                                              [&wake] { wake.Notify(); })),
       tracer_(std::make_unique<TruthTracer>(options.make_truth_source, options.max_traced_sessions,
                                             [&wake] { wake.Notify(); })) {}
 
@@ -76,7 +77,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source) {
   ImageDrawer image_drawer(images_, measured, preparation_, [this] { wake_.Notify(); });
   Turns turns;
   while (!stopping_) {
-    const std::vector<std::shared_ptr<Session>> sessions = sessions_.All();
+    const std::vector<std::shared_ptr<Session>> sessions = sessions_.AllDrawn();
     drawer.ReleaseUnwatched(sessions);
     // The empty id stands for the single pictures; it sorts before the sessions'.
     std::vector<std::string> ids{""};

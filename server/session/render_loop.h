@@ -30,6 +30,7 @@ struct RenderLoopOptions {
   PlannerTargets targets;
   std::size_t max_waiting_images = 16;
   int encoder_threads = 1;
+  SerializeFrame serialize_frame = [](const EncodedFrame&) { return ""; };
   // Sessions that show the reference; each takes some hundred bytes a pixel and the medium.
   std::size_t max_traced_sessions = 8;
   std::function<accuracy::OfferTables()> offer_tables = accuracy::BuiltInOfferTables;

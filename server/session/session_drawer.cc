@@ -10,6 +10,7 @@
 #include "renderers/content.h"
 #include "scene/drawn_fields.h"
 #include "scene/ground.h"
+#include "scene/view.h"
 
 namespace thunderhead::session {
 
@@ -166,6 +167,7 @@ absl::StatusOr<bool> SessionDrawer::ShowTraced(const Turn& turn, const NewestSce
 
 void SessionDrawer::Send(const Turn& turn, DrawnFrame frame) {
   turn.kept.fields.AddStages(&frame.picture.stages);
+  frame.view = scene::ViewOf(frame.scene, *turn.kept.fields.Fields());
   encoder_.Encode(std::move(frame));
 }
 

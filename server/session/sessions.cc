@@ -1,34 +1,40 @@
 #include "session/sessions.h"
 
+#include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <random>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "base/error_details.h"
+#include "base/status.h"
 
 namespace thunderhead::session {
 namespace {
 
-// 128 random bits of the operating system: a client that knows an id may control the session, so
-// ids must not be guessable.
-std::string RandomId() {
+// Random bits of the operating system: a client that knows a key may open the session, so keys must
+// not be guessable, nor one from the other.
+std::string RandomHex(int words) {
   std::random_device device;
-  std::string id;
-  for (int word = 0; word < 4; ++word) absl::StrAppendFormat(&id, "%08x", device());
-  return id;
+  std::string text;
+  for (int word = 0; word < words; ++word) absl::StrAppendFormat(&text, "%08x", device());
+  return text;
 }
+
+constexpr int kKeyWords = 4;  // of 32 bits
+constexpr int kIdWords = 2;
 
 // Abandoned sessions expire one after another.
 constexpr std::chrono::seconds kRetryAfter{30};
 
-absl::Status Gone(const std::string& message) {
-  return base::WithDetails(absl::NotFoundError(message), {.reason = "SESSION_NOT_FOUND"});
+absl::Status Gone(const std::string& message, const std::string& reason = "SESSION_NOT_FOUND") {
+  return base::WithDetails(absl::NotFoundError(message), {.reason = reason});
 }
 
-absl::Status NotFound(const std::string& id) {
-  return Gone(absl::StrCat("no session has the id '", id,
+absl::Status NotFound(const std::string& key) {
+  return Gone(absl::StrCat("no session has the key '", key,
                            "': it was closed or has expired; create a new one"));
 }
 
@@ -44,22 +50,63 @@ absl::Status TooMany(std::size_t max_sessions) {
 
 }  // namespace
 
-Session::Session(std::string id, std::function<void()> on_work)
-    : id_(std::move(id)), on_work_(on_work), hub_(std::move(on_work)) {}
+Session::Session(std::string id, SessionKeys keys, const Rules& rules, Board board,
+                 const AudienceFormat& format, const SessionSignals& signals)
+    : id_(std::move(id)),
+      keys_(std::move(keys)),
+      signals_(signals),
+      hub_(signals.on_work),
+      audience_(format, rules, std::move(board), Clock::now(), signals.on_due) {}
 
 std::uint64_t Session::TakeRevision() {
   const std::lock_guard lock(mutex_);
-  return ++revision_count_;
+  taken_revisions_.insert(++revision_count_);
+  return revision_count_;
+}
+
+absl::StatusOr<std::uint64_t> Session::TakeRevisionAfter(std::uint64_t expected) {
+  const std::lock_guard lock(mutex_);
+  std::uint64_t newest = newest_.has_value() ? newest_->revision : 0;
+  if (!taken_revisions_.empty()) newest = std::max(newest, *taken_revisions_.rbegin());
+  if (newest != expected) {
+    return base::WithDetails(
+        absl::AbortedError(absl::StrCat("the scene is at revision ", newest, ", not ", expected,
+                                        ": somebody else changed it; make the change to the "
+                                        "newest scene")),
+        {.reason = "REVISION_CHANGED", .metadata = {{"revision", absl::StrCat(newest)}}});
+  }
+  taken_revisions_.insert(++revision_count_);
+  return revision_count_;
+}
+
+void Session::Drop(std::uint64_t revision) {
+  const std::lock_guard lock(mutex_);
+  taken_revisions_.erase(revision);
 }
 
 void Session::Show(std::uint64_t revision, scene::Scene scene, std::string serialized) {
+  std::vector<std::shared_ptr<OwnView>> views;
+  NewestScene newest;
   {
     const std::lock_guard lock(mutex_);
+    taken_revisions_.erase(revision);
     if (newest_.has_value() && newest_->revision > revision) return;
     newest_ = {revision, std::make_shared<const scene::Scene>(std::move(scene)), Clock::now(),
                std::make_shared<const std::string>(std::move(serialized))};
+    newest = *newest_;
+    std::erase_if(own_views_, [](const auto& view) { return view.expired(); });
+    for (const auto& view : own_views_) views.push_back(view.lock());
   }
-  on_work_();
+  for (const auto& view : views) {
+    if (view != nullptr) view->Follow(newest);
+  }
+  audience_.WakeAll();
+  signals_.on_work();
+}
+
+void Session::Close(const absl::Status& why) {
+  hub_.Close(why);
+  audience_.WakeAll();
 }
 
 std::optional<NewestScene> Session::Newest() const {
@@ -77,54 +124,120 @@ Clock::time_point Session::last_used() const {
   return last_used_;
 }
 
-Sessions::Sessions(const SessionsOptions& options, std::function<void()> on_work)
-    : options_(options), on_work_(std::move(on_work)) {}
+std::shared_ptr<OwnView> OwnView::Of(const std::shared_ptr<Session>& session, std::string id,
+                                     const scene::Camera& camera) {
+  auto drawn = std::make_shared<Session>(std::move(id), SessionKeys{}, Rules{}, Board{},
+                                         AudienceFormat{}, session->signals_);
+  std::shared_ptr<OwnView> view(new OwnView(std::move(drawn)));
+  view->camera_ = camera;
+  {
+    const std::lock_guard lock(session->mutex_);
+    session->own_views_.push_back(view);
+  }
+  // After it is known to the session, so that it misses no scene.
+  if (const auto newest = session->Newest(); newest.has_value()) view->Follow(*newest);
+  return view;
+}
 
-absl::StatusOr<std::shared_ptr<Session>> Sessions::Create() {
+void OwnView::MoveCamera(const scene::Camera& camera) {
+  const std::lock_guard lock(mutex_);
+  camera_ = camera;
+  Show();
+}
+
+void OwnView::Follow(const NewestScene& scene) {
+  const std::lock_guard lock(mutex_);
+  if (scene_.has_value() && scene_->revision > scene.revision) return;
+  scene_ = scene;
+  Show();
+}
+
+void OwnView::Show() {
+  if (!scene_.has_value()) return;
+  scene::Scene scene = *scene_->scene;
+  scene.camera = camera_;
+  drawn_->Show(drawn_->TakeRevision(), std::move(scene));
+}
+
+Sessions::Sessions(const SessionsOptions& options, const SessionSignals& signals)
+    : options_(options), signals_(signals) {}
+
+absl::StatusOr<std::shared_ptr<Session>> Sessions::Create(const Rules& rules) {
   const std::lock_guard lock(mutex_);
   if (!closed_because_.ok()) return closed_because_;
   DropExpired();
   if (sessions_.size() >= options_.max_sessions) {
     return TooMany(options_.max_sessions);
   }
-  auto session = std::make_shared<Session>(RandomId(), on_work_);
+  auto session = std::make_shared<Session>(RandomHex(kIdWords),
+                                           SessionKeys{RandomHex(kKeyWords), RandomHex(kKeyWords)},
+                                           rules, Board{}, options_.format, signals_);
   sessions_[session->id()] = session;
+  id_by_key_[session->keys().presenter] = session->id();
+  id_by_key_[session->keys().viewer] = session->id();
   return session;
 }
 
-absl::StatusOr<std::shared_ptr<Session>> Sessions::Find(const std::string& id) {
-  const std::lock_guard lock(mutex_);
+absl::StatusOr<Sessions::Map::iterator> Sessions::FindByKey(const std::string& key) {
   if (!closed_because_.ok()) return closed_because_;
   DropExpired();
-  const auto found = sessions_.find(id);
-  if (found == sessions_.end()) return NotFound(id);
-  found->second->Touch();
-  return found->second;
+  const auto id = id_by_key_.find(key);
+  if (id == id_by_key_.end()) return NotFound(key);
+  return sessions_.find(id->second);
 }
 
-absl::Status Sessions::Close(const std::string& id) {
+absl::StatusOr<FoundSession> Sessions::Find(const std::string& key) {
+  const std::lock_guard lock(mutex_);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const auto found, FindByKey(key));
+  const std::shared_ptr<Session>& session = found->second;
+  session->Touch();
+  return FoundSession{session, key == session->keys().presenter ? Role::kPresenter : Role::kViewer};
+}
+
+absl::Status Sessions::Close(const std::string& presenter_key) {
   std::shared_ptr<Session> session;
   {
     const std::lock_guard lock(mutex_);
-    DropExpired();
-    const auto found = sessions_.find(id);
-    if (found == sessions_.end()) return NotFound(id);
-    session = std::move(found->second);
-    sessions_.erase(found);
+    THUNDERHEAD_ASSIGN_OR_RETURN(const auto found, FindByKey(presenter_key));
+    if (presenter_key != found->second->keys().presenter) {
+      return base::WithDetails(
+          absl::PermissionDeniedError(
+              "the viewers' key does not close a session; the presenter's does"),
+          {.reason = "NOT_PRESENTER"});
+    }
+    session = Remove(found);
   }
-  session->hub().Close(Gone("the session was closed"));
-  on_work_();
+  session->Close(Gone("the session was closed", "SESSION_CLOSED"));
+  signals_.on_work();
   return absl::OkStatus();
 }
 
+std::shared_ptr<Session> Sessions::Remove(Map::iterator at) {
+  std::shared_ptr<Session> session = std::move(at->second);
+  id_by_key_.erase(session->keys().presenter);
+  id_by_key_.erase(session->keys().viewer);
+  sessions_.erase(at);
+  return session;
+}
+
 void Sessions::CloseAll(const absl::Status& why) {
-  std::map<std::string, std::shared_ptr<Session>> sessions;
+  Map sessions;
   {
     const std::lock_guard lock(mutex_);
     if (closed_because_.ok()) closed_because_ = why;
     sessions.swap(sessions_);
+    id_by_key_.clear();
   }
-  for (const auto& [id, session] : sessions) session->hub().Close(why);
+  for (const auto& [id, session] : sessions) session->Close(why);
+}
+
+std::shared_ptr<OwnView> Sessions::OpenView(const std::shared_ptr<Session>& session,
+                                            const scene::Camera& camera) {
+  const std::lock_guard lock(mutex_);
+  std::string id = absl::StrCat(session->id(), "/", ++view_count_);
+  auto view = OwnView::Of(session, id, camera);
+  views_[std::move(id)] = view;
+  return view;
 }
 
 std::vector<std::shared_ptr<Session>> Sessions::All() {
@@ -135,17 +248,32 @@ std::vector<std::shared_ptr<Session>> Sessions::All() {
   return all;
 }
 
+std::vector<std::shared_ptr<Session>> Sessions::AllDrawn() {
+  const std::lock_guard lock(mutex_);
+  DropExpired();
+  Map all = sessions_;
+  std::erase_if(views_, [](const auto& view) { return view.second.expired(); });
+  for (const auto& [id, view] : views_) {
+    if (const auto held = view.lock(); held != nullptr) all[id] = held->drawn();
+  }
+  std::vector<std::shared_ptr<Session>> drawn;
+  for (const auto& [id, session] : all) drawn.push_back(session);
+  return drawn;
+}
+
 void Sessions::DropExpired() {
-  const Clock::time_point oldest = Clock::now() - options_.idle_timeout;
+  const Clock::time_point now = Clock::now();
   for (auto entry = sessions_.begin(); entry != sessions_.end();) {
     Session& session = *entry->second;
-    if (!session.hub().HasViewers() && session.last_used() < oldest) {
+    const bool watched = session.hub().HasViewers() || !session.audience().Empty();
+    const auto timeout = watched ? options_.watched_idle_timeout : options_.idle_timeout;
+    const auto next = std::next(entry);
+    if (session.last_used() < now - timeout) {
+      const auto expired = Remove(entry);
       // Also ends the stream of a viewer that is joining right now.
-      session.hub().Close(Gone("the session has expired; create a new one"));
-      entry = sessions_.erase(entry);
-    } else {
-      ++entry;
+      expired->Close(Gone("the session has expired; create a new one", "SESSION_EXPIRED"));
     }
+    entry = next;
   }
 }
 

@@ -1,6 +1,6 @@
 // The sessions of a server: each shows one scene, replaced by every update, to any number of
-// viewers. A session without viewers expires after a while without use. Safe from any thread. Knows
-// no GL and no messages.
+// people, who come by one of its two keys. A session expires when nobody has used it for a while.
+// Safe from any thread. Knows no GL and no messages.
 #pragma once
 
 #include <chrono>
@@ -11,12 +11,15 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "scene/scene.h"
+#include "session/audience.h"
 #include "session/frame_hub.h"
 
 namespace thunderhead::session {
@@ -32,65 +35,146 @@ struct NewestScene {
   std::shared_ptr<const std::string> serialized;
 };
 
+// Who has one of these may open the session; neither tells the other.
+struct SessionKeys {
+  std::string presenter;
+  std::string viewer;
+};
+
+// What a session tells its server.
+struct SessionSignals {
+  std::function<void()> on_work;  // it may need a frame
+  std::function<void()> on_due;   // Audience::Tick is due soon
+};
+
+class OwnView;
+
 class Session {
  public:
-  // `on_work` is called from any thread when the session may need a frame.
-  Session(std::string id, std::function<void()> on_work);
+  // `signals` are called from any thread.
+  Session(std::string id, SessionKeys keys, const Rules& rules, Board board,
+          const AudienceFormat& format, const SessionSignals& signals);
 
+  // Names it in this process; not a secret.
   const std::string& id() const { return id_; }
+  const SessionKeys& keys() const { return keys_; }
   FrameHub& hub() { return hub_; }
+  Audience& audience() { return audience_; }
 
   // A new revision, larger than all before. Taken when an update arrives, before its scene is
-  // complete, so that the update that arrived last wins.
+  // complete, so that the update that arrived last wins. Show or Drop comes after it.
   std::uint64_t TakeRevision();
+  // The same for a change to the revision `expected`. ABORTED if there has been another since, or
+  // one is on its way.
+  absl::StatusOr<std::uint64_t> TakeRevisionAfter(std::uint64_t expected);
+  // The revision was taken for a scene that cannot be shown.
+  void Drop(std::uint64_t revision);
   // Replaces the newest scene unless that has a newer revision.
   void Show(std::uint64_t revision, scene::Scene scene, std::string serialized = "");
   std::optional<NewestScene> Newest() const;
+
+  // Ends everybody's stream with `why`.
+  void Close(const absl::Status& why);
 
   void Touch();
   Clock::time_point last_used() const;
 
  private:
+  friend class OwnView;
+
   const std::string id_;
-  const std::function<void()> on_work_;
+  const SessionKeys keys_;
+  const SessionSignals signals_;
   FrameHub hub_;
+  Audience audience_;
   mutable std::mutex mutex_;
   std::uint64_t revision_count_ = 0;
+  std::set<std::uint64_t> taken_revisions_;  // neither shown nor dropped
   std::optional<NewestScene> newest_;
   Clock::time_point last_used_ = Clock::now();
+  std::vector<std::weak_ptr<OwnView>> own_views_;
+};
+
+// The view of a person who looks around: the session's scene from a camera of its own. It is drawn
+// as another session, which nobody can find by a key.
+class OwnView {
+ public:
+  // Of the session's newest scene from then on.
+  static std::shared_ptr<OwnView> Of(const std::shared_ptr<Session>& session, std::string id,
+                                     const scene::Camera& camera);
+
+  // What is drawn.
+  const std::shared_ptr<Session>& drawn() const { return drawn_; }
+
+  void MoveCamera(const scene::Camera& camera);
+
+ private:
+  friend class Session;
+
+  explicit OwnView(std::shared_ptr<Session> drawn) : drawn_(std::move(drawn)) {}
+  void Follow(const NewestScene& scene);
+  void Show();
+
+  const std::shared_ptr<Session> drawn_;
+  std::mutex mutex_;
+  scene::Camera camera_;
+  std::optional<NewestScene> scene_;  // the session's
 };
 
 struct SessionsOptions {
   std::size_t max_sessions = 64;
-  Clock::duration idle_timeout = std::chrono::minutes(5);
+  Clock::duration idle_timeout = std::chrono::minutes(15);  // with nobody there
+  // With people there who acknowledge and send nothing.
+  Clock::duration watched_idle_timeout = std::chrono::hours(1);
+  AudienceFormat format;
+};
+
+// A session, and the role of who came by the key.
+struct FoundSession {
+  std::shared_ptr<Session> session;
+  Role role = Role::kViewer;
 };
 
 class Sessions {
  public:
-  Sessions(const SessionsOptions& options, std::function<void()> on_work);
+  Sessions(const SessionsOptions& options, const SessionSignals& signals);
 
   // RESOURCE_EXHAUSTED if there are too many, UNAVAILABLE after CloseAll.
-  absl::StatusOr<std::shared_ptr<Session>> Create();
-  // NOT_FOUND if it never existed, was closed or has expired; UNAVAILABLE after CloseAll. Counts as
-  // use.
-  absl::StatusOr<std::shared_ptr<Session>> Find(const std::string& id);
-  // Ends the session and its viewers' streams. NOT_FOUND as Find.
-  absl::Status Close(const std::string& id);
+  absl::StatusOr<std::shared_ptr<Session>> Create(const Rules& rules = {});
+  // By either key. NOT_FOUND if it never existed, was closed or has expired; UNAVAILABLE after
+  // CloseAll. Counts as use.
+  absl::StatusOr<FoundSession> Find(const std::string& key);
+  // Ends the session and its viewers' streams. NOT_FOUND as Find; PERMISSION_DENIED for the
+  // viewers' key.
+  absl::Status Close(const std::string& presenter_key);
   // Ends every session with `why`; none can be created or found afterwards.
   void CloseAll(const absl::Status& why);
 
+  // A view of the session's scene from a camera of its own, which is drawn while somebody holds it.
+  std::shared_ptr<OwnView> OpenView(const std::shared_ptr<Session>& session,
+                                    const scene::Camera& camera);
+
   // The sessions that have not expired, in order of id.
   std::vector<std::shared_ptr<Session>> All();
+  // The same with the own views: everything that may be drawn.
+  std::vector<std::shared_ptr<Session>> AllDrawn();
 
   std::size_t max_sessions() const { return options_.max_sessions; }
 
  private:
-  void DropExpired();  // needs mutex_
+  using Map = std::map<std::string, std::shared_ptr<Session>>;
+
+  absl::StatusOr<Map::iterator> FindByKey(const std::string& key);  // needs mutex_
+  std::shared_ptr<Session> Remove(Map::iterator at);                // needs mutex_
+  void DropExpired();                                               // needs mutex_
 
   const SessionsOptions options_;
-  const std::function<void()> on_work_;
+  const SessionSignals signals_;
   std::mutex mutex_;
-  std::map<std::string, std::shared_ptr<Session>> sessions_;
+  Map sessions_;                                         // by id
+  std::map<std::string, std::string> id_by_key_;         // both keys
+  std::map<std::string, std::weak_ptr<OwnView>> views_;  // by id
+  std::uint64_t view_count_ = 0;
   absl::Status closed_because_;
 };
 

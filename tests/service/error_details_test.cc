@@ -184,7 +184,7 @@ TEST(ErrorDetailsTest, AStreamThatEndsHasItsReason) {
   close.set_session_id(closed);
   v1::CloseSessionResponse response;
   ASSERT_TRUE(Call(service.stub(), &Stub::CloseSession, close, &response).ok());
-  ExpectRefusal(watcher.End(), grpc::StatusCode::NOT_FOUND, "SESSION_NOT_FOUND");
+  ExpectRefusal(watcher.End(), grpc::StatusCode::NOT_FOUND, "SESSION_CLOSED");
   Watcher other(service.stub(), service.Open(SmallScene()));
   ASSERT_TRUE(other.AwaitFrame(1, true));
   service.server().Shutdown();

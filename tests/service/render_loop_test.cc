@@ -172,7 +172,7 @@ class RenderLoopTest : public ::testing::Test {
   base::WakeSignal wake_;
   FakeStormStore store_;
   const std::shared_ptr<FakeMachine> machine_ = std::make_shared<FakeMachine>();
-  Sessions sessions_{SessionsOptions{}, [this] { wake_.Notify(); }};
+  Sessions sessions_{SessionsOptions{}, {[this] { wake_.Notify(); }, [] {}}};
   std::vector<std::shared_ptr<EagerViewer>> viewers_;
   std::unique_ptr<RenderLoop> loop_;
 };
@@ -414,7 +414,7 @@ TEST_F(RenderLoopTest, ManyHandsManyViewersComingAndGoing) {
         viewer->Leave();
       }
       EXPECT_TRUE(Picture(1.0).get().ok());
-      EXPECT_TRUE(sessions_.Close(session->id()).ok());
+      EXPECT_TRUE(sessions_.Close(session->keys().presenter).ok());
     });
   }
   for (std::thread& hand : hands) hand.join();
@@ -440,7 +440,7 @@ TEST_F(RenderLoopTest, StopsAmidWork) {
 }
 
 TEST(SessionTest, OlderRevisionNeverReplacesANewer) {
-  Session session("id", [] {});
+  Session session("id", {}, {}, {}, {}, {[] {}, [] {}});
   const std::uint64_t early = session.TakeRevision();
   const std::uint64_t late = session.TakeRevision();
   scene::Scene scene = test_support::PlainScene();

@@ -271,7 +271,7 @@ TEST(SessionsTest, ClosedSessionIsNotFoundByEveryRpc) {
   ASSERT_TRUE(Close(service, id).ok());
   const auto expect_gone = [&](const grpc::Status& status) {
     EXPECT_EQ(status.error_code(), grpc::StatusCode::NOT_FOUND);
-    EXPECT_THAT(status.error_message(), HasSubstr("no session has the id '" + id + "'"));
+    EXPECT_THAT(status.error_message(), HasSubstr("no session has the key '" + id + "'"));
   };
   expect_gone(Close(service, id));
   v1::UpdateSceneRequest update;

@@ -1,0 +1,536 @@
+#include "service/interact.h"
+
+#include <grpcpp/support/proto_buffer_reader.h>
+
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "absl/strings/str_cat.h"
+#include "base/error_details.h"
+#include "base/status.h"
+#include "service/camera_messages.h"
+#include "service/interact_messages.h"
+#include "service/limits_check.h"
+#include "service/scene_messages.h"
+#include "service/scene_update.h"
+#include "service/status_table.h"
+#include "service/wire.h"
+#include "session/upkeep.h"
+
+namespace thunderhead::service {
+namespace {
+
+using session::Clock;
+
+// Answers that wait for a slow client; no further request is read until it has taken some.
+constexpr std::size_t kMaxWaitingAnswers = 16;
+
+absl::Status NotJoined() {
+  return base::InvalidField("join", "is missing; it must be the first message, and only the first",
+                            "NOT_JOINED");
+}
+
+// One client's call. It lives until gRPC, the session and the updates on their way have released
+// it. There is at most one pending read and one pending write; Finish is called once, when nothing
+// is being written. Requests are handled one after another, by the thread of the read; what is to
+// be written is chosen when the last write is done, so that the newest wins.
+class InteractCall : public InteractReactor,
+                     public session::Viewer,
+                     public std::enable_shared_from_this<InteractCall> {
+ public:
+  static InteractReactor* Start(Engine& engine) {
+    auto call = std::make_shared<InteractCall>(engine);
+    call->held_by_grpc_ = call;
+    call->StartRead(&call->received_);
+    return call.get();
+  }
+
+  explicit InteractCall(Engine& engine) : engine_(engine) {}
+
+  // Writes the next message, or ends the call, if there is a reason to and nothing is being
+  // written.
+  void Wake() override {
+    std::optional<grpc::ByteBuffer> message;
+    std::optional<grpc::Status> end;
+    {
+      const std::lock_guard lock(mutex_);
+      if (writing_ || finished_) return;
+      end = Ended();
+      if (!end.has_value()) message = Next();
+      if (!end.has_value() && !message.has_value()) return;
+      writing_ = message.has_value();
+      finished_ = end.has_value();
+      if (message.has_value()) sent_.Swap(&*message);
+    }
+    if (end.has_value()) return Finish(*end);
+    StartWrite(&sent_);
+  }
+
+  void OnReadDone(bool ok) override {
+    if (!ok) return End(grpc::Status::OK);
+    if (const absl::Status status = Handle(); !status.ok()) return End(ToGrpcStatus(status));
+    {
+      const std::lock_guard lock(mutex_);
+      reading_ = false;
+    }
+    ReadOn();
+  }
+
+  void OnWriteDone(bool ok) override {
+    {
+      const std::lock_guard lock(mutex_);
+      writing_ = false;
+      if (!ok) end_ = grpc::Status(grpc::StatusCode::CANCELLED, "the client is gone");
+    }
+    ReadOn();
+    Wake();
+  }
+
+  void OnCancel() override {
+    End(grpc::Status(grpc::StatusCode::CANCELLED, "the client cancelled the call"));
+  }
+
+  void OnDone() override {
+    if (session_ != nullptr) {
+      {
+        const std::lock_guard lock(mutex_);
+        Watch(nullptr);
+      }
+      session_->audience().Leave(person_id_, Clock::now());
+      session_->Touch();
+    }
+    held_by_grpc_.reset();
+  }
+
+ private:
+  // Ends the call as soon as nothing is being written. The first reason counts.
+  void End(const grpc::Status& status) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!end_.has_value()) end_ = status;
+    }
+    Wake();
+  }
+
+  // The status to end the call with, if it must end now. Needs mutex_.
+  std::optional<grpc::Status> Ended() {
+    if (end_.has_value()) return end_;
+    if (session_ == nullptr || !end_told_) return std::nullopt;
+    return ToGrpcStatus(session_->hub().ClosedBecause());
+  }
+
+  // The next message, if there is one. Needs mutex_.
+  std::optional<grpc::ByteBuffer> Next() {
+    if (!answers_.empty()) {
+      grpc::ByteBuffer answer = answers_.front();
+      answers_.pop_front();
+      return answer;
+    }
+    if (session_ == nullptr) return std::nullopt;
+    if (const absl::Status closed = session_->hub().ClosedBecause(); !closed.ok()) {
+      end_told_ = true;
+      return ResponseOf(EndResponse(closed));
+    }
+    Watch(Watched());
+    if (const auto newest = session_->Newest();
+        newest.has_value() && newest->revision != sent_revision_) {
+      sent_revision_ = newest->revision;
+      return SceneResponse(*newest);
+    }
+    session::Audience& audience = session_->audience();
+    if (auto news = News(audience.Presence(), &told_presence_); news.has_value()) return news;
+    if (auto news = News(audience.Marks(), &told_marks_); news.has_value()) return news;
+    if (auto news = News(audience.Pointers(), &told_pointers_); news.has_value()) return news;
+    return NextFrame();
+  }
+
+  static std::optional<grpc::ByteBuffer> News(const session::Told& told, std::uint64_t* count) {
+    if (told.count == *count) return std::nullopt;
+    *count = told.count;
+    return Joined({}, SharedSlice(told.bytes));
+  }
+
+  std::optional<grpc::ByteBuffer> NextFrame() {
+    if (watched_ == nullptr) return std::nullopt;
+    const auto event = watched_->hub().Take(watcher_id_);
+    if (!event.has_value()) return std::nullopt;
+    if (const auto* frame = std::get_if<std::shared_ptr<const session::EncodedFrame>>(&*event)) {
+      return FrameResponse(*frame, watched_ != session_);
+    }
+    v1::InteractResponse response;
+    ToMessage(std::get<session::Problem>(*event), *response.mutable_problem());
+    return ResponseOf(response);
+  }
+
+  // What the person sees: the session, the own view, or nothing. Needs mutex_.
+  std::shared_ptr<session::Session> Watched() {
+    if (own_view_ != nullptr && session_->audience().Follows(person_id_)) own_view_.reset();
+    if (hidden_) return nullptr;
+    return own_view_ == nullptr ? session_ : own_view_->drawn();
+  }
+
+  // Receives the frames of `session` from now on. Needs mutex_.
+  void Watch(const std::shared_ptr<session::Session>& session) {
+    if (session == watched_) return;
+    if (watched_ != nullptr) watched_->hub().Leave(watcher_id_);
+    watched_ = nullptr;
+    if (session == nullptr) return;
+    const auto watcher_id = session->hub().Join(shared_from_this());
+    if (!watcher_id.ok()) return;  // it has closed, which the next message tells
+    watched_ = session;
+    watcher_id_ = *watcher_id;
+  }
+
+  // Reads the next request unless too many answers wait.
+  void ReadOn() {
+    {
+      const std::lock_guard lock(mutex_);
+      if (reading_ || finished_ || answers_.size() + updates_ >= kMaxWaitingAnswers) return;
+      reading_ = true;
+    }
+    StartRead(&received_);
+  }
+
+  void Answer(const v1::InteractResponse& response) {
+    {
+      const std::lock_guard lock(mutex_);
+      answers_.push_back(ResponseOf(response));
+    }
+    Wake();
+  }
+
+  // An error ends the call; a request that is merely refused has an answer.
+  absl::Status Handle() {
+    v1::InteractRequest request;
+    grpc::ProtoBufferReader reader(&received_);
+    const bool parsed = request.ParseFromZeroCopyStream(&reader) && reader.status().ok();
+    if (!parsed) {
+      return base::InvalidField("message", "is not an InteractRequest", "MESSAGE_UNREADABLE");
+    }
+    if (session_ == nullptr) return Join(request);
+    session_->Touch();
+    absl::Status status = CheckLimits(request);
+    if (status.ok()) status = Obey(request);
+    if (!status.ok()) Answer(RefusedResponse(request.request_id(), status));
+    return absl::OkStatus();
+  }
+
+  absl::Status Join(const v1::InteractRequest& request) {
+    if (!request.has_join()) return NotJoined();
+    THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
+    const v1::Join& join = request.join();
+    THUNDERHEAD_ASSIGN_OR_RETURN(const std::string name, NameOf(join.name(), "join.name"));
+    THUNDERHEAD_ASSIGN_OR_RETURN(const session::FoundSession found,
+                                 engine_.sessions.Find(join.session_key()));
+    const std::uint64_t person_id =
+        found.session->audience().Join(found.role, name, shared_from_this(), Clock::now());
+    v1::InteractResponse response;
+    v1::Joined& joined = *response.mutable_joined();
+    joined.set_viewer_id(person_id);
+    joined.set_role(found.role == session::Role::kPresenter ? v1::ROLE_PRESENTER : v1::ROLE_VIEWER);
+    joined.set_viewer_key(found.session->keys().viewer);
+    {
+      const std::lock_guard lock(mutex_);
+      person_id_ = person_id;
+      answers_.push_back(ResponseOf(response));
+      hidden_ = join.window().hidden();
+      role_ = found.role;
+      session_ = found.session;
+    }
+    if (join.window().hidden()) SetHidden(true);
+    Wake();
+    return absl::OkStatus();
+  }
+
+  absl::Status Obey(const v1::InteractRequest& request) {
+    switch (request.message_case()) {
+      case v1::InteractRequest::kUpdateScene:
+        return Update(request.request_id(), request.update_scene());
+      case v1::InteractRequest::kAcknowledge:
+        return Acknowledge(request.acknowledge());
+      case v1::InteractRequest::kMoveCamera:
+        return MoveCamera(request.move_camera());
+      case v1::InteractRequest::kDetach:
+        return Detach(request.detach());
+      case v1::InteractRequest::kWindow:
+        SetHidden(request.window().hidden());
+        return absl::OkStatus();
+      case v1::InteractRequest::kPoint:
+        return Point(request.point());
+      case v1::InteractRequest::kAddMark:
+        return AddMark(request.request_id(), request.add_mark());
+      case v1::InteractRequest::kEraseMarks:
+        return EraseMarks(request.erase_marks());
+      case v1::InteractRequest::kSetName:
+        return SetName(request.set_name().name());
+      case v1::InteractRequest::kFollow:
+      case v1::InteractRequest::kAskControl:
+      case v1::InteractRequest::kGiveControl:
+      case v1::InteractRequest::kRefuseControl:
+      case v1::InteractRequest::kTakeControl:
+      case v1::InteractRequest::kSetRules:
+        return ChangeRoster(request);
+      case v1::InteractRequest::kJoin:
+        return base::InvalidField("join", "comes a second time; it must be the first message only",
+                                  "ALREADY_JOINED");
+      case v1::InteractRequest::MESSAGE_NOT_SET:
+        break;
+    }
+    return base::InvalidField("message", "is missing, or newer than this server",
+                              "MESSAGE_UNKNOWN");
+  }
+
+  absl::Status ChangeRoster(const v1::InteractRequest& request) {
+    const Clock::time_point now = Clock::now();
+    const absl::Status status = session_->audience().Change(
+        [&](session::Roster& roster) {
+          switch (request.message_case()) {
+            case v1::InteractRequest::kFollow:
+              return roster.Follow(person_id_);
+            case v1::InteractRequest::kAskControl:
+              return roster.AskControl(person_id_, now);
+            case v1::InteractRequest::kGiveControl:
+              return roster.GiveControl(person_id_, request.give_control().viewer_id(), now);
+            case v1::InteractRequest::kRefuseControl:
+              return roster.RefuseControl(person_id_, request.refuse_control().viewer_id());
+            case v1::InteractRequest::kTakeControl:
+              return roster.TakeControl(person_id_);
+            default:
+              return roster.SetRules(person_id_,
+                                     RulesOf(request.set_rules().rules(), roster.rules()));
+          }
+        },
+        now);
+    Wake();  // who follows again is told of the change later, but sees the session at once
+    return status;
+  }
+
+  absl::Status SetName(const std::string& text) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const std::string name, NameOf(text, "set_name.name"));
+    return session_->audience().Change(
+        [&](session::Roster& roster) {
+          roster.Rename(person_id_, name);
+          return absl::OkStatus();
+        },
+        Clock::now());
+  }
+
+  absl::Status Update(std::uint64_t request_id, const v1::SceneUpdate& update) {
+    THUNDERHEAD_RETURN_IF_ERROR(session_->audience().MaySteer(person_id_));
+    {
+      const std::lock_guard lock(mutex_);
+      ++updates_;
+    }
+    ChangeScene(engine_, session_, SceneChangeOf(update),
+                [self = shared_from_this(), request_id](const auto& revision) {
+                  self->Updated(request_id, revision);
+                });
+    return absl::OkStatus();
+  }
+
+  void Updated(std::uint64_t request_id, const absl::StatusOr<std::uint64_t>& revision) {
+    {
+      const std::lock_guard lock(mutex_);
+      --updates_;
+    }
+    v1::InteractResponse response;
+    if (revision.ok()) {
+      response.mutable_scene_taken()->set_request_id(request_id);
+      response.mutable_scene_taken()->set_scene_revision(*revision);
+    } else {
+      response = RefusedResponse(request_id, revision.status());
+    }
+    Answer(response);
+  }
+
+  absl::Status Acknowledge(const v1::Acknowledgement& acknowledgement) {
+    std::shared_ptr<session::Session> watched;
+    std::uint64_t watcher_id = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      watched = watched_;
+      watcher_id = watcher_id_;
+    }
+    // One for a view that was left meanwhile is late, not wrong.
+    if (watched == nullptr || acknowledgement.own_view() != (watched != session_)) {
+      return absl::OkStatus();
+    }
+    watched->hub().Acknowledge(watcher_id, acknowledgement.sequence());
+    return absl::OkStatus();
+  }
+
+  // The camera with its defaults filled in; those that depend on the storm need it in memory.
+  absl::StatusOr<scene::Camera> CameraOf(const v1::Camera& message) {
+    const std::optional<session::NewestScene> newest = session_->Newest();
+    v1::Scene scene;
+    if (!newest.has_value() || !scene.ParseFromString(*newest->serialized)) {
+      return absl::InternalError("the session's scene cannot be read back");
+    }
+    if (message.kind_case() != v1::Camera::KIND_NOT_SET) *scene.mutable_camera() = message;
+    THUNDERHEAD_RETURN_IF_ERROR(PrepareScene(engine_.store, engine_.loop.Techniques(), scene));
+    if (NeedsFraming(scene)) {
+      const auto fields =
+          engine_.store.Peek(scene.storm_id(), static_cast<int>(scene.time_index()));
+      if (fields == nullptr) {
+        return base::WithDetails(
+            absl::FailedPreconditionError("the storm is not read yet; give the camera whole"),
+            {.reason = "STORM_NOT_READ", .field = "camera"});
+      }
+      FrameCondensate(scene, *fields);
+    }
+    return ToCamera(scene.camera());
+  }
+
+  absl::Status Detach(const v1::Detach& detach) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const scene::Camera camera, CameraOf(detach.camera()));
+    THUNDERHEAD_RETURN_IF_ERROR(session_->audience().Change(
+        [this](session::Roster& roster) { return roster.Detach(person_id_); }, Clock::now()));
+    auto own_view = engine_.sessions.OpenView(session_, camera);
+    {
+      const std::lock_guard lock(mutex_);
+      own_view_.swap(own_view);
+    }
+    Wake();
+    return absl::OkStatus();
+  }
+
+  absl::Status MoveCamera(const v1::MoveCamera& move) {
+    std::shared_ptr<session::OwnView> own_view;
+    {
+      const std::lock_guard lock(mutex_);
+      own_view = own_view_;
+    }
+    if (own_view == nullptr) {
+      return base::WithDetails(
+          absl::FailedPreconditionError("you follow the session's view; detach from it first"),
+          {.reason = "NOT_DETACHED"});
+    }
+    THUNDERHEAD_ASSIGN_OR_RETURN(const scene::Camera camera, CameraOf(move.camera()));
+    own_view->MoveCamera(camera);
+    return absl::OkStatus();
+  }
+
+  void SetHidden(bool hidden) {
+    (void)session_->audience().Change(
+        [&](session::Roster& roster) {
+          roster.SetHidden(person_id_, hidden);
+          return absl::OkStatus();
+        },
+        Clock::now());
+    {
+      const std::lock_guard lock(mutex_);
+      hidden_ = hidden;
+      Watch(Watched());
+    }
+    Wake();
+  }
+
+  absl::Status Point(const v1::Point& point) {
+    std::optional<session::Ray> ray;
+    if (point.has_ray()) {
+      THUNDERHEAD_ASSIGN_OR_RETURN(ray, RayOf(point.ray(), "point.ray"));
+    }
+    return session_->audience().Point(person_id_, ray, Clock::now());
+  }
+
+  // Finds the places on the executor: they are many.
+  absl::Status AddMark(std::uint64_t request_id, const v1::AddMark& message) {
+    THUNDERHEAD_RETURN_IF_ERROR(session_->audience().MayMark(person_id_));
+    std::vector<session::Ray> rays;
+    for (const v1::Ray& one : message.rays()) {
+      const std::string path = absl::StrCat("add_mark.rays[", rays.size(), "]");
+      THUNDERHEAD_ASSIGN_OR_RETURN(rays.emplace_back(), RayOf(one, path));
+    }
+    if (rays.empty()) {
+      return base::InvalidField("add_mark.rays", "is empty; a mark has at least one corner",
+                                "VALUE_MISSING");
+    }
+    std::optional<glm::vec3> color;
+    if (message.has_color()) {
+      color = glm::vec3(message.color().red(), message.color().green(), message.color().blue());
+    }
+    {
+      const std::lock_guard lock(mutex_);
+      ++updates_;
+    }
+    engine_.executor.Submit([self = shared_from_this(), request_id, rays = std::move(rays),
+                             color](const absl::Status& status) {
+      self->Drawn(request_id, status.ok() ? self->Draw(rays, color) : status);
+    });
+    return absl::OkStatus();
+  }
+
+  absl::Status Draw(const std::vector<session::Ray>& rays, const std::optional<glm::vec3>& color) {
+    std::vector<glm::dvec3> positions_m;
+    for (const session::Ray& ray : rays) {
+      positions_m.push_back(session::PlaceSeen(*session_, engine_.store, ray));
+    }
+    return session_->audience().Draw(
+        person_id_,
+        [&](session::Board& board) {
+          return board.Add(person_id_, std::move(positions_m), color).status();
+        },
+        Clock::now());
+  }
+
+  void Drawn(std::uint64_t request_id, const absl::Status& status) {
+    {
+      const std::lock_guard lock(mutex_);
+      --updates_;
+    }
+    if (!status.ok()) return Answer(RefusedResponse(request_id, status));
+    ReadOn();
+  }
+
+  absl::Status EraseMarks(const v1::EraseMarks& message) {
+    const std::vector<std::uint64_t> ids(message.mark_ids().begin(), message.mark_ids().end());
+    std::optional<std::uint64_t> only_of;
+    if (role_ != session::Role::kPresenter) only_of = person_id_;
+    return session_->audience().Draw(
+        person_id_,
+        [&](session::Board& board) {
+          board.Erase(ids, only_of);
+          return absl::OkStatus();
+        },
+        Clock::now());
+  }
+
+  Engine& engine_;
+  std::shared_ptr<InteractCall> held_by_grpc_;
+  grpc::ByteBuffer received_;
+  grpc::ByteBuffer sent_;
+
+  std::mutex mutex_;
+  bool reading_ = true;
+  bool writing_ = false;
+  bool finished_ = false;
+  bool end_told_ = false;
+  std::optional<grpc::Status> end_;
+  std::deque<grpc::ByteBuffer> answers_;
+  std::size_t updates_ = 0;  // on their way to an answer
+
+  // Set by Join before anything else can use them.
+  std::shared_ptr<session::Session> session_;
+  std::uint64_t person_id_ = 0;
+  session::Role role_ = session::Role::kViewer;
+
+  bool hidden_ = false;
+  std::shared_ptr<session::OwnView> own_view_;
+  std::shared_ptr<session::Session> watched_;  // whose frames come
+  std::uint64_t watcher_id_ = 0;               // in its hub
+  std::uint64_t sent_revision_ = 0;
+  std::uint64_t told_presence_ = 0;
+  std::uint64_t told_marks_ = 0;
+  std::uint64_t told_pointers_ = 0;
+};
+
+}  // namespace
+
+// Deletes itself when gRPC calls OnDone.
+InteractReactor* Interact(Engine& engine) { return InteractCall::Start(engine); }
+
+}  // namespace thunderhead::service

@@ -1,0 +1,198 @@
+#include "service/interact_messages.h"
+
+#include <chrono>
+#include <cstddef>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "base/error_details.h"
+#include "glm/geometric.hpp"
+#include "service/camera_messages.h"
+#include "service/scene_messages.h"
+#include "service/status_table.h"
+#include "service/wire.h"
+
+namespace thunderhead::service {
+namespace {
+
+constexpr std::size_t kMaxNameCharacters = 40;
+// Clients add a random share of their own, so that they do not come back all at once.
+constexpr std::chrono::milliseconds kComeBackAfter{1000};
+
+v1::Role RoleMessage(session::Role role) {
+  return role == session::Role::kPresenter ? v1::ROLE_PRESENTER : v1::ROLE_VIEWER;
+}
+
+std::string PresenceOf(const session::Roster& roster) {
+  v1::InteractResponse response;
+  v1::Presence& presence = *response.mutable_presence();
+  for (const session::Person& person : roster.people()) {
+    v1::Person& message = *presence.add_people();
+    message.set_viewer_id(person.id);
+    message.set_name(person.name);
+    message.set_role(RoleMessage(person.role));
+    message.set_follows(person.follows);
+    message.set_hidden(person.hidden);
+    message.set_asks_control(person.asks);
+  }
+  presence.set_steering_viewer_id(roster.steering());
+  presence.set_presenter_away(roster.presenter_away());
+  ToMessage(roster.rules(), *presence.mutable_rules());
+  return response.SerializeAsString();
+}
+
+std::string PointersOf(const std::vector<session::Pointer>& pointers) {
+  v1::InteractResponse response;
+  v1::Pointers& message = *response.mutable_pointers();
+  for (const session::Pointer& pointer : pointers) {
+    v1::Pointer& one = *message.add_pointers();
+    one.set_viewer_id(pointer.person_id);
+    SetPosition(pointer.position_m, *one.mutable_position());
+  }
+  return response.SerializeAsString();
+}
+
+std::string MarksOf(const std::vector<session::Mark>& marks) {
+  v1::InteractResponse response;
+  v1::Marks& message = *response.mutable_marks();
+  for (const session::Mark& mark : marks) ToMessage(mark, *message.add_marks());
+  return response.SerializeAsString();
+}
+
+// Bytes of the UTF-8 character that begins with `byte`; 0 for none.
+std::size_t CharacterBytes(unsigned char byte) {
+  if (byte < 0x80) return 1;
+  if (byte >= 0xc2 && byte < 0xe0) return 2;
+  if (byte >= 0xe0 && byte < 0xf0) return 3;
+  return byte >= 0xf0 && byte < 0xf5 ? 4 : 0;
+}
+
+v1::End::Reason EndReason(const absl::Status& why) {
+  const std::string reason = base::DetailsOf(why).reason;
+  if (reason == "SESSION_EXPIRED") return v1::End::REASON_EXPIRED;
+  if (absl::IsUnavailable(why)) return v1::End::REASON_SERVER_STOPS;
+  return v1::End::REASON_CLOSED;
+}
+
+}  // namespace
+
+session::AudienceFormat InteractFormat() { return {PresenceOf, PointersOf, MarksOf}; }
+
+std::string SerializedFrame(const session::EncodedFrame& frame) {
+  v1::Frame message;
+  ToMessage(frame, message);
+  return message.SerializeAsString();
+}
+
+grpc::ByteBuffer FrameResponse(const std::shared_ptr<const session::EncodedFrame>& frame,
+                               bool own_view) {
+  std::string fields;
+  AppendNumber(v1::Frame::kSequenceFieldNumber, frame->sequence, &fields);
+  if (own_view) AppendNumber(v1::Frame::kOwnViewFieldNumber, 1, &fields);
+  std::string prefix;
+  AppendLength(v1::InteractResponse::kFrameFieldNumber, fields.size() + frame->serialized.size(),
+               &prefix);
+  prefix += fields;
+  return Joined(prefix, SharedSlice({frame, &frame->serialized}));
+}
+
+grpc::ByteBuffer SceneResponse(const session::NewestScene& scene) {
+  std::string fields;
+  AppendNumber(v1::SceneState::kSceneRevisionFieldNumber, scene.revision, &fields);
+  AppendLength(v1::SceneState::kSceneFieldNumber, scene.serialized->size(), &fields);
+  std::string prefix;
+  AppendLength(v1::InteractResponse::kSceneFieldNumber, fields.size() + scene.serialized->size(),
+               &prefix);
+  prefix += fields;
+  return Joined(prefix, SharedSlice(scene.serialized));
+}
+
+grpc::ByteBuffer ResponseOf(const v1::InteractResponse& response) {
+  return Whole(response.SerializeAsString());
+}
+
+v1::InteractResponse EndResponse(const absl::Status& why) {
+  v1::InteractResponse response;
+  v1::End& end = *response.mutable_end();
+  end.set_reason(EndReason(why));
+  end.set_message(std::string(why.message()));
+  if (end.reason() == v1::End::REASON_SERVER_STOPS) {
+    const auto after = base::DetailsOf(why).retry_after.value_or(kComeBackAfter);
+    end.set_retry_after_ms(static_cast<std::uint32_t>(after.count()));
+  }
+  return response;
+}
+
+v1::InteractResponse RefusedResponse(std::uint64_t request_id, const absl::Status& why) {
+  v1::InteractResponse response;
+  v1::Refused& refused = *response.mutable_refused();
+  refused.set_request_id(request_id);
+  const grpc::Status status = ToGrpcStatus(why);
+  if (!refused.mutable_status()->ParseFromString(status.error_details()) ||
+      refused.status().code() == 0) {
+    refused.mutable_status()->set_code(status.error_code());
+    refused.mutable_status()->set_message(status.error_message());
+  }
+  return response;
+}
+
+session::Rules RulesOf(const v1::SessionRules& message, session::Rules rules) {
+  if (message.has_viewers_may_steer()) rules.viewers_may_steer = message.viewers_may_steer();
+  if (message.has_control_locked()) rules.control_locked = message.control_locked();
+  if (message.has_following_locked()) rules.following_locked = message.following_locked();
+  if (message.has_viewers_may_mark()) rules.viewers_may_mark = message.viewers_may_mark();
+  if (message.has_free_when_away()) rules.free_when_away = message.free_when_away();
+  return rules;
+}
+
+void ToMessage(const session::Rules& rules, v1::SessionRules& message) {
+  message.set_viewers_may_steer(rules.viewers_may_steer);
+  message.set_control_locked(rules.control_locked);
+  message.set_following_locked(rules.following_locked);
+  message.set_viewers_may_mark(rules.viewers_may_mark);
+  message.set_free_when_away(rules.free_when_away);
+}
+
+void ToMessage(const session::Mark& mark, v1::Mark& message) {
+  message.set_mark_id(mark.id);
+  message.set_viewer_id(mark.person_id);
+  for (const glm::dvec3& position_m : mark.positions_m) {
+    SetPosition(position_m, *message.add_positions());
+  }
+  message.mutable_color()->set_red(mark.color.r);
+  message.mutable_color()->set_green(mark.color.g);
+  message.mutable_color()->set_blue(mark.color.b);
+}
+
+absl::StatusOr<session::Ray> RayOf(const v1::Ray& message, const std::string& path) {
+  const v1::Vector& to = message.direction();
+  const glm::dvec3 direction(to.x(), to.y(), to.z());
+  const double length = glm::length(direction);
+  if (!(length > 0.0)) {
+    return base::InvalidField(absl::StrCat(path, ".direction"),
+                              "has no length; it must point somewhere", "VALUE_OUT_OF_RANGE");
+  }
+  const v1::Position& from = message.origin();
+  return session::Ray{glm::dvec3(from.x_m(), from.y_m(), from.z_m()), direction / length};
+}
+
+absl::StatusOr<std::string> NameOf(const std::string& name, const std::string& path) {
+  std::string shown;
+  std::size_t characters = 0;
+  for (std::size_t at = 0; at < name.size() && characters < kMaxNameCharacters;) {
+    const auto first = static_cast<unsigned char>(name[at]);
+    const std::size_t size = CharacterBytes(first);
+    if (size == 0 || at + size > name.size()) {
+      return base::InvalidField(path, "is not UTF-8", "TEXT_NOT_UTF8");
+    }
+    // Control characters, also those of two bytes, become spaces.
+    const bool is_control = first < 0x20 || first == 0x7f ||
+                            (first == 0xc2 && static_cast<unsigned char>(name[at + 1]) < 0xa0);
+    shown += is_control ? " " : name.substr(at, size);
+    at += size;
+    ++characters;
+  }
+  return std::string(absl::StripAsciiWhitespace(shown));
+}
+
+}  // namespace thunderhead::service

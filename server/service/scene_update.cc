@@ -1,0 +1,85 @@
+#include "service/scene_update.h"
+
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "base/error_details.h"
+#include "base/status.h"
+#include "google/protobuf/util/field_mask_util.h"
+#include "service/scene_messages.h"
+
+namespace thunderhead::service {
+namespace {
+
+using google::protobuf::util::FieldMaskUtil;
+
+absl::Status CheckMask(const google::protobuf::FieldMask& mask) {
+  for (const std::string& path : mask.paths()) {
+    if (FieldMaskUtil::IsValidPath<v1::Scene>(path)) continue;
+    return base::InvalidField("update_mask",
+                              absl::StrCat("names '", path, "', which a scene does not have"),
+                              "FIELD_UNKNOWN");
+  }
+  return absl::OkStatus();
+}
+
+// The session's newest scene with the fields that the mask names.
+absl::StatusOr<v1::Scene> Merged(const session::NewestScene& newest, const SceneChange& change) {
+  v1::Scene scene;
+  if (!scene.ParseFromString(*newest.serialized)) {
+    return absl::InternalError("the session's scene cannot be read back");
+  }
+  FieldMaskUtil::MergeOptions options;
+  options.set_replace_message_fields(true);
+  options.set_replace_repeated_fields(true);
+  FieldMaskUtil::MergeMessageTo(change.scene, change.update_mask, options, &scene);
+  return scene;
+}
+
+struct Changed {
+  std::uint64_t revision = 0;
+  std::shared_ptr<v1::Scene> scene;
+};
+
+absl::StatusOr<Changed> Take(Engine& engine, session::Session& session, const SceneChange& change) {
+  Changed changed{0, std::make_shared<v1::Scene>(change.scene)};
+  std::optional<std::uint64_t> expected = change.expected_revision;
+  if (change.update_mask.paths_size() > 0) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckMask(change.update_mask));
+    const auto newest = session.Newest();
+    if (!newest.has_value()) return absl::InternalError("the session has no scene yet");
+    // The fields that are not named must not be older than the newest.
+    if (!expected.has_value()) expected = newest->revision;
+    THUNDERHEAD_ASSIGN_OR_RETURN(*changed.scene, Merged(*newest, change));
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(PrepareScene(engine.store, engine.loop.Techniques(), *changed.scene));
+  // Taken before the scene is framed, which may wait for a read, so that the last update wins.
+  if (!expected.has_value()) {
+    changed.revision = session.TakeRevision();
+  } else {
+    THUNDERHEAD_ASSIGN_OR_RETURN(changed.revision, session.TakeRevisionAfter(*expected));
+  }
+  return changed;
+}
+
+}  // namespace
+
+void ChangeScene(Engine& engine, const std::shared_ptr<session::Session>& session,
+                 const SceneChange& change,
+                 std::function<void(const absl::StatusOr<std::uint64_t>&)> done) {
+  const auto changed = Take(engine, *session, change);
+  if (!changed.ok()) return done(changed.status());
+  const auto [revision, scene] = *changed;
+  FrameThen(engine, *scene,
+            [revision, scene, session, done = std::move(done)](const absl::Status& framed) {
+              if (!framed.ok()) {
+                session->Drop(revision);
+                return done(framed);
+              }
+              session->Show(revision, ToScene(*scene), scene->SerializeAsString());
+              done(revision);
+            });
+}
+
+}  // namespace thunderhead::service

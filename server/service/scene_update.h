@@ -1,0 +1,35 @@
+// Changes to a session's scene, however they arrive.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "absl/status/statusor.h"
+#include "service/engine.h"
+
+namespace thunderhead::service {
+
+struct SceneChange {
+  v1::Scene scene;
+  std::optional<std::uint64_t> expected_revision;
+  google::protobuf::FieldMask update_mask;  // no path: the whole scene
+};
+
+// The change of an UpdateSceneRequest or a SceneUpdate, which have the same fields.
+template <typename Message>
+SceneChange SceneChangeOf(const Message& message) {
+  SceneChange change{message.scene(), std::nullopt, message.update_mask()};
+  if (message.has_expected_revision()) change.expected_revision = message.expected_revision();
+  return change;
+}
+
+// Completes the changed scene and shows it, then calls `done` with its revision: at once, or on
+// another thread if the storm must be read to place the camera. The change's limits were checked.
+// INVALID_ARGUMENT and NOT_FOUND as PrepareScene; ABORTED if the scene is at another revision.
+void ChangeScene(Engine& engine, const std::shared_ptr<session::Session>& session,
+                 const SceneChange& change,
+                 std::function<void(const absl::StatusOr<std::uint64_t>&)> done);
+
+}  // namespace thunderhead::service

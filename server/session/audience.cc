@@ -1,0 +1,194 @@
+#include "session/audience.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace thunderhead::session {
+
+Audience::Audience(const AudienceFormat& format, const Rules& rules, Board board, Time now,
+                   std::function<void()> on_due)
+    : format_(format), on_due_(std::move(on_due)), roster_(rules, now), board_(std::move(board)) {}
+
+std::uint64_t Audience::Join(Role role, const std::string& name, std::shared_ptr<Viewer> member,
+                             Time now) {
+  std::unique_lock lock(mutex_);
+  const std::uint64_t id = roster_.Join(role, name);
+  members_[id] = std::move(member);
+  Settle(std::move(lock), now);
+  return id;
+}
+
+void Audience::Leave(std::uint64_t id, Time now) {
+  std::unique_lock lock(mutex_);
+  members_.erase(id);
+  rays_.erase(id);
+  finding_.erase(id);
+  board_.Point(id, std::nullopt);
+  roster_.Leave(id, now);
+  Settle(std::move(lock), now);
+}
+
+absl::Status Audience::Change(const RosterChange& change, Time now) {
+  std::unique_lock lock(mutex_);
+  const absl::Status status = change(roster_);
+  Settle(std::move(lock), now);
+  return status;
+}
+
+absl::Status Audience::Draw(std::uint64_t id, const BoardChange& change, Time now) {
+  std::unique_lock lock(mutex_);
+  if (const absl::Status may = roster_.MayMark(id); !may.ok()) return may;
+  const absl::Status status = change(board_);
+  Settle(std::move(lock), now);
+  return status;
+}
+
+absl::Status Audience::Point(std::uint64_t id, const std::optional<Ray>& ray, Time now) {
+  std::unique_lock lock(mutex_);
+  if (const absl::Status may = roster_.MayMark(id); !may.ok()) return may;
+  rays_.erase(id);
+  finding_.erase(id);
+  if (ray.has_value()) {
+    rays_[id] = *ray;
+  } else {
+    board_.Point(id, std::nullopt);
+  }
+  Settle(std::move(lock), now);
+  return absl::OkStatus();
+}
+
+void Audience::WakeAll() {
+  std::unique_lock lock(mutex_);
+  const auto members = Members();
+  lock.unlock();
+  for (const auto& member : members) member->Wake();
+}
+
+Roster Audience::People() const {
+  const std::lock_guard lock(mutex_);
+  return roster_;
+}
+
+Board Audience::Drawn() const {
+  const std::lock_guard lock(mutex_);
+  return board_;
+}
+
+absl::Status Audience::MaySteer(std::uint64_t id) const {
+  const std::lock_guard lock(mutex_);
+  return roster_.MaySteer(id);
+}
+
+absl::Status Audience::PresenterMaySteer() const {
+  const std::lock_guard lock(mutex_);
+  return roster_.PresenterMaySteer();
+}
+
+absl::Status Audience::MayMark(std::uint64_t id) const {
+  const std::lock_guard lock(mutex_);
+  return roster_.MayMark(id);
+}
+
+bool Audience::Follows(std::uint64_t id) const {
+  const std::lock_guard lock(mutex_);
+  const Person* const person = roster_.Find(id);
+  return person == nullptr || person->follows;
+}
+
+bool Audience::Empty() const {
+  const std::lock_guard lock(mutex_);
+  return members_.empty();
+}
+
+Told Audience::Presence() const {
+  const std::lock_guard lock(mutex_);
+  return presence_.told;
+}
+
+Told Audience::Pointers() const {
+  const std::lock_guard lock(mutex_);
+  return pointers_.told;
+}
+
+Told Audience::Marks() const {
+  const std::lock_guard lock(mutex_);
+  return marks_.told;
+}
+
+std::optional<Audience::Time> Audience::Tick(Time now, const Place& place) {
+  std::unique_lock lock(mutex_);
+  roster_.Advance(now);
+  // Found without the lock, as it takes a while.
+  const auto rays = std::exchange(rays_, {});
+  if (!rays.empty() && now >= pointers_.told_at + kPointersPause) {
+    for (const auto& [id, ray] : rays) finding_.insert(id);
+    lock.unlock();
+    std::vector<Pointer> found;
+    for (const auto& [id, ray] : rays) found.push_back({id, place(ray)});
+    lock.lock();
+    for (const Pointer& pointer : found) {
+      // Unless it has moved on or gone meanwhile.
+      if (finding_.erase(pointer.person_id) > 0) {
+        board_.Point(pointer.person_id, pointer.position_m);
+      }
+    }
+  } else {
+    rays_.insert(rays.begin(), rays.end());
+  }
+  const bool told = TellDue(now);
+  std::optional<Time> next;
+  const auto wait_for = [&](bool waits, Time time) {
+    if (waits && (!next.has_value() || time < *next)) next = time;
+  };
+  wait_for(roster_.revision() > presence_.told_revision, presence_.told_at + kPresencePause);
+  wait_for(board_.marks_revision() > marks_.told_revision, marks_.told_at + kMarksPause);
+  wait_for(!rays_.empty() || board_.pointers_revision() > pointers_.told_revision,
+           pointers_.told_at + kPointersPause);
+  if (const auto deadline = roster_.NextDeadline(); deadline.has_value()) wait_for(true, *deadline);
+  const auto members = told ? Members() : std::vector<std::shared_ptr<Viewer>>();
+  lock.unlock();
+  for (const auto& member : members) member->Wake();
+  return next;
+}
+
+bool Audience::IsDue(const Subject& subject, std::uint64_t revision,
+                     std::chrono::milliseconds pause, Time now) {
+  return revision > subject.told_revision &&
+         (subject.told.count == 0 || now >= subject.told_at + pause);
+}
+
+bool Audience::TellDue(Time now) {
+  bool told = false;
+  const auto tell = [&](Subject& subject, std::uint64_t revision, std::chrono::milliseconds pause,
+                        const auto& format, const auto& value) {
+    if (!IsDue(subject, revision, pause, now)) return;
+    subject = {{subject.told.count + 1, std::make_shared<const std::string>(format(value))},
+               revision,
+               now};
+    told = true;
+  };
+  tell(presence_, roster_.revision(), kPresencePause, format_.presence, roster_);
+  tell(pointers_, board_.pointers_revision(), kPointersPause, format_.pointers, board_.pointers());
+  tell(marks_, board_.marks_revision(), kMarksPause, format_.marks, board_.marks());
+  return told;
+}
+
+void Audience::Settle(std::unique_lock<std::mutex> lock, Time now) {
+  const bool told = TellDue(now);
+  const bool due = !rays_.empty() || roster_.revision() > presence_.told_revision ||
+                   board_.marks_revision() > marks_.told_revision ||
+                   board_.pointers_revision() > pointers_.told_revision ||
+                   roster_.NextDeadline().has_value();
+  const auto members = told ? Members() : std::vector<std::shared_ptr<Viewer>>();
+  lock.unlock();
+  for (const auto& member : members) member->Wake();
+  if (due) on_due_();
+}
+
+std::vector<std::shared_ptr<Viewer>> Audience::Members() const {
+  std::vector<std::shared_ptr<Viewer>> members;
+  for (const auto& [id, member] : members_) members.push_back(member);
+  return members;
+}
+
+}  // namespace thunderhead::session

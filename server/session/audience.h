@@ -1,0 +1,117 @@
+// The people of a session with their connections: changes the roster and the board under a lock,
+// and tells everybody the outcome. What is told is turned into bytes once for all of them, at most
+// so often a second, the newest only. Safe from any thread; knows no messages.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "session/board.h"
+#include "session/frame_hub.h"
+#include "session/roster.h"
+
+namespace thunderhead::session {
+
+// Turns what people are told into bytes, which are opaque here.
+struct AudienceFormat {
+  std::function<std::string(const Roster&)> presence = [](const Roster&) { return ""; };
+  std::function<std::string(const std::vector<Pointer>&)> pointers = [](const auto&) { return ""; };
+  std::function<std::string(const std::vector<Mark>&)> marks = [](const auto&) { return ""; };
+};
+
+// What people were told last of one subject.
+struct Told {
+  std::uint64_t count = 0;  // of tellings; 0: nothing yet
+  std::shared_ptr<const std::string> bytes;
+};
+
+// A ray from an eye.
+struct Ray {
+  glm::dvec3 origin_m{0.0};
+  glm::dvec3 direction{0.0, 1.0, 0.0};  // of length 1
+};
+
+class Audience {
+ public:
+  using Time = Roster::Time;
+  using Place = std::function<glm::dvec3(const Ray&)>;
+
+  static constexpr std::chrono::milliseconds kPresencePause{200};
+  static constexpr std::chrono::milliseconds kPointersPause{33};
+  static constexpr std::chrono::milliseconds kMarksPause{33};
+
+  // `on_due` is called, without the lock, when Tick is to be called soon.
+  Audience(const AudienceFormat& format, const Rules& rules, Board board, Time now,
+           std::function<void()> on_due);
+
+  // `member` is woken when it is to be told something.
+  std::uint64_t Join(Role role, const std::string& name, std::shared_ptr<Viewer> member, Time now);
+  void Leave(std::uint64_t id, Time now);
+
+  // Changes the roster or the board.
+  using RosterChange = std::function<absl::Status(Roster&)>;
+  using BoardChange = std::function<absl::Status(Board&)>;
+  absl::Status Change(const RosterChange& change, Time now);
+  absl::Status Draw(std::uint64_t id, const BoardChange& change, Time now);
+  // Moves the person's pointer to what the ray meets, as soon as Tick has found it; without a ray
+  // it goes.
+  absl::Status Point(std::uint64_t id, const std::optional<Ray>& ray, Time now);
+
+  // Wakes everybody, when something else has changed that they are told of.
+  void WakeAll();
+
+  // Copies.
+  Roster People() const;
+  Board Drawn() const;
+  absl::Status MaySteer(std::uint64_t id) const;
+  absl::Status PresenterMaySteer() const;
+  absl::Status MayMark(std::uint64_t id) const;
+  bool Follows(std::uint64_t id) const;
+  bool Empty() const;
+
+  Told Presence() const;
+  Told Pointers() const;
+  Told Marks() const;
+
+  // Ends what has run out, finds where pointers point, and tells what is due. Returns when it is to
+  // be called next, if nothing happens before.
+  std::optional<Time> Tick(Time now, const Place& place);
+
+ private:
+  // One subject: what was told of it, and whether it has changed since.
+  struct Subject {
+    Told told;
+    std::uint64_t told_revision = 0;
+    Time told_at;
+  };
+
+  // Tells those subjects whose pause is over; true if there were any. Needs mutex_.
+  bool TellDue(Time now);
+  bool IsDue(const Subject& subject, std::uint64_t revision, std::chrono::milliseconds pause,
+             Time now);
+  void Settle(std::unique_lock<std::mutex> lock, Time now);
+  std::vector<std::shared_ptr<Viewer>> Members() const;  // needs mutex_
+
+  const AudienceFormat format_;
+  const std::function<void()> on_due_;
+  mutable std::mutex mutex_;
+  Roster roster_;
+  Board board_;
+  std::map<std::uint64_t, std::shared_ptr<Viewer>> members_;
+  std::map<std::uint64_t, Ray> rays_;  // of pointers whose place is to be found
+  std::set<std::uint64_t> finding_;    // people whose pointers' places are being found
+  Subject presence_;
+  Subject pointers_;
+  Subject marks_;
+};
+
+}  // namespace thunderhead::session

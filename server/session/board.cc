@@ -1,0 +1,65 @@
+#include "session/board.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "base/error_details.h"
+
+namespace thunderhead::session {
+namespace {
+
+// Told apart on cloud, sky and ground, and by people who are colour-blind: the bright ones of Okabe
+// and Ito's palette, in linear sRGB.
+constexpr std::array<glm::vec3, 6> kColors = {{{0.665F, 0.112F, 0.0F},
+                                               {0.093F, 0.456F, 0.812F},
+                                               {0.871F, 0.775F, 0.054F},
+                                               {0.604F, 0.191F, 0.387F},
+                                               {0.0F, 0.342F, 0.171F},
+                                               {0.791F, 0.347F, 0.0F}}};
+
+}  // namespace
+
+Board::Board(std::vector<Mark> marks) : marks_(std::move(marks)), marks_revision_(1) {
+  for (const Mark& mark : marks_) mark_count_ = std::max(mark_count_, mark.id);
+}
+
+absl::StatusOr<std::uint64_t> Board::Add(std::uint64_t person_id,
+                                         std::vector<glm::dvec3> positions_m,
+                                         const std::optional<glm::vec3>& color) {
+  if (marks_.size() >= kMaxMarks) {
+    return base::WithDetails(
+        absl::ResourceExhaustedError(absl::StrCat("the session already has the maximum of ",
+                                                  kMaxMarks, " marks; erase some first")),
+        {.reason = "TOO_MANY_MARKS",
+         .metadata = {{"maximum", absl::StrCat(kMaxMarks)}, {"unit", "marks"}}});
+  }
+  const glm::vec3 own = kColors[person_id % kColors.size()];
+  marks_.push_back({++mark_count_, person_id, std::move(positions_m), color.value_or(own)});
+  ++marks_revision_;
+  return mark_count_;
+}
+
+void Board::Erase(const std::vector<std::uint64_t>& ids, std::optional<std::uint64_t> person_id) {
+  const auto erased = std::erase_if(marks_, [&](const Mark& mark) {
+    return (ids.empty() || std::ranges::find(ids, mark.id) != ids.end()) &&
+           (!person_id.has_value() || mark.person_id == *person_id);
+  });
+  if (erased > 0) ++marks_revision_;
+}
+
+void Board::Point(std::uint64_t person_id, const std::optional<glm::dvec3>& position_m) {
+  const auto at = std::ranges::find(pointers_, person_id, &Pointer::person_id);
+  if (!position_m.has_value()) {
+    if (at == pointers_.end()) return;
+    pointers_.erase(at);
+  } else if (at != pointers_.end()) {
+    at->position_m = *position_m;
+  } else {
+    pointers_.push_back({person_id, *position_m});
+  }
+  ++pointers_revision_;
+}
+
+}  // namespace thunderhead::session

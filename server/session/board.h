@@ -1,0 +1,58 @@
+// What people show one another on a session's picture: pointers, and marks that they draw. Both are
+// places in the world, so they stay where they are when the camera turns. A plain value.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "glm/vec3.hpp"
+
+namespace thunderhead::session {
+
+struct Pointer {
+  std::uint64_t person_id = 0;
+  glm::dvec3 position_m{0.0};
+};
+
+// A line.
+struct Mark {
+  std::uint64_t id = 0;  // counts a session's marks from 1
+  std::uint64_t person_id = 0;
+  std::vector<glm::dvec3> positions_m;
+  glm::vec3 color{1.0F};  // linear sRGB
+};
+
+class Board {
+ public:
+  static constexpr std::size_t kMaxMarks = 100;
+
+  Board() = default;
+  explicit Board(std::vector<Mark> marks);
+
+  // Without a colour, one of the person's own. RESOURCE_EXHAUSTED if there are too many marks.
+  absl::StatusOr<std::uint64_t> Add(std::uint64_t person_id, std::vector<glm::dvec3> positions_m,
+                                    const std::optional<glm::vec3>& color);
+  // Erases `ids`, or every mark if there are none: of anybody, or only of that person.
+  void Erase(const std::vector<std::uint64_t>& ids, std::optional<std::uint64_t> person_id);
+
+  // Moves the person's pointer; without a place it goes.
+  void Point(std::uint64_t person_id, const std::optional<glm::dvec3>& position_m);
+
+  const std::vector<Mark>& marks() const { return marks_; }
+  const std::vector<Pointer>& pointers() const { return pointers_; }
+  // Count changes.
+  std::uint64_t marks_revision() const { return marks_revision_; }
+  std::uint64_t pointers_revision() const { return pointers_revision_; }
+
+ private:
+  std::vector<Mark> marks_;
+  std::vector<Pointer> pointers_;
+  std::uint64_t mark_count_ = 0;
+  std::uint64_t marks_revision_ = 0;
+  std::uint64_t pointers_revision_ = 0;
+};
+
+}  // namespace thunderhead::session

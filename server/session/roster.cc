@@ -1,0 +1,230 @@
+#include "session/roster.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "base/error_details.h"
+
+namespace thunderhead::session {
+namespace {
+
+absl::Status Denied(const std::string& message, const std::string& reason) {
+  return base::WithDetails(absl::PermissionDeniedError(message), {.reason = reason});
+}
+
+absl::Status NoSuchPerson(std::uint64_t id) {
+  return base::WithDetails(
+      absl::NotFoundError(absl::StrCat("viewer_id is ", id, "; nobody in the session has it")),
+      {.reason = "VIEWER_NOT_FOUND", .metadata = {{"viewer_id", absl::StrCat(id)}}});
+}
+
+// Numbers are for people who gave no name.
+std::string NameOf(const Person& person) {
+  return person.name.empty() ? absl::StrCat("viewer ", person.id) : person.name;
+}
+
+}  // namespace
+
+std::uint64_t Roster::Join(Role role, std::string name) {
+  ++revision_;
+  people_.push_back({.id = ++count_, .name = std::move(name), .role = role});
+  if (role == Role::kPresenter && away_since_.has_value()) Give(people_.back());
+  return count_;
+}
+
+void Roster::Leave(std::uint64_t id, Time now) {
+  const auto erased =
+      std::erase_if(people_, [id](const Person& person) { return person.id == id; });
+  if (erased == 0) return;
+  ++revision_;
+  if (steering_ == id) GiveBack(now);
+}
+
+void Roster::Rename(std::uint64_t id, std::string name) {
+  Person* const person = FindToChange(id);
+  if (person != nullptr) person->name = std::move(name);
+}
+
+void Roster::SetHidden(std::uint64_t id, bool hidden) {
+  const Person* const person = Find(id);
+  if (person != nullptr && person->hidden != hidden) FindToChange(id)->hidden = hidden;
+}
+
+absl::Status Roster::MaySteer(std::uint64_t id) const {
+  if (steering_ == id && id != 0) return absl::OkStatus();
+  const Person* const other = Find(steering_);
+  return Denied(other != nullptr ? absl::StrCat(NameOf(*other), " steers; ask for control first")
+                                 : "you do not steer; ask for control first",
+                "NOT_STEERING");
+}
+
+absl::Status Roster::PresenterMaySteer() const {
+  const Person* const other = Find(steering_);
+  if (other == nullptr || other->role == Role::kPresenter) return absl::OkStatus();
+  return Denied(absl::StrCat(NameOf(*other), " steers; take control back first, with Interact"),
+                "NOT_STEERING");
+}
+
+absl::Status Roster::AskControl(std::uint64_t id, Time now) {
+  Person* const person = FindToChange(id);
+  if (person == nullptr) return NoSuchPerson(id);
+  if (steering_ == id) return absl::OkStatus();
+  if (person->role == Role::kPresenter) return TakeControl(id);
+  if (rules_.control_locked) {
+    return Denied("control is locked by the presenter", "CONTROL_LOCKED");
+  }
+  const bool is_free = steering_ == 0 && !away_since_.has_value();
+  if (is_free && rules_.viewers_may_steer) {
+    Give(*person);
+    return absl::OkStatus();
+  }
+  const Time asked_at = person->asked_at.value_or(Time::min());
+  if (person->asked_at.has_value() && now < asked_at + kAskAgainAfter) {
+    return base::WithDetails(
+        absl::ResourceExhaustedError("you asked for control a moment ago; wait a few seconds"),
+        {.reason = "ASKED_TOO_OFTEN",
+         .retry_after = std::chrono::duration_cast<std::chrono::milliseconds>(
+             asked_at + kAskAgainAfter - now)});
+  }
+  person->asked_at = now;
+  person->asks = true;
+  return absl::OkStatus();
+}
+
+absl::Status Roster::MayAnswer(std::uint64_t id) const {
+  const Person* const person = Find(id);
+  if (person == nullptr) return NoSuchPerson(id);
+  if (steering_ == id || person->role == Role::kPresenter) return absl::OkStatus();
+  return Denied("only a presenter or the one who steers gives control", "NOT_STEERING");
+}
+
+absl::Status Roster::GiveControl(std::uint64_t from, std::uint64_t to, Time now) {
+  if (const absl::Status may = MayAnswer(from); !may.ok()) return may;
+  if (to != 0) {
+    Person* const person = FindToChange(to);
+    if (person == nullptr) return NoSuchPerson(to);
+    Give(*person);
+    return absl::OkStatus();
+  }
+  ++revision_;
+  if (Find(from)->role == Role::kPresenter) {
+    steering_ = 0;
+    away_since_.reset();
+  } else {
+    GiveBack(now);
+  }
+  return absl::OkStatus();
+}
+
+absl::Status Roster::RefuseControl(std::uint64_t from, std::uint64_t to) {
+  if (const absl::Status may = MayAnswer(from); !may.ok()) return may;
+  Person* const person = FindToChange(to);
+  if (person == nullptr) return NoSuchPerson(to);
+  person->asks = false;
+  return absl::OkStatus();
+}
+
+absl::Status Roster::TakeControl(std::uint64_t id) {
+  Person* const person = FindToChange(id);
+  if (person == nullptr) return NoSuchPerson(id);
+  if (person->role != Role::kPresenter) {
+    return Denied("only a presenter takes control; ask for it", "NOT_PRESENTER");
+  }
+  Give(*person);
+  return absl::OkStatus();
+}
+
+absl::Status Roster::SetRules(std::uint64_t id, const Rules& rules) {
+  const Person* const person = Find(id);
+  if (person == nullptr) return NoSuchPerson(id);
+  if (person->role != Role::kPresenter) {
+    return Denied("only a presenter sets rules", "NOT_PRESENTER");
+  }
+  rules_ = rules;
+  ++revision_;
+  for (Person& other : people_) {
+    if (rules_.control_locked) other.asks = false;
+    if (rules_.following_locked && other.role == Role::kViewer) other.follows = true;
+  }
+  return absl::OkStatus();
+}
+
+absl::Status Roster::Detach(std::uint64_t id) {
+  Person* const person = FindToChange(id);
+  if (person == nullptr) return NoSuchPerson(id);
+  if (rules_.following_locked && person->role == Role::kViewer) {
+    return Denied("the presenter has locked the session to one view", "FOLLOWING_LOCKED");
+  }
+  person->follows = false;
+  return absl::OkStatus();
+}
+
+absl::Status Roster::Follow(std::uint64_t id) {
+  Person* const person = FindToChange(id);
+  if (person == nullptr) return NoSuchPerson(id);
+  person->follows = true;
+  return absl::OkStatus();
+}
+
+absl::Status Roster::MayMark(std::uint64_t id) const {
+  const Person* const person = Find(id);
+  if (person == nullptr) return NoSuchPerson(id);
+  if (person->role == Role::kPresenter || rules_.viewers_may_mark || steering_ == id) {
+    return absl::OkStatus();
+  }
+  return Denied("the presenter has not allowed viewers to point and draw", "MARKS_LOCKED");
+}
+
+void Roster::Advance(Time now) {
+  for (Person& person : people_) {
+    if (!person.asks || now < *person.asked_at + kAnswerWithin) continue;
+    person.asks = false;
+    ++revision_;
+  }
+  if (away_since_.has_value() && rules_.free_when_away && now >= *away_since_ + kAwayAfter) {
+    away_since_.reset();
+    ++revision_;
+  }
+}
+
+std::optional<Roster::Time> Roster::NextDeadline() const {
+  std::optional<Time> next;
+  if (away_since_.has_value() && rules_.free_when_away) next = *away_since_ + kAwayAfter;
+  for (const Person& person : people_) {
+    if (!person.asks) continue;
+    const Time ends = *person.asked_at + kAnswerWithin;
+    next = next.has_value() ? std::min(*next, ends) : ends;
+  }
+  return next;
+}
+
+const Person* Roster::Find(std::uint64_t id) const {
+  const auto at = std::ranges::find(people_, id, &Person::id);
+  return at == people_.end() ? nullptr : &*at;
+}
+
+Person* Roster::FindToChange(std::uint64_t id) {
+  const auto at = std::ranges::find(people_, id, &Person::id);
+  if (at == people_.end()) return nullptr;
+  ++revision_;
+  return &*at;
+}
+
+void Roster::Give(Person& to) {
+  ++revision_;
+  steering_ = to.id;
+  away_since_.reset();
+  // Who steers sees what is steered.
+  to.follows = true;
+  to.asks = false;
+}
+
+void Roster::GiveBack(Time now) {
+  const auto presenter = std::ranges::find(people_, Role::kPresenter, &Person::role);
+  if (presenter != people_.end()) return Give(*presenter);
+  steering_ = 0;
+  away_since_ = now;
+}
+
+}  // namespace thunderhead::session

@@ -1,0 +1,115 @@
+// The people of a session: who they are, who steers, who asks to, who looks around, and what the
+// rules allow each. A plain value that is told the time; knows no connections and no messages.
+//
+// One person steers at a time. Control is in one of three states: a person has it; it is kept for
+// the presenters, none of whom is there; or it is free.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+
+namespace thunderhead::session {
+
+enum class Role { kPresenter, kViewer };
+
+// What a session allows.
+struct Rules {
+  bool viewers_may_steer = true;  // control that is free is given to a viewer who asks
+  bool control_locked = false;    // nobody may ask for it
+  bool following_locked = false;  // viewers may not look around
+  bool viewers_may_mark = false;
+  bool free_when_away = false;  // control becomes free when the presenters have been away
+
+  bool operator==(const Rules&) const = default;
+};
+
+struct Person {
+  std::uint64_t id = 0;  // counts a session's people from 1
+  std::string name;      // may be empty
+  Role role = Role::kViewer;
+  bool follows = true;
+  bool hidden = false;                                            // the window
+  bool asks = false;                                              // for control
+  std::optional<std::chrono::steady_clock::time_point> asked_at;  // last
+
+  bool operator==(const Person&) const = default;
+};
+
+class Roster {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  // Limits, in time, of what people wait for.
+  static constexpr std::chrono::seconds kAnswerWithin{20};
+  static constexpr std::chrono::seconds kAskAgainAfter{5};
+  static constexpr std::chrono::seconds kAwayAfter{60};
+
+  // Control is kept for the presenter, who may be on the way.
+  Roster(const Rules& rules, Time now) : rules_(rules), away_since_(now) {}
+
+  std::uint64_t Join(Role role, std::string name);
+  void Leave(std::uint64_t id, Time now);
+  void Rename(std::uint64_t id, std::string name);
+  void SetHidden(std::uint64_t id, bool hidden);
+
+  // PERMISSION_DENIED to anybody but the one who steers.
+  absl::Status MaySteer(std::uint64_t id) const;
+  // For a presenter without a place in the roster, who has only the key: PERMISSION_DENIED while a
+  // viewer steers.
+  absl::Status PresenterMaySteer() const;
+
+  // Gives control at once if it is free, or to a presenter; else who steers is asked, or a
+  // presenter. PERMISSION_DENIED while control is locked, RESOURCE_EXHAUSTED for asking too often.
+  absl::Status AskControl(std::uint64_t id, Time now);
+  // From the one who steers, or a presenter: to a person, or to nobody (0). Nobody gets a
+  // presenter's control, and it is free; a viewer's goes back to the presenters.
+  absl::Status GiveControl(std::uint64_t from, std::uint64_t to, Time now);
+  // The same people may say no.
+  absl::Status RefuseControl(std::uint64_t from, std::uint64_t to);
+  absl::Status TakeControl(std::uint64_t id);
+
+  absl::Status SetRules(std::uint64_t id, const Rules& rules);
+  const Rules& rules() const { return rules_; }
+
+  // Leaves the session's view; a viewer may not while following is locked.
+  absl::Status Detach(std::uint64_t id);
+  absl::Status Follow(std::uint64_t id);
+
+  absl::Status MayMark(std::uint64_t id) const;
+
+  // Ends requests that nobody answered, and frees control that was kept for too long.
+  void Advance(Time now);
+
+  // When Advance has something to do next.
+  std::optional<Time> NextDeadline() const;
+
+  // In the order in which they came.
+  const std::vector<Person>& people() const { return people_; }
+  const Person* Find(std::uint64_t id) const;
+  // 0: nobody.
+  std::uint64_t steering() const { return steering_; }
+  bool presenter_away() const { return away_since_.has_value(); }
+  // Counts changes of anything above.
+  std::uint64_t revision() const { return revision_; }
+
+ private:
+  Person* FindToChange(std::uint64_t id);  // counts as a change
+  absl::Status MayAnswer(std::uint64_t id) const;
+  void Give(Person& to);
+  // To a presenter, or kept for one.
+  void GiveBack(Time now);
+
+  Rules rules_;
+  std::vector<Person> people_;
+  std::uint64_t steering_ = 0;
+  std::optional<Time> away_since_;  // while control is kept for presenters
+  std::uint64_t count_ = 0;
+  std::uint64_t revision_ = 1;
+};
+
+}  // namespace thunderhead::session

@@ -1,0 +1,52 @@
+#include "session/upkeep.h"
+
+#include <algorithm>
+
+#include "glm/geometric.hpp"
+#include "scene/place_seen.h"
+
+namespace thunderhead::session {
+namespace {
+
+// Sessions expire without anything that wakes the thread.
+constexpr std::chrono::seconds kLongestPause{1};
+// Sessions that are due at about the same time are looked after together.
+constexpr std::chrono::milliseconds kShortestPause{10};
+
+}  // namespace
+
+Upkeep::Upkeep(Sessions& sessions, volume::StormStore& store, base::WakeSignal& due)
+    : sessions_(sessions), store_(store), due_(due), thread_([this] { Run(); }) {}
+
+Upkeep::~Upkeep() {
+  stopping_ = true;
+  due_.Notify();
+  thread_.join();
+}
+
+void Upkeep::Run() {
+  while (!stopping_) {
+    const Clock::time_point began = Clock::now();
+    Clock::time_point next = began + kLongestPause;
+    for (const auto& session : sessions_.All()) {
+      const auto due = session->audience().Tick(
+          Clock::now(), [&](const Ray& ray) { return PlaceSeen(*session, store_, ray); });
+      if (due.has_value()) next = std::min(next, *due);
+    }
+    std::this_thread::sleep_until(began + kShortestPause);
+    if (next > Clock::now()) due_.Wait(next);
+  }
+}
+
+glm::dvec3 PlaceSeen(const Session& session, volume::StormStore& store, const Ray& ray) {
+  const std::optional<NewestScene> newest = session.Newest();
+  const auto fields =
+      newest.has_value() ? store.Peek(newest->scene->storm_id, newest->scene->time_index) : nullptr;
+  if (fields != nullptr) {
+    return scene::PlaceSeen(*newest->scene, *fields, ray.origin_m, ray.direction);
+  }
+  // World coordinates begin in the middle of the storm's domain.
+  return ray.origin_m + std::max(0.0, -glm::dot(ray.origin_m, ray.direction)) * ray.direction;
+}
+
+}  // namespace thunderhead::session

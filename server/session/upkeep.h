@@ -1,0 +1,36 @@
+// Looks after the people of every session on a thread of its own: finds where their pointers point,
+// ends what has run out, and tells what is due.
+#pragma once
+
+#include <atomic>
+#include <thread>
+
+#include "base/wake_signal.h"
+#include "session/sessions.h"
+#include "volume/storm_store.h"
+
+namespace thunderhead::session {
+
+class Upkeep {
+ public:
+  // `sessions` must notify `due` in their on_due; all must outlive it.
+  Upkeep(Sessions& sessions, volume::StormStore& store, base::WakeSignal& due);
+  ~Upkeep();
+  Upkeep(const Upkeep&) = delete;
+  Upkeep& operator=(const Upkeep&) = delete;
+
+ private:
+  void Run();
+
+  Sessions& sessions_;
+  volume::StormStore& store_;
+  base::WakeSignal& due_;
+  std::atomic<bool> stopping_{false};
+  std::thread thread_;
+};
+
+// Where the ray meets what the session shows: storm, ground, or near the storm's middle in the
+// clear sky and while the storm is not in memory.
+glm::dvec3 PlaceSeen(const Session& session, volume::StormStore& store, const Ray& ray);
+
+}  // namespace thunderhead::session

@@ -1,0 +1,499 @@
+// Interact: one call for the whole of a session. Each rule is enforced by the server.
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/service/fake_service.h"
+#include "tests/service/interacting.h"
+
+namespace thunderhead::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using Response = v1::InteractResponse;
+using Stub = v1::ThunderheadService::Stub;
+
+v1::CreateSessionResponse Create(FakeService& service, const v1::SessionRules& rules = {}) {
+  v1::CreateSessionRequest request;
+  *request.mutable_scene() = SmallScene();
+  *request.mutable_rules() = rules;
+  v1::CreateSessionResponse response;
+  const grpc::Status status = Call(service.stub(), &Stub::CreateSession, request, &response);
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  return response;
+}
+
+v1::InteractRequest SunTo(float azimuth_deg) {
+  v1::InteractRequest request;
+  v1::SceneUpdate& update = *request.mutable_update_scene();
+  *update.mutable_scene() = SmallScene();
+  update.mutable_scene()->mutable_sun()->set_azimuth_deg(azimuth_deg);
+  return request;
+}
+
+v1::InteractRequest Asks() {
+  v1::InteractRequest request;
+  request.mutable_ask_control();
+  return request;
+}
+
+v1::InteractRequest Gives(std::uint64_t viewer_id) {
+  v1::InteractRequest request;
+  request.mutable_give_control()->set_viewer_id(viewer_id);
+  return request;
+}
+
+v1::InteractRequest Takes() {
+  v1::InteractRequest request;
+  request.mutable_take_control();
+  return request;
+}
+
+v1::InteractRequest LooksFrom(float azimuth_deg) {
+  v1::InteractRequest request;
+  request.mutable_detach()->mutable_camera()->mutable_orbit()->set_azimuth_deg(azimuth_deg);
+  return request;
+}
+
+v1::InteractRequest Follows() {
+  v1::InteractRequest request;
+  request.mutable_follow();
+  return request;
+}
+
+v1::InteractRequest Locks(bool following) {
+  v1::InteractRequest request;
+  request.mutable_set_rules()->mutable_rules()->set_following_locked(following);
+  return request;
+}
+
+// Straight down through the middle of the fake storm's cloud.
+v1::Ray RayDown() {
+  v1::Ray ray;
+  ray.mutable_origin()->set_x_m(-5500.0F);
+  ray.mutable_origin()->set_y_m(-500.0F);
+  ray.mutable_origin()->set_z_m(20000.0F);
+  ray.mutable_direction()->set_z(-1.0F);
+  return ray;
+}
+
+v1::InteractRequest Draws() {
+  v1::InteractRequest request;
+  *request.mutable_add_mark()->add_rays() = RayDown();
+  return request;
+}
+
+const v1::Person* Find(const v1::Presence& presence, std::uint64_t viewer_id) {
+  const auto at = std::ranges::find(presence.people(), viewer_id, &v1::Person::viewer_id);
+  return at == presence.people().end() ? nullptr : &*at;
+}
+
+// A session with its presenter, Ana and Ben.
+struct Class {
+  explicit Class(const v1::SessionRules& rules = {}) : created(Create(service, rules)) {
+    presenter =
+        std::make_unique<Interacting>(service.stub(), created.session_id(), Named("Teacher"));
+    ana = std::make_unique<Interacting>(service.stub(), created.viewer_key(), Named("Ana"));
+    EXPECT_GT(ana->viewer_id(), 0U);
+    ben = std::make_unique<Interacting>(service.stub(), created.viewer_key(), Named("Ben"));
+    EXPECT_GT(ben->viewer_id(), 0U);
+    EXPECT_TRUE(SteersFor(*ben, presenter->viewer_id()));
+  }
+
+  static Interacting::Options Named(const std::string& name) { return {.name = name}; }
+
+  static bool SteersFor(Interacting& person, std::uint64_t viewer_id) {
+    return person.AwaitPresence([&](const v1::Presence& presence) {
+      return presence.people_size() >= 3 && presence.steering_viewer_id() == viewer_id;
+    });
+  }
+
+  FakeService service;
+  v1::CreateSessionResponse created;
+  std::unique_ptr<Interacting> presenter;
+  std::unique_ptr<Interacting> ana;
+  std::unique_ptr<Interacting> ben;
+};
+
+TEST(InteractTest, KeysDifferAndTellTheRole) {
+  FakeService service;
+  const auto created = Create(service);
+  EXPECT_THAT(created.viewer_key(), ::testing::MatchesRegex("[0-9a-f]{32}"));
+  EXPECT_NE(created.viewer_key(), created.session_id());
+  Interacting presenter(service.stub(), created.session_id());
+  Interacting viewer(service.stub(), created.viewer_key());
+  const auto joined = presenter.AwaitNewest(Response::kJoined).joined();
+  EXPECT_EQ(joined.role(), v1::ROLE_PRESENTER);
+  EXPECT_EQ(joined.viewer_key(), created.viewer_key());
+  EXPECT_EQ(viewer.AwaitNewest(Response::kJoined).joined().role(), v1::ROLE_VIEWER);
+}
+
+TEST(InteractTest, AJoinerIsToldEverythingAtOnce) {
+  Class group;
+  ASSERT_TRUE(group.ben->AwaitFrame(1));
+  const Interacting::Messages messages = group.ben->All();
+  EXPECT_TRUE(messages.front().has_joined());
+  EXPECT_EQ(group.ben->AwaitNewest(Response::kScene).scene().scene().storm_id(), "anvil");
+  ASSERT_TRUE(group.ben->AwaitPresence(
+      [](const v1::Presence& presence) { return presence.people_size() == 3; }));
+  const v1::Presence presence = group.ben->AwaitNewest(Response::kPresence).presence();
+  EXPECT_EQ(presence.people(0).name(), "Teacher");
+  EXPECT_EQ(presence.people(0).role(), v1::ROLE_PRESENTER);
+  EXPECT_EQ(presence.people(1).name(), "Ana");
+  EXPECT_TRUE(presence.rules().has_viewers_may_steer());
+}
+
+TEST(InteractTest, FramesAreThoseOfWatchFrames) {
+  Class group;
+  Watcher watcher(group.service.stub(), group.created.viewer_key());
+  ASSERT_TRUE(watcher.AwaitFrame(1, true));
+  const v1::Frame watched = watcher.NewestFrame();
+  ASSERT_TRUE(group.ana->Await([&](const Interacting::Messages& messages) {
+    return std::ranges::any_of(messages, [&](const Response& message) {
+      return message.frame().sequence() == watched.sequence();
+    });
+  }));
+  for (const Response& message : group.ana->All()) {
+    if (message.frame().sequence() != watched.sequence()) continue;
+    EXPECT_EQ(message.frame().SerializeAsString(), watched.SerializeAsString());
+  }
+  EXPECT_TRUE(watched.has_view());
+}
+
+TEST(InteractTest, ThePresentersUpdateReachesEverybody) {
+  Class group;
+  const std::uint64_t request = group.presenter->Send(SunTo(120.0F));
+  const Response answer = group.presenter->Answer(request);
+  ASSERT_TRUE(answer.has_scene_taken()) << answer.ShortDebugString();
+  const std::uint64_t revision = answer.scene_taken().scene_revision();
+  EXPECT_EQ(revision, 2U);
+  for (Interacting* const person : {group.presenter.get(), group.ana.get(), group.ben.get()}) {
+    EXPECT_TRUE(person->AwaitFrame(revision));
+    EXPECT_EQ(person->AwaitNewest(Response::kScene).scene().scene().sun().azimuth_deg(), 120.0F);
+  }
+}
+
+TEST(InteractTest, AViewerDoesNotSteerUnlessGivenControl) {
+  Class group;
+  EXPECT_EQ(group.ana->AnswerCode(group.ana->Send(SunTo(120.0F))),
+            grpc::StatusCode::PERMISSION_DENIED);
+  group.ana->Send(Asks());
+  ASSERT_TRUE(group.presenter->AwaitPresence([&](const v1::Presence& presence) {
+    const v1::Person* const ana = Find(presence, group.ana->viewer_id());
+    return ana != nullptr && ana->asks_control();
+  }));
+  EXPECT_EQ(group.ben->AnswerCode(group.ben->Send(Gives(group.ben->viewer_id()))),
+            grpc::StatusCode::PERMISSION_DENIED);
+  group.presenter->Send(Gives(group.ana->viewer_id()));
+  ASSERT_TRUE(Class::SteersFor(*group.ana, group.ana->viewer_id()));
+  EXPECT_EQ(group.ana->AnswerCode(group.ana->Send(SunTo(120.0F))), grpc::StatusCode::OK);
+  EXPECT_EQ(group.presenter->AnswerCode(group.presenter->Send(SunTo(130.0F))),
+            grpc::StatusCode::PERMISSION_DENIED);
+  EXPECT_EQ(group.ben->AnswerCode(group.ben->Send(Takes())), grpc::StatusCode::PERMISSION_DENIED);
+  group.presenter->Send(Takes());
+  ASSERT_TRUE(Class::SteersFor(*group.ana, group.presenter->viewer_id()));
+  EXPECT_EQ(group.ana->AnswerCode(group.ana->Send(SunTo(140.0F))),
+            grpc::StatusCode::PERMISSION_DENIED);
+}
+
+TEST(InteractTest, OfTwoWhoChangeTheSameRevisionOneIsTold) {
+  Class group;
+  v1::InteractRequest first = SunTo(120.0F);
+  first.mutable_update_scene()->set_expected_revision(1);
+  v1::InteractRequest second = SunTo(130.0F);
+  second.mutable_update_scene()->set_expected_revision(1);
+  const std::uint64_t first_id = group.presenter->Send(first);
+  const std::uint64_t second_id = group.presenter->Send(second);
+  EXPECT_EQ(group.presenter->AnswerCode(first_id), grpc::StatusCode::OK);
+  const v1::Refused refused = group.presenter->Answer(second_id).refused();
+  EXPECT_EQ(refused.status().code(), static_cast<int>(grpc::StatusCode::ABORTED));
+  EXPECT_THAT(refused.status().message(), HasSubstr("the scene is at revision 2, not 1"));
+  EXPECT_GT(refused.status().details_size(), 0);
+  EXPECT_EQ(group.presenter->AwaitNewest(Response::kScene).scene().scene().sun().azimuth_deg(),
+            120.0F);
+}
+
+TEST(InteractTest, ARefusedSceneDoesNotBlockTheNextChange) {
+  Class group;
+  v1::InteractRequest wrong = SunTo(120.0F);
+  wrong.mutable_update_scene()->set_expected_revision(1);
+  wrong.mutable_update_scene()->mutable_scene()->set_storm_id("unknown");
+  EXPECT_EQ(group.presenter->AnswerCode(group.presenter->Send(wrong)), grpc::StatusCode::NOT_FOUND);
+  v1::InteractRequest right = SunTo(120.0F);
+  right.mutable_update_scene()->set_expected_revision(1);
+  EXPECT_EQ(group.presenter->AnswerCode(group.presenter->Send(right)), grpc::StatusCode::OK);
+}
+
+TEST(InteractTest, AMaskTakesTheNamedFieldsOnly) {
+  Class group;
+  v1::InteractRequest request = SunTo(120.0F);
+  v1::SceneUpdate& update = *request.mutable_update_scene();
+  update.mutable_scene()->mutable_display()->set_exposure_ev(3.0F);
+  update.mutable_update_mask()->add_paths("display.exposure_ev");
+  ASSERT_EQ(group.presenter->AnswerCode(group.presenter->Send(request)), grpc::StatusCode::OK);
+  const v1::Scene scene = group.presenter->AwaitNewest(Response::kScene).scene().scene();
+  EXPECT_EQ(scene.display().exposure_ev(), 3.0F);
+  EXPECT_NE(scene.sun().azimuth_deg(), 120.0F);
+  EXPECT_EQ(scene.output().width_px(), SmallScene().output().width_px());
+  update.mutable_update_mask()->add_paths("colour");
+  const v1::Refused refused = group.presenter->Answer(group.presenter->Send(request)).refused();
+  EXPECT_THAT(refused.status().message(), HasSubstr("names 'colour'"));
+}
+
+TEST(InteractTest, LookingAroundAndComingBack) {
+  Class group;
+  ASSERT_TRUE(group.ana->AwaitFrame(1));
+  group.ana->Send(LooksFrom(90.0F));
+  ASSERT_TRUE(group.ana->AwaitFrame(1, /*own_view=*/true));
+  const auto is_own = [](const Response& message) { return message.frame().own_view(); };
+  for (const Response& message : group.ana->All()) {
+    if (!is_own(message)) continue;
+    EXPECT_EQ(message.frame().camera().orbit().azimuth_deg(), 90.0F);
+  }
+  v1::InteractRequest move;
+  move.mutable_move_camera()->mutable_camera()->mutable_orbit()->set_azimuth_deg(45.0F);
+  group.ana->Send(move);
+  EXPECT_TRUE(group.ana->Await([](const Interacting::Messages& messages) {
+    return std::ranges::any_of(messages, [](const Response& message) {
+      return message.frame().own_view() && message.frame().camera().orbit().azimuth_deg() == 45.0F;
+    });
+  }));
+  // Time and light stay the session's.
+  group.presenter->Send(SunTo(120.0F));
+  EXPECT_TRUE(group.ana->Await([](const Interacting::Messages& messages) {
+    return std::ranges::any_of(messages, [](const Response& message) {
+      return message.frame().own_view() &&
+             message.frame().camera().orbit().azimuth_deg() == 45.0F &&
+             message.frame().sun().azimuth_deg() == 120.0F;
+    });
+  }));
+  ASSERT_TRUE(group.ben->AwaitPresence([&](const v1::Presence& presence) {
+    const v1::Person* const ana = Find(presence, group.ana->viewer_id());
+    return ana != nullptr && !ana->follows();
+  }));
+  for (const Response& message : group.ben->All()) EXPECT_FALSE(is_own(message));
+  group.ana->Send(Follows());
+  EXPECT_TRUE(group.ana->AwaitFrame(2, /*own_view=*/false));
+}
+
+TEST(InteractTest, LockedFollowingBringsEverybodyBack) {
+  Class group;
+  group.ana->Send(LooksFrom(90.0F));
+  ASSERT_TRUE(group.ana->AwaitFrame(1, /*own_view=*/true));
+  group.presenter->Send(Locks(true));
+  ASSERT_TRUE(group.ana->AwaitPresence([&](const v1::Presence& presence) {
+    return presence.rules().following_locked() && Find(presence, group.ana->viewer_id())->follows();
+  }));
+  group.presenter->Send(SunTo(120.0F));
+  EXPECT_TRUE(group.ana->AwaitFrame(2, /*own_view=*/false));
+  EXPECT_EQ(group.ana->AnswerCode(group.ana->Send(LooksFrom(10.0F))),
+            grpc::StatusCode::PERMISSION_DENIED);
+}
+
+TEST(InteractTest, AViewerSetsNoRules) {
+  Class group;
+  EXPECT_EQ(group.ana->AnswerCode(group.ana->Send(Locks(true))),
+            grpc::StatusCode::PERMISSION_DENIED);
+}
+
+TEST(InteractTest, PointersAndMarksLieWhereTheyMeetTheStorm) {
+  Class group;
+  v1::InteractRequest point;
+  *point.mutable_point()->mutable_ray() = RayDown();
+  group.presenter->Send(point);
+  const Response pointers = group.ana->AwaitNewest(Response::kPointers);
+  ASSERT_EQ(pointers.pointers().pointers_size(), 1);
+  const v1::Pointer& pointer = pointers.pointers().pointers(0);
+  EXPECT_EQ(pointer.viewer_id(), group.presenter->viewer_id());
+  EXPECT_EQ(pointer.position().x_m(), -5500.0F);
+  // The cloud is in the third cell, 1000 to 1500 m.
+  EXPECT_GT(pointer.position().z_m(), 900.0F);
+  EXPECT_LE(pointer.position().z_m(), 1500.0F);
+  group.presenter->Send(Draws());
+  ASSERT_TRUE(group.ana->Await([](const Interacting::Messages& messages) {
+    return std::ranges::any_of(
+        messages, [](const Response& message) { return message.marks().marks_size() == 1; });
+  }));
+  const v1::Mark mark = group.ana->AwaitNewest(Response::kMarks).marks().marks(0);
+  EXPECT_EQ(mark.positions(0).z_m(), pointer.position().z_m());
+  v1::InteractRequest gone;
+  gone.mutable_point();
+  group.presenter->Send(gone);
+  EXPECT_TRUE(group.ana->Await([](const Interacting::Messages& messages) {
+    const auto newest = std::find_if(messages.rbegin(), messages.rend(),
+                                     [](const auto& message) { return message.has_pointers(); });
+    return newest->pointers().pointers_size() == 0;
+  }));
+}
+
+TEST(InteractTest, ViewersMarkIfAllowedAndEraseTheirOwn) {
+  Class group;
+  EXPECT_EQ(group.ana->AnswerCode(group.ana->Send(Draws())), grpc::StatusCode::PERMISSION_DENIED);
+  group.presenter->Send(Draws());
+  v1::InteractRequest allow;
+  allow.mutable_set_rules()->mutable_rules()->set_viewers_may_mark(true);
+  group.presenter->Send(allow);
+  ASSERT_TRUE(group.ana->AwaitPresence(
+      [](const v1::Presence& presence) { return presence.rules().viewers_may_mark(); }));
+  const auto marks_are = [&](int count) {
+    return group.ben->Await([&](const Interacting::Messages& messages) {
+      const auto newest = std::find_if(messages.rbegin(), messages.rend(),
+                                       [](const auto& message) { return message.has_marks(); });
+      return newest != messages.rend() && newest->marks().marks_size() == count;
+    });
+  };
+  group.ana->Send(Draws());
+  ASSERT_TRUE(marks_are(2));
+  v1::InteractRequest erase;
+  erase.mutable_erase_marks();
+  group.ana->Send(erase);
+  ASSERT_TRUE(marks_are(1));
+  EXPECT_EQ(group.ben->AwaitNewest(Response::kMarks).marks().marks(0).viewer_id(),
+            group.presenter->viewer_id());
+  group.presenter->Send(erase);
+  EXPECT_TRUE(marks_are(0));
+}
+
+TEST(InteractTest, APresenterWhoReloadsHasControlAgain) {
+  Class group;
+  group.presenter->Cancel();
+  ASSERT_TRUE(group.ana->AwaitPresence(
+      [](const v1::Presence& presence) { return presence.presenter_away(); }));
+  Interacting back(group.service.stub(), group.created.session_id(), {.name = "Teacher"});
+  ASSERT_TRUE(Class::SteersFor(*group.ana, back.viewer_id()));
+  EXPECT_EQ(back.AnswerCode(back.Send(SunTo(120.0F))), grpc::StatusCode::OK);
+}
+
+TEST(InteractTest, HiddenWindowsGetNoFrames) {
+  Class group;
+  Interacting hidden(group.service.stub(), group.created.viewer_key(), {.hidden = true});
+  ASSERT_GT(hidden.viewer_id(), 0U);
+  group.presenter->Send(SunTo(120.0F));
+  ASSERT_TRUE(group.ana->AwaitFrame(2));
+  for (const Response& message : hidden.All()) EXPECT_FALSE(message.has_frame());
+  v1::InteractRequest shown;
+  shown.mutable_window()->set_hidden(false);
+  hidden.Send(shown);
+  EXPECT_TRUE(hidden.AwaitFrame(2));
+}
+
+TEST(InteractTest, OldCallsHaveTheRightsOfTheirKey) {
+  Class group;
+  v1::UpdateSceneRequest update;
+  *update.mutable_scene() = SmallScene();
+  v1::UpdateSceneResponse updated;
+  const auto code = [&](const std::string& key) {
+    update.set_session_id(key);
+    return Call(group.service.stub(), &Stub::UpdateScene, update, &updated).error_code();
+  };
+  EXPECT_EQ(code(group.created.viewer_key()), grpc::StatusCode::PERMISSION_DENIED);
+  EXPECT_EQ(code(group.created.session_id()), grpc::StatusCode::OK);
+  group.presenter->Send(Gives(group.ana->viewer_id()));
+  ASSERT_TRUE(Class::SteersFor(*group.ana, group.ana->viewer_id()));
+  EXPECT_EQ(code(group.created.session_id()), grpc::StatusCode::PERMISSION_DENIED);
+  update.set_expected_revision(1);
+  group.presenter->Send(Takes());
+  ASSERT_TRUE(Class::SteersFor(*group.ana, group.presenter->viewer_id()));
+  EXPECT_EQ(code(group.created.session_id()), grpc::StatusCode::ABORTED);
+  v1::CloseSessionRequest close;
+  close.set_session_id(group.created.viewer_key());
+  v1::CloseSessionResponse closed;
+  EXPECT_EQ(Call(group.service.stub(), &Stub::CloseSession, close, &closed).error_code(),
+            grpc::StatusCode::PERMISSION_DENIED);
+}
+
+TEST(InteractTest, ClosingSaysSoBeforeItEndsTheCall) {
+  Class group;
+  v1::CloseSessionRequest close;
+  close.set_session_id(group.created.session_id());
+  v1::CloseSessionResponse closed;
+  ASSERT_TRUE(Call(group.service.stub(), &Stub::CloseSession, close, &closed).ok());
+  EXPECT_EQ(group.ana->End().error_code(), grpc::StatusCode::NOT_FOUND);
+  const Interacting::Messages messages = group.ana->All();
+  ASSERT_TRUE(messages.back().has_end());
+  EXPECT_EQ(messages.back().end().reason(), v1::End::REASON_CLOSED);
+  EXPECT_FALSE(messages.back().end().has_retry_after_ms());
+}
+
+TEST(InteractTest, AServerThatStopsSaysWhenToComeBack) {
+  Class group;
+  group.service.server().Shutdown();
+  EXPECT_EQ(group.ana->End().error_code(), grpc::StatusCode::UNAVAILABLE);
+  const Interacting::Messages messages = group.ana->All();
+  ASSERT_TRUE(messages.back().has_end());
+  EXPECT_EQ(messages.back().end().reason(), v1::End::REASON_SERVER_STOPS);
+  EXPECT_TRUE(messages.back().end().has_retry_after_ms());
+}
+
+TEST(InteractTest, WhoLeavesIsGone) {
+  Class group;
+  group.ana->Leave();
+  EXPECT_TRUE(group.ana->End().ok());
+  EXPECT_TRUE(group.ben->AwaitPresence(
+      [](const v1::Presence& presence) { return presence.people_size() == 2; }));
+}
+
+TEST(InteractTest, TheFirstMessageJoins) {
+  FakeService service;
+  grpc::ClientContext context;
+  const auto call = service.stub().Interact(&context);
+  v1::InteractRequest request;
+  request.mutable_ask_control();
+  ASSERT_TRUE(call->Write(request));
+  v1::InteractResponse response;
+  EXPECT_FALSE(call->Read(&response));
+  const grpc::Status status = call->Finish();
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_THAT(status.error_message(), HasSubstr("it must be the first message"));
+  Interacting nobody(service.stub(), "0123");
+  EXPECT_EQ(nobody.End().error_code(), grpc::StatusCode::NOT_FOUND);
+}
+
+TEST(InteractTest, BadMessagesAreRefusedAndTheCallGoesOn) {
+  Class group;
+  EXPECT_EQ(group.presenter->AnswerCode(group.presenter->Send({})),
+            grpc::StatusCode::INVALID_ARGUMENT);
+  v1::InteractRequest mark;
+  mark.mutable_add_mark()->add_rays();
+  const auto refused = group.presenter->Answer(group.presenter->Send(mark)).refused();
+  EXPECT_THAT(refused.status().message(), HasSubstr("add_mark.rays[0].direction has no length"));
+  v1::InteractRequest sun = SunTo(120.0F);
+  sun.mutable_update_scene()->mutable_scene()->mutable_sun()->set_elevation_deg(400.0F);
+  EXPECT_THAT(group.presenter->Answer(group.presenter->Send(sun)).refused().status().message(),
+              HasSubstr("update_scene.scene.sun.elevation_deg is 400"));
+  EXPECT_EQ(group.presenter->AnswerCode(group.presenter->Send(SunTo(120.0F))),
+            grpc::StatusCode::OK);
+}
+
+TEST(InteractTest, NamesArePlainText) {
+  FakeService service;
+  const auto created = Create(service);
+  Interacting person(service.stub(), created.viewer_key(),
+                     {.name = " \x01" + std::string(50, 'a') + "\n"});
+  ASSERT_TRUE(person.AwaitPresence([](const v1::Presence& presence) {
+    return presence.people_size() == 1 && presence.people(0).name() == std::string(38, 'a');
+  }));
+  v1::InteractRequest rename;
+  rename.mutable_set_name()->set_name("Zoë");
+  person.Send(rename);
+  EXPECT_TRUE(person.AwaitPresence(
+      [](const v1::Presence& presence) { return presence.people(0).name() == "Zoë"; }));
+}
+
+TEST(InteractTest, AViewerWhoAcknowledgesNothingHoldsUpNobody) {
+  Class group;
+  Interacting stalled(group.service.stub(), group.created.viewer_key(), {.acknowledges = false});
+  ASSERT_TRUE(stalled.AwaitFrame(1));
+  for (int i = 0; i < 8; ++i) {
+    const float azimuth_deg = 100.0F + static_cast<float>(i);
+    const Response answer = group.presenter->Answer(group.presenter->Send(SunTo(azimuth_deg)));
+    ASSERT_TRUE(group.ana->AwaitFrame(answer.scene_taken().scene_revision()));
+  }
+  const Interacting::Messages messages = stalled.All();
+  EXPECT_LE(std::ranges::count_if(messages, [](const auto& m) { return m.has_frame(); }), 2);
+}
+
+}  // namespace
+}  // namespace thunderhead::testing

@@ -1,0 +1,128 @@
+#include "tests/service/interacting.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace thunderhead::testing {
+
+Interacting::Interacting(v1::ThunderheadService::Stub& stub, const std::string& key,
+                         Options options)
+    : options_(std::move(options)), call_(stub.Interact(&context_)) {
+  v1::InteractRequest request;
+  request.mutable_join()->set_session_key(key);
+  request.mutable_join()->set_name(options_.name);
+  request.mutable_join()->mutable_window()->set_hidden(options_.hidden);
+  Send(request);
+  thread_ = std::thread([this] { Run(); });
+}
+
+Interacting::~Interacting() {
+  Cancel();
+  if (thread_.joinable()) thread_.join();
+}
+
+std::uint64_t Interacting::Send(v1::InteractRequest request) {
+  const std::lock_guard lock(write_mutex_);
+  request.set_request_id(++request_count_);
+  call_->Write(request);
+  return request_count_;
+}
+
+void Interacting::Run() {
+  for (v1::InteractResponse response; call_->Read(&response);) {
+    const bool acknowledge = response.has_frame() && options_.acknowledges;
+    if (response.has_joined()) viewer_id_ = response.joined().viewer_id();
+    v1::InteractRequest acknowledged;
+    acknowledged.mutable_acknowledge()->set_sequence(response.frame().sequence());
+    acknowledged.mutable_acknowledge()->set_own_view(response.frame().own_view());
+    {
+      const std::lock_guard lock(mutex_);
+      messages_.push_back(std::move(response));
+    }
+    changed_.notify_all();
+    if (acknowledge) Send(acknowledged);
+  }
+  const grpc::Status end = call_->Finish();
+  const std::lock_guard lock(mutex_);
+  end_ = end;
+}
+
+bool Interacting::Await(const std::function<bool(const Messages&)>& wanted) {
+  std::unique_lock lock(mutex_);
+  return changed_.wait_for(lock, kPatience, [&] { return wanted(messages_); });
+}
+
+v1::InteractResponse Interacting::AwaitNewest(v1::InteractResponse::MessageCase part) {
+  v1::InteractResponse newest;
+  Await([&](const Messages& messages) {
+    const auto at = std::find_if(messages.rbegin(), messages.rend(), [&](const auto& message) {
+      return message.message_case() == part;
+    });
+    if (at == messages.rend()) return false;
+    newest = *at;
+    return true;
+  });
+  return newest;
+}
+
+v1::InteractResponse Interacting::Answer(std::uint64_t request_id) {
+  v1::InteractResponse answer;
+  Await([&](const Messages& messages) {
+    const auto at = std::ranges::find_if(messages, [&](const auto& message) {
+      return message.refused().request_id() == request_id ||
+             message.scene_taken().request_id() == request_id;
+    });
+    if (at == messages.end()) return false;
+    answer = *at;
+    return true;
+  });
+  return answer;
+}
+
+grpc::StatusCode Interacting::AnswerCode(std::uint64_t request_id) {
+  const v1::InteractResponse answer = Answer(request_id);
+  if (answer.message_case() == v1::InteractResponse::MESSAGE_NOT_SET) {
+    return grpc::StatusCode::DEADLINE_EXCEEDED;
+  }
+  return static_cast<grpc::StatusCode>(answer.refused().status().code());
+}
+
+bool Interacting::AwaitPresence(const std::function<bool(const v1::Presence&)>& wanted) {
+  return Await([&](const Messages& messages) {
+    const auto at = std::find_if(messages.rbegin(), messages.rend(),
+                                 [](const auto& message) { return message.has_presence(); });
+    return at != messages.rend() && wanted(at->presence());
+  });
+}
+
+bool Interacting::AwaitFrame(std::uint64_t revision, bool own_view) {
+  return Await([&](const Messages& messages) {
+    return std::ranges::any_of(messages, [&](const auto& message) {
+      return message.has_frame() && message.frame().own_view() == own_view &&
+             message.frame().scene_revision() >= revision;
+    });
+  });
+}
+
+Interacting::Messages Interacting::All() {
+  const std::lock_guard lock(mutex_);
+  return messages_;
+}
+
+std::uint64_t Interacting::viewer_id() {
+  // Without the lock once it is known, for conditions that wait for others' messages.
+  if (viewer_id_ == 0) AwaitNewest(v1::InteractResponse::kJoined);
+  return viewer_id_;
+}
+
+void Interacting::Leave() {
+  const std::lock_guard lock(write_mutex_);
+  call_->WritesDone();
+}
+
+grpc::Status Interacting::End() {
+  if (thread_.joinable()) thread_.join();
+  return end_;
+}
+
+}  // namespace thunderhead::testing

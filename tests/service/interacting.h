@@ -1,0 +1,73 @@
+// A person in a session by Interact: collects the messages of the call on a thread of its own and
+// acknowledges frames.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/service/fake_service.h"
+
+namespace thunderhead::testing {
+
+struct InteractingOptions {
+  std::string name;
+  bool hidden = false;
+  bool acknowledges = true;
+};
+
+class Interacting {
+ public:
+  using Options = InteractingOptions;
+
+  Interacting(v1::ThunderheadService::Stub& stub, const std::string& key, Options options = {});
+  ~Interacting();
+
+  // Sends a message and returns its request_id.
+  std::uint64_t Send(v1::InteractRequest request);
+
+  using Messages = std::vector<v1::InteractResponse>;
+  // Waits until `wanted` is true for the messages so far, for at most kPatience.
+  bool Await(const std::function<bool(const Messages&)>& wanted);
+  // Waits for a message with that part, and returns the newest such.
+  v1::InteractResponse AwaitNewest(v1::InteractResponse::MessageCase part);
+  // The answer to the request, SceneTaken or Refused.
+  v1::InteractResponse Answer(std::uint64_t request_id);
+  // The code of the refusal that answers the request; OK for SceneTaken.
+  grpc::StatusCode AnswerCode(std::uint64_t request_id);
+  // Waits until the newest presence is as wanted.
+  bool AwaitPresence(const std::function<bool(const v1::Presence&)>& wanted);
+  // Waits for a frame of that revision or a newer one.
+  bool AwaitFrame(std::uint64_t revision, bool own_view = false);
+  Messages All();
+
+  // Of this person; known once joined.
+  std::uint64_t viewer_id();
+
+  void Leave();  // half-closes
+  void Cancel() { context_.TryCancel(); }
+  // Waits for the call to end.
+  grpc::Status End();
+
+ private:
+  void Run();
+
+  const Options options_;
+  grpc::ClientContext context_;
+  std::unique_ptr<grpc::ClientReaderWriter<v1::InteractRequest, v1::InteractResponse>> call_;
+  std::atomic<std::uint64_t> viewer_id_{0};
+  std::mutex write_mutex_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  Messages messages_;
+  std::uint64_t request_count_ = 0;
+  grpc::Status end_;
+  std::thread thread_;
+};
+
+}  // namespace thunderhead::testing
