@@ -43,7 +43,7 @@ class FrameLane {
 export interface FakePerson {
   readonly viewerId: bigint;
   readonly role: Role;
-  readonly name: string;
+  name: string;
   readonly say: (message: InteractResponse) => void;
   readonly end: (code: Code | 0, message: string) => void;
   hidden: boolean;
@@ -211,7 +211,7 @@ export class FakeSession {
         }
         break;
       case "giveControl":
-        if (steers || presents) this.#give(message.value.viewerId);
+        if (steers || presents) this.#give(message.value.viewerId || this.#whoGetsItBack(presents));
         else refuse(Code.PermissionDenied, "not steering");
         break;
       case "refuseControl":
@@ -222,6 +222,10 @@ export class FakeSession {
       case "takeControl":
         if (presents) this.#give(person.viewerId);
         else refuse(Code.PermissionDenied, "only the presenter takes control");
+        break;
+      case "setName":
+        person.name = message.value.name;
+        this.#tellPresence();
         break;
       case "setRules":
         if (presents) this.#setRules(message.value.rules);
@@ -267,6 +271,12 @@ export class FakeSession {
     if (this.rules.followingLocked)
       for (const person of this.people) if (person.role === Role.VIEWER) this.#follow(person);
     this.#tellPresence();
+  }
+
+  // From a viewer the presenter, from the presenter nobody.
+  #whoGetsItBack(fromPresenter: boolean): bigint {
+    const presenter = this.people.find(({ role }) => role === Role.PRESENTER);
+    return fromPresenter ? 0n : (presenter?.viewerId ?? 0n);
   }
 
   #give(viewerId: bigint): void {

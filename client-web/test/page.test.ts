@@ -182,7 +182,11 @@ describe("the page in a session", () => {
     expect(session().scene.output).toMatchObject({ widthPx: 640, heightPx: 360 });
     viewer.page.actions.giveControl();
     await pass(50);
-    expect(viewer.page.state.session.editBlock.value).toBe("Nobody steers.");
+    expect(viewer.page.state.session.editBlock.value).toBe("Presenter steers.");
+    expect(teacher.page.state.session.steering.value).toBe(true);
+    teacher.page.actions.giveControl();
+    await pass(50);
+    expect(teacher.page.state.session.editBlock.value).toBe("Nobody steers.");
     teacher.page.actions.takeControl();
     await pass(50);
     expect(teacher.page.state.session.steering.value).toBe(true);
@@ -344,7 +348,7 @@ describe("the page in a session", () => {
     expect(again.window.location.href).toContain(session().viewerKey);
   });
 
-  it("joins again under a new name, and keeps it for the next time", async () => {
+  it("changes its name, and keeps it for the next time", async () => {
     const { viewer } = await classroom();
     viewer.page.actions.rename("  Ben ");
     await pass(100);

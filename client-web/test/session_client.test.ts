@@ -317,17 +317,6 @@ describe("the session client", () => {
     expect(seen.joined).toHaveLength(2);
   });
 
-  it("joins again at once for a new name", async () => {
-    const { start, session } = setUp();
-    const { seen, client } = start();
-    await pass(300);
-    client.rejoin();
-    await pass(5);
-    expect(seen.joined).toHaveLength(2);
-    expect(seen.connections.filter(({ kind }) => kind === "lost")).toEqual([]);
-    expect(session().people).toHaveLength(1);
-  });
-
   it("says nothing and calls nobody after its end", async () => {
     const { start, network, session } = setUp();
     const { seen, client } = start();

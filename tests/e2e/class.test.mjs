@@ -180,12 +180,23 @@ test("a student asks to steer, is given control, and gives it back", async () =>
   assert.notEqual(await azimuthOf(teacher), before);
   await student.getByTestId("give-back").click();
   await student.getByTestId("ask-control").waitFor();
-  await teacher.getByTestId("take-control").click();
   await teacher.getByTestId("edit-block").waitFor({ state: "detached" });
   assert.equal(await exposure(teacher).isDisabled(), false);
 });
 
-test("the teacher says not now, takes control back, and locks it", async () => {
+test("the teacher gives control unasked, and takes it back", async () => {
+  await teacher.getByTestId("people").click();
+  await teacher.getByTestId("give-unasked").click();
+  await teacher.keyboard.press("Escape");
+  await student.getByTestId("give-back").waitFor();
+  await teacher.getByTestId("take-control").click();
+  await student.getByTestId("give-back").waitFor({ state: "detached" });
+  assert.equal(await exposure(student).isDisabled(), true);
+  assert.equal(await exposure(teacher).isDisabled(), false);
+});
+
+test("the teacher says not now, and locks control", async () => {
+  await until("time to ask again", () => student.getByTestId("ask-control").isEnabled());
   await student.getByTestId("ask-control").click();
   await teacher.getByTestId("asks-give-not").click();
   await teacher.getByTestId("asks").waitFor({ state: "detached" });

@@ -76,7 +76,7 @@ type Outcome =
   // Come back: after the server's delay, if it gave one.
   | { readonly kind: "lost"; readonly reason: string; readonly leastMs: number }
   | { readonly kind: "gone"; readonly message: string; readonly forgotten: boolean }
-  | { readonly kind: "again" };
+  | { readonly kind: "disposed" };
 
 interface Call {
   readonly bidi: BidiCall<typeof InteractRequestSchema>;
@@ -141,11 +141,6 @@ export class SessionClient {
     if (this.#sessionKey !== undefined) this.#wake?.();
   }
 
-  // Leaves and joins the same session, with a new name.
-  rejoin(): void {
-    this.#call?.finish({ kind: "again" });
-  }
-
   // Rejects if the connection is lost; the caller must send the scene again after joined().
   updateScene(scene: Scene, expectedRevision: bigint): Promise<SceneVerdict> {
     return new Promise((taken, lost) => {
@@ -169,14 +164,14 @@ export class SessionClient {
 
   dispose(): void {
     this.#disposed = true;
-    this.#call?.finish({ kind: "again" });
+    this.#call?.finish({ kind: "disposed" });
     this.#wake?.();
   }
 
   async #attempt(): Promise<Outcome> {
     try {
       this.#sessionKey ??= await this.#open();
-      if (this.#disposed) return { kind: "again" };
+      if (this.#disposed) return { kind: "disposed" };
       return await this.#interact(this.#sessionKey);
     } catch (error) {
       return { kind: "lost", reason: reasonOf(ConnectError.from(error)), leastMs: 0 };

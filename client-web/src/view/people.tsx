@@ -21,9 +21,6 @@ export function PeopleList({ page }: { page: Page }) {
 }
 
 function OwnName({ page }: { page: Page }) {
-  const { session } = page.state;
-  // A new name means to join again, and a viewer would lose control by that.
-  const busy = session.steering.value && !session.presenting.value;
   return (
     <label class="own-name">
       Your name
@@ -32,8 +29,6 @@ function OwnName({ page }: { page: Page }) {
         maxLength={LONGEST_NAME}
         data-testid="own-name"
         placeholder="None"
-        disabled={busy}
-        title={busy ? "Give control back to change your name" : undefined}
         value={page.actions.name}
         onChange={(event) => page.actions.rename(event.currentTarget.value)}
       />

@@ -23,11 +23,9 @@ export class SessionActions {
     return this.#keys.name;
   }
 
-  // A call has one name, so this joins again.
   rename(name: string): void {
-    const before = this.#keys.name;
     this.#keys.name = name;
-    if (this.#keys.name !== before) this.#client.rejoin();
+    this.#client.send({ case: "setName", value: { name: this.#keys.name } });
   }
 
   askControl(): void {
@@ -38,7 +36,7 @@ export class SessionActions {
     this.#client.send({ case: "takeControl", value: {} });
   }
 
-  // To nobody: control is free.
+  // Without a person, a viewer gives it back to the presenter.
   giveControl(viewerId = 0n): void {
     this.#client.send({ case: "giveControl", value: { viewerId } });
   }
