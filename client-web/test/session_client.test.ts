@@ -257,6 +257,20 @@ describe("the session client", () => {
     expect(stranger.seen.opened).toEqual([]);
   });
 
+  it("does not run hot before a server that loses each session at once", async () => {
+    const { start, service } = setUp();
+    const open = service.interact;
+    vi.spyOn(service, "interact").mockImplementation((say, end) => {
+      service.sessions.splice(0);
+      return open.call(service, say, end);
+    });
+    const { seen } = start();
+    seen.opensNew = true;
+    await pass(60_000);
+    expect(seen.opened.length).toBeGreaterThan(5);
+    expect(seen.opened.length).toBeLessThan(15);
+  });
+
   it("does not open a session in place of one that cannot be reached", async () => {
     const { start, network, service } = setUp();
     network.down = true;
@@ -315,6 +329,17 @@ describe("the session client", () => {
     client.retryNow();
     await pass(1);
     expect(seen.joined).toHaveLength(2);
+  });
+
+  it("tries at once to open its first session too", async () => {
+    const { start, network } = setUp();
+    network.down = true;
+    const { seen, client } = start();
+    await pass(10_000);
+    network.down = false;
+    client.retryNow();
+    await pass(1);
+    expect(seen.joined).toHaveLength(1);
   });
 
   it("says nothing and calls nobody after its end", async () => {

@@ -94,6 +94,10 @@ export class SessionClient {
   #call: Call | undefined;
   #joined = false;
   #lastRequestId = 0n;
+  // A session was opened in place of another, and has not been joined yet.
+  #reopened = false;
+  // Waits for openNew().
+  #gone = false;
   #disposed = false;
   #wake: (() => void) | undefined;
 
@@ -124,21 +128,26 @@ export class SessionClient {
         await this.#wait(retryInMs);
       } else if (outcome.kind === "gone") {
         this.#sessionKey = undefined;
-        if (this.#listener.gone(outcome)) continue;
+        if (this.#listener.gone(outcome)) {
+          await this.#reopenSlowly();
+          continue;
+        }
         this.#listener.connection({ kind: "gone" });
+        this.#gone = true;
         await this.#wait();
+        this.#gone = false;
       }
     }
   }
 
   // Opens a new session in place of one that is gone.
   openNew(): void {
-    if (this.#sessionKey === undefined) this.#wake?.();
+    if (this.#gone) this.#wake?.();
   }
 
   // Ends the wait before the next attempt, if there is one.
   retryNow(): void {
-    if (this.#sessionKey !== undefined) this.#wake?.();
+    if (!this.#gone) this.#wake?.();
   }
 
   // Rejects if the connection is lost; the caller must send the scene again after joined().
@@ -166,6 +175,18 @@ export class SessionClient {
     this.#disposed = true;
     this.#call?.finish({ kind: "disposed" });
     this.#wake?.();
+  }
+
+  // At once, but where no new session could be joined since the last time, later and later.
+  async #reopenSlowly(): Promise<void> {
+    const { attempts } = this.#backOff;
+    const delayMs = this.#backOff.next();
+    if (this.#reopened) {
+      const reason = "The server loses its sessions";
+      this.#listener.connection({ kind: "lost", reason, attempts, retryInMs: delayMs });
+      await this.#wait(delayMs);
+    }
+    this.#reopened = true;
   }
 
   async #attempt(): Promise<Outcome> {
@@ -227,6 +248,7 @@ export class SessionClient {
             startedAtMs = performance.now();
             clearTimeout(joinTimer);
             this.#joined = true;
+            this.#reopened = false;
             this.#listener.connection({ kind: "live" });
             this.#listener.joined(message.value);
           } else if (message.case === "end") {
