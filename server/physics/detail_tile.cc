@@ -20,6 +20,9 @@ constexpr double kWarpDeviation = 0.4;  // of the full displacement
 constexpr double kFibreStretch = 6.0;   // along the shear
 constexpr double kFibreWidth = 0.7;     // across it, of the billows'
 constexpr double kLeastShear_m_per_s = 1.0;
+constexpr double kWarpInCells = 1.0;
+constexpr double kUpwardWarpInCells = 2.0;  // layers are thin
+constexpr double kWarpInWavelengths = 0.25;
 
 // Adds `octaves` of noise, the first being `first`, each `persistence` times the one before; their
 // absolute values if `billows`.
@@ -120,6 +123,12 @@ glm::dmat3 FibresAlong(const glm::dvec2& shear_m_per_s) {
   const glm::dvec2 x = along / kFibreStretch;
   const glm::dvec2 y = glm::dvec2(-along.y, along.x) / kFibreWidth;
   return {{x.x, y.x, 0.0}, {x.y, y.y, 0.0}, {0.0, 0.0, 1.0 / kFibreWidth}};
+}
+
+glm::dvec3 DetailWarp_m(const glm::dvec3& cell_m, double wavelength_m) {
+  const double across_m = std::min(
+      {kWarpInCells * cell_m.x, kWarpInCells * cell_m.y, kWarpInWavelengths * wavelength_m});
+  return {across_m, across_m, std::min(across_m, kUpwardWarpInCells * cell_m.z)};
 }
 
 glm::dvec4 DetailNoiseAt(const DetailTile& tile, const glm::dvec3& place) {

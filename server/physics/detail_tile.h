@@ -49,6 +49,10 @@ std::vector<std::uint8_t> CoarserLevel(const std::vector<std::uint8_t>& texels, 
 // as winds aloft usually blow.
 glm::dmat3 FibresAlong(const glm::dvec2& shear_m_per_s);
 
+// The largest displacement of a medium with such cells: less than what would change the order of
+// neighbouring cells.
+glm::dvec3 DetailWarp_m(const glm::dvec3& cell_m, double wavelength_m);
+
 // A texel at `place`, in units of a tile's edge, sampled as a repeating texture: billows 0 to 1,
 // and the displacement, -1 to 1.
 glm::dvec4 DetailNoiseAt(const DetailTile& tile, const glm::dvec3& place);

@@ -19,8 +19,9 @@ gl::Texture3D Repeating(GLenum internal_format, int side, GLenum format,
 }
 
 std::shared_ptr<const DetailNoise> BakeDetail(int octaves, std::uint32_t seed) {
-  std::vector<std::uint8_t> texels = physics::MakeDetailTile(octaves, seed).texels;
   auto noise = std::make_shared<DetailNoise>();
+  noise->tile = physics::MakeDetailTile(octaves, seed);
+  std::vector<std::uint8_t> texels = noise->tile.texels;
   for (int side = physics::DetailTile::kSide; side >= 1; side /= 2) {
     noise->levels.push_back(Repeating(GL_RGBA8, side, GL_RGBA, texels));
     if (side > 1) texels = physics::CoarserLevel(texels, side);

@@ -8,13 +8,15 @@
 #include <vector>
 
 #include "gl/objects.h"
+#include "physics/detail_tile.h"
 
 namespace thunderhead::renderers {
 
 struct DetailNoise {
+  physics::DetailTile tile;           // of a medium: the first level
   std::vector<gl::Texture3D> levels;  // repeat; each after the first is half as fine
 
-  std::size_t Bytes() const;
+  std::size_t Bytes() const;  // on the device
 };
 
 class DetailNoises {

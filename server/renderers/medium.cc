@@ -16,15 +16,13 @@
 #include "volume/brick_map.h"
 #include "volume/coarsen.h"
 #include "volume/detail_control.h"
+#include "volume/water_paths.h"
 
 namespace thunderhead::renderers {
 namespace {
 
 constexpr std::size_t kMaxBoxes = 8192;
 constexpr double kLevelsOfBillows = 4.0;  // that tell octaves apart; the coarsest is all but even
-constexpr double kWarpInCells = 1.0;
-constexpr double kUpwardWarpInCells = 2.0;  // layers are thin
-constexpr double kWarpInWavelengths = 0.25;
 // Light is given to cells: what they cannot tell apart must not flicker from one to the next.
 constexpr double kLightFootprintInCells = 1.0;
 
@@ -68,27 +66,45 @@ struct Computed {
   std::vector<std::uint8_t> detail_control;  // empty without detail
 };
 
-Computed ComputedOf(const volume::HydrometeorFields& fields, const Medium& medium) {
+double TileOf_m(const scene::Detail& detail) {
+  return static_cast<double>(detail.wavelength_m) * physics::DetailTile::kWaves;
+}
+
+volume::PlacedDetail PlacedDetailOf(const std::vector<DetailLayer>& layers,
+                                    const glm::dvec3& cell_m, const glm::dmat3& fibres) {
+  volume::PlacedDetail placed;
+  for (const DetailLayer& layer : layers) {
+    placed.layers.push_back(
+        {&layer.noise->tile, TileOf_m(layer.detail),
+         std::vector<float>(layer.share_by_group.begin(), layer.share_by_group.end())});
+  }
+  placed.warp_m = physics::DetailWarp_m(cell_m, layers[0].detail.wavelength_m);
+  placed.fibres = fibres;
+  return placed;
+}
+
+Computed ComputedOf(const volume::HydrometeorFields& fields, const Medium& medium,
+                    const std::vector<DetailLayer>& details) {
   Computed computed;
   computed.extinction =
       volume::ComputeExtinction(fields, medium.terms, static_cast<int>(medium.groups.size()));
-  std::vector<float> shares;
-  for (const MediumGroup& group : medium.groups) shares.push_back(group.detail.share);
-  const bool has_detail = std::ranges::any_of(shares, [](float share) { return share > 0.0F; });
-  if (has_detail && !computed.extinction.Empty()) {
-    computed.detail_control = volume::DetailControlOf(fields, medium.terms, computed.extinction);
-    volume::KeepWaterPaths(computed.detail_control, shares, &computed.extinction);
-  }
+  if (details.empty() || computed.extinction.Empty()) return computed;
+  computed.detail_control = volume::DetailControlOf(fields, medium.terms, computed.extinction);
+  volume::KeepWaterPaths(computed.detail_control,
+                         PlacedDetailOf(details, computed.extinction.grid.spacing_m,
+                                        physics::FibresAlong(fields.motion.shear_m_per_s)),
+                         &computed.extinction);
   return computed;
 }
 
 // On fewer cells if a texture cannot hold all.
-Computed ComputedThatFits(const volume::HydrometeorFields& fields, const Medium& medium) {
+Computed ComputedThatFits(const volume::HydrometeorFields& fields, const Medium& medium,
+                          const std::vector<DetailLayer>& details) {
   GLint max_texels = 0;
   glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &max_texels);
   const glm::ivec3 factor = volume::CoarseningFor(fields, max_texels);
-  return factor == glm::ivec3(1) ? ComputedOf(fields, medium)
-                                 : ComputedOf(volume::Coarsened(fields, factor), medium);
+  return factor == glm::ivec3(1) ? ComputedOf(fields, medium, details)
+                                 : ComputedOf(volume::Coarsened(fields, factor), medium, details);
 }
 
 // Around what is occupied; the first brick begins at `corner_m`.
@@ -127,7 +143,8 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
   constexpr std::array<GLenum, 5> kFormats = {0, GL_R16F, GL_RG16F, 0, GL_RGBA16F};
   constexpr std::array<GLenum, 5> kTransferFormats = {0, GL_RED, GL_RG, 0, GL_RGBA};
   base::Stopwatch stopwatch;
-  Computed computed = ComputedThatFits(fields, content_);
+  details_ = LayersOf(content_, noises);
+  Computed computed = ComputedThatFits(fields, content_, details_);
   bounds_ = std::move(computed.extinction);
   const volume::BrickMap bricks = volume::BrickMapOf(bounds_);
   const volume::CellBlocks blocks = volume::CellBlocksOf(bricks, bounds_.grid);
@@ -156,7 +173,6 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
   if (block_count_ > 0) {
     blocks_ = gl::Buffer(blocks.occupied.size() * sizeof(std::uint32_t), blocks.occupied.data(), 0);
   }
-  details_ = LayersOf(content_, noises);
   if (!computed.detail_control.empty()) {
     detail_control_ = gl::Texture3D(GL_RG8, bounds_.grid.cells);
     detail_control_.Upload(GL_RG, GL_UNSIGNED_BYTE, computed.detail_control.data());
@@ -197,9 +213,7 @@ void ResidentMedium::BindDetails(const gl::Program& program) const {
   std::vector<glm::vec4> shares;
   for (std::size_t i = 0; i < details_.size(); ++i) {
     const DetailLayer& layer = details_[i];
-    const double tile_m =
-        static_cast<double>(layer.detail.wavelength_m) * physics::DetailTile::kWaves;
-    sizes.emplace_back(tile_m / extent_m);
+    sizes.emplace_back(TileOf_m(layer.detail) / extent_m);
     // Not less whole tiles: fibres have others.
     corners.emplace_back(-bounds_.grid.low_corner_m / extent_m);
     const std::vector<glm::vec4> packed = Packed(layer.share_by_group, 1.0);
@@ -210,11 +224,8 @@ void ResidentMedium::BindDetails(const gl::Program& program) const {
   program.Set(uniform::detail_tile_corner, corners);
   program.Set(uniform::detail_shares, shares);
   program.Set(uniform::detail_fibres, detail_fibres_);
-  // The largest displacement leaves neighbouring cells in their order.
-  const double across_m = std::min({kWarpInCells * cell_m.x, kWarpInCells * cell_m.y,
-                                    kWarpInWavelengths * details_[0].detail.wavelength_m});
-  const double up_m = std::min(across_m, kUpwardWarpInCells * cell_m.z);
-  program.Set(uniform::detail_warp, glm::vec3(glm::dvec3(across_m, across_m, up_m) / extent_m));
+  program.Set(uniform::detail_warp,
+              glm::vec3(physics::DetailWarp_m(cell_m, details_[0].detail.wavelength_m) / extent_m));
   BindNoises(program, {kLightFootprintInCells * std::max(cell_m.x, cell_m.y), 0.0}, 0.0);
 }
 

@@ -179,7 +179,7 @@ class InteractCall : public InteractReactor,
     if (watched_ != nullptr) watched_->hub().Leave(watcher_id_);
     watched_ = nullptr;
     if (session == nullptr) return;
-    const auto watcher_id = session->hub().Join(shared_from_this());
+    const auto watcher_id = session->hub().Join(shared_from_this(), wants_);
     if (!watcher_id.ok()) return;  // it has closed, which the next message tells
     watched_ = session;
     watcher_id_ = *watcher_id;
@@ -238,6 +238,7 @@ class InteractCall : public InteractReactor,
       person_id_ = person_id;
       answers_.push_back(ResponseOf(response));
       hidden_ = join.window().hidden();
+      wants_ = WantsOf(join.window());
       role_ = found.role;
       session_ = found.session;
     }
@@ -257,7 +258,7 @@ class InteractCall : public InteractReactor,
       case v1::InteractRequest::kDetach:
         return Detach(request.detach());
       case v1::InteractRequest::kWindow:
-        SetHidden(request.window().hidden());
+        SetWindow(request.window());
         return absl::OkStatus();
       case v1::InteractRequest::kPoint:
         return Point(request.point());
@@ -414,6 +415,19 @@ class InteractCall : public InteractReactor,
     return absl::OkStatus();
   }
 
+  static session::ViewerWants WantsOf(const v1::Window& window) {
+    return {static_cast<int>(window.width_px()), window.frames_per_second(), /*adapts=*/true};
+  }
+
+  void SetWindow(const v1::Window& window) {
+    {
+      const std::lock_guard lock(mutex_);
+      wants_ = WantsOf(window);
+      if (watched_ != nullptr) watched_->hub().SetWants(watcher_id_, wants_);
+    }
+    SetHidden(window.hidden());
+  }
+
   void SetHidden(bool hidden) {
     (void)session_->audience().Change(
         [&](session::Roster& roster) {
@@ -519,6 +533,7 @@ class InteractCall : public InteractReactor,
   session::Role role_ = session::Role::kViewer;
 
   bool hidden_ = false;
+  session::ViewerWants wants_;
   std::shared_ptr<session::OwnView> own_view_;
   std::shared_ptr<session::Session> watched_;  // whose frames come
   std::uint64_t watcher_id_ = 0;               // in its hub

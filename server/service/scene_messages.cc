@@ -428,6 +428,7 @@ void ToMessage(const session::EncodedFrame& frame, v1::Frame& message) {
   for (const scene::StageTime& time : frame.stages) ToMessage(time, *message.add_stages());
   ToMessage(frame.modelled, *message.mutable_modelled());
   message.set_refined(frame.refined);
+  message.set_tier(static_cast<std::uint32_t>(frame.tier));
   if (frame.refinement.has_value()) {
     ToMessage(*frame.refinement, *message.mutable_refinement());
   }

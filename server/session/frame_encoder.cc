@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/stopwatch.h"
+#include "frame/halved.h"
 #include "frame/image_codec.h"
 
 namespace thunderhead::session {
@@ -13,22 +14,45 @@ namespace {
 // arrive sooner.
 constexpr int kCoarseJpegQuality = 75;
 
+// Of smaller tiers, for links that are slow.
+constexpr int kReducedJpegQuality = 70;
+
+// The full frame with its picture at a half of the size, or a quarter.
+EncodedFrame Reduced(const EncodedFrame& full, int tier, const frame::RgbImage& picture,
+                     const SerializeFrame& serialize) {
+  EncodedFrame reduced = full;
+  frame::RgbImage smaller = picture;
+  for (int halved = 0; halved < tier; ++halved) smaller = frame::Halved(smaller);
+  const int quality = full.refined ? full.jpeg_quality : kReducedJpegQuality;
+  auto jpeg = frame::EncodeJpeg(smaller.width_px, smaller.height_px, smaller.rgb, quality);
+  if (!jpeg.ok()) return full;
+  reduced.jpeg = *std::move(jpeg);
+  reduced.width_px = smaller.width_px;
+  reduced.height_px = smaller.height_px;
+  reduced.tier = tier;
+  reduced.serialized = serialize(reduced);
+  return reduced;
+}
+
 void EncodeAndPublish(DrawnFrame drawn, const SerializeFrame& serialize) {
   const base::Stopwatch stopwatch;
   const int wanted_quality = drawn.scene.output.jpeg_quality;
-  const int quality = drawn.refined ? wanted_quality : std::min(wanted_quality, kCoarseJpegQuality);
   const DisplayFrame& picture = drawn.picture;
-  auto jpeg = frame::EncodeJpeg(picture.width_px, picture.height_px, picture.rgb, quality);
+  EncodedFrame frame;
+  frame.jpeg_quality =
+      drawn.refined ? wanted_quality : std::min(wanted_quality, kCoarseJpegQuality);
+  auto jpeg =
+      frame::EncodeJpeg(picture.width_px, picture.height_px, picture.rgb, frame.jpeg_quality);
   if (!jpeg.ok()) {
     drawn.session->hub().Publish(ProblemOf(drawn.scene_revision, jpeg.status()));
     return;
   }
-  EncodedFrame frame;
   frame.scene_revision = drawn.scene_revision;
   frame.jpeg = *std::move(jpeg);
   frame.width_px = picture.width_px;
   frame.height_px = picture.height_px;
   frame.camera = drawn.scene.camera;
+  frame.view = drawn.view;
   frame.sun = drawn.scene.sun;
   frame.stages = std::move(drawn.picture.stages);
   frame.stages.push_back({scene::FrameStage::kEncode, stopwatch.ElapsedMs()});
@@ -36,9 +60,14 @@ void EncodeAndPublish(DrawnFrame drawn, const SerializeFrame& serialize) {
   frame.refined = drawn.refined;
   frame.refinement = drawn.refinement;
   frame.accuracy = std::move(drawn.picture.accuracy);
-  frame.view = drawn.view;
   frame.serialized = serialize(frame);
-  drawn.session->hub().Publish(std::move(frame));
+  // Kept with the frame, for a tier that is wanted later.
+  const auto pixels = std::make_shared<const frame::RgbImage>(
+      frame::RgbImage{picture.width_px, picture.height_px, std::move(drawn.picture.rgb)});
+  drawn.session->hub().Publish(std::move(frame),
+                               [pixels, serialize](const EncodedFrame& full, int tier) {
+                                 return Reduced(full, tier, *pixels, serialize);
+                               });
 }
 
 }  // namespace

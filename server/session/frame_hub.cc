@@ -34,16 +34,39 @@ Problem UnreadableStorm(std::uint64_t scene_revision, const absl::Status& why) {
 
 FrameHub::FrameHub(std::function<void()> on_demand) : on_demand_(std::move(on_demand)) {}
 
-absl::StatusOr<std::uint64_t> FrameHub::Join(std::shared_ptr<Viewer> viewer) {
+PublishedFrame::PublishedFrame(EncodedFrame full, ReduceFrame reduce)
+    : reduce_(std::move(reduce)), tiers_{std::make_shared<const EncodedFrame>(std::move(full))} {}
+
+std::shared_ptr<const EncodedFrame> PublishedFrame::At(int tier) {
+  const std::lock_guard lock(mutex_);
+  auto& frame = tiers_[static_cast<std::size_t>(tier)];
+  if (frame == nullptr && reduce_ == nullptr) frame = tiers_[0];
+  if (frame == nullptr) frame = std::make_shared<const EncodedFrame>(reduce_(Full(), tier));
+  return frame;
+}
+
+absl::StatusOr<std::uint64_t> FrameHub::Join(std::shared_ptr<Viewer> viewer,
+                                             const ViewerWants& wants) {
   std::uint64_t id = 0;
   {
     const std::lock_guard lock(mutex_);
     if (!closed_because_.ok()) return closed_because_;
     id = ++viewer_count_;
     watches_[id].viewer = std::move(viewer);
+    watches_[id].wants = wants;
   }
   on_demand_();
   return id;
+}
+
+void FrameHub::SetWants(std::uint64_t viewer_id, const ViewerWants& wants) {
+  const std::lock_guard lock(mutex_);
+  const auto found = watches_.find(viewer_id);
+  if (found == watches_.end() || found->second.wants == wants) return;
+  found->second.wants = wants;
+  found->second.waits_until.reset();
+  // The newest picture again, in the size that fits now.
+  found->second.last_sequence = 0;
 }
 
 void FrameHub::Leave(std::uint64_t viewer_id) {
@@ -54,56 +77,114 @@ void FrameHub::Leave(std::uint64_t viewer_id) {
   on_demand_();
 }
 
-std::optional<FrameEvent> FrameHub::Take(std::uint64_t viewer_id) {
-  const std::lock_guard lock(mutex_);
-  const auto found = watches_.find(viewer_id);
-  if (found == watches_.end() || !closed_because_.ok()) return std::nullopt;
-  Watch& watch = found->second;
-  if (HasFrameFor(watch)) {
-    watch.last_sequence = frame_->sequence;
-    watch.in_flight.push_back(frame_->sequence);
-    return frame_;
+int FrameHub::TierFor(const Watch& watch, const EncodedFrame& frame) {
+  const int for_window = TierForWindow(frame.width_px, watch.wants.window_width_px);
+  const bool reduced = watch.wants.adapts && !frame.refined;
+  return reduced ? std::max(for_window, watch.link.tier()) : for_window;
+}
+
+bool FrameHub::IsReady(const Watch& watch, Time now) {
+  return watch.in_flight.size() < kMaxInFlight &&
+         (!watch.waits_until.has_value() || now >= *watch.waits_until);
+}
+
+bool FrameHub::HasFrameFor(const Watch& watch, Time now) const {
+  return IsReady(watch, now) && frame_ != nullptr && frame_->Full().sequence > watch.last_sequence;
+}
+
+bool FrameHub::HasFor(const Watch& watch, Time now) const {
+  return HasFrameFor(watch, now) || (problem_.has_value() && problem_count_ > watch.last_problem);
+}
+
+std::optional<FrameEvent> FrameHub::Take(std::uint64_t viewer_id, Time now) {
+  std::shared_ptr<PublishedFrame> frame;
+  int tier = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = watches_.find(viewer_id);
+    if (found == watches_.end() || !closed_because_.ok()) return std::nullopt;
+    Watch& watch = found->second;
+    if (HasFrameFor(watch, now)) {
+      frame = frame_;
+      tier = TierFor(watch, frame->Full());
+      watch.last_sequence = frame->Full().sequence;
+      watch.in_flight.push_back({watch.last_sequence, now, !frame->Full().refined});
+      if (watch.wants.frames_per_second > 0.0) {
+        watch.waits_until =
+            now + std::chrono::duration_cast<Time::duration>(
+                      std::chrono::duration<double>(1.0 / watch.wants.frames_per_second));
+      }
+    } else if (problem_.has_value() && problem_count_ > watch.last_problem) {
+      watch.last_problem = problem_count_;
+      return *problem_;
+    } else {
+      return std::nullopt;
+    }
   }
-  if (problem_.has_value() && problem_count_ > watch.last_problem) {
-    watch.last_problem = problem_count_;
-    return *problem_;
-  }
-  return std::nullopt;
+  // Without the lock, as a tier that nobody wanted before is encoded now.
+  return frame->At(tier);
 }
 
-bool FrameHub::HasFrameFor(const Watch& watch) const {
-  return watch.in_flight.size() < kMaxInFlight && frame_ != nullptr &&
-         frame_->sequence > watch.last_sequence;
-}
-
-bool FrameHub::HasFor(const Watch& watch) const {
-  return HasFrameFor(watch) || (problem_.has_value() && problem_count_ > watch.last_problem);
-}
-
-bool FrameHub::Acknowledge(std::uint64_t viewer_id, std::uint64_t sequence) {
+bool FrameHub::Acknowledge(std::uint64_t viewer_id, std::uint64_t sequence, Time now) {
   std::shared_ptr<Viewer> viewer;
   bool became_ready = false;
   {
     const std::lock_guard lock(mutex_);
     const auto found = watches_.find(viewer_id);
     if (found == watches_.end()) return false;
-    auto& in_flight = found->second.in_flight;
+    Watch& watch = found->second;
+    auto& in_flight = watch.in_flight;
     const bool was_full = in_flight.size() >= kMaxInFlight;
-    while (!in_flight.empty() && in_flight.front() <= sequence) in_flight.pop_front();
+    while (!in_flight.empty() && in_flight.front().sequence <= sequence) {
+      if (in_flight.front().moving) watch.link.Acknowledged(now, in_flight.front().at);
+      in_flight.pop_front();
+    }
     became_ready = was_full && in_flight.size() < kMaxInFlight;
-    if (HasFor(found->second)) viewer = found->second.viewer;
+    if (HasFor(watch, now)) viewer = watch.viewer;
   }
   if (viewer != nullptr) viewer->Wake();
   if (became_ready) on_demand_();
   return true;
 }
 
-void FrameHub::Publish(EncodedFrame frame) {
+std::optional<FrameHub::Time> FrameHub::WakeWaiting(Time now) {
+  std::vector<std::shared_ptr<Viewer>> woken;
+  std::optional<Time> next;
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto& [id, watch] : watches_) {
+      if (!watch.waits_until.has_value()) continue;
+      if (now >= *watch.waits_until) {
+        watch.waits_until.reset();
+        woken.push_back(watch.viewer);
+      } else {
+        next = std::min(next.value_or(*watch.waits_until), *watch.waits_until);
+      }
+    }
+  }
+  for (const auto& viewer : woken) viewer->Wake();
+  if (!woken.empty()) on_demand_();
+  return next;
+}
+
+void FrameHub::Publish(EncodedFrame frame, ReduceFrame reduce) {
+  std::array<bool, kTiers> wanted{};
   {
     const std::lock_guard lock(mutex_);
     frame.sequence = ++frame_count_;
-    if (problem_.has_value() && problem_->scene_revision <= frame.scene_revision) problem_.reset();
-    frame_ = std::make_shared<const EncodedFrame>(std::move(frame));
+    for (const auto& [id, watch] : watches_) {
+      wanted[static_cast<std::size_t>(TierFor(watch, frame))] = true;
+    }
+  }
+  const std::uint64_t scene_revision = frame.scene_revision;
+  const auto published = std::make_shared<PublishedFrame>(std::move(frame), std::move(reduce));
+  for (int tier = 0; tier < kTiers; ++tier) {
+    if (wanted[static_cast<std::size_t>(tier)]) published->At(tier);
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    if (problem_.has_value() && problem_->scene_revision <= scene_revision) problem_.reset();
+    frame_ = published;
   }
   WakeAll();
 }
@@ -137,10 +218,10 @@ bool FrameHub::HasViewers() const {
 }
 
 bool FrameHub::HasReadyViewer() const {
+  const Time now = std::chrono::steady_clock::now();
   const std::lock_guard lock(mutex_);
-  return std::any_of(watches_.begin(), watches_.end(), [](const auto& entry) {
-    return entry.second.in_flight.size() < kMaxInFlight;
-  });
+  return std::any_of(watches_.begin(), watches_.end(),
+                     [now](const auto& entry) { return IsReady(entry.second, now); });
 }
 
 void FrameHub::WakeAll() {

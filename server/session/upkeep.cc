@@ -1,6 +1,7 @@
 #include "session/upkeep.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "glm/geometric.hpp"
 #include "scene/place_seen.h"
@@ -28,10 +29,14 @@ void Upkeep::Run() {
   while (!stopping_) {
     const Clock::time_point began = Clock::now();
     Clock::time_point next = began + kLongestPause;
-    for (const auto& session : sessions_.All()) {
-      const auto due = session->audience().Tick(
-          Clock::now(), [&](const Ray& ray) { return PlaceSeen(*session, store_, ray); });
+    const auto wait_for = [&](const std::optional<Clock::time_point>& due) {
       if (due.has_value()) next = std::min(next, *due);
+    };
+    for (const auto& session : sessions_.AllDrawn()) {
+      const Clock::time_point now = Clock::now();
+      wait_for(session->audience().Tick(
+          now, [&](const Ray& ray) { return PlaceSeen(*session, store_, ray); }));
+      wait_for(session->hub().WakeWaiting(now));
     }
     std::this_thread::sleep_until(began + kShortestPause);
     if (next > Clock::now()) due_.Wait(next);

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 
 #include "glm/common.hpp"
-#include "physics/detail_tile.h"
 
 namespace thunderhead::volume {
 namespace {
@@ -222,135 +220,6 @@ std::vector<std::uint8_t> DetailControlOf(const HydrometeorFields& fields,
         ByteOf(128.0F + (weight[i] > 0.0F ? 127.0F * amplitude[i] / weight[i] : 0.0F));
   }
   return texels;
-}
-
-namespace {
-
-float FloatFromHalf(std::uint16_t half) {
-  if (half < 0x400U) return std::ldexp(static_cast<float>(half), -24);
-  return std::bit_cast<float>((static_cast<std::uint32_t>(half) << 13U) + 0x38000000U);
-}
-
-// The mean factor of billows of full amplitude over all noises, by profile from 0 to 255.
-std::array<float, 256> MeanBillows() {
-  constexpr int kNoises = 64;
-  std::array<float, 256> means{};
-  for (std::size_t i = 0; i < means.size(); ++i) {
-    for (int noise = 0; noise < kNoises; ++noise) {
-      means[i] += physics::glsl::detail_factor({static_cast<float>(i) / 255.0F, 1.0F},
-                                               (static_cast<float>(noise) + 0.5F) / kNoises, 0.0F) /
-                  kNoises;
-    }
-  }
-  return means;
-}
-
-// Values that are interpolated between cells.
-struct Cell {
-  float extinction = 0.0F;  // weighted by the shares of detail
-  float profile = 0.0F;     // 0 to 255
-  float amplitude = 0.0F;   // -1 to 1
-};
-
-Cell Mixed(const Cell& a, const Cell& b, float at) {
-  const auto mix = [at](float x, float y) { return x + (y - x) * at; };
-  return {mix(a.extinction, b.extinction), mix(a.profile, b.profile),
-          mix(a.amplitude, b.amplitude)};
-}
-
-// Sums a column over points between cells with detail and without.
-class ColumnSums {
- public:
-  ColumnSums(const std::vector<Cell>& cells, const glm::ivec3& size)
-      : cells_(cells), size_(size), mean_billows_(MeanBillows()) {}
-
-  // The factor that makes up for what detail takes from column (x, y) on average.
-  float FactorOf(int x, int y) {
-    float without = 0.0F;
-    float with = 0.0F;
-    // At a quarter of a cell from the column's middle; vertically in the middle between levels and
-    // at them.
-    for (const int beside_x : {-1, 1}) {
-      for (const int beside_y : {-1, 1}) {
-        Cell below = At(x, beside_x, y, beside_y, 0);
-        Add(below, &without, &with);
-        for (int z = 1; z < size_.z; ++z) {
-          const Cell here = At(x, beside_x, y, beside_y, z);
-          Add(Mixed(below, here, 0.5F), &without, &with);
-          Add(here, &without, &with);
-          below = here;
-        }
-      }
-    }
-    return with > 0.0F ? std::min(without / with, kMaxColumnFactor) : 1.0F;
-  }
-
- private:
-  const Cell& CellAt(int x, int y, int z) const {
-    x = std::clamp(x, 0, size_.x - 1);
-    y = std::clamp(y, 0, size_.y - 1);
-    return cells_[(static_cast<std::size_t>(z) * static_cast<std::size_t>(size_.y) +
-                   static_cast<std::size_t>(y)) *
-                      static_cast<std::size_t>(size_.x) +
-                  static_cast<std::size_t>(x)];
-  }
-
-  Cell At(int x, int beside_x, int y, int beside_y, int z) const {
-    return Mixed(Mixed(CellAt(x, y, z), CellAt(x + beside_x, y, z), 0.25F),
-                 Mixed(CellAt(x, y + beside_y, z), CellAt(x + beside_x, y + beside_y, z), 0.25F),
-                 0.25F);
-  }
-
-  void Add(const Cell& cell, float* without, float* with) const {
-    *without += cell.extinction;
-    const float lost =
-        1.0F - mean_billows_[static_cast<std::size_t>(std::clamp(cell.profile, 0.0F, 255.0F))];
-    *with += cell.extinction * (1.0F - std::max(cell.amplitude, 0.0F) * lost);
-  }
-
-  const std::vector<Cell>& cells_;
-  glm::ivec3 size_;
-  std::array<float, 256> mean_billows_;
-};
-
-}  // namespace
-
-void KeepWaterPaths(const std::vector<std::uint8_t>& control,
-                    const std::vector<float>& detail_shares, ExtinctionVolume* volume) {
-  const glm::ivec3& size = volume->grid.cells;
-  std::vector<Cell> cells(volume->grid.CellCount());
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    cells[i].profile = control[2 * i];
-    cells[i].amplitude = (static_cast<float>(control[2 * i + 1]) - 128.0F) / 127.0F;
-  }
-  const auto for_channels = [&](const auto& visit) {
-    for (std::size_t group = 0; group < detail_shares.size(); ++group) {
-      if (detail_shares[group] <= 0.0F) continue;
-      ExtinctionPlane& plane = volume->planes[group / 4];
-      visit(detail_shares[group], plane.texels.data() + group % 4,
-            static_cast<std::size_t>(plane.channels));
-    }
-  };
-  for_channels([&](float share, const std::uint16_t* texels, std::size_t stride) {
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      cells[i].extinction += share * FloatFromHalf(texels[i * stride]);
-    }
-  });
-  ColumnSums sums(cells, size);
-  std::vector<float> factors(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
-  for (int y = 0; y < size.y; ++y) {
-    for (int x = 0; x < size.x; ++x) {
-      factors[volume->grid.Offset(x, y, 0)] = sums.FactorOf(x, y);
-    }
-  }
-  for_channels([&](float share, std::uint16_t* texels, std::size_t stride) {
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      std::uint16_t& texel = texels[i * stride];
-      if (texel == 0) continue;
-      const float factor = 1.0F + share * (factors[i % factors.size()] - 1.0F);
-      texel = HalfFromFloat(std::min(FloatFromHalf(texel) * factor, 65504.0F));
-    }
-  });
 }
 
 }  // namespace thunderhead::volume

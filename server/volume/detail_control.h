@@ -24,13 +24,4 @@ std::vector<std::uint8_t> DetailControlOf(const HydrometeorFields& fields,
                                           const std::vector<ExtinctionTerm>& terms,
                                           const ExtinctionVolume& volume);
 
-// Multiplies each column of the channels whose share in `detail_shares` is above zero by one
-// factor, so that the mean of its water path over its area and over all noises is the one without
-// detail; by at most kMaxColumnFactor. With the noise that is drawn a column may differ by what its
-// own surface catches of it. `control` is DetailControlOf the volume.
-void KeepWaterPaths(const std::vector<std::uint8_t>& control,
-                    const std::vector<float>& detail_shares, ExtinctionVolume* volume);
-
-inline constexpr float kMaxColumnFactor = 4.0F;
-
 }  // namespace thunderhead::volume

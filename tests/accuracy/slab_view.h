@@ -54,12 +54,7 @@ class SlabView : public testing::Test {
   }
 
   Seen Look(double optical_depth, const scene::View& view, double sun_elevation_deg) {
-    volume::HydrometeorFields fields =
-        in_air_ ? *support::MakeLayerInAir(width_m_, kHeight_m, 8, optical_depth)
-                : *support::MakeSlab(width_m_, kHeight_m, optical_depth / kHeight_m);
-    if (with_gap_) MakeGap(&fields);
-    if (haze_per_m_ > 0.0) AddHaze(&fields);
-    if (stirred_) Stir(&fields);
+    const volume::HydrometeorFields fields = Fields(optical_depth);
     ResidentMedium::Cost cost;
     DetailNoises noises;
     const ResidentMedium medium(scene_, fields, &noises, &cost);
@@ -90,6 +85,16 @@ class SlabView : public testing::Test {
     seen.radiance = seen.eye[4 * 40];
     seen.transmittance = seen.eye[4 * 40 + 3];
     return seen;
+  }
+
+  volume::HydrometeorFields Fields(double optical_depth) const {
+    volume::HydrometeorFields fields =
+        in_air_ ? *support::MakeLayerInAir(width_m_, kHeight_m, 8, optical_depth)
+                : *support::MakeSlab(width_m_, kHeight_m, optical_depth / kHeight_m);
+    if (with_gap_) MakeGap(&fields);
+    if (haze_per_m_ > 0.0) AddHaze(&fields);
+    if (stirred_) Stir(&fields);
+    return fields;
   }
 
   // Ice in weak turbulence, which has fibres.

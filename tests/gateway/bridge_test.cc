@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <functional>
 #include <thread>
 
 #include "absl/strings/str_cat.h"
 #include "tests/gateway/echo_service.h"
+#include "tests/gateway/eventually.h"
 #include "tests/gateway/raw_client.h"
 
 namespace thunderhead::gateway::test {
@@ -18,16 +18,6 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using ::testing::HasSubstr;
 using Clock = std::chrono::steady_clock;
-
-// Waits for an effect of another thread; long, because sanitizers and busy machines are slow.
-bool Eventually(const std::function<bool()>& condition) {
-  const auto patience = Clock::now() + seconds(10);
-  while (Clock::now() < patience) {
-    if (condition()) return true;
-    std::this_thread::sleep_for(milliseconds(5));
-  }
-  return condition();
-}
 
 template <typename Message>
 Message Parsed(const std::string& bytes) {
@@ -307,9 +297,9 @@ TEST_P(BridgeTest, SlowReaderHoldsTheHandlerBack) {
     std::this_thread::sleep_for(milliseconds(300));
     return std::exchange(before, Record().written.load()) == Record().written;
   }));
-  // Of 200 MB, only the kernel's buffers for a client that reads nothing, and a few messages in
-  // gRPC.
-  EXPECT_LT(Record().written, 60);
+  // Of 200 MB, what the kernel buffers for a client that reads nothing (tcp_wmem: mostly 4 MB, 42
+  // messages) and gRPC's windows, which grow with speed (24 messages were seen).
+  EXPECT_LT(Record().written, 100);
   // It continues when the client does.
   client.ReadBody(20'000'000);
   EXPECT_GE(Record().written, 190);

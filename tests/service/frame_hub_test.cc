@@ -109,14 +109,99 @@ TEST_F(FrameHubTest, ViewersAreWokenAndDemandIsTold) {
   EXPECT_EQ(demands_, 1);
   hub_.Publish(FrameOf(1));
   EXPECT_EQ(viewer->wakes, 1);
+  hub_.Take(id);
   hub_.Acknowledge(id, 1);
-  EXPECT_EQ(viewer->wakes, 2);
-  EXPECT_EQ(demands_, 2);
-  hub_.Leave(id);
+  EXPECT_EQ(viewer->wakes, 1) << "there is nothing to take";
+  EXPECT_EQ(demands_, 1) << "it was ready before";
   hub_.Publish(FrameOf(2));
-  EXPECT_EQ(viewer->wakes, 2);
+  hub_.Take(id);
+  hub_.Publish(FrameOf(3));
+  hub_.Take(id);
+  hub_.Publish(FrameOf(4));
+  EXPECT_EQ(viewer->wakes, 4);
+  hub_.Acknowledge(id, 2);
+  EXPECT_EQ(viewer->wakes, 5) << "there is a newer frame to take";
+  EXPECT_EQ(demands_, 2) << "it became ready";
+  hub_.Leave(id);
+  hub_.Publish(FrameOf(5));
+  EXPECT_EQ(viewer->wakes, 5);
   EXPECT_FALSE(hub_.HasViewers());
   EXPECT_FALSE(hub_.Acknowledge(id, 2));
+}
+
+// Counts what it makes.
+ReduceFrame CountingReduction(int* made) {
+  return [made](const EncodedFrame& full, int tier) {
+    ++*made;
+    EncodedFrame reduced = full;
+    reduced.tier = tier;
+    return reduced;
+  };
+}
+
+int TakeTier(FrameHub& hub, std::uint64_t viewer_id, FrameHub::Time now) {
+  const auto event = hub.Take(viewer_id, now);
+  if (!event.has_value()) return -1;
+  return std::get<std::shared_ptr<const EncodedFrame>>(*event)->tier;
+}
+
+TEST_F(FrameHubTest, ASizeIsMadeOnceForAllWhoWantIt) {
+  EncodedFrame frame = FrameOf(1);
+  frame.width_px = 1280;
+  const auto now = FrameHub::Time() + std::chrono::hours(1);
+  std::vector<std::uint64_t> phones;
+  for (int i = 0; i < 5; ++i) {
+    phones.push_back(*hub_.Join(std::make_shared<CountingViewer>(), {.window_width_px = 400}));
+  }
+  const std::uint64_t wall = Join();
+  int made = 0;
+  hub_.Publish(frame, CountingReduction(&made));
+  EXPECT_EQ(made, 1) << "before anybody waits for it";
+  for (const std::uint64_t phone : phones) EXPECT_EQ(TakeTier(hub_, phone, now), 1);
+  EXPECT_EQ(TakeTier(hub_, wall, now), 0);
+  EXPECT_EQ(made, 1);
+  // A window that grows gets the same frame larger.
+  hub_.SetWants(phones[0], {.window_width_px = 1280});
+  EXPECT_EQ(TakeTier(hub_, phones[0], now), 0);
+}
+
+TEST_F(FrameHubTest, ASlowLinkGetsSmallMovingPicturesAndFullStills) {
+  const std::uint64_t viewer = *hub_.Join(std::make_shared<CountingViewer>(), {.adapts = true});
+  const std::uint64_t other = Join();
+  auto now = FrameHub::Time() + std::chrono::hours(1);
+  int made = 0;
+  int tier = 0;
+  for (int i = 0; i < 20; ++i) {
+    hub_.Publish(FrameOf(1), CountingReduction(&made));
+    const auto event = hub_.Take(viewer, now);
+    const auto frame = std::get<std::shared_ptr<const EncodedFrame>>(*event);
+    tier = frame->tier;
+    EXPECT_EQ(TakeTier(hub_, other, now), 0);
+    now += std::chrono::milliseconds(tier == 0 ? 400 : 60);
+    hub_.Acknowledge(viewer, frame->sequence, now);
+    hub_.Acknowledge(other, frame->sequence, now);
+  }
+  EXPECT_EQ(tier, 1);
+  EncodedFrame still = FrameOf(2);
+  still.refined = true;
+  hub_.Publish(still, CountingReduction(&made));
+  EXPECT_EQ(TakeTier(hub_, viewer, now), 0);
+}
+
+TEST_F(FrameHubTest, WhoWantsFewFramesWaitsAndIsWoken) {
+  const auto viewer = std::make_shared<CountingViewer>();
+  const std::uint64_t id = *hub_.Join(viewer, {.frames_per_second = 10.0});
+  const auto start = FrameHub::Time() + std::chrono::hours(1);
+  hub_.Publish(FrameOf(1));
+  EXPECT_EQ(TakeTier(hub_, id, start), 0);
+  hub_.Publish(FrameOf(2));
+  const auto soon = start + std::chrono::milliseconds(50);
+  EXPECT_EQ(TakeTier(hub_, id, soon), -1);
+  EXPECT_EQ(hub_.WakeWaiting(soon), start + std::chrono::milliseconds(100));
+  const int wakes = viewer->wakes;
+  EXPECT_EQ(hub_.WakeWaiting(start + std::chrono::milliseconds(100)), std::nullopt);
+  EXPECT_EQ(viewer->wakes, wakes + 1);
+  EXPECT_EQ(TakeTier(hub_, id, start + std::chrono::milliseconds(100)), 0);
 }
 
 TEST_F(FrameHubTest, ClosingWakesAndRefuses) {

@@ -36,6 +36,15 @@ bool Diffuses(const RenderSettings& settings) {
   return settings.Medium().transport == scene::Transport::kDiffusion;
 }
 
+// From inside a cloud or beside it, samples that are a large share of their distance apart show as
+// plates that slide as the eye moves. Frames with few samples have fewer there too.
+glm::vec2 NearStep(int slices) {
+  constexpr double kInCells = 0.25;
+  constexpr double kByDistance = 1.0 / 24.0;
+  constexpr double kUsualSlices = 128.0;
+  return glm::vec2(std::max(kUsualSlices / slices, 1.0) * glm::dvec2(kInCells, kByDistance));
+}
+
 }  // namespace
 
 // The box of the carried light: across and along the sun's rays, around the medium's middle.
@@ -232,6 +241,7 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
   medium.BindPixel(*program, view, settings.eye_size);
   program->Set(uniform::towards_sun, glm::vec3(settings.illumination.towards_sun));
   program->Set(uniform::step_m, static_cast<float>(2.0 * reach_m / settings.slices));
+  program->Set(uniform::near_step, NearStep(settings.slices));
   program->Set(uniform::eye_weights, medium.Weights(weights.eye));
   if (diffusion) BindDiffusion(*program, medium, weights, settings);
   arrived_.Bind(shaders::kArrivedUnit);

@@ -24,7 +24,8 @@
 layout(binding = kArrivedUnit) uniform sampler3D arrived;  // of arrive.comp, cell by cell as the medium
 
 uniform vec3 towards_sun;
-uniform float step_m;  // between samples
+uniform float step_m;  // between samples, at most
+uniform vec2 near_step;  // the same near the eye: in paths through a cell, and by the metre of distance, whichever is longer
 uniform vec4 eye_weights[PLANES];  // texel to the extinction that the eye sees, 1/m
 
 in vec2 position;
@@ -116,14 +117,15 @@ float background_transmittance(Seen seen) {
 // for the first sample and after a leap, where a sample only starts a segment.
 float advance(inout float distance_m, float end_m, MediumRay ray, float cell_m, bool first) {
   float from_m = distance_m;
-  float longest_m = step_m;
+  float sampled_m = min(max(near_step.x * cell_m, near_step.y * distance_m), step_m);
+  float longest_m = sampled_m;
   while (distance_m < end_m) {
     vec3 place = brick_place(ray, distance_m);
     uint content = brick_content(ray, place);
     if (content == kThickBrick) break;
     if (content == kThinBrick) {
       // No farther than a sample of thick bricks into the next one, which may be thick.
-      longest_m = clamp(empty_path(ray, place, 1u), step_m, cell_m);
+      longest_m = clamp(empty_path(ray, place, 1u), sampled_m, max(sampled_m, cell_m));
       break;
     }
     distance_m = max(distance_m + empty_path(ray, place, content), distance_m * kOnwards);
@@ -175,7 +177,7 @@ void main() {
   float distance_m = max(path.x, 0.0);
   float end_m = until_ground(path.y);
   vec3 through_m = abs(1.0 / (ray.step * vec3(textureSize(medium_plane_0, 0))));
-  float cell_m = max(step_m, min(through_m.x, min(through_m.y, through_m.z)));  // the path through a cell
+  float cell_m = min(through_m.x, min(through_m.y, through_m.z));  // the path through a cell
 
   Seen seen = nothing_seen();
   Sample before = no_sample();

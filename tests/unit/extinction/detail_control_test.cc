@@ -112,45 +112,5 @@ TEST(DetailControl, WithoutTurbulenceAmplitudeFollowsContrast) {
   EXPECT_EQ(control.Amplitude(5, 5, 5), 0);
 }
 
-// The sum of a column's texels, normal half floats.
-double MeanPath(const Control& control, int x, int y) {
-  double path = 0.0;
-  for (int z = 0; z < control.volume.grid.cells.z; ++z) {
-    const std::uint16_t texel = control.volume.planes[0].texels[control.At(x, y, z) / 2];
-    path += texel == 0 ? 0.0 : std::ldexp(1.0 + (texel & 1023) / 1024.0, (texel >> 10) - 15);
-  }
-  return path;
-}
-
-TEST(KeepWaterPaths, MakesUpForWhatBillowsTake) {
-  HydrometeorFields fields = BlockOf(Hydrometeor::kCloud);
-  SetTurbulence(255, &fields);
-  const Control before(fields);
-  Control after = before;
-  KeepWaterPaths(after.texels, {1.0F}, &after.volume);
-  // A column deep inside loses only its ends, one at a face much of itself, and what holds nothing
-  // stays empty.
-  const double inside = MeanPath(after, 5, 5) / MeanPath(before, 5, 5);
-  const double at_face = MeanPath(after, 1, 5) / MeanPath(before, 1, 5);
-  EXPECT_GT(inside, 1.02);
-  EXPECT_LT(inside, 1.3);
-  EXPECT_GT(at_face, inside);
-  EXPECT_LE(at_face, static_cast<double>(kMaxColumnFactor) * 1.001);
-  EXPECT_EQ(MeanPath(after, 0, 0), 0.0);
-}
-
-TEST(KeepWaterPaths, LeavesWhatHasNoDetail) {
-  HydrometeorFields fields = BlockOf(Hydrometeor::kCloud);
-  SetTurbulence(255, &fields);
-  Control control(fields);
-  const std::vector<std::uint16_t> texels = control.volume.planes[0].texels;
-  KeepWaterPaths(control.texels, {0.0F}, &control.volume);
-  EXPECT_EQ(control.volume.planes[0].texels, texels);
-  SetTurbulence(0, &fields);
-  Control still(fields);
-  KeepWaterPaths(still.texels, {1.0F}, &still.volume);
-  EXPECT_EQ(still.volume.planes[0].texels, texels);
-}
-
 }  // namespace
 }  // namespace thunderhead::volume

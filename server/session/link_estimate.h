@@ -1,0 +1,59 @@
+// The size of picture that suits one viewer's link, from when frames were sent and acknowledged. A
+// plain value that is told the time.
+//
+// A slow link and a far one look alike: frames take long. So another size is tried, and kept if it
+// helps.
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+namespace thunderhead::session {
+
+// Pictures are sent in this many sizes: tier 0 as the scene asks, each further one with half the
+// width and height.
+inline constexpr int kTiers = 3;
+
+class LinkEstimate {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  // A link that needs longer than this for a frame is tried with smaller ones, so that at least 10
+  // a second arrive.
+  static constexpr std::chrono::milliseconds kLongest{100};
+  // Larger ones are tried after so long; each trial that fails doubles the wait for the next.
+  static constexpr std::chrono::seconds kShortestWait{4};
+  static constexpr std::chrono::seconds kLongestWait{64};
+
+  // A frame that was sent at `sent_at` was acknowledged.
+  void Acknowledged(Time now, Time sent_at);
+
+  // The tier of moving pictures; stills are worth waiting for.
+  int tier() const { return tier_; }
+
+ private:
+  // A tier on trial, and the one before it.
+  struct Trial {
+    int tier_before = 0;
+    double frame_ms_before = 0.0;
+  };
+
+  void Judge(Time now);
+  void Try(int tier, Time now);
+  void ChangeTo(int tier, Time now);
+
+  int tier_ = 0;
+  int samples_ = 0;        // of this tier
+  double frame_ms_ = 0.0;  // smoothed: from one frame's arrival to the next's
+  std::optional<Time> last_acknowledged_;
+  Time changed_at_;
+  std::optional<Trial> trial_;
+  std::chrono::seconds wait_to_grow_ = kShortestWait;
+  std::optional<Time> shrink_again_at_;
+};
+
+// The tier of a picture `picture_px` wide for a window: the smallest picture that fills it; 0 for a
+// window of unknown width, 0.
+int TierForWindow(int picture_px, int window_px);
+
+}  // namespace thunderhead::session

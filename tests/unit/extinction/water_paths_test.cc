@@ -1,0 +1,266 @@
+#include "volume/water_paths.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gtest/gtest.h"
+#include "volume/detail_control.h"
+#include "volume/storm_store.h"
+
+namespace thunderhead::volume {
+namespace {
+
+// The channels of a storm: cloud water; rain, which noise does not multiply; other ice.
+constexpr std::array<int, 5> kChannelByField = {0, 1, 2, 2, 2};
+
+using Values = glm::dvec3;  // by channel
+
+double FloatOf(std::uint16_t half) {
+  const int exponent = half >> 10;
+  return exponent == 0 ? std::ldexp(half, -24) : std::ldexp(1024 + (half & 1023), exponent - 25);
+}
+
+// Water paths, by channel, with detail and without: sums over blocks of columns.
+struct Paths {
+  glm::ivec2 count{0};
+  std::vector<Values> with;
+  std::vector<Values> without;
+
+  Paths InBlocks(int across) const {
+    Paths blocks;
+    blocks.count = count / across;
+    blocks.with.resize(blocks.count.x * blocks.count.y, Values(0.0));
+    blocks.without = blocks.with;
+    for (int y = 0; y < blocks.count.y * across; ++y) {
+      for (int x = 0; x < blocks.count.x * across; ++x) {
+        const int block = y / across * blocks.count.x + x / across;
+        blocks.with[block] += with[y * count.x + x] / double(across * across);
+        blocks.without[block] += without[y * count.x + x] / double(across * across);
+      }
+    }
+    return blocks;
+  }
+
+  // Of all, by channel.
+  Values Ratio() const {
+    return std::accumulate(with.begin(), with.end(), Values(0.0)) /
+           std::accumulate(without.begin(), without.end(), Values(0.0));
+  }
+
+  // Root of the mean square by which those with an optical depth above 1 differ.
+  double Deviation(int channel) const {
+    double squares = 0.0;
+    int thick = 0;
+    for (std::size_t i = 0; i < with.size(); ++i) {
+      if (without[i][channel] < 1.0) continue;
+      squares += std::pow(with[i][channel] / without[i][channel] - 1.0, 2);
+      ++thick;
+    }
+    EXPECT_GT(thick, 10);
+    return std::sqrt(squares / thick);
+  }
+};
+
+// A volume's texels in floating point, interpolated as textures are.
+class Texels {
+ public:
+  // `components` in each of the grid's cells.
+  Texels(const RegularGrid& grid, std::vector<Values> values)
+      : grid_(grid), values_(std::move(values)) {}
+
+  Values At(const glm::dvec3& place) const {
+    const glm::dvec3 last = glm::dvec3(grid_.cells - 1);
+    const glm::dvec3 from_middle = glm::clamp(place - 0.5, glm::dvec3(0.0), last);
+    const glm::dvec3 low = glm::max(glm::min(glm::floor(from_middle), last - 1.0), 0.0);
+    const glm::dvec3 share = from_middle - low;
+    Values sum(0.0);
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::ivec3 step(corner & 1, corner >> 1 & 1, corner >> 2);
+      const glm::dvec3 weights = glm::mix(1.0 - share, share, glm::dvec3(step));
+      const glm::ivec3 cell = glm::min(glm::ivec3(low) + step, grid_.cells - 1);
+      sum += weights.x * weights.y * weights.z * values_[grid_.Offset(cell.x, cell.y, cell.z)];
+    }
+    return sum;
+  }
+
+ private:
+  RegularGrid grid_;
+  std::vector<Values> values_;
+};
+
+Texels ExtinctionOf(const ExtinctionVolume& volume) {
+  const ExtinctionPlane& plane = volume.planes[0];
+  std::vector<Values> values(volume.grid.CellCount());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::uint16_t* texel = plane.texels.data() + i * static_cast<std::size_t>(plane.channels);
+    values[i] = Values(FloatOf(texel[0]), FloatOf(texel[1]), FloatOf(texel[2]));
+    values[i] *= static_cast<double>(volume.extinction_per_m);
+  }
+  return {volume.grid, std::move(values)};
+}
+
+class WaterPathsTest : public testing::Test {
+ protected:
+  // Draws detail in `fields`.
+  void Draw(const HydrometeorFields& fields) {
+    std::vector<ExtinctionTerm> terms;
+    for (std::size_t i = 0; i < fields.fields.size(); ++i) {
+      const HydrometeorField& field = fields.fields[i];
+      const MassExtinction extinction = MassExtinctionOf(
+          field, physics::DefaultOptics(field.hydrometeor), physics::SizeSource::kModel);
+      terms.push_back(
+          {static_cast<int>(i), extinction.m2_per_kg, kChannelByField[i], extinction.by_cell});
+    }
+    plain_ = ComputeExtinction(fields, terms, 3);
+    control_ = DetailControlOf(fields, terms, plain_);
+    tile_ = physics::MakeDetailTile(4, 1);
+    const double wavelength_m = 3.0 * plain_.grid.spacing_m.x;
+    detail_.layers = {
+        {&tile_, wavelength_m * physics::DetailTile::kWaves, {1.0F, 0.0F, 1.0F, 0.0F}}};
+    detail_.warp_m = physics::DetailWarp_m(plain_.grid.spacing_m, wavelength_m);
+    detail_.fibres = physics::FibresAlong(fields.motion.shear_m_per_s);
+    kept_ = plain_;
+    KeepWaterPaths(control_, detail_, &kept_);
+  }
+
+  // Of `volume`'s columns, by shaders/common/medium.glsl, on many more points than KeepWaterPaths
+  // has, and not the same ones.
+  Paths PathsOf(const ExtinctionVolume& volume) const {
+    constexpr int kPoints = 3;  // along each side of a cell
+    const RegularGrid& grid = plain_.grid;
+    const Texels plain = ExtinctionOf(plain_);
+    const Texels drawn = ExtinctionOf(volume);
+    const Texels control = Control();
+    const glm::ivec3 points = glm::ivec3(1, 1, grid.cells.z) * kPoints;
+    const double length_m = grid.spacing_m.z / std::pow(kPoints, 3);
+    Paths paths{glm::ivec2(grid.cells), {}, {}};
+    for (int column = 0; column < grid.cells.x * grid.cells.y; ++column) {
+      const glm::dvec3 corner(column % grid.cells.x, column / grid.cells.x, 0);
+      Values without(0.0);
+      Values with(0.0);
+      for (int i = 0; i < points.x * points.y * points.z; ++i) {
+        const glm::dvec3 point(i % points.x, i / points.x % points.y, i / points.x / points.y);
+        const glm::dvec3 place = corner + (point + 0.5) / double{kPoints};
+        const Values at = control.At(place);
+        without += plain.At(place);
+        if (at.x > 0.0) with += Drawn(drawn, at, place);
+      }
+      paths.without.push_back(without * length_m);
+      paths.with.push_back(with * length_m);
+    }
+    return paths;
+  }
+
+  Texels Control() const {
+    std::vector<Values> bytes(plain_.grid.CellCount());
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      bytes[i] = Values(control_[2 * i], control_[2 * i + 1], 0.0);
+    }
+    return {plain_.grid, std::move(bytes)};
+  }
+
+  Values Drawn(const Texels& extinction, const Values& control_bytes,
+               const glm::dvec3& place) const {
+    const RegularGrid& grid = plain_.grid;
+    const glm::vec2 control(control_bytes.x / 255.0, (control_bytes.y - 128.0) / 127.0);
+    glm::dvec3 tile = (grid.low_corner_m + place * grid.spacing_m) / detail_.layers[0].tile_m;
+    if (control.y < 0.0F) tile = detail_.fibres * tile;
+    const glm::dvec4 noise = physics::DetailNoiseAt(tile_, tile);
+    const double share = physics::glsl::detail_warp_share(control);
+    const glm::dvec3 warp = detail_.warp_m / grid.spacing_m;
+    const Values value =
+        extinction.At(place + share * warp * glm::dvec3(noise.y, noise.z, noise.w));
+    const double factor = physics::glsl::detail_factor(control, static_cast<float>(noise.x), 0.0F);
+    return value * Values(factor, 1.0, factor);
+  }
+
+  ExtinctionVolume plain_;
+  ExtinctionVolume kept_;
+  std::vector<std::uint8_t> control_;
+  physics::DetailTile tile_;
+  PlacedDetail detail_;
+};
+
+class WaterPathsOfStorm : public WaterPathsTest, public testing::WithParamInterface<std::string> {
+ protected:
+  void SetUp() override {
+    auto store = StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/" + GetParam() + ".nc"}, {});
+    ASSERT_TRUE(store.ok()) << store.status();
+    const auto storm = (*store)->Get((*store)->Storms().front()->id, 1, {});
+    ASSERT_TRUE(storm.ok()) << storm.status();
+    Draw(**storm);
+  }
+};
+
+TEST_P(WaterPathsOfStorm, AreThoseWithoutDetail) {
+  const Paths kept = PathsOf(kept_);
+  for (int channel = 0; channel < 3; ++channel) {
+    EXPECT_NEAR(kept.Ratio()[channel], 1.0, 0.01) << channel;
+    // Where a cell at a tower's face is carved away, its neighbours do not make up for it.
+    EXPECT_LT(kept.InBlocks(4).Deviation(channel), 0.07) << channel;
+    EXPECT_LT(kept.InBlocks(8).Deviation(channel), 0.03) << channel;
+  }
+  // Detail takes much more than that.
+  const Paths lost = PathsOf(plain_);
+  EXPECT_LT(lost.Ratio()[0], 0.97);
+  EXPECT_GT(lost.InBlocks(8).Deviation(0), 0.1);
+}
+
+TEST_P(WaterPathsOfStorm, FactorsAreBounded) {
+  for (std::size_t i = 0; i < plain_.planes[0].texels.size(); ++i) {
+    const double before = FloatOf(plain_.planes[0].texels[i]);
+    const double after = FloatOf(kept_.planes[0].texels[i]);
+    // A half float has 11 bits.
+    ASSERT_LE(after, before * double{kMaxColumnFactor} * 1.001 + 1e-7);
+    ASSERT_GE(after, before / double{kMaxColumnFactor} * 0.999 - 1e-7);
+  }
+}
+
+// Ice in weak turbulence has fibres along the shear.
+TEST_F(WaterPathsTest, AreKeptInFibres) {
+  HydrometeorFields fields;
+  fields.grid.cells = glm::ivec3(24, 24, 8);
+  fields.grid.spacing_m = glm::dvec3(500.0, 500.0, 200.0);
+  fields.condensate = {glm::ivec3(0), fields.grid.cells};
+  fields.motion.source = TurbulenceSource::kEnergy;
+  fields.motion.turbulence.assign(fields.grid.CellCount(), 100);
+  fields.motion.shear_m_per_s = {20.0, 20.0};
+  fields.fields.resize(3);  // the third is of a channel with detail
+  fields.fields[2].hydrometeor = physics::Hydrometeor::kIce;
+  fields.fields[2].concentration_kg_per_m3.assign(fields.grid.CellCount(), 1e-2F);
+  Draw(fields);
+  EXPECT_GT(PathsOf(plain_).Deviation(2), 0.03);
+  // Between the points that are evaluated noise differs.
+  EXPECT_LT(PathsOf(kept_).Deviation(2), 0.02);
+}
+
+// A single column, and a single cell.
+TEST_F(WaterPathsTest, AreKeptInTheSmallestGrids) {
+  for (const int levels : {1, 8}) {
+    HydrometeorFields fields;
+    fields.grid.cells = glm::ivec3(1, 1, levels);
+    fields.grid.spacing_m = glm::dvec3(500.0);
+    fields.condensate = {glm::ivec3(0), fields.grid.cells};
+    fields.motion.source = TurbulenceSource::kEnergy;
+    fields.motion.turbulence.assign(fields.grid.CellCount(), 100);
+    fields.fields.resize(3);
+    fields.fields[2].hydrometeor = physics::Hydrometeor::kIce;
+    fields.fields[2].concentration_kg_per_m3.assign(fields.grid.CellCount(), 1e-2F);
+    Draw(fields);
+    // Two points a cell are few.
+    EXPECT_NEAR(PathsOf(kept_).Ratio()[2], 1.0, 0.2) << levels;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Storms, WaterPathsOfStorm,
+                         testing::Values(std::string("supercell"), std::string("supercell-500m")),
+                         [](const auto& storm) {
+                           return storm.param == "supercell" ? "Supercell" : "Supercell500m";
+                         });
+
+}  // namespace
+}  // namespace thunderhead::volume
