@@ -148,7 +148,7 @@ function Notices({ state }: { state: PageState }) {
           role={notice.severity === "problem" ? "alert" : "status"}
           data-subject={notice.subject}
         >
-          <span>{notice.text}</span>
+          <span class="notice-text">{notice.text}</span>
           <button
             type="button"
             class="close"
