@@ -7,6 +7,17 @@ export default defineConfig({
   // Relative addresses, so that the page also works below a path behind a proxy.
   base: "./",
   build: { outDir: "dist", emptyOutDir: true, target: "es2022" },
-  server: { proxy: { "^/thunderhead\\.v1\\.": { target: server, changeOrigin: true } } },
+  server: {
+    proxy: {
+      "^/thunderhead\\.v1\\.": {
+        target: server,
+        changeOrigin: true,
+        ws: true,
+        // The server takes a WebSocket from its own origin only.
+        configure: (proxy) =>
+          proxy.on("proxyReqWs", (request) => request.setHeader("origin", new URL(server).origin)),
+      },
+    },
+  },
   test: { include: ["test/**/*.test.ts"], environment: "node" },
 });

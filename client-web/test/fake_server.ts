@@ -1,10 +1,12 @@
-// Test support: an HTTP server for the built page and the fake service over gRPC-Web, with the flags of `thunderhead
-// serve`, to try the page and the browser test without the real program:
+// Test support: an HTTP server for the built page and the fake service over gRPC-Web and WebSocket, with the flags of
+// `thunderhead serve`, to try the page and the browser test without the real program:
 //   npm run fake -- serve --http 127.0.0.1:8099 --page dist
 import { createReadStream, existsSync, statSync } from "node:fs";
 import { createServer } from "node:http";
 import { extname, join, normalize } from "node:path";
 import { connectNodeAdapter } from "@connectrpc/connect-node";
+import { WebSocketServer } from "ws";
+import { serveInteract } from "./fake_bridge";
 import { FakeService } from "./fake_service";
 import { drawFakeStorm } from "./fake_storm";
 
@@ -27,7 +29,7 @@ const page = flag("page", "dist");
 const service = new FakeService(drawFakeStorm, true);
 const bridge = connectNodeAdapter({ routes: service.routes, grpc: false, connect: false });
 
-createServer((request, response) => {
+const server = createServer((request, response) => {
   const path = normalize(new URL(request.url ?? "/", "http://fake").pathname);
   if (path.startsWith("/thunderhead.v1.")) {
     bridge(request, response);
@@ -40,6 +42,13 @@ createServer((request, response) => {
   }
   response.writeHead(200, { "content-type": TYPES[extname(file)] ?? "application/octet-stream" });
   createReadStream(file).pipe(response);
-}).listen(Number(port), host, () => {
+});
+
+const sockets = new WebSocketServer({ noServer: true, handleProtocols: () => "grpc-websocket.v1" });
+server.on("upgrade", (request, socket, head) => {
+  sockets.handleUpgrade(request, socket, head, (opened) => serveInteract(service, opened));
+});
+
+server.listen(Number(port), host, () => {
   process.stdout.write(`Serving a fake storm on http://${host}:${port}/\n`);
 });

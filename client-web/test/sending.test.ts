@@ -2,25 +2,48 @@ import { create } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 import { BackOff } from "../src/core/back_off";
 import { cameraOfPose, homeCamera, zoom } from "../src/core/camera";
+import { Newest } from "../src/core/newest";
 import { Playback } from "../src/core/playback";
-import { withCamera, withTime } from "../src/core/scene";
-import { SceneSender } from "../src/core/scene_sender";
+import { withCamera, withSky, withTime } from "../src/core/scene";
+import { type Edit, SceneSync, type SceneVerdict } from "../src/core/scene_sync";
 import { PageState } from "../src/core/state";
 import { type Scene, SceneSchema } from "../src/gen/thunderhead/v1/scene_pb";
 
 const sceneOf = (timeIndex: number): Scene => create(SceneSchema, { timeIndex });
 
-function bench() {
-  const sent: { scene: Scene; taken(): void; lost(): void }[] = [];
+// A server whose answers and scenes the test controls.
+function bench(first: Scene = sceneOf(0)) {
+  const sent: {
+    scene: Scene;
+    expected: bigint;
+    answer(verdict: SceneVerdict): void;
+    lost(): void;
+  }[] = [];
   const paints: (() => void)[] = [];
-  const sender = new SceneSender({
-    send: (scene) =>
-      new Promise((resolve, reject) => {
-        sent.push({ scene, taken: resolve, lost: () => reject(new Error("lost")) });
+  const rests: (() => void)[] = [];
+  const page = { scene: first, refused: [] as string[], others: [] as bigint[], completed: 0 };
+  const sync = new SceneSync({
+    scene: () => page.scene,
+    adopt: (scene) => {
+      page.scene = scene;
+    },
+    complete: () => {
+      page.completed += 1;
+    },
+    changedByOthers: (_, revision) => page.others.push(revision),
+    send: (scene, expected) =>
+      new Promise((answer, reject) => {
+        sent.push({ scene, expected, answer, lost: () => reject(new Error("lost")) });
       }),
+    taken: () => undefined,
+    refused: (message) => page.refused.push(message),
     onNextPaint: (callback) => {
       paints.push(callback);
       return () => paints.splice(paints.indexOf(callback), 1);
+    },
+    later: (_, callback) => {
+      rests.push(callback);
+      return () => undefined;
     },
   });
   const settle = () => new Promise<void>((resolve) => setTimeout(resolve, 0));
@@ -28,95 +51,221 @@ function bench() {
     for (const paint of paints.splice(0)) paint();
     await settle();
   };
-  return { sender, sent, refresh, settle, times: () => sent.map(({ scene }) => scene.timeIndex) };
+  const edit = (change: Edit) => {
+    page.scene = change(page.scene);
+    sync.edited(change);
+  };
+  return {
+    sync,
+    sent,
+    page,
+    refresh,
+    settle,
+    edit,
+    rest: () => {
+      for (const callback of rests.splice(0)) callback();
+    },
+    toTime: (time: number) => edit((scene) => withTime(scene, time)),
+    times: () => sent.map(({ scene }) => scene.timeIndex),
+  };
 }
 
+const taken = (revision: bigint): SceneVerdict => ({ kind: "taken", revision });
+
 describe("scenes on their way to the server", () => {
-  it("leave once a screen refresh, the newest alone", async () => {
+  // A page that steers, and knows revision 1.
+  function steering() {
     const b = bench();
-    b.sender.start();
-    for (const time of [1, 2, 3]) b.sender.push(sceneOf(time));
+    b.sync.told(sceneOf(0), 1n);
+    b.sync.allow();
+    return b;
+  }
+
+  it("leave once a screen refresh, the newest alone, with the revision they were made from", async () => {
+    const b = steering();
+    for (const time of [1, 2, 3]) b.toTime(time);
     expect(b.times()).toEqual([]);
     await b.refresh();
     expect(b.times()).toEqual([3]);
+    expect(b.sent[0]?.expected).toBe(1n);
   });
 
-  it("wait while one is in flight, and then only the newest goes", async () => {
-    const b = bench();
-    b.sender.start();
-    b.sender.push(sceneOf(1));
+  it("wait while one is in flight, and then only the newest goes, from the new revision", async () => {
+    const b = steering();
+    b.toTime(1);
     await b.refresh();
-    b.sender.push(sceneOf(2));
+    b.toTime(2);
     await b.refresh();
-    b.sender.push(sceneOf(3));
+    b.toTime(3);
     await b.refresh();
     expect(b.times()).toEqual([1]);
-    expect(b.sender.unsettled).toBe(true);
-    b.sent[0]?.taken();
+    expect(b.sync.unsettled).toBe(true);
+    b.sent[0]?.answer(taken(2n));
     await b.settle();
     await b.refresh();
     expect(b.times()).toEqual([1, 3]);
-    b.sent[1]?.taken();
+    expect(b.sent[1]?.expected).toBe(2n);
+    b.sent[1]?.answer(taken(3n));
     await b.settle();
-    expect(b.sender.unsettled).toBe(false);
+    expect(b.sync.unsettled).toBe(false);
+    expect(b.sync.revision).toBe(3n);
   });
 
-  it("are sent again after a loss, but never older after newer", async () => {
-    const b = bench();
-    b.sender.start();
-    b.sender.push(sceneOf(1));
+  it("are sent again after a loss, once the session is joined again", async () => {
+    const b = steering();
+    b.toTime(1);
     await b.refresh();
     b.sent[0]?.lost();
     await b.settle();
+    b.toTime(2);
     await b.refresh();
     expect(b.times()).toEqual([1]);
-    b.sender.start();
+    b.sync.forget();
+    b.sync.told(sceneOf(0), 1n);
+    b.sync.allow();
+    await b.refresh();
+    expect(b.times()).toEqual([1, 2]);
+    expect(b.page.scene.timeIndex).toBe(2);
+  });
+
+  it("keep the edit under the hand when somebody else changed the scene first", async () => {
+    const b = steering();
+    b.toTime(2);
+    await b.refresh();
+    b.sent[0]?.answer({ kind: "stale" });
+    await b.settle();
+    await b.refresh();
+    // Nothing is sent before the newer scene is known.
+    expect(b.sent).toHaveLength(1);
+    b.sync.told(withSky(sceneOf(0), { turbidity: 3 }), 5n);
+    await b.refresh();
+    expect(b.sent[1]).toMatchObject({
+      expected: 5n,
+      scene: { timeIndex: 2, sky: { turbidity: 3 } },
+    });
+    expect(b.page.scene.sky?.turbidity).toBe(3);
+    expect(b.page.others).toEqual([1n, 5n]);
+  });
+
+  it("adopt another's scene at once while nothing is edited, or after the answer", async () => {
+    const b = steering();
+    b.sync.told(sceneOf(3), 2n);
+    expect(b.page.scene.timeIndex).toBe(3);
+    b.toTime(1);
+    await b.refresh();
+    b.sync.told(withSky(sceneOf(1), { turbidity: 4 }), 4n);
+    expect(b.page.scene.sky).toBeUndefined();
+    b.sent[0]?.answer(taken(3n));
+    await b.settle();
+    expect(b.page.scene.sky?.turbidity).toBe(4);
+  });
+
+  it("are completed by the server's version of the same revision", async () => {
+    const b = steering();
+    b.toTime(1);
+    await b.refresh();
+    b.sync.told(sceneOf(1), 2n);
+    expect(b.page.completed).toBe(0);
+    b.sent[0]?.answer(taken(2n));
+    await b.settle();
+    expect(b.page.completed).toBe(1);
+    expect(b.page.others).toEqual([1n]);
+  });
+
+  it("go back to the server's where they are refused", async () => {
+    const b = steering();
+    b.toTime(9);
+    await b.refresh();
+    b.sent[0]?.answer({ kind: "refused", message: "time_index is 9" });
+    await b.settle();
+    expect(b.page.refused).toEqual(["time_index is 9"]);
+    expect(b.page.scene.timeIndex).toBe(0);
+    expect(b.sync.unsettled).toBe(false);
+  });
+
+  it("are tried again after a rest where the server is busy", async () => {
+    const b = steering();
+    b.toTime(1);
+    await b.refresh();
+    b.sent[0]?.answer({ kind: "busy", message: "too much to draw" });
+    await b.settle();
+    await b.refresh();
+    expect(b.sent).toHaveLength(1);
+    b.rest();
     await b.refresh();
     expect(b.times()).toEqual([1, 1]);
-    b.sender.push(sceneOf(2));
-    b.sent[1]?.lost();
-    await b.settle();
-    b.sender.start();
-    await b.refresh();
-    expect(b.times()).toEqual([1, 1, 2]);
   });
 
-  it("are not repeated to a session that began with them", async () => {
-    const b = bench();
-    b.sender.start();
-    b.sender.push(sceneOf(1));
+  it("stay while another steers, and are given up on request", async () => {
+    const b = steering();
+    b.sync.hold();
+    b.toTime(2);
     await b.refresh();
-    b.sender.stop();
-    const newest = sceneOf(2);
-    b.sender.push(newest);
-    b.sender.start(newest);
-    // Only now does the old scene fail.
-    b.sent[0]?.lost();
-    await b.settle();
-    await b.refresh();
-    expect(b.times()).toEqual([1]);
-    expect(b.sender.unsettled).toBe(false);
+    expect(b.sent).toEqual([]);
+    b.sync.discard();
+    expect(b.page.scene.timeIndex).toBe(0);
+    expect(b.sync.unsettled).toBe(false);
   });
 
-  it("made before there is a session wait for it", async () => {
+  it("made while a session is opened follow its opening scene", async () => {
     const b = bench();
-    b.sender.push(sceneOf(4));
+    b.toTime(1);
+    b.sync.opening();
+    b.edit((scene) => withSky(scene, { turbidity: 2 }));
+    b.sync.opened(create(SceneSchema, { timeIndex: 1, stormId: "supercell" }), 1n);
+    b.sync.allow();
     await b.refresh();
-    expect(b.times()).toEqual([]);
-    b.sender.start(sceneOf(0));
-    await b.refresh();
-    expect(b.times()).toEqual([4]);
+    expect(b.sent).toMatchObject([
+      { expected: 1n, scene: { timeIndex: 1, stormId: "supercell", sky: { turbidity: 2 } } },
+    ]);
+  });
+});
+
+describe("the newest of many values", () => {
+  it("goes at once, then once an interval, and the last one always", () => {
+    const sent: number[] = [];
+    const timers: (() => void)[] = [];
+    const newest = new Newest<number>(
+      30,
+      (_, callback) => {
+        timers.push(callback);
+        return () => undefined;
+      },
+      (value) => sent.push(value),
+    );
+    const tick = () => timers.shift()?.();
+    for (const value of [1, 2, 3]) newest.offer(value);
+    expect(sent).toEqual([1]);
+    tick();
+    expect(sent).toEqual([1, 3]);
+    tick();
+    tick();
+    newest.offer(4);
+    expect(sent).toEqual([1, 3, 4]);
+    newest.offer(5);
+    newest.clear();
+    tick();
+    expect(sent).toEqual([1, 3, 4]);
   });
 });
 
 describe("back-off", () => {
-  it("doubles from a quarter of a second to four, and begins anew after a success", () => {
-    const backOff = new BackOff();
+  it("doubles its bound to eight seconds, and begins anew after a success", () => {
+    const backOff = new BackOff(() => 1);
     expect(Array.from({ length: 7 }, () => backOff.next())).toEqual([
-      250, 500, 1000, 2000, 4000, 4000, 4000,
+      500, 1000, 2000, 4000, 8000, 8000, 8000,
     ]);
     backOff.reset();
-    expect(backOff.next()).toBe(250);
+    expect(backOff.next()).toBe(500);
+  });
+
+  it("draws a delay anywhere below the bound, and never before the server's own", () => {
+    expect(new BackOff(() => 0.25).next()).toBe(125);
+    const backOff = new BackOff(() => 0.5);
+    expect(backOff.next(3000)).toBe(3250);
+    const delays = Array.from({ length: 500 }, () => new BackOff().next());
+    expect(Math.min(...delays)).toBeLessThan(100);
+    expect(Math.max(...delays)).toBeGreaterThan(400);
   });
 });
 
@@ -190,7 +339,7 @@ describe("the page's state", () => {
   it("tells edits, but not what the server said", () => {
     const state = new PageState();
     const edits: number[] = [];
-    state.onEdit((scene) => edits.push(scene.timeIndex ?? 0));
+    state.onEdit((edit) => edits.push(edit(sceneOf(7)).timeIndex ?? 0));
     state.adoptScene(sceneOf(1));
     state.edit((scene) => withTime(scene, 2));
     state.edit((scene) => scene);
@@ -198,22 +347,20 @@ describe("the page's state", () => {
     expect(state.timeIndex.value).toBe(2);
   });
 
-  it("takes the camera from a frame where the scene leaves it open, or somebody else moved it", () => {
+  it("takes the camera from a frame where the scene leaves it open, and only there", () => {
     const state = new PageState();
     state.move((p) => zoom(p, 0.5));
     expect(state.scene.value.camera).toBeUndefined();
-    state.adoptCamera(cameraOfPose(pose), false);
+    state.adoptCamera(cameraOfPose(pose));
     expect(state.pose.value).toEqual(pose);
     state.move((p) => zoom(p, 0.5));
-    state.adoptCamera(cameraOfPose(pose), false);
+    state.adoptCamera(cameraOfPose(pose));
     expect(state.pose.value).toEqual(zoom(pose, 0.5));
-    state.adoptCamera(cameraOfPose(pose), true);
-    expect(state.pose.value).toEqual(pose);
   });
 
   it("knows no pose of another kind of camera until the server has placed it", () => {
     const state = new PageState();
-    state.adoptCamera(cameraOfPose(pose), false);
+    state.adoptCamera(cameraOfPose(pose));
     state.edit((scene) => withCamera(scene, homeCamera("spotter")));
     expect(state.cameraKind.value).toBe("spotter");
     expect(state.pose.value).toBeUndefined();
@@ -225,7 +372,7 @@ describe("the page's state", () => {
       elevationDeg: 6,
       focalLengthMm: 24,
     };
-    state.adoptCamera(cameraOfPose(spotter), false);
+    state.adoptCamera(cameraOfPose(spotter));
     expect(state.pose.value).toEqual(spotter);
   });
 

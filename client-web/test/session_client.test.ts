@@ -1,62 +1,79 @@
 // The session client against the fake service in memory, with simulated network failures.
 import { create } from "@bufbuild/protobuf";
-import { Code, ConnectError, createRouterTransport, type Interceptor } from "@connectrpc/connect";
+import { Code } from "@connectrpc/connect";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { BackOff } from "../src/core/back_off";
 import type { Connection } from "../src/core/state";
 import type { Frame } from "../src/gen/thunderhead/v1/frame_pb";
+import { type Joined, Role } from "../src/gen/thunderhead/v1/interact_pb";
 import { type Scene, SceneSchema } from "../src/gen/thunderhead/v1/scene_pb";
 import { type OpenedSession, SessionClient, SILENCE_MS } from "../src/transport/session_client";
+import { FakeNetwork } from "./fake_network";
 import { FakeService } from "./fake_service";
 
-function setUp(joined?: string) {
-  const service = new FakeService(() => new Uint8Array([1, 2, 3]));
-  const network = { down: false, failing: "", calls: [] as string[] };
-  const wire: Interceptor = (next) => async (request) => {
-    network.calls.push(request.method.name);
-    if (network.down) throw new ConnectError("Failed to fetch", Code.Unavailable);
-    if (network.failing === request.method.name) throw new ConnectError("it broke", Code.Internal);
-    return next(request);
-  };
-  const transport = createRouterTransport(service.routes, { transport: { interceptors: [wire] } });
+function follow(network: FakeNetwork, key?: string, random = 1) {
   const seen = {
     opened: [] as OpenedSession[],
-    streams: [] as string[],
+    joined: [] as Joined[],
     connections: [] as Connection[],
     frames: [] as Frame[],
-    scenes: [] as { scene: Scene; revision: bigint }[],
-    refused: [] as string[],
+    scenes: [] as { scene: Scene | undefined; revision: bigint }[],
+    refused: [] as { subject: string; code: Code }[],
+    gone: [] as { message: string; forgotten: boolean }[],
     scene: create(SceneSchema, { timeIndex: 2 }) as Scene,
     acknowledge: true,
+    opensNew: false,
   };
   const client: SessionClient = new SessionClient(
-    transport,
+    network.calls(),
+    network.openInteract,
     {
       sceneToOpen: () => seen.scene,
-      openingRefused: (message) => seen.refused.push(message),
+      openingRefused: () => undefined,
       opened: (session) => seen.opened.push(session),
-      streaming: (id) => seen.streams.push(id),
+      joining: () => ({ name: "Ana", window: { widthPx: 640, heightPx: 360 }, codecs: [] }),
+      joined: (joined) => seen.joined.push(joined),
       connection: (connection) => seen.connections.push(connection),
-      scene: (scene, revision) => seen.scenes.push({ scene, revision }),
-      frame: (frame) => {
-        seen.frames.push(frame);
-        if (seen.acknowledge) client.acknowledge(frame.sequence);
+      message: (message) => {
+        if (message.case === "scene") {
+          const { scene, sceneRevision } = message.value;
+          seen.scenes.push({ scene, revision: sceneRevision });
+        }
+        if (message.case !== "frame") return;
+        seen.frames.push(message.value);
+        if (seen.acknowledge) client.acknowledge(message.value.sequence, message.value.ownView);
       },
-      problem: () => undefined,
+      refused: (subject, _, code) => seen.refused.push({ subject, code }),
+      gone: (why) => {
+        seen.gone.push(why);
+        return seen.opensNew;
+      },
     },
-    joined,
+    key,
+    new BackOff(() => random),
   );
-  return { service, network, seen, client };
+  return { seen, client };
 }
 
 const pass = (ms: number) => vi.advanceTimersByTimeAsync(ms);
 
 describe("the session client", () => {
   const clients: SessionClient[] = [];
-  const start = (joined?: string) => {
-    const all = setUp(joined);
-    clients.push(all.client);
-    void all.client.run();
-    return all;
+  const setUp = () => {
+    const service = new FakeService(() => new Uint8Array([1, 2, 3]));
+    const network = new FakeNetwork(service);
+    const start = (key?: string, random?: number) => {
+      const place = follow(network, key, random);
+      clients.push(place.client);
+      void place.client.run();
+      return place;
+    };
+    const session = () => {
+      const first = service.sessions[0];
+      if (first === undefined) throw new Error("no session was opened");
+      return first;
+    };
+    return { service, network, start, session };
   };
 
   beforeEach(() => {
@@ -67,141 +84,207 @@ describe("the session client", () => {
     vi.useRealTimers();
   });
 
-  it("opens a session with the page's scene and shows its frames", async () => {
+  it("opens a session with the page's scene, joins it as presenter and shows its frames", async () => {
+    const { start } = setUp();
     const { seen } = start();
     await pass(300);
-    expect(seen.opened).toHaveLength(1);
-    expect(seen.opened[0]).toMatchObject({ replaces: false, revision: 1n });
+    expect(seen.opened).toMatchObject([{ revision: 1n }]);
     expect(seen.opened[0]?.completed.stormId).toBe("supercell");
+    expect(seen.joined).toMatchObject([
+      { role: Role.PRESENTER, viewerKey: seen.opened[0]?.viewerKey },
+    ]);
+    expect(seen.scenes[0]?.revision).toBe(1n);
     expect(seen.frames.at(-1)?.refined).toBe(true);
-    expect(seen.connections.at(-1)).toEqual({ kind: "live" });
+    expect(seen.connections).toEqual([{ kind: "live" }]);
   });
 
-  it("acknowledges by viewer and sequence, and is sent no third frame before", async () => {
-    const { seen, service, client } = start();
+  it("joins with the viewers' key as a viewer, and opens nothing", async () => {
+    const { start, session } = setUp();
+    start();
+    await pass(50);
+    const { seen } = start(session().viewerKey);
+    await pass(50);
+    expect(seen.opened).toEqual([]);
+    expect(seen.joined).toMatchObject([{ role: Role.VIEWER }]);
+    expect(session().people.map(({ name }) => name)).toEqual(["Ana", "Ana"]);
+    expect(seen.frames[0]?.sceneRevision).toBe(1n);
+  });
+
+  it("acknowledges, and is sent no third frame before", async () => {
+    const { start, session } = setUp();
+    const { seen, client } = start();
     seen.acknowledge = false;
     await pass(300);
     for (let i = 0; i < 5; i += 1) {
-      await client.updateScene(create(SceneSchema, { timeIndex: i }));
+      await client.updateScene(create(SceneSchema, { timeIndex: i }), BigInt(i + 1));
       await pass(10);
     }
     expect(seen.frames).toHaveLength(2);
-    client.acknowledge(seen.frames[1]?.sequence ?? 0n);
+    client.acknowledge(seen.frames[1]?.sequence ?? 0n, false);
     await pass(10);
     // Of the five frames drawn meanwhile only the newest arrives.
     expect(seen.frames).toHaveLength(3);
     expect(seen.frames[2]?.sceneRevision).toBe(6n);
-    expect(service.mostUnacknowledged).toBe(2);
+    expect(session().mostUnacknowledged).toBe(2);
   });
 
-  it("hands on the session's scene once, and again after a change", async () => {
-    const { seen, client } = start();
+  it("tells scenes that are taken, stale, refused and lost apart", async () => {
+    const { start, network } = setUp();
+    const { client } = start();
     await pass(300);
-    expect(seen.scenes).toHaveLength(1);
-    expect(seen.scenes[0]?.scene.stormId).toBe("supercell");
-    expect(seen.scenes[0]?.revision).toBe(1n);
-    await client.updateScene(create(SceneSchema, { timeIndex: 3 }));
-    await pass(300);
-    expect(seen.scenes).toHaveLength(2);
-    expect(seen.scenes[1]?.scene.timeIndex).toBe(3);
-    expect(seen.scenes[1]?.revision).toBe(2n);
-  });
-
-  it("tells a scene that is refused from one that is lost", async () => {
-    const { client, network } = start();
-    await pass(300);
+    const scene = create(SceneSchema);
+    expect(await client.updateScene(scene, 1n)).toEqual({ kind: "taken", revision: 2n });
+    expect(await client.updateScene(scene, 1n)).toEqual({ kind: "stale" });
     const wrong = create(SceneSchema, { display: { exposureEv: 50 } });
-    const verdict = await client.updateScene(wrong);
-    expect(verdict).toEqual({ kind: "refused", message: "display.exposure_ev is 50" });
+    expect(await client.updateScene(wrong, 2n)).toEqual({
+      kind: "refused",
+      message: "display.exposure_ev is 50",
+    });
     network.down = true;
-    await expect(client.updateScene(create(SceneSchema))).rejects.toThrow();
+    const lost = client.updateScene(scene, 2n);
+    network.break();
+    await expect(lost).rejects.toThrow();
+    await expect(client.updateScene(scene, 2n)).rejects.toThrow();
   });
 
-  it("gives a scene up, not the connection, when the server fails at it", async () => {
-    const { client, network, seen } = start();
-    await pass(300);
-    network.failing = "UpdateScene";
-    const verdict = await client.updateScene(create(SceneSchema));
-    expect(verdict).toEqual({ kind: "refused", message: "it broke" });
-    expect(network.calls.filter((name) => name === "UpdateScene")).toHaveLength(2);
-    expect(seen.connections).toEqual([{ kind: "live" }]);
+  it("refuses a viewer's scene, and names any other request that is refused", async () => {
+    const { start, session } = setUp();
+    start();
+    await pass(50);
+    const { seen, client } = start(session().viewerKey);
+    await pass(50);
+    const verdict = await client.updateScene(create(SceneSchema), 1n);
+    expect(verdict).toEqual({ kind: "refused", message: "another steers" });
+    expect(session().revision).toBe(1n);
+    client.send({ case: "takeControl", value: {} });
+    await pass(1);
+    expect(seen.refused).toEqual([{ subject: "takeControl", code: Code.PermissionDenied }]);
   });
 
-  it("does not run hot when every stream breaks at once", async () => {
-    const { network, client } = start();
-    await pass(300);
-    network.failing = "AcknowledgeFrame";
-    network.calls.length = 0;
-    await client.updateScene(create(SceneSchema));
-    await pass(60_000);
-    const streams = network.calls.filter((name) => name === "WatchFrames").length;
-    expect(streams).toBeGreaterThan(10);
-    expect(streams).toBeLessThan(25);
-  });
-
-  it("waits longer and longer for a server that is gone, and picks the session up again", async () => {
-    const { seen, network, client } = start();
-    await pass(300);
+  it("waits longer and longer for a server that is gone, and comes back to the same session", async () => {
+    const { start, network, service } = setUp();
+    const { seen } = start();
+    await pass(2_500);
     network.down = true;
-    await client.updateScene(create(SceneSchema)).catch(() => undefined);
-    await pass(12_000);
+    network.break();
+    await pass(24_000);
     const lost = seen.connections.filter((connection) => connection.kind === "lost");
     expect(lost.slice(0, 6).map(({ retryInMs }) => retryInMs)).toEqual([
-      250, 500, 1000, 2000, 4000, 4000,
+      500, 1000, 2000, 4000, 8000, 8000,
     ]);
     expect(lost[0]?.reason).toBe("The server cannot be reached");
     network.down = false;
-    await pass(4_000);
+    await pass(8_000);
     expect(seen.connections.at(-1)).toEqual({ kind: "live" });
+    expect(seen.joined).toHaveLength(2);
     expect(seen.opened).toHaveLength(1);
-    expect(seen.streams).toHaveLength(2);
-    expect(new Set(seen.streams).size).toBe(1);
+    expect(service.sessions).toHaveLength(1);
   });
 
-  it("opens a new session with the scene of now when the server lost the old one", async () => {
-    const { seen, service } = start();
+  it("spreads the comebacks of a class", async () => {
+    const { start, session, network } = setUp();
+    start();
+    await pass(2_500);
+    const [early, late] = [start(session().viewerKey, 0.1), start(session().viewerKey, 0.9)];
+    await pass(2_500);
+    network.break();
+    await pass(1);
+    const waits = [early, late].map(({ seen }) => seen.connections.at(-1));
+    expect(waits).toMatchObject([{ retryInMs: 50 }, { retryInMs: 450 }]);
+  });
+
+  it("does not run hot when every call breaks at once", async () => {
+    const { start, network } = setUp();
+    start();
     await pass(300);
-    seen.scene = create(SceneSchema, { timeIndex: 3 });
-    service.end(seen.opened[0]?.id ?? "");
-    await pass(1000);
+    network.breaking = true;
+    network.joins = 0;
+    network.break();
+    await pass(60_000);
+    expect(network.joins).toBeGreaterThan(5);
+    expect(network.joins).toBeLessThan(15);
+  });
+
+  it("comes back to a server that restarts after the delay that it gave, and not before", async () => {
+    const { start, service, session } = setUp();
+    const { seen } = start();
+    await pass(2_500);
+    service.end(session(), "The server restarts", 3_000);
+    await pass(2_999);
+    expect(seen.connections.at(-1)).toMatchObject({ kind: "lost", reason: "The server restarts" });
+    expect(seen.joined).toHaveLength(1);
+    await pass(600);
+    expect(seen.joined).toHaveLength(2);
+    expect(seen.opened).toHaveLength(1);
+  });
+
+  it("stops where the session was closed, until it is told to open a new one", async () => {
+    const { start, service, session } = setUp();
+    const { seen, client } = start();
+    await pass(300);
+    service.end(session(), "The presenter has ended the session");
+    await pass(60_000);
+    expect(seen.gone).toMatchObject([
+      { message: "The presenter has ended the session", forgotten: false },
+    ]);
+    expect(seen.connections.at(-1)).toEqual({ kind: "gone" });
+    expect(seen.opened).toHaveLength(1);
+    client.retryNow();
+    await pass(10);
+    expect(seen.opened).toHaveLength(1);
+    client.openNew();
+    await pass(10);
     expect(seen.opened).toHaveLength(2);
-    expect(seen.opened[1]).toMatchObject({ replaces: true });
-    expect(seen.opened[1]?.completed.timeIndex).toBe(3);
     expect(seen.connections.at(-1)).toEqual({ kind: "live" });
   });
 
-  it("joins a session that is there, and opens its own where it is not", async () => {
-    const host = start();
+  it("opens a new session for one that the server forgot, where the page says so", async () => {
+    const { start, service, session, network } = setUp();
+    const { seen } = start();
     await pass(300);
-    const id = host.seen.opened[0]?.id ?? "";
-    const guestFrames: Frame[] = [];
-    const guest = new SessionClient(
-      createRouterTransport(host.service.routes),
-      {
-        sceneToOpen: () => create(SceneSchema),
-        openingRefused: () => undefined,
-        opened: () => expect.unreachable("the guest opened a session"),
-        streaming: () => undefined,
-        connection: () => undefined,
-        scene: () => undefined,
-        frame: (frame) => guestFrames.push(frame),
-        problem: () => undefined,
-      },
-      id,
-    );
-    clients.push(guest);
-    void guest.run();
-    await pass(50);
-    expect(guestFrames[0]?.sceneRevision).toBe(1n);
+    seen.opensNew = true;
+    seen.scene = create(SceneSchema, { timeIndex: 3 });
+    service.forget(session());
+    network.break();
+    await pass(1000);
+    expect(seen.gone).toMatchObject([{ forgotten: true }]);
+    expect(seen.opened).toHaveLength(2);
+    expect(seen.opened[1]?.completed.timeIndex).toBe(3);
 
     const stranger = start("long-gone");
-    await pass(300);
-    expect(stranger.seen.opened).toMatchObject([{ replaces: true }]);
-    expect(stranger.seen.connections.at(-1)).toEqual({ kind: "live" });
+    await pass(60_000);
+    expect(stranger.seen.gone).toMatchObject([{ forgotten: true }]);
+    expect(stranger.seen.opened).toEqual([]);
+  });
+
+  it("does not run hot before a server that loses each session at once", async () => {
+    const { start, service } = setUp();
+    const open = service.interact;
+    vi.spyOn(service, "interact").mockImplementation((say, end) => {
+      service.sessions.splice(0);
+      return open.call(service, say, end);
+    });
+    const { seen } = start();
+    seen.opensNew = true;
+    await pass(60_000);
+    expect(seen.opened.length).toBeGreaterThan(5);
+    expect(seen.opened.length).toBeLessThan(15);
+  });
+
+  it("does not open a session in place of one that cannot be reached", async () => {
+    const { start, network, service } = setUp();
+    network.down = true;
+    const { seen } = start("some-session");
+    await pass(60_000);
+    network.down = false;
+    expect(seen.connections.every(({ kind }) => kind === "lost")).toBe(true);
+    expect(network.called).not.toContain("CreateSession");
+    expect(service.sessions).toEqual([]);
   });
 
   it("notices a connection that died without a word", async () => {
-    const { seen, network } = start();
+    const { start, network } = setUp();
+    const { seen } = start();
     await pass(300);
     network.down = true;
     await pass(SILENCE_MS - 200);
@@ -211,42 +294,63 @@ describe("the session client", () => {
   });
 
   it("leaves a silent but living connection alone", async () => {
-    const { seen, network } = start();
+    const { start, network } = setUp();
+    const { seen } = start();
     await pass(SILENCE_MS * 4);
     expect(seen.connections).toEqual([{ kind: "live" }]);
-    expect(network.calls.filter((name) => name === "GetServerInfo").length).toBeGreaterThanOrEqual(
-      2,
-    );
+    expect(network.called.filter((name) => name === "GetServerInfo").length).toBeGreaterThan(1);
+  });
+
+  it("gives a server up that takes a call and says nothing", async () => {
+    const { start, network, service } = setUp();
+    const mute = vi.spyOn(service, "interact").mockReturnValue({
+      receive: () => undefined,
+      leave: () => undefined,
+    });
+    const { seen } = start();
+    await pass(9_900);
+    expect(seen.connections).toEqual([]);
+    await pass(200);
+    expect(seen.connections).toMatchObject([{ kind: "lost" }]);
+    mute.mockRestore();
+    await pass(2_000);
+    expect(seen.connections.at(-1)).toEqual({ kind: "live" });
+    expect(network.joins).toBe(2);
   });
 
   it("tries at once when told that the network is back", async () => {
-    const { seen, network, client } = start();
+    const { start, network } = setUp();
+    const { seen, client } = start();
     await pass(300);
     network.down = true;
-    await client.updateScene(create(SceneSchema)).catch(() => undefined);
+    network.break();
     await pass(5_000);
     network.down = false;
-    const before = seen.streams.length;
     client.retryNow();
     await pass(1);
-    expect(seen.streams.length).toBe(before + 1);
+    expect(seen.joined).toHaveLength(2);
+  });
+
+  it("tries at once to open its first session too", async () => {
+    const { start, network } = setUp();
+    network.down = true;
+    const { seen, client } = start();
+    await pass(10_000);
+    network.down = false;
+    client.retryNow();
+    await pass(1);
+    expect(seen.joined).toHaveLength(1);
   });
 
   it("says nothing and calls nobody after its end", async () => {
-    const { seen, network, client } = start();
+    const { start, network, session } = setUp();
+    const { seen, client } = start();
     await pass(300);
     client.dispose();
     await pass(10);
-    const [frames, calls, states] = [
-      seen.frames.length,
-      network.calls.length,
-      seen.connections.length,
-    ];
+    const before = [seen.frames.length, network.called.length, seen.connections.length];
     await pass(20_000);
-    expect([seen.frames.length, network.calls.length, seen.connections.length]).toEqual([
-      frames,
-      calls,
-      states,
-    ]);
+    expect([seen.frames.length, network.called.length, seen.connections.length]).toEqual(before);
+    expect(session().people).toEqual([]);
   });
 });

@@ -144,7 +144,7 @@ describe("scenes", () => {
       const sent = create(SceneSchema, { ...scene, stormId });
       const link = linkTo("http://host:1/path/?session=old#x", "s/1", sent);
       const read = readLink(link);
-      expect(read.sessionId).toBe("s/1");
+      expect(read.viewerKey).toBe("s/1");
       expect(read.scene && toBinary(SceneSchema, read.scene)).toEqual(toBinary(SceneSchema, sent));
     }
     expect(sceneFromUrlText("not base64!")).toBeUndefined();

@@ -2,6 +2,7 @@
 
 #include <grpcpp/support/proto_buffer_reader.h>
 
+#include <algorithm>
 #include <deque>
 #include <memory>
 #include <mutex>
@@ -12,6 +13,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
 #include "base/status.h"
+#include "glm/geometric.hpp"
 #include "service/camera_messages.h"
 #include "service/interact_messages.h"
 #include "service/limits_check.h"
@@ -479,9 +481,17 @@ class InteractCall : public InteractReactor,
   }
 
   absl::Status Draw(const std::vector<session::Ray>& rays, const std::optional<glm::vec3>& color) {
+    std::vector<double> distances_m;
+    for (const session::Ray& ray : rays) {
+      const glm::dvec3 place_m = session::PlaceSeen(*session_, engine_.store, ray);
+      distances_m.push_back(glm::distance(ray.origin_m, place_m));
+    }
+    // A line has one depth, so that it keeps its shape when the camera turns.
+    const auto middle = distances_m.begin() + static_cast<std::ptrdiff_t>(distances_m.size() / 2);
+    std::nth_element(distances_m.begin(), middle, distances_m.end());
     std::vector<glm::dvec3> positions_m;
     for (const session::Ray& ray : rays) {
-      positions_m.push_back(session::PlaceSeen(*session_, engine_.store, ray));
+      positions_m.push_back(ray.origin_m + *middle * ray.direction);
     }
     return session_->audience().Draw(
         person_id_,

@@ -1,27 +1,22 @@
 // End-to-end test of the page: the real server, a real browser, the sample storm. Screenshots go to output/.
 import assert from "node:assert/strict";
-import { mkdirSync } from "node:fs";
 import { after, before, test } from "node:test";
-import { setTimeout } from "node:timers/promises";
-import { fileURLToPath } from "node:url";
-import { chromium } from "playwright-core";
+import {
+  canvasData as canvasDataOf,
+  changing as changingOn,
+  dragBetween,
+  launchBrowser,
+  listenForErrors,
+  PICTURE_TIMEOUT_MS,
+  rested as restedOn,
+  screenshot as screenshotOf,
+  setNumber,
+  until,
+} from "./driver.mjs";
 import { boxMean, differingShare, difference, grabCanvas, greyShare, spread } from "./pictures.mjs";
 import { freePort, startServer } from "./server_process.mjs";
+import { countSceneUpdates } from "./socket_messages.mjs";
 
-const OUTPUT = fileURLToPath(new URL("output/", import.meta.url));
-const CHROMIUM = process.env.THUNDERHEAD_CHROMIUM ?? "/usr/bin/chromium";
-const CHROMIUM_ARGS = [
-  "--no-sandbox",
-  "--disable-gpu",
-  "--disable-quic",
-  "--no-first-run",
-  "--disable-background-networking",
-  "--disable-component-update",
-  "--disable-sync",
-];
-// Software rendering on two busy cores may take seconds for a refined picture.
-const PICTURE_TIMEOUT_MS = 60_000;
-const REST_MS = 600;
 const VIEWPORT = { width: 1100, height: 700 };
 
 let server;
@@ -29,22 +24,20 @@ let ports;
 let browser;
 let context;
 let page;
+let sceneUpdates;
 const complaints = [];
 
 before(async () => {
-  mkdirSync(OUTPUT, { recursive: true });
   ports = { httpPort: await freePort(), grpcPort: await freePort() };
   server = await startServer(ports);
-  browser = await chromium.launch({ executablePath: CHROMIUM, args: CHROMIUM_ARGS });
+  browser = await launchBrowser();
   context = await browser.newContext({
     viewport: VIEWPORT,
     permissions: ["clipboard-read", "clipboard-write"],
   });
   page = await context.newPage();
-  page.on("pageerror", (error) => complaints.push(String(error)));
-  page.on("console", (message) => {
-    if (message.type() === "error") complaints.push(message.text());
-  });
+  listenForErrors(page, complaints);
+  sceneUpdates = countSceneUpdates(page);
   await page.goto(server.url);
 });
 
@@ -53,54 +46,14 @@ after(async () => {
   await server?.stop();
 });
 
-function canvasData(of = page) {
-  return of.getByTestId("storm-canvas").evaluate((canvas) => ({ ...canvas.dataset }));
-}
+const canvasData = (of = page) => canvasDataOf(of);
+const rested = (of = page) => restedOn(of);
+const changing = (action, of = page) => changingOn(action, of);
+const screenshot = (name, of = page) => screenshotOf(name, of);
 
-// Waits until `holds` gives true.
-async function until(what, holds) {
-  const deadline = Date.now() + PICTURE_TIMEOUT_MS;
-  while (!(await holds())) {
-    if (Date.now() >= deadline) {
-      throw new Error(`never came: ${what}; the server said:\n${server.log().slice(-2000)}`);
-    }
-    await setTimeout(50);
-  }
-}
-
-// Waits until a refined frame has stayed on the canvas for REST_MS.
-async function rested(of = page) {
-  let held = { sequence: undefined, since: 0 };
-  await until("a refined picture that rests", async () => {
-    const { sequence, refined } = await canvasData(of);
-    const now = Date.now();
-    if (refined !== "true" || sequence !== held.sequence) held = { sequence, since: now };
-    return refined === "true" && now - held.since >= REST_MS;
-  });
-  return canvasData(of);
-}
-
-// Runs an action that changes the scene, and waits for the refined picture of the new scene.
-async function changing(action, of = page) {
-  const revisionBefore = Number((await canvasData(of)).revision);
-  await action();
-  await of.waitForFunction(
-    (revision) => {
-      const canvas = document.querySelector("[data-testid=storm-canvas]");
-      return Number(canvas?.dataset.revision) > revision;
-    },
-    revisionBefore,
-    { timeout: PICTURE_TIMEOUT_MS },
-  );
-  return rested(of);
-}
-
-async function drag(rightPx, downPx, steps = 12) {
+function drag(rightPx, downPx) {
   const start = { x: VIEWPORT.width * 0.4, y: VIEWPORT.height * 0.5 };
-  await page.mouse.move(start.x, start.y);
-  await page.mouse.down();
-  await page.mouse.move(start.x + rightPx, start.y + downPx, { steps });
-  await page.mouse.up();
+  return dragBetween(page, start, { x: start.x + rightPx, y: start.y + downPx });
 }
 
 // A touch gesture: fingers move from the first points to the second.
@@ -116,14 +69,6 @@ async function slide(fingers, from, to) {
   await send("touchStart", at(0));
   for (let step = 1; step <= steps; step += 1) await send("touchMove", at(step / steps));
   await send("touchEnd", []);
-}
-
-// Sets the number field of a slider, which may be folded away.
-async function setNumber(of, name, value) {
-  await of.getByTestId(`${name}-number`).evaluate((input, text) => {
-    input.value = text;
-    input.dispatchEvent(new Event("change", { bubbles: true }));
-  }, String(value));
 }
 
 // Exposes by itself again, after a value was set.
@@ -165,8 +110,6 @@ function pathsBeyond(millions) {
 async function tracedPaths() {
   return Number.parseFloat(await page.getByTestId("traced-paths").textContent());
 }
-
-const screenshot = (name, of = page) => of.screenshot({ path: `${OUTPUT}${name}.png` });
 
 test("the storm's last time is shown first", async () => {
   assert.equal((await rested()).time, "3");
@@ -446,23 +389,18 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
   await changing(() => page.getByTestId("metaball-isotropic").click());
 
   // A slider that makes the server fit balls again reports its value on release only.
-  let updates = 0;
-  const count = (request) => {
-    if (request.url().endsWith("/UpdateScene")) updates += 1;
-  };
-  page.on("request", count);
   const slider = page.getByTestId("metaball-count");
   await slider.scrollIntoViewIfNeeded();
   const { x, y, width, height } = await slider.boundingBox();
+  const updatesBefore = sceneUpdates();
   const ballsBefore = await page.getByTestId("metaball-count-number").inputValue();
   await page.mouse.move(x + 0.7 * width, y + height / 2);
   await page.mouse.down();
   await page.mouse.move(x + 0.5 * width, y + height / 2, { steps: 15 });
   assert.notEqual(await page.getByTestId("metaball-count-number").inputValue(), ballsBefore);
-  assert.equal(updates, 0, "balls are not fitted at each step of a drag");
+  assert.equal(sceneUpdates() - updatesBefore, 0, "balls are not fitted at each step of a drag");
   await changing(() => page.mouse.up());
-  assert.equal(updates, 1);
-  page.off("request", count);
+  assert.equal(sceneUpdates() - updatesBefore, 1);
   await changing(() => setNumber(page, "metaball-count", ballsBefore));
 
   const before2 = await grabCanvas(page);
@@ -583,45 +521,6 @@ test("play goes through the times and waits for each", async () => {
   await page.getByTestId("play").click();
   assert.deepEqual([...seen].sort(), ["0", "1", "2", "3"]);
   await rested();
-});
-
-test("a link brings another viewer into the session, who sees it turn", async () => {
-  await page.getByTestId("copy-link").click();
-  const link = await page.evaluate(() => navigator.clipboard.readText());
-  assert.match(link, /\?session=/);
-  const guest = await context.newPage();
-  try {
-    await guest.goto(link);
-    await rested(guest);
-    const { azimuth } = await canvasData();
-    await changing(() => drag(120, 30));
-    await until("the guest's picture is the host's, turned", async () => {
-      const [host, seen] = await Promise.all([canvasData(), canvasData(guest)]);
-      const refined = host.refined === "true" && seen.refined === "true";
-      return refined && seen.azimuth === host.azimuth && seen.azimuth !== azimuth;
-    });
-    // The guest's controls show what the host set before and after the guest joined, and an edit by the guest keeps the
-    // host's other settings.
-    const exposure = guest.getByTestId("exposure-number");
-    await changing(() => setNumber(page, "turbidity", 2.5));
-    await changing(() => setNumber(page, "exposure", 0.7));
-    await rested(guest);
-    assert.equal(await exposure.inputValue(), "0.7");
-    assert.equal(await guest.getByTestId("turbidity-number").inputValue(), "2.5");
-    await changing(() => setNumber(guest, "ground-albedo", 0.4));
-    await rested(guest);
-    assert.equal(await page.getByTestId("ground-albedo-number").inputValue(), "0.4");
-    assert.equal(await page.getByTestId("turbidity-number").inputValue(), "2.5");
-    await screenshot("12-guest", guest);
-    assert.equal(await guest.getByTestId("automatic-exposure").isChecked(), false);
-    await changing(async () => {
-      await exposeAutomatically(page);
-      await setNumber(page, "turbidity", 1.5);
-      await setNumber(page, "ground-albedo", 0.2);
-    });
-  } finally {
-    await guest.close();
-  }
 });
 
 test("the panel folds away with a key and leaves the storm", async () => {

@@ -328,6 +328,28 @@ TEST(InteractTest, PointersAndMarksLieWhereTheyMeetTheStorm) {
   }));
 }
 
+TEST(InteractTest, ALineHasOneDepth) {
+  Class group;
+  v1::InteractRequest request;
+  v1::AddMark& mark = *request.mutable_add_mark();
+  // Two corners on the cloud; the third passes it and meets the ground, 1250 m deeper.
+  *mark.add_rays() = RayDown();
+  *mark.add_rays() = RayDown();
+  v1::Ray& beside = *mark.add_rays();
+  beside = RayDown();
+  beside.mutable_origin()->set_x_m(5500.0F);
+  group.presenter->Send(request);
+  ASSERT_TRUE(group.ana->Await([](const Interacting::Messages& messages) {
+    return std::ranges::any_of(
+        messages, [](const Response& message) { return message.marks().marks_size() == 1; });
+  }));
+  const v1::Mark drawn = group.ana->AwaitNewest(Response::kMarks).marks().marks(0);
+  ASSERT_EQ(drawn.positions_size(), 3);
+  EXPECT_GT(drawn.positions(2).z_m(), 900.0F);
+  EXPECT_EQ(drawn.positions(2).z_m(), drawn.positions(0).z_m());
+  EXPECT_EQ(drawn.positions(2).x_m(), 5500.0F);
+}
+
 TEST(InteractTest, ViewersMarkIfAllowedAndEraseTheirOwn) {
   Class group;
   EXPECT_EQ(group.ana->AnswerCode(group.ana->Send(Draws())), grpc::StatusCode::PERMISSION_DENIED);

@@ -1,20 +1,27 @@
-// Exponential back-off: delays double from a quarter of a second to four seconds.
+// Exponential back-off with full jitter: a delay is drawn at random below a bound that doubles, so that a whole class does
+// not come back at once.
 
-export const FIRST_DELAY_MS = 250;
-export const LONGEST_DELAY_MS = 4000;
+export const FIRST_BOUND_MS = 500;
+export const LONGEST_BOUND_MS = 8000;
 
 export class BackOff {
+  readonly #random: () => number;
   #attempts = 0;
+
+  // `random` draws from 0 to 1.
+  constructor(random: () => number = Math.random) {
+    this.#random = random;
+  }
 
   get attempts(): number {
     return this.#attempts;
   }
 
-  // The delay before the next attempt.
-  next(): number {
-    const delay = Math.min(LONGEST_DELAY_MS, FIRST_DELAY_MS * 2 ** Math.min(this.#attempts, 16));
+  // The delay before the next attempt; not below `leastMs`, which the server asked for.
+  next(leastMs = 0): number {
+    const bound = Math.min(LONGEST_BOUND_MS, FIRST_BOUND_MS * 2 ** Math.min(this.#attempts, 16));
     this.#attempts += 1;
-    return delay;
+    return leastMs + this.#random() * bound;
   }
 
   // An attempt succeeded.

@@ -16,17 +16,11 @@ export class RevisionLedger {
   #recentlyShown: { revision: bigint; atMs: number }[] = [];
   #latenciesMs: number[] = [];
   #newestShown = -1n;
-  #newestAccepted = -1n;
   #shownTimeIndex: number | undefined;
 
   // The time index of our newest revision on the screen.
   get shownTimeIndex(): number | undefined {
     return this.#shownTimeIndex;
-  }
-
-  // The newest revision of our own scenes; -1 before the first.
-  get newestAccepted(): bigint {
-    return this.#newestAccepted;
   }
 
   // The median of recent latencies.
@@ -44,7 +38,6 @@ export class RevisionLedger {
     this.#open = [];
     this.#recentlyShown = [];
     this.#newestShown = -1n;
-    this.#newestAccepted = -1n;
     this.#shownTimeIndex = undefined;
   }
 
@@ -59,6 +52,13 @@ export class RevisionLedger {
         this.#open = this.#open.filter((other) => other !== entry);
       },
     };
+  }
+
+  // A scene by somebody else is in force; it has no latency here.
+  told(timeIndex: number, revision: bigint): void {
+    this.#open.push({ sentAtMs: Number.POSITIVE_INFINITY, timeIndex, revision });
+    if (this.#open.length > MOST_OPEN) this.#open.shift();
+    this.#close();
   }
 
   // A frame of this revision is on the screen.
@@ -76,7 +76,6 @@ export class RevisionLedger {
 
   #accepted(entry: Sent, revision: bigint): void {
     entry.revision = revision;
-    if (revision > this.#newestAccepted) this.#newestAccepted = revision;
     this.#close();
   }
 

@@ -27,6 +27,8 @@ import type {
 } from "../gen/thunderhead/v1/thunderhead_pb";
 import { cameraOfPose, type Pose, poseOfCamera } from "./camera";
 import { type CloudDraft, FIRST_CLOUD } from "./cloud";
+import type { Box } from "./picture_box";
+import { type Projection, projectionOf } from "./projection";
 import {
   drawsDetail,
   drawsFalseColors,
@@ -39,6 +41,8 @@ import {
   withSettings,
 } from "./rendering";
 import { LIMITS, withCamera, withRendering } from "./scene";
+import type { Edit } from "./scene_sync";
+import { SessionState } from "./session_state";
 import type { SunDirection } from "./sun";
 
 export type Connection =
@@ -50,7 +54,9 @@ export type Connection =
       readonly reason: string;
       readonly attempts: number;
       readonly retryInMs: number;
-    };
+    }
+  // The session has ended; SessionState says why.
+  | { readonly kind: "gone" };
 
 export interface ShownFrame {
   readonly sequence: bigint;
@@ -64,6 +70,10 @@ export interface ShownFrame {
   // Only of pictures by the reference.
   readonly refinement: Refinement | undefined;
   readonly accuracy: AccuracyReport | undefined;
+  // How far the picture is reduced for this page's link or window.
+  readonly tier: number;
+  readonly ownView: boolean;
+  readonly projection: Projection | undefined;
 }
 
 export interface Pace {
@@ -79,21 +89,15 @@ export interface Notice {
   readonly severity: "problem" | "note";
 }
 
-export interface Session {
-  readonly id: string;
-  // True if it was opened from a link, or a link to it was copied.
-  readonly shared: boolean;
-}
-
 export class PageState {
   readonly #scene = signal<Scene>(create(SceneSchema));
   // The camera pose of the frame on the screen, used while the scene leaves it open.
   readonly #shownPose = signal<Pose | undefined>(undefined);
   // The sun of the frame on the screen.
   readonly #shownSun = signal<Sun | undefined>(undefined);
-  #onEdit: ((scene: Scene) => void) | undefined;
+  #onEdit: ((edit: Edit) => void) | undefined;
 
-  readonly session = signal<Session | undefined>(undefined);
+  readonly session = new SessionState();
   readonly connection = signal<Connection>({ kind: "connecting" });
   readonly server = signal<GetServerInfoResponse | undefined>(undefined);
   readonly storms = signal<readonly StormSummary[]>([]);
@@ -104,6 +108,10 @@ export class PageState {
   // The picture's width and height over the canvas's, in device pixels.
   readonly resolution = signal(1);
   readonly panelOpen = signal(true);
+  // The popover that is open.
+  readonly popover = signal<"share" | "people" | undefined>(undefined);
+  // Where the picture lies in the window, in CSS pixels.
+  readonly pictureBox = signal<Box | undefined>(undefined);
   // The cloud set in the panel, and whether the server is making it.
   readonly cloud = signal<CloudDraft>(FIRST_CLOUD);
   readonly makingCloud = signal(false);
@@ -173,18 +181,19 @@ export class PageState {
     () => this.#scene.value.camera?.kind.case ?? this.#shownPose.value?.kind ?? "orbit",
   );
 
-  // The listener is called with the new scene after each edit by the user.
-  onEdit(listener: (scene: Scene) => void): void {
+  // The listener is called with each edit by the user, after it was applied.
+  onEdit(listener: (edit: Edit) => void): void {
     this.#onEdit = listener;
   }
 
-  // An edit by the user; sent to the server.
-  edit(change: (scene: Scene) => Scene): void {
+  // An edit by the user; sent to the server. Ignored while the scene cannot be changed from this page.
+  edit(change: Edit): void {
+    if (this.session.editBlock.peek() !== undefined) return;
     const before = this.#scene.value;
     const after = change(before);
     if (after === before) return;
     this.#scene.value = after;
-    this.#onEdit?.(after);
+    this.#onEdit?.(change);
   }
 
   // An edit of the technique; ignored until the server has sent the present one.
@@ -218,16 +227,14 @@ export class PageState {
     this.#scene.value = withRendering(scene, rendering);
   }
 
-  // The camera of the frame on the screen. Fills in a camera that the scene leaves open, and replaces ours if another
-  // viewer of the session moved it.
-  adoptCamera(camera: Camera | undefined, movedByOthers: boolean): void {
+  // The camera of the frame on the screen. Fills in a camera that the scene leaves open.
+  adoptCamera(camera: Camera | undefined): void {
     const pose = poseOfCamera(camera);
     if (pose === undefined) return;
     batch(() => {
       this.#shownPose.value = pose;
       const open = poseOfCamera(this.#scene.value.camera) === undefined;
-      if (open || movedByOthers)
-        this.#scene.value = withCamera(this.#scene.value, cameraOfPose(pose));
+      if (open) this.#scene.value = withCamera(this.#scene.value, cameraOfPose(pose));
     });
   }
 
@@ -244,6 +251,9 @@ export class PageState {
       modelled: frame.modelled,
       refinement: frame.refinement,
       accuracy: frame.accuracy,
+      tier: frame.tier,
+      ownView: frame.ownView,
+      projection: projectionOf(frame.view),
     };
   }
 

@@ -1,26 +1,31 @@
-// One viewer's connection to the server: opens or joins a session, receives its frames, sends scenes and
-// acknowledgements, and reconnects by itself when the connection or the session is lost. Independent of widgets and
-// of a scene's contents.
-import { type Client, Code, ConnectError, createClient, type Transport } from "@connectrpc/connect";
+// One person's place in a session: opens or joins it, sends and receives its messages, and comes back to the same session
+// when the connection is lost. Independent of widgets and of a scene's contents.
+import type { MessageInitShape } from "@bufbuild/protobuf";
+import { Code, ConnectError } from "@connectrpc/connect";
 import { BackOff } from "../core/back_off";
+import type { SceneVerdict } from "../core/scene_sync";
 import type { Connection } from "../core/state";
-import type { GenerateCloudRequest } from "../gen/thunderhead/v1/cloud_pb";
-import type { Frame, Problem } from "../gen/thunderhead/v1/frame_pb";
+import type {
+  Codec,
+  End,
+  InteractRequest,
+  InteractRequestSchema,
+  InteractResponse,
+  InteractResponseSchema,
+  Joined,
+  Refused,
+  WindowSchema,
+} from "../gen/thunderhead/v1/interact_pb";
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
-import type { StormDescription, StormSummary } from "../gen/thunderhead/v1/storm_pb";
-import {
-  type GetServerInfoResponse,
-  ThunderheadService,
-} from "../gen/thunderhead/v1/thunderhead_pb";
+import type { BidiCall, BidiListener, CallEnd } from "./interact_socket";
+import type { ServerCalls } from "./server_calls";
 
 export interface OpenedSession {
-  readonly id: string;
-  // The scene that was sent, the same scene with the server's defaults filled in, and its revision.
-  readonly asked: Scene;
+  readonly presenterKey: string;
+  readonly viewerKey: string;
+  // The scene that was sent with the server's defaults filled in, and its revision.
   readonly completed: Scene;
   readonly revision: bigint;
-  // True if it replaces a session that the server no longer has.
-  readonly replaces: boolean;
 }
 
 export interface SessionListener {
@@ -29,31 +34,293 @@ export interface SessionListener {
   // The server refuses to open a session with that scene; sceneToOpen() is called again after a delay.
   openingRefused(message: string): void;
   opened(session: OpenedSession): void;
-  // A new stream of frames: sequence numbers restart, and the session accepts scenes again.
-  streaming(sessionId: string): void;
+  // The name and window to join with.
+  joining(): JoinDetails;
+  // A new call has begun: sequence numbers restart.
+  joined(joined: Joined): void;
   connection(connection: Connection): void;
-  // The session's whole scene at a revision: at the start of a stream, and after any viewer changed it.
-  scene(scene: Scene, revision: bigint): void;
-  frame(frame: Frame): void;
-  problem(problem: Problem): void;
+  // Anything else that the session says.
+  message(message: InteractResponse["message"]): void;
+  // A message was not obeyed.
+  refused(subject: RequestCase, requestId: bigint, code: Code, message: string): void;
+  // The session is gone. Returns true if a new one is to be opened with the page's scene.
+  gone(why: { readonly message: string; readonly forgotten: boolean }): boolean;
 }
 
-export type SceneVerdict =
-  | { readonly kind: "taken"; readonly revision: bigint }
-  | { readonly kind: "refused"; readonly message: string };
+export interface JoinDetails {
+  readonly name: string;
+  readonly window: MessageInitShape<typeof WindowSchema>;
+  readonly codecs: Codec[];
+}
 
-const CALL_TIMEOUT_MS = 10_000;
-// The server must read the storm before it can place a camera that the scene leaves open.
-const SCENE_TIMEOUT_MS = 120_000;
-const CLOUD_TIMEOUT_MS = 120_000;
+export type RequestCase = NonNullable<InteractRequest["message"]["case"]>;
+export type RequestMessage = Exclude<
+  NonNullable<MessageInitShape<typeof InteractRequestSchema>["message"]>,
+  { case: undefined }
+>;
+
+export type OpenInteract = (
+  listener: BidiListener<typeof InteractResponseSchema>,
+) => BidiCall<typeof InteractRequestSchema>;
+
 // After this long without a message the connection is checked: it may have been lost without an error.
 export const SILENCE_MS = 5_000;
 const CHECK_TIMEOUT_MS = 4_000;
-// A stream that lasted this long resets the back-off; one that breaks sooner lengthens the next wait.
+const JOIN_TIMEOUT_MS = 10_000;
+// A call that lasted this long resets the back-off; one that breaks sooner lengthens the next wait.
 const SOUND_MS = 2_000;
+// Requests whose refusal can be told apart.
+const MOST_REMEMBERED = 256;
+
+type Outcome =
+  // Come back: after the server's delay, if it gave one.
+  | { readonly kind: "lost"; readonly reason: string; readonly leastMs: number }
+  | { readonly kind: "gone"; readonly message: string; readonly forgotten: boolean }
+  | { readonly kind: "disposed" };
+
+interface Call {
+  readonly bidi: BidiCall<typeof InteractRequestSchema>;
+  readonly requests: Map<bigint, RequestCase>;
+  readonly scenes: Map<bigint, { taken(verdict: SceneVerdict): void; lost(why: Error): void }>;
+  finish(outcome: Outcome): void;
+}
+
+export class SessionClient {
+  readonly #calls: ServerCalls;
+  readonly #openInteract: OpenInteract;
+  readonly #listener: SessionListener;
+  readonly #backOff: BackOff;
+  #sessionKey: string | undefined;
+  #call: Call | undefined;
+  #joined = false;
+  #lastRequestId = 0n;
+  // A session was opened in place of another, and has not been joined yet.
+  #reopened = false;
+  // Waits for openNew().
+  #gone = false;
+  #disposed = false;
+  #wake: (() => void) | undefined;
+
+  // Joins the session of `sessionKey`, or without one opens a new session.
+  constructor(
+    calls: ServerCalls,
+    openInteract: OpenInteract,
+    listener: SessionListener,
+    sessionKey?: string,
+    backOff = new BackOff(),
+  ) {
+    this.#calls = calls;
+    this.#openInteract = openInteract;
+    this.#listener = listener;
+    this.#sessionKey = sessionKey;
+    this.#backOff = backOff;
+  }
+
+  // Runs until dispose().
+  async run(): Promise<void> {
+    while (!this.#disposed) {
+      const outcome = await this.#attempt();
+      if (this.#disposed) return;
+      if (outcome.kind === "lost") {
+        const retryInMs = this.#backOff.next(outcome.leastMs);
+        const { attempts } = this.#backOff;
+        this.#listener.connection({ kind: "lost", reason: outcome.reason, attempts, retryInMs });
+        await this.#wait(retryInMs);
+      } else if (outcome.kind === "gone") {
+        this.#sessionKey = undefined;
+        if (this.#listener.gone(outcome)) {
+          await this.#reopenSlowly();
+          continue;
+        }
+        this.#listener.connection({ kind: "gone" });
+        this.#gone = true;
+        await this.#wait();
+        this.#gone = false;
+      }
+    }
+  }
+
+  // Opens a new session in place of one that is gone.
+  openNew(): void {
+    if (this.#gone) this.#wake?.();
+  }
+
+  // Ends the wait before the next attempt, if there is one.
+  retryNow(): void {
+    if (!this.#gone) this.#wake?.();
+  }
+
+  // Rejects if the connection is lost; the caller must send the scene again after joined().
+  updateScene(scene: Scene, expectedRevision: bigint): Promise<SceneVerdict> {
+    return new Promise((taken, lost) => {
+      const requestId = this.send({ case: "updateScene", value: { scene, expectedRevision } });
+      if (requestId === undefined) lost(new Error("there is no connection"));
+      else this.#call?.scenes.set(requestId, { taken, lost });
+    });
+  }
+
+  // Returns the message's id; undefined if there is no connection, and it is not sent.
+  send(message: RequestMessage): bigint | undefined {
+    const call = this.#call;
+    if (call === undefined || !this.#joined) return undefined;
+    return this.#sendBy(call, message);
+  }
+
+  // The frame is on the screen, or will never be.
+  acknowledge(sequence: bigint, ownView: boolean): void {
+    this.send({ case: "acknowledge", value: { sequence, ownView } });
+  }
+
+  dispose(): void {
+    this.#disposed = true;
+    this.#call?.finish({ kind: "disposed" });
+    this.#wake?.();
+  }
+
+  // At once, but where no new session could be joined since the last time, later and later.
+  async #reopenSlowly(): Promise<void> {
+    const { attempts } = this.#backOff;
+    const delayMs = this.#backOff.next();
+    if (this.#reopened) {
+      const reason = "The server loses its sessions";
+      this.#listener.connection({ kind: "lost", reason, attempts, retryInMs: delayMs });
+      await this.#wait(delayMs);
+    }
+    this.#reopened = true;
+  }
+
+  async #attempt(): Promise<Outcome> {
+    try {
+      this.#sessionKey ??= await this.#open();
+      if (this.#disposed) return { kind: "disposed" };
+      return await this.#interact(this.#sessionKey);
+    } catch (error) {
+      return { kind: "lost", reason: reasonOf(ConnectError.from(error)), leastMs: 0 };
+    }
+  }
+
+  async #open(): Promise<string> {
+    const asked = this.#listener.sceneToOpen();
+    try {
+      const opened = await this.#calls.createSession(asked);
+      this.#listener.opened({
+        presenterKey: opened.sessionId,
+        viewerKey: opened.viewerKey,
+        completed: opened.scene ?? asked,
+        revision: opened.sceneRevision,
+      });
+      return opened.sessionId;
+    } catch (error) {
+      const failure = ConnectError.from(error);
+      const full = failure.code === Code.ResourceExhausted;
+      if (!full && !NETWORK_CODES.has(failure.code))
+        this.#listener.openingRefused(failure.rawMessage);
+      throw failure;
+    }
+  }
+
+  // Ends with the call.
+  #interact(sessionKey: string): Promise<Outcome> {
+    return new Promise((resolve) => {
+      const silence = new SilenceWatch(() => this.#check(call));
+      let joinTimer: ReturnType<typeof setTimeout> | undefined;
+      let startedAtMs: number | undefined;
+      let farewell: Outcome | undefined;
+      const finish = (outcome: Outcome) => {
+        if (this.#call !== call) return;
+        this.#call = undefined;
+        this.#joined = false;
+        clearTimeout(joinTimer);
+        silence.dispose();
+        call.bidi.cancel();
+        for (const scene of call.scenes.values()) scene.lost(new Error("the connection is lost"));
+        if (startedAtMs !== undefined && performance.now() - startedAtMs > SOUND_MS)
+          this.#backOff.reset();
+        resolve(outcome);
+      };
+      const bidi = this.#openInteract({
+        opened: () =>
+          this.#sendBy(call, { case: "join", value: { sessionKey, ...this.#listener.joining() } }),
+        message: ({ message }) => {
+          if (this.#call !== call) return;
+          silence.heard();
+          if (message.case === "joined") {
+            startedAtMs = performance.now();
+            clearTimeout(joinTimer);
+            this.#joined = true;
+            this.#reopened = false;
+            this.#listener.connection({ kind: "live" });
+            this.#listener.joined(message.value);
+          } else if (message.case === "end") {
+            farewell = outcomeOfEnd(message.value);
+          } else if (message.case === "sceneTaken") {
+            const { requestId, sceneRevision } = message.value;
+            this.#answerScene(call, requestId, { kind: "taken", revision: sceneRevision });
+          } else if (message.case === "refused") this.#refused(call, message.value);
+          else this.#listener.message(message);
+        },
+        ended: (end) => finish(farewell ?? outcomeOfStatus(end)),
+      });
+      const call: Call = { bidi, requests: new Map(), scenes: new Map(), finish };
+      this.#call = call;
+      joinTimer = setTimeout(
+        () => finish({ kind: "lost", reason: UNREACHABLE, leastMs: 0 }),
+        JOIN_TIMEOUT_MS,
+      );
+    });
+  }
+
+  #sendBy(call: Call, message: RequestMessage): bigint {
+    this.#lastRequestId += 1n;
+    const requestId = this.#lastRequestId;
+    call.requests.set(requestId, message.case);
+    if (call.requests.size > MOST_REMEMBERED)
+      call.requests.delete(requestId - BigInt(MOST_REMEMBERED));
+    call.bidi.send({ requestId, message });
+    return requestId;
+  }
+
+  #refused(call: Call, { requestId, status }: Refused): void {
+    const code = (status?.code ?? Code.Unknown) as Code;
+    const message = status?.message ?? "";
+    if (this.#answerScene(call, requestId, verdictOf(code, message))) return;
+    const subject = call.requests.get(requestId);
+    if (subject !== undefined) this.#listener.refused(subject, requestId, code, message);
+  }
+
+  // False if the message was no scene.
+  #answerScene(call: Call, requestId: bigint, verdict: SceneVerdict): boolean {
+    const scene = call.scenes.get(requestId);
+    call.scenes.delete(requestId);
+    scene?.taken(verdict);
+    return scene !== undefined;
+  }
+
+  async #check(call: Call): Promise<void> {
+    try {
+      await this.#calls.serverInfo(CHECK_TIMEOUT_MS);
+    } catch {
+      call.finish({ kind: "lost", reason: UNREACHABLE, leastMs: 0 });
+    }
+  }
+
+  // For ever, without a time.
+  async #wait(delayMs?: number): Promise<void> {
+    await new Promise<void>((resolve) => {
+      const timer = delayMs === undefined ? undefined : setTimeout(resolve, delayMs);
+      this.#wake = () => {
+        clearTimeout(timer);
+        resolve();
+      };
+    });
+    this.#wake = undefined;
+  }
+}
+
+const UNREACHABLE = "The server cannot be reached";
 
 // Codes of network failures; some servers' failures have the same ones.
-const NETWORK_CODES = new Set([
+const NETWORK_CODES = new Set<Code>([
   Code.Unknown,
   Code.Unavailable,
   Code.Canceled,
@@ -61,230 +328,30 @@ const NETWORK_CODES = new Set([
   Code.Internal,
 ]);
 
-export class SessionClient {
-  readonly #client: Client<typeof ThunderheadService>;
-  readonly #listener: SessionListener;
-  readonly #backOff = new BackOff();
-  readonly #life = new AbortController();
-  #sessionId: string | undefined;
-  #hadSession: boolean;
-  #reopened = false;
-  #viewerId: bigint | undefined;
-  #stream: AbortController | undefined;
-  #retryNow: (() => void) | undefined;
-  #retryInMs = 0;
+function outcomeOfEnd(end: End): Outcome {
+  const message = end.message || "The session has ended";
+  if (end.retryAfterMs !== undefined)
+    return { kind: "lost", reason: message, leastMs: end.retryAfterMs };
+  return { kind: "gone", message, forgotten: false };
+}
 
-  // Joins `sessionId` if it is given and still exists, else opens a new session.
-  constructor(transport: Transport, listener: SessionListener, sessionId?: string) {
-    this.#client = createClient(ThunderheadService, transport);
-    this.#listener = listener;
-    this.#sessionId = sessionId;
-    this.#hadSession = sessionId !== undefined;
-  }
+function outcomeOfStatus(end: CallEnd): Outcome {
+  if (end.kind === "broken") return { kind: "lost", reason: end.message, leastMs: 0 };
+  if (end.code === Code.NotFound)
+    return {
+      kind: "gone",
+      message: "The server does not have this session any more",
+      forgotten: true,
+    };
+  const reason = end.code === 0 ? "The server ended the connection" : end.message || UNREACHABLE;
+  return { kind: "lost", reason, leastMs: 0 };
+}
 
-  // Runs until dispose().
-  async run(): Promise<void> {
-    while (!this.#life.signal.aborted) {
-      try {
-        this.#sessionId ??= await this.#open();
-        await this.#watch(this.#sessionId);
-        this.#lost("The server ended the stream");
-      } catch (error) {
-        if (this.#life.signal.aborted) return;
-        if (this.#sessionId !== undefined && ConnectError.from(error).code === Code.NotFound) {
-          // The session ended on the server. Open a new one at once, but only once until a stream begins.
-          this.#sessionId = undefined;
-          if (!this.#reopened) {
-            this.#reopened = true;
-            continue;
-          }
-        }
-        this.#lost(reasonOf(error));
-      }
-      await this.#wait();
-    }
-  }
-
-  // Ends the wait before the next attempt, if there is one.
-  retryNow(): void {
-    this.#retryNow?.();
-  }
-
-  // Rejects if the connection is lost; the caller must send the scene again after streaming().
-  async updateScene(scene: Scene): Promise<SceneVerdict> {
-    const stream = this.#stream;
-    const first = await this.#sendScene(scene);
-    if (first instanceof ConnectError === false) return first;
-    // It may be the network or the server. If the server still answers, the scene is sent a second and last time.
-    if (stream !== undefined) await this.#check(stream);
-    const second = stream?.signal.aborted ? first : await this.#sendScene(scene);
-    if (second instanceof ConnectError === false) return second;
-    if (stream === undefined || stream.signal.aborted) throw second;
-    return { kind: "refused", message: second.rawMessage };
-  }
-
-  // The frame is on the screen.
-  acknowledge(sequence: bigint): void {
-    const sessionId = this.#sessionId;
-    const viewerId = this.#viewerId;
-    const signal = this.#stream?.signal;
-    if (sessionId === undefined || viewerId === undefined || signal === undefined) return;
-    this.#client
-      .acknowledgeFrame({ sessionId, viewerId, sequence }, { signal, timeoutMs: CALL_TIMEOUT_MS })
-      // Without acknowledgements the server sends no more frames, so the stream is reopened.
-      .catch((error: unknown) => {
-        if (this.#viewerId === viewerId) this.#stream?.abort(ConnectError.from(error));
-      });
-  }
-
-  serverInfo(): Promise<GetServerInfoResponse> {
-    return this.#client.getServerInfo({}, this.#lifeOptions());
-  }
-
-  async storms(): Promise<readonly StormSummary[]> {
-    return (await this.#client.listStorms({}, this.#lifeOptions())).storms;
-  }
-
-  async describeStorm(stormId: string, timeIndex: number): Promise<StormDescription | undefined> {
-    return (await this.#client.describeStorm({ stormId, timeIndex }, this.#lifeOptions())).storm;
-  }
-
-  async generateCloud(
-    request: GenerateCloudRequest,
-    signal: AbortSignal,
-  ): Promise<StormSummary | undefined> {
-    const options = { signal, timeoutMs: CLOUD_TIMEOUT_MS };
-    return (await this.#client.generateCloud(request, options)).storm;
-  }
-
-  async deleteCloud(stormId: string): Promise<void> {
-    await this.#client.deleteCloud({ stormId }, { timeoutMs: CALL_TIMEOUT_MS });
-  }
-
-  // Ends the session on the server; called when the page is closed.
-  closeSession(): void {
-    const sessionId = this.#sessionId;
-    if (sessionId === undefined) return;
-    // The page is going away: a failure cannot be shown.
-    this.#client.closeSession({ sessionId }, { timeoutMs: CALL_TIMEOUT_MS }).catch(() => undefined);
-  }
-
-  dispose(): void {
-    this.#life.abort();
-    this.#stream?.abort();
-    this.#retryNow?.();
-  }
-
-  // The error, if it is not about the scene.
-  async #sendScene(scene: Scene): Promise<SceneVerdict | ConnectError> {
-    const sessionId = this.#sessionId;
-    if (sessionId === undefined) return new ConnectError("there is no session", Code.Unavailable);
-    const signal = this.#stream?.signal ?? this.#life.signal;
-    const options = { signal, timeoutMs: SCENE_TIMEOUT_MS };
-    try {
-      const response = await this.#client.updateScene({ sessionId, scene }, options);
-      return { kind: "taken", revision: response.sceneRevision };
-    } catch (error) {
-      const failure = ConnectError.from(error);
-      // A session that ended also closes its stream; run() handles that.
-      if (NETWORK_CODES.has(failure.code)) return failure;
-      return { kind: "refused", message: failure.rawMessage };
-    }
-  }
-
-  async #open(): Promise<string> {
-    const asked = this.#listener.sceneToOpen();
-    try {
-      const options = { signal: this.#life.signal, timeoutMs: SCENE_TIMEOUT_MS };
-      const response = await this.#client.createSession({ scene: asked }, options);
-      const { sessionId, scene, sceneRevision } = response;
-      this.#listener.opened({
-        id: sessionId,
-        asked,
-        completed: scene ?? asked,
-        revision: sceneRevision,
-        replaces: this.#hadSession,
-      });
-      this.#hadSession = true;
-      return sessionId;
-    } catch (error) {
-      const failure = ConnectError.from(error);
-      const full = failure.code === Code.ResourceExhausted;
-      if (!full && !NETWORK_CODES.has(failure.code)) {
-        this.#listener.openingRefused(failure.rawMessage);
-      }
-      throw failure;
-    }
-  }
-
-  async #watch(sessionId: string): Promise<void> {
-    const stream = new AbortController();
-    this.#stream = stream;
-    const silence = new SilenceWatch(() => this.#check(stream));
-    const startedAtMs = performance.now();
-    let begun = false;
-    try {
-      silence.heard();
-      for await (const message of this.#client.watchFrames(
-        { sessionId },
-        { signal: stream.signal },
-      )) {
-        silence.heard();
-        this.#viewerId = message.viewerId;
-        if (!begun) {
-          begun = true;
-          this.#reopened = false;
-          this.#listener.connection({ kind: "live" });
-          this.#listener.streaming(sessionId);
-        }
-        if (message.scene !== undefined) {
-          this.#listener.scene(message.scene, message.sceneRevision);
-        }
-        if (message.event.case === "frame") this.#listener.frame(message.event.value);
-        if (message.event.case === "problem") this.#listener.problem(message.event.value);
-      }
-    } catch (error) {
-      // Where this page aborted the stream, its reason says more than the resulting error.
-      throw stream.signal.aborted ? (stream.signal.reason ?? error) : error;
-    } finally {
-      silence.dispose();
-      if (begun && performance.now() - startedAtMs > SOUND_MS) this.#backOff.reset();
-      this.#viewerId = undefined;
-      this.#stream = undefined;
-    }
-  }
-
-  async #check(stream: AbortController): Promise<void> {
-    try {
-      await this.#client.getServerInfo({}, { timeoutMs: CHECK_TIMEOUT_MS, signal: stream.signal });
-    } catch (error) {
-      stream.abort(ConnectError.from(error));
-    }
-  }
-
-  #lost(reason: string): void {
-    if (this.#life.signal.aborted) return;
-    const retryInMs = this.#backOff.next();
-    this.#retryInMs = retryInMs;
-    const attempts = this.#backOff.attempts;
-    this.#listener.connection({ kind: "lost", reason, attempts, retryInMs });
-  }
-
-  async #wait(): Promise<void> {
-    if (this.#life.signal.aborted) return;
-    await new Promise<void>((resolve) => {
-      const timer = setTimeout(resolve, this.#retryInMs);
-      this.#retryNow = () => {
-        clearTimeout(timer);
-        resolve();
-      };
-    });
-    this.#retryNow = undefined;
-  }
-
-  #lifeOptions(): { signal: AbortSignal; timeoutMs: number } {
-    return { signal: this.#life.signal, timeoutMs: CALL_TIMEOUT_MS };
-  }
+function verdictOf(code: Code, message: string): SceneVerdict {
+  if (code === Code.Aborted) return { kind: "stale" };
+  if (code === Code.ResourceExhausted || code === Code.Unavailable)
+    return { kind: "busy", message };
+  return { kind: "refused", message };
 }
 
 // Calls back whenever SILENCE_MS pass without a message.
@@ -310,7 +377,6 @@ class SilenceWatch {
 }
 
 // The server's message, if it sent one; messages of network errors do not help a reader.
-function reasonOf(error: unknown): string {
-  const failure = ConnectError.from(error);
-  return NETWORK_CODES.has(failure.code) ? "The server cannot be reached" : failure.rawMessage;
+function reasonOf(failure: ConnectError): string {
+  return NETWORK_CODES.has(failure.code) ? UNREACHABLE : failure.rawMessage;
 }

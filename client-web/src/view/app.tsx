@@ -2,9 +2,13 @@
 import "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import type { PageState } from "../core/state";
+import { Overlay } from "./overlay";
 import type { Page } from "./page";
 import { Panel } from "./panel";
+import { Asking, PeopleList } from "./people";
 import { Readout } from "./readout";
+import { SessionBar } from "./session_bar";
+import { Share } from "./share";
 import { TimeBar } from "./time_bar";
 
 export function App({ page }: { page: Page }) {
@@ -13,18 +17,79 @@ export function App({ page }: { page: Page }) {
     <main class={state.panelOpen.value ? "with-panel" : undefined}>
       <h1 class="visually-hidden">Thunderhead</h1>
       <StormCanvas page={page} />
+      <Overlay state={state} marking={page.marking} />
       <Readout state={state} />
       <Panel page={page} />
-      <TimeBar page={page} />
+      <div class="bottom">
+        <SessionBar page={page} />
+        <TimeBar page={page} />
+      </div>
+      <TopBar page={page} />
       <div class="messages">
         <ConnectionBanner state={state} />
+        <SessionEnded page={page} />
+        <Asking page={page} />
         <Notices state={state} />
       </div>
     </main>
   );
 }
 
+function TopBar({ page }: { page: Page }) {
+  const { state } = page;
+  const { session } = state;
+  const popover = state.popover.value;
+  const asking = session.answersAsking.value ? session.asking.value.length : 0;
+  const people = session.people.value.length;
+  return (
+    <>
+      <nav class="top-bar" aria-label="Session and settings">
+        <button
+          type="button"
+          data-testid="share"
+          aria-haspopup="dialog"
+          aria-expanded={popover === "share"}
+          aria-controls="share"
+          disabled={session.viewerKey.value === undefined || session.ended.value !== undefined}
+          onClick={() => page.togglePopover("share")}
+        >
+          Share
+        </button>
+        <button
+          type="button"
+          data-testid="people"
+          aria-haspopup="dialog"
+          aria-expanded={popover === "people"}
+          aria-controls="people"
+          onClick={() => page.togglePopover("people")}
+        >
+          People{people > 0 && ` ${people}`}
+          {asking > 0 && (
+            <span class="badge" data-testid="asking-badge">
+              {asking}
+              <span class="visually-hidden"> ask to steer</span>
+            </span>
+          )}
+        </button>
+        <button
+          type="button"
+          data-testid="panel-toggle"
+          aria-expanded={state.panelOpen.value}
+          aria-controls="panel"
+          title="Show or hide the settings (P)"
+          onClick={() => page.togglePanel()}
+        >
+          {state.panelOpen.value ? "Hide settings" : "Settings"}
+        </button>
+      </nav>
+      {popover === "share" && <Share page={page} />}
+      {popover === "people" && <PeopleList page={page} />}
+    </>
+  );
+}
+
 function StormCanvas({ page }: { page: Page }) {
+  const tool = page.state.session.tool.value;
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {
     if (canvas.current === null) return undefined;
@@ -33,7 +98,7 @@ function StormCanvas({ page }: { page: Page }) {
   return (
     <canvas
       ref={canvas}
-      class="storm"
+      class={tool === "camera" ? "storm" : "storm with-tool"}
       data-testid="storm-canvas"
       tabIndex={0}
       role="img"
@@ -53,10 +118,23 @@ function ConnectionBanner({ state }: { state: PageState }) {
       )}
       {connection.kind === "lost" && (
         <p class="banner lost" data-testid="connection-lost">
-          {connection.reason}. Trying again …
+          {connection.reason}. Reconnecting …
         </p>
       )}
     </div>
+  );
+}
+
+function SessionEnded({ page }: { page: Page }) {
+  const { ended } = page.state.session;
+  if (ended.value === undefined) return null;
+  return (
+    <section class="ended" aria-label="The session has ended" data-testid="session-ended">
+      <p>{ended.value.replace(/\.$/, "")}.</p>
+      <button type="button" data-testid="open-new" onClick={() => page.actions.openNewSession()}>
+        Open a new session with this scene
+      </button>
+    </section>
   );
 }
 
@@ -70,7 +148,7 @@ function Notices({ state }: { state: PageState }) {
           role={notice.severity === "problem" ? "alert" : "status"}
           data-subject={notice.subject}
         >
-          <span>{notice.text}</span>
+          <span class="notice-text">{notice.text}</span>
           <button
             type="button"
             class="close"

@@ -1,5 +1,6 @@
 // Draws the newest picture into a canvas, as large as fits and in the middle, and draws it again when the
 // canvas changes size. Owns the picture on the screen.
+import { pictureBox } from "../core/picture_box";
 
 export class CanvasPainter {
   readonly #canvas: HTMLCanvasElement;
@@ -36,16 +37,16 @@ export class CanvasPainter {
     const picture = this.#picture;
     if (picture === undefined) return;
     const { width, height } = this.#canvas;
-    const scale = Math.min(width / picture.width, height / picture.height);
-    const shownWidth = Math.round(picture.width * scale);
-    const shownHeight = Math.round(picture.height * scale);
+    const box = pictureBox({ width, height }, picture);
+    const shownWidth = Math.round(box.width);
+    const shownHeight = Math.round(box.height);
     const left = Math.floor((width - shownWidth) / 2);
     const top = Math.floor((height - shownHeight) / 2);
     if (left > 0 || top > 0) {
       this.#context.fillStyle = "#05070a";
       this.#context.fillRect(0, 0, width, height);
     }
-    this.#context.imageSmoothingEnabled = scale !== 1;
+    this.#context.imageSmoothingEnabled = shownWidth !== picture.width;
     this.#context.imageSmoothingQuality = "medium";
     this.#context.drawImage(picture, left, top, shownWidth, shownHeight);
   }

@@ -1,5 +1,6 @@
 // The page's keys. attachKeyboard() returns a function that removes the listener.
 import { type Pose, pan, turn, zoom } from "../core/camera";
+import type { Tool } from "../core/session_state";
 
 export interface KeyActions {
   move(motion: (pose: Pose) => Pose): void;
@@ -7,6 +8,10 @@ export interface KeyActions {
   togglePanel(): void;
   togglePlay(): void;
   stepTime(by: number): void;
+  // Takes the tool into the hand, or puts it down.
+  toggleTool(tool: Exclude<Tool, "camera">): void;
+  // Closes what is open, puts the tool down. False if there was nothing to do.
+  escape(): boolean;
 }
 
 export const KEYS: readonly (readonly [string, string])[] = [
@@ -17,6 +22,9 @@ export const KEYS: readonly (readonly [string, string])[] = [
   ["Space", "play or pause"],
   [", .", "one time back, forward"],
   ["P", "show or hide this panel"],
+  ["L", "laser pointer that everybody sees"],
+  ["D", "draw lines that everybody sees"],
+  ["Escape", "back to the camera"],
 ];
 
 const TURN_DEG = 3;
@@ -37,6 +45,9 @@ export function attachKeyboard(window: Window, actions: KeyActions): () => void 
   window.addEventListener(
     "keydown",
     (event) => {
+      if (event.key === "Escape" && !event.defaultPrevented && actions.escape()) {
+        event.preventDefault();
+      }
       if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
       if (!usesKey(event.target, event.key) && act(event, actions)) event.preventDefault();
     },
@@ -74,6 +85,14 @@ function act(event: KeyboardEvent, actions: KeyActions): boolean {
     case "p":
     case "P":
       actions.togglePanel();
+      return true;
+    case "l":
+    case "L":
+      actions.toggleTool("pointer");
+      return true;
+    case "d":
+    case "D":
+      actions.toggleTool("pen");
       return true;
     case " ":
       actions.togglePlay();

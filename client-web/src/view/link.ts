@@ -1,10 +1,10 @@
-// Links to a session: ?session=ID names it; #scene=... is a copy of the scene, to open a new session with if that one
-// has ended. Browsers do not send the fragment to the server.
+// Links to a session: ?session=VIEWER_KEY names it; #scene=... is a copy of the scene, to open a new session with if that
+// one has ended. Browsers do not send the fragment to the server.
 import { sceneFromUrlText, sceneToUrlText } from "../core/scene";
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
 
 export interface Link {
-  readonly sessionId: string | undefined;
+  readonly viewerKey: string | undefined;
   readonly scene: Scene | undefined;
 }
 
@@ -12,20 +12,21 @@ export function readLink(address: string): Link {
   const link = new URL(address);
   const text = new URLSearchParams(link.hash.slice(1)).get("scene");
   return {
-    sessionId: link.searchParams.get("session") ?? undefined,
+    viewerKey: link.searchParams.get("session") ?? undefined,
     scene: text === null ? undefined : sceneFromUrlText(text),
   };
 }
 
-export function linkTo(address: string, sessionId: string, scene: Scene): string {
+// Without a scene the link is short enough for a QR code that a projector shows.
+export function linkTo(address: string, viewerKey: string, scene?: Scene): string {
   const link = new URL(withoutLink(address));
-  link.searchParams.set("session", sessionId);
-  link.hash = `scene=${sceneToUrlText(scene)}`;
+  link.searchParams.set("session", viewerKey);
+  if (scene !== undefined) link.hash = `scene=${sceneToUrlText(scene)}`;
   return link.href;
 }
 
 // The page's address without session and scene.
-export function withoutLink(address: string): string {
+function withoutLink(address: string): string {
   const link = new URL(address);
   link.search = "";
   link.hash = "";

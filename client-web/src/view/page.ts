@@ -1,81 +1,162 @@
-// Connects the parts: sends edits to the server, paints frames on the canvas, acknowledges them and measures their
-// latency. Owns the parts; dispose() ends them.
+// Connects the parts: the session's messages with the state, edits and camera motions with the session, frames with the
+// canvas. Owns the parts; dispose() ends them.
 
 import { create } from "@bufbuild/protobuf";
-import type { Transport } from "@connectrpc/connect";
-import { effect } from "@preact/signals-core";
-import { type CameraKind, homeCamera, poseOfCamera, standingAzimuthDeg } from "../core/camera";
-import { FramePipeline } from "../core/frame_pipeline";
+import { Code, type Transport } from "@connectrpc/connect";
+import { effect, untracked } from "@preact/signals-core";
+import {
+  type CameraKind,
+  homeCamera,
+  type Pose,
+  poseOfCamera,
+  standingAzimuthDeg,
+} from "../core/camera";
 import { FrameRate } from "../core/frame_rate";
+import { type MarkedPicture, Marking } from "../core/marking";
+import type { Later } from "../core/newest";
+import { OwnKeys } from "../core/own_keys";
+import { OwnView } from "../core/own_view";
 import { Playback } from "../core/playback";
+import type { WorldRay } from "../core/projection";
 import { RevisionLedger } from "../core/revision_ledger";
 import { outputSize, withCamera, withOutput, withStorm, withTime } from "../core/scene";
-import { SceneSender } from "../core/scene_sender";
-import { PageState } from "../core/state";
+import { SceneSync, type SceneVerdict } from "../core/scene_sync";
+import type { Tool } from "../core/session_state";
+import { type Connection, PageState } from "../core/state";
 import type { Frame, Problem } from "../gen/thunderhead/v1/frame_pb";
-import { type Scene, SceneSchema } from "../gen/thunderhead/v1/scene_pb";
 import {
+  Codec,
+  type InteractResponse,
+  type Joined,
+  type Presence,
+  Role,
+} from "../gen/thunderhead/v1/interact_pb";
+import { type Scene, SceneSchema } from "../gen/thunderhead/v1/scene_pb";
+import { ServerCalls } from "../transport/server_calls";
+import {
+  type JoinDetails,
   type OpenedSession,
+  type OpenInteract,
+  type RequestCase,
   SessionClient,
   type SessionListener,
 } from "../transport/session_client";
-import { CanvasPainter } from "./canvas_painter";
+import { Addresses } from "./addresses";
+import { CanvasPlace } from "./canvas_place";
 import { attachKeyboard } from "./keyboard";
-import { linkTo, readLink, withoutLink } from "./link";
-import { attachPointer } from "./pointer";
+import { readLink } from "./link";
+import { PictureFlow } from "./picture_flow";
+import { SessionActions } from "./session_actions";
 import { StormsOnServer } from "./storms_on_server";
 
-const RESIZE_REST_MS = 150;
 const PACE_EVERY_MS = 500;
 const NOTE_MS = 6000;
+// A page that is looked at says so, so that the session does not expire under a still picture.
+const STILL_HERE_EVERY_MS = 30_000;
 // Narrower windows start with the panel closed.
 const NARROW_PX = 700;
+// Of what a camera that does not turn around a target looks at.
+const TYPICAL_DISTANCE_M = 30_000;
 
 export class Page implements SessionListener {
   readonly state = new PageState();
   readonly playback: Playback;
+  readonly marking: Marking;
+  readonly actions: SessionActions;
+  readonly addresses: Addresses;
+  readonly #keys: OwnKeys;
   readonly #window: Window;
+  readonly #calls: ServerCalls;
   readonly #client: SessionClient;
   readonly #storms: StormsOnServer;
-  readonly #sender: SceneSender;
-  readonly #pipeline: FramePipeline<Frame, ImageBitmap>;
+  readonly #sync: SceneSync;
+  readonly #flow: PictureFlow;
+  readonly #place: CanvasPlace;
+  readonly #ownView: OwnView;
   readonly #ledger = new RevisionLedger();
   readonly #rate = new FrameRate();
   readonly #listening = new AbortController();
   readonly #disposals: (() => void)[] = [];
-  #canvas: HTMLCanvasElement | undefined;
-  #painter: CanvasPainter | undefined;
-  #canvasSize = { widthPx: 1280, heightPx: 720 };
-  // False for a viewer who joined another's session, which keeps its picture size.
+  // The key that the page joins with, if it is the presenter's.
+  #presenterKey: string | undefined;
+  // True until the first presence of a session that this page opened.
+  #opened = false;
+  // False for who steers another's session, which keeps its picture size.
   #setsOutput: boolean;
   #shown: Frame | undefined;
   #problemRevision = 0n;
-  // The newest scene that the server sent, until it is known whether this page made it.
-  #told: { scene: Scene; revision: bigint } | undefined;
-  // The newest revision by another viewer that the controls show.
-  #adoptedRevision = -1n;
   #running = false;
 
-  constructor(transport: Transport, window: Window) {
+  constructor(transport: Transport, openInteract: OpenInteract, window: Window) {
     this.#window = window;
+    const { session } = this.state;
     const link = readLink(window.location.href);
     if (link.scene !== undefined) this.state.adoptScene(link.scene);
-    this.#setsOutput = link.sessionId === undefined;
+    this.#keys = new OwnKeys(storageOf(window));
+    session.viewerKey.value = link.viewerKey;
+    if (link.viewerKey !== undefined) this.#presenterKey = this.#keys.presenterKey(link.viewerKey);
+    this.#setsOutput = link.viewerKey === undefined || this.#presenterKey !== undefined;
     this.state.panelOpen.value = window.innerWidth >= NARROW_PX;
 
-    this.#client = new SessionClient(transport, this, link.sessionId);
-    this.#storms = new StormsOnServer(this.#client, this.state);
+    this.#calls = new ServerCalls(transport);
+    const key = this.#presenterKey ?? link.viewerKey;
+    this.#client = new SessionClient(this.#calls, openInteract, this, key);
+    this.actions = new SessionActions(this.#client, this.#calls, this.#keys, this.state);
+    this.addresses = new Addresses(window, this.state);
+    this.#storms = new StormsOnServer(this.#calls, this.state);
     const onNextPaint = (callback: (nowMs: number) => void) => {
       const request = window.requestAnimationFrame(callback);
       return () => window.cancelAnimationFrame(request);
     };
-    this.#sender = new SceneSender({ send: (scene) => this.#send(scene), onNextPaint });
-    this.#pipeline = new FramePipeline({
-      decode: (frame) => decodeJpeg(frame.jpeg),
+    const later: Later = (delayMs, callback) => {
+      const timer = setTimeout(callback, delayMs);
+      return () => clearTimeout(timer);
+    };
+    this.#sync = new SceneSync({
+      scene: () => this.state.scene.peek(),
+      adopt: (scene) => this.state.adoptScene(scene),
+      complete: (scene) => this.state.adoptRendering(scene.rendering),
+      changedByOthers: (scene, revision) => this.#ledger.told(scene.timeIndex ?? 0, revision),
+      send: (scene, expectedRevision) => this.#send(scene, expectedRevision),
+      taken: () => this.state.dismiss("refused"),
+      refused: (text) => this.state.notify({ subject: "refused", text, severity: "problem" }),
       onNextPaint,
-      paint: (frame, picture) => this.#paint(frame, picture),
-      release: (picture) => picture.close(),
-      failed: (frame) => this.#undecodable(frame),
+      later,
+    });
+    this.#flow = new PictureFlow({
+      acknowledge: (sequence, ownView) => this.#client.acknowledge(sequence, ownView),
+      wantsOwnView: () => session.lookingAround.peek(),
+      painted: (frame) => this.#painted(frame),
+      undecodable: (frame) => this.#undecodable(frame),
+      onNextPaint,
+    });
+    this.#place = new CanvasPlace(window, this.#flow, {
+      move: (motion) => this.move(motion),
+      tool: () => this.marking.tool(),
+      resized: () => {
+        if (this.#shown !== undefined) this.state.pictureBox.value = this.#place.boxOf(this.#shown);
+      },
+      resizeRested: () => {
+        this.#sendWindow();
+        this.#sendOutputSize();
+      },
+    });
+    this.#ownView = new OwnView(session.lookingAround, {
+      detach: (camera) => this.#client.send({ case: "detach", value: { camera } }),
+      moveCamera: (camera) => this.#client.send({ case: "moveCamera", value: { camera } }),
+      follow: () => this.#client.send({ case: "follow", value: {} }),
+      later,
+    });
+    this.marking = new Marking(session, {
+      picture: () => this.#markedPicture(),
+      point: (ray) =>
+        this.#client.send({
+          case: "point",
+          value: ray === undefined ? {} : { ray: rayMessage(ray) },
+        }),
+      addMark: (rays) =>
+        this.#client.send({ case: "addMark", value: { rays: rays.map(rayMessage) } }),
+      later,
     });
     this.playback = new Playback({
       timeCount: () => this.state.timeCount.value,
@@ -84,40 +165,28 @@ export class Page implements SessionListener {
       showTime: (index) => this.showTime(index),
       onNextPaint,
     });
-    this.state.onEdit((scene) => this.#sender.push(scene));
+    this.state.onEdit((edit) => this.#sync.edited(edit));
     this.#listen();
   }
 
   // Paints pictures on this canvas from now on. Returns the function that detaches it.
   attachCanvas(canvas: HTMLCanvasElement): () => void {
-    const painter = new CanvasPainter(canvas);
-    this.#canvas = canvas;
-    this.#painter = painter;
-    const detachPointer = attachPointer(canvas, (motion) => this.state.move(motion));
-    let resting: ReturnType<typeof setTimeout> | undefined;
-    const measure = () => {
-      const ratio = this.#window.devicePixelRatio;
-      const widthPx = Math.max(1, Math.round(canvas.clientWidth * ratio));
-      const heightPx = Math.max(1, Math.round(canvas.clientHeight * ratio));
-      this.#canvasSize = { widthPx, heightPx };
-      painter.resize(widthPx, heightPx);
-    };
-    const observer = new ResizeObserver(() => {
-      measure();
-      clearTimeout(resting);
-      resting = setTimeout(() => this.#sendOutputSize(), RESIZE_REST_MS);
-    });
-    observer.observe(canvas);
-    measure();
-    this.#start();
-    return () => {
-      observer.disconnect();
-      clearTimeout(resting);
-      detachPointer();
-      painter.dispose();
-      this.#canvas = undefined;
-      this.#painter = undefined;
-    };
+    const detach = this.#place.attach(canvas);
+    if (!this.#running) {
+      this.#running = true;
+      void this.#client.run();
+    }
+    return detach;
+  }
+
+  // The camera of the session for who steers, else the own view's.
+  move(motion: (pose: Pose) => Pose): void {
+    if (this.state.session.editBlock.peek() === undefined) this.state.move(motion);
+    else if (this.#startsLookingAround()) this.#ownView.move(motion, this.#shownPose());
+  }
+
+  follow(): void {
+    this.#ownView.follow();
   }
 
   showTime(index: number): void {
@@ -155,7 +224,9 @@ export class Page implements SessionListener {
 
   // A camera of that kind that shows the whole storm.
   showCamera(kind: CameraKind): void {
-    this.state.edit((scene) => withCamera(scene, homeCamera(kind)));
+    if (this.state.session.editBlock.peek() === undefined)
+      this.state.edit((scene) => withCamera(scene, homeCamera(kind)));
+    else if (this.#startsLookingAround()) this.#ownView.show(homeCamera(kind));
   }
 
   home(): void {
@@ -166,6 +237,18 @@ export class Page implements SessionListener {
     this.state.panelOpen.value = !this.state.panelOpen.value;
   }
 
+  togglePopover(name: "share" | "people"): void {
+    const { popover } = this.state;
+    popover.value = popover.value === name ? undefined : name;
+  }
+
+  toggleTool(tool: Exclude<Tool, "camera">): void {
+    const { session } = this.state;
+    this.marking.withdrawPointer();
+    if (!session.mayMark.peek()) return;
+    session.tool.value = session.tool.value === tool ? "camera" : tool;
+  }
+
   setResolution(share: number): void {
     this.state.resolution.value = share;
     this.#setsOutput = true;
@@ -173,41 +256,37 @@ export class Page implements SessionListener {
   }
 
   async copyLink(): Promise<void> {
-    const session = this.state.session.value;
-    if (session === undefined) return;
-    this.state.session.value = { ...session, shared: true };
-    const { location, navigator } = this.#window;
-    const address = linkTo(location.href, session.id, this.state.scene.value);
-    try {
-      await navigator.clipboard.writeText(address);
-      this.#note("link", "Link copied");
-    } catch {
-      // Browsers deny the clipboard to pages without HTTPS or without focus.
-      this.state.notify({ subject: "link", text: address, severity: "note" });
+    if (await this.addresses.copyLink()) this.#note("link", "Link copied");
+    else {
+      const text = this.addresses.viewersLink(true) ?? "";
+      this.state.notify({ subject: "link", text, severity: "note" });
     }
   }
 
   dispose(): void {
     this.#storms.dispose();
+    this.addresses.dispose();
     this.#listening.abort();
     for (const dispose of this.#disposals) dispose();
     this.playback.dispose();
-    this.#sender.stop();
+    this.marking.dispose();
+    this.#ownView.dispose();
+    this.#sync.dispose();
     this.#client.dispose();
-    this.#pipeline.dispose();
+    this.#calls.dispose();
+    this.#flow.dispose();
   }
 
   // SessionListener.
 
   sceneToOpen(): Scene {
     this.#setsOutput = true;
-    const size = outputSize(
-      this.#canvasSize.widthPx,
-      this.#canvasSize.heightPx,
-      this.state.resolution.value,
-    );
-    this.state.adoptScene(withOutput(this.state.scene.value, size));
-    return this.state.scene.value;
+    const { scene, resolution } = this.state;
+    const { widthPx, heightPx } = this.#place.size;
+    const size = outputSize(widthPx, heightPx, resolution.value);
+    this.state.adoptScene(withOutput(scene.value, size));
+    this.#sync.opening();
+    return scene.value;
   }
 
   openingRefused(message: string): void {
@@ -215,62 +294,86 @@ export class Page implements SessionListener {
     this.state.adoptScene(create(SceneSchema));
   }
 
-  opened(session: OpenedSession): void {
-    const before = this.state.session.value;
-    this.state.session.value = { id: session.id, shared: false };
+  opened(opened: OpenedSession): void {
+    this.#presenterKey = opened.presenterKey;
+    this.#opened = true;
+    this.#keys.keep(opened.viewerKey, opened.presenterKey);
+    this.state.session.viewerKey.value = opened.viewerKey;
+    this.#sync.opened(opened.completed, opened.revision);
+    this.addresses.write();
+  }
+
+  joining(): JoinDetails {
+    return { name: this.#keys.name, window: this.#windowMessage(), codecs: [Codec.JPEG] };
+  }
+
+  joined(joined: Joined): void {
+    const { session } = this.state;
+    const presenting = joined.role === Role.PRESENTER;
+    session.joined(joined);
+    if (presenting && this.#presenterKey !== undefined)
+      this.#keys.keep(joined.viewerKey, this.#presenterKey);
     this.#ledger.startSession();
-    this.#adoptedRevision = -1n;
-    this.#told = undefined;
-    this.#ledger.sent(session.completed.timeIndex ?? 0, this.#now()).accepted(session.revision);
-    if (this.state.scene.value === session.asked) this.state.adoptScene(session.completed);
-    this.#sender.start(session.asked);
-    // Without this, reloading would look for a session that has ended.
-    this.#window.history.replaceState(null, "", withoutLink(this.#window.location.href));
-    if (session.replaces) {
-      const text =
-        before === undefined || before.shared
-          ? "The shared session has ended; this is a new one of your own."
-          : "The server had lost the session; this is a new one with the same scene.";
-      this.#note("session", text);
-    }
+    this.#sync.forget();
+    this.#flow.startCall();
+    this.#ownView.resume();
     void this.#storms.learn();
   }
 
-  streaming(sessionId: string): void {
-    this.#pipeline.startStream();
-    this.#sender.start();
-    if (this.state.session.value?.id !== sessionId) {
-      this.state.session.value = { id: sessionId, shared: true };
-      void this.#storms.learn();
-    }
-  }
-
-  connection(connection: PageState["connection"]["value"]): void {
+  connection(connection: Connection): void {
     this.state.connection.value = connection;
-    if (connection.kind === "lost") this.#sender.stop();
+    if (connection.kind !== "live") this.#sync.hold();
   }
 
-  scene(scene: Scene, revision: bigint): void {
-    this.#told = { scene, revision };
-    this.#adoptTold();
+  message(message: InteractResponse["message"]): void {
+    const { session } = this.state;
+    switch (message.case) {
+      case "scene":
+        if (message.value.scene !== undefined)
+          this.#sync.told(message.value.scene, message.value.sceneRevision);
+        break;
+      case "frame":
+        this.#flow.offer(message.value);
+        break;
+      case "problem":
+        this.#problem(message.value);
+        break;
+      case "presence":
+        this.#takePresence(message.value);
+        break;
+      case "pointers":
+        session.pointers.value = message.value.pointers;
+        break;
+      case "marks":
+        session.takeMarks(message.value.marks);
+        break;
+    }
   }
 
-  frame(frame: Frame): void {
-    this.#pipeline.offer(frame);
+  refused(subject: RequestCase, requestId: bigint, code: Code, message: string): void {
+    // A late or a second pointer, acknowledgement or motion is of no interest.
+    if (subject === "point" || subject === "acknowledge" || subject === "moveCamera") return;
+    if (subject === "addMark") this.state.session.dropPendingMark(requestId);
+    if (subject === "detach") this.#ownView.end();
+    const text = code === Code.PermissionDenied && message === "" ? "This is not allowed" : message;
+    this.#note("refused-request", text);
   }
 
-  problem(problem: Problem): void {
-    this.#problemRevision = problem.sceneRevision;
-    this.#ledger.settled(problem.sceneRevision);
-    this.state.notify({ subject: "problem", text: problem.message, severity: "problem" });
-    // The storm may be gone.
-    void this.#storms.learn();
-  }
-
-  #start(): void {
-    if (this.#running) return;
-    this.#running = true;
-    void this.#client.run();
+  gone(why: { readonly message: string; readonly forgotten: boolean }): boolean {
+    const { session } = this.state;
+    const presented = this.#presenterKey !== undefined;
+    this.#presenterKey = undefined;
+    if (session.viewerKey.peek() !== undefined) this.#keys.forget(session.viewerKey.peek() ?? "");
+    if (presented && why.forgotten) {
+      this.#note(
+        "session",
+        "The server had lost the session; this is a new one with the same scene.",
+      );
+      return true;
+    }
+    session.end(why.message);
+    this.playback.pause();
+    return false;
   }
 
   #now(): number {
@@ -281,62 +384,134 @@ export class Page implements SessionListener {
     const options = { signal: this.#listening.signal };
     const window = this.#window;
     window.addEventListener("online", () => this.#client.retryNow(), options);
-    window.addEventListener("pagehide", (event) => this.#leave(event), options);
+    window.document.addEventListener("visibilitychange", () => this.#sendWindow(), options);
     const pace = setInterval(() => this.#takePace(), PACE_EVERY_MS);
+    const stillHere = setInterval(() => {
+      if (!window.document.hidden) this.#sendWindow();
+    }, STILL_HERE_EVERY_MS);
     this.#disposals.push(
       () => clearInterval(pace),
+      () => clearInterval(stillHere),
       attachKeyboard(window, {
-        move: (motion) => this.state.move(motion),
+        move: (motion) => this.move(motion),
         home: () => this.home(),
         togglePanel: () => this.togglePanel(),
-        togglePlay: () => this.playback.toggle(),
-        stepTime: (by) => this.playback.step(by),
+        togglePlay: () => this.#mayPlay() && this.playback.toggle(),
+        stepTime: (by) => this.#mayPlay() && this.playback.step(by),
+        toggleTool: (tool) => this.toggleTool(tool),
+        escape: () => this.#escape(),
       }),
       effect(() => this.#storms.describeAfterRest(this.playback.playing.value)),
+      effect(() => {
+        if (!this.state.session.mayLookAround.value) untracked(() => this.follow());
+      }),
+      effect(() => {
+        this.state.session.lookingAround.value;
+        untracked(() => this.#flow.viewChanged());
+      }),
+      effect(() => {
+        if (!this.state.session.mayMark.value) this.state.session.tool.value = "camera";
+      }),
     );
   }
 
-  // A page that is closed ends its session, unless others may be watching it.
-  #leave(event: PageTransitionEvent): void {
-    if (!event.persisted && this.state.session.value?.shared === false) this.#client.closeSession();
+  #takePresence(presence: Presence): void {
+    const { session } = this.state;
+    const steeredBefore = session.steering.peek();
+    session.takePresence(presence);
+    if (session.steering.peek()) {
+      this.#ownView.follow();
+      this.#sync.allow();
+      if (this.#setsOutput) this.#sendOutputSize();
+      if (!steeredBefore && !this.#opened) this.#note("control", "You steer");
+    } else {
+      this.#sync.hold();
+      this.playback.pause();
+      if (this.#opened && presence.steeringViewerId === 0n) this.actions.takeControl();
+      else if (this.#sync.unsettled) {
+        this.#sync.discard();
+        this.#note("control", `Your last change was not taken. ${session.editBlock.peek() ?? ""}`);
+      }
+    }
+    this.#opened = false;
   }
 
-  async #send(scene: Scene): Promise<void> {
+  #startsLookingAround(): boolean {
+    const { session, connection } = this.state;
+    if (session.ended.peek() !== undefined || connection.peek().kind !== "live") return false;
+    if (session.mayLookAround.peek()) return true;
+    this.#note("locked", "The presenter has locked the view: everybody sees the same");
+    return false;
+  }
+
+  #mayPlay(): boolean {
+    return this.state.session.editBlock.peek() === undefined;
+  }
+
+  #shownPose(): Pose | undefined {
+    return poseOfCamera(this.#shown?.camera) ?? this.state.pose.peek();
+  }
+
+  #markedPicture(): MarkedPicture | undefined {
+    const box = this.state.pictureBox.peek();
+    const projection = this.state.frame.peek()?.projection;
+    if (box === undefined || projection === undefined) return undefined;
+    const pose = poseOfCamera(this.#shown?.camera);
+    const distanceM = pose?.kind === "orbit" ? pose.distanceM : TYPICAL_DISTANCE_M;
+    return { box, projection, distanceM };
+  }
+
+  #escape(): boolean {
+    const { popover, session } = this.state;
+    if (popover.peek() !== undefined) popover.value = undefined;
+    else if (session.tool.peek() !== "camera") {
+      this.marking.withdrawPointer();
+      session.tool.value = "camera";
+    } else return false;
+    return true;
+  }
+
+  #problem(problem: Problem): void {
+    this.#problemRevision = problem.sceneRevision;
+    this.#ledger.settled(problem.sceneRevision);
+    this.state.notify({ subject: "problem", text: problem.message, severity: "problem" });
+    // The storm may be gone.
+    void this.#storms.learn();
+  }
+
+  async #send(scene: Scene, expectedRevision: bigint): Promise<SceneVerdict> {
     const entry = this.#ledger.sent(scene.timeIndex ?? 0, this.#now());
     try {
-      const verdict = await this.#client.updateScene(scene);
-      if (verdict.kind === "taken") {
-        entry.accepted(verdict.revision);
-        this.state.dismiss("refused");
-      } else {
-        entry.refused();
-        this.state.notify({ subject: "refused", text: verdict.message, severity: "problem" });
-      }
+      const verdict = await this.#client.updateScene(scene, expectedRevision);
+      if (verdict.kind === "taken") entry.accepted(verdict.revision);
+      else entry.refused();
+      return verdict;
     } catch (error) {
       entry.refused();
       throw error;
     }
   }
 
-  #paint(frame: Frame, picture: ImageBitmap): void {
-    if (this.#painter === undefined || this.#canvas === undefined) {
-      picture.close();
-      return;
-    }
-    this.#painter.paint(picture);
+  #painted(frame: Frame): void {
+    const { canvas } = this.#place;
+    if (canvas === undefined) return;
     const now = this.#now();
     this.#shown = frame;
-    this.#ledger.shown(frame.sceneRevision, now);
     this.#rate.shown(frame.jpeg.byteLength, now);
-    this.#client.acknowledge(frame.sequence);
+    this.state.pictureBox.value = this.#place.boxOf(frame);
     this.state.showFrame(frame);
-    this.#adoptCamera();
+    if (frame.ownView) this.#ownView.placed(frame.camera);
+    else {
+      this.#ledger.shown(frame.sceneRevision, now);
+      this.#adoptCamera();
+    }
     if (frame.sceneRevision >= this.#problemRevision) this.state.dismiss("problem");
     const pose = poseOfCamera(frame.camera);
-    Object.assign(this.#canvas.dataset, {
+    Object.assign(canvas.dataset, {
       sequence: String(frame.sequence),
       revision: String(frame.sceneRevision),
       refined: String(frame.refined),
+      ownView: String(frame.ownView),
       time: String(this.#ledger.shownTimeIndex ?? ""),
       camera: pose?.kind ?? "",
       azimuth: standingAzimuthDeg(pose)?.toFixed(2) ?? "",
@@ -344,47 +519,39 @@ export class Page implements SessionListener {
     });
   }
 
-  // Once the server has answered every scene sent, another viewer's scene replaces ours; for our own scene, the settings
-  // that the server filled in are adopted.
-  #adoptTold(): void {
-    const told = this.#told;
-    if (told === undefined || this.#sender.unsettled) return;
-    this.#told = undefined;
-    const ours = this.#ledger.newestAccepted;
-    if (told.revision === ours) this.state.adoptRendering(told.scene.rendering);
-    if (told.revision <= ours) return;
-    this.#adoptedRevision = told.revision;
-    this.state.adoptScene(told.scene);
-  }
-
-  // Adopts a frame's camera once the frame shows the newest scene sent.
+  // Adopts a frame's camera once the frame shows the newest scene.
   #adoptCamera(): void {
     const frame = this.#shown;
-    if (frame === undefined || this.#sender.unsettled) return;
-    const ours = this.#ledger.newestAccepted;
-    if (frame.sceneRevision < ours || frame.sceneRevision < this.#adoptedRevision) return;
-    this.state.adoptCamera(frame.camera, frame.sceneRevision > ours);
+    if (frame === undefined || frame.ownView || this.#sync.unsettled) return;
+    if (frame.sceneRevision >= this.#sync.revision) this.state.adoptCamera(frame.camera);
   }
 
-  // Acknowledged although not shown: the server would wait for it.
+  // Such a frame is acknowledged although it is not shown: the server would wait for it.
   #undecodable(frame: Frame): void {
-    this.#client.acknowledge(frame.sequence);
     const text = `Frame ${frame.sequence} is no picture that this browser can read`;
     this.state.notify({ subject: "decode", text, severity: "problem" });
   }
 
+  #windowMessage() {
+    return { ...this.#place.size, hidden: this.#window.document.hidden };
+  }
+
+  #sendWindow(): void {
+    this.#client.send({ case: "window", value: this.#windowMessage() });
+  }
+
   #sendOutputSize(): void {
     const { output } = this.state.scene.value;
-    const { widthPx, heightPx } = this.#canvasSize;
+    const { widthPx, heightPx } = this.#place.size;
     const size = outputSize(widthPx, heightPx, this.state.resolution.value);
-    if (!this.#setsOutput || this.state.session.value === undefined) return;
+    if (!this.#setsOutput || this.state.session.me.value === undefined) return;
     if (output?.widthPx === size.widthPx && output?.heightPx === size.heightPx) return;
     this.state.edit((scene) => withOutput(scene, size));
   }
 
   // Before this page sends a first scene, the frame shown is of the scene's time.
   #isTimeShown(index: number): boolean {
-    if (this.#sender.unsettled || this.#shown === undefined) return false;
+    if (this.#sync.unsettled || this.#shown === undefined) return false;
     return (this.#ledger.shownTimeIndex ?? index) === index;
   }
 
@@ -392,7 +559,6 @@ export class Page implements SessionListener {
     const now = this.#now();
     // A frame may arrive before the reply that names its revision.
     if (poseOfCamera(this.state.scene.value.camera) === undefined) this.#adoptCamera();
-    this.#adoptTold();
     this.state.pace.value = {
       framesPerSecond: this.#rate.framesPerSecond(now),
       bytesPerSecond: this.#rate.bytesPerSecond(now),
@@ -408,8 +574,17 @@ export class Page implements SessionListener {
   }
 }
 
-function decodeJpeg(jpeg: Uint8Array): Promise<ImageBitmap> {
-  // Blob does not accept shared buffers; decoded messages never use them.
-  const bytes = jpeg as Uint8Array<ArrayBuffer>;
-  return createImageBitmap(new Blob([bytes], { type: "image/jpeg" }));
+// Browsers may deny storage altogether.
+function storageOf(window: Window): Storage | undefined {
+  try {
+    return window.localStorage;
+  } catch {
+    return undefined;
+  }
+}
+
+function rayMessage({ originM, direction }: WorldRay) {
+  const [xM, yM, zM] = originM;
+  const [x, y, z] = direction;
+  return { origin: { xM, yM, zM }, direction: { x, y, z } };
 }

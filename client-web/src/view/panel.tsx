@@ -34,20 +34,16 @@ const RESOLUTIONS = [
 export function Panel({ page }: { page: Page }) {
   const { state } = page;
   const open = state.panelOpen.value;
+  const block = state.session.editBlock.value;
   return (
-    <>
-      <button
-        type="button"
-        class="panel-toggle"
-        data-testid="panel-toggle"
-        aria-expanded={open}
-        aria-controls="panel"
-        title="Show or hide the settings (P)"
-        onClick={() => page.togglePanel()}
-      >
-        {open ? "Hide settings" : "Settings"}
-      </button>
-      <aside id="panel" class="panel" aria-label="Settings" data-testid="panel" hidden={!open}>
+    <aside id="panel" class="panel" aria-label="Settings" data-testid="panel" hidden={!open}>
+      {block !== undefined && (
+        <p class="blocked" data-testid="edit-block">
+          {block}
+        </p>
+      )}
+      <fieldset class="controls" disabled={block !== undefined} data-testid="controls">
+        <legend class="visually-hidden">Settings of the scene</legend>
         <StormSection page={page} />
         <QualitySection state={state} />
         <AccuracySection state={state} />
@@ -57,9 +53,9 @@ export function Panel({ page }: { page: Page }) {
         <LightsSection state={state} />
         <FieldsSection state={state} />
         <PictureSection page={page} />
-        <HelpSection />
-      </aside>
-    </>
+      </fieldset>
+      <HelpSection />
+    </aside>
   );
 }
 
@@ -79,14 +75,6 @@ function StormSection({ page }: { page: Page }) {
       <div class="buttons">
         <button type="button" data-testid="home" onClick={() => page.home()}>
           Whole storm
-        </button>
-        <button
-          type="button"
-          data-testid="copy-link"
-          disabled={state.session.value === undefined}
-          onClick={() => void page.copyLink()}
-        >
-          Copy link
         </button>
         {shown?.deletable && <DeleteCloud key={shown.id} page={page} />}
       </div>

@@ -1,6 +1,9 @@
 // Mouse and touch over the storm: a drag turns, with the right button, shift or two fingers it moves, the
-// wheel or a pinch comes nearer. attachPointer() returns a function that removes the listeners.
+// wheel or a pinch comes nearer. With a tool in the hand, the left button or one finger uses that instead of turning.
+// attachPointer() returns a function that removes the listeners.
 import { drag, type PictureSize, type Pose, pan, zoom } from "../core/camera";
+import type { PictureTool } from "../core/marking";
+import type { StrokePoint } from "../core/stroke";
 
 type Move = (motion: (pose: Pose) => Pose) => void;
 
@@ -16,17 +19,31 @@ const TOUCHPAD_PINCH_PER_PIXEL = 0.01;
 const LINE_PX = 16;
 const SECONDARY_AND_MIDDLE_BUTTONS = 2 | 4;
 
-export function attachPointer(canvas: HTMLCanvasElement, move: Move): () => void {
+export function attachPointer(
+  canvas: HTMLCanvasElement,
+  move: Move,
+  toolInHand: () => PictureTool | undefined,
+): () => void {
   const down = new Map<number, Point>();
   const listening = new AbortController();
   const options = { signal: listening.signal };
+  // The pointer that uses the tool, which is also in `down`.
+  let drawing: { readonly pointerId: number; readonly tool: PictureTool } | undefined;
 
   canvas.addEventListener(
     "pointerdown",
     (event) => {
       canvas.setPointerCapture(event.pointerId);
+      const tool = toolInHand();
+      if (down.size > 0) {
+        drawing?.tool.cancel();
+        drawing = undefined;
+      } else if (tool !== undefined && event.button === 0 && !event.shiftKey) {
+        drawing = { pointerId: event.pointerId, tool };
+        tool.press(placeOf(event));
+      }
       down.set(event.pointerId, pointOf(event));
-      canvas.classList.add("grabbed");
+      if (drawing === undefined) canvas.classList.add("grabbed");
     },
     options,
   );
@@ -35,7 +52,15 @@ export function attachPointer(canvas: HTMLCanvasElement, move: Move): () => void
     "pointermove",
     (event) => {
       const before = down.get(event.pointerId);
-      if (before === undefined) return;
+      if (before === undefined) {
+        toolInHand()?.hover(placeOf(event));
+        return;
+      }
+      if (drawing?.pointerId === event.pointerId) {
+        for (const part of event.getCoalescedEvents()) drawing.tool.drag(placeOf(part));
+        drawing.tool.drag(placeOf(event));
+        return;
+      }
       const after = pointOf(event);
       const picture = { widthPx: canvas.clientWidth, heightPx: canvas.clientHeight };
       if (down.size === 1) {
@@ -53,10 +78,16 @@ export function attachPointer(canvas: HTMLCanvasElement, move: Move): () => void
 
   const release = (event: PointerEvent) => {
     down.delete(event.pointerId);
+    if (drawing?.pointerId === event.pointerId) {
+      if (event.type === "pointerup") drawing.tool.release();
+      else drawing.tool.cancel();
+      drawing = undefined;
+    }
     if (down.size === 0) canvas.classList.remove("grabbed");
   };
   canvas.addEventListener("pointerup", release, options);
   canvas.addEventListener("pointercancel", release, options);
+  canvas.addEventListener("pointerleave", () => toolInHand()?.leave(), options);
   canvas.addEventListener("contextmenu", (event) => event.preventDefault(), options);
 
   canvas.addEventListener(
@@ -83,4 +114,9 @@ function pinch(pose: Pose, before: Point, after: Point, other: Point, picture: P
 
 function pointOf(event: PointerEvent): Point {
   return { x: event.clientX, y: event.clientY };
+}
+
+// The canvas fills the window.
+function placeOf(event: PointerEvent): StrokePoint {
+  return { left: event.clientX, top: event.clientY };
 }

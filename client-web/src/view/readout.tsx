@@ -70,6 +70,8 @@ function Costs({ state }: { state: PageState }) {
         ))}
         <Row name="All stages" text={`${formatNumber(total)} ms`} />
         <Row name="Picture" text={`${frame.widthPx} × ${frame.heightPx}`} />
+        {frame.tier > 0 && <Row name="Reduced by" text={`${frame.tier} steps, for this link`} />}
+        {frame.ownView && <Row name="View" text="Your own" />}
         <Row name="Bytes" text={formatBytes(frame.bytes)} />
         <Row name="Rate" text={`${formatBytes(state.pace.value.bytesPerSecond)}/s`} />
         {frame.modelled !== undefined && (

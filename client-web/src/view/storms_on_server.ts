@@ -2,18 +2,18 @@
 import { ConnectError } from "@connectrpc/connect";
 import { requestOfCloud } from "../core/cloud";
 import type { PageState } from "../core/state";
-import type { SessionClient } from "../transport/session_client";
+import type { ServerCalls } from "../transport/server_calls";
 
 const DESCRIBE_REST_MS = 400;
 
 export class StormsOnServer {
-  readonly #client: SessionClient;
+  readonly #calls: ServerCalls;
   readonly #state: PageState;
   #describeTimer: ReturnType<typeof setTimeout> | undefined;
   #making: AbortController | undefined;
 
-  constructor(client: SessionClient, state: PageState) {
-    this.#client = client;
+  constructor(calls: ServerCalls, state: PageState) {
+    this.#calls = calls;
     this.#state = state;
   }
 
@@ -21,8 +21,8 @@ export class StormsOnServer {
   async learn(): Promise<void> {
     const { server, storms, scene } = this.#state;
     try {
-      server.value = await this.#client.serverInfo();
-      storms.value = await this.#client.storms();
+      server.value = await this.#calls.serverInfo();
+      storms.value = await this.#calls.storms();
       const first = storms.value[0];
       if (scene.value.stormId === "" && first !== undefined) {
         this.#state.adoptScene({ ...scene.value, stormId: first.id });
@@ -54,8 +54,8 @@ export class StormsOnServer {
     this.#state.makingCloud.value = true;
     try {
       const request = requestOfCloud(this.#state.cloud.value);
-      const storm = await this.#client.generateCloud(request, making.signal);
-      this.#state.storms.value = await this.#client.storms();
+      const storm = await this.#calls.generateCloud(request, making.signal);
+      this.#state.storms.value = await this.#calls.storms();
       this.#state.dismiss("cloud");
       return storm?.id;
     } catch (error) {
@@ -71,7 +71,7 @@ export class StormsOnServer {
   // Deletes a cloud that the server made; a failure becomes a notice.
   async deleteCloud(stormId: string): Promise<void> {
     try {
-      await this.#client.deleteCloud(stormId);
+      await this.#calls.deleteCloud(stormId);
       this.#state.dismiss("cloud");
     } catch (error) {
       const why = error instanceof ConnectError ? error.rawMessage : String(error);
@@ -92,7 +92,7 @@ export class StormsOnServer {
 
   async #describe(stormId: string, timeIndex: number): Promise<void> {
     try {
-      const storm = await this.#client.describeStorm(stormId, timeIndex);
+      const storm = await this.#calls.describeStorm(stormId, timeIndex);
       if (storm === undefined || stormId !== this.#state.stormId.value) return;
       this.#state.storm.value = storm;
       this.#state.dismiss("storm");

@@ -16,6 +16,7 @@ interface SunDomeProps {
   readonly sun: SunDirection;
   // Azimuth at which the camera stands, seen from the storm.
   readonly cameraAzimuthDeg: number | undefined;
+  readonly disabled: boolean;
   readonly onChange: (sun: SunDirection) => void;
 }
 
@@ -24,13 +25,14 @@ const CENTER = 70;
 const STEP_DEG = 5;
 const FINE_STEP_DEG = 1;
 
-export function SunDome({ sun, cameraAzimuthDeg, onChange }: SunDomeProps) {
+export function SunDome({ sun, cameraAzimuthDeg, disabled, onChange }: SunDomeProps) {
   const point = domePointOfSun(sun);
   const x = CENTER + point.right * RADIUS;
   const y = CENTER + point.down * RADIUS;
   const text = `${Math.round(wrapDegrees(sun.azimuthDeg))}° ${compassPoint(sun.azimuthDeg)}, ${Math.round(sun.elevationDeg)}° above the horizon`;
 
   const drag = (event: PointerEvent & { currentTarget: HTMLDivElement }) => {
+    if (disabled) return;
     const box = event.currentTarget.getBoundingClientRect();
     const scale = (2 * CENTER) / box.width;
     const right = ((event.clientX - box.left) * scale - CENTER) / RADIUS;
@@ -47,7 +49,7 @@ export function SunDome({ sun, cameraAzimuthDeg, onChange }: SunDomeProps) {
       ArrowDown: [0, -step],
     };
     const by = turns[event.key];
-    if (by === undefined) return;
+    if (by === undefined || disabled) return;
     event.preventDefault();
     onChange({
       azimuthDeg: wrapDegrees(sun.azimuthDeg + by[0]),
@@ -57,9 +59,10 @@ export function SunDome({ sun, cameraAzimuthDeg, onChange }: SunDomeProps) {
 
   return (
     <div
-      class="dome"
+      class={disabled ? "dome off" : "dome"}
       role="slider"
-      tabIndex={0}
+      tabIndex={disabled ? -1 : 0}
+      aria-disabled={disabled}
       aria-label="Direction of the sun: left and right turn it, up and down raise and lower it"
       aria-valuemin={LIMITS.sunElevation.minimum}
       aria-valuemax={LIMITS.sunElevation.maximum}

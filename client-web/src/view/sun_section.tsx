@@ -30,6 +30,7 @@ export function SunSection({ state }: { state: PageState }) {
       />
       <SunDome
         sun={direction}
+        disabled={state.session.editBlock.value !== undefined}
         cameraAzimuthDeg={standingAzimuthDeg(state.pose.value)}
         onChange={point}
       />

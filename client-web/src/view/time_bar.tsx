@@ -12,7 +12,8 @@ export function TimeBar({ page }: { page: Page }) {
   const time = storm.times[index];
   const label = time === undefined ? "" : formatValidTime(time.validTime, time.elapsedS);
   const playing = playback.playing.value;
-  const single = count < 2;
+  const blocked = state.session.editBlock.value !== undefined;
+  const fixed = count < 2 || blocked;
   return (
     <section class="time-bar" aria-label="Time" data-testid="time-bar">
       <button
@@ -21,7 +22,7 @@ export function TimeBar({ page }: { page: Page }) {
         data-testid="play"
         aria-label={playing ? "Pause" : "Play"}
         title={playing ? "Pause (space)" : "Play (space)"}
-        disabled={single}
+        disabled={fixed}
         onClick={() => playback.toggle()}
       >
         <svg viewBox="0 0 16 16" aria-hidden="true">
@@ -36,7 +37,7 @@ export function TimeBar({ page }: { page: Page }) {
         min={0}
         max={count - 1}
         step={1}
-        disabled={single}
+        disabled={fixed}
         value={index}
         onInput={(event) => {
           playback.pause();
@@ -53,7 +54,7 @@ export function TimeBar({ page }: { page: Page }) {
         <span class="visually-hidden">Times per second</span>
         <select
           data-testid="rate"
-          disabled={single}
+          disabled={fixed}
           value={String(playback.timesPerSecond.value)}
           onChange={(event) => {
             playback.timesPerSecond.value = Number(event.currentTarget.value);

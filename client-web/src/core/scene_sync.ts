@@ -1,0 +1,199 @@
+// Keeps the page's scene and the session's the same. Edits are functions of a scene: they are applied to the page's at once,
+// sent at most once a screen refresh and one at a time, and applied again to the server's scene where somebody else changed
+// that meanwhile.
+import type { Scene } from "../gen/thunderhead/v1/scene_pb";
+import type { Later } from "./newest";
+
+export type Edit = (scene: Scene) => Scene;
+
+export type SceneVerdict =
+  | { readonly kind: "taken"; readonly revision: bigint }
+  // The session's scene is another one than the edits were made to.
+  | { readonly kind: "stale" }
+  // The server has too much to do; the same scene may be taken later.
+  | { readonly kind: "busy"; readonly message: string }
+  | { readonly kind: "refused"; readonly message: string };
+
+export interface SyncSteps {
+  // The page's scene, with every edit.
+  scene(): Scene;
+  // Shows a scene in the controls.
+  adopt(scene: Scene): void;
+  // The server's completed version of the page's own scene.
+  complete(scene: Scene): void;
+  // Somebody else's scene is in force.
+  changedByOthers(scene: Scene, revision: bigint): void;
+  // Rejects if the connection is lost.
+  send(scene: Scene, expectedRevision: bigint): Promise<SceneVerdict>;
+  taken(): void;
+  // A scene was refused, or is sent again later as the server is busy.
+  refused(message: string): void;
+  // Requests one call at the next screen refresh; returns a function that cancels it.
+  onNextPaint(callback: () => void): () => void;
+  later: Later;
+}
+
+const BUSY_REST_MS = 500;
+
+export class SceneSync {
+  readonly #steps: SyncSteps;
+  #edits: Edit[] = [];
+  // Number of the edits that are in the scene in flight.
+  #inFlight: number | undefined;
+  #revision = -1n;
+  #told: { readonly scene: Scene; readonly revision: bigint } | undefined;
+  #mayEdit = false;
+  // Nothing is sent before the newer scene is known.
+  #stale = false;
+  #openingEdits = 0;
+  #withdrawPaint: (() => void) | undefined;
+  #withdrawRest: (() => void) | undefined;
+
+  constructor(steps: SyncSteps) {
+    this.#steps = steps;
+  }
+
+  // The revision that the page's scene was made from.
+  get revision(): bigint {
+    return this.#revision;
+  }
+
+  // True while the server has not taken every edit.
+  get unsettled(): boolean {
+    return this.#edits.length > 0;
+  }
+
+  // The page's scene was edited.
+  edited(edit: Edit): void {
+    this.#edits.push(edit);
+    this.#schedule();
+  }
+
+  // The page's scene is about to open a session.
+  opening(): void {
+    this.#openingEdits = this.#edits.length;
+  }
+
+  // A session was opened with that scene, completed by the server.
+  opened(completed: Scene, revision: bigint): void {
+    this.#edits.splice(0, this.#openingEdits);
+    this.#told = undefined;
+    this.#stale = false;
+    this.#rebase(completed, revision);
+  }
+
+  // Joined, again or another session: its next scene is taken whatever its revision.
+  forget(): void {
+    this.#revision = -1n;
+    this.#told = undefined;
+    this.#stale = false;
+  }
+
+  // This page steers and is connected.
+  allow(): void {
+    this.#mayEdit = true;
+    this.#schedule();
+  }
+
+  // The connection is lost, or another steers. Edits are kept.
+  hold(): void {
+    this.#mayEdit = false;
+    this.#withdrawPaint?.();
+    this.#withdrawPaint = undefined;
+  }
+
+  // Gives edits up that the server has not taken.
+  discard(): void {
+    this.#edits = [];
+    if (this.#told !== undefined) this.#rebase(this.#told.scene, this.#told.revision);
+  }
+
+  // The session's scene.
+  told(scene: Scene, revision: bigint): void {
+    this.#told = { scene, revision };
+    this.#stale = false;
+    this.#adoptTold();
+    this.#schedule();
+  }
+
+  dispose(): void {
+    this.hold();
+    this.#withdrawRest?.();
+  }
+
+  #adoptTold(): void {
+    const told = this.#told;
+    if (told === undefined || this.#inFlight !== undefined || told.revision < this.#revision)
+      return;
+    if (told.revision === this.#revision) {
+      if (this.#edits.length === 0) this.#steps.complete(told.scene);
+      return;
+    }
+    this.#steps.changedByOthers(told.scene, told.revision);
+    this.#rebase(told.scene, told.revision);
+  }
+
+  #rebase(scene: Scene, revision: bigint): void {
+    this.#revision = revision;
+    this.#stale = false;
+    this.#steps.adopt(this.#edits.reduce((edited, edit) => edit(edited), scene));
+    this.#schedule();
+  }
+
+  #schedule(): void {
+    if (!this.#mayEdit || this.#stale || this.#inFlight !== undefined) return;
+    if (this.#edits.length === 0 || this.#withdrawRest !== undefined) return;
+    this.#withdrawPaint ??= this.#steps.onNextPaint(() => {
+      this.#withdrawPaint = undefined;
+      void this.#send();
+    });
+  }
+
+  async #send(): Promise<void> {
+    if (this.#inFlight !== undefined || !this.#mayEdit || this.#edits.length === 0) return;
+    this.#inFlight = this.#edits.length;
+    const sent = this.#edits.slice();
+    try {
+      const verdict = await this.#steps.send(this.#steps.scene(), this.#revision);
+      this.#inFlight = undefined;
+      this.#judge(verdict, sent);
+    } catch {
+      // The connection is lost: allow() is called once it is back.
+      this.#inFlight = undefined;
+      this.hold();
+    }
+    this.#adoptTold();
+    this.#schedule();
+  }
+
+  #judge(verdict: SceneVerdict, sent: readonly Edit[]): void {
+    switch (verdict.kind) {
+      case "taken":
+        this.#drop(sent);
+        if (verdict.revision > this.#revision) this.#revision = verdict.revision;
+        this.#steps.taken();
+        break;
+      case "stale":
+        this.#stale = true;
+        break;
+      case "busy":
+        this.#steps.refused(verdict.message);
+        this.#withdrawRest = this.#steps.later(BUSY_REST_MS, () => {
+          this.#withdrawRest = undefined;
+          this.#schedule();
+        });
+        break;
+      case "refused":
+        this.#drop(sent);
+        this.#steps.refused(verdict.message);
+        if (this.#told !== undefined && this.#told.revision >= this.#revision)
+          this.#rebase(this.#told.scene, this.#told.revision);
+        break;
+    }
+  }
+
+  #drop(sent: readonly Edit[]): void {
+    const gone = new Set(sent);
+    this.#edits = this.#edits.filter((edit) => !gone.has(edit));
+  }
+}

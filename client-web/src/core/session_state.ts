@@ -1,0 +1,150 @@
+// The session as signals: who is there, who steers, the rules, pointers and marks; and what follows from them for the person
+// at this page. Independent of network and document.
+import { create } from "@bufbuild/protobuf";
+import { batch, computed, signal } from "@preact/signals-core";
+import {
+  type Joined,
+  type Mark,
+  type Person,
+  type Pointer,
+  type Presence,
+  Role,
+  type SessionRules,
+  SessionRulesSchema,
+} from "../gen/thunderhead/v1/interact_pb";
+import type { Vec3 } from "./projection";
+
+export interface Me {
+  readonly viewerId: bigint;
+  readonly role: Role;
+}
+
+// A line that was sent and is not among the server's marks yet.
+export interface PendingMark {
+  readonly requestId: bigint;
+  readonly pointsM: readonly Vec3[];
+}
+
+export type Tool = "camera" | "pointer" | "pen";
+
+export class SessionState {
+  // The key for viewers' links; undefined before there is a session.
+  readonly viewerKey = signal<string | undefined>(undefined);
+  // Why the session is over; undefined while it is not.
+  readonly ended = signal<string | undefined>(undefined);
+  // Kept while the connection is lost.
+  readonly me = signal<Me | undefined>(undefined);
+  readonly people = signal<readonly Person[]>([]);
+  readonly steeringId = signal(0n);
+  readonly rules = signal<SessionRules>(create(SessionRulesSchema));
+  readonly presenterAway = signal(false);
+  readonly pointers = signal<readonly Pointer[]>([]);
+  readonly marks = signal<readonly Mark[]>([]);
+  readonly pendingMarks = signal<readonly PendingMark[]>([]);
+  // True while this page shows a view of its own.
+  readonly lookingAround = signal(false);
+  readonly tool = signal<Tool>("camera");
+
+  readonly presenting = computed(() => this.me.value?.role === Role.PRESENTER);
+  readonly steering = computed(() => {
+    const me = this.me.value;
+    return me !== undefined && me.viewerId === this.steeringId.value;
+  });
+  readonly steerer = computed(() => this.person(this.steeringId.value));
+  readonly asking = computed(() => this.people.value.filter((person) => person.asksControl));
+  readonly iAsk = computed(() => this.asking.value.some((person) => this.isMe(person.viewerId)));
+  // True for the people who answer those who ask.
+  readonly answersAsking = computed(() => this.steering.value || this.presenting.value);
+  readonly mayLookAround = computed(
+    () => this.presenting.value || this.rules.value.followingLocked !== true,
+  );
+  readonly mayMark = computed(
+    () =>
+      this.me.value !== undefined &&
+      (this.presenting.value || this.rules.value.viewersMayMark === true),
+  );
+  readonly alone = computed(() => this.people.value.length < 2);
+
+  // Why the scene cannot be changed from here; undefined where it can. A scene may be set before the session is there.
+  readonly editBlock = computed((): string | undefined => {
+    if (this.ended.value !== undefined) return "This session has ended.";
+    if (this.steering.value) return undefined;
+    if (this.me.value === undefined)
+      return this.viewerKey.value === undefined ? undefined : "Joining the session …";
+    if (this.person(this.me.value.viewerId) === undefined) return "Joining the session …";
+    const steerer = this.steerer.value;
+    if (steerer !== undefined) return `${this.nameOf(steerer)} steers.`;
+    if (this.presenterAway.value) return "The presenter is away, and keeps control.";
+    return "Nobody steers.";
+  });
+
+  person(viewerId: bigint): Person | undefined {
+    return this.people.value.find((person) => person.viewerId === viewerId);
+  }
+
+  isMe(viewerId: bigint): boolean {
+    return this.me.value?.viewerId === viewerId;
+  }
+
+  nameOf(person: Pick<Person, "name" | "role" | "viewerId">): string {
+    if (person.name !== "") return person.name;
+    return person.role === Role.PRESENTER ? "Presenter" : `Viewer ${person.viewerId}`;
+  }
+
+  // The person who points or drew; who has left has no name.
+  nameOfId(viewerId: bigint): string {
+    const person = this.person(viewerId);
+    return person === undefined ? "" : this.nameOf(person);
+  }
+
+  // Who steered before the connection was lost is taken to steer until the next presence, so that controls stay usable.
+  joined(joined: Joined): void {
+    const steered = this.steering.peek();
+    batch(() => {
+      this.ended.value = undefined;
+      this.me.value = { viewerId: joined.viewerId, role: joined.role };
+      this.viewerKey.value = joined.viewerKey;
+      this.steeringId.value = steered ? joined.viewerId : 0n;
+      this.pointers.value = [];
+      this.marks.value = [];
+      this.pendingMarks.value = [];
+    });
+  }
+
+  takePresence(presence: Presence): void {
+    batch(() => {
+      this.people.value = presence.people;
+      this.steeringId.value = presence.steeringViewerId;
+      this.presenterAway.value = presence.presenterAway;
+      if (presence.rules !== undefined) this.rules.value = presence.rules;
+    });
+  }
+
+  // Each new mark of one's own takes the place of the oldest pending one.
+  takeMarks(marks: readonly Mark[]): void {
+    const known = new Set(this.marks.value.map((mark) => mark.markId));
+    const fresh = marks.filter((mark) => !known.has(mark.markId) && this.isMe(mark.viewerId));
+    batch(() => {
+      this.marks.value = marks;
+      this.pendingMarks.value = this.pendingMarks.value.slice(fresh.length);
+    });
+  }
+
+  dropPendingMark(requestId: bigint): void {
+    this.pendingMarks.value = this.pendingMarks.value.filter(
+      (pending) => pending.requestId !== requestId,
+    );
+  }
+
+  end(reason: string): void {
+    batch(() => {
+      this.ended.value = reason;
+      this.me.value = undefined;
+      this.people.value = [];
+      this.steeringId.value = 0n;
+      this.pointers.value = [];
+      this.pendingMarks.value = [];
+      this.lookingAround.value = false;
+    });
+  }
+}

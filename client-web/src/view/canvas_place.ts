@@ -1,0 +1,77 @@
+// The canvas in the window: its size in physical pixels, and what happens on it.
+import type { Pose } from "../core/camera";
+import type { PictureTool } from "../core/marking";
+import type { Box } from "../core/picture_box";
+import { pictureBox } from "../core/picture_box";
+import type { PictureFlow } from "./picture_flow";
+import { attachPointer } from "./pointer";
+
+export interface CanvasPlaceSteps {
+  move(motion: (pose: Pose) => Pose): void;
+  tool(): PictureTool | undefined;
+  resized(): void;
+  // The canvas has had its size for a while.
+  resizeRested(): void;
+}
+
+const RESIZE_REST_MS = 150;
+
+export class CanvasPlace {
+  readonly #window: Window;
+  readonly #flow: PictureFlow;
+  readonly #steps: CanvasPlaceSteps;
+  #canvas: HTMLCanvasElement | undefined;
+  #size = { widthPx: 1280, heightPx: 720 };
+
+  constructor(window: Window, flow: PictureFlow, steps: CanvasPlaceSteps) {
+    this.#window = window;
+    this.#flow = flow;
+    this.#steps = steps;
+  }
+
+  get canvas(): HTMLCanvasElement | undefined {
+    return this.#canvas;
+  }
+
+  // In physical pixels.
+  get size(): { readonly widthPx: number; readonly heightPx: number } {
+    return this.#size;
+  }
+
+  // Where a picture lies in the window, in CSS pixels.
+  boxOf(picture: { readonly widthPx: number; readonly heightPx: number }): Box | undefined {
+    if (this.#canvas === undefined) return undefined;
+    const size = { width: this.#canvas.clientWidth, height: this.#canvas.clientHeight };
+    return pictureBox(size, { width: picture.widthPx, height: picture.heightPx });
+  }
+
+  // Returns the function that detaches it.
+  attach(canvas: HTMLCanvasElement): () => void {
+    const painter = this.#flow.attach(canvas);
+    this.#canvas = canvas;
+    const detachPointer = attachPointer(canvas, this.#steps.move, this.#steps.tool);
+    let resting: ReturnType<typeof setTimeout> | undefined;
+    const measure = () => {
+      const ratio = this.#window.devicePixelRatio;
+      const widthPx = Math.max(1, Math.round(canvas.clientWidth * ratio));
+      const heightPx = Math.max(1, Math.round(canvas.clientHeight * ratio));
+      this.#size = { widthPx, heightPx };
+      painter.resize(widthPx, heightPx);
+      this.#steps.resized();
+    };
+    const observer = new ResizeObserver(() => {
+      measure();
+      clearTimeout(resting);
+      resting = setTimeout(() => this.#steps.resizeRested(), RESIZE_REST_MS);
+    });
+    observer.observe(canvas);
+    measure();
+    return () => {
+      observer.disconnect();
+      clearTimeout(resting);
+      detachPointer();
+      this.#flow.detach();
+      this.#canvas = undefined;
+    };
+  }
+}

@@ -1,0 +1,116 @@
+// Pointers and marks over the picture, at their places in the world as the picture on the screen shows them.
+
+import { hexOfColor } from "../core/color";
+import type { Marking } from "../core/marking";
+import { type Box, placeInBox } from "../core/picture_box";
+import {
+  type PicturePoint,
+  type Projection,
+  project,
+  projectLine,
+  type Vec3,
+} from "../core/projection";
+import type { PageState } from "../core/state";
+import type { Mark, Pointer } from "../gen/thunderhead/v1/interact_pb";
+import type { Position } from "../gen/thunderhead/v1/scene_pb";
+
+export function Overlay({ state, marking }: { state: PageState; marking: Marking }) {
+  const { session } = state;
+  const box = state.pictureBox.value;
+  const projection = state.frame.value?.projection;
+  const stroke = marking.stroke.value;
+  return (
+    <svg class="overlay" data-testid="overlay" aria-hidden="true">
+      {box !== undefined && projection !== undefined && (
+        <>
+          {session.marks.value.map((mark) => (
+            <MarkLine key={mark.markId} mark={mark} projection={projection} box={box} />
+          ))}
+          {session.pendingMarks.value.map((pending) => (
+            <Line
+              key={`pending-${pending.requestId}`}
+              parts={projectLine(projection, pending.pointsM)}
+              box={box}
+              testId="pending-mark"
+            />
+          ))}
+          {session.pointers.value.map((pointer) => (
+            <PointerDot
+              key={pointer.viewerId}
+              pointer={pointer}
+              name={session.isMe(pointer.viewerId) ? "" : session.nameOfId(pointer.viewerId)}
+              projection={projection}
+              box={box}
+            />
+          ))}
+        </>
+      )}
+      {stroke.length > 1 && (
+        <polyline
+          class="mark pending"
+          points={stroke.map(({ left, top }) => `${left},${top}`).join(" ")}
+        />
+      )}
+    </svg>
+  );
+}
+
+interface InPicture {
+  readonly projection: Projection;
+  readonly box: Box;
+}
+
+function MarkLine({ mark, projection, box }: InPicture & { mark: Mark }) {
+  const parts = projectLine(projection, mark.positions.map(pointOf));
+  const color = mark.color === undefined ? undefined : hexOfColor(mark.color);
+  return <Line parts={parts} box={box} color={color} testId="mark" />;
+}
+
+interface LineProps {
+  readonly parts: readonly (readonly PicturePoint[])[];
+  readonly box: Box;
+  readonly color?: string | undefined;
+  readonly testId: string;
+}
+
+function Line({ parts, box, color, testId }: LineProps) {
+  return (
+    <g data-testid={testId}>
+      {parts.map((part, at) => {
+        const points = part.map((point) => pathText(box, point)).join(" ");
+        return (
+          <g key={at}>
+            <polyline class="mark-edge" points={points} />
+            <polyline class="mark" points={points} style={color && { stroke: color }} />
+          </g>
+        );
+      })}
+    </g>
+  );
+}
+
+function PointerDot(props: InPicture & { pointer: Pointer; name: string }) {
+  const { pointer, name, projection, box } = props;
+  if (pointer.position === undefined) return null;
+  const point = project(projection, pointOf(pointer.position));
+  if (point === undefined || Math.abs(point.x) > 1 || Math.abs(point.y) > 1) return null;
+  const { left, top } = placeInBox(box, point);
+  return (
+    <g data-testid="pointer" transform={`translate(${left.toFixed(1)} ${top.toFixed(1)})`}>
+      <circle class="pointer-halo" r={13} />
+      <circle class="pointer-dot" r={6} />
+      <text class="pointer-name" x={17} y={5}>
+        {name}
+      </text>
+    </g>
+  );
+}
+
+function pathText(box: Box, point: PicturePoint): string {
+  const { left, top } = placeInBox(box, point);
+  return `${left.toFixed(1)},${top.toFixed(1)}`;
+}
+
+function pointOf({ xM, yM, zM }: Position): Vec3 {
+  return [xM, yM, zM];
+}

@@ -1,0 +1,47 @@
+// What a button of the top bar opens: takes the focus, and gives it back when it closes.
+import type { ComponentChildren } from "preact";
+import { useEffect, useRef } from "preact/hooks";
+import type { Page } from "./page";
+
+interface PopoverProps {
+  readonly page: Page;
+  readonly name: "share" | "people";
+  readonly title: string;
+  readonly label: string;
+  readonly children: ComponentChildren;
+}
+
+export function Popover({ page, name, title, label, children }: PopoverProps) {
+  const dialog = useRef<HTMLElement>(null);
+  useEffect(() => {
+    const before = document.activeElement;
+    dialog.current?.focus();
+    return () => {
+      if (before instanceof HTMLElement) before.focus();
+    };
+  }, []);
+  return (
+    <section
+      id={name}
+      ref={dialog}
+      class={`popover ${name}`}
+      role="dialog"
+      aria-label={label}
+      tabIndex={-1}
+      data-testid={`${name}-panel`}
+    >
+      <header>
+        <h2>{title}</h2>
+        <button
+          type="button"
+          class="close"
+          aria-label="Close"
+          onClick={() => page.togglePopover(name)}
+        >
+          ×
+        </button>
+      </header>
+      {children}
+    </section>
+  );
+}

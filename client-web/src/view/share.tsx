@@ -1,0 +1,133 @@
+// The viewers' link as text and as a QR code for a projector, and for the presenter the rules.
+
+import { useMemo, useState } from "preact/hooks";
+import qrcode from "qrcode-generator";
+import type { SessionRules } from "../gen/thunderhead/v1/interact_pb";
+import type { Page } from "./page";
+import { Popover } from "./popover";
+
+type RuleName = Exclude<keyof SessionRules, "$typeName" | "$unknown">;
+
+const RULES: readonly (readonly [RuleName, string, string])[] = [
+  ["viewersMaySteer", "Viewers may steer", "Who asks while nobody steers gets control at once."],
+  ["controlLocked", "Control locked", "Nobody can ask for control."],
+  ["followingLocked", "Following locked", "Everybody sees your view; nobody looks around."],
+  ["viewersMayMark", "Viewers may point and draw", "Everybody sees their pointers and lines."],
+  ["freeWhenAway", "Free when away", "Control becomes free once you have been away for a minute."],
+];
+
+// Modules of quiet zone around the code, as ISO 18004 asks for.
+const QUIET = 4;
+
+export function Share({ page }: { page: Page }) {
+  const link = page.addresses.viewersLink();
+  if (link === undefined) return null;
+  return (
+    <Popover page={page} name="share" title="Share" label="Share this session">
+      <p class="quiet">Who opens this link watches with you. The code grows with a click.</p>
+      <QrCode text={link} />
+      <div class="link-row">
+        <input
+          type="text"
+          class="link"
+          readOnly
+          aria-label="Link for viewers"
+          data-testid="viewers-link"
+          value={link}
+          onFocus={(event) => event.currentTarget.select()}
+        />
+        <button type="button" data-testid="copy-link" onClick={() => void page.copyLink()}>
+          Copy link
+        </button>
+      </div>
+      {page.state.session.presenting.value && (
+        <>
+          <Rules page={page} />
+          <EndSession page={page} />
+        </>
+      )}
+    </Popover>
+  );
+}
+
+// A click shows it as large as the window, for those at the back.
+function QrCode({ text }: { text: string }) {
+  const [large, setLarge] = useState(false);
+  const { size, path } = useMemo(() => qrPath(text), [text]);
+  return (
+    <button
+      type="button"
+      class={large ? "qr large" : "qr"}
+      aria-pressed={large}
+      aria-label="QR code of the link, larger"
+      title={large ? "Smaller" : "Larger"}
+      data-testid="qr"
+      onClick={() => setLarge(!large)}
+    >
+      <svg
+        class="qr-code"
+        viewBox={`0 0 ${size} ${size}`}
+        shape-rendering="crispEdges"
+        aria-hidden="true"
+      >
+        <rect width={size} height={size} fill="#fff" />
+        <path d={path} fill="#000" />
+      </svg>
+      {large && <span class="qr-text">{text}</span>}
+    </button>
+  );
+}
+
+// The dark modules as one path, a module a unit.
+function qrPath(text: string): { size: number; path: string } {
+  const code = qrcode(0, "M");
+  code.addData(text);
+  code.make();
+  const count = code.getModuleCount();
+  let path = "";
+  for (let row = 0; row < count; row += 1) {
+    for (let column = 0; column < count; column += 1) {
+      if (code.isDark(row, column)) path += `M${column + QUIET} ${row + QUIET}h1v1h-1z`;
+    }
+  }
+  return { size: count + 2 * QUIET, path };
+}
+
+function Rules({ page }: { page: Page }) {
+  const rules = page.state.session.rules.value;
+  return (
+    <fieldset class="rules">
+      <legend>Rules</legend>
+      {RULES.map(([name, label, about]) => (
+        <label key={name} class="rule">
+          <input
+            type="checkbox"
+            data-testid={`rule-${name}`}
+            checked={rules[name] ?? false}
+            onChange={(event) => page.actions.setRules({ [name]: event.currentTarget.checked })}
+          />
+          <span>
+            {label}
+            <span class="quiet">{about}</span>
+          </span>
+        </label>
+      ))}
+    </fieldset>
+  );
+}
+
+// The first click asks for confirmation.
+function EndSession({ page }: { page: Page }) {
+  const [asked, setAsked] = useState(false);
+  return (
+    <button
+      type="button"
+      class="danger"
+      data-testid="end-session"
+      onBlur={() => setAsked(false)}
+      onClick={() => (asked ? void page.actions.endSession() : setAsked(true))}
+    >
+      {asked ? "End it for everybody?" : "End session"}
+    </button>
+  );
+}

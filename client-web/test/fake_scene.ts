@@ -1,0 +1,89 @@
+// Test support: the fake's storms and scenes: what DescribeStorm says of one, and a scene with its defaults filled in.
+import { create } from "@bufbuild/protobuf";
+import { cameraOfPose, poseOfCamera } from "../src/core/camera";
+import { LIMITS, withCamera, withOutput } from "../src/core/scene";
+import {
+  FieldParametersSchema,
+  Hydrometeor,
+  PhaseFunction_Kind as Kind,
+  type Scene,
+} from "../src/gen/thunderhead/v1/scene_pb";
+import {
+  FieldDescription_SizeOrigin,
+  StormDescriptionSchema,
+} from "../src/gen/thunderhead/v1/storm_pb";
+import { completeRendering } from "./fake_techniques";
+
+export type Draw = (scene: Scene, widthPx: number, heightPx: number) => Uint8Array;
+
+const FIELDS = [
+  Hydrometeor.CLOUD,
+  Hydrometeor.RAIN,
+  Hydrometeor.ICE,
+  Hydrometeor.SNOW,
+  Hydrometeor.GRAUPEL,
+] as const;
+
+const FALSE_COLORS = [
+  { red: 1, green: 0, blue: 0 },
+  { red: 0, green: 0, blue: 1 },
+  { red: 1, green: 0, blue: 1 },
+  { red: 1, green: 1, blue: 0 },
+  { red: 0, green: 1, blue: 0 },
+] as const;
+
+export function describeStorm(stormId: string, timeIndex: number) {
+  const count = stormId === "supercell" ? 4 : 1;
+  return create(StormDescriptionSchema, {
+    id: stormId,
+    title: stormId,
+    timeIndex,
+    times: Array.from({ length: count }, (_, index) => ({
+      index,
+      validTime: `0001-01-01T0${Math.floor((index + 1) / 3)}:${((index + 1) % 3) * 2}0:00Z`,
+      elapsedS: index * 1200,
+    })),
+    fields: FIELDS.map((hydrometeor, i) => ({
+      hydrometeor,
+      variable: "Q",
+      units: "kg kg-1",
+      maximum: 4e-3,
+      meanWaterPathKgPerM2: 0.8,
+      sizeOrigin: FieldDescription_SizeOrigin.SCHEME,
+      sizeScheme: "WSM6",
+      meanRadiusM: 2e-5 * 10 ** i,
+      papersRadiusM: 1e-5 * 10 ** i,
+      defaults: create(FieldParametersSchema, {
+        hydrometeor,
+        visible: true,
+        scale: 1,
+        densityKgPerM3: 1000,
+        albedo: 1,
+        phase: { kind: Kind.CORNETTE_SHANKS, asymmetry: 0.85 },
+        falseColor: FALSE_COLORS[i],
+      }),
+    })),
+  });
+}
+
+// Stands where the whole storm is in view.
+const HOME = cameraOfPose({
+  kind: "orbit",
+  targetM: [4000, 0, 7000],
+  azimuthDeg: 200,
+  elevationDeg: 8,
+  distanceM: 80_000,
+  fieldOfViewDeg: 35,
+});
+
+export function completeScene(scene: Scene): Scene {
+  const stormId = scene.stormId === "" ? "supercell" : scene.stormId;
+  const rendering = completeRendering(scene.rendering);
+  const camera =
+    scene.camera !== undefined && poseOfCamera(scene.camera) !== undefined ? scene.camera : HOME;
+  return withOutput(withCamera({ ...scene, stormId, rendering }, camera), {
+    widthPx: scene.output?.widthPx ?? LIMITS.width.defaultValue,
+    heightPx: scene.output?.heightPx ?? LIMITS.height.defaultValue,
+    jpegQuality: scene.output?.jpegQuality ?? LIMITS.jpegQuality.defaultValue,
+  });
+}

@@ -1,0 +1,427 @@
+// Test support: one session of the fake service: its scene, its people with their roles and control, frames to each of them,
+// pointers and marks. A coarse frame for each scene, and a refined one after a rest.
+import { create, type MessageInitShape } from "@bufbuild/protobuf";
+import { Code } from "@connectrpc/connect";
+import { type Frame, FrameSchema, Stage } from "../src/gen/thunderhead/v1/frame_pb";
+import {
+  End_Reason,
+  type InteractRequest,
+  type InteractResponse,
+  InteractResponseSchema,
+  type Mark,
+  MarkSchema,
+  type Ray,
+  Role,
+  type SessionRules,
+  SessionRulesSchema,
+} from "../src/gen/thunderhead/v1/interact_pb";
+import type { Camera, Position, Scene } from "../src/gen/thunderhead/v1/scene_pb";
+import { completeScene, type Draw } from "./fake_scene";
+import { modelledOf, tracesLight } from "./fake_techniques";
+import { placeMet, viewOfCamera } from "./fake_view";
+
+const REFINE_AFTER_MS = 120;
+const TRACE_EVERY_MS = 1000;
+const PATHS_A_TRACE = 100_000n;
+const MOST_PATHS = 1_000_000n;
+const MOST_IN_FLIGHT = 2;
+const COLORS = [
+  { red: 1, green: 0.75, blue: 0.1 },
+  { red: 0.2, green: 0.9, blue: 0.4 },
+  { red: 1, green: 0.3, blue: 0.6 },
+];
+
+type Outgoing = MessageInitShape<typeof InteractResponseSchema>["message"];
+
+// Frames of one view to one person.
+class FrameLane {
+  sent: bigint[] = [];
+  waiting: Frame | undefined;
+  sequence = 0n;
+}
+
+export interface FakePerson {
+  readonly viewerId: bigint;
+  readonly role: Role;
+  name: string;
+  readonly say: (message: InteractResponse) => void;
+  readonly end: (code: Code | 0, message: string) => void;
+  hidden: boolean;
+  asks: boolean;
+  ownCamera: Camera | undefined;
+  pointer: Position | undefined;
+  readonly shared: FrameLane;
+  own: FrameLane;
+  readonly heard: InteractRequest[];
+}
+
+export class FakeSession {
+  revision = 1n;
+  scenesTaken = 0;
+  mostUnacknowledged = 0;
+  rules: SessionRules = create(SessionRulesSchema, {
+    viewersMaySteer: false,
+    controlLocked: false,
+    followingLocked: false,
+    viewersMayMark: true,
+    freeWhenAway: true,
+  });
+  readonly people: FakePerson[] = [];
+  marks: Mark[] = [];
+  #steering: bigint | undefined;
+  #presenterSteered = true;
+  #sequence = 0n;
+  #newest: Frame | undefined;
+  #refine: ReturnType<typeof setTimeout> | undefined;
+  #lastViewerId = 0n;
+  #lastMarkId = 0n;
+
+  constructor(
+    readonly presenterKey: string,
+    readonly viewerKey: string,
+    public scene: Scene,
+    readonly draw: Draw,
+    readonly tracing: boolean,
+  ) {
+    this.#render();
+  }
+
+  join(
+    request: InteractRequest,
+    say: FakePerson["say"],
+    end: FakePerson["end"],
+  ): FakePerson | undefined {
+    if (request.message.case !== "join") return undefined;
+    const { sessionKey, name, window } = request.message.value;
+    this.#lastViewerId += 1n;
+    const person: FakePerson = {
+      viewerId: this.#lastViewerId,
+      role: sessionKey === this.presenterKey ? Role.PRESENTER : Role.VIEWER,
+      name,
+      say,
+      end,
+      hidden: window?.hidden ?? false,
+      asks: false,
+      ownCamera: undefined,
+      pointer: undefined,
+      shared: new FrameLane(),
+      own: new FrameLane(),
+      heard: [request],
+    };
+    this.people.push(person);
+    if (person.role === Role.PRESENTER && this.#presenterSteered) {
+      this.#presenterSteered = false;
+      this.#steering = person.viewerId;
+    }
+    const { viewerId, role } = person;
+    this.#tell(person, { case: "joined", value: { viewerId, role, viewerKey: this.viewerKey } });
+    this.#tell(person, { case: "scene", value: this.#sceneState() });
+    this.#tell(person, { case: "marks", value: { marks: this.marks } });
+    this.#tellPresence();
+    this.#offer(person, this.#newest);
+    return person;
+  }
+
+  leave(person: FakePerson): void {
+    const at = this.people.indexOf(person);
+    if (at < 0) return;
+    this.people.splice(at, 1);
+    if (this.#steering === person.viewerId) {
+      this.#steering = undefined;
+      this.#presenterSteered = person.role === Role.PRESENTER;
+    }
+    this.#tellPresence();
+  }
+
+  // Ends every call, as the server does when it closes the session.
+  close(message: string, retryAfterMs?: number): void {
+    clearTimeout(this.#refine);
+    const reason = retryAfterMs === undefined ? End_Reason.CLOSED : End_Reason.SERVER_STOPS;
+    for (const person of this.people.splice(0)) {
+      this.#tell(person, { case: "end", value: { reason, message, retryAfterMs } });
+      person.end(0, "");
+    }
+  }
+
+  receive(person: FakePerson, request: InteractRequest): void {
+    person.heard.push(request);
+    const { requestId, message } = request;
+    const refuse = (code: Code, text: string) =>
+      this.#tell(person, {
+        case: "refused",
+        value: { requestId, status: { code, message: text } },
+      });
+    const presents = person.role === Role.PRESENTER;
+    const steers = person.viewerId === this.#steering;
+    switch (message.case) {
+      case "updateScene":
+        if (!steers) refuse(Code.PermissionDenied, "another steers");
+        else this.#update(person, requestId, message.value, refuse);
+        break;
+      case "acknowledge": {
+        const lane = message.value.ownView ? person.own : person.shared;
+        lane.sent = lane.sent.filter((sequence) => sequence > message.value.sequence);
+        this.#pump(person, lane);
+        break;
+      }
+      case "window":
+        if (person.hidden !== message.value.hidden) {
+          person.hidden = message.value.hidden;
+          this.#tellPresence();
+          if (!person.hidden) this.#offer(person, this.#newest);
+        }
+        break;
+      case "detach":
+        if (this.rules.followingLocked && !presents)
+          refuse(Code.PermissionDenied, "following is locked");
+        else {
+          person.own = new FrameLane();
+          this.#showOwn(person, message.value.camera ?? this.scene.camera);
+          this.#tellPresence();
+        }
+        break;
+      case "moveCamera":
+        if (person.ownCamera === undefined) refuse(Code.FailedPrecondition, "not looking around");
+        else this.#showOwn(person, message.value.camera);
+        break;
+      case "follow":
+        this.#follow(person);
+        this.#tellPresence();
+        break;
+      case "point":
+        person.pointer = this.#met(person, message.value.ray);
+        this.#tellPointers();
+        break;
+      case "addMark":
+        if (!presents && !this.rules.viewersMayMark)
+          refuse(Code.PermissionDenied, "viewers may not draw");
+        else this.#addMark(person, message.value.rays);
+        break;
+      case "eraseMarks":
+        this.marks = this.marks.filter(({ viewerId }) => !presents && viewerId !== person.viewerId);
+        this.#tellAll({ case: "marks", value: { marks: this.marks } });
+        break;
+      case "askControl":
+        if (this.rules.controlLocked) refuse(Code.PermissionDenied, "control is locked");
+        else if (this.#steering === undefined && this.rules.viewersMaySteer)
+          this.#give(person.viewerId);
+        else {
+          person.asks = true;
+          this.#tellPresence();
+        }
+        break;
+      case "giveControl":
+        if (steers || presents) this.#give(message.value.viewerId || this.#whoGetsItBack(presents));
+        else refuse(Code.PermissionDenied, "not steering");
+        break;
+      case "refuseControl":
+        for (const other of this.people)
+          if (other.viewerId === message.value.viewerId) other.asks = false;
+        this.#tellPresence();
+        break;
+      case "takeControl":
+        if (presents) this.#give(person.viewerId);
+        else refuse(Code.PermissionDenied, "only the presenter takes control");
+        break;
+      case "setName":
+        person.name = message.value.name;
+        this.#tellPresence();
+        break;
+      case "setRules":
+        if (presents) this.#setRules(message.value.rules);
+        else refuse(Code.PermissionDenied, "only the presenter sets rules");
+        break;
+    }
+  }
+
+  // A scene by somebody else than the people, such as a client without Interact.
+  changeScene(scene: Scene): void {
+    this.scene = completeScene(scene);
+    this.revision += 1n;
+    this.scenesTaken += 1;
+    this.#tellAll({ case: "scene", value: this.#sceneState() });
+    this.#render();
+    for (const person of this.people)
+      if (person.ownCamera !== undefined) this.#showOwn(person, person.ownCamera);
+  }
+
+  #update(
+    person: FakePerson,
+    requestId: bigint,
+    update: { readonly scene?: Scene; readonly expectedRevision?: bigint },
+    refuse: (code: Code, text: string) => void,
+  ): void {
+    const { scene, expectedRevision } = update;
+    const exposure = scene?.display?.exposureEv ?? 0;
+    if (Math.abs(exposure) > 20) refuse(Code.InvalidArgument, `display.exposure_ev is ${exposure}`);
+    else if (expectedRevision !== undefined && expectedRevision !== this.revision)
+      refuse(Code.Aborted, `the scene is at revision ${this.revision}`);
+    else if (scene !== undefined) {
+      this.changeScene(scene);
+      this.#tell(person, {
+        case: "sceneTaken",
+        value: { requestId, sceneRevision: this.revision },
+      });
+    }
+  }
+
+  #setRules(rules: SessionRules | undefined): void {
+    const given = Object.entries(rules ?? {}).filter(([, value]) => typeof value === "boolean");
+    this.rules = { ...this.rules, ...Object.fromEntries(given) };
+    if (this.rules.followingLocked)
+      for (const person of this.people) if (person.role === Role.VIEWER) this.#follow(person);
+    this.#tellPresence();
+  }
+
+  // From a viewer the presenter, from the presenter nobody.
+  #whoGetsItBack(fromPresenter: boolean): bigint {
+    const presenter = this.people.find(({ role }) => role === Role.PRESENTER);
+    return fromPresenter ? 0n : (presenter?.viewerId ?? 0n);
+  }
+
+  #give(viewerId: bigint): void {
+    this.#steering = viewerId === 0n ? undefined : viewerId;
+    for (const person of this.people) if (person.viewerId === viewerId) person.asks = false;
+    this.#tellPresence();
+  }
+
+  #met(person: FakePerson, ray: Ray | undefined): Position | undefined {
+    if (ray === undefined) return undefined;
+    return {
+      $typeName: "thunderhead.v1.Position",
+      ...placeMet(ray, person.ownCamera ?? this.scene.camera),
+    };
+  }
+
+  #addMark(person: FakePerson, rays: readonly Ray[]): void {
+    this.#lastMarkId += 1n;
+    const { viewerId } = person;
+    const mark = create(MarkSchema, {
+      markId: this.#lastMarkId,
+      viewerId,
+      positions: rays.map((ray) => placeMet(ray, person.ownCamera ?? this.scene.camera)),
+      color: COLORS[Number(viewerId) % COLORS.length],
+    });
+    this.marks = [...this.marks, mark];
+    this.#tellAll({ case: "marks", value: { marks: this.marks } });
+  }
+
+  #follow(person: FakePerson): void {
+    if (person.ownCamera === undefined) return;
+    person.ownCamera = undefined;
+    this.#offer(person, this.#newest);
+  }
+
+  #showOwn(person: FakePerson, camera: Camera | undefined): void {
+    person.ownCamera = completeScene({ ...this.scene, camera }).camera;
+    person.own.sequence += 1n;
+    const scene = { ...this.scene, camera: person.ownCamera };
+    person.own.waiting = this.#frameOf(scene, true, 0n, {
+      sequence: person.own.sequence,
+      ownView: true,
+    });
+    this.#pump(person, person.own);
+  }
+
+  #render(): void {
+    clearTimeout(this.#refine);
+    this.#publish(false);
+    this.#refine = setTimeout(() => this.#rest(0n), REFINE_AFTER_MS);
+  }
+
+  // The refined frame, and then frames with ever more traced paths if the scene has traced light.
+  #rest(tracedPaths: bigint): void {
+    this.#publish(true, tracedPaths);
+    if (!this.tracing || !tracesLight(this.scene) || tracedPaths >= MOST_PATHS) return;
+    this.#refine = setTimeout(() => this.#rest(tracedPaths + PATHS_A_TRACE), TRACE_EVERY_MS);
+  }
+
+  #publish(refined: boolean, tracedPaths = 0n): void {
+    this.#sequence += 1n;
+    const counted = { sequence: this.#sequence, ownView: false };
+    this.#newest = this.#frameOf(this.scene, refined, tracedPaths, counted);
+    for (const person of this.people) this.#offer(person, this.#newest);
+  }
+
+  #frameOf(
+    scene: Scene,
+    refined: boolean,
+    tracedPaths: bigint,
+    counted: { readonly sequence: bigint; readonly ownView: boolean },
+  ): Frame {
+    const share = refined ? 1 : 0.5;
+    const widthPx = Math.max(1, Math.round((scene.output?.widthPx ?? 640) * share));
+    const heightPx = Math.max(1, Math.round((scene.output?.heightPx ?? 360) * share));
+    const start = performance.now();
+    const jpeg = this.draw(scene, widthPx, heightPx);
+    return create(FrameSchema, {
+      ...counted,
+      sceneRevision: this.revision,
+      jpeg,
+      widthPx,
+      heightPx,
+      camera: scene.camera,
+      view: viewOfCamera(scene.camera, widthPx / heightPx),
+      stages: [
+        { stage: Stage.VIEW, milliseconds: performance.now() - start },
+        { stage: Stage.TONE, milliseconds: 0.1 },
+      ],
+      modelled: { ...modelledOf(scene), tracedPaths },
+      refined,
+    });
+  }
+
+  #offer(person: FakePerson, frame: Frame | undefined): void {
+    if (person.ownCamera !== undefined) return;
+    person.shared.waiting = frame;
+    this.#pump(person, person.shared);
+  }
+
+  #pump(person: FakePerson, lane: FrameLane): void {
+    const { waiting } = lane;
+    if (person.hidden || waiting === undefined || lane.sent.length >= MOST_IN_FLIGHT) return;
+    lane.waiting = undefined;
+    lane.sent.push(waiting.sequence);
+    this.mostUnacknowledged = Math.max(this.mostUnacknowledged, lane.sent.length);
+    this.#tell(person, { case: "frame", value: waiting });
+  }
+
+  #sceneState() {
+    return { scene: this.scene, sceneRevision: this.revision };
+  }
+
+  #tellPresence(): void {
+    const people = this.people.map(({ viewerId, name, role, ownCamera, hidden, asks }) => ({
+      viewerId,
+      name,
+      role,
+      follows: ownCamera === undefined,
+      hidden,
+      asksControl: asks,
+    }));
+    this.#tellAll({
+      case: "presence",
+      value: {
+        people,
+        steeringViewerId: this.#steering ?? 0n,
+        rules: this.rules,
+        presenterAway: this.#presenterSteered,
+      },
+    });
+  }
+
+  #tellPointers(): void {
+    const pointers = this.people.flatMap(({ viewerId, pointer }) =>
+      pointer === undefined ? [] : [{ viewerId, position: pointer }],
+    );
+    this.#tellAll({ case: "pointers", value: { pointers } });
+  }
+
+  #tellAll(message: Outgoing): void {
+    for (const person of [...this.people]) this.#tell(person, message);
+  }
+
+  #tell(person: FakePerson, message: Outgoing): void {
+    person.say(create(InteractResponseSchema, { message }));
+  }
+}

@@ -1,0 +1,81 @@
+// Frames of two views: the one that is wanted is painted, and every frame is acknowledged.
+import { create } from "@bufbuild/protobuf";
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { FrameSchema } from "../src/gen/thunderhead/v1/frame_pb";
+import { PictureFlow } from "../src/view/picture_flow";
+import { FakeCanvas, stubGlobals } from "./fake_window";
+
+describe("frames of the session's and the own view", () => {
+  beforeEach(() => stubGlobals());
+  afterEach(() => vi.unstubAllGlobals());
+
+  function bench() {
+    const log = { painted: [] as string[], acknowledged: [] as string[], wantsOwn: false };
+    const paints: (() => void)[] = [];
+    const name = (sequence: bigint, ownView: boolean) =>
+      `${ownView ? "own" : "shared"} ${sequence}`;
+    const flow = new PictureFlow({
+      acknowledge: (sequence, ownView) => log.acknowledged.push(name(sequence, ownView)),
+      wantsOwnView: () => log.wantsOwn,
+      painted: (frame) => log.painted.push(name(frame.sequence, frame.ownView)),
+      undecodable: () => undefined,
+      onNextPaint: (callback) => {
+        paints.push(callback);
+        return () => paints.splice(paints.indexOf(callback), 1);
+      },
+    });
+    flow.attach(new FakeCanvas() as never);
+    return {
+      flow,
+      log,
+      offer: (sequence: bigint, ownView: boolean) =>
+        flow.offer(create(FrameSchema, { sequence, ownView })),
+      paint: async () => {
+        await new Promise((resolve) => setTimeout(resolve, 0));
+        for (const callback of paints.splice(0)) callback();
+      },
+    };
+  }
+
+  it("are acknowledged when they are painted", async () => {
+    const { log, offer, paint } = bench();
+    offer(7n, false);
+    expect(log.acknowledged).toEqual([]);
+    await paint();
+    expect(log).toMatchObject({ painted: ["shared 7"], acknowledged: ["shared 7"] });
+  });
+
+  it("are acknowledged although another view has begun before they were painted", async () => {
+    const { log, offer, paint } = bench();
+    offer(7n, false);
+    offer(8n, false);
+    log.wantsOwn = true;
+    offer(1n, true);
+    await paint();
+    expect(log.painted).toEqual(["own 1"]);
+    expect(log.acknowledged).toEqual(["shared 8", "own 1"]);
+  });
+
+  it("are acknowledged unseen where the other view is wanted", async () => {
+    const { log, offer, paint } = bench();
+    log.wantsOwn = true;
+    offer(1n, true);
+    await paint();
+    log.wantsOwn = false;
+    offer(2n, true);
+    await paint();
+    expect(log).toMatchObject({ painted: ["own 1"], acknowledged: ["own 1", "own 2"] });
+  });
+
+  it("are painted after all if that view is wanted soon after", async () => {
+    const { flow, log, offer, paint } = bench();
+    log.wantsOwn = true;
+    offer(1n, true);
+    await paint();
+    offer(9n, false);
+    log.wantsOwn = false;
+    flow.viewChanged();
+    await paint();
+    expect(log.painted).toEqual(["own 1", "shared 9"]);
+  });
+});

@@ -1,0 +1,170 @@
+// What follows from a session's messages for the person at the page; the keys that the page keeps.
+import { create } from "@bufbuild/protobuf";
+import { describe, expect, it } from "vitest";
+import { OwnKeys, trimmedName } from "../src/core/own_keys";
+import { SessionState } from "../src/core/session_state";
+import {
+  JoinedSchema,
+  MarkSchema,
+  type Person,
+  PersonSchema,
+  PresenceSchema,
+  Role,
+} from "../src/gen/thunderhead/v1/interact_pb";
+
+const person = (
+  viewerId: bigint,
+  more: Partial<Pick<Person, "name" | "role" | "asksControl">> = {},
+) => create(PersonSchema, { viewerId, role: Role.VIEWER, follows: true, ...more });
+const TEACHER = person(1n, { name: "Ana", role: Role.PRESENTER });
+
+function joined(viewerId: bigint, role: Role) {
+  const session = new SessionState();
+  session.viewerKey.value = "viewers";
+  session.joined(create(JoinedSchema, { viewerId, role, viewerKey: "viewers" }));
+  return session;
+}
+
+const presence = (people: Person[], steeringViewerId: bigint, rules = {}) =>
+  create(PresenceSchema, { people, steeringViewerId, rules });
+
+describe("a session's state", () => {
+  it("lets who opens a session edit before it is there", () => {
+    expect(new SessionState().editBlock.value).toBeUndefined();
+  });
+
+  it("names who steers as the reason why a viewer cannot edit", () => {
+    const session = joined(2n, Role.VIEWER);
+    expect(session.editBlock.value).toBe("Joining the session …");
+    session.takePresence(presence([TEACHER, person(2n)], 1n));
+    expect(session.editBlock.value).toBe("Ana steers.");
+    expect(session.steering.value).toBe(false);
+    session.takePresence(presence([TEACHER, person(2n)], 2n));
+    expect(session.editBlock.value).toBeUndefined();
+    expect(session.steering.value).toBe(true);
+    session.takePresence(presence([TEACHER, person(2n)], 0n));
+    expect(session.editBlock.value).toBe("Nobody steers.");
+  });
+
+  it("keeps the controls of who steered usable while it joins again", () => {
+    const session = joined(1n, Role.PRESENTER);
+    session.takePresence(presence([TEACHER, person(2n)], 1n));
+    session.joined(
+      create(JoinedSchema, { viewerId: 9n, role: Role.PRESENTER, viewerKey: "viewers" }),
+    );
+    expect(session.steering.value).toBe(true);
+    session.takePresence(presence([person(9n, { role: Role.PRESENTER }), person(2n)], 2n));
+    expect(session.editBlock.value).toBe("Viewer 2 steers.");
+  });
+
+  it("gives people without a name one", () => {
+    const session = joined(2n, Role.VIEWER);
+    expect(session.nameOf(person(7n))).toBe("Viewer 7");
+    expect(session.nameOf(person(1n, { role: Role.PRESENTER }))).toBe("Presenter");
+    expect(session.nameOfId(99n)).toBe("");
+  });
+
+  it("knows who asks, and who answers", () => {
+    const session = joined(2n, Role.VIEWER);
+    const asking = person(2n, { asksControl: true });
+    session.takePresence(presence([TEACHER, asking, person(3n)], 1n));
+    expect(session.iAsk.value).toBe(true);
+    expect(session.asking.value.map(({ viewerId }) => viewerId)).toEqual([2n]);
+    expect(session.answersAsking.value).toBe(false);
+    const teacher = joined(1n, Role.PRESENTER);
+    teacher.takePresence(presence([TEACHER, asking], 3n));
+    expect(teacher.answersAsking.value).toBe(true);
+    expect(teacher.iAsk.value).toBe(false);
+  });
+
+  it("locks following and drawing for viewers alone", () => {
+    const rules = { followingLocked: true, viewersMayMark: false };
+    const viewer = joined(2n, Role.VIEWER);
+    viewer.takePresence(presence([TEACHER, person(2n)], 1n, rules));
+    expect([viewer.mayLookAround.value, viewer.mayMark.value]).toEqual([false, false]);
+    const teacher = joined(1n, Role.PRESENTER);
+    teacher.takePresence(presence([TEACHER], 2n, rules));
+    expect([teacher.mayLookAround.value, teacher.mayMark.value]).toEqual([true, true]);
+    viewer.takePresence(
+      presence([TEACHER, person(2n)], 1n, { followingLocked: false, viewersMayMark: true }),
+    );
+    expect([viewer.mayLookAround.value, viewer.mayMark.value]).toEqual([true, true]);
+  });
+
+  it("replaces a pending line by the server's, one by one, not by other people's", () => {
+    const session = joined(2n, Role.VIEWER);
+    const pending = (requestId: bigint) => ({ requestId, pointsM: [] });
+    session.pendingMarks.value = [pending(5n), pending(6n)];
+    const others = create(MarkSchema, { markId: 1n, viewerId: 1n });
+    session.takeMarks([others]);
+    expect(session.pendingMarks.value).toHaveLength(2);
+    session.takeMarks([others, create(MarkSchema, { markId: 2n, viewerId: 2n })]);
+    expect(session.pendingMarks.value).toEqual([pending(6n)]);
+    session.dropPendingMark(6n);
+    expect(session.pendingMarks.value).toEqual([]);
+    expect(session.marks.value).toHaveLength(2);
+  });
+
+  it("says that it has ended, and forgets who was there", () => {
+    const session = joined(1n, Role.PRESENTER);
+    session.takePresence(presence([TEACHER], 1n));
+    session.end("The session was closed");
+    expect(session.editBlock.value).toBe("This session has ended.");
+    expect(session.people.value).toEqual([]);
+    session.joined(create(JoinedSchema, { viewerId: 1n, role: Role.PRESENTER, viewerKey: "v2" }));
+    expect(session.ended.value).toBeUndefined();
+  });
+});
+
+describe("what the page keeps in the browser", () => {
+  function memory() {
+    const items = new Map<string, string>();
+    return {
+      items,
+      getItem: (name: string) => items.get(name) ?? null,
+      setItem: (name: string, text: string) => void items.set(name, text),
+    };
+  }
+
+  it("finds the presenter's key by the viewers' key, after a reload too", () => {
+    const store = memory();
+    new OwnKeys(store).keep("viewers", "presenters");
+    const reloaded = new OwnKeys(store);
+    expect(reloaded.presenterKey("viewers")).toBe("presenters");
+    expect(reloaded.presenterKey("presenters")).toBeUndefined();
+    reloaded.forget("viewers");
+    expect(new OwnKeys(store).presenterKey("viewers")).toBeUndefined();
+  });
+
+  it("keeps a bounded number of keys, the newest", () => {
+    const store = memory();
+    const keys = new OwnKeys(store);
+    for (let i = 0; i < 100; i += 1) keys.keep(`viewers-${i}`, `presenters-${i}`);
+    expect(keys.presenterKey("viewers-99")).toBe("presenters-99");
+    expect(keys.presenterKey("viewers-0")).toBeUndefined();
+    expect([...store.items.values()].join().length).toBeLessThan(2000);
+  });
+
+  it("works without storage, and with spoilt storage", () => {
+    const denied = new OwnKeys({
+      getItem: () => {
+        throw new Error("denied");
+      },
+      setItem: () => {
+        throw new Error("denied");
+      },
+    });
+    denied.keep("viewers", "presenters");
+    denied.name = "Ana";
+    expect(denied.presenterKey("viewers")).toBe("presenters");
+    expect(denied.name).toBe("Ana");
+    const spoilt = memory();
+    spoilt.setItem("thunderhead.presenter-keys", '{"viewers": 1}');
+    expect(new OwnKeys(spoilt).presenterKey("viewers")).toBeUndefined();
+  });
+
+  it("trims a name to forty characters, counted as people count", () => {
+    expect(trimmedName("  Ana ")).toBe("Ana");
+    expect([...trimmedName("🌩".repeat(50))]).toHaveLength(40);
+  });
+});

@@ -1,0 +1,91 @@
+// Drives the page in Chromium: starts it, waits for pictures, uses its controls.
+import { mkdirSync } from "node:fs";
+import { setTimeout } from "node:timers/promises";
+import { fileURLToPath } from "node:url";
+import { chromium } from "playwright-core";
+
+const OUTPUT = fileURLToPath(new URL("output/", import.meta.url));
+const CHROMIUM = process.env.THUNDERHEAD_CHROMIUM ?? "/usr/bin/chromium";
+const CHROMIUM_ARGS = [
+  "--no-sandbox",
+  "--disable-gpu",
+  "--disable-quic",
+  "--no-first-run",
+  "--disable-background-networking",
+  "--disable-component-update",
+  "--disable-sync",
+];
+// Software rendering on two busy cores may take seconds for a refined picture.
+export const PICTURE_TIMEOUT_MS = 60_000;
+const REST_MS = 600;
+
+export function launchBrowser() {
+  mkdirSync(OUTPUT, { recursive: true });
+  return chromium.launch({ executablePath: CHROMIUM, args: CHROMIUM_ARGS });
+}
+
+// Errors of a page's scripts and console go into the list.
+export function listenForErrors(page, complaints) {
+  page.on("pageerror", (error) => complaints.push(String(error)));
+  page.on("console", (message) => {
+    if (message.type() === "error") complaints.push(message.text());
+  });
+}
+
+export const screenshot = (name, page) => page.screenshot({ path: `${OUTPUT}${name}.png` });
+
+export function canvasData(page) {
+  return page.getByTestId("storm-canvas").evaluate((canvas) => ({ ...canvas.dataset }));
+}
+
+// Waits until `holds` gives true.
+export async function until(what, holds) {
+  const deadline = Date.now() + PICTURE_TIMEOUT_MS;
+  while (!(await holds())) {
+    if (Date.now() >= deadline) throw new Error(`never came: ${what}`);
+    await setTimeout(50);
+  }
+}
+
+// Waits until a refined frame has stayed on the canvas for REST_MS.
+export async function rested(page) {
+  let held = { sequence: undefined, since: 0 };
+  await until("a refined picture that rests", async () => {
+    const { sequence, refined } = await canvasData(page);
+    const now = Date.now();
+    if (refined !== "true" || sequence !== held.sequence) held = { sequence, since: now };
+    return refined === "true" && now - held.since >= REST_MS;
+  });
+  return canvasData(page);
+}
+
+// Runs an action that changes the scene, and waits for the refined picture of the new scene.
+export async function changing(action, page) {
+  const revisionBefore = Number((await canvasData(page)).revision);
+  await action();
+  await page.waitForFunction(
+    (revision) => {
+      const canvas = document.querySelector("[data-testid=storm-canvas]");
+      return Number(canvas?.dataset.revision) > revision;
+    },
+    revisionBefore,
+    { timeout: PICTURE_TIMEOUT_MS },
+  );
+  return rested(page);
+}
+
+// With the left button, from one place to another.
+export async function dragBetween(page, from, to, steps = 12) {
+  await page.mouse.move(from.x, from.y);
+  await page.mouse.down();
+  await page.mouse.move(to.x, to.y, { steps });
+  await page.mouse.up();
+}
+
+// Sets the number field of a slider, which may be folded away.
+export async function setNumber(page, name, value) {
+  await page.getByTestId(`${name}-number`).evaluate((input, text) => {
+    input.value = text;
+    input.dispatchEvent(new Event("change", { bubbles: true }));
+  }, String(value));
+}
