@@ -289,7 +289,7 @@ class InteractCall : public InteractReactor,
 
   absl::Status ChangeRoster(const v1::InteractRequest& request) {
     const Clock::time_point now = Clock::now();
-    const absl::Status status = session_->audience().Change(
+    absl::Status status = session_->audience().Change(
         [&](session::Roster& roster) {
           switch (request.message_case()) {
             case v1::InteractRequest::kFollow:
@@ -482,6 +482,7 @@ class InteractCall : public InteractReactor,
 
   absl::Status Draw(const std::vector<session::Ray>& rays, const std::optional<glm::vec3>& color) {
     std::vector<double> distances_m;
+    distances_m.reserve(rays.size());
     for (const session::Ray& ray : rays) {
       const glm::dvec3 place_m = session::PlaceSeen(*session_, engine_.store, ray);
       distances_m.push_back(glm::distance(ray.origin_m, place_m));
@@ -490,6 +491,7 @@ class InteractCall : public InteractReactor,
     const auto middle = distances_m.begin() + static_cast<std::ptrdiff_t>(distances_m.size() / 2);
     std::nth_element(distances_m.begin(), middle, distances_m.end());
     std::vector<glm::dvec3> positions_m;
+    positions_m.reserve(rays.size());
     for (const session::Ray& ray : rays) {
       positions_m.push_back(ray.origin_m + *middle * ray.direction);
     }

@@ -70,7 +70,8 @@ void ChangeScene(Engine& engine, const std::shared_ptr<session::Session>& sessio
                  std::function<void(const absl::StatusOr<std::uint64_t>&)> done) {
   const auto changed = Take(engine, *session, change);
   if (!changed.ok()) return done(changed.status());
-  const auto [revision, scene] = *changed;
+  const std::uint64_t revision = changed->revision;
+  const std::shared_ptr<v1::Scene> scene = changed->scene;
   FrameThen(engine, *scene,
             [revision, scene, session, done = std::move(done)](const absl::Status& framed) {
               if (!framed.ok()) {

@@ -30,22 +30,22 @@ void Audience::Leave(std::uint64_t id, Time now) {
 
 absl::Status Audience::Change(const RosterChange& change, Time now) {
   std::unique_lock lock(mutex_);
-  const absl::Status status = change(roster_);
+  absl::Status status = change(roster_);
   Settle(std::move(lock), now);
   return status;
 }
 
 absl::Status Audience::Draw(std::uint64_t id, const BoardChange& change, Time now) {
   std::unique_lock lock(mutex_);
-  if (const absl::Status may = roster_.MayMark(id); !may.ok()) return may;
-  const absl::Status status = change(board_);
+  if (absl::Status may = roster_.MayMark(id); !may.ok()) return may;
+  absl::Status status = change(board_);
   Settle(std::move(lock), now);
   return status;
 }
 
 absl::Status Audience::Point(std::uint64_t id, const std::optional<Ray>& ray, Time now) {
   std::unique_lock lock(mutex_);
-  if (const absl::Status may = roster_.MayMark(id); !may.ok()) return may;
+  if (absl::Status may = roster_.MayMark(id); !may.ok()) return may;
   rays_.erase(id);
   finding_.erase(id);
   if (ray.has_value()) {
@@ -124,6 +124,7 @@ std::optional<Audience::Time> Audience::Tick(Time now, const Place& place) {
     for (const auto& [id, ray] : rays) finding_.insert(id);
     lock.unlock();
     std::vector<Pointer> found;
+    found.reserve(rays.size());
     for (const auto& [id, ray] : rays) found.push_back({id, place(ray)});
     lock.lock();
     for (const Pointer& pointer : found) {

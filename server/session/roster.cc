@@ -100,7 +100,7 @@ absl::Status Roster::MayAnswer(std::uint64_t id) const {
 }
 
 absl::Status Roster::GiveControl(std::uint64_t from, std::uint64_t to, Time now) {
-  if (const absl::Status may = MayAnswer(from); !may.ok()) return may;
+  if (absl::Status may = MayAnswer(from); !may.ok()) return may;
   if (to != 0) {
     Person* const person = FindToChange(to);
     if (person == nullptr) return NoSuchPerson(to);
@@ -118,7 +118,7 @@ absl::Status Roster::GiveControl(std::uint64_t from, std::uint64_t to, Time now)
 }
 
 absl::Status Roster::RefuseControl(std::uint64_t from, std::uint64_t to) {
-  if (const absl::Status may = MayAnswer(from); !may.ok()) return may;
+  if (absl::Status may = MayAnswer(from); !may.ok()) return may;
   Person* const person = FindToChange(to);
   if (person == nullptr) return NoSuchPerson(to);
   person->asks = false;
