@@ -19,7 +19,7 @@ class SessionStore {
   virtual absl::Status Save(const std::vector<SessionRecord>& records) = 0;
   // Ids that are not there are no error.
   virtual absl::Status Remove(const std::vector<std::string>& ids) = 0;
-  // In order of id. A record that cannot be read is logged and left out.
+  // In order of id. What cannot be read of a record is logged and left out.
   virtual absl::StatusOr<std::vector<SessionRecord>> Load() = 0;
 };
 

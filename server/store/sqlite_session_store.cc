@@ -121,12 +121,12 @@ class OpenStore final : public SqliteSessionStore {
       if (!found) return records;
       SessionRecord record = RecordOf(rows);
       auto marks = MarksFrom(rows.Bytes(11));
-      if (!marks.ok()) {
-        base::LogError(base::Annotate(marks.status(),
-                                      absl::StrCat("session ", record.id, " is not brought back")));
-        continue;
+      if (marks.ok()) {
+        record.marks = *std::move(marks);
+      } else {
+        base::LogError(base::Annotate(
+            marks.status(), absl::StrCat("session ", record.id, " comes back without its marks")));
       }
-      record.marks = *std::move(marks);
       records.push_back(std::move(record));
     }
   }

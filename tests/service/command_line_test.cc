@@ -264,7 +264,7 @@ TEST_F(CommandLineTest, MeasureSlicesWritesThePlot) {
 TEST_F(CommandLineTest, ServeSaysOneLineAndStopsOnASignal) {
   const Outcome outcome =
       Shell(std::string(PROGRAM) + " serve --device software --data " + kSample +
-            " --http 127.0.0.1:0 --grpc 127.0.0.1:0 & server=$!; "
+            " --http 127.0.0.1:0 --grpc 127.0.0.1:0 --state none & server=$!; "
             "until [ -s " +
             folder_.File("out") +
             " ]; do kill -0 $server || break; sleep 0.1; done; "

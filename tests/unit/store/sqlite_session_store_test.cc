@@ -121,10 +121,12 @@ TEST_F(SqliteSessionStoreTest, ManyRecordsAreOneTransaction) {
   EXPECT_EQ(Loaded(), records);
 }
 
-TEST_F(SqliteSessionStoreTest, ARecordThatCannotBeReadIsLeftOut) {
+TEST_F(SqliteSessionStoreTest, MarksThatCannotBeReadAreLeftOut) {
   ASSERT_TRUE(Open()->Save({Record("a"), Record("b")}).ok());
   Execute(path_, "UPDATE marks SET marks = x'0102' WHERE session_id = 'a'");
-  EXPECT_THAT(Loaded(), ElementsAre(Record("b")));
+  SessionRecord without_marks = Record("a");
+  without_marks.marks.clear();
+  EXPECT_THAT(Loaded(), ElementsAre(without_marks, Record("b")));
 }
 
 TEST_F(SqliteSessionStoreTest, OnlyThisUserReadsItsFiles) {
