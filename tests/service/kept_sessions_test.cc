@@ -276,20 +276,6 @@ TEST_F(KeptSessionsTest, ARestartDoesNotMakeASessionYounger) {
   EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::milliseconds(1900));
 }
 
-TEST_F(KeptSessionsTest, AWatchedSessionIsInUse) {
-  const auto created = Create();
-  store_->Change([](SessionRecord& record) { record.last_used = {}; });
-  Interacting viewer(service_->stub(), created.viewer_key());
-  viewer.AwaitNewest(Response::kJoined);
-  // It is saved again for the next change, as used just now.
-  const auto joined_at = std::chrono::system_clock::now();
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  TurnSun(created.session_id(), 5.0F);
-  EXPECT_TRUE(store_->Await([&](const auto& records) {
-    return records.begin()->second.last_used > joined_at + std::chrono::milliseconds(200);
-  }));
-}
-
 TEST_F(KeptSessionsTest, ASceneThatCannotBeReadIsSkippedAndKeptUntilItExpires) {
   const auto damaged = Create();
   const auto other = Create();
@@ -330,6 +316,19 @@ TEST_F(KeptSessionsTest, AStoreThatFailsIsLoggedOnceAndTriedAgain) {
   EXPECT_EQ(std::ranges::count(logged, '\n'), 1) << logged;
   store_->FailWith(absl::OkStatus());
   EXPECT_TRUE(store_->Await([](const auto& records) { return records.size() == 1; }));
+}
+
+TEST(SessionRecordTest, AWatchedSessionIsInUse) {
+  struct SilentViewer : session::Viewer {
+    void Wake() override {}
+  };
+  session::Sessions sessions({}, {[] {}, [] {}});
+  const auto session = *sessions.Create();
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  const auto now = std::chrono::system_clock::now();
+  EXPECT_LT(session->Record().last_used, now - std::chrono::milliseconds(40));
+  ASSERT_TRUE(session->hub().Join(std::make_shared<SilentViewer>()).ok());
+  EXPECT_GE(session->Record().last_used, now - std::chrono::milliseconds(1));
 }
 
 TEST(StoredSceneTest, OlderScenesGetTheDefaultsOfWhatTheirWriterDidNotKnow) {
