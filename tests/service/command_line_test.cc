@@ -96,6 +96,7 @@ TEST_F(CommandLineTest, WrongUsageReturnsTwo) {
   ExpectError(render_ + " --renderer metaball --slices 9", 2, "for light_volume and half_angle;");
   ExpectError(render_ + " --camera kite", 2, "orbit, spotter or top-down");
   ExpectError("serve --data " + kSample + " --http nowhere", 2, "--http");
+  ExpectError("serve --data " + kSample + " --state /proc/none", 2, "--state is '/proc/none'");
 }
 
 TEST_F(CommandLineTest, InspectDescribesTheSample) {
