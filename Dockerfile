@@ -16,12 +16,14 @@ WORKDIR /opt/thunderhead
 COPY dev ./
 COPY deploy/packages deploy/packages
 RUN ./dev install runtime && rm -rf /var/lib/apt/lists/* dev deploy \
-    && useradd --system --no-create-home thunderhead
+    && useradd --system --no-create-home thunderhead \
+    && install --directory --mode=0700 --owner=thunderhead /var/lib/thunderhead
 COPY --from=build /src/build/release/bin/thunderhead bin/
 COPY --from=build /src/client-web/dist share/thunderhead/page/
 COPY --from=build /src/samples/supercell-500m.nc /data/
 ENV PATH=/opt/thunderhead/bin:$PATH \
-    NVIDIA_DRIVER_CAPABILITIES=graphics,utility
+    NVIDIA_DRIVER_CAPABILITIES=graphics,utility \
+    STATE_DIRECTORY=/var/lib/thunderhead
 USER thunderhead
 EXPOSE 8080 50051
 # Inside the container every address is its own; what is published decides who reaches it.

@@ -11,6 +11,7 @@
 #include "app/clouds_folder.h"
 #include "app/commands.h"
 #include "app/local_service.h"
+#include "app/state_folder.h"
 #include "base/status.h"
 #include "gateway/gateway.h"
 #include "session/gl_frame_source.h"
@@ -27,6 +28,7 @@ struct Flags {
   std::string device = "auto";
   std::string page;
   std::string clouds;
+  std::string state;
   std::vector<std::string> allowed_origins;
   double memory_budget_gib = 2.0;
 };
@@ -78,6 +80,7 @@ absl::Status Serve(const Flags& flags) {
     }
   }
   service::ServerOptions server_options;
+  THUNDERHEAD_ASSIGN_OR_RETURN(server_options.session_store, OpenSessionStore(flags.state));
   server_options.clouds_folder = clouds.Path();
   server_options.address = ToString(grpc);
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<service::Server> server,
@@ -128,6 +131,9 @@ Command AddServe(CLI::App& app) {
       "--clouds", flags->clouds,
       "Folder in which generated clouds are kept; without it they are deleted when the "
       "server stops");
+  serve->add_option("--state", flags->state,
+                    "Folder in which sessions outlive the server, or 'none'; by default "
+                    "$STATE_DIRECTORY, else thunderhead in $XDG_STATE_HOME or ~/.local/state");
   serve->add_option("--allow-origin", flags->allowed_origins,
                     "Origins of other sites whose pages may call the server");
   serve->add_option("--memory-budget", flags->memory_budget_gib, "GiB of storms kept in memory")

@@ -9,7 +9,10 @@ grpc::ServerUnaryReactor* CloseSession(Engine& engine, grpc::CallbackServerConte
                                        v1::CloseSessionResponse* /*response*/) {
   absl::Status status = CheckLimits(*request);
   if (status.ok()) status = engine.sessions.Close(request->session_id());
-  return Finished(context, status);
+  if (!status.ok()) return Finished(context, status);
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  SaveThen(engine, [reactor] { reactor->Finish(grpc::Status::OK); });
+  return reactor;
 }
 
 }  // namespace thunderhead::service

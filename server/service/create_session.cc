@@ -32,7 +32,9 @@ grpc::ServerUnaryReactor* CreateSession(Engine& engine, grpc::CallbackServerCont
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   const session::Rules rules = RulesOf(request->rules(), {});
   FrameThen(engine, scene, [=, &engine](const absl::Status& framed) {
-    reactor->Finish(ToGrpcStatus(framed.ok() ? Open(engine, rules, *response) : framed));
+    const absl::Status opened = framed.ok() ? Open(engine, rules, *response) : framed;
+    if (!opened.ok()) return reactor->Finish(ToGrpcStatus(opened));
+    SaveThen(engine, [reactor] { reactor->Finish(grpc::Status::OK); });
   });
   return reactor;
 }

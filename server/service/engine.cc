@@ -30,6 +30,11 @@ std::string NamesOf(const std::vector<const volume::StormInfo*>& storms) {
 
 }  // namespace
 
+void SaveThen(Engine& engine, std::function<void()> done) {
+  if (engine.keeper == nullptr) return done();
+  engine.keeper->SaveThen(std::move(done));
+}
+
 absl::StatusOr<const volume::StormInfo*> FindStorm(const volume::StormStore& store,
                                                    const std::string& id) {
   const std::vector<const volume::StormInfo*> storms = store.Storms();

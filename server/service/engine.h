@@ -13,6 +13,7 @@
 #include "base/wake_signal.h"
 #include "service/cloud_store.h"
 #include "session/render_loop.h"
+#include "session/session_keeper.h"
 #include "session/sessions.h"
 #include "thunderhead/v1/thunderhead.pb.h"
 #include "volume/storm_store.h"
@@ -26,7 +27,12 @@ struct Engine {
   base::WakeSignal& wake;
   base::Executor& executor;
   CloudStore& clouds;
+  session::SessionKeeper* keeper;  // null: sessions end with the server
 };
+
+// Calls `done` when what has been done to sessions outlives the server: at once if they end with
+// it, else on another thread.
+void SaveThen(Engine& engine, std::function<void()> done);
 
 // The storm of that id, or the first for an empty id. NOT_FOUND lists the storms.
 absl::StatusOr<const volume::StormInfo*> FindStorm(const volume::StormStore& store,

@@ -18,7 +18,9 @@
 #include "base/wake_signal.h"
 #include "service/engine.h"
 #include "service/interact_messages.h"
+#include "service/stored_scene.h"
 #include "service/thunderhead_service.h"
+#include "session/session_keeper.h"
 #include "session/upkeep.h"
 
 namespace thunderhead::service {
@@ -55,6 +57,7 @@ class RunningServer final : public Server {
  public:
   RunningServer(const ServerOptions& options, std::shared_ptr<volume::StormStore> store)
       : store_(std::move(store)),
+        session_store_(options.session_store),
         sessions_(WithFormat(options.sessions),
                   {[this] { wake_.Notify(); }, [this] { due_.Notify(); }}),
         executor_(kExecutorThreads, kMaxWaitingTasks),
@@ -67,13 +70,24 @@ class RunningServer final : public Server {
     options.serialize_frame = SerializedFrame;
     THUNDERHEAD_ASSIGN_OR_RETURN(
         loop_, session::RenderLoop::Start(options, *store_, sessions_, wake_, make_source));
-    engine_ =
-        std::make_unique<Engine>(Engine{*store_, sessions_, *loop_, wake_, executor_, clouds_});
-    service_ = std::make_unique<ThunderheadService>(*engine_);
+    return absl::OkStatus();
+  }
+
+  // Brings back the sessions that the store has.
+  absl::Status StartKeeper() {
+    if (session_store_ == nullptr) return absl::OkStatus();
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        keeper_, session::SessionKeeper::Start(
+                     *session_store_, sessions_, [this](const std::string& serialized) {
+                       return DecodeStoredScene(*store_, loop_->Techniques(), serialized);
+                     }));
     return absl::OkStatus();
   }
 
   absl::Status Listen(const std::string& address) {
+    engine_ = std::make_unique<Engine>(
+        Engine{*store_, sessions_, *loop_, wake_, executor_, clouds_, keeper_.get()});
+    service_ = std::make_unique<ThunderheadService>(*engine_);
     // Global settings, which apply to every server built later.
     static std::once_flag plugins;
     std::call_once(plugins, [] {
@@ -120,20 +134,25 @@ class RunningServer final : public Server {
     sessions_.CloseAll(base::ShuttingDown());
     if (loop_ != nullptr) loop_->Stop();
     executor_.Stop();
-    if (server_ == nullptr) return;
-    server_->Shutdown(std::chrono::system_clock::now() + kShutdownGrace);
-    server_->Wait();
+    if (server_ != nullptr) {
+      server_->Shutdown(std::chrono::system_clock::now() + kShutdownGrace);
+      server_->Wait();
+    }
+    // Last, because calls wait for it.
+    keeper_.reset();
   }
 
  private:
   base::WakeSignal wake_;
   base::WakeSignal due_;
   const std::shared_ptr<volume::StormStore> store_;
+  const std::shared_ptr<session::SessionStore> session_store_;
   session::Sessions sessions_;
   session::Upkeep upkeep_{sessions_, *store_, due_};
   base::Executor executor_;
   CloudStore clouds_;
   std::unique_ptr<session::RenderLoop> loop_;
+  std::unique_ptr<session::SessionKeeper> keeper_;
   std::unique_ptr<Engine> engine_;
   std::unique_ptr<ThunderheadService> service_;
   std::unique_ptr<grpc::Server> server_;
@@ -148,6 +167,7 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(
     const session::FrameSourceFactory& make_source) {
   auto server = std::make_unique<RunningServer>(options, std::move(store));
   THUNDERHEAD_RETURN_IF_ERROR(server->StartLoop(options.render_loop, make_source));
+  THUNDERHEAD_RETURN_IF_ERROR(server->StartKeeper());
   THUNDERHEAD_RETURN_IF_ERROR(server->Listen(options.address));
   return server;
 }

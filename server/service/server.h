@@ -10,6 +10,7 @@
 #include "absl/status/statusor.h"
 #include "session/frame_source.h"
 #include "session/render_loop.h"
+#include "session/session_store.h"
 #include "session/sessions.h"
 #include "volume/storm_store.h"
 
@@ -19,6 +20,7 @@ struct ServerOptions {
   std::string address;        // HOST:PORT, port 0 for a free one; empty: no port
   std::string clouds_folder;  // for generated clouds; empty: none can be generated
   session::SessionsOptions sessions;
+  std::shared_ptr<session::SessionStore> session_store;  // null: sessions end with the server
   session::RenderLoopOptions render_loop;
 };
 

@@ -7,7 +7,10 @@ namespace thunderhead::session {
 
 Audience::Audience(const AudienceFormat& format, const Rules& rules, Board board, Time now,
                    std::function<void()> on_due)
-    : format_(format), on_due_(std::move(on_due)), roster_(rules, now), board_(std::move(board)) {}
+    : format_(format),
+      on_due_(std::move(on_due)),
+      roster_(rules, now, board.LastPerson()),
+      board_(std::move(board)) {}
 
 std::uint64_t Audience::Join(Role role, const std::string& name, std::shared_ptr<Viewer> member,
                              Time now) {
@@ -72,6 +75,16 @@ Roster Audience::People() const {
 Board Audience::Drawn() const {
   const std::lock_guard lock(mutex_);
   return board_;
+}
+
+Rules Audience::CurrentRules() const {
+  const std::lock_guard lock(mutex_);
+  return roster_.rules();
+}
+
+std::uint64_t Audience::MarksRevision() const {
+  const std::lock_guard lock(mutex_);
+  return board_.marks_revision();
 }
 
 absl::Status Audience::MaySteer(std::uint64_t id) const {

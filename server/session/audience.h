@@ -72,6 +72,8 @@ class Audience {
   // Copies.
   Roster People() const;
   Board Drawn() const;
+  Rules CurrentRules() const;
+  std::uint64_t MarksRevision() const;
   absl::Status MaySteer(std::uint64_t id) const;
   absl::Status PresenterMaySteer() const;
   absl::Status MayMark(std::uint64_t id) const;

@@ -41,6 +41,12 @@ absl::StatusOr<std::uint64_t> Board::Add(std::uint64_t person_id,
   return mark_count_;
 }
 
+std::uint64_t Board::LastPerson() const {
+  std::uint64_t last = 0;
+  for (const Mark& mark : marks_) last = std::max(last, mark.person_id);
+  return last;
+}
+
 void Board::Erase(const std::vector<std::uint64_t>& ids, std::optional<std::uint64_t> person_id) {
   const auto erased = std::erase_if(marks_, [&](const Mark& mark) {
     return (ids.empty() || std::ranges::find(ids, mark.id) != ids.end()) &&

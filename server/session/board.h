@@ -23,6 +23,8 @@ struct Mark {
   std::uint64_t person_id = 0;
   std::vector<glm::dvec3> positions_m;
   glm::vec3 color{1.0F};  // linear sRGB
+
+  bool operator==(const Mark&) const = default;
 };
 
 class Board {
@@ -42,6 +44,8 @@ class Board {
   void Point(std::uint64_t person_id, const std::optional<glm::dvec3>& position_m);
 
   const std::vector<Mark>& marks() const { return marks_; }
+  // The largest id of those who drew them; 0 without marks.
+  std::uint64_t LastPerson() const;
   const std::vector<Pointer>& pointers() const { return pointers_; }
   // Count changes.
   std::uint64_t marks_revision() const { return marks_revision_; }

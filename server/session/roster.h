@@ -29,7 +29,7 @@ struct Rules {
 };
 
 struct Person {
-  std::uint64_t id = 0;  // counts a session's people from 1
+  std::uint64_t id = 0;  // counts a session's people
   std::string name;      // may be empty
   Role role = Role::kViewer;
   bool follows = true;
@@ -49,8 +49,10 @@ class Roster {
   static constexpr std::chrono::seconds kAskAgainAfter{5};
   static constexpr std::chrono::seconds kAwayAfter{60};
 
-  // Control is kept for the presenter, who may be on the way.
-  Roster(const Rules& rules, Time now) : rules_(rules), away_since_(now) {}
+  // Control is kept for the presenter, who may be on the way. People are counted from `last_id`,
+  // the largest id that somebody had before the server started again.
+  Roster(const Rules& rules, Time now, std::uint64_t last_id = 0)
+      : rules_(rules), away_since_(now), count_(last_id) {}
 
   std::uint64_t Join(Role role, std::string name);
   void Leave(std::uint64_t id, Time now);

@@ -26,6 +26,16 @@ std::string RandomHex(int words) {
 constexpr int kKeyWords = 4;  // of 32 bits
 constexpr int kIdWords = 2;
 
+// More scenes than a session is ever ahead of its record, so that a session that is brought back
+// gives no revision to a second scene.
+constexpr std::uint64_t kUnsavedRevisions = 1'000'000;
+
+// Since a time of the system's clock, which may have been set back since.
+Clock::duration AgeOf(std::chrono::system_clock::time_point time) {
+  return std::max(Clock::duration::zero(), std::chrono::duration_cast<Clock::duration>(
+                                               std::chrono::system_clock::now() - time));
+}
+
 // Abandoned sessions expire one after another.
 constexpr std::chrono::seconds kRetryAfter{30};
 
@@ -104,10 +114,25 @@ void Session::Show(std::uint64_t revision, scene::Scene scene, std::string seria
   signals_.on_work();
 }
 
+void Session::ShowRestored(const SessionRecord& record, scene::Scene scene,
+                           std::string serialized) {
+  std::uint64_t revision = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    revision_count_ = record.scene_revision + kUnsavedRevisions;
+    revision = revision_count_;
+    const Clock::duration ago = AgeOf(record.last_used);
+    last_used_ = Clock::now() - ago;
+  }
+  Show(revision, std::move(scene), std::move(serialized));
+}
+
 void Session::Close(const absl::Status& why) {
   hub_.Close(why);
   audience_.WakeAll();
 }
+
+bool Session::HasEnded() const { return absl::IsNotFound(hub_.ClosedBecause()); }
 
 std::optional<NewestScene> Session::Newest() const {
   const std::lock_guard lock(mutex_);
@@ -122,6 +147,29 @@ void Session::Touch() {
 Clock::time_point Session::last_used() const {
   const std::lock_guard lock(mutex_);
   return last_used_;
+}
+
+bool Session::IsWatched() const { return hub_.HasViewers() || !audience_.Empty(); }
+
+Clock::time_point Session::UsedUntil() const { return IsWatched() ? Clock::now() : last_used(); }
+
+SessionVersion Session::Version() const {
+  const std::optional<NewestScene> newest = Newest();
+  return {newest.has_value() ? newest->revision : 0, audience_.MarksRevision(),
+          audience_.CurrentRules()};
+}
+
+SessionRecord Session::Record() const {
+  SessionRecord record{.id = id_, .keys = keys_, .rules = audience_.CurrentRules()};
+  if (const std::optional<NewestScene> newest = Newest(); newest.has_value()) {
+    record.scene = *newest->serialized;
+    record.scene_revision = newest->revision;
+  }
+  record.marks = audience_.Drawn().marks();
+  record.last_used =
+      std::chrono::system_clock::now() -
+      std::chrono::duration_cast<std::chrono::system_clock::duration>(Clock::now() - UsedUntil());
+  return record;
 }
 
 std::shared_ptr<OwnView> OwnView::Of(const std::shared_ptr<Session>& session, std::string id,
@@ -172,10 +220,28 @@ absl::StatusOr<std::shared_ptr<Session>> Sessions::Create(const Rules& rules) {
   auto session = std::make_shared<Session>(RandomHex(kIdWords),
                                            SessionKeys{RandomHex(kKeyWords), RandomHex(kKeyWords)},
                                            rules, Board{}, options_.format, signals_);
+  Add(session);
+  return session;
+}
+
+std::shared_ptr<Session> Sessions::Restore(const SessionRecord& record, scene::Scene scene,
+                                           std::string serialized) {
+  auto session = std::make_shared<Session>(record.id, record.keys, record.rules,
+                                           Board(record.marks), options_.format, signals_);
+  session->ShowRestored(record, std::move(scene), std::move(serialized));
+  const std::lock_guard lock(mutex_);
+  Add(session);
+  return session;
+}
+
+bool Sessions::HasExpired(std::chrono::system_clock::time_point last_used) const {
+  return AgeOf(last_used) > options_.idle_timeout;
+}
+
+void Sessions::Add(const std::shared_ptr<Session>& session) {
   sessions_[session->id()] = session;
   id_by_key_[session->keys().presenter] = session->id();
   id_by_key_[session->keys().viewer] = session->id();
-  return session;
 }
 
 absl::StatusOr<Sessions::Map::iterator> Sessions::FindByKey(const std::string& key) {
@@ -265,8 +331,8 @@ void Sessions::DropExpired() {
   const Clock::time_point now = Clock::now();
   for (auto entry = sessions_.begin(); entry != sessions_.end();) {
     Session& session = *entry->second;
-    const bool watched = session.hub().HasViewers() || !session.audience().Empty();
-    const auto timeout = watched ? options_.watched_idle_timeout : options_.idle_timeout;
+    const auto timeout =
+        session.IsWatched() ? options_.watched_idle_timeout : options_.idle_timeout;
     const auto next = std::next(entry);
     if (session.last_used() < now - timeout) {
       const auto expired = Remove(entry);

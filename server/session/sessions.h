@@ -21,6 +21,7 @@
 #include "scene/scene.h"
 #include "session/audience.h"
 #include "session/frame_hub.h"
+#include "session/session_record.h"
 
 namespace thunderhead::session {
 
@@ -35,10 +36,13 @@ struct NewestScene {
   std::shared_ptr<const std::string> serialized;
 };
 
-// Who has one of these may open the session; neither tells the other.
-struct SessionKeys {
-  std::string presenter;
-  std::string viewer;
+// Counts of changes to what is kept of a session.
+struct SessionVersion {
+  std::uint64_t scene_revision = 0;  // 0: it has no scene yet
+  std::uint64_t marks_revision = 0;
+  Rules rules;
+
+  bool operator==(const SessionVersion&) const = default;
 };
 
 // What a session tells its server.
@@ -75,11 +79,22 @@ class Session {
   void Show(std::uint64_t revision, scene::Scene scene, std::string serialized = "");
   std::optional<NewestScene> Newest() const;
 
+  // The scene of a record, with a larger revision than any client has seen.
+  void ShowRestored(const SessionRecord& record, scene::Scene scene, std::string serialized);
+
   // Ends everybody's stream with `why`.
   void Close(const absl::Status& why);
+  // True if it was closed or has expired; not if only the server stops.
+  bool HasEnded() const;
 
   void Touch();
   Clock::time_point last_used() const;
+  bool IsWatched() const;
+  // Now while somebody watches.
+  Clock::time_point UsedUntil() const;
+
+  SessionVersion Version() const;
+  SessionRecord Record() const;
 
  private:
   friend class OwnView;
@@ -143,6 +158,11 @@ class Sessions {
 
   // RESOURCE_EXHAUSTED if there are too many, UNAVAILABLE after CloseAll.
   absl::StatusOr<std::shared_ptr<Session>> Create(const Rules& rules = {});
+  // The session of a record from another run, as if nothing had happened but that everybody left.
+  std::shared_ptr<Session> Restore(const SessionRecord& record, scene::Scene scene,
+                                   std::string serialized);
+  // True for a session that nobody has used since then.
+  bool HasExpired(std::chrono::system_clock::time_point last_used) const;
   // By either key. NOT_FOUND if it never existed, was closed or has expired; UNAVAILABLE after
   // CloseAll. Counts as use.
   absl::StatusOr<FoundSession> Find(const std::string& key);
@@ -166,6 +186,7 @@ class Sessions {
  private:
   using Map = std::map<std::string, std::shared_ptr<Session>>;
 
+  void Add(const std::shared_ptr<Session>& session);                // needs mutex_
   absl::StatusOr<Map::iterator> FindByKey(const std::string& key);  // needs mutex_
   std::shared_ptr<Session> Remove(Map::iterator at);                // needs mutex_
   void DropExpired();                                               // needs mutex_

@@ -96,6 +96,7 @@ TEST_F(CommandLineTest, WrongUsageReturnsTwo) {
   ExpectError(render_ + " --renderer metaball --slices 9", 2, "for light_volume and half_angle;");
   ExpectError(render_ + " --camera kite", 2, "orbit, spotter or top-down");
   ExpectError("serve --data " + kSample + " --http nowhere", 2, "--http");
+  ExpectError("serve --data " + kSample + " --state /proc/none", 2, "--state is '/proc/none'");
 }
 
 TEST_F(CommandLineTest, InspectDescribesTheSample) {
@@ -264,7 +265,7 @@ TEST_F(CommandLineTest, MeasureSlicesWritesThePlot) {
 TEST_F(CommandLineTest, ServeSaysOneLineAndStopsOnASignal) {
   const Outcome outcome =
       Shell(std::string(PROGRAM) + " serve --device software --data " + kSample +
-            " --http 127.0.0.1:0 --grpc 127.0.0.1:0 & server=$!; "
+            " --http 127.0.0.1:0 --grpc 127.0.0.1:0 --state none & server=$!; "
             "until [ -s " +
             folder_.File("out") +
             " ]; do kill -0 $server || break; sleep 0.1; done; "

@@ -311,6 +311,7 @@ absl::Status FakeStormStore::Remove(std::string_view id) {
 
 absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> FakeStormStore::Get(
     std::string_view id, int time_index, const volume::ReadProgress& /*progress*/) {
+  if (Find(id) == nullptr) return absl::NotFoundError("there is no such storm");
   if (auto cached = Peek(id, time_index); cached != nullptr) return cached;
   reading.Pass();
   const std::lock_guard lock(mutex_);

@@ -1,0 +1,75 @@
+#include "app/state_folder.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+#include "spdlog/spdlog.h"
+#include "store/sqlite_session_store.h"
+
+namespace thunderhead::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kNone[] = "none";
+constexpr char kFile[] = "sessions.db";
+
+std::string Variable(const char* name) {
+  const char* const value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+// Empty if the environment names none.
+std::string DefaultFolder() {
+  // systemd lists several with colons.
+  const std::string given = Variable("STATE_DIRECTORY");
+  if (!given.empty()) return given.substr(0, given.find(':'));
+  // A relative one is to be ignored (XDG Base Directory Specification).
+  const std::string state = Variable("XDG_STATE_HOME");
+  if (fs::path(state).is_absolute()) return state + "/thunderhead";
+  const std::string home = Variable("HOME");
+  return home.empty() ? "" : home + "/.local/state/thunderhead";
+}
+
+// Creates the folder, for this user only, if it is not there.
+std::error_code Create(const std::string& folder) {
+  std::error_code error;
+  if (fs::is_directory(folder, error)) return {};
+  fs::create_directories(folder, error);
+  if (!error) fs::permissions(folder, fs::perms::owner_all, error);
+  return error;
+}
+
+}  // namespace
+
+absl::StatusOr<std::shared_ptr<session::SessionStore>> OpenSessionStore(const std::string& folder) {
+  if (folder == kNone) return nullptr;
+  const bool is_default = folder.empty();
+  const std::string path = is_default ? DefaultFolder() : folder;
+  const std::error_code error =
+      path.empty() ? std::make_error_code(std::errc::no_such_file_or_directory) : Create(path);
+  if (error && is_default) {
+    spdlog::warn("sessions end with the server: no state folder '{}' ({}); name one with --state",
+                 path, error.message());
+    return nullptr;
+  }
+  if (error) {
+    return absl::InvalidArgumentError(absl::StrCat("--state is '", path,
+                                                   "', which is not a folder and cannot be "
+                                                   "created: ",
+                                                   error.message()));
+  }
+  auto store = store::SqliteSessionStore::Open(path + "/" + kFile);
+  if (!store.ok()) {
+    return base::Annotate(store.status(),
+                          "cannot keep sessions (another folder: --state FOLDER; "
+                          "none: --state none)");
+  }
+  return *std::move(store);
+}
+
+}  // namespace thunderhead::app

@@ -1,0 +1,30 @@
+#include "service/stored_scene.h"
+
+#include "base/status.h"
+#include "service/camera_messages.h"
+#include "service/limits_check.h"
+#include "service/scene_messages.h"
+#include "service/technique_messages.h"
+
+namespace thunderhead::service {
+
+absl::StatusOr<session::DecodedScene> DecodeStoredScene(
+    const volume::StormStore& store, const std::vector<session::TechniqueInfo>& techniques,
+    const std::string& serialized) {
+  v1::Scene scene;
+  if (!scene.ParseFromString(serialized) || NeedsFraming(scene)) {
+    return absl::DataLossError("its scene is damaged");
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(scene));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckScene(scene));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckRendering(scene.rendering(), techniques));
+  const volume::StormInfo* const storm = store.Find(scene.storm_id());
+  if (storm != nullptr && scene.time_index() < storm->times.size()) {
+    FillSceneDefaults(scene, *storm);
+  } else {
+    FillNumberDefaults(scene);
+  }
+  return session::DecodedScene{ToScene(scene), scene.SerializeAsString()};
+}
+
+}  // namespace thunderhead::service

@@ -1,0 +1,21 @@
+// Reads back the scenes of sessions that were kept while the server was down, perhaps by an older
+// version of this program.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "session/frame_source.h"
+#include "session/session_keeper.h"
+#include "volume/storm_store.h"
+
+namespace thunderhead::service {
+
+// Checks the scene as a client's, and fills in the defaults of fields that its writer did not know.
+// The storm may be gone, which whoever looks at the session is told.
+absl::StatusOr<session::DecodedScene> DecodeStoredScene(
+    const volume::StormStore& store, const std::vector<session::TechniqueInfo>& techniques,
+    const std::string& serialized);
+
+}  // namespace thunderhead::service

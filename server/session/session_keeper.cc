@@ -1,0 +1,108 @@
+#include "session/session_keeper.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "base/log.h"
+#include "base/status.h"
+
+namespace thunderhead::session {
+
+absl::StatusOr<std::unique_ptr<SessionKeeper>> SessionKeeper::Start(SessionStore& store,
+                                                                    Sessions& sessions,
+                                                                    const DecodeScene& decode) {
+  std::unique_ptr<SessionKeeper> keeper(new SessionKeeper(store, sessions));
+  THUNDERHEAD_RETURN_IF_ERROR(keeper->Restore(decode));
+  keeper->thread_ = std::thread([raw = keeper.get()] { raw->Run(); });
+  return keeper;
+}
+
+SessionKeeper::~SessionKeeper() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_one();
+  thread_.join();
+}
+
+void SessionKeeper::SaveThen(std::function<void()> done) {
+  {
+    const std::lock_guard lock(mutex_);
+    waiting_.push_back(std::move(done));
+  }
+  changed_.notify_one();
+}
+
+absl::Status SessionKeeper::Restore(const DecodeScene& decode) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<SessionRecord> records, store_.Load());
+  std::vector<std::string> expired;
+  for (const SessionRecord& record : records) {
+    if (sessions_.HasExpired(record.last_used)) {
+      expired.push_back(record.id);
+      continue;
+    }
+    absl::StatusOr<DecodedScene> decoded = decode(record.scene);
+    if (!decoded.ok()) {
+      base::LogError(base::Annotate(
+          decoded.status(),
+          absl::StrCat("session ", record.id, " is not brought back, but kept until it expires")));
+      continue;
+    }
+    kept_[record.id].session =
+        sessions_.Restore(record, std::move(decoded->scene), std::move(decoded->serialized));
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(store_.Remove(expired));
+  // Before anybody sees their new revisions, so that the next restart's are larger still.
+  return SaveChanges();
+}
+
+absl::Status SessionKeeper::SaveChanges() {
+  for (const auto& session : sessions_.All()) kept_[session->id()].session = session;
+  std::vector<SessionRecord> records;
+  std::map<std::string, Kept> saved;
+  std::vector<std::string> ended;
+  for (const auto& [id, kept] : kept_) {
+    if (kept.session->HasEnded()) {
+      ended.push_back(id);
+      continue;
+    }
+    // Before the record, which may be newer than they say.
+    const SessionVersion version = kept.session->Version();
+    const Clock::time_point use = kept.session->UsedUntil();
+    if (version.scene_revision == 0) continue;  // it is only being created
+    if (kept.saved == version && use < kept.saved_use + kUsePause) continue;
+    records.push_back(kept.session->Record());
+    saved[id] = {kept.session, version, use};
+  }
+  if (!ended.empty()) THUNDERHEAD_RETURN_IF_ERROR(store_.Remove(ended));
+  for (const std::string& id : ended) kept_.erase(id);
+  if (!records.empty()) THUNDERHEAD_RETURN_IF_ERROR(store_.Save(records));
+  for (auto& [id, kept] : saved) kept_[id] = std::move(kept);
+  return absl::OkStatus();
+}
+
+void SessionKeeper::Log(const absl::Status& outcome) {
+  if (outcome != last_outcome_ && !outcome.ok()) {
+    base::LogError(base::Annotate(
+        outcome,
+        "cannot save sessions, which would be lost if the server ended now; trying again"));
+  }
+  last_outcome_ = outcome;
+}
+
+void SessionKeeper::Run() {
+  std::unique_lock lock(mutex_);
+  for (bool last = false; !last;) {
+    changed_.wait_for(lock, kPause, [this] { return stopping_ || !waiting_.empty(); });
+    last = stopping_;
+    const auto waiting = std::exchange(waiting_, {});
+    lock.unlock();
+    Log(SaveChanges());
+    for (const auto& done : waiting) done();
+    lock.lock();
+  }
+}
+
+}  // namespace thunderhead::session

@@ -1,0 +1,34 @@
+// What is kept of a session while the server is down. Plain values.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "session/board.h"
+#include "session/roster.h"
+
+namespace thunderhead::session {
+
+// Who has one of these may open the session; neither tells the other.
+struct SessionKeys {
+  std::string presenter;
+  std::string viewer;
+
+  bool operator==(const SessionKeys&) const = default;
+};
+
+struct SessionRecord {
+  std::string id;
+  SessionKeys keys;
+  Rules rules;
+  std::string scene;  // as the service serialized it; opaque here
+  std::uint64_t scene_revision = 0;
+  std::vector<Mark> marks;
+  std::chrono::system_clock::time_point last_used;
+
+  bool operator==(const SessionRecord&) const = default;
+};
+
+}  // namespace thunderhead::session

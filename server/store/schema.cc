@@ -1,0 +1,67 @@
+#include "store/schema.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+
+namespace thunderhead::store {
+namespace {
+
+// "Thun": tells our files from other programs'.
+constexpr std::int64_t kApplicationId = 0x5468756e;
+
+// Step n leads from version n to n + 1; a step that has been released never changes. Marks are
+// apart from what changes with every movement of the camera.
+constexpr std::array kSteps = {R"(
+  CREATE TABLE sessions (
+    id TEXT PRIMARY KEY NOT NULL,
+    presenter_key TEXT UNIQUE NOT NULL,
+    viewer_key TEXT UNIQUE NOT NULL,
+    viewers_may_steer INTEGER NOT NULL,
+    control_locked INTEGER NOT NULL,
+    following_locked INTEGER NOT NULL,
+    viewers_may_mark INTEGER NOT NULL,
+    free_when_away INTEGER NOT NULL,
+    scene BLOB NOT NULL,
+    scene_revision INTEGER NOT NULL,
+    last_used_ms INTEGER NOT NULL  -- since 1970
+  ) STRICT;
+  CREATE TABLE marks (
+    session_id TEXT PRIMARY KEY NOT NULL REFERENCES sessions ON DELETE CASCADE,
+    marks BLOB NOT NULL  -- mark_bytes.h
+  ) STRICT;
+)"};
+
+absl::Status CheckOrigin(Database& database, const std::string& path) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::int64_t id, database.Number("PRAGMA application_id"));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::int64_t objects,
+                               database.Number("SELECT count(*) FROM sqlite_schema"));
+  if (id == kApplicationId || (id == 0 && objects == 0)) return absl::OkStatus();
+  return absl::FailedPreconditionError(
+      absl::StrCat(path, " belongs to another program; choose another folder"));
+}
+
+}  // namespace
+
+absl::Status UpdateSchema(Database& database, const std::string& path) {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckOrigin(database, path));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::int64_t version, database.Number("PRAGMA user_version"));
+  const std::int64_t newest{kSteps.size()};
+  if (version > newest) {
+    return absl::FailedPreconditionError(
+        absl::StrCat(path, " was written by a newer Thunderhead (version ", version,
+                     "; this one knows ", newest, "): start that one, or move the file away"));
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(Transaction transaction, Transaction::Begin(database));
+  for (std::int64_t step = version; step < newest; ++step) {
+    THUNDERHEAD_RETURN_IF_ERROR(database.Execute(kSteps[static_cast<std::size_t>(step)]));
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(database.Execute(absl::StrCat(
+      "PRAGMA application_id = ", kApplicationId, "; PRAGMA user_version = ", newest)));
+  return transaction.Commit();
+}
+
+}  // namespace thunderhead::store

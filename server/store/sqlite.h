@@ -1,0 +1,91 @@
+// SQLite's C interface with owners and statuses.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace thunderhead::store {
+
+class Statement;
+
+// DATA_LOSS, with what to do about it.
+absl::Status DamagedFile(const std::string& path, const std::string& why);
+
+class Database {
+ public:
+  // Opens an existing file.
+  static absl::StatusOr<Database> Open(const std::string& path);
+
+  // Statements without results.
+  absl::Status Execute(const std::string& sql);
+  absl::StatusOr<Statement> Prepare(const std::string& sql);
+  // The one number that the query has as its result.
+  absl::StatusOr<std::int64_t> Number(const std::string& sql);
+  // What was wrong with the last call: DATA_LOSS for a damaged file, else UNAVAILABLE.
+  absl::Status Error() const;
+
+ private:
+  struct Close {
+    void operator()(sqlite3* database) const;
+  };
+
+  explicit Database(std::string path) : path_(std::move(path)) {}
+
+  std::string path_;
+  std::unique_ptr<sqlite3, Close> handle_;
+};
+
+// Used again after each Run, or when Next has said that there is no further row. Parameters count
+// from 1, columns from 0. Text and blobs that are bound must live until then.
+class Statement {
+ public:
+  void Bind(int parameter, std::int64_t value);
+  void Bind(int parameter, std::string_view text);
+  void BindBlob(int parameter, std::string_view bytes);
+
+  // Without results.
+  absl::Status Run();
+  // True if there is another row.
+  absl::StatusOr<bool> Next();
+
+  std::int64_t Number(int column) const;
+  std::string Bytes(int column) const;
+
+ private:
+  friend class Database;
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const;
+  };
+
+  Statement(const Database& database, sqlite3_stmt* handle)
+      : database_(database), handle_(handle) {}
+
+  const Database& database_;
+  std::unique_ptr<sqlite3_stmt, Finalize> handle_;
+};
+
+// Undone unless committed.
+class Transaction {
+ public:
+  static absl::StatusOr<Transaction> Begin(Database& database);
+  Transaction(Transaction&& other) noexcept;
+  Transaction& operator=(Transaction&&) = delete;
+  ~Transaction();
+
+  absl::Status Commit();
+
+ private:
+  explicit Transaction(Database& database) : database_(&database) {}
+
+  Database* database_;  // null: over
+};
+
+}  // namespace thunderhead::store

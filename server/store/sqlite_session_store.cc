@@ -1,0 +1,171 @@
+#include "store/sqlite_session_store.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdint>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "base/log.h"
+#include "base/status.h"
+#include "store/file_lock.h"
+#include "store/mark_bytes.h"
+#include "store/schema.h"
+#include "store/sqlite.h"
+
+namespace thunderhead::store {
+namespace {
+
+using session::SessionRecord;
+
+constexpr char kSaveSession[] =
+    "INSERT INTO sessions (id, presenter_key, viewer_key, viewers_may_steer, control_locked, "
+    "following_locked, viewers_may_mark, free_when_away, scene, scene_revision, last_used_ms) "
+    "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (id) DO UPDATE SET "
+    "presenter_key = excluded.presenter_key, viewer_key = excluded.viewer_key, "
+    "viewers_may_steer = excluded.viewers_may_steer, control_locked = excluded.control_locked, "
+    "following_locked = excluded.following_locked, viewers_may_mark = excluded.viewers_may_mark, "
+    "free_when_away = excluded.free_when_away, scene = excluded.scene, "
+    "scene_revision = excluded.scene_revision, last_used_ms = excluded.last_used_ms";
+// Written only when they have changed.
+constexpr char kSaveMarks[] =
+    "INSERT INTO marks (session_id, marks) VALUES (?, ?) ON CONFLICT (session_id) DO UPDATE SET "
+    "marks = excluded.marks WHERE marks IS NOT excluded.marks";
+constexpr char kLoad[] =
+    "SELECT id, presenter_key, viewer_key, viewers_may_steer, control_locked, following_locked, "
+    "viewers_may_mark, free_when_away, scene, scene_revision, last_used_ms, marks FROM sessions "
+    "JOIN marks ON session_id = id ORDER BY id";
+
+std::int64_t MillisecondsOf(std::chrono::system_clock::time_point time) {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(time.time_since_epoch()).count();
+}
+
+std::chrono::system_clock::time_point TimeOf(std::int64_t milliseconds) {
+  return std::chrono::system_clock::time_point(std::chrono::milliseconds(milliseconds));
+}
+
+// Before SQLite does, whose mode would be the user's default. Its other files get the mode of this.
+absl::Status CreateForThisUser(const std::string& path) {
+  const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  const bool done = file >= 0 && fchmod(file, 0600) == 0;
+  const std::string why = std::strerror(errno);
+  if (file >= 0) close(file);
+  if (done) return absl::OkStatus();
+  return absl::FailedPreconditionError(absl::StrCat(path, " cannot be written: ", why));
+}
+
+absl::Status CheckWhole(Database& database, const std::string& path) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(Statement check, database.Prepare("PRAGMA quick_check(1)"));
+  THUNDERHEAD_RETURN_IF_ERROR(check.Next().status());
+  const std::string found = check.Bytes(0);
+  return found == "ok" ? absl::OkStatus() : DamagedFile(path, found);
+}
+
+SessionRecord RecordOf(const Statement& row) {
+  SessionRecord record;
+  record.id = row.Bytes(0);
+  record.keys = {row.Bytes(1), row.Bytes(2)};
+  record.rules = {.viewers_may_steer = row.Number(3) != 0,
+                  .control_locked = row.Number(4) != 0,
+                  .following_locked = row.Number(5) != 0,
+                  .viewers_may_mark = row.Number(6) != 0,
+                  .free_when_away = row.Number(7) != 0};
+  record.scene = row.Bytes(8);
+  record.scene_revision = static_cast<std::uint64_t>(row.Number(9));
+  record.last_used = TimeOf(row.Number(10));
+  return record;
+}
+
+class OpenStore final : public SqliteSessionStore {
+ public:
+  OpenStore(FileLock lock, Database database)
+      : lock_(std::move(lock)), database_(std::move(database)) {}
+
+  absl::Status Save(const std::vector<SessionRecord>& records) override {
+    THUNDERHEAD_ASSIGN_OR_RETURN(Transaction transaction, Transaction::Begin(database_));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Statement save, database_.Prepare(kSaveSession));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Statement save_marks, database_.Prepare(kSaveMarks));
+    for (const SessionRecord& record : records) {
+      BindAll(record, save);
+      THUNDERHEAD_RETURN_IF_ERROR(save.Run());
+      const std::string marks = ToBytes(record.marks);
+      save_marks.Bind(1, record.id);
+      save_marks.BindBlob(2, marks);
+      THUNDERHEAD_RETURN_IF_ERROR(save_marks.Run());
+    }
+    return transaction.Commit();
+  }
+
+  absl::Status Remove(const std::vector<std::string>& ids) override {
+    THUNDERHEAD_ASSIGN_OR_RETURN(Transaction transaction, Transaction::Begin(database_));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Statement remove,
+                                 database_.Prepare("DELETE FROM sessions WHERE id = ?"));
+    for (const std::string& id : ids) {
+      remove.Bind(1, id);
+      THUNDERHEAD_RETURN_IF_ERROR(remove.Run());
+    }
+    return transaction.Commit();
+  }
+
+  absl::StatusOr<std::vector<SessionRecord>> Load() override {
+    THUNDERHEAD_ASSIGN_OR_RETURN(Statement rows, database_.Prepare(kLoad));
+    std::vector<SessionRecord> records;
+    while (true) {
+      THUNDERHEAD_ASSIGN_OR_RETURN(const bool found, rows.Next());
+      if (!found) return records;
+      SessionRecord record = RecordOf(rows);
+      auto marks = MarksFrom(rows.Bytes(11));
+      if (marks.ok()) {
+        record.marks = *std::move(marks);
+      } else {
+        base::LogError(base::Annotate(
+            marks.status(), absl::StrCat("session ", record.id, " comes back without its marks")));
+      }
+      records.push_back(std::move(record));
+    }
+  }
+
+ private:
+  static void BindAll(const SessionRecord& record, Statement& save) {
+    save.Bind(1, record.id);
+    save.Bind(2, record.keys.presenter);
+    save.Bind(3, record.keys.viewer);
+    save.Bind(4, std::int64_t{record.rules.viewers_may_steer});
+    save.Bind(5, std::int64_t{record.rules.control_locked});
+    save.Bind(6, std::int64_t{record.rules.following_locked});
+    save.Bind(7, std::int64_t{record.rules.viewers_may_mark});
+    save.Bind(8, std::int64_t{record.rules.free_when_away});
+    save.BindBlob(9, record.scene);
+    save.Bind(10, static_cast<std::int64_t>(record.scene_revision));
+    save.Bind(11, MillisecondsOf(record.last_used));
+  }
+
+  const FileLock lock_;
+  Database database_;
+};
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<SqliteSessionStore>> SqliteSessionStore::Open(
+    const std::string& path) {
+  // A file of its own, because SQLite's locks let a second process in between two transactions.
+  absl::StatusOr<FileLock> lock = FileLock::Take(absl::StrCat(path, ".lock"));
+  if (!lock.ok()) {
+    return base::Annotate(lock.status(), "each server needs a state folder of its own");
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(CreateForThisUser(path));
+  THUNDERHEAD_ASSIGN_OR_RETURN(Database database, Database::Open(path));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckWhole(database, path));
+  THUNDERHEAD_RETURN_IF_ERROR(UpdateSchema(database, path));
+  THUNDERHEAD_RETURN_IF_ERROR(database.Execute(
+      "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = ON"));
+  return std::make_unique<OpenStore>(*std::move(lock), std::move(database));
+}
+
+}  // namespace thunderhead::store

@@ -1,0 +1,355 @@
+// Sessions that outlive the server, on fakes: the next server on the same store has them again.
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "service/stored_scene.h"
+#include "tests/service/fake_service.h"
+#include "tests/service/interacting.h"
+
+namespace thunderhead::testing {
+namespace {
+
+using session::SessionRecord;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using Response = v1::InteractResponse;
+using Stub = v1::ThunderheadService::Stub;
+
+// A store in memory, which the test reads and changes too.
+class FakeSessionStore final : public session::SessionStore {
+ public:
+  absl::Status Save(const std::vector<SessionRecord>& records) override {
+    saving.Pass();
+    const std::lock_guard lock(mutex_);
+    if (!failure_.ok()) return failure_;
+    for (const SessionRecord& record : records) records_[record.id] = record;
+    ++saves_;
+    changed_.notify_all();
+    return absl::OkStatus();
+  }
+
+  absl::Status Remove(const std::vector<std::string>& ids) override {
+    const std::lock_guard lock(mutex_);
+    for (const std::string& id : ids) records_.erase(id);
+    changed_.notify_all();
+    return absl::OkStatus();
+  }
+
+  absl::StatusOr<std::vector<SessionRecord>> Load() override {
+    const std::lock_guard lock(mutex_);
+    std::vector<SessionRecord> records;
+    for (const auto& [id, record] : records_) records.push_back(record);
+    return records;
+  }
+
+  std::vector<SessionRecord> Records() { return *Load(); }
+
+  void Change(const std::function<void(SessionRecord&)>& change) {
+    const std::lock_guard lock(mutex_);
+    for (auto& [id, record] : records_) change(record);
+  }
+
+  void FailWith(const absl::Status& failure) {
+    const std::lock_guard lock(mutex_);
+    failure_ = failure;
+  }
+
+  int Saves() {
+    const std::lock_guard lock(mutex_);
+    return saves_;
+  }
+
+  // Waits until `wanted` is true for the records.
+  bool Await(const std::function<bool(const std::map<std::string, SessionRecord>&)>& wanted) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, kPatience, [&] { return wanted(records_); });
+  }
+
+  Gate saving;
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::map<std::string, SessionRecord> records_;
+  absl::Status failure_;
+  int saves_ = 0;
+};
+
+class KeptSessionsTest : public ::testing::Test {
+ protected:
+  KeptSessionsTest() {
+    options_.session_store = store_;
+    Start();
+  }
+
+  void Start() {
+    service_.reset();
+    service_ = std::make_unique<FakeService>(options_);
+  }
+
+  v1::CreateSessionResponse Create(const v1::SessionRules& rules = {}) {
+    v1::CreateSessionRequest request;
+    *request.mutable_scene() = SmallScene();
+    *request.mutable_rules() = rules;
+    v1::CreateSessionResponse response;
+    const grpc::Status status = Call(service_->stub(), &Stub::CreateSession, request, &response);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    return response;
+  }
+
+  grpc::Status Close(const std::string& key) {
+    v1::CloseSessionRequest request;
+    request.set_session_id(key);
+    v1::CloseSessionResponse response;
+    return Call(service_->stub(), &Stub::CloseSession, request, &response);
+  }
+
+  void TurnSun(const std::string& key, float azimuth_deg) {
+    v1::Scene scene = SmallScene();
+    scene.mutable_sun()->set_azimuth_deg(azimuth_deg);
+    service_->Update(key, scene);
+  }
+
+  // NOT_FOUND if no session has the key.
+  grpc::StatusCode CodeOf(const std::string& key) {
+    v1::UpdateSceneRequest request;
+    request.set_session_id(key);
+    v1::UpdateSceneResponse response;
+    return Call(service_->stub(), &Stub::UpdateScene, request, &response).error_code();
+  }
+
+  const std::shared_ptr<FakeSessionStore> store_ = std::make_shared<FakeSessionStore>();
+  service::ServerOptions options_;
+  std::unique_ptr<FakeService> service_;
+};
+
+v1::InteractRequest DrawsDown() {
+  v1::InteractRequest request;
+  v1::Ray& ray = *request.mutable_add_mark()->add_rays();
+  ray.mutable_origin()->set_x_m(-5500.0F);
+  ray.mutable_origin()->set_y_m(-500.0F);
+  ray.mutable_origin()->set_z_m(20000.0F);
+  ray.mutable_direction()->set_z(-1.0F);
+  return request;
+}
+
+TEST_F(KeptSessionsTest, TheNextServerHasTheSameSession) {
+  v1::SessionRules rules;
+  rules.set_viewers_may_steer(false);
+  rules.set_viewers_may_mark(true);
+  const auto created = Create(rules);
+  v1::Marks marks;
+  v1::SceneState before;
+  {
+    Interacting presenter(service_->stub(), created.session_id());
+    presenter.AwaitNewest(Response::kJoined);
+    v1::InteractRequest locks;
+    locks.mutable_set_rules()->mutable_rules()->set_following_locked(true);
+    presenter.Send(locks);
+    presenter.Send(DrawsDown());
+    v1::InteractRequest turns;
+    *turns.mutable_update_scene()->mutable_scene() = SmallScene();
+    turns.mutable_update_scene()->mutable_scene()->mutable_sun()->set_azimuth_deg(123.0F);
+    ASSERT_EQ(presenter.AnswerCode(presenter.Send(turns)), grpc::StatusCode::OK);
+    marks = presenter.AwaitNewest(Response::kMarks).marks();
+    ASSERT_TRUE(presenter.Await([&](const Interacting::Messages& messages) {
+      return std::ranges::any_of(messages, [&](const Response& message) {
+        before = message.scene();
+        return message.scene().scene().sun().azimuth_deg() == 123.0F;
+      });
+    }));
+  }
+  Start();
+  Interacting viewer(service_->stub(), created.viewer_key());
+  const auto joined = viewer.AwaitNewest(Response::kJoined).joined();
+  EXPECT_EQ(joined.role(), v1::ROLE_VIEWER);
+  const v1::SceneState after = viewer.AwaitNewest(Response::kScene).scene();
+  EXPECT_EQ(after.scene().SerializeAsString(), before.scene().SerializeAsString());
+  // No client has seen so large a one, not even of the scenes that a killed server has not saved.
+  EXPECT_GT(after.scene_revision(), before.scene_revision() + 1000);
+  ASSERT_TRUE(viewer.AwaitFrame(after.scene_revision()));
+  EXPECT_EQ(viewer.AwaitNewest(Response::kMarks).marks().SerializeAsString(),
+            marks.SerializeAsString());
+  EXPECT_GT(joined.viewer_id(), marks.marks(0).viewer_id())
+      << "else the mark would be the viewer's";
+  ASSERT_TRUE(viewer.AwaitPresence([](const v1::Presence& presence) {
+    return presence.presenter_away() && presence.steering_viewer_id() == 0 &&
+           !presence.rules().viewers_may_steer() && presence.rules().viewers_may_mark() &&
+           presence.rules().following_locked();
+  }));
+  // Control was kept for the presenter.
+  Interacting presenter(service_->stub(), created.session_id());
+  EXPECT_EQ(presenter.AwaitNewest(Response::kJoined).joined().role(), v1::ROLE_PRESENTER);
+  EXPECT_EQ(presenter.AwaitNewest(Response::kJoined).joined().viewer_key(), created.viewer_key());
+  EXPECT_TRUE(viewer.AwaitPresence([&](const v1::Presence& presence) {
+    return presence.steering_viewer_id() == presenter.viewer_id();
+  }));
+}
+
+TEST_F(KeptSessionsTest, ASessionIsSavedBeforeItsClientKnowsIt) {
+  store_->saving.Close();
+  std::thread opener([this] { Create(); });
+  ASSERT_TRUE(store_->saving.AwaitWaiting(1));
+  EXPECT_THAT(store_->Records(), IsEmpty());
+  // A disk that hangs holds up nothing else.
+  v1::ListStormsResponse storms;
+  EXPECT_TRUE(Call(service_->stub(), &Stub::ListStorms, v1::ListStormsRequest(), &storms).ok());
+  store_->saving.Open();
+  opener.join();
+  EXPECT_EQ(store_->Records().size(), 1U);
+}
+
+TEST_F(KeptSessionsTest, AClosedSessionIsGoneBeforeItsClientKnowsIt) {
+  const auto closed = Create();
+  const auto other = Create();
+  ASSERT_TRUE(Close(closed.session_id()).ok());
+  ASSERT_EQ(store_->Records().size(), 1U);
+  EXPECT_EQ(store_->Records().front().keys.presenter, other.session_id());
+  Start();
+  EXPECT_EQ(CodeOf(closed.session_id()), grpc::StatusCode::NOT_FOUND);
+  EXPECT_EQ(CodeOf(closed.viewer_key()), grpc::StatusCode::NOT_FOUND);
+  EXPECT_EQ(CodeOf(other.session_id()), grpc::StatusCode::OK);
+}
+
+TEST_F(KeptSessionsTest, ChangesAreSavedWhileTheServerRunsAndOnlyThey) {
+  const auto created = Create();
+  TurnSun(created.session_id(), 77.0F);
+  ASSERT_TRUE(store_->Await([&](const auto& records) {
+    v1::Scene scene;
+    return scene.ParseFromString(records.begin()->second.scene) &&
+           scene.sun().azimuth_deg() == 77.0F;
+  }));
+  const int saves = store_->Saves();
+  std::this_thread::sleep_for(3 * session::SessionKeeper::kPause);
+  EXPECT_EQ(store_->Saves(), saves) << "nothing has changed";
+  // A drag of many scenes is few saves.
+  for (int i = 0; i < 100; ++i) {
+    TurnSun(created.session_id(), static_cast<float>(i));
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_LE(store_->Saves() - saves, 5);
+}
+
+TEST_F(KeptSessionsTest, RevisionsGoOnOverSeveralRestarts) {
+  const auto created = Create();
+  std::uint64_t last = created.scene_revision();
+  for (int i = 0; i < 3; ++i) {
+    Start();
+    const std::uint64_t revision = store_->Records().front().scene_revision;
+    EXPECT_GT(revision, last) << "saved before anybody can see it";
+    last = service_->Update(created.session_id(), SmallScene());
+    EXPECT_GT(last, revision);
+  }
+}
+
+TEST_F(KeptSessionsTest, ExpiredSessionsAreDropped) {
+  options_.sessions.idle_timeout = std::chrono::minutes(10);
+  const auto created = Create();
+  service_.reset();
+  store_->Change([](SessionRecord& record) { record.last_used -= std::chrono::minutes(9); });
+  Start();
+  EXPECT_EQ(CodeOf(created.session_id()), grpc::StatusCode::OK);
+  service_.reset();
+  store_->Change([](SessionRecord& record) { record.last_used -= std::chrono::minutes(11); });
+  Start();
+  EXPECT_EQ(CodeOf(created.session_id()), grpc::StatusCode::NOT_FOUND);
+  EXPECT_THAT(store_->Records(), IsEmpty());
+}
+
+TEST_F(KeptSessionsTest, ARestartDoesNotMakeASessionYounger) {
+  options_.sessions.idle_timeout = std::chrono::seconds(2);
+  service_.reset();
+  const auto created = (Start(), Create());
+  service_.reset();
+  store_->Change([](SessionRecord& record) {
+    record.last_used = std::chrono::system_clock::now() - std::chrono::milliseconds(1500);
+  });
+  Start();
+  EXPECT_EQ(store_->Records().size(), 1U);
+  const auto began = std::chrono::steady_clock::now();
+  ASSERT_TRUE(store_->Await([](const auto& records) { return records.empty(); }));
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::milliseconds(1900));
+}
+
+TEST_F(KeptSessionsTest, ASceneThatCannotBeReadIsSkippedAndKeptUntilItExpires) {
+  const auto damaged = Create();
+  const auto other = Create();
+  service_.reset();
+  store_->Change([&](SessionRecord& record) {
+    if (record.keys.presenter == damaged.session_id()) record.scene = "\xff\xff";
+  });
+  ::testing::internal::CaptureStderr();
+  Start();
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
+              HasSubstr("is not brought back, but kept until it expires: its scene is damaged"));
+  EXPECT_EQ(CodeOf(damaged.session_id()), grpc::StatusCode::NOT_FOUND);
+  EXPECT_EQ(CodeOf(other.session_id()), grpc::StatusCode::OK);
+  EXPECT_EQ(store_->Records().size(), 2U);
+}
+
+TEST_F(KeptSessionsTest, ASessionWhoseStormIsGoneSaysSo) {
+  const auto created = Create();
+  service_.reset();
+  store_->Change([](SessionRecord& record) {
+    v1::Scene scene;
+    ASSERT_TRUE(scene.ParseFromString(record.scene));
+    scene.set_storm_id("gone");
+    record.scene = scene.SerializeAsString();
+  });
+  Start();
+  Interacting viewer(service_->stub(), created.viewer_key());
+  EXPECT_EQ(viewer.AwaitNewest(Response::kProblem).problem().code(), v1::Problem::CODE_STORM_GONE);
+}
+
+TEST_F(KeptSessionsTest, AStoreThatFailsIsLoggedOnceAndTriedAgain) {
+  ::testing::internal::CaptureStderr();
+  store_->FailWith(absl::UnavailableError("the disk is full"));
+  const auto created = Create();
+  std::this_thread::sleep_for(3 * session::SessionKeeper::kPause);
+  const std::string logged = ::testing::internal::GetCapturedStderr();
+  EXPECT_THAT(logged, HasSubstr("trying again: the disk is full"));
+  EXPECT_EQ(std::ranges::count(logged, '\n'), 1) << logged;
+  store_->FailWith(absl::OkStatus());
+  EXPECT_TRUE(store_->Await([](const auto& records) { return records.size() == 1; }));
+}
+
+TEST(SessionRecordTest, AWatchedSessionIsInUse) {
+  struct SilentViewer : session::Viewer {
+    void Wake() override {}
+  };
+  session::Sessions sessions({}, {[] {}, [] {}});
+  const auto session = *sessions.Create();
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  const auto now = std::chrono::system_clock::now();
+  EXPECT_LT(session->Record().last_used, now - std::chrono::milliseconds(40));
+  ASSERT_TRUE(session->hub().Join(std::make_shared<SilentViewer>()).ok());
+  EXPECT_GE(session->Record().last_used, now - std::chrono::milliseconds(1));
+}
+
+TEST(StoredSceneTest, OlderScenesGetTheDefaultsOfWhatTheirWriterDidNotKnow) {
+  FakeService service;
+  v1::CreateSessionResponse created;
+  ASSERT_TRUE(
+      Call(service.stub(), &Stub::CreateSession, v1::CreateSessionRequest(), &created).ok());
+  const std::vector<session::TechniqueInfo> techniques{{"light_volume", {}}};
+  const auto decoded = [&](const v1::Scene& scene) {
+    return service::DecodeStoredScene(*service.store, techniques, scene.SerializeAsString());
+  };
+  v1::Scene older = created.scene();
+  older.clear_ground();
+  older.mutable_sky()->clear_turbidity();
+  ASSERT_TRUE(decoded(older).ok());
+  EXPECT_EQ(decoded(older)->serialized, created.scene().SerializeAsString());
+  EXPECT_EQ(decoded(older)->scene.sky.turbidity, created.scene().sky().turbidity());
+  v1::Scene wrong = created.scene();
+  wrong.mutable_sun()->set_elevation_deg(300.0F);
+  EXPECT_FALSE(decoded(wrong).ok());
+}
+
+}  // namespace
+}  // namespace thunderhead::testing

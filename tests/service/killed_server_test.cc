@@ -1,0 +1,138 @@
+// The program itself, killed and started again: the same session for everybody who comes back.
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/service/interacting.h"
+#include "tests/service/served_program.h"
+#include "tests/support/temporary_folder.h"
+
+namespace thunderhead::testing {
+namespace {
+
+using Response = v1::InteractResponse;
+using Stub = v1::ThunderheadService::Stub;
+
+const std::string kSample = std::string(THUNDERHEAD_SOURCE_DIR) + "/samples/supercell.nc";
+constexpr int kViewers = 10;
+
+v1::Scene SmallSceneWithSun(float azimuth_deg) {
+  v1::Scene scene;
+  scene.mutable_output()->set_width_px(64);
+  scene.mutable_output()->set_height_px(36);
+  scene.mutable_sun()->set_azimuth_deg(azimuth_deg);
+  return scene;
+}
+
+v1::InteractRequest DrawsDown() {
+  v1::InteractRequest request;
+  v1::Ray& ray = *request.mutable_add_mark()->add_rays();
+  ray.mutable_origin()->set_z_m(30000.0F);
+  ray.mutable_direction()->set_z(-1.0F);
+  return request;
+}
+
+class KilledServerTest : public ::testing::Test {
+ protected:
+  std::unique_ptr<ServedProgram> Start() const {
+    return std::make_unique<ServedProgram>(PROGRAM, kSample, state_);
+  }
+
+  const TemporaryFolder folder_;
+  const std::string state_ = folder_.File("new/state");
+};
+
+TEST_F(KilledServerTest, EverybodyFindsTheSameSessionAgain) {
+  auto program = Start();
+  ASSERT_NE(program->stub(), nullptr);
+  EXPECT_EQ(std::filesystem::status(state_).permissions(), std::filesystem::perms(0700));
+  v1::CreateSessionRequest request;
+  *request.mutable_scene() = SmallSceneWithSun(10.0F);
+  v1::CreateSessionResponse created;
+  ASSERT_TRUE(Call(*program->stub(), &Stub::CreateSession, request, &created).ok());
+  // A session is there from the moment that its client knows of it.
+  program->End(SIGKILL);
+  program = Start();
+  ASSERT_NE(program->stub(), nullptr);
+
+  std::uint64_t revision = 0;
+  std::string marks;
+  {
+    Interacting presenter(*program->stub(), created.session_id());
+    std::vector<std::unique_ptr<Interacting>> viewers;
+    for (int i = 0; i < kViewers; ++i) {
+      viewers.push_back(std::make_unique<Interacting>(*program->stub(), created.viewer_key()));
+    }
+    ASSERT_EQ(presenter.AwaitNewest(Response::kJoined).joined().role(), v1::ROLE_PRESENTER);
+    v1::InteractRequest turns;
+    *turns.mutable_update_scene()->mutable_scene() = SmallSceneWithSun(222.0F);
+    const Response taken = presenter.Answer(presenter.Send(turns));
+    ASSERT_TRUE(taken.has_scene_taken()) << taken.ShortDebugString();
+    revision = taken.scene_taken().scene_revision();
+    presenter.Send(DrawsDown());
+    for (const auto& viewer : viewers) {
+      ASSERT_TRUE(viewer->AwaitFrame(revision));
+      marks = viewer->AwaitNewest(Response::kMarks).marks().SerializeAsString();
+    }
+    ASSERT_FALSE(marks.empty());
+    // Scenes and marks are on the disk after half a second.
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    program->End(SIGKILL);
+    EXPECT_EQ(presenter.End().error_code(), grpc::StatusCode::UNAVAILABLE);
+  }
+
+  program = Start();
+  ASSERT_NE(program->stub(), nullptr);
+  std::vector<std::unique_ptr<Interacting>> everybody;
+  for (int i = 0; i < kViewers; ++i) {
+    everybody.push_back(std::make_unique<Interacting>(*program->stub(), created.viewer_key()));
+  }
+  everybody.push_back(std::make_unique<Interacting>(*program->stub(), created.session_id()));
+  for (const auto& person : everybody) {
+    const v1::SceneState scene = person->AwaitNewest(Response::kScene).scene();
+    EXPECT_EQ(scene.scene().sun().azimuth_deg(), 222.0F);
+    EXPECT_GT(scene.scene_revision(), revision);
+    EXPECT_EQ(person->AwaitNewest(Response::kMarks).marks().SerializeAsString(), marks);
+    EXPECT_TRUE(person->AwaitFrame(scene.scene_revision()));
+    // One session, not one each.
+    EXPECT_TRUE(person->AwaitPresence([&](const v1::Presence& presence) {
+      return presence.people_size() == kViewers + 1 &&
+             presence.steering_viewer_id() == everybody.back()->viewer_id();
+    }));
+  }
+}
+
+TEST_F(KilledServerTest, AStoppedServerKeepsWhatHappenedLast) {
+  auto program = Start();
+  ASSERT_NE(program->stub(), nullptr);
+  v1::CreateSessionResponse created;
+  ASSERT_TRUE(
+      Call(*program->stub(), &Stub::CreateSession, v1::CreateSessionRequest(), &created).ok());
+  v1::UpdateSceneRequest update;
+  update.set_session_id(created.session_id());
+  *update.mutable_scene() = SmallSceneWithSun(99.0F);
+  v1::UpdateSceneResponse updated;
+  ASSERT_TRUE(Call(*program->stub(), &Stub::UpdateScene, update, &updated).ok());
+  program->End(SIGTERM);
+  program = Start();
+  ASSERT_NE(program->stub(), nullptr);
+  Interacting viewer(*program->stub(), created.viewer_key());
+  EXPECT_EQ(viewer.AwaitNewest(Response::kScene).scene().scene().sun().azimuth_deg(), 99.0F);
+}
+
+TEST_F(KilledServerTest, EachServerNeedsAStateFolderOfItsOwn) {
+  const auto program = Start();
+  ASSERT_NE(program->stub(), nullptr);
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(Start()->stub(), nullptr);
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
+              ::testing::AllOf(::testing::HasSubstr(state_), ::testing::HasSubstr("--state")));
+}
+
+}  // namespace
+}  // namespace thunderhead::testing

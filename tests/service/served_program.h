@@ -1,0 +1,34 @@
+// The program as a server of its own process, which a test may kill.
+#pragma once
+
+#include <sys/types.h>
+
+#include <memory>
+#include <string>
+
+#include "thunderhead/v1/thunderhead.grpc.pb.h"
+
+namespace thunderhead::testing {
+
+class ServedProgram {
+ public:
+  // Starts `thunderhead serve` on the storm, on free ports, with software GL, and waits until it is
+  // ready.
+  ServedProgram(const std::string& program, const std::string& storm, const std::string& state);
+  // Kills it with SIGKILL.
+  ~ServedProgram();
+  ServedProgram(const ServedProgram&) = delete;
+  ServedProgram& operator=(const ServedProgram&) = delete;
+
+  // Null if it did not start.
+  v1::ThunderheadService::Stub* stub() { return stub_.get(); }
+
+  // Sends the signal and waits for the process to end.
+  void End(int signal);
+
+ private:
+  pid_t process_ = -1;  // -1: ended
+  std::unique_ptr<v1::ThunderheadService::Stub> stub_;
+};
+
+}  // namespace thunderhead::testing
