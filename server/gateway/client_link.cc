@@ -1,6 +1,9 @@
 #include "gateway/client_link.h"
 
+#include <linux/sockios.h>
 #include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include <array>
@@ -40,7 +43,7 @@ ClientLink::ClientLink(net::ip::tcp::socket socket, std::chrono::milliseconds wr
     : stream_(std::move(socket)),
       received_(kMaxReceived),
       write_stall_timeout_(write_stall_timeout),
-      watch_ended_(stream_.get_executor(), net::steady_timer::time_point::max()) {
+      watch_changed_(stream_.get_executor()) {
   TuneSocket(stream_.socket().native_handle());
 }
 
@@ -64,15 +67,12 @@ void ClientLink::StartWatching(std::function<void()> on_gone) {
 
 net::awaitable<void> ClientLink::StopWatching() {
   on_gone_ = nullptr;
-  if (reading_) stream_.cancel();
-  while (reading_) {
-    error_code woken;
-    co_await watch_ended_.async_wait(net::redirect_error(net::use_awaitable, woken));
-  }
+  if (!at_rest_) stream_.cancel();
+  co_await watch_changed_.AwaitTrue(at_rest_);
 }
 
 void ClientLink::WatchOn() {
-  reading_ = true;
+  at_rest_ = false;
   stream_.expires_never();
   stream_.async_read_some(received_.prepare(kWatchRead),
                           [self = shared_from_this()](error_code error, size_t bytes) {
@@ -82,7 +82,7 @@ void ClientLink::WatchOn() {
 
 void ClientLink::OnWatched(error_code error, size_t bytes) {
   received_.commit(bytes);
-  reading_ = false;
+  at_rest_ = true;
   if (on_gone_ && !error && received_.size() + kWatchRead <= kMaxReceived) {
     WatchOn();
     return;
@@ -91,7 +91,18 @@ void ClientLink::OnWatched(error_code error, size_t bytes) {
     gone_ = true;
     std::exchange(on_gone_, nullptr)();
   }
-  watch_ended_.cancel();
+  watch_changed_.Notify();
+}
+
+uint64_t ClientLink::DeliveredBytes() {
+  int unacknowledged = 0;
+  if (::ioctl(stream_.socket().native_handle(), SIOCOUTQ, &unacknowledged) != 0) return SentBytes();
+  return SentBytes() - static_cast<uint64_t>(unacknowledged);
+}
+
+bool ClientLink::HasHungUp() {
+  pollfd state = {stream_.socket().native_handle(), POLLRDHUP, 0};
+  return ::poll(&state, 1, 0) != 0;
 }
 
 net::awaitable<void> ClientLink::LingeringClose() {
@@ -109,6 +120,14 @@ net::awaitable<void> ClientLink::LingeringClose() {
 void ClientLink::Close() {
   error_code ignored;
   stream_.socket().close(ignored);
+}
+
+void ClientLink::Stop() {
+  if (farewell_) {
+    farewell_();
+  } else {
+    Close();
+  }
 }
 
 }  // namespace thunderhead::gateway

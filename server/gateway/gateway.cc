@@ -121,7 +121,7 @@ class Gateway::Listener {
     stopping_ = true;
     error_code ignored;
     acceptor_.close(ignored);
-    for (const std::shared_ptr<ClientLink>& link : links_) link->Close();
+    for (const std::shared_ptr<ClientLink>& link : links_) link->Stop();
   }
 
   Site site_;

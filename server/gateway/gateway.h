@@ -1,6 +1,7 @@
-// Thunderhead for browsers: one HTTP/1.1 port with the built page, /healthz, and gRPC-Web (binary,
-// unary and server streaming) bridged to a gRPC channel. Knows no message type and nothing of
-// storms. Needs no proxy in front of it; deploy/envoy.yaml shows how to add one.
+// Thunderhead for browsers: one HTTP/1.1 port with the built page, /healthz, and a bridge to a gRPC
+// channel: gRPC-Web (binary) for unary and server-streaming calls, a WebSocket for calls of any
+// kind, bidirectional ones too (websocket_protocol.h has its wire format). Knows no message type
+// and nothing of storms. Needs no proxy in front of it; deploy/envoy.yaml shows how to add one.
 #pragma once
 
 #include <chrono>
@@ -27,8 +28,8 @@ struct GatewayOptions {
   // Origins of other pages that may call, for example "http://localhost:5173". The page served here
   // needs none.
   std::vector<std::string> allowed_origins;
-  // Largest request message; larger ones get RESOURCE_EXHAUSTED. Responses are limited only by the
-  // channel.
+  // Largest request message; larger ones get RESOURCE_EXHAUSTED, or close a WebSocket with 1009.
+  // Responses are limited only by the channel.
   size_t max_message_bytes = 4u << 20;
   // More connections than these are closed at once.
   size_t max_connections = 256;
@@ -36,6 +37,9 @@ struct GatewayOptions {
   std::chrono::milliseconds idle_timeout = std::chrono::seconds(60);
   // Closes a connection whose client accepts no bytes for this time, and cancels its call.
   std::chrono::milliseconds write_stall_timeout = std::chrono::seconds(120);
+  // Pings the client of a WebSocket that sent nothing for this time, and drops it, cancelling its
+  // call, if nothing comes for this time again.
+  std::chrono::milliseconds websocket_ping_interval = std::chrono::seconds(15);
 };
 
 class Gateway {
@@ -48,7 +52,8 @@ class Gateway {
   static absl::StatusOr<std::unique_ptr<Gateway>> Start(const GatewayOptions& options,
                                                         std::shared_ptr<grpc::Channel> channel);
 
-  // Stops listening, closes every connection, cancels the calls on them and waits for their end.
+  // Stops listening, closes every connection (WebSockets with 1001, which a client has a second to
+  // answer), cancels the calls on them and waits for their end.
   ~Gateway();
   Gateway(const Gateway&) = delete;
   Gateway& operator=(const Gateway&) = delete;

@@ -3,30 +3,21 @@
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/serializer.hpp>
 #include <boost/beast/http/write.hpp>
-#include <chrono>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "absl/strings/str_format.h"
 #include "base/status.h"
+#include "gateway/call_header.h"
+#include "gateway/message_slices.h"
 #include "gateway/text_view.h"
-#include "grpcpp/support/slice.h"
 
 namespace thunderhead::gateway {
 namespace {
 
 namespace net = boost::asio;
 namespace http = boost::beast::http;
-
-// A longer timeout counts as none; adding it to the clock could overflow.
-constexpr absl::Duration kLongestTimeout = absl::Hours(24 * 365);
-
-Metadata TrailersOf(const grpc::Status& status, const Metadata& metadata) {
-  // A server may send codes outside the canonical ones.
-  return Trailers(static_cast<absl::StatusCode>(status.error_code()), status.error_message(),
-                  metadata);
-}
 
 }  // namespace
 
@@ -51,22 +42,8 @@ net::awaitable<bool> GrpcWebExchange::Refuse(const absl::Status& status, bool ke
 }
 
 absl::StatusOr<UpstreamRequest> GrpcWebExchange::Translate() const {
-  UpstreamRequest upstream;
-  const std::string_view target = View(request_.target());
-  upstream.method = std::string(target.substr(0, target.find('?')));
-  for (const auto& field : request_) {
-    THUNDERHEAD_RETURN_IF_ERROR(
-        AddRequestHeader(View(field.name_string()), View(field.value()), upstream.metadata));
-  }
-  if (const auto timeout = request_.find("grpc-timeout"); timeout != request_.end()) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(const absl::Duration left, ParseTimeout(View(timeout->value())));
-    if (left < kLongestTimeout) {
-      upstream.deadline = std::chrono::system_clock::now() +
-                          std::chrono::duration_cast<std::chrono::system_clock::duration>(
-                              absl::ToChronoNanoseconds(left));
-    }
-  }
-  THUNDERHEAD_ASSIGN_OR_RETURN(upstream.message, TakeSingleMessage(request_.body()));
+  THUNDERHEAD_ASSIGN_OR_RETURN(UpstreamRequest upstream, TranslateHeader(request_));
+  THUNDERHEAD_ASSIGN_OR_RETURN(upstream.only_message, TakeSingleMessage(request_.body()));
   return upstream;
 }
 
@@ -105,14 +82,12 @@ net::awaitable<bool> GrpcWebExchange::WriteHeaders(const Metadata& metadata) {
 }
 
 net::awaitable<bool> GrpcWebExchange::WriteMessage(grpc::ByteBuffer message) {
-  std::vector<grpc::Slice> slices;
-  if (!message.Dump(&slices).ok()) co_return false;
-  const size_t size = message.Length();
-  const auto frame = MessageFrameHeader(static_cast<uint32_t>(size));
+  const MessageSlices slices(message);
+  const auto frame = MessageFrameHeader(static_cast<uint32_t>(slices.SizeBytes()));
   // The message is a chunk, written from gRPC's own memory.
-  const std::string chunk = absl::StrFormat("%x\r\n", size + frame.size());
+  const std::string chunk = absl::StrFormat("%x\r\n", slices.SizeBytes() + frame.size());
   std::vector<net::const_buffer> buffers = {net::buffer(chunk), net::buffer(frame)};
-  for (const grpc::Slice& slice : slices) buffers.emplace_back(slice.begin(), slice.size());
+  slices.AppendTo(buffers);
   buffers.emplace_back("\r\n", 2);
   const bool written = co_await link_.WriteAll(std::move(buffers));
   co_return written;

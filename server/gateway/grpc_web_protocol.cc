@@ -143,9 +143,14 @@ std::array<uint8_t, kFrameHeaderBytes> MessageFrameHeader(uint32_t size) {
   return FrameHeader(0, size);
 }
 
-std::string TrailerFrame(const Metadata& trailers) {
+std::string TrailerBlock(const Metadata& trailers) {
   std::string lines;
   for (const auto& [name, value] : trailers) absl::StrAppend(&lines, name, ":", value, "\r\n");
+  return lines;
+}
+
+std::string TrailerFrame(const Metadata& trailers) {
+  const std::string lines = TrailerBlock(trailers);
   const auto header = FrameHeader(kTrailerFlag, static_cast<uint32_t>(lines.size()));
   return std::string(header.begin(), header.end()) + lines;
 }

@@ -38,6 +38,9 @@ absl::StatusOr<std::string_view> TakeSingleMessage(std::string_view body);
 // The header of the frame of a message of `size` bytes.
 std::array<uint8_t, kFrameHeaderBytes> MessageFrameHeader(uint32_t size);
 
+// Encoded trailers as text: a line of "name:value" for each.
+std::string TrailerBlock(const Metadata& trailers);
+
 // The last frame of a response body.
 std::string TrailerFrame(const Metadata& trailers);
 

@@ -8,18 +8,23 @@
 #include <boost/beast/http/serializer.hpp>
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
 #include <cstdint>
 #include <exception>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "gateway/call_header.h"
 #include "gateway/grpc_web_exchange.h"
 #include "gateway/grpc_web_protocol.h"
 #include "gateway/text_view.h"
+#include "gateway/websocket_exchange.h"
+#include "gateway/websocket_upgrade.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::gateway {
@@ -47,6 +52,7 @@ class HttpConnection {
 
   net::awaitable<bool> Answer(Parser& parser);
   net::awaitable<bool> AnswerPage(const Request& request, const std::string& path);
+  net::awaitable<bool> AnswerUpgrade(const Request& request);
   net::awaitable<bool> AnswerPost(Parser& parser, const std::string& path);
   net::awaitable<bool> AnswerOptions(const Request& request);
   net::awaitable<bool> AnswerCall(Parser& parser);
@@ -96,6 +102,9 @@ net::awaitable<bool> HttpConnection::Answer(Parser& parser) {
   } else if (!path.starts_with('/') && path != "*") {
     keep = co_await SendText(request, http::status::bad_request,
                              "The request's target must be a path that begins with '/'.\n");
+  } else if (parser.is_done() && boost::beast::websocket::is_upgrade(request) &&
+             IsMethodPath(path) && !site_.files.Find(path).has_value()) {
+    keep = co_await AnswerUpgrade(request);
   } else if (request.method() == http::verb::get || request.method() == http::verb::head) {
     keep = co_await AnswerPage(request, path);
   } else if (request.method() == http::verb::post) {
@@ -117,11 +126,34 @@ net::awaitable<bool> HttpConnection::AnswerPage(const Request& request, const st
   } else if (const std::optional<StaticFile> file = site_.files.Find(path); file.has_value()) {
     keep = co_await SendFile(request, *file);
   } else if (IsMethodPath(path) && path.find('.') < path.rfind('/')) {
-    keep = co_await SendText(request, http::status::method_not_allowed,
-                             "This is the path of a gRPC method; call it with POST and gRPC-Web.\n",
-                             "POST, OPTIONS");
+    keep = co_await SendText(
+        request, http::status::method_not_allowed,
+        "This is the path of a gRPC method; call it with POST and gRPC-Web, or by a WebSocket "
+        "of subprotocol grpc-websocket.v1.\n",
+        "POST, OPTIONS");
   } else {
     keep = co_await SendText(request, http::status::not_found, "There is nothing at this path.\n");
+  }
+  co_return keep;
+}
+
+net::awaitable<bool> HttpConnection::AnswerUpgrade(const Request& request) {
+  bool keep = false;
+  if (const auto refusal = FindUpgradeRefusal(request, site_.policy); refusal.has_value()) {
+    keep = co_await SendText(request, refusal->status, refusal->text);
+    co_return keep;
+  }
+  const absl::StatusOr<UpstreamRequest> upstream = TranslateHeader(request);
+  if (!upstream.ok()) {
+    keep = co_await SendText(request, http::status::bad_request,
+                             absl::StrCat(upstream.status().message(), ".\n"));
+  } else if (link_.Received().size() > 0) {
+    unread_input_ = true;
+    keep = co_await SendText(request, http::status::bad_request,
+                             "Nothing may be sent before the upgrade is answered.\n");
+  } else {
+    const auto exchange = std::make_shared<WebSocketExchange>(site_, link_.shared_from_this());
+    co_await exchange->Run(request, *upstream);
   }
   co_return keep;
 }

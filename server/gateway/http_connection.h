@@ -1,5 +1,5 @@
 // Serves one HTTP/1.1 connection: reads requests within their limits and dispatches each to the
-// page, the health check, the cross-origin preflight or the gRPC-Web bridge.
+// page, the health check, the cross-origin preflight, the gRPC-Web bridge or a WebSocket.
 #pragma once
 
 #include <memory>

@@ -42,6 +42,16 @@ bool HttpPolicy::AllowsOrigin(std::string_view origin) const {
          allowed_origins_.end();
 }
 
+bool HttpPolicy::IsOwnOrigin(std::string_view origin, std::string_view host) const {
+  // A proxy in front may serve the page by https.
+  for (const std::string_view scheme : {"http://", "https://"}) {
+    if (origin.starts_with(scheme)) {
+      return boost::beast::iequals(BeastView(origin.substr(scheme.size())), BeastView(host));
+    }
+  }
+  return false;
+}
+
 void HttpPolicy::Decorate(std::string_view origin, http::fields& response) const {
   response.set("X-Content-Type-Options", "nosniff");
   response.set("Content-Security-Policy", kContentSecurityPolicy);

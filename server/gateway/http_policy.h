@@ -18,6 +18,9 @@ class HttpPolicy {
   // True for an origin, other than the page's own, whose pages may call.
   bool AllowsOrigin(std::string_view origin) const;
 
+  // True for the origin of the page that is served under `host`, the request's Host header.
+  bool IsOwnOrigin(std::string_view origin, std::string_view host) const;
+
   // Adds the headers of every response to a request from `origin`.
   void Decorate(std::string_view origin, boost::beast::http::fields& response) const;
   // Adds the further headers of the response to a preflight; `asked_headers` are those that the

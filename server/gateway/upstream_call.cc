@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/status.h"
 #include "grpcpp/support/slice.h"
 
 namespace thunderhead::gateway {
@@ -26,9 +27,7 @@ Metadata ForBrowser(const std::multimap<grpc::string_ref, grpc::string_ref>& rec
 }  // namespace
 
 UpstreamCall::UpstreamCall(const net::any_io_executor& executor)
-    : executor_(executor),
-      work_(net::make_work_guard(executor)),
-      changed_(executor, net::steady_timer::time_point::max()) {}
+    : executor_(executor), work_(net::make_work_guard(executor)), changed_(executor) {}
 
 UpstreamCall::Lease UpstreamCall::Start(grpc::GenericStub& stub,
                                         const net::any_io_executor& executor,
@@ -36,10 +35,8 @@ UpstreamCall::Lease UpstreamCall::Start(grpc::GenericStub& stub,
   std::shared_ptr<UpstreamCall> call(new UpstreamCall(executor));
   for (const auto& [name, value] : request.metadata) call->context_.AddMetadata(name, value);
   if (request.deadline.has_value()) call->context_.set_deadline(*request.deadline);
-  const grpc::Slice slice(request.message.data(), request.message.size());
-  call->request_ = grpc::ByteBuffer(&slice, 1);
 
-  // On the wire a unary or server-streaming call is a bidirectional one that writes a single
+  // On the wire every call is a bidirectional one; a unary or server-streaming one writes a single
   // message.
   stub.PrepareBidiStreamingCall(&call->context_, request.method, {}, call.get());
   call->self_ = call;
@@ -49,13 +46,13 @@ UpstreamCall::Lease UpstreamCall::Start(grpc::GenericStub& stub,
   // message together with its status, as unary ones do, while no read is pending. So the first read
   // starts before the call.
   call->StartRead(&call->message_);
-  call->StartWriteLast(&call->request_, grpc::WriteOptions());
+  if (request.only_message.has_value()) call->WriteOnly(*request.only_message);
   call->StartCall();
   return Lease(std::move(call));
 }
 
 net::awaitable<bool> UpstreamCall::AwaitHeaders() {
-  co_await AwaitTrue(headers_known_);
+  co_await changed_.AwaitTrue(headers_known_);
   co_return has_headers_;
 }
 
@@ -65,7 +62,7 @@ net::awaitable<std::optional<grpc::ByteBuffer>> UpstreamCall::ReadMessage() {
     StartRead(&message_);
   }
   is_first_read_ = false;
-  co_await AwaitTrue(read_known_);
+  co_await changed_.AwaitTrue(read_known_);
   if (!has_message_) {
     at_end_ = true;
     co_return std::nullopt;
@@ -73,6 +70,35 @@ net::awaitable<std::optional<grpc::ByteBuffer>> UpstreamCall::ReadMessage() {
   std::optional<grpc::ByteBuffer> message(std::in_place);
   message->Swap(&message_);
   co_return message;
+}
+
+void UpstreamCall::WriteOnly(std::string_view message) {
+  const grpc::Slice slice(message.data(), message.size());
+  request_ = grpc::ByteBuffer(&slice, 1);
+  written_ = false;
+  accepts_writes_ = false;
+  StartWriteLast(&request_, grpc::WriteOptions());
+}
+
+void UpstreamCall::BeginWrite(grpc::ByteBuffer message) {
+  THUNDERHEAD_CHECK(written_, "a message was written while gRPC had not taken the one before");
+  if (released_ || !accepts_writes_) return;
+  request_.Swap(&message);
+  written_ = false;
+  StartWrite(&request_);
+}
+
+void UpstreamCall::BeginHalfClose() {
+  THUNDERHEAD_CHECK(written_, "writing was ended while gRPC had not taken the last message");
+  if (released_ || !accepts_writes_) return;
+  accepts_writes_ = false;
+  written_ = false;
+  StartWritesDone();
+}
+
+net::awaitable<bool> UpstreamCall::AwaitWritten() {
+  co_await changed_.AwaitTrue(written_);
+  co_return accepts_writes_;
 }
 
 net::awaitable<grpc::Status> UpstreamCall::Finish() {
@@ -85,7 +111,7 @@ net::awaitable<grpc::Status> UpstreamCall::Finish() {
   } else {
     Release();
   }
-  co_await AwaitTrue(done_);
+  co_await changed_.AwaitTrue(done_);
   co_return status_;
 }
 
@@ -112,6 +138,18 @@ void UpstreamCall::OnReadDone(bool ok) {
   });
 }
 
+void UpstreamCall::OnWriteDone(bool ok) {
+  PostChange([ok](UpstreamCall& call) {
+    call.written_ = true;
+    call.accepts_writes_ = call.accepts_writes_ && ok;
+    call.request_.Clear();
+  });
+}
+
+void UpstreamCall::OnWritesDoneDone(bool) {
+  PostChange([](UpstreamCall& call) { call.written_ = true; });
+}
+
 void UpstreamCall::OnDone(const grpc::Status& status) {
   PostChange([status](UpstreamCall& call) {
     call.done_ = true;
@@ -120,19 +158,12 @@ void UpstreamCall::OnDone(const grpc::Status& status) {
   });
 }
 
-net::awaitable<void> UpstreamCall::AwaitTrue(const bool& condition) {
-  while (!condition) {
-    boost::system::error_code woken;
-    co_await changed_.async_wait(net::redirect_error(net::use_awaitable, woken));
-  }
-}
-
 // gRPC calls back on threads of its own.
 template <typename Change>
 void UpstreamCall::PostChange(Change change) {
   net::post(executor_, [self = self_, change = std::move(change)] {
     change(*self);
-    self->changed_.cancel();
+    self->changed_.Notify();
   });
 }
 

@@ -1,10 +1,10 @@
-// One call to the gRPC server, used from the thread of an executor: start it, await its messages
-// one at a time, and its end. Messages are bytes; knows neither their types nor HTTP.
+// One call to the gRPC server, used from the thread of an executor: start it, write messages, read
+// messages one at a time, and await its end. Messages are bytes; knows neither their types nor
+// HTTP.
 #pragma once
 
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/executor_work_guard.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "gateway/awaitable.h"
+#include "gateway/change_signal.h"
 #include "gateway/grpc_web_protocol.h"
 #include "grpcpp/client_context.h"
 #include "grpcpp/generic/generic_stub.h"
@@ -25,7 +26,9 @@ struct UpstreamRequest {
   std::string method;  // "/package.Service/Method"
   Metadata metadata;
   std::optional<std::chrono::system_clock::time_point> deadline;
-  std::string_view message;
+  // The message of a unary or server-streaming call. Without it the call's messages follow by
+  // BeginWrite(), until BeginHalfClose().
+  std::optional<std::string_view> only_message;
 };
 
 class UpstreamCall : private grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
@@ -53,6 +56,15 @@ class UpstreamCall : private grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::Byt
   boost::asio::awaitable<bool> AwaitHeaders();
   // Reads the server's next message; none after the last.
   boost::asio::awaitable<std::optional<grpc::ByteBuffer>> ReadMessage();
+
+  // Writes a message, or ends the writing, without waiting: AwaitWritten() must have returned since
+  // the last of these.
+  void BeginWrite(grpc::ByteBuffer message);
+  void BeginHalfClose();
+  // Waits until gRPC has taken what was written last, which flow control delays while the server
+  // does not read. False if the call accepts no more.
+  boost::asio::awaitable<bool> AwaitWritten();
+
   // The call's outcome; cancels the call if not all messages were read.
   boost::asio::awaitable<grpc::Status> Finish();
 
@@ -67,9 +79,11 @@ class UpstreamCall : private grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::Byt
 
   void OnReadInitialMetadataDone(bool ok) override;
   void OnReadDone(bool ok) override;
+  void OnWriteDone(bool ok) override;
+  void OnWritesDoneDone(bool ok) override;
   void OnDone(const grpc::Status& status) override;
 
-  boost::asio::awaitable<void> AwaitTrue(const bool& condition);
+  void WriteOnly(std::string_view message);
   template <typename Change>
   void PostChange(Change change);
   void Release();
@@ -77,8 +91,7 @@ class UpstreamCall : private grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::Byt
   boost::asio::any_io_executor executor_;
   // Keeps the executor running until gRPC has released the call.
   boost::asio::executor_work_guard<boost::asio::any_io_executor> work_;
-  // Never expires: cancelled to wake AwaitTrue().
-  boost::asio::steady_timer changed_;
+  ChangeSignal changed_;
   std::shared_ptr<UpstreamCall> self_;  // held until gRPC is done with it
   grpc::ClientContext context_;
   grpc::ByteBuffer request_;
@@ -91,6 +104,8 @@ class UpstreamCall : private grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::Byt
   bool read_known_ = false;
   bool has_message_ = false;
   bool at_end_ = false;
+  bool written_ = true;  // no write is pending
+  bool accepts_writes_ = true;
   bool done_ = false;
   bool released_ = false;
   grpc::Status status_;

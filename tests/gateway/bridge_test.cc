@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <functional>
 #include <thread>
 
 #include "absl/strings/str_cat.h"
 #include "tests/gateway/echo_service.h"
+#include "tests/gateway/eventually.h"
 #include "tests/gateway/raw_client.h"
 
 namespace thunderhead::gateway::test {
@@ -18,16 +18,6 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using ::testing::HasSubstr;
 using Clock = std::chrono::steady_clock;
-
-// Waits for an effect of another thread; long, because sanitizers and busy machines are slow.
-bool Eventually(const std::function<bool()>& condition) {
-  const auto patience = Clock::now() + seconds(10);
-  while (Clock::now() < patience) {
-    if (condition()) return true;
-    std::this_thread::sleep_for(milliseconds(5));
-  }
-  return condition();
-}
 
 template <typename Message>
 Message Parsed(const std::string& bytes) {

@@ -16,6 +16,7 @@ namespace thunderhead::gateway::test {
 
 struct EchoRecord {
   std::atomic<int> started = 0;
+  std::atomic<int> read = 0;
   std::atomic<int> written = 0;
   std::atomic<int> cancelled = 0;
   std::atomic<int> done = 0;
@@ -36,6 +37,8 @@ class EchoService final : public Echo::CallbackService {
   grpc::ServerUnaryReactor* Metadata(grpc::CallbackServerContext* context,
                                      const MetadataRequest* request,
                                      MetadataResponse* response) override;
+  grpc::ServerBidiReactor<ConverseRequest, ConverseResponse>* Converse(
+      grpc::CallbackServerContext* context) override;
   grpc::ServerUnaryReactor* Wait(grpc::CallbackServerContext* context, const WaitRequest* request,
                                  SayResponse* response) override;
 

@@ -1,6 +1,7 @@
-// The gateway with third-party clients from npm: connect-web (as in the page), connect-node and grpc-web. They do not
-// know the gateway, and the gateway does not know their messages.
+// The gateway with third-party clients from npm: connect-web (as in the page), connect-node, grpc-web and, for
+// bidirectional calls, ws. They do not know the gateway, and the gateway does not know their messages.
 import assert from "node:assert/strict";
+import { once } from "node:events";
 import { after, before, describe, test } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 import { pathToFileURL } from "node:url";
@@ -9,11 +10,13 @@ import { anyPack } from "@bufbuild/protobuf/wkt";
 import { Code, ConnectError, createClient, decodeBinaryHeader, encodeBinaryHeader } from "@connectrpc/connect";
 import { createGrpcWebTransport as createNodeTransport } from "@connectrpc/connect-node";
 import { createGrpcWebTransport as createWebTransport } from "@connectrpc/connect-web";
+import WebSocket from "ws";
 import xhr2 from "xhr2";
 import { startEchoServer } from "./echo_server_process.mjs";
 
 // The code generated from echo.proto and from google.rpc as the server has it.
 const generated = (name) => import(pathToFileURL(`${process.env.THUNDERHEAD_GENERATED}/${name}_pb.js`));
+const { ConverseRequestSchema, ConverseResponseSchema } = await generated("echo");
 const { Echo, SayRequestSchema, SayResponseSchema, FailRequestSchema, WaitRequestSchema } = await generated("echo");
 const { StatusSchema } = await generated("google/rpc/status");
 const { BadRequestSchema, ErrorInfoSchema, RetryInfoSchema } = await generated("google/rpc/error_details");
@@ -281,5 +284,78 @@ describe("grpc-web", () => {
     const { error } = await call(wait, create(WaitRequestSchema), { deadline });
     assert.equal(error.code, 4);
     await eventually(async () => (await server.record()).cancelled === 1);
+  });
+});
+
+// In the format of server/gateway/websocket_protocol.h.
+describe("ws", () => {
+  const [MESSAGE, HALF_CLOSE, TRAILERS] = [0x00, 0x01, 0x80];
+  let server;
+  before(async () => {
+    server = await startEchoServer();
+  });
+  after(() => server.stop());
+
+  const request = (fields) =>
+    Buffer.concat([Buffer.from([MESSAGE]), toBinary(ConverseRequestSchema, create(ConverseRequestSchema, fields))]);
+  const open = async (method, options = {}, protocols = ["grpc-websocket.v1"]) => {
+    const url = `${server.url.replace("http", "ws")}/thunderhead.gateway.test.Echo/${method}`;
+    const socket = new WebSocket(url, protocols, { perMessageDeflate: true, ...options });
+    const received = [];
+    socket.on("message", (data, isBinary) => received.push({ kind: data[0], payload: data.subarray(1), isBinary }));
+    const closed = new Promise((resolve) => socket.on("close", (code) => resolve(code)));
+    await once(socket, "open");
+    return { socket, received, closed };
+  };
+  const refusal = async (options, protocols) => {
+    try {
+      await open("Converse", options, protocols);
+    } catch (error) {
+      return error.message;
+    }
+    assert.fail("the upgrade was to be refused");
+  };
+
+  test("messages go both ways, then trailers and a normal close", async () => {
+    const { socket, received, closed } = await open("Converse");
+    assert.equal(socket.protocol, "grpc-websocket.v1");
+    assert.equal(socket.extensions, "");
+    const payloads = [...Array(300).keys()].map((index) => Buffer.alloc(index * 100, index));
+    for (const payload of payloads) socket.send(request({ payload }));
+    socket.send(Buffer.from([HALF_CLOSE]));
+    assert.equal(await closed, 1000);
+    assert.ok(received.every(({ isBinary }) => isBinary));
+    const last = received.pop();
+    assert.equal(last.kind, TRAILERS);
+    assert.equal(last.payload.toString(), "grpc-status:0\r\nconversed:yes\r\n");
+    assert.ok(received.every(({ kind }) => kind === MESSAGE));
+    const echoed = received.map(({ payload }) => Buffer.from(fromBinary(ConverseResponseSchema, payload).payload));
+    assert.deepEqual(echoed, payloads);
+  });
+
+  test("an error is trailers", async () => {
+    const { socket, received, closed } = await open("Converse");
+    socket.send(request({ end: { code: 8, message: "full: 100 % ☀" } }));
+    assert.equal(await closed, 1000);
+    assert.equal(received.length, 1);
+    assert.match(received[0].payload.toString(), /^grpc-status:8\r\ngrpc-message:full: 100 %25 %E2%98%80\r\n/);
+  });
+
+  test("closing cancels the call", async () => {
+    const before = await recordAtRest(server);
+    const { socket, received, closed } = await open("Converse");
+    socket.send(request({}));
+    await eventually(() => received.length === 1);
+    socket.close(1000);
+    assert.equal(await closed, 1000);
+    await eventually(async () => (await server.record()).cancelled === before.cancelled + 1);
+  });
+
+  test("pages of other origins and other subprotocols are refused", async () => {
+    assert.match(await refusal({ origin: "http://evil.example" }), /403/);
+    assert.match(await refusal({}, ["grpc-websocket.v2"]), /400/);
+    const { socket, closed } = await open("Converse", { origin: server.url });
+    socket.close();
+    await closed;
   });
 });

@@ -1,0 +1,45 @@
+#include "gateway/call_header.h"
+
+#include <chrono>
+#include <string>
+#include <string_view>
+
+#include "absl/time/time.h"
+#include "base/status.h"
+#include "gateway/text_view.h"
+
+namespace thunderhead::gateway {
+namespace {
+
+// A longer timeout counts as none; adding it to the clock could overflow.
+constexpr absl::Duration kLongestTimeout = absl::Hours(24 * 365);
+
+}  // namespace
+
+absl::StatusOr<UpstreamRequest> TranslateHeader(
+    const boost::beast::http::request<boost::beast::http::string_body>& request) {
+  UpstreamRequest upstream;
+  const std::string_view target = View(request.target());
+  upstream.method = std::string(target.substr(0, target.find('?')));
+  for (const auto& field : request) {
+    THUNDERHEAD_RETURN_IF_ERROR(
+        AddRequestHeader(View(field.name_string()), View(field.value()), upstream.metadata));
+  }
+  if (const auto timeout = request.find("grpc-timeout"); timeout != request.end()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const absl::Duration left, ParseTimeout(View(timeout->value())));
+    if (left < kLongestTimeout) {
+      upstream.deadline = std::chrono::system_clock::now() +
+                          std::chrono::duration_cast<std::chrono::system_clock::duration>(
+                              absl::ToChronoNanoseconds(left));
+    }
+  }
+  return upstream;
+}
+
+Metadata TrailersOf(const grpc::Status& status, const Metadata& metadata) {
+  // A server may send codes outside the canonical ones.
+  return Trailers(static_cast<absl::StatusCode>(status.error_code()), status.error_message(),
+                  metadata);
+}
+
+}  // namespace thunderhead::gateway

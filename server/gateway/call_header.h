@@ -1,0 +1,22 @@
+// What gRPC-Web and WebSocket calls share: a call's HTTP header as an upstream request, and its
+// outcome as trailers. Knows no socket and no message.
+#pragma once
+
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/http/string_body.hpp>
+
+#include "absl/status/statusor.h"
+#include "gateway/grpc_web_protocol.h"
+#include "gateway/upstream_call.h"
+#include "grpcpp/support/status.h"
+
+namespace thunderhead::gateway {
+
+// Method, metadata and deadline of the call that `request` asks for; no message.
+absl::StatusOr<UpstreamRequest> TranslateHeader(
+    const boost::beast::http::request<boost::beast::http::string_body>& request);
+
+// The trailers of a call that ended with `status`, encoded for the wire.
+Metadata TrailersOf(const grpc::Status& status, const Metadata& metadata);
+
+}  // namespace thunderhead::gateway

@@ -1,0 +1,266 @@
+#include "gateway/websocket_exchange.h"
+
+#include <algorithm>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http/field.hpp>
+#include <boost/beast/websocket/option.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gateway/call_header.h"
+#include "gateway/message_slices.h"
+#include "gateway/websocket_protocol.h"
+#include "grpcpp/support/slice.h"
+#include "spdlog/spdlog.h"
+
+namespace thunderhead::gateway {
+namespace {
+
+namespace net = boost::asio;
+namespace websocket = boost::beast::websocket;
+using boost::system::error_code;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kCloseTimeout{5000};
+// For the close frame when the gateway goes away, which waits for its connections.
+constexpr milliseconds kLeaveTimeout{1000};
+constexpr milliseconds kSlowestWatch{500};
+constexpr milliseconds kFastestWatch{5};
+
+net::mutable_buffer BufferOf(uint8_t& byte) { return {&byte, 1}; }
+
+}  // namespace
+
+WebSocketExchange::WebSocketExchange(Site& site, std::shared_ptr<ClientLink> link)
+    : site_(site),
+      link_(std::move(link)),
+      socket_(link_->Stream()),
+      watch_timer_(link_->Stream().get_executor()),
+      changed_(link_->Stream().get_executor()) {}
+
+net::awaitable<void> WebSocketExchange::Run(const Request& request,
+                                            const UpstreamRequest& upstream) {
+  const bool accepted = co_await Accept(request);
+  if (!accepted) co_return;
+  const UpstreamCall::Lease call =
+      UpstreamCall::Start(site_.stub, link_->Stream().get_executor(), upstream);
+  call_ = call.Share();
+  link_->SetFarewell([weak = weak_from_this()] {
+    if (const auto self = weak.lock()) self->GoAway();
+  });
+  SpawnTasks();
+  co_await ForwardResponses();
+  co_await Close();
+  Abandon();
+  link_->SetFarewell(nullptr);
+  co_await changed_.AwaitTrue(tasks_ended_);
+}
+
+net::awaitable<bool> WebSocketExchange::Accept(const Request& request) {
+  // The watch takes the place of the stream's and the WebSocket's own timeouts, which would drop
+  // a client that is held back, or that is slow to take in a large message.
+  link_->Stream().expires_never();
+  websocket::stream_base::timeout timeout = {site_.options.idle_timeout,
+                                             websocket::stream_base::none(), false};
+  socket_.set_option(timeout);
+  socket_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
+    response.set(boost::beast::http::field::sec_websocket_protocol, kWebSocketSubprotocol);
+  }));
+  error_code error;
+  co_await socket_.async_accept(request, net::redirect_error(net::use_awaitable, error));
+  if (error) co_return false;
+  timeout.handshake_timeout = websocket::stream_base::none();
+  socket_.set_option(timeout);
+  socket_.read_message_max(site_.options.max_message_bytes + sizeof(kind_));
+  socket_.binary(true);
+  // Otherwise each message would be sent in frames of 4 KiB.
+  socket_.auto_fragment(false);
+  co_return true;
+}
+
+void WebSocketExchange::SpawnTasks() {
+  Spawn(ForwardRequests());
+  Spawn(Watch());
+}
+
+template <typename Task>
+void WebSocketExchange::Spawn(Task task) {
+  ++tasks_;
+  tasks_ended_ = false;
+  net::co_spawn(link_->Stream().get_executor(), std::move(task),
+                [self = shared_from_this()](const std::exception_ptr& error) {
+                  if (error) {
+                    spdlog::error("closing a WebSocket after an internal error");
+                    self->Abandon();
+                  }
+                  self->tasks_ended_ = --self->tasks_ == 0;
+                  self->changed_.Notify();
+                });
+}
+
+net::awaitable<void> WebSocketExchange::ForwardResponses() {
+  bool written = true;
+  while (written) {
+    const std::optional<grpc::ByteBuffer> message = co_await call_->ReadMessage();
+    if (is_closing_) co_return;
+    if (!message.has_value()) break;
+    written = co_await WriteMessage(*message);
+  }
+  if (written) written = co_await WriteTrailers();
+  if (written) EndWith(websocket::close_code::normal);
+}
+
+net::awaitable<bool> WebSocketExchange::WriteMessage(const grpc::ByteBuffer& message) {
+  const MessageSlices slices(message);
+  std::vector<net::const_buffer> buffers = {net::buffer(&kMessageKind, 1)};
+  slices.AppendTo(buffers);
+  const bool written = co_await Write(buffers);
+  co_return written;
+}
+
+net::awaitable<bool> WebSocketExchange::WriteTrailers() {
+  const grpc::Status status = co_await call_->Finish();
+  if (is_closing_) co_return false;
+  const std::string trailers = TrailerBlock(TrailersOf(status, call_->TrailingMetadata()));
+  const std::vector<net::const_buffer> buffers = {net::buffer(&kTrailersKind, 1),
+                                                  net::buffer(trailers)};
+  const bool written = co_await Write(buffers);
+  co_return written;
+}
+
+net::awaitable<bool> WebSocketExchange::Write(const std::vector<net::const_buffer>& buffers) {
+  is_writing_ = true;
+  error_code error;
+  co_await socket_.async_write(buffers, net::redirect_error(net::use_awaitable, error));
+  is_writing_ = false;
+  co_return !error;
+}
+
+net::awaitable<void> WebSocketExchange::Close() {
+  BeginClosing();
+  if (close_reason_.has_value() && socket_.is_open()) {
+    error_code ignored;
+    co_await socket_.async_close(*close_reason_, net::redirect_error(net::use_awaitable, ignored));
+  } else {
+    // Beast's reader answers a client that closes, and closes one that breaks the protocol.
+    co_await changed_.AwaitTrue(reader_ended_);
+  }
+}
+
+net::awaitable<void> WebSocketExchange::ForwardRequests() {
+  bool received = co_await ReadStart();
+  while (received) {
+    const MessageStart start = {socket_.got_text(),
+                                has_kind_ ? std::optional<uint8_t>(kind_) : std::nullopt,
+                                !socket_.is_message_done(), half_closed_};
+    if (const auto violation = FindViolation(start); violation.has_value()) {
+      EndWith(*violation);
+      break;
+    }
+    // Only one byte is read ahead of flow control.
+    is_held_back_ = true;
+    co_await call_->AwaitWritten();
+    is_held_back_ = false;
+    if (kind_ == kHalfCloseKind) {
+      half_closed_ = true;
+      call_->BeginHalfClose();
+    } else {
+      received = co_await ForwardMessage();
+    }
+    if (received) received = co_await ReadStart();
+  }
+  if (!is_closing_) Abandon();
+  reader_ended_ = true;
+  changed_.Notify();
+}
+
+net::awaitable<bool> WebSocketExchange::ReadStart() {
+  has_kind_ = false;
+  do {
+    error_code error;
+    const size_t bytes = co_await socket_.async_read_some(
+        BufferOf(kind_), net::redirect_error(net::use_awaitable, error));
+    if (error) co_return false;
+    has_kind_ = bytes > 0;
+  } while (!has_kind_ && !socket_.is_message_done());
+  co_return true;
+}
+
+net::awaitable<bool> WebSocketExchange::ForwardMessage() {
+  boost::beast::flat_buffer payload;
+  if (!socket_.is_message_done()) {
+    error_code error;
+    co_await socket_.async_read(payload, net::redirect_error(net::use_awaitable, error));
+    if (error) co_return false;
+  }
+  const grpc::Slice slice =
+      payload.size() == 0 ? grpc::Slice() : grpc::Slice(payload.cdata().data(), payload.size());
+  call_->BeginWrite(grpc::ByteBuffer(&slice, 1));
+  co_return true;
+}
+
+net::awaitable<void> WebSocketExchange::Watch() {
+  const GatewayOptions& options = site_.options;
+  PeerLiveness liveness(
+      {options.websocket_ping_interval, options.write_stall_timeout, kCloseTimeout},
+      PeerLiveness::Clock::now());
+  const milliseconds period =
+      std::clamp(std::min(options.websocket_ping_interval, options.write_stall_timeout) / 4,
+                 kFastestWatch, kSlowestWatch);
+  while (link_->Stream().socket().is_open()) {
+    watch_timer_.expires_after(period);
+    error_code woken;
+    co_await watch_timer_.async_wait(net::redirect_error(net::use_awaitable, woken));
+    if (link_->Stream().socket().is_open()) Judge(liveness);
+  }
+}
+
+void WebSocketExchange::Judge(PeerLiveness& liveness) {
+  const auto now = PeerLiveness::Clock::now();
+  // Beast itself answers a close frame, and closes a connection that breaks the protocol. Its
+  // reader returns only when the TCP connection has ended too.
+  if (!socket_.is_open()) BeginClosing();
+  const PeerLiveness::Verdict verdict =
+      liveness.Judge({link_->ReceivedBytes(), link_->SentBytes(), link_->DeliveredBytes(),
+                      is_writing_, is_pinging_, !is_held_back_, is_closing_},
+                     now);
+  const bool must_leave = leave_by_.has_value() && now >= *leave_by_;
+  if (verdict == PeerLiveness::Verdict::kDrop || must_leave ||
+      (is_held_back_ && link_->HasHungUp())) {
+    Abandon();
+  } else if (verdict == PeerLiveness::Verdict::kPing) {
+    Ping();
+  }
+}
+
+void WebSocketExchange::Ping() {
+  is_pinging_ = true;
+  socket_.async_ping({}, [self = shared_from_this()](error_code) { self->is_pinging_ = false; });
+}
+
+void WebSocketExchange::EndWith(const CloseReason& reason) {
+  if (is_closing_) return;
+  close_reason_ = reason;
+  BeginClosing();
+}
+
+void WebSocketExchange::BeginClosing() {
+  if (is_closing_) return;
+  is_closing_ = true;
+  call_->Cancel();
+}
+
+void WebSocketExchange::GoAway() {
+  EndWith({websocket::close_code::going_away, "the server is going away"});
+  leave_by_ = std::chrono::steady_clock::now() + kLeaveTimeout;
+}
+
+void WebSocketExchange::Abandon() {
+  BeginClosing();
+  link_->Close();
+  watch_timer_.cancel();
+}
+
+}  // namespace thunderhead::gateway

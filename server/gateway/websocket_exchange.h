@@ -1,0 +1,95 @@
+// One call of any kind over a WebSocket, in the format of websocket_protocol.h. Reads each message
+// from the server only when the client has accepted the previous one, and each from the client only
+// when the server's flow control has; both at the same time. Knows no message type.
+//
+// Two coroutines and a timer work on one connection: Run() is the only one that sends messages and
+// closes, ForwardRequests() the only one that receives, Watch() cuts a client that is gone.
+#pragma once
+
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <boost/beast/websocket/stream.hpp>
+#include <chrono>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <optional>
+
+#include "gateway/awaitable.h"
+#include "gateway/change_signal.h"
+#include "gateway/client_link.h"
+#include "gateway/peer_liveness.h"
+#include "gateway/site.h"
+#include "gateway/upstream_call.h"
+#include "grpcpp/support/byte_buffer.h"
+
+namespace thunderhead::gateway {
+
+class WebSocketExchange : public std::enable_shared_from_this<WebSocketExchange> {
+ public:
+  using Request = boost::beast::http::request<boost::beast::http::string_body>;
+
+  // `site` must outlive the exchange.
+  WebSocketExchange(Site& site, std::shared_ptr<ClientLink> link);
+
+  // Answers the upgrade `request` and makes the call. At the end the link is closed.
+  boost::asio::awaitable<void> Run(const Request& request, const UpstreamRequest& upstream);
+
+ private:
+  using CloseReason = boost::beast::websocket::close_reason;
+
+  boost::asio::awaitable<bool> Accept(const Request& request);
+  void SpawnTasks();
+  template <typename Task>
+  void Spawn(Task task);
+
+  // Until the trailers are sent, or the client or the gateway ends the call early.
+  boost::asio::awaitable<void> ForwardResponses();
+  boost::asio::awaitable<bool> WriteMessage(const grpc::ByteBuffer& message);
+  boost::asio::awaitable<bool> WriteTrailers();
+  boost::asio::awaitable<bool> Write(const std::vector<boost::asio::const_buffer>& buffers);
+  boost::asio::awaitable<void> Close();
+
+  boost::asio::awaitable<void> ForwardRequests();
+  // False if the connection has ended.
+  boost::asio::awaitable<bool> ReadStart();
+  boost::asio::awaitable<bool> ForwardMessage();
+
+  boost::asio::awaitable<void> Watch();
+  void Judge(PeerLiveness& liveness);
+  void Ping();
+
+  // Ends the call and closes with `reason`, unless it is ending already.
+  void EndWith(const CloseReason& reason);
+  void GoAway();
+  // Ends the call; what remains is the closing handshake, whose time the watch limits.
+  void BeginClosing();
+  // Ends the call and the connection at once.
+  void Abandon();
+
+  Site& site_;
+  const std::shared_ptr<ClientLink> link_;
+  boost::beast::websocket::stream<ClientStream&, /*deflateSupported=*/false> socket_;
+  boost::asio::steady_timer watch_timer_;
+  std::shared_ptr<UpstreamCall> call_;
+
+  // The WebSocket message that is being received.
+  bool has_kind_ = false;
+  uint8_t kind_ = 0;
+  bool half_closed_ = false;
+
+  bool is_writing_ = false;
+  bool is_pinging_ = false;
+  bool is_held_back_ = false;
+  bool is_closing_ = false;
+  std::optional<CloseReason> close_reason_;
+  std::optional<std::chrono::steady_clock::time_point> leave_by_;
+
+  ChangeSignal changed_;
+  bool reader_ended_ = false;
+  int tasks_ = 0;
+  bool tasks_ended_ = true;
+};
+
+}  // namespace thunderhead::gateway

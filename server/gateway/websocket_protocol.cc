@@ -1,0 +1,44 @@
+#include "gateway/websocket_protocol.h"
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+
+namespace thunderhead::gateway {
+
+using boost::beast::websocket::close_code;
+using boost::beast::websocket::close_reason;
+
+bool OffersSubprotocol(std::string_view offered) {
+  for (const absl::string_view name :
+       absl::StrSplit(absl::string_view(offered.data(), offered.size()), ',')) {
+    if (absl::StripAsciiWhitespace(name) == kWebSocketSubprotocol) return true;
+  }
+  return false;
+}
+
+std::optional<close_reason> FindViolation(const MessageStart& start) {
+  const auto violation = [](close_code code, const std::string& reason) {
+    return close_reason(code, reason);
+  };
+  if (start.is_text) {
+    return violation(close_code::unknown_data, "send binary messages, not text");
+  }
+  if (!start.kind.has_value()) {
+    return violation(close_code::policy_error, "an empty message has no kind in its first byte");
+  }
+  if (*start.kind != kMessageKind && *start.kind != kHalfCloseKind) {
+    return violation(close_code::policy_error,
+                     absl::StrCat("messages of kind 0x", absl::Hex(*start.kind),
+                                  " are unknown; send 0x0 (message) or 0x1 (half-close)"));
+  }
+  if (start.after_half_close) {
+    return violation(close_code::policy_error, "nothing may follow a half-close");
+  }
+  if (*start.kind == kHalfCloseKind && start.has_payload) {
+    return violation(close_code::policy_error, "a half-close has no payload");
+  }
+  return std::nullopt;
+}
+
+}  // namespace thunderhead::gateway

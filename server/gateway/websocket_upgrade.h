@@ -1,0 +1,24 @@
+// Which requests become WebSockets, and why others do not. Knows no socket.
+#pragma once
+
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/http/status.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <optional>
+#include <string>
+
+#include "gateway/http_policy.h"
+
+namespace thunderhead::gateway {
+
+struct UpgradeRefusal {
+  boost::beast::http::status status;
+  std::string text;
+};
+
+// None if `request`, an upgrade to a gRPC method's path, may become a WebSocket.
+std::optional<UpgradeRefusal> FindUpgradeRefusal(
+    const boost::beast::http::request<boost::beast::http::string_body>& request,
+    const HttpPolicy& policy);
+
+}  // namespace thunderhead::gateway

@@ -1,0 +1,68 @@
+// A WebSocket client for tests, with nothing of grpc-websocket.v1 but the subprotocol's name. It
+// reads, and answers pings and closing, only within Receive() and the like. Every wait ends after
+// ten seconds.
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/websocket/stream.hpp>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "tests/gateway/raw_client.h"
+
+namespace thunderhead::gateway::test {
+
+class WebSocketClient {
+ public:
+  struct Options {
+    std::string method = "Converse";
+    Headers headers;
+    // Limits the bytes that the kernel buffers for the client; 0: the kernel's own choice.
+    int receive_buffer_bytes = 0;
+  };
+
+  // Connects and upgrades; throws if the server refuses.
+  explicit WebSocketClient(uint16_t port) : WebSocketClient(port, Options()) {}
+  WebSocketClient(uint16_t port, const Options& options);
+
+  // Sends a binary message whole.
+  void Send(const std::string& message);
+  // Sends a message while Receive() runs.
+  void SendLater(const std::string& message);
+  void SendText(const std::string& message);
+  // Sends a message until the server accepts none for 500 ms; returns how many it accepted.
+  int SendUntilHeldBack(const std::string& message, int most);
+  // The next message; none if the connection has ended, with CloseCode().
+  std::optional<std::string> Receive();
+  // Reads all messages until the connection ends.
+  std::deque<std::string> ReceiveAll();
+  // The server's close code; 1006 if the connection ended without one.
+  int CloseCode();
+  std::string CloseText();
+
+  // Closes the WebSocket by its handshake.
+  void Close();
+  // Closes the connection without a word.
+  void Vanish() { socket_.next_layer().close(); }
+  // True if the connection ends within the wait, though this client answers nothing.
+  bool IsCut();
+
+ private:
+  template <typename Done>
+  void RunUntil(const Done& done);
+  void WriteNext();
+
+  boost::asio::io_context io_;
+  boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
+  boost::beast::flat_buffer received_;
+  std::deque<std::string> unsent_;
+  bool is_writing_ = false;
+  bool has_ended_ = false;
+};
+
+}  // namespace thunderhead::gateway::test

@@ -1,0 +1,564 @@
+// Calls by WebSocket, seen from Beast's client on one side and from the handlers on the other.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <map>
+#include <thread>
+
+#include "absl/strings/str_cat.h"
+#include "tests/gateway/echo_service.h"
+#include "tests/gateway/eventually.h"
+#include "tests/gateway/raw_client.h"
+#include "tests/gateway/websocket_client.h"
+
+namespace thunderhead::gateway::test {
+namespace {
+
+namespace http = boost::beast::http;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using ::testing::HasSubstr;
+using Clock = std::chrono::steady_clock;
+
+constexpr char kMessage = '\0';
+constexpr char kHalfClose = '\1';
+constexpr char kTrailers = '\x80';
+
+std::string Request(const ConverseRequest& request) {
+  return kMessage + request.SerializeAsString();
+}
+
+std::string Saying(const std::string& payload, uint32_t repeats = 0) {
+  ConverseRequest request;
+  request.set_payload(payload);
+  request.set_repeats(repeats);
+  return Request(request);
+}
+
+std::string ReadingNoMore(uint32_t repeats = 0, size_t payload_bytes = 0) {
+  ConverseRequest request;
+  request.set_payload(std::string(payload_bytes, 'x'));
+  request.set_repeats(repeats);
+  request.set_read_no_more(true);
+  return Request(request);
+}
+
+std::string Ending(int code, const std::string& message, const std::string& details = "") {
+  ConverseRequest request;
+  request.mutable_end()->set_code(code);
+  request.mutable_end()->set_message(message);
+  request.mutable_end()->set_details(details);
+  return Request(request);
+}
+
+std::string PayloadOf(const std::optional<std::string>& message) {
+  if (!message.has_value()) return "the connection has ended";
+  if (message->empty() || message->front() != kMessage) return "this is not a message";
+  ConverseResponse response;
+  EXPECT_TRUE(response.ParseFromString(message->substr(1)));
+  return response.payload();
+}
+
+using TrailerMap = std::map<std::string, std::string>;
+
+// The trailers in the last message, which must follow `responses` others.
+TrailerMap TrailersAfter(size_t responses, WebSocketClient& client) {
+  const std::deque<std::string> messages = client.ReceiveAll();
+  EXPECT_EQ(messages.size(), responses + 1);
+  if (messages.empty() || messages.back().front() != kTrailers) return {{"trailers", "none"}};
+  TrailerMap trailers;
+  const std::string lines = messages.back().substr(1);
+  for (size_t begin = 0; begin < lines.size();) {
+    const size_t colon = lines.find(':', begin);
+    const size_t end = lines.find("\r\n", begin);
+    trailers[lines.substr(begin, colon - begin)] = lines.substr(colon + 1, end - colon - 1);
+    begin = end + 2;
+  }
+  return trailers;
+}
+
+void Upgrade(RawClient& client) {
+  const Response response = client.Ask("GET", "/thunderhead.gateway.test.Echo/Converse",
+                                       {{"Connection", "Upgrade"},
+                                        {"Upgrade", "websocket"},
+                                        {"Sec-WebSocket-Version", "13"},
+                                        {"Sec-WebSocket-Key", "AAAAAAAAAAAAAAAAAAAAAA=="},
+                                        {"Sec-WebSocket-Protocol", "other, grpc-websocket.v1"}});
+  EXPECT_EQ(response.result(), http::status::switching_protocols);
+  EXPECT_EQ(response["Sec-WebSocket-Protocol"], "grpc-websocket.v1");
+}
+
+class WebSocketTest : public ::testing::TestWithParam<Path> {
+ protected:
+  EchoSite& Site() {
+    if (site_ == nullptr) site_ = EchoSite::Start(options_, GetParam());
+    return *site_;
+  }
+  EchoRecord& Record() { return Site().Record(); }
+  bool AllCancelled(int calls) {
+    return Eventually([&] { return Record().cancelled == calls && Record().done == calls; });
+  }
+
+  GatewayOptions options_;
+  std::unique_ptr<EchoSite> site_;
+};
+
+INSTANTIATE_TEST_SUITE_P(Paths, WebSocketTest,
+                         ::testing::Values(Path::kUnixSocket, Path::kInProcess),
+                         [](const auto& parameter) {
+                           return parameter.param == Path::kInProcess ? "InProcess" : "UnixSocket";
+                         });
+
+TEST_P(WebSocketTest, MessagesGoBothWaysAtOnceAndInOrder) {
+  constexpr int kMessages = 2000;
+  const auto payload = [](int i) { return absl::StrCat(i, std::string(i % 3000, 'x')); };
+  WebSocketClient client(Site().Port());
+  for (int i = 0; i < kMessages; ++i) client.SendLater(Saying(payload(i)));
+  client.SendLater(std::string(1, kHalfClose));
+  for (int i = 0; i < kMessages; ++i) ASSERT_EQ(PayloadOf(client.Receive()), payload(i));
+  EXPECT_EQ(TrailersAfter(0, client)["grpc-status"], "0");
+}
+
+TEST_P(WebSocketTest, AnswersComeBeforeTheHalfClose) {
+  WebSocketClient client(Site().Port());
+  for (const char* text : {"first", "second"}) {
+    client.Send(Saying(text));
+    EXPECT_EQ(PayloadOf(client.Receive()), text);
+  }
+  client.Send(std::string(1, kHalfClose));
+  TrailerMap trailers = TrailersAfter(0, client);
+  EXPECT_EQ(trailers["grpc-status"], "0");
+  EXPECT_EQ(trailers["conversed"], "yes");
+  EXPECT_EQ(trailers.count("grpc-message"), 0u);
+  EXPECT_EQ(client.CloseCode(), 1000);
+}
+
+TEST_P(WebSocketTest, EmptyMessagesAreMessages) {
+  WebSocketClient client(Site().Port());
+  client.Send(std::string(1, kMessage));
+  EXPECT_EQ(client.Receive(), std::string(1, kMessage));
+  client.Send(std::string(1, kHalfClose));
+  EXPECT_EQ(TrailersAfter(0, client)["grpc-status"], "0");
+}
+
+TEST_P(WebSocketTest, LargeMessagesStayWhole) {
+  std::string payload(1 << 20, '\0');
+  for (size_t i = 0; i < payload.size(); ++i) payload[i] = static_cast<char>(i * 31 >> 3);
+  WebSocketClient client(Site().Port());
+  client.Send(Saying(payload, /*repeats=*/2));
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(PayloadOf(client.Receive()) == payload) << i;
+}
+
+TEST_P(WebSocketTest, HalfCloseAloneIsACallWithoutMessages) {
+  WebSocketClient client(Site().Port());
+  client.Send(std::string(1, kHalfClose));
+  EXPECT_EQ(TrailersAfter(0, client)["grpc-status"], "0");
+  EXPECT_EQ(client.CloseCode(), 1000);
+}
+
+TEST_P(WebSocketTest, OtherKindsOfCallsAreCarriedToo) {
+  CountRequest request;
+  request.set_count(3);
+  WebSocketClient client(Site().Port(), {"Count", {}, 0});
+  client.Send(kMessage + request.SerializeAsString());
+  client.Send(std::string(1, kHalfClose));
+  EXPECT_EQ(TrailersAfter(3, client)["grpc-status"], "0");
+}
+
+TEST_P(WebSocketTest, FailureArrivesWithDetailsAsTrailers) {
+  WebSocketClient client(Site().Port());
+  client.Send(Saying("before"));
+  client.Send(Ending(5, "no storm\n100%", "\x08\x05"));
+  TrailerMap trailers = TrailersAfter(1, client);
+  EXPECT_EQ(trailers["grpc-status"], "5");
+  EXPECT_EQ(trailers["grpc-message"], "no storm%0A100%25");
+  EXPECT_EQ(trailers["grpc-status-details-bin"], "CAU");
+  EXPECT_EQ(trailers["conversed"], "yes");
+  EXPECT_EQ(client.CloseCode(), 1000);
+}
+
+TEST_P(WebSocketTest, ServerMayEndWhileTheClientStillSends) {
+  WebSocketClient client(Site().Port());
+  client.SendLater(Ending(9, "enough"));
+  for (int i = 0; i < 100; ++i) client.SendLater(Saying(std::string(10'000, 'x')));
+  EXPECT_EQ(TrailersAfter(0, client)["grpc-status"], "9");
+  EXPECT_EQ(client.CloseCode(), 1000);
+}
+
+TEST_P(WebSocketTest, UnknownMethodsAreUnimplemented) {
+  WebSocketClient client(Site().Port(), {"Sing", {}, 0});
+  EXPECT_EQ(TrailersAfter(0, client)["grpc-status"], "12");
+  EXPECT_EQ(client.CloseCode(), 1000);
+}
+
+TEST_P(WebSocketTest, HeadersOfOtherProgramsAreMetadata) {
+  WebSocketClient client(
+      Site().Port(), {"Metadata", {{"Echo-Text", "some text"}, {"Cookie", "other=program"}}, 0});
+  client.Send(std::string(1, kMessage));
+  client.Send(std::string(1, kHalfClose));
+  const std::optional<std::string> message = client.Receive();
+  ASSERT_TRUE(message.has_value());
+  MetadataResponse response;
+  ASSERT_TRUE(response.ParseFromString(message->substr(1)));
+  std::map<std::string, std::string> seen;
+  for (const Entry& entry : response.entries()) seen[entry.name()] = entry.value();
+  EXPECT_EQ(seen["echo-text"], "some text");
+  EXPECT_EQ(seen.count("cookie"), 0u);
+  EXPECT_EQ(TrailersAfter(0, client)["trailing-echo-text"], "some text");
+}
+
+TEST_P(WebSocketTest, DeadlinesEndCalls) {
+  WebSocketClient client(Site().Port(), {"Converse", {{"grpc-timeout", "200m"}}, 0});
+  EXPECT_EQ(TrailersAfter(0, client)["grpc-status"], "4");
+}
+
+TEST_P(WebSocketTest, ClosingCancelsTheCall) {
+  WebSocketClient client(Site().Port());
+  client.Send(Saying("hello"));
+  EXPECT_EQ(PayloadOf(client.Receive()), "hello");
+  const auto begin = Clock::now();
+  client.Close();
+  EXPECT_TRUE(AllCancelled(1));
+  EXPECT_LT(Clock::now() - begin, seconds(1));
+  EXPECT_EQ(client.CloseCode(), 1000);
+}
+
+TEST_P(WebSocketTest, VanishingCancelsTheCall) {
+  WebSocketClient client(Site().Port());
+  client.Send(Saying("hello"));
+  EXPECT_EQ(PayloadOf(client.Receive()), "hello");
+  const auto begin = Clock::now();
+  client.Vanish();
+  EXPECT_TRUE(AllCancelled(1));
+  EXPECT_LT(Clock::now() - begin, seconds(1));
+}
+
+TEST_P(WebSocketTest, VanishingIsNoticedWhileTheServerReadsNothing) {
+  // The end of the connection is behind messages that are not read; only a ping finds it.
+  options_.websocket_ping_interval = milliseconds(200);
+  WebSocketClient client(Site().Port());
+  client.Send(ReadingNoMore());
+  ASSERT_EQ(PayloadOf(client.Receive()), "");
+  client.SendUntilHeldBack(Saying(std::string(10'000, 'x')), 3000);
+  client.Vanish();
+  EXPECT_TRUE(AllCancelled(1));
+}
+
+TEST_P(WebSocketTest, VanishingBehindFewMessagesNeedsNoPing) {
+  WebSocketClient client(Site().Port());
+  client.Send(ReadingNoMore());
+  ASSERT_EQ(PayloadOf(client.Receive()), "");
+  client.SendUntilHeldBack(Saying(std::string(100'000, 'x')), 30);
+  // The server may still be taking them in.
+  std::this_thread::sleep_for(milliseconds(500));
+  client.Vanish();
+  EXPECT_TRUE(AllCancelled(1));
+}
+
+TEST_P(WebSocketTest, TooLargeMessagesAreRefused) {
+  options_.max_message_bytes = 1000;
+  WebSocketClient client(Site().Port());
+  client.Send(Saying("hello"));
+  EXPECT_EQ(PayloadOf(client.Receive()), "hello");
+  client.Send(kMessage + std::string(1001, 'x'));
+  EXPECT_EQ(client.CloseCode(), 1009);
+  EXPECT_TRUE(AllCancelled(1));
+  ConverseRequest request;
+  request.set_payload(std::string(997, 'x'));
+  ASSERT_EQ(request.ByteSizeLong(), 1000u);
+  WebSocketClient other(Site().Port());
+  other.Send(Request(request));
+  EXPECT_EQ(PayloadOf(other.Receive()), request.payload());
+}
+
+TEST_P(WebSocketTest, TooLargeMessageStillBeingSentIsRefused) {
+  options_.max_message_bytes = 1000;
+  WebSocketClient client(Site().Port());
+  client.SendLater(kMessage + std::string(20'000'000, 'x'));
+  EXPECT_EQ(client.CloseCode(), 1009);
+}
+
+TEST_P(WebSocketTest, BrokenRulesCloseWithTheirCode) {
+  const auto code_after = [&](const std::string& message) {
+    WebSocketClient client(Site().Port());
+    client.Send(message);
+    EXPECT_NE(client.CloseText(), "") << message.size();
+    return client.CloseCode();
+  };
+  WebSocketClient texter(Site().Port());
+  texter.SendText(std::string(1, kMessage) + "text");
+  EXPECT_EQ(texter.CloseCode(), 1003);
+  EXPECT_EQ(code_after(""), 1008);
+  EXPECT_EQ(code_after("\x02"), 1008);
+  EXPECT_EQ(code_after("\x80"), 1008);
+  EXPECT_EQ(code_after("\x01with payload"), 1008);
+  WebSocketClient talker(Site().Port(), {"Wait", {}, 0});
+  talker.Send(std::string(1, kMessage));
+  talker.Send(std::string(1, kHalfClose));
+  talker.Send(std::string(1, kMessage));
+  EXPECT_EQ(talker.CloseCode(), 1008);
+  EXPECT_TRUE(Eventually([&] { return Record().done == Record().started; }));
+}
+
+// These clients read and close nothing afterwards.
+TEST_P(WebSocketTest, BrokenFramesAndCloseFramesEndTheCall) {
+  // Frames of clients must be masked; a close frame.
+  const std::string last_words[] = {{"\x82\x01\x00", 3}, {"\x88\x80\0\0\0\0", 6}};
+  for (const std::string& bytes : last_words) {
+    RawClient client(Site().Port());
+    Upgrade(client);
+    const int before = Record().cancelled;
+    ASSERT_TRUE(Eventually([&] { return Record().started == before + 1; }));
+    client.Send(bytes);
+    const auto begin = Clock::now();
+    EXPECT_TRUE(Eventually([&] { return Record().cancelled == before + 1; }));
+    EXPECT_LT(Clock::now() - begin, seconds(1));
+  }
+}
+
+class UpgradeTest : public ::testing::Test {
+ protected:
+  Response Upgrade(const Headers& headers, const std::string& path = "Converse",
+                   const std::string& subprotocol = "grpc-websocket.v1") {
+    if (site_ == nullptr) site_ = EchoSite::Start(options_);
+    Headers all = headers;
+    all.insert(all.end(), {{"Connection", "Upgrade"},
+                           {"Upgrade", "websocket"},
+                           {"Sec-WebSocket-Version", "13"},
+                           {"Sec-WebSocket-Key", "AAAAAAAAAAAAAAAAAAAAAA=="}});
+    if (!subprotocol.empty()) all.emplace_back("Sec-WebSocket-Protocol", subprotocol);
+    return RawClient(site_->Port())
+        .Ask("GET", absl::StrCat("/thunderhead.gateway.test.Echo/", path), all);
+  }
+
+  GatewayOptions options_;
+  std::unique_ptr<EchoSite> site_;
+};
+
+TEST_F(UpgradeTest, OnlyTheOwnAndAllowedOriginsMayCall) {
+  options_.allowed_origins = {"http://localhost:5173"};
+  const auto result = [&](const std::string& origin) {
+    return Upgrade({{"Host", "localhost:8080"}, {"Origin", origin}}).result();
+  };
+  for (const char* own :
+       {"http://localhost:8080", "https://localhost:8080", "http://LOCALHOST:8080"}) {
+    EXPECT_EQ(result(own), http::status::switching_protocols) << own;
+  }
+  EXPECT_EQ(result("http://localhost:5173"), http::status::switching_protocols);
+  for (const char* foreign :
+       {"http://localhost", "http://localhost:8081", "http://evil.example", "null", "file://",
+        "http://localhost:8080.evil.example", "ftp://localhost:8080", "localhost:8080"}) {
+    EXPECT_EQ(result(foreign), http::status::forbidden) << foreign;
+  }
+}
+
+TEST_F(UpgradeTest, ForeignHostsAreRefused) {
+  EXPECT_EQ(Upgrade({{"Host", "evil.example"}, {"Origin", "http://evil.example"}}).result(),
+            http::status::forbidden);
+}
+
+TEST_F(UpgradeTest, TheSubprotocolMustBeOffered) {
+  for (const char* other : {"", "grpc-websocket.v2", "grpc-websocket.v1x"}) {
+    const Response response = Upgrade({}, "Converse", other);
+    EXPECT_EQ(response.result(), http::status::bad_request) << other;
+    EXPECT_THAT(response.body(), HasSubstr("Sec-WebSocket-Protocol: grpc-websocket.v1"));
+  }
+  EXPECT_EQ(Upgrade({}, "Converse", "a, grpc-websocket.v1")["Sec-WebSocket-Protocol"],
+            "grpc-websocket.v1");
+}
+
+TEST_F(UpgradeTest, OtherRequestsHaveTheirUsualAnswers) {
+  EXPECT_EQ(Upgrade({}, "Say/More").result(), http::status::not_found);
+  EXPECT_EQ(Upgrade({{"Content-Length", "1"}}).result(), http::status::method_not_allowed);
+  EXPECT_EQ(Upgrade({{"x-bin", "*"}}).result(), http::status::bad_request);
+  EXPECT_EQ(RawClient(site_->Port())
+                .Ask("GET", "/thunderhead.gateway.test.Echo/Converse", {{"Upgrade", "websocket"}})
+                .result(),
+            http::status::method_not_allowed);
+}
+
+TEST_F(UpgradeTest, NothingMayBeSentBeforeTheAnswer) {
+  site_ = EchoSite::Start(options_);
+  RawClient client(site_->Port());
+  client.Send(
+      "GET /thunderhead.gateway.test.Echo/Converse HTTP/1.1\r\nHost: localhost\r\n"
+      "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+      "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n"
+      "Sec-WebSocket-Protocol: grpc-websocket.v1\r\n\r\nearly");
+  EXPECT_EQ(client.Read().result(), http::status::bad_request);
+}
+
+TEST_P(WebSocketTest, SlowReaderHoldsTheHandlerBack) {
+  WebSocketClient client(Site().Port(), {"Converse", {}, /*receive_buffer_bytes=*/16 << 10});
+  client.Send(ReadingNoMore(/*repeats=*/2000, /*payload_bytes=*/100'000));
+  int before = -1;
+  // Until the handler makes no more progress.
+  ASSERT_TRUE(Eventually([&] {
+    std::this_thread::sleep_for(milliseconds(300));
+    return std::exchange(before, Record().written.load()) == Record().written;
+  }));
+  // Of 200 MB, what the kernel buffers for a client that reads nothing (at most 4 MB) and what
+  // gRPC's windows take in (46 to 66 messages in all were seen).
+  EXPECT_LT(Record().written, 100);
+  // It continues when the client does.
+  for (int i = 0; i < 200; ++i) ASSERT_EQ(PayloadOf(client.Receive()).size(), 100'000u);
+  EXPECT_GE(Record().written, 190);
+}
+
+TEST_P(WebSocketTest, SlowHandlerHoldsTheClientBack) {
+  WebSocketClient client(Site().Port());
+  client.Send(ReadingNoMore());
+  ASSERT_EQ(PayloadOf(client.Receive()), "");
+  // Of 300 MB, what the kernel's buffers, gRPC's windows and the gateway's one message hold.
+  EXPECT_LT(client.SendUntilHeldBack(Saying(std::string(100'000, 'x')), 3000), 150);
+  EXPECT_EQ(Record().read, 1);
+}
+
+TEST_P(WebSocketTest, ClientHeldBackIsNotTakenForSilent) {
+  options_.websocket_ping_interval = milliseconds(100);
+  WebSocketClient client(Site().Port());
+  client.Send(ReadingNoMore());
+  ASSERT_EQ(PayloadOf(client.Receive()), "");
+  client.SendUntilHeldBack(Saying(std::string(100'000, 'x')), 3000);
+  std::this_thread::sleep_for(milliseconds(700));
+  EXPECT_EQ(Record().cancelled, 0);
+}
+
+TEST_P(WebSocketTest, ReaderThatTakesNothingIsCut) {
+  options_.write_stall_timeout = milliseconds(300);
+  WebSocketClient client(Site().Port(), {"Converse", {}, /*receive_buffer_bytes=*/16 << 10});
+  client.Send(ReadingNoMore(/*repeats=*/2000, /*payload_bytes=*/100'000));
+  EXPECT_TRUE(AllCancelled(1));
+  EXPECT_TRUE(client.IsCut());
+}
+
+TEST_P(WebSocketTest, PeerThatAnswersNoPingsIsDropped) {
+  options_.websocket_ping_interval = milliseconds(200);
+  WebSocketClient client(Site().Port());
+  client.Send(Saying("hello"));
+  const auto begin = Clock::now();
+  EXPECT_TRUE(AllCancelled(1));
+  EXPECT_GE(Clock::now() - begin, milliseconds(350));
+  EXPECT_LT(Clock::now() - begin, seconds(2));
+  EXPECT_TRUE(client.IsCut());
+}
+
+TEST_P(WebSocketTest, QuietPeerThatAnswersPingsStays) {
+  options_.websocket_ping_interval = milliseconds(100);
+  options_.idle_timeout = milliseconds(100);
+  options_.write_stall_timeout = milliseconds(100);
+  // Reads, and so answers pings, for ten times as long.
+  WebSocketClient client(Site().Port(), {"Count", {}, 0});
+  CountRequest request;
+  request.set_count(1);
+  request.set_interval_ms(1000);
+  client.Send(kMessage + request.SerializeAsString());
+  EXPECT_EQ(TrailersAfter(1, client)["grpc-status"], "0");
+}
+
+TEST_P(WebSocketTest, ClientThatNeverAnswersTheCloseIsCut) {
+  WebSocketClient client(Site().Port());
+  client.Send(Ending(0, ""));
+  const auto begin = Clock::now();
+  ASSERT_TRUE(Eventually([&] { return Record().done == 1; }));
+  EXPECT_TRUE(client.IsCut());
+  EXPECT_LT(Clock::now() - begin, seconds(8));
+}
+
+TEST_P(WebSocketTest, StoppingTheGatewayClosesWithGoingAway) {
+  WebSocketClient polite(Site().Port());
+  WebSocketClient rude(Site().Port());
+  WebSocketClient stalled(Site().Port(), {"Converse", {}, /*receive_buffer_bytes=*/16 << 10});
+  polite.Send(Saying("hello"));
+  rude.Send(Saying("hello"));
+  stalled.Send(ReadingNoMore(/*repeats=*/2000, /*payload_bytes=*/100'000));
+  ASSERT_TRUE(Eventually([&] { return Record().started == 3 && Record().written > 2; }));
+  const auto begin = Clock::now();
+  std::thread stop([&] { Site().StopGateway(); });
+  EXPECT_EQ(polite.CloseCode(), 1001);
+  stop.join();
+  EXPECT_LT(Clock::now() - begin, seconds(5));
+  EXPECT_TRUE(rude.IsCut());
+  EXPECT_TRUE(AllCancelled(3));
+}
+
+TEST_P(WebSocketTest, StoppingTheServerEndsCallsWithTrailers) {
+  WebSocketClient client(Site().Port());
+  client.Send(Saying("hello"));
+  EXPECT_EQ(PayloadOf(client.Receive()), "hello");
+  std::thread stop([&] { Site().StopServer(); });
+  const std::string status = TrailersAfter(0, client)["grpc-status"];
+  EXPECT_TRUE(status == "1" || status == "14") << status;
+  EXPECT_EQ(client.CloseCode(), 1000);
+  stop.join();
+}
+
+TEST_P(WebSocketTest, ConnectionsBeyondTheMaximumAreRefused) {
+  options_.max_connections = 1;
+  WebSocketClient first(Site().Port());
+  first.Send(Saying("hello"));
+  EXPECT_EQ(PayloadOf(first.Receive()), "hello");
+  EXPECT_ANY_THROW(WebSocketClient(Site().Port()));
+  first.Close();
+  EXPECT_TRUE(AllCancelled(1));
+  EXPECT_TRUE(Eventually([&] {
+    try {
+      const WebSocketClient again(Site().Port());
+      return true;
+    } catch (const std::exception&) {
+      return false;
+    }
+  }));
+}
+
+TEST_P(WebSocketTest, HundredClientsAtOnceOneOfThemStopped) {
+  constexpr int kClients = 100;
+  constexpr int kRounds = 20;
+  WebSocketClient stopped(Site().Port(), {"Converse", {}, /*receive_buffer_bytes=*/16 << 10});
+  stopped.Send(ReadingNoMore(/*repeats=*/2000, /*payload_bytes=*/100'000));
+  std::vector<std::unique_ptr<WebSocketClient>> clients;
+  for (int i = 0; i < kClients; ++i) {
+    clients.push_back(std::make_unique<WebSocketClient>(Site().Port()));
+  }
+  for (int round = 0; round < kRounds; ++round) {
+    for (int i = 0; i < kClients; ++i) {
+      clients[i]->Send(Saying(absl::StrCat(i, ":", round, std::string(5000, 'x'))));
+    }
+    for (int i = 0; i < kClients; ++i) {
+      EXPECT_THAT(PayloadOf(clients[i]->Receive()),
+                  ::testing::StartsWith(absl::StrCat(i, ":", round, "x")));
+    }
+  }
+  for (int i = 0; i < kClients; ++i) {
+    if (i % 2 == 0) {
+      clients[i]->Send(std::string(1, kHalfClose));
+      EXPECT_EQ(clients[i]->CloseCode(), 1000);
+    } else {
+      clients[i]->Vanish();
+    }
+  }
+  EXPECT_TRUE(Eventually([&] { return Record().done == kClients; }));
+}
+
+TEST_P(WebSocketTest, ClientsThatComeAndGoAtAnyMoment) {
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([port = Site().Port(), t] {
+      for (int round = 0; round < 25; ++round) {
+        WebSocketClient client(port);
+        if ((round + t) % 5 == 0) continue;
+        client.Send(Saying(std::string(20'000, 'x'), /*repeats=*/50));
+        if ((round + t) % 5 == 1) continue;
+        client.Receive();
+        if ((round + t) % 5 == 2) client.Send(std::string("\x07", 1));
+        if ((round + t) % 5 == 3) client.Close();
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_TRUE(Eventually([&] { return Record().done == Record().started; }));
+}
+
+}  // namespace
+}  // namespace thunderhead::gateway::test
