@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
@@ -39,7 +40,8 @@ absl::Status Malformed() {
 absl::Status StatusOfTrailers(std::string_view trailers) {
   std::optional<int> code;
   std::string message;
-  for (const std::string line : absl::StrSplit(std::string(trailers), '\n')) {
+  const std::vector<std::string> lines = absl::StrSplit(std::string(trailers), '\n');
+  for (const std::string& line : lines) {
     const std::size_t colon = line.find(':');
     if (colon == std::string::npos) continue;
     const std::string name = line.substr(0, colon);
