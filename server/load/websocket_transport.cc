@@ -50,8 +50,11 @@ struct Host {
 };
 
 absl::Status Unavailable(const Host& host, const char* doing, const error_code& error) {
-  return absl::UnavailableError(
-      absl::StrCat("cannot ", doing, " http://", host.ToString(), ": ", error.message()));
+  const bool is_http =
+      error.category() == http::make_error_code(http::error::bad_version).category();
+  return absl::UnavailableError(absl::StrCat("cannot ", doing, " http://", host.ToString(), ": ",
+                                             error.message(),
+                                             is_http ? "; is that the server's HTTP port?" : ""));
 }
 
 // One WebSocket. Everything runs on the transport's thread; handlers keep it alive.

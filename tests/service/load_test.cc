@@ -132,7 +132,7 @@ TEST_P(LoadTest, CountsTheErrorsOfAServerThatStops) {
   options_.seconds = 60.0;
   std::jthread stopping;
   const auto report = Run([&](const Progress& progress) {
-    if (progress.share > 0.0 && !stopping.joinable())
+    if (progress.share > 0.01 && !stopping.joinable())
       stopping = std::jthread([&] { StopServer(); });
   });
   ASSERT_TRUE(report.ok()) << report.status();
@@ -149,7 +149,7 @@ TEST_P(LoadTest, InterruptedHasTheFiguresSoFar) {
   std::stop_source stop;
   const auto report = Run(
       [&](const Progress& progress) {
-        if (progress.share > 0.0) stop.request_stop();
+        if (progress.share > 0.01) stop.request_stop();
       },
       stop.get_token());
   ASSERT_TRUE(report.ok()) << report.status();
@@ -166,8 +166,8 @@ TEST_P(LoadTest, FailsWithoutAServer) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Transports, LoadTest, ::testing::Values(By::kGrpc, By::kWebSocket),
-                         [](const auto& info) {
-                           return info.param == By::kGrpc ? "Grpc" : "WebSocket";
+                         [](const auto& by) {
+                           return by.param == By::kGrpc ? "Grpc" : "WebSocket";
                          });
 
 TEST(ServerProcess, IsFoundByItsPort) {
