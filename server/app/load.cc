@@ -118,6 +118,10 @@ Command AddLoad(CLI::App& app) {
                    "Viewers besides the others who join and never read")
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
+  load->add_option("--passing", options.passing,
+                   "Viewers besides the others who leave after two seconds and come again")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
   load->add_flag("--json", flags->json, "Print JSON");
   return {load, [flags] { return Load(*flags); }};
 }

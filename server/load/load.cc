@@ -26,6 +26,8 @@ constexpr double kLeavePatience_s = 5.0;
 // Before the period begins, so that it holds no first times.
 constexpr double kWarmUp_s = 1.0;
 constexpr double kTurnSpeed_deg_per_s = 15.0;
+// How long a passing viewer stays.
+constexpr double kVisit_s = 2.0;
 constexpr double kSampling_s = 1.0;
 constexpr double kTick_s = 0.05;
 
@@ -76,11 +78,13 @@ class RunningLoad {
         stop_(stop),
         progress_(progress),
         session_id_(session.session_id()),
+        viewer_key_(session.viewer_key()),
         presenter_(session.scene().camera(), errors_) {
     presenter_.Join(transport, session.session_id());
-    AddViewers(ViewerKind::kHealthy, options.viewers, session.viewer_key());
-    AddViewers(ViewerKind::kThrottled, options.throttled, session.viewer_key());
-    AddViewers(ViewerKind::kStalled, options.stalled, session.viewer_key());
+    AddViewers(ViewerKind::kHealthy, options.viewers);
+    AddViewers(ViewerKind::kThrottled, options.throttled);
+    AddViewers(ViewerKind::kStalled, options.stalled);
+    AddViewers(ViewerKind::kPassing, options.passing);
   }
 
   absl::StatusOr<Report> Run() {
@@ -93,10 +97,10 @@ class RunningLoad {
   }
 
  private:
-  void AddViewers(ViewerKind kind, int count, const std::string& key) {
+  void AddViewers(ViewerKind kind, int count) {
     for (int i = 0; i < count; ++i) {
       viewers_.push_back(std::make_unique<Viewer>(kind, measuring_, errors_));
-      viewers_.back()->Join(transport_, key, options_.kbit_per_s);
+      viewers_.back()->Join(transport_, viewer_key_, options_.kbit_per_s);
     }
   }
 
@@ -133,6 +137,7 @@ class RunningLoad {
   void Steer() {
     period_.begin_s = Now_s() + kWarmUp_s;
     period_.end_s = period_.begin_s + options_.seconds;
+    next_visit_s_ = period_.begin_s;
     const double step_s =
         options_.steer_hz > 0.0 ? 1.0 / options_.steer_hz : options_.seconds + 1e3;
     double next_update_s = Now_s() + (options_.steer_hz > 0.0 ? 0.0 : step_s);
@@ -151,12 +156,22 @@ class RunningLoad {
         next_sample_s += kSampling_s;
         Tell((now_s - period_.begin_s) / options_.seconds);
       }
+      LetPass(now_s);
       SleepUntil(std::min({next_update_s, next_sample_s, period_.end_s, now_s + kTick_s}));
     }
     measuring_ = false;
     Sample();
     period_.end_s = std::max(period_.begin_s, std::min(period_.end_s, Now_s()));
     own_cpu_s_ = OwnCpu_s() - own_cpu_s;
+  }
+
+  // Lets passing viewers leave and come again, one after another, each after its visit.
+  void LetPass(double now_s) {
+    if (options_.passing == 0 || now_s < next_visit_s_) return;
+    next_visit_s_ = std::max(next_visit_s_, now_s) + kVisit_s / options_.passing;
+    // They are the last of the viewers.
+    const auto passing = static_cast<std::size_t>(options_.passing);
+    viewers_[viewers_.size() - passing + visits_++ % passing]->ComeAgain(transport_, viewer_key_);
   }
 
   void Sample() {
@@ -220,6 +235,7 @@ class RunningLoad {
   const std::stop_token& stop_;
   const std::function<void(const Progress&)>& progress_;
   const std::string session_id_;
+  const std::string viewer_key_;
   Errors errors_;
   std::atomic<bool> measuring_{false};
   Presenter presenter_;
@@ -227,6 +243,8 @@ class RunningLoad {
   Period period_;
   std::vector<ProcessSample> samples_;
   double own_cpu_s_ = 0.0;
+  std::size_t visits_ = 0;  // that have ended
+  double next_visit_s_ = 0.0;
   std::uint64_t told_frames_ = 0;
   double told_s_ = Now_s();
 };

@@ -22,11 +22,12 @@ enum class ViewerKind {
   kHealthy,
   kThrottled,  // reads at a limited rate
   kStalled,    // joins and never reads
+  kPassing,    // leaves without a word and comes again, over and over
 };
 
 struct ViewerRecord {
   ViewerKind kind = ViewerKind::kHealthy;
-  double joined_s = 0.0;  // when it began to connect
+  std::vector<double> first_frames_ms;  // from connecting to the first frame, each time it came
   std::vector<Arrival> frames;
   // Within the period.
   std::uint64_t bytes = 0;

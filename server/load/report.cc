@@ -56,13 +56,17 @@ std::optional<ServerFigures> FiguresOf(const std::vector<ProcessSample>& samples
   return figures;
 }
 
-std::vector<double> FirstFrames_ms(const Recording& recording) {
-  std::vector<double> first_ms;
+FirstFrames FirstFramesOf(const Recording& recording, ViewerKind kind) {
+  std::vector<double> all_ms;
   for (const ViewerRecord* viewer : recording.viewers) {
-    if (viewer->kind != ViewerKind::kHealthy || viewer->frames.empty()) continue;
-    first_ms.push_back(1e3 * (viewer->frames.front().at_s - viewer->joined_s));
+    if (viewer->kind != kind) continue;
+    all_ms.insert(all_ms.end(), viewer->first_frames_ms.begin(), viewer->first_frames_ms.end());
   }
-  return first_ms;
+  return {all_ms.size(), Percentile(all_ms, 0.5), Percentile(all_ms, 1.0)};
+}
+
+int CountOf(const Recording& recording, ViewerKind kind) {
+  return static_cast<int>(std::ranges::count(recording.viewers, kind, &ViewerRecord::kind));
 }
 
 }  // namespace
@@ -78,11 +82,10 @@ Report ReportOf(const Recording& recording) {
   report.seconds = recording.period.Seconds();
   report.healthy = FiguresOf(recording, ViewerKind::kHealthy);
   report.throttled = FiguresOf(recording, ViewerKind::kThrottled);
-  report.stalled = static_cast<int>(
-      std::ranges::count(recording.viewers, ViewerKind::kStalled, &ViewerRecord::kind));
-  const std::vector<double> first_ms = FirstFrames_ms(recording);
-  report.first_frame_median_ms = Percentile(first_ms, 0.5);
-  report.first_frame_most_ms = Percentile(first_ms, 1.0);
+  report.stalled = CountOf(recording, ViewerKind::kStalled);
+  report.passing = CountOf(recording, ViewerKind::kPassing);
+  report.healthy_first = FirstFramesOf(recording, ViewerKind::kHealthy);
+  report.passing_first = FirstFramesOf(recording, ViewerKind::kPassing);
   report.server = FiguresOf(recording.server);
   if (report.seconds > 0.0) report.own_cpu = recording.own_cpu_s / report.seconds;
   report.errors = recording.errors;

@@ -23,6 +23,13 @@ struct ViewerFigures {
   double bytes_per_frame = 0.0;
 };
 
+// From connecting to the first frame, of each time that viewers came.
+struct FirstFrames {
+  std::size_t count = 0;
+  std::optional<double> median_ms;
+  std::optional<double> most_ms;
+};
+
 struct ServerFigures {
   double rss_first_mb = 0.0;
   double rss_last_mb = 0.0;
@@ -41,9 +48,9 @@ struct Report {
   ViewerFigures healthy;
   ViewerFigures throttled;
   int stalled = 0;
-  // From a healthy viewer's connecting to its first frame.
-  std::optional<double> first_frame_median_ms;
-  std::optional<double> first_frame_most_ms;
+  FirstFrames healthy_first;
+  int passing = 0;
+  FirstFrames passing_first;
   std::optional<ServerFigures> server;  // none if the server is not on this machine
   double own_cpu = 0.0;                 // processors that this program kept busy
   std::map<std::string, int> errors;    // counts by message

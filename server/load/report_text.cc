@@ -47,6 +47,17 @@ std::string ThrottledJson(const Report& report) {
       Json(figures.latency_growth.first_third_ms), Json(figures.latency_growth.last_third_ms));
 }
 
+std::string Json(const FirstFrames& first) {
+  return absl::StrCat("{\"median\": ", Json(first.median_ms), ", \"most\": ", Json(first.most_ms),
+                      "}");
+}
+
+std::string PassingJson(const Report& report) {
+  if (report.passing == 0) return "null";
+  return absl::StrFormat("{\"viewers\": %d, \"visits\": %d, \"first_frame_ms\": %s}",
+                         report.passing, report.passing_first.count, Json(report.passing_first));
+}
+
 std::string ServerJson(const std::optional<ServerFigures>& server) {
   if (!server.has_value()) return "\"server_rss_mb\": null,\n  \"server_cpu\": null";
   const std::string over_time =
@@ -70,6 +81,12 @@ std::string Text(const ViewerFigures& figures) {
   absl::StrAppendFormat(&text, "  bytes            %.0f kbit/s a viewer, %.1f kB a frame\n",
                         figures.kbit_per_viewer, 1e-3 * figures.bytes_per_frame);
   return text;
+}
+
+void AppendFirst(const FirstFrames& first, std::string& text) {
+  if (!first.median_ms.has_value() || !first.most_ms.has_value()) return;
+  absl::StrAppendFormat(&text, "  first frame      after %.0f ms (median), %.0f ms (most)\n",
+                        *first.median_ms, *first.most_ms);
 }
 
 void AppendThrottled(const Report& report, std::string& text) {
@@ -107,12 +124,14 @@ std::string ToText(const Report& report) {
       absl::StrFormat("%d viewers by %s for %.1f s, %d x %d pixels, %g updates a second\n%s",
                       report.healthy.viewers, report.transport, report.seconds, report.width_px,
                       report.height_px, report.steer_hz, Text(report.healthy));
-  if (report.first_frame_median_ms.has_value() && report.first_frame_most_ms.has_value()) {
-    absl::StrAppendFormat(&text, "  first frame      after %.0f ms (median), %.0f ms (most)\n",
-                          *report.first_frame_median_ms, *report.first_frame_most_ms);
-  }
+  AppendFirst(report.healthy_first, text);
   AppendThrottled(report, text);
   if (report.stalled > 0) absl::StrAppendFormat(&text, "stalled: %d\n", report.stalled);
+  if (report.passing > 0) {
+    absl::StrAppendFormat(&text, "passing: %d who left and came again, %d visits\n", report.passing,
+                          report.passing_first.count);
+    AppendFirst(report.passing_first, text);
+  }
   AppendServer(report, text);
   absl::StrAppendFormat(&text, "this program\n  processors       %.2f busy\nerrors: %d\n",
                         report.own_cpu, report.ErrorCount());
@@ -131,13 +150,14 @@ std::string ToJson(const Report& report) {
       "{\n  \"transport\": %s, \"seconds\": %.4g, \"width_px\": %d, \"height_px\": %d, "
       "\"steer_hz\": %g,\n"
       "  \"viewers\": %d, %s,\n"
-      "  \"first_frame_ms\": {\"median\": %s, \"most\": %s},\n"
-      "  \"throttled\": %s,\n  \"stalled\": %d,\n  %s,\n  \"client_cpu\": %.3g,\n"
+      "  \"first_frame_ms\": %s,\n"
+      "  \"throttled\": %s,\n  \"stalled\": %d,\n  \"passing\": %s,\n  %s,\n  \"client_cpu\": "
+      "%.3g,\n"
       "  \"errors\": %d, \"error_messages\": {%s}\n}\n",
       Quoted(report.transport), report.seconds, report.width_px, report.height_px, report.steer_hz,
-      report.healthy.viewers, Keys(report.healthy), Json(report.first_frame_median_ms),
-      Json(report.first_frame_most_ms), ThrottledJson(report), report.stalled,
-      ServerJson(report.server), report.own_cpu, report.ErrorCount(), errors);
+      report.healthy.viewers, Keys(report.healthy), Json(report.healthy_first),
+      ThrottledJson(report), report.stalled, PassingJson(report), ServerJson(report.server),
+      report.own_cpu, report.ErrorCount(), errors);
 }
 
 }  // namespace thunderhead::load

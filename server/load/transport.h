@@ -31,7 +31,7 @@ class Link {
   virtual ~Link() = default;
   // Sends a serialized InteractRequest, after those sent before.
   virtual void Send(std::string message) = 0;
-  // Sends nothing more, so that the server ends the call.
+  // Sends nothing more, whatever Send() is given, so that the server ends the call.
   virtual void HalfClose() = 0;
   virtual void Cancel() = 0;
 };

@@ -17,9 +17,18 @@ void Viewer::Join(Transport& transport, const std::string& key, double kbit_per_
   LinkOptions options;
   options.reads = kind() != ViewerKind::kStalled;
   if (kind() == ViewerKind::kThrottled) options.kbit_per_s = kbit_per_s;
-  record_.joined_s = Now_s();
+  waits_since_s_ = Now_s();
   link_ = transport.Interact(*this, options);
   link_->Send(request.SerializeAsString());
+}
+
+void Viewer::ComeAgain(Transport& transport, const std::string& key) {
+  Stop();
+  // A call that ended by itself has told its error.
+  if (waits_since_s_.has_value() && !ended_)
+    errors_.Add("a viewer left without having had a frame");
+  ended_ = false;
+  Join(transport, key, 0.0);
 }
 
 void Viewer::Leave() {
@@ -37,6 +46,10 @@ void Viewer::OnMessage(google::protobuf::io::ZeroCopyInputStream& message, std::
   if (!response.has_value()) return errors_.Add("a message is no InteractResponse");
   if (response->part == Response::Part::kRefused) return errors_.Add(response->refusal);
   if (response->part != Response::Part::kFrame) return;
+  if (waits_since_s_.has_value()) {
+    record_.first_frames_ms.push_back(1e3 * (now_s - *waits_since_s_));
+    waits_since_s_.reset();
+  }
   record_.frames.push_back({now_s, response->scene_revision});
   if (measuring) {
     ++record_.frame_count;

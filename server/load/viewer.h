@@ -20,6 +20,8 @@ class Viewer final : public Listener {
 
   // Connects and joins; a throttled viewer reads at that rate.
   void Join(Transport& transport, const std::string& key, double kbit_per_s);
+  // Breaks off the call and joins again.
+  void ComeAgain(Transport& transport, const std::string& key);
   // Asks the server to end the call; one that does not read breaks it off.
   void Leave();
   // Breaks off the call. Nothing is recorded any more.
@@ -42,6 +44,7 @@ class Viewer final : public Listener {
   Errors& errors_;
   ViewerRecord record_;
   std::atomic<std::uint64_t> frames_{0};
+  std::optional<double> waits_since_s_;  // for its first frame
   std::atomic<bool> leaving_{false};
   std::atomic<bool> ended_{false};
   std::unique_ptr<Link> link_;

@@ -78,6 +78,9 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall> {
   }
 
   void Send(std::string message) {
+    // Nothing may follow a half-close.
+    if (half_closed_) return;
+    half_closed_ = message.front() == kHalfCloseKind;
     unsent_.push_back(std::move(message));
     if (open_ && !writing_) WriteNext();
   }
@@ -186,6 +189,7 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall> {
   std::deque<std::string> unsent_;
   bool open_ = false;
   bool writing_ = false;
+  bool half_closed_ = false;
 };
 
 class WebSocketLink final : public Link {

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <future>
 #include <memory>
 #include <stop_token>
 #include <string>
@@ -128,6 +129,19 @@ TEST_P(LoadTest, StalledAndThrottledViewersDoNotSlowOthers) {
   EXPECT_THAT(report->throttled.fps_median, Le(0.7 * report->healthy.fps_min)) << ToText(*report);
 }
 
+TEST_P(LoadTest, PassingViewersComeAndGetAFrameEachTime) {
+  options_.passing = 4;
+  options_.seconds = 3.0;
+  const auto report = Run();
+  ASSERT_TRUE(report.ok()) << report.status();
+  EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
+  EXPECT_EQ(report->passing, 4);
+  // Four who came at first, and at least one again each second.
+  EXPECT_THAT(report->passing_first.count, Ge(7U)) << ToText(*report);
+  EXPECT_THAT(report->passing_first.most_ms.value_or(1e9), Le(2000.0));
+  EXPECT_THAT(report->healthy.fps_min, Gt(5.0)) << ToText(*report);
+}
+
 TEST_P(LoadTest, CountsTheErrorsOfAServerThatStops) {
   options_.seconds = 60.0;
   std::jthread stopping;
@@ -163,6 +177,39 @@ TEST_P(LoadTest, FailsWithoutAServer) {
   StopServer();
   const auto report = load::Run(options_, *transport, std::nullopt, {}, [](auto&) {});
   EXPECT_EQ(report.status().code(), absl::StatusCode::kUnavailable) << report.status();
+}
+
+// Waits for the end of a call.
+class EndListener final : public Listener {
+ public:
+  void OnMessage(google::protobuf::io::ZeroCopyInputStream& /*message*/,
+                 std::size_t /*bytes*/) override {}
+  void OnEnd(const absl::Status& status) override { end_.set_value(status); }
+  absl::Status Await() {
+    auto end = end_.get_future();
+    if (end.wait_for(testing::kPatience) != std::future_status::ready) {
+      return absl::DeadlineExceededError("the call did not end");
+    }
+    return end.get();
+  }
+
+ private:
+  std::promise<absl::Status> end_;
+};
+
+TEST_P(LoadTest, AcknowledgingAfterLeavingIsNoError) {
+  v1::InteractRequest join;
+  join.mutable_join()->set_session_key(service_->Open(testing::SmallScene()));
+  v1::InteractRequest acknowledge;
+  acknowledge.mutable_acknowledge()->set_sequence(1);
+  const auto transport = MakeTransport();
+  EndListener listener;
+  const auto link = transport->Interact(listener, {});
+  link->Send(join.SerializeAsString());
+  link->HalfClose();
+  link->Send(acknowledge.SerializeAsString());
+  const absl::Status end = listener.Await();
+  EXPECT_TRUE(end.ok()) << end;
 }
 
 INSTANTIATE_TEST_SUITE_P(Transports, LoadTest, ::testing::Values(By::kGrpc, By::kWebSocket),

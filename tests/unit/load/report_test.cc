@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 
 ViewerRecord Record(ViewerKind kind, int frames, double late_s) {
-  ViewerRecord record{.kind = kind, .joined_s = 99.0};
+  ViewerRecord record{.kind = kind, .first_frames_ms = {1e3 * late_s}};
   for (int i = 0; i < frames; ++i) {
     const auto revision = static_cast<std::uint64_t>(1 + i * 10 / frames);
     record.frames.push_back({100.0 + static_cast<double>(revision) - 1.0 + late_s, revision});
@@ -33,7 +33,7 @@ class ReportTest : public ::testing::Test {
     for (int i = 0; i < 10; ++i) {
       recording_.updates.push_back({100.0 + i, static_cast<std::uint64_t>(1 + i)});
     }
-    recording_.viewers = {&fast_, &slow_, &throttled_, &stalled_};
+    recording_.viewers = {&fast_, &slow_, &throttled_, &stalled_, &passing_};
     recording_.server = {{100.0, 5.0, 400.0}, {105.0, 13.0, 420.0}, {110.0, 20.0, 410.0}};
     recording_.own_cpu_s = 3.0;
     recording_.errors = {{"said \"no\"", 2}, {"gone", 1}};
@@ -43,6 +43,7 @@ class ReportTest : public ::testing::Test {
   const ViewerRecord slow_ = Record(ViewerKind::kHealthy, 20, 0.2);
   const ViewerRecord throttled_ = Record(ViewerKind::kThrottled, 10, 0.5);
   const ViewerRecord stalled_{.kind = ViewerKind::kStalled};
+  const ViewerRecord passing_{.kind = ViewerKind::kPassing, .first_frames_ms = {20, 30, 40}};
   Recording recording_;
 };
 
@@ -60,8 +61,11 @@ TEST_F(ReportTest, CountsHealthyViewersApartFromOthers) {
   EXPECT_DOUBLE_EQ(report.throttled.fps_min, 1.0);
   EXPECT_NEAR(report.throttled.latency_ms->p50, 500.0, 1e-6);
   EXPECT_EQ(report.stalled, 1);
-  EXPECT_NEAR(*report.first_frame_median_ms, 1100.0, 1e-6);
-  EXPECT_NEAR(*report.first_frame_most_ms, 1200.0, 1e-6);
+  EXPECT_NEAR(*report.healthy_first.median_ms, 100.0, 1e-6);
+  EXPECT_NEAR(*report.healthy_first.most_ms, 200.0, 1e-6);
+  EXPECT_EQ(report.passing, 1);
+  EXPECT_EQ(report.passing_first.count, 3);
+  EXPECT_NEAR(*report.passing_first.median_ms, 30.0, 1e-6);
 }
 
 TEST_F(ReportTest, TellsOfTheServerAndOfErrors) {
