@@ -59,11 +59,7 @@ class GrpcLink final : public Link,
     if (reads_) StartRead(&received_);
   }
 
-  ~GrpcLink() override {
-    Cancel();
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return done_; });
-  }
+  ~GrpcLink() override { GrpcLink::Close(); }
 
   void Send(std::string message) override {
     const std::lock_guard lock(mutex_);
@@ -79,7 +75,7 @@ class GrpcLink final : public Link,
     WriteNext();
   }
 
-  void Cancel() override {
+  void Close() override {
     {
       const std::lock_guard lock(mutex_);
       cancelled_ = true;
@@ -87,6 +83,8 @@ class GrpcLink final : public Link,
       if (!reads_) Release();
     }
     net::post(delay_->get_executor(), [delay = delay_] { delay->cancel(); });
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return done_; });
   }
 
  private:

@@ -25,7 +25,7 @@ class Presenter final : public Listener {
   // Turns the camera by an angle.
   void Turn(double angle_deg);
   void Leave();
-  void Stop() { link_.reset(); }
+  void Stop() { link_->Close(); }
 
   bool HasEnded() const { return ended_; }
   // The updates that the server took, in the order of their revisions; once stopped.

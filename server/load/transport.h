@@ -16,7 +16,7 @@ class Listener {
  public:
   virtual ~Listener() = default;
   virtual void OnMessage(google::protobuf::io::ZeroCopyInputStream& message, std::size_t bytes) = 0;
-  // The call has ended, and not by Cancel(). OK: the server ended it as it should.
+  // The call has ended, and not by Close(). OK: the server ended it as it should.
   virtual void OnEnd(const absl::Status& status) = 0;
 };
 
@@ -25,7 +25,7 @@ struct LinkOptions {
   double kbit_per_s = 0.0;  // the rate at which it reads; 0: no limit
 };
 
-// A call of Interact on a connection of its own. The listener hears no more once it is destroyed.
+// A call of Interact on a connection of its own. Closed when it is destroyed.
 class Link {
  public:
   virtual ~Link() = default;
@@ -33,7 +33,8 @@ class Link {
   virtual void Send(std::string message) = 0;
   // Sends nothing more, whatever Send() is given, so that the server ends the call.
   virtual void HalfClose() = 0;
-  virtual void Cancel() = 0;
+  // Breaks off the call. Once it returns, the listener hears no more. Not from the listener.
+  virtual void Close() = 0;
 };
 
 class Transport {

@@ -34,7 +34,7 @@ void Viewer::ComeAgain(Transport& transport, const std::string& key) {
 void Viewer::Leave() {
   leaving_ = true;
   if (kind() == ViewerKind::kHealthy) return link_->HalfClose();
-  link_->Cancel();
+  link_->Close();
   ended_ = true;
 }
 

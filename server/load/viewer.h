@@ -25,7 +25,7 @@ class Viewer final : public Listener {
   // Asks the server to end the call; one that does not read breaks it off.
   void Leave();
   // Breaks off the call. Nothing is recorded any more.
-  void Stop() { link_.reset(); }
+  void Stop() { link_->Close(); }
 
   ViewerKind kind() const { return record_.kind; }
   bool HasFrame() const { return frames_ > 0; }

@@ -200,22 +200,20 @@ class WebSocketLink final : public Link {
     net::post(io_, [call = call_] { call->Start(); });
   }
 
-  ~WebSocketLink() override {
-    std::promise<void> abandoned;
-    net::post(io_, [&] {
-      call_->Abandon();
-      abandoned.set_value();
-    });
-    abandoned.get_future().wait();
-  }
+  ~WebSocketLink() override { WebSocketLink::Close(); }
 
   void Send(std::string message) override {
     message.insert(message.begin(), kMessageKind);
     Post(std::move(message));
   }
   void HalfClose() override { Post(std::string(1, kHalfCloseKind)); }
-  void Cancel() override {
-    net::post(io_, [call = call_] { call->Abandon(); });
+  void Close() override {
+    std::promise<void> abandoned;
+    net::post(io_, [&] {
+      call_->Abandon();
+      abandoned.set_value();
+    });
+    abandoned.get_future().wait();
   }
 
  private:
