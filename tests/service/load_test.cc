@@ -11,8 +11,6 @@
 
 #include "gateway/gateway.h"
 #include "gmock/gmock.h"
-#include "google/protobuf/struct.pb.h"
-#include "google/protobuf/util/json_util.h"
 #include "gtest/gtest.h"
 #include "tests/service/fake_service.h"
 
@@ -24,6 +22,7 @@ using ::testing::Ge;
 using ::testing::Gt;
 using ::testing::HasSubstr;
 using ::testing::Le;
+using ::testing::Not;
 using ::testing::Pair;
 
 enum class By { kGrpc, kWebSocket };
@@ -79,23 +78,26 @@ TEST_P(LoadTest, HasAllFigures) {
   const auto report = Run();
   ASSERT_TRUE(report.ok()) << report.status();
   EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
-  google::protobuf::Struct parsed;
-  ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(ToJson(*report), &parsed).ok());
-  const auto& json = parsed.fields();
-  EXPECT_EQ(json.at("viewers").number_value(), 3);
-  EXPECT_THAT(json.at("fps_min").number_value(), Gt(5.0));
-  EXPECT_THAT(json.at("fps_median").number_value(), Ge(json.at("fps_min").number_value()));
-  const auto& latency = json.at("latency_ms").struct_value().fields();
-  EXPECT_THAT(latency.at("p50").number_value(), Gt(0.0));
-  EXPECT_THAT(latency.at("p95").number_value(), Ge(latency.at("p50").number_value()));
-  EXPECT_THAT(latency.at("p99").number_value(), Ge(latency.at("p95").number_value()));
-  EXPECT_THAT(json.at("kbit_per_viewer").number_value(), Gt(1.0));
-  EXPECT_EQ(json.at("errors").number_value(), 0);
+  EXPECT_EQ(report->healthy.viewers, 3);
+  EXPECT_THAT(report->healthy.fps_min, Gt(5.0));
+  EXPECT_THAT(report->healthy.fps_median, Ge(report->healthy.fps_min));
+  ASSERT_TRUE(report->healthy.latency_ms.has_value());
+  EXPECT_THAT(report->healthy.latency_ms->p50, Gt(0.0));
+  EXPECT_THAT(report->healthy.latency_ms->p95, Ge(report->healthy.latency_ms->p50));
+  EXPECT_THAT(report->healthy.latency_ms->p99, Ge(report->healthy.latency_ms->p95));
+  EXPECT_THAT(report->healthy.kbit_per_viewer, Gt(1.0));
+  EXPECT_THAT(report->healthy.bytes_per_frame, Gt(100.0));
+  EXPECT_EQ(report->healthy_first.count, 3);
   // The server is this process.
-  const auto& memory = json.at("server_rss_mb").struct_value().fields();
-  EXPECT_THAT(memory.at("first").number_value(), Gt(1.0));
-  EXPECT_THAT(memory.at("last").number_value(), Gt(1.0));
-  EXPECT_THAT(memory.at("most").number_value(), Ge(memory.at("last").number_value()));
+  ASSERT_TRUE(report->server.has_value());
+  EXPECT_THAT(report->server->rss_first_mb, Gt(1.0));
+  EXPECT_THAT(report->server->rss_last_mb, Gt(1.0));
+  EXPECT_THAT(report->server->rss_most_mb, Ge(report->server->rss_last_mb));
+  for (const char* key : {"viewers", "fps_min", "fps_median", "latency_ms", "p50", "p95", "p99",
+                          "kbit_per_viewer", "errors", "server_rss_mb", "first", "last", "most"}) {
+    EXPECT_THAT(ToJson(*report), HasSubstr("\"" + std::string(key) + "\": "));
+  }
+  EXPECT_THAT(ToJson(*report), Not(HasSubstr("null, \"p95\"")));
 }
 
 TEST_P(LoadTest, LeavesNoSessionBehind) {
@@ -136,10 +138,8 @@ TEST_P(LoadTest, PassingViewersComeAndGetAFrameEachTime) {
   ASSERT_TRUE(report.ok()) << report.status();
   EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
   EXPECT_EQ(report->passing, 40);
-  // 40 who came at first, and each again after two seconds.
+  // 40 who came at first, and each again after two seconds; one without a frame is an error.
   EXPECT_THAT(report->passing_first.count, Ge(60U)) << ToText(*report);
-  EXPECT_THAT(report->passing_first.most_ms.value_or(1e9), Le(2000.0));
-  EXPECT_THAT(report->healthy.fps_min, Gt(5.0)) << ToText(*report);
 }
 
 TEST_P(LoadTest, CountsTheErrorsOfAServerThatStops) {
