@@ -29,5 +29,6 @@ Command AddMeasureLight(CLI::App& measure);
 Command AddGenerate(CLI::App& app);
 Command AddFit(CLI::App& app);
 Command AddExport(CLI::App& app);
+Command AddLoad(CLI::App& app);
 
 }  // namespace thunderhead::app

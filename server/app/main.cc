@@ -43,8 +43,9 @@ int Main(int argc, char** argv) {
   CLI::App app("Storms from weather models as they would look in the sky.", "thunderhead");
   app.set_version_flag("--version", "thunderhead " + base::Version());
   app.require_subcommand(1);
-  const std::array commands = {AddServe(app),   AddRender(app),   AddInspect(app), AddFlux(app),
-                               AddMeasure(app), AddGenerate(app), AddFit(app),     AddExport(app)};
+  const std::array commands = {AddServe(app), AddRender(app),  AddInspect(app),
+                               AddFlux(app),  AddMeasure(app), AddGenerate(app),
+                               AddFit(app),   AddExport(app),  AddLoad(app)};
   if (const absl::Status status = CheckSubcommand(app, argc, argv); !status.ok()) {
     return Report(status);
   }

@@ -1,0 +1,129 @@
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/strip.h"
+#include "app/address.h"
+#include "app/commands.h"
+#include "app/interruption.h"
+#include "app/picture_size.h"
+#include "app/progress_bar.h"
+#include "base/status.h"
+#include "load/load.h"
+
+namespace thunderhead::app {
+namespace {
+
+struct Flags {
+  std::string server;
+  std::string size = "640x360";
+  std::optional<double> kbit_per_s;
+  std::optional<int> throttled;
+  load::LoadOptions load;
+  bool json = false;
+};
+
+struct Target {
+  Address address;
+  bool is_http = false;
+};
+
+absl::StatusOr<Target> ParseTarget(const std::string& server) {
+  if (absl::StartsWith(server, "https://")) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("SERVER is '", server, "'; TLS is not supported: use http:// or HOST:PORT"));
+  }
+  const bool is_http = absl::StartsWith(server, "http://");
+  const std::string place(absl::StripSuffix(absl::StripPrefix(server, "http://"), "/"));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Address address, ParseAddress("SERVER", place));
+  return Target{address, is_http};
+}
+
+absl::StatusOr<load::LoadOptions> OptionsOf(const Flags& flags) {
+  load::LoadOptions options = flags.load;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const PictureSize size, ParsePictureSize(flags.size));
+  options.width_px = size.width_px;
+  options.height_px = size.height_px;
+  if (flags.throttled.has_value() && !flags.kbit_per_s.has_value()) {
+    return absl::InvalidArgumentError("--throttled needs --kbit, the rate that those viewers read");
+  }
+  if (flags.kbit_per_s.has_value()) {
+    options.kbit_per_s = *flags.kbit_per_s;
+    options.throttled = flags.throttled.value_or(1);
+  }
+  return options;
+}
+
+std::string NoteOf(const load::Progress& progress) {
+  std::string note = absl::StrFormat("%d viewers have frames, %.1f frames/s", progress.joined,
+                                     progress.frames_per_s);
+  if (progress.errors > 0) absl::StrAppendFormat(&note, ", %d errors", progress.errors);
+  return note;
+}
+
+absl::Status Load(const Flags& flags) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Target target, ParseTarget(flags.server));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const load::LoadOptions options, OptionsOf(flags));
+  // Before the transport starts threads, which must not take the signals.
+  const Interruption interruption;
+  const auto transport =
+      target.is_http ? load::MakeWebSocketTransport(target.address.host, target.address.port)
+                     : load::MakeGrpcTransport(ToString(target.address));
+  const auto process = load::ServerProcess::Find(target.address.host, target.address.port);
+  std::optional<ProgressBar> bar(std::in_place, "load");
+  const absl::StatusOr<load::Report> report =
+      load::Run(options, *transport, process, interruption.Token(), [&bar](const auto& progress) {
+        bar->Set(progress.share);
+        bar->Note(NoteOf(progress));
+      });
+  bar.reset();
+  THUNDERHEAD_RETURN_IF_ERROR(report.status());
+  std::cout << (flags.json ? load::ToJson(*report) : load::ToText(*report));
+  if (report->ErrorCount() == 0) return absl::OkStatus();
+  return absl::AbortedError(absl::StrCat("errors during the load: ", report->ErrorCount()));
+}
+
+}  // namespace
+
+Command AddLoad(CLI::App& app) {
+  auto flags = std::make_shared<Flags>();
+  load::LoadOptions& options = flags->load;
+  CLI::App* load = app.add_subcommand(
+      "load", "Measure a server under many viewers of one session whose camera turns");
+  load->add_option("SERVER", flags->server,
+                   "HOST:PORT of the server's gRPC, or http://HOST:PORT to come by WebSocket")
+      ->required();
+  load->add_option("--viewers", options.viewers, "Viewers who read all that comes")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  load->add_option("--seconds", options.seconds, "Seconds to measure, once all have joined")
+      ->check(CLI::Range(1.0, 86400.0))
+      ->capture_default_str();
+  load->add_option("--size", flags->size, "Size of the pictures, WIDTHxHEIGHT")
+      ->capture_default_str();
+  load->add_option("--steer", options.steer_hz,
+                   "Updates of the camera a second by the presenter; 0 for none")
+      ->check(CLI::Range(0.0, 240.0))
+      ->capture_default_str();
+  load->add_option("--kbit", flags->kbit_per_s,
+                   "kbit/s that throttled viewers read; they come besides the others")
+      ->check(CLI::Range(1.0, 1e7));
+  load->add_option("--throttled", flags->throttled, "Throttled viewers; with --kbit by default 1")
+      ->check(CLI::Range(1, 10000));
+  load->add_option("--stalled", options.stalled,
+                   "Viewers besides the others who join and never read")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
+  load->add_option("--passing", options.passing,
+                   "Viewers besides the others who leave after two seconds and come again")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
+  load->add_flag("--json", flags->json, "Print JSON");
+  return {load, [flags] { return Load(*flags); }};
+}
+
+}  // namespace thunderhead::app

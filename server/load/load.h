@@ -1,0 +1,45 @@
+// A load on a server: one session, a presenter who turns its camera, and many viewers.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "load/report.h"
+#include "load/server_process.h"
+#include "load/transport.h"
+
+namespace thunderhead::load {
+
+struct LoadOptions {
+  int viewers = 10;            // healthy ones
+  int throttled = 0;           // besides them
+  int stalled = 0;             // besides them
+  int passing = 0;             // besides them
+                               // besides them
+  double kbit_per_s = 1000.0;  // that a throttled viewer reads
+  double seconds = 10.0;
+  int width_px = 640;
+  int height_px = 360;
+  double steer_hz = 30.0;  // updates a second; 0: none
+};
+
+// Of a load that runs.
+struct Progress {
+  double share = 0.0;         // of the time
+  int joined = 0;             // viewers that have had a frame
+  double frames_per_s = 0.0;  // the mean of healthy viewers since the last call
+  int errors = 0;
+};
+
+// Runs until the time is over, every viewer's call has ended, or a stop is requested, which gives
+// the figures so far; an error if there are none. Streams that end with an error are counted in the
+// report.
+absl::StatusOr<Report> Run(const LoadOptions& options, Transport& transport,
+                           const std::optional<ServerProcess>& server, const std::stop_token& stop,
+                           const std::function<void(const Progress&)>& progress);
+
+}  // namespace thunderhead::load

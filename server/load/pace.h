@@ -1,0 +1,31 @@
+// The delays of a link of limited rate: as if each message took its time on the wire.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+
+namespace thunderhead::load {
+
+class Pace {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  // 0: no limit.
+  explicit Pace(double kbit_per_s) : kbit_per_s_(kbit_per_s) {}
+
+  bool IsLimited() const { return kbit_per_s_ > 0.0; }
+  // How long from `now` until a message that was read now has arrived.
+  Clock::duration DelayOf(std::size_t bytes, Clock::time_point now) {
+    const std::chrono::duration<double, std::milli> took(8.0 * static_cast<double>(bytes) /
+                                                         kbit_per_s_);
+    free_at_ = std::max(free_at_, now) + std::chrono::duration_cast<Clock::duration>(took);
+    return free_at_ - now;
+  }
+
+ private:
+  double kbit_per_s_;
+  Clock::time_point free_at_;  // when the message before has arrived
+};
+
+}  // namespace thunderhead::load

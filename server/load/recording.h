@@ -1,0 +1,64 @@
+// What a load records while it runs; its report is made of it.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "load/server_process.h"
+#include "load/statistics.h"
+
+namespace thunderhead::load {
+
+// Seconds on the clock of all recorded times.
+inline double Now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+enum class ViewerKind {
+  kHealthy,
+  kThrottled,  // reads at a limited rate
+  kStalled,    // joins and never reads
+  kPassing,    // leaves without a word and comes again, over and over
+};
+
+struct ViewerRecord {
+  ViewerKind kind = ViewerKind::kHealthy;
+  std::vector<double> first_frames_ms;  // from connecting to the first frame, each time it came
+  std::vector<Arrival> frames;
+  // Within the period.
+  std::uint64_t bytes = 0;
+  std::uint64_t frame_count = 0;
+  std::uint64_t frame_bytes = 0;
+};
+
+// Errors by message. Safe from any thread.
+class Errors {
+ public:
+  void Add(const std::string& message) {
+    const std::lock_guard lock(mutex_);
+    ++counts_[message];
+  }
+  std::map<std::string, int> Counts() const {
+    const std::lock_guard lock(mutex_);
+    return counts_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<std::string, int> counts_;
+};
+
+struct Recording {
+  Period period;
+  std::vector<Update> updates;  // in the order of their revisions
+  std::vector<const ViewerRecord*> viewers;
+  std::vector<ProcessSample> server;  // none if the server is not on this machine
+  double own_cpu_s = 0.0;             // of this program, within the period
+  std::map<std::string, int> errors;
+};
+
+}  // namespace thunderhead::load

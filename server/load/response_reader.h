@@ -1,0 +1,26 @@
+// Reads the few fields of an InteractResponse that a load needs, without copying or parsing the
+// frame: the client shares its processor with the server that it measures.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "google/protobuf/io/zero_copy_stream.h"
+
+namespace thunderhead::load {
+
+struct Response {
+  enum class Part { kFrame, kSceneTaken, kRefused, kOther };
+
+  Part part = Part::kOther;
+  std::uint64_t sequence = 0;        // of a frame
+  std::uint64_t scene_revision = 0;  // of a frame or a SceneTaken
+  std::uint64_t request_id = 0;      // of a SceneTaken or a refusal
+  std::string refusal;               // why
+};
+
+// None if the message is malformed.
+std::optional<Response> ReadResponse(google::protobuf::io::ZeroCopyInputStream& message);
+
+}  // namespace thunderhead::load

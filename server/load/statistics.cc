@@ -1,0 +1,65 @@
+#include "load/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <utility>
+
+namespace thunderhead::load {
+
+std::optional<double> Percentile(std::vector<double> values, double share) {
+  if (values.empty()) return std::nullopt;
+  const double rank = std::ceil(share * static_cast<double>(values.size()));
+  const auto at = static_cast<std::ptrdiff_t>(std::max(1.0, rank)) - 1;
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+std::optional<Percentiles> PercentilesOf(const std::vector<Latency>& latencies) {
+  if (latencies.empty()) return std::nullopt;
+  std::vector<double> ms;
+  ms.reserve(latencies.size());
+  for (const Latency& latency : latencies) ms.push_back(latency.ms);
+  return Percentiles{*Percentile(ms, 0.5), *Percentile(ms, 0.95), *Percentile(ms, 0.99)};
+}
+
+std::vector<Latency> LatenciesOf(const std::vector<Update>& updates,
+                                 const std::vector<Arrival>& arrivals, const Period& period) {
+  std::vector<Latency> latencies;
+  std::vector<Latency> unseen;
+  double longest_ms = 0.0;
+  auto arrival = arrivals.begin();
+  for (const Update& update : updates) {
+    while (arrival != arrivals.end() && arrival->scene_revision < update.scene_revision) ++arrival;
+    if (!period.Contains(update.sent_s)) continue;
+    const bool seen = arrival != arrivals.end() && arrival->at_s < period.end_s;
+    const double until_s = seen ? arrival->at_s : period.end_s;
+    const Latency latency{update.sent_s, 1e3 * (until_s - update.sent_s)};
+    (seen ? latencies : unseen).push_back(latency);
+    if (seen) longest_ms = std::max(longest_ms, latency.ms);
+  }
+  std::ranges::copy_if(unseen, std::back_inserter(latencies),
+                       [&](const Latency& latency) { return latency.ms > longest_ms; });
+  return latencies;
+}
+
+Growth GrowthOf(const std::vector<Latency>& latencies, const Period& period) {
+  const double third_s = period.Seconds() / 3.0;
+  std::vector<double> first_ms;
+  std::vector<double> last_ms;
+  for (const Latency& latency : latencies) {
+    if (latency.sent_s < period.begin_s + third_s) first_ms.push_back(latency.ms);
+    if (latency.sent_s >= period.end_s - third_s) last_ms.push_back(latency.ms);
+  }
+  return {Percentile(std::move(first_ms), 0.5), Percentile(std::move(last_ms), 0.5)};
+}
+
+double FramesPerSecond(const std::vector<Arrival>& arrivals, const Period& period) {
+  if (period.Seconds() <= 0.0) return 0.0;
+  const auto count = std::ranges::count_if(
+      arrivals, [&](const Arrival& arrival) { return period.Contains(arrival.at_s); });
+  return static_cast<double>(count) / period.Seconds();
+}
+
+}  // namespace thunderhead::load

@@ -1,0 +1,77 @@
+#include "load/viewer.h"
+
+#include "absl/strings/str_cat.h"
+#include "load/response_reader.h"
+#include "thunderhead/v1/interact.pb.h"
+
+namespace thunderhead::load {
+
+Viewer::Viewer(ViewerKind kind, const std::atomic<bool>& measuring, Errors& errors)
+    : measuring_(measuring), errors_(errors) {
+  record_.kind = kind;
+}
+
+void Viewer::Join(Transport& transport, const std::string& key, double kbit_per_s) {
+  v1::InteractRequest request;
+  request.mutable_join()->set_session_key(key);
+  LinkOptions options;
+  options.reads = kind() != ViewerKind::kStalled;
+  if (kind() == ViewerKind::kThrottled) options.kbit_per_s = kbit_per_s;
+  waits_since_s_ = Now_s();
+  link_ = transport.Interact(*this, options);
+  link_->Send(request.SerializeAsString());
+}
+
+void Viewer::ComeAgain(Transport& transport, const std::string& key) {
+  Stop();
+  // A call that ended by itself has told its error.
+  if (waits_since_s_.has_value() && !ended_)
+    errors_.Add("a viewer left without having had a frame");
+  ended_ = false;
+  Join(transport, key, 0.0);
+}
+
+void Viewer::Leave() {
+  leaving_ = true;
+  if (kind() == ViewerKind::kHealthy) return link_->HalfClose();
+  link_->Close();
+  ended_ = true;
+}
+
+void Viewer::OnMessage(google::protobuf::io::ZeroCopyInputStream& message, std::size_t bytes) {
+  const double now_s = Now_s();
+  const bool measuring = measuring_;
+  if (measuring) record_.bytes += bytes;
+  const std::optional<Response> response = ReadResponse(message);
+  if (!response.has_value()) return errors_.Add("a message is no InteractResponse");
+  if (response->part == Response::Part::kRefused) return errors_.Add(response->refusal);
+  if (response->part != Response::Part::kFrame) return;
+  if (waits_since_s_.has_value()) {
+    record_.first_frames_ms.push_back(1e3 * (now_s - *waits_since_s_));
+    waits_since_s_.reset();
+  }
+  record_.frames.push_back({now_s, response->scene_revision});
+  if (measuring) {
+    ++record_.frame_count;
+    record_.frame_bytes += bytes;
+  }
+  Acknowledge(response->sequence);
+  ++frames_;
+}
+
+void Viewer::Acknowledge(std::uint64_t sequence) {
+  v1::InteractRequest request;
+  request.mutable_acknowledge()->set_sequence(sequence);
+  link_->Send(request.SerializeAsString());
+}
+
+void Viewer::OnEnd(const absl::Status& status) {
+  if (!status.ok()) {
+    errors_.Add(status.ToString());
+  } else if (!leaving_) {
+    errors_.Add("the server ended a call early, without an error");
+  }
+  ended_ = true;
+}
+
+}  // namespace thunderhead::load

@@ -1,0 +1,53 @@
+// A viewer of a session under load: joins, acknowledges each frame, and records when it came.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "load/recording.h"
+#include "load/transport.h"
+
+namespace thunderhead::load {
+
+class Viewer final : public Listener {
+ public:
+  // Records bytes while `measuring` is true. Both must outlive it.
+  Viewer(ViewerKind kind, const std::atomic<bool>& measuring, Errors& errors);
+
+  // Connects and joins; a throttled viewer reads at that rate.
+  void Join(Transport& transport, const std::string& key, double kbit_per_s);
+  // Breaks off the call and joins again.
+  void ComeAgain(Transport& transport, const std::string& key);
+  // Asks the server to end the call; one that does not read breaks it off.
+  void Leave();
+  // Breaks off the call. Nothing is recorded any more.
+  void Stop() { link_->Close(); }
+
+  ViewerKind kind() const { return record_.kind; }
+  bool HasFrame() const { return frames_ > 0; }
+  std::uint64_t Frames() const { return frames_; }
+  bool HasEnded() const { return ended_; }
+  // Once stopped.
+  const ViewerRecord& record() const { return record_; }
+
+  void OnMessage(google::protobuf::io::ZeroCopyInputStream& message, std::size_t bytes) override;
+  void OnEnd(const absl::Status& status) override;
+
+ private:
+  void Acknowledge(std::uint64_t sequence);
+
+  const std::atomic<bool>& measuring_;
+  Errors& errors_;
+  ViewerRecord record_;
+  std::atomic<std::uint64_t> frames_{0};
+  std::optional<double> waits_since_s_;  // for its first frame
+  std::atomic<bool> leaving_{false};
+  std::atomic<bool> ended_{false};
+  std::unique_ptr<Link> link_;
+};
+
+}  // namespace thunderhead::load

@@ -1,0 +1,233 @@
+// A load on a server on fakes, by gRPC and by WebSocket.
+#include "load/load.h"
+
+#include <unistd.h>
+
+#include <future>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <thread>
+
+#include "gateway/gateway.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/service/fake_service.h"
+
+namespace thunderhead::load {
+namespace {
+
+using ::testing::Contains;
+using ::testing::Ge;
+using ::testing::Gt;
+using ::testing::HasSubstr;
+using ::testing::Le;
+using ::testing::Not;
+using ::testing::Pair;
+
+enum class By { kGrpc, kWebSocket };
+
+service::ServerOptions OnFreePort() {
+  service::ServerOptions options;
+  options.address = "127.0.0.1:0";
+  return options;
+}
+
+class LoadTest : public ::testing::TestWithParam<By> {
+ protected:
+  LoadTest() {
+    auto gateway = gateway::Gateway::Start({}, service_->server().LocalChannel());
+    EXPECT_TRUE(gateway.ok()) << gateway.status();
+    gateway_ = *std::move(gateway);
+    options_.viewers = 3;
+    options_.seconds = 1.5;
+    options_.width_px = 64;
+    options_.height_px = 36;
+    options_.steer_hz = 10.0;
+  }
+
+  int Port() const {
+    return GetParam() == By::kGrpc ? service_->server().Port() : gateway_->Port();
+  }
+
+  std::unique_ptr<Transport> MakeTransport() const {
+    return GetParam() == By::kGrpc ? MakeGrpcTransport("127.0.0.1:" + std::to_string(Port()))
+                                   : MakeWebSocketTransport("127.0.0.1", Port());
+  }
+
+  absl::StatusOr<Report> Run(
+      const std::function<void(const Progress&)>& progress = [](auto&) {},
+      const std::stop_token& stop = {}) {
+    const auto transport = MakeTransport();
+    return load::Run(options_, *transport, ServerProcess::Find("127.0.0.1", Port()), stop,
+                     progress);
+  }
+
+  void StopServer() {
+    gateway_.reset();
+    service_.reset();
+  }
+
+  LoadOptions options_;
+  std::unique_ptr<testing::FakeService> service_ =
+      std::make_unique<testing::FakeService>(OnFreePort());
+  std::unique_ptr<gateway::Gateway> gateway_;
+};
+
+TEST_P(LoadTest, HasAllFigures) {
+  const auto report = Run();
+  ASSERT_TRUE(report.ok()) << report.status();
+  EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
+  EXPECT_EQ(report->healthy.viewers, 3);
+  EXPECT_THAT(report->healthy.fps_min, Gt(5.0));
+  EXPECT_THAT(report->healthy.fps_median, Ge(report->healthy.fps_min));
+  ASSERT_TRUE(report->healthy.latency_ms.has_value());
+  EXPECT_THAT(report->healthy.latency_ms->p50, Gt(0.0));
+  EXPECT_THAT(report->healthy.latency_ms->p95, Ge(report->healthy.latency_ms->p50));
+  EXPECT_THAT(report->healthy.latency_ms->p99, Ge(report->healthy.latency_ms->p95));
+  EXPECT_THAT(report->healthy.kbit_per_viewer, Gt(1.0));
+  EXPECT_THAT(report->healthy.bytes_per_frame, Gt(100.0));
+  EXPECT_EQ(report->healthy_first.count, 3);
+  // The server is this process.
+  ASSERT_TRUE(report->server.has_value());
+  EXPECT_THAT(report->server->rss_first_mb, Gt(1.0));
+  EXPECT_THAT(report->server->rss_last_mb, Gt(1.0));
+  EXPECT_THAT(report->server->rss_most_mb, Ge(report->server->rss_last_mb));
+  for (const char* key : {"viewers", "fps_min", "fps_median", "latency_ms", "p50", "p95", "p99",
+                          "kbit_per_viewer", "errors", "server_rss_mb", "first", "last", "most"}) {
+    EXPECT_THAT(ToJson(*report), HasSubstr("\"" + std::string(key) + "\": "));
+  }
+  EXPECT_THAT(ToJson(*report), Not(HasSubstr("null, \"p95\"")));
+}
+
+TEST_P(LoadTest, LeavesNoSessionBehind) {
+  options_.viewers = 1;
+  options_.seconds = 0.2;
+  service::ServerOptions options = OnFreePort();
+  options.sessions.max_sessions = 1;
+  gateway_.reset();
+  service_ = std::make_unique<testing::FakeService>(options);
+  auto gateway = gateway::Gateway::Start({}, service_->server().LocalChannel());
+  ASSERT_TRUE(gateway.ok()) << gateway.status();
+  gateway_ = *std::move(gateway);
+  for (int i = 0; i < 2; ++i) {
+    const auto report = Run();
+    ASSERT_TRUE(report.ok()) << report.status();
+    EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
+  }
+}
+
+TEST_P(LoadTest, StalledAndThrottledViewersDoNotSlowOthers) {
+  options_.stalled = 2;
+  options_.throttled = 1;
+  options_.kbit_per_s = 16.0;
+  const auto report = Run();
+  ASSERT_TRUE(report.ok()) << report.status();
+  EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
+  EXPECT_EQ(report->healthy.viewers, 3);
+  EXPECT_THAT(report->healthy.fps_min, Gt(5.0)) << ToText(*report);
+  EXPECT_EQ(report->stalled, 2);
+  EXPECT_EQ(report->throttled.viewers, 1);
+  EXPECT_THAT(report->throttled.fps_median, Le(0.7 * report->healthy.fps_min)) << ToText(*report);
+}
+
+TEST_P(LoadTest, PassingViewersComeAndGetAFrameEachTime) {
+  options_.passing = 40;
+  options_.seconds = 3.0;
+  const auto report = Run();
+  ASSERT_TRUE(report.ok()) << report.status();
+  EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
+  EXPECT_EQ(report->passing, 40);
+  // 40 who came at first, and each again after two seconds; one without a frame is an error.
+  EXPECT_THAT(report->passing_first.count, Ge(60U)) << ToText(*report);
+}
+
+TEST_P(LoadTest, CountsTheErrorsOfAServerThatStops) {
+  options_.seconds = 60.0;
+  std::jthread stopping;
+  const auto report = Run([&](const Progress& progress) {
+    if (progress.share > 0.01 && !stopping.joinable())
+      stopping = std::jthread([&] { StopServer(); });
+  });
+  ASSERT_TRUE(report.ok()) << report.status();
+  // It does not wait for the end, and has the figures so far.
+  EXPECT_THAT(report->seconds, Le(30.0));
+  EXPECT_THAT(report->healthy.fps_min, Gt(0.0));
+  // Three viewers and the presenter; closing the session fails too.
+  EXPECT_THAT(report->ErrorCount(), Ge(4)) << ToText(*report);
+  EXPECT_THAT(report->errors, Contains(Pair(HasSubstr("UNAVAILABLE"), Ge(3)))) << ToText(*report);
+}
+
+TEST_P(LoadTest, InterruptedHasTheFiguresSoFar) {
+  options_.seconds = 60.0;
+  std::stop_source stop;
+  const auto report = Run(
+      [&](const Progress& progress) {
+        if (progress.share > 0.01) stop.request_stop();
+      },
+      stop.get_token());
+  ASSERT_TRUE(report.ok()) << report.status();
+  EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
+  EXPECT_THAT(report->seconds, Le(30.0));
+  EXPECT_THAT(report->healthy.fps_min, Gt(0.0));
+}
+
+TEST_P(LoadTest, FailsWithoutAServer) {
+  const auto transport = MakeTransport();
+  StopServer();
+  const auto report = load::Run(options_, *transport, std::nullopt, {}, [](auto&) {});
+  EXPECT_EQ(report.status().code(), absl::StatusCode::kUnavailable) << report.status();
+}
+
+// Waits for the end of a call.
+class EndListener final : public Listener {
+ public:
+  void OnMessage(google::protobuf::io::ZeroCopyInputStream& /*message*/,
+                 std::size_t /*bytes*/) override {}
+  void OnEnd(const absl::Status& status) override { end_.set_value(status); }
+  absl::Status Await() {
+    auto end = end_.get_future();
+    if (end.wait_for(testing::kPatience) != std::future_status::ready) {
+      return absl::DeadlineExceededError("the call did not end");
+    }
+    return end.get();
+  }
+
+ private:
+  std::promise<absl::Status> end_;
+};
+
+TEST_P(LoadTest, AcknowledgingAfterLeavingIsNoError) {
+  v1::InteractRequest join;
+  join.mutable_join()->set_session_key(service_->Open(testing::SmallScene()));
+  v1::InteractRequest acknowledge;
+  acknowledge.mutable_acknowledge()->set_sequence(1);
+  const auto transport = MakeTransport();
+  EndListener listener;
+  const auto link = transport->Interact(listener, {});
+  link->Send(join.SerializeAsString());
+  link->HalfClose();
+  link->Send(acknowledge.SerializeAsString());
+  const absl::Status end = listener.Await();
+  EXPECT_TRUE(end.ok()) << end;
+}
+
+INSTANTIATE_TEST_SUITE_P(Transports, LoadTest, ::testing::Values(By::kGrpc, By::kWebSocket),
+                         [](const auto& by) {
+                           return by.param == By::kGrpc ? "Grpc" : "WebSocket";
+                         });
+
+TEST(ServerProcess, IsFoundByItsPort) {
+  testing::FakeService service(OnFreePort());
+  const auto process = ServerProcess::Find("127.0.0.1", service.server().Port());
+  ASSERT_TRUE(process.has_value());
+  EXPECT_EQ(process->pid(), ::getpid());
+  const auto sample = process->Sample();
+  ASSERT_TRUE(sample.has_value());
+  EXPECT_THAT(sample->rss_mb, Gt(1.0));
+  // An address of another machine, reserved for documentation.
+  EXPECT_FALSE(ServerProcess::Find("192.0.2.1", service.server().Port()).has_value());
+}
+
+}  // namespace
+}  // namespace thunderhead::load
