@@ -138,12 +138,11 @@ class InteractCall : public InteractReactor,
       return ResponseOf(EndResponse(closed));
     }
     Watch(Watched());
-    if (const auto newest = session_->Newest();
-        newest.has_value() && newest->revision != sent_revision_) {
-      sent_revision_ = newest->revision;
-      return SceneResponse(*newest);
-    }
     session::Audience& audience = session_->audience();
+    if (const session::Told told = audience.Scene(); told.count != told_scene_) {
+      told_scene_ = told.count;
+      if (const auto newest = session_->Newest(); newest.has_value()) return SceneResponse(*newest);
+    }
     if (auto news = News(audience.Presence(), &told_presence_); news.has_value()) return news;
     if (auto news = News(audience.Marks(), &told_marks_); news.has_value()) return news;
     if (auto news = News(audience.Pointers(), &told_pointers_); news.has_value()) return news;
@@ -549,7 +548,7 @@ class InteractCall : public InteractReactor,
   std::shared_ptr<session::OwnView> own_view_;
   std::shared_ptr<session::Session> watched_;  // whose frames come
   std::uint64_t watcher_id_ = 0;               // in its hub
-  std::uint64_t sent_revision_ = 0;
+  std::uint64_t told_scene_ = 0;
   std::uint64_t told_presence_ = 0;
   std::uint64_t told_marks_ = 0;
   std::uint64_t told_pointers_ = 0;

@@ -60,6 +60,12 @@ absl::Status Audience::Point(std::uint64_t id, const std::optional<Ray>& ray, Ti
   return absl::OkStatus();
 }
 
+void Audience::SceneChanged(std::uint64_t revision, Time now) {
+  std::unique_lock lock(mutex_);
+  scene_revision_ = std::max(scene_revision_, revision);
+  Settle(std::move(lock), now);
+}
+
 void Audience::WakeAll() {
   std::unique_lock lock(mutex_);
   const auto members = Members();
@@ -128,6 +134,11 @@ Told Audience::Marks() const {
   return marks_.told;
 }
 
+Told Audience::Scene() const {
+  const std::lock_guard lock(mutex_);
+  return scene_.told;
+}
+
 std::optional<Audience::Time> Audience::Tick(Time now, const Place& place) {
   std::unique_lock lock(mutex_);
   roster_.Advance(now);
@@ -156,6 +167,7 @@ std::optional<Audience::Time> Audience::Tick(Time now, const Place& place) {
   };
   wait_for(roster_.revision() > presence_.told_revision, presence_.told_at + kPresencePause);
   wait_for(board_.marks_revision() > marks_.told_revision, marks_.told_at + kMarksPause);
+  wait_for(scene_revision_ > scene_.told_revision, scene_.told_at + kScenePause);
   wait_for(!rays_.empty() || board_.pointers_revision() > pointers_.told_revision,
            pointers_.told_at + kPointersPause);
   if (const auto deadline = roster_.NextDeadline(); deadline.has_value()) wait_for(true, *deadline);
@@ -184,15 +196,18 @@ bool Audience::TellDue(Time now) {
   tell(presence_, roster_.revision(), kPresencePause, format_.presence, roster_);
   tell(pointers_, board_.pointers_revision(), kPointersPause, format_.pointers, board_.pointers());
   tell(marks_, board_.marks_revision(), kMarksPause, format_.marks, board_.marks());
+  tell(
+      scene_, scene_revision_, kScenePause, [](std::uint64_t) { return std::string(); },
+      scene_revision_);
   return told;
 }
 
 void Audience::Settle(std::unique_lock<std::mutex> lock, Time now) {
   const bool told = TellDue(now);
-  const bool due = !rays_.empty() || roster_.revision() > presence_.told_revision ||
-                   board_.marks_revision() > marks_.told_revision ||
-                   board_.pointers_revision() > pointers_.told_revision ||
-                   roster_.NextDeadline().has_value();
+  const bool due =
+      !rays_.empty() || roster_.revision() > presence_.told_revision ||
+      board_.marks_revision() > marks_.told_revision || scene_revision_ > scene_.told_revision ||
+      board_.pointers_revision() > pointers_.told_revision || roster_.NextDeadline().has_value();
   const auto members = told ? Members() : std::vector<std::shared_ptr<Viewer>>();
   lock.unlock();
   for (const auto& member : members) member->Wake();

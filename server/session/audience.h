@@ -46,6 +46,7 @@ class Audience {
   using Place = std::function<glm::dvec3(const Ray&)>;
 
   static constexpr std::chrono::milliseconds kPresencePause{200};
+  static constexpr std::chrono::milliseconds kScenePause{200};
   static constexpr std::chrono::milliseconds kPointersPause{33};
   static constexpr std::chrono::milliseconds kMarksPause{33};
 
@@ -66,7 +67,9 @@ class Audience {
   // it goes.
   absl::Status Point(std::uint64_t id, const std::optional<Ray>& ray, Time now);
 
-  // Wakes everybody, when something else has changed that they are told of.
+  // The session shows a scene of that revision, which everybody is to be sent.
+  void SceneChanged(std::uint64_t revision, Time now);
+  // Wakes everybody, when the session has ended.
   void WakeAll();
 
   // Copies.
@@ -83,6 +86,8 @@ class Audience {
   Told Presence() const;
   Told Pointers() const;
   Told Marks() const;
+  // Without bytes: it counts when people were told to take the newest scene.
+  Told Scene() const;
 
   // Ends what has run out, finds where pointers point, and tells what is due. Returns when it is to
   // be called next, if nothing happens before.
@@ -114,6 +119,8 @@ class Audience {
   Subject presence_;
   Subject pointers_;
   Subject marks_;
+  Subject scene_;
+  std::uint64_t scene_revision_ = 0;
 };
 
 }  // namespace thunderhead::session

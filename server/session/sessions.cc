@@ -110,7 +110,7 @@ void Session::Show(std::uint64_t revision, scene::Scene scene, std::string seria
   for (const auto& view : views) {
     if (view != nullptr) view->Follow(newest);
   }
-  audience_.WakeAll();
+  audience_.SceneChanged(newest.revision, Clock::now());
   signals_.on_work();
 }
 

@@ -171,7 +171,7 @@ TEST(InteractTest, ThePresentersUpdateReachesEverybody) {
   EXPECT_EQ(revision, 2U);
   for (Interacting* const person : {group.presenter.get(), group.ana.get(), group.ben.get()}) {
     EXPECT_TRUE(person->AwaitFrame(revision));
-    EXPECT_EQ(person->AwaitNewest(Response::kScene).scene().scene().sun().azimuth_deg(), 120.0F);
+    EXPECT_EQ(person->AwaitScene(revision).sun().azimuth_deg(), 120.0F);
   }
 }
 
@@ -198,6 +198,20 @@ TEST(InteractTest, AViewerDoesNotSteerUnlessGivenControl) {
             grpc::StatusCode::PERMISSION_DENIED);
 }
 
+TEST(InteractTest, AMovingSceneIsToldSeldomAndInTheEndWhole) {
+  Class group;
+  std::uint64_t revision = 0;
+  for (int i = 0; i < 40; ++i) {
+    const float azimuth_deg = 100.0F + static_cast<float>(i);
+    revision = group.presenter->Answer(group.presenter->Send(SunTo(azimuth_deg)))
+                   .scene_taken()
+                   .scene_revision();
+  }
+  EXPECT_EQ(group.ana->AwaitScene(revision).sun().azimuth_deg(), 139.0F);
+  const Interacting::Messages messages = group.ana->All();
+  EXPECT_LT(std::ranges::count_if(messages, [](const auto& m) { return m.has_scene(); }), 30);
+}
+
 TEST(InteractTest, OfTwoWhoChangeTheSameRevisionOneIsTold) {
   Class group;
   v1::InteractRequest first = SunTo(120.0F);
@@ -211,8 +225,7 @@ TEST(InteractTest, OfTwoWhoChangeTheSameRevisionOneIsTold) {
   EXPECT_EQ(refused.status().code(), static_cast<int>(grpc::StatusCode::ABORTED));
   EXPECT_THAT(refused.status().message(), HasSubstr("the scene is at revision 2, not 1"));
   EXPECT_GT(refused.status().details_size(), 0);
-  EXPECT_EQ(group.presenter->AwaitNewest(Response::kScene).scene().scene().sun().azimuth_deg(),
-            120.0F);
+  EXPECT_EQ(group.presenter->AwaitScene(2).sun().azimuth_deg(), 120.0F);
 }
 
 TEST(InteractTest, ARefusedSceneDoesNotBlockTheNextChange) {
@@ -233,7 +246,7 @@ TEST(InteractTest, AMaskTakesTheNamedFieldsOnly) {
   update.mutable_scene()->mutable_display()->set_exposure_ev(3.0F);
   update.mutable_update_mask()->add_paths("display.exposure_ev");
   ASSERT_EQ(group.presenter->AnswerCode(group.presenter->Send(request)), grpc::StatusCode::OK);
-  const v1::Scene scene = group.presenter->AwaitNewest(Response::kScene).scene().scene();
+  const v1::Scene scene = group.presenter->AwaitScene(2);
   EXPECT_EQ(scene.display().exposure_ev(), 3.0F);
   EXPECT_NE(scene.sun().azimuth_deg(), 120.0F);
   EXPECT_EQ(scene.output().width_px(), SmallScene().output().width_px());

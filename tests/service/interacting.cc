@@ -95,6 +95,19 @@ bool Interacting::AwaitPresence(const std::function<bool(const v1::Presence&)>& 
   });
 }
 
+v1::Scene Interacting::AwaitScene(std::uint64_t revision) {
+  v1::Scene scene;
+  Await([&](const Messages& messages) {
+    const auto at = std::find_if(messages.rbegin(), messages.rend(), [&](const auto& message) {
+      return message.scene().scene_revision() >= revision;
+    });
+    if (at == messages.rend()) return false;
+    scene = at->scene().scene();
+    return true;
+  });
+  return scene;
+}
+
 bool Interacting::AwaitFrame(std::uint64_t revision, bool own_view) {
   return Await([&](const Messages& messages) {
     return std::ranges::any_of(messages, [&](const auto& message) {

@@ -42,6 +42,8 @@ class Interacting {
   grpc::StatusCode AnswerCode(std::uint64_t request_id);
   // Waits until the newest presence is as wanted.
   bool AwaitPresence(const std::function<bool(const v1::Presence&)>& wanted);
+  // Waits until the newest scene is of that revision or a newer one, and returns it.
+  v1::Scene AwaitScene(std::uint64_t revision);
   // Waits for a frame of that revision or a newer one.
   bool AwaitFrame(std::uint64_t revision, bool own_view = false);
   Messages All();
