@@ -183,6 +183,40 @@ describe("scenes on their way to the server", () => {
     expect(b.sync.unsettled).toBe(false);
   });
 
+  it("go back to the last that was taken where they are refused before the server tells of it", async () => {
+    const b = bench();
+    b.sync.told(sceneOf(0), 1n);
+    b.sync.allow();
+    b.toTime(1);
+    await b.refresh();
+    b.sent[0]?.answer({ kind: "taken", revision: 2n });
+    await b.settle();
+    b.toTime(99);
+    await b.refresh();
+    b.sent[1]?.answer({ kind: "refused", message: "no such time" });
+    await b.settle();
+    expect(b.page.scene.timeIndex).toBe(1);
+    b.sync.told(sceneOf(1), 2n);
+    b.toTime(2);
+    await b.refresh();
+    expect(b.times()).toEqual([1, 99, 2]);
+  });
+
+  it("are tried again where they were stale and nothing newer came", async () => {
+    const b = bench();
+    b.sync.told(sceneOf(0), 1n);
+    b.sync.allow();
+    b.toTime(1);
+    await b.refresh();
+    b.sent[0]?.answer({ kind: "stale" });
+    await b.settle();
+    await b.refresh();
+    expect(b.times()).toEqual([1]);
+    b.rest();
+    await b.refresh();
+    expect(b.times()).toEqual([1, 1]);
+  });
+
   it("are tried again after a rest where the server is busy", async () => {
     const b = steering();
     b.toTime(1);

@@ -13,8 +13,7 @@ import {
   withField,
   withFieldSizes,
   withLight,
-  withLightAdded,
-  withoutLight,
+  withLights,
   withParticleSizes,
   withPreset,
   withStorm,
@@ -66,12 +65,14 @@ describe("scenes", () => {
 
   it("gain lights, change one of them and lose it", () => {
     const light = (azimuthDeg: number) => create(DirectionalLightSchema, { azimuthDeg });
-    const two = withLightAdded(withLightAdded(scene, light(10)), light(20));
+    const two = withLights(scene, [light(10), light(20)]);
     expect(two.lights.map((each) => each.azimuthDeg)).toEqual([10, 20]);
     const changed = withLight(two, 1, { irradiance: 0.5 });
     expect(changed.lights[1]).toMatchObject({ azimuthDeg: 20, irradiance: 0.5 });
     expect(changed.lights[0]).toBe(two.lights[0]);
-    expect(withoutLight(changed, 0).lights.map((each) => each.azimuthDeg)).toEqual([20]);
+    const one = withLights(changed, changed.lights.slice(1));
+    expect(one.lights.map((each) => each.azimuthDeg)).toEqual([20]);
+    expect(withLights(one, changed.lights.slice(1))).toEqual(one);
     expect(scene.lights).toEqual([]);
     expect(MOST_LIGHTS).toBe(4);
     expect(LIMITS.lightElevation).toMatchObject({ minimum: -90, maximum: 90, unit: "deg" });

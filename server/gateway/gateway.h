@@ -32,7 +32,7 @@ struct GatewayOptions {
   // Responses are limited only by the channel.
   size_t max_message_bytes = 4u << 20;
   // More connections than these are closed at once.
-  size_t max_connections = 256;
+  size_t max_connections = 768;
   // Closes a connection without a call on which no request arrives within this time.
   std::chrono::milliseconds idle_timeout = std::chrono::seconds(60);
   // Closes a connection whose client accepts no bytes for this time, and cancels its call.

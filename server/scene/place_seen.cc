@@ -26,25 +26,36 @@ struct Span {
   double end_m = 0.0;
 };
 
-// Of the ray in the box, before `end_m`; empty if they do not meet.
-Span Within(const volume::RegularGrid& grid, const glm::dvec3& origin_m,
+// Of the ray in the box that holds the condensate, before `end_m`; empty if they do not meet.
+Span Within(const volume::HydrometeorFields& fields, const glm::dvec3& origin_m,
             const glm::dvec3& direction, double end_m) {
+  const volume::RegularGrid& grid = fields.grid;
+  if (fields.condensate.Empty()) return {};
+  const glm::dvec3 low_m = grid.low_corner_m + glm::dvec3(fields.condensate.low) * grid.spacing_m;
+  const glm::dvec3 high_m = grid.low_corner_m + glm::dvec3(fields.condensate.high) * grid.spacing_m;
   Span span{0.0, end_m};
-  const glm::dvec3 high_m = grid.HighCorner_m();
   for (int axis = 0; axis < 3; ++axis) {
     if (direction[axis] == 0.0) {
-      const bool inside =
-          origin_m[axis] >= grid.low_corner_m[axis] && origin_m[axis] <= high_m[axis];
-      if (!inside) return {};
+      if (origin_m[axis] < low_m[axis] || origin_m[axis] > high_m[axis]) return {};
       continue;
     }
-    double near_m = (grid.low_corner_m[axis] - origin_m[axis]) / direction[axis];
+    double near_m = (low_m[axis] - origin_m[axis]) / direction[axis];
     double far_m = (high_m[axis] - origin_m[axis]) / direction[axis];
     if (near_m > far_m) std::swap(near_m, far_m);
     span.begin_m = std::max(span.begin_m, near_m);
     span.end_m = std::min(span.end_m, far_m);
   }
   return span;
+}
+
+// Half of the shortest way through a cell from side to side.
+double Step_m(const volume::RegularGrid& grid, const glm::dvec3& direction) {
+  double step_m = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (direction[axis] == 0.0) continue;
+    step_m = std::min(step_m, 0.5 * grid.spacing_m[axis] / std::abs(direction[axis]));
+  }
+  return step_m;
 }
 
 class Medium {
@@ -92,7 +103,7 @@ class Surface {
 // `kFarthest_m`.
 std::optional<double> MeetsGround_m(const Surface& ground, const glm::dvec3& origin_m,
                                     const glm::dvec3& direction) {
-  constexpr double kFarthest_m = 1e6;
+  constexpr double kFarthest_m = 2e8;
   const auto is_below = [&](double along_m) {
     const glm::dvec3 place_m = origin_m + along_m * direction;
     return place_m.z < ground.Height_m(place_m);
@@ -120,10 +131,10 @@ glm::dvec3 PlaceSeen(const Scene& scene, const volume::HydrometeorFields& fields
                      const glm::dvec3& origin_m, const glm::dvec3& direction) {
   const std::optional<double> ground_m = MeetsGround_m(Surface(scene, fields), origin_m, direction);
   const volume::RegularGrid& grid = fields.grid;
-  const Span span =
-      Within(grid, origin_m, direction, ground_m.value_or(std::numeric_limits<double>::infinity()));
+  const Span span = Within(fields, origin_m, direction,
+                           ground_m.value_or(std::numeric_limits<double>::infinity()));
   const Medium medium(scene, fields);
-  const double step_m = std::min({grid.spacing_m.x, grid.spacing_m.y, grid.spacing_m.z}) / 2.0;
+  const double step_m = Step_m(grid, direction);
   // The depth behind each step, until nothing is seen through it.
   std::vector<double> depths;
   double depth = 0.0;

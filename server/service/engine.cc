@@ -73,6 +73,8 @@ absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadFields(
 
 absl::Status PrepareScene(const volume::StormStore& store,
                           const std::vector<session::TechniqueInfo>& techniques, v1::Scene& scene) {
+  // They would be kept, and sent to every viewer.
+  scene.DiscardUnknownFields();
   THUNDERHEAD_RETURN_IF_ERROR(CheckScene(scene));
   THUNDERHEAD_RETURN_IF_ERROR(CheckRendering(scene.rendering(), techniques));
   THUNDERHEAD_ASSIGN_OR_RETURN(const volume::StormInfo* storm, FindStorm(store, scene.storm_id()));
@@ -86,11 +88,8 @@ absl::Status PrepareScene(const volume::StormStore& store,
 
 void FrameThen(Engine& engine, v1::Scene& scene, std::function<void(const absl::Status&)> then) {
   if (!NeedsFraming(scene)) return then(absl::OkStatus());
+  // Also where the fields are in memory: finding the storm in them takes a while.
   const int time_index = static_cast<int>(scene.time_index());
-  if (const auto fields = engine.store.Peek(scene.storm_id(), time_index); fields != nullptr) {
-    FrameCondensate(scene, *fields);
-    return then(absl::OkStatus());
-  }
   engine.executor.Submit([&engine, &scene, time_index,
                           then = std::move(then)](const absl::Status& status) {
     if (!status.ok()) return then(status);

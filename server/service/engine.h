@@ -52,8 +52,8 @@ absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadFields(
 absl::Status PrepareScene(const volume::StormStore& store,
                           const std::vector<session::TechniqueInfo>& techniques, v1::Scene& scene);
 
-// Frames the condensate if the camera needs it, then calls `then`: at once if no fields are needed,
-// else on the executor after reading them. `scene` must live until then.
+// Frames the condensate if the camera needs it, then calls `then`: at once if it does not, else on
+// the executor after reading the fields. `scene` must live until then.
 void FrameThen(Engine& engine, v1::Scene& scene, std::function<void(const absl::Status&)> then);
 
 }  // namespace thunderhead::service

@@ -3,7 +3,9 @@
 #include <grpcpp/support/proto_buffer_reader.h>
 
 #include <algorithm>
+#include <atomic>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -98,12 +100,13 @@ class InteractCall : public InteractReactor,
 
   void OnDone() override {
     if (session_ != nullptr) {
+      // First, as a session that nobody watches expires sooner.
+      session_->Touch();
       {
         const std::lock_guard lock(mutex_);
         Watch(nullptr);
       }
       session_->audience().Leave(person_id_, Clock::now());
-      session_->Touch();
     }
     held_by_grpc_.reset();
   }
@@ -138,6 +141,14 @@ class InteractCall : public InteractReactor,
       return ResponseOf(EndResponse(closed));
     }
     Watch(Watched());
+    // In turn, so that neither holds up the other on a slow link.
+    std::optional<grpc::ByteBuffer> next = frame_next_ ? NextFrame() : NextNews();
+    if (!next.has_value()) next = frame_next_ ? NextNews() : NextFrame();
+    frame_next_ = !frame_next_;
+    return next;
+  }
+
+  std::optional<grpc::ByteBuffer> NextNews() {
     session::Audience& audience = session_->audience();
     if (const session::Told told = audience.Scene(); told.count != told_scene_) {
       told_scene_ = told.count;
@@ -145,8 +156,7 @@ class InteractCall : public InteractReactor,
     }
     if (auto news = News(audience.Presence(), &told_presence_); news.has_value()) return news;
     if (auto news = News(audience.Marks(), &told_marks_); news.has_value()) return news;
-    if (auto news = News(audience.Pointers(), &told_pointers_); news.has_value()) return news;
-    return NextFrame();
+    return News(audience.Pointers(), &told_pointers_);
   }
 
   static std::optional<grpc::ByteBuffer> News(const session::Told& told, std::uint64_t* count) {
@@ -164,6 +174,7 @@ class InteractCall : public InteractReactor,
     }
     v1::InteractResponse response;
     ToMessage(std::get<session::Problem>(*event), *response.mutable_problem());
+    response.mutable_problem()->set_own_view(watched_ != session_);
     return ResponseOf(response);
   }
 
@@ -188,11 +199,11 @@ class InteractCall : public InteractReactor,
 
   // Reads the next request unless too many answers wait.
   void ReadOn() {
-    {
-      const std::lock_guard lock(mutex_);
-      if (reading_ || finished_ || answers_.size() + updates_ >= kMaxWaitingAnswers) return;
-      reading_ = true;
-    }
+    // Begun under the lock: without a pending read or write, nothing else keeps the call from being
+    // finished meanwhile.
+    const std::lock_guard lock(mutex_);
+    if (reading_ || finished_ || answers_.size() + updates_ >= kMaxWaitingAnswers) return;
+    reading_ = true;
     StartRead(&received_);
   }
 
@@ -240,7 +251,6 @@ class InteractCall : public InteractReactor,
       answers_.push_back(ResponseOf(response));
       hidden_ = join.window().hidden();
       wants_ = WantsOf(join.window());
-      role_ = found.role;
       session_ = found.session;
     }
     if (join.window().hidden()) SetHidden(true);
@@ -255,9 +265,9 @@ class InteractCall : public InteractReactor,
       case v1::InteractRequest::kAcknowledge:
         return Acknowledge(request.acknowledge());
       case v1::InteractRequest::kMoveCamera:
-        return MoveCamera(request.move_camera());
+        return MoveCamera(request.request_id(), request.move_camera());
       case v1::InteractRequest::kDetach:
-        return Detach(request.detach());
+        return Detach(request.request_id(), request.detach());
       case v1::InteractRequest::kWindow:
         SetWindow(request.window());
         return absl::OkStatus();
@@ -323,10 +333,7 @@ class InteractCall : public InteractReactor,
 
   absl::Status Update(std::uint64_t request_id, const v1::SceneUpdate& update) {
     THUNDERHEAD_RETURN_IF_ERROR(session_->audience().MaySteer(person_id_));
-    {
-      const std::lock_guard lock(mutex_);
-      ++updates_;
-    }
+    AddUpdate();
     ChangeScene(engine_, session_, SceneChangeOf(update),
                 [self = shared_from_this(), request_id](const auto& revision) {
                   self->Updated(request_id, revision);
@@ -365,55 +372,74 @@ class InteractCall : public InteractReactor,
     return absl::OkStatus();
   }
 
-  // The camera with its defaults filled in; those that depend on the storm need it in memory.
-  absl::StatusOr<scene::Camera> CameraOf(const v1::Camera& message) {
+  // Calls `then` with the camera whose defaults are filled in: at once, or on the executor if they
+  // depend on the storm.
+  absl::Status WithCamera(std::uint64_t request_id, const v1::Camera& message,
+                          std::function<void(const scene::Camera&)> then) {
     const std::optional<session::NewestScene> newest = session_->Newest();
-    v1::Scene scene;
-    if (!newest.has_value() || !scene.ParseFromString(*newest->serialized)) {
+    const auto scene = std::make_shared<v1::Scene>();
+    if (!newest.has_value() || !scene->ParseFromString(*newest->serialized)) {
       return absl::InternalError("the session's scene cannot be read back");
     }
-    if (message.kind_case() != v1::Camera::KIND_NOT_SET) *scene.mutable_camera() = message;
-    THUNDERHEAD_RETURN_IF_ERROR(PrepareScene(engine_.store, engine_.loop.Techniques(), scene));
-    if (NeedsFraming(scene)) {
-      const auto fields =
-          engine_.store.Peek(scene.storm_id(), static_cast<int>(scene.time_index()));
-      if (fields == nullptr) {
-        return base::WithDetails(
-            absl::FailedPreconditionError("the storm is not read yet; give the camera whole"),
-            {.reason = "STORM_NOT_READ", .field = "camera"});
-      }
-      FrameCondensate(scene, *fields);
-    }
-    return ToCamera(scene.camera());
-  }
-
-  absl::Status Detach(const v1::Detach& detach) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(const scene::Camera camera, CameraOf(detach.camera()));
-    THUNDERHEAD_RETURN_IF_ERROR(session_->audience().Change(
-        [this](session::Roster& roster) { return roster.Detach(person_id_); }, Clock::now()));
-    auto own_view = engine_.sessions.OpenView(session_, camera);
-    {
-      const std::lock_guard lock(mutex_);
-      own_view_.swap(own_view);
-    }
-    Wake();
+    if (message.kind_case() != v1::Camera::KIND_NOT_SET) *scene->mutable_camera() = message;
+    THUNDERHEAD_RETURN_IF_ERROR(PrepareScene(engine_.store, engine_.loop.Techniques(), *scene));
+    AddUpdate();
+    FrameThen(engine_, *scene,
+              [self = shared_from_this(), request_id, scene,
+               then = std::move(then)](const absl::Status& framed) {
+                if (framed.ok()) then(ToCamera(scene->camera()));
+                self->UpdateDone(request_id, framed);
+              });
     return absl::OkStatus();
   }
 
-  absl::Status MoveCamera(const v1::MoveCamera& move) {
-    std::shared_ptr<session::OwnView> own_view;
+  absl::Status Detach(std::uint64_t request_id, const v1::Detach& detach) {
+    THUNDERHEAD_RETURN_IF_ERROR(session_->audience().Change(
+        [this](session::Roster& roster) { return roster.Detach(person_id_); }, Clock::now()));
+    return WithCamera(request_id, detach.camera(),
+                      [this](const scene::Camera& camera) { LookFrom(camera); });
+  }
+
+  void LookFrom(const scene::Camera& camera) {
+    std::shared_ptr<session::OwnView> own_view = OwnView();
+    if (own_view != nullptr) return own_view->MoveCamera(camera);
+    own_view = engine_.sessions.OpenView(session_, camera);
     {
       const std::lock_guard lock(mutex_);
-      own_view = own_view_;
+      own_view_ = own_view;
     }
-    if (own_view == nullptr) {
+    Wake();
+  }
+
+  std::shared_ptr<session::OwnView> OwnView() {
+    const std::lock_guard lock(mutex_);
+    return own_view_;
+  }
+
+  absl::Status MoveCamera(std::uint64_t request_id, const v1::MoveCamera& move) {
+    if (OwnView() == nullptr) {
       return base::WithDetails(
           absl::FailedPreconditionError("you follow the session's view; detach from it first"),
           {.reason = "NOT_DETACHED"});
     }
-    THUNDERHEAD_ASSIGN_OR_RETURN(const scene::Camera camera, CameraOf(move.camera()));
-    own_view->MoveCamera(camera);
-    return absl::OkStatus();
+    return WithCamera(request_id, move.camera(), [this](const scene::Camera& camera) {
+      if (const auto own_view = OwnView(); own_view != nullptr) own_view->MoveCamera(camera);
+    });
+  }
+
+  // A request is on its way to its answer.
+  void AddUpdate() {
+    const std::lock_guard lock(mutex_);
+    ++updates_;
+  }
+
+  void UpdateDone(std::uint64_t request_id, const absl::Status& status) {
+    {
+      const std::lock_guard lock(mutex_);
+      --updates_;
+    }
+    if (!status.ok()) return Answer(RefusedResponse(request_id, status));
+    ReadOn();
   }
 
   static session::ViewerWants WantsOf(const v1::Window& window) {
@@ -455,6 +481,17 @@ class InteractCall : public InteractReactor,
   // Finds the places on the executor: they are many.
   absl::Status AddMark(std::uint64_t request_id, const v1::AddMark& message) {
     THUNDERHEAD_RETURN_IF_ERROR(session_->audience().MayMark(person_id_));
+    if (drawing_.exchange(true)) {
+      return base::WithDetails(
+          absl::ResourceExhaustedError("your last mark is still being placed; wait for it"),
+          {.reason = "MARKS_TOO_FAST", .retry_after = std::chrono::milliseconds(200)});
+    }
+    const absl::Status status = PlaceMark(request_id, message);
+    if (!status.ok()) drawing_ = false;
+    return status;
+  }
+
+  absl::Status PlaceMark(std::uint64_t request_id, const v1::AddMark& message) {
     std::vector<session::Ray> rays;
     for (const v1::Ray& one : message.rays()) {
       const std::string path = absl::StrCat("add_mark.rays[", rays.size(), "]");
@@ -468,13 +505,12 @@ class InteractCall : public InteractReactor,
     if (message.has_color()) {
       color = glm::vec3(message.color().red(), message.color().green(), message.color().blue());
     }
-    {
-      const std::lock_guard lock(mutex_);
-      ++updates_;
-    }
+    AddUpdate();
     engine_.executor.Submit([self = shared_from_this(), request_id, rays = std::move(rays),
                              color](const absl::Status& status) {
-      self->Drawn(request_id, status.ok() ? self->Draw(rays, color) : status);
+      const absl::Status drawn = status.ok() ? self->Draw(rays, color) : status;
+      self->drawing_ = false;
+      self->UpdateDone(request_id, drawn);
     });
     return absl::OkStatus();
   }
@@ -502,26 +538,10 @@ class InteractCall : public InteractReactor,
         Clock::now());
   }
 
-  void Drawn(std::uint64_t request_id, const absl::Status& status) {
-    {
-      const std::lock_guard lock(mutex_);
-      --updates_;
-    }
-    if (!status.ok()) return Answer(RefusedResponse(request_id, status));
-    ReadOn();
-  }
-
   absl::Status EraseMarks(const v1::EraseMarks& message) {
-    const std::vector<std::uint64_t> ids(message.mark_ids().begin(), message.mark_ids().end());
-    std::optional<std::uint64_t> only_of;
-    if (role_ != session::Role::kPresenter) only_of = person_id_;
-    return session_->audience().Draw(
-        person_id_,
-        [&](session::Board& board) {
-          board.Erase(ids, only_of);
-          return absl::OkStatus();
-        },
-        Clock::now());
+    session_->audience().Erase(person_id_, {message.mark_ids().begin(), message.mark_ids().end()},
+                               Clock::now());
+    return absl::OkStatus();
   }
 
   Engine& engine_;
@@ -541,8 +561,9 @@ class InteractCall : public InteractReactor,
   // Set by Join before anything else can use them.
   std::shared_ptr<session::Session> session_;
   std::uint64_t person_id_ = 0;
-  session::Role role_ = session::Role::kViewer;
 
+  std::atomic<bool> drawing_{false};  // a mark is on its way
+  bool frame_next_ = false;
   bool hidden_ = false;
   session::ViewerWants wants_;
   std::shared_ptr<session::OwnView> own_view_;

@@ -172,7 +172,7 @@ absl::StatusOr<session::Ray> RayOf(const v1::Ray& message, const std::string& pa
     return base::InvalidField(absl::StrCat(path, ".direction"),
                               "has no length; it must point somewhere", "VALUE_OUT_OF_RANGE");
   }
-  const v1::Position& from = message.origin();
+  const v1::RayOrigin& from = message.origin();
   return session::Ray{glm::dvec3(from.x_m(), from.y_m(), from.z_m()), direction / length};
 }
 

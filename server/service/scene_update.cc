@@ -2,8 +2,10 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
 #include "base/error_details.h"
 #include "base/status.h"
 #include "google/protobuf/util/field_mask_util.h"
@@ -24,11 +26,34 @@ absl::Status CheckMask(const google::protobuf::FieldMask& mask) {
   return absl::OkStatus();
 }
 
+// INVALID_ARGUMENT for a path into another kind of camera or technique than the scene has, which
+// would throw the scene's away.
+absl::Status CheckKinds(const v1::Scene& scene, const std::string& path) {
+  const google::protobuf::Message* message = &scene;
+  const std::vector<std::string> names = absl::StrSplit(path, '.');
+  for (std::size_t i = 0; i + 1 < names.size(); ++i) {
+    const auto* const field = message->GetDescriptor()->FindFieldByName(names[i]);
+    const auto& reflection = *message->GetReflection();
+    if (field->real_containing_oneof() != nullptr && !reflection.HasField(*message, field)) {
+      return base::InvalidField("update_mask",
+                                absl::StrCat("names '", path, "', but the scene's ",
+                                             field->real_containing_oneof()->name(), " is not ",
+                                             names[i], "; name the whole of it"),
+                                "KIND_DIFFERS");
+    }
+    message = &reflection.GetMessage(*message, field);
+  }
+  return absl::OkStatus();
+}
+
 // The session's newest scene with the fields that the mask names.
 absl::StatusOr<v1::Scene> Merged(const session::NewestScene& newest, const SceneChange& change) {
   v1::Scene scene;
   if (!scene.ParseFromString(*newest.serialized)) {
     return absl::InternalError("the session's scene cannot be read back");
+  }
+  for (const std::string& path : change.update_mask.paths()) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckKinds(scene, path));
   }
   FieldMaskUtil::MergeOptions options;
   options.set_replace_message_fields(true);

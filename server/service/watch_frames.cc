@@ -74,8 +74,9 @@ class FrameStream : public Reactor,
   }
 
   void OnDone() override {
-    if (viewer_id_ != 0) session_->hub().Leave(viewer_id_);
+    // First, as a session that nobody watches expires sooner.
     session_->Touch();
+    if (viewer_id_ != 0) session_->hub().Leave(viewer_id_);
     held_by_grpc_.reset();
   }
 

@@ -34,8 +34,28 @@ void Audience::Leave(std::uint64_t id, Time now) {
 absl::Status Audience::Change(const RosterChange& change, Time now) {
   std::unique_lock lock(mutex_);
   absl::Status status = change(roster_);
+  WithdrawPointers();
   Settle(std::move(lock), now);
   return status;
+}
+
+// Of people who may not point any more.
+void Audience::WithdrawPointers() {
+  const auto may_not = [this](std::uint64_t id) { return !roster_.MayMark(id).ok(); };
+  std::erase_if(rays_, [&](const auto& ray) { return may_not(ray.first); });
+  std::erase_if(finding_, may_not);
+  const std::vector<Pointer> pointers = board_.pointers();
+  for (const Pointer& pointer : pointers) {
+    if (may_not(pointer.person_id)) board_.Point(pointer.person_id, std::nullopt);
+  }
+}
+
+void Audience::Erase(std::uint64_t id, const std::vector<std::uint64_t>& mark_ids, Time now) {
+  std::unique_lock lock(mutex_);
+  const Person* const person = roster_.Find(id);
+  const bool any = person != nullptr && person->role == Role::kPresenter;
+  board_.Erase(mark_ids, any ? std::nullopt : std::optional(id));
+  Settle(std::move(lock), now);
 }
 
 absl::Status Audience::Draw(std::uint64_t id, const BoardChange& change, Time now) {
@@ -48,12 +68,12 @@ absl::Status Audience::Draw(std::uint64_t id, const BoardChange& change, Time no
 
 absl::Status Audience::Point(std::uint64_t id, const std::optional<Ray>& ray, Time now) {
   std::unique_lock lock(mutex_);
-  if (absl::Status may = roster_.MayMark(id); !may.ok()) return may;
-  rays_.erase(id);
-  finding_.erase(id);
   if (ray.has_value()) {
+    if (absl::Status may = roster_.MayMark(id); !may.ok()) return may;
     rays_[id] = *ray;
   } else {
+    rays_.erase(id);
+    finding_.erase(id);
     board_.Point(id, std::nullopt);
   }
   Settle(std::move(lock), now);
@@ -143,8 +163,8 @@ std::optional<Audience::Time> Audience::Tick(Time now, const Place& place) {
   std::unique_lock lock(mutex_);
   roster_.Advance(now);
   // Found without the lock, as it takes a while.
-  const auto rays = std::exchange(rays_, {});
-  if (!rays.empty() && now >= pointers_.told_at + kPointersPause) {
+  if (!rays_.empty() && now >= pointers_.told_at + kPointersPause) {
+    const auto rays = TakeRays();
     for (const auto& [id, ray] : rays) finding_.insert(id);
     lock.unlock();
     std::vector<Pointer> found;
@@ -157,8 +177,6 @@ std::optional<Audience::Time> Audience::Tick(Time now, const Place& place) {
         board_.Point(pointer.person_id, pointer.position_m);
       }
     }
-  } else {
-    rays_.insert(rays.begin(), rays.end());
   }
   const bool told = TellDue(now);
   std::optional<Time> next;
@@ -175,6 +193,18 @@ std::optional<Audience::Time> Audience::Tick(Time now, const Place& place) {
   lock.unlock();
   for (const auto& member : members) member->Wake();
   return next;
+}
+
+// In turn, so that many who point do not hold up one another for long.
+std::map<std::uint64_t, Ray> Audience::TakeRays() {
+  std::map<std::uint64_t, Ray> taken;
+  while (!rays_.empty() && taken.size() < kMostFound) {
+    auto next = rays_.upper_bound(last_found_);
+    if (next == rays_.end()) next = rays_.begin();
+    last_found_ = next->first;
+    taken.insert(rays_.extract(next));
+  }
+  return taken;
 }
 
 bool Audience::IsDue(const Subject& subject, std::uint64_t revision,

@@ -48,7 +48,9 @@ class Audience {
   static constexpr std::chrono::milliseconds kPresencePause{200};
   static constexpr std::chrono::milliseconds kScenePause{200};
   static constexpr std::chrono::milliseconds kPointersPause{33};
-  static constexpr std::chrono::milliseconds kMarksPause{33};
+  static constexpr std::chrono::milliseconds kMarksPause{200};
+  // Places of pointers found in one Tick; further people wait for the next.
+  static constexpr std::size_t kMostFound = 8;
 
   // `on_due` is called, without the lock, when Tick is to be called soon.
   Audience(const AudienceFormat& format, const Rules& rules, Board board, Time now,
@@ -63,6 +65,8 @@ class Audience {
   using BoardChange = std::function<absl::Status(Board&)>;
   absl::Status Change(const RosterChange& change, Time now);
   absl::Status Draw(std::uint64_t id, const BoardChange& change, Time now);
+  // Erases those marks, or all: a presenter anybody's, a viewer the own ones.
+  void Erase(std::uint64_t id, const std::vector<std::uint64_t>& mark_ids, Time now);
   // Moves the person's pointer to what the ray meets, as soon as Tick has found it; without a ray
   // it goes.
   absl::Status Point(std::uint64_t id, const std::optional<Ray>& ray, Time now);
@@ -101,8 +105,10 @@ class Audience {
     Time told_at;
   };
 
-  // Tells those subjects whose pause is over; true if there were any. Needs mutex_.
+  // All need mutex_. The first tells those subjects whose pause is over; true if there were any.
   bool TellDue(Time now);
+  std::map<std::uint64_t, Ray> TakeRays();
+  void WithdrawPointers();
   bool IsDue(const Subject& subject, std::uint64_t revision, std::chrono::milliseconds pause,
              Time now);
   void Settle(std::unique_lock<std::mutex> lock, Time now);
@@ -116,6 +122,7 @@ class Audience {
   std::map<std::uint64_t, std::shared_ptr<Viewer>> members_;
   std::map<std::uint64_t, Ray> rays_;  // of pointers whose place is to be found
   std::set<std::uint64_t> finding_;    // people whose pointers' places are being found
+  std::uint64_t last_found_ = 0;       // whose ray was taken last
   Subject presence_;
   Subject pointers_;
   Subject marks_;

@@ -32,7 +32,8 @@ Problem UnreadableStorm(std::uint64_t scene_revision, const absl::Status& why) {
           gone ? Problem::Code::kStormGone : Problem::Code::kStormUnreadable};
 }
 
-FrameHub::FrameHub(std::function<void()> on_demand) : on_demand_(std::move(on_demand)) {}
+FrameHub::FrameHub(std::function<void()> on_demand, std::function<void()> on_wait)
+    : on_demand_(std::move(on_demand)), on_wait_(std::move(on_wait)) {}
 
 PublishedFrame::PublishedFrame(EncodedFrame full, ReduceFrame reduce)
     : reduce_(std::move(reduce)), tiers_{std::make_shared<const EncodedFrame>(std::move(full))} {}
@@ -51,7 +52,9 @@ absl::StatusOr<std::uint64_t> FrameHub::Join(std::shared_ptr<Viewer> viewer,
   {
     const std::lock_guard lock(mutex_);
     if (!closed_because_.ok()) return closed_because_;
-    id = ++viewer_count_;
+    while (id == 0 || watches_.contains(id)) {
+      id = (static_cast<std::uint64_t>(random_()) << 32) | random_();
+    }
     watches_[id].viewer = std::move(viewer);
     watches_[id].wants = wants;
   }
@@ -65,8 +68,10 @@ void FrameHub::SetWants(std::uint64_t viewer_id, const ViewerWants& wants) {
   if (found == watches_.end() || found->second.wants == wants) return;
   found->second.wants = wants;
   found->second.waits_until.reset();
-  // The newest picture again, in the size that fits now.
-  found->second.last_sequence = 0;
+  // The newest picture again if it is too small now.
+  if (frame_ != nullptr && TierFor(found->second, frame_->Full()) < found->second.last_tier) {
+    found->second.last_sequence = 0;
+  }
 }
 
 void FrameHub::Leave(std::uint64_t viewer_id) {
@@ -99,6 +104,7 @@ bool FrameHub::HasFor(const Watch& watch, Time now) const {
 std::optional<FrameEvent> FrameHub::Take(std::uint64_t viewer_id, Time now) {
   std::shared_ptr<PublishedFrame> frame;
   int tier = 0;
+  bool waits = false;
   {
     const std::lock_guard lock(mutex_);
     const auto found = watches_.find(viewer_id);
@@ -107,12 +113,15 @@ std::optional<FrameEvent> FrameHub::Take(std::uint64_t viewer_id, Time now) {
     if (HasFrameFor(watch, now)) {
       frame = frame_;
       tier = TierFor(watch, frame->Full());
+      watch.last_tier = tier;
       watch.last_sequence = frame->Full().sequence;
       watch.in_flight.push_back({watch.last_sequence, now, !frame->Full().refined});
       if (watch.wants.frames_per_second > 0.0) {
-        watch.waits_until =
-            now + std::chrono::duration_cast<Time::duration>(
-                      std::chrono::duration<double>(1.0 / watch.wants.frames_per_second));
+        constexpr double kFewest_per_s = 0.1;
+        const std::chrono::duration<double> pause(
+            1.0 / std::max(watch.wants.frames_per_second, kFewest_per_s));
+        watch.waits_until = now + std::chrono::duration_cast<Time::duration>(pause);
+        waits = true;
       }
     } else if (problem_.has_value() && problem_count_ > watch.last_problem) {
       watch.last_problem = problem_count_;
@@ -121,6 +130,7 @@ std::optional<FrameEvent> FrameHub::Take(std::uint64_t viewer_id, Time now) {
       return std::nullopt;
     }
   }
+  if (waits) on_wait_();
   // Without the lock, as a tier that nobody wanted before is encoded now.
   return frame->At(tier);
 }

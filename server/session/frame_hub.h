@@ -14,6 +14,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <random>
 #include <string>
 #include <variant>
 #include <vector>
@@ -112,8 +113,9 @@ class FrameHub {
   static constexpr std::size_t kMaxInFlight = 2;
 
   // `on_demand` is called, without the lock, whenever a viewer joins, leaves or becomes ready for
-  // another frame.
-  explicit FrameHub(std::function<void()> on_demand);
+  // another frame. `on_wait` is called, without the lock, when WakeWaiting is to be called in time.
+  explicit FrameHub(
+      std::function<void()> on_demand, std::function<void()> on_wait = [] {});
 
   // Returns the viewer's id, or the reason given to Close. Does not call Wake.
   absl::StatusOr<std::uint64_t> Join(std::shared_ptr<Viewer> viewer, const ViewerWants& wants = {});
@@ -160,6 +162,7 @@ class FrameHub {
     LinkEstimate link;
     std::deque<Sent> in_flight;  // oldest first
     std::uint64_t last_sequence = 0;
+    int last_tier = 0;
     std::optional<Time> waits_until;  // for its next frame
     std::uint64_t last_problem = 0;
   };
@@ -172,13 +175,15 @@ class FrameHub {
   void WakeAll();
 
   const std::function<void()> on_demand_;
+  const std::function<void()> on_wait_;
   mutable std::mutex mutex_;
   std::map<std::uint64_t, Watch> watches_;
   std::shared_ptr<PublishedFrame> frame_;
   std::optional<Problem> problem_;
   std::uint64_t problem_count_ = 0;
   std::uint64_t frame_count_ = 0;
-  std::uint64_t viewer_count_ = 0;
+  // Viewers' ids cannot be guessed, as who knows one may acknowledge for it.
+  std::random_device random_;
   absl::Status closed_because_;
 };
 

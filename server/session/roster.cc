@@ -42,13 +42,17 @@ void Roster::Leave(std::uint64_t id, Time now) {
 }
 
 void Roster::Rename(std::uint64_t id, std::string name) {
-  Person* const person = FindToChange(id);
-  if (person != nullptr) person->name = std::move(name);
+  Person* const person = FindPerson(id);
+  if (person == nullptr) return;
+  person->name = std::move(name);
+  ++revision_;
 }
 
 void Roster::SetHidden(std::uint64_t id, bool hidden) {
-  const Person* const person = Find(id);
-  if (person != nullptr && person->hidden != hidden) FindToChange(id)->hidden = hidden;
+  Person* const person = FindPerson(id);
+  if (person == nullptr || person->hidden == hidden) return;
+  person->hidden = hidden;
+  ++revision_;
 }
 
 absl::Status Roster::MaySteer(std::uint64_t id) const {
@@ -67,7 +71,7 @@ absl::Status Roster::PresenterMaySteer() const {
 }
 
 absl::Status Roster::AskControl(std::uint64_t id, Time now) {
-  Person* const person = FindToChange(id);
+  Person* const person = FindPerson(id);
   if (person == nullptr) return NoSuchPerson(id);
   if (steering_ == id) return absl::OkStatus();
   if (person->role == Role::kPresenter) return TakeControl(id);
@@ -89,6 +93,7 @@ absl::Status Roster::AskControl(std::uint64_t id, Time now) {
   }
   person->asked_at = now;
   person->asks = true;
+  ++revision_;
   return absl::OkStatus();
 }
 
@@ -102,7 +107,7 @@ absl::Status Roster::MayAnswer(std::uint64_t id) const {
 absl::Status Roster::GiveControl(std::uint64_t from, std::uint64_t to, Time now) {
   if (absl::Status may = MayAnswer(from); !may.ok()) return may;
   if (to != 0) {
-    Person* const person = FindToChange(to);
+    Person* const person = FindPerson(to);
     if (person == nullptr) return NoSuchPerson(to);
     Give(*person);
     return absl::OkStatus();
@@ -119,14 +124,15 @@ absl::Status Roster::GiveControl(std::uint64_t from, std::uint64_t to, Time now)
 
 absl::Status Roster::RefuseControl(std::uint64_t from, std::uint64_t to) {
   if (absl::Status may = MayAnswer(from); !may.ok()) return may;
-  Person* const person = FindToChange(to);
+  Person* const person = FindPerson(to);
   if (person == nullptr) return NoSuchPerson(to);
   person->asks = false;
+  ++revision_;
   return absl::OkStatus();
 }
 
 absl::Status Roster::TakeControl(std::uint64_t id) {
-  Person* const person = FindToChange(id);
+  Person* const person = FindPerson(id);
   if (person == nullptr) return NoSuchPerson(id);
   if (person->role != Role::kPresenter) {
     return Denied("only a presenter takes control; ask for it", "NOT_PRESENTER");
@@ -151,19 +157,21 @@ absl::Status Roster::SetRules(std::uint64_t id, const Rules& rules) {
 }
 
 absl::Status Roster::Detach(std::uint64_t id) {
-  Person* const person = FindToChange(id);
+  Person* const person = FindPerson(id);
   if (person == nullptr) return NoSuchPerson(id);
   if (rules_.following_locked && person->role == Role::kViewer) {
     return Denied("the presenter has locked the session to one view", "FOLLOWING_LOCKED");
   }
   person->follows = false;
+  ++revision_;
   return absl::OkStatus();
 }
 
 absl::Status Roster::Follow(std::uint64_t id) {
-  Person* const person = FindToChange(id);
+  Person* const person = FindPerson(id);
   if (person == nullptr) return NoSuchPerson(id);
   person->follows = true;
+  ++revision_;
   return absl::OkStatus();
 }
 
@@ -204,11 +212,9 @@ const Person* Roster::Find(std::uint64_t id) const {
   return at == people_.end() ? nullptr : &*at;
 }
 
-Person* Roster::FindToChange(std::uint64_t id) {
+Person* Roster::FindPerson(std::uint64_t id) {
   const auto at = std::ranges::find(people_, id, &Person::id);
-  if (at == people_.end()) return nullptr;
-  ++revision_;
-  return &*at;
+  return at == people_.end() ? nullptr : &*at;
 }
 
 void Roster::Give(Person& to) {

@@ -100,7 +100,7 @@ class Roster {
   std::uint64_t revision() const { return revision_; }
 
  private:
-  Person* FindToChange(std::uint64_t id);  // counts as a change
+  Person* FindPerson(std::uint64_t id);
   absl::Status MayAnswer(std::uint64_t id) const;
   void Give(Person& to);
   // To a presenter, or kept for one.

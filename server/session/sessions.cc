@@ -65,7 +65,7 @@ Session::Session(std::string id, SessionKeys keys, const Rules& rules, Board boa
     : id_(std::move(id)),
       keys_(std::move(keys)),
       signals_(signals),
-      hub_(signals.on_work),
+      hub_(signals.on_work, signals.on_due),
       audience_(format, rules, std::move(board), Clock::now(), signals.on_due) {}
 
 std::uint64_t Session::TakeRevision() {
@@ -180,6 +180,7 @@ std::shared_ptr<OwnView> OwnView::Of(const std::shared_ptr<Session>& session, st
   view->camera_ = camera;
   {
     const std::lock_guard lock(session->mutex_);
+    std::erase_if(session->own_views_, [](const auto& other) { return other.expired(); });
     session->own_views_.push_back(view);
   }
   // After it is known to the session, so that it misses no scene.
@@ -204,6 +205,10 @@ void OwnView::Show() {
   if (!scene_.has_value()) return;
   scene::Scene scene = *scene_->scene;
   scene.camera = camera_;
+  // The reference traces what many see; one who looks around has the default technique.
+  if (std::holds_alternative<scene::Reference>(scene.rendering.technique)) {
+    scene.rendering.technique = scene::LightVolume();
+  }
   drawn_->Show(drawn_->TakeRevision(), std::move(scene));
 }
 

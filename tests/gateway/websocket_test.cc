@@ -249,7 +249,8 @@ TEST_P(WebSocketTest, VanishingBehindFewMessagesNeedsNoPing) {
   WebSocketClient client(Site().Port());
   client.Send(ReadingNoMore());
   ASSERT_EQ(PayloadOf(client.Receive()), "");
-  // Fewer bytes than the kernel keeps for a connection that is not read: the end arrives behind them.
+  // Fewer bytes than the kernel keeps for a connection that is not read: the end arrives behind
+  // them.
   client.SendUntilHeldBack(Saying(std::string(10'000, 'x')), 5);
   // The server may still be taking them in.
   std::this_thread::sleep_for(milliseconds(500));

@@ -250,6 +250,9 @@ TEST(InteractTest, AMaskTakesTheNamedFieldsOnly) {
   EXPECT_EQ(scene.display().exposure_ev(), 3.0F);
   EXPECT_NE(scene.sun().azimuth_deg(), 120.0F);
   EXPECT_EQ(scene.output().width_px(), SmallScene().output().width_px());
+  update.mutable_update_mask()->add_paths("camera.spotter.azimuth_deg");
+  EXPECT_THAT(group.presenter->Answer(group.presenter->Send(request)).refused().status().message(),
+              HasSubstr("the scene's kind is not spotter"));
   update.mutable_update_mask()->add_paths("colour");
   const v1::Refused refused = group.presenter->Answer(group.presenter->Send(request)).refused();
   EXPECT_THAT(refused.status().message(), HasSubstr("names 'colour'"));
@@ -460,6 +463,48 @@ TEST(InteractTest, AServerThatStopsSaysWhenToComeBack) {
   ASSERT_TRUE(messages.back().has_end());
   EXPECT_EQ(messages.back().end().reason(), v1::End::REASON_SERVER_STOPS);
   EXPECT_TRUE(messages.back().end().has_retry_after_ms());
+}
+
+TEST(InteractTest, APointerGoesWithTheRightToPoint) {
+  Class group;
+  group.presenter->Send(Gives(group.ana->viewer_id()));
+  ASSERT_TRUE(Class::SteersFor(*group.ana, group.ana->viewer_id()));
+  v1::InteractRequest point;
+  *point.mutable_point()->mutable_ray() = RayDown();
+  group.ana->Send(point);
+  const auto pointers_are = [&](int count) {
+    return group.ben->Await([&](const Interacting::Messages& messages) {
+      const auto newest = std::find_if(messages.rbegin(), messages.rend(),
+                                       [](const auto& message) { return message.has_pointers(); });
+      return newest != messages.rend() && newest->pointers().pointers_size() == count;
+    });
+  };
+  ASSERT_TRUE(pointers_are(1));
+  group.presenter->Send(Takes());
+  EXPECT_TRUE(pointers_are(0));
+}
+
+TEST(InteractTest, FieldsThatNobodyKnowsAreNotPassedOn) {
+  Class group;
+  v1::InteractRequest request = SunTo(120.0F);
+  v1::Scene& scene = *request.mutable_update_scene()->mutable_scene();
+  scene.GetReflection()->MutableUnknownFields(&scene)->AddLengthDelimited(
+      10'000, std::string(500'000, 'x'));
+  ASSERT_EQ(group.presenter->AnswerCode(group.presenter->Send(request)), grpc::StatusCode::OK);
+  EXPECT_LT(group.ana->AwaitScene(2).ByteSizeLong(), 10'000U);
+}
+
+TEST(InteractTest, AnOwnViewOfTheReferenceIsDrawnByTheDefaultTechnique) {
+  Class group;
+  v1::InteractRequest request = SunTo(120.0F);
+  request.mutable_update_scene()->mutable_scene()->mutable_rendering()->mutable_reference();
+  ASSERT_EQ(group.presenter->AnswerCode(group.presenter->Send(request)), grpc::StatusCode::OK);
+  group.ana->Send(LooksFrom(90.0F));
+  ASSERT_TRUE(group.ana->AwaitFrame(1, /*own_view=*/true));
+  for (const Response& message : group.ana->All()) {
+    if (!message.frame().own_view()) continue;
+    EXPECT_EQ(message.frame().modelled().technique(), "light_volume");
+  }
 }
 
 TEST(InteractTest, WhoLeavesIsGone) {

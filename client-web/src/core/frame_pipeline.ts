@@ -1,12 +1,9 @@
 // Decodes frames and paints them, dropping old ones: one frame is being decoded, one waits to be decoded, one waits to
 // be painted, and a newer frame replaces a waiting one. So the page holds at most three frames, and latency cannot grow
-// however slow decoding or painting is.
+// however slow decoding or painting is. The newest is the one that came last, whatever its number: the server sends a frame
+// again, in another size or to a page that is seen again.
 
-export interface Sequenced {
-  readonly sequence: bigint;
-}
-
-export interface PipelineSteps<F extends Sequenced, P> {
+export interface PipelineSteps<F, P> {
   decode(frame: F): Promise<P>;
   // Requests one call at the next screen refresh; returns a function that cancels it.
   onNextPaint(callback: () => void): () => void;
@@ -18,10 +15,9 @@ export interface PipelineSteps<F extends Sequenced, P> {
   failed(frame: F, reason: unknown): void;
 }
 
-export class FramePipeline<F extends Sequenced, P> {
+export class FramePipeline<F, P> {
   readonly #steps: PipelineSteps<F, P>;
   #stream = 0;
-  #newestDecoded = 0n;
   #decoding: F | undefined;
   #waiting: F | undefined;
   #ready: { frame: F; picture: P } | undefined;
@@ -38,10 +34,9 @@ export class FramePipeline<F extends Sequenced, P> {
     return this.#dropped;
   }
 
-  // Sequence numbers restart with a new stream; frames of the old one are dropped.
+  // Frames of the old stream are dropped.
   startStream(): void {
     this.#stream += 1;
-    this.#newestDecoded = 0n;
     this.#decoding = undefined;
     this.#waiting = undefined;
     this.#discardReady();
@@ -49,12 +44,6 @@ export class FramePipeline<F extends Sequenced, P> {
 
   offer(frame: F): void {
     if (this.#disposed) return;
-    const newest = this.#waiting ?? this.#decoding;
-    const newestSequence = newest?.sequence ?? 0n;
-    if (frame.sequence <= this.#newestDecoded || frame.sequence <= newestSequence) {
-      this.#dropped += 1;
-      return;
-    }
     if (this.#decoding !== undefined) {
       if (this.#waiting !== undefined) this.#dropped += 1;
       this.#waiting = frame;
@@ -90,7 +79,6 @@ export class FramePipeline<F extends Sequenced, P> {
       this.#steps.release(this.#ready.picture);
       this.#dropped += 1;
     }
-    this.#newestDecoded = frame.sequence;
     this.#ready = { frame, picture };
     this.#withdrawPaint ??= this.#steps.onNextPaint(() => this.#paint());
   }

@@ -102,19 +102,15 @@ export function withSunClock(scene: Scene, change: Change<SunClock>): Scene {
   });
 }
 
-// Adds a light besides the sun.
-export function withLightAdded(scene: Scene, light: DirectionalLight): Scene {
-  return changed(scene, { lights: [...scene.lights, light] });
+// The lights besides the sun. All of them, so that an edit that is applied again changes nothing.
+export function withLights(scene: Scene, lights: readonly DirectionalLight[]): Scene {
+  return changed(scene, { lights: [...lights] });
 }
 
 export function withLight(scene: Scene, index: number, change: Change<DirectionalLight>): Scene {
   return changed(scene, {
     lights: scene.lights.map((light, at) => (at === index ? changed(light, change) : light)),
   });
-}
-
-export function withoutLight(scene: Scene, index: number): Scene {
-  return changed(scene, { lights: scene.lights.filter((_, at) => at !== index) });
 }
 
 export function withSky(scene: Scene, change: Change<Sky>): Scene {

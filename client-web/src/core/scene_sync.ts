@@ -34,6 +34,7 @@ export interface SyncSteps {
 }
 
 const BUSY_REST_MS = 500;
+const STALE_REST_MS = 1000;
 
 export class SceneSync {
   readonly #steps: SyncSteps;
@@ -78,7 +79,6 @@ export class SceneSync {
   opened(completed: Scene, revision: bigint): void {
     this.#edits.splice(0, this.#openingEdits);
     this.#told = undefined;
-    this.#stale = false;
     this.#rebase(completed, revision);
   }
 
@@ -86,7 +86,7 @@ export class SceneSync {
   forget(): void {
     this.#revision = -1n;
     this.#told = undefined;
-    this.#stale = false;
+    this.#endStale();
   }
 
   // This page steers and is connected.
@@ -111,7 +111,7 @@ export class SceneSync {
   // The session's scene.
   told(scene: Scene, revision: bigint): void {
     this.#told = { scene, revision };
-    this.#stale = false;
+    this.#endStale();
     this.#adoptTold();
     this.#schedule();
   }
@@ -133,9 +133,16 @@ export class SceneSync {
     this.#rebase(told.scene, told.revision);
   }
 
+  #endStale(): void {
+    if (!this.#stale) return;
+    this.#stale = false;
+    this.#withdrawRest?.();
+    this.#withdrawRest = undefined;
+  }
+
   #rebase(scene: Scene, revision: bigint): void {
     this.#revision = revision;
-    this.#stale = false;
+    this.#endStale();
     this.#steps.adopt(this.#edits.reduce((edited, edit) => edit(edited), scene));
     this.#schedule();
   }
@@ -153,10 +160,11 @@ export class SceneSync {
     if (this.#inFlight !== undefined || !this.#mayEdit || this.#edits.length === 0) return;
     this.#inFlight = this.#edits.length;
     const sent = this.#edits.slice();
+    const scene = this.#steps.scene();
     try {
-      const verdict = await this.#steps.send(this.#steps.scene(), this.#revision);
+      const verdict = await this.#steps.send(scene, this.#revision);
       this.#inFlight = undefined;
-      this.#judge(verdict, sent);
+      this.#judge(verdict, sent, scene);
     } catch {
       // The connection is lost: allow() is called once it is back.
       this.#inFlight = undefined;
@@ -166,15 +174,24 @@ export class SceneSync {
     this.#schedule();
   }
 
-  #judge(verdict: SceneVerdict, sent: readonly Edit[]): void {
+  #judge(verdict: SceneVerdict, sent: readonly Edit[], scene: Scene): void {
     switch (verdict.kind) {
       case "taken":
         this.#drop(sent);
         if (verdict.revision > this.#revision) this.#revision = verdict.revision;
+        // What a later refusal goes back to: the server tells its scene only a few times a second.
+        if (this.#told === undefined || this.#told.revision < verdict.revision)
+          this.#told = { scene, revision: verdict.revision };
         this.#steps.taken();
         break;
       case "stale":
         this.#stale = true;
+        // Nothing newer is told if the change that was on its way turns out not to be drawable.
+        this.#withdrawRest ??= this.#steps.later(STALE_REST_MS, () => {
+          this.#withdrawRest = undefined;
+          this.#stale = false;
+          this.#schedule();
+        });
         break;
       case "busy":
         this.#steps.refused(verdict.message);

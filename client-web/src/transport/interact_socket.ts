@@ -81,7 +81,14 @@ export function openBidi<I extends DescMessage, O extends DescMessage>(
     if (ended || !(data instanceof ArrayBuffer) || data.byteLength === 0) return;
     const bytes = new Uint8Array(data);
     const body = bytes.subarray(1);
-    if (bytes[0] === MESSAGE) listener.message(fromBinary(method.output, body));
+    if (bytes[0] === MESSAGE) {
+      const message = parsed(method.output, body);
+      if (message !== undefined) listener.message(message);
+      else {
+        end({ kind: "broken", message: "The server's message cannot be read; reload the page" });
+        socket.close(NORMAL_CLOSURE);
+      }
+    }
     if (bytes[0] === TRAILERS) end(statusOf(body));
   };
   return {
@@ -95,6 +102,14 @@ export function openBidi<I extends DescMessage, O extends DescMessage>(
       socket.close(NORMAL_CLOSURE);
     },
   };
+}
+
+function parsed<O extends DescMessage>(type: O, body: Uint8Array): MessageShape<O> | undefined {
+  try {
+    return fromBinary(type, body);
+  } catch {
+    return undefined;
+  }
 }
 
 function addressOf(method: BidiMethod<DescMessage, DescMessage>, baseUrl: string): string {

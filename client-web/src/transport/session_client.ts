@@ -64,7 +64,8 @@ export type OpenInteract = (
 ) => BidiCall<typeof InteractRequestSchema>;
 
 // After this long without a message the connection is checked: it may have been lost without an error.
-export const SILENCE_MS = 5_000;
+export const SILENCE_MS = 15_000;
+const FAILED_CHECKS = 2;
 const CHECK_TIMEOUT_MS = 4_000;
 const JOIN_TIMEOUT_MS = 10_000;
 // A call that lasted this long resets the back-off; one that breaks sooner lengthens the next wait.
@@ -222,10 +223,11 @@ export class SessionClient {
   // Ends with the call.
   #interact(sessionKey: string): Promise<Outcome> {
     return new Promise((resolve) => {
-      const silence = new SilenceWatch(() => this.#check(call));
+      const silence: SilenceWatch = new SilenceWatch(() => this.#check(call, silence));
       let joinTimer: ReturnType<typeof setTimeout> | undefined;
       let startedAtMs: number | undefined;
       let farewell: Outcome | undefined;
+      let opened = false;
       const finish = (outcome: Outcome) => {
         if (this.#call !== call) return;
         this.#call = undefined;
@@ -239,8 +241,10 @@ export class SessionClient {
         resolve(outcome);
       };
       const bidi = this.#openInteract({
-        opened: () =>
-          this.#sendBy(call, { case: "join", value: { sessionKey, ...this.#listener.joining() } }),
+        opened: () => {
+          opened = true;
+          this.#sendBy(call, { case: "join", value: { sessionKey, ...this.#listener.joining() } });
+        },
         message: ({ message }) => {
           if (this.#call !== call) return;
           silence.heard();
@@ -259,7 +263,11 @@ export class SessionClient {
           } else if (message.case === "refused") this.#refused(call, message.value);
           else this.#listener.message(message);
         },
-        ended: (end) => finish(farewell ?? outcomeOfStatus(end)),
+        ended: (end) => {
+          const outcome = farewell ?? outcomeOfStatus(end);
+          if (opened || outcome.kind !== "lost") finish(outcome);
+          else void this.#whyNotOpened(outcome).then(finish);
+        },
       });
       const call: Call = { bidi, requests: new Map(), scenes: new Map(), finish };
       this.#call = call;
@@ -296,11 +304,29 @@ export class SessionClient {
     return scene !== undefined;
   }
 
-  async #check(call: Call): Promise<void> {
+  // Ends the call if the server cannot be reached twice in a row and nothing is heard meanwhile.
+  async #check(call: Call, silence: SilenceWatch): Promise<void> {
+    const heardBefore = silence.heardCount;
+    for (let failures = 0; failures < FAILED_CHECKS; failures += 1) {
+      try {
+        await this.#calls.serverInfo(CHECK_TIMEOUT_MS);
+        return;
+      } catch (error) {
+        // A server that refuses is there.
+        if (!NETWORK_CODES.has(ConnectError.from(error).code)) return;
+      }
+      if (silence.heardCount !== heardBefore) return;
+    }
+    call.finish({ kind: "lost", reason: UNREACHABLE, leastMs: 0 });
+  }
+
+  // Where the server answers other calls, something between lets no WebSocket through.
+  async #whyNotOpened(lost: Outcome & { kind: "lost" }): Promise<Outcome> {
     try {
       await this.#calls.serverInfo(CHECK_TIMEOUT_MS);
+      return { ...lost, reason: NO_WEBSOCKET };
     } catch {
-      call.finish({ kind: "lost", reason: UNREACHABLE, leastMs: 0 });
+      return lost;
     }
   }
 
@@ -318,6 +344,8 @@ export class SessionClient {
 }
 
 const UNREACHABLE = "The server cannot be reached";
+const NO_WEBSOCKET =
+  "The server answers, but no WebSocket to it opens: a proxy or a filter may block it";
 
 // Codes of network failures; some servers' failures have the same ones.
 const NETWORK_CODES = new Set<Code>([
@@ -359,15 +387,25 @@ class SilenceWatch {
   readonly #onSilence: () => Promise<void>;
   #timer: ReturnType<typeof setTimeout> | undefined;
   #disposed = false;
+  #heardCount = 0;
 
   constructor(onSilence: () => Promise<void>) {
     this.#onSilence = onSilence;
   }
 
+  get heardCount(): number {
+    return this.#heardCount;
+  }
+
   heard(): void {
+    this.#heardCount += 1;
+    this.#wait();
+  }
+
+  #wait(): void {
     clearTimeout(this.#timer);
     if (this.#disposed) return;
-    this.#timer = setTimeout(() => void this.#onSilence().then(() => this.heard()), SILENCE_MS);
+    this.#timer = setTimeout(() => void this.#onSilence().then(() => this.#wait()), SILENCE_MS);
   }
 
   dispose(): void {

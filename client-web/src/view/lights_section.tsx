@@ -2,7 +2,7 @@
 import { create } from "@bufbuild/protobuf";
 import { colorOfHex, hexOfColor } from "../core/color";
 import { nameOfTechnique } from "../core/names";
-import { LIMITS, MOST_LIGHTS, withLight, withLightAdded, withoutLight } from "../core/scene";
+import { LIMITS, MOST_LIGHTS, withLight, withLights } from "../core/scene";
 import type { PageState } from "../core/state";
 import {
   ColorSchema,
@@ -30,7 +30,7 @@ export function LightsSection({ state }: { state: PageState }) {
           type="button"
           data-testid="add-light"
           disabled={lights.length >= MOST_LIGHTS}
-          onClick={() => state.edit((scene) => withLightAdded(scene, newLight(lights.length)))}
+          onClick={() => setLights(state, [...lights, newLight(lights.length)])}
         >
           Add a light
         </button>
@@ -47,6 +47,10 @@ function whereShown(state: PageState): string {
   const able = (state.server.value?.techniques ?? []).filter(({ showsLights }) => showsLights);
   const names = able.map((technique) => nameOfTechnique(technique.name)).join(", ");
   return `Not shown by this technique (${name}), but by: ${names}.`;
+}
+
+function setLights(state: PageState, lights: readonly DirectionalLight[]): void {
+  state.edit((scene) => withLights(scene, lights));
 }
 
 function newLight(count: number): DirectionalLight {
@@ -90,7 +94,12 @@ function LightSettings({ state, light, index }: LightProps) {
             aria-label={`Remove ${name}`}
             title="Remove"
             data-testid={`${id}-remove`}
-            onClick={() => state.edit((scene) => withoutLight(scene, index))}
+            onClick={() =>
+              setLights(
+                state,
+                state.lights.peek().filter((_, at) => at !== index),
+              )
+            }
           >
             ×
           </button>

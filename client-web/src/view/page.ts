@@ -81,10 +81,12 @@ export class Page implements SessionListener {
   #presenterKey: string | undefined;
   // True until the first presence of a session that this page opened.
   #opened = false;
+  // It steered as a presenter when the connection was lost; the server may still see that connection steer.
+  #resumesSteering = false;
   // False for who steers another's session, which keeps its picture size.
   #setsOutput: boolean;
   #shown: Frame | undefined;
-  #problemRevision = 0n;
+  #newestProblem: Problem | undefined;
   #running = false;
 
   constructor(transport: Transport, openInteract: OpenInteract, window: Window) {
@@ -310,6 +312,7 @@ export class Page implements SessionListener {
   joined(joined: Joined): void {
     const { session } = this.state;
     const presenting = joined.role === Role.PRESENTER;
+    this.#resumesSteering = presenting && session.steering.peek();
     session.joined(joined);
     if (presenting && this.#presenterKey !== undefined)
       this.#keys.keep(joined.viewerKey, this.#presenterKey);
@@ -352,7 +355,12 @@ export class Page implements SessionListener {
 
   refused(subject: RequestCase, requestId: bigint, code: Code, message: string): void {
     // A late or a second pointer, acknowledgement or motion is of no interest.
-    if (subject === "point" || subject === "acknowledge" || subject === "moveCamera") return;
+    if (subject === "point" || subject === "acknowledge") return;
+    if (subject === "moveCamera") {
+      // The server has ended the own view; this page may not have been told of it.
+      if (code === Code.FailedPrecondition) this.#ownView.end();
+      return;
+    }
     if (subject === "addMark") this.state.session.dropPendingMark(requestId);
     if (subject === "detach") this.#ownView.end();
     const text = code === Code.PermissionDenied && message === "" ? "This is not allowed" : message;
@@ -428,12 +436,14 @@ export class Page implements SessionListener {
       this.#sync.hold();
       this.playback.pause();
       if (this.#opened && presence.steeringViewerId === 0n) this.actions.takeControl();
+      else if (this.#resumesSteering && presenterSteers(presence)) this.actions.takeControl();
       else if (this.#sync.unsettled) {
         this.#sync.discard();
         this.#note("control", `Your last change was not taken. ${session.editBlock.peek() ?? ""}`);
       }
     }
     this.#opened = false;
+    this.#resumesSteering = false;
   }
 
   #startsLookingAround(): boolean {
@@ -472,8 +482,8 @@ export class Page implements SessionListener {
   }
 
   #problem(problem: Problem): void {
-    this.#problemRevision = problem.sceneRevision;
-    this.#ledger.settled(problem.sceneRevision);
+    this.#newestProblem = problem;
+    if (!problem.ownView) this.#ledger.settled(problem.sceneRevision);
     this.state.notify({ subject: "problem", text: problem.message, severity: "problem" });
     // The storm may be gone.
     void this.#storms.learn();
@@ -505,7 +515,9 @@ export class Page implements SessionListener {
       this.#ledger.shown(frame.sceneRevision, now);
       this.#adoptCamera();
     }
-    if (frame.sceneRevision >= this.#problemRevision) this.state.dismiss("problem");
+    const problem = this.#newestProblem;
+    if (problem?.ownView === frame.ownView && frame.sceneRevision >= problem.sceneRevision)
+      this.state.dismiss("problem");
     const pose = poseOfCamera(frame.camera);
     Object.assign(canvas.dataset, {
       sequence: String(frame.sequence),
@@ -572,6 +584,11 @@ export class Page implements SessionListener {
     const timer = setTimeout(() => this.state.dismiss(subject), NOTE_MS);
     this.#disposals.push(() => clearTimeout(timer));
   }
+}
+
+function presenterSteers(presence: Presence): boolean {
+  const steerer = presence.people.find(({ viewerId }) => viewerId === presence.steeringViewerId);
+  return steerer?.role === Role.PRESENTER;
 }
 
 // Browsers may deny storage altogether.

@@ -29,7 +29,7 @@ function OwnName({ page }: { page: Page }) {
         maxLength={LONGEST_NAME}
         data-testid="own-name"
         placeholder="None"
-        value={page.actions.name}
+        defaultValue={page.actions.name}
         onChange={(event) => page.actions.rename(event.currentTarget.value)}
       />
     </label>
