@@ -486,7 +486,7 @@ class InteractCall : public InteractReactor,
           absl::ResourceExhaustedError("your last mark is still being placed; wait for it"),
           {.reason = "MARKS_TOO_FAST", .retry_after = std::chrono::milliseconds(200)});
     }
-    const absl::Status status = PlaceMark(request_id, message);
+    absl::Status status = PlaceMark(request_id, message);
     if (!status.ok()) drawing_ = false;
     return status;
   }
