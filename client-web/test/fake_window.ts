@@ -85,7 +85,7 @@ export class FakeWindow extends Target {
   }
 }
 
-// What the page takes from the browser's globals.
+// The browser's globals that the page uses.
 export function stubGlobals(): void {
   vi.stubGlobal(
     "ResizeObserver",

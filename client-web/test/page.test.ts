@@ -68,7 +68,7 @@ describe("the page in a session", () => {
     return { teacher, viewer };
   };
 
-  // What the newest person said after joining.
+  // The messages of the newest person after joining.
   const said = (at = -1): InteractRequest["message"][] =>
     session()
       .people.at(at)

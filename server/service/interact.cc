@@ -243,7 +243,7 @@ class InteractCall : public InteractReactor,
     v1::InteractResponse response;
     v1::Joined& joined = *response.mutable_joined();
     joined.set_viewer_id(person_id);
-    joined.set_role(found.role == session::Role::kPresenter ? v1::ROLE_PRESENTER : v1::ROLE_VIEWER);
+    joined.set_role(RoleMessage(found.role));
     joined.set_viewer_key(found.session->keys().viewer);
     {
       const std::lock_guard lock(mutex_);
@@ -342,10 +342,7 @@ class InteractCall : public InteractReactor,
   }
 
   void Updated(std::uint64_t request_id, const absl::StatusOr<std::uint64_t>& revision) {
-    {
-      const std::lock_guard lock(mutex_);
-      --updates_;
-    }
+    EndUpdate();
     v1::InteractResponse response;
     if (revision.ok()) {
       response.mutable_scene_taken()->set_request_id(request_id);
@@ -376,11 +373,8 @@ class InteractCall : public InteractReactor,
   // depend on the storm.
   absl::Status WithCamera(std::uint64_t request_id, const v1::Camera& message,
                           std::function<void(const scene::Camera&)> then) {
-    const std::optional<session::NewestScene> newest = session_->Newest();
-    const auto scene = std::make_shared<v1::Scene>();
-    if (!newest.has_value() || !scene->ParseFromString(*newest->serialized)) {
-      return absl::InternalError("the session's scene cannot be read back");
-    }
+    THUNDERHEAD_ASSIGN_OR_RETURN(const ReadScene newest, NewestSceneOf(*session_));
+    const auto scene = std::make_shared<v1::Scene>(newest.scene);
     if (message.kind_case() != v1::Camera::KIND_NOT_SET) *scene->mutable_camera() = message;
     THUNDERHEAD_RETURN_IF_ERROR(PrepareScene(engine_.store, engine_.loop.Techniques(), *scene));
     AddUpdate();
@@ -433,11 +427,13 @@ class InteractCall : public InteractReactor,
     ++updates_;
   }
 
+  void EndUpdate() {
+    const std::lock_guard lock(mutex_);
+    --updates_;
+  }
+
   void UpdateDone(std::uint64_t request_id, const absl::Status& status) {
-    {
-      const std::lock_guard lock(mutex_);
-      --updates_;
-    }
+    EndUpdate();
     if (!status.ok()) return Answer(RefusedResponse(request_id, status));
     ReadOn();
   }

@@ -19,10 +19,6 @@ constexpr std::size_t kMaxNameCharacters = 40;
 // Clients add a random share of their own, so that they do not come back all at once.
 constexpr std::chrono::milliseconds kComeBackAfter{1000};
 
-v1::Role RoleMessage(session::Role role) {
-  return role == session::Role::kPresenter ? v1::ROLE_PRESENTER : v1::ROLE_VIEWER;
-}
-
 std::string PresenceOf(const session::Roster& roster) {
   v1::InteractResponse response;
   v1::Presence& presence = *response.mutable_presence();
@@ -134,6 +130,10 @@ v1::InteractResponse RefusedResponse(std::uint64_t request_id, const absl::Statu
     refused.mutable_status()->set_message(status.error_message());
   }
   return response;
+}
+
+v1::Role RoleMessage(session::Role role) {
+  return role == session::Role::kPresenter ? v1::ROLE_PRESENTER : v1::ROLE_VIEWER;
 }
 
 session::Rules RulesOf(const v1::SessionRules& message, session::Rules rules) {

@@ -30,6 +30,8 @@ v1::InteractResponse EndResponse(const absl::Status& why);
 // The answer to a request that was not obeyed.
 v1::InteractResponse RefusedResponse(std::uint64_t request_id, const absl::Status& why);
 
+v1::Role RoleMessage(session::Role role);
+
 // `rules` with those of the message that are set.
 session::Rules RulesOf(const v1::SessionRules& message, session::Rules rules);
 void ToMessage(const session::Rules& rules, v1::SessionRules& message);

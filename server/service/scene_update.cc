@@ -47,11 +47,7 @@ absl::Status CheckKinds(const v1::Scene& scene, const std::string& path) {
 }
 
 // The session's newest scene with the fields that the mask names.
-absl::StatusOr<v1::Scene> Merged(const session::NewestScene& newest, const SceneChange& change) {
-  v1::Scene scene;
-  if (!scene.ParseFromString(*newest.serialized)) {
-    return absl::InternalError("the session's scene cannot be read back");
-  }
+absl::StatusOr<v1::Scene> Merged(v1::Scene scene, const SceneChange& change) {
   for (const std::string& path : change.update_mask.paths()) {
     THUNDERHEAD_RETURN_IF_ERROR(CheckKinds(scene, path));
   }
@@ -72,11 +68,10 @@ absl::StatusOr<Changed> Take(Engine& engine, session::Session& session, const Sc
   std::optional<std::uint64_t> expected = change.expected_revision;
   if (change.update_mask.paths_size() > 0) {
     THUNDERHEAD_RETURN_IF_ERROR(CheckMask(change.update_mask));
-    const auto newest = session.Newest();
-    if (!newest.has_value()) return absl::InternalError("the session has no scene yet");
+    THUNDERHEAD_ASSIGN_OR_RETURN(ReadScene newest, NewestSceneOf(session));
     // The fields that are not named must not be older than the newest.
-    if (!expected.has_value()) expected = newest->revision;
-    THUNDERHEAD_ASSIGN_OR_RETURN(*changed.scene, Merged(*newest, change));
+    if (!expected.has_value()) expected = newest.revision;
+    THUNDERHEAD_ASSIGN_OR_RETURN(*changed.scene, Merged(std::move(newest.scene), change));
   }
   THUNDERHEAD_RETURN_IF_ERROR(PrepareScene(engine.store, engine.loop.Techniques(), *changed.scene));
   // Taken before the scene is framed, which may wait for a read, so that the last update wins.
@@ -89,6 +84,16 @@ absl::StatusOr<Changed> Take(Engine& engine, session::Session& session, const Sc
 }
 
 }  // namespace
+
+absl::StatusOr<ReadScene> NewestSceneOf(const session::Session& session) {
+  const std::optional<session::NewestScene> newest = session.Newest();
+  ReadScene read;
+  if (!newest.has_value() || !read.scene.ParseFromString(*newest->serialized)) {
+    return absl::InternalError("the session's scene cannot be read back");
+  }
+  read.revision = newest->revision;
+  return read;
+}
 
 void ChangeScene(Engine& engine, const std::shared_ptr<session::Session>& session,
                  const SceneChange& change,

@@ -25,6 +25,13 @@ SceneChange SceneChangeOf(const Message& message) {
   return change;
 }
 
+// A session's newest scene, read back from the bytes that the session keeps.
+struct ReadScene {
+  std::uint64_t revision = 0;
+  v1::Scene scene;
+};
+absl::StatusOr<ReadScene> NewestSceneOf(const session::Session& session);
+
 // Completes the changed scene and shows it, then calls `done` with its revision: at once, or on
 // another thread if the storm must be read to place the camera. The change's limits were checked.
 // INVALID_ARGUMENT and NOT_FOUND as PrepareScene; ABORTED if the scene is at another revision.

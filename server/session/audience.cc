@@ -93,11 +93,6 @@ void Audience::WakeAll() {
   for (const auto& member : members) member->Wake();
 }
 
-Roster Audience::People() const {
-  const std::lock_guard lock(mutex_);
-  return roster_;
-}
-
 Board Audience::Drawn() const {
   const std::lock_guard lock(mutex_);
   return board_;

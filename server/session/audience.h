@@ -77,7 +77,6 @@ class Audience {
   void WakeAll();
 
   // Copies.
-  Roster People() const;
   Board Drawn() const;
   Rules CurrentRules() const;
   std::uint64_t MarksRevision() const;

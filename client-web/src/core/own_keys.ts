@@ -1,4 +1,4 @@
-// What the page keeps in the browser: the presenters' keys of its own sessions, by viewer key, and the person's name. A
+// The storage that the page uses in the browser: the presenters' keys of its own sessions, by viewer key, and the person's name. A
 // presenter's key is never put into an address.
 
 // The part of the DOM's Storage that is used.

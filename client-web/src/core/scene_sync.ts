@@ -179,7 +179,7 @@ export class SceneSync {
       case "taken":
         this.#drop(sent);
         if (verdict.revision > this.#revision) this.#revision = verdict.revision;
-        // What a later refusal goes back to: the server tells its scene only a few times a second.
+        // The scene that a later refusal goes back to: the server tells its scene only a few times a second.
         if (this.#told === undefined || this.#told.revision < verdict.revision)
           this.#told = { scene, revision: verdict.revision };
         this.#steps.taken();

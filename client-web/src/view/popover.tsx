@@ -1,4 +1,4 @@
-// What a button of the top bar opens: takes the focus, and gives it back when it closes.
+// The panel that a button of the top bar opens: takes the focus, and gives it back when it closes.
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import type { Page } from "./page";

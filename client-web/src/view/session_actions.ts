@@ -1,4 +1,4 @@
-// What a person asks of the session by its buttons: control, rules, marks, the name, the end.
+// The requests of the session's buttons: control, rules, marks, the name, the end.
 import type { OwnKeys } from "../core/own_keys";
 import type { PageState } from "../core/state";
 import type { SessionRules } from "../gen/thunderhead/v1/interact_pb";
