@@ -14,6 +14,7 @@
 #include "reference/trace_rays.h"
 #include "renderers/scene_renderer.h"
 #include "scene/view.h"
+#include "tests/support/gl_context.h"
 #include "tests/support/slab.h"
 #include "tests/support/techniques.h"
 
@@ -39,7 +40,7 @@ class AirShadeTest : public testing::Test {
   static constexpr int kHeight_px = 128;
 
   void SetUp() override {
-    auto context = gl::Context::Create("software");
+    auto context = test_support::OpenContext();
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
     renderer_ = std::make_unique<SceneRenderer>();

@@ -5,6 +5,7 @@
 
 #include "gl/context.h"
 #include "gtest/gtest.h"
+#include "tests/support/gl_context.h"
 
 namespace thunderhead::measure {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 class ExtremeCase : public testing::TestWithParam<Extreme> {
  protected:
   static void SetUpTestSuite() {
-    auto context = gl::Context::Create("software");
+    auto context = test_support::OpenContext();
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
     probe_ = std::make_unique<Probe>();

@@ -11,6 +11,7 @@
 #include "gtest/gtest.h"
 #include "renderers/scene_renderer.h"
 #include "tests/accuracy/slab_view.h"
+#include "tests/support/gl_context.h"
 #include "volume/storm_store.h"
 
 namespace thunderhead::renderers {
@@ -35,7 +36,7 @@ Eye OnPath(double step) { return {{-14600.0 + step * kStep_m, -2750.0, 5000.0}, 
 class InteriorsTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    auto context = gl::Context::Create("software");
+    auto context = test_support::OpenContext();
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
     auto store =

@@ -12,6 +12,7 @@
 #include "measure/image_error.h"
 #include "measure/light_parts.h"
 #include "reference/trace_scene.h"
+#include "tests/support/gl_context.h"
 #include "tests/support/slab.h"
 #include "tests/support/techniques.h"
 
@@ -40,7 +41,7 @@ std::shared_ptr<const volume::HydrometeorFields> MakeTower() {
 class LightCorrection : public testing::Test {
  protected:
   void SetUp() override {
-    auto context = gl::Context::Create("software");
+    auto context = test_support::OpenContext();
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
     test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kDiffusion);

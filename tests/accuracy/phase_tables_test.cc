@@ -12,6 +12,7 @@
 #include "physics/optics.h"
 #include "renderers/half_angle/half_angle_renderer.h"
 #include "renderers/light_volume/light_volume_renderer.h"
+#include "tests/support/gl_context.h"
 #include "tests/support/slab.h"
 #include "tests/support/techniques.h"
 
@@ -40,7 +41,7 @@ constexpr double kTexel_rad = 0.09 * std::numbers::pi / 180.0;
 class PhaseTables : public testing::TestWithParam<physics::PhaseFunction> {
  protected:
   void SetUp() override {
-    auto context = gl::Context::Create("software");
+    auto context = test_support::OpenContext();
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
     test_support::SetMode(&scene_.rendering.technique, test_support::kLowAlbedo);

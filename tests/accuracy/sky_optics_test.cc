@@ -17,6 +17,7 @@
 #include "physics/sky.h"
 #include "renderers/light_volume/light_volume_renderer.h"
 #include "renderers/sun_glow.h"
+#include "tests/support/gl_context.h"
 #include "tests/support/slab.h"
 #include "tests/support/techniques.h"
 
@@ -40,7 +41,7 @@ class SkyOptics : public testing::Test {
   };
 
   static void SetUpTestSuite() {
-    auto context = gl::Context::Create("software");
+    auto context = test_support::OpenContext();
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
   }

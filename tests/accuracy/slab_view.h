@@ -13,6 +13,7 @@
 #include "physics/optics.h"
 #include "renderers/half_angle/half_angle_renderer.h"
 #include "renderers/light_volume/light_volume_renderer.h"
+#include "tests/support/gl_context.h"
 #include "tests/support/slab.h"
 #include "tests/support/techniques.h"
 
@@ -29,7 +30,7 @@ class SlabView : public testing::Test {
   static constexpr double kSunAzimuth_deg = 70.0;
 
   static void SetUpTestSuite() {
-    auto context = gl::Context::Create("software");
+    auto context = test_support::OpenContext();
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
   }

@@ -3,10 +3,10 @@
 
 #include <memory>
 
-#include "gl/context.h"
 #include "gtest/gtest.h"
 #include "measure/probe.h"
 #include "scene/view.h"
+#include "tests/support/gl_context.h"
 #include "tests/support/techniques.h"
 
 namespace thunderhead::measure {
@@ -20,7 +20,7 @@ TEST(SliceConvergence, OrderOfAPowerLaw) {
 }
 
 TEST(SliceConvergence, PaperIsFirstOrderConsistentSecond) {
-  auto context = gl::Context::Create("software");
+  auto context = test_support::OpenContext();
   ASSERT_TRUE(context.ok()) << context.status();
   scene::Scene scene = test_support::PlainScene();
   test_support::SetPath(&scene.rendering.technique, test_support::kHalfAngle);

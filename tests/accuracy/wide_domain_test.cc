@@ -10,6 +10,7 @@
 #include "gtest/gtest.h"
 #include "renderers/scene_renderer.h"
 #include "scene/view.h"
+#include "tests/support/gl_context.h"
 #include "tests/support/wide_domain.h"
 #include "volume/storm_store.h"
 #include "volume/visible_box.h"
@@ -20,7 +21,7 @@ namespace {
 class WideDomainTest : public testing::Test {
  protected:
   void SetUp() override {
-    auto context = gl::Context::Create("software");
+    auto context = test_support::OpenContext();
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
     auto store = volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});

@@ -15,6 +15,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "scene/view.h"
+#include "tests/support/gl_context.h"
 #include "tests/support/techniques.h"
 
 namespace thunderhead::renderers {
@@ -28,7 +29,7 @@ constexpr double kHalfFloat = 1.0 / 1024.0;
 class CumulusRendererTest : public testing::Test {
  protected:
   void SetUp() override {
-    auto context = gl::Context::Create("software");
+    auto context = test_support::OpenContext();
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
     renderer_ = std::make_unique<CumulusRenderer>(std::make_shared<gl::ProgramCache>());

@@ -13,6 +13,7 @@
 #include "renderers/scene_renderer.h"
 #include "scene/ground.h"
 #include "scene/view.h"
+#include "tests/support/gl_context.h"
 #include "tests/support/slab.h"
 #include "tests/support/techniques.h"
 
@@ -32,7 +33,7 @@ float Luminance(const glm::vec3& rgb) {
 class GroundCoverTest : public testing::Test {
  protected:
   void SetUp() override {
-    auto context = gl::Context::Create("software");
+    auto context = test_support::OpenContext();
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
     renderer_ = std::make_unique<SceneRenderer>();

@@ -16,6 +16,7 @@
 #include "physics/optics.h"
 #include "renderers/scene_renderer.h"
 #include "scene/view.h"
+#include "tests/support/gl_context.h"
 #include "tests/support/slab.h"
 #include "tests/support/techniques.h"
 
@@ -47,7 +48,7 @@ double Column(double u) {
 class MetaballTest : public testing::Test {
  protected:
   void SetUp() override {
-    auto context = gl::Context::Create("software");
+    auto context = test_support::OpenContext();
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
     renderer_ = std::make_unique<MetaballRenderer>(std::make_shared<gl::ProgramCache>());
@@ -462,7 +463,7 @@ TEST_F(MetaballTest, ExtremesStaySound) {
 class MetaballSceneTest : public testing::Test {
  protected:
   void SetUp() override {
-    auto context = gl::Context::Create("software");
+    auto context = test_support::OpenContext();
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
     renderer_ = std::make_unique<SceneRenderer>();

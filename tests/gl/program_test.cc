@@ -2,11 +2,11 @@
 
 #include <type_traits>
 
-#include "gl/context.h"
 #include "gl/strict_programs.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "shaders/uniforms.h"
+#include "tests/support/gl_context.h"
 
 namespace thunderhead::gl {
 namespace {
@@ -22,7 +22,7 @@ concept IsGain = requires(const Program& program, const T& value) {
 static_assert(IsGain<glm::vec3> && !IsGain<glm::dvec3> && !IsGain<float>);
 
 TEST(Program, NamesAMissingShader) {
-  const auto context = Context::Create("software");
+  const auto context = test_support::OpenContext();
   ASSERT_TRUE(context.ok());
   const auto program = Program::Link(ProgramSource::WholeTarget("common/nowhere.frag"));
   ASSERT_FALSE(program.ok());
@@ -31,7 +31,7 @@ TEST(Program, NamesAMissingShader) {
 
 TEST(Program, FailsWhenAUniformIsSetThatItsShadersDoNotDeclare) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
-  const auto context = Context::Create("software");
+  const auto context = test_support::OpenContext();
   ASSERT_TRUE(context.ok());
   const auto program =
       Program::Link(ProgramSource::WholeTarget("post/tone_map.frag", {{"FILMIC", 0}}));
@@ -42,7 +42,7 @@ TEST(Program, FailsWhenAUniformIsSetThatItsShadersDoNotDeclare) {
 }
 
 TEST(Program, NamesADefineThatItsShadersDoNotMention) {
-  const auto context = Context::Create("software");
+  const auto context = test_support::OpenContext();
   ASSERT_TRUE(context.ok());
   const auto program = Program::Link(
       ProgramSource::WholeTarget("post/tone_map.frag", {{"FILMIC", 0}, {"FILMICK", 1}}));
@@ -66,7 +66,7 @@ GLuint Computing(const std::string& declarations, const std::string& used) {
 }
 
 TEST(CheckBindings, TakesDifferentKindsWithTheSameBinding) {
-  const auto context = Context::Create("software");
+  const auto context = test_support::OpenContext();
   ASSERT_TRUE(context.ok());
   const absl::Status status = CheckBindings(
       Computing("layout(binding = 0) uniform sampler2D light;\n"
@@ -79,7 +79,7 @@ TEST(CheckBindings, TakesDifferentKindsWithTheSameBinding) {
 }
 
 TEST(CheckBindings, NamesWhatSharesABinding) {
-  const auto context = Context::Create("software");
+  const auto context = test_support::OpenContext();
   ASSERT_TRUE(context.ok());
   const auto message = [](const std::string& declarations, const std::string& used) {
     return std::string(CheckBindings(Computing(declarations, used)).message());

@@ -7,6 +7,7 @@
 #include "gl/context.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/gl_context.h"
 #include "tests/support/slab.h"
 #include "tests/support/techniques.h"
 
@@ -20,7 +21,7 @@ using testing::Not;
 class RendererPoolTest : public testing::Test {
  protected:
   void SetUp() override {
-    auto context = gl::Context::Create("software");
+    auto context = test_support::OpenContext();
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
     scene_.output = {16, 16, 90};

@@ -11,6 +11,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "scene/view.h"
+#include "tests/support/gl_context.h"
 #include "tests/support/slab.h"
 #include "tests/support/techniques.h"
 
@@ -23,7 +24,7 @@ using testing::IsEmpty;
 class SceneRendererTest : public testing::Test {
  protected:
   void SetUp() override {
-    auto context = gl::Context::Create("software");
+    auto context = test_support::OpenContext();
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
     renderer_ = std::make_unique<SceneRenderer>();
@@ -492,7 +493,7 @@ class ToneMapTest : public ::testing::Test {
   static constexpr int kSide_px = 384;
 
   void SetUp() override {
-    auto context = gl::Context::Create("software");
+    auto context = test_support::OpenContext();
     ASSERT_TRUE(context.ok());
     context_ = *std::move(context);
     mapper_ = std::make_unique<frame::ToneMapper>();

@@ -12,6 +12,7 @@
 #include "physics/sky.h"
 #include "renderers/scene_renderer.h"
 #include "scene/view.h"
+#include "tests/support/gl_context.h"
 #include "tests/support/slab.h"
 #include "tests/support/techniques.h"
 
@@ -24,7 +25,7 @@ constexpr int kHeight_px = 120;
 class SkyLookup : public testing::Test {
  protected:
   void SetUp() override {
-    auto context = gl::Context::Create("software");
+    auto context = test_support::OpenContext();
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
     renderer_ = std::make_unique<SceneRenderer>();

@@ -11,6 +11,7 @@
 #include "gtest/gtest.h"
 #include "measure/probe.h"
 #include "renderers/scene_renderer.h"
+#include "tests/support/gl_context.h"
 #include "tests/support/techniques.h"
 
 namespace thunderhead::renderers {
@@ -103,7 +104,7 @@ class ToyFactory final : public TechniqueFactory {
 class ToyTechniqueTest : public testing::Test {
  protected:
   void SetUp() override {
-    auto context = gl::Context::Create("software");
+    auto context = test_support::OpenContext();
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
     auto registry = std::make_shared<TechniqueRegistry>(TechniqueRegistry::BuiltIn());
