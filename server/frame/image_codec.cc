@@ -1,12 +1,17 @@
 #include "frame/image_codec.h"
 
 #include <png.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
 #include <turbojpeg.h>
 
+#include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
+#include "frame/jpeg_strips.h"
 
 namespace thunderhead::frame {
 namespace {
@@ -14,6 +19,11 @@ namespace {
 constexpr int kChannels = 3;
 // The largest side that JPEG allows.
 constexpr int kMaxSide_px = 65535;
+// Of a minimum coded unit of JPEG with 4:2:0 chroma.
+constexpr int kUnitSide_px = 16;
+constexpr int kMaxRestartInterval = 65535;
+// Of a strip that is worth a thread: about half a millisecond.
+constexpr double kMinStripPixels = 3e5;
 
 struct TurboDeleter {
   void operator()(void* handle) const { tjDestroy(handle); }
@@ -56,15 +66,25 @@ absl::Status TurboError(const char* action, void* handle) {
   return absl::InternalError(absl::StrCat(action, ": ", tjGetErrorStr2(handle)));
 }
 
-}  // namespace
+int UnitsInRow(int width_px) { return (width_px + kUnitSide_px - 1) / kUnitSide_px; }
 
-absl::StatusOr<std::string> EncodeJpeg(int width_px, int height_px,
-                                       absl::Span<const std::uint8_t> rgb, int quality) {
-  THUNDERHEAD_RETURN_IF_ERROR(CheckPixels(width_px, height_px, rgb.size()));
-  if (quality < 1 || quality > 100) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("JPEG quality is ", quality, "; it must be between 1 and 100"));
-  }
+// The first rows of the strips that a picture is encoded in, and its height. All strips but the
+// last have one height, so many rows of units that a restart interval holds them.
+std::vector<int> StripRows(int width_px, int height_px) {
+  const int unit_rows = (height_px + kUnitSide_px - 1) / kUnitSide_px;
+  const double pixels = static_cast<double>(width_px) * height_px;
+  const int strips = std::clamp(static_cast<int>(pixels / kMinStripPixels), 1,
+                                std::min(tbb::info::default_concurrency(), unit_rows));
+  const int rows = (unit_rows + strips - 1) / strips;
+  if (strips == 1 || rows * UnitsInRow(width_px) > kMaxRestartInterval) return {0, height_px};
+  std::vector<int> first;
+  for (int row = 0; row < unit_rows; row += rows) first.push_back(row * kUnitSide_px);
+  first.push_back(height_px);
+  return first;
+}
+
+absl::StatusOr<std::string> EncodeStrip(int width_px, int height_px,
+                                        absl::Span<const std::uint8_t> rgb, int quality) {
   const TurboHandle handle(tjInitCompress());
   if (handle == nullptr) return TurboError("cannot start the JPEG encoder", nullptr);
   unsigned char* buffer = nullptr;
@@ -74,6 +94,32 @@ absl::StatusOr<std::string> EncodeJpeg(int width_px, int height_px,
   const std::unique_ptr<unsigned char, TurboBufferDeleter> owned(buffer);
   if (result != 0) return TurboError("cannot encode the picture as JPEG", handle.get());
   return std::string(reinterpret_cast<const char*>(buffer), size);
+}
+
+}  // namespace
+
+absl::StatusOr<std::string> EncodeJpeg(int width_px, int height_px,
+                                       absl::Span<const std::uint8_t> rgb, int quality) {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckPixels(width_px, height_px, rgb.size()));
+  if (quality < 1 || quality > 100) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("JPEG quality is ", quality, "; it must be between 1 and 100"));
+  }
+  const std::vector<int> rows = StripRows(width_px, height_px);
+  if (rows.size() == 2) return EncodeStrip(width_px, height_px, rgb, quality);
+  std::vector<absl::StatusOr<std::string>> encoded(rows.size() - 1);
+  tbb::parallel_for(std::size_t{0}, encoded.size(), [&](std::size_t i) {
+    const int height = rows[i + 1] - rows[i];
+    encoded[i] = EncodeStrip(width_px, height,
+                             rgb.subspan(ByteCount(width_px, rows[i]), ByteCount(width_px, height)),
+                             quality);
+  });
+  std::vector<std::string> strips;
+  strips.reserve(encoded.size());
+  for (absl::StatusOr<std::string>& strip : encoded) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(strips.emplace_back(), std::move(strip));
+  }
+  return JoinJpegStrips(strips, UnitsInRow(width_px) * (rows[1] / kUnitSide_px), height_px);
 }
 
 absl::StatusOr<RgbImage> DecodeJpeg(const std::string& jpeg) {

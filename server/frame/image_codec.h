@@ -17,7 +17,7 @@ struct RgbImage {
   std::vector<std::uint8_t> rgb;
 };
 
-// JPEG with 4:2:0 chroma; `quality` is 1 to 100.
+// JPEG with 4:2:0 chroma; `quality` is 1 to 100. A large picture is encoded by several threads.
 absl::StatusOr<std::string> EncodeJpeg(int width_px, int height_px,
                                        absl::Span<const std::uint8_t> rgb, int quality);
 

@@ -74,10 +74,7 @@ absl::StatusOr<ToneMapped> ToneMapper::Map(const gl::Texture2D& linear, const sc
   ToneMapped mapped;
   mapped.exposure_ev = std::log2(exposure / kExposureAtZeroEv);
   mapped.tone_ms = stopwatch.Restart();
-  mapped.rgb.resize(PixelCount(linear) * 3);
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glGetTextureImage(display_.Get(), 0, GL_RGB, GL_UNSIGNED_BYTE,
-                    static_cast<GLsizei>(mapped.rgb.size()), mapped.rgb.data());
+  mapped.rgb = pixels_.Rgb(display_);
   mapped.read_back_ms = stopwatch.ElapsedMs();
   return mapped;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "frame/pixel_reader.h"
 #include "frame/white_balance.h"
 #include "gl/objects.h"
 #include "gl/program.h"
@@ -42,6 +43,7 @@ class ToneMapper {
   WhiteCards white_cards_;
   gl::ProgramCache programs_;
   gl::WholeTarget whole_target_;
+  PixelReader pixels_;
   gl::Texture2D brightest_;
   gl::Texture2D display_;
   gl::Framebuffer target_;

@@ -171,12 +171,14 @@ Framebuffer::Framebuffer(std::initializer_list<const Texture2D*> colors, const T
   for (const Texture2D* color : colors) {
     drawn.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(drawn.size()));
     glNamedFramebufferTexture(name, drawn.back(), color->Get(), 0);
+    colors_.push_back({color->Get(), color->InternalFormat()});
     size_ = color->Size();
   }
   if (drawn.empty()) drawn.push_back(GL_NONE);
   glNamedFramebufferDrawBuffers(name, static_cast<GLsizei>(drawn.size()), drawn.data());
   if (depth != nullptr) {
     glNamedFramebufferTexture(name, GL_DEPTH_ATTACHMENT, depth->Get(), 0);
+    depth_ = depth->Get();
     size_ = depth->Size();
   }
   const GLenum status = glCheckNamedFramebufferStatus(name, GL_DRAW_FRAMEBUFFER);
@@ -196,6 +198,12 @@ void Framebuffer::Clear(float red, float green, float blue, float alpha, int att
 
 void Framebuffer::ClearDepth(float depth) const {
   glClearNamedFramebufferfv(name_.Get(), GL_DEPTH, 0, &depth);
+}
+
+void Framebuffer::BindImages(GLuint unit) const {
+  for (const Color& color : colors_) {
+    glBindImageTexture(unit++, color.name, 0, GL_FALSE, 0, GL_WRITE_ONLY, color.internal_format);
+  }
 }
 
 Buffer::Buffer(std::size_t bytes, const void* data, GLbitfield flags) : bytes_(bytes) {

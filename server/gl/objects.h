@@ -59,6 +59,7 @@ class Texture2D {
   void Upload(GLenum format, GLenum type, const void* texels);
 
   GLuint Get() const { return name_.Get(); }
+  GLenum InternalFormat() const { return internal_format_; }
   glm::ivec2 Size() const { return size_; }
   std::size_t Bytes() const { return bytes_; }
   void Bind(GLuint unit) const { glBindTextureUnit(unit, name_.Get()); }
@@ -147,10 +148,21 @@ class Framebuffer {
   void Bind() const;
   void Clear(float red, float green, float blue, float alpha, int attachment = 0) const;
   void ClearDepth(float depth) const;
+  // The colour attachments for imageStore, from `unit` on.
+  void BindImages(GLuint unit) const;
   GLuint Get() const { return name_.Get(); }
+  glm::ivec2 Size() const { return size_; }
+  GLuint Depth() const { return depth_; }  // 0: none
 
  private:
+  struct Color {
+    GLuint name;
+    GLenum internal_format;
+  };
+
   Name<internal::DeleteFramebuffer> name_;
+  std::vector<Color> colors_;
+  GLuint depth_ = 0;
   glm::ivec2 size_{0};
 };
 

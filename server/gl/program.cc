@@ -3,15 +3,17 @@
 #include <set>
 #include <utility>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "base/status.h"
+#include "gl/computed_target.h"
+#include "gl/device.h"
 #include "gl/embedded_shaders.h"
 #include "gl/flat_uniforms.h"
 #include "gl/strict_programs.h"
+#include "gl/whole_target.h"
 #include "glm/gtc/type_ptr.hpp"
 
 namespace thunderhead::gl {
@@ -54,6 +56,17 @@ absl::StatusOr<std::string> TextOf(const std::string& path) {
   std::set<std::string> included;
   THUNDERHEAD_RETURN_IF_ERROR(AppendFile(path, &included, &text));
   return text;
+}
+
+// What draws a pixel of a whole target, as a compute shader.
+absl::StatusOr<std::string> ComputedTextOf(const std::string& fragment) {
+  std::string text;
+  std::set<std::string> included;
+  THUNDERHEAD_RETURN_IF_ERROR(AppendFile("common/bindings.glsl", &included, &text));
+  THUNDERHEAD_RETURN_IF_ERROR(AppendFile(fragment, &included, &text));
+  std::string rest;
+  THUNDERHEAD_RETURN_IF_ERROR(AppendFile("common/whole_target.glsl", &included, &rest));
+  return absl::StrCat(AsComputedPixel(text), rest);
 }
 
 std::string WithDefines(const std::string& text, const Defines& defines) {
@@ -104,11 +117,6 @@ absl::StatusOr<Name<internal::DeleteProgram>> LinkTexts(
   return program;
 }
 
-bool ReadsUniformsByPixel() {
-  const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-  return renderer != nullptr && absl::StrContains(renderer, "llvmpipe");
-}
-
 std::vector<std::string> PathsOf(const ProgramSource& source) {
   if (!source.compute.empty()) return {source.compute};
   return {source.vertex, source.fragment};
@@ -126,7 +134,7 @@ absl::StatusOr<Name<internal::DeleteProgram>> LinkStages(const ProgramSource& so
     return LinkTexts({{GL_VERTEX_SHADER, of.vertex}, {GL_FRAGMENT_SHADER, of.fragment}},
                      PathsOf(source));
   };
-  if (ReadsUniformsByPixel()) {
+  if (DrawsInSoftware()) {
     // More of them than there may be inputs stay uniforms.
     auto program = link(WithFlatUniforms(stages));
     if (program.ok()) return program;
@@ -160,25 +168,46 @@ Defines Joined(Defines first, const Defines& more) {
 }
 
 ProgramSource ProgramSource::Of(std::string vertex, std::string fragment, Defines defines) {
-  return {std::move(vertex), std::move(fragment), "", std::move(defines)};
+  return {std::move(vertex), std::move(fragment), "", std::move(defines), false};
 }
 
 ProgramSource ProgramSource::WholeTarget(std::string fragment, Defines defines) {
+  ProgramSource source = BlendedWholeTarget(std::move(fragment), std::move(defines));
+  source.whole_target = true;
+  return source;
+}
+
+ProgramSource ProgramSource::BlendedWholeTarget(std::string fragment, Defines defines) {
   return Of("common/whole_target.vert", std::move(fragment), std::move(defines));
 }
 
 ProgramSource ProgramSource::Compute(std::string compute, Defines defines) {
-  return {"", "", std::move(compute), std::move(defines)};
+  return {"", "", std::move(compute), std::move(defines), false};
 }
 
 absl::StatusOr<Program> Program::Link(const ProgramSource& source) {
-  std::vector<std::string> texts;
-  for (const std::string& path : PathsOf(source)) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(std::string text, TextOf(path));
-    texts.push_back(std::move(text));
-  }
+  return LinkFiles(source, source.whole_target && ComputesWholeTargets());
+}
+
+absl::StatusOr<Program> Program::LinkWholeTarget(const ProgramSource& source, bool computes) {
+  return LinkFiles(source, computes);
+}
+
+absl::StatusOr<Program> Program::LinkFiles(const ProgramSource& source, bool computes) {
   Program program;
-  THUNDERHEAD_ASSIGN_OR_RETURN(program.name_, LinkStages(source, texts));
+  program.computes_ = computes;
+  std::vector<std::string> texts;
+  if (computes) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(texts.emplace_back(), ComputedTextOf(source.fragment));
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        program.name_,
+        LinkTexts({{GL_COMPUTE_SHADER, WithDefines(texts[0], source.defines)}}, {source.fragment}));
+  } else {
+    for (const std::string& path : PathsOf(source)) {
+      THUNDERHEAD_ASSIGN_OR_RETURN(texts.emplace_back(), TextOf(path));
+    }
+    THUNDERHEAD_ASSIGN_OR_RETURN(program.name_, LinkStages(source, texts));
+  }
   program.locations_ = UniformLocations(program.name_.Get());
   if (StrictPrograms()) THUNDERHEAD_RETURN_IF_ERROR(program.BecomeStrict(source, texts));
   return program;

@@ -55,10 +55,12 @@ struct ProgramSource {
   std::string fragment;  // e.g. "half_angle/eye.frag"
   std::string compute;   // e.g. "light_volume/carry.comp"
   Defines defines;
+  bool whole_target = false;  // may run as a compute shader instead: gl/computed_target.h
 
   static ProgramSource Of(std::string vertex, std::string fragment, Defines defines = {});
-  // For gl::WholeTarget.
+  // For gl::WholeTarget; where it blends, the second.
   static ProgramSource WholeTarget(std::string fragment, Defines defines = {});
+  static ProgramSource BlendedWholeTarget(std::string fragment, Defines defines = {});
   static ProgramSource Compute(std::string compute, Defines defines = {});
 
   auto operator<=>(const ProgramSource&) const = default;
@@ -76,8 +78,12 @@ struct Uniform {
 class Program {
  public:
   static absl::StatusOr<Program> Link(const ProgramSource& source);
+  // `source` is a whole target.
+  static absl::StatusOr<Program> LinkWholeTarget(const ProgramSource& source, bool computes);
 
   void Use() const { glUseProgram(name_.Get()); }
+  // A whole target that is computed.
+  bool Computes() const { return computes_; }
   template <typename T>
   void Set(Uniform<T> uniform, const T& value) const {
     SetAt(Location(uniform.name), value);
@@ -94,6 +100,7 @@ class Program {
     std::set<std::string, std::less<>> uniforms;
   };
 
+  static absl::StatusOr<Program> LinkFiles(const ProgramSource& source, bool computes);
   absl::Status BecomeStrict(const ProgramSource& source, const std::vector<std::string>& texts);
   GLint Location(std::string_view uniform) const;
   void SetAt(GLint location, bool value) const;
@@ -114,6 +121,7 @@ class Program {
 
   Name<internal::DeleteProgram> name_;
   std::map<std::string, GLint, std::less<>> locations_;
+  bool computes_ = false;
   std::optional<Strict> strict_;
 };
 

@@ -119,7 +119,7 @@ absl::Status SunGlow::AddThrough(const ResidentMedium& medium,
   Tabulate(medium.Content(), cut_rad);
   THUNDERHEAD_RETURN_IF_ERROR(ground->DrawDistance(view, picture.size_px));
   THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
-                               programs_->Get(gl::ProgramSource::WholeTarget(
+                               programs_->Get(gl::ProgramSource::BlendedWholeTarget(
                                    "sun/aureole.frag", medium.Variant().Defines())));
   medium.BindWithBricks(*program);
   weights.BindPhase(*program);
@@ -147,7 +147,7 @@ absl::Status SunGlow::AddBehind(const gl::Texture2D& eye, const Sun& sun, const 
   if (rect.Empty()) return absl::OkStatus();
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_->Get(gl::ProgramSource::WholeTarget("sun/disc.frag", ground.Variant().Defines())));
+      programs_->Get(gl::ProgramSource::BlendedWholeTarget("sun/disc.frag", ground.Variant().Defines())));
   BindRays(*program, view, view.eye_m);
   ground.Bind(*program, view);
   BindSun(*program, sun, view, picture);

@@ -29,6 +29,10 @@ const int kEyeUnit = 4;
 const int kLinearFrameUnit = 4;
 const int kAureoleUnit = 4;
 
+// Of whole targets that are computed.
+const int kTargetLimitUnit = 17;
+const int kTargetImages = 6;  // and the one after
+
 // Of half-angle slicing.
 const int kSliceLightUnit = 4;
 const int kSliceThicknessUnit = 5;
@@ -78,3 +82,4 @@ const int kLightGroupSide = 8;
 const int kArriveGroupSize = 32;
 const int kBallGroupSize = 64;
 const int kMeterGroupSize = 64;
+const int kTargetGroupSide = 8;

@@ -1,0 +1,9 @@
+// What the thread's context draws with.
+#pragma once
+
+namespace thunderhead::gl {
+
+// Mesa's software renderer.
+bool DrawsInSoftware();
+
+}  // namespace thunderhead::gl
