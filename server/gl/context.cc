@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
 #include "base/status.h"
+#include "gl/device.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::gl {
@@ -120,7 +121,12 @@ absl::StatusOr<std::unique_ptr<Context>> OpenSoftware() {
   if (display != EGL_NO_DISPLAY) {
     auto context = std::make_unique<EglContext>(display);
     status = context->Open("software");
-    if (status.ok()) return context;
+    if (status.ok() && DrawsInSoftware()) return context;
+    // Another driver may offer this platform too.
+    if (status.ok()) {
+      status = absl::UnavailableError(
+          absl::StrCat("the surfaceless EGL platform draws on ", context->Info().renderer));
+    }
   }
   return absl::UnavailableError(
       absl::StrCat("software rendering is not available: ", status.message(),
