@@ -15,8 +15,8 @@ class FlightWindow {
 
   std::size_t size() const { return size_; }
 
-  // A frame was acknowledged `round_trip` after it was sent; `was_full` when no further one could be
-  // sent meanwhile.
+  // A frame was acknowledged `round_trip` after it was sent; `was_full` when no further one could
+  // be sent meanwhile.
   void Acknowledged(std::chrono::nanoseconds round_trip, bool was_full);
 
  private:

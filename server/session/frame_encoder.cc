@@ -84,8 +84,7 @@ std::vector<EncodedVideo> VideoOf(const EncodedFrame& described, Session& sessio
   std::vector<EncodedVideo> video;
   for (const VideoOrder& order :
        session.hub().OrderVideo(described.width_px, described.at_rest, still_follows)) {
-    auto encoded =
-        WithVideo(described, order, pictures.At(order.tier), session.video(), serialize);
+    auto encoded = WithVideo(described, order, pictures.At(order.tier), session.video(), serialize);
     if (encoded.ok()) {
       video.push_back(*std::move(encoded));
     } else {

@@ -1,6 +1,6 @@
 // Encodes sessions' frames as JPEG and video on other threads than the render loop's, and publishes
-// them in the order in which they were drawn; stills of higher quality follow (still_maker.h). The render loop submits at most two frames of a session at a
-// time, which bounds the queue.
+// them in the order in which they were drawn; stills of higher quality follow (still_maker.h). The
+// render loop submits at most two frames of a session at a time, which bounds the queue.
 #pragma once
 
 #include <condition_variable>

@@ -114,8 +114,7 @@ std::optional<FrameHub::Offer> FrameHub::VideoFor(const Watch& watch, const Publ
   return std::nullopt;
 }
 
-std::optional<FrameHub::Offer> FrameHub::OfferFor(const Watch& watch,
-                                                  PublishedFrame& frame) const {
+std::optional<FrameHub::Offer> FrameHub::OfferFor(const Watch& watch, PublishedFrame& frame) const {
   const EncodedFrame& described = frame.Described();
   const bool is_new = described.sequence > watch.last_sequence;
   const auto if_wanted = [&](const FrameForm& form) -> std::optional<Offer> {
@@ -135,10 +134,10 @@ std::optional<FrameHub::Offer> FrameHub::OfferFor(const Watch& watch,
   if (auto video = VideoFor(watch, frame, *video_tier); video.has_value()) return video;
   // Small pictures until the next key picture; nothing for who has the newest one of the stream.
   if (watch.place.BaseOf(*video_tier) != 0 || !is_new) return std::nullopt;
-  return Offer{described.sequence,
-               {FrameForm::Kind::kJpeg,
-                std::max(for_window, std::min(watch.link.step(), kTiers - 1))},
-               {}};
+  return Offer{
+      described.sequence,
+      {FrameForm::Kind::kJpeg, std::max(for_window, std::min(watch.link.step(), kTiers - 1))},
+      {}};
 }
 
 std::optional<FrameHub::Offer> FrameHub::NextFor(const Watch& watch, Time now) const {
@@ -147,7 +146,8 @@ std::optional<FrameHub::Offer> FrameHub::NextFor(const Watch& watch, Time now) c
 }
 
 bool FrameHub::HasFor(const Watch& watch, Time now) const {
-  return NextFor(watch, now).has_value() || (problem_.has_value() && problem_count_ > watch.last_problem);
+  return NextFor(watch, now).has_value() ||
+         (problem_.has_value() && problem_count_ > watch.last_problem);
 }
 
 std::optional<FrameEvent> FrameHub::Take(std::uint64_t viewer_id, Time now) {
@@ -192,8 +192,8 @@ bool FrameHub::Took(Watch& watch, const Offer& offer, Time now) {
   watch.in_flight.push_back({offer.sequence, now, moving, is_video, is_last});
   if (watch.wants.frames_per_second <= 0.0) return false;
   constexpr double kFewest_per_s = 0.1;
-  const std::chrono::duration<double> pause(
-      1.0 / std::max(watch.wants.frames_per_second, kFewest_per_s));
+  const std::chrono::duration<double> pause(1.0 /
+                                            std::max(watch.wants.frames_per_second, kFewest_per_s));
   watch.waits_until = now + std::chrono::duration_cast<Time::duration>(pause);
   return true;
 }

@@ -17,16 +17,14 @@ std::shared_ptr<const EncodedFrame> PublishedFrame::Jpeg(int tier) {
   const std::lock_guard lock(encoding_);
   auto& frame = jpegs_[static_cast<std::size_t>(tier)];
   if (frame != nullptr) return frame;
-  std::optional<EncodedFrame> encoded =
-      encode_ == nullptr ? described_ : encode_(described_, tier);
+  std::optional<EncodedFrame> encoded = encode_ == nullptr ? described_ : encode_(described_, tier);
   if (encoded.has_value()) frame = std::make_shared<const EncodedFrame>(*std::move(encoded));
   return frame;
 }
 
 void PublishedFrame::SetStill(int tier, EncodedFrame still) {
   const std::lock_guard lock(mutex_);
-  stills_[static_cast<std::size_t>(tier)] =
-      std::make_shared<const EncodedFrame>(std::move(still));
+  stills_[static_cast<std::size_t>(tier)] = std::make_shared<const EncodedFrame>(std::move(still));
 }
 
 std::shared_ptr<const EncodedFrame> PublishedFrame::Still(int tier) const {

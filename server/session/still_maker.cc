@@ -47,9 +47,9 @@ void StillMaker::Run() {
   (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);
   std::unique_lock lock(mutex_);
   while (!stopping_) {
-    const auto next = std::min_element(
-        waiting_.begin(), waiting_.end(),
-        [](const auto& a, const auto& b) { return a.second.due < b.second.due; });
+    const auto next =
+        std::min_element(waiting_.begin(), waiting_.end(),
+                         [](const auto& a, const auto& b) { return a.second.due < b.second.due; });
     if (next == waiting_.end()) {
       changed_.wait(lock);
     } else if (const Time due = next->second.due; Clock::now() < due) {

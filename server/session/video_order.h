@@ -1,6 +1,6 @@
 // The order of a stream's pictures, and one viewer's place in it. A picture of video needs the base
-// picture before it, so a viewer that missed one waits for a key picture. Plain values that are told
-// the time.
+// picture before it, so a viewer that missed one waits for a key picture. Plain values that are
+// told the time.
 #pragma once
 
 #include <chrono>
