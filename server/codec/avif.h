@@ -10,7 +10,7 @@
 namespace thunderhead::codec {
 
 struct AvifOptions {
-  int quantizer = 12;  // 0 (lossless) to 63
+  int quantizer = 8;   // 0 (lossless) to 63
   int speed = 9;       // of the encoder, 0 (slowest) to 10
 };
 
