@@ -3,12 +3,14 @@ import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { canvasData, dragBetween, launchBrowser, listenForErrors, rested, screenshot, until } from "./driver.mjs";
 import { PNG } from "pngjs";
-import { difference, grabCanvas, spread } from "./pictures.mjs";
+import { blockDifference, difference, grabCanvas, spread } from "./pictures.mjs";
 import { freePort, startServer } from "./server_process.mjs";
 
 const WINDOW = { width: 1000, height: 700 };
 // Levels of 255: mean over all pixels. JPEG at its own quality is 1.2 from the picture.
 const ALIKE = 2.5;
+// Of means of blocks; colours of another range or matrix are 4 and more apart.
+const SAME_COLOURS = 1.5;
 
 let server;
 let browser;
@@ -96,7 +98,7 @@ test("a browser that saves data sees video while the camera turns, and a still o
   assert.deepEqual(complaints, []);
 });
 
-test("the pixels of video are those of JPEG", async () => {
+test("the colours of video are those of JPEG", async () => {
   // Keeps the last picture of video that was drawn.
   const keepsVideo = () => {
     Object.defineProperty(navigator.connection, "saveData", { get: () => true });
@@ -120,6 +122,7 @@ test("the pixels of video are those of JPEG", async () => {
   // The still's picture came as video first.
   const dataUrl = await viewer.evaluate(() => window.lastVideo);
   const video = PNG.sync.read(Buffer.from(dataUrl.split(",")[1], "base64"));
-  const apart = difference(video, await grabCanvas(presenter));
-  assert.ok(apart < ALIKE, `video is ${apart} levels from JPEG`);
+  // Of blocks, as a slow machine gets smaller pictures of video.
+  const apart = blockDifference(video, await grabCanvas(presenter));
+  assert.ok(apart < SAME_COLOURS, `video is ${apart} levels from JPEG`);
 });
