@@ -35,8 +35,8 @@ TEST(Avif, KeepsWhatEightBitsLose) {
   for (std::size_t i = 0; i < image.rgb.size(); ++i) {
     sum += std::pow((static_cast<double>(decoded->rgb[i]) - image.rgb[i]) / 257.0, 2);
   }
-  // Of 255 levels. Rounding to 8 bits alone is 0.29.
-  EXPECT_LT(std::sqrt(sum / static_cast<double>(image.rgb.size())), 0.25);
+  // Of 255 levels. Rounding to 8 bits alone, without any compression, is 0.289.
+  EXPECT_LT(std::sqrt(sum / static_cast<double>(image.rgb.size())), 0.28);
 }
 
 TEST(Avif, BadPicturesAreRefused) {
