@@ -1,4 +1,5 @@
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -105,6 +106,9 @@ Command AddLoad(CLI::App& app) {
       ->capture_default_str();
   load->add_option("--size", flags->size, "Size of the pictures, WIDTHxHEIGHT")
       ->capture_default_str();
+  load->add_option("--codec", options.codec, "Moving pictures to ask for: jpeg or vp9")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, load::LoadCodec>{
+          {"jpeg", load::LoadCodec::kJpeg}, {"vp9", load::LoadCodec::kVp9}}));
   load->add_option("--steer", options.steer_hz,
                    "Updates of the camera a second by the presenter; 0 for none")
       ->check(CLI::Range(0.0, 240.0))

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "frame/fine_image.h"
 #include "frame/pixel_reader.h"
 #include "frame/white_balance.h"
 #include "gl/objects.h"
@@ -35,7 +36,22 @@ class ToneMapper {
   // Maps `linear`, a picture of `scene` with the storm's opacity in alpha.
   absl::StatusOr<ToneMapped> Map(const gl::Texture2D& linear, const scene::Scene& scene);
 
+  // The picture that Map was given last, which must still be there, as it was mapped.
+  absl::StatusOr<FineImage> MapFine(const gl::Texture2D& linear);
+
  private:
+  // Factors for radiance, and the curve.
+  struct Tone {
+    glm::vec3 gain{1.0F};
+    bool filmic = true;
+  };
+  // Where a picture of one depth is drawn to.
+  struct Display {
+    gl::Texture2D texture;
+    gl::Framebuffer target;
+  };
+
+  absl::Status Draw(const gl::Texture2D& linear, GLenum format, bool noise, Display* display);
   // The factor for radiance of the given balance.
   absl::StatusOr<float> ExposureOf(const gl::Texture2D& linear, const scene::Display& display,
                                    const glm::vec3& balance, const WhiteCard& card);
@@ -45,8 +61,9 @@ class ToneMapper {
   gl::WholeTarget whole_target_;
   PixelReader pixels_;
   gl::Texture2D brightest_;
-  gl::Texture2D display_;
-  gl::Framebuffer target_;
+  Tone tone_;  // of the picture mapped last
+  Display display_;
+  Display fine_display_;
 };
 
 // The texture's values, four floats a pixel, rows from bottom to top as GL keeps them.

@@ -100,7 +100,8 @@ class RunningLoad {
   void AddViewers(ViewerKind kind, int count) {
     for (int i = 0; i < count; ++i) {
       viewers_.push_back(std::make_unique<Viewer>(kind, measuring_, errors_));
-      viewers_.back()->Join(transport_, viewer_key_, options_.kbit_per_s);
+      viewers_.back()->Join(transport_, viewer_key_, options_.kbit_per_s,
+                            options_.codec == LoadCodec::kVp9);
     }
   }
 

@@ -250,6 +250,10 @@ class InteractCall : public InteractReactor,
       person_id_ = person_id;
       answers_.push_back(ResponseOf(response));
       hidden_ = join.window().hidden();
+      for (const int codec : join.codecs()) {
+        takes_video_ = takes_video_ || codec == v1::CODEC_VP9;
+        takes_stills_ = takes_stills_ || codec == v1::CODEC_AVIF;
+      }
       wants_ = WantsOf(join.window());
       session_ = found.session;
     }
@@ -365,6 +369,7 @@ class InteractCall : public InteractReactor,
     if (watched == nullptr || acknowledgement.own_view() != (watched != session_)) {
       return absl::OkStatus();
     }
+    if (acknowledgement.video_lost()) watched->hub().LoseVideo(watcher_id);
     watched->hub().Acknowledge(watcher_id, acknowledgement.sequence());
     return absl::OkStatus();
   }
@@ -438,8 +443,14 @@ class InteractCall : public InteractReactor,
     ReadOn();
   }
 
-  static session::ViewerWants WantsOf(const v1::Window& window) {
-    return {static_cast<int>(window.width_px()), window.frames_per_second(), /*adapts=*/true};
+  // Needs mutex_.
+  session::ViewerWants WantsOf(const v1::Window& window) const {
+    return {.window_width_px = static_cast<int>(window.width_px()),
+            .frames_per_second = window.frames_per_second(),
+            .adapts = true,
+            .takes_video = takes_video_,
+            .takes_stills = takes_stills_,
+            .saves_bytes = window.saves_bytes()};
   }
 
   void SetWindow(const v1::Window& window) {
@@ -561,6 +572,8 @@ class InteractCall : public InteractReactor,
   std::atomic<bool> drawing_{false};  // a mark is on its way
   bool frame_next_ = false;
   bool hidden_ = false;
+  bool takes_video_ = false;
+  bool takes_stills_ = false;
   session::ViewerWants wants_;
   std::shared_ptr<session::OwnView> own_view_;
   std::shared_ptr<session::Session> watched_;  // whose frames come

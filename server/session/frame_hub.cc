@@ -6,45 +6,18 @@
 namespace thunderhead::session {
 namespace {
 
-Problem::Code CodeOf(absl::StatusCode code) {
-  switch (code) {
-    case absl::StatusCode::kInvalidArgument:
-    case absl::StatusCode::kFailedPrecondition:
-    case absl::StatusCode::kOutOfRange:
-      return Problem::Code::kScene;
-    case absl::StatusCode::kResourceExhausted:
-    case absl::StatusCode::kUnavailable:
-      return Problem::Code::kBusy;
-    default:
-      return Problem::Code::kInternal;
-  }
+// Larger for a form that is worth sending again.
+int Worth(const FrameForm& form) {
+  int worth = kTiers - form.tier;
+  if (form.kind == FrameForm::Kind::kJpeg) worth += kTiers;
+  if (form.kind == FrameForm::Kind::kStill) worth += 2 * kTiers;
+  return worth;
 }
 
 }  // namespace
 
-Problem ProblemOf(std::uint64_t scene_revision, const absl::Status& why) {
-  return {scene_revision, std::string(why.message()), CodeOf(why.code())};
-}
-
-Problem UnreadableStorm(std::uint64_t scene_revision, const absl::Status& why) {
-  const bool gone = absl::IsNotFound(why);
-  return {scene_revision, std::string(why.message()),
-          gone ? Problem::Code::kStormGone : Problem::Code::kStormUnreadable};
-}
-
 FrameHub::FrameHub(std::function<void()> on_demand, std::function<void()> on_wait)
     : on_demand_(std::move(on_demand)), on_wait_(std::move(on_wait)) {}
-
-PublishedFrame::PublishedFrame(EncodedFrame full, ReduceFrame reduce)
-    : reduce_(std::move(reduce)), tiers_{std::make_shared<const EncodedFrame>(std::move(full))} {}
-
-std::shared_ptr<const EncodedFrame> PublishedFrame::At(int tier) {
-  const std::lock_guard lock(mutex_);
-  auto& frame = tiers_[static_cast<std::size_t>(tier)];
-  if (frame == nullptr && reduce_ == nullptr) frame = tiers_[0];
-  if (frame == nullptr) frame = std::make_shared<const EncodedFrame>(reduce_(Full(), tier));
-  return frame;
-}
 
 absl::StatusOr<std::uint64_t> FrameHub::Join(std::shared_ptr<Viewer> viewer,
                                              const ViewerWants& wants) {
@@ -57,6 +30,9 @@ absl::StatusOr<std::uint64_t> FrameHub::Join(std::shared_ptr<Viewer> viewer,
     }
     watches_[id].viewer = std::move(viewer);
     watches_[id].wants = wants;
+    // JPEG as it is, then video in each tier.
+    if (TakesVideo(watches_[id])) watches_[id].link = LinkEstimate(1 + kTiers);
+    SetLeastSteps(std::chrono::steady_clock::now());
   }
   on_demand_();
   return id;
@@ -66,11 +42,14 @@ void FrameHub::SetWants(std::uint64_t viewer_id, const ViewerWants& wants) {
   const std::lock_guard lock(mutex_);
   const auto found = watches_.find(viewer_id);
   if (found == watches_.end() || found->second.wants == wants) return;
-  found->second.wants = wants;
-  found->second.waits_until.reset();
+  Watch& watch = found->second;
+  watch.wants = wants;
+  watch.waits_until.reset();
+  SetLeastSteps(std::chrono::steady_clock::now());
   // The newest picture again if it is too small now.
-  if (frame_ != nullptr && TierFor(found->second, frame_->Full()) < found->second.last_tier) {
-    found->second.last_sequence = 0;
+  if (frame_ != nullptr && watch.last_form.kind == FrameForm::Kind::kJpeg &&
+      JpegTier(watch, *frame_) < watch.last_form.tier) {
+    watch.last_sequence = 0;
   }
 }
 
@@ -78,51 +57,112 @@ void FrameHub::Leave(std::uint64_t viewer_id) {
   {
     const std::lock_guard lock(mutex_);
     watches_.erase(viewer_id);
+    SetLeastSteps(std::chrono::steady_clock::now());
   }
   on_demand_();
 }
 
-int FrameHub::TierFor(const Watch& watch, const EncodedFrame& frame) {
-  const int for_window = TierForWindow(frame.width_px, watch.wants.window_width_px);
-  const bool reduced = watch.wants.adapts && !frame.refined;
-  return reduced ? std::max(for_window, watch.link.tier()) : for_window;
+bool FrameHub::TakesVideo(const Watch& watch) {
+  return watch.wants.adapts && watch.wants.takes_video;
+}
+
+void FrameHub::SetLeastSteps(Time now) {
+  const auto able = std::count_if(watches_.begin(), watches_.end(),
+                                  [](const auto& entry) { return TakesVideo(entry.second); });
+  for (auto& [id, watch] : watches_) {
+    const bool at_once = watch.wants.saves_bytes || able >= kManyForVideo;
+    if (TakesVideo(watch)) watch.link.SetLeast(at_once ? 1 : 0, now);
+  }
+}
+
+int FrameHub::JpegTier(const Watch& watch, const PublishedFrame& frame) {
+  const int for_window = TierForWindow(frame.Described().width_px, watch.wants.window_width_px);
+  const bool reduced = watch.wants.adapts && !frame.Rests();
+  return reduced ? std::max(for_window, std::min(watch.link.step(), kTiers - 1)) : for_window;
+}
+
+std::optional<int> FrameHub::VideoTier(const Watch& watch, int width_px) {
+  if (!TakesVideo(watch) || watch.link.step() == 0) return std::nullopt;
+  return std::max(TierForWindow(width_px, watch.wants.window_width_px), watch.link.step() - 1);
+}
+
+std::size_t FrameHub::MaxInFlight(const Watch& watch) {
+  return watch.last_form.kind == FrameForm::Kind::kVideo ? watch.window.size() : kMaxInFlight;
 }
 
 bool FrameHub::IsReady(const Watch& watch, Time now) {
-  return watch.in_flight.size() < kMaxInFlight &&
+  return watch.in_flight.size() < MaxInFlight(watch) &&
          (!watch.waits_until.has_value() || now >= *watch.waits_until);
 }
 
-bool FrameHub::HasFrameFor(const Watch& watch, Time now) const {
-  return IsReady(watch, now) && frame_ != nullptr && frame_->Full().sequence > watch.last_sequence;
+std::optional<FrameHub::Offer> FrameHub::VideoFor(const Watch& watch, const PublishedFrame& frame,
+                                                  int tier) const {
+  const FrameForm form{FrameForm::Kind::kVideo, tier};
+  const std::uint64_t newest = frame.Described().sequence;
+  const VideoPicture& picture = frame.Video(tier);
+  if (picture.frame != nullptr && newest > watch.last_sequence &&
+      watch.place.CanTake(tier, picture)) {
+    return Offer{newest, form, picture};
+  }
+  // The base picture that it has missed, without which it can take none of the newer ones.
+  const VideoStream& stream = streams_[static_cast<std::size_t>(tier)];
+  const VideoPicture& base = stream.NewestBase();
+  const bool missed = base.frame != nullptr && base.needs != 0 &&
+                      base.needs == watch.place.BaseOf(tier) &&
+                      stream.NewestBaseSequence() > watch.last_sequence;
+  if (missed) return Offer{stream.NewestBaseSequence(), form, base};
+  return std::nullopt;
+}
+
+std::optional<FrameHub::Offer> FrameHub::OfferFor(const Watch& watch, PublishedFrame& frame) const {
+  const EncodedFrame& described = frame.Described();
+  const bool is_new = described.sequence > watch.last_sequence;
+  const auto if_wanted = [&](const FrameForm& form) -> std::optional<Offer> {
+    const bool better = frame.Rests() && Worth(form) > Worth(watch.last_form);
+    if (!is_new && !better) return std::nullopt;
+    return Offer{described.sequence, form, {}};
+  };
+  const int for_window = TierForWindow(described.width_px, watch.wants.window_width_px);
+  if (watch.wants.takes_stills && frame.Still(for_window) != nullptr) {
+    return if_wanted({FrameForm::Kind::kStill, for_window});
+  }
+  const FrameForm jpeg{FrameForm::Kind::kJpeg, JpegTier(watch, frame)};
+  const std::optional<int> video_tier = VideoTier(watch, described.width_px);
+  if (!video_tier.has_value()) return if_wanted(jpeg);
+  const bool awaits_still = watch.wants.takes_stills && frame.StillFollows();
+  if (frame.Rests() && !awaits_still) return if_wanted(jpeg);
+  if (auto video = VideoFor(watch, frame, *video_tier); video.has_value()) return video;
+  // Small pictures until the next key picture; nothing for who has the newest one of the stream.
+  if (watch.place.BaseOf(*video_tier) != 0 || !is_new) return std::nullopt;
+  return Offer{
+      described.sequence,
+      {FrameForm::Kind::kJpeg, std::max(for_window, std::min(watch.link.step(), kTiers - 1))},
+      {}};
+}
+
+std::optional<FrameHub::Offer> FrameHub::NextFor(const Watch& watch, Time now) const {
+  if (frame_ == nullptr || !IsReady(watch, now)) return std::nullopt;
+  return OfferFor(watch, *frame_);
 }
 
 bool FrameHub::HasFor(const Watch& watch, Time now) const {
-  return HasFrameFor(watch, now) || (problem_.has_value() && problem_count_ > watch.last_problem);
+  return NextFor(watch, now).has_value() ||
+         (problem_.has_value() && problem_count_ > watch.last_problem);
 }
 
 std::optional<FrameEvent> FrameHub::Take(std::uint64_t viewer_id, Time now) {
-  std::shared_ptr<PublishedFrame> frame;
-  int tier = 0;
+  std::shared_ptr<PublishedFrame> published;
+  std::optional<Offer> offer;
   bool waits = false;
   {
     const std::lock_guard lock(mutex_);
     const auto found = watches_.find(viewer_id);
     if (found == watches_.end() || !closed_because_.ok()) return std::nullopt;
     Watch& watch = found->second;
-    if (HasFrameFor(watch, now)) {
-      frame = frame_;
-      tier = TierFor(watch, frame->Full());
-      watch.last_tier = tier;
-      watch.last_sequence = frame->Full().sequence;
-      watch.in_flight.push_back({watch.last_sequence, now, !frame->Full().refined});
-      if (watch.wants.frames_per_second > 0.0) {
-        constexpr double kFewest_per_s = 0.1;
-        const std::chrono::duration<double> pause(
-            1.0 / std::max(watch.wants.frames_per_second, kFewest_per_s));
-        watch.waits_until = now + std::chrono::duration_cast<Time::duration>(pause);
-        waits = true;
-      }
+    offer = NextFor(watch, now);
+    if (offer.has_value()) {
+      published = frame_;
+      waits = Took(watch, *offer, now);
     } else if (problem_.has_value() && problem_count_ > watch.last_problem) {
       watch.last_problem = problem_count_;
       return *problem_;
@@ -131,8 +171,31 @@ std::optional<FrameEvent> FrameHub::Take(std::uint64_t viewer_id, Time now) {
     }
   }
   if (waits) on_wait_();
+  if (offer->picture.frame != nullptr) return offer->picture.frame;
   // Without the lock, as a tier that nobody wanted before is encoded now.
-  return frame->At(tier);
+  auto frame = offer->form.kind == FrameForm::Kind::kStill ? published->Still(offer->form.tier)
+                                                           : published->Jpeg(offer->form.tier);
+  if (frame == nullptr) return std::nullopt;
+  return frame;
+}
+
+bool FrameHub::Took(Watch& watch, const Offer& offer, Time now) {
+  const bool is_video = offer.form.kind == FrameForm::Kind::kVideo;
+  if (is_video) {
+    watch.place.Enter(offer.form.tier);
+    watch.place.Took(offer.sequence, offer.picture, now);
+  }
+  watch.last_form = offer.form;
+  watch.last_sequence = offer.sequence;
+  const bool moving = is_video || (!frame_->Rests() && offer.form.kind == FrameForm::Kind::kJpeg);
+  const bool is_last = watch.in_flight.size() + 1 >= MaxInFlight(watch);
+  watch.in_flight.push_back({offer.sequence, now, moving, is_video, is_last});
+  if (watch.wants.frames_per_second <= 0.0) return false;
+  constexpr double kFewest_per_s = 0.1;
+  const std::chrono::duration<double> pause(1.0 /
+                                            std::max(watch.wants.frames_per_second, kFewest_per_s));
+  watch.waits_until = now + std::chrono::duration_cast<Time::duration>(pause);
+  return true;
 }
 
 bool FrameHub::Acknowledge(std::uint64_t viewer_id, std::uint64_t sequence, Time now) {
@@ -144,12 +207,14 @@ bool FrameHub::Acknowledge(std::uint64_t viewer_id, std::uint64_t sequence, Time
     if (found == watches_.end()) return false;
     Watch& watch = found->second;
     auto& in_flight = watch.in_flight;
-    const bool was_full = in_flight.size() >= kMaxInFlight;
+    const bool was_full = in_flight.size() >= MaxInFlight(watch);
     while (!in_flight.empty() && in_flight.front().sequence <= sequence) {
-      if (in_flight.front().moving) watch.link.Acknowledged(now, in_flight.front().at);
+      const Sent& sent = in_flight.front();
+      if (sent.moving) watch.link.Acknowledged(now, sent.at);
+      if (sent.video) watch.window.Acknowledged(now - sent.at, sent.was_last);
       in_flight.pop_front();
     }
-    became_ready = was_full && in_flight.size() < kMaxInFlight;
+    became_ready = was_full && in_flight.size() < MaxInFlight(watch);
     if (HasFor(watch, now)) viewer = watch.viewer;
   }
   if (viewer != nullptr) viewer->Wake();
@@ -177,25 +242,97 @@ std::optional<FrameHub::Time> FrameHub::WakeWaiting(Time now) {
   return next;
 }
 
-void FrameHub::Publish(EncodedFrame frame, ReduceFrame reduce) {
+void FrameHub::LoseVideo(std::uint64_t viewer_id, Time now) {
+  const std::lock_guard lock(mutex_);
+  const auto found = watches_.find(viewer_id);
+  if (found != watches_.end()) found->second.place.Lost(now);
+}
+
+std::vector<VideoOrder> FrameHub::OrderVideo(int width_px, bool at_rest, bool still_follows,
+                                             Time now) {
+  const std::lock_guard lock(mutex_);
+  for (VideoStream& stream : streams_) stream.Begin();
+  for (auto& [id, watch] : watches_) {
+    const std::optional<int> tier = VideoTier(watch, width_px);
+    const bool gets_jpeg = at_rest && !(still_follows && watch.wants.takes_stills);
+    if (!tier.has_value() || gets_jpeg) continue;
+    streams_[static_cast<std::size_t>(*tier)].Ask(*tier, {&watch.place, IsReady(watch, now)}, now);
+  }
+  std::vector<VideoOrder> orders;
+  for (int tier = 0; tier < kTiers; ++tier) {
+    const auto kind = streams_[static_cast<std::size_t>(tier)].Next(now);
+    if (kind.has_value()) orders.push_back({tier, *kind});
+  }
+  return orders;
+}
+
+std::uint64_t FrameHub::Publish(EncodedFrame described, EncodeFrame encode,
+                                std::vector<EncodedVideo> video, bool still_follows, Time now) {
+  const std::uint64_t scene_revision = described.scene_revision;
+  std::shared_ptr<PublishedFrame> published;
   std::array<bool, kTiers> wanted{};
+  std::uint64_t sequence = 0;
   {
     const std::lock_guard lock(mutex_);
-    frame.sequence = ++frame_count_;
+    sequence = ++frame_count_;
+    described.sequence = sequence;
+    VideoPictures pictures;
+    for (EncodedVideo& one : video) {
+      one.frame.sequence = sequence;
+      const auto tier = static_cast<std::size_t>(one.order.tier);
+      pictures[tier] =
+          streams_[tier].Add(sequence, one.order.kind,
+                             std::make_shared<const EncodedFrame>(std::move(one.frame)), now);
+    }
+    published = std::make_shared<PublishedFrame>(std::move(described), std::move(encode),
+                                                 std::move(pictures), still_follows);
     for (const auto& [id, watch] : watches_) {
-      wanted[static_cast<std::size_t>(TierFor(watch, frame))] = true;
+      const auto offer = OfferFor(watch, *published);
+      if (offer.has_value() && offer->form.kind == FrameForm::Kind::kJpeg) {
+        wanted[static_cast<std::size_t>(offer->form.tier)] = true;
+      }
     }
   }
-  const std::uint64_t scene_revision = frame.scene_revision;
-  const auto published = std::make_shared<PublishedFrame>(std::move(frame), std::move(reduce));
   for (int tier = 0; tier < kTiers; ++tier) {
-    if (wanted[static_cast<std::size_t>(tier)]) published->At(tier);
+    if (wanted[static_cast<std::size_t>(tier)]) (void)published->Jpeg(tier);
   }
   {
     const std::lock_guard lock(mutex_);
     if (problem_.has_value() && problem_->scene_revision <= scene_revision) problem_.reset();
     frame_ = published;
   }
+  WakeAll();
+  return sequence;
+}
+
+std::shared_ptr<PublishedFrame> FrameHub::Newest(std::uint64_t sequence) const {
+  const std::lock_guard lock(mutex_);
+  const bool is_newest = frame_ != nullptr && frame_->Described().sequence == sequence;
+  return is_newest ? frame_ : nullptr;
+}
+
+bool FrameHub::IsNewest(std::uint64_t sequence) const { return Newest(sequence) != nullptr; }
+
+void FrameHub::AddStill(std::uint64_t sequence, int tier, EncodedFrame still) {
+  const auto frame = Newest(sequence);
+  if (frame == nullptr) return;
+  still.sequence = sequence;
+  frame->SetStill(tier, std::move(still));
+  frame->Rest();
+  WakeAll();
+}
+
+void FrameHub::NoStills(std::uint64_t sequence) {
+  const auto frame = Newest(sequence);
+  if (frame == nullptr) return;
+  frame->NoStills();
+  WakeAll();
+}
+
+void FrameHub::Rest(std::uint64_t sequence) {
+  const auto frame = Newest(sequence);
+  if (frame == nullptr || frame->Rests()) return;
+  frame->Rest();
   WakeAll();
 }
 
@@ -225,6 +362,16 @@ absl::Status FrameHub::ClosedBecause() const {
 bool FrameHub::HasViewers() const {
   const std::lock_guard lock(mutex_);
   return !watches_.empty();
+}
+
+std::array<bool, kTiers> FrameHub::StillTiers(int width_px) const {
+  std::array<bool, kTiers> wanted{};
+  const std::lock_guard lock(mutex_);
+  for (const auto& [id, watch] : watches_) {
+    if (!watch.wants.takes_stills) continue;
+    wanted[static_cast<std::size_t>(TierForWindow(width_px, watch.wants.window_width_px))] = true;
+  }
+  return wanted;
 }
 
 bool FrameHub::HasReadyViewer() const {

@@ -14,6 +14,7 @@
 #include "accuracy/accuracy_report.h"
 #include "accuracy/frame_quality.h"
 #include "accuracy/light_progress.h"
+#include "frame/fine_image.h"
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 #include "physics/hydrometeors.h"
@@ -115,6 +116,12 @@ class FrameSource {
   // Tone maps a picture of `scene` computed elsewhere. Does not disturb the stages that Draw keeps.
   virtual absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
                                             const scene::Scene& scene) = 0;
+
+  // The picture that Draw, DrawChecked or Tone has just given, with more than 8 bits; none if it
+  // cannot be had.
+  virtual absl::StatusOr<frame::FineImage> Fine() {
+    return absl::UnimplementedError("this frame source has pictures of 8 bits only");
+  }
 };
 
 // Makes the source on the thread that will use it.

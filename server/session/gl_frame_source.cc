@@ -1,5 +1,6 @@
 #include "session/gl_frame_source.h"
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -34,6 +35,7 @@ class GlFrameSource final : public FrameSource {
   absl::StatusOr<DisplayFrame> Draw(const scene::Scene& scene,
                                     const std::shared_ptr<const volume::HydrometeorFields>& fields,
                                     const FrameQuality& quality) override {
+    tone_mapped_.reset();
     const Correction correction = CorrectionOf(scene, fields);
     THUNDERHEAD_ASSIGN_OR_RETURN(
         const renderers::LinearFrame linear,
@@ -45,6 +47,7 @@ class GlFrameSource final : public FrameSource {
   absl::StatusOr<CheckedFrame> DrawChecked(
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
+    tone_mapped_.reset();
     const Correction correction = CorrectionOf(scene, fields);
     CheckedFrame checked;
     THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame coarse,
@@ -61,19 +64,36 @@ class GlFrameSource final : public FrameSource {
   absl::StatusOr<accuracy::LightProgress> TraceLight(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
       accuracy::LightClaim* claim) override {
+    tone_mapped_.reset();
     return correctors_.Trace(scene, fields, claim);
   }
 
   absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
                                     const scene::Scene& scene) override {
+    tone_mapped_ = std::nullopt;
+    picture_ = frame::TextureOf(picture);
     THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped,
-                                 picture_tone_mapper_.Map(frame::TextureOf(picture), scene));
+                                 picture_tone_mapper_.Map(picture_, scene));
+    tone_mapped_ = {&picture_, &picture_tone_mapper_};
     DisplayFrame frame;
     Fill(picture.size_px, std::move(mapped), &frame);
     return frame;
   }
 
+  absl::StatusOr<frame::FineImage> Fine() override {
+    if (!tone_mapped_.has_value()) {
+      return absl::FailedPreconditionError("no picture was drawn that could be had with more bits");
+    }
+    return tone_mapped_->mapper->MapFine(*tone_mapped_->linear);
+  }
+
  private:
+  // The picture drawn last, until anything else is drawn.
+  struct Drawn {
+    const gl::Texture2D* linear;
+    frame::ToneMapper* mapper;
+  };
+
   // The correction of a scene's light by traced paths; null light without any.
   struct Correction {
     std::shared_ptr<const renderers::LightCorrection> light;
@@ -100,6 +120,7 @@ class GlFrameSource final : public FrameSource {
                                        const scene::Scene& scene, const Correction& correction) {
     THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped,
                                  tone_mapper_.Map(*linear.radiance, scene));
+    tone_mapped_ = {linear.radiance, &tone_mapper_};
     DisplayFrame frame;
     frame.stages = linear.stages;
     if (correction.milliseconds >= kMinReported_ms) {
@@ -127,6 +148,8 @@ class GlFrameSource final : public FrameSource {
   accuracy::CorrectorPool correctors_{renderers_.Programs()};
   frame::ToneMapper tone_mapper_;
   frame::ToneMapper picture_tone_mapper_;  // of Tone, whose pictures have other sizes
+  gl::Texture2D picture_;                  // that Tone was given
+  std::optional<Drawn> tone_mapped_;
   DeviceInfo info_;
 };
 

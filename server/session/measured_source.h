@@ -36,6 +36,7 @@ class MeasuredSource {
                                                      accuracy::LightClaim* claim = nullptr);
   absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
                                     const scene::Scene& scene);
+  absl::StatusOr<frame::FineImage> Fine() { return source_->Fine(); }
 
   // Forgets the costs of a view that is no longer drawn.
   void Forget(const std::string& view) { costs_.Forget(view); }

@@ -47,6 +47,7 @@ void SessionDrawer::ReleaseUnwatched(const std::vector<std::shared_ptr<Session>>
     if (!exists || !(*found)->hub().HasViewers()) {
       kept->second.fields.Release();
       kept->second.reference.Release();
+      if (exists) (*found)->video().Release();
     }
     if (exists) {
       ++kept;  // keeps its view, as it may be watched again
@@ -85,8 +86,7 @@ TurnOutcome SessionDrawer::Do(const Turn& turn, const DrawFrame& work) {
     return {true, std::nullopt};
   }
   turn.kept.view.Drawn(work);
-  Send(turn, {turn.session, shown.revision, *shown.scene, work.plan.refined, *std::move(picture),
-              std::nullopt});
+  Send(turn, shown, work.plan.refined, *std::move(picture));
   turn.kept.fields.PrepareNext(*shown.scene);
   return {true, std::nullopt};
 }
@@ -99,8 +99,7 @@ TurnOutcome SessionDrawer::Do(const Turn& turn, const CheckSlices& work) {
     return {true, std::nullopt};
   }
   turn.kept.view.Checked(checked->discretisation_error);
-  Send(turn,
-       {turn.session, shown.revision, *shown.scene, true, std::move(checked->frame), std::nullopt});
+  Send(turn, shown, true, std::move(checked->frame));
   return {true, std::nullopt};
 }
 
@@ -140,7 +139,7 @@ absl::Status SessionDrawer::ShowLight(const Turn& turn, const NewestScene& shown
                    turn.kept.view.discretisation_error()));
   if (not_shown.has_value()) picture.modelled.content.not_shown.push_back(*not_shown);
   turn.kept.view.LightShown(Clock::now());
-  Send(turn, {turn.session, shown.revision, *shown.scene, true, std::move(picture), std::nullopt});
+  Send(turn, shown, true, std::move(picture));
   return absl::OkStatus();
 }
 
@@ -165,14 +164,26 @@ absl::StatusOr<bool> SessionDrawer::ShowTraced(const Turn& turn, const NewestSce
       scene::HydrometeorsOf(scene::DrawnFieldsOf(*shown.scene, *fields));
   renderers::AddNotShown(*shown.scene, scene::Reference::kCapabilities, &picture.modelled.content);
   picture.modelled.content.ground = scene::DrawnGround(*shown.scene, *fields);
-  Send(turn, {turn.session, shown.revision, *shown.scene, traced.full_size, std::move(picture),
-              traced.refinement});
+  Send(turn, shown, traced.full_size, std::move(picture), traced.refinement);
   return true;
 }
 
-void SessionDrawer::Send(const Turn& turn, DrawnFrame frame) {
-  turn.kept.fields.AddStages(&frame.picture.stages);
-  frame.view = scene::ViewOf(frame.scene, *turn.kept.fields.Fields());
+void SessionDrawer::Send(const Turn& turn, const NewestScene& shown, bool refined,
+                         DisplayFrame picture, std::optional<Refinement> refinement) {
+  turn.kept.fields.AddStages(&picture.stages);
+  DrawnFrame frame{.session = turn.session,
+                   .scene_revision = shown.revision,
+                   .scene = *shown.scene,
+                   .refined = refined,
+                   .at_rest = refined && Clock::now() >= shown.changed_at + targets_.rest_delay,
+                   .refinement = refinement,
+                   .view = scene::ViewOf(*shown.scene, *turn.kept.fields.Fields())};
+  const auto still_tiers = turn.session->hub().StillTiers(picture.width_px);
+  if (refined && std::ranges::find(still_tiers, true) != still_tiers.end()) {
+    // Those who would take it get JPEG where it cannot be had.
+    if (auto fine = source_.Fine(); fine.ok()) frame.fine = *std::move(fine);
+  }
+  frame.picture = std::move(picture);
   encoder_.Encode(std::move(frame));
 }
 

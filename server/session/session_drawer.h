@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,7 +58,9 @@ class SessionDrawer {
   absl::Status ShowLight(const Turn& turn, const NewestScene& shown,
                          const std::optional<scene::NotShown>& not_shown);
   absl::StatusOr<bool> ShowTraced(const Turn& turn, const NewestScene& shown);
-  void Send(const Turn& turn, DrawnFrame frame);
+  // Of the picture that the source has just given.
+  void Send(const Turn& turn, const NewestScene& shown, bool refined, DisplayFrame picture,
+            std::optional<Refinement> refinement = std::nullopt);
   void Fail(const Turn& turn, std::uint64_t revision, const absl::Status& why);
 
   const PlannerTargets targets_;

@@ -22,6 +22,7 @@
 #include "session/audience.h"
 #include "session/frame_hub.h"
 #include "session/session_record.h"
+#include "session/video_encoders.h"
 
 namespace thunderhead::session {
 
@@ -65,6 +66,7 @@ class Session {
   // True for what an OwnView draws, which nobody finds by a key.
   bool IsOwnView() const { return keys_.viewer.empty(); }
   FrameHub& hub() { return hub_; }
+  VideoEncoders& video() { return video_; }
   Audience& audience() { return audience_; }
 
   // A new revision, larger than all before. Taken when an update arrives, before its scene is
@@ -103,6 +105,7 @@ class Session {
   const SessionKeys keys_;
   const SessionSignals signals_;
   FrameHub hub_;
+  VideoEncoders video_;
   Audience audience_;
   mutable std::mutex mutex_;
   std::uint64_t revision_count_ = 0;

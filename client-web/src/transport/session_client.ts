@@ -168,8 +168,8 @@ export class SessionClient {
   }
 
   // The frame is on the screen, or will never be.
-  acknowledge(sequence: bigint, ownView: boolean): void {
-    this.send({ case: "acknowledge", value: { sequence, ownView } });
+  acknowledge(sequence: bigint, ownView: boolean, videoLost = false): void {
+    this.send({ case: "acknowledge", value: { sequence, ownView, videoLost } });
   }
 
   dispose(): void {

@@ -11,6 +11,7 @@ import {
   poseOfCamera,
   standingAzimuthDeg,
 } from "../core/camera";
+import { encodingOf, pictureBytes } from "../core/encoding";
 import { FrameRate } from "../core/frame_rate";
 import { type MarkedPicture, Marking } from "../core/marking";
 import type { Later } from "../core/newest";
@@ -43,6 +44,7 @@ import {
 } from "../transport/session_client";
 import { Addresses } from "./addresses";
 import { CanvasPlace } from "./canvas_place";
+import { learnDecodable } from "./decodable";
 import { attachKeyboard } from "./keyboard";
 import { readLink } from "./link";
 import { PictureFlow } from "./picture_flow";
@@ -57,6 +59,9 @@ const STILL_HERE_EVERY_MS = 30_000;
 const NARROW_PX = 700;
 // Of what a camera that does not turn around a target looks at.
 const TYPICAL_DISTANCE_M = 30_000;
+
+// The person has asked the browser to save data; not in every browser.
+type NetworkNavigator = Navigator & { readonly connection?: { readonly saveData?: boolean } };
 
 export class Page implements SessionListener {
   readonly state = new PageState();
@@ -88,6 +93,7 @@ export class Page implements SessionListener {
   #shown: Frame | undefined;
   #newestProblem: Problem | undefined;
   #running = false;
+  #codecs: Codec[] = [Codec.JPEG];
 
   constructor(transport: Transport, openInteract: OpenInteract, window: Window) {
     this.#window = window;
@@ -126,7 +132,8 @@ export class Page implements SessionListener {
       later,
     });
     this.#flow = new PictureFlow({
-      acknowledge: (sequence, ownView) => this.#client.acknowledge(sequence, ownView),
+      acknowledge: (sequence, ownView, videoLost) =>
+        this.#client.acknowledge(sequence, ownView, videoLost),
       wantsOwnView: () => session.lookingAround.peek(),
       painted: (frame) => this.#painted(frame),
       undecodable: (frame) => this.#undecodable(frame),
@@ -176,7 +183,7 @@ export class Page implements SessionListener {
     const detach = this.#place.attach(canvas);
     if (!this.#running) {
       this.#running = true;
-      void this.#client.run();
+      void this.#run();
     }
     return detach;
   }
@@ -306,7 +313,7 @@ export class Page implements SessionListener {
   }
 
   joining(): JoinDetails {
-    return { name: this.#keys.name, window: this.#windowMessage(), codecs: [Codec.JPEG] };
+    return { name: this.#keys.name, window: this.#windowMessage(), codecs: this.#codecs };
   }
 
   joined(joined: Joined): void {
@@ -382,6 +389,13 @@ export class Page implements SessionListener {
     session.end(why.message);
     this.playback.pause();
     return false;
+  }
+
+  async #run(): Promise<void> {
+    const { codecs, whyNoVideo } = await learnDecodable(this.#window);
+    this.#codecs = codecs;
+    this.state.whyNoVideo.value = whyNoVideo;
+    await this.#client.run();
   }
 
   #now(): number {
@@ -507,7 +521,7 @@ export class Page implements SessionListener {
     if (canvas === undefined) return;
     const now = this.#now();
     this.#shown = frame;
-    this.#rate.shown(frame.jpeg.byteLength, now);
+    this.#rate.shown(pictureBytes(frame), now);
     this.state.pictureBox.value = this.#place.boxOf(frame);
     this.state.showFrame(frame);
     if (frame.ownView) this.#ownView.placed(frame.camera);
@@ -523,6 +537,7 @@ export class Page implements SessionListener {
       sequence: String(frame.sequence),
       revision: String(frame.sceneRevision),
       refined: String(frame.refined),
+      encoding: encodingOf(frame),
       ownView: String(frame.ownView),
       time: String(this.#ledger.shownTimeIndex ?? ""),
       camera: pose?.kind ?? "",
@@ -545,7 +560,9 @@ export class Page implements SessionListener {
   }
 
   #windowMessage() {
-    return { ...this.#place.size, hidden: this.#window.document.hidden };
+    const { document, navigator } = this.#window;
+    const savesBytes = (navigator as NetworkNavigator | undefined)?.connection?.saveData === true;
+    return { ...this.#place.size, hidden: document.hidden, savesBytes };
   }
 
   #sendWindow(): void {

@@ -1,4 +1,4 @@
-// Linear radiance to 8-bit sRGB, top row first. FILMIC: 1 is a film's curve, 0 clips.
+// Linear radiance to 8-bit sRGB, top row first. FILMIC: 1 is a film's curve, 0 clips. NOISE: 1 for 8 bits, which would band, 0 for more.
 #include "common/bindings.glsl"
 
 layout(binding = kLinearFrameUnit) uniform sampler2D linear_frame;
@@ -43,7 +43,10 @@ void main() {
   exposed = film(contrasty(exposed));
 #endif
   vec3 coded = srgb(min(exposed, vec3(1.0)));
+#if NOISE
   // Half a step of ordered noise, so that a clear sky does not band.
   float noise = fract(52.9829189 * fract(dot(floor(gl_FragCoord.xy), vec2(0.06711056, 0.00583715))));
-  display = vec4(coded + (noise - 0.5) / 255.0, 1.0);
+  coded += (noise - 0.5) / 255.0;
+#endif
+  display = vec4(coded, 1.0);
 }
