@@ -147,6 +147,7 @@ class FrameHub {
   absl::Status ClosedBecause() const;
 
   bool HasViewers() const;
+  std::size_t Viewers() const;
   // True if a viewer can be sent another frame now.
   bool HasReadyViewer() const;
 
