@@ -16,7 +16,7 @@ namespace thunderhead::access {
 
 struct QuotaLimits {
   std::size_t max_streams = 2048;
-  std::size_t max_streams_per_identity = 1024;
+  std::size_t max_streams_per_identity = 512;
   // The mean; twice as many at once after a second of rest. 0: no limit.
   double requests_per_second = 500.0;
 };
