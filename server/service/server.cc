@@ -39,8 +39,6 @@ constexpr int kKeepaliveTimeoutMs = 10'000;
 // A client that connects and says nothing, or begins no call, is dropped after these.
 constexpr int kHandshakeTimeoutMs = 10'000;
 constexpr int kIdleConnectionMs = 600'000;
-// How often certificate and key are looked at.
-constexpr unsigned kCertificateInterval_s = 5;
 // Time for running calls to end by themselves before they are cancelled.
 constexpr std::chrono::seconds kShutdownGrace{2};
 
@@ -48,7 +46,7 @@ std::shared_ptr<grpc::ServerCredentials> CredentialsOf(const TlsFiles& files) {
   if (files.certificate.empty()) return grpc::InsecureServerCredentials();
   grpc::experimental::TlsServerCredentialsOptions options(
       std::make_shared<grpc::experimental::FileWatcherCertificateProvider>(
-          files.key, files.certificate, kCertificateInterval_s));
+          files.key, files.certificate, files.look_every_s));
   options.watch_identity_key_cert_pairs();
   options.set_cert_request_type(GRPC_SSL_DONT_REQUEST_CLIENT_CERTIFICATE);
   return grpc::experimental::TlsServerCredentials(options);

@@ -22,6 +22,7 @@ namespace thunderhead::service {
 struct TlsFiles {
   std::string certificate;  // the chain, the server's own certificate first
   std::string key;
+  unsigned look_every_s = 5;
 };
 
 struct ServerOptions {

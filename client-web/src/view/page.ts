@@ -4,6 +4,7 @@
 import { create } from "@bufbuild/protobuf";
 import { Code, type Transport } from "@connectrpc/connect";
 import { effect, untracked } from "@preact/signals-core";
+import { AccessToken } from "../core/access_token";
 import {
   type CameraKind,
   homeCamera,
@@ -66,6 +67,7 @@ export class Page implements SessionListener {
   readonly addresses: Addresses;
   readonly #keys: OwnKeys;
   readonly #window: Window;
+  readonly #token: AccessToken;
   readonly #calls: ServerCalls;
   readonly #client: SessionClient;
   readonly #storms: StormsOnServer;
@@ -89,8 +91,14 @@ export class Page implements SessionListener {
   #newestProblem: Problem | undefined;
   #running = false;
 
-  constructor(transport: Transport, openInteract: OpenInteract, window: Window) {
+  constructor(
+    transport: Transport,
+    openInteract: OpenInteract,
+    window: Window,
+    token = new AccessToken(undefined),
+  ) {
     this.#window = window;
+    this.#token = token;
     const { session } = this.state;
     const link = readLink(window.location.href);
     if (link.scene !== undefined) this.state.adoptScene(link.scene);
@@ -185,6 +193,13 @@ export class Page implements SessionListener {
   move(motion: (pose: Pose) => Pose): void {
     if (this.state.session.editBlock.peek() === undefined) this.state.move(motion);
     else if (this.#startsLookingAround()) this.#ownView.move(motion, this.#shownPose());
+  }
+
+  // Tries again with this token.
+  signIn(token: string): void {
+    this.#token.set(token);
+    this.state.connection.value = { kind: "connecting" };
+    this.#client.retryNow();
   }
 
   follow(): void {

@@ -112,17 +112,17 @@ TEST(TokenFileTest, AFileThatOthersMayReadOrWriteIsRefused) {
   EXPECT_TRUE(TrustTokens(file.Path()).ok());
 }
 
+struct Claims {
+  std::string subject = "anna";
+  std::string role = "presenter";
+  std::string issuer;
+  std::string audience;
+  long expires_in_s = 600;
+  long begins_in_s = 0;
+};
+
 class JwtTest : public ::testing::Test {
  protected:
-  struct Claims {
-    std::string subject = "anna";
-    std::string role = "presenter";
-    std::string issuer;
-    std::string audience;
-    long expires_in_s = 600;
-    long begins_in_s = 0;
-  };
-
   static std::string Sign(const Claims& claims, jwt_alg_t algorithm, const std::string& key) {
     jwt_t* jwt = nullptr;
     jwt_new(&jwt);
