@@ -5,7 +5,7 @@
 #include <openssl/evp.h>
 #include <openssl/pem.h>
 
-#include <cerrno>
+#include <algorithm>
 #include <cstdlib>
 #include <memory>
 #include <vector>
@@ -53,9 +53,9 @@ std::string TextClaim(jwt_t* token, const char* name) {
   return text == nullptr ? "" : text;
 }
 
-// 0 if the token has no such claim, or not as a number.
+// The epoch if the token has no such claim, or not as a number, for which libjwt gives -1 or 0.
 Time TimeClaim(jwt_t* token, const char* name) {
-  return std::chrono::system_clock::from_time_t(jwt_get_grant_int(token, name));
+  return std::chrono::system_clock::from_time_t(std::max(0L, jwt_get_grant_int(token, name)));
 }
 
 // A JWT's audience is a text or a list of texts.
@@ -69,7 +69,6 @@ bool IsFor(jwt_t* token, const std::string& audience) {
 }
 
 absl::Status CheckTimes(jwt_t* token, Time now) {
-  errno = 0;
   const Time expires = TimeClaim(token, "exp");
   if (expires == Time()) return Wrong("has no time at which it expires (exp)");
   if (expires + kClockSkew <= now) return Wrong("has expired");
