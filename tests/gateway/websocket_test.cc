@@ -207,7 +207,9 @@ TEST_P(WebSocketTest, ATokenBesideTheSubprotocolIsAuthorization) {
     EXPECT_FALSE(metadata.contains(entry.name())) << entry.name();
     metadata[entry.name()] = entry.value();
   }
-  EXPECT_EQ(metadata["authorization"], "Bearer anna??>");
+  EXPECT_EQ(metadata["authorization"],
+            "Bearer anna?"
+            "?>");
   // What the client says about its address is not passed on.
   EXPECT_THAT(metadata["x-forwarded-for"], ::testing::StartsWith("127.0.0.1:"));
 }

@@ -279,8 +279,10 @@ TEST(DoorTest, ATokenThatIsTakenAwayEndsWhatItOpened) {
   ASSERT_TRUE(caller.ok()) << caller.status();
   const auto now = std::chrono::steady_clock::now();
   EXPECT_TRUE((*caller)->StillKnown(now).ok());
-  file.Write(LineOf("ben", "viewer", "two"));
+  file.Write(LineOf("anna", "operator", "one"));
   EXPECT_TRUE(absl::IsUnauthenticated((*caller)->StillKnown(now + seconds(2))));
+  file.Write(LineOf("ben", "viewer", "two"));
+  EXPECT_TRUE(absl::IsUnauthenticated((*caller)->StillKnown(now + seconds(4))));
 }
 
 TEST(DoorTest, ItsOwnTokenIsAnOperators) {
