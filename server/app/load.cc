@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/strip.h"
 #include "app/address.h"
+#include "app/client_access.h"
 #include "app/commands.h"
 #include "app/interruption.h"
 #include "app/picture_size.h"
@@ -26,6 +27,7 @@ struct Flags {
   std::optional<int> throttled;
   load::LoadOptions load;
   bool json = false;
+  ClientAccessFlags access;
 };
 
 struct Target {
@@ -36,7 +38,8 @@ struct Target {
 absl::StatusOr<Target> ParseTarget(const std::string& server) {
   if (absl::StartsWith(server, "https://")) {
     return absl::InvalidArgumentError(
-        absl::StrCat("SERVER is '", server, "'; TLS is not supported: use http:// or HOST:PORT"));
+        absl::StrCat("SERVER is '", server,
+                     "'; TLS is only for gRPC: use HOST:PORT with --tls-roots, or http://"));
   }
   const bool is_http = absl::StartsWith(server, "http://");
   const std::string place(absl::StripSuffix(absl::StripPrefix(server, "http://"), "/"));
@@ -69,11 +72,13 @@ std::string NoteOf(const load::Progress& progress) {
 absl::Status Load(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const Target target, ParseTarget(flags.server));
   THUNDERHEAD_ASSIGN_OR_RETURN(const load::LoadOptions options, OptionsOf(flags));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const load::Access access, ReadClientAccess(flags.access));
   // Before the transport starts threads, which must not take the signals.
   const Interruption interruption;
   const auto transport =
-      target.is_http ? load::MakeWebSocketTransport(target.address.host, target.address.port)
-                     : load::MakeGrpcTransport(ToString(target.address));
+      target.is_http
+          ? load::MakeWebSocketTransport(target.address.host, target.address.port, access.token)
+          : load::MakeGrpcTransport(ToString(target.address), access);
   const auto process = load::ServerProcess::Find(target.address.host, target.address.port);
   std::optional<ProgressBar> bar(std::in_place, "load");
   const absl::StatusOr<load::Report> report =
@@ -126,6 +131,7 @@ Command AddLoad(CLI::App& app) {
                    "Viewers besides the others who leave after two seconds and come again")
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
+  AddClientAccessFlags(*load, flags->access);
   load->add_flag("--json", flags->json, "Print JSON");
   return {load, [flags] { return Load(*flags); }};
 }

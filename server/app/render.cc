@@ -11,6 +11,7 @@
 #include "absl/strings/str_format.h"
 #include "accuracy/named_settings.h"
 #include "app/address.h"
+#include "app/client_access.h"
 #include "app/commands.h"
 #include "app/interruption.h"
 #include "app/local_service.h"
@@ -36,6 +37,7 @@ struct Flags {
   SceneFlags scene;
   ReferenceFlags reference;
   std::string server;
+  ClientAccessFlags access;
   std::string device = "auto";
   bool json = false;
 };
@@ -63,9 +65,11 @@ void Show(const v1::RenderImageProgress& progress, ProgressBar& bar) {
 
 absl::StatusOr<v1::RenderImageResponse> Call(const std::shared_ptr<grpc::Channel>& channel,
                                              const v1::RenderImageRequest& request,
-                                             const Interruption& interruption) {
+                                             const Interruption& interruption,
+                                             const std::string& token = "") {
   ProgressBar bar("rendering");
   grpc::ClientContext context;
+  if (!token.empty()) context.AddMetadata("authorization", absl::StrCat("Bearer ", token));
   const std::stop_callback cancel(interruption.Token(), [&context] { context.TryCancel(); });
   const auto stub = v1::ThunderheadService::NewStub(channel);
   const auto reader = stub->RenderImageWithProgress(&context, request);
@@ -93,9 +97,12 @@ absl::StatusOr<v1::RenderImageResponse> CallServer(const Flags& flags,
   request.mutable_scene()->set_storm_id(flags.storm);
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(kMaxResponseBytes);
-  return Call(
-      grpc::CreateCustomChannel(ToString(address), grpc::InsecureChannelCredentials(), arguments),
-      request, interruption);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const load::Access access, ReadClientAccess(flags.access));
+  const auto credentials = access.tls_roots.empty()
+                               ? grpc::InsecureChannelCredentials()
+                               : grpc::SslCredentials({access.tls_roots, "", ""});
+  return Call(grpc::CreateCustomChannel(ToString(address), credentials, arguments), request,
+              interruption, access.token);
 }
 
 absl::StatusOr<v1::RenderImageResponse> CallHere(const Flags& flags,
@@ -214,6 +221,7 @@ Command AddRender(CLI::App& app) {
       "--no-air{false}", flags->reference.light.air,
       "Reference: leave out the air: a black sky, and sunlight as above the atmosphere");
   render->add_option("--server", flags->server, "HOST:PORT of a running server's gRPC service");
+  AddClientAccessFlags(*render, flags->access);
   render->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();
   render->add_flag("--json", flags->json, "Print costs and the completed scene as JSON");

@@ -1,3 +1,5 @@
+#include <sys/resource.h>
+
 #include <csignal>
 #include <filesystem>
 #include <iostream>
@@ -10,28 +12,17 @@
 #include "app/address.h"
 #include "app/clouds_folder.h"
 #include "app/commands.h"
-#include "app/local_service.h"
+#include "app/serve_flags.h"
 #include "app/state_folder.h"
 #include "base/status.h"
 #include "gateway/gateway.h"
+#include "gateway/tls_contexts.h"
 #include "session/gl_frame_source.h"
 #include "spdlog/spdlog.h"
 #include "thunderhead/v1/thunderhead.grpc.pb.h"
 
 namespace thunderhead::app {
 namespace {
-
-struct Flags {
-  std::vector<std::string> data;
-  std::string http = "127.0.0.1:8080";
-  std::string grpc = "127.0.0.1:50051";
-  std::string device = "auto";
-  std::string page;
-  std::string clouds;
-  std::string state;
-  std::vector<std::string> allowed_origins;
-  double memory_budget_gib = 2.0;
-};
 
 // The installed page, or the one in the build tree; empty if there is neither.
 std::string DefaultPageFolder() {
@@ -45,7 +36,7 @@ std::string DefaultPageFolder() {
 
 // Draws two small pictures, with the sun before and behind the eye, so that storm and shaders are
 // ready for the first viewer.
-void WarmUp(const std::shared_ptr<grpc::Channel>& channel) {
+void WarmUp(const std::shared_ptr<grpc::Channel>& channel, const access::Door& door) {
   const auto stub = v1::ThunderheadService::NewStub(channel);
   for (const float azimuth_deg : {255.0F, 75.0F}) {
     v1::RenderImageRequest request;
@@ -54,12 +45,22 @@ void WarmUp(const std::shared_ptr<grpc::Channel>& channel) {
     request.mutable_scene()->mutable_camera()->mutable_orbit()->set_azimuth_deg(azimuth_deg);
     v1::RenderImageResponse response;
     grpc::ClientContext context;
+    context.AddMetadata("authorization", absl::StrCat("Bearer ", door.OwnToken()));
     const grpc::Status status = stub->RenderImage(&context, request, &response);
     if (!status.ok()) spdlog::warn("cannot draw the first storm: {}", status.error_message());
   }
 }
 
-absl::Status Serve(const Flags& flags) {
+// As many files as the system allows: each connection takes one, and the usual limit of 1024 was
+// made for programs that use select().
+void RaiseFileLimit() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+absl::Status Serve(ServeFlags flags) {
   // Blocked before any thread starts, so that only sigwait below takes them.
   sigset_t signals;
   sigemptyset(&signals);
@@ -69,6 +70,15 @@ absl::Status Serve(const Flags& flags) {
 
   THUNDERHEAD_ASSIGN_OR_RETURN(Address http, ParseAddress("--http", flags.http));
   THUNDERHEAD_ASSIGN_OR_RETURN(Address grpc, ParseAddress("--grpc", flags.grpc));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckReach(flags, http, grpc));
+  THUNDERHEAD_RETURN_IF_ERROR(CompleteFlags(flags));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<access::Door> door, MakeDoor(flags));
+  // Before any port opens, for its errors name the files.
+  if (!flags.tls.certificate.empty()) {
+    THUNDERHEAD_RETURN_IF_ERROR(
+        gateway::TlsContexts::Open(flags.tls.certificate, flags.tls.key).status());
+  }
+  RaiseFileLimit();
   volume::StormStoreOptions store_options;
   store_options.byte_budget = static_cast<std::size_t>(flags.memory_budget_gib * (1 << 30));
   THUNDERHEAD_ASSIGN_OR_RETURN(const CloudsFolder clouds, CloudsFolder::Open(flags.clouds));
@@ -83,15 +93,18 @@ absl::Status Serve(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(server_options.session_store, OpenSessionStore(flags.state));
   server_options.clouds_folder = clouds.Path();
   server_options.address = ToString(grpc);
+  server_options.tls = flags.tls;
+  server_options.door = door;
+  server_options.limits = flags.limits;
+  server_options.sessions = flags.sessions;
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<service::Server> server,
                                service::Server::Start(server_options, store, [&flags] {
                                  return session::MakeGlFrameSource(flags.device);
                                }));
-  gateway::GatewayOptions gateway_options;
+  gateway::GatewayOptions gateway_options = flags.gateway;
   gateway_options.address = http.host;
   gateway_options.port = http.port;
   gateway_options.page_directory = flags.page.empty() ? DefaultPageFolder() : flags.page;
-  gateway_options.allowed_origins = flags.allowed_origins;
   if (gateway_options.page_directory.empty()) {
     spdlog::warn("serving no page: none is installed with the program; name one with --page");
   }
@@ -100,9 +113,9 @@ absl::Status Serve(const Flags& flags) {
                                gateway::Gateway::Start(gateway_options, channel));
   http.port = gateway->Port();
   grpc.port = static_cast<std::uint16_t>(server->Port());
-  std::cout << "Thunderhead is ready at http://" << ToString(http) << "/ (gRPC " << ToString(grpc)
-            << ")" << std::endl;
-  std::thread warm_up([channel] { WarmUp(channel); });
+  std::cout << "Thunderhead is ready at " << (flags.tls.certificate.empty() ? "http" : "https")
+            << "://" << ToString(http) << "/ (gRPC " << ToString(grpc) << ")" << std::endl;
+  std::thread warm_up([channel, door] { WarmUp(channel, *door); });
   int signal = 0;
   sigwait(&signals, &signal);
   spdlog::info("stopping");
@@ -116,29 +129,9 @@ absl::Status Serve(const Flags& flags) {
 }  // namespace
 
 Command AddServe(CLI::App& app) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<ServeFlags>();
   CLI::App* serve = app.add_subcommand("serve", "Serve storms to browsers and gRPC clients");
-  serve
-      ->add_option("--data", flags->data,
-                   "Storm files, or folders of them; the page opens the first")
-      ->required();
-  serve->add_option("--http", flags->http, "HOST:PORT to serve the page on")->capture_default_str();
-  serve->add_option("--grpc", flags->grpc, "HOST:PORT to serve gRPC on")->capture_default_str();
-  serve->add_option("--device", flags->device, "auto, software or a GPU's number")
-      ->capture_default_str();
-  serve->add_option("--page", flags->page, "Folder with the built page");
-  serve->add_option(
-      "--clouds", flags->clouds,
-      "Folder in which generated clouds are kept; without it they are deleted when the "
-      "server stops");
-  serve->add_option("--state", flags->state,
-                    "Folder in which sessions outlive the server, or 'none'; by default "
-                    "$STATE_DIRECTORY, else thunderhead in $XDG_STATE_HOME or ~/.local/state");
-  serve->add_option("--allow-origin", flags->allowed_origins,
-                    "Origins of other sites whose pages may call the server");
-  serve->add_option("--memory-budget", flags->memory_budget_gib, "GiB of storms kept in memory")
-      ->check(CLI::Range(0.01, 1e6))
-      ->capture_default_str();
+  AddServeFlags(*serve, *flags);
   return {serve, [flags] { return Serve(*flags); }};
 }
 

@@ -48,9 +48,16 @@ class Transport {
                                            const std::string& request) = 0;
 };
 
+// What a guarded server asks for.
+struct Access {
+  std::string token;      // empty: none
+  std::string tls_roots;  // PEM of those who may vouch for the server by TLS; empty: no TLS
+};
+
 // To HOST:PORT of a server's gRPC.
-std::unique_ptr<Transport> MakeGrpcTransport(const std::string& address);
+std::unique_ptr<Transport> MakeGrpcTransport(const std::string& address, const Access& access = {});
 // To the HTTP port of a server or of a proxy before it.
-std::unique_ptr<Transport> MakeWebSocketTransport(const std::string& host, int port);
+std::unique_ptr<Transport> MakeWebSocketTransport(const std::string& host, int port,
+                                                  const std::string& token = "");
 
 }  // namespace thunderhead::load

@@ -42,6 +42,7 @@ constexpr int kSlowReceiveBufferBytes = 64 << 10;
 struct Host {
   std::string name;
   int port = 0;
+  std::string token;  // shown to it; empty: none
 
   std::string ToString() const {
     const bool is_ipv6 = name.find(':') != std::string::npos;
@@ -112,7 +113,8 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall> {
       tcp_socket.set_option(net::socket_base::receive_buffer_size(kSlowReceiveBufferBytes),
                             ignored);
     }
-    socket_.set_option(websocket::stream_base::decorator([](websocket::request_type& request) {
+    socket_.set_option(websocket::stream_base::decorator([this](websocket::request_type& request) {
+      if (!host_.token.empty()) request.set(http::field::authorization, "Bearer " + host_.token);
       request.set(http::field::sec_websocket_protocol, kSubprotocol);
     }));
     socket_.read_message_max(0);
@@ -240,6 +242,7 @@ class WebCall {
     request_.set(http::field::host, host_.ToString());
     request_.set(http::field::content_type, "application/grpc-web+proto");
     request_.set("X-Grpc-Web", "1");
+    if (!host_.token.empty()) request_.set(http::field::authorization, "Bearer " + host_.token);
     request_.keep_alive(false);
     request_.body().assign(1, '\0');
     for (const int shift : {24, 16, 8, 0}) {
@@ -320,8 +323,9 @@ class WebSocketTransport final : public Transport {
 
 }  // namespace
 
-std::unique_ptr<Transport> MakeWebSocketTransport(const std::string& host, int port) {
-  return std::make_unique<WebSocketTransport>(Host{host, port});
+std::unique_ptr<Transport> MakeWebSocketTransport(const std::string& host, int port,
+                                                  const std::string& token) {
+  return std::make_unique<WebSocketTransport>(Host{host, port, token});
 }
 
 }  // namespace thunderhead::load

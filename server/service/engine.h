@@ -12,6 +12,7 @@
 #include "base/executor.h"
 #include "base/wake_signal.h"
 #include "service/cloud_store.h"
+#include "service/limits.h"
 #include "session/render_loop.h"
 #include "session/session_keeper.h"
 #include "session/sessions.h"
@@ -28,6 +29,7 @@ struct Engine {
   base::Executor& executor;
   CloudStore& clouds;
   session::SessionKeeper* keeper;  // null: sessions end with the server
+  Limits limits;
 };
 
 // Calls `done` when what has been done to sessions outlives the server: at once if they end with

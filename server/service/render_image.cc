@@ -1,3 +1,5 @@
+#include <grpcpp/alarm.h>
+
 #include <atomic>
 #include <memory>
 #include <mutex>
@@ -62,10 +64,17 @@ class PictureJob {
       : engine_(engine), request_(request), response_(response), listener_(listener) {}
 
   void Begin() {
-    if (const absl::Status wrong = CompleteScene(); !wrong.ok()) return listener_.Ended(wrong);
+    if (const absl::Status wrong = CompleteScene(); !wrong.ok()) return End(wrong);
+    deadline_.Set(std::chrono::system_clock::now() + engine_.limits.max_render_time,
+                  [late = late_, cancelled = cancelled_, &wake = engine_.wake](bool rang) {
+                    if (!rang) return;
+                    *late = true;
+                    *cancelled = true;
+                    wake.Notify();
+                  });
     engine_.executor.Submit([this](const absl::Status& status) {
       const absl::Status submitted = status.ok() ? ReadAndSubmit() : status;
-      if (!submitted.ok()) listener_.Ended(submitted);
+      if (!submitted.ok()) End(submitted);
     });
   }
 
@@ -80,6 +89,7 @@ class PictureJob {
     v1::Scene& scene = *response_.mutable_scene();
     scene = request_.scene();
     THUNDERHEAD_RETURN_IF_ERROR(PrepareScene(engine_.store, engine_.loop.Techniques(), scene));
+    THUNDERHEAD_RETURN_IF_ERROR(CheckSize(engine_.limits, scene));
     if (!scene.rendering().has_reference()) return absl::OkStatus();
     return base::InvalidField("scene.rendering.reference",
                               "is given, which only sessions can show; for a file use "
@@ -104,11 +114,17 @@ class PictureJob {
   }
 
   void Drawn(absl::StatusOr<session::DisplayFrame> picture) {
-    if (!picture.ok()) return listener_.Ended(OfScene(picture.status()));
+    if (!picture.ok()) return End(OfScene(picture.status()));
     const auto drawn = std::make_shared<session::DisplayFrame>(*std::move(picture));
     engine_.executor.Submit([this, drawn](const absl::Status& status) {
-      listener_.Ended(status.ok() ? Encode(*drawn, request_, response_) : status);
+      End(status.ok() ? Encode(*drawn, request_, response_) : status);
     });
+  }
+
+  void End(const absl::Status& status) {
+    listener_.Ended(absl::IsCancelled(status) && *late_
+                        ? RenderedTooLong(engine_.limits.max_render_time)
+                        : status);
   }
 
   Engine& engine_;
@@ -116,22 +132,28 @@ class PictureJob {
   v1::RenderImageResponse& response_;
   PictureListener& listener_;
   const std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
+  const std::shared_ptr<std::atomic<bool>> late_ = std::make_shared<std::atomic<bool>>(false);
+  grpc::Alarm deadline_;
 };
 
 // A picture as the response of a unary call.
 class PictureReactor final : public grpc::ServerUnaryReactor, private PictureListener {
  public:
-  PictureReactor(Engine& engine, const v1::RenderImageRequest& request,
+  PictureReactor(Engine& engine, CallerRef caller, const v1::RenderImageRequest& request,
                  v1::RenderImageResponse& response)
-      : job_(engine, request, response, *this) {}
+      : caller_(std::move(caller)), job_(engine, request, response, *this) {}
 
   void Begin() { job_.Begin(); }
   void OnCancel() override { job_.Cancel(); }
   void OnDone() override { delete this; }
 
  private:
-  void Ended(const absl::Status& status) override { Finish(ToGrpcStatus(status)); }
+  void Ended(const absl::Status& status) override {
+    caller_->Report("RenderImage", status);
+    Finish(ToGrpcStatus(status));
+  }
 
+  const CallerRef caller_;
   PictureJob job_;
 };
 
@@ -140,8 +162,8 @@ class PictureReactor final : public grpc::ServerUnaryReactor, private PictureLis
 class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent>,
                             private PictureListener {
  public:
-  PictureStream(Engine& engine, const v1::RenderImageRequest& request)
-      : job_(engine, request, *image_.mutable_image(), *this) {}
+  PictureStream(Engine& engine, CallerRef caller, const v1::RenderImageRequest& request)
+      : caller_(std::move(caller)), job_(engine, request, *image_.mutable_image(), *this) {}
 
   void Begin() { job_.Begin(); }
   void OnCancel() override { job_.Cancel(); }
@@ -179,6 +201,7 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
   }
 
   void Ended(const absl::Status& status) override {
+    caller_->Report("RenderImageWithProgress", status);
     {
       const std::lock_guard lock(mutex_);
       end_ = ToGrpcStatus(status);
@@ -193,6 +216,7 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
     StartWriteAndFinish(&image_, grpc::WriteOptions(), *end_);
   }
 
+  const CallerRef caller_;
   v1::RenderImageEvent image_;
   v1::RenderImageEvent progress_;  // gRPC reads it while `writing_`
   std::mutex mutex_;
@@ -205,17 +229,18 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
 }  // namespace
 
 grpc::ServerUnaryReactor* RenderImage(Engine& engine, grpc::CallbackServerContext* /*context*/,
+                                      const CallerRef& caller,
                                       const v1::RenderImageRequest* request,
                                       v1::RenderImageResponse* response) {
-  auto* reactor = new PictureReactor(engine, *request, *response);
+  auto* reactor = new PictureReactor(engine, caller, *request, *response);
   reactor->Begin();
   return reactor;
 }
 
 grpc::ServerWriteReactor<v1::RenderImageEvent>* RenderImageWithProgress(
-    Engine& engine, grpc::CallbackServerContext* /*context*/,
+    Engine& engine, grpc::CallbackServerContext* /*context*/, CallerRef caller,
     const v1::RenderImageRequest* request) {
-  auto* reactor = new PictureStream(engine, *request);
+  auto* reactor = new PictureStream(engine, std::move(caller), *request);
   reactor->Begin();
   return reactor;
 }

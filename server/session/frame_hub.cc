@@ -359,6 +359,11 @@ absl::Status FrameHub::ClosedBecause() const {
   return closed_because_;
 }
 
+std::size_t FrameHub::Viewers() const {
+  const std::lock_guard lock(mutex_);
+  return watches_.size();
+}
+
 bool FrameHub::HasViewers() const {
   const std::lock_guard lock(mutex_);
   return !watches_.empty();

@@ -116,6 +116,7 @@ class FrameHub {
   absl::Status ClosedBecause() const;
 
   bool HasViewers() const;
+  std::size_t Viewers() const;
   // True if a viewer can be sent another frame now.
   bool HasReadyViewer() const;
   // The tiers in which viewers of a frame of that width take stills.

@@ -143,6 +143,7 @@ class OwnView {
 
 struct SessionsOptions {
   std::size_t max_sessions = 64;
+  std::size_t max_sessions_per_owner = 32;
   Clock::duration idle_timeout = std::chrono::minutes(15);  // with nobody there
   // With people there who acknowledge and send nothing.
   Clock::duration watched_idle_timeout = std::chrono::hours(1);
@@ -159,8 +160,10 @@ class Sessions {
  public:
   Sessions(const SessionsOptions& options, const SessionSignals& signals);
 
-  // RESOURCE_EXHAUSTED if there are too many, UNAVAILABLE after CloseAll.
-  absl::StatusOr<std::shared_ptr<Session>> Create(const Rules& rules = {});
+  // RESOURCE_EXHAUSTED if there are too many, in all or of that owner, UNAVAILABLE after CloseAll.
+  // No owner has as many as there may be, and so have those that come back from a store.
+  absl::StatusOr<std::shared_ptr<Session>> Create(const Rules& rules = {},
+                                                  const std::string& owner = "");
   // The session of a record from another run, as if nothing had happened but that everybody left.
   std::shared_ptr<Session> Restore(const SessionRecord& record, scene::Scene scene,
                                    std::string serialized);
@@ -199,6 +202,7 @@ class Sessions {
   std::mutex mutex_;
   Map sessions_;                                         // by id
   std::map<std::string, std::string> id_by_key_;         // both keys
+  std::map<std::string, std::string> owner_by_id_;       // of sessions that have one
   std::map<std::string, std::weak_ptr<OwnView>> views_;  // by id
   std::uint64_t view_count_ = 0;
   absl::Status closed_because_;

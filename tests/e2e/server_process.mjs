@@ -22,14 +22,14 @@ export function freePort() {
   });
 }
 
-// `state` is a folder in which sessions outlive the program.
-export async function startServer({ httpPort, grpcPort, state = "none" }) {
+// `state` is a folder in which sessions outlive the program; `more` are further flags.
+export async function startServer({ httpPort, grpcPort, state = "none", more = [] }) {
   const page = `${ROOT}client-web/dist`;
   if (!existsSync(BINARY)) throw new Error(`no program at ${BINARY}; build it, or set THUNDERHEAD_BINARY`);
   if (!existsSync(`${page}/index.html`)) throw new Error(`no page in ${page}; run npm run build in client-web`);
   const address = (port) => `127.0.0.1:${port}`;
   const flags = ["--data", `${ROOT}samples/supercell.nc`, "--http", address(httpPort), "--grpc", address(grpcPort)];
-  const child = spawn(BINARY, ["serve", ...flags, "--page", page, "--state", state], { cwd: ROOT });
+  const child = spawn(BINARY, ["serve", ...flags, "--page", page, "--state", state, ...more], { cwd: ROOT });
   let said = "";
   const url = await new Promise((resolve, reject) => {
     const timer = setTimeout(() => reject(new Error(`no URL printed in time:\n${said}`)), START_TIMEOUT_MS);
@@ -46,7 +46,7 @@ export async function startServer({ httpPort, grpcPort, state = "none" }) {
     child.stdout.on("data", (text) => {
       said += text;
       printed += text;
-      const match = /http:\/\/[^\s"']+/.exec(printed);
+      const match = /https?:\/\/[^\s"']+/.exec(printed);
       if (match) settle(resolve, match[0]);
     });
   });

@@ -192,6 +192,28 @@ TEST_P(WebSocketTest, UnknownMethodsAreUnimplemented) {
   EXPECT_EQ(client.CloseCode(), 1000);
 }
 
+TEST_P(WebSocketTest, ATokenBesideTheSubprotocolIsAuthorization) {
+  WebSocketClient client(Site().Port(),
+                         {"Metadata",
+                          {{"Sec-WebSocket-Protocol", "grpc-websocket.v1, bearer.YW5uYT8_Pg"},
+                           {"X-Forwarded-For", "192.0.2.7"}},
+                          0});
+  client.Send(std::string(1, kMessage));
+  client.Send(std::string(1, kHalfClose));
+  MetadataResponse response;
+  ASSERT_TRUE(response.ParseFromString(client.Receive().value_or(" ").substr(1)));
+  std::map<std::string, std::string> metadata;
+  for (const auto& entry : response.entries()) {
+    EXPECT_FALSE(metadata.contains(entry.name())) << entry.name();
+    metadata[entry.name()] = entry.value();
+  }
+  EXPECT_EQ(metadata["authorization"],
+            "Bearer anna?"
+            "?>");
+  // What the client says about its address is not passed on.
+  EXPECT_THAT(metadata["x-forwarded-for"], ::testing::StartsWith("127.0.0.1:"));
+}
+
 TEST_P(WebSocketTest, HeadersOfOtherProgramsAreMetadata) {
   WebSocketClient client(
       Site().Port(), {"Metadata", {{"Echo-Text", "some text"}, {"Cookie", "other=program"}}, 0});

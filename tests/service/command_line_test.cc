@@ -96,6 +96,11 @@ TEST_F(CommandLineTest, WrongUsageReturnsTwo) {
   ExpectError(render_ + " --renderer metaball --slices 9", 2, "for light_volume and half_angle;");
   ExpectError(render_ + " --camera kite", 2, "orbit, spotter or top-down");
   ExpectError("serve --data " + kSample + " --http nowhere", 2, "--http");
+  ExpectError("serve --data " + kSample + " --http 0.0.0.0:0", 2, "accept it with --insecure");
+  ExpectError("serve --data " + kSample + " --grpc 0.0.0.0:0", 2, "nobody is asked who they are");
+  ExpectError("serve --data " + kSample + " --auth tokens /dev/null", 1, "is not a file");
+  ExpectError("serve --data " + kSample + " --auth king", 2, "none, tokens FILE or jwt FILE");
+  ExpectError("serve --data " + kSample + " --tls-cert x", 2, "belong together");
   ExpectError("serve --data " + kSample + " --state /proc/none", 2, "--state is '/proc/none'");
 }
 

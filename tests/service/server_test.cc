@@ -188,7 +188,8 @@ TEST(StatusTableTest, EveryEngineStatusHasItsCode) {
   EXPECT_EQ(code(absl::OutOfRangeError("x")), grpc::StatusCode::INVALID_ARGUMENT);
   EXPECT_EQ(code(absl::NotFoundError("x")), grpc::StatusCode::NOT_FOUND);
   EXPECT_EQ(code(absl::DataLossError("x")), grpc::StatusCode::DATA_LOSS);
-  EXPECT_EQ(code(absl::UnauthenticatedError("x")), grpc::StatusCode::UNKNOWN);
+  EXPECT_EQ(code(absl::UnauthenticatedError("x")), grpc::StatusCode::UNAUTHENTICATED);
+  EXPECT_EQ(code(absl::UnknownError("x")), grpc::StatusCode::UNKNOWN);
   EXPECT_EQ(service::ToGrpcStatus(absl::InternalError("why")).error_message(), "why");
 }
 

@@ -56,6 +56,8 @@ export type Connection =
       readonly attempts: number;
       readonly retryInMs: number;
     }
+  // The server wants a token, or another one.
+  | { readonly kind: "locked"; readonly reason: string }
   // The session has ended; SessionState says why.
   | { readonly kind: "gone" };
 

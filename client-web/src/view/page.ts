@@ -4,6 +4,7 @@
 import { create } from "@bufbuild/protobuf";
 import { Code, type Transport } from "@connectrpc/connect";
 import { effect, untracked } from "@preact/signals-core";
+import { AccessToken } from "../core/access_token";
 import {
   type CameraKind,
   homeCamera,
@@ -71,6 +72,7 @@ export class Page implements SessionListener {
   readonly addresses: Addresses;
   readonly #keys: OwnKeys;
   readonly #window: Window;
+  readonly #token: AccessToken;
   readonly #calls: ServerCalls;
   readonly #client: SessionClient;
   readonly #storms: StormsOnServer;
@@ -95,8 +97,14 @@ export class Page implements SessionListener {
   #running = false;
   #codecs: Codec[] = [Codec.JPEG];
 
-  constructor(transport: Transport, openInteract: OpenInteract, window: Window) {
+  constructor(
+    transport: Transport,
+    openInteract: OpenInteract,
+    window: Window,
+    token = new AccessToken(undefined),
+  ) {
     this.#window = window;
+    this.#token = token;
     const { session } = this.state;
     const link = readLink(window.location.href);
     if (link.scene !== undefined) this.state.adoptScene(link.scene);
@@ -192,6 +200,13 @@ export class Page implements SessionListener {
   move(motion: (pose: Pose) => Pose): void {
     if (this.state.session.editBlock.peek() === undefined) this.state.move(motion);
     else if (this.#startsLookingAround()) this.#ownView.move(motion, this.#shownPose());
+  }
+
+  // Tries again with this token.
+  signIn(token: string): void {
+    this.#token.set(token);
+    this.state.connection.value = { kind: "connecting" };
+    this.#client.retryNow();
   }
 
   follow(): void {
