@@ -25,6 +25,7 @@ absl::StatusOr<TracedScene> TraceScene(const scene::Scene& scene,
                                        const ImageObserver& observer, const std::stop_token& stop) {
   MediumOptions of_medium;
   of_medium.peak_cut_deg = options.peak_cut_deg;
+  of_medium.detail_voxels_per_cell = options.detail_voxels_per_cell;
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto medium, MediumOf(scene, fields, of_medium));
   Surroundings surroundings = SurroundingsOf(scene, fields, GroundLight::kShaded);
   if (!options.air) TakeAwayAir(scene, &surroundings);
