@@ -87,7 +87,8 @@ volume::DrawnMedium::Channels DetailedMedium::At_per_m(const glm::dvec3& place_m
   if (!inside) return {};
   volume::DrawnMedium::Channels values =
       medium_->At(glm::vec3((place_m - volume_.grid.low_corner_m) / volume_.grid.spacing_m));
-  for (float& value : values) value *= volume_.extinction_per_m;
+  // Where billows leave nothing, rounding may leave less.
+  for (float& value : values) value = std::max(value, 0.0F) * volume_.extinction_per_m;
   return values;
 }
 
