@@ -127,6 +127,9 @@ Command AddMeasureLook(CLI::App& measure) {
   look->add_option("--spp", flags->samples_per_pixel,
                    "Also trace the reference with so many samples a pixel")
       ->check(CLI::Range(1, 1 << 20));
+  look->add_option("--peak-cut", flags->light.peak_cut_deg, "As in thunderhead render")
+      ->check(CLI::Range(0.0, 30.0))
+      ->capture_default_str();
   look->add_option("--detail", flags->light.detail_voxels_per_cell, "As in thunderhead render")
       ->check(CLI::Range(1, 8));
   look->add_option("--device", flags->device, "auto, software or a GPU's number")

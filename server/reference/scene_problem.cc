@@ -28,6 +28,9 @@
 namespace thunderhead::reference {
 namespace {
 
+// Above it sunlight no longer changes.
+constexpr double kHighestSun_m = 4e4;
+
 struct GridBox {
   volume::RegularGrid grid;
   glm::ivec3 first_cell{0};  // in the domain
@@ -326,6 +329,11 @@ Surroundings SurroundingsOf(const scene::Scene& asked, const volume::Hydrometeor
   const auto shared =
       std::make_shared<const Around>(scene, towards_sun, view, static_cast<float>(lowest_m));
   around.sun_irradiance = scene.sun.irradiance * glm::dvec3(shared->sky.SunTransmittance());
+  for (int i = 0; i * Surroundings::kSunStep_m <= kHighestSun_m; ++i) {
+    const physics::AirPlace place{static_cast<float>(i * Surroundings::kSunStep_m), towards_sun.z};
+    around.sun_by_height.push_back(scene.sun.irradiance *
+                                   glm::dvec3(shared->atmosphere.SunTransmittance(place)));
+  }
   const physics::AirPlace eye{static_cast<float>(std::max(view.altitude_m, 0.0)),
                               static_cast<float>((view.local_from_world * around.towards_sun).z)};
   const double solid_angle = 2.0 * std::numbers::pi * (1.0 - std::cos(physics::kSunRadius_rad));

@@ -10,6 +10,7 @@ namespace {
 
 void TakeAwayAir(const scene::Scene& scene, Surroundings* surroundings) {
   surroundings->sun_irradiance = glm::dvec3(scene.sun.irradiance);
+  surroundings->sun_by_height.clear();
   surroundings->sky = nullptr;
   surroundings->seen_sky = nullptr;
   surroundings->air = nullptr;
@@ -31,6 +32,7 @@ absl::StatusOr<TracedScene> TraceScene(const scene::Scene& scene,
   if (!options.air) TakeAwayAir(scene, &surroundings);
   if (!options.sun) {
     surroundings.sun_irradiance = glm::dvec3(0.0);
+    surroundings.sun_by_height.clear();
     surroundings.disc.reset();
   }
   PathTracerOptions of_paths;

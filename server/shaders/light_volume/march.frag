@@ -10,6 +10,7 @@
 #include "common/bricks.glsl"
 #include "common/ground_distance.glsl"
 #include "common/phase.glsl"
+#include "common/sunlight.glsl"
 #include "common/view.glsl"
 #define GLOWS (CONSISTENT && !DIFFUSION)
 #include "common/scattered.glsl"
@@ -188,10 +189,12 @@ void main() {
     before = here;
   }
 
-  vec3 radiance = radiance_of(seen.scattered, step_m, haversine_between(direction, towards_sun));
+  // One height stands for all that the ray shows.
+  vec3 sunlight = sunlight_at(origin_m.z + mean_distance_m(seen) * direction.z);
+  vec3 radiance = radiance_of(seen.scattered, sunlight, step_m, haversine_between(direction, towards_sun));
 #if DIFFUSION
   if (seen.diffuse.transmittance <= kOpaqueTransmittance) close_diffuse(seen.diffuse);
-  radiance += diffuse_radiance(seen.diffuse);
+  radiance += diffuse_radiance(seen.diffuse, sunlight);
 #endif
 #if PLACES
   radiance = seen_place(seen, origin_m, direction);

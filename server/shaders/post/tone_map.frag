@@ -13,7 +13,7 @@ out vec4 display;
 // 1 - (1 - s) exp((s - x) / (1 - s)) that tends to 1. Uchimura 2017, "HDR theory and practice" (CEDEC), with P = a = 1 and b = 0.
 vec3 film(vec3 x) {
   const float m = 0.22;
-  const float l = 0.4;
+  const float l = 0.6;
   const float c = 1.33;
   const float s = m + l * (1.0 - m);
   vec3 toe = m * pow(x / m, vec3(c));
