@@ -201,7 +201,7 @@ void main() {
     }
     see_segment(seen, before, here, segment_m, distance_m);
     before = here;
-    limit_m = min(2.0 * limit_m, step_m);
+    limit_m = min(1.3 * limit_m, step_m);  // slowly: behind a gap the next wall is near
   }
 
   // One height stands for all that the ray shows.
