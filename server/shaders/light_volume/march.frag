@@ -130,7 +130,7 @@ float advance(inout float distance_m, float end_m, MediumRay ray, float cell_m, 
     if (content == kThickBrick) break;
     if (content == kThinBrick) {
       // No farther than a sample of thick bricks into the next one, which may be thick.
-      longest_m = clamp(empty_path(ray, place, 1u), sampled_m, max(sampled_m, cell_m));
+      longest_m = min(clamp(empty_path(ray, place, 1u), sampled_m, max(sampled_m, cell_m)), limit_m);
       break;
     }
     distance_m = max(distance_m + empty_path(ray, place, content), distance_m * kOnwards);
@@ -188,7 +188,8 @@ void main() {
   Sample before = no_sample();
   // A cloud's face is sought: where a segment would take much of what is still seen, it is sampled again in shorter ones.
   float finest_m = near_step.x * cell_m;
-  float limit_m = step_m;
+  float longest_m = max(step_m, cell_m);
+  float limit_m = longest_m;
   for (int i = 0; i < kMaxSamples && distance_m < end_m && background_transmittance(seen) > kOpaqueTransmittance; ++i) {
     float begin_m = distance_m;
     float segment_m = advance(distance_m, end_m, ray, cell_m, limit_m, before.extinction < 0.0);
@@ -201,7 +202,7 @@ void main() {
     }
     see_segment(seen, before, here, segment_m, distance_m);
     before = here;
-    limit_m = min(1.3 * limit_m, step_m);  // slowly: behind a gap the next wall is near
+    limit_m = min(1.3 * limit_m, longest_m);  // slowly: behind a gap the next wall is near
   }
 
   // One height stands for all that the ray shows.
