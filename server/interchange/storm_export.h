@@ -20,8 +20,8 @@ inline constexpr int kDetailVoxelsPerCell = 4;
 struct ExportOptions {
   // False: a voxel is a cell of the storm's grid, so that every column keeps its water path. True:
   // kDetailVoxelsPerCell along each of its edges, and the medium there is the one that the light
-  // volume draws (scene/detailed_medium.h): the storm keeps its water path within 1 %, columns as
-  // in volume/water_paths.h.
+  // volume draws (scene/detailed_medium.h): each group of fields keeps its water path within 1 %,
+  // columns as in volume/water_paths.h.
   bool detail = false;
 };
 

