@@ -26,6 +26,7 @@ Command AddMeasureExtremes(CLI::App& measure);
 Command AddMeasureSlices(CLI::App& measure);
 Command AddMeasureTrade(CLI::App& measure);
 Command AddMeasureLight(CLI::App& measure);
+Command AddMeasureLook(CLI::App& measure);
 Command AddGenerate(CLI::App& app);
 Command AddFit(CLI::App& app);
 Command AddExport(CLI::App& app);

@@ -162,10 +162,11 @@ absl::Status Render(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(*request.mutable_scene(), ReadScene(flags.scene));
   if (request.scene().rendering().has_reference()) return ByReference(flags);
   if (flags.reference.AnyLimit() || !flags.reference.light.air ||
-      flags.reference.light.max_scatterings != 0) {
+      flags.reference.light.max_scatterings != 0 ||
+      flags.reference.light.detail_voxels_per_cell != 0) {
     return absl::InvalidArgumentError(
-        "--spp, --seconds, --target-error, --max-scatterings and --no-air are for --renderer "
-        "reference");
+        "--spp, --seconds, --target-error, --max-scatterings, --detail and --no-air are for "
+        "--renderer reference");
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(const v1::ImageFormat format, FormatOf(flags.output));
   request.set_format(format);
@@ -217,6 +218,11 @@ Command AddRender(CLI::App& app) {
       ->capture_default_str();
   render->add_option("--max-scatterings", flags->reference.light.max_scatterings,
                      "Reference: leave out light that is scattered more often; by default none");
+  render
+      ->add_option("--detail", flags->reference.light.detail_voxels_per_cell,
+                   "Reference: trace the turbulent detail that the light volume draws, on so many "
+                   "voxels along a cell's edge; by default without detail")
+      ->check(CLI::Range(1, 8));
   render->add_flag(
       "--no-air{false}", flags->reference.light.air,
       "Reference: leave out the air: a black sky, and sunlight as above the atmosphere");

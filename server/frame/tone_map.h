@@ -29,7 +29,7 @@ struct ToneMapped {
 inline constexpr float kExposureAtZeroEv = 6.0F;
 // Exposed luminance that the film's curve shows just below white, at 0.9 of it; its contrast leaves
 // it as it is.
-inline constexpr float kJustBelowWhite = 1.25F;
+inline constexpr float kJustBelowWhite = 0.935F;
 
 class ToneMapper {
  public:

@@ -164,6 +164,11 @@ Illumination SkyAndGround::IlluminationOf(const scene::Scene& scene) const {
   light.towards_sun = towards_sun_;
   const auto irradiance = static_cast<float>(scene.sun.irradiance);
   light.sunlight = irradiance * sky_->SunTransmittance();
+  for (int i = 0; i < shaders::kSunlightLevels; ++i) {
+    const float height_m = static_cast<float>(i) * shaders::kSunlightStep_m;
+    light.sunlight_levels.push_back(
+        irradiance * atmosphere_->SunTransmittance({height_m, static_cast<float>(towards_sun_.z)}));
+  }
   light.from_sky = sky_light_.mean_radiance * irradiance * static_cast<float>(scene.sky.brightness);
   // Of ground without the storm's shadow: what shows of it around the storm is larger.
   const float sine = std::max(static_cast<float>(towards_sun_.z), 0.0F);

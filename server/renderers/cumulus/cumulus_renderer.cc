@@ -9,6 +9,7 @@
 #include "glm/geometric.hpp"
 #include "glm/matrix.hpp"
 #include "renderers/cumulus/variants.h"
+#include "renderers/sunlight.h"
 #include "renderers/view_uniforms.h"
 #include "shaders/bindings.h"
 #include "shaders/uniforms.h"
@@ -225,7 +226,7 @@ void CumulusRenderer::SetShading(const gl::Program& program, const RenderSetting
   const double tile_m = wave_m * physics::TurbulenceTile::kWaves;
   const glm::dvec3 corner = Middle_m() / tile_m;
   program.Set(uniform::towards_sun, glm::vec3(settings.illumination.towards_sun));
-  program.Set(uniform::sunlight, settings.illumination.sunlight);
+  BindSunlight(program, settings.illumination, Middle_m().z);
   program.Set(uniform::light_map, light_map);
   program.Set(uniform::component, SharesOf(cumulus.component));
   program.Set(uniform::trap_share, cumulus.trap);

@@ -188,8 +188,7 @@ void LightVolumeRenderer::BindDiffusion(const gl::Program& program, const Reside
   program.Set(uniform::transport_weights, medium.Weights(weights.transport));
   program.Set(uniform::rest_of_sky, settings.illumination.rest_of_sky);
   program.Set(uniform::rest_of_sky_level, settings.illumination.rest_of_sky_level);
-  program.Set(uniform::diffuse_sunlight,
-              settings.illumination.sunlight + settings.illumination.around_sun);
+  program.Set(uniform::around_sun, settings.illumination.around_sun);
   program.Set(uniform::from_ground, settings.illumination.from_ground);
   constexpr std::array kTints = {uniform::red_weights, uniform::green_weights,
                                  uniform::blue_weights};

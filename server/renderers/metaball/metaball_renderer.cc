@@ -12,6 +12,7 @@
 #include "renderers/metaball/light_order.h"
 #include "renderers/metaball/tiles.h"
 #include "renderers/metaball/variants.h"
+#include "renderers/sunlight.h"
 #include "renderers/view_uniforms.h"
 #include "shaders/bindings.h"
 #include "shaders/uniforms.h"
@@ -130,7 +131,7 @@ gl::Buffer BufferOf(const std::vector<std::uint32_t>& values) {
 
 std::vector<MetaballRenderer::Light> MetaballRenderer::LightsOf(const RenderSettings& settings) {
   const Illumination& from = settings.illumination;
-  std::vector<Light> lights = {{from.towards_sun, from.sunlight, false}};
+  std::vector<Light> lights = {{from.towards_sun, glm::vec3(1.0F), false}};
   if (IsPaper(settings)) {
     // The paper has lights in directions only: the halves of the sky stand in as their middles.
     const float half_sky = std::numbers::pi_v<float>;
@@ -304,6 +305,7 @@ absl::Status MetaballRenderer::FindSources(const RenderSettings& settings) {
   program->Set(uniform::eye_m, glm::vec3(settings.view.eye_m - box_.Middle_m()));
   program->Set(uniform::towards_light, towards);
   program->Set(uniform::irradiance, irradiance);
+  BindSunlight(*program, settings.illumination, box_.Middle_m().z);
   program->Set(uniform::sky_radiance, settings.illumination.from_sky);
   program->Set(uniform::ground_radiance, settings.illumination.from_ground);
   program->Set(uniform::paper_albedo, static_cast<float>(SettingsOf(settings).albedo));
