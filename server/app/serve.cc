@@ -83,10 +83,9 @@ absl::Status Serve(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(server_options.session_store, OpenSessionStore(flags.state));
   server_options.clouds_folder = clouds.Path();
   server_options.address = ToString(grpc);
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<service::Server> server,
-                               service::Server::Start(server_options, store, [&flags] {
-                                 return session::MakeGlFrameSource(flags.device);
-                               }));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const std::unique_ptr<service::Server> server,
+      service::Server::Start(server_options, store, session::GlFrameSources(flags.device)));
   gateway::GatewayOptions gateway_options;
   gateway_options.address = http.host;
   gateway_options.port = http.port;

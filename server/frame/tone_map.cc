@@ -17,6 +17,8 @@ constexpr float kMostFactor = 64.0F;
 // And at most this times the exposure of a white card in the sun: what is all in shadow stays dark.
 constexpr float kMostAboveCard = 2.0F;
 
+constexpr gl::PieceCost kPixel{"tone map", 50.0};
+
 struct ToneMapVariant {
   gl::DefineValue filmic;
 
@@ -37,7 +39,7 @@ absl::StatusOr<float> ToneMapper::ExposureOf(const gl::Texture2D& linear,
   }
   if (brightest_.Get() == 0) brightest_ = gl::Texture2D(GL_R32F, glm::ivec2(1));
   THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
-                               programs_.Get(gl::ProgramSource::Compute("post/meter.comp")));
+                               programs_->Get(gl::ProgramSource::Compute("post/meter.comp")));
   program->Set(uniform::luminance_weights, kLuminance * balance);
   linear.Bind(shaders::kLinearFrameUnit);
   brightest_.BindImage(shaders::kMeterImage, GL_WRITE_ONLY);
@@ -65,17 +67,20 @@ absl::StatusOr<ToneMapped> ToneMapper::Map(const gl::Texture2D& linear, const sc
   const ToneMapVariant variant{.filmic = display.tone_map == scene::ToneMap::kFilmic};
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_.Get(gl::ProgramSource::WholeTarget("post/tone_map.frag", variant.Defines())));
+      programs_->Get(gl::ProgramSource::WholeTarget("post/tone_map.frag", variant.Defines())));
   program->Set(uniform::gain, exposure * balance);
   program->Set(uniform::just_below_white, kJustBelowWhite);
   linear.Bind(shaders::kLinearFrameUnit);
-  whole_target_.Draw(*program, target_);
+  gl::Pieces& pieces = programs_->Pieces();
+  double waited_ms = pieces.WaitedMs();
+  THUNDERHEAD_RETURN_IF_ERROR(whole_target_.Draw(pieces, kPixel, *program, target_));
   glFinish();
   ToneMapped mapped;
   mapped.exposure_ev = std::log2(exposure / kExposureAtZeroEv);
-  mapped.tone_ms = stopwatch.Restart();
-  mapped.rgb = pixels_.Rgb(display_);
-  mapped.read_back_ms = stopwatch.ElapsedMs();
+  mapped.tone_ms = stopwatch.Restart() - (pieces.WaitedMs() - waited_ms);
+  waited_ms = pieces.WaitedMs();
+  THUNDERHEAD_ASSIGN_OR_RETURN(mapped.rgb, pixels_.Rgb(display_, pieces));
+  mapped.read_back_ms = stopwatch.ElapsedMs() - (pieces.WaitedMs() - waited_ms);
   return mapped;
 }
 

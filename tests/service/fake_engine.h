@@ -114,6 +114,9 @@ struct FakeMachine {
   std::set<std::pair<int, int>> prepared_;  // numbers of balls, times
 };
 
+// In turns, their pictures are cut into pieces of so long.
+inline constexpr double kFakePiece_ms = 10.0;
+
 session::FrameSourceFactory FakeFrameSources(std::shared_ptr<FakeMachine> machine);
 
 // The behaviour of fake references, shared with the test: each sample takes `ms_per_sample`, and

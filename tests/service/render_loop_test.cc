@@ -162,7 +162,11 @@ class RenderLoopTest : public ::testing::Test {
       std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false)) {
     auto promise = std::make_shared<std::promise<absl::StatusOr<DisplayFrame>>>();
     auto future = promise->get_future();
-    loop_->RenderImage({scene, *store_.Get("anvil", 0, {}), std::move(cancelled),
+    loop_->RenderImage({scene,
+                        [this, scene]() -> absl::StatusOr<ImageInput> {
+                          return ImageInput{*store_.Get("anvil", 0, {}), scene.camera};
+                        },
+                        [](DisplayFrame&) { return absl::OkStatus(); }, std::move(cancelled),
                         [promise](absl::StatusOr<DisplayFrame> picture) {
                           promise->set_value(std::move(picture));
                         }});
