@@ -31,6 +31,7 @@ struct Flags {
   std::string state;
   std::vector<std::string> allowed_origins;
   double memory_budget_gib = 2.0;
+  session::RenderLoopOptions render_loop;
 };
 
 // The installed page, or the one in the build tree; empty if there is neither.
@@ -82,6 +83,7 @@ absl::Status Serve(const Flags& flags) {
   service::ServerOptions server_options;
   THUNDERHEAD_ASSIGN_OR_RETURN(server_options.session_store, OpenSessionStore(flags.state));
   server_options.clouds_folder = clouds.Path();
+  server_options.render_loop = flags.render_loop;
   server_options.address = ToString(grpc);
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const std::unique_ptr<service::Server> server,
@@ -137,6 +139,16 @@ Command AddServe(CLI::App& app) {
                     "Origins of other sites whose pages may call the server");
   serve->add_option("--memory-budget", flags->memory_budget_gib, "GiB of storms kept in memory")
       ->check(CLI::Range(0.01, 1e6))
+      ->capture_default_str();
+  serve
+      ->add_option("--max-render-seconds", flags->render_loop.image_limits.max_predicted_s,
+                   "Single pictures that would take longer to draw are refused")
+      ->check(CLI::Range(0.001, 1e6))
+      ->capture_default_str();
+  serve
+      ->add_option("--max-stills", flags->render_loop.max_waiting_images,
+                   "Single pictures that may wait to be drawn; more are refused")
+      ->check(CLI::Range(0, 1'000'000))
       ->capture_default_str();
   return {serve, [flags] { return Serve(*flags); }};
 }

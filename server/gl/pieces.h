@@ -37,9 +37,8 @@ class Pieces {
   template <typename Draw>
   auto During(const Draw& draw) -> decltype(draw()) {
     if (absl::Status taken = Take(); !taken.ok()) return taken;
-    auto drawn = draw();
-    GiveBack();
-    return drawn;
+    const Held held(*this);  // allocations may fail
+    return draw();
   }
 
   // Marks a place between two pieces: lets others draw if this piece has lasted long enough.
@@ -77,6 +76,15 @@ class Pieces {
     double worst = 0.0;
     double last = 0.0;
     double unmeasured;  // what it may cost where nothing was measured
+  };
+
+  struct Held {
+    explicit Held(Pieces& in) : pieces(in) {}
+    ~Held() { pieces.GiveBack(); }
+    Held(const Held&) = delete;
+    Held& operator=(const Held&) = delete;
+
+    Pieces& pieces;
   };
 
   absl::Status Take();

@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
+#include "base/out_of_memory.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 
@@ -95,11 +96,13 @@ void ImageDrawer::WorkIn(Lane& lane, Begun& image) {
   // `begun_` keeps it until the lane is idle.
   lane.Begin(
       [&image, draws, preparation = preparation_](const absl::StatusOr<FrameSource*>& source) {
-        image.status = source.status();
-        if (image.status.ok() && image.phase == Phase::kReading) {
-          image.status = Read(image, preparation);
-        }
-        if (image.status.ok() && draws) image.status = Draw(image, **source);
+        image.status = base::OrOutOfMemory([&]() -> absl::Status {
+          THUNDERHEAD_RETURN_IF_ERROR(source.status());
+          if (image.phase == Phase::kReading) {
+            THUNDERHEAD_RETURN_IF_ERROR(Read(image, preparation));
+          }
+          return draws ? Draw(image, **source) : absl::OkStatus();
+        });
       },
       {image.job.cancelled, kPatience * 1e3 * limits_.max_predicted_s});
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/out_of_memory.h"
+
 namespace thunderhead::session {
 
 void LightTracer::Want(const std::string& who, Request request) {
@@ -55,11 +57,11 @@ std::optional<Clock::time_point> LightTracer::Attend(Clock::time_point now) {
     lane_.Begin(
         [outcome = outcome_, request = wanted.request](const absl::StatusOr<FrameSource*>& source) {
           accuracy::LightClaim claim;
-          Progress progress = source.status();
-          if (source.ok()) {
-            progress = (*source)->TraceLight(*request.scene, request.fields, request.wanted_paths,
-                                             request.claims ? &claim : nullptr);
-          }
+          Progress progress = base::OrOutOfMemory([&]() -> Progress {
+            if (!source.ok()) return source.status();
+            return (*source)->TraceLight(*request.scene, request.fields, request.wanted_paths,
+                                         request.claims ? &claim : nullptr);
+          });
           const std::lock_guard lock(outcome->mutex);
           outcome->progress = std::move(progress);
           outcome->claim = std::move(claim);

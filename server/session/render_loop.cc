@@ -10,6 +10,7 @@
 #include "base/error_details.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
+#include "base/thread_priority.h"
 #include "session/image_drawer.h"
 #include "session/lane.h"
 #include "session/light_tracer.h"
@@ -22,7 +23,6 @@ namespace {
 
 // Behind whoever waits, but before tracing, which could use all processors for ever.
 constexpr int kImageNiceness = 5;
-constexpr int kTracingNiceness = 19;
 
 // Who draws beside the render loop.
 class Lanes {
@@ -34,7 +34,7 @@ class Lanes {
   };
 
   Lanes(const FrameSourceFactory& make_source, const std::function<void()>& wake)
-      : tracing(make_source, kTracingNiceness, wake),
+      : tracing(make_source, base::kLowestPriority, wake),
         quick_images(make_source, kImageNiceness, wake),
         images(make_source, kImageNiceness, wake),
         all_{{"/tracing", TurnClass::kRefining, tracing},

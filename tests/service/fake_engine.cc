@@ -123,7 +123,10 @@ class FakeFrameSource final : public session::FrameSource {
       const double piece_ms = turn_ != nullptr ? std::min(left_ms, kFakePiece_ms) : left_ms;
       std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(piece_ms));
       left_ms -= piece_ms;
-      if (turn_ != nullptr) turn_->GiveBack();
+      if (turn_ != nullptr) {
+        ++machine_->pieces;
+        turn_->GiveBack();
+      }
     } while (left_ms > 0.0);
     if (scene.display.exposure_ev > machine_->fails_above_exposure_ev) {
       return absl::InternalError("the fake machine does not like this exposure");
