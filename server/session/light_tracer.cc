@@ -23,7 +23,7 @@ std::optional<absl::StatusOr<accuracy::LightProgress>> LightTracer::TakeNews(
 }
 
 void LightTracer::TakeOutcome(Clock::time_point now) {
-  if (outcome_ == nullptr) return;
+  if (outcome_ == nullptr || !lane_.IsIdle()) return;
   const std::shared_ptr<Outcome> outcome = std::exchange(outcome_, nullptr);
   const std::lock_guard lock(outcome->mutex);
   const auto found = wanted_.find(tracing_for_);
@@ -38,9 +38,8 @@ void LightTracer::TakeOutcome(Clock::time_point now) {
   wanted.news = std::move(outcome->progress);
 }
 
-std::optional<Clock::time_point> LightTracer::Attend(Clock::time_point now) {
-  if (!lane_.IsIdle()) return std::nullopt;
-  TakeOutcome(now);
+std::optional<Clock::time_point> LightTracer::Begin(Clock::time_point now) {
+  if (!lane_.IsIdle() || outcome_ != nullptr) return std::nullopt;
   std::optional<Clock::time_point> again;
   auto next = wanted_.upper_bound(tracing_for_);
   for (std::size_t left = wanted_.size(); left > 0; --left, ++next) {

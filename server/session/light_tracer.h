@@ -39,8 +39,10 @@ class LightTracer {
   // The progress since the last call, or why there is none.
   std::optional<absl::StatusOr<accuracy::LightProgress>> TakeNews(const std::string& who);
 
+  // Takes what a step has brought since the last call.
+  void TakeOutcome(Clock::time_point now);
   // Begins the next step if none is under way. Returns when to call again without a wake-up.
-  std::optional<Clock::time_point> Attend(Clock::time_point now);
+  std::optional<Clock::time_point> Begin(Clock::time_point now);
 
  private:
   using Progress = absl::StatusOr<accuracy::LightProgress>;
@@ -58,8 +60,6 @@ class LightTracer {
     std::optional<Progress> progress;
     accuracy::LightClaim claim;
   };
-
-  void TakeOutcome(Clock::time_point now);
 
   Lane& lane_;
   std::map<std::string, Wanted> wanted_;

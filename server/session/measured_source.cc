@@ -25,9 +25,9 @@ absl::StatusOr<DisplayFrame> MeasuredSource::Draw(
     const FrameQuality& quality, const std::optional<double>& discretisation_error) {
   last_drawn_.reset();
   const base::Stopwatch stopwatch;
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      DisplayFrame frame,
-      base::OrOutOfMemory([&] { return source_->Draw(scene, fields, quality); }));
+  THUNDERHEAD_ASSIGN_OR_RETURN(DisplayFrame frame, base::OrOutOfMemory([&] {
+                                 return source_->Draw(scene, fields, quality);
+                               }));
   last_drawn_ = LastDrawn{scene, quality};
   Report(view, scene, quality, stopwatch.ElapsedMs(), discretisation_error, &frame);
   return frame;
@@ -37,9 +37,9 @@ absl::StatusOr<CheckedFrame> MeasuredSource::DrawChecked(const std::string& view
                                                          const scene::Scene& scene,
                                                          const Fields& fields) {
   last_drawn_.reset();
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      CheckedFrame checked,
-      base::OrOutOfMemory([&] { return source_->DrawChecked(scene, fields); }));
+  THUNDERHEAD_ASSIGN_OR_RETURN(CheckedFrame checked, base::OrOutOfMemory([&] {
+                                 return source_->DrawChecked(scene, fields);
+                               }));
   last_drawn_ = LastDrawn{scene, FrameQuality{}};
   Report(view, scene, FrameQuality{}, TotalMs(checked.frame), checked.discretisation_error,
          &checked.frame);

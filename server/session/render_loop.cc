@@ -132,6 +132,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
   while (!stopping_) {
     const std::vector<std::shared_ptr<Session>> sessions = sessions_.AllDrawn();
     drawer.ReleaseUnwatched(sessions);
+    light_tracer.TakeOutcome(Clock::now());
     image_drawer.Attend();
     std::optional<Clock::time_point> look_again_at;
     std::vector<Contender> contenders;
@@ -142,7 +143,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
       look_again_at = Earlier(look_again_at, wish.look_again_at);
     }
     // After the sessions, some of whom may just have asked for light.
-    look_again_at = Earlier(look_again_at, light_tracer.Attend(Clock::now()));
+    look_again_at = Earlier(look_again_at, light_tracer.Begin(Clock::now()));
     for (const Lanes::Entry& entry : lanes->All()) {
       contenders.push_back({entry.name, false, std::nullopt});
       if (entry.lane.WantsTurn()) contenders.back().work = entry.turn_class;

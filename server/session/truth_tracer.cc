@@ -145,7 +145,7 @@ void TruthTracer::Keep(Job& job, Found found, bool ended) {
 }
 
 void TruthTracer::Run() {
-  // Threads that oneTBB starts for it inherit that.
+  // Threads that it starts inherit that.
   base::LowerPriority(base::kLowestPriority);
   std::unique_lock lock(mutex_);
   while (true) {

@@ -17,11 +17,20 @@ std::string GroupOf(const Contender& contender) {
   return std::to_string(IndexOf(*contender.work)) + (contender.own_view ? " own" : "");
 }
 
-// Raises all balances by as much as lets one of `waiting` have a turn.
-void Refill(const std::set<std::string>& waiting, std::map<std::string, double>* balances) {
+// Raises all balances by as much as lets one of `waiting` have a turn. Returns who that is: of
+// several the one after `last`.
+std::string Refill(const std::set<std::string>& waiting, const std::string& last,
+                   std::map<std::string, double>* balances) {
   double best = -std::numeric_limits<double>::infinity();
   for (const std::string& id : waiting) best = std::max(best, (*balances)[id]);
   for (auto& [id, balance] : *balances) balance = std::min(balance - best, 0.0);
+  std::string next;
+  for (const std::string& id : waiting) {
+    if ((*balances)[id] < 0.0) continue;
+    if (id > last) return id;
+    if (next.empty()) next = id;
+  }
+  return next;
 }
 
 }  // namespace
@@ -32,7 +41,7 @@ std::optional<TurnClass> Turns::ClassNow(const std::vector<Contender>& contender
     if (contender.work.has_value()) waits_[IndexOf(*contender.work)] = true;
   }
   for (std::size_t i = 0; i < kTurnClasses; ++i) {
-    if (!waits_[i]) owed_ms_[i] = 0.0;
+    if (!waits_[i]) owed_ms_[i] = std::min(owed_ms_[i], 0.0);
   }
   for (std::size_t i = kTurnClasses; i-- > 1;) {
     if (owed_ms_[i] >= kWorthATurn_ms) return static_cast<TurnClass>(i);
@@ -45,38 +54,36 @@ std::optional<TurnClass> Turns::ClassNow(const std::vector<Contender>& contender
 std::optional<std::size_t> Turns::Next(const std::vector<Contender>& contenders) {
   std::set<std::string> present;
   for (const Contender& contender : contenders) present.insert(contender.id);
-  std::erase_if(balances_, [&](const auto& entry) { return !present.contains(entry.first); });
+  for (auto& [group, of_group] : groups_) {
+    std::erase_if(of_group.balances,
+                  [&](const auto& entry) { return !present.contains(entry.first); });
+  }
   const std::optional<TurnClass> now = ClassNow(contenders);
   if (!now.has_value()) return std::nullopt;
 
+  std::map<std::string, std::set<std::string>> waiting;  // by group
   std::set<std::string> groups;
   for (const Contender& contender : contenders) {
-    if (contender.work == now) groups.insert(GroupOf(contender));
+    if (contender.work != now) continue;
+    waiting[GroupOf(contender)].insert(contender.id);
+    groups.insert(GroupOf(contender));
   }
-  Refill(groups, &group_balances_);
-  std::set<std::string> waiting;
-  for (const Contender& contender : contenders) {
-    if (contender.work == now && group_balances_[GroupOf(contender)] == 0.0) {
-      waiting.insert(contender.id);
-    }
-  }
-  Refill(waiting, &balances_);
-  std::optional<std::size_t> next;
-  for (std::size_t i = 0; i < contenders.size(); ++i) {
-    const std::string& id = contenders[i].id;
-    if (!waiting.contains(id) || balances_[id] < 0.0) continue;
-    if (id > last_served_) return i;
-    if (!next.has_value()) next = i;
-  }
-  return next;
+  const std::string group = Refill(groups, last_group_, &group_balances_);
+  Group& of_group = groups_[group];
+  const std::string id = Refill(waiting[group], of_group.last_served, &of_group.balances);
+  const auto next = std::ranges::find(contenders, id, &Contender::id);
+  return static_cast<std::size_t>(next - contenders.begin());
 }
 
 void Turns::Used(const Contender& contender, double milliseconds) {
-  balances_[contender.id] -= milliseconds;
-  group_balances_[GroupOf(contender)] -= milliseconds;
-  last_served_ = contender.id;
+  last_group_ = GroupOf(contender);
+  group_balances_[last_group_] -= milliseconds;
+  Group& group = groups_[last_group_];
+  group.balances[contender.id] -= milliseconds;
+  group.last_served = contender.id;
   const std::size_t used = IndexOf(*contender.work);
-  owed_ms_[used] = std::max(owed_ms_[used] - milliseconds, 0.0);
+  // Where nobody else had work it owes the others no more than its last turn.
+  owed_ms_[used] = std::max(owed_ms_[used] - milliseconds, -milliseconds);
   for (std::size_t i = used + 1; i < kTurnClasses; ++i) {
     if (waits_[i]) owed_ms_[i] += milliseconds * kLeastShare / (1.0 - kLeastShare);
   }

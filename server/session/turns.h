@@ -35,7 +35,7 @@ struct Contender {
 class Turns {
  public:
   // The index of who is to draw next; none if nobody has work. Among those who have had the same
-  // time it is the one after the last served, in the order given.
+  // time it is the one whose id comes after that of the last served.
   std::optional<std::size_t> Next(const std::vector<Contender>& contenders);
 
   // It has drawn for so long.
@@ -44,12 +44,17 @@ class Turns {
  private:
   // Time that was used beyond the share of the one that used least: zero or less.
   using Balances = std::map<std::string, double>;
+  // Of a class: what people see together, or what one sees for himself.
+  struct Group {
+    Balances balances;
+    std::string last_served;
+  };
 
   std::optional<TurnClass> ClassNow(const std::vector<Contender>& contenders);
 
-  Balances balances_;
+  std::map<std::string, Group> groups_;
   Balances group_balances_;
-  std::string last_served_;
+  std::string last_group_;
   // Time that a class may use before the others, and whether it had work when Next was called.
   std::array<double, kTurnClasses> owed_ms_{};
   std::array<bool, kTurnClasses> waits_{};

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <memory>
+#include <new>
 #include <optional>
 #include <string>
 #include <thread>
@@ -180,6 +181,14 @@ TEST_F(PiecesTest, StagesDoNotCountTheTimeThatTheyWaited) {
   for (const scene::StageTime& stage : frame->stages) stages_ms += stage.milliseconds;
   EXPECT_GT(turn.taken, 4);
   EXPECT_LT(stages_ms, stopwatch.ElapsedMs() - 50.0 * turn.taken + 1.0);
+}
+
+TEST_F(PiecesTest, WorkThatThrowsGivesTheTurnBack) {
+  CountedTurn turn;
+  gl::Pieces pieces(&turn);
+  EXPECT_THROW(static_cast<void>(pieces.During([]() -> absl::Status { throw std::bad_alloc(); })),
+               std::bad_alloc);
+  EXPECT_FALSE(turn.IsHeld());
 }
 
 TEST_F(PiecesTest, ASecondContextOutlivesTheFirst) {

@@ -1,5 +1,5 @@
-// A lane that draws with GL beside whoever gives the turns: how long its pieces are, and how soon it
-// ends when nobody wants its picture.
+// A lane that draws with GL beside whoever gives the turns: how long its pieces are, and how soon
+// it ends when nobody wants its picture.
 #include "session/lane.h"
 
 #include <algorithm>
@@ -22,8 +22,8 @@ class LaneTest : public testing::Test {
  protected:
   void SetUp() override {
     const char* device = std::getenv("THUNDERHEAD_TEST_DEVICE");
-    lane_ = std::make_unique<Lane>(GlFrameSources(device == nullptr ? "software" : device), 0,
-                                   [] {});
+    lane_ =
+        std::make_unique<Lane>(GlFrameSources(device == nullptr ? "software" : device), 0, [] {});
     auto store = volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"},
                                           {.read_ahead = 0});
     ASSERT_TRUE(store.ok()) << store.status();

@@ -314,7 +314,8 @@ TEST_F(RenderLoopTest, APictureIsPreparedForTheSettingDecidedAndHoldsUpNobody) {
   const auto picture = fitted.get();
   ASSERT_TRUE(picture.ok()) << picture.status();
   EXPECT_EQ(picture->modelled.technique, "metaball");
-  EXPECT_EQ(picture->stages.front().stage, scene::FrameStage::kFit);
+  EXPECT_EQ(picture->stages[0].stage, scene::FrameStage::kRead);
+  EXPECT_EQ(picture->stages[1].stage, scene::FrameStage::kFit);
   machine_->cannot_prepare = 200;
   EXPECT_EQ(Picture(OfMetaballs(200)).get().status().message(), "it cannot be fitted");
 }

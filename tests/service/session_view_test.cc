@@ -147,6 +147,8 @@ TEST_F(SessionViewTest, ASettingThatProvesTooSlowIsReplacedAndDrawnAnew) {
   EXPECT_EQ(scene::SlicesOf(decided_->scene->rendering.technique), 128);
   Observe(FrameQuality{}, 1000.0);  // 295 ms
   EXPECT_TRUE(NextIs<CheckSlices>(milliseconds(600)));
+  EXPECT_TRUE(NextIs<CheckSlices>(milliseconds(600))) << "until it is checked";
+  view_.Checked(0.01);
   const SessionWork again = Next(milliseconds(600));
   EXPECT_EQ(std::get<WaitUntil>(again).time, kStart + milliseconds(600));
   EXPECT_EQ(view_.state(), State::kRefining);
