@@ -44,18 +44,43 @@ std::string DefaultPageFolder() {
   return "";
 }
 
-// Draws two small pictures, with the sun before and behind the eye, so that storm and shaders are
+// Has a session's first frame drawn, and closes it.
+grpc::Status ShowOnce(v1::ThunderheadService::Stub& stub, const v1::Scene& scene) {
+  v1::CreateSessionRequest request;
+  *request.mutable_scene() = scene;
+  v1::CreateSessionResponse session;
+  grpc::ClientContext creating;
+  if (grpc::Status status = stub.CreateSession(&creating, request, &session); !status.ok()) {
+    return status;
+  }
+  {
+    v1::WatchFramesRequest watch;
+    watch.set_session_id(session.session_id());
+    grpc::ClientContext watching;
+    const auto frames = stub.WatchFrames(&watching, watch);
+    v1::WatchFramesResponse event;
+    while (frames->Read(&event) && !event.has_frame() && !event.has_problem()) {
+    }
+    watching.TryCancel();
+    frames->Finish();
+  }
+  v1::CloseSessionRequest close;
+  close.set_session_id(session.session_id());
+  v1::CloseSessionResponse closed;
+  grpc::ClientContext closing;
+  return stub.CloseSession(&closing, close, &closed);
+}
+
+// Shows two small pictures, with the sun before and behind the eye, so that storm and shaders are
 // ready for the first viewer.
 void WarmUp(const std::shared_ptr<grpc::Channel>& channel) {
   const auto stub = v1::ThunderheadService::NewStub(channel);
   for (const float azimuth_deg : {255.0F, 75.0F}) {
-    v1::RenderImageRequest request;
-    request.mutable_scene()->mutable_output()->set_width_px(64);
-    request.mutable_scene()->mutable_output()->set_height_px(36);
-    request.mutable_scene()->mutable_camera()->mutable_orbit()->set_azimuth_deg(azimuth_deg);
-    v1::RenderImageResponse response;
-    grpc::ClientContext context;
-    const grpc::Status status = stub->RenderImage(&context, request, &response);
+    v1::Scene scene;
+    scene.mutable_output()->set_width_px(64);
+    scene.mutable_output()->set_height_px(36);
+    scene.mutable_camera()->mutable_orbit()->set_azimuth_deg(azimuth_deg);
+    const grpc::Status status = ShowOnce(*stub, scene);
     if (!status.ok()) spdlog::warn("cannot draw the first storm: {}", status.error_message());
   }
 }
