@@ -36,19 +36,19 @@ std::string Refill(const std::set<std::string>& waiting, const std::string& last
 }  // namespace
 
 std::optional<TurnClass> Turns::ClassNow(const std::vector<Contender>& contenders) {
-  waits_.fill(false);
+  std::array<bool, kTurnClasses> waits{};
   for (const Contender& contender : contenders) {
-    if (contender.work.has_value()) waits_[IndexOf(*contender.work)] = true;
+    if (contender.work.has_value()) waits[IndexOf(*contender.work)] = true;
   }
   for (std::size_t i = 0; i < kTurnClasses; ++i) {
-    if (!waits_[i]) owed_ms_[i] = std::min(owed_ms_[i], 0.0);
+    if (!waits[i]) owed_ms_[i] = std::min(owed_ms_[i], 0.0);
   }
   for (std::size_t i = kTurnClasses; i-- > 1;) {
     if (owed_ms_[i] >= kWorthATurn_ms) return static_cast<TurnClass>(i);
   }
-  const auto first = std::find(waits_.begin(), waits_.end(), true);
-  if (first == waits_.end()) return std::nullopt;
-  return static_cast<TurnClass>(first - waits_.begin());
+  const auto first = std::find(waits.begin(), waits.end(), true);
+  if (first == waits.end()) return std::nullopt;
+  return static_cast<TurnClass>(first - waits.begin());
 }
 
 std::optional<std::size_t> Turns::Next(const std::vector<Contender>& contenders) {
@@ -85,7 +85,7 @@ void Turns::Used(const Contender& contender, double milliseconds) {
   // Where nobody else had work it owes the others no more than its last turn.
   owed_ms_[used] = std::max(owed_ms_[used] - milliseconds, -milliseconds);
   for (std::size_t i = used + 1; i < kTurnClasses; ++i) {
-    if (waits_[i]) owed_ms_[i] += milliseconds * kLeastShare / (1.0 - kLeastShare);
+    owed_ms_[i] += milliseconds * kLeastShare / (1.0 - kLeastShare);
   }
 }
 

@@ -55,9 +55,8 @@ class Turns {
   std::map<std::string, Group> groups_;
   Balances group_balances_;
   std::string last_group_;
-  // Time that a class may use before the others, and whether it had work when Next was called.
+  // Time that a class may use before the others.
   std::array<double, kTurnClasses> owed_ms_{};
-  std::array<bool, kTurnClasses> waits_{};
 };
 
 }  // namespace thunderhead::session
