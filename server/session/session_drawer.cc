@@ -114,7 +114,9 @@ SessionDrawer::Wish SessionDrawer::Need(const Turn& turn, const TraceLight& work
   const auto news = light_tracer_.TakeNews(id);
   if (!news.has_value()) return {};
   if (news->ok()) {
-    if (!turn.kept.view.LightTraced(**news, Clock::now())) return {};
+    const bool show = turn.kept.view.LightTraced(**news, Clock::now());
+    if (turn.kept.view.LightIsTraced()) light_tracer_.Stop(id);
+    if (!show) return {};
   } else {
     base::LogError(base::Annotate(
         news->status(), absl::StrCat("tracing the light of storm ", work.shown.scene->storm_id)));
