@@ -23,6 +23,7 @@ namespace {
 struct Flags {
   std::string server;
   std::string size = "640x360";
+  std::string stills_size = "640x360";
   std::optional<double> kbit_per_s;
   std::optional<int> throttled;
   load::LoadOptions load;
@@ -52,6 +53,10 @@ absl::StatusOr<load::LoadOptions> OptionsOf(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const PictureSize size, ParsePictureSize(flags.size));
   options.width_px = size.width_px;
   options.height_px = size.height_px;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const PictureSize still,
+                               ParsePictureSize(flags.stills_size, "--stills-size"));
+  options.stills.width_px = still.width_px;
+  options.stills.height_px = still.height_px;
   if (flags.throttled.has_value() && !flags.kbit_per_s.has_value()) {
     return absl::InvalidArgumentError("--throttled needs --kbit, the rate that those viewers read");
   }
@@ -132,6 +137,16 @@ Command AddLoad(CLI::App& app) {
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
   AddClientAccessFlags(*load, flags->access);
+  load->add_option("--stills", options.stills.count,
+                   "Single pictures besides, all asked for when the measured time begins")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
+  load->add_option("--stills-size", flags->stills_size, "Size of the single pictures, WIDTHxHEIGHT")
+      ->capture_default_str();
+  load->add_option("--stills-slices", options.stills.slices,
+                   "Slices of the single pictures; 0 for the default")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
   load->add_flag("--json", flags->json, "Print JSON");
   return {load, [flags] { return Load(*flags); }};
 }

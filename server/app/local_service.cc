@@ -61,8 +61,7 @@ absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadStorm(
 
 absl::StatusOr<std::unique_ptr<service::Server>> StartLocalService(
     std::shared_ptr<volume::StormStore> store, const std::string& device) {
-  return service::Server::Start({}, std::move(store),
-                                [device] { return session::MakeGlFrameSource(device); });
+  return service::Server::Start({}, std::move(store), session::GlFrameSources(device));
 }
 
 absl::Status FromGrpc(const grpc::Status& status) {

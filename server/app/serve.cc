@@ -34,19 +34,51 @@ std::string DefaultPageFolder() {
   return "";
 }
 
-// Draws two small pictures, with the sun before and behind the eye, so that storm and shaders are
+void ShowOwnToken(const access::Door& door, grpc::ClientContext& context) {
+  context.AddMetadata("authorization", absl::StrCat("Bearer ", door.OwnToken()));
+}
+
+// Has a session's first frame drawn, and closes it.
+grpc::Status ShowOnce(v1::ThunderheadService::Stub& stub, const v1::Scene& scene,
+                      const access::Door& door) {
+  v1::CreateSessionRequest request;
+  *request.mutable_scene() = scene;
+  v1::CreateSessionResponse session;
+  grpc::ClientContext creating;
+  ShowOwnToken(door, creating);
+  if (grpc::Status status = stub.CreateSession(&creating, request, &session); !status.ok()) {
+    return status;
+  }
+  {
+    v1::WatchFramesRequest watch;
+    watch.set_session_id(session.session_id());
+    grpc::ClientContext watching;
+  ShowOwnToken(door, watching);
+    const auto frames = stub.WatchFrames(&watching, watch);
+    v1::WatchFramesResponse event;
+    while (frames->Read(&event) && !event.has_frame() && !event.has_problem()) {
+    }
+    watching.TryCancel();
+    frames->Finish();
+  }
+  v1::CloseSessionRequest close;
+  close.set_session_id(session.session_id());
+  v1::CloseSessionResponse closed;
+  grpc::ClientContext closing;
+  ShowOwnToken(door, closing);
+  return stub.CloseSession(&closing, close, &closed);
+}
+
+// Shows two small pictures, with the sun before and behind the eye, so that storm and shaders are
 // ready for the first viewer.
 void WarmUp(const std::shared_ptr<grpc::Channel>& channel, const access::Door& door) {
   const auto stub = v1::ThunderheadService::NewStub(channel);
   for (const float azimuth_deg : {255.0F, 75.0F}) {
-    v1::RenderImageRequest request;
-    request.mutable_scene()->mutable_output()->set_width_px(64);
-    request.mutable_scene()->mutable_output()->set_height_px(36);
-    request.mutable_scene()->mutable_camera()->mutable_orbit()->set_azimuth_deg(azimuth_deg);
-    v1::RenderImageResponse response;
-    grpc::ClientContext context;
-    context.AddMetadata("authorization", absl::StrCat("Bearer ", door.OwnToken()));
-    const grpc::Status status = stub->RenderImage(&context, request, &response);
+    v1::Scene scene;
+    scene.mutable_output()->set_width_px(64);
+    scene.mutable_output()->set_height_px(36);
+    scene.mutable_camera()->mutable_orbit()->set_azimuth_deg(azimuth_deg);
+    const grpc::Status status = ShowOnce(*stub, scene, door);
     if (!status.ok()) spdlog::warn("cannot draw the first storm: {}", status.error_message());
   }
 }
@@ -92,15 +124,15 @@ absl::Status Serve(ServeFlags flags) {
   service::ServerOptions server_options;
   THUNDERHEAD_ASSIGN_OR_RETURN(server_options.session_store, OpenSessionStore(flags.state));
   server_options.clouds_folder = clouds.Path();
+  server_options.render_loop = flags.render_loop;
   server_options.address = ToString(grpc);
   server_options.tls = flags.tls;
   server_options.door = door;
   server_options.limits = flags.limits;
   server_options.sessions = flags.sessions;
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<service::Server> server,
-                               service::Server::Start(server_options, store, [&flags] {
-                                 return session::MakeGlFrameSource(flags.device);
-                               }));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const std::unique_ptr<service::Server> server,
+      service::Server::Start(server_options, store, session::GlFrameSources(flags.device)));
   gateway::GatewayOptions gateway_options = flags.gateway;
   gateway_options.address = http.host;
   gateway_options.port = http.port;

@@ -13,6 +13,7 @@
 #include "app/address.h"
 #include "gateway/gateway.h"
 #include "service/server.h"
+#include "session/render_loop.h"
 
 namespace thunderhead::app {
 
@@ -40,6 +41,7 @@ struct ServeFlags {
   session::SessionsOptions sessions;
   service::Limits limits;
   access::QuotaLimits quotas;
+  session::RenderLoopOptions render_loop;
   gateway::GatewayOptions gateway;
   double max_render_s = 1800.0;
   double max_megasamples = 137439.0;

@@ -17,6 +17,8 @@ constexpr float kMostFactor = 64.0F;
 // And at most this times the exposure of a white card in the sun: what is all in shadow stays dark.
 constexpr float kMostAboveCard = 2.0F;
 
+constexpr gl::PieceCost kPixel{"tone map", 50.0};
+
 struct ToneMapVariant {
   gl::DefineValue filmic;
   gl::DefineValue noise;
@@ -38,7 +40,7 @@ absl::StatusOr<float> ToneMapper::ExposureOf(const gl::Texture2D& linear,
   }
   if (brightest_.Get() == 0) brightest_ = gl::Texture2D(GL_R32F, glm::ivec2(1));
   THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
-                               programs_.Get(gl::ProgramSource::Compute("post/meter.comp")));
+                               programs_->Get(gl::ProgramSource::Compute("post/meter.comp")));
   program->Set(uniform::luminance_weights, kLuminance * balance);
   linear.Bind(shaders::kLinearFrameUnit);
   brightest_.BindImage(shaders::kMeterImage, GL_WRITE_ONLY);
@@ -60,13 +62,16 @@ absl::StatusOr<ToneMapped> ToneMapper::Map(const gl::Texture2D& linear, const sc
   const glm::vec3 balance = display.white_balance ? card.balance : glm::vec3(1.0F);
   THUNDERHEAD_ASSIGN_OR_RETURN(const float exposure, ExposureOf(linear, display, balance, card));
   tone_ = {exposure * balance, display.tone_map == scene::ToneMap::kFilmic};
+  gl::Pieces& pieces = programs_->Pieces();
+  double waited_ms = pieces.WaitedMs();
   THUNDERHEAD_RETURN_IF_ERROR(Draw(linear, GL_RGBA8, /*noise=*/true, &display_));
   glFinish();
   ToneMapped mapped;
   mapped.exposure_ev = std::log2(exposure / kExposureAtZeroEv);
-  mapped.tone_ms = stopwatch.Restart();
-  mapped.rgb = pixels_.Rgb(display_.texture);
-  mapped.read_back_ms = stopwatch.ElapsedMs();
+  mapped.tone_ms = stopwatch.Restart() - (pieces.WaitedMs() - waited_ms);
+  waited_ms = pieces.WaitedMs();
+  THUNDERHEAD_ASSIGN_OR_RETURN(mapped.rgb, pixels_.Rgb(display_.texture, pieces));
+  mapped.read_back_ms = stopwatch.ElapsedMs() - (pieces.WaitedMs() - waited_ms);
   return mapped;
 }
 
@@ -90,12 +95,11 @@ absl::Status ToneMapper::Draw(const gl::Texture2D& linear, GLenum format, bool n
   const ToneMapVariant variant{.filmic = tone_.filmic, .noise = noise};
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_.Get(gl::ProgramSource::WholeTarget("post/tone_map.frag", variant.Defines())));
+      programs_->Get(gl::ProgramSource::WholeTarget("post/tone_map.frag", variant.Defines())));
   program->Set(uniform::gain, tone_.gain);
   program->Set(uniform::just_below_white, kJustBelowWhite);
   linear.Bind(shaders::kLinearFrameUnit);
-  whole_target_.Draw(*program, display->target);
-  return absl::OkStatus();
+  return whole_target_.Draw(programs_->Pieces(), kPixel, *program, display->target);
 }
 
 std::vector<float> ReadLinear(const gl::Texture2D& linear) {

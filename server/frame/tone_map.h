@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -33,6 +35,11 @@ inline constexpr float kJustBelowWhite = 0.935F;
 
 class ToneMapper {
  public:
+  // Programs are linked in `programs`.
+  explicit ToneMapper(
+      std::shared_ptr<gl::ProgramCache> programs = std::make_shared<gl::ProgramCache>())
+      : programs_(std::move(programs)) {}
+
   // Maps `linear`, a picture of `scene` with the storm's opacity in alpha.
   absl::StatusOr<ToneMapped> Map(const gl::Texture2D& linear, const scene::Scene& scene);
 
@@ -57,7 +64,7 @@ class ToneMapper {
                                    const glm::vec3& balance, const WhiteCard& card);
 
   WhiteCards white_cards_;
-  gl::ProgramCache programs_;
+  std::shared_ptr<gl::ProgramCache> programs_;
   gl::WholeTarget whole_target_;
   PixelReader pixels_;
   gl::Texture2D brightest_;

@@ -5,6 +5,7 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <deque>
 #include <future>
@@ -21,7 +22,6 @@ namespace {
 
 namespace net = boost::asio;
 
-constexpr std::chrono::seconds kUnaryPatience{60};
 constexpr char kService[] = "/thunderhead.v1.ThunderheadService/";
 
 absl::Status FromGrpc(const grpc::Status& status) {
@@ -195,10 +195,12 @@ class GrpcTransport final : public Transport {
     return std::make_unique<GrpcLink>(address_, access_, delays_.io(), listener, options);
   }
 
-  absl::StatusOr<std::string> Call(const std::string& method, const std::string& request) override {
+  absl::StatusOr<std::string> Call(const std::string& method, const std::string& request,
+                                   double patience_s) override {
     grpc::ClientContext context;
     ShowToken(access_, context);
-    context.set_deadline(std::chrono::system_clock::now() + kUnaryPatience);
+    context.set_deadline(std::chrono::system_clock::now() +
+                         std::chrono::milliseconds(std::llround(1e3 * patience_s)));
     const grpc::ByteBuffer sent = BufferOf(request);
     grpc::ByteBuffer received;
     std::promise<grpc::Status> ended;

@@ -43,9 +43,10 @@ class Transport {
   virtual std::string Name() const = 0;
   // Begins to connect. The listener must outlive the link, and the transport both.
   virtual std::unique_ptr<Link> Interact(Listener& listener, const LinkOptions& options) = 0;
-  // Calls a unary method of the service with a serialized request; returns the response.
-  virtual absl::StatusOr<std::string> Call(const std::string& method,
-                                           const std::string& request) = 0;
+  // Calls a unary method of the service with a serialized request; returns the response, or
+  // DEADLINE_EXCEEDED after `patience_s`. Safe from any thread.
+  virtual absl::StatusOr<std::string> Call(const std::string& method, const std::string& request,
+                                           double patience_s) = 0;
 };
 
 // What a guarded server asks for.

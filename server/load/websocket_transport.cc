@@ -7,6 +7,7 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/stream.hpp>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <future>
@@ -252,12 +253,12 @@ class WebCall {
     request_.prepare_payload();
   }
 
-  absl::StatusOr<std::string> Run() {
+  absl::StatusOr<std::string> Run(double patience_s) {
     tcp::resolver resolver(io_);
     error_code error;
     const auto found = resolver.resolve(host_.name, std::to_string(host_.port), error);
     if (error) return Unavailable(host_, "find", error);
-    stream_.expires_after(kPatience);
+    stream_.expires_after(std::chrono::milliseconds(std::llround(1e3 * patience_s)));
     stream_.async_connect(found, [this](error_code failed, const tcp::endpoint&) {
       if (failed) return Fail("connect to", failed);
       Write();
@@ -312,8 +313,9 @@ class WebSocketTransport final : public Transport {
     return std::make_unique<WebSocketLink>(thread_.io(), host_, listener, options);
   }
 
-  absl::StatusOr<std::string> Call(const std::string& method, const std::string& request) override {
-    return WebCall(host_, method, request).Run();
+  absl::StatusOr<std::string> Call(const std::string& method, const std::string& request,
+                                   double patience_s) override {
+    return WebCall(host_, method, request).Run(patience_s);
   }
 
  private:

@@ -243,7 +243,6 @@ double ResidentMedium::ShortestBrickSide_m() const {
 void ResidentMedium::BindBlocks(const gl::Program& program) const {
   blocks_.BindStorage(shaders::kBlocksBinding);
   program.Set(uniform::cells_per_block, cells_per_block_);
-  program.Set(uniform::block_count, block_count_);
 }
 
 std::size_t ResidentMedium::Bytes() const {

@@ -19,9 +19,9 @@
 namespace thunderhead::service {
 namespace {
 
-absl::Status Encode(const session::DisplayFrame& picture, const v1::RenderImageRequest& request,
+// Takes the picture's pixels.
+absl::Status Encode(session::DisplayFrame& picture, const v1::RenderImageRequest& request,
                     v1::RenderImageResponse& response) {
-  const base::Stopwatch stopwatch;
   const bool jpeg = request.format() == v1::IMAGE_FORMAT_JPEG;
   const int quality = static_cast<int>(response.scene().output().jpeg_quality());
   THUNDERHEAD_ASSIGN_OR_RETURN(
@@ -31,11 +31,16 @@ absl::Status Encode(const session::DisplayFrame& picture, const v1::RenderImageR
   response.set_format(jpeg ? v1::IMAGE_FORMAT_JPEG : v1::IMAGE_FORMAT_PNG);
   response.set_width_px(static_cast<std::uint32_t>(picture.width_px));
   response.set_height_px(static_cast<std::uint32_t>(picture.height_px));
+  picture.rgb = {};
+  return absl::OkStatus();
+}
+
+void Describe(const session::DisplayFrame& picture, double encode_ms,
+              v1::RenderImageResponse& response) {
   for (const scene::StageTime& time : picture.stages) ToMessage(time, *response.add_stages());
-  ToMessage({scene::FrameStage::kEncode, stopwatch.ElapsedMs()}, *response.add_stages());
+  ToMessage({scene::FrameStage::kEncode, encode_ms}, *response.add_stages());
   ToMessage(picture.modelled, *response.mutable_modelled());
   if (picture.accuracy.has_value()) ToMessage(*picture.accuracy, *response.mutable_accuracy());
-  return absl::OkStatus();
 }
 
 // Errors of drawing are not about one field, so they name the whole scene.
@@ -55,8 +60,8 @@ class PictureListener {
   ~PictureListener() = default;
 };
 
-// One picture: read (executor), drawn (render loop), encoded (executor). Exactly one of these steps
-// ends the job; everything passed to the job must live until then.
+// One picture: read, drawn and encoded in a lane of the render loop, which ends the job; everything
+// passed to the job must live until then.
 class PictureJob {
  public:
   PictureJob(Engine& engine, const v1::RenderImageRequest& request,
@@ -72,10 +77,11 @@ class PictureJob {
                     *cancelled = true;
                     wake.Notify();
                   });
-    engine_.executor.Submit([this](const absl::Status& status) {
-      const absl::Status submitted = status.ok() ? ReadAndSubmit() : status;
-      if (!submitted.ok()) End(submitted);
-    });
+    engine_.loop.RenderImage(
+        {ToScene(response_.scene()), [this] { return Read(); },
+         [this](session::DisplayFrame& picture) { return EncodeTimed(picture); }, cancelled_,
+         [this](const absl::StatusOr<session::DisplayFrame>& picture) { Drawn(picture); },
+         [this](const session::ImageProgress& progress) { listener_.Progressed(progress); }});
   }
 
   void Cancel() {
@@ -97,28 +103,26 @@ class PictureJob {
                               "TECHNIQUE_FOR_SESSIONS_ONLY");
   }
 
-  absl::Status ReadAndSubmit() {
-    if (*cancelled_) return absl::CancelledError("the call was cancelled");
+  absl::StatusOr<session::ImageInput> Read() {
     v1::Scene& scene = *response_.mutable_scene();
-    const base::Stopwatch stopwatch;
     THUNDERHEAD_ASSIGN_OR_RETURN(
         auto fields, ReadFields(engine_.store, scene.storm_id(),
                                 static_cast<int>(scene.time_index()), "scene.storm_id"));
-    ToMessage({scene::FrameStage::kRead, stopwatch.ElapsedMs()}, *response_.add_stages());
     FrameCondensate(scene, *fields);
-    engine_.loop.RenderImage(
-        {ToScene(scene), std::move(fields), cancelled_,
-         [this](absl::StatusOr<session::DisplayFrame> picture) { Drawn(std::move(picture)); },
-         [this](const session::ImageProgress& progress) { listener_.Progressed(progress); }});
+    return session::ImageInput{std::move(fields), ToScene(scene).camera};
+  }
+
+  absl::Status EncodeTimed(session::DisplayFrame& picture) {
+    const base::Stopwatch stopwatch;
+    THUNDERHEAD_RETURN_IF_ERROR(Encode(picture, request_, response_));
+    encode_ms_ = stopwatch.ElapsedMs();
     return absl::OkStatus();
   }
 
-  void Drawn(absl::StatusOr<session::DisplayFrame> picture) {
+  void Drawn(const absl::StatusOr<session::DisplayFrame>& picture) {
     if (!picture.ok()) return End(OfScene(picture.status()));
-    const auto drawn = std::make_shared<session::DisplayFrame>(*std::move(picture));
-    engine_.executor.Submit([this, drawn](const absl::Status& status) {
-      End(status.ok() ? Encode(*drawn, request_, response_) : status);
-    });
+    Describe(*picture, encode_ms_, response_);
+    End(absl::OkStatus());
   }
 
   void End(const absl::Status& status) {
@@ -131,6 +135,7 @@ class PictureJob {
   const v1::RenderImageRequest& request_;
   v1::RenderImageResponse& response_;
   PictureListener& listener_;
+  double encode_ms_ = 0.0;
   const std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
   const std::shared_ptr<std::atomic<bool>> late_ = std::make_shared<std::atomic<bool>>(false);
   grpc::Alarm deadline_;

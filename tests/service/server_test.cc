@@ -100,11 +100,11 @@ TEST(ServerTest, TakenPortIsAnError) {
 }
 
 TEST(ServerTest, FrameSourceThatCannotBeMadeIsAnError) {
-  const auto server =
-      service::Server::Start({}, std::make_shared<FakeStormStore>(),
-                             []() -> absl::StatusOr<std::unique_ptr<session::FrameSource>> {
-                               return absl::NotFoundError("there is no GPU 3");
-                             });
+  const auto server = service::Server::Start(
+      {}, std::make_shared<FakeStormStore>(),
+      [](base::DeviceTurn*) -> absl::StatusOr<std::unique_ptr<session::FrameSource>> {
+        return absl::NotFoundError("there is no GPU 3");
+      });
   ASSERT_FALSE(server.ok());
   EXPECT_EQ(server.status().message(), "there is no GPU 3");
 }

@@ -24,6 +24,10 @@ constexpr int kMinLightTexels = 64;  // along the longer side
 constexpr int kMaxLightTexels = 1024;
 constexpr double kTexelsAcrossBall = 8.0;  // of the smaller balls
 
+constexpr gl::PieceCost kPixel{"splat", 1000.0};
+constexpr gl::PieceCost kBallLevel{"balls' light", 2e5};
+constexpr gl::PieceCost kDiffuseBall{"balls' diffuse light", 5000.0};
+
 // As shaders/metaball/balls.glsl has it.
 struct DeviceBall {
   glm::vec4 middle_radius;
@@ -253,13 +257,21 @@ absl::Status MetaballRenderer::Carry(const Light& light, int index,
     program->Set(uniform::scattered_often,
                  scene::IsTranslucent(settings.Medium().transport) ? 1.0F : 0.0F);
     program->Use();
+    gl::Pieces& pieces = programs_->Pieces();
     if (pass == 1) {
-      run(*program, 0, static_cast<std::uint32_t>(balls_.size()));
+      THUNDERHEAD_RETURN_IF_ERROR(
+          pieces.Steps(kDiffuseBall, static_cast<int>(balls_.size()), [&](int begin, int end) {
+            run(*program, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end));
+          }));
       continue;
     }
-    for (std::size_t level = 0; level < order.Levels(); ++level) {
-      run(*program, order.starts[level], order.starts[level + 1]);
-    }
+    THUNDERHEAD_RETURN_IF_ERROR(
+        pieces.Steps(kBallLevel, static_cast<int>(order.Levels()), [&](int begin, int end) {
+          for (auto level = static_cast<std::size_t>(begin); level < static_cast<std::size_t>(end);
+               ++level) {
+            run(*program, order.starts[level], order.starts[level + 1]);
+          }
+        }));
   }
   return absl::OkStatus();
 }
@@ -338,8 +350,7 @@ absl::Status MetaballRenderer::Splat(const RenderSettings& settings) {
   sources_.BindStorage(shaders::kBallSourcesBinding);
   if (settings.ground_distance != nullptr)
     settings.ground_distance->Bind(shaders::kGroundDistanceUnit);
-  whole_target_.Draw(*program, eye_target_);
-  return absl::OkStatus();
+  return whole_target_.Draw(programs_->Pieces(), kPixel, *program, eye_target_);
 }
 
 std::size_t MetaballRenderer::Bytes() const {
