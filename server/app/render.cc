@@ -2,7 +2,6 @@
 
 #include <iostream>
 #include <memory>
-#include <stop_token>
 #include <string>
 #include <utility>
 
@@ -15,6 +14,7 @@
 #include "app/commands.h"
 #include "app/interruption.h"
 #include "app/local_service.h"
+#include "app/picture_call.h"
 #include "app/progress_bar.h"
 #include "app/render_reference.h"
 #include "app/scene_file.h"
@@ -42,15 +42,6 @@ struct Flags {
   bool json = false;
 };
 
-absl::StatusOr<v1::ImageFormat> FormatOf(const std::string& output) {
-  if (absl::EndsWithIgnoreCase(output, ".png")) return v1::IMAGE_FORMAT_PNG;
-  if (absl::EndsWithIgnoreCase(output, ".jpg") || absl::EndsWithIgnoreCase(output, ".jpeg")) {
-    return v1::IMAGE_FORMAT_JPEG;
-  }
-  return absl::InvalidArgumentError(
-      absl::StrCat("-o is '", output, "'; its name must end in .png, .jpg or .jpeg"));
-}
-
 absl::Status Interrupted() { return absl::CancelledError("interrupted: no picture was written"); }
 
 void Show(const v1::RenderImageProgress& progress, ProgressBar& bar) {
@@ -68,26 +59,8 @@ absl::StatusOr<v1::RenderImageResponse> Call(const std::shared_ptr<grpc::Channel
                                              const Interruption& interruption,
                                              const std::string& token = "") {
   ProgressBar bar("rendering");
-  grpc::ClientContext context;
-  if (!token.empty()) context.AddMetadata("authorization", absl::StrCat("Bearer ", token));
-  const std::stop_callback cancel(interruption.Token(), [&context] { context.TryCancel(); });
-  const auto stub = v1::ThunderheadService::NewStub(channel);
-  const auto reader = stub->RenderImageWithProgress(&context, request);
-  v1::RenderImageEvent event;
-  v1::RenderImageResponse picture;
-  while (reader->Read(&event)) {
-    if (event.has_progress()) Show(event.progress(), bar);
-    if (event.has_image()) picture = std::move(*event.mutable_image());
-  }
-  const grpc::Status status = reader->Finish();
-  if (interruption.Token().stop_requested()) return Interrupted();
-  if (status.error_code() == grpc::StatusCode::UNIMPLEMENTED) {
-    return absl::UnimplementedError(
-        "the server is older than this program and lacks the call that it needs "
-        "(RenderImageWithProgress): run both in the same version");
-  }
-  THUNDERHEAD_RETURN_IF_ERROR(FromGrpc(status));
-  return picture;
+  return CallForPicture(channel, request, token, interruption.Token(),
+                        [&bar](const v1::RenderImageProgress& progress) { Show(progress, bar); });
 }
 
 absl::StatusOr<v1::RenderImageResponse> CallServer(const Flags& flags,
@@ -151,7 +124,7 @@ absl::Status ByReference(const Flags& flags) {
         "--renderer reference works only in this process: omit --server and --json");
   }
   if (!absl::EndsWithIgnoreCase(flags.output, ".exr")) {
-    THUNDERHEAD_RETURN_IF_ERROR(FormatOf(flags.output).status());
+    THUNDERHEAD_RETURN_IF_ERROR(FormatOf("-o", flags.output).status());
   }
   return RenderReference(flags.storm, flags.scene, flags.reference, flags.output, flags.device);
 }
@@ -168,7 +141,7 @@ absl::Status Render(const Flags& flags) {
         "--spp, --seconds, --target-error, --max-scatterings, --detail and --no-air are for "
         "--renderer reference");
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(const v1::ImageFormat format, FormatOf(flags.output));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const v1::ImageFormat format, FormatOf("-o", flags.output));
   request.set_format(format);
   const Interruption interruption;
   THUNDERHEAD_ASSIGN_OR_RETURN(v1::RenderImageResponse response,

@@ -10,9 +10,11 @@
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "frame/image_codec.h"
+#include "frame/png_text.h"
 #include "service/camera_messages.h"
 #include "service/handlers.h"
 #include "service/limits_check.h"
+#include "service/picture_texts.h"
 #include "service/scene_messages.h"
 #include "service/status_table.h"
 
@@ -41,6 +43,12 @@ void Describe(const session::DisplayFrame& picture, double encode_ms,
   ToMessage({scene::FrameStage::kEncode, encode_ms}, *response.add_stages());
   ToMessage(picture.modelled, *response.mutable_modelled());
   if (picture.accuracy.has_value()) ToMessage(*picture.accuracy, *response.mutable_accuracy());
+}
+
+// Writes into a PNG what it shows. `storm` is null if it has gone since.
+void AddTexts(const volume::StormInfo* storm, v1::RenderImageResponse& response) {
+  if (response.format() != v1::IMAGE_FORMAT_PNG || storm == nullptr) return;
+  response.set_image(frame::WithTexts(response.image(), TextsOf(response, *storm)));
 }
 
 // Errors of drawing are not about one field, so they name the whole scene.
@@ -122,6 +130,7 @@ class PictureJob {
   void Drawn(const absl::StatusOr<session::DisplayFrame>& picture) {
     if (!picture.ok()) return End(OfScene(picture.status()));
     Describe(*picture, encode_ms_, response_);
+    AddTexts(engine_.store.Find(response_.scene().storm_id()), response_);
     End(absl::OkStatus());
   }
 

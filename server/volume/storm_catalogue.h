@@ -30,6 +30,9 @@ struct CataloguedStorm {
 absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
                                                         const StormFormats& formats);
 
+// The files by the runs that they may be parts of: same domain, grid, fields and start.
+std::vector<std::vector<StormFile>> FilesOfRuns(std::vector<StormFile> files);
+
 // Makes one storm of the files of one run: times in order; if several files have the same time, the
 // last file's is used. `files` must not be empty.
 CataloguedStorm AssembleStorm(const std::string& name, std::vector<StormFile> files);
