@@ -195,7 +195,7 @@ absl::Status Watch(const Flags& flags) {
   WatchedFolder folder(flags.folder, flags.files, policy);
   while (!stop.stop_requested()) {
     THUNDERHEAD_RETURN_IF_ERROR(folder.Look(progress));
-    const absl::Status drawn = DrawReady(movie, folder, *run, progress, stop);
+    absl::Status drawn = DrawReady(movie, folder, *run, progress, stop);
     if (!drawn.ok() && !absl::IsCancelled(drawn)) return drawn;
     if (stop.stop_requested()) break;
     if (end.files.has_value() && folder.DoneCount() >= *end.files) return absl::OkStatus();

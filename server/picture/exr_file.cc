@@ -32,6 +32,9 @@ constexpr std::array<Channel, 6> kChannels = {{{"R", false, 0},
                                                {"stderr.G", true, 1},
                                                {"stderr.B", true, 2}}};
 
+// Not A, by which viewers would composite.
+constexpr char kOpacity[] = "storm.opacity";
+
 // OpenEXR takes addresses that it may write to, also to write a file from.
 Imf::FrameBuffer FrameBufferOf(LinearPicture* picture) {
   Imf::FrameBuffer buffer;
@@ -41,6 +44,11 @@ Imf::FrameBuffer FrameBufferOf(LinearPicture* picture) {
     auto* first = reinterpret_cast<char*>(values.data()) + channel.color * sizeof(float);
     buffer.insert(channel.name,
                   Imf::Slice(Imf::FLOAT, first, sizeof(glm::vec3), width * sizeof(glm::vec3)));
+  }
+  if (!picture->opacity.empty()) {
+    buffer.insert(kOpacity,
+                  Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(picture->opacity.data()),
+                             sizeof(float), width * sizeof(float)));
   }
   return buffer;
 }
@@ -56,6 +64,7 @@ absl::Status WriteExr(const std::string& path, const LinearPicture& picture) {
     for (const Channel& channel : kChannels) {
       header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
     }
+    if (!picture.opacity.empty()) header.channels().insert(kOpacity, Imf::Channel(Imf::FLOAT));
     LinearPicture copy = picture;
     // Closed before it is published.
     Imf::OutputFile file(base::PartialPath(path).c_str(), header);
@@ -90,6 +99,7 @@ absl::StatusOr<LinearPicture> ReadExr(const std::string& path) {
         static_cast<std::size_t>(picture.size_px.x) * static_cast<std::size_t>(picture.size_px.y);
     picture.radiance.resize(pixels);
     picture.standard_error.resize(pixels);
+    if (file.header().channels().findChannel(kOpacity) != nullptr) picture.opacity.resize(pixels);
     file.setFrameBuffer(FrameBufferOf(&picture));
     file.readPixels(0, picture.size_px.y - 1);
     return picture;

@@ -1,5 +1,6 @@
-// A traced picture as an OpenEXR file: linear radiance in R, G, B as 32-bit floats, and its
-// standard error in stderr.R, stderr.G, stderr.B.
+// A traced picture as an OpenEXR file: linear radiance in R, G, B as 32-bit floats, its standard
+// error in stderr.R, stderr.G, stderr.B, and where it is known the share of each pixel that the
+// storm covers in storm.opacity.
 #pragma once
 
 #include <string>

@@ -375,6 +375,8 @@ TEST(ExrFile, RoundTrip) {
   EXPECT_EQ(read->size_px, image.size_px);
   EXPECT_EQ(read->radiance, image.radiance);
   EXPECT_EQ(read->standard_error, image.standard_error);
+  EXPECT_FALSE(read->opacity.empty());
+  EXPECT_EQ(read->opacity, image.opacity);
 }
 
 TEST(ExrFile, SaysWhatIsWrong) {
