@@ -53,7 +53,7 @@ grpc::Status ShowOnce(v1::ThunderheadService::Stub& stub, const v1::Scene& scene
     v1::WatchFramesRequest watch;
     watch.set_session_id(session.session_id());
     grpc::ClientContext watching;
-  ShowOwnToken(door, watching);
+    ShowOwnToken(door, watching);
     const auto frames = stub.WatchFrames(&watching, watch);
     v1::WatchFramesResponse event;
     while (frames->Read(&event) && !event.has_frame() && !event.has_problem()) {

@@ -10,8 +10,8 @@
 namespace thunderhead::codec {
 
 struct AvifOptions {
-  int quantizer = 8;   // 0 (lossless) to 63
-  int speed = 9;       // of the encoder, 0 (slowest) to 10
+  int quantizer = 8;  // 0 (lossless) to 63
+  int speed = 9;      // of the encoder, 0 (slowest) to 10
 };
 
 absl::StatusOr<std::string> EncodeAvif(const frame::FineImage& image,

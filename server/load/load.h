@@ -19,10 +19,10 @@ namespace thunderhead::load {
 enum class LoadCodec { kJpeg, kVp9 };
 
 struct LoadOptions {
-  int viewers = 10;            // healthy ones
-  int throttled = 0;           // besides them
-  int stalled = 0;             // besides them
-  int passing = 0;             // besides them
+  int viewers = 10;   // healthy ones
+  int throttled = 0;  // besides them
+  int stalled = 0;    // besides them
+  int passing = 0;    // besides them
   LoadCodec codec = LoadCodec::kJpeg;
   double kbit_per_s = 1000.0;  // that a throttled viewer reads
   double seconds = 10.0;

@@ -46,9 +46,8 @@ Imf::FrameBuffer FrameBufferOf(LinearPicture* picture) {
                   Imf::Slice(Imf::FLOAT, first, sizeof(glm::vec3), width * sizeof(glm::vec3)));
   }
   if (!picture->opacity.empty()) {
-    buffer.insert(kOpacity,
-                  Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(picture->opacity.data()),
-                             sizeof(float), width * sizeof(float)));
+    buffer.insert(kOpacity, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(picture->opacity.data()),
+                                       sizeof(float), width * sizeof(float)));
   }
   return buffer;
 }

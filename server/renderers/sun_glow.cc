@@ -148,9 +148,9 @@ absl::Status SunGlow::AddBehind(const gl::Texture2D& eye, const Sun& sun, const 
   if (IsDark(sun)) return absl::OkStatus();
   const PixelRect rect = RectAround(sun.towards, kDiscReach_rad, view, picture.size_px);
   if (rect.Empty()) return absl::OkStatus();
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      const gl::Program* program,
-      programs_->Get(gl::ProgramSource::BlendedWholeTarget("sun/disc.frag", ground.Variant().Defines())));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
+                               programs_->Get(gl::ProgramSource::BlendedWholeTarget(
+                                   "sun/disc.frag", ground.Variant().Defines())));
   BindRays(*program, view, view.eye_m);
   ground.Bind(*program, view);
   BindSun(*program, sun, view, picture);

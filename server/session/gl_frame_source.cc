@@ -150,7 +150,7 @@ class GlFrameSource final : public FrameSource {
   accuracy::CorrectorPool correctors_{programs_, shared_.lights};
   frame::ToneMapper tone_mapper_{programs_};
   frame::ToneMapper picture_tone_mapper_{programs_};  // of Tone, whose pictures have other sizes
-  gl::Texture2D picture_;  // that Tone was given
+  gl::Texture2D picture_;                             // that Tone was given
   std::optional<Drawn> tone_mapped_;
   DeviceInfo info_;
 };
