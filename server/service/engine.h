@@ -35,7 +35,7 @@ struct Engine {
 void SaveThen(Engine& engine, std::function<void()> done);
 
 // The storm of that id, or the first for an empty id. NOT_FOUND lists the storms.
-absl::StatusOr<const volume::StormInfo*> FindStorm(const volume::StormStore& store,
+absl::StatusOr<volume::StormInfoPtr> FindStorm(const volume::StormStore& store,
                                                    const std::string& id);
 
 // INVALID_ARGUMENT, naming the range, if the storm has no such time. `path` is the request's field.
