@@ -8,9 +8,11 @@
 
 #include "absl/strings/str_cat.h"
 #include "app/address.h"
+#include "app/catalogue_flags.h"
 #include "app/clouds_folder.h"
 #include "app/commands.h"
 #include "app/local_service.h"
+#include "app/operation.h"
 #include "app/state_folder.h"
 #include "base/status.h"
 #include "gateway/gateway.h"
@@ -31,6 +33,8 @@ struct Flags {
   std::string state;
   std::vector<std::string> allowed_origins;
   double memory_budget_gib = 2.0;
+  CatalogueFlags catalogue;
+  OperationFlags operation;
 };
 
 // The installed page, or the one in the build tree; empty if there is neither.
@@ -67,10 +71,13 @@ absl::Status Serve(const Flags& flags) {
   sigaddset(&signals, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<Operation> operation,
+                               Operation::Start(flags.operation));
   THUNDERHEAD_ASSIGN_OR_RETURN(Address http, ParseAddress("--http", flags.http));
   THUNDERHEAD_ASSIGN_OR_RETURN(Address grpc, ParseAddress("--grpc", flags.grpc));
   volume::StormStoreOptions store_options;
   store_options.byte_budget = static_cast<std::size_t>(flags.memory_budget_gib * (1 << 30));
+  store_options.live = LiveCatalogueOf(flags.catalogue);
   THUNDERHEAD_ASSIGN_OR_RETURN(const CloudsFolder clouds, CloudsFolder::Open(flags.clouds));
   THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<volume::StormStore> store,
                                volume::StormStore::Open(flags.data, store_options));
@@ -103,9 +110,9 @@ absl::Status Serve(const Flags& flags) {
   std::cout << "Thunderhead is ready at http://" << ToString(http) << "/ (gRPC " << ToString(grpc)
             << ")" << std::endl;
   std::thread warm_up([channel] { WarmUp(channel); });
-  int signal = 0;
-  sigwait(&signals, &signal);
-  spdlog::info("stopping");
+  operation->SetServer(server.get());
+  operation->WaitAndDrain(signals, *server);
+  operation->SetServer(nullptr);
   // First, because its calls to the service must end before the service does.
   gateway.reset();
   server->Shutdown();
@@ -139,6 +146,8 @@ Command AddServe(CLI::App& app) {
   serve->add_option("--memory-budget", flags->memory_budget_gib, "GiB of storms kept in memory")
       ->check(CLI::Range(0.01, 1e6))
       ->capture_default_str();
+  AddOperationFlags(*serve, flags->operation);
+  AddCatalogueFlags(*serve, flags->catalogue);
   return {serve, [flags] { return Serve(*flags); }};
 }
 

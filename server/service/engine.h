@@ -12,6 +12,7 @@
 #include "base/executor.h"
 #include "base/wake_signal.h"
 #include "service/cloud_store.h"
+#include "service/drain.h"
 #include "session/render_loop.h"
 #include "session/session_keeper.h"
 #include "session/sessions.h"
@@ -19,6 +20,8 @@
 #include "volume/storm_store.h"
 
 namespace thunderhead::service {
+
+class CatalogueFollower;
 
 struct Engine {
   volume::StormStore& store;
@@ -28,6 +31,8 @@ struct Engine {
   base::Executor& executor;
   CloudStore& clouds;
   session::SessionKeeper* keeper;  // null: sessions end with the server
+  const CatalogueFollower& catalogue;
+  Drain& drain;
 };
 
 // Calls `done` when what has been done to sessions outlives the server: at once if they end with

@@ -62,6 +62,7 @@ class PictureJob {
       : engine_(engine), request_(request), response_(response), listener_(listener) {}
 
   void Begin() {
+    if (const absl::Status late = counted_.Check(); !late.ok()) return listener_.Ended(late);
     if (const absl::Status wrong = CompleteScene(); !wrong.ok()) return listener_.Ended(wrong);
     engine_.executor.Submit([this](const absl::Status& status) {
       const absl::Status submitted = status.ok() ? ReadAndSubmit() : status;
@@ -112,6 +113,7 @@ class PictureJob {
   }
 
   Engine& engine_;
+  const Drain::Picture counted_{engine_.drain};
   const v1::RenderImageRequest& request_;
   v1::RenderImageResponse& response_;
   PictureListener& listener_;

@@ -6,6 +6,7 @@
 #include "base/stopwatch.h"
 #include "frame/halved.h"
 #include "frame/image_codec.h"
+#include "telemetry/metrics.h"
 
 namespace thunderhead::session {
 namespace {
@@ -34,6 +35,14 @@ EncodedFrame Reduced(const EncodedFrame& full, int tier, const frame::RgbImage& 
   return reduced;
 }
 
+void Count(const EncodedFrame& frame, const scene::Scene& scene) {
+  telemetry::Metrics& counted = telemetry::Counted();
+  counted.frames.Of(scene::NameOf(scene.rendering.technique)).Add();
+  for (const StageTime& stage : frame.stages) {
+    counted.stages.Of(scene::NameOf(stage.stage)).Observe(stage.milliseconds * 1e-3);
+  }
+}
+
 void EncodeAndPublish(DrawnFrame drawn, const SerializeFrame& serialize) {
   const base::Stopwatch stopwatch;
   const int wanted_quality = drawn.scene.output.jpeg_quality;
@@ -60,6 +69,11 @@ void EncodeAndPublish(DrawnFrame drawn, const SerializeFrame& serialize) {
   frame.refined = drawn.refined;
   frame.refinement = drawn.refinement;
   frame.accuracy = std::move(drawn.picture.accuracy);
+  if (const auto newest = drawn.session->Newest();
+      newest.has_value() && newest->revision == drawn.scene_revision) {
+    frame.changed_at = newest->changed_at;
+  }
+  Count(frame, drawn.scene);
   frame.serialized = serialize(frame);
   // Kept with the frame, for a tier that is wanted later.
   const auto pixels = std::make_shared<const frame::RgbImage>(

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <utility>
+#include "telemetry/metrics.h"
 
 namespace thunderhead::session {
+
+using telemetry::Counted;
 namespace {
 
 Problem::Code CodeOf(absl::StatusCode code) {
@@ -113,9 +116,16 @@ std::optional<FrameEvent> FrameHub::Take(std::uint64_t viewer_id, Time now) {
     if (HasFrameFor(watch, now)) {
       frame = frame_;
       tier = TierFor(watch, frame->Full());
+      const EncodedFrame& full = frame->Full();
+      // A viewer who has just come has missed nothing.
+      const bool has_had_any = watch.last_sequence > 0;
+      if (has_had_any) Counted().frames_skipped.Add(full.sequence - watch.last_sequence - 1);
+      const bool first = has_had_any && full.scene_revision > watch.last_revision;
       watch.last_tier = tier;
-      watch.last_sequence = frame->Full().sequence;
-      watch.in_flight.push_back({watch.last_sequence, now, !frame->Full().refined});
+      watch.last_sequence = full.sequence;
+      watch.last_revision = full.scene_revision;
+      watch.in_flight.push_back({watch.last_sequence, now, !full.refined,
+                                 first ? full.changed_at : std::nullopt});
       if (watch.wants.frames_per_second > 0.0) {
         constexpr double kFewest_per_s = 0.1;
         const std::chrono::duration<double> pause(
@@ -132,7 +142,10 @@ std::optional<FrameEvent> FrameHub::Take(std::uint64_t viewer_id, Time now) {
   }
   if (waits) on_wait_();
   // Without the lock, as a tier that nobody wanted before is encoded now.
-  return frame->At(tier);
+  std::shared_ptr<const EncodedFrame> sent = frame->At(tier);
+  Counted().frames_sent.Add();
+  Counted().frame_bytes_sent.Add(sent->jpeg.size());
+  return sent;
 }
 
 bool FrameHub::Acknowledge(std::uint64_t viewer_id, std::uint64_t sequence, Time now) {
@@ -146,6 +159,9 @@ bool FrameHub::Acknowledge(std::uint64_t viewer_id, std::uint64_t sequence, Time
     auto& in_flight = watch.in_flight;
     const bool was_full = in_flight.size() >= kMaxInFlight;
     while (!in_flight.empty() && in_flight.front().sequence <= sequence) {
+      if (const auto changed_at = in_flight.front().changed_at; changed_at.has_value()) {
+        Counted().update_to_frame.Observe(std::chrono::duration<double>(now - *changed_at).count());
+      }
       if (in_flight.front().moving) watch.link.Acknowledged(now, in_flight.front().at);
       in_flight.pop_front();
     }
@@ -220,6 +236,11 @@ void FrameHub::Close(const absl::Status& why) {
 absl::Status FrameHub::ClosedBecause() const {
   const std::lock_guard lock(mutex_);
   return closed_because_;
+}
+
+int FrameHub::ViewerCount() const {
+  const std::lock_guard lock(mutex_);
+  return static_cast<int>(watches_.size());
 }
 
 bool FrameHub::HasViewers() const {

@@ -45,6 +45,8 @@ struct EncodedFrame {
   int tier = 0;
   std::optional<Refinement> refinement;  // of a picture by the reference
   std::optional<AccuracyReport> accuracy;
+  // When the scene became what it shows; none if that has changed since.
+  std::optional<std::chrono::steady_clock::time_point> changed_at;
   // The frame without its sequence as the service serialized it, once for all viewers; opaque here.
   std::string serialized;
 };
@@ -147,6 +149,7 @@ class FrameHub {
   absl::Status ClosedBecause() const;
 
   bool HasViewers() const;
+  int ViewerCount() const;
   // True if a viewer can be sent another frame now.
   bool HasReadyViewer() const;
 
@@ -155,6 +158,7 @@ class FrameHub {
     std::uint64_t sequence = 0;
     Time at;
     bool moving = false;  // not a still
+    std::optional<Time> changed_at;  // of the first frame of a revision
   };
   struct Watch {
     std::shared_ptr<Viewer> viewer;
@@ -165,6 +169,7 @@ class FrameHub {
     int last_tier = 0;
     std::optional<Time> waits_until;  // for its next frame
     std::uint64_t last_problem = 0;
+    std::uint64_t last_revision = 0;
   };
 
   static int TierFor(const Watch& watch, const EncodedFrame& frame);

@@ -41,6 +41,13 @@ RenderLoop::RenderLoop(const RenderLoopOptions& options, volume::StormStore& sto
 
 RenderLoop::~RenderLoop() { Stop(); }
 
+double RenderLoop::TurnSeconds() const {
+  const Clock::rep began = turn_began_;
+  if (began == 0) return 0.0;
+  const Clock::duration took = Clock::now().time_since_epoch() - Clock::duration(began);
+  return std::chrono::duration<double>(took).count();
+}
+
 void RenderLoop::RequestStop() {
   stopping_ = true;
   wake_.Notify();
@@ -77,6 +84,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source) {
   ImageDrawer image_drawer(images_, measured, preparation_, [this] { wake_.Notify(); });
   Turns turns;
   while (!stopping_) {
+    turn_began_ = Clock::now().time_since_epoch().count();
     const std::vector<std::shared_ptr<Session>> sessions = sessions_.AllDrawn();
     drawer.ReleaseUnwatched(sessions);
     // The empty id stands for the single pictures; it sorts before the sessions'.
@@ -87,6 +95,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source) {
     const auto look_again_at = turns.Next(contenders, [&](std::size_t i, TurnKind kind) {
       return i == 0 ? image_drawer.TakeTurn() : drawer.TakeTurn(sessions[i - 1], kind);
     });
+    turn_began_ = 0;
     if (!look_again_at.has_value() || *look_again_at > Clock::now()) wake_.Wait(look_again_at);
   }
 }

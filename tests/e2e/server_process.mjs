@@ -22,13 +22,19 @@ export function freePort() {
   });
 }
 
-// `state` is a folder in which sessions outlive the program.
-export async function startServer({ httpPort, grpcPort, state = "none" }) {
+// `state` is a folder in which sessions outlive the program; `data` the storms, `flags` further ones of serve.
+export async function startServer({
+  httpPort,
+  grpcPort,
+  state = "none",
+  data = `${ROOT}samples/supercell.nc`,
+  flags: more = [],
+}) {
   const page = `${ROOT}client-web/dist`;
   if (!existsSync(BINARY)) throw new Error(`no program at ${BINARY}; build it, or set THUNDERHEAD_BINARY`);
   if (!existsSync(`${page}/index.html`)) throw new Error(`no page in ${page}; run npm run build in client-web`);
   const address = (port) => `127.0.0.1:${port}`;
-  const flags = ["--data", `${ROOT}samples/supercell.nc`, "--http", address(httpPort), "--grpc", address(grpcPort)];
+  const flags = ["--data", data, "--http", address(httpPort), "--grpc", address(grpcPort), ...more];
   const child = spawn(BINARY, ["serve", ...flags, "--page", page, "--state", state], { cwd: ROOT });
   let said = "";
   const url = await new Promise((resolve, reject) => {
