@@ -1,7 +1,5 @@
 #include "app/json_log.h"
 
-#include <string_view>
-
 #include "absl/strings/str_cat.h"
 #include "absl/time/time.h"
 #include "google/protobuf/struct.pb.h"
@@ -32,7 +30,7 @@ void JsonFormatter::format(const spdlog::details::log_msg& message, spdlog::memo
   const auto level = spdlog::level::to_string_view(message.level);
   const std::string text =
       absl::StrCat("{\"time\":\"", time, "\",\"level\":\"",
-                   std::string_view(level.data(), level.size()), "\",\"message\":",
+                   std::string(level.data(), level.size()), "\",\"message\":",
                    JsonString({message.payload.data(), message.payload.size()}), "}\n");
   line.append(text.data(), text.data() + text.size());
 }

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "app/address.h"
 #include "app/json_log.h"
 #include "base/status.h"
+#include "spdlog/sinks/sink.h"
 #include "spdlog/spdlog.h"
 #include "telemetry/exposition.h"
 

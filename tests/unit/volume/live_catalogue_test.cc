@@ -194,7 +194,7 @@ TEST_F(LiveFolder, OpensAFileOnlyWhenItHasChanged) {
   EXPECT_EQ(opened, 3) << "what could not be read is tried again";
 }
 
-TEST_F(LiveFolder, AFolderThatCannotBeListedChangesNothing) {
+TEST_F(LiveFolder, AFolderThatGoesAwayComesBack) {
   PutOld(File(0), WrfBytes({0}));
   const auto store = Open(milliseconds(100));
   ASSERT_EQ(TimesOf(*store), 1U);
