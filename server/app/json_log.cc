@@ -24,14 +24,12 @@ std::string PrintableOf(std::string text) {
 std::string JsonString(const std::string& text) { return PrintableOf(text); }
 
 void JsonFormatter::format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) {
-  const std::string time =
-      absl::FormatTime("%E4Y-%m-%dT%H:%M:%E3SZ", absl::FromChrono(message.time),
-                       absl::UTCTimeZone());
+  const std::string time = absl::FormatTime("%E4Y-%m-%dT%H:%M:%E3SZ",
+                                            absl::FromChrono(message.time), absl::UTCTimeZone());
   const auto level = spdlog::level::to_string_view(message.level);
-  const std::string text =
-      absl::StrCat("{\"time\":\"", time, "\",\"level\":\"",
-                   std::string(level.data(), level.size()), "\",\"message\":",
-                   JsonString({message.payload.data(), message.payload.size()}), "}\n");
+  const std::string text = absl::StrCat(
+      "{\"time\":\"", time, "\",\"level\":\"", std::string(level.data(), level.size()),
+      "\",\"message\":", JsonString({message.payload.data(), message.payload.size()}), "}\n");
   line.append(text.data(), text.data() + text.size());
 }
 

@@ -87,9 +87,8 @@ void Operation::SetServer(const service::Server* server) {
 
 std::string Operation::MetricsText() {
   const std::lock_guard lock(mutex_);
-  std::vector<telemetry::Gauge> gauges{{"thunderhead_memory_bytes",
-                                        "Memory that the process occupies",
-                                        telemetry::ResidentBytes()}};
+  std::vector<telemetry::Gauge> gauges{
+      {"thunderhead_memory_bytes", "Memory that the process occupies", telemetry::ResidentBytes()}};
   if (server_ != nullptr) {
     const service::ServerLoad load = server_->Load();
     const auto add = [&](const char* name, const char* help, double value) {
@@ -101,8 +100,7 @@ std::string Operation::MetricsText() {
     add("storm_cache_bytes", "Fields of storms in memory", load.cached_bytes);
     add("pictures_in_progress", "Single pictures begun and not yet delivered", load.pictures);
     add("draining", "1 from SIGTERM on", load.draining ? 1.0 : 0.0);
-    add("render_turn_seconds", "Since the turn of drawing under way began; 0 at rest",
-        load.turn_s);
+    add("render_turn_seconds", "Since the turn of drawing under way began; 0 at rest", load.turn_s);
   }
   return telemetry::Expose(telemetry::Counted(), gauges);
 }

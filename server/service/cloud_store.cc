@@ -46,9 +46,9 @@ CloudStore::CloudStore(std::string path, volume::StormStore& store)
 }
 
 absl::StatusOr<volume::StormInfoPtr> CloudStore::Make(const clouds::CloudShape& shape,
-                                                          const clouds::CloudOrigin& origin,
-                                                          const clouds::GenerateObserver& observer,
-                                                          const std::stop_token& stop) {
+                                                      const clouds::CloudOrigin& origin,
+                                                      const clouds::GenerateObserver& observer,
+                                                      const std::stop_token& stop) {
   if (path_.empty()) {
     return base::WithDetails(
         absl::FailedPreconditionError(

@@ -8,7 +8,7 @@ namespace thunderhead::service {
 namespace {
 
 absl::StatusOr<volume::StormInfoPtr> Check(const Engine& engine,
-                                               const v1::DescribeStormRequest& request) {
+                                           const v1::DescribeStormRequest& request) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
   THUNDERHEAD_ASSIGN_OR_RETURN(volume::StormInfoPtr storm,
                                FindStorm(engine.store, request.storm_id()));

@@ -36,7 +36,7 @@ void SaveThen(Engine& engine, std::function<void()> done) {
 }
 
 absl::StatusOr<volume::StormInfoPtr> FindStorm(const volume::StormStore& store,
-                                                   const std::string& id) {
+                                               const std::string& id) {
   const std::vector<volume::StormInfoPtr> storms = store.Storms();
   if (storms.empty()) {
     return base::WithDetails(absl::NotFoundError("the server has no storms"),
@@ -77,7 +77,8 @@ absl::Status PrepareScene(const volume::StormStore& store,
   scene.DiscardUnknownFields();
   THUNDERHEAD_RETURN_IF_ERROR(CheckScene(scene));
   THUNDERHEAD_RETURN_IF_ERROR(CheckRendering(scene.rendering(), techniques));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const volume::StormInfoPtr storm, FindStorm(store, scene.storm_id()));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const volume::StormInfoPtr storm,
+                               FindStorm(store, scene.storm_id()));
   if (!scene.has_time_index()) {
     scene.set_time_index(static_cast<std::uint32_t>(storm->times.size() - 1));
   }

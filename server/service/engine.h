@@ -41,7 +41,7 @@ void SaveThen(Engine& engine, std::function<void()> done);
 
 // The storm of that id, or the first for an empty id. NOT_FOUND lists the storms.
 absl::StatusOr<volume::StormInfoPtr> FindStorm(const volume::StormStore& store,
-                                                   const std::string& id);
+                                               const std::string& id);
 
 // INVALID_ARGUMENT, naming the range, if the storm has no such time. `path` is the request's field.
 absl::Status CheckTime(const volume::StormInfo& storm, std::uint32_t time_index,

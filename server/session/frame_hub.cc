@@ -124,8 +124,8 @@ std::optional<FrameEvent> FrameHub::Take(std::uint64_t viewer_id, Time now) {
       watch.last_tier = tier;
       watch.last_sequence = full.sequence;
       watch.last_revision = full.scene_revision;
-      watch.in_flight.push_back({watch.last_sequence, now, !full.refined,
-                                 first ? full.changed_at : std::nullopt});
+      watch.in_flight.push_back(
+          {watch.last_sequence, now, !full.refined, first ? full.changed_at : std::nullopt});
       if (watch.wants.frames_per_second > 0.0) {
         constexpr double kFewest_per_s = 0.1;
         const std::chrono::duration<double> pause(

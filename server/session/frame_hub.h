@@ -157,7 +157,7 @@ class FrameHub {
   struct Sent {
     std::uint64_t sequence = 0;
     Time at;
-    bool moving = false;  // not a still
+    bool moving = false;             // not a still
     std::optional<Time> changed_at;  // of the first frame of a revision
   };
   struct Watch {

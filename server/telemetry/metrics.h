@@ -68,13 +68,13 @@ class Labelled {
 
 // The names that operators see stand in exposition.cc.
 struct Metrics {
-  Labelled<Counter> frames;       // drawn and encoded, by technique
-  Labelled<Histogram> stages;     // of frames, by stage
-  Histogram update_to_frame;      // from a change of the scene to a viewer's acknowledgement of it
-  Counter frames_sent;            // to viewers
-  Counter frames_skipped;         // newer ones came first
-  Counter frame_bytes_sent;       // of their pictures
-  Labelled<Counter> refusals;     // answers that are errors, by reason
+  Labelled<Counter> frames;    // drawn and encoded, by technique
+  Labelled<Histogram> stages;  // of frames, by stage
+  Histogram update_to_frame;   // from a change of the scene to a viewer's acknowledgement of it
+  Counter frames_sent;         // to viewers
+  Counter frames_skipped;      // newer ones came first
+  Counter frame_bytes_sent;    // of their pictures
+  Labelled<Counter> refusals;  // answers that are errors, by reason
   Counter sessions_opened;
 };
 

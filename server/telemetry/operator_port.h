@@ -12,9 +12,9 @@
 namespace thunderhead::telemetry {
 
 struct Health {
-  bool alive = true;    // /healthz: false asks for a restart
-  bool ready = true;    // /readyz: false asks for clients to be sent elsewhere
-  std::string state;    // for people, one line
+  bool alive = true;  // /healthz: false asks for a restart
+  bool ready = true;  // /readyz: false asks for clients to be sent elsewhere
+  std::string state;  // for people, one line
 };
 
 struct OperatorPages {

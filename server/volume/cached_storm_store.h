@@ -102,7 +102,7 @@ class CachedStormStore final : public StormStore {
   const StormStoreOptions options_;
 
   mutable std::mutex mutex_;
-  std::deque<Held> storms_;  // elements are never removed: indices stay
+  std::deque<Held> storms_;         // elements are never removed: indices stay
   std::vector<std::size_t> order_;  // of those that are listed
   std::condition_variable
       changed_;  // a read ended, a time was wanted, a caller waits, or the store ends

@@ -104,9 +104,7 @@ StormChange CachedStormStore::Replace(std::size_t place, std::optional<Catalogue
   StormChange change;
   if (held.storm != nullptr) {
     change.before = held.Info();
-    const auto in_use = [&](std::size_t time) {
-      return cache_.InUse({place, held.numbers[time]});
-    };
+    const auto in_use = [&](std::size_t time) { return cache_.InUse({place, held.numbers[time]}); };
     if (found.has_value() && found->info.id != held.storm->info.id) {
       found->info.id = FreeId(found->info.id, place);
     }
@@ -136,9 +134,8 @@ StormChange CachedStormStore::Replace(std::size_t place, std::optional<Catalogue
     std::erase(wanted_, TimeKey{place, number});
   }
   held.numbers = std::move(numbers);
-  held.storm = found.has_value()
-                   ? std::make_shared<const CataloguedStorm>(*std::move(found))
-                   : nullptr;
+  held.storm =
+      found.has_value() ? std::make_shared<const CataloguedStorm>(*std::move(found)) : nullptr;
   if (held.storm != nullptr) change.after = held.Info();
   return change;
 }

@@ -24,8 +24,8 @@ std::optional<CatalogueScan::Stamp> CatalogueScan::StampOf(const std::string& pa
   struct stat found {};
   if (stat(path.c_str(), &found) != 0) return std::nullopt;
   Stamp stamp;
-  stamp.file = static_cast<std::uint64_t>(found.st_ino) ^
-               (static_cast<std::uint64_t>(found.st_dev) << 48U);
+  stamp.file =
+      static_cast<std::uint64_t>(found.st_ino) ^ (static_cast<std::uint64_t>(found.st_dev) << 48U);
   stamp.size_bytes = static_cast<std::uint64_t>(found.st_size);
   stamp.changed_ns = std::int64_t{found.st_mtim.tv_sec} * 1'000'000'000 + found.st_mtim.tv_nsec;
   return stamp;

@@ -61,11 +61,11 @@ class CatalogueScan {
     Stamp stamp;
     Time unchanged_since;
     bool settled = false;
-    std::optional<Time> tried_at;           // with this stamp
-    std::optional<StormFile> description;   // perhaps of an earlier, shorter state
-    std::string complaint;                  // logged last
+    std::optional<Time> tried_at;          // with this stamp
+    std::optional<StormFile> description;  // perhaps of an earlier, shorter state
+    std::string complaint;                 // logged last
     std::uint64_t version = 0;
-    std::uint64_t scan = 0;                 // that saw it last
+    std::uint64_t scan = 0;  // that saw it last
   };
 
   static std::optional<Stamp> StampOf(const std::string& path);

@@ -23,7 +23,8 @@ constexpr std::uint32_t kEvents = IN_CLOSE_WRITE | IN_MOVED_TO | IN_MOVED_FROM |
 }  // namespace
 
 FolderEvents::FolderEvents()
-    : events_(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)), wake_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+    : events_(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)),
+      wake_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
   if (events_ < 0) {
     spdlog::warn("no file events ({}): new files are found by the slow rescan", strerror(errno));
   }
@@ -51,8 +52,8 @@ bool FolderEvents::Watch(const std::string& folder) {
 bool FolderEvents::WaitUntil(std::chrono::steady_clock::time_point deadline) {
   std::array<pollfd, 2> polled{{{wake_, POLLIN, 0}, {events_, POLLIN, 0}}};
   while (true) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(
-        deadline - std::chrono::steady_clock::now());
+    const auto left =
+        std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
     const auto wait_ms = std::clamp<std::int64_t>(left.count(), 0, 3'600'000);
     const int ready = poll(polled.data(), polled.size(), static_cast<int>(wait_ms));
     if (ready < 0 && errno == EINTR) continue;

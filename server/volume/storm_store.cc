@@ -33,12 +33,12 @@ absl::StatusOr<std::unique_ptr<StormStore>> OpenLive(const std::vector<std::stri
                                                      const StormStoreOptions& options) {
   auto store = std::make_unique<CachedStormStore>(std::vector<CataloguedStorm>{}, options);
   THUNDERHEAD_RETURN_IF_ERROR(CheckPaths(paths, options.formats));
-  auto scan = std::make_unique<CatalogueScan>(CatalogueScan::Options{
-      .paths = paths,
-      .formats = options.formats,
-      .settle = options.live->settle,
-      .retry = options.live->rescan,
-      .before_file = [&store = *store] { store.LetReadersGoFirst(); }});
+  auto scan = std::make_unique<CatalogueScan>(
+      CatalogueScan::Options{.paths = paths,
+                             .formats = options.formats,
+                             .settle = options.live->settle,
+                             .retry = options.live->rescan,
+                             .before_file = [&store = *store] { store.LetReadersGoFirst(); }});
   THUNDERHEAD_ASSIGN_OR_RETURN(CatalogueScan::Result first,
                                scan->Scan(std::chrono::steady_clock::now()));
   if (first.storms.empty() && first.look_again_at.has_value()) {
@@ -67,7 +67,8 @@ absl::StatusOr<std::unique_ptr<StormStore>> StormStore::Open(const std::vector<s
 
 StormInfoPtr StormStore::Find(std::string_view id) const {
   const std::vector<StormInfoPtr> storms = Storms();
-  const auto at = std::ranges::find(storms, id, [](const StormInfoPtr& storm) { return std::string_view(storm->id); });
+  const auto at = std::ranges::find(
+      storms, id, [](const StormInfoPtr& storm) { return std::string_view(storm->id); });
   return at == storms.end() ? nullptr : *at;
 }
 

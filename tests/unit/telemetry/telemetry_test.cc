@@ -14,10 +14,10 @@
 #include "boost/asio/ip/tcp.hpp"
 #include "boost/asio/read.hpp"
 #include "boost/asio/write.hpp"
-#include "tests/support/temporary_folder.h"
 #include "telemetry/exposition.h"
 #include "telemetry/metrics.h"
 #include "telemetry/operator_port.h"
+#include "tests/support/temporary_folder.h"
 
 namespace thunderhead::telemetry {
 namespace {
@@ -63,7 +63,8 @@ TEST(Exposition, IsPrometheusText) {
   EXPECT_THAT(text, HasSubstr("thunderhead_update_to_frame_seconds_bucket{le=\"0.002\"} 1\n"));
   EXPECT_THAT(text, HasSubstr("thunderhead_update_to_frame_seconds_bucket{le=\"+Inf\"} 2\n"));
   EXPECT_THAT(text, HasSubstr("thunderhead_update_to_frame_seconds_count 2\n"));
-  EXPECT_THAT(text, HasSubstr("thunderhead_refusals_total{reason=\"TOO_MANY \\\"quotes\\\"\\n\"} 1\n"));
+  EXPECT_THAT(text,
+              HasSubstr("thunderhead_refusals_total{reason=\"TOO_MANY \\\"quotes\\\"\\n\"} 1\n"));
   EXPECT_THAT(text, HasSubstr("thunderhead_sessions 2\n"));
 }
 
@@ -75,9 +76,9 @@ TEST(ResidentBytes, IsAboutThisProcess) {
 class Port : public ::testing::Test {
  protected:
   Port() {
-    auto port = OperatorPort::Open("127.0.0.1", 0,
-                                   {.metrics = [this] { return Expose(metrics_, {}); },
-                                    .health = [this] { return health_; }});
+    auto port = OperatorPort::Open(
+        "127.0.0.1", 0,
+        {.metrics = [this] { return Expose(metrics_, {}); }, .health = [this] { return health_; }});
     EXPECT_TRUE(port.ok()) << port.status();
     port_ = *std::move(port);
   }
@@ -139,10 +140,10 @@ TEST_F(Port, IsScrapedByPrometheus) {
   testing::TemporaryFolder folder;
   const std::string config = folder.File("prometheus.yml");
   std::ofstream(config) << "scrape_configs:\n- job_name: thunderhead\n  scrape_interval: 1s\n"
-                        << "  static_configs:\n  - targets: ['127.0.0.1:" << port_->Port() << "']\n";
+                        << "  static_configs:\n  - targets: ['127.0.0.1:" << port_->Port()
+                        << "']\n";
   const auto free_port = [this] {
-    boost::asio::ip::tcp::acceptor acceptor(
-        io_, {boost::asio::ip::make_address("127.0.0.1"), 0});
+    boost::asio::ip::tcp::acceptor acceptor(io_, {boost::asio::ip::make_address("127.0.0.1"), 0});
     return acceptor.local_endpoint().port();
   }();
   const std::string address = "127.0.0.1:" + std::to_string(free_port);
@@ -154,9 +155,9 @@ TEST_F(Port, IsScrapedByPrometheus) {
             0);
   const auto query = [&](const std::string& expression) {
     const std::string out = folder.File("out");
-    std::system(("promtool query instant http://" + address + " '" + expression + "' > " + out +
-                 " 2>&1")
-                    .c_str());
+    std::system(
+        ("promtool query instant http://" + address + " '" + expression + "' > " + out + " 2>&1")
+            .c_str());
     std::ostringstream text;
     text << std::ifstream(out).rdbuf();
     return text.str();

@@ -23,10 +23,10 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+using ::testing::ElementsAre;
 using testing::SyntheticWrf;
 using testing::TemporaryFolder;
 using testing::WrfCell;
-using ::testing::ElementsAre;
 
 std::string Bytes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -200,7 +200,8 @@ TEST_F(LiveFolder, AFolderThatGoesAwayComesBack) {
   ASSERT_EQ(TimesOf(*store), 1U);
   fs::rename(data_, folder_.File("away"));
   Put(data_, "a file in the folder's place");
-  EXPECT_TRUE(Eventually([&] { return TimesOf(*store) == 0; })) << "a path that is gone is no storm";
+  EXPECT_TRUE(Eventually([&] { return TimesOf(*store) == 0; }))
+      << "a path that is gone is no storm";
   fs::remove(data_);
   fs::rename(folder_.File("away"), data_);
   EXPECT_TRUE(Eventually([&] { return TimesOf(*store) == 1; }));
