@@ -210,6 +210,7 @@ TEST_F(LiveFolder, AFolderThatGoesAwayComesBack) {
 TEST_F(LiveFolder, AnEmptyFolderIsWaitedFor) {
   const auto store = Open();
   EXPECT_TRUE(store->Storms().empty());
+  std::this_thread::sleep_for(seconds(1));  // the scan after the start is over
   MoveInto(File(0), WrfBytes({0}));
   EXPECT_TRUE(Eventually([&] { return TimesOf(*store) == 1; }));
 }
@@ -309,7 +310,9 @@ TEST_F(LiveFolder, AFileThatIsReplacedIsReadAgain) {
   PutOld(File(0), WrfBytes({0}, 1e-3));
   const auto store = Open();
   const std::string id = store->Storms()[0]->id;
-  EXPECT_NEAR((*store->Get(id, 0, {}))->fields[0].statistics.maximum, 1e-3, 1e-8);
+  const auto shown = store->Get(id, 0, {});  // held, so that it stays in memory
+  ASSERT_TRUE(shown.ok());
+  EXPECT_NEAR((*shown)->fields[0].statistics.maximum, 1e-3, 1e-8);
   MoveInto(File(0), WrfBytes({0}, 4e-3));
   EXPECT_TRUE(Eventually([&] {
     const auto fields = store->Get(id, 0, {});
