@@ -80,8 +80,8 @@ TEST_F(ChangingCatalogue, MovesSessionsAndTellsThem) {
   EXPECT_EQ(TimeOf(chosen), 1U);
   AddTime("0001-01-01T02:00:00Z");
   EXPECT_TRUE(AwaitTime(newest, 4));
-  newest.AwaitNewest(Response::kCatalogueChanged);
-  chosen.AwaitNewest(Response::kCatalogueChanged);
+  EXPECT_TRUE(newest.AwaitNewest(Response::kCatalogueChanged).has_catalogue_changed());
+  EXPECT_TRUE(chosen.AwaitNewest(Response::kCatalogueChanged).has_catalogue_changed());
   EXPECT_EQ(TimeOf(chosen), 1U);
   // An earlier one moves every index.
   AddTime("0001-01-01T00:00:00Z");
