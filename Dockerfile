@@ -26,6 +26,7 @@ ENV PATH=/opt/thunderhead/bin:$PATH \
     STATE_DIRECTORY=/var/lib/thunderhead
 USER thunderhead
 EXPOSE 8080 50051
-# Inside the container every address is its own; what is published decides who reaches it.
+# Inside the container every address is its own; what is published decides who reaches it, hence --insecure. To publish it to
+# other machines, give --auth, --tls-cert and --tls-key instead: docs/operating.md.
 ENTRYPOINT ["thunderhead"]
-CMD ["serve", "--data", "/data", "--http", "0.0.0.0:8080", "--grpc", "0.0.0.0:50051"]
+CMD ["serve", "--data", "/data", "--http", "0.0.0.0:8080", "--grpc", "0.0.0.0:50051", "--insecure"]

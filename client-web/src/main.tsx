@@ -1,5 +1,6 @@
 // The page's entry: builds it, puts it into the document, and takes it down again on a hot reload.
 import { render } from "preact";
+import { AccessToken } from "./core/access_token";
 import { createSameOriginTransport, sameOriginInteract } from "./transport/grpc_web";
 import { App } from "./view/app";
 import { Page } from "./view/page";
@@ -7,10 +8,12 @@ import { Page } from "./view/page";
 const root = document.getElementById("page");
 if (root === null) throw new Error("index.html has no element #page");
 
+const token = new AccessToken(sessionStorageOf(window));
 const page = new Page(
-  createSameOriginTransport(document.baseURI),
-  sameOriginInteract(document.baseURI),
+  createSameOriginTransport(document.baseURI, () => token.value),
+  sameOriginInteract(document.baseURI, () => token.value),
   window,
+  token,
 );
 render(<App page={page} />, root);
 
@@ -18,3 +21,11 @@ import.meta.hot?.dispose(() => {
   render(null, root);
   page.dispose();
 });
+
+function sessionStorageOf(window: Window): Storage | undefined {
+  try {
+    return window.sessionStorage;
+  } catch {
+    return undefined;
+  }
+}

@@ -10,6 +10,8 @@ import type { FakeService } from "./fake_service";
 export class FakeNetwork {
   // Nothing can be reached, and open calls get nothing any more.
   down = false;
+  // The server wants a token.
+  locked = false;
   // Open calls break as soon as they are joined.
   breaking = false;
   readonly called: string[] = [];
@@ -22,6 +24,7 @@ export class FakeNetwork {
     const wire: Interceptor = (next) => async (request) => {
       this.called.push(request.method.name);
       if (this.down) throw new ConnectError("Failed to fetch", Code.Unavailable);
+      if (this.locked) throw new ConnectError("this server needs a token", Code.Unauthenticated);
       return next(request);
     };
     const transport = { interceptors: [wire] };
@@ -34,8 +37,11 @@ export class FakeNetwork {
 
   // Breaks every call, as a network does that tells.
   break(): void {
-    for (const end of [...this.#open])
-      end({ kind: "broken", message: "The server cannot be reached" });
+    this.end({ kind: "broken", message: "The server cannot be reached" });
+  }
+
+  end(how: CallEnd): void {
+    for (const end of [...this.#open]) end(how);
   }
 
   readonly openInteract: OpenInteract = (listener) => {
@@ -49,7 +55,8 @@ export class FakeNetwork {
     };
     const call = this.service.interact(
       (message) => queueMicrotask(() => !over && !this.down && listener.message(message)),
-      (code, message) => queueMicrotask(() => end({ kind: "status", code, message })),
+      (code, message) =>
+        queueMicrotask(() => end({ kind: "status", code, message, retryAfterMs: 0 })),
     );
     this.#open.add(end);
     queueMicrotask(() => {

@@ -2,9 +2,12 @@
 import { once } from "node:events";
 import type { AddressInfo } from "node:net";
 import { create, fromBinary, toBinary } from "@bufbuild/protobuf";
+import { anyPack } from "@bufbuild/protobuf/wkt";
 import { Code } from "@connectrpc/connect";
 import { afterEach, beforeEach, describe, expect, it } from "vitest";
 import { WebSocket, WebSocketServer } from "ws";
+import { RetryInfoSchema } from "../src/gen/google/rpc/error_details_pb";
+import { StatusSchema } from "../src/gen/google/rpc/status_pb";
 import {
   InteractRequestSchema,
   type InteractResponse,
@@ -15,9 +18,15 @@ import type { CallEnd, Socket } from "../src/transport/interact_socket";
 
 describe("a call over a WebSocket", () => {
   let server: WebSocketServer;
-  const heard: { path: string | undefined; protocol: string; messages: Buffer[] } = {
+  const heard: {
+    path: string | undefined;
+    protocol: string;
+    offered: string | undefined;
+    messages: Buffer[];
+  } = {
     path: undefined,
     protocol: "",
+    offered: undefined,
     messages: [],
   };
 
@@ -31,13 +40,14 @@ describe("a call over a WebSocket", () => {
     server.close();
   });
 
-  function open(base = "/below/a/path/index.html") {
+  function open(base = "/below/a/path/index.html", token?: string) {
     const { port } = server.address() as AddressInfo;
     const seen = { opened: 0, messages: [] as InteractResponse[], ends: [] as CallEnd[] };
-    const makeSocket = (url: string, protocol: string) =>
-      new WebSocket(url, protocol) as unknown as Socket;
+    const makeSocket = (url: string, protocols: string[]) =>
+      new WebSocket(url, protocols) as unknown as Socket;
     const openInteract = sameOriginInteract(
       `http://127.0.0.1:${port}${base}?session=1`,
+      () => token,
       makeSocket,
     );
     const call = openInteract({
@@ -51,8 +61,12 @@ describe("a call over a WebSocket", () => {
   }
 
   async function accepted(): Promise<WebSocket> {
-    const [socket, request] = (await once(server, "connection")) as [WebSocket, { url: string }];
+    const [socket, request] = (await once(server, "connection")) as [
+      WebSocket,
+      { url: string; headers: Record<string, string> },
+    ];
     heard.path = request.url;
+    heard.offered = request.headers["sec-websocket-protocol"];
     heard.protocol = socket.protocol;
     socket.on("message", (data: Buffer) => heard.messages.push(data));
     return socket;
@@ -62,6 +76,26 @@ describe("a call over a WebSocket", () => {
     for (let i = 0; i < 400 && !holds(); i += 1) await new Promise((r) => setTimeout(r, 5));
     expect(holds()).toBe(true);
   };
+
+  it("shows its token beside the protocol's name", async () => {
+    open("/", "storm?>~");
+    await accepted();
+    expect(heard.offered).toBe("grpc-websocket.v1,bearer.c3Rvcm0_Pn4");
+  });
+
+  it("reads from the trailers when to try again", async () => {
+    const { seen } = open();
+    const socket = await accepted();
+    const retry = anyPack(
+      RetryInfoSchema,
+      create(RetryInfoSchema, { retryDelay: { seconds: 12n } }),
+    );
+    const details = toBinary(StatusSchema, create(StatusSchema, { details: [retry] }));
+    const trailers = `grpc-status: 8\r\ngrpc-message: full\r\ngrpc-status-details-bin: ${Buffer.from(details).toString("base64").replaceAll("=", "")}\r\n`;
+    socket.send(Buffer.concat([Buffer.of(0x80), Buffer.from(trailers)]));
+    await until(() => seen.ends.length === 1);
+    expect(seen.ends).toEqual([{ kind: "status", code: 8, message: "full", retryAfterMs: 12_000 }]);
+  });
 
   it("asks below the page's path by the protocol's name, and frames messages", async () => {
     const { call, seen } = open();
@@ -93,7 +127,12 @@ describe("a call over a WebSocket", () => {
     await until(() => seen.ends.length === 1);
     await new Promise((r) => setTimeout(r, 30));
     expect(seen.ends).toEqual([
-      { kind: "status", code: Code.NotFound, message: 'no session "x": gone' },
+      {
+        kind: "status",
+        code: Code.NotFound,
+        message: 'no session "x": gone',
+        retryAfterMs: 0,
+      },
     ]);
   });
 

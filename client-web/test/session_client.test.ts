@@ -271,6 +271,51 @@ describe("the session client", () => {
     expect(seen.opened.length).toBeLessThan(15);
   });
 
+  it("waits for a token where the server wants one, and goes on with it", async () => {
+    const { start, network } = setUp();
+    network.locked = true;
+    const { seen, client } = start();
+    await pass(60_000);
+    expect(seen.connections).toEqual([{ kind: "locked", reason: "this server needs a token" }]);
+    expect(network.called).toEqual(["CreateSession"]);
+    network.locked = false;
+    client.retryNow();
+    await pass(300);
+    expect(seen.connections.at(-1)).toEqual({ kind: "live" });
+  });
+
+  it("waits for a token where its call ends for want of one", async () => {
+    const { start, network } = setUp();
+    const { seen } = start();
+    await pass(300);
+    network.end({
+      kind: "status",
+      code: Code.Unauthenticated,
+      message: "the token has expired",
+      retryAfterMs: 0,
+    });
+    await pass(60_000);
+    expect(seen.connections.at(-1)).toEqual({ kind: "locked", reason: "the token has expired" });
+    expect(seen.opened.length).toBe(1);
+  });
+
+  it("comes back no sooner than the server asks", async () => {
+    const { start, network } = setUp();
+    const { seen } = start();
+    await pass(300);
+    network.end({
+      kind: "status",
+      code: Code.ResourceExhausted,
+      message: "the session is full",
+      retryAfterMs: 30_000,
+    });
+    await pass(29_900);
+    expect(network.joins).toBe(1);
+    expect(seen.connections.at(-1)).toMatchObject({ kind: "lost", reason: "the session is full" });
+    await pass(1_000);
+    expect(network.joins).toBe(2);
+  });
+
   it("does not open a session in place of one that cannot be reached", async () => {
     const { start, network, service } = setUp();
     network.down = true;

@@ -7,6 +7,14 @@
 #include "base/status.h"
 
 namespace thunderhead::accuracy {
+namespace {
+
+// A correction, which takes as long to find as some steps, is found again when there are so many
+// times the paths, or it is so old.
+constexpr double kPublishedGrowth = 1.2;
+constexpr double kMaxUnpublished_ms = 2000.0;
+
+}  // namespace
 
 CorrectorPool::Kept* CorrectorPool::Serving(
     const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields) {
@@ -17,18 +25,16 @@ CorrectorPool::Kept* CorrectorPool::Serving(
   return found == kept_.end() ? nullptr : &*found;
 }
 
-LightCorrector* CorrectorPool::Find(
+const LightCorrector* CorrectorPool::Find(
     const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields) {
-  Kept* const kept = Serving(scene, fields);
-  if (kept != nullptr) kept->since_used.Restart();
-  LightCorrector* const corrector = kept == nullptr ? nullptr : kept->corrector.get();
-  DropUnused();
-  return corrector;
+  const Kept* const kept = Serving(scene, fields);
+  return kept == nullptr ? nullptr : kept->corrector.get();
 }
 
 void CorrectorPool::DropUnused() {
   std::erase_if(kept_, [this](const Kept& kept) {
-    return !kept.IsClaimed() && kept.since_used.ElapsedMs() > 1e3 * unused_s_;
+    const double unused_ms = std::min(kept.since_traced.ElapsedMs(), kept.published->UnusedMs());
+    return !kept.IsClaimed() && unused_ms > 1e3 * unused_s_;
   });
 }
 
@@ -48,22 +54,35 @@ absl::Status CorrectorPool::MakeRoom() {
   return absl::OkStatus();
 }
 
+void CorrectorPool::Publish(Kept& kept, std::int64_t wanted_paths) {
+  const LightProgress& progress = kept.corrector->Progress();
+  if (!progress.Corrects() || progress.paths == kept.published_paths) return;
+  const bool more = static_cast<double>(progress.paths) >=
+                    kPublishedGrowth * static_cast<double>(kept.published_paths);
+  const bool late = kept.since_published.ElapsedMs() > kMaxUnpublished_ms;
+  if (!more && !late && !progress.HasTraced(wanted_paths)) return;
+  kept.published->Publish({kept.corrector->Correction(), progress.paths});
+  kept.published_paths = progress.paths;
+  kept.since_published.Restart();
+}
+
 absl::StatusOr<LightProgress> CorrectorPool::Trace(
     const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
-    LightClaim* claim) {
+    LightClaim* claim, std::int64_t wanted_paths) {
   if (!TracesLight(scene, *fields)) return LightProgress{};
   Kept* kept = Serving(scene, fields);
   if (kept == nullptr) {
     THUNDERHEAD_RETURN_IF_ERROR(MakeRoom());
     THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<LightCorrector> corrector,
                                  LightCorrector::Create(scene, fields, programs_, 0));
-    kept = &kept_.emplace_back(Kept{std::move(corrector), base::Stopwatch(), base::Stopwatch()});
+    kept = &kept_.emplace_back(
+        Kept{std::move(corrector), std::make_unique<TracedLights::Entry>(lights_, scene, fields)});
   }
   if (claim != nullptr) *claim = kept->claim;
   kept->corrector->LookAs(scene);
   THUNDERHEAD_RETURN_IF_ERROR(kept->corrector->Step());
   kept->since_traced.Restart();
-  kept->since_used.Restart();
+  Publish(*kept, wanted_paths);
   const LightProgress progress = kept->corrector->Progress();
   DropUnused();
   return progress;

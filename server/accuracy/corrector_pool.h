@@ -1,5 +1,5 @@
-// Light correctors for several scenes in view at once; each keeps its traced light. Owns GL
-// objects: use it on the context's thread.
+// Light correctors for several scenes in view at once; each keeps its traced light, and publishes
+// corrections for whoever draws. Owns GL objects: use it on the context's thread.
 #pragma once
 
 #include <cstddef>
@@ -10,6 +10,8 @@
 
 #include "absl/status/statusor.h"
 #include "accuracy/light_corrector.h"
+#include "accuracy/setting.h"
+#include "accuracy/traced_lights.h"
 #include "base/stopwatch.h"
 #include "gl/program.h"
 #include "scene/scene.h"
@@ -22,29 +24,34 @@ class CorrectorPool {
   // Programs are linked in `programs`. At most `max_correctors`, as each takes up to a hundred
   // megabytes. One that was traced within `busy_s`, or that is claimed, is not replaced; one that
   // was not used for `unused_s` goes with the next call.
-  explicit CorrectorPool(std::shared_ptr<gl::ProgramCache> programs, std::size_t max_correctors = 8,
-                         double busy_s = 3.0, double unused_s = 300.0)
+  explicit CorrectorPool(std::shared_ptr<gl::ProgramCache> programs,
+                         std::shared_ptr<TracedLights> lights = std::make_shared<TracedLights>(),
+                         std::size_t max_correctors = 8, double busy_s = 3.0,
+                         double unused_s = 300.0)
       : max_correctors_(max_correctors),
         busy_s_(busy_s),
         unused_s_(unused_s),
-        programs_(std::move(programs)) {}
+        programs_(std::move(programs)),
+        lights_(std::move(lights)) {}
 
-  // The corrector for the scene, set to its camera; null if there is none, or the scene has no
-  // traced light.
-  LightCorrector* Find(const scene::Scene& scene,
-                       const std::shared_ptr<const volume::HydrometeorFields>& fields);
+  // Null if there is none for the scene, or the scene has no traced light.
+  const LightCorrector* Find(const scene::Scene& scene,
+                             const std::shared_ptr<const volume::HydrometeorFields>& fields);
 
   // Traces one step for the scene. RESOURCE_EXHAUSTED if there are `max_correctors` already and all
-  // are busy or claimed. `claim`, which may be null, is given a claim on the scene's light.
+  // are busy or claimed. `claim`, which may be null, is given a claim on the scene's light. The
+  // correction is published now and then, and once `wanted_paths` are traced.
   absl::StatusOr<LightProgress> Trace(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
-      LightClaim* claim = nullptr);
+      LightClaim* claim = nullptr, std::int64_t wanted_paths = kTracedPaths);
 
  private:
   struct Kept {
     std::unique_ptr<LightCorrector> corrector;
+    std::unique_ptr<TracedLights::Entry> published;
     base::Stopwatch since_traced;
-    base::Stopwatch since_used;                  // traced or found
+    base::Stopwatch since_published;
+    std::int64_t published_paths = 0;
     LightClaim claim = std::make_shared<int>();  // of which others may have copies
 
     bool IsClaimed() const { return claim.use_count() > 1; }
@@ -53,12 +60,14 @@ class CorrectorPool {
   Kept* Serving(const scene::Scene& scene,
                 const std::shared_ptr<const volume::HydrometeorFields>& fields);
   absl::Status MakeRoom();
+  static void Publish(Kept& kept, std::int64_t wanted_paths);
   void DropUnused();
 
   std::size_t max_correctors_;
   double busy_s_;
   double unused_s_;
   std::shared_ptr<gl::ProgramCache> programs_;
+  std::shared_ptr<TracedLights> lights_;
   std::vector<Kept> kept_;
 };
 

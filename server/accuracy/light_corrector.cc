@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "accuracy/probe_cameras.h"
+#include "accuracy/traced_lights.h"
 #include "base/status.h"
 #include "frame/tone_map.h"
 #include "glm/common.hpp"
@@ -98,7 +99,8 @@ LightCorrector::LightCorrector(const scene::Scene& scene,
       box_(volume::VisibleBox(*fields_, SizesOf(scene_))),
       over_ground_(reference::SurroundingsOf(scene_, *fields_, reference::GroundLight::kShaded)),
       threads_(threads),
-      renderer_(std::move(programs)),
+      programs_(std::move(programs)),
+      renderer_(programs_),
       storm_fit_(TexelsFor(box_, fields_->grid.spacing_m)),
       ground_fit_({kGroundTexels, kGroundTexels, 1}) {
   over_ground_.air = nullptr;
@@ -121,19 +123,7 @@ absl::StatusOr<std::unique_ptr<LightCorrector>> LightCorrector::Create(
 
 bool LightCorrector::Serves(const scene::Scene& scene,
                             const std::shared_ptr<const volume::HydrometeorFields>& fields) const {
-  const auto* asked = std::get_if<scene::LightVolume>(&asked_.rendering.technique);
-  scene::Scene alike = scene;
-  auto* technique = std::get_if<scene::LightVolume>(&alike.rendering.technique);
-  if (fields != fields_ || technique == nullptr) return false;
-  technique->traced_light = asked->traced_light;
-  alike.camera = asked_.camera;
-  alike.lights = asked_.lights;  // which the correction does not include
-  alike.display = asked_.display;
-  alike.output = asked_.output;
-  alike.accuracy = asked_.accuracy;
-  alike.ground.rings = asked_.ground.rings;
-  alike.rendering.image_scale = asked_.rendering.image_scale;
-  return alike == asked_;
+  return fields == fields_ && SharesLight(asked_, scene);
 }
 
 void LightCorrector::LookAs(const scene::Scene& scene) {
@@ -156,7 +146,8 @@ absl::Status LightCorrector::Step() {
   TraceGround();
   scene_.camera = NextCamera();
   ++pictures_;
-  THUNDERHEAD_ASSIGN_OR_RETURN(const Probe probe, DrawProbe());
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Probe probe,
+                               programs_->Pieces().During([this] { return DrawProbe(); }));
   TraceProbe(probe);
   correction_.reset();
   return absl::OkStatus();

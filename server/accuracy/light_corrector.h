@@ -2,7 +2,7 @@
 // storm, half of them from near the scene's camera and half from all around, traces one path along
 // each of their rays, and fits factors for the drawn radiance. Paths from the ground correct its
 // skylight. The result is the same for any number of threads. Owns GL objects: use it on the
-// context's thread.
+// context's thread, which draws in pieces (gl/pieces.h) and traces without the device.
 #pragma once
 
 #include <cstdint>
@@ -87,6 +87,7 @@ class LightCorrector {
   volume::WorldBox box_;
   reference::Surroundings over_ground_;  // as seen by rays from the ground: without air in front
   int threads_;
+  std::shared_ptr<gl::ProgramCache> programs_;
   renderers::SceneRenderer renderer_;
   CorrectionFit storm_fit_;
   CorrectionFit ground_fit_;

@@ -1,6 +1,6 @@
 // The program's subcommands. Each adds its flags to `app` and returns the function to run once they
-// are parsed. That returns OK or the error to print: INVALID_ARGUMENT for a wrong command line, any
-// other code for a failure.
+// are parsed. That returns OK or the error to print, whose code decides how the program ends
+// (exit_codes.h).
 #pragma once
 
 #include <functional>
@@ -17,6 +17,8 @@ struct Command {
 
 Command AddServe(CLI::App& app);
 Command AddRender(CLI::App& app);
+Command AddSequence(CLI::App& app);
+Command AddWatch(CLI::App& app);
 Command AddInspect(CLI::App& app);
 Command AddFlux(CLI::App& app);
 Command AddMeasure(CLI::App& app);
@@ -26,6 +28,7 @@ Command AddMeasureExtremes(CLI::App& measure);
 Command AddMeasureSlices(CLI::App& measure);
 Command AddMeasureTrade(CLI::App& measure);
 Command AddMeasureLight(CLI::App& measure);
+Command AddMeasureLook(CLI::App& measure);
 Command AddGenerate(CLI::App& app);
 Command AddFit(CLI::App& app);
 Command AddExport(CLI::App& app);

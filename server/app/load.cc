@@ -1,4 +1,5 @@
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/strip.h"
 #include "app/address.h"
+#include "app/client_access.h"
 #include "app/commands.h"
 #include "app/interruption.h"
 #include "app/picture_size.h"
@@ -21,10 +23,12 @@ namespace {
 struct Flags {
   std::string server;
   std::string size = "640x360";
+  std::string stills_size = "640x360";
   std::optional<double> kbit_per_s;
   std::optional<int> throttled;
   load::LoadOptions load;
   bool json = false;
+  ClientAccessFlags access;
 };
 
 struct Target {
@@ -35,7 +39,8 @@ struct Target {
 absl::StatusOr<Target> ParseTarget(const std::string& server) {
   if (absl::StartsWith(server, "https://")) {
     return absl::InvalidArgumentError(
-        absl::StrCat("SERVER is '", server, "'; TLS is not supported: use http:// or HOST:PORT"));
+        absl::StrCat("SERVER is '", server,
+                     "'; TLS is only for gRPC: use HOST:PORT with --tls-roots, or http://"));
   }
   const bool is_http = absl::StartsWith(server, "http://");
   const std::string place(absl::StripSuffix(absl::StripPrefix(server, "http://"), "/"));
@@ -48,6 +53,10 @@ absl::StatusOr<load::LoadOptions> OptionsOf(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const PictureSize size, ParsePictureSize(flags.size));
   options.width_px = size.width_px;
   options.height_px = size.height_px;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const PictureSize still,
+                               ParsePictureSize(flags.stills_size, "--stills-size"));
+  options.stills.width_px = still.width_px;
+  options.stills.height_px = still.height_px;
   if (flags.throttled.has_value() && !flags.kbit_per_s.has_value()) {
     return absl::InvalidArgumentError("--throttled needs --kbit, the rate that those viewers read");
   }
@@ -68,11 +77,13 @@ std::string NoteOf(const load::Progress& progress) {
 absl::Status Load(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const Target target, ParseTarget(flags.server));
   THUNDERHEAD_ASSIGN_OR_RETURN(const load::LoadOptions options, OptionsOf(flags));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const load::Access access, ReadClientAccess(flags.access));
   // Before the transport starts threads, which must not take the signals.
   const Interruption interruption;
   const auto transport =
-      target.is_http ? load::MakeWebSocketTransport(target.address.host, target.address.port)
-                     : load::MakeGrpcTransport(ToString(target.address));
+      target.is_http
+          ? load::MakeWebSocketTransport(target.address.host, target.address.port, access.token)
+          : load::MakeGrpcTransport(ToString(target.address), access);
   const auto process = load::ServerProcess::Find(target.address.host, target.address.port);
   std::optional<ProgressBar> bar(std::in_place, "load");
   const absl::StatusOr<load::Report> report =
@@ -105,6 +116,9 @@ Command AddLoad(CLI::App& app) {
       ->capture_default_str();
   load->add_option("--size", flags->size, "Size of the pictures, WIDTHxHEIGHT")
       ->capture_default_str();
+  load->add_option("--codec", options.codec, "Moving pictures to ask for: jpeg or vp9")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, load::LoadCodec>{
+          {"jpeg", load::LoadCodec::kJpeg}, {"vp9", load::LoadCodec::kVp9}}));
   load->add_option("--steer", options.steer_hz,
                    "Updates of the camera a second by the presenter; 0 for none")
       ->check(CLI::Range(0.0, 240.0))
@@ -121,6 +135,17 @@ Command AddLoad(CLI::App& app) {
   load->add_option("--passing", options.passing,
                    "Viewers besides the others who leave after two seconds and come again")
       ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
+  AddClientAccessFlags(*load, flags->access);
+  load->add_option("--stills", options.stills.count,
+                   "Single pictures besides, all asked for when the measured time begins")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
+  load->add_option("--stills-size", flags->stills_size, "Size of the single pictures, WIDTHxHEIGHT")
+      ->capture_default_str();
+  load->add_option("--stills-slices", options.stills.slices,
+                   "Slices of the single pictures; 0 for the default")
+      ->check(CLI::Range(0, 4096))
       ->capture_default_str();
   load->add_flag("--json", flags->json, "Print JSON");
   return {load, [flags] { return Load(*flags); }};

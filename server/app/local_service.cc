@@ -9,15 +9,11 @@
 #include "session/gl_frame_source.h"
 
 namespace thunderhead::app {
-namespace {
 
-// A bad file is not a usage error, whatever code the store gives it.
 absl::Status AsFileProblem(const absl::Status& status) {
-  if (!absl::IsInvalidArgument(status)) return status;
-  return absl::FailedPreconditionError(status.message());
+  if (!absl::IsInvalidArgument(status) && !absl::IsFailedPrecondition(status)) return status;
+  return absl::DataLossError(status.message());
 }
-
-}  // namespace
 
 absl::StatusOr<std::shared_ptr<volume::StormStore>> OpenStorm(const std::string& path) {
   volume::StormStoreOptions options;
@@ -61,8 +57,12 @@ absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadStorm(
 
 absl::StatusOr<std::unique_ptr<service::Server>> StartLocalService(
     std::shared_ptr<volume::StormStore> store, const std::string& device) {
-  return service::Server::Start({}, std::move(store),
-                                [device] { return session::MakeGlFrameSource(device); });
+  auto server = service::Server::Start({}, std::move(store), session::GlFrameSources(device));
+  // A device that is not there does not come by waiting.
+  if (!server.ok() && !absl::IsInvalidArgument(server.status())) {
+    return absl::FailedPreconditionError(server.status().message());
+  }
+  return server;
 }
 
 absl::Status FromGrpc(const grpc::Status& status) {

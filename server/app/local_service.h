@@ -22,6 +22,10 @@ absl::StatusOr<std::shared_ptr<volume::StormStore>> OpenStorm(const std::string&
 absl::StatusOr<int> TimeOf(const volume::StormStore& store, const std::string& path,
                            std::optional<int> wanted);
 
+// The error of a storm's file: whatever code the store gives a bad one, it is DATA_LOSS and no
+// wrong request.
+absl::Status AsFileProblem(const absl::Status& status);
+
 // Reads one time of the store's storm into its cache, with a progress bar.
 absl::Status ReadWithProgress(volume::StormStore& store, int time_index);
 

@@ -1,7 +1,7 @@
-// thunderhead: storms from weather models as they would look in the sky. Exit codes: 0 done, 1
-// failed, 2 the command line is wrong.
+// thunderhead: storms from weather models as they would look in the sky. Exit codes: exit_codes.h.
 #include <algorithm>
 #include <array>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "app/commands.h"
+#include "app/exit_codes.h"
 #include "base/version.h"
 #include "spdlog/sinks/stdout_color_sinks.h"
 #include "spdlog/spdlog.h"
@@ -18,13 +19,9 @@
 namespace thunderhead::app {
 namespace {
 
-constexpr int kFailed = 1;
-constexpr int kWrongUsage = 2;
-
 int Report(const absl::Status& status) {
-  if (status.ok()) return 0;
-  std::cerr << "thunderhead: " << status.message() << "\n";
-  return status.code() == absl::StatusCode::kInvalidArgument ? kWrongUsage : kFailed;
+  if (!status.ok()) std::cerr << "thunderhead: " << status.message() << "\n";
+  return static_cast<int>(ExitCodeOf(status));
 }
 
 // The parser would only report that a subcommand is required.
@@ -38,14 +35,18 @@ absl::Status CheckSubcommand(const CLI::App& app, int argc, char** argv) {
 }
 
 int Main(int argc, char** argv) {
+  // A limit on the size of files is an error of writing, not a signal.
+  std::signal(SIGXFSZ, SIG_IGN);
   // Standard output is for results, so the log goes to standard error.
   spdlog::set_default_logger(spdlog::stderr_color_mt("thunderhead"));
   CLI::App app("Storms from weather models as they would look in the sky.", "thunderhead");
   app.set_version_flag("--version", "thunderhead " + base::Version());
   app.require_subcommand(1);
-  const std::array commands = {AddServe(app), AddRender(app),  AddInspect(app),
-                               AddFlux(app),  AddMeasure(app), AddGenerate(app),
-                               AddFit(app),   AddExport(app),  AddLoad(app)};
+  const std::array commands = {AddServe(app),   AddRender(app), AddSequence(app), AddWatch(app),
+                               AddInspect(app), AddFlux(app),   AddMeasure(app),  AddGenerate(app),
+                               AddFit(app),     AddExport(app), AddLoad(app)};
+  app.footer(ExitCodesHelp());
+  for (const Command& command : commands) command.app->footer(ExitCodesHelp());
   if (const absl::Status status = CheckSubcommand(app, argc, argv); !status.ok()) {
     return Report(status);
   }
@@ -54,12 +55,12 @@ int Main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     std::cerr << "thunderhead: " << error.what() << "; see thunderhead --help\n";
-    return kWrongUsage;
+    return static_cast<int>(ExitCode::kBadRequest);
   }
   for (const Command& command : commands) {
     if (command.app->parsed()) return Report(command.run());
   }
-  return kWrongUsage;
+  return static_cast<int>(ExitCode::kBadRequest);
 }
 
 }  // namespace
@@ -70,6 +71,6 @@ int main(int argc, char** argv) {
     return thunderhead::app::Main(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "thunderhead: %s\n", error.what());
-    return 1;
+    return static_cast<int>(thunderhead::app::ExitCode::kProgramError);
   }
 }

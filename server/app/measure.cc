@@ -14,6 +14,7 @@ Command AddMeasure(CLI::App& app) {
   parts->push_back(AddMeasureSlices(*measure));
   parts->push_back(AddMeasureTrade(*measure));
   parts->push_back(AddMeasureLight(*measure));
+  parts->push_back(AddMeasureLook(*measure));
   return {measure, [parts] {
             for (const Command& part : *parts) {
               if (part.app->parsed()) return part.run();

@@ -13,6 +13,7 @@ struct PictureSize {
 };
 
 // Parses WIDTHxHEIGHT; INVALID_ARGUMENT names the flag.
-absl::StatusOr<PictureSize> ParsePictureSize(const std::string& size);
+absl::StatusOr<PictureSize> ParsePictureSize(const std::string& size,
+                                             const std::string& flag = "--size");
 
 }  // namespace thunderhead::app

@@ -2,7 +2,6 @@
 
 #include <iostream>
 #include <memory>
-#include <stop_token>
 #include <string>
 #include <utility>
 
@@ -11,9 +10,11 @@
 #include "absl/strings/str_format.h"
 #include "accuracy/named_settings.h"
 #include "app/address.h"
+#include "app/client_access.h"
 #include "app/commands.h"
 #include "app/interruption.h"
 #include "app/local_service.h"
+#include "app/picture_call.h"
 #include "app/progress_bar.h"
 #include "app/render_reference.h"
 #include "app/scene_file.h"
@@ -36,18 +37,10 @@ struct Flags {
   SceneFlags scene;
   ReferenceFlags reference;
   std::string server;
+  ClientAccessFlags access;
   std::string device = "auto";
   bool json = false;
 };
-
-absl::StatusOr<v1::ImageFormat> FormatOf(const std::string& output) {
-  if (absl::EndsWithIgnoreCase(output, ".png")) return v1::IMAGE_FORMAT_PNG;
-  if (absl::EndsWithIgnoreCase(output, ".jpg") || absl::EndsWithIgnoreCase(output, ".jpeg")) {
-    return v1::IMAGE_FORMAT_JPEG;
-  }
-  return absl::InvalidArgumentError(
-      absl::StrCat("-o is '", output, "'; its name must end in .png, .jpg or .jpeg"));
-}
 
 absl::Status Interrupted() { return absl::CancelledError("interrupted: no picture was written"); }
 
@@ -63,27 +56,11 @@ void Show(const v1::RenderImageProgress& progress, ProgressBar& bar) {
 
 absl::StatusOr<v1::RenderImageResponse> Call(const std::shared_ptr<grpc::Channel>& channel,
                                              const v1::RenderImageRequest& request,
-                                             const Interruption& interruption) {
+                                             const Interruption& interruption,
+                                             const std::string& token = "") {
   ProgressBar bar("rendering");
-  grpc::ClientContext context;
-  const std::stop_callback cancel(interruption.Token(), [&context] { context.TryCancel(); });
-  const auto stub = v1::ThunderheadService::NewStub(channel);
-  const auto reader = stub->RenderImageWithProgress(&context, request);
-  v1::RenderImageEvent event;
-  v1::RenderImageResponse picture;
-  while (reader->Read(&event)) {
-    if (event.has_progress()) Show(event.progress(), bar);
-    if (event.has_image()) picture = std::move(*event.mutable_image());
-  }
-  const grpc::Status status = reader->Finish();
-  if (interruption.Token().stop_requested()) return Interrupted();
-  if (status.error_code() == grpc::StatusCode::UNIMPLEMENTED) {
-    return absl::UnimplementedError(
-        "the server is older than this program and lacks the call that it needs "
-        "(RenderImageWithProgress): run both in the same version");
-  }
-  THUNDERHEAD_RETURN_IF_ERROR(FromGrpc(status));
-  return picture;
+  return CallForPicture(channel, request, token, interruption.Token(),
+                        [&bar](const v1::RenderImageProgress& progress) { Show(progress, bar); });
 }
 
 absl::StatusOr<v1::RenderImageResponse> CallServer(const Flags& flags,
@@ -93,9 +70,12 @@ absl::StatusOr<v1::RenderImageResponse> CallServer(const Flags& flags,
   request.mutable_scene()->set_storm_id(flags.storm);
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(kMaxResponseBytes);
-  return Call(
-      grpc::CreateCustomChannel(ToString(address), grpc::InsecureChannelCredentials(), arguments),
-      request, interruption);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const load::Access access, ReadClientAccess(flags.access));
+  const auto credentials = access.tls_roots.empty()
+                               ? grpc::InsecureChannelCredentials()
+                               : grpc::SslCredentials({access.tls_roots, "", ""});
+  return Call(grpc::CreateCustomChannel(ToString(address), credentials, arguments), request,
+              interruption, access.token);
 }
 
 absl::StatusOr<v1::RenderImageResponse> CallHere(const Flags& flags,
@@ -144,7 +124,7 @@ absl::Status ByReference(const Flags& flags) {
         "--renderer reference works only in this process: omit --server and --json");
   }
   if (!absl::EndsWithIgnoreCase(flags.output, ".exr")) {
-    THUNDERHEAD_RETURN_IF_ERROR(FormatOf(flags.output).status());
+    THUNDERHEAD_RETURN_IF_ERROR(FormatOf("-o", flags.output).status());
   }
   return RenderReference(flags.storm, flags.scene, flags.reference, flags.output, flags.device);
 }
@@ -155,12 +135,13 @@ absl::Status Render(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(*request.mutable_scene(), ReadScene(flags.scene));
   if (request.scene().rendering().has_reference()) return ByReference(flags);
   if (flags.reference.AnyLimit() || !flags.reference.light.air ||
-      flags.reference.light.max_scatterings != 0) {
+      flags.reference.light.max_scatterings != 0 ||
+      flags.reference.light.detail_voxels_per_cell != 0) {
     return absl::InvalidArgumentError(
-        "--spp, --seconds, --target-error, --max-scatterings and --no-air are for --renderer "
-        "reference");
+        "--spp, --seconds, --target-error, --max-scatterings, --detail and --no-air are for "
+        "--renderer reference");
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(const v1::ImageFormat format, FormatOf(flags.output));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const v1::ImageFormat format, FormatOf("-o", flags.output));
   request.set_format(format);
   const Interruption interruption;
   THUNDERHEAD_ASSIGN_OR_RETURN(v1::RenderImageResponse response,
@@ -210,10 +191,16 @@ Command AddRender(CLI::App& app) {
       ->capture_default_str();
   render->add_option("--max-scatterings", flags->reference.light.max_scatterings,
                      "Reference: leave out light that is scattered more often; by default none");
+  render
+      ->add_option("--detail", flags->reference.light.detail_voxels_per_cell,
+                   "Reference: trace the turbulent detail that the light volume draws, on so many "
+                   "voxels along a cell's edge; by default without detail")
+      ->check(CLI::Range(1, 8));
   render->add_flag(
       "--no-air{false}", flags->reference.light.air,
       "Reference: leave out the air: a black sky, and sunlight as above the atmosphere");
   render->add_option("--server", flags->server, "HOST:PORT of a running server's gRPC service");
+  AddClientAccessFlags(*render, flags->access);
   render->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();
   render->add_flag("--json", flags->json, "Print costs and the completed scene as JSON");

@@ -14,27 +14,51 @@
 #include "accuracy/presets.h"
 #include "app/picture_size.h"
 #include "base/status.h"
+#include "frame/png_text.h"
+#include "service/picture_texts.h"
 #include "service/scene_messages.h"
 #include "service/technique_messages.h"
 
 namespace thunderhead::app {
 namespace {
 
-absl::StatusOr<v1::Scene> ReadFile(const std::string& path) {
+// The scene in a picture that the service made. It is of no storm, so that it can show another.
+absl::StatusOr<std::string> SceneJsonIn(const std::string& what, const std::string& png) {
+  auto texts = frame::TextsOf(png);
+  if (!texts.ok()) return base::Annotate(texts.status(), what);
+  const auto scene = texts->find(service::kSceneText);
+  if (scene != texts->end()) return scene->second;
+  return absl::InvalidArgumentError(absl::StrCat(
+      what, " is a PNG without a scene in it; give one that thunderhead made, or a scene's JSON"));
+}
+
+absl::StatusOr<v1::Scene> ReadFile(const std::string& flag, const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  const std::string json(std::istreambuf_iterator<char>(file), {});
+  std::string json(std::istreambuf_iterator<char>(file), {});
+  const std::string what = absl::StrCat(flag, " ", path);
   if (!file.good() && json.empty()) {
-    return absl::InvalidArgumentError(absl::StrCat("--scene ", path, " cannot be read"));
+    return absl::InvalidArgumentError(absl::StrCat(what, " cannot be read"));
+  }
+  const bool picture = frame::IsPng(json);
+  if (picture) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(json, SceneJsonIn(what, json));
   }
   v1::Scene scene;
   const auto status = google::protobuf::util::JsonStringToMessage(json, &scene);
+  if (picture) scene.clear_storm_id();
   if (status.ok()) return scene;
   // The parser quotes the file with its line breaks.
   std::string why(status.message());
   absl::RemoveExtraAsciiWhitespace(&why);
-  return absl::InvalidArgumentError(
-      absl::StrCat("--scene ", path, " is not a scene: ", why,
-                   "; see proto/thunderhead/v1/scene.proto for its fields"));
+  return absl::InvalidArgumentError(absl::StrCat(
+      what, " is not a scene: ", why, "; see proto/thunderhead/v1/scene.proto for its fields"));
+}
+
+// Puts the values of `over` in place of those of `scene`, lists as a whole.
+void Lay(const v1::Scene& over, v1::Scene& scene) {
+  if (over.fields_size() > 0) scene.clear_fields();
+  if (over.lights_size() > 0) scene.clear_lights();
+  scene.MergeFrom(over);
 }
 
 absl::Status SetSize(const std::string& size, v1::Output& output) {
@@ -148,9 +172,14 @@ absl::Status SetRendering(const SceneFlags& flags, v1::Scene& scene) {
 }  // namespace
 
 void AddSceneOptions(CLI::App& command, SceneFlags& flags) {
-  command.add_option("--scene", flags.file, "Scene as Protobuf JSON");
+  AddViewOptions(command, flags);
   command.add_option("--time", flags.time_index,
                      "Index of the storm's time, from 0; by default the last");
+}
+
+void AddViewOptions(CLI::App& command, SceneFlags& flags) {
+  command.add_option("--scene", flags.file,
+                     "Scene as Protobuf JSON, or a PNG made by thunderhead, for its scene");
   command.add_option("--size", flags.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
   command.add_option("--camera", flags.camera, "orbit, spotter or top-down");
 }
@@ -171,7 +200,11 @@ void AddTechniqueOptions(CLI::App& command, SceneFlags& flags) {
 absl::StatusOr<v1::Scene> ReadScene(const SceneFlags& flags) {
   v1::Scene scene;
   if (!flags.file.empty()) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(scene, ReadFile(flags.file));
+    THUNDERHEAD_ASSIGN_OR_RETURN(scene, ReadFile("--scene", flags.file));
+  }
+  if (!flags.view.empty()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const v1::Scene view, ReadFile("--views", flags.view));
+    Lay(view, scene);
   }
   if (flags.time_index.has_value()) scene.set_time_index(*flags.time_index);
   if (!flags.size.empty()) {

@@ -12,6 +12,7 @@ namespace thunderhead::app {
 
 struct SceneFlags {
   std::string file;  // may be empty, like the other strings
+  std::string view;  // another file, whose values go before those of `file`
   std::optional<std::uint32_t> time_index;
   std::optional<std::uint32_t> slices;
   std::string size;       // WIDTHxHEIGHT
@@ -22,7 +23,9 @@ struct SceneFlags {
   std::optional<float> max_milliseconds;  // at most one of the two
 };
 
-// Adds the options of every command that takes a scene: --scene, --time, --size, --camera.
+// Adds the options of every command that takes a scene: --scene, --size, --camera.
+void AddViewOptions(CLI::App& command, SceneFlags& flags);
+// The same and --time, for commands that show one time.
 void AddSceneOptions(CLI::App& command, SceneFlags& flags);
 // Adds the options of commands that draw it: --quality, --preset, --renderer, --slices.
 void AddTechniqueOptions(CLI::App& command, SceneFlags& flags);

@@ -1,3 +1,5 @@
+#include <sys/resource.h>
+
 #include <csignal>
 #include <filesystem>
 #include <iostream>
@@ -11,31 +13,18 @@
 #include "app/catalogue_flags.h"
 #include "app/clouds_folder.h"
 #include "app/commands.h"
-#include "app/local_service.h"
 #include "app/operation.h"
+#include "app/serve_flags.h"
 #include "app/state_folder.h"
 #include "base/status.h"
 #include "gateway/gateway.h"
+#include "gateway/tls_contexts.h"
 #include "session/gl_frame_source.h"
 #include "spdlog/spdlog.h"
 #include "thunderhead/v1/thunderhead.grpc.pb.h"
 
 namespace thunderhead::app {
 namespace {
-
-struct Flags {
-  std::vector<std::string> data;
-  std::string http = "127.0.0.1:8080";
-  std::string grpc = "127.0.0.1:50051";
-  std::string device = "auto";
-  std::string page;
-  std::string clouds;
-  std::string state;
-  std::vector<std::string> allowed_origins;
-  double memory_budget_gib = 2.0;
-  CatalogueFlags catalogue;
-  OperationFlags operation;
-};
 
 // The installed page, or the one in the build tree; empty if there is neither.
 std::string DefaultPageFolder() {
@@ -47,23 +36,65 @@ std::string DefaultPageFolder() {
   return "";
 }
 
-// Draws two small pictures, with the sun before and behind the eye, so that storm and shaders are
+void ShowOwnToken(const access::Door& door, grpc::ClientContext& context) {
+  context.AddMetadata("authorization", absl::StrCat("Bearer ", door.OwnToken()));
+}
+
+// Has a session's first frame drawn, and closes it.
+grpc::Status ShowOnce(v1::ThunderheadService::Stub& stub, const v1::Scene& scene,
+                      const access::Door& door) {
+  v1::CreateSessionRequest request;
+  *request.mutable_scene() = scene;
+  v1::CreateSessionResponse session;
+  grpc::ClientContext creating;
+  ShowOwnToken(door, creating);
+  if (grpc::Status status = stub.CreateSession(&creating, request, &session); !status.ok()) {
+    return status;
+  }
+  {
+    v1::WatchFramesRequest watch;
+    watch.set_session_id(session.session_id());
+    grpc::ClientContext watching;
+    ShowOwnToken(door, watching);
+    const auto frames = stub.WatchFrames(&watching, watch);
+    v1::WatchFramesResponse event;
+    while (frames->Read(&event) && !event.has_frame() && !event.has_problem()) {
+    }
+    watching.TryCancel();
+    frames->Finish();
+  }
+  v1::CloseSessionRequest close;
+  close.set_session_id(session.session_id());
+  v1::CloseSessionResponse closed;
+  grpc::ClientContext closing;
+  ShowOwnToken(door, closing);
+  return stub.CloseSession(&closing, close, &closed);
+}
+
+// Shows two small pictures, with the sun before and behind the eye, so that storm and shaders are
 // ready for the first viewer.
-void WarmUp(const std::shared_ptr<grpc::Channel>& channel) {
+void WarmUp(const std::shared_ptr<grpc::Channel>& channel, const access::Door& door) {
   const auto stub = v1::ThunderheadService::NewStub(channel);
   for (const float azimuth_deg : {255.0F, 75.0F}) {
-    v1::RenderImageRequest request;
-    request.mutable_scene()->mutable_output()->set_width_px(64);
-    request.mutable_scene()->mutable_output()->set_height_px(36);
-    request.mutable_scene()->mutable_camera()->mutable_orbit()->set_azimuth_deg(azimuth_deg);
-    v1::RenderImageResponse response;
-    grpc::ClientContext context;
-    const grpc::Status status = stub->RenderImage(&context, request, &response);
+    v1::Scene scene;
+    scene.mutable_output()->set_width_px(64);
+    scene.mutable_output()->set_height_px(36);
+    scene.mutable_camera()->mutable_orbit()->set_azimuth_deg(azimuth_deg);
+    const grpc::Status status = ShowOnce(*stub, scene, door);
     if (!status.ok()) spdlog::warn("cannot draw the first storm: {}", status.error_message());
   }
 }
 
-absl::Status Serve(const Flags& flags) {
+// As many files as the system allows: each connection takes one, and the usual limit of 1024 was
+// made for programs that use select().
+void RaiseFileLimit() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+absl::Status Serve(ServeFlags flags) {
   // Blocked before any thread starts, so that only sigwait below takes them.
   sigset_t signals;
   sigemptyset(&signals);
@@ -71,10 +102,19 @@ absl::Status Serve(const Flags& flags) {
   sigaddset(&signals, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<Operation> operation,
-                               Operation::Start(flags.operation));
   THUNDERHEAD_ASSIGN_OR_RETURN(Address http, ParseAddress("--http", flags.http));
   THUNDERHEAD_ASSIGN_OR_RETURN(Address grpc, ParseAddress("--grpc", flags.grpc));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckReach(flags, http, grpc));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<Operation> operation,
+                               Operation::Start(flags.operation));
+  THUNDERHEAD_RETURN_IF_ERROR(CompleteFlags(flags));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<access::Door> door, MakeDoor(flags));
+  // Before any port opens, for its errors name the files.
+  if (!flags.tls.certificate.empty()) {
+    THUNDERHEAD_RETURN_IF_ERROR(
+        gateway::TlsContexts::Open(flags.tls.certificate, flags.tls.key).status());
+  }
+  RaiseFileLimit();
   volume::StormStoreOptions store_options;
   store_options.byte_budget = static_cast<std::size_t>(flags.memory_budget_gib * (1 << 30));
   store_options.live = LiveCatalogueOf(flags.catalogue);
@@ -89,16 +129,19 @@ absl::Status Serve(const Flags& flags) {
   service::ServerOptions server_options;
   THUNDERHEAD_ASSIGN_OR_RETURN(server_options.session_store, OpenSessionStore(flags.state));
   server_options.clouds_folder = clouds.Path();
+  server_options.render_loop = flags.render_loop;
   server_options.address = ToString(grpc);
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<service::Server> server,
-                               service::Server::Start(server_options, store, [&flags] {
-                                 return session::MakeGlFrameSource(flags.device);
-                               }));
-  gateway::GatewayOptions gateway_options;
+  server_options.tls = flags.tls;
+  server_options.door = door;
+  server_options.limits = flags.limits;
+  server_options.sessions = flags.sessions;
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const std::unique_ptr<service::Server> server,
+      service::Server::Start(server_options, store, session::GlFrameSources(flags.device)));
+  gateway::GatewayOptions gateway_options = flags.gateway;
   gateway_options.address = http.host;
   gateway_options.port = http.port;
   gateway_options.page_directory = flags.page.empty() ? DefaultPageFolder() : flags.page;
-  gateway_options.allowed_origins = flags.allowed_origins;
   if (gateway_options.page_directory.empty()) {
     spdlog::warn("serving no page: none is installed with the program; name one with --page");
   }
@@ -107,9 +150,9 @@ absl::Status Serve(const Flags& flags) {
                                gateway::Gateway::Start(gateway_options, channel));
   http.port = gateway->Port();
   grpc.port = static_cast<std::uint16_t>(server->Port());
-  std::cout << "Thunderhead is ready at http://" << ToString(http) << "/ (gRPC " << ToString(grpc)
-            << ")" << std::endl;
-  std::thread warm_up([channel] { WarmUp(channel); });
+  std::cout << "Thunderhead is ready at " << (flags.tls.certificate.empty() ? "http" : "https")
+            << "://" << ToString(http) << "/ (gRPC " << ToString(grpc) << ")" << std::endl;
+  std::thread warm_up([channel, door] { WarmUp(channel, *door); });
   operation->SetServer(server.get());
   operation->WaitAndDrain(signals, *server);
   operation->SetServer(nullptr);
@@ -123,31 +166,9 @@ absl::Status Serve(const Flags& flags) {
 }  // namespace
 
 Command AddServe(CLI::App& app) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<ServeFlags>();
   CLI::App* serve = app.add_subcommand("serve", "Serve storms to browsers and gRPC clients");
-  serve
-      ->add_option("--data", flags->data,
-                   "Storm files, or folders of them; the page opens the first")
-      ->required();
-  serve->add_option("--http", flags->http, "HOST:PORT to serve the page on")->capture_default_str();
-  serve->add_option("--grpc", flags->grpc, "HOST:PORT to serve gRPC on")->capture_default_str();
-  serve->add_option("--device", flags->device, "auto, software or a GPU's number")
-      ->capture_default_str();
-  serve->add_option("--page", flags->page, "Folder with the built page");
-  serve->add_option(
-      "--clouds", flags->clouds,
-      "Folder in which generated clouds are kept; without it they are deleted when the "
-      "server stops");
-  serve->add_option("--state", flags->state,
-                    "Folder in which sessions outlive the server, or 'none'; by default "
-                    "$STATE_DIRECTORY, else thunderhead in $XDG_STATE_HOME or ~/.local/state");
-  serve->add_option("--allow-origin", flags->allowed_origins,
-                    "Origins of other sites whose pages may call the server");
-  serve->add_option("--memory-budget", flags->memory_budget_gib, "GiB of storms kept in memory")
-      ->check(CLI::Range(0.01, 1e6))
-      ->capture_default_str();
-  AddOperationFlags(*serve, flags->operation);
-  AddCatalogueFlags(*serve, flags->catalogue);
+  AddServeFlags(*serve, *flags);
   return {serve, [flags] { return Serve(*flags); }};
 }
 

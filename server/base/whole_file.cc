@@ -1,12 +1,76 @@
 #include "base/whole_file.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "base/status.h"
 
 namespace thunderhead::base {
+namespace {
+
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  int Number() const { return number_; }
+  // Zero, or an error that was kept until now, as by network file systems.
+  int Close() { return close(std::exchange(number_, -1)); }
+
+ private:
+  int number_;
+};
+
+// The error of the last system call on the way to `path`.
+absl::Status NotWritten(const std::string& path) {
+  const int code = errno;
+  const std::string what =
+      absl::StrCat(path, " cannot be written (", std::strerror(code),
+                   "); check that its folder exists, may be written to and has room");
+  switch (code) {
+    case ENOENT:
+    case ENOTDIR:
+    case EISDIR:
+    case EACCES:
+    case EPERM:
+    case EROFS:
+    case ENAMETOOLONG:
+      return absl::FailedPreconditionError(what);
+    default:
+      return absl::UnavailableError(what);
+  }
+}
+
+bool WriteAll(int file, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = write(file, bytes.data(), bytes.size());
+    if (written < 0 && errno != EINTR) return false;
+    if (written > 0) bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+// Removes a partial file and keeps the error that made it useless.
+absl::Status Drop(const std::string& path) {
+  absl::Status status = NotWritten(path);
+  unlink(PartialPath(path).c_str());
+  return status;
+}
+
+}  // namespace
 
 absl::StatusOr<std::string> ReadWholeFile(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -14,17 +78,33 @@ absl::StatusOr<std::string> ReadWholeFile(const std::string& path) {
   return std::string(std::istreambuf_iterator<char>(file), {});
 }
 
-absl::Status WriteWholeFile(const std::string& path, const std::string& bytes) {
-  const std::string partial = path + ".partial";
-  std::ofstream file(partial, std::ios::binary);
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(partial, path, error);
-  if (file && !error) return absl::OkStatus();
-  std::filesystem::remove(partial, error);
-  return absl::UnavailableError(
-      absl::StrCat(path, " cannot be written; check that its folder exists and has room"));
+std::string PartialPath(std::string_view path) {
+  return absl::StrCat(absl::string_view(path.data(), path.size()), ".partial");
+}
+
+absl::Status WriteWholeFile(const std::string& path, std::string_view bytes) {
+  Descriptor file(open(PartialPath(path).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  if (file.Number() < 0) return NotWritten(path);
+  if (!WriteAll(file.Number(), bytes) || file.Close() != 0) return Drop(path);
+  return PublishFile(path);
+}
+
+absl::Status PublishFile(const std::string& path) {
+  const std::string partial = PartialPath(path);
+  {
+    // fsync writes what any descriptor of the file has written.
+    Descriptor file(open(partial.c_str(), O_RDONLY | O_CLOEXEC));
+    if (file.Number() < 0 || fsync(file.Number()) != 0) return Drop(path);
+  }
+  if (std::rename(partial.c_str(), path.c_str()) != 0) return Drop(path);
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  const Descriptor entries(
+      open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  // Some file systems cannot do this for folders; the name is there all the same.
+  if (entries.Number() >= 0 && fsync(entries.Number()) != 0 && errno == EIO) {
+    return NotWritten(path);
+  }
+  return absl::OkStatus();
 }
 
 }  // namespace thunderhead::base

@@ -1,7 +1,9 @@
-// Reading and writing whole files.
+// Reading and writing whole files. A file that is written appears whole or not at all, also where
+// the power goes: it is written beside its place, reaches the disk, and is then renamed.
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
@@ -10,7 +12,15 @@ namespace thunderhead::base {
 
 absl::StatusOr<std::string> ReadWholeFile(const std::string& path);
 
-// Writes to a temporary name and renames, so that a reader never sees half a file.
-absl::Status WriteWholeFile(const std::string& path, const std::string& bytes);
+// Where a file is written before it is whole: in the same folder, so that it can be renamed.
+std::string PartialPath(std::string_view path);
+
+// Writes the file at once. FAILED_PRECONDITION if its folder is missing or may not be written to,
+// UNAVAILABLE if it cannot take the file now, such as a full disk.
+absl::Status WriteWholeFile(const std::string& path, std::string_view bytes);
+
+// Gives the file at PartialPath(path), which is complete, its name. Errors as above; the partial
+// file is gone then.
+absl::Status PublishFile(const std::string& path);
 
 }  // namespace thunderhead::base

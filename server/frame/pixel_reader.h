@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "absl/status/statusor.h"
 #include "gl/objects.h"
+#include "gl/pieces.h"
 
 namespace thunderhead::frame {
 
@@ -13,8 +15,8 @@ namespace thunderhead::frame {
 // alone.
 class PixelReader {
  public:
-  // Three bytes a pixel, rows as in `texture`; waits for what draws it.
-  std::vector<std::uint8_t> Rgb(const gl::Texture2D& texture);
+  // Three bytes a pixel, rows as in `texture`; waits for what draws it. Some rows in each piece.
+  absl::StatusOr<std::vector<std::uint8_t>> Rgb(const gl::Texture2D& texture, gl::Pieces& pieces);
 
  private:
   gl::Buffer buffer_;

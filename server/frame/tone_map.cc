@@ -17,10 +17,13 @@ constexpr float kMostFactor = 64.0F;
 // And at most this times the exposure of a white card in the sun: what is all in shadow stays dark.
 constexpr float kMostAboveCard = 2.0F;
 
+constexpr gl::PieceCost kPixel{"tone map", 50.0};
+
 struct ToneMapVariant {
   gl::DefineValue filmic;
+  gl::DefineValue noise;
 
-  gl::Defines Defines() const { return {{"FILMIC", filmic}}; }
+  gl::Defines Defines() const { return {{"FILMIC", filmic}, {"NOISE", noise}}; }
 };
 
 std::size_t PixelCount(const gl::Texture2D& texture) {
@@ -37,7 +40,7 @@ absl::StatusOr<float> ToneMapper::ExposureOf(const gl::Texture2D& linear,
   }
   if (brightest_.Get() == 0) brightest_ = gl::Texture2D(GL_R32F, glm::ivec2(1));
   THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
-                               programs_.Get(gl::ProgramSource::Compute("post/meter.comp")));
+                               programs_->Get(gl::ProgramSource::Compute("post/meter.comp")));
   program->Set(uniform::luminance_weights, kLuminance * balance);
   linear.Bind(shaders::kLinearFrameUnit);
   brightest_.BindImage(shaders::kMeterImage, GL_WRITE_ONLY);
@@ -58,25 +61,45 @@ absl::StatusOr<ToneMapped> ToneMapper::Map(const gl::Texture2D& linear, const sc
   const WhiteCard& card = white_cards_.Of(scene);
   const glm::vec3 balance = display.white_balance ? card.balance : glm::vec3(1.0F);
   THUNDERHEAD_ASSIGN_OR_RETURN(const float exposure, ExposureOf(linear, display, balance, card));
-  if (display_.Size() != linear.Size()) {
-    display_ = gl::Texture2D(GL_RGBA8, linear.Size());
-    target_ = gl::Framebuffer(display_);
-  }
-  const ToneMapVariant variant{.filmic = display.tone_map == scene::ToneMap::kFilmic};
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      const gl::Program* program,
-      programs_.Get(gl::ProgramSource::WholeTarget("post/tone_map.frag", variant.Defines())));
-  program->Set(uniform::gain, exposure * balance);
-  program->Set(uniform::just_below_white, kJustBelowWhite);
-  linear.Bind(shaders::kLinearFrameUnit);
-  whole_target_.Draw(*program, target_);
+  tone_ = {exposure * balance, display.tone_map == scene::ToneMap::kFilmic};
+  gl::Pieces& pieces = programs_->Pieces();
+  double waited_ms = pieces.WaitedMs();
+  THUNDERHEAD_RETURN_IF_ERROR(Draw(linear, GL_RGBA8, /*noise=*/true, &display_));
   glFinish();
   ToneMapped mapped;
   mapped.exposure_ev = std::log2(exposure / kExposureAtZeroEv);
-  mapped.tone_ms = stopwatch.Restart();
-  mapped.rgb = pixels_.Rgb(display_);
-  mapped.read_back_ms = stopwatch.ElapsedMs();
+  mapped.tone_ms = stopwatch.Restart() - (pieces.WaitedMs() - waited_ms);
+  waited_ms = pieces.WaitedMs();
+  THUNDERHEAD_ASSIGN_OR_RETURN(mapped.rgb, pixels_.Rgb(display_.texture, pieces));
+  mapped.read_back_ms = stopwatch.ElapsedMs() - (pieces.WaitedMs() - waited_ms);
   return mapped;
+}
+
+absl::StatusOr<FineImage> ToneMapper::MapFine(const gl::Texture2D& linear) {
+  THUNDERHEAD_RETURN_IF_ERROR(Draw(linear, GL_RGBA16, /*noise=*/false, &fine_display_));
+  FineImage image{linear.Size().x, linear.Size().y, {}};
+  image.rgb.resize(PixelCount(linear) * 3);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glGetTextureImage(fine_display_.texture.Get(), 0, GL_RGB, GL_UNSIGNED_SHORT,
+                    static_cast<GLsizei>(image.rgb.size() * sizeof(std::uint16_t)),
+                    image.rgb.data());
+  return image;
+}
+
+absl::Status ToneMapper::Draw(const gl::Texture2D& linear, GLenum format, bool noise,
+                              Display* display) {
+  if (display->texture.Size() != linear.Size()) {
+    display->texture = gl::Texture2D(format, linear.Size());
+    display->target = gl::Framebuffer(display->texture);
+  }
+  const ToneMapVariant variant{.filmic = tone_.filmic, .noise = noise};
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_->Get(gl::ProgramSource::WholeTarget("post/tone_map.frag", variant.Defines())));
+  program->Set(uniform::gain, tone_.gain);
+  program->Set(uniform::just_below_white, kJustBelowWhite);
+  linear.Bind(shaders::kLinearFrameUnit);
+  return whole_target_.Draw(programs_->Pieces(), kPixel, *program, display->target);
 }
 
 std::vector<float> ReadLinear(const gl::Texture2D& linear) {

@@ -3,9 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "frame/fine_image.h"
 #include "frame/pixel_reader.h"
 #include "frame/white_balance.h"
 #include "gl/objects.h"
@@ -28,25 +31,46 @@ struct ToneMapped {
 inline constexpr float kExposureAtZeroEv = 6.0F;
 // Exposed luminance that the film's curve shows just below white, at 0.9 of it; its contrast leaves
 // it as it is.
-inline constexpr float kJustBelowWhite = 1.25F;
+inline constexpr float kJustBelowWhite = 0.935F;
 
 class ToneMapper {
  public:
+  // Programs are linked in `programs`.
+  explicit ToneMapper(
+      std::shared_ptr<gl::ProgramCache> programs = std::make_shared<gl::ProgramCache>())
+      : programs_(std::move(programs)) {}
+
   // Maps `linear`, a picture of `scene` with the storm's opacity in alpha.
   absl::StatusOr<ToneMapped> Map(const gl::Texture2D& linear, const scene::Scene& scene);
 
+  // The picture that Map was given last, which must still be there, as it was mapped.
+  absl::StatusOr<FineImage> MapFine(const gl::Texture2D& linear);
+
  private:
+  // Factors for radiance, and the curve.
+  struct Tone {
+    glm::vec3 gain{1.0F};
+    bool filmic = true;
+  };
+  // Where a picture of one depth is drawn to.
+  struct Display {
+    gl::Texture2D texture;
+    gl::Framebuffer target;
+  };
+
+  absl::Status Draw(const gl::Texture2D& linear, GLenum format, bool noise, Display* display);
   // The factor for radiance of the given balance.
   absl::StatusOr<float> ExposureOf(const gl::Texture2D& linear, const scene::Display& display,
                                    const glm::vec3& balance, const WhiteCard& card);
 
   WhiteCards white_cards_;
-  gl::ProgramCache programs_;
+  std::shared_ptr<gl::ProgramCache> programs_;
   gl::WholeTarget whole_target_;
   PixelReader pixels_;
   gl::Texture2D brightest_;
-  gl::Texture2D display_;
-  gl::Framebuffer target_;
+  Tone tone_;  // of the picture mapped last
+  Display display_;
+  Display fine_display_;
 };
 
 // The texture's values, four floats a pixel, rows from bottom to top as GL keeps them.

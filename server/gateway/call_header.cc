@@ -1,5 +1,6 @@
 #include "gateway/call_header.h"
 
+#include <boost/beast/http/field.hpp>
 #include <chrono>
 #include <string>
 #include <string_view>
@@ -7,6 +8,7 @@
 #include "absl/time/time.h"
 #include "base/status.h"
 #include "gateway/text_view.h"
+#include "gateway/websocket_protocol.h"
 
 namespace thunderhead::gateway {
 namespace {
@@ -17,13 +19,21 @@ constexpr absl::Duration kLongestTimeout = absl::Hours(24 * 365);
 }  // namespace
 
 absl::StatusOr<UpstreamRequest> TranslateHeader(
-    const boost::beast::http::request<boost::beast::http::string_body>& request) {
+    const boost::beast::http::request<boost::beast::http::string_body>& request,
+    const std::string& peer) {
   UpstreamRequest upstream;
   const std::string_view target = View(request.target());
   upstream.method = std::string(target.substr(0, target.find('?')));
   for (const auto& field : request) {
     THUNDERHEAD_RETURN_IF_ERROR(
         AddRequestHeader(View(field.name_string()), View(field.value()), upstream.metadata));
+  }
+  upstream.metadata.emplace_back("x-forwarded-for", peer);
+  const auto [begin, end] = request.equal_range(boost::beast::http::field::sec_websocket_protocol);
+  for (auto field = begin; field != end; ++field) {
+    // Browsers cannot set a WebSocket's other headers.
+    const auto token = OfferedToken(View(field->value()));
+    if (token.has_value()) upstream.metadata.emplace_back("authorization", "Bearer " + *token);
   }
   if (const auto timeout = request.find("grpc-timeout"); timeout != request.end()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(const absl::Duration left, ParseTimeout(View(timeout->value())));

@@ -4,6 +4,7 @@
 
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>
+#include <string>
 
 #include "absl/status/statusor.h"
 #include "gateway/grpc_web_protocol.h"
@@ -12,9 +13,11 @@
 
 namespace thunderhead::gateway {
 
-// Method, metadata and deadline of the call that `request` asks for; no message.
+// Method, metadata and deadline of the call that `request` asks for; no message. The service is
+// told that it is for `peer`, the client's address, by x-forwarded-for.
 absl::StatusOr<UpstreamRequest> TranslateHeader(
-    const boost::beast::http::request<boost::beast::http::string_body>& request);
+    const boost::beast::http::request<boost::beast::http::string_body>& request,
+    const std::string& peer);
 
 // The trailers of a call that ended with `status`, encoded for the wire.
 Metadata TrailersOf(const grpc::Status& status, const Metadata& metadata);

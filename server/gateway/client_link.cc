@@ -10,6 +10,8 @@
 #include <boost/beast/core/buffers_suffix.hpp>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
+
 namespace thunderhead::gateway {
 namespace {
 
@@ -39,12 +41,19 @@ void TuneSocket(int socket) {
 
 }  // namespace
 
-ClientLink::ClientLink(net::ip::tcp::socket socket, std::chrono::milliseconds write_stall_timeout)
-    : stream_(std::move(socket)),
+ClientLink::ClientLink(net::ip::tcp::socket socket, std::shared_ptr<net::ssl::context> tls,
+                       std::chrono::milliseconds write_stall_timeout)
+    : stream_(std::move(socket), std::move(tls)),
       received_(kMaxReceived),
       write_stall_timeout_(write_stall_timeout),
       watch_changed_(stream_.get_executor()) {
   TuneSocket(stream_.socket().native_handle());
+  // A client that is gone already has none.
+  error_code error;
+  const net::ip::tcp::endpoint endpoint = stream_.socket().remote_endpoint(error);
+  address_ = endpoint.address();
+  peer_ = absl::StrCat(address_.is_v6() ? "[" : "", address_.to_string(),
+                       address_.is_v6() ? "]" : "", ":", endpoint.port());
 }
 
 net::awaitable<bool> ClientLink::WriteAll(std::vector<net::const_buffer> buffers) {

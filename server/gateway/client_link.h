@@ -3,50 +3,50 @@
 // HTTP nor gRPC. Runs on one thread.
 #pragma once
 
+#include <algorithm>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <boost/beast/core/basic_stream.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/rate_policy.hpp>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "gateway/awaitable.h"
 #include "gateway/change_signal.h"
+#include "gateway/client_stream.h"
 
 namespace thunderhead::gateway {
 
-// Beast's hook for rate limits, which counts the bytes of a stream and limits nothing.
-class ByteCounts {
- public:
-  uint64_t Received() const { return received_; }
-  uint64_t Sent() const { return sent_; }
-
- private:
-  friend class boost::beast::rate_policy_access;
-  static constexpr size_t kUnlimited = std::numeric_limits<size_t>::max();
-
-  size_t available_read_bytes() const { return kUnlimited; }
-  size_t available_write_bytes() const { return kUnlimited; }
-  void transfer_read_bytes(size_t bytes) { received_ += bytes; }
-  void transfer_write_bytes(size_t bytes) { sent_ += bytes; }
-  void on_timer() {}
-
-  uint64_t received_ = 0;
-  uint64_t sent_ = 0;
+// What a connection is busy with, the one that others can best do without first.
+enum class LinkUse {
+  kWaiting,    // for a request's first byte
+  kReceiving,  // the rest of a request
+  kSending,    // a file or text
+  kCalling,    // the service works for it
 };
-
-using ClientStream =
-    boost::beast::basic_stream<boost::asio::ip::tcp, boost::asio::any_io_executor, ByteCounts>;
 
 class ClientLink : public std::enable_shared_from_this<ClientLink> {
  public:
-  ClientLink(boost::asio::ip::tcp::socket socket, std::chrono::milliseconds write_stall_timeout);
+  using Clock = std::chrono::steady_clock;
+
+  // `tls` null: a plain connection.
+  ClientLink(boost::asio::ip::tcp::socket socket, std::shared_ptr<boost::asio::ssl::context> tls,
+             std::chrono::milliseconds write_stall_timeout);
+
+  // The client's address with its port, and without.
+  const std::string& Peer() const { return peer_; }
+  const boost::asio::ip::address& Address() const { return address_; }
+
+  void Begin(LinkUse use) {
+    use_ = use;
+    used_since_ = Clock::now();
+  }
+  LinkUse Use() const { return use_; }
+  Clock::time_point UsedSince() const { return used_since_; }
 
   // The stream, for requests read through `Received()` and for responses; call ExpireIdleWrite()
   // before each write.
@@ -55,6 +55,10 @@ class ClientLink : public std::enable_shared_from_this<ClientLink> {
   boost::beast::flat_buffer& Received() { return received_; }
 
   void ExpireIdleWrite() { stream_.expires_after(write_stall_timeout_); }
+  // The same where all must be written by `end`.
+  void ExpireIdleWrite(Clock::time_point end) {
+    stream_.expires_at(std::min(end, Clock::now() + write_stall_timeout_));
+  }
   // False if the client is gone or accepted nothing for the stall timeout.
   boost::asio::awaitable<bool> WriteAll(std::vector<boost::asio::const_buffer> buffers);
 
@@ -67,8 +71,8 @@ class ClientLink : public std::enable_shared_from_this<ClientLink> {
 
   // Bytes read from the client; bytes that the kernel took for it; of these, bytes that its machine
   // acknowledged.
-  uint64_t ReceivedBytes() { return stream_.rate_policy().Received(); }
-  uint64_t SentBytes() { return stream_.rate_policy().Sent(); }
+  uint64_t ReceivedBytes() { return stream_.Counts().Received(); }
+  uint64_t SentBytes() { return stream_.Counts().Sent(); }
   uint64_t DeliveredBytes();
   // True if the client closed its side or the connection broke, also while nothing is read.
   bool HasHungUp();
@@ -89,6 +93,10 @@ class ClientLink : public std::enable_shared_from_this<ClientLink> {
   void WatchOn();
   void OnWatched(boost::system::error_code error, size_t bytes);
 
+  std::string peer_;
+  boost::asio::ip::address address_;
+  LinkUse use_ = LinkUse::kWaiting;
+  Clock::time_point used_since_ = Clock::now();
   ClientStream stream_;
   boost::beast::flat_buffer received_;
   std::chrono::milliseconds write_stall_timeout_;

@@ -7,8 +7,8 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <optional>
 #include <thread>
-#include <unordered_set>
 #include <utility>
 
 #include "absl/status/status.h"
@@ -17,7 +17,9 @@
 #include "gateway/awaitable.h"
 #include "gateway/client_link.h"
 #include "gateway/http_connection.h"
+#include "gateway/open_links.h"
 #include "gateway/site.h"
+#include "gateway/tls_contexts.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::gateway {
@@ -65,7 +67,11 @@ absl::Status CannotListen(const tcp::endpoint& endpoint, const error_code& error
 // Everything but construction and Stop() runs on `thread_`, so nothing here needs a lock.
 class Gateway::Listener {
  public:
-  explicit Listener(Site site) : site_(std::move(site)), acceptor_(io_) {}
+  Listener(Site site, std::optional<TlsContexts> tls)
+      : site_(std::move(site)),
+        acceptor_(io_),
+        tls_(std::move(tls)),
+        links_(site_.options.max_connections, site_.options.max_connections_per_address) {}
 
   ~Listener() {
     if (!thread_.joinable()) return;
@@ -87,6 +93,7 @@ class Gateway::Listener {
   }
 
   const tcp::endpoint& Endpoint() const { return endpoint_; }
+  bool IsEncrypted() const { return tls_.has_value(); }
 
  private:
   net::awaitable<void> Accept() {
@@ -107,28 +114,28 @@ class Gateway::Listener {
   }
 
   void Admit(tcp::socket socket) {
-    if (links_.size() >= site_.options.max_connections) {
-      spdlog::warn("refusing a browser's connection: the maximum of {} are open", links_.size());
-      return;
-    }
-    auto link = std::make_shared<ClientLink>(std::move(socket), site_.options.write_stall_timeout);
-    links_.insert(link);
+    auto tls = tls_.has_value() ? tls_->Current() : nullptr;
+    auto link = std::make_shared<ClientLink>(std::move(socket), std::move(tls),
+                                             site_.options.write_stall_timeout);
+    if (!links_.MakeRoom(*link)) return;
+    links_.Add(link);
     net::co_spawn(io_, ServeConnection(link, site_),
-                  [this, link](const std::exception_ptr&) { links_.erase(link); });
+                  [this, link](const std::exception_ptr&) { links_.Remove(link); });
   }
 
   void Stop() {
     stopping_ = true;
     error_code ignored;
     acceptor_.close(ignored);
-    for (const std::shared_ptr<ClientLink>& link : links_) link->Stop();
+    links_.StopAll();
   }
 
   Site site_;
   net::io_context io_{1};
   tcp::acceptor acceptor_;
   tcp::endpoint endpoint_;
-  std::unordered_set<std::shared_ptr<ClientLink>> links_;
+  std::optional<TlsContexts> tls_;
+  OpenLinks links_;
   bool stopping_ = false;
   std::thread thread_;
 };
@@ -137,9 +144,15 @@ absl::StatusOr<std::unique_ptr<Gateway>> Gateway::Start(const GatewayOptions& op
                                                         std::shared_ptr<grpc::Channel> channel) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const net::ip::address address, ParseAddress(options.address));
   THUNDERHEAD_ASSIGN_OR_RETURN(StaticFiles files, StaticFiles::Open(options.page_directory));
+  std::optional<TlsContexts> tls;
+  if (!options.tls_certificate.empty()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(tls, TlsContexts::Open(options.tls_certificate, options.tls_key));
+  }
   auto listener = std::make_unique<Listener>(
-      Site{options, std::move(files), HttpPolicy(address.is_loopback(), options.allowed_origins),
-           grpc::GenericStub(std::move(channel))});
+      Site{options, std::move(files),
+           HttpPolicy(address.is_loopback(), options.allowed_hosts, options.allowed_origins),
+           grpc::GenericStub(std::move(channel))},
+      std::move(tls));
   THUNDERHEAD_RETURN_IF_ERROR(listener->Listen(tcp::endpoint(address, options.port)));
   return std::unique_ptr<Gateway>(new Gateway(std::move(listener)));
 }
@@ -151,11 +164,12 @@ uint16_t Gateway::Port() const { return listener_->Endpoint().port(); }
 
 std::string Gateway::Url() const {
   const net::ip::address address = listener_->Endpoint().address();
+  const char* const scheme = listener_->IsEncrypted() ? "https://" : "http://";
   // A browser cannot connect to a wildcard address.
   if (address.is_unspecified() || address == net::ip::address_v4::loopback()) {
-    return absl::StrCat("http://localhost:", Port(), "/");
+    return absl::StrCat(scheme, "localhost:", Port(), "/");
   }
-  return absl::StrCat("http://", HostAndPort(listener_->Endpoint()), "/");
+  return absl::StrCat(scheme, HostAndPort(listener_->Endpoint()), "/");
 }
 
 }  // namespace thunderhead::gateway

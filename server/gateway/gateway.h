@@ -17,12 +17,16 @@
 namespace thunderhead::gateway {
 
 struct GatewayOptions {
-  // An IP address or "localhost". On a loopback address only requests for localhost, 127.0.0.1 and
-  // [::1] are answered, so that a foreign web site cannot reach the server by resolving its own
-  // name to it (DNS rebinding).
+  // An IP address or "localhost".
   std::string address = "127.0.0.1";
   // 0 chooses a free one; see Gateway::Port().
   uint16_t port = 0;
+  // PEM files, loaded again when they change; both empty: no TLS.
+  std::string tls_certificate;
+  std::string tls_key;
+  // Names of this server besides its addresses. Requests for others are refused, so that a foreign
+  // web site cannot reach the server by resolving its own name to it (HttpPolicy has the rules).
+  std::vector<std::string> allowed_hosts;
   // The built page; empty: none.
   std::string page_directory;
   // Origins of other pages that may call, for example "http://localhost:5173". The page served here
@@ -31,10 +35,19 @@ struct GatewayOptions {
   // Largest request message; larger ones get RESOURCE_EXHAUSTED, or close a WebSocket with 1009.
   // Responses are limited only by the channel.
   size_t max_message_bytes = 4u << 20;
-  // More connections than these are closed at once.
+  // At most so many connections, in all and of one address. Who comes when there are as many takes
+  // the place of the one that others can best do without: the longest that has sent no whole
+  // request, else one that takes long to read a file. Where all are calls, the newcomer is refused.
   size_t max_connections = 768;
-  // Closes a connection without a call on which no request arrives within this time.
+  size_t max_connections_per_address = 512;
+  // Closes a connection without a call on which no request begins within this time.
   std::chrono::milliseconds idle_timeout = std::chrono::seconds(60);
+  // A request's header, and a TLS handshake, must be complete within this time, and so must the
+  // body after it within three times as long.
+  std::chrono::milliseconds header_timeout = std::chrono::seconds(10);
+  // A file or text must be read within three header timeouts and the time that it takes at this
+  // rate. (Calls have write_stall_timeout alone: their own clients wait for them.)
+  double min_bytes_per_second = 8192.0;
   // Closes a connection whose client accepts no bytes for this time, and cancels its call.
   std::chrono::milliseconds write_stall_timeout = std::chrono::seconds(120);
   // Pings the client of a WebSocket that sent nothing for this time, and drops it, cancelling its

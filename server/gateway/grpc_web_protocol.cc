@@ -78,6 +78,7 @@ bool IsNotMetadata(std::string_view name) {
                                                 "upgrade",
                                                 "upgrade-insecure-requests",
                                                 "user-agent",
+                                                "x-forwarded-for",
                                                 "x-grpc-web",
                                                 "x-user-agent"};
   if (name.starts_with("grpc-") || name.starts_with("sec-") || name.starts_with("accept-") ||

@@ -9,6 +9,7 @@
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
+#include <chrono>
 #include <cstdint>
 #include <exception>
 #include <limits>
@@ -36,6 +37,10 @@ using boost::system::error_code;
 using Request = GrpcWebExchange::Request;
 
 constexpr uint32_t kMaxHeaderBytes = 16 << 10;
+constexpr size_t kFirstRead = 4 << 10;
+// A body may take so many times as long as a header, and so may a text or the first bytes of a
+// file.
+constexpr int kHeaderTimeouts = 3;
 constexpr char kPageMethods[] = "GET, HEAD";
 
 class HttpConnection {
@@ -50,6 +55,8 @@ class HttpConnection {
  private:
   using Parser = http::request_parser<http::string_body>;
 
+  // Waits for the first byte of a request. False if none comes.
+  net::awaitable<bool> AwaitRequest();
   net::awaitable<bool> Answer(Parser& parser);
   net::awaitable<bool> AnswerPage(const Request& request, const std::string& path);
   net::awaitable<bool> AnswerUpgrade(const Request& request);
@@ -67,6 +74,7 @@ class HttpConnection {
 
   ClientLink& link_;
   Site& site_;
+  bool is_first_ = true;
   bool unread_input_ = false;
 };
 
@@ -76,10 +84,15 @@ net::awaitable<bool> HttpConnection::ServeOne() {
   // The body's limit is set after the header has been read; boost::none would refuse every body in
   // Beast 1.74.
   parser.body_limit(std::numeric_limits<uint64_t>::max());
-  link_.Stream().expires_after(site_.options.idle_timeout);
+  const bool begins = co_await AwaitRequest();
+  if (!begins) co_return false;
+  link_.Begin(LinkUse::kReceiving);
+  // For the whole of the header: the stream's time is not set anew for each of its parts.
+  link_.Stream().expires_after(site_.options.header_timeout);
   error_code error;
   co_await http::async_read_header(link_.Stream(), link_.Received(), parser,
                                    net::redirect_error(net::use_awaitable, error));
+  link_.Begin(LinkUse::kSending);
   if (error) {
     const bool keep = co_await AnswerBadHeader(error);
     co_return keep;
@@ -87,6 +100,19 @@ net::awaitable<bool> HttpConnection::ServeOne() {
   unread_input_ = !parser.is_done();
   const bool keep = co_await Answer(parser);
   co_return keep && !unread_input_;
+}
+
+net::awaitable<bool> HttpConnection::AwaitRequest() {
+  link_.Begin(LinkUse::kWaiting);
+  if (link_.Received().size() > 0) co_return true;
+  link_.Stream().expires_after(is_first_ ? site_.options.header_timeout
+                                         : site_.options.idle_timeout);
+  is_first_ = false;
+  error_code error;
+  const size_t bytes = co_await link_.Stream().async_read_some(
+      link_.Received().prepare(kFirstRead), net::redirect_error(net::use_awaitable, error));
+  link_.Received().commit(bytes);
+  co_return !error;
 }
 
 net::awaitable<bool> HttpConnection::Answer(Parser& parser) {
@@ -97,8 +123,10 @@ net::awaitable<bool> HttpConnection::Answer(Parser& parser) {
   bool keep = false;
   if (!site_.policy.AllowsHost(host)) {
     keep = co_await SendText(request, http::status::forbidden,
-                             "This server answers only at localhost, 127.0.0.1 and [::1]. Open it "
-                             "under one of these names, or bind it to another address.\n");
+                             absl::StrCat("This server does not answer to '", std::string(host),
+                                          "'. Open it under a name that it knows, such as "
+                                          "localhost, or start it with --allow-host and this "
+                                          "one.\n"));
   } else if (!path.starts_with('/') && path != "*") {
     keep = co_await SendText(request, http::status::bad_request,
                              "The request's target must be a path that begins with '/'.\n");
@@ -143,7 +171,7 @@ net::awaitable<bool> HttpConnection::AnswerUpgrade(const Request& request) {
     keep = co_await SendText(request, refusal->status, refusal->text);
     co_return keep;
   }
-  const absl::StatusOr<UpstreamRequest> upstream = TranslateHeader(request);
+  const absl::StatusOr<UpstreamRequest> upstream = TranslateHeader(request, link_.Peer());
   if (!upstream.ok()) {
     keep = co_await SendText(request, http::status::bad_request,
                              absl::StrCat(upstream.status().message(), ".\n"));
@@ -152,6 +180,7 @@ net::awaitable<bool> HttpConnection::AnswerUpgrade(const Request& request) {
     keep = co_await SendText(request, http::status::bad_request,
                              "Nothing may be sent before the upgrade is answered.\n");
   } else {
+    link_.Begin(LinkUse::kCalling);
     const auto exchange = std::make_shared<WebSocketExchange>(site_, link_.shared_from_this());
     co_await exchange->Run(request, *upstream);
   }
@@ -215,6 +244,7 @@ net::awaitable<bool> HttpConnection::AnswerCall(Parser& parser) {
     keep = co_await RefuseLargeCall(request);
   } else if (!error) {
     unread_input_ = false;
+    link_.Begin(LinkUse::kCalling);
     keep = co_await GrpcWebExchange(site_, link_, request).Run();
   }
   co_return keep;
@@ -230,9 +260,11 @@ net::awaitable<error_code> HttpConnection::ReadBody(Parser& parser) {
                                net::redirect_error(net::use_awaitable, error));
     if (error) co_return error;
   }
-  link_.Stream().expires_after(site_.options.idle_timeout);
+  link_.Begin(LinkUse::kReceiving);
+  link_.Stream().expires_after(kHeaderTimeouts * site_.options.header_timeout);
   co_await http::async_read(link_.Stream(), link_.Received(), parser,
                             net::redirect_error(net::use_awaitable, error));
+  link_.Begin(LinkUse::kSending);
   co_return error;
 }
 
@@ -317,9 +349,15 @@ net::awaitable<bool> HttpConnection::Send(const Request& request, http::response
   site_.policy.Decorate(View(request[http::field::origin]), response);
   response.keep_alive(keep_alive);
   http::response_serializer<Body> serializer(response);
-  // In parts, so that a large file on a slow connection times out only without any progress.
+  link_.Begin(LinkUse::kSending);
+  const std::chrono::duration<double> at_least(
+      static_cast<double>(response.payload_size().value_or(0)) /
+      site_.options.min_bytes_per_second);
+  const auto end = ClientLink::Clock::now() + kHeaderTimeouts * site_.options.header_timeout +
+                   std::chrono::duration_cast<ClientLink::Clock::duration>(at_least);
+  // In parts, so that it also times out without any progress.
   while (!serializer.is_done()) {
-    link_.ExpireIdleWrite();
+    link_.ExpireIdleWrite(end);
     error_code error;
     co_await http::async_write_some(link_.Stream(), serializer,
                                     net::redirect_error(net::use_awaitable, error));
@@ -332,8 +370,9 @@ net::awaitable<bool> HttpConnection::Send(const Request& request, http::response
 
 net::awaitable<void> ServeConnection(std::shared_ptr<ClientLink> link, Site& site) {
   try {
+    link->Stream().expires_after(site.options.header_timeout);
+    bool keep = co_await link->Stream().Handshake();
     HttpConnection connection(*link, site);
-    bool keep = true;
     while (keep) keep = co_await connection.ServeOne();
     if (connection.HasUnreadInput()) co_await link->LingeringClose();
   } catch (const std::exception& error) {

@@ -1,6 +1,8 @@
 #include "gateway/http_policy.h"
 
 #include <algorithm>
+#include <boost/asio/ip/address.hpp>
+#include <boost/asio/ip/host_name.hpp>
 #include <boost/beast/http/field.hpp>
 #include <string>
 #include <utility>
@@ -26,15 +28,33 @@ std::string WithoutPort(std::string_view host) {
   return absl::AsciiStrToLower(std::string(host.substr(0, colon)));
 }
 
+// True for "192.0.2.7" and "[2001:db8::7]".
+bool IsAddress(const std::string& name) {
+  const bool bracketed = name.size() > 2 && name.front() == '[' && name.back() == ']';
+  boost::system::error_code error;
+  const auto address =
+      boost::asio::ip::make_address(bracketed ? name.substr(1, name.size() - 2) : name, error);
+  return !error && address.is_v6() == bracketed;
+}
+
 }  // namespace
 
-HttpPolicy::HttpPolicy(bool loopback, std::vector<std::string> allowed_origins)
-    : loopback_(loopback), allowed_origins_(std::move(allowed_origins)) {}
+HttpPolicy::HttpPolicy(bool loopback, std::vector<std::string> allowed_hosts,
+                       std::vector<std::string> allowed_origins)
+    : loopback_(loopback),
+      allowed_hosts_(std::move(allowed_hosts)),
+      allowed_origins_(std::move(allowed_origins)) {
+  for (std::string& host : allowed_hosts_) absl::AsciiStrToLower(&host);
+  boost::system::error_code error;
+  const std::string own = boost::asio::ip::host_name(error);
+  if (!loopback_ && !error) allowed_hosts_.push_back(absl::AsciiStrToLower(own));
+}
 
 bool HttpPolicy::AllowsHost(std::string_view host) const {
-  if (!loopback_) return true;
   const std::string name = WithoutPort(host);
-  return name == "localhost" || name == "127.0.0.1" || name == "[::1]";
+  if (name == "localhost" || name == "127.0.0.1" || name == "[::1]") return true;
+  return std::ranges::find(allowed_hosts_, name) != allowed_hosts_.end() ||
+         (!loopback_ && IsAddress(name));
 }
 
 bool HttpPolicy::AllowsOrigin(std::string_view origin) const {

@@ -11,8 +11,11 @@ namespace thunderhead::gateway {
 
 class HttpPolicy {
  public:
-  // `loopback` enables the Host check: only names of this machine's loopback address are allowed.
-  HttpPolicy(bool loopback, std::vector<std::string> allowed_origins);
+  // Allowed are the loopback address' own names, `allowed_hosts`, and, unless the server listens on
+  // a `loopback` address, other addresses in digits and this machine's name: none of these can a
+  // foreign site take for itself, as it could any other name (DNS rebinding).
+  HttpPolicy(bool loopback, std::vector<std::string> allowed_hosts,
+             std::vector<std::string> allowed_origins);
 
   bool AllowsHost(std::string_view host) const;
   // True for an origin, other than the page's own, whose pages may call.
@@ -30,6 +33,7 @@ class HttpPolicy {
 
  private:
   bool loopback_;
+  std::vector<std::string> allowed_hosts_;
   std::vector<std::string> allowed_origins_;
 };
 

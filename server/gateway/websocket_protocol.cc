@@ -1,8 +1,12 @@
 #include "gateway/websocket_protocol.h"
 
+#include <algorithm>
+
 #include "absl/strings/ascii.h"
+#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
 
 namespace thunderhead::gateway {
 
@@ -15,6 +19,22 @@ bool OffersSubprotocol(std::string_view offered) {
     if (absl::StripAsciiWhitespace(name) == kWebSocketSubprotocol) return true;
   }
   return false;
+}
+
+std::optional<std::string> OfferedToken(std::string_view offered) {
+  for (absl::string_view name :
+       absl::StrSplit(absl::string_view(offered.data(), offered.size()), ',')) {
+    name = absl::StripAsciiWhitespace(name);
+    std::string token;
+    if (!absl::ConsumePrefix(&name, kTokenPrefix) || !absl::WebSafeBase64Unescape(name, &token)) {
+      continue;
+    }
+    // gRPC aborts the process on metadata with other bytes.
+    const bool printable =
+        std::ranges::all_of(token, [](unsigned char c) { return absl::ascii_isgraph(c); });
+    if (printable && !token.empty()) return token;
+  }
+  return std::nullopt;
 }
 
 std::optional<close_reason> FindViolation(const MessageStart& start) {

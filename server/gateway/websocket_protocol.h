@@ -24,6 +24,12 @@ inline constexpr uint8_t kTrailersKind = 0x80;   // from the server; as in a gRP
 // True if a Sec-WebSocket-Protocol header offers the subprotocol.
 bool OffersSubprotocol(std::string_view offered);
 
+// The token that a Sec-WebSocket-Protocol header offers besides, as "bearer." and the token in
+// base64url without padding: the one header that browsers let a page choose. None if it offers
+// none, or not in printable ASCII.
+inline constexpr char kTokenPrefix[] = "bearer.";
+std::optional<std::string> OfferedToken(std::string_view offered);
+
 // The beginning of a WebSocket message from a client.
 struct MessageStart {
   bool is_text = false;

@@ -5,12 +5,15 @@
 
 #include <charconv>
 #include <cstdlib>
+#include <map>
+#include <mutex>
 #include <optional>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
 #include "base/status.h"
+#include "gl/device.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::gl {
@@ -23,20 +26,50 @@ std::string GlString(GLenum name) {
   return text == nullptr ? std::string() : std::string(reinterpret_cast<const char*>(text));
 }
 
+// EGL gives every context of a device the same display, and ends it for all of them.
+class SharedDisplay {
+ public:
+  explicit SharedDisplay(EGLDisplay display) : display_(display) {
+    const std::lock_guard lock(Mutex());
+    ++Users()[display_];
+  }
+  ~SharedDisplay() {
+    const std::lock_guard lock(Mutex());
+    if (--Users()[display_] > 0) return;
+    Users().erase(display_);
+    eglTerminate(display_);
+  }
+  SharedDisplay(const SharedDisplay&) = delete;
+  SharedDisplay& operator=(const SharedDisplay&) = delete;
+
+  EGLDisplay Get() const { return display_; }
+
+ private:
+  static std::mutex& Mutex() {
+    static std::mutex mutex;
+    return mutex;
+  }
+  static std::map<EGLDisplay, int>& Users() {
+    static std::map<EGLDisplay, int> users;
+    return users;
+  }
+
+  const EGLDisplay display_;
+};
+
 class EglContext final : public Context {
  public:
   explicit EglContext(EGLDisplay display) : display_(display) {}
 
   ~EglContext() override {
-    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-    if (context_ != EGL_NO_CONTEXT) eglDestroyContext(display_, context_);
-    eglTerminate(display_);
+    eglMakeCurrent(display_.Get(), EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    if (context_ != EGL_NO_CONTEXT) eglDestroyContext(display_.Get(), context_);
   }
 
   absl::Status Open(std::string device) {
     EGLint major = 0;
     EGLint minor = 0;
-    if (eglInitialize(display_, &major, &minor) == EGL_FALSE) {
+    if (eglInitialize(display_.Get(), &major, &minor) == EGL_FALSE) {
       return absl::UnavailableError("its EGL driver cannot be initialised");
     }
     if (eglBindAPI(EGL_OPENGL_API) == EGL_FALSE) {
@@ -46,7 +79,7 @@ class EglContext final : public Context {
                                         EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0;
-    if (eglChooseConfig(display_, config_attributes, &config, 1, &count) == EGL_FALSE ||
+    if (eglChooseConfig(display_.Get(), config_attributes, &config, 1, &count) == EGL_FALSE ||
         count == 0) {
       config = nullptr;  // EGL_KHR_no_config_context
     }
@@ -57,11 +90,11 @@ class EglContext final : public Context {
                                          EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                          EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                          EGL_NONE};
-    context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, context_attributes);
+    context_ = eglCreateContext(display_.Get(), config, EGL_NO_CONTEXT, context_attributes);
     if (context_ == EGL_NO_CONTEXT) {
       return absl::UnavailableError("it offers no OpenGL 4.5 core context");
     }
-    if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_FALSE) {
+    if (eglMakeCurrent(display_.Get(), EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_FALSE) {
       return absl::UnavailableError("its context cannot be used without a surface");
     }
     info_ = {std::move(device), GlString(GL_RENDERER), GlString(GL_VERSION)};
@@ -71,7 +104,7 @@ class EglContext final : public Context {
   const ContextInfo& Info() const override { return info_; }
 
  private:
-  EGLDisplay display_;
+  SharedDisplay display_;
   EGLContext context_ = EGL_NO_CONTEXT;
   ContextInfo info_;
 };
@@ -120,7 +153,12 @@ absl::StatusOr<std::unique_ptr<Context>> OpenSoftware() {
   if (display != EGL_NO_DISPLAY) {
     auto context = std::make_unique<EglContext>(display);
     status = context->Open("software");
-    if (status.ok()) return context;
+    if (status.ok() && DrawsInSoftware()) return context;
+    // Another driver may offer this platform too.
+    if (status.ok()) {
+      status = absl::UnavailableError(
+          absl::StrCat("the surfaceless EGL platform draws on ", context->Info().renderer));
+    }
   }
   return absl::UnavailableError(
       absl::StrCat("software rendering is not available: ", status.message(),

@@ -60,6 +60,7 @@ std::size_t BytesPerTexel(GLenum internal_format) {
     case GL_RGBA8:
     case GL_SRGB8_ALPHA8:
       return 4;
+    case GL_RGBA16:
     case GL_RGBA16F:
     case GL_RG32F:
       return 8;

@@ -284,8 +284,10 @@ void Program::SetAt(GLint location, const std::vector<glm::vec4>& values) const 
 absl::StatusOr<const Program*> ProgramCache::Get(const ProgramSource& source) {
   auto found = programs_.find(source);
   if (found == programs_.end()) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(Program program, Program::Link(source));
-    found = programs_.emplace(source, std::move(program)).first;
+    absl::StatusOr<Program> program;
+    THUNDERHEAD_RETURN_IF_ERROR(pieces_.OffTurn([&] { program = Program::Link(source); }));
+    THUNDERHEAD_RETURN_IF_ERROR(program.status());
+    found = programs_.emplace(source, *std::move(program)).first;
   }
   return &found->second;
 }

@@ -13,6 +13,7 @@
 
 #include "absl/status/statusor.h"
 #include "gl/objects.h"
+#include "gl/pieces.h"
 #include "glm/mat3x3.hpp"
 #include "glm/mat4x3.hpp"
 #include "glm/mat4x4.hpp"
@@ -84,6 +85,7 @@ class Program {
   void Use() const { glUseProgram(name_.Get()); }
   // A whole target that is computed.
   bool Computes() const { return computes_; }
+  GLuint Get() const { return name_.Get(); }
   template <typename T>
   void Set(Uniform<T> uniform, const T& value) const {
     SetAt(Location(uniform.name), value);
@@ -125,13 +127,21 @@ class Program {
   std::optional<Strict> strict_;
 };
 
-// Programs linked so far, by source; links on first use.
+// A context's programs linked so far, by source, and the pieces that they draw in; links on first
+// use.
 class ProgramCache {
  public:
+  ProgramCache() = default;
+  // Draws in pieces, for which `turn` is taken; it must outlive this.
+  explicit ProgramCache(base::DeviceTurn* turn) : pieces_(turn) {}
+
+  gl::Pieces& Pieces() { return pieces_; }
+
   // The pointer stays valid as long as the cache.
   absl::StatusOr<const Program*> Get(const ProgramSource& source);
 
  private:
+  gl::Pieces pieces_;
   std::map<ProgramSource, Program> programs_;
 };
 

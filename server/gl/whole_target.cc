@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/status.h"
 #include "base/stopwatch.h"
 #include "gl/device.h"
 #include "glm/common.hpp"
@@ -32,11 +33,12 @@ double TrialMs(const WholeTarget& whole_target, bool computes) {
   if (!program.ok()) return std::numeric_limits<double>::infinity();
   const Texture2D texture(GL_RGBA16F, glm::ivec2(kTrialSide_px));
   const Framebuffer target(texture);
+  Pieces whole;
   double least_ms = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 1 + kTrials; ++i) {
     glFinish();
     const base::Stopwatch stopwatch;
-    whole_target.Draw(*program, target);
+    if (!whole_target.Draw(whole, {"trial"}, *program, target).ok()) break;
     glFinish();
     if (i > 0) least_ms = std::min(least_ms, stopwatch.ElapsedMs());
   }
@@ -71,15 +73,29 @@ bool ComputesWholeTargets() {
   return computes.emplace(renderer, FindsComputingFaster(renderer)).first->second;
 }
 
-void WholeTarget::Draw(const Program& program, const Framebuffer& target) const {
+absl::Status WholeTarget::Draw(Pieces& pieces, const PieceCost& pixel, const Program& program,
+                               const Framebuffer& target, const PixelRect& rect) const {
   program.Use();
-  if (program.Computes()) {
-    Compute(program, target);
-    return;
-  }
   target.Bind();
   no_attributes_.Bind();
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  const auto draw = [&] {
+    if (program.Computes()) {
+      Compute(program, target);
+    } else {
+      glDrawArrays(GL_TRIANGLES, 0, 3);
+    }
+  };
+  if (pieces.IsNew(program.Get())) {
+    // Drivers compile a program for the state that it is drawn with when it first is.
+    THUNDERHEAD_RETURN_IF_ERROR(pieces.OffTurn([&] {
+      glEnable(GL_SCISSOR_TEST);
+      glScissor(0, 0, 0, 0);
+      draw();
+      glFinish();
+      glDisable(GL_SCISSOR_TEST);
+    }));
+  }
+  return pieces.Tiles(pixel, rect, draw);
 }
 
 void WholeTarget::Compute(const Program& program, const Framebuffer& target) {

@@ -1,7 +1,9 @@
-// Draws all pixels of a target by a program whose source is ProgramSource::WholeTarget.
+// Draws pixels of a target by a program whose source is ProgramSource::WholeTarget.
 #pragma once
 
+#include "absl/status/status.h"
 #include "gl/objects.h"
+#include "gl/pieces.h"
 #include "gl/program.h"
 
 namespace thunderhead::gl {
@@ -13,10 +15,16 @@ bool ComputesWholeTargets();
 
 class WholeTarget {
  public:
-  // Textures and uniforms are the caller's, and what limits the drawing: a rectangle
-  // (GL_SCISSOR_TEST), or the target's depth, which is tested against 0.5 (GL_DEPTH_TEST with
-  // GL_LESS or GL_GREATER).
-  void Draw(const Program& program, const Framebuffer& target) const;
+  // All of the target, in tiles. Textures and uniforms are the caller's, and what limits the
+  // drawing besides: the target's depth, which is tested against 0.5 (GL_DEPTH_TEST with GL_LESS or
+  // GL_GREATER).
+  absl::Status Draw(Pieces& pieces, const PieceCost& pixel, const Program& program,
+                    const Framebuffer& target) const {
+    return Draw(pieces, pixel, program, target, {glm::ivec2(0), target.Size()});
+  }
+  // A part of it.
+  absl::Status Draw(Pieces& pieces, const PieceCost& pixel, const Program& program,
+                    const Framebuffer& target, const PixelRect& rect) const;
 
  private:
   static void Compute(const Program& program, const Framebuffer& target);

@@ -1,8 +1,6 @@
 #include "interchange/storm_export.h"
 
 #include <algorithm>
-#include <map>
-#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -12,7 +10,7 @@
 #include "base/version.h"
 #include "glm/common.hpp"
 #include "physics/optics.h"
-#include "physics/turbulence.h"
+#include "scene/detailed_medium.h"
 #include "scene/drawn_fields.h"
 #include "scene/view.h"
 
@@ -20,7 +18,6 @@ namespace thunderhead::interchange {
 namespace {
 
 using Fields = std::shared_ptr<const volume::HydrometeorFields>;
-using Tile = std::shared_ptr<const physics::TurbulenceTile>;
 
 // One field's extinction (1/m) at cells, and between them.
 class FieldExtinction {
@@ -67,89 +64,21 @@ bool FillFromCells(const FieldExtinction& extinction, const glm::ivec3& first, V
   return std::any_of(values.begin(), values.end(), [](float value) { return value > 0.0F; });
 }
 
-// Cells that a block of finer voxels reads, with those around it; beyond the grid the nearest.
-constexpr int kNearCells = kVdbBlockCells / kDetailVoxelsPerCell + 2;
-static_assert(kVdbBlockCells % kDetailVoxelsPerCell == 0);
-
-class NearCells {
- public:
-  // `first` is the first cell inside the block.
-  NearCells(const FieldExtinction& extinction, const glm::ivec3& first) {
-    const glm::ivec3 last = extinction.Grid().cells - 1;
-    for (int z = 0; z < kNearCells; ++z) {
-      for (int y = 0; y < kNearCells; ++y) {
-        for (int x = 0; x < kNearCells; ++x) {
-          const glm::ivec3 cell = first + glm::ivec3(x - 1, y - 1, z - 1);
-          extinction.Row(glm::clamp(cell, glm::ivec3(0), last), 1, &At(x, y, z));
-        }
-      }
-    }
-  }
-
-  bool Empty() const {
-    return std::all_of(values_.begin(), values_.end(), [](float value) { return value <= 0.0F; });
-  }
-
-  // At the middle of voxel `voxel` of the block, linear between centres.
-  float Between(const glm::ivec3& voxel) {
-    const glm::vec3 place =
-        (glm::vec3(voxel) + 0.5F) / static_cast<float>(kDetailVoxelsPerCell) + 0.5F;
-    const glm::vec3 low = glm::floor(place);
-    const glm::vec3 share = place - low;
-    const glm::ivec3 at(low);
-    float sum = 0.0F;
-    for (int corner = 0; corner < 8; ++corner) {
-      const glm::ivec3 step(corner & 1, (corner >> 1) & 1, corner >> 2);
-      const glm::vec3 weight = glm::mix(1.0F - share, share, glm::vec3(step));
-      sum += weight.x * weight.y * weight.z * At(at.x + step.x, at.y + step.y, at.z + step.z);
-    }
-    return sum;
-  }
-
- private:
-  float& At(int x, int y, int z) {
-    return values_[static_cast<std::size_t>((z * kNearCells + y) * kNearCells + x)];
-  }
-
-  std::array<float, std::size_t{kNearCells} * kNearCells * kNearCells> values_{};
-};
-
-// A field's noise at places of the world; one tile serves all fields with the same octaves and
-// seed.
-struct Noise {
-  Tile tile;  // null: none
-  scene::Detail detail;
-
-  float At(const glm::dvec3& place_m) const {
-    if (tile == nullptr) return 1.0F;
-    const double tile_m =
-        static_cast<double>(detail.wavelength_m) * physics::TurbulenceTile::kWaves;
-    const auto noise = static_cast<float>(physics::TurbulenceAt(*tile, place_m / tile_m));
-    return 1.0F + detail.share * (noise - 1.0F);
-  }
-
-  float Largest() const {
-    return tile == nullptr ? 1.0F : 1.0F + detail.share * (tile->value_of_full - 1.0F);
-  }
-};
-
-bool FillWithDetail(const FieldExtinction& extinction, const Noise& noise,
+bool FillWithDetail(const scene::DetailedMedium& medium, std::size_t field,
                     const volume::RegularGrid& grid, const glm::ivec3& first, VdbBlock& values) {
-  NearCells cells(extinction, first / kDetailVoxelsPerCell);
-  if (cells.Empty()) return false;
-  std::size_t i = 0;
-  for (int z = 0; z < kVdbBlockCells; ++z) {
-    for (int y = 0; y < kVdbBlockCells; ++y) {
-      for (int x = 0; x < kVdbBlockCells; ++x, ++i) {
-        const glm::ivec3 voxel(x, y, z);
-        values[i] = cells.Between(voxel);
-        if (values[i] <= 0.0F) continue;
-        values[i] *=
-            noise.At(grid.low_corner_m + (glm::dvec3(first + voxel) + 0.5) * grid.spacing_m);
+  const glm::ivec3 count = glm::min(grid.cells - first, glm::ivec3(kVdbBlockCells));
+  bool any = false;
+  for (int z = 0; z < count.z; ++z) {
+    for (int y = 0; y < count.y; ++y) {
+      for (int x = 0; x < count.x; ++x) {
+        const glm::dvec3 voxel = glm::dvec3(first + glm::ivec3(x, y, z)) + 0.5;
+        const float value = medium.At_per_m(grid.low_corner_m + voxel * grid.spacing_m)[field];
+        values[static_cast<std::size_t>((z * kVdbBlockCells + y) * kVdbBlockCells + x)] = value;
+        any = any || value > 0.0F;
       }
     }
   }
-  return true;
+  return any;
 }
 
 volume::RegularGrid FinerGrid(volume::RegularGrid grid) {
@@ -192,23 +121,6 @@ VdbMetadata OriginOf(const scene::Scene& scene, const volume::StormInfo& storm,
   return metadata;
 }
 
-// Tiles of turbulence, each made once.
-class Tiles {
- public:
-  Noise NoiseOf(const scene::Detail& detail) {
-    if (detail.share <= 0.0F) return {};
-    Tile& tile = tiles_[{detail.octaves, detail.seed}];
-    if (tile == nullptr) {
-      tile = std::make_shared<const physics::TurbulenceTile>(
-          physics::MakeTurbulence(detail.octaves, detail.seed));
-    }
-    return {tile, detail};
-  }
-
- private:
-  std::map<std::pair<int, std::uint32_t>, Tile> tiles_;
-};
-
 std::string Vector(const glm::dvec3& v) {
   return absl::StrFormat("[%.17g, %.17g, %.17g]", v.x, v.y, v.z);
 }
@@ -233,19 +145,21 @@ absl::StatusOr<VdbFile> ExportOf(const scene::Scene& scene, Fields fields,
   shown.rendering.technique = scene::LightVolume{};
   VdbFile file;
   file.metadata = OriginOf(scene, storm, options);
-  Tiles tiles;
-  for (const scene::DrawnField& drawn : scene::DrawnFieldsOf(shown, *fields)) {
+  const std::shared_ptr<const scene::DetailedMedium> detailed =
+      options.detail ? scene::DetailedMedium::Of(shown, *fields) : nullptr;
+  const std::vector<scene::DrawnField> drawn_fields = scene::DrawnFieldsOf(shown, *fields);
+  for (std::size_t i = 0; i < drawn_fields.size(); ++i) {
+    const scene::DrawnField& drawn = drawn_fields[i];
     const FieldExtinction extinction(fields, drawn);
-    const Noise noise = options.detail ? tiles.NoiseOf(drawn.detail) : Noise{};
     VdbGrid grid;
     grid.name = std::string(physics::NameOf(drawn.hydrometeor));
-    THUNDERHEAD_RETURN_IF_ERROR(CheckLargest(grid.name, extinction.Largest() * noise.Largest()));
+    THUNDERHEAD_RETURN_IF_ERROR(CheckLargest(
+        grid.name, detailed == nullptr ? extinction.Largest() : detailed->Largest_per_m()[i]));
     grid.metadata = OpticsOf(drawn, shown, fields->fields[drawn.index]);
-    if (options.detail) {
+    if (detailed != nullptr) {
       grid.grid = FinerGrid(fields->grid);
-      grid.fill = [extinction, noise, finer = grid.grid](const glm::ivec3& first,
-                                                         VdbBlock& values) {
-        return FillWithDetail(extinction, noise, finer, first, values);
+      grid.fill = [detailed, i, finer = grid.grid](const glm::ivec3& first, VdbBlock& values) {
+        return FillWithDetail(*detailed, i, finer, first, values);
       };
     } else {
       grid.grid = fields->grid;

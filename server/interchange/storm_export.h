@@ -19,10 +19,9 @@ inline constexpr int kDetailVoxelsPerCell = 4;
 
 struct ExportOptions {
   // False: a voxel is a cell of the storm's grid, so that every column keeps its water path. True:
-  // kDetailVoxelsPerCell along each of its edges, linear between the cells' centres, times the
-  // noise of physics/turbulence.h with the settings of the scene's fields, which is not the detail
-  // that pictures have (docs/decisions/0020). Columns then keep their water path only as far as the
-  // noise has a mean of 1 in them.
+  // kDetailVoxelsPerCell along each of its edges, and the medium there is the one that the light
+  // volume draws (scene/detailed_medium.h): each group of fields keeps its water path within 1 %,
+  // columns as in volume/water_paths.h.
   bool detail = false;
 };
 

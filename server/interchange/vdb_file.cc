@@ -15,6 +15,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
+#include "base/whole_file.h"
 #include "glm/common.hpp"
 #include "glm/vec2.hpp"
 #include "volume/extinction.h"
@@ -138,22 +139,20 @@ absl::Status WritePartial(const VdbFile& file, const std::string& partial,
 absl::Status WriteVdb(const VdbFile& file, const std::string& path,
                       const std::function<void(double share)>& progress,
                       const std::stop_token& stop) {
-  const std::string partial = path + ".partial";
+  const std::string partial = base::PartialPath(path);
   // Before the work, which may take a minute.
   if (!std::ofstream(partial, std::ios::binary))
-    return NotWritten(path, "no such folder or no right");
+    return absl::FailedPreconditionError(absl::StrCat(
+        path, " cannot be written; check that its folder exists and may be written to"));
   absl::Status status;
   try {
     status = WritePartial(file, partial, progress, stop);
   } catch (const std::exception& error) {
     status = NotWritten(path, error.what());
   }
+  if (status.ok()) return base::PublishFile(path);
   std::error_code error;
-  if (status.ok()) {
-    std::filesystem::rename(partial, path, error);
-    if (error) status = NotWritten(path, error.message());
-  }
-  if (!status.ok()) std::filesystem::remove(partial, error);
+  std::filesystem::remove(partial, error);
   return status;
 }
 

@@ -5,6 +5,7 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <deque>
 #include <future>
@@ -21,7 +22,6 @@ namespace {
 
 namespace net = boost::asio;
 
-constexpr std::chrono::seconds kUnaryPatience{60};
 constexpr char kService[] = "/thunderhead.v1.ThunderheadService/";
 
 absl::Status FromGrpc(const grpc::Status& status) {
@@ -33,12 +33,22 @@ grpc::ByteBuffer BufferOf(const std::string& message) {
   return {&slice, 1};
 }
 
-std::shared_ptr<grpc::Channel> Connect(const std::string& address) {
+std::shared_ptr<grpc::ChannelCredentials> CredentialsOf(const Access& access) {
+  return access.tls_roots.empty() ? grpc::InsecureChannelCredentials()
+                                  : grpc::SslCredentials({access.tls_roots, "", ""});
+}
+
+void ShowToken(const Access& access, grpc::ClientContext& context) {
+  if (access.token.empty()) return;
+  context.AddMetadata("authorization", absl::StrCat("Bearer ", access.token));
+}
+
+std::shared_ptr<grpc::Channel> Connect(const std::string& address, const Access& access) {
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);
   // A connection a channel, as separate clients have.
   arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
-  return grpc::CreateCustomChannel(address, grpc::InsecureChannelCredentials(), arguments);
+  return grpc::CreateCustomChannel(address, CredentialsOf(access), arguments);
 }
 
 // There is at most one pending read and one pending write. A hold keeps the call until reading has
@@ -46,13 +56,14 @@ std::shared_ptr<grpc::Channel> Connect(const std::string& address) {
 class GrpcLink final : public Link,
                        private grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
  public:
-  GrpcLink(const std::string& address, net::io_context& io, Listener& listener,
-           const LinkOptions& options)
+  GrpcLink(const std::string& address, const Access& access, net::io_context& io,
+           Listener& listener, const LinkOptions& options)
       : listener_(listener),
         pace_(options.kbit_per_s),
-        stub_(Connect(address)),
+        stub_(Connect(address, access)),
         reads_(options.reads),
         delay_(std::make_shared<net::steady_timer>(io)) {
+    ShowToken(access, context_);
     stub_.PrepareBidiStreamingCall(&context_, absl::StrCat(kService, "Interact"), {}, this);
     AddHold();
     StartCall();
@@ -175,17 +186,21 @@ class GrpcLink final : public Link,
 
 class GrpcTransport final : public Transport {
  public:
-  explicit GrpcTransport(const std::string& address) : address_(address), stub_(Connect(address)) {}
+  GrpcTransport(const std::string& address, const Access& access)
+      : address_(address), access_(access), stub_(Connect(address, access)) {}
 
   std::string Name() const override { return "gRPC"; }
 
   std::unique_ptr<Link> Interact(Listener& listener, const LinkOptions& options) override {
-    return std::make_unique<GrpcLink>(address_, delays_.io(), listener, options);
+    return std::make_unique<GrpcLink>(address_, access_, delays_.io(), listener, options);
   }
 
-  absl::StatusOr<std::string> Call(const std::string& method, const std::string& request) override {
+  absl::StatusOr<std::string> Call(const std::string& method, const std::string& request,
+                                   double patience_s) override {
     grpc::ClientContext context;
-    context.set_deadline(std::chrono::system_clock::now() + kUnaryPatience);
+    ShowToken(access_, context);
+    context.set_deadline(std::chrono::system_clock::now() +
+                         std::chrono::milliseconds(std::llround(1e3 * patience_s)));
     const grpc::ByteBuffer sent = BufferOf(request);
     grpc::ByteBuffer received;
     std::promise<grpc::Status> ended;
@@ -202,14 +217,15 @@ class GrpcTransport final : public Transport {
 
  private:
   const std::string address_;
+  const Access access_;
   grpc::GenericStub stub_;
   IoThread delays_;
 };
 
 }  // namespace
 
-std::unique_ptr<Transport> MakeGrpcTransport(const std::string& address) {
-  return std::make_unique<GrpcTransport>(address);
+std::unique_ptr<Transport> MakeGrpcTransport(const std::string& address, const Access& access) {
+  return std::make_unique<GrpcTransport>(address, access);
 }
 
 }  // namespace thunderhead::load

@@ -23,6 +23,7 @@ namespace {
 // The storm may have to be read for the first frame.
 constexpr double kJoinPatience_s = 60.0;
 constexpr double kLeavePatience_s = 5.0;
+constexpr double kPatience_s = 60.0;  // with other calls
 // Before the period begins, so that it holds no first times.
 constexpr double kWarmUp_s = 1.0;
 constexpr double kTurnSpeed_deg_per_s = 15.0;
@@ -52,8 +53,9 @@ absl::StatusOr<v1::CreateSessionResponse> CreateSession(Transport& transport,
   request.mutable_scene()->mutable_output()->set_height_px(
       static_cast<std::uint32_t>(options.height_px));
   request.mutable_scene()->mutable_camera()->mutable_orbit();
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::string answer,
-                               transport.Call("CreateSession", request.SerializeAsString()));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const std::string answer,
+      transport.Call("CreateSession", request.SerializeAsString(), kPatience_s));
   v1::CreateSessionResponse session;
   if (!session.ParseFromString(answer)) {
     return absl::InternalError("the server's answer to CreateSession is malformed");
@@ -79,6 +81,7 @@ class RunningLoad {
         progress_(progress),
         session_id_(session.session_id()),
         viewer_key_(session.viewer_key()),
+        stills_(options.stills, transport, errors_),
         presenter_(session.scene().camera(), errors_) {
     presenter_.Join(transport, session.session_id());
     AddViewers(ViewerKind::kHealthy, options.viewers);
@@ -90,6 +93,7 @@ class RunningLoad {
   absl::StatusOr<Report> Run() {
     const absl::Status joined = AwaitFrames();
     if (joined.ok()) Steer();
+    stills_.Join();
     Leave();
     Close();
     if (!joined.ok()) return joined;
@@ -100,7 +104,8 @@ class RunningLoad {
   void AddViewers(ViewerKind kind, int count) {
     for (int i = 0; i < count; ++i) {
       viewers_.push_back(std::make_unique<Viewer>(kind, measuring_, errors_));
-      viewers_.back()->Join(transport_, viewer_key_, options_.kbit_per_s);
+      viewers_.back()->Join(transport_, viewer_key_, options_.kbit_per_s,
+                            options_.codec == LoadCodec::kVp9);
     }
   }
 
@@ -151,7 +156,10 @@ class RunningLoad {
         next_update_s = std::max(next_update_s + step_s, now_s);
       }
       if (now_s >= next_sample_s) {
-        if (!measuring_.exchange(true)) own_cpu_s = OwnCpu_s();
+        if (!measuring_.exchange(true)) {
+          own_cpu_s = OwnCpu_s();
+          stills_.Begin();
+        }
         Sample();
         next_sample_s += kSampling_s;
         Tell((now_s - period_.begin_s) / options_.seconds);
@@ -213,7 +221,7 @@ class RunningLoad {
   void Close() {
     v1::CloseSessionRequest request;
     request.set_session_id(session_id_);
-    const auto closed = transport_.Call("CloseSession", request.SerializeAsString());
+    const auto closed = transport_.Call("CloseSession", request.SerializeAsString(), kPatience_s);
     if (!closed.ok()) {
       errors_.Add(absl::StrCat("closing the session: ", closed.status().ToString()));
     }
@@ -222,6 +230,7 @@ class RunningLoad {
   Recording Record() const {
     Recording recording{.period = period_,
                         .updates = presenter_.Updates(),
+                        .stills = stills_.Record(),
                         .server = samples_,
                         .own_cpu_s = own_cpu_s_,
                         .errors = errors_.Counts()};
@@ -237,6 +246,7 @@ class RunningLoad {
   const std::string session_id_;
   const std::string viewer_key_;
   Errors errors_;
+  Stills stills_;
   std::atomic<bool> measuring_{false};
   Presenter presenter_;
   std::vector<std::unique_ptr<Viewer>> viewers_;

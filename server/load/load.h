@@ -10,21 +10,26 @@
 #include "absl/status/statusor.h"
 #include "load/report.h"
 #include "load/server_process.h"
+#include "load/stills.h"
 #include "load/transport.h"
 
 namespace thunderhead::load {
+
+// The moving pictures that viewers ask for.
+enum class LoadCodec { kJpeg, kVp9 };
 
 struct LoadOptions {
   int viewers = 10;            // healthy ones
   int throttled = 0;           // besides them
   int stalled = 0;             // besides them
   int passing = 0;             // besides them
-                               // besides them
+  LoadCodec codec = LoadCodec::kJpeg;
   double kbit_per_s = 1000.0;  // that a throttled viewer reads
   double seconds = 10.0;
   int width_px = 640;
   int height_px = 360;
   double steer_hz = 30.0;  // updates a second; 0: none
+  StillOptions stills;     // asked for when the measured time begins
 };
 
 // Of a load that runs.
@@ -35,9 +40,9 @@ struct Progress {
   int errors = 0;
 };
 
-// Runs until the time is over, every viewer's call has ended, or a stop is requested, which gives
-// the figures so far; an error if there are none. Streams that end with an error are counted in the
-// report.
+// Runs until the time is over and every still has come, every viewer's call has ended, or a stop is
+// requested, which gives the figures so far; an error if there are none. Streams that end with an
+// error are counted in the report.
 absl::StatusOr<Report> Run(const LoadOptions& options, Transport& transport,
                            const std::optional<ServerProcess>& server, const std::stop_token& stop,
                            const std::function<void(const Progress&)>& progress);

@@ -52,10 +52,17 @@ class Errors {
   std::map<std::string, int> counts_;
 };
 
+// Of single pictures.
+struct StillRecord {
+  int asked = 0;
+  std::vector<double> came_ms;  // from asking to each that came
+};
+
 struct Recording {
   Period period;
   std::vector<Update> updates;  // in the order of their revisions
   std::vector<const ViewerRecord*> viewers;
+  StillRecord stills;
   std::vector<ProcessSample> server;  // none if the server is not on this machine
   double own_cpu_s = 0.0;             // of this program, within the period
   std::map<std::string, int> errors;

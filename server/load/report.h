@@ -38,6 +38,13 @@ struct ServerFigures {
   double cpu = 0.0;                                         // processors busy
 };
 
+struct StillFigures {
+  int asked = 0;
+  int came = 0;
+  std::optional<double> median_ms;  // from asking to the picture
+  std::optional<double> most_ms;
+};
+
 struct Report {
   std::string transport;
   double seconds = 0.0;
@@ -51,6 +58,7 @@ struct Report {
   FirstFrames healthy_first;
   int passing = 0;
   FirstFrames passing_first;
+  StillFigures stills;
   std::optional<ServerFigures> server;  // none if the server is not on this machine
   double own_cpu = 0.0;                 // processors that this program kept busy
   std::map<std::string, int> errors;    // counts by message

@@ -58,6 +58,12 @@ std::string PassingJson(const Report& report) {
                          report.passing, report.passing_first.count, Json(report.passing_first));
 }
 
+std::string StillsJson(const StillFigures& stills) {
+  if (stills.asked == 0) return "null";
+  return absl::StrFormat("{\"asked\": %d, \"came\": %d, \"ms\": {\"median\": %s, \"most\": %s}}",
+                         stills.asked, stills.came, Json(stills.median_ms), Json(stills.most_ms));
+}
+
 std::string ServerJson(const std::optional<ServerFigures>& server) {
   if (!server.has_value()) return "\"server_rss_mb\": null,\n  \"server_cpu\": null";
   const std::string over_time =
@@ -103,6 +109,15 @@ void AppendThrottled(const Report& report, std::string& text) {
   }
 }
 
+void AppendStills(const StillFigures& stills, std::string& text) {
+  if (stills.asked == 0) return;
+  absl::StrAppendFormat(&text, "stills: %d asked for at once, %d came\n", stills.asked,
+                        stills.came);
+  if (!stills.median_ms.has_value() || !stills.most_ms.has_value()) return;
+  absl::StrAppendFormat(&text, "  came             after %.1f s (median), %.1f s (most)\n",
+                        1e-3 * *stills.median_ms, 1e-3 * *stills.most_ms);
+}
+
 void AppendServer(const Report& report, std::string& text) {
   if (!report.server.has_value()) return;
   const ServerFigures& server = *report.server;
@@ -132,6 +147,7 @@ std::string ToText(const Report& report) {
                           report.passing_first.count);
     AppendFirst(report.passing_first, text);
   }
+  AppendStills(report.stills, text);
   AppendServer(report, text);
   absl::StrAppendFormat(&text, "this program\n  processors       %.2f busy\nerrors: %d\n",
                         report.own_cpu, report.ErrorCount());
@@ -151,13 +167,14 @@ std::string ToJson(const Report& report) {
       "\"steer_hz\": %g,\n"
       "  \"viewers\": %d, %s,\n"
       "  \"first_frame_ms\": %s,\n"
-      "  \"throttled\": %s,\n  \"stalled\": %d,\n  \"passing\": %s,\n  %s,\n  \"client_cpu\": "
+      "  \"throttled\": %s,\n  \"stalled\": %d,\n  \"passing\": %s,\n  \"stills\": %s,\n  %s,\n  "
+      "\"client_cpu\": "
       "%.3g,\n"
       "  \"errors\": %d, \"error_messages\": {%s}\n}\n",
       Quoted(report.transport), report.seconds, report.width_px, report.height_px, report.steer_hz,
       report.healthy.viewers, Keys(report.healthy), Json(report.healthy_first),
-      ThrottledJson(report), report.stalled, PassingJson(report), ServerJson(report.server),
-      report.own_cpu, report.ErrorCount(), errors);
+      ThrottledJson(report), report.stalled, PassingJson(report), StillsJson(report.stills),
+      ServerJson(report.server), report.own_cpu, report.ErrorCount(), errors);
 }
 
 }  // namespace thunderhead::load

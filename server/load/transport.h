@@ -43,14 +43,22 @@ class Transport {
   virtual std::string Name() const = 0;
   // Begins to connect. The listener must outlive the link, and the transport both.
   virtual std::unique_ptr<Link> Interact(Listener& listener, const LinkOptions& options) = 0;
-  // Calls a unary method of the service with a serialized request; returns the response.
-  virtual absl::StatusOr<std::string> Call(const std::string& method,
-                                           const std::string& request) = 0;
+  // Calls a unary method of the service with a serialized request; returns the response, or
+  // DEADLINE_EXCEEDED after `patience_s`. Safe from any thread.
+  virtual absl::StatusOr<std::string> Call(const std::string& method, const std::string& request,
+                                           double patience_s) = 0;
+};
+
+// What a guarded server asks for.
+struct Access {
+  std::string token;      // empty: none
+  std::string tls_roots;  // PEM of those who may vouch for the server by TLS; empty: no TLS
 };
 
 // To HOST:PORT of a server's gRPC.
-std::unique_ptr<Transport> MakeGrpcTransport(const std::string& address);
+std::unique_ptr<Transport> MakeGrpcTransport(const std::string& address, const Access& access = {});
 // To the HTTP port of a server or of a proxy before it.
-std::unique_ptr<Transport> MakeWebSocketTransport(const std::string& host, int port);
+std::unique_ptr<Transport> MakeWebSocketTransport(const std::string& host, int port,
+                                                  const std::string& token = "");
 
 }  // namespace thunderhead::load

@@ -11,9 +11,15 @@ Viewer::Viewer(ViewerKind kind, const std::atomic<bool>& measuring, Errors& erro
   record_.kind = kind;
 }
 
-void Viewer::Join(Transport& transport, const std::string& key, double kbit_per_s) {
+void Viewer::Join(Transport& transport, const std::string& key, double kbit_per_s,
+                  bool takes_video) {
+  takes_video_ = takes_video;
   v1::InteractRequest request;
   request.mutable_join()->set_session_key(key);
+  if (takes_video) {
+    request.mutable_join()->add_codecs(v1::CODEC_VP9);
+    request.mutable_join()->mutable_window()->set_saves_bytes(true);
+  }
   LinkOptions options;
   options.reads = kind() != ViewerKind::kStalled;
   if (kind() == ViewerKind::kThrottled) options.kbit_per_s = kbit_per_s;
@@ -28,7 +34,7 @@ void Viewer::ComeAgain(Transport& transport, const std::string& key) {
   if (waits_since_s_.has_value() && !ended_)
     errors_.Add("a viewer left without having had a frame");
   ended_ = false;
-  Join(transport, key, 0.0);
+  Join(transport, key, 0.0, takes_video_);
 }
 
 void Viewer::Leave() {

@@ -18,8 +18,8 @@ class Viewer final : public Listener {
   // Records bytes while `measuring` is true. Both must outlive it.
   Viewer(ViewerKind kind, const std::atomic<bool>& measuring, Errors& errors);
 
-  // Connects and joins; a throttled viewer reads at that rate.
-  void Join(Transport& transport, const std::string& key, double kbit_per_s);
+  // Connects and joins; a throttled viewer reads at that rate. With `takes_video` it asks for VP9.
+  void Join(Transport& transport, const std::string& key, double kbit_per_s, bool takes_video);
   // Breaks off the call and joins again.
   void ComeAgain(Transport& transport, const std::string& key);
   // Asks the server to end the call; one that does not read breaks it off.
@@ -44,6 +44,7 @@ class Viewer final : public Listener {
   Errors& errors_;
   ViewerRecord record_;
   std::atomic<std::uint64_t> frames_{0};
+  bool takes_video_ = false;
   std::optional<double> waits_since_s_;  // for its first frame
   std::atomic<bool> leaving_{false};
   std::atomic<bool> ended_{false};

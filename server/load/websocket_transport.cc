@@ -7,6 +7,7 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/stream.hpp>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <future>
@@ -42,6 +43,7 @@ constexpr int kSlowReceiveBufferBytes = 64 << 10;
 struct Host {
   std::string name;
   int port = 0;
+  std::string token;  // shown to it; empty: none
 
   std::string ToString() const {
     const bool is_ipv6 = name.find(':') != std::string::npos;
@@ -112,7 +114,8 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall> {
       tcp_socket.set_option(net::socket_base::receive_buffer_size(kSlowReceiveBufferBytes),
                             ignored);
     }
-    socket_.set_option(websocket::stream_base::decorator([](websocket::request_type& request) {
+    socket_.set_option(websocket::stream_base::decorator([this](websocket::request_type& request) {
+      if (!host_.token.empty()) request.set(http::field::authorization, "Bearer " + host_.token);
       request.set(http::field::sec_websocket_protocol, kSubprotocol);
     }));
     socket_.read_message_max(0);
@@ -240,6 +243,7 @@ class WebCall {
     request_.set(http::field::host, host_.ToString());
     request_.set(http::field::content_type, "application/grpc-web+proto");
     request_.set("X-Grpc-Web", "1");
+    if (!host_.token.empty()) request_.set(http::field::authorization, "Bearer " + host_.token);
     request_.keep_alive(false);
     request_.body().assign(1, '\0');
     for (const int shift : {24, 16, 8, 0}) {
@@ -249,12 +253,12 @@ class WebCall {
     request_.prepare_payload();
   }
 
-  absl::StatusOr<std::string> Run() {
+  absl::StatusOr<std::string> Run(double patience_s) {
     tcp::resolver resolver(io_);
     error_code error;
     const auto found = resolver.resolve(host_.name, std::to_string(host_.port), error);
     if (error) return Unavailable(host_, "find", error);
-    stream_.expires_after(kPatience);
+    stream_.expires_after(std::chrono::milliseconds(std::llround(1e3 * patience_s)));
     stream_.async_connect(found, [this](error_code failed, const tcp::endpoint&) {
       if (failed) return Fail("connect to", failed);
       Write();
@@ -309,8 +313,9 @@ class WebSocketTransport final : public Transport {
     return std::make_unique<WebSocketLink>(thread_.io(), host_, listener, options);
   }
 
-  absl::StatusOr<std::string> Call(const std::string& method, const std::string& request) override {
-    return WebCall(host_, method, request).Run();
+  absl::StatusOr<std::string> Call(const std::string& method, const std::string& request,
+                                   double patience_s) override {
+    return WebCall(host_, method, request).Run(patience_s);
   }
 
  private:
@@ -320,8 +325,9 @@ class WebSocketTransport final : public Transport {
 
 }  // namespace
 
-std::unique_ptr<Transport> MakeWebSocketTransport(const std::string& host, int port) {
-  return std::make_unique<WebSocketTransport>(Host{host, port});
+std::unique_ptr<Transport> MakeWebSocketTransport(const std::string& host, int port,
+                                                  const std::string& token) {
+  return std::make_unique<WebSocketTransport>(Host{host, port, token});
 }
 
 }  // namespace thunderhead::load

@@ -38,7 +38,7 @@ Extreme DepthPerSlice(const accuracy::Path& path, double per_slice,
             // Of the extinction towards the eye, delta scaling removes the forward peak, similarity
             // scaling all forward scattering.
             const renderers::GroupWeights weights(
-                renderers::MediumOf(scene, *fields),
+                scene::GroupedFieldsOf(scene, *fields),
                 *scene::MediumSettingsOf(scene.rendering.technique));
             const bool similar = transport.value == scene::Transport::kDiffusion &&
                                  path.name == scene::LightVolume::kName;

@@ -113,7 +113,7 @@ Extreme Paper(double depth) {
         THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *fields, look));
         THUNDERHEAD_ASSIGN_OR_RETURN(
             const renderers::BallCloud cloud,
-            renderers::FitBalls(renderers::MediumOf(scene, *fields), *fields, kBalls));
+            renderers::FitBalls(scene::GroupedFieldsOf(scene, *fields), *fields, kBalls));
         const volume::RegularGrid& grid = fields->grid;
         const double expected = std::exp(-PaperDepth(
             cloud.balls, metaballs.optical_depth, 0.5 * (grid.low_corner_m + grid.HighCorner_m()),

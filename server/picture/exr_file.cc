@@ -8,10 +8,13 @@
 
 #include <array>
 #include <exception>
+#include <filesystem>
+#include <system_error>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
+#include "base/whole_file.h"
 
 namespace thunderhead::picture {
 namespace {
@@ -54,14 +57,17 @@ absl::Status WriteExr(const std::string& path, const LinearPicture& picture) {
       header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
     }
     LinearPicture copy = picture;
-    Imf::OutputFile file(path.c_str(), header);
+    // Closed before it is published.
+    Imf::OutputFile file(base::PartialPath(path).c_str(), header);
     file.setFrameBuffer(FrameBufferOf(&copy));
     file.writePixels(picture.size_px.y);
   } catch (const std::exception& error) {
+    std::error_code ignored;
+    std::filesystem::remove(base::PartialPath(path), ignored);
     return absl::UnavailableError(absl::StrCat("cannot write '", path, "': ", error.what(),
                                                "; check that the folder exists and has room"));
   }
-  return absl::OkStatus();
+  return base::PublishFile(path);
 }
 
 absl::StatusOr<LinearPicture> ReadExr(const std::string& path) {

@@ -1,45 +1,40 @@
 #include "reference/parallel.h"
 
 #include <tbb/info.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
+#include <mutex>
 #include <thread>
 #include <vector>
 
 namespace thunderhead::reference {
 
-#ifdef __SANITIZE_THREAD__
-
-// ThreadSanitizer cannot see the synchronisation inside oneTBB as distributions ship it, and
-// reports races in its data. With plain threads it checks only this program's data.
+// Threads of its own, which have the caller's priority. Those of oneTBB have that of whoever first
+// made them need them, and are shared by all: a low priority would hold up who encodes pictures.
 void ParallelFor(int threads, int count, const std::function<void(int)>& work) {
   const int most = tbb::info::default_concurrency();
+  const int used = std::min(threads > 0 ? std::min(threads, most) : most, count);
+  // Pieces differ much in cost, so threads take one at a time.
   std::atomic<int> next{0};
-  std::vector<std::jthread> pool;
-  for (int i = 0; i < (threads > 0 ? std::min(threads, most) : most); ++i) {
-    pool.emplace_back([&] {
+  std::mutex mutex;
+  std::exception_ptr thrown;
+  const auto take = [&] {
+    try {
       for (int piece = next++; piece < count; piece = next++) work(piece);
-    });
-  }
-}
-
-#else
-
-void ParallelFor(int threads, int count, const std::function<void(int)>& work) {
-  const int most = tbb::info::default_concurrency();
-  tbb::task_arena arena(threads > 0 ? std::min(threads, most) : most);
-  const auto run = [&](const tbb::blocked_range<int>& range) {
-    for (int i = range.begin(); i != range.end(); ++i) work(i);
+    } catch (...) {
+      next = count;
+      const std::lock_guard lock(mutex);
+      thrown = std::current_exception();
+    }
   };
-  // Tasks differ much in cost, so threads take one at a time.
-  arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<int>(0, count, 1), run, tbb::simple_partitioner());
-  });
+  {
+    std::vector<std::jthread> others;
+    for (int i = 1; i < used; ++i) others.emplace_back(take);
+    take();
+  }
+  if (thrown) std::rethrow_exception(thrown);
 }
-
-#endif
 
 }  // namespace thunderhead::reference

@@ -174,7 +174,7 @@ class Path {
     throughput_ *= scattering.weight;
     if (!Survive() || !GoOnAtLength()) return false;
     ScatterLight(*scattering.phase, point_m,
-                 {surroundings_.towards_sun, surroundings_.sun_irradiance});
+                 {surroundings_.towards_sun, surroundings_.SunAt(point_m.z)});
     for (const DirectionalLight& light : surroundings_.lights) {
       ScatterLight(*scattering.phase, point_m, light);
     }
@@ -225,7 +225,7 @@ class Path {
     throughput_ *= albedo;
     if (Largest(Carried()) <= 0.0) return false;
     const double sine = std::max(surroundings_.towards_sun.z, 0.0);
-    AddLight(point_m, {surroundings_.towards_sun, surroundings_.sun_irradiance},
+    AddLight(point_m, {surroundings_.towards_sun, surroundings_.SunAt(point_m.z)},
              glm::dvec3(sine * std::numbers::inv_pi));
     ray_ = {point_m, SampleCosine({0.0, 0.0, 1.0}, random_)};
     return true;
@@ -240,7 +240,7 @@ class Path {
     glm::dvec3 towards_eye = -ray_.direction;
     towards_eye.z = std::max(towards_eye.z, 1e-3);
     towards_eye = glm::normalize(towards_eye);
-    AddLight(point_m, {surroundings_.towards_sun, surroundings_.sun_irradiance},
+    AddLight(point_m, {surroundings_.towards_sun, surroundings_.SunAt(point_m.z)},
              glm::dvec3(physics::glsl::glint(glm::vec3(towards_eye),
                                              glm::vec3(surroundings_.towards_sun))));
     // A facet by the density of facets on level ground, exp(-tan^2 / kWaterSlopes).

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -13,9 +14,11 @@
 #include "glm/geometric.hpp"
 #include "glm/trigonometric.hpp"
 #include "glm/vector_relational.hpp"
+#include "physics/chunked_work.h"
 #include "physics/field_pattern.h"
 #include "physics/optics.h"
 #include "physics/sky.h"
+#include "scene/detailed_medium.h"
 #include "scene/drawn_fields.h"
 #include "scene/ground.h"
 #include "scene/shaded_air.h"
@@ -24,6 +27,9 @@
 
 namespace thunderhead::reference {
 namespace {
+
+// Above it sunlight no longer changes.
+constexpr double kHighestSun_m = 4e4;
 
 struct GridBox {
   volume::RegularGrid grid;
@@ -68,6 +74,37 @@ void AddField(const volume::RegularGrid& domain, const GridBox& box,
           domain.Offset(box.first_cell.x, box.first_cell.y + y, box.first_cell.z + z),
           static_cast<std::size_t>(cells.x), extinction_per_m->data() + box.grid.Offset(0, y, z));
     }
+  }
+}
+
+using Values = std::vector<float>;
+
+// With detail, 1/m, of each drawn field at the middles of a grid's cells.
+std::vector<Values> DetailedExtinctions(const scene::Scene& scene,
+                                        const volume::HydrometeorFields& fields,
+                                        const volume::RegularGrid& grid) {
+  const std::size_t count = scene::DrawnFieldsOf(scene, fields).size();
+  const auto medium = scene::DetailedMedium::Of(scene, fields);
+  std::vector<Values> values(count, Values(grid.CellCount()));
+  const int threads = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
+  physics::ForEachChunk(grid.cells.z, {.threads = threads}, [&](int z) {
+    for (int y = 0; y < grid.cells.y; ++y) {
+      for (int x = 0; x < grid.cells.x; ++x) {
+        const volume::DrawnMedium::Channels here =
+            medium->At_per_m(grid.low_corner_m + (glm::dvec3(x, y, z) + 0.5) * grid.spacing_m);
+        for (std::size_t i = 0; i < count; ++i) values[i][grid.Offset(x, y, z)] = here[i];
+      }
+    }
+  });
+  return values;
+}
+
+void AddScaled(Values values, float factor, Values* sum) {
+  for (float& value : values) value *= factor;
+  if (sum->empty()) {
+    *sum = std::move(values);
+  } else {
+    std::transform(sum->begin(), sum->end(), values.begin(), sum->begin(), std::plus<>());
   }
 }
 
@@ -243,8 +280,20 @@ absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene
   description.high_m = box.high_m;
   description.interpolation = options.interpolation;
   description.sides = options.sides;
+  const int finer = options.detail_voxels_per_cell;
+  std::vector<Values> detailed;
+  if (finer > 0) {
+    if (options.sides != Sides::kOpen || options.interpolation != Interpolation::kLinear) {
+      return absl::InvalidArgumentError(
+          "turbulent detail needs open sides and linear interpolation between cells");
+    }
+    description.grid.cells *= finer;
+    description.grid.spacing_m /= finer;
+    detailed = DetailedExtinctions(scene, fields, description.grid);
+  }
   std::vector<GroupLook> looks;
   std::vector<CutOptics> cuts;  // of each look
+  std::size_t drawn = 0;
   for (const scene::DrawnField& field : scene::DrawnFieldsOf(scene, fields)) {
     GroupLook look = LookOf(field);
     if (options.phase != nullptr) look.phase = {};
@@ -256,6 +305,11 @@ absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene
       description.groups.push_back({{}, cuts.back().albedo, cuts.back().phase});
     }
     const auto group = static_cast<std::size_t>(found - looks.begin());
+    if (finer > 0) {
+      AddScaled(std::move(detailed[drawn++]), static_cast<float>(cuts[group].extinction),
+                &description.groups[group].extinction_per_m);
+      continue;
+    }
     volume::MassExtinction mass_extinction = field.mass_extinction;
     mass_extinction.m2_per_kg *= static_cast<float>(cuts[group].extinction);
     AddField(fields.grid, box, fields.fields[field.index], mass_extinction,
@@ -275,6 +329,11 @@ Surroundings SurroundingsOf(const scene::Scene& asked, const volume::Hydrometeor
   const auto shared =
       std::make_shared<const Around>(scene, towards_sun, view, static_cast<float>(lowest_m));
   around.sun_irradiance = scene.sun.irradiance * glm::dvec3(shared->sky.SunTransmittance());
+  for (int i = 0; i * Surroundings::kSunStep_m <= kHighestSun_m; ++i) {
+    const physics::AirPlace place{static_cast<float>(i * Surroundings::kSunStep_m), towards_sun.z};
+    around.sun_by_height.push_back(scene.sun.irradiance *
+                                   glm::dvec3(shared->atmosphere.SunTransmittance(place)));
+  }
   const physics::AirPlace eye{static_cast<float>(std::max(view.altitude_m, 0.0)),
                               static_cast<float>((view.local_from_world * around.towards_sun).z)};
   const double solid_angle = 2.0 * std::numbers::pi * (1.0 - std::cos(physics::kSunRadius_rad));

@@ -24,6 +24,9 @@ struct MediumOptions {
   // a thousand times brighter than the rest, cause most of the noise; the picture changes within
   // about this angle of the sun.
   double peak_cut_deg = 0.0;
+  // Voxels along a cell's edge on which the light volume's turbulent detail is added
+  // (scene/detailed_medium.h), with open sides and linear interpolation alone; 0: without detail.
+  int detail_voxels_per_cell = 0;
 };
 
 // The scene's visible fields. With open sides the box is the smallest that holds all condensate,

@@ -3,10 +3,13 @@
 // unit.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <vector>
 
+#include "glm/common.hpp"
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 #include "reference/brick_walk.h"
@@ -73,6 +76,18 @@ struct SunDisc {
 struct Surroundings {
   glm::dvec3 towards_sun{0.0, 0.0, 1.0};
   glm::dvec3 sun_irradiance{0.0};  // on a plane facing the sun; all from one direction
+  // The same at heights of 0, kSunStep_m ... above sea level, linear between; empty: the same
+  // everywhere.
+  std::vector<glm::dvec3> sun_by_height{};
+  static constexpr double kSunStep_m = 100.0;
+  glm::dvec3 SunAt(double height_m) const {
+    if (sun_by_height.empty()) return sun_irradiance;
+    const double step =
+        std::clamp(height_m / kSunStep_m, 0.0, static_cast<double>(sun_by_height.size() - 1));
+    const auto below = std::min(static_cast<std::size_t>(step), sun_by_height.size() - 2);
+    return glm::mix(sun_by_height[below], sun_by_height[below + 1],
+                    step - static_cast<double>(below));
+  }
   std::vector<DirectionalLight> lights;
   // Radiance that comes from a direction; black if not set.
   std::function<glm::dvec3(const glm::dvec3& direction)> sky;

@@ -10,6 +10,7 @@ namespace {
 
 void TakeAwayAir(const scene::Scene& scene, Surroundings* surroundings) {
   surroundings->sun_irradiance = glm::dvec3(scene.sun.irradiance);
+  surroundings->sun_by_height.clear();
   surroundings->sky = nullptr;
   surroundings->seen_sky = nullptr;
   surroundings->air = nullptr;
@@ -25,11 +26,13 @@ absl::StatusOr<TracedScene> TraceScene(const scene::Scene& scene,
                                        const ImageObserver& observer, const std::stop_token& stop) {
   MediumOptions of_medium;
   of_medium.peak_cut_deg = options.peak_cut_deg;
+  of_medium.detail_voxels_per_cell = options.detail_voxels_per_cell;
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto medium, MediumOf(scene, fields, of_medium));
   Surroundings surroundings = SurroundingsOf(scene, fields, GroundLight::kShaded);
   if (!options.air) TakeAwayAir(scene, &surroundings);
   if (!options.sun) {
     surroundings.sun_irradiance = glm::dvec3(0.0);
+    surroundings.sun_by_height.clear();
     surroundings.disc.reset();
   }
   PathTracerOptions of_paths;

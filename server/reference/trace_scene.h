@@ -26,6 +26,7 @@ struct TraceOptions {
   // False: as if there were no air. The sky is black, and the sun shines with the irradiance that
   // it has above the atmosphere. The ground stays.
   bool air = true;
+  int detail_voxels_per_cell = 0;  // MediumOptions::detail_voxels_per_cell
 };
 
 // The picture that renderers approximate: with their ground, and each field's own phase function or

@@ -99,7 +99,7 @@ absl::Status AirShade::HideSky(const ResidentMedium& medium, const scene::Scene&
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   hidden_by_ = medium.Id();
   hidden_settings_ = settings;
-  return absl::OkStatus();
+  return programs_->Pieces().Between();
 }
 
 void AirShade::SetDistances(const scene::View& view, const scene::ShadedAir& air) {
@@ -151,7 +151,7 @@ absl::Status AirShade::Cast(const scene::Scene& scene, const scene::View& view,
   glDispatchCompute(static_cast<GLuint>(groups.x), static_cast<GLuint>(groups.y), 1);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   present_ = true;
-  return absl::OkStatus();
+  return programs_->Pieces().Between();
 }
 
 void AirShade::BindSkyHidden(const gl::Program& program, const scene::View& view) const {

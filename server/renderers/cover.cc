@@ -98,12 +98,6 @@ BoxProjection::Interval BoxProjection::Across(double middle_m, double half_m, do
   return {(0.5 * low + 0.5) * size_px - margin_px_, (0.5 * high + 0.5) * size_px + margin_px_};
 }
 
-PixelRect Around(const PixelRect& a, const PixelRect& b) {
-  if (a.Empty()) return b;
-  if (b.Empty()) return a;
-  return {glm::min(a.low, b.low), glm::max(a.high, b.high)};
-}
-
 std::vector<PixelRect> CoveredRects(const Boxes& boxes, const scene::View& view,
                                     const glm::ivec2& size_px, double margin_px) {
   const BoxProjection projection(boxes.half_extent_m, view, size_px, margin_px);

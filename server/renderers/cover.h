@@ -9,6 +9,7 @@
 
 #include "absl/status/status.h"
 #include "gl/objects.h"
+#include "gl/pixel_rect.h"
 #include "gl/program.h"
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
@@ -22,17 +23,8 @@ struct Boxes {
   glm::dvec3 half_extent_m{0.0};
 };
 
-// Pixels, rows counted from the bottom; `high` is not included.
-struct PixelRect {
-  glm::ivec2 low{0};
-  glm::ivec2 high{0};
-
-  bool Empty() const { return low.x >= high.x || low.y >= high.y; }
-  bool operator==(const PixelRect&) const = default;
-};
-
-// The rectangle around both; an empty one counts for nothing.
-PixelRect Around(const PixelRect& a, const PixelRect& b);
+using gl::Around;
+using gl::PixelRect;
 
 // Where boxes of one size are seen in a picture of `size_px`, with `margin_px` around.
 class BoxProjection {

@@ -19,6 +19,9 @@ constexpr double kShadowTexelInCells = 1.0;  // size of a texel
 constexpr double kShadowStepInCells = 1.0;   // between samples along the sun
 constexpr double kLevel_m = 1.0;             // terrain with less relief is level
 
+constexpr gl::PieceCost kShadowTexel{"ground shadow", 2000.0};
+constexpr gl::PieceCost kDistancePixel{"ground distance", 100.0};
+
 // The largest difference in height between columns side by side, over their distance.
 double SteepestSlope(const volume::RegularGrid& grid, const std::vector<float>& height_m) {
   double steepest_x = 0.0;
@@ -84,7 +87,8 @@ absl::Status Ground::CastShadow(const ResidentMedium& medium, const RenderSettin
   program->Set(uniform::light_weights, medium.Weights(weights.light));
   program->Set(uniform::half_depth_m, static_cast<float>(frame.half_depth_m));
   program->Set(uniform::step_m, static_cast<float>(step_m));
-  whole_target_.Draw(*program, shadow_target_);
+  THUNDERHEAD_RETURN_IF_ERROR(
+      whole_target_.Draw(programs_->Pieces(), kShadowTexel, *program, shadow_target_));
   PlaceShadow(frame, medium.Middle_m());
   return absl::OkStatus();
 }
@@ -120,8 +124,7 @@ absl::Status Ground::DrawDistance(const scene::View& view, const glm::ivec2& siz
       programs_->Get(gl::ProgramSource::WholeTarget("ground/distance.frag", Variant().Defines())));
   BindRays(*program, view, view.eye_m);
   Bind(*program, view);
-  whole_target_.Draw(*program, distance_target_);
-  return absl::OkStatus();
+  return whole_target_.Draw(programs_->Pieces(), kDistancePixel, *program, distance_target_);
 }
 
 void Ground::Bind(const gl::Program& program, const scene::View& view) const {

@@ -6,6 +6,7 @@
 #include "glm/common.hpp"
 #include "glm/trigonometric.hpp"
 #include "physics/optics.h"
+#include "renderers/sunlight.h"
 #include "shaders/uniforms.h"
 
 namespace thunderhead::renderers {
@@ -75,7 +76,7 @@ void GroupWeights::BindScattered(const gl::Program& program, const ResidentMediu
   BindPhase(program);
   program.Set(uniform::scattering_weights, medium.Weights(scattering));
   program.Set(uniform::albedo, medium.Content().groups.front().albedo);
-  program.Set(uniform::sunlight, illumination.sunlight);
+  BindSunlight(program, illumination, medium.Middle_m().z);
   program.Set(uniform::ambient, illumination.ambient);
 }
 

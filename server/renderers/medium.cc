@@ -4,13 +4,13 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 #include "base/stopwatch.h"
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
 #include "physics/detail_tile.h"
 #include "physics/optics.h"
-#include "scene/drawn_fields.h"
 #include "shaders/bindings.h"
 #include "shaders/uniforms.h"
 #include "volume/brick_map.h"
@@ -26,23 +26,11 @@ constexpr double kLevelsOfBillows = 4.0;  // that tell octaves apart; the coarse
 // Light is given to cells: what they cannot tell apart must not flicker from one to the next.
 constexpr double kLightFootprintInCells = 1.0;
 
-// Groups that differ only in their share are fetched together.
 std::vector<DetailLayer> LayersOf(const Medium& medium, DetailNoises* noises) {
   std::vector<DetailLayer> layers;
-  for (std::size_t group = 0; group < medium.groups.size(); ++group) {
-    const scene::Detail& detail = medium.groups[group].detail;
-    if (detail.share <= 0.0F) continue;
-    const auto same = [&](const DetailLayer& layer) {
-      scene::Detail shared = layer.detail;
-      shared.share = detail.share;
-      return shared == detail;
-    };
-    auto found = std::find_if(layers.begin(), layers.end(), same);
-    if (found == layers.end()) {
-      found = layers.insert(found, {detail, noises->Get(detail.octaves, detail.seed),
-                                    std::vector<double>(medium.groups.size(), 0.0)});
-    }
-    found->share_by_group[group] = detail.share;
+  for (scene::DetailLayer& layer : scene::DetailLayersOf(medium.groups)) {
+    auto noise = noises->Get(layer.detail.octaves, layer.detail.seed);
+    layers.push_back({std::move(layer), std::move(noise)});
   }
   return layers;
 }
@@ -66,45 +54,32 @@ struct Computed {
   std::vector<std::uint8_t> detail_control;  // empty without detail
 };
 
-double TileOf_m(const scene::Detail& detail) {
-  return static_cast<double>(detail.wavelength_m) * physics::DetailTile::kWaves;
-}
-
-volume::PlacedDetail PlacedDetailOf(const std::vector<DetailLayer>& layers,
-                                    const glm::dvec3& cell_m, const glm::dmat3& fibres) {
-  volume::PlacedDetail placed;
-  for (const DetailLayer& layer : layers) {
-    placed.layers.push_back(
-        {&layer.noise->tile, TileOf_m(layer.detail),
-         std::vector<float>(layer.share_by_group.begin(), layer.share_by_group.end())});
-  }
-  placed.warp_m = physics::DetailWarp_m(cell_m, layers[0].detail.wavelength_m);
-  placed.fibres = fibres;
-  return placed;
-}
-
 Computed ComputedOf(const volume::HydrometeorFields& fields, const Medium& medium,
-                    const std::vector<DetailLayer>& details) {
+                    DetailNoises* noises) {
   Computed computed;
   computed.extinction =
       volume::ComputeExtinction(fields, medium.terms, static_cast<int>(medium.groups.size()));
-  if (details.empty() || computed.extinction.Empty()) return computed;
+  const std::vector<scene::DetailLayer> layers = scene::DetailLayersOf(medium.groups);
+  if (layers.empty() || computed.extinction.Empty()) return computed;
   computed.detail_control = volume::DetailControlOf(fields, medium.terms, computed.extinction);
+  const auto tile_of = [&](const scene::Detail& detail) {
+    return &noises->Get(detail.octaves, detail.seed)->tile;
+  };
   volume::KeepWaterPaths(computed.detail_control,
-                         PlacedDetailOf(details, computed.extinction.grid.spacing_m,
-                                        physics::FibresAlong(fields.motion.shear_m_per_s)),
+                         scene::PlacedDetailOf(layers, tile_of, computed.extinction.grid.spacing_m,
+                                               fields.motion.shear_m_per_s),
                          &computed.extinction);
   return computed;
 }
 
 // On fewer cells if a texture cannot hold all.
 Computed ComputedThatFits(const volume::HydrometeorFields& fields, const Medium& medium,
-                          const std::vector<DetailLayer>& details) {
+                          DetailNoises* noises) {
   GLint max_texels = 0;
   glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &max_texels);
   const glm::ivec3 factor = volume::CoarseningFor(fields, max_texels);
-  return factor == glm::ivec3(1) ? ComputedOf(fields, medium, details)
-                                 : ComputedOf(volume::Coarsened(fields, factor), medium, details);
+  return factor == glm::ivec3(1) ? ComputedOf(fields, medium, noises)
+                                 : ComputedOf(volume::Coarsened(fields, factor), medium, noises);
 }
 
 // Around what is occupied; the first brick begins at `corner_m`.
@@ -123,28 +98,14 @@ Boxes BoxesOf(const volume::BrickMap& bricks, const glm::dvec3& brick_m,
 
 }  // namespace
 
-Medium MediumOf(const scene::Scene& scene, const volume::HydrometeorFields& fields) {
-  Medium medium;
-  for (const scene::DrawnField& field : scene::DrawnFieldsOf(scene, fields)) {
-    const MediumGroup group{field.albedo, field.phase, field.color, field.detail};
-    auto found = std::find(medium.groups.begin(), medium.groups.end(), group);
-    if (found == medium.groups.end()) found = medium.groups.insert(found, group);
-    medium.terms.push_back({static_cast<int>(field.index), field.mass_extinction.m2_per_kg,
-                            static_cast<int>(found - medium.groups.begin()),
-                            field.mass_extinction.by_cell});
-    medium.hydrometeors.push_back(field.hydrometeor);
-  }
-  return medium;
-}
-
 ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::HydrometeorFields& fields,
                                DetailNoises* noises, Cost* cost)
-    : id_(NextId()), content_(MediumOf(scene, fields)) {
+    : id_(NextId()), content_(scene::GroupedFieldsOf(scene, fields)) {
   constexpr std::array<GLenum, 5> kFormats = {0, GL_R16F, GL_RG16F, 0, GL_RGBA16F};
   constexpr std::array<GLenum, 5> kTransferFormats = {0, GL_RED, GL_RG, 0, GL_RGBA};
   base::Stopwatch stopwatch;
   details_ = LayersOf(content_, noises);
-  Computed computed = ComputedThatFits(fields, content_, details_);
+  Computed computed = ComputedThatFits(fields, content_, noises);
   bounds_ = std::move(computed.extinction);
   const volume::BrickMap bricks = volume::BrickMapOf(bounds_);
   const volume::CellBlocks blocks = volume::CellBlocksOf(bricks, bounds_.grid);
@@ -213,7 +174,7 @@ void ResidentMedium::BindDetails(const gl::Program& program) const {
   std::vector<glm::vec4> shares;
   for (std::size_t i = 0; i < details_.size(); ++i) {
     const DetailLayer& layer = details_[i];
-    sizes.emplace_back(TileOf_m(layer.detail) / extent_m);
+    sizes.emplace_back(layer.Tile_m() / extent_m);
     // Not less whole tiles: fibres have others.
     corners.emplace_back(-bounds_.grid.low_corner_m / extent_m);
     const std::vector<glm::vec4> packed = Packed(layer.share_by_group, 1.0);
@@ -282,7 +243,6 @@ double ResidentMedium::ShortestBrickSide_m() const {
 void ResidentMedium::BindBlocks(const gl::Program& program) const {
   blocks_.BindStorage(shaders::kBlocksBinding);
   program.Set(uniform::cells_per_block, cells_per_block_);
-  program.Set(uniform::block_count, block_count_);
 }
 
 std::size_t ResidentMedium::Bytes() const {

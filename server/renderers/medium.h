@@ -1,6 +1,5 @@
-// The part of a storm that a scene draws: its visible, non-empty fields, with those merged into one
-// group that share albedo, phase function and colour. Each group is a channel of the extinction
-// textures. Shared by every renderer.
+// The part of a storm that a scene draws, on the device: each group of its fields is a channel of
+// the extinction textures. Shared by every renderer.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +13,7 @@
 #include "renderers/cover.h"
 #include "renderers/detail_noises.h"
 #include "renderers/phase_curves.h"
+#include "scene/field_groups.h"
 #include "scene/scene.h"
 #include "scene/view.h"
 #include "volume/extinction.h"
@@ -21,29 +21,12 @@
 
 namespace thunderhead::renderers {
 
-// Fields that scatter and swirl alike.
-struct MediumGroup {
-  float albedo = 1.0F;
-  physics::PhaseFunction phase;  // by physics::PhaseOf
-  glm::vec3 color{1.0F};
-  scene::Detail detail;  // with a wavelength if any
+using MediumGroup = scene::FieldGroup;
+using Medium = scene::GroupedFields;
 
-  bool operator==(const MediumGroup&) const = default;
-};
-
-struct Medium {
-  std::vector<MediumGroup> groups;
-  std::vector<volume::ExtinctionTerm> terms;       // which field adds to which group's channel
-  std::vector<physics::Hydrometeor> hydrometeors;  // drawn
-};
-
-Medium MediumOf(const scene::Scene& scene, const volume::HydrometeorFields& fields);
-
-// One noise, and how much of each group it multiplies.
-struct DetailLayer {
-  scene::Detail detail;  // its share is unused
+// One noise on the device, and how much of each group it multiplies.
+struct DetailLayer : scene::DetailLayer {
   std::shared_ptr<const DetailNoise> noise;
-  std::vector<double> share_by_group;
 };
 
 // The variant of common/medium.glsl.

@@ -23,7 +23,7 @@ struct Beam {
 // The light of the sun, the sky and the scene's own lights on the medium.
 struct Illumination {
   glm::dvec3 towards_sun{0.0, 0.0, 1.0};
-  glm::vec3 sunlight{1.0F};  // irradiance on a plane facing the sun
+  glm::vec3 sunlight{1.0F};  // irradiance on a plane facing the sun, at the ground
   glm::vec3 ambient{0.0F};   // mean radiance from sky and ground
   glm::vec3 from_sky{0.0F};  // mean radiance of the upper and of the lower half
   glm::vec3 from_ground{0.0F};
@@ -34,6 +34,9 @@ struct Illumination {
   glm::vec3 around_sun{0.0F};
   glm::vec3 rest_of_sky{0.0F};
   glm::vec3 rest_of_sky_level{0.0F};
+  // Sunlight at 0, shaders::kSunlightStep_m ... above sea level, shaders::kSunlightLevels of them;
+  // none if it is the same everywhere.
+  std::vector<glm::vec3> sunlight_levels{};
 };
 
 // How well to draw a scene.

@@ -6,11 +6,12 @@
 namespace thunderhead::renderers {
 
 RendererPool::RendererPool(std::shared_ptr<const TechniqueRegistry> registry,
-                           std::size_t max_renderers, std::size_t max_bytes)
+                           std::shared_ptr<gl::ProgramCache> programs, std::size_t max_renderers,
+                           std::size_t max_bytes)
     : max_renderers_(max_renderers),
       max_bytes_(max_bytes),
       registry_(std::move(registry)),
-      programs_(std::make_shared<gl::ProgramCache>()) {}
+      programs_(std::move(programs)) {}
 
 absl::StatusOr<LinearFrame> RendererPool::Draw(
     const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,

@@ -19,19 +19,17 @@ class RendererPool {
   explicit RendererPool(std::size_t max_renderers = 4,
                         std::size_t max_bytes = std::size_t{1} << 30U)
       : RendererPool(std::make_shared<TechniqueRegistry>(TechniqueRegistry::BuiltIn()),
-                     max_renderers, max_bytes) {}
-  // The renderers draw with the techniques of `registry`.
-  explicit RendererPool(std::shared_ptr<const TechniqueRegistry> registry,
-                        std::size_t max_renderers = 4,
-                        std::size_t max_bytes = std::size_t{1} << 30U);
+                     std::make_shared<gl::ProgramCache>(), max_renderers, max_bytes) {}
+  // The renderers draw with the techniques of `registry`; programs are linked in `programs`.
+  RendererPool(std::shared_ptr<const TechniqueRegistry> registry,
+               std::shared_ptr<gl::ProgramCache> programs, std::size_t max_renderers = 4,
+               std::size_t max_bytes = std::size_t{1} << 30U);
 
   // Draws with the renderer that keeps most of what the scene needs. The frame lives until the next
   // Draw.
   absl::StatusOr<LinearFrame> Draw(const scene::Scene& scene,
                                    const std::shared_ptr<const volume::HydrometeorFields>& fields,
                                    const DrawQuality& quality);
-
-  const std::shared_ptr<gl::ProgramCache>& Programs() const { return programs_; }
 
  private:
   SceneRenderer& Choose(const scene::Scene& scene,

@@ -121,7 +121,7 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
     }
     if (!quality.places) {
       THUNDERHEAD_RETURN_IF_ERROR(ShadeAir(scene, view, &times));
-      THUNDERHEAD_RETURN_IF_ERROR(Timed(scene::FrameStage::kComposite, &times,
+      THUNDERHEAD_RETURN_IF_ERROR(Timed(workspace_.Pieces(), scene::FrameStage::kComposite, &times,
                                         [&] { return Composite(scene, view, quality, cover); }));
     }
   }
@@ -146,7 +146,11 @@ absl::Status SceneRenderer::MakeContent(const scene::Scene& scene, const Fields&
   workspace_.medium = ResidentMedium();
   if (technique_->DrawsMedium()) {
     ResidentMedium::Cost cost;
-    workspace_.medium = ResidentMedium(scene, *fields, &workspace_.noises, &cost);
+    // Work of this thread but for copies to the device.
+    THUNDERHEAD_RETURN_IF_ERROR(workspace_.Pieces().OffTurn([&] {
+      workspace_.medium = ResidentMedium(scene, *fields, &workspace_.noises, &cost);
+      glFinish();
+    }));
     times->push_back({scene::FrameStage::kExtinction, cost.extinction_ms});
     times->push_back({scene::FrameStage::kUpload, cost.upload_ms});
   }
@@ -172,7 +176,7 @@ absl::Status SceneRenderer::DrawGround(RenderSettings* settings, StageTimes* tim
   const bool casts = sunlight_changed_ && !technique_->CastsShadow();
   const bool may_hide = ground.MayHide(settings->view);
   if (!casts && !may_hide) return absl::OkStatus();
-  return Timed(scene::FrameStage::kGround, times, [&]() -> absl::Status {
+  return Timed(workspace_.Pieces(), scene::FrameStage::kGround, times, [&]() -> absl::Status {
     if (casts) {
       THUNDERHEAD_RETURN_IF_ERROR(ground.CastShadow(workspace_.medium, *settings));
     }
@@ -190,7 +194,7 @@ absl::Status SceneRenderer::ShadeAir(const scene::Scene& scene, const scene::Vie
     workspace_.surroundings.LightAllAir();
     return absl::OkStatus();
   }
-  return Timed(scene::FrameStage::kAir, times, [&] {
+  return Timed(workspace_.Pieces(), scene::FrameStage::kAir, times, [&] {
     return workspace_.surroundings.ShadeAir(scene, view, workspace_.ground, Box(),
                                             workspace_.medium);
   });

@@ -20,6 +20,8 @@ constexpr double kSkyStep_m = 2500.0;
 constexpr double kSkySteps = 16.0;
 constexpr std::size_t kMaxTables = 32;
 
+constexpr gl::PieceCost kPixel{"composite", 500.0};
+
 // Of post/composite.frag.
 struct CompositeVariant {
   GroundVariant ground;
@@ -164,6 +166,11 @@ Illumination SkyAndGround::IlluminationOf(const scene::Scene& scene) const {
   light.towards_sun = towards_sun_;
   const auto irradiance = static_cast<float>(scene.sun.irradiance);
   light.sunlight = irradiance * sky_->SunTransmittance();
+  for (int i = 0; i < shaders::kSunlightLevels; ++i) {
+    const float height_m = static_cast<float>(i) * shaders::kSunlightStep_m;
+    light.sunlight_levels.push_back(
+        irradiance * atmosphere_->SunTransmittance({height_m, static_cast<float>(towards_sun_.z)}));
+  }
   light.from_sky = sky_light_.mean_radiance * irradiance * static_cast<float>(scene.sky.brightness);
   // Of ground without the storm's shadow: what shows of it around the storm is larger.
   const float sine = std::max(static_cast<float>(towards_sun_.z), 0.0F);
@@ -247,8 +254,7 @@ absl::Status SkyAndGround::Composite(const scene::Scene& scene, const scene::Vie
     BindAir(*program, scene, view, ground, front.box);
     ground_cover.Bind(*program, scene, view, scene.output.height_px);
     const LimitedTo limited(where, cover);
-    whole_target_.Draw(*program, target.Target());
-    return absl::OkStatus();
+    return whole_target_.Draw(programs_->Pieces(), kPixel, *program, target.Target());
   };
   THUNDERHEAD_RETURN_IF_ERROR(draw(Where::kCovered));
   return cover == nullptr ? absl::OkStatus() : draw(Where::kElsewhere);

@@ -18,6 +18,10 @@
 namespace thunderhead::renderers {
 namespace {
 
+// What a sample of the medium and a pixel of the disc may cost.
+constexpr double kSample_ns = 15.0;
+constexpr double kDiscPixel_ns = 200.0;
+
 using physics::Aureole;
 
 constexpr double kDiscReach_rad = 2.0 * physics::kSunRadius_rad;  // with its spread edge
@@ -95,14 +99,14 @@ void SunGlow::BindSun(const gl::Program& program, const Sun& sun, const scene::V
   program.Set(uniform::pixel_rad, static_cast<float>(PixelAngle_rad(view, picture.size_px)));
 }
 
-void SunGlow::Add(const gl::Program& program, const PixelRect& rect, const Picture& picture) {
+absl::Status SunGlow::Add(const gl::Program& program, const gl::PieceCost& pixel,
+                          const PixelRect& rect, const Picture& picture) {
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
-  glEnable(GL_SCISSOR_TEST);
-  glScissor(rect.low.x, rect.low.y, rect.high.x - rect.low.x, rect.high.y - rect.low.y);
-  whole_target_.Draw(program, picture.target);
-  glDisable(GL_SCISSOR_TEST);
+  absl::Status added =
+      whole_target_.Draw(programs_->Pieces(), pixel, program, picture.target, rect);
   glDisable(GL_BLEND);
+  return added;
 }
 
 absl::Status SunGlow::AddThrough(const ResidentMedium& medium,
@@ -136,8 +140,7 @@ absl::Status SunGlow::AddThrough(const ResidentMedium& medium,
   program->Set(uniform::aureole_max_depth, static_cast<float>(Aureole::kMaxDepth));
   table_.Bind(shaders::kAureoleUnit);
   ground->Distance().Bind(shaders::kGroundDistanceUnit);
-  Add(*program, rect, picture);
-  return absl::OkStatus();
+  return Add(*program, {"aureole", kSample_ns * slices}, rect, picture);
 }
 
 absl::Status SunGlow::AddBehind(const gl::Texture2D& eye, const Sun& sun, const scene::View& view,
@@ -152,8 +155,7 @@ absl::Status SunGlow::AddBehind(const gl::Texture2D& eye, const Sun& sun, const 
   ground.Bind(*program, view);
   BindSun(*program, sun, view, picture);
   eye.Bind(shaders::kEyeUnit);
-  Add(*program, rect, picture);
-  return absl::OkStatus();
+  return Add(*program, {"sun's disc", kDiscPixel_ns}, rect, picture);
 }
 
 }  // namespace thunderhead::renderers

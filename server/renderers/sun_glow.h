@@ -56,7 +56,8 @@ class SunGlow {
  private:
   // Finds the aureoles of the medium's groups, unless they are known.
   void Tabulate(const Medium& medium, double cut_rad);
-  void Add(const gl::Program& program, const PixelRect& rect, const Picture& picture);
+  absl::Status Add(const gl::Program& program, const gl::PieceCost& pixel, const PixelRect& rect,
+                   const Picture& picture);
   void BindSun(const gl::Program& program, const Sun& sun, const scene::View& view,
                const Picture& picture) const;
 

@@ -38,6 +38,8 @@ struct Workspace {
   explicit Workspace(std::shared_ptr<gl::ProgramCache> cache)
       : programs(std::move(cache)), ground(programs), surroundings(programs) {}
 
+  gl::Pieces& Pieces() const { return programs->Pieces(); }
+
   std::shared_ptr<gl::ProgramCache> programs;
   DetailNoises noises;
   ResidentMedium medium;  // the scene's, for techniques that draw a medium
@@ -94,14 +96,17 @@ Content DescribeMedium(const ResidentMedium& medium, const volume::HydrometeorFi
 // Around the workspace's medium.
 volume::WorldBox BoxOf(const ResidentMedium& medium);
 
-// Runs `work` and appends its wall time, GL included.
+// Runs `work` and appends its wall time, GL included, but not the time that its pieces waited for
+// their turns.
 template <typename Work>
-absl::Status Timed(scene::FrameStage stage, StageTimes* times, const Work& work) {
+absl::Status Timed(gl::Pieces& pieces, scene::FrameStage stage, StageTimes* times,
+                   const Work& work) {
   const base::Stopwatch stopwatch;
+  const double waited_ms = pieces.WaitedMs();
   THUNDERHEAD_RETURN_IF_ERROR(work());
   glFinish();
-  times->push_back({stage, stopwatch.ElapsedMs()});
-  return absl::OkStatus();
+  times->push_back({stage, stopwatch.ElapsedMs() - (pieces.WaitedMs() - waited_ms)});
+  return pieces.Between();
 }
 
 class TechniqueFactory {

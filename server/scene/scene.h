@@ -86,8 +86,8 @@ struct TopDownCamera {
 using Camera = std::variant<OrbitCamera, SpotterCamera, TopDownCamera>;
 
 struct Sun {
-  double azimuth_deg = 255.0;
-  double elevation_deg = 35.0;
+  double azimuth_deg = 275.0;
+  double elevation_deg = 18.0;
   double irradiance =
       1.0;  // on a plane facing the sun above the atmosphere; radiance is in this unit
 

@@ -5,10 +5,12 @@
 namespace thunderhead::service {
 
 grpc::ServerUnaryReactor* CloseSession(Engine& engine, grpc::CallbackServerContext* context,
+                                       const CallerRef& caller,
                                        const v1::CloseSessionRequest* request,
                                        v1::CloseSessionResponse* /*response*/) {
   absl::Status status = CheckLimits(*request);
   if (status.ok()) status = engine.sessions.Close(request->session_id());
+  caller->Report("CloseSession", status);
   if (!status.ok()) return Finished(context, status);
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   SaveThen(engine, [reactor] { reactor->Finish(grpc::Status::OK); });

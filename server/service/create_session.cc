@@ -9,9 +9,9 @@
 namespace thunderhead::service {
 namespace {
 
-absl::Status Open(Engine& engine, const session::Rules& rules,
+absl::Status Open(Engine& engine, const std::string& owner, const session::Rules& rules,
                   v1::CreateSessionResponse& response) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const auto session, engine.sessions.Create(rules));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const auto session, engine.sessions.Create(rules, owner));
   const std::uint64_t revision = session->TakeRevision();
   session->Show(revision, ToScene(response.scene()), response.scene().SerializeAsString());
   response.set_session_id(session->keys().presenter);
@@ -24,17 +24,21 @@ absl::Status Open(Engine& engine, const session::Rules& rules,
 }  // namespace
 
 grpc::ServerUnaryReactor* CreateSession(Engine& engine, grpc::CallbackServerContext* context,
+                                        const CallerRef& caller,
                                         const v1::CreateSessionRequest* request,
                                         v1::CreateSessionResponse* response) {
   absl::Status status = CheckLimits(*request);
   v1::Scene& scene = *response->mutable_scene();
   scene = request->scene();
   if (status.ok()) status = PrepareScene(engine.store, engine.loop.Techniques(), scene);
+  if (status.ok()) status = CheckSize(engine.limits, scene);
   if (!status.ok()) return Finished(context, status);
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   const session::Rules rules = RulesOf(request->rules(), {});
   FrameThen(engine, scene, [=, &engine](const absl::Status& framed) {
-    const absl::Status opened = framed.ok() ? Open(engine, rules, *response) : framed;
+    const absl::Status opened =
+        framed.ok() ? Open(engine, caller->identity().name, rules, *response) : framed;
+    caller->Report("CreateSession", opened);
     if (!opened.ok()) return reactor->Finish(ToGrpcStatus(opened));
     SaveThen(engine, [reactor] { reactor->Finish(grpc::Status::OK); });
   });

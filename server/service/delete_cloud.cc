@@ -27,6 +27,7 @@ absl::Status Delete(Engine& engine, const std::string& storm_id) {
 }  // namespace
 
 grpc::ServerUnaryReactor* DeleteCloud(Engine& engine, grpc::CallbackServerContext* context,
+                                      const CallerRef& caller,
                                       const v1::DeleteCloudRequest* request,
                                       v1::DeleteCloudResponse* /*response*/) {
   if (const absl::Status limits = CheckLimits(*request); !limits.ok()) {
@@ -34,7 +35,9 @@ grpc::ServerUnaryReactor* DeleteCloud(Engine& engine, grpc::CallbackServerContex
   }
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   engine.executor.Submit([=, &engine](const absl::Status& status) {
-    reactor->Finish(ToGrpcStatus(status.ok() ? Delete(engine, request->storm_id()) : status));
+    const absl::Status deleted = status.ok() ? Delete(engine, request->storm_id()) : status;
+    caller->Report("DeleteCloud", deleted);
+    reactor->Finish(ToGrpcStatus(deleted));
   });
   return reactor;
 }

@@ -13,6 +13,7 @@
 #include "base/wake_signal.h"
 #include "service/cloud_store.h"
 #include "service/drain.h"
+#include "service/limits.h"
 #include "session/render_loop.h"
 #include "session/session_keeper.h"
 #include "session/sessions.h"
@@ -33,6 +34,7 @@ struct Engine {
   session::SessionKeeper* keeper;  // null: sessions end with the server
   const CatalogueFollower& catalogue;
   Drain& drain;
+  Limits limits;
 };
 
 // Calls `done` when what has been done to sessions outlives the server: at once if they end with

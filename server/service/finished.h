@@ -1,4 +1,4 @@
-// The reactor of a unary call that finishes at once.
+// The reactors of calls that finish at once.
 #pragma once
 
 #include <grpcpp/server_context.h>
@@ -15,5 +15,13 @@ inline grpc::ServerUnaryReactor* Finished(grpc::CallbackServerContext* context,
   reactor->Finish(ToGrpcStatus(status));
   return reactor;
 }
+
+// A stream that is refused, of any kind. Deletes itself when gRPC calls OnDone.
+template <typename Reactor>
+class RefusedStream final : public Reactor {
+ public:
+  explicit RefusedStream(const absl::Status& why) { this->Finish(ToGrpcStatus(why)); }
+  void OnDone() override { delete this; }
+};
 
 }  // namespace thunderhead::service

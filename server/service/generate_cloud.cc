@@ -33,14 +33,17 @@ absl::Status Make(Engine& engine, const clouds::CloudShape& shape,
 }  // namespace
 
 grpc::ServerUnaryReactor* GenerateCloud(Engine& engine, grpc::CallbackServerContext* context,
+                                        const CallerRef& caller,
                                         const v1::GenerateCloudRequest* request,
                                         v1::GenerateCloudResponse* response) {
   auto shape = Check(*request);
   if (!shape.ok()) return Finished(context, shape.status());
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   engine.executor.Submit([=, &engine, shape = *std::move(shape)](const absl::Status& status) {
-    reactor->Finish(
-        ToGrpcStatus(status.ok() ? Make(engine, shape, *request, *context, *response) : status));
+    const absl::Status made =
+        status.ok() ? Make(engine, shape, *request, *context, *response) : status;
+    caller->Report("GenerateCloud", made);
+    reactor->Finish(ToGrpcStatus(made));
   });
   return reactor;
 }

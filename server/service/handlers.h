@@ -1,12 +1,18 @@
-// One handler for each rpc, in the file named after it.
+// One handler for each rpc, in the file named after it. Those that open something, or whose acts
+// are written to the audit, are told who calls.
 #pragma once
 
 #include <grpcpp/support/server_callback.h>
 
+#include <memory>
+
+#include "access/door.h"
 #include "service/engine.h"
 #include "thunderhead/v1/thunderhead.pb.h"
 
 namespace thunderhead::service {
+
+using CallerRef = std::shared_ptr<const access::Caller>;
 
 grpc::ServerUnaryReactor* GetServerInfo(Engine& engine, grpc::CallbackServerContext* context,
                                         const v1::GetServerInfoRequest* request,
@@ -18,29 +24,37 @@ grpc::ServerUnaryReactor* DescribeStorm(Engine& engine, grpc::CallbackServerCont
                                         const v1::DescribeStormRequest* request,
                                         v1::DescribeStormResponse* response);
 grpc::ServerUnaryReactor* GenerateCloud(Engine& engine, grpc::CallbackServerContext* context,
+                                        const CallerRef& caller,
                                         const v1::GenerateCloudRequest* request,
                                         v1::GenerateCloudResponse* response);
 grpc::ServerUnaryReactor* DeleteCloud(Engine& engine, grpc::CallbackServerContext* context,
+                                      const CallerRef& caller,
                                       const v1::DeleteCloudRequest* request,
                                       v1::DeleteCloudResponse* response);
 grpc::ServerUnaryReactor* CreateSession(Engine& engine, grpc::CallbackServerContext* context,
+                                        const CallerRef& caller,
                                         const v1::CreateSessionRequest* request,
                                         v1::CreateSessionResponse* response);
 grpc::ServerUnaryReactor* UpdateScene(Engine& engine, grpc::CallbackServerContext* context,
+                                      const CallerRef& caller,
                                       const v1::UpdateSceneRequest* request,
                                       v1::UpdateSceneResponse* response);
 grpc::ServerWriteReactor<v1::WatchFramesResponse>* WatchFrames(
-    Engine& engine, grpc::CallbackServerContext* context, const v1::WatchFramesRequest* request);
+    Engine& engine, grpc::CallbackServerContext* context, CallerRef caller,
+    const v1::WatchFramesRequest* request);
 grpc::ServerUnaryReactor* AcknowledgeFrame(Engine& engine, grpc::CallbackServerContext* context,
                                            const v1::AcknowledgeFrameRequest* request,
                                            v1::AcknowledgeFrameResponse* response);
 grpc::ServerUnaryReactor* CloseSession(Engine& engine, grpc::CallbackServerContext* context,
+                                       const CallerRef& caller,
                                        const v1::CloseSessionRequest* request,
                                        v1::CloseSessionResponse* response);
 grpc::ServerUnaryReactor* RenderImage(Engine& engine, grpc::CallbackServerContext* context,
+                                      const CallerRef& caller,
                                       const v1::RenderImageRequest* request,
                                       v1::RenderImageResponse* response);
 grpc::ServerWriteReactor<v1::RenderImageEvent>* RenderImageWithProgress(
-    Engine& engine, grpc::CallbackServerContext* context, const v1::RenderImageRequest* request);
+    Engine& engine, grpc::CallbackServerContext* context, CallerRef caller,
+    const v1::RenderImageRequest* request);
 
 }  // namespace thunderhead::service

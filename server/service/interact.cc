@@ -1,5 +1,6 @@
 #include "service/interact.h"
 
+#include <grpcpp/alarm.h>
 #include <grpcpp/support/proto_buffer_reader.h>
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include <variant>
 
 #include "absl/strings/str_cat.h"
+#include "access/rules.h"
 #include "base/error_details.h"
 #include "base/status.h"
 #include "glm/geometric.hpp"
@@ -39,6 +41,34 @@ absl::Status NotJoined() {
                             "NOT_JOINED");
 }
 
+absl::Status JoinedTooLate(std::chrono::milliseconds limit) {
+  return base::WithDetails(
+      absl::DeadlineExceededError(
+          absl::StrCat("no join came within ", limit.count(), " ms; it must be the first message")),
+      {.reason = "NOT_JOINED"});
+}
+
+// The name of a request that is written to the audit whatever its outcome; null for others.
+const char* PrivilegedAct(const v1::InteractRequest& request) {
+  switch (request.message_case()) {
+    case v1::InteractRequest::kGiveControl:
+      return "GiveControl";
+    case v1::InteractRequest::kTakeControl:
+      return "TakeControl";
+    case v1::InteractRequest::kSetRules:
+      return "SetRules";
+    default:
+      return nullptr;
+  }
+}
+
+// "Interact/update_scene"
+std::string NameOfRequest(const v1::InteractRequest& request) {
+  const auto* const field =
+      v1::InteractRequest::descriptor()->FindFieldByNumber(request.message_case());
+  return absl::StrCat("Interact/", field == nullptr ? "unknown" : field->name());
+}
+
 // One client's call. It lives until gRPC, the session and the updates on their way have released
 // it. There is at most one pending read and one pending write; Finish is called once, when nothing
 // is being written. Requests are handled one after another, by the thread of the read; what is to
@@ -47,14 +77,25 @@ class InteractCall : public InteractReactor,
                      public session::Viewer,
                      public std::enable_shared_from_this<InteractCall> {
  public:
-  static InteractReactor* Start(Engine& engine) {
-    auto call = std::make_shared<InteractCall>(engine);
+  static InteractReactor* Start(Engine& engine, std::shared_ptr<const access::Caller> caller,
+                                double requests_per_second) {
+    auto call = std::make_shared<InteractCall>(engine, std::move(caller), requests_per_second);
     call->held_by_grpc_ = call;
+    call->join_alarm_.Set(std::chrono::system_clock::now() + engine.limits.join_timeout,
+                          [weak = std::weak_ptr(call)](bool rang) {
+                            const auto self = weak.lock();
+                            if (rang && self != nullptr) self->JoinTooLate();
+                          });
     call->StartRead(&call->received_);
     return call.get();
   }
 
-  explicit InteractCall(Engine& engine) : engine_(engine) {}
+  InteractCall(Engine& engine, std::shared_ptr<const access::Caller> caller,
+               double requests_per_second)
+      : engine_(engine),
+        caller_(std::move(caller)),
+        requests_per_second_(requests_per_second),
+        budget_(requests_per_second, Clock::now()) {}
 
   // Writes the next message, or ends the call, if there is a reason to and nothing is being
   // written.
@@ -113,6 +154,16 @@ class InteractCall : public InteractReactor,
   }
 
  private:
+  void JoinTooLate() {
+    {
+      const std::lock_guard lock(mutex_);
+      if (session_ != nullptr) return;
+    }
+    const absl::Status status = JoinedTooLate(engine_.limits.join_timeout);
+    caller_->Report("Interact/join", status);
+    End(ToGrpcStatus(status));
+  }
+
   // Ends the call as soon as nothing is being written. The first reason counts.
   void End(const grpc::Status& status) {
     {
@@ -230,10 +281,21 @@ class InteractCall : public InteractReactor,
     if (!parsed) {
       return base::InvalidField("message", "is not an InteractRequest", "MESSAGE_UNREADABLE");
     }
-    if (session_ == nullptr) return Join(request);
+    if (session_ == nullptr) {
+      absl::Status joined = Join(request);
+      if (!joined.ok()) caller_->Report("Interact/join", joined);
+      return joined;
+    }
+    THUNDERHEAD_RETURN_IF_ERROR(caller_->StillKnown());
     session_->Touch();
-    absl::Status status = CheckLimits(request);
+    absl::Status status = budget_.Take(requests_per_second_, Clock::now());
+    if (status.ok()) status = CheckLimits(request);
     if (status.ok()) status = Obey(request);
+    if (const char* act = PrivilegedAct(request); act != nullptr) {
+      caller_->Report(act, status);
+    } else {
+      caller_->ReportDenial(NameOfRequest(request), status);
+    }
     if (!status.ok()) Answer(RefusedResponse(request.request_id(), status));
     return absl::OkStatus();
   }
@@ -245,22 +307,32 @@ class InteractCall : public InteractReactor,
     THUNDERHEAD_ASSIGN_OR_RETURN(const std::string name, NameOf(join.name(), "join.name"));
     THUNDERHEAD_ASSIGN_OR_RETURN(const session::FoundSession found,
                                  engine_.sessions.Find(join.session_key()));
-    const std::uint64_t person_id =
-        found.session->audience().Join(found.role, name, shared_from_this(), Clock::now());
+    // Who is a viewer by their token stays one, whichever key was passed on to them.
+    const session::Role role =
+        access::MayPresent(caller_->identity().role) ? found.role : session::Role::kViewer;
+    const std::size_t most = engine_.limits.max_viewers_per_session;
+    const std::optional<std::uint64_t> person_id =
+        found.session->audience().Join(role, name, shared_from_this(), Clock::now(), most);
+    if (!person_id.has_value()) return TooManyViewers(most);
     v1::InteractResponse response;
     v1::Joined& joined = *response.mutable_joined();
-    joined.set_viewer_id(person_id);
-    joined.set_role(RoleMessage(found.role));
+    joined.set_viewer_id(*person_id);
+    joined.set_role(RoleMessage(role));
     joined.set_viewer_key(found.session->keys().viewer);
     {
       const std::lock_guard lock(mutex_);
-      person_id_ = person_id;
+      person_id_ = *person_id;
       answers_.push_back(ResponseOf(response));
       hidden_ = join.window().hidden();
+      for (const int codec : join.codecs()) {
+        takes_video_ = takes_video_ || codec == v1::CODEC_VP9;
+        takes_stills_ = takes_stills_ || codec == v1::CODEC_AVIF;
+      }
       wants_ = WantsOf(join.window());
       session_ = found.session;
       told_catalogue_ = engine_.catalogue.Changes();
     }
+    join_alarm_.Cancel();
     if (join.window().hidden()) SetHidden(true);
     Wake();
     return absl::OkStatus();
@@ -373,6 +445,7 @@ class InteractCall : public InteractReactor,
     if (watched == nullptr || acknowledgement.own_view() != (watched != session_)) {
       return absl::OkStatus();
     }
+    if (acknowledgement.video_lost()) watched->hub().LoseVideo(watcher_id);
     watched->hub().Acknowledge(watcher_id, acknowledgement.sequence());
     return absl::OkStatus();
   }
@@ -446,8 +519,14 @@ class InteractCall : public InteractReactor,
     ReadOn();
   }
 
-  static session::ViewerWants WantsOf(const v1::Window& window) {
-    return {static_cast<int>(window.width_px()), window.frames_per_second(), /*adapts=*/true};
+  // Needs mutex_.
+  session::ViewerWants WantsOf(const v1::Window& window) const {
+    return {.window_width_px = static_cast<int>(window.width_px()),
+            .frames_per_second = window.frames_per_second(),
+            .adapts = true,
+            .takes_video = takes_video_,
+            .takes_stills = takes_stills_,
+            .saves_bytes = window.saves_bytes()};
   }
 
   void SetWindow(const v1::Window& window) {
@@ -549,6 +628,10 @@ class InteractCall : public InteractReactor,
   }
 
   Engine& engine_;
+  const std::shared_ptr<const access::Caller> caller_;
+  const double requests_per_second_;
+  access::RequestBudget budget_;  // used by the reading thread alone
+  grpc::Alarm join_alarm_;
   std::shared_ptr<InteractCall> held_by_grpc_;
   grpc::ByteBuffer received_;
   grpc::ByteBuffer sent_;
@@ -569,6 +652,8 @@ class InteractCall : public InteractReactor,
   std::atomic<bool> drawing_{false};  // a mark is on its way
   bool frame_next_ = false;
   bool hidden_ = false;
+  bool takes_video_ = false;
+  bool takes_stills_ = false;
   session::ViewerWants wants_;
   std::shared_ptr<session::OwnView> own_view_;
   std::shared_ptr<session::Session> watched_;  // whose frames come
@@ -583,6 +668,9 @@ class InteractCall : public InteractReactor,
 }  // namespace
 
 // Deletes itself when gRPC calls OnDone.
-InteractReactor* Interact(Engine& engine) { return InteractCall::Start(engine); }
+InteractReactor* Interact(Engine& engine, std::shared_ptr<const access::Caller> caller,
+                          double requests_per_second) {
+  return InteractCall::Start(engine, std::move(caller), requests_per_second);
+}
 
 }  // namespace thunderhead::service

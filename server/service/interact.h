@@ -5,12 +5,17 @@
 #include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/server_callback.h>
 
+#include <memory>
+
+#include "access/door.h"
 #include "service/engine.h"
 
 namespace thunderhead::service {
 
 using InteractReactor = grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>;
 
-InteractReactor* Interact(Engine& engine);
+// Of its requests, those beyond `requests_per_second` are refused; 0: none.
+InteractReactor* Interact(Engine& engine, std::shared_ptr<const access::Caller> caller,
+                          double requests_per_second);
 
 }  // namespace thunderhead::service

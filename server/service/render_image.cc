@@ -1,3 +1,5 @@
+#include <grpcpp/alarm.h>
+
 #include <atomic>
 #include <memory>
 #include <mutex>
@@ -8,18 +10,20 @@
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "frame/image_codec.h"
+#include "frame/png_text.h"
 #include "service/camera_messages.h"
 #include "service/handlers.h"
 #include "service/limits_check.h"
+#include "service/picture_texts.h"
 #include "service/scene_messages.h"
 #include "service/status_table.h"
 
 namespace thunderhead::service {
 namespace {
 
-absl::Status Encode(const session::DisplayFrame& picture, const v1::RenderImageRequest& request,
+// Takes the picture's pixels.
+absl::Status Encode(session::DisplayFrame& picture, const v1::RenderImageRequest& request,
                     v1::RenderImageResponse& response) {
-  const base::Stopwatch stopwatch;
   const bool jpeg = request.format() == v1::IMAGE_FORMAT_JPEG;
   const int quality = static_cast<int>(response.scene().output().jpeg_quality());
   THUNDERHEAD_ASSIGN_OR_RETURN(
@@ -29,11 +33,22 @@ absl::Status Encode(const session::DisplayFrame& picture, const v1::RenderImageR
   response.set_format(jpeg ? v1::IMAGE_FORMAT_JPEG : v1::IMAGE_FORMAT_PNG);
   response.set_width_px(static_cast<std::uint32_t>(picture.width_px));
   response.set_height_px(static_cast<std::uint32_t>(picture.height_px));
+  picture.rgb = {};
+  return absl::OkStatus();
+}
+
+void Describe(const session::DisplayFrame& picture, double encode_ms,
+              v1::RenderImageResponse& response) {
   for (const scene::StageTime& time : picture.stages) ToMessage(time, *response.add_stages());
-  ToMessage({scene::FrameStage::kEncode, stopwatch.ElapsedMs()}, *response.add_stages());
+  ToMessage({scene::FrameStage::kEncode, encode_ms}, *response.add_stages());
   ToMessage(picture.modelled, *response.mutable_modelled());
   if (picture.accuracy.has_value()) ToMessage(*picture.accuracy, *response.mutable_accuracy());
-  return absl::OkStatus();
+}
+
+// Writes into a PNG what it shows. `storm` is null if it has gone since.
+void AddTexts(const volume::StormInfo* storm, v1::RenderImageResponse& response) {
+  if (response.format() != v1::IMAGE_FORMAT_PNG || storm == nullptr) return;
+  response.set_image(frame::WithTexts(response.image(), TextsOf(response, *storm)));
 }
 
 // Errors of drawing are not about one field, so they name the whole scene.
@@ -53,8 +68,8 @@ class PictureListener {
   ~PictureListener() = default;
 };
 
-// One picture: read (executor), drawn (render loop), encoded (executor). Exactly one of these steps
-// ends the job; everything passed to the job must live until then.
+// One picture: read, drawn and encoded in a lane of the render loop, which ends the job; everything
+// passed to the job must live until then.
 class PictureJob {
  public:
   PictureJob(Engine& engine, const v1::RenderImageRequest& request,
@@ -62,12 +77,20 @@ class PictureJob {
       : engine_(engine), request_(request), response_(response), listener_(listener) {}
 
   void Begin() {
-    if (const absl::Status late = counted_.Check(); !late.ok()) return listener_.Ended(late);
-    if (const absl::Status wrong = CompleteScene(); !wrong.ok()) return listener_.Ended(wrong);
-    engine_.executor.Submit([this](const absl::Status& status) {
-      const absl::Status submitted = status.ok() ? ReadAndSubmit() : status;
-      if (!submitted.ok()) listener_.Ended(submitted);
-    });
+    if (const absl::Status late = counted_.Check(); !late.ok()) return End(late);
+    if (const absl::Status wrong = CompleteScene(); !wrong.ok()) return End(wrong);
+    deadline_.Set(std::chrono::system_clock::now() + engine_.limits.max_render_time,
+                  [late = late_, cancelled = cancelled_, &wake = engine_.wake](bool rang) {
+                    if (!rang) return;
+                    *late = true;
+                    *cancelled = true;
+                    wake.Notify();
+                  });
+    engine_.loop.RenderImage(
+        {ToScene(response_.scene()), [this] { return Read(); },
+         [this](session::DisplayFrame& picture) { return EncodeTimed(picture); }, cancelled_,
+         [this](const absl::StatusOr<session::DisplayFrame>& picture) { Drawn(picture); },
+         [this](const session::ImageProgress& progress) { listener_.Progressed(progress); }});
   }
 
   void Cancel() {
@@ -81,6 +104,7 @@ class PictureJob {
     v1::Scene& scene = *response_.mutable_scene();
     scene = request_.scene();
     THUNDERHEAD_RETURN_IF_ERROR(PrepareScene(engine_.store, engine_.loop.Techniques(), scene));
+    THUNDERHEAD_RETURN_IF_ERROR(CheckSize(engine_.limits, scene));
     if (!scene.rendering().has_reference()) return absl::OkStatus();
     return base::InvalidField("scene.rendering.reference",
                               "is given, which only sessions can show; for a file use "
@@ -88,28 +112,33 @@ class PictureJob {
                               "TECHNIQUE_FOR_SESSIONS_ONLY");
   }
 
-  absl::Status ReadAndSubmit() {
-    if (*cancelled_) return absl::CancelledError("the call was cancelled");
+  absl::StatusOr<session::ImageInput> Read() {
     v1::Scene& scene = *response_.mutable_scene();
-    const base::Stopwatch stopwatch;
     THUNDERHEAD_ASSIGN_OR_RETURN(
         auto fields, ReadFields(engine_.store, scene.storm_id(),
                                 static_cast<int>(scene.time_index()), "scene.storm_id"));
-    ToMessage({scene::FrameStage::kRead, stopwatch.ElapsedMs()}, *response_.add_stages());
     FrameCondensate(scene, *fields);
-    engine_.loop.RenderImage(
-        {ToScene(scene), std::move(fields), cancelled_,
-         [this](absl::StatusOr<session::DisplayFrame> picture) { Drawn(std::move(picture)); },
-         [this](const session::ImageProgress& progress) { listener_.Progressed(progress); }});
+    return session::ImageInput{std::move(fields), ToScene(scene).camera};
+  }
+
+  absl::Status EncodeTimed(session::DisplayFrame& picture) {
+    const base::Stopwatch stopwatch;
+    THUNDERHEAD_RETURN_IF_ERROR(Encode(picture, request_, response_));
+    encode_ms_ = stopwatch.ElapsedMs();
     return absl::OkStatus();
   }
 
-  void Drawn(absl::StatusOr<session::DisplayFrame> picture) {
-    if (!picture.ok()) return listener_.Ended(OfScene(picture.status()));
-    const auto drawn = std::make_shared<session::DisplayFrame>(*std::move(picture));
-    engine_.executor.Submit([this, drawn](const absl::Status& status) {
-      listener_.Ended(status.ok() ? Encode(*drawn, request_, response_) : status);
-    });
+  void Drawn(const absl::StatusOr<session::DisplayFrame>& picture) {
+    if (!picture.ok()) return End(OfScene(picture.status()));
+    Describe(*picture, encode_ms_, response_);
+    AddTexts(engine_.store.Find(response_.scene().storm_id()).get(), response_);
+    End(absl::OkStatus());
+  }
+
+  void End(const absl::Status& status) {
+    listener_.Ended(absl::IsCancelled(status) && *late_
+                        ? RenderedTooLong(engine_.limits.max_render_time)
+                        : status);
   }
 
   Engine& engine_;
@@ -117,23 +146,30 @@ class PictureJob {
   const v1::RenderImageRequest& request_;
   v1::RenderImageResponse& response_;
   PictureListener& listener_;
+  double encode_ms_ = 0.0;
   const std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
+  const std::shared_ptr<std::atomic<bool>> late_ = std::make_shared<std::atomic<bool>>(false);
+  grpc::Alarm deadline_;
 };
 
 // A picture as the response of a unary call.
 class PictureReactor final : public grpc::ServerUnaryReactor, private PictureListener {
  public:
-  PictureReactor(Engine& engine, const v1::RenderImageRequest& request,
+  PictureReactor(Engine& engine, CallerRef caller, const v1::RenderImageRequest& request,
                  v1::RenderImageResponse& response)
-      : job_(engine, request, response, *this) {}
+      : caller_(std::move(caller)), job_(engine, request, response, *this) {}
 
   void Begin() { job_.Begin(); }
   void OnCancel() override { job_.Cancel(); }
   void OnDone() override { delete this; }
 
  private:
-  void Ended(const absl::Status& status) override { Finish(ToGrpcStatus(status)); }
+  void Ended(const absl::Status& status) override {
+    caller_->Report("RenderImage", status);
+    Finish(ToGrpcStatus(status));
+  }
 
+  const CallerRef caller_;
   PictureJob job_;
 };
 
@@ -142,8 +178,8 @@ class PictureReactor final : public grpc::ServerUnaryReactor, private PictureLis
 class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent>,
                             private PictureListener {
  public:
-  PictureStream(Engine& engine, const v1::RenderImageRequest& request)
-      : job_(engine, request, *image_.mutable_image(), *this) {}
+  PictureStream(Engine& engine, CallerRef caller, const v1::RenderImageRequest& request)
+      : caller_(std::move(caller)), job_(engine, request, *image_.mutable_image(), *this) {}
 
   void Begin() { job_.Begin(); }
   void OnCancel() override { job_.Cancel(); }
@@ -181,6 +217,7 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
   }
 
   void Ended(const absl::Status& status) override {
+    caller_->Report("RenderImageWithProgress", status);
     {
       const std::lock_guard lock(mutex_);
       end_ = ToGrpcStatus(status);
@@ -195,6 +232,7 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
     StartWriteAndFinish(&image_, grpc::WriteOptions(), *end_);
   }
 
+  const CallerRef caller_;
   v1::RenderImageEvent image_;
   v1::RenderImageEvent progress_;  // gRPC reads it while `writing_`
   std::mutex mutex_;
@@ -207,17 +245,18 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
 }  // namespace
 
 grpc::ServerUnaryReactor* RenderImage(Engine& engine, grpc::CallbackServerContext* /*context*/,
+                                      const CallerRef& caller,
                                       const v1::RenderImageRequest* request,
                                       v1::RenderImageResponse* response) {
-  auto* reactor = new PictureReactor(engine, *request, *response);
+  auto* reactor = new PictureReactor(engine, caller, *request, *response);
   reactor->Begin();
   return reactor;
 }
 
 grpc::ServerWriteReactor<v1::RenderImageEvent>* RenderImageWithProgress(
-    Engine& engine, grpc::CallbackServerContext* /*context*/,
+    Engine& engine, grpc::CallbackServerContext* /*context*/, CallerRef caller,
     const v1::RenderImageRequest* request) {
-  auto* reactor = new PictureStream(engine, *request);
+  auto* reactor = new PictureStream(engine, std::move(caller), *request);
   reactor->Begin();
   return reactor;
 }

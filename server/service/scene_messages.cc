@@ -419,7 +419,10 @@ void ToMessage(const session::AccuracyReport& report, v1::AccuracyReport& messag
 void ToMessage(const session::EncodedFrame& frame, v1::Frame& message) {
   message.set_sequence(frame.sequence);
   message.set_scene_revision(frame.scene_revision);
-  message.set_jpeg(frame.jpeg);
+  if (!frame.jpeg.empty()) message.set_jpeg(frame.jpeg);
+  if (!frame.vp9.empty()) message.set_vp9(frame.vp9);
+  if (!frame.avif.empty()) message.set_avif(frame.avif);
+  message.set_key_frame(frame.key_frame);
   message.set_width_px(static_cast<std::uint32_t>(frame.width_px));
   message.set_height_px(static_cast<std::uint32_t>(frame.height_px));
   ToMessage(frame.camera, *message.mutable_camera());

@@ -74,6 +74,7 @@ absl::StatusOr<Changed> Take(Engine& engine, session::Session& session, const Sc
     THUNDERHEAD_ASSIGN_OR_RETURN(*changed.scene, Merged(std::move(newest.scene), change));
   }
   THUNDERHEAD_RETURN_IF_ERROR(PrepareScene(engine.store, engine.loop.Techniques(), *changed.scene));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckSize(engine.limits, *changed.scene));
   // Taken before the scene is framed, which may wait for a read, so that the last update wins.
   if (!expected.has_value()) {
     changed.revision = session.TakeRevision();

@@ -3,10 +3,10 @@
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
 #include <grpcpp/grpcpp.h>
 #include <grpcpp/health_check_service_interface.h>
+#include <grpcpp/resource_quota.h>
+#include <grpcpp/security/tls_certificate_provider.h>
+#include <grpcpp/security/tls_credentials_options.h>
 
-#include <unistd.h>
-
-#include <atomic>
 #include <chrono>
 #include <mutex>
 #include <utility>
@@ -19,6 +19,7 @@
 #include "service/catalogue_follower.h"
 #include "service/engine.h"
 #include "service/interact_messages.h"
+#include "service/local_listener.h"
 #include "service/stored_scene.h"
 #include "service/thunderhead_service.h"
 #include "session/session_keeper.h"
@@ -31,22 +32,31 @@ namespace {
 // a few are enough.
 constexpr int kExecutorThreads = 4;
 constexpr std::size_t kMaxWaitingTasks = 256;
-// A scene is at most a few kilobytes.
-constexpr int kMaxRequestBytes = 1 << 20;
 // The largest picture that CheckScene allows, uncompressed, with room to spare.
 constexpr int kMaxResponseBytes = 128 << 20;
 // A viewer that disappeared without closing its connection is detected after the sum of these.
 constexpr int kKeepaliveTimeMs = 20'000;
 constexpr int kKeepaliveTimeoutMs = 10'000;
+// A client that connects and says nothing, or begins no call, is dropped after these.
+constexpr int kHandshakeTimeoutMs = 10'000;
+constexpr int kIdleConnectionMs = 600'000;
 // Time for running calls to end by themselves before they are cancelled.
 constexpr std::chrono::seconds kShutdownGrace{2};
 
-// A socket in Linux's abstract namespace, which needs no file and disappears with the process.
-// gRPC 1.51's own in-process transport is no alternative: when a call ends, it drops messages that
-// were not yet read, as they are by a bridge that reads no faster than its browser.
-std::string NewLocalAddress() {
-  static std::atomic<int> count{0};
-  return absl::StrCat("unix-abstract:thunderhead-", getpid(), "-", ++count);
+std::shared_ptr<grpc::ServerCredentials> CredentialsOf(const TlsFiles& files) {
+  if (files.certificate.empty()) return grpc::InsecureServerCredentials();
+  grpc::experimental::TlsServerCredentialsOptions options(
+      std::make_shared<grpc::experimental::FileWatcherCertificateProvider>(
+          files.key, files.certificate, files.look_every_s));
+  options.watch_identity_key_cert_pairs();
+  options.set_cert_request_type(GRPC_SSL_DONT_REQUEST_CLIENT_CERTIFICATE);
+  return grpc::experimental::TlsServerCredentials(options);
+}
+
+std::shared_ptr<access::Door> OpenDoor() {
+  return std::make_shared<access::Door>(access::TrustEverybody(),
+                                        std::make_shared<access::Audit>([](const std::string&) {}),
+                                        access::QuotaLimits());
 }
 
 session::SessionsOptions WithFormat(session::SessionsOptions options) {
@@ -59,6 +69,8 @@ class RunningServer final : public Server {
   RunningServer(const ServerOptions& options, std::shared_ptr<volume::StormStore> store)
       : store_(std::move(store)),
         session_store_(options.session_store),
+        door_(options.door != nullptr ? options.door : OpenDoor()),
+        limits_(options.limits),
         sessions_(WithFormat(options.sessions),
                   {[this] { wake_.Notify(); }, [this] { due_.Notify(); }}),
         executor_(kExecutorThreads, kMaxWaitingTasks),
@@ -85,11 +97,11 @@ class RunningServer final : public Server {
     return absl::OkStatus();
   }
 
-  absl::Status Listen(const std::string& address) {
+  absl::Status Listen(const std::string& address, const TlsFiles& tls) {
     catalogue_ = std::make_unique<CatalogueFollower>(*store_, sessions_, *loop_);
     engine_ = std::make_unique<Engine>(Engine{*store_, sessions_, *loop_, wake_, executor_, clouds_,
-                                              keeper_.get(), *catalogue_, drain_});
-    service_ = std::make_unique<ThunderheadService>(*engine_);
+                                              keeper_.get(), *catalogue_, drain_, limits_});
+    service_ = std::make_unique<ThunderheadService>(*engine_, *door_);
     // Global settings, which apply to every server built later.
     static std::once_flag plugins;
     std::call_once(plugins, [] {
@@ -98,22 +110,25 @@ class RunningServer final : public Server {
     });
     grpc::ServerBuilder builder;
     builder.RegisterService(service_.get());
-    builder.SetMaxReceiveMessageSize(kMaxRequestBytes);
+    grpc::ResourceQuota memory("thunderhead");
+    builder.SetResourceQuota(memory.Resize(limits_.grpc_memory_bytes));
+    builder.SetMaxReceiveMessageSize(static_cast<int>(limits_.max_request_bytes));
     builder.SetMaxSendMessageSize(kMaxResponseBytes);
     // Otherwise a second server would share the port instead of failing.
     builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveTimeMs);
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
-    if (!address.empty()) {
-      builder.AddListeningPort(address, grpc::InsecureServerCredentials(), &port_);
-    }
-    builder.AddListeningPort(local_address_, grpc::InsecureServerCredentials());
+    builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, limits_.max_streams_per_connection);
+    builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, kHandshakeTimeoutMs);
+    builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, kIdleConnectionMs);
+    if (!address.empty()) builder.AddListeningPort(address, CredentialsOf(tls), &port_);
     server_ = builder.BuildAndStart();
     if (server_ == nullptr || (!address.empty() && port_ == 0)) {
       return absl::UnavailableError(absl::StrCat(
           "cannot listen for gRPC on ", address,
           ": it is not an address of this machine, or the port is in use; choose another"));
     }
+    THUNDERHEAD_ASSIGN_OR_RETURN(local_, LocalListener::Start(*server_));
     server_->GetHealthCheckService()->SetServingStatus(true);
     server_->GetHealthCheckService()->SetServingStatus(v1::ThunderheadService::service_full_name(),
                                                        true);
@@ -126,13 +141,14 @@ class RunningServer final : public Server {
   std::shared_ptr<grpc::Channel> LocalChannel() override {
     grpc::ChannelArguments arguments;
     arguments.SetMaxReceiveMessageSize(kMaxResponseBytes);
-    return grpc::CreateCustomChannel(local_address_, grpc::InsecureChannelCredentials(), arguments);
+    return grpc::CreateCustomChannel(local_->address(), grpc::InsecureChannelCredentials(),
+                                     arguments);
   }
 
   ServerLoad Load() const override {
     ServerLoad load;
     for (const auto& session : sessions_.AllDrawn()) {
-      load.viewers += session->hub().ViewerCount();
+      load.viewers += static_cast<int>(session->hub().Viewers());
       if (!session->IsOwnView()) ++load.sessions;
     }
     load.storms = static_cast<int>(store_->Storms().size());
@@ -156,6 +172,7 @@ class RunningServer final : public Server {
     sessions_.CloseAll(base::ShuttingDown());
     if (loop_ != nullptr) loop_->Stop();
     executor_.Stop();
+    local_.reset();
     if (server_ != nullptr) {
       server_->Shutdown(std::chrono::system_clock::now() + kShutdownGrace);
       server_->Wait();
@@ -169,6 +186,8 @@ class RunningServer final : public Server {
   base::WakeSignal due_;
   const std::shared_ptr<volume::StormStore> store_;
   const std::shared_ptr<session::SessionStore> session_store_;
+  const std::shared_ptr<access::Door> door_;
+  const Limits limits_;
   mutable session::Sessions sessions_;
   Drain drain_;
   session::Upkeep upkeep_{sessions_, *store_, due_};
@@ -180,7 +199,7 @@ class RunningServer final : public Server {
   std::unique_ptr<Engine> engine_;
   std::unique_ptr<ThunderheadService> service_;
   std::unique_ptr<grpc::Server> server_;
-  const std::string local_address_ = NewLocalAddress();
+  std::unique_ptr<LocalListener> local_;
   int port_ = 0;
 };
 
@@ -192,7 +211,7 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(
   auto server = std::make_unique<RunningServer>(options, std::move(store));
   THUNDERHEAD_RETURN_IF_ERROR(server->StartLoop(options.render_loop, make_source));
   THUNDERHEAD_RETURN_IF_ERROR(server->StartKeeper());
-  THUNDERHEAD_RETURN_IF_ERROR(server->Listen(options.address));
+  THUNDERHEAD_RETURN_IF_ERROR(server->Listen(options.address, options.tls));
   return server;
 }
 

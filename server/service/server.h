@@ -8,6 +8,8 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "access/door.h"
+#include "service/limits.h"
 #include "session/frame_source.h"
 #include "session/render_loop.h"
 #include "session/session_store.h"
@@ -16,8 +18,19 @@
 
 namespace thunderhead::service {
 
+// PEM files, read again when they change; both empty: no TLS.
+struct TlsFiles {
+  std::string certificate;  // the chain, the server's own certificate first
+  std::string key;
+  unsigned look_every_s = 5;
+};
+
 struct ServerOptions {
-  std::string address;        // HOST:PORT, port 0 for a free one; empty: no port
+  std::string address;  // HOST:PORT, port 0 for a free one; empty: no port
+  TlsFiles tls;         // of that port
+  // Who may call; null: everybody may do everything, and nothing is written down.
+  std::shared_ptr<access::Door> door;
+  Limits limits;
   std::string clouds_folder;  // for generated clouds; empty: none can be generated
   session::SessionsOptions sessions;
   std::shared_ptr<session::SessionStore> session_store;  // null: sessions end with the server

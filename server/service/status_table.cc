@@ -36,6 +36,7 @@ constexpr std::array kTable = {
     Row{absl::StatusCode::kOutOfRange, grpc::StatusCode::INVALID_ARGUMENT, "VALUE_OUT_OF_RANGE"},
     Row{absl::StatusCode::kNotFound, grpc::StatusCode::NOT_FOUND, "NOT_FOUND"},
     Row{absl::StatusCode::kAlreadyExists, grpc::StatusCode::ALREADY_EXISTS, "ALREADY_EXISTS"},
+    Row{absl::StatusCode::kUnauthenticated, grpc::StatusCode::UNAUTHENTICATED, "UNAUTHENTICATED"},
     Row{absl::StatusCode::kPermissionDenied, grpc::StatusCode::PERMISSION_DENIED,
         "PERMISSION_DENIED"},
     // Memory may become free later.

@@ -1,81 +1,117 @@
 #include "service/thunderhead_service.h"
 
+#include <utility>
+
+#include "service/admission.h"
+#include "service/finished.h"
 #include "service/handlers.h"
 
 namespace thunderhead::service {
 
+using access::CallKind;
+
 grpc::ServerUnaryReactor* ThunderheadService::GetServerInfo(grpc::CallbackServerContext* context,
                                                             const v1::GetServerInfoRequest* request,
                                                             v1::GetServerInfoResponse* response) {
+  const CallerOr caller = Admit(door_, *context, "GetServerInfo", CallKind::kUnary);
+  if (!caller.ok()) return Finished(context, caller.status());
   return service::GetServerInfo(engine_, context, request, response);
 }
 
 grpc::ServerUnaryReactor* ThunderheadService::ListStorms(grpc::CallbackServerContext* context,
                                                          const v1::ListStormsRequest* request,
                                                          v1::ListStormsResponse* response) {
+  const CallerOr caller = Admit(door_, *context, "ListStorms", CallKind::kUnary);
+  if (!caller.ok()) return Finished(context, caller.status());
   return service::ListStorms(engine_, context, request, response);
 }
 
 grpc::ServerUnaryReactor* ThunderheadService::DescribeStorm(grpc::CallbackServerContext* context,
                                                             const v1::DescribeStormRequest* request,
                                                             v1::DescribeStormResponse* response) {
+  const CallerOr caller = Admit(door_, *context, "DescribeStorm", CallKind::kUnary);
+  if (!caller.ok()) return Finished(context, caller.status());
   return service::DescribeStorm(engine_, context, request, response);
 }
 
 grpc::ServerUnaryReactor* ThunderheadService::GenerateCloud(grpc::CallbackServerContext* context,
                                                             const v1::GenerateCloudRequest* request,
                                                             v1::GenerateCloudResponse* response) {
-  return service::GenerateCloud(engine_, context, request, response);
+  const CallerOr caller = Admit(door_, *context, "GenerateCloud", CallKind::kUnary);
+  if (!caller.ok()) return Finished(context, caller.status());
+  return service::GenerateCloud(engine_, context, *caller, request, response);
 }
 
 grpc::ServerUnaryReactor* ThunderheadService::DeleteCloud(grpc::CallbackServerContext* context,
                                                           const v1::DeleteCloudRequest* request,
                                                           v1::DeleteCloudResponse* response) {
-  return service::DeleteCloud(engine_, context, request, response);
+  const CallerOr caller = Admit(door_, *context, "DeleteCloud", CallKind::kUnary);
+  if (!caller.ok()) return Finished(context, caller.status());
+  return service::DeleteCloud(engine_, context, *caller, request, response);
 }
 
 grpc::ServerUnaryReactor* ThunderheadService::CreateSession(grpc::CallbackServerContext* context,
                                                             const v1::CreateSessionRequest* request,
                                                             v1::CreateSessionResponse* response) {
-  return service::CreateSession(engine_, context, request, response);
+  const CallerOr caller = Admit(door_, *context, "CreateSession", CallKind::kUnary);
+  if (!caller.ok()) return Finished(context, caller.status());
+  return service::CreateSession(engine_, context, *caller, request, response);
 }
 
-InteractReactor* ThunderheadService::Interact(grpc::CallbackServerContext* /*context*/) {
-  return service::Interact(engine_);
+InteractReactor* ThunderheadService::Interact(grpc::CallbackServerContext* context) {
+  CallerOr caller = Admit(door_, *context, "Interact", CallKind::kStream);
+  if (!caller.ok()) return new RefusedStream<InteractReactor>(caller.status());
+  return service::Interact(engine_, *std::move(caller), door_.limits().requests_per_second);
 }
 
 grpc::ServerUnaryReactor* ThunderheadService::UpdateScene(grpc::CallbackServerContext* context,
                                                           const v1::UpdateSceneRequest* request,
                                                           v1::UpdateSceneResponse* response) {
-  return service::UpdateScene(engine_, context, request, response);
+  const CallerOr caller = Admit(door_, *context, "UpdateScene", CallKind::kUnary);
+  if (!caller.ok()) return Finished(context, caller.status());
+  return service::UpdateScene(engine_, context, *caller, request, response);
 }
 
 grpc::ServerUnaryReactor* ThunderheadService::AcknowledgeFrame(
     grpc::CallbackServerContext* context, const v1::AcknowledgeFrameRequest* request,
     v1::AcknowledgeFrameResponse* response) {
+  const CallerOr caller = Admit(door_, *context, "AcknowledgeFrame", CallKind::kUnary);
+  if (!caller.ok()) return Finished(context, caller.status());
   return service::AcknowledgeFrame(engine_, context, request, response);
 }
 
 grpc::ServerUnaryReactor* ThunderheadService::CloseSession(grpc::CallbackServerContext* context,
                                                            const v1::CloseSessionRequest* request,
                                                            v1::CloseSessionResponse* response) {
-  return service::CloseSession(engine_, context, request, response);
+  const CallerOr caller = Admit(door_, *context, "CloseSession", CallKind::kUnary);
+  if (!caller.ok()) return Finished(context, caller.status());
+  return service::CloseSession(engine_, context, *caller, request, response);
 }
 
 grpc::ServerUnaryReactor* ThunderheadService::RenderImage(grpc::CallbackServerContext* context,
                                                           const v1::RenderImageRequest* request,
                                                           v1::RenderImageResponse* response) {
-  return service::RenderImage(engine_, context, request, response);
+  const CallerOr caller = Admit(door_, *context, "RenderImage", CallKind::kUnary);
+  if (!caller.ok()) return Finished(context, caller.status());
+  return service::RenderImage(engine_, context, *caller, request, response);
 }
 
 grpc::ServerWriteReactor<v1::RenderImageEvent>* ThunderheadService::RenderImageWithProgress(
     grpc::CallbackServerContext* context, const v1::RenderImageRequest* request) {
-  return service::RenderImageWithProgress(engine_, context, request);
+  CallerOr caller = Admit(door_, *context, "RenderImageWithProgress", CallKind::kStream);
+  if (!caller.ok()) {
+    return new RefusedStream<grpc::ServerWriteReactor<v1::RenderImageEvent>>(caller.status());
+  }
+  return service::RenderImageWithProgress(engine_, context, *std::move(caller), request);
 }
 
 grpc::ServerWriteReactor<v1::WatchFramesResponse>* ThunderheadService::WatchFrames(
     grpc::CallbackServerContext* context, const v1::WatchFramesRequest* request) {
-  return service::WatchFrames(engine_, context, request);
+  CallerOr caller = Admit(door_, *context, "WatchFrames", CallKind::kStream);
+  if (!caller.ok()) {
+    return new RefusedStream<grpc::ServerWriteReactor<v1::WatchFramesResponse>>(caller.status());
+  }
+  return service::WatchFrames(engine_, context, *std::move(caller), request);
 }
 
 }  // namespace thunderhead::service

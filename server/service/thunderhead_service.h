@@ -1,6 +1,7 @@
-// The service as gRPC calls it: dispatches every call to its handler.
+// The service as gRPC calls it: asks the door about every call, and dispatches it to its handler.
 #pragma once
 
+#include "access/door.h"
 #include "service/engine.h"
 #include "service/interact.h"
 #include "thunderhead/v1/thunderhead.grpc.pb.h"
@@ -22,7 +23,7 @@ using Calls = Generated::WithCallbackMethod_GetServerInfo<Generated::WithCallbac
 
 class ThunderheadService final : public Calls {
  public:
-  explicit ThunderheadService(Engine& engine) : engine_(engine) {}
+  ThunderheadService(Engine& engine, access::Door& door) : engine_(engine), door_(door) {}
 
   grpc::ServerUnaryReactor* GetServerInfo(grpc::CallbackServerContext* context,
                                           const v1::GetServerInfoRequest* request,
@@ -62,6 +63,7 @@ class ThunderheadService final : public Calls {
 
  private:
   Engine& engine_;
+  access::Door& door_;
 };
 
 }  // namespace thunderhead::service

@@ -26,9 +26,11 @@ absl::StatusOr<std::shared_ptr<session::Session>> FindToSteer(
 }  // namespace
 
 grpc::ServerUnaryReactor* UpdateScene(Engine& engine, grpc::CallbackServerContext* context,
+                                      const CallerRef& caller,
                                       const v1::UpdateSceneRequest* request,
                                       v1::UpdateSceneResponse* response) {
   const auto session = FindToSteer(engine, *request);
+  caller->ReportDenial("UpdateScene", session.status());
   if (!session.ok()) return Finished(context, session.status());
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   ChangeScene(engine, *session, SceneChangeOf(*request),

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "base/status.h"
+#include "service/finished.h"
 #include "service/handlers.h"
 #include "service/limits_check.h"
 #include "service/scene_messages.h"
@@ -21,8 +22,8 @@ class FrameStream : public Reactor,
                     public session::Viewer,
                     public std::enable_shared_from_this<FrameStream> {
  public:
-  static Reactor* Start(std::shared_ptr<session::Session> session) {
-    auto stream = std::make_shared<FrameStream>(std::move(session));
+  static Reactor* Start(std::shared_ptr<session::Session> session, CallerRef caller) {
+    auto stream = std::make_shared<FrameStream>(std::move(session), std::move(caller));
     stream->held_by_grpc_ = stream;
     const auto viewer_id = stream->session_->hub().Join(stream);
     if (!viewer_id.ok()) {
@@ -37,7 +38,8 @@ class FrameStream : public Reactor,
     return stream.get();
   }
 
-  explicit FrameStream(std::shared_ptr<session::Session> session) : session_(std::move(session)) {}
+  FrameStream(std::shared_ptr<session::Session> session, CallerRef caller)
+      : session_(std::move(session)), caller_(std::move(caller)) {}
 
   void Wake() override {
     std::optional<session::FrameEvent> event;
@@ -112,6 +114,7 @@ class FrameStream : public Reactor,
   }
 
   const std::shared_ptr<session::Session> session_;
+  const CallerRef caller_;  // has its place while the stream lives
   std::shared_ptr<FrameStream> held_by_grpc_;
   v1::WatchFramesResponse response_;
   std::uint64_t sent_revision_ = 0;  // of the scene sent last; accessed only while `response_` is
@@ -122,29 +125,25 @@ class FrameStream : public Reactor,
   bool finished_ = false;
 };
 
-// A stream that is refused.
-class RefusedStream : public Reactor {
- public:
-  explicit RefusedStream(const absl::Status& why) { Finish(ToGrpcStatus(why)); }
-  void OnDone() override { delete this; }
-};
-
 absl::StatusOr<std::shared_ptr<session::Session>> Find(Engine& engine,
                                                        const v1::WatchFramesRequest& request) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
   THUNDERHEAD_ASSIGN_OR_RETURN(const session::FoundSession found,
                                engine.sessions.Find(request.session_id()));
+  if (found.role == session::Role::kViewer &&
+      found.session->hub().Viewers() >= engine.limits.max_viewers_per_session) {
+    return TooManyViewers(engine.limits.max_viewers_per_session);
+  }
   return found.session;
 }
 
 }  // namespace
 
-Reactor* WatchFrames(Engine& engine, grpc::CallbackServerContext* /*context*/,
+Reactor* WatchFrames(Engine& engine, grpc::CallbackServerContext* /*context*/, CallerRef caller,
                      const v1::WatchFramesRequest* request) {
   auto session = Find(engine, *request);
-  // Deletes itself when gRPC calls OnDone.
-  if (!session.ok()) return new RefusedStream(session.status());
-  return FrameStream::Start(*std::move(session));
+  if (!session.ok()) return new RefusedStream<Reactor>(session.status());
+  return FrameStream::Start(*std::move(session), std::move(caller));
 }
 
 }  // namespace thunderhead::service

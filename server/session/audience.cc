@@ -12,9 +12,11 @@ Audience::Audience(const AudienceFormat& format, const Rules& rules, Board board
       roster_(rules, now, board.LastPerson()),
       board_(std::move(board)) {}
 
-std::uint64_t Audience::Join(Role role, const std::string& name, std::shared_ptr<Viewer> member,
-                             Time now) {
+std::optional<std::uint64_t> Audience::Join(Role role, const std::string& name,
+                                            std::shared_ptr<Viewer> member, Time now,
+                                            std::size_t most) {
   std::unique_lock lock(mutex_);
+  if (role == Role::kViewer && members_.size() >= most) return std::nullopt;
   const std::uint64_t id = roster_.Join(role, name);
   members_[id] = std::move(member);
   Settle(std::move(lock), now);

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -56,8 +57,10 @@ class Audience {
   Audience(const AudienceFormat& format, const Rules& rules, Board board, Time now,
            std::function<void()> on_due);
 
-  // `member` is woken when it is to be told something.
-  std::uint64_t Join(Role role, const std::string& name, std::shared_ptr<Viewer> member, Time now);
+  // `member` is woken when it is to be told something. None for a viewer where `most` people are.
+  std::optional<std::uint64_t> Join(Role role, const std::string& name,
+                                    std::shared_ptr<Viewer> member, Time now,
+                                    std::size_t most = std::numeric_limits<std::size_t>::max());
   void Leave(std::uint64_t id, Time now);
 
   // Changes the roster or the board.

@@ -36,9 +36,8 @@ std::optional<accuracy::Setting> DecidedSetting::SettingKeptFor(const scene::Sce
   return accuracy::SettingOf(*scene_);
 }
 
-bool DecidedSetting::TakeCheck() {
-  if (std::exchange(checked_, true)) return false;
-  return scene::SlicesOf(scene_->rendering.technique).value_or(0) >= 2;
+bool DecidedSetting::NeedsCheck() const {
+  return !checked_ && scene::SlicesOf(scene_->rendering.technique).value_or(0) >= 2;
 }
 
 bool DecidedSetting::DecideAgain(const NewestScene& asked) {

@@ -21,9 +21,12 @@ class DecidedSetting {
   // The newest scene with its setting decided. The error is returned once; afterwards, none.
   absl::StatusOr<std::optional<NewestScene>> Decide(const NewestScene& asked);
 
-  // True once for each setting that can be drawn with half the slices as well.
-  bool TakeCheck();
-  void Checked(double discretisation_error) { discretisation_error_ = discretisation_error; }
+  // True until Checked, for a setting that can be drawn with half the slices as well.
+  bool NeedsCheck() const;
+  void Checked(double discretisation_error) {
+    checked_ = true;
+    discretisation_error_ = discretisation_error;
+  }
   const std::optional<double>& discretisation_error() const { return discretisation_error_; }
 
   // Decides again. True if another setting is better now, which happens at most a few times.

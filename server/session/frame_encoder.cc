@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/log.h"
+#include "base/status.h"
 #include "base/stopwatch.h"
-#include "frame/halved.h"
 #include "frame/image_codec.h"
+#include "session/picture_sizes.h"
 #include "telemetry/metrics.h"
 
 namespace thunderhead::session {
@@ -18,76 +20,135 @@ constexpr int kCoarseJpegQuality = 75;
 // Of smaller tiers, for links that are slow.
 constexpr int kReducedJpegQuality = 70;
 
-// The full frame with its picture at a half of the size, or a quarter.
-EncodedFrame Reduced(const EncodedFrame& full, int tier, const frame::RgbImage& picture,
-                     const SerializeFrame& serialize) {
-  EncodedFrame reduced = full;
-  frame::RgbImage smaller = picture;
-  for (int halved = 0; halved < tier; ++halved) smaller = frame::Halved(smaller);
-  const int quality = full.refined ? full.jpeg_quality : kReducedJpegQuality;
-  auto jpeg = frame::EncodeJpeg(smaller.width_px, smaller.height_px, smaller.rgb, quality);
-  if (!jpeg.ok()) return full;
-  reduced.jpeg = *std::move(jpeg);
-  reduced.width_px = smaller.width_px;
-  reduced.height_px = smaller.height_px;
-  reduced.tier = tier;
-  reduced.serialized = serialize(reduced);
-  return reduced;
+using Pictures = PictureSizes<frame::RgbImage>;
+
+void Count(const StageTime& stage) {
+  telemetry::Counted().stages.Of(scene::NameOf(stage.stage)).Observe(stage.milliseconds * 1e-3);
 }
 
-void Count(const EncodedFrame& frame, const scene::Scene& scene) {
-  telemetry::Metrics& counted = telemetry::Counted();
-  counted.frames.Of(scene::NameOf(scene.rendering.technique)).Add();
-  for (const StageTime& stage : frame.stages) {
-    counted.stages.Of(scene::NameOf(stage.stage)).Observe(stage.milliseconds * 1e-3);
-  }
+void Count(const EncodedFrame& described, const scene::Scene& scene) {
+  telemetry::Counted().frames.Of(scene::NameOf(scene.rendering.technique)).Add();
+  for (const StageTime& stage : described.stages) Count(stage);
 }
 
-void EncodeAndPublish(DrawnFrame drawn, const SerializeFrame& serialize) {
-  const base::Stopwatch stopwatch;
-  const int wanted_quality = drawn.scene.output.jpeg_quality;
-  const DisplayFrame& picture = drawn.picture;
+// The frame without a picture.
+EncodedFrame Described(DrawnFrame& drawn) {
   EncodedFrame frame;
-  frame.jpeg_quality =
-      drawn.refined ? wanted_quality : std::min(wanted_quality, kCoarseJpegQuality);
-  auto jpeg =
-      frame::EncodeJpeg(picture.width_px, picture.height_px, picture.rgb, frame.jpeg_quality);
-  if (!jpeg.ok()) {
-    drawn.session->hub().Publish(ProblemOf(drawn.scene_revision, jpeg.status()));
-    return;
-  }
   frame.scene_revision = drawn.scene_revision;
-  frame.jpeg = *std::move(jpeg);
-  frame.width_px = picture.width_px;
-  frame.height_px = picture.height_px;
+  frame.width_px = drawn.picture.width_px;
+  frame.height_px = drawn.picture.height_px;
   frame.camera = drawn.scene.camera;
   frame.view = drawn.view;
   frame.sun = drawn.scene.sun;
   frame.stages = std::move(drawn.picture.stages);
-  frame.stages.push_back({scene::FrameStage::kEncode, stopwatch.ElapsedMs()});
   frame.modelled = std::move(drawn.picture.modelled);
   frame.refined = drawn.refined;
+  frame.at_rest = drawn.at_rest;
   frame.refinement = drawn.refinement;
   frame.accuracy = std::move(drawn.picture.accuracy);
   if (const auto newest = drawn.session->Newest();
       newest.has_value() && newest->revision == drawn.scene_revision) {
     frame.changed_at = newest->changed_at;
   }
-  Count(frame, drawn.scene);
+  return frame;
+}
+
+// The frame with room for its picture in a tier.
+EncodedFrame At(const EncodedFrame& described, int tier, const frame::RgbImage& picture) {
+  EncodedFrame frame = described;
+  frame.width_px = picture.width_px;
+  frame.height_px = picture.height_px;
+  frame.tier = tier;
+  return frame;
+}
+
+absl::StatusOr<EncodedFrame> WithJpeg(const EncodedFrame& described, int tier,
+                                      const frame::RgbImage& picture, int wanted_quality,
+                                      const SerializeFrame& serialize) {
+  const base::Stopwatch stopwatch;
+  int quality = wanted_quality;
+  if (!described.refined) {
+    quality = tier > 0 ? kReducedJpegQuality : std::min(wanted_quality, kCoarseJpegQuality);
+  }
+  EncodedFrame frame = At(described, tier, picture);
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      frame.jpeg, frame::EncodeJpeg(picture.width_px, picture.height_px, picture.rgb, quality));
+  frame.stages.push_back({scene::FrameStage::kEncode, stopwatch.ElapsedMs()});
+  Count(frame.stages.back());
   frame.serialized = serialize(frame);
-  // Kept with the frame, for a tier that is wanted later.
-  const auto pixels = std::make_shared<const frame::RgbImage>(
-      frame::RgbImage{picture.width_px, picture.height_px, std::move(drawn.picture.rgb)});
-  drawn.session->hub().Publish(std::move(frame),
-                               [pixels, serialize](const EncodedFrame& full, int tier) {
-                                 return Reduced(full, tier, *pixels, serialize);
-                               });
+  return frame;
+}
+
+absl::StatusOr<EncodedVideo> WithVideo(const EncodedFrame& described, VideoOrder order,
+                                       const frame::RgbImage& picture, VideoEncoders& encoders,
+                                       const SerializeFrame& serialize) {
+  const base::Stopwatch stopwatch;
+  EncodedFrame frame = At(described, order.tier, picture);
+  THUNDERHEAD_ASSIGN_OR_RETURN(codec::Vp9Picture encoded, encoders.Encode(picture, &order));
+  frame.vp9 = std::move(encoded.bytes);
+  frame.key_frame = encoded.key;
+  frame.stages.push_back({scene::FrameStage::kEncode, stopwatch.ElapsedMs()});
+  Count(frame.stages.back());
+  frame.serialized = serialize(frame);
+  return EncodedVideo{order, std::move(frame)};
+}
+
+// The pictures of video that viewers wait for. One that fails is left out: they get JPEG.
+std::vector<EncodedVideo> VideoOf(const EncodedFrame& described, Session& session,
+                                  bool still_follows, Pictures& pictures,
+                                  const SerializeFrame& serialize) {
+  std::vector<EncodedVideo> video;
+  for (const VideoOrder& order :
+       session.hub().OrderVideo(described.width_px, described.at_rest, still_follows)) {
+    auto encoded = WithVideo(described, order, pictures.At(order.tier), session.video(), serialize);
+    if (encoded.ok()) {
+      video.push_back(*std::move(encoded));
+    } else {
+      base::LogError(base::Annotate(encoded.status(), "encoding video"));
+    }
+  }
+  return video;
+}
+
+// Encodes JPEG in a tier; an error is the frame's problem.
+EncodeFrame JpegEncoder(const std::shared_ptr<Session>& session,
+                        const std::shared_ptr<Pictures>& pictures, int wanted_quality,
+                        const SerializeFrame& serialize) {
+  // The session keeps the frame, and the frame this.
+  return [weak_session = std::weak_ptr(session), pictures, wanted_quality, serialize](
+             const EncodedFrame& described, int tier) -> std::optional<EncodedFrame> {
+    auto frame = WithJpeg(described, tier, pictures->At(tier), wanted_quality, serialize);
+    if (frame.ok()) return *std::move(frame);
+    if (const auto owner = weak_session.lock(); owner != nullptr) {
+      owner->hub().Publish(ProblemOf(described.scene_revision, frame.status()));
+    }
+    return std::nullopt;
+  };
+}
+
+void EncodeAndPublish(DrawnFrame drawn, const SerializeFrame& serialize, StillMaker& stills) {
+  const std::shared_ptr<Session>& session = drawn.session;
+  const EncodedFrame described = Described(drawn);
+  Count(described, drawn.scene);
+  const auto pictures = std::make_shared<Pictures>(frame::RgbImage{
+      drawn.picture.width_px, drawn.picture.height_px, std::move(drawn.picture.rgb)});
+  const bool still_follows = drawn.fine.has_value();
+  auto video = VideoOf(described, *session, still_follows, *pictures, serialize);
+  const std::uint64_t sequence = session->hub().Publish(
+      described, JpegEncoder(session, pictures, drawn.scene.output.jpeg_quality, serialize),
+      std::move(video), still_follows);
+  if (!drawn.refined) return;
+  StillToMake still{session, sequence, described, nullptr};
+  if (still_follows) {
+    still.fine = std::make_shared<PictureSizes<frame::FineImage>>(*std::move(drawn.fine));
+  }
+  stills.Make(std::move(still));
 }
 
 }  // namespace
 
 FrameEncoder::FrameEncoder(int threads, SerializeFrame serialize, std::function<void()> on_encoded)
-    : serialize_(std::move(serialize)), on_encoded_(std::move(on_encoded)) {
+    : serialize_(std::move(serialize)), on_encoded_(std::move(on_encoded)), stills_(serialize_) {
   for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { Run(); });
 }
 
@@ -134,7 +195,7 @@ void FrameEncoder::Run() {
     const std::shared_ptr<Session> session = drawn.session;
     encoding_.push_back(session.get());
     lock.unlock();
-    EncodeAndPublish(std::move(drawn), serialize_);
+    EncodeAndPublish(std::move(drawn), serialize_, stills_);
     lock.lock();
     encoding_.erase(std::find(encoding_.begin(), encoding_.end(), session.get()));
     lock.unlock();

@@ -1,6 +1,6 @@
-// Encodes sessions' frames as JPEG on other threads than the render loop's, and publishes them in
-// the order in which they were drawn. The render loop submits at most two frames of a session at a
-// time, which bounds the queue.
+// Encodes sessions' frames as JPEG and video on other threads than the render loop's, and publishes
+// them in the order in which they were drawn; stills of higher quality follow (still_maker.h). The
+// render loop submits at most two frames of a session at a time, which bounds the queue.
 #pragma once
 
 #include <condition_variable>
@@ -16,6 +16,7 @@
 #include "scene/view.h"
 #include "session/frame_source.h"
 #include "session/sessions.h"
+#include "session/still_maker.h"
 
 namespace thunderhead::session {
 
@@ -25,13 +26,12 @@ struct DrawnFrame {
   std::uint64_t scene_revision = 0;
   scene::Scene scene;
   bool refined = false;
+  bool at_rest = false;  // the scene had not changed for a while
   DisplayFrame picture;
+  std::optional<frame::FineImage> fine;  // where viewers take stills of higher quality
   std::optional<Refinement> refinement;  // of a picture by the reference
   scene::View view;
 };
-
-// Makes the bytes of a frame that every viewer is sent.
-using SerializeFrame = std::function<std::string(const EncodedFrame&)>;
 
 class FrameEncoder {
  public:
@@ -54,6 +54,7 @@ class FrameEncoder {
 
   const SerializeFrame serialize_;
   const std::function<void()> on_encoded_;
+  StillMaker stills_;
   std::mutex mutex_;
   std::condition_variable changed_;
   bool stopping_ = false;

@@ -2,52 +2,26 @@
 
 #include <algorithm>
 #include <utility>
+
 #include "telemetry/metrics.h"
 
 namespace thunderhead::session {
-
-using telemetry::Counted;
 namespace {
 
-Problem::Code CodeOf(absl::StatusCode code) {
-  switch (code) {
-    case absl::StatusCode::kInvalidArgument:
-    case absl::StatusCode::kFailedPrecondition:
-    case absl::StatusCode::kOutOfRange:
-      return Problem::Code::kScene;
-    case absl::StatusCode::kResourceExhausted:
-    case absl::StatusCode::kUnavailable:
-      return Problem::Code::kBusy;
-    default:
-      return Problem::Code::kInternal;
-  }
+using telemetry::Counted;
+
+// Larger for a form that is worth sending again.
+int Worth(const FrameForm& form) {
+  int worth = kTiers - form.tier;
+  if (form.kind == FrameForm::Kind::kJpeg) worth += kTiers;
+  if (form.kind == FrameForm::Kind::kStill) worth += 2 * kTiers;
+  return worth;
 }
 
 }  // namespace
 
-Problem ProblemOf(std::uint64_t scene_revision, const absl::Status& why) {
-  return {scene_revision, std::string(why.message()), CodeOf(why.code())};
-}
-
-Problem UnreadableStorm(std::uint64_t scene_revision, const absl::Status& why) {
-  const bool gone = absl::IsNotFound(why);
-  return {scene_revision, std::string(why.message()),
-          gone ? Problem::Code::kStormGone : Problem::Code::kStormUnreadable};
-}
-
 FrameHub::FrameHub(std::function<void()> on_demand, std::function<void()> on_wait)
     : on_demand_(std::move(on_demand)), on_wait_(std::move(on_wait)) {}
-
-PublishedFrame::PublishedFrame(EncodedFrame full, ReduceFrame reduce)
-    : reduce_(std::move(reduce)), tiers_{std::make_shared<const EncodedFrame>(std::move(full))} {}
-
-std::shared_ptr<const EncodedFrame> PublishedFrame::At(int tier) {
-  const std::lock_guard lock(mutex_);
-  auto& frame = tiers_[static_cast<std::size_t>(tier)];
-  if (frame == nullptr && reduce_ == nullptr) frame = tiers_[0];
-  if (frame == nullptr) frame = std::make_shared<const EncodedFrame>(reduce_(Full(), tier));
-  return frame;
-}
 
 absl::StatusOr<std::uint64_t> FrameHub::Join(std::shared_ptr<Viewer> viewer,
                                              const ViewerWants& wants) {
@@ -60,6 +34,9 @@ absl::StatusOr<std::uint64_t> FrameHub::Join(std::shared_ptr<Viewer> viewer,
     }
     watches_[id].viewer = std::move(viewer);
     watches_[id].wants = wants;
+    // JPEG as it is, then video in each tier.
+    if (TakesVideo(watches_[id])) watches_[id].link = LinkEstimate(1 + kTiers);
+    SetLeastSteps(std::chrono::steady_clock::now());
   }
   on_demand_();
   return id;
@@ -69,11 +46,14 @@ void FrameHub::SetWants(std::uint64_t viewer_id, const ViewerWants& wants) {
   const std::lock_guard lock(mutex_);
   const auto found = watches_.find(viewer_id);
   if (found == watches_.end() || found->second.wants == wants) return;
-  found->second.wants = wants;
-  found->second.waits_until.reset();
+  Watch& watch = found->second;
+  watch.wants = wants;
+  watch.waits_until.reset();
+  SetLeastSteps(std::chrono::steady_clock::now());
   // The newest picture again if it is too small now.
-  if (frame_ != nullptr && TierFor(found->second, frame_->Full()) < found->second.last_tier) {
-    found->second.last_sequence = 0;
+  if (frame_ != nullptr && watch.last_form.kind == FrameForm::Kind::kJpeg &&
+      JpegTier(watch, *frame_) < watch.last_form.tier) {
+    watch.last_sequence = 0;
   }
 }
 
@@ -81,58 +61,112 @@ void FrameHub::Leave(std::uint64_t viewer_id) {
   {
     const std::lock_guard lock(mutex_);
     watches_.erase(viewer_id);
+    SetLeastSteps(std::chrono::steady_clock::now());
   }
   on_demand_();
 }
 
-int FrameHub::TierFor(const Watch& watch, const EncodedFrame& frame) {
-  const int for_window = TierForWindow(frame.width_px, watch.wants.window_width_px);
-  const bool reduced = watch.wants.adapts && !frame.refined;
-  return reduced ? std::max(for_window, watch.link.tier()) : for_window;
+bool FrameHub::TakesVideo(const Watch& watch) {
+  return watch.wants.adapts && watch.wants.takes_video;
+}
+
+void FrameHub::SetLeastSteps(Time now) {
+  const auto able = std::count_if(watches_.begin(), watches_.end(),
+                                  [](const auto& entry) { return TakesVideo(entry.second); });
+  for (auto& [id, watch] : watches_) {
+    const bool at_once = watch.wants.saves_bytes || able >= kManyForVideo;
+    if (TakesVideo(watch)) watch.link.SetLeast(at_once ? 1 : 0, now);
+  }
+}
+
+int FrameHub::JpegTier(const Watch& watch, const PublishedFrame& frame) {
+  const int for_window = TierForWindow(frame.Described().width_px, watch.wants.window_width_px);
+  const bool reduced = watch.wants.adapts && !frame.Rests();
+  return reduced ? std::max(for_window, std::min(watch.link.step(), kTiers - 1)) : for_window;
+}
+
+std::optional<int> FrameHub::VideoTier(const Watch& watch, int width_px) {
+  if (!TakesVideo(watch) || watch.link.step() == 0) return std::nullopt;
+  return std::max(TierForWindow(width_px, watch.wants.window_width_px), watch.link.step() - 1);
+}
+
+std::size_t FrameHub::MaxInFlight(const Watch& watch) {
+  return watch.last_form.kind == FrameForm::Kind::kVideo ? watch.window.size() : kMaxInFlight;
 }
 
 bool FrameHub::IsReady(const Watch& watch, Time now) {
-  return watch.in_flight.size() < kMaxInFlight &&
+  return watch.in_flight.size() < MaxInFlight(watch) &&
          (!watch.waits_until.has_value() || now >= *watch.waits_until);
 }
 
-bool FrameHub::HasFrameFor(const Watch& watch, Time now) const {
-  return IsReady(watch, now) && frame_ != nullptr && frame_->Full().sequence > watch.last_sequence;
+std::optional<FrameHub::Offer> FrameHub::VideoFor(const Watch& watch, const PublishedFrame& frame,
+                                                  int tier) const {
+  const FrameForm form{FrameForm::Kind::kVideo, tier};
+  const std::uint64_t newest = frame.Described().sequence;
+  const VideoPicture& picture = frame.Video(tier);
+  if (picture.frame != nullptr && newest > watch.last_sequence &&
+      watch.place.CanTake(tier, picture)) {
+    return Offer{newest, form, picture};
+  }
+  // The base picture that it has missed, without which it can take none of the newer ones.
+  const VideoStream& stream = streams_[static_cast<std::size_t>(tier)];
+  const VideoPicture& base = stream.NewestBase();
+  const bool missed = base.frame != nullptr && base.needs != 0 &&
+                      base.needs == watch.place.BaseOf(tier) &&
+                      stream.NewestBaseSequence() > watch.last_sequence;
+  if (missed) return Offer{stream.NewestBaseSequence(), form, base};
+  return std::nullopt;
+}
+
+std::optional<FrameHub::Offer> FrameHub::OfferFor(const Watch& watch, PublishedFrame& frame) const {
+  const EncodedFrame& described = frame.Described();
+  const bool is_new = described.sequence > watch.last_sequence;
+  const auto if_wanted = [&](const FrameForm& form) -> std::optional<Offer> {
+    const bool better = frame.Rests() && Worth(form) > Worth(watch.last_form);
+    if (!is_new && !better) return std::nullopt;
+    return Offer{described.sequence, form, {}};
+  };
+  const int for_window = TierForWindow(described.width_px, watch.wants.window_width_px);
+  if (watch.wants.takes_stills && frame.Still(for_window) != nullptr) {
+    return if_wanted({FrameForm::Kind::kStill, for_window});
+  }
+  const FrameForm jpeg{FrameForm::Kind::kJpeg, JpegTier(watch, frame)};
+  const std::optional<int> video_tier = VideoTier(watch, described.width_px);
+  if (!video_tier.has_value()) return if_wanted(jpeg);
+  const bool awaits_still = watch.wants.takes_stills && frame.StillFollows();
+  if (frame.Rests() && !awaits_still) return if_wanted(jpeg);
+  if (auto video = VideoFor(watch, frame, *video_tier); video.has_value()) return video;
+  // Small pictures until the next key picture; nothing for who has the newest one of the stream.
+  if (watch.place.BaseOf(*video_tier) != 0 || !is_new) return std::nullopt;
+  return Offer{
+      described.sequence,
+      {FrameForm::Kind::kJpeg, std::max(for_window, std::min(watch.link.step(), kTiers - 1))},
+      {}};
+}
+
+std::optional<FrameHub::Offer> FrameHub::NextFor(const Watch& watch, Time now) const {
+  if (frame_ == nullptr || !IsReady(watch, now)) return std::nullopt;
+  return OfferFor(watch, *frame_);
 }
 
 bool FrameHub::HasFor(const Watch& watch, Time now) const {
-  return HasFrameFor(watch, now) || (problem_.has_value() && problem_count_ > watch.last_problem);
+  return NextFor(watch, now).has_value() ||
+         (problem_.has_value() && problem_count_ > watch.last_problem);
 }
 
 std::optional<FrameEvent> FrameHub::Take(std::uint64_t viewer_id, Time now) {
-  std::shared_ptr<PublishedFrame> frame;
-  int tier = 0;
+  std::shared_ptr<PublishedFrame> published;
+  std::optional<Offer> offer;
   bool waits = false;
   {
     const std::lock_guard lock(mutex_);
     const auto found = watches_.find(viewer_id);
     if (found == watches_.end() || !closed_because_.ok()) return std::nullopt;
     Watch& watch = found->second;
-    if (HasFrameFor(watch, now)) {
-      frame = frame_;
-      tier = TierFor(watch, frame->Full());
-      const EncodedFrame& full = frame->Full();
-      // A viewer who has just come has missed nothing.
-      const bool has_had_any = watch.last_sequence > 0;
-      if (has_had_any) Counted().frames_skipped.Add(full.sequence - watch.last_sequence - 1);
-      const bool first = has_had_any && full.scene_revision > watch.last_revision;
-      watch.last_tier = tier;
-      watch.last_sequence = full.sequence;
-      watch.last_revision = full.scene_revision;
-      watch.in_flight.push_back(
-          {watch.last_sequence, now, !full.refined, first ? full.changed_at : std::nullopt});
-      if (watch.wants.frames_per_second > 0.0) {
-        constexpr double kFewest_per_s = 0.1;
-        const std::chrono::duration<double> pause(
-            1.0 / std::max(watch.wants.frames_per_second, kFewest_per_s));
-        watch.waits_until = now + std::chrono::duration_cast<Time::duration>(pause);
-        waits = true;
-      }
+    offer = NextFor(watch, now);
+    if (offer.has_value()) {
+      published = frame_;
+      waits = Took(watch, *offer, now);
     } else if (problem_.has_value() && problem_count_ > watch.last_problem) {
       watch.last_problem = problem_count_;
       return *problem_;
@@ -141,11 +175,52 @@ std::optional<FrameEvent> FrameHub::Take(std::uint64_t viewer_id, Time now) {
     }
   }
   if (waits) on_wait_();
-  // Without the lock, as a tier that nobody wanted before is encoded now.
-  std::shared_ptr<const EncodedFrame> sent = frame->At(tier);
+  const std::shared_ptr<const EncodedFrame> frame = Made(*offer, *published);
+  if (frame == nullptr) return std::nullopt;
   Counted().frames_sent.Add();
-  Counted().frame_bytes_sent.Add(sent->jpeg.size());
-  return sent;
+  Counted().frame_bytes_sent.Add(frame->jpeg.size() + frame->vp9.size() + frame->avif.size());
+  return frame;
+}
+
+// Without the lock, as a tier that nobody wanted before is encoded now.
+std::shared_ptr<const EncodedFrame> FrameHub::Made(const Offer& offer, PublishedFrame& published) {
+  switch (offer.form.kind) {
+    case FrameForm::Kind::kVideo:
+      return offer.picture.frame;
+    case FrameForm::Kind::kStill:
+      return published.Still(offer.form.tier);
+    case FrameForm::Kind::kJpeg:
+      break;
+  }
+  return published.Jpeg(offer.form.tier);
+}
+
+bool FrameHub::Took(Watch& watch, const Offer& offer, Time now) {
+  const bool is_video = offer.form.kind == FrameForm::Kind::kVideo;
+  if (is_video) {
+    watch.place.Enter(offer.form.tier);
+    watch.place.Took(offer.sequence, offer.picture, now);
+  }
+  const EncodedFrame& frame = is_video ? *offer.picture.frame : frame_->Described();
+  // A viewer who has just come has missed nothing; a better form of a frame is not another one.
+  const bool has_had_any = watch.last_sequence > 0;
+  if (has_had_any && offer.sequence > watch.last_sequence) {
+    Counted().frames_skipped.Add(offer.sequence - watch.last_sequence - 1);
+  }
+  const bool first_of_revision = has_had_any && frame.scene_revision > watch.last_revision;
+  watch.last_form = offer.form;
+  watch.last_sequence = offer.sequence;
+  watch.last_revision = frame.scene_revision;
+  const bool moving = is_video || (!frame_->Rests() && offer.form.kind == FrameForm::Kind::kJpeg);
+  const bool is_last = watch.in_flight.size() + 1 >= MaxInFlight(watch);
+  watch.in_flight.push_back({offer.sequence, now, moving, is_video, is_last,
+                             first_of_revision ? frame.changed_at : std::nullopt});
+  if (watch.wants.frames_per_second <= 0.0) return false;
+  constexpr double kFewest_per_s = 0.1;
+  const std::chrono::duration<double> pause(1.0 /
+                                            std::max(watch.wants.frames_per_second, kFewest_per_s));
+  watch.waits_until = now + std::chrono::duration_cast<Time::duration>(pause);
+  return true;
 }
 
 bool FrameHub::Acknowledge(std::uint64_t viewer_id, std::uint64_t sequence, Time now) {
@@ -157,15 +232,18 @@ bool FrameHub::Acknowledge(std::uint64_t viewer_id, std::uint64_t sequence, Time
     if (found == watches_.end()) return false;
     Watch& watch = found->second;
     auto& in_flight = watch.in_flight;
-    const bool was_full = in_flight.size() >= kMaxInFlight;
+    const bool was_full = in_flight.size() >= MaxInFlight(watch);
     while (!in_flight.empty() && in_flight.front().sequence <= sequence) {
-      if (const auto changed_at = in_flight.front().changed_at; changed_at.has_value()) {
-        Counted().update_to_frame.Observe(std::chrono::duration<double>(now - *changed_at).count());
+      const Sent& sent = in_flight.front();
+      if (sent.changed_at.has_value()) {
+        const std::chrono::duration<double> took = now - *sent.changed_at;
+        Counted().update_to_frame.Observe(took.count());
       }
-      if (in_flight.front().moving) watch.link.Acknowledged(now, in_flight.front().at);
+      if (sent.moving) watch.link.Acknowledged(now, sent.at);
+      if (sent.video) watch.window.Acknowledged(now - sent.at, sent.was_last);
       in_flight.pop_front();
     }
-    became_ready = was_full && in_flight.size() < kMaxInFlight;
+    became_ready = was_full && in_flight.size() < MaxInFlight(watch);
     if (HasFor(watch, now)) viewer = watch.viewer;
   }
   if (viewer != nullptr) viewer->Wake();
@@ -193,25 +271,97 @@ std::optional<FrameHub::Time> FrameHub::WakeWaiting(Time now) {
   return next;
 }
 
-void FrameHub::Publish(EncodedFrame frame, ReduceFrame reduce) {
+void FrameHub::LoseVideo(std::uint64_t viewer_id, Time now) {
+  const std::lock_guard lock(mutex_);
+  const auto found = watches_.find(viewer_id);
+  if (found != watches_.end()) found->second.place.Lost(now);
+}
+
+std::vector<VideoOrder> FrameHub::OrderVideo(int width_px, bool at_rest, bool still_follows,
+                                             Time now) {
+  const std::lock_guard lock(mutex_);
+  for (VideoStream& stream : streams_) stream.Begin();
+  for (auto& [id, watch] : watches_) {
+    const std::optional<int> tier = VideoTier(watch, width_px);
+    const bool gets_jpeg = at_rest && !(still_follows && watch.wants.takes_stills);
+    if (!tier.has_value() || gets_jpeg) continue;
+    streams_[static_cast<std::size_t>(*tier)].Ask(*tier, {&watch.place, IsReady(watch, now)}, now);
+  }
+  std::vector<VideoOrder> orders;
+  for (int tier = 0; tier < kTiers; ++tier) {
+    const auto kind = streams_[static_cast<std::size_t>(tier)].Next(now);
+    if (kind.has_value()) orders.push_back({tier, *kind});
+  }
+  return orders;
+}
+
+std::uint64_t FrameHub::Publish(EncodedFrame described, EncodeFrame encode,
+                                std::vector<EncodedVideo> video, bool still_follows, Time now) {
+  const std::uint64_t scene_revision = described.scene_revision;
+  std::shared_ptr<PublishedFrame> published;
   std::array<bool, kTiers> wanted{};
+  std::uint64_t sequence = 0;
   {
     const std::lock_guard lock(mutex_);
-    frame.sequence = ++frame_count_;
+    sequence = ++frame_count_;
+    described.sequence = sequence;
+    VideoPictures pictures;
+    for (EncodedVideo& one : video) {
+      one.frame.sequence = sequence;
+      const auto tier = static_cast<std::size_t>(one.order.tier);
+      pictures[tier] =
+          streams_[tier].Add(sequence, one.order.kind,
+                             std::make_shared<const EncodedFrame>(std::move(one.frame)), now);
+    }
+    published = std::make_shared<PublishedFrame>(std::move(described), std::move(encode),
+                                                 std::move(pictures), still_follows);
     for (const auto& [id, watch] : watches_) {
-      wanted[static_cast<std::size_t>(TierFor(watch, frame))] = true;
+      const auto offer = OfferFor(watch, *published);
+      if (offer.has_value() && offer->form.kind == FrameForm::Kind::kJpeg) {
+        wanted[static_cast<std::size_t>(offer->form.tier)] = true;
+      }
     }
   }
-  const std::uint64_t scene_revision = frame.scene_revision;
-  const auto published = std::make_shared<PublishedFrame>(std::move(frame), std::move(reduce));
   for (int tier = 0; tier < kTiers; ++tier) {
-    if (wanted[static_cast<std::size_t>(tier)]) published->At(tier);
+    if (wanted[static_cast<std::size_t>(tier)]) (void)published->Jpeg(tier);
   }
   {
     const std::lock_guard lock(mutex_);
     if (problem_.has_value() && problem_->scene_revision <= scene_revision) problem_.reset();
     frame_ = published;
   }
+  WakeAll();
+  return sequence;
+}
+
+std::shared_ptr<PublishedFrame> FrameHub::Newest(std::uint64_t sequence) const {
+  const std::lock_guard lock(mutex_);
+  const bool is_newest = frame_ != nullptr && frame_->Described().sequence == sequence;
+  return is_newest ? frame_ : nullptr;
+}
+
+bool FrameHub::IsNewest(std::uint64_t sequence) const { return Newest(sequence) != nullptr; }
+
+void FrameHub::AddStill(std::uint64_t sequence, int tier, EncodedFrame still) {
+  const auto frame = Newest(sequence);
+  if (frame == nullptr) return;
+  still.sequence = sequence;
+  frame->SetStill(tier, std::move(still));
+  frame->Rest();
+  WakeAll();
+}
+
+void FrameHub::NoStills(std::uint64_t sequence) {
+  const auto frame = Newest(sequence);
+  if (frame == nullptr) return;
+  frame->NoStills();
+  WakeAll();
+}
+
+void FrameHub::Rest(std::uint64_t sequence) {
+  const auto frame = Newest(sequence);
+  if (frame == nullptr || frame->Rests()) return;
+  frame->Rest();
   WakeAll();
 }
 
@@ -238,14 +388,24 @@ absl::Status FrameHub::ClosedBecause() const {
   return closed_because_;
 }
 
-int FrameHub::ViewerCount() const {
+std::size_t FrameHub::Viewers() const {
   const std::lock_guard lock(mutex_);
-  return static_cast<int>(watches_.size());
+  return watches_.size();
 }
 
 bool FrameHub::HasViewers() const {
   const std::lock_guard lock(mutex_);
   return !watches_.empty();
+}
+
+std::array<bool, kTiers> FrameHub::StillTiers(int width_px) const {
+  std::array<bool, kTiers> wanted{};
+  const std::lock_guard lock(mutex_);
+  for (const auto& [id, watch] : watches_) {
+    if (!watch.wants.takes_stills) continue;
+    wanted[static_cast<std::size_t>(TierForWindow(width_px, watch.wants.window_width_px))] = true;
+  }
+  return wanted;
 }
 
 bool FrameHub::HasReadyViewer() const {

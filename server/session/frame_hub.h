@@ -1,8 +1,8 @@
 // Distributes a session's newest frame to its viewers. Each viewer has at most two unacknowledged
-// frames; a slow one skips frames and never slows another. A viewer with a slow link or a small
-// window gets smaller pictures; each size is encoded once, whatever the number of viewers. The hub
-// keeps only one frame and one problem. Safe from any thread. Does not know how frames are drawn or
-// sent.
+// frames; a slow one skips frames and never slows another. A viewer with a slow link gets video
+// where it can decode it, or smaller pictures; each form is encoded once, whatever the number of
+// viewers. The hub keeps only one frame and one problem, and the newest base picture of each stream
+// of video. Safe from any thread. Does not know how frames are drawn, encoded or sent.
 #pragma once
 
 #include <array>
@@ -15,79 +15,18 @@
 #include <mutex>
 #include <optional>
 #include <random>
-#include <string>
 #include <variant>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "scene/scene.h"
-#include "scene/view.h"
-#include "session/frame_source.h"
+#include "session/encoded_frame.h"
+#include "session/flight_window.h"
 #include "session/link_estimate.h"
+#include "session/published_frame.h"
+#include "session/video_order.h"
 
 namespace thunderhead::session {
-
-// A frame ready to be sent.
-struct EncodedFrame {
-  std::uint64_t sequence = 0;  // counts the session's frames from 1; set by the hub
-  std::uint64_t scene_revision = 0;
-  std::string jpeg;
-  int jpeg_quality = 0;
-  int width_px = 0;
-  int height_px = 0;
-  scene::Camera camera;
-  scene::View view;
-  scene::Sun sun;
-  std::vector<StageTime> stages;
-  Modelled modelled;
-  bool refined = false;
-  int tier = 0;
-  std::optional<Refinement> refinement;  // of a picture by the reference
-  std::optional<AccuracyReport> accuracy;
-  // When the scene became what it shows; none if that has changed since.
-  std::optional<std::chrono::steady_clock::time_point> changed_at;
-  // The frame without its sequence as the service serialized it, once for all viewers; opaque here.
-  std::string serialized;
-};
-
-// The reason why the scene of a revision has no frame.
-struct Problem {
-  enum class Code {
-    kStormGone,
-    kStormUnreadable,
-    kScene,  // asks for something that cannot be drawn
-    kBusy,
-    kInternal,
-  };
-
-  std::uint64_t scene_revision = 0;
-  std::string message;
-  Code code = Code::kInternal;
-};
-
-// The problem of a scene that could not be drawn.
-Problem ProblemOf(std::uint64_t scene_revision, const absl::Status& why);
-// The problem of a scene whose storm could not be read.
-Problem UnreadableStorm(std::uint64_t scene_revision, const absl::Status& why);
-
-// Makes the frame with its picture in a tier above 0 (link_estimate.h).
-using ReduceFrame = std::function<EncodedFrame(const EncodedFrame& full, int tier)>;
-
-// A frame in all its tiers, each made when it is first wanted. Safe from any thread.
-class PublishedFrame {
- public:
-  // Without `reduce` every tier is the full frame.
-  PublishedFrame(EncodedFrame full, ReduceFrame reduce);
-
-  const EncodedFrame& Full() const { return *tiers_[0]; }
-  std::shared_ptr<const EncodedFrame> At(int tier);
-
- private:
-  const ReduceFrame reduce_;
-  std::mutex mutex_;
-  std::array<std::shared_ptr<const EncodedFrame>, kTiers> tiers_;
-};
 
 using FrameEvent = std::variant<std::shared_ptr<const EncodedFrame>, Problem>;
 
@@ -96,6 +35,9 @@ struct ViewerWants {
   int window_width_px = 0;         // 0: as the scene asks
   double frames_per_second = 0.0;  // at most; 0: as many as there are
   bool adapts = false;             // takes smaller pictures on a slow link
+  bool takes_video = false;        // VP9, where that adapts
+  bool takes_stills = false;       // AVIF
+  bool saves_bytes = false;        // wants video although the link is fast
 
   bool operator==(const ViewerWants&) const = default;
 };
@@ -108,11 +50,21 @@ class Viewer {
   virtual void Wake() = 0;
 };
 
+// A picture that was encoded for a stream.
+struct EncodedVideo {
+  VideoOrder order;  // a key picture also where another was asked for
+  EncodedFrame frame;
+};
+
 class FrameHub {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
+  // Of JPEG; for video FlightWindow.
   static constexpr std::size_t kMaxInFlight = 2;
+  // From so many viewers on who can decode video, all of them get it: then one encoding costs less
+  // than sending JPEG to all.
+  static constexpr int kManyForVideo = 12;
 
   // `on_demand` is called, without the lock, whenever a viewer joins, leaves or becomes ready for
   // another frame. `on_wait` is called, without the lock, when WakeWaiting is to be called in time.
@@ -134,12 +86,27 @@ class FrameHub {
   bool Acknowledge(std::uint64_t viewer_id, std::uint64_t sequence,
                    Time now = std::chrono::steady_clock::now());
 
+  // It cannot decode the video that it was sent, and goes on with JPEG until a key picture comes.
+  void LoseVideo(std::uint64_t viewer_id, Time now = std::chrono::steady_clock::now());
+
   // Wakes those who have waited long enough for their next frame, as they want few a second.
   // Returns when the next has.
   std::optional<Time> WakeWaiting(Time now);
 
-  // Replaces the newest frame, encoded in every tier that a viewer wants now.
-  void Publish(EncodedFrame frame, ReduceFrame reduce = nullptr);
+  // The pictures of video to encode of a frame of that width before it is published. One at rest
+  // whose stills follow is for those only who take them: others get it as JPEG.
+  std::vector<VideoOrder> OrderVideo(int width_px, bool at_rest, bool still_follows,
+                                     Time now = std::chrono::steady_clock::now());
+  // Replaces the newest frame, which has no picture yet, encoded in every tier that a viewer wants
+  // now. Returns its sequence.
+  std::uint64_t Publish(EncodedFrame described, EncodeFrame encode = nullptr,
+                        std::vector<EncodedVideo> video = {}, bool still_follows = false,
+                        Time now = std::chrono::steady_clock::now());
+  // If the newest frame has that sequence: its still in a tier is there; there will be none; no
+  // other has come for a while.
+  void AddStill(std::uint64_t sequence, int tier, EncodedFrame still);
+  void NoStills(std::uint64_t sequence);
+  void Rest(std::uint64_t sequence);
   // Replaces the newest problem; a frame of the same or a newer revision ends it.
   void Publish(Problem problem);
 
@@ -149,34 +116,59 @@ class FrameHub {
   absl::Status ClosedBecause() const;
 
   bool HasViewers() const;
-  int ViewerCount() const;
+  std::size_t Viewers() const;
   // True if a viewer can be sent another frame now.
   bool HasReadyViewer() const;
+  // The tiers in which viewers of a frame of that width take stills.
+  std::array<bool, kTiers> StillTiers(int width_px) const;
+  bool IsNewest(std::uint64_t sequence) const;
 
  private:
   struct Sent {
     std::uint64_t sequence = 0;
     Time at;
-    bool moving = false;             // not a still
+    bool moving = false;  // not a still
+    bool video = false;
+    bool was_last = false;           // no further one could be sent meanwhile
     std::optional<Time> changed_at;  // of the first frame of a revision
   };
   struct Watch {
     std::shared_ptr<Viewer> viewer;
     ViewerWants wants;
     LinkEstimate link;
+    VideoPlace place;
+    FlightWindow window;
     std::deque<Sent> in_flight;  // oldest first
     std::uint64_t last_sequence = 0;
-    int last_tier = 0;
+    FrameForm last_form;
     std::optional<Time> waits_until;  // for its next frame
     std::uint64_t last_problem = 0;
     std::uint64_t last_revision = 0;
   };
 
-  static int TierFor(const Watch& watch, const EncodedFrame& frame);
+  // A frame that a viewer can take, and its form.
+  struct Offer {
+    std::uint64_t sequence = 0;
+    FrameForm form;
+    VideoPicture picture;  // of video
+  };
+
+  static bool TakesVideo(const Watch& watch);
+  static int JpegTier(const Watch& watch, const PublishedFrame& frame);
+  // The tier of the stream that it follows, for a frame of that width; none if it gets JPEG.
+  static std::optional<int> VideoTier(const Watch& watch, int width_px);
+  static std::size_t MaxInFlight(const Watch& watch);
   static bool IsReady(const Watch& watch, Time now);
   // Need mutex_.
+  std::optional<Offer> OfferFor(const Watch& watch, PublishedFrame& frame) const;
+  std::optional<Offer> VideoFor(const Watch& watch, const PublishedFrame& frame, int tier) const;
+  std::optional<Offer> NextFor(const Watch& watch, Time now) const;
   bool HasFor(const Watch& watch, Time now) const;
-  bool HasFrameFor(const Watch& watch, Time now) const;
+  static std::shared_ptr<const EncodedFrame> Made(const Offer& offer, PublishedFrame& published);
+  // True if it is to be woken for its next frame.
+  bool Took(Watch& watch, const Offer& offer, Time now);
+  void SetLeastSteps(Time now);
+  std::shared_ptr<PublishedFrame> Newest(std::uint64_t sequence) const;
   void WakeAll();
 
   const std::function<void()> on_demand_;
@@ -184,6 +176,7 @@ class FrameHub {
   mutable std::mutex mutex_;
   std::map<std::uint64_t, Watch> watches_;
   std::shared_ptr<PublishedFrame> frame_;
+  std::array<VideoStream, kTiers> streams_;
   std::optional<Problem> problem_;
   std::uint64_t problem_count_ = 0;
   std::uint64_t frame_count_ = 0;

@@ -1,6 +1,6 @@
 // The interface between the render loop and the engine that draws: a scene and a storm's fields in,
 // display pixels out. The GL engine implements it; service tests use a fake one. A FrameSource is
-// created, used and destroyed on one thread.
+// created, used and destroyed on one thread; there is one for each thread that draws.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,8 @@
 #include "accuracy/accuracy_report.h"
 #include "accuracy/frame_quality.h"
 #include "accuracy/light_progress.h"
+#include "base/device_turn.h"
+#include "frame/fine_image.h"
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 #include "physics/hydrometeors.h"
@@ -105,19 +107,28 @@ class FrameSource {
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) = 0;
 
-  // Traces paths for a scene with traced light for about a tenth of a second, which improves the
-  // next Draw of it. RESOURCE_EXHAUSTED while light is traced for too many other scenes. `claim`,
-  // which may be null, is given a claim on what is traced for the scene.
+  // Traces paths for a scene with traced light for about a tenth of a second, which improves what
+  // any of the sources made by one factory draws of it: now and then, and once `wanted_paths` are
+  // traced. RESOURCE_EXHAUSTED while light is traced for too many other scenes. `claim`, which may
+  // be null, is given a claim on what is traced for the scene.
   virtual absl::StatusOr<accuracy::LightProgress> TraceLight(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
-      accuracy::LightClaim* claim) = 0;
+      std::int64_t wanted_paths, accuracy::LightClaim* claim) = 0;
 
   // Tone maps a picture of `scene` computed elsewhere. Does not disturb the stages that Draw keeps.
   virtual absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
                                             const scene::Scene& scene) = 0;
+
+  // The picture that Draw, DrawChecked or Tone has just given, with more than 8 bits; none if it
+  // cannot be had.
+  virtual absl::StatusOr<frame::FineImage> Fine() {
+    return absl::UnimplementedError("this frame source has pictures of 8 bits only");
+  }
 };
 
-// Makes the source on the thread that will use it.
-using FrameSourceFactory = std::function<absl::StatusOr<std::unique_ptr<FrameSource>>()>;
+// Makes a source on the thread that will use it. It takes `turn`, which must outlive it, for each
+// piece that it draws; null: it draws in one piece, and whoever calls it has the turn.
+using FrameSourceFactory =
+    std::function<absl::StatusOr<std::unique_ptr<FrameSource>>(base::DeviceTurn* turn)>;
 
 }  // namespace thunderhead::session

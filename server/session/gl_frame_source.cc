@@ -1,12 +1,13 @@
 #include "session/gl_frame_source.h"
 
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "accuracy/corrector_pool.h"
 #include "accuracy/estimator.h"
+#include "accuracy/traced_lights.h"
 #include "base/status.h"
-#include "base/stopwatch.h"
 #include "frame/tone_map.h"
 #include "gl/context.h"
 #include "renderers/renderer_pool.h"
@@ -14,97 +15,119 @@
 namespace thunderhead::session {
 namespace {
 
-// A cached correction takes less.
-constexpr double kMinReported_ms = 0.1;
+// What the sources of one device have in common.
+struct Shared {
+  std::shared_ptr<const renderers::TechniqueRegistry> registry =
+      std::make_shared<renderers::TechniqueRegistry>(renderers::TechniqueRegistry::BuiltIn());
+  std::shared_ptr<accuracy::TracedLights> lights = std::make_shared<accuracy::TracedLights>();
+};
 
 class GlFrameSource final : public FrameSource {
  public:
-  explicit GlFrameSource(std::unique_ptr<gl::Context> context)
+  GlFrameSource(std::unique_ptr<gl::Context> context, Shared shared, base::DeviceTurn* turn)
       : context_(std::move(context)),
+        shared_(std::move(shared)),
+        programs_(std::make_shared<gl::ProgramCache>(turn)),
         info_{context_->Info().device, context_->Info().renderer, context_->Info().version} {}
 
   const DeviceInfo& Device() const override { return info_; }
 
-  std::vector<TechniqueInfo> Techniques() const override { return TechniquesOf(*registry_); }
+  std::vector<TechniqueInfo> Techniques() const override { return TechniquesOf(*shared_.registry); }
 
   std::shared_ptr<Preparation> PreparationOfScenes() const override {
-    return registry_->PreparationOfScenes();
+    return shared_.registry->PreparationOfScenes();
   }
 
   absl::StatusOr<DisplayFrame> Draw(const scene::Scene& scene,
                                     const std::shared_ptr<const volume::HydrometeorFields>& fields,
                                     const FrameQuality& quality) override {
-    const Correction correction = CorrectionOf(scene, fields);
-    THUNDERHEAD_ASSIGN_OR_RETURN(
-        const renderers::LinearFrame linear,
-        renderers_.Draw(scene, fields,
-                        correction.Applied({quality.image_scale, quality.slice_share})));
-    return Display(linear, scene, correction);
+    tone_mapped_.reset();
+    return programs_->Pieces().During([&]() -> absl::StatusOr<DisplayFrame> {
+      const Correction correction = CorrectionOf(scene, fields);
+      THUNDERHEAD_ASSIGN_OR_RETURN(
+          const renderers::LinearFrame linear,
+          renderers_.Draw(scene, fields,
+                          Applied(correction, {quality.image_scale, quality.slice_share})));
+      return Display(linear, scene, correction);
+    });
   }
 
   absl::StatusOr<CheckedFrame> DrawChecked(
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
-    const Correction correction = CorrectionOf(scene, fields);
-    CheckedFrame checked;
-    THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame coarse,
-                                 renderers_.Draw(scene, fields, correction.Applied({1.0, 0.5})));
-    const std::vector<float> coarse_radiance = frame::ReadLinear(*coarse.radiance);
-    THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame fine,
-                                 renderers_.Draw(scene, fields, correction.Applied({})));
-    checked.discretisation_error =
-        accuracy::DiscretisationError(coarse_radiance, frame::ReadLinear(*fine.radiance));
-    THUNDERHEAD_ASSIGN_OR_RETURN(checked.frame, Display(fine, scene, correction));
-    return checked;
+    tone_mapped_.reset();
+    return programs_->Pieces().During([&]() -> absl::StatusOr<CheckedFrame> {
+      const Correction correction = CorrectionOf(scene, fields);
+      CheckedFrame checked;
+      THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame coarse,
+                                   renderers_.Draw(scene, fields, Applied(correction, {1.0, 0.5})));
+      const std::vector<float> coarse_radiance = frame::ReadLinear(*coarse.radiance);
+      THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame fine,
+                                   renderers_.Draw(scene, fields, Applied(correction, {})));
+      checked.discretisation_error =
+          accuracy::DiscretisationError(coarse_radiance, frame::ReadLinear(*fine.radiance));
+      THUNDERHEAD_ASSIGN_OR_RETURN(checked.frame, Display(fine, scene, correction));
+      return checked;
+    });
   }
 
   absl::StatusOr<accuracy::LightProgress> TraceLight(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
-      accuracy::LightClaim* claim) override {
-    return correctors_.Trace(scene, fields, claim);
+      std::int64_t wanted_paths, accuracy::LightClaim* claim) override {
+    tone_mapped_.reset();
+    return correctors_.Trace(scene, fields, claim, wanted_paths);
   }
 
   absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
                                     const scene::Scene& scene) override {
-    THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped,
-                                 picture_tone_mapper_.Map(frame::TextureOf(picture), scene));
-    DisplayFrame frame;
-    Fill(picture.size_px, std::move(mapped), &frame);
-    return frame;
+    tone_mapped_.reset();
+    return programs_->Pieces().During([&]() -> absl::StatusOr<DisplayFrame> {
+      picture_ = frame::TextureOf(picture);
+      THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped,
+                                   picture_tone_mapper_.Map(picture_, scene));
+      tone_mapped_ = {&picture_, &picture_tone_mapper_};
+      DisplayFrame frame;
+      Fill(picture.size_px, std::move(mapped), &frame);
+      return frame;
+    });
+  }
+
+  absl::StatusOr<frame::FineImage> Fine() override {
+    if (!tone_mapped_.has_value()) {
+      return absl::FailedPreconditionError("no picture was drawn that could be had with more bits");
+    }
+    return programs_->Pieces().During(
+        [&] { return tone_mapped_->mapper->MapFine(*tone_mapped_->linear); });
   }
 
  private:
-  // The correction of a scene's light by traced paths; null light without any.
-  struct Correction {
-    std::shared_ptr<const renderers::LightCorrection> light;
-    std::int64_t paths = 0;
-    double milliseconds = 0.0;  // to compute it
-
-    renderers::DrawQuality Applied(renderers::DrawQuality quality) const {
-      quality.correction = light;
-      return quality;
-    }
+  // The picture drawn last, until anything else is drawn.
+  struct Drawn {
+    const gl::Texture2D* linear;
+    frame::ToneMapper* mapper;
   };
+
+  // Of a scene's light by traced paths; null without any.
+  using Correction = accuracy::TracedLights::Found;
+
+  static renderers::DrawQuality Applied(const Correction& correction,
+                                        renderers::DrawQuality quality) {
+    quality.correction = correction.correction;
+    return quality;
+  }
 
   Correction CorrectionOf(const scene::Scene& scene,
                           const std::shared_ptr<const volume::HydrometeorFields>& fields) {
-    accuracy::LightCorrector* const corrector = correctors_.Find(scene, fields);
-    if (corrector == nullptr) return {};
-    const base::Stopwatch stopwatch;
-    auto light = corrector->Correction();
-    if (light == nullptr) return {};
-    return {std::move(light), corrector->Progress().paths, stopwatch.ElapsedMs()};
+    return shared_.lights->Find(scene, fields).value_or(Correction{});
   }
 
   absl::StatusOr<DisplayFrame> Display(const renderers::LinearFrame& linear,
                                        const scene::Scene& scene, const Correction& correction) {
     THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped,
                                  tone_mapper_.Map(*linear.radiance, scene));
+    tone_mapped_ = {linear.radiance, &tone_mapper_};
     DisplayFrame frame;
     frame.stages = linear.stages;
-    if (correction.milliseconds >= kMinReported_ms) {
-      frame.stages.push_back({scene::FrameStage::kCorrection, correction.milliseconds});
-    }
     frame.modelled = {std::string(scene::NameOf(scene.rendering.technique)), linear.content,
                       linear.slices, linear.device_bytes, correction.paths};
     Fill(linear.radiance->Size(), std::move(mapped), &frame);
@@ -121,12 +144,14 @@ class GlFrameSource final : public FrameSource {
   }
 
   std::unique_ptr<gl::Context> context_;  // must outlive the GL objects below
-  std::shared_ptr<const renderers::TechniqueRegistry> registry_ =
-      std::make_shared<renderers::TechniqueRegistry>(renderers::TechniqueRegistry::BuiltIn());
-  renderers::RendererPool renderers_{registry_};
-  accuracy::CorrectorPool correctors_{renderers_.Programs()};
-  frame::ToneMapper tone_mapper_;
-  frame::ToneMapper picture_tone_mapper_;  // of Tone, whose pictures have other sizes
+  const Shared shared_;
+  std::shared_ptr<gl::ProgramCache> programs_;
+  renderers::RendererPool renderers_{shared_.registry, programs_};
+  accuracy::CorrectorPool correctors_{programs_, shared_.lights};
+  frame::ToneMapper tone_mapper_{programs_};
+  frame::ToneMapper picture_tone_mapper_{programs_};  // of Tone, whose pictures have other sizes
+  gl::Texture2D picture_;  // that Tone was given
+  std::optional<Drawn> tone_mapped_;
   DeviceInfo info_;
 };
 
@@ -140,9 +165,12 @@ std::vector<TechniqueInfo> TechniquesOf(const renderers::TechniqueRegistry& regi
   return techniques;
 }
 
-absl::StatusOr<std::unique_ptr<FrameSource>> MakeGlFrameSource(const std::string& device) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<gl::Context> context, gl::Context::Create(device));
-  return std::make_unique<GlFrameSource>(std::move(context));
+FrameSourceFactory GlFrameSources(const std::string& device) {
+  return [device, shared = Shared()](
+             base::DeviceTurn* turn) -> absl::StatusOr<std::unique_ptr<FrameSource>> {
+    THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<gl::Context> context, gl::Context::Create(device));
+    return std::make_unique<GlFrameSource>(std::move(context), shared, turn);
+  };
 }
 
 }  // namespace thunderhead::session

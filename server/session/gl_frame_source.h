@@ -15,7 +15,9 @@ namespace thunderhead::session {
 // The available techniques, in the order in which to offer them.
 std::vector<TechniqueInfo> TechniquesOf(const renderers::TechniqueRegistry& registry);
 
-// Opens the device (gl::Context::Create) on the calling thread, which must stay the one that draws.
-absl::StatusOr<std::unique_ptr<FrameSource>> MakeGlFrameSource(const std::string& device);
+// Sources that draw on a device, each with a context of its own that it opens (gl::Context::Create)
+// on the calling thread, which must stay the one that draws. Light that one of them has traced is
+// shown by all.
+FrameSourceFactory GlFrameSources(const std::string& device);
 
 }  // namespace thunderhead::session

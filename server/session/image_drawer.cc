@@ -1,103 +1,195 @@
 #include "session/image_drawer.h"
 
-#include <optional>
+#include <algorithm>
+#include <cmath>
 #include <utility>
-#include <variant>
 
+#include "absl/strings/str_cat.h"
+#include "base/error_details.h"
+#include "base/out_of_memory.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
-#include "session/light_tracing.h"
 
 namespace thunderhead::session {
 namespace {
 
-// More pictures than queues hold; those cancelled while they are prepared count as well.
-constexpr std::size_t kMaxWaitingPreparations = 256;
+// What should be drawn within this time has a lane of its own.
+constexpr double kQuick_ms = 5e3;
+// Pictures that hold their fields while their light is traced.
+constexpr std::ptrdiff_t kMaxTraced = 8;
+// A picture may take so many times what a prediction may be: predictions are not exact.
+constexpr double kPatience = 2.0;
+
+bool AwaitsLight(const scene::Scene& scene) {
+  return scene::TracedLightOf(scene.rendering.technique) == scene::TracedLight::kAwaited;
+}
+
+absl::Status TooCostly(double predicted_s, double max_s) {
+  return base::InvalidField(
+      "scene.output",
+      absl::StrCat("asks for a picture that would take about ", std::lround(predicted_s),
+                   " s to draw here; the server gives one picture at most ", std::lround(max_s),
+                   " s: ask for fewer pixels, fewer slices or a faster technique"),
+      "PICTURE_TOO_COSTLY",
+      {{"predicted", absl::StrCat(std::lround(predicted_s))},
+       {"maximum", absl::StrCat(max_s)},
+       {"unit", "s"}});
+}
 
 }  // namespace
 
-ImageDrawer::ImageDrawer(ImageQueue& queue, MeasuredSource& source,
-                         std::shared_ptr<Preparation> preparation,
-                         std::function<void()> on_prepared)
-    : queue_(queue),
+ImageDrawer::ImageDrawer(const ImageLimits& limits, ImageQueue& queue, MeasuredSource& source,
+                         std::shared_ptr<Preparation> preparation, LightTracer& tracer,
+                         const Lanes& lanes)
+    : limits_(limits),
+      queue_(queue),
       source_(source),
       preparation_(std::move(preparation)),
-      on_prepared_(std::move(on_prepared)),
-      preparer_(1, kMaxWaitingPreparations) {}
+      tracer_(tracer),
+      lanes_(lanes) {}
 
-TurnOutcome ImageDrawer::TakeTurn() {
-  std::optional<Clock::time_point> look_again_at;
-  for (std::size_t left = queue_.Count(); left > 0; --left) {
-    std::optional<ImageJob> job = queue_.Take();
-    if (!job.has_value()) break;
-    const absl::StatusOr<Next> next = Advance(*job);
-    if (!next.ok() || *next == Next::kDraw) {
-      job->done(next.ok() ? Draw(*job) : next.status());
-      return {true, std::nullopt};
-    }
-    queue_.PutBack(*std::move(job));
-    if (*next == Next::kTraceOn) return {true, std::nullopt};
-    if (*next == Next::kWaitForOthersLight) look_again_at = Clock::now() + kTraceAgainAfter;
+void ImageDrawer::Attend() {
+  queue_.DropCancelled();
+  queue_.Admit([this](ImageJob& job) { return Admit(job); });
+  for (auto image = begun_.begin(); image != begun_.end();) {
+    image = Ends(*image) ? begun_.erase(image) : std::next(image);
   }
-  return {false, look_again_at};
+  Begin(lanes_.quick);
+  Begin(lanes_.any);
 }
 
-absl::StatusOr<ImageDrawer::Next> ImageDrawer::Advance(ImageJob& job) {
-  if (!job.decided.has_value()) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(job.decided, source_.Offers().Decide(job.scene, std::nullopt));
-  }
-  THUNDERHEAD_ASSIGN_OR_RETURN(const bool prepared, Prepare(job));
-  if (!prepared) return Next::kWaitForPreparation;
-  const absl::StatusOr<bool> goes_on = Trace(job);
-  if (absl::IsResourceExhausted(goes_on.status())) return Next::kWaitForOthersLight;
-  THUNDERHEAD_RETURN_IF_ERROR(goes_on.status());
-  return *goes_on ? Next::kTraceOn : Next::kDraw;
+absl::Status ImageDrawer::Admit(ImageJob& job) const {
+  THUNDERHEAD_ASSIGN_OR_RETURN(job.decided, source_.Offers().Decide(job.scene, std::nullopt));
+  job.predicted_ms =
+      source_.Costs().FrameMs("", *job.decided, FrameQuality{}, scene::Stage::kStorm);
+  const double predicted_s = 1e-3 * job.predicted_ms;
+  return predicted_s <= limits_.max_predicted_s ? absl::OkStatus()
+                                                : TooCostly(predicted_s, limits_.max_predicted_s);
 }
 
-absl::StatusOr<bool> ImageDrawer::Prepare(ImageJob& job) {
-  if (job.preparation != nullptr) {
-    if (!job.preparation->ended) return false;
-    THUNDERHEAD_RETURN_IF_ERROR(job.preparation->status);
-    return true;
-  }
-  if (preparation_ == nullptr || preparation_->IsDone(*job.decided, job.fields)) return true;
-  const auto own = std::make_shared<ImagePreparation>();
-  job.preparation = own;
-  preparer_.Submit([this, own, scene = *job.decided, fields = job.fields,
-                    cancelled = job.cancelled](const absl::Status& status) {
-    const base::Stopwatch stopwatch;
-    own->status = status;
-    if (status.ok() && !*cancelled) own->status = preparation_->Prepare(scene, fields);
-    own->milliseconds = stopwatch.ElapsedMs();
-    own->ended = true;
-    on_prepared_();
+void ImageDrawer::Begin(Lane& lane) {
+  if (!lane.IsIdle()) return;
+  // Those that hold their fields come first.
+  const auto ready = std::ranges::find_if(begun_, [&](const Begun& image) {
+    return image.phase == Phase::kToDraw && Suits(lane, image.quick);
   });
-  return false;
+  if (ready != begun_.end()) return WorkIn(lane, *ready);
+  const auto traced = std::ranges::count_if(
+      begun_, [](const Begun& image) { return AwaitsLight(*image.job.decided); });
+  std::optional<ImageJob> job = queue_.Take([&](const ImageJob& waits) {
+    return Suits(lane, waits.predicted_ms <= kQuick_ms) &&
+           (traced < kMaxTraced || !AwaitsLight(*waits.decided));
+  });
+  if (!job.has_value()) return;
+  const bool quick = job->predicted_ms <= kQuick_ms;
+  Begun& image = begun_.emplace_back();
+  image.job = *std::move(job);
+  image.name = absl::StrCat("picture ", ++count_);
+  image.quick = quick;
+  WorkIn(lane, image);
 }
 
-absl::StatusOr<DisplayFrame> ImageDrawer::Draw(const ImageJob& job) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(DisplayFrame frame,
-                               source_.Draw("", *job.decided, job.fields, FrameQuality{}));
-  if (job.preparation != nullptr) {
-    frame.stages.insert(frame.stages.begin(),
-                        {scene::FrameStage::kFit, job.preparation->milliseconds});
-  }
-  return frame;
+void ImageDrawer::WorkIn(Lane& lane, Begun& image) {
+  image.lane = &lane;
+  if (image.phase == Phase::kToDraw) image.phase = Phase::kDrawing;
+  const bool draws = image.phase == Phase::kDrawing || !AwaitsLight(*image.job.decided);
+  // `begun_` keeps it until the lane is idle.
+  lane.Begin(
+      [&image, draws, preparation = preparation_](const absl::StatusOr<FrameSource*>& source) {
+        image.status = base::OrOutOfMemory([&]() -> absl::Status {
+          THUNDERHEAD_RETURN_IF_ERROR(source.status());
+          if (image.phase == Phase::kReading) {
+            THUNDERHEAD_RETURN_IF_ERROR(Read(image, preparation));
+          }
+          return draws ? Draw(image, **source) : absl::OkStatus();
+        });
+      },
+      {image.job.cancelled, kPatience * 1e3 * limits_.max_predicted_s});
 }
 
-absl::StatusOr<bool> ImageDrawer::Trace(ImageJob& job) {
-  const scene::Scene& scene = *job.decided;
-  if (scene::TracedLightOf(scene.rendering.technique) != scene::TracedLight::kAwaited) return false;
-  THUNDERHEAD_ASSIGN_OR_RETURN(const accuracy::LightProgress progress,
-                               source_.TraceLight(scene, job.fields, &job.light));
-  if (progress.steps == 0) return false;
-  const std::int64_t wanted = source_.Estimator().PathsFor(scene);
-  if (job.on_progress) {
-    const auto report = source_.Estimator().Report(scene, {}, {progress.paths, std::nullopt});
-    job.on_progress({progress.ShareOf(wanted), progress.paths,
-                     report.has_value() ? std::optional(report->estimated_error) : std::nullopt});
+absl::Status ImageDrawer::Read(Begun& image, const std::shared_ptr<Preparation>& preparation) {
+  if (*image.job.cancelled) return absl::CancelledError("the call was cancelled");
+  base::Stopwatch stopwatch;
+  THUNDERHEAD_ASSIGN_OR_RETURN(ImageInput input, image.job.read());
+  image.stages.push_back({scene::FrameStage::kRead, stopwatch.Restart()});
+  image.job.decided->camera = input.camera;
+  image.fields = std::move(input.fields);
+  if (preparation == nullptr || preparation->IsDone(*image.job.decided, image.fields)) {
+    return absl::OkStatus();
   }
-  return !progress.HasTraced(wanted);
+  THUNDERHEAD_RETURN_IF_ERROR(preparation->Prepare(*image.job.decided, image.fields));
+  image.stages.push_back({scene::FrameStage::kFit, stopwatch.ElapsedMs()});
+  return absl::OkStatus();
+}
+
+absl::Status ImageDrawer::Draw(Begun& image, FrameSource& source) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(image.frame,
+                               source.Draw(*image.job.decided, image.fields, FrameQuality{}));
+  return image.job.encode(*image.frame);
+}
+
+bool ImageDrawer::Ends(Begun& image) {
+  if (image.phase == Phase::kTracing) return EndsTracing(image);
+  if (image.lane == nullptr || !image.lane->IsIdle()) return false;
+  image.lane = nullptr;
+  if (image.status.ok() && !image.frame.has_value()) {
+    image.phase = Phase::kTracing;
+    image.wanted_paths = source_.Estimator().PathsFor(*image.job.decided);
+    tracer_.Want(image.name, {std::make_shared<const scene::Scene>(*image.job.decided),
+                              image.fields, image.wanted_paths, true});
+    return false;
+  }
+  tracer_.Stop(image.name);
+  if (image.status.ok()) {
+    image.job.done(Drawn(image));
+  } else {
+    image.job.done(image.status);
+  }
+  return true;
+}
+
+bool ImageDrawer::EndsTracing(Begun& image) {
+  absl::Status failed;
+  if (*image.job.cancelled) failed = absl::CancelledError("the call was cancelled");
+  if (const auto news = tracer_.TakeNews(image.name); failed.ok() && news.has_value()) {
+    failed = news->status();
+    if (failed.ok()) {
+      Report(image, **news);
+      if ((*news)->steps == 0 || (*news)->HasTraced(image.wanted_paths)) {
+        image.phase = Phase::kToDraw;
+      }
+    }
+  }
+  if (failed.ok()) return false;
+  tracer_.Stop(image.name);
+  image.job.done(failed);
+  return true;
+}
+
+void ImageDrawer::Report(const Begun& image, const accuracy::LightProgress& progress) const {
+  if (!image.job.on_progress || progress.steps == 0) return;
+  const auto report =
+      source_.Estimator().Report(*image.job.decided, {}, {progress.paths, std::nullopt});
+  image.job.on_progress(
+      {progress.ShareOf(image.wanted_paths), progress.paths,
+       report.has_value() ? std::optional(report->estimated_error) : std::nullopt});
+}
+
+absl::StatusOr<DisplayFrame> ImageDrawer::Drawn(Begun& image) {
+  source_.Learn("", *image.job.decided, FrameQuality{}, &*image.frame);
+  image.frame->stages.insert(image.frame->stages.begin(), image.stages.begin(), image.stages.end());
+  return *std::move(image.frame);
+}
+
+void ImageDrawer::EndAll(const absl::Status& why) {
+  for (Begun& image : begun_) {
+    if (image.status.ok() && image.frame.has_value()) {
+      image.job.done(Drawn(image));
+    } else {
+      image.job.done(image.status.ok() ? why : image.status);
+    }
+  }
+  begun_.clear();
 }
 
 }  // namespace thunderhead::session

@@ -1,45 +1,89 @@
-// Draws the pictures of an ImageQueue. A picture that awaits traced light takes many turns, with
-// other pictures and sessions in between. What a picture's setting needs first, such as a fit of
-// metaballs, is made on a thread of its own. Used by the render loop's thread only.
+// Draws the pictures of an ImageQueue, in lanes beside the render loop. A picture that awaits
+// traced light gives up its lane meanwhile. Used by the render loop's thread only.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <list>
 #include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "base/executor.h"
 #include "session/image_queue.h"
+#include "session/lane.h"
+#include "session/light_tracer.h"
 #include "session/measured_source.h"
-#include "session/turns.h"
 
 namespace thunderhead::session {
 
+struct ImageLimits {
+  double max_predicted_s = 600.0;  // of one picture; those that are to take longer are refused
+};
+
 class ImageDrawer {
  public:
-  // Both references must outlive it. `preparation` is null if no scene needs any; `on_prepared` is
-  // called on the thread that prepares.
-  ImageDrawer(ImageQueue& queue, MeasuredSource& source, std::shared_ptr<Preparation> preparation,
-              std::function<void()> on_prepared);
+  // Pictures that are soon drawn have a lane of their own, so that they need not wait for those
+  // that take long.
+  struct Lanes {
+    Lane& quick;
+    Lane& any;
+  };
 
-  // Works on the first picture that need not wait for its preparation, or for others' light.
-  TurnOutcome TakeTurn();
+  // All references must outlive it; the lanes' work must have ended before this does. `preparation`
+  // is null if no scene needs any.
+  ImageDrawer(const ImageLimits& limits, ImageQueue& queue, MeasuredSource& source,
+              std::shared_ptr<Preparation> preparation, LightTracer& tracer, const Lanes& lanes);
+
+  // Ends what is drawn or cancelled, admits what has come, and begins what can be begun.
+  void Attend();
+  // Ends what was begun, with this error what is not drawn; the lanes' work must have ended.
+  void EndAll(const absl::Status& why);
 
  private:
-  enum class Next { kDraw, kTraceOn, kWaitForPreparation, kWaitForOthersLight };
+  enum class Phase { kReading, kTracing, kToDraw, kDrawing };
 
-  // Does what comes before drawing, or a step of it.
-  absl::StatusOr<Next> Advance(ImageJob& job);
-  // True once the picture, its setting decided, is prepared.
-  absl::StatusOr<bool> Prepare(ImageJob& job);
-  // Traces a step. True if the picture needs more paths, for the requested error if there is one.
-  absl::StatusOr<bool> Trace(ImageJob& job);
-  absl::StatusOr<DisplayFrame> Draw(const ImageJob& job);
+  // A picture that was begun.
+  struct Begun {
+    ImageJob job;
+    std::string name;  // in the tracer
+    bool quick = false;
+    Phase phase = Phase::kReading;
+    Lane* lane = nullptr;  // that works for it
+    std::shared_ptr<const volume::HydrometeorFields> fields;
+    std::vector<StageTime> stages;  // before drawing
+    std::int64_t wanted_paths = 0;
+    // By the lane.
+    absl::Status status;
+    std::optional<DisplayFrame> frame;
+  };
 
+  absl::Status Admit(ImageJob& job) const;
+  // Each works in a lane.
+  static absl::Status Read(Begun& image, const std::shared_ptr<Preparation>& preparation);
+  static absl::Status Draw(Begun& image, FrameSource& source);
+
+  bool Suits(const Lane& lane, bool quick) const { return quick || &lane == &lanes_.any; }
+  void WorkIn(Lane& lane, Begun& image);
+  void Begin(Lane& lane);
+  // True if it is done.
+  bool Ends(Begun& image);
+  bool EndsTracing(Begun& image);
+  void Report(const Begun& image, const accuracy::LightProgress& progress) const;
+  absl::StatusOr<DisplayFrame> Drawn(Begun& image);
+
+  const ImageLimits limits_;
   ImageQueue& queue_;
   MeasuredSource& source_;
   const std::shared_ptr<Preparation> preparation_;
-  const std::function<void()> on_prepared_;
-  base::Executor preparer_;
+  LightTracer& tracer_;
+  const Lanes lanes_;
+  std::list<Begun> begun_;
+  std::uint64_t count_ = 0;  // of those begun
 };
 
 }  // namespace thunderhead::session

@@ -1,5 +1,6 @@
 #include "session/image_queue.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 #include <vector>
@@ -42,38 +43,50 @@ bool ImageQueue::Add(ImageJob job) {
   return false;
 }
 
-void ImageQueue::PutBack(ImageJob job) {
+std::deque<ImageJob> ImageQueue::Extract(const std::function<bool(const ImageJob&)>& is) {
+  std::deque<ImageJob> extracted;
   const std::lock_guard lock(mutex_);
-  waiting_.push_back(std::move(job));
-}
-
-std::size_t ImageQueue::Count() {
-  const std::lock_guard lock(mutex_);
-  return waiting_.size();
-}
-
-std::optional<ImageJob> ImageQueue::Take() {
-  std::vector<ImageJob> cancelled;
-  std::optional<ImageJob> next;
-  {
-    const std::lock_guard lock(mutex_);
-    for (auto job = waiting_.begin(); job != waiting_.end();) {
-      if (*job->cancelled) {
-        cancelled.push_back(std::move(*job));
-        job = waiting_.erase(job);
-      } else {
-        ++job;
-      }
-    }
-    if (!waiting_.empty()) {
-      next = std::move(waiting_.front());
-      waiting_.pop_front();
+  for (auto job = waiting_.begin(); job != waiting_.end();) {
+    if (is(*job)) {
+      extracted.push_back(std::move(*job));
+      job = waiting_.erase(job);
+    } else {
+      ++job;
     }
   }
-  for (const ImageJob& job : cancelled) {
+  return extracted;
+}
+
+void ImageQueue::Admit(const std::function<absl::Status(ImageJob&)>& admit) {
+  // New ones are at the end.
+  std::deque<ImageJob> fresh =
+      Extract([](const ImageJob& job) { return !job.decided.has_value(); });
+  for (ImageJob& job : fresh) {
+    if (absl::Status refused = admit(job); !refused.ok()) {
+      job.done(std::move(refused));
+      continue;
+    }
+    const std::lock_guard lock(mutex_);
+    waiting_.push_back(std::move(job));
+  }
+}
+
+std::optional<ImageJob> ImageQueue::Take(const std::function<bool(const ImageJob&)>& suits) {
+  const std::lock_guard lock(mutex_);
+  const auto found = std::ranges::find_if(waiting_, [&](const ImageJob& job) {
+    return job.decided.has_value() && !*job.cancelled && suits(job);
+  });
+  if (found == waiting_.end()) return std::nullopt;
+  ImageJob job = std::move(*found);
+  waiting_.erase(found);
+  return job;
+}
+
+void ImageQueue::DropCancelled() {
+  for (const ImageJob& job :
+       Extract([](const ImageJob& waits) { return waits.cancelled->load(); })) {
     job.done(absl::CancelledError("the call was cancelled"));
   }
-  return next;
 }
 
 void ImageQueue::RefuseAll() {

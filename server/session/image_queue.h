@@ -24,29 +24,28 @@ struct ImageProgress {
   std::optional<double> estimated_error;  // of the picture with these paths
 };
 
-// What a picture needs once before it is drawn (renderers::Preparation), done on another thread.
-struct ImagePreparation {
-  std::atomic<bool> ended{false};  // set last
-  absl::Status status;
-  double milliseconds = 0.0;
+// What a picture is drawn from.
+struct ImageInput {
+  std::shared_ptr<const volume::HydrometeorFields> fields;
+  scene::Camera camera;  // the scene's, framed by the fields
 };
 
-// One picture at full quality, outside any session.
+// One picture at full quality, outside any session. Its fields are read when its turn comes, so
+// that those who wait take no memory.
 struct ImageJob {
   scene::Scene scene;
-  std::shared_ptr<const volume::HydrometeorFields> fields;
-  std::shared_ptr<const std::atomic<bool>> cancelled;  // true drops the job while it waits
+  std::function<absl::StatusOr<ImageInput>()> read;  // on a thread that may block
+  // Called with the picture on a thread that may block; may take its pixels away.
+  std::function<absl::Status(DisplayFrame&)> encode;
+  std::shared_ptr<const std::atomic<bool>> cancelled;  // true ends it at the next piece
   // Called once, on the loop's thread or on the one that calls Add; must not block.
   std::function<void(absl::StatusOr<DisplayFrame>)> done;
-  // If set, called on the loop's thread after each step of tracing light, and not after `done`;
-  // must not block.
+  // If set, called on the loop's thread as more light is traced, and not after `done`; must not
+  // block.
   std::function<void(const ImageProgress&)> on_progress = nullptr;
-  // The scene with its decided setting; none before the first turn.
+  // Since it was admitted: the scene with its decided setting, and what drawing that should take.
   std::optional<scene::Scene> decided = std::nullopt;
-  // Of the decided scene; null while it has not begun, or is not needed.
-  std::shared_ptr<const ImagePreparation> preparation = nullptr;
-  // On the light that it waits for.
-  accuracy::LightClaim light = nullptr;
+  double predicted_ms = 0.0;
 };
 
 class ImageQueue {
@@ -56,16 +55,19 @@ class ImageQueue {
   // False if the job was refused, as the queue is full or the server is stopping; `done` was called
   // with the reason.
   bool Add(ImageJob job);
-  // Queues a job that was begun but is not done behind the others.
-  void PutBack(ImageJob job);
-  // The number of waiting jobs.
-  std::size_t Count();
-  // Takes the next job; drops cancelled ones and calls their `done`.
-  std::optional<ImageJob> Take();
+  // Asks `admit` of each job that came since the last call; those refused are done with the reason.
+  void Admit(const std::function<absl::Status(ImageJob&)>& admit);
+  // Takes the first admitted job for which `suits` is true.
+  std::optional<ImageJob> Take(const std::function<bool(const ImageJob&)>& suits);
+  // Drops cancelled jobs and calls their `done`.
+  void DropCancelled();
   // Refuses all waiting and future jobs.
   void RefuseAll();
 
  private:
+  // Takes the jobs for which `is` is true.
+  std::deque<ImageJob> Extract(const std::function<bool(const ImageJob&)>& is);
+
   const std::size_t max_waiting_;
   std::mutex mutex_;
   std::deque<ImageJob> waiting_;

@@ -31,12 +31,14 @@ bool LightTracing::Traced(const accuracy::LightProgress& progress, Clock::time_p
   if (!progress.Corrects()) return false;
   const Clock::duration since_shown = now - shown_at_;
   const bool more = static_cast<double>(paths_) >= kShownGrowth * static_cast<double>(shown_paths_);
-  return ended_ || since_shown >= kMaxBetween || (more && since_shown >= kMinBetween);
+  due_ = ended_ || since_shown >= kMaxBetween || (more && since_shown >= kMinBetween);
+  return due_;
 }
 
 void LightTracing::Shown(Clock::time_point now) {
   shown_paths_ = paths_;
   shown_at_ = now;
+  due_ = false;
 }
 
 }  // namespace thunderhead::session

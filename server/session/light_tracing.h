@@ -2,7 +2,6 @@
 // an argument.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <optional>
 
@@ -10,9 +9,6 @@
 #include "session/sessions.h"
 
 namespace thunderhead::session {
-
-// Delay before tracing is tried again when light is traced for too many other scenes.
-inline constexpr Clock::duration kTraceAgainAfter = std::chrono::milliseconds(500);
 
 class LightTracing {
  public:
@@ -24,9 +20,14 @@ class LightTracing {
   // Records that the picture was drawn with the light traced so far.
   void Shown(Clock::time_point now);
 
-  // Ends tracing for the revision after a step that failed.
-  void GiveUp() { ended_ = true; }
+  // Ends tracing for the revision; the picture is to be drawn once more if it is due.
+  void GiveUp(bool due) {
+    ended_ = true;
+    due_ = due;
+  }
 
+  // True if the picture is to be drawn again.
+  bool due() const { return due_; }
   // True if no more light is traced for the revision.
   bool ended() const { return ended_; }
 
@@ -37,6 +38,7 @@ class LightTracing {
   std::int64_t shown_paths_ = 0;
   Clock::time_point shown_at_;
   bool ended_ = false;
+  bool due_ = false;
 };
 
 }  // namespace thunderhead::session

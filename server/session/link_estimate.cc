@@ -5,7 +5,7 @@
 namespace thunderhead::session {
 namespace {
 
-// Before a tier is left, and before one on trial is judged.
+// Before a step is left, and before one on trial is judged.
 constexpr int kFewestSamples = 4;
 // A smaller picture must arrive in at most this share of the time to be worth it, and a larger one
 // may take so many times as long.
@@ -18,12 +18,19 @@ double Milliseconds(std::chrono::nanoseconds time) {
 
 }  // namespace
 
+void LinkEstimate::SetLeast(int step, Time now) {
+  least_ = std::min(step, steps_ - 1);
+  if (step_ >= least_) return;
+  trial_.reset();
+  ChangeTo(least_, now);
+}
+
 void LinkEstimate::Acknowledged(Time now, Time sent_at) {
   // The time from one arrival to the next, where a frame was on its way all the time.
   const bool waited = last_acknowledged_.has_value() && sent_at < *last_acknowledged_;
   const double sample_ms = Milliseconds(waited ? now - *last_acknowledged_ : now - sent_at);
   last_acknowledged_ = now;
-  if (sent_at < changed_at_) return;  // of another tier
+  if (sent_at < changed_at_) return;  // of another step
   constexpr double kWeight = 0.3;
   frame_ms_ = samples_ == 0 ? sample_ms : (1.0 - kWeight) * frame_ms_ + kWeight * sample_ms;
   if (++samples_ >= kFewestSamples) Judge(now);
@@ -34,33 +41,33 @@ void LinkEstimate::Judge(Time now) {
   if (trial_.has_value()) {
     const Trial trial = *trial_;
     trial_.reset();
-    const bool grew = tier_ < trial.tier_before;
+    const bool grew = step_ < trial.step_before;
     if (grew && frame_ms_ > longest_ms && frame_ms_ > kBearable * trial.frame_ms_before) {
       wait_to_grow_ = std::min<std::chrono::seconds>(2 * wait_to_grow_, kLongestWait);
-      ChangeTo(trial.tier_before, now);
+      ChangeTo(trial.step_before, now);
     } else if (!grew && frame_ms_ > kWorthIt * trial.frame_ms_before) {
       shrink_again_at_ = now + kLongestWait;
-      ChangeTo(trial.tier_before, now);
+      ChangeTo(trial.step_before, now);
     } else if (grew) {
       wait_to_grow_ = kShortestWait;
     }
     return;
   }
   const bool may_shrink = !shrink_again_at_.has_value() || now >= *shrink_again_at_;
-  if (frame_ms_ > longest_ms && tier_ < kTiers - 1 && may_shrink) {
-    Try(tier_ + 1, now);
-  } else if (tier_ > 0 && now >= changed_at_ + wait_to_grow_) {
-    Try(tier_ - 1, now);
+  if (frame_ms_ > longest_ms && step_ < steps_ - 1 && may_shrink) {
+    Try(step_ + 1, now);
+  } else if (step_ > least_ && now >= changed_at_ + wait_to_grow_) {
+    Try(step_ - 1, now);
   }
 }
 
-void LinkEstimate::Try(int tier, Time now) {
-  trial_ = Trial{tier_, frame_ms_};
-  ChangeTo(tier, now);
+void LinkEstimate::Try(int step, Time now) {
+  trial_ = Trial{step_, frame_ms_};
+  ChangeTo(step, now);
 }
 
-void LinkEstimate::ChangeTo(int tier, Time now) {
-  tier_ = tier;
+void LinkEstimate::ChangeTo(int step, Time now) {
+  step_ = step;
   samples_ = 0;
   changed_at_ = now;
 }

@@ -1,7 +1,7 @@
-// The size of picture that suits one viewer's link, from when frames were sent and acknowledged. A
-// plain value that is told the time.
+// How far moving pictures are to be reduced for one viewer's link, from when frames were sent and
+// acknowledged. A plain value that is told the time.
 //
-// A slow link and a far one look alike: frames take long. So another size is tried, and kept if it
+// A slow link and a far one look alike: frames take long. So the next step is tried, and kept if it
 // helps.
 #pragma once
 
@@ -18,32 +18,41 @@ class LinkEstimate {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  // A link that needs longer than this for a frame is tried with smaller ones, so that at least 10
+  // A link that needs longer than this for a frame is tried with the next step, so that at least 10
   // a second arrive.
   static constexpr std::chrono::milliseconds kLongest{100};
-  // Larger ones are tried after so long; each trial that fails doubles the wait for the next.
+  // The step before is tried after so long; each trial that fails doubles the wait for the next.
   static constexpr std::chrono::seconds kShortestWait{4};
   static constexpr std::chrono::seconds kLongestWait{64};
+
+  // Of so many steps, each with fewer bytes than the one before: the tiers, unless the viewer can
+  // be reduced otherwise as well.
+  explicit LinkEstimate(int steps = kTiers) : steps_(steps) {}
+
+  // No step below this one.
+  void SetLeast(int step, Time now);
 
   // A frame that was sent at `sent_at` was acknowledged.
   void Acknowledged(Time now, Time sent_at);
 
-  // The tier of moving pictures; stills are worth waiting for.
-  int tier() const { return tier_; }
+  // Of moving pictures; stills are worth waiting for.
+  int step() const { return step_; }
 
  private:
-  // A tier on trial, and the one before it.
+  // A step on trial, and the one before it.
   struct Trial {
-    int tier_before = 0;
+    int step_before = 0;
     double frame_ms_before = 0.0;
   };
 
   void Judge(Time now);
-  void Try(int tier, Time now);
-  void ChangeTo(int tier, Time now);
+  void Try(int step, Time now);
+  void ChangeTo(int step, Time now);
 
-  int tier_ = 0;
-  int samples_ = 0;        // of this tier
+  int steps_;
+  int least_ = 0;
+  int step_ = 0;
+  int samples_ = 0;        // of this step
   double frame_ms_ = 0.0;  // smoothed: from one frame's arrival to the next's
   std::optional<Time> last_acknowledged_;
   Time changed_at_;

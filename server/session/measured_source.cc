@@ -2,10 +2,20 @@
 
 #include <utility>
 
+#include "base/out_of_memory.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 
 namespace thunderhead::session {
+namespace {
+
+double TotalMs(const DisplayFrame& frame) {
+  double total_ms = 0.0;
+  for (const StageTime& cost : frame.stages) total_ms += cost.milliseconds;
+  return total_ms;
+}
+
+}  // namespace
 
 MeasuredSource::MeasuredSource(std::unique_ptr<FrameSource> source, accuracy::OfferTables tables)
     : source_(std::move(source)), tables_(std::move(tables)) {}
@@ -15,8 +25,11 @@ absl::StatusOr<DisplayFrame> MeasuredSource::Draw(
     const FrameQuality& quality, const std::optional<double>& discretisation_error) {
   last_drawn_.reset();
   const base::Stopwatch stopwatch;
-  THUNDERHEAD_ASSIGN_OR_RETURN(DisplayFrame frame, source_->Draw(scene, fields, quality));
-  Learn(view, scene, quality, stopwatch.ElapsedMs(), discretisation_error, &frame);
+  THUNDERHEAD_ASSIGN_OR_RETURN(DisplayFrame frame, base::OrOutOfMemory([&] {
+                                 return source_->Draw(scene, fields, quality);
+                               }));
+  last_drawn_ = LastDrawn{scene, quality};
+  Report(view, scene, quality, stopwatch.ElapsedMs(), discretisation_error, &frame);
   return frame;
 }
 
@@ -24,28 +37,29 @@ absl::StatusOr<CheckedFrame> MeasuredSource::DrawChecked(const std::string& view
                                                          const scene::Scene& scene,
                                                          const Fields& fields) {
   last_drawn_.reset();
-  THUNDERHEAD_ASSIGN_OR_RETURN(CheckedFrame checked, source_->DrawChecked(scene, fields));
-  double total_ms = 0.0;
-  for (const StageTime& cost : checked.frame.stages) total_ms += cost.milliseconds;
-  Learn(view, scene, FrameQuality{}, total_ms, checked.discretisation_error, &checked.frame);
+  THUNDERHEAD_ASSIGN_OR_RETURN(CheckedFrame checked, base::OrOutOfMemory([&] {
+                                 return source_->DrawChecked(scene, fields);
+                               }));
+  last_drawn_ = LastDrawn{scene, FrameQuality{}};
+  Report(view, scene, FrameQuality{}, TotalMs(checked.frame), checked.discretisation_error,
+         &checked.frame);
   return checked;
 }
 
-absl::StatusOr<accuracy::LightProgress> MeasuredSource::TraceLight(const scene::Scene& scene,
-                                                                   const Fields& fields,
-                                                                   accuracy::LightClaim* claim) {
-  return source_->TraceLight(scene, fields, claim);
+void MeasuredSource::Learn(const std::string& view, const scene::Scene& scene,
+                           const FrameQuality& quality, DisplayFrame* frame) {
+  Report(view, scene, quality, TotalMs(*frame), std::nullopt, frame);
 }
 
 absl::StatusOr<DisplayFrame> MeasuredSource::Tone(const picture::LinearPicture& picture,
                                                   const scene::Scene& scene) {
-  return source_->Tone(picture, scene);
+  return base::OrOutOfMemory([&] { return source_->Tone(picture, scene); });
 }
 
-void MeasuredSource::Learn(const std::string& view, const scene::Scene& scene,
-                           const FrameQuality& quality, double total_ms,
-                           const std::optional<double>& discretisation_error, DisplayFrame* frame) {
-  last_drawn_ = LastDrawn{scene, quality};
+void MeasuredSource::Report(const std::string& view, const scene::Scene& scene,
+                            const FrameQuality& quality, double total_ms,
+                            const std::optional<double>& discretisation_error,
+                            DisplayFrame* frame) {
   const std::int64_t paths = frame->modelled.traced_paths;
   costs_.Observe(view, {scene, quality, total_ms, frame->stages, paths > 0});
   frame->accuracy = estimator_.Report(scene, quality, {paths, discretisation_error});

@@ -31,11 +31,13 @@ class MeasuredSource {
   absl::StatusOr<CheckedFrame> DrawChecked(const std::string& view, const scene::Scene& scene,
                                            const Fields& fields);
   // As FrameSource's.
-  absl::StatusOr<accuracy::LightProgress> TraceLight(const scene::Scene& scene,
-                                                     const Fields& fields,
-                                                     accuracy::LightClaim* claim = nullptr);
   absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
                                     const scene::Scene& scene);
+  absl::StatusOr<frame::FineImage> Fine() { return source_->Fine(); }
+
+  // Reports a frame that another source drew.
+  void Learn(const std::string& view, const scene::Scene& scene, const FrameQuality& quality,
+             DisplayFrame* frame);
 
   // Forgets the costs of a view that is no longer drawn.
   void Forget(const std::string& view) { costs_.Forget(view); }
@@ -46,9 +48,9 @@ class MeasuredSource {
   const accuracy::Estimator& Estimator() const { return estimator_; }
 
  private:
-  void Learn(const std::string& view, const scene::Scene& scene, const FrameQuality& quality,
-             double total_ms, const std::optional<double>& discretisation_error,
-             DisplayFrame* frame);
+  void Report(const std::string& view, const scene::Scene& scene, const FrameQuality& quality,
+              double total_ms, const std::optional<double>& discretisation_error,
+              DisplayFrame* frame);
 
   const std::unique_ptr<FrameSource> source_;
   const accuracy::OfferTables tables_;

@@ -1,16 +1,64 @@
 #include "session/render_loop.h"
 
+#include <algorithm>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "base/error_details.h"
 #include "base/status.h"
+#include "base/stopwatch.h"
+#include "base/thread_priority.h"
 #include "session/image_drawer.h"
+#include "session/lane.h"
+#include "session/light_tracer.h"
 #include "session/measured_source.h"
 #include "session/session_drawer.h"
 #include "session/turns.h"
 
 namespace thunderhead::session {
+namespace {
+
+// Behind whoever waits, but before tracing, which could use all processors for ever.
+constexpr int kImageNiceness = 5;
+
+// Who draws beside the render loop.
+class Lanes {
+ public:
+  struct Entry {
+    std::string name;  // before every session's
+    TurnClass turn_class;
+    Lane& lane;
+  };
+
+  Lanes(const FrameSourceFactory& make_source, const std::function<void()>& wake)
+      : tracing(make_source, base::kLowestPriority, wake),
+        quick_images(make_source, kImageNiceness, wake),
+        images(make_source, kImageNiceness, wake),
+        all_{{"/tracing", TurnClass::kRefining, tracing},
+             {"/quick images", TurnClass::kBatch, quick_images},
+             {"/images", TurnClass::kBatch, images}} {}
+
+  const std::vector<Entry>& All() const { return all_; }
+
+  Lane tracing;
+  Lane quick_images;
+  Lane images;
+
+ private:
+  const std::vector<Entry> all_;
+};
+
+std::optional<Clock::time_point> Earlier(const std::optional<Clock::time_point>& a,
+                                         const std::optional<Clock::time_point>& b) {
+  if (!a.has_value()) return b;
+  if (!b.has_value()) return a;
+  return std::min(*a, *b);
+}
+
+}  // namespace
 
 absl::StatusOr<std::unique_ptr<RenderLoop>> RenderLoop::Start(
     const RenderLoopOptions& options, volume::StormStore& store, Sessions& sessions,
@@ -66,38 +114,65 @@ void RenderLoop::RenderImage(ImageJob job) {
 }
 
 void RenderLoop::Run(const FrameSourceFactory& make_source, std::promise<absl::Status> started) {
-  auto source = make_source();
+  auto source = make_source(nullptr);
   if (source.ok()) {
     device_ = (*source)->Device();
     techniques_ = (*source)->Techniques();
     preparation_ = (*source)->PreparationOfScenes();
   }
   started.set_value(source.status());
-  if (source.ok()) DrawWith(*std::move(source));
+  if (source.ok()) DrawWith(*std::move(source), make_source);
   images_.RefuseAll();
 }
 
-void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source) {
+void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
+                          const FrameSourceFactory& make_source) {
   MeasuredSource measured(std::move(source), options_.offer_tables());
+  const auto wake = [this] { wake_.Notify(); };
+  auto lanes = std::make_unique<Lanes>(make_source, wake);
+  LightTracer light_tracer(lanes->tracing);
   SessionDrawer drawer(options_.targets, {store_, *reader_, preparation_}, measured, *encoder_,
-                       *tracer_);
-  ImageDrawer image_drawer(images_, measured, preparation_, [this] { wake_.Notify(); });
+                       *tracer_, light_tracer);
+  ImageDrawer image_drawer(options_.image_limits, images_, measured, preparation_, light_tracer,
+                           {lanes->quick_images, lanes->images});
   Turns turns;
   while (!stopping_) {
     turn_began_ = Clock::now().time_since_epoch().count();
     const std::vector<std::shared_ptr<Session>> sessions = sessions_.AllDrawn();
     drawer.ReleaseUnwatched(sessions);
-    // The empty id stands for the single pictures; it sorts before the sessions'.
-    std::vector<Contender> contenders{{""}};
+    light_tracer.TakeOutcome(Clock::now());
+    image_drawer.Attend();
+    std::optional<Clock::time_point> look_again_at;
+    std::vector<Contender> contenders;
+    contenders.reserve(sessions.size() + lanes->All().size());
     for (const auto& session : sessions) {
-      contenders.push_back({session->id(), session->IsOwnView()});
+      const SessionDrawer::Wish wish = drawer.Look(session);
+      contenders.push_back({session->id(), session->IsOwnView(), wish.work});
+      look_again_at = Earlier(look_again_at, wish.look_again_at);
     }
-    const auto look_again_at = turns.Next(contenders, [&](std::size_t i, TurnKind kind) {
-      return i == 0 ? image_drawer.TakeTurn() : drawer.TakeTurn(sessions[i - 1], kind);
-    });
+    // After the sessions, some of whom may just have asked for light.
+    look_again_at = Earlier(look_again_at, light_tracer.Begin(Clock::now()));
+    for (const Lanes::Entry& entry : lanes->All()) {
+      contenders.push_back({entry.name, false, std::nullopt});
+      if (entry.lane.WantsTurn()) contenders.back().work = entry.turn_class;
+    }
+    const std::optional<std::size_t> next = turns.Next(contenders);
+    if (!next.has_value()) {
+      turn_began_ = 0;
+      if (!look_again_at.has_value() || *look_again_at > Clock::now()) wake_.Wait(look_again_at);
+      continue;
+    }
+    const base::Stopwatch stopwatch;
+    if (*next < sessions.size()) {
+      drawer.TakeTurn(sessions[*next]);
+    } else {
+      lanes->All()[*next - sessions.size()].lane.GiveTurn();
+    }
+    turns.Used(contenders[*next], stopwatch.ElapsedMs());
     turn_began_ = 0;
-    if (!look_again_at.has_value() || *look_again_at > Clock::now()) wake_.Wait(look_again_at);
   }
+  lanes.reset();
+  image_drawer.EndAll(base::ShuttingDown());
 }
 
 }  // namespace thunderhead::session

@@ -1,6 +1,7 @@
-// The render loop: one thread creates and owns the frame source, and schedules the sessions that
-// have a viewer ready for a frame, and the single pictures. Reads, encoding and the reference run
-// on other threads. Knows no GL (only the frame source does) and no messages.
+// The render loop: one thread draws the sessions that have a viewer ready for a frame, and gives
+// turns on the device to them and to its lanes, in which single pictures are drawn and light is
+// traced. Reads, encoding and the reference run on other threads. Knows no GL (only the frame
+// sources do) and no messages.
 #pragma once
 
 #include <atomic>
@@ -19,6 +20,7 @@
 #include "session/frame_encoder.h"
 #include "session/frame_planner.h"
 #include "session/frame_source.h"
+#include "session/image_drawer.h"
 #include "session/image_queue.h"
 #include "session/sessions.h"
 #include "session/truth_source.h"
@@ -28,7 +30,8 @@ namespace thunderhead::session {
 
 struct RenderLoopOptions {
   PlannerTargets targets;
-  std::size_t max_waiting_images = 16;
+  std::size_t max_waiting_images = 1000;
+  ImageLimits image_limits;
   int encoder_threads = 1;
   SerializeFrame serialize_frame = [](const EncodedFrame&) { return ""; };
   // Sessions that show the reference; each takes some hundred bytes a pixel and the medium.
@@ -59,9 +62,9 @@ class RenderLoop {
   // Since the turn of drawing under way began; 0 while the loop waits for work.
   double TurnSeconds() const;
 
-  // Stops drawing after the current frame. Returns at once.
+  // Stops drawing after the current frame or piece. Returns at once.
   void RequestStop();
-  // Waits for the current frame, refuses the waiting pictures and ends every thread.
+  // Waits for the current frame or piece, refuses the waiting pictures and ends every thread.
   void Stop();
 
  private:
@@ -69,7 +72,7 @@ class RenderLoop {
              base::WakeSignal& wake);
 
   void Run(const FrameSourceFactory& make_source, std::promise<absl::Status> started);
-  void DrawWith(std::unique_ptr<FrameSource> source);
+  void DrawWith(std::unique_ptr<FrameSource> source, const FrameSourceFactory& make_source);
 
   const RenderLoopOptions options_;
   volume::StormStore& store_;

@@ -15,17 +15,34 @@
 namespace thunderhead::session {
 
 SessionDrawer::SessionDrawer(const PlannerTargets& targets, const FieldsAccess& fields,
-                             MeasuredSource& source, FrameEncoder& encoder, TruthTracer& tracer)
-    : targets_(targets), fields_(fields), source_(source), encoder_(encoder), tracer_(tracer) {}
+                             MeasuredSource& source, FrameEncoder& encoder, TruthTracer& tracer,
+                             LightTracer& light_tracer)
+    : targets_(targets),
+      fields_(fields),
+      source_(source),
+      encoder_(encoder),
+      tracer_(tracer),
+      light_tracer_(light_tracer) {}
 
-TurnOutcome SessionDrawer::TakeTurn(const std::shared_ptr<Session>& session, TurnKind kind) {
+SessionDrawer::Wish SessionDrawer::Look(const std::shared_ptr<Session>& session) {
   const std::optional<NewestScene> newest = session->Newest();
   if (!newest.has_value() || !session->hub().HasViewers()) return {};
-  const Turn turn{session, KeptFor(session->id()), kind};
+  const Turn turn{session, KeptFor(session->id())};
+  turn.kept.work = WaitUntil{};
   TakeRead(turn);
   turn.kept.reference.EndUnless(*newest->scene);
   if (!session->hub().HasReadyViewer() || encoder_.IsFullFor(*session)) return {};
-  return std::visit([&](const auto& work) { return Do(turn, work); }, NextWork(turn, *newest));
+  turn.kept.work = NextWork(turn, *newest);
+  const bool traces = std::holds_alternative<TraceLight>(turn.kept.work) ||
+                      std::holds_alternative<ShowLight>(turn.kept.work);
+  if (!traces) light_tracer_.Stop(session->id());
+  return std::visit([&](const auto& work) { return Need(turn, work); }, turn.kept.work);
+}
+
+void SessionDrawer::TakeTurn(const std::shared_ptr<Session>& session) {
+  const Turn turn{session, KeptFor(session->id())};
+  const SessionWork work = std::exchange(turn.kept.work, WaitUntil{});
+  std::visit([&](const auto& found) { Do(turn, found); }, work);
 }
 
 SessionDrawer::Kept& SessionDrawer::KeptFor(const std::string& session_id) {
@@ -47,6 +64,8 @@ void SessionDrawer::ReleaseUnwatched(const std::vector<std::shared_ptr<Session>>
     if (!exists || !(*found)->hub().HasViewers()) {
       kept->second.fields.Release();
       kept->second.reference.Release();
+      if (exists) (*found)->video().Release();
+      light_tracer_.Stop(kept->first);
     }
     if (exists) {
       ++kept;  // keeps its view, as it may be watched again
@@ -72,92 +91,111 @@ SessionWork SessionDrawer::NextWork(const Turn& turn, const NewestScene& newest)
   return turn.kept.view.Next(newest, drawable, Clock::now(), source_.Last());
 }
 
-TurnOutcome SessionDrawer::Do(const Turn& /*turn*/, const WaitUntil& work) {
-  return {false, work.time};
+SessionDrawer::Wish SessionDrawer::Need(const Turn& /*turn*/, const WaitUntil& work) {
+  return {std::nullopt, work.time};
 }
 
-TurnOutcome SessionDrawer::Do(const Turn& turn, const DrawFrame& work) {
+SessionDrawer::Wish SessionDrawer::Need(const Turn& turn, const DrawFrame& /*work*/) {
+  const bool moves = turn.kept.view.state() == SessionView::State::kMoving;
+  return {moves ? TurnClass::kInteractive : TurnClass::kRefining, std::nullopt};
+}
+
+SessionDrawer::Wish SessionDrawer::Need(const Turn& /*turn*/, const CheckSlices& /*work*/) {
+  return {TurnClass::kRefining, std::nullopt};
+}
+
+SessionDrawer::Wish SessionDrawer::Need(const Turn& turn, const TraceLight& work) {
+  const std::string& id = turn.session->id();
+  // It shows the light that is traced for its session.
+  if (turn.session->IsOwnView()) {
+    turn.kept.view.LightIsOthers();
+    return {};
+  }
+  light_tracer_.Want(id, {work.shown.scene, turn.kept.fields.Fields()});
+  const auto news = light_tracer_.TakeNews(id);
+  if (!news.has_value()) return {};
+  if (news->ok()) {
+    const bool show = turn.kept.view.LightTraced(**news, Clock::now());
+    if (turn.kept.view.LightIsTraced()) light_tracer_.Stop(id);
+    if (!show) return {};
+  } else {
+    base::LogError(base::Annotate(
+        news->status(), absl::StrCat("tracing the light of storm ", work.shown.scene->storm_id)));
+    turn.kept.view.LightFailed();
+    turn.kept.not_shown = {scene::NotShown::Code::kTracedLight,
+                           absl::StrCat("traced light: ", news->status().message())};
+  }
+  const ShowLight show{work.shown};
+  turn.kept.work = show;  // ends the life of `work`
+  return Need(turn, show);
+}
+
+SessionDrawer::Wish SessionDrawer::Need(const Turn& /*turn*/, const ShowLight& /*work*/) {
+  return {TurnClass::kRefining, std::nullopt};
+}
+
+SessionDrawer::Wish SessionDrawer::Need(const Turn& turn, const ShowReference& work) {
+  const absl::StatusOr<bool> news =
+      turn.kept.reference.Trace(work.shown, turn.kept.fields.Fields());
+  if (!news.ok()) {
+    turn.kept.reference.Release();
+    Fail(turn, work.shown.revision, news.status());
+    return {};
+  }
+  turn.kept.view.ReferenceShown(work.shown.revision);
+  if (!*news) return {};
+  return {TurnClass::kInteractive, std::nullopt};
+}
+
+void SessionDrawer::Do(const Turn& /*turn*/, const WaitUntil& /*work*/) {}
+
+void SessionDrawer::Do(const Turn& turn, const DrawFrame& work) {
   const NewestScene& shown = work.shown;
   auto picture =
       source_.Draw(turn.session->id(), *shown.scene, turn.kept.fields.Fields(), work.plan.quality);
-  if (!picture.ok()) {
-    Fail(turn, shown.revision, picture.status());
-    return {true, std::nullopt};
-  }
+  if (!picture.ok()) return Fail(turn, shown.revision, picture.status());
   turn.kept.view.Drawn(work);
-  Send(turn, {turn.session, shown.revision, *shown.scene, work.plan.refined, *std::move(picture),
-              std::nullopt});
+  Send(turn, shown, work.plan.refined, *std::move(picture));
   turn.kept.fields.PrepareNext(*shown.scene);
-  return {true, std::nullopt};
 }
 
-TurnOutcome SessionDrawer::Do(const Turn& turn, const CheckSlices& work) {
+void SessionDrawer::Do(const Turn& turn, const CheckSlices& work) {
   const NewestScene& shown = work.shown;
   auto checked = source_.DrawChecked(turn.session->id(), *shown.scene, turn.kept.fields.Fields());
-  if (!checked.ok()) {
-    Fail(turn, shown.revision, checked.status());
-    return {true, std::nullopt};
-  }
+  if (!checked.ok()) return Fail(turn, shown.revision, checked.status());
   turn.kept.view.Checked(checked->discretisation_error);
-  Send(turn,
-       {turn.session, shown.revision, *shown.scene, true, std::move(checked->frame), std::nullopt});
-  return {true, std::nullopt};
+  Send(turn, shown, true, std::move(checked->frame));
 }
 
-TurnOutcome SessionDrawer::Do(const Turn& turn, const TraceLight& work) {
-  // It shows the light that is traced for its session.
-  if (turn.session->IsOwnView()) {
-    turn.kept.view.LightFailed();
-    return {};
-  }
-  if (turn.kind != TurnKind::kBackground) return {.has_background_work = true};
-  const NewestScene& shown = work.shown;
-  const auto progress = source_.TraceLight(*shown.scene, turn.kept.fields.Fields());
-  if (absl::IsResourceExhausted(progress.status())) return {false, Clock::now() + kTraceAgainAfter};
-  std::optional<scene::NotShown> not_shown;
-  if (progress.ok()) {
-    const bool show = turn.kept.view.LightTraced(*progress, Clock::now());
-    if (!show) return {!turn.kept.view.LightIsTraced(), std::nullopt};
-  } else {
-    base::LogError(base::Annotate(
-        progress.status(), absl::StrCat("tracing the light of storm ", shown.scene->storm_id)));
-    turn.kept.view.LightFailed();
-    not_shown = {scene::NotShown::Code::kTracedLight,
-                 absl::StrCat("traced light: ", progress.status().message())};
-  }
-  if (const absl::Status shows = ShowLight(turn, shown, not_shown); !shows.ok()) {
-    Fail(turn, shown.revision, shows);
-    return {};
-  }
-  return {true, std::nullopt};
+void SessionDrawer::Do(const Turn& /*turn*/, const TraceLight& /*work*/) {}
+
+void SessionDrawer::Do(const Turn& turn, const ShowLight& work) {
+  const absl::Status shows = DrawLight(turn, work.shown);
+  if (!shows.ok()) Fail(turn, work.shown.revision, shows);
 }
 
-absl::Status SessionDrawer::ShowLight(const Turn& turn, const NewestScene& shown,
-                                      const std::optional<scene::NotShown>& not_shown) {
+absl::Status SessionDrawer::DrawLight(const Turn& turn, const NewestScene& shown) {
   THUNDERHEAD_ASSIGN_OR_RETURN(
       DisplayFrame picture,
       source_.Draw(turn.session->id(), *shown.scene, turn.kept.fields.Fields(), FrameQuality{},
                    turn.kept.view.discretisation_error()));
+  const auto not_shown = std::exchange(turn.kept.not_shown, std::nullopt);
   if (not_shown.has_value()) picture.modelled.content.not_shown.push_back(*not_shown);
   turn.kept.view.LightShown(Clock::now());
-  Send(turn, {turn.session, shown.revision, *shown.scene, true, std::move(picture), std::nullopt});
+  Send(turn, shown, true, std::move(picture));
   return absl::OkStatus();
 }
 
-TurnOutcome SessionDrawer::Do(const Turn& turn, const ShowReference& work) {
-  const absl::StatusOr<bool> showed = ShowTraced(turn, work.shown);
-  if (showed.ok()) return {*showed, std::nullopt};
+void SessionDrawer::Do(const Turn& turn, const ShowReference& work) {
+  const absl::Status shows = ShowTraced(turn, work.shown);
+  if (shows.ok()) return;
   turn.kept.reference.Release();
-  Fail(turn, work.shown.revision, showed.status());
-  return {};
+  Fail(turn, work.shown.revision, shows);
 }
 
-absl::StatusOr<bool> SessionDrawer::ShowTraced(const Turn& turn, const NewestScene& shown) {
+absl::Status SessionDrawer::ShowTraced(const Turn& turn, const NewestScene& shown) {
   const auto& fields = turn.kept.fields.Fields();
-  THUNDERHEAD_ASSIGN_OR_RETURN(const bool news, turn.kept.reference.Trace(shown, fields));
-  turn.kept.view.ReferenceShown(shown.revision);
-  if (!news) return false;
-  const TruthPicture& traced = turn.kept.reference.picture();
+  const TruthPicture& traced = turn.kept.reference.TakePicture();
   THUNDERHEAD_ASSIGN_OR_RETURN(DisplayFrame picture, source_.Tone(traced.picture, *shown.scene));
   picture.stages.insert(picture.stages.begin(), {scene::FrameStage::kTrace, traced.trace_ms});
   picture.modelled.technique = scene::Reference::kName;
@@ -165,14 +203,26 @@ absl::StatusOr<bool> SessionDrawer::ShowTraced(const Turn& turn, const NewestSce
       scene::HydrometeorsOf(scene::DrawnFieldsOf(*shown.scene, *fields));
   renderers::AddNotShown(*shown.scene, scene::Reference::kCapabilities, &picture.modelled.content);
   picture.modelled.content.ground = scene::DrawnGround(*shown.scene, *fields);
-  Send(turn, {turn.session, shown.revision, *shown.scene, traced.full_size, std::move(picture),
-              traced.refinement});
-  return true;
+  Send(turn, shown, traced.full_size, std::move(picture), traced.refinement);
+  return absl::OkStatus();
 }
 
-void SessionDrawer::Send(const Turn& turn, DrawnFrame frame) {
-  turn.kept.fields.AddStages(&frame.picture.stages);
-  frame.view = scene::ViewOf(frame.scene, *turn.kept.fields.Fields());
+void SessionDrawer::Send(const Turn& turn, const NewestScene& shown, bool refined,
+                         DisplayFrame picture, std::optional<Refinement> refinement) {
+  turn.kept.fields.AddStages(&picture.stages);
+  DrawnFrame frame{.session = turn.session,
+                   .scene_revision = shown.revision,
+                   .scene = *shown.scene,
+                   .refined = refined,
+                   .at_rest = refined && Clock::now() >= shown.changed_at + targets_.rest_delay,
+                   .refinement = refinement,
+                   .view = scene::ViewOf(*shown.scene, *turn.kept.fields.Fields())};
+  const auto still_tiers = turn.session->hub().StillTiers(picture.width_px);
+  if (refined && std::ranges::find(still_tiers, true) != still_tiers.end()) {
+    // Those who would take it get JPEG where it cannot be had.
+    if (auto fine = source_.Fine(); fine.ok()) frame.fine = *std::move(fine);
+  }
+  frame.picture = std::move(picture);
   encoder_.Encode(std::move(frame));
 }
 

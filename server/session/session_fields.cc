@@ -31,7 +31,6 @@ std::optional<SessionFields::Unreadable> SessionFields::TakeRead() {
 std::optional<NewestScene> SessionFields::Drawable(const NewestScene& newest,
                                                    std::uint64_t shown_revision) {
   const FieldsKey key = KeyOf(*newest.scene);
-  const std::optional<NewestScene> arrived_for = std::exchange(arrived_for_, std::nullopt);
   if (key_ == key && IsPrepared(*newest.scene, fields_)) return newest;
   if (unreadable_revision_ == newest.revision) return std::nullopt;
   if (auto cached = access_.store.Peek(key.storm_id, key.time_index);
@@ -47,8 +46,8 @@ std::optional<NewestScene> SessionFields::Drawable(const NewestScene& newest,
     reading_for_ = newest;
     Ask(newest);
   }
-  const bool is_news = arrived_for.has_value() && arrived_for->revision > shown_revision;
-  return is_news ? arrived_for : std::nullopt;
+  const bool is_news = arrived_for_.has_value() && arrived_for_->revision > shown_revision;
+  return is_news ? arrived_for_ : std::nullopt;
 }
 
 bool SessionFields::IsPrepared(

@@ -20,18 +20,20 @@ void SessionReference::EndUnless(const scene::Scene& newest) {
 absl::StatusOr<bool> SessionReference::Trace(
     const NewestScene& shown, const std::shared_ptr<const volume::HydrometeorFields>& fields) {
   if (!traced_.has_value()) {
-    traced_ = Traced{shown, nullptr};
+    traced_ = Traced{shown, nullptr, false};
     THUNDERHEAD_RETURN_IF_ERROR(tracer_.Trace(id_, shown.scene, fields));
     return false;
   }
   // A changed exposure shows the same picture differently.
-  bool news = traced_->picture != nullptr && shown.revision > traced_->shown.revision;
+  if (traced_->picture != nullptr && shown.revision > traced_->shown.revision) {
+    traced_->is_new = true;
+  }
   traced_->shown = shown;
   if (auto taken = tracer_.Take(id_); taken.has_value()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(traced_->picture, *std::move(taken));
-    news = true;
+    traced_->is_new = true;
   }
-  return news;
+  return traced_->is_new;
 }
 
 void SessionReference::Release() {

@@ -22,10 +22,14 @@ class SessionReference {
   // Ends tracing if the newest scene shows something else.
   void EndUnless(const scene::Scene& newest);
 
-  // Begins tracing `shown`, or takes the newest picture of it. True if picture() has changed.
+  // Begins tracing `shown`, or takes the newest picture of it. True if there is one to be shown.
   absl::StatusOr<bool> Trace(const NewestScene& shown,
                              const std::shared_ptr<const volume::HydrometeorFields>& fields);
-  const TruthPicture& picture() const { return *traced_->picture; }
+  // The picture to be shown.
+  const TruthPicture& TakePicture() {
+    traced_->is_new = false;
+    return *traced_->picture;
+  }
 
   void Release();
 
@@ -33,6 +37,7 @@ class SessionReference {
   struct Traced {
     NewestScene shown;
     std::shared_ptr<const TruthPicture> picture;  // none yet
+    bool is_new = false;
   };
 
   TruthTracer& tracer_;

@@ -71,7 +71,7 @@ std::optional<SessionWork> SessionView::Check(const Now& now) {
   if (!setting_.settled()) {
     const Clock::time_point settled_at = SettledAt(now.newest);
     if (now.time < settled_at) return WaitUntil{settled_at};
-    if (setting_.TakeCheck()) return CheckSlices{now.shown};
+    if (setting_.NeedsCheck()) return CheckSlices{now.shown};
     if (setting_.DecideAgain(now.newest)) {
       planner_.Again();
       state_ = State::kRefining;
@@ -88,6 +88,7 @@ std::optional<SessionWork> SessionView::Trace(const Now& now) {
     const Clock::time_point settled_at = SettledAt(now.shown);
     if (now.time < settled_at) return WaitUntil{settled_at};
     light_.BeginFor(now.shown.revision, now.time);
+    if (light_.due()) return ShowLight{now.shown};
     if (!light_.ended()) return TraceLight{now.shown};
   }
   state_ = State::kSettled;

@@ -28,15 +28,20 @@ struct DrawFrame {
 struct CheckSlices {
   NewestScene shown;
 };
-// One step of tracing light.
+// Have light traced.
 struct TraceLight {
+  NewestScene shown;
+};
+// Draw with the light traced so far.
+struct ShowLight {
   NewestScene shown;
 };
 // Show the reference's picture so far.
 struct ShowReference {
   NewestScene shown;
 };
-using SessionWork = std::variant<WaitUntil, DrawFrame, CheckSlices, TraceLight, ShowReference>;
+using SessionWork =
+    std::variant<WaitUntil, DrawFrame, CheckSlices, TraceLight, ShowLight, ShowReference>;
 
 class SessionView {
  public:
@@ -67,10 +72,12 @@ class SessionView {
   // Notifications of the outcome of work.
   void Drawn(const DrawFrame& work);
   void Checked(double discretisation_error);
-  // True if the caller should draw the picture with the light traced so far and call LightShown.
+  // True if the next work is to show the light traced so far, until LightShown.
   bool LightTraced(const accuracy::LightProgress& progress, Clock::time_point now);
-  // The picture stays, with the light traced before.
-  void LightFailed() { light_.GiveUp(); }
+  // The light stays as it was traced before; shown once more, to tell why.
+  void LightFailed() { light_.GiveUp(true); }
+  // No light is traced for this view.
+  void LightIsOthers() { light_.GiveUp(false); }
   void LightShown(Clock::time_point now) { light_.Shown(now); }
   void ReferenceShown(std::uint64_t revision) { planner_.GiveUp(revision); }
   // That revision is not tried again.

@@ -48,10 +48,9 @@ absl::Status NotFound(const std::string& key) {
                            "': it was closed or has expired; create a new one"));
 }
 
-absl::Status TooMany(std::size_t max_sessions) {
+absl::Status TooMany(const char* who, std::size_t max_sessions) {
   return base::WithDetails(
-      absl::ResourceExhaustedError(absl::StrCat("the server already has the maximum of ",
-                                                max_sessions,
+      absl::ResourceExhaustedError(absl::StrCat(who, " the maximum of ", max_sessions,
                                                 " sessions; close one, or try again later")),
       {.reason = "TOO_MANY_SESSIONS",
        .metadata = {{"maximum", absl::StrCat(max_sessions)}, {"unit", "sessions"}},
@@ -215,17 +214,24 @@ void OwnView::Show() {
 Sessions::Sessions(const SessionsOptions& options, const SessionSignals& signals)
     : options_(options), signals_(signals) {}
 
-absl::StatusOr<std::shared_ptr<Session>> Sessions::Create(const Rules& rules) {
+absl::StatusOr<std::shared_ptr<Session>> Sessions::Create(const Rules& rules,
+                                                          const std::string& owner) {
   const std::lock_guard lock(mutex_);
   if (!closed_because_.ok()) return closed_because_;
   DropExpired();
   if (sessions_.size() >= options_.max_sessions) {
-    return TooMany(options_.max_sessions);
+    return TooMany("the server already has", options_.max_sessions);
+  }
+  const auto owned = std::ranges::count_if(
+      owner_by_id_, [&owner](const auto& entry) { return entry.second == owner; });
+  if (static_cast<std::size_t>(owned) >= options_.max_sessions_per_owner) {
+    return TooMany("you already have", options_.max_sessions_per_owner);
   }
   auto session = std::make_shared<Session>(RandomHex(kIdWords),
                                            SessionKeys{RandomHex(kKeyWords), RandomHex(kKeyWords)},
                                            rules, Board{}, options_.format, signals_);
   Add(session);
+  if (!owner.empty()) owner_by_id_[session->id()] = owner;
   return session;
 }
 
@@ -287,6 +293,7 @@ std::shared_ptr<Session> Sessions::Remove(Map::iterator at) {
   std::shared_ptr<Session> session = std::move(at->second);
   id_by_key_.erase(session->keys().presenter);
   id_by_key_.erase(session->keys().viewer);
+  owner_by_id_.erase(session->id());
   sessions_.erase(at);
   return session;
 }

@@ -22,6 +22,7 @@
 #include "session/audience.h"
 #include "session/frame_hub.h"
 #include "session/session_record.h"
+#include "session/video_encoders.h"
 
 namespace thunderhead::session {
 
@@ -65,6 +66,7 @@ class Session {
   // True for what an OwnView draws, which nobody finds by a key.
   bool IsOwnView() const { return keys_.viewer.empty(); }
   FrameHub& hub() { return hub_; }
+  VideoEncoders& video() { return video_; }
   Audience& audience() { return audience_; }
 
   // A new revision, larger than all before. Taken when an update arrives, before its scene is
@@ -103,6 +105,7 @@ class Session {
   const SessionKeys keys_;
   const SessionSignals signals_;
   FrameHub hub_;
+  VideoEncoders video_;
   Audience audience_;
   mutable std::mutex mutex_;
   std::uint64_t revision_count_ = 0;
@@ -140,6 +143,7 @@ class OwnView {
 
 struct SessionsOptions {
   std::size_t max_sessions = 64;
+  std::size_t max_sessions_per_owner = 32;
   Clock::duration idle_timeout = std::chrono::minutes(15);  // with nobody there
   // With people there who acknowledge and send nothing.
   Clock::duration watched_idle_timeout = std::chrono::hours(1);
@@ -156,8 +160,10 @@ class Sessions {
  public:
   Sessions(const SessionsOptions& options, const SessionSignals& signals);
 
-  // RESOURCE_EXHAUSTED if there are too many, UNAVAILABLE after CloseAll.
-  absl::StatusOr<std::shared_ptr<Session>> Create(const Rules& rules = {});
+  // RESOURCE_EXHAUSTED if there are too many, in all or of that owner, UNAVAILABLE after CloseAll.
+  // No owner has as many as there may be, and so have those that come back from a store.
+  absl::StatusOr<std::shared_ptr<Session>> Create(const Rules& rules = {},
+                                                  const std::string& owner = "");
   // The session of a record from another run, as if nothing had happened but that everybody left.
   std::shared_ptr<Session> Restore(const SessionRecord& record, scene::Scene scene,
                                    std::string serialized);
@@ -196,6 +202,7 @@ class Sessions {
   std::mutex mutex_;
   Map sessions_;                                         // by id
   std::map<std::string, std::string> id_by_key_;         // both keys
+  std::map<std::string, std::string> owner_by_id_;       // of sessions that have one
   std::map<std::string, std::weak_ptr<OwnView>> views_;  // by id
   std::uint64_t view_count_ = 0;
   absl::Status closed_because_;

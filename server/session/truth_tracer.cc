@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/stopwatch.h"
+#include "base/thread_priority.h"
 #include "session/truth_schedule.h"
 
 namespace thunderhead::session {
@@ -144,6 +145,8 @@ void TruthTracer::Keep(Job& job, Found found, bool ended) {
 }
 
 void TruthTracer::Run() {
+  // Threads that it starts inherit that.
+  base::LowerPriority(base::kLowestPriority);
   std::unique_lock lock(mutex_);
   while (true) {
     std::shared_ptr<Job> job;

@@ -1,68 +1,92 @@
 #include "session/turns.h"
 
 #include <algorithm>
+#include <limits>
+#include <set>
 
 namespace thunderhead::session {
 namespace {
 
-std::optional<Clock::time_point> Earlier(const std::optional<Clock::time_point>& a,
-                                         const std::optional<Clock::time_point>& b) {
-  if (!a.has_value()) return b;
-  if (!b.has_value()) return a;
-  return std::min(*a, *b);
+// A class that is owed less than half a piece waits.
+constexpr double kWorthATurn_ms = 7.5;
+
+std::size_t IndexOf(TurnClass turn_class) { return static_cast<std::size_t>(turn_class); }
+
+// What people see together and what one sees for himself, in each class.
+std::string GroupOf(const Contender& contender) {
+  return std::to_string(IndexOf(*contender.work)) + (contender.own_view ? " own" : "");
+}
+
+// Raises all balances by as much as lets one of `waiting` have a turn. Returns who that is: of
+// several the one after `last`.
+std::string Refill(const std::set<std::string>& waiting, const std::string& last,
+                   std::map<std::string, double>* balances) {
+  double best = -std::numeric_limits<double>::infinity();
+  for (const std::string& id : waiting) best = std::max(best, (*balances)[id]);
+  for (auto& [id, balance] : *balances) balance = std::min(balance - best, 0.0);
+  std::string next;
+  for (const std::string& id : waiting) {
+    if ((*balances)[id] < 0.0) continue;
+    if (id > last) return id;
+    if (next.empty()) next = id;
+  }
+  return next;
 }
 
 }  // namespace
 
-std::vector<std::size_t> Turns::Order(const std::vector<Contender>& contenders) const {
-  std::vector<std::size_t> order;
-  const auto add = [&](bool own_view, const std::string& last_served) {
-    const auto begin = static_cast<std::ptrdiff_t>(order.size());
-    std::ptrdiff_t until_last = 0;
-    for (std::size_t i = 0; i < contenders.size(); ++i) {
-      if (contenders[i].own_view != own_view) continue;
-      if (contenders[i].id <= last_served) ++until_last;
-      order.push_back(i);
-    }
-    std::rotate(order.begin() + begin, order.begin() + begin + until_last, order.end());
-  };
-  add(own_views_first_, own_views_first_ ? last_own_view_served_ : last_served_);
-  add(!own_views_first_, own_views_first_ ? last_served_ : last_own_view_served_);
-  return order;
+std::optional<TurnClass> Turns::ClassNow(const std::vector<Contender>& contenders) {
+  std::array<bool, kTurnClasses> waits{};
+  for (const Contender& contender : contenders) {
+    if (contender.work.has_value()) waits[IndexOf(*contender.work)] = true;
+  }
+  for (std::size_t i = 0; i < kTurnClasses; ++i) {
+    if (!waits[i]) owed_ms_[i] = std::min(owed_ms_[i], 0.0);
+  }
+  for (std::size_t i = kTurnClasses; i-- > 1;) {
+    if (owed_ms_[i] >= kWorthATurn_ms) return static_cast<TurnClass>(i);
+  }
+  const auto first = std::find(waits.begin(), waits.end(), true);
+  if (first == waits.end()) return std::nullopt;
+  return static_cast<TurnClass>(first - waits.begin());
 }
 
-void Turns::Served(const Contender& contender) {
-  (contender.own_view ? last_own_view_served_ : last_served_) = contender.id;
-  own_views_first_ = !contender.own_view;
+std::optional<std::size_t> Turns::Next(const std::vector<Contender>& contenders) {
+  std::set<std::string> present;
+  for (const Contender& contender : contenders) present.insert(contender.id);
+  for (auto& [group, of_group] : groups_) {
+    std::erase_if(of_group.balances,
+                  [&](const auto& entry) { return !present.contains(entry.first); });
+  }
+  const std::optional<TurnClass> now = ClassNow(contenders);
+  if (!now.has_value()) return std::nullopt;
+
+  std::map<std::string, std::set<std::string>> waiting;  // by group
+  std::set<std::string> groups;
+  for (const Contender& contender : contenders) {
+    if (contender.work != now) continue;
+    waiting[GroupOf(contender)].insert(contender.id);
+    groups.insert(GroupOf(contender));
+  }
+  const std::string group = Refill(groups, last_group_, &group_balances_);
+  Group& of_group = groups_[group];
+  const std::string id = Refill(waiting[group], of_group.last_served, &of_group.balances);
+  const auto next = std::ranges::find(contenders, id, &Contender::id);
+  return static_cast<std::size_t>(next - contenders.begin());
 }
 
-std::optional<Clock::time_point> Turns::Next(const std::vector<Contender>& contenders,
-                                             const TakeTurn& take_turn) {
-  std::optional<Clock::time_point> look_again_at;
-  std::vector<std::size_t> with_background_work;
-  for (const std::size_t index : Order(contenders)) {
-    const TurnOutcome outcome = take_turn(index, TurnKind::kAny);
-    if (outcome.drew) {
-      Served(contenders[index]);
-      last_drew_at_ = Clock::now();
-      return last_drew_at_;
-    }
-    if (outcome.has_background_work) with_background_work.push_back(index);
-    look_again_at = Earlier(look_again_at, outcome.look_again_at);
+void Turns::Used(const Contender& contender, double milliseconds) {
+  last_group_ = GroupOf(contender);
+  group_balances_[last_group_] -= milliseconds;
+  Group& group = groups_[last_group_];
+  group.balances[contender.id] -= milliseconds;
+  group.last_served = contender.id;
+  const std::size_t used = IndexOf(*contender.work);
+  // Where nobody else had work it owes the others no more than its last turn.
+  owed_ms_[used] = std::max(owed_ms_[used] - milliseconds, -milliseconds);
+  for (std::size_t i = used + 1; i < kTurnClasses; ++i) {
+    owed_ms_[i] += milliseconds * kLeastShare / (1.0 - kLeastShare);
   }
-  if (with_background_work.empty()) return look_again_at;
-  if (last_drew_at_.has_value() && Clock::now() < *last_drew_at_ + kQuietBeforeBackground) {
-    return Earlier(look_again_at, *last_drew_at_ + kQuietBeforeBackground);
-  }
-  for (const std::size_t index : with_background_work) {
-    const TurnOutcome outcome = take_turn(index, TurnKind::kBackground);
-    if (outcome.drew) {
-      Served(contenders[index]);
-      return Clock::now();
-    }
-    look_again_at = Earlier(look_again_at, outcome.look_again_at);
-  }
-  return look_again_at;
 }
 
 }  // namespace thunderhead::session

@@ -1,57 +1,62 @@
-// Round-robin scheduling of drawing, so that nobody starves however often others have work. What
-// many people see and what one sees for himself come in turn, so that a class that looks around
-// takes at most half of the time. A plain value.
+// Who draws next: deficit round robin in milliseconds. What people wait for comes before what
+// becomes finer while they look, and that before pictures for nobody's eyes; but the later ones get
+// a tenth of the time however much the earlier have to do, so that they end. Within a class all get
+// the same time, however long each one's pieces are. What many people see and what one sees for
+// himself count as two, so that a class of pupils who look around takes at most half of the time. A
+// plain value, without a clock.
 #pragma once
 
+#include <array>
 #include <cstddef>
-#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "session/sessions.h"
-
 namespace thunderhead::session {
 
-// The outcome of a turn.
-struct TurnOutcome {
-  bool drew = false;  // the turn is used
-  std::optional<Clock::time_point> look_again_at;
-  bool has_background_work = false;  // to be done in a kBackground turn
+enum class TurnClass {
+  kInteractive,  // a scene that has just changed
+  kRefining,     // finer frames of scenes at rest, and tracing their light
+  kBatch,        // pictures outside any session
 };
+inline constexpr std::size_t kTurnClasses = 3;
 
-// Background work (traced light) is done only while there is no other work.
-enum class TurnKind { kAny, kBackground };
-
-// Background work begins only after this long without other work, so that it does not delay the
-// frames of another session's moving camera.
-inline constexpr Clock::duration kQuietBeforeBackground = std::chrono::milliseconds(300);
+// Of the time that the classes before it use.
+inline constexpr double kLeastShare = 0.1;
 
 // Who may have a turn.
 struct Contender {
   std::string id;
-  bool own_view = false;  // of one person
+  bool own_view = false;          // of one person
+  std::optional<TurnClass> work;  // that waits to be done
 };
 
 class Turns {
  public:
-  using TakeTurn = std::function<TurnOutcome(std::size_t index, TurnKind kind)>;
+  // The index of who is to draw next; none if nobody has work. Among those who have had the same
+  // time it is the one whose id comes after that of the last served.
+  std::optional<std::size_t> Next(const std::vector<Contender>& contenders);
 
-  // Offers a turn to each contender (sorted by id), first to those of the kind that did not use the
-  // last, and of each kind starting after the one that was last served, until one uses it; then, if
-  // all have been quiet, offers turns for background work. Returns when to call again without a
-  // wake-up.
-  std::optional<Clock::time_point> Next(const std::vector<Contender>& contenders,
-                                        const TakeTurn& take_turn);
+  // It has drawn for so long.
+  void Used(const Contender& contender, double milliseconds);
 
  private:
-  std::vector<std::size_t> Order(const std::vector<Contender>& contenders) const;
-  void Served(const Contender& contender);
+  // Time that was used beyond the share of the one that used least: zero or less.
+  using Balances = std::map<std::string, double>;
+  // Of a class: what people see together, or what one sees for himself.
+  struct Group {
+    Balances balances;
+    std::string last_served;
+  };
 
-  std::string last_served_;
-  std::string last_own_view_served_;
-  bool own_views_first_ = false;
-  std::optional<Clock::time_point> last_drew_at_;  // not counting background work
+  std::optional<TurnClass> ClassNow(const std::vector<Contender>& contenders);
+
+  std::map<std::string, Group> groups_;
+  Balances group_balances_;
+  std::string last_group_;
+  // Time that a class may use before the others.
+  std::array<double, kTurnClasses> owed_ms_{};
 };
 
 }  // namespace thunderhead::session

@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
+#include "base/whole_file.h"
 #include "volume/netcdf_lock.h"
 
 namespace thunderhead::volume {
@@ -116,15 +117,12 @@ int Write(const CfCloud& cloud, const std::string& path) {
 absl::Status WriteCfCloud(const CfCloud& cloud, const std::string& path) {
   THUNDERHEAD_CHECK(cloud.quantity != Quantity::kMixingRatio, path);
   THUNDERHEAD_CHECK(cloud.values.size() == cloud.grid.CellCount(), path);
-  const std::string partial = path + ".partial";
+  const std::string partial = base::PartialPath(path);
   const int code = Write(cloud, partial);
-  std::error_code error;
-  if (code == NC_NOERR) std::filesystem::rename(partial, path, error);
-  if (code == NC_NOERR && !error) return absl::OkStatus();
+  if (code == NC_NOERR) return base::PublishFile(path);
   std::error_code ignored;
   std::filesystem::remove(partial, ignored);
-  return absl::UnavailableError(absl::StrCat(path, " cannot be written (",
-                                             error ? error.message() : nc_strerror(code),
+  return absl::UnavailableError(absl::StrCat(path, " cannot be written (", nc_strerror(code),
                                              "); check that its folder exists and has room"));
 }
 

@@ -105,11 +105,9 @@ absl::StatusOr<Folder> List(const fs::path& path) {
 // Groups a folder's files into runs; files that do not continue one another become storms of their
 // own.
 std::vector<NamedStorm> GroupRuns(const fs::path& folder, std::vector<StormFile> files) {
-  std::map<decltype(RunKey(files[0])), std::vector<StormFile>> runs;
-  for (StormFile& file : files) runs[RunKey(file)].push_back(std::move(file));
   std::vector<NamedStorm> storms;
   std::vector<std::size_t> series;
-  for (auto& [key, run] : runs) {
+  for (std::vector<StormFile>& run : FilesOfRuns(std::move(files))) {
     if (run.size() > 1 && ContinueOneAnother(run)) {
       series.push_back(storms.size());
       storms.push_back({NameOfFolder(folder), std::move(run)});
@@ -208,6 +206,15 @@ void DropRepeated(std::vector<NamedStorm>& storms) {
 }
 
 }  // namespace
+
+std::vector<std::vector<StormFile>> FilesOfRuns(std::vector<StormFile> files) {
+  std::map<decltype(RunKey(files[0])), std::vector<StormFile>> by_key;
+  for (StormFile& file : files) by_key[RunKey(file)].push_back(std::move(file));
+  std::vector<std::vector<StormFile>> runs;
+  runs.reserve(by_key.size());
+  for (auto& [key, run] : by_key) runs.push_back(std::move(run));
+  return runs;
+}
 
 CataloguedStorm AssembleStorm(const std::string& name, std::vector<StormFile> files) {
   THUNDERHEAD_CHECK(!files.empty(), name);

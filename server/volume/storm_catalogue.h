@@ -52,6 +52,9 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
 
 void LogNotes(const std::vector<CataloguedStorm>& storms);
 
+// The files by the runs that they may be parts of: same domain, grid, fields and start.
+std::vector<std::vector<StormFile>> FilesOfRuns(std::vector<StormFile> files);
+
 // Makes one storm of the files of one run: times in order; if several files have the same time, the
 // last file's is used. `files` must not be empty.
 CataloguedStorm AssembleStorm(const std::string& name, std::vector<StormFile> files);

@@ -44,7 +44,7 @@ class DetailInSlab : public SlabView, public testing::WithParamInterface<accurac
 
   Kept KeptBy(const scene::Detail& detail) const {
     const volume::HydrometeorFields fields = Fields(kDepth);
-    const Medium medium = MediumOf(scene_, fields);
+    const Medium medium = scene::GroupedFieldsOf(scene_, fields);
     volume::ExtinctionVolume volume = volume::ComputeExtinction(fields, medium.terms, 1);
     const std::vector<std::uint8_t> control = volume::DetailControlOf(fields, medium.terms, volume);
     const std::uint16_t before = volume.planes[0].texels[0];

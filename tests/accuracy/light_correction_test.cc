@@ -71,6 +71,7 @@ class LightCorrection : public testing::Test {
 
   std::unique_ptr<gl::Context> context_;
   const std::shared_ptr<gl::ProgramCache> programs_ = std::make_shared<gl::ProgramCache>();
+  const std::shared_ptr<TracedLights> lights_ = std::make_shared<TracedLights>();
   std::unique_ptr<renderers::SceneRenderer> renderer_;
   std::shared_ptr<const volume::HydrometeorFields> fields_ = MakeTower();
   scene::Scene scene_ = test_support::PlainScene();
@@ -219,7 +220,7 @@ TEST_F(LightCorrection, ServesScenesOfTheSameLight) {
 }
 
 TEST_F(LightCorrection, APoolKeepsWhatIsTracedAndRefusesOneTooMany) {
-  CorrectorPool pool(programs_, 1, 1e9);
+  CorrectorPool pool(programs_, lights_, 1, 1e9);
   EXPECT_EQ(pool.Find(scene_, fields_), nullptr);
   const auto progress = pool.Trace(scene_, fields_);
   ASSERT_TRUE(progress.ok()) << progress.status();
@@ -231,7 +232,7 @@ TEST_F(LightCorrection, APoolKeepsWhatIsTracedAndRefusesOneTooMany) {
   EXPECT_THAT(std::string(pool.Trace(other, fields_).status().message()),
               HasSubstr("the light of 1 other scenes already"));
   EXPECT_EQ(pool.Trace(scene_, fields_)->steps, 2);
-  CorrectorPool idle(programs_, 1, 0.0);
+  CorrectorPool idle(programs_, lights_, 1, 0.0);
   ASSERT_TRUE(idle.Trace(scene_, fields_).ok());
   ASSERT_TRUE(idle.Trace(other, fields_).ok());
   EXPECT_EQ(idle.Find(scene_, fields_), nullptr);
@@ -239,7 +240,7 @@ TEST_F(LightCorrection, APoolKeepsWhatIsTracedAndRefusesOneTooMany) {
 }
 
 TEST_F(LightCorrection, APoolKeepsWhatIsClaimed) {
-  CorrectorPool pool(programs_, 1, 0.0, 0.0);
+  CorrectorPool pool(programs_, lights_, 1, 0.0, 0.0);
   LightClaim claim;
   ASSERT_TRUE(pool.Trace(scene_, fields_, &claim).ok());
   scene::Scene other = scene_;

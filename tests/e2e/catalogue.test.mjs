@@ -36,7 +36,7 @@ before(async () => {
     httpPort: await freePort(),
     grpcPort: await freePort(),
     data: folder,
-    flags: ["--settle-seconds", String(SETTLE_MS / 1000), "--rescan-seconds", "2"],
+    more: ["--settle-seconds", String(SETTLE_MS / 1000), "--rescan-seconds", "2"],
   });
   browser = await launchBrowser();
   page = await (await browser.newContext({ viewport: { width: 900, height: 560 } })).newPage();

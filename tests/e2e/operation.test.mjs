@@ -12,7 +12,7 @@ async function start(...more) {
   const operatorPort = await freePort();
   const flags = ["--metrics", `127.0.0.1:${operatorPort}`, "--log-format", "json", ...more];
   const ports = { httpPort: await freePort(), grpcPort: await freePort() };
-  const server = await startServer({ ...ports, flags });
+  const server = await startServer({ ...ports, more: flags });
   const get = async (path) => {
     const answer = await fetch(`http://127.0.0.1:${operatorPort}/${path}`);
     return { status: answer.status, text: await answer.text() };

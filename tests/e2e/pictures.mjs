@@ -56,6 +56,21 @@ export function difference(a, b) {
   return sum / (a.width * a.height * 3);
 }
 
+// Mean absolute difference of the means of blocks, all channels, 0 to 255: of colours, whatever the pictures' sharpness.
+export function blockDifference(a, b, side = 16) {
+  if (a.width !== b.width || a.height !== b.height) throw new Error("the pictures differ in size");
+  const [columns, rows] = [Math.floor(a.width / side), Math.floor(a.height / side)];
+  const sums = new Float64Array(columns * rows * 3);
+  for (let y = 0; y < rows * side; y += 1) {
+    for (let x = 0; x < columns * side; x += 1) {
+      const block = Math.floor(y / side) * columns + Math.floor(x / side);
+      const at = 4 * (y * a.width + x);
+      for (let i = 0; i < 3; i += 1) sums[3 * block + i] += a.data[at + i] - b.data[at + i];
+    }
+  }
+  return sums.reduce((sum, value) => sum + Math.abs(value), 0) / (sums.length * side * side);
+}
+
 // Share of pixels in which two pictures differ by more than a JPEG's noise.
 export function differingShare(a, b) {
   const noise = 10;

@@ -22,20 +22,20 @@ export function freePort() {
   });
 }
 
-// `state` is a folder in which sessions outlive the program; `data` the storms, `flags` further ones of serve.
+// `state` is a folder in which sessions outlive the program; `data` the storms; `more` are further flags.
 export async function startServer({
   httpPort,
   grpcPort,
   state = "none",
   data = `${ROOT}samples/supercell.nc`,
-  flags: more = [],
+  more = [],
 }) {
   const page = `${ROOT}client-web/dist`;
   if (!existsSync(BINARY)) throw new Error(`no program at ${BINARY}; build it, or set THUNDERHEAD_BINARY`);
   if (!existsSync(`${page}/index.html`)) throw new Error(`no page in ${page}; run npm run build in client-web`);
   const address = (port) => `127.0.0.1:${port}`;
-  const flags = ["--data", data, "--http", address(httpPort), "--grpc", address(grpcPort), ...more];
-  const child = spawn(BINARY, ["serve", ...flags, "--page", page, "--state", state], { cwd: ROOT });
+  const flags = ["--data", data, "--http", address(httpPort), "--grpc", address(grpcPort)];
+  const child = spawn(BINARY, ["serve", ...flags, "--page", page, "--state", state, ...more], { cwd: ROOT });
   let said = "";
   const url = await new Promise((resolve, reject) => {
     const timer = setTimeout(() => reject(new Error(`no URL printed in time:\n${said}`)), START_TIMEOUT_MS);
@@ -52,7 +52,7 @@ export async function startServer({
     child.stdout.on("data", (text) => {
       said += text;
       printed += text;
-      const match = /http:\/\/[^\s"']+/.exec(printed);
+      const match = /https?:\/\/[^\s"']+/.exec(printed);
       if (match) settle(resolve, match[0]);
     });
   });

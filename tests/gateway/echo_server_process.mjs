@@ -3,8 +3,8 @@ import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { createInterface } from "node:readline";
 
-export async function startEchoServer(...args) {
-  const child = spawn(process.env.THUNDERHEAD_ECHO_SERVER, args, { stdio: ["pipe", "pipe", "inherit"] });
+export async function startEchoServer() {
+  const child = spawn(process.env.THUNDERHEAD_ECHO_SERVER, [], { stdio: ["pipe", "pipe", "inherit"] });
   const lines = createInterface({ input: child.stdout })[Symbol.asyncIterator]();
   const nextLine = async () => {
     const { value, done } = await lines.next();

@@ -220,7 +220,7 @@ grpc::ServerUnaryReactor* EchoService::Wait(grpc::CallbackServerContext*, const 
   return new Waiter(record_);
 }
 
-std::unique_ptr<EchoSite> EchoSite::Start(const GatewayOptions& options, Path path) {
+std::unique_ptr<EchoSite> EchoSite::Start(const GatewayOptions& options) {
   // When its last object is gone, gRPC 1.51 often waits for a polling thread that sleeps up to 10
   // s. Kept initialised, it does not.
   static const bool is_kept = (grpc_init(), true);
@@ -230,14 +230,10 @@ std::unique_ptr<EchoSite> EchoSite::Start(const GatewayOptions& options, Path pa
   static std::atomic<int> count = 0;
   const std::string address = absl::StrCat("unix-abstract:echo-", getpid(), "-", ++count);
   grpc::ServerBuilder builder;
-  if (path == Path::kUnixSocket) {
-    builder.AddListeningPort(address, grpc::InsecureServerCredentials());
-  }
+  builder.AddListeningPort(address, grpc::InsecureServerCredentials());
   builder.RegisterService(&site->service_);
   site->server_ = builder.BuildAndStart();
-  const std::shared_ptr<grpc::Channel> channel =
-      path == Path::kUnixSocket ? grpc::CreateChannel(address, grpc::InsecureChannelCredentials())
-                                : site->server_->InProcessChannel({});
+  const auto channel = grpc::CreateChannel(address, grpc::InsecureChannelCredentials());
   absl::StatusOr<std::unique_ptr<Gateway>> gateway = Gateway::Start(options, channel);
   THUNDERHEAD_CHECK(gateway.ok(), gateway.status().ToString());
   site->gateway_ = *std::move(gateway);

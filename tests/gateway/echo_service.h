@@ -46,15 +46,10 @@ class EchoService final : public Echo::CallbackService {
   EchoRecord record_;
 };
 
-// The transport between the gateway and the service: HTTP/2 on a Unix socket, as in the program, or
-// gRPC's in-process transport.
-enum class Path { kUnixSocket, kInProcess };
-
-// The service, its server and a gateway to it.
+// The service, its server and a gateway to it, by a Unix socket as in the program.
 class EchoSite {
  public:
-  static std::unique_ptr<EchoSite> Start(const GatewayOptions& options = {},
-                                         Path path = Path::kUnixSocket);
+  static std::unique_ptr<EchoSite> Start(const GatewayOptions& options = {});
   ~EchoSite();
 
   EchoRecord& Record() { return service_.Record(); }

@@ -1,5 +1,7 @@
 #include "tests/gateway/raw_client.h"
 
+#include <sys/socket.h>
+
 #include <boost/asio/connect.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/write.hpp>
@@ -127,6 +129,21 @@ bool RawClient::IsClosed() {
   const error_code error = Await(
       [&](auto handler) { stream_.async_read_some(net::buffer(&byte, 1), std::move(handler)); });
   return error == net::error::eof || error == net::error::connection_reset;
+}
+
+bool RawClient::IsEnded() {
+  char bytes[1024];
+  error_code error;
+  while (!error) {
+    error = Await(
+        [&](auto handler) { stream_.async_read_some(net::buffer(bytes), std::move(handler)); });
+  }
+  return error == net::error::eof || error == net::error::connection_reset;
+}
+
+void RawClient::SendNow(const std::string& bytes) {
+  static_cast<void>(::send(stream_.socket().native_handle(), bytes.data(), bytes.size(),
+                           MSG_DONTWAIT | MSG_NOSIGNAL));
 }
 
 void RawClient::ShutdownSending() { stream_.socket().shutdown(tcp::socket::shutdown_send); }

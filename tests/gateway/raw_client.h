@@ -40,6 +40,10 @@ class RawClient {
 
   // True if the server ends the connection within the wait and sends nothing more.
   bool IsClosed();
+  // The same, whatever the server sends before.
+  bool IsEnded();
+  // Sends what the kernel takes at once; also while another thread waits for the server.
+  void SendNow(const std::string& bytes);
   void ShutdownSending();
   void Close();
 

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "absl/strings/str_cat.h"
-#include "tests/gateway/echo_service.h"
+#include "tests/gateway/echo_test.h"
 #include "tests/gateway/eventually.h"
 #include "tests/gateway/raw_client.h"
 #include "tests/gateway/websocket_client.h"
@@ -89,28 +89,14 @@ void Upgrade(RawClient& client) {
   EXPECT_EQ(response["Sec-WebSocket-Protocol"], "grpc-websocket.v1");
 }
 
-class WebSocketTest : public ::testing::TestWithParam<Path> {
+class WebSocketTest : public EchoTest {
  protected:
-  EchoSite& Site() {
-    if (site_ == nullptr) site_ = EchoSite::Start(options_, GetParam());
-    return *site_;
-  }
-  EchoRecord& Record() { return Site().Record(); }
   bool AllCancelled(int calls) {
     return Eventually([&] { return Record().cancelled == calls && Record().done == calls; });
   }
-
-  GatewayOptions options_;
-  std::unique_ptr<EchoSite> site_;
 };
 
-INSTANTIATE_TEST_SUITE_P(Paths, WebSocketTest,
-                         ::testing::Values(Path::kUnixSocket, Path::kInProcess),
-                         [](const auto& parameter) {
-                           return parameter.param == Path::kInProcess ? "InProcess" : "UnixSocket";
-                         });
-
-TEST_P(WebSocketTest, MessagesGoBothWaysAtOnceAndInOrder) {
+TEST_F(WebSocketTest, MessagesGoBothWaysAtOnceAndInOrder) {
   constexpr int kMessages = 2000;
   const auto payload = [](int i) { return absl::StrCat(i, std::string(i % 3000, 'x')); };
   WebSocketClient client(Site().Port());
@@ -120,7 +106,7 @@ TEST_P(WebSocketTest, MessagesGoBothWaysAtOnceAndInOrder) {
   EXPECT_EQ(TrailersAfter(0, client)["grpc-status"], "0");
 }
 
-TEST_P(WebSocketTest, AnswersComeBeforeTheHalfClose) {
+TEST_F(WebSocketTest, AnswersComeBeforeTheHalfClose) {
   WebSocketClient client(Site().Port());
   for (const char* text : {"first", "second"}) {
     client.Send(Saying(text));
@@ -134,7 +120,7 @@ TEST_P(WebSocketTest, AnswersComeBeforeTheHalfClose) {
   EXPECT_EQ(client.CloseCode(), 1000);
 }
 
-TEST_P(WebSocketTest, EmptyMessagesAreMessages) {
+TEST_F(WebSocketTest, EmptyMessagesAreMessages) {
   WebSocketClient client(Site().Port());
   client.Send(std::string(1, kMessage));
   EXPECT_EQ(client.Receive(), std::string(1, kMessage));
@@ -142,7 +128,7 @@ TEST_P(WebSocketTest, EmptyMessagesAreMessages) {
   EXPECT_EQ(TrailersAfter(0, client)["grpc-status"], "0");
 }
 
-TEST_P(WebSocketTest, LargeMessagesStayWhole) {
+TEST_F(WebSocketTest, LargeMessagesStayWhole) {
   std::string payload(1 << 20, '\0');
   for (size_t i = 0; i < payload.size(); ++i) payload[i] = static_cast<char>(i * 31 >> 3);
   WebSocketClient client(Site().Port());
@@ -150,14 +136,14 @@ TEST_P(WebSocketTest, LargeMessagesStayWhole) {
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(PayloadOf(client.Receive()) == payload) << i;
 }
 
-TEST_P(WebSocketTest, HalfCloseAloneIsACallWithoutMessages) {
+TEST_F(WebSocketTest, HalfCloseAloneIsACallWithoutMessages) {
   WebSocketClient client(Site().Port());
   client.Send(std::string(1, kHalfClose));
   EXPECT_EQ(TrailersAfter(0, client)["grpc-status"], "0");
   EXPECT_EQ(client.CloseCode(), 1000);
 }
 
-TEST_P(WebSocketTest, OtherKindsOfCallsAreCarriedToo) {
+TEST_F(WebSocketTest, OtherKindsOfCallsAreCarriedToo) {
   CountRequest request;
   request.set_count(3);
   WebSocketClient client(Site().Port(), {"Count", {}, 0});
@@ -166,7 +152,7 @@ TEST_P(WebSocketTest, OtherKindsOfCallsAreCarriedToo) {
   EXPECT_EQ(TrailersAfter(3, client)["grpc-status"], "0");
 }
 
-TEST_P(WebSocketTest, FailureArrivesWithDetailsAsTrailers) {
+TEST_F(WebSocketTest, FailureArrivesWithDetailsAsTrailers) {
   WebSocketClient client(Site().Port());
   client.Send(Saying("before"));
   client.Send(Ending(5, "no storm\n100%", "\x08\x05"));
@@ -178,7 +164,7 @@ TEST_P(WebSocketTest, FailureArrivesWithDetailsAsTrailers) {
   EXPECT_EQ(client.CloseCode(), 1000);
 }
 
-TEST_P(WebSocketTest, ServerMayEndWhileTheClientStillSends) {
+TEST_F(WebSocketTest, ServerMayEndWhileTheClientStillSends) {
   WebSocketClient client(Site().Port());
   client.SendLater(Ending(9, "enough"));
   for (int i = 0; i < 100; ++i) client.SendLater(Saying(std::string(10'000, 'x')));
@@ -186,13 +172,35 @@ TEST_P(WebSocketTest, ServerMayEndWhileTheClientStillSends) {
   EXPECT_EQ(client.CloseCode(), 1000);
 }
 
-TEST_P(WebSocketTest, UnknownMethodsAreUnimplemented) {
+TEST_F(WebSocketTest, UnknownMethodsAreUnimplemented) {
   WebSocketClient client(Site().Port(), {"Sing", {}, 0});
   EXPECT_EQ(TrailersAfter(0, client)["grpc-status"], "12");
   EXPECT_EQ(client.CloseCode(), 1000);
 }
 
-TEST_P(WebSocketTest, HeadersOfOtherProgramsAreMetadata) {
+TEST_F(WebSocketTest, ATokenBesideTheSubprotocolIsAuthorization) {
+  WebSocketClient client(Site().Port(),
+                         {"Metadata",
+                          {{"Sec-WebSocket-Protocol", "grpc-websocket.v1, bearer.YW5uYT8_Pg"},
+                           {"X-Forwarded-For", "192.0.2.7"}},
+                          0});
+  client.Send(std::string(1, kMessage));
+  client.Send(std::string(1, kHalfClose));
+  MetadataResponse response;
+  ASSERT_TRUE(response.ParseFromString(client.Receive().value_or(" ").substr(1)));
+  std::map<std::string, std::string> metadata;
+  for (const auto& entry : response.entries()) {
+    EXPECT_FALSE(metadata.contains(entry.name())) << entry.name();
+    metadata[entry.name()] = entry.value();
+  }
+  EXPECT_EQ(metadata["authorization"],
+            "Bearer anna?"
+            "?>");
+  // What the client says about its address is not passed on.
+  EXPECT_THAT(metadata["x-forwarded-for"], ::testing::StartsWith("127.0.0.1:"));
+}
+
+TEST_F(WebSocketTest, HeadersOfOtherProgramsAreMetadata) {
   WebSocketClient client(
       Site().Port(), {"Metadata", {{"Echo-Text", "some text"}, {"Cookie", "other=program"}}, 0});
   client.Send(std::string(1, kMessage));
@@ -208,12 +216,12 @@ TEST_P(WebSocketTest, HeadersOfOtherProgramsAreMetadata) {
   EXPECT_EQ(TrailersAfter(0, client)["trailing-echo-text"], "some text");
 }
 
-TEST_P(WebSocketTest, DeadlinesEndCalls) {
+TEST_F(WebSocketTest, DeadlinesEndCalls) {
   WebSocketClient client(Site().Port(), {"Converse", {{"grpc-timeout", "200m"}}, 0});
   EXPECT_EQ(TrailersAfter(0, client)["grpc-status"], "4");
 }
 
-TEST_P(WebSocketTest, ClosingCancelsTheCall) {
+TEST_F(WebSocketTest, ClosingCancelsTheCall) {
   WebSocketClient client(Site().Port());
   client.Send(Saying("hello"));
   EXPECT_EQ(PayloadOf(client.Receive()), "hello");
@@ -224,7 +232,7 @@ TEST_P(WebSocketTest, ClosingCancelsTheCall) {
   EXPECT_EQ(client.CloseCode(), 1000);
 }
 
-TEST_P(WebSocketTest, VanishingCancelsTheCall) {
+TEST_F(WebSocketTest, VanishingCancelsTheCall) {
   WebSocketClient client(Site().Port());
   client.Send(Saying("hello"));
   EXPECT_EQ(PayloadOf(client.Receive()), "hello");
@@ -234,7 +242,7 @@ TEST_P(WebSocketTest, VanishingCancelsTheCall) {
   EXPECT_LT(Clock::now() - begin, seconds(1));
 }
 
-TEST_P(WebSocketTest, VanishingIsNoticedWhileTheServerReadsNothing) {
+TEST_F(WebSocketTest, VanishingIsNoticedWhileTheServerReadsNothing) {
   // The end of the connection is behind messages that are not read; only a ping finds it.
   options_.websocket_ping_interval = milliseconds(200);
   WebSocketClient client(Site().Port());
@@ -245,7 +253,7 @@ TEST_P(WebSocketTest, VanishingIsNoticedWhileTheServerReadsNothing) {
   EXPECT_TRUE(AllCancelled(1));
 }
 
-TEST_P(WebSocketTest, VanishingBehindFewMessagesNeedsNoPing) {
+TEST_F(WebSocketTest, VanishingBehindFewMessagesNeedsNoPing) {
   WebSocketClient client(Site().Port());
   client.Send(ReadingNoMore());
   ASSERT_EQ(PayloadOf(client.Receive()), "");
@@ -258,7 +266,7 @@ TEST_P(WebSocketTest, VanishingBehindFewMessagesNeedsNoPing) {
   EXPECT_TRUE(AllCancelled(1));
 }
 
-TEST_P(WebSocketTest, TooLargeMessagesAreRefused) {
+TEST_F(WebSocketTest, TooLargeMessagesAreRefused) {
   options_.max_message_bytes = 1000;
   WebSocketClient client(Site().Port());
   client.Send(Saying("hello"));
@@ -274,14 +282,14 @@ TEST_P(WebSocketTest, TooLargeMessagesAreRefused) {
   EXPECT_EQ(PayloadOf(other.Receive()), request.payload());
 }
 
-TEST_P(WebSocketTest, TooLargeMessageStillBeingSentIsRefused) {
+TEST_F(WebSocketTest, TooLargeMessageStillBeingSentIsRefused) {
   options_.max_message_bytes = 1000;
   WebSocketClient client(Site().Port());
   client.SendLater(kMessage + std::string(20'000'000, 'x'));
   EXPECT_EQ(client.CloseCode(), 1009);
 }
 
-TEST_P(WebSocketTest, BrokenRulesCloseWithTheirCode) {
+TEST_F(WebSocketTest, BrokenRulesCloseWithTheirCode) {
   const auto code_after = [&](const std::string& message) {
     WebSocketClient client(Site().Port());
     client.Send(message);
@@ -304,7 +312,7 @@ TEST_P(WebSocketTest, BrokenRulesCloseWithTheirCode) {
 }
 
 // These clients read and close nothing afterwards.
-TEST_P(WebSocketTest, BrokenFramesAndCloseFramesEndTheCall) {
+TEST_F(WebSocketTest, BrokenFramesAndCloseFramesEndTheCall) {
   // Frames of clients must be masked; a close frame.
   const std::string last_words[] = {{"\x82\x01\x00", 3}, {"\x88\x80\0\0\0\0", 6}};
   for (const std::string& bytes : last_words) {
@@ -391,7 +399,7 @@ TEST_F(UpgradeTest, NothingMayBeSentBeforeTheAnswer) {
   EXPECT_EQ(client.Read().result(), http::status::bad_request);
 }
 
-TEST_P(WebSocketTest, SlowReaderHoldsTheHandlerBack) {
+TEST_F(WebSocketTest, SlowReaderHoldsTheHandlerBack) {
   WebSocketClient client(Site().Port(), {"Converse", {}, /*receive_buffer_bytes=*/16 << 10});
   client.Send(ReadingNoMore(/*repeats=*/2000, /*payload_bytes=*/100'000));
   int before = -1;
@@ -408,7 +416,7 @@ TEST_P(WebSocketTest, SlowReaderHoldsTheHandlerBack) {
   EXPECT_GE(Record().written, 190);
 }
 
-TEST_P(WebSocketTest, SlowHandlerHoldsTheClientBack) {
+TEST_F(WebSocketTest, SlowHandlerHoldsTheClientBack) {
   WebSocketClient client(Site().Port());
   client.Send(ReadingNoMore());
   ASSERT_EQ(PayloadOf(client.Receive()), "");
@@ -417,7 +425,7 @@ TEST_P(WebSocketTest, SlowHandlerHoldsTheClientBack) {
   EXPECT_EQ(Record().read, 1);
 }
 
-TEST_P(WebSocketTest, ClientHeldBackIsNotTakenForSilent) {
+TEST_F(WebSocketTest, ClientHeldBackIsNotTakenForSilent) {
   options_.websocket_ping_interval = milliseconds(100);
   WebSocketClient client(Site().Port());
   client.Send(ReadingNoMore());
@@ -427,7 +435,7 @@ TEST_P(WebSocketTest, ClientHeldBackIsNotTakenForSilent) {
   EXPECT_EQ(Record().cancelled, 0);
 }
 
-TEST_P(WebSocketTest, ReaderThatTakesNothingIsCut) {
+TEST_F(WebSocketTest, ReaderThatTakesNothingIsCut) {
   options_.write_stall_timeout = milliseconds(300);
   WebSocketClient client(Site().Port(), {"Converse", {}, /*receive_buffer_bytes=*/16 << 10});
   client.Send(ReadingNoMore(/*repeats=*/2000, /*payload_bytes=*/100'000));
@@ -435,7 +443,7 @@ TEST_P(WebSocketTest, ReaderThatTakesNothingIsCut) {
   EXPECT_TRUE(client.IsCut());
 }
 
-TEST_P(WebSocketTest, PeerThatAnswersNoPingsIsDropped) {
+TEST_F(WebSocketTest, PeerThatAnswersNoPingsIsDropped) {
   options_.websocket_ping_interval = milliseconds(200);
   WebSocketClient client(Site().Port());
   client.Send(Saying("hello"));
@@ -446,7 +454,7 @@ TEST_P(WebSocketTest, PeerThatAnswersNoPingsIsDropped) {
   EXPECT_TRUE(client.IsCut());
 }
 
-TEST_P(WebSocketTest, QuietPeerThatAnswersPingsStays) {
+TEST_F(WebSocketTest, QuietPeerThatAnswersPingsStays) {
   options_.websocket_ping_interval = milliseconds(100);
   options_.idle_timeout = milliseconds(100);
   options_.write_stall_timeout = milliseconds(100);
@@ -459,7 +467,7 @@ TEST_P(WebSocketTest, QuietPeerThatAnswersPingsStays) {
   EXPECT_EQ(TrailersAfter(1, client)["grpc-status"], "0");
 }
 
-TEST_P(WebSocketTest, ClientThatNeverAnswersTheCloseIsCut) {
+TEST_F(WebSocketTest, ClientThatNeverAnswersTheCloseIsCut) {
   WebSocketClient client(Site().Port());
   client.Send(Ending(0, ""));
   const auto begin = Clock::now();
@@ -468,7 +476,7 @@ TEST_P(WebSocketTest, ClientThatNeverAnswersTheCloseIsCut) {
   EXPECT_LT(Clock::now() - begin, seconds(8));
 }
 
-TEST_P(WebSocketTest, StoppingTheGatewayClosesWithGoingAway) {
+TEST_F(WebSocketTest, StoppingTheGatewayClosesWithGoingAway) {
   WebSocketClient polite(Site().Port());
   WebSocketClient rude(Site().Port());
   WebSocketClient stalled(Site().Port(), {"Converse", {}, /*receive_buffer_bytes=*/16 << 10});
@@ -485,7 +493,7 @@ TEST_P(WebSocketTest, StoppingTheGatewayClosesWithGoingAway) {
   EXPECT_TRUE(AllCancelled(3));
 }
 
-TEST_P(WebSocketTest, StoppingTheServerEndsCallsWithTrailers) {
+TEST_F(WebSocketTest, StoppingTheServerEndsCallsWithTrailers) {
   WebSocketClient client(Site().Port());
   client.Send(Saying("hello"));
   EXPECT_EQ(PayloadOf(client.Receive()), "hello");
@@ -496,7 +504,7 @@ TEST_P(WebSocketTest, StoppingTheServerEndsCallsWithTrailers) {
   stop.join();
 }
 
-TEST_P(WebSocketTest, ConnectionsBeyondTheMaximumAreRefused) {
+TEST_F(WebSocketTest, ConnectionsBeyondTheMaximumAreRefused) {
   options_.max_connections = 1;
   WebSocketClient first(Site().Port());
   first.Send(Saying("hello"));
@@ -514,7 +522,7 @@ TEST_P(WebSocketTest, ConnectionsBeyondTheMaximumAreRefused) {
   }));
 }
 
-TEST_P(WebSocketTest, HundredClientsAtOnceOneOfThemStopped) {
+TEST_F(WebSocketTest, HundredClientsAtOnceOneOfThemStopped) {
   constexpr int kClients = 100;
   constexpr int kRounds = 20;
   WebSocketClient stopped(Site().Port(), {"Converse", {}, /*receive_buffer_bytes=*/16 << 10});
@@ -543,7 +551,7 @@ TEST_P(WebSocketTest, HundredClientsAtOnceOneOfThemStopped) {
   EXPECT_TRUE(Eventually([&] { return Record().done == kClients; }));
 }
 
-TEST_P(WebSocketTest, ClientsThatComeAndGoAtAnyMoment) {
+TEST_F(WebSocketTest, ClientsThatComeAndGoAtAnyMoment) {
   std::vector<std::thread> threads;
   for (int t = 0; t < 4; ++t) {
     threads.emplace_back([port = Site().Port(), t] {

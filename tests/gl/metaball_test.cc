@@ -646,7 +646,7 @@ TEST(BallFits, KeepsWhatItsStormAndOpticsAskFor) {
 TEST(FitBalls, TheSumOfBallsIsTheMedium) {
   const auto fields = support::MakeLayerInAir(4000.0, 2000.0, 8, 5.0);
   scene::Scene scene = test_support::PlainScene();
-  const Medium medium = MediumOf(scene, *fields);
+  const Medium medium = scene::GroupedFieldsOf(scene, *fields);
   const auto cloud = FitBalls(medium, *fields, 300);
   ASSERT_TRUE(cloud.ok());
   double sum = 0.0;
@@ -662,7 +662,7 @@ TEST(FitBalls, TheSumOfBallsIsTheMedium) {
   EXPECT_NEAR(sum / (5.0 * 4000.0 * 4000.0), 1.0, 0.2);
   // More balls than cells are as many as cells.
   const auto few = support::MakeSlab(100.0, 100.0, 0.01, glm::ivec3(2));
-  EXPECT_LE(FitBalls(MediumOf(scene, *few), *few, 1000)->balls.size(), 8U);
+  EXPECT_LE(FitBalls(scene::GroupedFieldsOf(scene, *few), *few, 1000)->balls.size(), 8U);
   EXPECT_THAT(FitBalls({}, *fields, 10)->balls, IsEmpty());
 }
 

@@ -22,6 +22,8 @@ using ::testing::HasSubstr;
 // Fills the picture with one grey in front of everything.
 class Toy : public Technique {
  public:
+  explicit Toy(Workspace& workspace) : workspace_(workspace) {}
+
   absl::Status MakeContent(const scene::Scene& scene, const Fields& /*fields*/,
                            StageTimes* /*times*/) override {
     const auto& settings = std::get<scene::OtherTechnique>(scene.rendering.technique);
@@ -46,7 +48,7 @@ class Toy : public Technique {
 
   absl::Status DrawView(const scene::Scene& /*scene*/, const RenderSettings& settings,
                         StageTimes* times) override {
-    return Timed(scene::FrameStage::kView, times, [&] {
+    return Timed(workspace_.Pieces(), scene::FrameStage::kView, times, [&] {
       eye_ = gl::Texture2D(GL_RGBA32F, settings.eye_size);
       gl::Framebuffer(eye_).Clear(level_, level_, level_, 0.0F);
       return absl::OkStatus();
@@ -60,6 +62,9 @@ class Toy : public Technique {
   }
   std::size_t Bytes() const override { return eye_.Bytes(); }
 
+ protected:
+  Workspace& workspace_;
+
  private:
   float level_ = 0.5F;
   gl::Texture2D eye_;
@@ -68,7 +73,7 @@ class Toy : public Technique {
 // The same in front of the storm's medium, whose shadow falls on the ground.
 class ToyOfMedium final : public Toy {
  public:
-  explicit ToyOfMedium(Workspace& workspace) : workspace_(workspace) {}
+  using Toy::Toy;
 
   bool DrawsMedium() const override { return true; }
   bool CastsShadow() const override { return false; }
@@ -78,9 +83,6 @@ class ToyOfMedium final : public Toy {
                    const volume::HydrometeorFields& fields) const override {
     return DescribeMedium(workspace_.medium, fields, false);
   }
-
- private:
-  Workspace& workspace_;
 };
 
 class ToyOfMediumFactory final : public TechniqueFactory {
@@ -96,8 +98,8 @@ class ToyFactory final : public TechniqueFactory {
  public:
   std::string_view Name() const override { return "toy"; }
   scene::Capabilities Capabilities() const override { return {}; }
-  std::unique_ptr<Technique> Make(Workspace& /*workspace*/) const override {
-    return std::make_unique<Toy>();
+  std::unique_ptr<Technique> Make(Workspace& workspace) const override {
+    return std::make_unique<Toy>(workspace);
   }
 };
 

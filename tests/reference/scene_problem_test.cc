@@ -10,6 +10,7 @@
 #include "physics/optics.h"
 #include "physics/sky.h"
 #include "reference/path_tracer.h"
+#include "scene/detailed_medium.h"
 #include "tests/support/techniques.h"
 #include "volume/extinction.h"
 #include "volume/storm_store.h"
@@ -43,6 +44,27 @@ volume::HydrometeorFields SmallStorm() {
   }
   fields.condensate = {{2, 2, 0}, {5, 5, 5}};
   return fields;
+}
+
+TEST(MediumOf, HasTheDetailThatIsDrawn) {
+  const volume::HydrometeorFields fields = SmallStorm();
+  const scene::Scene scene;
+  const auto medium = *MediumOf(scene, fields, MediumOptions{.detail_voxels_per_cell = 2});
+  const auto coarse = *MediumOf(scene, fields, Sides::kOpen);
+  const auto detailed = scene::DetailedMedium::Of(scene, fields);
+  bool differs = false;
+  for (int z = 0; z < 8; ++z) {
+    // Middles of voxels.
+    const glm::dvec3 at_m(-875.0, -300.0, 100.0 + 75.0 + 150.0 * z);
+    double expected = 0.0;
+    for (const float value : detailed->At_per_m(at_m)) expected += static_cast<double>(value);
+    EXPECT_NEAR(medium->Extinction_per_m(at_m), expected, 1e-5 * expected) << z;
+    differs = differs || std::abs(coarse->Extinction_per_m(at_m) - expected) > 0.01 * expected;
+  }
+  EXPECT_TRUE(differs);
+  EXPECT_FALSE(
+      MediumOf(scene, fields, MediumOptions{.sides = Sides::kPeriodic, .detail_voxels_per_cell = 2})
+          .ok());
 }
 
 TEST(MediumOf, HasTheBoxAndExtinctionThatTheRenderersDraw) {

@@ -83,20 +83,31 @@ TEST_F(CommandLineTest, VersionAndHelp) {
   EXPECT_EQ(help.code, 0);
   for (const char* command : {"serve", "render", "inspect"})
     EXPECT_THAT(help.out, HasSubstr(command));
+  for (const char* command : {"", "render", "export", "sequence", "watch"}) {
+    const std::string out = Run(std::string(command) + " --help").out;
+    for (const char* code : {"0   all", "64  ", "65  ", "75  ", "78  "})
+      EXPECT_THAT(out, HasSubstr(code)) << command;
+  }
 }
 
-TEST_F(CommandLineTest, WrongUsageReturnsTwo) {
-  ExpectError("", 2, "subcommand");
-  ExpectError("frobnicate", 2, "'frobnicate'");
-  ExpectError("render " + kSample, 2, "--output");
-  ExpectError("render " + kSample + " -o storm.gif", 2, "must end in .png");
-  ExpectError(render_ + " --size 12", 2, "WIDTHxHEIGHT");
-  ExpectError(render_ + " --renderer voxels", 2,
+TEST_F(CommandLineTest, WrongUsageIsABadRequest) {
+  ExpectError("", 64, "subcommand");
+  ExpectError("frobnicate", 64, "'frobnicate'");
+  ExpectError("render " + kSample, 64, "--output");
+  ExpectError("render " + kSample + " -o storm.gif", 64, "must end in .png");
+  ExpectError(render_ + " --size 12", 64, "WIDTHxHEIGHT");
+  ExpectError(render_ + " --renderer voxels", 64,
               "'voxels'; it must be light_volume, half_angle, metaball, cumulus or reference");
-  ExpectError(render_ + " --renderer metaball --slices 9", 2, "for light_volume and half_angle;");
-  ExpectError(render_ + " --camera kite", 2, "orbit, spotter or top-down");
-  ExpectError("serve --data " + kSample + " --http nowhere", 2, "--http");
-  ExpectError("serve --data " + kSample + " --state /proc/none", 2, "--state is '/proc/none'");
+  ExpectError(render_ + " --renderer metaball --slices 9", 64, "for light_volume and half_angle;");
+  ExpectError(render_ + " --camera kite", 64, "orbit, spotter or top-down");
+  ExpectError("serve --data " + kSample + " --http nowhere", 64, "--http");
+  ExpectError("serve --data " + kSample + " --http 0.0.0.0:0", 64, "accept it with --insecure");
+  ExpectError("serve --data " + kSample + " --grpc 0.0.0.0:0", 64, "nobody is asked who they are");
+  ExpectError("serve --data " + kSample + " --metrics 0.0.0.0:0", 64, "--metrics 0.0.0.0:0 lets");
+  ExpectError("serve --data " + kSample + " --auth tokens /dev/null", 78, "is not a file");
+  ExpectError("serve --data " + kSample + " --auth king", 64, "none, tokens FILE or jwt FILE");
+  ExpectError("serve --data " + kSample + " --tls-cert x", 64, "belong together");
+  ExpectError("serve --data " + kSample + " --state /proc/none", 64, "--state is '/proc/none'");
 }
 
 TEST_F(CommandLineTest, InspectDescribesTheSample) {
@@ -127,9 +138,9 @@ TEST_F(CommandLineTest, InspectDescribesTheSample) {
 }
 
 TEST_F(CommandLineTest, MissingAndForeignFilesAreNamed) {
-  ExpectError("inspect " + folder_.File("none.nc"), 1, "none.nc");
+  ExpectError("inspect " + folder_.File("none.nc"), 75, "none.nc");
   std::ofstream(folder_.File("text.nc")) << "no storm at all";
-  ExpectError("inspect " + folder_.File("text.nc"), 1, "text.nc");
+  ExpectError("inspect " + folder_.File("text.nc"), 65, "text.nc");
 }
 
 TEST_F(CommandLineTest, RenderWritesThePictureAndItsCosts) {
@@ -160,16 +171,32 @@ TEST_F(CommandLineTest, FlagsOverrideTheSceneFile) {
   EXPECT_EQ(said.width_px(), 64U);
 }
 
+TEST_F(CommandLineTest, APictureHoldsTheSceneThatDrawsItAgain) {
+  ASSERT_EQ(Run(render_ + " --time 1 --size 80x45 --slices 16 --camera spotter").code, 0);
+  const std::string again = folder_.File("again.png");
+  const Outcome outcome =
+      Run("render " + kSample + " --device software --scene " + picture_ + " -o " + again);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto image = frame::DecodePng(Contents(again));
+  ASSERT_TRUE(image.ok());
+  EXPECT_EQ(image->width_px, 80);
+  EXPECT_EQ(image->rgb, frame::DecodePng(Contents(picture_))->rgb);
+  EXPECT_THAT(Contents(picture_), HasSubstr("thunderhead.valid"));
+  EXPECT_THAT(Contents(picture_), HasSubstr("0001-01-01T00:40:00Z"));
+  std::ofstream(again, std::ios::binary) << *frame::EncodePng(1, 1, {{1, 2, 3}});
+  ExpectError(render_ + " --scene " + again, 64, "a PNG without a scene in it");
+}
+
 TEST_F(CommandLineTest, FailedRenderNamesTheCauseAndLeavesNoFile) {
-  ExpectError(render_ + " --scene " + Scene(R"({"sun": {"elevation": 3}})"), 2, "elevation");
-  ExpectError(render_ + " --scene " + Scene(R"({"sun": {"elevationDeg": 300}})"), 2,
+  ExpectError(render_ + " --scene " + Scene(R"({"sun": {"elevation": 3}})"), 64, "elevation");
+  ExpectError(render_ + " --scene " + Scene(R"({"sun": {"elevationDeg": 300}})"), 64,
               "scene.sun.elevation_deg is 300; it must be between -90 and 90 deg");
-  ExpectError(render_ + " --scene " + folder_.File("none.json"), 2, "none.json");
-  ExpectError("render storm --server 127.0.0.1:1 -o " + picture_, 1, "connect");
+  ExpectError(render_ + " --scene " + folder_.File("none.json"), 64, "none.json");
+  ExpectError("render storm --server 127.0.0.1:1 -o " + picture_, 75, "connect");
   EXPECT_FALSE(std::filesystem::exists(picture_));
   ExpectError("render " + kSample + " --device software --size 16x9 --slices 4 -o " +
                   folder_.File("no/folder.png"),
-              1, "no/folder.png");
+              78, "no/folder.png");
 }
 
 TEST_F(CommandLineTest, RenderWaitsForTracedLightAndPrintsTheErrorReached) {
@@ -187,7 +214,7 @@ TEST_F(CommandLineTest, AnInterruptedRenderLeavesNoFile) {
   const Outcome outcome = Shell(std::string(PROGRAM) + " " + render_ +
                                 " --time 1 --size 48x27 --quality true & render=$!; sleep 3; "
                                 "kill -TERM $render; wait $render");
-  EXPECT_EQ(outcome.code, 1);
+  EXPECT_EQ(outcome.code, 75);
   EXPECT_EQ(outcome.err, "thunderhead: interrupted: no picture was written\n");
   // A million paths are some 300 pictures to draw and trace, whatever the machine.
   EXPECT_LT(std::chrono::steady_clock::now() - begun_at, std::chrono::seconds(10)) << "waited";
@@ -203,7 +230,7 @@ TEST_F(CommandLineTest, AnOlderServerIsNamed) {
   builder.RegisterService(&knows_no_call);
   const auto server = builder.BuildAndStart();
   ASSERT_NE(server, nullptr);
-  ExpectError("render storm --server 127.0.0.1:" + std::to_string(port) + " -o " + picture_, 1,
+  ExpectError("render storm --server 127.0.0.1:" + std::to_string(port) + " -o " + picture_, 78,
               "the server is older than this program");
   EXPECT_FALSE(std::filesystem::exists(picture_));
 }
@@ -235,8 +262,8 @@ TEST_F(CommandLineTest, MeasureFramesHasARowForEachNamedSetting) {
   EXPECT_TRUE(rows.contains("light_volume default"));
   EXPECT_TRUE(rows.contains("light_volume balanced"));
   EXPECT_TRUE(rows.contains("half_angle uniform_phase_low_albedo"));
-  ExpectError("measure frames " + kSample + " --size 5", 2, "WIDTHxHEIGHT");
-  ExpectError("measure frames " + kSample + " --time 9", 2, "times 0 to 3");
+  ExpectError("measure frames " + kSample + " --size 5", 64, "WIDTHxHEIGHT");
+  ExpectError("measure frames " + kSample + " --time 9", 64, "times 0 to 3");
 }
 
 TEST_F(CommandLineTest, MeasureExtremesJudgesEachCase) {
@@ -257,9 +284,9 @@ TEST_F(CommandLineTest, MeasureSlicesWritesThePlot) {
   EXPECT_EQ(json.fields().at("rows").list_value().values_size(), 2);
   EXPECT_THAT(Contents(plot), StartsWith("<svg"));
   EXPECT_THAT(Contents(plot), HasSubstr("consistent, order"));
-  ExpectError("measure slices", 2, "either a STORM or --slab TAU");
-  ExpectError("measure slices --slab -1", 2, "above 0");
-  ExpectError("measure slices --slab 1 -o x.png", 2, ".svg or .csv");
+  ExpectError("measure slices", 64, "either a STORM or --slab TAU");
+  ExpectError("measure slices --slab -1", 64, "above 0");
+  ExpectError("measure slices --slab 1 -o x.png", 64, ".svg or .csv");
 }
 
 TEST_F(CommandLineTest, ServeSaysOneLineAndStopsOnASignal) {
@@ -286,11 +313,11 @@ TEST_F(CommandLineTest, TheReferenceRendersToExrAndPng) {
   const auto png = frame::DecodePng(Contents(picture_));
   ASSERT_TRUE(png.ok());
   EXPECT_EQ(png->width_px, 24);
-  ExpectError(render_ + " --spp 4", 2, "for --renderer reference");
-  ExpectError(render_ + " --no-air", 2, "for --renderer reference");
-  ExpectError(reference + picture_ + " --max-scatterings -2", 2, "--max-scatterings is -2");
-  ExpectError(reference + "truth.txt", 2, "must end in");
-  ExpectError(reference + picture_ + " --seconds -1", 2, "--seconds is -1");
+  ExpectError(render_ + " --spp 4", 64, "for --renderer reference");
+  ExpectError(render_ + " --no-air", 64, "for --renderer reference");
+  ExpectError(reference + picture_ + " --max-scatterings -2", 64, "--max-scatterings is -2");
+  ExpectError(reference + "truth.txt", 64, "must end in");
+  ExpectError(reference + picture_ + " --seconds -1", 64, "--seconds is -1");
 }
 
 TEST_F(CommandLineTest, ExportWritesGridsAndTheView) {
@@ -317,12 +344,12 @@ TEST_F(CommandLineTest, ExportWritesGridsAndTheView) {
 
 TEST_F(CommandLineTest, ExportNamesWhatIsWrong) {
   const std::string vdb = folder_.File("storm.vdb");
-  ExpectError("export " + kSample + " -o storm.nc", 2, "must end in .vdb");
-  ExpectError("export " + kSample + " --time 9 -o " + vdb, 2, "9");
-  ExpectError("export " + folder_.File("none.nc") + " -o " + vdb, 1, "none.nc");
-  ExpectError("export " + kSample + " -o " + folder_.File("no/storm.vdb"), 1,
+  ExpectError("export " + kSample + " -o storm.nc", 64, "must end in .vdb");
+  ExpectError("export " + kSample + " --time 9 -o " + vdb, 64, "9");
+  ExpectError("export " + folder_.File("none.nc") + " -o " + vdb, 75, "none.nc");
+  ExpectError("export " + kSample + " -o " + folder_.File("no/storm.vdb"), 78,
               "no/storm.vdb cannot be written");
-  ExpectError("export " + kSample + " -o " + vdb + " --view " + folder_.File("no/storm.json"), 1,
+  ExpectError("export " + kSample + " -o " + vdb + " --view " + folder_.File("no/storm.json"), 78,
               "no/storm.json");
 }
 
@@ -332,7 +359,7 @@ TEST_F(CommandLineTest, AnInterruptedExportLeavesNoFile) {
       Shell(std::string(PROGRAM) + " export " + kSample + " --detail -o " + vdb +
             " & export=$!; while ! [ -e " + vdb +
             ".partial ]; do sleep 0.01; done; kill -TERM $export; wait $export");
-  EXPECT_EQ(outcome.code, 1);
+  EXPECT_EQ(outcome.code, 75);
   EXPECT_EQ(outcome.err, "thunderhead: interrupted: no file was written\n");
   EXPECT_FALSE(std::filesystem::exists(vdb));
   EXPECT_FALSE(std::filesystem::exists(vdb + ".partial"));
@@ -360,7 +387,7 @@ TEST_F(CommandLineTest, MeasureTradeContinuesWhereItStopped) {
   // Another picture's file is not touched.
   const Outcome other =
       Run("measure trade " + kSample + " --device software --size 30x16 --spp 16 -o " + trade);
-  EXPECT_EQ(other.code, 2);
+  EXPECT_EQ(other.code, 64);
   EXPECT_THAT(other.err, HasSubstr("cannot be continued"));
   EXPECT_EQ(Contents(trade + ".csv"), again);
 }

@@ -241,7 +241,9 @@ TEST(ErrorDetailsTest, PicturesThatMustWaitTooLongSayWhenToTryAgain) {
 
 TEST(ErrorDetailsTest, CloudsThatAreNotMadeOrDeletedHaveTheirReason) {
   const TemporaryFolder folder;
-  FakeService with({.clouds_folder = folder.Path().string()});
+  service::ServerOptions keeping;
+  keeping.clouds_folder = folder.Path().string();
+  FakeService with(keeping);
   FakeService without;
   v1::GenerateCloudRequest make;
   v1::GenerateCloudResponse made;

@@ -90,7 +90,8 @@ class FakePreparation final : public session::Preparation {
 
 class FakeFrameSource final : public session::FrameSource {
  public:
-  explicit FakeFrameSource(std::shared_ptr<FakeMachine> machine) : machine_(std::move(machine)) {}
+  FakeFrameSource(std::shared_ptr<FakeMachine> machine, base::DeviceTurn* turn)
+      : machine_(std::move(machine)), turn_(turn) {}
 
   const session::DeviceInfo& Device() const override { return info_; }
 
@@ -111,13 +112,25 @@ class FakeFrameSource final : public session::FrameSource {
       const session::FrameQuality& quality) override {
     THUNDERHEAD_CHECK(fields != nullptr, "drawn without fields");
     THUNDERHEAD_CHECK(FakePreparation(machine_).IsDone(scene, fields), "drawn unprepared");
-    machine_->Add({scene, quality, std::chrono::steady_clock::now()});
-    machine_->drawing.Pass();
+    const double ms = machine_->ms_per_mega_sample * accuracy::MegaSamples(scene, quality);
+    double left_ms = ms;
+    do {
+      if (turn_ != nullptr) THUNDERHEAD_RETURN_IF_ERROR(turn_->Take());
+      if (left_ms == ms) {
+        machine_->Add({scene, quality, std::chrono::steady_clock::now()});
+        machine_->drawing.Pass();
+      }
+      const double piece_ms = turn_ != nullptr ? std::min(left_ms, kFakePiece_ms) : left_ms;
+      std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(piece_ms));
+      left_ms -= piece_ms;
+      if (turn_ != nullptr) {
+        ++machine_->pieces;
+        turn_->GiveBack();
+      }
+    } while (left_ms > 0.0);
     if (scene.display.exposure_ev > machine_->fails_above_exposure_ev) {
       return absl::InternalError("the fake machine does not like this exposure");
     }
-    const double ms = machine_->ms_per_mega_sample * accuracy::MegaSamples(scene, quality);
-    std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(ms));
     return Paint(scene, quality, ms);
   }
 
@@ -131,7 +144,7 @@ class FakeFrameSource final : public session::FrameSource {
 
   absl::StatusOr<accuracy::LightProgress> TraceLight(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
-      accuracy::LightClaim* claim) override {
+      std::int64_t /*wanted_paths*/, accuracy::LightClaim* claim) override {
     THUNDERHEAD_CHECK(fields != nullptr, "traced without fields");
     if (!Traces(scene)) return accuracy::LightProgress{};
     const double waits = machine_->waits_to_trace_azimuth_deg;
@@ -184,6 +197,7 @@ class FakeFrameSource final : public session::FrameSource {
   }
 
   const std::shared_ptr<FakeMachine> machine_;
+  base::DeviceTurn* const turn_;  // null: draws whole
   const session::DeviceInfo info_{"software", "fake renderer", "4.5 fake"};
 };
 
@@ -397,9 +411,10 @@ void FakeMachine::Add(Drawn drawn) {
 }
 
 session::FrameSourceFactory FakeFrameSources(std::shared_ptr<FakeMachine> machine) {
-  return [machine]() -> absl::StatusOr<std::unique_ptr<session::FrameSource>> {
-    return std::make_unique<FakeFrameSource>(machine);
-  };
+  return
+      [machine](base::DeviceTurn* turn) -> absl::StatusOr<std::unique_ptr<session::FrameSource>> {
+        return std::make_unique<FakeFrameSource>(machine, turn);
+      };
 }
 
 std::uint8_t RedOf(int time_index) { return static_cast<std::uint8_t>(40 + 50 * time_index); }

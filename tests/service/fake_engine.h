@@ -97,6 +97,7 @@ struct FakeMachine {
   std::atomic<double> fails_above_exposure_ev{1e9};
   Gate preparing;  // of scenes of metaballs; each number of them once a time
   std::atomic<int> cannot_prepare{-1};
+  std::atomic<int> pieces{0};   // drawn in turns
   std::atomic<int> checked{0};  // frames also drawn with half the slices
   std::atomic<std::int64_t> paths_per_step{100'000};
   std::atomic<std::int64_t> traced_paths{0};
@@ -120,6 +121,9 @@ struct FakeMachine {
   std::vector<Drawn> log_;
   std::set<std::pair<int, int>> prepared_;  // numbers of balls, times
 };
+
+// In turns, their pictures are cut into pieces of so long.
+inline constexpr double kFakePiece_ms = 10.0;
 
 session::FrameSourceFactory FakeFrameSources(std::shared_ptr<FakeMachine> machine);
 

@@ -269,16 +269,18 @@ TEST_F(FluxCommand, SaysWhatIsWrong) {
     std::string text;
   };
   for (const Case& c :
-       {Case{"", 2, "either a STORM or --slab"},
-        Case{path + " --slab 2", 2, "either a STORM or --slab"}, Case{"--slab -1", 2, "--slab"},
-        Case{"--slab 1 --phase hg", 2, "--phase"}, Case{"--slab 1 --phase hg:1.5", 2, "-0.99"},
-        Case{"--slab 1 --phase table:fog", 2, "cloud_re10"},
-        Case{path + " --phase nothing", 2, "--phase"}, Case{path + " --albedo 1.01", 2, "--albedo"},
-        Case{path + " --ground-albedo -0.1", 2, "--ground-albedo"},
-        Case{path + " --sun-elevation 0", 2, "--sun-elevation"},
-        Case{path + " --sun-elevation 91", 2, "--sun-elevation"},
-        Case{path + " --photons 0", 2, "--photons"}, Case{path + " --photons many", 2, "--photons"},
-        Case{path + " --time 3", 2, "--time"}, Case{folder_.File("none.nc"), 1, "none.nc"}}) {
+       {Case{"", 64, "either a STORM or --slab"},
+        Case{path + " --slab 2", 64, "either a STORM or --slab"}, Case{"--slab -1", 64, "--slab"},
+        Case{"--slab 1 --phase hg", 64, "--phase"}, Case{"--slab 1 --phase hg:1.5", 64, "-0.99"},
+        Case{"--slab 1 --phase table:fog", 64, "cloud_re10"},
+        Case{path + " --phase nothing", 64, "--phase"},
+        Case{path + " --albedo 1.01", 64, "--albedo"},
+        Case{path + " --ground-albedo -0.1", 64, "--ground-albedo"},
+        Case{path + " --sun-elevation 0", 64, "--sun-elevation"},
+        Case{path + " --sun-elevation 91", 64, "--sun-elevation"},
+        Case{path + " --photons 0", 64, "--photons"},
+        Case{path + " --photons many", 64, "--photons"}, Case{path + " --time 3", 64, "--time"},
+        Case{folder_.File("none.nc"), 75, "none.nc"}}) {
     EXPECT_EQ(Run(c.arguments), c.code) << c.arguments;
     EXPECT_THAT(err_, HasSubstr(c.text)) << c.arguments;
     EXPECT_EQ(out_, "") << c.arguments;

@@ -130,12 +130,12 @@ TEST_F(FrameHubTest, ViewersAreWokenAndDemandIsTold) {
 }
 
 // Counts what it makes.
-ReduceFrame CountingReduction(int* made) {
-  return [made](const EncodedFrame& full, int tier) {
-    ++*made;
-    EncodedFrame reduced = full;
-    reduced.tier = tier;
-    return reduced;
+EncodeFrame CountingReduction(int* made) {
+  return [made](const EncodedFrame& described, int tier) {
+    if (tier > 0) ++*made;
+    EncodedFrame encoded = described;
+    encoded.tier = tier;
+    return encoded;
   };
 }
 
@@ -183,7 +183,7 @@ TEST_F(FrameHubTest, ASlowLinkGetsSmallMovingPicturesAndFullStills) {
   }
   EXPECT_EQ(tier, 1);
   EncodedFrame still = FrameOf(2);
-  still.refined = true;
+  still.at_rest = true;
   hub_.Publish(still, CountingReduction(&made));
   EXPECT_EQ(TakeTier(hub_, viewer, now), 0);
 }

@@ -18,6 +18,12 @@ using ::testing::HasSubstr;
 using Stub = v1::ThunderheadService::Stub;
 using Request = v1::GenerateCloudRequest;
 
+service::ServerOptions KeepingCloudsIn(const std::string& folder) {
+  service::ServerOptions options;
+  options.clouds_folder = folder;
+  return options;
+}
+
 class GenerateCloudTest : public ::testing::Test {
  protected:
   grpc::Status Make(const Request& request) {
@@ -46,7 +52,7 @@ class GenerateCloudTest : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
-  FakeService service_{{.clouds_folder = folder_.Path().string()}};
+  FakeService service_{KeepingCloudsIn(folder_.Path().string())};
   v1::GenerateCloudResponse response_;
 };
 

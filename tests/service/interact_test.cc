@@ -162,6 +162,39 @@ TEST(InteractTest, FramesAreThoseOfWatchFrames) {
   EXPECT_TRUE(watched.has_view());
 }
 
+// The fake source draws in 8 bits only, so no stills follow: at rest JPEG replaces video.
+TEST(InteractTest, VideoComesToWhoDecodesItOnly) {
+  Class group;
+  Interacting video(group.service.stub(), group.created.viewer_key(),
+                    {.codecs = {v1::CODEC_VP9, v1::CODEC_AVIF}, .saves_bytes = true});
+  Interacting jpeg(group.service.stub(), group.created.viewer_key(), {.saves_bytes = true});
+  Watcher old(group.service.stub(), group.created.session_id());
+  ASSERT_TRUE(video.AwaitFrame(1));
+  ASSERT_TRUE(jpeg.AwaitFrame(1));
+  std::uint64_t revision = 1;
+  for (int i = 0; i < 20; ++i) {
+    const std::uint64_t request = group.presenter->Send(SunTo(100.0F + static_cast<float>(i)));
+    revision = group.presenter->Answer(request).scene_taken().scene_revision();
+    ASSERT_TRUE(video.AwaitFrame(revision));
+    ASSERT_TRUE(jpeg.AwaitFrame(revision));
+  }
+  ASSERT_TRUE(old.AwaitFrame(revision, true));
+  EXPECT_FALSE(old.NewestFrame().jpeg().empty());
+  EXPECT_TRUE(old.NewestFrame().vp9().empty());
+  for (const Response& message : jpeg.All()) {
+    EXPECT_TRUE(message.frame().vp9().empty());
+    EXPECT_EQ(message.has_frame(), !message.frame().jpeg().empty());
+  }
+  int pictures = 0;
+  for (const Response& message : video.All()) {
+    if (message.frame().vp9().empty()) continue;
+    EXPECT_TRUE(message.frame().jpeg().empty());
+    EXPECT_EQ(pictures == 0, message.frame().key_frame()) << "picture " << pictures;
+    ++pictures;
+  }
+  EXPECT_GE(pictures, 10);
+}
+
 TEST(InteractTest, ThePresentersUpdateReachesEverybody) {
   Class group;
   const std::uint64_t request = group.presenter->Send(SunTo(120.0F));

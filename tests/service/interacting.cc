@@ -12,6 +12,8 @@ Interacting::Interacting(v1::ThunderheadService::Stub& stub, const std::string& 
   request.mutable_join()->set_session_key(key);
   request.mutable_join()->set_name(options_.name);
   request.mutable_join()->mutable_window()->set_hidden(options_.hidden);
+  request.mutable_join()->mutable_window()->set_saves_bytes(options_.saves_bytes);
+  for (const v1::Codec codec : options_.codecs) request.mutable_join()->add_codecs(codec);
   Send(request);
   thread_ = std::thread([this] { Run(); });
 }

@@ -19,6 +19,8 @@ struct InteractingOptions {
   std::string name;
   bool hidden = false;
   bool acknowledges = true;
+  std::vector<v1::Codec> codecs{};
+  bool saves_bytes = false;
 };
 
 class Interacting {

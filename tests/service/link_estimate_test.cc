@@ -31,7 +31,7 @@ class Link {
       now_ = std::max(now_ + frame_interval, oldest);
       const Time sent_at = now_;
       double kbyte = full_kbyte;
-      for (int tier = 0; tier < estimate.tier(); ++tier) kbyte /= 3.0;
+      for (int tier = 0; tier < estimate.step(); ++tier) kbyte /= 3.0;
       const milliseconds transfer(static_cast<int>(kbyte * 8.0 / kbit_per_s_ * 1000.0));
       free_at_ = std::max(free_at_, sent_at) + transfer;
       const Time acknowledged = free_at_ + round_trip_;
@@ -64,19 +64,19 @@ class Link {
 TEST(LinkEstimateTest, AFastLinkGetsFullPictures) {
   Link link(100'000, milliseconds(2));
   EXPECT_GT(link.Run(seconds(20), 45), 25.0);
-  EXPECT_EQ(link.estimate.tier(), 0);
+  EXPECT_EQ(link.estimate.step(), 0);
 }
 
 TEST(LinkEstimateTest, AFarButFastLinkGetsFullPictures) {
   Link link(100'000, milliseconds(300));
   link.Run(seconds(20), 45);
-  EXPECT_EQ(link.estimate.tier(), 0) << "distance is not slowness";
+  EXPECT_EQ(link.estimate.step(), 0) << "distance is not slowness";
 }
 
 TEST(LinkEstimateTest, ASlowLinkGetsSmallerPicturesAndEnoughOfThem) {
   Link link(1'000, milliseconds(150));
   link.Run(seconds(10), 45);
-  EXPECT_GE(link.estimate.tier(), 1);
+  EXPECT_GE(link.estimate.step(), 1);
   EXPECT_GT(link.Run(seconds(30), 45), 8.0);
 }
 
@@ -84,11 +84,11 @@ TEST(LinkEstimateTest, AMiddlingLinkDoesNotFlap) {
   Link link(2'500, milliseconds(40));
   link.Run(seconds(30), 45);
   int changes = 0;
-  int tier = link.estimate.tier();
+  int tier = link.estimate.step();
   for (int i = 0; i < 60; ++i) {
     link.Run(seconds(1), 45);
-    changes += link.estimate.tier() == tier ? 0 : 1;
-    tier = link.estimate.tier();
+    changes += link.estimate.step() == tier ? 0 : 1;
+    tier = link.estimate.step();
   }
   EXPECT_LE(changes, 6);
 }
@@ -96,10 +96,10 @@ TEST(LinkEstimateTest, AMiddlingLinkDoesNotFlap) {
 TEST(LinkEstimateTest, ALinkThatRecoversGetsFullPicturesAgain) {
   Link link(800, milliseconds(20));
   link.Run(seconds(10), 45);
-  ASSERT_GE(link.estimate.tier(), 1);
+  ASSERT_GE(link.estimate.step(), 1);
   link.SetSpeed(50'000);
   link.Run(seconds(40), 45);
-  EXPECT_EQ(link.estimate.tier(), 0);
+  EXPECT_EQ(link.estimate.step(), 0);
 }
 
 TEST(LinkEstimateTest, WindowsGetTheSmallestPictureThatFillsThem) {

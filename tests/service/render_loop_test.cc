@@ -162,7 +162,11 @@ class RenderLoopTest : public ::testing::Test {
       std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false)) {
     auto promise = std::make_shared<std::promise<absl::StatusOr<DisplayFrame>>>();
     auto future = promise->get_future();
-    loop_->RenderImage({scene, *store_.Get("anvil", 0, {}), std::move(cancelled),
+    loop_->RenderImage({scene,
+                        [this, scene]() -> absl::StatusOr<ImageInput> {
+                          return ImageInput{*store_.Get("anvil", 0, {}), scene.camera};
+                        },
+                        [](DisplayFrame&) { return absl::OkStatus(); }, std::move(cancelled),
                         [promise](absl::StatusOr<DisplayFrame> picture) {
                           promise->set_value(std::move(picture));
                         }});
@@ -310,37 +314,36 @@ TEST_F(RenderLoopTest, APictureIsPreparedForTheSettingDecidedAndHoldsUpNobody) {
   const auto picture = fitted.get();
   ASSERT_TRUE(picture.ok()) << picture.status();
   EXPECT_EQ(picture->modelled.technique, "metaball");
-  EXPECT_EQ(picture->stages.front().stage, scene::FrameStage::kFit);
+  EXPECT_EQ(picture->stages[0].stage, scene::FrameStage::kRead);
+  EXPECT_EQ(picture->stages[1].stage, scene::FrameStage::kFit);
   machine_->cannot_prepare = 200;
   EXPECT_EQ(Picture(OfMetaballs(200)).get().status().message(), "it cannot be fitted");
 }
 
-// One that waits for light that it may not have traced yet lets the next have the turn.
+// One that waits for light that it may not have traced yet lets the next go on.
 TEST_F(RenderLoopTest, PicturesClaimTheLightThatTheyAwait) {
-  scene::Scene scene = Small(0.0);
-  scene.rendering.technique = scene::LightVolume{.traced_light = scene::TracedLight::kAwaited};
+  Start();
+  const auto lit_from = [&](double azimuth_deg) {
+    scene::Scene scene = Small(azimuth_deg);
+    scene.rendering.technique = scene::LightVolume{.traced_light = scene::TracedLight::kAwaited};
+    return Picture(scene);
+  };
   machine_->waits_to_trace_azimuth_deg = 200.0;
-  MeasuredSource source(*testing::FakeFrameSources(machine_)(), accuracy::BuiltInOfferTables());
-  ImageQueue queue(9);
-  ImageDrawer drawer(queue, source, nullptr, [] {});
-  int done = 0;
-  for (const double azimuth_deg : {200.0, 100.0}) {
-    scene.sun.azimuth_deg = azimuth_deg;
-    queue.Add({scene, *store_.Get("anvil", 0, {}), std::make_shared<std::atomic<bool>>(false),
-               [&done](const absl::StatusOr<DisplayFrame>& picture) { done += picture.ok(); }});
-  }
-  EXPECT_TRUE(drawer.TakeTurn().drew);
-  EXPECT_EQ(machine_->traced_steps, 1);
-  EXPECT_EQ(machine_->light.use_count(), 2) << "the second's claim";
-  for (int turn = 1; turn < 10; ++turn) EXPECT_TRUE(drawer.TakeTurn().drew);
-  EXPECT_EQ(done, 1);
+  machine_->tracing.Close();
+  auto waits = lit_from(200.0);
+  auto traced = lit_from(100.0);
+  ASSERT_TRUE(machine_->tracing.AwaitWaiting(1));
+  machine_->tracing.LetOnePass();
+  while (machine_->traced_steps < 1) std::this_thread::yield();
+  ASSERT_TRUE(machine_->tracing.AwaitWaiting(1)) << "the second step";
+  EXPECT_EQ(machine_->light.use_count(), 3) << "the picture's claim, and that of the step";
+  machine_->tracing.Open();
+  EXPECT_TRUE(traced.get().ok());
+  EXPECT_EQ(machine_->traced_steps, 10);
   EXPECT_EQ(machine_->light.use_count(), 1) << "it is done";
-  const TurnOutcome waits = drawer.TakeTurn();
-  EXPECT_FALSE(waits.drew);
-  EXPECT_TRUE(waits.look_again_at.has_value());
+  EXPECT_EQ(waits.wait_for(std::chrono::milliseconds(100)), std::future_status::timeout);
   machine_->waits_to_trace_azimuth_deg = -1.0;
-  EXPECT_TRUE(drawer.TakeTurn().drew);  // the fake counts all scenes' paths together
-  EXPECT_EQ(done, 2);
+  EXPECT_TRUE(waits.get().ok());
 }
 
 TEST_F(RenderLoopTest, CancelledPicturesAreDroppedAndSayso) {

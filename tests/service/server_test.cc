@@ -100,11 +100,11 @@ TEST(ServerTest, TakenPortIsAnError) {
 }
 
 TEST(ServerTest, FrameSourceThatCannotBeMadeIsAnError) {
-  const auto server =
-      service::Server::Start({}, std::make_shared<FakeStormStore>(),
-                             []() -> absl::StatusOr<std::unique_ptr<session::FrameSource>> {
-                               return absl::NotFoundError("there is no GPU 3");
-                             });
+  const auto server = service::Server::Start(
+      {}, std::make_shared<FakeStormStore>(),
+      [](base::DeviceTurn*) -> absl::StatusOr<std::unique_ptr<session::FrameSource>> {
+        return absl::NotFoundError("there is no GPU 3");
+      });
   ASSERT_FALSE(server.ok());
   EXPECT_EQ(server.status().message(), "there is no GPU 3");
 }
@@ -188,7 +188,8 @@ TEST(StatusTableTest, EveryEngineStatusHasItsCode) {
   EXPECT_EQ(code(absl::OutOfRangeError("x")), grpc::StatusCode::INVALID_ARGUMENT);
   EXPECT_EQ(code(absl::NotFoundError("x")), grpc::StatusCode::NOT_FOUND);
   EXPECT_EQ(code(absl::DataLossError("x")), grpc::StatusCode::DATA_LOSS);
-  EXPECT_EQ(code(absl::UnauthenticatedError("x")), grpc::StatusCode::UNKNOWN);
+  EXPECT_EQ(code(absl::UnauthenticatedError("x")), grpc::StatusCode::UNAUTHENTICATED);
+  EXPECT_EQ(code(absl::UnknownError("x")), grpc::StatusCode::UNKNOWN);
   EXPECT_EQ(service::ToGrpcStatus(absl::InternalError("why")).error_message(), "why");
 }
 

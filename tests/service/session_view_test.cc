@@ -147,6 +147,8 @@ TEST_F(SessionViewTest, ASettingThatProvesTooSlowIsReplacedAndDrawnAnew) {
   EXPECT_EQ(scene::SlicesOf(decided_->scene->rendering.technique), 128);
   Observe(FrameQuality{}, 1000.0);  // 295 ms
   EXPECT_TRUE(NextIs<CheckSlices>(milliseconds(600)));
+  EXPECT_TRUE(NextIs<CheckSlices>(milliseconds(600))) << "until it is checked";
+  view_.Checked(0.01);
   const SessionWork again = Next(milliseconds(600));
   EXPECT_EQ(std::get<WaitUntil>(again).time, kStart + milliseconds(600));
   EXPECT_EQ(view_.state(), State::kRefining);
@@ -177,12 +179,17 @@ TEST_F(SessionViewTest, LightIsTracedAtRestUntilItHasEnoughPaths) {
   EXPECT_FALSE(view_.LightTraced({100'000, 1}, kStart + milliseconds(700))) << "too soon to show";
   EXPECT_FALSE(view_.LightTraced({140'000, 2}, kStart + milliseconds(1200))) << "too few more";
   EXPECT_TRUE(view_.LightTraced({150'000, 2}, kStart + milliseconds(1200)));
+  EXPECT_TRUE(NextIs<ShowLight>(milliseconds(1200)));
+  EXPECT_TRUE(NextIs<ShowLight>(milliseconds(1200))) << "until it is shown";
   view_.LightShown(kStart + milliseconds(1200));
   EXPECT_FALSE(view_.LightTraced({160'000, 3}, kStart + milliseconds(6100)));
   EXPECT_TRUE(view_.LightTraced({160'000, 3}, kStart + milliseconds(6200))) << "after five seconds";
+  view_.LightShown(kStart + milliseconds(6200));
   ASSERT_TRUE(NextIs<TraceLight>(milliseconds(6200)));
   EXPECT_TRUE(
       view_.LightTraced({100'000 + accuracy::kTracedPaths, 4}, kStart + milliseconds(6300)));
+  ASSERT_TRUE(NextIs<ShowLight>(milliseconds(6300))) << "all that was traced";
+  view_.LightShown(kStart + milliseconds(6300));
   EXPECT_TRUE(NextIsNothing(milliseconds(6300)));
   EXPECT_EQ(view_.state(), State::kSettled);
   Change();
@@ -196,6 +203,8 @@ TEST_F(SessionViewTest, LightThatCannotBeTracedLeavesThePictureSettled) {
   ComeToRest();
   ASSERT_TRUE(NextIs<TraceLight>(milliseconds(600)));
   view_.LightFailed();
+  ASSERT_TRUE(NextIs<ShowLight>(milliseconds(600))) << "to tell why";
+  view_.LightShown(kStart + milliseconds(600));
   EXPECT_TRUE(NextIsNothing(milliseconds(600)));
   EXPECT_EQ(view_.state(), State::kSettled);
   EXPECT_TRUE(NextIsNothing(milliseconds(9000))) << "it is not tried again";

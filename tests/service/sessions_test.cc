@@ -47,7 +47,7 @@ TEST(SessionsTest, EmptySceneComesBackWithEveryDefault) {
   EXPECT_EQ(camera.target().y_m(), -500.0F);
   EXPECT_EQ(camera.target().z_m(), 1250.0F);
   EXPECT_GT(camera.distance_m(), 1000.0F);
-  EXPECT_EQ(scene.sun().elevation_deg(), 35.0F);
+  EXPECT_EQ(scene.sun().elevation_deg(), 18.0F);
   EXPECT_TRUE(scene.sky().has_brightness());
   const v1::LightVolume& light_volume = scene.rendering().light_volume();
   EXPECT_EQ(light_volume.transport(), v1::TRANSPORT_DIFFUSION);
@@ -165,8 +165,8 @@ TEST(SessionsTest, AnIdealisedRunsSunIsSetByHand) {
   FakeService service;
   const v1::Sun sun = Create(service, SmallScene()).scene().sun();
   EXPECT_EQ(sun.source(), v1::Sun::SOURCE_BY_HAND);
-  EXPECT_EQ(sun.azimuth_deg(), 255.0F);
-  EXPECT_EQ(sun.elevation_deg(), 35.0F);
+  EXPECT_EQ(sun.azimuth_deg(), 275.0F);
+  EXPECT_EQ(sun.elevation_deg(), 18.0F);
 }
 
 TEST(SessionsTest, TheSunFollowsTheClockWhereAsked) {

@@ -1,9 +1,11 @@
-// Round-robin scheduling, on plain values.
+// Who draws next, on plain values.
 #include "session/turns.h"
 
 #include <map>
-#include <set>
-#include <thread>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -15,103 +17,132 @@ using ::testing::ElementsAre;
 
 class TurnsTest : public ::testing::Test {
  protected:
-  // The session that uses the next turn; the empty string if none does.
+  // Somebody whose turns take so long; one who looks around if the name has a slash.
+  void Busy(const std::string& id, TurnClass turn_class, double piece_ms = 10.0) {
+    busy_[id] = {turn_class, piece_ms};
+  }
+
+  // Who uses the next turn; the empty string if nobody does.
   std::string Serve() {
-    std::string served;
-    asked_.clear();
     std::vector<Contender> contenders;
     for (const std::string& id : ids_) {
-      contenders.push_back({id, id.find('/') != std::string::npos});
+      contenders.push_back({id, id.find('/') != std::string::npos, std::nullopt});
+      if (busy_.contains(id)) contenders.back().work = busy_[id].turn_class;
     }
-    look_again_at_ = turns_.Next(contenders, [&](std::size_t i, TurnKind kind) -> TurnOutcome {
-      asked_.push_back(ids_[i]);
-      const bool in_background = in_background_.count(ids_[i]) > 0;
-      if (busy_.count(ids_[i]) == 0 && !(in_background && kind == TurnKind::kBackground)) {
-        return {false, waits_until_[ids_[i]], in_background};
-      }
-      served = ids_[i];
-      return {true, std::nullopt};
-    });
+    const auto next = turns_.Next(contenders);
+    if (!next.has_value()) return "";
+    const Contender& served = contenders[*next];
+    turns_.Used(served, busy_[served.id].piece_ms);
+    used_ms_[served.id] += busy_[served.id].piece_ms;
+    return served.id;
+  }
+
+  std::vector<std::string> ServeTurns(int count) {
+    std::vector<std::string> served;
+    for (int i = 0; i < count; ++i) served.push_back(Serve());
     return served;
   }
 
+  // Of all time, that one of them used until `until_ms` were used in all.
+  double ShareOf(const std::string& id, double until_ms) {
+    used_ms_.clear();
+    double all_ms = 0.0;
+    while (all_ms < until_ms) {
+      Serve();
+      all_ms = std::accumulate(used_ms_.begin(), used_ms_.end(), 0.0,
+                               [](double sum, const auto& used) { return sum + used.second; });
+    }
+    return used_ms_[id] / all_ms;
+  }
+
+  struct Work {
+    TurnClass turn_class{};
+    double piece_ms = 0.0;
+  };
+
   Turns turns_;
-  std::vector<std::string> ids_{"", "a", "b", "c"};
-  std::set<std::string> busy_;
-  std::set<std::string> in_background_;  // who have background work
-  std::map<std::string, std::optional<Clock::time_point>> waits_until_;
-  std::vector<std::string> asked_;
-  std::optional<Clock::time_point> look_again_at_;
+  std::vector<std::string> ids_{"a", "b", "c"};
+  std::map<std::string, Work> busy_;
+  std::map<std::string, double> used_ms_;
 };
 
 TEST_F(TurnsTest, AllWhoHaveWorkAreServedInTurn) {
-  busy_ = {"", "a", "c"};
-  std::vector<std::string> served;
-  for (int i = 0; i < 6; ++i) served.push_back(Serve());
-  EXPECT_THAT(served, ElementsAre("a", "c", "", "a", "c", ""));
+  Busy("a", TurnClass::kInteractive);
+  Busy("c", TurnClass::kInteractive);
+  EXPECT_THAT(ServeTurns(5), ElementsAre("a", "c", "a", "c", "a"));
+  busy_.clear();
+  EXPECT_EQ(Serve(), "");
 }
 
-TEST_F(TurnsTest, OwnViewsTogetherTakeHalfOfTheTurns) {
-  ids_ = {"", "a", "a/1", "a/2", "a/3", "b"};
-  busy_ = {"a", "a/1", "a/2", "a/3", "b"};
-  std::vector<std::string> served;
-  for (int i = 0; i < 8; ++i) served.push_back(Serve());
-  EXPECT_THAT(served, ElementsAre("a", "a/1", "b", "a/2", "a", "a/3", "b", "a/1"));
+TEST_F(TurnsTest, AllGetTheSameTimeHoweverLongTheirPiecesAre) {
+  Busy("a", TurnClass::kInteractive, 5.0);
+  Busy("b", TurnClass::kInteractive, 50.0);
+  Busy("c", TurnClass::kInteractive, 15.0);
+  EXPECT_NEAR(ShareOf("a", 1e4), 1.0 / 3.0, 0.01);
+  EXPECT_NEAR(ShareOf("b", 1e4), 1.0 / 3.0, 0.01);
 }
 
-TEST_F(TurnsTest, OwnViewsTakeEveryTurnThatNobodyElseUses) {
-  ids_ = {"", "a", "a/1", "a/2"};
-  busy_ = {"a/1", "a/2"};
-  std::vector<std::string> served;
-  for (int i = 0; i < 3; ++i) served.push_back(Serve());
-  EXPECT_THAT(served, ElementsAre("a/1", "a/2", "a/1"));
+TEST_F(TurnsTest, WhoComesWaitsForNobodyAndIsOwedNothing) {
+  Busy("b", TurnClass::kInteractive);
+  ServeTurns(100);
+  Busy("a", TurnClass::kInteractive);
+  EXPECT_THAT(ServeTurns(4), ElementsAre("a", "b", "a", "b"));
+}
+
+TEST_F(TurnsTest, WhoPausesAfterALongTurnIsStillInDebt) {
+  Busy("a", TurnClass::kInteractive, 100.0);
+  Busy("b", TurnClass::kInteractive, 10.0);
+  EXPECT_EQ(Serve(), "a");
+  busy_.erase("a");
+  EXPECT_EQ(Serve(), "b");
+  Busy("a", TurnClass::kInteractive, 100.0);
+  EXPECT_THAT(ServeTurns(3), ElementsAre("b", "b", "b"));
+}
+
+TEST_F(TurnsTest, OwnViewsTogetherTakeHalfOfTheTime) {
+  ids_ = {"a", "a/1", "a/2", "a/3", "b"};
+  Busy("a", TurnClass::kInteractive);
+  for (const char* own : {"a/1", "a/2", "a/3"}) Busy(own, TurnClass::kInteractive, 20.0);
+  EXPECT_NEAR(ShareOf("a", 1e4), 0.5, 0.01);
+  EXPECT_NEAR(ShareOf("a/2", 1e4), 1.0 / 6.0, 0.01);
+  busy_.erase("a");
+  EXPECT_NEAR(ShareOf("a/2", 1e4), 1.0 / 3.0, 0.01) << "all that nobody else uses";
 }
 
 TEST_F(TurnsTest, TheRoundGoesOnWhereTheLastServedHasGone) {
-  busy_ = {"a", "b", "c"};
-  EXPECT_EQ(Serve(), "a");
-  EXPECT_EQ(Serve(), "b");
-  ids_ = {"", "a", "c"};
+  for (const char* id : {"a", "b", "c"}) Busy(id, TurnClass::kInteractive);
+  EXPECT_THAT(ServeTurns(2), ElementsAre("a", "b"));
+  ids_ = {"a", "c"};
+  EXPECT_THAT(ServeTurns(2), ElementsAre("c", "a"));
+}
+
+TEST_F(TurnsTest, WhatPeopleWaitForComesFirst) {
+  Busy("a", TurnClass::kBatch);
+  Busy("b", TurnClass::kRefining);
+  Busy("c", TurnClass::kInteractive);
   EXPECT_EQ(Serve(), "c");
-  EXPECT_EQ(Serve(), "a");
-}
-
-TEST_F(TurnsTest, ATurnThatIsUsedEndsTheRoundAndItGoesOnAtOnce) {
-  busy_ = {"b"};
-  const Clock::time_point before = Clock::now();
+  busy_.erase("c");
   EXPECT_EQ(Serve(), "b");
-  EXPECT_THAT(asked_, ElementsAre("a", "b"));
-  EXPECT_GE(*look_again_at_, before);
-}
-
-TEST_F(TurnsTest, BackgroundWorkIsDoneInTurnWhileNothingElseIs) {
-  in_background_ = {"a", "c"};
-  std::vector<std::string> served;
-  for (int i = 0; i < 4; ++i) served.push_back(Serve());
-  EXPECT_THAT(served, ElementsAre("a", "c", "a", "c"));
-}
-
-TEST_F(TurnsTest, BackgroundWorkDoesNotComeBetweenAnothersFrames) {
-  in_background_ = {"a"};
-  busy_ = {"b"};
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(Serve(), "b");
-  busy_.clear();
-  const Clock::time_point drew_at = Clock::now();
-  EXPECT_EQ(Serve(), "") << "it may draw again at once";
-  ASSERT_TRUE(look_again_at_.has_value());
-  EXPECT_LE(*look_again_at_, drew_at + kQuietBeforeBackground);
-  std::this_thread::sleep_until(*look_again_at_);
+  busy_.erase("b");
   EXPECT_EQ(Serve(), "a");
 }
 
-TEST_F(TurnsTest, WithoutWorkTheEarliestWishCounts) {
-  EXPECT_EQ(Serve(), "");
-  EXPECT_FALSE(look_again_at_.has_value());
-  const Clock::time_point early{std::chrono::seconds(1)};
-  waits_until_ = {{"a", early + std::chrono::seconds(1)}, {"b", early}};
-  EXPECT_EQ(Serve(), "");
-  EXPECT_EQ(asked_.size(), ids_.size());
-  EXPECT_EQ(look_again_at_, early);
+TEST_F(TurnsTest, TheOthersGetATenthHoweverMuchThereIsToDo) {
+  Busy("a", TurnClass::kBatch, 15.0);
+  Busy("c", TurnClass::kInteractive, 33.0);
+  EXPECT_NEAR(ShareOf("a", 1e4), 0.1, 0.01);
+  Busy("b", TurnClass::kRefining, 100.0);
+  EXPECT_NEAR(ShareOf("a", 1e5), 0.1, 0.01);
+  EXPECT_NEAR(ShareOf("b", 1e5), 0.1, 0.02);
+  busy_.erase("c");
+  EXPECT_NEAR(ShareOf("a", 1e4), 0.1, 0.02);
+}
+
+TEST_F(TurnsTest, AClassWithoutWorkSavesNothingUp) {
+  Busy("c", TurnClass::kInteractive, 33.0);
+  ServeTurns(100);
+  Busy("a", TurnClass::kBatch, 15.0);
+  EXPECT_THAT(ServeTurns(2), ElementsAre("c", "c"));
 }
 
 }  // namespace

@@ -13,6 +13,8 @@ export interface PipelineSteps<F, P> {
   release(picture: P): void;
   // The frame could not be decoded; a later one may.
   failed(frame: F, reason: unknown): void;
+  // A newer frame has replaced it, or the stream has ended, before it was decoded.
+  skipped?(frame: F): void;
 }
 
 export class FramePipeline<F, P> {
@@ -38,6 +40,7 @@ export class FramePipeline<F, P> {
   startStream(): void {
     this.#stream += 1;
     this.#decoding = undefined;
+    if (this.#waiting !== undefined) this.#steps.skipped?.(this.#waiting);
     this.#waiting = undefined;
     this.#discardReady();
   }
@@ -45,7 +48,10 @@ export class FramePipeline<F, P> {
   offer(frame: F): void {
     if (this.#disposed) return;
     if (this.#decoding !== undefined) {
-      if (this.#waiting !== undefined) this.#dropped += 1;
+      if (this.#waiting !== undefined) {
+        this.#steps.skipped?.(this.#waiting);
+        this.#dropped += 1;
+      }
       this.#waiting = frame;
       return;
     }

@@ -27,6 +27,7 @@ import type {
 } from "../gen/thunderhead/v1/thunderhead_pb";
 import { cameraOfPose, type Pose, poseOfCamera } from "./camera";
 import { type CloudDraft, FIRST_CLOUD } from "./cloud";
+import { type Encoding, encodingOf, pictureBytes } from "./encoding";
 import type { Box } from "./picture_box";
 import { type Projection, projectionOf } from "./projection";
 import {
@@ -55,6 +56,8 @@ export type Connection =
       readonly attempts: number;
       readonly retryInMs: number;
     }
+  // The server wants a token, or another one.
+  | { readonly kind: "locked"; readonly reason: string }
   // The session has ended; SessionState says why.
   | { readonly kind: "gone" };
 
@@ -65,6 +68,7 @@ export interface ShownFrame {
   readonly widthPx: number;
   readonly heightPx: number;
   readonly bytes: number;
+  readonly encoding: Encoding;
   readonly stages: readonly StageCost[];
   readonly modelled: Modelled | undefined;
   // Only of pictures by the reference.
@@ -103,6 +107,8 @@ export class PageState {
   readonly storms = signal<readonly StormSummary[]>([]);
   readonly storm = signal<StormDescription | undefined>(undefined);
   readonly frame = signal<ShownFrame | undefined>(undefined);
+  // Why this browser is sent no video; undefined where it can be.
+  readonly whyNoVideo = signal<string | undefined>(undefined);
   readonly pace = signal<Pace>({ framesPerSecond: 0, bytesPerSecond: 0, latencyMs: undefined });
   readonly notices = signal<readonly Notice[]>([]);
   // The picture's width and height over the canvas's, in device pixels.
@@ -246,7 +252,8 @@ export class PageState {
       refined: frame.refined,
       widthPx: frame.widthPx,
       heightPx: frame.heightPx,
-      bytes: frame.jpeg.byteLength,
+      bytes: pictureBytes(frame),
+      encoding: encodingOf(frame),
       stages: frame.stages,
       modelled: frame.modelled,
       refinement: frame.refinement,

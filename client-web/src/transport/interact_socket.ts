@@ -9,6 +9,7 @@ import {
   toBinary,
 } from "@bufbuild/protobuf";
 import { Code } from "@connectrpc/connect";
+import { retryAfterMsOfTrailer } from "./retry_info";
 
 // The part of the DOM's WebSocket that is used.
 export interface Socket {
@@ -21,7 +22,7 @@ export interface Socket {
   close(code?: number): void;
 }
 
-export type SocketFactory = (url: string, protocol: string) => Socket;
+export type SocketFactory = (url: string, protocols: string[]) => Socket;
 
 // A bidirectional rpc: its name and messages, as generated descriptors have them.
 export interface BidiMethod<I extends DescMessage, O extends DescMessage> {
@@ -33,7 +34,13 @@ export interface BidiMethod<I extends DescMessage, O extends DescMessage> {
 
 export type CallEnd =
   // The server answered with a status.
-  | { readonly kind: "status"; readonly code: Code | 0; readonly message: string }
+  | {
+      readonly kind: "status";
+      readonly code: Code | 0;
+      readonly message: string;
+      // 0: the server gives no time to try again.
+      readonly retryAfterMs: number;
+    }
   // The connection failed, or was never made.
   | { readonly kind: "broken"; readonly message: string };
 
@@ -52,6 +59,7 @@ export interface BidiCall<I extends DescMessage> {
 }
 
 const PROTOCOL = "grpc-websocket.v1";
+const TOKEN_PREFIX = "bearer.";
 const MESSAGE = 0x00;
 const HALF_CLOSE = 0x01;
 const TRAILERS = 0x80;
@@ -62,10 +70,13 @@ const GOING_AWAY = 1001;
 export function openBidi<I extends DescMessage, O extends DescMessage>(
   method: BidiMethod<I, O>,
   baseUrl: string,
+  token: string | undefined,
   makeSocket: SocketFactory,
   listener: BidiListener<O>,
 ): BidiCall<I> {
-  const socket = makeSocket(addressOf(method, baseUrl), PROTOCOL);
+  // Browsers let a page set no other header of a WebSocket.
+  const protocols = token === undefined ? [PROTOCOL] : [PROTOCOL, TOKEN_PREFIX + base64Url(token)];
+  const socket = makeSocket(addressOf(method, baseUrl), protocols);
   socket.binaryType = "arraybuffer";
   let ended = false;
   const end = (how: CallEnd) => {
@@ -133,7 +144,16 @@ function statusOf(trailers: Uint8Array): CallEnd {
       values.set(line.slice(0, colon).trim().toLowerCase(), line.slice(colon + 1).trim());
   }
   const code = Number(values.get("grpc-status") ?? Code.Unknown);
-  return { kind: "status", code, message: percentDecoded(values.get("grpc-message") ?? "") };
+  return {
+    kind: "status",
+    code,
+    message: percentDecoded(values.get("grpc-message") ?? ""),
+    retryAfterMs: retryAfterMsOfTrailer(values.get("grpc-status-details-bin")),
+  };
+}
+
+function base64Url(text: string): string {
+  return btoa(text).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
 }
 
 function percentDecoded(text: string): string {

@@ -18,6 +18,7 @@ import type {
 } from "../gen/thunderhead/v1/interact_pb";
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
 import type { BidiCall, BidiListener, CallEnd } from "./interact_socket";
+import { retryAfterMs } from "./retry_info";
 import type { ServerCalls } from "./server_calls";
 
 export interface OpenedSession {
@@ -77,6 +78,8 @@ type Outcome =
   // Come back: after the server's delay, if it gave one.
   | { readonly kind: "lost"; readonly reason: string; readonly leastMs: number }
   | { readonly kind: "gone"; readonly message: string; readonly forgotten: boolean }
+  // Waits for retryNow().
+  | { readonly kind: "locked"; readonly reason: string }
   | { readonly kind: "disposed" };
 
 interface Call {
@@ -127,6 +130,9 @@ export class SessionClient {
         const { attempts } = this.#backOff;
         this.#listener.connection({ kind: "lost", reason: outcome.reason, attempts, retryInMs });
         await this.#wait(retryInMs);
+      } else if (outcome.kind === "locked") {
+        this.#listener.connection(outcome);
+        await this.#wait();
       } else if (outcome.kind === "gone") {
         this.#sessionKey = undefined;
         if (this.#listener.gone(outcome)) {
@@ -168,8 +174,8 @@ export class SessionClient {
   }
 
   // The frame is on the screen, or will never be.
-  acknowledge(sequence: bigint, ownView: boolean): void {
-    this.send({ case: "acknowledge", value: { sequence, ownView } });
+  acknowledge(sequence: bigint, ownView: boolean, videoLost = false): void {
+    this.send({ case: "acknowledge", value: { sequence, ownView, videoLost } });
   }
 
   dispose(): void {
@@ -196,7 +202,9 @@ export class SessionClient {
       if (this.#disposed) return { kind: "disposed" };
       return await this.#interact(this.#sessionKey);
     } catch (error) {
-      return { kind: "lost", reason: reasonOf(ConnectError.from(error)), leastMs: 0 };
+      const failure = ConnectError.from(error);
+      if (LOCKED_CODES.has(failure.code)) return { kind: "locked", reason: failure.rawMessage };
+      return { kind: "lost", reason: reasonOf(failure), leastMs: retryAfterMs(failure) };
     }
   }
 
@@ -214,7 +222,7 @@ export class SessionClient {
     } catch (error) {
       const failure = ConnectError.from(error);
       const full = failure.code === Code.ResourceExhausted;
-      if (!full && !NETWORK_CODES.has(failure.code))
+      if (!full && !NETWORK_CODES.has(failure.code) && !LOCKED_CODES.has(failure.code))
         this.#listener.openingRefused(failure.rawMessage);
       throw failure;
     }
@@ -347,6 +355,9 @@ const UNREACHABLE = "The server cannot be reached";
 const NO_WEBSOCKET =
   "The server answers, but no WebSocket to it opens: a proxy or a filter may block it";
 
+// The server does not know who this is, or that role may not.
+const LOCKED_CODES = new Set<Code>([Code.Unauthenticated, Code.PermissionDenied]);
+
 // Codes of network failures; some servers' failures have the same ones.
 const NETWORK_CODES = new Set<Code>([
   Code.Unknown,
@@ -371,8 +382,9 @@ function outcomeOfStatus(end: CallEnd): Outcome {
       message: "The server does not have this session any more",
       forgotten: true,
     };
+  if (LOCKED_CODES.has(end.code as Code)) return { kind: "locked", reason: end.message };
   const reason = end.code === 0 ? "The server ended the connection" : end.message || UNREACHABLE;
-  return { kind: "lost", reason, leastMs: 0 };
+  return { kind: "lost", reason, leastMs: end.retryAfterMs };
 }
 
 function verdictOf(code: Code, message: string): SceneVerdict {

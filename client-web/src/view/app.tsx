@@ -1,5 +1,5 @@
 // The whole page: the storm fills the window, everything else lies over its edges.
-import "@preact/signals";
+import { useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import type { PageState } from "../core/state";
 import { Overlay } from "./overlay";
@@ -9,7 +9,10 @@ import { Asking, PeopleList } from "./people";
 import { Readout } from "./readout";
 import { SessionBar } from "./session_bar";
 import { Share } from "./share";
+import { SignIn } from "./sign_in";
 import { TimeBar } from "./time_bar";
+
+const SHORT_WAIT_S = 3;
 
 export function App({ page }: { page: Page }) {
   const { state } = page;
@@ -27,6 +30,7 @@ export function App({ page }: { page: Page }) {
       <TopBar page={page} />
       <div class="messages">
         <ConnectionBanner state={state} />
+        <SignIn page={page} />
         <SessionEnded page={page} />
         <Asking page={page} />
         <Notices state={state} />
@@ -118,11 +122,24 @@ function ConnectionBanner({ state }: { state: PageState }) {
       )}
       {connection.kind === "lost" && (
         <p class="banner lost" data-testid="connection-lost">
-          {connection.reason}. Reconnecting …
+          {connection.reason}.{" "}
+          <Reconnecting key={connection.attempts} inMs={connection.retryInMs} />
         </p>
       )}
     </div>
   );
+}
+
+// Counts the seconds to the next attempt, where they are many.
+function Reconnecting({ inMs }: { inMs: number }) {
+  const left = useSignal(Math.ceil(inMs / 1000));
+  useEffect(() => {
+    const timer = setInterval(() => {
+      left.value -= 1;
+    }, 1000);
+    return () => clearInterval(timer);
+  }, [left]);
+  return left.value > SHORT_WAIT_S ? <>Trying again in {left} s …</> : <>Reconnecting …</>;
 }
 
 function SessionEnded({ page }: { page: Page }) {

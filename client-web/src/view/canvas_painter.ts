@@ -2,10 +2,19 @@
 // canvas changes size. Owns the picture on the screen.
 import { pictureBox } from "../core/picture_box";
 
+// A decoded picture: of a file or of video.
+export type Picture = ImageBitmap | VideoFrame;
+
+function sizeOf(picture: Picture): { width: number; height: number } {
+  if ("displayWidth" in picture)
+    return { width: picture.displayWidth, height: picture.displayHeight };
+  return picture;
+}
+
 export class CanvasPainter {
   readonly #canvas: HTMLCanvasElement;
   readonly #context: CanvasRenderingContext2D;
-  #picture: ImageBitmap | undefined;
+  #picture: Picture | undefined;
 
   constructor(canvas: HTMLCanvasElement) {
     const context = canvas.getContext("2d", { alpha: false });
@@ -15,7 +24,7 @@ export class CanvasPainter {
   }
 
   // Takes ownership of the picture.
-  paint(picture: ImageBitmap): void {
+  paint(picture: Picture): void {
     this.#picture?.close();
     this.#picture = picture;
     this.#draw();
@@ -37,7 +46,8 @@ export class CanvasPainter {
     const picture = this.#picture;
     if (picture === undefined) return;
     const { width, height } = this.#canvas;
-    const box = pictureBox({ width, height }, picture);
+    const size = sizeOf(picture);
+    const box = pictureBox({ width, height }, size);
     const shownWidth = Math.round(box.width);
     const shownHeight = Math.round(box.height);
     const left = Math.floor((width - shownWidth) / 2);
@@ -46,7 +56,7 @@ export class CanvasPainter {
       this.#context.fillStyle = "#05070a";
       this.#context.fillRect(0, 0, width, height);
     }
-    this.#context.imageSmoothingEnabled = shownWidth !== picture.width;
+    this.#context.imageSmoothingEnabled = shownWidth !== size.width;
     this.#context.imageSmoothingQuality = "medium";
     this.#context.drawImage(picture, left, top, shownWidth, shownHeight);
   }

@@ -4,6 +4,7 @@
 import { create } from "@bufbuild/protobuf";
 import { Code, type Transport } from "@connectrpc/connect";
 import { effect, untracked } from "@preact/signals-core";
+import { AccessToken } from "../core/access_token";
 import {
   type CameraKind,
   homeCamera,
@@ -11,6 +12,7 @@ import {
   poseOfCamera,
   standingAzimuthDeg,
 } from "../core/camera";
+import { encodingOf, pictureBytes } from "../core/encoding";
 import { FrameRate } from "../core/frame_rate";
 import { type MarkedPicture, Marking } from "../core/marking";
 import type { Later } from "../core/newest";
@@ -43,6 +45,7 @@ import {
 } from "../transport/session_client";
 import { Addresses } from "./addresses";
 import { CanvasPlace } from "./canvas_place";
+import { learnDecodable } from "./decodable";
 import { attachKeyboard } from "./keyboard";
 import { readLink } from "./link";
 import { PictureFlow } from "./picture_flow";
@@ -58,6 +61,9 @@ const NARROW_PX = 700;
 // Of what a camera that does not turn around a target looks at.
 const TYPICAL_DISTANCE_M = 30_000;
 
+// The person has asked the browser to save data; not in every browser.
+type NetworkNavigator = Navigator & { readonly connection?: { readonly saveData?: boolean } };
+
 export class Page implements SessionListener {
   readonly state = new PageState();
   readonly playback: Playback;
@@ -66,6 +72,7 @@ export class Page implements SessionListener {
   readonly addresses: Addresses;
   readonly #keys: OwnKeys;
   readonly #window: Window;
+  readonly #token: AccessToken;
   readonly #calls: ServerCalls;
   readonly #client: SessionClient;
   readonly #storms: StormsOnServer;
@@ -88,9 +95,16 @@ export class Page implements SessionListener {
   #shown: Frame | undefined;
   #newestProblem: Problem | undefined;
   #running = false;
+  #codecs: Codec[] = [Codec.JPEG];
 
-  constructor(transport: Transport, openInteract: OpenInteract, window: Window) {
+  constructor(
+    transport: Transport,
+    openInteract: OpenInteract,
+    window: Window,
+    token = new AccessToken(undefined),
+  ) {
     this.#window = window;
+    this.#token = token;
     const { session } = this.state;
     const link = readLink(window.location.href);
     if (link.scene !== undefined) this.state.adoptScene(link.scene);
@@ -126,7 +140,8 @@ export class Page implements SessionListener {
       later,
     });
     this.#flow = new PictureFlow({
-      acknowledge: (sequence, ownView) => this.#client.acknowledge(sequence, ownView),
+      acknowledge: (sequence, ownView, videoLost) =>
+        this.#client.acknowledge(sequence, ownView, videoLost),
       wantsOwnView: () => session.lookingAround.peek(),
       painted: (frame) => this.#painted(frame),
       undecodable: (frame) => this.#undecodable(frame),
@@ -176,7 +191,7 @@ export class Page implements SessionListener {
     const detach = this.#place.attach(canvas);
     if (!this.#running) {
       this.#running = true;
-      void this.#client.run();
+      void this.#run();
     }
     return detach;
   }
@@ -185,6 +200,13 @@ export class Page implements SessionListener {
   move(motion: (pose: Pose) => Pose): void {
     if (this.state.session.editBlock.peek() === undefined) this.state.move(motion);
     else if (this.#startsLookingAround()) this.#ownView.move(motion, this.#shownPose());
+  }
+
+  // Tries again with this token.
+  signIn(token: string): void {
+    this.#token.set(token);
+    this.state.connection.value = { kind: "connecting" };
+    this.#client.retryNow();
   }
 
   follow(): void {
@@ -306,7 +328,7 @@ export class Page implements SessionListener {
   }
 
   joining(): JoinDetails {
-    return { name: this.#keys.name, window: this.#windowMessage(), codecs: [Codec.JPEG] };
+    return { name: this.#keys.name, window: this.#windowMessage(), codecs: this.#codecs };
   }
 
   joined(joined: Joined): void {
@@ -385,6 +407,13 @@ export class Page implements SessionListener {
     session.end(why.message);
     this.playback.pause();
     return false;
+  }
+
+  async #run(): Promise<void> {
+    const { codecs, whyNoVideo } = await learnDecodable(this.#window);
+    this.#codecs = codecs;
+    this.state.whyNoVideo.value = whyNoVideo;
+    await this.#client.run();
   }
 
   #now(): number {
@@ -510,7 +539,7 @@ export class Page implements SessionListener {
     if (canvas === undefined) return;
     const now = this.#now();
     this.#shown = frame;
-    this.#rate.shown(frame.jpeg.byteLength, now);
+    this.#rate.shown(pictureBytes(frame), now);
     this.state.pictureBox.value = this.#place.boxOf(frame);
     this.state.showFrame(frame);
     if (frame.ownView) this.#ownView.placed(frame.camera);
@@ -526,6 +555,7 @@ export class Page implements SessionListener {
       sequence: String(frame.sequence),
       revision: String(frame.sceneRevision),
       refined: String(frame.refined),
+      encoding: encodingOf(frame),
       ownView: String(frame.ownView),
       time: String(this.#ledger.shownTimeIndex ?? ""),
       camera: pose?.kind ?? "",
@@ -548,7 +578,9 @@ export class Page implements SessionListener {
   }
 
   #windowMessage() {
-    return { ...this.#place.size, hidden: this.#window.document.hidden };
+    const { document, navigator } = this.#window;
+    const savesBytes = (navigator as NetworkNavigator | undefined)?.connection?.saveData === true;
+    return { ...this.#place.size, hidden: document.hidden, savesBytes };
   }
 
   #sendWindow(): void {

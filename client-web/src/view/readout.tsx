@@ -1,4 +1,5 @@
 // The cost of the pictures: frames a second and latency at a glance, the rest when opened.
+import { nameOfEncoding } from "../core/encoding";
 import { nameOfStage, nameOfTechnique } from "../core/names";
 import type { PageState } from "../core/state";
 import { formatBytes, formatNumber } from "../core/units";
@@ -72,6 +73,11 @@ function Costs({ state }: { state: PageState }) {
         <Row name="Picture" text={`${frame.widthPx} × ${frame.heightPx}`} />
         {frame.tier > 0 && <Row name="Reduced by" text={`${frame.tier} steps, for this link`} />}
         {frame.ownView && <Row name="View" text="Your own" />}
+        <Row
+          name="Sent as"
+          testId="encoding"
+          text={nameOfEncoding(frame.encoding, state.whyNoVideo.value)}
+        />
         <Row name="Bytes" text={formatBytes(frame.bytes)} />
         <Row name="Rate" text={`${formatBytes(state.pace.value.bytesPerSecond)}/s`} />
         {frame.modelled !== undefined && (

@@ -9,6 +9,7 @@
 #include "glm/geometric.hpp"
 #include "glm/matrix.hpp"
 #include "renderers/cumulus/variants.h"
+#include "renderers/sunlight.h"
 #include "renderers/view_uniforms.h"
 #include "shaders/bindings.h"
 #include "shaders/uniforms.h"
@@ -22,6 +23,10 @@ constexpr double kBeforeSurface_m = 2.0;  // from the sun\'s eye
 constexpr int kRoughnessOctaves = 4;
 constexpr double kRoughnessInFinest = 1.6;  // wavelength over the radius of the finest bubbles
 constexpr double kMinCorona = 1e-3;         // of the finest radius: thinner is a division by zero
+
+constexpr gl::PieceCost kPixel{"resolve", 50.0};
+constexpr gl::PieceCost kBubbleDepth{"bubble's depth", 1e5};
+constexpr gl::PieceCost kBubbleShade{"bubble", 1e6};
 
 // As cumulus/bubble.glsl has it.
 struct DeviceBubble {
@@ -138,7 +143,8 @@ double CumulusRenderer::Corona_m(const scene::Cumulus& cumulus) const {
   return finest_m_ * std::max(static_cast<double>(cumulus.corona), kMinCorona);
 }
 
-void CumulusRenderer::DrawBubbles(const gl::Program& program, const Pass& pass) const {
+absl::Status CumulusRenderer::DrawBubbles(const gl::Program& program, const Pass& pass,
+                                          const gl::PieceCost& bubble) const {
   BindRays(program, pass.view, Middle_m());
   program.Set(uniform::clip_from_local, ClipFromLocal(pass.view, Middle_m()));
   program.Set(uniform::eye, EyeOf(pass.view, Middle_m()));
@@ -153,7 +159,10 @@ void CumulusRenderer::DrawBubbles(const gl::Program& program, const Pass& pass) 
   if (pass.ground_distance != nullptr) pass.ground_distance->Bind(shaders::kGroundDistanceUnit);
   program.Use();
   no_attributes_.Bind();
-  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, count_);
+  return programs_->Pieces().Steps(bubble, count_, [&](int begin, int end) {
+    program.Set(uniform::first_bubble, begin);
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, end - begin);
+  });
 }
 
 absl::Status CumulusRenderer::DrawDepth(const Pass& pass, const gl::Framebuffer& target) {
@@ -164,9 +173,9 @@ absl::Status CumulusRenderer::DrawDepth(const Pass& pass, const gl::Framebuffer&
   target.ClearDepth(1.0F);
   target.Bind();
   glEnable(GL_DEPTH_TEST);
-  DrawBubbles(*program, pass);
+  absl::Status drawn = DrawBubbles(*program, pass, kBubbleDepth);
   glDisable(GL_DEPTH_TEST);
-  return absl::OkStatus();
+  return drawn;
 }
 
 absl::Status CumulusRenderer::CastShadow(const RenderSettings& settings) {
@@ -199,7 +208,7 @@ absl::StatusOr<gl::Texture2D> CumulusRenderer::GroundShadow() {
   program->Set(uniform::place_of_depth, glm::vec2(from_m + shadow_reach_m_, -from_m) /
                                             static_cast<float>(shadow_frame_.half_depth_m));
   shadow_depth_.Bind(shaders::kSunDepthUnit);
-  whole_target_.Draw(*program, target);
+  THUNDERHEAD_RETURN_IF_ERROR(whole_target_.Draw(programs_->Pieces(), kPixel, *program, target));
   return shadow;
 }
 
@@ -225,7 +234,7 @@ void CumulusRenderer::SetShading(const gl::Program& program, const RenderSetting
   const double tile_m = wave_m * physics::TurbulenceTile::kWaves;
   const glm::dvec3 corner = Middle_m() / tile_m;
   program.Set(uniform::towards_sun, glm::vec3(settings.illumination.towards_sun));
-  program.Set(uniform::sunlight, settings.illumination.sunlight);
+  BindSunlight(program, settings.illumination, Middle_m().z);
   program.Set(uniform::light_map, light_map);
   program.Set(uniform::component, SharesOf(cumulus.component));
   program.Set(uniform::trap_share, cumulus.trap);
@@ -282,11 +291,12 @@ absl::Status CumulusRenderer::DrawView(const RenderSettings& settings,
   glBlendFunci(0, GL_ONE, GL_ONE);
   glBlendFuncSeparatei(1, GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_SRC_ALPHA);
   pass.slack_m = pass.corona_m;
-  DrawBubbles(*program, pass);
+  const absl::Status drawn = DrawBubbles(*program, pass, kBubbleShade);
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
   glDepthFunc(GL_LESS);
   glDisable(GL_DEPTH_TEST);
+  THUNDERHEAD_RETURN_IF_ERROR(drawn);
   return Resolve(pass.far_m, glm::length(Middle_m() - settings.view.eye_m));
 }
 
@@ -299,8 +309,7 @@ absl::Status CumulusRenderer::Resolve(double far_m, double middle_m) {
   core_depth_.Bind(shaders::kResolvedDepthUnit);
   program->Set(uniform::far_m, static_cast<float>(far_m));
   program->Set(uniform::middle_m, static_cast<float>(middle_m));
-  whole_target_.Draw(*program, eye_target_);
-  return absl::OkStatus();
+  return whole_target_.Draw(programs_->Pieces(), kPixel, *program, eye_target_);
 }
 
 std::size_t CumulusRenderer::Bytes() const {

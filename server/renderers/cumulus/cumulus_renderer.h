@@ -57,7 +57,8 @@ class CumulusRenderer {
   absl::Status DrawDepth(const Pass& pass, const gl::Framebuffer& target);
   // `far_m` is the distance of depth 1, `middle_m` that of the surface.
   absl::Status Resolve(double far_m, double middle_m);
-  void DrawBubbles(const gl::Program& program, const Pass& pass) const;
+  absl::Status DrawBubbles(const gl::Program& program, const Pass& pass,
+                           const gl::PieceCost& bubble) const;
   double Corona_m(const scene::Cumulus& cumulus) const;
 
   std::shared_ptr<gl::ProgramCache> programs_;

@@ -36,7 +36,7 @@ class CumulusTechnique final : public Technique {
 
   absl::Status CarryLight(const scene::Scene& /*scene*/, const Fields& /*fields*/,
                           const RenderSettings& settings, StageTimes* times) override {
-    return Timed(scene::FrameStage::kLight, times, [&]() -> absl::Status {
+    return Timed(workspace_.Pieces(), scene::FrameStage::kLight, times, [&]() -> absl::Status {
       THUNDERHEAD_RETURN_IF_ERROR(renderer_.CastShadow(settings));
       workspace_.ground.ClearShadow();
       if (settings.illumination.towards_sun.z <= 0.0) return absl::OkStatus();
@@ -49,7 +49,7 @@ class CumulusTechnique final : public Technique {
 
   absl::Status DrawView(const scene::Scene& scene, const RenderSettings& settings,
                         StageTimes* times) override {
-    return Timed(scene::FrameStage::kView, times, [&] {
+    return Timed(workspace_.Pieces(), scene::FrameStage::kView, times, [&] {
       return renderer_.DrawView(settings, workspace_.surroundings.LightMap(scene),
                                 &workspace_.noises);
     });

@@ -24,6 +24,7 @@ constexpr int kThicknessSlices = 128;        // perpendicular to the light
 // Drawn to the picture in one pass. More change targets less often, but their light takes more
 // memory.
 constexpr int kSlabSlices = 16;
+constexpr gl::PieceCost kSlabPixel{"slab", 15.0 * kSlabSlices};
 // Path length of the light between two exchanges with neighbouring texels, in the reach of one
 // (consistent transport).
 constexpr double kExchangeInReach = 3.0;
@@ -158,10 +159,9 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
     const double exchange_m = consistent ? kExchangeInReach * reach_m : 0.0;
     at_once = std::max(static_cast<std::size_t>(exchange_m / slicing.light_path_m), std::size_t{1});
   }
-  DrawSlabs({eye, light}, settings, at_once,
-            ReachOf(slicing, medium.OccupiedBoxes(), medium.Middle_m(), settings.view,
-                    settings.eye_size, frame, light_.Size()));
-  return absl::OkStatus();
+  return DrawSlabs({eye, light}, settings, at_once,
+                   ReachOf(slicing, medium.OccupiedBoxes(), medium.Middle_m(), settings.view,
+                           settings.eye_size, frame, light_.Size()));
 }
 
 absl::Status HalfAngleRenderer::SumThickness(const ResidentMedium& medium, const LightFrame& frame,
@@ -184,8 +184,9 @@ absl::Status HalfAngleRenderer::SumThickness(const ResidentMedium& medium, const
   return absl::OkStatus();
 }
 
-void HalfAngleRenderer::DrawSlabs(const Programs& programs, const RenderSettings& settings,
-                                  std::size_t at_once, const std::vector<SliceReach>& reach) {
+absl::Status HalfAngleRenderer::DrawSlabs(const Programs& programs, const RenderSettings& settings,
+                                          std::size_t at_once,
+                                          const std::vector<SliceReach>& reach) {
   light_.Bind(shaders::kSliceLightUnit);
   light_.BindImage(shaders::kLeavingLightImage, GL_WRITE_ONLY);
   ring_depth_.BindImage(shaders::kRingDepthImage, GL_READ_WRITE);
@@ -205,6 +206,7 @@ void HalfAngleRenderer::DrawSlabs(const Programs& programs, const RenderSettings
     const Slab slab{begin,
                     std::min<std::size_t>(begin + kSlabSlices, static_cast<std::size_t>(end))};
     CarryThrough(slab, *programs.light, at_once, reach, &light);
+    THUNDERHEAD_RETURN_IF_ERROR(programs_->Pieces().Between());
     last_layer_ = light.layers.Of(slab.end);
     PixelRect seen;
     for (std::size_t i = slab.begin; i < slab.end; ++i) seen = Around(seen, reach[i].eye);
@@ -213,10 +215,12 @@ void HalfAngleRenderer::DrawSlabs(const Programs& programs, const RenderSettings
     eye_[eyes.Of(drawn)].Distances().Bind(shaders::kDistanceBeforeUnit);
     ++drawn;
     programs.eye->Set(uniform::begin_layer, static_cast<float>(light.layers.Of(slab.begin)));
-    DrawSlab(slab, *programs.eye, settings.cover, eyes.Write(drawn, seen),
-             eye_[eyes.Of(drawn)].Target());
+    const PixelRect rect = eyes.Write(drawn, seen);
+    THUNDERHEAD_RETURN_IF_ERROR(
+        DrawSlab(slab, *programs.eye, settings.cover, rect, eye_[eyes.Of(drawn)].Target()));
   }
   last_eye_ = eyes.Of(drawn);
+  return absl::OkStatus();
 }
 
 void HalfAngleRenderer::CarryThrough(const Slab& slab, const gl::Program& program,
@@ -247,17 +251,13 @@ void HalfAngleRenderer::CarryThrough(const Slab& slab, const gl::Program& progra
   }
 }
 
-void HalfAngleRenderer::DrawSlab(const Slab& slab, const gl::Program& eye, const Cover* cover,
-                                 const PixelRect& rect, const gl::Framebuffer& target) {
+absl::Status HalfAngleRenderer::DrawSlab(const Slab& slab, const gl::Program& eye,
+                                         const Cover* cover, const PixelRect& rect,
+                                         const gl::Framebuffer& target) {
   eye.Set(uniform::slab_begin, static_cast<float>(slab.begin));
   eye.Set(uniform::slab_end, static_cast<float>(slab.end));
-  glEnable(GL_SCISSOR_TEST);
-  glScissor(rect.low.x, rect.low.y, rect.high.x - rect.low.x, rect.high.y - rect.low.y);
-  {
-    const LimitedTo limited(Where::kCovered, cover);
-    whole_target_.Draw(eye, target);
-  }
-  glDisable(GL_SCISSOR_TEST);
+  const LimitedTo limited(Where::kCovered, cover);
+  return whole_target_.Draw(programs_->Pieces(), kSlabPixel, eye, target, rect);
 }
 
 }  // namespace thunderhead::renderers

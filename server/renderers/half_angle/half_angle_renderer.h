@@ -52,12 +52,12 @@ class HalfAngleRenderer {
   void Resize(const LightFrame& frame, double cell_m);
   absl::Status SumThickness(const ResidentMedium& medium, const LightFrame& frame,
                             const GroupWeights& weights);
-  void DrawSlabs(const Programs& programs, const RenderSettings& settings, std::size_t at_once,
-                 const std::vector<SliceReach>& reach);
+  absl::Status DrawSlabs(const Programs& programs, const RenderSettings& settings,
+                         std::size_t at_once, const std::vector<SliceReach>& reach);
   void CarryThrough(const Slab& slab, const gl::Program& program, std::size_t at_once,
                     const std::vector<SliceReach>& reach, CarriedLight* light);
-  void DrawSlab(const Slab& slab, const gl::Program& eye, const Cover* cover, const PixelRect& rect,
-                const gl::Framebuffer& target);
+  absl::Status DrawSlab(const Slab& slab, const gl::Program& eye, const Cover* cover,
+                        const PixelRect& rect, const gl::Framebuffer& target);
 
   std::shared_ptr<gl::ProgramCache> programs_;
   gl::WholeTarget whole_target_;

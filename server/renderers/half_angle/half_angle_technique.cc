@@ -29,7 +29,7 @@ class HalfAngleTechnique final : public Technique {
 
   absl::Status DrawView(const scene::Scene& /*scene*/, const RenderSettings& settings,
                         StageTimes* times) override {
-    return Timed(scene::FrameStage::kSlices, times, [&] {
+    return Timed(workspace_.Pieces(), scene::FrameStage::kSlices, times, [&] {
       return renderer_.Render(workspace_.medium, settings, std::exchange(light_changed_, false));
     });
   }

@@ -1,8 +1,11 @@
 #include "renderers/light_volume/diffuse_light.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -33,10 +36,35 @@ constexpr std::array<glm::vec2, 6> kSkySeen = {kSideSees, kSideSees,       kSide
 constexpr double kFarthestHop = 0.05;
 constexpr float kMinResistance = 1e-3F;
 
-float MeanDecay(float from, float to) {
-  const float least = std::min(from, to);
-  return std::exp(-least) * physics::glsl::mean_transmittance(std::abs(to - from));
+// The mean of what passes between two optical depths; `passed` is what passes the lesser one.
+float MeanDecay(float passed, float from, float to) {
+  return passed * physics::glsl::mean_transmittance(std::abs(to - from));
 }
+
+// Cells that a thread works on at a time. Sums are of shares, in order, so that they do not depend
+// on the number of threads.
+constexpr std::size_t kShare = 4096;
+
+// Calls `work` with the shares of `count` cells, on all threads.
+template <typename Work>
+void ForShares(std::size_t count, const Work& work) {
+  tbb::parallel_for(std::size_t{0}, (count + kShare - 1) / kShare, [&](std::size_t share) {
+    work(share * kShare, std::min((share + 1) * kShare, count));
+  });
+}
+
+double Dot(const std::vector<float>& a, const std::vector<float>& b) {
+  std::vector<double> sums((a.size() + kShare - 1) / kShare);
+  ForShares(a.size(), [&](std::size_t begin, std::size_t end) {
+    double sum = 0.0;
+    for (std::size_t n = begin; n < end; ++n) sum += static_cast<double>(a[n] * b[n]);
+    sums[begin / kShare] = sum;
+  });
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
+// Blocks of columns that are preconditioned each by itself, at the same time.
+constexpr std::size_t kMaxBlocks = 16;
 
 }  // namespace
 
@@ -46,6 +74,7 @@ DiffuseLight::DiffuseLight(DiffusionCells cells) : cells_(std::move(cells)), wal
   area_[1] = static_cast<float>(h.z / h.y);
   area_[2] = 1.0F;
   Number();
+  FindFringe();
   FindExits();
   MakeLinks();
   Factor();
@@ -57,11 +86,27 @@ void DiffuseLight::Number() {
   const auto smallest =
       static_cast<float>(std::min({cells_.cell_m.x, cells_.cell_m.y, cells_.cell_m.z}));
   number_.assign(cells_.light_per_m.size(), kNone);
-  for (std::size_t i = 0; i < number_.size(); ++i) {
-    if (cells_.light_per_m[i] * smallest <= kEmptyDepth) continue;
-    number_[i] = static_cast<std::int32_t>(cell_of_.size());
-    cell_of_.push_back(static_cast<std::int32_t>(i));
+  const glm::ivec3& size = cells_.size;
+  std::vector<std::int32_t> column_of;  // by number
+  for (int y = 0; y < size.y; ++y) {
+    for (int x = 0; x < size.x; ++x) {
+      for (int z = 0; z < size.z; ++z) {
+        const std::size_t i = cells_.Offset({x, y, z});
+        if (cells_.light_per_m[i] * smallest <= kEmptyDepth) continue;
+        number_[i] = static_cast<std::int32_t>(cell_of_.size());
+        cell_of_.push_back(static_cast<std::int32_t>(i));
+        column_of.push_back(y * size.x + x);
+      }
+    }
   }
+  const std::size_t count = cell_of_.size();
+  const std::size_t usual = std::max((count + kMaxBlocks - 1) / kMaxBlocks, kShare);
+  blocks_ = {0};
+  for (std::size_t n = 1; n < count; ++n) {
+    const bool begins_column = column_of[n] != column_of[n - 1];
+    if (begins_column && n >= blocks_.back() + usual) blocks_.push_back(n);
+  }
+  blocks_.push_back(count);
 }
 
 // Adds 1 / depth^2 of the nearer exit along an axis.
@@ -158,51 +203,67 @@ void DiffuseLight::MakeLinks() {
   }
 }
 
-// Incomplete Cholesky with no fill: of a matrix with these links only its diagonal changes.
+// Incomplete Cholesky with no fill: of a matrix with these links only its diagonal changes. Links
+// between blocks are left out: those are between columns, where light goes through more resistance
+// than along them.
 void DiffuseLight::Factor() {
   inverse_pivot_.resize(diagonal_.size());
-  for (std::size_t n = 0; n < diagonal_.size(); ++n) {
-    float pivot = diagonal_[n];
-    for (const int side : {0, 2, 4}) {
-      const std::int32_t to = links_[n].to[side];
-      if (to == kNone) continue;
-      const float conductance = links_[n].conductance[side];
-      pivot -= conductance * conductance * inverse_pivot_[static_cast<std::size_t>(to)];
+  ForBlocks([&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      float pivot = diagonal_[n];
+      for (const int side : {0, 2, 4}) {
+        const std::int32_t to = links_[n].to[side];
+        if (to < static_cast<std::int32_t>(begin)) continue;  // kNone, too
+        const float conductance = links_[n].conductance[side];
+        pivot -= conductance * conductance * inverse_pivot_[static_cast<std::size_t>(to)];
+      }
+      inverse_pivot_[n] = 1.0F / pivot;
     }
-    inverse_pivot_[n] = 1.0F / pivot;
-  }
+  });
+}
+
+template <typename Work>
+void DiffuseLight::ForBlocks(const Work& work) const {
+  tbb::parallel_for(std::size_t{1}, blocks_.size(),
+                    [&](std::size_t block) { work(blocks_[block - 1], blocks_[block]); });
 }
 
 void DiffuseLight::Precondition(const std::vector<float>& from, std::vector<float>* to) const {
   std::vector<float>& x = *to;
-  for (std::size_t n = 0; n < x.size(); ++n) {
-    float sum = from[n];
-    for (const int side : {0, 2, 4}) {
-      const std::int32_t other = links_[n].to[side];
-      if (other != kNone) sum += links_[n].conductance[side] * x[static_cast<std::size_t>(other)];
+  ForBlocks([&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      float sum = from[n];
+      for (const int side : {0, 2, 4}) {
+        const std::int32_t other = links_[n].to[side];
+        if (other < static_cast<std::int32_t>(begin)) continue;  // kNone, too
+        sum += links_[n].conductance[side] * x[static_cast<std::size_t>(other)];
+      }
+      x[n] = sum * inverse_pivot_[n];
     }
-    x[n] = sum * inverse_pivot_[n];
-  }
-  for (std::size_t n = x.size(); n-- > 0;) {
-    float sum = 0.0F;
-    for (const int side : {1, 3, 5}) {
-      const std::int32_t other = links_[n].to[side];
-      if (other != kNone) sum += links_[n].conductance[side] * x[static_cast<std::size_t>(other)];
+    for (std::size_t n = end; n-- > begin;) {
+      float sum = 0.0F;
+      for (const int side : {1, 3, 5}) {
+        const std::int32_t other = links_[n].to[side];
+        if (other == kNone || other >= static_cast<std::int32_t>(end)) continue;
+        sum += links_[n].conductance[side] * x[static_cast<std::size_t>(other)];
+      }
+      x[n] += sum * inverse_pivot_[n];
     }
-    x[n] += sum * inverse_pivot_[n];
-  }
+  });
 }
 
 void DiffuseLight::Apply(const std::vector<float>& from, std::vector<float>* to) const {
-  for (std::size_t n = 0; n < from.size(); ++n) {
-    float sum = diagonal_[n] * from[n];
-    for (int side = 0; side < 6; ++side) {
-      const std::int32_t other = links_[n].to[side];
-      if (other != kNone)
+  ForShares(from.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      float sum = diagonal_[n] * from[n];
+      for (int side = 0; side < 6; ++side) {
+        const std::int32_t other = links_[n].to[side];
+        if (other == kNone) continue;
         sum -= links_[n].conductance[side] * from[static_cast<std::size_t>(other)];
+      }
+      (*to)[n] = sum;
     }
-    (*to)[n] = sum;
-  }
+  });
 }
 
 // Preconditioned conjugate gradients.
@@ -213,31 +274,30 @@ void DiffuseLight::Solve(const std::vector<float>& right, double tolerance,
   direction_.assign(count, 0.0F);
   image_.resize(count);
   better_.resize(count);
-  const auto dot = [count](const std::vector<float>& a, const std::vector<float>& b) {
-    double sum = 0.0;
-    for (std::size_t n = 0; n < count; ++n) sum += static_cast<double>(a[n] * b[n]);
-    return sum;
-  };
   Apply(*solution, &image_);
   for (std::size_t n = 0; n < count; ++n) residual_[n] = right[n] - image_[n];
   Precondition(right, &better_);
-  const double goal = tolerance * tolerance * dot(right, better_);
+  const double goal = tolerance * tolerance * Dot(right, better_);
   double before = 0.0;
   for (last_iterations_ = 0; last_iterations_ < kMaxIterations; ++last_iterations_) {
     Precondition(residual_, &better_);
-    const double now = dot(residual_, better_);
+    const double now = Dot(residual_, better_);
     if (!(now > goal)) break;
     const auto beta = static_cast<float>(before > 0.0 ? now / before : 0.0);
     before = now;
-    for (std::size_t n = 0; n < count; ++n) direction_[n] = better_[n] + beta * direction_[n];
+    ForShares(count, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) direction_[n] = better_[n] + beta * direction_[n];
+    });
     Apply(direction_, &image_);
-    const double curvature = dot(direction_, image_);
+    const double curvature = Dot(direction_, image_);
     if (!(curvature > 0.0)) break;
     const auto step = static_cast<float>(now / curvature);
-    for (std::size_t n = 0; n < count; ++n) {
-      (*solution)[n] += step * direction_[n];
-      residual_[n] -= step * image_[n];
-    }
+    ForShares(count, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) {
+        (*solution)[n] += step * direction_[n];
+        residual_[n] -= step * image_[n];
+      }
+    });
   }
 }
 
@@ -278,83 +338,132 @@ void DiffuseLight::SolveSkyPart(int part) {
   }
 }
 
+// What passes to each cell, and on the way to its neighbour up each axis.
+void DiffuseLight::FindDecays(const std::vector<float>& arrived_root) {
+  sun_.resize(cell_of_.size());
+  ForShares(sun_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const float root = arrived_root[static_cast<std::size_t>(cell_of_[n])];
+      sun_[n].depth = root * root;
+      sun_[n].passed = std::exp(-sun_[n].depth);
+    }
+  });
+  ForShares(sun_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      SunAt& here = sun_[n];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::int32_t to = links_[n].to[2 * axis + 1];
+        if (to == kNone) continue;
+        const SunAt& there = sun_[static_cast<std::size_t>(to)];
+        here.decay_up[axis] =
+            MeanDecay(std::max(here.passed, there.passed), here.depth, there.depth);
+      }
+    }
+  });
+}
+
+// Of sunlight, what cell number `n` makes diffuse.
+float DiffuseLight::SunlightScattered(std::size_t n, const glm::dvec3& towards_sun) const {
+  const auto i = static_cast<std::size_t>(cell_of_[n]);
+  const Links& links = links_[n];
+  const float depth = sun_[n].depth;
+  float scattered = 0.0F;
+  float mean_decay = 0.0F;
+  for (int side = 0; side < 6; ++side) {
+    const int axis = side / 2;
+    const bool up = side % 2 == 1;
+    // Component of the sunlight's direction of travel along this side's outward normal.
+    const auto along = (up ? -1.0F : 1.0F) * static_cast<float>(towards_sun[axis]);
+    const auto half_m = static_cast<float>(0.5 * cells_.cell_m[axis]);
+    float flux = 0.0F;
+    float decay = 0.0F;
+    if (links.to[side] != kNone) {
+      const auto other = static_cast<std::size_t>(links.to[side]);
+      const auto j = static_cast<std::size_t>(cell_of_[other]);
+      const float between = half_m * (cells_.light_per_m[i] + cells_.light_per_m[j]);
+      decay = sun_[up ? n : other].decay_up[axis];
+      flux = along * (3.0F * between + links.slack[side]) * decay;
+    } else {
+      const float out = half_m * cells_.light_per_m[i];
+      // The optical depth of sunlight at the surface, where it enters or leaves.
+      const float surface = along < 0.0F ? std::max(depth + out / std::min(along, -1e-3F), 0.0F)
+                                         : depth + out / std::max(along, 1e-3F);
+      const float passed = std::exp(-surface);
+      decay = MeanDecay(std::max(sun_[n].passed, passed), depth, surface);
+      flux = along * (3.0F * out * decay + links.slack[side] * passed);
+    }
+    scattered -= links.conductance[side] * flux;
+    mean_decay += decay / 6.0F;
+  }
+  return scattered - static_cast<float>(cells_.cell_m.z) * cells_.absorption_per_m[i] * mean_decay;
+}
+
 const std::vector<float>& DiffuseLight::SolveSun(const glm::dvec3& towards_sun,
                                                  const std::vector<float>& arrived_root) {
   THUNDERHEAD_CHECK(arrived_root.size() == number_.size(), std::to_string(arrived_root.size()));
   const std::size_t count = cell_of_.size();
+  FindDecays(arrived_root);
   std::vector<float> right(count, 0.0F);
-  const glm::ivec3& size = cells_.size;
-  const std::array<std::ptrdiff_t, 3> stride = {1, size.x,
-                                                static_cast<std::ptrdiff_t>(size.x) * size.y};
-  for (std::size_t n = 0; n < count; ++n) {
-    const auto i = static_cast<std::size_t>(cell_of_[n]);
-    const float depth = arrived_root[i] * arrived_root[i];
-    float mean_decay = 0.0F;
-    for (int side = 0; side < 6; ++side) {
-      const int axis = side / 2;
-      const float outward = side % 2 == 1 ? 1.0F : -1.0F;
-      // Component of the sunlight's direction of travel along this side's outward normal.
-      const auto along = -outward * static_cast<float>(towards_sun[axis]);
-      const Links& links = links_[n];
-      const auto half_m = static_cast<float>(0.5 * cells_.cell_m[axis]);
-      float flux = 0.0F;
-      float decay = 0.0F;
-      if (links.to[side] != kNone) {
-        const auto j = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) +
-                                                (side % 2 == 1 ? stride[axis] : -stride[axis]));
-        const float between = half_m * (cells_.light_per_m[i] + cells_.light_per_m[j]);
-        decay = MeanDecay(depth, arrived_root[j] * arrived_root[j]);
-        flux = along * (3.0F * between + links.slack[side]) * decay;
-      } else {
-        const float out = half_m * cells_.light_per_m[i];
-        // The optical depth of sunlight at the surface, where it enters or leaves.
-        const float surface = along < 0.0F ? std::max(depth + out / std::min(along, -1e-3F), 0.0F)
-                                           : depth + out / std::max(along, 1e-3F);
-        decay = MeanDecay(depth, surface);
-        flux = along * (3.0F * out * decay + links.slack[side] * std::exp(-surface));
-      }
-      right[n] -= links.conductance[side] * flux;
-      mean_decay += decay / 6.0F;
-    }
-    right[n] -= static_cast<float>(cells_.cell_m.z) * cells_.absorption_per_m[i] * mean_decay;
-  }
+  ForShares(count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) right[n] = SunlightScattered(n, towards_sun);
+  });
   Solve(right, kTolerance, &fluence_);
   net_inward_.assign(number_.size(), 0.0F);
   std::vector<float> own(number_.size(), 0.0F);
-  for (std::size_t n = 0; n < count; ++n) {
-    const auto i = static_cast<std::size_t>(cell_of_[n]);
-    const float exit = exit_root_[i] * exit_root_[i];
-    const float passed = arrived_root[i] * arrived_root[i];
-    const float lit = physics::glsl::lit_fluence(exit, passed);
-    net_inward_[i] = (lit - fluence_[n]) / (3.0F * TransportExit(i) + 2.0F);
-    own[i] = 4.0F * ((exit < passed ? exit / passed : 1.0F) - net_inward_[i]);
-  }
+  ForShares(count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const auto i = static_cast<std::size_t>(cell_of_[n]);
+      const float exit = exit_root_[i] * exit_root_[i];
+      const float passed = sun_[n].depth;
+      const float lit = physics::glsl::lit_fluence(exit, passed);
+      net_inward_[i] = (lit - fluence_[n]) / (3.0F * TransportExit(i) + 2.0F);
+      own[i] = 4.0F * ((exit < passed ? exit / passed : 1.0F) - net_inward_[i]);
+    }
+  });
   from_walls_ = walls_.Arriving(own);
   Spread(&net_inward_);
   return net_inward_;
 }
 
-template <typename Value>
-void DiffuseLight::Spread(std::vector<Value>* values) const {
-  std::vector<std::uint8_t> times(number_.size(), 0);
-  const glm::ivec3& size = cells_.size;
-  for (const std::int32_t cell : cell_of_) {
-    const glm::ivec3 at = cells_.CellAt(static_cast<std::size_t>(cell));
-    const Value value = (*values)[static_cast<std::size_t>(cell)];
-    for (int z = std::max(at.z - 1, 0); z <= std::min(at.z + 1, size.z - 1); ++z) {
-      for (int y = std::max(at.y - 1, 0); y <= std::min(at.y + 1, size.y - 1); ++y) {
-        for (int x = std::max(at.x - 1, 0); x <= std::min(at.x + 1, size.x - 1); ++x) {
-          const std::size_t j = cells_.Offset({x, y, z});
-          if (number_[j] != kNone) continue;
-          (*values)[j] += value;
-          ++times[j];
-        }
+void DiffuseLight::FindFringe() {
+  for (std::size_t i = 0; i < number_.size(); ++i) {
+    if (number_[i] != kNone) continue;
+    bool beside = false;
+    ForNeighbours(i, [&](std::size_t) { beside = true; });
+    if (beside) fringe_.push_back(static_cast<std::int32_t>(i));
+  }
+}
+
+template <typename Use>
+void DiffuseLight::ForNeighbours(std::size_t cell, const Use& use) const {
+  const glm::ivec3 at = cells_.CellAt(cell);
+  const glm::ivec3 low = glm::max(at - 1, glm::ivec3(0));
+  const glm::ivec3 high = glm::min(at + 1, cells_.size - 1);
+  for (int z = low.z; z <= high.z; ++z) {
+    for (int y = low.y; y <= high.y; ++y) {
+      const std::size_t row = cells_.Offset({0, y, z});
+      for (int x = low.x; x <= high.x; ++x) {
+        const std::size_t beside = row + static_cast<std::size_t>(x);
+        if (number_[beside] != kNone) use(beside);
       }
     }
   }
-  for (std::size_t j = 0; j < times.size(); ++j) {
-    if (times[j] > 1) (*values)[j] /= static_cast<float>(times[j]);
-  }
+}
+
+template <typename Value>
+void DiffuseLight::Spread(std::vector<Value>* values) const {
+  ForShares(fringe_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto cell = static_cast<std::size_t>(fringe_[f]);
+      Value sum(0.0F);
+      int count = 0;
+      ForNeighbours(cell, [&](std::size_t beside) {
+        sum += (*values)[beside];
+        ++count;
+      });
+      (*values)[cell] = sum / static_cast<float>(count);
+    }
+  });
 }
 
 }  // namespace thunderhead::renderers

@@ -53,11 +53,27 @@ class DiffuseLight {
     float slack[6];
   };
 
+  // Of the sun that is being solved for, by number.
+  struct SunAt {
+    float depth = 0.0F;      // optical, of sunlight that arrives
+    float passed = 1.0F;     // its transmittance
+    float decay_up[3] = {};  // mean transmittance on the way to the next cell up each axis
+  };
+
   void Number();
+  void FindFringe();
+  // Calls `use` with the cells that are not empty beside `cell`, corner by corner too.
+  template <typename Use>
+  void ForNeighbours(std::size_t cell, const Use& use) const;
+  void FindDecays(const std::vector<float>& arrived_root);
+  float SunlightScattered(std::size_t n, const glm::dvec3& towards_sun) const;
   void FindExits();
   void ScanExits(int axis, std::vector<float>* sum, std::vector<float>* all);
   float TransportExit(std::size_t cell) const;
   void MakeLinks();
+  // Calls `work` with the first number of each block and that after its last, on all threads.
+  template <typename Work>
+  void ForBlocks(const Work& work) const;
   void Factor();
   void SolveSky();
   void SolveSkyPart(int part);
@@ -71,7 +87,9 @@ class DiffuseLight {
   DiffusionCells cells_;
   WallLight walls_;
   std::vector<std::int32_t> number_;   // by cell; kNone where there is nothing
-  std::vector<std::int32_t> cell_of_;  // by number
+  std::vector<std::int32_t> cell_of_;  // by number: column by column, upwards
+  std::vector<std::size_t> blocks_;    // of whole columns: their first numbers, and the count
+  std::vector<std::int32_t> fringe_;   // empty cells beside others
   std::vector<Links> links_;           // by number
   std::vector<float> diagonal_;        // by number
   std::vector<float> inverse_pivot_;   // of the incomplete Cholesky factor
@@ -79,6 +97,7 @@ class DiffuseLight {
   std::vector<glm::vec2> sky_seen_;
   std::vector<glm::vec2> sky_inward_;
   std::vector<float> from_walls_;
+  std::vector<SunAt> sun_;
   std::vector<float> fluence_;  // by number
   std::vector<float> net_inward_;
   std::vector<float> residual_, direction_, image_, better_;

@@ -33,19 +33,22 @@ absl::Status DiffusionPass::Solve(const ResidentMedium& medium, const GroupWeigh
   Key key{medium.Id(), weights.light, weights.transport, weights.absorption};
   if (!light_.has_value() || key != key_) {
     light_.reset();
-    THUNDERHEAD_RETURN_IF_ERROR(SampleCells(medium, weights));
+    THUNDERHEAD_ASSIGN_OR_RETURN(DiffusionCells cells, SampleCells(medium, weights));
+    THUNDERHEAD_RETURN_IF_ERROR(programs_->Pieces().OffTurn([&] { SolveCells(std::move(cells)); }));
     key_ = std::move(key);
   }
   THUNDERHEAD_RETURN_IF_ERROR(SampleLight(arrived));
-  const std::vector<float>& sun = light_->SolveSun(towards_sun, arrived_root_);
-  for (std::size_t i = 0; i < sun.size(); ++i) {
-    net_inward_texels_[i] = {sun[i], light_->FromWalls()[i], light_->SkyInward()[i].y, 0.0F};
-  }
-  net_inward_.Upload(GL_RGBA, GL_FLOAT, net_inward_texels_.data());
-  return absl::OkStatus();
+  return programs_->Pieces().OffTurn([&] {
+    const std::vector<float>& sun = light_->SolveSun(towards_sun, arrived_root_);
+    for (std::size_t i = 0; i < sun.size(); ++i) {
+      net_inward_texels_[i] = {sun[i], light_->FromWalls()[i], light_->SkyInward()[i].y, 0.0F};
+    }
+    net_inward_.Upload(GL_RGBA, GL_FLOAT, net_inward_texels_.data());
+  });
 }
 
-absl::Status DiffusionPass::SampleCells(const ResidentMedium& medium, const GroupWeights& weights) {
+absl::StatusOr<DiffusionCells> DiffusionPass::SampleCells(const ResidentMedium& medium,
+                                                          const GroupWeights& weights) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
                                programs_->Get(gl::ProgramSource::Compute(
                                    "light_volume/sample_cells.comp", medium.Variant().Defines())));
@@ -79,7 +82,12 @@ absl::Status DiffusionPass::SampleCells(const ResidentMedium& medium, const Grou
     cells.transport_per_m.push_back(texels[4 * i + 1]);
     cells.absorption_per_m.push_back(texels[4 * i + 2]);
   }
+  return cells;
+}
+
+void DiffusionPass::SolveCells(DiffusionCells cells) {
   light_.emplace(std::move(cells));
+  const std::size_t count = light_->ExitRoot().size();
   arrived_root_.resize(count);
   net_inward_texels_.resize(count);
   std::vector<float> ways_out(4 * count);
@@ -90,7 +98,6 @@ absl::Status DiffusionPass::SampleCells(const ResidentMedium& medium, const Grou
     ways_out[4 * i + 3] = light_->SkyInward()[i].x;
   }
   ways_out_.Upload(GL_RGBA, GL_FLOAT, ways_out.data());
-  return absl::OkStatus();
 }
 
 absl::Status DiffusionPass::SampleLight(const gl::Texture3D& arrived) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "renderers/group_weights.h"
@@ -47,7 +48,10 @@ class DiffusionPass {
     bool operator==(const Key&) const = default;
   };
 
-  absl::Status SampleCells(const ResidentMedium& medium, const GroupWeights& weights);
+  absl::StatusOr<DiffusionCells> SampleCells(const ResidentMedium& medium,
+                                             const GroupWeights& weights);
+  // What follows from the cells alone.
+  void SolveCells(DiffusionCells cells);
   absl::Status SampleLight(const gl::Texture3D& arrived);
 
   std::shared_ptr<gl::ProgramCache> programs_;

@@ -25,6 +25,8 @@ constexpr double kNearInTexels = 1.5;  // sampled next to a cell
 // one more along each axis by interpolation.
 constexpr double kReadTexels = kNearInTexels + 1.74;
 constexpr int kMaxGroupsInRow = 65535;  // what OpenGL 4.5 guarantees along each axis
+constexpr double kSample_ns = 15.0;     // what a sample of the medium may cost
+constexpr gl::PieceCost kBlock{"arrive", 4000.0};
 
 // Multiple scattering in closed form.
 bool IsDiffuse(const RenderSettings& settings) {
@@ -153,9 +155,15 @@ absl::Status LightVolumeRenderer::Carry(const ResidentMedium& medium, const Grou
   shadow_.BindImage(shaders::kShadowImage, GL_WRITE_ONLY);
   program->Use();
   const glm::ivec3 groups = (box.size + shaders::kLightGroupSide - 1) / shaders::kLightGroupSide;
-  glDispatchCompute(static_cast<GLuint>(groups.x), static_cast<GLuint>(groups.y), 1);
+  const double rays = static_cast<double>(box.size.x) * shaders::kLightGroupSide;
+  const double steps = 2.0 * box.size.z * box.half_layer_steps;
+  absl::Status carried = programs_->Pieces().Steps(
+      {"carry", rays * steps * kSample_ns}, groups.y, [&](int begin, int end) {
+        program->Set(uniform::first_row, begin * shaders::kLightGroupSide);
+        glDispatchCompute(static_cast<GLuint>(groups.x), static_cast<GLuint>(end - begin), 1);
+      });
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-  return absl::OkStatus();
+  return carried;
 }
 
 absl::Status LightVolumeRenderer::Arrive(const ResidentMedium& medium, const GroupWeights& weights,
@@ -175,11 +183,17 @@ absl::Status LightVolumeRenderer::Arrive(const ResidentMedium& medium, const Gro
   medium.BindBlocks(*program);
   arrived_.BindImage(shaders::kArrivedImage, GL_WRITE_ONLY);
   program->Use();
-  const int rows = (medium.BlockCount() + kMaxGroupsInRow - 1) / kMaxGroupsInRow;
-  glDispatchCompute(static_cast<GLuint>(std::min(medium.BlockCount(), kMaxGroupsInRow)),
-                    static_cast<GLuint>(rows), 1);
+  absl::Status arrived =
+      programs_->Pieces().Steps(kBlock, medium.BlockCount(), [&](int begin, int end) {
+        const int count = end - begin;
+        const int rows = (count + kMaxGroupsInRow - 1) / kMaxGroupsInRow;
+        program->Set(uniform::first_block, begin);
+        program->Set(uniform::end_block, end);
+        glDispatchCompute(static_cast<GLuint>(std::min(count, kMaxGroupsInRow)),
+                          static_cast<GLuint>(rows), 1);
+      });
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-  return absl::OkStatus();
+  return arrived;
 }
 
 void LightVolumeRenderer::BindDiffusion(const gl::Program& program, const ResidentMedium& medium,
@@ -188,8 +202,7 @@ void LightVolumeRenderer::BindDiffusion(const gl::Program& program, const Reside
   program.Set(uniform::transport_weights, medium.Weights(weights.transport));
   program.Set(uniform::rest_of_sky, settings.illumination.rest_of_sky);
   program.Set(uniform::rest_of_sky_level, settings.illumination.rest_of_sky_level);
-  program.Set(uniform::diffuse_sunlight,
-              settings.illumination.sunlight + settings.illumination.around_sun);
+  program.Set(uniform::around_sun, settings.illumination.around_sun);
   program.Set(uniform::from_ground, settings.illumination.from_ground);
   constexpr std::array kTints = {uniform::red_weights, uniform::green_weights,
                                  uniform::blue_weights};
@@ -253,8 +266,8 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
     eye_.Target().Clear(0.0F, 0.0F, 0.0F, 0.0F, 1);
   }
   const LimitedTo limited(Where::kCovered, settings.cover);
-  whole_target_.Draw(*program, eye_.Target());
-  return absl::OkStatus();
+  return whole_target_.Draw(programs_->Pieces(), {"march", kSample_ns * settings.slices}, *program,
+                            eye_.Target());
 }
 
 }  // namespace thunderhead::renderers

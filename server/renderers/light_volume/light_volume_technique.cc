@@ -22,7 +22,7 @@ class LightVolumeTechnique final : public Technique {
 
   absl::Status CarryLight(const scene::Scene& /*scene*/, const Fields& /*fields*/,
                           const RenderSettings& settings, StageTimes* times) override {
-    return Timed(scene::FrameStage::kLight, times, [&]() -> absl::Status {
+    return Timed(workspace_.Pieces(), scene::FrameStage::kLight, times, [&]() -> absl::Status {
       THUNDERHEAD_RETURN_IF_ERROR(renderer_.CarryLight(workspace_.medium, settings));
       ShareShadow(settings.illumination.towards_sun);
       return absl::OkStatus();
@@ -31,7 +31,7 @@ class LightVolumeTechnique final : public Technique {
 
   absl::Status DrawView(const scene::Scene& /*scene*/, const RenderSettings& settings,
                         StageTimes* times) override {
-    return Timed(scene::FrameStage::kView, times,
+    return Timed(workspace_.Pieces(), scene::FrameStage::kView, times,
                  [&] { return renderer_.DrawView(workspace_.medium, settings); });
   }
 

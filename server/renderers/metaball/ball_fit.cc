@@ -144,13 +144,13 @@ std::shared_ptr<const BallCloud> BallFits::Find(const Key& key) {
 
 bool BallFits::Has(const scene::Scene& scene,
                    const std::shared_ptr<const volume::HydrometeorFields>& fields) {
-  return Find({fields, MediumOf(scene, *fields).terms,
+  return Find({fields, scene::GroupedFieldsOf(scene, *fields).terms,
                std::get<scene::Metaballs>(scene.rendering.technique).count}) != nullptr;
 }
 
 absl::StatusOr<std::shared_ptr<const BallCloud>> BallFits::Get(
     const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields) {
-  const Medium medium = MediumOf(scene, *fields);
+  const Medium medium = scene::GroupedFieldsOf(scene, *fields);
   const Key key{fields, medium.terms, std::get<scene::Metaballs>(scene.rendering.technique).count};
   if (auto kept = Find(key); kept != nullptr) return kept;
   const std::lock_guard fitting(fitting_);

@@ -12,6 +12,7 @@
 #include "renderers/metaball/light_order.h"
 #include "renderers/metaball/tiles.h"
 #include "renderers/metaball/variants.h"
+#include "renderers/sunlight.h"
 #include "renderers/view_uniforms.h"
 #include "shaders/bindings.h"
 #include "shaders/uniforms.h"
@@ -22,6 +23,10 @@ namespace {
 constexpr int kMinLightTexels = 64;  // along the longer side
 constexpr int kMaxLightTexels = 1024;
 constexpr double kTexelsAcrossBall = 8.0;  // of the smaller balls
+
+constexpr gl::PieceCost kPixel{"splat", 1000.0};
+constexpr gl::PieceCost kBallLevel{"balls' light", 2e5};
+constexpr gl::PieceCost kDiffuseBall{"balls' diffuse light", 5000.0};
 
 // As shaders/metaball/balls.glsl has it.
 struct DeviceBall {
@@ -130,7 +135,7 @@ gl::Buffer BufferOf(const std::vector<std::uint32_t>& values) {
 
 std::vector<MetaballRenderer::Light> MetaballRenderer::LightsOf(const RenderSettings& settings) {
   const Illumination& from = settings.illumination;
-  std::vector<Light> lights = {{from.towards_sun, from.sunlight, false}};
+  std::vector<Light> lights = {{from.towards_sun, glm::vec3(1.0F), false}};
   if (IsPaper(settings)) {
     // The paper has lights in directions only: the halves of the sky stand in as their middles.
     const float half_sky = std::numbers::pi_v<float>;
@@ -252,13 +257,21 @@ absl::Status MetaballRenderer::Carry(const Light& light, int index,
     program->Set(uniform::scattered_often,
                  scene::IsTranslucent(settings.Medium().transport) ? 1.0F : 0.0F);
     program->Use();
+    gl::Pieces& pieces = programs_->Pieces();
     if (pass == 1) {
-      run(*program, 0, static_cast<std::uint32_t>(balls_.size()));
+      THUNDERHEAD_RETURN_IF_ERROR(
+          pieces.Steps(kDiffuseBall, static_cast<int>(balls_.size()), [&](int begin, int end) {
+            run(*program, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end));
+          }));
       continue;
     }
-    for (std::size_t level = 0; level < order.Levels(); ++level) {
-      run(*program, order.starts[level], order.starts[level + 1]);
-    }
+    THUNDERHEAD_RETURN_IF_ERROR(
+        pieces.Steps(kBallLevel, static_cast<int>(order.Levels()), [&](int begin, int end) {
+          for (auto level = static_cast<std::size_t>(begin); level < static_cast<std::size_t>(end);
+               ++level) {
+            run(*program, order.starts[level], order.starts[level + 1]);
+          }
+        }));
   }
   return absl::OkStatus();
 }
@@ -304,6 +317,7 @@ absl::Status MetaballRenderer::FindSources(const RenderSettings& settings) {
   program->Set(uniform::eye_m, glm::vec3(settings.view.eye_m - box_.Middle_m()));
   program->Set(uniform::towards_light, towards);
   program->Set(uniform::irradiance, irradiance);
+  BindSunlight(*program, settings.illumination, box_.Middle_m().z);
   program->Set(uniform::sky_radiance, settings.illumination.from_sky);
   program->Set(uniform::ground_radiance, settings.illumination.from_ground);
   program->Set(uniform::paper_albedo, static_cast<float>(SettingsOf(settings).albedo));
@@ -336,8 +350,7 @@ absl::Status MetaballRenderer::Splat(const RenderSettings& settings) {
   sources_.BindStorage(shaders::kBallSourcesBinding);
   if (settings.ground_distance != nullptr)
     settings.ground_distance->Bind(shaders::kGroundDistanceUnit);
-  whole_target_.Draw(*program, eye_target_);
-  return absl::OkStatus();
+  return whole_target_.Draw(programs_->Pieces(), kPixel, *program, eye_target_);
 }
 
 std::size_t MetaballRenderer::Bytes() const {

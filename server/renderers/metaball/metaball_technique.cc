@@ -51,14 +51,15 @@ class MetaballTechnique final : public Technique {
     const base::Stopwatch stopwatch;
     THUNDERHEAD_ASSIGN_OR_RETURN(balls_, fits_->Get(scene, fields));
     if (!kept) times->push_back({scene::FrameStage::kFit, stopwatch.ElapsedMs()});
-    return Timed(scene::FrameStage::kLight, times, [&] {
+    return Timed(workspace_.Pieces(), scene::FrameStage::kLight, times, [&] {
       return renderer_.CarryLight(*balls_, workspace_.medium.Content(), settings);
     });
   }
 
   absl::Status DrawView(const scene::Scene& /*scene*/, const RenderSettings& settings,
                         StageTimes* times) override {
-    return Timed(scene::FrameStage::kView, times, [&] { return renderer_.DrawView(settings); });
+    return Timed(workspace_.Pieces(), scene::FrameStage::kView, times,
+                 [&] { return renderer_.DrawView(settings); });
   }
 
   Content Describe(const scene::Scene& scene,

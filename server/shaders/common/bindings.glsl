@@ -77,6 +77,10 @@ const int kRoughnessNoiseUnit = 8;
 const int kBubblesBinding = 0;
 const int kBubbleOrderBinding = 1;
 
+// Sunlight by height: up to 24 km, above which air takes little.
+const int kSunlightLevels = 33;
+const float kSunlightStep_m = 750.0f;
+
 // Invocations of a work group: along each of two sides, or in all.
 const int kLightGroupSide = 8;
 const int kArriveGroupSize = 32;

@@ -4,7 +4,6 @@
 // GLOWS (the radiance includes what add_isotropic adds).
 uniform vec4 scattering_weights[PLANES];  // texel to scattering, 1/m
 uniform float albedo;                     // of every group
-uniform vec3 sunlight;                    // irradiance
 uniform vec3 ambient;                     // mean radiance from sky and ground
 
 struct Scattered {
@@ -66,9 +65,9 @@ void add_isotropic(inout Scattered scattered, Medium medium, vec4 extinctions[PL
 #endif
 }
 
-// The radiance of a ray whose samples' extinctions were by `step_m`; `haversine` is that of the scattering angle of
-// sunlight.
-vec3 radiance_of(Scattered scattered, float step_m, float haversine) {
+// The radiance of a ray whose samples' extinctions were by `step_m`, where the sun's irradiance is `sunlight`; `haversine`
+// is that of the scattering angle of sunlight.
+vec3 radiance_of(Scattered scattered, vec3 sunlight, float step_m, float haversine) {
   vec3 radiance = vec3(0.0);
   for (int group = 0; group < GROUPS; ++group) {
     int plane = group / 4;

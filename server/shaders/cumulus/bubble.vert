@@ -10,6 +10,7 @@ layout(std430, binding = kBubbleOrderBinding) readonly buffer Order { uint order
 uniform mat4 clip_from_local;
 uniform vec4 eye;  // renderers::EyeOf
 uniform int last_rank;
+uniform int first_bubble;  // in the order of drawing, of those that are drawn now
 uniform float per_far;  // 1 over the distance that is depth 1
 uniform float slack_m;
 
@@ -23,9 +24,9 @@ flat out int index;
 
 void main() {
 #if FRONT_FIRST
-  index = int(order[last_rank - gl_InstanceID]);
+  index = int(order[last_rank - first_bubble - gl_InstanceID]);
 #else
-  index = int(order[gl_InstanceID]);
+  index = int(order[first_bubble + gl_InstanceID]);
 #endif
   Bubble bubble = bubbles[index];
   unit_x = bubble.unit_x;

@@ -4,6 +4,7 @@
 // Writes the cores that lie together, weighted, and what lies in front of them as a layer.
 // Variants: PLAIN (Lambert's law alone), and those of cumulus/meeting.glsl.
 #include "common/bindings.glsl"
+#include "common/sunlight.glsl"
 #include "cumulus/meeting.glsl"
 
 layout(binding = kCoreDepthUnit) uniform sampler2D core_depth;    // of depth.frag
@@ -13,7 +14,6 @@ layout(binding = kRoughnessNoiseUnit) uniform sampler3D roughness_noise;
 uniform float corona_m;       // dR
 uniform float per_far;
 uniform vec3 towards_sun;
-uniform vec3 sunlight;        // irradiance
 uniform vec3 light_map[9];    // radiance that a white surface sends of sky's and ground's light, by its normal's harmonics
 uniform vec4 component;       // shares shown of direct light, inter-reflection, ambient light and corona
 uniform float trap_share;     // of the sky that the deepest valley of one scale hides
@@ -123,7 +123,7 @@ vec3 roughened(vec3 normal, vec3 point_m, float pixel_m) {
 // a coarser scale the finer ones let their share of sky pass, so that any number of scales sends at most
 // 1 / (1 - trap_share) of it. Surroundings as bright everywhere look the same in a valley: their light is neither lost nor
 // gained.
-vec3 trapped(vec3 point_m, out float sky_share) {
+vec3 trapped(vec3 point_m, vec3 sunlight, out float sky_share) {
   vec3 sum = vec3(0.0);
   sky_share = 1.0;
   int at = index;
@@ -155,8 +155,9 @@ vec3 trapped(vec3 point_m, out float sky_share) {
 // Radiance of the core.
 vec3 core(Meeting meeting, vec3 point_m, float pixel_m) {
 #if PLAIN
-  return sunlight * (max(dot(meeting.normal, towards_sun), 0.0) / kPi);
+  return sunlight_at(point_m.z) * (max(dot(meeting.normal, towards_sun), 0.0) / kPi);
 #else
+  vec3 sunlight = sunlight_at(point_m.z);
   vec3 normal = roughened(meeting.normal, point_m, pixel_m);
   float cosine = max(dot(normal, towards_sun), 0.0);
   if (cosine > 0.0) {
@@ -164,7 +165,7 @@ vec3 core(Meeting meeting, vec3 point_m, float pixel_m) {
     cosine *= lit_softly(point_m + (1.5 * shadow_texel_m + corona_m) * meeting.normal, meeting.normal, straight);
   }
   float sky_share;
-  vec3 trap = trapped(point_m, sky_share);
+  vec3 trap = trapped(point_m, sunlight, sky_share);
   vec3 ambient = sky_share * from_surroundings(normal) + sunlight * (transmission / kPi);
   return component.x * sunlight * (cosine / kPi) + component.y * trap + component.z * ambient;
 #endif
@@ -180,7 +181,7 @@ vec3 corona(Meeting meeting, float rho) {
   float power = clamp(1.0 / max(variance, 1e-6), 1.0, kNarrowest);
   vec3 point_m = meeting.origin_m + meeting.exit_m * meeting.ray;
   float arriving = lit(point_m + (1.5 * shadow_texel_m + corona_m) * towards_sun);
-  return sunlight * (rho * arriving * (power + 1.0) / (2.0 * kPi) * pow(mu, power));
+  return sunlight_at(point_m.z) * (rho * arriving * (power + 1.0) / (2.0 * kPi) * pow(mu, power));
 }
 
 void main() {
@@ -189,7 +190,7 @@ void main() {
   float core_m = texelFetch(core_depth, ivec2(gl_FragCoord.xy), 0).r / per_far;
 #if PLAIN
   if (meeting.entry_m > core_m * (1.0 + 1e-5)) discard;
-  cores = vec4(core(meeting, vec3(0.0), 0.0), 1.0);
+  cores = vec4(core(meeting, meeting.origin_m + meeting.entry_m * meeting.ray, 0.0), 1.0);
   layer = vec4(0.0, 0.0, 0.0, 1.0);
 #else
   float behind_m = meeting.entry_m - core_m;

@@ -10,6 +10,7 @@
 #include "common/bricks.glsl"
 #include "common/ground_distance.glsl"
 #include "common/phase.glsl"
+#include "common/sunlight.glsl"
 #include "common/view.glsl"
 #define GLOWS CONSISTENT
 #include "common/scattered.glsl"
@@ -137,7 +138,10 @@ void main() {
     slice += 1.0;
     if (front_to_back && transmittance < kOpaqueTransmittance) end = 0.0;
   }
-  vec3 radiance = radiance_of(scattered, path_m, haversine_between(direction, towards_sun));
+  // One height stands for all that the ray shows of the slab.
+  float opacity = max((front_to_back ? before.a : 1.0) - transmittance, 1e-30);
+  vec3 sunlight = sunlight_at(origin_m.z + shown_m / opacity * direction.z);
+  vec3 radiance = radiance_of(scattered, sunlight, path_m, haversine_between(direction, towards_sun));
   radiance_and_transmittance = front_to_back ? vec4(before.rgb + radiance, transmittance)
                                              : vec4(radiance + transmittance * before.rgb, transmittance * before.a);
   opacity_distance_m = front_to_back ? before_m + shown_m : shown_m + transmittance * before_m;

@@ -19,7 +19,8 @@ layout(std430, binding = kBlocksBinding) readonly buffer Blocks { uint blocks[];
 
 uniform ivec3 cell_count;
 uniform ivec3 cells_per_block;
-uniform int block_count;
+uniform int first_block;  // of those that are lit now
+uniform int end_block;
 uniform mat4x3 light_from_local;
 uniform vec3 towards_sun;
 uniform float near_m;  // sampled next to the cell
@@ -65,8 +66,8 @@ void give_light(ivec3 cell, vec3 place, vec3 here_place, vec3 far_place, Surroun
 
 void main() {
   begin_medium();
-  uint listed = gl_WorkGroupID.x + gl_NumWorkGroups.x * gl_WorkGroupID.y;
-  if (listed >= uint(block_count)) return;
+  uint listed = uint(first_block) + gl_WorkGroupID.x + gl_NumWorkGroups.x * gl_WorkGroupID.y;
+  if (listed >= uint(end_block)) return;
   uint packed_block = blocks[listed];
   ivec3 block = ivec3(packed_block & 1023u, packed_block >> 10 & 1023u, packed_block >> 20 & 1023u);
   // A thin block takes little light near a cell; the paper's transport depends on the steps of carry.comp.

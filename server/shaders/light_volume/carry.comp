@@ -17,6 +17,7 @@ layout(binding = kThicknessImage, r32f) uniform writeonly image2D thickness;
 #endif
 
 uniform ivec3 light_size;
+uniform int first_row;  // of the rays that are carried now
 uniform vec3 towards_sun;
 uniform vec3 light_right_m;  // metres across the volume's half width and height
 uniform vec3 light_up_m;
@@ -41,7 +42,7 @@ float lost(float depth, float turned) {
 
 void main() {
   begin_medium();
-  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, first_row);
   vec2 across = (vec2(texel) + 0.5) / vec2(light_size.xy) * 2.0 - 1.0;
   vec3 start_m = across.x * light_right_m + across.y * light_up_m + light_reach_m * towards_sun;
   float layer_m = 2.0 * light_reach_m / float(light_size.z);

@@ -14,7 +14,7 @@ layout(binding = kNetInwardUnit) uniform sampler3D net_inward;
 uniform vec4 transport_weights[PLANES];  // texel to similarity-scaled extinction, 1/m
 uniform vec3 rest_of_sky;                // mean radiance, without the bright sky around the sun
 uniform vec3 rest_of_sky_level;          // its irradiance from above over pi
-uniform vec3 diffuse_sunlight;           // irradiance, with that
+uniform vec3 around_sun;                 // its irradiance, from the sun's direction
 uniform vec3 from_ground;
 #if TINTED
 uniform vec4 red_weights[PLANES];  // texel to similarity-scaled scattering, 1/m
@@ -117,7 +117,7 @@ void close_diffuse(inout DiffuseSeen seen) {
   seen.transmittance = 0.0;
 }
 
-vec3 diffuse_radiance(DiffuseSeen seen) {
-  return diffuse_sunlight * seen.sun / kFourPi + rest_of_sky * seen.sky + rest_of_sky_level * seen.level +
+vec3 diffuse_radiance(DiffuseSeen seen, vec3 sunlight) {
+  return (sunlight + around_sun) * seen.sun / kFourPi + rest_of_sky * seen.sky + rest_of_sky_level * seen.level +
          from_ground * (seen.all - seen.sky - seen.level);
 }

@@ -10,6 +10,7 @@
 #include "common/bricks.glsl"
 #include "common/ground_distance.glsl"
 #include "common/phase.glsl"
+#include "common/sunlight.glsl"
 #include "common/view.glsl"
 #define GLOWS (CONSISTENT && !DIFFUSION)
 #include "common/scattered.glsl"
@@ -35,6 +36,10 @@ layout(location = 1) out float opacity_distance_m;  // the opacity times the mea
 const int kMaxSamples = 16384;
 const float kOnwards = 1.0 + 2.4e-7;  // the next number but one: far away a distance has coarser steps than a leap's margin
 const float kOpaqueTransmittance = DIFFUSION == 1 ? 0.02 : 5e-3;  // below which a ray ends
+
+// Of a segment, and of what is seen before it, from which on the segment is parted.
+const float kFaceDepth = 1.0;
+const float kFaceSeen = 0.1;
 
 // Weights of extinctions by the step, not by the metre.
 vec4 eye_depths[PLANES];
@@ -113,11 +118,11 @@ float background_transmittance(Seen seen) {
 #endif
 }
 
-// Advances `distance_m` to the next sample, leaping over empty bricks. Returns the length of the segment that ends there: 0
+// Advances `distance_m` to the next sample, at most `limit_m` inside bricks, leaping over empty ones. Returns the length of the segment that ends there: 0
 // for the first sample and after a leap, where a sample only starts a segment.
-float advance(inout float distance_m, float end_m, MediumRay ray, float cell_m, bool first) {
+float advance(inout float distance_m, float end_m, MediumRay ray, float cell_m, float limit_m, bool first) {
   float from_m = distance_m;
-  float sampled_m = min(max(near_step.x * cell_m, near_step.y * distance_m), step_m);
+  float sampled_m = min(min(max(near_step.x * cell_m, near_step.y * distance_m), step_m), limit_m);
   float longest_m = sampled_m;
   while (distance_m < end_m) {
     vec3 place = brick_place(ray, distance_m);
@@ -125,7 +130,7 @@ float advance(inout float distance_m, float end_m, MediumRay ray, float cell_m, 
     if (content == kThickBrick) break;
     if (content == kThinBrick) {
       // No farther than a sample of thick bricks into the next one, which may be thick.
-      longest_m = clamp(empty_path(ray, place, 1u), sampled_m, max(sampled_m, cell_m));
+      longest_m = min(clamp(empty_path(ray, place, 1u), sampled_m, max(sampled_m, cell_m)), limit_m);
       break;
     }
     distance_m = max(distance_m + empty_path(ray, place, content), distance_m * kOnwards);
@@ -181,17 +186,31 @@ void main() {
 
   Seen seen = nothing_seen();
   Sample before = no_sample();
+  // A cloud's face is sought: where a segment would take much of what is still seen, it is sampled again in shorter ones.
+  float finest_m = near_step.x * cell_m;
+  float longest_m = max(step_m, cell_m);
+  float limit_m = longest_m;
   for (int i = 0; i < kMaxSamples && distance_m < end_m && background_transmittance(seen) > kOpaqueTransmittance; ++i) {
-    float segment_m = advance(distance_m, end_m, ray, cell_m, before.extinction < 0.0);
+    float begin_m = distance_m;
+    float segment_m = advance(distance_m, end_m, ray, cell_m, limit_m, before.extinction < 0.0);
     Sample here = sample_at(medium_place(ray, distance_m), distance_m);
+    float depth = 0.5 * (max(before.extinction, 0.0) + here.extinction) * segment_m * per_step;
+    if (depth > kFaceDepth && seen.transmittance > kFaceSeen && segment_m > 1.5 * finest_m) {
+      distance_m = begin_m;
+      limit_m = max(segment_m / 4.0, finest_m);
+      continue;
+    }
     see_segment(seen, before, here, segment_m, distance_m);
     before = here;
+    limit_m = min(1.3 * limit_m, longest_m);  // slowly: behind a gap the next wall is near
   }
 
-  vec3 radiance = radiance_of(seen.scattered, step_m, haversine_between(direction, towards_sun));
+  // One height stands for all that the ray shows.
+  vec3 sunlight = sunlight_at(origin_m.z + mean_distance_m(seen) * direction.z);
+  vec3 radiance = radiance_of(seen.scattered, sunlight, step_m, haversine_between(direction, towards_sun));
 #if DIFFUSION
   if (seen.diffuse.transmittance <= kOpaqueTransmittance) close_diffuse(seen.diffuse);
-  radiance += diffuse_radiance(seen.diffuse);
+  radiance += diffuse_radiance(seen.diffuse, sunlight);
 #endif
 #if PLACES
   radiance = seen_place(seen, origin_m, direction);

@@ -3,6 +3,7 @@
 // Variants: LIGHTS, GROUPS, COLORED, CONSISTENT (as common/phase.glsl has it), PAPER, ISOTROPIC, PARALLEL (view rays).
 #include "common/bindings.glsl"
 #include "common/phase.glsl"
+#include "common/sunlight.glsl"
 #include "metaball/balls.glsl"
 
 layout(local_size_x = kBallGroupSize) in;
@@ -14,7 +15,7 @@ uniform int ball_count;
 uniform vec3 eye_forward;
 uniform vec3 eye_m;
 uniform vec3 towards_light[LIGHTS];
-uniform vec3 irradiance[LIGHTS];
+uniform vec3 irradiance[LIGHTS];  // that of the first, the sun, is by height
 uniform vec3 sky_radiance;     // means over the upper and the lower half
 uniform vec3 ground_radiance;
 uniform float paper_albedo;
@@ -32,10 +33,11 @@ void main() {
   vec3 radiance = vec3(0.0);
   for (int i = 0; i < LIGHTS; ++i) {
     vec2 light = arrived[uint(i * ball_count) + index];
+    vec3 arriving = irradiance[i] * (i == 0 ? sunlight_at(ball.middle_radius.z) : vec3(1.0));
 #if PAPER
     float mu = dot(ray, towards_light[i]);
     float phase = ISOTROPIC == 1 ? 1.0 : 0.75 * (1.0 + mu * mu);  // eq. 25
-    radiance += irradiance[i] * (paper_albedo * phase * light.x / kFourPi);
+    radiance += arriving * (paper_albedo * phase * light.x / kFourPi);
 #else
     vec3 scattered = ball.tint.rgb * light.y;
 #if ISOTROPIC
@@ -46,7 +48,7 @@ void main() {
       scattered += phase_term(group, haversine) * (ball.scattering[group / 4][group % 4] * light.x);
     }
 #endif
-    radiance += irradiance[i] * scattered;
+    radiance += arriving * scattered;
 #endif
   }
 #if !PAPER

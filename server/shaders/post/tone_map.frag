@@ -1,4 +1,4 @@
-// Linear radiance to 8-bit sRGB, top row first. FILMIC: 1 is a film's curve, 0 clips.
+// Linear radiance to 8-bit sRGB, top row first. FILMIC: 1 is a film's curve, 0 clips. NOISE: 1 for 8 bits, which would band, 0 for more.
 #include "common/bindings.glsl"
 
 layout(binding = kLinearFrameUnit) uniform sampler2D linear_frame;
@@ -13,7 +13,7 @@ out vec4 display;
 // 1 - (1 - s) exp((s - x) / (1 - s)) that tends to 1. Uchimura 2017, "HDR theory and practice" (CEDEC), with P = a = 1 and b = 0.
 vec3 film(vec3 x) {
   const float m = 0.22;
-  const float l = 0.4;
+  const float l = 0.75;
   const float c = 1.33;
   const float s = m + l * (1.0 - m);
   vec3 toe = m * pow(x / m, vec3(c));
@@ -25,7 +25,7 @@ vec3 film(vec3 x) {
 // in (Bartleson and Breneman 1967 on the contrast of prints and slides). Half by luminance, half by each colour: by each
 // colour alone a blue sky is too pure, by luminance alone it is grey.
 vec3 contrasty(vec3 x) {
-  const float kContrast = 1.35;
+  const float kContrast = 1.25;
   float luminance = dot(x, vec3(0.2126, 0.7152, 0.0722));
   return x * pow(sqrt(x * luminance) / just_below_white, vec3(kContrast - 1.0));
 }
@@ -43,7 +43,10 @@ void main() {
   exposed = film(contrasty(exposed));
 #endif
   vec3 coded = srgb(min(exposed, vec3(1.0)));
+#if NOISE
   // Half a step of ordered noise, so that a clear sky does not band.
   float noise = fract(52.9829189 * fract(dot(floor(gl_FragCoord.xy), vec2(0.06711056, 0.00583715))));
-  display = vec4(coded + (noise - 0.5) / 255.0, 1.0);
+  coded += (noise - 0.5) / 255.0;
+#endif
+  display = vec4(coded, 1.0);
 }

@@ -2,6 +2,7 @@
 // extremes.
 #include "renderers/light_volume/diffuse_light.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -98,6 +99,50 @@ TEST(DiffuseLight, AWarmStartFindsTheSame) {
   const std::size_t middle = Layer::Middle(kLayers / 2);
   const float from_warm = warm.SolveSun(Sun(0.8), layer.ArrivedRoot(0.8))[middle];
   EXPECT_NEAR(cold.SolveSun(Sun(0.8), layer.ArrivedRoot(0.8))[middle] / from_warm, 1.0, 0.01);
+}
+
+// Many blocks of columns, cut at other places in the mirrored medium.
+TEST(DiffuseLight, OfAMirroredMediumIsTheMirroredLight) {
+  const glm::ivec3 size(40, 41, 20);
+  const auto haze_and_cores = [&size](bool mirrored) {
+    DiffusionCells cells;
+    cells.size = size;
+    cells.cell_m = {1000.0, 1000.0, 400.0};
+    for (int z = 0; z < size.z; ++z) {
+      for (int row = 0; row < size.y; ++row) {
+        const int y = mirrored ? size.y - 1 - row : row;
+        for (int x = 0; x < size.x; ++x) {
+          const double wave = std::sin(0.4 * x) * std::sin(0.3 * y + 0.1 * x) + 0.5 * std::cos(z);
+          const auto per_m = static_cast<float>(1e-5 * std::exp(4.0 * wave));
+          cells.light_per_m.push_back(per_m);
+          cells.transport_per_m.push_back(0.25F * per_m);
+          cells.absorption_per_m.push_back(0.0F);
+        }
+      }
+    }
+    return cells;
+  };
+  const std::vector<float> roots(static_cast<std::size_t>(size.x * size.y * size.z), 0.7F);
+  DiffuseLight light(haze_and_cores(false));
+  DiffuseLight mirrored(haze_and_cores(true));
+  const std::vector<float>& net = light.SolveSun({0.6, 0.3, 0.74}, roots);
+  const std::vector<float>& net_mirrored = mirrored.SolveSun({0.6, -0.3, 0.74}, roots);
+  double largest = 0.0;
+  double off = 0.0;
+  for (int z = 0; z < size.z; ++z) {
+    for (int y = 0; y < size.y; ++y) {
+      for (int x = 0; x < size.x; ++x) {
+        const auto at = [&](int row) {
+          return static_cast<std::size_t>((z * size.y + row) * size.x + x);
+        };
+        largest = std::max(largest, std::abs(double{net[at(y)]}));
+        off = std::max(off, std::abs(double{net[at(y)]} - net_mirrored[at(size.y - 1 - y)]));
+      }
+    }
+  }
+  EXPECT_LT(off, 1e-3 * largest);
+  // Blocks that cut columns take five times as many.
+  EXPECT_LT(light.LastIterations(), 40);
 }
 
 TEST(DiffuseLight, NothingBreaks) {

@@ -28,7 +28,7 @@ class MediumGroups : public testing::Test {
   }
   std::size_t Groups(const accuracy::Mode& mode) {
     test_support::SetMode(&scene_.rendering.technique, mode);
-    return MediumOf(scene_, fields_).groups.size();
+    return scene::GroupedFieldsOf(scene_, fields_).groups.size();
   }
 
   scene::Scene scene_ = test_support::PlainScene();
@@ -61,9 +61,9 @@ TEST_F(MediumGroups, ADetailOfNoShareIsNone) {
 
 TEST_F(MediumGroups, WavelengthComesFromTheGridIfNotGiven) {
   test_support::SetMode(&scene_.rendering.technique, kWithDetail);
-  EXPECT_EQ(MediumOf(scene_, fields_).groups.front().detail.wavelength_m, 1500.0F);
+  EXPECT_EQ(scene::GroupedFieldsOf(scene_, fields_).groups.front().detail.wavelength_m, 1500.0F);
   Of(physics::Hydrometeor::kSnow).detail.wavelength_m = 70.0F;
-  EXPECT_EQ(MediumOf(scene_, fields_).groups.front().detail.wavelength_m, 70.0F);
+  EXPECT_EQ(scene::GroupedFieldsOf(scene_, fields_).groups.front().detail.wavelength_m, 70.0F);
 }
 
 }  // namespace

@@ -1,0 +1,50 @@
+// The encodings besides JPEG that this browser decodes, and why not video.
+import { Codec } from "../gen/thunderhead/v1/interact_pb";
+import { VIDEO_CONFIG } from "./video_pictures";
+
+export interface Decodable {
+  readonly codecs: Codec[];
+  // Undefined where video is decoded.
+  readonly whyNoVideo: string | undefined;
+}
+
+type Probed = Pick<Window, "isSecureContext">;
+
+export async function learnDecodable(window: Probed): Promise<Decodable> {
+  const [whyNoVideo, stills] = await Promise.all([whyNotVideo(window), decodesAvif()]);
+  const codecs = [Codec.JPEG];
+  if (whyNoVideo === undefined) codecs.push(Codec.VP9);
+  if (stills) codecs.push(Codec.AVIF);
+  return { codecs, whyNoVideo };
+}
+
+async function whyNotVideo(window: Probed): Promise<string | undefined> {
+  // Browsers hide it there.
+  if (!window.isSecureContext) return "video needs HTTPS or localhost";
+  if (typeof VideoDecoder === "undefined") return "this browser has no WebCodecs";
+  try {
+    const { supported } = await VideoDecoder.isConfigSupported(VIDEO_CONFIG);
+    return supported ? undefined : "this browser decodes no VP9";
+  } catch {
+    return "this browser decodes no VP9";
+  }
+}
+
+// Four grey pixels of 10 bits.
+const AVIF =
+  "AAAAIGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZk1BMUEAAADybWV0YQAAAAAAAAAoaGRscgAAAAAAAAAAcGljdAAAAAAAAAAAAAAA" +
+  "AGxpYmF2aWYAAAAADnBpdG0AAAAAAAEAAAAeaWxvYwAAAABEAAABAAEAAAABAAABGgAAABoAAAAoaWluZgAAAAAAAQAAABppbmZl" +
+  "AgAAAAABAABhdjAxQ29sb3IAAAAAamlwcnAAAABLaXBjbwAAABRpc3BlAAAAAAAAAAIAAAACAAAAEHBpeGkAAAAAAwoKCgAAAAxh" +
+  "djFDgSBAAAAAABNjb2xybmNseAABAA0AAYAAAAAXaXBtYQAAAAAAAAABAAEEAQKDBAAAACJtZGF0EgAKBzgANjAQ0BkyDRIAAggg" +
+  "hABOIB3ZN4A=";
+
+async function decodesAvif(): Promise<boolean> {
+  try {
+    const bytes = Uint8Array.from(atob(AVIF), (character) => character.charCodeAt(0));
+    const picture = await createImageBitmap(new Blob([bytes], { type: "image/avif" }));
+    picture.close();
+    return true;
+  } catch {
+    return false;
+  }
+}

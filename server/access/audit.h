@@ -1,0 +1,49 @@
+// The audit: one line for each refusal and each privileged act, for people who look into what
+// happened and programs that raise alarms. A token or a session's key is never in it.
+//
+//   audit time=2026-01-02T03:04:05.678Z identity="anna" role=presenter peer="192.0.2.7:51234"
+//   act=CreateSession verdict=allowed reason="" (on one line)
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <string>
+
+#include "absl/status/status.h"
+#include "access/identity.h"
+
+namespace thunderhead::access {
+
+struct Act {
+  std::string identity;  // empty: nobody known
+  std::string role;      // empty: likewise
+  std::string peer;
+  std::string name;  // of the call, or of what was asked for within one
+};
+
+class Audit {
+ public:
+  using Clock = std::chrono::system_clock;
+
+  // Refusals in one second beyond these are counted, not written: a flood must not fill the disk.
+  // The count is in the next line of a refusal. What was allowed is always written.
+  static constexpr int kMaxRefusalsPerSecond = 50;
+
+  // `write` takes one line without its end, from any thread, one at a time.
+  explicit Audit(std::function<void(const std::string&)> write) : write_(std::move(write)) {}
+
+  // `status` is the act's outcome: allowed if OK. Its reason is written, not its message, which may
+  // repeat what the client sent.
+  void Write(const Act& act, const absl::Status& status, Clock::time_point now = Clock::now());
+
+ private:
+  std::mutex mutex_;
+  const std::function<void(const std::string&)> write_;
+  std::chrono::sys_seconds second_{};
+  int refusals_ = 0;  // in it
+  std::uint64_t left_out_ = 0;
+};
+
+}  // namespace thunderhead::access

@@ -1,0 +1,103 @@
+#include "access/door.h"
+
+#include <openssl/crypto.h>
+#include <openssl/rand.h>
+
+#include <chrono>
+#include <utility>
+
+#include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
+#include "access/rules.h"
+#include "base/error_details.h"
+#include "base/status.h"
+
+namespace thunderhead::access {
+namespace {
+
+constexpr std::size_t kTokenBytes = 32;
+constexpr std::chrono::seconds kKnownFor{1};
+
+std::string RandomToken() {
+  std::string bytes(kTokenBytes, '\0');
+  const int made = RAND_bytes(reinterpret_cast<unsigned char*>(bytes.data()), kTokenBytes);
+  THUNDERHEAD_CHECK(made == 1, "the system gives no random bytes");
+  return absl::BytesToHexString(bytes);
+}
+
+absl::Status NotForRole(std::string_view method, const Identity& identity) {
+  return base::WithDetails(
+      absl::PermissionDeniedError(absl::StrCat(std::string(method), " is not for the role of ",
+                                               NameOf(identity.role),
+                                               ", which your token has; ask who runs the server")),
+      {.reason = "ROLE_MAY_NOT", .metadata = {{"role", NameOf(identity.role)}}});
+}
+
+}  // namespace
+
+void Caller::Report(std::string_view act, const absl::Status& outcome) const {
+  audit_->Write({identity_.name, NameOf(identity_.role), credentials_.peer, std::string(act)},
+                outcome);
+}
+
+void Caller::ReportDenial(std::string_view act, const absl::Status& outcome) const {
+  if (absl::IsPermissionDenied(outcome)) Report(act, outcome);
+}
+
+absl::Status Caller::StillKnown(std::chrono::steady_clock::time_point now) const {
+  // Null for this process itself.
+  if (authenticator_ == nullptr) return absl::OkStatus();
+  if (now < known_at_.load() + kKnownFor) return absl::OkStatus();
+  const absl::StatusOr<Identity> identity = authenticator_->Identify(credentials_);
+  THUNDERHEAD_RETURN_IF_ERROR(identity.status());
+  if (identity->name == identity_.name && identity->role == identity_.role) {
+    known_at_ = now;
+    return absl::OkStatus();
+  }
+  return base::WithDetails(absl::UnauthenticatedError("the token has another name or role now"),
+                           {.reason = "TOKEN_CHANGED"});
+}
+
+Door::Door(std::unique_ptr<Authenticator> authenticator, std::shared_ptr<Audit> audit,
+           const QuotaLimits& limits)
+    : authenticator_(std::move(authenticator)),
+      audit_(std::move(audit)),
+      quotas_(limits),
+      own_token_(RandomToken()) {}
+
+absl::Status Door::Check(std::string_view method, CallKind kind, Caller& caller) {
+  const Identity& identity = caller.identity_;
+  if (!MayCall(identity.role, method)) return NotForRole(method, identity);
+  if (caller.authenticator_ == nullptr || identity.name.empty()) return absl::OkStatus();
+  THUNDERHEAD_RETURN_IF_ERROR(quotas_.TakeRequest(identity.name, std::chrono::steady_clock::now()));
+  if (kind == CallKind::kUnary) return absl::OkStatus();
+  THUNDERHEAD_ASSIGN_OR_RETURN(caller.place_, quotas_.TakeStream(identity.name));
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::shared_ptr<const Caller>> Door::Admit(std::string_view method, CallKind kind,
+                                                          Credentials credentials) {
+  auto caller = std::make_shared<Caller>();
+  caller->audit_ = audit_.get();
+  caller->credentials_ = std::move(credentials);
+  const Credentials& shown = caller->credentials_;
+  absl::Status status;
+  if (shown.token.size() == own_token_.size() &&
+      CRYPTO_memcmp(shown.token.data(), own_token_.data(), own_token_.size()) == 0) {
+    caller->identity_.role = Role::kOperator;
+  } else {
+    caller->authenticator_ = authenticator_.get();
+    absl::StatusOr<Identity> identity = authenticator_->Identify(shown);
+    status = identity.status();
+    if (status.ok()) caller->identity_ = *std::move(identity);
+  }
+  const bool is_known = status.ok();
+  if (is_known) status = Check(method, kind, *caller);
+  if (status.ok()) return caller;
+  audit_->Write({caller->identity_.name, is_known ? NameOf(caller->identity_.role) : "", shown.peer,
+                 std::string(method)},
+                status);
+  return status;
+}
+
+}  // namespace thunderhead::access

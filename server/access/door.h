@@ -1,0 +1,67 @@
+// The one place where calls enter: who calls, whether their role may, and whether they already have
+// as much as one may have. Writes each refusal to the audit. Knows no HTTP and no messages.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "access/audit.h"
+#include "access/authenticator.h"
+#include "access/quotas.h"
+
+namespace thunderhead::access {
+
+// Somebody whose call was let in. While it stays open, this counts as theirs.
+class Caller {
+ public:
+  const Identity& identity() const { return identity_; }
+  // A privileged act of theirs, or a refusal, for the audit.
+  void Report(std::string_view act, const absl::Status& outcome) const;
+  // The same for PERMISSION_DENIED alone.
+  void ReportDenial(std::string_view act, const absl::Status& outcome) const;
+  // UNAUTHENTICATED once the token has expired or was taken away; looks once a second at most.
+  absl::Status StillKnown(
+      std::chrono::steady_clock::time_point now = std::chrono::steady_clock::now()) const;
+
+ private:
+  friend class Door;
+
+  Identity identity_;
+  Credentials credentials_;
+  Authenticator* authenticator_ = nullptr;
+  Audit* audit_ = nullptr;
+  std::shared_ptr<const void> place_;
+  mutable std::atomic<std::chrono::steady_clock::time_point> known_at_ = {};
+};
+
+// How a call counts.
+enum class CallKind { kUnary, kStream };
+
+class Door {
+ public:
+  Door(std::unique_ptr<Authenticator> authenticator, std::shared_ptr<Audit> audit,
+       const QuotaLimits& limits);
+
+  // UNAUTHENTICATED, PERMISSION_DENIED or RESOURCE_EXHAUSTED. The caller must not outlive this.
+  absl::StatusOr<std::shared_ptr<const Caller>> Admit(std::string_view method, CallKind kind,
+                                                      Credentials credentials);
+
+  // A token of this process' own, with which it calls itself as an operator.
+  const std::string& OwnToken() const { return own_token_; }
+  const QuotaLimits& limits() const { return quotas_.limits(); }
+
+ private:
+  absl::Status Check(std::string_view method, CallKind kind, Caller& caller);
+
+  const std::unique_ptr<Authenticator> authenticator_;
+  const std::shared_ptr<Audit> audit_;
+  Quotas quotas_;
+  const std::string own_token_;
+};
+
+}  // namespace thunderhead::access

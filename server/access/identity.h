@@ -1,0 +1,41 @@
+// Who calls, and in which role. Plain values.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "absl/status/statusor.h"
+
+namespace thunderhead::access {
+
+// What somebody may do; docs/operating.md has the table, MayCall the rules.
+enum class Role {
+  kViewer,     // watches sessions that others opened
+  kPresenter,  // also opens sessions, makes clouds and single pictures
+  kPipeline,   // a program: single pictures, no sessions
+  kOperator,   // everything
+};
+
+// "viewer", "presenter", "pipeline" or "operator". INVALID_ARGUMENT lists them.
+absl::StatusOr<Role> ParseRole(std::string_view text);
+const char* NameOf(Role role);
+
+struct Identity {
+  std::string name;  // for --auth none the client's network; empty: this process itself
+  Role role = Role::kViewer;
+  std::optional<std::chrono::system_clock::time_point> expires_at = {};
+};
+
+// What somebody shows at the door.
+struct Credentials {
+  std::string token;  // empty: none
+  std::string peer;   // the client's address with its port; empty: this machine's local socket
+};
+
+// The part of a client's address that stays the same between its connections: an IPv4 address, or
+// the first half of an IPv6 address, of which one client may have them all.
+std::string NetworkOf(const std::string& peer);
+
+}  // namespace thunderhead::access

@@ -1,0 +1,128 @@
+#include "access/jwt_key.h"
+
+#include <jwt.h>
+#include <openssl/bio.h>
+#include <openssl/evp.h>
+#include <openssl/pem.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <memory>
+#include <vector>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+
+namespace thunderhead::access {
+namespace {
+
+using Time = std::chrono::system_clock::time_point;
+
+// Of the key's length, as RFC 7518, 3.2 and 3.3 demand.
+constexpr std::size_t kMinSecretBytes = 32;
+constexpr int kMinRsaBits = 2048;
+constexpr std::size_t kMaxTokenBytes = 8192;
+constexpr std::size_t kMaxNameBytes = 64;
+// Between the clocks of the issuer and the server.
+constexpr std::chrono::seconds kClockSkew{30};
+constexpr char kRoleClaim[] = "thunderhead_role";
+
+using Token = std::unique_ptr<jwt_t, decltype(&jwt_free)>;
+
+absl::Status Wrong(const std::string& problem) {
+  return absl::UnauthenticatedError(absl::StrCat("the token ", problem));
+}
+
+absl::Status CheckPublicKey(const std::string& pem) {
+  const std::unique_ptr<BIO, decltype(&BIO_free)> bytes(
+      BIO_new_mem_buf(pem.data(), static_cast<int>(pem.size())), &BIO_free);
+  const std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)> key(
+      PEM_read_bio_PUBKEY(bytes.get(), nullptr, nullptr, nullptr), &EVP_PKEY_free);
+  if (key == nullptr || EVP_PKEY_base_id(key.get()) != EVP_PKEY_RSA ||
+      EVP_PKEY_bits(key.get()) < kMinRsaBits) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("the JWT key is PEM but no public RSA key of at least ", kMinRsaBits,
+                     " bits; make it of a private key by openssl pkey -pubout"));
+  }
+  return absl::OkStatus();
+}
+
+std::string TextClaim(jwt_t* token, const char* name) {
+  const char* text = jwt_get_grant(token, name);
+  return text == nullptr ? "" : text;
+}
+
+// The epoch if the token has no such claim, or not as a number, for which libjwt gives -1 or 0.
+Time TimeClaim(jwt_t* token, const char* name) {
+  return std::chrono::system_clock::from_time_t(std::max(0L, jwt_get_grant_int(token, name)));
+}
+
+// A JWT's audience is a text or a list of texts.
+bool IsFor(jwt_t* token, const std::string& audience) {
+  if (TextClaim(token, "aud") == audience) return true;
+  const std::unique_ptr<char, decltype(&std::free)> list(jwt_get_grants_json(token, "aud"),
+                                                         &std::free);
+  // Compact JSON; names of services need no escapes.
+  return list != nullptr && list.get()[0] == '[' &&
+         absl::StrContains(list.get(), absl::StrCat("\"", audience, "\""));
+}
+
+absl::Status CheckTimes(jwt_t* token, Time now) {
+  const Time expires = TimeClaim(token, "exp");
+  if (expires == Time()) return Wrong("has no time at which it expires (exp)");
+  if (expires + kClockSkew <= now) return Wrong("has expired");
+  if (TimeClaim(token, "nbf") > now + kClockSkew) return Wrong("is not valid yet");
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<JwtKey> JwtKey::Parse(const std::string& text) {
+  JwtKey key;
+  key.key_ = text;
+  key.is_public_ = absl::StrContains(text, "-----BEGIN");
+  if (key.is_public_) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckPublicKey(text));
+    return key;
+  }
+  while (!key.key_.empty() && (key.key_.back() == '\n' || key.key_.back() == '\r')) {
+    key.key_.pop_back();
+  }
+  if (key.key_.size() < kMinSecretBytes) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("the JWT key has ", key.key_.size(), " bytes; a secret for HS256 needs ",
+                     kMinSecretBytes, ", as by openssl rand -hex 32"));
+  }
+  return key;
+}
+
+absl::StatusOr<Identity> JwtKey::Verify(const std::string& token, const JwtClaims& wanted,
+                                        Time now) const {
+  if (token.size() > kMaxTokenBytes) return Wrong("is too long");
+  jwt_t* decoded = nullptr;
+  const int error =
+      jwt_decode(&decoded, token.c_str(), reinterpret_cast<const unsigned char*>(key_.data()),
+                 static_cast<int>(key_.size()));
+  const Token owned(decoded, &jwt_free);
+  // A public key is no secret: whoever signs with its text by HS256 must not be believed.
+  if (error != 0 || jwt_get_alg(decoded) != (is_public_ ? JWT_ALG_RS256 : JWT_ALG_HS256)) {
+    return Wrong("is not signed as this server demands");
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(CheckTimes(decoded, now));
+  if (!wanted.issuer.empty() && TextClaim(decoded, "iss") != wanted.issuer) {
+    return Wrong("is of another issuer (iss)");
+  }
+  if (!wanted.audience.empty() && !IsFor(decoded, wanted.audience)) {
+    return Wrong("is for another audience (aud)");
+  }
+  const std::string name = TextClaim(decoded, "sub");
+  if (name.empty() || name.size() > kMaxNameBytes) {
+    return Wrong(absl::StrCat("names nobody in up to ", kMaxNameBytes, " bytes (sub)"));
+  }
+  const absl::StatusOr<Role> role = ParseRole(TextClaim(decoded, kRoleClaim));
+  if (!role.ok()) return Wrong(absl::StrCat("has no role (", kRoleClaim, ")"));
+  return Identity{name, *role, TimeClaim(decoded, "exp")};
+}
+
+}  // namespace thunderhead::access

@@ -1,0 +1,69 @@
+// How much one identity may ask for, and all together: calls that stay open, and requests a second.
+// Each refusal is RESOURCE_EXHAUSTED with the time after which to try again. Safe from any thread.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+
+namespace thunderhead::access {
+
+struct QuotaLimits {
+  std::size_t max_streams = 2048;
+  std::size_t max_streams_per_identity = 512;
+  // The mean; twice as many at once after a second of rest. 0: no limit.
+  double requests_per_second = 500.0;
+};
+
+// Requests that are allowed now: they come back with time.
+class RequestBudget {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  // `per_second` 0: no limit.
+  RequestBudget(double per_second, Time now) : left_(kBurst_s * per_second), at_(now) {}
+
+  // RESOURCE_EXHAUSTED if there is none left.
+  absl::Status Take(double per_second, Time now);
+  // True if nothing was taken for so long that a new one would be the same.
+  bool IsFull(double per_second, Time now) const;
+
+ private:
+  static constexpr double kBurst_s = 2.0;
+
+  double LeftAt(double per_second, Time now) const;
+
+  double left_;
+  Time at_;
+};
+
+class Quotas {
+ public:
+  using Time = RequestBudget::Time;
+
+  explicit Quotas(const QuotaLimits& limits) : limits_(limits) {}
+
+  absl::Status TakeRequest(const std::string& identity, Time now);
+
+  // The place of a call that stays open, given back with the last copy. Must not outlive this.
+  absl::StatusOr<std::shared_ptr<const void>> TakeStream(const std::string& identity);
+
+  const QuotaLimits& limits() const { return limits_; }
+
+ private:
+  void GiveBack(const std::string& identity);
+
+  const QuotaLimits limits_;
+  std::mutex mutex_;
+  std::size_t streams_ = 0;
+  std::map<std::string, std::size_t> streams_by_identity_;
+  std::map<std::string, RequestBudget> budgets_;
+};
+
+}  // namespace thunderhead::access

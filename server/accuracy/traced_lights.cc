@@ -1,0 +1,62 @@
+#include "accuracy/traced_lights.h"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+namespace thunderhead::accuracy {
+
+bool SharesLight(const scene::Scene& traced, const scene::Scene& scene) {
+  const auto* of_traced = std::get_if<scene::LightVolume>(&traced.rendering.technique);
+  scene::Scene alike = scene;
+  auto* technique = std::get_if<scene::LightVolume>(&alike.rendering.technique);
+  if (of_traced == nullptr || technique == nullptr) return false;
+  technique->traced_light = of_traced->traced_light;
+  alike.camera = traced.camera;
+  alike.lights = traced.lights;  // which the correction does not include
+  alike.display = traced.display;
+  alike.output = traced.output;
+  alike.accuracy = traced.accuracy;
+  alike.ground.rings = traced.ground.rings;
+  alike.rendering.image_scale = traced.rendering.image_scale;
+  return alike == traced;
+}
+
+std::optional<TracedLights::Found> TracedLights::Find(const scene::Scene& scene,
+                                                      const Fields& fields) {
+  if (scene::TracedLightOf(scene.rendering.technique) == scene::TracedLight::kOff) {
+    return std::nullopt;
+  }
+  const std::lock_guard lock(mutex_);
+  for (Entry* const entry : entries_) {
+    if (entry->fields_ != fields || !SharesLight(entry->scene_, scene)) continue;
+    entry->since_used_.Restart();
+    if (entry->found_.correction == nullptr) return std::nullopt;
+    return entry->found_;
+  }
+  return std::nullopt;
+}
+
+TracedLights::Entry::Entry(std::shared_ptr<TracedLights> lights, scene::Scene scene, Fields fields)
+    : lights_(std::move(lights)), scene_(std::move(scene)), fields_(std::move(fields)) {
+  const std::lock_guard lock(lights_->mutex_);
+  lights_->entries_.push_back(this);
+}
+
+TracedLights::Entry::~Entry() {
+  const std::lock_guard lock(lights_->mutex_);
+  lights_->entries_.remove(this);
+}
+
+void TracedLights::Entry::Publish(Found found) {
+  const std::lock_guard lock(lights_->mutex_);
+  found_ = std::move(found);
+  since_used_.Restart();
+}
+
+double TracedLights::Entry::UnusedMs() const {
+  const std::lock_guard lock(lights_->mutex_);
+  return since_used_.ElapsedMs();
+}
+
+}  // namespace thunderhead::accuracy

@@ -1,0 +1,62 @@
+// The corrections of light found by tracing so far, for whoever draws. Safe from any thread: one
+// thread traces (accuracy/corrector_pool.h), others draw.
+#pragma once
+
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "base/stopwatch.h"
+#include "renderers/light_correction.h"
+#include "scene/scene.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::accuracy {
+
+// True if light traced for the scene `traced` is that of `scene`: only its camera, display and the
+// like may differ.
+bool SharesLight(const scene::Scene& traced, const scene::Scene& scene);
+
+class TracedLights {
+ public:
+  using Fields = std::shared_ptr<const volume::HydrometeorFields>;
+
+  struct Found {
+    std::shared_ptr<const renderers::LightCorrection> correction;
+    std::int64_t paths = 0;  // that it was made of
+  };
+
+  // None if there is no correction for the scene, or it shows none.
+  std::optional<Found> Find(const scene::Scene& scene, const Fields& fields);
+
+  // A scene whose light is traced; by whoever traces.
+  class Entry {
+   public:
+    Entry(std::shared_ptr<TracedLights> lights, scene::Scene scene, Fields fields);
+    ~Entry();
+    Entry(const Entry&) = delete;
+    Entry& operator=(const Entry&) = delete;
+
+    void Publish(Found found);
+    // Since the correction was published, or found by somebody.
+    double UnusedMs() const;
+
+   private:
+    friend class TracedLights;
+
+    const std::shared_ptr<TracedLights> lights_;
+    const scene::Scene scene_;
+    const Fields fields_;
+    // Guarded by the lights' mutex.
+    Found found_;
+    base::Stopwatch since_used_;
+  };
+
+ private:
+  std::mutex mutex_;
+  std::list<Entry*> entries_;
+};
+
+}  // namespace thunderhead::accuracy

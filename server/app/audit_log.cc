@@ -1,0 +1,39 @@
+#include "app/audit_log.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "absl/strings/str_cat.h"
+#include "spdlog/sinks/basic_file_sink.h"
+#include "spdlog/sinks/stdout_sinks.h"
+#include "spdlog/spdlog.h"
+
+namespace thunderhead::app {
+
+absl::StatusOr<std::shared_ptr<access::Audit>> OpenAudit(const std::string& path) {
+  spdlog::sink_ptr sink;
+  if (path.empty()) {
+    sink = std::make_shared<spdlog::sinks::stderr_sink_mt>();
+  } else {
+    // Made here, as spdlog makes files that everybody may read.
+    const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+    if (file < 0) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("cannot write --audit-log ", path, ": ", strerror(errno)));
+    }
+    ::close(file);
+    sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(path);
+  }
+  const auto log = std::make_shared<spdlog::logger>("audit", std::move(sink));
+  // The line has its own time.
+  log->set_pattern("%v");
+  log->flush_on(spdlog::level::info);
+  return std::make_shared<access::Audit>([log](const std::string& line) {
+    log->log(spdlog::level::info, spdlog::string_view_t(line));
+  });
+}
+
+}  // namespace thunderhead::app

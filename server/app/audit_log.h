@@ -1,0 +1,16 @@
+// Where the audit's lines go.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "access/audit.h"
+
+namespace thunderhead::app {
+
+// To the file at `path`, to which they are appended and which only its owner may read; to standard
+// error if it is empty.
+absl::StatusOr<std::shared_ptr<access::Audit>> OpenAudit(const std::string& path);
+
+}  // namespace thunderhead::app

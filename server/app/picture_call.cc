@@ -1,0 +1,47 @@
+#include "app/picture_call.h"
+
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "app/local_service.h"
+#include "base/status.h"
+#include "thunderhead/v1/thunderhead.grpc.pb.h"
+
+namespace thunderhead::app {
+
+absl::StatusOr<v1::ImageFormat> FormatOf(const std::string& flag, const std::string& path) {
+  if (absl::EndsWithIgnoreCase(path, ".png")) return v1::IMAGE_FORMAT_PNG;
+  if (absl::EndsWithIgnoreCase(path, ".jpg") || absl::EndsWithIgnoreCase(path, ".jpeg")) {
+    return v1::IMAGE_FORMAT_JPEG;
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat(flag, " is '", path, "'; its name must end in .png, .jpg or .jpeg"));
+}
+
+absl::StatusOr<v1::RenderImageResponse> CallForPicture(
+    const std::shared_ptr<grpc::Channel>& channel, const v1::RenderImageRequest& request,
+    const std::string& token, const std::stop_token& stop, const OnPictureProgress& progress) {
+  grpc::ClientContext context;
+  if (!token.empty()) context.AddMetadata("authorization", absl::StrCat("Bearer ", token));
+  const std::stop_callback cancel(stop, [&context] { context.TryCancel(); });
+  const auto stub = v1::ThunderheadService::NewStub(channel);
+  const auto reader = stub->RenderImageWithProgress(&context, request);
+  v1::RenderImageEvent event;
+  v1::RenderImageResponse picture;
+  while (reader->Read(&event)) {
+    if (event.has_progress() && progress) progress(event.progress());
+    if (event.has_image()) picture = std::move(*event.mutable_image());
+  }
+  const grpc::Status status = reader->Finish();
+  if (stop.stop_requested()) return absl::CancelledError("interrupted: no picture was written");
+  if (status.error_code() == grpc::StatusCode::UNIMPLEMENTED) {
+    return absl::UnimplementedError(
+        "the server is older than this program and lacks the call that it needs "
+        "(RenderImageWithProgress): run both in the same version");
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(FromGrpc(status));
+  return picture;
+}
+
+}  // namespace thunderhead::app

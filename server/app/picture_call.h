@@ -1,0 +1,27 @@
+// One picture by the service, in this process or another.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <stop_token>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "grpcpp/channel.h"
+#include "thunderhead/v1/thunderhead.pb.h"
+
+namespace thunderhead::app {
+
+// By the ending of a picture's name; INVALID_ARGUMENT names the flag that gave it.
+absl::StatusOr<v1::ImageFormat> FormatOf(const std::string& flag, const std::string& path);
+
+// Progress of tracing the light that the picture waits for, on the calling thread.
+using OnPictureProgress = std::function<void(const v1::RenderImageProgress&)>;
+
+// Waits for the picture, from a server that asks for `token` if it is not empty. CANCELLED if
+// `stop` came first. `progress` may be empty.
+absl::StatusOr<v1::RenderImageResponse> CallForPicture(
+    const std::shared_ptr<grpc::Channel>& channel, const v1::RenderImageRequest& request,
+    const std::string& token, const std::stop_token& stop, const OnPictureProgress& progress);
+
+}  // namespace thunderhead::app

@@ -1,0 +1,54 @@
+// The flags that sequence and watch share, and what they mean.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "CLI/CLI.hpp"
+#include "absl/status/statusor.h"
+#include "app/run_progress.h"
+#include "app/scene_file.h"
+#include "pipeline/plan.h"
+#include "pipeline/product_name.h"
+#include "thunderhead/v1/thunderhead.pb.h"
+
+namespace thunderhead::app {
+
+struct PipelineFlags {
+  SceneFlags scene;
+  std::vector<std::string> views;  // scene files
+  std::string product;
+  std::string manifest;  // empty: in the products' folder
+  std::string movie;     // empty: none
+  std::string device = "auto";
+  int jobs = 2;
+  bool done_markers = false;
+  ProgressStyle progress = ProgressStyle::kAuto;
+};
+
+void AddPipelineOptions(CLI::App& command, PipelineFlags& flags);
+
+// A scene under the name that products have for it.
+struct View {
+  std::string name;
+  v1::Scene scene;
+  std::string sha256;  // of the scene, as canonical JSON
+};
+
+// The flags, checked as far as they can be without a storm.
+struct PictureRunOptions {
+  pipeline::ProductName product;
+  v1::ImageFormat format = v1::IMAGE_FORMAT_PNG;
+  std::vector<View> views;
+  std::string manifest;
+  std::vector<std::string> other_manifests;  // of other shards
+  std::string device;
+  int jobs = 1;
+  bool done_markers = false;
+};
+
+// INVALID_ARGUMENT names the flag and what is wrong.
+absl::StatusOr<PictureRunOptions> RunOptionsOf(const PipelineFlags& flags,
+                                               const pipeline::Shard& shard);
+
+}  // namespace thunderhead::app

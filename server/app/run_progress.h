@@ -1,0 +1,46 @@
+// How a run of many pictures tells of itself: a bar on a terminal, otherwise a line a product, or
+// lines of JSON for machines.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "absl/status/status.h"
+#include "app/progress_bar.h"
+
+namespace thunderhead::app {
+
+enum class ProgressStyle { kAuto, kLines, kJson, kNone };
+
+// Safe from any thread.
+class RunProgress {
+ public:
+  RunProgress(ProgressStyle style, const std::string& label);
+
+  // Some more products are to be made, or were found made.
+  void Plan(int products);
+  // A product is there: `milliseconds` after its drawing began, or unchanged since an earlier run.
+  void Drawn(const std::string& path, double milliseconds);
+  void Kept(const std::string& path);
+  // A product or input that does not come, now or ever; also on standard error.
+  void Failed(const std::string& path, const absl::Status& why);
+  // Something that goes on, such as a file that is waited for; `what` names it.
+  void Note(const std::string& path, const std::string& what);
+
+  int DrawnCount() const;
+  int KeptCount() const;
+
+ private:
+  void Tell(const std::string& event, const std::string& path, const std::string& text,
+            double milliseconds);
+
+  mutable std::mutex mutex_;
+  ProgressStyle style_;
+  std::unique_ptr<ProgressBar> bar_;  // null: no terminal
+  int planned_ = 0;
+  int drawn_ = 0;
+  int kept_ = 0;
+};
+
+}  // namespace thunderhead::app

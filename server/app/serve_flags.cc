@@ -1,0 +1,202 @@
+#include "app/serve_flags.h"
+
+#include <arpa/inet.h>
+
+#include <cmath>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "access/secret_file.h"
+#include "app/audit_log.h"
+#include "base/status.h"
+
+namespace thunderhead::app {
+namespace {
+
+constexpr char kWho[] = "Who may come";
+constexpr char kHowMuch[] = "Limits; what is beyond them is refused with the time to try again";
+
+bool IsLoopback(const std::string& host) {
+  in_addr v4{};
+  if (inet_pton(AF_INET, host.c_str(), &v4) == 1) return (ntohl(v4.s_addr) >> 24) == 127;
+  in6_addr v6{};
+  return inet_pton(AF_INET6, host.c_str(), &v6) == 1 && IN6_IS_ADDR_LOOPBACK(&v6);
+}
+
+void AddAccessFlags(CLI::App& serve, ServeFlags& flags) {
+  serve
+      .add_option("--auth", flags.auth,
+                  "none; tokens FILE, a line each: name, role, SHA-256 of the token; or jwt FILE, "
+                  "the key: PEM for RS256, else a secret for HS256")
+      ->expected(1, 2)
+      ->group(kWho);
+  serve.add_option("--jwt-issuer", flags.jwt_issuer, "Issuer (iss) that JWTs must have")
+      ->group(kWho);
+  serve.add_option("--jwt-audience", flags.jwt_audience, "Audience (aud) that JWTs must have")
+      ->group(kWho);
+  serve
+      .add_option("--tls-cert", flags.tls.certificate,
+                  "Certificate chain in PEM, for both ports; read again when it changes")
+      ->group(kWho);
+  serve.add_option("--tls-key", flags.tls.key, "Its key in PEM; read again when it changes")
+      ->group(kWho);
+  serve
+      .add_flag("--insecure", flags.insecure,
+                "Serve other machines without --auth or TLS: behind a proxy that has both, or in a "
+                "network that may see and do everything")
+      ->group(kWho);
+  serve
+      .add_option("--allow-host", flags.allowed_hosts,
+                  "Names under which browsers may open the page, besides localhost, addresses in "
+                  "digits and this machine's own name")
+      ->group(kWho);
+  serve
+      .add_option("--allow-origin", flags.allowed_origins,
+                  "Origins of other sites whose pages may call the server")
+      ->group(kWho);
+  serve
+      .add_option(
+          "--audit-log", flags.audit_log,
+          "File to which refusals and privileged acts are appended, a line each; without it "
+          "they go to standard error")
+      ->group(kWho);
+}
+
+template <typename Number>
+void AddLimit(CLI::App& serve, const std::string& name, Number& value, double least, double most,
+              const std::string& help) {
+  serve.add_option(name, value, help)
+      ->check(CLI::Range(least, most))
+      ->capture_default_str()
+      ->group(kHowMuch);
+}
+
+void AddLimitFlags(CLI::App& serve, ServeFlags& flags) {
+  AddLimit(serve, "--max-sessions", flags.sessions.max_sessions, 1, 1e5, "Sessions");
+  AddLimit(serve, "--max-sessions-each", flags.sessions.max_sessions_per_owner, 1, 1e5,
+           "Sessions opened by one identity: a token's name, or without --auth an address");
+  AddLimit(serve, "--max-viewers", flags.limits.max_viewers_per_session, 1, 1e5,
+           "Viewers of a session");
+  AddLimit(serve, "--max-connections", flags.gateway.max_connections, 1, 1e5,
+           "Connections of browsers");
+  AddLimit(serve, "--max-connections-each", flags.gateway.max_connections_per_address, 1, 1e5,
+           "Connections of browsers from one address");
+  AddLimit(serve, "--max-streams", flags.quotas.max_streams, 1, 1e6, "Calls that stay open");
+  AddLimit(serve, "--max-streams-each", flags.quotas.max_streams_per_identity, 1, 1e6,
+           "Calls that stay open, of one identity");
+  AddLimit(serve, "--max-streams-per-connection", flags.limits.max_streams_per_connection, 1, 1e6,
+           "Calls on one gRPC connection; further ones wait in the client");
+  AddLimit(serve, "--max-requests", flags.quotas.requests_per_second, 0, 1e6,
+           "Requests a second of one identity, and within one call of Interact; 0 for no limit");
+  AddLimit(serve, "--max-message", flags.max_message_kib, 1, 1 << 20, "KiB of a request message");
+  AddLimit(serve, "--max-picture", flags.max_megapixels, 0.001, 33.6, "Megapixels of a picture");
+  AddLimit(serve, "--max-samples", flags.max_megasamples, 0.001, 137439,
+           "Megasamples of a picture: its pixels times its slices");
+  AddLimit(serve, "--max-render-time", flags.max_render_s, 0.001, 1e6,
+           "Seconds that a picture outside sessions may take, waiting included");
+  AddLimit(serve, "--max-render-seconds", flags.render_loop.image_limits.max_predicted_s, 0.001,
+           1e6, "Seconds of drawing that a picture outside sessions may be predicted to take");
+  AddLimit(serve, "--max-stills", flags.render_loop.max_waiting_images, 0, 1e6,
+           "Pictures outside sessions that may wait to be drawn");
+  AddLimit(serve, "--grpc-memory", flags.grpc_memory_mib, 16, 1 << 20,
+           "MiB of gRPC's buffers, all connections together");
+}
+
+absl::Status CheckReachOfMetrics(const std::string& metrics) {
+  if (metrics.empty()) return absl::OkStatus();
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Address address, ParseAddress("--metrics", metrics));
+  if (IsLoopback(address.host)) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("--metrics ", ToString(address),
+                   " lets other machines in, and this port never asks who they are nor encrypts "
+                   "what it says; listen on 127.0.0.1, or accept it with --insecure"));
+}
+
+}  // namespace
+
+void AddServeFlags(CLI::App& serve, ServeFlags& flags) {
+  serve
+      .add_option("--data", flags.data, "Storm files, or folders of them; the page opens the first")
+      ->required();
+  serve.add_option("--http", flags.http, "HOST:PORT to serve the page on")->capture_default_str();
+  serve.add_option("--grpc", flags.grpc, "HOST:PORT to serve gRPC on")->capture_default_str();
+  serve.add_option("--device", flags.device, "auto, software or a GPU's number")
+      ->capture_default_str();
+  serve.add_option("--page", flags.page, "Folder with the built page");
+  serve.add_option(
+      "--clouds", flags.clouds,
+      "Folder in which generated clouds are kept; without it they are deleted when the "
+      "server stops");
+  serve.add_option("--state", flags.state,
+                   "Folder in which sessions outlive the server, or 'none'; by default "
+                   "$STATE_DIRECTORY, else thunderhead in $XDG_STATE_HOME or ~/.local/state");
+  serve.add_option("--memory-budget", flags.memory_budget_gib, "GiB of storms kept in memory")
+      ->check(CLI::Range(0.01, 1e6))
+      ->capture_default_str();
+  AddCatalogueFlags(serve, flags.catalogue);
+  AddOperationFlags(serve, flags.operation);
+  AddAccessFlags(serve, flags);
+  AddLimitFlags(serve, flags);
+}
+
+absl::StatusOr<std::shared_ptr<access::Door>> MakeDoor(const ServeFlags& flags) {
+  const std::string& mode = flags.auth.front();
+  const bool has_file = flags.auth.size() == 2;
+  std::unique_ptr<access::Authenticator> authenticator;
+  if (mode == "none" && !has_file) {
+    authenticator = access::TrustEverybody();
+  } else if (mode == "tokens" && has_file) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(authenticator, access::TrustTokens(flags.auth[1]));
+  } else if (mode == "jwt" && has_file) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        authenticator, access::TrustJwt(flags.auth[1], {flags.jwt_issuer, flags.jwt_audience}));
+  } else {
+    return absl::InvalidArgumentError(absl::StrCat("--auth is '", mode,
+                                                   has_file ? absl::StrCat(" ", flags.auth[1]) : "",
+                                                   "'; it must be none, tokens FILE or jwt FILE"));
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<access::Audit> audit, OpenAudit(flags.audit_log));
+  return std::make_shared<access::Door>(std::move(authenticator), std::move(audit), flags.quotas);
+}
+
+absl::Status CompleteFlags(ServeFlags& flags) {
+  if (flags.tls.certificate.empty() != flags.tls.key.empty()) {
+    return absl::InvalidArgumentError("--tls-cert and --tls-key belong together: give both");
+  }
+  if (!flags.tls.key.empty()) {
+    THUNDERHEAD_RETURN_IF_ERROR(access::ReadSecretFile(flags.tls.key).status());
+  }
+  flags.limits.max_render_time = std::chrono::milliseconds(std::lround(1e3 * flags.max_render_s));
+  // The largest value of the flag is the schema's limit, which is no round number.
+  flags.limits.max_pixels =
+      std::min(flags.limits.max_pixels, static_cast<std::uint64_t>(1e6 * flags.max_megapixels));
+  flags.limits.max_samples = static_cast<std::uint64_t>(1e6 * flags.max_megasamples);
+  flags.limits.max_request_bytes = static_cast<std::size_t>(flags.max_message_kib) << 10;
+  flags.limits.grpc_memory_bytes = static_cast<std::size_t>(flags.grpc_memory_mib) << 20;
+  flags.gateway.max_message_bytes = flags.limits.max_request_bytes;
+  flags.gateway.tls_certificate = flags.tls.certificate;
+  flags.gateway.tls_key = flags.tls.key;
+  flags.gateway.allowed_hosts = flags.allowed_hosts;
+  flags.gateway.allowed_origins = flags.allowed_origins;
+  return absl::OkStatus();
+}
+
+absl::Status CheckReach(const ServeFlags& flags, const Address& http, const Address& grpc) {
+  if (flags.insecure) return absl::OkStatus();
+  THUNDERHEAD_RETURN_IF_ERROR(CheckReachOfMetrics(flags.operation.metrics));
+  const bool has_auth = flags.auth.front() != "none";
+  const bool has_tls = !flags.tls.certificate.empty();
+  if (has_auth && has_tls) return absl::OkStatus();
+  for (const auto& [flag, address] : {std::pair{"--http", http}, std::pair{"--grpc", grpc}}) {
+    if (IsLoopback(address.host)) continue;
+    return absl::InvalidArgumentError(absl::StrCat(
+        flag, " ", ToString(address), " lets other machines in, and ",
+        has_auth ? "" : "nobody is asked who they are (--auth none)",
+        has_auth || has_tls ? "" : " and ",
+        has_tls ? "" : "what goes over the wire is not encrypted (no --tls-cert and --tls-key)",
+        "; give what is missing, listen on 127.0.0.1, or accept it with --insecure"));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace thunderhead::app

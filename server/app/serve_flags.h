@@ -1,0 +1,69 @@
+// The flags of `thunderhead serve`, and what they say about who may come and how much one may ask
+// for.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "CLI/CLI.hpp"
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "access/door.h"
+#include "app/address.h"
+#include "app/catalogue_flags.h"
+#include "app/operation.h"
+#include "gateway/gateway.h"
+#include "service/server.h"
+#include "session/render_loop.h"
+
+namespace thunderhead::app {
+
+struct ServeFlags {
+  std::vector<std::string> data;
+  std::string http = "127.0.0.1:8080";
+  std::string grpc = "127.0.0.1:50051";
+  std::string device = "auto";
+  std::string page;
+  std::string clouds;
+  std::string state;
+  double memory_budget_gib = 2.0;
+  CatalogueFlags catalogue;
+  OperationFlags operation;
+
+  // Who may come.
+  std::vector<std::string> auth = {"none"};
+  std::string jwt_issuer;
+  std::string jwt_audience;
+  service::TlsFiles tls;
+  bool insecure = false;
+  std::vector<std::string> allowed_hosts;
+  std::vector<std::string> allowed_origins;
+  std::string audit_log;
+
+  // How much.
+  session::SessionsOptions sessions;
+  service::Limits limits;
+  access::QuotaLimits quotas;
+  session::RenderLoopOptions render_loop;
+  gateway::GatewayOptions gateway;
+  double max_render_s = 1800.0;
+  double max_megasamples = 137439.0;
+  double max_megapixels = 33.6;
+  int max_message_kib = 1024;
+  int grpc_memory_mib = 1024;
+};
+
+void AddServeFlags(CLI::App& serve, ServeFlags& flags);
+
+// What --auth, and the flags that belong to it, stand for.
+absl::StatusOr<std::shared_ptr<access::Door>> MakeDoor(const ServeFlags& flags);
+
+// Fills in what belongs together: limits in the units of the code, hosts, TLS.
+absl::Status CompleteFlags(ServeFlags& flags);
+
+// INVALID_ARGUMENT where another machine could reach a port that lets everybody in, or sends what
+// it says in the clear, unless --insecure accepts that. The operators' port always does both.
+absl::Status CheckReach(const ServeFlags& flags, const Address& http, const Address& grpc);
+
+}  // namespace thunderhead::app

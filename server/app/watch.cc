@@ -1,0 +1,234 @@
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "app/commands.h"
+#include "app/interruption.h"
+#include "app/picture_run.h"
+#include "app/pipeline_flags.h"
+#include "app/run_movie.h"
+#include "app/watched_folder.h"
+#include "base/status.h"
+#include "base/version.h"
+#include "pipeline/folder_watch.h"
+#include "pipeline/manifest.h"
+#include "pipeline/movie.h"
+#include "pipeline/readiness.h"
+#include "spdlog/spdlog.h"
+
+namespace thunderhead::app {
+namespace {
+
+// For file systems whose events do not arrive.
+constexpr absl::Duration kRescan = absl::Seconds(30);
+
+struct Flags {
+  std::string folder;
+  std::string files = "*";
+  std::string ready = "open";
+  std::vector<std::string> until;
+  PipelineFlags pipeline;
+};
+
+// When to end: never by itself, or after some files, or at a time.
+struct End {
+  std::optional<int> files;
+  absl::Time at = absl::InfiniteFuture();
+};
+
+absl::StatusOr<End> ParseUntil(const std::vector<std::string>& until) {
+  End end;
+  if (until.empty()) return end;
+  int files = 0;
+  std::string error;
+  const bool counts = absl::SimpleAtoi(until.front(), &files) && files > 0;
+  if (counts && (until.size() == 1 || until[1] == "files" || until[1] == "file")) {
+    end.files = files;
+    return end;
+  }
+  if (until.size() == 1 && absl::ParseTime(absl::RFC3339_full, until.front(), &end.at, &error)) {
+    return end;
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat("--until is '", absl::StrJoin(until, " "),
+                   "'; it must be a number of files, such as 12, or a time, such as "
+                   "2030-05-20T06:00:00Z"));
+}
+
+// The pictures of every ready file; those of files that are done count as made.
+absl::StatusOr<std::vector<PlannedPicture>> PlanAll(
+    const PictureRunOptions& options, const std::vector<FolderStorm>& storms,
+    const std::vector<volume::CataloguedStorm>& catalogue, const WatchedFolder& folder) {
+  std::vector<PlannedPicture> all;
+  for (std::size_t storm = 0; storm < storms.size(); ++storm) {
+    std::vector<int> times(catalogue[storm].info.times.size());
+    for (std::size_t i = 0; i < times.size(); ++i) times[i] = static_cast<int>(i);
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        const std::vector<PlannedPicture> pictures,
+        PlanOf(options, catalogue, storm, storms[storm].name, times, false));
+    all.insert(all.end(), pictures.begin(), pictures.end());
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(CheckNames(options, all));
+  for (PlannedPicture& picture : all) {
+    if (folder.IsDone(picture.input)) picture.outcome = absl::OkStatus();
+  }
+  return all;
+}
+
+// A file whose pictures are all made is done; one that cannot be drawn is bad, unless the error
+// names another file: without that one it is tried again.
+void Settle(const std::vector<PlannedPicture>& pictures, WatchedFolder& folder) {
+  for (const std::string& path : folder.Unsettled()) {
+    bool made = true;
+    bool bad = false;
+    for (const PlannedPicture& picture : pictures) {
+      if (picture.input != path || picture.outcome.ok()) continue;
+      made = false;
+      bad = bad || (absl::IsDataLoss(picture.outcome) &&
+                    absl::StrContains(picture.outcome.message(), path));
+    }
+    if (made || bad) folder.Settle(path, bad);
+  }
+}
+
+// Pictures that earlier runs made as this one would and that are not in `planned`, as their files
+// are not ready again or gone: a movie has them too, and does not shrink when `watch` is restarted.
+std::vector<PlannedPicture> MadeBefore(const PictureRun& run,
+                                       const std::vector<PlannedPicture>& planned) {
+  const pipeline::Manifest& records = run.Records();
+  std::set<std::string> known;
+  for (const PlannedPicture& picture : planned) known.insert(records.NameOf(picture.path));
+  std::vector<PlannedPicture> pictures;
+  const std::vector<View>& views = run.Options().views;
+  for (const pipeline::ManifestEntry& entry : records.Entries()) {
+    const auto view = std::ranges::find(views, entry.view, &View::name);
+    if (view == views.end() || view->sha256 != entry.scene_sha256 ||
+        entry.version != base::Version() || pipeline::IsMovieName(entry.file) ||
+        known.contains(entry.file)) {
+      continue;
+    }
+    PlannedPicture picture;
+    picture.view = static_cast<std::size_t>(view - views.begin());
+    picture.key.storm = entry.storm;
+    picture.key.view = entry.view;
+    picture.path = records.PathOf(entry);
+    absl::Time run_start;
+    std::string error;
+    if (entry.run.has_value() &&
+        absl::ParseTime(absl::RFC3339_full, *entry.run, &run_start, &error)) {
+      picture.key.run = run_start;
+    }
+    if (absl::ParseTime(absl::RFC3339_full, entry.valid, &picture.key.valid, &error) &&
+        std::filesystem::exists(picture.path)) {
+      pictures.push_back(std::move(picture));
+    }
+  }
+  return pictures;
+}
+
+// Draws what has become ready.
+absl::Status DrawReady(const MovieOptions& movie, WatchedFolder& folder, PictureRun& run,
+                       RunProgress& progress, const std::stop_token& stop) {
+  if (folder.Unsettled().empty()) return absl::OkStatus();
+  const std::vector<FolderStorm> storms = folder.Storms();
+  std::vector<volume::CataloguedStorm> catalogue;
+  catalogue.reserve(storms.size());
+  for (const FolderStorm& storm : storms) catalogue.push_back(storm.storm);
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<PlannedPicture> all,
+                               PlanAll(run.Options(), storms, catalogue, folder));
+  std::vector<PlannedPicture> made;
+  std::vector<PlannedPicture> missing;
+  for (PlannedPicture& picture : all) {
+    (picture.outcome.ok() ? made : missing).push_back(std::move(picture));
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(run.Make(catalogue, missing, progress, stop));
+  Settle(missing, folder);
+  made.insert(made.end(), missing.begin(), missing.end());
+  if (movie.name.has_value()) {
+    const std::vector<PlannedPicture> before = MadeBefore(run, made);
+    made.insert(made.end(), before.begin(), before.end());
+  }
+  return MakeMovies(movie, made, run, progress, stop);
+}
+
+absl::Status Ended(const WatchedFolder& folder) {
+  if (folder.WaitingCount() > 0) {
+    return absl::UnavailableError(absl::StrCat("the time has come, but ", folder.WaitingCount(),
+                                               " files are not complete or not drawn"));
+  }
+  if (folder.BadCount() > 0) {
+    return absl::DataLossError(
+        absl::StrCat(folder.BadCount(), " files could not be drawn; the reasons are above"));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status Watch(const Flags& flags) {
+  spdlog::set_level(spdlog::level::warn);
+  const Interruption interruption;
+  const std::stop_token stop = interruption.Token();
+  THUNDERHEAD_ASSIGN_OR_RETURN(const End end, ParseUntil(flags.until));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const pipeline::ReadinessPolicy policy,
+                               pipeline::ReadinessPolicy::Parse(flags.ready));
+  THUNDERHEAD_ASSIGN_OR_RETURN(PictureRunOptions options, RunOptionsOf(flags.pipeline, {}));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const MovieOptions movie, MovieOptionsOf(flags.pipeline));
+  if (options.product.Has("time")) {
+    return absl::InvalidArgumentError(
+        "--product has {time}, which counts the times of a whole run; files that still come have "
+        "no such number: use {valid:%Y%m%d_%H%M} or {lead_min:04d}");
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(pipeline::FolderWatch watch,
+                               pipeline::FolderWatch::Open(flags.folder));
+  const std::stop_callback wake(stop, [&watch] { watch.Wake(); });
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<PictureRun> run,
+                               PictureRun::Open(std::move(options)));
+  RunProgress progress(flags.pipeline.progress, absl::StrCat("watching ", flags.folder));
+  WatchedFolder folder(flags.folder, flags.files, policy);
+  while (!stop.stop_requested()) {
+    THUNDERHEAD_RETURN_IF_ERROR(folder.Look(progress));
+    const absl::Status drawn = DrawReady(movie, folder, *run, progress, stop);
+    if (!drawn.ok() && !absl::IsCancelled(drawn)) return drawn;
+    if (stop.stop_requested()) break;
+    if (end.files.has_value() && folder.DoneCount() >= *end.files) return absl::OkStatus();
+    if (absl::Now() >= end.at) return Ended(folder);
+    const absl::Duration pause = folder.WaitingCount() > 0 ? policy.Patience() : kRescan;
+    watch.Wait(std::clamp(end.at - absl::Now(), absl::ZeroDuration(), pause));
+  }
+  return absl::CancelledError(absl::StrCat("interrupted: the products of ", folder.DoneCount(),
+                                           " files are made and in ", run->Records().Path(),
+                                           "; the same command goes on"));
+}
+
+}  // namespace
+
+Command AddWatch(CLI::App& app) {
+  auto flags = std::make_shared<Flags>();
+  CLI::App* command = app.add_subcommand(
+      "watch", "Render the files of a folder as a model writes them, each once it is complete");
+  command->add_option("FOLDER", flags->folder, "Folder that the files come to")->required();
+  command->add_option("--files", flags->files, "Pattern of their names, such as 'wrfout_d01_*'")
+      ->capture_default_str();
+  command
+      ->add_option("--ready", flags->ready,
+                   "When a file is complete: open, age:SECONDS[,minsize:BYTES], "
+                   "next[,age:SECONDS] or marker:GLOB; it must open as well")
+      ->capture_default_str();
+  command
+      ->add_option("--until", flags->until,
+                   "End after so many files (12 or '12 files') or at a time "
+                   "(2030-05-20T06:00:00Z); by default never")
+      ->expected(1, 2);
+  AddPipelineOptions(*command, flags->pipeline);
+  return {command, [flags] { return Watch(*flags); }};
+}
+
+}  // namespace thunderhead::app

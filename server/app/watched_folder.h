@@ -1,0 +1,69 @@
+// A folder that a model writes to: which of its files are complete, and the storms that those are
+// the times of.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "app/run_progress.h"
+#include "pipeline/readiness.h"
+#include "volume/storm_catalogue.h"
+#include "volume/storm_file.h"
+
+namespace thunderhead::app {
+
+// A storm of a folder, under a name that stays the same as its files come.
+struct FolderStorm {
+  std::string name;
+  volume::CataloguedStorm storm;
+};
+
+class WatchedFolder {
+ public:
+  // `files` is a pattern of the names of data files, as fnmatch(3).
+  WatchedFolder(std::string folder, std::string files, pipeline::ReadinessPolicy policy)
+      : folder_(std::move(folder)), files_(std::move(files)), policy_(std::move(policy)) {}
+
+  // Looks at the folder and opens the files that have become ready. A file that changes begins
+  // again. UNAVAILABLE if the folder cannot be listed.
+  absl::Status Look(RunProgress& progress);
+
+  // The storms of all files that are ready.
+  std::vector<FolderStorm> Storms() const;
+
+  // Files that are ready and not settled yet, by path.
+  std::vector<std::string> Unsettled() const;
+  // All of a file's pictures are made, or, if `bad`, never will be as long as it does not change.
+  void Settle(const std::string& path, bool bad);
+
+  bool IsDone(const std::string& path) const;
+  int DoneCount() const;
+  int BadCount() const;
+  // Files that are there but not ready, or not settled.
+  int WaitingCount() const;
+
+ private:
+  enum class State { kWaiting, kOther, kReady, kDone, kBad };
+
+  struct File {
+    pipeline::SeenFile seen;
+    State state = State::kWaiting;
+    bool refused = false;  // waits for a change, as it does not open
+    std::optional<volume::StormFile> storm;
+  };
+
+  absl::Status List(std::vector<pipeline::SeenFile>& files, std::vector<std::string>& names) const;
+  void Open(const std::string& path, File& file, RunProgress& progress) const;
+  int Count(State state) const;
+
+  const std::string folder_;
+  const std::string files_;
+  const pipeline::ReadinessPolicy policy_;
+  std::map<std::string, File> known_;  // by path
+};
+
+}  // namespace thunderhead::app

@@ -1,0 +1,23 @@
+// AVIF by libavif: stills of 10 bits a channel without chroma subsampling, whose clear sky does not
+// band. Pure functions, safe from any thread.
+#pragma once
+
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "frame/fine_image.h"
+
+namespace thunderhead::codec {
+
+struct AvifOptions {
+  int quantizer = 8;   // 0 (lossless) to 63
+  int speed = 9;       // of the encoder, 0 (slowest) to 10
+};
+
+absl::StatusOr<std::string> EncodeAvif(const frame::FineImage& image,
+                                       const AvifOptions& options = {});
+
+// For tests and measurements; clients bring their own.
+absl::StatusOr<frame::FineImage> DecodeAvif(const std::string& avif);
+
+}  // namespace thunderhead::codec

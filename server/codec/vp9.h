@@ -1,0 +1,70 @@
+// VP9 by libvpx: one stream of moving pictures, as WebCodecs decodes it. Colours are those of JPEG:
+// sRGB as full-range BT.601 4:2:0. An encoder or decoder is used by one thread at a time.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "frame/image_codec.h"
+
+namespace thunderhead::codec {
+
+enum class Vp9Kind {
+  kKey,        // needs none before it
+  kBase,       // needs the last key or base picture, and the next ones need it
+  kDroppable,  // needs the last key or base picture; no other needs it
+};
+
+struct Vp9Picture {
+  std::string bytes;
+  bool key = false;
+};
+
+class Vp9Encoder {
+ public:
+  // Bits that a picture may take, on average over a second of 30: at most 2 Mbit/s at 1280 x 720.
+  static double BitsPerPicture(int width_px, int height_px);
+
+  // Both sides are 1 to 16384 pixels.
+  static absl::StatusOr<std::unique_ptr<Vp9Encoder>> Create(int width_px, int height_px);
+  ~Vp9Encoder();
+  Vp9Encoder(const Vp9Encoder&) = delete;
+  Vp9Encoder& operator=(const Vp9Encoder&) = delete;
+
+  int width_px() const { return width_px_; }
+  int height_px() const { return height_px_; }
+
+  // Encodes the next picture, of the encoder's size. The first is a key picture whatever is asked.
+  absl::StatusOr<Vp9Picture> Encode(const frame::RgbImage& picture, Vp9Kind kind);
+
+ private:
+  struct State;
+  explicit Vp9Encoder(std::unique_ptr<State> state, int width_px, int height_px);
+
+  const std::unique_ptr<State> state_;
+  const int width_px_;
+  const int height_px_;
+  std::int64_t count_ = 0;
+};
+
+// For tests and measurements; clients bring their own.
+class Vp9Decoder {
+ public:
+  static absl::StatusOr<std::unique_ptr<Vp9Decoder>> Create();
+  ~Vp9Decoder();
+  Vp9Decoder(const Vp9Decoder&) = delete;
+  Vp9Decoder& operator=(const Vp9Decoder&) = delete;
+
+  absl::StatusOr<frame::RgbImage> Decode(const std::string& bytes);
+
+ private:
+  struct State;
+  explicit Vp9Decoder(std::unique_ptr<State> state);
+
+  const std::unique_ptr<State> state_;
+};
+
+}  // namespace thunderhead::codec

@@ -1,0 +1,95 @@
+#include "frame/png_text.h"
+
+#include <png.h>
+#include <zlib.h>
+
+#include <csetjmp>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+
+namespace thunderhead::frame {
+namespace {
+
+constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
+// The signature and the first chunk, IHDR, which must stay first.
+constexpr std::size_t kHeaderBytes = 8 + 25;
+
+void AppendNumber(std::uint32_t number, std::string& bytes) {
+  for (int shift = 24; shift >= 0; shift -= 8) {
+    bytes += static_cast<char>(static_cast<unsigned char>(number >> shift));
+  }
+}
+
+// By the PNG specification, 11.3.3.4: not compressed, without a language.
+void AppendChunk(const std::string& keyword, const std::string& text, std::string& bytes) {
+  std::string chunk = "iTXt" + keyword;
+  chunk.append(5, '\0');
+  chunk += text;
+  AppendNumber(static_cast<std::uint32_t>(chunk.size() - 4), bytes);
+  bytes += chunk;
+  const auto* data = reinterpret_cast<const unsigned char*>(chunk.data());
+  AppendNumber(static_cast<std::uint32_t>(crc32(0, data, static_cast<uInt>(chunk.size()))), bytes);
+}
+
+// What libpng reads from, and the message of its error.
+struct Source {
+  std::string_view rest;
+  std::string error;
+};
+
+void Read(png_structp png, png_bytep to, png_size_t count) {
+  auto& source = *static_cast<Source*>(png_get_io_ptr(png));
+  if (count > source.rest.size()) png_error(png, "it is cut short");
+  std::memcpy(to, source.rest.data(), count);
+  source.rest.remove_prefix(count);
+}
+
+[[noreturn]] void Fail(png_structp png, png_const_charp message) {
+  static_cast<Source*>(png_get_error_ptr(png))->error = message;
+  png_longjmp(png, 1);
+}
+
+void Warn(png_structp /*png*/, png_const_charp /*message*/) {}
+
+// Reads up to the pixels. False after an error: no object is made here that the jump would leave
+// behind.
+bool ReadInfo(png_structp png, png_infop info) {
+  if (setjmp(png_jmpbuf(png)) != 0) return false;
+  png_read_info(png, info);
+  return true;
+}
+
+}  // namespace
+
+std::string WithTexts(const std::string& png, const PngTexts& texts) {
+  THUNDERHEAD_CHECK(IsPng(png) && png.size() > kHeaderBytes, "no PNG");
+  std::string bytes = png.substr(0, kHeaderBytes);
+  for (const auto& [keyword, text] : texts) AppendChunk(keyword, text, bytes);
+  return bytes.append(png, kHeaderBytes);
+}
+
+bool IsPng(const std::string& bytes) { return bytes.starts_with(kSignature); }
+
+absl::StatusOr<PngTexts> TextsOf(const std::string& png_file) {
+  Source source{png_file, ""};
+  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, Fail, Warn);
+  png_infop info = png == nullptr ? nullptr : png_create_info_struct(png);
+  if (info == nullptr) return absl::ResourceExhaustedError("no memory to read a PNG");
+  png_set_read_fn(png, &source, Read);
+  PngTexts texts;
+  const bool whole = ReadInfo(png, info);
+  if (whole) {
+    png_textp text = nullptr;
+    const int count = png_get_text(png, info, &text, nullptr);
+    for (int i = 0; i < count; ++i) texts.emplace(text[i].key, text[i].text);
+  }
+  png_destroy_read_struct(&png, &info, nullptr);
+  if (!whole) return absl::InvalidArgumentError(absl::StrCat("not a PNG: ", source.error));
+  return texts;
+}
+
+}  // namespace thunderhead::frame

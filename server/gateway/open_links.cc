@@ -1,0 +1,77 @@
+#include "gateway/open_links.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "spdlog/spdlog.h"
+
+namespace thunderhead::gateway {
+namespace {
+
+// A file that is being read for less than this is not cut off for a newcomer.
+constexpr std::chrono::seconds kFairReading{5};
+// Between two lines of the log about refusals: a flood must not fill the disk.
+constexpr std::chrono::seconds kTellingPause{10};
+
+bool CanBeSpared(const ClientLink& link, ClientLink::Clock::time_point now) {
+  switch (link.Use()) {
+    case LinkUse::kWaiting:
+    case LinkUse::kReceiving:
+      return true;
+    case LinkUse::kSending:
+      return now - link.UsedSince() > kFairReading;
+    case LinkUse::kCalling:
+      return false;
+  }
+  return false;
+}
+
+// Files after requests that are not complete; the one that has taken longest first.
+auto Rank(const ClientLink& link) {
+  return std::tuple(link.Use() == LinkUse::kSending, link.UsedSince());
+}
+
+}  // namespace
+
+bool OpenLinks::MakeRoom(const ClientLink& newcomer) {
+  const auto own = std::ranges::count_if(
+      links_, [&](const auto& link) { return link->Address() == newcomer.Address(); });
+  if (static_cast<size_t>(own) >= most_per_address_) {
+    if (CloseLeastNeeded(&newcomer.Address())) return true;
+  } else if (links_.size() < most_ || CloseLeastNeeded(nullptr)) {
+    return true;
+  }
+  TellOfRefusal(newcomer);
+  return false;
+}
+
+bool OpenLinks::CloseLeastNeeded(const boost::asio::ip::address* address) {
+  const auto now = ClientLink::Clock::now();
+  std::shared_ptr<ClientLink> least;
+  for (const std::shared_ptr<ClientLink>& link : links_) {
+    if (address != nullptr && link->Address() != *address) continue;
+    if (CanBeSpared(*link, now) && (least == nullptr || Rank(*link) < Rank(*least))) least = link;
+  }
+  if (least == nullptr) return false;
+  least->Close();
+  // At once, though its coroutine ends a little later, so that no newcomer finds it again.
+  links_.erase(least);
+  return true;
+}
+
+void OpenLinks::StopAll() {
+  for (const std::shared_ptr<ClientLink>& link : links_) link->Stop();
+}
+
+void OpenLinks::TellOfRefusal(const ClientLink& newcomer) {
+  ++untold_;
+  const auto now = ClientLink::Clock::now();
+  if (now - told_at_ < kTellingPause) return;
+  spdlog::warn(
+      "refused {} connections of browsers, the last of {}: {} are open, of one address at most {}",
+      untold_, newcomer.Peer(), links_.size(), most_per_address_);
+  told_at_ = now;
+  untold_ = 0;
+}
+
+}  // namespace thunderhead::gateway

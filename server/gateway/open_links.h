@@ -1,0 +1,38 @@
+// The connections that are open, and which of them makes room for another. Runs on one thread.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <unordered_set>
+
+#include "gateway/client_link.h"
+
+namespace thunderhead::gateway {
+
+class OpenLinks {
+ public:
+  OpenLinks(size_t most, size_t most_per_address)
+      : most_(most), most_per_address_(most_per_address) {}
+
+  // Closes a connection for `newcomer` where there are as many as there may be. False if none can
+  // be closed.
+  bool MakeRoom(const ClientLink& newcomer);
+  void Add(const std::shared_ptr<ClientLink>& link) { links_.insert(link); }
+  void Remove(const std::shared_ptr<ClientLink>& link) { links_.erase(link); }
+  void StopAll();
+
+ private:
+  // Closes one, of that address or of any if it is null.
+  bool CloseLeastNeeded(const boost::asio::ip::address* address);
+  void TellOfRefusal(const ClientLink& newcomer);
+
+  const size_t most_;
+  const size_t most_per_address_;
+  std::unordered_set<std::shared_ptr<ClientLink>> links_;
+  ClientLink::Clock::time_point told_at_{};
+  uint64_t untold_ = 0;
+};
+
+}  // namespace thunderhead::gateway

@@ -1,0 +1,245 @@
+#include "pipeline/manifest.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "base/status.h"
+#include "base/whole_file.h"
+#include "nlohmann/json.hpp"
+
+namespace thunderhead::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+template <typename Value>
+Json OrNull(const std::optional<Value>& value) {
+  return value.has_value() ? Json(*value) : Json(nullptr);
+}
+
+template <typename Value>
+std::optional<Value> Optional(const Json& json, const char* name) {
+  const Json& value = json.at(name);
+  if (value.is_null()) return std::nullopt;
+  return value.get<Value>();
+}
+
+// The entries of a manifest's text. A last line without its end is left out, as its product's
+// entry was not written to the end; `whole_bytes` is where it begins.
+absl::StatusOr<std::vector<ManifestEntry>> ParseLines(const std::string& path,
+                                                      std::string_view text,
+                                                      std::size_t& whole_bytes) {
+  std::vector<ManifestEntry> entries;
+  whole_bytes = 0;
+  for (std::size_t end = text.find('\n'); end != std::string_view::npos;
+       end = text.find('\n', whole_bytes)) {
+    auto entry = FromLine(text.substr(whole_bytes, end - whole_bytes));
+    if (!entry.ok()) {
+      return absl::DataLossError(absl::StrCat(
+          path, ": line ", entries.size() + 1, " is not an entry of a manifest (",
+          entry.status().message(), "); delete the line, and its product is drawn again"));
+    }
+    entries.push_back(*std::move(entry));
+    whole_bytes = end + 1;
+  }
+  return entries;
+}
+
+absl::Status NotUsable(const std::string& path) {
+  const std::string what =
+      absl::StrCat(path, ": the manifest cannot be written (", std::strerror(errno), ")");
+  const bool may_pass = errno == ENOSPC || errno == EDQUOT || errno == EIO || errno == EFBIG;
+  return may_pass ? absl::UnavailableError(what) : absl::FailedPreconditionError(what);
+}
+
+// True if the open file is still the one of that name: another process may have replaced it.
+bool IsAt(int file, const std::string& path) {
+  struct stat open_file {};
+  struct stat named {};
+  return fstat(file, &open_file) == 0 && stat(path.c_str(), &named) == 0 &&
+         open_file.st_ino == named.st_ino && open_file.st_dev == named.st_dev;
+}
+
+// Opens and locks; -1 with errno otherwise.
+int OpenLocked(const std::string& path) {
+  while (true) {
+    const int file = open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    if (file < 0) return -1;
+    if (flock(file, LOCK_EX | LOCK_NB) != 0) {
+      const int why = errno;
+      close(file);
+      errno = why;
+      return -1;
+    }
+    if (IsAt(file, path)) return file;
+    close(file);
+  }
+}
+
+}  // namespace
+
+std::string ToLine(const ManifestEntry& entry) {
+  Json json;
+  json["file"] = entry.file;
+  json["bytes"] = entry.bytes;
+  json["sha256"] = entry.sha256;
+  json["storm"] = entry.storm;
+  json["valid"] = entry.valid;
+  json["run"] = OrNull(entry.run);
+  json["lead_s"] = OrNull(entry.lead_s);
+  json["view"] = entry.view;
+  json["scene_sha256"] = entry.scene_sha256;
+  json["version"] = entry.version;
+  json["device"] = entry.device;
+  json["milliseconds"] = entry.milliseconds;
+  json["estimated_error"] = OrNull(entry.estimated_error);
+  json["input"] = {{"file", entry.input.path},
+                   {"bytes", entry.input.bytes},
+                   {"modified_ns", entry.input.modified_ns},
+                   {"sha256", entry.input.sha256}};
+  // Names of files may be in any encoding.
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+absl::StatusOr<ManifestEntry> FromLine(std::string_view line) {
+  try {
+    const Json json = Json::parse(line);
+    ManifestEntry entry;
+    json.at("file").get_to(entry.file);
+    json.at("bytes").get_to(entry.bytes);
+    json.at("sha256").get_to(entry.sha256);
+    json.at("storm").get_to(entry.storm);
+    json.at("valid").get_to(entry.valid);
+    entry.run = Optional<std::string>(json, "run");
+    entry.lead_s = Optional<double>(json, "lead_s");
+    json.at("view").get_to(entry.view);
+    json.at("scene_sha256").get_to(entry.scene_sha256);
+    json.at("version").get_to(entry.version);
+    json.at("device").get_to(entry.device);
+    json.at("milliseconds").get_to(entry.milliseconds);
+    entry.estimated_error = Optional<double>(json, "estimated_error");
+    const Json& input = json.at("input");
+    input.at("file").get_to(entry.input.path);
+    input.at("bytes").get_to(entry.input.bytes);
+    input.at("modified_ns").get_to(entry.input.modified_ns);
+    input.at("sha256").get_to(entry.input.sha256);
+    return entry;
+  } catch (const Json::exception& error) {
+    return absl::InvalidArgumentError(error.what());
+  }
+}
+
+absl::StatusOr<Manifest> Manifest::Open(const std::string& path,
+                                        const std::vector<std::string>& also) {
+  Manifest manifest(path, OpenLocked(path));
+  if (manifest.file_ < 0) {
+    if (errno != EWOULDBLOCK) return NotUsable(path);
+    return absl::UnavailableError(
+        absl::StrCat(path,
+                     ": another thunderhead is writing this manifest; wait for it, or name another "
+                     "manifest or product folder"));
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::string text, base::ReadWholeFile(path));
+  std::size_t whole_bytes = 0;
+  THUNDERHEAD_ASSIGN_OR_RETURN(manifest.entries_, ParseLines(path, text, whole_bytes));
+  if (whole_bytes < text.size() &&
+      ftruncate(manifest.file_, static_cast<off_t>(whole_bytes)) != 0) {
+    return NotUsable(path);
+  }
+  unlink(base::PartialPath(path).c_str());
+  for (const std::string& other : also) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const std::string lines, base::ReadWholeFile(other));
+    THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<ManifestEntry> entries,
+                                 ParseLines(other, lines, whole_bytes));
+    for (ManifestEntry& entry : entries) {
+      std::string file = entry.file;
+      manifest.others_.insert_or_assign(std::move(file), std::move(entry));
+    }
+  }
+  return manifest;
+}
+
+Manifest::Manifest(Manifest&& other) noexcept
+    : path_(std::move(other.path_)),
+      file_(std::exchange(other.file_, -1)),
+      entries_(std::move(other.entries_)),
+      others_(std::move(other.others_)) {}
+
+Manifest::~Manifest() {
+  if (file_ >= 0) close(file_);
+}
+
+std::string Manifest::NameOf(const std::string& path) const {
+  const fs::path folder = fs::path(path_).parent_path();
+  return fs::absolute(path).lexically_normal().lexically_relative(
+      fs::absolute(folder.empty() ? "." : folder).lexically_normal());
+}
+
+const ManifestEntry* Manifest::Find(const std::string& path) const {
+  const std::string name = NameOf(path);
+  const auto own = std::ranges::find(entries_, name, &ManifestEntry::file);
+  if (own != entries_.end()) return &*own;
+  const auto other = others_.find(name);
+  return other == others_.end() ? nullptr : &other->second;
+}
+
+std::vector<ManifestEntry> Manifest::Entries() const {
+  std::vector<ManifestEntry> all = entries_;
+  for (const auto& [name, entry] : others_) {
+    const auto own = std::ranges::find(entries_, name, &ManifestEntry::file);
+    if (own == entries_.end()) all.push_back(entry);
+  }
+  return all;
+}
+
+std::string Manifest::PathOf(const ManifestEntry& entry) const {
+  return (fs::path(path_).parent_path() / entry.file).string();
+}
+
+absl::Status Manifest::Record(const std::string& path, ManifestEntry entry) {
+  entry.file = NameOf(path);
+  const auto old = std::ranges::find(entries_, entry.file, &ManifestEntry::file);
+  if (old != entries_.end()) {
+    entries_.erase(old);
+    entries_.push_back(std::move(entry));
+    return Rewrite();
+  }
+  entries_.push_back(std::move(entry));
+  return Append(entries_.back());
+}
+
+absl::Status Manifest::Append(const ManifestEntry& entry) const {
+  const std::string line = ToLine(entry) + "\n";
+  struct stat before {};
+  if (fstat(file_, &before) != 0) return NotUsable(path_);
+  const ssize_t written = write(file_, line.data(), line.size());
+  if (written == static_cast<ssize_t>(line.size()) && fsync(file_) == 0) return absl::OkStatus();
+  if (written >= 0 && written < static_cast<ssize_t>(line.size())) errno = ENOSPC;
+  absl::Status status = NotUsable(path_);
+  // Half a line would be dropped by the next run as well.
+  if (ftruncate(file_, before.st_size) != 0) return status;
+  return status;
+}
+
+absl::Status Manifest::Rewrite() {
+  std::string text;
+  for (const ManifestEntry& entry : entries_) absl::StrAppend(&text, ToLine(entry), "\n");
+  THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(path_, text));
+  const int file = OpenLocked(path_);
+  if (file < 0) return NotUsable(path_);
+  close(std::exchange(file_, file));
+  return absl::OkStatus();
+}
+
+}  // namespace thunderhead::pipeline

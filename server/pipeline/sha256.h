@@ -1,0 +1,16 @@
+// SHA-256, in lower-case hexadecimal as sha256sum prints it.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "absl/status/statusor.h"
+
+namespace thunderhead::pipeline {
+
+std::string Sha256(std::string_view bytes);
+
+// UNAVAILABLE if the file cannot be read.
+absl::StatusOr<std::string> Sha256OfFile(const std::string& path);
+
+}  // namespace thunderhead::pipeline

@@ -1,0 +1,42 @@
+// Limits of the service that whoever runs it may set. Each is refused with RESOURCE_EXHAUSTED and a
+// time after which to try again. What numbers a message may have at all is in the schema.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+
+#include "absl/status/status.h"
+#include "thunderhead/v1/scene.pb.h"
+
+namespace thunderhead::service {
+
+struct Limits {
+  // By Interact and by WatchFrames each; presenters are let in beyond it.
+  std::size_t max_viewers_per_session = 256;
+  // Width times height, and that times the technique's slices. By default what the schema allows.
+  std::uint64_t max_pixels = std::uint64_t{1} << 25;
+  std::uint64_t max_samples = std::uint64_t{1} << 37;
+  // Of one picture outside sessions, from the call to its answer.
+  std::chrono::milliseconds max_render_time = std::chrono::minutes(30);
+  // Until a client of Interact has joined.
+  std::chrono::milliseconds join_timeout = std::chrono::seconds(10);
+  // A scene is at most a few kilobytes.
+  std::size_t max_request_bytes = 1u << 20;
+  // Of gRPC's buffers, all connections together; near it, connections and calls are refused.
+  std::size_t grpc_memory_bytes = std::size_t{1} << 30;
+  // Further calls of a connection wait in its client.
+  int max_streams_per_connection = 1024;
+};
+
+// RESOURCE_EXHAUSTED for a picture that is larger, or has more samples, than the limits allow.
+// `scene` has its defaults.
+absl::Status CheckSize(const Limits& limits, const v1::Scene& scene);
+
+// RESOURCE_EXHAUSTED for a session with as many viewers as it may have.
+absl::Status TooManyViewers(std::size_t maximum);
+
+// RESOURCE_EXHAUSTED for a picture that took longer than it may.
+absl::Status RenderedTooLong(std::chrono::milliseconds limit);
+
+}  // namespace thunderhead::service

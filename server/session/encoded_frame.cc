@@ -1,0 +1,32 @@
+#include "session/encoded_frame.h"
+
+namespace thunderhead::session {
+namespace {
+
+Problem::Code CodeOf(absl::StatusCode code) {
+  switch (code) {
+    case absl::StatusCode::kInvalidArgument:
+    case absl::StatusCode::kFailedPrecondition:
+    case absl::StatusCode::kOutOfRange:
+      return Problem::Code::kScene;
+    case absl::StatusCode::kResourceExhausted:
+    case absl::StatusCode::kUnavailable:
+      return Problem::Code::kBusy;
+    default:
+      return Problem::Code::kInternal;
+  }
+}
+
+}  // namespace
+
+Problem ProblemOf(std::uint64_t scene_revision, const absl::Status& why) {
+  return {scene_revision, std::string(why.message()), CodeOf(why.code())};
+}
+
+Problem UnreadableStorm(std::uint64_t scene_revision, const absl::Status& why) {
+  const bool gone = absl::IsNotFound(why);
+  return {scene_revision, std::string(why.message()),
+          gone ? Problem::Code::kStormGone : Problem::Code::kStormUnreadable};
+}
+
+}  // namespace thunderhead::session

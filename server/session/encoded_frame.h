@@ -1,0 +1,64 @@
+// A frame as it is sent, and the reason why there is none. Plain values.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "scene/scene.h"
+#include "scene/view.h"
+#include "session/frame_source.h"
+
+namespace thunderhead::session {
+
+// A frame ready to be sent.
+struct EncodedFrame {
+  std::uint64_t sequence = 0;  // counts the session's frames from 1; set by the hub
+  std::uint64_t scene_revision = 0;
+  // The picture, in one of these.
+  std::string jpeg;
+  std::string vp9;
+  std::string avif;
+  bool key_frame = false;  // of video
+  int width_px = 0;
+  int height_px = 0;
+  scene::Camera camera;
+  scene::View view;
+  scene::Sun sun;
+  std::vector<StageTime> stages;
+  Modelled modelled;
+  bool refined = false;
+  bool at_rest = false;  // drawn when the scene had not changed for a while
+  int tier = 0;
+  std::optional<Refinement> refinement;  // of a picture by the reference
+  std::optional<AccuracyReport> accuracy;
+  // When the scene became what it shows; none if that has changed since.
+  std::optional<std::chrono::steady_clock::time_point> changed_at;
+  // The frame without its sequence as the service serialized it, once for all viewers; opaque here.
+  std::string serialized;
+};
+
+// The reason why the scene of a revision has no frame.
+struct Problem {
+  enum class Code {
+    kStormGone,
+    kStormUnreadable,
+    kScene,  // asks for something that cannot be drawn
+    kBusy,
+    kInternal,
+  };
+
+  std::uint64_t scene_revision = 0;
+  std::string message;
+  Code code = Code::kInternal;
+};
+
+// The problem of a scene that could not be drawn.
+Problem ProblemOf(std::uint64_t scene_revision, const absl::Status& why);
+// The problem of a scene whose storm could not be read.
+Problem UnreadableStorm(std::uint64_t scene_revision, const absl::Status& why);
+
+}  // namespace thunderhead::session

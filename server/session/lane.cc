@@ -1,0 +1,127 @@
+#include "session/lane.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "base/error_details.h"
+#include "base/status.h"
+#include "base/stopwatch.h"
+#include "base/thread_priority.h"
+
+namespace thunderhead::session {
+
+Lane::Lane(FrameSourceFactory make_source, int niceness, std::function<void()> on_change)
+    : make_source_(std::move(make_source)),
+      niceness_(niceness),
+      on_change_(std::move(on_change)),
+      thread_([this] { Run(); }) {}
+
+Lane::~Lane() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+bool Lane::IsIdle() const {
+  const std::lock_guard lock(mutex_);
+  return !busy_;
+}
+
+void Lane::Begin(Work work, Limits limits) {
+  {
+    const std::lock_guard lock(mutex_);
+    THUNDERHEAD_CHECK(!busy_, "a lane does one piece of work at a time");
+    busy_ = true;
+    work_ = std::move(work);
+    limits_ = std::move(limits);
+    used_ms_ = 0.0;
+  }
+  changed_.notify_all();
+}
+
+bool Lane::WantsTurn() {
+  const std::lock_guard lock(mutex_);
+  if (device_ != Device::kWanted) return false;
+  if (Ended().ok()) return true;
+  changed_.notify_all();
+  return false;
+}
+
+double Lane::GiveTurn() {
+  const base::Stopwatch stopwatch;
+  std::unique_lock lock(mutex_);
+  if (device_ != Device::kWanted || !Ended().ok()) return 0.0;
+  device_ = Device::kHeld;
+  changed_.notify_all();
+  changed_.wait(lock, [this] { return device_ != Device::kHeld; });
+  const double took_ms = stopwatch.ElapsedMs();
+  used_ms_ += took_ms;
+  longest_ms_ = std::max(longest_ms_, took_ms);
+  return took_ms;
+}
+
+double Lane::LongestPieceMs() const {
+  const std::lock_guard lock(mutex_);
+  return longest_ms_;
+}
+
+absl::Status Lane::Ended() const {
+  if (stopping_) return base::ShuttingDown();
+  if (limits_.cancelled != nullptr && *limits_.cancelled) {
+    return absl::CancelledError("the call was cancelled");
+  }
+  if (used_ms_ <= limits_.max_ms) return absl::OkStatus();
+  return base::WithDetails(
+      absl::ResourceExhaustedError(
+          absl::StrCat("drawing took more than the ", std::lround(1e-3 * limits_.max_ms),
+                       " s that the server gives one picture; ask for fewer pixels or slices")),
+      {.reason = "PICTURE_TOO_COSTLY",
+       .metadata = {{"maximum", absl::StrCat(1e-3 * limits_.max_ms)}, {"unit", "s"}}});
+}
+
+absl::Status Lane::Take() {
+  std::unique_lock lock(mutex_);
+  THUNDERHEAD_RETURN_IF_ERROR(Ended());
+  device_ = Device::kWanted;
+  lock.unlock();
+  on_change_();
+  lock.lock();
+  changed_.wait(lock, [this] { return device_ == Device::kHeld || !Ended().ok(); });
+  if (device_ == Device::kHeld) return absl::OkStatus();
+  device_ = Device::kUnused;
+  return Ended();
+}
+
+void Lane::GiveBack() {
+  {
+    const std::lock_guard lock(mutex_);
+    device_ = Device::kUnused;
+  }
+  changed_.notify_all();
+}
+
+void Lane::Run() {
+  base::LowerPriority(niceness_);
+  absl::StatusOr<std::unique_ptr<FrameSource>> source = absl::UnavailableError("not made yet");
+  std::unique_lock lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [this] { return stopping_ || work_ != nullptr; });
+    if (work_ == nullptr) return;
+    const Work work = std::exchange(work_, nullptr);
+    lock.unlock();
+    if (!source.ok()) source = make_source_(&turn_);
+    work(source.ok() ? absl::StatusOr<FrameSource*>(source->get()) : source.status());
+    lock.lock();
+    busy_ = false;
+    lock.unlock();
+    on_change_();
+    lock.lock();
+  }
+}
+
+}  // namespace thunderhead::session

@@ -1,0 +1,91 @@
+// A thread that draws beside the render loop, with a frame source of its own, so that a picture
+// that takes long can stop between two pieces while others are drawn. It uses the device only in
+// turns that the render loop gives it, and the processors at a low priority.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "base/device_turn.h"
+#include "session/frame_source.h"
+
+namespace thunderhead::session {
+
+class Lane {
+ public:
+  // Called on the lane's thread with its source, which is made for the first work, or why there is
+  // none.
+  using Work = std::function<void(const absl::StatusOr<FrameSource*>& source)>;
+
+  struct Limits {
+    // True ends the work at its next piece, with CANCELLED.
+    std::shared_ptr<const std::atomic<bool>> cancelled = nullptr;
+    // Of all its pieces; more ends it with RESOURCE_EXHAUSTED.
+    double max_ms = 1e15;
+  };
+
+  // `on_change` is called on the lane's thread when it wants a turn or has done its work.
+  Lane(FrameSourceFactory make_source, int niceness, std::function<void()> on_change);
+  // Ends the work at its next piece.
+  ~Lane();
+  Lane(const Lane&) = delete;
+  Lane& operator=(const Lane&) = delete;
+
+  // No work.
+  bool IsIdle() const;
+  // The lane must be idle.
+  void Begin(Work work, Limits limits);
+
+  // True if its work waits to draw a piece. Lets work that was cancelled go on to its end.
+  bool WantsTurn();
+  // Returns when the piece is drawn, with the milliseconds that it took.
+  double GiveTurn();
+
+  // The longest piece so far.
+  double LongestPieceMs() const;
+
+ private:
+  // What the source takes.
+  class Turn final : public base::DeviceTurn {
+   public:
+    explicit Turn(Lane& lane) : lane_(lane) {}
+    absl::Status Take() override { return lane_.Take(); }
+    void GiveBack() override { lane_.GiveBack(); }
+
+   private:
+    Lane& lane_;
+  };
+
+  enum class Device { kUnused, kWanted, kHeld };
+
+  absl::Status Take();
+  void GiveBack();
+  // Why the work is to end; OK if it is not. With the mutex held.
+  absl::Status Ended() const;
+  void Run();
+
+  const FrameSourceFactory make_source_;
+  const int niceness_;
+  const std::function<void()> on_change_;
+  Turn turn_{*this};
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  bool stopping_ = false;
+  Work work_;
+  Limits limits_;
+  bool busy_ = false;
+  Device device_ = Device::kUnused;
+  double used_ms_ = 0.0;  // by this work
+  double longest_ms_ = 0.0;
+  std::thread thread_;
+};
+
+}  // namespace thunderhead::session

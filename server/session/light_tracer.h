@@ -1,0 +1,71 @@
+// Traces light for whoever rests: sessions, and pictures that await it, a step for one after
+// another in a lane of its own. Used by the render loop's thread only.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "accuracy/light_progress.h"
+#include "scene/scene.h"
+#include "session/lane.h"
+#include "session/sessions.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::session {
+
+// Delay before tracing is tried again when light is traced for too many other scenes.
+inline constexpr Clock::duration kTraceAgainAfter = std::chrono::milliseconds(500);
+
+class LightTracer {
+ public:
+  // The lane must outlive it, and its work must have ended before this does.
+  explicit LightTracer(Lane& lane) : lane_(lane) {}
+
+  struct Request {
+    std::shared_ptr<const scene::Scene> scene;
+    std::shared_ptr<const volume::HydrometeorFields> fields;
+    std::int64_t wanted_paths = 0;
+    bool claims = false;  // while it traces, the light is not given up for another's
+  };
+  // Traces until Stop, or until a step fails or finds nothing to trace.
+  void Want(const std::string& who, Request request);
+  void Stop(const std::string& who);
+  // The progress since the last call, or why there is none.
+  std::optional<absl::StatusOr<accuracy::LightProgress>> TakeNews(const std::string& who);
+
+  // Takes what a step has brought since the last call.
+  void TakeOutcome(Clock::time_point now);
+  // Begins the next step if none is under way. Returns when to call again without a wake-up.
+  std::optional<Clock::time_point> Begin(Clock::time_point now);
+
+ private:
+  using Progress = absl::StatusOr<accuracy::LightProgress>;
+
+  struct Wanted {
+    Request request;
+    accuracy::LightClaim claim;
+    std::optional<Progress> news;
+    Clock::time_point not_before{};
+    bool ended = false;
+  };
+  // The outcome of a step, by the lane's thread.
+  struct Outcome {
+    std::mutex mutex;
+    std::optional<Progress> progress;
+    accuracy::LightClaim claim;
+  };
+
+  Lane& lane_;
+  std::map<std::string, Wanted> wanted_;
+  std::string tracing_for_;  // or the last
+  std::shared_ptr<const scene::Scene> tracing_scene_;
+  std::shared_ptr<Outcome> outcome_;
+};
+
+}  // namespace thunderhead::session

@@ -1,0 +1,94 @@
+#include "session/still_maker.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "base/log.h"
+#include "base/status.h"
+#include "base/stopwatch.h"
+#include "codec/avif.h"
+
+namespace thunderhead::session {
+namespace {
+
+// Linux counts a thread's niceness apart from its process's.
+constexpr int kNiceness = 10;
+
+}  // namespace
+
+StillMaker::StillMaker(SerializeFrame serialize)
+    : serialize_(std::move(serialize)), thread_([this] { Run(); }) {}
+
+StillMaker::~StillMaker() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void StillMaker::Make(StillToMake still) {
+  const auto session = still.session.lock();
+  if (session == nullptr) return;
+  const Time now = Clock::now();
+  const Time due = still.described.at_rest ? now : now + kRestsAfter;
+  {
+    const std::lock_guard lock(mutex_);
+    waiting_[session.get()] = {std::move(still), due};
+  }
+  changed_.notify_all();
+}
+
+void StillMaker::Run() {
+  (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);
+  std::unique_lock lock(mutex_);
+  while (!stopping_) {
+    const auto next =
+        std::min_element(waiting_.begin(), waiting_.end(),
+                         [](const auto& a, const auto& b) { return a.second.due < b.second.due; });
+    if (next == waiting_.end()) {
+      changed_.wait(lock);
+    } else if (const Time due = next->second.due; Clock::now() < due) {
+      changed_.wait_until(lock, due);
+    } else {
+      const StillToMake still = std::move(next->second.still);
+      waiting_.erase(next);
+      lock.unlock();
+      MakeNow(still);
+      lock.lock();
+    }
+  }
+}
+
+void StillMaker::MakeNow(const StillToMake& still) const {
+  const auto session = still.session.lock();
+  if (session == nullptr || !session->hub().IsNewest(still.sequence)) return;
+  session->hub().Rest(still.sequence);
+  if (still.fine == nullptr) return;
+  const std::array<bool, kTiers> wanted = session->hub().StillTiers(still.described.width_px);
+  for (int tier = 0; tier < kTiers; ++tier) {
+    if (!wanted[static_cast<std::size_t>(tier)]) continue;
+    if (!session->hub().IsNewest(still.sequence)) return;
+    const base::Stopwatch stopwatch;
+    const frame::FineImage& image = still.fine->At(tier);
+    auto avif = codec::EncodeAvif(image);
+    if (!avif.ok()) {
+      base::LogError(base::Annotate(avif.status(), "making a still of higher quality"));
+      return session->hub().NoStills(still.sequence);
+    }
+    EncodedFrame frame = still.described;
+    frame.avif = *std::move(avif);
+    frame.width_px = image.width_px;
+    frame.height_px = image.height_px;
+    frame.tier = tier;
+    frame.stages.push_back({scene::FrameStage::kEncode, stopwatch.ElapsedMs()});
+    frame.serialized = serialize_(frame);
+    session->hub().AddStill(still.sequence, tier, std::move(frame));
+  }
+}
+
+}  // namespace thunderhead::session

@@ -1,0 +1,64 @@
+// Makes stills of higher quality of frames that stay: AVIF, on a thread of its own with low
+// priority, so that nobody's moving pictures wait for them. A newer frame of a session drops the
+// still of the older one, unless that is being encoded, which takes about a tenth of a second.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "frame/fine_image.h"
+#include "session/encoded_frame.h"
+#include "session/picture_sizes.h"
+#include "session/sessions.h"
+
+namespace thunderhead::session {
+
+// Makes the bytes of a frame that every viewer is sent.
+using SerializeFrame = std::function<std::string(const EncodedFrame&)>;
+
+// A published frame that may become a still.
+struct StillToMake {
+  std::weak_ptr<Session> session;
+  std::uint64_t sequence = 0;
+  EncodedFrame described;  // without a picture
+  // Null where nobody takes stills of higher quality.
+  std::shared_ptr<PictureSizes<frame::FineImage>> fine;
+};
+
+class StillMaker {
+ public:
+  // A frame that was drawn in motion rests after so long without a newer one.
+  static constexpr std::chrono::milliseconds kRestsAfter{150};
+
+  explicit StillMaker(SerializeFrame serialize);
+  // Waits for the still being made and drops the others.
+  ~StillMaker();
+  StillMaker(const StillMaker&) = delete;
+  StillMaker& operator=(const StillMaker&) = delete;
+
+  void Make(StillToMake still);
+
+ private:
+  using Time = Clock::time_point;
+  struct Waiting {
+    StillToMake still;
+    Time due;
+  };
+
+  void Run();
+  void MakeNow(const StillToMake& still) const;
+
+  const SerializeFrame serialize_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool stopping_ = false;
+  std::map<const Session*, Waiting> waiting_;  // the newest of each session
+  std::thread thread_;
+};
+
+}  // namespace thunderhead::session

@@ -1,0 +1,31 @@
+// The encoders of a session's streams of video, one a tier, which live while somebody watches.
+// Safe from any thread; pictures come one after another.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "codec/vp9.h"
+#include "session/link_estimate.h"
+#include "session/video_order.h"
+
+namespace thunderhead::session {
+
+class VideoEncoders {
+ public:
+  // Encodes the picture, whose size is that of the order's tier. It becomes a key picture, and the
+  // order says so, where another was asked for but its size is new.
+  absl::StatusOr<codec::Vp9Picture> Encode(const frame::RgbImage& picture, VideoOrder* order);
+
+  // Frees the encoders; the next pictures are key pictures.
+  void Release();
+
+ private:
+  std::mutex mutex_;
+  std::array<std::unique_ptr<codec::Vp9Encoder>, kTiers> encoders_;
+};
+
+}  // namespace thunderhead::session

@@ -1,0 +1,74 @@
+// A medium with detail at any place, evaluated as shaders evaluate it (shaders/common/medium.glsl)
+// where nothing of the noise is left out for being finer than a pixel. Knows no scene and no GL.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "glm/mat3x3.hpp"
+#include "glm/vec3.hpp"
+#include "glm/vec4.hpp"
+#include "physics/detail_tile.h"
+#include "volume/extinction.h"
+
+namespace thunderhead::volume {
+
+// Detail as it is drawn in a volume's place.
+struct PlacedDetail {
+  struct Layer {
+    const physics::DetailTile* tile = nullptr;
+    double tile_m = 0.0;        // edge
+    std::vector<float> shares;  // of each channel that the layer's noise multiplies
+  };
+
+  std::vector<Layer> layers;  // the first displaces the medium, all multiply it
+  glm::dvec3 warp_m{0.0};     // the full displacement
+  glm::dmat3 fibres{1.0};     // physics::FibresAlong
+};
+
+class DrawnMedium {
+ public:
+  // By channel: texel values of the volume, those that it does not have being 0.
+  using Channels = std::array<float, kMaxChannels>;
+
+  // `control` is DetailControlOf the volume. All but `detail` must outlive it.
+  DrawnMedium(const std::vector<std::uint8_t>& control, const PlacedDetail& detail,
+              const ExtinctionVolume& volume);
+
+  // `in_cells` is a place in cells from the volume's low corner. Beyond the grid it is that of the
+  // outermost cells.
+  Channels At(const glm::vec3& in_cells) const;
+
+ private:
+  static constexpr std::size_t kCorners = 8;
+
+  struct Layer {
+    const std::uint8_t* texels;
+    glm::vec3 corner;  // of the volume, in tiles
+    glm::vec3 cell;    // in tiles
+    Channels shares;
+  };
+
+  // A linear interpolation between cells.
+  struct Place {
+    std::size_t cell;  // the lowest
+    std::array<float, kCorners> weights;
+  };
+
+  Place PlaceAt(const glm::vec3& in_cells) const;
+  glm::vec4 NoiseAt(const Layer& layer, const glm::vec3& in_cells, bool fibres) const;
+  template <std::size_t kPlaneChannels>
+  void AddPlane(const ExtinctionPlane& plane, const Place& from, const float* factors,
+                float* values) const;
+
+  const std::vector<std::uint8_t>& control_;
+  const ExtinctionVolume& volume_;
+  std::array<std::size_t, kCorners> corners_;  // from the lowest
+  glm::vec3 warp_;                             // in cells
+  glm::mat3 fibres_;
+  std::vector<Layer> layers_;
+};
+
+}  // namespace thunderhead::volume

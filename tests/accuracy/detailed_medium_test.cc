@@ -1,0 +1,90 @@
+// The medium with detail as code without GL has it, against what is drawn.
+#include "scene/detailed_medium.h"
+
+#include <cmath>
+#include <memory>
+
+#include "accuracy/named_settings.h"
+#include "frame/tone_map.h"
+#include "gl/context.h"
+#include "gtest/gtest.h"
+#include "renderers/scene_renderer.h"
+#include "scene/drawn_fields.h"
+#include "tests/support/gl_context.h"
+#include "tests/support/techniques.h"
+#include "volume/storm_store.h"
+#include "volume/strongest_core.h"
+
+namespace thunderhead {
+namespace {
+
+std::shared_ptr<const volume::HydrometeorFields> Sample() {
+  const auto store =
+      *volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell-500m.nc"}, {});
+  return *store->Get(store->Storms().front()->id, 0, {});
+}
+
+// Seen straight down, in pixels so small that no detail fades: transmittances of the storm, thin
+// enough for light to pass.
+TEST(DetailedMedium, IsWhatTheLightVolumeDraws) {
+  constexpr int kSide_px = 72;
+  constexpr double kWidth_m = 6000.0;
+  auto context = test_support::OpenContext();
+  ASSERT_TRUE(context.ok()) << context.status();
+  const auto fields = Sample();
+  const auto core = volume::StrongestCore(*fields);
+  ASSERT_TRUE(core.has_value());
+  scene::Scene scene = test_support::PlainScene();
+  // Without delta scaling, so that the eye sees the medium's own extinction.
+  test_support::SetMode(&scene.rendering.technique, test_support::kLowAlbedo);
+  auto& technique = std::get<scene::LightVolume>(scene.rendering.technique);
+  technique.medium.look.detail = true;
+  scene::SetSlices(&scene.rendering.technique, 4096);
+  for (scene::FieldParameters& field : scene.fields) field.scale = 0.3F;
+  scene.output = {kSide_px, kSide_px, 90};
+  const glm::dvec2 middle_m = core->place_m - glm::dvec2(5500.0, 0.0);
+  scene.camera = scene::TopDownCamera{middle_m, kWidth_m};
+  renderers::SceneRenderer renderer;
+  renderers::DrawQuality quality;
+  quality.single_precision = true;
+  const auto frame = renderer.Draw(scene, fields, quality);
+  ASSERT_TRUE(frame.ok()) << frame.status();
+  const picture::LinearPicture picture = frame::PictureOf(*frame->radiance);
+
+  const auto medium = scene::DetailedMedium::Of(scene, *fields);
+  const volume::RegularGrid& grid = fields->grid;
+  const double step_m = grid.spacing_m.z / 8.0;
+  const double pixel_m = kWidth_m / kSide_px;
+  double off = 0.0;
+  double off_without = 0.0;  // of the medium without detail, for scale
+  double covered = 0.0;
+  scene::Scene plain = scene;
+  for (scene::FieldParameters& field : plain.fields) field.detail.share = 0.0F;
+  const auto smooth = scene::DetailedMedium::Of(plain, *fields);
+  for (int y = 0; y < kSide_px; ++y) {
+    for (int x = 0; x < kSide_px; ++x) {
+      const glm::dvec2 place_m =
+          middle_m + glm::dvec2(x + 0.5 - kSide_px / 2.0, kSide_px / 2.0 - y - 0.5) * pixel_m;
+      double depth = 0.0;
+      double depth_without = 0.0;
+      for (double z_m = grid.low_corner_m.z + step_m / 2; z_m < grid.HighCorner_m().z;
+           z_m += step_m) {
+        for (const float value : medium->At_per_m({place_m, z_m})) depth += value * step_m;
+        for (const float value : smooth->At_per_m({place_m, z_m})) depth_without += value * step_m;
+      }
+      const double opacity = picture.opacity[static_cast<std::size_t>(y * kSide_px + x)];
+      off += std::abs(opacity - (1.0 - std::exp(-depth)));
+      off_without += std::abs(opacity - (1.0 - std::exp(-depth_without)));
+      covered += opacity;
+    }
+  }
+  constexpr double kPixels = kSide_px * kSide_px;
+  EXPECT_GT(covered / kPixels, 0.1);
+  EXPECT_LT(covered / kPixels, 0.95);
+  // Rays end at a transmittance of 0.005, and llvmpipe interpolates textures of bytes with 8 bits.
+  EXPECT_LT(off / kPixels, 0.004);
+  EXPECT_GT(off_without / kPixels, 0.02);
+}
+
+}  // namespace
+}  // namespace thunderhead

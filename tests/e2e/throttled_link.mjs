@@ -1,0 +1,47 @@
+// A link of limited speed and some length before a server: a TCP proxy. Chromium's own emulation leaves WebSockets alone.
+import { createServer, connect } from "node:net";
+
+const SLICE_BYTES = 1460;
+
+// One direction: bytes leave at the link's speed and arrive after half its round trip. Like a router it holds little, so a
+// sender is held back once that is full.
+function carry(from, to, bytesPerMs, delayMs) {
+  const BUFFER_BYTES = 16 * 1024;
+  let freeAt = 0;
+  let held = 0;
+  from.on("data", (data) => {
+    for (let at = 0; at < data.length; at += SLICE_BYTES) {
+      const slice = data.subarray(at, at + SLICE_BYTES);
+      freeAt = Math.max(freeAt, performance.now()) + slice.length / bytesPerMs;
+      held += slice.length;
+      setTimeout(() => {
+        held -= slice.length;
+        if (held < BUFFER_BYTES) from.resume();
+      }, freeAt - performance.now());
+      setTimeout(() => to.writable && to.write(slice), freeAt + delayMs - performance.now());
+    }
+    if (held >= BUFFER_BYTES) from.pause();
+  });
+  from.on("end", () => setTimeout(() => to.end(), Math.max(0, freeAt - performance.now()) + delayMs));
+  from.on("error", () => to.destroy());
+}
+
+// Returns its port, and the function that closes it.
+export async function throttledLink({ port, kbitPerS, roundTripMs }) {
+  const sockets = new Set();
+  const server = createServer({ allowHalfOpen: true, noDelay: true }, (near) => {
+    const far = connect({ port, host: "127.0.0.1", allowHalfOpen: true, noDelay: true });
+    for (const socket of [near, far]) {
+      sockets.add(socket);
+      socket.on("close", () => sockets.delete(socket));
+    }
+    carry(near, far, kbitPerS / 8, roundTripMs / 2);
+    carry(far, near, kbitPerS / 8, roundTripMs / 2);
+  });
+  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
+  const close = () => {
+    for (const socket of sockets) socket.destroy();
+    return new Promise((resolve) => server.close(resolve));
+  };
+  return { port: server.address().port, close };
+}

@@ -1,0 +1,422 @@
+// Who may call what, and how much of it: every role with every rpc of the descriptor, the limits,
+// and what the audit says.
+#include <grpcpp/generic/generic_stub.h>
+#include <openssl/sha.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+
+#include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
+#include "access/rules.h"
+#include "gmock/gmock.h"
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
+#include "gtest/gtest.h"
+#include "tests/service/fake_service.h"
+#include "tests/service/interacting.h"
+#include "tests/support/temporary_folder.h"
+
+namespace thunderhead::testing {
+namespace {
+
+using std::chrono::milliseconds;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using Stub = v1::ThunderheadService::Stub;
+
+// What a role may call, beside operators, who may call all. An rpc that is missing here fails.
+const std::map<std::string, std::set<std::string>> kMayCall = {
+    {"GetServerInfo", {"viewer", "presenter", "pipeline"}},
+    {"ListStorms", {"viewer", "presenter", "pipeline"}},
+    {"DescribeStorm", {"viewer", "presenter", "pipeline"}},
+    {"GenerateCloud", {"presenter"}},
+    {"DeleteCloud", {"presenter"}},
+    {"CreateSession", {"presenter"}},
+    {"Interact", {"viewer", "presenter"}},
+    {"UpdateScene", {"presenter"}},
+    {"WatchFrames", {"viewer", "presenter"}},
+    {"AcknowledgeFrame", {"viewer", "presenter"}},
+    {"CloseSession", {"presenter"}},
+    {"RenderImage", {"presenter", "pipeline"}},
+    {"RenderImageWithProgress", {"presenter", "pipeline"}},
+};
+
+const std::vector<std::string> kRoles = {"viewer", "presenter", "pipeline", "operator"};
+
+std::string TokenOf(const std::string& role) { return role + "-token"; }
+
+std::string Sha256(const std::string& text) {
+  std::string digest(SHA256_DIGEST_LENGTH, '\0');
+  SHA256(reinterpret_cast<const unsigned char*>(text.data()), text.size(),
+         reinterpret_cast<unsigned char*>(digest.data()));
+  return absl::BytesToHexString(digest);
+}
+
+// A service that knows a token of each role.
+class GuardedService {
+ public:
+  explicit GuardedService(service::ServerOptions options = {}, access::QuotaLimits quotas = {}) {
+    const std::string path = folder_.File("tokens");
+    {
+      std::ofstream file(path);
+      for (const std::string& role : kRoles) {
+        file << "a-" << role << " " << role << " " << Sha256(TokenOf(role)) << "\n";
+      }
+    }
+    std::filesystem::permissions(path, std::filesystem::perms::owner_read);
+    auto audit = std::make_shared<access::Audit>([this](const std::string& line) {
+      const std::lock_guard lock(mutex_);
+      lines_.push_back(line);
+    });
+    options.door = std::make_shared<access::Door>(*access::TrustTokens(path), audit, quotas);
+    service_.emplace(options);
+  }
+
+  FakeService& service() { return *service_; }
+  Stub& stub() { return service_->stub(); }
+
+  std::vector<std::string> Audit() {
+    const std::lock_guard lock(mutex_);
+    return lines_;
+  }
+
+  // Calls any rpc with an empty request and returns how it ended.
+  grpc::StatusCode Ask(const std::string& method, const std::string& token) {
+    grpc::GenericStub stub(service_->server().LocalChannel());
+    grpc::ClientContext context;
+    context.set_deadline(std::chrono::system_clock::now() + kPatience);
+    if (!token.empty()) context.AddMetadata("authorization", "Bearer " + token);
+    grpc::CompletionQueue queue;
+    const auto await = [&queue] {
+      void* tag = nullptr;
+      bool ok = false;
+      return queue.Next(&tag, &ok) && ok;
+    };
+    const auto call =
+        stub.PrepareCall(&context, "/thunderhead.v1.ThunderheadService/" + method, &queue);
+    call->StartCall(nullptr);
+    await();
+    call->WriteLast(grpc::ByteBuffer(nullptr, 0), {}, nullptr);
+    await();
+    grpc::ByteBuffer reply;
+    do {
+      call->Read(&reply, nullptr);
+    } while (await());
+    grpc::Status status;
+    call->Finish(&status, nullptr);
+    await();
+    queue.Shutdown();
+    return status.error_code();
+  }
+
+  template <typename Method, typename Request, typename Response>
+  grpc::Status Call(const std::string& role, Method method, const Request& request,
+                    Response* response) {
+    grpc::ClientContext context;
+    context.set_deadline(std::chrono::system_clock::now() + kPatience);
+    context.AddMetadata("authorization", "Bearer " + TokenOf(role));
+    return (stub().*method)(&context, request, response);
+  }
+
+  v1::CreateSessionResponse Create(const std::string& role = "presenter") {
+    v1::CreateSessionRequest request;
+    *request.mutable_scene() = SmallScene();
+    v1::CreateSessionResponse response;
+    const grpc::Status status = Call(role, &Stub::CreateSession, request, &response);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    return response;
+  }
+
+ private:
+  TemporaryFolder folder_;
+  std::mutex mutex_;
+  std::vector<std::string> lines_;
+  std::optional<FakeService> service_;
+};
+
+std::optional<std::chrono::milliseconds> RetryOf(const grpc::Status& status) {
+  google::rpc::Status details;
+  if (!details.ParseFromString(status.error_details())) return std::nullopt;
+  for (const auto& detail : details.details()) {
+    google::rpc::RetryInfo retry;
+    if (!detail.UnpackTo(&retry)) continue;
+    return milliseconds(1000 * retry.retry_delay().seconds() +
+                        retry.retry_delay().nanos() / 1'000'000);
+  }
+  return std::nullopt;
+}
+
+TEST(AccessTest, EveryRoleMayCallWhatTheTableSays) {
+  GuardedService guarded;
+  const auto* const service = google::protobuf::DescriptorPool::generated_pool()->FindServiceByName(
+      v1::ThunderheadService::service_full_name());
+  ASSERT_NE(service, nullptr);
+  ASSERT_EQ(static_cast<std::size_t>(service->method_count()), kMayCall.size());
+  for (int i = 0; i < service->method_count(); ++i) {
+    const std::string method = service->method(i)->name();
+    ASSERT_TRUE(kMayCall.contains(method)) << method << " has no row in this test";
+    EXPECT_TRUE(access::HasRule(method)) << method << " has no rule in access/rules.cc";
+    for (const std::string& role : kRoles) {
+      const bool may = role == "operator" || kMayCall.at(method).contains(role);
+      const grpc::StatusCode code = guarded.Ask(method, TokenOf(role));
+      EXPECT_EQ(code != grpc::StatusCode::PERMISSION_DENIED, may) << role << " " << method;
+      EXPECT_NE(code, grpc::StatusCode::UNAUTHENTICATED) << role << " " << method;
+    }
+    EXPECT_EQ(guarded.Ask(method, ""), grpc::StatusCode::UNAUTHENTICATED) << method;
+    EXPECT_EQ(guarded.Ask(method, "wrong"), grpc::StatusCode::UNAUTHENTICATED) << method;
+  }
+}
+
+TEST(AccessTest, RefusalsAndPrivilegedActsAreAudited) {
+  GuardedService guarded;
+  const auto created = guarded.Create();
+  guarded.Ask("ListStorms", "wrong-token-9");
+  guarded.Ask("CreateSession", TokenOf("viewer"));
+  v1::CloseSessionRequest close;
+  close.set_session_id(created.viewer_key());
+  v1::CloseSessionResponse closed;
+  EXPECT_EQ(guarded.Call("presenter", &Stub::CloseSession, close, &closed).error_code(),
+            grpc::StatusCode::PERMISSION_DENIED);
+  v1::UpdateSceneRequest update;
+  update.set_session_id(created.viewer_key());
+  v1::UpdateSceneResponse updated;
+  EXPECT_EQ(guarded.Call("presenter", &Stub::UpdateScene, update, &updated).error_code(),
+            grpc::StatusCode::PERMISSION_DENIED);
+  close.set_session_id(created.session_id());
+  EXPECT_TRUE(guarded.Call("presenter", &Stub::CloseSession, close, &closed).ok());
+  const std::vector<std::string> audit = guarded.Audit();
+  const auto has = [&](const std::string& part) { EXPECT_THAT(audit, Contains(HasSubstr(part))); };
+  has("identity=\"a-presenter\" role=presenter peer=\"\" act=CreateSession verdict=allowed");
+  has("identity=\"\" role=none peer=\"\" act=ListStorms verdict=refused reason=\"TOKEN_UNKNOWN\"");
+  has("role=viewer peer=\"\" act=CreateSession verdict=refused reason=\"ROLE_MAY_NOT\"");
+  has("act=CloseSession verdict=refused reason=\"NOT_PRESENTER\"");
+  has("act=UpdateScene verdict=refused reason=\"NOT_PRESENTER\"");
+  has("act=CloseSession verdict=allowed");
+  for (const std::string& line : audit) {
+    for (const std::string& secret : {std::string("token-9"), TokenOf("presenter"),
+                                      created.session_id(), created.viewer_key()}) {
+      EXPECT_THAT(line, Not(HasSubstr(secret)));
+    }
+  }
+}
+
+// An Interact call by hand.
+class HandCall {
+ public:
+  HandCall(Stub& stub, const std::string& role) {
+    if (!role.empty()) context_.AddMetadata("authorization", "Bearer " + TokenOf(role));
+    context_.set_deadline(std::chrono::system_clock::now() + kPatience);
+    call_ = stub.Interact(&context_);
+  }
+  ~HandCall() { context_.TryCancel(); }
+
+  v1::InteractResponse Join(const std::string& key) {
+    v1::InteractRequest request;
+    request.mutable_join()->set_session_key(key);
+    return Send(request, v1::InteractResponse::kJoined);
+  }
+  void Write(const v1::InteractRequest& request) { call_->Write(request); }
+  // The next message of that kind; empty if the call ends before.
+  v1::InteractResponse Send(const v1::InteractRequest& request,
+                            v1::InteractResponse::MessageCase kind) {
+    call_->Write(request);
+    v1::InteractResponse response;
+    while (call_->Read(&response)) {
+      if (response.message_case() == kind) return response;
+    }
+    return {};
+  }
+  grpc::Status End() {
+    v1::InteractResponse response;
+    while (call_->Read(&response)) {
+    }
+    return call_->Finish();
+  }
+
+ private:
+  grpc::ClientContext context_;
+  std::unique_ptr<grpc::ClientReaderWriter<v1::InteractRequest, v1::InteractResponse>> call_;
+};
+
+TEST(AccessTest, AViewersTokenDoesNotPresentByThePresentersKey) {
+  GuardedService guarded;
+  const auto created = guarded.Create();
+  HandCall viewer(guarded.stub(), "viewer");
+  EXPECT_EQ(viewer.Join(created.session_id()).joined().role(), v1::ROLE_VIEWER);
+  HandCall presenter(guarded.stub(), "presenter");
+  EXPECT_EQ(presenter.Join(created.session_id()).joined().role(), v1::ROLE_PRESENTER);
+  v1::InteractRequest rules;
+  rules.mutable_set_rules()->mutable_rules()->set_control_locked(true);
+  const auto refused = viewer.Send(rules, v1::InteractResponse::kRefused).refused();
+  EXPECT_EQ(refused.status().code(), grpc::StatusCode::PERMISSION_DENIED);
+  EXPECT_THAT(guarded.Audit(),
+              Contains(HasSubstr("identity=\"a-viewer\" role=viewer peer=\"\" act=SetRules "
+                                 "verdict=refused")));
+}
+
+TEST(AccessTest, WhoNeverJoinsIsCutOff) {
+  service::ServerOptions options;
+  options.limits.join_timeout = milliseconds(100);
+  GuardedService guarded(options);
+  HandCall silent(guarded.stub(), "viewer");
+  EXPECT_EQ(silent.End().error_code(), grpc::StatusCode::DEADLINE_EXCEEDED);
+  // Who has joined stays.
+  const auto created = guarded.Create();
+  HandCall joined(guarded.stub(), "presenter");
+  joined.Join(created.session_id());
+  std::this_thread::sleep_for(milliseconds(300));
+  v1::InteractRequest rules;
+  rules.mutable_set_rules()->mutable_rules()->set_control_locked(true);
+  rules.set_request_id(7);
+  EXPECT_TRUE(joined.Send(rules, v1::InteractResponse::kPresence).has_presence());
+}
+
+TEST(AccessTest, AnIdentityHasNoMoreSessionsThanItsShare) {
+  service::ServerOptions options;
+  options.sessions.max_sessions = 10;
+  options.sessions.max_sessions_per_owner = 3;
+  GuardedService guarded(options);
+  v1::CreateSessionResponse first;
+  for (int i = 0; i < 3; ++i) first = guarded.Create("presenter");
+  v1::CreateSessionRequest request;
+  *request.mutable_scene() = SmallScene();
+  v1::CreateSessionResponse response;
+  const grpc::Status refused = guarded.Call("presenter", &Stub::CreateSession, request, &response);
+  EXPECT_EQ(refused.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_THAT(refused.error_message(), HasSubstr("you already have the maximum of 3"));
+  EXPECT_TRUE(RetryOf(refused).has_value());
+  guarded.Create("operator");
+  v1::CloseSessionRequest close;
+  close.set_session_id(first.session_id());
+  v1::CloseSessionResponse closed;
+  ASSERT_TRUE(guarded.Call("presenter", &Stub::CloseSession, close, &closed).ok());
+  guarded.Create("presenter");
+}
+
+TEST(AccessTest, RequestsAreLimited) {
+  GuardedService guarded({}, {.requests_per_second = 5.0});
+  v1::ListStormsResponse storms;
+  grpc::Status status;
+  int taken = 0;
+  while (taken < 100) {
+    status = guarded.Call("viewer", &Stub::ListStorms, v1::ListStormsRequest(), &storms);
+    if (!status.ok()) break;
+    ++taken;
+  }
+  EXPECT_GE(taken, 10);
+  EXPECT_LT(taken, 20);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_TRUE(RetryOf(status).has_value());
+  // Another identity's are its own.
+  EXPECT_TRUE(guarded.Call("operator", &Stub::ListStorms, v1::ListStormsRequest(), &storms).ok());
+}
+
+TEST(AccessTest, MessagesOfACallAreLimited) {
+  GuardedService guarded({}, {.requests_per_second = 5.0});
+  const auto created = guarded.Create();
+  HandCall call(guarded.stub(), "viewer");
+  call.Join(created.viewer_key());
+  v1::InteractRequest request;
+  request.mutable_set_name()->set_name("Anna");
+  for (int i = 0; i < 30; ++i) call.Write(request);
+  const auto refused = call.Send(request, v1::InteractResponse::kRefused).refused();
+  EXPECT_EQ(refused.status().code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+}
+
+TEST(AccessTest, ViewersOfASessionAreLimitedAndPresentersComeIn) {
+  service::ServerOptions options;
+  options.limits.max_viewers_per_session = 2;
+  GuardedService guarded(options);
+  const auto created = guarded.Create();
+  HandCall ana(guarded.stub(), "viewer");
+  HandCall ben(guarded.stub(), "viewer");
+  EXPECT_TRUE(ana.Join(created.viewer_key()).has_joined());
+  EXPECT_TRUE(ben.Join(created.viewer_key()).has_joined());
+  HandCall third(guarded.stub(), "viewer");
+  EXPECT_FALSE(third.Join(created.viewer_key()).has_joined());
+  const grpc::Status refused = third.End();
+  EXPECT_EQ(refused.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_TRUE(RetryOf(refused).has_value());
+  HandCall presenter(guarded.stub(), "presenter");
+  EXPECT_TRUE(presenter.Join(created.session_id()).has_joined());
+}
+
+TEST(AccessTest, PicturesAreLimitedInPixelsSamplesAndTime) {
+  service::ServerOptions options;
+  options.limits.max_pixels = 64 * 36;
+  options.limits.max_samples = 64 * 36 * 16;
+  options.limits.max_render_time = milliseconds(200);
+  GuardedService guarded(options);
+  v1::RenderImageRequest request;
+  *request.mutable_scene() = SmallScene();
+  v1::RenderImageResponse response;
+  const auto render = [&] {
+    return guarded.Call("pipeline", &Stub::RenderImage, request, &response);
+  };
+  EXPECT_TRUE(render().ok());
+  // One that waits for another for too long is not begun.
+  FakeMachine& machine = *guarded.service().machine;
+  machine.drawing.Close();
+  std::thread first([&] {
+    v1::RenderImageResponse drawn;
+    EXPECT_TRUE(guarded.Call("operator", &Stub::RenderImage, request, &drawn).ok());
+  });
+  EXPECT_TRUE(machine.drawing.AwaitWaiting(1));
+  grpc::Status status;
+  std::thread second([&] { status = render(); });
+  std::this_thread::sleep_for(milliseconds(500));
+  machine.drawing.Open();
+  first.join();
+  second.join();
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_THAT(status.error_message(), HasSubstr("not ready after the 200 ms"));
+  request.mutable_scene()->mutable_rendering()->mutable_light_volume()->set_slices(17);
+  status = render();
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_THAT(status.error_message(), HasSubstr("39168 samples; this server allows 36864"));
+  EXPECT_TRUE(RetryOf(status).has_value());
+  *request.mutable_scene() = SmallScene();
+  request.mutable_scene()->mutable_output()->set_width_px(65);
+  EXPECT_THAT(render().error_message(), HasSubstr("2340 pixels; this server allows 2304"));
+  // A session's pictures too.
+  v1::CreateSessionRequest create;
+  *create.mutable_scene() = request.scene();
+  v1::CreateSessionResponse created;
+  EXPECT_EQ(guarded.Call("presenter", &Stub::CreateSession, create, &created).error_code(),
+            grpc::StatusCode::RESOURCE_EXHAUSTED);
+}
+
+// Opens calls until one is refused, and gives them back.
+TEST(AccessTest, AFloodOfStreamsIsRefusedAndOthersGoOn) {
+  GuardedService guarded({}, {.max_streams_per_identity = 100, .requests_per_second = 0});
+  const auto created = guarded.Create();
+  std::vector<std::unique_ptr<HandCall>> calls;
+  for (int i = 0; i < 100; ++i) {
+    calls.push_back(std::make_unique<HandCall>(guarded.stub(), "viewer"));
+    ASSERT_TRUE(calls.back()->Join(created.viewer_key()).has_joined()) << i;
+  }
+  for (int i = 0; i < 2000; ++i) {
+    HandCall call(guarded.stub(), "viewer");
+    const grpc::Status status = call.End();
+    ASSERT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << i;
+    ASSERT_TRUE(RetryOf(status).has_value());
+  }
+  HandCall presenter(guarded.stub(), "presenter");
+  EXPECT_TRUE(presenter.Join(created.session_id()).has_joined());
+  calls.clear();
+  // The server learns of it a little later.
+  const auto patience = std::chrono::steady_clock::now() + kPatience;
+  bool joins = false;
+  while (!joins && std::chrono::steady_clock::now() < patience) {
+    HandCall later(guarded.stub(), "viewer");
+    joins = later.Join(created.viewer_key()).has_joined();
+  }
+  EXPECT_TRUE(joins);
+}
+
+}  // namespace
+}  // namespace thunderhead::testing

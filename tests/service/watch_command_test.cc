@@ -1,0 +1,201 @@
+// `thunderhead watch` as a suite runs it: files arrive as they do in life.
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "absl/time/clock.h"
+#include "absl/time/time.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/service/product_folder.h"
+#include "tests/service/running_program.h"
+#include "tests/service/synthetic_run.h"
+#include "tests/support/temporary_folder.h"
+
+namespace thunderhead::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+void Pause(int milliseconds_long) { std::this_thread::sleep_for(milliseconds(milliseconds_long)); }
+
+class WatchCommand : public ::testing::Test {
+ protected:
+  WatchCommand() {
+    fs::create_directories(model_);
+    fs::create_directories(inbox_);
+    std::ofstream(west_) << R"({"camera": {"orbit": {"azimuthDeg": 270}}})";
+    std::ofstream(above_) << R"({"camera": {"topDown": {}}})";
+  }
+
+  std::vector<std::string> Arguments(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments = {"watch", inbox_,     "--product", products_, "--views",
+                                          west_,   above_,     "--size",    "32x18",   "--quality",
+                                          "fast",  "--device", "software"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
+  // The bytes of a whole file of the run.
+  std::string Bytes(int time) const {
+    WriteRunFile(model_, time);
+    return Contents(RunFile(model_, time));
+  }
+
+  void Put(int time, const std::string& bytes) const {
+    std::ofstream(RunFile(inbox_, time), std::ios::binary) << bytes;
+  }
+
+  // As a slow copy.
+  void PutSlowly(int time, const std::string& bytes) const {
+    std::ofstream file(RunFile(inbox_, time), std::ios::binary);
+    constexpr std::size_t kPieces = 5;
+    const std::size_t piece = bytes.size() / kPieces + 1;
+    for (std::size_t at = 0; at < bytes.size(); at += piece) {
+      file << bytes.substr(at, piece) << std::flush;
+      Pause(60);
+    }
+  }
+
+  static std::vector<std::string> Products(int times) {
+    std::vector<std::string> names;
+    for (int time = 0; time < times; ++time) {
+      for (const char* view : {"west", "above"}) {
+        names.push_back("inbox_2013052012_" + RunTime(time) + "_" + view + ".png");
+      }
+    }
+    return names;
+  }
+
+  const TemporaryFolder folder_;
+  const std::string model_ = folder_.File("model");
+  const std::string inbox_ = folder_.File("inbox");
+  const std::string products_ =
+      folder_.File("out/{storm}_{run:%Y%m%d%H}_{valid:%Y%m%d_%H%M}_{view}.png");
+  const std::string west_ = folder_.File("west.json");
+  const std::string above_ = folder_.File("above.json");
+  const std::string out_ = folder_.File("stdout");
+  const std::string err_ = folder_.File("stderr");
+};
+
+// What the issue asks for: slowly, in pieces, one cut short, one twice, and killed on the way.
+TEST_F(WatchCommand, FilesThatComeAsTheyDoInLifeAreEachDrawnOnce) {
+  constexpr int kFiles = 5;
+  const char* wanted = std::getenv("THUNDERHEAD_KILLS");
+  const int kills = wanted == nullptr ? 3 : std::atoi(wanted);
+  std::vector<std::string> bytes;
+  for (int time = 0; time < kFiles; ++time) bytes.push_back(Bytes(time));
+  std::jthread model([&] {
+    PutSlowly(1, bytes[1]);
+    Put(0, bytes[0]);
+    Put(2, bytes[2].substr(0, bytes[2].size() / 2));
+    PutSlowly(3, bytes[3]);
+    Pause(1500);
+    Put(1, bytes[1]);
+    PutSlowly(2, bytes[2]);
+    PutSlowly(4, bytes[4]);
+  });
+  const std::vector<std::string> arguments =
+      Arguments({"--ready", "age:0.4", "--until", std::to_string(kFiles), "files", "--movie",
+                 folder_.File("out/{storm}.webm")});
+  std::mt19937 random(5);
+  std::uniform_int_distribution<int> moment(200, 2500);
+  std::string recorded;
+  for (int i = 0; i < kills; ++i) {
+    RunningProgram program(PROGRAM, arguments, out_, err_);
+    Pause(moment(random));
+    program.Signal(SIGKILL);
+    program.Wait();
+    ExpectWholePictures(folder_.File("out"));
+  }
+  EXPECT_EQ(RunningProgram(PROGRAM, arguments, out_, err_).Wait().code, 0) << Contents(err_);
+  std::vector<std::string> products = Products(kFiles);
+  products.push_back("inbox.webm");
+  // ExpectFinished decodes pictures and checks hashes, the movie's too.
+  ExpectFinished(folder_.File("out"), products);
+  // A new look draws nothing, and neither does a file that is copied in once more.
+  Put(1, bytes[1]);
+  const std::string before = folder_.File("before");
+  EXPECT_EQ(RunningProgram(PROGRAM, arguments, before, err_).Wait().code, 0);
+  EXPECT_THAT(Contents(before), Not(HasSubstr(" ms)")));
+}
+
+TEST_F(WatchCommand, AMarkedFileIsDrawnAndAnUnmarkedOneIsNot) {
+  Put(0, Bytes(0));
+  Put(1, Bytes(1));
+  std::ofstream(folder_.File("inbox/wrfoutReady_d01_2013-05-20_20:10:00")) << "";
+  const std::vector<std::string> arguments =
+      Arguments({"--ready", "marker:wrfoutReady_*", "--files", "wrfout_d01_*", "--until", "1"});
+  EXPECT_EQ(RunningProgram(PROGRAM, arguments, out_, err_).Wait().code, 0) << Contents(err_);
+  std::vector<std::string> second = Products(2);
+  second.erase(second.begin(), second.begin() + 2);
+  ExpectFinished(folder_.File("out"), second);
+}
+
+TEST_F(WatchCommand, AtTheEndItSaysWhatIsMissing) {
+  Put(0, Bytes(0));
+  const std::string cut = Bytes(1);
+  Put(1, cut.substr(0, cut.size() / 2));
+  std::ofstream(folder_.File("inbox/README")) << "no storm";
+  const auto in_s = [](int seconds) {
+    return absl::FormatTime("%Y-%m-%dT%H:%M:%SZ", absl::Now() + absl::Seconds(seconds),
+                            absl::UTCTimeZone());
+  };
+  EXPECT_EQ(RunningProgram(PROGRAM, Arguments({"--ready", "age:0", "--until", in_s(6)}), out_, err_)
+                .Wait()
+                .code,
+            75);
+  EXPECT_THAT(Contents(err_),
+              HasSubstr("thunderhead: waits until it changes: " + RunFile(inbox_, 1)));
+  EXPECT_THAT(Contents(err_),
+              HasSubstr("thunderhead: left aside until it changes: " + inbox_ + "/README"));
+  EXPECT_THAT(Contents(err_), HasSubstr("1 files are not complete"));
+  ExpectFinished(folder_.File("out"), Products(1));
+  WriteRunFile(inbox_, 1, 1.0, true);
+  EXPECT_EQ(RunningProgram(PROGRAM, Arguments({"--ready", "age:0", "--until", in_s(6)}), out_, err_)
+                .Wait()
+                .code,
+            65);
+  EXPECT_THAT(Contents(err_), HasSubstr("holds nothing but fill values"));
+  ExpectFinished(folder_.File("out"), Products(1));
+}
+
+TEST_F(WatchCommand, ASignalEndsItWhileItWaits) {
+  RunningProgram program(PROGRAM, Arguments({}), out_, err_);
+  while (program.Runs() && !fs::exists(folder_.File("out/manifest.jsonl"))) Pause(5);
+  Pause(100);
+  const auto begun = std::chrono::steady_clock::now();
+  program.Signal(SIGTERM);
+  EXPECT_EQ(program.Wait().code, 75);
+  EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(10)) << "slept on";
+  EXPECT_THAT(Contents(err_), HasSubstr("thunderhead: interrupted: the products of 0 files"));
+}
+
+TEST_F(WatchCommand, WhatIsWrongIsToldBeforeAnyFileComes) {
+  const auto expect = [&](int code, const std::vector<std::string>& more, const std::string& text) {
+    fs::remove(err_);
+    EXPECT_EQ(RunningProgram(PROGRAM, Arguments(more), out_, err_).Wait().code, code) << text;
+    EXPECT_THAT(Contents(err_), HasSubstr(text));
+  };
+  expect(64, {"--ready", "soon"}, "--ready is 'soon'");
+  expect(64, {"--until", "soon"}, "--until is 'soon'");
+  expect(64, {"--until", "5", "hours"}, "--until is '5 hours'");
+  expect(64, {"--product", folder_.File("{time}_{view}.png")}, "--product");
+  std::ofstream(above_) << R"({"sky": {"turbidity": 1000}})";
+  expect(64, {}, "turbidity");
+  fs::remove_all(inbox_);
+  std::ofstream(above_) << "{}";
+  expect(75, {}, "there is no such folder");
+}
+
+}  // namespace
+}  // namespace thunderhead::testing

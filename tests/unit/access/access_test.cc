@@ -1,0 +1,303 @@
+// Who may enter: tokens and their file, JWTs, quotas, and the audit.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <jwt.h>
+#include <openssl/evp.h>
+#include <openssl/pem.h>
+#include <openssl/rsa.h>
+#include <openssl/sha.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
+#include "access/door.h"
+#include "access/jwt_key.h"
+#include "access/rules.h"
+#include "access/secret_file.h"
+#include "access/token_list.h"
+#include "base/error_details.h"
+#include "tests/support/temporary_folder.h"
+
+namespace thunderhead::access {
+namespace {
+
+using std::chrono::seconds;
+using std::chrono::system_clock;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string Sha256(const std::string& text) {
+  std::string digest(SHA256_DIGEST_LENGTH, '\0');
+  SHA256(reinterpret_cast<const unsigned char*>(text.data()), text.size(),
+         reinterpret_cast<unsigned char*>(digest.data()));
+  return absl::BytesToHexString(digest);
+}
+
+std::string LineOf(const std::string& name, const std::string& role, const std::string& token) {
+  return absl::StrCat(name, " ", role, " ", Sha256(token), "\n");
+}
+
+class SecretFile {
+ public:
+  explicit SecretFile(const std::string& text) { Write(text); }
+  void Write(const std::string& text) {
+    // In one step, as an administrator should.
+    const std::string next = folder_.File("next");
+    std::ofstream(next) << text;
+    std::filesystem::permissions(next, std::filesystem::perms::owner_read);
+    std::filesystem::rename(next, Path());
+  }
+  std::string Path() const { return folder_.File("tokens"); }
+
+ private:
+  testing::TemporaryFolder folder_;
+};
+
+TEST(TokenListTest, FindsTheNameAndRoleOfAToken) {
+  const auto list = TokenList::Parse("# people\n\n" + LineOf("anna", "presenter", "one") +
+                                     LineOf("night-run", "pipeline", "two"));
+  ASSERT_TRUE(list.ok()) << list.status();
+  const auto anna = list->Find("one");
+  ASSERT_TRUE(anna.has_value());
+  EXPECT_EQ(anna->name, "anna");
+  EXPECT_EQ(anna->role, Role::kPresenter);
+  EXPECT_EQ(list->Find("two")->role, Role::kPipeline);
+  EXPECT_FALSE(list->Find("three").has_value());
+  EXPECT_FALSE(list->Find("").has_value());
+  // The file's own content is no token.
+  EXPECT_FALSE(list->Find(Sha256("one")).has_value());
+}
+
+TEST(TokenListTest, WrongLinesAreNamedAndNotRepeated) {
+  const std::string good = LineOf("anna", "viewer", "one");
+  const auto complaint = [&](const std::string& line) {
+    return std::string(TokenList::Parse(good + line).status().message());
+  };
+  EXPECT_THAT(complaint("ben viewer hunter2"), HasSubstr("line 2"));
+  EXPECT_THAT(complaint("ben viewer hunter2"), Not(HasSubstr("hunter2")));
+  EXPECT_THAT(complaint("ben king " + Sha256("x")), HasSubstr("'king' is no role"));
+  EXPECT_THAT(complaint("ben viewer"), HasSubstr("three words"));
+  EXPECT_THAT(std::string(TokenList::Parse("# nobody\n").status().message()),
+              HasSubstr("nobody could enter"));
+}
+
+TEST(TokenFileTest, IsReadAgainWhenItChanges) {
+  SecretFile file(LineOf("anna", "viewer", "one"));
+  const auto tokens = TrustTokens(file.Path());
+  ASSERT_TRUE(tokens.ok()) << tokens.status();
+  EXPECT_TRUE((*tokens)->Identify({"one", ""}).ok());
+  file.Write(LineOf("ben", "viewer", "two"));
+  EXPECT_TRUE(absl::IsUnauthenticated((*tokens)->Identify({"one", ""}).status()));
+  EXPECT_TRUE((*tokens)->Identify({"two", ""}).ok());
+  // A slip locks nobody out.
+  file.Write("ben viewer");
+  EXPECT_TRUE((*tokens)->Identify({"two", ""}).ok());
+}
+
+TEST(TokenFileTest, AFileThatOthersMayReadOrWriteIsRefused) {
+  SecretFile file(LineOf("anna", "viewer", "one"));
+  for (const auto wrong : {std::filesystem::perms::others_read, std::filesystem::perms::group_write,
+                           std::filesystem::perms::others_write}) {
+    std::filesystem::permissions(file.Path(), std::filesystem::perms::owner_read | wrong);
+    EXPECT_THAT(std::string(TrustTokens(file.Path()).status().message()), HasSubstr("chmod"))
+        << static_cast<int>(wrong);
+  }
+  std::filesystem::permissions(
+      file.Path(), std::filesystem::perms::owner_read | std::filesystem::perms::group_read);
+  EXPECT_TRUE(TrustTokens(file.Path()).ok());
+}
+
+struct Claims {
+  std::string subject = "anna";
+  std::string role = "presenter";
+  std::string issuer;
+  std::string audience;
+  long expires_in_s = 600;
+  long begins_in_s = 0;
+};
+
+class JwtTest : public ::testing::Test {
+ protected:
+  static std::string Sign(const Claims& claims, jwt_alg_t algorithm, const std::string& key) {
+    jwt_t* jwt = nullptr;
+    jwt_new(&jwt);
+    const long now = std::time(nullptr);
+    if (!claims.subject.empty()) jwt_add_grant(jwt, "sub", claims.subject.c_str());
+    if (!claims.role.empty()) jwt_add_grant(jwt, "thunderhead_role", claims.role.c_str());
+    if (!claims.issuer.empty()) jwt_add_grant(jwt, "iss", claims.issuer.c_str());
+    if (!claims.audience.empty()) jwt_add_grant(jwt, "aud", claims.audience.c_str());
+    if (claims.expires_in_s != 0) jwt_add_grant_int(jwt, "exp", now + claims.expires_in_s);
+    if (claims.begins_in_s != 0) jwt_add_grant_int(jwt, "nbf", now + claims.begins_in_s);
+    const bool none = algorithm == JWT_ALG_NONE;
+    EXPECT_EQ(jwt_set_alg(jwt, algorithm,
+                          none ? nullptr : reinterpret_cast<const unsigned char*>(key.data()),
+                          none ? 0 : static_cast<int>(key.size())),
+              0);
+    char* text = jwt_encode_str(jwt);
+    std::string token = text == nullptr ? "" : text;
+    std::free(text);
+    jwt_free(jwt);
+    return token;
+  }
+
+  std::string Sign(const Claims& claims = {}) const { return Sign(claims, JWT_ALG_HS256, secret_); }
+
+  // Empty if the token is believed.
+  std::string Complaint(const std::string& token, const JwtClaims& wanted = {}) const {
+    const auto identity = JwtKey::Parse(secret_)->Verify(token, wanted, system_clock::now());
+    return std::string(identity.status().message());
+  }
+
+  const std::string secret_ = std::string(32, 's');
+};
+
+TEST_F(JwtTest, ASignedTokenIsBelieved) {
+  const auto identity = JwtKey::Parse(secret_ + "\n")->Verify(Sign(), {}, system_clock::now());
+  ASSERT_TRUE(identity.ok()) << identity.status();
+  EXPECT_EQ(identity->name, "anna");
+  EXPECT_EQ(identity->role, Role::kPresenter);
+  ASSERT_TRUE(identity->expires_at.has_value());
+}
+
+TEST_F(JwtTest, ForgedTokensAreNot) {
+  EXPECT_THAT(Complaint(Sign({}, JWT_ALG_HS256, std::string(32, 'x'))), HasSubstr("not signed"));
+  EXPECT_THAT(Complaint(Sign({}, JWT_ALG_NONE, "")), HasSubstr("not signed"));
+  EXPECT_THAT(Complaint(Sign({}, JWT_ALG_HS512, std::string(64, 's'))), HasSubstr("not signed"));
+  // Another payload under the signature.
+  std::string token = Sign();
+  token[token.find('.') + 5] ^= 1;
+  EXPECT_THAT(Complaint(token), HasSubstr("not signed"));
+  // Without its signature, as with alg none.
+  EXPECT_THAT(Complaint(token.substr(0, token.rfind('.') + 1)), HasSubstr("not signed"));
+  EXPECT_THAT(Complaint("nonsense"), HasSubstr("not signed"));
+  EXPECT_THAT(Complaint(std::string(10'000, 'a')), HasSubstr("too long"));
+}
+
+TEST_F(JwtTest, TimesAndClaimsAreChecked) {
+  EXPECT_EQ(Complaint(Sign({.expires_in_s = -10})), "");  // within the clocks' difference
+  EXPECT_THAT(Complaint(Sign({.expires_in_s = -60})), HasSubstr("has expired"));
+  EXPECT_THAT(Complaint(Sign({.expires_in_s = 0})), HasSubstr("no time at which it expires"));
+  EXPECT_THAT(Complaint(Sign({.begins_in_s = 120})), HasSubstr("not valid yet"));
+  EXPECT_THAT(Complaint(Sign({.subject = ""})), HasSubstr("(sub)"));
+  EXPECT_THAT(Complaint(Sign({.role = ""})), HasSubstr("no role"));
+  EXPECT_THAT(Complaint(Sign({.role = "king"})), HasSubstr("no role"));
+  EXPECT_THAT(Complaint(Sign(), {.issuer = "us"}), HasSubstr("(iss)"));
+  EXPECT_EQ(Complaint(Sign({.issuer = "us"}), {.issuer = "us"}), "");
+  EXPECT_THAT(Complaint(Sign({.audience = "mail"}), {.audience = "storms"}), HasSubstr("(aud)"));
+  EXPECT_EQ(Complaint(Sign({.audience = "storms"}), {.audience = "storms"}), "");
+}
+
+TEST_F(JwtTest, APublicKeyIsForRs256Alone) {
+  const std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)> pair(EVP_RSA_gen(2048), &EVP_PKEY_free);
+  const auto pem = [&](auto write) {
+    const std::unique_ptr<BIO, decltype(&BIO_free)> bytes(BIO_new(BIO_s_mem()), &BIO_free);
+    write(bytes.get());
+    char* text = nullptr;
+    const long size = BIO_get_mem_data(bytes.get(), &text);
+    return std::string(text, static_cast<std::size_t>(size));
+  };
+  const std::string public_key = pem([&](BIO* out) { PEM_write_bio_PUBKEY(out, pair.get()); });
+  const std::string private_key = pem([&](BIO* out) {
+    PEM_write_bio_PrivateKey(out, pair.get(), nullptr, nullptr, 0, nullptr, nullptr);
+  });
+  const auto key = JwtKey::Parse(public_key);
+  ASSERT_TRUE(key.ok()) << key.status();
+  const auto now = system_clock::now();
+  EXPECT_TRUE(key->Verify(Sign({}, JWT_ALG_RS256, private_key), {}, now).ok());
+  // Everybody knows the public key, so nobody may sign with it as if it were a secret.
+  EXPECT_FALSE(key->Verify(Sign({}, JWT_ALG_HS256, public_key), {}, now).ok());
+  EXPECT_FALSE(key->Verify(Sign({}, JWT_ALG_NONE, ""), {}, now).ok());
+  EXPECT_THAT(std::string(JwtKey::Parse(private_key).status().message()),
+              HasSubstr("no public RSA key"));
+  EXPECT_THAT(std::string(JwtKey::Parse("short").status().message()), HasSubstr("32"));
+}
+
+TEST(IdentityTest, ANetworkIsWhatOneClientHas) {
+  EXPECT_EQ(NetworkOf("192.0.2.7:51234"), "192.0.2.7");
+  EXPECT_EQ(NetworkOf("[2001:db8:1:2:3:4:5:6]:80"), "2001:db8:1:2::/64");
+  EXPECT_EQ(NetworkOf("[::ffff:192.0.2.7]:80"), "192.0.2.7");
+  EXPECT_EQ(NetworkOf(""), "");
+}
+
+TEST(QuotasTest, RequestsComeBackWithTime) {
+  Quotas quotas({.requests_per_second = 10.0});
+  const auto start = Quotas::Time();
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(quotas.TakeRequest("anna", start).ok()) << i;
+  const absl::Status refused = quotas.TakeRequest("anna", start);
+  EXPECT_TRUE(absl::IsResourceExhausted(refused));
+  EXPECT_EQ(base::DetailsOf(refused).retry_after, std::chrono::milliseconds(100));
+  EXPECT_TRUE(quotas.TakeRequest("ben", start).ok());
+  EXPECT_TRUE(quotas.TakeRequest("anna", start + std::chrono::milliseconds(100)).ok());
+}
+
+TEST(QuotasTest, StreamsAreGivenBack) {
+  Quotas quotas({.max_streams = 3, .max_streams_per_identity = 2});
+  auto one = quotas.TakeStream("anna");
+  auto two = quotas.TakeStream("anna");
+  EXPECT_TRUE(absl::IsResourceExhausted(quotas.TakeStream("anna").status()));
+  auto three = quotas.TakeStream("ben");
+  EXPECT_TRUE(absl::IsResourceExhausted(quotas.TakeStream("carl").status()));
+  one->reset();
+  EXPECT_TRUE(quotas.TakeStream("carl").ok());
+}
+
+TEST(AuditTest, ALineCannotBeForged) {
+  std::vector<std::string> lines;
+  Audit audit([&](const std::string& line) { lines.push_back(line); });
+  audit.Write({"an\"na\nverdict=allowed", "viewer", "192.0.2.7:1", "CloseSession"},
+              base::WithDetails(absl::PermissionDeniedError("the key 'secret' is wrong"),
+                                {.reason = "NOT_PRESENTER"}),
+              Audit::Clock::time_point(seconds(1'700'000'000)));
+  EXPECT_THAT(lines, ElementsAre("audit time=2023-11-14T22:13:20.000Z "
+                                 "identity=\"an\\x22na\\x0averdict=allowed\" role=viewer "
+                                 "peer=\"192.0.2.7:1\" act=CloseSession verdict=refused "
+                                 "reason=\"NOT_PRESENTER\""));
+}
+
+TEST(AuditTest, AFloodOfRefusalsIsCounted) {
+  std::vector<std::string> lines;
+  Audit audit([&](const std::string& line) { lines.push_back(line); });
+  const auto now = Audit::Clock::time_point(seconds(1'700'000'000));
+  for (int i = 0; i < 1000; ++i)
+    audit.Write({"", "", "", "X"}, absl::UnauthenticatedError(""), now);
+  EXPECT_EQ(lines.size(), 50U);
+  audit.Write({"", "", "", "X"}, absl::OkStatus(), now);
+  EXPECT_EQ(lines.size(), 51U);
+  audit.Write({"", "", "", "X"}, absl::UnauthenticatedError(""), now + seconds(1));
+  EXPECT_THAT(lines.back(), HasSubstr("left_out=950"));
+}
+
+TEST(DoorTest, ATokenThatIsTakenAwayEndsWhatItOpened) {
+  SecretFile file(LineOf("anna", "viewer", "one"));
+  Door door(*TrustTokens(file.Path()), std::make_shared<Audit>([](const std::string&) {}), {});
+  const auto caller = door.Admit("Interact", CallKind::kStream, {"one", "192.0.2.7:1"});
+  ASSERT_TRUE(caller.ok()) << caller.status();
+  const auto now = std::chrono::steady_clock::now();
+  EXPECT_TRUE((*caller)->StillKnown(now).ok());
+  file.Write(LineOf("anna", "operator", "one"));
+  EXPECT_TRUE(absl::IsUnauthenticated((*caller)->StillKnown(now + seconds(2))));
+  file.Write(LineOf("ben", "viewer", "two"));
+  EXPECT_TRUE(absl::IsUnauthenticated((*caller)->StillKnown(now + seconds(4))));
+}
+
+TEST(DoorTest, ItsOwnTokenIsAnOperators) {
+  SecretFile file(LineOf("anna", "viewer", "one"));
+  Door door(*TrustTokens(file.Path()), std::make_shared<Audit>([](const std::string&) {}), {});
+  EXPECT_TRUE(door.Admit("RenderImage", CallKind::kUnary, {door.OwnToken(), ""}).ok());
+  std::string other = door.OwnToken();
+  other.back() = other.back() == '0' ? '1' : '0';
+  EXPECT_FALSE(door.Admit("RenderImage", CallKind::kUnary, {other, ""}).ok());
+}
+
+TEST(RulesTest, WhatHasNoRuleIsNobodys) {
+  EXPECT_FALSE(HasRule("NewCall"));
+  EXPECT_FALSE(MayCall(Role::kOperator, "NewCall"));
+}
+
+}  // namespace
+}  // namespace thunderhead::access

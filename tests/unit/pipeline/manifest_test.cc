@@ -1,0 +1,139 @@
+#include "pipeline/manifest.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include "base/whole_file.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "pipeline/plan.h"
+#include "pipeline/sha256.h"
+#include "tests/support/temporary_folder.h"
+
+namespace thunderhead::pipeline {
+namespace {
+
+using ::testing::HasSubstr;
+
+ManifestEntry Entry(const std::string& sha256) {
+  ManifestEntry entry;
+  entry.bytes = 12;
+  entry.sha256 = sha256;
+  entry.storm = "supercell";
+  entry.valid = "2013-05-20T19:40:00Z";
+  entry.run = "2013-05-20T12:00:00Z";
+  entry.lead_s = 27600.0;
+  entry.view = "west";
+  entry.scene_sha256 = "5ce7e";
+  entry.version = "1.2.3";
+  entry.device = "software";
+  entry.milliseconds = 250.5;
+  entry.input = {"/data/wrfout", 99, 1'700'000'000'123'456'789, "1f"};
+  return entry;
+}
+
+class ManifestTest : public ::testing::Test {
+ protected:
+  std::string Text() const { return *base::ReadWholeFile(path_); }
+
+  const testing::TemporaryFolder folder_;
+  const std::string path_ = folder_.File("manifest.jsonl");
+};
+
+TEST(Sha256Test, IsThatOfTheStandard) {
+  // FIPS 180-2, appendix B.1.
+  EXPECT_EQ(Sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(Sha256OfFile("/no/such/file").status().code(), absl::StatusCode::kUnavailable);
+}
+
+TEST_F(ManifestTest, AnEntryComesBackWhole) {
+  const auto back = FromLine(ToLine(Entry("abc")));
+  ASSERT_TRUE(back.ok()) << back.status();
+  EXPECT_EQ(ToLine(*back), ToLine(Entry("abc")));
+  EXPECT_EQ(back->input.modified_ns, 1'700'000'000'123'456'789);
+  EXPECT_EQ(back->lead_s, 27600.0);
+  EXPECT_FALSE(back->estimated_error.has_value());
+  EXPECT_EQ(FromLine("{}").status().code(), absl::StatusCode::kInvalidArgument);
+}
+
+TEST_F(ManifestTest, EntriesOutliveTheProcessAndTheLastOfAProductCounts) {
+  {
+    auto manifest = *Manifest::Open(path_, {});
+    ASSERT_TRUE(manifest.Record(folder_.File("a.png"), Entry("1")).ok());
+    ASSERT_TRUE(manifest.Record(folder_.File("sub/b.png"), Entry("2")).ok());
+    ASSERT_TRUE(manifest.Record(folder_.File("a.png"), Entry("3")).ok());
+    // Still the only one after the file was replaced.
+    EXPECT_EQ(Manifest::Open(path_, {}).status().code(), absl::StatusCode::kUnavailable);
+    ASSERT_TRUE(manifest.Record(folder_.File("c.png"), Entry("4")).ok());
+  }
+  const auto manifest = *Manifest::Open(path_, {});
+  EXPECT_EQ(manifest.Find(folder_.File("a.png"))->sha256, "3");
+  EXPECT_EQ(manifest.Find(folder_.File("sub/b.png"))->file, "sub/b.png");
+  EXPECT_EQ(manifest.Find(folder_.File("c.png"))->sha256, "4");
+  EXPECT_EQ(manifest.Find(folder_.File("d.png")), nullptr);
+  const std::string text = Text();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
+  EXPECT_FALSE(std::filesystem::exists(base::PartialPath(path_)));
+}
+
+TEST_F(ManifestTest, ATornLastLineIsDroppedAndAnotherIsAnError) {
+  const std::string first = ToLine(Entry("1")) + "\n";
+  const std::string second = ToLine(Entry("2"));
+  for (const std::size_t length : {std::size_t{1}, second.size() / 2, second.size()}) {
+    std::ofstream(path_) << first << second.substr(0, length);
+    auto manifest = Manifest::Open(path_, {});
+    ASSERT_TRUE(manifest.ok()) << manifest.status();
+    EXPECT_EQ(Text(), first);
+    ASSERT_TRUE(manifest->Record(folder_.File("c.png"), Entry("3")).ok());
+    EXPECT_EQ(Text().size(),
+              first.size() + ToLine(*manifest->Find(folder_.File("c.png"))).size() + 1);
+  }
+  std::ofstream(path_) << second.substr(0, 20) << "\n" << first;
+  const auto broken = Manifest::Open(path_, {});
+  EXPECT_EQ(broken.status().code(), absl::StatusCode::kDataLoss);
+  EXPECT_THAT(std::string(broken.status().message()), HasSubstr("manifest.jsonl: line 1 is not"));
+}
+
+TEST_F(ManifestTest, ProductsOfOtherShardsCount) {
+  const std::string other = folder_.File("manifest.1-of-2.jsonl");
+  {
+    auto manifest = *Manifest::Open(other, {});
+    ASSERT_TRUE(manifest.Record(folder_.File("a.png"), Entry("1")).ok());
+    ASSERT_TRUE(manifest.Record(folder_.File("b.png"), Entry("2")).ok());
+  }
+  auto manifest = *Manifest::Open(path_, {other});
+  ASSERT_TRUE(manifest.Record(folder_.File("b.png"), Entry("3")).ok());
+  EXPECT_EQ(manifest.Find(folder_.File("a.png"))->sha256, "1");
+  EXPECT_EQ(manifest.Find(folder_.File("b.png"))->sha256, "3");
+}
+
+TEST_F(ManifestTest, AFolderThatMayNotBeWrittenToIsConfiguration) {
+  EXPECT_EQ(Manifest::Open(folder_.File("none/manifest.jsonl"), {}).status().code(),
+            absl::StatusCode::kFailedPrecondition);
+}
+
+TEST(MadeAlikeTest, ByScenePathSizeTimeVersionOrTheInputsHash) {
+  ManifestEntry entry = Entry("1");
+  InputFile input = entry.input;
+  input.sha256 = "";
+  const auto never = []() -> std::string {
+    ADD_FAILURE() << "hashed";
+    return "";
+  };
+  const auto same = [] { return "1f"; };
+  const auto other = [] { return "2f"; };
+  EXPECT_TRUE(MadeAlike(entry, "5ce7e", "1.2.3", input, never));
+  EXPECT_FALSE(MadeAlike(entry, "other", "1.2.3", input, never));
+  EXPECT_FALSE(MadeAlike(entry, "5ce7e", "1.2.4", input, never));
+  input.modified_ns += 1;
+  EXPECT_TRUE(MadeAlike(entry, "5ce7e", "1.2.3", input, same));
+  EXPECT_FALSE(MadeAlike(entry, "5ce7e", "1.2.3", input, other));
+  input.bytes += 1;
+  EXPECT_FALSE(MadeAlike(entry, "5ce7e", "1.2.3", input, never));
+  input = entry.input;
+  input.sha256 = "2f";
+  EXPECT_FALSE(MadeAlike(entry, "5ce7e", "1.2.3", input, never));
+}
+
+}  // namespace
+}  // namespace thunderhead::pipeline
