@@ -57,6 +57,7 @@ class InteriorsTest : public testing::Test {
   static std::vector<double> Draw(const Eye& eye, int slices = 128) {
     scene::Scene scene;
     scene.output = {kWidth_px, kHeight_px, 90};
+    scene.sun = {255.0, 35.0};
     scene::SpotterCamera camera;
     camera.place_m = glm::dvec2(eye.place_m);
     camera.eye_height_m = eye.place_m.z;

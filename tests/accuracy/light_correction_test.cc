@@ -53,6 +53,7 @@ class LightCorrection : public testing::Test {
                                        .distance_m = 1.5e4,
                                        .field_of_view_deg = 30.0};
     scene_.output = {32, 24, 88};
+    scene_.sun = {255.0, 35.0};
     renderer_ = std::make_unique<renderers::SceneRenderer>();
   }
 

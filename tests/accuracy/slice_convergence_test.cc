@@ -25,6 +25,7 @@ TEST(SliceConvergence, PaperIsFirstOrderConsistentSecond) {
   scene::Scene scene = test_support::PlainScene();
   test_support::SetPath(&scene.rendering.technique, test_support::kHalfAngle);
   scene.output = {48, 48, 88};
+  scene.sun = {255.0, 35.0};
   scene.sky = {0.0, 0.0};
   const auto fields = SmoothCloud(5.0);
   scene.camera = scene::Framing(scene::OrbitCamera(), fields->grid.low_corner_m,

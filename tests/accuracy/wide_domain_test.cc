@@ -40,6 +40,7 @@ class WideDomainTest : public testing::Test {
   // Looks from `elevation_deg`, or from that of the default.
   scene::Scene SceneFrom(std::optional<double> elevation_deg, glm::ivec2 size_px) const {
     scene::Scene scene;
+    scene.sun = {255.0, 35.0};
     scene.output = {size_px.x, size_px.y, 90};
     const volume::WorldBox box = volume::VisibleBox(*fields_, physics::SizeSource::kModel);
     scene::OrbitCamera camera;

@@ -34,7 +34,7 @@ TEST(Program, FailsWhenAUniformIsSetThatItsShadersDoNotDeclare) {
   const auto context = test_support::OpenContext();
   ASSERT_TRUE(context.ok());
   const auto program =
-      Program::Link(ProgramSource::WholeTarget("post/tone_map.frag", {{"FILMIC", 0}}));
+      Program::Link(ProgramSource::WholeTarget("post/tone_map.frag", {{"FILMIC", 0}, {"NOISE", 0}}));
   ASSERT_TRUE(program.ok()) << program.status();
   program->Set(uniform::gain, glm::vec3(1.0F));
   EXPECT_DEATH(program->Set(Uniform<float>{"gian"}, 1.0F),
@@ -45,7 +45,7 @@ TEST(Program, NamesADefineThatItsShadersDoNotMention) {
   const auto context = test_support::OpenContext();
   ASSERT_TRUE(context.ok());
   const auto program = Program::Link(
-      ProgramSource::WholeTarget("post/tone_map.frag", {{"FILMIC", 0}, {"FILMICK", 1}}));
+      ProgramSource::WholeTarget("post/tone_map.frag", {{"FILMIC", 0}, {"FILMICK", 1}, {"NOISE", 0}}));
   ASSERT_FALSE(program.ok());
   EXPECT_THAT(std::string(program.status().message()), HasSubstr("tone_map.frag"));
   EXPECT_THAT(std::string(program.status().message()), HasSubstr("FILMICK"));

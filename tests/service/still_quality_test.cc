@@ -73,7 +73,7 @@ class StillQuality : public ::testing::Test {
     ASSERT_TRUE(fields.ok()) << fields.status();
     service::FrameCondensate(message, **fields);
     const scene::Scene scene = service::ToScene(message);
-    const auto source = session::MakeGlFrameSource("auto");
+    const auto source = session::GlFrameSources("auto")(nullptr);
     ASSERT_TRUE(source.ok()) << source.status();
     auto drawn = (*source)->Draw(scene, *fields, {});
     ASSERT_TRUE(drawn.ok()) << drawn.status();
