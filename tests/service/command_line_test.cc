@@ -337,7 +337,7 @@ TEST_F(CommandLineTest, ExportWritesGridsAndTheView) {
   EXPECT_DOUBLE_EQ(camera.at("forward").list_value().values(2).number_value(), -1.0);
   const auto& sun = json.fields().at("sun").struct_value().fields();
   EXPECT_NEAR(sun.at("towards").list_value().values(2).number_value(),
-              std::sin(35.0 * std::numbers::pi / 180.0), 1e-9);
+              std::sin(18.0 * std::numbers::pi / 180.0), 1e-9);
   EXPECT_EQ(json.fields().at("image").struct_value().fields().at("widthPx").number_value(), 80.0);
   EXPECT_EQ(json.fields().at("grids").list_value().values_size(), 5);
 }
