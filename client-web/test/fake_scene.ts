@@ -32,8 +32,9 @@ const FALSE_COLORS = [
   { red: 0, green: 1, blue: 0 },
 ] as const;
 
-export function describeStorm(stormId: string, timeIndex: number) {
-  const count = stormId === "supercell" ? 4 : 1;
+// `later`: times that have come since the start.
+export function describeStorm(stormId: string, timeIndex: number, later = 0) {
+  const count = stormId === "supercell" ? 4 + later : 1;
   return create(StormDescriptionSchema, {
     id: stormId,
     title: stormId,

@@ -18,6 +18,7 @@ export interface FakeCall {
 export class FakeService {
   readonly sessions: FakeSession[] = [];
   #count = 0;
+  #later = 0;
   readonly #storms = [
     { id: "supercell", title: "Supercell that is not there", timeCount: 4, deletable: false },
     { id: "single", title: "One time only", timeCount: 1, deletable: false },
@@ -28,6 +29,13 @@ export class FakeService {
     readonly draw: Draw,
     readonly tracing = false,
   ) {}
+
+  // The supercell has another time, and there is another storm, as if their files had arrived.
+  grow(): void {
+    this.#later += 1;
+    this.#storms.push({ id: "late", title: "Came late", timeCount: 1, deletable: false });
+    for (const session of this.sessions) session.catalogueChanged(BigInt(this.#later));
+  }
 
   readonly routes = (router: ConnectRouter): void => {
     router.service(ThunderheadService, {
@@ -55,7 +63,9 @@ export class FakeService {
         this.#storms.splice(at, 1);
         return {};
       },
-      describeStorm: ({ stormId, timeIndex }) => ({ storm: describeStorm(stormId, timeIndex) }),
+      describeStorm: ({ stormId, timeIndex }) => ({
+        storm: describeStorm(stormId, timeIndex, this.#later),
+      }),
       createSession: ({ scene }) => {
         this.#count += 1;
         const session = new FakeSession(

@@ -417,6 +417,10 @@ export class FakeSession {
     this.#tellAll({ case: "pointers", value: { pointers } });
   }
 
+  catalogueChanged(revision: bigint): void {
+    this.#tellAll({ case: "catalogueChanged", value: { revision } });
+  }
+
   #tellAll(message: Outgoing): void {
     for (const person of [...this.people]) this.#tell(person, message);
   }

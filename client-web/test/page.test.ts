@@ -98,6 +98,17 @@ describe("the page in a session", () => {
     expect(network.called).not.toContain("CloseSession");
   });
 
+  it("shows times and storms that come while it is open", async () => {
+    const { page } = await visit();
+    const camera = page.state.scene.value.camera;
+    expect(page.state.timeCount.value).toBe(4);
+    service.grow();
+    await pass(100);
+    expect(page.state.timeCount.value).toBe(5);
+    expect(page.state.storms.value.map(({ id }) => id)).toContain("late");
+    expect(page.state.scene.value.camera).toEqual(camera);
+  });
+
   it("joins by the link as a viewer, who sees the scene and cannot change it", async () => {
     const { teacher, viewer } = await classroom();
     expect(viewer.page.state.session.presenting.value).toBe(false);

@@ -21,10 +21,10 @@ absl::StatusOr<std::shared_ptr<volume::StormStore>> OpenStorm(const std::string&
   auto opened = volume::StormStore::Open({path}, options);
   if (!opened.ok()) return AsFileProblem(opened.status());
   std::shared_ptr<volume::StormStore> store = *std::move(opened);
-  const std::vector<const volume::StormInfo*> storms = store->Storms();
+  const std::vector<volume::StormInfoPtr> storms = store->Storms();
   if (storms.size() == 1) return store;
   const std::string names =
-      absl::StrJoin(storms, ", ", [](std::string* out, const volume::StormInfo* storm) {
+      absl::StrJoin(storms, ", ", [](std::string* out, const volume::StormInfoPtr& storm) {
         absl::StrAppend(out, storm->files.front());
       });
   return absl::InvalidArgumentError(

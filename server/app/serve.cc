@@ -10,8 +10,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "app/address.h"
+#include "app/catalogue_flags.h"
 #include "app/clouds_folder.h"
 #include "app/commands.h"
+#include "app/operation.h"
 #include "app/serve_flags.h"
 #include "app/state_folder.h"
 #include "base/status.h"
@@ -103,6 +105,8 @@ absl::Status Serve(ServeFlags flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(Address http, ParseAddress("--http", flags.http));
   THUNDERHEAD_ASSIGN_OR_RETURN(Address grpc, ParseAddress("--grpc", flags.grpc));
   THUNDERHEAD_RETURN_IF_ERROR(CheckReach(flags, http, grpc));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<Operation> operation,
+                               Operation::Start(flags.operation));
   THUNDERHEAD_RETURN_IF_ERROR(CompleteFlags(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<access::Door> door, MakeDoor(flags));
   // Before any port opens, for its errors name the files.
@@ -113,6 +117,7 @@ absl::Status Serve(ServeFlags flags) {
   RaiseFileLimit();
   volume::StormStoreOptions store_options;
   store_options.byte_budget = static_cast<std::size_t>(flags.memory_budget_gib * (1 << 30));
+  store_options.live = LiveCatalogueOf(flags.catalogue);
   THUNDERHEAD_ASSIGN_OR_RETURN(const CloudsFolder clouds, CloudsFolder::Open(flags.clouds));
   THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<volume::StormStore> store,
                                volume::StormStore::Open(flags.data, store_options));
@@ -148,9 +153,9 @@ absl::Status Serve(ServeFlags flags) {
   std::cout << "Thunderhead is ready at " << (flags.tls.certificate.empty() ? "http" : "https")
             << "://" << ToString(http) << "/ (gRPC " << ToString(grpc) << ")" << std::endl;
   std::thread warm_up([channel, door] { WarmUp(channel, *door); });
-  int signal = 0;
-  sigwait(&signals, &signal);
-  spdlog::info("stopping");
+  operation->SetServer(server.get());
+  operation->WaitAndDrain(signals, *server);
+  operation->SetServer(nullptr);
   // First, because its calls to the service must end before the service does.
   gateway.reset();
   server->Shutdown();

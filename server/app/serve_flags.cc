@@ -102,6 +102,16 @@ void AddLimitFlags(CLI::App& serve, ServeFlags& flags) {
            "MiB of gRPC's buffers, all connections together");
 }
 
+absl::Status CheckReachOfMetrics(const std::string& metrics) {
+  if (metrics.empty()) return absl::OkStatus();
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Address address, ParseAddress("--metrics", metrics));
+  if (IsLoopback(address.host)) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("--metrics ", ToString(address),
+                   " lets other machines in, and this port never asks who they are nor encrypts "
+                   "what it says; listen on 127.0.0.1, or accept it with --insecure"));
+}
+
 }  // namespace
 
 void AddServeFlags(CLI::App& serve, ServeFlags& flags) {
@@ -123,6 +133,8 @@ void AddServeFlags(CLI::App& serve, ServeFlags& flags) {
   serve.add_option("--memory-budget", flags.memory_budget_gib, "GiB of storms kept in memory")
       ->check(CLI::Range(0.01, 1e6))
       ->capture_default_str();
+  AddCatalogueFlags(serve, flags.catalogue);
+  AddOperationFlags(serve, flags.operation);
   AddAccessFlags(serve, flags);
   AddLimitFlags(serve, flags);
 }
@@ -170,9 +182,11 @@ absl::Status CompleteFlags(ServeFlags& flags) {
 }
 
 absl::Status CheckReach(const ServeFlags& flags, const Address& http, const Address& grpc) {
+  if (flags.insecure) return absl::OkStatus();
+  THUNDERHEAD_RETURN_IF_ERROR(CheckReachOfMetrics(flags.operation.metrics));
   const bool has_auth = flags.auth.front() != "none";
   const bool has_tls = !flags.tls.certificate.empty();
-  if (flags.insecure || (has_auth && has_tls)) return absl::OkStatus();
+  if (has_auth && has_tls) return absl::OkStatus();
   for (const auto& [flag, address] : {std::pair{"--http", http}, std::pair{"--grpc", grpc}}) {
     if (IsLoopback(address.host)) continue;
     return absl::InvalidArgumentError(absl::StrCat(

@@ -11,6 +11,8 @@
 #include "absl/status/statusor.h"
 #include "access/door.h"
 #include "app/address.h"
+#include "app/catalogue_flags.h"
+#include "app/operation.h"
 #include "gateway/gateway.h"
 #include "service/server.h"
 #include "session/render_loop.h"
@@ -26,6 +28,8 @@ struct ServeFlags {
   std::string clouds;
   std::string state;
   double memory_budget_gib = 2.0;
+  CatalogueFlags catalogue;
+  OperationFlags operation;
 
   // Who may come.
   std::vector<std::string> auth = {"none"};
@@ -59,7 +63,7 @@ absl::StatusOr<std::shared_ptr<access::Door>> MakeDoor(const ServeFlags& flags);
 absl::Status CompleteFlags(ServeFlags& flags);
 
 // INVALID_ARGUMENT where another machine could reach a port that lets everybody in, or sends what
-// it says in the clear, unless --insecure accepts that.
+// it says in the clear, unless --insecure accepts that. The operators' port always does both.
 absl::Status CheckReach(const ServeFlags& flags, const Address& http, const Address& grpc);
 
 }  // namespace thunderhead::app

@@ -39,16 +39,16 @@ bool LiesIn(const std::string& folder, const std::string& file) {
 CloudStore::CloudStore(std::string path, volume::StormStore& store)
     : path_(std::move(path)), store_(store) {
   if (path_.empty()) return;
-  for (const volume::StormInfo* storm : store_.Storms()) {
+  for (const volume::StormInfoPtr& storm : store_.Storms()) {
     if (storm->files.size() != 1 || !LiesIn(path_, storm->files[0])) continue;
     if (clouds::IsGenerated(storm->files[0])) files_[storm->id] = storm->files[0];
   }
 }
 
-absl::StatusOr<const volume::StormInfo*> CloudStore::Make(const clouds::CloudShape& shape,
-                                                          const clouds::CloudOrigin& origin,
-                                                          const clouds::GenerateObserver& observer,
-                                                          const std::stop_token& stop) {
+absl::StatusOr<volume::StormInfoPtr> CloudStore::Make(const clouds::CloudShape& shape,
+                                                      const clouds::CloudOrigin& origin,
+                                                      const clouds::GenerateObserver& observer,
+                                                      const std::stop_token& stop) {
   if (path_.empty()) {
     return base::WithDetails(
         absl::FailedPreconditionError(
@@ -70,7 +70,7 @@ absl::StatusOr<const volume::StormInfo*> CloudStore::Make(const clouds::CloudSha
     path = NewPath(origin);
   }
   THUNDERHEAD_RETURN_IF_ERROR(clouds::WriteGenerated(shape, origin, path, observer, stop));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const volume::StormInfo* storm, store_.Add(path));
+  THUNDERHEAD_ASSIGN_OR_RETURN(volume::StormInfoPtr storm, store_.Add(path));
   const std::lock_guard files(mutex_);
   files_[storm->id] = path;
   used_ids_.insert(storm->id);

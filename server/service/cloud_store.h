@@ -23,10 +23,10 @@ class CloudStore {
 
   // Generates the cloud into a file of its own and adds it to the storm store. FAILED_PRECONDITION
   // without a folder, RESOURCE_EXHAUSTED at the maximum number, UNAVAILABLE during another call.
-  absl::StatusOr<const volume::StormInfo*> Make(const clouds::CloudShape& shape,
-                                                const clouds::CloudOrigin& origin,
-                                                const clouds::GenerateObserver& observer,
-                                                const std::stop_token& stop);
+  absl::StatusOr<volume::StormInfoPtr> Make(const clouds::CloudShape& shape,
+                                            const clouds::CloudOrigin& origin,
+                                            const clouds::GenerateObserver& observer,
+                                            const std::stop_token& stop);
 
   // True if the storm is one of these clouds.
   bool Holds(const std::string& storm_id) const;

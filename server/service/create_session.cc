@@ -4,6 +4,7 @@
 #include "service/interact_messages.h"
 #include "service/limits_check.h"
 #include "service/scene_messages.h"
+#include "telemetry/metrics.h"
 
 namespace thunderhead::service {
 namespace {
@@ -16,6 +17,7 @@ absl::Status Open(Engine& engine, const std::string& owner, const session::Rules
   response.set_session_id(session->keys().presenter);
   response.set_viewer_key(session->keys().viewer);
   response.set_scene_revision(revision);
+  telemetry::Counted().sessions_opened.Add();
   return absl::OkStatus();
 }
 

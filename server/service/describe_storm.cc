@@ -7,10 +7,10 @@
 namespace thunderhead::service {
 namespace {
 
-absl::StatusOr<const volume::StormInfo*> Check(const Engine& engine,
-                                               const v1::DescribeStormRequest& request) {
+absl::StatusOr<volume::StormInfoPtr> Check(const Engine& engine,
+                                           const v1::DescribeStormRequest& request) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const volume::StormInfo* storm,
+  THUNDERHEAD_ASSIGN_OR_RETURN(volume::StormInfoPtr storm,
                                FindStorm(engine.store, request.storm_id()));
   THUNDERHEAD_RETURN_IF_ERROR(CheckTime(*storm, request.time_index(), "time_index"));
   return storm;

@@ -19,11 +19,11 @@ constexpr std::size_t kMaxNamesListed = 10;
 
 constexpr char kStormNotFound[] = "STORM_NOT_FOUND";
 
-std::string NamesOf(const std::vector<const volume::StormInfo*>& storms) {
+std::string NamesOf(const std::vector<volume::StormInfoPtr>& storms) {
   const std::size_t listed = std::min(storms.size(), kMaxNamesListed);
   std::string names = absl::StrJoin(
       storms.begin(), storms.begin() + static_cast<std::ptrdiff_t>(listed), ", ",
-      [](std::string* out, const volume::StormInfo* storm) { out->append(storm->id); });
+      [](std::string* out, const volume::StormInfoPtr& storm) { out->append(storm->id); });
   if (listed < storms.size()) absl::StrAppend(&names, " and ", storms.size() - listed, " more");
   return names;
 }
@@ -35,15 +35,15 @@ void SaveThen(Engine& engine, std::function<void()> done) {
   engine.keeper->SaveThen(std::move(done));
 }
 
-absl::StatusOr<const volume::StormInfo*> FindStorm(const volume::StormStore& store,
-                                                   const std::string& id) {
-  const std::vector<const volume::StormInfo*> storms = store.Storms();
+absl::StatusOr<volume::StormInfoPtr> FindStorm(const volume::StormStore& store,
+                                               const std::string& id) {
+  const std::vector<volume::StormInfoPtr> storms = store.Storms();
   if (storms.empty()) {
     return base::WithDetails(absl::NotFoundError("the server has no storms"),
                              {.reason = kStormNotFound});
   }
   if (id.empty()) return storms.front();
-  const auto at = std::ranges::find(storms, id, &volume::StormInfo::id);
+  const auto at = std::ranges::find(storms, id, [](const auto& storm) { return storm->id; });
   if (at != storms.end()) return *at;
   return base::WithDetails(absl::NotFoundError(absl::StrCat("no storm has the id '", id,
                                                             "'; there is ", NamesOf(storms))),
@@ -77,7 +77,8 @@ absl::Status PrepareScene(const volume::StormStore& store,
   scene.DiscardUnknownFields();
   THUNDERHEAD_RETURN_IF_ERROR(CheckScene(scene));
   THUNDERHEAD_RETURN_IF_ERROR(CheckRendering(scene.rendering(), techniques));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const volume::StormInfo* storm, FindStorm(store, scene.storm_id()));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const volume::StormInfoPtr storm,
+                               FindStorm(store, scene.storm_id()));
   if (!scene.has_time_index()) {
     scene.set_time_index(static_cast<std::uint32_t>(storm->times.size() - 1));
   }

@@ -12,6 +12,7 @@
 #include "base/executor.h"
 #include "base/wake_signal.h"
 #include "service/cloud_store.h"
+#include "service/drain.h"
 #include "service/limits.h"
 #include "session/render_loop.h"
 #include "session/session_keeper.h"
@@ -21,6 +22,8 @@
 
 namespace thunderhead::service {
 
+class CatalogueFollower;
+
 struct Engine {
   volume::StormStore& store;
   session::Sessions& sessions;
@@ -29,6 +32,8 @@ struct Engine {
   base::Executor& executor;
   CloudStore& clouds;
   session::SessionKeeper* keeper;  // null: sessions end with the server
+  const CatalogueFollower& catalogue;
+  Drain& drain;
   Limits limits;
 };
 
@@ -37,8 +42,8 @@ struct Engine {
 void SaveThen(Engine& engine, std::function<void()> done);
 
 // The storm of that id, or the first for an empty id. NOT_FOUND lists the storms.
-absl::StatusOr<const volume::StormInfo*> FindStorm(const volume::StormStore& store,
-                                                   const std::string& id);
+absl::StatusOr<volume::StormInfoPtr> FindStorm(const volume::StormStore& store,
+                                               const std::string& id);
 
 // INVALID_ARGUMENT, naming the range, if the storm has no such time. `path` is the request's field.
 absl::Status CheckTime(const volume::StormInfo& storm, std::uint32_t time_index,

@@ -23,7 +23,7 @@ absl::Status Make(Engine& engine, const clouds::CloudShape& shape,
     if (context.IsCancelled()) stop.request_stop();
   };
   THUNDERHEAD_ASSIGN_OR_RETURN(
-      const volume::StormInfo* storm,
+      volume::StormInfoPtr storm,
       engine.clouds.Make(shape, OriginOf(request), observe, stop.get_token()));
   ToMessage(*storm, *response.mutable_storm());
   response.mutable_storm()->set_deletable(true);

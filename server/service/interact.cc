@@ -19,6 +19,7 @@
 #include "base/status.h"
 #include "glm/geometric.hpp"
 #include "service/camera_messages.h"
+#include "service/catalogue_follower.h"
 #include "service/interact_messages.h"
 #include "service/limits_check.h"
 #include "service/scene_messages.h"
@@ -205,6 +206,12 @@ class InteractCall : public InteractReactor,
       told_scene_ = told.count;
       if (const auto newest = session_->Newest(); newest.has_value()) return SceneResponse(*newest);
     }
+    if (const std::uint64_t changes = engine_.catalogue.Changes(); changes != told_catalogue_) {
+      told_catalogue_ = changes;
+      v1::InteractResponse response;
+      response.mutable_catalogue_changed()->set_revision(changes);
+      return ResponseOf(response);
+    }
     if (auto news = News(audience.Presence(), &told_presence_); news.has_value()) return news;
     if (auto news = News(audience.Marks(), &told_marks_); news.has_value()) return news;
     return News(audience.Pointers(), &told_pointers_);
@@ -323,6 +330,7 @@ class InteractCall : public InteractReactor,
       }
       wants_ = WantsOf(join.window());
       session_ = found.session;
+      told_catalogue_ = engine_.catalogue.Changes();
     }
     join_alarm_.Cancel();
     if (join.window().hidden()) SetHidden(true);
@@ -651,6 +659,7 @@ class InteractCall : public InteractReactor,
   std::shared_ptr<session::Session> watched_;  // whose frames come
   std::uint64_t watcher_id_ = 0;               // in its hub
   std::uint64_t told_scene_ = 0;
+  std::uint64_t told_catalogue_ = 0;
   std::uint64_t told_presence_ = 0;
   std::uint64_t told_marks_ = 0;
   std::uint64_t told_pointers_ = 0;

@@ -7,7 +7,7 @@ namespace thunderhead::service {
 grpc::ServerUnaryReactor* ListStorms(Engine& engine, grpc::CallbackServerContext* context,
                                      const v1::ListStormsRequest* /*request*/,
                                      v1::ListStormsResponse* response) {
-  for (const volume::StormInfo* storm : engine.store.Storms()) {
+  for (const volume::StormInfoPtr& storm : engine.store.Storms()) {
     v1::StormSummary& summary = *response->add_storms();
     ToMessage(*storm, summary);
     summary.set_deletable(engine.clouds.Holds(storm->id));

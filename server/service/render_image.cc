@@ -77,6 +77,7 @@ class PictureJob {
       : engine_(engine), request_(request), response_(response), listener_(listener) {}
 
   void Begin() {
+    if (const absl::Status late = counted_.Check(); !late.ok()) return End(late);
     if (const absl::Status wrong = CompleteScene(); !wrong.ok()) return End(wrong);
     deadline_.Set(std::chrono::system_clock::now() + engine_.limits.max_render_time,
                   [late = late_, cancelled = cancelled_, &wake = engine_.wake](bool rang) {
@@ -130,7 +131,7 @@ class PictureJob {
   void Drawn(const absl::StatusOr<session::DisplayFrame>& picture) {
     if (!picture.ok()) return End(OfScene(picture.status()));
     Describe(*picture, encode_ms_, response_);
-    AddTexts(engine_.store.Find(response_.scene().storm_id()), response_);
+    AddTexts(engine_.store.Find(response_.scene().storm_id()).get(), response_);
     End(absl::OkStatus());
   }
 
@@ -141,6 +142,7 @@ class PictureJob {
   }
 
   Engine& engine_;
+  const Drain::Picture counted_{engine_.drain};
   const v1::RenderImageRequest& request_;
   v1::RenderImageResponse& response_;
   PictureListener& listener_;

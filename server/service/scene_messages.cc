@@ -459,6 +459,7 @@ void ToMessage(const volume::StormInfo& storm, const volume::HydrometeorFields& 
     time.set_index(static_cast<std::uint32_t>(i));
     time.set_valid_time(storm.times[i].valid_time);
     time.set_elapsed_s(storm.times[i].elapsed_s);
+    time.set_deleted(storm.times[i].deleted);
   }
   SetGrid(fields.grid, *message.mutable_grid());
   for (const volume::HydrometeorField& field : fields.fields) {

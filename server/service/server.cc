@@ -16,6 +16,7 @@
 #include "base/executor.h"
 #include "base/status.h"
 #include "base/wake_signal.h"
+#include "service/catalogue_follower.h"
 #include "service/engine.h"
 #include "service/interact_messages.h"
 #include "service/local_listener.h"
@@ -97,8 +98,9 @@ class RunningServer final : public Server {
   }
 
   absl::Status Listen(const std::string& address, const TlsFiles& tls) {
-    engine_ = std::make_unique<Engine>(
-        Engine{*store_, sessions_, *loop_, wake_, executor_, clouds_, keeper_.get(), limits_});
+    catalogue_ = std::make_unique<CatalogueFollower>(*store_, sessions_, *loop_);
+    engine_ = std::make_unique<Engine>(Engine{*store_, sessions_, *loop_, wake_, executor_, clouds_,
+                                              keeper_.get(), *catalogue_, drain_, limits_});
     service_ = std::make_unique<ThunderheadService>(*engine_, *door_);
     // Global settings, which apply to every server built later.
     static std::once_flag plugins;
@@ -143,6 +145,26 @@ class RunningServer final : public Server {
                                      arguments);
   }
 
+  ServerLoad Load() const override {
+    ServerLoad load;
+    for (const auto& session : sessions_.AllDrawn()) {
+      load.viewers += static_cast<int>(session->hub().Viewers());
+      if (!session->IsOwnView()) ++load.sessions;
+    }
+    load.storms = static_cast<int>(store_->Storms().size());
+    load.cached_bytes = static_cast<double>(store_->CachedBytes());
+    load.pictures = drain_.Pictures();
+    load.turn_s = loop_->TurnSeconds();
+    load.draining = drain_.HasBegun();
+    return load;
+  }
+
+  void BeginDrain() override {
+    server_->GetHealthCheckService()->SetServingStatus(false);
+    drain_.Begin();
+    sessions_.CloseAll(base::ShuttingDown());
+  }
+
   void Shutdown() override {
     if (server_ != nullptr) server_->GetHealthCheckService()->Shutdown();
     // First, so that no picture is begun after a client has seen its stream end.
@@ -166,12 +188,14 @@ class RunningServer final : public Server {
   const std::shared_ptr<session::SessionStore> session_store_;
   const std::shared_ptr<access::Door> door_;
   const Limits limits_;
-  session::Sessions sessions_;
+  mutable session::Sessions sessions_;
+  Drain drain_;
   session::Upkeep upkeep_{sessions_, *store_, due_};
   base::Executor executor_;
   CloudStore clouds_;
   std::unique_ptr<session::RenderLoop> loop_;
   std::unique_ptr<session::SessionKeeper> keeper_;
+  std::unique_ptr<CatalogueFollower> catalogue_;
   std::unique_ptr<Engine> engine_;
   std::unique_ptr<ThunderheadService> service_;
   std::unique_ptr<grpc::Server> server_;

@@ -37,6 +37,17 @@ struct ServerOptions {
   session::RenderLoopOptions render_loop;
 };
 
+// What a server has to do now.
+struct ServerLoad {
+  int sessions = 0;
+  int viewers = 0;  // of sessions and own views
+  int storms = 0;
+  double cached_bytes = 0.0;  // of storms' fields
+  int pictures = 0;           // single ones, begun and not yet delivered
+  double turn_s = 0.0;        // since the render loop's turn began; 0 while it waits for work
+  bool draining = false;
+};
+
 class Server {
  public:
   // Returns when the frame source is ready and the port is open.
@@ -51,6 +62,10 @@ class Server {
   virtual const session::DeviceInfo& Device() const = 0;
   // A channel to this server from its own process, through a local socket.
   virtual std::shared_ptr<grpc::Channel> LocalChannel() = 0;
+  virtual ServerLoad Load() const = 0;
+  // Ends every session's streams, which come back to the next server, refuses new sessions and
+  // pictures, and tells health checks. Pictures that were begun go on. Returns at once.
+  virtual void BeginDrain() = 0;
   // Ends every stream with UNAVAILABLE, refuses queued work, and waits for running work. The
   // destructor does it too.
   virtual void Shutdown() = 0;

@@ -9,6 +9,7 @@
 #include "base/error_details.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
+#include "telemetry/metrics.h"
 
 namespace thunderhead::service {
 namespace {
@@ -137,6 +138,7 @@ grpc::Status ToGrpcStatus(const absl::Status& status) {
   if (absl::IsCancelled(status)) return {grpc::StatusCode::CANCELLED, message};
   const Row& row = RowOf(status.code());
   const base::ErrorDetails details = base::DetailsOf(status);
+  telemetry::Counted().refusals.Of(details.reason.empty() ? row.reason : details.reason).Add();
   google::rpc::Status all;
   all.set_code(row.wire);
   // Clients that read the details expect code and message there too.

@@ -18,7 +18,7 @@ absl::StatusOr<session::DecodedScene> DecodeStoredScene(
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(scene));
   THUNDERHEAD_RETURN_IF_ERROR(CheckScene(scene));
   THUNDERHEAD_RETURN_IF_ERROR(CheckRendering(scene.rendering(), techniques));
-  const volume::StormInfo* const storm = store.Find(scene.storm_id());
+  const volume::StormInfoPtr storm = store.Find(scene.storm_id());
   if (storm != nullptr && scene.time_index() < storm->times.size()) {
     FillSceneDefaults(scene, *storm);
   } else {

@@ -1,6 +1,7 @@
 // A frame as it is sent, and the reason why there is none. Plain values.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -34,6 +35,8 @@ struct EncodedFrame {
   int tier = 0;
   std::optional<Refinement> refinement;  // of a picture by the reference
   std::optional<AccuracyReport> accuracy;
+  // When the scene became what it shows; none if that has changed since.
+  std::optional<std::chrono::steady_clock::time_point> changed_at;
   // The frame without its sequence as the service serialized it, once for all viewers; opaque here.
   std::string serialized;
 };

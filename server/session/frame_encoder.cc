@@ -8,6 +8,7 @@
 #include "base/stopwatch.h"
 #include "frame/image_codec.h"
 #include "session/picture_sizes.h"
+#include "telemetry/metrics.h"
 
 namespace thunderhead::session {
 namespace {
@@ -20,6 +21,15 @@ constexpr int kCoarseJpegQuality = 75;
 constexpr int kReducedJpegQuality = 70;
 
 using Pictures = PictureSizes<frame::RgbImage>;
+
+void Count(const StageTime& stage) {
+  telemetry::Counted().stages.Of(scene::NameOf(stage.stage)).Observe(stage.milliseconds * 1e-3);
+}
+
+void Count(const EncodedFrame& described, const scene::Scene& scene) {
+  telemetry::Counted().frames.Of(scene::NameOf(scene.rendering.technique)).Add();
+  for (const StageTime& stage : described.stages) Count(stage);
+}
 
 // The frame without a picture.
 EncodedFrame Described(DrawnFrame& drawn) {
@@ -36,6 +46,10 @@ EncodedFrame Described(DrawnFrame& drawn) {
   frame.at_rest = drawn.at_rest;
   frame.refinement = drawn.refinement;
   frame.accuracy = std::move(drawn.picture.accuracy);
+  if (const auto newest = drawn.session->Newest();
+      newest.has_value() && newest->revision == drawn.scene_revision) {
+    frame.changed_at = newest->changed_at;
+  }
   return frame;
 }
 
@@ -60,6 +74,7 @@ absl::StatusOr<EncodedFrame> WithJpeg(const EncodedFrame& described, int tier,
   THUNDERHEAD_ASSIGN_OR_RETURN(
       frame.jpeg, frame::EncodeJpeg(picture.width_px, picture.height_px, picture.rgb, quality));
   frame.stages.push_back({scene::FrameStage::kEncode, stopwatch.ElapsedMs()});
+  Count(frame.stages.back());
   frame.serialized = serialize(frame);
   return frame;
 }
@@ -73,6 +88,7 @@ absl::StatusOr<EncodedVideo> WithVideo(const EncodedFrame& described, VideoOrder
   frame.vp9 = std::move(encoded.bytes);
   frame.key_frame = encoded.key;
   frame.stages.push_back({scene::FrameStage::kEncode, stopwatch.ElapsedMs()});
+  Count(frame.stages.back());
   frame.serialized = serialize(frame);
   return EncodedVideo{order, std::move(frame)};
 }
@@ -113,6 +129,7 @@ EncodeFrame JpegEncoder(const std::shared_ptr<Session>& session,
 void EncodeAndPublish(DrawnFrame drawn, const SerializeFrame& serialize, StillMaker& stills) {
   const std::shared_ptr<Session>& session = drawn.session;
   const EncodedFrame described = Described(drawn);
+  Count(described, drawn.scene);
   const auto pictures = std::make_shared<Pictures>(frame::RgbImage{
       drawn.picture.width_px, drawn.picture.height_px, std::move(drawn.picture.rgb)});
   const bool still_follows = drawn.fine.has_value();

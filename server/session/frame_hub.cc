@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "telemetry/metrics.h"
+
 namespace thunderhead::session {
 namespace {
+
+using telemetry::Counted;
 
 // Larger for a form that is worth sending again.
 int Worth(const FrameForm& form) {
@@ -171,12 +175,24 @@ std::optional<FrameEvent> FrameHub::Take(std::uint64_t viewer_id, Time now) {
     }
   }
   if (waits) on_wait_();
-  if (offer->picture.frame != nullptr) return offer->picture.frame;
-  // Without the lock, as a tier that nobody wanted before is encoded now.
-  auto frame = offer->form.kind == FrameForm::Kind::kStill ? published->Still(offer->form.tier)
-                                                           : published->Jpeg(offer->form.tier);
+  const std::shared_ptr<const EncodedFrame> frame = Made(*offer, *published);
   if (frame == nullptr) return std::nullopt;
+  Counted().frames_sent.Add();
+  Counted().frame_bytes_sent.Add(frame->jpeg.size() + frame->vp9.size() + frame->avif.size());
   return frame;
+}
+
+// Without the lock, as a tier that nobody wanted before is encoded now.
+std::shared_ptr<const EncodedFrame> FrameHub::Made(const Offer& offer, PublishedFrame& published) {
+  switch (offer.form.kind) {
+    case FrameForm::Kind::kVideo:
+      return offer.picture.frame;
+    case FrameForm::Kind::kStill:
+      return published.Still(offer.form.tier);
+    case FrameForm::Kind::kJpeg:
+      break;
+  }
+  return published.Jpeg(offer.form.tier);
 }
 
 bool FrameHub::Took(Watch& watch, const Offer& offer, Time now) {
@@ -185,11 +201,20 @@ bool FrameHub::Took(Watch& watch, const Offer& offer, Time now) {
     watch.place.Enter(offer.form.tier);
     watch.place.Took(offer.sequence, offer.picture, now);
   }
+  const EncodedFrame& frame = is_video ? *offer.picture.frame : frame_->Described();
+  // A viewer who has just come has missed nothing; a better form of a frame is not another one.
+  const bool has_had_any = watch.last_sequence > 0;
+  if (has_had_any && offer.sequence > watch.last_sequence) {
+    Counted().frames_skipped.Add(offer.sequence - watch.last_sequence - 1);
+  }
+  const bool first_of_revision = has_had_any && frame.scene_revision > watch.last_revision;
   watch.last_form = offer.form;
   watch.last_sequence = offer.sequence;
+  watch.last_revision = frame.scene_revision;
   const bool moving = is_video || (!frame_->Rests() && offer.form.kind == FrameForm::Kind::kJpeg);
   const bool is_last = watch.in_flight.size() + 1 >= MaxInFlight(watch);
-  watch.in_flight.push_back({offer.sequence, now, moving, is_video, is_last});
+  watch.in_flight.push_back({offer.sequence, now, moving, is_video, is_last,
+                             first_of_revision ? frame.changed_at : std::nullopt});
   if (watch.wants.frames_per_second <= 0.0) return false;
   constexpr double kFewest_per_s = 0.1;
   const std::chrono::duration<double> pause(1.0 /
@@ -210,6 +235,10 @@ bool FrameHub::Acknowledge(std::uint64_t viewer_id, std::uint64_t sequence, Time
     const bool was_full = in_flight.size() >= MaxInFlight(watch);
     while (!in_flight.empty() && in_flight.front().sequence <= sequence) {
       const Sent& sent = in_flight.front();
+      if (sent.changed_at.has_value()) {
+        const std::chrono::duration<double> took = now - *sent.changed_at;
+        Counted().update_to_frame.Observe(took.count());
+      }
       if (sent.moving) watch.link.Acknowledged(now, sent.at);
       if (sent.video) watch.window.Acknowledged(now - sent.at, sent.was_last);
       in_flight.pop_front();

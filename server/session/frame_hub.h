@@ -129,7 +129,8 @@ class FrameHub {
     Time at;
     bool moving = false;  // not a still
     bool video = false;
-    bool was_last = false;  // no further one could be sent meanwhile
+    bool was_last = false;           // no further one could be sent meanwhile
+    std::optional<Time> changed_at;  // of the first frame of a revision
   };
   struct Watch {
     std::shared_ptr<Viewer> viewer;
@@ -142,6 +143,7 @@ class FrameHub {
     FrameForm last_form;
     std::optional<Time> waits_until;  // for its next frame
     std::uint64_t last_problem = 0;
+    std::uint64_t last_revision = 0;
   };
 
   // A frame that a viewer can take, and its form.
@@ -162,6 +164,7 @@ class FrameHub {
   std::optional<Offer> VideoFor(const Watch& watch, const PublishedFrame& frame, int tier) const;
   std::optional<Offer> NextFor(const Watch& watch, Time now) const;
   bool HasFor(const Watch& watch, Time now) const;
+  static std::shared_ptr<const EncodedFrame> Made(const Offer& offer, PublishedFrame& published);
   // True if it is to be woken for its next frame.
   bool Took(Watch& watch, const Offer& offer, Time now);
   void SetLeastSteps(Time now);

@@ -89,6 +89,13 @@ RenderLoop::RenderLoop(const RenderLoopOptions& options, volume::StormStore& sto
 
 RenderLoop::~RenderLoop() { Stop(); }
 
+double RenderLoop::TurnSeconds() const {
+  const Clock::rep began = turn_began_;
+  if (began == 0) return 0.0;
+  const Clock::duration took = Clock::now().time_since_epoch() - Clock::duration(began);
+  return std::chrono::duration<double>(took).count();
+}
+
 void RenderLoop::RequestStop() {
   stopping_ = true;
   wake_.Notify();
@@ -130,6 +137,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
                            {lanes->quick_images, lanes->images});
   Turns turns;
   while (!stopping_) {
+    turn_began_ = Clock::now().time_since_epoch().count();
     const std::vector<std::shared_ptr<Session>> sessions = sessions_.AllDrawn();
     drawer.ReleaseUnwatched(sessions);
     light_tracer.TakeOutcome(Clock::now());
@@ -150,6 +158,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
     }
     const std::optional<std::size_t> next = turns.Next(contenders);
     if (!next.has_value()) {
+      turn_began_ = 0;
       if (!look_again_at.has_value() || *look_again_at > Clock::now()) wake_.Wait(look_again_at);
       continue;
     }
@@ -160,6 +169,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
       lanes->All()[*next - sessions.size()].lane.GiveTurn();
     }
     turns.Used(contenders[*next], stopwatch.ElapsedMs());
+    turn_began_ = 0;
   }
   lanes.reset();
   image_drawer.EndAll(base::ShuttingDown());

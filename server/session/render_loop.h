@@ -59,6 +59,9 @@ class RenderLoop {
 
   void RenderImage(ImageJob job);
 
+  // Since the turn of drawing under way began; 0 while the loop waits for work.
+  double TurnSeconds() const;
+
   // Stops drawing after the current frame or piece. Returns at once.
   void RequestStop();
   // Waits for the current frame or piece, refuses the waiting pictures and ends every thread.
@@ -79,6 +82,7 @@ class RenderLoop {
   std::vector<TechniqueInfo> techniques_;
   std::shared_ptr<Preparation> preparation_;
   std::atomic<bool> stopping_{false};
+  std::atomic<Clock::rep> turn_began_{0};  // since the clock's epoch; 0: none is under way
 
   ImageQueue images_;
   std::unique_ptr<FieldsReader> reader_;

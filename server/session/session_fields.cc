@@ -72,7 +72,7 @@ void SessionFields::PrepareNext(const scene::Scene& shown) {
   const bool goes_on = before.has_value() && before->storm_id == key.storm_id &&
                        before->time_index + 1 == key.time_index;
   if (!goes_on || access_.preparation == nullptr || !access_.preparation->IsNeeded(shown)) return;
-  const volume::StormInfo* storm = access_.store.Find(key.storm_id);
+  const volume::StormInfoPtr storm = access_.store.Find(key.storm_id);
   if (storm == nullptr || key.time_index + 1 >= static_cast<int>(storm->times.size())) return;
   auto next = std::make_shared<scene::Scene>(shown);
   ++next->time_index;

@@ -14,10 +14,8 @@ namespace thunderhead::volume {
 
 CachedStormStore::CachedStormStore(std::vector<CataloguedStorm> storms,
                                    const StormStoreOptions& options)
-    : options_(options),
-      storms_(std::make_move_iterator(storms.begin()), std::make_move_iterator(storms.end())),
-      vertical_grids_(storms_.size()),
-      cache_(options.byte_budget) {
+    : options_(options), cache_(options.byte_budget) {
+  Renew(storms);
   if (options_.read_ahead > 0) read_ahead_ = std::thread([this] { ReadAhead(); });
 }
 
@@ -27,19 +25,19 @@ CachedStormStore::~CachedStormStore() {
     ending_ = true;
   }
   changed_.notify_all();
+  live_.reset();
   if (read_ahead_.joinable()) read_ahead_.join();
 }
 
-std::vector<const StormInfo*> CachedStormStore::Storms() const {
+std::vector<StormInfoPtr> CachedStormStore::Storms() const {
   const Lock lock(mutex_);
-  std::vector<const StormInfo*> infos;
-  for (std::size_t i = 0; i < storms_.size(); ++i) {
-    if (!removed_.contains(i)) infos.push_back(&storms_[i].info);
-  }
+  std::vector<StormInfoPtr> infos;
+  infos.reserve(order_.size());
+  for (const std::size_t i : order_) infos.push_back(storms_[i].Info());
   return infos;
 }
 
-absl::StatusOr<const StormInfo*> CachedStormStore::Add(const std::string& path) {
+absl::StatusOr<StormInfoPtr> CachedStormStore::Add(const std::string& path) {
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<CataloguedStorm> found,
                                FindStorms({path}, options_.formats));
   CataloguedStorm& storm = found.front();
@@ -48,8 +46,10 @@ absl::StatusOr<const StormInfo*> CachedStormStore::Add(const std::string& path) 
     return absl::AlreadyExistsError(absl::StrCat("cannot add ", path, ": there is a storm '",
                                                  storm.info.id, "' already; rename the file"));
   }
-  vertical_grids_.emplace_back();
-  return &storms_.emplace_back(std::move(storm)).info;
+  order_.push_back(storms_.size());
+  Held& held = storms_.emplace_back();
+  held.added = true;
+  return Replace(storms_.size() - 1, std::move(storm)).after;
 }
 
 absl::Status CachedStormStore::Remove(std::string_view id) {
@@ -57,7 +57,8 @@ absl::Status CachedStormStore::Remove(std::string_view id) {
     const Lock lock(mutex_);
     const std::optional<std::size_t> place = PlaceOf(id);
     if (!place.has_value()) return NoSuchStorm(id);
-    removed_.insert(*place);
+    storms_[*place].storm.reset();
+    std::erase(order_, *place);
     cache_.RemoveStorm(*place);
     std::erase_if(wanted_, [&](const TimeKey& key) { return key.storm == *place; });
   }
@@ -66,49 +67,58 @@ absl::Status CachedStormStore::Remove(std::string_view id) {
 }
 
 std::optional<std::size_t> CachedStormStore::PlaceOf(std::string_view id) const {
-  for (std::size_t i = 0; i < storms_.size(); ++i) {
-    if (storms_[i].info.id == id && !removed_.contains(i)) return i;
-  }
-  return std::nullopt;
+  const auto at = std::ranges::find_if(storms_, [&](const Held& held) {
+    return held.storm != nullptr && held.storm->info.id == id;
+  });
+  if (at == storms_.end()) return std::nullopt;
+  return static_cast<std::size_t>(at - storms_.begin());
 }
 
 absl::Status CachedStormStore::NoSuchStorm(std::string_view id) const {
   std::vector<std::string> ids;
-  for (std::size_t i = 0; i < storms_.size(); ++i) {
-    if (!removed_.contains(i)) ids.push_back(storms_[i].info.id);
-  }
+  ids.reserve(order_.size());
+  for (const std::size_t place : order_) ids.push_back(storms_[place].storm->info.id);
   return absl::NotFoundError(absl::StrCat("there is no storm '", std::string(id),
                                           "'; the storms are ", absl::StrJoin(ids, ", ")));
 }
 
-absl::StatusOr<TimeKey> CachedStormStore::KeyOf(std::string_view id, int time_index) const {
+absl::StatusOr<CachedStormStore::Place> CachedStormStore::PlaceOf(std::string_view id,
+                                                                  int time_index) const {
   const std::optional<std::size_t> place = PlaceOf(id);
   if (!place.has_value()) return NoSuchStorm(id);
-  const StormInfo& info = storms_[*place].info;
-  const std::size_t times = info.times.size();
+  const Held& held = storms_[*place];
+  const std::size_t times = held.numbers.size();
   if (time_index < 0 || static_cast<std::size_t>(time_index) >= times) {
-    return absl::OutOfRangeError(absl::StrCat("storm '", info.id, "' has no time ", time_index,
-                                              "; its times are 0 to ", times - 1));
+    return absl::OutOfRangeError(absl::StrCat("storm '", held.storm->info.id, "' has no time ",
+                                              time_index, "; its times are 0 to ", times - 1));
   }
-  return TimeKey{*place, time_index};
+  const auto time = static_cast<std::size_t>(time_index);
+  return Place{{*place, held.numbers[time]}, held.storm, time};
+}
+
+std::optional<CachedStormStore::Place> CachedStormStore::PlaceOf(const TimeKey& key) const {
+  const Held& held = storms_[key.storm];
+  const auto at = std::ranges::find(held.numbers, key.time);
+  if (held.storm == nullptr || at == held.numbers.end()) return std::nullopt;
+  return Place{key, held.storm, static_cast<std::size_t>(at - held.numbers.begin())};
 }
 
 absl::StatusOr<std::shared_ptr<const HydrometeorFields>> CachedStormStore::Get(
     std::string_view id, int time_index, const ReadProgress& progress) {
   Lock lock(mutex_);
-  THUNDERHEAD_ASSIGN_OR_RETURN(const TimeKey key, KeyOf(id, time_index));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Place place, PlaceOf(id, time_index));
   while (true) {
-    Fields fields = cache_.Use(key);
+    Fields fields = cache_.Use(place.key);
     if (*fields == nullptr) {
-      const auto at = pending_.find(key);
+      const auto at = pending_.find(place.key);
       fields = at != pending_.end() ? WaitFor(lock, at->second, progress)
-                                    : Read(lock, key, Purpose::kAsked, progress);
+                                    : Read(lock, place, Purpose::kAsked, progress);
     }
     // The read may have been a read-ahead that was cancelled just now: try again.
     if (absl::IsCancelled(fields.status()) && !ending_) continue;
     if (fields.ok()) {
-      cache_.Use(key);
-      WantAfter(key);
+      cache_.Use(place.key);
+      WantAfter(place);
     }
     return fields;
   }
@@ -117,9 +127,9 @@ absl::StatusOr<std::shared_ptr<const HydrometeorFields>> CachedStormStore::Get(
 std::shared_ptr<const HydrometeorFields> CachedStormStore::Peek(std::string_view id,
                                                                 int time_index) {
   const Lock lock(mutex_);
-  const absl::StatusOr<TimeKey> key = KeyOf(id, time_index);
-  if (!key.ok()) return nullptr;
-  return cache_.Use(*key);
+  const absl::StatusOr<Place> place = PlaceOf(id, time_index);
+  if (!place.ok()) return nullptr;
+  return cache_.Use(place->key);
 }
 
 std::size_t CachedStormStore::CachedBytes() const {
@@ -139,17 +149,18 @@ CachedStormStore::Fields CachedStormStore::WaitFor(Lock& lock,
   return *shared->result;
 }
 
-CachedStormStore::Fields CachedStormStore::Read(Lock& lock, const TimeKey& key, Purpose purpose,
+CachedStormStore::Fields CachedStormStore::Read(Lock& lock, const Place& place, Purpose purpose,
                                                 const ReadProgress& progress) {
+  const TimeKey& key = place.key;
   const auto read = std::make_shared<PendingRead>();
   read->purpose = purpose;
   if (progress) read->listeners.push_back(progress);
   pending_[key] = read;
   if (purpose == Purpose::kAsked) ++asked_reads_;
-  Fields fields = ReadFile(lock, key, *read);
+  Fields fields = ReadFile(lock, place, *read);
   if (purpose == Purpose::kAsked) --asked_reads_;
-  // Fields of a storm that was removed meanwhile are returned to callers but not cached.
-  const bool keep = fields.ok() && !removed_.contains(key.storm);
+  // Fields of a time that was removed meanwhile are returned to callers but not cached.
+  const bool keep = fields.ok() && PlaceOf(key).has_value();
   if (keep && (purpose == Purpose::kAsked || read->waiters > 0)) {
     cache_.Insert(key, *fields);
   } else if (keep) {
@@ -161,31 +172,30 @@ CachedStormStore::Fields CachedStormStore::Read(Lock& lock, const TimeKey& key, 
   return fields;
 }
 
-CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, const TimeKey& key,
+CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, const Place& place,
                                                     PendingRead& read) {
-  const CataloguedStorm& storm = storms_[key.storm];
-  const TimeSource source = storm.sources[key.time];
-  const std::optional<VerticalGrid> grid = VerticalGridOf(lock, key);
+  const TimeSource source = place.storm->sources[place.time];
+  const std::optional<VerticalGrid> grid = VerticalGridOf(lock, place);
   lock.unlock();
-  absl::StatusOr<HydrometeorFields> fields = storm.files[source.file].reader->Read(
-      source.record, grid, [&](double share) { return Checkpoint(key, read, share); });
+  absl::StatusOr<HydrometeorFields> fields = place.storm->files[source.file].reader->Read(
+      source.record, grid, [&](double share) { return Checkpoint(place.key, read, share); });
   lock.lock();
   if (!fields.ok()) return fields.status();
-  if (!vertical_grids_[key.storm].has_value()) {
-    const RegularGrid& chosen = fields->grid;
-    vertical_grids_[key.storm] =
-        VerticalGrid{chosen.low_corner_m.z, chosen.spacing_m.z, chosen.cells.z};
+  std::optional<VerticalGrid>& chosen = storms_[place.key.storm].grid;
+  if (!chosen.has_value()) {
+    const RegularGrid& used = fields->grid;
+    chosen = VerticalGrid{used.low_corner_m.z, used.spacing_m.z, used.cells.z};
   }
   return std::make_shared<const HydrometeorFields>(*std::move(fields));
 }
 
 // The storm's height grid comes from its first time, whichever time is read first, so that a time's
-// picture does not depend on which times were viewed before. Nothing if this is the first time
-// itself, or if the first cannot be read.
-std::optional<VerticalGrid> CachedStormStore::VerticalGridOf(Lock& lock, const TimeKey& key) {
-  std::optional<VerticalGrid>& grid = vertical_grids_[key.storm];
-  if (grid.has_value() || key.time == 0) return grid;
-  const CataloguedStorm& storm = storms_[key.storm];
+// picture does not depend on which times were viewed before. It stays when an earlier time arrives
+// later. Nothing if this is the first time itself, or if the first cannot be read.
+std::optional<VerticalGrid> CachedStormStore::VerticalGridOf(Lock& lock, const Place& place) {
+  std::optional<VerticalGrid>& grid = storms_[place.key.storm].grid;
+  if (grid.has_value() || place.time == 0) return grid;
+  const CataloguedStorm& storm = *place.storm;
   const TimeSource first = storm.sources.front();
   lock.unlock();
   const absl::StatusOr<VerticalGrid> chosen =
@@ -218,37 +228,40 @@ bool CachedStormStore::IsWanted(const TimeKey& key) const {
   return std::ranges::find(wanted_, key) != wanted_.end();
 }
 
-void CachedStormStore::WantAfter(const TimeKey& key) {
+void CachedStormStore::WantAfter(const Place& place) {
   wanted_.clear();
-  if (removed_.contains(key.storm)) return;
-  const int times = static_cast<int>(storms_[key.storm].info.times.size());
+  const Held& held = storms_[place.key.storm];
+  const auto at = std::ranges::find(held.numbers, place.key.time);
+  if (held.storm == nullptr || at == held.numbers.end()) return;
   std::size_t bytes = cache_.NewestBytes();
-  for (int time = key.time + 1; time < times && time <= key.time + options_.read_ahead; ++time) {
+  int ahead = 0;
+  for (auto next = at + 1; next != held.numbers.end() && ahead < options_.read_ahead;
+       ++next, ++ahead) {
     // Do not read a time that would evict the one in view; all times are taken to be equally large.
     bytes += cache_.NewestBytes();
     if (bytes > options_.byte_budget) break;
-    wanted_.push_back({key.storm, time});
+    wanted_.push_back({place.key.storm, *next});
   }
   changed_.notify_all();
 }
 
-std::optional<TimeKey> CachedStormStore::NextWanted() {
-  const auto at = std::ranges::find_if(wanted_, [this](const TimeKey& key) {
-    return !cache_.Holds(key) && !pending_.contains(key);
-  });
-  return at == wanted_.end() ? std::nullopt : std::optional(*at);
+std::optional<CachedStormStore::Place> CachedStormStore::NextWanted() {
+  for (const TimeKey& key : wanted_) {
+    if (!cache_.Holds(key) && !pending_.contains(key)) return PlaceOf(key);
+  }
+  return std::nullopt;
 }
 
 void CachedStormStore::ReadAhead() {
   Lock lock(mutex_);
   while (!ending_) {
-    const std::optional<TimeKey> key = NextWanted();
-    if (!key.has_value()) {
+    const std::optional<Place> place = NextWanted();
+    if (!place.has_value()) {
       changed_.wait(lock);
       continue;
     }
-    const Fields fields = Read(lock, *key, Purpose::kAhead, {});
-    std::erase(wanted_, *key);
+    const Fields fields = Read(lock, *place, Purpose::kAhead, {});
+    std::erase(wanted_, place->key);
     if (!fields.ok() && !absl::IsCancelled(fields.status())) {
       spdlog::warn("reading ahead: {}", std::string(fields.status().message()));
     }

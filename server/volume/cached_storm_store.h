@@ -1,6 +1,6 @@
 // The store that StormStore::Open gives: a catalogue, a cache, and a thread that reads ahead. A
 // time is read once however many callers ask for it; reads that a caller waits for go before
-// read-ahead.
+// read-ahead, and before files that the catalogue looks at.
 #pragma once
 
 #include <condition_variable>
@@ -9,12 +9,13 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <set>
+#include <string>
 #include <string_view>
 #include <thread>
 #include <vector>
 
 #include "volume/fields_cache.h"
+#include "volume/live_catalogue.h"
 #include "volume/storm_catalogue.h"
 #include "volume/storm_store.h"
 #include "volume/vertical_remap.h"
@@ -29,13 +30,24 @@ class CachedStormStore final : public StormStore {
   CachedStormStore(const CachedStormStore&) = delete;
   CachedStormStore& operator=(const CachedStormStore&) = delete;
 
-  std::vector<const StormInfo*> Storms() const override;
-  absl::StatusOr<const StormInfo*> Add(const std::string& path) override;
+  std::vector<StormInfoPtr> Storms() const override;
+  absl::StatusOr<StormInfoPtr> Add(const std::string& path) override;
   absl::Status Remove(std::string_view id) override;
   absl::StatusOr<std::shared_ptr<const HydrometeorFields>> Get(
       std::string_view id, int time_index, const ReadProgress& progress) override;
   std::shared_ptr<const HydrometeorFields> Peek(std::string_view id, int time_index) override;
   std::size_t CachedBytes() const override;
+  void Listen(CatalogueListener listener) override;
+
+  // Makes the storms of the paths those `found`, and tells the listener what has changed. Storms
+  // that were added stay. A time whose file is gone stays while somebody holds its fields.
+  void Renew(const std::vector<CataloguedStorm>& found);
+
+  // Waits until no caller waits for a read, but not for ever.
+  void LetReadersGoFirst();
+
+  // Renews the store's storms from now on, as `scan` finds them.
+  void Follow(std::unique_ptr<CatalogueScan> scan, CatalogueScan::Result first);
 
  private:
   using Fields = absl::StatusOr<std::shared_ptr<const HydrometeorFields>>;
@@ -49,19 +61,40 @@ class CachedStormStore final : public StormStore {
     std::optional<Fields> result;
   };
 
+  // A storm and what the store keeps of it.
+  struct Held {
+    std::shared_ptr<const CataloguedStorm> storm;  // null: removed
+    std::vector<int> numbers;                      // one for each time, never used again
+    int next_number = 0;
+    bool added = false;                // by Add, so not in the paths
+    std::optional<VerticalGrid> grid;  // the same for all times
+
+    StormInfoPtr Info() const { return {storm, &storm->info}; }
+  };
+
+  // A time and what it is read from, whatever becomes of the storm meanwhile.
+  struct Place {
+    TimeKey key;
+    std::shared_ptr<const CataloguedStorm> storm;
+    std::size_t time = 0;  // index into the storm's times
+  };
+
   // All below are called with `lock` held on mutex_ and return with it held.
   using Lock = std::unique_lock<std::mutex>;
   std::optional<std::size_t> PlaceOf(std::string_view id) const;
   absl::Status NoSuchStorm(std::string_view id) const;
-  absl::StatusOr<TimeKey> KeyOf(std::string_view id, int time_index) const;
-  Fields Read(Lock& lock, const TimeKey& key, Purpose purpose, const ReadProgress& progress);
-  Fields ReadFile(Lock& lock, const TimeKey& key, PendingRead& read);
+  absl::StatusOr<Place> PlaceOf(std::string_view id, int time_index) const;
+  std::optional<Place> PlaceOf(const TimeKey& key) const;
+  Fields Read(Lock& lock, const Place& place, Purpose purpose, const ReadProgress& progress);
+  Fields ReadFile(Lock& lock, const Place& place, PendingRead& read);
   Fields WaitFor(Lock& lock, const std::shared_ptr<PendingRead>& read,
                  const ReadProgress& progress);
-  std::optional<VerticalGrid> VerticalGridOf(Lock& lock, const TimeKey& key);
-  void WantAfter(const TimeKey& key);
-  std::optional<TimeKey> NextWanted();
+  std::optional<VerticalGrid> VerticalGridOf(Lock& lock, const Place& place);
+  void WantAfter(const Place& place);
+  std::optional<Place> NextWanted();
   bool IsWanted(const TimeKey& key) const;
+  StormChange Replace(std::size_t place, std::optional<CataloguedStorm> found);
+  std::string FreeId(const std::string& wanted, std::size_t place) const;
 
   absl::Status Checkpoint(const TimeKey& key, PendingRead& read, double share);
   void ReadAhead();
@@ -69,11 +102,8 @@ class CachedStormStore final : public StormStore {
   const StormStoreOptions options_;
 
   mutable std::mutex mutex_;
-  // Elements of both are never removed, so references to them stay valid.
-  std::deque<CataloguedStorm> storms_;
-  std::deque<std::optional<VerticalGrid>>
-      vertical_grids_;             // one for each storm, the same for all its times
-  std::set<std::size_t> removed_;  // of storms_
+  std::deque<Held> storms_;         // elements are never removed: indices stay
+  std::vector<std::size_t> order_;  // of those that are listed
   std::condition_variable
       changed_;  // a read ended, a time was wanted, a caller waits, or the store ends
   FieldsCache cache_;
@@ -82,7 +112,13 @@ class CachedStormStore final : public StormStore {
   int asked_reads_ = 0;
   bool ending_ = false;
 
-  std::thread read_ahead_;  // last member, so that it starts after all others are initialised
+  std::mutex listening_;  // held while the listener is called; before mutex_
+  CatalogueListener listener_;
+  bool following_ = false;  // changes are news
+
+  // Last members, so that they start after all others are initialised.
+  std::thread read_ahead_;
+  std::unique_ptr<LiveCatalogue> live_;
 };
 
 }  // namespace thunderhead::volume

@@ -27,6 +27,11 @@ void FieldsCache::InsertAhead(const TimeKey& key, std::shared_ptr<const Hydromet
   Shrink();
 }
 
+bool FieldsCache::InUse(const TimeKey& key) const {
+  const auto at = entries_.find(key);
+  return at != entries_.end() && at->second.fields.use_count() > 1;
+}
+
 void FieldsCache::RemoveStorm(std::size_t storm) {
   // Keys are ordered by storm.
   auto at = entries_.lower_bound(TimeKey{storm, 0});

@@ -12,7 +12,8 @@
 
 namespace thunderhead::volume {
 
-// A time of a storm: indices into the catalogue and into that storm's times.
+// A time of a storm: its place in the store, and the time's number there, which stays when other
+// times come and go.
 struct TimeKey {
   std::size_t storm = 0;
   int time = 0;
@@ -39,6 +40,12 @@ class FieldsCache {
   // Caches `fields` as less recently used than the newest entry (the one in view), if both fit.
   void InsertAhead(const TimeKey& key, std::shared_ptr<const HydrometeorFields> fields);
 
+  // True if somebody else holds the fields too.
+  bool InUse(const TimeKey& key) const;
+
+  // Evicts one time, if it is cached.
+  void Remove(const TimeKey& key);
+
   // Evicts all times of a storm.
   void RemoveStorm(std::size_t storm);
 
@@ -56,7 +63,6 @@ class FieldsCache {
 
   void Add(const TimeKey& key, std::shared_ptr<const HydrometeorFields> fields,
            std::list<TimeKey>::iterator before);
-  void Remove(const TimeKey& key);
   void Shrink();
 
   std::size_t byte_budget_;

@@ -28,15 +28,6 @@ struct NamedStorm {
   std::size_t path = 0;  // which of those the user gave
 };
 
-absl::StatusOr<StormFile> Probe(const fs::path& path, const StormFormats& formats) {
-  try {
-    return formats.Describe(path.string());
-  } catch (const std::bad_alloc&) {
-    return absl::ResourceExhaustedError(absl::StrCat(
-        path.string(), ": its metadata does not fit in memory; the file is probably damaged"));
-  }
-}
-
 // ISO 8601, e.g. "0001-01-01T00:40:00Z".
 std::string FormatValidTime(absl::Time time) {
   return absl::FormatTime("%E4Y-%m-%dT%H:%M:%SZ", time, absl::UTCTimeZone());
@@ -137,16 +128,18 @@ std::vector<NamedStorm> GroupRuns(const fs::path& folder, std::vector<StormFile>
   return storms;
 }
 
-absl::Status SearchFolder(const fs::path& path, const StormFormats& formats, int depth,
+absl::Status SearchFolder(const fs::path& path, const StormSearch& search, int depth,
                           std::vector<NamedStorm>& storms, absl::Status& first_failure) {
+  if (search.on_folder) search.on_folder(path.string());
   THUNDERHEAD_ASSIGN_OR_RETURN(const Folder folder, List(path));
   std::vector<StormFile> files;
   for (const fs::path& file : folder.files) {
-    absl::StatusOr<StormFile> metadata = Probe(file, formats);
+    absl::StatusOr<StormFile> metadata = search.describe(file.string());
     if (metadata.ok()) {
       files.push_back(*std::move(metadata));
       continue;
     }
+    if (absl::IsCancelled(metadata.status())) continue;
     first_failure.Update(metadata.status());
     // A file of another kind, such as a read-me, is normal; a storm that cannot be read deserves a
     // warning.
@@ -157,33 +150,42 @@ absl::Status SearchFolder(const fs::path& path, const StormFormats& formats, int
   if (!files.empty()) std::ranges::move(GroupRuns(path, std::move(files)), back_inserter(storms));
   if (depth == kDeepestFolder) return absl::OkStatus();
   for (const fs::path& below : folder.folders) {
-    if (absl::Status status = SearchFolder(below, formats, depth + 1, storms, first_failure);
+    if (absl::Status status = SearchFolder(below, search, depth + 1, storms, first_failure);
         !status.ok()) {
       first_failure.Update(status);
-      spdlog::warn("left out: {}", std::string(status.message()));
+      if (search.on_unlisted) {
+        search.on_unlisted(below.string(), status);
+      } else {
+        spdlog::warn("left out: {}", std::string(status.message()));
+      }
     }
   }
   return absl::OkStatus();
 }
 
-absl::Status Search(const std::string& path, const StormFormats& formats,
+absl::Status Search(const std::string& path, const StormSearch& search,
                     std::vector<NamedStorm>& storms) {
   std::error_code error;
+  if (search.may_find_nothing && fs::status(path, error).type() == fs::file_type::not_found) {
+    return absl::OkStatus();
+  }
   if (!fs::is_directory(path, error)) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(StormFile metadata, Probe(path, formats));
+    absl::StatusOr<StormFile> metadata = search.describe(path);
+    if (!metadata.ok() && search.may_find_nothing) return absl::OkStatus();
+    THUNDERHEAD_RETURN_IF_ERROR(metadata.status());
     storms.push_back({NameOfFile(path), {}});
-    storms.back().files.push_back(std::move(metadata));
+    storms.back().files.push_back(*std::move(metadata));
     return absl::OkStatus();
   }
   const std::size_t before = storms.size();
   absl::Status first_failure;
-  THUNDERHEAD_RETURN_IF_ERROR(SearchFolder(path, formats, 0, storms, first_failure));
-  if (storms.size() > before) return absl::OkStatus();
+  THUNDERHEAD_RETURN_IF_ERROR(SearchFolder(path, search, 0, storms, first_failure));
+  if (storms.size() > before || search.may_find_nothing) return absl::OkStatus();
   if (!first_failure.ok()) {
     return base::Annotate(first_failure, absl::StrCat(path, " holds no storm; its first file"));
   }
   return absl::NotFoundError(absl::StrCat(path, ": holds no storm; put the model's output files (",
-                                          formats.Examples(), ") there"));
+                                          search.examples, ") there"));
 }
 
 std::string TitleOf(const std::string& name, const StormFile& file) {
@@ -217,18 +219,19 @@ std::vector<std::vector<StormFile>> FilesOfRuns(std::vector<StormFile> files) {
 CataloguedStorm AssembleStorm(const std::string& name, std::vector<StormFile> files) {
   THUNDERHEAD_CHECK(!files.empty(), name);
   std::ranges::sort(files, {}, &StormFile::path);
+  CataloguedStorm storm;
   std::map<absl::Time, TimeSource> sources;
   for (std::size_t file = 0; file < files.size(); ++file) {
     for (std::size_t record = 0; record < files[file].times.size(); ++record) {
       const absl::Time time = files[file].times[record];
       const auto [at, added] = sources.try_emplace(time, TimeSource{file, record});
       if (added) continue;
-      spdlog::info("{} is in {} and in {}; the latter is used", FormatValidTime(time),
-                   files[at->second.file].path, files[file].path);
+      storm.notes.push_back(absl::StrCat(FormatValidTime(time), " is in ",
+                                         files[at->second.file].path, " and in ", files[file].path,
+                                         "; the latter is used"));
       at->second = {file, record};
     }
   }
-  CataloguedStorm storm;
   StormInfo& info = storm.info;
   info.id = IdFrom(name);
   for (const auto& [time, source] : sources) {
@@ -249,17 +252,43 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<StormFile> fi
   return storm;
 }
 
+void LogNotes(const std::vector<CataloguedStorm>& storms) {
+  for (const CataloguedStorm& storm : storms) {
+    for (const std::string& note : storm.notes) spdlog::info("{}", note);
+  }
+}
+
+absl::StatusOr<StormFile> DescribeFile(const std::string& path, const StormFormats& formats) {
+  try {
+    return formats.Describe(path);
+  } catch (const std::bad_alloc&) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat(path, ": its metadata does not fit in memory; the file is probably damaged"));
+  }
+}
+
 absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
                                                         const StormFormats& formats) {
+  auto storms = FindStorms(
+      paths, {.describe = [&](const std::string& path) { return DescribeFile(path, formats); },
+              .on_unlisted = {},
+              .on_folder = {},
+              .examples = formats.Examples()});
+  if (storms.ok()) LogNotes(*storms);
+  return storms;
+}
+
+absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
+                                                        const StormSearch& search) {
   std::vector<NamedStorm> named;
   for (std::size_t path = 0; path < paths.size(); ++path) {
     const std::size_t before = named.size();
-    THUNDERHEAD_RETURN_IF_ERROR(Search(paths[path], formats, named));
+    THUNDERHEAD_RETURN_IF_ERROR(Search(paths[path], search, named));
     for (std::size_t i = before; i < named.size(); ++i) named[i].path = path;
   }
-  if (named.empty()) {
+  if (named.empty() && !search.may_find_nothing) {
     return absl::InvalidArgumentError(absl::StrCat(
-        "no storm to show; name a file or folder of model output (", formats.Examples(), ")"));
+        "no storm to show; name a file or folder of model output (", search.examples, ")"));
   }
   DropRepeated(named);
   std::vector<CataloguedStorm> storms;

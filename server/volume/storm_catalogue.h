@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -23,12 +24,33 @@ struct CataloguedStorm {
   StormInfo info;
   std::vector<StormFile> files;
   std::vector<TimeSource> sources;  // one for each of info.times
+  std::vector<std::string> notes;   // for the log: times that several files have
 };
+
+// How a search looks at files and takes what it meets.
+struct StormSearch {
+  // Describes the file at a path. CANCELLED for a file that is to be passed over without a word.
+  std::function<absl::StatusOr<StormFile>(const std::string&)> describe;
+  // No error: a path that is gone, a folder without storms.
+  bool may_find_nothing = false;
+  // Called with a folder below a path that cannot be listed; empty: it is logged.
+  std::function<void(const std::string&, const absl::Status&)> on_unlisted;
+  // Called with every folder before it is listed; may be empty.
+  std::function<void(const std::string&)> on_folder;
+  std::string examples;  // of files, for messages
+};
+
+// Describes files by the formats; a file whose metadata exhausts the memory is an error.
+absl::StatusOr<StormFile> DescribeFile(const std::string& path, const StormFormats& formats);
 
 // The storms under `paths`: those of the first path first, and those of one path in order of id.
 // The rules and errors are those of StormStore::Open.
 absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
                                                         const StormFormats& formats);
+absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
+                                                        const StormSearch& search);
+
+void LogNotes(const std::vector<CataloguedStorm>& storms);
 
 // The files by the runs that they may be parts of: same domain, grid, fields and start.
 std::vector<std::vector<StormFile>> FilesOfRuns(std::vector<StormFile> files);

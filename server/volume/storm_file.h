@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -50,6 +51,8 @@ struct StormFile {
   std::optional<double> latitude_deg;        // of the middle
   std::optional<double> longitude_deg;
   std::shared_ptr<const RecordReader> reader;
+  // Another one if another file took its place; the same while it only grows.
+  std::uint64_t version = 0;
 };
 
 }  // namespace thunderhead::volume

@@ -1,23 +1,74 @@
 #include "volume/storm_store.h"
 
 #include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <system_error>
+#include <thread>
+#include <utility>
 
+#include "absl/strings/str_join.h"
 #include "base/status.h"
+#include "spdlog/spdlog.h"
 #include "volume/cached_storm_store.h"
+#include "volume/catalogue_scan.h"
 #include "volume/storm_catalogue.h"
 
 namespace thunderhead::volume {
 
+namespace {
+
+// A path that is not there is a typing error, and a file that is named and no storm stays none.
+absl::Status CheckPaths(const std::vector<std::string>& paths, const StormFormats& formats) {
+  for (const std::string& path : paths) {
+    std::error_code error;
+    if (std::filesystem::is_directory(path, error)) continue;
+    THUNDERHEAD_RETURN_IF_ERROR(DescribeFile(path, formats).status());
+  }
+  return absl::OkStatus();
+}
+
+// The storms of the paths, whatever happens there.
+absl::StatusOr<std::unique_ptr<StormStore>> OpenLive(const std::vector<std::string>& paths,
+                                                     const StormStoreOptions& options) {
+  auto store = std::make_unique<CachedStormStore>(std::vector<CataloguedStorm>{}, options);
+  THUNDERHEAD_RETURN_IF_ERROR(CheckPaths(paths, options.formats));
+  auto scan = std::make_unique<CatalogueScan>(
+      CatalogueScan::Options{.paths = paths,
+                             .formats = options.formats,
+                             .settle = options.live->settle,
+                             .retry = options.live->rescan,
+                             .before_file = [&store = *store] { store.LetReadersGoFirst(); }});
+  THUNDERHEAD_ASSIGN_OR_RETURN(CatalogueScan::Result first,
+                               scan->Scan(std::chrono::steady_clock::now()));
+  if (first.storms.empty() && first.look_again_at.has_value()) {
+    spdlog::info("waiting until the files of {} are complete", absl::StrJoin(paths, ", "));
+    std::this_thread::sleep_until(*first.look_again_at);
+    THUNDERHEAD_ASSIGN_OR_RETURN(first, scan->Scan(std::chrono::steady_clock::now()));
+  }
+  if (first.storms.empty()) {
+    spdlog::warn("{}: holds no storm yet; model output ({}) is shown as soon as it is complete",
+                 absl::StrJoin(paths, ", "), options.formats.Examples());
+  }
+  store->Renew(first.storms);
+  store->Follow(std::move(scan), std::move(first));
+  return store;
+}
+
+}  // namespace
+
 absl::StatusOr<std::unique_ptr<StormStore>> StormStore::Open(const std::vector<std::string>& paths,
                                                              const StormStoreOptions& options) {
+  if (options.live.has_value()) return OpenLive(paths, options);
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<CataloguedStorm> storms,
                                FindStorms(paths, options.formats));
   return std::make_unique<CachedStormStore>(std::move(storms), options);
 }
 
-const StormInfo* StormStore::Find(std::string_view id) const {
-  const std::vector<const StormInfo*> storms = Storms();
-  const auto at = std::ranges::find(storms, id, &StormInfo::id);
+StormInfoPtr StormStore::Find(std::string_view id) const {
+  const std::vector<StormInfoPtr> storms = Storms();
+  const auto at = std::ranges::find(
+      storms, id, [](const StormInfoPtr& storm) { return std::string_view(storm->id); });
   return at == storms.end() ? nullptr : *at;
 }
 

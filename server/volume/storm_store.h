@@ -1,8 +1,10 @@
-// The storms a server holds: a catalogue of series found under some paths, and a cache of the times
-// in use within a byte budget, which reads the next times ahead on a thread of its own. Safe to
-// call from any thread; netCDF-C is not thread-safe, so one reader works at a time.
+// The storms a server holds: a catalogue of series found under some paths, which may follow what
+// happens there, and a cache of the times in use within a byte budget, which reads the next times
+// ahead on a thread of its own. Safe to call from any thread; netCDF-C is not thread-safe, so one
+// reader works at a time.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -22,6 +24,10 @@ namespace thunderhead::volume {
 struct StormTime {
   std::string valid_time;  // ISO 8601, UTC, e.g. "0001-01-01T00:40:00Z"
   double elapsed_s = 0.0;  // since the storm's first time
+  // Its file is gone, but somebody still looks at what is in memory.
+  bool deleted = false;
+
+  bool operator==(const StormTime&) const = default;
 };
 
 // Description of a storm, available without reading its fields.
@@ -38,14 +44,39 @@ struct StormInfo {
   std::optional<double> longitude_deg;
 };
 
+// A description never changes; a storm that grows gets another.
+using StormInfoPtr = std::shared_ptr<const StormInfo>;
+
+// A storm before and after a change of the files; null before for a new one, and after for one that
+// is gone.
+struct StormChange {
+  StormInfoPtr before;
+  StormInfoPtr after;
+};
+using CatalogueChange = std::vector<StormChange>;
+
+// Called on the thread that found the change.
+using CatalogueListener = std::function<void(const CatalogueChange&)>;
+
 // Called on the reading thread with the share done, 0 to 1.
 using ReadProgress = std::function<void(double)>;
+
+// How a store follows what happens in its folders: by the kernel's events where there are any, and
+// by a slow rescan, which also sees what happens on another machine's side of a network file
+// system.
+struct LiveCatalogueOptions {
+  std::chrono::milliseconds rescan{30'000};
+  // A file whose size or date has changed within this time is still being written.
+  std::chrono::milliseconds settle{3'000};
+};
 
 struct StormStoreOptions {
   std::size_t byte_budget =
       std::size_t{2} << 30;  // of cached times; the newest one is kept even if it alone is larger
   int read_ahead = 1;        // times read ahead after each Get
   StormFormats formats = StormFormats::BuiltIn();
+  // Absent: the storms are those of the start. With it, a folder without storms is no error.
+  std::optional<LiveCatalogueOptions> live;
 };
 
 class StormStore {
@@ -60,18 +91,18 @@ class StormStore {
   virtual ~StormStore() = default;
 
   // The storms: those opened, in the order of the paths and within a path of id, then those added,
-  // in order of addition. Pointers stay valid as long as the store.
-  virtual std::vector<const StormInfo*> Storms() const = 0;
+  // in order of addition.
+  virtual std::vector<StormInfoPtr> Storms() const = 0;
 
   // Adds the storm of a file. ALREADY_EXISTS if another has its id; else as Open.
-  virtual absl::StatusOr<const StormInfo*> Add(const std::string& path) = 0;
+  virtual absl::StatusOr<StormInfoPtr> Add(const std::string& path) = 0;
 
   // Removes a storm from the store: it is no longer listed, found or read. Its files stay.
   // NOT_FOUND for an unknown id.
   virtual absl::Status Remove(std::string_view id) = 0;
 
   // The storm of that id, or null.
-  const StormInfo* Find(std::string_view id) const;
+  StormInfoPtr Find(std::string_view id) const;
 
   // The fields of one time: from the cache, or read now (blocking). `time_index` must be one of the
   // storm's. Errors: NOT_FOUND (id), OUT_OF_RANGE (time), and those of the file's reader.
@@ -84,6 +115,10 @@ class StormStore {
 
   // Bytes of all cached times.
   virtual std::size_t CachedBytes() const = 0;
+
+  // Tells `listener` of every change that the store finds by itself, from now on; an empty one ends
+  // that, after a running call has returned. Without a live catalogue there is never one.
+  virtual void Listen(CatalogueListener /*listener*/) {}
 };
 
 }  // namespace thunderhead::volume

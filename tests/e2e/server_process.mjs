@@ -6,7 +6,7 @@ import { createServer } from "node:net";
 import { fileURLToPath } from "node:url";
 
 const ROOT = fileURLToPath(new URL("../../", import.meta.url));
-const BINARY = process.env.THUNDERHEAD_BINARY ?? `${ROOT}build/release/bin/thunderhead`;
+export const BINARY = process.env.THUNDERHEAD_BINARY ?? `${ROOT}build/release/bin/thunderhead`;
 const START_TIMEOUT_MS = 60_000;
 const STOP_TIMEOUT_MS = 10_000;
 
@@ -22,13 +22,19 @@ export function freePort() {
   });
 }
 
-// `state` is a folder in which sessions outlive the program; `more` are further flags.
-export async function startServer({ httpPort, grpcPort, state = "none", more = [] }) {
+// `state` is a folder in which sessions outlive the program; `data` the storms; `more` are further flags.
+export async function startServer({
+  httpPort,
+  grpcPort,
+  state = "none",
+  data = `${ROOT}samples/supercell.nc`,
+  more = [],
+}) {
   const page = `${ROOT}client-web/dist`;
   if (!existsSync(BINARY)) throw new Error(`no program at ${BINARY}; build it, or set THUNDERHEAD_BINARY`);
   if (!existsSync(`${page}/index.html`)) throw new Error(`no page in ${page}; run npm run build in client-web`);
   const address = (port) => `127.0.0.1:${port}`;
-  const flags = ["--data", `${ROOT}samples/supercell.nc`, "--http", address(httpPort), "--grpc", address(grpcPort)];
+  const flags = ["--data", data, "--http", address(httpPort), "--grpc", address(grpcPort)];
   const child = spawn(BINARY, ["serve", ...flags, "--page", page, "--state", state, ...more], { cwd: ROOT });
   let said = "";
   const url = await new Promise((resolve, reject) => {

@@ -12,7 +12,7 @@
 namespace thunderhead::testing {
 namespace {
 
-volume::StormInfo Storm(const std::string& id, int time_count) {
+volume::StormInfoPtr Storm(const std::string& id, int time_count) {
   volume::StormInfo storm;
   storm.id = id;
   storm.title = "A storm called " + id;
@@ -21,7 +21,7 @@ volume::StormInfo Storm(const std::string& id, int time_count) {
   }
   storm.file_cells = {20, 10, 5};
   storm.fields = {physics::Hydrometeor::kCloud, physics::Hydrometeor::kRain};
-  return storm;
+  return std::make_shared<const volume::StormInfo>(std::move(storm));
 }
 
 std::shared_ptr<const volume::HydrometeorFields> Fields(bool empty) {
@@ -301,25 +301,48 @@ bool Gate::AwaitWaiting(int count) {
 
 FakeStormStore::FakeStormStore() : storms_{Storm("anvil", 4), Storm("clear", 1)} {}
 
-std::vector<const volume::StormInfo*> FakeStormStore::Storms() const {
+void FakeStormStore::Listen(volume::CatalogueListener listener) {
+  const std::lock_guard lock(listening_);
+  listener_ = std::move(listener);
+}
+
+void FakeStormStore::Become(const std::string& id,
+                            const std::function<void(volume::StormInfo&)>& change) {
+  const std::lock_guard listening(listening_);
+  volume::StormChange changed;
+  {
+    const std::lock_guard lock(mutex_);
+    for (volume::StormInfoPtr& storm : storms_) {
+      if (storm->id != id) continue;
+      changed.before = storm;
+      volume::StormInfo renewed = *storm;
+      change(renewed);
+      storm = std::make_shared<const volume::StormInfo>(std::move(renewed));
+      changed.after = storm;
+    }
+  }
+  if (listener_) listener_({changed});
+}
+
+std::vector<volume::StormInfoPtr> FakeStormStore::Storms() const {
   const std::lock_guard lock(mutex_);
-  std::vector<const volume::StormInfo*> storms;
-  for (const volume::StormInfo& storm : storms_) {
-    if (!removed_.contains(storm.id)) storms.push_back(&storm);
+  std::vector<volume::StormInfoPtr> storms;
+  for (const volume::StormInfoPtr& storm : storms_) {
+    if (!removed_.contains(storm->id)) storms.push_back(storm);
   }
   return storms;
 }
 
-absl::StatusOr<const volume::StormInfo*> FakeStormStore::Add(const std::string& path) {
+absl::StatusOr<volume::StormInfoPtr> FakeStormStore::Add(const std::string& path) {
   if (!std::filesystem::exists(path)) return absl::NotFoundError(path + " is not there");
   const std::lock_guard lock(mutex_);
-  return &storms_.emplace_back(Storm(std::filesystem::path(path).stem(), 1));
+  return storms_.emplace_back(Storm(std::filesystem::path(path).stem(), 1));
 }
 
 absl::Status FakeStormStore::Remove(std::string_view id) {
   const std::lock_guard lock(mutex_);
-  const auto at = std::ranges::find(storms_, id, &volume::StormInfo::id);
-  const bool there = at != storms_.end() && removed_.insert(at->id).second;
+  const auto at = std::ranges::find_if(storms_, [&](const auto& storm) { return storm->id == id; });
+  const bool there = at != storms_.end() && removed_.insert((*at)->id).second;
   return there ? absl::OkStatus() : absl::NotFoundError("there is no such storm");
 }
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -48,15 +49,19 @@ class FakeStormStore final : public volume::StormStore {
  public:
   FakeStormStore();
 
-  std::vector<const volume::StormInfo*> Storms() const override;
+  std::vector<volume::StormInfoPtr> Storms() const override;
   // Adds a storm with the file's name, if the file exists.
-  absl::StatusOr<const volume::StormInfo*> Add(const std::string& path) override;
+  absl::StatusOr<volume::StormInfoPtr> Add(const std::string& path) override;
   absl::Status Remove(std::string_view id) override;
   absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> Get(
       std::string_view id, int time_index, const volume::ReadProgress& progress) override;
   std::shared_ptr<const volume::HydrometeorFields> Peek(std::string_view id,
                                                         int time_index) override;
   std::size_t CachedBytes() const override { return 0; }
+  void Listen(volume::CatalogueListener listener) override;
+
+  // Changes a storm as if its files had changed.
+  void Become(const std::string& id, const std::function<void(volume::StormInfo&)>& change);
 
   // Reads of that time fail with `status` from now on.
   void FailAt(int time_index, const absl::Status& status);
@@ -67,7 +72,9 @@ class FakeStormStore final : public volume::StormStore {
   Gate reading;
 
  private:
-  std::deque<volume::StormInfo> storms_;
+  std::deque<volume::StormInfoPtr> storms_;
+  std::mutex listening_;
+  volume::CatalogueListener listener_;
   std::set<std::string> removed_;  // ids
   mutable std::mutex mutex_;
   std::map<int, absl::Status> failures_;

@@ -20,6 +20,7 @@ TEST(RenderImageTest, PngHoldsEveryPixelAtFullQuality) {
   v1::RenderImageRequest request;
   *request.mutable_scene() = SmallScene();
   request.mutable_scene()->set_time_index(1);
+  request.mutable_scene()->mutable_sun()->set_azimuth_deg(255.0F);
   v1::RenderImageResponse response;
   const grpc::Status status = Render(service, request, &response);
   ASSERT_TRUE(status.ok()) << status.error_message();

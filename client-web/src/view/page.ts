@@ -372,6 +372,9 @@ export class Page implements SessionListener {
       case "marks":
         session.takeMarks(message.value.marks);
         break;
+      case "catalogueChanged":
+        void this.#storms.changed();
+        break;
     }
   }
 

@@ -47,6 +47,17 @@ export class StormsOnServer {
     }
   }
 
+  // The server's storms or their times have changed.
+  async changed(): Promise<void> {
+    const stormId = this.#state.stormId.value;
+    if (stormId !== "") void this.#describe(stormId, this.#state.timeIndex.value);
+    try {
+      this.#state.storms.value = await this.#calls.storms();
+    } catch {
+      // As above.
+    }
+  }
+
   // Makes the cloud set in the panel. Returns the id of its storm, or undefined if it failed or was stopped.
   async makeCloud(): Promise<string | undefined> {
     const making = new AbortController();

@@ -48,6 +48,7 @@ export function TimeBar({ page }: { page: Page }) {
         <span>{label}</span>
         <span class="quiet">
           {time !== undefined && formatElapsed(time.elapsedS)} · {index + 1} of {count}
+          {time?.deleted && " · deleted, shown from memory"}
         </span>
       </output>
       <label class="rate">

@@ -141,7 +141,7 @@ TEST_F(StormFormatTest, AFormatOfTheTestIsReadBesideTheBuiltInOnes) {
       {folder_.Path().string()}, {.read_ahead = 0, .formats = With(std::make_shared<ToyFormat>())});
   ASSERT_TRUE(store.ok()) << store.status();
   std::vector<std::string> ids;
-  for (const StormInfo* storm : (*store)->Storms()) ids.push_back(storm->id);
+  for (const StormInfoPtr& storm : (*store)->Storms()) ids.push_back(storm->id);
   EXPECT_THAT(ids, ElementsAre("cf", "rain.toy", "wrfout"));
   EXPECT_EQ((*store)->Find("rain.toy")->title, "rain.toy (of the test)");
   EXPECT_EQ((*store)->Find("rain.toy")->file_cells, glm::ivec3(3));

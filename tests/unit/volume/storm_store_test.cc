@@ -97,14 +97,14 @@ TEST_F(StormSeries, NamesWhatIsNotThere) {
 
 TEST_F(StormSeries, TakesAnotherStormWhileItServes) {
   const auto store = Open({});
-  const StormInfo* const series = store->Find("series");
+  StormInfoPtr series = store->Find("series");
   const std::string other = folder_.File("another.nc");
   std::filesystem::copy_file(series->files[0], other);
   const auto added = store->Add(other);
   ASSERT_TRUE(added.ok()) << added.status();
   EXPECT_EQ((*added)->id, "another");
   EXPECT_EQ(store->Find("series"), series) << "what is pointed to stays";
-  EXPECT_EQ(store->Storms(), (std::vector<const StormInfo*>{series, *added}));
+  EXPECT_EQ(store->Storms(), (std::vector<StormInfoPtr>{series, *added}));
   EXPECT_TRUE(store->Get("another", 0, {}).ok());
   EXPECT_EQ(store->Add(other).status().code(), absl::StatusCode::kAlreadyExists);
   EXPECT_FALSE(store->Add(folder_.File("nothing.nc")).ok());
@@ -114,7 +114,7 @@ TEST_F(StormSeries, ForgetsAStormThatIsRemoved) {
   const auto store = Open({.read_ahead = 2});
   const auto held = store->Get("series", 0, {});
   ASSERT_TRUE(held.ok()) << held.status();
-  const StormInfo* info = store->Find("series");
+  StormInfoPtr info = store->Find("series");
   ASSERT_TRUE(store->Remove("series").ok());
   EXPECT_THAT(store->Storms(), ::testing::IsEmpty());
   EXPECT_EQ(store->Find("series"), nullptr);

@@ -1,0 +1,150 @@
+#include "app/operation.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "app/address.h"
+#include "app/json_log.h"
+#include "base/status.h"
+#include "spdlog/sinks/sink.h"
+#include "spdlog/spdlog.h"
+#include "telemetry/exposition.h"
+
+namespace thunderhead::app {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+// One request may arrive as several signals (interruption.cc).
+constexpr milliseconds kOneRequest{250};
+
+// A signal of those, or 0 after a while.
+int Taken(const sigset_t& signals) {
+  const timespec wait{0, std::chrono::nanoseconds(milliseconds(20)).count()};
+  return std::max(0, sigtimedwait(&signals, nullptr, &wait));
+}
+
+}  // namespace
+
+void AddOperationFlags(CLI::App& command, OperationFlags& flags) {
+  command.add_option("--metrics", flags.metrics,
+                     "HOST:PORT for operators: /metrics for Prometheus, /healthz and /readyz");
+  command.add_option("--log-format", flags.log_format, "text, or json: an object a line")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->capture_default_str();
+  command
+      .add_option("--drain-seconds", flags.drain_s,
+                  "How long, after SIGTERM, single pictures that were begun may take to end")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  command
+      .add_option("--stuck-seconds", flags.stuck_s,
+                  "A turn of drawing that takes longer makes /healthz ask for a restart")
+      ->check(CLI::Range(1.0, 86400.0))
+      ->capture_default_str();
+}
+
+void SetLogFormat(const std::string& format) {
+  if (format != "json") return;
+  for (const auto& sink : spdlog::default_logger()->sinks()) {
+    sink->set_formatter(std::make_unique<JsonFormatter>());
+  }
+}
+
+absl::StatusOr<std::unique_ptr<Operation>> Operation::Start(const OperationFlags& flags) {
+  SetLogFormat(flags.log_format);
+  std::unique_ptr<Operation> operation(new Operation(flags));
+  if (flags.metrics.empty()) return operation;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Address address, ParseAddress("--metrics", flags.metrics));
+  Operation* const self = operation.get();
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      operation->port_,
+      telemetry::OperatorPort::Open(address.host, address.port,
+                                    {.metrics = [self] { return self->MetricsText(); },
+                                     .health = [self] { return self->HealthNow(); }}));
+  spdlog::info("operators at http://{}/metrics, /healthz and /readyz",
+               ToString({address.host, operation->port_->Port()}));
+  return operation;
+}
+
+Operation::~Operation() {
+  port_.reset();
+  second_signal_.request_stop();
+}
+
+void Operation::SetServer(const service::Server* server) {
+  const std::lock_guard lock(mutex_);
+  server_ = server;
+  ended_ = server == nullptr;
+}
+
+std::string Operation::MetricsText() {
+  const std::lock_guard lock(mutex_);
+  std::vector<telemetry::Gauge> gauges{
+      {"thunderhead_memory_bytes", "Memory that the process occupies", telemetry::ResidentBytes()}};
+  if (server_ != nullptr) {
+    const service::ServerLoad load = server_->Load();
+    const auto add = [&](const char* name, const char* help, double value) {
+      gauges.push_back({absl::StrCat("thunderhead_", name), help, value});
+    };
+    add("sessions", "Sessions that are open", load.sessions);
+    add("viewers", "Connections that sessions are shown to", load.viewers);
+    add("storms", "Storms in the catalogue", load.storms);
+    add("storm_cache_bytes", "Fields of storms in memory", load.cached_bytes);
+    add("pictures_in_progress", "Single pictures begun and not yet delivered", load.pictures);
+    add("draining", "1 from SIGTERM on", load.draining ? 1.0 : 0.0);
+    add("render_turn_seconds", "Since the turn of drawing under way began; 0 at rest", load.turn_s);
+  }
+  return telemetry::Expose(telemetry::Counted(), gauges);
+}
+
+telemetry::Health Operation::HealthNow() {
+  const std::lock_guard lock(mutex_);
+  if (server_ == nullptr) {
+    return {.alive = true, .ready = false, .state = ended_ ? "stopping" : "starting"};
+  }
+  const service::ServerLoad load = server_->Load();
+  if (load.turn_s > flags_.stuck_s) {
+    return {.alive = false,
+            .ready = false,
+            .state = absl::StrFormat("not making progress: drawing for %.0f s", load.turn_s)};
+  }
+  if (load.draining) return {.alive = true, .ready = false, .state = "draining"};
+  return {.alive = true, .ready = true, .state = "serving"};
+}
+
+void Operation::WaitAndDrain(const sigset_t& signals, service::Server& server) {
+  int signal = 0;
+  sigwait(&signals, &signal);
+  const auto began = steady_clock::now();
+  spdlog::info("draining: new sessions and pictures are refused, {} pictures end first",
+               server.Load().pictures);
+  second_signal_ = std::jthread([signals, began](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      const int again = Taken(signals);
+      if (again == 0 || steady_clock::now() - began < kOneRequest) continue;
+      spdlog::warn("a second signal: ending at once");
+      spdlog::default_logger()->flush();
+      _exit(128 + again);
+    }
+  });
+  server.BeginDrain();
+  const auto grace = std::chrono::duration_cast<steady_clock::duration>(
+      std::chrono::duration<double>(flags_.drain_s));
+  while (server.Load().pictures > 0 && steady_clock::now() < began + grace) {
+    std::this_thread::sleep_for(milliseconds(20));
+  }
+  if (const int left = server.Load().pictures; left > 0) {
+    spdlog::warn("{} pictures are not done after {} s and are given up", left, flags_.drain_s);
+  }
+  spdlog::info("stopping");
+}
+
+}  // namespace thunderhead::app

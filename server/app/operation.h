@@ -1,0 +1,61 @@
+// What an operator asks of `thunderhead serve`: its log, its operator's port, and its end.
+#pragma once
+
+#include <csignal>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "CLI/CLI.hpp"
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "service/server.h"
+#include "telemetry/operator_port.h"
+
+namespace thunderhead::app {
+
+struct OperationFlags {
+  std::string metrics;  // HOST:PORT; empty: no port
+  std::string log_format = "text";
+  double drain_s = 30.0;
+  double stuck_s = 120.0;
+};
+
+void AddOperationFlags(CLI::App& command, OperationFlags& flags);
+
+// Text, or JSON with one object a line, on standard error.
+void SetLogFormat(const std::string& format);
+
+// The operator's port of the flags, null without one. It serves at once, and says that the server
+// starts until it is given one.
+class Operation {
+ public:
+  static absl::StatusOr<std::unique_ptr<Operation>> Start(const OperationFlags& flags);
+  ~Operation();
+  Operation(const Operation&) = delete;
+  Operation& operator=(const Operation&) = delete;
+
+  // The server, which must outlive what follows until SetServer(nullptr).
+  void SetServer(const service::Server* server);
+
+  // Waits for SIGINT or SIGTERM, which this thread blocks; tells the clients, and returns when the
+  // pictures that were begun are delivered, at the latest after the grace. From then on a second
+  // signal ends the process at once.
+  void WaitAndDrain(const sigset_t& signals, service::Server& server);
+
+ private:
+  explicit Operation(const OperationFlags& flags) : flags_(flags) {}
+
+  std::string MetricsText();
+  telemetry::Health HealthNow();
+
+  const OperationFlags flags_;
+  std::mutex mutex_;
+  const service::Server* server_ = nullptr;
+  bool ended_ = false;
+  std::unique_ptr<telemetry::OperatorPort> port_;
+  std::jthread second_signal_;
+};
+
+}  // namespace thunderhead::app

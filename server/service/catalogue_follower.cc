@@ -1,0 +1,81 @@
+#include "service/catalogue_follower.h"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "service/engine.h"
+#include "service/scene_messages.h"
+#include "service/scene_update.h"
+#include "spdlog/spdlog.h"
+
+namespace thunderhead::service {
+namespace {
+
+// A session whose scene is being changed by somebody is looked at again, for this long: after that
+// the change, which may wait for a long read, is taken to know the catalogue.
+constexpr int kAttempts = 40;
+constexpr std::chrono::milliseconds kBetweenAttempts{50};
+
+}  // namespace
+
+std::optional<StormPlace> PlaceAfter(const volume::StormChange& change, std::uint32_t time_index) {
+  if (change.after == nullptr) return std::nullopt;
+  const std::vector<volume::StormTime>& before = change.before->times;
+  const std::vector<volume::StormTime>& after = change.after->times;
+  const auto place = [&](std::size_t index) {
+    return StormPlace{change.after->id, static_cast<std::uint32_t>(index)};
+  };
+  if (time_index + 1 >= before.size()) return place(after.size() - 1);
+  // ISO 8601 sorts as the times do.
+  const auto at = std::ranges::upper_bound(after, before[time_index].valid_time, {},
+                                           &volume::StormTime::valid_time);
+  return place(at == after.begin() ? 0 : static_cast<std::size_t>(at - after.begin()) - 1);
+}
+
+CatalogueFollower::CatalogueFollower(volume::StormStore& store, session::Sessions& sessions,
+                                     const session::RenderLoop& loop)
+    : store_(store), sessions_(sessions), loop_(loop) {
+  store_.Listen([this](const volume::CatalogueChange& change) { Follow(change); });
+}
+
+CatalogueFollower::~CatalogueFollower() { store_.Listen({}); }
+
+void CatalogueFollower::Follow(const volume::CatalogueChange& change) {
+  std::vector<std::shared_ptr<session::Session>> sessions = sessions_.All();
+  const std::vector<std::shared_ptr<session::Session>> everybody = sessions;
+  for (int attempt = 0; attempt < kAttempts && !sessions.empty(); ++attempt) {
+    if (attempt > 0) std::this_thread::sleep_for(kBetweenAttempts);
+    std::erase_if(sessions, [&](const auto& session) { return Move(*session, change); });
+  }
+  // After the sessions, so that a client that asks again finds its scene's time.
+  ++changes_;
+  for (const auto& session : everybody) session->audience().WakeAll();
+}
+
+// False if it is to be tried again.
+bool CatalogueFollower::Move(session::Session& session, const volume::CatalogueChange& change) {
+  if (!session.Newest().has_value()) return true;
+  absl::StatusOr<ReadScene> newest = NewestSceneOf(session);
+  if (!newest.ok()) return true;
+  v1::Scene& scene = newest->scene;
+  const auto at = std::ranges::find_if(change, [&](const volume::StormChange& storm) {
+    return storm.before != nullptr && storm.before->id == scene.storm_id();
+  });
+  if (at == change.end()) return true;
+  const std::optional<StormPlace> place = PlaceAfter(*at, scene.time_index());
+  if (!place.has_value() || *place == StormPlace{scene.storm_id(), scene.time_index()}) return true;
+  scene.set_storm_id(place->storm_id);
+  scene.set_time_index(place->time_index);
+  if (const absl::Status ready = PrepareScene(store_, loop_.Techniques(), scene); !ready.ok()) {
+    spdlog::warn("a session cannot follow {}: {}", place->storm_id, std::string(ready.message()));
+    return true;
+  }
+  const absl::StatusOr<std::uint64_t> revision = session.TakeRevisionAfter(newest->revision);
+  if (!revision.ok()) return false;
+  session.Show(*revision, ToScene(scene), scene.SerializeAsString());
+  return true;
+}
+
+}  // namespace thunderhead::service

@@ -1,0 +1,54 @@
+// Keeps sessions where they are when a storm's times come and go: one that shows the newest time
+// goes on to the newer one, others keep their time, wherever it stands now.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "session/render_loop.h"
+#include "session/sessions.h"
+#include "volume/storm_store.h"
+
+namespace thunderhead::service {
+
+// A time of a storm, as a scene names it.
+struct StormPlace {
+  std::string storm_id;
+  std::uint32_t time_index = 0;
+
+  bool operator==(const StormPlace&) const = default;
+};
+
+// Where a scene that shows that time of the storm before a change belongs after it: at the last
+// time if it was there, else at the same time, or where that is gone at the one before. Nothing if
+// the storm is gone.
+std::optional<StormPlace> PlaceAfter(const volume::StormChange& change, std::uint32_t time_index);
+
+class CatalogueFollower {
+ public:
+  // Listens to the store as long as it lives; all must outlive it.
+  CatalogueFollower(volume::StormStore& store, session::Sessions& sessions,
+                    const session::RenderLoop& loop);
+  // Waits for a change that is being followed.
+  ~CatalogueFollower();
+  CatalogueFollower(const CatalogueFollower&) = delete;
+  CatalogueFollower& operator=(const CatalogueFollower&) = delete;
+
+  // How often the catalogue has changed; clients are told of each.
+  std::uint64_t Changes() const { return changes_; }
+
+ private:
+  void Follow(const volume::CatalogueChange& change);
+  bool Move(session::Session& session, const volume::CatalogueChange& change);
+
+  volume::StormStore& store_;
+  session::Sessions& sessions_;
+  const session::RenderLoop& loop_;
+  std::atomic<std::uint64_t> changes_{0};
+};
+
+}  // namespace thunderhead::service

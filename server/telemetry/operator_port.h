@@ -1,0 +1,37 @@
+// The operator's port: HTTP for Prometheus and for whoever restarts servers. Answers one request
+// after another, each within seconds, on a thread of its own.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "absl/status/statusor.h"
+
+namespace thunderhead::telemetry {
+
+struct Health {
+  bool alive = true;  // /healthz: false asks for a restart
+  bool ready = true;  // /readyz: false asks for clients to be sent elsewhere
+  std::string state;  // for people, one line
+};
+
+struct OperatorPages {
+  std::function<std::string()> metrics;  // in Prometheus's text format
+  std::function<Health()> health;
+};
+
+class OperatorPort {
+ public:
+  // GET /metrics, /healthz and /readyz on that address, port 0 for a free one. UNAVAILABLE if it
+  // cannot be listened on.
+  static absl::StatusOr<std::unique_ptr<OperatorPort>> Open(const std::string& host,
+                                                            std::uint16_t port,
+                                                            OperatorPages pages);
+  virtual ~OperatorPort() = default;
+
+  virtual std::uint16_t Port() const = 0;
+};
+
+}  // namespace thunderhead::telemetry

@@ -1,0 +1,122 @@
+#include "volume/catalogue_scan.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "base/status.h"
+#include "spdlog/spdlog.h"
+
+namespace thunderhead::volume {
+namespace {
+
+using std::chrono::nanoseconds;
+
+// By the wall clock, as dates of files are; negative for a date in the future.
+nanoseconds AgeOf(std::int64_t changed_ns) {
+  return std::chrono::system_clock::now().time_since_epoch() - nanoseconds(changed_ns);
+}
+
+}  // namespace
+
+std::optional<CatalogueScan::Stamp> CatalogueScan::StampOf(const std::string& path) {
+  struct stat found {};
+  if (stat(path.c_str(), &found) != 0) return std::nullopt;
+  Stamp stamp;
+  stamp.file =
+      static_cast<std::uint64_t>(found.st_ino) ^ (static_cast<std::uint64_t>(found.st_dev) << 48U);
+  stamp.size_bytes = static_cast<std::uint64_t>(found.st_size);
+  stamp.changed_ns = std::int64_t{found.st_mtim.tv_sec} * 1'000'000'000 + found.st_mtim.tv_nsec;
+  return stamp;
+}
+
+absl::StatusOr<CatalogueScan::Result> CatalogueScan::Scan(Time now) {
+  ++scans_;
+  changed_ = scans_ == 1;
+  look_again_at_.reset();
+  Result result;
+  const StormSearch search{
+      .describe = [this, now](const std::string& path) { return Describe(path, now); },
+      .may_find_nothing = true,
+      .on_unlisted =
+          [this](const std::string& path, const absl::Status& status) {
+            if (!unlisted_.insert(path).second) return;
+            spdlog::warn("left out: {}", std::string(status.message()));
+          },
+      .on_folder = [&result](const std::string& path) { result.folders.push_back(path); },
+      .examples = options_.formats.Examples()};
+  THUNDERHEAD_ASSIGN_OR_RETURN(result.storms, FindStorms(options_.paths, search));
+  const std::size_t gone =
+      std::erase_if(known_, [this](const auto& entry) { return entry.second.scan != scans_; });
+  result.changed = changed_ || gone > 0;
+  if (result.changed) LogNotes(result.storms);
+  result.look_again_at = look_again_at_;
+  return result;
+}
+
+absl::StatusOr<StormFile> CatalogueScan::Describe(const std::string& path, Time now) {
+  const std::optional<Stamp> stamp = StampOf(path);
+  if (!stamp.has_value()) return absl::CancelledError("it has just gone");
+  Known& known = known_[path];
+  Look(path, *stamp, now, known);
+  known.scan = scans_;
+  if (known.description.has_value()) return *known.description;
+  return absl::CancelledError(known.settled ? "it is no storm" : "it is still being written");
+}
+
+void CatalogueScan::Look(const std::string& path, const Stamp& stamp, Time now, Known& known) {
+  const bool fresh = known.scan == 0;
+  if (fresh || known.stamp != stamp) {
+    // What only grows keeps the times that it had.
+    const bool grows = known.stamp.file == stamp.file && known.stamp.size_bytes <= stamp.size_bytes;
+    if (fresh || !grows) {
+      changed_ = changed_ || known.description.has_value();
+      known.description.reset();
+      known.version = ++versions_;
+    }
+    known.stamp = stamp;
+    known.unchanged_since = now;
+    known.settled = fresh && scans_ == 1 && AgeOf(stamp.changed_ns) >= options_.settle;
+    known.tried_at.reset();
+  }
+  if (!known.settled && now - known.unchanged_since < options_.settle) {
+    return LookAgainAt(known.unchanged_since + options_.settle);
+  }
+  known.settled = true;
+  Open(path, now, known);
+}
+
+void CatalogueScan::Open(const std::string& path, Time now, Known& known) {
+  const bool failed = known.tried_at.has_value() && !known.complaint.empty();
+  if (known.tried_at.has_value() && !(failed && now - *known.tried_at >= options_.retry)) return;
+  known.tried_at = now;
+  options_.before_file();
+  absl::StatusOr<StormFile> file = DescribeFile(path, options_.formats);
+  // Read while it was written: not what it will be.
+  if (StampOf(path) != known.stamp) {
+    known.tried_at.reset();
+    known.settled = false;
+    known.unchanged_since = now;
+    return LookAgainAt(now + options_.settle);
+  }
+  if (file.ok()) {
+    file->version = known.version;
+    known.description = *std::move(file);
+    known.complaint.clear();
+    changed_ = true;
+    return;
+  }
+  const std::string complaint(file.status().message());
+  if (complaint == known.complaint) return;
+  known.complaint = complaint;
+  // A file of another kind, such as a read-me, is normal.
+  const bool other = absl::IsInvalidArgument(file.status());
+  spdlog::log(other ? spdlog::level::info : spdlog::level::warn, "left out: {}", complaint);
+}
+
+void CatalogueScan::LookAgainAt(Time time) {
+  look_again_at_ = std::min(look_again_at_.value_or(time), time);
+}
+
+}  // namespace thunderhead::volume

@@ -1,0 +1,79 @@
+// End-to-end test of a folder that a model still writes to: new times appear on the time bar by themselves.
+import assert from "node:assert/strict";
+import { appendFileSync, mkdtempSync, rmSync, unlinkSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { setTimeout } from "node:timers/promises";
+import { cloudFile } from "./cloud_file.mjs";
+import { launchBrowser, listenForErrors, PICTURE_TIMEOUT_MS, screenshot } from "./driver.mjs";
+import { freePort, startServer } from "./server_process.mjs";
+
+const SETTLE_MS = 500;
+
+let folder;
+let server;
+let browser;
+let page;
+const complaints = [];
+
+const fileOf = (hour) => join(folder, `ball_${String(hour).padStart(2, "0")}.nc`);
+const validTime = () => page.getByTestId("valid-time").innerText();
+
+async function awaitValidTime(pattern) {
+  const end = Date.now() + PICTURE_TIMEOUT_MS;
+  while (!pattern.test(await validTime())) {
+    assert.ok(Date.now() < end, `the time bar says "${await validTime()}", not ${pattern}\n${server.log()}`);
+    await setTimeout(100);
+  }
+}
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), "thunderhead-e2e-"));
+  writeFileSync(fileOf(1), cloudFile(1));
+  writeFileSync(fileOf(2), cloudFile(2));
+  server = await startServer({
+    httpPort: await freePort(),
+    grpcPort: await freePort(),
+    data: folder,
+    more: ["--settle-seconds", String(SETTLE_MS / 1000), "--rescan-seconds", "2"],
+  });
+  browser = await launchBrowser();
+  page = await (await browser.newContext({ viewport: { width: 900, height: 560 } })).newPage();
+  listenForErrors(page, complaints);
+  await page.goto(server.url);
+});
+
+after(async () => {
+  await browser?.close();
+  await server?.stop();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+test("a session that shows the newest time goes on to a newer one when its file is complete", async () => {
+  await awaitValidTime(/02:00.*2 of 2/s);
+  const whole = cloudFile(3);
+  writeFileSync(fileOf(3), whole.subarray(0, whole.length / 2));
+  await setTimeout(4 * SETTLE_MS);
+  assert.match(await validTime(), /2 of 2/, "half a file is no time");
+  appendFileSync(fileOf(3), whole.subarray(whole.length / 2));
+  await awaitValidTime(/03:00.*3 of 3/s);
+  await screenshot("catalogue-newest", page);
+});
+
+test("a session with a time selected keeps it when others come", async () => {
+  await page.getByTestId("time").fill("1");
+  await awaitValidTime(/02:00.*2 of 3/s);
+  writeFileSync(fileOf(4), cloudFile(4));
+  await awaitValidTime(/02:00.*2 of 4/s);
+  writeFileSync(fileOf(0), cloudFile(0));
+  await awaitValidTime(/02:00.*3 of 5/s);
+});
+
+test("a time that is deleted while it is shown says so, and others that are deleted go", async () => {
+  unlinkSync(fileOf(2));
+  unlinkSync(fileOf(0));
+  await awaitValidTime(/02:00.*2 of 4.*deleted, shown from memory/s);
+  await screenshot("catalogue-deleted", page);
+  assert.deepEqual(complaints, []);
+});

@@ -1,0 +1,97 @@
+// The real program as its operator sees it: metrics, health, JSON logs, draining. Needs no browser.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { mkdtempSync, rmSync, statSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { test } from "node:test";
+import { setTimeout } from "node:timers/promises";
+import { BINARY, freePort, startServer } from "./server_process.mjs";
+
+async function start(...more) {
+  const operatorPort = await freePort();
+  const flags = ["--metrics", `127.0.0.1:${operatorPort}`, "--log-format", "json", ...more];
+  const ports = { httpPort: await freePort(), grpcPort: await freePort() };
+  const server = await startServer({ ...ports, more: flags });
+  const get = async (path) => {
+    const answer = await fetch(`http://127.0.0.1:${operatorPort}/${path}`);
+    return { status: answer.status, text: await answer.text() };
+  };
+  const pictures = async () =>
+    Number(/^thunderhead_pictures_in_progress (\d+)/m.exec((await get("metrics")).text)?.[1]);
+  // Begins a picture that takes some seconds; resolves when the server has it.
+  const beginPicture = async (file) => {
+    // The server draws two by itself at its start, one after the other.
+    for (let quiet = 0; quiet < 10; quiet = (await pictures()) === 0 ? quiet + 1 : 0) await setTimeout(50);
+    const child = spawn(BINARY, [
+      ...["render", "supercell", "-o", file, "--renderer", "light_volume", "--slices", "512"],
+      ...["--size", "2560x1440", "--server", `127.0.0.1:${ports.grpcPort}`],
+    ]);
+    let said = "";
+    child.stderr.on("data", (text) => {
+      said += text;
+    });
+    while ((await pictures()) === 0) {
+      assert.equal(child.exitCode, null, said);
+      await setTimeout(20);
+    }
+    return child;
+  };
+  return { ...server, get, beginPicture };
+}
+
+const ended = (child) => new Promise((resolve) => child.once("exit", (code, signal) => resolve({ code, signal })));
+
+test("metrics, health and logs of a server that serves and then stops", async () => {
+  const server = await start();
+  assert.deepEqual(await server.get("healthz"), { status: 200, text: "serving\n" });
+  assert.deepEqual(await server.get("readyz"), { status: 200, text: "serving\n" });
+  const { text } = await server.get("metrics");
+  for (const line of [/^thunderhead_sessions 0$/m, /^thunderhead_storms 1$/m, /^thunderhead_draining 0$/m]) {
+    assert.match(text, line);
+  }
+  assert.match(text, /^thunderhead_memory_bytes [1-9]/m);
+  const exit = ended(server.child);
+  server.child.kill("SIGTERM");
+  assert.deepEqual(await exit, { code: 0, signal: null });
+  const lines = server.log().split("\n").filter((line) => line.startsWith("{"));
+  const messages = lines.map((line) => JSON.parse(line));
+  for (const { time, level, message } of messages) {
+    assert.match(time, /^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z$/);
+    assert.ok(["trace", "debug", "info", "warning", "error", "critical"].includes(level), level);
+    assert.equal(typeof message, "string");
+  }
+  assert.ok(messages.some(({ message }) => message.startsWith("draining")));
+});
+
+test("SIGTERM waits for the picture that was begun, a second one ends at once", async () => {
+  const folder = mkdtempSync(join(tmpdir(), "thunderhead-drain-"));
+  const file = join(folder, "picture.png");
+  try {
+    const server = await start();
+    const picture = await server.beginPicture(file);
+    const drawn = ended(picture);
+    const exit = ended(server.child);
+    server.child.kill("SIGTERM");
+    await setTimeout(100);
+    assert.deepEqual(await server.get("readyz"), { status: 503, text: "draining\n" });
+    assert.equal((await server.get("healthz")).status, 200);
+    assert.deepEqual(await drawn, { code: 0, signal: null });
+    assert.ok(statSync(file).size > 10_000);
+    assert.deepEqual(await exit, { code: 0, signal: null });
+
+    const other = await start();
+    const lost = await other.beginPicture(file);
+    const gaveUp = ended(lost);
+    const killed = ended(other.child);
+    other.child.kill("SIGTERM");
+    await setTimeout(400);
+    const again = Date.now();
+    other.child.kill("SIGTERM");
+    assert.deepEqual(await killed, { code: 128 + 15, signal: null });
+    assert.ok(Date.now() - again < 1000);
+    assert.notEqual((await gaveUp).code, 0);
+  } finally {
+    rmSync(folder, { recursive: true, force: true });
+  }
+});

@@ -1,0 +1,120 @@
+// Sessions while the catalogue changes: who shows the newest time follows, others keep theirs, and
+// everybody is told.
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "service/catalogue_follower.h"
+#include "tests/service/fake_service.h"
+#include "tests/service/interacting.h"
+
+namespace thunderhead::testing {
+namespace {
+
+using service::PlaceAfter;
+using service::StormPlace;
+using Response = v1::InteractResponse;
+using Stub = v1::ThunderheadService::Stub;
+
+volume::StormInfoPtr Storm(const std::string& id, const std::vector<int>& hours) {
+  volume::StormInfo storm;
+  storm.id = id;
+  for (const int hour : hours) storm.times.push_back({"2013-05-20T0" + std::to_string(hour), 0.0});
+  return std::make_shared<const volume::StormInfo>(storm);
+}
+
+TEST(PlaceAfter, KeepsTheTimeAndFollowsTheNewest) {
+  const volume::StormChange grown{Storm("file", {2, 4}), Storm("series", {1, 2, 4, 5})};
+  EXPECT_EQ(PlaceAfter(grown, 0), (StormPlace{"series", 1}));
+  EXPECT_EQ(PlaceAfter(grown, 1), (StormPlace{"series", 3}));
+}
+
+TEST(PlaceAfter, GoesToTheTimeBeforeOneThatIsGone) {
+  const volume::StormChange shrunk{Storm("a", {1, 2, 3, 4}), Storm("a", {1, 3, 4})};
+  EXPECT_EQ(PlaceAfter(shrunk, 1), (StormPlace{"a", 0}));
+  EXPECT_EQ(PlaceAfter(shrunk, 2), (StormPlace{"a", 1}));
+  const volume::StormChange first_gone{Storm("a", {1, 2, 3}), Storm("a", {2, 3})};
+  EXPECT_EQ(PlaceAfter(first_gone, 0), (StormPlace{"a", 0}));
+  EXPECT_EQ(PlaceAfter({Storm("a", {1}), nullptr}, 0), std::nullopt);
+}
+
+class ChangingCatalogue : public ::testing::Test {
+ protected:
+  std::string Create(std::uint32_t time_index) {
+    v1::CreateSessionRequest request;
+    *request.mutable_scene() = SmallScene();
+    request.mutable_scene()->set_storm_id("anvil");
+    request.mutable_scene()->set_time_index(time_index);
+    v1::CreateSessionResponse response;
+    const grpc::Status status = Call(service_.stub(), &Stub::CreateSession, request, &response);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    return response.session_id();
+  }
+
+  void AddTime(const std::string& valid_time) {
+    service_.store->Become("anvil", [&](volume::StormInfo& storm) {
+      storm.times.push_back({valid_time, 0.0});
+      std::ranges::sort(storm.times, {}, &volume::StormTime::valid_time);
+    });
+  }
+
+  static std::uint32_t TimeOf(Interacting& person) {
+    return person.AwaitNewest(Response::kScene).scene().scene().time_index();
+  }
+
+  static bool AwaitTime(Interacting& person, std::uint32_t time_index) {
+    return person.Await([&](const Interacting::Messages& messages) {
+      std::uint32_t shown = 0;
+      for (const Response& message : messages) {
+        if (message.has_scene()) shown = message.scene().scene().time_index();
+      }
+      return shown == time_index;
+    });
+  }
+
+  FakeService service_;
+};
+
+TEST_F(ChangingCatalogue, MovesSessionsAndTellsThem) {
+  Interacting newest(service_.stub(), Create(3));
+  Interacting chosen(service_.stub(), Create(1));
+  EXPECT_EQ(TimeOf(newest), 3U);
+  EXPECT_EQ(TimeOf(chosen), 1U);
+  AddTime("0001-01-01T02:00:00Z");
+  EXPECT_TRUE(AwaitTime(newest, 4));
+  EXPECT_TRUE(newest.AwaitNewest(Response::kCatalogueChanged).has_catalogue_changed());
+  EXPECT_TRUE(chosen.AwaitNewest(Response::kCatalogueChanged).has_catalogue_changed());
+  EXPECT_EQ(TimeOf(chosen), 1U);
+  // An earlier one moves every index.
+  AddTime("0001-01-01T00:00:00Z");
+  EXPECT_TRUE(AwaitTime(newest, 5));
+  EXPECT_TRUE(AwaitTime(chosen, 2));
+}
+
+TEST_F(ChangingCatalogue, KeepsTheCameraOfWhoFollows) {
+  Interacting person(service_.stub(), Create(3));
+  const v1::Scene before = person.AwaitNewest(Response::kScene).scene().scene();
+  AddTime("0001-01-01T02:00:00Z");
+  ASSERT_TRUE(AwaitTime(person, 4));
+  const v1::Scene after = person.AwaitNewest(Response::kScene).scene().scene();
+  EXPECT_EQ(after.camera().SerializeAsString(), before.camera().SerializeAsString());
+}
+
+TEST_F(ChangingCatalogue, TellsOnlyWhatIsNew) {
+  AddTime("0001-01-01T02:00:00Z");
+  Interacting late(service_.stub(), Create(0));
+  late.AwaitNewest(Response::kScene);
+  late.AwaitNewest(Response::kFrame);
+  for (const Response& message : late.All()) EXPECT_FALSE(message.has_catalogue_changed());
+}
+
+TEST_F(ChangingCatalogue, DescribesWhichTimesAreDeleted) {
+  service_.store->Become("anvil", [](volume::StormInfo& storm) { storm.times[2].deleted = true; });
+  v1::DescribeStormRequest request;
+  request.set_storm_id("anvil");
+  v1::DescribeStormResponse response;
+  ASSERT_TRUE(Call(service_.stub(), &Stub::DescribeStorm, request, &response).ok());
+  EXPECT_FALSE(response.storm().times(1).deleted());
+  EXPECT_TRUE(response.storm().times(2).deleted());
+}
+
+}  // namespace
+}  // namespace thunderhead::testing

@@ -1,0 +1,126 @@
+// A server that ends: what was begun is delivered, what comes is refused, people are told.
+#include <chrono>
+#include <thread>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "telemetry/metrics.h"
+#include "tests/service/fake_service.h"
+#include "tests/service/interacting.h"
+
+namespace thunderhead::testing {
+namespace {
+
+using Response = v1::InteractResponse;
+using Stub = v1::ThunderheadService::Stub;
+
+class DrainTest : public ::testing::Test {
+ protected:
+  grpc::Status Render() {
+    v1::RenderImageRequest request;
+    *request.mutable_scene() = SmallScene();
+    v1::RenderImageResponse response;
+    return Call(service_.stub(), &Stub::RenderImage, request, &response);
+  }
+
+  grpc::Status CreateSession(std::string* key = nullptr) {
+    v1::CreateSessionRequest request;
+    *request.mutable_scene() = SmallScene();
+    v1::CreateSessionResponse response;
+    const grpc::Status status = Call(service_.stub(), &Stub::CreateSession, request, &response);
+    if (key != nullptr) *key = response.session_id();
+    return status;
+  }
+
+  // gRPC lets go of a call some time after its client has the answer.
+  bool AwaitPictures(int count) {
+    for (int i = 0; i < 500; ++i) {
+      if (service_.server().Load().pictures == count) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  }
+
+  static std::uint64_t Refusals(const char* reason) {
+    return telemetry::Counted().refusals.Of(reason).Value();
+  }
+
+  FakeService service_;
+};
+
+TEST_F(DrainTest, DeliversThePictureThatWasBegunAndRefusesTheNext) {
+  service_.machine->drawing.Close();
+  grpc::Status begun;
+  std::thread caller([&] { begun = Render(); });
+  ASSERT_TRUE(service_.machine->drawing.AwaitWaiting(1));
+  EXPECT_EQ(service_.server().Load().pictures, 1);
+  const std::uint64_t refusals = Refusals("SHUTTING_DOWN");
+  service_.server().BeginDrain();
+  EXPECT_TRUE(service_.server().Load().draining);
+  EXPECT_EQ(Render().error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_EQ(CreateSession().error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_GE(Refusals("SHUTTING_DOWN"), refusals + 2);
+  EXPECT_TRUE(AwaitPictures(1)) << "of those that were refused none is left";
+  service_.machine->drawing.Open();
+  caller.join();
+  EXPECT_TRUE(begun.ok()) << begun.error_message();
+  EXPECT_TRUE(AwaitPictures(0));
+}
+
+TEST_F(DrainTest, TellsPeopleWhenToComeBack) {
+  std::string key;
+  ASSERT_TRUE(CreateSession(&key).ok());
+  Interacting person(service_.stub(), key);
+  person.AwaitNewest(Response::kFrame);
+  EXPECT_EQ(service_.server().Load().viewers, 1);
+  EXPECT_EQ(service_.server().Load().sessions, 1);
+  service_.server().BeginDrain();
+  const v1::End end = person.AwaitNewest(Response::kEnd).end();
+  EXPECT_EQ(end.reason(), v1::End::REASON_SERVER_STOPS);
+  EXPECT_GT(end.retry_after_ms(), 0U);
+}
+
+TEST_F(DrainTest, ATurnThatTakesLongIsSeen) {
+  EXPECT_LT(service_.server().Load().turn_s, 5.0);
+  service_.machine->drawing.Close();
+  std::thread caller([&] { Render(); });
+  ASSERT_TRUE(service_.machine->drawing.AwaitWaiting(1));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_GT(service_.server().Load().turn_s, 0.25);
+  service_.machine->drawing.Open();
+  caller.join();
+  for (int i = 0; i < 500 && service_.server().Load().turn_s > 0.0; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_EQ(service_.server().Load().turn_s, 0.0) << "nothing is to be done";
+}
+
+TEST_F(DrainTest, FramesAndTheirLatencyAreCounted) {
+  telemetry::Metrics& counted = telemetry::Counted();
+  const auto latencies = [&counted] {
+    std::uint64_t count = 0;
+    for (std::size_t i = 0; i <= telemetry::Histogram::kBounds; ++i) {
+      count += counted.update_to_frame.Count(i);
+    }
+    return count;
+  };
+  std::string key;
+  ASSERT_TRUE(CreateSession(&key).ok());
+  Interacting person(service_.stub(), key);
+  person.AwaitNewest(Response::kFrame);
+  const std::uint64_t latencies_before = latencies();
+  const std::uint64_t bytes_before = counted.frame_bytes_sent.Value();
+  const std::uint64_t sent_before = counted.frames_sent.Value();
+  v1::Scene scene = SmallScene();
+  scene.mutable_sun()->set_azimuth_deg(123.0F);
+  person.AwaitFrame(service_.Update(key, scene));
+  for (int i = 0; i < 500 && latencies() == latencies_before; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_EQ(latencies(), latencies_before + 1) << "the first frame of a revision";
+  EXPECT_GT(counted.frames_sent.Value(), sent_before);
+  EXPECT_GT(counted.frame_bytes_sent.Value(), bytes_before + 100);
+}
+
+}  // namespace
+}  // namespace thunderhead::testing

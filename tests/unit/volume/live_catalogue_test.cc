@@ -1,0 +1,324 @@
+// The catalogue follows its folders: scans told the time, and a store with the kernel's events.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <mutex>
+#include <thread>
+
+#include "absl/strings/str_format.h"
+#include "tests/support/synthetic_wrf.h"
+#include "tests/support/temporary_folder.h"
+#include "volume/catalogue_scan.h"
+#include "volume/netcdf_lock.h"
+#include "volume/storm_store.h"
+
+namespace thunderhead::volume {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using ::testing::ElementsAre;
+using testing::SyntheticWrf;
+using testing::TemporaryFolder;
+using testing::WrfCell;
+
+std::string Bytes(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// In place: the file stays the same one.
+void Put(const std::string& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+class LiveFolder : public ::testing::Test {
+ protected:
+  LiveFolder() {
+    fs::create_directory(data_);
+    fs::create_directory(elsewhere_);
+  }
+
+  // The bytes of a file with those hours, with that much cloud water in it.
+  std::string WrfBytes(const std::vector<int>& hours, double cloud = 1e-3) {
+    SyntheticWrf file;
+    for (file.times.clear(); const int hour : hours) {
+      file.times.push_back(absl::StrFormat("2013-05-20_%02d:00:00", hour));
+    }
+    file.mixing_ratios["QCLOUD"] = [cloud](const WrfCell& cell) {
+      return cell.level == 4 ? cloud : 0.0;
+    };
+    const std::string path = elsewhere_ + "/written";
+    const NetcdfLock lock;  // a catalogue may be reading
+    testing::WriteWrf(file, path);
+    return Bytes(path);
+  }
+
+  std::string File(int hour) const {
+    return absl::StrFormat("%s/wrfout_d01_%02d:00:00", data_, hour);
+  }
+
+  void PutOld(const std::string& path, const std::string& bytes) {
+    Put(path, bytes);
+    fs::last_write_time(path, fs::file_time_type::clock::now() - std::chrono::hours(1));
+  }
+
+  // Becomes visible in one step.
+  void MoveInto(const std::string& path, const std::string& bytes) {
+    Put(elsewhere_ + "/complete", bytes);
+    fs::rename(elsewhere_ + "/complete", path);
+  }
+
+  CatalogueScan Scanner() {
+    return CatalogueScan({.paths = {data_},
+                          .formats = StormFormats::BuiltIn(),
+                          .settle = seconds(3),
+                          .retry = seconds(30)});
+  }
+
+  // The numbers of times of the storms found after `after`.
+  std::vector<std::size_t> TimesAt(CatalogueScan& scan, seconds after) {
+    const auto result = scan.Scan(CatalogueScan::Time(std::chrono::hours(1)) + after);
+    EXPECT_TRUE(result.ok()) << result.status();
+    std::vector<std::size_t> times;
+    for (const CataloguedStorm& storm : result->storms) times.push_back(storm.info.times.size());
+    return times;
+  }
+
+  std::unique_ptr<StormStore> Open(milliseconds rescan = std::chrono::hours(1)) {
+    StormStoreOptions options;
+    options.read_ahead = 0;
+    options.live = LiveCatalogueOptions{.rescan = rescan, .settle = milliseconds(200)};
+    auto store = StormStore::Open({data_}, options);
+    EXPECT_TRUE(store.ok()) << store.status();
+    return *std::move(store);
+  }
+
+  // True if `condition` becomes true within a limit that is generous even on a busy machine.
+  static bool Eventually(const std::function<bool()>& condition) {
+    for (int i = 0; i < 2000; ++i) {
+      if (condition()) return true;
+      std::this_thread::sleep_for(milliseconds(10));
+    }
+    return false;
+  }
+
+  static std::size_t TimesOf(const StormStore& store) {
+    std::size_t times = 0;
+    for (const StormInfoPtr& storm : store.Storms()) times += storm->times.size();
+    return times;
+  }
+
+  TemporaryFolder folder_;
+  const std::string data_ = folder_.File("series");
+  const std::string elsewhere_ = folder_.File("elsewhere");
+};
+
+TEST_F(LiveFolder, OffersAFileThatComesInPiecesWhenItIsComplete) {
+  const std::string whole = WrfBytes({0});
+  CatalogueScan scan = Scanner();
+  EXPECT_THAT(TimesAt(scan, seconds(0)), ElementsAre());
+  Put(File(0), whole.substr(0, whole.size() / 2));
+  EXPECT_THAT(TimesAt(scan, seconds(1)), ElementsAre());
+  EXPECT_THAT(TimesAt(scan, seconds(10)), ElementsAre()) << "it rests, but it is truncated";
+  Put(File(0), whole);
+  EXPECT_THAT(TimesAt(scan, seconds(11)), ElementsAre()) << "it has just changed";
+  EXPECT_THAT(TimesAt(scan, seconds(13)), ElementsAre());
+  EXPECT_THAT(TimesAt(scan, seconds(14)), ElementsAre(1));
+}
+
+TEST_F(LiveFolder, DoesNotOfferAFileWhoseSizeMoves) {
+  const std::string whole = WrfBytes({0});
+  CatalogueScan scan = Scanner();
+  TimesAt(scan, seconds(0));
+  // Readable at any time, but never at rest.
+  for (int second = 1; second < 20; second += 2) {
+    Put(File(0), whole + std::string(static_cast<std::size_t>(second), '\0'));
+    EXPECT_THAT(TimesAt(scan, seconds(second)), ElementsAre()) << second;
+  }
+}
+
+TEST_F(LiveFolder, OffersOldFilesAtOnceAndNewOnesLater) {
+  PutOld(File(0), WrfBytes({0}));
+  Put(File(1), WrfBytes({1}));
+  CatalogueScan scan = Scanner();
+  EXPECT_THAT(TimesAt(scan, seconds(0)), ElementsAre(1));
+  EXPECT_THAT(TimesAt(scan, seconds(3)), ElementsAre(2)) << "one series of both";
+}
+
+TEST_F(LiveFolder, KeepsTheTimesOfAFileThatGrows) {
+  const std::string one = WrfBytes({0});
+  const std::string two = WrfBytes({0, 1});
+  ASSERT_GT(two.size(), one.size());
+  PutOld(File(0), one);
+  CatalogueScan scan = Scanner();
+  EXPECT_THAT(TimesAt(scan, seconds(0)), ElementsAre(1));
+  Put(File(0), two.substr(0, two.size() - 100));
+  EXPECT_THAT(TimesAt(scan, seconds(1)), ElementsAre(1));
+  EXPECT_THAT(TimesAt(scan, seconds(5)), ElementsAre(1)) << "not readable now";
+  Put(File(0), two);
+  EXPECT_THAT(TimesAt(scan, seconds(6)), ElementsAre(1));
+  EXPECT_THAT(TimesAt(scan, seconds(9)), ElementsAre(2));
+}
+
+TEST_F(LiveFolder, AFileThatShrinksIsAnother) {
+  const std::string whole = WrfBytes({0});
+  PutOld(File(0), whole);
+  CatalogueScan scan = Scanner();
+  EXPECT_THAT(TimesAt(scan, seconds(0)), ElementsAre(1));
+  Put(File(0), whole.substr(0, 1000));
+  EXPECT_THAT(TimesAt(scan, seconds(1)), ElementsAre());
+}
+
+TEST_F(LiveFolder, OpensAFileOnlyWhenItHasChanged) {
+  PutOld(File(0), WrfBytes({0}));
+  PutOld(data_ + "/README", "no storm");
+  int opened = 0;
+  CatalogueScan scan({.paths = {data_},
+                      .formats = StormFormats::BuiltIn(),
+                      .settle = seconds(3),
+                      .retry = seconds(30),
+                      .before_file = [&opened] { ++opened; }});
+  TimesAt(scan, seconds(0));
+  EXPECT_EQ(opened, 2);
+  TimesAt(scan, seconds(10));
+  TimesAt(scan, seconds(20));
+  EXPECT_EQ(opened, 2);
+  TimesAt(scan, seconds(31));
+  EXPECT_EQ(opened, 3) << "what could not be read is tried again";
+}
+
+TEST_F(LiveFolder, AFolderThatGoesAwayComesBack) {
+  PutOld(File(0), WrfBytes({0}));
+  const auto store = Open(milliseconds(100));
+  ASSERT_EQ(TimesOf(*store), 1U);
+  fs::rename(data_, folder_.File("away"));
+  Put(data_, "a file in the folder's place");
+  EXPECT_TRUE(Eventually([&] { return TimesOf(*store) == 0; }))
+      << "a path that is gone is no storm";
+  fs::remove(data_);
+  fs::rename(folder_.File("away"), data_);
+  EXPECT_TRUE(Eventually([&] { return TimesOf(*store) == 1; }));
+}
+
+TEST_F(LiveFolder, AnEmptyFolderIsWaitedFor) {
+  const auto store = Open();
+  EXPECT_TRUE(store->Storms().empty());
+  std::this_thread::sleep_for(seconds(1));  // the scan after the start is over
+  MoveInto(File(0), WrfBytes({0}));
+  EXPECT_TRUE(Eventually([&] { return TimesOf(*store) == 1; }));
+}
+
+TEST_F(LiveFolder, APathThatIsNotThereIsAnError) {
+  StormStoreOptions options;
+  options.live = LiveCatalogueOptions{};
+  EXPECT_FALSE(StormStore::Open({folder_.File("typing-error")}, options).ok());
+}
+
+TEST_F(LiveFolder, TwelveFilesCopiedOneByOneAreOneSeriesThatGrows) {
+  std::mutex mutex;
+  std::vector<std::pair<std::string, std::size_t>> told;
+  const auto store = Open();
+  store->Listen([&](const CatalogueChange& change) {
+    const std::lock_guard lock(mutex);
+    for (const StormChange& storm : change) {
+      ASSERT_NE(storm.after, nullptr);
+      told.emplace_back(storm.after->id, storm.after->times.size());
+    }
+  });
+  for (int hour = 0; hour < 12; ++hour) {
+    const std::string whole = WrfBytes({hour});
+    std::ofstream copy(File(hour), std::ios::binary);
+    for (std::size_t at = 0; at < whole.size(); at += whole.size() / 4) {
+      copy << whole.substr(at, whole.size() / 4) << std::flush;
+      std::this_thread::sleep_for(milliseconds(20));
+      EXPECT_EQ(TimesOf(*store), static_cast<std::size_t>(hour));
+    }
+    copy.close();
+    ASSERT_TRUE(Eventually([&] { return TimesOf(*store) == static_cast<std::size_t>(hour) + 1; }))
+        << hour;
+  }
+  ASSERT_EQ(store->Storms().size(), 1U);
+  EXPECT_EQ(store->Storms()[0]->id, "series");
+  store->Listen({});
+  ASSERT_EQ(told.size(), 12U);
+  EXPECT_EQ(told[0], std::pair(std::string("wrfout_d01_00-00-00"), std::size_t{1}));
+  EXPECT_EQ(told[11], std::pair(std::string("series"), std::size_t{12}));
+}
+
+TEST_F(LiveFolder, ANewSubfolderIsWatchedToo) {
+  PutOld(File(0), WrfBytes({0}));
+  const auto store = Open();
+  fs::create_directory(data_ + "/run2");
+  MoveInto(data_ + "/run2/wrfout_d01_05:00:00", WrfBytes({5}));
+  EXPECT_TRUE(Eventually([&] { return TimesOf(*store) == 2; }));
+  MoveInto(data_ + "/run2/wrfout_d01_06:00:00", WrfBytes({6}));
+  EXPECT_TRUE(Eventually([&] { return TimesOf(*store) == 3; }));
+}
+
+TEST_F(LiveFolder, KeepsWhatIsCachedWhileTimesComeAndGo) {
+  PutOld(File(1), WrfBytes({1}, 1e-3));
+  PutOld(File(2), WrfBytes({2}, 2e-3));
+  const auto store = Open();
+  const auto shown = store->Get("series", 1, {});
+  ASSERT_TRUE(shown.ok());
+  MoveInto(File(0), WrfBytes({0}, 5e-3));
+  ASSERT_TRUE(Eventually([&] { return TimesOf(*store) == 3; }));
+  EXPECT_EQ(store->Peek("series", 2), *shown) << "its index has moved";
+  EXPECT_EQ(store->Peek("series", 1), nullptr);
+  EXPECT_DOUBLE_EQ(store->Find("series")->times[2].elapsed_s, 7200.0);
+}
+
+TEST_F(LiveFolder, ADeletedTimeStaysWhileItIsLookedAt) {
+  for (int hour = 0; hour < 3; ++hour) PutOld(File(hour), WrfBytes({hour}));
+  const auto store = Open(milliseconds(100));
+  auto shown = store->Get("series", 1, {});
+  ASSERT_TRUE(shown.ok());
+  fs::remove(File(0));
+  fs::remove(File(1));
+  ASSERT_TRUE(Eventually([&] { return TimesOf(*store) == 2; })) << "nobody looks at the first";
+  const StormInfoPtr storm = store->Storms()[0];
+  EXPECT_TRUE(storm->times[0].deleted);
+  EXPECT_FALSE(storm->times[1].deleted);
+  EXPECT_EQ(*store->Get(storm->id, 0, {}), *shown);
+  shown = absl::NotFoundError("");
+  EXPECT_TRUE(Eventually([&] { return TimesOf(*store) == 1; }));
+}
+
+TEST_F(LiveFolder, ADeletedStormStaysWhileItIsLookedAt) {
+  PutOld(File(0), WrfBytes({0}));
+  const auto store = Open(milliseconds(100));
+  const std::string id = store->Storms()[0]->id;
+  auto shown = store->Get(id, 0, {});
+  ASSERT_TRUE(shown.ok());
+  fs::remove(File(0));
+  ASSERT_TRUE(Eventually([&] { return store->Find(id)->times[0].deleted; }));
+  EXPECT_EQ(*store->Get(id, 0, {}), *shown);
+  shown = absl::NotFoundError("");
+  EXPECT_TRUE(Eventually([&] { return store->Storms().empty(); }));
+  EXPECT_EQ(store->Get(id, 0, {}).status().code(), absl::StatusCode::kNotFound);
+  EXPECT_EQ(store->CachedBytes(), 0U);
+}
+
+TEST_F(LiveFolder, AFileThatIsReplacedIsReadAgain) {
+  PutOld(File(0), WrfBytes({0}, 1e-3));
+  const auto store = Open();
+  const std::string id = store->Storms()[0]->id;
+  const auto shown = store->Get(id, 0, {});  // held, so that it stays in memory
+  ASSERT_TRUE(shown.ok());
+  EXPECT_NEAR((*shown)->fields[0].statistics.maximum, 1e-3, 1e-8);
+  MoveInto(File(0), WrfBytes({0}, 4e-3));
+  EXPECT_TRUE(Eventually([&] {
+    const auto fields = store->Get(id, 0, {});
+    return fields.ok() && (*fields)->fields[0].statistics.maximum > 3e-3;
+  }));
+}
+
+}  // namespace
+}  // namespace thunderhead::volume
