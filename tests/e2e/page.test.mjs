@@ -111,6 +111,18 @@ async function tracedPaths() {
   return Number.parseFloat(await page.getByTestId("traced-paths").textContent());
 }
 
+// Pictures are told apart by the light that they were compared in first: a higher sun behind the left shoulder. Twenty degrees
+// to the south and 17 up.
+test("the arrow keys turn the sun on its dome", async () => {
+  await rested();
+  await page.getByTestId("sun-dome").focus();
+  await changing(async () => {
+    for (let i = 0; i < 4; i += 1) await page.keyboard.press("ArrowLeft");
+    for (let i = 0; i < 3; i += 1) await page.keyboard.press("ArrowUp");
+    for (let i = 0; i < 2; i += 1) await page.keyboard.press("Shift+ArrowUp");
+  });
+});
+
 test("the storm's last time is shown first", async () => {
   assert.equal((await rested()).time, "3");
   await changing(() => page.getByTestId("time").fill("0"));
