@@ -34,7 +34,10 @@ void LightTracer::TakeOutcome(Clock::time_point now) {
     wanted.not_before = now + kTraceAgainAfter;
     return;
   }
-  wanted.ended = !outcome->progress->ok() || (*outcome->progress)->steps == 0;
+  const Progress& progress = *outcome->progress;
+  // A picture needs no more paths than it asked for; a session says when it has enough.
+  wanted.ended = !progress.ok() || progress->steps == 0 ||
+                 (wanted.request.claims && progress->HasTraced(wanted.request.wanted_paths));
   wanted.news = std::move(outcome->progress);
 }
 

@@ -95,6 +95,7 @@ struct Class {
   explicit Class(const v1::SessionRules& rules = {}) : created(Create(service, rules)) {
     presenter =
         std::make_unique<Interacting>(service.stub(), created.session_id(), Named("Teacher"));
+    EXPECT_GT(presenter->viewer_id(), 0U);
     ana = std::make_unique<Interacting>(service.stub(), created.viewer_key(), Named("Ana"));
     EXPECT_GT(ana->viewer_id(), 0U);
     ben = std::make_unique<Interacting>(service.stub(), created.viewer_key(), Named("Ben"));

@@ -330,7 +330,7 @@ TEST_F(StormExportTest, FailuresLeaveNoFile) {
   const auto file = ExportOf(SecondTime(), fields, Info(), {});
   ASSERT_TRUE(file.ok());
   const absl::Status nowhere = WriteVdb(*file, folder_.File("no/storm.vdb"), {}, {});
-  EXPECT_EQ(nowhere.code(), absl::StatusCode::kUnavailable);
+  EXPECT_EQ(nowhere.code(), absl::StatusCode::kFailedPrecondition);
   EXPECT_THAT(nowhere.message(), HasSubstr("no/storm.vdb cannot be written"));
   std::stop_source stop;
   std::vector<double> shares;
