@@ -161,7 +161,7 @@ TEST_F(GenerateCommand, EmptyVolumesAreNamedByFitAndDrawnAsSky) {
     WriteCf(
         ExtinctionFile(6, 6, 4, 100.0, 100.0, 100.0, [value](auto, auto, auto) { return value; }),
         cloud_);
-    EXPECT_EQ(Run("fit " + cloud_ + " --balls 3 -o " + folder_.File("x.balls")), 65) << value;
+    EXPECT_EQ(Run("fit " + cloud_ + " --balls 3 -o " + folder_.File("x.balls")), 64) << value;
     EXPECT_THAT(err_, HasSubstr("empty")) << value;
     for (const std::string renderer : {"metaball", "cumulus", "light_volume", "half_angle"}) {
       EXPECT_EQ(Run("render " + cloud_ + " --device software --size 16x12 --renderer " + renderer +
