@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -17,9 +18,9 @@
 #include "app/pipeline_flags.h"
 #include "app/run_movie.h"
 #include "app/watched_folder.h"
+#include "base/folder_events.h"
 #include "base/status.h"
 #include "base/version.h"
-#include "pipeline/folder_watch.h"
 #include "pipeline/manifest.h"
 #include "pipeline/movie.h"
 #include "pipeline/readiness.h"
@@ -186,9 +187,13 @@ absl::Status Watch(const Flags& flags) {
         "--product has {time}, which counts the times of a whole run; files that still come have "
         "no such number: use {valid:%Y%m%d_%H%M} or {lead_min:04d}");
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(pipeline::FolderWatch watch,
-                               pipeline::FolderWatch::Open(flags.folder));
-  const std::stop_callback wake(stop, [&watch] { watch.Wake(); });
+  std::error_code error;
+  if (!std::filesystem::is_directory(flags.folder, error)) {
+    return absl::NotFoundError(absl::StrCat(flags.folder, ": there is no such folder; create it"));
+  }
+  base::FolderEvents events;
+  events.Watch(flags.folder);
+  const std::stop_callback wake(stop, [&events] { events.Wake(); });
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<PictureRun> run,
                                PictureRun::Open(std::move(options)));
   RunProgress progress(flags.pipeline.progress, absl::StrCat("watching ", flags.folder));
@@ -201,7 +206,9 @@ absl::Status Watch(const Flags& flags) {
     if (end.files.has_value() && folder.DoneCount() >= *end.files) return absl::OkStatus();
     if (absl::Now() >= end.at) return Ended(folder);
     const absl::Duration pause = folder.WaitingCount() > 0 ? policy.Patience() : kRescan;
-    watch.Wait(std::clamp(end.at - absl::Now(), absl::ZeroDuration(), pause));
+    events.WaitUntil(
+        std::chrono::steady_clock::now() +
+        absl::ToChronoMilliseconds(std::clamp(end.at - absl::Now(), absl::ZeroDuration(), pause)));
   }
   return absl::CancelledError(absl::StrCat("interrupted: the products of ", folder.DoneCount(),
                                            " files are made and in ", run->Records().Path(),

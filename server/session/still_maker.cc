@@ -1,20 +1,17 @@
 #include "session/still_maker.h"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <utility>
 
 #include "base/log.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
+#include "base/thread_priority.h"
 #include "codec/avif.h"
 
 namespace thunderhead::session {
 namespace {
 
-// Linux counts a thread's niceness apart from its process's.
 constexpr int kNiceness = 10;
 
 }  // namespace
@@ -44,7 +41,7 @@ void StillMaker::Make(StillToMake still) {
 }
 
 void StillMaker::Run() {
-  (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);
+  base::LowerPriority(kNiceness);
   std::unique_lock lock(mutex_);
   while (!stopping_) {
     const auto next =

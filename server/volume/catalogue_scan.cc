@@ -1,10 +1,9 @@
 #include "volume/catalogue_scan.h"
 
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <utility>
 
+#include "base/file_stamp.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
 
@@ -21,14 +20,10 @@ nanoseconds AgeOf(std::int64_t changed_ns) {
 }  // namespace
 
 std::optional<CatalogueScan::Stamp> CatalogueScan::StampOf(const std::string& path) {
-  struct stat found {};
-  if (stat(path.c_str(), &found) != 0) return std::nullopt;
-  Stamp stamp;
-  stamp.file =
-      static_cast<std::uint64_t>(found.st_ino) ^ (static_cast<std::uint64_t>(found.st_dev) << 48U);
-  stamp.size_bytes = static_cast<std::uint64_t>(found.st_size);
-  stamp.changed_ns = std::int64_t{found.st_mtim.tv_sec} * 1'000'000'000 + found.st_mtim.tv_nsec;
-  return stamp;
+  const std::optional<base::FileStamp> found = base::StampOf(path);
+  if (!found.has_value()) return std::nullopt;
+  return Stamp{found->inode ^ (found->device << 48U), static_cast<std::uint64_t>(found->size_bytes),
+               found->modified_ns};
 }
 
 absl::StatusOr<CatalogueScan::Result> CatalogueScan::Scan(Time now) {

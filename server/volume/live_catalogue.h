@@ -10,8 +10,8 @@
 #include <thread>
 #include <vector>
 
+#include "base/folder_events.h"
 #include "volume/catalogue_scan.h"
-#include "volume/folder_events.h"
 #include "volume/storm_store.h"
 
 namespace thunderhead::volume {
@@ -40,7 +40,7 @@ class LiveCatalogue {
   const Renew renew_;
   const std::unique_ptr<CatalogueScan> scan_;
   CatalogueScan::Result newest_;
-  FolderEvents events_;
+  base::FolderEvents events_;
   std::string complaint_;  // logged last
   std::atomic<bool> stopping_{false};
   std::thread thread_;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdlib>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "base/stopwatch.h"
 #include "gtest/gtest.h"
 #include "session/gl_frame_source.h"
+#include "tests/support/gl_context.h"
 #include "tests/support/techniques.h"
 #include "volume/storm_store.h"
 
@@ -21,9 +21,7 @@ namespace {
 class LaneTest : public testing::Test {
  protected:
   void SetUp() override {
-    const char* device = std::getenv("THUNDERHEAD_TEST_DEVICE");
-    lane_ =
-        std::make_unique<Lane>(GlFrameSources(device == nullptr ? "software" : device), 0, [] {});
+    lane_ = std::make_unique<Lane>(GlFrameSources(test_support::Device()), 0, [] {});
     auto store = volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"},
                                           {.read_ahead = 0});
     ASSERT_TRUE(store.ok()) << store.status();

@@ -11,9 +11,13 @@ namespace thunderhead::test_support {
 
 // Software GL, which every machine draws alike; or the device that THUNDERHEAD_TEST_DEVICE names,
 // as `--device` does.
-inline absl::StatusOr<std::unique_ptr<gl::Context>> OpenContext() {
+inline const char* Device() {
   const char* device = std::getenv("THUNDERHEAD_TEST_DEVICE");
-  return gl::Context::Create(device == nullptr ? "software" : device);
+  return device == nullptr ? "software" : device;
+}
+
+inline absl::StatusOr<std::unique_ptr<gl::Context>> OpenContext() {
+  return gl::Context::Create(Device());
 }
 
 }  // namespace thunderhead::test_support

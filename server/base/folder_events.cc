@@ -1,4 +1,4 @@
-#include "volume/folder_events.h"
+#include "base/folder_events.h"
 
 #include <poll.h>
 #include <sys/eventfd.h>
@@ -13,7 +13,7 @@
 
 #include "spdlog/spdlog.h"
 
-namespace thunderhead::volume {
+namespace thunderhead::base {
 namespace {
 
 // Not IN_MODIFY: a file that is being written would wake its watcher at every block.
@@ -88,4 +88,4 @@ void FolderEvents::Wake() {
   static_cast<void>(write(wake_, &one, sizeof one));
 }
 
-}  // namespace thunderhead::volume
+}  // namespace thunderhead::base

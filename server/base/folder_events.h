@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-namespace thunderhead::volume {
+namespace thunderhead::base {
 
 class FolderEvents {
  public:
@@ -36,4 +36,4 @@ class FolderEvents {
   bool warned_ = false;
 };
 
-}  // namespace thunderhead::volume
+}  // namespace thunderhead::base
