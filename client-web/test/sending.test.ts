@@ -90,25 +90,97 @@ describe("scenes on their way to the server", () => {
     expect(b.sent[0]?.expected).toBe(1n);
   });
 
-  it("wait while one is in flight, and then only the newest goes, from the new revision", async () => {
+  const expectations = (b: ReturnType<typeof bench>) => b.sent.map(({ expected }) => expected);
+
+  it("follow each other from the revision that the one before becomes, four at most", async () => {
     const b = steering();
-    b.toTime(1);
-    await b.refresh();
-    b.toTime(2);
-    await b.refresh();
-    b.toTime(3);
-    await b.refresh();
-    expect(b.times()).toEqual([1]);
+    for (const time of [1, 2, 3, 4, 5, 6]) {
+      b.toTime(time);
+      await b.refresh();
+    }
+    expect(b.times()).toEqual([1, 2, 3, 4]);
+    expect(expectations(b)).toEqual([1n, 2n, 3n, 4n]);
     expect(b.sync.unsettled).toBe(true);
     b.sent[0]?.answer(taken(2n));
     await b.settle();
     await b.refresh();
-    expect(b.times()).toEqual([1, 3]);
-    expect(b.sent[1]?.expected).toBe(2n);
-    b.sent[1]?.answer(taken(3n));
+    expect(b.times()).toEqual([1, 2, 3, 4, 6]);
+    expect(b.sent[4]?.expected).toBe(5n);
+    for (const [i, one] of b.sent.entries()) one.answer(taken(BigInt(i + 2)));
+    await b.settle();
+    await b.refresh();
+    expect(b.sent).toHaveLength(5);
+    expect(b.sync.unsettled).toBe(false);
+    expect(b.sync.revision).toBe(6n);
+  });
+
+  it("go one at a time until the session's revision is known", async () => {
+    const b = bench();
+    b.sync.allow();
+    b.toTime(1);
+    await b.refresh();
+    b.toTime(2);
+    await b.refresh();
+    expect(b.times()).toEqual([1]);
+    b.sent[0]?.answer(taken(7n));
+    await b.settle();
+    await b.refresh();
+    expect(expectations(b)).toEqual([-1n, 7n]);
+  });
+
+  it("of which one is stale wait for the others' answers, and for the newer scene alone", async () => {
+    const b = steering();
+    for (const time of [1, 2, 3]) {
+      b.toTime(time);
+      await b.refresh();
+    }
+    b.sent[0]?.answer({ kind: "stale" });
+    await b.settle();
+    b.sync.told(withSky(sceneOf(0), { turbidity: 3 }), 5n);
+    await b.refresh();
+    expect(b.sent).toHaveLength(3);
+    b.sent[1]?.answer({ kind: "stale" });
+    b.sent[2]?.answer({ kind: "stale" });
+    await b.settle();
+    await b.refresh();
+    expect(b.sent).toHaveLength(4);
+    expect(b.sent[3]).toMatchObject({
+      expected: 5n,
+      scene: { timeIndex: 3, sky: { turbidity: 3 } },
+    });
+    b.sent[3]?.answer(taken(6n));
     await b.settle();
     expect(b.sync.unsettled).toBe(false);
-    expect(b.sync.revision).toBe(3n);
+  });
+
+  it("of which one is refused keep the edits after it, which go again at once", async () => {
+    const b = steering();
+    for (const time of [99, 2]) {
+      b.toTime(time);
+      await b.refresh();
+    }
+    b.sent[0]?.answer({ kind: "refused", message: "no such time" });
+    b.sent[1]?.answer({ kind: "stale" });
+    await b.settle();
+    await b.refresh();
+    expect(b.page.refused).toEqual(["no such time"]);
+    expect(b.times()).toEqual([99, 2, 2]);
+    expect(b.sent[2]?.expected).toBe(1n);
+  });
+
+  it("all lost go again as one", async () => {
+    const b = steering();
+    for (const time of [1, 2]) {
+      b.toTime(time);
+      await b.refresh();
+    }
+    for (const one of b.sent) one.lost();
+    await b.settle();
+    b.sync.told(sceneOf(0), 1n);
+    b.sync.allow();
+    await b.refresh();
+    expect(b.times()).toEqual([1, 2, 2]);
+    expect(b.sent[2]?.expected).toBe(1n);
   });
 
   it("are sent again after a loss, once the session is joined again", async () => {

@@ -24,7 +24,7 @@ absl::StatusOr<std::optional<NewestScene>> DecidedSetting::Decide(const NewestSc
     scene_ = std::make_shared<const scene::Scene>(*std::move(scene));
   }
   if (scene_ == nullptr) return std::optional<NewestScene>();
-  return std::optional(NewestScene{asked.revision, scene_, asked.changed_at});
+  return std::optional(NewestScene{asked.revision, scene_, asked.changed_at, asked.usual_pause});
 }
 
 // The previous scene's setting, if `asked` has the same accuracy request and kind of camera.

@@ -43,7 +43,7 @@ EncodedFrame Described(DrawnFrame& drawn) {
   frame.stages = std::move(drawn.picture.stages);
   frame.modelled = std::move(drawn.picture.modelled);
   frame.refined = drawn.refined;
-  frame.at_rest = drawn.at_rest;
+  frame.at_rest = drawn.refined && Clock::now() >= drawn.rests_at;
   frame.refinement = drawn.refinement;
   frame.accuracy = std::move(drawn.picture.accuracy);
   if (const auto newest = drawn.session->Newest();
@@ -138,7 +138,7 @@ void EncodeAndPublish(DrawnFrame drawn, const SerializeFrame& serialize, StillMa
       described, JpegEncoder(session, pictures, drawn.scene.output.jpeg_quality, serialize),
       std::move(video), still_follows);
   if (!drawn.refined) return;
-  StillToMake still{session, sequence, described, nullptr};
+  StillToMake still{session, sequence, described, drawn.rests_at, nullptr};
   if (still_follows) {
     still.fine = std::make_shared<PictureSizes<frame::FineImage>>(*std::move(drawn.fine));
   }

@@ -26,7 +26,7 @@ struct DrawnFrame {
   std::uint64_t scene_revision = 0;
   scene::Scene scene;
   bool refined = false;
-  bool at_rest = false;  // the scene had not changed for a while
+  Clock::time_point rests_at;  // unless the scene changes before
   DisplayFrame picture;
   std::optional<frame::FineImage> fine;  // where viewers take stills of higher quality
   std::optional<Refinement> refinement;  // of a picture by the reference

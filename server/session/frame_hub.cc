@@ -202,6 +202,7 @@ bool FrameHub::Took(Watch& watch, const Offer& offer, Time now) {
     watch.place.Took(offer.sequence, offer.picture, now);
   }
   const EncodedFrame& frame = is_video ? *offer.picture.frame : frame_->Described();
+  if (!VideoTier(watch, frame_->Described().width_px).has_value()) watch.place.Leave();
   // A viewer who has just come has missed nothing; a better form of a frame is not another one.
   const bool has_had_any = watch.last_sequence > 0;
   if (has_had_any && offer.sequence > watch.last_sequence) {
@@ -285,7 +286,8 @@ std::vector<VideoOrder> FrameHub::OrderVideo(int width_px, bool at_rest, bool st
     const std::optional<int> tier = VideoTier(watch, width_px);
     const bool gets_jpeg = at_rest && !(still_follows && watch.wants.takes_stills);
     if (!tier.has_value() || gets_jpeg) continue;
-    streams_[static_cast<std::size_t>(*tier)].Ask(*tier, {&watch.place, IsReady(watch, now)}, now);
+    streams_[static_cast<std::size_t>(*tier)].Ask(
+        *tier, {&watch.place, IsReady(watch, now), watch.last_sequence}, now);
   }
   std::vector<VideoOrder> orders;
   for (int tier = 0; tier < kTiers; ++tier) {

@@ -50,7 +50,7 @@ FramePlan FramePlanner::Coarse(const scene::Scene& scene,
 
 Decision FramePlanner::AtRest(const NewestScene& newest, Clock::time_point now,
                               const std::optional<LastDrawn>& last_drawn) const {
-  const Clock::time_point rested_at = newest.changed_at + targets_.rest_delay;
+  const Clock::time_point rested_at = targets_.RestsAt(newest);
   if (now < rested_at) return {std::nullopt, rested_at};
   const scene::Stage first_dirty =
       std::min(FirstDirty(last_drawn, *newest.scene), scene::Stage::kView);
@@ -60,7 +60,7 @@ Decision FramePlanner::AtRest(const NewestScene& newest, Clock::time_point now,
       return {FramePlan{quality, true}, std::nullopt};
     }
   }
-  const Clock::time_point settled_at = newest.changed_at + targets_.settle_delay;
+  const Clock::time_point settled_at = targets_.SettlesAt(newest);
   if (now < settled_at) return {std::nullopt, settled_at};
   return {FramePlan{FrameQuality{}, true}, std::nullopt};
 }

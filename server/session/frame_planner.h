@@ -3,6 +3,7 @@
 // threads and no GL.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -22,6 +23,15 @@ struct PlannerTargets {
   // A full-quality frame that takes longer than refined_ms blocks the next change, so it waits
   // until the scene has very likely come to rest.
   Clock::duration settle_delay = std::chrono::milliseconds(500);
+
+  // When a scene that does not change any more is taken to rest, and to have settled: later where
+  // the changes of its gesture come at larger distances.
+  Clock::time_point RestsAt(const NewestScene& scene) const {
+    return scene.changed_at + std::max(rest_delay, 2 * scene.usual_pause);
+  }
+  Clock::time_point SettlesAt(const NewestScene& scene) const {
+    return std::max(scene.changed_at + settle_delay, RestsAt(scene));
+  }
 };
 
 // The smallest image_scale and slice_share of a coarse frame; both vary together up to 1.

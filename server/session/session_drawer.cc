@@ -214,7 +214,7 @@ void SessionDrawer::Send(const Turn& turn, const NewestScene& shown, bool refine
                    .scene_revision = shown.revision,
                    .scene = *shown.scene,
                    .refined = refined,
-                   .at_rest = refined && Clock::now() >= shown.changed_at + targets_.rest_delay,
+                   .rests_at = targets_.RestsAt(shown),
                    .refinement = refinement,
                    .view = scene::ViewOf(*shown.scene, *turn.kept.fields.Fields())};
   const auto still_tiers = turn.session->hub().StillTiers(picture.width_px);

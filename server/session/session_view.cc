@@ -69,7 +69,7 @@ std::optional<SessionWork> SessionView::Refine(const Now& now) {
 
 std::optional<SessionWork> SessionView::Check(const Now& now) {
   if (!setting_.settled()) {
-    const Clock::time_point settled_at = SettledAt(now.newest);
+    const Clock::time_point settled_at = targets_.SettlesAt(now.newest);
     if (now.time < settled_at) return WaitUntil{settled_at};
     if (setting_.NeedsCheck()) return CheckSlices{now.shown};
     if (setting_.DecideAgain(now.newest)) {
@@ -85,7 +85,7 @@ std::optional<SessionWork> SessionView::Check(const Now& now) {
 std::optional<SessionWork> SessionView::Trace(const Now& now) {
   const scene::Technique& technique = now.shown.scene->rendering.technique;
   if (scene::TracedLightOf(technique) != scene::TracedLight::kOff) {
-    const Clock::time_point settled_at = SettledAt(now.shown);
+    const Clock::time_point settled_at = targets_.SettlesAt(now.shown);
     if (now.time < settled_at) return WaitUntil{settled_at};
     light_.BeginFor(now.shown.revision, now.time);
     if (light_.due()) return ShowLight{now.shown};
@@ -93,10 +93,6 @@ std::optional<SessionWork> SessionView::Trace(const Now& now) {
   }
   state_ = State::kSettled;
   return std::nullopt;
-}
-
-Clock::time_point SessionView::SettledAt(const NewestScene& scene) const {
-  return scene.changed_at + targets_.settle_delay;
 }
 
 void SessionView::Drawn(const DrawFrame& work) {

@@ -107,7 +107,6 @@ class SessionView {
   std::optional<SessionWork> Refine(const Now& now);
   std::optional<SessionWork> Check(const Now& now);
   std::optional<SessionWork> Trace(const Now& now);
-  Clock::time_point SettledAt(const NewestScene& scene) const;
 
   const PlannerTargets targets_;
   State state_ = State::kWaitingForFields;

@@ -100,8 +100,12 @@ void Session::Show(std::uint64_t revision, scene::Scene scene, std::string seria
     const std::lock_guard lock(mutex_);
     taken_revisions_.erase(revision);
     if (newest_.has_value() && newest_->revision > revision) return;
-    newest_ = {revision, std::make_shared<const scene::Scene>(std::move(scene)), Clock::now(),
-               std::make_shared<const std::string>(std::move(serialized))};
+    const Clock::time_point now = Clock::now();
+    newest_ = {.revision = revision,
+               .scene = std::make_shared<const scene::Scene>(std::move(scene)),
+               .changed_at = now,
+               .usual_pause = rhythm_.Changed(now),
+               .serialized = std::make_shared<const std::string>(std::move(serialized))};
     newest = *newest_;
     std::erase_if(own_views_, [](const auto& view) { return view.expired(); });
     for (const auto& view : own_views_) views.push_back(view.lock());

@@ -20,6 +20,7 @@
 #include "absl/status/statusor.h"
 #include "scene/scene.h"
 #include "session/audience.h"
+#include "session/change_rhythm.h"
 #include "session/frame_hub.h"
 #include "session/session_record.h"
 #include "session/video_encoders.h"
@@ -33,6 +34,8 @@ struct NewestScene {
   std::uint64_t revision = 0;
   std::shared_ptr<const scene::Scene> scene;
   Clock::time_point changed_at;
+  // Before the next change of the gesture that changed it; 0: none is to be expected.
+  Clock::duration usual_pause{};
   // The scene as the service serialized it for viewers; opaque here.
   std::shared_ptr<const std::string> serialized;
 };
@@ -111,6 +114,7 @@ class Session {
   std::uint64_t revision_count_ = 0;
   std::set<std::uint64_t> taken_revisions_;  // neither shown nor dropped
   std::optional<NewestScene> newest_;
+  ChangeRhythm rhythm_;
   Clock::time_point last_used_ = Clock::now();
   std::vector<std::weak_ptr<OwnView>> own_views_;
 };

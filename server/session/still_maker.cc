@@ -32,7 +32,7 @@ void StillMaker::Make(StillToMake still) {
   const auto session = still.session.lock();
   if (session == nullptr) return;
   const Time now = Clock::now();
-  const Time due = still.described.at_rest ? now : now + kRestsAfter;
+  const Time due = still.described.at_rest ? now : std::max(now + kRestsAfter, still.rests_at);
   {
     const std::lock_guard lock(mutex_);
     waiting_[session.get()] = {std::move(still), due};

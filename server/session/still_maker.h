@@ -26,13 +26,14 @@ struct StillToMake {
   std::weak_ptr<Session> session;
   std::uint64_t sequence = 0;
   EncodedFrame described;  // without a picture
+  Clock::time_point rests_at;
   // Null where nobody takes stills of higher quality.
   std::shared_ptr<PictureSizes<frame::FineImage>> fine;
 };
 
 class StillMaker {
  public:
-  // A frame that was drawn in motion rests after so long without a newer one.
+  // A frame that was drawn in motion rests after so long without a newer one, or later.
   static constexpr std::chrono::milliseconds kRestsAfter{150};
 
   explicit StillMaker(SerializeFrame serialize);

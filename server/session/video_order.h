@@ -47,6 +47,8 @@ class VideoPlace {
   }
   void Took(std::uint64_t sequence, const VideoPicture& picture, Time now);
 
+  // It gets other pictures than the stream's from now on, and joins it anew when it comes back.
+  void Leave() { base_ = 0; }
   // It missed a base picture, or could not decode one.
   void Lost(Time now);
   bool MayHaveKey(Time now) const { return now >= key_again_at_; }
@@ -72,7 +74,8 @@ class VideoStream {
   // A viewer of the stream, when a picture is drawn.
   struct Follower {
     VideoPlace* place = nullptr;
-    bool is_ready = false;  // to take a frame
+    bool is_ready = false;            // to take a frame
+    std::uint64_t last_sequence = 0;  // of the frames that it has taken, in whatever form
   };
   // Collects the stream's followers; then Next tells the picture to encode.
   void Begin() { asked_ = Asked(); }

@@ -2,6 +2,8 @@
 import { createServer, connect } from "node:net";
 
 const SLICE_BYTES = 1460;
+// After the last slice.
+const END_MS = 5;
 
 // One direction: bytes leave at the link's speed and arrive after half its round trip. Like a router it holds little, so a
 // sender is held back once that is full.
@@ -9,6 +11,12 @@ function carry(from, to, bytesPerMs, delayMs) {
   const BUFFER_BYTES = 16 * 1024;
   let freeAt = 0;
   let held = 0;
+  // In order, which timers of different lengths do not keep.
+  const onTheirWay = [];
+  const arrive = () => {
+    const slice = onTheirWay.shift();
+    if (to.writable) to.write(slice);
+  };
   from.on("data", (data) => {
     for (let at = 0; at < data.length; at += SLICE_BYTES) {
       const slice = data.subarray(at, at + SLICE_BYTES);
@@ -18,11 +26,12 @@ function carry(from, to, bytesPerMs, delayMs) {
         held -= slice.length;
         if (held < BUFFER_BYTES) from.resume();
       }, freeAt - performance.now());
-      setTimeout(() => to.writable && to.write(slice), freeAt + delayMs - performance.now());
+      onTheirWay.push(slice);
+      setTimeout(arrive, freeAt + delayMs - performance.now());
     }
     if (held >= BUFFER_BYTES) from.pause();
   });
-  from.on("end", () => setTimeout(() => to.end(), Math.max(0, freeAt - performance.now()) + delayMs));
+  from.on("end", () => setTimeout(() => to.end(), Math.max(0, freeAt - performance.now()) + delayMs + END_MS));
   from.on("error", () => to.destroy());
 }
 

@@ -133,6 +133,43 @@ TEST_F(VideoHubTest, AFastLinkGetsJpegAndASlowOneVideo) {
   EXPECT_NE(seen, "nothing");
 }
 
+TEST_F(VideoHubTest, WhoWasSentJpegForAWhileJoinsTheVideoAnewAtOnce) {
+  const auto viewer = Join(kVideo);
+  Publish();
+  EXPECT_EQ(TakeAndAcknowledge(viewer), "key");
+  Publish();  // a base picture, which it does not take before the next
+  ViewerWants jpeg = kVideo;
+  jpeg.takes_video = false;
+  hub_.SetWants(viewer, jpeg);
+  for (int i = 0; i < 40; ++i) {
+    Publish();
+    EXPECT_EQ(TakeAndAcknowledge(viewer), "jpeg");
+  }
+  hub_.SetWants(viewer, kVideo);
+  Publish();
+  EXPECT_EQ(TakeAndAcknowledge(viewer), "key");
+}
+
+TEST_F(VideoHubTest, NobodyWaitsForABasePictureThatANewerOneHasReplaced) {
+  VideoStream stream;
+  VideoPlace place;
+  const auto next = [&](bool is_ready, std::uint64_t last_sequence) {
+    now_ += milliseconds(33);
+    stream.Begin();
+    stream.Ask(0, {&place, is_ready, last_sequence}, now_);
+    return stream.Next(now_);
+  };
+  EXPECT_EQ(next(true, 0), Vp9Kind::kKey);
+  place.Took(1, stream.Add(1, Vp9Kind::kKey, std::make_shared<EncodedFrame>(), now_), now_);
+  EXPECT_EQ(next(true, 1), Vp9Kind::kBase);
+  stream.Add(2, Vp9Kind::kBase, std::make_shared<EncodedFrame>(), now_);
+  EXPECT_EQ(next(true, 1), std::nullopt) << "it can still take the base picture";
+  now_ += VideoPlace::kLongestWait;
+  next(true, 3);
+  now_ += VideoPlace::kLongestWait;
+  EXPECT_EQ(next(true, 3), Vp9Kind::kKey) << "it has JPEG of a newer frame";
+}
+
 TEST_F(VideoHubTest, ManyWhoCanAllGetVideo) {
   ViewerWants wants = kVideo;
   wants.saves_bytes = false;

@@ -1,5 +1,5 @@
 // Keeps the page's scene and the session's the same. Edits are functions of a scene: they are applied to the page's at once,
-// sent at most once a screen refresh and one at a time, and applied again to the server's scene where somebody else changed
+// sent at most once a screen refresh, a few at a time, and applied again to the server's scene where somebody else changed
 // that meanwhile.
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
 import type { Later } from "./newest";
@@ -33,14 +33,22 @@ export interface SyncSteps {
   later: Later;
 }
 
+// Over a far link a drag does not wait for each answer: 26 scenes a second leave where an answer takes 150 ms.
+const MOST_IN_FLIGHT = 4;
 const BUSY_REST_MS = 500;
 const STALE_REST_MS = 1000;
 
 export class SceneSync {
   readonly #steps: SyncSteps;
   #edits: Edit[] = [];
-  // Number of the edits that are in the scene in flight.
-  #inFlight: number | undefined;
+  // Scenes without an answer.
+  #inFlight = 0;
+  // Edits were made after the last of them.
+  #unsent = false;
+  // The revision that the last of them becomes, if all are taken.
+  #awaited = -1n;
+  // One was not taken, so the others will not be: nothing is sent before all are answered.
+  #drains = false;
   #revision = -1n;
   #told: { readonly scene: Scene; readonly revision: bigint } | undefined;
   #mayEdit = false;
@@ -67,6 +75,7 @@ export class SceneSync {
   // The page's scene was edited.
   edited(edit: Edit): void {
     this.#edits.push(edit);
+    this.#unsent = true;
     this.#schedule();
   }
 
@@ -105,6 +114,7 @@ export class SceneSync {
   // Gives edits up that the server has not taken.
   discard(): void {
     this.#edits = [];
+    this.#unsent = false;
     if (this.#told !== undefined) this.#rebase(this.#told.scene, this.#told.revision);
   }
 
@@ -123,8 +133,7 @@ export class SceneSync {
 
   #adoptTold(): void {
     const told = this.#told;
-    if (told === undefined || this.#inFlight !== undefined || told.revision < this.#revision)
-      return;
+    if (told === undefined || this.#inFlight > 0 || told.revision < this.#revision) return;
     if (told.revision === this.#revision) {
       if (this.#edits.length === 0) this.#steps.complete(told.scene);
       return;
@@ -147,9 +156,16 @@ export class SceneSync {
     this.#schedule();
   }
 
+  #maySend(): boolean {
+    if (!this.#mayEdit || this.#stale || this.#edits.length === 0) return false;
+    if (this.#inFlight === 0) return true;
+    // The revision that a further one is made from is known only where the session's is.
+    const knows = this.#revision >= 0n && !this.#drains;
+    return knows && this.#unsent && this.#inFlight < MOST_IN_FLIGHT;
+  }
+
   #schedule(): void {
-    if (!this.#mayEdit || this.#stale || this.#inFlight !== undefined) return;
-    if (this.#edits.length === 0 || this.#withdrawRest !== undefined) return;
+    if (!this.#maySend() || this.#withdrawRest !== undefined) return;
     this.#withdrawPaint ??= this.#steps.onNextPaint(() => {
       this.#withdrawPaint = undefined;
       void this.#send();
@@ -157,19 +173,27 @@ export class SceneSync {
   }
 
   async #send(): Promise<void> {
-    if (this.#inFlight !== undefined || !this.#mayEdit || this.#edits.length === 0) return;
-    this.#inFlight = this.#edits.length;
+    if (!this.#maySend()) return;
+    const expected = this.#inFlight === 0 ? this.#revision : this.#awaited;
+    this.#awaited = expected + 1n;
+    this.#inFlight += 1;
+    this.#unsent = false;
     const sent = this.#edits.slice();
     const scene = this.#steps.scene();
     try {
-      const verdict = await this.#steps.send(scene, this.#revision);
-      this.#inFlight = undefined;
-      this.#judge(verdict, sent, scene);
+      const verdict = await this.#steps.send(scene, expected);
+      this.#inFlight -= 1;
+      // It follows one that was not taken, which said why.
+      const follows = this.#drains && verdict.kind === "stale";
+      if (verdict.kind !== "taken" || verdict.revision !== expected + 1n) this.#drains = true;
+      if (!follows) this.#judge(verdict, sent, scene);
     } catch {
       // The connection is lost: allow() is called once it is back.
-      this.#inFlight = undefined;
+      this.#inFlight -= 1;
+      this.#drains = true;
       this.hold();
     }
+    if (this.#inFlight === 0) this.#drains = false;
     this.#adoptTold();
     this.#schedule();
   }
@@ -185,6 +209,8 @@ export class SceneSync {
         this.#steps.taken();
         break;
       case "stale":
+        // The newer scene is known already, and adopted once all are answered.
+        if (this.#told !== undefined && this.#told.revision > this.#revision) break;
         this.#stale = true;
         // Nothing newer is told if the change that was on its way turns out not to be drawable.
         this.#withdrawRest ??= this.#steps.later(STALE_REST_MS, () => {
