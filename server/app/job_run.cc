@@ -56,9 +56,9 @@ void Pause(const std::stop_token& stop) {
 
 absl::Status StatusOf(const v1::RenderJobProblem& problem) {
   const auto code = static_cast<absl::StatusCode>(problem.code());
-  const bool bad_file = problem.reason() == "STORM_UNREADABLE" &&
-                        (code == absl::StatusCode::kInvalidArgument ||
-                         code == absl::StatusCode::kFailedPrecondition);
+  const bool bad_file =
+      problem.reason() == "STORM_UNREADABLE" &&
+      (code == absl::StatusCode::kInvalidArgument || code == absl::StatusCode::kFailedPrecondition);
   return absl::Status(bad_file ? absl::StatusCode::kDataLoss : code, problem.message());
 }
 
@@ -70,9 +70,9 @@ v1::RenderJobPicture RequestOf(const PictureRunOptions& options, const PlannedPi
   request.set_format(options.format);
   // By what it shows, not by the index of its time, which may change meanwhile.
   const pipeline::InputFile& input = *picture.server_input;
-  request.set_name(pipeline::Sha256(
-      absl::StrCat(picture.path, "\n", options.views[picture.view].sha256, "\n", input.path, "\n",
-                   input.bytes, "\n", input.modified_ns, "\n", absl::FormatTime(picture.key.valid))));
+  request.set_name(pipeline::Sha256(absl::StrCat(
+      picture.path, "\n", options.views[picture.view].sha256, "\n", input.path, "\n", input.bytes,
+      "\n", input.modified_ns, "\n", absl::FormatTime(picture.key.valid))));
   return request;
 }
 
@@ -81,8 +81,8 @@ std::string LabelOf(const std::string& manifest) {
   std::error_code error;
   const std::filesystem::path path = std::filesystem::absolute(manifest, error);
   const auto folder = base::StampOf(path.parent_path().string());
-  return absl::StrCat("products ", pipeline::Sha256(absl::StrCat(
-                                       path.string(), "\n", folder ? folder->inode : 0)));
+  return absl::StrCat(
+      "products ", pipeline::Sha256(absl::StrCat(path.string(), "\n", folder ? folder->inode : 0)));
 }
 
 pipeline::InputFile InputOf(const std::string& server, const std::string& storm,
@@ -103,10 +103,7 @@ struct Share {
 class JobRun {
  public:
   JobRun(ServerLink& server, PictureRun& run, RunProgress& progress)
-      : server_(server),
-        run_(run),
-        progress_(progress),
-        label_(LabelOf(run.Options().manifest)) {}
+      : server_(server), run_(run), progress_(progress), label_(LabelOf(run.Options().manifest)) {}
 
   absl::StatusOr<std::vector<Share>> SharesOf(const std::vector<PlannedPicture*>& missing);
   // Returns when each picture of the share has its outcome.
@@ -329,12 +326,9 @@ absl::StatusOr<v1::StormDescription> DescribeStorm(ServerLink& server, const std
   return response.storm();
 }
 
-absl::StatusOr<std::vector<PlannedPicture>> PlanOfServer(const PictureRunOptions& options,
-                                                         const ServerLink& server,
-                                                         const v1::StormDescription& storm,
-                                                         std::size_t number,
-                                                         const std::vector<int>& times,
-                                                         bool assume_run) {
+absl::StatusOr<std::vector<PlannedPicture>> PlanOfServer(
+    const PictureRunOptions& options, const ServerLink& server, const v1::StormDescription& storm,
+    std::size_t number, const std::vector<int>& times, bool assume_run) {
   std::optional<absl::Time> run;
   if (!storm.run_start().empty()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(run, ParseIso(storm.run_start()));
@@ -372,9 +366,9 @@ absl::Status MakeByJobs(ServerLink& server, PictureRun& run, std::vector<Planned
     if (stop.stop_requested()) return Interrupted();
     // The server's files have no hash here, so their size and time decide alone.
     const auto no_hash = [] { return std::string("unknown"); };
-    THUNDERHEAD_ASSIGN_OR_RETURN(
-        const bool made, run.IsMade(picture.path, run.Options().views[picture.view].sha256,
-                                    *picture.server_input, no_hash));
+    THUNDERHEAD_ASSIGN_OR_RETURN(const bool made,
+                                 run.IsMade(picture.path, run.Options().views[picture.view].sha256,
+                                            *picture.server_input, no_hash));
     if (!made) {
       missing.push_back(&picture);
       continue;

@@ -21,12 +21,9 @@ namespace thunderhead::app {
 absl::StatusOr<v1::StormDescription> DescribeStorm(ServerLink& server, const std::string& id);
 
 // As PlanOf for storms of this machine; `number` is the storm's in the plan.
-absl::StatusOr<std::vector<PlannedPicture>> PlanOfServer(const PictureRunOptions& options,
-                                                         const ServerLink& server,
-                                                         const v1::StormDescription& storm,
-                                                         std::size_t number,
-                                                         const std::vector<int>& times,
-                                                         bool assume_run);
+absl::StatusOr<std::vector<PlannedPicture>> PlanOfServer(
+    const PictureRunOptions& options, const ServerLink& server, const v1::StormDescription& storm,
+    std::size_t number, const std::vector<int>& times, bool assume_run);
 
 // As PictureRun::Make. A server that is lost is waited for, for a minute; UNAVAILABLE after that.
 absl::Status MakeByJobs(ServerLink& server, PictureRun& run, std::vector<PlannedPicture>& pictures,

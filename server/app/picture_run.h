@@ -30,8 +30,9 @@ struct PlannedPicture {
   std::size_t view = 0;
   pipeline::ProductKey key;
   std::string path;
-  std::string input;     // the file that it is made of
-  // Of a picture by a server: the storm's id there, and the file as the server has it, without hash.
+  std::string input;  // the file that it is made of
+  // Of a picture by a server: the storm's id there, and the file as the server has it, without
+  // hash.
   std::string server_storm = {};
   std::optional<pipeline::InputFile> server_input = {};
   absl::Status outcome;  // OK once it is made; UNAVAILABLE before

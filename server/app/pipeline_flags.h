@@ -21,7 +21,7 @@ struct PipelineFlags {
   std::string product;
   std::string manifest;  // empty: in the products' folder
   std::string movie;     // empty: none
-  ServerFlags server;     // without an address: in this process
+  ServerFlags server;    // without an address: in this process
   std::string device = "auto";
   int jobs = 2;
   bool done_markers = false;

@@ -132,8 +132,9 @@ absl::Status Render(const Flags& flags) {
   request.set_format(format);
   const Interruption interruption;
   THUNDERHEAD_ASSIGN_OR_RETURN(v1::RenderImageResponse response,
-                               flags.server.address.empty() ? CallHere(flags, request, interruption)
-                                                    : CallServer(flags, request, interruption));
+                               flags.server.address.empty()
+                                   ? CallHere(flags, request, interruption)
+                                   : CallServer(flags, request, interruption));
   THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(flags.output, response.image()));
   if (!flags.json) {
     PrintAccuracy(response);

@@ -116,9 +116,8 @@ absl::Status Sequence(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<PictureRun> run,
                                PictureRun::Open(std::move(options)));
   RunProgress progress(flags.pipeline.progress, "drawing");
-  const absl::Status made = server == nullptr
-                                ? run->Make(storms, pictures, progress, stop)
-                                : MakeByJobs(*server, *run, pictures, progress, stop);
+  const absl::Status made = server == nullptr ? run->Make(storms, pictures, progress, stop)
+                                              : MakeByJobs(*server, *run, pictures, progress, stop);
   if (absl::IsCancelled(made)) {
     return absl::CancelledError(absl::StrCat(
         "interrupted: ", progress.DrawnCount() + progress.KeptCount(), " of ", pictures.size(),
@@ -135,7 +134,10 @@ Command AddSequence(CLI::App& app) {
   auto flags = std::make_shared<Flags>();
   CLI::App* command = app.add_subcommand(
       "sequence", "Render every time of storms in every view; goes on where it was stopped");
-  command->add_option("STORM", flags->storms, "Storm files or folders; with --server storms' ids there")->required();
+  command
+      ->add_option("STORM", flags->storms,
+                   "Storm files or folders; with --server storms' ids there")
+      ->required();
   command
       ->add_option("--times", flags->times,
                    "Indices of each storm's times, such as 0,3,6-9; or all, or last")

@@ -156,7 +156,9 @@ absl::Status Serve(ServeFlags flags) {
   if (gateway_options.page_directory.empty()) {
     spdlog::warn("serving no page: none is installed with the program; name one with --page");
   }
-  gateway_options.find_kept_file = [&server](std::string_view path) { return FindResult(*server, path); };
+  gateway_options.find_kept_file = [&server](std::string_view path) {
+    return FindResult(*server, path);
+  };
   const std::shared_ptr<grpc::Channel> channel = server->LocalChannel();
   THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<gateway::Gateway> gateway,
                                gateway::Gateway::Start(gateway_options, channel));

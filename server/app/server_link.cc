@@ -24,8 +24,7 @@ void AddServerFlags(CLI::App& command, ServerFlags& flags) {
 }
 
 absl::StatusOr<std::unique_ptr<ServerLink>> ServerLink::Open(const ServerFlags& flags) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const app::Address address,
-                               ParseAddress("--server", flags.address));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const app::Address address, ParseAddress("--server", flags.address));
   THUNDERHEAD_ASSIGN_OR_RETURN(const load::Access access, ReadClientAccess(flags.access));
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(kMaxResponseBytes);

@@ -181,16 +181,16 @@ absl::Status WatchAtServer(const Flags& flags, const End& end, const MovieOption
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<PictureRun> run,
                                PictureRun::Open(std::move(options)));
   RunProgress progress(flags.pipeline.progress, absl::StrCat("watching ", flags.folder));
-  const ServerWatch watch{
-      .storm = flags.folder,
-      .is_over =
-          [&end](int times) {
-            return (end.files.has_value() && times >= *end.files) || absl::Now() >= end.at;
-          },
-      .after_new =
-          [&](const std::vector<PlannedPicture>& pictures) {
-            return MakeMovies(movie, pictures, *run, progress, stop);
-          }};
+  const ServerWatch watch{.storm = flags.folder,
+                          .is_over =
+                              [&end](int times) {
+                                return (end.files.has_value() && times >= *end.files) ||
+                                       absl::Now() >= end.at;
+                              },
+                          .after_new =
+                              [&](const std::vector<PlannedPicture>& pictures) {
+                                return MakeMovies(movie, pictures, *run, progress, stop);
+                              }};
   return WatchServer(watch, *server, *run, progress, stop);
 }
 
@@ -245,9 +245,11 @@ Command AddWatch(CLI::App& app) {
   auto flags = std::make_shared<Flags>();
   CLI::App* command = app.add_subcommand(
       "watch", "Render the files of a folder as a model writes them, each once it is complete");
-  command->add_option("FOLDER", flags->folder,
-                       "Folder that the files come to; with --server a storm's id there, whose "
-                       "times are complete by the server's rules")->required();
+  command
+      ->add_option("FOLDER", flags->folder,
+                   "Folder that the files come to; with --server a storm's id there, whose "
+                   "times are complete by the server's rules")
+      ->required();
   command->add_option("--files", flags->files, "Pattern of their names, such as 'wrfout_d01_*'")
       ->capture_default_str();
   command

@@ -53,9 +53,8 @@ class Watching {
                                  DescribeStorm(server_, watch_.storm));
     std::vector<int> all(static_cast<std::size_t>(storm.times_size()));
     std::iota(all.begin(), all.end(), 0);
-    THUNDERHEAD_ASSIGN_OR_RETURN(
-        std::vector<PlannedPicture> pictures,
-        PlanOfServer(run_.Options(), server_, storm, 0, all, false));
+    THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<PlannedPicture> pictures,
+                                 PlanOfServer(run_.Options(), server_, storm, 0, all, false));
     THUNDERHEAD_RETURN_IF_ERROR(CheckNames(run_.Options(), pictures));
     std::vector<PlannedPicture> fresh;
     for (const PlannedPicture& picture : pictures) {
@@ -79,9 +78,7 @@ class Watching {
     return watch_.after_new(pictures);
   }
 
-  int TimesDone() const {
-    return static_cast<int>(settled_.size() / run_.Options().views.size());
-  }
+  int TimesDone() const { return static_cast<int>(settled_.size() / run_.Options().views.size()); }
   const absl::Status& Bad() const { return bad_; }
 
  private:

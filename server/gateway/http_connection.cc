@@ -372,9 +372,9 @@ net::awaitable<bool> HttpConnection::SendKept(const Request& request, const Kept
   }
   if (range.asked == ByteRange::Asked::kPart) {
     header.result(http::status::partial_content);
-    header.set(http::field::content_range,
-               absl::StrCat("bytes ", range.first, "-", range.first + range.bytes - 1, "/",
-                            file_bytes));
+    header.set(
+        http::field::content_range,
+        absl::StrCat("bytes ", range.first, "-", range.first + range.bytes - 1, "/", file_bytes));
   }
   header.set(http::field::content_type, PictureTypeOf(file.path));
   header.content_length(range.bytes);

@@ -10,8 +10,8 @@ namespace thunderhead::jobs {
 
 class FairShare {
  public:
-  // One of `waiting`, which must not be empty; of several the first. Who is new, or comes back after
-  // not having waited, begins with what was done for the one with least.
+  // One of `waiting`, which must not be empty; of several the first. Who is new, or comes back
+  // after not having waited, begins with what was done for the one with least.
   std::string Next(const std::vector<std::string>& waiting);
 
   // So much was done for it, or less than was said if it is negative.

@@ -188,8 +188,7 @@ absl::StatusOr<ResultFile> JobBoard::ResultOf(const PicturePlace& picture) const
     return base::InvalidField(
         "index",
         absl::StrCat("is ", picture.place, "; the job has pictures 0 to ", pictures.size() - 1),
-        "VALUE_OUT_OF_RANGE",
-        {{"minimum", "0"}, {"maximum", absl::StrCat(pictures.size() - 1)}});
+        "VALUE_OUT_OF_RANGE", {{"minimum", "0"}, {"maximum", absl::StrCat(pictures.size() - 1)}});
   }
   const PictureRecord& record = pictures[picture.place];
   switch (record.state) {
@@ -206,9 +205,9 @@ absl::StatusOr<ResultFile> JobBoard::ResultOf(const PicturePlace& picture) const
       break;
   }
   return base::WithDetails(
-      absl::NotFoundError(absl::StrCat("there is no such picture: ",
-                                       record.problem.message.empty() ? "it was cancelled"
-                                                                      : record.problem.message)),
+      absl::NotFoundError(absl::StrCat("there is no such picture: ", record.problem.message.empty()
+                                                                         ? "it was cancelled"
+                                                                         : record.problem.message)),
       {.reason = "NO_SUCH_RESULT"});
 }
 

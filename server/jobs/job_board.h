@@ -194,7 +194,7 @@ class JobBoard {
   std::set<std::string> unsaved_jobs_;
   std::vector<std::string> forgotten_;
   FairShare owners_;
-  std::map<std::string, FairShare> shares_;  // of an owner's jobs
+  std::map<std::string, FairShare> shares_;    // of an owner's jobs
   std::map<PicturePlace, double> charged_ms_;  // of those being drawn
   double typical_ms_ = 1.0;
 };

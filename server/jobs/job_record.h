@@ -1,5 +1,5 @@
-// What is kept of a job of pictures. Plain values; what a picture shows, and what is told of a drawn
-// one, are bytes that the service makes and reads.
+// What is kept of a job of pictures. Plain values; what a picture shows, and what is told of a
+// drawn one, are bytes that the service makes and reads.
 #pragma once
 
 #include <chrono>

@@ -1,6 +1,7 @@
 // Jobs of pictures that nobody waits for: takes them in within quotas, has them drawn a few at a
 // time, fairly among owners and their jobs, keeps the results, and goes on after a restart where it
-// was. A picture is written first, then recorded. Knows no messages and no GL; safe from any thread.
+// was. A picture is written first, then recorded. Knows no messages and no GL; safe from any
+// thread.
 #pragma once
 
 #include <condition_variable>
@@ -100,8 +101,8 @@ class Jobs {
   void Drain();
   // Ends those too; they will be begun again.
   void CancelPictures();
-  // Waits for the pictures, which whoever draws them must have ended, saves, and tells watchers. The
-  // destructor does it too.
+  // Waits for the pictures, which whoever draws them must have ended, saves, and tells watchers.
+  // The destructor does it too.
   void Stop();
 
  private:

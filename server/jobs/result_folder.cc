@@ -27,7 +27,8 @@ std::vector<fs::path> EntriesOf(const fs::path& folder) {
 
 // A job's, as `Jobs` names them: nothing else in the folder is ours to remove.
 bool IsJobId(const std::string& name) {
-  return name.size() == kIdDigits && name.find_first_not_of("0123456789abcdef") == std::string::npos;
+  return name.size() == kIdDigits &&
+         name.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
 }  // namespace
@@ -40,9 +41,9 @@ absl::StatusOr<ResultFolder> ResultFolder::Open(const std::string& path) {
     if (!error) fs::permissions(path, fs::perms::owner_all, error);
   }
   if (!error) return ResultFolder(path);
-  return absl::InvalidArgumentError(
-      absl::StrCat("'", path, "' for results of render jobs is not a folder and cannot be created: ",
-                   error.message()));
+  return absl::InvalidArgumentError(absl::StrCat(
+      "'", path,
+      "' for results of render jobs is not a folder and cannot be created: ", error.message()));
 }
 
 absl::Status ResultFolder::Write(const std::string& job_id, std::size_t place,

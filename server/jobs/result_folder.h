@@ -1,5 +1,5 @@
-// The folder in which drawn pictures wait to be fetched: a folder a job, in it a picture's file and,
-// beside it, what is told of it. Each file appears whole or not at all. Calls may block.
+// The folder in which drawn pictures wait to be fetched: a folder a job, in it a picture's file
+// and, beside it, what is told of it. Each file appears whole or not at all. Calls may block.
 #pragma once
 
 #include <cstddef>

@@ -58,8 +58,7 @@ class ResultStream final : public Reactor {
     if (!file_.is_open()) {
       file_.open(place_.path, std::ios::binary);
       file_.seekg(static_cast<std::streamoff>(offset_));
-      THUNDERHEAD_ASSIGN_OR_RETURN(const std::string about,
-                                   base::ReadWholeFile(place_.about_path));
+      THUNDERHEAD_ASSIGN_OR_RETURN(const std::string about, base::ReadWholeFile(place_.about_path));
       if (!response_.ParseFromString(about)) return Gone();
       response_.set_total_bytes(place_.bytes);
       response_.set_sha256(place_.sha256);
@@ -105,9 +104,9 @@ Reactor* FetchRenderResult(jobs::Jobs& jobs, base::Executor& reading, CallerRef 
   absl::StatusOr<jobs::ResultPlace> place = Find(jobs, *caller, *request);
   caller->ReportDenial("FetchRenderResult", place.status());
   if (!place.ok()) return new RefusedStream<Reactor>(place.status());
-  auto* stream = new ResultStream(jobs, reading, std::move(caller),
-                                  {request->job_id(), request->index()}, *std::move(place),
-                                  request->offset());
+  auto* stream =
+      new ResultStream(jobs, reading, std::move(caller), {request->job_id(), request->index()},
+                       *std::move(place), request->offset());
   stream->Next();
   return stream;
 }

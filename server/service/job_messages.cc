@@ -104,7 +104,8 @@ jobs::PictureOrder OrderOf(const volume::StormStore& store, const v1::RenderJobP
     scene.set_storm_id((*storm)->id);
     const std::size_t times = (*storm)->times.size();
     if (!scene.has_time_index()) scene.set_time_index(static_cast<std::uint32_t>(times - 1));
-    if (scene.time_index() < times) order.valid_time = (*storm)->times[scene.time_index()].valid_time;
+    if (scene.time_index() < times)
+      order.valid_time = (*storm)->times[scene.time_index()].valid_time;
   }
   order.request = request.SerializeAsString();
   return order;

@@ -92,8 +92,8 @@ absl::Status PictureJob::CompleteScene() {
 absl::StatusOr<session::ImageInput> PictureJob::Read() {
   v1::Scene& scene = *response_.mutable_scene();
   THUNDERHEAD_ASSIGN_OR_RETURN(
-      auto fields, ReadFields(engine_.store, scene.storm_id(),
-                              static_cast<int>(scene.time_index()), "scene.storm_id"));
+      auto fields, ReadFields(engine_.store, scene.storm_id(), static_cast<int>(scene.time_index()),
+                              "scene.storm_id"));
   FrameCondensate(scene, *fields);
   return session::ImageInput{std::move(fields), ToScene(scene).camera};
 }

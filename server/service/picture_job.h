@@ -1,4 +1,5 @@
-// One picture of the service, from its request to its bytes: for calls that wait for it, and for jobs.
+// One picture of the service, from its request to its bytes: for calls that wait for it, and for
+// jobs.
 #pragma once
 
 #include <grpcpp/alarm.h>

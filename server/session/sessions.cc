@@ -218,9 +218,10 @@ absl::StatusOr<std::shared_ptr<Session>> Sessions::Create(const Rules& rules,
   if (static_cast<std::size_t>(owned) >= options_.max_sessions_per_owner) {
     return TooMany("you already have", options_.max_sessions_per_owner);
   }
-  auto session = std::make_shared<Session>(base::RandomHex(kIdWords),
-                                           SessionKeys{base::RandomHex(kKeyWords), base::RandomHex(kKeyWords)},
-                                           rules, Board{}, options_.format, signals_);
+  auto session =
+      std::make_shared<Session>(base::RandomHex(kIdWords),
+                                SessionKeys{base::RandomHex(kKeyWords), base::RandomHex(kKeyWords)},
+                                rules, Board{}, options_.format, signals_);
   Add(session);
   if (!owner.empty()) owner_by_id_[session->id()] = owner;
   return session;

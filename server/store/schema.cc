@@ -34,7 +34,7 @@ constexpr std::array kSteps = {R"(
     marks BLOB NOT NULL  -- mark_bytes.h
   ) STRICT;
 )",
-                              R"(
+                               R"(
   CREATE TABLE jobs (
     id TEXT PRIMARY KEY NOT NULL,
     result_key TEXT UNIQUE NOT NULL,

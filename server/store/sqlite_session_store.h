@@ -1,5 +1,5 @@
-// Sessions in a server's state file. What was saved outlives the end of the process; a loss of power
-// may cost the last seconds, never the file.
+// Sessions in a server's state file. What was saved outlives the end of the process; a loss of
+// power may cost the last seconds, never the file.
 #pragma once
 
 #include <memory>

@@ -236,9 +236,9 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<StormFile> fi
   StormInfo& info = storm.info;
   info.id = IdFrom(name);
   for (const auto& [time, source] : sources) {
-    info.times.push_back(
-        {FormatValidTime(time), absl::ToDoubleSeconds(time - sources.begin()->first), false,
-         files[source.file].path});
+    info.times.push_back({FormatValidTime(time),
+                          absl::ToDoubleSeconds(time - sources.begin()->first), false,
+                          files[source.file].path});
     storm.sources.push_back(source);
   }
   for (const StormFile& file : files) info.files.push_back(file.path);

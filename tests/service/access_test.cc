@@ -68,8 +68,8 @@ std::optional<std::chrono::milliseconds> RetryOf(const grpc::Status& status) {
 TEST(AccessTest, EveryRoleMayCallWhatTheTableSays) {
   GuardedService guarded;
   std::vector<const google::protobuf::MethodDescriptor*> methods;
-  for (const char* name : {v1::ThunderheadService::service_full_name(),
-                           v1::RenderJobService::service_full_name()}) {
+  for (const char* name :
+       {v1::ThunderheadService::service_full_name(), v1::RenderJobService::service_full_name()}) {
     const auto* const service =
         google::protobuf::DescriptorPool::generated_pool()->FindServiceByName(name);
     ASSERT_NE(service, nullptr);
@@ -82,7 +82,8 @@ TEST(AccessTest, EveryRoleMayCallWhatTheTableSays) {
     EXPECT_TRUE(access::HasRule(method)) << method << " has no rule in access/rules.cc";
     for (const std::string& role : kRoles) {
       const bool may = role == "operator" || kMayCall.at(method).contains(role);
-      const grpc::StatusCode code = guarded.Ask(method, TokenOf(role), described->service()->full_name());
+      const grpc::StatusCode code =
+          guarded.Ask(method, TokenOf(role), described->service()->full_name());
       EXPECT_EQ(code != grpc::StatusCode::PERMISSION_DENIED, may) << role << " " << method;
       EXPECT_NE(code, grpc::StatusCode::UNAUTHENTICATED) << role << " " << method;
     }

@@ -62,8 +62,7 @@ class GuardedService {
 
   // Calls any rpc with an empty request and returns how it ended.
   grpc::StatusCode Ask(const std::string& method, const std::string& token,
-                       const std::string& service =
-                           v1::ThunderheadService::service_full_name()) {
+                       const std::string& service = v1::ThunderheadService::service_full_name()) {
     grpc::GenericStub stub(service_->server().LocalChannel());
     grpc::ClientContext context;
     context.set_deadline(std::chrono::system_clock::now() + kPatience);
@@ -74,8 +73,7 @@ class GuardedService {
       bool ok = false;
       return queue.Next(&tag, &ok) && ok;
     };
-    const auto call =
-        stub.PrepareCall(&context, "/" + service + "/" + method, &queue);
+    const auto call = stub.PrepareCall(&context, "/" + service + "/" + method, &queue);
     call->StartCall(nullptr);
     await();
     call->WriteLast(grpc::ByteBuffer(nullptr, 0), {}, nullptr);
@@ -104,7 +102,8 @@ class GuardedService {
     v1::CreateSessionRequest request;
     *request.mutable_scene() = SmallScene();
     v1::CreateSessionResponse response;
-    const grpc::Status status = Call(role, &v1::ThunderheadService::Stub::CreateSession, request, &response);
+    const grpc::Status status =
+        Call(role, &v1::ThunderheadService::Stub::CreateSession, request, &response);
     EXPECT_TRUE(status.ok()) << status.error_message();
     return response;
   }

@@ -1,5 +1,5 @@
-// Render jobs on a fake machine: every picture once, each failure by itself, for its owner alone, and
-// again after a restart.
+// Render jobs on a fake machine: every picture once, each failure by itself, for its owner alone,
+// and again after a restart.
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -214,11 +214,11 @@ TEST_F(RenderJobTest, DrawsEveryPictureOnceAndKeepsItUntilItIsFetched) {
     EXPECT_EQ(fetched.bytes.size(), pictures[i].bytes());
     EXPECT_EQ(fetched.first.picture().scene().time_index(), i);
     EXPECT_EQ(fetched.first.input().storm_id(), "anvil");
-    EXPECT_EQ(fetched.first.input().valid_time(), absl::StrCat("0001-01-01T00:", 10 + 10 * i, ":00Z"));
+    EXPECT_EQ(fetched.first.input().valid_time(),
+              absl::StrCat("0001-01-01T00:", 10 + 10 * i, ":00Z"));
     EXPECT_EQ(jobs.Fetch(job.id(), i, 10).bytes, fetched.bytes.substr(10));
     // By HTTP, whoever has the path.
-    const auto file =
-        service.server().FindResult(absl::StrCat(job.result_path(), "/", i));
+    const auto file = service.server().FindResult(absl::StrCat(job.result_path(), "/", i));
     ASSERT_TRUE(file.has_value());
     std::stringstream contents;
     contents << std::ifstream(file->path, std::ios::binary).rdbuf();
@@ -361,7 +361,8 @@ TEST_F(RenderJobTest, IsItsOwnersAlone) {
   const std::vector<std::string> audit = guarded.Audit();
   const auto has = [&](const std::string& part) { EXPECT_THAT(audit, Contains(HasSubstr(part))); };
   has("identity=\"a-pipeline\" role=pipeline peer=\"\" act=CreateRenderJob verdict=allowed");
-  has("identity=\"a-presenter\" role=presenter peer=\"\" act=GetRenderJob verdict=refused reason=\"NOT_YOUR_JOB\"");
+  has("identity=\"a-presenter\" role=presenter peer=\"\" act=GetRenderJob verdict=refused "
+      "reason=\"NOT_YOUR_JOB\"");
   has("identity=\"a-presenter\" role=presenter peer=\"\" act=CancelRenderJob verdict=refused");
   has("identity=\"a-operator\" role=operator peer=\"\" act=CancelRenderJob verdict=allowed");
   for (const std::string& line : audit) EXPECT_EQ(line.find(job.id()), std::string::npos);
@@ -377,8 +378,7 @@ TEST_F(RenderJobTest, MoreThanIsAllowedIsRefusedWithATimeToTryAgain) {
   const v1::RenderJob first = jobs.Create({Picture(0), Picture(1)});
   v1::RenderJob job;
   bool retries = false;
-  grpc::Status refused =
-      jobs.Create({Picture(0), Picture(0), Picture(0), Picture(0)}, &job);
+  grpc::Status refused = jobs.Create({Picture(0), Picture(0), Picture(0), Picture(0)}, &job);
   EXPECT_EQ(refused.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
   EXPECT_EQ(ReasonOf(refused, &retries), "TOO_MANY_JOB_PICTURES");
   EXPECT_TRUE(retries);

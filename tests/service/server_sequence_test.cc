@@ -162,8 +162,7 @@ TEST_F(ServerSequence, SaysWhatItEndsFor) {
 
 TEST_F(ServerSequence, WatchesAStormAsItsTimesCome) {
   const auto server = Serve();
-  const auto client =
-      Start("watch", "run", {"--until", std::to_string(kTimes + 1)});
+  const auto client = Start("watch", "run", {"--until", std::to_string(kTimes + 1)});
   ASSERT_TRUE(Eventually([&] { return Made() >= kTimes; })) << Errors();
   WriteRunFile(storms_, kTimes);
   EXPECT_EQ(client->Wait().code, 0) << Errors();
