@@ -78,17 +78,17 @@ TEST(AccessTest, EveryRoleMayCallWhatTheTableSays) {
   ASSERT_EQ(methods.size(), kMayCall.size());
   for (const auto* const described : methods) {
     const std::string method = described->name();
+    const std::string& service = described->service()->full_name();
     ASSERT_TRUE(kMayCall.contains(method)) << method << " has no row in this test";
     EXPECT_TRUE(access::HasRule(method)) << method << " has no rule in access/rules.cc";
     for (const std::string& role : kRoles) {
       const bool may = role == "operator" || kMayCall.at(method).contains(role);
-      const grpc::StatusCode code =
-          guarded.Ask(method, TokenOf(role), described->service()->full_name());
+      const grpc::StatusCode code = guarded.Ask(method, TokenOf(role), service);
       EXPECT_EQ(code != grpc::StatusCode::PERMISSION_DENIED, may) << role << " " << method;
       EXPECT_NE(code, grpc::StatusCode::UNAUTHENTICATED) << role << " " << method;
     }
-    EXPECT_EQ(guarded.Ask(method, ""), grpc::StatusCode::UNAUTHENTICATED) << method;
-    EXPECT_EQ(guarded.Ask(method, "wrong"), grpc::StatusCode::UNAUTHENTICATED) << method;
+    EXPECT_EQ(guarded.Ask(method, "", service), grpc::StatusCode::UNAUTHENTICATED) << method;
+    EXPECT_EQ(guarded.Ask(method, "wrong", service), grpc::StatusCode::UNAUTHENTICATED) << method;
   }
 }
 
