@@ -28,6 +28,12 @@ constexpr std::array kRules = {
     Rule{"DeleteCloud", false, true, false},
     Rule{"RenderImage", false, true, true},
     Rule{"RenderImageWithProgress", false, true, true},
+    Rule{"CreateRenderJob", false, true, true},
+    Rule{"GetRenderJob", false, true, true},
+    Rule{"ListRenderJobs", false, true, true},
+    Rule{"WatchRenderJob", false, true, true},
+    Rule{"CancelRenderJob", false, true, true},
+    Rule{"FetchRenderResult", false, true, true},
 };
 
 const Rule* Find(std::string_view method) {

@@ -12,7 +12,7 @@ void AddClientAccessFlags(CLI::App& command, ClientAccessFlags& flags) {
   command.add_option("--token-file", flags.token_file,
                      "File with the token for a server that wants one; without it "
                      "$THUNDERHEAD_TOKEN");
-  command.add_option("--tls-roots", flags.tls_roots,
+  command.add_option("--tls-roots,--tls-ca", flags.tls_roots,
                      "PEM file of the certificates that may vouch for a server by TLS; without it "
                      "no TLS");
 }

@@ -99,6 +99,13 @@ std::string Operation::MetricsText() {
     add("storms", "Storms in the catalogue", load.storms);
     add("storm_cache_bytes", "Fields of storms in memory", load.cached_bytes);
     add("pictures_in_progress", "Single pictures begun and not yet delivered", load.pictures);
+    add("jobs", "Render jobs that have not ended", static_cast<double>(load.jobs.running));
+    add("job_pictures_waiting", "Pictures of render jobs that wait to be drawn",
+        static_cast<double>(load.jobs.waiting));
+    add("job_pictures_in_progress", "Pictures of render jobs that are being drawn",
+        static_cast<double>(load.jobs.drawing));
+    add("job_result_bytes", "Results of render jobs on the disk",
+        static_cast<double>(load.jobs.result_bytes));
     add("draining", "1 from SIGTERM on", load.draining ? 1.0 : 0.0);
     add("render_turn_seconds", "Since the turn of drawing under way began; 0 at rest", load.turn_s);
   }

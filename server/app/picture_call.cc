@@ -26,13 +26,19 @@ absl::StatusOr<v1::RenderImageResponse> CallForPicture(
   if (!token.empty()) context.AddMetadata("authorization", absl::StrCat("Bearer ", token));
   const std::stop_callback cancel(stop, [&context] { context.TryCancel(); });
   const auto stub = v1::ThunderheadService::NewStub(channel);
-  const auto reader = stub->RenderImageWithProgress(&context, request);
+  v1::RenderImageRequest in_chunks = request;
+  in_chunks.set_in_chunks(true);
+  const auto reader = stub->RenderImageWithProgress(&context, in_chunks);
   v1::RenderImageEvent event;
   v1::RenderImageResponse picture;
+  std::string bytes;
   while (reader->Read(&event)) {
     if (event.has_progress() && progress) progress(event.progress());
+    if (event.has_chunk()) bytes += event.chunk();
     if (event.has_image()) picture = std::move(*event.mutable_image());
   }
+  // An older server sends it whole.
+  if (picture.image().empty()) picture.set_image(std::move(bytes));
   const grpc::Status status = reader->Finish();
   if (stop.stop_requested()) return absl::CancelledError("interrupted: no picture was written");
   if (status.error_code() == grpc::StatusCode::UNIMPLEMENTED) {

@@ -103,6 +103,19 @@ absl::StatusOr<pipeline::InputFile> StampOf(const std::string& path) {
   return input;
 }
 
+pipeline::ManifestEntry EntryOf(const pipeline::ProductKey& key, const View& view) {
+  pipeline::ManifestEntry entry;
+  entry.storm = key.storm;
+  entry.valid = Iso(key.valid);
+  if (key.run.has_value()) {
+    entry.run = Iso(*key.run);
+    entry.lead_s = absl::ToDoubleSeconds(key.valid - *key.run);
+  }
+  entry.view = view.name;
+  entry.scene_sha256 = view.sha256;
+  return entry;
+}
+
 bool SameStamp(const pipeline::InputFile& a, const pipeline::InputFile& b) {
   return a.path == b.path && a.bytes == b.bytes && a.modified_ns == b.modified_ns;
 }
@@ -218,15 +231,7 @@ absl::Status PictureRun::MakeOne(const PlannedPicture& picture, volume::StormSto
     return absl::AbortedError(
         absl::StrCat(picture.input, " was written to while it was drawn; try again"));
   }
-  pipeline::ManifestEntry entry;
-  entry.storm = picture.key.storm;
-  entry.valid = Iso(picture.key.valid);
-  if (picture.key.run.has_value()) {
-    entry.run = Iso(*picture.key.run);
-    entry.lead_s = absl::ToDoubleSeconds(picture.key.valid - *picture.key.run);
-  }
-  entry.view = view.name;
-  entry.scene_sha256 = view.sha256;
+  pipeline::ManifestEntry entry = EntryOf(picture.key, view);
   entry.device = device;
   entry.milliseconds = milliseconds = stopwatch.ElapsedMs();
   if (response.has_accuracy()) entry.estimated_error = response.accuracy().estimated_error();

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -29,7 +30,11 @@ struct PlannedPicture {
   std::size_t view = 0;
   pipeline::ProductKey key;
   std::string path;
-  std::string input;     // the file that it is made of
+  std::string input;  // the file that it is made of
+  // Of a picture by a server: the storm's id there, and the file as the server has it, without
+  // hash.
+  std::string server_storm = {};
+  std::optional<pipeline::InputFile> server_input = {};
   absl::Status outcome;  // OK once it is made; UNAVAILABLE before
 };
 
@@ -45,6 +50,9 @@ absl::Status CheckNames(const PictureRunOptions& options,
 
 // The size and time of a file, without its hash; UNAVAILABLE if there is none.
 absl::StatusOr<pipeline::InputFile> StampOf(const std::string& path);
+
+// What a product's entry says of what it shows.
+pipeline::ManifestEntry EntryOf(const pipeline::ProductKey& key, const View& view);
 
 // Equal for a file that has not been written to in between.
 bool SameStamp(const pipeline::InputFile& a, const pipeline::InputFile& b);
@@ -68,6 +76,9 @@ class PictureRun {
   // Adds the entry of the product at `path`, whose size and hash it has, and its marker. Safe from
   // any thread.
   absl::Status Record(const std::string& path, pipeline::ManifestEntry entry);
+  // Writes the product, then records it. Safe from any thread.
+  absl::Status Publish(const std::string& path, const std::string& bytes,
+                       pipeline::ManifestEntry entry);
   // True if the product at `path` is whole and made as it would be now; see MadeAlike.
   absl::StatusOr<bool> IsMade(const std::string& path, const std::string& scene_sha256,
                               const pipeline::InputFile& input,
@@ -78,8 +89,6 @@ class PictureRun {
       : options_(std::move(options)), manifest_(std::move(manifest)) {}
 
   absl::StatusOr<bool> IsMade(const PlannedPicture& picture);
-  absl::Status Publish(const std::string& path, const std::string& bytes,
-                       pipeline::ManifestEntry entry);
   absl::Status MakeOne(const PlannedPicture& picture, volume::StormStore& store,
                        const std::shared_ptr<grpc::Channel>& channel, const std::string& device,
                        const std::string& storm_id, const std::stop_token& stop,

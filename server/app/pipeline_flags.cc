@@ -110,6 +110,7 @@ void AddPipelineOptions(CLI::App& command, PipelineFlags& flags) {
                   "Pictures under way at a time, so that reading and writing overlap drawing")
       ->check(CLI::Range(1, kMaxJobs))
       ->capture_default_str();
+  AddServerFlags(command, flags.server);
   command.add_option("--device", flags.device, "auto, software or a GPU's number")
       ->capture_default_str();
   static const std::map<std::string, ProgressStyle> kStyles = {{"auto", ProgressStyle::kAuto},

@@ -8,6 +8,7 @@
 #include "absl/status/statusor.h"
 #include "app/run_progress.h"
 #include "app/scene_file.h"
+#include "app/server_link.h"
 #include "pipeline/plan.h"
 #include "pipeline/product_name.h"
 #include "thunderhead/v1/thunderhead.pb.h"
@@ -20,6 +21,7 @@ struct PipelineFlags {
   std::string product;
   std::string manifest;  // empty: in the products' folder
   std::string movie;     // empty: none
+  ServerFlags server;    // without an address: in this process
   std::string device = "auto";
   int jobs = 2;
   bool done_markers = false;

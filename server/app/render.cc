@@ -9,8 +9,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "accuracy/named_settings.h"
-#include "app/address.h"
-#include "app/client_access.h"
 #include "app/commands.h"
 #include "app/interruption.h"
 #include "app/local_service.h"
@@ -18,26 +16,21 @@
 #include "app/progress_bar.h"
 #include "app/render_reference.h"
 #include "app/scene_file.h"
+#include "app/server_link.h"
 #include "base/status.h"
 #include "base/whole_file.h"
-#include "grpcpp/create_channel.h"
-#include "grpcpp/security/credentials.h"
 #include "service/technique_messages.h"
 #include "spdlog/spdlog.h"
-#include "thunderhead/v1/thunderhead.grpc.pb.h"
 
 namespace thunderhead::app {
 namespace {
-
-constexpr int kMaxResponseBytes = 128 << 20;
 
 struct Flags {
   std::string storm;
   std::string output;
   SceneFlags scene;
   ReferenceFlags reference;
-  std::string server;
-  ClientAccessFlags access;
+  ServerFlags server;
   std::string device = "auto";
   bool json = false;
 };
@@ -66,16 +59,10 @@ absl::StatusOr<v1::RenderImageResponse> Call(const std::shared_ptr<grpc::Channel
 absl::StatusOr<v1::RenderImageResponse> CallServer(const Flags& flags,
                                                    v1::RenderImageRequest request,
                                                    const Interruption& interruption) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const Address address, ParseAddress("--server", flags.server));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<ServerLink> server,
+                               ServerLink::Open(flags.server));
   request.mutable_scene()->set_storm_id(flags.storm);
-  grpc::ChannelArguments arguments;
-  arguments.SetMaxReceiveMessageSize(kMaxResponseBytes);
-  THUNDERHEAD_ASSIGN_OR_RETURN(const load::Access access, ReadClientAccess(flags.access));
-  const auto credentials = access.tls_roots.empty()
-                               ? grpc::InsecureChannelCredentials()
-                               : grpc::SslCredentials({access.tls_roots, "", ""});
-  return Call(grpc::CreateCustomChannel(ToString(address), credentials, arguments), request,
-              interruption, access.token);
+  return Call(server->Channel(), request, interruption, server->Token());
 }
 
 absl::StatusOr<v1::RenderImageResponse> CallHere(const Flags& flags,
@@ -119,7 +106,7 @@ void PrintAccuracy(const v1::RenderImageResponse& response) {
 }
 
 absl::Status ByReference(const Flags& flags) {
-  if (!flags.server.empty() || flags.json) {
+  if (!flags.server.address.empty() || flags.json) {
     return absl::InvalidArgumentError(
         "--renderer reference works only in this process: omit --server and --json");
   }
@@ -145,8 +132,9 @@ absl::Status Render(const Flags& flags) {
   request.set_format(format);
   const Interruption interruption;
   THUNDERHEAD_ASSIGN_OR_RETURN(v1::RenderImageResponse response,
-                               flags.server.empty() ? CallHere(flags, request, interruption)
-                                                    : CallServer(flags, request, interruption));
+                               flags.server.address.empty()
+                                   ? CallHere(flags, request, interruption)
+                                   : CallServer(flags, request, interruption));
   THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(flags.output, response.image()));
   if (!flags.json) {
     PrintAccuracy(response);
@@ -199,8 +187,7 @@ Command AddRender(CLI::App& app) {
   render->add_flag(
       "--no-air{false}", flags->reference.light.air,
       "Reference: leave out the air: a black sky, and sunlight as above the atmosphere");
-  render->add_option("--server", flags->server, "HOST:PORT of a running server's gRPC service");
-  AddClientAccessFlags(*render, flags->access);
+  AddServerFlags(*render, flags->server);
   render->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();
   render->add_flag("--json", flags->json, "Print costs and the completed scene as JSON");

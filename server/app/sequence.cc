@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "app/commands.h"
 #include "app/interruption.h"
+#include "app/job_run.h"
 #include "app/local_service.h"
 #include "app/picture_run.h"
 #include "app/pipeline_flags.h"
@@ -52,6 +53,24 @@ std::vector<PlannedPicture> ShareOf(const std::vector<PlannedPicture>& all, std:
   return share;
 }
 
+absl::StatusOr<std::vector<PlannedPicture>> PlanAll(const PictureRunOptions& options,
+                                                    ServerLink& server,
+                                                    const std::vector<std::string>& storms,
+                                                    const std::string& times) {
+  std::vector<PlannedPicture> all;
+  for (std::size_t i = 0; i < storms.size(); ++i) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const v1::StormDescription storm,
+                                 DescribeStorm(server, storms[i]));
+    THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<int> chosen,
+                                 pipeline::ParseTimes(times, storm.times_size()));
+    THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<PlannedPicture> pictures,
+                                 PlanOfServer(options, server, storm, i, chosen, true));
+    all.insert(all.end(), pictures.begin(), pictures.end());
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(CheckNames(options, all));
+  return all;
+}
+
 // What is left undone: what may come by another try goes before what never will.
 absl::Status Summary(const std::vector<PlannedPicture>& pictures) {
   absl::Status worst;
@@ -81,15 +100,24 @@ absl::Status Sequence(const Flags& flags) {
         "--movie needs all pictures, but this process makes a share: run sequence once more "
         "without --shard when all shares are done, with --movie; it draws nothing anew");
   }
-  auto found = volume::FindStorms(flags.storms, volume::StormFormats::BuiltIn());
-  if (!found.ok()) return AsFileProblem(found.status());
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<PlannedPicture> all,
-                               PlanAll(options, *found, flags.times));
+  std::unique_ptr<ServerLink> server;
+  std::vector<volume::CataloguedStorm> storms;
+  std::vector<PlannedPicture> all;
+  if (flags.pipeline.server.address.empty()) {
+    auto found = volume::FindStorms(flags.storms, volume::StormFormats::BuiltIn());
+    if (!found.ok()) return AsFileProblem(found.status());
+    storms = *std::move(found);
+    THUNDERHEAD_ASSIGN_OR_RETURN(all, PlanAll(options, storms, flags.times));
+  } else {
+    THUNDERHEAD_ASSIGN_OR_RETURN(server, ServerLink::Open(flags.pipeline.server));
+    THUNDERHEAD_ASSIGN_OR_RETURN(all, PlanAll(options, *server, flags.storms, flags.times));
+  }
   std::vector<PlannedPicture> pictures = ShareOf(all, options.views.size(), shard);
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<PictureRun> run,
                                PictureRun::Open(std::move(options)));
   RunProgress progress(flags.pipeline.progress, "drawing");
-  const absl::Status made = run->Make(*found, pictures, progress, stop);
+  const absl::Status made = server == nullptr ? run->Make(storms, pictures, progress, stop)
+                                              : MakeByJobs(*server, *run, pictures, progress, stop);
   if (absl::IsCancelled(made)) {
     return absl::CancelledError(absl::StrCat(
         "interrupted: ", progress.DrawnCount() + progress.KeptCount(), " of ", pictures.size(),
@@ -106,7 +134,10 @@ Command AddSequence(CLI::App& app) {
   auto flags = std::make_shared<Flags>();
   CLI::App* command = app.add_subcommand(
       "sequence", "Render every time of storms in every view; goes on where it was stopped");
-  command->add_option("STORM", flags->storms, "Storm files or folders")->required();
+  command
+      ->add_option("STORM", flags->storms,
+                   "Storm files or folders; with --server storms' ids there")
+      ->required();
   command
       ->add_option("--times", flags->times,
                    "Indices of each storm's times, such as 0,3,6-9; or all, or last")

@@ -4,8 +4,11 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -94,6 +97,12 @@ void RaiseFileLimit() {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
+std::optional<gateway::KeptFile> FindResult(const service::Server& server, std::string_view path) {
+  std::optional<jobs::ResultPlace> result = server.FindResult(path);
+  if (!result.has_value()) return std::nullopt;
+  return gateway::KeptFile{std::move(result->path), std::move(result->sha256)};
+}
+
 absl::Status Serve(ServeFlags flags) {
   // Blocked before any thread starts, so that only sigwait below takes them.
   sigset_t signals;
@@ -127,7 +136,9 @@ absl::Status Serve(ServeFlags flags) {
     }
   }
   service::ServerOptions server_options;
-  THUNDERHEAD_ASSIGN_OR_RETURN(server_options.session_store, OpenSessionStore(flags.state));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const State state, OpenState(flags.state));
+  server_options.session_store = state.sessions;
+  server_options.jobs = JobsOptionsOf(flags.jobs, state);
   server_options.clouds_folder = clouds.Path();
   server_options.render_loop = flags.render_loop;
   server_options.address = ToString(grpc);
@@ -145,6 +156,9 @@ absl::Status Serve(ServeFlags flags) {
   if (gateway_options.page_directory.empty()) {
     spdlog::warn("serving no page: none is installed with the program; name one with --page");
   }
+  gateway_options.find_kept_file = [&server](std::string_view path) {
+    return FindResult(*server, path);
+  };
   const std::shared_ptr<grpc::Channel> channel = server->LocalChannel();
   THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<gateway::Gateway> gateway,
                                gateway::Gateway::Start(gateway_options, channel));

@@ -127,9 +127,10 @@ void AddServeFlags(CLI::App& serve, ServeFlags& flags) {
       "--clouds", flags.clouds,
       "Folder in which generated clouds are kept; without it they are deleted when the "
       "server stops");
-  serve.add_option("--state", flags.state,
-                   "Folder in which sessions outlive the server, or 'none'; by default "
-                   "$STATE_DIRECTORY, else thunderhead in $XDG_STATE_HOME or ~/.local/state");
+  serve.add_option(
+      "--state", flags.state,
+      "Folder in which sessions and render jobs outlive the server, or 'none'; by default "
+      "$STATE_DIRECTORY, else thunderhead in $XDG_STATE_HOME or ~/.local/state");
   serve.add_option("--memory-budget", flags.memory_budget_gib, "GiB of storms kept in memory")
       ->check(CLI::Range(0.01, 1e6))
       ->capture_default_str();
@@ -137,6 +138,7 @@ void AddServeFlags(CLI::App& serve, ServeFlags& flags) {
   AddOperationFlags(serve, flags.operation);
   AddAccessFlags(serve, flags);
   AddLimitFlags(serve, flags);
+  AddJobsFlags(serve, flags.jobs);
 }
 
 absl::StatusOr<std::shared_ptr<access::Door>> MakeDoor(const ServeFlags& flags) {

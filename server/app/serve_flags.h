@@ -12,6 +12,7 @@
 #include "access/door.h"
 #include "app/address.h"
 #include "app/catalogue_flags.h"
+#include "app/jobs_flags.h"
 #include "app/operation.h"
 #include "gateway/gateway.h"
 #include "service/server.h"
@@ -30,6 +31,7 @@ struct ServeFlags {
   double memory_budget_gib = 2.0;
   CatalogueFlags catalogue;
   OperationFlags operation;
+  JobsFlags jobs;
 
   // Who may come.
   std::vector<std::string> auth = {"none"};

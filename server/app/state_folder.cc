@@ -8,7 +8,9 @@
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
+#include "store/sqlite_job_store.h"
 #include "store/sqlite_session_store.h"
+#include "store/state_file.h"
 
 namespace thunderhead::app {
 namespace {
@@ -46,16 +48,18 @@ std::error_code Create(const std::string& folder) {
 
 }  // namespace
 
-absl::StatusOr<std::shared_ptr<session::SessionStore>> OpenSessionStore(const std::string& folder) {
-  if (folder == kNone) return nullptr;
+absl::StatusOr<State> OpenState(const std::string& folder) {
+  if (folder == kNone) return State();
   const bool is_default = folder.empty();
   const std::string path = is_default ? DefaultFolder() : folder;
   const std::error_code error =
       path.empty() ? std::make_error_code(std::errc::no_such_file_or_directory) : Create(path);
   if (error && is_default) {
-    spdlog::warn("sessions end with the server: no state folder '{}' ({}); name one with --state",
-                 path, error.message());
-    return nullptr;
+    spdlog::warn(
+        "sessions and render jobs end with the server: no state folder '{}' ({}); name one with "
+        "--state",
+        path, error.message());
+    return State();
   }
   if (error) {
     return absl::InvalidArgumentError(absl::StrCat("--state is '", path,
@@ -63,13 +67,17 @@ absl::StatusOr<std::shared_ptr<session::SessionStore>> OpenSessionStore(const st
                                                    "created: ",
                                                    error.message()));
   }
-  auto store = store::SqliteSessionStore::Open(path + "/" + kFile);
-  if (!store.ok()) {
-    return base::Annotate(store.status(),
+  auto file = store::StateFile::Open(path + "/" + kFile);
+  if (!file.ok()) {
+    return base::Annotate(file.status(),
                           "cannot keep sessions (another folder: --state FOLDER; "
                           "none: --state none)");
   }
-  return *std::move(store);
+  State state;
+  THUNDERHEAD_ASSIGN_OR_RETURN(state.sessions, store::SqliteSessionStore::In(*file));
+  THUNDERHEAD_ASSIGN_OR_RETURN(state.jobs, store::SqliteJobStore::In(*file));
+  state.folder = path;
+  return state;
 }
 
 }  // namespace thunderhead::app

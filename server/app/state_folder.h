@@ -5,13 +5,21 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "jobs/job_store.h"
 #include "session/session_store.h"
 
 namespace thunderhead::app {
 
-// The store in the folder, which is created for this user only; null for "none". An empty `folder`
-// is the service manager's ($STATE_DIRECTORY) or the user's; if that cannot be created, null with a
-// warning.
-absl::StatusOr<std::shared_ptr<session::SessionStore>> OpenSessionStore(const std::string& folder);
+// What outlives the server, each null if it ends with it.
+struct State {
+  std::shared_ptr<session::SessionStore> sessions;
+  std::shared_ptr<jobs::JobStore> jobs;
+  std::string folder;  // empty: none
+};
+
+// The state in the folder, which is created for this user only; nothing for "none". An empty
+// `folder` is the service manager's ($STATE_DIRECTORY) or the user's; if that cannot be created,
+// nothing, with a warning.
+absl::StatusOr<State> OpenState(const std::string& folder);
 
 }  // namespace thunderhead::app

@@ -17,6 +17,7 @@
 #include "app/picture_run.h"
 #include "app/pipeline_flags.h"
 #include "app/run_movie.h"
+#include "app/watch_server.h"
 #include "app/watched_folder.h"
 #include "base/folder_events.h"
 #include "base/status.h"
@@ -173,6 +174,26 @@ absl::Status Ended(const WatchedFolder& folder) {
   return absl::OkStatus();
 }
 
+absl::Status WatchAtServer(const Flags& flags, const End& end, const MovieOptions& movie,
+                           PictureRunOptions options, const std::stop_token& stop) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<ServerLink> server,
+                               ServerLink::Open(flags.pipeline.server));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<PictureRun> run,
+                               PictureRun::Open(std::move(options)));
+  RunProgress progress(flags.pipeline.progress, absl::StrCat("watching ", flags.folder));
+  const ServerWatch watch{.storm = flags.folder,
+                          .is_over =
+                              [&end](int times) {
+                                return (end.files.has_value() && times >= *end.files) ||
+                                       absl::Now() >= end.at;
+                              },
+                          .after_new =
+                              [&](const std::vector<PlannedPicture>& pictures) {
+                                return MakeMovies(movie, pictures, *run, progress, stop);
+                              }};
+  return WatchServer(watch, *server, *run, progress, stop);
+}
+
 absl::Status Watch(const Flags& flags) {
   spdlog::set_level(spdlog::level::warn);
   const Interruption interruption;
@@ -186,6 +207,9 @@ absl::Status Watch(const Flags& flags) {
     return absl::InvalidArgumentError(
         "--product has {time}, which counts the times of a whole run; files that still come have "
         "no such number: use {valid:%Y%m%d_%H%M} or {lead_min:04d}");
+  }
+  if (!flags.pipeline.server.address.empty()) {
+    return WatchAtServer(flags, end, movie, std::move(options), stop);
   }
   std::error_code error;
   if (!std::filesystem::is_directory(flags.folder, error)) {
@@ -221,7 +245,11 @@ Command AddWatch(CLI::App& app) {
   auto flags = std::make_shared<Flags>();
   CLI::App* command = app.add_subcommand(
       "watch", "Render the files of a folder as a model writes them, each once it is complete");
-  command->add_option("FOLDER", flags->folder, "Folder that the files come to")->required();
+  command
+      ->add_option("FOLDER", flags->folder,
+                   "Folder that the files come to; with --server a storm's id there, whose "
+                   "times are complete by the server's rules")
+      ->required();
   command->add_option("--files", flags->files, "Pattern of their names, such as 'wrfout_d01_*'")
       ->capture_default_str();
   command

@@ -7,14 +7,23 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "grpcpp/channel.h"
 
 namespace thunderhead::gateway {
+
+// A file that the service keeps under a path which nobody can guess.
+struct KeptFile {
+  std::string path;
+  std::string entity_tag;  // another one for other contents; without quotes
+};
 
 struct GatewayOptions {
   // An IP address or "localhost".
@@ -29,6 +38,8 @@ struct GatewayOptions {
   std::vector<std::string> allowed_hosts;
   // The built page; empty: none.
   std::string page_directory;
+  // Finds what the page's folder does not have; empty: nothing more. Must not block.
+  std::function<std::optional<KeptFile>(std::string_view path)> find_kept_file;
   // Origins of other pages that may call, for example "http://localhost:5173". The page served here
   // needs none.
   std::vector<std::string> allowed_origins;

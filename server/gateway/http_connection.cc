@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "gateway/byte_range.h"
 #include "gateway/call_header.h"
 #include "gateway/grpc_web_exchange.h"
 #include "gateway/grpc_web_protocol.h"
@@ -42,6 +43,12 @@ constexpr size_t kFirstRead = 4 << 10;
 // file.
 constexpr int kHeaderTimeouts = 3;
 constexpr char kPageMethods[] = "GET, HEAD";
+
+const char* PictureTypeOf(const std::string& path) {
+  if (path.ends_with(".png")) return "image/png";
+  if (path.ends_with(".jpeg")) return "image/jpeg";
+  return "application/octet-stream";
+}
 
 class HttpConnection {
  public:
@@ -66,6 +73,7 @@ class HttpConnection {
   net::awaitable<bool> AnswerBadHeader(error_code error);
   net::awaitable<bool> RefuseLargeCall(const Request& request);
   net::awaitable<bool> SendFile(const Request& request, const StaticFile& file);
+  net::awaitable<bool> SendKept(const Request& request, const KeptFile& file);
   net::awaitable<bool> SendText(const Request& request, http::status status,
                                 const std::string& text, std::string_view allowed_methods = {});
   template <typename Body>
@@ -153,6 +161,10 @@ net::awaitable<bool> HttpConnection::AnswerPage(const Request& request, const st
     keep = co_await SendText(request, http::status::ok, "ok\n");
   } else if (const std::optional<StaticFile> file = site_.files.Find(path); file.has_value()) {
     keep = co_await SendFile(request, *file);
+  } else if (const std::optional<KeptFile> kept =
+                 site_.options.find_kept_file ? site_.options.find_kept_file(path) : std::nullopt;
+             kept.has_value()) {
+    keep = co_await SendKept(request, *kept);
   } else if (IsMethodPath(path) && path.find('.') < path.rfind('/')) {
     keep = co_await SendText(
         request, http::status::method_not_allowed,
@@ -321,6 +333,58 @@ net::awaitable<bool> HttpConnection::SendFile(const Request& request, const Stat
     co_return keep;
   }
   http::response<http::file_body> response(std::move(header.base()), std::move(body));
+  keep = co_await Send(request, response);
+  co_return keep;
+}
+
+net::awaitable<bool> HttpConnection::SendKept(const Request& request, const KeptFile& file) {
+  http::response<http::empty_body> header(http::status::ok, request.version());
+  const std::string entity_tag = absl::StrCat("\"", file.entity_tag, "\"");
+  header.set(http::field::etag, entity_tag);
+  header.set(http::field::cache_control, "private, no-cache");
+  header.set(http::field::accept_ranges, "bytes");
+  bool keep = false;
+  if (MatchesEntityTag(View(request[http::field::if_none_match]), entity_tag)) {
+    header.result(http::status::not_modified);
+    keep = co_await Send(request, header);
+    co_return keep;
+  }
+  FileRangeBody::value_type body;
+  error_code error;
+  std::uint64_t file_bytes = 0;
+  body.file.open(file.path.c_str(), boost::beast::file_mode::scan, error);
+  if (!error) file_bytes = body.file.size(error);
+  if (error) {
+    keep = co_await SendText(request, http::status::not_found, "This file is gone.\n");
+    co_return keep;
+  }
+  // Of other contents than the client has a part of, all is sent.
+  const std::string_view only_if = View(request[http::field::if_range]);
+  const ByteRange range =
+      RangeOf(only_if.empty() || only_if == entity_tag ? View(request[http::field::range]) : "",
+              file_bytes);
+  if (range.asked == ByteRange::Asked::kNothingThere) {
+    header.result(http::status::range_not_satisfiable);
+    header.set(http::field::content_range, absl::StrCat("bytes */", file_bytes));
+    header.content_length(0);
+    keep = co_await Send(request, header);
+    co_return keep;
+  }
+  if (range.asked == ByteRange::Asked::kPart) {
+    header.result(http::status::partial_content);
+    header.set(
+        http::field::content_range,
+        absl::StrCat("bytes ", range.first, "-", range.first + range.bytes - 1, "/", file_bytes));
+  }
+  header.set(http::field::content_type, PictureTypeOf(file.path));
+  header.content_length(range.bytes);
+  if (request.method() == http::verb::head) {
+    keep = co_await Send(request, header);
+    co_return keep;
+  }
+  body.file.seek(range.first, error);
+  body.bytes = range.bytes;
+  http::response<FileRangeBody> response(std::move(header.base()), std::move(body));
   keep = co_await Send(request, response);
   co_return keep;
 }

@@ -42,7 +42,26 @@ CatalogueFollower::CatalogueFollower(volume::StormStore& store, session::Session
 
 CatalogueFollower::~CatalogueFollower() { store_.Listen({}); }
 
+std::string CatalogueFollower::IdNow(std::string id) const {
+  if (store_.Find(id) != nullptr) return id;
+  const std::lock_guard lock(mutex_);
+  // As often as it may have been renamed, and no longer should names go in a circle.
+  for (std::size_t i = 0; i <= renamed_.size(); ++i) {
+    const auto next = renamed_.find(id);
+    if (next == renamed_.end()) return id;
+    id = next->second;
+  }
+  return id;
+}
+
 void CatalogueFollower::Follow(const volume::CatalogueChange& change) {
+  {
+    const std::lock_guard lock(mutex_);
+    for (const volume::StormChange& storm : change) {
+      if (storm.before == nullptr || storm.after == nullptr) continue;
+      if (storm.before->id != storm.after->id) renamed_[storm.before->id] = storm.after->id;
+    }
+  }
   std::vector<std::shared_ptr<session::Session>> sessions = sessions_.All();
   const std::vector<std::shared_ptr<session::Session>> everybody = sessions;
   for (int attempt = 0; attempt < kAttempts && !sessions.empty(); ++attempt) {

@@ -4,7 +4,9 @@
 
 #include <atomic>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,6 +43,10 @@ class CatalogueFollower {
   // How often the catalogue has changed; clients are told of each.
   std::uint64_t Changes() const { return changes_; }
 
+  // The id that a storm has now that once had `id`: a run of one file is called by its file, and
+  // from the second on by its folder. `id` itself if nothing is known of it.
+  std::string IdNow(std::string id) const;
+
  private:
   void Follow(const volume::CatalogueChange& change);
   bool Move(session::Session& session, const volume::CatalogueChange& change);
@@ -49,6 +55,8 @@ class CatalogueFollower {
   session::Sessions& sessions_;
   const session::RenderLoop& loop_;
   std::atomic<std::uint64_t> changes_{0};
+  mutable std::mutex mutex_;
+  std::map<std::string, std::string> renamed_;
 };
 
 }  // namespace thunderhead::service

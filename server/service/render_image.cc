@@ -1,163 +1,21 @@
-#include <grpcpp/alarm.h>
-
-#include <atomic>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <utility>
 
-#include "base/error_details.h"
-#include "base/status.h"
 #include "base/stopwatch.h"
-#include "frame/image_codec.h"
-#include "frame/png_text.h"
-#include "service/camera_messages.h"
 #include "service/handlers.h"
-#include "service/limits_check.h"
-#include "service/picture_texts.h"
-#include "service/scene_messages.h"
+#include "service/picture_job.h"
 #include "service/status_table.h"
 
 namespace thunderhead::service {
 namespace {
-
-// Takes the picture's pixels.
-absl::Status Encode(session::DisplayFrame& picture, const v1::RenderImageRequest& request,
-                    v1::RenderImageResponse& response) {
-  const bool jpeg = request.format() == v1::IMAGE_FORMAT_JPEG;
-  const int quality = static_cast<int>(response.scene().output().jpeg_quality());
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      *response.mutable_image(),
-      jpeg ? frame::EncodeJpeg(picture.width_px, picture.height_px, picture.rgb, quality)
-           : frame::EncodePng(picture.width_px, picture.height_px, picture.rgb));
-  response.set_format(jpeg ? v1::IMAGE_FORMAT_JPEG : v1::IMAGE_FORMAT_PNG);
-  response.set_width_px(static_cast<std::uint32_t>(picture.width_px));
-  response.set_height_px(static_cast<std::uint32_t>(picture.height_px));
-  picture.rgb = {};
-  return absl::OkStatus();
-}
-
-void Describe(const session::DisplayFrame& picture, double encode_ms,
-              v1::RenderImageResponse& response) {
-  for (const scene::StageTime& time : picture.stages) ToMessage(time, *response.add_stages());
-  ToMessage({scene::FrameStage::kEncode, encode_ms}, *response.add_stages());
-  ToMessage(picture.modelled, *response.mutable_modelled());
-  if (picture.accuracy.has_value()) ToMessage(*picture.accuracy, *response.mutable_accuracy());
-}
-
-// Writes into a PNG what it shows. `storm` is null if it has gone since.
-void AddTexts(const volume::StormInfo* storm, v1::RenderImageResponse& response) {
-  if (response.format() != v1::IMAGE_FORMAT_PNG || storm == nullptr) return;
-  response.set_image(frame::WithTexts(response.image(), TextsOf(response, *storm)));
-}
-
-// Errors of drawing are not about one field, so they name the whole scene.
-absl::Status OfScene(const absl::Status& status) {
-  return base::WithDetails(status, {.reason = "SCENE_NOT_DRAWN", .field = "scene"});
-}
-
-// The call that waits for a picture.
-class PictureListener {
- public:
-  // Progress of tracing light. Must not block.
-  virtual void Progressed(const session::ImageProgress& /*progress*/) {}
-  // Called once, and last. If `status` is OK the response is complete.
-  virtual void Ended(const absl::Status& status) = 0;
-
- protected:
-  ~PictureListener() = default;
-};
-
-// One picture: read, drawn and encoded in a lane of the render loop, which ends the job; everything
-// passed to the job must live until then.
-class PictureJob {
- public:
-  PictureJob(Engine& engine, const v1::RenderImageRequest& request,
-             v1::RenderImageResponse& response, PictureListener& listener)
-      : engine_(engine), request_(request), response_(response), listener_(listener) {}
-
-  void Begin() {
-    if (const absl::Status late = counted_.Check(); !late.ok()) return End(late);
-    if (const absl::Status wrong = CompleteScene(); !wrong.ok()) return End(wrong);
-    deadline_.Set(std::chrono::system_clock::now() + engine_.limits.max_render_time,
-                  [late = late_, cancelled = cancelled_, &wake = engine_.wake](bool rang) {
-                    if (!rang) return;
-                    *late = true;
-                    *cancelled = true;
-                    wake.Notify();
-                  });
-    engine_.loop.RenderImage(
-        {ToScene(response_.scene()), [this] { return Read(); },
-         [this](session::DisplayFrame& picture) { return EncodeTimed(picture); }, cancelled_,
-         [this](const absl::StatusOr<session::DisplayFrame>& picture) { Drawn(picture); },
-         [this](const session::ImageProgress& progress) { listener_.Progressed(progress); }});
-  }
-
-  void Cancel() {
-    *cancelled_ = true;
-    engine_.wake.Notify();
-  }
-
- private:
-  absl::Status CompleteScene() {
-    THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request_));
-    v1::Scene& scene = *response_.mutable_scene();
-    scene = request_.scene();
-    THUNDERHEAD_RETURN_IF_ERROR(PrepareScene(engine_.store, engine_.loop.Techniques(), scene));
-    THUNDERHEAD_RETURN_IF_ERROR(CheckSize(engine_.limits, scene));
-    if (!scene.rendering().has_reference()) return absl::OkStatus();
-    return base::InvalidField("scene.rendering.reference",
-                              "is given, which only sessions can show; for a file use "
-                              "thunderhead render --renderer reference",
-                              "TECHNIQUE_FOR_SESSIONS_ONLY");
-  }
-
-  absl::StatusOr<session::ImageInput> Read() {
-    v1::Scene& scene = *response_.mutable_scene();
-    THUNDERHEAD_ASSIGN_OR_RETURN(
-        auto fields, ReadFields(engine_.store, scene.storm_id(),
-                                static_cast<int>(scene.time_index()), "scene.storm_id"));
-    FrameCondensate(scene, *fields);
-    return session::ImageInput{std::move(fields), ToScene(scene).camera};
-  }
-
-  absl::Status EncodeTimed(session::DisplayFrame& picture) {
-    const base::Stopwatch stopwatch;
-    THUNDERHEAD_RETURN_IF_ERROR(Encode(picture, request_, response_));
-    encode_ms_ = stopwatch.ElapsedMs();
-    return absl::OkStatus();
-  }
-
-  void Drawn(const absl::StatusOr<session::DisplayFrame>& picture) {
-    if (!picture.ok()) return End(OfScene(picture.status()));
-    Describe(*picture, encode_ms_, response_);
-    AddTexts(engine_.store.Find(response_.scene().storm_id()).get(), response_);
-    End(absl::OkStatus());
-  }
-
-  void End(const absl::Status& status) {
-    listener_.Ended(absl::IsCancelled(status) && *late_
-                        ? RenderedTooLong(engine_.limits.max_render_time)
-                        : status);
-  }
-
-  Engine& engine_;
-  const Drain::Picture counted_{engine_.drain};
-  const v1::RenderImageRequest& request_;
-  v1::RenderImageResponse& response_;
-  PictureListener& listener_;
-  double encode_ms_ = 0.0;
-  const std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
-  const std::shared_ptr<std::atomic<bool>> late_ = std::make_shared<std::atomic<bool>>(false);
-  grpc::Alarm deadline_;
-};
 
 // A picture as the response of a unary call.
 class PictureReactor final : public grpc::ServerUnaryReactor, private PictureListener {
  public:
   PictureReactor(Engine& engine, CallerRef caller, const v1::RenderImageRequest& request,
                  v1::RenderImageResponse& response)
-      : caller_(std::move(caller)), job_(engine, request, response, *this) {}
+      : caller_(std::move(caller)), job_(engine, request, response, *this, Awaited::kByACall) {}
 
   void Begin() { job_.Begin(); }
   void OnCancel() override { job_.Cancel(); }
@@ -179,23 +37,28 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
                             private PictureListener {
  public:
   PictureStream(Engine& engine, CallerRef caller, const v1::RenderImageRequest& request)
-      : caller_(std::move(caller)), job_(engine, request, *image_.mutable_image(), *this) {}
+      : caller_(std::move(caller)),
+        in_chunks_(request.in_chunks()),
+        job_(engine, request, *image_.mutable_image(), *this, Awaited::kByACall) {}
 
   void Begin() { job_.Begin(); }
   void OnCancel() override { job_.Cancel(); }
   void OnDone() override { delete this; }
 
-  void OnWriteDone(bool /*ok: a client that is gone cancels as well*/) override {
+  void OnWriteDone(bool ok) override {
     {
       const std::lock_guard lock(mutex_);
       writing_ = false;
+      // A client that is gone cancels as well.
       if (!end_.has_value()) return;
+      if (!ok) end_ = grpc::Status(grpc::StatusCode::CANCELLED, "the client is gone");
     }
     WriteEnd();
   }
 
  private:
   static constexpr double kMinInterval_ms = 200.0;
+  static constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 
   void Progressed(const session::ImageProgress& progress) override {
     {
@@ -226,15 +89,25 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
     WriteEnd();
   }
 
-  // Called once, when no write is pending.
+  // Called when no write is pending: again for each chunk.
   void WriteEnd() {
     if (!end_->ok()) return Finish(*end_);
+    std::string& image = *image_.mutable_image()->mutable_image();
+    if (in_chunks_ && sent_bytes_ < image.size()) {
+      writing_ = true;
+      progress_.set_chunk(image.substr(sent_bytes_, kChunkBytes));
+      sent_bytes_ += progress_.chunk().size();
+      return StartWrite(&progress_);
+    }
+    if (in_chunks_) image.clear();
     StartWriteAndFinish(&image_, grpc::WriteOptions(), *end_);
   }
 
   const CallerRef caller_;
+  const bool in_chunks_;
   v1::RenderImageEvent image_;
-  v1::RenderImageEvent progress_;  // gRPC reads it while `writing_`
+  v1::RenderImageEvent progress_;  // or a chunk; gRPC reads it while `writing_`
+  std::size_t sent_bytes_ = 0;     // in chunks
   std::mutex mutex_;
   bool writing_ = false;
   std::optional<base::Stopwatch> since_progress_;

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
+#include "base/file_stamp.h"
 #include "base/status.h"
 #include "service/camera_messages.h"
 #include "service/enum_tables.h"
@@ -450,6 +452,15 @@ void ToMessage(const volume::StormInfo& storm, v1::StormSummary& message) {
   message.set_time_count(static_cast<std::uint32_t>(storm.times.size()));
 }
 
+bool ToMessage(const std::string& path, v1::StormFile& message) {
+  const std::optional<base::FileStamp> stamp = base::StampOf(path);
+  if (!stamp.has_value()) return false;
+  message.set_name(std::filesystem::path(path).filename().string());
+  message.set_bytes(static_cast<std::uint64_t>(stamp->size_bytes));
+  message.set_modified_ns(stamp->modified_ns);
+  return true;
+}
+
 void ToMessage(const volume::StormInfo& storm, const volume::HydrometeorFields& fields,
                int time_index, v1::StormDescription& message) {
   message.set_id(storm.id);
@@ -460,7 +471,9 @@ void ToMessage(const volume::StormInfo& storm, const volume::HydrometeorFields& 
     time.set_valid_time(storm.times[i].valid_time);
     time.set_elapsed_s(storm.times[i].elapsed_s);
     time.set_deleted(storm.times[i].deleted);
+    if (v1::StormFile file; ToMessage(storm.times[i].file, file)) *time.mutable_file() = file;
   }
+  if (storm.run_start.has_value()) message.set_run_start(*storm.run_start);
   SetGrid(fields.grid, *message.mutable_grid());
   for (const volume::HydrometeorField& field : fields.fields) {
     SetField(field, fields.grid, *message.add_fields());

@@ -39,7 +39,10 @@ void ToMessage(const session::EncodedFrame& frame, v1::Frame& message);
 void ToMessage(const session::Problem& problem, v1::Problem& message);
 void ToMessage(const scene::StageTime& time, v1::StageCost& message);
 void ToMessage(const volume::StormInfo& storm, v1::StormSummary& message);
+// Looks at the files of its times.
 void ToMessage(const volume::StormInfo& storm, const volume::HydrometeorFields& fields,
                int time_index, v1::StormDescription& message);
+// The file at `path`, as it is now; false if there is none.
+bool ToMessage(const std::string& path, v1::StormFile& message);
 
 }  // namespace thunderhead::service

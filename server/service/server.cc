@@ -19,7 +19,10 @@
 #include "service/catalogue_follower.h"
 #include "service/engine.h"
 #include "service/interact_messages.h"
+#include "service/job_messages.h"
+#include "service/job_pictures.h"
 #include "service/local_listener.h"
+#include "service/render_job_service.h"
 #include "service/stored_scene.h"
 #include "service/thunderhead_service.h"
 #include "session/session_keeper.h"
@@ -97,11 +100,19 @@ class RunningServer final : public Server {
     return absl::OkStatus();
   }
 
+  // Brings back the jobs that the store has.
+  absl::Status StartJobs(const jobs::JobsOptions& options) {
+    if (options.folder.empty()) return absl::OkStatus();
+    THUNDERHEAD_ASSIGN_OR_RETURN(jobs_, jobs::Jobs::Open(options));
+    return absl::OkStatus();
+  }
+
   absl::Status Listen(const std::string& address, const TlsFiles& tls) {
     catalogue_ = std::make_unique<CatalogueFollower>(*store_, sessions_, *loop_);
     engine_ = std::make_unique<Engine>(Engine{*store_, sessions_, *loop_, wake_, executor_, clouds_,
                                               keeper_.get(), *catalogue_, drain_, limits_});
     service_ = std::make_unique<ThunderheadService>(*engine_, *door_);
+    job_service_ = std::make_unique<RenderJobService>(*engine_, *door_, jobs_.get());
     // Global settings, which apply to every server built later.
     static std::once_flag plugins;
     std::call_once(plugins, [] {
@@ -110,6 +121,7 @@ class RunningServer final : public Server {
     });
     grpc::ServerBuilder builder;
     builder.RegisterService(service_.get());
+    builder.RegisterService(job_service_.get());
     grpc::ResourceQuota memory("thunderhead");
     builder.SetResourceQuota(memory.Resize(limits_.grpc_memory_bytes));
     builder.SetMaxReceiveMessageSize(static_cast<int>(limits_.max_request_bytes));
@@ -132,6 +144,7 @@ class RunningServer final : public Server {
     server_->GetHealthCheckService()->SetServingStatus(true);
     server_->GetHealthCheckService()->SetServingStatus(v1::ThunderheadService::service_full_name(),
                                                        true);
+    if (jobs_ != nullptr) jobs_->Start(JobPictures(*engine_));
     return absl::OkStatus();
   }
 
@@ -156,21 +169,34 @@ class RunningServer final : public Server {
     load.pictures = drain_.Pictures();
     load.turn_s = loop_->TurnSeconds();
     load.draining = drain_.HasBegun();
+    if (jobs_ != nullptr) load.jobs = jobs_->Load();
     return load;
+  }
+
+  std::optional<jobs::ResultPlace> FindResult(std::string_view path) const override {
+    const std::optional<ResultPath> parts = ParseResultPath(path);
+    if (jobs_ == nullptr || !parts.has_value()) return std::nullopt;
+    auto place = jobs_->ResultOfKey(parts->key, parts->place);
+    return place.ok() ? std::optional(*std::move(place)) : std::nullopt;
   }
 
   void BeginDrain() override {
     server_->GetHealthCheckService()->SetServingStatus(false);
     drain_.Begin();
+    if (jobs_ != nullptr) jobs_->Drain();
     sessions_.CloseAll(base::ShuttingDown());
   }
 
   void Shutdown() override {
     if (server_ != nullptr) server_->GetHealthCheckService()->Shutdown();
+    if (jobs_ != nullptr) jobs_->CancelPictures();
     // First, so that no picture is begun after a client has seen its stream end.
     if (loop_ != nullptr) loop_->RequestStop();
     sessions_.CloseAll(base::ShuttingDown());
     if (loop_ != nullptr) loop_->Stop();
+    // After the loop, which has ended their pictures.
+    if (jobs_ != nullptr) jobs_->Stop();
+    if (job_service_ != nullptr) job_service_->Stop();
     executor_.Stop();
     local_.reset();
     if (server_ != nullptr) {
@@ -197,7 +223,9 @@ class RunningServer final : public Server {
   std::unique_ptr<session::SessionKeeper> keeper_;
   std::unique_ptr<CatalogueFollower> catalogue_;
   std::unique_ptr<Engine> engine_;
+  std::unique_ptr<jobs::Jobs> jobs_;  // null: none are kept
   std::unique_ptr<ThunderheadService> service_;
+  std::unique_ptr<RenderJobService> job_service_;
   std::unique_ptr<grpc::Server> server_;
   std::unique_ptr<LocalListener> local_;
   int port_ = 0;
@@ -211,6 +239,7 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(
   auto server = std::make_unique<RunningServer>(options, std::move(store));
   THUNDERHEAD_RETURN_IF_ERROR(server->StartLoop(options.render_loop, make_source));
   THUNDERHEAD_RETURN_IF_ERROR(server->StartKeeper());
+  THUNDERHEAD_RETURN_IF_ERROR(server->StartJobs(options.jobs));
   THUNDERHEAD_RETURN_IF_ERROR(server->Listen(options.address, options.tls));
   return server;
 }

@@ -5,10 +5,13 @@
 #include <grpcpp/channel.h>
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "absl/status/statusor.h"
 #include "access/door.h"
+#include "jobs/jobs.h"
 #include "service/limits.h"
 #include "session/frame_source.h"
 #include "session/render_loop.h"
@@ -35,6 +38,7 @@ struct ServerOptions {
   session::SessionsOptions sessions;
   std::shared_ptr<session::SessionStore> session_store;  // null: sessions end with the server
   session::RenderLoopOptions render_loop;
+  jobs::JobsOptions jobs;
 };
 
 // What a server has to do now.
@@ -46,6 +50,7 @@ struct ServerLoad {
   int pictures = 0;           // single ones, begun and not yet delivered
   double turn_s = 0.0;        // since the render loop's turn began; 0 while it waits for work
   bool draining = false;
+  jobs::JobsLoad jobs;
 };
 
 class Server {
@@ -63,6 +68,9 @@ class Server {
   // A channel to this server from its own process, through a local socket.
   virtual std::shared_ptr<grpc::Channel> LocalChannel() = 0;
   virtual ServerLoad Load() const = 0;
+  // The file of a render job's picture by its path at the HTTP port, "/results/KEY/INDEX"; nothing
+  // if there is none.
+  virtual std::optional<jobs::ResultPlace> FindResult(std::string_view path) const = 0;
   // Ends every session's streams, which come back to the next server, refuses new sessions and
   // pictures, and tells health checks. Pictures that were begun go on. Returns at once.
   virtual void BeginDrain() = 0;

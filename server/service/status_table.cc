@@ -130,9 +130,19 @@ google::rpc::BadRequest BadRequestOf(const base::ErrorDetails& details,
 
 }  // namespace
 
+int CodeOf(const absl::Status& status) { return static_cast<int>(RowOf(status.code()).wire); }
+
+std::string ReasonOf(const absl::Status& status) {
+  const std::string reason = base::DetailsOf(status).reason;
+  return reason.empty() ? RowOf(status.code()).reason : reason;
+}
+
+std::string SendableMessage(const absl::Status& status) {
+  return Sendable({status.message().data(), status.message().size()}, kMaxMessageBytes);
+}
+
 grpc::Status ToGrpcStatus(const absl::Status& status) {
-  const std::string message =
-      Sendable({status.message().data(), status.message().size()}, kMaxMessageBytes);
+  const std::string message = SendableMessage(status);
   if (status.ok()) return grpc::Status::OK;
   // A client that cancelled its call does not read details.
   if (absl::IsCancelled(status)) return {grpc::StatusCode::CANCELLED, message};

@@ -6,10 +6,18 @@
 
 #include <grpcpp/support/status.h>
 
+#include <string>
+
 #include "absl/status/status.h"
 
 namespace thunderhead::service {
 
 grpc::Status ToGrpcStatus(const absl::Status& status);
+
+// The same one by one, for errors that are told in a message: the code of google.rpc.Code, the
+// reason, and the words as valid UTF-8.
+int CodeOf(const absl::Status& status);
+std::string ReasonOf(const absl::Status& status);
+std::string SendableMessage(const absl::Status& status);
 
 }  // namespace thunderhead::service

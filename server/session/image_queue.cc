@@ -73,9 +73,13 @@ void ImageQueue::Admit(const std::function<absl::Status(ImageJob&)>& admit) {
 
 std::optional<ImageJob> ImageQueue::Take(const std::function<bool(const ImageJob&)>& suits) {
   const std::lock_guard lock(mutex_);
-  const auto found = std::ranges::find_if(waiting_, [&](const ImageJob& job) {
-    return job.decided.has_value() && !*job.cancelled && suits(job);
-  });
+  const auto find = [&](bool gives_way) {
+    return std::ranges::find_if(waiting_, [&](const ImageJob& job) {
+      return job.gives_way == gives_way && job.decided.has_value() && !*job.cancelled && suits(job);
+    });
+  };
+  auto found = find(false);
+  if (found == waiting_.end()) found = find(true);
   if (found == waiting_.end()) return std::nullopt;
   ImageJob job = std::move(*found);
   waiting_.erase(found);

@@ -43,6 +43,8 @@ struct ImageJob {
   // If set, called on the loop's thread as more light is traced, and not after `done`; must not
   // block.
   std::function<void(const ImageProgress&)> on_progress = nullptr;
+  // Nobody waits for it: those for whom somebody does go before.
+  bool gives_way = false;
   // Since it was admitted: the scene with its decided setting, and what drawing that should take.
   std::optional<scene::Scene> decided = std::nullopt;
   double predicted_ms = 0.0;
@@ -57,7 +59,8 @@ class ImageQueue {
   bool Add(ImageJob job);
   // Asks `admit` of each job that came since the last call; those refused are done with the reason.
   void Admit(const std::function<absl::Status(ImageJob&)>& admit);
-  // Takes the first admitted job for which `suits` is true.
+  // Takes the first admitted job for which `suits` is true; one that gives way only if there is no
+  // other.
   std::optional<ImageJob> Take(const std::function<bool(const ImageJob&)>& suits);
   // Drops cancelled jobs and calls their `done`.
   void DropCancelled();

@@ -3,26 +3,17 @@
 #include <algorithm>
 #include <chrono>
 #include <iterator>
-#include <random>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "base/error_details.h"
+#include "base/random_hex.h"
 #include "base/status.h"
 
 namespace thunderhead::session {
 namespace {
 
-// Random bits of the operating system: a client that knows a key may open the session, so keys must
-// not be guessable, nor one from the other.
-std::string RandomHex(int words) {
-  std::random_device device;
-  std::string text;
-  for (int word = 0; word < words; ++word) absl::StrAppendFormat(&text, "%08x", device());
-  return text;
-}
-
+// Who knows a key may open the session.
 constexpr int kKeyWords = 4;  // of 32 bits
 constexpr int kIdWords = 2;
 
@@ -231,9 +222,10 @@ absl::StatusOr<std::shared_ptr<Session>> Sessions::Create(const Rules& rules,
   if (static_cast<std::size_t>(owned) >= options_.max_sessions_per_owner) {
     return TooMany("you already have", options_.max_sessions_per_owner);
   }
-  auto session = std::make_shared<Session>(RandomHex(kIdWords),
-                                           SessionKeys{RandomHex(kKeyWords), RandomHex(kKeyWords)},
-                                           rules, Board{}, options_.format, signals_);
+  auto session =
+      std::make_shared<Session>(base::RandomHex(kIdWords),
+                                SessionKeys{base::RandomHex(kKeyWords), base::RandomHex(kKeyWords)},
+                                rules, Board{}, options_.format, signals_);
   Add(session);
   if (!owner.empty()) owner_by_id_[session->id()] = owner;
   return session;

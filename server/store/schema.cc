@@ -33,6 +33,36 @@ constexpr std::array kSteps = {R"(
     session_id TEXT PRIMARY KEY NOT NULL REFERENCES sessions ON DELETE CASCADE,
     marks BLOB NOT NULL  -- mark_bytes.h
   ) STRICT;
+)",
+                               R"(
+  CREATE TABLE jobs (
+    id TEXT PRIMARY KEY NOT NULL,
+    result_key TEXT UNIQUE NOT NULL,
+    owner TEXT NOT NULL,
+    label TEXT NOT NULL,
+    created_ms INTEGER NOT NULL,  -- since 1970
+    ended_ms INTEGER,
+    cancelled INTEGER NOT NULL
+  ) STRICT;
+  CREATE TABLE job_pictures (
+    job_id TEXT NOT NULL REFERENCES jobs ON DELETE CASCADE,
+    place INTEGER NOT NULL,
+    name TEXT NOT NULL,
+    request BLOB NOT NULL,
+    valid_time TEXT NOT NULL,
+    state INTEGER NOT NULL,  -- sqlite_job_store.cc
+    attempts INTEGER NOT NULL,
+    code INTEGER NOT NULL,  -- as in absl::StatusCode
+    reason TEXT NOT NULL,
+    message TEXT NOT NULL,
+    bytes INTEGER NOT NULL,
+    sha256 TEXT NOT NULL,
+    extension TEXT NOT NULL,
+    milliseconds REAL NOT NULL,
+    drawn_ms INTEGER NOT NULL,  -- since 1970
+    fetched INTEGER NOT NULL,
+    PRIMARY KEY (job_id, place)
+  ) STRICT, WITHOUT ROWID;
 )"};
 
 absl::Status CheckOrigin(Database& database, const std::string& path) {

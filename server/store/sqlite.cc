@@ -68,6 +68,12 @@ void Statement::Bind(int parameter, std::int64_t value) {
   sqlite3_bind_int64(handle_.get(), parameter, value);
 }
 
+void Statement::Bind(int parameter, double value) {
+  sqlite3_bind_double(handle_.get(), parameter, value);
+}
+
+void Statement::BindNull(int parameter) { sqlite3_bind_null(handle_.get(), parameter); }
+
 void Statement::Bind(int parameter, std::string_view text) {
   sqlite3_bind_text64(handle_.get(), parameter, text.data(), text.size(), SQLITE_STATIC,
                       SQLITE_UTF8);
@@ -90,6 +96,12 @@ absl::StatusOr<bool> Statement::Next() {
   if (!error.ok()) return error;
   return false;
 }
+
+bool Statement::IsNull(int column) const {
+  return sqlite3_column_type(handle_.get(), column) == SQLITE_NULL;
+}
+
+double Statement::Real(int column) const { return sqlite3_column_double(handle_.get(), column); }
 
 std::int64_t Statement::Number(int column) const {
   return sqlite3_column_int64(handle_.get(), column);

@@ -48,7 +48,9 @@ class Database {
 class Statement {
  public:
   void Bind(int parameter, std::int64_t value);
+  void Bind(int parameter, double value);
   void Bind(int parameter, std::string_view text);
+  void BindNull(int parameter);
   void BindBlob(int parameter, std::string_view bytes);
 
   // Without results.
@@ -56,7 +58,9 @@ class Statement {
   // True if there is another row.
   absl::StatusOr<bool> Next();
 
+  bool IsNull(int column) const;
   std::int64_t Number(int column) const;
+  double Real(int column) const;
   std::string Bytes(int column) const;
 
  private:

@@ -1,23 +1,16 @@
 #include "store/sqlite_session_store.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <chrono>
 #include <cstdint>
-#include <cstring>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "base/log.h"
 #include "base/status.h"
-#include "store/file_lock.h"
 #include "store/mark_bytes.h"
-#include "store/schema.h"
 #include "store/sqlite.h"
+#include "store/times.h"
 
 namespace thunderhead::store {
 namespace {
@@ -42,31 +35,6 @@ constexpr char kLoad[] =
     "viewers_may_mark, free_when_away, scene, scene_revision, last_used_ms, marks FROM sessions "
     "JOIN marks ON session_id = id ORDER BY id";
 
-std::int64_t MillisecondsOf(std::chrono::system_clock::time_point time) {
-  return std::chrono::duration_cast<std::chrono::milliseconds>(time.time_since_epoch()).count();
-}
-
-std::chrono::system_clock::time_point TimeOf(std::int64_t milliseconds) {
-  return std::chrono::system_clock::time_point(std::chrono::milliseconds(milliseconds));
-}
-
-// Before SQLite does, whose mode would be the user's default. Its other files get the mode of this.
-absl::Status CreateForThisUser(const std::string& path) {
-  const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-  const bool done = file >= 0 && fchmod(file, 0600) == 0;
-  const std::string why = std::strerror(errno);
-  if (file >= 0) close(file);
-  if (done) return absl::OkStatus();
-  return absl::FailedPreconditionError(absl::StrCat(path, " cannot be written: ", why));
-}
-
-absl::Status CheckWhole(Database& database, const std::string& path) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(Statement check, database.Prepare("PRAGMA quick_check(1)"));
-  THUNDERHEAD_RETURN_IF_ERROR(check.Next().status());
-  const std::string found = check.Bytes(0);
-  return found == "ok" ? absl::OkStatus() : DamagedFile(path, found);
-}
-
 SessionRecord RecordOf(const Statement& row) {
   SessionRecord record;
   record.id = row.Bytes(0);
@@ -84,8 +52,8 @@ SessionRecord RecordOf(const Statement& row) {
 
 class OpenStore final : public SqliteSessionStore {
  public:
-  OpenStore(FileLock lock, Database database)
-      : lock_(std::move(lock)), database_(std::move(database)) {}
+  OpenStore(std::shared_ptr<StateFile> file, Database database)
+      : file_(std::move(file)), database_(std::move(database)) {}
 
   absl::Status Save(const std::vector<SessionRecord>& records) override {
     THUNDERHEAD_ASSIGN_OR_RETURN(Transaction transaction, Transaction::Begin(database_));
@@ -146,7 +114,7 @@ class OpenStore final : public SqliteSessionStore {
     save.Bind(11, MillisecondsOf(record.last_used));
   }
 
-  const FileLock lock_;
+  const std::shared_ptr<StateFile> file_;
   Database database_;
 };
 
@@ -154,18 +122,14 @@ class OpenStore final : public SqliteSessionStore {
 
 absl::StatusOr<std::unique_ptr<SqliteSessionStore>> SqliteSessionStore::Open(
     const std::string& path) {
-  // A file of its own, because SQLite's locks let a second process in between two transactions.
-  absl::StatusOr<FileLock> lock = FileLock::Take(absl::StrCat(path, ".lock"));
-  if (!lock.ok()) {
-    return base::Annotate(lock.status(), "each server needs a state folder of its own");
-  }
-  THUNDERHEAD_RETURN_IF_ERROR(CreateForThisUser(path));
-  THUNDERHEAD_ASSIGN_OR_RETURN(Database database, Database::Open(path));
-  THUNDERHEAD_RETURN_IF_ERROR(CheckWhole(database, path));
-  THUNDERHEAD_RETURN_IF_ERROR(UpdateSchema(database, path));
-  THUNDERHEAD_RETURN_IF_ERROR(database.Execute(
-      "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = ON"));
-  return std::make_unique<OpenStore>(*std::move(lock), std::move(database));
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<StateFile> file, StateFile::Open(path));
+  return In(std::move(file));
+}
+
+absl::StatusOr<std::unique_ptr<SqliteSessionStore>> SqliteSessionStore::In(
+    std::shared_ptr<StateFile> file) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(Database database, file->Connect(Durability::kSoon));
+  return std::make_unique<OpenStore>(std::move(file), std::move(database));
 }
 
 }  // namespace thunderhead::store

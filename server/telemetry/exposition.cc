@@ -97,7 +97,9 @@ std::string Expose(const Metrics& metrics, const std::vector<Gauge>& gauges) {
       FamilyOf("thunderhead_refusals_total", "Answers that are errors", kCounter, "reason",
                metrics.refusals),
       FamilyOf("thunderhead_sessions_opened_total", "Sessions opened", kCounter,
-               metrics.sessions_opened)};
+               metrics.sessions_opened),
+      FamilyOf("thunderhead_job_pictures_total", "Pictures of render jobs", kCounter, "outcome",
+               metrics.job_pictures)};
   for (const Gauge& gauge : gauges) {
     families.push_back(Family(gauge.name, gauge.help, MetricType::Gauge));
     ClientMetric metric;

@@ -76,6 +76,7 @@ struct Metrics {
   Counter frame_bytes_sent;    // of their pictures
   Labelled<Counter> refusals;  // answers that are errors, by reason
   Counter sessions_opened;
+  Labelled<Counter> job_pictures;  // of render jobs, by outcome: drawn, failed or dropped
 };
 
 // The process's.

@@ -13,6 +13,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
+#include "volume/run_start.h"
 
 namespace thunderhead::volume {
 namespace {
@@ -235,8 +236,9 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<StormFile> fi
   StormInfo& info = storm.info;
   info.id = IdFrom(name);
   for (const auto& [time, source] : sources) {
-    info.times.push_back(
-        {FormatValidTime(time), absl::ToDoubleSeconds(time - sources.begin()->first)});
+    info.times.push_back({FormatValidTime(time),
+                          absl::ToDoubleSeconds(time - sources.begin()->first), false,
+                          files[source.file].path});
     storm.sources.push_back(source);
   }
   for (const StormFile& file : files) info.files.push_back(file.path);
@@ -248,6 +250,9 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<StormFile> fi
   info.fields = first.fields;
   info.latitude_deg = first.latitude_deg;
   info.longitude_deg = first.longitude_deg;
+  if (const auto start = RunStart(first); start.has_value()) {
+    info.run_start = FormatValidTime(*start);
+  }
   storm.files = std::move(files);
   return storm;
 }

@@ -26,6 +26,7 @@ struct StormTime {
   double elapsed_s = 0.0;  // since the storm's first time
   // Its file is gone, but somebody still looks at what is in memory.
   bool deleted = false;
+  std::string file = {};  // the path; empty for a storm without files
 
   bool operator==(const StormTime&) const = default;
 };
@@ -42,6 +43,7 @@ struct StormInfo {
   std::vector<physics::Hydrometeor> fields;  // that the file has
   std::optional<double> latitude_deg;        // of the middle; nothing for an idealised run
   std::optional<double> longitude_deg;
+  std::optional<std::string> run_start;  // as valid times; nothing if the files do not tell
 };
 
 // A description never changes; a storm that grows gets another.

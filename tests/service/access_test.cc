@@ -16,8 +16,10 @@
 #include "google/rpc/status.pb.h"
 #include "gtest/gtest.h"
 #include "tests/service/fake_service.h"
+#include "tests/service/guarded_service.h"
 #include "tests/service/interacting.h"
 #include "tests/support/temporary_folder.h"
+#include "thunderhead/v1/job.grpc.pb.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -43,99 +45,12 @@ const std::map<std::string, std::set<std::string>> kMayCall = {
     {"CloseSession", {"presenter"}},
     {"RenderImage", {"presenter", "pipeline"}},
     {"RenderImageWithProgress", {"presenter", "pipeline"}},
-};
-
-const std::vector<std::string> kRoles = {"viewer", "presenter", "pipeline", "operator"};
-
-std::string TokenOf(const std::string& role) { return role + "-token"; }
-
-std::string Sha256(const std::string& text) {
-  std::string digest(SHA256_DIGEST_LENGTH, '\0');
-  SHA256(reinterpret_cast<const unsigned char*>(text.data()), text.size(),
-         reinterpret_cast<unsigned char*>(digest.data()));
-  return absl::BytesToHexString(digest);
-}
-
-// A service that knows a token of each role.
-class GuardedService {
- public:
-  explicit GuardedService(service::ServerOptions options = {}, access::QuotaLimits quotas = {}) {
-    const std::string path = folder_.File("tokens");
-    {
-      std::ofstream file(path);
-      for (const std::string& role : kRoles) {
-        file << "a-" << role << " " << role << " " << Sha256(TokenOf(role)) << "\n";
-      }
-    }
-    std::filesystem::permissions(path, std::filesystem::perms::owner_read);
-    auto audit = std::make_shared<access::Audit>([this](const std::string& line) {
-      const std::lock_guard lock(mutex_);
-      lines_.push_back(line);
-    });
-    options.door = std::make_shared<access::Door>(*access::TrustTokens(path), audit, quotas);
-    service_.emplace(options);
-  }
-
-  FakeService& service() { return *service_; }
-  Stub& stub() { return service_->stub(); }
-
-  std::vector<std::string> Audit() {
-    const std::lock_guard lock(mutex_);
-    return lines_;
-  }
-
-  // Calls any rpc with an empty request and returns how it ended.
-  grpc::StatusCode Ask(const std::string& method, const std::string& token) {
-    grpc::GenericStub stub(service_->server().LocalChannel());
-    grpc::ClientContext context;
-    context.set_deadline(std::chrono::system_clock::now() + kPatience);
-    if (!token.empty()) context.AddMetadata("authorization", "Bearer " + token);
-    grpc::CompletionQueue queue;
-    const auto await = [&queue] {
-      void* tag = nullptr;
-      bool ok = false;
-      return queue.Next(&tag, &ok) && ok;
-    };
-    const auto call =
-        stub.PrepareCall(&context, "/thunderhead.v1.ThunderheadService/" + method, &queue);
-    call->StartCall(nullptr);
-    await();
-    call->WriteLast(grpc::ByteBuffer(nullptr, 0), {}, nullptr);
-    await();
-    grpc::ByteBuffer reply;
-    do {
-      call->Read(&reply, nullptr);
-    } while (await());
-    grpc::Status status;
-    call->Finish(&status, nullptr);
-    await();
-    queue.Shutdown();
-    return status.error_code();
-  }
-
-  template <typename Method, typename Request, typename Response>
-  grpc::Status Call(const std::string& role, Method method, const Request& request,
-                    Response* response) {
-    grpc::ClientContext context;
-    context.set_deadline(std::chrono::system_clock::now() + kPatience);
-    context.AddMetadata("authorization", "Bearer " + TokenOf(role));
-    return (stub().*method)(&context, request, response);
-  }
-
-  v1::CreateSessionResponse Create(const std::string& role = "presenter") {
-    v1::CreateSessionRequest request;
-    *request.mutable_scene() = SmallScene();
-    v1::CreateSessionResponse response;
-    const grpc::Status status = Call(role, &Stub::CreateSession, request, &response);
-    EXPECT_TRUE(status.ok()) << status.error_message();
-    return response;
-  }
-
- private:
-  TemporaryFolder folder_;
-  std::mutex mutex_;
-  std::vector<std::string> lines_;
-  std::optional<FakeService> service_;
+    {"CreateRenderJob", {"presenter", "pipeline"}},
+    {"GetRenderJob", {"presenter", "pipeline"}},
+    {"ListRenderJobs", {"presenter", "pipeline"}},
+    {"WatchRenderJob", {"presenter", "pipeline"}},
+    {"CancelRenderJob", {"presenter", "pipeline"}},
+    {"FetchRenderResult", {"presenter", "pipeline"}},
 };
 
 std::optional<std::chrono::milliseconds> RetryOf(const grpc::Status& status) {
@@ -152,22 +67,28 @@ std::optional<std::chrono::milliseconds> RetryOf(const grpc::Status& status) {
 
 TEST(AccessTest, EveryRoleMayCallWhatTheTableSays) {
   GuardedService guarded;
-  const auto* const service = google::protobuf::DescriptorPool::generated_pool()->FindServiceByName(
-      v1::ThunderheadService::service_full_name());
-  ASSERT_NE(service, nullptr);
-  ASSERT_EQ(static_cast<std::size_t>(service->method_count()), kMayCall.size());
-  for (int i = 0; i < service->method_count(); ++i) {
-    const std::string method = service->method(i)->name();
+  std::vector<const google::protobuf::MethodDescriptor*> methods;
+  for (const char* name :
+       {v1::ThunderheadService::service_full_name(), v1::RenderJobService::service_full_name()}) {
+    const auto* const service =
+        google::protobuf::DescriptorPool::generated_pool()->FindServiceByName(name);
+    ASSERT_NE(service, nullptr);
+    for (int i = 0; i < service->method_count(); ++i) methods.push_back(service->method(i));
+  }
+  ASSERT_EQ(methods.size(), kMayCall.size());
+  for (const auto* const described : methods) {
+    const std::string method = described->name();
+    const std::string& service = described->service()->full_name();
     ASSERT_TRUE(kMayCall.contains(method)) << method << " has no row in this test";
     EXPECT_TRUE(access::HasRule(method)) << method << " has no rule in access/rules.cc";
     for (const std::string& role : kRoles) {
       const bool may = role == "operator" || kMayCall.at(method).contains(role);
-      const grpc::StatusCode code = guarded.Ask(method, TokenOf(role));
+      const grpc::StatusCode code = guarded.Ask(method, TokenOf(role), service);
       EXPECT_EQ(code != grpc::StatusCode::PERMISSION_DENIED, may) << role << " " << method;
       EXPECT_NE(code, grpc::StatusCode::UNAUTHENTICATED) << role << " " << method;
     }
-    EXPECT_EQ(guarded.Ask(method, ""), grpc::StatusCode::UNAUTHENTICATED) << method;
-    EXPECT_EQ(guarded.Ask(method, "wrong"), grpc::StatusCode::UNAUTHENTICATED) << method;
+    EXPECT_EQ(guarded.Ask(method, "", service), grpc::StatusCode::UNAUTHENTICATED) << method;
+    EXPECT_EQ(guarded.Ask(method, "wrong", service), grpc::StatusCode::UNAUTHENTICATED) << method;
   }
 }
 

@@ -12,6 +12,7 @@
 #include "gmock/gmock.h"
 #include "google/protobuf/descriptor.h"
 #include "gtest/gtest.h"
+#include "thunderhead/v1/job.pb.h"
 #include "thunderhead/v1/thunderhead.pb.h"
 
 namespace thunderhead::service {
@@ -52,7 +53,8 @@ Lines Current() {
   Lines lines;
   const google::protobuf::FileDescriptor* service_file =
       v1::GetServerInfoRequest::descriptor()->file();
-  std::set<const google::protobuf::FileDescriptor*> files = {service_file};
+  const google::protobuf::FileDescriptor* job_file = v1::GetRenderJobRequest::descriptor()->file();
+  std::set<const google::protobuf::FileDescriptor*> files = {service_file, job_file};
   for (int i = 0; i < service_file->dependency_count(); ++i) {
     files.insert(service_file->dependency(i));
   }

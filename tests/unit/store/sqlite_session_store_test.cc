@@ -182,8 +182,8 @@ TEST_F(SqliteSessionStoreTest, ANewerVersionIsRefusedAndLeftAsItIs) {
   const absl::Status refusal = Refusal();
   EXPECT_EQ(refusal.code(), absl::StatusCode::kFailedPrecondition);
   EXPECT_THAT(std::string(refusal.message()),
-              HasSubstr("newer Thunderhead (version 7; this one knows 1)"));
-  Execute(path_, "PRAGMA user_version = 1");
+              HasSubstr("newer Thunderhead (version 7; this one knows 2)"));
+  Execute(path_, "PRAGMA user_version = 2");
   EXPECT_THAT(Loaded(), ElementsAre(Record("a")));
 }
 

@@ -1,0 +1,53 @@
+#include "app/jobs_flags.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+
+namespace thunderhead::app {
+namespace {
+
+constexpr char kGroup[] = "Render jobs";
+
+}  // namespace
+
+void AddJobsFlags(CLI::App& serve, JobsFlags& flags) {
+  const auto add = [&serve](const std::string& name, auto& value, double least, double most,
+                            const std::string& help) {
+    serve.add_option(name, value, help)
+        ->check(CLI::Range(least, most))
+        ->capture_default_str()
+        ->group(kGroup);
+  };
+  serve
+      .add_option("--jobs-folder", flags.folder,
+                  "Folder of the results of render jobs, of this server alone; by default jobs in "
+                  "the folder of --state")
+      ->group(kGroup);
+  add("--jobs-quota", flags.quota_gib, 1e-6, 1e6,
+      "GiB of results that are kept; beyond it the oldest are dropped, those that were fetched "
+      "first");
+  add("--jobs-keep", flags.keep_hours, 1e-4, 1e5,
+      "Hours for which a job that has ended is kept, with its results");
+  add("--max-jobs", flags.limits.max_jobs, 1, 1e5,
+      "Jobs that are kept; those that have ended make room");
+  add("--max-jobs-each", flags.limits.max_jobs_per_owner, 1, 1e5, "The same, of one identity");
+  add("--max-job-pictures", flags.limits.max_pictures, 1, 1e6,
+      "Pictures of jobs that wait to be drawn");
+  add("--max-job-pictures-each", flags.limits.max_pictures_per_owner, 1, 1e6,
+      "The same, of one identity");
+}
+
+jobs::JobsOptions JobsOptionsOf(const JobsFlags& flags, const State& state) {
+  jobs::JobsOptions options;
+  options.store = state.jobs;
+  options.folder = flags.folder;
+  if (options.folder.empty() && !state.folder.empty()) options.folder = state.folder + "/jobs";
+  options.limits = flags.limits;
+  options.limits.max_result_bytes =
+      static_cast<std::uint64_t>(flags.quota_gib * static_cast<double>(1 << 30));
+  options.limits.keep = std::chrono::seconds(std::llround(3600.0 * flags.keep_hours));
+  return options;
+}
+
+}  // namespace thunderhead::app

@@ -1,0 +1,26 @@
+// The flags of render jobs.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "CLI/CLI.hpp"
+#include "absl/status/statusor.h"
+#include "app/state_folder.h"
+#include "jobs/jobs.h"
+
+namespace thunderhead::app {
+
+struct JobsFlags {
+  std::string folder;  // empty: in the state folder
+  double quota_gib = 10.0;
+  double keep_hours = 24.0;
+  jobs::JobLimits limits;
+};
+
+void AddJobsFlags(CLI::App& serve, JobsFlags& flags);
+
+// Jobs as the flags say, in that state; none without a folder for their results.
+jobs::JobsOptions JobsOptionsOf(const JobsFlags& flags, const State& state);
+
+}  // namespace thunderhead::app

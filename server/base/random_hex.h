@@ -1,0 +1,11 @@
+// Names that nobody can guess, nor one from another.
+#pragma once
+
+#include <string>
+
+namespace thunderhead::base {
+
+// So many words of 32 random bits of the operating system, each as 8 hexadecimal digits.
+std::string RandomHex(int words);
+
+}  // namespace thunderhead::base

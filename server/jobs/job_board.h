@@ -1,0 +1,202 @@
+// All jobs as they stand: which pictures wait, are drawn, or came to what end; who is next; what
+// must make room. A plain value that is told the time: knows no threads, files or clocks.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "jobs/fair_share.h"
+#include "jobs/job_limits.h"
+#include "jobs/job_record.h"
+#include "jobs/job_store.h"
+
+namespace thunderhead::jobs {
+
+struct NewJob {
+  std::string owner;
+  std::string label;
+  std::vector<PictureOrder> pictures;
+};
+
+// Who asks about a job.
+struct Asker {
+  std::string name;
+  bool is_operator = false;  // who may ask about everybody's
+};
+
+using PictureCounts = std::array<std::size_t, kPictureStates>;
+
+// A job without its pictures.
+struct JobView {
+  std::string id;
+  std::string result_key;
+  std::string owner;
+  std::string label;
+  Time created_at;
+  std::optional<Time> ended_at;
+  std::optional<Time> expires_at;
+  bool cancelled = false;
+  PictureCounts counts{};
+  std::uint64_t result_bytes = 0;
+};
+
+struct PictureView {
+  std::size_t place = 0;
+  std::string name;
+  PictureState state = PictureState::kWaiting;
+  Problem problem;
+  std::uint64_t bytes = 0;
+  std::string sha256;
+  double milliseconds = 0.0;
+};
+
+// A job, and those of its pictures that have changed since a version of it.
+struct JobNews {
+  JobView job;
+  std::vector<PictureView> pictures;
+  std::uint64_t version = 0;
+};
+
+// A picture of a job by its place.
+struct PicturePlace {
+  std::string job_id;
+  std::size_t place = 0;
+
+  auto operator<=>(const PicturePlace&) const = default;
+};
+
+// The file of a drawn picture.
+struct ResultFile {
+  PicturePlace picture;
+  std::string extension;
+  std::string sha256;
+  std::uint64_t bytes = 0;
+};
+
+class JobBoard {
+ public:
+  // A picture that was begun so often without an end is not begun again.
+  static constexpr int kMaxAttempts = 5;
+
+  explicit JobBoard(const JobLimits& limits) : limits_(limits) {}
+
+  // A job of a store.
+  void Restore(JobRecord record, Time now);
+
+  // Adds a job under that id, and forgets jobs that have ended where there are too many.
+  // RESOURCE_EXHAUSTED if that does not help.
+  absl::Status Add(const std::string& id, const std::string& result_key, NewJob job, Time now);
+  // The job as a store is to have it; it must be there.
+  const JobRecord& Record(const std::string& id) const { return jobs_.at(id).record; }
+  // From now on its pictures may be begun. No error if it is not there.
+  void SetSaved(const std::string& id);
+
+  // NOT_FOUND, or PERMISSION_DENIED if it is another's.
+  absl::Status Check(const std::string& id, const Asker& asker) const;
+  // What has changed after `version`; of 0 everything. Nothing for a job that is not there.
+  std::optional<JobNews> NewsOf(const std::string& id, std::uint64_t version) const;
+  // In the order in which they were created.
+  std::vector<JobView> All() const;
+  // NOT_FOUND for a picture without a file, FAILED_PRECONDITION for one that has not ended.
+  absl::StatusOr<ResultFile> ResultOf(const PicturePlace& picture) const;
+  // The id of the job with that key for its results; empty if there is none.
+  std::string IdOfKey(const std::string& result_key) const;
+
+  // Marks the picture that is next as being drawn; nothing if none may be begun now.
+  std::optional<PicturePlace> Begin(Time now);
+  const PictureOrder& OrderOf(const PicturePlace& picture) const;
+  // When the next of those that were put back may be begun again; nothing if there is none.
+  std::optional<Time> NextRetry(Time now) const;
+
+  // The ends of a picture that was begun. False if it is not being drawn any more, as its job was
+  // cancelled.
+  bool Drawn(const PicturePlace& picture, const ResultFile& file, double milliseconds,
+             double draw_ms, Time now);
+  bool Fail(const PicturePlace& picture, const Problem& problem, Time now);
+  // It will be begun again, not before that time. `counts` if it was its own fault.
+  bool PutBack(const PicturePlace& picture, bool counts, Time not_before);
+  bool IsDrawing(const PicturePlace& picture) const;
+  // False for one that Begin has just taken once too often.
+  bool MayBegin(const PicturePlace& picture) const { return Attempts(picture) <= kMaxAttempts; }
+  // True if it may be begun once more.
+  bool MayTryAgain(const PicturePlace& picture) const { return Attempts(picture) < kMaxAttempts; }
+
+  void Fetched(const PicturePlace& picture);
+  // Cancels what has not ended.
+  void Cancel(const std::string& id, Time now);
+  void Forget(const std::string& id);
+  // Forgets what was kept long enough.
+  void Expire(Time now);
+  // When the next job does; nothing if none will by itself.
+  std::optional<Time> NextExpiry() const;
+  // Drops results that are too many: those that were fetched first, then those of jobs that have
+  // ended, the oldest first. Returns them.
+  std::vector<ResultFile> MakeRoom();
+
+  // What a store does not have yet; it is taken to be saved.
+  std::vector<JobChange> TakeChanges();
+  // The changes could not be saved.
+  void GiveBack(const std::vector<JobChange>& changes);
+  // The jobs that were forgotten since the last call.
+  std::vector<std::string> TakeForgotten() { return std::exchange(forgotten_, {}); }
+
+  // Of all jobs.
+  PictureCounts Counts() const;
+  std::size_t Running() const;
+  std::uint64_t ResultBytes() const { return result_bytes_; }
+  std::set<std::string> Ids() const;
+
+ private:
+  struct Entry {
+    JobRecord record;
+    std::uint64_t order = 0;  // of creation
+    std::uint64_t version = 0;
+    std::vector<std::uint64_t> versions;  // of pictures, when they changed last
+    std::vector<Time> not_before;         // of pictures
+    PictureCounts counts{};
+    std::uint64_t result_bytes = 0;
+    std::size_t first_waiting = 0;  // none before it waits
+    bool saved = false;
+  };
+  using Jobs = std::map<std::string, Entry>;
+
+  Entry& Insert(JobRecord record);
+  void Erase(Jobs::iterator job);
+  JobView ViewOf(const Entry& entry) const;
+  // More than any for a picture that is not there.
+  int Attempts(const PicturePlace& picture) const;
+  std::size_t Unended(const Entry& entry) const;
+  absl::Status CheckPictures(const NewJob& job) const;
+  absl::Status MakeRoomForJob(const std::string& owner);
+  // Forgets the oldest that has ended, of that owner unless empty; false if there is none.
+  bool ForgetEnded(const std::string& owner);
+  void SetState(Entry& entry, std::size_t place, PictureState state);
+  void EndIfDone(Entry& entry, Time now);
+  // The first that may be begun; nothing if there is none.
+  std::optional<std::size_t> Waiting(Entry& entry, Time now) const;
+  PictureRecord* Drawing(const PicturePlace& picture, Entry** entry);
+
+  const JobLimits limits_;
+  Jobs jobs_;
+  std::map<std::string, std::string> id_by_key_;
+  std::uint64_t created_ = 0;
+  std::uint64_t result_bytes_ = 0;
+  std::set<PicturePlace> unsaved_;
+  std::set<std::string> unsaved_jobs_;
+  std::vector<std::string> forgotten_;
+  FairShare owners_;
+  std::map<std::string, FairShare> shares_;    // of an owner's jobs
+  std::map<PicturePlace, double> charged_ms_;  // of those being drawn
+  double typical_ms_ = 1.0;
+};
+
+}  // namespace thunderhead::jobs

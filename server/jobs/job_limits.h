@@ -1,0 +1,26 @@
+// How much render jobs may take. What is beyond is refused with RESOURCE_EXHAUSTED and a time after
+// which to try again; results that are too many make room instead.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+
+namespace thunderhead::jobs {
+
+struct JobLimits {
+  // Kept at a time. Jobs that have ended make room, the oldest first.
+  std::size_t max_jobs = 1000;
+  std::size_t max_jobs_per_owner = 200;
+  // That are to be drawn.
+  std::size_t max_pictures = 20'000;
+  std::size_t max_pictures_per_owner = 5'000;
+  // Of results; the newest is kept even if it alone is larger.
+  std::uint64_t max_result_bytes = std::uint64_t{10} << 30;
+  // How long a job that has ended is kept, with its results.
+  std::chrono::seconds keep = std::chrono::hours(24);
+  // Begun at a time. Two are read, drawn or encoded by the render loop, one may wait for it.
+  std::size_t max_in_hand = 3;
+};
+
+}  // namespace thunderhead::jobs

@@ -1,0 +1,426 @@
+#include "jobs/jobs.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "absl/strings/str_cat.h"
+#include "base/error_details.h"
+#include "base/log.h"
+#include "base/random_hex.h"
+#include "base/status.h"
+#include "pipeline/sha256.h"
+#include "telemetry/metrics.h"
+
+namespace thunderhead::jobs {
+namespace {
+
+constexpr int kIdWords = kIdDigits / 8;
+// Until a picture is tried again: that the server could not take now, or that failed by something
+// that may pass.
+constexpr std::chrono::seconds kBusyPause{1};
+constexpr std::chrono::seconds kFailedPause{5};
+// Until results are written again where one could not be, such as on a full disk.
+constexpr std::chrono::seconds kUnwrittenPause{5};
+// The clock may be set in between.
+constexpr std::chrono::seconds kLongestSleep{60};
+
+Time Now() { return std::chrono::system_clock::now(); }
+
+void Count(const char* outcome, std::size_t pictures = 1) {
+  telemetry::Counted().job_pictures.Of(outcome).Add(pictures);
+}
+
+// What was not the picture's own fault.
+bool IsOfServer(const absl::Status& status) {
+  const std::string reason = base::DetailsOf(status).reason;
+  return reason == "SHUTTING_DOWN" || reason == "RENDER_QUEUE_FULL";
+}
+
+bool MayPass(const absl::Status& status) {
+  return absl::IsUnavailable(status) || absl::IsAborted(status) || absl::IsCancelled(status) ||
+         base::DetailsOf(status).reason == "OUT_OF_MEMORY";
+}
+
+Problem ProblemOf(const absl::Status& status) {
+  return {status.code(), base::DetailsOf(status).reason, std::string(status.message())};
+}
+
+Problem EndedServer() {
+  return {absl::StatusCode::kInternal, "PICTURE_ENDED_SERVER",
+          absl::StrCat("it was begun ", JobBoard::kMaxAttempts,
+                       " times, and each time the server ended without having drawn it")};
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Jobs>> Jobs::Open(const JobsOptions& options) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(ResultFolder results, ResultFolder::Open(options.folder));
+  std::unique_ptr<Jobs> jobs(new Jobs(options, std::move(results)));
+  THUNDERHEAD_RETURN_IF_ERROR(jobs->Restore());
+  jobs->thread_ = std::thread([raw = jobs.get()] { raw->Run(); });
+  return jobs;
+}
+
+Jobs::Jobs(const JobsOptions& options, ResultFolder results)
+    : store_(options.store),
+      results_(std::move(results)),
+      limits_(options.limits),
+      board_(options.limits) {}
+
+Jobs::~Jobs() { Stop(); }
+
+absl::Status Jobs::Restore() {
+  if (store_ != nullptr) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<JobRecord> records, store_->Load());
+    for (JobRecord& record : records) board_.Restore(std::move(record), Now());
+  }
+  board_.Expire(Now());
+  results_.Clean(board_.Ids());
+  return absl::OkStatus();
+}
+
+void Jobs::Start(BeginPicture begin) {
+  {
+    const std::lock_guard lock(mutex_);
+    begin_ = std::move(begin);
+    started_ = true;
+  }
+  changed_.notify_all();
+}
+
+void Jobs::Post(Task task) {
+  {
+    const std::lock_guard lock(mutex_);
+    tasks_.push_back(std::move(task));
+  }
+  changed_.notify_all();
+}
+
+void Jobs::Create(NewJob job, Done done) {
+  const std::string id = base::RandomHex(kIdWords);
+  absl::Status status;
+  {
+    const std::lock_guard lock(mutex_);
+    status = draining_ ? base::ShuttingDown()
+                       : board_.Add(id, base::RandomHex(kIdWords), std::move(job), Now());
+    if (status.ok()) tasks_.push_back([this, id, done] { SaveNew(id, done); });
+  }
+  if (!status.ok()) return done(status);
+  changed_.notify_all();
+}
+
+void Jobs::SaveNew(const std::string& id, const Done& done) {
+  Lock lock(mutex_);
+  // It may have been cancelled by whoever guessed that it would be there.
+  std::optional<JobNews> news = board_.NewsOf(id, 0);
+  if (!news.has_value()) {
+    lock.unlock();
+    return done(absl::AbortedError("the render job was forgotten before it was saved"));
+  }
+  const JobRecord record = board_.Record(id);
+  lock.unlock();
+  const absl::Status saved = store_ == nullptr ? absl::OkStatus() : store_->Add(record);
+  lock.lock();
+  if (saved.ok()) {
+    board_.SetSaved(id);
+  } else {
+    board_.Forget(id);
+  }
+  lock.unlock();
+  if (!saved.ok()) return done(base::Annotate(saved, "the render job cannot be kept"));
+  done(std::move(news->job));
+}
+
+absl::StatusOr<JobNews> Jobs::Get(const std::string& id, const Asker& asker) const {
+  const std::lock_guard lock(mutex_);
+  THUNDERHEAD_RETURN_IF_ERROR(board_.Check(id, asker));
+  return *board_.NewsOf(id, 0);
+}
+
+std::vector<JobView> Jobs::List(const std::string& owner, bool everybodys,
+                                const std::string& label) const {
+  std::vector<JobView> views;
+  {
+    const std::lock_guard lock(mutex_);
+    views = board_.All();
+  }
+  std::erase_if(views, [&](const JobView& job) {
+    return (!everybodys && job.owner != owner) || (!label.empty() && job.label != label);
+  });
+  return views;
+}
+
+void Jobs::Cancel(const std::string& id, const Asker& asker, bool forget, Done done) {
+  absl::StatusOr<JobView> view = JobView();
+  {
+    const std::lock_guard lock(mutex_);
+    if (const absl::Status wrong = board_.Check(id, asker); !wrong.ok()) {
+      view = wrong;
+    } else if (stopped_) {
+      view = base::ShuttingDown();
+    } else {
+      board_.Cancel(id, Now());
+      view = board_.NewsOf(id, 0)->job;
+      if (forget) board_.Forget(id);
+      for (const auto& [picture, hand] : in_hand_) {
+        if (picture.job_id == id) CancelInHand(*hand);
+      }
+      tasks_.push_back([this, view, done] {
+        Lock saving(mutex_);
+        const absl::Status saved = Save(saving);
+        saving.unlock();
+        done(saved.ok() ? view : saved);
+      });
+    }
+  }
+  if (!view.ok()) return done(view);
+  changed_.notify_all();
+}
+
+void Jobs::CancelInHand(InHand& hand) {
+  hand.cancelled = true;
+  if (hand.picture != nullptr) hand.picture->Cancel();
+}
+
+absl::Status Jobs::Watch(const std::string& id, const Asker& asker,
+                         std::weak_ptr<JobWatcher> watcher) {
+  const std::lock_guard lock(mutex_);
+  THUNDERHEAD_RETURN_IF_ERROR(board_.Check(id, asker));
+  watchers_.emplace(id, std::move(watcher));
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::optional<JobNews>> Jobs::NewsOf(const std::string& id,
+                                                    std::uint64_t version) const {
+  const std::lock_guard lock(mutex_);
+  if (stopped_) return base::ShuttingDown();
+  return board_.NewsOf(id, version);
+}
+
+ResultPlace Jobs::PlaceOf(const ResultFile& file) const {
+  const PicturePlace& picture = file.picture;
+  return {results_.PathOf(picture.job_id, picture.place, file.extension),
+          results_.AboutPathOf(picture.job_id, picture.place), file.sha256, file.bytes};
+}
+
+absl::StatusOr<ResultPlace> Jobs::Result(const PicturePlace& picture, const Asker& asker) const {
+  const std::lock_guard lock(mutex_);
+  THUNDERHEAD_RETURN_IF_ERROR(board_.Check(picture.job_id, asker));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const ResultFile file, board_.ResultOf(picture));
+  return PlaceOf(file);
+}
+
+absl::StatusOr<ResultPlace> Jobs::ResultOfKey(const std::string& result_key,
+                                              std::size_t place) const {
+  const std::lock_guard lock(mutex_);
+  const std::string id = board_.IdOfKey(result_key);
+  if (id.empty()) return absl::NotFoundError("no render job has this key");
+  THUNDERHEAD_ASSIGN_OR_RETURN(const ResultFile file, board_.ResultOf({id, place}));
+  return PlaceOf(file);
+}
+
+void Jobs::Fetched(const PicturePlace& picture) {
+  {
+    const std::lock_guard lock(mutex_);
+    board_.Fetched(picture);
+  }
+  changed_.notify_all();
+}
+
+JobsLoad Jobs::Load() const {
+  const std::lock_guard lock(mutex_);
+  const PictureCounts counts = board_.Counts();
+  return {board_.Running(), counts[static_cast<std::size_t>(PictureState::kWaiting)],
+          counts[static_cast<std::size_t>(PictureState::kDrawing)], board_.ResultBytes()};
+}
+
+void Jobs::Drain() {
+  const std::lock_guard lock(mutex_);
+  draining_ = true;
+}
+
+void Jobs::CancelPictures() {
+  const std::lock_guard lock(mutex_);
+  draining_ = true;
+  for (const auto& [picture, hand] : in_hand_) CancelInHand(*hand);
+}
+
+void Jobs::Stop() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    draining_ = true;
+    stopping_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+Time Jobs::WakeTime() const {
+  Time wake = Now() + kLongestSleep;
+  for (const std::optional<Time>& at : {board_.NextRetry(Now()), board_.NextExpiry()}) {
+    if (at.has_value()) wake = std::min(wake, *at);
+  }
+  return paused_until_ > Now() ? std::min(wake, paused_until_) : wake;
+}
+
+void Jobs::Run() {
+  Lock lock(mutex_);
+  while (true) {
+    board_.Expire(Now());
+    BeginPictures(lock);
+    (void)Save(lock);
+    if (stopping_ && in_hand_.empty() && tasks_.empty()) break;
+    if (tasks_.empty()) changed_.wait_until(lock, WakeTime());
+    while (!tasks_.empty()) {
+      const Task task = std::move(tasks_.front());
+      tasks_.pop_front();
+      lock.unlock();
+      task();
+      lock.lock();
+    }
+  }
+  stopped_ = true;
+  std::vector<std::string> watched;
+  for (const auto& [id, watcher] : watchers_) watched.push_back(id);
+  Tell(watched, lock);
+}
+
+void Jobs::BeginPictures(Lock& lock) {
+  while (started_ && !draining_ && in_hand_.size() < limits_.max_in_hand &&
+         paused_until_ <= Now()) {
+    const std::optional<PicturePlace> picture = board_.Begin(Now());
+    if (!picture.has_value()) return;
+    BeginOne(*picture, lock);
+  }
+}
+
+void Jobs::BeginOne(const PicturePlace& picture, Lock& lock) {
+  if (!board_.MayBegin(picture)) {
+    board_.Fail(picture, EndedServer(), Now());
+    Count("failed");
+    return;
+  }
+  // Recorded before it is begun, so that one which ends the server does not do so for ever.
+  if (!Save(lock).ok()) {
+    board_.PutBack(picture, false, Now());
+    return;
+  }
+  if (!board_.IsDrawing(picture)) return;
+  const PictureOrder order = board_.OrderOf(picture);
+  const auto hand = std::make_shared<InHand>();
+  in_hand_[picture] = hand;
+  lock.unlock();
+  std::unique_ptr<PictureInHand> begun =
+      begin_(order, [this, picture] { Post([this, picture] { EndPicture(picture); }); });
+  lock.lock();
+  hand->picture = std::move(begun);
+  if (hand->cancelled) hand->picture->Cancel();
+}
+
+void Jobs::EndPicture(const PicturePlace& picture) {
+  Lock lock(mutex_);
+  const std::shared_ptr<InHand> hand = in_hand_.extract(picture).mapped();
+  // The next is drawn while this one is written.
+  BeginPictures(lock);
+  lock.unlock();
+  const absl::StatusOr<DrawnPicture> drawn = hand->picture->Take();
+  if (drawn.ok()) {
+    Keep(picture, *drawn, hand->since_begun.ElapsedMs());
+  } else {
+    Refuse(picture, drawn.status());
+  }
+  lock.lock();
+  (void)Save(lock);
+}
+
+void Jobs::Keep(const PicturePlace& picture, const DrawnPicture& drawn, double milliseconds) {
+  Lock lock(mutex_);
+  if (!board_.IsDrawing(picture)) return;
+  lock.unlock();
+  const ResultFile file{picture, drawn.extension, pipeline::Sha256(drawn.bytes),
+                        drawn.bytes.size()};
+  const absl::Status written =
+      results_.Write(picture.job_id, picture.place, drawn.extension, drawn.bytes, drawn.about);
+  lock.lock();
+  if (!written.ok()) {
+    board_.PutBack(picture, false, Now() + kUnwrittenPause);
+    paused_until_ = Now() + kUnwrittenPause;
+    LogOnce(base::Annotate(written, "a picture of a render job is put back"));
+    return;
+  }
+  const bool kept = board_.Drawn(picture, file, milliseconds, drawn.draw_ms, Now());
+  const std::vector<ResultFile> dropped = board_.MakeRoom();
+  lock.unlock();
+  if (kept) {
+    Count("drawn");
+  } else {
+    results_.Remove(picture.job_id, picture.place, drawn.extension);
+  }
+  for (const ResultFile& old : dropped) {
+    results_.Remove(old.picture.job_id, old.picture.place, old.extension);
+  }
+  Count("dropped", dropped.size());
+}
+
+void Jobs::Refuse(const PicturePlace& picture, const absl::Status& why) {
+  const Lock lock(mutex_);
+  const bool of_server = IsOfServer(why) || (absl::IsCancelled(why) && draining_);
+  if (of_server || (MayPass(why) && board_.MayTryAgain(picture))) {
+    board_.PutBack(picture, !of_server, Now() + (of_server ? kBusyPause : kFailedPause));
+    return;
+  }
+  if (board_.Fail(picture, ProblemOf(why), Now())) Count("failed");
+}
+
+absl::Status Jobs::Save(Lock& lock) {
+  const std::vector<JobChange> changes = board_.TakeChanges();
+  const std::vector<std::string> forgotten = board_.TakeForgotten();
+  if (changes.empty() && forgotten.empty()) return absl::OkStatus();
+  lock.unlock();
+  absl::Status saved;
+  if (store_ != nullptr) {
+    if (!changes.empty()) saved = store_->Save(changes);
+    if (!forgotten.empty()) saved.Update(store_->Remove(forgotten));
+  }
+  for (const std::string& id : forgotten) results_.Remove(id);
+  lock.lock();
+  if (!saved.ok()) {
+    board_.GiveBack(changes);
+    paused_until_ = Now() + kUnwrittenPause;
+    LogOnce(base::Annotate(saved, "cannot save render jobs; trying again"));
+  }
+  std::vector<std::string> ids = forgotten;
+  for (const JobChange& change : changes) ids.push_back(change.id);
+  Tell(ids, lock);
+  for (const std::string& id : forgotten) watchers_.erase(id);
+  return saved;
+}
+
+void Jobs::Tell(const std::vector<std::string>& ids, Lock& lock) {
+  std::vector<std::shared_ptr<JobWatcher>> told;
+  for (const std::string& id : ids) {
+    const auto [begin, end] = watchers_.equal_range(id);
+    for (auto watcher = begin; watcher != end;) {
+      if (auto here = watcher->second.lock(); here != nullptr) {
+        told.push_back(std::move(here));
+        ++watcher;
+      } else {
+        watcher = watchers_.erase(watcher);
+      }
+    }
+  }
+  lock.unlock();
+  for (const auto& watcher : told) watcher->OnJobChanged();
+  told.clear();
+  lock.lock();
+}
+
+void Jobs::LogOnce(const absl::Status& problem) {
+  std::string text(problem.message());
+  if (text == last_problem_) return;
+  last_problem_ = std::move(text);
+  base::LogError(problem);
+}
+
+}  // namespace thunderhead::jobs

@@ -1,0 +1,48 @@
+#include <utility>
+
+#include "base/error_details.h"
+#include "base/status.h"
+#include "service/finished.h"
+#include "service/job_messages.h"
+#include "service/limits_check.h"
+#include "service/render_job_handlers.h"
+
+namespace thunderhead::service {
+namespace {
+
+// All but the scenes, of which each fails by itself.
+absl::Status CheckShape(v1::CreateRenderJobRequest request) {
+  for (v1::RenderJobPicture& picture : *request.mutable_pictures()) picture.clear_scene();
+  THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
+  if (!request.pictures().empty()) return absl::OkStatus();
+  return base::InvalidField("pictures", "is empty; a job needs at least one picture",
+                            "NO_PICTURES");
+}
+
+}  // namespace
+
+grpc::ServerUnaryReactor* CreateRenderJob(Engine& engine, jobs::Jobs& jobs,
+                                          grpc::CallbackServerContext* context,
+                                          const CallerRef& caller,
+                                          const v1::CreateRenderJobRequest* request,
+                                          v1::CreateRenderJobResponse* response) {
+  if (const absl::Status wrong = CheckShape(*request); !wrong.ok()) {
+    caller->Report("CreateRenderJob", wrong);
+    return Finished(context, wrong);
+  }
+  jobs::NewJob job{caller->identity().name, request->label(), {}};
+  job.pictures.reserve(static_cast<std::size_t>(request->pictures_size()));
+  for (const v1::RenderJobPicture& picture : request->pictures()) {
+    job.pictures.push_back(OrderOf(engine.store, picture));
+  }
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  jobs.Create(std::move(job),
+              [reactor, caller, response](const absl::StatusOr<jobs::JobView>& created) {
+                caller->Report("CreateRenderJob", created.status());
+                if (created.ok()) ToMessage(*created, *response->mutable_job());
+                reactor->Finish(ToGrpcStatus(created.status()));
+              });
+  return reactor;
+}
+
+}  // namespace thunderhead::service

@@ -1,0 +1,114 @@
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "base/error_details.h"
+#include "base/status.h"
+#include "base/whole_file.h"
+#include "service/finished.h"
+#include "service/job_messages.h"
+#include "service/limits_check.h"
+#include "service/render_job_handlers.h"
+#include "service/status_table.h"
+
+namespace thunderhead::service {
+namespace {
+
+using Reactor = grpc::ServerWriteReactor<v1::FetchRenderResultResponse>;
+
+constexpr std::uint64_t kChunkBytes = std::uint64_t{1} << 20;
+
+// Sends a file, a chunk after another: each is read while none is written. Deletes itself when gRPC
+// calls OnDone, which comes after it has called Finish: never while a chunk is read.
+class ResultStream final : public Reactor {
+ public:
+  ResultStream(jobs::Jobs& jobs, base::Executor& reading, CallerRef caller,
+               jobs::PicturePlace picture, jobs::ResultPlace place, std::uint64_t offset)
+      : jobs_(jobs),
+        reading_(reading),
+        caller_(std::move(caller)),
+        picture_(std::move(picture)),
+        place_(std::move(place)),
+        offset_(offset) {}
+
+  void Next() {
+    reading_.Submit([this](const absl::Status& status) {
+      const absl::Status read = status.ok() ? Read() : status;
+      if (!read.ok()) return Finish(ToGrpcStatus(read));
+      StartWrite(&response_);
+    });
+  }
+
+  void OnWriteDone(bool ok) override {
+    if (!ok) return Finish(grpc::Status(grpc::StatusCode::CANCELLED, "the client disconnected"));
+    if (offset_ < place_.bytes) return Next();
+    jobs_.Fetched(picture_);
+    Finish(grpc::Status::OK);
+  }
+
+  void OnDone() override { delete this; }
+
+ private:
+  absl::Status Read() {
+    response_.Clear();
+    if (!file_.is_open()) {
+      file_.open(place_.path, std::ios::binary);
+      file_.seekg(static_cast<std::streamoff>(offset_));
+      THUNDERHEAD_ASSIGN_OR_RETURN(const std::string about, base::ReadWholeFile(place_.about_path));
+      if (!response_.ParseFromString(about)) return Gone();
+      response_.set_total_bytes(place_.bytes);
+      response_.set_sha256(place_.sha256);
+    }
+    std::string& chunk = *response_.mutable_chunk();
+    chunk.resize(std::min(kChunkBytes, place_.bytes - offset_));
+    if (!file_.read(chunk.data(), static_cast<std::streamsize>(chunk.size()))) return Gone();
+    offset_ += chunk.size();
+    return absl::OkStatus();
+  }
+
+  // It may have been dropped just now, or somebody was in the folder.
+  static absl::Status Gone() {
+    return base::WithDetails(absl::NotFoundError("the picture's file is gone; ask for it again"),
+                             {.reason = "NO_SUCH_RESULT"});
+  }
+
+  jobs::Jobs& jobs_;
+  base::Executor& reading_;
+  const CallerRef caller_;  // has its place while the stream lives
+  const jobs::PicturePlace picture_;
+  const jobs::ResultPlace place_;
+  std::uint64_t offset_;
+  std::ifstream file_;
+  v1::FetchRenderResultResponse response_;  // gRPC reads it while it is written
+};
+
+absl::StatusOr<jobs::ResultPlace> Find(const jobs::Jobs& jobs, const access::Caller& caller,
+                                       const v1::FetchRenderResultRequest& request) {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
+  THUNDERHEAD_ASSIGN_OR_RETURN(jobs::ResultPlace place,
+                               jobs.Result({request.job_id(), request.index()}, AskerOf(caller)));
+  if (request.offset() <= place.bytes) return place;
+  return base::InvalidField(
+      "offset", absl::StrCat("is ", request.offset(), "; the file has ", place.bytes, " bytes"),
+      "VALUE_OUT_OF_RANGE", {{"minimum", "0"}, {"maximum", absl::StrCat(place.bytes)}});
+}
+
+}  // namespace
+
+Reactor* FetchRenderResult(jobs::Jobs& jobs, base::Executor& reading, CallerRef caller,
+                           const v1::FetchRenderResultRequest* request) {
+  absl::StatusOr<jobs::ResultPlace> place = Find(jobs, *caller, *request);
+  caller->ReportDenial("FetchRenderResult", place.status());
+  if (!place.ok()) return new RefusedStream<Reactor>(place.status());
+  auto* stream =
+      new ResultStream(jobs, reading, std::move(caller), {request->job_id(), request->index()},
+                       *std::move(place), request->offset());
+  stream->Next();
+  return stream;
+}
+
+}  // namespace thunderhead::service

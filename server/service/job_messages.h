@@ -1,0 +1,35 @@
+// Converts render jobs between messages and values.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "access/door.h"
+#include "jobs/job_board.h"
+#include "service/engine.h"
+#include "thunderhead/v1/job.pb.h"
+
+namespace thunderhead::service {
+
+void ToMessage(const jobs::JobView& job, v1::RenderJob& message);
+void ToMessage(const jobs::PictureView& picture, v1::RenderJobPictureState& message);
+
+jobs::Asker AskerOf(const access::Caller& caller);
+
+// A picture as a job keeps it: with the storm and the valid time that its scene means now, if there
+// are such. Checks nothing else; what is wrong is found when it is drawn.
+jobs::PictureOrder OrderOf(const volume::StormStore& store, const v1::RenderJobPicture& picture);
+
+// Where a job's results are at the HTTP port: "/results/KEY".
+std::string ResultPathOf(const std::string& result_key);
+
+// A picture by that path and its place, "/results/KEY/7"; nothing for another path.
+struct ResultPath {
+  std::string key;
+  std::size_t place = 0;
+};
+std::optional<ResultPath> ParseResultPath(std::string_view path);
+
+}  // namespace thunderhead::service

@@ -1,0 +1,116 @@
+#include "service/job_pictures.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/strip.h"
+#include "base/error_details.h"
+#include "base/file_stamp.h"
+#include "base/status.h"
+#include "service/catalogue_follower.h"
+#include "service/picture_job.h"
+#include "service/scene_messages.h"
+#include "thunderhead/v1/job.pb.h"
+
+namespace thunderhead::service {
+namespace {
+
+// "png" of IMAGE_FORMAT_PNG.
+std::string ExtensionOf(v1::ImageFormat format) {
+  const std::string name = v1::ImageFormat_Name(format);
+  return absl::AsciiStrToLower(absl::StripPrefix(name, "IMAGE_FORMAT_"));
+}
+
+class JobPicture final : public jobs::PictureInHand, private PictureListener {
+ public:
+  JobPicture(Engine& engine, std::function<void()> done)
+      : engine_(engine),
+        done_(std::move(done)),
+        job_(engine, request_, picture_, *this, Awaited::kByNobody) {}
+
+  void Begin(const jobs::PictureOrder& order) {
+    if (const absl::Status placed = Place(order); !placed.ok()) return Ended(placed);
+    job_.Begin();
+  }
+
+  void Cancel() override { job_.Cancel(); }
+
+  absl::StatusOr<jobs::DrawnPicture> Take() override {
+    THUNDERHEAD_RETURN_IF_ERROR(status_);
+    if (!path_.empty() && base::StampOf(path_) != stamp_) {
+      return absl::AbortedError(absl::StrCat(path_, " was written to while it was drawn"));
+    }
+    jobs::DrawnPicture drawn;
+    drawn.bytes = std::move(*picture_.mutable_image());
+    picture_.clear_image();
+    drawn.extension = ExtensionOf(picture_.format());
+    for (const v1::StageCost& stage : picture_.stages()) drawn.draw_ms += stage.milliseconds();
+    v1::FetchRenderResultResponse about;
+    *about.mutable_picture() = std::move(picture_);
+    *about.mutable_input() = std::move(input_);
+    drawn.about = about.SerializeAsString();
+    return drawn;
+  }
+
+ private:
+  // Finds the time that the order means, which may have another index or storm id by now.
+  absl::Status Place(const jobs::PictureOrder& order) {
+    if (!request_.ParseFromString(order.request)) {
+      return absl::DataLossError("the server's record of this picture is damaged");
+    }
+    v1::Scene& scene = *request_.mutable_scene();
+    scene.set_storm_id(engine_.catalogue.IdNow(scene.storm_id()));
+    input_.set_storm_id(scene.storm_id());
+    input_.set_valid_time(order.valid_time);
+    input_.set_device(engine_.loop.Device().device);
+    // What it never had is found wrong as for any picture.
+    if (order.valid_time.empty()) return absl::OkStatus();
+    THUNDERHEAD_ASSIGN_OR_RETURN(const volume::StormInfoPtr storm,
+                                 FindStorm(engine_.store, scene.storm_id()));
+    const auto time =
+        std::ranges::find(storm->times, order.valid_time, &volume::StormTime::valid_time);
+    if (time == storm->times.end()) {
+      return base::WithDetails(
+          absl::NotFoundError(absl::StrCat("storm '", storm->id, "' has no time ", order.valid_time,
+                                           " any more; its file was deleted")),
+          {.reason = "TIME_GONE", .field = "scene.time_index"});
+    }
+    scene.set_time_index(static_cast<std::uint32_t>(time - storm->times.begin()));
+    path_ = time->file;
+    if (path_.empty()) return absl::OkStatus();
+    stamp_ = base::StampOf(path_);
+    ToMessage(path_, *input_.mutable_file());
+    return absl::OkStatus();
+  }
+
+  void Ended(const absl::Status& status) override {
+    status_ = status;
+    done_();
+  }
+
+  Engine& engine_;
+  const std::function<void()> done_;
+  v1::RenderImageRequest request_;
+  v1::RenderImageResponse picture_;
+  v1::RenderJobInput input_;
+  std::string path_;  // of the file; empty: unknown
+  std::optional<base::FileStamp> stamp_;
+  absl::Status status_;
+  PictureJob job_;
+};
+
+}  // namespace
+
+jobs::BeginPicture JobPictures(Engine& engine) {
+  return [&engine](const jobs::PictureOrder& order, std::function<void()> done) {
+    auto picture = std::make_unique<JobPicture>(engine, std::move(done));
+    picture->Begin(order);
+    return picture;
+  };
+}
+
+}  // namespace thunderhead::service

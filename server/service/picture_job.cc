@@ -1,0 +1,121 @@
+#include "service/picture_job.h"
+
+#include <chrono>
+#include <utility>
+
+#include "base/error_details.h"
+#include "base/status.h"
+#include "base/stopwatch.h"
+#include "frame/image_codec.h"
+#include "frame/png_text.h"
+#include "service/camera_messages.h"
+#include "service/limits_check.h"
+#include "service/picture_texts.h"
+#include "service/scene_messages.h"
+
+namespace thunderhead::service {
+namespace {
+
+// Takes the picture's pixels.
+absl::Status Encode(session::DisplayFrame& picture, const v1::RenderImageRequest& request,
+                    v1::RenderImageResponse& response) {
+  const bool jpeg = request.format() == v1::IMAGE_FORMAT_JPEG;
+  const int quality = static_cast<int>(response.scene().output().jpeg_quality());
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      *response.mutable_image(),
+      jpeg ? frame::EncodeJpeg(picture.width_px, picture.height_px, picture.rgb, quality)
+           : frame::EncodePng(picture.width_px, picture.height_px, picture.rgb));
+  response.set_format(jpeg ? v1::IMAGE_FORMAT_JPEG : v1::IMAGE_FORMAT_PNG);
+  response.set_width_px(static_cast<std::uint32_t>(picture.width_px));
+  response.set_height_px(static_cast<std::uint32_t>(picture.height_px));
+  picture.rgb = {};
+  return absl::OkStatus();
+}
+
+void Describe(const session::DisplayFrame& picture, double encode_ms,
+              v1::RenderImageResponse& response) {
+  for (const scene::StageTime& time : picture.stages) ToMessage(time, *response.add_stages());
+  ToMessage({scene::FrameStage::kEncode, encode_ms}, *response.add_stages());
+  ToMessage(picture.modelled, *response.mutable_modelled());
+  if (picture.accuracy.has_value()) ToMessage(*picture.accuracy, *response.mutable_accuracy());
+}
+
+// Writes into a PNG what it shows. `storm` is null if it has gone since.
+void AddTexts(const volume::StormInfo* storm, v1::RenderImageResponse& response) {
+  if (response.format() != v1::IMAGE_FORMAT_PNG || storm == nullptr) return;
+  response.set_image(frame::WithTexts(response.image(), TextsOf(response, *storm)));
+}
+
+// Errors of drawing are not about one field, so they name the whole scene.
+absl::Status OfScene(const absl::Status& status) {
+  return base::WithDetails(status, {.reason = "SCENE_NOT_DRAWN", .field = "scene"});
+}
+
+}  // namespace
+
+void PictureJob::Begin() {
+  if (const absl::Status late = counted_.Check(); !late.ok()) return End(late);
+  if (const absl::Status wrong = CompleteScene(); !wrong.ok()) return End(wrong);
+  deadline_.Set(std::chrono::system_clock::now() + engine_.limits.max_render_time,
+                [late = late_, cancelled = cancelled_, &wake = engine_.wake](bool rang) {
+                  if (!rang) return;
+                  *late = true;
+                  *cancelled = true;
+                  wake.Notify();
+                });
+  engine_.loop.RenderImage(
+      {ToScene(response_.scene()), [this] { return Read(); },
+       [this](session::DisplayFrame& picture) { return EncodeTimed(picture); }, cancelled_,
+       [this](const absl::StatusOr<session::DisplayFrame>& picture) { Drawn(picture); },
+       [this](const session::ImageProgress& progress) { listener_.Progressed(progress); },
+       awaited_ == Awaited::kByNobody});
+}
+
+void PictureJob::Cancel() {
+  *cancelled_ = true;
+  engine_.wake.Notify();
+}
+
+absl::Status PictureJob::CompleteScene() {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request_));
+  v1::Scene& scene = *response_.mutable_scene();
+  scene = request_.scene();
+  THUNDERHEAD_RETURN_IF_ERROR(PrepareScene(engine_.store, engine_.loop.Techniques(), scene));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckSize(engine_.limits, scene));
+  if (!scene.rendering().has_reference()) return absl::OkStatus();
+  return base::InvalidField("scene.rendering.reference",
+                            "is given, which only sessions can show; for a file use "
+                            "thunderhead render --renderer reference",
+                            "TECHNIQUE_FOR_SESSIONS_ONLY");
+}
+
+absl::StatusOr<session::ImageInput> PictureJob::Read() {
+  v1::Scene& scene = *response_.mutable_scene();
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      auto fields, ReadFields(engine_.store, scene.storm_id(), static_cast<int>(scene.time_index()),
+                              "scene.storm_id"));
+  FrameCondensate(scene, *fields);
+  return session::ImageInput{std::move(fields), ToScene(scene).camera};
+}
+
+absl::Status PictureJob::EncodeTimed(session::DisplayFrame& picture) {
+  const base::Stopwatch stopwatch;
+  THUNDERHEAD_RETURN_IF_ERROR(Encode(picture, request_, response_));
+  encode_ms_ = stopwatch.ElapsedMs();
+  return absl::OkStatus();
+}
+
+void PictureJob::Drawn(const absl::StatusOr<session::DisplayFrame>& picture) {
+  if (!picture.ok()) return End(OfScene(picture.status()));
+  Describe(*picture, encode_ms_, response_);
+  AddTexts(engine_.store.Find(response_.scene().storm_id()).get(), response_);
+  End(absl::OkStatus());
+}
+
+void PictureJob::End(const absl::Status& status) {
+  listener_.Ended(absl::IsCancelled(status) && *late_
+                      ? RenderedTooLong(engine_.limits.max_render_time)
+                      : status);
+}
+
+}  // namespace thunderhead::service

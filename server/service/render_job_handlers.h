@@ -1,0 +1,37 @@
+// One handler for each rpc of RenderJobService, in the file named after it.
+#pragma once
+
+#include <grpcpp/support/server_callback.h>
+
+#include "base/executor.h"
+#include "jobs/jobs.h"
+#include "service/handlers.h"
+#include "thunderhead/v1/job.pb.h"
+
+namespace thunderhead::service {
+
+grpc::ServerUnaryReactor* CreateRenderJob(Engine& engine, jobs::Jobs& jobs,
+                                          grpc::CallbackServerContext* context,
+                                          const CallerRef& caller,
+                                          const v1::CreateRenderJobRequest* request,
+                                          v1::CreateRenderJobResponse* response);
+grpc::ServerUnaryReactor* GetRenderJob(jobs::Jobs& jobs, grpc::CallbackServerContext* context,
+                                       const CallerRef& caller,
+                                       const v1::GetRenderJobRequest* request,
+                                       v1::GetRenderJobResponse* response);
+grpc::ServerUnaryReactor* ListRenderJobs(jobs::Jobs& jobs, grpc::CallbackServerContext* context,
+                                         const CallerRef& caller,
+                                         const v1::ListRenderJobsRequest* request,
+                                         v1::ListRenderJobsResponse* response);
+grpc::ServerWriteReactor<v1::WatchRenderJobResponse>* WatchRenderJob(
+    jobs::Jobs& jobs, CallerRef caller, const v1::WatchRenderJobRequest* request);
+grpc::ServerUnaryReactor* CancelRenderJob(jobs::Jobs& jobs, grpc::CallbackServerContext* context,
+                                          const CallerRef& caller,
+                                          const v1::CancelRenderJobRequest* request,
+                                          v1::CancelRenderJobResponse* response);
+// Reads files on `reading`.
+grpc::ServerWriteReactor<v1::FetchRenderResultResponse>* FetchRenderResult(
+    jobs::Jobs& jobs, base::Executor& reading, CallerRef caller,
+    const v1::FetchRenderResultRequest* request);
+
+}  // namespace thunderhead::service

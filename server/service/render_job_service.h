@@ -1,0 +1,50 @@
+// The service of render jobs as gRPC calls it: asks the door about every call, and dispatches it to
+// its handler.
+#pragma once
+
+#include "access/door.h"
+#include "base/executor.h"
+#include "jobs/jobs.h"
+#include "service/engine.h"
+#include "thunderhead/v1/job.grpc.pb.h"
+
+namespace thunderhead::service {
+
+class RenderJobService final : public v1::RenderJobService::CallbackService {
+ public:
+  // `jobs` is null where the server keeps none; all must outlive this.
+  RenderJobService(Engine& engine, access::Door& door, jobs::Jobs* jobs)
+      : engine_(engine), door_(door), jobs_(jobs) {}
+
+  grpc::ServerUnaryReactor* CreateRenderJob(grpc::CallbackServerContext* context,
+                                            const v1::CreateRenderJobRequest* request,
+                                            v1::CreateRenderJobResponse* response) override;
+  grpc::ServerUnaryReactor* GetRenderJob(grpc::CallbackServerContext* context,
+                                         const v1::GetRenderJobRequest* request,
+                                         v1::GetRenderJobResponse* response) override;
+  grpc::ServerUnaryReactor* ListRenderJobs(grpc::CallbackServerContext* context,
+                                           const v1::ListRenderJobsRequest* request,
+                                           v1::ListRenderJobsResponse* response) override;
+  grpc::ServerWriteReactor<v1::WatchRenderJobResponse>* WatchRenderJob(
+      grpc::CallbackServerContext* context, const v1::WatchRenderJobRequest* request) override;
+  grpc::ServerUnaryReactor* CancelRenderJob(grpc::CallbackServerContext* context,
+                                            const v1::CancelRenderJobRequest* request,
+                                            v1::CancelRenderJobResponse* response) override;
+  grpc::ServerWriteReactor<v1::FetchRenderResultResponse>* FetchRenderResult(
+      grpc::CallbackServerContext* context, const v1::FetchRenderResultRequest* request) override;
+
+  // Ends the reading of results; further ones are refused.
+  void Stop() { reading_.Stop(); }
+
+ private:
+  // Two, so that a large file on a slow disk holds up one other only.
+  static constexpr int kReadingThreads = 2;
+  static constexpr std::size_t kMaxWaitingReads = 1024;
+
+  Engine& engine_;
+  access::Door& door_;
+  jobs::Jobs* const jobs_;
+  base::Executor reading_{kReadingThreads, kMaxWaitingReads};
+};
+
+}  // namespace thunderhead::service

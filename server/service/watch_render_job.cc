@@ -1,0 +1,123 @@
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "base/error_details.h"
+#include "base/status.h"
+#include "service/finished.h"
+#include "service/job_messages.h"
+#include "service/limits_check.h"
+#include "service/render_job_handlers.h"
+#include "service/status_table.h"
+
+namespace thunderhead::service {
+namespace {
+
+using Reactor = grpc::ServerWriteReactor<v1::WatchRenderJobResponse>;
+
+absl::Status Forgotten(const std::string& id) {
+  return base::WithDetails(
+      absl::NotFoundError(absl::StrCat("the render job '", id, "' was forgotten")),
+      {.reason = "JOB_NOT_FOUND", .metadata = {{"job_id", id}}});
+}
+
+// One client's stream. There is at most one pending write; what changes meanwhile comes with the
+// next. Lives until both gRPC and the jobs have released it.
+class JobStream final : public Reactor,
+                        public jobs::JobWatcher,
+                        public std::enable_shared_from_this<JobStream> {
+ public:
+  JobStream(jobs::Jobs& jobs, CallerRef caller, std::string id)
+      : jobs_(jobs), caller_(std::move(caller)), id_(std::move(id)) {}
+
+  static Reactor* Start(jobs::Jobs& jobs, CallerRef caller, const std::string& id) {
+    auto stream = std::make_shared<JobStream>(jobs, std::move(caller), id);
+    const absl::Status known = jobs.Watch(id, AskerOf(*stream->caller_), stream);
+    stream->caller_->ReportDenial("WatchRenderJob", known);
+    if (!known.ok()) return new RefusedStream<Reactor>(known);
+    stream->held_by_grpc_ = stream;
+    stream->OnJobChanged();
+    return stream.get();
+  }
+
+  void OnJobChanged() override {
+    std::optional<grpc::Status> end;
+    {
+      const std::lock_guard lock(mutex_);
+      if (writing_ || finished_) return;
+      end = Next();
+      writing_ = !end.has_value() && has_news_;
+      finished_ = end.has_value();
+      if (!writing_ && !finished_) return;
+    }
+    if (end.has_value()) return Finish(*end);
+    StartWrite(&response_);
+  }
+
+  void OnWriteDone(bool ok) override {
+    {
+      const std::lock_guard lock(mutex_);
+      writing_ = false;
+      disconnected_ = disconnected_ || !ok;
+    }
+    OnJobChanged();
+  }
+
+  void OnCancel() override {
+    {
+      const std::lock_guard lock(mutex_);
+      disconnected_ = true;
+    }
+    OnJobChanged();
+  }
+
+  void OnDone() override { held_by_grpc_.reset(); }
+
+ private:
+  // The status to end with, if the stream ends now; else sets the response, if there is news. Needs
+  // mutex_.
+  std::optional<grpc::Status> Next() {
+    if (disconnected_) return grpc::Status(grpc::StatusCode::CANCELLED, "the client disconnected");
+    const absl::StatusOr<std::optional<jobs::JobNews>> news = jobs_.NewsOf(id_, sent_version_);
+    if (!news.ok()) return ToGrpcStatus(news.status());
+    if (!news->has_value()) return ToGrpcStatus(Forgotten(id_));
+    has_news_ = (*news)->version != sent_version_;
+    if (!has_news_) return has_ended_ ? std::optional(grpc::Status::OK) : std::nullopt;
+    sent_version_ = (*news)->version;
+    has_ended_ = (*news)->job.ended_at.has_value();
+    response_.Clear();
+    ToMessage((*news)->job, *response_.mutable_job());
+    for (const jobs::PictureView& picture : (*news)->pictures) {
+      ToMessage(picture, *response_.add_pictures());
+    }
+    return std::nullopt;
+  }
+
+  jobs::Jobs& jobs_;
+  const CallerRef caller_;  // has its place while the stream lives
+  const std::string id_;
+  std::shared_ptr<JobStream> held_by_grpc_;
+  v1::WatchRenderJobResponse response_;  // gRPC reads it while `writing_`
+  std::mutex mutex_;
+  std::uint64_t sent_version_ = 0;
+  bool has_news_ = false;
+  bool has_ended_ = false;
+  bool writing_ = false;
+  bool disconnected_ = false;
+  bool finished_ = false;
+};
+
+}  // namespace
+
+Reactor* WatchRenderJob(jobs::Jobs& jobs, CallerRef caller,
+                        const v1::WatchRenderJobRequest* request) {
+  if (const absl::Status wrong = CheckLimits(*request); !wrong.ok()) {
+    return new RefusedStream<Reactor>(wrong);
+  }
+  return JobStream::Start(jobs, std::move(caller), request->job_id());
+}
+
+}  // namespace thunderhead::service

@@ -1,0 +1,226 @@
+#include "store/sqlite_job_store.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "base/log.h"
+#include "base/status.h"
+#include "store/sqlite.h"
+#include "store/times.h"
+
+namespace thunderhead::store {
+namespace {
+
+using jobs::JobRecord;
+using jobs::PictureRecord;
+using jobs::PictureState;
+
+constexpr char kAddJob[] =
+    "INSERT INTO jobs (id, result_key, owner, label, created_ms, ended_ms, cancelled) "
+    "VALUES (?, ?, ?, ?, ?, ?, ?)";
+constexpr char kAddPicture[] =
+    "INSERT INTO job_pictures (state, attempts, code, reason, message, bytes, sha256, extension, "
+    "milliseconds, drawn_ms, fetched, job_id, place, name, request, valid_time) "
+    "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
+constexpr char kSaveJob[] = "UPDATE jobs SET ended_ms = ?, cancelled = ? WHERE id = ?";
+constexpr char kSavePicture[] =
+    "UPDATE job_pictures SET state = ?, attempts = ?, code = ?, reason = ?, message = ?, "
+    "bytes = ?, sha256 = ?, extension = ?, milliseconds = ?, drawn_ms = ?, fetched = ? "
+    "WHERE job_id = ? AND place = ?";
+constexpr char kLoadJobs[] =
+    "SELECT id, result_key, owner, label, created_ms, ended_ms, cancelled FROM jobs "
+    "ORDER BY created_ms, id";
+constexpr char kLoadPictures[] =
+    "SELECT state, attempts, code, reason, message, bytes, sha256, extension, milliseconds, "
+    "drawn_ms, fetched, job_id, place, name, request, valid_time FROM job_pictures "
+    "ORDER BY job_id, place";
+
+// The parameters and columns of a picture before those that say which it is.
+constexpr int kStateColumns = 11;
+
+// As the tables have them, whatever becomes of the enumeration.
+constexpr std::array kStates = {
+    std::pair{std::int64_t{0}, PictureState::kWaiting},
+    std::pair{std::int64_t{0}, PictureState::kDrawing},
+    std::pair{std::int64_t{1}, PictureState::kDrawn},
+    std::pair{std::int64_t{2}, PictureState::kFailed},
+    std::pair{std::int64_t{3}, PictureState::kCancelled},
+    std::pair{std::int64_t{4}, PictureState::kDropped},
+};
+
+std::int64_t NumberOf(PictureState state) {
+  for (const auto& [number, known] : kStates) {
+    if (known == state) return number;
+  }
+  return 0;
+}
+
+std::optional<PictureState> StateOf(std::int64_t number) {
+  for (const auto& [known, state] : kStates) {
+    if (known == number) return state;
+  }
+  return std::nullopt;
+}
+
+void BindState(const PictureRecord& picture, Statement& statement) {
+  statement.Bind(1, NumberOf(picture.state));
+  statement.Bind(2, std::int64_t{picture.attempts});
+  statement.Bind(3, static_cast<std::int64_t>(picture.problem.code));
+  statement.Bind(4, picture.problem.reason);
+  statement.Bind(5, picture.problem.message);
+  statement.Bind(6, static_cast<std::int64_t>(picture.bytes));
+  statement.Bind(7, picture.sha256);
+  statement.Bind(8, picture.extension);
+  statement.Bind(9, picture.milliseconds);
+  statement.Bind(10, MillisecondsOf(picture.drawn_at));
+  statement.Bind(11, std::int64_t{picture.fetched});
+}
+
+void BindEnd(const std::optional<jobs::Time>& ended_at, int parameter, Statement& statement) {
+  if (ended_at.has_value()) {
+    statement.Bind(parameter, MillisecondsOf(*ended_at));
+  } else {
+    statement.BindNull(parameter);
+  }
+}
+
+absl::StatusOr<PictureRecord> PictureOf(const Statement& row) {
+  const std::optional<PictureState> state = StateOf(row.Number(0));
+  if (!state.has_value()) {
+    return absl::DataLossError(absl::StrCat("a picture has the unknown state ", row.Number(0)));
+  }
+  PictureRecord picture;
+  picture.state = *state;
+  picture.attempts = static_cast<int>(row.Number(1));
+  picture.problem = {static_cast<absl::StatusCode>(row.Number(2)), row.Bytes(3), row.Bytes(4)};
+  picture.bytes = static_cast<std::uint64_t>(row.Number(5));
+  picture.sha256 = row.Bytes(6);
+  picture.extension = row.Bytes(7);
+  picture.milliseconds = row.Real(8);
+  picture.drawn_at = TimeOf(row.Number(9));
+  picture.fetched = row.Number(10) != 0;
+  picture.order = {row.Bytes(13), row.Bytes(14), row.Bytes(15)};
+  return picture;
+}
+
+JobRecord JobOf(const Statement& row) {
+  JobRecord job;
+  job.id = row.Bytes(0);
+  job.result_key = row.Bytes(1);
+  job.owner = row.Bytes(2);
+  job.label = row.Bytes(3);
+  job.created_at = TimeOf(row.Number(4));
+  if (!row.IsNull(5)) job.ended_at = TimeOf(row.Number(5));
+  job.cancelled = row.Number(6) != 0;
+  return job;
+}
+
+class OpenStore final : public SqliteJobStore {
+ public:
+  OpenStore(std::shared_ptr<StateFile> file, Database database)
+      : file_(std::move(file)), database_(std::move(database)) {}
+
+  absl::Status Add(const JobRecord& job) override {
+    THUNDERHEAD_ASSIGN_OR_RETURN(Transaction transaction, Transaction::Begin(database_));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Statement add, database_.Prepare(kAddJob));
+    add.Bind(1, job.id);
+    add.Bind(2, job.result_key);
+    add.Bind(3, job.owner);
+    add.Bind(4, job.label);
+    add.Bind(5, MillisecondsOf(job.created_at));
+    BindEnd(job.ended_at, 6, add);
+    add.Bind(7, std::int64_t{job.cancelled});
+    THUNDERHEAD_RETURN_IF_ERROR(add.Run());
+    THUNDERHEAD_ASSIGN_OR_RETURN(Statement add_picture, database_.Prepare(kAddPicture));
+    for (std::size_t i = 0; i < job.pictures.size(); ++i) {
+      const PictureRecord& picture = job.pictures[i];
+      BindState(picture, add_picture);
+      add_picture.Bind(kStateColumns + 1, job.id);
+      add_picture.Bind(kStateColumns + 2, static_cast<std::int64_t>(i));
+      add_picture.Bind(kStateColumns + 3, picture.order.name);
+      add_picture.BindBlob(kStateColumns + 4, picture.order.request);
+      add_picture.Bind(kStateColumns + 5, picture.order.valid_time);
+      THUNDERHEAD_RETURN_IF_ERROR(add_picture.Run());
+    }
+    return transaction.Commit();
+  }
+
+  absl::Status Save(const std::vector<jobs::JobChange>& changes) override {
+    THUNDERHEAD_ASSIGN_OR_RETURN(Transaction transaction, Transaction::Begin(database_));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Statement save, database_.Prepare(kSaveJob));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Statement save_picture, database_.Prepare(kSavePicture));
+    for (const jobs::JobChange& change : changes) {
+      BindEnd(change.ended_at, 1, save);
+      save.Bind(2, std::int64_t{change.cancelled});
+      save.Bind(3, change.id);
+      THUNDERHEAD_RETURN_IF_ERROR(save.Run());
+      for (const jobs::JobChange::Picture& picture : change.pictures) {
+        BindState(picture.record, save_picture);
+        save_picture.Bind(kStateColumns + 1, change.id);
+        save_picture.Bind(kStateColumns + 2, static_cast<std::int64_t>(picture.place));
+        THUNDERHEAD_RETURN_IF_ERROR(save_picture.Run());
+      }
+    }
+    return transaction.Commit();
+  }
+
+  absl::Status Remove(const std::vector<std::string>& ids) override {
+    THUNDERHEAD_ASSIGN_OR_RETURN(Transaction transaction, Transaction::Begin(database_));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Statement remove,
+                                 database_.Prepare("DELETE FROM jobs WHERE id = ?"));
+    for (const std::string& id : ids) {
+      remove.Bind(1, id);
+      THUNDERHEAD_RETURN_IF_ERROR(remove.Run());
+    }
+    return transaction.Commit();
+  }
+
+  absl::StatusOr<std::vector<JobRecord>> Load() override {
+    std::vector<JobRecord> records;
+    std::map<std::string, std::size_t> index_by_id;
+    THUNDERHEAD_ASSIGN_OR_RETURN(Statement jobs, database_.Prepare(kLoadJobs));
+    while (true) {
+      THUNDERHEAD_ASSIGN_OR_RETURN(const bool found, jobs.Next());
+      if (!found) break;
+      records.push_back(JobOf(jobs));
+      index_by_id[records.back().id] = records.size() - 1;
+    }
+    THUNDERHEAD_ASSIGN_OR_RETURN(Statement pictures, database_.Prepare(kLoadPictures));
+    while (true) {
+      THUNDERHEAD_ASSIGN_OR_RETURN(const bool found, pictures.Next());
+      if (!found) return records;
+      JobRecord& job = records[index_by_id.at(pictures.Bytes(kStateColumns))];
+      absl::StatusOr<PictureRecord> picture = PictureOf(pictures);
+      if (!picture.ok()) {
+        // It keeps its place, as clients know the others by theirs.
+        base::LogError(base::Annotate(picture.status(), absl::StrCat("render job ", job.id)));
+        picture.emplace();
+        picture->state = PictureState::kFailed;
+        picture->problem = {absl::StatusCode::kDataLoss, "DATA_LOSS",
+                            "the server's record of this picture is damaged"};
+      }
+      job.pictures.push_back(*std::move(picture));
+    }
+  }
+
+ private:
+  const std::shared_ptr<StateFile> file_;
+  Database database_;
+};
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<SqliteJobStore>> SqliteJobStore::In(
+    std::shared_ptr<StateFile> file) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(Database database, file->Connect(Durability::kAtOnce));
+  return std::make_unique<OpenStore>(std::move(file), std::move(database));
+}
+
+}  // namespace thunderhead::store

@@ -1,0 +1,513 @@
+// Render jobs on a fake machine: every picture once, each failure by itself, for its owner alone,
+// and again after a restart.
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <thread>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "gmock/gmock.h"
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
+#include "gtest/gtest.h"
+#include "pipeline/sha256.h"
+#include "store/sqlite_job_store.h"
+#include "telemetry/metrics.h"
+#include "tests/service/fake_service.h"
+#include "tests/service/guarded_service.h"
+#include "tests/support/temporary_folder.h"
+#include "thunderhead/v1/job.grpc.pb.h"
+
+namespace thunderhead::testing {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using State = v1::RenderJobPictureState;
+using JobStub = v1::RenderJobService::Stub;
+
+double MsSince(steady_clock::time_point begun) {
+  return std::chrono::duration<double, std::milli>(steady_clock::now() - begun).count();
+}
+
+bool Eventually(const std::function<bool()>& holds) {
+  const auto until = steady_clock::now() + kPatience;
+  while (!holds() && steady_clock::now() < until) std::this_thread::sleep_for(milliseconds(2));
+  return holds();
+}
+
+v1::RenderJobPicture Picture(std::uint32_t time_index, const std::string& name = "") {
+  v1::RenderJobPicture picture;
+  *picture.mutable_scene() = SmallScene();
+  picture.mutable_scene()->set_time_index(time_index);
+  picture.set_name(name);
+  return picture;
+}
+
+// One that takes 3 s if a million samples take 200 ms.
+v1::RenderJobPicture LongPicture() {
+  v1::RenderJobPicture picture = Picture(0);
+  picture.mutable_scene()->mutable_output()->set_width_px(640);
+  picture.mutable_scene()->mutable_output()->set_height_px(360);
+  picture.mutable_scene()->mutable_rendering()->mutable_light_volume()->set_slices(64);
+  return picture;
+}
+
+std::string ReasonOf(const grpc::Status& status, bool* retries = nullptr) {
+  google::rpc::Status details;
+  std::string reason;
+  details.ParseFromString(status.error_details());
+  for (const auto& detail : details.details()) {
+    google::rpc::ErrorInfo info;
+    if (detail.UnpackTo(&info)) reason = info.reason();
+    google::rpc::RetryInfo retry;
+    if (retries != nullptr && detail.UnpackTo(&retry)) *retries = true;
+  }
+  return reason;
+}
+
+struct Fetched {
+  grpc::Status status;
+  std::string bytes;
+  v1::FetchRenderResultResponse first;
+};
+
+// Calls as one identity; an empty role shows no token.
+class Jobs {
+ public:
+  explicit Jobs(service::Server& server, std::string role = "")
+      : stub_(v1::RenderJobService::NewStub(server.LocalChannel())), role_(std::move(role)) {}
+
+  template <typename Method, typename Request, typename Response>
+  grpc::Status Call(Method method, const Request& request, Response* response) {
+    grpc::ClientContext context;
+    Prepare(context);
+    return (stub_.get()->*method)(&context, request, response);
+  }
+
+  grpc::Status Create(const std::vector<v1::RenderJobPicture>& pictures, v1::RenderJob* job,
+                      const std::string& label = "") {
+    v1::CreateRenderJobRequest request;
+    request.set_label(label);
+    for (const v1::RenderJobPicture& picture : pictures) *request.add_pictures() = picture;
+    v1::CreateRenderJobResponse response;
+    const grpc::Status status = Call(&JobStub::CreateRenderJob, request, &response);
+    *job = response.job();
+    return status;
+  }
+
+  v1::RenderJob Create(const std::vector<v1::RenderJobPicture>& pictures) {
+    v1::RenderJob job;
+    const grpc::Status status = Create(pictures, &job);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    return job;
+  }
+
+  grpc::Status Get(const std::string& id, v1::GetRenderJobResponse* response) {
+    v1::GetRenderJobRequest request;
+    request.set_job_id(id);
+    return Call(&JobStub::GetRenderJob, request, response);
+  }
+
+  v1::GetRenderJobResponse Get(const std::string& id) {
+    v1::GetRenderJobResponse response;
+    const grpc::Status status = Get(id, &response);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    return response;
+  }
+
+  grpc::Status Cancel(const std::string& id, bool forget = false) {
+    v1::CancelRenderJobRequest request;
+    request.set_job_id(id);
+    request.set_forget(forget);
+    v1::CancelRenderJobResponse response;
+    return Call(&JobStub::CancelRenderJob, request, &response);
+  }
+
+  // Watches until the stream ends; returns the newest state of every picture.
+  grpc::Status Watch(const std::string& id, std::map<std::uint32_t, State>* pictures,
+                     int* messages = nullptr) {
+    grpc::ClientContext context;
+    Prepare(context);
+    v1::WatchRenderJobRequest request;
+    request.set_job_id(id);
+    const auto reader = stub_->WatchRenderJob(&context, request);
+    v1::WatchRenderJobResponse news;
+    while (reader->Read(&news)) {
+      if (messages != nullptr) ++*messages;
+      for (const State& picture : news.pictures()) (*pictures)[picture.index()] = picture;
+    }
+    return reader->Finish();
+  }
+
+  Fetched Fetch(const std::string& id, std::uint32_t index, std::uint64_t offset = 0) {
+    grpc::ClientContext context;
+    Prepare(context);
+    v1::FetchRenderResultRequest request;
+    request.set_job_id(id);
+    request.set_index(index);
+    request.set_offset(offset);
+    const auto reader = stub_->FetchRenderResult(&context, request);
+    Fetched fetched;
+    v1::FetchRenderResultResponse part;
+    while (reader->Read(&part)) {
+      if (fetched.bytes.empty()) fetched.first = part;
+      fetched.bytes += part.chunk();
+    }
+    fetched.status = reader->Finish();
+    return fetched;
+  }
+
+ private:
+  void Prepare(grpc::ClientContext& context) {
+    context.set_deadline(std::chrono::system_clock::now() + 3 * kPatience);
+    if (!role_.empty()) context.AddMetadata("authorization", "Bearer " + TokenOf(role_));
+  }
+
+  const std::unique_ptr<JobStub> stub_;
+  const std::string role_;
+};
+
+class RenderJobTest : public ::testing::Test {
+ protected:
+  service::ServerOptions Options() const {
+    service::ServerOptions options;
+    auto file = store::StateFile::Open(folder_.File("state.db"));
+    EXPECT_TRUE(file.ok()) << file.status();
+    options.jobs.store = *store::SqliteJobStore::In(*file);
+    options.jobs.folder = folder_.File("jobs");
+    return options;
+  }
+
+  std::size_t Files() const {
+    std::size_t files = 0;
+    for (const auto& file : std::filesystem::recursive_directory_iterator(folder_.File("jobs"))) {
+      files += file.is_regular_file() && file.path().extension() == ".png" ? 1 : 0;
+    }
+    return files;
+  }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(RenderJobTest, DrawsEveryPictureOnceAndKeepsItUntilItIsFetched) {
+  FakeService service(Options());
+  Jobs jobs(service.server());
+  const v1::RenderJob job = jobs.Create({Picture(0, "a"), Picture(1, "b"), Picture(2, "c")});
+  EXPECT_EQ(job.state(), v1::RenderJob::STATE_RUNNING);
+  EXPECT_EQ(job.counts().waiting(), 3U);
+  std::map<std::uint32_t, State> pictures;
+  ASSERT_TRUE(jobs.Watch(job.id(), &pictures).ok());
+  ASSERT_EQ(pictures.size(), 3U);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    ASSERT_EQ(pictures[i].state(), State::STATE_DRAWN) << pictures[i].ShortDebugString();
+    const Fetched fetched = jobs.Fetch(job.id(), i);
+    ASSERT_TRUE(fetched.status.ok()) << fetched.status.error_message();
+    EXPECT_EQ(pipeline::Sha256(fetched.bytes), pictures[i].sha256());
+    EXPECT_EQ(fetched.bytes.size(), pictures[i].bytes());
+    EXPECT_EQ(fetched.first.picture().scene().time_index(), i);
+    EXPECT_EQ(fetched.first.input().storm_id(), "anvil");
+    EXPECT_EQ(fetched.first.input().valid_time(),
+              absl::StrCat("0001-01-01T00:", 10 + 10 * i, ":00Z"));
+    EXPECT_EQ(jobs.Fetch(job.id(), i, 10).bytes, fetched.bytes.substr(10));
+    // By HTTP, whoever has the path.
+    const auto file = service.server().FindResult(absl::StrCat(job.result_path(), "/", i));
+    ASSERT_TRUE(file.has_value());
+    std::stringstream contents;
+    contents << std::ifstream(file->path, std::ios::binary).rdbuf();
+    EXPECT_EQ(contents.str(), fetched.bytes);
+  }
+  EXPECT_EQ(pictures[0].name(), "a");
+  EXPECT_EQ(service.machine->Log().size(), 3U);
+  EXPECT_FALSE(service.server().FindResult(absl::StrCat("/results/", job.id(), "/0")).has_value())
+      << "the id is no key";
+  EXPECT_EQ(jobs.Get(job.id()).job().state(), v1::RenderJob::STATE_DONE);
+  EXPECT_TRUE(jobs.Cancel(job.id(), true).ok());
+  v1::GetRenderJobResponse gone;
+  EXPECT_EQ(jobs.Get(job.id(), &gone).error_code(), grpc::StatusCode::NOT_FOUND);
+  EXPECT_EQ(Files(), 0U);
+}
+
+TEST_F(RenderJobTest, APictureFailsByItself) {
+  FakeService service(Options());
+  Jobs jobs(service.server());
+  v1::RenderJobPicture wrong = Picture(0);
+  wrong.mutable_scene()->mutable_sun()->set_azimuth_deg(1e6F);
+  v1::RenderJobPicture unknown = Picture(0);
+  unknown.mutable_scene()->set_storm_id("nowhere");
+  service.store->FailAt(3, absl::DataLossError("anvil.nc: variable QRAIN is cut short"));
+  const v1::RenderJob job = jobs.Create({wrong, Picture(99), unknown, Picture(3), Picture(1)});
+  std::map<std::uint32_t, State> pictures;
+  ASSERT_TRUE(jobs.Watch(job.id(), &pictures).ok());
+  const auto expect = [&](std::uint32_t index, int code, const std::string& words) {
+    EXPECT_EQ(pictures[index].state(), State::STATE_FAILED);
+    EXPECT_EQ(pictures[index].problem().code(), code);
+    EXPECT_THAT(pictures[index].problem().message(), HasSubstr(words));
+    EXPECT_FALSE(pictures[index].problem().reason().empty());
+  };
+  expect(0, grpc::StatusCode::INVALID_ARGUMENT, "azimuth_deg");
+  expect(1, grpc::StatusCode::INVALID_ARGUMENT, "scene.time_index is 99");
+  expect(2, grpc::StatusCode::NOT_FOUND, "nowhere");
+  expect(3, grpc::StatusCode::DATA_LOSS, "QRAIN is cut short");
+  EXPECT_EQ(pictures[4].state(), State::STATE_DRAWN);
+  EXPECT_EQ(jobs.Get(job.id()).job().state(), v1::RenderJob::STATE_DONE);
+  EXPECT_EQ(jobs.Fetch(job.id(), 0).status.error_code(), grpc::StatusCode::NOT_FOUND);
+  EXPECT_EQ(jobs.Fetch(job.id(), 9).status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+}
+
+TEST_F(RenderJobTest, GoesOnAfterARestartAndDrawsNothingTwice) {
+  std::string id;
+  std::size_t drawn = 0;
+  {
+    FakeService service(Options());
+    Jobs jobs(service.server());
+    service.machine->drawing.Close();
+    std::vector<v1::RenderJobPicture> pictures;
+    for (int i = 0; i < 12; ++i) pictures.push_back(Picture(static_cast<std::uint32_t>(i % 4)));
+    id = jobs.Create(pictures).id();
+    for (std::size_t i = 1; i <= 3; ++i) {
+      service.machine->drawing.LetOnePass();
+      ASSERT_TRUE(Eventually([&] { return jobs.Get(id).job().counts().drawn() >= i; }));
+    }
+    drawn = jobs.Get(id).job().counts().drawn();
+    service.server().BeginDrain();
+    v1::RenderJob refused;
+    EXPECT_EQ(jobs.Create({Picture(0)}, &refused).error_code(), grpc::StatusCode::UNAVAILABLE);
+  }
+  ASSERT_LT(drawn, 12U);
+  FakeService service(Options());
+  Jobs jobs(service.server());
+  std::map<std::uint32_t, State> pictures;
+  ASSERT_TRUE(jobs.Watch(id, &pictures).ok());
+  EXPECT_EQ(jobs.Get(id).job().counts().drawn(), 12U);
+  // Those in hand when the first server ended were drawn there or here.
+  EXPECT_LE(service.machine->Log().size(), 12U - drawn);
+  EXPECT_EQ(Files(), 12U);
+  for (std::uint32_t i = 0; i < 12; ++i) EXPECT_TRUE(jobs.Fetch(id, i).status.ok());
+}
+
+TEST_F(RenderJobTest, ATimeIsFoundAgainWhereItStandsNow) {
+  FakeService service(Options());
+  Jobs jobs(service.server());
+  service.machine->drawing.Close();
+  const v1::RenderJob job =
+      jobs.Create({Picture(0), Picture(0), Picture(0), Picture(0), Picture(2)});
+  ASSERT_TRUE(service.machine->drawing.AwaitWaiting(1));
+  service.store->Become("anvil", [](volume::StormInfo& storm) {
+    storm.times.insert(storm.times.begin(), {"0001-01-01T00:00:00Z", -600.0});
+  });
+  service.machine->drawing.Open();
+  std::map<std::uint32_t, State> pictures;
+  ASSERT_TRUE(jobs.Watch(job.id(), &pictures).ok());
+  EXPECT_EQ(jobs.Fetch(job.id(), 4).first.picture().scene().time_index(), 3U);
+  EXPECT_EQ(jobs.Fetch(job.id(), 4).first.input().valid_time(), "0001-01-01T00:30:00Z");
+}
+
+TEST_F(RenderJobTest, CancellingFreesTheDeviceWithin200Ms) {
+  FakeService service(Options());
+  Jobs jobs(service.server());
+  service.machine->ms_per_mega_sample = 200.0;
+  const v1::RenderJob job = jobs.Create({LongPicture(), LongPicture(), Picture(1)});
+  ASSERT_TRUE(Eventually([&] { return service.machine->pieces > 3; }));
+  const auto cancelled = steady_clock::now();
+  ASSERT_TRUE(jobs.Cancel(job.id()).ok());
+  EXPECT_LT(MsSince(cancelled), 200.0);
+  std::this_thread::sleep_for(milliseconds(50));
+  const int pieces = service.machine->pieces;
+  std::this_thread::sleep_for(milliseconds(200));
+  EXPECT_EQ(service.machine->pieces, pieces);
+  EXPECT_TRUE(Eventually([&] { return service.server().Load().pictures == 0; }));
+  const v1::RenderJob ended = jobs.Get(job.id()).job();
+  EXPECT_EQ(ended.state(), v1::RenderJob::STATE_CANCELLED);
+  EXPECT_EQ(ended.counts().drawing() + ended.counts().waiting(), 0U);
+}
+
+TEST_F(RenderJobTest, IsItsOwnersAlone) {
+  GuardedService guarded(Options());
+  Jobs pipeline(guarded.service().server(), "pipeline");
+  Jobs presenter(guarded.service().server(), "presenter");
+  Jobs viewer(guarded.service().server(), "viewer");
+  Jobs op(guarded.service().server(), "operator");
+  const v1::RenderJob job = pipeline.Create({Picture(0)});
+  v1::RenderJob none;
+  EXPECT_EQ(viewer.Create({Picture(0)}, &none).error_code(), grpc::StatusCode::PERMISSION_DENIED);
+  std::map<std::uint32_t, State> pictures;
+  ASSERT_TRUE(pipeline.Watch(job.id(), &pictures).ok());
+  v1::GetRenderJobResponse got;
+  EXPECT_EQ(presenter.Get(job.id(), &got).error_code(), grpc::StatusCode::PERMISSION_DENIED);
+  EXPECT_EQ(presenter.Watch(job.id(), &pictures).error_code(), grpc::StatusCode::PERMISSION_DENIED);
+  EXPECT_EQ(presenter.Fetch(job.id(), 0).status.error_code(), grpc::StatusCode::PERMISSION_DENIED);
+  EXPECT_EQ(presenter.Cancel(job.id()).error_code(), grpc::StatusCode::PERMISSION_DENIED);
+  EXPECT_TRUE(op.Get(job.id(), &got).ok());
+  v1::ListRenderJobsRequest list;
+  v1::ListRenderJobsResponse listed;
+  ASSERT_TRUE(presenter.Call(&JobStub::ListRenderJobs, list, &listed).ok());
+  EXPECT_EQ(listed.jobs_size(), 0);
+  ASSERT_TRUE(pipeline.Call(&JobStub::ListRenderJobs, list, &listed).ok());
+  EXPECT_EQ(listed.jobs_size(), 1);
+  list.set_everybodys(true);
+  EXPECT_EQ(pipeline.Call(&JobStub::ListRenderJobs, list, &listed).error_code(),
+            grpc::StatusCode::PERMISSION_DENIED);
+  ASSERT_TRUE(op.Call(&JobStub::ListRenderJobs, list, &listed).ok());
+  EXPECT_EQ(listed.jobs_size(), 1);
+  EXPECT_TRUE(op.Cancel(job.id(), true).ok());
+  const std::vector<std::string> audit = guarded.Audit();
+  const auto has = [&](const std::string& part) { EXPECT_THAT(audit, Contains(HasSubstr(part))); };
+  has("identity=\"a-pipeline\" role=pipeline peer=\"\" act=CreateRenderJob verdict=allowed");
+  has("identity=\"a-presenter\" role=presenter peer=\"\" act=GetRenderJob verdict=refused "
+      "reason=\"NOT_YOUR_JOB\"");
+  has("identity=\"a-presenter\" role=presenter peer=\"\" act=CancelRenderJob verdict=refused");
+  has("identity=\"a-operator\" role=operator peer=\"\" act=CancelRenderJob verdict=allowed");
+  for (const std::string& line : audit) EXPECT_EQ(line.find(job.id()), std::string::npos);
+}
+
+TEST_F(RenderJobTest, MoreThanIsAllowedIsRefusedWithATimeToTryAgain) {
+  service::ServerOptions options = Options();
+  options.jobs.limits.max_jobs_per_owner = 2;
+  options.jobs.limits.max_pictures_per_owner = 5;
+  FakeService service(options);
+  service.machine->drawing.Close();
+  Jobs jobs(service.server());
+  const v1::RenderJob first = jobs.Create({Picture(0), Picture(1)});
+  v1::RenderJob job;
+  bool retries = false;
+  grpc::Status refused = jobs.Create({Picture(0), Picture(0), Picture(0), Picture(0)}, &job);
+  EXPECT_EQ(refused.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_EQ(ReasonOf(refused, &retries), "TOO_MANY_JOB_PICTURES");
+  EXPECT_TRUE(retries);
+  jobs.Create({Picture(2)});
+  refused = jobs.Create({Picture(0)}, &job);
+  EXPECT_EQ(ReasonOf(refused), "TOO_MANY_JOBS");
+  EXPECT_EQ(jobs.Create({}, &job).error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  // One that has ended makes room.
+  ASSERT_TRUE(jobs.Cancel(first.id()).ok());
+  EXPECT_TRUE(jobs.Create({Picture(0)}, &job).ok());
+  v1::GetRenderJobResponse gone;
+  EXPECT_EQ(jobs.Get(first.id(), &gone).error_code(), grpc::StatusCode::NOT_FOUND);
+}
+
+TEST_F(RenderJobTest, ResultsBeyondTheQuotaAreDroppedAndSaidSo) {
+  service::ServerOptions options = Options();
+  options.jobs.limits.max_result_bytes = 1;
+  FakeService service(options);
+  Jobs jobs(service.server());
+  const v1::RenderJob job = jobs.Create({Picture(0), Picture(1), Picture(2)});
+  std::map<std::uint32_t, State> pictures;
+  ASSERT_TRUE(jobs.Watch(job.id(), &pictures).ok());
+  const auto got = jobs.Get(job.id());
+  EXPECT_EQ(got.job().counts().drawn(), 1U) << "the newest stays";
+  EXPECT_EQ(got.job().counts().dropped(), 2U);
+  EXPECT_EQ(Files(), 1U);
+  for (const State& picture : got.pictures()) {
+    if (picture.state() != State::STATE_DROPPED) continue;
+    EXPECT_THAT(picture.problem().message(), HasSubstr("--jobs-quota"));
+    EXPECT_EQ(jobs.Fetch(job.id(), picture.index()).status.error_code(),
+              grpc::StatusCode::NOT_FOUND);
+  }
+}
+
+TEST_F(RenderJobTest, AServerWithoutAFolderSaysSo) {
+  FakeService service;
+  Jobs jobs(service.server());
+  v1::RenderJob job;
+  const grpc::Status status = jobs.Create({Picture(0)}, &job);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
+  EXPECT_THAT(status.error_message(), HasSubstr("--jobs-folder"));
+}
+
+TEST_F(RenderJobTest, SinglePicturesGoBeforeThoseOfJobs) {
+  FakeService service(Options());
+  Jobs jobs(service.server());
+  service.machine->drawing.Close();
+  std::vector<v1::RenderJobPicture> many(20, Picture(0));
+  const v1::RenderJob job = jobs.Create(many);
+  ASSERT_TRUE(service.machine->drawing.AwaitWaiting(1));
+  std::thread caller([&] {
+    v1::RenderImageRequest request;
+    *request.mutable_scene() = SmallScene();
+    v1::RenderImageResponse response;
+    EXPECT_TRUE(
+        Call(service.stub(), &v1::ThunderheadService::Stub::RenderImage, request, &response).ok());
+  });
+  ASSERT_TRUE(Eventually([&] { return service.server().Load().pictures == 4; }));
+  service.machine->drawing.Open();
+  caller.join();
+  EXPECT_LE(jobs.Get(job.id()).job().counts().drawn(), 12U);
+  std::map<std::uint32_t, State> pictures;
+  EXPECT_TRUE(jobs.Watch(job.id(), &pictures).ok());
+}
+
+TEST_F(RenderJobTest, FiveHundredStillsOfTenJobsBesideADraggingSessionAllComplete) {
+  FakeService service(Options());
+  Jobs jobs(service.server());
+  service.machine->ms_per_mega_sample = 100.0;  // 3.7 ms a picture
+  const std::string session = service.Open(SmallScene());
+  Watcher watcher(service.stub(), session);
+  ASSERT_TRUE(watcher.AwaitFrame(1, true));
+  std::vector<std::string> ids;
+  for (int i = 0; i < 10; ++i) {
+    std::vector<v1::RenderJobPicture> pictures;
+    for (std::uint32_t k = 0; k < 50; ++k) pictures.push_back(Picture(k % 4));
+    ids.push_back(jobs.Create(pictures).id());
+  }
+  std::vector<double> latencies_ms;
+  const auto drawn = [&] {
+    std::uint32_t all = 0;
+    for (const std::string& id : ids) all += jobs.Get(id).job().counts().drawn();
+    return all;
+  };
+  const auto begun = steady_clock::now();
+  for (int i = 0; drawn() < 500 && MsSince(begun) < 60e3; ++i) {
+    v1::Scene scene = SmallScene();
+    scene.mutable_camera()->mutable_orbit()->set_azimuth_deg(static_cast<float>(i % 360));
+    const auto updated = steady_clock::now();
+    ASSERT_TRUE(watcher.AwaitFrame(service.Update(session, scene), false));
+    latencies_ms.push_back(MsSince(updated));
+  }
+  EXPECT_EQ(drawn(), 500U);
+  std::ranges::sort(latencies_ms);
+  ASSERT_GT(latencies_ms.size(), 20U) << "too fast to tell";
+  const double p95_ms = latencies_ms[latencies_ms.size() * 95 / 100];
+  RecordProperty("p95_ms", absl::StrCat(p95_ms));
+  std::printf("500 stills of 10 jobs in %.1f s; of %zu frames p50 %.0f ms, p95 %.0f ms\n",
+              1e-3 * MsSince(begun), latencies_ms.size(), latencies_ms[latencies_ms.size() / 2],
+              p95_ms);
+  EXPECT_LT(p95_ms, 150.0);
+}
+
+TEST(RenderImageInChunks, GivesTheSamePicture) {
+  FakeService service;
+  v1::RenderImageRequest request;
+  *request.mutable_scene() = SmallScene();
+  request.mutable_scene()->mutable_output()->set_width_px(1600);
+  request.mutable_scene()->mutable_output()->set_height_px(1000);
+  request.set_format(v1::IMAGE_FORMAT_PNG);
+  v1::RenderImageResponse whole;
+  ASSERT_TRUE(
+      Call(service.stub(), &v1::ThunderheadService::Stub::RenderImage, request, &whole).ok());
+  request.set_in_chunks(true);
+  grpc::ClientContext context;
+  const auto reader = service.stub().RenderImageWithProgress(&context, request);
+  v1::RenderImageEvent event;
+  std::string image;
+  v1::RenderImageResponse last;
+  while (reader->Read(&event)) {
+    EXPECT_LE(event.ByteSizeLong(), (std::size_t{1} << 20) + 8192);
+    if (event.has_chunk()) image += event.chunk();
+    if (event.has_image()) last = event.image();
+  }
+  ASSERT_TRUE(reader->Finish().ok());
+  EXPECT_TRUE(last.image().empty());
+  EXPECT_EQ(last.width_px(), 1600U);
+  EXPECT_EQ(image, whole.image());
+}
+
+}  // namespace
+}  // namespace thunderhead::testing

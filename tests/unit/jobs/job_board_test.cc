@@ -1,0 +1,186 @@
+// Which picture is next, what makes room for what, and what becomes of those that fail.
+#include "jobs/job_board.h"
+
+#include <chrono>
+#include <map>
+
+#include "base/error_details.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+
+namespace thunderhead::jobs {
+namespace {
+
+using std::chrono::hours;
+using std::chrono::seconds;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+const Time kNow{hours(24 * 365 * 50)};
+
+void Add(JobBoard& board, const std::string& id, const std::string& owner, std::size_t pictures,
+         Time now = kNow) {
+  NewJob job{owner, "", {}};
+  job.pictures.resize(pictures);
+  const absl::Status added = board.Add(id, "key of " + id, std::move(job), now);
+  ASSERT_TRUE(added.ok()) << added;
+  board.SetSaved(id);
+}
+
+// Begins and draws the next; returns its job.
+std::string DrawNext(JobBoard& board, double draw_ms, Time now = kNow, std::uint64_t bytes = 10) {
+  const auto picture = board.Begin(now);
+  if (!picture.has_value()) return "";
+  board.Drawn(*picture, {*picture, "png", "hash", bytes}, draw_ms, draw_ms, now);
+  return picture->job_id;
+}
+
+TEST(JobBoard, OwnersGetTheSameTimeHoweverManyJobsTheyHave) {
+  JobBoard board({});
+  for (int i = 0; i < 9; ++i) Add(board, "a" + std::to_string(i), "anna", 100);
+  Add(board, "b", "bert", 100);
+  std::map<char, int> drawn;
+  for (int i = 0; i < 60; ++i) ++drawn[DrawNext(board, 10.0).front()];
+  EXPECT_NEAR(drawn['b'], 30, 1);
+}
+
+TEST(JobBoard, JobsOfAnOwnerGetTheSameTimeHoweverLongTheirPicturesTake) {
+  JobBoard board({});
+  Add(board, "long", "anna", 100);
+  Add(board, "short", "anna", 100);
+  std::map<std::string, double> ms;
+  for (int i = 0; i < 66; ++i) {
+    const auto picture = *board.Begin(kNow);
+    const double draw_ms = picture.job_id == "long" ? 100.0 : 10.0;
+    ms[picture.job_id] += draw_ms;
+    board.Drawn(picture, {picture, "png", "", 1}, draw_ms, draw_ms, kNow);
+  }
+  EXPECT_NEAR(ms["short"] / ms["long"], 1.0, 0.25);
+}
+
+TEST(JobBoard, OneThatIsNotSavedIsNotBegun) {
+  JobBoard board({});
+  NewJob job{"anna", "", std::vector<PictureOrder>(1)};
+  ASSERT_TRUE(board.Add("a", "key", job, kNow).ok());
+  EXPECT_FALSE(board.Begin(kNow).has_value());
+  board.SetSaved("a");
+  EXPECT_TRUE(board.Begin(kNow).has_value());
+}
+
+TEST(JobBoard, APictureThatIsPutBackWaitsAndIsTriedAFewTimes) {
+  JobBoard board({});
+  Add(board, "a", "anna", 1);
+  Time now = kNow;
+  for (int attempt = 1; attempt <= JobBoard::kMaxAttempts; ++attempt) {
+    const auto picture = board.Begin(now);
+    ASSERT_TRUE(picture.has_value());
+    EXPECT_TRUE(board.MayBegin(*picture));
+    EXPECT_EQ(board.MayTryAgain(*picture), attempt < JobBoard::kMaxAttempts);
+    board.PutBack(*picture, true, now + seconds(5));
+    EXPECT_FALSE(board.Begin(now + seconds(4)).has_value());
+    EXPECT_EQ(board.NextRetry(now), now + seconds(5));
+    now += seconds(5);
+  }
+  EXPECT_FALSE(board.MayBegin(*board.Begin(now)));
+}
+
+TEST(JobBoard, WhatTheServerPutsBackDoesNotCount) {
+  JobBoard board({});
+  Add(board, "a", "anna", 1);
+  for (int i = 0; i < 20; ++i) {
+    const auto picture = *board.Begin(kNow);
+    EXPECT_TRUE(board.MayTryAgain(picture));
+    board.PutBack(picture, false, kNow);
+  }
+}
+
+TEST(JobBoard, WhatEndsAfterItsJobWasCancelledIsNotKept) {
+  JobBoard board({});
+  Add(board, "a", "anna", 3);
+  const auto picture = *board.Begin(kNow);
+  board.Cancel("a", kNow);
+  EXPECT_FALSE(board.Drawn(picture, {picture, "png", "", 9}, 1.0, 1.0, kNow));
+  EXPECT_EQ(board.ResultBytes(), 0U);
+  EXPECT_EQ(board.NewsOf("a", 0)->job.ended_at, kNow);
+  EXPECT_FALSE(board.Begin(kNow).has_value());
+}
+
+TEST(JobBoard, NewsAreWhatHasChanged) {
+  JobBoard board({});
+  Add(board, "a", "anna", 3);
+  const auto all = *board.NewsOf("a", 0);
+  EXPECT_EQ(all.pictures.size(), 3U);
+  EXPECT_THAT(board.NewsOf("a", all.version)->pictures, IsEmpty());
+  (void)board.Begin(kNow);
+  const auto news = *board.NewsOf("a", all.version);
+  ASSERT_EQ(news.pictures.size(), 1U);
+  EXPECT_EQ(news.pictures[0].state, PictureState::kDrawing);
+}
+
+TEST(JobBoard, TheStoreIsToldOfEachChangeOnce) {
+  JobBoard board({});
+  Add(board, "a", "anna", 1);
+  EXPECT_EQ(DrawNext(board, 1.0), "a");
+  const auto changes = board.TakeChanges();
+  ASSERT_EQ(changes.size(), 1U);
+  EXPECT_EQ(changes[0].ended_at, kNow);
+  ASSERT_EQ(changes[0].pictures.size(), 1U);
+  EXPECT_EQ(changes[0].pictures[0].record.state, PictureState::kDrawn);
+  EXPECT_THAT(board.TakeChanges(), IsEmpty());
+  board.GiveBack(changes);
+  EXPECT_EQ(board.TakeChanges().size(), 1U);
+}
+
+TEST(JobBoard, JobsAreForgottenAfterTheirTime) {
+  JobLimits limits;
+  limits.keep = hours(2);
+  JobBoard board(limits);
+  Add(board, "a", "anna", 1);
+  Add(board, "b", "anna", 1);
+  DrawNext(board, 1.0, kNow);
+  EXPECT_EQ(board.NextExpiry(), kNow + hours(2));
+  board.Expire(kNow + hours(2) - seconds(1));
+  EXPECT_THAT(board.TakeForgotten(), IsEmpty());
+  board.Expire(kNow + hours(2));
+  EXPECT_THAT(board.TakeForgotten(), ElementsAre("a"));
+  EXPECT_EQ(board.ResultBytes(), 0U);
+  EXPECT_TRUE(board.NewsOf("b", 0).has_value()) << "it has not ended";
+}
+
+TEST(JobBoard, ResultsThatWereFetchedMakeRoomFirstThenTheOldest) {
+  JobLimits limits;
+  limits.max_result_bytes = 30;
+  JobBoard board(limits);
+  Add(board, "a", "anna", 5);
+  for (int i = 0; i < 3; ++i) DrawNext(board, 1.0, kNow + seconds(i));
+  board.Fetched({"a", 2});
+  EXPECT_THAT(board.MakeRoom(), IsEmpty());
+  DrawNext(board, 1.0, kNow + seconds(3));
+  auto dropped = board.MakeRoom();
+  ASSERT_EQ(dropped.size(), 1U);
+  EXPECT_EQ(dropped[0].picture.place, 2U);
+  DrawNext(board, 1.0, kNow + seconds(4));
+  dropped = board.MakeRoom();
+  ASSERT_EQ(dropped.size(), 1U);
+  EXPECT_EQ(dropped[0].picture.place, 0U);
+  EXPECT_EQ(board.ResultBytes(), 30U);
+  EXPECT_EQ(board.ResultOf({"a", 0}).status().code(), absl::StatusCode::kNotFound);
+  EXPECT_TRUE(board.ResultOf({"a", 4}).ok());
+}
+
+TEST(JobBoard, TheOldestThatHasEndedMakesRoomForANewJob) {
+  JobLimits limits;
+  limits.max_jobs = 2;
+  JobBoard board(limits);
+  Add(board, "a", "anna", 1);
+  DrawNext(board, 1.0);
+  Add(board, "b", "bert", 1);
+  Add(board, "c", "carl", 1);
+  EXPECT_THAT(board.TakeForgotten(), ElementsAre("a"));
+  const absl::Status full = board.Add("d", "key", {"dora", "", std::vector<PictureOrder>(1)}, kNow);
+  EXPECT_EQ(base::DetailsOf(full).reason, "TOO_MANY_JOBS");
+  EXPECT_TRUE(base::DetailsOf(full).retry_after.has_value());
+}
+
+}  // namespace
+}  // namespace thunderhead::jobs

@@ -1,0 +1,131 @@
+// What comes back of render jobs, and that a file of sessions from before there were any is kept.
+#include "store/sqlite_job_store.h"
+
+#include <sqlite3.h>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "store/sqlite_session_store.h"
+#include "tests/support/temporary_folder.h"
+
+namespace thunderhead::testing {
+namespace {
+
+using jobs::JobRecord;
+using jobs::PictureRecord;
+using jobs::PictureState;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+JobRecord Record(const std::string& id, int pictures) {
+  JobRecord job;
+  job.id = id;
+  job.result_key = "key of " + id;
+  job.owner = "anna";
+  job.label = "night \xff";
+  job.created_at = jobs::Time(std::chrono::milliseconds(1'700'000'000'123));
+  for (int i = 0; i < pictures; ++i) {
+    PictureRecord& picture = job.pictures.emplace_back();
+    picture.order = {"name " + std::to_string(i), std::string("a\0scene\xff", 8), "2013-05-20"};
+  }
+  return job;
+}
+
+class SqliteJobStoreTest : public ::testing::Test {
+ protected:
+  std::unique_ptr<store::SqliteJobStore> Open() const {
+    auto file = store::StateFile::Open(path_);
+    EXPECT_TRUE(file.ok()) << file.status();
+    auto opened = store::SqliteJobStore::In(*file);
+    EXPECT_TRUE(opened.ok()) << opened.status();
+    return *std::move(opened);
+  }
+
+  std::vector<JobRecord> Loaded() const {
+    const auto records = Open()->Load();
+    EXPECT_TRUE(records.ok()) << records.status();
+    return records.ok() ? *records : std::vector<JobRecord>();
+  }
+
+  const TemporaryFolder folder_;
+  const std::string path_ = folder_.File("sessions.db");
+};
+
+TEST_F(SqliteJobStoreTest, GivesBackWhatItWasGiven) {
+  const JobRecord job = Record("a", 3);
+  ASSERT_TRUE(Open()->Add(job).ok());
+  EXPECT_THAT(Loaded(), ElementsAre(job));
+}
+
+TEST_F(SqliteJobStoreTest, KeepsEachStateOfAPictureButThatOfBeingDrawn) {
+  JobRecord job = Record("a", 3);
+  const auto store = Open();
+  ASSERT_TRUE(store->Add(job).ok());
+  PictureRecord& drawn = job.pictures[0];
+  drawn.state = PictureState::kDrawn;
+  drawn.attempts = 2;
+  drawn.bytes = std::uint64_t{1} << 40;
+  drawn.sha256 = "abc";
+  drawn.extension = "png";
+  drawn.milliseconds = 12.5;
+  drawn.drawn_at = job.created_at + std::chrono::seconds(1);
+  drawn.fetched = true;
+  job.pictures[1].state = PictureState::kFailed;
+  job.pictures[1].problem = {absl::StatusCode::kDataLoss, "STORM_UNREADABLE", "cut short"};
+  job.pictures[2].state = PictureState::kDrawing;
+  job.pictures[2].attempts = 1;
+  job.ended_at = job.created_at + std::chrono::minutes(1);
+  job.cancelled = true;
+  jobs::JobChange change{"a", job.ended_at, true, {}};
+  for (std::size_t i = 0; i < 3; ++i) change.pictures.push_back({i, job.pictures[i]});
+  ASSERT_TRUE(store->Save({change, {"gone", std::nullopt, false, {}}}).ok());
+  job.pictures[2].state = PictureState::kWaiting;
+  const auto loaded = store->Load();
+  ASSERT_TRUE(loaded.ok());
+  EXPECT_THAT(*loaded, ElementsAre(job));
+}
+
+TEST_F(SqliteJobStoreTest, RemovesAJobWithItsPictures) {
+  const auto store = Open();
+  ASSERT_TRUE(store->Add(Record("a", 2)).ok());
+  ASSERT_TRUE(store->Add(Record("b", 2)).ok());
+  ASSERT_TRUE(store->Remove({"a", "gone"}).ok());
+  // The pictures of "a" would be in its way.
+  ASSERT_TRUE(store->Add(Record("a", 1)).ok());
+  EXPECT_THAT(*store->Load(), SizeIs(2));
+}
+
+TEST_F(SqliteJobStoreTest, AFileFromBeforeThereWereJobsKeepsItsSessions) {
+  {
+    auto sessions = store::SqliteSessionStore::Open(path_);
+    ASSERT_TRUE(sessions.ok());
+    session::SessionRecord record;
+    record.id = "one";
+    record.keys = {"p", "v"};
+    record.scene = "scene";
+    record.scene_revision = 7;
+    ASSERT_TRUE((*sessions)->Save({record}).ok());
+  }
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(path_.c_str(), &database), SQLITE_OK);
+  ASSERT_EQ(
+      sqlite3_exec(database, "DROP TABLE job_pictures; DROP TABLE jobs; PRAGMA user_version = 1",
+                   nullptr, nullptr, nullptr),
+      SQLITE_OK);
+  sqlite3_close(database);
+  auto file = store::StateFile::Open(path_);
+  ASSERT_TRUE(file.ok()) << file.status();
+  const auto sessions = store::SqliteSessionStore::In(*file);
+  const auto jobs = store::SqliteJobStore::In(*file);
+  EXPECT_THAT(*(*sessions)->Load(), SizeIs(1));
+  EXPECT_THAT(*(*jobs)->Load(), IsEmpty());
+  EXPECT_TRUE((*jobs)->Add(Record("a", 1)).ok());
+  session::SessionRecord record;
+  record.id = "two";
+  record.keys = {"p2", "v2"};
+  EXPECT_TRUE((*sessions)->Save({record}).ok()) << "both use the file at a time";
+}
+
+}  // namespace
+}  // namespace thunderhead::testing
