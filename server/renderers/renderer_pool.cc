@@ -40,6 +40,12 @@ SceneRenderer& RendererPool::Choose(
   return *renderers_.front();
 }
 
+bool RendererPool::DropOldest() {
+  if (renderers_.size() < 2) return false;
+  renderers_.pop_back();
+  return true;
+}
+
 void RendererPool::Shrink() {
   std::size_t bytes = 0;
   for (const auto& renderer : renderers_) bytes += renderer->Bytes();

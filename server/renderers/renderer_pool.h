@@ -31,6 +31,12 @@ class RendererPool {
                                    const std::shared_ptr<const volume::HydrometeorFields>& fields,
                                    const DrawQuality& quality);
 
+  // Drops the least recently used renderer but the one that drew last, or draws now; false if there
+  // is none.
+  bool DropOldest();
+  // Drops all; the frame is gone with them.
+  void Clear() { renderers_.clear(); }
+
  private:
   SceneRenderer& Choose(const scene::Scene& scene,
                         const std::shared_ptr<const volume::HydrometeorFields>& fields);

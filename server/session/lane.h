@@ -43,6 +43,12 @@ class Lane {
   // The lane must be idle.
   void Begin(Work work, Limits limits);
 
+  // Gives back what its source keeps, if the lane is idle; returns when that is done.
+  void FreeUnused();
+  // Ends the work, at its next piece, with gl::DeviceLost, and makes another source for what comes
+  // then: the device was lost.
+  void RenewSource();
+
   // True if its work waits to draw a piece. Lets work that was cancelled go on to its end.
   bool WantsTurn();
   // Returns when the piece is drawn, with the milliseconds that it took.
@@ -79,6 +85,8 @@ class Lane {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   bool stopping_ = false;
+  bool source_is_lost_ = false;
+  bool frees_ = false;
   Work work_;
   Limits limits_;
   bool busy_ = false;

@@ -7,16 +7,21 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "base/error_details.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "base/thread_priority.h"
+#include "gl/device_faults.h"
+#include "session/guarded_source.h"
 #include "session/image_drawer.h"
 #include "session/lane.h"
 #include "session/light_tracer.h"
 #include "session/measured_source.h"
 #include "session/session_drawer.h"
 #include "session/turns.h"
+#include "spdlog/spdlog.h"
+#include "telemetry/metrics.h"
 
 namespace thunderhead::session {
 namespace {
@@ -51,6 +56,23 @@ class Lanes {
   const std::vector<Entry> all_;
 };
 
+// Whether a budget has refused something since it was asked last.
+class MemoryPressure {
+ public:
+  explicit MemoryPressure(const std::vector<std::shared_ptr<base::MemoryBudget>>& budgets)
+      : budgets_(budgets) {}
+
+  bool HasGrown() {
+    std::uint64_t refusals = 0;
+    for (const auto& budget : budgets_) refusals += budget->Refusals();
+    return std::exchange(seen_, refusals) != refusals;
+  }
+
+ private:
+  const std::vector<std::shared_ptr<base::MemoryBudget>>& budgets_;
+  std::uint64_t seen_ = 0;
+};
+
 std::optional<Clock::time_point> Earlier(const std::optional<Clock::time_point>& a,
                                          const std::optional<Clock::time_point>& b) {
   if (!a.has_value()) return b;
@@ -80,6 +102,7 @@ RenderLoop::RenderLoop(const RenderLoopOptions& options, volume::StormStore& sto
       store_(store),
       sessions_(sessions),
       wake_(wake),
+      losses_(options.losses),
       images_(options.max_waiting_images),
       reader_(std::make_unique<FieldsReader>(store, [&wake] { wake.Notify(); })),
       encoder_(std::make_unique<FrameEncoder>(options.encoder_threads, options.serialize_frame,
@@ -113,7 +136,15 @@ void RenderLoop::RenderImage(ImageJob job) {
   if (images_.Add(std::move(job))) wake_.Notify();
 }
 
-void RenderLoop::Run(const FrameSourceFactory& make_source, std::promise<absl::Status> started) {
+void RenderLoop::Run(const FrameSourceFactory& make_unguarded, std::promise<absl::Status> started) {
+  const FrameSourceFactory make_source = GuardedSources(
+      make_unguarded, {.memory = options_.memory,
+                       .generation = device_generation_,
+                       .on_device_lost = [this](std::uint64_t generation) {
+                         if (generation != device_generation_) return;  // that is known
+                         device_lost_ = true;
+                         wake_.Notify();
+                       }});
   auto source = make_source(nullptr);
   if (source.ok()) {
     device_ = (*source)->Device();
@@ -136,7 +167,14 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
   ImageDrawer image_drawer(options_.image_limits, images_, measured, preparation_, light_tracer,
                            {lanes->quick_images, lanes->images});
   Turns turns;
+  MemoryPressure pressure(options_.device_memory);
+  const std::vector<Lane*> all_lanes{&lanes->tracing, &lanes->quick_images, &lanes->images};
   while (!stopping_) {
+    if (device_lost_.exchange(false) && !Recover(make_source, all_lanes, measured)) break;
+    if (pressure.HasGrown()) {
+      measured.FreeUnused();
+      for (Lane* lane : all_lanes) lane->FreeUnused();
+    }
     turn_began_ = Clock::now().time_since_epoch().count();
     const std::vector<std::shared_ptr<Session>> sessions = sessions_.AllDrawn();
     drawer.ReleaseUnwatched(sessions);
@@ -173,6 +211,40 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
   }
   lanes.reset();
   image_drawer.EndAll(base::ShuttingDown());
+}
+
+bool RenderLoop::Recover(const FrameSourceFactory& make_source, const std::vector<Lane*>& lanes,
+                         MeasuredSource& source) {
+  recovering_ = true;
+  absl::Status why = gl::DeviceLost();
+  while (!stopping_) {
+    telemetry::Counted().device_losses.Add();
+    const std::optional<Clock::time_point> at = losses_.Lost(Clock::now());
+    if (!at.has_value()) {
+      why = absl::UnavailableError(absl::StrCat(
+          "the device was lost too often and is given up: ", why.message()));
+      spdlog::critical("{}", std::string(why.message()));
+      if (options_.on_device_given_up) options_.on_device_given_up(why);
+      return false;
+    }
+    // What was made with a lost context is deleted before there is another.
+    ++device_generation_;
+    for (Lane* lane : lanes) lane->RenewSource();
+    source.Replace(nullptr);
+    const double pause_s = std::chrono::duration<double>(*at - Clock::now()).count();
+    spdlog::error("the device was lost; opening it again in {:.1f} s", std::max(pause_s, 0.0));
+    while (!stopping_ && Clock::now() < *at) wake_.Wait(*at);
+    if (stopping_) return false;
+    auto made = make_source(nullptr);
+    if (made.ok()) {
+      source.Replace(*std::move(made));
+      recovering_ = false;
+      return true;
+    }
+    why = made.status();
+    spdlog::error("the device cannot be opened: {}", std::string(why.message()));
+  }
+  return false;
 }
 
 }  // namespace thunderhead::session

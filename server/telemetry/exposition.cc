@@ -97,7 +97,10 @@ std::string Expose(const Metrics& metrics, const std::vector<Gauge>& gauges) {
       FamilyOf("thunderhead_refusals_total", "Answers that are errors", kCounter, "reason",
                metrics.refusals),
       FamilyOf("thunderhead_sessions_opened_total", "Sessions opened", kCounter,
-               metrics.sessions_opened)};
+               metrics.sessions_opened),
+      FamilyOf("thunderhead_device_losses_total",
+               "Times that the device was reset, or could not be opened again after that", kCounter,
+               metrics.device_losses)};
   for (const Gauge& gauge : gauges) {
     families.push_back(Family(gauge.name, gauge.help, MetricType::Gauge));
     ClientMetric metric;

@@ -76,6 +76,7 @@ struct Metrics {
   Counter frame_bytes_sent;    // of their pictures
   Labelled<Counter> refusals;  // answers that are errors, by reason
   Counter sessions_opened;
+  Counter device_losses;  // the device was reset, or could not be opened again
 };
 
 // The process's.
