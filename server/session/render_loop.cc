@@ -138,7 +138,8 @@ void RenderLoop::RenderImage(ImageJob job) {
 
 void RenderLoop::Run(const FrameSourceFactory& make_unguarded, std::promise<absl::Status> started) {
   const FrameSourceFactory make_source = GuardedSources(
-      make_unguarded, {.memory = options_.memory,
+      make_unguarded, {.memory = options_.memory != nullptr ? options_.memory
+                                                            : base::MemoryBudget::Unlimited(),
                        .generation = device_generation_,
                        .on_device_lost = [this](std::uint64_t generation) {
                          if (generation != device_generation_) return;  // that is known

@@ -44,8 +44,8 @@ struct RenderLoopOptions {
   std::size_t max_traced_sessions = 8;
   std::function<accuracy::OfferTables()> offer_tables = accuracy::BuiltInOfferTables;
   TruthSourceFactory make_truth_source = [] { return MakeReferenceTruthSource(); };
-  // What pictures and the reference count in.
-  std::shared_ptr<base::MemoryBudget> memory = base::MemoryBudget::Unlimited();
+  // What pictures count in; null: nothing is refused.
+  std::shared_ptr<base::MemoryBudget> memory;
   // What GL objects count in; where one refuses, what sources keep is given back.
   std::vector<std::shared_ptr<base::MemoryBudget>> device_memory;
   LossLimits losses;

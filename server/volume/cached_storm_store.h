@@ -73,6 +73,7 @@ class CachedStormStore final : public StormStore,
     bool reads = false;  // and does not pause
     std::string file;
     std::chrono::steady_clock::time_point went_on;  // since when nothing has come
+    bool told_of_hang = false;
   };
 
   // A storm and what the store keeps of it.
@@ -144,7 +145,6 @@ class CachedStormStore final : public StormStore,
   std::deque<std::shared_ptr<PendingRead>> asked_;  // due, in order
   Activity reading_asked_;
   Activity reading_ahead_;
-  bool told_of_hang_ = false;
   std::vector<TimeKey> wanted_;  // to be read ahead, in order
   int asked_reads_ = 0;
   bool ending_ = false;

@@ -110,13 +110,13 @@ CachedStormStore::Fields CachedStormStore::WaitFor(Lock& lock,
   listener->progress = progress;
   if (progress) shared->listeners.push_back(listener);
   changed_.notify_all();  // the reading thread; a paused read-ahead of this time may now go on
-  const Activity& activity =
+  Activity& activity =
       shared->purpose == Purpose::kAsked ? reading_asked_ : reading_ahead_;
   while (!shared->result.has_value()) {
     const std::optional<HungRead> hung = HungIn(activity);
     if (ending_ || hung.has_value()) {
       --shared->waiters;
-      if (hung.has_value() && !std::exchange(told_of_hang_, true)) {
+      if (hung.has_value() && !std::exchange(activity.told_of_hang, true)) {
         spdlog::error("{}: its storage does not answer; what needs it is refused", hung->file);
       }
       lock.unlock();
@@ -190,12 +190,10 @@ void CachedStormStore::Read(Lock& lock, PendingRead& read, Activity& activity) {
   if (!is_asked || read.waiters > 0) {
     const StormFile& file =
         read.place.storm->files[read.place.storm->sources[read.place.time].file];
-    activity = {true, file.path, steady_clock::now()};
+    activity = {true, file.path, steady_clock::now(), false};
     fields = ReadFile(lock, read, activity);
     activity.reads = false;
-    if (std::exchange(told_of_hang_, false)) {
-      spdlog::info("{}: storage answers again", file.path);
-    }
+    if (activity.told_of_hang) spdlog::info("{}: its storage answers again", file.path);
   }
   if (is_asked) --asked_reads_;
   // Fields of a time that was removed meanwhile are returned to callers but not cached.
