@@ -15,6 +15,9 @@ namespace {
 // Others leave, or look at another storm, within seconds or never.
 constexpr std::chrono::seconds kRetryAfter{10};
 
+// A turn of drawing, after which what is unused is given back.
+constexpr std::chrono::seconds kLongestPatience{2};
+
 std::size_t IndexOf(MemoryUse use) { return static_cast<std::size_t>(use); }
 
 }  // namespace
@@ -105,8 +108,36 @@ void MemoryBudget::GiveBack(MemoryUse use, std::size_t bytes) {
 absl::StatusOr<MemoryReservation> MemoryBudget::Reserve(MemoryUse use, std::size_t bytes,
                                                         std::string_view what, Urgency urgency) {
   if (MakeRoomAndTake(use, bytes)) return MemoryReservation(shared_from_this(), use, bytes);
-  if (urgency == Urgency::kAwaited) ++refusals_;
+  if (urgency != Urgency::kAhead && bytes <= LimitOf(use)) {
+    Press(urgency == Urgency::kPatient);
+    if (urgency == Urgency::kPatient && MakeRoomAndTake(use, bytes)) {
+      return MemoryReservation(shared_from_this(), use, bytes);
+    }
+  }
   return Refusal(use, bytes, what);
+}
+
+void MemoryBudget::Answer(std::uint64_t refusals) {
+  {
+    const std::lock_guard lock(counting_);
+    answered_ = std::max(answered_, refusals);
+  }
+  answered_changed_.notify_all();
+}
+
+void MemoryBudget::OnPressure(std::function<void()> listener) {
+  const std::lock_guard lock(counting_);
+  on_pressure_ = std::move(listener);
+}
+
+void MemoryBudget::Press(bool patient) {
+  const std::uint64_t mine = ++refusals_;
+  std::unique_lock lock(counting_);
+  if (!on_pressure_) return;
+  // With the lock, so that it is not called once it was taken away.
+  on_pressure_();
+  if (!patient) return;
+  answered_changed_.wait_for(lock, kLongestPatience, [&] { return answered_ >= mine; });
 }
 
 absl::Status MemoryBudget::Resize(MemoryReservation& reservation, std::size_t bytes,
@@ -116,7 +147,7 @@ absl::Status MemoryBudget::Resize(MemoryReservation& reservation, std::size_t by
     GiveBack(reservation.use_, reservation.bytes_ - bytes);
   } else if (const std::size_t more = bytes - reservation.bytes_;
              !MakeRoomAndTake(reservation.use_, more)) {
-    ++refusals_;
+    Press(false);
     return Refusal(reservation.use_, more, what);
   }
   reservation.bytes_ = bytes;

@@ -6,8 +6,10 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -63,8 +65,9 @@ class MemoryReservation {
 
 class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
  public:
-  // Whether somebody waits for what the memory is for, and so whether a refusal counts.
-  enum class Urgency { kAwaited, kAhead };
+  // Whether somebody waits for what the memory is for, and so whether a refusal counts; and whether
+  // the caller may wait until others have answered to the pressure.
+  enum class Urgency { kAwaited, kPatient, kAhead };
 
   struct Options {
     std::string name = "memory";  // for messages: "memory", "GPU memory"
@@ -113,9 +116,12 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
   std::size_t Bytes() const { return options_.bytes; }
   std::size_t Used() const;
   std::size_t Used(MemoryUse use) const;
-  // Awaited reservations refused so far: whoever sees it grow gives back what only it can (GL objects,
-  // which only their own thread may delete).
+  // Awaited reservations for which there was no room so far: whoever sees it grow gives back what
+  // only it can (GL objects, which only their own thread may delete) and says so.
   std::uint64_t Refusals() const { return refusals_; }
+  void Answer(std::uint64_t refusals);
+  // Called when Refusals has grown, on the thread that has no room; empty for nobody.
+  void OnPressure(std::function<void()> listener);
 
  private:
   explicit MemoryBudget(Options options) : options_(std::move(options)) {}
@@ -127,10 +133,15 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
   void GiveBack(MemoryUse use, std::size_t bytes);
   // False if caches cannot make room for it.
   bool MakeRoomAndTake(MemoryUse use, std::size_t bytes);
+  // Tells of the refusal; `patient` waits for an answer, but not for ever.
+  void Press(bool patient);
   absl::Status Refusal(MemoryUse use, std::size_t bytes, std::string_view what) const;
 
   const Options options_;
   mutable std::mutex counting_;
+  std::condition_variable answered_changed_;
+  std::uint64_t answered_ = 0;
+  std::function<void()> on_pressure_;
   std::array<std::size_t, kMemoryUses.size()> used_{};
   std::atomic<std::uint64_t> refusals_{0};
   std::mutex making_room_;  // held while caches are called; before their own locks

@@ -127,8 +127,8 @@ class FrameSource {
     return absl::UnimplementedError("this frame source has pictures of 8 bits only");
   }
 
-  // Gives back the memory of what it keeps for further pictures.
-  virtual void FreeUnused() {}
+  // Gives back the memory of what it keeps for further pictures and has not drawn for so long.
+  virtual void FreeUnused(double /*unused_s*/) {}
 };
 
 // Makes a source on the thread that will use it. It takes `turn`, which must outlive it, for each

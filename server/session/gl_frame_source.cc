@@ -112,9 +112,9 @@ class GlFrameSource final : public FrameSource {
         [&] { return tone_mapped_->mapper->MapFine(*tone_mapped_->linear); });
   }
 
-  void FreeUnused() override {
+  void FreeUnused(double unused_s) override {
     tone_mapped_.reset();
-    renderers_.Clear();
+    renderers_.DropUnusedFor(unused_s);
     while (correctors_.DropOldest()) {
     }
   }
@@ -141,7 +141,7 @@ class GlFrameSource final : public FrameSource {
       auto drawn = base::OrOutOfMemory([&] { return programs_->Pieces().During(draw); });
       if (absl::Status fault = Look(); !fault.ok()) drawn = std::move(fault);
       if (!absl::IsResourceExhausted(drawn.status())) return drawn;
-      FreeUnused();
+      FreeUnused(0.0);
       if (again || !gl::IsOutOfDeviceMemory(drawn.status())) return drawn;
     }
   }

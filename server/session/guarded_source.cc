@@ -56,7 +56,7 @@ class GuardedSource final : public FrameSource {
   }
 
   absl::StatusOr<frame::FineImage> Fine() override { return Noticed(source_->Fine()); }
-  void FreeUnused() override { source_->FreeUnused(); }
+  void FreeUnused(double unused_s) override { source_->FreeUnused(unused_s); }
 
  private:
   absl::StatusOr<std::shared_ptr<const base::MemoryReservation>> MemoryOf(

@@ -45,13 +45,13 @@ void Lane::Begin(Work work, Limits limits) {
   changed_.notify_all();
 }
 
-void Lane::FreeUnused() {
+void Lane::FreeUnused(double unused_s) {
   std::unique_lock lock(mutex_);
   if (busy_) return;
   busy_ = true;
-  frees_ = true;
+  frees_ = unused_s;
   changed_.notify_all();
-  changed_.wait(lock, [this] { return !frees_; });
+  changed_.wait(lock, [this] { return !frees_.has_value(); });
 }
 
 void Lane::RenewSource() {
@@ -131,18 +131,19 @@ void Lane::Run() {
   std::unique_lock lock(mutex_);
   while (true) {
     changed_.wait(lock,
-                  [this] { return stopping_ || source_is_lost_ || frees_ || work_ != nullptr; });
+                  [this] { return stopping_ || source_is_lost_ || frees_.has_value() || work_ != nullptr; });
     if (std::exchange(source_is_lost_, false)) {
       lock.unlock();
       source = not_made();
       lock.lock();
       continue;
     }
-    if (frees_) {
+    if (frees_.has_value()) {
+      const double unused_s = *frees_;
       lock.unlock();
-      if (source.ok()) (*source)->FreeUnused();
+      if (source.ok()) (*source)->FreeUnused(unused_s);
       lock.lock();
-      frees_ = false;
+      frees_.reset();
       busy_ = false;
       changed_.notify_all();
       continue;

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -43,8 +44,9 @@ class Lane {
   // The lane must be idle.
   void Begin(Work work, Limits limits);
 
-  // Gives back what its source keeps, if the lane is idle; returns when that is done.
-  void FreeUnused();
+  // Gives back what its source keeps and has not drawn for so long, if the lane is idle; returns
+  // when that is done.
+  void FreeUnused(double unused_s);
   // Ends the work, at its next piece, with gl::DeviceLost, and makes another source for what comes
   // then: the device was lost.
   void RenewSource();
@@ -86,7 +88,7 @@ class Lane {
   std::condition_variable changed_;
   bool stopping_ = false;
   bool source_is_lost_ = false;
-  bool frees_ = false;
+  std::optional<double> frees_;  // what is unused for so many seconds
   Work work_;
   Limits limits_;
   bool busy_ = false;

@@ -34,7 +34,7 @@ class MeasuredSource {
   absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
                                     const scene::Scene& scene);
   absl::StatusOr<frame::FineImage> Fine();
-  void FreeUnused() { source_->FreeUnused(); }
+  void FreeUnused(double unused_s) { source_->FreeUnused(unused_s); }
 
   // Another source from now on, as the device was lost; null: nothing is drawn until there is one.
   void Replace(std::unique_ptr<FrameSource> source);

@@ -56,21 +56,45 @@ class Lanes {
   const std::vector<Entry> all_;
 };
 
-// Whether a budget has refused something since it was asked last.
+// Who looks at a scene again within this time should find it as it was.
+constexpr double kUnused_s = 3.0;
+constexpr std::chrono::milliseconds kBetweenAnswers{500};
+
+// Asks for what is unused to be given back when a budget has no room. Sees the budgets' refusals as
+// long as it lives.
 class MemoryPressure {
  public:
-  explicit MemoryPressure(const std::vector<std::shared_ptr<base::MemoryBudget>>& budgets)
-      : budgets_(budgets) {}
+  using Budgets = std::vector<std::shared_ptr<base::MemoryBudget>>;
 
-  bool HasGrown() {
-    std::uint64_t refusals = 0;
-    for (const auto& budget : budgets_) refusals += budget->Refusals();
-    return std::exchange(seen_, refusals) != refusals;
+  MemoryPressure(const Budgets& budgets, base::WakeSignal& wake)
+      : budgets_(budgets), seen_(budgets.size()) {
+    for (const auto& budget : budgets_) budget->OnPressure([&wake] { wake.Notify(); });
+  }
+  ~MemoryPressure() {
+    for (const auto& budget : budgets_) budget->OnPressure({});
+  }
+  MemoryPressure(const MemoryPressure&) = delete;
+  MemoryPressure& operator=(const MemoryPressure&) = delete;
+
+  template <typename FreeUnused>
+  void Answer(const FreeUnused& free_unused) {
+    bool has_grown = false;
+    for (std::size_t i = 0; i < budgets_.size(); ++i) {
+      const std::uint64_t refusals = budgets_[i]->Refusals();
+      has_grown = has_grown || std::exchange(seen_[i], refusals) != refusals;
+    }
+    if (!has_grown) return;
+    if (Clock::now() >= next_) {
+      free_unused();
+      next_ = Clock::now() + kBetweenAnswers;
+    }
+    for (std::size_t i = 0; i < budgets_.size(); ++i) budgets_[i]->Answer(seen_[i]);
   }
 
  private:
-  const std::vector<std::shared_ptr<base::MemoryBudget>>& budgets_;
-  std::uint64_t seen_ = 0;
+  const Budgets& budgets_;
+  std::vector<std::uint64_t> seen_;
+  Clock::time_point next_{};
 };
 
 std::optional<Clock::time_point> Earlier(const std::optional<Clock::time_point>& a,
@@ -168,14 +192,14 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
   ImageDrawer image_drawer(options_.image_limits, images_, measured, preparation_, light_tracer,
                            {lanes->quick_images, lanes->images});
   Turns turns;
-  MemoryPressure pressure(options_.device_memory);
+  MemoryPressure pressure(options_.device_memory, wake_);
   const std::vector<Lane*> all_lanes{&lanes->tracing, &lanes->quick_images, &lanes->images};
   while (!stopping_) {
     if (device_lost_.exchange(false) && !Recover(make_source, all_lanes, measured)) break;
-    if (pressure.HasGrown()) {
-      measured.FreeUnused();
-      for (Lane* lane : all_lanes) lane->FreeUnused();
-    }
+    pressure.Answer([&] {
+      measured.FreeUnused(kUnused_s);
+      for (Lane* lane : all_lanes) lane->FreeUnused(kUnused_s);
+    });
     turn_began_ = Clock::now().time_since_epoch().count();
     const std::vector<std::shared_ptr<Session>> sessions = sessions_.AllDrawn();
     drawer.ReleaseUnwatched(sessions);

@@ -215,7 +215,7 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
   const StormFile& file = place.storm->files[source.file];
   const std::optional<VerticalGrid> grid = VerticalGridOf(lock, place);
   activity.went_on = steady_clock::now();
-  const auto urgency = read.purpose == Purpose::kAsked ? base::MemoryBudget::Urgency::kAwaited
+  const auto urgency = read.purpose == Purpose::kAsked ? base::MemoryBudget::Urgency::kPatient
                                                        : base::MemoryBudget::Urgency::kAhead;
   lock.unlock();
   const auto read_counted = [&]() -> Fields {

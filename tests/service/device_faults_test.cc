@@ -135,7 +135,7 @@ TEST_F(FaultySource, GivesBackWhatItKeepsAndWhatItCouldNotFinish) {
   ASSERT_TRUE(Draw().ok());
   const std::size_t drawn = budget->Used();
   EXPECT_GT(drawn, 0U);
-  source_->FreeUnused();
+  source_->FreeUnused(0.0);
   const std::size_t kept = budget->Used();
   EXPECT_LT(kept, drawn / 2);
   // So little is left that another picture has no room.

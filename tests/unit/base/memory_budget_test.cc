@@ -3,8 +3,10 @@
 #include <deque>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <limits>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "base/error_details.h"
@@ -117,6 +119,22 @@ TEST(MemoryBudgetTest, AReservationChangesItsSize) {
   EXPECT_EQ(held.Bytes(), 20 * kMib);
   ASSERT_TRUE(budget->Resize(held, 100 * kMib, "it").ok());
   EXPECT_EQ(budget->Used(), 100 * kMib);
+}
+
+TEST(MemoryBudgetTest, WhoIsPatientGetsWhatOthersGiveBackWhenTheyAreAsked) {
+  const auto budget = MemoryBudget::Make({.bytes = 100 * kMib});
+  auto held = budget->Reserve(MemoryUse::kDrawing, 90 * kMib, "it").value();
+  std::promise<void> pressed;
+  budget->OnPressure([&] { pressed.set_value(); });
+  std::thread owner([&] {
+    pressed.get_future().wait();
+    held = {};
+    budget->Answer(budget->Refusals());
+  });
+  EXPECT_TRUE(budget->Reserve(MemoryUse::kFields, 50 * kMib, "it", MemoryBudget::Urgency::kPatient)
+                  .ok());
+  owner.join();
+  budget->OnPressure({});
 }
 
 TEST(MemoryBudgetTest, ARefusalThrownIsWhatTheWorkReturns) {
