@@ -122,8 +122,7 @@ absl::Status Serve(ServeFlags flags) {
   const Budgets budgets = BudgetsOf(flags);
   store_options.memory = budgets.memory;
   store_options.byte_budget = budgets.memory->Bytes();
-  store_options.read_deadline =
-      std::chrono::milliseconds(std::lround(1e3 * flags.read_deadline_s));
+  store_options.read_deadline = std::chrono::milliseconds(std::lround(1e3 * flags.read_deadline_s));
   store_options.live = LiveCatalogueOf(flags.catalogue);
   THUNDERHEAD_ASSIGN_OR_RETURN(const CloudsFolder clouds, CloudsFolder::Open(flags.clouds));
   THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<volume::StormStore> store,

@@ -121,9 +121,10 @@ void AddMemoryFlag(CLI::App& serve, const std::string& name, std::uint64_t& byte
 }
 
 void AddMemoryFlags(CLI::App& serve, ServeFlags& flags) {
-  AddMemoryFlag(serve, "--memory-budget", flags.memory_bytes,
-                "Memory for storms, pictures and tracing, and for drawing where no GPU does it; e.g. "
-                "8GiB; by default half of what the machine or the cgroup has");
+  AddMemoryFlag(
+      serve, "--memory-budget", flags.memory_bytes,
+      "Memory for storms, pictures and tracing, and for drawing where no GPU does it; e.g. "
+      "8GiB; by default half of what the machine or the cgroup has");
   AddMemoryFlag(serve, "--gpu-memory-budget", flags.gpu_memory_bytes,
                 "The GPU's memory for drawing; by default 4GiB");
   AddLimit(serve, "--read-deadline", flags.read_deadline_s, 0.1, 86400,
@@ -170,10 +171,9 @@ Budgets BudgetsOf(const ServeFlags& flags) {
   std::size_t bytes = flags.memory_bytes;
   if (bytes == 0) bytes = std::max(machine == 0 ? kSomeMemory : machine / 2, kLeastBudget);
   const std::size_t gpu_bytes = flags.gpu_memory_bytes == 0 ? kGpuMemory : flags.gpu_memory_bytes;
-  return {base::MemoryBudget::Make(
-              {.bytes = bytes,
-               .kept_for_drawing =
-                   static_cast<std::size_t>(kKeptForDrawing * static_cast<double>(bytes))}),
+  return {base::MemoryBudget::Make({.bytes = bytes,
+                                    .kept_for_drawing = static_cast<std::size_t>(
+                                        kKeptForDrawing * static_cast<double>(bytes))}),
           base::MemoryBudget::Make(
               {.name = "GPU memory", .flag = "--gpu-memory-budget", .bytes = gpu_bytes})};
 }

@@ -41,7 +41,8 @@ std::uint64_t TotalBytes(const std::string& root) {
 std::uint64_t LeastAlong(const std::string& hierarchy, std::string group, const char* file) {
   std::uint64_t least = kUnlimited;
   while (true) {
-    least = std::min(least, NumberIn(absl::StrCat(hierarchy, group, "/", file)).value_or(kUnlimited));
+    least =
+        std::min(least, NumberIn(absl::StrCat(hierarchy, group, "/", file)).value_or(kUnlimited));
     if (group.empty()) return least;
     group.resize(group.rfind('/') == std::string::npos ? 0 : group.rfind('/'));
   }
@@ -59,8 +60,8 @@ std::uint64_t CgroupBytes(const std::string& root) {
       least = std::min(least, LeastAlong(root + "/sys/fs/cgroup", group, "memory.max"));
       least = std::min(least, LeastAlong(root + "/sys/fs/cgroup", group, "memory.high"));
     } else if (parts[1] == "memory") {
-      least = std::min(least, LeastAlong(root + "/sys/fs/cgroup/memory", group,
-                                         "memory.limit_in_bytes"));
+      least = std::min(least,
+                       LeastAlong(root + "/sys/fs/cgroup/memory", group, "memory.limit_in_bytes"));
     }
   }
   return least;

@@ -91,9 +91,8 @@ bool MemoryBudget::Take(MemoryUse use, std::size_t bytes) {
   const std::size_t used = std::accumulate(used_.begin(), used_.end(), std::size_t{0});
   // What drawing uses fills first what is kept for it.
   const std::size_t drawing = used_[IndexOf(MemoryUse::kDrawing)];
-  const std::size_t counted = use == MemoryUse::kDrawing
-                                  ? used
-                                  : used - std::min(drawing, options_.kept_for_drawing);
+  const std::size_t counted =
+      use == MemoryUse::kDrawing ? used : used - std::min(drawing, options_.kept_for_drawing);
   const std::size_t limit = LimitOf(use);
   if (counted > limit || bytes > limit - counted) return false;
   used_[IndexOf(use)] += bytes;
@@ -173,20 +172,17 @@ bool MemoryBudget::MakeRoomAndTake(MemoryUse use, std::size_t bytes) {
   return true;
 }
 
-absl::Status MemoryBudget::Refusal(MemoryUse use, std::size_t bytes,
-                                   std::string_view what) const {
+absl::Status MemoryBudget::Refusal(MemoryUse use, std::size_t bytes, std::string_view what) const {
   const std::size_t limit = LimitOf(use);
-  std::map<std::string, std::string> metadata{{"needed", absl::StrCat(bytes)},
-                                              {"maximum", absl::StrCat(limit)},
-                                              {"unit", "bytes"}};
-  const std::string needs = absl::StrCat(std::string(what), " needs ", InWords(bytes), " of ",
-                                         options_.name);
+  std::map<std::string, std::string> metadata{
+      {"needed", absl::StrCat(bytes)}, {"maximum", absl::StrCat(limit)}, {"unit", "bytes"}};
+  const std::string needs =
+      absl::StrCat(std::string(what), " needs ", InWords(bytes), " of ", options_.name);
   if (bytes > limit) {
-    return WithDetails(
-        absl::ResourceExhaustedError(absl::StrCat(
-            needs, ", and the server has ", InWords(limit), " for all; ask for less, or give it more with ",
-            options_.flag)),
-        {.reason = "TOO_LARGE_FOR_MEMORY", .metadata = std::move(metadata)});
+    return WithDetails(absl::ResourceExhaustedError(absl::StrCat(
+                           needs, ", and the server has ", InWords(limit),
+                           " for all; ask for less, or give it more with ", options_.flag)),
+                       {.reason = "TOO_LARGE_FOR_MEMORY", .metadata = std::move(metadata)});
   }
   std::string uses;
   std::size_t total = 0;
@@ -202,9 +198,9 @@ absl::Status MemoryBudget::Refusal(MemoryUse use, std::size_t bytes,
   }
   metadata["used"] = absl::StrCat(total);
   return WithDetails(
-      absl::ResourceExhaustedError(absl::StrCat(
-          needs, "; ", InWords(total), " of ", InWords(options_.bytes), " are in use: ", uses,
-          "; try again when others look at less")),
+      absl::ResourceExhaustedError(absl::StrCat(needs, "; ", InWords(total), " of ",
+                                                InWords(options_.bytes), " are in use: ", uses,
+                                                "; try again when others look at less")),
       {.reason = "MEMORY_BUDGET", .metadata = std::move(metadata), .retry_after = kRetryAfter});
 }
 

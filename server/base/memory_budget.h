@@ -1,6 +1,7 @@
 // How much memory the process may use for what its clients ask for, and what it is used for. Each
 // use is a reservation that somebody owns, made before the memory is allocated; where there is no
-// room, what is only cached goes first, the least recently used before others. Safe from any thread.
+// room, what is only cached goes first, the least recently used before others. Safe from any
+// thread.
 #pragma once
 
 #include <array>
@@ -92,7 +93,9 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
    public:
     Member() = default;
     Member(std::shared_ptr<MemoryBudget> budget, Cache* cache);
-    Member(Member&& other) noexcept { std::swap(budget_, other.budget_), std::swap(cache_, other.cache_); }
+    Member(Member&& other) noexcept {
+      std::swap(budget_, other.budget_), std::swap(cache_, other.cache_);
+    }
     Member& operator=(Member&&) = delete;
     ~Member();
 

@@ -104,12 +104,10 @@ class EglContext final : public Context {
   // Robust if the driver offers that: a context that tells when the device was reset. Else one that
   // does not.
   void Make(EGLConfig config) {
-    const std::vector<EGLint> plain = {EGL_CONTEXT_MAJOR_VERSION,
-                                       4,
-                                       EGL_CONTEXT_MINOR_VERSION,
-                                       5,
-                                       EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                       EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
+    const std::vector<EGLint> plain = {
+        EGL_CONTEXT_MAJOR_VERSION,       4,
+        EGL_CONTEXT_MINOR_VERSION,       5,
+        EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
     const auto make = [&](std::initializer_list<EGLint> more) {
       std::vector<EGLint> attributes = plain;
       attributes.insert(attributes.end(), more);

@@ -21,8 +21,8 @@ class DeviceMemory {
   DeviceMemory(const DeviceMemory&) = delete;
   DeviceMemory& operator=(const DeviceMemory&) = delete;
 
-  // For an object that this thread is about to make. Throws base::FailedAllocation if there is no room,
-  // also after what is unused has gone.
+  // For an object that this thread is about to make. Throws base::FailedAllocation if there is no
+  // room, also after what is unused has gone.
   static base::MemoryReservation Reserve(std::size_t bytes);
 
  private:

@@ -130,8 +130,9 @@ void Lane::Run() {
   absl::StatusOr<std::unique_ptr<FrameSource>> source = not_made();
   std::unique_lock lock(mutex_);
   while (true) {
-    changed_.wait(lock,
-                  [this] { return stopping_ || source_is_lost_ || frees_.has_value() || work_ != nullptr; });
+    changed_.wait(lock, [this] {
+      return stopping_ || source_is_lost_ || frees_.has_value() || work_ != nullptr;
+    });
     if (std::exchange(source_is_lost_, false)) {
       lock.unlock();
       source = not_made();

@@ -162,14 +162,14 @@ void RenderLoop::RenderImage(ImageJob job) {
 
 void RenderLoop::Run(const FrameSourceFactory& make_unguarded, std::promise<absl::Status> started) {
   const FrameSourceFactory make_source = GuardedSources(
-      make_unguarded, {.memory = options_.memory != nullptr ? options_.memory
-                                                            : base::MemoryBudget::Unlimited(),
-                       .generation = device_generation_,
-                       .on_device_lost = [this](std::uint64_t generation) {
-                         if (generation != device_generation_) return;  // that is known
-                         device_lost_ = true;
-                         wake_.Notify();
-                       }});
+      make_unguarded,
+      {.memory = options_.memory != nullptr ? options_.memory : base::MemoryBudget::Unlimited(),
+       .generation = device_generation_,
+       .on_device_lost = [this](std::uint64_t generation) {
+         if (generation != device_generation_) return;  // that is known
+         device_lost_ = true;
+         wake_.Notify();
+       }});
   auto source = make_source(nullptr);
   if (source.ok()) {
     device_ = (*source)->Device();
@@ -246,8 +246,8 @@ bool RenderLoop::Recover(const FrameSourceFactory& make_source, const std::vecto
     telemetry::Counted().device_losses.Add();
     const std::optional<Clock::time_point> at = losses_.Lost(Clock::now());
     if (!at.has_value()) {
-      why = absl::UnavailableError(absl::StrCat(
-          "the device was lost too often and is given up: ", why.message()));
+      why = absl::UnavailableError(
+          absl::StrCat("the device was lost too often and is given up: ", why.message()));
       spdlog::critical("{}", std::string(why.message()));
       if (options_.on_device_given_up) options_.on_device_given_up(why);
       return false;

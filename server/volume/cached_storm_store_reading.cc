@@ -53,9 +53,7 @@ absl::Status Hangs(const HungRead& hung) {
       absl::DeadlineExceededError(
           absl::StrCat(hung.file, ": nothing has come for ", std::lround(hung.seconds),
                        " s, its storage does not answer; what is in memory can still be shown")),
-      {.reason = "STORAGE_HANGS",
-       .metadata = {{"file", hung.file}},
-       .retry_after = kRetryAfter});
+      {.reason = "STORAGE_HANGS", .metadata = {{"file", hung.file}}, .retry_after = kRetryAfter});
 }
 
 // Fields with their share of the budget, which lasts as long as somebody holds them.
@@ -110,8 +108,7 @@ CachedStormStore::Fields CachedStormStore::WaitFor(Lock& lock,
   listener->progress = progress;
   if (progress) shared->listeners.push_back(listener);
   changed_.notify_all();  // the reading thread; a paused read-ahead of this time may now go on
-  Activity& activity =
-      shared->purpose == Purpose::kAsked ? reading_asked_ : reading_ahead_;
+  Activity& activity = shared->purpose == Purpose::kAsked ? reading_asked_ : reading_ahead_;
   while (!shared->result.has_value()) {
     const std::optional<HungRead> hung = HungIn(activity);
     if (ending_ || hung.has_value()) {
@@ -221,21 +218,21 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
   const auto read_counted = [&]() -> Fields {
     auto counted = std::make_shared<CountedFields>();
     base::MemoryReservation scratch;
-    const std::string what = absl::StrCat("storm '", place.storm->info.id, "', a time of ",
-                                          file.cells.x, " x ", file.cells.y, " x ", file.cells.z,
-                                          " cells,");
+    const std::string what =
+        absl::StrCat("storm '", place.storm->info.id, "', a time of ", file.cells.x, " x ",
+                     file.cells.y, " x ", file.cells.z, " cells,");
     if (options_.memory != nullptr) {
       base::MemoryBudget& memory = *options_.memory;
       const ReadMemory needs = MemoryFor(file, grid);
-      THUNDERHEAD_ASSIGN_OR_RETURN(counted->reserved, memory.Reserve(base::MemoryUse::kFields,
-                                                                     needs.fields, what, urgency));
+      THUNDERHEAD_ASSIGN_OR_RETURN(
+          counted->reserved, memory.Reserve(base::MemoryUse::kFields, needs.fields, what, urgency));
       THUNDERHEAD_ASSIGN_OR_RETURN(
           scratch, memory.Reserve(base::MemoryUse::kReading, needs.scratch, what, urgency));
     }
-    THUNDERHEAD_ASSIGN_OR_RETURN(
-        counted->fields, file.reader->Read(source.record, grid, [&](double share) {
-          return Checkpoint(read, activity, share);
-        }));
+    THUNDERHEAD_ASSIGN_OR_RETURN(counted->fields,
+                                 file.reader->Read(source.record, grid, [&](double share) {
+                                   return Checkpoint(read, activity, share);
+                                 }));
     if (options_.memory != nullptr) {
       scratch = {};
       THUNDERHEAD_RETURN_IF_ERROR(

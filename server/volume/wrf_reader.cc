@@ -100,8 +100,8 @@ absl::Status TimeReader::ReadVariable(const std::string& variable, std::size_t c
   // Before memory is taken for it.
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::size_t length, file_.RecordLength(variable));
   if (length != cells) {
-    return absl::DataLossError(absl::StrCat(file_.Path(), ": ", variable, " now has ",
-                                            length, " values a time where it had ", cells,
+    return absl::DataLossError(absl::StrCat(file_.Path(), ": ", variable, " now has ", length,
+                                            " values a time where it had ", cells,
                                             "; the file was replaced: restart to read it anew"));
   }
   THUNDERHEAD_RETURN_IF_ERROR(file_.ReadRecord(variable, record_, values));

@@ -38,8 +38,7 @@ TEST(DeviceMemoryTest, ObjectsCountAsLongAsTheyLive) {
     const Texture2DArray array(GL_RG32F, glm::ivec2(4), 3);
     const Buffer buffer(1000, nullptr, 0);
     const Texture2D mips = Texture2D::WithMips(GL_RGBA8, glm::ivec2(64), Edge::kClamp);
-    const std::size_t others =
-        volume.Bytes() + array.Bytes() + buffer.Bytes() + mips.Bytes();
+    const std::size_t others = volume.Bytes() + array.Bytes() + buffer.Bytes() + mips.Bytes();
     EXPECT_EQ(others, 8U * 8 * 8 * 2 + 4 * 4 * 8 * 3 + 1000 + 64 * 64 * 4 * 4 / 3);
     EXPECT_EQ(budget->Used(MemoryUse::kDrawing), others + kTextureBytes);
     texture = Texture2D();

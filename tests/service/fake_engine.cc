@@ -137,7 +137,8 @@ class FakeFrameSource final : public session::FrameSource {
         turn_->GiveBack();
       }
     } while (left_ms > 0.0);
-    if (scene.display.exposure_ev > machine_->loses_above_exposure_ev || TakeOne(machine_->losses)) {
+    if (scene.display.exposure_ev > machine_->loses_above_exposure_ev ||
+        TakeOne(machine_->losses)) {
       return gl::DeviceLost();
     }
     if (scene.display.exposure_ev > machine_->fails_above_exposure_ev) {

@@ -14,9 +14,9 @@ namespace thunderhead::testing {
 
 ServedProgram::ServedProgram(const std::string& program, const std::string& storm,
                              const std::string& state, const std::vector<std::string>& more) {
-  std::vector<std::string> words = {program, "serve", "--device", "software", "--data", storm,
-                                    "--http", "127.0.0.1:0", "--grpc", "127.0.0.1:0",
-                                    "--state", state};
+  std::vector<std::string> words = {program,  "serve",       "--device", "software",
+                                    "--data", storm,         "--http",   "127.0.0.1:0",
+                                    "--grpc", "127.0.0.1:0", "--state",  state};
   words.insert(words.end(), more.begin(), more.end());
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());

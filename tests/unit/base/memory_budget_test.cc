@@ -85,8 +85,8 @@ TEST(MemoryBudgetTest, WhatNeverFitsIsNotToBeTriedAgain) {
 
 TEST(MemoryBudgetTest, CachesMakeRoomTheLeastRecentlyUsedFirst) {
   const auto budget = MemoryBudget::Make({.bytes = 40 * kMib});
-  const Kept newer(budget, 5);   // used at 5 and 15 s
-  const Kept older(budget, 0);   // at 0 and 10 s
+  const Kept newer(budget, 5);  // used at 5 and 15 s
+  const Kept older(budget, 0);  // at 0 and 10 s
   const auto more = budget->Reserve(MemoryUse::kFields, 15 * kMib, "it");
   ASSERT_TRUE(more.ok()) << more.status();
   EXPECT_EQ(older.Left(), 1U);
@@ -131,8 +131,8 @@ TEST(MemoryBudgetTest, WhoIsPatientGetsWhatOthersGiveBackWhenTheyAreAsked) {
     held = {};
     budget->Answer(budget->Refusals());
   });
-  EXPECT_TRUE(budget->Reserve(MemoryUse::kFields, 50 * kMib, "it", MemoryBudget::Urgency::kPatient)
-                  .ok());
+  EXPECT_TRUE(
+      budget->Reserve(MemoryUse::kFields, 50 * kMib, "it", MemoryBudget::Urgency::kPatient).ok());
   owner.join();
   budget->OnPressure({});
 }
@@ -148,9 +148,7 @@ TEST(MemoryBudgetTest, ARefusalThrownIsWhatTheWorkReturns) {
 // A folder that stands for the root of a system.
 class MachineMemoryTest : public ::testing::Test {
  protected:
-  MachineMemoryTest() {
-    Write("/proc/meminfo", "MemTotal:       16000000 kB\nMemFree:  1 kB\n");
-  }
+  MachineMemoryTest() { Write("/proc/meminfo", "MemTotal:       16000000 kB\nMemFree:  1 kB\n"); }
   ~MachineMemoryTest() override { std::filesystem::remove_all(root_); }
 
   void Write(const std::string& path, const std::string& text) {

@@ -170,7 +170,8 @@ TEST_F(StormMemory, WhatNobodyHoldsGoesFirst) {
     ASSERT_TRUE(store->Get("storm.cube", time, {}).ok()) << time;
     EXPECT_LE(budget->Used(), budget->Bytes());
   }
-  EXPECT_EQ(store->Peek("storm.cube", 0), held) << "what is held is not dropped: that frees nothing";
+  EXPECT_EQ(store->Peek("storm.cube", 0), held)
+      << "what is held is not dropped: that frees nothing";
   EXPECT_EQ(store->Peek("storm.cube", 1), nullptr);
   EXPECT_NE(store->Peek("storm.cube", kTimes - 1), nullptr);
 }
@@ -208,8 +209,8 @@ TEST_F(StormMemory, AStorageThatHangsIsNamedAndHoldsUpNothingThatIsInMemory) {
 }
 
 TEST_F(StormMemory, AStorageThatAnswersAgainGivesWhatWasAskedFor) {
-  const auto store = Open({Cube("far", kCells)},
-                          {.read_ahead = 0, .read_deadline = milliseconds(100)});
+  const auto store =
+      Open({Cube("far", kCells)}, {.read_ahead = 0, .read_deadline = milliseconds(100)});
   storage_->Hang();
   ASSERT_TRUE(absl::IsDeadlineExceeded(store->Get("far.cube", 0, {}).status()));
   storage_->Answer();
@@ -225,16 +226,15 @@ TEST_F(StormMemory, AStorageThatAnswersAgainGivesWhatWasAskedFor) {
 }
 
 TEST_F(StormMemory, AReadThatGoesOnSlowlyIsNotRefused) {
-  const auto store = Open({Cube("near", kCells)},
-                          {.read_ahead = 0, .read_deadline = milliseconds(300)});
+  const auto store =
+      Open({Cube("near", kCells)}, {.read_ahead = 0, .read_deadline = milliseconds(300)});
   // Several wait behind one another, in all for longer than the deadline.
   std::vector<std::jthread> callers;
   std::atomic<int> given = 0;
   for (int time = 0; time < 6; ++time) {
     callers.emplace_back([&, time] {
-      const auto fields = store->Get("near.cube", time, [](double) {
-        std::this_thread::sleep_for(milliseconds(100));
-      });
+      const auto fields = store->Get(
+          "near.cube", time, [](double) { std::this_thread::sleep_for(milliseconds(100)); });
       if (fields.ok()) ++given;
     });
   }
