@@ -38,20 +38,29 @@ void CorrectorPool::DropUnused() {
   });
 }
 
-absl::Status CorrectorPool::MakeRoom() {
-  if (kept_.size() < max_correctors_) return absl::OkStatus();
+// The end if all are busy or claimed.
+std::list<CorrectorPool::Kept>::iterator CorrectorPool::OldestIdle() {
   const auto idle_ms = [](const Kept& kept) {
     return kept.IsClaimed() ? -1.0 : kept.since_traced.ElapsedMs();
   };
   const auto oldest =
       std::max_element(kept_.begin(), kept_.end(),
                        [&](const Kept& a, const Kept& b) { return idle_ms(a) < idle_ms(b); });
-  if (idle_ms(*oldest) < 1e3 * busy_s_) {
-    return absl::ResourceExhaustedError(
-        absl::StrCat("the server traces the light of ", kept_.size(), " other scenes already"));
-  }
+  if (oldest == kept_.end() || idle_ms(*oldest) < 1e3 * busy_s_) return kept_.end();
+  return oldest;
+}
+
+bool CorrectorPool::DropOldest() {
+  const auto oldest = OldestIdle();
+  if (oldest == kept_.end()) return false;
   kept_.erase(oldest);
-  return absl::OkStatus();
+  return true;
+}
+
+absl::Status CorrectorPool::MakeRoom() {
+  if (kept_.size() < max_correctors_ || DropOldest()) return absl::OkStatus();
+  return absl::ResourceExhaustedError(
+      absl::StrCat("the server traces the light of ", kept_.size(), " other scenes already"));
 }
 
 void CorrectorPool::Publish(Kept& kept, std::int64_t wanted_paths) {
@@ -79,6 +88,7 @@ absl::StatusOr<LightProgress> CorrectorPool::Trace(
         Kept{std::move(corrector), std::make_unique<TracedLights::Entry>(lights_, scene, fields)});
   }
   if (claim != nullptr) *claim = kept->claim;
+  kept->since_traced.Restart();  // busy from now on
   kept->corrector->LookAs(scene);
   THUNDERHEAD_RETURN_IF_ERROR(kept->corrector->Step());
   kept->since_traced.Restart();

@@ -4,9 +4,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <list>
 #include <memory>
 #include <utility>
-#include <vector>
 
 #include "absl/status/statusor.h"
 #include "accuracy/light_corrector.h"
@@ -45,6 +45,10 @@ class CorrectorPool {
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
       LightClaim* claim = nullptr, std::int64_t wanted_paths = kTracedPaths);
 
+  // Drops the one that was traced longest ago, unless all are busy or claimed; false then. May be
+  // called while another is traced.
+  bool DropOldest();
+
  private:
   struct Kept {
     std::unique_ptr<LightCorrector> corrector;
@@ -59,6 +63,7 @@ class CorrectorPool {
 
   Kept* Serving(const scene::Scene& scene,
                 const std::shared_ptr<const volume::HydrometeorFields>& fields);
+  std::list<Kept>::iterator OldestIdle();
   absl::Status MakeRoom();
   static void Publish(Kept& kept, std::int64_t wanted_paths);
   void DropUnused();
@@ -68,7 +73,7 @@ class CorrectorPool {
   double unused_s_;
   std::shared_ptr<gl::ProgramCache> programs_;
   std::shared_ptr<TracedLights> lights_;
-  std::vector<Kept> kept_;
+  std::list<Kept> kept_;
 };
 
 }  // namespace thunderhead::accuracy

@@ -12,6 +12,7 @@
 #include "absl/strings/str_join.h"
 #include "app/commands.h"
 #include "app/exit_codes.h"
+#include "base/loose_thread.h"
 #include "base/version.h"
 #include "spdlog/sinks/stdout_color_sinks.h"
 #include "spdlog/spdlog.h"
@@ -68,7 +69,13 @@ int Main(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return thunderhead::app::Main(argc, argv);
+    const int code = thunderhead::app::Main(argc, argv);
+    if (thunderhead::base::LooseThread::AnyLeftBehind()) {
+      spdlog::default_logger()->flush();
+      std::fflush(nullptr);
+      std::_Exit(code);
+    }
+    return code;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "thunderhead: %s\n", error.what());
     return static_cast<int>(thunderhead::app::ExitCode::kProgramError);

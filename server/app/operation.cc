@@ -31,6 +31,18 @@ int Taken(const sigset_t& signals) {
   return std::max(0, sigtimedwait(&signals, nullptr, &wait));
 }
 
+void AddBudget(const std::string& name, const base::MemoryBudget* budget,
+               std::vector<telemetry::Gauge>& gauges) {
+  if (budget == nullptr) return;
+  gauges.push_back({absl::StrCat("thunderhead_", name, "_bytes"), "What may be used of it in all",
+                    static_cast<double>(budget->Bytes())});
+  for (const base::MemoryUse use : base::kMemoryUses) {
+    gauges.push_back({absl::StrCat("thunderhead_", name, "_used_bytes"), "What is used of it",
+                      static_cast<double>(budget->Used(use)), "use",
+                      std::string(base::LabelOf(use))});
+  }
+}
+
 }  // namespace
 
 void AddOperationFlags(CLI::App& command, OperationFlags& flags) {
@@ -79,9 +91,11 @@ Operation::~Operation() {
   second_signal_.request_stop();
 }
 
-void Operation::SetServer(const service::Server* server) {
+void Operation::SetServer(const service::Server* server, Budget memory, Budget gpu) {
   const std::lock_guard lock(mutex_);
   server_ = server;
+  memory_ = std::move(memory);
+  gpu_memory_ = std::move(gpu);
   ended_ = server == nullptr;
 }
 
@@ -107,8 +121,13 @@ std::string Operation::MetricsText() {
     add("job_result_bytes", "Results of render jobs on the disk",
         static_cast<double>(load.jobs.result_bytes));
     add("draining", "1 from SIGTERM on", load.draining ? 1.0 : 0.0);
+    add("pictures_waiting", "Single pictures that wait to be drawn", load.waiting_pictures);
+    add("reading_stuck_seconds", "Since a storage that hangs gave something; 0 if none hangs",
+        load.reading_stuck_s);
     add("render_turn_seconds", "Since the turn of drawing under way began; 0 at rest", load.turn_s);
   }
+  AddBudget("memory_budget", memory_.get(), gauges);
+  AddBudget("gpu_memory_budget", gpu_memory_.get(), gauges);
   return telemetry::Expose(telemetry::Counted(), gauges);
 }
 
@@ -122,6 +141,9 @@ telemetry::Health Operation::HealthNow() {
     return {.alive = false,
             .ready = false,
             .state = absl::StrFormat("not making progress: drawing for %.0f s", load.turn_s)};
+  }
+  if (load.recovering) {
+    return {.alive = true, .ready = false, .state = "the device was lost; opening it again"};
   }
   if (load.draining) return {.alive = true, .ready = false, .state = "draining"};
   return {.alive = true, .ready = true, .state = "serving"};

@@ -10,6 +10,7 @@
 #include "CLI/CLI.hpp"
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "base/memory_budget.h"
 #include "service/server.h"
 #include "telemetry/operator_port.h"
 
@@ -36,8 +37,11 @@ class Operation {
   Operation(const Operation&) = delete;
   Operation& operator=(const Operation&) = delete;
 
-  // The server, which must outlive what follows until SetServer(nullptr).
-  void SetServer(const service::Server* server);
+  using Budget = std::shared_ptr<const base::MemoryBudget>;
+
+  // The server, which must outlive what follows until SetServer(nullptr), and what it counts its
+  // memory in.
+  void SetServer(const service::Server* server, Budget memory = nullptr, Budget gpu = nullptr);
 
   // Waits for SIGINT or SIGTERM, which this thread blocks; tells the clients, and returns when the
   // pictures that were begun are delivered, at the latest after the grace. From then on a second
@@ -53,6 +57,8 @@ class Operation {
   const OperationFlags flags_;
   std::mutex mutex_;
   const service::Server* server_ = nullptr;
+  Budget memory_;
+  Budget gpu_memory_;
   bool ended_ = false;
   std::unique_ptr<telemetry::OperatorPort> port_;
   std::jthread second_signal_;

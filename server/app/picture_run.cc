@@ -263,7 +263,8 @@ absl::Status PictureRun::Make(const std::vector<volume::CataloguedStorm>& storms
 
   volume::StormStoreOptions store_options;
   store_options.read_ahead = 0;
-  const auto store = std::make_shared<volume::CachedStormStore>(storms, store_options);
+  const std::shared_ptr<volume::StormStore> store = volume::CachedStormStore::Owned(
+      std::make_shared<volume::CachedStormStore>(storms, store_options));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<service::Server> server,
                                StartLocalService(store, options_.device));
   std::stop_source ending;

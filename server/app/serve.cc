@@ -1,5 +1,8 @@
 #include <sys/resource.h>
+#include <unistd.h>
 
+#include <chrono>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <iostream>
@@ -125,7 +128,10 @@ absl::Status Serve(ServeFlags flags) {
   }
   RaiseFileLimit();
   volume::StormStoreOptions store_options;
-  store_options.byte_budget = static_cast<std::size_t>(flags.memory_budget_gib * (1 << 30));
+  const Budgets budgets = BudgetsOf(flags);
+  store_options.memory = budgets.memory;
+  store_options.byte_budget = budgets.memory->Bytes();
+  store_options.read_deadline = std::chrono::milliseconds(std::lround(1e3 * flags.read_deadline_s));
   store_options.live = LiveCatalogueOf(flags.catalogue);
   THUNDERHEAD_ASSIGN_OR_RETURN(const CloudsFolder clouds, CloudsFolder::Open(flags.clouds));
   THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<volume::StormStore> store,
@@ -141,6 +147,14 @@ absl::Status Serve(ServeFlags flags) {
   server_options.jobs = JobsOptionsOf(flags.jobs, state);
   server_options.clouds_folder = clouds.Path();
   server_options.render_loop = flags.render_loop;
+  server_options.render_loop.memory = budgets.memory;
+  server_options.render_loop.device_memory = {budgets.memory, budgets.gpu};
+  // Ends the wait for a signal; a supervisor starts the server anew.
+  const auto given_up = std::make_shared<absl::Status>();
+  server_options.render_loop.on_device_given_up = [given_up](const absl::Status& why) {
+    *given_up = why;
+    kill(getpid(), SIGTERM);
+  };
   server_options.address = ToString(grpc);
   server_options.tls = flags.tls;
   server_options.door = door;
@@ -148,7 +162,9 @@ absl::Status Serve(ServeFlags flags) {
   server_options.sessions = flags.sessions;
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const std::unique_ptr<service::Server> server,
-      service::Server::Start(server_options, store, session::GlFrameSources(flags.device)));
+      service::Server::Start(server_options, store,
+                             session::GlFrameSources(flags.device, {.memory = budgets.memory,
+                                                                    .gpu_memory = budgets.gpu})));
   gateway::GatewayOptions gateway_options = flags.gateway;
   gateway_options.address = http.host;
   gateway_options.port = http.port;
@@ -167,14 +183,14 @@ absl::Status Serve(ServeFlags flags) {
   std::cout << "Thunderhead is ready at " << (flags.tls.certificate.empty() ? "http" : "https")
             << "://" << ToString(http) << "/ (gRPC " << ToString(grpc) << ")" << std::endl;
   std::thread warm_up([channel, door] { WarmUp(channel, *door); });
-  operation->SetServer(server.get());
+  operation->SetServer(server.get(), budgets.memory, budgets.gpu);
   operation->WaitAndDrain(signals, *server);
   operation->SetServer(nullptr);
   // First, because its calls to the service must end before the service does.
   gateway.reset();
   server->Shutdown();
   warm_up.join();
-  return absl::OkStatus();
+  return *given_up;
 }
 
 }  // namespace

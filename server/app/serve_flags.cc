@@ -2,12 +2,14 @@
 
 #include <arpa/inet.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "access/secret_file.h"
 #include "app/audit_log.h"
+#include "base/machine_memory.h"
 #include "base/status.h"
 
 namespace thunderhead::app {
@@ -15,6 +17,13 @@ namespace {
 
 constexpr char kWho[] = "Who may come";
 constexpr char kHowMuch[] = "Limits; what is beyond them is refused with the time to try again";
+
+constexpr std::size_t kLeastBudget = std::size_t{64} << 20U;
+// Where the system does not tell how much there is.
+constexpr std::size_t kSomeMemory = std::size_t{4} << 30U;
+constexpr std::size_t kGpuMemory = std::size_t{4} << 30U;
+// Of a budget that fields share with GL objects, as no GPU draws: they would leave no room.
+constexpr double kKeptForDrawing = 0.4;
 
 bool IsLoopback(const std::string& host) {
   in_addr v4{};
@@ -102,6 +111,26 @@ void AddLimitFlags(CLI::App& serve, ServeFlags& flags) {
            "MiB of gRPC's buffers, all connections together");
 }
 
+// Bytes, or with a unit: 8GiB.
+void AddMemoryFlag(CLI::App& serve, const std::string& name, std::uint64_t& bytes,
+                   const std::string& help) {
+  serve.add_option(name, bytes, help)
+      ->transform(CLI::AsSizeValue(false))
+      ->check(CLI::Range(std::uint64_t{kLeastBudget}, std::uint64_t{1} << 50U))
+      ->group(kHowMuch);
+}
+
+void AddMemoryFlags(CLI::App& serve, ServeFlags& flags) {
+  AddMemoryFlag(
+      serve, "--memory-budget", flags.memory_bytes,
+      "Memory for storms, pictures and tracing, and for drawing where no GPU does it; e.g. "
+      "8GiB; by default half of what the machine or the cgroup has");
+  AddMemoryFlag(serve, "--gpu-memory-budget", flags.gpu_memory_bytes,
+                "The GPU's memory for drawing; by default 4GiB");
+  AddLimit(serve, "--read-deadline", flags.read_deadline_s, 0.1, 86400,
+           "Seconds for which a storage may give nothing of a storm before it is taken to hang");
+}
+
 absl::Status CheckReachOfMetrics(const std::string& metrics) {
   if (metrics.empty()) return absl::OkStatus();
   THUNDERHEAD_ASSIGN_OR_RETURN(const Address address, ParseAddress("--metrics", metrics));
@@ -131,14 +160,24 @@ void AddServeFlags(CLI::App& serve, ServeFlags& flags) {
       "--state", flags.state,
       "Folder in which sessions and render jobs outlive the server, or 'none'; by default "
       "$STATE_DIRECTORY, else thunderhead in $XDG_STATE_HOME or ~/.local/state");
-  serve.add_option("--memory-budget", flags.memory_budget_gib, "GiB of storms kept in memory")
-      ->check(CLI::Range(0.01, 1e6))
-      ->capture_default_str();
+  AddMemoryFlags(serve, flags);
   AddCatalogueFlags(serve, flags.catalogue);
   AddOperationFlags(serve, flags.operation);
   AddAccessFlags(serve, flags);
   AddLimitFlags(serve, flags);
   AddJobsFlags(serve, flags.jobs);
+}
+
+Budgets BudgetsOf(const ServeFlags& flags) {
+  const std::size_t machine = base::MachineMemoryBytes();
+  std::size_t bytes = flags.memory_bytes;
+  if (bytes == 0) bytes = std::max(machine == 0 ? kSomeMemory : machine / 2, kLeastBudget);
+  const std::size_t gpu_bytes = flags.gpu_memory_bytes == 0 ? kGpuMemory : flags.gpu_memory_bytes;
+  return {base::MemoryBudget::Make({.bytes = bytes,
+                                    .kept_for_drawing = static_cast<std::size_t>(
+                                        kKeptForDrawing * static_cast<double>(bytes))}),
+          base::MemoryBudget::Make(
+              {.name = "GPU memory", .flag = "--gpu-memory-budget", .bytes = gpu_bytes})};
 }
 
 absl::StatusOr<std::shared_ptr<access::Door>> MakeDoor(const ServeFlags& flags) {

@@ -2,6 +2,7 @@
 // for.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "app/catalogue_flags.h"
 #include "app/jobs_flags.h"
 #include "app/operation.h"
+#include "base/memory_budget.h"
 #include "gateway/gateway.h"
 #include "service/server.h"
 #include "session/render_loop.h"
@@ -28,7 +30,9 @@ struct ServeFlags {
   std::string page;
   std::string clouds;
   std::string state;
-  double memory_budget_gib = 2.0;
+  std::uint64_t memory_bytes = 0;      // 0: a share of the machine's
+  std::uint64_t gpu_memory_bytes = 0;  // 0: by what the driver tells
+  double read_deadline_s = 60.0;
   CatalogueFlags catalogue;
   OperationFlags operation;
   JobsFlags jobs;
@@ -55,6 +59,13 @@ struct ServeFlags {
   int max_message_kib = 1024;
   int grpc_memory_mib = 1024;
 };
+
+// The budgets of --memory-budget and --gpu-memory-budget.
+struct Budgets {
+  std::shared_ptr<base::MemoryBudget> memory;
+  std::shared_ptr<base::MemoryBudget> gpu;
+};
+Budgets BudgetsOf(const ServeFlags& flags);
 
 void AddServeFlags(CLI::App& serve, ServeFlags& flags);
 

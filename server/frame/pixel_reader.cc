@@ -4,6 +4,7 @@
 
 #include "base/status.h"
 #include "gl/device.h"
+#include "gl/device_faults.h"
 
 namespace thunderhead::frame {
 namespace {
@@ -25,6 +26,10 @@ absl::StatusOr<std::vector<std::uint8_t>> PixelReader::Rgb(const gl::Texture2D& 
     buffer_ = gl::Buffer(bytes, nullptr, kMapped | GL_CLIENT_STORAGE_BIT);
     mapped_ = static_cast<const std::uint8_t*>(
         glMapNamedBufferRange(buffer_.Get(), 0, static_cast<GLsizeiptr>(bytes), kMapped));
+    if (mapped_ == nullptr) {
+      buffer_ = gl::Buffer();
+      return gl::OutOfDeviceMemory();
+    }
   }
   const auto read = [&](int begin, int end) {
     const std::size_t offset = row_bytes * static_cast<std::size_t>(begin);

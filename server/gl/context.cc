@@ -5,6 +5,7 @@
 
 #include <charconv>
 #include <cstdlib>
+#include <initializer_list>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -83,27 +84,50 @@ class EglContext final : public Context {
         count == 0) {
       config = nullptr;  // EGL_KHR_no_config_context
     }
-    const EGLint context_attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                         4,
-                                         EGL_CONTEXT_MINOR_VERSION,
-                                         5,
-                                         EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                         EGL_NONE};
-    context_ = eglCreateContext(display_.Get(), config, EGL_NO_CONTEXT, context_attributes);
+    Make(config);
     if (context_ == EGL_NO_CONTEXT) {
       return absl::UnavailableError("it offers no OpenGL 4.5 core context");
     }
     if (eglMakeCurrent(display_.Get(), EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_FALSE) {
       return absl::UnavailableError("its context cannot be used without a surface");
     }
-    info_ = {std::move(device), GlString(GL_RENDERER), GlString(GL_VERSION)};
+    GLint strategy = GL_NO_RESET_NOTIFICATION;
+    glGetIntegerv(GL_RESET_NOTIFICATION_STRATEGY, &strategy);
+    info_ = {std::move(device), GlString(GL_RENDERER), GlString(GL_VERSION),
+             strategy == GL_LOSE_CONTEXT_ON_RESET};
     return absl::OkStatus();
   }
 
   const ContextInfo& Info() const override { return info_; }
 
  private:
+  // Robust if the driver offers that: a context that tells when the device was reset. Else one that
+  // does not.
+  void Make(EGLConfig config) {
+    const std::vector<EGLint> plain = {
+        EGL_CONTEXT_MAJOR_VERSION,       4,
+        EGL_CONTEXT_MINOR_VERSION,       5,
+        EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
+    const auto make = [&](std::initializer_list<EGLint> more) {
+      std::vector<EGLint> attributes = plain;
+      attributes.insert(attributes.end(), more);
+      attributes.push_back(EGL_NONE);
+      context_ = eglCreateContext(display_.Get(), config, EGL_NO_CONTEXT, attributes.data());
+      return context_ != EGL_NO_CONTEXT;
+    };
+    if (epoxy_egl_version(display_.Get()) >= 15 &&
+        make({EGL_CONTEXT_OPENGL_ROBUST_ACCESS, EGL_TRUE,
+              EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET})) {
+      return;
+    }
+    if (epoxy_has_egl_extension(display_.Get(), "EGL_EXT_create_context_robustness") &&
+        make({EGL_CONTEXT_OPENGL_ROBUST_ACCESS_EXT, EGL_TRUE,
+              EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT, EGL_LOSE_CONTEXT_ON_RESET_EXT})) {
+      return;
+    }
+    make({});
+  }
+
   SharedDisplay display_;
   EGLContext context_ = EGL_NO_CONTEXT;
   ContextInfo info_;
@@ -208,7 +232,8 @@ absl::StatusOr<std::unique_ptr<Context>> Context::Create(std::string_view device
   }
   if (context.ok()) {
     const ContextInfo& info = (*context)->Info();
-    spdlog::info("drawing on {}: {}, OpenGL {}", info.device, info.renderer, info.version);
+    spdlog::info("drawing on {}: {}, OpenGL {}{}", info.device, info.renderer, info.version,
+                 info.tells_of_loss ? "" : "; its driver does not tell when the device is reset");
   }
   return context;
 }

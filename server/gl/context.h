@@ -11,9 +11,10 @@
 namespace thunderhead::gl {
 
 struct ContextInfo {
-  std::string device;    // "software" or "gpu 0"
-  std::string renderer;  // GL_RENDERER
-  std::string version;   // GL_VERSION
+  std::string device;          // "software" or "gpu 0"
+  std::string renderer;        // GL_RENDERER
+  std::string version;         // GL_VERSION
+  bool tells_of_loss = false;  // gl/device_faults.h
 };
 
 // Owns an EGL display and context. Make it, use it and destroy it on one thread; it is current from

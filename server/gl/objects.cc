@@ -5,7 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "base/out_of_memory.h"
 #include "base/status.h"
+#include "gl/device_faults.h"
+#include "gl/device_memory.h"
 
 namespace thunderhead::gl {
 namespace internal {
@@ -71,6 +74,15 @@ std::size_t BytesPerTexel(GLenum internal_format) {
   }
 }
 
+namespace {
+
+std::size_t BytesOf(GLenum internal_format, const glm::ivec3& size) {
+  return BytesPerTexel(internal_format) * static_cast<std::size_t>(size.x) *
+         static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z);
+}
+
+}  // namespace
+
 Texture2D::Texture2D(GLenum internal_format, glm::ivec2 size, Edge edge)
     : Texture2D(internal_format, size, edge, 1) {}
 
@@ -79,18 +91,17 @@ Texture2D Texture2D::WithMips(GLenum internal_format, glm::ivec2 size, Edge edge
   while ((std::max(size.x, size.y) >> levels) > 0) ++levels;
   Texture2D texture(internal_format, size, edge, levels);
   glTextureParameteri(texture.Get(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-  // A third more, to within the rounding of odd sizes.
-  texture.bytes_ += texture.bytes_ / 3;
   return texture;
 }
 
 Texture2D::Texture2D(GLenum internal_format, glm::ivec2 size, Edge edge, int levels)
-    : name_(NewTexture(GL_TEXTURE_2D, edge)),
+    // Levels add a third, to within the rounding of odd sizes.
+    : bytes_(BytesOf(internal_format, {size, 1}) * (levels > 1 ? 4 : 3) / 3),
+      reserved_(DeviceMemory::Reserve(bytes_)),
+      name_(NewTexture(GL_TEXTURE_2D, edge)),
       internal_format_(internal_format),
       size_(size),
-      levels_(levels),
-      bytes_(BytesPerTexel(internal_format) * static_cast<std::size_t>(size.x) *
-             static_cast<std::size_t>(size.y)) {
+      levels_(levels) {
   glTextureStorage2D(name_.Get(), levels, internal_format, size.x, size.y);
 }
 
@@ -101,11 +112,11 @@ void Texture2D::Upload(GLenum format, GLenum type, const void* texels) {
 }
 
 Texture3D::Texture3D(GLenum internal_format, glm::ivec3 size, Filter filter, Edge edge)
-    : name_(NewTexture(GL_TEXTURE_3D, edge, filter)),
+    : bytes_(BytesOf(internal_format, size)),
+      reserved_(DeviceMemory::Reserve(bytes_)),
+      name_(NewTexture(GL_TEXTURE_3D, edge, filter)),
       size_(size),
-      internal_format_(internal_format),
-      bytes_(BytesPerTexel(internal_format) * static_cast<std::size_t>(size.x) *
-             static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z)) {
+      internal_format_(internal_format) {
   glTextureStorage3D(name_.Get(), 1, internal_format, size.x, size.y, size.z);
 }
 
@@ -133,12 +144,12 @@ void Texture3D::BindImage(GLuint unit, GLenum access) const {
 }
 
 Texture2DArray::Texture2DArray(GLenum internal_format, glm::ivec2 size, int layers)
-    : name_(NewTexture(GL_TEXTURE_2D_ARRAY, Edge::kClamp)),
+    : bytes_(BytesOf(internal_format, {size, layers})),
+      reserved_(DeviceMemory::Reserve(bytes_)),
+      name_(NewTexture(GL_TEXTURE_2D_ARRAY, Edge::kClamp)),
       size_(size),
       layers_(layers),
-      internal_format_(internal_format),
-      bytes_(BytesPerTexel(internal_format) * static_cast<std::size_t>(size.x) *
-             static_cast<std::size_t>(size.y) * static_cast<std::size_t>(layers)) {
+      internal_format_(internal_format) {
   glTextureStorage3D(name_.Get(), 1, internal_format, size.x, size.y, layers);
 }
 
@@ -183,8 +194,10 @@ Framebuffer::Framebuffer(std::initializer_list<const Texture2D*> colors, const T
     size_ = depth->Size();
   }
   const GLenum status = glCheckNamedFramebufferStatus(name, GL_DRAW_FRAMEBUFFER);
-  THUNDERHEAD_CHECK(status == GL_FRAMEBUFFER_COMPLETE,
-                    "framebuffer status " + std::to_string(status));
+  if (status == GL_FRAMEBUFFER_COMPLETE) return;
+  // A device that is lost, or has no memory for an attachment, is no mistake of ours.
+  if (absl::Status fault = FaultNow(); !fault.ok()) throw base::FailedAllocation(std::move(fault));
+  THUNDERHEAD_CHECK(false, "framebuffer status " + std::to_string(status));
 }
 
 void Framebuffer::Bind() const {
@@ -207,7 +220,8 @@ void Framebuffer::BindImages(GLuint unit) const {
   }
 }
 
-Buffer::Buffer(std::size_t bytes, const void* data, GLbitfield flags) : bytes_(bytes) {
+Buffer::Buffer(std::size_t bytes, const void* data, GLbitfield flags)
+    : bytes_(bytes), reserved_(DeviceMemory::Reserve(bytes)) {
   GLuint name = 0;
   glCreateBuffers(1, &name);
   name_ = Name<internal::DeleteBuffer>(name);

@@ -1,5 +1,7 @@
 // Owned OpenGL objects: textures, framebuffers, buffers. Each is freed by its destructor on the
-// thread of the context that made it. Uses direct state access (OpenGL 4.5). Knows no physics.
+// thread of the context that made it. Textures and buffers count in gl/device_memory.h before they
+// are made, and throw where there is no room. Uses direct state access (OpenGL 4.5). Knows no
+// physics.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -9,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/memory_budget.h"
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 
@@ -71,11 +74,12 @@ class Texture2D {
  private:
   Texture2D(GLenum internal_format, glm::ivec2 size, Edge edge, int levels);
 
+  std::size_t bytes_ = 0;
+  base::MemoryReservation reserved_;
   Name<internal::DeleteTexture> name_;
   GLenum internal_format_ = 0;
   glm::ivec2 size_{0};
   int levels_ = 1;
-  std::size_t bytes_ = 0;
 };
 
 enum class Filter { kLinear, kNearest };
@@ -103,10 +107,11 @@ class Texture3D {
   void BindImage(GLuint unit, GLenum access) const;
 
  private:
+  std::size_t bytes_ = 0;
+  base::MemoryReservation reserved_;
   Name<internal::DeleteTexture> name_;
   glm::ivec3 size_{0};
   GLenum internal_format_ = 0;
-  std::size_t bytes_ = 0;
 };
 
 // Immutable two-dimensional textures of one size, with linear filtering within each.
@@ -127,11 +132,12 @@ class Texture2DArray {
   std::vector<float> Download(int layer) const;
 
  private:
+  std::size_t bytes_ = 0;
+  base::MemoryReservation reserved_;
   Name<internal::DeleteTexture> name_;
   glm::ivec2 size_{0};
   int layers_ = 0;
   GLenum internal_format_ = 0;
-  std::size_t bytes_ = 0;
 };
 
 // A framebuffer with colour attachments, a depth attachment (GL_DEPTH_COMPONENT32F), or both, which
@@ -180,8 +186,9 @@ class Buffer {
   }
 
  private:
-  Name<internal::DeleteBuffer> name_;
   std::size_t bytes_ = 0;
+  base::MemoryReservation reserved_;
+  Name<internal::DeleteBuffer> name_;
 };
 
 // A vertex array; with no attributes it serves shaders that make their vertices from gl_VertexID.

@@ -23,8 +23,8 @@ absl::StatusOr<LinearFrame> RendererPool::Draw(
 
 SceneRenderer& RendererPool::Choose(
     const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields) {
-  const auto first_stage = [&](const std::unique_ptr<SceneRenderer>& renderer) {
-    return renderer->FirstStage(scene, fields);
+  const auto first_stage = [&](const Kept& kept) {
+    return kept.renderer->FirstStage(scene, fields);
   };
   auto best = std::max_element(
       renderers_.begin(), renderers_.end(),
@@ -32,19 +32,32 @@ SceneRenderer& RendererPool::Choose(
   // A scene that needs another extinction has nothing to share.
   if (best == renderers_.end() || first_stage(*best) <= scene::Stage::kExtinction) {
     if (renderers_.size() < max_renderers_) {
-      renderers_.push_back(std::make_unique<SceneRenderer>(programs_, registry_));
+      renderers_.push_back({std::make_unique<SceneRenderer>(programs_, registry_), {}});
     }
     best = renderers_.end() - 1;
   }
   std::rotate(renderers_.begin(), best, best + 1);
-  return *renderers_.front();
+  renderers_.front().since_used.Restart();
+  return *renderers_.front().renderer;
+}
+
+bool RendererPool::DropOldest() {
+  if (renderers_.size() < 2) return false;
+  renderers_.pop_back();
+  return true;
+}
+
+void RendererPool::DropUnusedFor(double seconds) {
+  std::erase_if(renderers_, [seconds](const Kept& kept) {
+    return kept.since_used.ElapsedMs() >= 1e3 * seconds;
+  });
 }
 
 void RendererPool::Shrink() {
   std::size_t bytes = 0;
-  for (const auto& renderer : renderers_) bytes += renderer->Bytes();
+  for (const Kept& kept : renderers_) bytes += kept.renderer->Bytes();
   while (renderers_.size() > 1 && bytes > max_bytes_) {
-    bytes -= renderers_.back()->Bytes();
+    bytes -= renderers_.back().renderer->Bytes();
     renderers_.pop_back();
   }
 }

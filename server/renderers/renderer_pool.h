@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "base/stopwatch.h"
 #include "renderers/scene_renderer.h"
 
 namespace thunderhead::renderers {
@@ -31,6 +32,12 @@ class RendererPool {
                                    const std::shared_ptr<const volume::HydrometeorFields>& fields,
                                    const DrawQuality& quality);
 
+  // Drops the least recently used renderer but the one that drew last, or draws now; false if there
+  // is none.
+  bool DropOldest();
+  // Drops those that have not drawn for so long; the frame may be gone with them.
+  void DropUnusedFor(double seconds);
+
  private:
   SceneRenderer& Choose(const scene::Scene& scene,
                         const std::shared_ptr<const volume::HydrometeorFields>& fields);
@@ -40,7 +47,11 @@ class RendererPool {
   std::size_t max_bytes_;
   std::shared_ptr<const TechniqueRegistry> registry_;
   std::shared_ptr<gl::ProgramCache> programs_;
-  std::vector<std::unique_ptr<SceneRenderer>> renderers_;  // the most recently used first
+  struct Kept {
+    std::unique_ptr<SceneRenderer> renderer;
+    base::Stopwatch since_used;
+  };
+  std::vector<Kept> renderers_;  // the most recently used first
 };
 
 }  // namespace thunderhead::renderers

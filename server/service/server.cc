@@ -168,6 +168,9 @@ class RunningServer final : public Server {
     load.cached_bytes = static_cast<double>(store_->CachedBytes());
     load.pictures = drain_.Pictures();
     load.turn_s = loop_->TurnSeconds();
+    load.waiting_pictures = static_cast<int>(loop_->WaitingImages());
+    if (const auto hung = store_->Hung(); hung.has_value()) load.reading_stuck_s = hung->seconds;
+    load.recovering = loop_->IsRecovering();
     load.draining = drain_.HasBegun();
     if (jobs_ != nullptr) load.jobs = jobs_->Load();
     return load;

@@ -46,9 +46,12 @@ struct ServerLoad {
   int sessions = 0;
   int viewers = 0;  // of sessions and own views
   int storms = 0;
-  double cached_bytes = 0.0;  // of storms' fields
-  int pictures = 0;           // single ones, begun and not yet delivered
-  double turn_s = 0.0;        // since the render loop's turn began; 0 while it waits for work
+  double cached_bytes = 0.0;     // of storms' fields
+  int pictures = 0;              // single ones, begun and not yet delivered
+  int waiting_pictures = 0;      // of them, for a lane
+  double reading_stuck_s = 0.0;  // since a storage that hangs gave something; 0: none hangs
+  bool recovering = false;       // the device was lost
+  double turn_s = 0.0;           // since the render loop's turn began; 0 while it waits for work
   bool draining = false;
   jobs::JobsLoad jobs;
 };

@@ -24,6 +24,7 @@ Problem ProblemOf(std::uint64_t scene_revision, const absl::Status& why) {
 }
 
 Problem UnreadableStorm(std::uint64_t scene_revision, const absl::Status& why) {
+  if (absl::IsResourceExhausted(why)) return ProblemOf(scene_revision, why);
   const bool gone = absl::IsNotFound(why);
   return {scene_revision, std::string(why.message()),
           gone ? Problem::Code::kStormGone : Problem::Code::kStormUnreadable};

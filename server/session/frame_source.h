@@ -15,6 +15,7 @@
 #include "accuracy/frame_quality.h"
 #include "accuracy/light_progress.h"
 #include "base/device_turn.h"
+#include "base/memory_budget.h"
 #include "frame/fine_image.h"
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
@@ -61,6 +62,7 @@ struct DisplayFrame {
   std::vector<StageTime> stages;
   Modelled modelled;
   std::optional<AccuracyReport> accuracy;
+  std::shared_ptr<const base::MemoryReservation> memory;  // that it counts in
 };
 
 // A picture at full quality, and its difference from one with half the slices.
@@ -124,6 +126,9 @@ class FrameSource {
   virtual absl::StatusOr<frame::FineImage> Fine() {
     return absl::UnimplementedError("this frame source has pictures of 8 bits only");
   }
+
+  // Gives back the memory of what it keeps for further pictures and has not drawn for so long.
+  virtual void FreeUnused(double /*unused_s*/) {}
 };
 
 // Makes a source on the thread that will use it. It takes `turn`, which must outlive it, for each

@@ -7,9 +7,12 @@
 #include "accuracy/corrector_pool.h"
 #include "accuracy/estimator.h"
 #include "accuracy/traced_lights.h"
+#include "base/out_of_memory.h"
 #include "base/status.h"
 #include "frame/tone_map.h"
 #include "gl/context.h"
+#include "gl/device.h"
+#include "gl/device_memory.h"
 #include "renderers/renderer_pool.h"
 
 namespace thunderhead::session {
@@ -20,13 +23,22 @@ struct Shared {
   std::shared_ptr<const renderers::TechniqueRegistry> registry =
       std::make_shared<renderers::TechniqueRegistry>(renderers::TechniqueRegistry::BuiltIn());
   std::shared_ptr<accuracy::TracedLights> lights = std::make_shared<accuracy::TracedLights>();
+  GlSourceOptions options;
 };
+
+// The budget that the GL objects of the thread's context count in.
+std::shared_ptr<base::MemoryBudget> BudgetOf(const GlSourceOptions& options) {
+  const auto& budget = gl::DrawsInSoftware() ? options.memory : options.gpu_memory;
+  return budget != nullptr ? budget : base::MemoryBudget::Unlimited();
+}
 
 class GlFrameSource final : public FrameSource {
  public:
   GlFrameSource(std::unique_ptr<gl::Context> context, Shared shared, base::DeviceTurn* turn)
       : context_(std::move(context)),
         shared_(std::move(shared)),
+        watch_(shared_.options.watch_device()),
+        memory_(BudgetOf(shared_.options), [this] { return DropOldest(); }),
         programs_(std::make_shared<gl::ProgramCache>(turn)),
         info_{context_->Info().device, context_->Info().renderer, context_->Info().version} {}
 
@@ -41,8 +53,7 @@ class GlFrameSource final : public FrameSource {
   absl::StatusOr<DisplayFrame> Draw(const scene::Scene& scene,
                                     const std::shared_ptr<const volume::HydrometeorFields>& fields,
                                     const FrameQuality& quality) override {
-    tone_mapped_.reset();
-    return programs_->Pieces().During([&]() -> absl::StatusOr<DisplayFrame> {
+    return Watched([&]() -> absl::StatusOr<DisplayFrame> {
       const Correction correction = CorrectionOf(scene, fields);
       THUNDERHEAD_ASSIGN_OR_RETURN(
           const renderers::LinearFrame linear,
@@ -55,8 +66,7 @@ class GlFrameSource final : public FrameSource {
   absl::StatusOr<CheckedFrame> DrawChecked(
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
-    tone_mapped_.reset();
-    return programs_->Pieces().During([&]() -> absl::StatusOr<CheckedFrame> {
+    return Watched([&]() -> absl::StatusOr<CheckedFrame> {
       const Correction correction = CorrectionOf(scene, fields);
       CheckedFrame checked;
       THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame coarse,
@@ -75,13 +85,15 @@ class GlFrameSource final : public FrameSource {
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
       std::int64_t wanted_paths, accuracy::LightClaim* claim) override {
     tone_mapped_.reset();
-    return correctors_.Trace(scene, fields, claim, wanted_paths);
+    auto progress =
+        base::OrOutOfMemory([&] { return correctors_.Trace(scene, fields, claim, wanted_paths); });
+    if (absl::Status fault = Look(); !fault.ok()) return fault;
+    return progress;
   }
 
   absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
                                     const scene::Scene& scene) override {
-    tone_mapped_.reset();
-    return programs_->Pieces().During([&]() -> absl::StatusOr<DisplayFrame> {
+    return Watched([&]() -> absl::StatusOr<DisplayFrame> {
       picture_ = frame::TextureOf(picture);
       THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped,
                                    picture_tone_mapper_.Map(picture_, scene));
@@ -100,12 +112,39 @@ class GlFrameSource final : public FrameSource {
         [&] { return tone_mapped_->mapper->MapFine(*tone_mapped_->linear); });
   }
 
+  void FreeUnused(double unused_s) override {
+    tone_mapped_.reset();
+    renderers_.DropUnusedFor(unused_s);
+    while (correctors_.DropOldest()) {
+    }
+  }
+
  private:
   // The picture drawn last, until anything else is drawn.
   struct Drawn {
     const gl::Texture2D* linear;
     frame::ToneMapper* mapper;
   };
+
+  // What happened to the device since the last look.
+  absl::Status Look() { return gl::StatusOf(watch_->Look()); }
+
+  bool DropOldest() { return renderers_.DropOldest() || correctors_.DropOldest(); }
+
+  // What `draw` returns, or why the device could not. Where the device has no memory left it is
+  // given back all that is kept for other pictures, once. A renderer that did not get all its
+  // memory is of no use.
+  template <typename Draw>
+  auto Watched(const Draw& draw) -> decltype(draw()) {
+    tone_mapped_.reset();
+    for (bool again = false;; again = true) {
+      auto drawn = base::OrOutOfMemory([&] { return programs_->Pieces().During(draw); });
+      if (absl::Status fault = Look(); !fault.ok()) drawn = std::move(fault);
+      if (!absl::IsResourceExhausted(drawn.status())) return drawn;
+      FreeUnused(0.0);
+      if (again || !gl::IsOutOfDeviceMemory(drawn.status())) return drawn;
+    }
+  }
 
   // Of a scene's light by traced paths; null without any.
   using Correction = accuracy::TracedLights::Found;
@@ -145,6 +184,8 @@ class GlFrameSource final : public FrameSource {
 
   std::unique_ptr<gl::Context> context_;  // must outlive the GL objects below
   const Shared shared_;
+  const std::unique_ptr<gl::DeviceWatch> watch_;
+  const gl::DeviceMemory memory_;  // of the GL objects below
   std::shared_ptr<gl::ProgramCache> programs_;
   renderers::RendererPool renderers_{shared_.registry, programs_};
   accuracy::CorrectorPool correctors_{programs_, shared_.lights};
@@ -165,11 +206,13 @@ std::vector<TechniqueInfo> TechniquesOf(const renderers::TechniqueRegistry& regi
   return techniques;
 }
 
-FrameSourceFactory GlFrameSources(const std::string& device) {
-  return [device, shared = Shared()](
-             base::DeviceTurn* turn) -> absl::StatusOr<std::unique_ptr<FrameSource>> {
-    THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<gl::Context> context, gl::Context::Create(device));
-    return std::make_unique<GlFrameSource>(std::move(context), shared, turn);
+FrameSourceFactory GlFrameSources(const std::string& device, GlSourceOptions options) {
+  return [device, shared = Shared{.options = std::move(options)}](base::DeviceTurn* turn) {
+    return base::OrOutOfMemory([&]() -> absl::StatusOr<std::unique_ptr<FrameSource>> {
+      THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<gl::Context> context,
+                                   gl::Context::Create(device));
+      return std::make_unique<GlFrameSource>(std::move(context), shared, turn);
+    });
   };
 }
 

@@ -2,11 +2,14 @@
 // FrameSource.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "base/memory_budget.h"
+#include "gl/device_faults.h"
 #include "renderers/technique_registry.h"
 #include "session/frame_source.h"
 
@@ -15,9 +18,17 @@ namespace thunderhead::session {
 // The available techniques, in the order in which to offer them.
 std::vector<TechniqueInfo> TechniquesOf(const renderers::TechniqueRegistry& registry);
 
+struct GlSourceOptions {
+  // What GL objects count in: of the machine where its processors draw, else of the GPU. Null:
+  // nothing is refused.
+  std::shared_ptr<base::MemoryBudget> memory;
+  std::shared_ptr<base::MemoryBudget> gpu_memory;
+  std::function<std::unique_ptr<gl::DeviceWatch>()> watch_device = gl::WatchDevice;
+};
+
 // Sources that draw on a device, each with a context of its own that it opens (gl::Context::Create)
 // on the calling thread, which must stay the one that draws. Light that one of them has traced is
 // shown by all.
-FrameSourceFactory GlFrameSources(const std::string& device);
+FrameSourceFactory GlFrameSources(const std::string& device, GlSourceOptions options = {});
 
 }  // namespace thunderhead::session

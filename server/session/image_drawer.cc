@@ -9,6 +9,7 @@
 #include "base/out_of_memory.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
+#include "gl/device_faults.h"
 
 namespace thunderhead::session {
 namespace {
@@ -128,10 +129,25 @@ absl::Status ImageDrawer::Draw(Begun& image, FrameSource& source) {
   return image.job.encode(*image.frame);
 }
 
+// A picture does not fail with a device that was lost, nor for memory that only others' renderers
+// keep, which give it back by then. More often it may itself be the reason.
+bool ImageDrawer::TriesAgain(Begun& image) {
+  constexpr int kMaxAttempts = 3;
+  const bool is_others = gl::IsDeviceLost(image.status) || absl::IsResourceExhausted(image.status);
+  const bool may_pass = base::DetailsOf(image.status).retry_after.has_value();
+  if (image.fields == nullptr || *image.job.cancelled || !is_others || !may_pass) return false;
+  if (++image.attempts >= kMaxAttempts) return false;
+  image.status = absl::OkStatus();
+  image.frame.reset();
+  image.phase = Phase::kToDraw;
+  return true;
+}
+
 bool ImageDrawer::Ends(Begun& image) {
   if (image.phase == Phase::kTracing) return EndsTracing(image);
   if (image.lane == nullptr || !image.lane->IsIdle()) return false;
   image.lane = nullptr;
+  if (TriesAgain(image)) return false;
   if (image.status.ok() && !image.frame.has_value()) {
     image.phase = Phase::kTracing;
     image.wanted_paths = source_.Estimator().PathsFor(*image.job.decided);

@@ -57,6 +57,7 @@ class ImageDrawer {
     std::shared_ptr<const volume::HydrometeorFields> fields;
     std::vector<StageTime> stages;  // before drawing
     std::int64_t wanted_paths = 0;
+    int attempts = 0;  // to draw it
     // By the lane.
     absl::Status status;
     std::optional<DisplayFrame> frame;
@@ -70,6 +71,8 @@ class ImageDrawer {
   bool Suits(const Lane& lane, bool quick) const { return quick || &lane == &lanes_.any; }
   void WorkIn(Lane& lane, Begun& image);
   void Begin(Lane& lane);
+  // True if it is to be drawn once more.
+  static bool TriesAgain(Begun& image);
   // True if it is done.
   bool Ends(Begun& image);
   bool EndsTracing(Begun& image);

@@ -93,6 +93,11 @@ void ImageQueue::DropCancelled() {
   }
 }
 
+std::size_t ImageQueue::Waiting() const {
+  const std::lock_guard lock(mutex_);
+  return waiting_.size();
+}
+
 void ImageQueue::RefuseAll() {
   std::deque<ImageJob> refused;
   {

@@ -64,6 +64,7 @@ class ImageQueue {
   std::optional<ImageJob> Take(const std::function<bool(const ImageJob&)>& suits);
   // Drops cancelled jobs and calls their `done`.
   void DropCancelled();
+  std::size_t Waiting() const;
   // Refuses all waiting and future jobs.
   void RefuseAll();
 
@@ -72,7 +73,7 @@ class ImageQueue {
   std::deque<ImageJob> Extract(const std::function<bool(const ImageJob&)>& is);
 
   const std::size_t max_waiting_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::deque<ImageJob> waiting_;
   bool refuses_ = false;
 };

@@ -9,6 +9,7 @@
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "base/thread_priority.h"
+#include "gl/device_faults.h"
 
 namespace thunderhead::session {
 
@@ -44,6 +45,23 @@ void Lane::Begin(Work work, Limits limits) {
   changed_.notify_all();
 }
 
+void Lane::FreeUnused(double unused_s) {
+  std::unique_lock lock(mutex_);
+  if (busy_) return;
+  busy_ = true;
+  frees_ = unused_s;
+  changed_.notify_all();
+  changed_.wait(lock, [this] { return !frees_.has_value(); });
+}
+
+void Lane::RenewSource() {
+  {
+    const std::lock_guard lock(mutex_);
+    source_is_lost_ = true;
+  }
+  changed_.notify_all();
+}
+
 bool Lane::WantsTurn() {
   const std::lock_guard lock(mutex_);
   if (device_ != Device::kWanted) return false;
@@ -72,6 +90,7 @@ double Lane::LongestPieceMs() const {
 
 absl::Status Lane::Ended() const {
   if (stopping_) return base::ShuttingDown();
+  if (source_is_lost_) return gl::DeviceLost();
   if (limits_.cancelled != nullptr && *limits_.cancelled) {
     return absl::CancelledError("the call was cancelled");
   }
@@ -107,10 +126,29 @@ void Lane::GiveBack() {
 
 void Lane::Run() {
   base::LowerPriority(niceness_);
-  absl::StatusOr<std::unique_ptr<FrameSource>> source = absl::UnavailableError("not made yet");
+  const auto not_made = [] { return absl::UnavailableError("not made yet"); };
+  absl::StatusOr<std::unique_ptr<FrameSource>> source = not_made();
   std::unique_lock lock(mutex_);
   while (true) {
-    changed_.wait(lock, [this] { return stopping_ || work_ != nullptr; });
+    changed_.wait(lock, [this] {
+      return stopping_ || source_is_lost_ || frees_.has_value() || work_ != nullptr;
+    });
+    if (std::exchange(source_is_lost_, false)) {
+      lock.unlock();
+      source = not_made();
+      lock.lock();
+      continue;
+    }
+    if (frees_.has_value()) {
+      const double unused_s = *frees_;
+      lock.unlock();
+      if (source.ok()) (*source)->FreeUnused(unused_s);
+      lock.lock();
+      frees_.reset();
+      busy_ = false;
+      changed_.notify_all();
+      continue;
+    }
     if (work_ == nullptr) return;
     const Work work = std::exchange(work_, nullptr);
     lock.unlock();

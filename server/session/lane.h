@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -42,6 +43,13 @@ class Lane {
   bool IsIdle() const;
   // The lane must be idle.
   void Begin(Work work, Limits limits);
+
+  // Gives back what its source keeps and has not drawn for so long, if the lane is idle; returns
+  // when that is done.
+  void FreeUnused(double unused_s);
+  // Ends the work, at its next piece, with gl::DeviceLost, and makes another source for what comes
+  // then: the device was lost.
+  void RenewSource();
 
   // True if its work waits to draw a piece. Lets work that was cancelled go on to its end.
   bool WantsTurn();
@@ -79,6 +87,8 @@ class Lane {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   bool stopping_ = false;
+  bool source_is_lost_ = false;
+  std::optional<double> frees_;  // what is unused for so many seconds
   Work work_;
   Limits limits_;
   bool busy_ = false;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/out_of_memory.h"
+#include "gl/device_faults.h"
 
 namespace thunderhead::session {
 
@@ -30,7 +31,8 @@ void LightTracer::TakeOutcome(Clock::time_point now) {
   if (found == wanted_.end() || found->second.request.scene != tracing_scene_) return;
   Wanted& wanted = found->second;
   if (wanted.request.claims) wanted.claim = std::move(outcome->claim);
-  if (absl::IsResourceExhausted(outcome->progress->status())) {
+  const absl::Status& failed = outcome->progress->status();
+  if (absl::IsResourceExhausted(failed) || gl::IsDeviceLost(failed)) {
     wanted.not_before = now + kTraceAgainAfter;
     return;
   }

@@ -56,6 +56,15 @@ absl::StatusOr<DisplayFrame> MeasuredSource::Tone(const picture::LinearPicture& 
   return base::OrOutOfMemory([&] { return source_->Tone(picture, scene); });
 }
 
+absl::StatusOr<frame::FineImage> MeasuredSource::Fine() {
+  return base::OrOutOfMemory([&] { return source_->Fine(); });
+}
+
+void MeasuredSource::Replace(std::unique_ptr<FrameSource> source) {
+  last_drawn_.reset();
+  source_ = std::move(source);
+}
+
 void MeasuredSource::Report(const std::string& view, const scene::Scene& scene,
                             const FrameQuality& quality, double total_ms,
                             const std::optional<double>& discretisation_error,

@@ -33,7 +33,11 @@ class MeasuredSource {
   // As FrameSource's.
   absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
                                     const scene::Scene& scene);
-  absl::StatusOr<frame::FineImage> Fine() { return source_->Fine(); }
+  absl::StatusOr<frame::FineImage> Fine();
+  void FreeUnused(double unused_s) { source_->FreeUnused(unused_s); }
+
+  // Another source from now on, as the device was lost; null: nothing is drawn until there is one.
+  void Replace(std::unique_ptr<FrameSource> source);
 
   // Reports a frame that another source drew.
   void Learn(const std::string& view, const scene::Scene& scene, const FrameQuality& quality,
@@ -52,7 +56,7 @@ class MeasuredSource {
               double total_ms, const std::optional<double>& discretisation_error,
               DisplayFrame* frame);
 
-  const std::unique_ptr<FrameSource> source_;
+  std::unique_ptr<FrameSource> source_;
   const accuracy::OfferTables tables_;
   accuracy::MachineCosts costs_{tables_};
   const accuracy::Offers offers_{tables_, costs_};

@@ -7,16 +7,21 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "base/error_details.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "base/thread_priority.h"
+#include "gl/device_faults.h"
+#include "session/guarded_source.h"
 #include "session/image_drawer.h"
 #include "session/lane.h"
 #include "session/light_tracer.h"
 #include "session/measured_source.h"
 #include "session/session_drawer.h"
 #include "session/turns.h"
+#include "spdlog/spdlog.h"
+#include "telemetry/metrics.h"
 
 namespace thunderhead::session {
 namespace {
@@ -51,6 +56,47 @@ class Lanes {
   const std::vector<Entry> all_;
 };
 
+// Who looks at a scene again within this time should find it as it was.
+constexpr double kUnused_s = 3.0;
+constexpr std::chrono::milliseconds kBetweenAnswers{500};
+
+// Asks for what is unused to be given back when a budget has no room. Sees the budgets' refusals as
+// long as it lives.
+class MemoryPressure {
+ public:
+  using Budgets = std::vector<std::shared_ptr<base::MemoryBudget>>;
+
+  MemoryPressure(const Budgets& budgets, base::WakeSignal& wake)
+      : budgets_(budgets), seen_(budgets.size()) {
+    for (const auto& budget : budgets_) budget->OnPressure([&wake] { wake.Notify(); });
+  }
+  ~MemoryPressure() {
+    for (const auto& budget : budgets_) budget->OnPressure({});
+  }
+  MemoryPressure(const MemoryPressure&) = delete;
+  MemoryPressure& operator=(const MemoryPressure&) = delete;
+
+  template <typename FreeUnused>
+  void Answer(const FreeUnused& free_unused) {
+    bool has_grown = false;
+    for (std::size_t i = 0; i < budgets_.size(); ++i) {
+      const std::uint64_t refusals = budgets_[i]->Refusals();
+      has_grown = has_grown || std::exchange(seen_[i], refusals) != refusals;
+    }
+    if (!has_grown) return;
+    if (Clock::now() >= next_) {
+      free_unused();
+      next_ = Clock::now() + kBetweenAnswers;
+    }
+    for (std::size_t i = 0; i < budgets_.size(); ++i) budgets_[i]->Answer(seen_[i]);
+  }
+
+ private:
+  const Budgets& budgets_;
+  std::vector<std::uint64_t> seen_;
+  Clock::time_point next_{};
+};
+
 std::optional<Clock::time_point> Earlier(const std::optional<Clock::time_point>& a,
                                          const std::optional<Clock::time_point>& b) {
   if (!a.has_value()) return b;
@@ -80,6 +126,7 @@ RenderLoop::RenderLoop(const RenderLoopOptions& options, volume::StormStore& sto
       store_(store),
       sessions_(sessions),
       wake_(wake),
+      losses_(options.losses),
       images_(options.max_waiting_images),
       reader_(std::make_unique<FieldsReader>(store, [&wake] { wake.Notify(); })),
       encoder_(std::make_unique<FrameEncoder>(options.encoder_threads, options.serialize_frame,
@@ -113,7 +160,16 @@ void RenderLoop::RenderImage(ImageJob job) {
   if (images_.Add(std::move(job))) wake_.Notify();
 }
 
-void RenderLoop::Run(const FrameSourceFactory& make_source, std::promise<absl::Status> started) {
+void RenderLoop::Run(const FrameSourceFactory& make_unguarded, std::promise<absl::Status> started) {
+  const FrameSourceFactory make_source = GuardedSources(
+      make_unguarded,
+      {.memory = options_.memory != nullptr ? options_.memory : base::MemoryBudget::Unlimited(),
+       .generation = device_generation_,
+       .on_device_lost = [this](std::uint64_t generation) {
+         if (generation != device_generation_) return;  // that is known
+         device_lost_ = true;
+         wake_.Notify();
+       }});
   auto source = make_source(nullptr);
   if (source.ok()) {
     device_ = (*source)->Device();
@@ -136,7 +192,14 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
   ImageDrawer image_drawer(options_.image_limits, images_, measured, preparation_, light_tracer,
                            {lanes->quick_images, lanes->images});
   Turns turns;
+  MemoryPressure pressure(options_.device_memory, wake_);
+  const std::vector<Lane*> all_lanes{&lanes->tracing, &lanes->quick_images, &lanes->images};
   while (!stopping_) {
+    if (device_lost_.exchange(false) && !Recover(make_source, all_lanes, measured)) break;
+    pressure.Answer([&] {
+      measured.FreeUnused(kUnused_s);
+      for (Lane* lane : all_lanes) lane->FreeUnused(kUnused_s);
+    });
     turn_began_ = Clock::now().time_since_epoch().count();
     const std::vector<std::shared_ptr<Session>> sessions = sessions_.AllDrawn();
     drawer.ReleaseUnwatched(sessions);
@@ -173,6 +236,40 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
   }
   lanes.reset();
   image_drawer.EndAll(base::ShuttingDown());
+}
+
+bool RenderLoop::Recover(const FrameSourceFactory& make_source, const std::vector<Lane*>& lanes,
+                         MeasuredSource& source) {
+  recovering_ = true;
+  absl::Status why = gl::DeviceLost();
+  while (!stopping_) {
+    telemetry::Counted().device_losses.Add();
+    const std::optional<Clock::time_point> at = losses_.Lost(Clock::now());
+    if (!at.has_value()) {
+      why = absl::UnavailableError(
+          absl::StrCat("the device was lost too often and is given up: ", why.message()));
+      spdlog::critical("{}", std::string(why.message()));
+      if (options_.on_device_given_up) options_.on_device_given_up(why);
+      return false;
+    }
+    // What was made with a lost context is deleted before there is another.
+    ++device_generation_;
+    for (Lane* lane : lanes) lane->RenewSource();
+    source.Replace(nullptr);
+    const double pause_s = std::chrono::duration<double>(*at - Clock::now()).count();
+    spdlog::error("the device was lost; opening it again in {:.1f} s", std::max(pause_s, 0.0));
+    while (!stopping_ && Clock::now() < *at) wake_.Wait(*at);
+    if (stopping_) return false;
+    auto made = make_source(nullptr);
+    if (made.ok()) {
+      source.Replace(*std::move(made));
+      recovering_ = false;
+      return true;
+    }
+    why = made.status();
+    spdlog::error("the device cannot be opened: {}", std::string(why.message()));
+  }
+  return false;
 }
 
 }  // namespace thunderhead::session

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <future>
 #include <memory>
@@ -15,7 +16,9 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "accuracy/offer_tables.h"
+#include "base/memory_budget.h"
 #include "base/wake_signal.h"
+#include "session/device_losses.h"
 #include "session/fields_reader.h"
 #include "session/frame_encoder.h"
 #include "session/frame_planner.h"
@@ -28,6 +31,9 @@
 
 namespace thunderhead::session {
 
+class Lane;
+class MeasuredSource;
+
 struct RenderLoopOptions {
   PlannerTargets targets;
   std::size_t max_waiting_images = 1000;
@@ -38,6 +44,14 @@ struct RenderLoopOptions {
   std::size_t max_traced_sessions = 8;
   std::function<accuracy::OfferTables()> offer_tables = accuracy::BuiltInOfferTables;
   TruthSourceFactory make_truth_source = [] { return MakeReferenceTruthSource(); };
+  // What pictures count in; null: nothing is refused.
+  std::shared_ptr<base::MemoryBudget> memory;
+  // What GL objects count in; where one refuses, what sources keep is given back.
+  std::vector<std::shared_ptr<base::MemoryBudget>> device_memory;
+  LossLimits losses;
+  // Called once, on the loop's thread, when the device was lost too often: nothing is drawn any
+  // more.
+  std::function<void(const absl::Status& why)> on_device_given_up;
 };
 
 class RenderLoop {
@@ -62,6 +76,10 @@ class RenderLoop {
   // Since the turn of drawing under way began; 0 while the loop waits for work.
   double TurnSeconds() const;
 
+  // The device was lost, and is not ready again.
+  bool IsRecovering() const { return recovering_; }
+  std::size_t WaitingImages() const { return images_.Waiting(); }
+
   // Stops drawing after the current frame or piece. Returns at once.
   void RequestStop();
   // Waits for the current frame or piece, refuses the waiting pictures and ends every thread.
@@ -73,6 +91,9 @@ class RenderLoop {
 
   void Run(const FrameSourceFactory& make_source, std::promise<absl::Status> started);
   void DrawWith(std::unique_ptr<FrameSource> source, const FrameSourceFactory& make_source);
+  // After a loss of the device: returns when there is one again, false if it is given up.
+  bool Recover(const FrameSourceFactory& make_source, const std::vector<Lane*>& lanes,
+               MeasuredSource& source);
 
   const RenderLoopOptions options_;
   volume::StormStore& store_;
@@ -82,6 +103,10 @@ class RenderLoop {
   std::vector<TechniqueInfo> techniques_;
   std::shared_ptr<Preparation> preparation_;
   std::atomic<bool> stopping_{false};
+  std::atomic<std::uint64_t> device_generation_{0};  // devices made ready so far
+  std::atomic<bool> device_lost_{false};
+  std::atomic<bool> recovering_{false};
+  DeviceLosses losses_;
   std::atomic<Clock::rep> turn_began_{0};  // since the clock's epoch; 0: none is under way
 
   ImageQueue images_;

@@ -5,14 +5,30 @@
 #include <variant>
 
 #include "absl/strings/str_cat.h"
+#include "base/error_details.h"
 #include "base/log.h"
 #include "base/status.h"
+#include "gl/device_faults.h"
 #include "renderers/content.h"
 #include "scene/drawn_fields.h"
 #include "scene/ground.h"
 #include "scene/view.h"
 
 namespace thunderhead::session {
+namespace {
+
+// A scene that is drawn when the device is lost is drawn again, but so often only: it may be what
+// the device does not bear.
+constexpr int kMaxLosses = 2;
+
+// Where the reason of a failure passes.
+std::optional<Clock::time_point> TryAgainAt(const absl::Status& why) {
+  const auto after = base::DetailsOf(why).retry_after;
+  if (!after.has_value()) return std::nullopt;
+  return Clock::now() + *after;
+}
+
+}  // namespace
 
 SessionDrawer::SessionDrawer(const PlannerTargets& targets, const FieldsAccess& fields,
                              MeasuredSource& source, FrameEncoder& encoder, TruthTracer& tracer,
@@ -79,7 +95,7 @@ void SessionDrawer::ReleaseUnwatched(const std::vector<std::shared_ptr<Session>>
 void SessionDrawer::TakeRead(const Turn& turn) {
   const auto unreadable = turn.kept.fields.TakeRead();
   if (!unreadable.has_value()) return;
-  turn.kept.view.Failed(unreadable->revision);
+  turn.kept.view.Failed(unreadable->revision, TryAgainAt(unreadable->why));
   turn.session->hub().Publish(UnreadableStorm(unreadable->revision, unreadable->why));
 }
 
@@ -87,6 +103,7 @@ SessionWork SessionDrawer::NextWork(const Turn& turn, const NewestScene& newest)
   const auto decided = turn.kept.view.Decide(newest);
   if (!decided.ok()) turn.session->hub().Publish(ProblemOf(newest.revision, decided.status()));
   if (!decided.ok() || !decided->has_value()) return WaitUntil{};
+  if (turn.kept.view.TriesAgain(Clock::now())) turn.kept.fields.TryAgain();
   const auto drawable = turn.kept.fields.Drawable(**decided, turn.kept.view.shown_revision());
   return turn.kept.view.Next(newest, drawable, Clock::now(), source_.Last());
 }
@@ -209,6 +226,7 @@ absl::Status SessionDrawer::ShowTraced(const Turn& turn, const NewestScene& show
 
 void SessionDrawer::Send(const Turn& turn, const NewestScene& shown, bool refined,
                          DisplayFrame picture, std::optional<Refinement> refinement) {
+  turn.kept.losses = 0;
   turn.kept.fields.AddStages(&picture.stages);
   DrawnFrame frame{.session = turn.session,
                    .scene_revision = shown.revision,
@@ -227,7 +245,10 @@ void SessionDrawer::Send(const Turn& turn, const NewestScene& shown, bool refine
 }
 
 void SessionDrawer::Fail(const Turn& turn, std::uint64_t revision, const absl::Status& why) {
-  turn.kept.view.Failed(revision);
+  // The same work comes again when there is a device.
+  const bool lost = gl::IsDeviceLost(why);
+  if (lost && ++turn.kept.losses <= kMaxLosses) return;
+  turn.kept.view.Failed(revision, lost ? std::nullopt : TryAgainAt(why));
   turn.session->hub().Publish(ProblemOf(revision, why));
 }
 

@@ -17,6 +17,7 @@ absl::StatusOr<std::optional<NewestScene>> SessionView::Decide(const NewestScene
 SessionWork SessionView::Next(const NewestScene& newest, const std::optional<NewestScene>& drawable,
                               Clock::time_point now, const std::optional<LastDrawn>& last_drawn) {
   state_ = EnteredFor(newest, drawable);
+  if (state_ == State::kFailed) return WaitUntil{try_again_at_};
   if (!drawable.has_value()) return WaitUntil{};
   std::optional<SessionWork> work;
   while (!work.has_value()) work = In(state_, {newest, *drawable, now, last_drawn});
@@ -106,11 +107,21 @@ bool SessionView::LightTraced(const accuracy::LightProgress& progress, Clock::ti
   return light_.Traced(progress, now);
 }
 
-void SessionView::Failed(std::uint64_t revision) {
+void SessionView::Failed(std::uint64_t revision, std::optional<Clock::time_point> try_again_at) {
   if (revision < planner_.revision()) return;  // a newer one is shown
   planner_.GiveUp(revision);
   failed_revision_ = revision;
+  try_again_at_ = try_again_at;
   state_ = State::kFailed;
+}
+
+bool SessionView::TriesAgain(Clock::time_point now) {
+  if (state_ != State::kFailed || !try_again_at_.has_value() || now < *try_again_at_) return false;
+  try_again_at_.reset();
+  failed_revision_.reset();
+  planner_.Again();
+  state_ = State::kRefining;
+  return true;
 }
 
 }  // namespace thunderhead::session

@@ -80,8 +80,10 @@ class SessionView {
   void LightIsOthers() { light_.GiveUp(false); }
   void LightShown(Clock::time_point now) { light_.Shown(now); }
   void ReferenceShown(std::uint64_t revision) { planner_.GiveUp(revision); }
-  // That revision is not tried again.
-  void Failed(std::uint64_t revision);
+  // That revision is not tried again, or from `try_again_at` on.
+  void Failed(std::uint64_t revision, std::optional<Clock::time_point> try_again_at = std::nullopt);
+  // True once when what has failed may be tried again; it then is the next work.
+  bool TriesAgain(Clock::time_point now);
 
   State state() const { return state_; }
   // The newest revision that was shown, or has failed.
@@ -114,6 +116,7 @@ class SessionView {
   DecidedSetting setting_;
   LightTracing light_;
   std::optional<std::uint64_t> failed_revision_;
+  std::optional<Clock::time_point> try_again_at_;  // what has failed
 };
 
 }  // namespace thunderhead::session

@@ -99,10 +99,16 @@ std::string Expose(const Metrics& metrics, const std::vector<Gauge>& gauges) {
       FamilyOf("thunderhead_sessions_opened_total", "Sessions opened", kCounter,
                metrics.sessions_opened),
       FamilyOf("thunderhead_job_pictures_total", "Pictures of render jobs", kCounter, "outcome",
-               metrics.job_pictures)};
+               metrics.job_pictures),
+      FamilyOf("thunderhead_device_losses_total",
+               "Times that the device was reset, or could not be opened again after that", kCounter,
+               metrics.device_losses)};
   for (const Gauge& gauge : gauges) {
-    families.push_back(Family(gauge.name, gauge.help, MetricType::Gauge));
+    if (families.back().name != gauge.name) {
+      families.push_back(Family(gauge.name, gauge.help, MetricType::Gauge));
+    }
     ClientMetric metric;
+    Label(gauge.label.c_str(), gauge.label_value, metric);
     metric.gauge.value = gauge.value;
     families.back().metric.push_back(std::move(metric));
   }

@@ -13,6 +13,9 @@ struct Gauge {
   std::string name;  // with its unit, e.g. "thunderhead_memory_bytes"
   std::string help;
   double value = 0.0;
+  // Absent for most; gauges of one name that differ by it follow one another.
+  std::string label = {};
+  std::string label_value = {};
 };
 
 std::string Expose(const Metrics& metrics, const std::vector<Gauge>& gauges);

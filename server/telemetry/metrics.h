@@ -77,6 +77,7 @@ struct Metrics {
   Labelled<Counter> refusals;  // answers that are errors, by reason
   Counter sessions_opened;
   Labelled<Counter> job_pictures;  // of render jobs, by outcome: drawn, failed or dropped
+  Counter device_losses;  // the device was reset, or could not be opened again
 };
 
 // The process's.

@@ -1,8 +1,10 @@
-// The store that StormStore::Open gives: a catalogue, a cache, and a thread that reads ahead. A
-// time is read once however many callers ask for it; reads that a caller waits for go before
-// read-ahead, and before files that the catalogue looks at.
+// The store behind what StormStore::Open gives: a catalogue, a cache, a thread that reads what is
+// asked for and one that reads ahead. A time is read once however many callers ask for it; reads
+// that a caller waits for go before read-ahead, and before files that the catalogue looks at. A
+// storage that hangs holds up a thread, but no caller beyond the deadline.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <map>
@@ -11,9 +13,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <vector>
 
+#include "base/loose_thread.h"
 #include "volume/fields_cache.h"
 #include "volume/live_catalogue.h"
 #include "volume/storm_catalogue.h"
@@ -22,10 +24,15 @@
 
 namespace thunderhead::volume {
 
-class CachedStormStore final : public StormStore {
+class CachedStormStore final : public StormStore,
+                               public std::enable_shared_from_this<CachedStormStore>,
+                               private base::MemoryBudget::Cache {
  public:
+  // Reads nothing until it is Owned.
   CachedStormStore(std::vector<CataloguedStorm> storms, const StormStoreOptions& options);
-  ~CachedStormStore() override;
+
+  // The store, whose threads run until the owner destroys it; one that hangs keeps it in memory.
+  static std::unique_ptr<StormStore> Owned(std::shared_ptr<CachedStormStore> store);
 
   CachedStormStore(const CachedStormStore&) = delete;
   CachedStormStore& operator=(const CachedStormStore&) = delete;
@@ -38,6 +45,7 @@ class CachedStormStore final : public StormStore {
   std::shared_ptr<const HydrometeorFields> Peek(std::string_view id, int time_index) override;
   std::size_t CachedBytes() const override;
   void Listen(CatalogueListener listener) override;
+  std::optional<HungRead> Hung() const override;
 
   // Makes the storms of the paths those `found`, and tells the listener what has changed. Storms
   // that were added stay. A time whose file is gone stays while somebody holds its fields.
@@ -50,15 +58,22 @@ class CachedStormStore final : public StormStore {
   void Follow(std::unique_ptr<CatalogueScan> scan, CatalogueScan::Result first);
 
  private:
+  class Handle;
   using Fields = absl::StatusOr<std::shared_ptr<const HydrometeorFields>>;
   enum class Purpose { kAsked, kAhead };
 
-  // A read in progress, shared by all callers that wait for it.
-  struct PendingRead {
-    Purpose purpose = Purpose::kAsked;
-    int waiters = 0;  // callers that wait, besides the reading thread
-    std::vector<ReadProgress> listeners;
-    std::optional<Fields> result;
+  // Of a caller, who takes it away when it stops waiting.
+  struct Listener {
+    std::mutex mutex;  // held during a call; no lock is taken with it
+    ReadProgress progress;
+  };
+
+  // A thread's read under way.
+  struct Activity {
+    bool reads = false;  // and does not pause
+    std::string file;
+    std::chrono::steady_clock::time_point went_on;  // since when nothing has come
+    bool told_of_hang = false;
   };
 
   // A storm and what the store keeps of it.
@@ -79,16 +94,28 @@ class CachedStormStore final : public StormStore {
     std::size_t time = 0;  // index into the storm's times
   };
 
+  // A read that is due or in progress, shared by all callers that wait for it.
+  struct PendingRead {
+    Place place;
+    Purpose purpose = Purpose::kAsked;
+    int waiters = 0;  // callers that wait
+    std::vector<std::shared_ptr<Listener>> listeners;
+    std::optional<Fields> result;
+  };
+
   // All below are called with `lock` held on mutex_ and return with it held.
   using Lock = std::unique_lock<std::mutex>;
   std::optional<std::size_t> PlaceOf(std::string_view id) const;
   absl::Status NoSuchStorm(std::string_view id) const;
   absl::StatusOr<Place> PlaceOf(std::string_view id, int time_index) const;
   std::optional<Place> PlaceOf(const TimeKey& key) const;
-  Fields Read(Lock& lock, const Place& place, Purpose purpose, const ReadProgress& progress);
-  Fields ReadFile(Lock& lock, const Place& place, PendingRead& read);
+  std::shared_ptr<PendingRead> Begin(const Place& place, Purpose purpose);
+  // On a reading thread, whose activity is given.
+  void Read(Lock& lock, PendingRead& read, Activity& activity);
+  Fields ReadFile(Lock& lock, PendingRead& read, Activity& activity);
   Fields WaitFor(Lock& lock, const std::shared_ptr<PendingRead>& read,
                  const ReadProgress& progress);
+  std::optional<HungRead> HungIn(const Activity& activity) const;
   std::optional<VerticalGrid> VerticalGridOf(Lock& lock, const Place& place);
   void WantAfter(const Place& place);
   std::optional<Place> NextWanted();
@@ -96,8 +123,15 @@ class CachedStormStore final : public StormStore {
   StormChange Replace(std::size_t place, std::optional<CataloguedStorm> found);
   std::string FreeId(const std::string& wanted, std::size_t place) const;
 
-  absl::Status Checkpoint(const TimeKey& key, PendingRead& read, double share);
+  absl::Status Checkpoint(PendingRead& read, Activity& activity, double share);
+  void ReadAsked();
   void ReadAhead();
+
+  void Start();
+  void End();
+
+  std::optional<std::chrono::steady_clock::time_point> OldestUnused() override;
+  void DropOldestUnused() override;
 
   const StormStoreOptions options_;
 
@@ -108,6 +142,9 @@ class CachedStormStore final : public StormStore {
       changed_;  // a read ended, a time was wanted, a caller waits, or the store ends
   FieldsCache cache_;
   std::map<TimeKey, std::shared_ptr<PendingRead>> pending_;
+  std::deque<std::shared_ptr<PendingRead>> asked_;  // due, in order
+  Activity reading_asked_;
+  Activity reading_ahead_;
   std::vector<TimeKey> wanted_;  // to be read ahead, in order
   int asked_reads_ = 0;
   bool ending_ = false;
@@ -116,9 +153,10 @@ class CachedStormStore final : public StormStore {
   CatalogueListener listener_;
   bool following_ = false;  // changes are news
 
-  // Last members, so that they start after all others are initialised.
-  std::thread read_ahead_;
+  // From Start to End.
   std::unique_ptr<LiveCatalogue> live_;
+  std::optional<base::MemoryBudget::Member> member_;
+  std::vector<base::LooseThread> threads_;
 };
 
 }  // namespace thunderhead::volume

@@ -38,7 +38,9 @@ void CachedStormStore::Follow(std::unique_ptr<CatalogueScan> scan, CatalogueScan
   following_ = true;
   live_ = std::make_unique<LiveCatalogue>(
       std::move(scan), std::move(first), *options_.live,
-      [this](const std::vector<CataloguedStorm>& found) { Renew(found); });
+      [weak = weak_from_this()](const std::vector<CataloguedStorm>& found) {
+        if (const auto store = weak.lock()) store->Renew(found);
+      });
 }
 
 void CachedStormStore::LetReadersGoFirst() {

@@ -86,7 +86,7 @@ class Writer {
 
 int Write(const CfCloud& cloud, const std::string& path) {
   const RegularGrid& grid = cloud.grid;
-  const NetcdfLock lock;
+  const NetcdfLock lock(path);
   Writer file(path);
   file.Text(NC_GLOBAL, "Conventions", "CF-1.8");
   file.Text(NC_GLOBAL, "title", cloud.title);

@@ -1,5 +1,6 @@
 #include "volume/fields_cache.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace thunderhead::volume {
@@ -8,6 +9,7 @@ std::shared_ptr<const HydrometeorFields> FieldsCache::Use(const TimeKey& key) {
   const auto at = entries_.find(key);
   if (at == entries_.end()) return nullptr;
   newest_first_.splice(newest_first_.begin(), newest_first_, at->second.order);
+  at->second.used = std::chrono::steady_clock::now();
   return at->second.fields;
 }
 
@@ -46,7 +48,7 @@ void FieldsCache::Add(const TimeKey& key, std::shared_ptr<const HydrometeorField
                       std::list<TimeKey>::iterator before) {
   const std::size_t bytes = fields->Bytes();
   const auto order = newest_first_.insert(before, key);
-  entries_[key] = {std::move(fields), bytes, order};
+  entries_[key] = {std::move(fields), bytes, order, std::chrono::steady_clock::now()};
   bytes_ += bytes;
 }
 
@@ -58,8 +60,31 @@ void FieldsCache::Remove(const TimeKey& key) {
   entries_.erase(at);
 }
 
+std::list<TimeKey>::const_reverse_iterator FieldsCache::FindOldestUnused() const {
+  return std::find_if(newest_first_.rbegin(), newest_first_.rend(),
+                      [this](const TimeKey& key) { return !InUse(key); });
+}
+
+std::optional<std::chrono::steady_clock::time_point> FieldsCache::OldestUnused() const {
+  const auto oldest = FindOldestUnused();
+  if (oldest == newest_first_.rend()) return std::nullopt;
+  return entries_.at(*oldest).used;
+}
+
+std::shared_ptr<const HydrometeorFields> FieldsCache::TakeOldestUnused() {
+  const auto oldest = FindOldestUnused();
+  if (oldest == newest_first_.rend()) return nullptr;
+  auto fields = entries_.at(*oldest).fields;
+  Remove(TimeKey(*oldest));
+  return fields;
+}
+
 void FieldsCache::Shrink() {
-  while (bytes_ > byte_budget_ && newest_first_.size() > 1) Remove(TimeKey(newest_first_.back()));
+  while (bytes_ > byte_budget_) {
+    const auto oldest = FindOldestUnused();
+    if (oldest == newest_first_.rend() || *oldest == newest_first_.front()) return;
+    Remove(TimeKey(*oldest));
+  }
 }
 
 }  // namespace thunderhead::volume

@@ -1,11 +1,13 @@
-// A cache of storms' times with a byte budget; the least recently used are evicted first. Not
-// thread-safe.
+// A cache of storms' times with a byte budget; the least recently used are evicted first, but none
+// that somebody else holds, as that would free nothing. Not thread-safe.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <list>
 #include <map>
 #include <memory>
+#include <optional>
 #include <tuple>
 
 #include "volume/hydrometeor_fields.h"
@@ -33,8 +35,8 @@ class FieldsCache {
 
   bool Holds(const TimeKey& key) const { return entries_.contains(key); }
 
-  // Caches `fields` as the most recently used and evicts others until the budget is met or only
-  // they are left.
+  // Caches `fields` as the most recently used and evicts others until the budget is met or none is
+  // left that may be evicted.
   void Insert(const TimeKey& key, std::shared_ptr<const HydrometeorFields> fields);
 
   // Caches `fields` as less recently used than the newest entry (the one in view), if both fit.
@@ -42,6 +44,11 @@ class FieldsCache {
 
   // True if somebody else holds the fields too.
   bool InUse(const TimeKey& key) const;
+
+  // When the least recently used of those that nobody else holds was used; none if there is none.
+  std::optional<std::chrono::steady_clock::time_point> OldestUnused() const;
+  // Evicts that one, if there is one; returns it, as freeing much memory takes a while.
+  std::shared_ptr<const HydrometeorFields> TakeOldestUnused();
 
   // Evicts one time, if it is cached.
   void Remove(const TimeKey& key);
@@ -59,10 +66,13 @@ class FieldsCache {
     std::shared_ptr<const HydrometeorFields> fields;
     std::size_t bytes = 0;
     std::list<TimeKey>::iterator order;
+    std::chrono::steady_clock::time_point used;
   };
 
   void Add(const TimeKey& key, std::shared_ptr<const HydrometeorFields> fields,
            std::list<TimeKey>::iterator before);
+  // The least recently used that nobody else holds, or the end.
+  std::list<TimeKey>::const_reverse_iterator FindOldestUnused() const;
   void Shrink();
 
   std::size_t byte_budget_;

@@ -18,53 +18,52 @@ constexpr milliseconds kShortestPause{300};
 
 LiveCatalogue::LiveCatalogue(std::unique_ptr<CatalogueScan> scan, CatalogueScan::Result first,
                              const LiveCatalogueOptions& options, Renew renew)
-    : options_(options),
-      renew_(std::move(renew)),
-      scan_(std::move(scan)),
-      newest_(std::move(first)),
-      thread_([this] { Run(); }) {}
+    : running_(new Running{.options = options,
+                           .renew = std::move(renew),
+                           .scan = std::move(scan),
+                           .newest = std::move(first)}),
+      thread_("the search for storms", [running = running_] { running->Run(); }) {}
 
 LiveCatalogue::~LiveCatalogue() {
-  stopping_ = true;
-  events_.Wake();
-  thread_.join();
+  running_->stopping = true;
+  running_->events.Wake();
 }
 
-void LiveCatalogue::Run() {
+void LiveCatalogue::Running::Run() {
   // What happened between the first scan and the watch has no event.
   bool again = WatchFolders();
-  while (!stopping_) {
+  while (!stopping) {
     const Time pause_ends = steady_clock::now() + kShortestPause;
-    Time next = steady_clock::now() + options_.rescan;
-    if (newest_.look_again_at.has_value()) next = std::min(next, *newest_.look_again_at);
-    if (!again) events_.WaitUntil(next);
-    while (!stopping_ && steady_clock::now() < pause_ends) events_.WaitUntil(pause_ends);
-    if (stopping_) return;
+    Time next = steady_clock::now() + options.rescan;
+    if (newest.look_again_at.has_value()) next = std::min(next, *newest.look_again_at);
+    if (!again) events.WaitUntil(next);
+    while (!stopping && steady_clock::now() < pause_ends) events.WaitUntil(pause_ends);
+    if (stopping) return;
     Scan();
     again = WatchFolders();
   }
 }
 
-void LiveCatalogue::Scan() {
-  absl::StatusOr<CatalogueScan::Result> result = scan_->Scan(steady_clock::now());
+void LiveCatalogue::Running::Scan() {
+  absl::StatusOr<CatalogueScan::Result> result = scan->Scan(steady_clock::now());
   if (!result.ok()) {
-    const std::string complaint(result.status().message());
-    if (complaint != complaint_) spdlog::warn("the storms stay as they were: {}", complaint);
-    complaint_ = complaint;
-    newest_.look_again_at.reset();
+    std::string why(result.status().message());
+    if (why != complaint) spdlog::warn("the storms stay as they were: {}", why);
+    complaint = std::move(why);
+    newest.look_again_at.reset();
     return;
   }
-  if (!complaint_.empty()) spdlog::info("the folders of storms can be listed again");
-  complaint_.clear();
-  newest_ = *std::move(result);
+  if (!complaint.empty()) spdlog::info("the folders of storms can be listed again");
+  complaint.clear();
+  newest = *std::move(result);
   // Also without a change: somebody may have left what was deleted.
-  renew_(newest_.storms);
+  renew(newest.storms);
 }
 
 // True if there is a folder that was not watched during the scan.
-bool LiveCatalogue::WatchFolders() {
+bool LiveCatalogue::Running::WatchFolders() {
   bool any = false;
-  for (const std::string& folder : newest_.folders) any = events_.Watch(folder) || any;
+  for (const std::string& folder : newest.folders) any = events.Watch(folder) || any;
   return any;
 }
 

@@ -5,12 +5,11 @@
 #include <atomic>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "base/folder_events.h"
+#include "base/loose_thread.h"
 #include "volume/catalogue_scan.h"
 #include "volume/storm_store.h"
 
@@ -21,10 +20,10 @@ class LiveCatalogue {
   // Takes the storms that there are now.
   using Renew = std::function<void(const std::vector<CataloguedStorm>&)>;
 
-  // `scan` has been made by `first`, whose storms are known.
+  // `scan` has been made by `first`, whose storms are known. `renew` must own what it uses.
   LiveCatalogue(std::unique_ptr<CatalogueScan> scan, CatalogueScan::Result first,
                 const LiveCatalogueOptions& options, Renew renew);
-  // Waits for a scan under way.
+  // Waits for a scan under way, unless it hangs.
   ~LiveCatalogue();
   LiveCatalogue(const LiveCatalogue&) = delete;
   LiveCatalogue& operator=(const LiveCatalogue&) = delete;
@@ -32,18 +31,23 @@ class LiveCatalogue {
  private:
   using Time = CatalogueScan::Time;
 
-  void Run();
-  void Scan();
-  bool WatchFolders();
+  // Belongs to the thread, which may outlive this.
+  struct Running {
+    void Run();
+    void Scan();
+    bool WatchFolders();
 
-  const LiveCatalogueOptions options_;
-  const Renew renew_;
-  const std::unique_ptr<CatalogueScan> scan_;
-  CatalogueScan::Result newest_;
-  base::FolderEvents events_;
-  std::string complaint_;  // logged last
-  std::atomic<bool> stopping_{false};
-  std::thread thread_;
+    const LiveCatalogueOptions options;
+    const Renew renew;
+    const std::unique_ptr<CatalogueScan> scan;
+    CatalogueScan::Result newest;
+    base::FolderEvents events = {};
+    std::string complaint = {};  // logged last
+    std::atomic<bool> stopping = false;
+  };
+
+  const std::shared_ptr<Running> running_;
+  base::LooseThread thread_;
 };
 
 }  // namespace thunderhead::volume

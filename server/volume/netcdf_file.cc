@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "base/status.h"
 #include "volume/classic_file_size.h"
 #include "volume/netcdf_lock.h"
@@ -21,6 +22,9 @@ constexpr int kNoHandle = -1;
 // Models write fills from 1e30 (a common choice) to 9.969e36 (netCDF's own); no quantity in a storm
 // is that large.
 constexpr double kLargestValue = 1e30;
+
+// Of one read, 1 TiB of floats: a product of lengths that is larger, or overflows, is a mistake.
+constexpr std::size_t kMaxValues = std::size_t{1} << 38U;
 
 absl::Status OpenError(const std::string& path, int code) {
   const std::string what = absl::StrCat(path, ": ");
@@ -128,7 +132,7 @@ absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path) {
   // An empty file has just been created by its writer; HDF5 would call it "unknown format".
   if (std::filesystem::file_size(path, error) == 0) return OpenError(path, NC_EHDFERR);
   int handle = kNoHandle;
-  const NetcdfLock lock;
+  const NetcdfLock lock(path);
   if (const int code = nc_open(path.c_str(), NC_NOWRITE, &handle); code != NC_NOERR) {
     return OpenError(path, code);
   }
@@ -161,18 +165,18 @@ NetcdfFile::~NetcdfFile() { Close(); }
 
 void NetcdfFile::Close() {
   if (handle_ == kNoHandle) return;
-  const NetcdfLock lock;
+  const NetcdfLock lock(path_);
   nc_close(std::exchange(handle_, kNoHandle));
 }
 
 bool NetcdfFile::HasVariable(const std::string& variable) const {
-  const NetcdfLock lock;
+  const NetcdfLock lock(path_);
   int id = 0;
   return nc_inq_varid(handle_, variable.c_str(), &id) == NC_NOERR;
 }
 
 std::optional<std::size_t> NetcdfFile::DimensionLength(const std::string& dimension) const {
-  const NetcdfLock lock;
+  const NetcdfLock lock(path_);
   int id = 0;
   std::size_t length = 0;
   if (nc_inq_dimid(handle_, dimension.c_str(), &id) != NC_NOERR ||
@@ -183,7 +187,7 @@ std::optional<std::size_t> NetcdfFile::DimensionLength(const std::string& dimens
 }
 
 std::vector<std::string> NetcdfFile::Variables() const {
-  const NetcdfLock lock;
+  const NetcdfLock lock(path_);
   int count = 0;
   std::vector<std::string> names;
   if (nc_inq_nvars(handle_, &count) != NC_NOERR) return names;
@@ -195,7 +199,7 @@ std::vector<std::string> NetcdfFile::Variables() const {
 }
 
 absl::StatusOr<std::vector<std::string>> NetcdfFile::Dimensions(const std::string& variable) const {
-  const NetcdfLock lock;
+  const NetcdfLock lock(path_);
   int id = 0;
   int rank = 0;
   int dimensions[NC_MAX_VAR_DIMS];
@@ -219,11 +223,10 @@ absl::StatusOr<std::vector<std::string>> NetcdfFile::Dimensions(const std::strin
 
 absl::StatusOr<std::vector<double>> NetcdfFile::ReadDoubles(const std::string& variable) const {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, Shape(variable));
-  std::size_t total = 1;
-  for (const std::size_t length : shape) total *= length;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::size_t total, Product(variable, shape));
   std::vector<double> values(total);
   if (total == 0) return values;
-  const NetcdfLock lock;
+  const NetcdfLock lock(path_);
   int id = 0;
   nc_inq_varid(handle_, variable.c_str(), &id);
   if (const int code = nc_get_var_double(handle_, id, values.data()); code != NC_NOERR) {
@@ -241,7 +244,7 @@ absl::StatusOr<std::vector<double>> NetcdfFile::ReadDoubles(const std::string& v
 }
 
 absl::StatusOr<std::vector<std::size_t>> NetcdfFile::Shape(const std::string& variable) const {
-  const NetcdfLock lock;
+  const NetcdfLock lock(path_);
   int id = 0;
   int rank = 0;
   int dimensions[NC_MAX_VAR_DIMS];
@@ -263,7 +266,7 @@ absl::StatusOr<std::vector<std::size_t>> NetcdfFile::Shape(const std::string& va
 
 std::optional<std::string> NetcdfFile::TextAttribute(const std::string& variable,
                                                      const std::string& attribute) const {
-  const NetcdfLock lock;
+  const NetcdfLock lock(path_);
   int id = NC_GLOBAL;
   if (!variable.empty() && nc_inq_varid(handle_, variable.c_str(), &id) != NC_NOERR) return {};
   nc_type type;
@@ -287,7 +290,7 @@ std::optional<std::string> NetcdfFile::TextAttribute(const std::string& variable
 
 std::optional<double> NetcdfFile::NumberAttribute(const std::string& variable,
                                                   const std::string& attribute) const {
-  const NetcdfLock lock;
+  const NetcdfLock lock(path_);
   int id = NC_GLOBAL;
   if (!variable.empty() && nc_inq_varid(handle_, variable.c_str(), &id) != NC_NOERR) return {};
   const double value =
@@ -297,7 +300,8 @@ std::optional<double> NetcdfFile::NumberAttribute(const std::string& variable,
 
 absl::StatusOr<std::vector<std::string>> NetcdfFile::ReadRows(const std::string& variable) const {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, Shape(variable));
-  const NetcdfLock lock;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::size_t total, Product(variable, shape));
+  const NetcdfLock lock(path_);
   int id = 0;
   nc_type type = NC_NAT;
   nc_inq_varid(handle_, variable.c_str(), &id);
@@ -306,7 +310,7 @@ absl::StatusOr<std::vector<std::string>> NetcdfFile::ReadRows(const std::string&
     return absl::InvalidArgumentError(
         absl::StrCat(path_, ": ", variable, " is not a two-dimensional character variable"));
   }
-  std::vector<char> text(shape[0] * shape[1]);
+  std::vector<char> text(total);
   if (text.empty()) return std::vector<std::string>(shape[0]);
   if (int code = nc_get_var_text(handle_, id, text.data()); code != NC_NOERR) {
     return ReadError(variable, code);
@@ -317,6 +321,27 @@ absl::StatusOr<std::vector<std::string>> NetcdfFile::ReadRows(const std::string&
     rows.emplace_back(padded.c_str());
   }
   return rows;
+}
+
+absl::StatusOr<std::size_t> NetcdfFile::RecordLength(const std::string& variable) const {
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<std::size_t> shape, Shape(variable));
+  if (!shape.empty()) shape[0] = 1;
+  return Product(variable, shape);
+}
+
+absl::StatusOr<std::size_t> NetcdfFile::Product(const std::string& variable,
+                                                const std::vector<std::size_t>& lengths) const {
+  std::size_t product = 1;
+  for (const std::size_t length : lengths) {
+    if (length != 0 && product > kMaxValues / length) {
+      return absl::DataLossError(absl::StrCat(path_, ": ", variable, " claims ",
+                                              absl::StrJoin(lengths, " x "),
+                                              " values, more than any memory holds; the file is "
+                                              "damaged, or cut a smaller domain"));
+    }
+    product *= length;
+  }
+  return product;
 }
 
 absl::Status NetcdfFile::ReadRecord(const std::string& variable, std::size_t record,
@@ -344,13 +369,12 @@ absl::Status NetcdfFile::ReadFloats(const std::string& variable,
                                     const std::vector<std::size_t>& start,
                                     const std::vector<std::size_t>& count,
                                     std::vector<float>& values) const {
-  std::size_t total = 1;
-  for (std::size_t length : count) total *= length;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::size_t total, Product(variable, count));
   values.resize(total);
   Packing packing;
   std::vector<double> packed;
   {
-    const NetcdfLock lock;
+    const NetcdfLock lock(path_);
     int id = 0;
     int code = nc_inq_varid(handle_, variable.c_str(), &id);
     if (code != NC_NOERR) return ReadError(variable, code);

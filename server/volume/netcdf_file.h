@@ -48,6 +48,10 @@ class NetcdfFile {
   // The rows of a two-dimensional character variable, up to the first NUL each.
   absl::StatusOr<std::vector<std::string>> ReadRows(const std::string& variable) const;
 
+  // How many values a record of the variable has, from its dimensions; reads none. DATA_LOSS if
+  // that is more than any memory holds.
+  absl::StatusOr<std::size_t> RecordLength(const std::string& variable) const;
+
   // One record (index of the slowest dimension) of a numeric variable: unpacked (scale_factor,
   // add_offset), missing values (the variable's fill values, anything of 1e30 or more, NaN,
   // infinities) as NaN, denormals as zero. Reuses the memory of `values`.
@@ -65,6 +69,9 @@ class NetcdfFile {
 
  private:
   NetcdfFile(std::string path, int handle);
+
+  absl::StatusOr<std::size_t> Product(const std::string& variable,
+                                      const std::vector<std::size_t>& lengths) const;
 
   absl::Status ReadFloats(const std::string& variable, const std::vector<std::size_t>& start,
                           const std::vector<std::size_t>& count, std::vector<float>& values) const;

@@ -31,14 +31,16 @@ absl::Status CheckPaths(const std::vector<std::string>& paths, const StormFormat
 // The storms of the paths, whatever happens there.
 absl::StatusOr<std::unique_ptr<StormStore>> OpenLive(const std::vector<std::string>& paths,
                                                      const StormStoreOptions& options) {
-  auto store = std::make_unique<CachedStormStore>(std::vector<CataloguedStorm>{}, options);
+  const auto store = std::make_shared<CachedStormStore>(std::vector<CataloguedStorm>{}, options);
   THUNDERHEAD_RETURN_IF_ERROR(CheckPaths(paths, options.formats));
   auto scan = std::make_unique<CatalogueScan>(
       CatalogueScan::Options{.paths = paths,
                              .formats = options.formats,
                              .settle = options.live->settle,
                              .retry = options.live->rescan,
-                             .before_file = [&store = *store] { store.LetReadersGoFirst(); }});
+                             .before_file = [weak = std::weak_ptr(store)] {
+                               if (const auto held = weak.lock()) held->LetReadersGoFirst();
+                             }});
   THUNDERHEAD_ASSIGN_OR_RETURN(CatalogueScan::Result first,
                                scan->Scan(std::chrono::steady_clock::now()));
   if (first.storms.empty() && first.look_again_at.has_value()) {
@@ -52,7 +54,7 @@ absl::StatusOr<std::unique_ptr<StormStore>> OpenLive(const std::vector<std::stri
   }
   store->Renew(first.storms);
   store->Follow(std::move(scan), std::move(first));
-  return store;
+  return CachedStormStore::Owned(store);
 }
 
 }  // namespace
@@ -62,7 +64,7 @@ absl::StatusOr<std::unique_ptr<StormStore>> StormStore::Open(const std::vector<s
   if (options.live.has_value()) return OpenLive(paths, options);
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<CataloguedStorm> storms,
                                FindStorms(paths, options.formats));
-  return std::make_unique<CachedStormStore>(std::move(storms), options);
+  return CachedStormStore::Owned(std::make_shared<CachedStormStore>(std::move(storms), options));
 }
 
 StormInfoPtr StormStore::Find(std::string_view id) const {

@@ -15,6 +15,7 @@
 
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
+#include "base/memory_budget.h"
 #include "volume/hydrometeor_fields.h"
 #include "volume/storm_format.h"
 
@@ -73,12 +74,22 @@ struct LiveCatalogueOptions {
 };
 
 struct StormStoreOptions {
-  std::size_t byte_budget =
-      std::size_t{2} << 30;  // of cached times; the newest one is kept even if it alone is larger
-  int read_ahead = 1;        // times read ahead after each Get
+  // Of cached times; the newest one, and those that somebody holds, are kept even if they are more.
+  std::size_t byte_budget = std::size_t{2} << 30;
+  // What times in memory count in, cached or not; null: they do not.
+  std::shared_ptr<base::MemoryBudget> memory;
+  int read_ahead = 1;  // times read ahead after each Get
+  // A storage that has not let a read go on for so long is taken to hang.
+  std::chrono::milliseconds read_deadline{60'000};
   StormFormats formats = StormFormats::BuiltIn();
   // Absent: the storms are those of the start. With it, a folder without storms is no error.
   std::optional<LiveCatalogueOptions> live;
+};
+
+// A read that its storage does not let go on.
+struct HungRead {
+  std::string file;
+  double seconds = 0.0;  // so far
 };
 
 class StormStore {
@@ -107,7 +118,9 @@ class StormStore {
   StormInfoPtr Find(std::string_view id) const;
 
   // The fields of one time: from the cache, or read now (blocking). `time_index` must be one of the
-  // storm's. Errors: NOT_FOUND (id), OUT_OF_RANGE (time), and those of the file's reader.
+  // storm's. Errors: NOT_FOUND (id), OUT_OF_RANGE (time), RESOURCE_EXHAUSTED (no room in memory),
+  // DEADLINE_EXCEEDED (a storage hangs, this time's or one before it; at once where that is known),
+  // and those of the file's reader.
   // `progress` may be empty.
   virtual absl::StatusOr<std::shared_ptr<const HydrometeorFields>> Get(
       std::string_view id, int time_index, const ReadProgress& progress) = 0;
@@ -117,6 +130,9 @@ class StormStore {
 
   // Bytes of all cached times.
   virtual std::size_t CachedBytes() const = 0;
+
+  // The read that hangs now, if one does.
+  virtual std::optional<HungRead> Hung() const { return std::nullopt; }
 
   // Tells `listener` of every change that the store finds by itself, from now on; an empty one ends
   // that, after a running call has returned. Without a live catalogue there is never one.

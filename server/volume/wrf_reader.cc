@@ -97,12 +97,14 @@ absl::Status TimeReader::Advance() {
 absl::Status TimeReader::ReadVariable(const std::string& variable, std::size_t cells,
                                       std::vector<float>& values) {
   THUNDERHEAD_RETURN_IF_ERROR(Advance());
-  THUNDERHEAD_RETURN_IF_ERROR(file_.ReadRecord(variable, record_, values));
-  if (values.size() != cells) {
-    return absl::DataLossError(absl::StrCat(file_.Path(), ": ", variable, " now has ",
-                                            values.size(), " values a time where it had ", cells,
+  // Before memory is taken for it.
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::size_t length, file_.RecordLength(variable));
+  if (length != cells) {
+    return absl::DataLossError(absl::StrCat(file_.Path(), ": ", variable, " now has ", length,
+                                            " values a time where it had ", cells,
                                             "; the file was replaced: restart to read it anew"));
   }
+  THUNDERHEAD_RETURN_IF_ERROR(file_.ReadRecord(variable, record_, values));
   if (std::ranges::all_of(values, [](float value) { return std::isnan(value); })) {
     return absl::DataLossError(absl::StrCat(
         file_.Path(), ": ", variable, " of record ", record_, " holds nothing but fill values; ",

@@ -7,6 +7,7 @@
 
 #include "accuracy/cost_model.h"
 #include "base/status.h"
+#include "gl/device_faults.h"
 #include "tests/support/techniques.h"
 
 namespace thunderhead::testing {
@@ -59,6 +60,14 @@ bool Traces(const scene::Scene& scene) {
 // The number of balls, and the time.
 std::pair<int, int> KeyOf(const scene::Scene& scene) {
   return {std::get<scene::Metaballs>(scene.rendering.technique).count, scene.time_index};
+}
+
+// True if there was one.
+bool TakeOne(std::atomic<int>& left) {
+  int count = left;
+  while (count > 0 && !left.compare_exchange_weak(count, count - 1)) {
+  }
+  return count > 0;
 }
 
 class FakePreparation final : public session::Preparation {
@@ -128,6 +137,10 @@ class FakeFrameSource final : public session::FrameSource {
         turn_->GiveBack();
       }
     } while (left_ms > 0.0);
+    if (scene.display.exposure_ev > machine_->loses_above_exposure_ev ||
+        TakeOne(machine_->losses)) {
+      return gl::DeviceLost();
+    }
     if (scene.display.exposure_ev > machine_->fails_above_exposure_ev) {
       return absl::InternalError("the fake machine does not like this exposure");
     }
@@ -413,6 +426,8 @@ void FakeMachine::Add(Drawn drawn) {
 session::FrameSourceFactory FakeFrameSources(std::shared_ptr<FakeMachine> machine) {
   return
       [machine](base::DeviceTurn* turn) -> absl::StatusOr<std::unique_ptr<session::FrameSource>> {
+        if (TakeOne(machine->cannot_open)) return absl::UnavailableError("there is no device");
+        ++machine->opened;
         return std::make_unique<FakeFrameSource>(machine, turn);
       };
 }

@@ -95,7 +95,11 @@ struct FakeMachine {
   Gate drawing;
   std::atomic<double> ms_per_mega_sample{0.0};
   std::atomic<double> fails_above_exposure_ev{1e9};
-  Gate preparing;  // of scenes of metaballs; each number of them once a time
+  std::atomic<int> losses{0};  // of the device, with the next pictures drawn
+  std::atomic<double> loses_above_exposure_ev{1e9};
+  std::atomic<int> cannot_open{0};  // the next sources
+  std::atomic<int> opened{0};       // sources
+  Gate preparing;                   // of scenes of metaballs; each number of them once a time
   std::atomic<int> cannot_prepare{-1};
   std::atomic<int> pieces{0};   // drawn in turns
   std::atomic<int> checked{0};  // frames also drawn with half the slices

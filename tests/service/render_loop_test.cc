@@ -5,9 +5,13 @@
 #include <algorithm>
 #include <future>
 
+#include "base/memory_budget.h"
+#include "gl/device_faults.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "session/device_losses.h"
 #include "session/image_drawer.h"
+#include "telemetry/metrics.h"
 #include "tests/service/fake_engine.h"
 #include "tests/support/techniques.h"
 
@@ -454,6 +458,118 @@ TEST(SessionTest, OlderRevisionNeverReplacesANewer) {
   ASSERT_TRUE(session.Newest().has_value());
   EXPECT_EQ(session.Newest()->revision, late);
   EXPECT_EQ(session.Newest()->scene->time_index, 2);
+}
+
+// A device that is lost: everything that was drawn with it is made again.
+class DeviceLossTest : public RenderLoopTest {
+ protected:
+  static RenderLoopOptions WithLosses(int max_losses) {
+    RenderLoopOptions options;
+    options.losses = {.first_pause = std::chrono::milliseconds(1), .max_losses = max_losses};
+    return options;
+  }
+
+  static scene::Scene Exposed(double exposure_ev) {
+    scene::Scene scene = Small(0.0);
+    scene.display.exposure_ev = exposure_ev;
+    return scene;
+  }
+};
+
+TEST_F(DeviceLossTest, SessionsGoOnAtTheSameRevision) {
+  Start(WithLosses(6));
+  const auto before = telemetry::Counted().device_losses.Value();
+  const auto session = *sessions_.Create();
+  const auto viewer = Watch(session);
+  ASSERT_TRUE(viewer->Await(Show(*session, Small(0.0)), true));
+  machine_->losses = 1;
+  const std::uint64_t revision = Show(*session, Small(10.0));
+  EXPECT_TRUE(viewer->Await(revision, true));
+  EXPECT_EQ(viewer->ProblemCount(), 0U);
+  EXPECT_EQ(machine_->losses, 0);
+  EXPECT_GE(machine_->opened, 2) << "another source";
+  EXPECT_EQ(telemetry::Counted().device_losses.Value(), before + 1);
+  EXPECT_FALSE(loop_->IsRecovering());
+}
+
+TEST_F(DeviceLossTest, SoDoPicturesOutsideSessions) {
+  Start(WithLosses(6));
+  machine_->losses = 1;
+  auto picture = Picture(1.0);
+  EXPECT_TRUE(picture.get().ok());
+  EXPECT_EQ(machine_->losses, 0);
+}
+
+TEST_F(DeviceLossTest, ADeviceThatCannotBeOpenedIsTriedAgain) {
+  Start(WithLosses(6));
+  const auto session = *sessions_.Create();
+  const auto viewer = Watch(session);
+  ASSERT_TRUE(viewer->Await(Show(*session, Small(0.0)), true));
+  machine_->cannot_open = 3;
+  machine_->losses = 1;
+  EXPECT_TRUE(viewer->Await(Show(*session, Small(10.0)), true));
+  EXPECT_EQ(machine_->cannot_open, 0);
+}
+
+TEST_F(DeviceLossTest, ASceneThatTheDeviceDoesNotBearFailsAlone) {
+  Start(WithLosses(6));
+  machine_->loses_above_exposure_ev = 2.0;
+  const auto killer = *sessions_.Create();
+  const auto other = *sessions_.Create();
+  const auto killers_viewer = Watch(killer);
+  const auto others_viewer = Watch(other);
+  Show(*killer, Exposed(3.0));
+  EXPECT_TRUE(killers_viewer->AwaitProblem(std::string(gl::DeviceLost().message())));
+  EXPECT_TRUE(others_viewer->Await(Show(*other, Small(10.0)), true));
+  auto picture = Picture(3.0);
+  EXPECT_TRUE(gl::IsDeviceLost(picture.get().status()));
+  EXPECT_TRUE(others_viewer->Await(Show(*other, Small(20.0)), true));
+}
+
+TEST_F(DeviceLossTest, IsGivenUpWhenItComesTooOften) {
+  RenderLoopOptions options = WithLosses(3);
+  std::promise<absl::Status> given_up;
+  options.on_device_given_up = [&](const absl::Status& why) { given_up.set_value(why); };
+  Start(options);
+  const auto session = *sessions_.Create();
+  const auto viewer = Watch(session);
+  ASSERT_TRUE(viewer->Await(Show(*session, Small(0.0)), true));
+  machine_->cannot_open = 1000;
+  machine_->losses = 1;
+  Show(*session, Small(10.0));
+  auto future = given_up.get_future();
+  ASSERT_EQ(future.wait_for(testing::kPatience), std::future_status::ready);
+  const absl::Status why = future.get();
+  EXPECT_TRUE(absl::IsUnavailable(why));
+  EXPECT_THAT(std::string(why.message()), HasSubstr("there is no device"));
+  EXPECT_EQ(machine_->cannot_open, 997);
+  EXPECT_FALSE(Picture(1.0).get().ok()) << "refused, not left waiting";
+}
+
+TEST_F(DeviceLossTest, WhatHasNoRoomInMemoryIsRefusedByNameAndComesWhenThereIs) {
+  RenderLoopOptions options;
+  options.memory = base::MemoryBudget::Make({.bytes = 1 << 20});
+  Start(options);
+  auto taken = options.memory->Reserve(base::MemoryUse::kFields, 1 << 20, "all").value();
+  const absl::Status refused = Picture(1.0).get().status();
+  EXPECT_TRUE(absl::IsResourceExhausted(refused)) << refused;
+  EXPECT_THAT(std::string(refused.message()), HasSubstr("a picture needs"));
+  taken = {};
+  EXPECT_TRUE(Picture(1.0).get().ok());
+}
+
+TEST(DeviceLossesTest, PausesGrowUntilItIsGivenUpAndAreForgotten) {
+  using std::chrono::milliseconds;
+  const LossLimits limits{milliseconds(100), 4, milliseconds(10'000)};
+  DeviceLosses losses(limits);
+  const Clock::time_point start{};
+  EXPECT_EQ(losses.Lost(start), start);
+  EXPECT_EQ(losses.Lost(start), start + milliseconds(100));
+  EXPECT_EQ(losses.Lost(start), start + milliseconds(200));
+  EXPECT_EQ(losses.Lost(start), start + milliseconds(400));
+  EXPECT_EQ(losses.Lost(start), std::nullopt);
+  const auto later = start + limits.window;
+  EXPECT_EQ(losses.Lost(later), later);
 }
 
 }  // namespace

@@ -13,7 +13,14 @@
 namespace thunderhead::testing {
 
 ServedProgram::ServedProgram(const std::string& program, const std::string& storm,
-                             const std::string& state) {
+                             const std::string& state, const std::vector<std::string>& more) {
+  std::vector<std::string> words = {program,  "serve",       "--device", "software",
+                                    "--data", storm,         "--http",   "127.0.0.1:0",
+                                    "--grpc", "127.0.0.1:0", "--state",  state};
+  words.insert(words.end(), more.begin(), more.end());
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
   int out[2];
   THUNDERHEAD_CHECK(pipe(out) == 0, "no pipe");
   process_ = fork();
@@ -22,9 +29,7 @@ ServedProgram::ServedProgram(const std::string& program, const std::string& stor
     dup2(out[1], STDOUT_FILENO);
     close(out[0]);
     close(out[1]);
-    execl(program.c_str(), program.c_str(), "serve", "--device", "software", "--data",
-          storm.c_str(), "--http", "127.0.0.1:0", "--grpc", "127.0.0.1:0", "--state", state.c_str(),
-          nullptr);
+    execv(program.c_str(), arguments.data());
     _exit(127);
   }
   close(out[1]);

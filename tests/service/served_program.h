@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "thunderhead/v1/thunderhead.grpc.pb.h"
 
@@ -12,9 +13,10 @@ namespace thunderhead::testing {
 
 class ServedProgram {
  public:
-  // Starts `thunderhead serve` on the storm, on free ports, with software GL, and waits until it is
-  // ready.
-  ServedProgram(const std::string& program, const std::string& storm, const std::string& state);
+  // Starts `thunderhead serve` on the storm, on free ports, with software GL and `more` flags, and
+  // waits until it is ready.
+  ServedProgram(const std::string& program, const std::string& storm, const std::string& state,
+                const std::vector<std::string>& more = {});
   // Kills it with SIGKILL.
   ~ServedProgram();
   ServedProgram(const ServedProgram&) = delete;
@@ -22,6 +24,8 @@ class ServedProgram {
 
   // Null if it did not start.
   v1::ThunderheadService::Stub* stub() { return stub_.get(); }
+
+  pid_t process() const { return process_; }
 
   // Sends the signal and waits for the process to end.
   void End(int signal);

@@ -292,5 +292,19 @@ TEST_F(SessionViewTest, FieldsThatComeBackBeginNothingAnew) {
   EXPECT_EQ(view_.state(), State::kSettled);
 }
 
+TEST_F(SessionViewTest, WhatFailedForAWhileIsTriedAgainWhenThatIsOver) {
+  Change();
+  Next(milliseconds(0));
+  view_.Failed(revision_, kStart + milliseconds(500));
+  const SessionWork waits = Next(milliseconds(100));
+  ASSERT_TRUE(std::holds_alternative<WaitUntil>(waits));
+  EXPECT_EQ(std::get<WaitUntil>(waits).time, kStart + milliseconds(500));
+  EXPECT_EQ(view_.state(), State::kFailed);
+  EXPECT_FALSE(view_.TriesAgain(kStart + milliseconds(499)));
+  EXPECT_TRUE(view_.TriesAgain(kStart + milliseconds(500)));
+  EXPECT_FALSE(view_.TriesAgain(kStart + milliseconds(500))) << "once";
+  EXPECT_TRUE(DrawNext(milliseconds(500)));
+}
+
 }  // namespace
 }  // namespace thunderhead::session

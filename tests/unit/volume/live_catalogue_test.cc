@@ -55,7 +55,7 @@ class LiveFolder : public ::testing::Test {
       return cell.level == 4 ? cloud : 0.0;
     };
     const std::string path = elsewhere_ + "/written";
-    const NetcdfLock lock;  // a catalogue may be reading
+    const NetcdfLock lock(path);  // a catalogue may be reading
     testing::WriteWrf(file, path);
     return Bytes(path);
   }

@@ -1,0 +1,34 @@
+// A thread that may hang in a system call that nobody can end, as on a storage that has gone: it is
+// left behind then, so what it runs must own all that it uses.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <future>
+#include <string>
+#include <thread>
+
+namespace thunderhead::base {
+
+class LooseThread {
+ public:
+  LooseThread() = default;
+  LooseThread(std::string name, std::function<void()> run);
+  // Waits for its end, for a few seconds; whoever destroys it has told it to end.
+  ~LooseThread();
+  LooseThread(LooseThread&&) noexcept = default;
+  LooseThread& operator=(LooseThread&&) = delete;
+
+  // True if one was left behind in this process: it must end by _exit, as the thread may wake up
+  // while what it uses is being destroyed.
+  static bool AnyLeftBehind();
+
+ private:
+  static constexpr std::chrono::seconds kPatience{5};
+
+  std::string name_;
+  std::future<void> ended_;
+  std::thread thread_;
+};
+
+}  // namespace thunderhead::base

@@ -1,0 +1,324 @@
+// How the store reads: what a caller waits for, and ahead.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "base/error_details.h"
+#include "base/status.h"
+#include "spdlog/spdlog.h"
+#include "volume/cached_storm_store.h"
+#include "volume/netcdf_holder.h"
+
+namespace thunderhead::volume {
+namespace {
+
+using std::chrono::duration;
+using std::chrono::steady_clock;
+
+// When to try again what a storage that hangs has not given.
+constexpr std::chrono::seconds kRetryAfter{10};
+
+// Saturates.
+std::size_t Product(std::size_t a, std::size_t b) {
+  constexpr std::size_t kMax = std::numeric_limits<std::size_t>::max();
+  return a != 0 && b > kMax / a ? kMax : a * b;
+}
+
+// What reading a time takes, from the storm's description alone.
+struct ReadMemory {
+  std::size_t fields = 0;
+  std::size_t scratch = 0;  // until it is read
+};
+
+ReadMemory MemoryFor(const StormFile& file, const std::optional<VerticalGrid>& grid) {
+  // A field is a float and half a float of size a cell; of the air's motion there are two bytes.
+  const std::size_t per_cell = file.fields.size() * 6 + 2;
+  // Pressure, temperature, heights and the like, a float a cell of the file each.
+  constexpr std::size_t kScratch = 10 * sizeof(float);
+  const auto columns =
+      Product(static_cast<std::size_t>(file.cells.x), static_cast<std::size_t>(file.cells.y));
+  const auto levels = static_cast<std::size_t>(file.cells.z);
+  // ChooseVerticalGrid takes at most 1.25 times as many cells as levels.
+  const std::size_t cells =
+      grid.has_value() ? static_cast<std::size_t>(grid->cells) : levels + levels / 4 + 1;
+  return {Product(Product(columns, cells), per_cell), Product(Product(columns, levels), kScratch)};
+}
+
+absl::Status Hangs(const HungRead& hung) {
+  return base::WithDetails(
+      absl::DeadlineExceededError(
+          absl::StrCat(hung.file, ": nothing has come for ", std::lround(hung.seconds),
+                       " s, its storage does not answer; what is in memory can still be shown")),
+      {.reason = "STORAGE_HANGS", .metadata = {{"file", hung.file}}, .retry_after = kRetryAfter});
+}
+
+// Fields with their share of the budget, which lasts as long as somebody holds them.
+struct CountedFields {
+  HydrometeorFields fields;
+  base::MemoryReservation reserved;
+};
+
+}  // namespace
+
+absl::StatusOr<std::shared_ptr<const HydrometeorFields>> CachedStormStore::Get(
+    std::string_view id, int time_index, const ReadProgress& progress) {
+  Lock lock(mutex_);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Place place, PlaceOf(id, time_index));
+  while (true) {
+    Fields fields = cache_.Use(place.key);
+    if (*fields == nullptr) {
+      const auto at = pending_.find(place.key);
+      fields = WaitFor(lock, at != pending_.end() ? at->second : Begin(place, Purpose::kAsked),
+                       progress);
+    }
+    // The read may have been a read-ahead that was cancelled just now: try again.
+    if (absl::IsCancelled(fields.status()) && !ending_) continue;
+    if (fields.ok()) {
+      cache_.Use(place.key);
+      WantAfter(place);
+    }
+    return fields;
+  }
+}
+
+std::shared_ptr<CachedStormStore::PendingRead> CachedStormStore::Begin(const Place& place,
+                                                                       Purpose purpose) {
+  auto read = std::make_shared<PendingRead>();
+  read->place = place;
+  read->purpose = purpose;
+  pending_[place.key] = read;
+  if (purpose == Purpose::kAsked) {
+    asked_.push_back(read);
+    ++asked_reads_;
+  }
+  return read;
+}
+
+CachedStormStore::Fields CachedStormStore::WaitFor(Lock& lock,
+                                                   const std::shared_ptr<PendingRead>& read,
+                                                   const ReadProgress& progress) {
+  const std::shared_ptr<PendingRead> shared =
+      read;  // keeps it alive after its removal from pending_
+  ++shared->waiters;
+  const auto listener = std::make_shared<Listener>();
+  listener->progress = progress;
+  if (progress) shared->listeners.push_back(listener);
+  changed_.notify_all();  // the reading thread; a paused read-ahead of this time may now go on
+  Activity& activity = shared->purpose == Purpose::kAsked ? reading_asked_ : reading_ahead_;
+  while (!shared->result.has_value()) {
+    const std::optional<HungRead> hung = HungIn(activity);
+    if (ending_ || hung.has_value()) {
+      --shared->waiters;
+      if (hung.has_value() && !std::exchange(activity.told_of_hang, true)) {
+        spdlog::error("{}: its storage does not answer; what needs it is refused", hung->file);
+      }
+      lock.unlock();
+      {
+        const std::lock_guard calling(listener->mutex);
+        listener->progress = {};
+      }
+      lock.lock();
+      if (hung.has_value()) return Hangs(*hung);
+      return absl::CancelledError("the store of storms has ended");
+    }
+    const auto since = activity.reads ? activity.went_on : steady_clock::now();
+    changed_.wait_until(lock, since + options_.read_deadline + std::chrono::milliseconds(1));
+  }
+  return *shared->result;
+}
+
+std::optional<HungRead> CachedStormStore::HungIn(const Activity& activity) const {
+  const auto now = steady_clock::now();
+  if (!activity.reads || now - activity.went_on <= options_.read_deadline) return std::nullopt;
+  HungRead hung{activity.file, duration<double>(now - activity.went_on).count()};
+  // It may only wait for another.
+  const auto holder = NetcdfHolder::Now();
+  if (holder.has_value() && holder->path != hung.file &&
+      now - holder->since > options_.read_deadline / 2) {
+    hung = {holder->path, duration<double>(now - holder->since).count()};
+  }
+  return hung;
+}
+
+std::optional<HungRead> CachedStormStore::Hung() const {
+  const Lock lock(mutex_);
+  auto hung = HungIn(reading_asked_);
+  return hung.has_value() ? hung : HungIn(reading_ahead_);
+}
+
+void CachedStormStore::ReadAsked() {
+  Lock lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [this] { return ending_ || !asked_.empty(); });
+    if (ending_) return;
+    const std::shared_ptr<PendingRead> read = std::move(asked_.front());
+    asked_.pop_front();
+    Read(lock, *read, reading_asked_);
+  }
+}
+
+void CachedStormStore::ReadAhead() {
+  Lock lock(mutex_);
+  while (!ending_) {
+    const std::optional<Place> place = NextWanted();
+    if (!place.has_value()) {
+      changed_.wait(lock);
+      continue;
+    }
+    const std::shared_ptr<PendingRead> read = Begin(*place, Purpose::kAhead);
+    Read(lock, *read, reading_ahead_);
+    std::erase(wanted_, place->key);
+    const absl::Status& failed = read->result->status();
+    if (!failed.ok() && !absl::IsCancelled(failed) && !absl::IsResourceExhausted(failed)) {
+      spdlog::warn("reading ahead: {}", std::string(failed.message()));
+    }
+  }
+}
+
+void CachedStormStore::Read(Lock& lock, PendingRead& read, Activity& activity) {
+  const TimeKey key = read.place.key;
+  const bool is_asked = read.purpose == Purpose::kAsked;
+  // Whoever asked may have given up meanwhile.
+  Fields fields = absl::CancelledError("nobody waits for it any more");
+  if (!is_asked || read.waiters > 0) {
+    const StormFile& file =
+        read.place.storm->files[read.place.storm->sources[read.place.time].file];
+    activity = {true, file.path, steady_clock::now(), false};
+    fields = ReadFile(lock, read, activity);
+    activity.reads = false;
+    if (activity.told_of_hang) spdlog::info("{}: its storage answers again", file.path);
+  }
+  if (is_asked) --asked_reads_;
+  // Fields of a time that was removed meanwhile are returned to callers but not cached.
+  const bool keep = fields.ok() && PlaceOf(key).has_value();
+  if (keep && (is_asked || read.waiters > 0)) {
+    cache_.Insert(key, *fields);
+  } else if (keep) {
+    cache_.InsertAhead(key, *fields);
+  }
+  pending_.erase(key);
+  read.result = std::move(fields);
+  changed_.notify_all();
+}
+
+CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& read,
+                                                    Activity& activity) {
+  const Place& place = read.place;
+  const TimeSource source = place.storm->sources[place.time];
+  const StormFile& file = place.storm->files[source.file];
+  const std::optional<VerticalGrid> grid = VerticalGridOf(lock, place);
+  activity.went_on = steady_clock::now();
+  const auto urgency = read.purpose == Purpose::kAsked ? base::MemoryBudget::Urgency::kPatient
+                                                       : base::MemoryBudget::Urgency::kAhead;
+  lock.unlock();
+  const auto read_counted = [&]() -> Fields {
+    auto counted = std::make_shared<CountedFields>();
+    base::MemoryReservation scratch;
+    const std::string what =
+        absl::StrCat("storm '", place.storm->info.id, "', a time of ", file.cells.x, " x ",
+                     file.cells.y, " x ", file.cells.z, " cells,");
+    if (options_.memory != nullptr) {
+      base::MemoryBudget& memory = *options_.memory;
+      const ReadMemory needs = MemoryFor(file, grid);
+      THUNDERHEAD_ASSIGN_OR_RETURN(
+          counted->reserved, memory.Reserve(base::MemoryUse::kFields, needs.fields, what, urgency));
+      THUNDERHEAD_ASSIGN_OR_RETURN(
+          scratch, memory.Reserve(base::MemoryUse::kReading, needs.scratch, what, urgency));
+    }
+    THUNDERHEAD_ASSIGN_OR_RETURN(counted->fields,
+                                 file.reader->Read(source.record, grid, [&](double share) {
+                                   return Checkpoint(read, activity, share);
+                                 }));
+    if (options_.memory != nullptr) {
+      scratch = {};
+      THUNDERHEAD_RETURN_IF_ERROR(
+          options_.memory->Resize(counted->reserved, counted->fields.Bytes(), what));
+    }
+    return std::shared_ptr<const HydrometeorFields>(counted, &counted->fields);
+  };
+  Fields fields = read_counted();
+  lock.lock();
+  if (!fields.ok()) return fields;
+  std::optional<VerticalGrid>& chosen = storms_[place.key.storm].grid;
+  if (!chosen.has_value()) {
+    const RegularGrid& used = (*fields)->grid;
+    chosen = VerticalGrid{used.low_corner_m.z, used.spacing_m.z, used.cells.z};
+  }
+  return fields;
+}
+
+// The storm's height grid comes from its first time, whichever time is read first, so that a time's
+// picture does not depend on which times were viewed before. It stays when an earlier time arrives
+// later. Nothing if this is the first time itself, or if the first cannot be read.
+std::optional<VerticalGrid> CachedStormStore::VerticalGridOf(Lock& lock, const Place& place) {
+  std::optional<VerticalGrid>& grid = storms_[place.key.storm].grid;
+  if (grid.has_value() || place.time == 0) return grid;
+  const CataloguedStorm& storm = *place.storm;
+  const TimeSource first = storm.sources.front();
+  lock.unlock();
+  const absl::StatusOr<VerticalGrid> chosen =
+      storm.files[first.file].reader->ReadVerticalGrid(first.record);
+  lock.lock();
+  if (!chosen.ok()) {
+    spdlog::warn("the first time of {} cannot be read: {}", storm.info.id,
+                 std::string(chosen.status().message()));
+  } else if (!grid.has_value()) {
+    grid = *chosen;
+  }
+  return grid;
+}
+
+absl::Status CachedStormStore::Checkpoint(PendingRead& read, Activity& activity, double share) {
+  Lock lock(mutex_);
+  if (ending_) return absl::CancelledError("the store of storms has ended");
+  if (read.purpose == Purpose::kAhead) {
+    const auto unwanted = [&] { return read.waiters == 0 && !IsWanted(read.place.key); };
+    activity.reads = false;
+    changed_.wait(lock,
+                  [&] { return ending_ || read.waiters > 0 || asked_reads_ == 0 || unwanted(); });
+    activity.reads = true;
+    if (ending_ || unwanted()) return absl::CancelledError("read-ahead was cancelled");
+  }
+  activity.went_on = steady_clock::now();
+  const std::vector<std::shared_ptr<Listener>> listeners = read.listeners;
+  lock.unlock();
+  for (const auto& listener : listeners) {
+    const std::lock_guard calling(listener->mutex);
+    if (listener->progress) listener->progress(share);
+  }
+  return absl::OkStatus();
+}
+
+bool CachedStormStore::IsWanted(const TimeKey& key) const {
+  return std::ranges::find(wanted_, key) != wanted_.end();
+}
+
+void CachedStormStore::WantAfter(const Place& place) {
+  wanted_.clear();
+  const Held& held = storms_[place.key.storm];
+  const auto at = std::ranges::find(held.numbers, place.key.time);
+  if (held.storm == nullptr || at == held.numbers.end()) return;
+  std::size_t bytes = cache_.NewestBytes();
+  int ahead = 0;
+  for (auto next = at + 1; next != held.numbers.end() && ahead < options_.read_ahead;
+       ++next, ++ahead) {
+    // Do not read a time that would evict the one in view; all times are taken to be equally large.
+    bytes += cache_.NewestBytes();
+    if (bytes > options_.byte_budget) break;
+    wanted_.push_back({place.key.storm, *next});
+  }
+  changed_.notify_all();
+}
+
+std::optional<CachedStormStore::Place> CachedStormStore::NextWanted() {
+  for (const TimeKey& key : wanted_) {
+    if (!cache_.Holds(key) && !pending_.contains(key)) return PlaceOf(key);
+  }
+  return std::nullopt;
+}
+
+}  // namespace thunderhead::volume

@@ -1,0 +1,115 @@
+// The program with a memory budget, and more storms than that holds.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/service/interacting.h"
+#include "tests/service/served_program.h"
+#include "tests/support/synthetic_cf.h"
+#include "tests/support/temporary_folder.h"
+
+namespace thunderhead::testing {
+namespace {
+
+using Response = v1::InteractResponse;
+using Stub = v1::ThunderheadService::Stub;
+
+constexpr int kStorms = 64;
+constexpr double kBudget_mib = 256.0;
+
+// A value of /proc/PID/status, in MiB.
+double StatusMib(pid_t process, const std::string& name) {
+  std::ifstream status(absl::StrCat("/proc/", process, "/status"));
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with(name + ":")) return std::stod(line.substr(name.size() + 1)) / 1024.0;
+  }
+  return 0.0;
+}
+
+std::string NameOf(int storm) { return absl::StrCat("storm", storm < 10 ? "0" : "", storm); }
+
+bool HasPictureOrProblem(const Interacting::Messages& messages) {
+  return std::ranges::any_of(messages, [](const Response& message) {
+    return message.message_case() == Response::kFrame ||
+           message.message_case() == Response::kProblem;
+  });
+}
+
+// Disabled: most sessions are refused before they are opened, as drawing and tracing for the first
+// take what fields may use, and the process exceeds the budget by up to 40 MiB of copies that do
+// not count (docs/reliability.md).
+TEST(MemoryLimitTest, DISABLED_SixtyFourSessionsOnDifferentLargeTimesKeepWithinTheBudget) {
+  const TemporaryFolder folder;
+  const std::string first = folder.File(NameOf(0) + ".nc");
+  // 1.8 million cells, 7 MiB a time: 450 MiB in all.
+  WriteCf(ExtinctionFile(192, 192, 48, 250.0, 250.0, 250.0,
+                         [](auto x, auto y, auto z) {
+                           return z > 8 && z < 40 && (x / 16 + y / 16) % 2 == 0 ? 0.02 : 0.0;
+                         }),
+          first);
+  std::vector<std::string> more = {"--memory-budget", "256MiB", "--max-sessions-each", "100",
+                                   "--max-sessions",  "100",    "--read-deadline",     "60",
+                                   "--data"};
+  for (int i = 1; i < kStorms; ++i) {
+    more.push_back(folder.File(NameOf(i) + ".nc"));
+    std::filesystem::create_hard_link(first, more.back());
+  }
+  ServedProgram program(PROGRAM, first, "none", more);
+  ASSERT_NE(program.stub(), nullptr);
+  // What software GL, the shaders' programs and gRPC take is there once a picture has been drawn,
+  // and does not count.
+  double shown_mib = 0.0;
+  std::vector<std::unique_ptr<Interacting>> viewers;
+  for (int i = 0; i < kStorms; ++i) {
+    v1::CreateSessionRequest request;
+    v1::Scene& scene = *request.mutable_scene();
+    scene.set_storm_id(NameOf(i));
+    scene.mutable_output()->set_width_px(64);
+    scene.mutable_output()->set_height_px(36);
+    // Given, so that opening a session needs no fields.
+    scene.mutable_camera()->mutable_top_down();
+    v1::CreateSessionResponse created;
+    const grpc::Status status = Call(*program.stub(), &Stub::CreateSession, request, &created);
+    if (!status.ok()) {
+      EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED)
+          << status.error_message();
+      continue;
+    }
+    viewers.push_back(std::make_unique<Interacting>(*program.stub(), created.session_id()));
+    if (i > 0) continue;
+    ASSERT_TRUE(viewers[0]->Await([](const Interacting::Messages& messages) {
+      return std::ranges::any_of(messages, [](const Response& message) {
+        return message.frame().modelled().traced_paths() > 0;
+      });
+    }));
+    shown_mib = StatusMib(program.process(), "VmHWM");
+  }
+  int pictures = 0;
+  int refused = 0;
+  for (const auto& viewer : viewers) {
+    ASSERT_TRUE(viewer->Await(HasPictureOrProblem));
+    bool has_picture = false;
+    for (const Response& message : viewer->All()) {
+      if (message.message_case() == Response::kFrame) has_picture = true;
+      if (message.message_case() != Response::kProblem) continue;
+      EXPECT_THAT(message.problem().message(), ::testing::HasSubstr("of memory; "));
+    }
+    ++(has_picture ? pictures : refused);
+  }
+  const double most_mib = StatusMib(program.process(), "VmHWM");
+  std::cout << pictures << " sessions have pictures, " << refused << " a named refusal, "
+            << kStorms - viewers.size() << " were not opened; " << shown_mib
+            << " MiB with the first, at most " << most_mib << " MiB\n";
+  EXPECT_GE(pictures, 4);
+  EXPECT_LE(most_mib, shown_mib + kBudget_mib);
+}
+
+}  // namespace
+}  // namespace thunderhead::testing

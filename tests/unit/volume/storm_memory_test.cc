@@ -1,0 +1,257 @@
+// Storms that are larger than the memory, and storages that hang.
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <fstream>
+#include <mutex>
+#include <thread>
+
+#include "absl/strings/str_cat.h"
+#include "base/error_details.h"
+#include "base/memory_budget.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/support/temporary_folder.h"
+#include "volume/storm_store.h"
+
+namespace thunderhead::volume {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+using ::testing::HasSubstr;
+
+constexpr int kTimes = 64;
+constexpr int kCells = 64;
+constexpr std::size_t kTimeBytes = std::size_t{kCells} * kCells * kCells * sizeof(float);
+
+// A storage whose answers can be held back.
+class Storage {
+ public:
+  void Hang() {
+    const std::lock_guard lock(mutex_);
+    hangs_ = true;
+  }
+  void Answer() {
+    {
+      const std::lock_guard lock(mutex_);
+      hangs_ = false;
+    }
+    changed_.notify_all();
+  }
+  void Pass() {
+    std::unique_lock lock(mutex_);
+    ++passed_;
+    changed_.wait(lock, [this] { return !hangs_; });
+  }
+  int Passed() {
+    const std::lock_guard lock(mutex_);
+    return passed_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool hangs_ = false;
+  int passed_ = 0;
+};
+
+// "cube" is one storm of many times of cells in a cube; a file whose name begins with "far" comes
+// from the storage.
+class CubeFormat final : public StormFormat {
+ public:
+  explicit CubeFormat(std::shared_ptr<Storage> storage) : storage_(std::move(storage)) {}
+
+  std::string_view Name() const override { return "a cube"; }
+  std::string_view Example() const override { return "*.cube"; }
+  std::string_view Requirement() const override { return "a cube"; }
+  FormatFit Sniff(const UnknownFile& file) const override {
+    return file.path.ends_with(".cube") ? FormatFit::kModelLayout : FormatFit::kNone;
+  }
+  absl::StatusOr<StormFile> Describe(const UnknownFile& file) const override {
+    StormFile described;
+    described.path = file.path;
+    std::ifstream(file.path) >> described.cells.x;
+    described.cells = glm::ivec3(described.cells.x);
+    described.dx_m = described.dy_m = 100.0;
+    for (int i = 0; i < kTimes; ++i) described.times.push_back(absl::FromUnixSeconds(60 * i));
+    described.fields = {physics::Hydrometeor::kRain};
+    const bool far = file.path.find("/far") != std::string::npos;
+    described.reader = std::make_shared<Reader>(far ? storage_ : nullptr, described.cells);
+    return described;
+  }
+
+ private:
+  class Reader final : public RecordReader {
+   public:
+    Reader(std::shared_ptr<Storage> storage, const glm::ivec3& cells)
+        : storage_(std::move(storage)), cells_(cells) {}
+
+    absl::StatusOr<HydrometeorFields> Read(std::size_t /*record*/,
+                                           const std::optional<VerticalGrid>& /*grid*/,
+                                           const ReadCheckpoint& checkpoint) const override {
+      if (storage_ != nullptr) storage_->Pass();
+      if (absl::Status ended = checkpoint(0.5); !ended.ok()) return ended;
+      HydrometeorFields fields;
+      fields.grid = {cells_, glm::dvec3(100.0), glm::dvec3(0.0)};
+      HydrometeorField rain;
+      rain.hydrometeor = physics::Hydrometeor::kRain;
+      rain.concentration_kg_per_m3.assign(fields.grid.CellCount(), 1e-3F);
+      fields.fields.push_back(std::move(rain));
+      return fields;
+    }
+    absl::StatusOr<VerticalGrid> ReadVerticalGrid(std::size_t /*record*/) const override {
+      return VerticalGrid{0.0, 100.0, cells_.z};
+    }
+
+   private:
+    const std::shared_ptr<Storage> storage_;
+    const glm::ivec3 cells_;
+  };
+
+  const std::shared_ptr<Storage> storage_;
+};
+
+class StormMemory : public ::testing::Test {
+ protected:
+  ~StormMemory() override { storage_->Answer(); }
+
+  std::string Cube(const std::string& name, int cells) {
+    const std::string path = folder_.File(name + ".cube");
+    std::ofstream(path) << cells;
+    return path;
+  }
+
+  std::unique_ptr<StormStore> Open(const std::vector<std::string>& paths,
+                                   StormStoreOptions options) {
+    options.formats.Add(std::make_shared<CubeFormat>(storage_));
+    auto store = StormStore::Open(paths, options);
+    EXPECT_TRUE(store.ok()) << store.status();
+    return *std::move(store);
+  }
+
+  testing::TemporaryFolder folder_;
+  const std::shared_ptr<Storage> storage_ = std::make_shared<Storage>();
+};
+
+TEST_F(StormMemory, SixtyFourTimesThatAreHeldKeepWithinTheBudget) {
+  const auto budget = base::MemoryBudget::Make({.bytes = 24 * kTimeBytes});
+  const auto store = Open({Cube("storm", kCells)}, {.memory = budget, .read_ahead = 1});
+  std::vector<std::shared_ptr<const HydrometeorFields>> held;
+  int refused = 0;
+  for (int time = 0; time < kTimes; ++time) {
+    auto fields = store->Get("storm.cube", time, {});
+    EXPECT_LE(budget->Used(), budget->Bytes());
+    if (fields.ok()) {
+      held.push_back(*std::move(fields));
+      continue;
+    }
+    ++refused;
+    EXPECT_EQ(base::DetailsOf(fields.status()).reason, "MEMORY_BUDGET") << fields.status();
+    EXPECT_TRUE(base::DetailsOf(fields.status()).retry_after.has_value());
+    EXPECT_THAT(std::string(fields.status().message()), HasSubstr("storm 'storm.cube'"));
+  }
+  // Reading takes room besides.
+  EXPECT_GE(held.size(), 8U);
+  EXPECT_EQ(held.size() + static_cast<std::size_t>(refused), std::size_t{kTimes});
+  EXPECT_GE(budget->Used(base::MemoryUse::kFields), held.size() * kTimeBytes);
+  EXPECT_EQ(budget->Used(base::MemoryUse::kReading), 0U);
+  // Those who are shown less leave room to others.
+  held.clear();
+  EXPECT_TRUE(store->Get("storm.cube", kTimes - 1, {}).ok());
+  EXPECT_LE(budget->Used(), budget->Bytes());
+}
+
+TEST_F(StormMemory, WhatNobodyHoldsGoesFirst) {
+  const auto budget = base::MemoryBudget::Make({.bytes = 24 * kTimeBytes});
+  const auto store = Open({Cube("storm", kCells)}, {.memory = budget, .read_ahead = 0});
+  const auto held = store->Get("storm.cube", 0, {}).value();
+  for (int time = 1; time < kTimes; ++time) {
+    ASSERT_TRUE(store->Get("storm.cube", time, {}).ok()) << time;
+    EXPECT_LE(budget->Used(), budget->Bytes());
+  }
+  EXPECT_EQ(store->Peek("storm.cube", 0), held)
+      << "what is held is not dropped: that frees nothing";
+  EXPECT_EQ(store->Peek("storm.cube", 1), nullptr);
+  EXPECT_NE(store->Peek("storm.cube", kTimes - 1), nullptr);
+}
+
+TEST_F(StormMemory, CellsWhoseNumberOverflowsAreRefusedBeforeAnythingIsAllocated) {
+  const auto budget = base::MemoryBudget::Make({.bytes = std::size_t{1} << 30U});
+  const auto store = Open({Cube("huge", 2'000'000'000)}, {.memory = budget, .read_ahead = 0});
+  const absl::Status refused = store->Get("huge.cube", 0, {}).status();
+  EXPECT_EQ(base::DetailsOf(refused).reason, "TOO_LARGE_FOR_MEMORY") << refused;
+  EXPECT_FALSE(base::DetailsOf(refused).retry_after.has_value());
+}
+
+TEST_F(StormMemory, AStorageThatHangsIsNamedAndHoldsUpNothingThatIsInMemory) {
+  const auto store = Open({Cube("far", kCells), Cube("near", kCells)},
+                          {.read_ahead = 1, .read_deadline = milliseconds(200)});
+  ASSERT_TRUE(store->Get("near.cube", 0, {}).ok());
+  storage_->Hang();
+  const auto begun = steady_clock::now();
+  const absl::Status late = store->Get("far.cube", 0, {}).status();
+  const auto took = steady_clock::now() - begun;
+  EXPECT_TRUE(absl::IsDeadlineExceeded(late)) << late;
+  EXPECT_THAT(std::string(late.message()), HasSubstr("far.cube"));
+  EXPECT_EQ(base::DetailsOf(late).reason, "STORAGE_HANGS");
+  EXPECT_TRUE(base::DetailsOf(late).retry_after.has_value());
+  EXPECT_GE(took, milliseconds(200));
+  EXPECT_LT(took, std::chrono::seconds(5));
+  ASSERT_TRUE(store->Hung().has_value());
+  EXPECT_THAT(store->Hung()->file, HasSubstr("far.cube"));
+  // What is in memory goes on; what would wait behind is told at once.
+  EXPECT_TRUE(store->Get("near.cube", 0, {}).ok());
+  EXPECT_EQ(store->Storms().size(), 2U);
+  const auto behind = steady_clock::now();
+  EXPECT_TRUE(absl::IsDeadlineExceeded(store->Get("near.cube", 9, {}).status()));
+  EXPECT_LT(steady_clock::now() - behind, milliseconds(150));
+}
+
+TEST_F(StormMemory, AStorageThatAnswersAgainGivesWhatWasAskedFor) {
+  const auto store =
+      Open({Cube("far", kCells)}, {.read_ahead = 0, .read_deadline = milliseconds(100)});
+  storage_->Hang();
+  ASSERT_TRUE(absl::IsDeadlineExceeded(store->Get("far.cube", 0, {}).status()));
+  storage_->Answer();
+  absl::Status status = absl::UnknownError("");
+  const auto until = steady_clock::now() + std::chrono::seconds(20);
+  while (!status.ok() && steady_clock::now() < until) {
+    std::this_thread::sleep_for(milliseconds(5));
+    status = store->Get("far.cube", 0, {}).status();
+  }
+  EXPECT_TRUE(status.ok()) << status;
+  EXPECT_FALSE(store->Hung().has_value());
+  EXPECT_EQ(storage_->Passed(), 1) << "what was read late is kept";
+}
+
+TEST_F(StormMemory, AReadThatGoesOnSlowlyIsNotRefused) {
+  const auto store =
+      Open({Cube("near", kCells)}, {.read_ahead = 0, .read_deadline = milliseconds(300)});
+  // Several wait behind one another, in all for longer than the deadline.
+  std::vector<std::jthread> callers;
+  std::atomic<int> given = 0;
+  for (int time = 0; time < 6; ++time) {
+    callers.emplace_back([&, time] {
+      const auto fields = store->Get(
+          "near.cube", time, [](double) { std::this_thread::sleep_for(milliseconds(100)); });
+      if (fields.ok()) ++given;
+    });
+  }
+  callers.clear();
+  EXPECT_EQ(given, 6);
+}
+
+TEST_F(StormMemory, AStoreEndsWhileItsStorageHangs) {
+  auto store = Open({Cube("far", kCells)}, {.read_ahead = 1, .read_deadline = milliseconds(50)});
+  storage_->Hang();
+  ASSERT_FALSE(store->Get("far.cube", 0, {}).ok());
+  const auto begun = steady_clock::now();
+  store.reset();
+  EXPECT_LT(steady_clock::now() - begun, std::chrono::seconds(15));
+  storage_->Answer();  // and its thread finds what it used
+  std::this_thread::sleep_for(milliseconds(100));
+}
+
+}  // namespace
+}  // namespace thunderhead::volume
