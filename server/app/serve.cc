@@ -118,6 +118,7 @@ absl::Status Serve(ServeFlags flags) {
   volume::StormStoreOptions store_options;
   store_options.byte_budget = static_cast<std::size_t>(flags.memory_budget_gib * (1 << 30));
   store_options.live = LiveCatalogueOf(flags.catalogue);
+  THUNDERHEAD_ASSIGN_OR_RETURN(store_options.formats, FormatsOf(flags.sandbox));
   THUNDERHEAD_ASSIGN_OR_RETURN(const CloudsFolder clouds, CloudsFolder::Open(flags.clouds));
   THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<volume::StormStore> store,
                                volume::StormStore::Open(flags.data, store_options));

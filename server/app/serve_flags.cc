@@ -134,6 +134,7 @@ void AddServeFlags(CLI::App& serve, ServeFlags& flags) {
       ->check(CLI::Range(0.01, 1e6))
       ->capture_default_str();
   AddCatalogueFlags(serve, flags.catalogue);
+  AddSandboxFlags(serve, flags.sandbox);
   AddOperationFlags(serve, flags.operation);
   AddAccessFlags(serve, flags);
   AddLimitFlags(serve, flags);

@@ -13,6 +13,7 @@
 #include "app/address.h"
 #include "app/catalogue_flags.h"
 #include "app/operation.h"
+#include "app/sandbox_flags.h"
 #include "gateway/gateway.h"
 #include "service/server.h"
 #include "session/render_loop.h"
@@ -29,6 +30,7 @@ struct ServeFlags {
   std::string state;
   double memory_budget_gib = 2.0;
   CatalogueFlags catalogue;
+  SandboxFlags sandbox;
   OperationFlags operation;
 
   // Who may come.

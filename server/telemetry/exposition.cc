@@ -97,7 +97,10 @@ std::string Expose(const Metrics& metrics, const std::vector<Gauge>& gauges) {
       FamilyOf("thunderhead_refusals_total", "Answers that are errors", kCounter, "reason",
                metrics.refusals),
       FamilyOf("thunderhead_sessions_opened_total", "Sessions opened", kCounter,
-               metrics.sessions_opened)};
+               metrics.sessions_opened),
+      FamilyOf("thunderhead_reader_failures_total",
+               "Readers of untrusted files that failed: crashed, killed, time or nonsense",
+               kCounter, "reason", metrics.reader_failures)};
   for (const Gauge& gauge : gauges) {
     families.push_back(Family(gauge.name, gauge.help, MetricType::Gauge));
     ClientMetric metric;

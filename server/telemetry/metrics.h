@@ -76,6 +76,7 @@ struct Metrics {
   Counter frame_bytes_sent;    // of their pictures
   Labelled<Counter> refusals;  // answers that are errors, by reason
   Counter sessions_opened;
+  Labelled<Counter> reader_failures;  // of untrusted files' readers, by what happened
 };
 
 // The process's.
