@@ -1,6 +1,7 @@
 #include "volume/netcdf_file.h"
 
 #include <netcdf.h>
+#include <netcdf_mem.h>
 
 #include <cerrno>
 #include <cmath>
