@@ -52,14 +52,35 @@ int AllowReading(scmp_filter_ctx filter) {
   };
   const auto self = static_cast<scmp_datum_t>(getpid());
   int error = 0;
-  for (const int call :
-       {SCMP_SYS(read), SCMP_SYS(write), SCMP_SYS(close), SCMP_SYS(fstat), SCMP_SYS(munmap),
-        SCMP_SYS(mremap), SCMP_SYS(madvise), SCMP_SYS(brk), SCMP_SYS(futex), SCMP_SYS(sched_yield),
-        SCMP_SYS(sched_getaffinity), SCMP_SYS(set_robust_list), SCMP_SYS(rseq), SCMP_SYS(exit),
-        SCMP_SYS(exit_group), SCMP_SYS(clock_gettime), SCMP_SYS(clock_nanosleep),
-        SCMP_SYS(nanosleep), SCMP_SYS(gettimeofday), SCMP_SYS(getrandom), SCMP_SYS(rt_sigaction),
-        SCMP_SYS(rt_sigprocmask), SCMP_SYS(rt_sigreturn), SCMP_SYS(sigaltstack), SCMP_SYS(gettid),
-        SCMP_SYS(getpid), SCMP_SYS(sysinfo), SCMP_SYS(getrusage), SCMP_SYS(restart_syscall)}) {
+  for (const int call : {SCMP_SYS(read),
+                         SCMP_SYS(write),
+                         SCMP_SYS(close),
+                         SCMP_SYS(fstat),
+                         SCMP_SYS(munmap),
+                         SCMP_SYS(mremap),
+                         SCMP_SYS(madvise),
+                         SCMP_SYS(brk),
+                         SCMP_SYS(futex),
+                         SCMP_SYS(sched_yield),
+                         SCMP_SYS(sched_getaffinity),
+                         SCMP_SYS(set_robust_list),
+                         SCMP_SYS(rseq),
+                         SCMP_SYS(exit),
+                         SCMP_SYS(exit_group),
+                         SCMP_SYS(clock_gettime),
+                         SCMP_SYS(clock_nanosleep),
+                         SCMP_SYS(nanosleep),
+                         SCMP_SYS(gettimeofday),
+                         SCMP_SYS(getrandom),
+                         SCMP_SYS(rt_sigaction),
+                         SCMP_SYS(rt_sigprocmask),
+                         SCMP_SYS(rt_sigreturn),
+                         SCMP_SYS(sigaltstack),
+                         SCMP_SYS(gettid),
+                         SCMP_SYS(getpid),
+                         SCMP_SYS(sysinfo),
+                         SCMP_SYS(getrusage),
+                         SCMP_SYS(restart_syscall)}) {
     if (error == 0) error = allow(call);
   }
   if (error == 0) error = allow(SCMP_SYS(mmap), SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0));
@@ -79,8 +100,8 @@ int AllowReading(scmp_filter_ctx filter) {
 // Whatever is not allowed fails with EPERM, which libraries report as an error, rather than ending
 // the process: another version of the C library may try something first and do without.
 absl::Status FilterCalls() {
-  const std::unique_ptr<void, void (*)(scmp_filter_ctx)> filter(
-      seccomp_init(SCMP_ACT_ERRNO(EPERM)), seccomp_release);
+  const std::unique_ptr<void, void (*)(scmp_filter_ctx)> filter(seccomp_init(SCMP_ACT_ERRNO(EPERM)),
+                                                                seccomp_release);
   if (filter == nullptr) return Impossible("seccomp_init", ENOMEM);
   if (const int error = AllowReading(filter.get()); error != 0) {
     return Impossible("seccomp_rule_add", -error);

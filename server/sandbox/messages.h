@@ -107,7 +107,9 @@ void Visit(Archive& archive, volume::HydrometeorField& field) {
 
 template <typename Archive>
 void Visit(Archive& archive, volume::HydrometeorFields& fields) {
-  archive(fields.grid);
+  archive(fields.grid.cells);
+  archive(fields.grid.spacing_m);
+  archive(fields.grid.low_corner_m);
   auto count = static_cast<std::uint32_t>(fields.fields.size());
   archive(count);
   fields.fields.resize(std::min<std::size_t>(count, physics::kHydrometeorCount));

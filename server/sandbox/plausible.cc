@@ -37,8 +37,8 @@ bool AreCells(const glm::ivec3& cells) {
 
 bool AllFinite(const std::vector<float>& values, float least) {
   // NaN fails the first comparison.
-  return std::ranges::all_of(
-      values, [least](float value) { return value >= least && value <= 3.4e38F; });
+  return std::ranges::all_of(values,
+                             [least](float value) { return value >= least && value <= 3.4e38F; });
 }
 
 absl::Status CheckGrid(const volume::RegularGrid& grid) {
@@ -92,10 +92,9 @@ bool IsInside(const volume::CellBox& box, const glm::ivec3& cells) {
 
 absl::Status CheckGround(const volume::HydrometeorFields& fields, std::size_t columns) {
   const volume::LandSurface& land = fields.land;
-  bool sound = fields.terrain_height_m.size() == columns &&
-               AllFinite(fields.terrain_height_m, -1e6F) &&
-               (land.Empty() || land.texels.size() == columns) &&
-               Within(land.mean_albedo, 0.0, 1.0);
+  bool sound =
+      fields.terrain_height_m.size() == columns && AllFinite(fields.terrain_height_m, -1e6F) &&
+      (land.Empty() || land.texels.size() == columns) && Within(land.mean_albedo, 0.0, 1.0);
   for (int channel = 0; channel < 3; ++channel) {
     sound = sound && Within(land.mean_reflectance[channel], 0.0, 1.0);
   }

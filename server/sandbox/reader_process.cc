@@ -18,12 +18,11 @@
 #include <utility>
 #include <vector>
 
-#include "absl/strings/escaping.h"
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
 #include "base/out_of_memory.h"
 #include "base/status.h"
+#include "base/utf8.h"
 #include "sandbox/reader_main.h"
 #include "spdlog/spdlog.h"
 #include "telemetry/metrics.h"
@@ -59,8 +58,8 @@ class Descriptor {
 };
 
 absl::Status NoReader(const std::string& path, int error) {
-  return absl::UnavailableError(absl::StrCat(
-      path, ": no process can be started to read it (", std::strerror(error), "); try again"));
+  return absl::UnavailableError(absl::StrCat(path, ": no process can be started to read it (",
+                                             std::strerror(error), "); try again"));
 }
 
 // An open descriptor of a regular file, never of a pipe or device that would block or act.
@@ -71,9 +70,9 @@ absl::Status OpenFile(const std::string& path, Descriptor& file) {
     if (error == ENOENT) {
       return absl::NotFoundError(absl::StrCat(path, ": there is no such file; check the path"));
     }
-    return absl::PermissionDeniedError(
-        absl::StrCat(path, ": may not be read (", std::strerror(error),
-                     "); give this user permission to read it"));
+    return absl::PermissionDeniedError(absl::StrCat(path, ": may not be read (",
+                                                    std::strerror(error),
+                                                    "); give this user permission to read it"));
   }
   struct stat information = {};
   if (fstat(file.Number(), &information) == 0 && S_ISREG(information.st_mode)) {
@@ -130,9 +129,8 @@ class Child {
 
 // What a program needs to start; never this one's secrets.
 std::vector<char*> Environment() {
-  constexpr std::array<std::string_view, 5> kNames = {"LD_LIBRARY_PATH=", "ASAN_OPTIONS=",
-                                                      "UBSAN_OPTIONS=", "TSAN_OPTIONS=",
-                                                      "LSAN_OPTIONS="};
+  constexpr std::array<std::string_view, 5> kNames = {
+      "LD_LIBRARY_PATH=", "ASAN_OPTIONS=", "UBSAN_OPTIONS=", "TSAN_OPTIONS=", "LSAN_OPTIONS="};
   std::vector<char*> kept;
   for (char** variable = environ; *variable != nullptr; ++variable) {
     const std::string_view text(*variable);
@@ -164,9 +162,9 @@ int Spawn(const std::string& program, int request, int reply, int file, pid_t& p
   posix_spawnattr_setsigmask(&attributes, &none);
   posix_spawnattr_setsigdefault(&attributes, &all);
   posix_spawnattr_setpgroup(&attributes, 0);
-  posix_spawnattr_setflags(&attributes, static_cast<short>(POSIX_SPAWN_SETSIGMASK |
-                                                           POSIX_SPAWN_SETSIGDEF |
-                                                           POSIX_SPAWN_SETPGROUP));
+  posix_spawnattr_setflags(
+      &attributes,
+      static_cast<short>(POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP));
   std::string name = "thunderhead";
   std::string command = kReaderCommand;
   const std::array<char*, 3> arguments = {name.data(), command.data(), nullptr};
@@ -187,31 +185,35 @@ absl::Status Failed(const std::string& path, const char* reason, absl::Status st
 
 absl::Status TookTooLong(const std::string& path, milliseconds time) {
   return Failed(path, "time",
-                absl::DeadlineExceededError(absl::StrCat(
-                    "was ended after ", absl::FormatDuration(absl::FromChrono(time)),
-                    " (--sandbox-seconds)", kWhatToDo)));
+                absl::DeadlineExceededError(
+                    absl::StrCat("was ended after ", absl::FormatDuration(absl::FromChrono(time)),
+                                 " (--sandbox-seconds)", kWhatToDo)));
 }
 
 // Why a reader ended without a result.
 absl::Status EndedEarly(const std::string& path, int signal, milliseconds time) {
   if (signal == SIGXCPU) return TookTooLong(path, time);
-  const std::string how =
-      signal == 0 ? "ended without a result"
-                  : absl::StrCat(signal == SIGKILL ? "was killed" : "crashed", " (signal ", signal,
-                                 ", ", strsignal(signal), ")");
+  const std::string how = signal == 0
+                              ? "ended without a result"
+                              : absl::StrCat(signal == SIGKILL ? "was killed" : "crashed",
+                                             " (signal ", signal, ", ", strsignal(signal), ")");
   return Failed(path, signal == SIGKILL ? "killed" : "crashed",
                 absl::DataLossError(absl::StrCat(how, kWhatToDo)));
 }
 
 absl::Status Nonsense(const std::string& path, const std::string& what) {
   return Failed(path, "nonsense",
-                absl::DataLossError(absl::StrCat("gave a result that cannot be right, by ", what,
-                                                 kWhatToDo)));
+                absl::DataLossError(
+                    absl::StrCat("gave a result that cannot be right, by ", what, kWhatToDo)));
 }
 
+// One line of text, whatever the reader sent.
 std::string Printable(const std::string& text) {
   constexpr std::size_t kLongest = 2000;
-  return absl::Utf8SafeCEscape(text.substr(0, kLongest));
+  std::string line = base::ValidUtf8(text.substr(0, kLongest));
+  std::ranges::replace_if(
+      line, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+  return line;
 }
 
 void Log(const Note& note) {
@@ -311,16 +313,15 @@ absl::Status ReaderProcess::Run(Request request, Reply wanted,
   // Fewer switches between the processes; where it is not allowed, the pipe stays small.
   fcntl(reply_to.Number(), F_SETPIPE_SZ, 1 << 20);
   pid_t process = 0;
-  const int error = Spawn(program_, request_from.Number(), reply_to.Number(), file.Number(),
-                          process);
+  const int error =
+      Spawn(program_, request_from.Number(), reply_to.Number(), file.Number(), process);
   if (error != 0) return NoReader(request.path, error);
   Child child(process);
   request_from.Close();
   reply_to.Close();
   Receiver from_reader(reply_from.Number(), limits_.time, limits_.memory_bytes);
-  absl::Status status = base::OrOutOfMemory([&] {
-    return Listen(request.path, from_reader, wanted, checkpoint, take, limits_);
-  });
+  absl::Status status = base::OrOutOfMemory(
+      [&] { return Listen(request.path, from_reader, wanted, checkpoint, take, limits_); });
   if (!from_reader.Ok()) return Judge(request.path, from_reader, child, limits_);
   return status;
 }

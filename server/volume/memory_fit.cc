@@ -38,11 +38,11 @@ absl::StatusOr<std::size_t> CountThatFits(const std::string& what,
   }
   if (size <= static_cast<double>(most)) return count;
   constexpr double kGiB = 1 << 30;
-  return absl::ResourceExhaustedError(absl::StrCat(
-      what, " has ", absl::StrJoin(lengths, " x "), " values",
-      absl::StrFormat(" (%.4g GiB), more than the %.4g GiB that can be held here", size / kGiB,
-                      static_cast<double>(most) / kGiB),
-      "; cut a smaller domain"));
+  return absl::ResourceExhaustedError(
+      absl::StrCat(what, " has ", absl::StrJoin(lengths, " x "), " values",
+                   absl::StrFormat(" (%.4g GiB), more than the %.4g GiB that can be held here",
+                                   size / kGiB, static_cast<double>(most) / kGiB),
+                   "; cut a smaller domain"));
 }
 
 }  // namespace thunderhead::volume

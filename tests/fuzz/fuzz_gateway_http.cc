@@ -1,5 +1,5 @@
-// A request as a browser's bytes: HTTP's header by the gateway's parser, its access rules, the page's
-// files, the translation into a gRPC call, and the frame of its message.
+// A request as a browser's bytes: HTTP's header by the gateway's parser, its access rules, the
+// page's files, the translation into a gRPC call, and the frame of its message.
 #include <algorithm>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/string_body.hpp>
@@ -25,7 +25,8 @@ namespace http = boost::beast::http;
 
 StaticFiles Page() {
   static std::string folder = [] {
-    std::string made = (std::filesystem::temp_directory_path() / "thunderhead-fuzz-XXXXXX").string();
+    std::string made =
+        (std::filesystem::temp_directory_path() / "thunderhead-fuzz-XXXXXX").string();
     if (mkdtemp(made.data()) == nullptr) std::abort();
     std::filesystem::create_directory(made + "/assets");
     std::ofstream(made + "/index.html") << "page";

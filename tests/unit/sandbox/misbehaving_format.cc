@@ -87,7 +87,8 @@ absl::Status MisbehaveWhenDescribed(const std::string& name) {
     std::vector<std::vector<char>> all;
     while (true) all.emplace_back(16 << 20, 'x');
   }
-  if (name == "everything") return absl::InvalidArgumentError(absl::StrCat("[", TryEverything(), "]"));
+  if (name == "everything")
+    return absl::InvalidArgumentError(absl::StrCat("[", TryEverything(), "]"));
   if (name == "rude") return absl::InvalidArgumentError("\x1b[2Jforged\nline \xff");
   return absl::OkStatus();
 }
@@ -128,7 +129,10 @@ void Spoil(const std::string& how, HydrometeorFields& fields) {
       {"source", [&] { fields.motion.source = static_cast<volume::TurbulenceSource>(9); }},
       {"shear", [&] { fields.motion.shear_m_per_s.x = HUGE_VAL; }},
       {"box", [&] { fields.condensate.high.z = 5; }},
-      {"columns", [&] { fields.grid.cells = {3, 2, 4}; }},
+      {"columns",
+       [&] {
+         fields.grid.cells = {3, 2, 4};
+       }},
       {"cells", [&] { fields.grid.cells.z = -4; }},
       {"spacing", [&] { fields.grid.spacing_m.z = 0.0; }},
       {"corner", [&] { fields.grid.low_corner_m.x = HUGE_VAL; }},

@@ -24,10 +24,10 @@
 namespace thunderhead::sandbox {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::Not;
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
+using ::testing::HasSubstr;
+using ::testing::Not;
 using volume::HydrometeorFields;
 using volume::StormFile;
 
@@ -51,14 +51,9 @@ class Bytes {
   std::string text_;
 };
 
-// Members one by one, as a struct's padding is of no value.
 std::string BytesOf(const HydrometeorFields& fields) {
   HydrometeorFields copy = fields;
   Bytes bytes;
-  bytes(copy.grid.cells);
-  bytes(copy.grid.spacing_m);
-  bytes(copy.grid.low_corner_m);
-  copy.grid = {};
   Visit(bytes, copy);
   return bytes.Text();
 }
@@ -92,6 +87,7 @@ testing::SyntheticWrf Storm() {
   file.mixing_ratios["QCLOUD"] = [](const testing::WrfCell& cell) { return 1e-4 * cell.level; };
   file.mixing_ratios["QSNOW"] = [](const testing::WrfCell& cell) { return 1e-5 * cell.x; };
   file.mixing_ratios["QNSNOW"] = [](const testing::WrfCell&) { return 1e4; };
+  file.units["QNSNOW"] = "kg-1";
   file.land_use_table = "USGS";
   file.columns["LU_INDEX"] = [](const testing::WrfCell& cell) { return 1.0 + cell.x; };
   return file;
@@ -127,7 +123,7 @@ void ExpectSameStorm(UntrustedFiles& files, const std::string& path) {
     });
     ASSERT_TRUE(expected.ok()) << expected.status();
     ASSERT_TRUE(fields.ok()) << fields.status();
-    EXPECT_EQ(BytesOf(*fields), BytesOf(*expected)) << path << " record " << record;
+    EXPECT_TRUE(BytesOf(*fields) == BytesOf(*expected)) << path << " record " << record;
     EXPECT_GT(shares.size(), 1U);
   }
 }
@@ -169,8 +165,8 @@ TEST_F(UntrustedFilesTest, Cost) {
     }
     return best;
   };
-  const double own_describe = milliseconds_of(
-      [&] { EXPECT_TRUE(volume::StormFormats::BuiltIn().Describe(path).ok()); });
+  const double own_describe =
+      milliseconds_of([&] { EXPECT_TRUE(volume::StormFormats::BuiltIn().Describe(path).ok()); });
   const double describe = milliseconds_of([&] { EXPECT_TRUE(files->Describe(path).ok()); });
   const double own_read =
       milliseconds_of([&] { EXPECT_TRUE(own->reader->Read(0, std::nullopt, {}).ok()); });
@@ -212,8 +208,8 @@ TEST_F(UntrustedFilesTest, AReaderHasATime) {
   EXPECT_EQ(Failures("time"), before + 2);
 }
 
-TEST_F(UntrustedFilesTest, ProcessorTimeIsLimitedWhereWaitingIsNot) {
-  // Its checkpoints keep the server from counting what it waits for.
+// As read-ahead does, which gives way to others.
+TEST_F(UntrustedFilesTest, WhatTheServerWaitsForByItselfDoesNotCount) {
   const auto file = Files(milliseconds(1000))->Describe(Bad("sound"));
   ASSERT_TRUE(file.ok()) << file.status();
   const auto fields = file->reader->Read(0, std::nullopt, [](double) {
@@ -268,9 +264,10 @@ TEST_F(UntrustedFilesTest, FieldsThatOtherRoomsCouldNotBearAreRefused) {
   };
   EXPECT_TRUE(read("sound").ok()) << read("sound");
   for (const char* name :
-       {"nan", "infinite", "negative", "short", "kind", "quantity", "sizes-beyond", "sizes-far",
-        "sizes-few", "statistics", "terrain", "terrain-nan", "land", "turbulence", "source",
-        "shear", "box", "columns", "cells", "spacing", "corner"}) {
+       {"nan",          "infinite",   "negative",  "short",      "kind",    "quantity",
+        "sizes-beyond", "sizes-far",  "sizes-few", "statistics", "terrain", "terrain-nan",
+        "land",         "turbulence", "source",    "shear",      "box",     "columns",
+        "cells",        "spacing",    "corner"}) {
     const absl::Status status = read(name);
     EXPECT_EQ(status.code(), absl::StatusCode::kDataLoss) << name << ": " << status;
     EXPECT_THAT(std::string(status.message()), HasSubstr("cannot be right")) << name;
@@ -301,8 +298,8 @@ TEST_F(UntrustedFilesTest, AFileThatFailedItsReaderIsLeftAloneUntilItChanges) {
 
 TEST_F(UntrustedFilesTest, AnErrorOfTheFileIsThatOfTheProgramItself) {
   const std::string path = folder_.File("notes.txt");
-  for (const std::string& text : {std::string("notes on a storm, and not the storm"),
-                                  std::string("note"), std::string()}) {
+  for (const std::string& text :
+       {std::string("notes on a storm, and not the storm"), std::string("note"), std::string()}) {
     std::ofstream(path, std::ios::trunc) << text;
     const absl::Status own = volume::StormFormats::BuiltIn().Describe(path).status();
     const absl::Status confined = Files()->Describe(path).status();
