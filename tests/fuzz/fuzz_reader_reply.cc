@@ -2,7 +2,7 @@
 // not harm the rooms that use it.
 #include <unistd.h>
 
-#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <vector>
@@ -29,7 +29,7 @@ void Use(const volume::HydrometeorFields& fields) {
     }
   }
   for (const float height_m : fields.terrain_height_m) {
-    if (!(height_m < 4e38F)) std::abort();
+    if (!std::isfinite(height_m)) std::abort();
   }
   if (!fields.land.Empty()) volume::LandAt(fields.land, fields.grid, {0.0, 0.0});
 }

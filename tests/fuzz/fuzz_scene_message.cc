@@ -30,7 +30,7 @@ void TakeRequest(const v1::InteractRequest& request) {
   if (!service::CheckLimits(request).ok()) return;
   if (request.has_join()) static_cast<void>(service::NameOf(request.join().name(), "join.name"));
   if (request.has_update_scene()) TakeUpdate(request.update_scene());
-  if (request.has_set_rules()) service::RulesOf(request.set_rules(), {});
+  if (request.has_set_rules()) service::RulesOf(request.set_rules().rules(), {});
   if (request.has_point()) static_cast<void>(service::RayOf(request.point().ray(), "point.ray"));
 }
 
