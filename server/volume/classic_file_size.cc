@@ -46,7 +46,8 @@ std::uintmax_t AttributesSize(int handle, int variable, int attributes,
         nc_inq_att(handle, variable, name, &type, &length) != NC_NOERR) {
       continue;
     }
-    bytes += NameSize(name, widths) + 4 + widths.count + Padded(Product(length, TypeSize(handle, type)));
+    bytes +=
+        NameSize(name, widths) + 4 + widths.count + Padded(Product(length, TypeSize(handle, type)));
   }
   return bytes;
 }

@@ -307,8 +307,7 @@ int main(int argc, char** argv) {
     const std::size_t kind = i % 3;
     // A new description now and then: writing one costs more than reading it.
     if (sound[kind].empty() || dice.OneIn(8)) {
-      constexpr std::array kClassic = {WrfFormat::kClassic, WrfFormat::kOffset64,
-                                       WrfFormat::kCdf5};
+      constexpr std::array kClassic = {WrfFormat::kClassic, WrfFormat::kOffset64, WrfFormat::kCdf5};
       const WrfFormat format = kind == 0 ? WrfFormat::kNetcdf4 : dice.Of(kClassic);
       const SyntheticWrf wrf = OddWrf(dice, format);
       const testing::SyntheticCf cf = OddCf(dice);

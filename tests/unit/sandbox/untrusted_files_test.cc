@@ -194,12 +194,12 @@ TEST_F(UntrustedFilesTest, AReaderThatCrashesIsOneError) {
   EXPECT_EQ(Failures("crashed"), before + 4);
 }
 
-// A header that a fuzzer found: netCDF-C 4.9.0 crashes on it (nc_get_NC, free_NC_vararrayV). A later
-// one may refuse it.
+// A header that a fuzzer found: netCDF-C 4.9.0 crashes on it (nc_get_NC, free_NC_vararrayV). A
+// later one may refuse it.
 TEST_F(UntrustedFilesTest, AFileThatCrashesNetcdfItselfIsOneError) {
   const std::string path = folder_.File("wrfout_d01");
-  std::filesystem::copy_file(
-      THUNDERHEAD_SOURCE_DIR "/tests/unit/sandbox/netcdf_header_crash.nc", path);
+  std::filesystem::copy_file(THUNDERHEAD_SOURCE_DIR "/tests/unit/sandbox/netcdf_header_crash.nc",
+                             path);
   const absl::Status status = Files()->Describe(path).status();
   EXPECT_EQ(status.code(), absl::StatusCode::kDataLoss) << status;
   EXPECT_THAT(std::string(status.message()), HasSubstr(path));
