@@ -162,6 +162,7 @@ void AddServeFlags(CLI::App& serve, ServeFlags& flags) {
       "$STATE_DIRECTORY, else thunderhead in $XDG_STATE_HOME or ~/.local/state");
   AddMemoryFlags(serve, flags);
   AddCatalogueFlags(serve, flags.catalogue);
+  AddSandboxFlags(serve, flags.sandbox);
   AddOperationFlags(serve, flags.operation);
   AddAccessFlags(serve, flags);
   AddLimitFlags(serve, flags);

@@ -15,6 +15,7 @@
 #include "app/catalogue_flags.h"
 #include "app/jobs_flags.h"
 #include "app/operation.h"
+#include "app/sandbox_flags.h"
 #include "base/memory_budget.h"
 #include "gateway/gateway.h"
 #include "service/server.h"
@@ -34,6 +35,7 @@ struct ServeFlags {
   std::uint64_t gpu_memory_bytes = 0;  // 0: by what the driver tells
   double read_deadline_s = 60.0;
   CatalogueFlags catalogue;
+  SandboxFlags sandbox;
   OperationFlags operation;
   JobsFlags jobs;
 

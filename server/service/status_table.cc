@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "base/error_details.h"
+#include "base/utf8.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "telemetry/metrics.h"
@@ -63,24 +64,6 @@ const Row& RowOf(absl::StatusCode code) {
   return kOther;
 }
 
-// Length in bytes of the UTF-8 character at the start of `text`; 0 if it is invalid.
-std::size_t CharacterBytes(std::string_view text) {
-  const auto byte = [text](std::size_t i) {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
-  };
-  const unsigned lead = byte(0);
-  if (lead < 0x80) return 1;
-  if (lead < 0xc2 || lead > 0xf4) return 0;
-  const std::size_t bytes = lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : 4;
-  for (std::size_t i = 1; i < bytes; ++i) {
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-  }
-  // Rejects overlong encodings, UTF-16 surrogates and values beyond Unicode.
-  const bool wrong = (lead == 0xe0 && byte(1) < 0xa0) || (lead == 0xed && byte(1) > 0x9f) ||
-                     (lead == 0xf0 && byte(1) < 0x90) || (lead == 0xf4 && byte(1) > 0x8f);
-  return wrong ? 0 : bytes;
-}
-
 // Makes the text valid UTF-8, as protobuf strings must be (file names need not be), and truncates
 // it to `max_bytes` in the encoding of grpc-message, where all but printable ASCII takes three
 // bytes for one.
@@ -88,7 +71,7 @@ std::string Sendable(std::string_view text, std::size_t max_bytes) {
   std::string sendable;
   std::size_t bytes = 0;
   while (!text.empty()) {
-    const std::size_t size = CharacterBytes(text);
+    const std::size_t size = base::Utf8CharacterBytes(text);
     const std::string_view character = size == 0 ? "?" : text.substr(0, size);
     const bool printable = character[0] >= 0x20 && character[0] < 0x7f;
     bytes += printable ? 1 : 3 * character.size();

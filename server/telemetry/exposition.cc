@@ -102,7 +102,10 @@ std::string Expose(const Metrics& metrics, const std::vector<Gauge>& gauges) {
                metrics.job_pictures),
       FamilyOf("thunderhead_device_losses_total",
                "Times that the device was reset, or could not be opened again after that", kCounter,
-               metrics.device_losses)};
+               metrics.device_losses),
+      FamilyOf("thunderhead_reader_failures_total",
+               "Readers of untrusted files that failed: crashed, killed, time or nonsense",
+               kCounter, "reason", metrics.reader_failures)};
   for (const Gauge& gauge : gauges) {
     if (families.back().name != gauge.name) {
       families.push_back(Family(gauge.name, gauge.help, MetricType::Gauge));

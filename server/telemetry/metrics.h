@@ -78,6 +78,7 @@ struct Metrics {
   Counter sessions_opened;
   Labelled<Counter> job_pictures;  // of render jobs, by outcome: drawn, failed or dropped
   Counter device_losses;  // the device was reset, or could not be opened again
+  Labelled<Counter> reader_failures;  // of untrusted files' readers, by what happened
 };
 
 // The process's.

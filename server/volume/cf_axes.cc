@@ -233,10 +233,13 @@ void EvenOut(const std::vector<double>& faces_m, CfAxis* axis) {
   axis->low_m = faces_m.front();
   axis->spacing_m = depth_m / axis->cells;
   axis->shares.assign(static_cast<std::size_t>(axis->cells), {});
+  int lowest = 0;  // of the layers that reach into this cell or above
   for (int cell = 0; cell < axis->cells; ++cell) {
     const double low_m = axis->low_m + cell * axis->spacing_m;
-    for (int layer = 0; layer < layers; ++layer) {
+    while (lowest + 1 < layers && faces_m[static_cast<std::size_t>(lowest) + 1] <= low_m) ++lowest;
+    for (int layer = lowest; layer < layers; ++layer) {
       const auto at = static_cast<std::size_t>(layer);
+      if (faces_m[at] >= low_m + axis->spacing_m) break;
       const double overlap_m =
           std::min(faces_m[at + 1], low_m + axis->spacing_m) - std::max(faces_m[at], low_m);
       const double share = overlap_m / axis->spacing_m;

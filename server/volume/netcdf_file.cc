@@ -1,6 +1,7 @@
 #include "volume/netcdf_file.h"
 
 #include <netcdf.h>
+#include <netcdf_mem.h>
 
 #include <cerrno>
 #include <cmath>
@@ -12,6 +13,7 @@
 #include "absl/strings/str_join.h"
 #include "base/status.h"
 #include "volume/classic_file_size.h"
+#include "volume/memory_fit.h"
 #include "volume/netcdf_lock.h"
 
 namespace thunderhead::volume {
@@ -23,8 +25,8 @@ constexpr int kNoHandle = -1;
 // is that large.
 constexpr double kLargestValue = 1e30;
 
-// Of one read, 1 TiB of floats: a product of lengths that is larger, or overflows, is a mistake.
-constexpr std::size_t kMaxValues = std::size_t{1} << 38U;
+// Of an attribute; longer ones are no text that a reader asks for.
+constexpr std::size_t kLongestText = 1 << 20;
 
 absl::Status OpenError(const std::string& path, int code) {
   const std::string what = absl::StrCat(path, ": ");
@@ -123,9 +125,35 @@ void CleanPlainFloats(const Packing& packing, std::vector<float>& values) {
   }
 }
 
+struct MemoryFile {
+  std::string path;
+  std::span<const std::byte> bytes;
+};
+
+std::optional<MemoryFile>& InMemory() {
+  static std::optional<MemoryFile> file;
+  return file;
+}
+
+// NetCDF-C neither writes to the bytes nor frees them.
+int OpenMemory(const MemoryFile& file, int& handle) {
+  constexpr std::size_t kMagicBytes = 8;  // with fewer netCDF-C speaks of an invalid argument
+  if (file.bytes.size() < kMagicBytes) return NC_ENOTNC;
+  return nc_open_mem(file.path.c_str(), NC_NOWRITE, file.bytes.size(),
+                     const_cast<std::byte*>(file.bytes.data()), &handle);
+}
+
 }  // namespace
 
 absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path) {
+  if (const std::optional<MemoryFile>& file = InMemory(); file.has_value()) {
+    if (path != file->path) return OpenError(path, EACCES);
+    if (file->bytes.empty()) return OpenError(path, NC_EHDFERR);
+    int handle = kNoHandle;
+    const NetcdfLock lock;
+    if (const int code = OpenMemory(*file, handle); code != NC_NOERR) return OpenError(path, code);
+    return Checked(path, handle, file->bytes.size());
+  }
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return OpenError(path, ENOENT);
   if (!std::filesystem::is_regular_file(path, error)) return OpenError(path, NC_ENOTNC);
@@ -136,14 +164,23 @@ absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path) {
   if (const int code = nc_open(path.c_str(), NC_NOWRITE, &handle); code != NC_NOERR) {
     return OpenError(path, code);
   }
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  return Checked(path, handle, error ? std::numeric_limits<std::uintmax_t>::max() : bytes);
+}
+
+void NetcdfFile::ReadFromMemory(const std::string& path, std::span<const std::byte> bytes) {
+  InMemory() = MemoryFile{path, bytes};
+}
+
+absl::StatusOr<NetcdfFile> NetcdfFile::Checked(const std::string& path, int handle,
+                                               std::uintmax_t bytes) {
   NetcdfFile file(path, handle);
   const std::uintmax_t expected = ClassicFileSize(handle);
-  const std::uintmax_t actual = std::filesystem::file_size(path, error);
-  if (!error && actual >= expected) return file;
+  if (bytes >= expected) return file;
   // Not by ~NetcdfFile, which would take the lock again.
   nc_close(std::exchange(file.handle_, kNoHandle));
   return absl::DataLossError(absl::StrCat(
-      path, ": has ", actual, " bytes where its header promises ", expected,
+      path, ": has ", bytes, " bytes where its header promises ", expected,
       "; it is cut short or still being written: wait for the model to finish, or copy it again"));
 }
 
@@ -223,7 +260,7 @@ absl::StatusOr<std::vector<std::string>> NetcdfFile::Dimensions(const std::strin
 
 absl::StatusOr<std::vector<double>> NetcdfFile::ReadDoubles(const std::string& variable) const {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, Shape(variable));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::size_t total, Product(variable, shape));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::size_t total, CountThatFits(variable, shape, 8));
   std::vector<double> values(total);
   if (total == 0) return values;
   const NetcdfLock lock(path_);
@@ -279,7 +316,7 @@ std::optional<std::string> NetcdfFile::TextAttribute(const std::string& variable
     nc_free_string(1, &text);
     return value;
   }
-  if (type != NC_CHAR) return {};
+  if (type != NC_CHAR || length > kLongestText) return {};
   std::string value(length, '\0');
   if (nc_get_att_text(handle_, id, attribute.c_str(), value.data()) != NC_NOERR) return {};
   value.resize(std::char_traits<char>::find(value.data(), length, '\0') != nullptr
@@ -300,7 +337,6 @@ std::optional<double> NetcdfFile::NumberAttribute(const std::string& variable,
 
 absl::StatusOr<std::vector<std::string>> NetcdfFile::ReadRows(const std::string& variable) const {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, Shape(variable));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::size_t total, Product(variable, shape));
   const NetcdfLock lock(path_);
   int id = 0;
   nc_type type = NC_NAT;
@@ -310,6 +346,7 @@ absl::StatusOr<std::vector<std::string>> NetcdfFile::ReadRows(const std::string&
     return absl::InvalidArgumentError(
         absl::StrCat(path_, ": ", variable, " is not a two-dimensional character variable"));
   }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::size_t total, CountThatFits(variable, shape, 1));
   std::vector<char> text(total);
   if (text.empty()) return std::vector<std::string>(shape[0]);
   if (int code = nc_get_var_text(handle_, id, text.data()); code != NC_NOERR) {
@@ -326,22 +363,7 @@ absl::StatusOr<std::vector<std::string>> NetcdfFile::ReadRows(const std::string&
 absl::StatusOr<std::size_t> NetcdfFile::RecordLength(const std::string& variable) const {
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<std::size_t> shape, Shape(variable));
   if (!shape.empty()) shape[0] = 1;
-  return Product(variable, shape);
-}
-
-absl::StatusOr<std::size_t> NetcdfFile::Product(const std::string& variable,
-                                                const std::vector<std::size_t>& lengths) const {
-  std::size_t product = 1;
-  for (const std::size_t length : lengths) {
-    if (length != 0 && product > kMaxValues / length) {
-      return absl::DataLossError(absl::StrCat(path_, ": ", variable, " claims ",
-                                              absl::StrJoin(lengths, " x "),
-                                              " values, more than any memory holds; the file is "
-                                              "damaged, or cut a smaller domain"));
-    }
-    product *= length;
-  }
-  return product;
+  return CountThatFits(variable, shape, sizeof(float));
 }
 
 absl::Status NetcdfFile::ReadRecord(const std::string& variable, std::size_t record,
@@ -369,7 +391,7 @@ absl::Status NetcdfFile::ReadFloats(const std::string& variable,
                                     const std::vector<std::size_t>& start,
                                     const std::vector<std::size_t>& count,
                                     std::vector<float>& values) const {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::size_t total, Product(variable, count));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::size_t total, CountThatFits(variable, count, 4));
   values.resize(total);
   Packing packing;
   std::vector<double> packed;
@@ -396,6 +418,12 @@ absl::Status NetcdfFile::ReadFloats(const std::string& variable,
     for (std::size_t i = 0; i < total; ++i) values[i] = Clean(packed[i], packing);
   }
   return absl::OkStatus();
+}
+
+absl::StatusOr<std::size_t> NetcdfFile::CountThatFits(const std::string& variable,
+                                                      const std::vector<std::size_t>& lengths,
+                                                      std::size_t bytes_each) const {
+  return volume::CountThatFits(absl::StrCat(path_, ": ", variable), lengths, bytes_each);
 }
 
 absl::Status NetcdfFile::ReadError(const std::string& variable, int code) const {

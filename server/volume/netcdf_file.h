@@ -4,7 +4,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,10 @@ class NetcdfFile {
   // Opens `path` for reading. Errors: NOT_FOUND; INVALID_ARGUMENT (no netCDF file); DATA_LOSS (cut
   // short or damaged); UNAVAILABLE (another program is writing it).
   static absl::StatusOr<NetcdfFile> Open(const std::string& path);
+
+  // For a process that may open no file: from now on the file at `path`, and no other, is read from
+  // these bytes, which must stay.
+  static void ReadFromMemory(const std::string& path, std::span<const std::byte> bytes);
 
   NetcdfFile(NetcdfFile&& other) noexcept;
   NetcdfFile& operator=(NetcdfFile&& other) noexcept;
@@ -69,12 +75,15 @@ class NetcdfFile {
 
  private:
   NetcdfFile(std::string path, int handle);
-
-  absl::StatusOr<std::size_t> Product(const std::string& variable,
-                                      const std::vector<std::size_t>& lengths) const;
+  // `bytes` is the size of the file. The caller holds NetcdfLock.
+  static absl::StatusOr<NetcdfFile> Checked(const std::string& path, int handle,
+                                            std::uintmax_t bytes);
 
   absl::Status ReadFloats(const std::string& variable, const std::vector<std::size_t>& start,
                           const std::vector<std::size_t>& count, std::vector<float>& values) const;
+  absl::StatusOr<std::size_t> CountThatFits(const std::string& variable,
+                                            const std::vector<std::size_t>& lengths,
+                                            std::size_t bytes_each) const;
   absl::Status ReadError(const std::string& variable, int code) const;
   void Close();
 

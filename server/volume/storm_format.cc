@@ -2,10 +2,49 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "absl/time/civil_time.h"
+#include "base/status.h"
+#include "base/utf8.h"
+#include "volume/memory_fit.h"
 
 namespace thunderhead::volume {
+namespace {
+
+// What holds for the files of every format, and other rooms rely on.
+absl::Status CheckDescribed(StormFile& file) {
+  const auto& cells = file.cells;
+  THUNDERHEAD_RETURN_IF_ERROR(
+      CountThatFits(absl::StrCat(file.path, ": one time of a field"),
+                    {static_cast<std::size_t>(cells.x), static_cast<std::size_t>(cells.y),
+                     static_cast<std::size_t>(cells.z)},
+                    sizeof(float))
+          .status());
+  constexpr double kSmallest_m = 1e-3;
+  constexpr double kLargest_m = 1e6;
+  for (const double spacing_m : {file.dx_m, file.dy_m}) {
+    if (spacing_m >= kSmallest_m && spacing_m <= kLargest_m) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.path, ": its cells are ", spacing_m,
+                     " m wide; 1 mm to 1000 km can be shown: check the grid's spacing"));
+  }
+  static const absl::Time kFirst = absl::FromCivil(absl::CivilYear(0), absl::UTCTimeZone());
+  static const absl::Time kEnd = absl::FromCivil(absl::CivilYear(10'000), absl::UTCTimeZone());
+  for (const absl::Time time : file.times) {
+    if (time >= kFirst && time < kEnd) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.path, ": has a time outside the years 0 to 9999 (",
+                     absl::FormatTime(time, absl::UTCTimeZone()), "); check its units"));
+  }
+  file.about = base::ValidUtf8(file.about);
+  return absl::OkStatus();
+}
+
+}  // namespace
 
 absl::StatusOr<StormFile> StormFormats::Describe(const std::string& path) const {
+  if (elsewhere_) {
+    if (auto file = elsewhere_(path); file.has_value()) return *std::move(file);
+  }
   const UnknownFile file{path, NetcdfFile::Open(path)};
   FormatFit best = FormatFit::kNone;
   std::vector<const StormFormat*> fitting;  // as well as `best`
@@ -17,7 +56,11 @@ absl::StatusOr<StormFile> StormFormats::Describe(const std::string& path) const 
     fitting.push_back(format.get());
   }
   if (fitting.empty()) return NoneFits(file);
-  if (fitting.size() == 1) return fitting.front()->Describe(file);
+  if (fitting.size() == 1) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(StormFile described, fitting.front()->Describe(file));
+    THUNDERHEAD_RETURN_IF_ERROR(CheckDescribed(described));
+    return described;
+  }
   const auto append_name = [](std::string* out, const StormFormat* format) {
     out->append(format->Name());
   };

@@ -2,9 +2,12 @@
 // are stands in built_in_formats.cc and nowhere else.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -59,6 +62,12 @@ class StormFormats {
 
   void Add(std::shared_ptr<const StormFormat> format) { formats_.push_back(std::move(format)); }
 
+  // Describes files that the formats are not to open here, and gives them their readers; nothing
+  // for all others.
+  using Elsewhere =
+      std::function<std::optional<absl::StatusOr<StormFile>>(const std::string& path)>;
+  void LeaveTo(Elsewhere elsewhere) { elsewhere_ = std::move(elsewhere); }
+
   // Describes the file at `path` by the format that fits it best. Two that fit equally well, or
   // none, are an error.
   absl::StatusOr<StormFile> Describe(const std::string& path) const;
@@ -70,6 +79,7 @@ class StormFormats {
   absl::Status NoneFits(const UnknownFile& file) const;
 
   std::vector<std::shared_ptr<const StormFormat>> formats_;
+  Elsewhere elsewhere_;
 };
 
 }  // namespace thunderhead::volume

@@ -1,0 +1,59 @@
+#include "sandbox/archive.h"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+
+namespace thunderhead::sandbox {
+
+void Sender::Write(const void* bytes, std::size_t count) {
+  const auto* from = static_cast<const char*>(bytes);
+  while (count > 0) {
+    const ssize_t written = write(pipe_, from, count);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return;
+    from += written;
+    count -= static_cast<std::size_t>(written);
+  }
+}
+
+bool Receiver::Read(void* bytes, std::size_t count) {
+  auto* to = static_cast<char*>(bytes);
+  while (Ok() && count > 0) {
+    if (!AwaitBytes()) return false;
+    const ssize_t got = read(pipe_, to, count);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) {
+      failure_ = Failure::kEnded;
+      return false;
+    }
+    to += got;
+    count -= static_cast<std::size_t>(got);
+  }
+  return Ok();
+}
+
+bool Receiver::AwaitBytes() {
+  using std::chrono::milliseconds;
+  using std::chrono::steady_clock;
+  while (true) {
+    const auto start = steady_clock::now();
+    pollfd ready{pipe_, POLLIN, 0};
+    const auto wait = std::chrono::ceil<milliseconds>(patience_).count();
+    const int found = poll(&ready, 1, static_cast<int>(std::clamp<std::int64_t>(wait, 0, 60'000)));
+    patience_ -= steady_clock::now() - start;
+    if (found > 0) return true;
+    if (found < 0 && errno != EINTR) {
+      failure_ = Failure::kEnded;
+      return false;
+    }
+    if (patience_ <= std::chrono::nanoseconds::zero()) {
+      failure_ = Failure::kTooLate;
+      return false;
+    }
+  }
+}
+
+}  // namespace thunderhead::sandbox

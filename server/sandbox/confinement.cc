@@ -1,0 +1,133 @@
+#include "sandbox/confinement.h"
+
+#include <malloc.h>
+#include <sched.h>
+#include <seccomp.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+
+namespace thunderhead::sandbox {
+namespace {
+
+absl::Status Impossible(const char* what, int error) {
+  return absl::FailedPreconditionError(absl::StrCat(
+      "files cannot be read in a sandbox here: ", what, " fails (", std::strerror(error),
+      "); serve without --untrusted and --sandbox, or allow the program seccomp"));
+}
+
+std::uint64_t AddressSpace() {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> statm(std::fopen("/proc/self/statm", "re"),
+                                                              std::fclose);
+  unsigned long long pages = 0;
+  if (statm == nullptr || std::fscanf(statm.get(), "%llu", &pages) != 1) return 0;
+  return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+absl::Status Limit(__rlimit_resource resource, rlim_t soft, rlim_t hard) {
+  rlimit limit{};
+  if (getrlimit(resource, &limit) != 0) return Impossible("getrlimit", errno);
+  // A limit that is lower already stays.
+  limit.rlim_max = std::min(limit.rlim_max, hard);
+  limit.rlim_cur = std::min(limit.rlim_max, soft);
+  if (setrlimit(resource, &limit) != 0) return Impossible("setrlimit", errno);
+  return absl::OkStatus();
+}
+
+// Allocation, threads, waiting, the pipes that are open, the clock, and to end. With conditions:
+// memory that is never code, clone for threads, signals to itself, limits only to be read.
+int AllowReading(scmp_filter_ctx filter) {
+  const auto allow = [filter](int call, auto... conditions) {
+    return seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, sizeof...(conditions), conditions...);
+  };
+  const auto self = static_cast<scmp_datum_t>(getpid());
+  int error = 0;
+  for (const int call : {SCMP_SYS(read),
+                         SCMP_SYS(write),
+                         SCMP_SYS(close),
+                         SCMP_SYS(fstat),
+                         SCMP_SYS(munmap),
+                         SCMP_SYS(mremap),
+                         SCMP_SYS(madvise),
+                         SCMP_SYS(brk),
+                         SCMP_SYS(futex),
+                         SCMP_SYS(sched_yield),
+                         SCMP_SYS(sched_getaffinity),
+                         SCMP_SYS(set_robust_list),
+                         SCMP_SYS(rseq),
+                         SCMP_SYS(exit),
+                         SCMP_SYS(exit_group),
+                         SCMP_SYS(clock_gettime),
+                         SCMP_SYS(clock_nanosleep),
+                         SCMP_SYS(nanosleep),
+                         SCMP_SYS(gettimeofday),
+                         SCMP_SYS(getrandom),
+                         SCMP_SYS(rt_sigaction),
+                         SCMP_SYS(rt_sigprocmask),
+                         SCMP_SYS(rt_sigreturn),
+                         SCMP_SYS(sigaltstack),
+                         SCMP_SYS(gettid),
+                         SCMP_SYS(getpid),
+                         SCMP_SYS(sysinfo),
+                         SCMP_SYS(getrusage),
+                         SCMP_SYS(restart_syscall)}) {
+    if (error == 0) error = allow(call);
+  }
+  if (error == 0) error = allow(SCMP_SYS(mmap), SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0));
+  if (error == 0) error = allow(SCMP_SYS(mprotect), SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0));
+  if (error == 0) {
+    error = allow(SCMP_SYS(clone), SCMP_A0(SCMP_CMP_MASKED_EQ, CLONE_THREAD, CLONE_THREAD));
+  }
+  if (error == 0) error = allow(SCMP_SYS(tgkill), SCMP_A0(SCMP_CMP_EQ, self));
+  if (error == 0) error = allow(SCMP_SYS(prlimit64), SCMP_A2(SCMP_CMP_EQ, 0));
+  // The C library then takes clone, whose flags can be looked at.
+  if (error == 0) {
+    error = seccomp_rule_add(filter, SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(clone3), 0);
+  }
+  return error;
+}
+
+// Whatever is not allowed fails with EPERM, which libraries report as an error, rather than ending
+// the process: another version of the C library may try something first and do without.
+absl::Status FilterCalls() {
+  const std::unique_ptr<void, void (*)(scmp_filter_ctx)> filter(seccomp_init(SCMP_ACT_ERRNO(EPERM)),
+                                                                seccomp_release);
+  if (filter == nullptr) return Impossible("seccomp_init", ENOMEM);
+  if (const int error = AllowReading(filter.get()); error != 0) {
+    return Impossible("seccomp_rule_add", -error);
+  }
+  if (const int error = seccomp_load(filter.get()); error != 0) {
+    return Impossible("seccomp_load", -error);
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::Status Confine(const Allowance& allowance) {
+  // Each thread's arena would take 64 MiB of address space.
+  mallopt(M_ARENA_MAX, 1);
+  const rlim_t memory = AddressSpace() + allowance.memory_bytes;
+  THUNDERHEAD_RETURN_IF_ERROR(Limit(RLIMIT_AS, memory, memory));
+  // The signal of the soft limit is SIGXCPU, which says what happened.
+  THUNDERHEAD_RETURN_IF_ERROR(
+      Limit(RLIMIT_CPU, allowance.processor_s, rlim_t{allowance.processor_s} + 1));
+  THUNDERHEAD_RETURN_IF_ERROR(Limit(RLIMIT_CORE, 0, 0));
+  THUNDERHEAD_RETURN_IF_ERROR(Limit(RLIMIT_FSIZE, 0, 0));
+  THUNDERHEAD_RETURN_IF_ERROR(Limit(RLIMIT_NOFILE, 0, 0));
+  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return Impossible("no_new_privs", errno);
+  prctl(PR_SET_DUMPABLE, 0, 0, 0, 0);
+  return FilterCalls();
+}
+
+}  // namespace thunderhead::sandbox

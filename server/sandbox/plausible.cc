@@ -1,0 +1,160 @@
+#include "sandbox/plausible.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "absl/time/civil_time.h"
+#include "base/status.h"
+
+namespace thunderhead::sandbox {
+namespace {
+
+// Far beyond any storm, and near enough for arithmetic in single precision.
+constexpr int kMostCells = 2'000'000;  // along one axis
+constexpr double kFarthest_m = 1e9;
+constexpr std::size_t kMostTimes = 1'000'000;
+
+absl::Status Require(bool condition, const std::string& what) {
+  if (condition) return absl::OkStatus();
+  return absl::InvalidArgumentError(what);
+}
+
+bool Within(double value, double low, double high) {
+  return std::isfinite(value) && value >= low && value <= high;
+}
+
+template <typename Enum>
+bool AtMost(Enum value, Enum last) {
+  return static_cast<int>(value) >= 0 && static_cast<int>(value) <= static_cast<int>(last);
+}
+
+bool AreCells(const glm::ivec3& cells) {
+  return std::min({cells.x, cells.y, cells.z}) >= 1 &&
+         std::max({cells.x, cells.y, cells.z}) <= kMostCells;
+}
+
+bool AllFinite(const std::vector<float>& values, float least) {
+  // NaN fails the first comparison.
+  return std::ranges::all_of(values,
+                             [least](float value) { return value >= least && value <= 3.4e38F; });
+}
+
+absl::Status CheckGrid(const volume::RegularGrid& grid) {
+  THUNDERHEAD_RETURN_IF_ERROR(Require(AreCells(grid.cells), "the number of its cells"));
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool sound = Within(grid.spacing_m[axis], 1e-6, kFarthest_m) &&
+                       Within(grid.low_corner_m[axis], -kFarthest_m, kFarthest_m);
+    THUNDERHEAD_RETURN_IF_ERROR(Require(sound, "the size of its cells"));
+  }
+  return absl::OkStatus();
+}
+
+// Every cell with particles has a radius.
+bool CoverParticles(const volume::ParticleSizes& sizes, const std::vector<float>& concentration) {
+  if (sizes.Empty()) return true;
+  if (sizes.first_cell > concentration.size() ||
+      sizes.inverse_radius.size() > concentration.size() - sizes.first_cell) {
+    return false;
+  }
+  const auto is_empty = [](float value) { return value == 0.0F; };
+  const auto first = concentration.begin() + static_cast<std::ptrdiff_t>(sizes.first_cell);
+  const auto end = concentration.begin() + static_cast<std::ptrdiff_t>(sizes.EndCell());
+  return std::all_of(concentration.begin(), first, is_empty) &&
+         std::all_of(end, concentration.end(), is_empty);
+}
+
+absl::Status CheckField(const volume::HydrometeorField& field, std::size_t cells) {
+  const std::vector<float>& values = field.concentration_kg_per_m3;
+  const volume::FieldStatistics& statistics = field.statistics;
+  const bool kinds = AtMost(field.hydrometeor, physics::Hydrometeor::kHail) &&
+                     AtMost(field.quantity, volume::Quantity::kExtinction) &&
+                     AtMost(field.sizes.origin, volume::SizeOrigin::kObserved);
+  THUNDERHEAD_RETURN_IF_ERROR(Require(kinds, "the kind of a field"));
+  const bool counts = std::isfinite(statistics.minimum) && std::isfinite(statistics.maximum) &&
+                      std::isfinite(statistics.mean_water_path_kg_per_m2) &&
+                      std::isfinite(statistics.maximum_water_path_kg_per_m2) &&
+                      statistics.negative_cells >= 0 && statistics.missing_cells >= 0;
+  THUNDERHEAD_RETURN_IF_ERROR(Require(counts, "the statistics of a field"));
+  const bool sound = (values.empty() || values.size() == cells) && AllFinite(values, 0.0F);
+  THUNDERHEAD_RETURN_IF_ERROR(Require(sound, "the values of a field"));
+  return Require(CoverParticles(field.sizes, values) && std::isfinite(field.sizes.mean_radius_m),
+                 "the sizes of particles");
+}
+
+bool IsInside(const volume::CellBox& box, const glm::ivec3& cells) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.low[axis] < 0 || box.high[axis] > cells[axis]) return false;
+  }
+  return true;
+}
+
+absl::Status CheckGround(const volume::HydrometeorFields& fields, std::size_t columns) {
+  const volume::LandSurface& land = fields.land;
+  bool sound =
+      fields.terrain_height_m.size() == columns && AllFinite(fields.terrain_height_m, -1e6F) &&
+      (land.Empty() || land.texels.size() == columns) && Within(land.mean_albedo, 0.0, 1.0);
+  for (int channel = 0; channel < 3; ++channel) {
+    sound = sound && Within(land.mean_reflectance[channel], 0.0, 1.0);
+  }
+  return Require(sound, "the ground");
+}
+
+absl::Status CheckMotion(const volume::AirMotion& motion, std::size_t cells) {
+  const bool sizes = (motion.turbulence.empty() || motion.turbulence.size() == cells) &&
+                     (motion.ascent.empty() || motion.ascent.size() == cells);
+  return Require(sizes && AtMost(motion.source, volume::TurbulenceSource::kEnergy) &&
+                     std::isfinite(motion.shear_m_per_s.x) && std::isfinite(motion.shear_m_per_s.y),
+                 "the motion of the air");
+}
+
+}  // namespace
+
+absl::Status CheckPlausible(const volume::StormFile& file) {
+  THUNDERHEAD_RETURN_IF_ERROR(Require(AreCells(file.cells), "the number of its cells"));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      Require(Within(file.dx_m, 1e-6, kFarthest_m) && Within(file.dy_m, 1e-6, kFarthest_m),
+              "the size of its cells"));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      Require(!file.times.empty() && file.times.size() <= kMostTimes, "the number of its times"));
+  static const absl::Time kFirst = absl::FromCivil(absl::CivilYear(0), absl::UTCTimeZone());
+  static const absl::Time kLast = absl::FromCivil(absl::CivilYear(10'000), absl::UTCTimeZone());
+  const bool in_time = std::ranges::all_of(
+      file.times, [](absl::Time time) { return time >= kFirst && time < kLast; });
+  THUNDERHEAD_RETURN_IF_ERROR(Require(in_time, "its times"));
+  const bool fields = !file.fields.empty() && file.fields.size() <= physics::kHydrometeorCount &&
+                      std::ranges::all_of(file.fields, [](physics::Hydrometeor hydrometeor) {
+                        return AtMost(hydrometeor, physics::Hydrometeor::kHail);
+                      });
+  THUNDERHEAD_RETURN_IF_ERROR(Require(fields, "its fields"));
+  const bool place = Within(file.latitude_deg.value_or(0.0), -90.0, 90.0) &&
+                     Within(file.longitude_deg.value_or(0.0), -360.0, 360.0);
+  return Require(place, "its place");
+}
+
+absl::Status CheckPlausible(const volume::VerticalGrid& grid) {
+  return Require(grid.cells >= 1 && grid.cells <= kMostCells &&
+                     Within(grid.low_m, -kFarthest_m, kFarthest_m) &&
+                     Within(grid.spacing_m, 1e-6, kFarthest_m),
+                 "its heights");
+}
+
+absl::Status CheckPlausible(const volume::HydrometeorFields& fields,
+                            const volume::StormFile& file) {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckGrid(fields.grid));
+  const glm::ivec3 cells = fields.grid.cells;
+  THUNDERHEAD_RETURN_IF_ERROR(
+      Require(cells.x == file.cells.x && cells.y == file.cells.y,
+              "the number of its columns, which is not what it was: was the file replaced?"));
+  const std::size_t columns = static_cast<std::size_t>(cells.x) * static_cast<std::size_t>(cells.y);
+  for (const volume::HydrometeorField& field : fields.fields) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckField(field, fields.grid.CellCount()));
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(
+      Require(IsInside(fields.condensate, cells), "the box of its condensate"));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckGround(fields, columns));
+  return CheckMotion(fields.motion, fields.grid.CellCount());
+}
+
+}  // namespace thunderhead::sandbox

@@ -1,0 +1,19 @@
+// Whether what came from the reader of an untrusted file is what a sound reader could have sent: a
+// reader that a file has taken over may send anything, and other rooms rely on their values.
+#pragma once
+
+#include "absl/status/status.h"
+#include "volume/hydrometeor_fields.h"
+#include "volume/storm_file.h"
+#include "volume/vertical_remap.h"
+
+namespace thunderhead::sandbox {
+
+// INVALID_ARGUMENT names the member at fault.
+absl::Status CheckPlausible(const volume::StormFile& file);
+absl::Status CheckPlausible(const volume::VerticalGrid& grid);
+// `file` is the description of the file that the fields are of; another number of columns means
+// that the file was replaced, or that the reader lies.
+absl::Status CheckPlausible(const volume::HydrometeorFields& fields, const volume::StormFile& file);
+
+}  // namespace thunderhead::sandbox

@@ -1,0 +1,333 @@
+#include "sandbox/reader_process.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <mutex>
+#include <optional>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "base/error_details.h"
+#include "base/out_of_memory.h"
+#include "base/status.h"
+#include "base/utf8.h"
+#include "sandbox/reader_main.h"
+#include "spdlog/spdlog.h"
+#include "telemetry/metrics.h"
+
+namespace thunderhead::sandbox {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+constexpr std::string_view kReaderFailed = "READER_FAILED";
+constexpr char kWhatToDo[] =
+    "; the file may be damaged or hostile: have it written again, or take it away";
+
+class Descriptor {
+ public:
+  explicit Descriptor(int number = -1) : number_(number) {}
+  ~Descriptor() { Close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  int Number() const { return number_; }
+  void Set(int number) {
+    Close();
+    number_ = number;
+  }
+  void Close() {
+    if (number_ >= 0) close(std::exchange(number_, -1));
+  }
+
+ private:
+  int number_;
+};
+
+absl::Status NoReader(const std::string& path, int error) {
+  return absl::UnavailableError(absl::StrCat(path, ": no process can be started to read it (",
+                                             std::strerror(error), "); try again"));
+}
+
+// An open descriptor of a regular file, never of a pipe or device that would block or act.
+absl::Status OpenFile(const std::string& path, Descriptor& file) {
+  file.Set(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  if (file.Number() < 0) {
+    const int error = errno;
+    if (error == ENOENT) {
+      return absl::NotFoundError(absl::StrCat(path, ": there is no such file; check the path"));
+    }
+    return absl::PermissionDeniedError(absl::StrCat(path, ": may not be read (",
+                                                    std::strerror(error),
+                                                    "); give this user permission to read it"));
+  }
+  struct stat information = {};
+  if (fstat(file.Number(), &information) == 0 && S_ISREG(information.st_mode)) {
+    return absl::OkStatus();
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat(path, ": is no regular file; give the model's output file"));
+}
+
+// Processes that did not end when they were killed, as those that wait for a dead network file
+// system: asked again whenever another one ends.
+void ReapLater(pid_t process) {
+  static std::mutex mutex;
+  static std::vector<pid_t> left;
+  const std::lock_guard lock(mutex);
+  if (process > 0) left.push_back(process);
+  std::erase_if(left, [](pid_t each) { return waitpid(each, nullptr, WNOHANG) != 0; });
+}
+
+// A running reader; killed, and its end collected, when this object goes.
+class Child {
+ public:
+  explicit Child(pid_t process) : process_(process) {}
+  ~Child() { Kill(); }
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  void Kill() {
+    if (process_ <= 0) return;
+    kill(process_, SIGKILL);
+    if (!End(milliseconds(200)).has_value()) ReapLater(std::exchange(process_, 0));
+  }
+
+  // The signal that ended it, 0 if it ended by itself, nothing if it still runs after `patience`.
+  std::optional<int> End(milliseconds patience) {
+    const auto until = steady_clock::now() + patience;
+    int status = 0;
+    while (process_ > 0) {
+      const pid_t ended = waitpid(process_, &status, WNOHANG);
+      if (ended != 0) {
+        process_ = 0;
+        ReapLater(0);
+        return ended > 0 && WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+      }
+      if (steady_clock::now() >= until) return std::nullopt;
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+    return 0;
+  }
+
+ private:
+  pid_t process_;
+};
+
+// What a program needs to start; never this one's secrets.
+std::vector<char*> Environment() {
+  constexpr std::array<std::string_view, 5> kNames = {
+      "LD_LIBRARY_PATH=", "ASAN_OPTIONS=", "UBSAN_OPTIONS=", "TSAN_OPTIONS=", "LSAN_OPTIONS="};
+  std::vector<char*> kept;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string_view text(*variable);
+    const bool known = std::ranges::any_of(
+        kNames, [text](std::string_view name) { return text.starts_with(name); });
+    if (known) kept.push_back(*variable);
+  }
+  kept.push_back(nullptr);
+  return kept;
+}
+
+// Starts the program with the descriptors that it may have, in a group of its own, so that Ctrl-C
+// reaches the server alone. 0 and the process, or an error number.
+int Spawn(const std::string& program, int request, int reply, int file, pid_t& process) {
+  posix_spawn_file_actions_t actions;
+  posix_spawnattr_t attributes;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawnattr_init(&attributes);
+  // From above, so that none is overwritten before it is copied.
+  posix_spawn_file_actions_adddup2(&actions, request, STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, reply, STDOUT_FILENO);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  if (file >= 0) posix_spawn_file_actions_adddup2(&actions, file, kFileDescriptor);
+  posix_spawn_file_actions_addclosefrom_np(&actions, kFileDescriptor + (file >= 0 ? 1 : 0));
+  sigset_t none;
+  sigset_t all;
+  sigemptyset(&none);
+  sigfillset(&all);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setsigdefault(&attributes, &all);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  posix_spawnattr_setflags(
+      &attributes,
+      static_cast<short>(POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP));
+  std::string name = "thunderhead";
+  std::string command = kReaderCommand;
+  const std::array<char*, 3> arguments = {name.data(), command.data(), nullptr};
+  const int error = posix_spawn(&process, program.c_str(), &actions, &attributes, arguments.data(),
+                                Environment().data());
+  posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
+  return error;
+}
+
+// Counts and logs; the error is for who asked.
+absl::Status Failed(const std::string& path, const char* reason, absl::Status status) {
+  telemetry::Counted().reader_failures.Of(reason).Add();
+  status = absl::Status(status.code(), absl::StrCat(path, ": its reader ", status.message()));
+  spdlog::warn("{}", std::string(status.message()));
+  return base::WithDetails(std::move(status), {.reason = std::string(kReaderFailed)});
+}
+
+absl::Status TookTooLong(const std::string& path, milliseconds time) {
+  return Failed(path, "time",
+                absl::DeadlineExceededError(
+                    absl::StrCat("was ended after ", absl::FormatDuration(absl::FromChrono(time)),
+                                 " (--sandbox-seconds)", kWhatToDo)));
+}
+
+// Why a reader ended without a result.
+absl::Status EndedEarly(const std::string& path, int signal, milliseconds time) {
+  if (signal == SIGXCPU) return TookTooLong(path, time);
+  const std::string how = signal == 0
+                              ? "ended without a result"
+                              : absl::StrCat(signal == SIGKILL ? "was killed" : "crashed",
+                                             " (signal ", signal, ", ", strsignal(signal), ")");
+  return Failed(path, signal == SIGKILL ? "killed" : "crashed",
+                absl::DataLossError(absl::StrCat(how, kWhatToDo)));
+}
+
+absl::Status Nonsense(const std::string& path, const std::string& what) {
+  return Failed(path, "nonsense",
+                absl::DataLossError(
+                    absl::StrCat("gave a result that cannot be right, by ", what, kWhatToDo)));
+}
+
+// One line of text, whatever the reader sent.
+std::string Printable(const std::string& text) {
+  constexpr std::size_t kLongest = 2000;
+  std::string line = base::ValidUtf8(text.substr(0, kLongest));
+  std::ranges::replace_if(
+      line, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+  return line;
+}
+
+void Log(const Note& note) {
+  const bool warning = note.code >= static_cast<int>(spdlog::level::warn);
+  spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, "{}", Printable(note.text));
+}
+
+// A status that the reader made of what the file says.
+absl::Status StatusOf(const Note& note, const ReaderLimits& limits) {
+  const auto code = static_cast<absl::StatusCode>(note.code);
+  std::string text = Printable(note.text);
+  switch (code) {
+    case absl::StatusCode::kResourceExhausted:
+      absl::StrAppend(&text, " (untrusted files have ", limits.memory_bytes >> 20,
+                      " MiB, by --sandbox-memory)");
+      [[fallthrough]];
+    case absl::StatusCode::kInvalidArgument:
+    case absl::StatusCode::kNotFound:
+    case absl::StatusCode::kPermissionDenied:
+    case absl::StatusCode::kFailedPrecondition:
+    case absl::StatusCode::kUnavailable:
+      return {code, text};
+    default:
+      return absl::DataLossError(text);
+  }
+}
+
+// What a Receiver that failed says of the reader.
+absl::Status Judge(const std::string& path, const Receiver& from_reader, Child& child,
+                   const ReaderLimits& limits) {
+  switch (from_reader.Why()) {
+    case Receiver::Failure::kTooLate:
+      return TookTooLong(path, limits.time);
+    case Receiver::Failure::kTooLarge:
+      return Nonsense(path, "its size");
+    default:
+      return EndedEarly(path, child.End(milliseconds(1000)).value_or(0), limits.time);
+  }
+}
+
+// Hears the reader out. Its notes are limited, as it could talk for ever.
+absl::Status Listen(const std::string& path, Receiver& from_reader, Reply wanted,
+                    const volume::ReadCheckpoint& checkpoint, const ReaderProcess::Take& take,
+                    const ReaderLimits& limits) {
+  constexpr int kMostNotes = 10'000;
+  for (int notes = 0; notes < kMostNotes; ++notes) {
+    Reply reply = Reply::kError;
+    from_reader(reply);
+    if (!from_reader.Ok()) return absl::OkStatus();
+    if (reply == Reply::kProgress) {
+      double share = 0.0;
+      from_reader(share);
+      if (!from_reader.Ok()) return absl::OkStatus();
+      if (!(share >= 0.0 && share <= 1.0)) break;
+      if (checkpoint) THUNDERHEAD_RETURN_IF_ERROR(checkpoint(share));
+    } else if (reply == Reply::kLog || reply == Reply::kError) {
+      Note note;
+      Visit(from_reader, note);
+      if (!from_reader.Ok()) return absl::OkStatus();
+      if (reply == Reply::kError) return StatusOf(note, limits);
+      Log(note);
+    } else if (reply == wanted) {
+      const absl::Status taken = take(from_reader);
+      if (taken.ok() || !from_reader.Ok()) return absl::OkStatus();
+      return Nonsense(path, std::string(taken.message()));
+    } else {
+      break;
+    }
+  }
+  return Nonsense(path, "its kind");
+}
+
+}  // namespace
+
+absl::Status ReaderProcess::Run(Request request, Reply wanted,
+                                const volume::ReadCheckpoint& checkpoint, const Take& take) const {
+  request.memory_bytes = limits_.memory_bytes;
+  request.processor_s = static_cast<std::uint32_t>(
+      std::max<std::int64_t>(1, std::chrono::ceil<std::chrono::seconds>(limits_.time).count()));
+  Descriptor file;
+  if (request.wanted != Wanted::kProbe) {
+    THUNDERHEAD_RETURN_IF_ERROR(OpenFile(request.path, file));
+  }
+  std::array<int, 2> asking{};
+  std::array<int, 2> answering{};
+  if (pipe2(asking.data(), O_CLOEXEC) != 0) return NoReader(request.path, errno);
+  Descriptor request_from(asking[0]);
+  {
+    // Before anybody reads: it fits into the pipe, and the end of a reader is then no SIGPIPE.
+    const Descriptor request_to(asking[1]);
+    Sender to_reader(request_to.Number());
+    Visit(to_reader, request);
+  }
+  if (pipe2(answering.data(), O_CLOEXEC) != 0) return NoReader(request.path, errno);
+  Descriptor reply_from(answering[0]);
+  Descriptor reply_to(answering[1]);
+  // Fewer switches between the processes; where it is not allowed, the pipe stays small.
+  fcntl(reply_to.Number(), F_SETPIPE_SZ, 1 << 20);
+  pid_t process = 0;
+  const int error =
+      Spawn(program_, request_from.Number(), reply_to.Number(), file.Number(), process);
+  if (error != 0) return NoReader(request.path, error);
+  Child child(process);
+  request_from.Close();
+  reply_to.Close();
+  Receiver from_reader(reply_from.Number(), limits_.time, limits_.memory_bytes);
+  absl::Status status = base::OrOutOfMemory(
+      [&] { return Listen(request.path, from_reader, wanted, checkpoint, take, limits_); });
+  if (!from_reader.Ok()) return Judge(request.path, from_reader, child, limits_);
+  return status;
+}
+
+bool IsReaderFailure(const absl::Status& status) {
+  return base::DetailsOf(status).reason == kReaderFailed;
+}
+
+}  // namespace thunderhead::sandbox

@@ -1,0 +1,48 @@
+// A process that reads one untrusted file for one request, watched from here: its time, its end,
+// and what it says. However it fails, the outcome is one error that names the file.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "sandbox/archive.h"
+#include "sandbox/messages.h"
+#include "volume/storm_file.h"
+
+namespace thunderhead::sandbox {
+
+struct ReaderLimits {
+  std::uint64_t memory_bytes = std::uint64_t{4} << 30;  // of reading, and of what comes of it
+  std::chrono::milliseconds time{120'000};  // that this process waits, and processor time
+};
+
+// Starts `program`, this one by default, as the reader.
+class ReaderProcess {
+ public:
+  // Takes the result after its kind; nothing received fails until the Receiver is asked.
+  using Take = std::function<absl::Status(Receiver& from_reader)>;
+
+  explicit ReaderProcess(const ReaderLimits& limits, std::string program = "/proc/self/exe")
+      : limits_(limits), program_(std::move(program)) {}
+
+  // Has the file read. `wanted` is the reply that `take` understands; errors of the file come as
+  // they are. `checkpoint` may be empty.
+  absl::Status Run(Request request, Reply wanted, const volume::ReadCheckpoint& checkpoint,
+                   const Take& take) const;
+
+ private:
+  const ReaderLimits limits_;
+  const std::string program_;
+};
+
+// True for errors that say that the reader failed and not that the file is none: the file may be
+// hostile, so that it should not be tried again at once.
+bool IsReaderFailure(const absl::Status& status);
+
+}  // namespace thunderhead::sandbox

@@ -1,0 +1,66 @@
+// Storm files that the operator does not trust: described and read by a confined process for each
+// request, so that one that takes over, crashes or exhausts its reader costs one error.
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "base/file_stamp.h"
+#include "sandbox/reader_process.h"
+#include "volume/storm_file.h"
+#include "volume/storm_format.h"
+
+namespace thunderhead::sandbox {
+
+struct UntrustedOptions {
+  std::vector<std::string> folders;  // files below them, also by a link
+  bool all = false;                  // every file
+  ReaderLimits limits;
+};
+
+class UntrustedFiles : public std::enable_shared_from_this<UntrustedFiles> {
+ public:
+  explicit UntrustedFiles(UntrustedOptions options);
+
+  // OK if this machine can confine a reader.
+  absl::Status Probe() const;
+
+  bool Includes(const std::string& path) const;
+
+  absl::StatusOr<volume::StormFile> Describe(const std::string& path);
+  // `of` is the file's description.
+  absl::StatusOr<volume::HydrometeorFields> Read(const volume::StormFile& of, std::size_t record,
+                                                 const std::optional<volume::VerticalGrid>& grid,
+                                                 const volume::ReadCheckpoint& checkpoint);
+  absl::StatusOr<volume::VerticalGrid> ReadVerticalGrid(const std::string& path,
+                                                        std::size_t record);
+
+ private:
+  // A file that made its reader fail, which would probably do so again.
+  struct Offender {
+    base::FileStamp stamp;
+    std::chrono::steady_clock::time_point when;
+    absl::Status failure;
+  };
+
+  // Runs a reader unless the file has made one fail lately and is still the same.
+  absl::Status Run(Request request, Reply wanted, const ReaderLimits& limits,
+                   const volume::ReadCheckpoint& checkpoint, const ReaderProcess::Take& take);
+
+  const UntrustedOptions options_;
+  std::mutex mutex_;
+  std::map<std::string, Offender> offenders_;
+};
+
+// `formats` with those files left to `untrusted`.
+volume::StormFormats WithUntrusted(volume::StormFormats formats,
+                                   const std::shared_ptr<UntrustedFiles>& untrusted);
+
+}  // namespace thunderhead::sandbox

@@ -1,0 +1,175 @@
+// What deploy/ gives operators, with the programs that it is for: HAProxy before the real server, the systemd unit,
+// Prometheus's rules, the Compose file's flags. Each needs its Debian package.
+import assert from "node:assert/strict";
+import { execFileSync, spawn, spawnSync } from "node:child_process";
+import { cpSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import http2 from "node:http2";
+import https from "node:https";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, describe, test } from "node:test";
+import { setTimeout } from "node:timers/promises";
+import { fileURLToPath } from "node:url";
+import { launchBrowser, listenForErrors, rested } from "./driver.mjs";
+import { BINARY, freePort, startServer } from "./server_process.mjs";
+
+const ROOT = fileURLToPath(new URL("../../", import.meta.url));
+const HAPROXY = "/usr/sbin/haproxy";
+
+const folder = mkdtempSync(join(tmpdir(), "thunderhead-deploy-"));
+const file = (name) => join(folder, name);
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+describe("HAProxy", { skip: existsSync(HAPROXY) ? false : "needs Debian's haproxy" }, () => {
+  let server;
+  let proxy;
+  let browser;
+  let port;
+  let said = "";
+
+  before(async () => {
+    execFileSync(
+      "openssl",
+      [
+        ..."req -x509 -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -days 2 -subj /CN=localhost".split(" "),
+        ...["-addext", "subjectAltName=DNS:localhost,IP:127.0.0.1", "-keyout", file("key.pem"), "-out", file("cert.pem")],
+      ],
+      { stdio: "ignore" },
+    );
+    writeFileSync(file("both.pem"), readFileSync(file("cert.pem"), "utf8") + readFileSync(file("key.pem"), "utf8"), {
+      mode: 0o600,
+    });
+    port = await freePort();
+    const ports = { httpPort: await freePort(), grpcPort: await freePort() };
+    server = await startServer(ports);
+    proxy = spawn(HAPROXY, ["-db", "-f", `${ROOT}deploy/haproxy/haproxy.cfg`], {
+      env: {
+        THUNDERHEAD_BIND: `127.0.0.1:${port}`,
+        THUNDERHEAD_CERTIFICATE: file("both.pem"),
+        THUNDERHEAD_HTTP_PORT: ports.httpPort,
+        THUNDERHEAD_GRPC_PORT: ports.grpcPort,
+      },
+    });
+    proxy.stderr.on("data", (text) => {
+      said += text;
+    });
+    for (let tries = 0; (await status("/healthz").catch(() => 0)) !== 200; tries += 1) {
+      assert.ok(tries < 100 && proxy.exitCode === null, said);
+      await setTimeout(50);
+    }
+    browser = await launchBrowser();
+  });
+
+  after(async () => {
+    await browser?.close();
+    proxy?.kill();
+    await server?.stop();
+  });
+
+  const status = (path) =>
+    new Promise((resolve, reject) => {
+      https
+        .get({ host: "127.0.0.1", port, path, rejectUnauthorized: false }, (answer) => {
+          answer.resume();
+          resolve(answer.statusCode);
+        })
+        .once("error", reject);
+    });
+
+  test("the page comes by HTTP/2 and shows the storm by its WebSocket", async () => {
+    const context = await browser.newContext({ ignoreHTTPSErrors: true });
+    const page = await context.newPage();
+    const complaints = [];
+    listenForErrors(page, complaints);
+    const sockets = [];
+    page.on("websocket", (socket) => sockets.push(socket.url()));
+    const answer = await page.goto(`https://localhost:${port}/`);
+    assert.equal(answer.status(), 200);
+    assert.equal(answer.headers()["strict-transport-security"], "max-age=31536000");
+    await rested(page);
+    assert.match(sockets[0], /^wss:.*\/Interact$/);
+    assert.deepEqual(complaints, []);
+    await context.close();
+  });
+
+  test("HTTP/2 without a browser", async () => {
+    const client = http2.connect(`https://127.0.0.1:${port}`, { rejectUnauthorized: false });
+    const headers = await new Promise((resolve, reject) => {
+      client.once("error", reject);
+      client.request({ ":path": "/healthz" }).once("response", resolve).resume();
+    });
+    client.close();
+    assert.equal(client.alpnProtocol, "h2");
+    assert.equal(headers[":status"], 200);
+  });
+
+  test("gRPC streams: a presenter who steers and two viewers", () => {
+    const load = spawnSync(
+      BINARY,
+      ["load", `localhost:${port}`, "--tls-roots", file("cert.pem"), "--viewers", "2", "--seconds", "3", "--json"],
+      { encoding: "utf8" },
+    );
+    assert.equal(load.status, 0, load.stderr);
+    const { fps_min, errors } = JSON.parse(load.stdout);
+    assert.ok(fps_min > 0);
+    assert.equal(errors, 0);
+  });
+
+  test("too many requests of one address are refused with 429", async () => {
+    let refused = 0;
+    for (let round = 0; round < 20 && refused === 0; round += 1) {
+      const answers = await Promise.all(Array.from({ length: 50 }, () => status("/healthz")));
+      refused = answers.filter((code) => code === 429).length;
+      assert.ok(answers.every((code) => code === 200 || code === 429), String(answers));
+    }
+    assert.ok(refused > 0);
+  });
+});
+
+describe("systemd", { skip: existsSync("/usr/bin/systemd-analyze") ? false : "needs Debian's systemd" }, () => {
+  test("the unit is sound and exposes little", () => {
+    const unit = file("thunderhead.service");
+    cpSync(`${ROOT}deploy/systemd/thunderhead.service`, unit);
+    // The program is not installed here.
+    writeFileSync(unit, readFileSync(unit, "utf8").replace("/opt/thunderhead/bin/thunderhead", BINARY));
+    const verify = spawnSync("systemd-analyze", ["verify", unit], { encoding: "utf8" });
+    assert.equal(verify.status, 0, verify.stderr);
+    assert.equal(verify.stderr.trim(), "");
+    // 1.7 of 10; "OK" ends at 3.
+    const security = spawnSync("systemd-analyze", ["security", "--offline=true", "--threshold=20", unit], {
+      encoding: "utf8",
+    });
+    assert.equal(security.status, 0, security.stdout.slice(-400));
+  });
+});
+
+describe("Prometheus", { skip: existsSync("/usr/bin/promtool") ? false : "needs Debian's prometheus" }, () => {
+  test("the rules are sound and name metrics that there are", () => {
+    const rules = `${ROOT}deploy/prometheus/alerts.yaml`;
+    const check = spawnSync("/usr/bin/promtool", ["check", "rules", rules], { encoding: "utf8" });
+    assert.equal(check.status, 0, check.stderr);
+    const sources = ["server/telemetry/exposition.cc", "server/app/operation.cc"].map((path) => readFileSync(ROOT + path, "utf8"));
+    for (const name of new Set(readFileSync(rules, "utf8").match(/thunderhead_[a-z_]+/g))) {
+      const short = name.replace(/_bucket$/, "");
+      const bare = short.replace("thunderhead_", "");
+      assert.ok(
+        sources.some((text) => text.includes(`"${short}"`)) || sources[1].includes(`add("${bare}"`),
+        `${name} is not exported`,
+      );
+    }
+  });
+});
+
+describe("Compose", () => {
+  test("its command has flags that there are, and it mounts what the Dockerfile makes", () => {
+    const compose = readFileSync(`${ROOT}deploy/compose/compose.yaml`, "utf8");
+    const help = execFileSync(BINARY, ["serve", "--help"], { encoding: "utf8" });
+    const flags = compose.match(/^\s+- (--[a-z-]+)$/gm).map((line) => line.trim().slice(2));
+    assert.ok(flags.length >= 5);
+    for (const flag of flags) assert.ok(help.includes(`${flag} `), flag);
+    const dockerfile = readFileSync(`${ROOT}Dockerfile`, "utf8");
+    assert.match(dockerfile, /\/var\/lib\/thunderhead/);
+    const python = spawnSync("python3", ["-c", "import sys, yaml; yaml.safe_load(sys.stdin)"], { input: compose, encoding: "utf8" });
+    if (!/No module named|ENOENT/.test(`${python.stderr}${python.error ?? ""}`)) assert.equal(python.status, 0, python.stderr);
+  });
+});

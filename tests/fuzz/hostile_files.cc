@@ -1,0 +1,354 @@
+// Reads mutated storm files of three formats, each in a confined process of its own, as the server
+// reads what it does not trust; and sparse files of enormous dimensions. Every file must give a
+// storm or one clear error that names it, or end its reader alone.
+//   hostile_files [NUMBER] [SEED]
+#include <netcdf.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <random>
+#include <span>
+#include <string>
+
+#include "absl/strings/match.h"
+#include "base/out_of_memory.h"
+#include "base/status.h"
+#include "sandbox/confinement.h"
+#include "spdlog/spdlog.h"
+#include "tests/support/synthetic_cf.h"
+#include "tests/support/synthetic_wrf.h"
+#include "tests/support/temporary_folder.h"
+#include "volume/netcdf_file.h"
+#include "volume/storm_catalogue.h"
+
+namespace {
+
+using namespace thunderhead;
+using testing::SyntheticWrf;
+using testing::WrfCell;
+using testing::WrfFormat;
+
+constexpr std::uint64_t kMemory = std::uint64_t{512} << 20;
+
+class Dice {
+ public:
+  explicit Dice(std::uint64_t seed) : random_(seed) {}
+  std::size_t Below(std::size_t end) { return end == 0 ? 0 : random_() % end; }
+  bool OneIn(std::size_t many) { return Below(many) == 0; }
+  template <typename Value, std::size_t kCount>
+  Value Of(const std::array<Value, kCount>& values) {
+    return values[Below(kCount)];
+  }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+// Numbers that break arithmetic.
+constexpr std::array kOddNumbers = {0.0,  -1.0,  1e-30, 1e30,  1e300, -1e300, 9.96921e36,
+                                    1e-5, 100.0, 1e5,   0.499, 0.501, 2.2e-38};
+
+// A description of a WRF file, changed here and there.
+SyntheticWrf OddWrf(Dice& dice, WrfFormat format) {
+  SyntheticWrf file;
+  file.format = format;
+  file.mixing_ratios["QCLOUD"] = [](const WrfCell& cell) { return 1e-4 * cell.level; };
+  file.mixing_ratios["QRAIN"] = [](const WrfCell&) { return 1e-4; };
+  constexpr std::array kVariables = {"PH",     "PHB",   "P",     "PB", "T",  "QVAPOR",
+                                     "QCLOUD", "QRAIN", "Times", "DX", "DY", "HGT"};
+  constexpr std::array kUnits = {"", "1", "kg kg-1", "g/kg", "m2 s-2", "Pa", "\xff\xfe", "K"};
+  constexpr std::array kTimes = {"2013-05-20_20:00:00", "0000-01-01_00:00:00",
+                                 "9999-12-31_23:59:59", "2013-02-30_20:00:00",
+                                 "-001-01-01_00:00:00", "\xff\xff\xff\xff-\xff"};
+  for (std::size_t changes = dice.Below(4); changes > 0; --changes) {
+    const std::string variable = dice.Of(kVariables);
+    const double number = dice.Of(kOddNumbers);
+    switch (dice.Below(14)) {
+      case 0:
+        file.nx = 1 + static_cast<int>(dice.Below(9));
+        break;
+      case 1:
+        file.ny = 1 + static_cast<int>(dice.Below(9));
+        break;
+      case 2:
+        file.levels = 1 + static_cast<int>(dice.Below(20));
+        break;
+      case 3:
+        file.dx_m = number;
+        break;
+      case 4:
+        file.times = {std::string(dice.Of(kTimes)).append(19, '\0')};
+        break;
+      case 5:
+        file.omitted.insert(variable);
+        break;
+      case 6:
+        file.units[variable] = dice.Of(kUnits);
+        break;
+      case 7:
+        file.stored_values.push_back({variable, {0, 0, 0, 0}, number});
+        break;
+      case 8:
+        file.pressure_Pa = number;
+        break;
+      case 9:
+        file.interface_height_m = [number](const WrfCell& cell) { return number * cell.level; };
+        break;
+      case 10:
+        file.packed.insert(dice.OneIn(2) ? "QCLOUD" : "PB");
+        break;
+      case 11:
+        file.one_level_short.insert(variable);
+        break;
+      case 12:
+        file.mixing_ratios["QNRAIN"] = [number](const WrfCell&) { return number; };
+        break;
+      default:
+        file.potential_temperature_K = number;
+    }
+  }
+  if (file.omitted.contains("Times")) file.times.resize(1);
+  return file;
+}
+
+// The same of a CF file.
+testing::SyntheticCf OddCf(Dice& dice) {
+  const double value = dice.OneIn(2) ? 1e-3 : dice.Of(kOddNumbers);
+  testing::SyntheticCf file =
+      testing::ExtinctionFile(1 + dice.Below(6), 1 + dice.Below(6), 1 + dice.Below(40), 100.0,
+                              100.0, 50.0, [value](auto, auto, auto) { return value; });
+  constexpr std::array kTexts = {"m",
+                                 "km",
+                                 "degrees_east",
+                                 "degrees_north",
+                                 "seconds since 2013-05-20",
+                                 "days since 99999999-01-01",
+                                 "1",
+                                 "",
+                                 "\xff",
+                                 "down",
+                                 "x",
+                                 "z",
+                                 "T",
+                                 "Pa"};
+  constexpr std::array kNames = {"units",         "axis",   "positive",
+                                 "standard_name", "bounds", "_FillValue"};
+  for (std::size_t changes = dice.Below(3); changes > 0; --changes) {
+    testing::CfCoordinate& coordinate = file.coordinates[dice.Below(3)];
+    switch (dice.Below(5)) {
+      case 0:
+        coordinate.attributes[dice.Of(kNames)] = dice.Of(kTexts);
+        break;
+      case 1:
+        coordinate.values[dice.Below(coordinate.values.size())] = dice.Of(kOddNumbers);
+        break;
+      case 2:
+        coordinate.written = false;
+        break;
+      case 3:
+        for (std::size_t i = 0; i <= coordinate.values.size(); ++i) {
+          coordinate.faces.push_back(static_cast<double>(i * i) * dice.Of(kOddNumbers));
+        }
+        break;
+      default:
+        file.variables[0].attributes["units"] = dice.Of(kTexts);
+    }
+    if (coordinate.attributes.contains("_FillValue")) coordinate.attributes.erase("_FillValue");
+  }
+  return file;
+}
+
+// Bytes changed here and there, mostly in the header.
+void Damage(Dice& dice, std::string& bytes) {
+  constexpr std::array<unsigned char, 6> kBytes = {0, 1, 0x7f, 0x80, 0xfe, 0xff};
+  for (std::size_t edits = 1 + dice.Below(3); edits > 0 && !bytes.empty(); --edits) {
+    const std::size_t at =
+        dice.Below(dice.OneIn(2) ? bytes.size() : std::min<std::size_t>(bytes.size(), 2048));
+    switch (dice.Below(5)) {
+      case 0:
+        bytes[at] = static_cast<char>(bytes[at] ^ (1 << dice.Below(8)));
+        break;
+      case 1:
+        bytes[at] = static_cast<char>(dice.Of(kBytes));
+        break;
+      case 2:
+        for (std::size_t i = at; i < std::min(at + 8, bytes.size()); ++i)
+          bytes[i] = static_cast<char>(dice.Of(kBytes));
+        break;
+      case 3:
+        bytes.erase(at, dice.Below(64));
+        break;
+      default:
+        if (dice.OneIn(4)) bytes.resize(at);
+    }
+  }
+}
+
+absl::Status ReadStorm(const std::string& path) {
+  const volume::StormFormats formats = volume::StormFormats::BuiltIn();
+  THUNDERHEAD_ASSIGN_OR_RETURN(const volume::StormFile file, volume::DescribeFile(path, formats));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const volume::VerticalGrid grid, file.reader->ReadVerticalGrid(0));
+  return file.reader->Read(file.times.size() - 1, grid, {}).status();
+}
+
+enum Outcome { kRead = 0, kClearError = 10, kUnclearError = 11, kNotConfined = 12 };
+
+// In a process of its own; a signal is the negative of its number.
+int OutcomeOf(const std::string& path, const std::string& bytes) {
+  const pid_t child = fork();
+  if (child == 0) {
+    spdlog::set_level(spdlog::level::off);
+    volume::NetcdfFile::ReadFromMemory(path, std::as_bytes(std::span(bytes)));
+    if (!sandbox::Confine({kMemory, 10}).ok()) _exit(kNotConfined);
+    const absl::Status status = base::OrOutOfMemory([&] { return ReadStorm(path); });
+    const std::string message(status.message());
+    if (status.ok()) _exit(kRead);
+    if (std::getenv("HOSTILE_VERBOSE") != nullptr) std::fprintf(stderr, "%s\n", message.c_str());
+    const bool clear = absl::StrContains(message, path) || absl::IsResourceExhausted(status);
+    _exit(clear && message.find('\0') == std::string::npos ? kClearError : kUnclearError);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+// True if the file could be written: netCDF-C refuses some values, and the test support then ends
+// its process.
+template <typename Write>
+bool Writes(const Write& write) {
+  const pid_t child = fork();
+  if (child == 0) {
+    std::freopen("/dev/null", "w", stderr);
+    write();
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return status == 0;
+}
+
+std::string BytesOf(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// A netCDF-4 file of a few kilobytes that announces a grid of 10^5 cells along each axis.
+void WriteSparse(const std::string& path, bool cf) {
+  constexpr std::size_t kLength = 99'999;  // and one more interface
+  int id = 0;
+  const auto must = [](int code) {
+    if (code != NC_NOERR) std::abort();
+  };
+  must(nc_create(path.c_str(), NC_NETCDF4 | NC_CLOBBER, &id));
+  std::array<int, 4> on{};
+  const std::array names = {"Time", cf ? "z" : "bottom_top", cf ? "y" : "south_north",
+                            cf ? "x" : "west_east"};
+  for (std::size_t i = 0; i < 4; ++i) must(nc_def_dim(id, names[i], i == 0 ? 1 : kLength, &on[i]));
+  int above = 0;
+  if (!cf) must(nc_def_dim(id, "bottom_top_stag", kLength + 1, &above));
+  const std::array<std::size_t, 4> chunks = {1, 1, 1000, 1000};
+  for (const char* name : {"QCLOUD", "P", "PB", "T", "PH", "PHB", "extinction"}) {
+    if (cf != (name[0] == 'e')) continue;
+    std::array<int, 4> dimensions = on;
+    if (!cf && name[0] == 'P' && name[1] == 'H') dimensions[1] = above;
+    int variable = 0;
+    must(nc_def_var(id, name, NC_FLOAT, 4, dimensions.data(), &variable));
+    must(nc_def_var_chunking(id, variable, NC_CHUNKED, chunks.data()));
+    if (cf) must(nc_put_att_text(id, variable, "units", 3, "m-1"));
+  }
+  if (!cf) {
+    const double spacing_m = 1000.0;
+    for (const char* name : {"DX", "DY"})
+      must(nc_put_att_double(id, NC_GLOBAL, name, NC_DOUBLE, 1, &spacing_m));
+    int length = 0;
+    int times = 0;
+    must(nc_def_dim(id, "DateStrLen", 19, &length));
+    const int both[] = {on[0], length};
+    must(nc_def_var(id, "Times", NC_CHAR, 2, both, &times));
+    must(nc_put_var_text(id, times, "2013-05-20_20:00:00"));
+  } else {
+    for (std::size_t i = 1; i < 4; ++i) {
+      int variable = 0;
+      must(nc_def_var(id, names[i], NC_DOUBLE, 1, &on[i], &variable));
+      must(nc_put_att_text(id, variable, "units", 1, "m"));
+      std::vector<double> values(kLength);
+      for (std::size_t j = 0; j < kLength; ++j) values[j] = 100.0 * static_cast<double>(j);
+      must(nc_put_var_double(id, variable, values.data()));
+    }
+  }
+  must(nc_close(id));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::size_t number = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 300;
+  Dice dice(argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1);
+  const testing::TemporaryFolder folder;
+  const std::string path = folder.File("wrfout_d01");
+  std::map<std::string, std::map<int, std::size_t>> outcomes;
+  bool failed = false;
+  for (const bool cf : {false, true}) {
+    WriteSparse(path, cf);
+    const int outcome = OutcomeOf(path, BytesOf(path));
+    ++outcomes[cf ? "sparse CF" : "sparse WRF"][outcome];
+    failed = failed || outcome != kClearError;
+  }
+  for (std::size_t i = 0; i < number; ++i) {
+    static std::array<std::string, 3> sound;
+    const std::size_t kind = i % 3;
+    // A new description now and then: writing one costs more than reading it.
+    if (sound[kind].empty() || dice.OneIn(8)) {
+      constexpr std::array kClassic = {WrfFormat::kClassic, WrfFormat::kOffset64, WrfFormat::kCdf5};
+      const WrfFormat format = kind == 0 ? WrfFormat::kNetcdf4 : dice.Of(kClassic);
+      const SyntheticWrf wrf = OddWrf(dice, format);
+      const testing::SyntheticCf cf = OddCf(dice);
+      const bool written = Writes([&] {
+        if (kind == 2) testing::WriteCf(cf, path);
+        if (kind != 2) testing::WriteWrf(wrf, path);
+      });
+      if (!written) {
+        --i;
+        continue;
+      }
+      sound[kind] = BytesOf(path);
+      ++outcomes[kind == 2 ? "CF, odd" : "WRF, odd"][OutcomeOf(path, sound[kind])];
+    }
+    std::string bytes = sound[kind];
+    Damage(dice, bytes);
+    constexpr std::array kNames = {"WRF netCDF-4", "WRF classic", "CF netCDF-4"};
+    const int outcome = OutcomeOf(path, bytes);
+    ++outcomes[kNames[kind]][outcome];
+    if (outcome < 0 || outcome > kClearError) {
+      std::ofstream("hostile-" + std::to_string(outcome) + "-" + std::to_string(kind),
+                    std::ios::binary)
+          << bytes;
+    }
+  }
+  for (const auto& [name, counts] : outcomes) {
+    std::printf("%-13s", name.c_str());
+    for (const auto& [outcome, count] : counts) {
+      const char* what = outcome == kRead         ? "read"
+                         : outcome == kClearError ? "one clear error"
+                         : outcome < 0            ? "signal"
+                                                  : "UNCLEAR";
+      std::printf("  %s%s %zu", what,
+                  outcome < 0 ? std::to_string(-outcome).insert(0, 1, ' ').c_str() : "", count);
+      // Signals come from inside netCDF-C and HDF5: what the confinement is for.
+      failed = failed || outcome > kClearError;
+    }
+    std::printf("\n");
+  }
+  rusage usage{};
+  getrusage(RUSAGE_CHILDREN, &usage);
+  std::printf("largest reader %ld MiB\n", usage.ru_maxrss >> 10);
+  return failed ? 1 : 0;
+}

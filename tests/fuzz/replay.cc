@@ -1,0 +1,186 @@
+// Runs a fuzz target without libFuzzer: every kept input, then mutations of them for some seconds
+// and at least a number of times. Deterministic but for how far it comes in that time.
+//   fuzz_NAME FOLDER|FILE... [--seconds N] [--runs N] [--seed N]
+// An input that ends the process is left in the file finding-NAME.
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+extern "C" [[gnu::weak]] void __sanitizer_set_death_callback(void (*callback)());
+
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::steady_clock;
+
+// What the handlers of fatal signals need.
+std::string running;
+std::string finding;
+
+void KeepFinding() {
+  const int file = open(finding.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0644);
+  if (file < 0) return;
+  static_cast<void>(!write(file, running.data(), running.size()));
+  close(file);
+  static_cast<void>(!write(STDERR_FILENO, "the input is in ", 16));
+  static_cast<void>(!write(STDERR_FILENO, finding.data(), finding.size()));
+  static_cast<void>(!write(STDERR_FILENO, "\n", 1));
+}
+
+void OnSignal(int signal) {
+  KeepFinding();
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+void Run(std::string input) {
+  running = std::move(input);
+  // A copy without anything behind it, so that reading beyond it is seen.
+  const std::vector<std::uint8_t> bytes(running.begin(), running.end());
+  LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
+}
+
+std::string Contents(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+class Mutator {
+ public:
+  Mutator(std::vector<std::string> inputs, std::uint64_t seed)
+      : inputs_(std::move(inputs)), random_(seed) {}
+
+  std::string Next() {
+    std::string input = inputs_[Below(inputs_.size())];
+    for (std::size_t edits = 1 + Below(8); edits > 0; --edits) Edit(input);
+    return input;
+  }
+
+ private:
+  std::size_t Below(std::size_t end) { return random_() % std::max<std::size_t>(end, 1); }
+
+  void Edit(std::string& input) {
+    constexpr std::array<std::uint64_t, 10> kValues = {
+        0, 1, 0x7f, 0x80, 0xff, 0x7fff, 0xffff, 0x7fffffff, 0xffffffff, 0x7fffffffffffffff};
+    const std::size_t at = Below(input.size() + 1);
+    const std::size_t count = std::min<std::size_t>(1 + Below(16), input.size() - at);
+    switch (Below(7)) {
+      case 0:
+        if (at < input.size()) input[at] = static_cast<char>(input[at] ^ (1 << Below(8)));
+        break;
+      case 1:
+        if (at < input.size()) input[at] = static_cast<char>(random_());
+        break;
+      case 2:
+        input.erase(at, count);
+        break;
+      case 3:
+        input.insert(at, input.substr(Below(input.size()), count));
+        break;
+      case 4: {
+        const std::string& other = inputs_[Below(inputs_.size())];
+        input.insert(at, other.substr(Below(other.size()), 1 + Below(32)));
+        break;
+      }
+      case 5: {
+        std::uint64_t value = kValues[Below(kValues.size())];
+        const std::size_t bytes = std::size_t{1} << Below(4);
+        const bool big = Below(2) == 0;
+        for (std::size_t i = 0; i < bytes && at + i < input.size(); ++i) {
+          input[at + (big ? bytes - 1 - i : i) % (input.size() - at)] =
+              static_cast<char>(value & 0xff);
+          value >>= 8U;
+        }
+        break;
+      }
+      default:
+        input.resize(at);
+    }
+    constexpr std::size_t kLongest = 64 << 10;
+    if (input.size() > kLongest) input.resize(kLongest);
+  }
+
+  const std::vector<std::string> inputs_;
+  std::mt19937_64 random_;
+};
+
+void TakeInputs(const fs::path& path, std::vector<std::string>& inputs) {
+  std::vector<fs::path> files;
+  if (fs::is_directory(path)) {
+    for (const auto& entry : fs::directory_iterator(path)) files.push_back(entry.path());
+  } else {
+    files.push_back(path);
+  }
+  std::ranges::sort(files);
+  for (const fs::path& file : files) inputs.push_back(Contents(file));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  double seconds = 0.0;
+  std::uint64_t runs = 0;
+  std::uint64_t seed = 1;
+  std::vector<std::string> inputs;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view argument(argv[i]);
+    const char* const value = i + 1 < argc ? argv[i + 1] : "0";
+    if (argument == "--seconds") {
+      seconds = std::atof(value);
+      ++i;
+    } else if (argument == "--runs") {
+      runs = std::strtoull(value, nullptr, 10);
+      ++i;
+    } else if (argument == "--seed") {
+      seed = std::strtoull(value, nullptr, 10);
+      ++i;
+    } else {
+      TakeInputs(argv[i], inputs);
+    }
+  }
+  if (inputs.empty()) {
+    std::fprintf(stderr, "%s: no inputs; name a folder of tests/fuzz/corpus\n", argv[0]);
+    return 1;
+  }
+  finding = "finding-" + fs::path(argv[0]).filename().string();
+  for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGALRM}) {
+    if (__sanitizer_set_death_callback == nullptr || signal == SIGALRM) {
+      std::signal(signal, OnSignal);
+    }
+  }
+  if (__sanitizer_set_death_callback != nullptr) __sanitizer_set_death_callback(KeepFinding);
+  constexpr unsigned kSlowest_s = 20;
+  for (const std::string& input : inputs) {
+    alarm(kSlowest_s);
+    Run(input);
+  }
+  Mutator mutator(inputs, seed);
+  const auto start = steady_clock::now();
+  const auto passed = [start] {
+    return std::chrono::duration<double>(steady_clock::now() - start).count();
+  };
+  std::uint64_t mutations = 0;
+  while (mutations < runs || passed() < seconds) {
+    alarm(kSlowest_s);
+    Run(mutator.Next());
+    ++mutations;
+  }
+  std::printf("%zu inputs, %llu mutations in %.1f s\n", inputs.size(),
+              static_cast<unsigned long long>(mutations), passed());
+  return 0;
+}

@@ -1,0 +1,84 @@
+// The way of a scene from a client to what draws it, as far as it needs no device: what every fuzz
+// target of scenes does with what it has decoded.
+#pragma once
+
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "renderers/technique_registry.h"
+#include "scene/view.h"
+#include "service/camera_messages.h"
+#include "service/engine.h"
+#include "service/limits_check.h"
+#include "service/scene_messages.h"
+#include "session/gl_frame_source.h"
+#include "volume/storm_store.h"
+
+namespace thunderhead::fuzz {
+
+// One storm of a few cells, without a file.
+class FixedStore final : public volume::StormStore {
+ public:
+  FixedStore() {
+    auto info = std::make_shared<volume::StormInfo>();
+    info->id = "storm";
+    info->title = "A storm";
+    info->times = {{"2013-05-20T20:00:00Z", 0.0}, {"2013-05-20T20:10:00Z", 600.0}};
+    info->file_cells = {4, 3, 2};
+    info->fields = {physics::Hydrometeor::kCloud, physics::Hydrometeor::kRain};
+    info->latitude_deg = 35.0;
+    info->longitude_deg = -97.0;
+    info_ = std::move(info);
+    auto fields = std::make_shared<volume::HydrometeorFields>();
+    fields->grid = {{4, 3, 2}, {1000.0, 1000.0, 500.0}, {-2000.0, -1500.0, 0.0}};
+    for (const physics::Hydrometeor hydrometeor : info_->fields) {
+      volume::HydrometeorField field;
+      field.hydrometeor = hydrometeor;
+      field.concentration_kg_per_m3.assign(24, 1e-3F);
+      fields->fields.push_back(field);
+    }
+    fields->terrain_height_m.assign(12, 100.0F);
+    fields->condensate = {{0, 0, 0}, {4, 3, 2}};
+    fields_ = std::move(fields);
+  }
+  std::vector<volume::StormInfoPtr> Storms() const override { return {info_}; }
+  absl::StatusOr<volume::StormInfoPtr> Add(const std::string&) override {
+    return absl::UnimplementedError("");
+  }
+  absl::Status Remove(std::string_view) override { return absl::UnimplementedError(""); }
+  absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> Get(
+      std::string_view, int, const volume::ReadProgress&) override {
+    return fields_;
+  }
+  std::shared_ptr<const volume::HydrometeorFields> Peek(std::string_view, int) override {
+    return fields_;
+  }
+  std::size_t CachedBytes() const override { return 0; }
+
+ private:
+  volume::StormInfoPtr info_;
+  std::shared_ptr<const volume::HydrometeorFields> fields_;
+};
+
+// Aborts if a scene that was taken has a view that cannot be drawn.
+inline void TakeScene(v1::Scene scene) {
+  static FixedStore store;
+  static const std::vector<session::TechniqueInfo> techniques =
+      session::TechniquesOf(renderers::TechniqueRegistry::BuiltIn());
+  if (!service::CheckLimits(scene).ok()) return;
+  if (!service::PrepareScene(store, techniques, scene).ok()) return;
+  const auto fields = store.Peek("storm", 0);
+  if (service::NeedsFraming(scene)) service::FrameCondensate(scene, *fields);
+  const scene::View view = scene::ViewOf(service::ToScene(scene), *fields);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(view.eye_m[axis]) || !std::isfinite(view.forward[axis])) std::abort();
+  }
+  // As it is sent to viewers and kept in the store.
+  v1::Scene again;
+  if (!again.ParseFromString(scene.SerializeAsString())) std::abort();
+}
+
+}  // namespace thunderhead::fuzz

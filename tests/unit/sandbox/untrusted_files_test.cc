@@ -1,0 +1,392 @@
+// Files that a confined process reads: they are read as by the program itself, and whatever they do
+// to their reader is one error, within limits, while others are read.
+#include "sandbox/untrusted_files.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netcdf.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "absl/strings/str_cat.h"
+#include "sandbox/messages.h"
+#include "telemetry/metrics.h"
+#include "tests/support/synthetic_cf.h"
+#include "tests/support/synthetic_wrf.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/unit/sandbox/misbehaving_format.h"
+#include "volume/storm_store.h"
+
+namespace thunderhead::sandbox {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using volume::HydrometeorFields;
+using volume::StormFile;
+
+constexpr std::uint64_t kMemory = std::uint64_t{256} << 20;
+
+// Writes what travels into a string, to compare values byte by byte.
+class Bytes {
+ public:
+  template <Plain Value>
+  void operator()(const Value& value) {
+    text_.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  }
+  void operator()(const std::string& text) { text_ += text + '\0'; }
+  template <Plain Value>
+  void operator()(const std::vector<Value>& values) {
+    for (const Value& value : values) (*this)(value);
+  }
+  const std::string& Text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+std::string BytesOf(const HydrometeorFields& fields) {
+  HydrometeorFields copy = fields;
+  Bytes bytes;
+  Visit(bytes, copy);
+  return bytes.Text();
+}
+
+class UntrustedFilesTest : public ::testing::Test {
+ protected:
+  std::shared_ptr<UntrustedFiles> Files(milliseconds time = milliseconds(5000),
+                                        std::uint64_t memory = kMemory) {
+    UntrustedOptions options;
+    options.folders = {folder_.Path().string()};
+    options.limits = {memory, time};
+    return std::make_shared<UntrustedFiles>(options);
+  }
+
+  std::string Bad(const std::string& name) {
+    const std::string path = folder_.File(name + ".bad");
+    std::ofstream(path) << "no netCDF";
+    return path;
+  }
+
+  std::uint64_t Failures(const char* reason) {
+    return telemetry::Counted().reader_failures.Of(reason).Value();
+  }
+
+  testing::TemporaryFolder folder_;
+};
+
+testing::SyntheticWrf Storm() {
+  testing::SyntheticWrf file;
+  file.times = {"2013-05-20_20:00:00", "2013-05-20_20:10:00"};
+  file.mixing_ratios["QCLOUD"] = [](const testing::WrfCell& cell) { return 1e-4 * cell.level; };
+  file.mixing_ratios["QSNOW"] = [](const testing::WrfCell& cell) { return 1e-5 * cell.x; };
+  file.mixing_ratios["QNSNOW"] = [](const testing::WrfCell&) { return 1e4; };
+  file.units["QNSNOW"] = "kg-1";
+  file.land_use_table = "USGS";
+  file.columns["LU_INDEX"] = [](const testing::WrfCell& cell) { return 1.0 + cell.x; };
+  return file;
+}
+
+// The same by the program itself and by a confined reader, every record.
+void ExpectSameStorm(UntrustedFiles& files, const std::string& path) {
+  const auto own = volume::StormFormats::BuiltIn().Describe(path);
+  const auto confined = files.Describe(path);
+  ASSERT_TRUE(own.ok()) << own.status();
+  ASSERT_TRUE(confined.ok()) << confined.status();
+  EXPECT_EQ(confined->cells, own->cells);
+  EXPECT_EQ(confined->times, own->times);
+  EXPECT_EQ(confined->fields, own->fields);
+  EXPECT_EQ(confined->about, own->about);
+  EXPECT_EQ(confined->run, own->run);
+  EXPECT_EQ(confined->domain, own->domain);
+  EXPECT_EQ(confined->latitude_deg, own->latitude_deg);
+  EXPECT_EQ(confined->longitude_deg, own->longitude_deg);
+  EXPECT_EQ(confined->dx_m, own->dx_m);
+  for (std::size_t record = 0; record < own->times.size(); ++record) {
+    const auto grid = own->reader->ReadVerticalGrid(0);
+    const auto confined_grid = confined->reader->ReadVerticalGrid(0);
+    ASSERT_TRUE(grid.ok() && confined_grid.ok()) << confined_grid.status();
+    EXPECT_EQ(confined_grid->low_m, grid->low_m);
+    EXPECT_EQ(confined_grid->spacing_m, grid->spacing_m);
+    EXPECT_EQ(confined_grid->cells, grid->cells);
+    const auto expected = own->reader->Read(record, *grid, {});
+    std::vector<double> shares;
+    const auto fields = confined->reader->Read(record, *grid, [&shares](double share) {
+      shares.push_back(share);
+      return absl::OkStatus();
+    });
+    ASSERT_TRUE(expected.ok()) << expected.status();
+    ASSERT_TRUE(fields.ok()) << fields.status();
+    EXPECT_TRUE(BytesOf(*fields) == BytesOf(*expected)) << path << " record " << record;
+    EXPECT_GT(shares.size(), 1U);
+  }
+}
+
+TEST_F(UntrustedFilesTest, AreReadAsByTheProgramItself) {
+  const auto files = Files(milliseconds(30'000), std::uint64_t{1} << 30);
+  for (const auto format : {testing::WrfFormat::kNetcdf4, testing::WrfFormat::kClassic,
+                            testing::WrfFormat::kOffset64, testing::WrfFormat::kCdf5}) {
+    testing::SyntheticWrf storm = Storm();
+    storm.format = format;
+    const std::string path = folder_.File("wrfout_d01");
+    testing::WriteWrf(storm, path);
+    ExpectSameStorm(*files, path);
+  }
+  const std::string cf = folder_.File("cf.nc");
+  testing::WriteCf(testing::ExtinctionFile(5, 4, 3, 100.0, 100.0, 50.0,
+                                           [](auto x, auto y, auto z) {
+                                             return 1e-3 * static_cast<double>(x + 2 * y + 3 * z);
+                                           }),
+                   cf);
+  ExpectSameStorm(*files, cf);
+  ExpectSameStorm(*files, THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc");
+}
+
+// The cost beside reading the same in the process; for docs/reliability.md.
+TEST_F(UntrustedFilesTest, Cost) {
+  const std::string path = THUNDERHEAD_SOURCE_DIR "/samples/supercell-500m.nc";
+  const auto files = Files(milliseconds(30'000), std::uint64_t{2} << 30);
+  const auto own = volume::StormFormats::BuiltIn().Describe(path);
+  const auto confined = files->Describe(path);
+  ASSERT_TRUE(own.ok() && confined.ok());
+  const auto milliseconds_of = [](const auto& work) {
+    double best = 1e9;
+    for (int i = 0; i < 3; ++i) {
+      const auto start = steady_clock::now();
+      work();
+      best = std::min(
+          best, std::chrono::duration<double, std::milli>(steady_clock::now() - start).count());
+    }
+    return best;
+  };
+  const double own_describe =
+      milliseconds_of([&] { EXPECT_TRUE(volume::StormFormats::BuiltIn().Describe(path).ok()); });
+  const double describe = milliseconds_of([&] { EXPECT_TRUE(files->Describe(path).ok()); });
+  const double own_read =
+      milliseconds_of([&] { EXPECT_TRUE(own->reader->Read(0, std::nullopt, {}).ok()); });
+  const double read =
+      milliseconds_of([&] { EXPECT_TRUE(confined->reader->Read(0, std::nullopt, {}).ok()); });
+  std::printf("describe: %.1f ms, confined %.1f ms; read: %.1f ms, confined %.1f ms\n",
+              own_describe, describe, own_read, read);
+}
+
+TEST_F(UntrustedFilesTest, AReaderThatCrashesIsOneError) {
+  const std::uint64_t before = Failures("crashed");
+  const auto files = Files();
+  const absl::Status crash = files->Describe(Bad("crash")).status();
+  EXPECT_EQ(crash.code(), absl::StatusCode::kDataLoss);
+  EXPECT_THAT(std::string(crash.message()), HasSubstr("crash.bad: its reader crashed (signal 11"));
+  EXPECT_THAT(std::string(crash.message()), HasSubstr("damaged or hostile"));
+  EXPECT_THAT(std::string(files->Describe(Bad("abort")).status().message()),
+              HasSubstr("(signal 6"));
+  EXPECT_THAT(std::string(files->Describe(Bad("leave")).status().message()),
+              HasSubstr("ended without a result"));
+  const auto file = files->Describe(Bad("crash-reading"));
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_THAT(std::string(file->reader->Read(0, std::nullopt, {}).status().message()),
+              HasSubstr("(signal 7"));
+  EXPECT_EQ(Failures("crashed"), before + 4);
+}
+
+// A header that a fuzzer found: netCDF-C 4.9.0 crashes on it (nc_get_NC, free_NC_vararrayV). A
+// later one may refuse it.
+TEST_F(UntrustedFilesTest, AFileThatCrashesNetcdfItselfIsOneError) {
+  const std::string path = folder_.File("wrfout_d01");
+  std::filesystem::copy_file(THUNDERHEAD_SOURCE_DIR "/tests/unit/sandbox/netcdf_header_crash.nc",
+                             path);
+  const absl::Status status = Files()->Describe(path).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kDataLoss) << status;
+  EXPECT_THAT(std::string(status.message()), HasSubstr(path));
+}
+
+TEST_F(UntrustedFilesTest, AReaderHasATime) {
+  const std::uint64_t before = Failures("time");
+  for (const char* name : {"hang", "spin", "mute"}) {
+    const auto start = steady_clock::now();
+    const absl::Status status = Files(milliseconds(700))->Describe(Bad(name)).status();
+    EXPECT_LT(steady_clock::now() - start, milliseconds(3500)) << name;
+    EXPECT_FALSE(status.ok());
+    if (std::string_view(name) == "mute") continue;
+    EXPECT_EQ(status.code(), absl::StatusCode::kDeadlineExceeded) << status;
+    EXPECT_THAT(std::string(status.message()), HasSubstr("--sandbox-seconds"));
+  }
+  EXPECT_EQ(Failures("time"), before + 2);
+}
+
+// As read-ahead does, which gives way to others.
+TEST_F(UntrustedFilesTest, WhatTheServerWaitsForByItselfDoesNotCount) {
+  const auto file = Files(milliseconds(1000))->Describe(Bad("sound"));
+  ASSERT_TRUE(file.ok()) << file.status();
+  const auto fields = file->reader->Read(0, std::nullopt, [](double) {
+    std::this_thread::sleep_for(milliseconds(1500));
+    return absl::OkStatus();
+  });
+  EXPECT_TRUE(fields.ok()) << fields.status();
+}
+
+TEST_F(UntrustedFilesTest, AReaderHasItsMemory) {
+  const absl::Status status = Files()->Describe(Bad("memory")).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kResourceExhausted) << status;
+  EXPECT_THAT(std::string(status.message()), HasSubstr("256 MiB, by --sandbox-memory"));
+  EXPECT_FALSE(IsReaderFailure(status));
+}
+
+TEST_F(UntrustedFilesTest, AStormLargerThanItsMemoryIsSaidToBe) {
+  testing::SyntheticWrf storm = Storm();
+  storm.nx = 200;
+  storm.ny = 200;
+  storm.levels = 100;
+  const std::string path = folder_.File("wrfout_d01");
+  testing::WriteWrf(storm, path);
+  const auto files = Files(milliseconds(30'000), std::uint64_t{64} << 20);
+  const auto file = files->Describe(path);
+  ASSERT_TRUE(file.ok()) << file.status();
+  const absl::Status status = file->reader->Read(0, std::nullopt, {}).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kResourceExhausted) << status;
+  EXPECT_THAT(std::string(status.message()), HasSubstr("--sandbox-memory"));
+}
+
+TEST_F(UntrustedFilesTest, AReaderMayDoNothingElse) {
+  const absl::Status status = Files()->Describe(Bad("everything")).status();
+  EXPECT_EQ(std::string(status.message()), "[]");
+}
+
+TEST_F(UntrustedFilesTest, AReaderThatTalksNonsenseIsNotBelieved) {
+  const std::uint64_t before = Failures("nonsense");
+  for (const char* name : {"noise", "huge", "chatter"}) {
+    const absl::Status status = Files()->Describe(Bad(name)).status();
+    EXPECT_THAT(std::string(status.message()), HasSubstr("cannot be right")) << name;
+  }
+  EXPECT_EQ(Failures("nonsense"), before + 3);
+}
+
+TEST_F(UntrustedFilesTest, FieldsThatOtherRoomsCouldNotBearAreRefused) {
+  const auto files = Files();
+  const auto read = [&](const std::string& name) {
+    const auto file = files->Describe(Bad(name));
+    EXPECT_TRUE(file.ok()) << file.status();
+    return file.ok() ? file->reader->Read(0, std::nullopt, {}).status() : file.status();
+  };
+  EXPECT_TRUE(read("sound").ok()) << read("sound");
+  for (const char* name :
+       {"nan",          "infinite",   "negative",  "short",      "kind",    "quantity",
+        "sizes-beyond", "sizes-far",  "sizes-few", "statistics", "terrain", "terrain-nan",
+        "land",         "turbulence", "source",    "shear",      "box",     "columns",
+        "cells",        "spacing",    "corner"}) {
+    const absl::Status status = read(name);
+    EXPECT_EQ(status.code(), absl::StatusCode::kDataLoss) << name << ": " << status;
+    EXPECT_THAT(std::string(status.message()), HasSubstr("cannot be right")) << name;
+  }
+  const auto grid = files->Describe(Bad("grid"));
+  ASSERT_TRUE(grid.ok());
+  EXPECT_FALSE(grid->reader->ReadVerticalGrid(0).ok());
+}
+
+TEST_F(UntrustedFilesTest, WhatAFileSaysIsNoControlCharacter) {
+  const std::string message(Files()->Describe(Bad("rude")).status().message());
+  EXPECT_THAT(message, Not(HasSubstr("\x1b")));
+  EXPECT_THAT(message, Not(HasSubstr("\n")));
+  EXPECT_THAT(message, HasSubstr("forged"));
+}
+
+TEST_F(UntrustedFilesTest, AFileThatFailedItsReaderIsLeftAloneUntilItChanges) {
+  const auto files = Files();
+  const std::string path = Bad("crash");
+  const std::uint64_t before = Failures("crashed");
+  const std::string first(files->Describe(path).status().message());
+  EXPECT_EQ(std::string(files->Describe(path).status().message()), first);
+  EXPECT_EQ(Failures("crashed"), before + 1);
+  std::ofstream(path) << "something else";
+  EXPECT_FALSE(files->Describe(path).ok());
+  EXPECT_EQ(Failures("crashed"), before + 2);
+}
+
+TEST_F(UntrustedFilesTest, AnErrorOfTheFileIsThatOfTheProgramItself) {
+  const std::string path = folder_.File("notes.txt");
+  for (const std::string& text :
+       {std::string("notes on a storm, and not the storm"), std::string("note"), std::string()}) {
+    std::ofstream(path, std::ios::trunc) << text;
+    const absl::Status own = volume::StormFormats::BuiltIn().Describe(path).status();
+    const absl::Status confined = Files()->Describe(path).status();
+    EXPECT_EQ(confined.code(), own.code());
+    EXPECT_EQ(std::string(confined.message()), std::string(own.message()));
+  }
+  EXPECT_EQ(Files()->Describe(folder_.File("nowhere")).status().code(),
+            absl::StatusCode::kNotFound);
+  mkfifo(folder_.File("pipe").c_str(), 0600);
+  EXPECT_THAT(std::string(Files()->Describe(folder_.File("pipe")).status().message()),
+              HasSubstr("no regular file"));
+}
+
+TEST_F(UntrustedFilesTest, ReadingStopsWhenNobodyWantsItAnyMore) {
+  const auto file = Files()->Describe(Bad("sound"));
+  ASSERT_TRUE(file.ok());
+  const auto fields = file->reader->Read(
+      0, std::nullopt, [](double) { return absl::CancelledError("read-ahead was cancelled"); });
+  EXPECT_TRUE(absl::IsCancelled(fields.status())) << fields.status();
+}
+
+TEST_F(UntrustedFilesTest, AStoreGoesOnBesideHostileFiles) {
+  testing::WriteWrf(Storm(), folder_.File("wrfout_d01"));
+  Bad("crash");
+  Bad("hang");
+  Bad("noise");
+  volume::StormStoreOptions options;
+  options.read_ahead = 0;
+  options.formats = WithUntrusted(FormatsWithMisbehaving(), Files(milliseconds(700)));
+  const auto store = volume::StormStore::Open({folder_.Path().string()}, options);
+  ASSERT_TRUE(store.ok()) << store.status();
+  ASSERT_EQ((*store)->Storms().size(), 1U);
+  EXPECT_TRUE((*store)->Get("wrfout_d01", 0, {}).ok());
+}
+
+TEST_F(UntrustedFilesTest, SeveralAreReadAtOnce) {
+  const auto files = Files(milliseconds(3000));
+  const std::string hang = Bad("hang");
+  const std::string path = folder_.File("wrfout_d01");
+  testing::WriteWrf(Storm(), path);
+  std::thread hanging([&] { EXPECT_FALSE(files->Describe(hang).ok()); });
+  std::this_thread::sleep_for(milliseconds(100));
+  const auto start = steady_clock::now();
+  EXPECT_TRUE(files->Describe(path).ok());
+  EXPECT_LT(steady_clock::now() - start, milliseconds(2000));
+  hanging.join();
+}
+
+TEST_F(UntrustedFilesTest, AreThoseBelowTheFolders) {
+  namespace fs = std::filesystem;
+  UntrustedOptions options;
+  const fs::path inbox = folder_.Path() / "inbox";
+  fs::create_directories(inbox / "deep");
+  fs::create_directories(folder_.Path() / "inbox2");
+  options.folders = {inbox.string() + "/"};
+  const UntrustedFiles files(options);
+  EXPECT_TRUE(files.Includes((inbox / "a.nc").string()));
+  EXPECT_TRUE(files.Includes((inbox / "deep" / "a.nc").string()));
+  EXPECT_TRUE(files.Includes((folder_.Path() / "inbox2" / ".." / "inbox" / "a.nc").string()));
+  EXPECT_FALSE(files.Includes((folder_.Path() / "inbox2" / "a.nc").string()));
+  EXPECT_FALSE(files.Includes((folder_.Path() / "a.nc").string()));
+  // By a link into the folder, and by one in the folder that leads out of it.
+  fs::create_directory_symlink(inbox, folder_.Path() / "link");
+  EXPECT_TRUE(files.Includes((folder_.Path() / "link" / "a.nc").string()));
+  std::ofstream(folder_.File("trusted.nc")) << "x";
+  fs::create_symlink(folder_.Path() / "trusted.nc", inbox / "linked.nc");
+  EXPECT_TRUE(files.Includes((inbox / "linked.nc").string()));
+  options.folders.clear();
+  options.all = true;
+  EXPECT_TRUE(UntrustedFiles(options).Includes("/anything"));
+}
+
+TEST_F(UntrustedFilesTest, ThisMachineCanConfine) {
+  const absl::Status status = Files()->Probe();
+  EXPECT_TRUE(status.ok()) << status;
+}
+
+}  // namespace
+}  // namespace thunderhead::sandbox
