@@ -118,10 +118,11 @@ void AddPipelineOptions(CLI::App& command, PipelineFlags& flags) {
                                                                {"ecflow", ProgressStyle::kEcflow},
                                                                {"none", ProgressStyle::kNone}};
   command
-      .add_option("--progress", flags.progress,
-                  "auto (a bar on a terminal, else a line a product), lines, json, none, or ecflow: "
-                  "lines, and in a task of ecFlow its meter 'products', label 'product' and event "
-                  "'first'")
+      .add_option(
+          "--progress", flags.progress,
+          "auto (a bar on a terminal, else a line a product), lines, json, none, or ecflow: "
+          "lines, and in a task of ecFlow its meter 'products', label 'product' and event "
+          "'first'")
       ->transform(CLI::CheckedTransformer(kStyles).description(""));
 }
 

@@ -61,6 +61,7 @@ struct DisplayFrame {
   std::vector<StageTime> stages;
   Modelled modelled;
   std::optional<AccuracyReport> accuracy;
+  std::optional<picture::LinearPicture> linear;  // before the tone map; where it was asked for
 };
 
 // A picture at full quality, and its difference from one with half the slices.
@@ -123,6 +124,11 @@ class FrameSource {
   // cannot be had.
   virtual absl::StatusOr<frame::FineImage> Fine() {
     return absl::UnimplementedError("this frame source has pictures of 8 bits only");
+  }
+
+  // The picture that Draw, DrawChecked or Tone has just given as light, with the storm's opacity.
+  virtual absl::StatusOr<picture::LinearPicture> Linear() {
+    return absl::UnimplementedError("this frame source has tone-mapped pictures only");
   }
 };
 

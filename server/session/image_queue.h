@@ -43,6 +43,7 @@ struct ImageJob {
   // If set, called on the loop's thread as more light is traced, and not after `done`; must not
   // block.
   std::function<void(const ImageProgress&)> on_progress = nullptr;
+  bool linear = false;  // the picture is also to be had as light
   // Since it was admitted: the scene with its decided setting, and what drawing that should take.
   std::optional<scene::Scene> decided = std::nullopt;
   double predicted_ms = 0.0;

@@ -248,6 +248,7 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<StormFile> fi
   info.fields = first.fields;
   info.latitude_deg = first.latitude_deg;
   info.longitude_deg = first.longitude_deg;
+  info.projection = first.projection;
   storm.files = std::move(files);
   return storm;
 }

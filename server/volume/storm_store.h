@@ -42,6 +42,8 @@ struct StormInfo {
   std::vector<physics::Hydrometeor> fields;  // that the file has
   std::optional<double> latitude_deg;        // of the middle; nothing for an idealised run
   std::optional<double> longitude_deg;
+  // Of the grid, whose middle is there, as PROJ writes it; empty if it has none.
+  std::string projection;
 };
 
 // A description never changes; a storm that grows gets another.
