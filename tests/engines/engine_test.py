@@ -14,8 +14,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("THUNDERHEAD_BINARY", str(ROOT / "build/release/bin/thunderhead"))
-# Twelve files of one run. The project's copy of them lies beside the repository; without it the samples are copied, which
-# are three times of a run in one file each.
+# Twelve files of one run, beside the repository.
 SERIES = ROOT.parent / "shared/data/supercell-series"
 
 # ctest counts a test that ends with this as skipped.
