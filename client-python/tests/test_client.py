@@ -216,7 +216,8 @@ class ClientTest(unittest.TestCase):
             done = subprocess.run([sys.executable, str(example), self.server.address, str(self.folder)], capture_output=True,
                                   text=True, timeout=300)
             self.assertEqual(done.returncode, 0, f"{example}: {done.stdout}{done.stderr}")
-        self.assertEqual(Image.open(self.folder / "film.gif").n_frames, len(self.client.storms()[0].valid_times))
+        with Image.open(self.folder / "film.gif") as film:
+            self.assertEqual(film.n_frames, len(self.client.storms()[0].valid_times))
         self.assertEqual(scene_of(self.folder / "notebook.png").camera.orbit.azimuth_deg, 270)
         self.assertTrue((self.folder / "storm.png").exists())
 
@@ -228,27 +229,29 @@ class WatchTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             run = pathlib.Path(folder) / "run42"
             run.mkdir()
-            shutil.copy(series[0], run)
+            # Two, as a single file in a folder is a storm of its own name.
+            for file in series[:2]:
+                shutil.copy(file, run)
             server = Server("--data", folder, "--settle-seconds", "1", "--rescan-seconds", "1")
             self.addCleanup(server.stop)
 
             def copy_others() -> None:
                 time.sleep(1)
-                for file in series[1:3]:
+                for file in series[2:4]:
                     shutil.copy(file, run)
 
             copying = threading.Thread(target=copy_others)
             copying.start()
             with Client(server.address) as client:
                 storm = client.storms()[0].id
-                pictures = list(client.watch(storm, FAST, SIZE, until=3, timeout_s=60, poll_s=0.2,
+                pictures = list(client.watch(storm, FAST, SIZE, until=4, timeout_s=60, poll_s=0.2,
                                              product=folder + "/out/{valid:%H%M}.png"))
                 copying.join()
-                self.assertEqual(len({picture.data for picture in pictures}), 3)
+                self.assertEqual(len({picture.data for picture in pictures}), 4)
                 names = sorted(file.name for file in (pathlib.Path(folder) / "out").iterdir())
-                self.assertEqual(names, ["0010.png", "0020.png", "0030.png"])
-                with self.assertRaisesRegex(TimeoutError, "3 times are drawn"):
-                    list(client.watch(storm, FAST, SIZE, until=4, timeout_s=0.5, poll_s=0.1))
+                self.assertEqual(names, ["0010.png", "0020.png", "0030.png", "0040.png"])
+                with self.assertRaisesRegex(TimeoutError, "4 times are drawn"):
+                    list(client.watch(storm, FAST, SIZE, until=5, timeout_s=0.5, poll_s=0.1))
 
 
 class AccessTest(unittest.TestCase):

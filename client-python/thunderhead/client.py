@@ -65,7 +65,9 @@ class Client:
             self._channel = grpc.secure_channel(address, grpc.ssl_channel_credentials(roots), options)
         else:
             self._channel = grpc.insecure_channel(address, options)
-        self._stub: Any = thunderhead_pb2_grpc.ThunderheadServiceStub(self._channel)
+        # Generated, and without types.
+        make_stub: Any = thunderhead_pb2_grpc.ThunderheadServiceStub
+        self._stub: Any = make_stub(self._channel)
 
     def __enter__(self) -> "Client":
         return self

@@ -97,4 +97,5 @@ def limits_of(path: str) -> limits_pb2.NumberLimits:
     options = field.GetOptions()
     if not options.HasExtension(limits_pb2.number):
         raise KeyError(f"'{path}' is no number with limits")
-    return options.Extensions[limits_pb2.number]
+    limits: limits_pb2.NumberLimits = options.Extensions[limits_pb2.number]
+    return limits
