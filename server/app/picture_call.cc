@@ -15,8 +15,9 @@ absl::StatusOr<v1::ImageFormat> FormatOf(const std::string& flag, const std::str
   if (absl::EndsWithIgnoreCase(path, ".jpg") || absl::EndsWithIgnoreCase(path, ".jpeg")) {
     return v1::IMAGE_FORMAT_JPEG;
   }
+  if (absl::EndsWithIgnoreCase(path, ".exr")) return v1::IMAGE_FORMAT_EXR;
   return absl::InvalidArgumentError(
-      absl::StrCat(flag, " is '", path, "'; its name must end in .png, .jpg or .jpeg"));
+      absl::StrCat(flag, " is '", path, "'; its name must end in .png, .jpg, .jpeg or .exr"));
 }
 
 absl::StatusOr<v1::RenderImageResponse> CallForPicture(

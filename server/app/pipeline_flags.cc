@@ -116,10 +116,14 @@ void AddPipelineOptions(CLI::App& command, PipelineFlags& flags) {
   static const std::map<std::string, ProgressStyle> kStyles = {{"auto", ProgressStyle::kAuto},
                                                                {"lines", ProgressStyle::kLines},
                                                                {"json", ProgressStyle::kJson},
+                                                               {"ecflow", ProgressStyle::kEcflow},
                                                                {"none", ProgressStyle::kNone}};
   command
-      .add_option("--progress", flags.progress,
-                  "auto (a bar on a terminal, else a line a product), lines, json or none")
+      .add_option(
+          "--progress", flags.progress,
+          "auto (a bar on a terminal, else a line a product), lines, json, none, or ecflow: "
+          "lines, and in a task of ecFlow its meter 'products', label 'product' and event "
+          "'first'")
       ->transform(CLI::CheckedTransformer(kStyles).description(""));
 }
 

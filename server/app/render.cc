@@ -5,7 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "accuracy/named_settings.h"
@@ -110,9 +109,7 @@ absl::Status ByReference(const Flags& flags) {
     return absl::InvalidArgumentError(
         "--renderer reference works only in this process: omit --server and --json");
   }
-  if (!absl::EndsWithIgnoreCase(flags.output, ".exr")) {
-    THUNDERHEAD_RETURN_IF_ERROR(FormatOf("-o", flags.output).status());
-  }
+  THUNDERHEAD_RETURN_IF_ERROR(FormatOf("-o", flags.output).status());
   return RenderReference(flags.storm, flags.scene, flags.reference, flags.output, flags.device);
 }
 
@@ -158,7 +155,7 @@ Command AddRender(CLI::App& app) {
       ->required();
   render
       ->add_option("-o,--output", flags->output,
-                   "Picture to write: .png, .jpg or .jpeg; also .exr with --renderer reference")
+                   "Picture to write: .png, .jpg or .jpeg; .exr for linear light and optical depth")
       ->required();
   AddSceneOptions(*render, flags->scene);
   AddTechniqueOptions(*render, flags->scene);

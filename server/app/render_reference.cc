@@ -19,6 +19,7 @@
 #include "gl/context.h"
 #include "picture/exr_file.h"
 #include "reference/trace_scene.h"
+#include "scene/optical_depths.h"
 
 namespace thunderhead::app {
 namespace {
@@ -100,6 +101,7 @@ absl::Status RenderReference(const std::string& storm, const SceneFlags& scene,
   }
   THUNDERHEAD_RETURN_IF_ERROR(traced.status());
   if (absl::EndsWithIgnoreCase(output, ".exr")) {
+    scene::AddOpticalDepths(local.scene, *local.fields, &traced->image);
     THUNDERHEAD_RETURN_IF_ERROR(picture::WriteExr(output, traced->image));
   } else {
     THUNDERHEAD_RETURN_IF_ERROR(WriteToneMapped(traced->image, local.scene, output, device));

@@ -85,6 +85,10 @@ absl::StatusOr<MovieOptions> MovieOptionsOf(const PipelineFlags& flags) {
 absl::Status MakeMovies(const MovieOptions& options, const std::vector<PlannedPicture>& pictures,
                         PictureRun& run, RunProgress& progress, const std::stop_token& stop) {
   if (!options.name.has_value()) return absl::OkStatus();
+  if (run.Options().format == v1::IMAGE_FORMAT_EXR) {
+    return absl::InvalidArgumentError(
+        "--movie needs pictures of .png or .jpg, but --product ends in .exr: omit one");
+  }
   std::map<std::string, std::vector<const PlannedPicture*>> movies;
   for (const PlannedPicture& picture : pictures) {
     if (!picture.outcome.ok()) continue;

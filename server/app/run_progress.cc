@@ -12,6 +12,10 @@
 namespace thunderhead::app {
 
 RunProgress::RunProgress(ProgressStyle style, const std::string& label) : style_(style) {
+  if (style == ProgressStyle::kEcflow) {
+    style_ = ProgressStyle::kLines;
+    if (EcflowReporter::InTask()) ecflow_ = std::make_unique<EcflowReporter>();
+  }
   if (style != ProgressStyle::kAuto) return;
   style_ = isatty(STDERR_FILENO) == 1 ? ProgressStyle::kNone : ProgressStyle::kLines;
   if (style_ == ProgressStyle::kNone) bar_ = std::make_unique<ProgressBar>(label);
@@ -61,6 +65,7 @@ int RunProgress::KeptCount() const {
 void RunProgress::Tell(const std::string& event, const std::string& path, const std::string& text,
                        double milliseconds) {
   const int done = drawn_ + kept_;
+  if (ecflow_ != nullptr) ecflow_->Tell(done, planned_, path);
   if (bar_ != nullptr) {
     bar_->Set(planned_ == 0 ? 0.0 : static_cast<double>(done) / planned_);
     bar_->Note(absl::StrCat(done, " of ", planned_));

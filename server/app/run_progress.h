@@ -1,5 +1,5 @@
 // How a run of many pictures tells of itself: a bar on a terminal, otherwise a line a product, or
-// lines of JSON for machines.
+// lines of JSON for machines, or a line a product and ecFlow's meter in a task of ecFlow.
 #pragma once
 
 #include <memory>
@@ -7,11 +7,12 @@
 #include <string>
 
 #include "absl/status/status.h"
+#include "app/ecflow_reporter.h"
 #include "app/progress_bar.h"
 
 namespace thunderhead::app {
 
-enum class ProgressStyle { kAuto, kLines, kJson, kNone };
+enum class ProgressStyle { kAuto, kLines, kJson, kEcflow, kNone };
 
 // Safe from any thread.
 class RunProgress {
@@ -37,7 +38,8 @@ class RunProgress {
 
   mutable std::mutex mutex_;
   ProgressStyle style_;
-  std::unique_ptr<ProgressBar> bar_;  // null: no terminal
+  std::unique_ptr<ProgressBar> bar_;        // null: no terminal
+  std::unique_ptr<EcflowReporter> ecflow_;  // null: no task of ecFlow
   int planned_ = 0;
   int drawn_ = 0;
   int kept_ = 0;

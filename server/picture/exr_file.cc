@@ -1,15 +1,21 @@
 #include "picture/exr_file.h"
 
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
 
 #include <array>
+#include <cstring>
 #include <exception>
-#include <filesystem>
-#include <system_error>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
@@ -19,93 +25,201 @@
 namespace thunderhead::picture {
 namespace {
 
-struct Channel {
-  const char* name;
-  bool error;  // of the standard error, not of radiance
-  std::size_t color;
-};
-
-constexpr std::array<Channel, 6> kChannels = {{{"R", false, 0},
-                                               {"G", false, 1},
-                                               {"B", false, 2},
-                                               {"stderr.R", true, 0},
-                                               {"stderr.G", true, 1},
-                                               {"stderr.B", true, 2}}};
-
+constexpr std::array<const char*, 3> kRadiance = {"R", "G", "B"};
+constexpr std::array<const char*, 3> kError = {"stderr.R", "stderr.G", "stderr.B"};
 // Not A, by which viewers would composite.
 constexpr char kOpacity[] = "storm.opacity";
+constexpr char kOpticalDepth[] = "storm.optical_depth";
+constexpr char kDepthOneDistance[] = "storm.depth_one_distance";
 
-// OpenEXR takes addresses that it may write to, also to write a file from.
-Imf::FrameBuffer FrameBufferOf(LinearPicture* picture) {
-  Imf::FrameBuffer buffer;
-  const auto width = static_cast<std::size_t>(picture->size_px.x);
-  for (const Channel& channel : kChannels) {
-    auto& values = channel.error ? picture->standard_error : picture->radiance;
-    auto* first = reinterpret_cast<char*>(values.data()) + channel.color * sizeof(float);
-    buffer.insert(channel.name,
-                  Imf::Slice(Imf::FLOAT, first, sizeof(glm::vec3), width * sizeof(glm::vec3)));
+// One channel of a file and the first of its values in a picture.
+struct Channel {
+  const char* name;
+  float* first;
+  std::size_t stride;  // bytes from a pixel to the next
+};
+
+void AddColors(const std::array<const char*, 3>& names, std::vector<glm::vec3>& values,
+               std::vector<Channel>& channels) {
+  if (values.empty()) return;
+  for (int color = 0; color < 3; ++color) {
+    channels.push_back(
+        {names[static_cast<std::size_t>(color)], &values.front()[color], sizeof(glm::vec3)});
   }
-  if (!picture->opacity.empty()) {
-    buffer.insert(kOpacity, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(picture->opacity.data()),
-                                       sizeof(float), width * sizeof(float)));
+}
+
+void AddValues(const char* name, std::vector<float>& values, std::vector<Channel>& channels) {
+  if (!values.empty()) channels.push_back({name, values.data(), sizeof(float)});
+}
+
+// Of what the picture has.
+std::vector<Channel> ChannelsOf(LinearPicture& picture) {
+  std::vector<Channel> channels;
+  AddColors(kRadiance, picture.radiance, channels);
+  AddColors(kError, picture.standard_error, channels);
+  AddValues(kOpacity, picture.opacity, channels);
+  AddValues(kOpticalDepth, picture.optical_depth, channels);
+  AddValues(kDepthOneDistance, picture.depth_one_distance_m, channels);
+  return channels;
+}
+
+Imf::FrameBuffer FrameBufferOf(const std::vector<Channel>& channels, std::size_t width) {
+  Imf::FrameBuffer buffer;
+  for (const Channel& channel : channels) {
+    buffer.insert(channel.name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(channel.first),
+                                           channel.stride, width * channel.stride));
   }
   return buffer;
 }
 
+// OpenEXR tells by exceptions what goes wrong; they end in this file.
+class BytesOut final : public Imf::OStream {
+ public:
+  BytesOut() : OStream("memory") {}
+
+  void write(const char from[], int count) override {
+    const auto bytes = static_cast<std::size_t>(count);
+    if (bytes_.size() < at_ + bytes) bytes_.resize(at_ + bytes);
+    std::memcpy(bytes_.data() + at_, from, bytes);
+    at_ += bytes;
+  }
+  std::uint64_t tellp() override { return at_; }
+  void seekp(std::uint64_t at) override { at_ = at; }
+
+  std::string Take() { return std::move(bytes_); }
+
+ private:
+  std::string bytes_;
+  std::size_t at_ = 0;
+};
+
+class BytesIn final : public Imf::IStream {
+ public:
+  explicit BytesIn(std::string_view bytes) : IStream("memory"), bytes_(bytes) {}
+
+  bool read(char to[], int count) override {
+    const auto bytes = static_cast<std::size_t>(count);
+    if (bytes > bytes_.size() - at_) throw std::runtime_error("the file is cut short");
+    std::memcpy(to, bytes_.data() + at_, bytes);
+    at_ += bytes;
+    return at_ < bytes_.size();
+  }
+  std::uint64_t tellg() override { return at_; }
+  void seekg(std::uint64_t at) override {
+    if (at > bytes_.size()) throw std::runtime_error("the file is cut short");
+    at_ = at;
+  }
+
+ private:
+  std::string_view bytes_;
+  std::size_t at_ = 0;
+};
+
+ExrAttributes AttributesOf(const Imf::Header& header) {
+  ExrAttributes attributes;
+  for (auto at = header.begin(); at != header.end(); ++at) {
+    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&at.attribute())) {
+      attributes.texts.emplace(at.name(), text->value());
+    } else if (const auto* number = dynamic_cast<const Imf::FloatAttribute*>(&at.attribute())) {
+      attributes.numbers.emplace(at.name(), number->value());
+    }
+  }
+  return attributes;
+}
+
 }  // namespace
 
-absl::Status WriteExr(const std::string& path, const LinearPicture& picture) {
+absl::StatusOr<std::string> EncodeExr(const LinearPicture& picture,
+                                      const ExrAttributes& attributes) {
   THUNDERHEAD_CHECK(picture.size_px.x > 0 && picture.size_px.y > 0, "a picture without pixels");
-  THUNDERHEAD_CHECK(picture.standard_error.size() == picture.radiance.size(), path);
   try {
     Imf::Header header(picture.size_px.x, picture.size_px.y);
     header.compression() = Imf::ZIP_COMPRESSION;
-    for (const Channel& channel : kChannels) {
+    for (const auto& [name, text] : attributes.texts) {
+      header.insert(name.c_str(), Imf::StringAttribute(text));
+    }
+    for (const auto& [name, number] : attributes.numbers) {
+      header.insert(name.c_str(), Imf::FloatAttribute(number));
+    }
+    // OpenEXR takes addresses that it may write to, also to write a file from.
+    LinearPicture copy = picture;
+    const std::vector<Channel> channels = ChannelsOf(copy);
+    for (const Channel& channel : channels) {
       header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
     }
-    if (!picture.opacity.empty()) header.channels().insert(kOpacity, Imf::Channel(Imf::FLOAT));
-    LinearPicture copy = picture;
-    // Closed before it is published.
-    Imf::OutputFile file(base::PartialPath(path).c_str(), header);
-    file.setFrameBuffer(FrameBufferOf(&copy));
-    file.writePixels(picture.size_px.y);
+    BytesOut bytes;
+    {
+      // Whole when it is closed.
+      Imf::OutputFile file(bytes, header);
+      file.setFrameBuffer(FrameBufferOf(channels, static_cast<std::size_t>(picture.size_px.x)));
+      file.writePixels(picture.size_px.y);
+    }
+    return bytes.Take();
   } catch (const std::exception& error) {
-    std::error_code ignored;
-    std::filesystem::remove(base::PartialPath(path), ignored);
-    return absl::UnavailableError(absl::StrCat("cannot write '", path, "': ", error.what(),
-                                               "; check that the folder exists and has room"));
+    return absl::InternalError(absl::StrCat("cannot encode the picture as EXR: ", error.what()));
   }
-  return base::PublishFile(path);
 }
 
-absl::StatusOr<LinearPicture> ReadExr(const std::string& path) {
+void SetExrNumber(const std::string& name, float value, std::string* exr) {
+  // Name, type and size, then the value, least significant byte first.
+  using std::string_literals::operator""s;
+  const std::string before = name + "\0float\0\4\0\0\0"s;
+  const std::size_t at = exr->find(before);
+  THUNDERHEAD_CHECK(at != std::string::npos, name);
+  std::memcpy(exr->data() + at + before.size(), &value, sizeof(value));
+}
+
+absl::StatusOr<ExrPicture> DecodeExr(const std::string& exr, const std::string& what) {
   try {
-    Imf::InputFile file(path.c_str());
-    for (const Channel& channel : kChannels) {
-      if (file.header().channels().findChannel(channel.name) == nullptr) {
-        return absl::InvalidArgumentError(absl::StrCat("'", path, "' has no channel ", channel.name,
-                                                       "; give a file that the reference wrote"));
-      }
+    BytesIn bytes(exr);
+    Imf::InputFile file(bytes);
+    const auto has = [&](const char* name) {
+      return file.header().channels().findChannel(name) != nullptr;
+    };
+    for (const char* name : kRadiance) {
+      if (has(name)) continue;
+      return absl::InvalidArgumentError(absl::StrCat("'", what, "' has no channel ", name,
+                                                     "; give a file that thunderhead wrote"));
     }
     const Imath::Box2i window = file.header().dataWindow();
     if (window.min.x != 0 || window.min.y != 0) {
       return absl::InvalidArgumentError(absl::StrCat(
-          "'", path, "' does not begin at pixel (0, 0); give a file that the reference wrote"));
+          "'", what, "' does not begin at pixel (0, 0); give a file that thunderhead wrote"));
     }
-    LinearPicture picture;
+    ExrPicture result;
+    LinearPicture& picture = result.picture;
     picture.size_px = {window.max.x + 1, window.max.y + 1};
-    const auto pixels =
-        static_cast<std::size_t>(picture.size_px.x) * static_cast<std::size_t>(picture.size_px.y);
+    const auto width = static_cast<std::size_t>(picture.size_px.x);
+    const std::size_t pixels = width * static_cast<std::size_t>(picture.size_px.y);
     picture.radiance.resize(pixels);
-    picture.standard_error.resize(pixels);
-    if (file.header().channels().findChannel(kOpacity) != nullptr) picture.opacity.resize(pixels);
-    file.setFrameBuffer(FrameBufferOf(&picture));
+    if (has(kError[0]) && has(kError[1]) && has(kError[2])) picture.standard_error.resize(pixels);
+    if (has(kOpacity)) picture.opacity.resize(pixels);
+    if (has(kOpticalDepth)) picture.optical_depth.resize(pixels);
+    if (has(kDepthOneDistance)) picture.depth_one_distance_m.resize(pixels);
+    file.setFrameBuffer(FrameBufferOf(ChannelsOf(picture), width));
     file.readPixels(0, picture.size_px.y - 1);
-    return picture;
+    result.attributes = AttributesOf(file.header());
+    return result;
   } catch (const std::exception& error) {
     return absl::InvalidArgumentError(
-        absl::StrCat("cannot read '", path, "': ", error.what(), "; give an OpenEXR file"));
+        absl::StrCat("cannot read '", what, "': ", error.what(), "; give an OpenEXR file"));
   }
+}
+
+absl::Status WriteExr(const std::string& path, const LinearPicture& picture,
+                      const ExrAttributes& attributes) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::string bytes, EncodeExr(picture, attributes));
+  return base::WriteWholeFile(path, bytes);
+}
+
+absl::StatusOr<LinearPicture> ReadExr(const std::string& path) {
+  auto bytes = base::ReadWholeFile(path);
+  if (!bytes.ok()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("cannot read '", path, "': ", bytes.status().message()));
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(ExrPicture exr, DecodeExr(*bytes, path));
+  return std::move(exr.picture);
 }
 
 }  // namespace thunderhead::picture

@@ -17,6 +17,10 @@ struct LinearPicture {
   std::vector<glm::vec3> standard_error{};
   // Share of each pixel that the storm covers, 0 to 1; empty where that is not known.
   std::vector<float> opacity{};
+  // Of the storm along the ray through each pixel's middle, and the distance from the ray's
+  // beginning at which it reaches 1, in m; infinite where it does not. Empty where nobody asked.
+  std::vector<float> optical_depth{};
+  std::vector<float> depth_one_distance_m{};
 };
 
 }  // namespace thunderhead::picture

@@ -35,9 +35,10 @@ GroupedFields Parted(const GroupedFields& grouped) {
 }  // namespace
 
 std::shared_ptr<const DetailedMedium> DetailedMedium::Of(const Scene& scene,
-                                                         const volume::HydrometeorFields& fields) {
+                                                         const volume::HydrometeorFields& fields,
+                                                         bool detail) {
   Scene shown = scene;
-  shown.rendering.technique = LightVolume{};
+  shown.rendering.technique = LightVolume{.medium = {.look = {.detail = detail}}};
   const GroupedFields grouped = GroupedFieldsOf(shown, fields);
   const GroupedFields parted = Parted(grouped);
   THUNDERHEAD_CHECK(parted.groups.size() <= volume::kMaxChannels, "too many fields");
@@ -45,9 +46,9 @@ std::shared_ptr<const DetailedMedium> DetailedMedium::Of(const Scene& scene,
   volume::ExtinctionVolume& volume = detailed->volume_;
   volume = volume::ComputeExtinction(fields, parted.terms, static_cast<int>(parted.groups.size()));
   if (volume.Empty()) return detailed;
-  const auto tile_of = [&](const Detail& detail) -> const physics::DetailTile* {
+  const auto tile_of = [&](const Detail& noise) -> const physics::DetailTile* {
     detailed->tiles_.push_back(std::make_unique<const physics::DetailTile>(
-        physics::MakeDetailTile(detail.octaves, detail.seed)));
+        physics::MakeDetailTile(noise.octaves, noise.seed)));
     return detailed->tiles_.back().get();
   };
   const std::vector<DetailLayer> layers = DetailLayersOf(parted.groups);

@@ -17,13 +17,17 @@ namespace thunderhead::scene {
 
 class DetailedMedium {
  public:
-  // Each field has the detail that `scene` gives it, whatever its technique. `fields` need not
-  // outlive it.
+  // Each field has the detail that `scene` gives it, whatever its technique, or none without
+  // `detail`. `fields` need not outlive it.
   static std::shared_ptr<const DetailedMedium> Of(const Scene& scene,
-                                                  const volume::HydrometeorFields& fields);
+                                                  const volume::HydrometeorFields& fields,
+                                                  bool detail = true);
 
   // 1/m, in the order of DrawnFieldsOf. Detail is that of a picture with infinitely fine pixels.
   volume::DrawnMedium::Channels At_per_m(const glm::dvec3& place_m) const;
+
+  // Its cells, and the box of what is not empty.
+  const volume::ExtinctionVolume& Volume() const { return volume_; }
 
   // By field, an upper bound of extinction in 1/m.
   volume::DrawnMedium::Channels Largest_per_m() const;

@@ -1,6 +1,7 @@
 #include "service/picture_job.h"
 
 #include <chrono>
+#include <limits>
 #include <utility>
 
 #include "base/error_details.h"
@@ -8,6 +9,9 @@
 #include "base/stopwatch.h"
 #include "frame/image_codec.h"
 #include "frame/png_text.h"
+#include "picture/exr_file.h"
+#include "scene/optical_depths.h"
+#include "scene/view.h"
 #include "service/camera_messages.h"
 #include "service/limits_check.h"
 #include "service/picture_texts.h"
@@ -15,6 +19,19 @@
 
 namespace thunderhead::service {
 namespace {
+
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+
+// The picture as light. Its estimated error is not known yet.
+absl::StatusOr<std::string> EncodeLight(session::DisplayFrame& picture,
+                                        const volume::HydrometeorFields& fields,
+                                        const volume::StormInfo* storm,
+                                        const v1::RenderImageResponse& response) {
+  scene::AddOpticalDepths(ToScene(response.scene()), fields, &*picture.linear);
+  picture::ExrAttributes attributes{.texts = {}, .numbers = {{kErrorText, kUnknown}}};
+  if (storm != nullptr) attributes.texts = TextsOf(response, *storm);
+  return picture::EncodeExr(*picture.linear, attributes);
+}
 
 // Takes the picture's pixels.
 absl::Status Encode(session::DisplayFrame& picture, const v1::RenderImageRequest& request,
@@ -26,8 +43,6 @@ absl::Status Encode(session::DisplayFrame& picture, const v1::RenderImageRequest
       jpeg ? frame::EncodeJpeg(picture.width_px, picture.height_px, picture.rgb, quality)
            : frame::EncodePng(picture.width_px, picture.height_px, picture.rgb));
   response.set_format(jpeg ? v1::IMAGE_FORMAT_JPEG : v1::IMAGE_FORMAT_PNG);
-  response.set_width_px(static_cast<std::uint32_t>(picture.width_px));
-  response.set_height_px(static_cast<std::uint32_t>(picture.height_px));
   picture.rgb = {};
   return absl::OkStatus();
 }
@@ -40,8 +55,13 @@ void Describe(const session::DisplayFrame& picture, double encode_ms,
   if (picture.accuracy.has_value()) ToMessage(*picture.accuracy, *response.mutable_accuracy());
 }
 
-// Writes into a PNG what it shows. `storm` is null if it has gone since.
+// Writes into a PNG what it shows, and into an OpenEXR file what was not known when it was encoded.
+// `storm` is null if it has gone since.
 void AddTexts(const volume::StormInfo* storm, v1::RenderImageResponse& response) {
+  if (response.format() == v1::IMAGE_FORMAT_EXR && response.has_accuracy()) {
+    picture::SetExrNumber(kErrorText, response.accuracy().estimated_error(),
+                          response.mutable_image());
+  }
   if (response.format() != v1::IMAGE_FORMAT_PNG || storm == nullptr) return;
   response.set_image(frame::WithTexts(response.image(), TextsOf(response, *storm)));
 }
@@ -68,7 +88,7 @@ void PictureJob::Begin() {
        [this](session::DisplayFrame& picture) { return EncodeTimed(picture); }, cancelled_,
        [this](const absl::StatusOr<session::DisplayFrame>& picture) { Drawn(picture); },
        [this](const session::ImageProgress& progress) { listener_.Progressed(progress); },
-       awaited_ == Awaited::kByNobody});
+       awaited_ == Awaited::kByNobody, request_.format() == v1::IMAGE_FORMAT_EXR});
 }
 
 void PictureJob::Cancel() {
@@ -95,12 +115,27 @@ absl::StatusOr<session::ImageInput> PictureJob::Read() {
       auto fields, ReadFields(engine_.store, scene.storm_id(), static_cast<int>(scene.time_index()),
                               "scene.storm_id"));
   FrameCondensate(scene, *fields);
-  return session::ImageInput{std::move(fields), ToScene(scene).camera};
+  const scene::Scene value = ToScene(scene);
+  ToMessage(scene::ViewOf(value, *fields), *response_.mutable_view());
+  if (request_.format() == v1::IMAGE_FORMAT_EXR) fields_ = fields;
+  return session::ImageInput{std::move(fields), value.camera};
 }
 
 absl::Status PictureJob::EncodeTimed(session::DisplayFrame& picture) {
   const base::Stopwatch stopwatch;
-  THUNDERHEAD_RETURN_IF_ERROR(Encode(picture, request_, response_));
+  response_.set_width_px(static_cast<std::uint32_t>(picture.width_px));
+  response_.set_height_px(static_cast<std::uint32_t>(picture.height_px));
+  if (request_.format() == v1::IMAGE_FORMAT_EXR) {
+    const volume::StormInfoPtr storm = engine_.store.Find(response_.scene().storm_id());
+    THUNDERHEAD_ASSIGN_OR_RETURN(*response_.mutable_image(),
+                                 EncodeLight(picture, *fields_, storm.get(), response_));
+    response_.set_format(v1::IMAGE_FORMAT_EXR);
+    picture.linear.reset();
+    picture.rgb = {};
+    fields_.reset();
+  } else {
+    THUNDERHEAD_RETURN_IF_ERROR(Encode(picture, request_, response_));
+  }
   encode_ms_ = stopwatch.ElapsedMs();
   return absl::OkStatus();
 }

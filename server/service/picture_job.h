@@ -59,6 +59,7 @@ class PictureJob {
   PictureListener& listener_;
   const Awaited awaited_;
   double encode_ms_ = 0.0;
+  std::shared_ptr<const volume::HydrometeorFields> fields_;  // of a picture as light, until then
   const std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
   const std::shared_ptr<std::atomic<bool>> late_ = std::make_shared<std::atomic<bool>>(false);
   grpc::Alarm deadline_;

@@ -2,26 +2,43 @@
 
 #include <google/protobuf/util/json_util.h>
 
+#include <cmath>
 #include <string>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "base/version.h"
 
 namespace thunderhead::service {
 
-frame::PngTexts TextsOf(const v1::RenderImageResponse& picture, const volume::StormInfo& storm) {
+PictureTexts TextsOf(const v1::RenderImageResponse& picture, const volume::StormInfo& storm) {
   std::string scene;
   (void)google::protobuf::util::MessageToJsonString(picture.scene(), &scene);
-  frame::PngTexts texts = {{"Software", absl::StrCat("Thunderhead ", base::Version())},
-                           {"Title", storm.title},
-                           {kSceneText, scene},
-                           {"thunderhead.storm", storm.id}};
+  PictureTexts texts = {{"Software", absl::StrCat("Thunderhead ", base::Version())},
+                        {"Title", storm.title},
+                        {kSceneText, scene},
+                        {"thunderhead.storm", storm.id}};
   const std::size_t time_index = picture.scene().time_index();
   if (time_index < storm.times.size()) {
     texts["thunderhead.valid"] = storm.times[time_index].valid_time;
   }
+  std::string view;
+  (void)google::protobuf::util::MessageToJsonString(picture.view(), &view);
+  texts["thunderhead.view"] = view;
+  if (!picture.view().parallel()) {
+    // From the middle to an edge of the picture, over half its width at distance 1.
+    const v1::Vector& right = picture.view().right();
+    const double half_width = std::hypot(right.x(), right.y(), right.z());
+    texts["thunderhead.focal_length_px"] =
+        absl::StrCat(0.5 * picture.scene().output().width_px() / half_width);
+  }
+  if (!storm.projection.empty()) {
+    texts["thunderhead.projection"] = storm.projection;
+    texts["thunderhead.middle_deg"] = absl::StrFormat("%.7f %.7f", storm.latitude_deg.value_or(0.0),
+                                                      storm.longitude_deg.value_or(0.0));
+  }
   if (picture.has_accuracy()) {
-    texts["thunderhead.estimated_error"] = absl::StrCat(picture.accuracy().estimated_error());
+    texts[kErrorText] = absl::StrCat(picture.accuracy().estimated_error());
   }
   return texts;
 }

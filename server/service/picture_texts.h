@@ -1,7 +1,10 @@
-// What a picture tells of itself, inside the file.
+// What a picture tells of itself, inside the file: as texts of a PNG or attributes of an OpenEXR
+// file, by the same names.
 #pragma once
 
-#include "frame/png_text.h"
+#include <map>
+#include <string>
+
 #include "thunderhead/v1/thunderhead.pb.h"
 #include "volume/storm_store.h"
 
@@ -10,8 +13,14 @@ namespace thunderhead::service {
 // The keyword of the whole scene, as JSON, from which the same picture can be drawn again.
 inline constexpr char kSceneText[] = "thunderhead.scene";
 
-// The scene, the storm with its time, the program's version and the estimated error of a picture of
-// `storm`, whose response is complete but for the picture.
-frame::PngTexts TextsOf(const v1::RenderImageResponse& picture, const volume::StormInfo& storm);
+// The estimated error; in an OpenEXR file a number.
+inline constexpr char kErrorText[] = "thunderhead.estimated_error";
+
+using PictureTexts = std::map<std::string, std::string>;
+
+// The scene, the storm with its time and map projection, the camera's pose, the program's version
+// and where it is known the estimated error of a picture of `storm`, whose response is complete but
+// for the picture.
+PictureTexts TextsOf(const v1::RenderImageResponse& picture, const volume::StormInfo& storm);
 
 }  // namespace thunderhead::service

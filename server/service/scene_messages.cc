@@ -481,6 +481,7 @@ void ToMessage(const volume::StormInfo& storm, const volume::HydrometeorFields& 
   message.set_time_index(static_cast<std::uint32_t>(time_index));
   if (storm.latitude_deg.has_value()) message.set_latitude_deg(*storm.latitude_deg);
   if (storm.longitude_deg.has_value()) message.set_longitude_deg(*storm.longitude_deg);
+  message.set_projection(storm.projection);
   FillClockDefaults(*message.mutable_sun_clock(), storm);
   message.set_bytes_per_time(fields.Bytes());
   message.set_turbulence_source(MessageOf(kTurbulenceSources, fields.motion.source));

@@ -63,6 +63,7 @@ struct DisplayFrame {
   Modelled modelled;
   std::optional<AccuracyReport> accuracy;
   std::shared_ptr<const base::MemoryReservation> memory;  // that it counts in
+  std::optional<picture::LinearPicture> linear;  // before the tone map; where it was asked for
 };
 
 // A picture at full quality, and its difference from one with half the slices.
@@ -129,6 +130,10 @@ class FrameSource {
 
   // Gives back the memory of what it keeps for further pictures and has not drawn for so long.
   virtual void FreeUnused(double /*unused_s*/) {}
+  // The picture that Draw, DrawChecked or Tone has just given as light, with the storm's opacity.
+  virtual absl::StatusOr<picture::LinearPicture> Linear() {
+    return absl::UnimplementedError("this frame source has tone-mapped pictures only");
+  }
 };
 
 // Makes a source on the thread that will use it. It takes `turn`, which must outlive it, for each

@@ -119,6 +119,15 @@ class GlFrameSource final : public FrameSource {
     }
   }
 
+  absl::StatusOr<picture::LinearPicture> Linear() override {
+    if (!tone_mapped_.has_value()) {
+      return absl::FailedPreconditionError("no picture was drawn whose light could be had");
+    }
+    return programs_->Pieces().During([&]() -> absl::StatusOr<picture::LinearPicture> {
+      return frame::PictureOf(*tone_mapped_->linear);
+    });
+  }
+
  private:
   // The picture drawn last, until anything else is drawn.
   struct Drawn {

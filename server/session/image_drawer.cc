@@ -126,6 +126,9 @@ absl::Status ImageDrawer::Read(Begun& image, const std::shared_ptr<Preparation>&
 absl::Status ImageDrawer::Draw(Begun& image, FrameSource& source) {
   THUNDERHEAD_ASSIGN_OR_RETURN(image.frame,
                                source.Draw(*image.job.decided, image.fields, FrameQuality{}));
+  if (image.job.linear) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(image.frame->linear, source.Linear());
+  }
   return image.job.encode(*image.frame);
 }
 

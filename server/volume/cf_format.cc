@@ -2,7 +2,9 @@
 
 #include <utility>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "base/status.h"
 #include "volume/cf_metadata.h"
 #include "volume/cf_reader.h"
@@ -69,6 +71,15 @@ class CfFormat final : public StormFormat {
     if (x.middle_deg.has_value() && y.middle_deg.has_value()) {
       file.longitude_deg = x.middle_deg;
       file.latitude_deg = y.middle_deg;
+      // How degrees became metres: evenly, as at the middle. Degrees of a rotated grid are no
+      // places on Earth.
+      const CfDescription described = DescribeCf(*unknown.netcdf, x.dimension);
+      if (!absl::StartsWith(described.standard_name, "grid_")) {
+        file.projection = absl::StrFormat(
+            "+proj=eqc +lat_ts=%.10g +lat_0=%.10g +lon_0=%.10g +x_0=0 +y_0=0 +R=%.10g +units=m "
+            "+no_defs",
+            *y.middle_deg, *y.middle_deg, *x.middle_deg, kCfEarthRadius_m);
+      }
     }
     file.reader = std::make_shared<CfRecordReader>(std::move(metadata));
     return file;

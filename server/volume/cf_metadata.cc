@@ -15,8 +15,7 @@
 namespace thunderhead::volume {
 namespace {
 
-constexpr double kEarthRadius_m = 6.371e6;
-constexpr double kMetresPerDegree = kEarthRadius_m * std::numbers::pi / 180.0;
+constexpr double kMetresPerDegree = kCfEarthRadius_m * std::numbers::pi / 180.0;
 
 // Finds the axes among a variable's dimensions.
 absl::StatusOr<CfVariable> Arrange(const NetcdfFile& file, const std::string& variable) {

@@ -36,6 +36,9 @@ struct CfAirField {
   CfAir air;
 };
 
+// Of the sphere on which degrees become metres.
+inline constexpr double kCfEarthRadius_m = 6.371e6;
+
 struct CfMetadata {
   std::string path;
   std::array<CfAxis, 3> axes;     // x, y, z

@@ -253,6 +253,7 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<StormFile> fi
   if (const auto start = RunStart(first); start.has_value()) {
     info.run_start = FormatValidTime(*start);
   }
+  info.projection = first.projection;
   storm.files = std::move(files);
   return storm;
 }

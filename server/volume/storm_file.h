@@ -50,6 +50,7 @@ struct StormFile {
   std::string run;                           // files of different runs differ in it
   std::optional<double> latitude_deg;        // of the middle
   std::optional<double> longitude_deg;
+  std::string projection;  // of the grid, as PROJ writes it; empty if it has none
   std::shared_ptr<const RecordReader> reader;
   // Another one if another file took its place; the same while it only grows.
   std::uint64_t version = 0;

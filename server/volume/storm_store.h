@@ -45,6 +45,8 @@ struct StormInfo {
   std::optional<double> latitude_deg;        // of the middle; nothing for an idealised run
   std::optional<double> longitude_deg;
   std::optional<std::string> run_start;  // as valid times; nothing if the files do not tell
+  // Of the grid, whose middle is there, as PROJ writes it; empty if it has none.
+  std::string projection;
 };
 
 // A description never changes; a storm that grows gets another.

@@ -64,6 +64,7 @@ class WrfFormat final : public StormFormat {
     file.run = metadata.simulation_start;
     file.latitude_deg = metadata.latitude_deg;
     file.longitude_deg = metadata.longitude_deg;
+    file.projection = metadata.projection;
     file.reader = std::make_shared<WrfRecordReader>(std::move(metadata));
     return file;
   }

@@ -10,6 +10,7 @@
 #include "absl/strings/escaping.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/strip.h"
 #include "base/status.h"
@@ -307,6 +308,30 @@ absl::StatusOr<double> Middle(const NetcdfFile& file, const std::string& variabl
   return sum_deg / static_cast<double>(values.size());
 }
 
+// The projection of the grid as PROJ writes it, on WRF's sphere; empty for one that is missing or
+// is none in metres (a grid of degrees).
+std::string ProjectionOf(const NetcdfFile& file) {
+  const auto number = [&](const char* name) { return file.NumberAttribute("", name); };
+  const std::optional<double> first_deg = number("TRUELAT1");
+  const std::optional<double> middle_deg = number("STAND_LON");
+  if (!first_deg.has_value() || !middle_deg.has_value()) return "";
+  constexpr char kSphere[] = " +x_0=0 +y_0=0 +R=6370000 +units=m +no_defs";
+  switch (static_cast<int>(number("MAP_PROJ").value_or(0.0))) {
+    case 1:
+      return absl::StrFormat("+proj=lcc +lat_1=%.10g +lat_2=%.10g +lat_0=%.10g +lon_0=%.10g%s",
+                             *first_deg, number("TRUELAT2").value_or(*first_deg),
+                             number("MOAD_CEN_LAT").value_or(*first_deg), *middle_deg, kSphere);
+    case 2:
+      return absl::StrFormat("+proj=stere +lat_0=%d +lat_ts=%.10g +lon_0=%.10g%s",
+                             *first_deg < 0.0 ? -90 : 90, *first_deg, *middle_deg, kSphere);
+    case 3:
+      return absl::StrFormat("+proj=merc +lat_ts=%.10g +lon_0=%.10g%s", *first_deg, *middle_deg,
+                             kSphere);
+    default:
+      return "";
+  }
+}
+
 absl::Status ReadPlace(const NetcdfFile& file, WrfMetadata& metadata) {
   metadata.idealised = file.NumberAttribute("", "MAP_PROJ").value_or(1.0) == 0.0;
   if (metadata.idealised) return absl::OkStatus();
@@ -318,6 +343,7 @@ absl::Status ReadPlace(const NetcdfFile& file, WrfMetadata& metadata) {
   if (metadata.idealised) return absl::OkStatus();
   metadata.latitude_deg = latitude_deg;
   metadata.longitude_deg = std::remainder(longitude_deg, 360.0);
+  metadata.projection = ProjectionOf(file);
   return absl::OkStatus();
 }
 

@@ -59,6 +59,7 @@ struct WrfMetadata {
   std::string simulation_start;        // as in the file; differs between runs
   std::optional<double> latitude_deg;  // of the middle
   std::optional<double> longitude_deg;
+  std::string projection;  // as PROJ writes it; empty if it has none
 };
 
 // WRF's name of a hydrometeor's mixing ratio, e.g. "QCLOUD".

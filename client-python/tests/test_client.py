@@ -1,0 +1,286 @@
+"""The client against the real server: $THUNDERHEAD_BINARY serves the repository's sample, in software."""
+
+import io
+import json
+import os
+import pathlib
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import grpc
+import numpy
+from PIL import Image
+
+from thunderhead import Client, ThunderheadError, scene_of
+from thunderhead.client import product_path
+from thunderhead.scenes import limits_of
+from thunderhead.v1 import scene_pb2
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+PROGRAM = os.environ["THUNDERHEAD_BINARY"]
+SIZE = (160, 90)
+FAST = {"rendering": {"preset": "PRESET_FAST"}}
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+class Server:
+    """The program, until `stop`."""
+
+    def __init__(self, *flags: str) -> None:
+        self.port = free_port()
+        self.folder = tempfile.mkdtemp(prefix="thunderhead-python-")
+        self.log = open(f"{self.folder}/log", "w+b")
+        self.process = subprocess.Popen(
+            [PROGRAM, "serve", "--grpc", f"127.0.0.1:{self.port}", "--http", f"127.0.0.1:{free_port()}", "--device", "software",
+             *flags], stdout=self.log, stderr=self.log, env={**os.environ, "STATE_DIRECTORY": self.folder})
+        channel = grpc.insecure_channel(f"127.0.0.1:{self.port}") if "--tls-cert" not in flags else None
+        end = time.monotonic() + 60
+        while time.monotonic() < end:
+            self.log.seek(0)
+            if b"http" in self.log.read() and self._answers(channel):
+                return
+            assert self.process.poll() is None, self.output()
+            time.sleep(0.1)
+        raise AssertionError("the server did not start:\n" + self.output())
+
+    def _answers(self, channel) -> bool:
+        if channel is None:
+            return True
+        try:
+            grpc.channel_ready_future(channel).result(1)
+            return True
+        except grpc.FutureTimeoutError:
+            return False
+
+    def output(self) -> str:
+        self.log.seek(0)
+        return self.log.read().decode(errors="replace")
+
+    @property
+    def address(self) -> str:
+        return f"127.0.0.1:{self.port}"
+
+    def stop(self) -> None:
+        self.process.terminate()
+        try:
+            self.process.wait(60)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+        self.log.close()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+class ClientTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.server = Server("--data", str(ROOT / "samples/supercell.nc"))
+        cls.addClassCleanup(cls.server.stop)
+
+    def setUp(self) -> None:
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="thunderhead-python-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.client = Client(self.server.address)
+        self.addCleanup(self.client.close)
+
+    def test_storms(self) -> None:
+        (storm,) = self.client.storms()
+        self.assertEqual(storm.id, "supercell")
+        self.assertRegex(storm.valid_times[0], r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$")
+        self.assertEqual(self.client.describe("supercell", 1).time_index, 1)
+        self.assertEqual(self.client.server().device, "software")
+
+    def test_a_picture_for_pillow_and_for_numpy(self) -> None:
+        image = self.client.render("supercell", FAST, SIZE)
+        self.assertEqual((image.mode, image.size), ("RGB", SIZE))
+        array = self.client.render_array("supercell", FAST, SIZE)
+        self.assertEqual((array.dtype, array.shape), (numpy.uint8, (90, 160, 3)))
+        numpy.testing.assert_array_equal(numpy.asarray(image), array)
+        self.assertGreater(int(array.max()) - int(array.min()), 50, "a picture of one colour")
+        # Another scene is another picture.
+        evening = self.client.render_array("supercell", {**FAST, "sun": {"elevationDeg": 3}}, SIZE)
+        self.assertGreater(float(numpy.abs(evening.astype(float) - array).mean()), 2.0)
+
+    def test_what_is_known_of_a_picture(self) -> None:
+        picture = self.client.picture("supercell", FAST, SIZE, time_index=1)
+        self.assertEqual(picture.scene.time_index, 1)
+        self.assertGreater(picture.estimated_error or 0.0, 0.0)
+        self.assertGreater(picture.milliseconds["view"], 0.0)
+        self.assertEqual(picture._repr_png_(), picture.data)
+        saved = picture.save(self.folder / "new/storm.png")
+        self.assertEqual([file.name for file in saved.parent.iterdir()], ["storm.png"])
+        self.assertEqual(scene_of(saved).time_index, 1)
+        again = self.client.picture("supercell", saved)
+        self.assertEqual(numpy.asarray(again).tolist(), picture.array.tolist())
+        jpeg = self.client.picture("supercell", FAST, SIZE, format="jpeg")
+        self.assertEqual(jpeg._repr_jpeg_(), jpeg.data)
+        self.assertEqual(Image.open(io.BytesIO(jpeg.data)).format, "JPEG")
+
+    def test_scenes_of_all_kinds(self) -> None:
+        file = self.folder / "scene.json"
+        file.write_text(json.dumps({"sun": {"elevationDeg": 7}}))
+        for scene in (file, str(file), {"sun": {"elevation_deg": 7}}, scene_pb2.Scene(sun={"elevation_deg": 7})):
+            message = scene_of(scene, "storm", 2, (10, 20))
+            self.assertEqual(message.sun.elevation_deg, 7)
+            self.assertEqual((message.storm_id, message.time_index, message.output.height_px), ("storm", 2, 20))
+        with self.assertRaisesRegex(ValueError, "is not a scene"):
+            scene_of({"son": {}})
+        plain = self.folder / "plain.png"
+        Image.new("RGB", (2, 2)).save(plain)
+        with self.assertRaisesRegex(ValueError, "without a scene in it"):
+            scene_of(plain)
+        self.assertEqual(limits_of("sun.elevation_deg").maximum, 90)
+        with self.assertRaisesRegex(KeyError, "no part 'azimut'"):
+            limits_of("sun.azimut")
+
+    def test_refusals_name_the_field(self) -> None:
+        with self.assertRaises(ThunderheadError) as refused:
+            self.client.render("supercell", {"sun": {"elevationDeg": 91}})
+        self.assertEqual(refused.exception.code, "INVALID_ARGUMENT")
+        self.assertEqual(refused.exception.reason, "VALUE_OUT_OF_RANGE")
+        self.assertEqual(refused.exception.field, "scene.sun.elevation_deg")
+        self.assertIn("91", str(refused.exception))
+        with self.assertRaises(ThunderheadError) as refused:
+            self.client.describe("none")
+        self.assertEqual((refused.exception.code, refused.exception.reason), ("NOT_FOUND", "STORM_NOT_FOUND"))
+        with Client("127.0.0.1:1", timeout_s=2) as nobody, self.assertRaises(ThunderheadError) as refused:
+            nobody.storms()
+        self.assertEqual(refused.exception.code, "UNAVAILABLE")
+
+    def test_a_sequence_has_every_time_in_order(self) -> None:
+        times = len(self.client.storms()[0].valid_times)
+        product = str(self.folder / "{storm}_{valid:%Y%m%d_%H%M}_{time:02d}.png")
+        pictures = list(self.client.sequence("supercell", FAST, SIZE, product=product))
+        self.assertEqual([picture.scene.time_index for picture in pictures], list(range(times)))
+        files = sorted(self.folder.iterdir())
+        self.assertEqual([file.read_bytes() for file in files], [picture.data for picture in pictures])
+        (last,) = self.client.sequence("supercell", FAST, SIZE, times=[times - 1])
+        self.assertEqual(last.scene.time_index, times - 1)
+        with self.assertRaisesRegex(ValueError, "one name"):
+            next(self.client.sequence("supercell", FAST, SIZE, product="{storm}.png"))
+        self.assertEqual(str(product_path("{valid:%j_%y}", "s", "2012-12-31T01:02:03Z", 0)), "366_12")
+        with self.assertRaisesRegex(ValueError, "its fields can be"):
+            product_path("{view}", "s", "2012-12-31T01:02:03Z", 0)
+
+    def test_a_session_shows_what_is_set(self) -> None:
+        with self.client.session("supercell", {**FAST, "camera": {"orbit": {}}}, SIZE) as session:
+            first = session.wait()
+            before = numpy.asarray(Image.open(io.BytesIO(session._repr_jpeg_())), dtype=float)
+            session.set("camera.orbit.azimuth_deg", session.get("camera.orbit.azimuth_deg") + 120)
+            frame = session.wait(refined=True)
+            self.assertGreater(frame.scene_revision, first.scene_revision)
+            after = numpy.asarray(Image.open(io.BytesIO(session.jpeg)), dtype=float)
+            self.assertGreater(numpy.abs(before - after).mean(), 2.0)
+            self.assertEqual(session.picture().scene.camera, session.scene.camera)
+            with self.assertRaises(KeyError):
+                session.set("camera.azimuth", 3)
+            with self.assertRaises(ThunderheadError) as refused:
+                session.set("sun.elevation_deg", 100)
+            self.assertEqual(refused.exception.code, "INVALID_ARGUMENT")
+        with self.assertRaises(ThunderheadError):
+            session.set("sun.elevation_deg", 10)
+
+    def test_sliders_move_the_scene(self) -> None:
+        try:
+            import ipywidgets
+        except ImportError:
+            self.skipTest("ipywidgets is not installed (Debian's python3-ipywidgets)")
+        with self.client.session("supercell", {**FAST, "camera": {"orbit": {}}}, SIZE) as session:
+            widget = session.widget(["sun.elevation_deg", "time_index"])
+            picture, elevation, time_index = widget.children
+            self.assertIsInstance(picture, ipywidgets.Image)
+            self.assertEqual((elevation.min, elevation.max), (-90, 90))
+            before = picture.value
+            elevation.value = 5.0
+            time_index.value = 0
+            end = time.monotonic() + 60
+            while picture.value == before and time.monotonic() < end:
+                time.sleep(0.05)
+            self.assertNotEqual(picture.value, before)
+            self.assertEqual((session.get("sun.elevation_deg"), session.get("time_index")), (5.0, 0))
+
+    def test_the_examples_run(self) -> None:
+        for example in sorted((HERE.parent / "examples").glob("*.py")):
+            done = subprocess.run([sys.executable, str(example), self.server.address, str(self.folder)], capture_output=True,
+                                  text=True, timeout=300)
+            self.assertEqual(done.returncode, 0, f"{example}: {done.stdout}{done.stderr}")
+        with Image.open(self.folder / "film.gif") as film:
+            self.assertEqual(film.n_frames, len(self.client.storms()[0].valid_times))
+        self.assertEqual(scene_of(self.folder / "notebook.png").camera.orbit.azimuth_deg, 270)
+        self.assertTrue((self.folder / "storm.png").exists())
+
+
+class WatchTest(unittest.TestCase):
+    def test_times_are_drawn_as_they_come(self) -> None:
+        series = sorted((ROOT.parent / "shared/data/supercell-series").glob("wrfout*"))
+        self.assertGreater(len(series), 3, "shared/data/supercell-series lies beside the repository")
+        with tempfile.TemporaryDirectory() as folder:
+            run = pathlib.Path(folder) / "run42"
+            run.mkdir()
+            # Two, as a single file in a folder is a storm of its own name.
+            for file in series[:2]:
+                shutil.copy(file, run)
+            server = Server("--data", folder, "--settle-seconds", "1", "--rescan-seconds", "1")
+            self.addCleanup(server.stop)
+
+            def copy_others() -> None:
+                time.sleep(1)
+                for file in series[2:4]:
+                    shutil.copy(file, run)
+
+            copying = threading.Thread(target=copy_others)
+            copying.start()
+            with Client(server.address) as client:
+                storm = client.storms()[0].id
+                pictures = list(client.watch(storm, FAST, SIZE, until=4, timeout_s=60, poll_s=0.2,
+                                             product=folder + "/out/{valid:%H%M}.png"))
+                copying.join()
+                self.assertEqual(len({picture.data for picture in pictures}), 4)
+                names = sorted(file.name for file in (pathlib.Path(folder) / "out").iterdir())
+                self.assertEqual(names, ["0010.png", "0020.png", "0030.png", "0040.png"])
+                with self.assertRaisesRegex(TimeoutError, "4 times are drawn"):
+                    list(client.watch(storm, FAST, SIZE, until=5, timeout_s=0.5, poll_s=0.1))
+
+
+class AccessTest(unittest.TestCase):
+    def test_token_and_tls(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            key, cert, tokens = (f"{folder}/{name}" for name in ("key.pem", "cert.pem", "tokens"))
+            subprocess.run(["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", key, "-out", cert, "-days", "2",
+                            "-subj", "/CN=localhost", "-addext", "subjectAltName=DNS:localhost"], check=True, capture_output=True)
+            digest = subprocess.run(["sha256sum"], input=b"a" * 64, capture_output=True, check=True).stdout.split()[0].decode()
+            pathlib.Path(tokens).write_text(f"suite pipeline {digest}\n")
+            for file in (key, tokens):
+                os.chmod(file, 0o600)
+            server = Server("--data", str(ROOT / "samples/supercell.nc"), "--auth", "tokens", tokens, "--tls-cert", cert,
+                            "--tls-key", key)
+            self.addCleanup(server.stop)
+            address = f"localhost:{server.port}"
+            with Client(address, token="a" * 64, tls_ca=cert) as client:
+                self.assertEqual(client.storms()[0].id, "supercell")
+                self.assertEqual(client.render("", FAST, SIZE).size, SIZE)
+                # A pipeline's token draws single pictures and opens no sessions.
+                with self.assertRaises(ThunderheadError) as refused:
+                    client.session()
+                self.assertEqual(refused.exception.reason, "ROLE_MAY_NOT")
+            with Client(address, token="wrong", tls_ca=cert) as client, self.assertRaises(ThunderheadError) as refused:
+                client.storms()
+            self.assertEqual(refused.exception.code, "UNAUTHENTICATED")
+            with Client(address, token="a" * 64, timeout_s=5) as client, self.assertRaises(ThunderheadError):
+                client.storms()
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,255 @@
+"""A client of a server: storms, pictures, pictures of every time, and of times as they come."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import dataclasses
+import os
+import pathlib
+import time
+from typing import Any, Dict, Iterable, Iterator, List, Optional, Tuple, Union
+
+import grpc
+import numpy
+import numpy.typing
+from PIL import Image
+
+from .errors import ThunderheadError, translated
+from .picture import Picture
+from .scenes import SceneLike, Size, scene_of
+from .session import Session
+from .v1 import scene_pb2, storm_pb2, thunderhead_pb2, thunderhead_pb2_grpc
+
+_FORMATS = {"png": thunderhead_pb2.IMAGE_FORMAT_PNG, "jpeg": thunderhead_pb2.IMAGE_FORMAT_JPEG}
+# Of an 8192 x 8192 picture, with room to spare.
+_MAX_ANSWER_BYTES = 256 << 20
+
+
+@dataclasses.dataclass(frozen=True)
+class Storm:
+    """A storm of the server. `valid_times` are ISO 8601 in UTC, in order; idealised runs begin in year 1."""
+
+    id: str
+    title: str
+    valid_times: Tuple[str, ...]
+
+
+class Client:
+    """Calls one server.
+
+    address: "host:port" of its gRPC port (--grpc of `thunderhead serve`).
+    token: for a server with --auth; by default $THUNDERHEAD_TOKEN.
+    tls_ca: PEM file, or its bytes, of who vouches for the server's certificate; True for the system's own. Without it
+        the connection is not encrypted, and a token is sent in the clear.
+    timeout_s: how long a call may take; pictures have `render_timeout_s`.
+
+    Every call raises ThunderheadError. A client may be used by several threads at once.
+    """
+
+    def __init__(
+        self,
+        address: str,
+        *,
+        token: Optional[str] = None,
+        tls_ca: Union[str, "os.PathLike[str]", bytes, bool, None] = None,
+        timeout_s: float = 30.0,
+        render_timeout_s: float = 900.0,
+    ) -> None:
+        token = os.environ.get("THUNDERHEAD_TOKEN", "") if token is None else token
+        self._metadata: Tuple[Tuple[str, str], ...] = (("authorization", f"Bearer {token.strip()}"),) if token else ()
+        self._timeout_s = timeout_s
+        self._render_timeout_s = render_timeout_s
+        options = [("grpc.max_receive_message_length", _MAX_ANSWER_BYTES)]
+        if tls_ca:
+            roots = _roots(tls_ca)
+            self._channel = grpc.secure_channel(address, grpc.ssl_channel_credentials(roots), options)
+        else:
+            self._channel = grpc.insecure_channel(address, options)
+        # Generated, and without types.
+        make_stub: Any = thunderhead_pb2_grpc.ThunderheadServiceStub
+        self._stub: Any = make_stub(self._channel)
+
+    def __enter__(self) -> "Client":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Ends the connection, and with it the streams of its sessions."""
+        self._channel.close()
+
+    def _call(self, name: str, request: Any, timeout_s: Optional[float] = None) -> Any:
+        with translated():
+            return getattr(self._stub, name)(request, timeout=timeout_s or self._timeout_s, metadata=self._metadata)
+
+    def storms(self) -> List[Storm]:
+        """The server's storms, in its order."""
+        listed = self._call("ListStorms", thunderhead_pb2.ListStormsRequest())
+        storms = []
+        for summary in listed.storms:
+            times = self.describe(summary.id).times
+            storms.append(Storm(summary.id, summary.title, tuple(each.valid_time for each in times)))
+        return storms
+
+    def describe(self, storm: str, time_index: int = 0) -> storm_pb2.StormDescription:
+        """All that is known of a storm, and its fields at one time. NOT_FOUND for an unknown id."""
+        request = thunderhead_pb2.DescribeStormRequest(storm_id=storm, time_index=time_index)
+        description: storm_pb2.StormDescription = self._call("DescribeStorm", request).storm
+        return description
+
+    def server(self) -> thunderhead_pb2.GetServerInfoResponse:
+        """The server's version, device, techniques and presets."""
+        info: thunderhead_pb2.GetServerInfoResponse = self._call("GetServerInfo", thunderhead_pb2.GetServerInfoRequest())
+        return info
+
+    def picture(
+        self,
+        storm: str = "",
+        scene: SceneLike = None,
+        size: Optional[Size] = None,
+        *,
+        time_index: Optional[int] = None,
+        format: str = "png",
+    ) -> Picture:
+        """One picture at full quality, with what is known of it.
+
+        storm: its id; by default the scene's, else the server's first. size: width and height in pixels, by default the
+        scene's (1280 x 720). time_index: from 0, by default the last. format: "png" or "jpeg".
+        """
+        if format not in _FORMATS:
+            raise ValueError(f"format is '{format}'; it must be one of {', '.join(_FORMATS)}")
+        request = thunderhead_pb2.RenderImageRequest(scene=scene_of(scene, storm, time_index, size), format=_FORMATS[format])
+        return Picture(self._call("RenderImage", request, self._render_timeout_s))
+
+    def render(
+        self, storm: str = "", scene: SceneLike = None, size: Optional[Size] = None, *, time_index: Optional[int] = None
+    ) -> Image.Image:
+        """One picture for Pillow, as `picture` draws it: mode RGB, 8 bits, sRGB."""
+        return self.picture(storm, scene, size, time_index=time_index).image
+
+    def render_array(
+        self, storm: str = "", scene: SceneLike = None, size: Optional[Size] = None, *, time_index: Optional[int] = None
+    ) -> "numpy.typing.NDArray[numpy.uint8]":
+        """One picture for numpy, as `picture` draws it: uint8, height x width x 3, sRGB, rows from top to bottom."""
+        return self.picture(storm, scene, size, time_index=time_index).array
+
+    def sequence(
+        self,
+        storm: str,
+        scene: SceneLike = None,
+        size: Optional[Size] = None,
+        *,
+        times: Optional[Iterable[int]] = None,
+        product: Optional[str] = None,
+        jobs: int = 2,
+    ) -> Iterator[Picture]:
+        """The pictures of a storm's times, in their order; all times by default.
+
+        product: where to save each, such as "out/{storm}_{valid:%Y%m%d_%H%M}_{time:02d}.png", where a file that is there
+        already is drawn again. jobs: how many are asked for at a time. Unattended runs are better off with the program's own
+        `thunderhead sequence`, which keeps a manifest.
+        """
+        message = scene_of(scene, storm, None, size)
+        valid = [each.valid_time for each in self.describe(storm).times]
+        chosen = list(range(len(valid)) if times is None else times)
+        names = [None if product is None else product_path(product, storm, valid[index], index) for index in chosen]
+        if product is not None and len(set(names)) < len(names):
+            raise ValueError(f"product is '{product}', so that two pictures would have one name; add {{valid:...}} or {{time}}")
+
+        def draw(index: int) -> Picture:
+            return self.picture(scene=message, time_index=index)
+
+        with concurrent.futures.ThreadPoolExecutor(max_workers=jobs) as pool:
+            waiting = [pool.submit(draw, index) for index in chosen]
+            try:
+                for name, each in zip(names, waiting):
+                    picture = each.result()
+                    if name is not None:
+                        picture.save(name)
+                    yield picture
+            finally:
+                for each in waiting:
+                    each.cancel()
+
+    def watch(
+        self,
+        storm: str,
+        scene: SceneLike = None,
+        size: Optional[Size] = None,
+        *,
+        product: Optional[str] = None,
+        until: Optional[int] = None,
+        timeout_s: Optional[float] = None,
+        poll_s: float = 2.0,
+    ) -> Iterator[Picture]:
+        """The pictures of a storm's times: those that are there, then each as the server comes to know it.
+
+        until: ends when so many times are drawn. timeout_s: raises TimeoutError when nothing new has come for so long. A
+        storm that is not there yet is waited for.
+        """
+        message = scene_of(scene, storm, None, size)
+        drawn: Dict[str, int] = {}
+        newest = time.monotonic()
+        while until is None or len(drawn) < until:
+            for each in self._times(storm):
+                if each.valid_time in drawn or (until is not None and len(drawn) >= until):
+                    continue
+                picture = self.picture(scene=message, time_index=each.index)
+                if product is not None:
+                    picture.save(product_path(product, storm, each.valid_time, each.index))
+                drawn[each.valid_time] = each.index
+                newest = time.monotonic()
+                yield picture
+            if until is not None and len(drawn) >= until:
+                return
+            if timeout_s is not None and time.monotonic() - newest > timeout_s:
+                raise TimeoutError(f"{storm}: nothing new came for {timeout_s:g} s; {len(drawn)} times are drawn")
+            time.sleep(poll_s)
+
+    def _times(self, storm: str) -> List[storm_pb2.StormTime]:
+        try:
+            return [each for each in self.describe(storm).times if not each.deleted]
+        except ThunderheadError as error:
+            if error.code != "NOT_FOUND":
+                raise
+            return []
+
+    def session(self, storm: str = "", scene: SceneLike = None, size: Optional[Size] = None) -> Session:
+        """Opens a session: a scene that stays, is changed bit by bit, and shows its pictures; see Session."""
+        message: scene_pb2.Scene = scene_of(scene, storm, None, size)
+        return Session(self._stub, self._metadata, message, self._timeout_s)
+
+
+def _roots(tls_ca: Union[str, "os.PathLike[str]", bytes, bool]) -> Optional[bytes]:
+    if isinstance(tls_ca, bytes):
+        return tls_ca
+    return None if isinstance(tls_ca, bool) else pathlib.Path(tls_ca).read_bytes()
+
+
+class _Valid:
+    """A valid time for str.format, by strftime's %Y %y %m %d %j %H %M %S; Python's own dates do not pad year 1."""
+
+    def __init__(self, text: str) -> None:
+        year, month, day = (int(part) for part in text[:10].split("-"))
+        hour, minute, second = (int(part) for part in text[11:19].split(":"))
+        days = (0, 31, 59, 90, 120, 151, 181, 212, 243, 273, 304, 334)
+        leap = month > 2 and year % 4 == 0 and (year % 100 != 0 or year % 400 == 0)
+        self._parts = {
+            "%Y": f"{year:04d}", "%y": f"{year % 100:02d}", "%m": f"{month:02d}", "%d": f"{day:02d}",
+            "%j": f"{days[month - 1] + day + leap:03d}", "%H": f"{hour:02d}", "%M": f"{minute:02d}", "%S": f"{second:02d}",
+        }  # fmt: skip
+
+    def __format__(self, format: str) -> str:
+        result = format or "%Y%m%d_%H%M%S"
+        for letter, value in self._parts.items():
+            result = result.replace(letter, value)
+        return result
+
+
+def product_path(product: str, storm: str, valid_time: str, time_index: int) -> pathlib.Path:
+    """The path of a picture by a template with {storm}, {valid:%Y%m%d_%H%M} and {time:02d}. ValueError for others."""
+    try:
+        return pathlib.Path(product.format(storm=storm, valid=_Valid(valid_time), time=time_index))
+    except (KeyError, IndexError) as error:
+        raise ValueError(f"product is '{product}'; its fields can be {{storm}}, {{valid:%Y...}} and {{time:02d}}") from error

@@ -1,0 +1,234 @@
+"""A session: a scene at the server that is changed bit by bit and shows its pictures, for notebooks above all."""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import Any, Iterator, Optional, Sequence, Tuple
+
+import grpc
+
+from .errors import ThunderheadError, error_of, translated
+from .picture import Picture
+from .scenes import field_of, limits_of
+from .v1 import frame_pb2, scene_pb2, thunderhead_pb2
+
+# Moved by most people first.
+_SLIDERS = ("camera.orbit.azimuth_deg", "camera.orbit.elevation_deg", "sun.azimuth_deg", "sun.elevation_deg")
+
+
+class Session:
+    """Made by Client.session. In a notebook it shows its newest picture, and `widget()` has sliders.
+
+        session = client.session("supercell", size=(960, 540))
+        session.set("camera.orbit.azimuth_deg", 250)     # returns when the picture shows it
+        session                                          # shows it
+        session.close()
+
+    A frame comes at once, coarse, and again ever finer while the scene rests. The session ends with `close`, with the
+    client, or some time after nobody has asked for it (the server says when).
+    """
+
+    def __init__(self, stub: Any, metadata: Tuple[Tuple[str, str], ...], scene: scene_pb2.Scene, timeout_s: float) -> None:
+        self._stub = stub
+        self._metadata = metadata
+        self._timeout_s = timeout_s
+        with translated():
+            created = stub.CreateSession(
+                thunderhead_pb2.CreateSessionRequest(scene=scene), timeout=timeout_s, metadata=metadata
+            )
+        #: The presenter's key: whoever has it may steer.
+        self.id: str = created.session_id
+        #: The viewers' key, for links that only watch.
+        self.viewer_key: str = created.viewer_key
+        self._changed = threading.Condition()
+        self._scene: scene_pb2.Scene = created.scene
+        self._revision: int = created.scene_revision
+        self._frame: Optional[frame_pb2.Frame] = None
+        self._problem: Optional[ThunderheadError] = None
+        self._ended = False
+        self._frames = stub.WatchFrames(thunderhead_pb2.WatchFramesRequest(session_id=self.id), metadata=metadata)
+        self._reader = threading.Thread(target=self._read, name="thunderhead frames", daemon=True)
+        self._reader.start()
+
+    def _read(self) -> None:
+        try:
+            for message in self._frames:
+                self._take(message)
+        except grpc.RpcError as error:
+            with self._changed:
+                if not self._ended:
+                    self._problem = error_of(error)
+        with self._changed:
+            self._ended = True
+            self._changed.notify_all()
+
+    def _take(self, message: thunderhead_pb2.WatchFramesResponse) -> None:
+        with self._changed:
+            if message.HasField("scene") and message.scene_revision >= self._revision:
+                self._scene, self._revision = message.scene, message.scene_revision
+            if message.HasField("frame"):
+                self._frame, self._problem = message.frame, None
+            elif message.HasField("problem"):
+                self._problem = ThunderheadError(message.problem.message, "FAILED_PRECONDITION")
+            self._changed.notify_all()
+        if message.HasField("frame"):
+            self._stub.AcknowledgeFrame(
+                thunderhead_pb2.AcknowledgeFrameRequest(
+                    session_id=self.id, viewer_id=message.viewer_id, sequence=message.frame.sequence
+                ),
+                timeout=self._timeout_s,
+                metadata=self._metadata,
+            )
+
+    @property
+    def scene(self) -> scene_pb2.Scene:
+        """A copy of the newest scene, every default filled in."""
+        with self._changed:
+            copy = scene_pb2.Scene()
+            copy.CopyFrom(self._scene)
+            return copy
+
+    def get(self, path: str) -> Any:
+        """The scene's value at a path such as "sun.elevation_deg"."""
+        message, field = field_of(self.scene, path)
+        return getattr(message, field.name)
+
+    def set(self, path: str, value: Any, *, wait: bool = True) -> "Session":
+        """Changes one value of the scene, such as "sun.elevation_deg", and waits until a frame shows it unless told not to."""
+        return self.set_all({path: value}, wait=wait)
+
+    def set_all(self, values: "dict[str, Any]", *, wait: bool = True) -> "Session":
+        """Changes several values at once, by their paths."""
+        scene = self.scene
+        for path, value in values.items():
+            message, field = field_of(scene, path)
+            setattr(message, field.name, value)
+        return self.update(scene, wait=wait)
+
+    def update(self, scene: scene_pb2.Scene, *, wait: bool = True) -> "Session":
+        """Replaces the whole scene."""
+        request = thunderhead_pb2.UpdateSceneRequest(session_id=self.id, scene=scene)
+        with translated():
+            revision = self._stub.UpdateScene(request, timeout=self._timeout_s, metadata=self._metadata).scene_revision
+        with self._changed:
+            if revision >= self._revision:
+                self._scene, self._revision = scene, revision
+        if wait:
+            self.wait()
+        return self
+
+    def wait(self, *, refined: bool = False, timeout_s: float = 120.0) -> frame_pb2.Frame:
+        """Waits for a frame of the newest scene, with `refined` for one at full quality.
+
+        Raises TimeoutError, or ThunderheadError if the scene cannot be drawn or the session has ended.
+        """
+        end = time.monotonic() + timeout_s
+        with self._changed:
+            wanted = self._revision
+            while True:
+                frame = self._frame
+                if frame is not None and frame.scene_revision >= wanted and (frame.refined or not refined):
+                    return frame
+                if self._problem is not None:
+                    raise self._problem
+                if self._ended:
+                    raise ThunderheadError("the session has ended; open another", "NOT_FOUND")
+                if not self._changed.wait(max(0.0, end - time.monotonic())):
+                    raise TimeoutError(f"no frame of the newest scene came within {timeout_s:g} s")
+
+    def frames(self) -> Iterator[frame_pb2.Frame]:
+        """Frames as they come, the newest first shown, until the session ends."""
+        shown = 0
+        while True:
+            with self._changed:
+                while not self._ended and (self._frame is None or self._frame.sequence == shown):
+                    self._changed.wait()
+                if self._frame is None or self._frame.sequence == shown:
+                    return
+                frame = self._frame
+            shown = frame.sequence
+            yield frame
+
+    @property
+    def jpeg(self) -> bytes:
+        """The newest picture's JPEG file."""
+        jpeg: bytes = self.wait().jpeg
+        return jpeg
+
+    def picture(self) -> Picture:
+        """The scene's picture at full quality, as Client.picture draws it."""
+        request = thunderhead_pb2.RenderImageRequest(scene=self.scene)
+        with translated():
+            return Picture(self._stub.RenderImage(request, timeout=900.0, metadata=self._metadata))
+
+    def _repr_jpeg_(self) -> bytes:
+        return self.jpeg
+
+    def widget(self, paths: Sequence[str] = _SLIDERS) -> Any:
+        """The picture with a slider for each number of the scene that is named; its range is that of the server.
+
+        Needs ipywidgets; without it, and outside notebooks, `set` does the same.
+        """
+        try:
+            import ipywidgets
+        except ImportError as error:
+            raise RuntimeError("sliders need ipywidgets: pip install 'thunderhead[notebook]'; or use Session.set") from error
+        image = ipywidgets.Image(value=self.jpeg, format="jpeg")
+        sliders = [self._slider(ipywidgets, path) for path in paths]
+
+        def show() -> None:
+            for frame in self.frames():
+                image.value = frame.jpeg
+
+        threading.Thread(target=show, name="thunderhead widget", daemon=True).start()
+        return ipywidgets.VBox([image, *sliders])
+
+    def _slider(self, ipywidgets: Any, path: str) -> Any:
+        limits = limits_of(path)
+        value = self.get(path)
+        # Whole numbers stay whole: time, seeds, slices.
+        kind = ipywidgets.IntSlider if isinstance(value, int) else ipywidgets.FloatSlider
+        slider = kind(
+            value=value,
+            min=limits.minimum,
+            max=limits.maximum,
+            step=1 if isinstance(value, int) else (limits.maximum - limits.minimum) / 1000.0,
+            description=path.rpartition(".")[0].rpartition(".")[2] + " " + path.rpartition(".")[2],
+        )
+
+        def moved(change: Any) -> None:
+            self.set(path, change["new"], wait=False)
+
+        slider.observe(moved, names="value")
+        return slider
+
+    def display(self) -> None:
+        """Shows the session in a notebook: with sliders if ipywidgets is there, else its newest picture."""
+        from IPython.display import display
+
+        try:
+            display(self.widget())
+        except RuntimeError:
+            display(self)
+
+    def close(self) -> None:
+        """Ends the session. It does not matter if it has ended already."""
+        with self._changed:
+            self._ended = True
+        try:
+            self._stub.CloseSession(
+                thunderhead_pb2.CloseSessionRequest(session_id=self.id), timeout=self._timeout_s, metadata=self._metadata
+            )
+        except grpc.RpcError as error:
+            if error.code() is not grpc.StatusCode.NOT_FOUND:
+                raise error_of(error) from error
+        finally:
+            self._frames.cancel()
+            self._reader.join(5.0)
+
+    def __enter__(self) -> "Session":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()

@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# What every task begins with: tells ecFlow that it runs, and of every way in which it ends.
+set -euo pipefail
+export ECF_PORT=%ECF_PORT% ECF_HOST=%ECF_HOST% ECF_NAME=%ECF_NAME% ECF_PASS=%ECF_PASS% ECF_TRYNO=%ECF_TRYNO%
+export ECF_RID=$$ ECF_TIMEOUT=300
+export PATH="$PATH:/usr/local/bin"
+
+program=
+# Called once: by a command that failed, by a signal, or by an exit that is not the tail's.
+aborted() {
+  local reason=$1
+  trap - ERR EXIT TERM INT HUP
+  if [ -n "$program" ]; then
+    kill -TERM "$program" 2>/dev/null || true
+    wait "$program" || true
+  fi
+  ecflow_client --abort="$reason"
+  exit 1
+}
+trap 'aborted "exit code $?"' ERR EXIT
+trap 'aborted "stopped by a signal"' TERM INT HUP
+
+ecflow_client --init=$$

@@ -1,0 +1,2 @@
+ecflow_client --complete
+trap - ERR EXIT TERM INT HUP

@@ -1,0 +1,106 @@
+"""deploy/ecflow with the real server: the suite runs to its end, and a failing task aborts and runs again."""
+
+import os
+import pathlib
+import re
+import time
+import unittest
+
+from engine_test import PROGRAM, ROOT, EngineTest, free_port, need, run
+
+SUITE = ROOT / "deploy/ecflow"
+
+
+class Ecflow(EngineTest):
+    def setUp(self) -> None:
+        super().setUp()
+        self.port = free_port()
+        self.environment = {**os.environ, "ECF_PORT": str(self.port), "ECF_HOST": "localhost"}
+        # Its checkpoint and log go to the folder it is started in. The interval is that of its clock and triggers.
+        self.start("ecflow_server", "ecflow_server", f"--port={self.port}", f"--ecfinterval=1", cwd=self.folder,
+                   env={**self.environment, "ECF_HOME": str(self.folder), "ECF_LISTS": str(self.folder / "none")})
+        self.wait_for("ecFlow's server", lambda: self.answers("--ping"))
+        self.client("--restart")
+
+    def answers(self, *arguments: str) -> bool:
+        try:
+            self.client(*arguments)
+        except AssertionError:
+            return False
+        return True
+
+    def client(self, *arguments: object) -> str:
+        return run("ecflow_client", *arguments, env=self.environment)
+
+    def begin(self, **variables: str) -> None:
+        """Loads the suite as it is but for its variables."""
+        text = (SUITE / "thunderhead.def").read_text()
+        settings = {
+            "ECF_HOME": str(self.folder), "ECF_FILES": str(SUITE / "files"), "ECF_INCLUDE": str(SUITE / "include"),
+            "THUNDERHEAD": PROGRAM, "STORM": str(self.storm), "PRODUCTS": str(self.products),
+            "FLAGS": "--size 160x90 --device software --quality fast --jobs 1", **variables}
+        for name, value in settings.items():
+            text, changed = re.subn(rf"(edit {name} +)'.*?'", lambda line: f"{line[1]}'{value}'", text)
+            self.assertEqual(changed, 1, name)
+        definition = self.folder / "suite.def"
+        definition.write_text(text)
+        self.client(f"--load={definition}")
+        self.client("--begin=thunderhead")
+
+    def node(self, path: str) -> str:
+        """The server's lines of a node, without its children's."""
+        return self.client("--get_state", path)
+
+    def state(self, path: str) -> str:
+        text = self.node(path)
+        found = re.search(rf"(?:suite|family|task) {pathlib.PurePath(path).name} #.*?state:(\w+)", text)
+        return found[1] if found else "unknown"
+
+    def test_the_suite_runs_to_its_end(self) -> None:
+        self.begin()
+        self.wait_for("the suite's end", lambda: self.state("/thunderhead") == "complete")
+        self.expect_each_product_once(self.times, others=1)
+        for share in range(4):
+            task = self.node(f"/thunderhead/shares/{share}/draw")
+            self.assertRegex(task, r"meter products 0 100 \d+ # *100|meter products 0 100 100 *# *100", task)
+            self.assertRegex(task, r"event first #.*set|event first # *set", task)
+            self.assertRegex(task, r'label product "" # ".*\.png"', task)
+
+    def test_a_failing_task_aborts_and_runs_again(self) -> None:
+        self.storm.rename(self.folder / "later")
+        self.begin(STORM=str(self.storm))
+        self.wait_for("tasks that gave up", lambda: self.state("/thunderhead/shares/0/draw") == "aborted"
+                      and "try:3" in self.node("/thunderhead/shares/0/draw"))
+        self.assertIn("thunderhead ended with 75", self.node("/thunderhead/shares/0/draw"))
+        self.assertEqual(self.state("/thunderhead/movie"), "queued")
+        (self.folder / "later").rename(self.storm)
+        self.wait_for("all to have given up", lambda: all(
+            self.state(f"/thunderhead/shares/{share}/draw") == "aborted"
+            and "try:3" in self.node(f"/thunderhead/shares/{share}/draw") for share in range(4)))
+        for share in range(4):
+            self.client("--force=queued", f"/thunderhead/shares/{share}/draw")
+        self.wait_for("the suite's end", lambda: self.state("/thunderhead") == "complete")
+        self.expect_each_product_once(self.times, others=1)
+
+    def test_a_bad_request_is_not_tried_again(self) -> None:
+        self.begin(FLAGS="--size none")
+        draw = "/thunderhead/shares/0/draw"
+        self.wait_for("an aborted task", lambda: self.state(draw) == "aborted")
+        self.wait_for("the reason", lambda: "thunderhead ended with 64" in self.node(draw), 20)
+        # Long enough for another try to have failed as well.
+        time.sleep(10)
+        self.assertIn("try:1 ", self.node(draw))
+
+    def test_a_task_that_is_killed_aborts(self) -> None:
+        self.begin(FLAGS="--size 2560x1440 --device software --quality true --jobs 1")
+        draw = "/thunderhead/shares/0/draw"
+        self.wait_for("a running task", lambda: self.state(draw) == "active")
+        self.client("--alter=change", "variable", "ECF_TRIES", "1", "/thunderhead")
+        self.client("--kill=/thunderhead/shares/0/draw")
+        self.wait_for("an aborted task", lambda: self.state(draw) == "aborted", 60)
+        self.assertIn("stopped by a signal", self.node(draw))
+
+
+if __name__ == "__main__":
+    need({"ecflow_server": "ecflow-server", "ecflow_client": "ecflow-client"})
+    unittest.main()

@@ -1,0 +1,125 @@
+"""What the tests of engines share: the program, the storms, daemons in a folder of their own, products checked as their owner would."""
+
+import hashlib
+import json
+import os
+import pathlib
+import random
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM = os.environ.get("THUNDERHEAD_BINARY", str(ROOT / "build/release/bin/thunderhead"))
+# Twelve files of one run, beside the repository.
+SERIES = ROOT.parent / "shared/data/supercell-series"
+
+# ctest counts a test that ends with this as skipped.
+SKIPPED = 77
+
+
+def need(programs: dict[str, str]) -> None:
+    """Ends the test as skipped if a program is missing; `programs` are names with their Debian packages."""
+    path = os.pathsep.join([os.environ.get("PATH", ""), "/usr/sbin", "/sbin"])
+    missing = [package for name, package in programs.items() if shutil.which(name, path=path) is None]
+    if missing:
+        print(f"SKIPPED: Debian's packages {', '.join(missing)} are not installed; ./dev install engines does that")
+        sys.exit(SKIPPED)
+    os.environ["PATH"] = path
+
+
+def free_port() -> int:
+    """Of the registered ports, as ecFlow takes no other."""
+    while True:
+        with socket.socket() as probe:
+            port = random.randrange(20000, 32000)
+            try:
+                probe.bind(("127.0.0.1", port))
+            except OSError:
+                continue
+            return port
+
+
+def run(*command: object, check: bool = True, **more: object) -> str:
+    """The command's standard output; its failure fails the test, with all it said."""
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True, timeout=300, **more)
+    if check and done.returncode != 0:
+        raise AssertionError(f"{command} ended with {done.returncode}:\n{done.stdout}\n{done.stderr}")
+    return done.stdout
+
+
+class EngineTest(unittest.TestCase):
+    """A folder, daemons that end with the test, and a run of twelve files."""
+
+    def setUp(self) -> None:
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="thunderhead-engine-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        self.storm = self.folder / "run42"
+        self.storm.mkdir()
+        self.assertTrue(SERIES.is_dir(), f"{SERIES} is missing: it lies in the folder shared beside the repository")
+        for file in sorted(SERIES.iterdir()):
+            (self.storm / file.name).symlink_to(file)
+        self.times = len(list(self.storm.iterdir()))
+        self.assertEqual(self.times, 12)
+        self.products = self.folder / "products"
+
+    def start(self, name: str, *command: object, **more: object) -> subprocess.Popen:
+        """Starts a daemon in the foreground, which is ended with the test; its output goes to NAME.log."""
+        with open(self.folder / f"{name}.log", "ab") as log:
+            process = subprocess.Popen([str(part) for part in command], stdout=log, stderr=log, **more)
+
+        def end() -> None:
+            process.terminate()
+            try:
+                process.wait(20)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+
+        self.addCleanup(end)
+        return process
+
+    def logs(self) -> str:
+        """The ends of all that daemons and jobs have said."""
+        texts = []
+        for file in sorted(self.folder.rglob("*")):
+            if file.suffix in {".log", ".out"} or ".job" in file.name and file.is_file():
+                text = file.read_text(errors="replace")
+                texts.append(f"--- {file}\n{text[-3000:]}")
+        return "\n".join(texts)
+
+    def wait_for(self, what: str, condition, seconds: float = 240.0):
+        """What `condition` gives once that is true; fails with all logs otherwise."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            result = condition()
+            if result:
+                return result
+            time.sleep(0.2)
+        self.fail(f"{what} did not come within {seconds:.0f} s\n{self.logs()}")
+
+    def entries(self) -> list[dict]:
+        """The lines of all manifests."""
+        lines = []
+        for manifest in sorted(self.products.glob("manifest*.jsonl")):
+            lines += [json.loads(line) for line in manifest.read_text().splitlines()]
+        return lines
+
+    def expect_each_product_once(self, products: int, others: int = 0) -> None:
+        """Every product is there, whole, recorded once, and nothing else is but `others` recorded files."""
+        entries = self.entries()
+        files = [entry["file"] for entry in entries]
+        self.assertEqual(len(files), len(set(files)), f"recorded twice: {sorted(files)}")
+        pictures = [file for file in files if file.endswith(".png")]
+        self.assertEqual(len(pictures), products, sorted(files))
+        self.assertEqual(len(files), products + others, sorted(files))
+        self.assertEqual(len({entry["input"]["file"] for entry in entries if entry["file"] in pictures}), self.times)
+        for entry in entries:
+            data = (self.products / entry["file"]).read_bytes()
+            self.assertEqual(hashlib.sha256(data).hexdigest(), entry["sha256"], entry["file"])
+        there = {file.name for file in self.products.iterdir() if not file.name.startswith("manifest")}
+        self.assertEqual(there, set(files), "files that no manifest has")

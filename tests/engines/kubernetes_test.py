@@ -1,0 +1,88 @@
+"""deploy/kubernetes against the API's schema, and its exit codes against the program's."""
+
+import copy
+import json
+import pathlib
+import subprocess
+import sys
+import unittest
+
+from engine_test import PROGRAM, ROOT, SKIPPED
+
+try:
+    import jsonschema
+    import yaml
+except ImportError as missing:
+    print(f"SKIPPED: {missing}; ./dev install engines installs python3-jsonschema and python3-yaml")
+    sys.exit(SKIPPED)
+
+FOLDER = ROOT / "deploy/kubernetes"
+SCHEMA = json.loads((pathlib.Path(__file__).parent / "kubernetes_schema.json").read_text())
+
+
+def objects(name: str) -> list[dict]:
+    return list(yaml.safe_load_all((FOLDER / name).read_text()))
+
+
+def errors(thing: dict) -> list[str]:
+    """What is wrong with an object, each with its place."""
+    schema = {**SCHEMA, "$ref": f"#/definitions/{thing['kind']}"}
+    found = jsonschema.Draft7Validator(schema).iter_errors(thing)
+    return [f"{'/'.join(str(part) for part in error.absolute_path)}: {error.message}" for error in found]
+
+
+class Kubernetes(unittest.TestCase):
+    def test_the_schema_is_one(self) -> None:
+        jsonschema.Draft7Validator.check_schema(SCHEMA)
+
+    def test_every_object_fits_it(self) -> None:
+        kinds = []
+        for file in sorted(FOLDER.glob("*.yaml")):
+            for thing in objects(file.name):
+                self.assertEqual(errors(thing), [], file.name)
+                kinds.append(thing["kind"])
+        self.assertEqual(sorted(kinds), ["Deployment", "Job", "Service"])
+
+    def test_mistakes_do_not_fit_it(self) -> None:
+        def mistaken(change) -> list[str]:
+            job = copy.deepcopy(objects("sequence.yaml")[0])
+            change(job["spec"])
+            return errors(job)
+
+        for change in (
+            lambda spec: spec.update(backofLimitPerIndex=3),
+            lambda spec: spec.pop("backoffLimitPerIndex"),
+            lambda spec: spec.update(completionMode="NonIndexed"),
+            lambda spec: spec["podFailurePolicy"]["rules"][0].update(action="FailIndexes"),
+            lambda spec: spec["podFailurePolicy"]["rules"][0]["onExitCodes"].update(values=["65"]),
+            lambda spec: spec["template"]["spec"].update(restartPolicy="OnFailure"),
+            lambda spec: spec["template"]["spec"]["containers"][0].update(arg=[]),
+        ):
+            self.assertNotEqual(mistaken(change), [])
+
+    def test_the_job_is_of_one_piece(self) -> None:
+        """What a schema cannot say: names that refer to others, and numbers that must agree."""
+        spec = objects("sequence.yaml")[0]["spec"]
+        container = spec["template"]["spec"]["containers"][0]
+        environment = {variable["name"]: variable["value"] for variable in container["env"]}
+        self.assertEqual(environment["JOB_COMPLETIONS"], str(spec["completions"]))
+        for rule in spec["podFailurePolicy"]["rules"]:
+            if "onExitCodes" in rule:
+                self.assertEqual(rule["onExitCodes"]["containerName"], container["name"])
+        volumes = {volume["name"] for volume in spec["template"]["spec"]["volumes"]}
+        self.assertEqual({mount["name"] for mount in container["volumeMounts"]}, volumes)
+
+    def test_its_exit_codes_are_the_programs(self) -> None:
+        rules = objects("sequence.yaml")[0]["spec"]["podFailurePolicy"]["rules"]
+        action = {code: rule["action"] for rule in rules for code in rule.get("onExitCodes", {}).get("values", [])}
+        self.assertEqual(action, {64: "FailJob", 65: "FailIndex", 78: "FailJob"})
+        arguments = objects("sequence.yaml")[0]["spec"]["template"]["spec"]["containers"][0]["args"]
+        # As the pod calls it, where there is no such storm: 75 counts as a try. A flag that does not exist would be 64.
+        done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=60,
+                              env={"JOB_COMPLETION_INDEX": "1", "JOB_COMPLETIONS": "4"})
+        self.assertEqual(done.returncode, 75, done.stderr)
+        self.assertIn("/data/run42", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

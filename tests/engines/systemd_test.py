@@ -1,0 +1,62 @@
+"""deploy/systemd: the units are sound, hardened, and start the program with flags that it knows."""
+
+import re
+import shlex
+import subprocess
+import tempfile
+import pathlib
+import unittest
+
+from engine_test import PROGRAM, ROOT, need
+
+FOLDER = ROOT / "deploy/systemd"
+WATCH = FOLDER / "thunderhead-watch@.service"
+# Of systemd-analyze security, from 0 (good) to 10, times ten: what the unit has today, rounded up.
+EXPOSURE = 8
+
+
+def analyze(*arguments: object) -> subprocess.CompletedProcess:
+    return subprocess.run(["systemd-analyze", *map(str, arguments)], capture_output=True, text=True, timeout=120)
+
+
+class Systemd(unittest.TestCase):
+    def setUp(self) -> None:
+        # systemd-analyze asks a template for an instance.
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.unit = pathlib.Path(folder.name) / "thunderhead-watch@run42.service"
+        self.unit.write_text(WATCH.read_text())
+
+    def test_the_unit_is_sound(self) -> None:
+        done = analyze("verify", self.unit)
+        # It also loads the machine's own units, whose mistakes are not ours.
+        ours = [line for line in (done.stderr + done.stdout).splitlines() if "thunderhead" in line]
+        self.assertEqual(ours, [])
+        self.unit.write_text(WATCH.read_text().replace("ProtectSystem=strict", "ProtectSystem=strictly"))
+        done = analyze("verify", self.unit)
+        self.assertIn("strictly", done.stderr + done.stdout, "a mistake is not found")
+
+    def test_the_unit_is_hardened(self) -> None:
+        done = analyze("security", "--offline=true", f"--threshold={EXPOSURE}", "--no-pager", self.unit)
+        overall = re.search(r"Overall exposure level.*: ([\d.]+)", done.stdout)
+        self.assertIsNotNone(overall, done.stdout + done.stderr)
+        self.assertEqual(done.returncode, 0, f"exposure {overall[1]}\n{done.stdout}")
+        for setting in ("NoNewPrivileges=yes", "ProtectSystem=strict", "MemoryMax="):
+            self.assertIn(setting, WATCH.read_text())
+
+    def test_the_program_knows_the_flags(self) -> None:
+        settings = dict(line.split("=", 1) for line in (FOLDER / "watch.conf").read_text().splitlines()
+                        if line and not line.startswith("#"))
+        command = re.search(r"^ExecStart=/usr/bin/env thunderhead (.*)$", WATCH.read_text(), re.M)[1]
+        words = shlex.split(command.replace("${FOLDER}", settings["FOLDER"]))
+        # systemd splits $FLAGS at blanks, and leaves the rest as it is.
+        arguments = [part for word in words for part in (settings["FLAGS"].split() if word == "$FLAGS" else [word])]
+        done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=60, cwd=self.unit.parent)
+        # The folder is not there, which may change; a bad flag would be 64.
+        self.assertEqual(done.returncode, 75, done.stderr)
+        self.assertIn("there is no such folder", done.stderr)
+
+
+if __name__ == "__main__":
+    need({"systemd-analyze": "systemd"})
+    unittest.main()
