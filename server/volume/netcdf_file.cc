@@ -150,7 +150,7 @@ absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path) {
     if (path != file->path) return OpenError(path, EACCES);
     if (file->bytes.empty()) return OpenError(path, NC_EHDFERR);
     int handle = kNoHandle;
-    const NetcdfLock lock;
+    const NetcdfLock lock(path);
     if (const int code = OpenMemory(*file, handle); code != NC_NOERR) return OpenError(path, code);
     return Checked(path, handle, file->bytes.size());
   }
