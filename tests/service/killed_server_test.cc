@@ -19,7 +19,7 @@ using Response = v1::InteractResponse;
 using Stub = v1::ThunderheadService::Stub;
 
 const std::string kSample = std::string(THUNDERHEAD_SOURCE_DIR) + "/samples/supercell.nc";
-constexpr int kViewers = 10;
+constexpr int kViewers = 200;
 
 v1::Scene SmallSceneWithSun(float azimuth_deg) {
   v1::Scene scene;
