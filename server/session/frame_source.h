@@ -128,12 +128,13 @@ class FrameSource {
     return absl::UnimplementedError("this frame source has pictures of 8 bits only");
   }
 
-  // Gives back the memory of what it keeps for further pictures and has not drawn for so long.
-  virtual void FreeUnused(double /*unused_s*/) {}
   // The picture that Draw, DrawChecked or Tone has just given as light, with the storm's opacity.
   virtual absl::StatusOr<picture::LinearPicture> Linear() {
     return absl::UnimplementedError("this frame source has tone-mapped pictures only");
   }
+
+  // Gives back the memory of what it keeps for further pictures and has not drawn for so long.
+  virtual void FreeUnused(double /*unused_s*/) {}
 };
 
 // Makes a source on the thread that will use it. It takes `turn`, which must outlive it, for each

@@ -55,6 +55,7 @@ class GuardedSource final : public FrameSource {
     return frame;
   }
 
+  absl::StatusOr<picture::LinearPicture> Linear() override { return Noticed(source_->Linear()); }
   absl::StatusOr<frame::FineImage> Fine() override { return Noticed(source_->Fine()); }
   void FreeUnused(double unused_s) override { source_->FreeUnused(unused_s); }
 

@@ -6,6 +6,7 @@ import os
 import pathlib
 import random
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -52,12 +53,23 @@ def run(*command: object, check: bool = True, **more: object) -> str:
     return done.stdout
 
 
+def kill_those_of(folder: pathlib.Path) -> None:
+    """Kills the processes that name the folder: jobs outlive the daemon that began them."""
+    for process in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            if str(folder).encode() in (process / "cmdline").read_bytes() and int(process.name) != os.getpid():
+                os.kill(int(process.name), signal.SIGKILL)
+        except OSError:
+            pass  # It has ended.
+
+
 class EngineTest(unittest.TestCase):
     """A folder, daemons that end with the test, and a run of twelve files."""
 
     def setUp(self) -> None:
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="thunderhead-engine-"))
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        self.addCleanup(kill_those_of, self.folder)
         self.storm = self.folder / "run42"
         self.storm.mkdir()
         self.assertTrue(SERIES.is_dir(), f"{SERIES} is missing: it lies in the folder shared beside the repository")

@@ -2,6 +2,7 @@
 // optical depth, which is computed apart from it.
 #include <algorithm>
 #include <cmath>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ struct Renderer {
   // Of one that draws shapes in the fields' place: the mean difference from 1 - exp(-depth); 0:
   // none.
   double shape_difference = 0.0;
+
+  friend void PrintTo(const Renderer& renderer, std::ostream* out) { *out << renderer.name; }
 };
 
 struct Mean {
