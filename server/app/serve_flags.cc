@@ -103,8 +103,9 @@ void AddLimitFlags(CLI::App& serve, ServeFlags& flags) {
            "Megasamples of a picture: its pixels times its slices");
   AddLimit(serve, "--max-render-time", flags.max_render_s, 0.001, 1e6,
            "Seconds that a picture outside sessions may take, waiting included");
-  AddLimit(serve, "--max-render-seconds", flags.render_loop.image_limits.max_predicted_s, 0.001,
-           1e6, "Seconds of drawing that a picture outside sessions may be predicted to take");
+  AddLimit(serve, "--max-predicted-render-time", flags.render_loop.image_limits.max_predicted_s,
+           0.001, 1e6,
+           "Seconds of drawing that a picture outside sessions may be predicted to take");
   AddLimit(serve, "--max-stills", flags.render_loop.max_waiting_images, 0, 1e6,
            "Pictures outside sessions that may wait to be drawn");
   AddLimit(serve, "--grpc-memory", flags.grpc_memory_mib, 16, 1 << 20,
