@@ -84,8 +84,9 @@ absl::StatusOr<LightProgress> CorrectorPool::Trace(
     THUNDERHEAD_RETURN_IF_ERROR(MakeRoom());
     THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<LightCorrector> corrector,
                                  LightCorrector::Create(scene, fields, programs_, 0));
-    kept = &kept_.emplace_back(
-        Kept{std::move(corrector), std::make_unique<TracedLights::Entry>(lights_, scene, fields)});
+    kept = &kept_.emplace_back();
+    kept->corrector = std::move(corrector);
+    kept->published = std::make_unique<TracedLights::Entry>(lights_, scene, fields);
   }
   if (claim != nullptr) *claim = kept->claim;
   kept->since_traced.Restart();  // busy from now on

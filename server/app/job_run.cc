@@ -396,6 +396,7 @@ absl::Status MakeByJobs(ServerLink& server, PictureRun& run, std::vector<Planned
   };
   {
     std::vector<std::jthread> workers;
+    workers.reserve(kJobsAtATime);
     for (int i = 0; i < kJobsAtATime; ++i) workers.emplace_back(work);
   }
   if (stop.stop_requested()) return Interrupted();
