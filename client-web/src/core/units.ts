@@ -45,6 +45,12 @@ export function formatBytes(bytes: number): string {
   return `${formatNumber(value)} ${steps[step]}`;
 }
 
+// "1.4 Mbit/s".
+export function formatBitRate(bytesPerSecond: number): string {
+  const kbit = (bytesPerSecond * 8) / 1000;
+  return kbit >= 999.5 ? `${formatNumber(kbit / 1000)} Mbit/s` : `${Math.round(kbit)} kbit/s`;
+}
+
 // "0001-01-01T00:20:00Z" as "00:20 · day 1" for idealised runs, which start in year 1, and as
 // "2013-05-20 20:00 UTC" for real dates.
 export function formatValidTime(validTime: string, elapsedS: number): string {

@@ -5,7 +5,11 @@ import { drag, type PictureSize, type Pose, pan, zoom } from "../core/camera";
 import type { PictureTool } from "../core/marking";
 import type { StrokePoint } from "../core/stroke";
 
-type Move = (motion: (pose: Pose) => Pose) => void;
+export interface PointerSteps {
+  move(motion: (pose: Pose) => Pose): void;
+  // The tool in the hand; undefined for the camera.
+  tool(): PictureTool | undefined;
+}
 
 interface Point {
   readonly x: number;
@@ -19,11 +23,9 @@ const TOUCHPAD_PINCH_PER_PIXEL = 0.01;
 const LINE_PX = 16;
 const SECONDARY_AND_MIDDLE_BUTTONS = 2 | 4;
 
-export function attachPointer(
-  canvas: HTMLCanvasElement,
-  move: Move,
-  toolInHand: () => PictureTool | undefined,
-): () => void {
+export function attachPointer(canvas: HTMLCanvasElement, steps: PointerSteps): () => void {
+  const move = (motion: (pose: Pose) => Pose) => steps.move(motion);
+  const toolInHand = () => steps.tool();
   const down = new Map<number, Point>();
   const listening = new AbortController();
   const options = { signal: listening.signal };

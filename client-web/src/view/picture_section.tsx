@@ -1,17 +1,8 @@
-// The panel at the side: every setting, section by section.
-import { useState } from "preact/hooks";
+// How bright the picture is, and what sky and ground are like.
 import { LIMITS, withDisplay, withGround, withOutput, withSky } from "../core/scene";
 import { Ground_Cover, ToneMap } from "../gen/thunderhead/v1/scene_pb";
-import { AccuracySection } from "./accuracy_section";
-import { CameraSection } from "./camera_section";
-import { CloudSection } from "./cloud_section";
 import { Choice, Section, Slider, Switch } from "./controls";
-import { FieldsSection } from "./fields_section";
-import { KEYS } from "./keyboard";
-import { LightsSection } from "./lights_section";
 import type { Page } from "./page";
-import { QualitySection } from "./quality_section";
-import { SunSection } from "./sun_section";
 
 const TONE_MAPS = [
   [ToneMap.FILMIC, "Filmic"],
@@ -31,73 +22,7 @@ const RESOLUTIONS = [
   [0.25, "A quarter"],
 ] as const;
 
-export function Panel({ page }: { page: Page }) {
-  const { state } = page;
-  const open = state.panelOpen.value;
-  const block = state.session.editBlock.value;
-  return (
-    <aside id="panel" class="panel" aria-label="Settings" data-testid="panel" hidden={!open}>
-      {block !== undefined && (
-        <p class="blocked" data-testid="edit-block">
-          {block}
-        </p>
-      )}
-      <fieldset class="controls" disabled={block !== undefined} data-testid="controls">
-        <legend class="visually-hidden">Settings of the scene</legend>
-        <StormSection page={page} />
-        <QualitySection state={state} />
-        <AccuracySection state={state} />
-        <CloudSection page={page} />
-        <CameraSection page={page} />
-        <SunSection state={state} />
-        <LightsSection state={state} />
-        <FieldsSection state={state} />
-        <PictureSection page={page} />
-      </fieldset>
-      <HelpSection />
-    </aside>
-  );
-}
-
-function StormSection({ page }: { page: Page }) {
-  const { state } = page;
-  const storms = state.storms.value;
-  const shown = storms.find((storm) => storm.id === state.stormId.value);
-  return (
-    <Section title="Storm" open testId="storm-section">
-      <Choice
-        label="Storm"
-        testId="storm"
-        value={state.stormId.value}
-        options={storms.map((storm) => [storm.id, storm.title || storm.id] as const)}
-        onChange={(id) => page.showStorm(id)}
-      />
-      <div class="buttons">
-        <button type="button" data-testid="home" onClick={() => page.home()}>
-          Whole storm
-        </button>
-        {shown?.deletable && <DeleteCloud key={shown.id} page={page} />}
-      </div>
-    </Section>
-  );
-}
-
-// The first click asks for confirmation.
-function DeleteCloud({ page }: { page: Page }) {
-  const [asked, setAsked] = useState(false);
-  return (
-    <button
-      type="button"
-      data-testid="delete-cloud"
-      onBlur={() => setAsked(false)}
-      onClick={() => (asked ? void page.deleteCloud() : setAsked(true))}
-    >
-      {asked ? "Delete it for all viewers?" : "Delete this cloud"}
-    </button>
-  );
-}
-
-function PictureSection({ page }: { page: Page }) {
+export function PictureSection({ page }: { page: Page }) {
   const { state } = page;
   const sky = state.sky.value;
   const ground = state.ground.value;
@@ -191,21 +116,6 @@ function PictureSection({ page }: { page: Page }) {
         testId="jpeg-quality"
         onChange={(jpegQuality) => state.edit((scene) => withOutput(scene, { jpegQuality }))}
       />
-    </Section>
-  );
-}
-
-function HelpSection() {
-  return (
-    <Section title="Mouse, touch and keys" testId="help-section">
-      <dl class="keys">
-        {KEYS.map(([key, what]) => (
-          <div key={key}>
-            <dt>{key}</dt>
-            <dd>{what}</dd>
-          </div>
-        ))}
-      </dl>
     </Section>
   );
 }
