@@ -28,7 +28,9 @@ try {
     page.on("console", (message) => message.type() === "error" && console.log(message.text()));
     await page.goto(server.url);
     await rested(page);
-    const shoot = (name) => page.screenshot({ path: `${folder}/${name}-${width}.jpg`, type: "jpeg", quality: 80 });
+    // The documentation's are small; others are for a closer look.
+    const file = process.argv[2] === undefined ? { type: "jpeg", quality: 80 } : { type: "png" };
+    const shoot = (name) => page.screenshot({ path: `${folder}/${name}-${width}.${file.type}`, ...file });
     for (const name of TOOLS.filter(wanted)) {
       await openTool(page, name === "none" ? undefined : name);
       await page.waitForTimeout(500);

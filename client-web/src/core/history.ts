@@ -36,7 +36,11 @@ export class History {
     return this.#step(this.#future, this.#past, present);
   }
 
-  #step(from: Signal<readonly Scene[]>, to: Signal<readonly Scene[]>, present: Scene): Scene | undefined {
+  #step(
+    from: Signal<readonly Scene[]>,
+    to: Signal<readonly Scene[]>,
+    present: Scene,
+  ): Scene | undefined {
     const scene = from.value.at(-1);
     if (scene === undefined) return undefined;
     from.value = from.value.slice(0, -1);

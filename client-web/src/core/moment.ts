@@ -21,6 +21,21 @@ export function instantOf(validTime: string): Date | undefined {
   );
 }
 
+// From one valid time to another of the same run, idealised or not; undefined where one is not known.
+export function secondsBetween(from: string, to: string): number | undefined {
+  const [start, end] = [from, to].map((each) => {
+    const match = VALID_TIME.exec(each);
+    const [year, month, day, hour, minute, second] = (match ?? [])
+      .slice(1)
+      .map((part) => Number(part ?? 0));
+    // Years below 100 would mean those of 1900.
+    return match === null
+      ? undefined
+      : Date.UTC((year ?? 0) + 2000, (month ?? 1) - 1, day, hour, minute, second);
+  });
+  return start === undefined || end === undefined ? undefined : (end - start) / 1000;
+}
+
 export function momentOf(validTime: string, elapsedText: string, zone: string | undefined): Moment {
   const match = VALID_TIME.exec(validTime);
   if (match === null) return { date: "", clock: validTime || elapsedText, local: undefined };
@@ -66,6 +81,12 @@ export function minutesAhead(instant: Date, zone: string): number {
     timeZone: zone,
   }).formatToParts(instant);
   const part = (type: string) => Number(parts.find((each) => each.type === type)?.value);
-  const local = Date.UTC(part("year"), part("month") - 1, part("day"), part("hour"), part("minute"));
+  const local = Date.UTC(
+    part("year"),
+    part("month") - 1,
+    part("day"),
+    part("hour"),
+    part("minute"),
+  );
   return Math.round((local - instant.getTime()) / 60_000);
 }

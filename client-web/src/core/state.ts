@@ -10,6 +10,7 @@ import type {
   Refinement,
   StageCost,
 } from "../gen/thunderhead/v1/frame_pb";
+import type { GetStormMapResponse } from "../gen/thunderhead/v1/probe_pb";
 import {
   type Camera,
   type Preset,
@@ -25,12 +26,14 @@ import type {
   GetServerInfoResponse,
   TechniqueDescription,
 } from "../gen/thunderhead/v1/thunderhead_pb";
+import { type AnnotationChoice, FIRST_ANNOTATIONS } from "./annotations";
 import { cameraOfPose, type Pose, poseOfCamera } from "./camera";
 import { type CloudDraft, FIRST_CLOUD } from "./cloud";
 import { type Encoding, encodingOf, pictureBytes } from "./encoding";
 import { History } from "./history";
+import { type Moment, momentOf, secondsBetween } from "./moment";
 import type { Box } from "./picture_box";
-import { type Moment, momentOf } from "./moment";
+import type { Probed } from "./probe";
 import { type Projection, projectionOf } from "./projection";
 import {
   drawsDetail,
@@ -47,6 +50,7 @@ import { LIMITS, withCamera, withOutput, withRendering } from "./scene";
 import type { Edit } from "./scene_sync";
 import { SessionState } from "./session_state";
 import type { SunDirection } from "./sun";
+import { clockHere } from "./sun_clock";
 import type { PanelName, ToolName } from "./tools";
 import { formatElapsed } from "./units";
 import { describePose, describeSun } from "./words";
@@ -130,8 +134,19 @@ export class PageState {
   readonly drawerOpen = signal(false);
   // The panel of the top bar that is open.
   readonly popover = signal<PanelName | undefined>(undefined);
+  // The storm from above, and why there is none.
+  readonly stormMap = signal<GetStormMapResponse | undefined>(undefined);
+  readonly mapProblem = signal<string | undefined>(undefined);
+  // The last two clicks with the probe, and why the last one was not answered.
+  readonly probes = signal<readonly Probed[]>([]);
+  readonly probing = signal(false);
+  readonly probeProblem = signal<string | undefined>(undefined);
+  // What is drawn over the picture.
+  readonly annotations = signal<AnnotationChoice>(FIRST_ANNOTATIONS);
   // The time zone of the storm's place, or one chosen; undefined for a storm without a place.
   readonly zone = signal<string | undefined>(undefined);
+  // The time zone in which the sun's clock is shown.
+  readonly sunZone = signal("Etc/GMT");
   // Where the picture lies in the window, in CSS pixels.
   readonly pictureBox = signal<Box | undefined>(undefined);
   // The cloud set in the panel, and whether the server is making it.
@@ -224,7 +239,9 @@ export class PageState {
     const start = this.#describedStorm.value?.runStart ?? "";
     const moment = momentOf(start, "", undefined);
     if (start === "") return "";
-    return /^\d{4}/.test(moment.date) ? `run ${moment.date} ${moment.clock}` : `run ${moment.clock}`;
+    return /^\d{4}/.test(moment.date)
+      ? `run ${moment.date} ${moment.clock}`
+      : `run ${moment.clock}`;
   });
   readonly shownTime = computed(() => {
     const count = this.timeCount.value;
@@ -235,6 +252,22 @@ export class PageState {
     const time = this.shownTime.value;
     if (time === undefined) return undefined;
     return momentOf(time.validTime, formatElapsed(time.elapsedS), this.zone.value);
+  });
+  // The sun's clock at the time shown.
+  readonly clockHere = computed(() =>
+    clockHere(
+      this.#scene.value.sun?.clock,
+      this.#describedStorm.value?.sunClock,
+      this.shownTime.value?.elapsedS ?? 0,
+    ),
+  );
+  // Time since the run began; since the first time, where its beginning is not known.
+  readonly leadS = computed(() => {
+    const time = this.shownTime.value;
+    if (time === undefined) return 0;
+    return (
+      secondsBetween(this.#describedStorm.value?.runStart ?? "", time.validTime) ?? time.elapsedS
+    );
   });
   // The picture for who does not see it.
   readonly description = computed(() => {
@@ -277,7 +310,8 @@ export class PageState {
   // Shows another scene, at this page's size.
   restore(scene: Scene, record: "recorded" | "unrecorded" = "recorded"): void {
     this.edit(
-      (present) => withOutput(scene, { widthPx: present.output?.widthPx, heightPx: present.output?.heightPx }),
+      (present) =>
+        withOutput(scene, { widthPx: present.output?.widthPx, heightPx: present.output?.heightPx }),
       record,
     );
   }

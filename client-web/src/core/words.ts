@@ -1,14 +1,14 @@
 // A view in words: where the camera is, where the sun stands.
 import { type Pose, wrapDegrees } from "./camera";
 import { compassPoint, type SunDirection } from "./sun";
-import { formatNumber } from "./units";
+import { formatLength, formatNumber } from "./units";
 
 export function describePose(pose: Pose | undefined): string {
   switch (pose?.kind) {
     case "orbit":
       return (
         `Seen from ${compassPoint(pose.azimuthDeg)} (${wholeDegrees(pose.azimuthDeg)}°), ` +
-        `${Math.round(pose.elevationDeg)}° high, ${formatNumber(pose.distanceM / 1000)} km away`
+        `${Math.round(pose.elevationDeg)}° high, ${formatLength(pose.distanceM, "distance")} away`
       );
     case "spotter":
       return (
@@ -16,7 +16,7 @@ export function describePose(pose: Pose | undefined): string {
         `${Math.round(pose.elevationDeg)}° up, through a lens of ${formatNumber(pose.focalLengthMm)} mm`
       );
     case "topDown":
-      return `${formatNumber(pose.widthM / 1000)} km from left to right, north up`;
+      return `${formatLength(pose.widthM, "distance")} from left to right, north up`;
     default:
       return "Waiting for the first picture …";
   }

@@ -1,5 +1,7 @@
 // The whole page: the storm fills the window; a top bar, a rail of tools, one open panel and the time line lie over its edges.
 import { useEffect, useRef } from "preact/hooks";
+import { Annotations } from "./annotations";
+import { ExpertDrawer } from "./drawer";
 import { Messages } from "./messages";
 import { Overlay } from "./overlay";
 import type { Page } from "./page";
@@ -20,6 +22,7 @@ export function App({ page }: { page: Page }) {
     <main class={open.join(" ") || undefined}>
       <h1 class="visually-hidden">Thunderhead</h1>
       <StormCanvas page={page} />
+      <Annotations state={state} />
       <Overlay state={state} marking={page.marking} />
       <p id="storm-keys" class="visually-hidden">
         Arrow keys turn it, with shift they move it, plus and minus come nearer and go farther.
@@ -29,6 +32,7 @@ export function App({ page }: { page: Page }) {
       <ToolRail page={page} />
       <ToolPanel page={page} />
       <Truth state={state} />
+      <ExpertDrawer page={page} />
       <div class="bottom">
         <SessionBar page={page} />
         <TimeLine page={page} />

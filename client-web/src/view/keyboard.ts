@@ -12,6 +12,8 @@ export interface KeyActions {
   stepTime(by: number): void;
   undo(): void;
   redo(): void;
+  // False where the key has no meaning now.
+  enter(): boolean;
   fullScreen(): void;
   // Closes what is uppermost, puts the pen down. False if there was nothing to do.
   escape(): boolean;
@@ -28,6 +30,7 @@ export const KEYS: readonly (readonly [string, string])[] = [
     `${TOOL_TEXTS[name].key} or ${at + 1}`,
     TOOL_TEXTS[name].title,
   ]),
+  ["Enter, with the probe open", "probe the middle of the picture"],
   ["X", "every setting"],
   ["S", "save: picture, movie, link"],
   ["C", "compare"],
@@ -101,6 +104,8 @@ function act(event: KeyboardEvent, actions: KeyActions): boolean {
     case "Home":
       actions.home();
       return true;
+    case "Enter":
+      return actions.enter();
     case "x":
     case "X":
       actions.toggleDrawer();
@@ -135,7 +140,8 @@ function opens(key: string, actions: KeyActions): boolean {
 function undoes(event: KeyboardEvent, actions: KeyActions): boolean {
   if (!(event.ctrlKey || event.metaKey) || event.altKey) return false;
   const target = event.target instanceof Element ? event.target : undefined;
-  if (target?.closest("input:not([type=range], [type=checkbox], [type=radio]), textarea")) return false;
+  if (target?.closest("input:not([type=range], [type=checkbox], [type=radio]), textarea"))
+    return false;
   const key = event.key.toLowerCase();
   if (key === "z" && !event.shiftKey) actions.undo();
   else if (key === "y" || key === "z") actions.redo();
@@ -149,7 +155,8 @@ function usesKey(target: EventTarget | null, key: string): boolean {
   if (!(target instanceof Element)) return false;
   const control = target.closest("input, select, textarea, button, summary, [role=slider]");
   if (control === null) return false;
-  if (control.matches("button, summary, input[type=checkbox]")) return key === " ";
+  if (control.matches("button, summary, input[type=checkbox]"))
+    return key === " " || key === "Enter";
   if (control.matches("input[type=range], [role=slider]")) {
     return key in ARROWS || key === "Home" || key === "End";
   }

@@ -45,6 +45,9 @@ export function Overlay({ state, marking }: { state: PageState; marking: Marking
           ))}
         </>
       )}
+      {box !== undefined && projection !== undefined && (
+        <ProbeMarks state={state} projection={projection} box={box} />
+      )}
       {stroke.length > 1 && (
         <polyline
           class="mark pending"
@@ -52,6 +55,32 @@ export function Overlay({ state, marking }: { state: PageState; marking: Marking
         />
       )}
     </svg>
+  );
+}
+
+// Where the probe is aimed at by keys, and what its clicks found.
+function ProbeMarks({ state, projection, box }: InPicture & { state: PageState }) {
+  if (state.tool.value !== "probe") return null;
+  const places = state.probes.value.flatMap(({ found }) => {
+    const at = found.seenPlace?.position;
+    const point = at === undefined ? undefined : project(projection, pointOf(at));
+    return point === undefined ? [] : [placeInBox(box, point)];
+  });
+  const [first, second] = places;
+  const middle = placeInBox(box, { x: 0, y: 0 });
+  return (
+    <g data-testid="probe-marks">
+      <path
+        class="aim"
+        d={`M${middle.left - 12} ${middle.top}h9m6 0h9M${middle.left} ${middle.top - 12}v9m0 6v9`}
+      />
+      {first !== undefined && second !== undefined && (
+        <line class="probe-line" x1={first.left} y1={first.top} x2={second.left} y2={second.top} />
+      )}
+      {places.map(({ left, top }, at) => (
+        <circle key={at} class="probed" cx={left} cy={top} r={7} />
+      ))}
+    </g>
   );
 }
 

@@ -6,14 +6,15 @@ import { effect, untracked } from "@preact/signals-core";
 import { AccessToken } from "../core/access_token";
 import type { CameraKind, Pose } from "../core/camera";
 import { Marking } from "../core/marking";
+import { NamedViews } from "../core/named_views";
 import type { Later } from "../core/newest";
 import { OwnKeys } from "../core/own_keys";
 import { Playback } from "../core/playback";
-import type { WorldRay } from "../core/projection";
 import { RevisionLedger } from "../core/revision_ledger";
 import { withStorm, withTime } from "../core/scene";
 import type { Tool } from "../core/session_state";
 import { PageState } from "../core/state";
+import type { StrokePoint } from "../core/stroke";
 import type { PanelName, ToolName } from "../core/tools";
 import { ServerCalls } from "../transport/server_calls";
 import { type OpenInteract, SessionClient } from "../transport/session_client";
@@ -22,12 +23,16 @@ import { learnDecodable } from "./decodable";
 import { attachKeyboard } from "./keyboard";
 import { readLink } from "./link";
 import { Notes } from "./notes";
+import { Probing } from "./probing";
+import { rayMessage } from "./rays";
 import { Screen } from "./screen";
 import { SessionActions } from "./session_actions";
 import { SessionLife } from "./session_life";
+import { StormMap } from "./storm_map";
 import { StormsOnServer } from "./storms_on_server";
 import { toggleFullScreen } from "./top_bar";
 import { Viewpoint } from "./viewpoint";
+import { followZones } from "./zones";
 
 // A page that is looked at says so, so that the session does not expire under a still picture.
 const STILL_HERE_EVERY_MS = 30_000;
@@ -42,10 +47,13 @@ export class Page {
   readonly screen: Screen;
   readonly viewpoint: Viewpoint;
   readonly calls: ServerCalls;
+  readonly views: NamedViews;
+  readonly probing: Probing;
   readonly #window: Window;
   readonly #token: AccessToken;
   readonly #client: SessionClient;
   readonly #storms: StormsOnServer;
+  readonly #map: StormMap;
   readonly #life: SessionLife;
   readonly #listening = new AbortController();
   readonly #disposals: (() => void)[] = [];
@@ -80,6 +88,9 @@ export class Page {
     this.notes = new Notes(state);
     this.calls = new ServerCalls(transport);
     this.#storms = new StormsOnServer(this.calls, state);
+    this.#map = new StormMap(this.calls, state);
+    this.probing = new Probing(this.calls, state);
+    this.views = new NamedViews(storageOf(window), () => state.stormId.peek());
     this.addresses = new Addresses(window, state);
     this.#life = new SessionLife({
       client: () => this.#client,
@@ -102,6 +113,10 @@ export class Page {
     this.screen = new Screen(window, state, ledger, {
       move: (motion) => this.move(motion),
       tool: () => this.marking.tool(),
+      clicked: (place) => {
+        if (state.tool.peek() === "probe") void this.probing.at(place);
+      },
+      doubleClicked: (place) => void this.#turnAround(place),
       acknowledge: (sequence, ownView, lost) => this.#client.acknowledge(sequence, ownView, lost),
       shown: (frame, now) => this.#life.shown(frame, now),
       paced: () => this.#life.adoptOpenCamera(),
@@ -251,6 +266,7 @@ export class Page {
     this.#listening.abort();
     for (const dispose of this.#disposals) dispose();
     this.#storms.dispose();
+    this.#map.dispose();
     this.addresses.dispose();
     this.playback.dispose();
     this.marking.dispose();
@@ -290,9 +306,18 @@ export class Page {
         stepTime: (by) => this.#mayPlay() && this.playback.step(by),
         undo: () => this.state.undo(),
         redo: () => this.state.redo(),
+        enter: () => {
+          if (this.state.tool.peek() !== "probe") return false;
+          void this.probing.through({ x: 0, y: 0 });
+          return true;
+        },
         fullScreen: toggleFullScreen,
         escape: () => this.#escape(),
       }),
+      effect(() => {
+        if (this.state.stormId.value !== "") untracked(() => this.views.load());
+      }),
+      followZones(this.state),
       effect(() => this.#storms.describeAfterRest(this.playback.playing.value)),
       effect(() => {
         if (!session.mayLookAround.value) untracked(() => this.follow());
@@ -309,6 +334,16 @@ export class Page {
 
   #mayPlay(): boolean {
     return this.state.session.editBlock.peek() === undefined;
+  }
+
+  // What is seen there becomes what the camera turns around.
+  async #turnAround(place: StrokePoint): Promise<void> {
+    try {
+      const seen = await this.probing.seenAt(place);
+      if (seen !== undefined) this.viewpoint.turnAround(seen);
+    } catch {
+      this.notes.say("target", "The server does not say what is there");
+    }
   }
 
   #putDown(): void {
@@ -335,10 +370,4 @@ function storageOf(window: Window): Storage | undefined {
   } catch {
     return undefined;
   }
-}
-
-function rayMessage({ originM, direction }: WorldRay) {
-  const [xM, yM, zM] = originM;
-  const [x, y, z] = direction;
-  return { origin: { xM, yM, zM }, direction: { x, y, z } };
 }

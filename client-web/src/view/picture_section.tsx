@@ -1,5 +1,6 @@
 // How bright the picture is, and what sky and ground are like.
 import { LIMITS, withDisplay, withGround, withOutput, withSky } from "../core/scene";
+import type { PageState } from "../core/state";
 import { Ground_Cover, ToneMap } from "../gen/thunderhead/v1/scene_pb";
 import { Choice, Section, Slider, Switch } from "./controls";
 import type { Page } from "./page";
@@ -22,17 +23,14 @@ const RESOLUTIONS = [
   [0.25, "A quarter"],
 ] as const;
 
-export function PictureSection({ page }: { page: Page }) {
-  const { state } = page;
-  const sky = state.sky.value;
-  const ground = state.ground.value;
-  const modelledGround = state.frame.value?.modelled?.ground;
+// Left to the server, or set by hand.
+export function ExposureControls({ state }: { state: PageState }) {
   const display = state.display.value;
   // An automatic exposure is the newest frame's.
   const shownExposureEv =
     display?.exposureEv ?? Math.round(100 * (state.frame.value?.modelled?.exposureEv ?? 0)) / 100;
   return (
-    <Section title="Sky and picture" testId="picture-section">
+    <>
       <Switch
         label="Automatic exposure"
         checked={display?.exposureEv === undefined}
@@ -44,12 +42,24 @@ export function PictureSection({ page }: { page: Page }) {
         }
       />
       <Slider
-        label="Exposure"
+        label="Exposure, stops"
         limits={LIMITS.exposure}
         value={shownExposureEv}
         testId="exposure"
         onChange={(exposureEv) => state.edit((scene) => withDisplay(scene, { exposureEv }))}
       />
+    </>
+  );
+}
+
+export function PictureSection({ page }: { page: Page }) {
+  const { state } = page;
+  const sky = state.sky.value;
+  const ground = state.ground.value;
+  const modelledGround = state.frame.value?.modelled?.ground;
+  const display = state.display.value;
+  return (
+    <Section title="Sky, ground and picture" testId="picture-section">
       <Switch
         label="White balance"
         checked={display?.whiteBalance ?? true}
@@ -69,13 +79,6 @@ export function PictureSection({ page }: { page: Page }) {
         value={sky?.brightness ?? LIMITS.skyBrightness.defaultValue}
         testId="sky-brightness"
         onChange={(brightness) => state.edit((scene) => withSky(scene, { brightness }))}
-      />
-      <Slider
-        label="Turbidity of the air"
-        limits={LIMITS.turbidity}
-        value={sky?.turbidity ?? LIMITS.turbidity.defaultValue}
-        testId="turbidity"
-        onChange={(turbidity) => state.edit((scene) => withSky(scene, { turbidity }))}
       />
       <Slider
         label="Ground albedo"

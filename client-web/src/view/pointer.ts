@@ -9,7 +9,13 @@ export interface PointerSteps {
   move(motion: (pose: Pose) => Pose): void;
   // The tool in the hand; undefined for the camera.
   tool(): PictureTool | undefined;
+  // Pressed and released at one place, without a tool in the hand.
+  clicked(place: StrokePoint): void;
+  doubleClicked(place: StrokePoint): void;
 }
+
+// Farther than this it was a drag.
+const CLICK_PX = 4;
 
 interface Point {
   readonly x: number;
@@ -30,6 +36,7 @@ export function attachPointer(canvas: HTMLCanvasElement, steps: PointerSteps): (
   const listening = new AbortController();
   const options = { signal: listening.signal };
   // The pointer that uses the tool, which is also in `down`.
+  let pressedAt: StrokePoint | undefined;
   let drawing: { readonly pointerId: number; readonly tool: PictureTool } | undefined;
 
   canvas.addEventListener(
@@ -45,6 +52,8 @@ export function attachPointer(canvas: HTMLCanvasElement, steps: PointerSteps): (
         tool.press(placeOf(event));
       }
       down.set(event.pointerId, pointOf(event));
+      const mayClick = down.size === 1 && drawing === undefined && event.button === 0;
+      pressedAt = mayClick && !event.shiftKey ? placeOf(event) : undefined;
       if (drawing === undefined) canvas.classList.add("grabbed");
     },
     options,
@@ -85,11 +94,21 @@ export function attachPointer(canvas: HTMLCanvasElement, steps: PointerSteps): (
       else drawing.tool.cancel();
       drawing = undefined;
     }
+    if (event.type === "pointerup" && pressedAt !== undefined && isNear(pressedAt, placeOf(event)))
+      steps.clicked(placeOf(event));
+    pressedAt = undefined;
     if (down.size === 0) canvas.classList.remove("grabbed");
   };
   canvas.addEventListener("pointerup", release, options);
   canvas.addEventListener("pointercancel", release, options);
   canvas.addEventListener("pointerleave", () => toolInHand()?.leave(), options);
+  canvas.addEventListener(
+    "dblclick",
+    (event) => {
+      if (toolInHand() === undefined) steps.doubleClicked(placeOf(event));
+    },
+    options,
+  );
   canvas.addEventListener("contextmenu", (event) => event.preventDefault(), options);
 
   canvas.addEventListener(
@@ -118,7 +137,11 @@ function pointOf(event: PointerEvent): Point {
   return { x: event.clientX, y: event.clientY };
 }
 
+function isNear(a: StrokePoint, b: StrokePoint): boolean {
+  return Math.hypot(a.left - b.left, a.top - b.top) <= CLICK_PX;
+}
+
 // The canvas fills the window.
-function placeOf(event: PointerEvent): StrokePoint {
+function placeOf(event: MouseEvent): StrokePoint {
   return { left: event.clientX, top: event.clientY };
 }

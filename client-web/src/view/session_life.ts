@@ -252,7 +252,8 @@ export class SessionLife implements SessionListener {
       this.#parts.viewpoint().follow();
       this.#sync.allow();
       if (this.setsOutput) this.sendOutputSize();
-      if (!steeredBefore && !this.#opened) notes.say("control", "You steer");
+      if (!steeredBefore && !this.#opened && !session.alone.peek())
+        notes.say("control", "You steer");
     } else {
       this.#sync.hold();
       this.#parts.pausePlayback();

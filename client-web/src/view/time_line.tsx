@@ -1,6 +1,7 @@
 // The storm's times along the bottom: a tick each, play, step, loop and speed.
-import { PLAY_RATES } from "../core/playback";
+
 import { momentOf } from "../core/moment";
+import { PLAY_RATES } from "../core/playback";
 import { formatElapsed } from "../core/units";
 import type { StormTime } from "../gen/thunderhead/v1/storm_pb";
 import { Icon } from "./icons";

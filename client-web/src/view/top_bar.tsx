@@ -1,10 +1,11 @@
 // What is shown, at a glance: storm, run, valid time in UTC and local, lead time; then the connection, and buttons for what is
 // kept and shared.
+
+import type { PanelName } from "../core/tools";
 import { formatElapsed } from "../core/units";
 import { Icon, type IconName } from "./icons";
 import type { Page } from "./page";
 import { Connection } from "./readout";
-import type { PanelName } from "../core/tools";
 
 export function TopBar({ page }: { page: Page }) {
   const { state } = page;
@@ -61,7 +62,7 @@ function When({ page }: { page: Page }) {
         {moment.date !== "" && <span class="date">{moment.date} </span>}
         {moment.clock}
       </span>
-      <span class="quiet lead">{formatElapsed(time.elapsedS)}</span>
+      <span class="quiet lead">{formatElapsed(state.leadS.value)}</span>
       {moment.local !== undefined && (
         <span class="quiet local" data-testid="local-time">
           {moment.local}

@@ -29,7 +29,11 @@ export function Truth({ state }: { state: PageState }) {
         </>
       )}
       <span class={refined ? "quiet" : "coarse"}>
-        {refined ? (preset === undefined ? "as set" : nameOfPreset(preset).toLowerCase()) : "coarse"}
+        {refined
+          ? preset === undefined
+            ? "as set"
+            : nameOfPreset(preset).toLowerCase()
+          : "coarse"}
       </span>
     </p>
   );
