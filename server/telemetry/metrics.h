@@ -76,8 +76,8 @@ struct Metrics {
   Counter frame_bytes_sent;    // of their pictures
   Labelled<Counter> refusals;  // answers that are errors, by reason
   Counter sessions_opened;
-  Labelled<Counter> job_pictures;  // of render jobs, by outcome: drawn, failed or dropped
-  Counter device_losses;  // the device was reset, or could not be opened again
+  Labelled<Counter> job_pictures;     // of render jobs, by outcome: drawn, failed or dropped
+  Counter device_losses;              // the device was reset, or could not be opened again
   Labelled<Counter> reader_failures;  // of untrusted files' readers, by what happened
 };
 

@@ -382,7 +382,7 @@ TEST(ExrFile, RoundTrip) {
 TEST(ExrFile, SaysWhatIsWrong) {
   const LinearPicture image = SmallPicture(2, {2});
   const absl::Status status = picture::WriteExr("/nonexistent-folder/image.exr", image);
-  EXPECT_EQ(status.code(), absl::StatusCode::kUnavailable);
+  EXPECT_EQ(status.code(), absl::StatusCode::kFailedPrecondition);
   EXPECT_NE(status.message().find("/nonexistent-folder/image.exr"), std::string::npos);
   EXPECT_FALSE(picture::ReadExr("/nonexistent-folder/image.exr").ok());
 }

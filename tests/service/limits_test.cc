@@ -235,7 +235,7 @@ TEST(LimitsTest, EveryRpcChecksItsRequest) {
   render.set_format(static_cast<v1::ImageFormat>(9));
   expect(Call(service.stub(), &Stub::RenderImage, render, &rendered),
          "format is 9; it must be one of IMAGE_FORMAT_UNSPECIFIED, IMAGE_FORMAT_PNG, "
-         "IMAGE_FORMAT_JPEG");
+         "IMAGE_FORMAT_JPEG, IMAGE_FORMAT_EXR");
   v1::DescribeStormRequest describe;
   describe.set_time_index(2000000);
   v1::DescribeStormResponse described;

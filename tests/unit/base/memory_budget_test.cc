@@ -156,7 +156,9 @@ class MachineMemoryTest : public ::testing::Test {
     std::ofstream(root_ + path) << text;
   }
 
-  const std::string root_ = ::testing::TempDir() + "machine_memory_test";
+  // Tests run beside each other.
+  const std::string root_ = ::testing::TempDir() + "machine_memory_" +
+                            ::testing::UnitTest::GetInstance()->current_test_info()->name();
 };
 
 TEST_F(MachineMemoryTest, IsTheMachines) {

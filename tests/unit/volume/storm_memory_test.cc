@@ -177,9 +177,19 @@ TEST_F(StormMemory, WhatNobodyHoldsGoesFirst) {
 }
 
 TEST_F(StormMemory, CellsWhoseNumberOverflowsAreRefusedBeforeAnythingIsAllocated) {
-  const auto budget = base::MemoryBudget::Make({.bytes = std::size_t{1} << 30U});
-  const auto store = Open({Cube("huge", 2'000'000'000)}, {.memory = budget, .read_ahead = 0});
-  const absl::Status refused = store->Get("huge.cube", 0, {}).status();
+  StormStoreOptions options;
+  options.formats.Add(std::make_shared<CubeFormat>(storage_));
+  const absl::Status refused = StormStore::Open({Cube("huge", 2'000'000'000)}, options).status();
+  EXPECT_TRUE(absl::IsResourceExhausted(refused)) << refused;
+  EXPECT_THAT(std::string(refused.message()),
+              HasSubstr("has 2000000000 x 2000000000 x 2000000000 values"));
+}
+
+TEST_F(StormMemory, ATimeBeyondTheBudgetIsRefusedBeforeItIsRead) {
+  // 64 MB each.
+  const auto budget = base::MemoryBudget::Make({.bytes = std::size_t{32} << 20U});
+  const auto store = Open({Cube("large", 250)}, {.memory = budget, .read_ahead = 0});
+  const absl::Status refused = store->Get("large.cube", 0, {}).status();
   EXPECT_EQ(base::DetailsOf(refused).reason, "TOO_LARGE_FOR_MEMORY") << refused;
   EXPECT_FALSE(base::DetailsOf(refused).retry_after.has_value());
 }
