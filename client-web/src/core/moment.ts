@@ -53,9 +53,11 @@ export function momentOf(validTime: string, elapsedText: string, zone: string | 
 // "15:00 CDT" in a time zone of the IANA database.
 export function localClock(instant: Date, zone: string | undefined): string | undefined {
   if (zone === undefined) return undefined;
-  return new Intl.DateTimeFormat("en-GB", {
+  // American English knows the names of American zones.
+  return new Intl.DateTimeFormat("en-US", {
     hour: "2-digit",
     minute: "2-digit",
+    hourCycle: "h23",
     timeZone: zone,
     timeZoneName: "short",
   }).format(instant);

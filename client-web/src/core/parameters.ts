@@ -63,7 +63,7 @@ function ofField(
   }
   const steps = [...before, { field }];
   if (field.fieldKind === "message") {
-    const inner = valueOf(owner, { field }) ?? create(field.message);
+    const inner = valueAt(owner, { field }) ?? create(field.message);
     return ofMessage(inner as Message, field.message, steps, `${path}.`, group);
   }
   const parameter = leaf(field, { path, steps, group });
@@ -116,12 +116,12 @@ export function parameterValue(scene: Scene, { steps }: Parameter): unknown {
   let at: unknown = scene;
   for (const step of steps) {
     if (at === undefined) return undefined;
-    at = valueOf(at as Message, step);
+    at = valueAt(at as Message, step);
   }
   return at;
 }
 
-function valueOf(owner: Message, { field, index }: Step): unknown {
+function valueAt(owner: Message, { field, index }: Step): unknown {
   const fields = owner as unknown as Fields;
   const { oneof } = field;
   if (oneof !== undefined) return (fields[oneof.localName] as { value?: unknown }).value;
@@ -145,7 +145,7 @@ function changed(owner: Message, [step, ...rest]: readonly Step[], value: unknow
   };
   if (field.oneof !== undefined) {
     const { localName } = field.oneof;
-    const chosen = { case: field.localName, value: next(valueOf(owner, step)) };
+    const chosen = { case: field.localName, value: next(valueAt(owner, step)) };
     return { ...owner, [localName]: chosen } as Message;
   }
   if (index !== undefined) {

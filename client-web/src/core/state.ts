@@ -211,6 +211,11 @@ export class PageState {
     return storm?.id === this.stormId.value ? storm : undefined;
   });
   readonly timeCount = computed(() => this.#describedStorm.value?.times.length ?? 0);
+  // The camera of the frame on the screen.
+  readonly shownCamera = computed(() => {
+    const pose = this.frame.value?.pose;
+    return pose === undefined ? undefined : cameraOfPose(pose);
+  });
   // The camera's pose: the scene's, or where the scene leaves it open that of the frame on the screen.
   readonly pose = computed(() => {
     const { camera } = this.#scene.value;

@@ -1,8 +1,18 @@
 // Title, time, scales and rings over the picture in the window, or drawn into a picture that is saved.
-import { type Annotated, annotationsOf, type LegendEntry, type Shape } from "../core/annotations";
+import {
+  type Annotated,
+  type AnnotationChoice,
+  annotationsOf,
+  type LegendEntry,
+  type Shape,
+} from "../core/annotations";
+import type { Pose } from "../core/camera";
 import { hexOfColor } from "../core/color";
+import { momentOf } from "../core/moment";
+import type { Projection } from "../core/projection";
 import { effectiveField, hydrometeorName } from "../core/scene";
 import type { PageState } from "../core/state";
+import { formatElapsed } from "../core/units";
 
 const LETTER_PX = 13;
 // What the page's own bars cover.
@@ -76,16 +86,27 @@ function Drawn({ shape }: { shape: Shape }) {
   }
 }
 
-// What there is to write over the picture that is shown, whatever its size.
-export function annotated(
-  state: PageState,
-): Omit<Annotated, "widthPx" | "heightPx" | "inset" | "letterPx"> | undefined {
-  const frame = state.frame.value;
-  if (frame?.projection === undefined) return undefined;
-  const moment = state.moment.value;
+type Content = Omit<Annotated, "widthPx" | "heightPx" | "inset" | "letterPx">;
+
+// A picture other than the one on the screen: its camera and time.
+interface OtherPicture {
+  readonly projection: Projection | undefined;
+  readonly pose: Pose | undefined;
+  readonly timeIndex: number | undefined;
+}
+
+// What there is to write over the picture that is shown, or over another one of its scene.
+export function annotated(state: PageState, other?: OtherPicture): Content | undefined {
+  const { projection, pose } = other ?? state.frame.value ?? {};
+  if (projection === undefined) return undefined;
+  const time =
+    other?.timeIndex === undefined
+      ? state.shownTime.value
+      : state.storm.value?.times[other.timeIndex];
+  const moment = time && momentOf(time.validTime, formatElapsed(time.elapsedS), undefined);
   return {
-    projection: frame.projection,
-    pose: frame.pose,
+    projection,
+    pose,
     groundM: state.storm.value?.grid?.low?.zM ?? 0,
     title: [state.title.value, state.run.value].filter((part) => part !== "").join(" · "),
     time: moment === undefined ? "" : `${moment.date} ${moment.clock}`.trim(),
@@ -102,30 +123,23 @@ function legendOf(state: PageState): LegendEntry[] {
   });
 }
 
-// Draws them into a picture of this size, as large in it as they are in a window.
+type Context = CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D;
+
+// Draws them into a picture, as large in it as they are in a window.
 export function drawAnnotations(
-  context: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D,
-  state: PageState,
-  widthPx: number,
-  heightPx: number,
+  context: Context,
+  content: Content,
+  choice: AnnotationChoice,
+  { width, height }: { readonly width: number; readonly height: number },
 ): void {
-  const content = annotated(state);
-  if (content === undefined) return;
-  const letterPx = Math.max(11, Math.round(heightPx / 45));
+  const letterPx = Math.max(11, Math.round(height / 45));
   const inset = { left: 0, top: 0, right: 0, bottom: 0 };
-  const shapes = annotationsOf(
-    { ...content, widthPx, heightPx, inset, letterPx },
-    state.annotations.value,
-  );
+  const picture = { ...content, widthPx: width, heightPx: height, inset, letterPx };
   context.lineJoin = "round";
-  for (const shape of shapes) drawShape(context, shape, letterPx);
+  for (const shape of annotationsOf(picture, choice)) drawShape(context, shape, letterPx);
 }
 
-function drawShape(
-  context: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D,
-  shape: Shape,
-  letterPx: number,
-): void {
+function drawShape(context: Context, shape: Shape, letterPx: number): void {
   const shadow = "rgb(0 0 0 / 65%)";
   switch (shape.kind) {
     case "line":

@@ -1,6 +1,7 @@
 // The whole page: the storm fills the window; a top bar, a rail of tools, one open panel and the time line lie over its edges.
 import { useEffect, useRef } from "preact/hooks";
 import { Annotations } from "./annotations";
+import { CompareView } from "./compare/compare_view";
 import { ExpertDrawer } from "./drawer";
 import { Messages } from "./messages";
 import { Overlay } from "./overlay";
@@ -17,11 +18,13 @@ export function App({ page }: { page: Page }) {
   const open = [
     state.tool.value !== undefined && "with-tool-open",
     state.drawerOpen.value && "with-drawer",
+    page.comparing.choice.value?.layout === "side" && "compares-beside",
   ].filter((name) => name !== false);
   return (
     <main class={open.join(" ") || undefined}>
       <h1 class="visually-hidden">Thunderhead</h1>
       <StormCanvas page={page} />
+      <CompareView page={page} />
       <Annotations state={state} />
       <Overlay state={state} marking={page.marking} />
       <p id="storm-keys" class="visually-hidden">

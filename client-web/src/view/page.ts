@@ -19,7 +19,9 @@ import type { PanelName, ToolName } from "../core/tools";
 import { ServerCalls } from "../transport/server_calls";
 import { type OpenInteract, SessionClient } from "../transport/session_client";
 import { Addresses } from "./addresses";
+import { Comparing } from "./compare/comparing";
 import { learnDecodable } from "./decodable";
+import { Keeper } from "./keep/keeper";
 import { attachKeyboard } from "./keyboard";
 import { readLink } from "./link";
 import { Notes } from "./notes";
@@ -49,6 +51,8 @@ export class Page {
   readonly calls: ServerCalls;
   readonly views: NamedViews;
   readonly probing: Probing;
+  readonly keeper: Keeper;
+  readonly comparing: Comparing;
   readonly #window: Window;
   readonly #token: AccessToken;
   readonly #client: SessionClient;
@@ -91,6 +95,7 @@ export class Page {
     this.#map = new StormMap(this.calls, state);
     this.probing = new Probing(this.calls, state);
     this.views = new NamedViews(storageOf(window), () => state.stormId.peek());
+    this.keeper = new Keeper(transport, state, this.notes, () => this.views.all.peek());
     this.addresses = new Addresses(window, state);
     this.#life = new SessionLife({
       client: () => this.#client,
@@ -150,6 +155,11 @@ export class Page {
       isShown: (index) => this.#life.isTimeShown(index),
       showTime: (index) => this.showTime(index),
       onNextPaint,
+    });
+    this.comparing = new Comparing(this.calls, openInteract, state, {
+      move: (motion) => this.move(motion),
+      onNextPaint,
+      later,
     });
     this.#listen();
   }
@@ -267,6 +277,8 @@ export class Page {
     for (const dispose of this.#disposals) dispose();
     this.#storms.dispose();
     this.#map.dispose();
+    this.keeper.dispose();
+    this.comparing.dispose();
     this.addresses.dispose();
     this.playback.dispose();
     this.marking.dispose();
@@ -291,6 +303,17 @@ export class Page {
     const { session } = this.state;
     window.addEventListener("online", () => this.#client.retryNow(), options);
     window.document.addEventListener("visibilitychange", () => this.#life.sendWindow(), options);
+    // A picture that was saved brings its view back.
+    window.addEventListener("dragover", (event) => event.preventDefault(), options);
+    window.addEventListener(
+      "drop",
+      (event) => {
+        event.preventDefault();
+        const file = event.dataTransfer?.files[0];
+        if (file !== undefined) void this.keeper.open(file);
+      },
+      options,
+    );
     const stillHere = setInterval(() => {
       if (!window.document.hidden) this.#life.sendWindow();
     }, STILL_HERE_EVERY_MS);

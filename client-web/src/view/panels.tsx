@@ -1,4 +1,6 @@
 // The panel that a button of the top bar has opened.
+import { Compare } from "./compare/compare_panel";
+import { Keep } from "./keep/keep_panel";
 import { KEYS } from "./keyboard";
 import type { Page } from "./page";
 import { PeopleList } from "./people";
@@ -14,6 +16,10 @@ export function Panels({ page }: { page: Page }) {
       return <Share page={page} />;
     case "people":
       return <PeopleList page={page} />;
+    case "compare":
+      return <Compare page={page} />;
+    case "keep":
+      return <Keep page={page} />;
     case "help":
       return <Help page={page} />;
     default:

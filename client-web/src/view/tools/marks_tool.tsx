@@ -1,12 +1,23 @@
-// What everybody sees over the picture: a pen and a pointer.
+// What everybody sees over the picture: pen, arrow, words and a pointer, at their places in the world.
+import { MOST_LETTERS } from "../../core/lettering";
 import type { Tool } from "../../core/session_state";
-import { Icon, type IconName } from "../icons";
+import { Icon } from "../icons";
 import type { Page } from "../page";
 
-const IN_HAND: readonly (readonly [Exclude<Tool, "camera">, IconName, string, string])[] = [
-  ["pen", "pen", "Pen", "Draws a line on the storm."],
-  ["pointer", "pointer", "Pointer", "Shows everybody where you point."],
+type InHand = Exclude<Tool, "camera">;
+
+const IN_HAND: readonly (readonly [InHand, string, string])[] = [
+  ["pen", "Pen", "Draw on the storm."],
+  ["arrow", "Arrow", "Drag from its tail to its tip."],
+  ["text", "Text", "Click where it begins."],
+  ["pointer", "Pointer", "Everybody sees where you point."],
 ];
+
+const IN_THE_MIDDLE: Readonly<Record<Exclude<InHand, "pointer">, string>> = {
+  pen: "Ring around the middle",
+  arrow: "Arrow to the middle",
+  text: "Write it in the middle",
+};
 
 export function MarksTool({ page }: { page: Page }) {
   const { session } = page.state;
@@ -18,8 +29,9 @@ export function MarksTool({ page }: { page: Page }) {
     return <p class="quiet">The presenter has not allowed viewers to point and draw.</p>;
   return (
     <>
-      <div class="hand" role="group" aria-label="In the hand">
-        {IN_HAND.map(([tool, icon, label, about]) => (
+      <fieldset class="hand">
+        <legend class="visually-hidden">In the hand</legend>
+        {IN_HAND.map(([tool, label, about]) => (
           <button
             key={tool}
             type="button"
@@ -28,19 +40,44 @@ export function MarksTool({ page }: { page: Page }) {
             title={about}
             onClick={() => page.takeInHand(tool)}
           >
-            <Icon name={icon} />
+            <Icon name={tool} />
             {label}
           </button>
         ))}
-      </div>
-      <p class="quiet">
-        {IN_HAND.find(([tool]) => tool === inHand)?.[3] ?? "Everybody in the session sees them."}
+      </fieldset>
+      <p class="quiet" role="status">
+        {IN_HAND.find(([tool]) => tool === inHand)?.[2] ??
+          "Everybody in the session sees them, at their places in the world."}
       </p>
-      {mine && (
-        <button type="button" data-testid="clear-marks" onClick={() => page.actions.eraseMarks()}>
-          {session.presenting.value ? "Erase all marks" : "Erase my marks"}
-        </button>
+      {inHand === "text" && (
+        <input
+          type="text"
+          aria-label="Words to write"
+          placeholder="Words to write"
+          data-testid="mark-words"
+          maxLength={MOST_LETTERS}
+          value={page.marking.words.value}
+          onInput={(event) => {
+            page.marking.words.value = event.currentTarget.value;
+          }}
+        />
       )}
+      <div class="buttons">
+        {inHand !== "camera" && inHand !== "pointer" && (
+          <button
+            type="button"
+            data-testid="mark-middle"
+            onClick={() => page.marking.markMiddle(inHand)}
+          >
+            {IN_THE_MIDDLE[inHand]}
+          </button>
+        )}
+        {mine && (
+          <button type="button" data-testid="clear-marks" onClick={() => page.actions.eraseMarks()}>
+            {session.presenting.value ? "Erase all marks" : "Erase my marks"}
+          </button>
+        )}
+      </div>
     </>
   );
 }
