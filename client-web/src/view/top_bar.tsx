@@ -57,7 +57,7 @@ function When({ page }: { page: Page }) {
   const moment = state.moment.value;
   if (time === undefined || moment === undefined) return <span class="when" />;
   return (
-    <output class="when" data-testid="valid-time">
+    <output class="when" data-testid="top-time">
       <span class="clock">
         {moment.date !== "" && <span class="date">{moment.date} </span>}
         {moment.clock}
