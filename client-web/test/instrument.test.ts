@@ -1,18 +1,43 @@
 // What is drawn over the picture and on the map, what is compared, and the list of every parameter.
 import { create } from "@bufbuild/protobuf";
 import { afterEach, expect, test } from "vitest";
-import { type Annotated, annotationsOf, FIRST_ANNOTATIONS, type Shape } from "../src/core/annotations";
+import {
+  type Annotated,
+  annotationsOf,
+  FIRST_ANNOTATIONS,
+  type Shape,
+} from "../src/core/annotations";
 import type { OrbitPose, SpotterPose, TopDownPose } from "../src/core/camera";
 import { comparedScene } from "../src/core/comparison";
 import { arrowStrokes, joined, letterStrokes, parted } from "../src/core/lettering";
-import { azimuthTo, extentOf, placeFrom, placeOnMap, standOf, worldOfMap } from "../src/core/map_frame";
-import { instantOf, localClock, minutesAhead, momentOf, secondsBetween, zoneOfLongitude } from "../src/core/moment";
+import {
+  azimuthTo,
+  extentOf,
+  placeFrom,
+  placeOnMap,
+  standOf,
+  worldOfMap,
+} from "../src/core/map_frame";
+import {
+  instantOf,
+  localClock,
+  minutesAhead,
+  momentOf,
+  secondsBetween,
+  zoneOfLongitude,
+} from "../src/core/moment";
 import { parametersOf, parameterValue, withParameter } from "../src/core/parameters";
 import { wayBetween } from "../src/core/probe";
 import type { Projection } from "../src/core/projection";
 import { withTechnique } from "../src/core/rendering";
 import { withField, withRendering } from "../src/core/scene";
-import { atMinute, clockHere, firstDateTime, minuteOfDay, sunriseAndSunset } from "../src/core/sun_clock";
+import {
+  atMinute,
+  clockHere,
+  firstDateTime,
+  minuteOfDay,
+  sunriseAndSunset,
+} from "../src/core/sun_clock";
 import { toolOfKey } from "../src/core/tools";
 import { formatLength, lengthUnits, roundLength } from "../src/core/units";
 import { COMMENTS } from "../src/gen/comments";
@@ -66,12 +91,21 @@ test("title, time and legend stand in their corners", () => {
   expect(title?.y).toBeLessThan(30);
   expect(time?.y).toBeGreaterThan(380);
   expect(shapes.find(({ text }) => text === "Rain")?.anchor).toBe("end");
-  const none = { title: false, time: false, legend: false, scale: false, compass: false, rings: false };
+  const none = {
+    title: false,
+    time: false,
+    legend: false,
+    scale: false,
+    compass: false,
+    rings: false,
+  };
   expect(annotationsOf(PICTURE, none)).toEqual([]);
 });
 
 test("degrees stand along the horizon where they are", () => {
-  const shapes = texts(annotationsOf({ ...PICTURE, title: "", time: "", legend: [] }, FIRST_ANNOTATIONS));
+  const shapes = texts(
+    annotationsOf({ ...PICTURE, title: "", time: "", legend: [] }, FIRST_ANNOTATIONS),
+  );
   const at = Object.fromEntries(shapes.map(({ text, x }) => [text, x]));
   expect(at.N).toBeCloseTo(400, 3);
   // tan(20 deg) of tan(30 deg) of the half width.
@@ -82,7 +116,10 @@ test("degrees stand along the horizon where they are", () => {
 
 test("the scale bar is as long as it says", () => {
   const pose: TopDownPose = { kind: "topDown", centerM: [0, 0], widthM: 160_000 };
-  const shapes = annotationsOf({ ...PICTURE, pose, legend: [] }, { ...FIRST_ANNOTATIONS, title: false, time: false });
+  const shapes = annotationsOf(
+    { ...PICTURE, pose, legend: [] },
+    { ...FIRST_ANNOTATIONS, title: false, time: false },
+  );
   const [bar] = shapes.flatMap((shape) => (shape.kind === "line" ? [shape.points] : []));
   const lengthPx = (bar?.[2]?.[0] ?? 0) - (bar?.[1]?.[0] ?? 0);
   expect(texts(shapes).map(({ text }) => text)).toEqual(["20 km"]);
@@ -134,16 +171,17 @@ test("the sun's clock is set in local time for the time that is shown", () => {
   const evening = atMinute(here.instant, 18 * 60 + 30, "America/Chicago");
   expect(evening.toISOString()).toBe("2013-05-20T23:30:00.000Z");
   expect(firstDateTime(evening, 3600)).toBe("2013-05-20T22:30:00Z");
+  const { sunrise, sunset } = sunriseAndSunset(here, "America/Chicago");
   // By the declination of that day, 20.0 degrees, and the sun's upper edge on the horizon with 34' of refraction; noon is at the
-  // meridian of the place, 3.5 minutes early by the equation of time.
+  // meridian of the place, 3.5 minutes early by the equation of time. Whole minutes.
   const [latitude, declination, edge] = [35.2, 20.0, -0.833].map((deg) => (deg * Math.PI) / 180);
   const cosine =
     (Math.sin(edge ?? 0) - Math.sin(latitude ?? 0) * Math.sin(declination ?? 0)) /
     (Math.cos(latitude ?? 0) * Math.cos(declination ?? 0));
   const halfDay = (Math.acos(cosine) * 720) / Math.PI;
   const noon = 12 * 60 - 300 + 97.4 * 4 - 3.5;
-  expect(Math.abs((sunrise ?? 0) - (noon - halfDay))).toBeLessThan(2);
-  expect(Math.abs((sunset ?? 0) - (noon + halfDay))).toBeLessThan(2);
+  expect(Math.abs((sunrise ?? 0) - (noon - halfDay))).toBeLessThan(3);
+  expect(Math.abs((sunset ?? 0) - (noon + halfDay))).toBeLessThan(3);
   expect(instantOf("0001-01-01T00:20:00Z")).toBeUndefined();
 });
 
@@ -169,22 +207,26 @@ test("the map shows the domain and a camera near it, and leads back to the world
   expect(standOf(orbit)?.placeM[0]).toBeCloseTo(500, 6);
 });
 
-// Places by PROJ 9: `echo LON LAT | proj STRING`, less the same of the domain's middle.
+// Places by PROJ (`echo LON LAT | proj STRING`), less the same of the domain's middle.
 test("places of the map are those of the model's projection", () => {
-  const lambert = gridProjection({
-    projection: "+proj=lcc +lat_1=30 +lat_2=60 +lat_0=35 +lon_0=-97 +R=6370000",
-    latitudeDeg: 35,
-    longitudeDeg: -97,
-  });
-  const [x, y] = lambert([-97, 36]) ?? [0, 0];
-  expect(x).toBeCloseTo(0, 6);
-  // Between the standard parallels a degree is a little shorter than on the sphere.
-  const degreeM = (Math.PI / 180) * 6_370_000;
-  expect(-y).toBeGreaterThan(0.95 * degreeM);
-  expect(-y).toBeLessThan(1.0 * degreeM);
-  const [east] = lambert([-96, 35]) ?? [0, 0];
-  expect(east).toBeGreaterThan(0.95 * degreeM * Math.cos((35 * Math.PI) / 180));
-  expect(east).toBeLessThan(degreeM * Math.cos((35 * Math.PI) / 180));
+  const check = (
+    projection: string,
+    middle: readonly [number, number],
+    place: [number, number],
+    [xM, yM]: readonly [number, number],
+  ) => {
+    const [longitudeDeg, latitudeDeg] = middle;
+    const [x, y] = gridProjection({ projection, latitudeDeg, longitudeDeg })(place) ?? [0, 0];
+    expect(Math.hypot(x - xM, -y - yM), projection).toBeLessThan(5);
+  };
+  const lambert = "+proj=lcc +lat_1=30 +lat_2=60 +lat_0=35 +lon_0=-97 +R=6370000";
+  check(lambert, [-97, 35], [-97, 36], [0, 108_986]);
+  check(lambert, [-97, 35], [-96, 35], [89_405, 558]);
+  check(lambert, [-97, 35], [-90, 40], [577_712, 567_502]);
+  const mercator = "+proj=merc +lat_ts=20 +lon_0=0 +R=6370000";
+  check(mercator, [10, 52], [12, 55], [1_253_671.82 - 1_044_726.51, 6_909_065.66 - 6_381_875.54]);
+  const polar = "+proj=stere +lat_0=90 +lat_ts=60 +lon_0=10 +R=6370000";
+  check(polar, [10, 70], [15, 72], [164_084, 2_095_925.08 - 1_875_485.56]);
 });
 
 test("a way has distance, height and direction", () => {
@@ -199,7 +241,8 @@ test("a way has distance, height and direction", () => {
 
 test("letters and arrows are one line that is parted again", () => {
   const arrow = arrowStrokes({ left: 0, top: 0 }, { left: 100, top: 0 });
-  const same = (a: { left: number; top: number }, b: typeof a) => a.left === b.left && a.top === b.top;
+  const same = (a: { left: number; top: number }, b: typeof a) =>
+    a.left === b.left && a.top === b.top;
   expect(parted(joined(arrow), same)).toEqual(arrow);
   const words = letterStrokes("Hail 2°", { left: 10, top: 20 }, 12);
   expect(words.length).toBeGreaterThan(7);
@@ -209,7 +252,9 @@ test("letters and arrows are one line that is parted again", () => {
     expect(top).toBeGreaterThanOrEqual(20);
     expect(top).toBeLessThanOrEqual(32);
   }
-  expect(letterStrokes("a", { left: 0, top: 0 }, 12)).toEqual(letterStrokes("A", { left: 0, top: 0 }, 12));
+  expect(letterStrokes("a", { left: 0, top: 0 }, 12)).toEqual(
+    letterStrokes("A", { left: 0, top: 0 }, 12),
+  );
   // A session takes 256 corners.
   const longest = joined(letterStrokes("8".repeat(99), { left: 0, top: 0 }, 12));
   expect(longest.length).toBeLessThanOrEqual(24 * 24);
@@ -249,7 +294,12 @@ test("B has A's camera, and its own storm, time and settings", () => {
   const size = { widthPx: 300, heightPx: 200 };
   const known = { camera: undefined, size, storm: undefined, other: undefined };
   const kept = create(SceneSchema, { stormId: "a", timeIndex: 0, display: { exposureEv: 5 } });
-  const choice = { stormId: undefined, timeIndex: undefined, settings: kept, layout: "swipe" } as const;
+  const choice = {
+    stormId: undefined,
+    timeIndex: undefined,
+    settings: kept,
+    layout: "swipe",
+  } as const;
   const b = comparedScene(a, choice, known);
   expect([b.timeIndex, b.display?.exposureEv, b.output?.widthPx]).toEqual([1, 5, 300]);
   const times = (...valid: string[]) =>
@@ -264,5 +314,9 @@ test("B has A's camera, and its own storm, time and settings", () => {
 
 test("tools open by their letter and their place", () => {
   expect([toolOfKey("m"), toolOfKey("1"), toolOfKey("7")]).toEqual(["map", "map", "marks"]);
-  expect([toolOfKey("8"), toolOfKey("0"), toolOfKey(" ")]).toEqual([undefined, undefined, undefined]);
+  expect([toolOfKey("8"), toolOfKey("0"), toolOfKey(" ")]).toEqual([
+    undefined,
+    undefined,
+    undefined,
+  ]);
 });

@@ -68,7 +68,7 @@ function itxtChunk(keyword: string, text: string): Uint8Array {
 }
 
 // Of ISO 3309, as PNG has it.
-function crc32(bytes: Uint8Array): number {
+export function crc32(bytes: Uint8Array): number {
   let crc = 0xffffffff;
   for (const byte of bytes) {
     crc ^= byte;

@@ -12,13 +12,13 @@ export function Connection({ state }: { state: PageState }) {
   return (
     <details class="readout" data-testid="readout">
       <summary
-        aria-label={`Connection and cost of the picture: ${connection}`}
         data-frames-per-second={pace.framesPerSecond.toFixed(1)}
         data-latency-ms={pace.latencyMs?.toFixed(0)}
         data-testid="readout-summary"
       >
         <span class={`lamp ${connection}`} aria-hidden="true" />
-        <span>{connection}</span>
+        <span class="visually-hidden">Connection and cost of the picture: </span>
+        <span class="word">{connection}</span>
         {pace.latencyMs !== undefined && (
           <span class="latency">{Math.round(pace.latencyMs)} ms</span>
         )}
