@@ -226,6 +226,8 @@ test("places of the map are those of the model's projection", () => {
   const mercator = "+proj=merc +lat_ts=20 +lon_0=0 +R=6370000";
   check(mercator, [10, 52], [12, 55], [1_253_671.82 - 1_044_726.51, 6_909_065.66 - 6_381_875.54]);
   const polar = "+proj=stere +lat_0=90 +lat_ts=60 +lon_0=10 +R=6370000";
+  const plain = "+proj=eqc +lat_ts=45 +lat_0=0 +lon_0=5 +R=6370000";
+  check(plain, [10, 45], [11, 46], [78_614, 111_177]);
   check(polar, [10, 70], [15, 72], [164_084, 2_095_925.08 - 1_875_485.56]);
 });
 

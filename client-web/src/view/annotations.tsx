@@ -16,16 +16,19 @@ import { formatElapsed } from "../core/units";
 
 const LETTER_PX = 13;
 // What the page's own bars cover.
-const BARS_PX = { left: 76, top: 100, right: 0, bottom: 86 };
+const BARS_PX = { left: 76, top: 106, right: 0, bottom: 88 };
 const NARROW_BARS_PX = { left: 0, top: 190, right: 0, bottom: 84 };
 const NARROW_PX = 900;
+// Of the window's height, at most, by a tool's sheet.
+const SHEET_SHARE = 0.46;
 
 export function Annotations({ state }: { state: PageState }) {
   const box = state.pictureBox.value;
   const content = annotated(state);
   if (box === undefined || content === undefined) return null;
   const narrow = window.innerWidth < NARROW_PX;
-  const bars = narrow ? NARROW_BARS_PX : BARS_PX;
+  const sheetPx = narrow && state.tool.value !== undefined ? SHEET_SHARE * window.innerHeight : 0;
+  const bars = narrow ? { ...NARROW_BARS_PX, bottom: NARROW_BARS_PX.bottom + sheetPx } : BARS_PX;
   const shapes = annotationsOf(
     {
       ...content,

@@ -6,6 +6,7 @@ import {
   geoConicConformal,
   geoMercator,
   geoPath,
+  geoProjection,
   geoStereographic,
 } from "d3-geo";
 import { mesh } from "topojson-client";
@@ -57,6 +58,12 @@ function unshifted({ projection, latitudeDeg, longitudeDeg }: GridPlace): GeoPro
       return geoStereographic()
         .rotate([-lon0, -pole])
         .scale(earthM * (1 + Math.sin(radians(trueAt))));
+    }
+    case "eqc": {
+      const narrower = Math.cos(radians(number("lat_ts") ?? 0));
+      return geoProjection((lambda, phi) => [lambda * narrower, phi])
+        .rotate([-lon0, 0])
+        .scale(earthM);
     }
     default:
       return geoAzimuthalEquidistant().rotate([-longitudeDeg, -latitudeDeg]).scale(earthM);
