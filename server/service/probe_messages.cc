@@ -4,7 +4,7 @@
 #include <string>
 
 #include "service/camera_messages.h"
-#include "service/enum_tables.h"
+#include "service/scene_messages.h"
 #include "volume/field_values.h"
 #include "volume/terrain.h"
 
