@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <map>
 
 #include "glm/common.hpp"
@@ -270,7 +269,6 @@ TEST(SampleStorm, AirsMeansAreWithinAFewPerCentOfEveryLayer) {
   }
   EXPECT_LT(worst, 0.08);
   EXPECT_LT(std::sqrt(squares / static_cast<double>(count)), 0.01);
-  std::cout << worst << " " << std::sqrt(squares / static_cast<double>(count)) << "\n";
 }
 
 // Peaks over all times, as known of this run.
