@@ -22,7 +22,7 @@ v1::EarthPlace ToMessage(const volume::EarthPlace& place) {
 template <typename Message>
 void Name(const volume::HydrometeorFields& fields, std::size_t index, Message& message) {
   const volume::HydrometeorField& field = fields.fields[index];
-  message.set_hydrometeor(ToMessage(field.hydrometeor));
+  message.set_hydrometeor(service::ToMessage(field.hydrometeor));
   message.set_variable(field.variable);
   message.set_units(std::string(volume::UnitOf(volume::QuantityOf(fields, field))));
 }

@@ -11,8 +11,8 @@ namespace thunderhead::volume {
 Quantity QuantityOf(const HydrometeorFields& fields, const HydrometeorField& field);
 
 // In the unit of QuantityOf, of one cell. A mixing ratio is exact but for the air's density, which
-// differs from its mean over the cells around (AirDensity) by 1 to 3 % in a storm. `cell` is one of
-// the grid's.
+// differs from its mean over the cells around (AirDensity) by 1 % in a storm, at worst by 9 % in an
+// overshooting top. `cell` is one of the grid's.
 float ValueAt(const HydrometeorFields& fields, const HydrometeorField& field,
               const glm::ivec3& cell);
 
