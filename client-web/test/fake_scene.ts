@@ -1,8 +1,10 @@
 // Test support: the fake's storms and scenes: what DescribeStorm says of one, and a scene with its defaults filled in.
 import { create } from "@bufbuild/protobuf";
 import { cameraOfPose, poseOfCamera } from "../src/core/camera";
+import { azimuthTo } from "../src/core/map_frame";
 import { LIMITS, withCamera, withOutput } from "../src/core/scene";
 import {
+  CameraSchema,
   FieldParametersSchema,
   Hydrometeor,
   PhaseFunction_Kind as Kind,
@@ -77,11 +79,38 @@ const HOME = cameraOfPose({
   fieldOfViewDeg: 35,
 });
 
+// What is left open looks at the storm's middle, or shows all of it.
+function completeCamera(camera: Scene["camera"]): Scene["camera"] {
+  const { kind } = camera ?? {};
+  if (kind?.case === "spotter") {
+    const { xM = 0, yM = -30_000, azimuthDeg = azimuthTo([xM, yM], [0, 0]) } = kind.value;
+    const value = {
+      ...kind.value,
+      xM,
+      yM,
+      azimuthDeg,
+      elevationDeg: kind.value.elevationDeg ?? 10,
+    };
+    return create(CameraSchema, { kind: { case: "spotter", value } });
+  }
+  if (kind?.case === "topDown") {
+    const { xM = 0, yM = 0, widthM = 100_000 } = kind.value;
+    return create(CameraSchema, { kind: { case: "topDown", value: { xM, yM, widthM } } });
+  }
+  if (kind?.case === "orbit" && kind.value.target !== undefined) {
+    const { elevationDeg = 8, distanceM = 80_000 } = kind.value;
+    return create(CameraSchema, {
+      kind: { case: "orbit", value: { ...kind.value, elevationDeg, distanceM } },
+    });
+  }
+  return camera;
+}
+
 export function completeScene(scene: Scene): Scene {
   const stormId = scene.stormId === "" ? "supercell" : scene.stormId;
   const rendering = completeRendering(scene.rendering);
-  const camera =
-    scene.camera !== undefined && poseOfCamera(scene.camera) !== undefined ? scene.camera : HOME;
+  const asked = completeCamera(scene.camera);
+  const camera = asked !== undefined && poseOfCamera(asked) !== undefined ? asked : HOME;
   return withOutput(withCamera({ ...scene, stormId, rendering }, camera), {
     widthPx: scene.output?.widthPx ?? LIMITS.width.defaultValue,
     heightPx: scene.output?.heightPx ?? LIMITS.height.defaultValue,

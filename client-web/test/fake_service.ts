@@ -4,6 +4,7 @@ import { Code, ConnectError, type ConnectRouter } from "@connectrpc/connect";
 import type { InteractRequest } from "../src/gen/thunderhead/v1/interact_pb";
 import { SceneSchema } from "../src/gen/thunderhead/v1/scene_pb";
 import { ThunderheadService } from "../src/gen/thunderhead/v1/thunderhead_pb";
+import { fakeProbe, fakeStormMap } from "./fake_probe";
 import { completeScene, type Draw, describeStorm } from "./fake_scene";
 import { type FakePerson, FakeSession } from "./fake_session";
 import { FAKE_PRESETS, FAKE_TECHNIQUES } from "./fake_techniques";
@@ -66,6 +67,8 @@ export class FakeService {
       describeStorm: ({ stormId, timeIndex }) => ({
         storm: describeStorm(stormId, timeIndex, this.#later),
       }),
+      getStormMap: ({ stormId, timeIndex }) => fakeStormMap(stormId, timeIndex),
+      probeRay: (request) => fakeProbe(request),
       createSession: ({ scene }) => {
         this.#count += 1;
         const session = new FakeSession(

@@ -6,13 +6,13 @@ import { settingsOf, sharedSettingsOf } from "../src/core/rendering";
 import { effectiveField } from "../src/core/scene";
 import { Hydrometeor, type Scene, Transport } from "../src/gen/thunderhead/v1/scene_pb";
 
-interface Blob3 {
+export interface Blob3 {
   readonly hydrometeor: Hydrometeor;
   readonly at: readonly [number, number, number];
   readonly radius: number;
 }
 
-const BLOBS: readonly Blob3[] = [
+export const BLOBS: readonly Blob3[] = [
   { hydrometeor: Hydrometeor.RAIN, at: [0, 0, 1500], radius: 5000 },
   { hydrometeor: Hydrometeor.CLOUD, at: [0, 0, 5000], radius: 6000 },
   { hydrometeor: Hydrometeor.GRAUPEL, at: [2000, 0, 7000], radius: 4000 },

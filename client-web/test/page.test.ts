@@ -271,7 +271,7 @@ describe("the page in a session", () => {
 
   it("draws a line in the world that the viewer's page gets, and clears it", async () => {
     const { teacher, viewer } = await classroom();
-    teacher.page.toggleTool("pen");
+    teacher.page.takeInHand("pen");
     teacher.canvas.dragOver([
       [100, 100],
       [150, 100],
@@ -292,7 +292,7 @@ describe("the page in a session", () => {
 
   it("points at most thirty times a second, the newest place last, and withdraws the pointer", async () => {
     const { teacher, viewer } = await classroom();
-    teacher.page.toggleTool("pointer");
+    teacher.page.takeInHand("pointer");
     for (let i = 0; i < 100; i += 1) {
       teacher.canvas.hover(200 + i, 180);
       await pass(10);
@@ -310,12 +310,12 @@ describe("the page in a session", () => {
 
   it("leaves the tools to those who may draw", async () => {
     const { teacher, viewer } = await classroom();
-    viewer.page.toggleTool("pen");
+    viewer.page.takeInHand("pen");
     expect(viewer.page.state.session.tool.value).toBe("pen");
     teacher.page.actions.setRules({ viewersMayMark: false });
     await pass(20);
     expect(viewer.page.state.session.tool.value).toBe("camera");
-    viewer.page.toggleTool("pen");
+    viewer.page.takeInHand("pen");
     expect(viewer.page.state.session.tool.value).toBe("camera");
   });
 

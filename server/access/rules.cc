@@ -18,6 +18,8 @@ constexpr std::array kRules = {
     Rule{"GetServerInfo", true, true, true},
     Rule{"ListStorms", true, true, true},
     Rule{"DescribeStorm", true, true, true},
+    Rule{"GetStormMap", true, true, true},
+    Rule{"ProbeRay", true, true, true},
     Rule{"Interact", true, true, false},
     Rule{"WatchFrames", true, true, false},
     Rule{"AcknowledgeFrame", true, true, false},

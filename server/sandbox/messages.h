@@ -89,6 +89,7 @@ void Visit(Archive& archive, volume::StormFile& file) {
   archive(file.run);
   VisitOptional(archive, file.latitude_deg);
   VisitOptional(archive, file.longitude_deg);
+  archive(file.projection);
 }
 
 template <typename Archive>
@@ -118,6 +119,8 @@ void Visit(Archive& archive, volume::HydrometeorFields& fields) {
   archive(fields.land.texels);
   archive(fields.land.mean_albedo);
   archive(fields.land.mean_reflectance);
+  archive(fields.air.blocks);
+  archive(fields.air.kg_per_m3);
   archive(fields.motion.source);
   archive(fields.motion.variable);
   archive(fields.motion.turbulence);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "absl/strings/str_cat.h"
@@ -109,6 +110,18 @@ absl::Status CheckMotion(const volume::AirMotion& motion, std::size_t cells) {
                  "the motion of the air");
 }
 
+absl::Status CheckAir(const volume::AirDensity& air, const glm::ivec3& cells) {
+  const glm::ivec2 blocks = air.blocks;
+  bool sound = air.Empty();
+  if (!sound && std::min(blocks.x, blocks.y) >= 1 &&
+      std::max(blocks.x, blocks.y) <= volume::kAirBlocks) {
+    const auto values = static_cast<std::size_t>(blocks.x * blocks.y) * cells.z;
+    sound = air.kg_per_m3.size() == values &&
+            AllFinite(air.kg_per_m3, std::numeric_limits<float>::min());
+  }
+  return Require(sound, "the density of the air");
+}
+
 }  // namespace
 
 absl::Status CheckPlausible(const volume::StormFile& file) {
@@ -154,6 +167,7 @@ absl::Status CheckPlausible(const volume::HydrometeorFields& fields,
   THUNDERHEAD_RETURN_IF_ERROR(
       Require(IsInside(fields.condensate, cells), "the box of its condensate"));
   THUNDERHEAD_RETURN_IF_ERROR(CheckGround(fields, columns));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckAir(fields.air, cells));
   return CheckMotion(fields.motion, fields.grid.CellCount());
 }
 

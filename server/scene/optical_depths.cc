@@ -8,7 +8,6 @@
 #include <memory>
 #include <optional>
 
-#include "glm/geometric.hpp"
 #include "scene/detailed_medium.h"
 #include "scene/ground_hit.h"
 #include "scene/ray_span.h"
@@ -32,11 +31,7 @@ class DepthRays {
 
   // Of the ray through normalised device coordinates.
   Depths Through(double x, double y) const {
-    const glm::dvec3 origin_m =
-        view_.eye_m + x * view_.half_width_m * view_.right + y * view_.half_height_m * view_.up;
-    const glm::dvec3 direction =
-        glm::normalize(view_.forward + x * view_.tan_half_width * view_.right +
-                       y * view_.tan_half_height * view_.up);
+    const auto [origin_m, direction] = RayThrough(view_, x, y);
     const volume::ExtinctionVolume& volume = medium_->Volume();
     if (volume.Empty()) return {};
     Span span = SpanWithin(volume.low_m, volume.high_m, origin_m, direction,

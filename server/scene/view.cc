@@ -109,6 +109,12 @@ View ViewOf(const TopDownCamera& camera, double aspect_ratio) {
   return view;
 }
 
+ViewRay RayThrough(const View& view, double x, double y) {
+  return {view.eye_m + x * view.half_width_m * view.right + y * view.half_height_m * view.up,
+          glm::normalize(view.forward + x * view.tan_half_width * view.right +
+                         y * view.tan_half_height * view.up)};
+}
+
 Site SiteOf(const volume::HydrometeorFields& fields, const glm::dvec2& place_m) {
   const volume::RegularGrid& grid = fields.grid;
   const volume::CellBox& cells = fields.condensate;

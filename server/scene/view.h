@@ -41,6 +41,14 @@ struct View {
   bool Orthographic() const { return half_width_m > 0.0; }
 };
 
+// `direction` has the length 1.
+struct ViewRay {
+  glm::dvec3 origin_m{0.0};
+  glm::dvec3 direction{0.0, 1.0, 0.0};
+};
+// Through normalised device coordinates.
+ViewRay RayThrough(const View& view, double x, double y);
+
 // Where a storm is: what of it a view depends on.
 struct Site {
   double ground_height_m = 0.0;  // above sea level, under a spotter

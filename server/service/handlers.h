@@ -23,6 +23,12 @@ grpc::ServerUnaryReactor* ListStorms(Engine& engine, grpc::CallbackServerContext
 grpc::ServerUnaryReactor* DescribeStorm(Engine& engine, grpc::CallbackServerContext* context,
                                         const v1::DescribeStormRequest* request,
                                         v1::DescribeStormResponse* response);
+grpc::ServerUnaryReactor* GetStormMap(Engine& engine, grpc::CallbackServerContext* context,
+                                      const v1::GetStormMapRequest* request,
+                                      v1::GetStormMapResponse* response);
+grpc::ServerUnaryReactor* ProbeRay(Engine& engine, grpc::CallbackServerContext* context,
+                                   const v1::ProbeRayRequest* request,
+                                   v1::ProbeRayResponse* response);
 grpc::ServerUnaryReactor* GenerateCloud(Engine& engine, grpc::CallbackServerContext* context,
                                         const CallerRef& caller,
                                         const v1::GenerateCloudRequest* request,

@@ -23,10 +23,6 @@ namespace {
 constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 25;
 
 // HYDROMETEOR_UNSPECIFIED is 0, so the enumerators are offset by one.
-v1::Hydrometeor ToMessage(physics::Hydrometeor hydrometeor) {
-  return static_cast<v1::Hydrometeor>(physics::IndexOf(hydrometeor) + 1);
-}
-
 std::size_t IndexOf(v1::Hydrometeor hydrometeor) {
   return static_cast<std::size_t>(hydrometeor) - 1;
 }
@@ -242,6 +238,10 @@ void SetField(const volume::HydrometeorField& field, const volume::RegularGrid& 
 }
 
 }  // namespace
+
+v1::Hydrometeor ToMessage(physics::Hydrometeor hydrometeor) {
+  return static_cast<v1::Hydrometeor>(physics::IndexOf(hydrometeor) + 1);
+}
 
 absl::Status CheckScene(const v1::Scene& scene) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckSun(scene.sun()));

@@ -32,6 +32,7 @@ physics::SizeSource SizesOf(const v1::Scene& scene);
 // The value of a scene whose defaults are filled in.
 scene::Scene ToScene(const v1::Scene& message);
 
+v1::Hydrometeor ToMessage(physics::Hydrometeor hydrometeor);
 void ToMessage(const session::Modelled& modelled, v1::Modelled& message);
 void ToMessage(const session::Refinement& refinement, v1::Refinement& message);
 void ToMessage(const session::AccuracyReport& report, v1::AccuracyReport& message);

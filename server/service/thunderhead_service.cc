@@ -34,6 +34,22 @@ grpc::ServerUnaryReactor* ThunderheadService::DescribeStorm(grpc::CallbackServer
   return service::DescribeStorm(engine_, context, request, response);
 }
 
+grpc::ServerUnaryReactor* ThunderheadService::GetStormMap(grpc::CallbackServerContext* context,
+                                                          const v1::GetStormMapRequest* request,
+                                                          v1::GetStormMapResponse* response) {
+  const CallerOr caller = Admit(door_, *context, "GetStormMap", CallKind::kUnary);
+  if (!caller.ok()) return Finished(context, caller.status());
+  return service::GetStormMap(engine_, context, request, response);
+}
+
+grpc::ServerUnaryReactor* ThunderheadService::ProbeRay(grpc::CallbackServerContext* context,
+                                                       const v1::ProbeRayRequest* request,
+                                                       v1::ProbeRayResponse* response) {
+  const CallerOr caller = Admit(door_, *context, "ProbeRay", CallKind::kUnary);
+  if (!caller.ok()) return Finished(context, caller.status());
+  return service::ProbeRay(engine_, context, request, response);
+}
+
 grpc::ServerUnaryReactor* ThunderheadService::GenerateCloud(grpc::CallbackServerContext* context,
                                                             const v1::GenerateCloudRequest* request,
                                                             v1::GenerateCloudResponse* response) {

@@ -18,8 +18,10 @@ using Calls = Generated::WithCallbackMethod_GetServerInfo<Generated::WithCallbac
                     Generated::WithCallbackMethod_CloseSession<
                         Generated::WithCallbackMethod_RenderImage<
                             Generated::WithCallbackMethod_RenderImageWithProgress<
-                                Generated::WithRawCallbackMethod_Interact<
-                                    Generated::Service>>>>>>>>>>>>>;
+                                Generated::WithCallbackMethod_GetStormMap<
+                                    Generated::WithCallbackMethod_ProbeRay<
+                                        Generated::WithRawCallbackMethod_Interact<
+                                            Generated::Service>>>>>>>>>>>>>>>;
 
 class ThunderheadService final : public Calls {
  public:
@@ -34,6 +36,12 @@ class ThunderheadService final : public Calls {
   grpc::ServerUnaryReactor* DescribeStorm(grpc::CallbackServerContext* context,
                                           const v1::DescribeStormRequest* request,
                                           v1::DescribeStormResponse* response) override;
+  grpc::ServerUnaryReactor* GetStormMap(grpc::CallbackServerContext* context,
+                                        const v1::GetStormMapRequest* request,
+                                        v1::GetStormMapResponse* response) override;
+  grpc::ServerUnaryReactor* ProbeRay(grpc::CallbackServerContext* context,
+                                     const v1::ProbeRayRequest* request,
+                                     v1::ProbeRayResponse* response) override;
   grpc::ServerUnaryReactor* GenerateCloud(grpc::CallbackServerContext* context,
                                           const v1::GenerateCloudRequest* request,
                                           v1::GenerateCloudResponse* response) override;

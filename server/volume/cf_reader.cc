@@ -40,10 +40,11 @@ class CfTimeReader {
   absl::StatusOr<std::vector<float>> ReadLayers(const CfVariable& variable) const;
   absl::StatusOr<HydrometeorField> ReadField(const CfField& field);
   absl::Status ReadAir();
-  float AirDensity(std::size_t cell, bool moist) const;
+  float DensityAt(std::size_t cell, bool moist) const;
   std::vector<float> OntoGrid(std::vector<float> layers) const;
   void AddPaths(HydrometeorField* field) const;
   absl::Status ReadTerrain(HydrometeorFields* fields) const;
+  AirDensity MeanDensity(bool moist) const;
 
   const std::vector<float>* Air(AirVariable variable) const {
     const auto at =
@@ -111,7 +112,7 @@ absl::Status CfTimeReader::ReadAir() {
 }
 
 // The density (kg/m3) by which to multiply a mixing ratio in `cell`; NaN if unknown.
-float CfTimeReader::AirDensity(std::size_t cell, bool moist) const {
+float CfTimeReader::DensityAt(std::size_t cell, bool moist) const {
   const std::vector<float>* vapour = Air(AirVariable::kVapour);
   const double q_v = vapour != nullptr ? std::max((*vapour)[cell], 0.0F) : 0.0;
   if (const std::vector<float>* density = Air(AirVariable::kDensity); density != nullptr) {
@@ -174,7 +175,7 @@ absl::StatusOr<HydrometeorField> CfTimeReader::ReadField(const CfField& from) {
   float maximum = -std::numeric_limits<float>::infinity();
   for (std::size_t cell = 0; cell < values.size(); ++cell) {
     const float value = values[cell] * scale;
-    const float density = ratio ? AirDensity(cell, from.quantity.of_moist_air) : 1.0F;
+    const float density = ratio ? DensityAt(cell, from.quantity.of_moist_air) : 1.0F;
     // Both comparisons fail for NaN.
     const bool present = value > kMinAmount && density > 0.0F;
     values[cell] = present ? std::max(value, 0.0F) * density : 0.0F;
@@ -219,6 +220,32 @@ absl::Status CfTimeReader::ReadTerrain(HydrometeorFields* fields) const {
   return absl::OkStatus();
 }
 
+// Fields that refer to moist and to dry air in one file share the density of the first one.
+AirDensity CfTimeReader::MeanDensity(bool moist) const {
+  const CfAxis& axis = metadata_.axes[2];
+  const std::size_t columns = grid_.Offset(0, 0, 1);
+  AirDensityMeans means(grid_);
+  const glm::ivec2 stride = means.Stride();
+  for (int z = 0; z < grid_.cells.z; ++z) {
+    const std::vector<LayerShare> own = {{z, 1.0}};
+    const std::vector<LayerShare>& layers =
+        axis.shares.empty() ? own : axis.shares[static_cast<std::size_t>(z)];
+    double bottom_m = grid_.low_corner_m.z + z * grid_.spacing_m.z;
+    for (const LayerShare& part : layers) {
+      const double top_m = bottom_m + part.share * grid_.spacing_m.z;
+      for (int y = 0; y < grid_.cells.y; y += stride.y) {
+        for (int x = 0; x < grid_.cells.x; x += stride.x) {
+          const std::size_t cell =
+              static_cast<std::size_t>(part.layer) * columns + grid_.Offset(x, y, 0);
+          means.Add(x, y, bottom_m, top_m, DensityAt(cell, moist));
+        }
+      }
+      bottom_m = top_m;
+    }
+  }
+  return means.Means();
+}
+
 absl::StatusOr<HydrometeorFields> CfTimeReader::Read(const ReadCheckpoint& checkpoint) {
   const auto steps = static_cast<double>(metadata_.fields.size() + 1);
   const auto advance = [&](double done) {
@@ -241,6 +268,10 @@ absl::StatusOr<HydrometeorFields> CfTimeReader::Read(const ReadCheckpoint& check
     result.condensate = Union(result.condensate, box);
     result.fields.push_back(std::move(field));
   }
+  const auto ratio =
+      std::ranges::find(metadata_.fields, Quantity::kMixingRatio,
+                        [](const CfField& field) { return field.quantity.quantity; });
+  if (ratio != metadata_.fields.end()) result.air = MeanDensity(ratio->quantity.of_moist_air);
   THUNDERHEAD_RETURN_IF_ERROR(advance(steps));
   return result;
 }

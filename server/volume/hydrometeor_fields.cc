@@ -51,7 +51,7 @@ physics::ParticleOptics WithDrawnRadius(const HydrometeorField& field,
 }
 
 std::size_t HydrometeorFields::Bytes() const {
-  std::size_t values = terrain_height_m.capacity();
+  std::size_t values = terrain_height_m.capacity() + air.kg_per_m3.capacity();
   std::size_t halves = 0;
   for (const HydrometeorField& field : fields) {
     values += field.concentration_kg_per_m3.capacity();

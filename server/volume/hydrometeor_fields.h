@@ -9,6 +9,7 @@
 
 #include "physics/hydrometeors.h"
 #include "physics/particle_size.h"
+#include "volume/air_density.h"
 #include "volume/air_motion.h"
 #include "volume/grid.h"
 #include "volume/land_surface.h"
@@ -74,6 +75,7 @@ struct HydrometeorFields {
   std::vector<float> terrain_height_m;  // nx * ny values above sea level, x fastest
   LandSurface land;                     // empty if the file has no land use of a real place
   AirMotion motion;                     // of the air
+  AirDensity air;                       // that mixing ratios refer to; empty if there are none
   CellBox condensate;                   // the smallest box that holds every cell with condensate
 
   // Memory of the arrays in bytes.

@@ -58,6 +58,7 @@ class TimeReader {
   absl::Status ReadTerrain(HydrometeorFields& result);
   absl::Status ReadLand(HydrometeorFields& result);
   absl::Status ReadFields(HydrometeorFields& result);
+  AirDensity MeanDensity() const;
   absl::Status ReadMotion(HydrometeorFields& result);
   absl::StatusOr<StaggeredWind> ReadWind();
   absl::StatusOr<std::vector<float>> ReadEnergy();
@@ -298,11 +299,27 @@ absl::Status TimeReader::ReadFields(HydrometeorFields& result) {
   }
   THUNDERHEAD_RETURN_IF_ERROR(Take(pending, result));
   if (std::ranges::any_of(air_.dry_air_density_kg_per_m3, [](float rho) { return rho > 0.0F; })) {
+    result.air = MeanDensity();
     return absl::OkStatus();
   }
   return absl::DataLossError(absl::StrCat(
       file_.Path(), ": P + PB, T and QVAPOR of record ", record_,
       " give no usable air density in any cell; check their values and units (Pa, K, kg kg-1)"));
+}
+
+AirDensity TimeReader::MeanDensity() const {
+  AirDensityMeans means(regular_);
+  const glm::ivec2 stride = means.Stride();
+  for (int y = 0; y < metadata_.cells.y; y += stride.y) {
+    for (int x = 0; x < metadata_.cells.x; x += stride.x) {
+      std::size_t at = regular_.Offset(x, y, 0);
+      for (int level = 0; level < air_.levels; ++level, at += air_.columns) {
+        means.Add(x, y, air_.interface_height_m[at], air_.interface_height_m[at + air_.columns],
+                  air_.dry_air_density_kg_per_m3[at]);
+      }
+    }
+  }
+  return means.Means();
 }
 
 absl::StatusOr<StaggeredWind> TimeReader::ReadWind() {
@@ -414,6 +431,10 @@ void TrimTop(const VerticalGrid& storm_grid, HydrometeorFields& fields) {
   grid.cells.z = cells;
   for (std::vector<std::uint8_t>* values : {&fields.motion.turbulence, &fields.motion.ascent}) {
     if (!values->empty()) values->resize(grid.CellCount());
+  }
+  if (!fields.air.Empty()) {
+    const auto blocks = static_cast<std::size_t>(fields.air.blocks.x * fields.air.blocks.y);
+    fields.air.kg_per_m3.resize(blocks * static_cast<std::size_t>(cells));
   }
   for (HydrometeorField& field : fields.fields) {
     if (field.concentration_kg_per_m3.empty()) continue;

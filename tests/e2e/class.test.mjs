@@ -7,6 +7,7 @@ import {
   dragBetween,
   launchBrowser,
   listenForErrors,
+  openTool,
   rested,
   screenshot,
   setNumber,
@@ -16,7 +17,7 @@ import { difference, grabCanvas } from "./pictures.mjs";
 import { freePort, startServer } from "./server_process.mjs";
 
 const VIEWPORT = { width: 900, height: 560 };
-const MIDDLE = { x: 260, y: 260 };
+const MIDDLE = { x: 620, y: 300 };
 // Half a pixel on either side, and the rounding of the overlay's numbers.
 const SAME_PLACE_PX = 2;
 // The server takes one request for control in five seconds from a person.
@@ -37,6 +38,7 @@ async function visit(address) {
   const page = await context.newPage();
   listenForErrors(page, complaints);
   await page.goto(address);
+  await openTool(page, "look");
   return page;
 }
 
@@ -70,9 +72,9 @@ async function inStep() {
 // The corners of the only mark on a page's overlay.
 function markOn(page) {
   return page
-    .locator("[data-testid=mark] polyline.mark")
+    .getByTestId("mark")
     .first()
-    .evaluate((line) => [...line.points].map(({ x, y }) => [x, y]));
+    .evaluate(({ dataset }) => dataset.corners.split(" ").map((corner) => corner.split(",").map(Number)));
 }
 
 const marksOn = (page) => page.getByTestId("mark").count();
@@ -132,9 +134,11 @@ test("a student joins by the link and sees the same picture, but cannot change i
   assert.equal(await exposure(teacher).isDisabled(), false);
   const { revision } = await canvasData(teacher);
   await student.keyboard.press(".");
+  await openTool(student, "light");
   await student.getByTestId("sun-dome").press("ArrowDown");
   await student.waitForTimeout(500);
   assert.equal((await canvasData(teacher)).revision, revision);
+  await openTool(student, "look");
   await screenshot("21-student", student);
 });
 
@@ -211,6 +215,7 @@ test("the teacher says not now, and locks control", async () => {
 
 test("a line that the teacher draws is on the student's picture at the same place, and stays on the storm", async () => {
   await inStep();
+  await openTool(teacher, "marks");
   await teacher.getByTestId("tool-pen").click();
   await teacher.mouse.move(MIDDLE.x + 60, MIDDLE.y);
   await teacher.mouse.down();
@@ -253,8 +258,9 @@ test("the teacher's pointer is seen where it points, and goes with the tool", as
     return Math.hypot(x - MIDDLE.x, y - MIDDLE.y) < SAME_PLACE_PX;
   });
   await screenshot("26-pointer", student);
-  await teacher.keyboard.press("l");
+  await teacher.keyboard.press("Escape");
   await until("no pointer", async () => (await student.getByTestId("pointer").count()) === 0);
+  await openTool(teacher, "look");
 });
 
 test("following locked, a student's drag does nothing but hint", async () => {
@@ -312,6 +318,7 @@ test("the teacher reloads by accident and loses nothing", async () => {
   const before = await rested(teacher);
   const picture = await grabCanvas(teacher);
   await teacher.reload();
+  await openTool(teacher, "look");
   const after = await rested(teacher);
   assert.equal(after.azimuth, before.azimuth);
   const apart = difference(picture, await grabCanvas(teacher));
@@ -321,6 +328,7 @@ test("the teacher reloads by accident and loses nothing", async () => {
   await teacher.getByTestId("edit-block").waitFor({ state: "detached" });
   await changing(() => setNumber(teacher, "exposure", 0), teacher);
   await inStep();
+  await openTool(teacher, "marks");
   await teacher.getByTestId("clear-marks").click();
   await until("no marks", async () => (await marksOn(student)) === 0);
 });

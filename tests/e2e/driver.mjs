@@ -89,3 +89,21 @@ export async function setNumber(page, name, value) {
     input.dispatchEvent(new Event("change", { bubbles: true }));
   }, String(value));
 }
+
+// Opens a tool of the rail; undefined closes the one that is open.
+export async function openTool(page, name) {
+  const open = page.locator("[data-testid=rail] button[aria-controls=tool][aria-expanded=true]");
+  const now = (await open.count()) > 0 ? (await open.getAttribute("data-testid")).slice(5) : undefined;
+  if (now === name) return;
+  await page.getByTestId(`rail-${name ?? now}`).click();
+}
+
+const PANEL_BUTTONS = { help: "rail-help", drawer: "rail-settings" };
+
+// Opens a panel of the top bar. False where this window has no button for it.
+export async function openPanel(page, name) {
+  const button = page.getByTestId(PANEL_BUTTONS[name] ?? name);
+  if (!(await button.isVisible())) return false;
+  await button.click();
+  return true;
+}

@@ -7,6 +7,8 @@ import {
   dragBetween,
   launchBrowser,
   listenForErrors,
+  openPanel,
+  openTool,
   PICTURE_TIMEOUT_MS,
   rested as restedOn,
   screenshot as screenshotOf,
@@ -76,7 +78,9 @@ async function exposeAutomatically(of) {
   await of.getByTestId("automatic-exposure").evaluate((box) => box.click());
 }
 
-// The chosen quality: a list of one or none.
+const tool = (name) => openTool(page, name);
+
+// The chosen quality: a list of one or none. It is in the tool Look.
 function chosenQuality(of = page) {
   return of
     .locator("[data-testid=quality-choice] input:checked")
@@ -87,6 +91,7 @@ const chooseQuality = (word) =>
   page.getByTestId("quality-choice").getByText(word, { exact: true }).click();
 
 async function unfoldSettings(open = true) {
+  await tool("look");
   const settings = page.getByTestId("technique-settings");
   if ((await settings.evaluate((details) => details.open)) !== open) {
     await settings.locator("> summary").click();
@@ -115,6 +120,7 @@ async function tracedPaths() {
 // to the south and 17 up.
 test("the arrow keys turn the sun on its dome", async () => {
   await rested();
+  await tool("light");
   await page.getByTestId("sun-dome").focus();
   await changing(async () => {
     for (let i = 0; i < 4; i += 1) await page.keyboard.press("ArrowLeft");
@@ -141,6 +147,7 @@ test("a storm is on the canvas, not a blank", async () => {
 });
 
 test("a fresh page is balanced: diffusion with detail", async () => {
+  await tool("look");
   assert.deepEqual(await chosenQuality(), ["Balanced"]);
   assert.match(await page.getByTestId("quality-choice-about").innerText(), /Fine detail/);
   await unfoldSettings();
@@ -150,9 +157,11 @@ test("a fresh page is balanced: diffusion with detail", async () => {
   assert.equal(await label(page.getByTestId("traced-light")), "At rest");
   assert.equal(await page.getByTestId("detail").isChecked(), true);
   assert.equal(await page.getByTestId("per-field-phase").isChecked(), true);
-  assert.equal(await page.getByTestId("field-cloud-color").count(), 0, "no colours that are not shown");
   await screenshot("1-settings");
   await foldSettings();
+  await tool("fields");
+  assert.equal(await page.getByTestId("field-cloud").count(), 1);
+  assert.equal(await page.getByTestId("field-cloud-color").count(), 0, "no colours that are not shown");
 });
 
 test("traced light corrects the picture while it rests, and stays when it turns", async () => {
@@ -178,14 +187,19 @@ test("fast draws fewer samples without detail, and the arrow keys change the qua
   assert.deepEqual(await chosenQuality(), ["Balanced"]);
   const slices = () => page.getByTestId("slices-number").inputValue();
   const [fine, balanced] = [Number(await slices()), await grabCanvas(page)];
+  await tool("fields");
   assert.equal(await page.getByTestId("field-cloud").getByText("Detail").count(), 1);
+  await unfoldSettings();
 
   await page.getByTestId("quality-choice-balanced").focus();
   await changing(() => page.keyboard.press("ArrowLeft"));
   assert.deepEqual(await chosenQuality(), ["Fast"]);
   assert.equal(Number(await slices()), fine / 2);
   assert.equal(await page.getByTestId("detail").isChecked(), false);
+  await tool("fields");
+  assert.equal(await page.getByTestId("field-cloud").count(), 1);
   assert.equal(await page.getByTestId("field-cloud").getByText("Detail").count(), 0);
+  await unfoldSettings();
   const fast = await grabCanvas(page);
   await screenshot("2-fast");
   assert.ok(difference(balanced, fast) > 0.1, "without detail the picture is the same");
@@ -217,9 +231,11 @@ test("fields in their false colours", async () => {
   const usual = await grabCanvas(page);
   await changing(() => page.getByTestId("false-colors").check());
   assert.ok(difference(usual, await grabCanvas(page)) > 1, "false colours look like true ones");
+  await tool("fields");
   const swatches = await page.locator("[data-testid^=field-][data-testid$=-color]").count();
   assert.ok(swatches > 1, `there are ${swatches} colours to choose`);
   await screenshot("2-false-colours");
+  await unfoldSettings();
   await changing(() => page.getByTestId("false-colors").uncheck());
   assert.deepEqual(await chosenQuality(), ["Fast"]);
   await foldSettings();
@@ -291,11 +307,14 @@ test("the time slider shows another time", async () => {
 
 test("a field switched off goes, and with the last one the storm", async () => {
   await changing(async () => {
+    await tool("map");
     await page.getByTestId("home").click();
+    await tool("look");
     // An automatic one would follow what is left of the storm.
     await setNumber(page, "exposure", 0);
   });
   const whole = await grabCanvas(page);
+  await tool("fields");
   const switches = page.locator("[data-testid$=-visible]");
   const names = await switches.evaluateAll((boxes) => boxes.map((box) => box.dataset.testid));
   assert.ok(names.includes("field-snow-visible"), `the fields are ${names}`);
@@ -324,6 +343,7 @@ test("a field switched off goes, and with the last one the storm", async () => {
 
 test("the sun set by the dome darkens the storm as it sinks", async () => {
   const high = boxMean(await grabCanvas(page), [0.2, 0.2, 0.6, 0.6]);
+  await tool("light");
   await page.getByTestId("sun-dome").focus();
   await changing(async () => {
     for (let i = 0; i < 7; i += 1) await page.keyboard.press("ArrowDown");
@@ -331,9 +351,12 @@ test("the sun set by the dome darkens the storm as it sinks", async () => {
   await screenshot("7-low-sun");
   const low = boxMean(await grabCanvas(page), [0.2, 0.2, 0.6, 0.6]);
   assert.ok(low < high, `the low sun gives ${low}, the high sun ${high}`);
+  await tool("look");
   await changing(() => exposeAutomatically(page));
   const exposed = boxMean(await grabCanvas(page), [0.2, 0.2, 0.6, 0.6]);
   assert.ok(exposed > low, `an automatic exposure of the low sun gives ${exposed}, ${low} without`);
+  await tool("light");
+  await page.getByTestId("sun-dome").focus();
   await changing(async () => {
     for (let i = 0; i < 7; i += 1) await page.keyboard.press("ArrowUp");
   });
@@ -416,7 +439,12 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
   await changing(() => setNumber(page, "metaball-count", ballsBefore));
 
   const before2 = await grabCanvas(page);
-  await page.getByTestId("lights-section").locator("summary").click();
+  const lights = async () => {
+    await tool("light");
+    const section = page.getByTestId("lights-section");
+    if (!(await section.evaluate(({ open }) => open))) await section.locator("summary").click();
+  };
+  await lights();
   await changing(() => page.getByTestId("add-light").click());
   const warm = await grabCanvas(page);
   await changing(() => page.getByTestId("add-light").click());
@@ -424,23 +452,29 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
   await screenshot("9-lights");
   assert.ok(difference(before2, warm) > 0.5, "a light more is seen");
   assert.ok(difference(warm, both) > 0.5, "and another one");
+  await unfoldSettings();
   assert.doesNotMatch(await page.getByTestId("not-shown").innerText(), /lights/);
+  await lights();
   assert.match(await page.getByTestId("lights-shown").innerText(), / Shown by this technique \(Metaballs\)/);
+  await unfoldSettings();
   await changing(() => choice.selectOption({ label: "Light volume" }));
   assert.match(await page.getByTestId("not-shown").innerText(), /lights besides the sun/);
+  await lights();
   assert.match(
     await page.getByTestId("lights-shown").innerText(),
     /Not shown by this technique \(Light volume\).*Metaballs.*Monte Carlo/,
   );
+  await unfoldSettings();
   // The server filled in the settings that metaballs do not have.
   await until("the light volume has its own defaults", async () =>
     (await chosenQuality()).includes("Balanced"),
   );
   assert.equal(await page.getByTestId("detail").isChecked(), true);
+  await lights();
   await changing(() => page.getByTestId("light-1-remove").click());
   await changing(() => page.getByTestId("light-1-remove").click());
   assert.equal(await page.getByTestId("light-1").count(), 0);
-  await page.getByTestId("lights-section").locator("summary").click();
+  await tool("look");
   await changing(() => chooseQuality("Fast"));
   assert.equal(await page.getByTestId("not-shown").count(), 0);
   assert.ok(difference(before, await grabCanvas(page)) < 1, "the light volume is back");
@@ -488,6 +522,7 @@ test("a cumulus as a surface, and the parts of its light", async () => {
 });
 
 test("an accuracy asked for is reached by a setting that the server picks, or the nearest is told", async () => {
+  await tool("look");
   await page.getByTestId("accuracy-section").locator("summary").click();
   const report = () => page.getByTestId("accuracy-report").evaluate((text) => ({ ...text.dataset }));
   const ask = async (error) => {
@@ -535,17 +570,20 @@ test("play goes through the times and waits for each", async () => {
   await rested();
 });
 
-test("the panel folds away with a key and leaves the storm", async () => {
+test("a tool opens with its key and Escape closes it", async () => {
   await page.getByTestId("storm-canvas").focus();
-  await page.keyboard.press("p");
-  assert.equal(await page.getByTestId("panel").isVisible(), false);
-  await screenshot("13-no-panel");
-  await page.keyboard.press("p");
-  assert.equal(await page.getByTestId("panel").isVisible(), true);
+  await page.keyboard.press("l");
+  assert.equal(await page.getByTestId("tool-panel").getAttribute("data-tool"), "light");
+  await page.keyboard.press("6");
+  assert.equal(await page.getByTestId("tool-panel").getAttribute("data-tool"), "probe");
+  await page.keyboard.press("Escape");
+  assert.equal(await page.getByTestId("tool-panel").count(), 0);
+  await screenshot("13-no-tool");
 });
 
 test("a cloud is made to order and shown, and a bad one is named", async () => {
   const before = await grabCanvas(page);
+  await openPanel(page, "storms");
   await page.getByTestId("cloud-section").locator("summary").click();
   await page.getByTestId("cloud-own-shape").check();
   await page.getByTestId("cloud-ellipsoids").fill("0,0,1200,600,400");
@@ -565,9 +603,11 @@ test("a cloud is made to order and shown, and a bad one is named", async () => {
   await changing(() => page.getByTestId("storm").selectOption("supercell"));
   await rested();
   assert.equal(await page.getByTestId("delete-cloud").count(), 0, "a storm of a file stays");
+  await page.keyboard.press("Escape");
 });
 
 test("a cloud that was made can be deleted, after a second thought", async () => {
+  await openPanel(page, "storms");
   await changing(() => page.getByTestId("storm").selectOption("fair-weather-cumulus-3"));
   const button = page.getByTestId("delete-cloud");
   await button.click();
@@ -578,6 +618,7 @@ test("a cloud that was made can be deleted, after a second thought", async () =>
     () => document.querySelectorAll("[data-testid=storm] option").length === 1,
   );
   assert.equal(await button.count(), 0);
+  await page.keyboard.press("Escape");
   await rested();
 });
 
@@ -621,11 +662,11 @@ test("it works on a phone's screen", async () => {
   try {
     await phone.goto(server.url);
     await rested(phone);
-    assert.equal(await phone.getByTestId("panel").isVisible(), false);
+    assert.equal(await phone.getByTestId("tool-panel").count(), 0);
     await screenshot("16-phone", phone);
-    await phone.getByTestId("panel-toggle").tap();
-    assert.equal(await phone.getByTestId("panel").isVisible(), true);
-    await screenshot("17-phone-panel", phone);
+    await phone.getByTestId("rail-look").tap();
+    assert.equal(await phone.getByTestId("tool-panel").isVisible(), true);
+    await screenshot("17-phone-look", phone);
     const overflow = await phone.evaluate(
       () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
     );
@@ -634,7 +675,7 @@ test("it works on a phone's screen", async () => {
     assert.equal(picture.width, 780);
     assert.ok(spread(picture).deviation > 8, "the phone's canvas is nearly uniform");
 
-    await phone.getByTestId("panel-toggle").tap();
+    await phone.getByTestId("rail-look").tap();
     const before = await canvasData(phone);
     const fingers = await phone.context().newCDPSession(phone);
     await changing(() => slide(fingers, [[200, 300]], [[120, 300]]), phone);

@@ -35,6 +35,8 @@ const std::map<std::string, std::set<std::string>> kMayCall = {
     {"GetServerInfo", {"viewer", "presenter", "pipeline"}},
     {"ListStorms", {"viewer", "presenter", "pipeline"}},
     {"DescribeStorm", {"viewer", "presenter", "pipeline"}},
+    {"GetStormMap", {"viewer", "presenter", "pipeline"}},
+    {"ProbeRay", {"viewer", "presenter", "pipeline"}},
     {"GenerateCloud", {"presenter"}},
     {"DeleteCloud", {"presenter"}},
     {"CreateSession", {"presenter"}},

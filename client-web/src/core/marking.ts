@@ -1,5 +1,6 @@
 // The tools that show something to everybody: a pointer and a pen. They turn places in the picture into rays.
 import { signal } from "@preact/signals-core";
+import { arrowStrokes, joined, letterStrokes, ringStroke } from "./lettering";
 import { type Later, Newest } from "./newest";
 import { type Box, picturePointAt } from "./picture_box";
 import { type Projection, pointOnRay, rayAt, type WorldRay } from "./projection";
@@ -35,18 +36,25 @@ export interface MarkingSteps {
 
 const POINT_EVERY_MS = 34;
 const MOST_CORNERS = 64;
+const LETTER_PX = 22;
+const RING_PX = 60;
+const ARROW_PX = 70;
 // Shorter strokes are clicks.
 const SHORTEST_STROKE_PX = 4;
 
 export class Marking {
   // The line that is being drawn, in CSS pixels of the window.
   readonly stroke = signal<readonly StrokePoint[]>([]);
+  // What the text tool writes.
+  readonly words = signal("");
   readonly #session: SessionState;
   readonly #steps: MarkingSteps;
   readonly #points: Newest<WorldRay | undefined>;
   #pointing = false;
   readonly #pointer: PictureTool;
   readonly #pen: PictureTool;
+  readonly #arrow: PictureTool;
+  readonly #text: PictureTool;
 
   constructor(session: SessionState, steps: MarkingSteps) {
     this.#session = session;
@@ -71,14 +79,54 @@ export class Marking {
       cancel: () => this.#draw([]),
       leave: nothing,
     };
+    this.#arrow = {
+      hover: nothing,
+      press: (place) => this.#draw([place]),
+      drag: (place) => this.#draw([this.stroke.peek()[0] ?? place, place]),
+      release: () => this.#finishArrow(),
+      cancel: () => this.#draw([]),
+      leave: nothing,
+    };
+    this.#text = {
+      hover: nothing,
+      press: (place) => this.#draw([place]),
+      drag: (place) => this.#draw([place]),
+      release: () => {
+        const [place] = this.stroke.peek();
+        this.#draw([]);
+        if (place !== undefined) this.write(place);
+      },
+      cancel: () => this.#draw([]),
+      leave: nothing,
+    };
   }
 
   // The tool in the hand; undefined for the camera.
   tool(): PictureTool | undefined {
     if (!this.#session.mayMark.peek()) return undefined;
     const tool = this.#session.tool.peek();
-    if (tool === "pointer") return this.#pointer;
-    return tool === "pen" ? this.#pen : undefined;
+    if (tool === "camera") return undefined;
+    return { pointer: this.#pointer, pen: this.#pen, arrow: this.#arrow, text: this.#text }[tool];
+  }
+
+  // Writes the words with their first letter's corner at a place.
+  write({ left, top }: StrokePoint): void {
+    const words = this.words.peek().trim();
+    if (words === "") return;
+    this.#addMark(joined(letterStrokes(words, { left, top: top - LETTER_PX / 2 }, LETTER_PX)));
+  }
+
+  // For who has no pointer to draw with: a ring around the middle of the picture, an arrow to it, the words beside it.
+  markMiddle(tool: "pen" | "arrow" | "text"): void {
+    const box = this.#steps.picture()?.box;
+    if (box === undefined) return;
+    const middle = { left: box.left + box.width / 2, top: box.top + box.height / 2 };
+    if (tool === "text") this.write(middle);
+    else if (tool === "pen") this.#addMark(ringStroke(middle, RING_PX));
+    else {
+      const tail = { left: middle.left - ARROW_PX, top: middle.top - ARROW_PX };
+      this.#addMark(joined(arrowStrokes(tail, middle)));
+    }
   }
 
   withdrawPointer(): void {
@@ -109,7 +157,20 @@ export class Marking {
     const places = this.stroke.peek();
     this.#draw([]);
     if (strokeLengthPx(places) < SHORTEST_STROKE_PX) return;
-    const rays = simplifiedStroke(places, MOST_CORNERS).flatMap((place) => {
+    this.#addMark(simplifiedStroke(places, MOST_CORNERS));
+  }
+
+  #finishArrow(): void {
+    const places = this.stroke.peek();
+    this.#draw([]);
+    const [tail, tip] = places;
+    if (tail === undefined || tip === undefined) return;
+    if (strokeLengthPx(places) >= SHORTEST_STROKE_PX)
+      this.#addMark(joined(arrowStrokes(tail, tip)));
+  }
+
+  #addMark(places: readonly StrokePoint[]): void {
+    const rays = places.flatMap((place) => {
       const ray = this.#rayAt(place);
       return ray === undefined ? [] : [ray];
     });

@@ -17,6 +17,8 @@ export class Playback {
   readonly #steps: PlaybackSteps;
   readonly #playing = signal(false);
   readonly timesPerSecond: Signal<number> = signal(2);
+  // False: play ends at the last time.
+  readonly loops: Signal<boolean> = signal(true);
   #lastStepMs: number | undefined;
   #withdrawPaint: (() => void) | undefined;
 
@@ -35,6 +37,7 @@ export class Playback {
 
   play(): void {
     if (this.#playing.value || this.#steps.timeCount() < 2) return;
+    if (!this.loops.value && this.#atEnd()) this.#steps.showTime(0);
     this.#playing.value = true;
     this.#lastStepMs = undefined;
     this.#await();
@@ -57,6 +60,10 @@ export class Playback {
     this.pause();
   }
 
+  #atEnd(): boolean {
+    return this.#steps.timeIndex() >= this.#steps.timeCount() - 1;
+  }
+
   #await(): void {
     this.#withdrawPaint = this.#steps.onNextPaint((nowMs) => this.#tick(nowMs));
   }
@@ -67,6 +74,10 @@ export class Playback {
     const intervalMs = 1000 / this.timesPerSecond.value;
     const due = this.#lastStepMs === undefined || nowMs - this.#lastStepMs >= intervalMs;
     if (shown && due) {
+      if (!this.loops.value && this.#atEnd()) {
+        this.pause();
+        return;
+      }
       this.#lastStepMs = nowMs;
       this.step(1);
     }

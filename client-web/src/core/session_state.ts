@@ -25,7 +25,7 @@ export interface PendingMark {
   readonly pointsM: readonly Vec3[];
 }
 
-export type Tool = "camera" | "pointer" | "pen";
+export type Tool = "camera" | "pointer" | "pen" | "arrow" | "text";
 
 export class SessionState {
   // The key for viewers' links; undefined before there is a session.

@@ -10,6 +10,7 @@ import type {
   Refinement,
   StageCost,
 } from "../gen/thunderhead/v1/frame_pb";
+import type { GetStormMapResponse } from "../gen/thunderhead/v1/probe_pb";
 import {
   type Camera,
   type Preset,
@@ -25,10 +26,14 @@ import type {
   GetServerInfoResponse,
   TechniqueDescription,
 } from "../gen/thunderhead/v1/thunderhead_pb";
+import { type AnnotationChoice, FIRST_ANNOTATIONS } from "./annotations";
 import { cameraOfPose, type Pose, poseOfCamera } from "./camera";
 import { type CloudDraft, FIRST_CLOUD } from "./cloud";
 import { type Encoding, encodingOf, pictureBytes } from "./encoding";
+import { History } from "./history";
+import { type Moment, momentOf, secondsBetween } from "./moment";
 import type { Box } from "./picture_box";
+import type { Probed } from "./probe";
 import { type Projection, projectionOf } from "./projection";
 import {
   drawsDetail,
@@ -41,10 +46,14 @@ import {
   techniqueNameOf,
   withSettings,
 } from "./rendering";
-import { LIMITS, withCamera, withRendering } from "./scene";
+import { LIMITS, withCamera, withOutput, withRendering } from "./scene";
 import type { Edit } from "./scene_sync";
 import { SessionState } from "./session_state";
 import type { SunDirection } from "./sun";
+import { clockHere } from "./sun_clock";
+import type { PanelName, ToolName } from "./tools";
+import { formatElapsed } from "./units";
+import { describePose, describeSun } from "./words";
 
 export type Connection =
   | { readonly kind: "connecting" }
@@ -77,6 +86,7 @@ export interface ShownFrame {
   // How far the picture is reduced for this page's link or window.
   readonly tier: number;
   readonly ownView: boolean;
+  readonly pose: Pose | undefined;
   readonly projection: Projection | undefined;
 }
 
@@ -99,28 +109,53 @@ export class PageState {
   readonly #shownPose = signal<Pose | undefined>(undefined);
   // The sun of the frame on the screen.
   readonly #shownSun = signal<Sun | undefined>(undefined);
+  #seenStorm = "";
   #onEdit: ((edit: Edit) => void) | undefined;
 
   readonly session = new SessionState();
+  readonly history: History;
   readonly connection = signal<Connection>({ kind: "connecting" });
   readonly server = signal<GetServerInfoResponse | undefined>(undefined);
   readonly storms = signal<readonly StormSummary[]>([]);
   readonly storm = signal<StormDescription | undefined>(undefined);
   readonly frame = signal<ShownFrame | undefined>(undefined);
+  // Indices of the times of this storm that were on the screen.
+  readonly seenTimes = signal<ReadonlySet<number>>(new Set());
   // Why this browser is sent no video; undefined where it can be.
   readonly whyNoVideo = signal<string | undefined>(undefined);
   readonly pace = signal<Pace>({ framesPerSecond: 0, bytesPerSecond: 0, latencyMs: undefined });
   readonly notices = signal<readonly Notice[]>([]);
   // The picture's width and height over the canvas's, in device pixels.
   readonly resolution = signal(1);
-  readonly panelOpen = signal(true);
-  // The popover that is open.
-  readonly popover = signal<"share" | "people" | undefined>(undefined);
+  // The tool that is open, and whether it takes the focus: it was opened by a key.
+  readonly tool = signal<ToolName | undefined>(undefined);
+  toolTakesFocus = false;
+  // True while every setting is listed at the side.
+  readonly drawerOpen = signal(false);
+  // The panel of the top bar that is open.
+  readonly popover = signal<PanelName | undefined>(undefined);
+  // The storm from above, and why there is none.
+  readonly stormMap = signal<GetStormMapResponse | undefined>(undefined);
+  readonly mapProblem = signal<string | undefined>(undefined);
+  // The last two clicks with the probe, and why the last one was not answered.
+  readonly probes = signal<readonly Probed[]>([]);
+  readonly probing = signal(false);
+  readonly probeProblem = signal<string | undefined>(undefined);
+  // What is drawn over the picture.
+  readonly annotations = signal<AnnotationChoice>(FIRST_ANNOTATIONS);
+  // The time zone of the storm's place, or one chosen; undefined for a storm without a place.
+  readonly zone = signal<string | undefined>(undefined);
+  // The time zone in which the sun's clock is shown.
+  readonly sunZone = signal("Etc/GMT");
   // Where the picture lies in the window, in CSS pixels.
   readonly pictureBox = signal<Box | undefined>(undefined);
   // The cloud set in the panel, and whether the server is making it.
   readonly cloud = signal<CloudDraft>(FIRST_CLOUD);
   readonly makingCloud = signal(false);
+
+  constructor(nowMs: () => number = Date.now) {
+    this.history = new History(nowMs);
+  }
 
   get scene(): ReadonlySignal<Scene> {
     return this.#scene;
@@ -170,9 +205,16 @@ export class PageState {
   readonly output = computed(() => this.#scene.value.output);
   readonly timeIndex = computed(() => this.#scene.value.timeIndex ?? 0);
   readonly stormId = computed(() => this.#scene.value.stormId);
-  readonly timeCount = computed(() => {
+  // The description of the storm shown, not of the one before it.
+  readonly #describedStorm = computed(() => {
     const storm = this.storm.value;
-    return storm !== undefined && storm.id === this.stormId.value ? storm.times.length : 0;
+    return storm?.id === this.stormId.value ? storm : undefined;
+  });
+  readonly timeCount = computed(() => this.#describedStorm.value?.times.length ?? 0);
+  // The camera of the frame on the screen.
+  readonly shownCamera = computed(() => {
+    const pose = this.frame.value?.pose;
+    return pose === undefined ? undefined : cameraOfPose(pose);
   });
   // The camera's pose: the scene's, or where the scene leaves it open that of the frame on the screen.
   readonly pose = computed(() => {
@@ -183,23 +225,100 @@ export class PageState {
       poseOfCamera(camera) ?? (asked === undefined || asked === shown?.kind ? shown : undefined)
     );
   });
+  // As `pose`, but of the own view while this page looks around.
+  readonly viewPose = computed(() => {
+    const frame = this.frame.value;
+    return this.session.lookingAround.value && frame?.ownView ? frame.pose : this.pose.value;
+  });
   readonly cameraKind = computed(
     () => this.#scene.value.camera?.kind.case ?? this.#shownPose.value?.kind ?? "orbit",
   );
+
+  // What is shown, in words.
+  readonly title = computed(() => {
+    const known = this.storms.value.find(({ id }) => id === this.stormId.value);
+    return known?.title || this.stormId.value || "Thunderhead";
+  });
+  // The model run: when it began.
+  readonly run = computed(() => {
+    const start = this.#describedStorm.value?.runStart ?? "";
+    const moment = momentOf(start, "", undefined);
+    if (start === "") return "";
+    return /^\d{4}/.test(moment.date)
+      ? `run ${moment.date} ${moment.clock}`
+      : `run ${moment.clock}`;
+  });
+  readonly shownTime = computed(() => {
+    const count = this.timeCount.value;
+    const times = this.#describedStorm.value?.times ?? [];
+    return times[Math.min(this.timeIndex.value, count - 1)];
+  });
+  readonly moment = computed((): Moment | undefined => {
+    const time = this.shownTime.value;
+    if (time === undefined) return undefined;
+    return momentOf(time.validTime, formatElapsed(time.elapsedS), this.zone.value);
+  });
+  // The sun's clock at the time shown.
+  readonly clockHere = computed(() =>
+    clockHere(
+      this.#scene.value.sun?.clock,
+      this.#describedStorm.value?.sunClock,
+      this.shownTime.value?.elapsedS ?? 0,
+    ),
+  );
+  // Time since the run began; since the first time, where its beginning is not known.
+  readonly leadS = computed(() => {
+    const time = this.shownTime.value;
+    if (time === undefined) return 0;
+    return (
+      secondsBetween(this.#describedStorm.value?.runStart ?? "", time.validTime) ?? time.elapsedS
+    );
+  });
+  // The picture for who does not see it.
+  readonly description = computed(() => {
+    const { date, clock } = this.moment.value ?? { date: "", clock: "" };
+    const when = `${date} ${clock}`.trim();
+    return [
+      `${this.title.value}${when === "" ? "" : `, ${when}`}`,
+      describePose(this.pose.value),
+      describeSun(this.sunDirection.value),
+    ].join(". ");
+  });
 
   // The listener is called with each edit by the user, after it was applied.
   onEdit(listener: (edit: Edit) => void): void {
     this.#onEdit = listener;
   }
 
-  // An edit by the user; sent to the server. Ignored while the scene cannot be changed from this page.
-  edit(change: Edit): void {
+  // An edit by the user; sent to the server. Ignored while the scene cannot be changed from this page. Can be undone, unless
+  // it is the page's own doing.
+  edit(change: Edit, record: "recorded" | "unrecorded" = "recorded"): void {
     if (this.session.editBlock.peek() !== undefined) return;
     const before = this.#scene.value;
     const after = change(before);
     if (after === before) return;
+    if (record === "recorded") this.history.edited(before);
     this.#scene.value = after;
     this.#onEdit?.(change);
+  }
+
+  undo(): void {
+    const scene = this.#editable() ? this.history.undo(this.#scene.peek()) : undefined;
+    if (scene !== undefined) this.restore(scene, "unrecorded");
+  }
+
+  redo(): void {
+    const scene = this.#editable() ? this.history.redo(this.#scene.peek()) : undefined;
+    if (scene !== undefined) this.restore(scene, "unrecorded");
+  }
+
+  // Shows another scene, at this page's size.
+  restore(scene: Scene, record: "recorded" | "unrecorded" = "recorded"): void {
+    this.edit(
+      (present) =>
+        withOutput(scene, { widthPx: present.output?.widthPx, heightPx: present.output?.heightPx }),
+      record,
+    );
   }
 
   // An edit of the technique; ignored until the server has sent the present one.
@@ -260,8 +379,17 @@ export class PageState {
       accuracy: frame.accuracy,
       tier: frame.tier,
       ownView: frame.ownView,
+      pose: poseOfCamera(frame.camera),
       projection: projectionOf(frame.view),
     };
+  }
+
+  // A time of the storm is on the screen. Another storm has none yet.
+  sawTime(stormId: string, timeIndex: number): void {
+    if (this.#seenStorm !== stormId) this.seenTimes.value = new Set([timeIndex]);
+    else if (!this.seenTimes.value.has(timeIndex))
+      this.seenTimes.value = new Set([...this.seenTimes.value, timeIndex]);
+    this.#seenStorm = stormId;
   }
 
   notify(notice: Notice): void {
@@ -272,6 +400,10 @@ export class PageState {
   dismiss(subject: string): void {
     if (!this.notices.value.some((notice) => notice.subject === subject)) return;
     this.notices.value = this.notices.value.filter((notice) => notice.subject !== subject);
+  }
+
+  #editable(): boolean {
+    return this.session.editBlock.peek() === undefined;
   }
 
   #describe(settings: Settings | undefined): TechniqueDescription | undefined {

@@ -1,5 +1,44 @@
 // Numbers and units as people read them.
+import { signal } from "@preact/signals-core";
 import type { Limits } from "./limits";
+
+// Lengths in metres and kilometres, or in feet and nautical miles as pilots have them.
+export type LengthUnits = "metric" | "aviation";
+export const lengthUnits = signal<LengthUnits>("metric");
+
+const FOOT_M = 0.3048;
+const NAUTICAL_MILE_M = 1852;
+
+// A distance, or a height: which unit pilots have for it.
+export type LengthKind = "distance" | "height";
+
+interface LengthUnit {
+  readonly metres: number;
+  readonly symbol: string;
+}
+
+function unitOfLength(lengthM: number, kind: LengthKind): LengthUnit {
+  if (lengthUnits.value === "aviation")
+    return kind === "height" || Math.abs(lengthM) < NAUTICAL_MILE_M / 4
+      ? { metres: FOOT_M, symbol: "ft" }
+      : { metres: NAUTICAL_MILE_M, symbol: "nm" };
+  return Math.abs(lengthM) < 1000 ? { metres: 1, symbol: "m" } : { metres: 1000, symbol: "km" };
+}
+
+// "8.4 km", "27600 ft".
+export function formatLength(lengthM: number, kind: LengthKind): string {
+  const { metres, symbol } = unitOfLength(lengthM, kind);
+  return `${formatNumber(lengthM / metres)} ${symbol}`;
+}
+
+// The nearest length below that is 1, 2 or 5 times a power of ten in the unit that it is shown in.
+export function roundLength(lengthM: number): number {
+  const { metres } = unitOfLength(lengthM, "distance");
+  const value = lengthM / metres;
+  const power = 10 ** Math.floor(Math.log10(value));
+  const digit = [5, 2, 1].find((each) => each * power <= value) ?? 1;
+  return digit * power * metres;
+}
 
 export interface DisplayUnit {
   // Multiply a value in the schema's unit by this.
@@ -14,6 +53,10 @@ const SYMBOLS: Readonly<Record<string, string>> = { "1": "", deg: "°", "kg/m3":
 // farther than any storm in kilometres.
 export function displayUnitOf(limits: Limits): DisplayUnit {
   if (limits.unit === "m" && limits.maximum <= 1) return { factor: 1e3, symbol: "mm" };
+  if (limits.unit === "m" && limits.maximum > 1 && lengthUnits.value === "aviation")
+    return limits.maximum >= 1e5
+      ? { factor: 1 / NAUTICAL_MILE_M, symbol: "nm" }
+      : { factor: 1 / FOOT_M, symbol: "ft" };
   if (limits.unit === "m" && limits.maximum >= 1e5) return { factor: 1e-3, symbol: "km" };
   return { factor: 1, symbol: SYMBOLS[limits.unit] ?? limits.unit };
 }
@@ -43,6 +86,12 @@ export function formatBytes(bytes: number): string {
     step += 1;
   }
   return `${formatNumber(value)} ${steps[step]}`;
+}
+
+// "1.4 Mbit/s".
+export function formatBitRate(bytesPerSecond: number): string {
+  const kbit = (bytesPerSecond * 8) / 1000;
+  return kbit >= 999.5 ? `${formatNumber(kbit / 1000)} Mbit/s` : `${Math.round(kbit)} kbit/s`;
 }
 
 // "0001-01-01T00:20:00Z" as "00:20 · day 1" for idealised runs, which start in year 1, and as

@@ -1,6 +1,12 @@
 // The calls that ask once and are answered once, by gRPC-Web.
+import type { MessageInitShape } from "@bufbuild/protobuf";
 import { type Client, createClient, type Transport } from "@connectrpc/connect";
 import type { GenerateCloudRequest } from "../gen/thunderhead/v1/cloud_pb";
+import type {
+  GetStormMapResponse,
+  ProbeRayRequestSchema,
+  ProbeRayResponse,
+} from "../gen/thunderhead/v1/probe_pb";
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
 import type { StormDescription, StormSummary } from "../gen/thunderhead/v1/storm_pb";
 import {
@@ -32,6 +38,14 @@ export class ServerCalls {
 
   async describeStorm(stormId: string, timeIndex: number): Promise<StormDescription | undefined> {
     return (await this.#client.describeStorm({ stormId, timeIndex }, this.#options())).storm;
+  }
+
+  stormMap(stormId: string, timeIndex: number): Promise<GetStormMapResponse> {
+    return this.#client.getStormMap({ stormId, timeIndex }, this.#options(SCENE_TIMEOUT_MS));
+  }
+
+  probeRay(request: MessageInitShape<typeof ProbeRayRequestSchema>): Promise<ProbeRayResponse> {
+    return this.#client.probeRay(request, this.#options());
   }
 
   async generateCloud(

@@ -1,14 +1,10 @@
 // The canvas in the window: its size in physical pixels, and what happens on it.
-import type { Pose } from "../core/camera";
-import type { PictureTool } from "../core/marking";
 import type { Box } from "../core/picture_box";
 import { pictureBox } from "../core/picture_box";
 import type { PictureFlow } from "./picture_flow";
-import { attachPointer } from "./pointer";
+import { attachPointer, type PointerSteps } from "./pointer";
 
-export interface CanvasPlaceSteps {
-  move(motion: (pose: Pose) => Pose): void;
-  tool(): PictureTool | undefined;
+export interface CanvasPlaceSteps extends PointerSteps {
   resized(): void;
   // The canvas has had its size for a while.
   resizeRested(): void;
@@ -49,7 +45,7 @@ export class CanvasPlace {
   attach(canvas: HTMLCanvasElement): () => void {
     const painter = this.#flow.attach(canvas);
     this.#canvas = canvas;
-    const detachPointer = attachPointer(canvas, this.#steps.move, this.#steps.tool);
+    const detachPointer = attachPointer(canvas, this.#steps);
     let resting: ReturnType<typeof setTimeout> | undefined;
     const measure = () => {
       const ratio = this.#window.devicePixelRatio;

@@ -24,7 +24,7 @@ import {
   type FieldDescription,
   FieldDescription_SizeOrigin as SizeOrigin,
 } from "../gen/thunderhead/v1/storm_pb";
-import { Choice, Section, Slider, Switch } from "./controls";
+import { Choice, Slider, Switch } from "./controls";
 
 const PHASE_KINDS = [
   [Kind.WATER_DROPLETS, "Water droplets"],
@@ -42,7 +42,7 @@ const WITH_ASYMMETRY: readonly Kind[] = [Kind.HENYEY_GREENSTEIN, Kind.CORNETTE_S
 export function FieldsSection({ state }: { state: PageState }) {
   const storm = state.storm.value;
   return (
-    <Section title="Fields" open testId="fields">
+    <div class="fields" data-testid="fields">
       {storm === undefined && <p class="quiet">Waiting for the storm's description …</p>}
       {storm?.fields.some((field) => field.units !== EXTINCTION_UNITS) && (
         <Choice
@@ -59,7 +59,7 @@ export function FieldsSection({ state }: { state: PageState }) {
       {storm?.fields.map((field) => (
         <FieldRow key={field.hydrometeor} state={state} field={field} />
       ))}
-    </Section>
+    </div>
   );
 }
 
@@ -103,7 +103,7 @@ function FieldRow({ state, field }: { state: PageState; field: FieldDescription 
         )}
       </div>
       <Slider
-        label="Scale"
+        label="Amount"
         limits={LIMITS.fieldScale}
         value={shown.scale}
         initial={defaults?.scale}

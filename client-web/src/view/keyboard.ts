@@ -1,16 +1,21 @@
 // The page's keys. attachKeyboard() returns a function that removes the listener.
 import { type Pose, pan, turn, zoom } from "../core/camera";
-import type { Tool } from "../core/session_state";
+import { type PanelName, TOOL_NAMES, TOOL_TEXTS, type ToolName, toolOfKey } from "../core/tools";
 
 export interface KeyActions {
   move(motion: (pose: Pose) => Pose): void;
   home(): void;
-  togglePanel(): void;
+  toggleTool(name: ToolName): void;
+  toggleDrawer(): void;
+  togglePanel(name: PanelName): void;
   togglePlay(): void;
   stepTime(by: number): void;
-  // Takes the tool into the hand, or puts it down.
-  toggleTool(tool: Exclude<Tool, "camera">): void;
-  // Closes what is open, puts the tool down. False if there was nothing to do.
+  undo(): void;
+  redo(): void;
+  // False where the key has no meaning now.
+  enter(): boolean;
+  fullScreen(): void;
+  // Closes what is uppermost, puts the pen down. False if there was nothing to do.
   escape(): boolean;
 }
 
@@ -21,11 +26,27 @@ export const KEYS: readonly (readonly [string, string])[] = [
   ["Home", "see the whole storm"],
   ["Space", "play or pause"],
   [", .", "one time back, forward"],
-  ["P", "show or hide this panel"],
-  ["L", "laser pointer that everybody sees"],
-  ["D", "draw lines that everybody sees"],
-  ["Escape", "back to the camera"],
+  ...TOOL_NAMES.map((name, at): readonly [string, string] => [
+    `${TOOL_TEXTS[name].key} or ${at + 1}`,
+    TOOL_TEXTS[name].title,
+  ]),
+  ["Enter, with the probe open", "probe the middle of the picture"],
+  ["X", "every setting"],
+  ["S", "save: picture, movie, link"],
+  ["C", "compare"],
+  ["H", "share"],
+  ["Ctrl + Z, Ctrl + Y", "undo, redo"],
+  ["W", "full screen"],
+  ["?", "these keys"],
+  ["Escape", "close what is open"],
 ];
+
+const PANEL_KEYS: Readonly<Record<string, PanelName>> = {
+  s: "keep",
+  c: "compare",
+  h: "share",
+  "?": "help",
+};
 
 const TURN_DEG = 3;
 // Moves by this many hundredths of the picture.
@@ -48,6 +69,7 @@ export function attachKeyboard(window: Window, actions: KeyActions): () => void 
       if (event.key === "Escape" && !event.defaultPrevented && actions.escape()) {
         event.preventDefault();
       }
+      if (!event.defaultPrevented && undoes(event, actions)) event.preventDefault();
       if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
       if (!usesKey(event.target, event.key) && act(event, actions)) event.preventDefault();
     },
@@ -82,17 +104,15 @@ function act(event: KeyboardEvent, actions: KeyActions): boolean {
     case "Home":
       actions.home();
       return true;
-    case "p":
-    case "P":
-      actions.togglePanel();
+    case "Enter":
+      return actions.enter();
+    case "x":
+    case "X":
+      actions.toggleDrawer();
       return true;
-    case "l":
-    case "L":
-      actions.toggleTool("pointer");
-      return true;
-    case "d":
-    case "D":
-      actions.toggleTool("pen");
+    case "w":
+    case "W":
+      actions.fullScreen();
       return true;
     case " ":
       actions.togglePlay();
@@ -104,8 +124,29 @@ function act(event: KeyboardEvent, actions: KeyActions): boolean {
       actions.stepTime(1);
       return true;
     default:
-      return false;
+      return opens(event.key, actions);
   }
+}
+
+function opens(key: string, actions: KeyActions): boolean {
+  const tool = toolOfKey(key);
+  const panel = PANEL_KEYS[key.toLowerCase()];
+  if (tool !== undefined) actions.toggleTool(tool);
+  else if (panel !== undefined) actions.togglePanel(panel);
+  return tool !== undefined || panel !== undefined;
+}
+
+// Texts undo their own changes.
+function undoes(event: KeyboardEvent, actions: KeyActions): boolean {
+  if (!(event.ctrlKey || event.metaKey) || event.altKey) return false;
+  const target = event.target instanceof Element ? event.target : undefined;
+  if (target?.closest("input:not([type=range], [type=checkbox], [type=radio]), textarea"))
+    return false;
+  const key = event.key.toLowerCase();
+  if (key === "z" && !event.shiftKey) actions.undo();
+  else if (key === "y" || key === "z") actions.redo();
+  else return false;
+  return true;
 }
 
 // True if the focused control uses the key itself: a text uses all keys, a slider or a radio button the arrows, a
@@ -114,7 +155,8 @@ function usesKey(target: EventTarget | null, key: string): boolean {
   if (!(target instanceof Element)) return false;
   const control = target.closest("input, select, textarea, button, summary, [role=slider]");
   if (control === null) return false;
-  if (control.matches("button, summary, input[type=checkbox]")) return key === " ";
+  if (control.matches("button, summary, input[type=checkbox]"))
+    return key === " " || key === "Enter";
   if (control.matches("input[type=range], [role=slider]")) {
     return key in ARROWS || key === "Home" || key === "End";
   }

@@ -1,6 +1,8 @@
 // Pointers and marks over the picture, at their places in the world as the picture on the screen shows them.
 
+import { getStroke } from "perfect-freehand";
 import { hexOfColor } from "../core/color";
+import { parted } from "../core/lettering";
 import type { Marking } from "../core/marking";
 import { type Box, placeInBox } from "../core/picture_box";
 import {
@@ -11,6 +13,7 @@ import {
   type Vec3,
 } from "../core/projection";
 import type { PageState } from "../core/state";
+import type { StrokePoint } from "../core/stroke";
 import type { Mark, Pointer } from "../gen/thunderhead/v1/interact_pb";
 import type { Position } from "../gen/thunderhead/v1/scene_pb";
 
@@ -45,13 +48,41 @@ export function Overlay({ state, marking }: { state: PageState; marking: Marking
           ))}
         </>
       )}
+      {box !== undefined && projection !== undefined && (
+        <ProbeMarks state={state} projection={projection} box={box} />
+      )}
       {stroke.length > 1 && (
-        <polyline
-          class="mark pending"
-          points={stroke.map(({ left, top }) => `${left},${top}`).join(" ")}
-        />
+        <g class="pending">
+          <Ink places={stroke} />
+        </g>
       )}
     </svg>
+  );
+}
+
+// Where the probe is aimed at by keys, and what its clicks found.
+function ProbeMarks({ state, projection, box }: InPicture & { state: PageState }) {
+  if (state.tool.value !== "probe") return null;
+  const places = state.probes.value.flatMap(({ found }) => {
+    const at = found.seenPlace?.position;
+    const point = at === undefined ? undefined : project(projection, pointOf(at));
+    return point === undefined ? [] : [placeInBox(box, point)];
+  });
+  const [first, second] = places;
+  const middle = placeInBox(box, { x: 0, y: 0 });
+  return (
+    <g data-testid="probe-marks">
+      <path
+        class="aim"
+        d={`M${middle.left - 12} ${middle.top}h9m6 0h9M${middle.left} ${middle.top - 12}v9m0 6v9`}
+      />
+      {first !== undefined && second !== undefined && (
+        <line class="probe-line" x1={first.left} y1={first.top} x2={second.left} y2={second.top} />
+      )}
+      {places.map(({ left, top }, at) => (
+        <circle key={at} class="probed" cx={left} cy={top} r={7} />
+      ))}
+    </g>
   );
 }
 
@@ -73,20 +104,46 @@ interface LineProps {
   readonly testId: string;
 }
 
+// A line drawn by hand swells and thins as ink does; arrows and letters are of straight strokes.
 function Line({ parts, box, color, testId }: LineProps) {
+  const strokes = parts.flatMap((part) => parted(part, samePoint));
+  const drawn = strokes.length === 1 && (strokes[0]?.length ?? 0) > 4;
+  const style = color === undefined ? {} : { color };
   return (
-    <g data-testid={testId}>
-      {parts.map((part, at) => {
-        const points = part.map((point) => pathText(box, point)).join(" ");
+    <g data-testid={testId} data-corners={cornersOf(strokes, box)} style={style}>
+      {strokes.map((stroke, at) => {
+        const places = stroke.map((point) => placeInBox(box, point));
+        if (drawn) return <Ink key={at} places={places} />;
+        const points = places.map(({ left, top }) => `${left},${top}`).join(" ");
         return (
           <g key={at}>
             <polyline class="mark-edge" points={points} />
-            <polyline class="mark" points={points} style={color && { stroke: color }} />
+            <polyline class="mark" points={points} />
           </g>
         );
       })}
     </g>
   );
+}
+
+function Ink({ places }: { places: readonly StrokePoint[] }) {
+  const outline = getStroke(
+    places.map(({ left, top }) => [left, top]),
+    { size: 6, thinning: 0.35, smoothing: 0.6, streamline: 0.2 },
+  );
+  const path = outline.map(([x = 0, y = 0]) => `${x.toFixed(1)} ${y.toFixed(1)}`).join("L");
+  return <path class="ink" d={`M${path}Z`} />;
+}
+
+function samePoint(a: PicturePoint, b: PicturePoint): boolean {
+  return Math.abs(a.x - b.x) < 1e-6 && Math.abs(a.y - b.y) < 1e-6;
+}
+
+function cornersOf(strokes: readonly (readonly PicturePoint[])[], box: Box): string {
+  return strokes
+    .flat()
+    .map((point) => pathText(box, point))
+    .join(" ");
 }
 
 function PointerDot(props: InPicture & { pointer: Pointer; name: string }) {

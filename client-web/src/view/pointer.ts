@@ -5,7 +5,17 @@ import { drag, type PictureSize, type Pose, pan, zoom } from "../core/camera";
 import type { PictureTool } from "../core/marking";
 import type { StrokePoint } from "../core/stroke";
 
-type Move = (motion: (pose: Pose) => Pose) => void;
+export interface PointerSteps {
+  move(motion: (pose: Pose) => Pose): void;
+  // The tool in the hand; undefined for the camera.
+  tool(): PictureTool | undefined;
+  // Pressed and released at one place, without a tool in the hand.
+  clicked(place: StrokePoint): void;
+  doubleClicked(place: StrokePoint): void;
+}
+
+// Farther than this it was a drag.
+const CLICK_PX = 4;
 
 interface Point {
   readonly x: number;
@@ -19,15 +29,14 @@ const TOUCHPAD_PINCH_PER_PIXEL = 0.01;
 const LINE_PX = 16;
 const SECONDARY_AND_MIDDLE_BUTTONS = 2 | 4;
 
-export function attachPointer(
-  canvas: HTMLCanvasElement,
-  move: Move,
-  toolInHand: () => PictureTool | undefined,
-): () => void {
+export function attachPointer(canvas: HTMLCanvasElement, steps: PointerSteps): () => void {
+  const move = (motion: (pose: Pose) => Pose) => steps.move(motion);
+  const toolInHand = () => steps.tool();
   const down = new Map<number, Point>();
   const listening = new AbortController();
   const options = { signal: listening.signal };
   // The pointer that uses the tool, which is also in `down`.
+  let pressedAt: StrokePoint | undefined;
   let drawing: { readonly pointerId: number; readonly tool: PictureTool } | undefined;
 
   canvas.addEventListener(
@@ -43,6 +52,8 @@ export function attachPointer(
         tool.press(placeOf(event));
       }
       down.set(event.pointerId, pointOf(event));
+      const mayClick = down.size === 1 && drawing === undefined && event.button === 0;
+      pressedAt = mayClick && !event.shiftKey ? placeOf(event) : undefined;
       if (drawing === undefined) canvas.classList.add("grabbed");
     },
     options,
@@ -83,11 +94,21 @@ export function attachPointer(
       else drawing.tool.cancel();
       drawing = undefined;
     }
+    if (event.type === "pointerup" && pressedAt !== undefined && isNear(pressedAt, placeOf(event)))
+      steps.clicked(placeOf(event));
+    pressedAt = undefined;
     if (down.size === 0) canvas.classList.remove("grabbed");
   };
   canvas.addEventListener("pointerup", release, options);
   canvas.addEventListener("pointercancel", release, options);
   canvas.addEventListener("pointerleave", () => toolInHand()?.leave(), options);
+  canvas.addEventListener(
+    "dblclick",
+    (event) => {
+      if (toolInHand() === undefined) steps.doubleClicked(placeOf(event));
+    },
+    options,
+  );
   canvas.addEventListener("contextmenu", (event) => event.preventDefault(), options);
 
   canvas.addEventListener(
@@ -116,7 +137,11 @@ function pointOf(event: PointerEvent): Point {
   return { x: event.clientX, y: event.clientY };
 }
 
+function isNear(a: StrokePoint, b: StrokePoint): boolean {
+  return Math.hypot(a.left - b.left, a.top - b.top) <= CLICK_PX;
+}
+
 // The canvas fills the window.
-function placeOf(event: PointerEvent): StrokePoint {
+function placeOf(event: MouseEvent): StrokePoint {
   return { left: event.clientX, top: event.clientY };
 }

@@ -1,11 +1,12 @@
 // The panel that a button of the top bar opens: takes the focus, and gives it back when it closes.
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef } from "preact/hooks";
+import type { PanelName } from "../core/tools";
 import type { Page } from "./page";
 
 interface PopoverProps {
   readonly page: Page;
-  readonly name: "share" | "people";
+  readonly name: PanelName;
   readonly title: string;
   readonly label: string;
   readonly children: ComponentChildren;
@@ -41,7 +42,7 @@ export function Popover({ page, name, title, label, children }: PopoverProps) {
           ×
         </button>
       </header>
-      {children}
+      <div class="popover-body">{children}</div>
     </section>
   );
 }

@@ -1,4 +1,4 @@
-// Quality of the picture: three presets, and folded below them the technique and its settings.
+// Quality of the picture: three presets, and the technique with its settings.
 import { nameOfPreset } from "../core/names";
 import { withPreset } from "../core/scene";
 import type { PageState } from "../core/state";
@@ -12,23 +12,27 @@ const QUALITIES = [
   [Preset.TRUE, nameOfPreset(Preset.TRUE), "As Balanced; files wait for traced light."],
 ] as const;
 
-export function QualitySection({ state }: { state: PageState }) {
-  const preset = state.preset.value;
+export function QualityControls({ state }: { state: PageState }) {
   return (
-    <Section title="Picture quality" open testId="quality-section">
+    <>
       <Segments
         label="Picture quality"
         testId="quality-choice"
-        value={preset}
+        value={state.preset.value}
         options={QUALITIES}
         otherwise={otherwise(state)}
         onChange={(chosen) => state.edit((scene) => withPreset(scene, chosen))}
       />
       <NotShown state={state} />
-      <details class="folded" data-testid="technique-settings">
-        <summary>Technique and settings</summary>
-        <TechniqueSettings state={state} />
-      </details>
+    </>
+  );
+}
+
+// The papers' modes, and every setting of the technique.
+export function TechniqueSection({ state }: { state: PageState }) {
+  return (
+    <Section title="Technique, and the papers' modes" testId="technique-settings">
+      <TechniqueSettings state={state} />
     </Section>
   );
 }

@@ -1,54 +1,38 @@
-// The cost of the pictures: frames a second and latency at a glance, the rest when opened.
+// The connection, and the cost of the pictures.
 import { nameOfEncoding } from "../core/encoding";
 import { nameOfStage, nameOfTechnique } from "../core/names";
 import type { PageState } from "../core/state";
-import { formatBytes, formatNumber } from "../core/units";
-import type { Refinement } from "../gen/thunderhead/v1/frame_pb";
+import { formatBitRate, formatBytes, formatNumber } from "../core/units";
 
-export function Readout({ state }: { state: PageState }) {
+// The connection at a glance; opened, the cost of the picture.
+export function Connection({ state }: { state: PageState }) {
   const frame = state.frame.value;
   const pace = state.pace.value;
-  const latency = pace.latencyMs === undefined ? "–" : `${Math.round(pace.latencyMs)} ms`;
+  const connection = state.connection.value.kind;
   return (
     <details class="readout" data-testid="readout">
       <summary
-        aria-label="Performance"
         data-frames-per-second={pace.framesPerSecond.toFixed(1)}
         data-latency-ms={pace.latencyMs?.toFixed(0)}
         data-testid="readout-summary"
       >
-        <span>{formatNumber(pace.framesPerSecond)} fps</span>
-        <span>{latency}</span>
-        {frame !== undefined && (
-          <span class={frame.refined ? "refined" : "coarse"}>
-            {frame.refinement !== undefined && <RefinementBrief refinement={frame.refinement} />}
-            {frame.refinement === undefined && (frame.refined ? "refined" : "coarse")}
-          </span>
+        <span class={`lamp ${connection}`} aria-hidden="true" />
+        <span class="visually-hidden">Connection and cost of the picture: </span>
+        <span class="word">{connection}</span>
+        {pace.latencyMs !== undefined && (
+          <span class="latency">{Math.round(pace.latencyMs)} ms</span>
         )}
+        <span class="rate">{formatBitRate(pace.bytesPerSecond)}</span>
       </summary>
-      {frame !== undefined && <Costs state={state} />}
-      <p class="quiet" data-testid="renderer">
-        {state.server.value === undefined
-          ? ""
-          : `${state.server.value.glRenderer} (${state.server.value.device}), Thunderhead ${state.server.value.version}`}
-      </p>
+      <div class="readout-body">
+        {frame !== undefined && <Costs state={state} />}
+        <p class="quiet" data-testid="renderer">
+          {state.server.value === undefined
+            ? ""
+            : `${state.server.value.glRenderer} (${state.server.value.device}), Thunderhead ${state.server.value.version}`}
+        </p>
+      </div>
     </details>
-  );
-}
-
-// Progress of the reference. Always visible, as a picture cannot be judged without it.
-function RefinementBrief({ refinement }: { refinement: Refinement }) {
-  const { samplesPerPixel, relativeError } = refinement;
-  return (
-    <span
-      data-testid="refinement"
-      data-samples-per-pixel={samplesPerPixel}
-      data-relative-error={relativeError}
-      title="Samples a pixel, and the standard error of a pixel over the mean radiance"
-    >
-      {samplesPerPixel} spp
-      {relativeError !== undefined && ` ± ${formatNumber(100 * relativeError)} %`}
-    </span>
   );
 }
 
@@ -80,6 +64,7 @@ function Costs({ state }: { state: PageState }) {
         />
         <Row name="Bytes" text={formatBytes(frame.bytes)} />
         <Row name="Rate" text={`${formatBytes(state.pace.value.bytesPerSecond)}/s`} />
+        <Row name="Frames a second" text={formatNumber(state.pace.value.framesPerSecond)} />
         {frame.modelled !== undefined && (
           <>
             <Row

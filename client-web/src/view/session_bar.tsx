@@ -1,5 +1,4 @@
-// The tools that everybody sees, who steers, and the way back from looking around.
-import type { Tool } from "../core/session_state";
+// Who steers, and the way back from looking around.
 import type { Page } from "./page";
 
 export function SessionBar({ page }: { page: Page }) {
@@ -7,7 +6,6 @@ export function SessionBar({ page }: { page: Page }) {
   if (session.me.value === undefined) return null;
   return (
     <div class="session-bar" data-testid="session-bar">
-      {session.mayMark.value && <Tools page={page} />}
       <Control page={page} />
       {session.lookingAround.value && (
         <span class="looking" data-testid="looking-around">
@@ -21,48 +19,6 @@ export function SessionBar({ page }: { page: Page }) {
         {announcement(page)}
       </p>
     </div>
-  );
-}
-
-const TOOLS: readonly (readonly [Exclude<Tool, "camera">, string, string, string])[] = [
-  [
-    "pointer",
-    "Laser pointer",
-    "L",
-    "M8 5a3 3 0 1 0 0 6 3 3 0 0 0 0-6zM7.4 0h1.2v3H7.4zM7.4 13h1.2v3H7.4zM0 7.4h3v1.2H0zM13 7.4h3v1.2h-3z",
-  ],
-  ["pen", "Pen", "D", "M11.5 1.5l3 3L5.5 13.5 1.5 14.5 2.5 10.5z"],
-];
-
-function Tools({ page }: { page: Page }) {
-  const { session } = page.state;
-  const marks = session.marks.value.some(
-    (mark) => session.presenting.value || session.isMe(mark.viewerId),
-  );
-  return (
-    <span class="tools" role="toolbar" aria-label="Tools that everybody sees">
-      {TOOLS.map(([tool, label, key, icon]) => (
-        <button
-          key={tool}
-          type="button"
-          class="tool"
-          data-testid={`tool-${tool}`}
-          aria-label={label}
-          aria-pressed={session.tool.value === tool}
-          title={`${label} (${key})`}
-          onClick={() => page.toggleTool(tool)}
-        >
-          <svg viewBox="0 0 16 16" aria-hidden="true">
-            <path d={icon} />
-          </svg>
-        </button>
-      ))}
-      {marks && (
-        <button type="button" data-testid="clear-marks" onClick={() => page.actions.eraseMarks()}>
-          Clear marks
-        </button>
-      )}
-    </span>
   );
 }
 

@@ -40,6 +40,14 @@ export function Share({ page }: { page: Page }) {
           Copy link
         </button>
       </div>
+      <button
+        type="button"
+        class="to-people"
+        data-testid="share-people"
+        onClick={() => page.togglePopover("people")}
+      >
+        Who is here: {page.state.session.people.value.length}
+      </button>
       {page.state.session.presenting.value && (
         <>
           <Rules page={page} />

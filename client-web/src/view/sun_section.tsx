@@ -1,62 +1,144 @@
-// The sun: set by hand, or where it stands at a date, time and place.
+// The sun: by the clock, with a slider over the day, or by hand on the dome.
 import { standingAzimuthDeg } from "../core/camera";
-import { LIMITS, withSun, withSunClock } from "../core/scene";
+import { localClock } from "../core/moment";
+import { LIMITS, withSky, withSun, withSunClock } from "../core/scene";
 import type { PageState } from "../core/state";
 import { dateTimeOfInput, inputOfDateTime } from "../core/sun";
+import {
+  atMinute,
+  type ClockHere,
+  clockOfMinute,
+  DAY_MINUTES,
+  firstDateTime,
+  minuteOfDay,
+  sunriseAndSunset,
+} from "../core/sun_clock";
+import { describeSun } from "../core/words";
 import { Sun_Source, type SunClock } from "../gen/thunderhead/v1/scene_pb";
-import { Choice, Section, Slider, TimeInput } from "./controls";
+import { Segments, Slider, TimeInput } from "./controls";
 import { SunDome } from "./sun_dome";
 
 const SOURCES = [
-  [Sun_Source.BY_HAND, "By hand"],
-  [Sun_Source.BY_TIME, "By date, time and place"],
+  [Sun_Source.BY_TIME, "By the clock", "Where the sun stands at that date, time and place."],
+  [Sun_Source.BY_HAND, "By hand", "Where you put it."],
 ] as const;
 
-export function SunSection({ state }: { state: PageState }) {
+export function SunControls({ state }: { state: PageState }) {
   const sun = state.sun.value;
   const byTime = sun?.source === Sun_Source.BY_TIME;
   const direction = state.sunDirection.value;
   // Moving the sun by hand stops the clock; the other angle stays.
   const point = (change: { azimuthDeg?: number; elevationDeg?: number }) =>
     state.edit((scene) => withSun(scene, { ...direction, ...change, source: Sun_Source.BY_HAND }));
+  const here = state.clockHere.value;
   return (
-    <Section title="Sun" open testId="sun-section">
-      <Choice
-        label="Direction"
+    <>
+      <Segments
+        label="The sun's direction"
         testId="sun-source"
         value={byTime ? Sun_Source.BY_TIME : Sun_Source.BY_HAND}
         options={SOURCES}
+        otherwise=""
         onChange={(source) => state.edit((scene) => withSun(scene, { ...direction, source }))}
       />
+      {here !== undefined && <DaySlider state={state} here={here} byTime={byTime} />}
+      {byTime && <ClockControls state={state} clock={sun?.clock} />}
       <SunDome
         sun={direction}
         disabled={state.session.editBlock.value !== undefined}
         cameraAzimuthDeg={standingAzimuthDeg(state.pose.value)}
         onChange={point}
       />
-      {byTime && <ClockControls state={state} clock={sun?.clock} />}
+      <p class="quiet" data-testid="sun-in-words">
+        {describeSun(direction)}
+      </p>
+      {!byTime && (
+        <>
+          <Slider
+            label="Azimuth"
+            limits={LIMITS.sunAzimuth}
+            value={direction.azimuthDeg}
+            testId="sun-azimuth"
+            onChange={(azimuthDeg) => point({ azimuthDeg })}
+          />
+          <Slider
+            label="Elevation"
+            limits={LIMITS.sunElevation}
+            value={direction.elevationDeg}
+            testId="sun-elevation"
+            onChange={(elevationDeg) => point({ elevationDeg })}
+          />
+        </>
+      )}
       <Slider
-        label="Azimuth"
-        limits={LIMITS.sunAzimuth}
-        value={direction.azimuthDeg}
-        testId="sun-azimuth"
-        onChange={(azimuthDeg) => point({ azimuthDeg })}
+        label="Haze (turbidity)"
+        limits={LIMITS.turbidity}
+        value={state.sky.value?.turbidity ?? LIMITS.turbidity.defaultValue}
+        testId="turbidity"
+        onChange={(turbidity) => state.edit((scene) => withSky(scene, { turbidity }))}
       />
-      <Slider
-        label="Elevation"
-        limits={LIMITS.sunElevation}
-        value={direction.elevationDeg}
-        testId="sun-elevation"
-        onChange={(elevationDeg) => point({ elevationDeg })}
+    </>
+  );
+}
+
+interface DayProps {
+  readonly state: PageState;
+  readonly here: ClockHere;
+  readonly byTime: boolean;
+}
+
+// Local time of day, with sunrise and sunset. Moving it starts the clock.
+function DaySlider({ state, here, byTime }: DayProps) {
+  const zone = state.sunZone.value;
+  const minute = minuteOfDay(here.instant, zone);
+  const { sunrise, sunset } = sunriseAndSunset(here, zone);
+  const elapsedS = state.shownTime.value?.elapsedS ?? 0;
+  const set = (next: number) => {
+    const dateTime = firstDateTime(atMinute(here.instant, next, zone), elapsedS);
+    state.edit((scene) =>
+      withSun(withSunClock(scene, { dateTime }), { source: Sun_Source.BY_TIME }),
+    );
+  };
+  const percent = (at: number) => `${(100 * at) / DAY_MINUTES}%`;
+  const night = "rgb(8 14 30)";
+  const day = "rgb(112 164 220)";
+  const sky =
+    sunrise === undefined || sunset === undefined || sunrise > sunset
+      ? night
+      : `linear-gradient(90deg, ${night} ${percent(sunrise - 40)}, #d9925b ${percent(sunrise)}, ${day} ${percent(sunrise + 60)}, ${day} ${percent(sunset - 60)}, #d9925b ${percent(sunset)}, ${night} ${percent(sunset + 40)})`;
+  return (
+    <div class={byTime ? "day" : "day off"}>
+      <label for="day-time">
+        Local time <strong>{localClock(here.instant, zone)}</strong>
+      </label>
+      <input
+        type="time"
+        aria-label={`Local time, ${zone}`}
+        data-testid="day-clock"
+        value={clockOfMinute(minute)}
+        onChange={(event) => {
+          const [hours, minutes] = event.currentTarget.value.split(":").map(Number);
+          if (hours !== undefined && minutes !== undefined) set(60 * hours + minutes);
+        }}
       />
-      <Slider
-        label="Irradiance"
-        limits={LIMITS.sunIrradiance}
-        value={sun?.irradiance ?? LIMITS.sunIrradiance.defaultValue}
-        testId="sun-irradiance"
-        onChange={(irradiance) => state.edit((scene) => withSun(scene, { irradiance }))}
+      <input
+        id="day-time"
+        type="range"
+        class="day-slider"
+        data-testid="day-time"
+        min={0}
+        max={DAY_MINUTES - 1}
+        step={5}
+        value={minute}
+        aria-valuetext={localClock(here.instant, zone)}
+        style={{ background: sky }}
+        onInput={(event) => set(event.currentTarget.valueAsNumber)}
       />
-    </Section>
+      <span class="quiet" data-testid="sun-rise-set">
+        {sunrise === undefined ? "The sun does not rise" : `Sunrise ${clockOfMinute(sunrise)}`}
+        {sunset === undefined ? ", or does not set" : ` · sunset ${clockOfMinute(sunset)}`}
+      </span>
+    </div>
   );
 }
 
@@ -65,7 +147,8 @@ function ClockControls({ state, clock }: { state: PageState; clock: SunClock | u
     state.edit((scene) => withSunClock(scene, change));
   const initial = state.storm.value?.sunClock;
   return (
-    <>
+    <details class="folded">
+      <summary>Date and place</summary>
       <TimeInput
         label="First time, UTC"
         testId="sun-date-time"
@@ -88,6 +171,6 @@ function ClockControls({ state, clock }: { state: PageState; clock: SunClock | u
         testId="sun-longitude"
         onChange={(longitudeDeg) => set({ longitudeDeg })}
       />
-    </>
+    </details>
   );
 }

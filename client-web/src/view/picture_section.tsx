@@ -1,17 +1,9 @@
-// The panel at the side: every setting, section by section.
-import { useState } from "preact/hooks";
+// How bright the picture is, and what sky and ground are like.
 import { LIMITS, withDisplay, withGround, withOutput, withSky } from "../core/scene";
+import type { PageState } from "../core/state";
 import { Ground_Cover, ToneMap } from "../gen/thunderhead/v1/scene_pb";
-import { AccuracySection } from "./accuracy_section";
-import { CameraSection } from "./camera_section";
-import { CloudSection } from "./cloud_section";
 import { Choice, Section, Slider, Switch } from "./controls";
-import { FieldsSection } from "./fields_section";
-import { KEYS } from "./keyboard";
-import { LightsSection } from "./lights_section";
 import type { Page } from "./page";
-import { QualitySection } from "./quality_section";
-import { SunSection } from "./sun_section";
 
 const TONE_MAPS = [
   [ToneMap.FILMIC, "Filmic"],
@@ -31,83 +23,14 @@ const RESOLUTIONS = [
   [0.25, "A quarter"],
 ] as const;
 
-export function Panel({ page }: { page: Page }) {
-  const { state } = page;
-  const open = state.panelOpen.value;
-  const block = state.session.editBlock.value;
-  return (
-    <aside id="panel" class="panel" aria-label="Settings" data-testid="panel" hidden={!open}>
-      {block !== undefined && (
-        <p class="blocked" data-testid="edit-block">
-          {block}
-        </p>
-      )}
-      <fieldset class="controls" disabled={block !== undefined} data-testid="controls">
-        <legend class="visually-hidden">Settings of the scene</legend>
-        <StormSection page={page} />
-        <QualitySection state={state} />
-        <AccuracySection state={state} />
-        <CloudSection page={page} />
-        <CameraSection page={page} />
-        <SunSection state={state} />
-        <LightsSection state={state} />
-        <FieldsSection state={state} />
-        <PictureSection page={page} />
-      </fieldset>
-      <HelpSection />
-    </aside>
-  );
-}
-
-function StormSection({ page }: { page: Page }) {
-  const { state } = page;
-  const storms = state.storms.value;
-  const shown = storms.find((storm) => storm.id === state.stormId.value);
-  return (
-    <Section title="Storm" open testId="storm-section">
-      <Choice
-        label="Storm"
-        testId="storm"
-        value={state.stormId.value}
-        options={storms.map((storm) => [storm.id, storm.title || storm.id] as const)}
-        onChange={(id) => page.showStorm(id)}
-      />
-      <div class="buttons">
-        <button type="button" data-testid="home" onClick={() => page.home()}>
-          Whole storm
-        </button>
-        {shown?.deletable && <DeleteCloud key={shown.id} page={page} />}
-      </div>
-    </Section>
-  );
-}
-
-// The first click asks for confirmation.
-function DeleteCloud({ page }: { page: Page }) {
-  const [asked, setAsked] = useState(false);
-  return (
-    <button
-      type="button"
-      data-testid="delete-cloud"
-      onBlur={() => setAsked(false)}
-      onClick={() => (asked ? void page.deleteCloud() : setAsked(true))}
-    >
-      {asked ? "Delete it for all viewers?" : "Delete this cloud"}
-    </button>
-  );
-}
-
-function PictureSection({ page }: { page: Page }) {
-  const { state } = page;
-  const sky = state.sky.value;
-  const ground = state.ground.value;
-  const modelledGround = state.frame.value?.modelled?.ground;
+// Left to the server, or set by hand.
+export function ExposureControls({ state }: { state: PageState }) {
   const display = state.display.value;
   // An automatic exposure is the newest frame's.
   const shownExposureEv =
     display?.exposureEv ?? Math.round(100 * (state.frame.value?.modelled?.exposureEv ?? 0)) / 100;
   return (
-    <Section title="Sky and picture" testId="picture-section">
+    <>
       <Switch
         label="Automatic exposure"
         checked={display?.exposureEv === undefined}
@@ -119,12 +42,24 @@ function PictureSection({ page }: { page: Page }) {
         }
       />
       <Slider
-        label="Exposure"
+        label="Exposure, stops"
         limits={LIMITS.exposure}
         value={shownExposureEv}
         testId="exposure"
         onChange={(exposureEv) => state.edit((scene) => withDisplay(scene, { exposureEv }))}
       />
+    </>
+  );
+}
+
+export function PictureSection({ page }: { page: Page }) {
+  const { state } = page;
+  const sky = state.sky.value;
+  const ground = state.ground.value;
+  const modelledGround = state.frame.value?.modelled?.ground;
+  const display = state.display.value;
+  return (
+    <Section title="Sky, ground and picture" testId="picture-section">
       <Switch
         label="White balance"
         checked={display?.whiteBalance ?? true}
@@ -144,13 +79,6 @@ function PictureSection({ page }: { page: Page }) {
         value={sky?.brightness ?? LIMITS.skyBrightness.defaultValue}
         testId="sky-brightness"
         onChange={(brightness) => state.edit((scene) => withSky(scene, { brightness }))}
-      />
-      <Slider
-        label="Turbidity of the air"
-        limits={LIMITS.turbidity}
-        value={sky?.turbidity ?? LIMITS.turbidity.defaultValue}
-        testId="turbidity"
-        onChange={(turbidity) => state.edit((scene) => withSky(scene, { turbidity }))}
       />
       <Slider
         label="Ground albedo"
@@ -191,21 +119,6 @@ function PictureSection({ page }: { page: Page }) {
         testId="jpeg-quality"
         onChange={(jpegQuality) => state.edit((scene) => withOutput(scene, { jpegQuality }))}
       />
-    </Section>
-  );
-}
-
-function HelpSection() {
-  return (
-    <Section title="Mouse, touch and keys" testId="help-section">
-      <dl class="keys">
-        {KEYS.map(([key, what]) => (
-          <div key={key}>
-            <dt>{key}</dt>
-            <dd>{what}</dd>
-          </div>
-        ))}
-      </dl>
     </Section>
   );
 }

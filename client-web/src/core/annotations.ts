@@ -1,0 +1,239 @@
+// What is written and drawn over a picture: title, valid time, legend, scale bar, degrees along the horizon, rings of distance.
+// Shapes in pixels of the picture, by the frame's own camera; whoever draws them, in the window or into a file, draws the same.
+import { type Pose, wrapDegrees } from "./camera";
+import { type PicturePoint, type Projection, project, projectLine, type Vec3 } from "./projection";
+import { compassPoint } from "./sun";
+import { formatLength, roundLength } from "./units";
+
+export interface AnnotationChoice {
+  readonly title: boolean;
+  readonly time: boolean;
+  readonly legend: boolean;
+  readonly scale: boolean;
+  readonly compass: boolean;
+  readonly rings: boolean;
+}
+
+export const FIRST_ANNOTATIONS: AnnotationChoice = {
+  title: true,
+  time: true,
+  legend: true,
+  scale: true,
+  compass: true,
+  rings: false,
+};
+
+export interface LegendEntry {
+  readonly name: string;
+  // "#rrggbb".
+  readonly color: string;
+}
+
+export interface Annotated {
+  readonly widthPx: number;
+  readonly heightPx: number;
+  // Pixels at each side that something else covers.
+  readonly inset: Readonly<Record<"left" | "top" | "right" | "bottom", number>>;
+  // Height of letters.
+  readonly letterPx: number;
+  readonly projection: Projection;
+  readonly pose: Pose | undefined;
+  // Height of the ground above sea level.
+  readonly groundM: number;
+  readonly title: string;
+  readonly time: string;
+  // Empty unless the picture has false colours.
+  readonly legend: readonly LegendEntry[];
+}
+
+export type Shape =
+  | { readonly kind: "line"; readonly points: readonly (readonly [number, number])[] }
+  | {
+      readonly kind: "text";
+      readonly x: number;
+      readonly y: number;
+      readonly anchor: "start" | "middle" | "end";
+      readonly text: string;
+      readonly strong: boolean;
+    }
+  | {
+      readonly kind: "swatch";
+      readonly x: number;
+      readonly y: number;
+      readonly sizePx: number;
+      readonly color: string;
+    };
+
+const FAR_M = 1e7;
+const RING_CORNERS = 96;
+const MOST_RINGS = 5;
+
+export function annotationsOf(picture: Annotated, choice: AnnotationChoice): Shape[] {
+  const { inset, letterPx, heightPx } = picture;
+  const left = inset.left + letterPx;
+  const shapes: Shape[] = [];
+  if (choice.title && picture.title !== "")
+    shapes.push(text(left, inset.top + 1.6 * letterPx, picture.title, "start", true));
+  if (choice.time && picture.time !== "")
+    shapes.push(text(left, heightPx - inset.bottom - 0.8 * letterPx, picture.time, "start", true));
+  if (choice.legend) shapes.push(...legend(picture));
+  if (choice.rings) shapes.push(...rings(picture));
+  if (choice.scale) shapes.push(...scaleBar(picture));
+  if (choice.compass) shapes.push(...horizon(picture));
+  return shapes;
+}
+
+function text(
+  x: number,
+  y: number,
+  words: string,
+  anchor: "start" | "middle" | "end",
+  strong = false,
+): Shape {
+  return { kind: "text", x, y, anchor, text: words, strong };
+}
+
+function at(picture: Annotated, { x, y }: PicturePoint): readonly [number, number] {
+  return [((x + 1) / 2) * picture.widthPx, ((1 - y) / 2) * picture.heightPx];
+}
+
+function legend({ legend: entries, inset, letterPx, widthPx }: Annotated): Shape[] {
+  const rowPx = 1.5 * letterPx;
+  const right = widthPx - inset.right - letterPx;
+  return entries.flatMap(({ name, color }, row): Shape[] => {
+    const y = inset.top + 1.6 * letterPx + row * rowPx;
+    return [
+      { kind: "swatch", x: right - letterPx, y: y - 0.85 * letterPx, sizePx: letterPx, color },
+      text(right - 1.5 * letterPx, y, name, "end"),
+    ];
+  });
+}
+
+// Metres that a pixel shows in the middle of the picture, at the target's distance; undefined for a spotter, to whom near
+// things are larger than far ones.
+function metresPerPixel({ pose, projection, widthPx }: Annotated): number | undefined {
+  if (pose?.kind === "topDown") return pose.widthM / widthPx;
+  if (pose?.kind !== "orbit") return undefined;
+  return (2 * Math.hypot(...projection.right) * pose.distanceM) / widthPx;
+}
+
+function scaleBar(picture: Annotated): Shape[] {
+  const metres = metresPerPixel(picture);
+  if (metres === undefined) return [];
+  const { widthPx, heightPx, inset, letterPx } = picture;
+  const lengthM = roundLength((metres * widthPx) / 6);
+  const right = widthPx - inset.right - letterPx;
+  const y = heightPx - inset.bottom - letterPx;
+  const left = right - lengthM / metres;
+  const up = letterPx / 2;
+  const words = `${formatLength(lengthM, "distance")}${picture.pose?.kind === "orbit" ? " at the target" : ""}`;
+  return [
+    {
+      kind: "line",
+      points: [
+        [left, y - up],
+        [left, y],
+        [right, y],
+        [right, y - up],
+      ],
+    },
+    text((left + right) / 2, y - 0.7 * letterPx, words, "middle"),
+  ];
+}
+
+// Degrees between ticks such that some ten of them are in view.
+function tickStepDeg(viewDeg: number): number {
+  return [1, 2, 5, 10, 15, 30].find((step) => viewDeg / step <= 10) ?? 45;
+}
+
+function azimuthName(deg: number): string {
+  return deg % 45 === 0 ? compassPoint(deg) : `${String(deg).padStart(3, "0")}°`;
+}
+
+// A line with a tick every few degrees along the horizon, for who stands on the ground.
+function horizon(picture: Annotated): Shape[] {
+  const { projection, pose, widthPx, heightPx, inset, letterPx } = picture;
+  if (pose?.kind !== "spotter") return [];
+  const viewDeg = (2 * Math.atan(Math.hypot(...projection.right)) * 180) / Math.PI;
+  const step = tickStepDeg(viewDeg);
+  const middle = Math.round(pose.azimuthDeg / step) * step;
+  const lowest = heightPx - inset.bottom - 3 * letterPx;
+  const shapes: Shape[] = [];
+  const line: [number, number][] = [];
+  for (let away = -Math.ceil(viewDeg / step); away <= Math.ceil(viewDeg / step); away += 1) {
+    const deg = middle + away * step;
+    const place = project(projection, add(projection.eyeM, far(deg)));
+    if (place === undefined) continue;
+    const [x, natural] = at(picture, place);
+    if (x < 0 || x > widthPx) continue;
+    // Below the picture's edge, the line stays at the edge.
+    const y = Math.min(lowest, Math.max(inset.top + letterPx, natural));
+    line.push([x, y]);
+    const name = azimuthName(wrapDegrees(deg));
+    shapes.push({
+      kind: "line",
+      points: [
+        [x, y - 0.4 * letterPx],
+        [x, y + 0.4 * letterPx],
+      ],
+    });
+    if (x > inset.left + letterPx && x < widthPx - letterPx)
+      shapes.push(text(x, y + 1.6 * letterPx, name, "middle", name.length < 3));
+  }
+  return [{ kind: "line", points: line }, ...shapes];
+}
+
+function far(azimuthDeg: number): Vec3 {
+  const azimuth = (azimuthDeg * Math.PI) / 180;
+  return [FAR_M * Math.sin(azimuth), FAR_M * Math.cos(azimuth), 0];
+}
+
+function add(a: Vec3, b: Vec3): Vec3 {
+  return [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+}
+
+// Circles on the ground around what the camera turns around, stands at, or has in its middle.
+function rings(picture: Annotated): Shape[] {
+  const { pose, groundM } = picture;
+  if (pose === undefined) return [];
+  const reachM = reachOf(pose);
+  const stepM = roundLength(reachM / MOST_RINGS);
+  const middle = middleOf(pose);
+  const shapes: Shape[] = [];
+  for (let ring = 1; ring <= MOST_RINGS; ring += 1)
+    shapes.push(...ringAround(picture, middle, ring * stepM, groundM));
+  return shapes;
+}
+
+function reachOf(pose: Pose): number {
+  if (pose.kind === "orbit")
+    return pose.distanceM * Math.tan((pose.fieldOfViewDeg * Math.PI) / 360) * 1.6;
+  return pose.kind === "topDown" ? pose.widthM / 2 : 50_000;
+}
+
+function middleOf(pose: Pose): readonly [number, number] {
+  if (pose.kind === "orbit") return [pose.targetM[0], pose.targetM[1]];
+  return pose.kind === "spotter" ? pose.placeM : pose.centerM;
+}
+
+function ringAround(
+  picture: Annotated,
+  [x, y]: readonly [number, number],
+  radiusM: number,
+  groundM: number,
+): Shape[] {
+  const corners = Array.from({ length: RING_CORNERS + 1 }, (_, corner): Vec3 => {
+    const angle = (2 * Math.PI * corner) / RING_CORNERS;
+    return [x + radiusM * Math.sin(angle), y + radiusM * Math.cos(angle), groundM];
+  });
+  const lines = projectLine(picture.projection, corners).map(
+    (part): Shape => ({ kind: "line", points: part.map((point) => at(picture, point)) }),
+  );
+  // Its distance stands where the ring is farthest to the right in the picture.
+  const visible = lines
+    .flatMap((line) => (line.kind === "line" ? line.points : []))
+    .filter(([px, py]) => px > 0 && px < picture.widthPx && py > 0 && py < picture.heightPx);
+  if (visible.length === 0) return lines;
+  const [px, py] = visible.reduce((most, point) => (point[0] > most[0] ? point : most));
+  return [...lines, text(px, py - 4, formatLength(radiusM, "distance"), "end")];
+}

@@ -1,0 +1,114 @@
+// Arrows and letters as lines that a pen draws. A mark is one line for the session; where a corner is repeated, the pen is lifted
+// to the next one.
+import type { StrokePoint } from "./stroke";
+
+type Strokes = readonly (readonly StrokePoint[])[];
+
+// Each letter in lines between points of a grid, 0 to 4 to the right and 0 to 6 down, as two digits a point; a space lifts the pen.
+const LETTERS: Readonly<Record<string, string>> = {
+  A: "062046 1434",
+  B: "0600304142331303 3344453606",
+  C: "4130100105163645",
+  D: "06002041452606",
+  E: "46060040 0333",
+  F: "060040 0333",
+  G: "41301001051636454323",
+  H: "0006 4046 0343",
+  I: "1030 2026 1636",
+  J: "4045361605",
+  K: "0006 400346",
+  L: "000646",
+  M: "0600234046",
+  N: "06004640",
+  O: "103041453616050110",
+  P: "06003041423303",
+  Q: "103041453616050110 2446",
+  R: "06003041423303 2346",
+  S: "413010010213334445361605",
+  T: "0040 2026",
+  U: "000516364540",
+  V: "002640",
+  W: "0016233640",
+  X: "0046 4006",
+  Y: "002340 2326",
+  Z: "00400646",
+  0: "103041453616050110 0541",
+  1: "112026 1636",
+  2: "01103041420646",
+  3: "00402333444536 361605",
+  4: "36300444",
+  5: "400002324345361605",
+  6: "30100105163645443303",
+  7: "004016",
+  8: "10304142331302 020110 1304051636454433",
+  9: "4313020110304145 453616",
+  "-": "1333",
+  "+": "1333 2224",
+  ".": "2526",
+  ",": "2516",
+  "?": "01103041423324 2626",
+  "!": "2024 2626",
+  ":": "2222 2525",
+  "/": "4006",
+  "°": "20313222 1120",
+};
+
+const ADVANCE = 6;
+const HEIGHT = 6;
+// The points of a mark that the session takes, with some to spare.
+export const MOST_LETTERS = 24;
+
+// Letters begin at `place`, `heightPx` high; what cannot be written is left out.
+export function letterStrokes(words: string, place: StrokePoint, heightPx: number): Strokes {
+  const unit = heightPx / HEIGHT;
+  return [...words.toUpperCase().slice(0, MOST_LETTERS)].flatMap((letter, at) =>
+    (LETTERS[letter] ?? "").split(" ").flatMap((digits) => {
+      const points = (digits.match(/\d\d/g) ?? []).map((pair) => ({
+        left: place.left + unit * (at * ADVANCE + Number(pair[0])),
+        top: place.top + unit * Number(pair[1]),
+      }));
+      return points.length > 1 ? [points] : [];
+    }),
+  );
+}
+
+const HEAD_PX = 16;
+const HEAD_DEG = 28;
+
+export function arrowStrokes(tail: StrokePoint, tip: StrokePoint): Strokes {
+  const back = Math.atan2(tail.top - tip.top, tail.left - tip.left);
+  const barb = (deg: number) => ({
+    left: tip.left + HEAD_PX * Math.cos(back + (deg * Math.PI) / 180),
+    top: tip.top + HEAD_PX * Math.sin(back + (deg * Math.PI) / 180),
+  });
+  return [
+    [tail, tip],
+    [barb(HEAD_DEG), tip, barb(-HEAD_DEG)],
+  ];
+}
+
+export function ringStroke(middle: StrokePoint, radiusPx: number): readonly StrokePoint[] {
+  return Array.from({ length: 33 }, (_, at) => ({
+    left: middle.left + radiusPx * Math.cos((2 * Math.PI * at) / 32),
+    top: middle.top + radiusPx * Math.sin((2 * Math.PI * at) / 32),
+  }));
+}
+
+// One line of all strokes.
+export function joined<P>(strokes: readonly (readonly P[])[]): P[] {
+  return strokes.flatMap((stroke, at) => {
+    const last = stroke.at(-1);
+    return last !== undefined && at < strokes.length - 1 ? [...stroke, last] : [...stroke];
+  });
+}
+
+// The strokes of one line.
+export function parted<P>(line: readonly P[], same: (a: P, b: P) => boolean): P[][] {
+  const strokes: P[][] = [[]];
+  line.forEach((point, at) => {
+    const before = line[at - 1];
+    if (before !== undefined && same(before, point)) strokes.push([]);
+    else strokes.at(-1)?.push(point);
+  });
+  return strokes.filter((stroke) => stroke.length > 1);
+}

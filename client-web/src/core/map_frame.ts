@@ -1,0 +1,95 @@
+// The inset map's place in the world: which metres it shows, and where a pixel of it is. North is up.
+import type { Pose } from "./camera";
+
+export interface Extent {
+  readonly westM: number;
+  readonly southM: number;
+  readonly eastM: number;
+  readonly northM: number;
+}
+
+export interface MapPlace {
+  // Shares of the map's width and height, from its north-west corner.
+  readonly right: number;
+  readonly down: number;
+}
+
+// Around the domain.
+const MARGIN = 0.06;
+// A camera farther away than this many domains is shown at the edge.
+const FARTHEST = 1.2;
+
+// The domain with a margin, and with the camera's place where that is not far from it. As wide as high, so that it does not jump.
+export function extentOf(domain: Extent, eye: readonly [number, number] | undefined): Extent {
+  const size = Math.max(domain.eastM - domain.westM, domain.northM - domain.southM);
+  const inReach =
+    eye !== undefined &&
+    Math.abs(eye[0] - (domain.westM + domain.eastM) / 2) < FARTHEST * size &&
+    Math.abs(eye[1] - (domain.southM + domain.northM) / 2) < FARTHEST * size;
+  const [x, y] = inReach && eye !== undefined ? eye : [domain.westM, domain.southM];
+  const west = Math.min(domain.westM, x);
+  const east = Math.max(domain.eastM, x);
+  const south = Math.min(domain.southM, y);
+  const north = Math.max(domain.northM, y);
+  const half = (0.5 + MARGIN) * Math.max(east - west, north - south);
+  const [middleX, middleY] = [(west + east) / 2, (south + north) / 2];
+  return {
+    westM: middleX - half,
+    eastM: middleX + half,
+    southM: middleY - half,
+    northM: middleY + half,
+  };
+}
+
+export function placeOnMap(extent: Extent, [xM, yM]: readonly [number, number]): MapPlace {
+  return {
+    right: (xM - extent.westM) / (extent.eastM - extent.westM),
+    down: (extent.northM - yM) / (extent.northM - extent.southM),
+  };
+}
+
+export function worldOfMap(extent: Extent, { right, down }: MapPlace): [number, number] {
+  return [
+    extent.westM + right * (extent.eastM - extent.westM),
+    extent.northM - down * (extent.northM - extent.southM),
+  ];
+}
+
+// Where the camera stands, and the azimuth it looks to; undefined for one that looks straight down.
+export function standOf(
+  pose: Pose | undefined,
+): { readonly placeM: readonly [number, number]; readonly lookDeg: number } | undefined {
+  if (pose?.kind === "spotter") return { placeM: pose.placeM, lookDeg: pose.azimuthDeg };
+  if (pose?.kind !== "orbit") return undefined;
+  const away = pose.distanceM * Math.cos(radians(pose.elevationDeg));
+  const azimuth = radians(pose.azimuthDeg);
+  const [x, y] = pose.targetM;
+  return {
+    placeM: [x + away * Math.sin(azimuth), y + away * Math.cos(azimuth)],
+    lookDeg: pose.azimuthDeg + 180,
+  };
+}
+
+// A place so far from another, in a direction of the compass.
+export function placeFrom(
+  [xM, yM]: readonly [number, number],
+  distanceM: number,
+  azimuthDeg: number,
+): [number, number] {
+  return [
+    xM + distanceM * Math.sin(radians(azimuthDeg)),
+    yM + distanceM * Math.cos(radians(azimuthDeg)),
+  ];
+}
+
+// Degrees clockwise from north.
+export function azimuthTo(
+  [fromX, fromY]: readonly [number, number],
+  [toX, toY]: readonly [number, number],
+): number {
+  return ((Math.atan2(toX - fromX, toY - fromY) * 180) / Math.PI + 360) % 360;
+}
+
+function radians(degrees: number): number {
+  return (degrees * Math.PI) / 180;
+}

@@ -1,0 +1,94 @@
+// A valid time as people read it: the day, the clock in UTC, and the local clock where the storm has a place.
+
+export interface Moment {
+  // "2013-05-20"; "day 1" of an idealised run, which starts in year 1; empty where only the elapsed time is known.
+  readonly date: string;
+  // "20:00Z".
+  readonly clock: string;
+  // "15:00 CDT"; undefined where there is no place or no date.
+  readonly local: string | undefined;
+}
+
+const VALID_TIME = /^(\d{4,})-(\d\d)-(\d\d)[T_ ](\d\d):(\d\d)(?::(\d\d))?/;
+
+// The instant of a valid time; undefined for idealised runs, whose years have no meaning.
+export function instantOf(validTime: string): Date | undefined {
+  const match = VALID_TIME.exec(validTime);
+  if (match === null || Number(match[1]) < 100) return undefined;
+  const [, year, month, day, hour, minute, second] = match.map(Number);
+  return new Date(
+    Date.UTC(year ?? 0, (month ?? 1) - 1, day ?? 1, hour ?? 0, minute ?? 0, second || 0),
+  );
+}
+
+// From one valid time to another of the same run, idealised or not; undefined where one is not known.
+export function secondsBetween(from: string, to: string): number | undefined {
+  const [start, end] = [from, to].map((each) => {
+    const match = VALID_TIME.exec(each);
+    const [year, month, day, hour, minute, second] = (match ?? [])
+      .slice(1)
+      .map((part) => Number(part ?? 0));
+    // Years below 100 would mean those of 1900.
+    return match === null
+      ? undefined
+      : Date.UTC((year ?? 0) + 2000, (month ?? 1) - 1, day, hour, minute, second);
+  });
+  return start === undefined || end === undefined ? undefined : (end - start) / 1000;
+}
+
+export function momentOf(validTime: string, elapsedText: string, zone: string | undefined): Moment {
+  const match = VALID_TIME.exec(validTime);
+  if (match === null) return { date: "", clock: validTime || elapsedText, local: undefined };
+  const [, year, month, day, hour, minute, second] = match;
+  const seconds = second !== undefined && second !== "00" ? `:${second}` : "";
+  const date = Number(year) < 100 ? `day ${Number(day)}` : `${year}-${month}-${day}`;
+  const instant = instantOf(validTime);
+  return {
+    date,
+    clock: `${hour}:${minute}${seconds}Z`,
+    local: instant === undefined ? undefined : localClock(instant, zone),
+  };
+}
+
+// "15:00 CDT" in a time zone of the IANA database.
+export function localClock(instant: Date, zone: string | undefined): string | undefined {
+  if (zone === undefined) return undefined;
+  // American English knows the names of American zones.
+  return new Intl.DateTimeFormat("en-US", {
+    hour: "2-digit",
+    minute: "2-digit",
+    hourCycle: "h23",
+    timeZone: zone,
+    timeZoneName: "short",
+  }).format(instant);
+}
+
+// The zone that the sun keeps at a longitude, without summer time: until the zone of a place is known.
+export function zoneOfLongitude(longitudeDeg: number): string {
+  const hours = Math.round(longitudeDeg / 15);
+  if (hours === 0) return "Etc/GMT";
+  // The database's names count westwards.
+  return `Etc/GMT${hours > 0 ? "-" : "+"}${Math.abs(hours)}`;
+}
+
+// Minutes that a zone is ahead of UTC at an instant.
+export function minutesAhead(instant: Date, zone: string): number {
+  const parts = new Intl.DateTimeFormat("en-GB", {
+    year: "numeric",
+    month: "numeric",
+    day: "numeric",
+    hour: "numeric",
+    minute: "numeric",
+    hourCycle: "h23",
+    timeZone: zone,
+  }).formatToParts(instant);
+  const part = (type: string) => Number(parts.find((each) => each.type === type)?.value);
+  const local = Date.UTC(
+    part("year"),
+    part("month") - 1,
+    part("day"),
+    part("hour"),
+    part("minute"),
+  );
+  return Math.round((local - instant.getTime()) / 60_000);
+}

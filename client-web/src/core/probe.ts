@@ -1,0 +1,51 @@
+// What a click on the picture found, and the way from it to the next one.
+import type { ProbeRayResponse, RayPlace } from "../gen/thunderhead/v1/probe_pb";
+import type { WorldRay } from "./projection";
+
+export interface Probed {
+  readonly ray: WorldRay;
+  readonly found: ProbeRayResponse;
+}
+
+// From one place to another.
+export interface Way {
+  // Along the ground.
+  readonly distanceM: number;
+  readonly heightM: number;
+  // Straight.
+  readonly straightM: number;
+  // Clockwise from north.
+  readonly azimuthDeg: number;
+}
+
+export function wayBetween(from: RayPlace | undefined, to: RayPlace | undefined): Way | undefined {
+  if (from?.position === undefined || to?.position === undefined) return undefined;
+  const [x, y, z] = (["xM", "yM", "zM"] as const).map(
+    (axis) => (to.position?.[axis] ?? 0) - (from.position?.[axis] ?? 0),
+  ) as [number, number, number];
+  return {
+    distanceM: Math.hypot(x, y),
+    heightM: z,
+    straightM: Math.hypot(x, y, z),
+    azimuthDeg: ((Math.atan2(x, y) * 180) / Math.PI + 360) % 360,
+  };
+}
+
+// A mixing ratio, a mass or an extinction in the unit that people read it in.
+export function readable(units: string): { readonly factor: number; readonly symbol: string } {
+  switch (units) {
+    case "kg kg-1":
+      return { factor: 1000, symbol: "g/kg" };
+    case "kg m-3":
+      return { factor: 1000, symbol: "g/m³" };
+    default:
+      return { factor: 1000, symbol: "/km" };
+  }
+}
+
+// "35.21° N 97.44° W".
+export function placeInWords(latitudeDeg: number, longitudeDeg: number): string {
+  const part = (deg: number, positive: string, negative: string) =>
+    `${Math.abs(deg).toFixed(2)}° ${deg < 0 ? negative : positive}`;
+  return `${part(latitudeDeg, "N", "S")} ${part(longitudeDeg, "E", "W")}`;
+}

@@ -1,0 +1,31 @@
+// A scene as a file: JSON by protobuf's mapping, by itself or inside a picture.
+import { fromJson, toJson } from "@bufbuild/protobuf";
+import { type Scene, SceneSchema } from "../gen/thunderhead/v1/scene_pb";
+import { pngText, withPngText } from "./png_text";
+
+const KEYWORD = "thunderhead.scene";
+
+export function sceneToText(scene: Scene): string {
+  return JSON.stringify(toJson(SceneSchema, scene), null, 2);
+}
+
+// Throws an Error for people if the text is no scene.
+export function sceneOfText(text: string): Scene {
+  try {
+    return fromJson(SceneSchema, JSON.parse(text), { ignoreUnknownFields: true });
+  } catch (error) {
+    throw new Error(`it is no scene of Thunderhead (${(error as Error).message})`);
+  }
+}
+
+export function withScene(png: Uint8Array, scene: Scene): Uint8Array<ArrayBuffer> | undefined {
+  return withPngText(png, KEYWORD, sceneToText(scene));
+}
+
+// Throws an Error for people if there is no scene in the file.
+export function sceneOfFile(bytes: Uint8Array): Scene {
+  const inside = pngText(bytes, KEYWORD);
+  if (inside !== undefined) return sceneOfText(inside);
+  if (bytes[0] === 0x89) throw new Error("this picture has no scene in it");
+  return sceneOfText(new TextDecoder().decode(bytes));
+}

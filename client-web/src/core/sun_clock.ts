@@ -1,0 +1,64 @@
+// The sun's clock at the time that is shown. A scene's clock is set at the storm's first time and goes on with the storm; people
+// set it for the picture before them, in local time.
+import { getTimes } from "suncalc";
+import type { SunClock } from "../gen/thunderhead/v1/scene_pb";
+import { minutesAhead } from "./moment";
+
+const MINUTE_MS = 60_000;
+export const DAY_MINUTES = 1440;
+
+export interface ClockHere {
+  readonly instant: Date;
+  readonly latitudeDeg: number;
+  readonly longitudeDeg: number;
+}
+
+// The clock of the picture: of the scene where it says so, else of the storm. Undefined while none is known.
+export function clockHere(
+  set: SunClock | undefined,
+  storm: SunClock | undefined,
+  elapsedS: number,
+): ClockHere | undefined {
+  const first = Date.parse(set?.dateTime || storm?.dateTime || "");
+  const latitudeDeg = set?.latitudeDeg ?? storm?.latitudeDeg;
+  const longitudeDeg = set?.longitudeDeg ?? storm?.longitudeDeg;
+  if (Number.isNaN(first) || latitudeDeg === undefined || longitudeDeg === undefined)
+    return undefined;
+  return { instant: new Date(first + 1000 * elapsedS), latitudeDeg, longitudeDeg };
+}
+
+// The clock's setting at the storm's first time, such that it shows `instant` now.
+export function firstDateTime(instant: Date, elapsedS: number): string {
+  return new Date(instant.getTime() - 1000 * elapsedS).toISOString().replace(/\.\d+Z$/, "Z");
+}
+
+// Minutes since midnight, local time.
+export function minuteOfDay(instant: Date, zone: string): number {
+  const minutes = Math.floor(instant.getTime() / MINUTE_MS) + minutesAhead(instant, zone);
+  return ((minutes % DAY_MINUTES) + DAY_MINUTES) % DAY_MINUTES;
+}
+
+// The same local day at another minute.
+export function atMinute(instant: Date, minute: number, zone: string): Date {
+  return new Date(instant.getTime() + (minute - minuteOfDay(instant, zone)) * MINUTE_MS);
+}
+
+// Minutes of the local day at which the sun rises and sets; undefined where it does not.
+export function sunriseAndSunset(
+  { instant, latitudeDeg, longitudeDeg }: ClockHere,
+  zone: string,
+): { readonly sunrise: number | undefined; readonly sunset: number | undefined } {
+  // Noon of the local day belongs to the same day of the sun.
+  const noon = atMinute(instant, DAY_MINUTES / 2, zone);
+  const { sunrise, sunset } = getTimes(noon, latitudeDeg, longitudeDeg);
+  return {
+    sunrise: sunrise === null ? undefined : minuteOfDay(sunrise, zone),
+    sunset: sunset === null ? undefined : minuteOfDay(sunset, zone),
+  };
+}
+
+// "18:30".
+export function clockOfMinute(minute: number): string {
+  const whole = Math.round(minute) % DAY_MINUTES;
+  return `${String(Math.floor(whole / 60)).padStart(2, "0")}:${String(whole % 60).padStart(2, "0")}`;
+}

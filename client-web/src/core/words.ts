@@ -1,0 +1,33 @@
+// A view in words: where the camera is, where the sun stands.
+import { type Pose, wrapDegrees } from "./camera";
+import { compassPoint, type SunDirection } from "./sun";
+import { formatLength, formatNumber } from "./units";
+
+export function describePose(pose: Pose | undefined): string {
+  switch (pose?.kind) {
+    case "orbit":
+      return (
+        `Seen from ${compassPoint(pose.azimuthDeg)} (${wholeDegrees(pose.azimuthDeg)}°), ` +
+        `${Math.round(pose.elevationDeg)}° high, ${formatLength(pose.distanceM, "distance")} away`
+      );
+    case "spotter":
+      return (
+        `Looks to ${compassPoint(pose.azimuthDeg)} (${wholeDegrees(pose.azimuthDeg)}°), ` +
+        `${Math.round(pose.elevationDeg)}° up, through a lens of ${formatNumber(pose.focalLengthMm)} mm`
+      );
+    case "topDown":
+      return `${formatLength(pose.widthM, "distance")} from left to right, north up`;
+    default:
+      return "Waiting for the first picture …";
+  }
+}
+
+export function describeSun({ azimuthDeg, elevationDeg }: SunDirection): string {
+  const height = Math.round(Math.abs(elevationDeg));
+  const where = elevationDeg < 0 ? `${height}° below the horizon` : `${height}° high`;
+  return `The sun is in ${compassPoint(azimuthDeg)}, ${where}`;
+}
+
+function wholeDegrees(azimuthDeg: number): number {
+  return Math.round(wrapDegrees(azimuthDeg)) % 360;
+}

@@ -1,0 +1,172 @@
+// Title, time, scales and rings over the picture in the window, or drawn into a picture that is saved.
+import {
+  type Annotated,
+  type AnnotationChoice,
+  annotationsOf,
+  type LegendEntry,
+  type Shape,
+} from "../core/annotations";
+import type { Pose } from "../core/camera";
+import { hexOfColor } from "../core/color";
+import { momentOf } from "../core/moment";
+import type { Projection } from "../core/projection";
+import { effectiveField, hydrometeorName } from "../core/scene";
+import type { PageState } from "../core/state";
+import { formatElapsed } from "../core/units";
+
+const LETTER_PX = 13;
+// What the page's own bars cover.
+const BARS_PX = { left: 76, top: 106, right: 0, bottom: 88 };
+const NARROW_BARS_PX = { left: 0, top: 190, right: 0, bottom: 84 };
+const NARROW_PX = 900;
+// Of the window's height, at most, by a tool's sheet.
+const SHEET_SHARE = 0.46;
+
+export function Annotations({ state }: { state: PageState }) {
+  const box = state.pictureBox.value;
+  const content = annotated(state);
+  if (box === undefined || content === undefined) return null;
+  const narrow = window.innerWidth < NARROW_PX;
+  const sheetPx = narrow && state.tool.value !== undefined ? SHEET_SHARE * window.innerHeight : 0;
+  const bars = narrow ? { ...NARROW_BARS_PX, bottom: NARROW_BARS_PX.bottom + sheetPx } : BARS_PX;
+  const shapes = annotationsOf(
+    {
+      ...content,
+      widthPx: box.width,
+      heightPx: box.height,
+      inset: {
+        left: Math.max(0, bars.left - box.left),
+        right: Math.max(0, bars.right - box.left),
+        top: Math.max(0, bars.top - box.top),
+        bottom: Math.max(0, bars.bottom - box.top),
+      },
+      letterPx: LETTER_PX,
+    },
+    // The bar above has the title.
+    { ...state.annotations.value, title: false },
+  );
+  return (
+    <svg class="annotations" data-testid="annotations" aria-hidden="true">
+      <g transform={`translate(${box.left} ${box.top})`} font-size={LETTER_PX}>
+        {shapes.map((shape, at) => (
+          <Drawn key={at} shape={shape} />
+        ))}
+      </g>
+    </svg>
+  );
+}
+
+function Drawn({ shape }: { shape: Shape }) {
+  switch (shape.kind) {
+    case "line":
+      return (
+        <polyline
+          points={shape.points.map(([x, y]) => `${x.toFixed(1)},${y.toFixed(1)}`).join(" ")}
+        />
+      );
+    case "text":
+      return (
+        <text
+          x={shape.x}
+          y={shape.y}
+          text-anchor={shape.anchor}
+          font-weight={shape.strong ? 700 : 500}
+        >
+          {shape.text}
+        </text>
+      );
+    case "swatch":
+      return (
+        <rect
+          x={shape.x}
+          y={shape.y}
+          width={shape.sizePx}
+          height={shape.sizePx}
+          fill={shape.color}
+          stroke="none"
+        />
+      );
+  }
+}
+
+type Content = Omit<Annotated, "widthPx" | "heightPx" | "inset" | "letterPx">;
+
+// A picture other than the one on the screen: its camera and time.
+interface OtherPicture {
+  readonly projection: Projection | undefined;
+  readonly pose: Pose | undefined;
+  readonly timeIndex: number | undefined;
+}
+
+// What there is to write over the picture that is shown, or over another one of its scene.
+export function annotated(state: PageState, other?: OtherPicture): Content | undefined {
+  const { projection, pose } = other ?? state.frame.value ?? {};
+  if (projection === undefined) return undefined;
+  const time =
+    other?.timeIndex === undefined
+      ? state.shownTime.value
+      : state.storm.value?.times[other.timeIndex];
+  const moment = time && momentOf(time.validTime, formatElapsed(time.elapsedS), undefined);
+  return {
+    projection,
+    pose,
+    groundM: state.storm.value?.grid?.low?.zM ?? 0,
+    title: [state.title.value, state.run.value].filter((part) => part !== "").join(" · "),
+    time: moment === undefined ? "" : `${moment.date} ${moment.clock}`.trim(),
+    legend: state.falseColorsShown.value ? legendOf(state) : [],
+  };
+}
+
+function legendOf(state: PageState): LegendEntry[] {
+  void state.fields.value;
+  return (state.storm.value?.fields ?? []).flatMap(({ hydrometeor, defaults }) => {
+    const { visible, falseColor } = effectiveField(state.scene.peek(), hydrometeor, defaults);
+    if (visible === false || falseColor === undefined) return [];
+    return [{ name: hydrometeorName(hydrometeor), color: hexOfColor(falseColor) }];
+  });
+}
+
+type Context = CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D;
+
+// Draws them into a picture, as large in it as they are in a window.
+export function drawAnnotations(
+  context: Context,
+  content: Content,
+  choice: AnnotationChoice,
+  { width, height }: { readonly width: number; readonly height: number },
+): void {
+  const letterPx = Math.max(11, Math.round(height / 45));
+  const inset = { left: 0, top: 0, right: 0, bottom: 0 };
+  const picture = { ...content, widthPx: width, heightPx: height, inset, letterPx };
+  context.lineJoin = "round";
+  for (const shape of annotationsOf(picture, choice)) drawShape(context, shape, letterPx);
+}
+
+function drawShape(context: Context, shape: Shape, letterPx: number): void {
+  const shadow = "rgb(0 0 0 / 65%)";
+  switch (shape.kind) {
+    case "line":
+      context.beginPath();
+      for (const [x, y] of shape.points) context.lineTo(x, y);
+      context.strokeStyle = shadow;
+      context.lineWidth = letterPx / 4;
+      context.stroke();
+      context.strokeStyle = "#fff";
+      context.lineWidth = letterPx / 10;
+      context.stroke();
+      break;
+    case "text":
+      context.font = `${shape.strong ? 700 : 500} ${letterPx}px system-ui, "DejaVu Sans", sans-serif`;
+      context.textAlign = shape.anchor === "middle" ? "center" : shape.anchor;
+      context.strokeStyle = shadow;
+      context.lineWidth = letterPx / 4;
+      context.strokeText(shape.text, shape.x, shape.y);
+      context.fillStyle = "#fff";
+      context.fillText(shape.text, shape.x, shape.y);
+      break;
+    case "swatch":
+      context.fillStyle = shape.color;
+      context.fillRect(shape.x, shape.y, shape.sizePx, shape.sizePx);
+      break;
+  }
+}

@@ -1,0 +1,86 @@
+// B's picture beside or over A's, what each is, and the handle between them.
+import { useEffect, useRef } from "preact/hooks";
+import { momentOf } from "../../core/moment";
+import type { PageState } from "../../core/state";
+import { formatElapsed } from "../../core/units";
+import type { Page } from "../page";
+
+export function CompareView({ page }: { page: Page }) {
+  const choice = page.comparing.choice.value;
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const shown = choice !== undefined;
+  useEffect(() => {
+    if (!shown || canvas.current === null) return undefined;
+    return page.comparing.attach(canvas.current);
+  }, [page, shown]);
+  if (choice === undefined) return null;
+  const swipes = choice.layout === "swipe";
+  const share = page.comparing.swipe.value;
+  const clip = swipes ? { clipPath: `inset(0 0 0 ${(100 * share).toFixed(2)}%)` } : {};
+  const names = namesOf(page);
+  return (
+    <>
+      <canvas
+        ref={canvas}
+        class={swipes ? "storm compared" : "storm compared beside"}
+        style={clip}
+        data-testid="compared-canvas"
+        role="img"
+        aria-label={`To compare: ${names.b}`}
+      />
+      <p class="compared-name a" data-testid="name-a">
+        A · {names.a}
+      </p>
+      <p class="compared-name b" data-testid="name-b">
+        B · {names.b}
+      </p>
+      {swipes && (
+        <input
+          type="range"
+          class="swipe"
+          aria-label="Edge between A and B"
+          data-testid="swipe"
+          min={0}
+          max={100}
+          value={100 * share}
+          style={{ "--edge": `${100 * share}%` }}
+          onInput={(event) => {
+            page.comparing.swipe.value = event.currentTarget.valueAsNumber / 100;
+          }}
+        />
+      )}
+    </>
+  );
+}
+
+// Of what is different, in words.
+function namesOf({ state, comparing }: Page): { readonly a: string; readonly b: string } {
+  const choice = comparing.choice.value;
+  const a = { storm: state.title.value, time: timeName(state, state.timeIndex.value) };
+  const otherTitle = state.storms.value.find(({ id }) => id === choice?.stormId)?.title;
+  const index = choice?.timeIndex ?? state.timeIndex.value;
+  const b = {
+    storm: choice?.stormId === undefined ? a.storm : otherTitle || choice.stormId,
+    time: choice?.stormId === undefined ? timeName(state, index) : otherTime(comparing, index),
+  };
+  const settings = choice?.settings === undefined ? "" : ", kept settings";
+  if (a.storm === b.storm) return { a: a.time, b: `${b.time}${settings}` };
+  return {
+    a: `${a.storm}, ${a.time}`,
+    b: `${b.storm}${b.time === "" ? "" : `, ${b.time}`}${settings}`,
+  };
+}
+
+function timeName(state: PageState, index: number): string {
+  const time = state.storm.value?.times[index];
+  if (time === undefined) return "";
+  const { date, clock } = momentOf(time.validTime, formatElapsed(time.elapsedS), undefined);
+  return `${date} ${clock}`.trim();
+}
+
+function otherTime({ other }: Page["comparing"], index: number): string {
+  const time = other.value?.times[index];
+  return time === undefined
+    ? ""
+    : momentOf(time.validTime, formatElapsed(time.elapsedS), undefined).clock;
+}

@@ -1,0 +1,156 @@
+// The session of B: a second one of this page alone, whose scene follows A's. Closed when the comparison ends.
+import { create } from "@bufbuild/protobuf";
+import type { Code } from "@connectrpc/connect";
+import type { Later } from "../../core/newest";
+import { SceneSync } from "../../core/scene_sync";
+import type { Frame } from "../../gen/thunderhead/v1/frame_pb";
+import { Codec, type InteractResponse, type Joined } from "../../gen/thunderhead/v1/interact_pb";
+import { type Scene, SceneSchema } from "../../gen/thunderhead/v1/scene_pb";
+import type { ServerCalls } from "../../transport/server_calls";
+import {
+  type JoinDetails,
+  type OpenedSession,
+  type OpenInteract,
+  type RequestCase,
+  SessionClient,
+  type SessionListener,
+} from "../../transport/session_client";
+import type { CanvasPainter } from "../canvas_painter";
+import { PictureFlow } from "../picture_flow";
+
+export interface ComparedSteps {
+  painted(frame: Frame): void;
+  // Something that B cannot show.
+  problem(text: string | undefined): void;
+  onNextPaint(callback: () => void): () => void;
+  later: Later;
+}
+
+export class ComparedSession implements SessionListener {
+  readonly #calls: ServerCalls;
+  readonly #steps: ComparedSteps;
+  readonly #client: SessionClient;
+  readonly #flow: PictureFlow;
+  readonly #sync: SceneSync;
+  #scene: Scene = create(SceneSchema);
+  #presenterKey: string | undefined;
+  #viewerId = 0n;
+  #sizePx = { widthPx: 1280, heightPx: 720 };
+
+  constructor(calls: ServerCalls, openInteract: OpenInteract, steps: ComparedSteps) {
+    this.#calls = calls;
+    this.#steps = steps;
+    this.#client = new SessionClient(calls, openInteract, this);
+    this.#flow = new PictureFlow({
+      acknowledge: (sequence, ownView, lost) => this.#client.acknowledge(sequence, ownView, lost),
+      wantsOwnView: () => false,
+      painted: (frame) => steps.painted(frame),
+      undecodable: () => steps.problem("B sent a picture that this browser cannot read"),
+      onNextPaint: (callback) => steps.onNextPaint(callback),
+    });
+    this.#sync = new SceneSync({
+      scene: () => this.#scene,
+      adopt: (scene) => {
+        this.#scene = scene;
+      },
+      complete: () => undefined,
+      changedByOthers: () => undefined,
+      send: (scene, revision) => this.#client.updateScene(scene, revision),
+      taken: () => steps.problem(undefined),
+      refused: (text) => steps.problem(text),
+      onNextPaint: (callback) => steps.onNextPaint(callback),
+      later: steps.later,
+    });
+  }
+
+  // Opens the session, with this scene.
+  start(scene: Scene): void {
+    this.#scene = scene;
+    void this.#client.run();
+  }
+
+  attach(canvas: HTMLCanvasElement): CanvasPainter {
+    return this.#flow.attach(canvas);
+  }
+
+  detach(): void {
+    this.#flow.detach();
+  }
+
+  show(scene: Scene): void {
+    this.#scene = scene;
+    this.#sync.edited(() => scene);
+  }
+
+  resized(sizePx: { readonly widthPx: number; readonly heightPx: number }): void {
+    this.#sizePx = sizePx;
+    this.#client.send({ case: "window", value: { ...sizePx, hidden: false } });
+  }
+
+  dispose(): void {
+    this.#sync.dispose();
+    this.#client.dispose();
+    this.#flow.dispose();
+    if (this.#presenterKey !== undefined)
+      void this.#calls.closeSession(this.#presenterKey).catch(() => undefined);
+  }
+
+  // SessionListener.
+
+  sceneToOpen(): Scene {
+    this.#sync.opening();
+    return this.#scene;
+  }
+
+  openingRefused(message: string): void {
+    this.#steps.problem(message);
+  }
+
+  opened(opened: OpenedSession): void {
+    this.#presenterKey = opened.presenterKey;
+    this.#sync.opened(opened.completed, opened.revision);
+  }
+
+  joining(): JoinDetails {
+    return { name: "", window: { ...this.#sizePx, hidden: false }, codecs: [Codec.JPEG] };
+  }
+
+  joined(joined: Joined): void {
+    this.#viewerId = joined.viewerId;
+    this.#sync.forget();
+    this.#flow.startCall();
+  }
+
+  connection(connection: { readonly kind: string }): void {
+    if (connection.kind !== "live") this.#sync.hold();
+  }
+
+  message(message: InteractResponse["message"]): void {
+    switch (message.case) {
+      case "scene":
+        if (message.value.scene !== undefined)
+          this.#sync.told(message.value.scene, message.value.sceneRevision);
+        break;
+      case "frame":
+        this.#flow.offer(message.value);
+        break;
+      case "problem":
+        this.#steps.problem(message.value.message);
+        break;
+      case "presence":
+        if (message.value.steeringViewerId === this.#viewerId) this.#sync.allow();
+        else this.#client.send({ case: "takeControl", value: {} });
+        break;
+    }
+  }
+
+  refused(_: RequestCase, _id: bigint, _code: Code, message: string): void {
+    this.#steps.problem(message);
+  }
+
+  // Opens another one.
+  gone(): boolean {
+    this.#presenterKey = undefined;
+    return true;
+  }
+}

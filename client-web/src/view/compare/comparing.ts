@@ -1,0 +1,169 @@
+// Compares: holds what B is, runs its session while there is a B, and keeps its scene beside A's.
+import { effect, signal, untracked } from "@preact/signals-core";
+import { cameraOfPose, type Pose } from "../../core/camera";
+import { type ComparisonChoice, comparedScene } from "../../core/comparison";
+import type { Later } from "../../core/newest";
+import type { PageState } from "../../core/state";
+import type { Frame } from "../../gen/thunderhead/v1/frame_pb";
+import type { Scene } from "../../gen/thunderhead/v1/scene_pb";
+import type { StormDescription } from "../../gen/thunderhead/v1/storm_pb";
+import type { ServerCalls } from "../../transport/server_calls";
+import type { OpenInteract } from "../../transport/session_client";
+import type { CanvasPainter } from "../canvas_painter";
+import { attachPointer } from "../pointer";
+import { ComparedSession } from "./compared_session";
+
+export interface ComparingSteps {
+  move(motion: (pose: Pose) => Pose): void;
+  onNextPaint(callback: () => void): () => void;
+  later: Later;
+}
+
+export class Comparing {
+  // What B is; undefined while nothing is compared.
+  readonly choice = signal<ComparisonChoice | undefined>(undefined);
+  readonly frame = signal<Frame | undefined>(undefined);
+  readonly problem = signal<string | undefined>(undefined);
+  // Share of the window that is A's, where one is swiped over the other.
+  readonly swipe = signal(0.5);
+  // The description of B's storm, if it is another.
+  readonly other = signal<StormDescription | undefined>(undefined);
+  readonly #calls: ServerCalls;
+  readonly #openInteract: OpenInteract;
+  readonly #state: PageState;
+  readonly #steps: ComparingSteps;
+  readonly #size = signal({ widthPx: 0, heightPx: 0 });
+  readonly #stop: (() => void)[];
+  #session: ComparedSession | undefined;
+  #canvas: HTMLCanvasElement | undefined;
+
+  constructor(
+    calls: ServerCalls,
+    openInteract: OpenInteract,
+    state: PageState,
+    steps: ComparingSteps,
+  ) {
+    this.#calls = calls;
+    this.#openInteract = openInteract;
+    this.#state = state;
+    this.#steps = steps;
+    this.#stop = [
+      effect(() => {
+        const scene = this.#wanted();
+        untracked(() => this.#show(scene));
+      }),
+      effect(() => {
+        const stormId = this.choice.value?.stormId;
+        untracked(() => void this.#describe(stormId));
+      }),
+    ];
+  }
+
+  // Compares with the settings as they are now, or changes what is compared.
+  change(part: Partial<ComparisonChoice>): void {
+    const first: ComparisonChoice = {
+      stormId: undefined,
+      timeIndex: undefined,
+      settings: undefined,
+      layout: "swipe",
+    };
+    this.choice.value = { ...(this.choice.peek() ?? first), ...part };
+  }
+
+  end(): void {
+    this.choice.value = undefined;
+  }
+
+  // Paints B on this canvas from now on. Returns the function that detaches it.
+  attach(canvas: HTMLCanvasElement): () => void {
+    this.#canvas = canvas;
+    let painter: CanvasPainter | undefined = this.#session?.attach(canvas);
+    const detachPointer = attachPointer(canvas, {
+      move: (motion) => this.#steps.move(motion),
+      tool: () => undefined,
+      clicked: () => undefined,
+      doubleClicked: () => undefined,
+    });
+    const measure = () => {
+      const ratio = window.devicePixelRatio;
+      const widthPx = Math.max(1, Math.round(canvas.clientWidth * ratio));
+      const heightPx = Math.max(1, Math.round(canvas.clientHeight * ratio));
+      painter?.resize(widthPx, heightPx);
+      this.#size.value = { widthPx, heightPx };
+      painter ??= this.#session?.attach(canvas);
+      this.#session?.resized({ widthPx, heightPx });
+    };
+    const observer = new ResizeObserver(measure);
+    observer.observe(canvas);
+    measure();
+    return () => {
+      observer.disconnect();
+      detachPointer();
+      this.#session?.detach();
+      this.#canvas = undefined;
+      this.#size.value = { widthPx: 0, heightPx: 0 };
+    };
+  }
+
+  dispose(): void {
+    for (const stop of this.#stop) stop();
+    this.#session?.dispose();
+    this.#session = undefined;
+  }
+
+  // B's scene; undefined while there is none, or no place for it.
+  #wanted(): Scene | undefined {
+    const choice = this.choice.value;
+    const size = this.#size.value;
+    const pose = this.#state.viewPose.value;
+    if (choice === undefined || size.widthPx === 0 || pose === undefined) return undefined;
+    return comparedScene(this.#state.scene.value, choice, {
+      camera: cameraOfPose(pose),
+      size,
+      storm: this.#state.storm.value,
+      other: this.other.value,
+    });
+  }
+
+  #show(scene: Scene | undefined): void {
+    if (scene === undefined) {
+      if (this.choice.peek() !== undefined) return;
+      this.#session?.dispose();
+      this.#session = undefined;
+      this.frame.value = undefined;
+      this.problem.value = undefined;
+      return;
+    }
+    if (this.#session !== undefined) {
+      this.#session.show(scene);
+      return;
+    }
+    this.#session = new ComparedSession(this.#calls, this.#openInteract, {
+      painted: (frame) => {
+        this.frame.value = frame;
+        if (this.#canvas !== undefined) this.#canvas.dataset.revision = String(frame.sceneRevision);
+        if (this.#canvas !== undefined) this.#canvas.dataset.refined = String(frame.refined);
+      },
+      problem: (text) => {
+        this.problem.value = text;
+      },
+      onNextPaint: (callback) => this.#steps.onNextPaint(callback),
+      later: this.#steps.later,
+    });
+    const { widthPx, heightPx } = this.#size.peek();
+    if (this.#canvas !== undefined) this.#session.attach(this.#canvas).resize(widthPx, heightPx);
+    this.#session.resized({ widthPx, heightPx });
+    this.#session.start(scene);
+  }
+
+  async #describe(stormId: string | undefined): Promise<void> {
+    this.other.value = undefined;
+    if (stormId === undefined) return;
+    try {
+      const described = await this.#calls.describeStorm(stormId, 0);
+      if (this.choice.peek()?.stormId === stormId) this.other.value = described;
+    } catch {
+      // B then has the time of the same number.
+    }
+  }
+}

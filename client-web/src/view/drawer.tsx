@@ -1,0 +1,68 @@
+// Every setting of the scene with its unit, limits, default and meaning, from the schema; found by a search box.
+import type { ComponentType } from "preact";
+import { useEffect, useRef, useState } from "preact/hooks";
+import type { Page } from "./page";
+
+// Loaded when it opens first.
+export function ExpertDrawer({ page }: { page: Page }) {
+  const [Settings, setSettings] = useState<ComponentType<SettingsProps> | undefined>(undefined);
+  const [query, setQuery] = useState("");
+  const search = useRef<HTMLInputElement>(null);
+  const open = page.state.drawerOpen.value;
+  const block = page.state.session.editBlock.value;
+  useEffect(() => {
+    if (!open) return;
+    search.current?.focus();
+    void import("./every_setting").then(({ EverySetting }) => setSettings(() => EverySetting));
+  }, [open]);
+  return (
+    <aside
+      id="drawer"
+      class="drawer"
+      aria-label="Every setting"
+      data-testid="drawer"
+      hidden={!open}
+    >
+      <header>
+        <h2>Every setting</h2>
+        <button
+          type="button"
+          class="close"
+          aria-label="Close every setting"
+          onClick={() => page.toggleDrawer()}
+        >
+          ×
+        </button>
+      </header>
+      {open && (
+        <>
+          <div class="drawer-search">
+            <input
+              ref={search}
+              type="search"
+              aria-label="Search settings"
+              placeholder="Search: haze, albedo, seed …"
+              data-testid="drawer-search"
+              value={query}
+              onInput={(event) => setQuery(event.currentTarget.value)}
+            />
+          </div>
+          {block !== undefined && <p class="blocked">{block}</p>}
+          <fieldset class="controls" disabled={block !== undefined}>
+            <legend class="visually-hidden">Every setting</legend>
+            {Settings === undefined ? (
+              <p class="quiet">Loading …</p>
+            ) : (
+              <Settings page={page} query={query} />
+            )}
+          </fieldset>
+        </>
+      )}
+    </aside>
+  );
+}
+
+export interface SettingsProps {
+  readonly page: Page;
+  readonly query: string;
+}

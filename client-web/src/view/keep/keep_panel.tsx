@@ -1,0 +1,237 @@
+// Keeps what is shown: as a picture, a scene, a link or a movie; and takes it back.
+import { useRef, useState } from "preact/hooks";
+import { momentOf } from "../../core/moment";
+import type { MovieDraft } from "../../core/movie_plan";
+import { formatElapsed } from "../../core/units";
+import { Choice, NumberInput, Section, Switch } from "../controls";
+import { Icon } from "../icons";
+import type { Page } from "../page";
+import { Popover } from "../popover";
+
+const SIZES = [
+  ["window", "As the window"],
+  ["1920x1080", "1920 × 1080"],
+  ["3840x2160", "3840 × 2160"],
+  ["1080x1080", "1080 × 1080"],
+  ["own", "Another size"],
+] as const;
+
+type SizeName = (typeof SIZES)[number][0];
+
+export function Keep({ page }: { page: Page }) {
+  const { state, keeper } = page;
+  const work = keeper.work.value;
+  return (
+    <Popover page={page} name="keep" title="Save" label="Save what is shown">
+      <div class="buttons">
+        <button
+          type="button"
+          data-testid="undo"
+          disabled={!state.history.canUndo.value}
+          onClick={() => state.undo()}
+        >
+          <Icon name="undo" /> Undo
+        </button>
+        <button
+          type="button"
+          data-testid="redo"
+          disabled={!state.history.canRedo.value}
+          onClick={() => state.redo()}
+        >
+          <Icon name="redo" /> Redo
+        </button>
+      </div>
+      {work !== undefined && (
+        <div class="work" role="status" data-testid="keep-work">
+          <label>
+            {work.what}: {Math.round(100 * work.share)} %
+            <progress max={1} value={work.share} />
+          </label>
+          <button type="button" data-testid="keep-cancel" onClick={() => keeper.cancel()}>
+            Cancel
+          </button>
+        </div>
+      )}
+      <Picture page={page} />
+      <Movie page={page} />
+      <SceneAndLink page={page} />
+    </Popover>
+  );
+}
+
+function useSize(page: Page) {
+  const { widthPx, heightPx } = page.screen.size;
+  const [name, setName] = useState<SizeName>("window");
+  const [own, setOwn] = useState({ widthPx, heightPx });
+  const [fixedWidth, fixedHeight] = name.split("x").map(Number);
+  const size =
+    name === "window"
+      ? { widthPx, heightPx }
+      : name === "own"
+        ? own
+        : { widthPx: fixedWidth ?? widthPx, heightPx: fixedHeight ?? heightPx };
+  return { name, setName, own, setOwn, size };
+}
+
+function SizeChoice({ testId, chosen }: { testId: string; chosen: ReturnType<typeof useSize> }) {
+  const { name, setName, own, setOwn } = chosen;
+  return (
+    <>
+      <Choice label="Size" testId={testId} value={name} options={SIZES} onChange={setName} />
+      {name === "own" && (
+        <>
+          <NumberInput
+            label="Width, pixels"
+            testId={`${testId}-width`}
+            value={own.widthPx}
+            onChange={(widthPx) => setOwn({ ...own, widthPx })}
+          />
+          <NumberInput
+            label="Height, pixels"
+            testId={`${testId}-height`}
+            value={own.heightPx}
+            onChange={(heightPx) => setOwn({ ...own, heightPx })}
+          />
+        </>
+      )}
+    </>
+  );
+}
+
+function Picture({ page }: { page: Page }) {
+  const chosen = useSize(page);
+  return (
+    <Section title="Picture (PNG)" open testId="keep-picture">
+      <SizeChoice testId="picture-size" chosen={chosen} />
+      <p class="quiet">
+        With title, time and scales as chosen under Look. The scene is in the file: drop it on the
+        page, and the view is back.
+      </p>
+      <button
+        type="button"
+        class="primary"
+        data-testid="save-picture"
+        disabled={page.keeper.work.value !== undefined}
+        onClick={() => void page.keeper.savePicture(chosen.size.widthPx, chosen.size.heightPx)}
+      >
+        Save the picture
+      </button>
+    </Section>
+  );
+}
+
+function Movie({ page }: { page: Page }) {
+  const { state } = page;
+  const times = state.storm.value?.times ?? [];
+  const last = times.length - 1;
+  const chosen = useSize(page);
+  const [draft, setDraft] = useState<Omit<MovieDraft, "widthPx" | "heightPx">>({
+    from: Math.min(state.timeIndex.peek(), last),
+    to: last,
+    picturesPerSecond: 4,
+    picturesPerView: 24,
+    alongViews: false,
+    format: "webm",
+  });
+  const change = (part: Partial<MovieDraft>) => setDraft({ ...draft, ...part });
+  const options = times.map((time, at) => {
+    const elapsed = formatElapsed(time.elapsedS);
+    const { date, clock } = momentOf(time.validTime, elapsed, undefined);
+    return [at, `${date} ${clock}`.trim()] as const;
+  });
+  const views = page.views.all.value.length;
+  return (
+    <Section title="Movie" testId="keep-movie">
+      <Switch
+        label={`Along the ${views} named views`}
+        testId="movie-along-views"
+        checked={draft.alongViews}
+        onChange={(alongViews) => change({ alongViews })}
+      />
+      {draft.alongViews ? (
+        <NumberInput
+          label="Pictures from view to view"
+          testId="movie-per-view"
+          value={draft.picturesPerView}
+          onChange={(value) => change({ picturesPerView: Math.min(240, Math.max(1, value)) })}
+        />
+      ) : (
+        <>
+          <Choice
+            label="From"
+            testId="movie-from"
+            value={draft.from}
+            options={options}
+            onChange={(from) => change({ from })}
+          />
+          <Choice
+            label="To"
+            testId="movie-to"
+            value={draft.to}
+            options={options}
+            onChange={(to) => change({ to })}
+          />
+        </>
+      )}
+      <NumberInput
+        label="Pictures a second"
+        testId="movie-rate"
+        value={draft.picturesPerSecond}
+        onChange={(value) => change({ picturesPerSecond: Math.min(60, Math.max(0.5, value)) })}
+      />
+      <SizeChoice testId="movie-size" chosen={chosen} />
+      <Choice
+        label="File"
+        testId="movie-format"
+        value={draft.format}
+        options={[
+          ["webm", "WebM"],
+          ["mp4", "MP4"],
+        ]}
+        onChange={(format) => change({ format })}
+      />
+      <button
+        type="button"
+        class="primary"
+        data-testid="save-movie"
+        disabled={page.keeper.work.value !== undefined || (draft.alongViews && views < 2)}
+        onClick={() => void page.keeper.saveMovie({ ...draft, ...chosen.size })}
+      >
+        Make the movie
+      </button>
+    </Section>
+  );
+}
+
+function SceneAndLink({ page }: { page: Page }) {
+  const file = useRef<HTMLInputElement>(null);
+  return (
+    <Section title="Scene and link" testId="keep-scene">
+      <div class="buttons">
+        <button type="button" data-testid="save-scene" onClick={() => page.keeper.saveScene()}>
+          Save the scene (JSON)
+        </button>
+        <button type="button" data-testid="open-file" onClick={() => file.current?.click()}>
+          Open a picture or scene
+        </button>
+        <button type="button" data-testid="keep-link" onClick={() => void page.copyLink()}>
+          Copy a link to this view
+        </button>
+      </div>
+      <input
+        ref={file}
+        type="file"
+        class="visually-hidden"
+        tabIndex={-1}
+        accept=".png,.json"
+        aria-label="Picture or scene to open"
+        data-testid="file"
+        onChange={(event) => {
+          const chosen = event.currentTarget.files?.[0];
+          event.currentTarget.value = "";
+          if (chosen !== undefined) void page.keeper.open(chosen);
+        }}
+      />
+    </Section>
+  );
+}

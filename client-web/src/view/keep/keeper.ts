@@ -1,0 +1,166 @@
+// Makes files of what is shown: pictures with the scene inside, scenes, movies. One at a time; how far it is, is a signal.
+import type { Transport } from "@connectrpc/connect";
+import { ConnectError } from "@connectrpc/connect";
+import { signal } from "@preact/signals-core";
+import { poseOfCamera } from "../../core/camera";
+import { type MovieDraft, movieScenes } from "../../core/movie_plan";
+import type { NamedView } from "../../core/named_views";
+import { projectionOf } from "../../core/projection";
+import { outputSize, withOutput } from "../../core/scene";
+import { sceneOfFile, sceneToText, withScene } from "../../core/scene_file";
+import type { PageState } from "../../core/state";
+import type { Scene } from "../../gen/thunderhead/v1/scene_pb";
+import { ImageFormat } from "../../gen/thunderhead/v1/thunderhead_pb";
+import { type DrawnPicture, RenderCalls } from "../../transport/render_calls";
+import { annotated, drawAnnotations } from "../annotations";
+import type { Notes } from "../notes";
+
+export interface Work {
+  readonly what: string;
+  // 0 to 1.
+  readonly share: number;
+}
+
+export class Keeper {
+  readonly #calls: RenderCalls;
+  readonly #state: PageState;
+  readonly #notes: Notes;
+  readonly #views: () => readonly NamedView[];
+  #working: AbortController | undefined;
+  // What is being made; undefined if nothing is.
+  readonly work = signal<Work | undefined>(undefined);
+
+  constructor(
+    transport: Transport,
+    state: PageState,
+    notes: Notes,
+    views: () => readonly NamedView[],
+  ) {
+    this.#calls = new RenderCalls(transport);
+    this.#state = state;
+    this.#notes = notes;
+    this.#views = views;
+  }
+
+  cancel(): void {
+    this.#working?.abort();
+  }
+
+  dispose(): void {
+    this.cancel();
+  }
+
+  savePicture(widthPx: number, heightPx: number): Promise<void> {
+    return this.#make("Picture", async (abort, progress) => {
+      const scene = withOutput(this.#sceneShown(), outputSize(widthPx, heightPx, 1));
+      const picture = await this.#calls.picture(scene, ImageFormat.PNG, abort, progress);
+      const canvas = await this.#annotate(picture, scene);
+      const blob = await canvas.convertToBlob({ type: "image/png" });
+      const file = withScene(new Uint8Array(await blob.arrayBuffer()), scene);
+      if (file !== undefined) this.#download(file, "png", "image/png");
+    });
+  }
+
+  saveScene(): void {
+    const text = sceneToText(this.#sceneShown());
+    this.#download(new TextEncoder().encode(text), "json", "application/json");
+  }
+
+  // A picture or a scene that was saved before.
+  async open(file: File): Promise<void> {
+    try {
+      const scene = sceneOfFile(new Uint8Array(await file.arrayBuffer()));
+      const block = this.#state.session.editBlock.peek();
+      if (block !== undefined) throw new Error(`the scene cannot be changed from here: ${block}`);
+      this.#state.restore(scene);
+      this.#notes.say("file", `The view of ${file.name}`);
+    } catch (error) {
+      this.#notes.problem("file", `${file.name} is not opened: ${(error as Error).message}`);
+    }
+  }
+
+  saveMovie(draft: MovieDraft): Promise<void> {
+    return this.#make("Movie", async (abort, progress) => {
+      const { startMovie } = await import("./movie_file");
+      const scenes = movieScenes(this.#sceneShown(), draft, this.#views());
+      const movie = await startMovie(draft);
+      try {
+        let done = 0;
+        const label = `movie of ${this.#state.stormId.peek()}`;
+        for await (const picture of this.#calls.pictures(scenes, label, abort)) {
+          const scene = scenes[done];
+          if (scene !== undefined) await movie.add(await this.#annotate(picture, scene));
+          done += 1;
+          progress(done / scenes.length);
+        }
+        this.#download(await movie.finish(), draft.format, `video/${draft.format}`);
+      } catch (error) {
+        await movie.cancel();
+        throw error;
+      }
+    });
+  }
+
+  async #make(
+    what: string,
+    make: (abort: AbortSignal, progress: (share: number) => void) => Promise<void>,
+  ): Promise<void> {
+    if (this.#working !== undefined) return;
+    const working = new AbortController();
+    this.#working = working;
+    this.work.value = { what, share: 0 };
+    try {
+      await make(working.signal, (share) => {
+        this.work.value = { what, share };
+      });
+      this.#state.dismiss("keep");
+    } catch (error) {
+      if (working.signal.aborted) return;
+      const why = error instanceof ConnectError ? error.rawMessage : (error as Error).message;
+      this.#notes.problem("keep", `${what} not saved: ${why}`);
+    } finally {
+      this.#working = undefined;
+      this.work.value = undefined;
+    }
+  }
+
+  // With the own view's camera, while this page looks around.
+  #sceneShown(): Scene {
+    const scene = this.#state.scene.peek();
+    const frame = this.#state.frame.peek();
+    const own = frame?.ownView === true ? this.#state.shownCamera.peek() : undefined;
+    return own === undefined ? scene : { ...scene, camera: own };
+  }
+
+  async #annotate({ bytes, drawn }: DrawnPicture, scene: Scene): Promise<OffscreenCanvas> {
+    const bitmap = await createImageBitmap(new Blob([bytes]));
+    const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+    const context = canvas.getContext("2d");
+    if (context === null) throw new Error("this browser draws no pictures");
+    context.drawImage(bitmap, 0, 0);
+    bitmap.close();
+    const content = annotated(this.#state, {
+      projection: projectionOf(drawn.view),
+      pose: poseOfCamera(drawn.scene?.camera),
+      timeIndex: scene.timeIndex,
+    });
+    if (content !== undefined)
+      drawAnnotations(context, content, this.#state.annotations.peek(), canvas);
+    return canvas;
+  }
+
+  #download(bytes: Uint8Array<ArrayBuffer>, ending: string, type: string): void {
+    const { date, clock } = this.#state.moment.peek() ?? { date: "", clock: "" };
+    const name = [this.#state.stormId.peek(), date, clock]
+      .filter((part) => part !== "")
+      .join("-")
+      .replace(/[^\w.-]+/g, "");
+    const url = URL.createObjectURL(new Blob([bytes], { type }));
+    const link = document.createElement("a");
+    link.href = url;
+    link.download = `${name}.${ending}`;
+    link.click();
+    // The browser has it once the click is handled.
+    setTimeout(() => URL.revokeObjectURL(url), 10_000);
+  }
+}

@@ -1,0 +1,66 @@
+// A movie from pictures, encoded by the browser: VP9 in WebM, H.264 or else VP9 in MP4. Loaded with the first movie.
+import {
+  BufferTarget,
+  CanvasSource,
+  canEncodeVideo,
+  Mp4OutputFormat,
+  Output,
+  QUALITY_HIGH,
+  type VideoCodec,
+  WebMOutputFormat,
+} from "mediabunny";
+import type { MovieDraft } from "../../core/movie_plan";
+
+export interface MovieFile {
+  add(picture: OffscreenCanvas): Promise<void>;
+  finish(): Promise<Uint8Array<ArrayBuffer>>;
+  cancel(): Promise<void>;
+}
+
+const CODECS: Readonly<Record<MovieDraft["format"], readonly VideoCodec[]>> = {
+  webm: ["vp9", "vp8"],
+  mp4: ["avc", "vp9"],
+};
+
+// Throws an Error for people if this browser encodes no video.
+export async function startMovie(draft: MovieDraft): Promise<MovieFile> {
+  // Encoders want even sides.
+  const [width, height] = [draft.widthPx & ~1, draft.heightPx & ~1];
+  const codec = await encodable(draft.format, width, height);
+  const canvas = new OffscreenCanvas(width, height);
+  const context = canvas.getContext("2d", { alpha: false });
+  if (context === null) throw new Error("this browser draws no pictures");
+  const target = new BufferTarget();
+  const format = draft.format === "webm" ? new WebMOutputFormat() : new Mp4OutputFormat();
+  const output = new Output({ format, target });
+  const source = new CanvasSource(canvas, { codec, bitrate: QUALITY_HIGH });
+  output.addVideoTrack(source, { frameRate: draft.picturesPerSecond });
+  await output.start();
+  const seconds = 1 / draft.picturesPerSecond;
+  let count = 0;
+  return {
+    async add(picture) {
+      context.drawImage(picture, 0, 0, width, height);
+      await source.add(count * seconds, seconds);
+      count += 1;
+    },
+    async finish() {
+      await output.finalize();
+      if (target.buffer === null) throw new Error("the encoder gave no file");
+      return new Uint8Array(target.buffer);
+    },
+    cancel: () => output.cancel(),
+  };
+}
+
+async function encodable(
+  format: MovieDraft["format"],
+  width: number,
+  height: number,
+): Promise<VideoCodec> {
+  if (!("VideoEncoder" in globalThis))
+    throw new Error("the browser encodes video only on pages by HTTPS or from localhost");
+  for (const codec of CODECS[format])
+    if (await canEncodeVideo(codec, { width, height })) return codec;
+  throw new Error(`this browser encodes no ${format === "webm" ? "WebM" : "MP4"} of that size`);
+}

@@ -1,0 +1,8 @@
+// Rays as the messages have them.
+import type { WorldRay } from "../core/projection";
+
+export function rayMessage({ originM, direction }: WorldRay) {
+  const [xM, yM, zM] = originM;
+  const [x, y, z] = direction;
+  return { origin: { xM, yM, zM }, direction: { x, y, z } };
+}

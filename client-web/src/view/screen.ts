@@ -1,0 +1,147 @@
+// What is on the screen: frames to the canvas, the canvas in its window, and what the frame that is shown tells the state.
+import { poseOfCamera, standingAzimuthDeg } from "../core/camera";
+import { encodingOf, pictureBytes } from "../core/encoding";
+import { FrameRate } from "../core/frame_rate";
+import type { MarkedPicture, PictureTool } from "../core/marking";
+import type { RevisionLedger } from "../core/revision_ledger";
+import type { PageState } from "../core/state";
+import type { Frame } from "../gen/thunderhead/v1/frame_pb";
+import { CanvasPlace } from "./canvas_place";
+import { PictureFlow } from "./picture_flow";
+import type { PointerSteps } from "./pointer";
+
+// The person has asked the browser to save data; not in every browser.
+type NetworkNavigator = Navigator & { readonly connection?: { readonly saveData?: boolean } };
+
+const PACE_EVERY_MS = 500;
+// Of what a camera that does not turn around a target looks at.
+const TYPICAL_DISTANCE_M = 30_000;
+
+export interface ScreenSteps extends Omit<PointerSteps, "tool"> {
+  tool(): PictureTool | undefined;
+  acknowledge(sequence: bigint, ownView: boolean, videoLost?: boolean): void;
+  // A frame is on the screen.
+  shown(frame: Frame, nowMs: number): void;
+  // Called twice a second.
+  paced(): void;
+  resizeRested(): void;
+  onNextPaint(callback: (nowMs: number) => void): () => void;
+}
+
+export class Screen {
+  readonly #window: Window;
+  readonly #state: PageState;
+  readonly #ledger: RevisionLedger;
+  readonly #steps: ScreenSteps;
+  readonly #flow: PictureFlow;
+  readonly #place: CanvasPlace;
+  readonly #rate = new FrameRate();
+  readonly #pace: ReturnType<typeof setInterval>;
+  #shown: Frame | undefined;
+
+  constructor(window: Window, state: PageState, ledger: RevisionLedger, steps: ScreenSteps) {
+    this.#window = window;
+    this.#state = state;
+    this.#ledger = ledger;
+    this.#steps = steps;
+    this.#flow = new PictureFlow({
+      acknowledge: (sequence, ownView, lost) => steps.acknowledge(sequence, ownView, lost),
+      wantsOwnView: () => state.session.lookingAround.peek(),
+      painted: (frame) => this.#painted(frame),
+      undecodable: (frame) => this.#undecodable(frame),
+      onNextPaint: (callback) => steps.onNextPaint(callback),
+    });
+    this.#place = new CanvasPlace(window, this.#flow, {
+      ...steps,
+      resized: () => {
+        if (this.#shown !== undefined) state.pictureBox.value = this.#place.boxOf(this.#shown);
+      },
+    });
+    this.#pace = setInterval(() => this.#takePace(), PACE_EVERY_MS);
+  }
+
+  get flow(): PictureFlow {
+    return this.#flow;
+  }
+
+  get canvas(): HTMLCanvasElement | undefined {
+    return this.#place.canvas;
+  }
+
+  get shown(): Frame | undefined {
+    return this.#shown;
+  }
+
+  // In physical pixels.
+  get size(): { readonly widthPx: number; readonly heightPx: number } {
+    return this.#place.size;
+  }
+
+  attach(canvas: HTMLCanvasElement): () => void {
+    return this.#place.attach(canvas);
+  }
+
+  // The window as the session is told of it.
+  window() {
+    const { document, navigator } = this.#window;
+    const savesBytes = (navigator as NetworkNavigator | undefined)?.connection?.saveData === true;
+    return { ...this.size, hidden: document.hidden, savesBytes };
+  }
+
+  // The picture that marks are drawn on.
+  markedPicture(): MarkedPicture | undefined {
+    const box = this.#state.pictureBox.peek();
+    const projection = this.#state.frame.peek()?.projection;
+    if (box === undefined || projection === undefined) return undefined;
+    const pose = poseOfCamera(this.#shown?.camera);
+    const distanceM = pose?.kind === "orbit" ? pose.distanceM : TYPICAL_DISTANCE_M;
+    return { box, projection, distanceM };
+  }
+
+  dispose(): void {
+    clearInterval(this.#pace);
+    this.#flow.dispose();
+  }
+
+  #painted(frame: Frame): void {
+    const { canvas } = this.#place;
+    if (canvas === undefined) return;
+    const now = this.#window.performance.now();
+    this.#shown = frame;
+    this.#rate.shown(pictureBytes(frame), now);
+    this.#state.pictureBox.value = this.#place.boxOf(frame);
+    this.#state.showFrame(frame);
+    this.#steps.shown(frame, now);
+    const { shownTimeIndex } = this.#ledger;
+    if (shownTimeIndex !== undefined)
+      this.#state.sawTime(this.#state.stormId.peek(), shownTimeIndex);
+    const pose = poseOfCamera(frame.camera);
+    Object.assign(canvas.dataset, {
+      sequence: String(frame.sequence),
+      revision: String(frame.sceneRevision),
+      refined: String(frame.refined),
+      encoding: encodingOf(frame),
+      ownView: String(frame.ownView),
+      time: String(shownTimeIndex ?? ""),
+      camera: pose?.kind ?? "",
+      azimuth: standingAzimuthDeg(pose)?.toFixed(2) ?? "",
+      distance: pose?.kind === "orbit" ? pose.distanceM.toFixed(1) : "",
+    });
+  }
+
+  // Such a frame is acknowledged although it is not shown: the server would wait for it.
+  #undecodable(frame: Frame): void {
+    const text = `Frame ${frame.sequence} is no picture that this browser can read`;
+    this.#state.notify({ subject: "decode", text, severity: "problem" });
+  }
+
+  #takePace(): void {
+    const now = this.#window.performance.now();
+    this.#steps.paced();
+    this.#state.pace.value = {
+      framesPerSecond: this.#rate.framesPerSecond(now),
+      bytesPerSecond: this.#rate.bytesPerSecond(now),
+      latencyMs: this.#ledger.latencyMs,
+    };
+  }
+}

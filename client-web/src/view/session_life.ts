@@ -1,0 +1,302 @@
+// This page's part in a session: opens or joins it, keeps its scene and the page's the same, takes its messages.
+
+import { create } from "@bufbuild/protobuf";
+import { Code } from "@connectrpc/connect";
+import { poseOfCamera } from "../core/camera";
+import type { Later } from "../core/newest";
+import type { OwnKeys } from "../core/own_keys";
+import type { RevisionLedger } from "../core/revision_ledger";
+import { outputSize, withOutput } from "../core/scene";
+import { SceneSync, type SceneVerdict } from "../core/scene_sync";
+import type { Connection, PageState } from "../core/state";
+import type { Frame, Problem } from "../gen/thunderhead/v1/frame_pb";
+import {
+  Codec,
+  type InteractResponse,
+  type Joined,
+  type Presence,
+  Role,
+} from "../gen/thunderhead/v1/interact_pb";
+import { type Scene, SceneSchema } from "../gen/thunderhead/v1/scene_pb";
+import type {
+  JoinDetails,
+  OpenedSession,
+  RequestCase,
+  SessionClient,
+  SessionListener,
+} from "../transport/session_client";
+import type { Notes } from "./notes";
+import type { Screen } from "./screen";
+import type { StormsOnServer } from "./storms_on_server";
+import type { Viewpoint } from "./viewpoint";
+
+export interface SessionLifeParts {
+  client(): SessionClient;
+  screen(): Screen;
+  viewpoint(): Viewpoint;
+  readonly state: PageState;
+  readonly keys: OwnKeys;
+  readonly ledger: RevisionLedger;
+  readonly notes: Notes;
+  readonly storms: StormsOnServer;
+  pausePlayback(): void;
+  takeControl(): void;
+  writeAddress(): void;
+  nowMs(): number;
+  onNextPaint(callback: (nowMs: number) => void): () => void;
+  later: Later;
+}
+
+export class SessionLife implements SessionListener {
+  codecs: Codec[] = [Codec.JPEG];
+  // False for who steers another's session, which keeps its picture size.
+  setsOutput: boolean;
+  readonly #parts: SessionLifeParts;
+  readonly #sync: SceneSync;
+  // The key that the page joins with, if it is the presenter's.
+  #presenterKey: string | undefined;
+  // True until the first presence of a session that this page opened.
+  #opened = false;
+  // It steered as a presenter when the connection was lost; the server may still see that connection steer.
+  #resumesSteering = false;
+  #newestProblem: Problem | undefined;
+
+  constructor(parts: SessionLifeParts) {
+    this.#parts = parts;
+    const { state, keys, ledger } = parts;
+    const viewerKey = state.session.viewerKey.peek();
+    if (viewerKey !== undefined) this.#presenterKey = keys.presenterKey(viewerKey);
+    this.setsOutput = viewerKey === undefined || this.#presenterKey !== undefined;
+    this.#sync = new SceneSync({
+      scene: () => state.scene.peek(),
+      adopt: (scene) => state.adoptScene(scene),
+      complete: (scene) => state.adoptRendering(scene.rendering),
+      changedByOthers: (scene, revision) => ledger.told(scene.timeIndex ?? 0, revision),
+      send: (scene, expectedRevision) => this.#send(scene, expectedRevision),
+      taken: () => state.dismiss("refused"),
+      refused: (text) => parts.notes.problem("refused", text),
+      onNextPaint: (callback) => parts.onNextPaint(callback),
+      later: parts.later,
+    });
+    state.onEdit((edit) => this.#sync.edited(edit));
+  }
+
+  // The key to join with.
+  get key(): string | undefined {
+    return this.#presenterKey ?? this.#parts.state.session.viewerKey.peek();
+  }
+
+  // True once the picture of this time is on the screen. Before this page sends a first scene, the frame shown is of the
+  // scene's time.
+  isTimeShown(index: number): boolean {
+    if (this.#sync.unsettled || this.#parts.screen().shown === undefined) return false;
+    return (this.#parts.ledger.shownTimeIndex ?? index) === index;
+  }
+
+  // A frame is on the screen.
+  shown(frame: Frame, nowMs: number): void {
+    if (frame.ownView) this.#parts.viewpoint().ownView.placed(frame.camera);
+    else {
+      this.#parts.ledger.shown(frame.sceneRevision, nowMs);
+      this.adoptCamera();
+    }
+    const problem = this.#newestProblem;
+    if (problem?.ownView === frame.ownView && frame.sceneRevision >= problem.sceneRevision)
+      this.#parts.state.dismiss("problem");
+  }
+
+  // Adopts a frame's camera once the frame shows the newest scene.
+  adoptCamera(): void {
+    const frame = this.#parts.screen().shown;
+    if (frame === undefined || frame.ownView || this.#sync.unsettled) return;
+    if (frame.sceneRevision >= this.#sync.revision) this.#parts.state.adoptCamera(frame.camera);
+  }
+
+  // A frame may arrive before the reply that names its revision.
+  adoptOpenCamera(): void {
+    if (poseOfCamera(this.#parts.state.scene.peek().camera) === undefined) this.adoptCamera();
+  }
+
+  sendWindow(): void {
+    this.#parts.client().send({ case: "window", value: this.#parts.screen().window() });
+  }
+
+  sendOutputSize(): void {
+    const { state } = this.#parts;
+    const { output } = state.scene.peek();
+    const size = this.#outputSize();
+    if (!this.setsOutput || state.session.me.peek() === undefined) return;
+    if (output?.widthPx === size.widthPx && output?.heightPx === size.heightPx) return;
+    state.edit((scene) => withOutput(scene, size), "unrecorded");
+  }
+
+  dispose(): void {
+    this.#sync.dispose();
+  }
+
+  // SessionListener.
+
+  sceneToOpen(): Scene {
+    this.setsOutput = true;
+    const { scene } = this.#parts.state;
+    this.#parts.state.adoptScene(withOutput(scene.value, this.#outputSize()));
+    this.#sync.opening();
+    return scene.value;
+  }
+
+  openingRefused(message: string): void {
+    this.#parts.notes.problem("refused", message);
+    this.#parts.state.adoptScene(create(SceneSchema));
+  }
+
+  opened(opened: OpenedSession): void {
+    this.#presenterKey = opened.presenterKey;
+    this.#opened = true;
+    this.#parts.keys.keep(opened.viewerKey, opened.presenterKey);
+    this.#parts.state.session.viewerKey.value = opened.viewerKey;
+    this.#sync.opened(opened.completed, opened.revision);
+    this.#parts.writeAddress();
+  }
+
+  joining(): JoinDetails {
+    const window = this.#parts.screen().window();
+    return { name: this.#parts.keys.name, window, codecs: this.codecs };
+  }
+
+  joined(joined: Joined): void {
+    const { session } = this.#parts.state;
+    const presenting = joined.role === Role.PRESENTER;
+    this.#resumesSteering = presenting && session.steering.peek();
+    session.joined(joined);
+    if (presenting && this.#presenterKey !== undefined)
+      this.#parts.keys.keep(joined.viewerKey, this.#presenterKey);
+    this.#parts.ledger.startSession();
+    this.#sync.forget();
+    this.#parts.screen().flow.startCall();
+    this.#parts.viewpoint().ownView.resume();
+    void this.#parts.storms.learn();
+  }
+
+  connection(connection: Connection): void {
+    this.#parts.state.connection.value = connection;
+    if (connection.kind !== "live") this.#sync.hold();
+  }
+
+  message(message: InteractResponse["message"]): void {
+    const { session } = this.#parts.state;
+    switch (message.case) {
+      case "scene":
+        if (message.value.scene !== undefined)
+          this.#sync.told(message.value.scene, message.value.sceneRevision);
+        break;
+      case "frame":
+        this.#parts.screen().flow.offer(message.value);
+        break;
+      case "problem":
+        this.#problem(message.value);
+        break;
+      case "presence":
+        this.#takePresence(message.value);
+        break;
+      case "pointers":
+        session.pointers.value = message.value.pointers;
+        break;
+      case "marks":
+        session.takeMarks(message.value.marks);
+        break;
+      case "catalogueChanged":
+        void this.#parts.storms.changed();
+        break;
+    }
+  }
+
+  refused(subject: RequestCase, requestId: bigint, code: Code, message: string): void {
+    const { ownView } = this.#parts.viewpoint();
+    // A late or a second pointer, acknowledgement or motion is of no interest.
+    if (subject === "point" || subject === "acknowledge") return;
+    if (subject === "moveCamera") {
+      // The server has ended the own view; this page may not have been told of it.
+      if (code === Code.FailedPrecondition) ownView.end();
+      return;
+    }
+    if (subject === "addMark") this.#parts.state.session.dropPendingMark(requestId);
+    if (subject === "detach") ownView.end();
+    const text = code === Code.PermissionDenied && message === "" ? "This is not allowed" : message;
+    this.#parts.notes.say("refused-request", text);
+  }
+
+  gone(why: { readonly message: string; readonly forgotten: boolean }): boolean {
+    const { session } = this.#parts.state;
+    const presented = this.#presenterKey !== undefined;
+    this.#presenterKey = undefined;
+    if (session.viewerKey.peek() !== undefined)
+      this.#parts.keys.forget(session.viewerKey.peek() ?? "");
+    if (presented && why.forgotten) {
+      this.#parts.notes.say(
+        "session",
+        "The server had lost the session; this is a new one with the same scene.",
+      );
+      return true;
+    }
+    session.end(why.message);
+    this.#parts.pausePlayback();
+    return false;
+  }
+
+  #takePresence(presence: Presence): void {
+    const { state, notes } = this.#parts;
+    const { session } = state;
+    const steeredBefore = session.steering.peek();
+    session.takePresence(presence);
+    if (session.steering.peek()) {
+      this.#parts.viewpoint().follow();
+      this.#sync.allow();
+      if (this.setsOutput) this.sendOutputSize();
+      if (!steeredBefore && !this.#opened && !session.alone.peek())
+        notes.say("control", "You steer");
+    } else {
+      this.#sync.hold();
+      this.#parts.pausePlayback();
+      if (this.#opened && presence.steeringViewerId === 0n) this.#parts.takeControl();
+      else if (this.#resumesSteering && presenterSteers(presence)) this.#parts.takeControl();
+      else if (this.#sync.unsettled) {
+        this.#sync.discard();
+        const why = session.editBlock.peek() ?? "";
+        notes.say("control", `Your last change was not taken. ${why}`);
+      }
+    }
+    this.#opened = false;
+    this.#resumesSteering = false;
+  }
+
+  #problem(problem: Problem): void {
+    this.#newestProblem = problem;
+    if (!problem.ownView) this.#parts.ledger.settled(problem.sceneRevision);
+    this.#parts.notes.problem("problem", problem.message);
+    // The storm may be gone.
+    void this.#parts.storms.learn();
+  }
+
+  #outputSize() {
+    const { widthPx, heightPx } = this.#parts.screen().size;
+    return outputSize(widthPx, heightPx, this.#parts.state.resolution.peek());
+  }
+
+  async #send(scene: Scene, expectedRevision: bigint): Promise<SceneVerdict> {
+    const entry = this.#parts.ledger.sent(scene.timeIndex ?? 0, this.#parts.nowMs());
+    try {
+      const verdict = await this.#parts.client().updateScene(scene, expectedRevision);
+      if (verdict.kind === "taken") entry.accepted(verdict.revision);
+      else entry.refused();
+      return verdict;
+    } catch (error) {
+      entry.refused();
+      throw error;
+    }
+  }
+}
+
+function presenterSteers(presence: Presence): boolean {
+  const steerer = presence.people.find(({ viewerId }) => viewerId === presence.steeringViewerId);
+  return steerer?.role === Role.PRESENTER;
+}

@@ -1,0 +1,51 @@
+// The storm from above, as the server computes it: fetched while something that shows it is open, again for another time.
+import { ConnectError } from "@connectrpc/connect";
+import { effect } from "@preact/signals-core";
+import type { PageState } from "../core/state";
+import type { ServerCalls } from "../transport/server_calls";
+
+const REST_MS = 300;
+
+export class StormMap {
+  readonly #calls: ServerCalls;
+  readonly #state: PageState;
+  readonly #stop: () => void;
+  #timer: ReturnType<typeof setTimeout> | undefined;
+  #asked = "";
+
+  constructor(calls: ServerCalls, state: PageState) {
+    this.#calls = calls;
+    this.#state = state;
+    this.#stop = effect(() => {
+      const wanted = state.tool.value === "map" || state.tool.value === "probe";
+      const live = state.connection.value.kind === "live";
+      const stormId = state.stormId.value;
+      const timeIndex = state.timeIndex.value;
+      clearTimeout(this.#timer);
+      if (!wanted || !live || stormId === "") return;
+      if (state.stormMap.peek()?.stormId !== stormId) state.stormMap.value = undefined;
+      this.#timer = setTimeout(() => void this.#fetch(stormId, timeIndex), REST_MS);
+    });
+  }
+
+  dispose(): void {
+    this.#stop();
+    clearTimeout(this.#timer);
+  }
+
+  async #fetch(stormId: string, timeIndex: number): Promise<void> {
+    const asked = `${stormId} ${timeIndex}`;
+    if (this.#asked === asked && this.#state.stormMap.peek() !== undefined) return;
+    this.#asked = asked;
+    try {
+      const map = await this.#calls.stormMap(stormId, timeIndex);
+      if (this.#asked !== asked) return;
+      this.#state.stormMap.value = map;
+      this.#state.mapProblem.value = undefined;
+    } catch (error) {
+      this.#asked = "";
+      const why = error instanceof ConnectError ? error.rawMessage : String(error);
+      this.#state.mapProblem.value = `The server sends no map: ${why}`;
+    }
+  }
+}

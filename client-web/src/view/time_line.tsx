@@ -1,0 +1,140 @@
+// The storm's times along the bottom: a tick each, play, step, loop and speed.
+
+import { momentOf } from "../core/moment";
+import { PLAY_RATES } from "../core/playback";
+import { formatElapsed } from "../core/units";
+import type { StormTime } from "../gen/thunderhead/v1/storm_pb";
+import { Icon } from "./icons";
+import type { Page } from "./page";
+
+// Times that get their clock under their tick, at most.
+const MOST_LABELS = 6;
+
+export function TimeLine({ page }: { page: Page }) {
+  const { state, playback } = page;
+  const storm = state.storm.value;
+  const count = state.timeCount.value;
+  if (storm === undefined || count === 0) return null;
+  const index = Math.min(state.timeIndex.value, count - 1);
+  const playing = playback.playing.value;
+  const fixed = count < 2 || state.session.editBlock.value !== undefined;
+  return (
+    <section class="time-line" aria-label="Time line" data-testid="time-bar">
+      <button
+        type="button"
+        class="round"
+        data-testid="play"
+        aria-label={playing ? "Pause" : "Play"}
+        title={playing ? "Pause (space)" : "Play (space)"}
+        disabled={fixed}
+        onClick={() => playback.toggle()}
+      >
+        <Icon name={playing ? "pause" : "play"} />
+      </button>
+      <Steps page={page} times={storm.times} index={index} fixed={fixed} />
+      <Shown page={page} index={index} count={count} />
+      <label class="rate">
+        <span class="visually-hidden">Times per second</span>
+        <select
+          data-testid="rate"
+          disabled={fixed}
+          value={String(playback.timesPerSecond.value)}
+          onChange={(event) => {
+            playback.timesPerSecond.value = Number(event.currentTarget.value);
+          }}
+        >
+          {PLAY_RATES.map((rate) => (
+            <option
+              key={rate}
+              value={String(rate)}
+              selected={rate === playback.timesPerSecond.value}
+            >
+              {rate} /s
+            </option>
+          ))}
+        </select>
+      </label>
+      <button
+        type="button"
+        class="round"
+        data-testid="loop"
+        aria-pressed={playback.loops.value}
+        aria-label="Loop"
+        title="At the end, begin again"
+        disabled={fixed}
+        onClick={() => {
+          playback.loops.value = !playback.loops.value;
+        }}
+      >
+        <Icon name="loop" />
+      </button>
+    </section>
+  );
+}
+
+interface StepsProps {
+  readonly page: Page;
+  readonly times: readonly StormTime[];
+  readonly index: number;
+  readonly fixed: boolean;
+}
+
+// A slider with a tick for each time, at its place in time. What was shown already is drawn at once again: it is marked.
+function Steps({ page, times, index, fixed }: StepsProps) {
+  const { state, playback } = page;
+  const last = times.length - 1;
+  const every = Math.ceil(times.length / MOST_LABELS);
+  const time = times[index];
+  const spoken = state.moment.value;
+  return (
+    <div class="steps">
+      <div class="ticks" aria-hidden="true">
+        {times.map((each, at) => (
+          <span
+            key={each.index}
+            class={state.seenTimes.value.has(at) ? "tick seen" : "tick"}
+            style={{ left: `${last > 0 ? (100 * at) / last : 50}%` }}
+          >
+            {(at % every === 0 || at === last) && (at === last || last - at >= every) && (
+              <span class="tick-label">{clockOf(each)}</span>
+            )}
+          </span>
+        ))}
+      </div>
+      <input
+        type="range"
+        data-testid="time"
+        aria-label="Valid time"
+        aria-valuetext={`${spoken?.date ?? ""} ${spoken?.clock ?? ""} ${time === undefined ? "" : formatElapsed(time.elapsedS)}`}
+        min={0}
+        max={last}
+        step={1}
+        disabled={fixed}
+        value={index}
+        onInput={(event) => {
+          playback.pause();
+          page.showTime(event.currentTarget.valueAsNumber);
+        }}
+      />
+    </div>
+  );
+}
+
+function clockOf({ validTime, elapsedS }: StormTime): string {
+  return momentOf(validTime, formatElapsed(elapsedS), undefined).clock;
+}
+
+function Shown({ page, index, count }: { page: Page; index: number; count: number }) {
+  const { state } = page;
+  const moment = state.moment.value;
+  const time = state.shownTime.value;
+  return (
+    <output class="valid-time" data-testid="valid-time">
+      <span class="clock">{moment?.clock}</span>
+      <span class="quiet">
+        {index + 1} of {count}
+        {time?.deleted && " · deleted, shown from memory"}
+      </span>
+    </output>
+  );
+}

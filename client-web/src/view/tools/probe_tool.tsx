@@ -1,0 +1,173 @@
+// What is there: a click on the picture asks the server for the place, and the values of every field along the ray.
+import { placeInWords, readable, wayBetween } from "../../core/probe";
+import { hydrometeorName } from "../../core/scene";
+import type { PageState } from "../../core/state";
+import { compassPoint } from "../../core/sun";
+import { formatLength, formatNumber } from "../../core/units";
+import {
+  type FieldAlongRay,
+  type FieldMaximum,
+  type ProbeRayResponse,
+  type RayPlace,
+  ProbeRayResponse_Seen as Seen,
+} from "../../gen/thunderhead/v1/probe_pb";
+import type { Page } from "../page";
+import { colorOfField } from "./field_colors";
+import { RayChart } from "./ray_chart";
+
+export function ProbeTool({ page }: { page: Page }) {
+  const { state } = page;
+  const last = state.probes.value.at(-1);
+  return (
+    <>
+      <p class="quiet">
+        Click on the picture: what is there? A second click measures from the first. By keys: turn
+        the picture until the cross is on it, then Enter.
+      </p>
+      <div class="buttons">
+        <button
+          type="button"
+          data-testid="probe-middle"
+          disabled={state.probing.value || state.frame.value === undefined}
+          onClick={() => void page.probing.through({ x: 0, y: 0 })}
+        >
+          {state.probing.value ? "Asking …" : "Probe the middle"}
+        </button>
+        {last !== undefined && (
+          <button type="button" data-testid="probe-forget" onClick={() => page.probing.forget()}>
+            Clear
+          </button>
+        )}
+      </div>
+      {state.probeProblem.value !== undefined && (
+        <p class="unmet" role="alert" data-testid="probe-problem">
+          {state.probeProblem.value}
+        </p>
+      )}
+      <div aria-live="polite">
+        {last !== undefined && <Found state={state} found={last.found} />}
+      </div>
+      <Cores page={page} />
+    </>
+  );
+}
+
+function Found({ state, found }: { state: PageState; found: ProbeRayResponse }) {
+  const [first, second] = state.probes.value;
+  const way = wayBetween(first?.found.seenPlace, second?.found.seenPlace);
+  return (
+    <section aria-label="Found" data-testid="probe-found">
+      <p class="found">
+        <strong>{seenInWords(found)}</strong>
+        {found.seenPlace !== undefined && <Where place={found.seenPlace} />}
+      </p>
+      {way !== undefined && (
+        <p data-testid="probe-way">
+          From the first click: {formatLength(way.distanceM, "distance")} to{" "}
+          {compassPoint(way.azimuthDeg)} ({Math.round(way.azimuthDeg)}°),{" "}
+          {formatLength(Math.abs(way.heightM), "height")} {way.heightM < 0 ? "lower" : "higher"}
+        </p>
+      )}
+      <table class="probe-fields" data-testid="probe-fields">
+        <caption class="visually-hidden">The largest value of each field along the ray</caption>
+        <thead>
+          <tr>
+            <th scope="col">Most along the ray</th>
+            <th scope="col">Value</th>
+            <th scope="col">Height</th>
+          </tr>
+        </thead>
+        <tbody>
+          {found.fields.map((field) => (
+            <FieldRow key={field.variable} field={field} />
+          ))}
+        </tbody>
+      </table>
+      {found.distancesM.length > 1 && <RayChart found={found} />}
+      <p class="quiet" data-testid="probe-depth">
+        Optical depth {formatNumber(found.opticalDepth)}
+        {found.firstCloud !== undefined &&
+          `; cloud begins ${formatLength(found.firstCloud.distanceM, "distance")} away`}
+        {found.depthOne !== undefined &&
+          found.firstCloud !== undefined &&
+          `, optical depth 1 after ${formatLength(found.depthOne.distanceM - found.firstCloud.distanceM, "distance")} in it`}
+      </p>
+    </section>
+  );
+}
+
+function seenInWords({ seen }: ProbeRayResponse): string {
+  if (seen === Seen.CLOUD) return "Cloud";
+  return seen === Seen.GROUND ? "Ground" : "Sky: no cloud on this ray";
+}
+
+function Where({ place }: { place: RayPlace }) {
+  const { earth } = place;
+  return (
+    <span data-testid="probe-place">
+      {" "}
+      {formatLength(place.heightM, "height")} up · {formatLength(place.distanceM, "distance")} away
+      {earth !== undefined && ` · ${placeInWords(earth.latitudeDeg, earth.longitudeDeg)}`}
+    </span>
+  );
+}
+
+function FieldRow({ field }: { field: FieldAlongRay }) {
+  const { factor, symbol } = readable(field.units);
+  return (
+    <tr data-testid={`probe-${hydrometeorName(field.hydrometeor).toLowerCase()}`}>
+      <th scope="row">
+        <span class="key-swatch" style={{ background: colorOfField(field.hydrometeor) }} />
+        {hydrometeorName(field.hydrometeor)}
+      </th>
+      <td>
+        {formatNumber(field.maximum * factor)} {symbol}
+      </td>
+      <td>
+        {field.maximumPlace === undefined
+          ? "–"
+          : formatLength(field.maximumPlace.heightM, "height")}
+      </td>
+    </tr>
+  );
+}
+
+// Where each field is strongest in the whole storm; a click turns the camera around that place.
+function Cores({ page }: { page: Page }) {
+  const { state } = page;
+  const cores = (state.stormMap.value?.maxima ?? []).filter(({ position }) => position);
+  if (cores.length === 0) return null;
+  return (
+    <section aria-label="Cores" class="cores" data-testid="cores">
+      <h3>Strongest in the storm</h3>
+      <ul>
+        {cores.map((core) => (
+          <Core key={core.variable} page={page} core={core} />
+        ))}
+      </ul>
+    </section>
+  );
+}
+
+function Core({ page, core }: { page: Page; core: FieldMaximum }) {
+  const { factor, symbol } = readable(core.units);
+  const name = hydrometeorName(core.hydrometeor);
+  const { position } = core;
+  return (
+    <li>
+      <button
+        type="button"
+        data-testid={`core-${name.toLowerCase()}`}
+        title="Turn around this place"
+        onClick={() => {
+          if (position !== undefined)
+            page.viewpoint.turnAround([position.xM, position.yM, position.zM]);
+        }}
+      >
+        <span class="key-swatch" style={{ background: colorOfField(core.hydrometeor) }} />
+        {name} {formatNumber(core.value * factor)} {symbol},{" "}
+        {formatLength(position?.zM ?? 0, "height")} up
+      </button>
+    </li>
+  );
+}

@@ -1,0 +1,78 @@
+// The fields along a ray as a chart. uPlot is loaded with the first chart.
+import { useEffect, useRef } from "preact/hooks";
+import { readable } from "../../core/probe";
+import { hydrometeorName } from "../../core/scene";
+import { lengthUnits } from "../../core/units";
+import type { ProbeRayResponse } from "../../gen/thunderhead/v1/probe_pb";
+import { colorOfField } from "./field_colors";
+
+const HEIGHT_PX = 150;
+
+export function RayChart({ found }: { found: ProbeRayResponse }) {
+  const place = useRef<HTMLDivElement>(null);
+  const nautical = lengthUnits.value === "aviation";
+  useEffect(() => {
+    let chart: { destroy(): void } | undefined;
+    let wanted = true;
+    void Promise.all([import("uplot"), import("uplot/dist/uPlot.min.css")]).then(
+      ([{ default: UPlot }]) => {
+        if (!wanted || place.current === null) return;
+        const fields = found.fields.filter(({ values }) => values.length > 0);
+        const unit = nautical ? { metres: 1852, symbol: "nm" } : { metres: 1000, symbol: "km" };
+        const axis = {
+          stroke: "#a9b5c4",
+          grid: { stroke: "rgb(255 255 255 / 8%)" },
+          font: "11px system-ui",
+        };
+        chart = new UPlot(
+          {
+            width: place.current.clientWidth,
+            height: HEIGHT_PX,
+            legend: { show: false },
+            cursor: { y: false },
+            scales: { x: { time: false } },
+            axes: [
+              {
+                ...axis,
+                label: `away, ${unit.symbol}`,
+                labelSize: 18,
+                labelFont: "11px system-ui",
+                size: 28,
+              },
+              { ...axis, size: 38 },
+            ],
+            series: [
+              {},
+              ...fields.map(({ hydrometeor }) => ({
+                label: hydrometeorName(hydrometeor),
+                stroke: colorOfField(hydrometeor),
+                width: 1.5,
+                points: { show: false },
+              })),
+            ],
+          },
+          [
+            found.distancesM.map((metres) => metres / unit.metres),
+            ...fields.map(({ values, units }) =>
+              values.map((value) => value * readable(units).factor),
+            ),
+          ],
+          place.current,
+        );
+      },
+    );
+    return () => {
+      wanted = false;
+      chart?.destroy();
+    };
+  }, [found, nautical]);
+  return (
+    <div
+      ref={place}
+      class="ray-chart"
+      role="img"
+      aria-label="The fields along the ray, by distance; the table above has their largest values"
+      data-testid="ray-chart"
+    />
+  );
+}

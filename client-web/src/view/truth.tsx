@@ -1,0 +1,56 @@
+// How far the picture on the screen is believed to be off, in a line over it.
+import { nameOfPreset } from "../core/names";
+import type { PageState } from "../core/state";
+import { formatNumber } from "../core/units";
+import type { Refinement } from "../gen/thunderhead/v1/frame_pb";
+
+// The bar is full at this error.
+const LARGE_ERROR = 0.5;
+
+export function Truth({ state }: { state: PageState }) {
+  const frame = state.frame.value;
+  if (frame === undefined) return null;
+  const { accuracy, refinement, refined } = frame;
+  const preset = state.preset.value;
+  return (
+    <p class="truth" data-testid="truth">
+      {refinement !== undefined && <RefinementBrief refinement={refinement} />}
+      {refinement === undefined && accuracy !== undefined && (
+        <>
+          <span>
+            This picture is <strong>{formatNumber(100 * accuracy.estimatedError)} %</strong> off
+          </span>
+          <meter
+            aria-hidden="true"
+            min={0}
+            max={LARGE_ERROR}
+            value={Math.min(LARGE_ERROR, accuracy.estimatedError)}
+          />
+        </>
+      )}
+      <span class={refined ? "quiet" : "coarse"}>
+        {refined
+          ? preset === undefined
+            ? "as set"
+            : nameOfPreset(preset).toLowerCase()
+          : "coarse"}
+      </span>
+    </p>
+  );
+}
+
+// Progress of the reference. Always visible, as a picture cannot be judged without it.
+function RefinementBrief({ refinement }: { refinement: Refinement }) {
+  const { samplesPerPixel, relativeError } = refinement;
+  return (
+    <span
+      data-testid="refinement"
+      data-samples-per-pixel={samplesPerPixel}
+      data-relative-error={relativeError}
+      title="Samples a pixel, and the standard error of a pixel over the mean radiance"
+    >
+      {samplesPerPixel} spp
+      {relativeError !== undefined && ` ± ${formatNumber(100 * relativeError)} %`}
+    </span>
+  );
+}

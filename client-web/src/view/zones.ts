@@ -1,0 +1,31 @@
+// The time zones of the storm's place and of the sun's clock. The table of zones is loaded with the first place.
+import { effect } from "@preact/signals-core";
+import { zoneOfLongitude } from "../core/moment";
+import type { PageState } from "../core/state";
+
+export function followZones(state: PageState): () => void {
+  let asked = "";
+  return effect(() => {
+    const clock = state.clockHere.value;
+    const storm = state.storm.value;
+    const hasPlace = storm?.latitudeDeg !== undefined && storm.longitudeDeg !== undefined;
+    const latitudeDeg = clock?.latitudeDeg ?? storm?.latitudeDeg;
+    const longitudeDeg = clock?.longitudeDeg ?? storm?.longitudeDeg;
+    if (latitudeDeg === undefined || longitudeDeg === undefined) return;
+    const key = `${latitudeDeg} ${longitudeDeg} ${hasPlace}`;
+    if (key === asked) return;
+    asked = key;
+    const adopt = (zone: string) => {
+      if (key !== asked) return;
+      state.sunZone.value = zone;
+      // Only real places have a local time; an idealised run's is the sun's alone.
+      state.zone.value = hasPlace ? zone : undefined;
+    };
+    adopt(zoneOfLongitude(longitudeDeg));
+    import("@photostructure/tz-lookup").then(
+      ({ default: zoneOf }) => adopt(zoneOf(latitudeDeg, longitudeDeg)),
+      // Without the table, the zone of the longitude stays.
+      () => undefined,
+    );
+  });
+}

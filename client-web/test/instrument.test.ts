@@ -1,0 +1,324 @@
+// What is drawn over the picture and on the map, what is compared, and the list of every parameter.
+import { create } from "@bufbuild/protobuf";
+import { afterEach, expect, test } from "vitest";
+import {
+  type Annotated,
+  annotationsOf,
+  FIRST_ANNOTATIONS,
+  type Shape,
+} from "../src/core/annotations";
+import type { OrbitPose, SpotterPose, TopDownPose } from "../src/core/camera";
+import { comparedScene } from "../src/core/comparison";
+import { arrowStrokes, joined, letterStrokes, parted } from "../src/core/lettering";
+import {
+  azimuthTo,
+  extentOf,
+  placeFrom,
+  placeOnMap,
+  standOf,
+  worldOfMap,
+} from "../src/core/map_frame";
+import {
+  instantOf,
+  localClock,
+  minutesAhead,
+  momentOf,
+  secondsBetween,
+  zoneOfLongitude,
+} from "../src/core/moment";
+import { parametersOf, parameterValue, withParameter } from "../src/core/parameters";
+import { wayBetween } from "../src/core/probe";
+import type { Projection } from "../src/core/projection";
+import { withTechnique } from "../src/core/rendering";
+import { withField, withRendering } from "../src/core/scene";
+import {
+  atMinute,
+  clockHere,
+  firstDateTime,
+  minuteOfDay,
+  sunriseAndSunset,
+} from "../src/core/sun_clock";
+import { toolOfKey } from "../src/core/tools";
+import { formatLength, lengthUnits, roundLength } from "../src/core/units";
+import { COMMENTS } from "../src/gen/comments";
+import { RayPlaceSchema } from "../src/gen/thunderhead/v1/probe_pb";
+import { Hydrometeor, RenderingSchema, SceneSchema } from "../src/gen/thunderhead/v1/scene_pb";
+import { StormDescriptionSchema } from "../src/gen/thunderhead/v1/storm_pb";
+import { gridProjection } from "../src/view/tools/map_lines";
+
+afterEach(() => {
+  lengthUnits.value = "metric";
+});
+
+// Looks north from the middle of the world, 60 degrees wide.
+const HALF = Math.tan(Math.PI / 6);
+const NORTH: Projection = {
+  eyeM: [0, 0, 2],
+  forward: [0, 1, 0],
+  right: [HALF, 0, 0],
+  up: [0, 0, HALF / 2],
+  parallel: false,
+};
+const SPOTTER: SpotterPose = {
+  kind: "spotter",
+  placeM: [0, 0],
+  eyeHeightM: 2,
+  azimuthDeg: 0,
+  elevationDeg: 0,
+  focalLengthMm: 24,
+};
+const PICTURE: Annotated = {
+  widthPx: 800,
+  heightPx: 400,
+  inset: { left: 0, top: 0, right: 0, bottom: 0 },
+  letterPx: 10,
+  projection: NORTH,
+  pose: SPOTTER,
+  groundM: 0,
+  title: "A storm",
+  time: "2013-05-20 20:00Z",
+  legend: [{ name: "Rain", color: "#112233" }],
+};
+
+const texts = (shapes: readonly Shape[]) =>
+  shapes.flatMap((shape) => (shape.kind === "text" ? [shape] : []));
+
+test("title, time and legend stand in their corners", () => {
+  const shapes = texts(annotationsOf(PICTURE, FIRST_ANNOTATIONS));
+  const title = shapes.find(({ text }) => text === "A storm");
+  const time = shapes.find(({ text }) => text === "2013-05-20 20:00Z");
+  expect([title?.x, time?.x]).toEqual([10, 10]);
+  expect(title?.y).toBeLessThan(30);
+  expect(time?.y).toBeGreaterThan(380);
+  expect(shapes.find(({ text }) => text === "Rain")?.anchor).toBe("end");
+  const none = {
+    title: false,
+    time: false,
+    legend: false,
+    scale: false,
+    compass: false,
+    rings: false,
+  };
+  expect(annotationsOf(PICTURE, none)).toEqual([]);
+});
+
+test("degrees stand along the horizon where they are", () => {
+  const shapes = texts(
+    annotationsOf({ ...PICTURE, title: "", time: "", legend: [] }, FIRST_ANNOTATIONS),
+  );
+  const at = Object.fromEntries(shapes.map(({ text, x }) => [text, x]));
+  expect(at.N).toBeCloseTo(400, 3);
+  // tan(20 deg) of tan(30 deg) of the half width.
+  expect(at["020°"]).toBeCloseTo(400 + (400 * Math.tan(Math.PI / 9)) / HALF, 3);
+  expect(at["340°"]).toBeCloseTo(400 - (400 * Math.tan(Math.PI / 9)) / HALF, 3);
+  expect(at.S).toBeUndefined();
+});
+
+test("the scale bar is as long as it says", () => {
+  const pose: TopDownPose = { kind: "topDown", centerM: [0, 0], widthM: 160_000 };
+  const shapes = annotationsOf(
+    { ...PICTURE, pose, legend: [] },
+    { ...FIRST_ANNOTATIONS, title: false, time: false },
+  );
+  const [bar] = shapes.flatMap((shape) => (shape.kind === "line" ? [shape.points] : []));
+  const lengthPx = (bar?.[2]?.[0] ?? 0) - (bar?.[1]?.[0] ?? 0);
+  expect(texts(shapes).map(({ text }) => text)).toEqual(["20 km"]);
+  expect(lengthPx).toBeCloseTo((800 * 20) / 160, 6);
+});
+
+test("rings of distance are drawn at their distance", () => {
+  const shapes = annotationsOf(PICTURE, { ...FIRST_ANNOTATIONS, compass: false, rings: true });
+  const lines = shapes.flatMap((shape) => (shape.kind === "line" ? [shape.points] : []));
+  // The ring of 10 km, straight ahead: 2 m below the eye at 10 km.
+  const ahead = lines[0]?.find(([x]) => Math.abs(x - 400) < 1e-3);
+  expect(ahead?.[1]).toBeCloseTo(200 + (200 * 2) / 10_000 / (HALF / 2), 3);
+  expect(texts(shapes).map(({ text }) => text)).toContain("50 km");
+});
+
+test("lengths are in metres and kilometres, or in feet and nautical miles", () => {
+  expect([formatLength(850, "height"), formatLength(8400, "height")]).toEqual(["850 m", "8.4 km"]);
+  expect(roundLength(37_000)).toBe(20_000);
+  lengthUnits.value = "aviation";
+  expect(formatLength(8400, "height")).toBe("27559 ft");
+  expect(formatLength(37_040, "distance")).toBe("20 nm");
+  expect(roundLength(40_000)).toBe(20 * 1852);
+});
+
+test("valid times are read with and without a real date", () => {
+  expect(momentOf("2013-05-20T20:00:00Z", "", "America/Chicago")).toEqual({
+    date: "2013-05-20",
+    clock: "20:00Z",
+    local: "15:00 CDT",
+  });
+  expect(momentOf("0001-01-01T00:20:00Z", "", "America/Chicago")).toEqual({
+    date: "day 1",
+    clock: "00:20Z",
+    local: undefined,
+  });
+  expect(secondsBetween("0001-01-01T00:00:00Z", "0001-01-01T01:20:00Z")).toBe(4800);
+  expect(secondsBetween("", "0001-01-01T01:20:00Z")).toBeUndefined();
+  expect(zoneOfLongitude(-97.5)).toBe("Etc/GMT+6");
+  expect(zoneOfLongitude(11)).toBe("Etc/GMT-1");
+});
+
+test("the sun's clock is set in local time for the time that is shown", () => {
+  const storm = { dateTime: "2013-05-20T20:00:00Z", latitudeDeg: 35.2, longitudeDeg: -97.4 };
+  const here = clockHere(undefined, storm as never, 3600);
+  if (here === undefined) throw new Error("there is no clock");
+  expect(localClock(here.instant, "America/Chicago")).toBe("16:00 CDT");
+  expect(minutesAhead(here.instant, "America/Chicago")).toBe(-300);
+  expect(minuteOfDay(here.instant, "America/Chicago")).toBe(960);
+  const evening = atMinute(here.instant, 18 * 60 + 30, "America/Chicago");
+  expect(evening.toISOString()).toBe("2013-05-20T23:30:00.000Z");
+  expect(firstDateTime(evening, 3600)).toBe("2013-05-20T22:30:00Z");
+  const { sunrise, sunset } = sunriseAndSunset(here, "America/Chicago");
+  // By the declination of that day, 20.0 degrees, and the sun's upper edge on the horizon with 34' of refraction; noon is at the
+  // meridian of the place, 3.5 minutes early by the equation of time. Whole minutes.
+  const [latitude, declination, edge] = [35.2, 20.0, -0.833].map((deg) => (deg * Math.PI) / 180);
+  const cosine =
+    (Math.sin(edge ?? 0) - Math.sin(latitude ?? 0) * Math.sin(declination ?? 0)) /
+    (Math.cos(latitude ?? 0) * Math.cos(declination ?? 0));
+  const halfDay = (Math.acos(cosine) * 720) / Math.PI;
+  const noon = 12 * 60 - 300 + 97.4 * 4 - 3.5;
+  expect(Math.abs((sunrise ?? 0) - (noon - halfDay))).toBeLessThan(3);
+  expect(Math.abs((sunset ?? 0) - (noon + halfDay))).toBeLessThan(3);
+  expect(instantOf("0001-01-01T00:20:00Z")).toBeUndefined();
+});
+
+test("the map shows the domain and a camera near it, and leads back to the world", () => {
+  const domain = { westM: -100_000, eastM: 100_000, southM: -80_000, northM: 80_000 };
+  const extent = extentOf(domain, [0, -150_000]);
+  expect(extent.southM).toBeLessThan(-150_000);
+  expect(extent.eastM - extent.westM).toBeCloseTo(extent.northM - extent.southM, 6);
+  expect(extentOf(domain, [0, -9e6])).toEqual(extentOf(domain, undefined));
+  const world = worldOfMap(extent, placeOnMap(extent, [12_000, -34_000]));
+  expect(world[0]).toBeCloseTo(12_000, 6);
+  expect(world[1]).toBeCloseTo(-34_000, 6);
+  const [x, y] = placeFrom([1000, 2000], 20_000, 135);
+  expect(azimuthTo([1000, 2000], [x, y])).toBeCloseTo(135, 9);
+  const orbit: OrbitPose = {
+    kind: "orbit",
+    targetM: [0, 0, 0],
+    azimuthDeg: 90,
+    elevationDeg: 60,
+    distanceM: 1000,
+    fieldOfViewDeg: 35,
+  };
+  expect(standOf(orbit)?.placeM[0]).toBeCloseTo(500, 6);
+});
+
+// Places by PROJ (`echo LON LAT | proj STRING`), less the same of the domain's middle.
+test("places of the map are those of the model's projection", () => {
+  const check = (
+    projection: string,
+    middle: readonly [number, number],
+    place: [number, number],
+    [xM, yM]: readonly [number, number],
+  ) => {
+    const [longitudeDeg, latitudeDeg] = middle;
+    const [x, y] = gridProjection({ projection, latitudeDeg, longitudeDeg })(place) ?? [0, 0];
+    expect(Math.hypot(x - xM, -y - yM), projection).toBeLessThan(5);
+  };
+  const lambert = "+proj=lcc +lat_1=30 +lat_2=60 +lat_0=35 +lon_0=-97 +R=6370000";
+  check(lambert, [-97, 35], [-97, 36], [0, 108_986]);
+  check(lambert, [-97, 35], [-96, 35], [89_405, 558]);
+  check(lambert, [-97, 35], [-90, 40], [577_712, 567_502]);
+  const mercator = "+proj=merc +lat_ts=20 +lon_0=0 +R=6370000";
+  check(mercator, [10, 52], [12, 55], [1_253_671.82 - 1_044_726.51, 6_909_065.66 - 6_381_875.54]);
+  const polar = "+proj=stere +lat_0=90 +lat_ts=60 +lon_0=10 +R=6370000";
+  const plain = "+proj=eqc +lat_ts=45 +lat_0=0 +lon_0=5 +R=6370000";
+  check(plain, [10, 45], [11, 46], [78_614, 111_177]);
+  check(polar, [10, 70], [15, 72], [164_084, 2_095_925.08 - 1_875_485.56]);
+});
+
+test("a way has distance, height and direction", () => {
+  const place = (xM: number, yM: number, zM: number) =>
+    create(RayPlaceSchema, { position: { xM, yM, zM } });
+  const way = wayBetween(place(0, 0, 1000), place(3000, 4000, 3000));
+  expect(way?.distanceM).toBeCloseTo(5000, 6);
+  expect(way?.heightM).toBe(2000);
+  expect(way?.azimuthDeg).toBeCloseTo(36.87, 2);
+  expect(wayBetween(undefined, place(0, 0, 0))).toBeUndefined();
+});
+
+test("letters and arrows are one line that is parted again", () => {
+  const arrow = arrowStrokes({ left: 0, top: 0 }, { left: 100, top: 0 });
+  const same = (a: { left: number; top: number }, b: typeof a) =>
+    a.left === b.left && a.top === b.top;
+  expect(parted(joined(arrow), same)).toEqual(arrow);
+  const words = letterStrokes("Hail 2°", { left: 10, top: 20 }, 12);
+  expect(words.length).toBeGreaterThan(7);
+  expect(parted(joined(words), same)).toEqual(words);
+  for (const { left, top } of words.flat()) {
+    expect(left).toBeGreaterThanOrEqual(10);
+    expect(top).toBeGreaterThanOrEqual(20);
+    expect(top).toBeLessThanOrEqual(32);
+  }
+  expect(letterStrokes("a", { left: 0, top: 0 }, 12)).toEqual(
+    letterStrokes("A", { left: 0, top: 0 }, 12),
+  );
+  // A session takes 256 corners.
+  const longest = joined(letterStrokes("8".repeat(99), { left: 0, top: 0 }, 12));
+  expect(longest.length).toBeLessThanOrEqual(24 * 24);
+});
+
+test("every parameter of a scene is listed with limits, comment and value, and can be changed", () => {
+  const plain = create(SceneSchema);
+  const scene = withField(
+    withRendering(plain, withTechnique(create(RenderingSchema), "light_volume")),
+    Hydrometeor.SNOW,
+    { scale: 2 },
+  );
+  const all = parametersOf(scene);
+  const byPath = new Map(all.map((parameter) => [parameter.path, parameter]));
+  for (const { fullName, path } of all) expect(COMMENTS[fullName], path).toMatch(/\S{3}/);
+  const scale = byPath.get("fields[0].scale");
+  const slices = byPath.get("rendering.light_volume.slices");
+  const turbidity = byPath.get("sky.turbidity");
+  const rings = byPath.get("ground.rings");
+  if (scale === undefined || slices === undefined) throw new Error("they are not listed");
+  if (turbidity === undefined || rings === undefined) throw new Error("they are not listed");
+  expect(byPath.has("rendering.metaball.count")).toBe(false);
+  expect(parameterValue(scene, scale)).toBe(2);
+  expect(parameterValue(scene, turbidity)).toBeUndefined();
+  const changed = withParameter(withParameter(scene, turbidity, 3), slices, 64);
+  expect(parameterValue(changed, turbidity)).toBe(3);
+  expect(parameterValue(changed, slices)).toBe(64);
+  expect(parameterValue(changed, scale)).toBe(2);
+  expect(scene.sky).toBeUndefined();
+  expect(turbidity.kind === "number" && turbidity.limits.maximum).toBe(10);
+  expect(rings.kind).toBe("flag");
+  expect(withParameter(changed, turbidity, undefined).sky?.turbidity).toBeUndefined();
+});
+
+test("B has A's camera, and its own storm, time and settings", () => {
+  const a = create(SceneSchema, { stormId: "a", timeIndex: 1, display: { exposureEv: 1 } });
+  const size = { widthPx: 300, heightPx: 200 };
+  const known = { camera: undefined, size, storm: undefined, other: undefined };
+  const kept = create(SceneSchema, { stormId: "a", timeIndex: 0, display: { exposureEv: 5 } });
+  const choice = {
+    stormId: undefined,
+    timeIndex: undefined,
+    settings: kept,
+    layout: "swipe",
+  } as const;
+  const b = comparedScene(a, choice, known);
+  expect([b.timeIndex, b.display?.exposureEv, b.output?.widthPx]).toEqual([1, 5, 300]);
+  const times = (...valid: string[]) =>
+    create(StormDescriptionSchema, { times: valid.map((validTime) => ({ validTime })) });
+  const run = comparedScene(
+    a,
+    { ...choice, stormId: "b", settings: undefined },
+    { ...known, storm: times("x", "y"), other: times("w", "x", "y") },
+  );
+  expect([run.stormId, run.timeIndex, run.display?.exposureEv]).toEqual(["b", 2, 1]);
+});
+
+test("tools open by their letter and their place", () => {
+  expect([toolOfKey("m"), toolOfKey("1"), toolOfKey("7")]).toEqual(["map", "map", "marks"]);
+  expect([toolOfKey("8"), toolOfKey("0"), toolOfKey(" ")]).toEqual([
+    undefined,
+    undefined,
+    undefined,
+  ]);
+});

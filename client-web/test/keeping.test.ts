@@ -1,0 +1,175 @@
+// What is kept and brought back: texts in PNG files, scenes in files, undo, named views, the pictures of a movie.
+
+import { deflateSync } from "node:zlib";
+import { create, equals } from "@bufbuild/protobuf";
+import { expect, test } from "vitest";
+import { cameraOfPose, type OrbitPose, poseOfCamera, type SpotterPose } from "../src/core/camera";
+import { History } from "../src/core/history";
+import { cameraPath, type MovieDraft, movieScenes } from "../src/core/movie_plan";
+import { NamedViews } from "../src/core/named_views";
+import { crc32, pngText, withPngText } from "../src/core/png_text";
+import { withTime } from "../src/core/scene";
+import { sceneOfFile, sceneToText, withScene } from "../src/core/scene_file";
+import { type Scene, SceneSchema } from "../src/gen/thunderhead/v1/scene_pb";
+
+const ORBIT: OrbitPose = {
+  kind: "orbit",
+  targetM: [1000, 2000, 3000],
+  azimuthDeg: 350,
+  elevationDeg: 10,
+  distanceM: 50_000,
+  fieldOfViewDeg: 35,
+};
+
+function chunk(type: string, data: Uint8Array): Buffer {
+  const body = Buffer.concat([Buffer.from(type), data]);
+  const whole = Buffer.alloc(body.length + 8);
+  whole.writeUInt32BE(data.length);
+  body.copy(whole, 4);
+  whole.writeUInt32BE(crc32(body), body.length + 4);
+  return whole;
+}
+
+// One grey pixel.
+const PNG = new Uint8Array(
+  Buffer.concat([
+    Buffer.from([137, 80, 78, 71, 13, 10, 26, 10]),
+    chunk("IHDR", Buffer.from([0, 0, 0, 1, 0, 0, 0, 1, 8, 0, 0, 0, 0])),
+    chunk("IDAT", deflateSync(Buffer.from([0, 128]))),
+    chunk("IEND", Buffer.alloc(0)),
+  ]),
+);
+
+function someScene(): Scene {
+  return create(SceneSchema, {
+    stormId: "anvil – ä",
+    timeIndex: 2,
+    camera: cameraOfPose(ORBIT),
+    display: { exposureEv: 0.7 },
+  });
+}
+
+test("checksums are those of ISO 3309", () => {
+  expect(crc32(new TextEncoder().encode("123456789"))).toBe(0xcbf43926);
+  // As every PNG ends.
+  expect(crc32(new TextEncoder().encode("IEND"))).toBe(0xae426082);
+});
+
+test("a text in a PNG is found again", () => {
+  const file = withPngText(PNG, "a key", "Grüße\nand more");
+  expect(file).toBeDefined();
+  expect(pngText(file ?? PNG, "a key")).toBe("Grüße\nand more");
+  expect(pngText(file ?? PNG, "another")).toBeUndefined();
+  const at = Buffer.from(file ?? PNG).indexOf("iTXt");
+  const view = new DataView((file ?? PNG).buffer);
+  const length = view.getUint32(at - 4);
+  const body = (file ?? PNG).subarray(at, at + 4 + length);
+  expect(view.getUint32(at + 4 + length)).toBe(crc32(body));
+});
+
+test("what is no PNG gets no text and has none", () => {
+  expect(withPngText(new Uint8Array([1, 2, 3]), "a", "b")).toBeUndefined();
+  expect(pngText(new Uint8Array([1, 2, 3]), "a")).toBeUndefined();
+  // A length beyond the file.
+  const cut = PNG.slice(0, 40);
+  expect(pngText(cut, "a")).toBeUndefined();
+});
+
+test("a scene comes back from a picture and from JSON", () => {
+  const scene = someScene();
+  const file = withScene(PNG, scene) ?? PNG;
+  expect(equals(SceneSchema, sceneOfFile(file), scene)).toBe(true);
+  const json = new TextEncoder().encode(sceneToText(scene));
+  expect(equals(SceneSchema, sceneOfFile(json), scene)).toBe(true);
+});
+
+test("a file without a scene says so", () => {
+  expect(() => sceneOfFile(PNG)).toThrow("no scene in it");
+  expect(() => sceneOfFile(new TextEncoder().encode("[1]"))).toThrow("no scene of Thunderhead");
+});
+
+test("edits in one gesture are undone together, and a new edit ends what could be redone", () => {
+  let now = 0;
+  const history = new History(() => now);
+  const [first, second, third] = [0, 1, 2].map((time) => withTime(create(SceneSchema), time)) as [
+    Scene,
+    Scene,
+    Scene,
+  ];
+  history.edited(first);
+  now += 100;
+  history.edited(second);
+  expect(history.undo(third)).toBe(first);
+  expect(history.canUndo.value).toBe(false);
+  expect(history.redo(first)).toBe(third);
+  expect(history.canRedo.value).toBe(false);
+  expect(history.undo(third)).toBe(first);
+  now += 5000;
+  history.edited(first);
+  expect(history.canRedo.value).toBe(false);
+  expect(history.undo(second)).toBe(first);
+  expect(history.undo(first)).toBeUndefined();
+});
+
+test("named views are kept for their storm", () => {
+  const stored = new Map<string, string>();
+  const store = {
+    getItem: (key: string) => stored.get(key) ?? null,
+    setItem: (key: string, value: string) => void stored.set(key, value),
+  };
+  let stormId = "a";
+  const views = new NamedViews(store, () => stormId);
+  views.load();
+  expect(views.freeName()).toBe("View 1");
+  views.keep({ name: "View 1", camera: cameraOfPose(ORBIT), timeIndex: 1, picture: "" });
+  expect(views.freeName()).toBe("View 2");
+  stormId = "b";
+  views.load();
+  expect(views.all.value).toEqual([]);
+  stormId = "a";
+  const again = new NamedViews(store, () => stormId);
+  again.load();
+  expect(again.all.value.map(({ name }) => name)).toEqual(["View 1"]);
+  expect(poseOfCamera(again.all.value[0]?.camera)).toEqual(ORBIT);
+  again.forget("View 1");
+  expect(again.all.value).toEqual([]);
+  stored.set("thunderhead.views", '{"a":[{"name":"x"},"y"]}');
+  again.load();
+  expect(again.all.value.length).toBeLessThan(2);
+});
+
+const DRAFT: MovieDraft = {
+  from: 3,
+  to: 1,
+  picturesPerSecond: 4,
+  picturesPerView: 4,
+  alongViews: false,
+  widthPx: 640,
+  heightPx: 360,
+  format: "webm",
+};
+
+test("a movie has each time from the first to the last, also backwards, at its size", () => {
+  const scenes = movieScenes(someScene(), DRAFT, []);
+  expect(scenes.map(({ timeIndex }) => timeIndex)).toEqual([3, 2, 1]);
+  expect(scenes[0]?.output?.widthPx).toBe(640);
+  expect(poseOfCamera(scenes[0]?.camera)).toEqual(ORBIT);
+});
+
+test("a camera path goes the shorter way around, and through every view", () => {
+  const to: OrbitPose = { ...ORBIT, azimuthDeg: 10, distanceM: 30_000 };
+  const view = (pose: OrbitPose | SpotterPose, timeIndex: number) => ({
+    name: "",
+    camera: cameraOfPose(pose),
+    timeIndex,
+    picture: "",
+  });
+  const path = cameraPath([view(ORBIT, 0), view(to, 2)], 4);
+  expect(path.length).toBe(5);
+  const azimuths = path.map(({ pose }) => (pose as OrbitPose).azimuthDeg);
+  expect(azimuths[0]).toBe(350);
+  expect(azimuths[2]).toBeCloseTo(360, 6);
+  expect(azimuths[4]).toBe(10);
+  expect((path[2]?.pose as OrbitPose | undefined)?.distanceM).toBeCloseTo(40_000, 6);
+  expect(path.map(({ timeIndex }) => timeIndex)).toEqual([0, 0, 1, 2, 2]);
+});

@@ -1,0 +1,45 @@
+// Places on Earth of world coordinates: the map projections that StormInfo::projection names, on
+// the sphere. Formulas: Snyder 1987, Map Projections - A Working Manual (USGS Professional Paper
+// 1395), equations 7-1, 7-5, 15-1 to 15-11, 21-15 to 21-18 and 12-1. Knows no files.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "glm/vec2.hpp"
+
+namespace thunderhead::volume {
+
+struct EarthPlace {
+  double latitude_deg = 0.0;   // north
+  double longitude_deg = 0.0;  // east, -180 to 180
+};
+
+class MapProjection {
+ public:
+  // Of a grid whose middle is at `middle`. Nothing for an empty text, and for one that is not as
+  // this room writes it: lcc, stere on a pole, merc or eqc on a sphere.
+  static std::optional<MapProjection> Of(std::string_view proj, const EarthPlace& middle);
+
+  // The place of metres east and north of the middle of the domain; nothing beyond the map.
+  std::optional<EarthPlace> PlaceOf(const glm::dvec2& world_m) const;
+
+ private:
+  enum class Kind { kConic, kPolar, kMercator, kPlateCarree };
+
+  MapProjection() = default;
+  std::optional<glm::dvec2> Project(const EarthPlace& place) const;
+  std::optional<EarthPlace> Unproject(const glm::dvec2& map_m) const;
+
+  Kind kind_ = Kind::kConic;
+  double radius_m_ = 0.0;
+  double longitude0_deg_ = 0.0;
+  double latitude0_ = 0.0;  // radians
+  double cone_ = 1.0;       // n; 1 of the polar one
+  double scale_m_ = 0.0;    // R F, of the polar one 2 R k0, of the cylinders R cos(lat_ts)
+  double origin_m_ = 0.0;   // y of latitude0_ below the cone's tip
+  double pole_ = 1.0;       // 1 north, -1 south
+  glm::dvec2 middle_m_{0.0};
+};
+
+}  // namespace thunderhead::volume

@@ -1,0 +1,51 @@
+// Takes the screenshots of docs/page/: every tool and panel at three sizes of window, to be looked at.
+//   node screenshots.mjs [folder] [tool ...]
+import { mkdirSync } from "node:fs";
+import { fileURLToPath } from "node:url";
+import { launchBrowser, openPanel, openTool, rested } from "./driver.mjs";
+import { freePort, startServer } from "./server_process.mjs";
+
+const SIZES = [
+  { width: 390, height: 844, isMobile: true, hasTouch: true },
+  { width: 900, height: 700 },
+  { width: 1920, height: 1080 },
+];
+const TOOLS = ["none", "map", "time", "light", "look", "fields", "probe", "marks"];
+const PANELS = ["storms", "share", "people", "keep", "compare", "help", "drawer"];
+const folder = process.argv[2] ?? fileURLToPath(new URL("../../docs/page/", import.meta.url));
+const only = process.argv.slice(3);
+const wanted = (name) => only.length === 0 || only.includes(name);
+
+mkdirSync(folder, { recursive: true });
+const data = fileURLToPath(new URL("../../samples/", import.meta.url));
+const server = await startServer({ httpPort: await freePort(), grpcPort: await freePort(), data });
+const browser = await launchBrowser();
+try {
+  for (const { width, height, ...rest } of SIZES) {
+    const context = await browser.newContext({ viewport: { width, height }, ...rest });
+    const page = await context.newPage();
+    page.on("pageerror", (error) => console.log(`${width}: ${error}`));
+    page.on("console", (message) => message.type() === "error" && console.log(message.text()));
+    await page.goto(server.url);
+    await rested(page);
+    // The documentation's are small; others are for a closer look.
+    const file = process.argv[2] === undefined ? { type: "jpeg", quality: 80 } : { type: "png" };
+    const shoot = (name) => page.screenshot({ path: `${folder}/${name}-${width}.${file.type}`, ...file });
+    for (const name of TOOLS.filter(wanted)) {
+      await openTool(page, name === "none" ? undefined : name);
+      await page.waitForTimeout(500);
+      await shoot(name);
+    }
+    await openTool(page, undefined);
+    for (const name of PANELS.filter(wanted)) {
+      if (!(await openPanel(page, name))) continue;
+      await page.waitForTimeout(300);
+      await shoot(name);
+      await page.keyboard.press("Escape");
+    }
+    await context.close();
+  }
+} finally {
+  await browser.close();
+  await server.stop();
+}

@@ -1,0 +1,389 @@
+// End-to-end tests of the tools: the questions of a forecaster, answered by mouse and by keys alone, on the real server and sample.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { fileURLToPath } from "node:url";
+import {
+  canvasData,
+  changing,
+  dragBetween,
+  launchBrowser,
+  listenForErrors,
+  openPanel,
+  openTool,
+  PICTURE_TIMEOUT_MS,
+  rested,
+  screenshot,
+  setNumber,
+  until,
+} from "./driver.mjs";
+import { difference, grabCanvas } from "./pictures.mjs";
+import { BINARY, freePort, startServer } from "./server_process.mjs";
+
+const SAMPLE = fileURLToPath(new URL("../../samples/supercell.nc", import.meta.url));
+const VIEWPORT = { width: 1100, height: 700 };
+const complaints = [];
+let folder;
+let server;
+let browser;
+let context;
+let page;
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), "thunderhead-tools-"));
+  server = await startServer({
+    httpPort: await freePort(),
+    grpcPort: await freePort(),
+    state: folder,
+    data: fileURLToPath(new URL("../../samples/", import.meta.url)),
+  });
+  browser = await launchBrowser();
+  context = await browser.newContext({ viewport: VIEWPORT, acceptDownloads: true });
+  page = await context.newPage();
+  listenForErrors(page, complaints);
+  await page.goto(server.url);
+  await rested(page);
+  // Pictures of the others change while they rest.
+  await openTool(page, "look");
+  await changing(() => page.getByTestId("quality-choice").getByText("Fast", { exact: true }).click(), page);
+  await openPanel(page, "storms");
+  if ((await page.getByTestId("storm").inputValue()) !== "supercell")
+    await changing(() => page.getByTestId("storm").selectOption("supercell"), page);
+  await page.keyboard.press("Escape");
+  await openTool(page, undefined);
+});
+
+after(async () => {
+  await browser?.close();
+  await server?.stop();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+const text = (id) => page.getByTestId(id).innerText();
+const key = (name) => page.keyboard.press(name);
+const focusPicture = () => page.getByTestId("storm-canvas").focus();
+
+// Moves the focus with the tabulator key until it is on an element.
+async function tabTo(testId, most = 60) {
+  for (let presses = 0; presses < most; presses += 1) {
+    await key("Tab");
+    if ((await page.evaluate(() => document.activeElement?.dataset.testid)) === testId) return;
+  }
+  throw new Error(`the tabulator key does not reach ${testId}`);
+}
+
+const degreesOnHorizon = () =>
+  page
+    .locator("[data-testid=annotations] text")
+    .evaluateAll((texts) => texts.map(({ textContent }) => textContent).filter((each) => /^(\d{3}°|[NESW]{1,2})$/.test(each)));
+
+// What the program says of the file, by another way than the page.
+const inspected = JSON.parse(execFileSync(BINARY, ["inspect", "--json", SAMPLE], { encoding: "utf8" }));
+const maximumOf = (name) =>
+  1000 * inspected.fields.find(({ hydrometeor }) => hydrometeor === `HYDROMETEOR_${name}`).maximum;
+
+test("which run and valid time is this: they stand in the bar, and under Time by its key", async () => {
+  assert.match(await text("storms"), /supercell/);
+  assert.match(await text("top-time"), /01:20Z/);
+  assert.match(await text("top-time"), /\+1 h 20 min/);
+  await focusPicture();
+  await key("t");
+  assert.match(await text("time-facts"), /Valid\s+day 1 01:20Z[\s\S]*Run\s+run 00:00Z[\s\S]*Lead time\s+\+1 h 20 min/);
+  await key("Escape");
+});
+
+test("where is the graupel core and how much is there, by keys alone", async () => {
+  await focusPicture();
+  await key("p");
+  await page.getByTestId("core-graupel").waitFor();
+  const core = Number(/Graupel ([\d.]+) g\/kg/.exec(await text("core-graupel"))[1]);
+  assert.ok(Math.abs(core / maximumOf("GRAUPEL") - 1) < 0.01, `the page says ${core}, the file has ${maximumOf("GRAUPEL")}`);
+  await tabTo("core-graupel");
+  await changing(() => key("Enter"), page);
+  await focusPicture();
+  await key("Enter");
+  await page.getByTestId("probe-graupel").waitFor();
+  const row = await text("probe-graupel");
+  const along = Number(/([\d.]+) g\/kg/.exec(row)[1]);
+  assert.ok(along > 0.9 * core && along < 1.01 * core, `along the ray through the core there are ${along} of ${core} g/kg`);
+  assert.match(await text("probe-found"), /Cloud\s+[\d.]+ k?m up · [\d.]+ km away/);
+  assert.match(await text("probe-depth"), /Optical depth [\d.]+/);
+  await page.locator("[data-testid=ray-chart] canvas").waitFor();
+  await screenshot("tools-probe", page);
+});
+
+test("a second click measures from the first", async () => {
+  await page.getByTestId("probe-forget").click();
+  const middle = { x: VIEWPORT.width / 2, y: VIEWPORT.height / 2 };
+  await page.mouse.click(middle.x, middle.y);
+  await page.getByTestId("probe-found").waitFor();
+  const first = await text("probe-found");
+  await page.mouse.click(middle.x + 80, middle.y);
+  await page.getByTestId("probe-way").waitFor();
+  assert.match(await text("probe-way"), /First click|From the first click: [\d.]+ k?m to [NESW]+ \(\d+°\), [\d.]+ k?m (lower|higher)/);
+  assert.notEqual(await text("probe-found"), first);
+  await focusPicture();
+  await key("Escape");
+});
+
+test("from a place 20 km south-east of the core at 18:30 local time, by keys alone", async () => {
+  await focusPicture();
+  await key("Home");
+  await rested(page);
+  await key("m");
+  await page.getByTestId("inset-map").waitFor();
+  await page.locator("[data-testid=inset-map] canvas").waitFor();
+  await page.getByTestId("stand-off").locator("summary").focus();
+  await key("Enter");
+  await page.getByTestId("stand-of").selectOption({ index: 5 });
+  assert.match(await page.getByTestId("stand-of").evaluate((list) => list.selectedOptions[0].label), /graupel core/);
+  await tabTo("stand-there");
+  await changing(() => key("Enter"), page);
+  assert.equal((await canvasData(page)).camera, "spotter");
+  assert.match(await text("camera"), /Looks to NW \(315°\)/);
+  assert.ok((await degreesOnHorizon()).includes("NW"), `on the horizon: ${await degreesOnHorizon()}`);
+  await focusPicture();
+  await key("l");
+  const sun = await text("sun-in-words");
+  await page.getByTestId("day-clock").focus();
+  await changing(() => page.getByTestId("day-clock").fill("18:30"), page);
+  await until("the evening sun", async () => (await text("sun-in-words")) !== sun);
+  assert.match(await text("sun-in-words"), /in W(NW)?, \d\d° high/);
+  await screenshot("tools-airport", page);
+  await focusPicture();
+  await key("Escape");
+});
+
+test("turning the head moves the degrees on the horizon", async () => {
+  await focusPicture();
+  const before = await degreesOnHorizon();
+  await changing(async () => {
+    for (let i = 0; i < 10; i += 1) await key("ArrowRight");
+  }, page);
+  assert.notDeepEqual(await degreesOnHorizon(), before);
+  assert.match(await page.getByTestId("storm-canvas").getAttribute("aria-label"), /Looks to NNW \(345°\)/);
+});
+
+test("a click on the map stands there, a double click turns around that place", async () => {
+  await openTool(page, "map");
+  const map = page.getByTestId("inset-map");
+  await map.scrollIntoViewIfNeeded();
+  const { x, y, width, height } = await map.boundingBox();
+  await changing(() => page.mouse.click(x + 0.3 * width, y + 0.75 * height), page);
+  assert.equal((await canvasData(page)).camera, "spotter");
+  const camera = await page.getByTestId("map-camera").boundingBox();
+  assert.ok(Math.abs(camera.x + camera.width / 2 - (x + 0.3 * width)) < 8, "the camera is not where the click was");
+  await changing(() => page.mouse.dblclick(x + 0.5 * width, y + 0.4 * height), page);
+  assert.equal((await canvasData(page)).camera, "orbit");
+  await screenshot("tools-map", page);
+});
+
+test("a view is kept with a name, and comes back", async () => {
+  const before = await canvasData(page);
+  await page.getByTestId("keep-view").click();
+  await page.getByTestId("view-name").fill("Inflow");
+  await page.keyboard.press("Enter");
+  await changing(() => page.getByTestId("camera-kind").getByText("From above").click(), page);
+  assert.equal((await canvasData(page)).camera, "topDown");
+  assert.ok((await page.locator("[data-testid=annotations]").innerHTML()).includes(" km<"), "there is no scale bar");
+  await changing(() => page.getByTestId("named-view").click(), page);
+  const after = await canvasData(page);
+  assert.deepEqual([after.camera, after.azimuth, after.distance], [before.camera, before.azimuth, before.distance]);
+  await openTool(page, undefined);
+});
+
+test("how wrong is this picture: it says so over it", async () => {
+  await until("an error in the line over the picture", async () =>
+    /This picture is [\d.]+ % off/.test((await text("truth")).replaceAll("\n", " ")),
+  );
+  await focusPicture();
+  await key("k");
+  await page.getByTestId("accuracy-section").locator("summary").click();
+  assert.match(await text("accuracy-report"), /Estimated error [\d.]+ %/);
+  await key("Escape");
+});
+
+test("Ctrl+Z takes a change back, Ctrl+Y does it again", async () => {
+  await openTool(page, "look");
+  const exposure = () => page.getByTestId("exposure-number").inputValue();
+  await changing(() => setNumber(page, "exposure", 1.5), page);
+  await page.waitForTimeout(800);
+  await changing(() => setNumber(page, "exposure", -1), page);
+  await focusPicture();
+  await changing(() => key("Control+z"), page);
+  assert.equal(await exposure(), "1.5");
+  await changing(() => key("Control+y"), page);
+  assert.equal(await exposure(), "-1");
+  await changing(() => key("Control+z"), page);
+  await openTool(page, undefined);
+});
+
+test("every setting is found by its name, with its meaning, and can be set", async () => {
+  await focusPicture();
+  await key("x");
+  await page.getByTestId("drawer-search").waitFor();
+  await page.keyboard.type("ground_albedo");
+  const setting = page.getByTestId("setting-sky.ground_albedo-number");
+  await setting.waitFor();
+  assert.match(await text("drawer"), /Diffuse reflectance of the ground/);
+  assert.match(await text("drawer"), /0 to 1, default 0.2/);
+  await changing(() => setNumber(page, "setting-sky.ground_albedo", 0.6), page);
+  await changing(() => setNumber(page, "setting-sky.ground_albedo", 0.2), page);
+  await page.getByTestId("drawer-search").fill("no such thing");
+  await page.getByText("No setting is called that.").waitFor();
+  await focusPicture();
+  await key("Escape");
+  assert.equal(await page.getByTestId("drawer").isVisible(), false);
+});
+
+let saved;
+
+test("a picture is saved, and dropped on a fresh page it brings the same view", async () => {
+  await openPanel(page, "keep");
+  const coming = page.waitForEvent("download", { timeout: PICTURE_TIMEOUT_MS });
+  await page.getByTestId("save-picture").click();
+  const download = await coming;
+  assert.match(download.suggestedFilename(), /^supercell-.*\.png$/);
+  saved = readFileSync(await download.path());
+  assert.ok(saved.includes("thunderhead.scene"));
+  await page.keyboard.press("Escape");
+  const fresh = await (await browser.newContext({ viewport: VIEWPORT })).newPage();
+  listenForErrors(fresh, complaints);
+  try {
+    await fresh.goto(server.url);
+    await rested(fresh);
+    await changing(
+      () =>
+        fresh.evaluate((base64) => {
+          const bytes = Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+          const data = new DataTransfer();
+          data.items.add(new File([bytes], "saved.png", { type: "image/png" }));
+          window.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+        }, saved.toString("base64")),
+      fresh,
+    );
+    await until("the same view", async () => {
+      const [there, here] = await Promise.all([canvasData(fresh), canvasData(page)]);
+      return there.azimuth === here.azimuth && there.distance === here.distance && there.refined === "true";
+    });
+    await rested(fresh);
+    await rested(page);
+    const apart = difference(await grabCanvas(page), await grabCanvas(fresh));
+    assert.ok(apart < 1, `the pictures differ by ${apart}`);
+  } finally {
+    await fresh.context().close();
+  }
+});
+
+test("a file that is no scene is refused where it was opened", async () => {
+  await page.getByTestId("rail").waitFor();
+  await openPanel(page, "keep");
+  await page.getByTestId("file").setInputFiles({ name: "notes.json", mimeType: "application/json", buffer: Buffer.from("[]") });
+  await page.getByText("notes.json is not opened").waitFor();
+  await page.getByTestId("notices").getByRole("button").click();
+  await page.keyboard.press("Escape");
+});
+
+for (const format of ["webm", "mp4"])
+  test(`a movie of all times as ${format}, by a job of the server`, { timeout: 240_000 }, async () => {
+    await openPanel(page, "keep");
+    await page.getByTestId("keep-movie").locator("summary").click();
+    await page.getByTestId("movie-from").selectOption("0");
+    await page.getByTestId("movie-size").selectOption("own");
+    await page.getByTestId("movie-size-width").fill("320");
+    await page.getByTestId("movie-size-width").press("Enter");
+    await page.getByTestId("movie-size-height").fill("180");
+    await page.getByTestId("movie-size-height").press("Enter");
+    await page.getByTestId("movie-format").selectOption(format);
+    const coming = page.waitForEvent("download", { timeout: 200_000 });
+    await page.getByTestId("save-movie").click();
+    const download = await coming;
+    const file = await download.path();
+    const probe = execFileSync(
+      "ffprobe",
+      ["-v", "error", "-count_frames", "-select_streams", "v:0", "-show_entries", "stream=width,height,nb_read_frames,codec_name", "-of", "json", file],
+      { encoding: "utf8" },
+    );
+    const [stream] = JSON.parse(probe).streams;
+    assert.deepEqual([stream.width, stream.height, stream.nb_read_frames], [320, 180, "4"], probe);
+    await page.keyboard.press("Escape");
+  });
+
+test("two times are compared with one camera", async () => {
+  await openPanel(page, "compare");
+  await page.getByTestId("compare-time").selectOption("0");
+  await page.keyboard.press("Escape");
+  const compared = page.getByTestId("compared-canvas");
+  const refined = () => compared.evaluate(({ dataset }) => dataset.refined === "true");
+  await until("B's picture", refined);
+  assert.match(await text("name-b"), /B · day 1 00:20Z/);
+  const grab = async () => {
+    const url = await compared.evaluate((canvas) => canvas.toDataURL("image/png"));
+    const { PNG } = await import("pngjs");
+    return PNG.sync.read(Buffer.from(url.split(",")[1], "base64"));
+  };
+  const before = await grab();
+  assert.ok(difference(await grabCanvas(page), before) > 0.3, "B looks like A");
+  const revision = await compared.evaluate(({ dataset }) => Number(dataset.revision));
+  const start = { x: 300, y: 350 };
+  await changing(() => dragBetween(page, start, { x: start.x + 90, y: start.y }), page);
+  await until("B turned too", async () =>
+    (await compared.evaluate(({ dataset }) => Number(dataset.revision))) > revision && (await refined()),
+  );
+  assert.ok(difference(before, await grab()) > 0.3, "B's camera did not turn");
+  await page.getByTestId("swipe").focus();
+  await key("ArrowLeft");
+  assert.match(await compared.evaluate(({ style }) => style.clipPath), /49%/);
+  await screenshot("tools-compare", page);
+  await openPanel(page, "compare");
+  await page.getByTestId("compare-layout").getByText("Side by side").click();
+  await until("side by side", async () => (await compared.boundingBox()).x > 500);
+  await page.getByTestId("compare-end").click();
+  await page.keyboard.press("Escape");
+  assert.equal(await compared.count(), 0);
+  await rested(page);
+});
+
+test("an arrow, words and a ring are put on the storm by keys alone", async () => {
+  await focusPicture();
+  await key("d");
+  for (const [tool, count] of [
+    ["pen", 1],
+    ["arrow", 2],
+    ["text", 3],
+  ]) {
+    await page.getByTestId(`tool-${tool}`).focus();
+    await key("Enter");
+    if (tool === "text") {
+      await page.getByTestId("mark-words").focus();
+      await page.keyboard.type("HAIL 2 CM");
+    }
+    await page.getByTestId("mark-middle").focus();
+    await key("Enter");
+    await until(`mark ${count}`, async () => (await page.getByTestId("mark").count()) === count);
+  }
+  await screenshot("tools-marks", page);
+  await page.getByTestId("clear-marks").focus();
+  await key("Enter");
+  await until("no marks", async () => (await page.getByTestId("mark").count()) === 0);
+  await focusPicture();
+  await key("Escape");
+  await key("Escape");
+});
+
+test("lengths are shown in feet and nautical miles on request", async () => {
+  await openTool(page, "time");
+  await page.getByTestId("units").selectOption("aviation");
+  await openTool(page, "map");
+  assert.match(await text("camera"), / nm away/);
+  await openTool(page, "time");
+  await page.getByTestId("units").selectOption("metric");
+  await openTool(page, undefined);
+});
+
+test("no error reached the browser's console", () => {
+  assert.deepEqual(complaints, []);
+});
