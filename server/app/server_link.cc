@@ -56,7 +56,7 @@ absl::Status ServerLink::StatusOf(const grpc::Status& status) const {
                      " is older than this program and has no render jobs: run both in the same "
                      "version"));
   }
-  const absl::Status same = FromGrpc(status);
+  absl::Status same = FromGrpc(status);
   if (!absl::IsUnavailable(same) && !absl::IsDeadlineExceeded(same)) return same;
   return base::Annotate(same, absl::StrCat("the server at ", address_, " cannot be reached"));
 }

@@ -98,7 +98,7 @@ absl::Status WatchServer(const ServerWatch& watch, ServerLink& server, PictureRu
   Watching watching(watch, server, run, progress);
   auto reached = steady_clock::now();
   while (!stop.stop_requested()) {
-    const absl::Status looked = watching.Look(stop);
+    absl::Status looked = watching.Look(stop);
     if (stop.stop_requested()) break;
     if (looked.ok()) {
       reached = steady_clock::now();

@@ -46,7 +46,8 @@ std::string InWords(std::size_t bytes) {
   constexpr double kMib = 1 << 20;
   const double mib = static_cast<double>(bytes) / kMib;
   if (mib >= 1024.0) return absl::StrFormat("%.1f GiB", mib / 1024.0);
-  return absl::StrFormat(mib < 10.0 ? "%.1f MiB" : "%.0f MiB", mib);
+  if (mib < 10.0) return absl::StrFormat("%.1f MiB", mib);
+  return absl::StrFormat("%.0f MiB", mib);
 }
 
 MemoryReservation::~MemoryReservation() {

@@ -36,7 +36,9 @@ absl::StatusOr<std::vector<std::uint8_t>> PixelReader::Rgb(const gl::Texture2D& 
     const std::size_t count = row_bytes * static_cast<std::size_t>(end - begin);
     if (by_buffer) glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer_.Get());
     // Into a bound buffer the place is an offset.
-    void* const to = by_buffer ? reinterpret_cast<void*>(offset) : rgb.data() + offset;
+    void* const to = by_buffer
+                         ? reinterpret_cast<void*>(offset)  // NOLINT(performance-no-int-to-ptr)
+                         : rgb.data() + offset;
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glGetTextureSubImage(texture.Get(), 0, 0, begin, 0, size.x, end - begin, 1, GL_RGB,
                          GL_UNSIGNED_BYTE, static_cast<GLsizei>(count), to);

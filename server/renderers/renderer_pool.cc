@@ -32,7 +32,7 @@ SceneRenderer& RendererPool::Choose(
   // A scene that needs another extinction has nothing to share.
   if (best == renderers_.end() || first_stage(*best) <= scene::Stage::kExtinction) {
     if (renderers_.size() < max_renderers_) {
-      renderers_.push_back({std::make_unique<SceneRenderer>(programs_, registry_), {}});
+      renderers_.emplace_back().renderer = std::make_unique<SceneRenderer>(programs_, registry_);
     }
     best = renderers_.end() - 1;
   }
