@@ -169,7 +169,13 @@ TEST(ProbeTest, PointsOfThePictureAndAllKindsOfCamerasCount) {
   request.mutable_camera()->mutable_orbit();
   probe = Probed(service, request);
   EXPECT_GT(probe.optical_depth(), 10.0);
-  request.mutable_point()->set_y(1.0F);
+  // A spotter who turns away from it.
+  request.clear_point();
+  v1::SpotterCamera& away = *request.mutable_camera()->mutable_spotter();
+  away.set_x_m(-5500.0F);
+  away.set_y_m(-9000.0F);
+  away.set_azimuth_deg(180.0F);
+  away.set_elevation_deg(8.4F);
   probe = Probed(service, request);
   EXPECT_EQ(probe.seen(), v1::ProbeRayResponse::SEEN_SKY);
   EXPECT_FALSE(probe.has_seen_place());
