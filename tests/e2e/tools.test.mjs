@@ -100,7 +100,8 @@ test("where is the graupel core and how much is there, by keys alone", async () 
   await key("p");
   await page.getByTestId("core-graupel").waitFor();
   const core = Number(/Graupel ([\d.]+) g\/kg/.exec(await text("core-graupel"))[1]);
-  assert.ok(Math.abs(core / maximumOf("GRAUPEL") - 1) < 0.01, `the page says ${core}, the file has ${maximumOf("GRAUPEL")}`);
+  // Values are brought back to mixing ratios by the mean air of blocks: 9 % at worst (decision 47).
+  assert.ok(Math.abs(core / maximumOf("GRAUPEL") - 1) < 0.1, `the page says ${core}, the file has ${maximumOf("GRAUPEL")}`);
   await tabTo("core-graupel");
   await changing(() => key("Enter"), page);
   await focusPicture();
@@ -108,7 +109,7 @@ test("where is the graupel core and how much is there, by keys alone", async () 
   await page.getByTestId("probe-graupel").waitFor();
   const row = await text("probe-graupel");
   const along = Number(/([\d.]+) g\/kg/.exec(row)[1]);
-  assert.ok(along > 0.9 * core && along < 1.01 * core, `along the ray through the core there are ${along} of ${core} g/kg`);
+  assert.ok(along > 0.8 * core && along < 1.01 * core, `along the ray through the core there are ${along} of ${core} g/kg`);
   assert.match(await text("probe-found"), /Cloud\s+[\d.]+ k?m up · [\d.]+ km away/);
   assert.match(await text("probe-depth"), /Optical depth [\d.]+/);
   await page.locator("[data-testid=ray-chart] canvas").waitFor();
@@ -123,7 +124,7 @@ test("a second click measures from the first", async () => {
   const first = await text("probe-found");
   await page.mouse.click(middle.x + 80, middle.y);
   await page.getByTestId("probe-way").waitFor();
-  assert.match(await text("probe-way"), /First click|From the first click: [\d.]+ k?m to [NESW]+ \(\d+°\), [\d.]+ k?m (lower|higher)/);
+  assert.match(await text("probe-way"), /From the first click: [\d.]+ k?m to [NESW]+ \(\d+°\), [\d.]+ k?m (lower|higher)/);
   assert.notEqual(await text("probe-found"), first);
   await focusPicture();
   await key("Escape");
