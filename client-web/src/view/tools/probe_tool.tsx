@@ -72,7 +72,7 @@ function Found({ state, found }: { state: PageState; found: ProbeRayResponse }) 
         <caption class="visually-hidden">The largest value of each field along the ray</caption>
         <thead>
           <tr>
-            <th scope="col">Most along the ray</th>
+            <th scope="col">Most on the ray</th>
             <th scope="col">Value</th>
             <th scope="col">Height</th>
           </tr>
