@@ -14,14 +14,38 @@ const TOOLS = ["none", "map", "time", "light", "look", "fields", "probe", "marks
 const PANELS = ["storms", "share", "people", "keep", "compare", "help", "drawer"];
 const folder = process.argv[2] ?? fileURLToPath(new URL("../../docs/page/", import.meta.url));
 const only = process.argv.slice(3);
+// Of the windows' widths; all of them, if it is not set.
+const width = Number(process.env.THUNDERHEAD_WIDTH ?? 0);
+// Of the windows' widths; all of them, if it is not set.
+const onlyWidth = Number(process.env.THUNDERHEAD_WIDTH ?? 0);
 const wanted = (name) => only.length === 0 || only.includes(name);
+
+// A tool is looked at with what it is for in it.
+async function prepare(page, tool) {
+  const come = (locator) => locator.waitFor({ timeout: 20_000 });
+  if (tool === "map") await come(page.locator("[data-testid=inset-map] canvas"));
+  if (tool === "probe") {
+    await page.getByTestId("probe-middle").click();
+    await come(page.getByTestId("probe-found"));
+    await come(page.getByTestId("cores"));
+    await page.getByTestId("probe-found").evaluate((found) => found.scrollIntoView({ block: "nearest" }));
+  }
+  if (tool === "marks") {
+    await page.getByTestId("tool-text").click();
+    await page.getByTestId("mark-words").fill("CORE");
+    await page.getByTestId("mark-middle").click();
+    await come(page.getByTestId("mark"));
+  }
+  await page.waitForTimeout(500);
+}
 
 mkdirSync(folder, { recursive: true });
 const data = fileURLToPath(new URL("../../samples/", import.meta.url));
 const server = await startServer({ httpPort: await freePort(), grpcPort: await freePort(), data });
 const browser = await launchBrowser();
 try {
-  for (const { width, height, ...rest } of SIZES) {
+  const sizes = SIZES.filter((size) => onlyWidth === 0 || size.width === onlyWidth);
+  for (const { width, height, ...rest } of sizes) {
     const context = await browser.newContext({ viewport: { width, height }, ...rest });
     const page = await context.newPage();
     page.on("pageerror", (error) => console.log(`${width}: ${error}`));
@@ -33,7 +57,7 @@ try {
     const shoot = (name) => page.screenshot({ path: `${folder}/${name}-${width}.${file.type}`, ...file });
     for (const name of TOOLS.filter(wanted)) {
       await openTool(page, name === "none" ? undefined : name);
-      await page.waitForTimeout(500);
+      await prepare(page, name);
       await shoot(name);
     }
     await openTool(page, undefined);

@@ -24,7 +24,7 @@ import { difference, grabCanvas } from "./pictures.mjs";
 import { BINARY, freePort, startServer } from "./server_process.mjs";
 
 const SAMPLE = fileURLToPath(new URL("../../samples/supercell.nc", import.meta.url));
-const VIEWPORT = { width: 1100, height: 700 };
+const VIEWPORT = { width: 1000, height: 620 };
 const complaints = [];
 let folder;
 let server;
@@ -38,21 +38,17 @@ before(async () => {
     httpPort: await freePort(),
     grpcPort: await freePort(),
     state: folder,
-    data: fileURLToPath(new URL("../../samples/", import.meta.url)),
   });
   browser = await launchBrowser();
   context = await browser.newContext({ viewport: VIEWPORT, acceptDownloads: true });
   page = await context.newPage();
   listenForErrors(page, complaints);
   await page.goto(server.url);
-  await rested(page);
-  // Pictures of the others change while they rest.
+  // Pictures of the default quality change while they rest.
   await openTool(page, "look");
-  await changing(() => page.getByTestId("quality-choice").getByText("Fast", { exact: true }).click(), page);
-  await openPanel(page, "storms");
-  if ((await page.getByTestId("storm").inputValue()) !== "supercell")
-    await changing(() => page.getByTestId("storm").selectOption("supercell"), page);
-  await page.keyboard.press("Escape");
+  await page.locator("[data-testid=quality-choice] input:checked").waitFor({ state: "attached", timeout: PICTURE_TIMEOUT_MS });
+  await page.getByTestId("quality-choice").getByText("Fast", { exact: true }).click();
+  await rested(page);
   await openTool(page, undefined);
 });
 
@@ -100,7 +96,8 @@ test("where is the graupel core and how much is there, by keys alone", async () 
   await key("p");
   await page.getByTestId("core-graupel").waitFor();
   const core = Number(/Graupel ([\d.]+) g\/kg/.exec(await text("core-graupel"))[1]);
-  assert.ok(Math.abs(core / maximumOf("GRAUPEL") - 1) < 0.01, `the page says ${core}, the file has ${maximumOf("GRAUPEL")}`);
+  // Values are brought back to mixing ratios by the mean air of blocks: 9 % at worst (decision 47).
+  assert.ok(Math.abs(core / maximumOf("GRAUPEL") - 1) < 0.1, `the page says ${core}, the file has ${maximumOf("GRAUPEL")}`);
   await tabTo("core-graupel");
   await changing(() => key("Enter"), page);
   await focusPicture();
@@ -108,7 +105,7 @@ test("where is the graupel core and how much is there, by keys alone", async () 
   await page.getByTestId("probe-graupel").waitFor();
   const row = await text("probe-graupel");
   const along = Number(/([\d.]+) g\/kg/.exec(row)[1]);
-  assert.ok(along > 0.9 * core && along < 1.01 * core, `along the ray through the core there are ${along} of ${core} g/kg`);
+  assert.ok(along > 0.8 * core && along < 1.01 * core, `along the ray through the core there are ${along} of ${core} g/kg`);
   assert.match(await text("probe-found"), /Cloud\s+[\d.]+ k?m up · [\d.]+ km away/);
   assert.match(await text("probe-depth"), /Optical depth [\d.]+/);
   await page.locator("[data-testid=ray-chart] canvas").waitFor();
@@ -123,7 +120,7 @@ test("a second click measures from the first", async () => {
   const first = await text("probe-found");
   await page.mouse.click(middle.x + 80, middle.y);
   await page.getByTestId("probe-way").waitFor();
-  assert.match(await text("probe-way"), /First click|From the first click: [\d.]+ k?m to [NESW]+ \(\d+°\), [\d.]+ k?m (lower|higher)/);
+  assert.match(await text("probe-way"), /From the first click: [\d.]+ k?m to [NESW]+ \(\d+°\), [\d.]+ k?m (lower|higher)/);
   assert.notEqual(await text("probe-found"), first);
   await focusPicture();
   await key("Escape");
@@ -144,7 +141,8 @@ test("from a place 20 km south-east of the core at 18:30 local time, by keys alo
   await changing(() => key("Enter"), page);
   assert.equal((await canvasData(page)).camera, "spotter");
   assert.match(await text("camera"), /Looks to NW \(315°\)/);
-  assert.ok((await degreesOnHorizon()).includes("NW"), `on the horizon: ${await degreesOnHorizon()}`);
+  const degrees = await degreesOnHorizon();
+  assert.ok(degrees.includes("310°") && degrees.includes("320°"), `on the horizon: ${degrees}`);
   await focusPicture();
   await key("l");
   const sun = await text("sun-in-words");
@@ -328,7 +326,7 @@ test("two times are compared with one camera", async () => {
   const before = await grab();
   assert.ok(difference(await grabCanvas(page), before) > 0.3, "B looks like A");
   const revision = await compared.evaluate(({ dataset }) => Number(dataset.revision));
-  const start = { x: 300, y: 350 };
+  const start = { x: 300, y: 300 };
   await changing(() => dragBetween(page, start, { x: start.x + 90, y: start.y }), page);
   await until("B turned too", async () =>
     (await compared.evaluate(({ dataset }) => Number(dataset.revision))) > revision && (await refined()),
@@ -340,7 +338,7 @@ test("two times are compared with one camera", async () => {
   await screenshot("tools-compare", page);
   await openPanel(page, "compare");
   await page.getByTestId("compare-layout").getByText("Side by side").click();
-  await until("side by side", async () => (await compared.boundingBox()).x > 500);
+  await until("side by side", async () => (await compared.boundingBox()).x > 400);
   await page.getByTestId("compare-end").click();
   await page.keyboard.press("Escape");
   assert.equal(await compared.count(), 0);

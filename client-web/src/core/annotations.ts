@@ -137,7 +137,7 @@ function scaleBar(picture: Annotated): Shape[] {
         [right, y - up],
       ],
     },
-    text((left + right) / 2, y - 0.7 * letterPx, words, "middle"),
+    text(right, y - 0.7 * letterPx, words, "end"),
   ];
 }
 

@@ -72,7 +72,7 @@ function Found({ state, found }: { state: PageState; found: ProbeRayResponse }) 
         <caption class="visually-hidden">The largest value of each field along the ray</caption>
         <thead>
           <tr>
-            <th scope="col">Most along the ray</th>
+            <th scope="col">Most on the ray</th>
             <th scope="col">Value</th>
             <th scope="col">Height</th>
           </tr>
@@ -121,7 +121,7 @@ function FieldRow({ field }: { field: FieldAlongRay }) {
         {hydrometeorName(field.hydrometeor)}
       </th>
       <td>
-        {formatNumber(field.maximum * factor)} {symbol}
+        {amount(field.maximum * factor)} {symbol}
       </td>
       <td>
         {field.maximumPlace === undefined
@@ -130,6 +130,13 @@ function FieldRow({ field }: { field: FieldAlongRay }) {
       </td>
     </tr>
   );
+}
+
+// What models leave behind where there is nothing is not worth its digits.
+const LEAST = 0.001;
+
+function amount(value: number): string {
+  return value > 0 && value < LEAST ? `< ${LEAST}` : formatNumber(value);
 }
 
 // Where each field is strongest in the whole storm; a click turns the camera around that place.
