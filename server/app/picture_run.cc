@@ -180,12 +180,33 @@ absl::StatusOr<bool> PictureRun::IsMade(const std::string& path, const std::stri
 
 absl::StatusOr<bool> PictureRun::IsMade(const PlannedPicture& picture) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const pipeline::InputFile input, StampOf(picture.input));
-  return IsMade(picture.path, options_.views[picture.view].sha256, input,
-                [this, &input] { return HashOf(input); });
+  return IsMade(picture, input, [this, &input] { return HashOf(input); });
 }
 
-absl::Status PictureRun::Publish(const std::string& path, const std::string& bytes,
-                                 pipeline::ManifestEntry entry) {
+absl::StatusOr<bool> PictureRun::IsMade(const PlannedPicture& picture,
+                                        const pipeline::InputFile& input,
+                                        const std::function<std::string()>& input_sha256) {
+  const std::string& scene_sha256 = options_.views[picture.view].sha256;
+  if (options_.format.world_file) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        const bool placed, IsMade(WorldFilePath(picture.path), scene_sha256, input, input_sha256));
+    if (!placed) return false;
+  }
+  return IsMade(picture.path, scene_sha256, input, input_sha256);
+}
+
+absl::Status PictureRun::Publish(const PlannedPicture& planned, v1::RenderImageResponse picture,
+                                 const pipeline::ManifestEntry& entry) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const ProductFile file,
+                               MakeProduct(options_.format, planned.key.storm, std::move(picture)));
+  if (file.world_file.has_value()) {
+    THUNDERHEAD_RETURN_IF_ERROR(PublishFile(WorldFilePath(planned.path), *file.world_file, entry));
+  }
+  return PublishFile(planned.path, file.bytes, entry);
+}
+
+absl::Status PictureRun::PublishFile(const std::string& path, const std::string& bytes,
+                                     pipeline::ManifestEntry entry) {
   const std::string folder = fs::path(path).parent_path().string();
   if (!folder.empty()) THUNDERHEAD_RETURN_IF_ERROR(MakeFolder(folder));
   std::error_code ignored;
@@ -222,8 +243,8 @@ absl::Status PictureRun::MakeOne(const PlannedPicture& picture, volume::StormSto
   *request.mutable_scene() = view.scene;
   request.mutable_scene()->set_storm_id(storm_id);
   request.mutable_scene()->set_time_index(static_cast<std::uint32_t>(picture.time_index));
-  request.set_format(options_.format);
-  THUNDERHEAD_ASSIGN_OR_RETURN(const v1::RenderImageResponse response,
+  request.set_format(options_.format.Drawn());
+  THUNDERHEAD_ASSIGN_OR_RETURN(v1::RenderImageResponse response,
                                CallForPicture(channel, request, "", stop, {}));
   input.sha256 = HashOf(input);
   THUNDERHEAD_ASSIGN_OR_RETURN(const pipeline::InputFile after, StampOf(picture.input));
@@ -236,7 +257,7 @@ absl::Status PictureRun::MakeOne(const PlannedPicture& picture, volume::StormSto
   entry.milliseconds = milliseconds = stopwatch.ElapsedMs();
   if (response.has_accuracy()) entry.estimated_error = response.accuracy().estimated_error();
   entry.input = std::move(input);
-  return Publish(picture.path, response.image(), std::move(entry));
+  return Publish(picture, std::move(response), entry);
 }
 
 absl::Status PictureRun::Make(const std::vector<volume::CataloguedStorm>& storms,
