@@ -96,7 +96,7 @@ class PictureRun {
   absl::Status MakeOne(const PlannedPicture& picture, volume::StormStore& store,
                        const std::shared_ptr<grpc::Channel>& channel, const std::string& device,
                        const std::string& storm_id, const std::stop_token& stop,
-                       double& milliseconds);
+                       double& milliseconds, PictureTimes& times);
   absl::Status PublishFile(const std::string& path, const std::string& bytes,
                            pipeline::ManifestEntry entry);
   std::string HashOf(const pipeline::InputFile& input);

@@ -23,8 +23,10 @@ PROJECTIONS = {
         {"MAP_PROJ": 3, "TRUELAT1": 15.0, "STAND_LON": 120.0},
         "+proj=merc +lat_ts=15 +lon_0=120 +R=6370000 +no_defs", (122.0, 14.0), "mercator"),
 }
-# Not centred on the domain, not as wide as it, and not square, so that no mistake cancels another.
-VIEW = '{"camera": {"topDown": {"xM": 3000, "yM": -2000, "widthM": 150000}}, "sun": {"elevationDeg": 60}, "ground": {"cover": "COVER_PLAIN"}}'
+# Not centred on the domain, not as wide as it, and not square, so that no mistake cancels another. Lit from above and without turbulent
+# detail, so that clouds are brightest in their middles.
+VIEW = """{"camera": {"topDown": {"xM": 3000, "yM": -2000, "widthM": 150000}}, "sun": {"elevationDeg": 90},
+           "ground": {"cover": "COVER_PLAIN"}, "rendering": {"lightVolume": {"detail": false}}}"""
 SIZE_PX = (300, 260)
 PIXEL_M = 150000 / 300
 
@@ -37,6 +39,18 @@ def blobs(values: numpy.ndarray) -> list[tuple[float, float]]:
         near = next((group for group in groups if numpy.abs(group[0] - at).max() < 30), None)
         near.append(at) if near is not None else groups.append([at])
     return sorted((float(numpy.mean(group, 0)[1]) + 0.5, float(numpy.mean(group, 0)[0]) + 0.5) for group in groups)
+
+
+def brightness(file: pathlib.Path) -> numpy.ndarray:
+    with Image.open(file) as picture:
+        return numpy.asarray(picture.convert("L"), float)
+
+
+def between(values: numpy.ndarray, column: float, row: float) -> float:
+    """The value at a place in pixels, from those of pixels' middles, bilinear."""
+    x, y = int(column - 0.5), int(row - 0.5)
+    a, b = column - 0.5 - x, row - 0.5 - y
+    return float((1 - b) * ((1 - a) * values[y, x] + a * values[y, x + 1]) + b * ((1 - a) * values[y + 1, x] + a * values[y + 1, x + 1]))
 
 
 class MapTest(ProductTest):
@@ -83,7 +97,7 @@ class MapTest(ProductTest):
         for found, wanted in zip(info["geoTransform"], expected):
             # XLAT and XLONG are floats: a metre.
             self.assertAlmostEqual(found, wanted, delta=2.0)
-        pixels = numpy.asarray(Image.open(tiff).convert("L"), float)
+        pixels = brightness(tiff)
         self.expect_clouds(transform(blobs(pixels - numpy.median(pixels)), tiff, "-t_srs", DEGREES), coordinates)
         world = [float(line) for line in tiff.with_suffix(".tfw").read_text().split()]
         origin_x, width, _, origin_y, _, height = info["geoTransform"]
@@ -101,10 +115,11 @@ class MapTest(ProductTest):
             self.assertEqual(str(netCDF4.num2date(file["time"][...], file["time"].units)), "2013-05-20 20:10:00")
             self.assertEqual(str(netCDF4.num2date(file["forecast_reference_time"][...], file["time"].units)), "2013-05-20 12:00:00")
             values = depth[:].filled(numpy.nan)
-            at = [(int(column), int(row)) for column, row in blobs(values)]
-            self.expect_clouds([(file["lon"][row, column], file["lat"][row, column]) for column, row in at], coordinates)
+            middles = blobs(values)
+            self.expect_clouds([tuple(between(file[axis][:], *at) for axis in ("lon", "lat")) for at in middles], coordinates)
             # The clouds' middles are at 4.5 km, their tops at 6 and so soft to 7; where it is clear, there is no such height.
             heights = file["depth_one_height"][:]
+            at = [(int(column), int(row)) for column, row in middles]
             for column, row in at:
                 self.assertGreater(heights[row, column], 4500.0)
                 self.assertLess(heights[row, column], 7000.0)
@@ -146,14 +161,15 @@ class MapTest(ProductTest):
         grid_lon, grid_lat = numpy.meshgrid(lon, lat)
         coordinates = {"lon": grid_lon, "lat": grid_lat}
         tiff = self.draw(storm, "tif")
-        pixels = numpy.asarray(Image.open(tiff).convert("L"), float)
+        pixels = brightness(tiff)
         self.expect_clouds(transform(blobs(pixels - numpy.median(pixels)), tiff, "-t_srs", "+proj=longlat +R=6371229 +no_defs"), coordinates)
         with netCDF4.Dataset(self.draw(storm, "nc")) as file:
             depth = file["storm_optical_depth"]
             self.assertEqual(depth.dimensions, ("lat", "lon"))
             self.assertEqual(file[depth.grid_mapping].grid_mapping_name, "latitude_longitude")
-            at = [(int(column), int(row)) for column, row in blobs(depth[:].filled(0.0))]
-            self.expect_clouds([(file["lon"][column], file["lat"][row]) for column, row in at], coordinates)
+            grid = dict(zip(("lon", "lat"), numpy.meshgrid(file["lon"][:], file["lat"][:])))
+            middles = blobs(depth[:].filled(0.0))
+            self.expect_clouds([tuple(between(grid[axis], *at) for axis in ("lon", "lat")) for at in middles], coordinates)
 
     def test_an_idealised_run_has_metres_and_no_place(self) -> None:
         tiny = ("--size", "64x36", "--quality", "fast", "--camera", "top-down")
