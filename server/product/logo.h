@@ -8,7 +8,7 @@
 #include "absl/status/statusor.h"
 
 // Cairo's own name, so that who passes a logo on needs no header of Cairo.
-struct _cairo_surface;
+struct _cairo_surface;  // NOLINT(bugprone-reserved-identifier)
 
 namespace thunderhead::product {
 
