@@ -67,7 +67,7 @@ v1::RenderJobPicture RequestOf(const PictureRunOptions& options, const PlannedPi
   *request.mutable_scene() = options.views[picture.view].scene;
   request.mutable_scene()->set_storm_id(picture.server_storm);
   request.mutable_scene()->set_time_index(static_cast<std::uint32_t>(picture.time_index));
-  request.set_format(options.format);
+  request.set_format(options.format.Drawn());
   // By what it shows, not by the index of its time, which may change meanwhile.
   const pipeline::InputFile& input = *picture.server_input;
   request.set_name(pipeline::Sha256(absl::StrCat(
@@ -221,7 +221,7 @@ absl::StatusOr<v1::FetchRenderResultResponse> JobRun::FetchWhole(const std::stri
 absl::Status JobRun::Fetch(const Share& share, const State& state, PlannedPicture& picture,
                            const std::stop_token& stop) {
   std::string bytes;
-  THUNDERHEAD_ASSIGN_OR_RETURN(const v1::FetchRenderResultResponse about,
+  THUNDERHEAD_ASSIGN_OR_RETURN(v1::FetchRenderResultResponse about,
                                FetchWhole(share.job_id, state, stop, &bytes));
   if (pipeline::Sha256(bytes) != state.sha256()) {
     return absl::UnavailableError(
@@ -241,7 +241,9 @@ absl::Status JobRun::Fetch(const Share& share, const State& state, PlannedPictur
     entry.estimated_error = about.picture().accuracy().estimated_error();
   }
   entry.input = read;
-  return run_.Publish(picture.path, bytes, std::move(entry));
+  v1::RenderImageResponse drawn = std::move(*about.mutable_picture());
+  drawn.set_image(std::move(bytes));
+  return run_.Publish(picture, std::move(drawn), entry);
 }
 
 absl::Status JobRun::Take(Share& share, const State& state, const std::stop_token& stop) {
@@ -367,8 +369,7 @@ absl::Status MakeByJobs(ServerLink& server, PictureRun& run, std::vector<Planned
     // The server's files have no hash here, so their size and time decide alone.
     const auto no_hash = [] { return std::string("unknown"); };
     THUNDERHEAD_ASSIGN_OR_RETURN(const bool made,
-                                 run.IsMade(picture.path, run.Options().views[picture.view].sha256,
-                                            *picture.server_input, no_hash));
+                                 run.IsMade(picture, *picture.server_input, no_hash));
     if (!made) {
       missing.push_back(&picture);
       continue;

@@ -2,23 +2,12 @@
 
 #include <utility>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "app/local_service.h"
 #include "base/status.h"
 #include "thunderhead/v1/thunderhead.grpc.pb.h"
 
 namespace thunderhead::app {
-
-absl::StatusOr<v1::ImageFormat> FormatOf(const std::string& flag, const std::string& path) {
-  if (absl::EndsWithIgnoreCase(path, ".png")) return v1::IMAGE_FORMAT_PNG;
-  if (absl::EndsWithIgnoreCase(path, ".jpg") || absl::EndsWithIgnoreCase(path, ".jpeg")) {
-    return v1::IMAGE_FORMAT_JPEG;
-  }
-  if (absl::EndsWithIgnoreCase(path, ".exr")) return v1::IMAGE_FORMAT_EXR;
-  return absl::InvalidArgumentError(
-      absl::StrCat(flag, " is '", path, "'; its name must end in .png, .jpg, .jpeg or .exr"));
-}
 
 absl::StatusOr<v1::RenderImageResponse> CallForPicture(
     const std::shared_ptr<grpc::Channel>& channel, const v1::RenderImageRequest& request,

@@ -12,9 +12,6 @@
 
 namespace thunderhead::app {
 
-// By the ending of a picture's name; INVALID_ARGUMENT names the flag that gave it.
-absl::StatusOr<v1::ImageFormat> FormatOf(const std::string& flag, const std::string& path);
-
 // Progress of tracing the light that the picture waits for, on the calling thread.
 using OnPictureProgress = std::function<void(const v1::RenderImageProgress&)>;
 

@@ -53,6 +53,16 @@ absl::Status MakeFolder(const std::string& folder) {
       absl::StrCat(folder, ": the folder cannot be created (", error.message(), ")"));
 }
 
+// What the service says of its part.
+void AddStages(const v1::RenderImageResponse& response, PictureTimes& times) {
+  for (const v1::StageCost& stage : response.stages()) {
+    double& time_ms = stage.stage() == v1::STAGE_READ     ? times.read_ms
+                      : stage.stage() == v1::STAGE_ENCODE ? times.write_ms
+                                                          : times.draw_ms;
+    time_ms += stage.milliseconds();
+  }
+}
+
 // An error of one input alone, which leaves other pictures alone.
 bool IsOfInput(const absl::Status& status) {
   return absl::IsDataLoss(status) || absl::IsNotFound(status) || absl::IsAborted(status);
@@ -180,12 +190,33 @@ absl::StatusOr<bool> PictureRun::IsMade(const std::string& path, const std::stri
 
 absl::StatusOr<bool> PictureRun::IsMade(const PlannedPicture& picture) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const pipeline::InputFile input, StampOf(picture.input));
-  return IsMade(picture.path, options_.views[picture.view].sha256, input,
-                [this, &input] { return HashOf(input); });
+  return IsMade(picture, input, [this, &input] { return HashOf(input); });
 }
 
-absl::Status PictureRun::Publish(const std::string& path, const std::string& bytes,
-                                 pipeline::ManifestEntry entry) {
+absl::StatusOr<bool> PictureRun::IsMade(const PlannedPicture& picture,
+                                        const pipeline::InputFile& input,
+                                        const std::function<std::string()>& input_sha256) {
+  const std::string& scene_sha256 = options_.views[picture.view].sha256;
+  if (options_.format.world_file) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        const bool placed, IsMade(WorldFilePath(picture.path), scene_sha256, input, input_sha256));
+    if (!placed) return false;
+  }
+  return IsMade(picture.path, scene_sha256, input, input_sha256);
+}
+
+absl::Status PictureRun::Publish(const PlannedPicture& planned, v1::RenderImageResponse picture,
+                                 const pipeline::ManifestEntry& entry) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const ProductFile file,
+                               MakeProduct(options_.format, planned.key.storm, std::move(picture)));
+  if (file.world_file.has_value()) {
+    THUNDERHEAD_RETURN_IF_ERROR(PublishFile(WorldFilePath(planned.path), *file.world_file, entry));
+  }
+  return PublishFile(planned.path, file.bytes, entry);
+}
+
+absl::Status PictureRun::PublishFile(const std::string& path, const std::string& bytes,
+                                     pipeline::ManifestEntry entry) {
   const std::string folder = fs::path(path).parent_path().string();
   if (!folder.empty()) THUNDERHEAD_RETURN_IF_ERROR(MakeFolder(folder));
   std::error_code ignored;
@@ -209,7 +240,8 @@ absl::Status PictureRun::Record(const std::string& path, pipeline::ManifestEntry
 absl::Status PictureRun::MakeOne(const PlannedPicture& picture, volume::StormStore& store,
                                  const std::shared_ptr<grpc::Channel>& channel,
                                  const std::string& device, const std::string& storm_id,
-                                 const std::stop_token& stop, double& milliseconds) {
+                                 const std::stop_token& stop, double& milliseconds,
+                                 PictureTimes& times) {
   const base::Stopwatch stopwatch;
   const View& view = options_.views[picture.view];
   THUNDERHEAD_ASSIGN_OR_RETURN(pipeline::InputFile input, StampOf(picture.input));
@@ -218,13 +250,16 @@ absl::Status PictureRun::MakeOne(const PlannedPicture& picture, volume::StormSto
     const absl::Status problem = AsFileProblem(read);
     return IsOfInput(problem) ? problem : absl::AbortedError(problem.message());
   }
+  times.read_ms = stopwatch.ElapsedMs();
   v1::RenderImageRequest request;
   *request.mutable_scene() = view.scene;
   request.mutable_scene()->set_storm_id(storm_id);
   request.mutable_scene()->set_time_index(static_cast<std::uint32_t>(picture.time_index));
-  request.set_format(options_.format);
-  THUNDERHEAD_ASSIGN_OR_RETURN(const v1::RenderImageResponse response,
+  request.set_format(options_.format.Drawn());
+  THUNDERHEAD_ASSIGN_OR_RETURN(v1::RenderImageResponse response,
                                CallForPicture(channel, request, "", stop, {}));
+  AddStages(response, times);
+  const base::Stopwatch writing;
   input.sha256 = HashOf(input);
   THUNDERHEAD_ASSIGN_OR_RETURN(const pipeline::InputFile after, StampOf(picture.input));
   if (!SameStamp(input, after)) {
@@ -236,7 +271,9 @@ absl::Status PictureRun::MakeOne(const PlannedPicture& picture, volume::StormSto
   entry.milliseconds = milliseconds = stopwatch.ElapsedMs();
   if (response.has_accuracy()) entry.estimated_error = response.accuracy().estimated_error();
   entry.input = std::move(input);
-  return Publish(picture.path, response.image(), std::move(entry));
+  THUNDERHEAD_RETURN_IF_ERROR(Publish(picture, std::move(response), entry));
+  times.write_ms += writing.ElapsedMs();
+  return absl::OkStatus();
 }
 
 absl::Status PictureRun::Make(const std::vector<volume::CataloguedStorm>& storms,
@@ -276,10 +313,12 @@ absl::Status PictureRun::Make(const std::vector<volume::CataloguedStorm>& storms
     for (std::size_t i = next++; i < missing.size() && !ending.stop_requested(); i = next++) {
       PlannedPicture& picture = *missing[i];
       double milliseconds = 0.0;
-      picture.outcome = MakeOne(picture, *store, server->LocalChannel(), server->Device().device,
-                                storms[picture.storm].info.id, ending.get_token(), milliseconds);
+      PictureTimes times;
+      picture.outcome =
+          MakeOne(picture, *store, server->LocalChannel(), server->Device().device,
+                  storms[picture.storm].info.id, ending.get_token(), milliseconds, times);
       if (picture.outcome.ok()) {
-        progress.Drawn(picture.path, milliseconds);
+        progress.Drawn(picture.path, milliseconds, times);
       } else if (IsOfInput(picture.outcome)) {
         progress.Failed(picture.path, picture.outcome);
       } else {

@@ -76,9 +76,13 @@ class PictureRun {
   // Adds the entry of the product at `path`, whose size and hash it has, and its marker. Safe from
   // any thread.
   absl::Status Record(const std::string& path, pipeline::ManifestEntry entry);
-  // Writes the product, then records it. Safe from any thread.
-  absl::Status Publish(const std::string& path, const std::string& bytes,
-                       pipeline::ManifestEntry entry);
+  // Makes the product of a picture that was drawn for `planned` and writes it, with its world file
+  // before it, then records it. Safe from any thread.
+  absl::Status Publish(const PlannedPicture& planned, v1::RenderImageResponse picture,
+                       const pipeline::ManifestEntry& entry);
+  // True if the picture, and its world file if it has one, are whole and made as they would be now.
+  absl::StatusOr<bool> IsMade(const PlannedPicture& picture, const pipeline::InputFile& input,
+                              const std::function<std::string()>& input_sha256);
   // True if the product at `path` is whole and made as it would be now; see MadeAlike.
   absl::StatusOr<bool> IsMade(const std::string& path, const std::string& scene_sha256,
                               const pipeline::InputFile& input,
@@ -92,7 +96,9 @@ class PictureRun {
   absl::Status MakeOne(const PlannedPicture& picture, volume::StormStore& store,
                        const std::shared_ptr<grpc::Channel>& channel, const std::string& device,
                        const std::string& storm_id, const std::stop_token& stop,
-                       double& milliseconds);
+                       double& milliseconds, PictureTimes& times);
+  absl::Status PublishFile(const std::string& path, const std::string& bytes,
+                           pipeline::ManifestEntry entry);
   std::string HashOf(const pipeline::InputFile& input);
   absl::Status MarkDone(const std::string& path, const std::string& sha256) const;
 

@@ -10,7 +10,6 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "app/picture_call.h"
 #include "base/status.h"
 #include "pipeline/sha256.h"
 #include "service/limits_check.h"
@@ -110,6 +109,7 @@ void AddPipelineOptions(CLI::App& command, PipelineFlags& flags) {
                   "Pictures under way at a time, so that reading and writing overlap drawing")
       ->check(CLI::Range(1, kMaxJobs))
       ->capture_default_str();
+  AddProductOptions(command, flags.files);
   AddServerFlags(command, flags.server);
   command.add_option("--device", flags.device, "auto, software or a GPU's number")
       ->capture_default_str();
@@ -132,8 +132,14 @@ absl::StatusOr<PictureRunOptions> RunOptionsOf(const PipelineFlags& flags,
   THUNDERHEAD_ASSIGN_OR_RETURN(pipeline::ProductName product,
                                pipeline::ProductName::Parse("--product", flags.product));
   PictureRunOptions options{.product = std::move(product)};
-  THUNDERHEAD_ASSIGN_OR_RETURN(options.format, FormatOf("--product", flags.product));
+  THUNDERHEAD_ASSIGN_OR_RETURN(options.format,
+                               ProductFormatOf("--product", flags.product, flags.files));
   THUNDERHEAD_ASSIGN_OR_RETURN(options.views, ReadViews(flags));
+  for (View& view : options.views) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckScene(options.format, view.scene));
+    if (options.format.fingerprint.empty()) continue;
+    view.sha256 = pipeline::Sha256(absl::StrCat(view.sha256, "\n", options.format.fingerprint));
+  }
   if (options.views.size() > 1 && !options.product.Has("view")) {
     return absl::InvalidArgumentError(absl::StrCat("--product is '", flags.product,
                                                    "', so that all ", options.views.size(),

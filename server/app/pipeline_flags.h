@@ -6,6 +6,7 @@
 
 #include "CLI/CLI.hpp"
 #include "absl/status/statusor.h"
+#include "app/product_files.h"
 #include "app/run_progress.h"
 #include "app/scene_file.h"
 #include "app/server_link.h"
@@ -25,6 +26,7 @@ struct PipelineFlags {
   std::string device = "auto";
   int jobs = 2;
   bool done_markers = false;
+  ProductFlags files;
   ProgressStyle progress = ProgressStyle::kAuto;
 };
 
@@ -34,13 +36,14 @@ void AddPipelineOptions(CLI::App& command, PipelineFlags& flags);
 struct View {
   std::string name;
   v1::Scene scene;
-  std::string sha256;  // of the scene, as canonical JSON
+  // Of the scene, as canonical JSON, and with it of what else goes into the pictures.
+  std::string sha256;
 };
 
 // The flags, checked as far as they can be without a storm.
 struct PictureRunOptions {
   pipeline::ProductName product;
-  v1::ImageFormat format = v1::IMAGE_FORMAT_PNG;
+  ProductFormat format;
   std::vector<View> views;
   std::string manifest;
   std::vector<std::string> other_manifests;  // of other shards

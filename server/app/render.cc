@@ -12,6 +12,7 @@
 #include "app/interruption.h"
 #include "app/local_service.h"
 #include "app/picture_call.h"
+#include "app/product_files.h"
 #include "app/progress_bar.h"
 #include "app/render_reference.h"
 #include "app/scene_file.h"
@@ -30,6 +31,7 @@ struct Flags {
   SceneFlags scene;
   ReferenceFlags reference;
   ServerFlags server;
+  ProductFlags files;
   std::string device = "auto";
   bool json = false;
 };
@@ -104,20 +106,36 @@ void PrintAccuracy(const v1::RenderImageResponse& response) {
   std::cout << "\n";
 }
 
-absl::Status ByReference(const Flags& flags) {
+absl::Status ByReference(const Flags& flags, const ProductFormat& format) {
   if (!flags.server.address.empty() || flags.json) {
     return absl::InvalidArgumentError(
         "--renderer reference works only in this process: omit --server and --json");
   }
-  THUNDERHEAD_RETURN_IF_ERROR(FormatOf("-o", flags.output).status());
+  if (!format.fingerprint.empty() || (!format.IsPicture() && format.kind != ProductKind::kExr)) {
+    return absl::InvalidArgumentError(
+        "--renderer reference writes .png, .jpg and .exr alone, without --annotate and "
+        "--world-file: omit them");
+  }
   return RenderReference(flags.storm, flags.scene, flags.reference, flags.output, flags.device);
+}
+
+absl::Status Write(const std::string& output, const ProductFormat& format,
+                   const v1::RenderImageResponse& picture) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const ProductFile file, MakeProduct(format, "", picture));
+  if (file.world_file.has_value()) {
+    THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(WorldFilePath(output), *file.world_file));
+  }
+  return base::WriteWholeFile(output, file.bytes);
 }
 
 absl::Status Render(const Flags& flags) {
   spdlog::set_level(spdlog::level::warn);
   v1::RenderImageRequest request;
   THUNDERHEAD_ASSIGN_OR_RETURN(*request.mutable_scene(), ReadScene(flags.scene));
-  if (request.scene().rendering().has_reference()) return ByReference(flags);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const ProductFormat format,
+                               ProductFormatOf("-o", flags.output, flags.files));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckScene(format, request.scene()));
+  if (request.scene().rendering().has_reference()) return ByReference(flags, format);
   if (flags.reference.AnyLimit() || !flags.reference.light.air ||
       flags.reference.light.max_scatterings != 0 ||
       flags.reference.light.detail_voxels_per_cell != 0) {
@@ -125,14 +143,13 @@ absl::Status Render(const Flags& flags) {
         "--spp, --seconds, --target-error, --max-scatterings, --detail and --no-air are for "
         "--renderer reference");
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(const v1::ImageFormat format, FormatOf("-o", flags.output));
-  request.set_format(format);
+  request.set_format(format.Drawn());
   const Interruption interruption;
   THUNDERHEAD_ASSIGN_OR_RETURN(v1::RenderImageResponse response,
                                flags.server.address.empty()
                                    ? CallHere(flags, request, interruption)
                                    : CallServer(flags, request, interruption));
-  THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(flags.output, response.image()));
+  THUNDERHEAD_RETURN_IF_ERROR(Write(flags.output, format, response));
   if (!flags.json) {
     PrintAccuracy(response);
     return absl::OkStatus();
@@ -154,8 +171,10 @@ Command AddRender(CLI::App& app) {
   render->add_option("STORM", flags->storm, "Storm file or folder; with --server a storm's id")
       ->required();
   render
-      ->add_option("-o,--output", flags->output,
-                   "Picture to write: .png, .jpg or .jpeg; .exr for linear light and optical depth")
+      ->add_option(
+          "-o,--output", flags->output,
+          "Picture to write: .png, .jpg or .jpeg; .exr for linear light and optical depth; "
+          "from above also .tif (GeoTIFF) and .nc (light and optical depth, CF netCDF)")
       ->required();
   AddSceneOptions(*render, flags->scene);
   AddTechniqueOptions(*render, flags->scene);
@@ -184,6 +203,7 @@ Command AddRender(CLI::App& app) {
   render->add_flag(
       "--no-air{false}", flags->reference.light.air,
       "Reference: leave out the air: a black sky, and sunlight as above the atmosphere");
+  AddProductOptions(*render, flags->files);
   AddServerFlags(*render, flags->server);
   render->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();

@@ -1,5 +1,7 @@
 #include "app/run_movie.h"
 
+#include <google/protobuf/util/json_util.h>
+
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -9,14 +11,48 @@
 #include "base/stopwatch.h"
 #include "base/whole_file.h"
 #include "frame/image_codec.h"
+#include "frame/png_text.h"
+#include "nlohmann/json.hpp"
 #include "pipeline/movie.h"
 #include "pipeline/sha256.h"
+#include "service/picture_texts.h"
 
 namespace thunderhead::app {
 namespace {
 
 // So slow that a storm can be followed, so fast that it moves.
 constexpr int kFramesPerSecond = 8;
+
+nlohmann::ordered_json JsonOf(const std::string& text) {
+  return nlohmann::ordered_json::parse(text, nullptr, false);
+}
+
+// What the movie shows, as JSON: the storm with its times, the scene, and where the first picture
+// tells it, where the camera stands.
+std::string DescriptionOf(const pipeline::ManifestEntry& entry, const View& view,
+                          const std::vector<const PlannedPicture*>& pictures) {
+  nlohmann::ordered_json json;
+  json["program"] = absl::StrCat("Thunderhead ", entry.version);
+  json["storm"] = entry.storm;
+  if (entry.run.has_value()) json["run"] = *entry.run;
+  json["view"] = view.name;
+  for (const PlannedPicture* picture : pictures) {
+    json["valid"].push_back(
+        absl::FormatTime("%E4Y-%m-%dT%H:%M:%SZ", picture->key.valid, absl::UTCTimeZone()));
+  }
+  std::string scene;
+  (void)google::protobuf::util::MessageToJsonString(view.scene, &scene);
+  json["scene"] = JsonOf(scene);
+  const auto first = base::ReadWholeFile(pictures.front()->path);
+  if (first.ok() && frame::IsPng(*first)) {
+    const auto texts = frame::TextsOf(*first);
+    if (texts.ok() && texts->contains(service::kViewText)) {
+      json["pose"] = JsonOf(texts->at(service::kViewText));
+    }
+  }
+  // Storms' names come from files' names, in any encoding.
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
 
 absl::Status MakeMovie(const std::string& path, const View& view,
                        std::vector<const PlannedPicture*> pictures, PictureRun& run,
@@ -47,15 +83,16 @@ absl::Status MakeMovie(const std::string& path, const View& view,
     return absl::OkStatus();
   }
   const pipeline::MovieText text{
-      entry.storm, absl::StrCat("made by Thunderhead ", entry.version, " of scene ", view.sha256)};
+      entry.storm, absl::StrCat("made by Thunderhead ", entry.version, " of scene ", view.sha256),
+      DescriptionOf(entry, view, pictures)};
   THUNDERHEAD_RETURN_IF_ERROR(pipeline::WriteMovie(
       path, pipeline::FramesOfPictures(valid), kFramesPerSecond, text,
       [&](std::size_t i) -> absl::StatusOr<frame::RgbImage> {
         if (stop.stop_requested()) return absl::CancelledError("interrupted");
         THUNDERHEAD_ASSIGN_OR_RETURN(const std::string bytes,
                                      base::ReadWholeFile(pictures[i]->path));
-        return run.Options().format == v1::IMAGE_FORMAT_PNG ? frame::DecodePng(bytes)
-                                                            : frame::DecodeJpeg(bytes);
+        return run.Options().format.kind == ProductKind::kPng ? frame::DecodePng(bytes)
+                                                              : frame::DecodeJpeg(bytes);
       }));
   entry.milliseconds = stopwatch.ElapsedMs();
   entry.estimated_error.reset();
@@ -70,9 +107,15 @@ absl::Status MakeMovie(const std::string& path, const View& view,
 
 }  // namespace
 
-absl::StatusOr<MovieOptions> MovieOptionsOf(const PipelineFlags& flags) {
+absl::StatusOr<MovieOptions> MovieOptionsOf(const PipelineFlags& flags,
+                                            const ProductFormat& format) {
   MovieOptions options;
   if (flags.movie.empty()) return options;
+  if (!format.IsPicture()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--movie needs pictures of .png or .jpg, but --product is '", flags.product,
+                     "': omit --movie, or make it of a run of its own"));
+  }
   THUNDERHEAD_ASSIGN_OR_RETURN(options.name, pipeline::ProductName::Parse("--movie", flags.movie));
   const bool of_times = options.name->Has("valid") || options.name->Has("lead") ||
                         options.name->Has("lead_min") || options.name->Has("time");
@@ -85,10 +128,6 @@ absl::StatusOr<MovieOptions> MovieOptionsOf(const PipelineFlags& flags) {
 absl::Status MakeMovies(const MovieOptions& options, const std::vector<PlannedPicture>& pictures,
                         PictureRun& run, RunProgress& progress, const std::stop_token& stop) {
   if (!options.name.has_value()) return absl::OkStatus();
-  if (run.Options().format == v1::IMAGE_FORMAT_EXR) {
-    return absl::InvalidArgumentError(
-        "--movie needs pictures of .png or .jpg, but --product ends in .exr: omit one");
-  }
   std::map<std::string, std::vector<const PlannedPicture*>> movies;
   for (const PlannedPicture& picture : pictures) {
     if (!picture.outcome.ok()) continue;

@@ -16,8 +16,10 @@ struct MovieOptions {
   std::optional<pipeline::ProductName> name;  // nothing: no movie
 };
 
-// INVALID_ARGUMENT if --movie is not a name of a movie.
-absl::StatusOr<MovieOptions> MovieOptionsOf(const PipelineFlags& flags);
+// INVALID_ARGUMENT if --movie is not a name of a movie, or products of that format are no pictures
+// for one.
+absl::StatusOr<MovieOptions> MovieOptionsOf(const PipelineFlags& flags,
+                                            const ProductFormat& format);
 
 // Makes each storm's movies of those of its pictures that are made, where they changed since.
 absl::Status MakeMovies(const MovieOptions& options, const std::vector<PlannedPicture>& pictures,

@@ -26,10 +26,11 @@ void RunProgress::Plan(int products) {
   planned_ += products;
 }
 
-void RunProgress::Drawn(const std::string& path, double milliseconds) {
+void RunProgress::Drawn(const std::string& path, double milliseconds,
+                        const std::optional<PictureTimes>& times) {
   const std::lock_guard lock(mutex_);
   ++drawn_;
-  Tell("drawn", path, absl::StrFormat("%s (%.0f ms)", path, milliseconds), milliseconds);
+  Tell("drawn", path, absl::StrFormat("%s (%.0f ms)", path, milliseconds), milliseconds, times);
 }
 
 void RunProgress::Kept(const std::string& path) {
@@ -63,7 +64,7 @@ int RunProgress::KeptCount() const {
 
 // Lines are flushed, as whoever reads them waits for them.
 void RunProgress::Tell(const std::string& event, const std::string& path, const std::string& text,
-                       double milliseconds) {
+                       double milliseconds, const std::optional<PictureTimes>& times) {
   const int done = drawn_ + kept_;
   if (ecflow_ != nullptr) ecflow_->Tell(done, planned_, path);
   if (bar_ != nullptr) {
@@ -74,6 +75,11 @@ void RunProgress::Tell(const std::string& event, const std::string& path, const 
   } else if (style_ == ProgressStyle::kJson) {
     nlohmann::ordered_json json = {{"event", event}, {"file", path}};
     if (event == "drawn") json["milliseconds"] = milliseconds;
+    if (times.has_value()) {
+      json["read_ms"] = times->read_ms;
+      json["draw_ms"] = times->draw_ms;
+      json["write_ms"] = times->write_ms;
+    }
     if (event != "drawn" && event != "kept") json["message"] = text;
     json["done"] = done;
     json["planned"] = planned_;

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "absl/status/status.h"
@@ -14,6 +15,13 @@ namespace thunderhead::app {
 
 enum class ProgressStyle { kAuto, kLines, kJson, kEcflow, kNone };
 
+// Where a picture's time went, without what it waited for others.
+struct PictureTimes {
+  double read_ms = 0.0;   // the storm's file
+  double draw_ms = 0.0;   // until its pixels are read back
+  double write_ms = 0.0;  // encoding, hashing and bringing it to the disk
+};
+
 // Safe from any thread.
 class RunProgress {
  public:
@@ -22,7 +30,8 @@ class RunProgress {
   // Some more products are to be made, or were found made.
   void Plan(int products);
   // A product is there: `milliseconds` after its drawing began, or unchanged since an earlier run.
-  void Drawn(const std::string& path, double milliseconds);
+  void Drawn(const std::string& path, double milliseconds,
+             const std::optional<PictureTimes>& times = std::nullopt);
   void Kept(const std::string& path);
   // A product or input that does not come, now or ever; also on standard error.
   void Failed(const std::string& path, const absl::Status& why);
@@ -34,7 +43,7 @@ class RunProgress {
 
  private:
   void Tell(const std::string& event, const std::string& path, const std::string& text,
-            double milliseconds);
+            double milliseconds, const std::optional<PictureTimes>& times = std::nullopt);
 
   mutable std::mutex mutex_;
   ProgressStyle style_;

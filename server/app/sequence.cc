@@ -94,7 +94,8 @@ absl::Status Sequence(const Flags& flags) {
       const pipeline::Shard shard,
       flags.shard.empty() ? pipeline::ShardOfEnvironment() : pipeline::ParseShard(flags.shard));
   THUNDERHEAD_ASSIGN_OR_RETURN(PictureRunOptions options, RunOptionsOf(flags.pipeline, shard));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const MovieOptions movie, MovieOptionsOf(flags.pipeline));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const MovieOptions movie,
+                               MovieOptionsOf(flags.pipeline, options.format));
   if (movie.name.has_value() && shard.count > 1) {
     return absl::InvalidArgumentError(
         "--movie needs all pictures, but this process makes a share: run sequence once more "

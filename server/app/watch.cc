@@ -23,7 +23,6 @@
 #include "base/status.h"
 #include "base/version.h"
 #include "pipeline/manifest.h"
-#include "pipeline/movie.h"
 #include "pipeline/readiness.h"
 #include "spdlog/spdlog.h"
 
@@ -102,6 +101,12 @@ void Settle(const std::vector<PlannedPicture>& pictures, WatchedFolder& folder) 
   }
 }
 
+// True for a name of a picture, not of what is made of or for pictures.
+bool IsPicture(const PictureRunOptions& options, const std::string& file) {
+  return std::filesystem::path(file).extension() ==
+         std::filesystem::path(options.product.Text()).extension();
+}
+
 // Pictures that earlier runs made as this one would and that are not in `planned`, as their files
 // are not ready again or gone: a movie has them too, and does not shrink when `watch` is restarted.
 std::vector<PlannedPicture> MadeBefore(const PictureRun& run,
@@ -114,7 +119,7 @@ std::vector<PlannedPicture> MadeBefore(const PictureRun& run,
   for (const pipeline::ManifestEntry& entry : records.Entries()) {
     const auto view = std::ranges::find(views, entry.view, &View::name);
     if (view == views.end() || view->sha256 != entry.scene_sha256 ||
-        entry.version != base::Version() || pipeline::IsMovieName(entry.file) ||
+        entry.version != base::Version() || !IsPicture(run.Options(), entry.file) ||
         known.contains(entry.file)) {
       continue;
     }
@@ -202,7 +207,8 @@ absl::Status Watch(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const pipeline::ReadinessPolicy policy,
                                pipeline::ReadinessPolicy::Parse(flags.ready));
   THUNDERHEAD_ASSIGN_OR_RETURN(PictureRunOptions options, RunOptionsOf(flags.pipeline, {}));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const MovieOptions movie, MovieOptionsOf(flags.pipeline));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const MovieOptions movie,
+                               MovieOptionsOf(flags.pipeline, options.format));
   if (options.product.Has("time")) {
     return absl::InvalidArgumentError(
         "--product has {time}, which counts the times of a whole run; files that still come have "

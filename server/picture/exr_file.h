@@ -1,7 +1,8 @@
 // A picture as an OpenEXR file: linear radiance in R, G, B as 32-bit floats, and where the picture
 // has them: its standard error in stderr.R, stderr.G, stderr.B, the share of each pixel that the
-// storm covers in storm.opacity, the storm's optical depth in storm.optical_depth and the distance
-// (m) at which that reaches 1 in storm.depth_one_distance, infinite where it does not.
+// storm covers in storm.opacity (of the depth that the renderer sees the background through, which
+// is less than the whole: decision 44), the storm's optical depth in storm.optical_depth and the
+// distance (m) at which that reaches 1 in storm.depth_one_distance, infinite where it does not.
 #pragma once
 
 #include <map>

@@ -147,6 +147,7 @@ class MovieWriter {
     avcodec_parameters_from_context(stream_->codecpar, codec_.get());
     av_dict_set(&format->metadata, "title", text.title.c_str(), 0);
     av_dict_set(&format->metadata, "comment", text.comment.c_str(), 0);
+    av_dict_set(&format->metadata, "description", text.description.c_str(), 0);
     code = avio_open(&format->pb, partial.c_str(), AVIO_FLAG_WRITE);
     Settings muxer(kind.muxer);
     if (code >= 0) code = avformat_write_header(format, muxer.Address());

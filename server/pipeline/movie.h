@@ -22,9 +22,11 @@ bool IsMovieName(std::string_view path);
 // picture stands for one. A gap of a thousand steps counts as one.
 std::vector<int> FramesOfPictures(const std::vector<absl::Time>& valid);
 
+// In the movie's metadata, where players and ffprobe show it.
 struct MovieText {
   std::string title;
   std::string comment;
+  std::string description = {};
 };
 
 // Reads the picture of that index; all have one size.

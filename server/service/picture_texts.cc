@@ -20,11 +20,12 @@ PictureTexts TextsOf(const v1::RenderImageResponse& picture, const volume::Storm
                         {"thunderhead.storm", storm.id}};
   const std::size_t time_index = picture.scene().time_index();
   if (time_index < storm.times.size()) {
-    texts["thunderhead.valid"] = storm.times[time_index].valid_time;
+    texts[kValidText] = storm.times[time_index].valid_time;
   }
+  if (storm.run_start.has_value()) texts[kRunText] = *storm.run_start;
   std::string view;
   (void)google::protobuf::util::MessageToJsonString(picture.view(), &view);
-  texts["thunderhead.view"] = view;
+  texts[kViewText] = view;
   if (!picture.view().parallel()) {
     // From the middle to an edge of the picture, over half its width at distance 1.
     const v1::Vector& right = picture.view().right();
@@ -33,9 +34,9 @@ PictureTexts TextsOf(const v1::RenderImageResponse& picture, const volume::Storm
         absl::StrCat(0.5 * picture.scene().output().width_px() / half_width);
   }
   if (!storm.projection.empty()) {
-    texts["thunderhead.projection"] = storm.projection;
-    texts["thunderhead.middle_deg"] = absl::StrFormat("%.7f %.7f", storm.latitude_deg.value_or(0.0),
-                                                      storm.longitude_deg.value_or(0.0));
+    texts[kProjectionText] = storm.projection;
+    texts[kMiddleText] = absl::StrFormat("%.7f %.7f", storm.latitude_deg.value_or(0.0),
+                                         storm.longitude_deg.value_or(0.0));
   }
   if (picture.has_accuracy()) {
     texts[kErrorText] = absl::StrCat(picture.accuracy().estimated_error());

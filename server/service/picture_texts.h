@@ -13,6 +13,17 @@ namespace thunderhead::service {
 // The keyword of the whole scene, as JSON, from which the same picture can be drawn again.
 inline constexpr char kSceneText[] = "thunderhead.scene";
 
+// Of the storm: its valid time and, where its files tell, when the run began (ISO 8601, UTC); where
+// it has one, its map projection as PROJ writes it, and the latitude and longitude of the middle of
+// its domain.
+inline constexpr char kValidText[] = "thunderhead.valid";
+inline constexpr char kRunText[] = "thunderhead.run";
+inline constexpr char kProjectionText[] = "thunderhead.projection";
+inline constexpr char kMiddleText[] = "thunderhead.middle_deg";
+
+// The places of the picture's pixels in the world: a View as JSON.
+inline constexpr char kViewText[] = "thunderhead.view";
+
 // The estimated error; in an OpenEXR file a number.
 inline constexpr char kErrorText[] = "thunderhead.estimated_error";
 

@@ -1,5 +1,5 @@
-// The one lock of the process around netCDF-C and HDF5, which are not thread-safe. Only this room's
-// netCDF files include it.
+// The one lock of the process around netCDF-C and HDF5, which are not thread-safe. What reads and
+// writes netCDF for all rooms includes it: NetcdfFile and NetcdfWriter.
 #pragma once
 
 #include <hdf5.h>

@@ -2,10 +2,13 @@
 // optical depth, which is computed apart from it.
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <numbers>
 #include <ostream>
 #include <string>
 #include <vector>
 
+#include "absl/strings/str_format.h"
 #include "gtest/gtest.h"
 #include "picture/exr_file.h"
 #include "tests/service/running_program.h"
@@ -16,9 +19,8 @@ namespace {
 
 constexpr char kSample[] = THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc";
 
-// Light that particles scatter forwards by a small angle counts as unscattered in pictures, so
-// their opacity is that of a part of the optical depth: never above 1 - exp(-depth), and 1 where
-// the storm is deep.
+// Each transport sees the background through less than the whole optical depth (below), so opacity
+// is never above 1 - exp(-depth), and 1 where the storm is deep.
 struct Renderer {
   std::string name;
   std::vector<std::string> flags;
@@ -92,6 +94,87 @@ INSTANTIATE_TEST_SUITE_P(Renderers, LightFile,
                                            Renderer{"reference",
                                                     {"--renderer", "reference", "--spp", "32"}}),
                          [](const auto& each) { return each.param.name; });
+
+// One field with a phase function in closed form: Henyey and Greenstein's.
+constexpr double kAsymmetry = 0.85;
+constexpr char kScene[] = R"({"camera": {"topDown": {}}, "rendering": {%s}, "fields": [
+    {"hydrometeor": "HYDROMETEOR_CLOUD",
+     "phase": {"kind": "KIND_HENYEY_GREENSTEIN", "asymmetry": 0.85}},
+    {"hydrometeor": "HYDROMETEOR_RAIN", "visible": false},
+    {"hydrometeor": "HYDROMETEOR_ICE", "visible": false},
+    {"hydrometeor": "HYDROMETEOR_SNOW", "visible": false},
+    {"hydrometeor": "HYDROMETEOR_GRAUPEL", "visible": false}]})";
+
+// The share of light that is scattered by less than 10 degrees (half of theta_f) above what a phase
+// function that is flat there would scatter: it counts as unscattered.
+double CutShare() {
+  const double cosine = std::cos(std::numbers::pi / 18.0);
+  const double g = kAsymmetry;
+  const double at_angle = 1.0 + g * g - 2.0 * g * cosine;
+  const double within = (1.0 - g * g) / (2.0 * g) * (1.0 / (1.0 - g) - 1.0 / std::sqrt(at_angle));
+  const double flat = 0.5 * (1.0 - cosine) * (1.0 - g * g) / std::pow(at_angle, 1.5);
+  return within - flat;
+}
+
+// Of the optical depth, how much a transport sees the background through.
+struct Transport {
+  std::string name;
+  std::string rendering;
+  double seen_share = 1.0;
+  double tolerance = 0.01;  // of a pixel's opacity
+
+  friend void PrintTo(const Transport& transport, std::ostream* out) { *out << transport.name; }
+};
+
+class TransportOpacity : public ::testing::TestWithParam<Transport> {};
+
+// Diffused light goes on by its mean cosine, so that the background counts as lit through the
+// transport depth, (1 - g) depth: it is not opaque below a depth of some 20, though no straight ray
+// would come through.
+TEST_P(TransportOpacity, IsOfTheDepthThatItSeesThrough) {
+  const TemporaryFolder folder;
+  const std::string scene = folder.File("scene.json");
+  std::ofstream(scene) << absl::StrFormat(kScene, GetParam().rendering);
+  const std::string file = folder.File("storm.exr");
+  const std::string log = folder.File("log");
+  ASSERT_EQ(RunningProgram(PROGRAM,
+                           {"render", kSample, "-o", file, "--time", "1", "--size", "96x54",
+                            "--scene", scene, "--device", "software"},
+                           log, log)
+                .Wait()
+                .code,
+            0);
+  const auto picture = picture::ReadExr(file);
+  ASSERT_TRUE(picture.ok()) << picture.status();
+  int between = 0;
+  Mean share;
+  for (std::size_t i = 0; i < picture->opacity.size(); ++i) {
+    const double depth = picture->optical_depth[i];
+    const double expected = 1.0 - std::exp(-GetParam().seen_share * depth);
+    // Rays end where next to nothing is seen through the storm.
+    if (expected > 0.94) {
+      EXPECT_GT(picture->opacity[i], 0.93);
+      continue;
+    }
+    EXPECT_NEAR(picture->opacity[i], expected, GetParam().tolerance) << "depth " << depth;
+    if (depth < 0.1) continue;
+    share.Add(-std::log(1.0 - picture->opacity[i]) / depth);
+    ++between;
+  }
+  EXPECT_GT(between, 200);
+  EXPECT_NEAR(share.Of(), GetParam().seen_share, 0.01 * GetParam().seen_share);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Transports, TransportOpacity,
+    ::testing::Values(
+        Transport{"diffusion", R"("lightVolume": {"detail": false})", 1.0 - kAsymmetry},
+        Transport{"consistent",
+                  R"("lightVolume": {"detail": false, "transport": "TRANSPORT_CONSISTENT"})",
+                  1.0 - CutShare()},
+        // Its slices are coarser than cells.
+        Transport{"half_angle", R"("halfAngle": {"slices": 256})", 1.0 - CutShare(), 0.03}),
+    [](const auto& each) { return each.param.name; });
 
 }  // namespace
 }  // namespace thunderhead::testing

@@ -28,7 +28,14 @@ struct Decoded {
   int height_px = 0;
   double seconds = 0.0;
   std::string title;
+  std::string comment;
+  std::string description;
 };
+
+std::string TextOf(const AVFormatContext& format, const char* name) {
+  const auto* entry = av_dict_get(format.metadata, name, nullptr, 0);
+  return entry == nullptr ? "" : entry->value;
+}
 
 // As any player would read it.
 Decoded Decode(const std::string& path) {
@@ -37,9 +44,9 @@ Decoded Decode(const std::string& path) {
   if (avformat_open_input(&format, path.c_str(), nullptr, nullptr) < 0) return decoded;
   avformat_find_stream_info(format, nullptr);
   decoded.seconds = static_cast<double>(format->duration) / AV_TIME_BASE;
-  if (const auto* title = av_dict_get(format->metadata, "title", nullptr, 0)) {
-    decoded.title = title->value;
-  }
+  decoded.title = TextOf(*format, "title");
+  decoded.comment = TextOf(*format, "comment");
+  decoded.description = TextOf(*format, "description");
   AVCodecContext* codec = avcodec_alloc_context3(nullptr);
   avcodec_parameters_to_context(codec, format->streams[0]->codecpar);
   avcodec_open2(codec, avcodec_find_decoder(codec->codec_id), nullptr);
@@ -77,8 +84,10 @@ TEST_P(MovieKind, PlayersSeeEveryPictureInOrder) {
   const testing::TemporaryFolder folder;
   const std::string path = folder.File("movie") + GetParam();
   const std::vector<int> values = {0, 128, 255};
+  // As long as a run of many days, whose times are all in it.
+  const std::string description = R"({"valid": [")" + std::string(20'000, '0') + R"("]})";
   const absl::Status status =
-      WriteMovie(path, {1, 2, 1}, 8, {"supercell", "a test"}, [&](std::size_t i) {
+      WriteMovie(path, {1, 2, 1}, 8, {"supercell", "a test", description}, [&](std::size_t i) {
         return absl::StatusOr<frame::RgbImage>(Grey(65, 36, static_cast<std::uint8_t>(values[i])));
       });
   // Debian's libavcodec has both encoders; others may lack that of H.264.
@@ -95,6 +104,8 @@ TEST_P(MovieKind, PlayersSeeEveryPictureInOrder) {
   EXPECT_EQ(movie.height_px, 36);
   EXPECT_NEAR(movie.seconds, 0.5, 0.01);
   EXPECT_EQ(movie.title, "supercell");
+  EXPECT_EQ(movie.comment, "a test");
+  EXPECT_EQ(movie.description, description);
   EXPECT_FALSE(std::filesystem::exists(base::PartialPath(path)));
 }
 

@@ -1,0 +1,130 @@
+"""--annotate, as its users see it: the same picture with texts in its corners, from this process and from a server."""
+
+import json
+import os
+import pathlib
+import socket
+import subprocess
+import time
+import unittest
+
+from product_test import PROGRAM, SAMPLE, ProductTest, run, write_wrf
+
+import numpy
+from PIL import Image
+
+SIZE = ("--size", "480x270")
+FAST = ("--quality", "fast")
+LAMBERT = ({"MAP_PROJ": 1, "TRUELAT1": 30.0, "TRUELAT2": 60.0, "MOAD_CEN_LAT": 38.5, "STAND_LON": -97.0},
+           "+proj=lcc +lat_1=30 +lat_2=60 +lat_0=38.5 +lon_0=-97 +R=6370000 +no_defs", (-90.0, 41.0))
+
+
+def pixels(file: pathlib.Path) -> numpy.ndarray:
+    with Image.open(file) as picture:
+        return numpy.asarray(picture.convert("RGB"), int)
+
+
+def changed(a: numpy.ndarray, b: numpy.ndarray) -> numpy.ndarray:
+    """Where two pictures differ."""
+    return (numpy.abs(a - b) > 2).any(axis=2)
+
+
+class AnnotationTest(ProductTest):
+    def test_the_picture_is_the_same_but_for_its_corners(self) -> None:
+        plain, annotated = self.folder / "plain.png", self.folder / "annotated.png"
+        self.render(SAMPLE, plain, *SIZE, *FAST)
+        self.render(SAMPLE, annotated, *SIZE, *FAST, "--annotate")
+        differs = changed(pixels(plain), pixels(annotated))
+        self.assertGreater(differs[:45, :240].sum(), 800)
+        self.assertGreater(differs[240:, :160].sum(), 200)
+        self.assertEqual(differs[45:235].sum(), 0)
+        self.assertEqual(differs[:, 300:].sum(), 0)
+        # What it shows stays inside.
+        with Image.open(annotated) as a, Image.open(plain) as b:
+            self.assertEqual(a.text, b.text)
+        titled = self.folder / "titled.png"
+        self.render(SAMPLE, titled, *SIZE, *FAST, "--annotate", "--title", "Für Zürich")
+        differs = changed(pixels(titled), pixels(annotated))
+        self.assertGreater(differs[:22].sum(), 200)
+        self.assertEqual(differs[240:].sum(), 0, "the valid time is the same")
+
+    def test_false_colours_have_a_legend(self) -> None:
+        colours = self.scene("colours.json", '{"rendering": {"halfAngle": {"falseColors": true, "slices": 16}}}')
+        without = self.scene("without.json", '{"rendering": {"halfAngle": {"slices": 16}}}')
+        output = self.folder / "out.png"
+        self.render(SAMPLE, output, *SIZE, "--annotate", "--scene", colours)
+        with_legend = pixels(output)[150:, 380:]
+        self.render(SAMPLE, output, *SIZE, "--annotate", "--scene", without)
+        without_legend = pixels(output)[150:, 380:]
+        # Table III: red for cloud, blue for rain, magenta for ice ...
+        for colour in ((255, 0, 0), (0, 0, 255), (255, 0, 255)):
+            self.assertGreater((numpy.abs(with_legend - colour) < 10).all(axis=2).sum(), 15, colour)
+            self.assertEqual((numpy.abs(without_legend - colour) < 10).all(axis=2).sum(), 0, colour)
+
+    def test_logos(self) -> None:
+        logo = self.folder / "logo.png"
+        Image.new("RGBA", (30, 20), (255, 0, 255, 255)).save(logo)
+        output = self.folder / "out.jpg"
+        self.render(SAMPLE, output, *SIZE, *FAST, "--annotate", "--logo", logo)
+        with Image.open(output) as picture:
+            self.assertEqual(picture.format, "JPEG")
+        # Across its edges JPEG's colours run.
+        purple = (numpy.abs(pixels(output) - (255, 0, 255)) < 40).all(axis=2)
+        self.assertGreater(purple[:40, 420:].sum(), 300)
+        self.assertEqual(purple[:, :400].sum() + purple[60:].sum(), 0)
+        tiny = ("--size", "64x36", *FAST)
+        self.assertIn("--logo cannot be read", self.render(SAMPLE, output, *tiny, "--annotate", "--logo", "/none.png", code=64))
+        logo.write_bytes(logo.read_bytes()[:60])
+        said = self.render(SAMPLE, output, *tiny, "--annotate", "--logo", logo, code=65)
+        self.assertIn(f"--logo {logo}: is a damaged PNG", said)
+        self.assertIn("add it", self.render(SAMPLE, output, *tiny, "--logo", logo, code=64))
+
+    def sequence(self, storm: object, products: pathlib.Path, *more: object) -> tuple[int, list[pathlib.Path]]:
+        """How many pictures were drawn, and all that are there."""
+        done = run(PROGRAM, "sequence", storm, "--product", products / "{valid:%H%M}.png", "--size", "240x135", *FAST, "--annotate",
+                   "--progress", "json", *more)
+        drawn = [line for line in done.stdout.splitlines() if json.loads(line)["event"] == "drawn"]
+        return len(drawn), sorted(products.glob("*.png"))
+
+    def test_a_server_and_this_process_make_the_same_products(self) -> None:
+        storm = self.folder / "storms" / "run.nc"
+        storm.parent.mkdir()
+        write_wrf(storm, LAMBERT[1], LAMBERT[0], LAMBERT[2])
+        here, there = self.folder / "here", self.folder / "there"
+        flags = ("--camera", "top-down", "--world-file")
+        count, products = self.sequence(storm, here, *flags, "--device", "software")
+        self.assertEqual(count, 2)
+        self.assertEqual([product.name for product in products], ["2000.png", "2010.png"])
+        first, second = (pixels(product) for product in products)
+        self.assertGreater(changed(first, second)[115:, :90].sum(), 10, "the valid times")
+        self.assertEqual(self.sequence(storm, here, *flags, "--device", "software")[0], 0)
+        self.assertEqual(self.sequence(storm, here, *flags, "--device", "software", "--title", "another")[0], 2)
+        address = self.serve(storm.parent)
+        count, drawn = self.sequence("run", there, *flags, "--title", "another", "--server", address)
+        self.assertEqual(count, 2)
+        for product, other in zip(products, drawn):
+            self.assertEqual(changed(pixels(product), pixels(other)).sum(), 0)
+            self.assertEqual(product.with_suffix(".pgw").read_text(), other.with_suffix(".pgw").read_text())
+
+    def serve(self, storms: pathlib.Path) -> str:
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            port = probe.getsockname()[1]
+        log = open(self.folder / "server.log", "wb")
+        self.addCleanup(log.close)
+        server = subprocess.Popen(
+            [PROGRAM, "serve", "--data", str(storms), "--grpc", f"127.0.0.1:{port}", "--http", "127.0.0.1:0", "--device", "software"],
+            stdout=log, stderr=log, env={**os.environ, "STATE_DIRECTORY": str(self.folder / "state")})
+        self.addCleanup(server.wait)
+        self.addCleanup(server.terminate)
+        for _ in range(600):
+            with socket.socket() as probe:
+                if probe.connect_ex(("127.0.0.1", port)) == 0:
+                    return f"127.0.0.1:{port}"
+            self.assertIsNone(server.poll(), (self.folder / "server.log").read_text())
+            time.sleep(0.1)
+        raise AssertionError("the server does not listen")
+
+
+if __name__ == "__main__":
+    unittest.main()
