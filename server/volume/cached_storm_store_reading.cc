@@ -101,8 +101,9 @@ std::shared_ptr<CachedStormStore::PendingRead> CachedStormStore::Begin(const Pla
 CachedStormStore::Fields CachedStormStore::WaitFor(Lock& lock,
                                                    const std::shared_ptr<PendingRead>& read,
                                                    const ReadProgress& progress) {
-  const std::shared_ptr<PendingRead> shared =
-      read;  // keeps it alive after its removal from pending_
+  // Keeps it alive after its removal from pending_, where `read` may lie.
+  // NOLINTNEXTLINE(performance-unnecessary-copy-initialization)
+  const std::shared_ptr<PendingRead> shared = read;
   ++shared->waiters;
   const auto listener = std::make_shared<Listener>();
   listener->progress = progress;
