@@ -100,6 +100,10 @@ async function unfoldSettings(open = true) {
 
 const foldSettings = () => unfoldSettings(false);
 
+// Waits for the still that replaces a frame at rest and takes its sequence.
+const stillShown = () =>
+  until("the still", async () => (await canvasDataOf(page)).encoding === "avif");
+
 // Waits until the readout shows more than this many million traced paths.
 function pathsBeyond(millions) {
   return page.waitForFunction(
@@ -628,6 +632,7 @@ test("no error reached the browser's console", () => {
 
 test("a server that dies and comes back is found again with the same scene", async () => {
   const before = await rested();
+  await stillShown();
   const beforePicture = await grabCanvas(page);
   await server.stop("SIGKILL");
   await page.getByTestId("connection-lost").waitFor({ state: "visible", timeout: 15_000 });
@@ -643,6 +648,7 @@ test("a server that dies and comes back is found again with the same scene", asy
     { timeout: PICTURE_TIMEOUT_MS },
   );
   const healed = await rested();
+  await stillShown();
   await screenshot("15-healed");
   assert.equal(healed.azimuth, before.azimuth);
   const change = difference(beforePicture, await grabCanvas(page));
