@@ -31,15 +31,9 @@ grpc::ServerUnaryReactor* DescribeStorm(Engine& engine, grpc::CallbackServerCont
                                         v1::DescribeStormResponse* response) {
   const auto storm = Check(engine, *request);
   if (!storm.ok()) return Finished(context, storm.status());
-  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  engine.executor.Submit([=, &engine](const absl::Status& status) {
-    const bool abandoned = context->IsCancelled();
-    const int time_index = static_cast<int>(request->time_index());
-    reactor->Finish(ToGrpcStatus(abandoned     ? absl::CancelledError("the call was cancelled")
-                                 : status.ok() ? Describe(engine, **storm, time_index, *response)
-                                               : status));
+  return FinishedBy(engine.executor, context, [=, &engine] {
+    return Describe(engine, **storm, static_cast<int>(request->time_index()), *response);
   });
-  return reactor;
 }
 
 }  // namespace thunderhead::service

@@ -100,14 +100,8 @@ grpc::ServerUnaryReactor* GetStormMap(Engine& engine, grpc::CallbackServerContex
                                       v1::GetStormMapResponse* response) {
   const auto storm = Check(engine, *request);
   if (!storm.ok()) return Finished(context, storm.status());
-  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  engine.executor.Submit([=, &engine](const absl::Status& status) {
-    const bool abandoned = context->IsCancelled();
-    reactor->Finish(ToGrpcStatus(abandoned     ? absl::CancelledError("the call was cancelled")
-                                 : status.ok() ? Map(engine, **storm, *request, *response)
-                                               : status));
-  });
-  return reactor;
+  return FinishedBy(engine.executor, context,
+                    [=, &engine] { return Map(engine, **storm, *request, *response); });
 }
 
 }  // namespace thunderhead::service

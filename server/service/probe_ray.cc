@@ -82,14 +82,8 @@ grpc::ServerUnaryReactor* ProbeRay(Engine& engine, grpc::CallbackServerContext* 
                                    v1::ProbeRayResponse* response) {
   const auto asked = Check(engine, *request);
   if (!asked.ok()) return Finished(context, asked.status());
-  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  engine.executor.Submit([=, &engine](const absl::Status& status) {
-    const bool abandoned = context->IsCancelled();
-    reactor->Finish(ToGrpcStatus(abandoned     ? absl::CancelledError("the call was cancelled")
-                                 : status.ok() ? Probe(engine, **asked, *response)
-                                               : status));
-  });
-  return reactor;
+  return FinishedBy(engine.executor, context,
+                    [=, &engine] { return Probe(engine, **asked, *response); });
 }
 
 }  // namespace thunderhead::service
