@@ -1,4 +1,4 @@
-// What is written and drawn over a picture: title, valid time, legend, scale bar, degrees along the horizon, rings of distance.
+// Words, scales and rings over a picture: title, valid time, legend, scale bar, degrees along the horizon, rings of distance.
 // Shapes in pixels of the picture, by the frame's own camera; whoever draws them, in the window or into a file, draws the same.
 import { type Pose, wrapDegrees } from "./camera";
 import { type PicturePoint, type Projection, project, projectLine, type Vec3 } from "./projection";

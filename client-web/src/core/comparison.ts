@@ -1,4 +1,4 @@
-// What is compared with the picture: the same view of another time, of another storm or run, or with the settings of a moment ago.
+// The second picture of a comparison: the same view of another time, of another storm or run, or with the settings of a moment ago.
 
 import type { Camera, Scene } from "../gen/thunderhead/v1/scene_pb";
 import type { StormDescription } from "../gen/thunderhead/v1/storm_pb";

@@ -1,4 +1,4 @@
-// What was changed here, to be undone and done again. Edits that follow each other closely, as of a slider or a drag, count as one.
+// Changes made on this page, to be undone and done again. Edits that follow each other closely, as of a slider or a drag, count as one.
 import { computed, type Signal, signal } from "@preact/signals-core";
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
 

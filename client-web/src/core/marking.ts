@@ -45,7 +45,7 @@ const SHORTEST_STROKE_PX = 4;
 export class Marking {
   // The line that is being drawn, in CSS pixels of the window.
   readonly stroke = signal<readonly StrokePoint[]>([]);
-  // What the text tool writes.
+  // The words that the text tool writes.
   readonly words = signal("");
   readonly #session: SessionState;
   readonly #steps: MarkingSteps;

@@ -1,4 +1,4 @@
-// What a click on the picture found, and the way from it to the next one.
+// The place that a click on the picture found, and the distance from it to the next one.
 import type { ProbeRayResponse, RayPlace } from "../gen/thunderhead/v1/probe_pb";
 import type { WorldRay } from "./projection";
 

@@ -141,7 +141,7 @@ export class PageState {
   readonly probes = signal<readonly Probed[]>([]);
   readonly probing = signal(false);
   readonly probeProblem = signal<string | undefined>(undefined);
-  // What is drawn over the picture.
+  // Title, scales and rings over the picture, each shown or not.
   readonly annotations = signal<AnnotationChoice>(FIRST_ANNOTATIONS);
   // The time zone of the storm's place, or one chosen; undefined for a storm without a place.
   readonly zone = signal<string | undefined>(undefined);
