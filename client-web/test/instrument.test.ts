@@ -98,6 +98,7 @@ test("title, time and legend stand in their corners", () => {
     scale: false,
     compass: false,
     rings: false,
+    marks: false,
   };
   expect(annotationsOf(PICTURE, none)).toEqual([]);
 });

@@ -1,11 +1,12 @@
 // End-to-end tests of the tools: the questions of a forecaster, answered by mouse and by keys alone, on the real server and sample.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
+import { PNG } from "pngjs";
 import {
   canvasData,
   changing,
@@ -320,7 +321,6 @@ test("two times are compared with one camera", async () => {
   assert.match(await text("name-b"), /B · day 1 00:20Z/);
   const grab = async () => {
     const url = await compared.evaluate((canvas) => canvas.toDataURL("image/png"));
-    const { PNG } = await import("pngjs");
     return PNG.sync.read(Buffer.from(url.split(",")[1], "base64"));
   };
   const before = await grab();
@@ -364,6 +364,54 @@ test("an arrow, words and a ring are put on the storm by keys alone", async () =
     await until(`mark ${count}`, async () => (await page.getByTestId("mark").count()) === count);
   }
   await screenshot("tools-marks", page);
+});
+
+// Of the marks' corners, the share around which the picture has a pixel of the mark's colour.
+async function markedShare({ data, width, height }) {
+  const box = await page.getByTestId("storm-canvas").boundingBox();
+  const marks = await page.getByTestId("mark").evaluateAll((groups) =>
+    groups.map((group) => [getComputedStyle(group).color, group.dataset.corners]),
+  );
+  const corners = marks.flatMap(([color, places]) => {
+    const rgb = color.match(/\d+/g).map(Number);
+    return places.split(" ").map((place) => ({ rgb, place: place.split(",").map(Number) }));
+  });
+  const isMarked = ({ rgb, place: [left, top] }) => {
+    const [x, y] = [Math.round((left * width) / box.width), Math.round((top * height) / box.height)];
+    for (let row = y - 2; row <= y + 2; row += 1)
+      for (let column = x - 2; column <= x + 2; column += 1)
+        if (rgb.every((each, i) => Math.abs(data[4 * (row * width + column) + i] - each) < 40)) return true;
+    return false;
+  };
+  assert.ok(corners.length > 60, `the marks have ${corners.length} corners`);
+  return corners.filter(isMarked).length / corners.length;
+}
+
+async function savePicture() {
+  await openPanel(page, "keep");
+  const coming = page.waitForEvent("download", { timeout: PICTURE_TIMEOUT_MS });
+  await page.getByTestId("save-picture").click();
+  const file = readFileSync(await (await coming).path());
+  await page.keyboard.press("Escape");
+  return file;
+}
+
+test("marks are burnt into a picture that is saved, unless they are switched off", async () => {
+  const marked = await savePicture();
+  assert.ok(marked.includes("thunderhead.scene"));
+  writeFileSync(new URL("output/tools-saved-marks.png", import.meta.url), marked);
+  const share = await markedShare(PNG.sync.read(marked));
+  assert.ok(share > 0.95, `${share} of the marks' corners have their colour`);
+  await openTool(page, "look");
+  await page.getByTestId("overlay-section").locator("summary").click();
+  await page.getByTestId("overlay-marks").uncheck();
+  const plain = await markedShare(PNG.sync.read(await savePicture()));
+  assert.ok(plain < 0.2, `${plain} of the marks' corners have their colour in a picture without marks`);
+  await page.getByTestId("overlay-marks").check();
+  await openTool(page, "marks");
+});
+
+test("marks are erased by keys alone", async () => {
   await page.getByTestId("clear-marks").focus();
   await key("Enter");
   await until("no marks", async () => (await page.getByTestId("mark").count()) === 0);

@@ -12,6 +12,8 @@ export interface AnnotationChoice {
   readonly scale: boolean;
   readonly compass: boolean;
   readonly rings: boolean;
+  // Into files; the window always has them.
+  readonly marks: boolean;
 }
 
 export const FIRST_ANNOTATIONS: AnnotationChoice = {
@@ -21,6 +23,7 @@ export const FIRST_ANNOTATIONS: AnnotationChoice = {
   scale: true,
   compass: true,
   rings: false,
+  marks: true,
 };
 
 export interface LegendEntry {
@@ -63,6 +66,14 @@ export type Shape =
       readonly sizePx: number;
       readonly color: string;
     };
+
+// Height of letters in a window.
+export const LETTER_PX = 13;
+
+// Height of letters in a file of a picture: as large in it as they are in a window.
+export function letterPxOf(heightPx: number): number {
+  return Math.max(11, Math.round(heightPx / 45));
+}
 
 const FAR_M = 1e7;
 const RING_CORNERS = 96;

@@ -3,7 +3,9 @@ import {
   type Annotated,
   type AnnotationChoice,
   annotationsOf,
+  LETTER_PX,
   type LegendEntry,
+  letterPxOf,
   type Shape,
 } from "../core/annotations";
 import type { Pose } from "../core/camera";
@@ -14,7 +16,6 @@ import { effectiveField, hydrometeorName } from "../core/scene";
 import type { PageState } from "../core/state";
 import { formatElapsed } from "../core/units";
 
-const LETTER_PX = 13;
 // What the page's own bars cover.
 const BARS_PX = { left: 76, top: 106, right: 0, bottom: 88 };
 const NARROW_BARS_PX = { left: 0, top: 190, right: 0, bottom: 84 };
@@ -135,7 +136,7 @@ export function drawAnnotations(
   choice: AnnotationChoice,
   { width, height }: { readonly width: number; readonly height: number },
 ): void {
-  const letterPx = Math.max(11, Math.round(height / 45));
+  const letterPx = letterPxOf(height);
   const inset = { left: 0, top: 0, right: 0, bottom: 0 };
   const picture = { ...content, widthPx: width, heightPx: height, inset, letterPx };
   context.lineJoin = "round";
