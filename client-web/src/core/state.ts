@@ -49,6 +49,7 @@ import {
 import { LIMITS, withCamera, withOutput, withRendering } from "./scene";
 import type { Edit } from "./scene_sync";
 import { SessionState } from "./session_state";
+import { nameOfRun } from "./storm_names";
 import type { SunDirection } from "./sun";
 import { clockHere } from "./sun_clock";
 import type { PanelName, ToolName } from "./tools";
@@ -241,12 +242,7 @@ export class PageState {
   });
   // The model run: when it began.
   readonly run = computed(() => {
-    const start = this.#describedStorm.value?.runStart ?? "";
-    const moment = momentOf(start, "", undefined);
-    if (start === "") return "";
-    return /^\d{4}/.test(moment.date)
-      ? `run ${moment.date} ${moment.clock}`
-      : `run ${moment.clock}`;
+    return nameOfRun(this.#describedStorm.value?.runStart ?? "");
   });
   readonly shownTime = computed(() => {
     const count = this.timeCount.value;
