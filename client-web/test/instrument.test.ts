@@ -5,7 +5,9 @@ import {
   type Annotated,
   annotationsOf,
   FIRST_ANNOTATIONS,
+  letterPxOf,
   type Shape,
+  widthForPx,
 } from "../src/core/annotations";
 import type { OrbitPose, SpotterPose, TopDownPose } from "../src/core/camera";
 import { comparedScene } from "../src/core/comparison";
@@ -101,6 +103,16 @@ test("title, time and legend stand in their corners", () => {
     marks: false,
   };
   expect(annotationsOf(PICTURE, none)).toEqual([]);
+});
+
+test("letters in a file are as large as in a window, and no text is longer than the picture", () => {
+  expect([letterPxOf(1920, 1080), letterPxOf(1000, 620), letterPxOf(390, 844)]).toEqual([
+    24, 14, 13,
+  ]);
+  const text = { kind: "text", y: 0, text: "", strong: false } as const;
+  expect(widthForPx({ ...text, x: 13, anchor: "start" }, 390, 13)).toBe(364);
+  expect(widthForPx({ ...text, x: 377, anchor: "end" }, 390, 13)).toBe(364);
+  expect(widthForPx({ ...text, x: 100, anchor: "middle" }, 390, 13)).toBe(174);
 });
 
 test("degrees stand along the horizon where they are", () => {

@@ -49,16 +49,18 @@ export interface Annotated {
   readonly legend: readonly LegendEntry[];
 }
 
+export interface TextShape {
+  readonly kind: "text";
+  readonly x: number;
+  readonly y: number;
+  readonly anchor: "start" | "middle" | "end";
+  readonly text: string;
+  readonly strong: boolean;
+}
+
 export type Shape =
   | { readonly kind: "line"; readonly points: readonly (readonly [number, number])[] }
-  | {
-      readonly kind: "text";
-      readonly x: number;
-      readonly y: number;
-      readonly anchor: "start" | "middle" | "end";
-      readonly text: string;
-      readonly strong: boolean;
-    }
+  | TextShape
   | {
       readonly kind: "swatch";
       readonly x: number;
@@ -70,9 +72,16 @@ export type Shape =
 // Height of letters in a window.
 export const LETTER_PX = 13;
 
-// Height of letters in a file of a picture: as large in it as they are in a window.
-export function letterPxOf(heightPx: number): number {
-  return Math.max(11, Math.round(heightPx / 45));
+// Height of letters in a file of a picture: as large in it as they are in a window, of a desktop or of a phone.
+export function letterPxOf(widthPx: number, heightPx: number): number {
+  return Math.max(11, Math.round(Math.min(heightPx / 45, widthPx / 30)));
+}
+
+// What a text may be wide in the picture; a longer one is squeezed.
+export function widthForPx({ x, anchor }: TextShape, widthPx: number, letterPx: number): number {
+  const [left, right] = [x - letterPx, widthPx - letterPx - x];
+  if (anchor === "start") return right;
+  return anchor === "end" ? left : 2 * Math.min(left, right);
 }
 
 const FAR_M = 1e7;

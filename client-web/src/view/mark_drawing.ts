@@ -21,7 +21,7 @@ export function drawMarks(
   projection: Projection,
   { width, height }: { readonly width: number; readonly height: number },
 ): void {
-  const scale = letterPxOf(height) / LETTER_PX;
+  const scale = letterPxOf(width, height) / LETTER_PX;
   const box = { left: 0, top: 0, width, height };
   context.lineCap = "round";
   context.lineJoin = "round";
