@@ -137,6 +137,9 @@ test("the scale bar is as long as it says", () => {
   const lengthPx = (bar?.[2]?.[0] ?? 0) - (bar?.[1]?.[0] ?? 0);
   expect(texts(shapes).map(({ text }) => text)).toEqual(["20 km"]);
   expect(lengthPx).toBeCloseTo((800 * 20) / 160, 6);
+  // Letters that go below their line end above the bar.
+  const [words] = texts(shapes);
+  expect((words?.y ?? 0) + 0.25 * PICTURE.letterPx).toBeLessThan(bar?.[0]?.[1] ?? 0);
 });
 
 test("rings of distance are drawn at their distance", () => {

@@ -157,7 +157,8 @@ function scaleBar(picture: Annotated): Shape[] {
         [right, y - up],
       ],
     },
-    text(right, y - 0.7 * letterPx, words, "end"),
+    // Clear of the bar's ends, over which longer words lie, as on a phone.
+    text(right, y - letterPx, words, "end"),
   ];
 }
 
