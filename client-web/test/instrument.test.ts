@@ -11,6 +11,7 @@ import {
 } from "../src/core/annotations";
 import type { OrbitPose, SpotterPose, TopDownPose } from "../src/core/camera";
 import { comparedScene } from "../src/core/comparison";
+import { stretchesOf } from "../src/core/held_times";
 import { arrowStrokes, joined, letterStrokes, parted } from "../src/core/lettering";
 import {
   azimuthTo,
@@ -158,6 +159,16 @@ test("lengths are in metres and kilometres, or in feet and nautical miles", () =
   expect(formatLength(8400, "height")).toBe("27559 ft");
   expect(formatLength(37_040, "distance")).toBe("20 nm");
   expect(roundLength(40_000)).toBe(20 * 1852);
+});
+
+test("times in memory are stretches of the time line", () => {
+  expect(stretchesOf([], 5)).toEqual([]);
+  expect(stretchesOf([0, 2, 3], 5)).toEqual([
+    { from: 0, to: 0.125 },
+    { from: 0.375, to: 0.875 },
+  ]);
+  expect(stretchesOf([4, 7], 5)).toEqual([{ from: 0.875, to: 1 }]);
+  expect(stretchesOf([0], 1)).toEqual([{ from: 0, to: 1 }]);
 });
 
 test("valid times are read with and without a real date", () => {
