@@ -1,12 +1,17 @@
 # A room is one folder of server/ built as one static library, `thunderhead::NAME`.
-# thunderhead_room(NAME [DEPENDS rooms and libraries...]) takes every .cc file of the folder.
+# thunderhead_room(NAME [HEADERS set] [DEPENDS rooms and libraries...]) takes every .cc file of the folder. HEADERS is the set
+# of precompiled headers (cmake/headers.cmake), `headers` if none is named.
 function(thunderhead_room name)
-  cmake_parse_arguments(ROOM "" "" "DEPENDS;SOURCES" ${ARGN})
+  cmake_parse_arguments(ROOM "" "HEADERS" "DEPENDS;SOURCES" ${ARGN})
+  if(NOT ROOM_HEADERS)
+    set(ROOM_HEADERS headers)
+  endif()
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
   list(APPEND sources ${ROOM_SOURCES})
   if(sources)
     add_library(thunderhead_${name} STATIC ${sources})
     target_link_libraries(thunderhead_${name} PUBLIC thunderhead_options ${ROOM_DEPENDS})
+    target_precompile_headers(thunderhead_${name} REUSE_FROM thunderhead_${ROOM_HEADERS})
   else()
     add_library(thunderhead_${name} INTERFACE)
     target_link_libraries(thunderhead_${name} INTERFACE thunderhead_options ${ROOM_DEPENDS})
@@ -20,17 +25,22 @@ set(THUNDERHEAD_GL_ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
 
 # thunderhead_test(NAME DEPENDS libraries...) builds the .cc files of the current folder, or SOURCES, into one
 # GoogleTest program and registers each of its cases with ctest under LABEL, those that are GL in its environment and with
-# strict programs.
+# strict programs. HEADERS is the set of precompiled headers, `test_headers` if none is named.
 function(thunderhead_test name)
-  cmake_parse_arguments(TEST "GL" "LABEL" "DEPENDS;SOURCES;PROPERTIES" ${ARGN})
+  cmake_parse_arguments(TEST "GL" "LABEL;HEADERS" "DEPENDS;SOURCES;PROPERTIES" ${ARGN})
   if(NOT TEST_SOURCES)
     file(GLOB TEST_SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
   endif()
   if(TEST_GL)
     list(APPEND TEST_SOURCES ${CMAKE_SOURCE_DIR}/tests/support/strict_programs.cc)
   endif()
+  if(NOT TEST_HEADERS)
+    set(TEST_HEADERS test_headers)
+  endif()
   add_executable(${name} ${TEST_SOURCES})
+  target_precompile_headers(${name} REUSE_FROM thunderhead_${TEST_HEADERS})
   target_link_libraries(${name} PRIVATE thunderhead_options ${TEST_DEPENDS} GTest::gmock GTest::gtest_main)
+  target_compile_options(${name} PRIVATE ${THUNDERHEAD_TEST_OPTIONS})
   target_include_directories(${name} PRIVATE ${CMAKE_SOURCE_DIR})
   target_compile_definitions(${name} PRIVATE THUNDERHEAD_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
   if(TEST_GL)

@@ -68,6 +68,7 @@ export class FakeSession {
   });
   readonly people: FakePerson[] = [];
   marks: Mark[] = [];
+  held: { stormId: string; timeIndices: number[] } = { stormId: "", timeIndices: [] };
   #steering: bigint | undefined;
   #presenterSteered = true;
   #sequence = 0n;
@@ -117,6 +118,7 @@ export class FakeSession {
     this.#tell(person, { case: "joined", value: { viewerId, role, viewerKey: this.viewerKey } });
     this.#tell(person, { case: "scene", value: this.#sceneState() });
     this.#tell(person, { case: "marks", value: { marks: this.marks } });
+    this.#tell(person, { case: "timesInMemory", value: this.held });
     this.#tellPresence();
     this.#offer(person, this.#newest);
     return person;
@@ -323,8 +325,18 @@ export class FakeSession {
     this.#pump(person, person.own);
   }
 
+  // Those that were shown, and one that is read ahead.
+  #read(): void {
+    const { stormId, timeIndex } = this.scene;
+    if (this.held.stormId !== stormId) this.held = { stormId, timeIndices: [] };
+    const read = [...this.held.timeIndices, timeIndex ?? 0, (timeIndex ?? 0) + 1];
+    this.held.timeIndices = [...new Set(read)].sort((a, b) => a - b);
+    this.#tellAll({ case: "timesInMemory", value: this.held });
+  }
+
   #render(): void {
     clearTimeout(this.#refine);
+    this.#read();
     this.#publish(false);
     this.#refine = setTimeout(() => this.#rest(0n), REFINE_AFTER_MS);
   }

@@ -5,10 +5,13 @@ import {
   type Annotated,
   annotationsOf,
   FIRST_ANNOTATIONS,
+  letterPxOf,
   type Shape,
+  widthForPx,
 } from "../src/core/annotations";
 import type { OrbitPose, SpotterPose, TopDownPose } from "../src/core/camera";
 import { comparedScene } from "../src/core/comparison";
+import { stretchesOf } from "../src/core/held_times";
 import { arrowStrokes, joined, letterStrokes, parted } from "../src/core/lettering";
 import {
   azimuthTo,
@@ -98,8 +101,19 @@ test("title, time and legend stand in their corners", () => {
     scale: false,
     compass: false,
     rings: false,
+    marks: false,
   };
   expect(annotationsOf(PICTURE, none)).toEqual([]);
+});
+
+test("letters in a file are as large as in a window, and no text is longer than the picture", () => {
+  expect([letterPxOf(1920, 1080), letterPxOf(1000, 620), letterPxOf(390, 844)]).toEqual([
+    24, 14, 13,
+  ]);
+  const text = { kind: "text", y: 0, text: "", strong: false } as const;
+  expect(widthForPx({ ...text, x: 13, anchor: "start" }, 390, 13)).toBe(364);
+  expect(widthForPx({ ...text, x: 377, anchor: "end" }, 390, 13)).toBe(364);
+  expect(widthForPx({ ...text, x: 100, anchor: "middle" }, 390, 13)).toBe(174);
 });
 
 test("degrees stand along the horizon where they are", () => {
@@ -124,6 +138,9 @@ test("the scale bar is as long as it says", () => {
   const lengthPx = (bar?.[2]?.[0] ?? 0) - (bar?.[1]?.[0] ?? 0);
   expect(texts(shapes).map(({ text }) => text)).toEqual(["20 km"]);
   expect(lengthPx).toBeCloseTo((800 * 20) / 160, 6);
+  // Letters that go below their line end above the bar.
+  const [words] = texts(shapes);
+  expect((words?.y ?? 0) + 0.25 * PICTURE.letterPx).toBeLessThan(bar?.[0]?.[1] ?? 0);
 });
 
 test("rings of distance are drawn at their distance", () => {
@@ -142,6 +159,16 @@ test("lengths are in metres and kilometres, or in feet and nautical miles", () =
   expect(formatLength(8400, "height")).toBe("27559 ft");
   expect(formatLength(37_040, "distance")).toBe("20 nm");
   expect(roundLength(40_000)).toBe(20 * 1852);
+});
+
+test("times in memory are stretches of the time line", () => {
+  expect(stretchesOf([], 5)).toEqual([]);
+  expect(stretchesOf([0, 2, 3], 5)).toEqual([
+    { from: 0, to: 0.125 },
+    { from: 0.375, to: 0.875 },
+  ]);
+  expect(stretchesOf([4, 7], 5)).toEqual([{ from: 0.875, to: 1 }]);
+  expect(stretchesOf([0], 1)).toEqual([{ from: 0, to: 1 }]);
 });
 
 test("valid times are read with and without a real date", () => {

@@ -1,8 +1,13 @@
 // The page's wiring without its widgets: a teacher's and viewers' pages before the fake service, in simulated time.
+import { create } from "@bufbuild/protobuf";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { poseOfCamera } from "../src/core/camera";
 import { withSky, withTime } from "../src/core/scene";
-import { type InteractRequest, Role } from "../src/gen/thunderhead/v1/interact_pb";
+import {
+  type InteractRequest,
+  Role,
+  TimesInMemorySchema,
+} from "../src/gen/thunderhead/v1/interact_pb";
 import { Page } from "../src/view/page";
 import { FakeNetwork } from "./fake_network";
 import { FakeService } from "./fake_service";
@@ -107,6 +112,20 @@ describe("the page in a session", () => {
     expect(page.state.timeCount.value).toBe(5);
     expect(page.state.storms.value.map(({ id }) => id)).toContain("late");
     expect(page.state.scene.value.camera).toEqual(camera);
+  });
+
+  it("knows which times of the storm shown are in the server's memory", async () => {
+    const { teacher, viewer } = await classroom();
+    const first = teacher.page.state.timeIndex.value;
+    expect(viewer.page.state.heldTimes.value).toEqual([first, first + 1]);
+    teacher.page.showTime(0);
+    await pass(300);
+    for (const { page } of [teacher, viewer])
+      expect(page.state.heldTimes.value).toEqual([...new Set([0, 1, first, first + 1])]);
+    // Told of one storm, it says nothing of another.
+    session().held.stormId = "another";
+    viewer.page.state.timesInMemory.value = create(TimesInMemorySchema, session().held);
+    expect(viewer.page.state.heldTimes.value).toEqual([]);
   });
 
   it("joins by the link as a viewer, who sees the scene and cannot change it", async () => {

@@ -1,5 +1,7 @@
 #include "gateway/client_stream.h"
 
+#include <utility>
+
 namespace thunderhead::gateway {
 
 namespace net = boost::asio;
@@ -17,6 +19,22 @@ net::awaitable<bool> ClientStream::Handshake() {
                                                 net::redirect_error(net::use_awaitable, error));
   }
   co_return !error;
+}
+
+void ClientStream::Read(FewBuffers<net::mutable_buffer> into, BytesHandler handler) {
+  if (tls_.has_value()) {
+    tls_->async_read_some(into, std::move(handler));
+  } else {
+    plain_.async_read_some(into, std::move(handler));
+  }
+}
+
+void ClientStream::Write(FewBuffers<net::const_buffer> from, BytesHandler handler) {
+  if (tls_.has_value()) {
+    tls_->async_write_some(from, std::move(handler));
+  } else {
+    plain_.async_write_some(from, std::move(handler));
+  }
 }
 
 void beast_close_socket(ClientStream& stream) {

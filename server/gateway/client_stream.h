@@ -3,7 +3,11 @@
 // neither HTTP nor gRPC. Runs on one thread.
 #pragma once
 
+#include <array>
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/associated_executor.hpp>
 #include <boost/asio/async_result.hpp>
+#include <boost/asio/buffer.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ssl/context.hpp>
 #include <boost/asio/ssl/stream.hpp>
@@ -18,6 +22,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "gateway/awaitable.h"
@@ -45,6 +50,69 @@ class ByteCounts {
   uint64_t sent_ = 0;
 };
 
+// What is to be called after some bytes, of whatever type it was: all that Beast and OpenSSL do for
+// a read or write is then compiled once, not once for each of its callers.
+class BytesHandler {
+ public:
+  // Asio's names for where it is to be called.
+  using executor_type = boost::asio::any_io_executor;
+  executor_type get_executor() const { return executor_; }
+
+  // Called on `executor` unless `handler` has one of its own.
+  template <typename Handler>
+  BytesHandler(Handler&& handler, const executor_type& executor)
+      : executor_(boost::asio::get_associated_executor(handler, executor)),
+        call_(std::make_unique<CallOf<std::decay_t<Handler>>>(std::forward<Handler>(handler))) {}
+
+  void operator()(boost::system::error_code error, size_t bytes) {
+    // The handler may end what it is kept in.
+    const std::unique_ptr<Call> call = std::move(call_);
+    call->Run(error, bytes);
+  }
+
+ private:
+  struct Call {
+    virtual ~Call() = default;
+    virtual void Run(boost::system::error_code error, size_t bytes) = 0;
+  };
+  template <typename Handler>
+  struct CallOf : Call {
+    template <typename From>
+    explicit CallOf(From&& from) : handler(std::forward<From>(from)) {}
+    void Run(boost::system::error_code error, size_t bytes) override {
+      std::move(handler)(error, bytes);
+    }
+    Handler handler;
+  };
+
+  executor_type executor_;
+  std::unique_ptr<Call> call_;
+};
+
+// The first buffers of a sequence of any type; a read or write of some bytes needs no more.
+template <typename Buffer>
+class FewBuffers {
+ public:
+  using value_type = Buffer;
+  using const_iterator = const Buffer*;
+
+  template <typename Buffers>
+  FewBuffers(const Buffers& buffers) {  // NOLINT(google-explicit-constructor): as Asio's own
+    const auto end = boost::asio::buffer_sequence_end(buffers);
+    for (auto it = boost::asio::buffer_sequence_begin(buffers); it != end; ++it) {
+      if (count_ == buffers_.size()) break;
+      buffers_[count_++] = Buffer(*it);
+    }
+  }
+
+  const_iterator begin() const { return buffers_.data(); }
+  const_iterator end() const { return buffers_.data() + count_; }
+
+ private:
+  std::array<Buffer, 16> buffers_;
+  size_t count_ = 0;
+};
+
 class ClientStream {
  public:
   // Asio's name for it.
@@ -68,11 +136,7 @@ class ClientStream {
   auto async_read_some(const Buffers& buffers, Token&& token) {
     return boost::asio::async_initiate<Token, void(boost::system::error_code, size_t)>(
         [this](auto&& handler, const Buffers& into) {
-          if (tls_.has_value()) {
-            tls_->async_read_some(into, std::forward<decltype(handler)>(handler));
-          } else {
-            plain_.async_read_some(into, std::forward<decltype(handler)>(handler));
-          }
+          Read(into, BytesHandler(std::forward<decltype(handler)>(handler), get_executor()));
         },
         token, buffers);
   }
@@ -81,11 +145,7 @@ class ClientStream {
   auto async_write_some(const Buffers& buffers, Token&& token) {
     return boost::asio::async_initiate<Token, void(boost::system::error_code, size_t)>(
         [this](auto&& handler, const Buffers& from) {
-          if (tls_.has_value()) {
-            tls_->async_write_some(from, std::forward<decltype(handler)>(handler));
-          } else {
-            plain_.async_write_some(from, std::forward<decltype(handler)>(handler));
-          }
+          Write(from, BytesHandler(std::forward<decltype(handler)>(handler), get_executor()));
         },
         token, buffers);
   }
@@ -94,6 +154,9 @@ class ClientStream {
   using Plain = boost::beast::basic_stream<boost::asio::ip::tcp, executor_type, ByteCounts>;
   // Makes one TLS record of several small buffers.
   using Tls = boost::beast::flat_stream<boost::asio::ssl::stream<Plain&>>;
+
+  void Read(FewBuffers<boost::asio::mutable_buffer> into, BytesHandler handler);
+  void Write(FewBuffers<boost::asio::const_buffer> from, BytesHandler handler);
 
   const std::shared_ptr<boost::asio::ssl::context> context_;  // outlives what is made of it
   Plain plain_;

@@ -7,6 +7,7 @@
 
 #include "base/out_of_memory.h"
 #include "base/status.h"
+#include "gl/device.h"
 
 namespace thunderhead::gl {
 namespace {
@@ -30,6 +31,10 @@ DeviceMemory::~DeviceMemory() { current = nullptr; }
 
 base::MemoryReservation DeviceMemory::Reserve(std::size_t bytes) {
   return current == nullptr ? base::MemoryReservation() : current->Take(bytes);
+}
+
+base::MemoryReservation DeviceMemory::ReserveBeside(std::size_t bytes) {
+  return current != nullptr && DrawsInSoftware() ? current->Take(bytes) : base::MemoryReservation();
 }
 
 base::MemoryReservation DeviceMemory::Take(std::size_t bytes) const {

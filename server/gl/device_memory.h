@@ -24,6 +24,9 @@ class DeviceMemory {
   // For an object that this thread is about to make. Throws base::FailedAllocation if there is no
   // room, also after what is unused has gone.
   static base::MemoryReservation Reserve(std::size_t bytes);
+  // The same for what drawing keeps beside its GL objects, where both lie in one memory: where
+  // processors draw. Elsewhere nothing is counted.
+  static base::MemoryReservation ReserveBeside(std::size_t bytes);
 
  private:
   base::MemoryReservation Take(std::size_t bytes) const;

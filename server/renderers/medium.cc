@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/stopwatch.h"
+#include "gl/device_memory.h"
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
 #include "physics/detail_tile.h"
@@ -105,6 +106,9 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
   constexpr std::array<GLenum, 5> kTransferFormats = {0, GL_RED, GL_RG, 0, GL_RGBA};
   base::Stopwatch stopwatch;
   details_ = LayersOf(content_, noises);
+  // Half floats of each group, and the detail's control, on their way to the device.
+  const base::MemoryReservation on_the_way =
+      gl::DeviceMemory::ReserveBeside(fields.grid.CellCount() * (2 * content_.groups.size() + 2));
   Computed computed = ComputedThatFits(fields, content_, noises);
   bounds_ = std::move(computed.extinction);
   const volume::BrickMap bricks = volume::BrickMapOf(bounds_);

@@ -214,6 +214,7 @@ class InteractCall : public InteractReactor,
     }
     if (auto news = News(audience.Presence(), &told_presence_); news.has_value()) return news;
     if (auto news = News(audience.Marks(), &told_marks_); news.has_value()) return news;
+    if (auto news = News(audience.TimesHeld(), &told_times_); news.has_value()) return news;
     return News(audience.Pointers(), &told_pointers_);
   }
 
@@ -662,6 +663,7 @@ class InteractCall : public InteractReactor,
   std::uint64_t told_catalogue_ = 0;
   std::uint64_t told_presence_ = 0;
   std::uint64_t told_marks_ = 0;
+  std::uint64_t told_times_ = 0;
   std::uint64_t told_pointers_ = 0;
 };
 

@@ -55,6 +55,16 @@ std::string MarksOf(const std::vector<session::Mark>& marks) {
   return response.SerializeAsString();
 }
 
+std::string TimesInMemoryOf(const session::HeldTimes& held) {
+  v1::InteractResponse response;
+  v1::TimesInMemory& message = *response.mutable_times_in_memory();
+  message.set_storm_id(held.storm_id);
+  for (const int index : held.time_indices) {
+    message.add_time_indices(static_cast<std::uint32_t>(index));
+  }
+  return response.SerializeAsString();
+}
+
 // Bytes of the UTF-8 character that begins with `byte`; 0 for none.
 std::size_t CharacterBytes(unsigned char byte) {
   if (byte < 0x80) return 1;
@@ -72,7 +82,9 @@ v1::End::Reason EndReason(const absl::Status& why) {
 
 }  // namespace
 
-session::AudienceFormat InteractFormat() { return {PresenceOf, PointersOf, MarksOf}; }
+session::AudienceFormat InteractFormat() {
+  return {PresenceOf, PointersOf, MarksOf, TimesInMemoryOf};
+}
 
 std::string SerializedFrame(const session::EncodedFrame& frame) {
   v1::Frame message;

@@ -4,6 +4,12 @@
 #include <utility>
 
 namespace thunderhead::session {
+namespace {
+
+// Who tells of it sees to its pace.
+constexpr std::chrono::milliseconds kAtOnce{0};
+
+}  // namespace
 
 Audience::Audience(const AudienceFormat& format, const Rules& rules, Board board, Time now,
                    std::function<void()> on_due)
@@ -88,6 +94,14 @@ void Audience::SceneChanged(std::uint64_t revision, Time now) {
   Settle(std::move(lock), now);
 }
 
+void Audience::Hold(const HeldTimes& held, Time now) {
+  std::unique_lock lock(mutex_);
+  if (held == held_) return;
+  held_ = held;
+  ++held_revision_;
+  Settle(std::move(lock), now);
+}
+
 void Audience::WakeAll() {
   std::unique_lock lock(mutex_);
   const auto members = Members();
@@ -149,6 +163,11 @@ Told Audience::Pointers() const {
 Told Audience::Marks() const {
   const std::lock_guard lock(mutex_);
   return marks_.told;
+}
+
+Told Audience::TimesHeld() const {
+  const std::lock_guard lock(mutex_);
+  return held_times_.told;
 }
 
 Told Audience::Scene() const {
@@ -223,6 +242,7 @@ bool Audience::TellDue(Time now) {
   tell(presence_, roster_.revision(), kPresencePause, format_.presence, roster_);
   tell(pointers_, board_.pointers_revision(), kPointersPause, format_.pointers, board_.pointers());
   tell(marks_, board_.marks_revision(), kMarksPause, format_.marks, board_.marks());
+  tell(held_times_, held_revision_, kAtOnce, format_.held_times, held_);
   tell(
       scene_, scene_revision_, kScenePause, [](std::uint64_t) { return std::string(); },
       scene_revision_);

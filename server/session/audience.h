@@ -22,11 +22,20 @@
 
 namespace thunderhead::session {
 
+// The times of a storm that are in memory.
+struct HeldTimes {
+  std::string storm_id;
+  std::vector<int> time_indices;
+
+  bool operator==(const HeldTimes&) const = default;
+};
+
 // Turns what people are told into bytes, which are opaque here.
 struct AudienceFormat {
   std::function<std::string(const Roster&)> presence = [](const Roster&) { return ""; };
   std::function<std::string(const std::vector<Pointer>&)> pointers = [](const auto&) { return ""; };
   std::function<std::string(const std::vector<Mark>&)> marks = [](const auto&) { return ""; };
+  std::function<std::string(const HeldTimes&)> held_times = [](const auto&) { return ""; };
 };
 
 // What people were told last of one subject.
@@ -76,6 +85,8 @@ class Audience {
 
   // The session shows a scene of that revision, which everybody is to be sent.
   void SceneChanged(std::uint64_t revision, Time now);
+  // What is in memory of the storm that the session shows; everybody is told if it is news.
+  void Hold(const HeldTimes& held, Time now);
   // Wakes everybody, when the session has ended.
   void WakeAll();
 
@@ -92,6 +103,7 @@ class Audience {
   Told Presence() const;
   Told Pointers() const;
   Told Marks() const;
+  Told TimesHeld() const;
   // Without bytes: it counts when people were told to take the newest scene.
   Told Scene() const;
 
@@ -128,8 +140,11 @@ class Audience {
   Subject presence_;
   Subject pointers_;
   Subject marks_;
+  Subject held_times_;
   Subject scene_;
   std::uint64_t scene_revision_ = 0;
+  HeldTimes held_;
+  std::uint64_t held_revision_ = 0;
 };
 
 }  // namespace thunderhead::session

@@ -197,6 +197,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
   while (!stopping_) {
     if (device_lost_.exchange(false) && !Recover(make_source, all_lanes, measured)) break;
     pressure.Answer([&] {
+      drawer.YieldMemory();
       measured.FreeUnused(kUnused_s);
       for (Lane* lane : all_lanes) lane->FreeUnused(kUnused_s);
     });

@@ -92,9 +92,24 @@ void SessionDrawer::ReleaseUnwatched(const std::vector<std::shared_ptr<Session>>
   }
 }
 
+void SessionDrawer::YieldMemory() {
+  const Clock::time_point now = Clock::now();
+  for (auto& [id, kept] : kept_) {
+    if (!kept.view.Yield(now)) continue;
+    kept.work = WaitUntil{};
+    kept.fields.Yield();
+    light_tracer_.Stop(id);
+  }
+}
+
 void SessionDrawer::TakeRead(const Turn& turn) {
   const auto unreadable = turn.kept.fields.TakeRead();
   if (!unreadable.has_value()) return;
+  if (absl::IsResourceExhausted(unreadable->why) &&
+      turn.kept.view.StaysYielded(unreadable->revision, Clock::now())) {
+    turn.kept.fields.TryAgain();
+    return;
+  }
   turn.kept.view.Failed(unreadable->revision, TryAgainAt(unreadable->why));
   turn.session->hub().Publish(UnreadableStorm(unreadable->revision, unreadable->why));
 }
@@ -103,9 +118,11 @@ SessionWork SessionDrawer::NextWork(const Turn& turn, const NewestScene& newest)
   const auto decided = turn.kept.view.Decide(newest);
   if (!decided.ok()) turn.session->hub().Publish(ProblemOf(newest.revision, decided.status()));
   if (!decided.ok() || !decided->has_value()) return WaitUntil{};
-  if (turn.kept.view.TriesAgain(Clock::now())) turn.kept.fields.TryAgain();
+  const Clock::time_point now = Clock::now();
+  if (turn.kept.view.TriesAgain(now)) turn.kept.fields.TryAgain();
+  if (const auto rests = turn.kept.view.Resting(**decided, now)) return *rests;
   const auto drawable = turn.kept.fields.Drawable(**decided, turn.kept.view.shown_revision());
-  return turn.kept.view.Next(newest, drawable, Clock::now(), source_.Last());
+  return turn.kept.view.Next(newest, drawable, now, source_.Last());
 }
 
 SessionDrawer::Wish SessionDrawer::Need(const Turn& /*turn*/, const WaitUntil& work) {

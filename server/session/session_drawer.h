@@ -34,6 +34,10 @@ class SessionDrawer {
   // Does the work that Look found for the session last.
   void TakeTurn(const std::shared_ptr<Session>& session);
 
+  // Memory is short: sessions whose pictures are shown leave their fields to others, and have no
+  // light traced, for a while.
+  void YieldMemory();
+
   // Frees the resources of sessions without viewers and of those not in `sessions`, which are in
   // order of id.
   void ReleaseUnwatched(const std::vector<std::shared_ptr<Session>>& sessions);

@@ -91,6 +91,12 @@ void SessionFields::AddStages(std::vector<StageTime>* stages) {
   if (read_ms > 0.0) stages->insert(stages->begin(), {scene::FrameStage::kRead, read_ms});
 }
 
+void SessionFields::Yield() {
+  fields_.reset();
+  key_.reset();
+  arrived_for_.reset();
+}
+
 void SessionFields::Release() {
   access_.reader.Forget(id_);
   fields_.reset();

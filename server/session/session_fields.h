@@ -53,6 +53,9 @@ class SessionFields {
   // Adds the time that reading and preparing took since the last frame.
   void AddStages(std::vector<StageTime>* stages);
 
+  // Leaves the fields to those who need room; Drawable asks for them again.
+  void Yield();
+
   // Frees the memory and drops pending requests.
   void Release();
 

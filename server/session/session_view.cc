@@ -1,8 +1,16 @@
 #include "session/session_view.h"
 
+#include <chrono>
+
 #include "base/status.h"
 
 namespace thunderhead::session {
+namespace {
+
+// Long enough for those who wait for memory to see their pictures.
+constexpr std::chrono::seconds kYieldedFor{30};
+
+}  // namespace
 
 SessionView::SessionView(const PlannerTargets& targets, const accuracy::MachineCosts& costs,
                          const accuracy::Offers& offers, const std::string& view)
@@ -50,6 +58,7 @@ std::optional<SessionWork> SessionView::In(State state, const Now& now) {
       return ShowReference{now.shown};
     case State::kWaitingForFields:
     case State::kSettled:
+    case State::kYielded:
     case State::kFailed:
       return WaitUntil{};
   }
@@ -121,6 +130,31 @@ bool SessionView::TriesAgain(Clock::time_point now) {
   failed_revision_.reset();
   planner_.Again();
   state_ = State::kRefining;
+  return true;
+}
+
+bool SessionView::Yield(Clock::time_point now) {
+  if (state_ != State::kSettled && state_ != State::kTracingLight) return false;
+  returns_at_.reset();
+  if (state_ == State::kTracingLight) returns_at_ = now + kYieldedFor;
+  state_ = State::kYielded;
+  return true;
+}
+
+std::optional<WaitUntil> SessionView::Resting(const NewestScene& decided, Clock::time_point now) {
+  if (state_ != State::kYielded || decided.revision > planner_.revision()) return std::nullopt;
+  if (!returns_at_.has_value() || now < *returns_at_) return WaitUntil{returns_at_};
+  state_ = State::kWaitingForFields;
+  return std::nullopt;
+}
+
+bool SessionView::StaysYielded(std::uint64_t revision, Clock::time_point now) {
+  if (state_ != State::kWaitingForFields || !returns_at_.has_value() ||
+      revision != planner_.revision()) {
+    return false;
+  }
+  returns_at_ = now + kYieldedFor;
+  state_ = State::kYielded;
   return true;
 }
 

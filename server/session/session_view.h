@@ -53,6 +53,7 @@ class SessionView {
     kTracingLight,  // correct the light by more and more paths
     kReference,     // refined by the tracer
     kSettled,       // final
+    kYielded,       // its picture stays; what it takes to draw was left to others
     kFailed,        // cannot be drawn
   };
 
@@ -84,6 +85,13 @@ class SessionView {
   void Failed(std::uint64_t revision, std::optional<Clock::time_point> try_again_at = std::nullopt);
   // True once when what has failed may be tried again; it then is the next work.
   bool TriesAgain(Clock::time_point now);
+  // Memory is short: true if the view can do without its fields and light for a while, since the
+  // picture of its scene is shown.
+  bool Yield(Clock::time_point now);
+  // None if `decided` is to be drawn; else when to ask again, if ever without a change.
+  std::optional<WaitUntil> Resting(const NewestScene& decided, Clock::time_point now);
+  // There is still no room for that revision: true if its picture is shown, and nothing is lost.
+  bool StaysYielded(std::uint64_t revision, Clock::time_point now);
 
   State state() const { return state_; }
   // The newest revision that was shown, or has failed.
@@ -117,6 +125,7 @@ class SessionView {
   LightTracing light_;
   std::optional<std::uint64_t> failed_revision_;
   std::optional<Clock::time_point> try_again_at_;  // what has failed
+  std::optional<Clock::time_point> returns_at_;    // having yielded, to trace light
 };
 
 }  // namespace thunderhead::session

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 
 #include "glm/geometric.hpp"
 #include "scene/place_seen.h"
@@ -11,8 +12,17 @@ namespace {
 
 // Sessions expire without anything that wakes the thread.
 constexpr std::chrono::seconds kLongestPause{1};
+// Times come into memory, and go, on the store's own threads.
+constexpr std::chrono::seconds kHeldTimesPause{1};
 // Sessions that are due at about the same time are looked after together.
 constexpr std::chrono::milliseconds kShortestPause{10};
+
+void TellOfMemory(Session& session, const volume::StormStore& store, Clock::time_point now) {
+  const std::optional<NewestScene> newest = session.Newest();
+  if (!newest.has_value()) return;
+  const std::string& storm_id = newest->scene->storm_id;
+  session.audience().Hold({storm_id, store.TimesInMemory(storm_id)}, now);
+}
 
 }  // namespace
 
@@ -26,14 +36,18 @@ Upkeep::~Upkeep() {
 }
 
 void Upkeep::Run() {
+  Clock::time_point looked_into_memory{};
   while (!stopping_) {
     const Clock::time_point began = Clock::now();
+    const bool looks_into_memory = began >= looked_into_memory + kHeldTimesPause;
+    if (looks_into_memory) looked_into_memory = began;
     Clock::time_point next = began + kLongestPause;
     const auto wait_for = [&](const std::optional<Clock::time_point>& due) {
       if (due.has_value()) next = std::min(next, *due);
     };
     for (const auto& session : sessions_.AllDrawn()) {
       const Clock::time_point now = Clock::now();
+      if (looks_into_memory) TellOfMemory(*session, store_, now);
       wait_for(session->audience().Tick(
           now, [&](const Ray& ray) { return PlaceSeen(*session, store_, ray); }));
       wait_for(session->hub().WakeWaiting(now));

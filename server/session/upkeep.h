@@ -1,5 +1,6 @@
 // Looks after the people of every session on a thread of its own: finds where their pointers point,
-// ends what has run out, tells what is due, and wakes viewers who want few frames a second.
+// ends what has run out, tells what is due and what is in memory, and wakes viewers who want few
+// frames a second.
 #pragma once
 
 #include <atomic>

@@ -32,6 +32,9 @@ class CachedStormStore::Handle final : public StormStore {
   std::shared_ptr<const HydrometeorFields> Peek(std::string_view id, int time_index) override {
     return store_->Peek(id, time_index);
   }
+  std::vector<int> TimesInMemory(std::string_view id) const override {
+    return store_->TimesInMemory(id);
+  }
   std::size_t CachedBytes() const override { return store_->CachedBytes(); }
   void Listen(CatalogueListener listener) override { store_->Listen(std::move(listener)); }
   std::optional<HungRead> Hung() const override { return store_->Hung(); }
@@ -150,6 +153,18 @@ std::shared_ptr<const HydrometeorFields> CachedStormStore::Peek(std::string_view
   const absl::StatusOr<Place> place = PlaceOf(id, time_index);
   if (!place.ok()) return nullptr;
   return cache_.Use(place->key);
+}
+
+std::vector<int> CachedStormStore::TimesInMemory(std::string_view id) const {
+  const Lock lock(mutex_);
+  std::vector<int> times;
+  const std::optional<std::size_t> place = PlaceOf(id);
+  if (!place.has_value()) return times;
+  const std::vector<int>& numbers = storms_[*place].numbers;
+  for (std::size_t time = 0; time < numbers.size(); ++time) {
+    if (cache_.Holds({*place, numbers[time]})) times.push_back(static_cast<int>(time));
+  }
+  return times;
 }
 
 std::size_t CachedStormStore::CachedBytes() const {

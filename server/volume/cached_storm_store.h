@@ -43,6 +43,7 @@ class CachedStormStore final : public StormStore,
   absl::StatusOr<std::shared_ptr<const HydrometeorFields>> Get(
       std::string_view id, int time_index, const ReadProgress& progress) override;
   std::shared_ptr<const HydrometeorFields> Peek(std::string_view id, int time_index) override;
+  std::vector<int> TimesInMemory(std::string_view id) const override;
   std::size_t CachedBytes() const override;
   void Listen(CatalogueListener listener) override;
   std::optional<HungRead> Hung() const override;

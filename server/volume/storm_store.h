@@ -130,6 +130,9 @@ class StormStore {
   // The fields if they are in the cache, else null; reads nothing.
   virtual std::shared_ptr<const HydrometeorFields> Peek(std::string_view id, int time_index) = 0;
 
+  // The indices of the storm's times that are in the cache, in order; none for an unknown id.
+  virtual std::vector<int> TimesInMemory(std::string_view id) const = 0;
+
   // Bytes of all cached times.
   virtual std::size_t CachedBytes() const = 0;
 

@@ -1,4 +1,4 @@
-// The bytes of a small storm file: a ball of cloud at one time, as CF in netCDF's classic format (CDF-1).
+// The bytes of small storm files, a ball of cloud at one time, in netCDF's classic format (CDF-1): as CF, and as WRF writes a run.
 const CELLS = 16;
 const SPACING_M = 500;
 const RADIUS_M = 2500;
@@ -14,53 +14,39 @@ const int32 = (value) => {
 const padded = (bytes) => Buffer.concat([bytes, Buffer.alloc((4 - (bytes.length % 4)) % 4)]);
 const name = (text) => Buffer.concat([int32(text.length), padded(Buffer.from(text))]);
 const list = (tag, items) => Buffer.concat([int32(items.length > 0 ? tag : 0), int32(items.length), ...items]);
-const attributes = (texts) =>
+const attribute = (value) =>
+  typeof value === "number"
+    ? Buffer.concat([int32(TYPE.float), int32(1), numbers(TYPE.float, [value])])
+    : Buffer.concat([int32(TYPE.char), name(value)]);
+const attributes = (values) =>
   list(
     TAG.attributes,
-    Object.entries(texts).map(([key, text]) => Buffer.concat([name(key), int32(TYPE.char), name(text)])),
+    Object.entries(values).map(([key, value]) => Buffer.concat([name(key), attribute(value)])),
   );
 
 function numbers(type, values) {
   const bytes = Buffer.alloc(values.length * BYTES[type]);
   values.forEach((value, i) => {
-    if (type === TYPE.float) bytes.writeFloatBE(value, 4 * i);
+    if (type === TYPE.char) bytes.writeUInt8(value, i);
+    else if (type === TYPE.float) bytes.writeFloatBE(value, 4 * i);
     else bytes.writeDoubleBE(value, 8 * i);
   });
   return padded(bytes);
 }
 
-export function cloudFile(hour) {
-  const dimensions = [
-    ["time", 1],
-    ["z", CELLS],
-    ["y", CELLS],
-    ["x", CELLS],
-  ];
-  const axis = (low) => Array.from({ length: CELLS }, (_, i) => low + (i + 0.5) * SPACING_M);
-  const side = axis((-CELLS / 2) * SPACING_M);
-  const up = axis(0);
-  const middle = (CELLS / 2) * SPACING_M;
-  const water = up.flatMap((z) =>
-    side.flatMap((y) => side.map((x) => (Math.hypot(x, y, z - middle) < RADIUS_M ? 1e-3 : 0))),
-  );
-  const variables = [
-    ["time", [0], { units: "hours since 2020-05-20 00:00:00", axis: "T" }, TYPE.double, [hour]],
-    ["z", [1], { units: "m", axis: "Z", positive: "up" }, TYPE.double, up],
-    ["y", [2], { units: "m", axis: "Y" }, TYPE.double, side],
-    ["x", [3], { units: "m", axis: "X" }, TYPE.double, side],
-    ["lwc", [0, 1, 2, 3], { units: "kg m-3" }, TYPE.float, water],
-  ];
+// `dimensions` are [name, length]; `variables` are [name, dimensions' places, attributes, type, values].
+function classicFile(dimensions, texts, variables) {
   const data = variables.map(([, , , type, values]) => numbers(type, values));
   const header = (firstByte) => {
     let begin = firstByte;
-    const described = variables.map(([label, ids, texts, type], i) => {
+    const described = variables.map(([label, ids, own, type], i) => {
       const at = begin;
       begin += data[i].length;
       return Buffer.concat([
         name(label),
         int32(ids.length),
         ...ids.map(int32),
-        attributes(texts),
+        attributes(own),
         int32(type),
         int32(data[i].length),
         int32(at),
@@ -73,9 +59,64 @@ export function cloudFile(hour) {
         TAG.dimensions,
         dimensions.map(([label, length]) => Buffer.concat([name(label), int32(length)])),
       ),
-      attributes({ Conventions: "CF-1.8" }),
+      attributes(texts),
       list(TAG.variables, described),
     ]);
   };
   return Buffer.concat([header(header(0).length), ...data]);
+}
+
+const axis = (low) => Array.from({ length: CELLS }, (_, i) => low + (i + 0.5) * SPACING_M);
+const SIDE = axis((-CELLS / 2) * SPACING_M);
+const UP = axis(0);
+const MIDDLE = (CELLS / 2) * SPACING_M;
+const ball = (radiusM, inside) =>
+  UP.flatMap((z) => SIDE.flatMap((y) => SIDE.map((x) => (Math.hypot(x, y, z - MIDDLE) < radiusM ? inside : 0))));
+
+export function cloudFile(hour) {
+  const dimensions = [
+    ["time", 1],
+    ["z", CELLS],
+    ["y", CELLS],
+    ["x", CELLS],
+  ];
+  return classicFile(dimensions, { Conventions: "CF-1.8" }, [
+    ["time", [0], { units: "hours since 2020-05-20 00:00:00", axis: "T" }, TYPE.double, [hour]],
+    ["z", [1], { units: "m", axis: "Z", positive: "up" }, TYPE.double, UP],
+    ["y", [2], { units: "m", axis: "Y" }, TYPE.double, SIDE],
+    ["x", [3], { units: "m", axis: "X" }, TYPE.double, SIDE],
+    ["lwc", [0, 1, 2, 3], { units: "kg m-3" }, TYPE.float, ball(RADIUS_M, 1e-3)],
+  ]);
+}
+
+// `run` and `valid` are times as WRF writes them, such as 2020-05-20_06:00:00.
+export function runFile(run, valid, radiusM) {
+  const dimensions = [
+    ["Time", 1],
+    ["DateStrLen", valid.length],
+    ["bottom_top", CELLS],
+    ["bottom_top_stag", CELLS + 1],
+    ["south_north", CELLS],
+    ["west_east", CELLS],
+  ];
+  const all = (value) => Array(CELLS ** 3).fill(value);
+  const interfaces = Array.from({ length: (CELLS + 1) * CELLS ** 2 }, (_, i) => Math.floor(i / CELLS ** 2) * SPACING_M);
+  const [full, half] = [
+    [0, 3, 4, 5],
+    [0, 2, 4, 5],
+  ];
+  return classicFile(
+    dimensions,
+    { TITLE: " OUTPUT FROM WRF V4.5 MODEL", SIMULATION_START_DATE: run, DX: SPACING_M, DY: SPACING_M },
+    [
+      ["Times", [0, 1], {}, TYPE.char, [...valid].map((letter) => letter.charCodeAt(0))],
+      ["PHB", full, { units: "m2 s-2" }, TYPE.float, interfaces.map((height) => 9.81 * height)],
+      ["PH", full, { units: "m2 s-2" }, TYPE.float, interfaces.map(() => 0)],
+      ["PB", half, { units: "Pa" }, TYPE.float, all(60_000)],
+      ["P", half, { units: "Pa" }, TYPE.float, all(0)],
+      ["T", half, { units: "K" }, TYPE.float, all(0)],
+      ["QVAPOR", half, { units: "kg kg-1" }, TYPE.float, all(0)],
+      ["QCLOUD", half, { units: "kg kg-1" }, TYPE.float, ball(radiusM, 1.5e-3)],
+    ],
+  );
 }

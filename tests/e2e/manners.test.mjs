@@ -106,6 +106,45 @@ test("fingers find every button and slider", async () => {
   await page.context().close();
 });
 
+const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
+
+// Texts over the picture that leave the window, or lie on one another or under a bar.
+const unreadable = (page) =>
+  page.evaluate(() => {
+    const boxes = (selector) =>
+      [...document.querySelectorAll(selector)]
+        .map((element) => ({ name: element.textContent.slice(0, 30), box: element.getBoundingClientRect() }))
+        .filter(({ box }) => box.width > 0);
+    const texts = boxes("[data-testid=annotations] text");
+    const over = [...texts, ...boxes(".top-bar, .time-line, .rail, aside")];
+    const meet = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+    return texts.flatMap(({ name, box }, at) => [
+      ...(box.left < 0 || box.right > innerWidth || box.bottom > innerHeight ? [`${name} is clipped`] : []),
+      ...over.flatMap((other, place) => (place > at && meet(box, other.box) ? [`${name} meets ${other.name}`] : [])),
+    ]);
+  });
+
+for (const [name, options] of [
+  ["a phone", PHONE],
+  ["a small phone", { ...PHONE, viewport: { width: 320, height: 640 } }],
+  ["a phone held across", { ...PHONE, viewport: { width: 844, height: 390 } }],
+])
+  test(`all that is written over the picture is read on ${name}`, async () => {
+    const page = await visit(options);
+    for (const units of ["metric", "aviation"]) {
+      await openTool(page, "time");
+      await page.getByTestId("units").selectOption(units);
+      await openTool(page, undefined);
+      assert.ok((await page.locator("[data-testid=annotations] text").count()) >= 2);
+      assert.deepEqual(await unreadable(page), []);
+    }
+    for (const tool of TOOLS) {
+      await openTool(page, tool);
+      assert.deepEqual(await unreadable(page), [], `with ${tool} open`);
+    }
+    await page.context().close();
+  });
+
 test("the first load is small, and everything comes from the server itself", async () => {
   const page = await (await browser.newContext()).newPage();
   const origins = new Set();
@@ -125,7 +164,20 @@ test("the first load is small, and everything comes from the server itself", asy
   await page.context().close();
 });
 
+// While the server does not answer, the page says that it opens the storm: all that ever moves by itself.
+async function movingWhileOpening(reducedMotion) {
+  const page = await (await browser.newContext({ reducedMotion })).newPage();
+  await page.route(/thunderhead\.v1/, () => undefined);
+  await page.goto(server.url);
+  await page.getByTestId("connecting").waitFor();
+  const moving = await page.evaluate(() => document.getAnimations().length);
+  await page.context().close();
+  return moving;
+}
+
 test("nothing moves for who wants no motion", async () => {
+  assert.ok((await movingWhileOpening("no-preference")) > 0);
+  assert.equal(await movingWhileOpening("reduce"), 0);
   const page = await visit({ reducedMotion: "reduce" });
   for (const tool of TOOLS) {
     await openTool(page, tool);

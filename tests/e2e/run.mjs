@@ -17,5 +17,5 @@ const missing = needed.filter(([path]) => !existsSync(path));
 for (const [path, remedy] of missing) console.error(`The browser test needs ${path}: ${remedy}.`);
 if (missing.length > 0) process.exit(1);
 
-const run = spawnSync(process.execPath, ["--test", "page.test.mjs", "class.test.mjs", "catalogue.test.mjs", "deploy.test.mjs", "operation.test.mjs", "sign_in.test.mjs", "video.test.mjs", "tools.test.mjs", "manners.test.mjs"], { cwd: here, stdio: "inherit" });
+const run = spawnSync(process.execPath, ["--test", "page.test.mjs", "class.test.mjs", "catalogue.test.mjs", "deploy.test.mjs", "operation.test.mjs", "sign_in.test.mjs", "video.test.mjs", "tools.test.mjs", "questions.test.mjs", "manners.test.mjs"], { cwd: here, stdio: "inherit" });
 process.exit(run.status ?? 1);

@@ -15,8 +15,6 @@ const PANELS = ["storms", "share", "people", "keep", "compare", "help", "drawer"
 const folder = process.argv[2] ?? fileURLToPath(new URL("../../docs/page/", import.meta.url));
 const only = process.argv.slice(3);
 // Of the windows' widths; all of them, if it is not set.
-const width = Number(process.env.THUNDERHEAD_WIDTH ?? 0);
-// Of the windows' widths; all of them, if it is not set.
 const onlyWidth = Number(process.env.THUNDERHEAD_WIDTH ?? 0);
 const wanted = (name) => only.length === 0 || only.includes(name);
 

@@ -1,11 +1,12 @@
 // End-to-end tests of the tools: the questions of a forecaster, answered by mouse and by keys alone, on the real server and sample.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
+import { PNG } from "pngjs";
 import {
   canvasData,
   changing,
@@ -150,6 +151,7 @@ test("from a place 20 km south-east of the core at 18:30 local time, by keys alo
   await changing(() => page.getByTestId("day-clock").fill("18:30"), page);
   await until("the evening sun", async () => (await text("sun-in-words")) !== sun);
   assert.match(await text("sun-in-words"), /in W(NW)?, \d\d° high/);
+  assert.equal(await page.getByTestId("day-clock").inputValue(), "18:30");
   await screenshot("tools-airport", page);
   await focusPicture();
   await key("Escape");
@@ -173,7 +175,8 @@ test("a click on the map stands there, a double click turns around that place", 
   await changing(() => page.mouse.click(x + 0.3 * width, y + 0.75 * height), page);
   assert.equal((await canvasData(page)).camera, "spotter");
   const camera = await page.getByTestId("map-camera").boundingBox();
-  assert.ok(Math.abs(camera.x + camera.width / 2 - (x + 0.3 * width)) < 8, "the camera is not where the click was");
+  const [aside, down] = [camera.x + camera.width / 2 - (x + 0.3 * width), camera.y + camera.height / 2 - (y + 0.75 * height)];
+  assert.ok(Math.hypot(aside, down) < 8, `the camera is ${aside}, ${down} pixels from where the click was`);
   await changing(() => page.mouse.dblclick(x + 0.5 * width, y + 0.4 * height), page);
   assert.equal((await canvasData(page)).camera, "orbit");
   await screenshot("tools-map", page);
@@ -200,7 +203,8 @@ test("how wrong is this picture: it says so over it", async () => {
   await focusPicture();
   await key("k");
   await page.getByTestId("accuracy-section").locator("summary").click();
-  assert.match(await text("accuracy-report"), /Estimated error [\d.]+ %/);
+  const [line, report] = [await text("truth"), await text("accuracy-report")];
+  assert.equal(/([\d.]+) %/.exec(line)[1], /Estimated error ([\d.]+) %/.exec(report)[1]);
   await key("Escape");
 });
 
@@ -320,7 +324,6 @@ test("two times are compared with one camera", async () => {
   assert.match(await text("name-b"), /B · day 1 00:20Z/);
   const grab = async () => {
     const url = await compared.evaluate((canvas) => canvas.toDataURL("image/png"));
-    const { PNG } = await import("pngjs");
     return PNG.sync.read(Buffer.from(url.split(",")[1], "base64"));
   };
   const before = await grab();
@@ -364,6 +367,54 @@ test("an arrow, words and a ring are put on the storm by keys alone", async () =
     await until(`mark ${count}`, async () => (await page.getByTestId("mark").count()) === count);
   }
   await screenshot("tools-marks", page);
+});
+
+// Of the marks' corners, the share around which the picture has a pixel of the mark's colour.
+async function markedShare({ data, width, height }) {
+  const box = await page.getByTestId("storm-canvas").boundingBox();
+  const marks = await page.getByTestId("mark").evaluateAll((groups) =>
+    groups.map((group) => [getComputedStyle(group).color, group.dataset.corners]),
+  );
+  const corners = marks.flatMap(([color, places]) => {
+    const rgb = color.match(/\d+/g).map(Number);
+    return places.split(" ").map((place) => ({ rgb, place: place.split(",").map(Number) }));
+  });
+  const isMarked = ({ rgb, place: [left, top] }) => {
+    const [x, y] = [Math.round((left * width) / box.width), Math.round((top * height) / box.height)];
+    for (let row = y - 2; row <= y + 2; row += 1)
+      for (let column = x - 2; column <= x + 2; column += 1)
+        if (rgb.every((each, i) => Math.abs(data[4 * (row * width + column) + i] - each) < 40)) return true;
+    return false;
+  };
+  assert.ok(corners.length > 60, `the marks have ${corners.length} corners`);
+  return corners.filter(isMarked).length / corners.length;
+}
+
+async function savePicture() {
+  await openPanel(page, "keep");
+  const coming = page.waitForEvent("download", { timeout: PICTURE_TIMEOUT_MS });
+  await page.getByTestId("save-picture").click();
+  const file = readFileSync(await (await coming).path());
+  await page.keyboard.press("Escape");
+  return file;
+}
+
+test("marks are burnt into a picture that is saved, unless they are switched off", async () => {
+  const marked = await savePicture();
+  assert.ok(marked.includes("thunderhead.scene"));
+  writeFileSync(new URL("output/tools-saved-marks.png", import.meta.url), marked);
+  const share = await markedShare(PNG.sync.read(marked));
+  assert.ok(share > 0.95, `${share} of the marks' corners have their colour`);
+  await openTool(page, "look");
+  await page.getByTestId("overlay-section").locator("summary").click();
+  await page.getByTestId("overlay-marks").uncheck();
+  const plain = await markedShare(PNG.sync.read(await savePicture()));
+  assert.ok(plain < 0.2, `${plain} of the marks' corners have their colour in a picture without marks`);
+  await page.getByTestId("overlay-marks").check();
+  await openTool(page, "marks");
+});
+
+test("marks are erased by keys alone", async () => {
   await page.getByTestId("clear-marks").focus();
   await key("Enter");
   await until("no marks", async () => (await page.getByTestId("mark").count()) === 0);

@@ -56,6 +56,7 @@ class FixedStore final : public volume::StormStore {
   std::shared_ptr<const volume::HydrometeorFields> Peek(std::string_view, int) override {
     return fields_;
   }
+  std::vector<int> TimesInMemory(std::string_view) const override { return {0, 1}; }
   std::size_t CachedBytes() const override { return 0; }
 
  private:

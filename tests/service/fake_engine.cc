@@ -380,6 +380,15 @@ std::shared_ptr<const volume::HydrometeorFields> FakeStormStore::Peek(std::strin
   return cached_.count({std::string(id), time_index}) > 0 ? Fields(id == "clear") : nullptr;
 }
 
+std::vector<int> FakeStormStore::TimesInMemory(std::string_view id) const {
+  const std::lock_guard lock(mutex_);
+  std::vector<int> times;
+  for (const auto& [storm, time] : cached_) {
+    if (storm == id) times.push_back(time);
+  }
+  return times;
+}
+
 void FakeStormStore::FailAt(int time_index, const absl::Status& status) {
   const std::lock_guard lock(mutex_);
   failures_[time_index] = status;

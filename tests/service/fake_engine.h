@@ -57,6 +57,7 @@ class FakeStormStore final : public volume::StormStore {
       std::string_view id, int time_index, const volume::ReadProgress& progress) override;
   std::shared_ptr<const volume::HydrometeorFields> Peek(std::string_view id,
                                                         int time_index) override;
+  std::vector<int> TimesInMemory(std::string_view id) const override;
   std::size_t CachedBytes() const override { return 0; }
   void Listen(volume::CatalogueListener listener) override;
 

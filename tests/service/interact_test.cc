@@ -232,6 +232,28 @@ TEST(InteractTest, AViewerDoesNotSteerUnlessGivenControl) {
             grpc::StatusCode::PERMISSION_DENIED);
 }
 
+TEST(InteractTest, EverybodyIsToldWhichTimesAreInMemory) {
+  Class group;
+  const auto told = [](Interacting& person, const std::vector<std::uint32_t>& times) {
+    return person.Await([&](const Interacting::Messages& messages) {
+      return std::ranges::any_of(messages, [&](const Response& message) {
+        return message.has_times_in_memory() && message.times_in_memory().storm_id() == "anvil" &&
+               std::ranges::equal(message.times_in_memory().time_indices(), times);
+      });
+    });
+  };
+  const std::uint32_t shown = group.ben->AwaitScene(1).time_index();
+  EXPECT_TRUE(told(*group.ben, {shown}));
+  // As if it had been read ahead: no scene shows it.
+  const std::uint32_t ahead = shown == 2 ? 1 : 2;
+  ASSERT_TRUE(group.service.store->Get("anvil", static_cast<int>(ahead), {}).ok());
+  const std::vector<std::uint32_t> both = {std::min(shown, ahead), std::max(shown, ahead)};
+  EXPECT_TRUE(told(*group.presenter, both));
+  EXPECT_TRUE(told(*group.ben, both));
+  Interacting late(group.service.stub(), group.created.viewer_key());
+  EXPECT_TRUE(told(late, both));
+}
+
 TEST(InteractTest, AMovingSceneIsToldSeldomAndInTheEndWhole) {
   Class group;
   std::uint64_t revision = 0;

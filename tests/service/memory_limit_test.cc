@@ -1,10 +1,12 @@
 // The program with a memory budget, and more storms than that holds.
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -22,7 +24,9 @@ using Response = v1::InteractResponse;
 using Stub = v1::ThunderheadService::Stub;
 
 constexpr int kStorms = 64;
-constexpr double kBudget_mib = 256.0;
+constexpr int kAttempts = 20;  // a second apart
+constexpr std::chrono::seconds kPatience{200};
+constexpr double kBudget_mib = 256.0;  // drawing one storm takes about half of them
 
 // A value of /proc/PID/status, in MiB.
 double StatusMib(pid_t process, const std::string& name) {
@@ -35,21 +39,22 @@ double StatusMib(pid_t process, const std::string& name) {
 
 std::string NameOf(int storm) { return absl::StrCat("storm", storm < 10 ? "0" : "", storm); }
 
-bool HasPictureOrProblem(const Interacting::Messages& messages) {
-  return std::ranges::any_of(messages, [](const Response& message) {
-    return message.message_case() == Response::kFrame ||
-           message.message_case() == Response::kProblem;
-  });
+// A problem before it is that of memory.
+bool HasPicture(Interacting& viewer) {
+  bool has_picture = false;
+  for (const Response& message : viewer.All()) {
+    if (message.message_case() == Response::kFrame) has_picture = true;
+    if (message.message_case() != Response::kProblem) continue;
+    EXPECT_THAT(message.problem().message(), ::testing::HasSubstr("of memory; "));
+  }
+  return has_picture;
 }
 
-// Disabled: most sessions are refused before they are opened, as drawing and tracing for the first
-// take what fields may use, and the process exceeds the budget by up to 40 MiB of copies that do
-// not count (docs/reliability.md).
-TEST(MemoryLimitTest, DISABLED_SixtyFourSessionsOnDifferentLargeTimesKeepWithinTheBudget) {
+TEST(MemoryLimitTest, SixtyFourSessionsOnDifferentLargeTimesKeepWithinTheBudget) {
   const TemporaryFolder folder;
   const std::string first = folder.File(NameOf(0) + ".nc");
-  // 1.8 million cells, 7 MiB a time: 450 MiB in all.
-  WriteCf(ExtinctionFile(192, 192, 48, 250.0, 250.0, 250.0,
+  // 0.8 million cells: 10 MiB a time, 680 MiB in all.
+  WriteCf(ExtinctionFile(128, 128, 48, 250.0, 250.0, 250.0,
                          [](auto x, auto y, auto z) {
                            return z > 8 && z < 40 && (x / 16 + y / 16) % 2 == 0 ? 0.02 : 0.0;
                          }),
@@ -76,7 +81,13 @@ TEST(MemoryLimitTest, DISABLED_SixtyFourSessionsOnDifferentLargeTimesKeepWithinT
     // Given, so that opening a session needs no fields.
     scene.mutable_camera()->mutable_top_down();
     v1::CreateSessionResponse created;
-    const grpc::Status status = Call(*program.stub(), &Stub::CreateSession, request, &created);
+    grpc::Status status;
+    // As clients do that are told when to try again.
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      status = Call(*program.stub(), &Stub::CreateSession, request, &created);
+      if (status.error_code() != grpc::StatusCode::RESOURCE_EXHAUSTED) break;
+      std::this_thread::sleep_for(std::chrono::seconds(1));
+    }
     if (!status.ok()) {
       EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED)
           << status.error_message();
@@ -91,23 +102,19 @@ TEST(MemoryLimitTest, DISABLED_SixtyFourSessionsOnDifferentLargeTimesKeepWithinT
     }));
     shown_mib = StatusMib(program.process(), "VmHWM");
   }
-  int pictures = 0;
-  int refused = 0;
-  for (const auto& viewer : viewers) {
-    ASSERT_TRUE(viewer->Await(HasPictureOrProblem));
-    bool has_picture = false;
-    for (const Response& message : viewer->All()) {
-      if (message.message_case() == Response::kFrame) has_picture = true;
-      if (message.message_case() != Response::kProblem) continue;
-      EXPECT_THAT(message.problem().message(), ::testing::HasSubstr("of memory; "));
-    }
-    ++(has_picture ? pictures : refused);
+  // Whoever is refused meanwhile is told why, and has its turn.
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  std::size_t pictures = 0;
+  while (pictures < viewers.size() && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    pictures = static_cast<std::size_t>(
+        std::ranges::count_if(viewers, [](const auto& viewer) { return HasPicture(*viewer); }));
   }
   const double most_mib = StatusMib(program.process(), "VmHWM");
-  std::cout << pictures << " sessions have pictures, " << refused << " a named refusal, "
-            << kStorms - viewers.size() << " were not opened; " << shown_mib
-            << " MiB with the first, at most " << most_mib << " MiB\n";
-  EXPECT_GE(pictures, 4);
+  std::cout << pictures << " sessions have pictures, " << kStorms - viewers.size()
+            << " were not opened; " << shown_mib << " MiB with the first, at most " << most_mib
+            << " MiB\n";
+  EXPECT_EQ(pictures, static_cast<std::size_t>(kStorms));
   EXPECT_LE(most_mib, shown_mib + kBudget_mib);
 }
 

@@ -179,6 +179,67 @@ TEST_F(SessionViewTest, ASettingThatProvesTooSlowIsReplacedAndDrawnAnew) {
   EXPECT_EQ(scene::SlicesOf(decided_->scene->rendering.technique), 64);
 }
 
+class YieldingViewTest : public SessionViewTest {
+ protected:
+  YieldingViewTest() {
+    test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kDiffusion);
+    std::get<scene::LightVolume>(scene_.rendering.technique).traced_light =
+        scene::TracedLight::kAtRest;
+  }
+
+  static Clock::time_point After(milliseconds since_change) { return kStart + since_change; }
+  std::optional<WaitUntil> Resting(milliseconds since_change) {
+    return view_.Resting(**view_.Decide(newest_), After(since_change));
+  }
+};
+
+TEST_F(YieldingViewTest, AViewWhosePictureIsComingKeepsWhatItNeeds) {
+  Change();
+  EXPECT_FALSE(view_.Yield(kStart));
+  ASSERT_TRUE(DrawNext(milliseconds(0)));
+  EXPECT_FALSE(view_.Yield(kStart)) << "finer ones follow";
+}
+
+TEST_F(YieldingViewTest, TracingGivesWayForAWhileAndComesBack) {
+  Change();
+  ComeToRest();
+  ASSERT_TRUE(NextIs<TraceLight>(milliseconds(600)));
+  EXPECT_EQ(Resting(milliseconds(600)).has_value(), false);
+  ASSERT_TRUE(view_.Yield(After(milliseconds(600))));
+  EXPECT_EQ(Resting(milliseconds(700))->time, After(milliseconds(30'600)));
+  EXPECT_FALSE(view_.StaysYielded(revision_, After(milliseconds(700)))) << "nothing was asked for";
+  EXPECT_FALSE(Resting(milliseconds(30'600)).has_value());
+  EXPECT_EQ(view_.state(), State::kWaitingForFields);
+  // Its fields are refused once more, and then come.
+  ASSERT_TRUE(view_.StaysYielded(revision_, After(milliseconds(30'700))));
+  EXPECT_EQ(Resting(milliseconds(30'800))->time, After(milliseconds(60'700)));
+  EXPECT_FALSE(Resting(milliseconds(60'700)).has_value());
+  EXPECT_TRUE(NextIs<TraceLight>(milliseconds(60'800)));
+}
+
+TEST_F(YieldingViewTest, AChangeIsDrawnAtOnceAndItsRefusalIsTold) {
+  Change();
+  ComeToRest();
+  ASSERT_TRUE(NextIs<TraceLight>(milliseconds(600)));
+  ASSERT_TRUE(view_.Yield(After(milliseconds(600))));
+  Change();
+  EXPECT_FALSE(Resting(milliseconds(700)).has_value());
+  EXPECT_FALSE(view_.StaysYielded(revision_, After(milliseconds(700))));
+  EXPECT_TRUE(NextIs<DrawFrame>(milliseconds(700)));
+}
+
+TEST_F(SessionViewTest, AFinalPictureNeedsNothingUntilAChange) {
+  Change();
+  ComeToRest();
+  ASSERT_TRUE(NextIsNothing(milliseconds(10'000)));
+  ASSERT_TRUE(view_.Yield(kStart));
+  const auto rests = view_.Resting(**view_.Decide(newest_), kStart + std::chrono::hours(1));
+  ASSERT_TRUE(rests.has_value());
+  EXPECT_FALSE(rests->time.has_value());
+  Change();
+  EXPECT_TRUE(NextIs<DrawFrame>(milliseconds(0)));
+}
+
 TEST(LightTracingTest, NothingIsShownBeforeThePathsCorrectTheLight) {
   LightTracing tracing;
   const Clock::time_point start;

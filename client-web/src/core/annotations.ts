@@ -12,6 +12,8 @@ export interface AnnotationChoice {
   readonly scale: boolean;
   readonly compass: boolean;
   readonly rings: boolean;
+  // Into files; the window always has them.
+  readonly marks: boolean;
 }
 
 export const FIRST_ANNOTATIONS: AnnotationChoice = {
@@ -21,6 +23,7 @@ export const FIRST_ANNOTATIONS: AnnotationChoice = {
   scale: true,
   compass: true,
   rings: false,
+  marks: true,
 };
 
 export interface LegendEntry {
@@ -46,16 +49,18 @@ export interface Annotated {
   readonly legend: readonly LegendEntry[];
 }
 
+export interface TextShape {
+  readonly kind: "text";
+  readonly x: number;
+  readonly y: number;
+  readonly anchor: "start" | "middle" | "end";
+  readonly text: string;
+  readonly strong: boolean;
+}
+
 export type Shape =
   | { readonly kind: "line"; readonly points: readonly (readonly [number, number])[] }
-  | {
-      readonly kind: "text";
-      readonly x: number;
-      readonly y: number;
-      readonly anchor: "start" | "middle" | "end";
-      readonly text: string;
-      readonly strong: boolean;
-    }
+  | TextShape
   | {
       readonly kind: "swatch";
       readonly x: number;
@@ -63,6 +68,21 @@ export type Shape =
       readonly sizePx: number;
       readonly color: string;
     };
+
+// Height of letters in a window.
+export const LETTER_PX = 13;
+
+// Height of letters in a file of a picture: as large in it as they are in a window, of a desktop or of a phone.
+export function letterPxOf(widthPx: number, heightPx: number): number {
+  return Math.max(11, Math.round(Math.min(heightPx / 45, widthPx / 30)));
+}
+
+// What a text may be wide in the picture; a longer one is squeezed.
+export function widthForPx({ x, anchor }: TextShape, widthPx: number, letterPx: number): number {
+  const [left, right] = [x - letterPx, widthPx - letterPx - x];
+  if (anchor === "start") return right;
+  return anchor === "end" ? left : 2 * Math.min(left, right);
+}
 
 const FAR_M = 1e7;
 const RING_CORNERS = 96;
@@ -137,7 +157,8 @@ function scaleBar(picture: Annotated): Shape[] {
         [right, y - up],
       ],
     },
-    text(right, y - 0.7 * letterPx, words, "end"),
+    // Clear of the bar's ends, over which longer words lie, as on a phone.
+    text(right, y - letterPx, words, "end"),
   ];
 }
 

@@ -26,15 +26,28 @@ export interface ComparedWith {
 export function comparedScene(a: Scene, choice: ComparisonChoice, w: ComparedWith): Scene {
   const stormId = choice.stormId ?? a.stormId;
   const base = choice.settings ?? a;
-  const timeIndex = choice.timeIndex ?? timeOf(a, stormId, w);
+  const timeIndex = timeOfB(a, choice, w);
   const storm =
     base.stormId === stormId ? withTime(base, timeIndex) : withStorm(base, stormId, timeIndex);
   const seen = w.camera === undefined ? storm : withCamera(storm, w.camera);
   return withOutput(seen, { ...w.size, jpegQuality: a.output?.jpegQuality });
 }
 
+// B's time, as an index into those of its storm.
+export function timeOfB(
+  a: Scene,
+  choice: ComparisonChoice,
+  w: Pick<ComparedWith, "storm" | "other">,
+): number {
+  return choice.timeIndex ?? timeOf(a, choice.stormId ?? a.stormId, w);
+}
+
 // Of another storm the time with the same date; else the one as many steps after its first.
-function timeOf(a: Scene, stormId: string, { storm, other }: ComparedWith): number {
+function timeOf(
+  a: Scene,
+  stormId: string,
+  { storm, other }: Pick<ComparedWith, "storm" | "other">,
+): number {
   const index = a.timeIndex ?? 0;
   if (stormId === a.stormId || other === undefined) return index;
   const date = storm?.times[index]?.validTime;

@@ -10,6 +10,7 @@ import type {
   Refinement,
   StageCost,
 } from "../gen/thunderhead/v1/frame_pb";
+import type { TimesInMemory } from "../gen/thunderhead/v1/interact_pb";
 import type { GetStormMapResponse } from "../gen/thunderhead/v1/probe_pb";
 import {
   type Camera,
@@ -49,6 +50,7 @@ import {
 import { LIMITS, withCamera, withOutput, withRendering } from "./scene";
 import type { Edit } from "./scene_sync";
 import { SessionState } from "./session_state";
+import { nameOfRun } from "./storm_names";
 import type { SunDirection } from "./sun";
 import { clockHere } from "./sun_clock";
 import type { PanelName, ToolName } from "./tools";
@@ -109,7 +111,6 @@ export class PageState {
   readonly #shownPose = signal<Pose | undefined>(undefined);
   // The sun of the frame on the screen.
   readonly #shownSun = signal<Sun | undefined>(undefined);
-  #seenStorm = "";
   #onEdit: ((edit: Edit) => void) | undefined;
 
   readonly session = new SessionState();
@@ -119,8 +120,13 @@ export class PageState {
   readonly storms = signal<readonly StormSummary[]>([]);
   readonly storm = signal<StormDescription | undefined>(undefined);
   readonly frame = signal<ShownFrame | undefined>(undefined);
-  // Indices of the times of this storm that were on the screen.
-  readonly seenTimes = signal<ReadonlySet<number>>(new Set());
+  // What is in the server's memory of the session's storm, as it was told last.
+  readonly timesInMemory = signal<TimesInMemory | undefined>(undefined);
+  // The indices of the times of the storm shown that are drawn without being read.
+  readonly heldTimes = computed((): readonly number[] => {
+    const held = this.timesInMemory.value;
+    return held?.stormId === this.stormId.value ? held.timeIndices : [];
+  });
   // Why this browser is sent no video; undefined where it can be.
   readonly whyNoVideo = signal<string | undefined>(undefined);
   readonly pace = signal<Pace>({ framesPerSecond: 0, bytesPerSecond: 0, latencyMs: undefined });
@@ -241,12 +247,7 @@ export class PageState {
   });
   // The model run: when it began.
   readonly run = computed(() => {
-    const start = this.#describedStorm.value?.runStart ?? "";
-    const moment = momentOf(start, "", undefined);
-    if (start === "") return "";
-    return /^\d{4}/.test(moment.date)
-      ? `run ${moment.date} ${moment.clock}`
-      : `run ${moment.clock}`;
+    return nameOfRun(this.#describedStorm.value?.runStart ?? "");
   });
   readonly shownTime = computed(() => {
     const count = this.timeCount.value;
@@ -382,14 +383,6 @@ export class PageState {
       pose: poseOfCamera(frame.camera),
       projection: projectionOf(frame.view),
     };
-  }
-
-  // A time of the storm is on the screen. Another storm has none yet.
-  sawTime(stormId: string, timeIndex: number): void {
-    if (this.#seenStorm !== stormId) this.seenTimes.value = new Set([timeIndex]);
-    else if (!this.seenTimes.value.has(timeIndex))
-      this.seenTimes.value = new Set([...this.seenTimes.value, timeIndex]);
-    this.#seenStorm = stormId;
   }
 
   notify(notice: Notice): void {

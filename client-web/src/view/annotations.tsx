@@ -3,8 +3,11 @@ import {
   type Annotated,
   type AnnotationChoice,
   annotationsOf,
+  LETTER_PX,
   type LegendEntry,
+  letterPxOf,
   type Shape,
+  widthForPx,
 } from "../core/annotations";
 import type { Pose } from "../core/camera";
 import { hexOfColor } from "../core/color";
@@ -14,11 +17,12 @@ import { effectiveField, hydrometeorName } from "../core/scene";
 import type { PageState } from "../core/state";
 import { formatElapsed } from "../core/units";
 
-const LETTER_PX = 13;
 // What the page's own bars cover.
 const BARS_PX = { left: 76, top: 106, right: 0, bottom: 88 };
 const NARROW_BARS_PX = { left: 0, top: 190, right: 0, bottom: 84 };
 const NARROW_PX = 900;
+// Between the bars.
+const LEAST_ROOM_LETTERS = 4;
 // Of the window's height, at most, by a tool's sheet.
 const SHEET_SHARE = 0.46;
 
@@ -28,6 +32,9 @@ export function Annotations({ state }: { state: PageState }) {
   if (box === undefined || content === undefined) return null;
   const narrow = window.innerWidth < NARROW_PX;
   const sheetPx = narrow && state.tool.value !== undefined ? SHEET_SHARE * window.innerHeight : 0;
+  // Little is left of the picture, such as of a phone's that is held across.
+  const leftPx = window.innerHeight - NARROW_BARS_PX.top - NARROW_BARS_PX.bottom - sheetPx;
+  if (narrow && leftPx < LEAST_ROOM_LETTERS * LETTER_PX) return null;
   const bars = narrow ? { ...NARROW_BARS_PX, bottom: NARROW_BARS_PX.bottom + sheetPx } : BARS_PX;
   const shapes = annotationsOf(
     {
@@ -135,14 +142,15 @@ export function drawAnnotations(
   choice: AnnotationChoice,
   { width, height }: { readonly width: number; readonly height: number },
 ): void {
-  const letterPx = Math.max(11, Math.round(height / 45));
+  const letterPx = letterPxOf(width, height);
   const inset = { left: 0, top: 0, right: 0, bottom: 0 };
   const picture = { ...content, widthPx: width, heightPx: height, inset, letterPx };
   context.lineJoin = "round";
-  for (const shape of annotationsOf(picture, choice)) drawShape(context, shape, letterPx);
+  for (const shape of annotationsOf(picture, choice)) drawShape(context, shape, picture);
 }
 
-function drawShape(context: Context, shape: Shape, letterPx: number): void {
+function drawShape(context: Context, shape: Shape, picture: Annotated): void {
+  const { letterPx, widthPx } = picture;
   const shadow = "rgb(0 0 0 / 65%)";
   switch (shape.kind) {
     case "line":
@@ -155,15 +163,17 @@ function drawShape(context: Context, shape: Shape, letterPx: number): void {
       context.lineWidth = letterPx / 10;
       context.stroke();
       break;
-    case "text":
+    case "text": {
       context.font = `${shape.strong ? 700 : 500} ${letterPx}px system-ui, "DejaVu Sans", sans-serif`;
       context.textAlign = shape.anchor === "middle" ? "center" : shape.anchor;
       context.strokeStyle = shadow;
       context.lineWidth = letterPx / 4;
-      context.strokeText(shape.text, shape.x, shape.y);
       context.fillStyle = "#fff";
-      context.fillText(shape.text, shape.x, shape.y);
+      const mostPx = Math.max(1, widthForPx(shape, widthPx, letterPx));
+      context.strokeText(shape.text, shape.x, shape.y, mostPx);
+      context.fillText(shape.text, shape.x, shape.y, mostPx);
       break;
+    }
     case "swatch":
       context.fillStyle = shape.color;
       context.fillRect(shape.x, shape.y, shape.sizePx, shape.sizePx);

@@ -1,17 +1,10 @@
 // Pointers and marks over the picture, at their places in the world as the picture on the screen shows them.
 
-import { getStroke } from "perfect-freehand";
 import { hexOfColor } from "../core/color";
-import { parted } from "../core/lettering";
+import { inkOutline, type MarkStroke, markStrokes } from "../core/mark_strokes";
 import type { Marking } from "../core/marking";
 import { type Box, placeInBox } from "../core/picture_box";
-import {
-  type PicturePoint,
-  type Projection,
-  project,
-  projectLine,
-  type Vec3,
-} from "../core/projection";
+import { type PicturePoint, type Projection, project, type Vec3 } from "../core/projection";
 import type { PageState } from "../core/state";
 import type { StrokePoint } from "../core/stroke";
 import type { Mark, Pointer } from "../gen/thunderhead/v1/interact_pb";
@@ -32,7 +25,7 @@ export function Overlay({ state, marking }: { state: PageState; marking: Marking
           {session.pendingMarks.value.map((pending) => (
             <Line
               key={`pending-${pending.requestId}`}
-              parts={projectLine(projection, pending.pointsM)}
+              strokes={markStrokes(projection, pending.pointsM)}
               box={box}
               testId="pending-mark"
             />
@@ -92,28 +85,25 @@ interface InPicture {
 }
 
 function MarkLine({ mark, projection, box }: InPicture & { mark: Mark }) {
-  const parts = projectLine(projection, mark.positions.map(pointOf));
+  const strokes = markStrokes(projection, mark.positions.map(pointOf));
   const color = mark.color === undefined ? undefined : hexOfColor(mark.color);
-  return <Line parts={parts} box={box} color={color} testId="mark" />;
+  return <Line strokes={strokes} box={box} color={color} testId="mark" />;
 }
 
 interface LineProps {
-  readonly parts: readonly (readonly PicturePoint[])[];
+  readonly strokes: readonly MarkStroke[];
   readonly box: Box;
   readonly color?: string | undefined;
   readonly testId: string;
 }
 
-// A line drawn by hand swells and thins as ink does; arrows and letters are of straight strokes.
-function Line({ parts, box, color, testId }: LineProps) {
-  const strokes = parts.flatMap((part) => parted(part, samePoint));
-  const drawn = strokes.length === 1 && (strokes[0]?.length ?? 0) > 4;
+function Line({ strokes, box, color, testId }: LineProps) {
   const style = color === undefined ? {} : { color };
   return (
     <g data-testid={testId} data-corners={cornersOf(strokes, box)} style={style}>
       {strokes.map((stroke, at) => {
-        const places = stroke.map((point) => placeInBox(box, point));
-        if (drawn) return <Ink key={at} places={places} />;
+        const places = stroke.points.map((point) => placeInBox(box, point));
+        if (stroke.ink) return <Ink key={at} places={places} />;
         const points = places.map(({ left, top }) => `${left},${top}`).join(" ");
         return (
           <g key={at}>
@@ -127,21 +117,15 @@ function Line({ parts, box, color, testId }: LineProps) {
 }
 
 function Ink({ places }: { places: readonly StrokePoint[] }) {
-  const outline = getStroke(
-    places.map(({ left, top }) => [left, top]),
-    { size: 6, thinning: 0.35, smoothing: 0.6, streamline: 0.2 },
-  );
-  const path = outline.map(([x = 0, y = 0]) => `${x.toFixed(1)} ${y.toFixed(1)}`).join("L");
+  const path = inkOutline(places)
+    .map(([x, y]) => `${x.toFixed(1)} ${y.toFixed(1)}`)
+    .join("L");
   return <path class="ink" d={`M${path}Z`} />;
 }
 
-function samePoint(a: PicturePoint, b: PicturePoint): boolean {
-  return Math.abs(a.x - b.x) < 1e-6 && Math.abs(a.y - b.y) < 1e-6;
-}
-
-function cornersOf(strokes: readonly (readonly PicturePoint[])[], box: Box): string {
+function cornersOf(strokes: readonly MarkStroke[], box: Box): string {
   return strokes
-    .flat()
+    .flatMap(({ points }) => points)
     .map((point) => pathText(box, point))
     .join(" ");
 }

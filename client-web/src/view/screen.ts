@@ -113,8 +113,6 @@ export class Screen {
     this.#state.showFrame(frame);
     this.#steps.shown(frame, now);
     const { shownTimeIndex } = this.#ledger;
-    if (shownTimeIndex !== undefined)
-      this.#state.sawTime(this.#state.stormId.peek(), shownTimeIndex);
     const pose = poseOfCamera(frame.camera);
     Object.assign(canvas.dataset, {
       sequence: String(frame.sequence),

@@ -204,6 +204,9 @@ export class SessionLife implements SessionListener {
       case "marks":
         session.takeMarks(message.value.marks);
         break;
+      case "timesInMemory":
+        this.#parts.state.timesInMemory.value = message.value;
+        break;
       case "catalogueChanged":
         void this.#parts.storms.changed();
         break;

@@ -1,5 +1,6 @@
 // The storm's times along the bottom: a tick each, play, step, loop and speed.
 
+import { stretchesOf } from "../core/held_times";
 import { momentOf } from "../core/moment";
 import { PLAY_RATES } from "../core/playback";
 import { formatElapsed } from "../core/units";
@@ -79,7 +80,7 @@ interface StepsProps {
   readonly fixed: boolean;
 }
 
-// A slider with a tick for each time, at its place in time. What was shown already is drawn at once again: it is marked.
+// A slider with a tick for each time. Under the ticks of times that are read already, so that they come at once, lies a shade.
 function Steps({ page, times, index, fixed }: StepsProps) {
   const { state, playback } = page;
   const last = times.length - 1;
@@ -89,10 +90,20 @@ function Steps({ page, times, index, fixed }: StepsProps) {
   return (
     <div class="steps">
       <div class="ticks" aria-hidden="true">
+        {stretchesOf(state.heldTimes.value, times.length).map(({ from, to }) => (
+          <span
+            key={from}
+            class="held"
+            data-testid="held"
+            style={{ left: `${100 * from}%`, width: `${100 * (to - from)}%` }}
+          />
+        ))}
+      </div>
+      <div class="ticks" aria-hidden="true">
         {times.map((each, at) => (
           <span
             key={each.index}
-            class={state.seenTimes.value.has(at) ? "tick seen" : "tick"}
+            class="tick"
             style={{ left: `${last > 0 ? (100 * at) / last : 50}%` }}
           >
             {(at % every === 0 || at === last) && (at === last || last - at >= every) && (

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "base/status.h"
+#include "gl/device_memory.h"
 #include "glm/common.hpp"
 #include "shaders/bindings.h"
 #include "shaders/uniforms.h"
@@ -13,6 +15,16 @@ namespace {
 
 // Larger media are solved on fewer cells than their own.
 constexpr double kMaxCells = 4e6;
+
+// That DiffuseLight, its inputs and this pass keep: of each cell, and of one with anything in it.
+constexpr std::size_t kBytesPerCell = 64;
+constexpr std::size_t kBytesPerFullCell = 124;
+
+std::size_t BytesFor(const DiffusionCells& cells) {
+  const auto full = static_cast<std::size_t>(
+      std::ranges::count_if(cells.light_per_m, [](float per_m) { return per_m > 0.0F; }));
+  return kBytesPerCell * cells.light_per_m.size() + kBytesPerFullCell * full;
+}
 
 glm::ivec3 SizeFor(const glm::ivec3& cells) {
   const double count = static_cast<double>(cells.x) * cells.y * cells.z;
@@ -34,7 +46,9 @@ absl::Status DiffusionPass::Solve(const ResidentMedium& medium, const GroupWeigh
   Key key{medium.Id(), weights.light, weights.transport, weights.absorption};
   if (!light_.has_value() || key != key_) {
     light_.reset();
+    memory_ = {};
     THUNDERHEAD_ASSIGN_OR_RETURN(DiffusionCells cells, SampleCells(medium, weights));
+    memory_ = gl::DeviceMemory::ReserveBeside(BytesFor(cells));
     THUNDERHEAD_RETURN_IF_ERROR(programs_->Pieces().OffTurn([&] { SolveCells(std::move(cells)); }));
     key_ = std::move(key);
   }

@@ -12,6 +12,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "base/memory_budget.h"
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "renderers/group_weights.h"
@@ -58,6 +59,7 @@ class DiffusionPass {
 
   std::shared_ptr<gl::ProgramCache> programs_;
   Key key_;
+  base::MemoryReservation memory_;  // of what follows, on the processors' side
   std::optional<DiffuseLight> light_;
   glm::ivec3 size_{0};
   gl::Texture3D sampled_cells_;

@@ -17,10 +17,10 @@
 #include "light_volume/segment.glsl"
 #if DIFFUSION
 #include "light_volume/diffuse_seen.glsl"
+#else
+#include "light_volume/no_diffuse.glsl"
 #endif
-#if CORRECTED
-#include "light_volume/correction.glsl"
-#endif
+#include "light_volume/outcome.glsl"
 
 layout(binding = kArrivedUnit) uniform sampler3D arrived;  // of arrive.comp, cell by cell as the medium
 
@@ -35,7 +35,9 @@ layout(location = 1) out float opacity_distance_m;  // the opacity times the mea
 
 const int kMaxSamples = 16384;
 const float kOnwards = 1.0 + 2.4e-7;  // the next number but one: far away a distance has coarser steps than a leap's margin
-const float kOpaqueTransmittance = DIFFUSION == 1 ? 0.02 : 5e-3;  // below which a ray ends
+const bool kDiffusion = DIFFUSION == 1;
+const bool kGlows = CONSISTENT == 1 && !kDiffusion;  // samples send light scattered many times
+const float kOpaqueTransmittance = kDiffusion ? 0.02 : 5e-3;  // below which a ray ends
 
 // Of a segment, and of what is seen before it, from which on the segment is parted.
 const float kFaceDepth = 1.0;
@@ -51,18 +53,14 @@ void begin_march() {
   per_step = 1.0 / step_m;
   eye_depths = scaled(eye_weights, step_m);
   extinction_depths = scaled(extinction_weights, step_m);
-#if DIFFUSION
   begin_diffuse(step_m);
-#endif
 }
 
 struct Sample {
   Medium medium;
   float extinction;  // that the eye sees, by the step; below 0: no sample yet
   vec2 light;        // as arrive.comp has it
-#if DIFFUSION
   DiffuseSample diffuse;
-#endif
 };
 
 Sample no_sample() {
@@ -70,9 +68,7 @@ Sample no_sample() {
   for (int plane = 0; plane < PLANES; ++plane) none.medium.plane[plane] = vec4(0.0);
   none.extinction = -1.0;
   none.light = vec2(0.0);
-#if DIFFUSION
   none.diffuse = no_diffuse_sample();
-#endif
   return none;
 }
 
@@ -81,9 +77,7 @@ Sample sample_at(vec3 place, float distance_m) {
   here.medium = medium_at_place(place, distance_m);
   here.extinction = weigh(here.medium, eye_depths);
   here.light = texture(arrived, place).rg;
-#if DIFFUSION
   here.diffuse = diffuse_at(place, here.medium);
-#endif
   return here;
 }
 
@@ -93,9 +87,7 @@ struct Seen {
   float transmittance;      // for light scattered once
   float shown;              // sum of the weights that segments are seen with
   float shown_distance_m;   // and of weight times distance
-#if DIFFUSION
   DiffuseSeen diffuse;
-#endif
 };
 
 Seen nothing_seen() {
@@ -103,23 +95,15 @@ Seen nothing_seen() {
   seen.scattered = nothing_scattered();
   seen.transmittance = 1.0;
   seen.shown = seen.shown_distance_m = 0.0;
-#if DIFFUSION
   seen.diffuse = no_diffuse_seen();
-#endif
   return seen;
 }
 
 // For the background.
-float background_transmittance(Seen seen) {
-#if DIFFUSION
-  return seen.diffuse.transmittance;
-#else
-  return seen.transmittance;
-#endif
-}
+float background_transmittance(Seen seen) { return kDiffusion ? seen.diffuse.transmittance : seen.transmittance; }
 
-// Advances `distance_m` to the next sample, at most `limit_m` inside bricks, leaping over empty ones. Returns the length of the segment that ends there: 0
-// for the first sample and after a leap, where a sample only starts a segment.
+// Advances `distance_m` to the next sample, at most `limit_m` inside bricks, leaping over empty ones. Returns the length of
+// the segment that ends there: 0 for the first sample and after a leap, where a sample only starts a segment.
 float advance(inout float distance_m, float end_m, MediumRay ray, float cell_m, float limit_m, bool first) {
   float from_m = distance_m;
   float sampled_m = min(min(max(near_step.x * cell_m, near_step.y * distance_m), step_m), limit_m);
@@ -151,15 +135,13 @@ void see_segment(inout Seen seen, Sample before, Sample here, float segment_m, f
   float shown = seen.transmittance * taken.share;
   Medium between = mixed(before.medium, here.medium, taken.at);
   add_direct(seen.scattered, between, shown * taken.per_extinction * exp(-light.r * light.r));
-#if GLOWS
-  add_isotropic(seen.scattered, between, extinction_depths, shown, light.g);
-#endif
+  if (kGlows) add_isotropic(seen.scattered, between, extinction_depths, shown, light.g);
   seen.transmittance *= 1.0 - taken.share;
-#if DIFFUSION
-  Taken diffuse = taken_on(segment, before.diffuse.transport, here.diffuse.transport);
-  shown = see_diffuse(seen.diffuse, diffuse, mixed(before.diffuse, here.diffuse, diffuse.at),
-                      mix(before.light.r, here.light.r, diffuse.at), mix(start, here.extinction, diffuse.at));
-#endif
+  if (kDiffusion) {
+    Taken diffuse = taken_on(segment, before.diffuse.transport, here.diffuse.transport);
+    shown = see_diffuse(seen.diffuse, diffuse, mixed(before.diffuse, here.diffuse, diffuse.at),
+                        mix(before.light.r, here.light.r, diffuse.at), mix(start, here.extinction, diffuse.at));
+  }
   seen.shown += shown;
   seen.shown_distance_m += shown * (end_m - 0.5 * segment_m);
 }
@@ -172,30 +154,25 @@ vec3 seen_place(Seen seen, vec3 origin_m, vec3 direction) {
   return (place_m - medium_low_m) / (medium_high_m - medium_low_m);
 }
 
-void main() {
-  begin_march();
-  vec3 direction = ray_direction(position);
-  vec3 origin_m = ray_origin(position);
-  vec3 safe = safe_direction(direction);
-  MediumRay ray = medium_ray(origin_m, safe);
-  vec2 path = path_in_medium(origin_m, safe, 0.0);
-  float distance_m = max(path.x, 0.0);
-  float end_m = until_ground(path.y);
+// A face of a cloud: a segment that would take much of what is still seen, and can be shorter.
+bool is_face(Seen seen, Sample before, Sample here, float segment_m, float finest_m) {
+  float depth = 0.5 * (max(before.extinction, 0.0) + here.extinction) * segment_m * per_step;
+  return depth > kFaceDepth && seen.transmittance > kFaceSeen && segment_m > 1.5 * finest_m;
+}
+
+Seen march(MediumRay ray, float distance_m, float end_m) {
   vec3 through_m = abs(1.0 / (ray.step * vec3(textureSize(medium_plane_0, 0))));
   float cell_m = min(through_m.x, min(through_m.y, through_m.z));  // the path through a cell
-
-  Seen seen = nothing_seen();
-  Sample before = no_sample();
-  // A cloud's face is sought: where a segment would take much of what is still seen, it is sampled again in shorter ones.
   float finest_m = near_step.x * cell_m;
   float longest_m = max(step_m, cell_m);
   float limit_m = longest_m;
+  Seen seen = nothing_seen();
+  Sample before = no_sample();
   for (int i = 0; i < kMaxSamples && distance_m < end_m && background_transmittance(seen) > kOpaqueTransmittance; ++i) {
     float begin_m = distance_m;
     float segment_m = advance(distance_m, end_m, ray, cell_m, limit_m, before.extinction < 0.0);
     Sample here = sample_at(medium_place(ray, distance_m), distance_m);
-    float depth = 0.5 * (max(before.extinction, 0.0) + here.extinction) * segment_m * per_step;
-    if (depth > kFaceDepth && seen.transmittance > kFaceSeen && segment_m > 1.5 * finest_m) {
+    if (is_face(seen, before, here, segment_m, finest_m)) {
       distance_m = begin_m;
       limit_m = max(segment_m / 4.0, finest_m);
       continue;
@@ -204,19 +181,25 @@ void main() {
     before = here;
     limit_m = min(1.3 * limit_m, longest_m);  // slowly: behind a gap the next wall is near
   }
+  return seen;
+}
+
+void main() {
+  begin_march();
+  vec3 direction = ray_direction(position);
+  vec3 origin_m = ray_origin(position);
+  vec3 safe = safe_direction(direction);
+  vec2 path = path_in_medium(origin_m, safe, 0.0);
+  Seen seen = march(medium_ray(origin_m, safe), max(path.x, 0.0), until_ground(path.y));
 
   // One height stands for all that the ray shows.
   vec3 sunlight = sunlight_at(origin_m.z + mean_distance_m(seen) * direction.z);
   vec3 radiance = radiance_of(seen.scattered, sunlight, step_m, haversine_between(direction, towards_sun));
-#if DIFFUSION
-  if (seen.diffuse.transmittance <= kOpaqueTransmittance) close_diffuse(seen.diffuse);
-  radiance += diffuse_radiance(seen.diffuse, sunlight);
-#endif
-#if PLACES
-  radiance = seen_place(seen, origin_m, direction);
-#elif CORRECTED
-  radiance = corrected(radiance, seen_place(seen, origin_m, direction), direction);
-#endif
+  if (kDiffusion) {
+    if (seen.diffuse.transmittance <= kOpaqueTransmittance) close_diffuse(seen.diffuse);
+    radiance += diffuse_radiance(seen.diffuse, sunlight);
+  }
+  radiance = outcome_of(radiance, seen_place(seen, origin_m, direction), direction);
   radiance_and_transmittance = vec4(radiance, background_transmittance(seen));
   opacity_distance_m = (1.0 - background_transmittance(seen)) * mean_distance_m(seen);
 }

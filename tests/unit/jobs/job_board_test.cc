@@ -4,6 +4,7 @@
 #include <chrono>
 #include <map>
 
+#include "absl/strings/str_cat.h"
 #include "base/error_details.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -37,7 +38,7 @@ std::string DrawNext(JobBoard& board, double draw_ms, Time now = kNow, std::uint
 
 TEST(JobBoard, OwnersGetTheSameTimeHoweverManyJobsTheyHave) {
   JobBoard board({});
-  for (int i = 0; i < 9; ++i) Add(board, "a" + std::to_string(i), "anna", 100);
+  for (int i = 0; i < 9; ++i) Add(board, absl::StrCat("a", i), "anna", 100);
   Add(board, "b", "bert", 100);
   std::map<char, int> drawn;
   for (int i = 0; i < 60; ++i) ++drawn[DrawNext(board, 10.0).front()];

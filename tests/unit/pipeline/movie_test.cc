@@ -7,6 +7,7 @@ extern "C" {
 
 #include <filesystem>
 
+#include "absl/strings/str_cat.h"
 #include "base/whole_file.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -85,7 +86,8 @@ TEST_P(MovieKind, PlayersSeeEveryPictureInOrder) {
   const std::string path = folder.File("movie") + GetParam();
   const std::vector<int> values = {0, 128, 255};
   // As long as a run of many days, whose times are all in it.
-  const std::string description = R"({"valid": [")" + std::string(20'000, '0') + R"("]})";
+  const std::string description =
+      absl::StrCat(R"({"valid": [")", std::string(20'000, '0'), R"("]})");
   const absl::Status status =
       WriteMovie(path, {1, 2, 1}, 8, {"supercell", "a test", description}, [&](std::size_t i) {
         return absl::StatusOr<frame::RgbImage>(Grey(65, 36, static_cast<std::uint8_t>(values[i])));

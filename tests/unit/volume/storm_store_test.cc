@@ -129,6 +129,16 @@ TEST_F(StormSeries, ForgetsAStormThatIsRemoved) {
   EXPECT_TRUE(store->Get("series", 1, {}).ok());
 }
 
+TEST_F(StormSeries, TellsWhichTimesAreInMemory) {
+  const auto store = Open({.read_ahead = 2});
+  EXPECT_THAT(store->TimesInMemory("series"), ::testing::IsEmpty());
+  ASSERT_TRUE(store->Get("series", 1, {}).ok());
+  EXPECT_TRUE(Eventually([&] { return store->TimesInMemory("series") == std::vector{1, 2, 3}; }));
+  EXPECT_THAT(store->TimesInMemory("another"), ::testing::IsEmpty());
+  ASSERT_TRUE(store->Remove("series").ok());
+  EXPECT_THAT(store->TimesInMemory("series"), ::testing::IsEmpty());
+}
+
 TEST_F(StormSeries, ReadsATimeOnceWhileItIsHeld) {
   const auto store = Open({.read_ahead = 0});
   EXPECT_EQ(store->Peek("series", 3), nullptr);

@@ -1,8 +1,9 @@
 // B's picture beside or over A's, what each is, and the handle between them.
 import { useEffect, useRef } from "preact/hooks";
 import { momentOf } from "../../core/moment";
-import type { PageState } from "../../core/state";
+import { nameOfStorm } from "../../core/storm_names";
 import { formatElapsed } from "../../core/units";
+import type { StormDescription } from "../../gen/thunderhead/v1/storm_pb";
 import type { Page } from "../page";
 
 export function CompareView({ page }: { page: Page }) {
@@ -56,31 +57,25 @@ export function CompareView({ page }: { page: Page }) {
 // Of what is different, in words.
 function namesOf({ state, comparing }: Page): { readonly a: string; readonly b: string } {
   const choice = comparing.choice.value;
-  const a = { storm: state.title.value, time: timeName(state, state.timeIndex.value) };
-  const otherTitle = state.storms.value.find(({ id }) => id === choice?.stormId)?.title;
-  const index = choice?.timeIndex ?? state.timeIndex.value;
-  const b = {
-    storm: choice?.stormId === undefined ? a.storm : otherTitle || choice.stormId,
-    time: choice?.stormId === undefined ? timeName(state, index) : otherTime(comparing, index),
-  };
+  const index = comparing.timeIndex.value;
+  const aTime = timeName(state.storm.value, state.timeIndex.value);
   const settings = choice?.settings === undefined ? "" : ", kept settings";
-  if (a.storm === b.storm) return { a: a.time, b: `${b.time}${settings}` };
+  if (choice?.stormId === undefined)
+    return { a: aTime, b: `${timeName(state.storm.value, index)}${settings}` };
+  const named = (storm: StormDescription | undefined, id: string) =>
+    storm === undefined ? id : nameOfStorm(storm);
+  const other = comparing.other.value;
+  const a = { storm: named(state.storm.value, state.stormId.value), time: aTime };
+  const b = { storm: named(other, choice.stormId), time: timeName(other, index) };
   return {
     a: `${a.storm}, ${a.time}`,
     b: `${b.storm}${b.time === "" ? "" : `, ${b.time}`}${settings}`,
   };
 }
 
-function timeName(state: PageState, index: number): string {
-  const time = state.storm.value?.times[index];
+function timeName(storm: StormDescription | undefined, index: number): string {
+  const time = storm?.times[index];
   if (time === undefined) return "";
   const { date, clock } = momentOf(time.validTime, formatElapsed(time.elapsedS), undefined);
   return `${date} ${clock}`.trim();
-}
-
-function otherTime({ other }: Page["comparing"], index: number): string {
-  const time = other.value?.times[index];
-  return time === undefined
-    ? ""
-    : momentOf(time.validTime, formatElapsed(time.elapsedS), undefined).clock;
 }

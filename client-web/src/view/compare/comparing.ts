@@ -1,7 +1,7 @@
 // Compares: holds what B is, runs its session while there is a B, and keeps its scene beside A's.
-import { effect, signal, untracked } from "@preact/signals-core";
+import { computed, effect, signal, untracked } from "@preact/signals-core";
 import { cameraOfPose, type Pose } from "../../core/camera";
-import { type ComparisonChoice, comparedScene } from "../../core/comparison";
+import { type ComparisonChoice, comparedScene, timeOfB } from "../../core/comparison";
 import type { Later } from "../../core/newest";
 import type { PageState } from "../../core/state";
 import type { Frame } from "../../gen/thunderhead/v1/frame_pb";
@@ -28,6 +28,12 @@ export class Comparing {
   readonly swipe = signal(0.5);
   // The description of B's storm, if it is another.
   readonly other = signal<StormDescription | undefined>(undefined);
+  // B's time, as an index into those of its storm.
+  readonly timeIndex = computed((): number => {
+    const [scene, choice] = [this.#state.scene.value, this.choice.value];
+    if (choice === undefined) return scene.timeIndex ?? 0;
+    return timeOfB(scene, choice, { storm: this.#state.storm.value, other: this.other.value });
+  });
   readonly #calls: ServerCalls;
   readonly #openInteract: OpenInteract;
   readonly #state: PageState;

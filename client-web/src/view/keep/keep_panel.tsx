@@ -104,8 +104,8 @@ function Picture({ page }: { page: Page }) {
     <Section title="Picture (PNG)" open testId="keep-picture">
       <SizeChoice testId="picture-size" chosen={chosen} />
       <p class="quiet">
-        With title, time and scales as chosen under Look. The scene is in the file: drop it on the
-        page, and the view is back.
+        With marks, title, time and scales as chosen under Look. The scene is in the file: drop it
+        on the page, and the view is back.
       </p>
       <button
         type="button"

@@ -13,6 +13,7 @@ import type { Scene } from "../../gen/thunderhead/v1/scene_pb";
 import { ImageFormat } from "../../gen/thunderhead/v1/thunderhead_pb";
 import { type DrawnPicture, RenderCalls } from "../../transport/render_calls";
 import { annotated, drawAnnotations } from "../annotations";
+import { drawMarks } from "../mark_drawing";
 import type { Notes } from "../notes";
 
 export interface Work {
@@ -139,13 +140,16 @@ export class Keeper {
     if (context === null) throw new Error("this browser draws no pictures");
     context.drawImage(bitmap, 0, 0);
     bitmap.close();
+    const projection = projectionOf(drawn.view);
+    const choice = this.#state.annotations.peek();
+    if (choice.marks && projection !== undefined)
+      drawMarks(context, this.#state.session.marks.peek(), projection, canvas);
     const content = annotated(this.#state, {
-      projection: projectionOf(drawn.view),
+      projection,
       pose: poseOfCamera(drawn.scene?.camera),
       timeIndex: scene.timeIndex,
     });
-    if (content !== undefined)
-      drawAnnotations(context, content, this.#state.annotations.peek(), canvas);
+    if (content !== undefined) drawAnnotations(context, content, choice, canvas);
     return canvas;
   }
 

@@ -67,6 +67,7 @@ const OVERLAYS: readonly (readonly [keyof AnnotationChoice, string])[] = [
   ["scale", "Scale bar"],
   ["compass", "Degrees along the horizon, from the ground"],
   ["rings", "Rings of distance"],
+  ["marks", "Marks, in what is saved"],
 ];
 
 function OverThePicture({ state }: { state: PageState }) {

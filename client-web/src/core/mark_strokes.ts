@@ -1,0 +1,34 @@
+// Marks in a picture: as strokes of ink or straight ones. Whoever draws them, in the window or into a file, draws the same.
+import { getStroke } from "perfect-freehand";
+import { parted } from "./lettering";
+import { type PicturePoint, type Projection, projectLine, type Vec3 } from "./projection";
+import type { StrokePoint } from "./stroke";
+
+export interface MarkStroke {
+  // A line drawn by hand swells and thins as ink does; arrows and letters are of straight strokes.
+  readonly ink: boolean;
+  readonly points: readonly PicturePoint[];
+}
+
+// Straight strokes have fewer corners.
+const MOST_STRAIGHT_CORNERS = 4;
+const INK_PX = 6;
+
+export function markStrokes(projection: Projection, pointsM: readonly Vec3[]): MarkStroke[] {
+  const strokes = projectLine(projection, pointsM).flatMap((part) => parted(part, samePoint));
+  const ink = strokes.length === 1 && (strokes[0]?.length ?? 0) > MOST_STRAIGHT_CORNERS;
+  return strokes.map((points) => ({ ink, points }));
+}
+
+// The outline of a stroke of ink; `scale` is 1 in a window.
+export function inkOutline(places: readonly StrokePoint[], scale = 1): [number, number][] {
+  const outline = getStroke(
+    places.map(({ left, top }) => [left, top]),
+    { size: INK_PX * scale, thinning: 0.35, smoothing: 0.6, streamline: 0.2 },
+  );
+  return outline.map(([x = 0, y = 0]) => [x, y]);
+}
+
+function samePoint(a: PicturePoint, b: PicturePoint): boolean {
+  return Math.abs(a.x - b.x) < 1e-6 && Math.abs(a.y - b.y) < 1e-6;
+}
