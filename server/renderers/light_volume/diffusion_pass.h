@@ -17,7 +17,6 @@
 #include "gl/program.h"
 #include "renderers/group_weights.h"
 #include "renderers/light_volume/diffuse_light.h"
-#include "renderers/lit_ground.h"
 #include "renderers/medium.h"
 
 namespace thunderhead::renderers {
@@ -29,8 +28,7 @@ class DiffusionPass {
 
   // `arrived` is that of arrive.comp.
   absl::Status Solve(const ResidentMedium& medium, const GroupWeights& weights,
-                     const gl::Texture3D& arrived, const glm::dvec3& towards_sun,
-                     const LitGround& ground);
+                     const gl::Texture3D& arrived, const glm::dvec3& towards_sun);
 
   // For march.frag.
   void Bind() const;
@@ -67,7 +65,7 @@ class DiffusionPass {
   // Square root of the optical depth to the nearest exit; sky seen (DiffuseLight::SkySeen), and the
   // x of its net flux.
   gl::Texture3D ways_out_;
-  // Of sunlight; the fluence from other walls; the y of the sky's; LitGround::ShareAt.
+  // Of sunlight; the fluence from other walls; the y of the sky's.
   gl::Texture3D net_inward_;
   std::vector<float> arrived_root_;
   std::vector<glm::vec4> net_inward_texels_;

@@ -20,7 +20,6 @@ const int kAirLightUnit = 4;
 const int kSkyHiddenUnit = 12;
 const int kAirShadeImage = 0;
 const int kSkyHiddenImage = 0;
-const int kGroundLightImage = 0;
 const int kMeterImage = 0;
 const int kSkyTableUnit = 6;
 const int kGroundCoverUnit = 13;
