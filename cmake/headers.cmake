@@ -1,4 +1,4 @@
-# Headers that many files include, compiled once a set instead of once a file: half of a first build's time. Every file still
+# Headers that many files include, compiled once a set instead of once a file (decision 50). Every file still
 # includes what it uses; the builds of ./dev lint and those without GCC go without.
 
 # thunderhead_headers(NAME DEPENDS libraries... HEADERS headers...) makes the set thunderhead_NAME.

@@ -77,7 +77,7 @@ export function letterPxOf(widthPx: number, heightPx: number): number {
   return Math.max(11, Math.round(Math.min(heightPx / 45, widthPx / 30)));
 }
 
-// What a text may be wide in the picture; a longer one is squeezed.
+// The most width that a text may take in the picture; a longer one is squeezed.
 export function widthForPx({ x, anchor }: TextShape, widthPx: number, letterPx: number): number {
   const [left, right] = [x - letterPx, widthPx - letterPx - x];
   if (anchor === "start") return right;

@@ -120,7 +120,7 @@ export class PageState {
   readonly storms = signal<readonly StormSummary[]>([]);
   readonly storm = signal<StormDescription | undefined>(undefined);
   readonly frame = signal<ShownFrame | undefined>(undefined);
-  // What is in the server's memory of the session's storm, as it was told last.
+  // The times of the session's storm that are in the server's memory, as the server told last.
   readonly timesInMemory = signal<TimesInMemory | undefined>(undefined);
   // The indices of the times of the storm shown that are drawn without being read.
   readonly heldTimes = computed((): readonly number[] => {

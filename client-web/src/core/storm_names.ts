@@ -1,4 +1,4 @@
-// What storms are called: runs of one storm by when they began.
+// Names of storms: runs of one storm by when they began.
 import type { StormDescription } from "../gen/thunderhead/v1/storm_pb";
 import { momentOf } from "./moment";
 

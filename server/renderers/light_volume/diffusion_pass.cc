@@ -16,7 +16,8 @@ namespace {
 // Larger media are solved on fewer cells than their own.
 constexpr double kMaxCells = 4e6;
 
-// That DiffuseLight, its inputs and this pass keep: of each cell, and of one with anything in it.
+// Memory that DiffuseLight, its inputs and this pass take for each cell, and for one with anything
+// in it besides.
 constexpr std::size_t kBytesPerCell = 64;
 constexpr std::size_t kBytesPerFullCell = 124;
 
