@@ -6,7 +6,6 @@
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 
-#include <array>
 #include <boost/beast/core/buffers_suffix.hpp>
 #include <utility>
 
@@ -115,15 +114,8 @@ bool ClientLink::HasHungUp() {
 }
 
 net::awaitable<void> ClientLink::LingeringClose() {
-  error_code error;
-  stream_.socket().shutdown(net::ip::tcp::socket::shutdown_send, error);
   stream_.expires_after(kLinger);
-  std::array<char, 16 << 10> ignored;
-  while (!error) {
-    co_await stream_.async_read_some(net::buffer(ignored),
-                                     net::redirect_error(net::use_awaitable, error));
-  }
-  Close();
+  co_await stream_.LingeringClose();
 }
 
 void ClientLink::Close() {

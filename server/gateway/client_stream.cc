@@ -1,5 +1,7 @@
 #include "gateway/client_stream.h"
 
+#include <boost/asio/co_spawn.hpp>
+#include <exception>
 #include <utility>
 
 namespace thunderhead::gateway {
@@ -19,6 +21,25 @@ net::awaitable<bool> ClientStream::Handshake() {
                                                 net::redirect_error(net::use_awaitable, error));
   }
   co_return !error;
+}
+
+net::awaitable<void> ClientStream::LingeringClose() {
+  error_code error;
+  plain_.socket().shutdown(net::ip::tcp::socket::shutdown_send, error);
+  std::array<char, 16 << 10> ignored;
+  while (!error) {
+    co_await plain_.async_read_some(net::buffer(ignored),
+                                    net::redirect_error(net::use_awaitable, error));
+  }
+  plain_.socket().close(error);
+}
+
+void ClientStream::LingeringClose(BytesHandler handler) {
+  const auto executor = handler.get_executor();
+  net::co_spawn(executor, LingeringClose(),
+                [handler = std::move(handler)](const std::exception_ptr&) mutable {
+                  handler(error_code(), 0);
+                });
 }
 
 void ClientStream::Read(FewBuffers<net::mutable_buffer> into, BytesHandler handler) {

@@ -132,6 +132,13 @@ class ClientStream {
   void expires_never() { plain_.expires_never(); }
   void cancel() { plain_.cancel(); }
 
+  // Says to the client that nothing more comes, and drops what it still sends until it ends too,
+  // the timeout is over or the socket is closed; then closes it. A socket that is closed before its
+  // bytes are read resets the connection, and the client may lose what was last sent to it.
+  boost::asio::awaitable<void> LingeringClose();
+  // The same; then calls `handler`, without an error.
+  void LingeringClose(BytesHandler handler);
+
   template <typename Buffers, typename Token>
   auto async_read_some(const Buffers& buffers, Token&& token) {
     return boost::asio::async_initiate<Token, void(boost::system::error_code, size_t)>(
@@ -163,13 +170,18 @@ class ClientStream {
   std::optional<Tls> tls_;
 };
 
-// Beast's hooks for the end of a WebSocket: that of its TCP connection.
+// Beast's hooks for the end of a WebSocket: that of its TCP connection. Its own for sockets close
+// after the first bytes that they drop.
 void beast_close_socket(ClientStream& stream);
 void teardown(boost::beast::role_type role, ClientStream& stream, boost::system::error_code& error);
 template <typename Handler>
-void async_teardown(boost::beast::role_type role, ClientStream& stream, Handler&& handler) {
-  using boost::beast::websocket::async_teardown;
-  async_teardown(role, stream.socket(), std::forward<Handler>(handler));
+void async_teardown(boost::beast::role_type /*server*/, ClientStream& stream, Handler&& handler) {
+  const auto executor = boost::asio::get_associated_executor(handler, stream.get_executor());
+  stream.LingeringClose(BytesHandler(
+      [handler = std::forward<Handler>(handler)](boost::system::error_code error, size_t) mutable {
+        std::move(handler)(error);
+      },
+      executor));
 }
 
 }  // namespace thunderhead::gateway

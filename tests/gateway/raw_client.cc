@@ -72,11 +72,11 @@ boost::system::error_code RawClient::Write(const std::string& bytes) {
 
 void RawClient::Send(const std::string& bytes) { ThrowOn(Write(bytes), "sending"); }
 
-void RawClient::SendUntilClosed(const std::string& bytes) {
+bool RawClient::SendUntilClosed(const std::string& bytes) {
   const boost::system::error_code error = Write(bytes);
-  if (error != net::error::broken_pipe && error != net::error::connection_reset) {
-    ThrowOn(error, "sending");
-  }
+  if (error == net::error::broken_pipe || error == net::error::connection_reset) return false;
+  ThrowOn(error, "sending");
+  return true;
 }
 
 Response RawClient::Read(bool to_head) {

@@ -25,8 +25,8 @@ class RawClient {
   explicit RawClient(uint16_t port, int receive_buffer_bytes = 0);
 
   void Send(const std::string& bytes);
-  // The same to a server that may close before it has read them all.
-  void SendUntilClosed(const std::string& bytes);
+  // The same to a server that may close before it has read them all; false if it did.
+  bool SendUntilClosed(const std::string& bytes);
   // The next response; one to a HEAD request has no body.
   Response Read(bool to_head = false);
   // Sends a request with a Host header and reads its response.

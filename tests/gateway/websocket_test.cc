@@ -289,6 +289,23 @@ TEST_F(WebSocketTest, TooLargeMessageStillBeingSentIsRefused) {
   EXPECT_EQ(client.CloseCode(), 1009);
 }
 
+// It has five seconds to end what it sends.
+TEST_F(WebSocketTest, WhoNeverStopsSendingWhatIsTooLargeIsCutOff) {
+  options_.max_message_bytes = 1000;
+  RawClient client(Site().Port());
+  Upgrade(client);
+  // The head of a masked binary frame of 2^40 bytes.
+  client.Send(std::string("\x82\xff\x00\x00\x01\x00\x00\x00\x00\x00\x00\x00\x00\x00", 14) +
+              kMessage);
+  EXPECT_TRUE(AllCancelled(1));
+  const auto begin = Clock::now();
+  const std::string more(64 << 10, 'x');
+  bool is_cut = false;
+  while (!is_cut && Clock::now() - begin < seconds(30)) is_cut = !client.SendUntilClosed(more);
+  EXPECT_TRUE(is_cut);
+  EXPECT_GT(Clock::now() - begin, seconds(4));
+}
+
 TEST_F(WebSocketTest, BrokenRulesCloseWithTheirCode) {
   const auto code_after = [&](const std::string& message) {
     WebSocketClient client(Site().Port());
