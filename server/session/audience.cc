@@ -12,10 +12,10 @@ constexpr std::chrono::milliseconds kAtOnce{0};
 }  // namespace
 
 Audience::Audience(const AudienceFormat& format, const Rules& rules, Board board, Time now,
-                   std::function<void()> on_due)
+                   std::function<void()> on_due, const RosterTimeouts& timeouts)
     : format_(format),
       on_due_(std::move(on_due)),
-      roster_(rules, now, board.LastPerson()),
+      roster_(rules, now, board.LastPerson(), timeouts),
       board_(std::move(board)) {}
 
 std::optional<std::uint64_t> Audience::Join(Role role, const std::string& name,

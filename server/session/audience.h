@@ -64,7 +64,7 @@ class Audience {
 
   // `on_due` is called, without the lock, when Tick is to be called soon.
   Audience(const AudienceFormat& format, const Rules& rules, Board board, Time now,
-           std::function<void()> on_due);
+           std::function<void()> on_due, const RosterTimeouts& timeouts = {});
 
   // `member` is woken when it is to be told something. None for a viewer where `most` people are.
   std::optional<std::uint64_t> Join(Role role, const std::string& name,
