@@ -20,11 +20,12 @@ Audience::Audience(const AudienceFormat& format, const Rules& rules, Board board
 
 std::optional<std::uint64_t> Audience::Join(Role role, const std::string& name,
                                             std::shared_ptr<Viewer> member, Time now,
-                                            std::size_t most) {
+                                            std::size_t most, const std::string& owner_key) {
   std::unique_lock lock(mutex_);
   if (role == Role::kViewer && members_.size() >= most) return std::nullopt;
   const std::uint64_t id = roster_.Join(role, name);
   members_[id] = std::move(member);
+  board_.HandOver(owner_key, id);
   Settle(std::move(lock), now);
   return id;
 }
