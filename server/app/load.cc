@@ -60,10 +60,7 @@ absl::StatusOr<load::LoadOptions> OptionsOf(const Flags& flags) {
   if (flags.throttled.has_value() && !flags.kbit_per_s.has_value()) {
     return absl::InvalidArgumentError("--throttled needs --kbit, the rate that those viewers read");
   }
-  if (flags.kbit_per_s.has_value()) {
-    options.kbit_per_s = *flags.kbit_per_s;
-    options.throttled = flags.throttled.value_or(1);
-  }
+  if (flags.kbit_per_s.has_value()) load::Throttle(*flags.kbit_per_s, flags.throttled, options);
   return options;
 }
 
@@ -124,9 +121,10 @@ Command AddLoad(CLI::App& app) {
       ->check(CLI::Range(0.0, 240.0))
       ->capture_default_str();
   load->add_option("--kbit", flags->kbit_per_s,
-                   "kbit/s that throttled viewers read; they come besides the others")
+                   "kbit/s that each viewer reads at most; with --throttled those alone")
       ->check(CLI::Range(1.0, 1e7));
-  load->add_option("--throttled", flags->throttled, "Throttled viewers; with --kbit by default 1")
+  load->add_option("--throttled", flags->throttled,
+                   "Viewers besides the others who read at most --kbit, in place of all")
       ->check(CLI::Range(1, 10000));
   load->add_option("--stalled", options.stalled,
                    "Viewers besides the others who join and never read")

@@ -3,6 +3,8 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <future>
 #include <memory>
 #include <stop_token>
@@ -20,6 +22,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::Ge;
 using ::testing::Gt;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Le;
 using ::testing::Not;
@@ -134,6 +137,20 @@ TEST_P(LoadTest, StalledAndThrottledViewersDoNotSlowOthers) {
 TEST_P(LoadTest, PassingViewersComeAndGetAFrameEachTime) {
   options_.passing = 40;
   options_.seconds = 3.0;
+TEST_P(LoadTest, ARateWithoutANumberThrottlesAllViewers) {
+  Throttle(16.0, std::nullopt, options_);
+  std::atomic<double> shown_fps{0.0};
+  const auto report =
+      Run([&](const Progress& progress) { shown_fps = std::max(0.0, progress.frames_per_s); });
+  ASSERT_TRUE(report.ok()) << report.status();
+  EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
+  EXPECT_EQ(report->healthy.viewers, 0);
+  EXPECT_EQ(report->throttled.viewers, 3);
+  EXPECT_THAT(report->throttled.kbit_per_viewer, AllOf(Gt(1.0), Le(1.5 * 16.0))) << ToText(*report);
+  EXPECT_EQ(report->throttled_first.count, 3U);
+  EXPECT_THAT(shown_fps.load(), AllOf(Gt(0.0), Le(1000.0)));
+}
+
   const auto report = Run();
   ASSERT_TRUE(report.ok()) << report.status();
   EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
