@@ -31,21 +31,35 @@ struct Flags {
   ClientAccessFlags access;
 };
 
+enum class Protocol { kGrpc, kHttp, kHttps };
+
 struct Target {
   Address address;
-  bool is_http = false;
+  Protocol protocol = Protocol::kGrpc;
 };
 
 absl::StatusOr<Target> ParseTarget(const std::string& server) {
-  if (absl::StartsWith(server, "https://")) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("SERVER is '", server,
-                     "'; TLS is only for gRPC: use HOST:PORT with --tls-roots, or http://"));
+  Target target;
+  if (absl::StartsWith(server, "http://")) target.protocol = Protocol::kHttp;
+  if (absl::StartsWith(server, "https://")) target.protocol = Protocol::kHttps;
+  std::string place = server.substr(target.protocol == Protocol::kGrpc ? 0 : server.find("//") + 2);
+  if (target.protocol != Protocol::kGrpc) place = std::string(absl::StripSuffix(place, "/"));
+  THUNDERHEAD_ASSIGN_OR_RETURN(target.address, ParseAddress("SERVER", place));
+  return target;
+}
+
+absl::StatusOr<std::unique_ptr<load::Transport>> TransportTo(const Target& target,
+                                                             const load::Access& access) {
+  const auto& [host, port] = target.address;
+  switch (target.protocol) {
+    case Protocol::kHttp:
+      return load::MakeWebSocketTransport(host, port, access.token);
+    case Protocol::kHttps:
+      return load::MakeSecureWebSocketTransport(host, port, access);
+    case Protocol::kGrpc:
+      break;
   }
-  const bool is_http = absl::StartsWith(server, "http://");
-  const std::string place(absl::StripSuffix(absl::StripPrefix(server, "http://"), "/"));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const Address address, ParseAddress("SERVER", place));
-  return Target{address, is_http};
+  return load::MakeGrpcTransport(ToString(target.address), access);
 }
 
 absl::StatusOr<load::LoadOptions> OptionsOf(const Flags& flags) {
@@ -77,10 +91,8 @@ absl::Status Load(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const load::Access access, ReadClientAccess(flags.access));
   // Before the transport starts threads, which must not take the signals.
   const Interruption interruption;
-  const auto transport =
-      target.is_http
-          ? load::MakeWebSocketTransport(target.address.host, target.address.port, access.token)
-          : load::MakeGrpcTransport(ToString(target.address), access);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<load::Transport> transport,
+                               TransportTo(target, access));
   const auto process = load::ServerProcess::Find(target.address.host, target.address.port);
   std::optional<ProgressBar> bar(std::in_place, "load");
   const absl::StatusOr<load::Report> report =
@@ -103,7 +115,8 @@ Command AddLoad(CLI::App& app) {
   CLI::App* load = app.add_subcommand(
       "load", "Measure a server under many viewers of one session whose camera turns");
   load->add_option("SERVER", flags->server,
-                   "HOST:PORT of the server's gRPC, or http://HOST:PORT to come by WebSocket")
+                   "HOST:PORT of the server's gRPC, or http:// or https://HOST:PORT to come by "
+                   "WebSocket")
       ->required();
   load->add_option("--viewers", options.viewers, "Viewers who read all that comes")
       ->check(CLI::Range(1, 10000))
@@ -135,6 +148,10 @@ Command AddLoad(CLI::App& app) {
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
   AddClientAccessFlags(*load, flags->access);
+  load->get_option("--tls-roots")
+      ->description(
+          "PEM file of the certificates that may vouch for a server by TLS; without it no "
+          "TLS to HOST:PORT, and this machine's certificates for https://");
   load->add_option("--stills", options.stills.count,
                    "Single pictures besides, all asked for when the measured time begins")
       ->check(CLI::Range(0, 10000))
