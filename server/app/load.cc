@@ -31,21 +31,35 @@ struct Flags {
   ClientAccessFlags access;
 };
 
+enum class Protocol { kGrpc, kHttp, kHttps };
+
 struct Target {
   Address address;
-  bool is_http = false;
+  Protocol protocol = Protocol::kGrpc;
 };
 
 absl::StatusOr<Target> ParseTarget(const std::string& server) {
-  if (absl::StartsWith(server, "https://")) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("SERVER is '", server,
-                     "'; TLS is only for gRPC: use HOST:PORT with --tls-roots, or http://"));
+  Target target;
+  if (absl::StartsWith(server, "http://")) target.protocol = Protocol::kHttp;
+  if (absl::StartsWith(server, "https://")) target.protocol = Protocol::kHttps;
+  std::string place = server.substr(target.protocol == Protocol::kGrpc ? 0 : server.find("//") + 2);
+  if (target.protocol != Protocol::kGrpc) place = std::string(absl::StripSuffix(place, "/"));
+  THUNDERHEAD_ASSIGN_OR_RETURN(target.address, ParseAddress("SERVER", place));
+  return target;
+}
+
+absl::StatusOr<std::unique_ptr<load::Transport>> TransportTo(const Target& target,
+                                                             const load::Access& access) {
+  const auto& [host, port] = target.address;
+  switch (target.protocol) {
+    case Protocol::kHttp:
+      return load::MakeWebSocketTransport(host, port, access.token);
+    case Protocol::kHttps:
+      return load::MakeSecureWebSocketTransport(host, port, access);
+    case Protocol::kGrpc:
+      break;
   }
-  const bool is_http = absl::StartsWith(server, "http://");
-  const std::string place(absl::StripSuffix(absl::StripPrefix(server, "http://"), "/"));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const Address address, ParseAddress("SERVER", place));
-  return Target{address, is_http};
+  return load::MakeGrpcTransport(ToString(target.address), access);
 }
 
 absl::StatusOr<load::LoadOptions> OptionsOf(const Flags& flags) {
@@ -60,10 +74,7 @@ absl::StatusOr<load::LoadOptions> OptionsOf(const Flags& flags) {
   if (flags.throttled.has_value() && !flags.kbit_per_s.has_value()) {
     return absl::InvalidArgumentError("--throttled needs --kbit, the rate that those viewers read");
   }
-  if (flags.kbit_per_s.has_value()) {
-    options.kbit_per_s = *flags.kbit_per_s;
-    options.throttled = flags.throttled.value_or(1);
-  }
+  if (flags.kbit_per_s.has_value()) load::Throttle(*flags.kbit_per_s, flags.throttled, options);
   return options;
 }
 
@@ -80,10 +91,8 @@ absl::Status Load(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const load::Access access, ReadClientAccess(flags.access));
   // Before the transport starts threads, which must not take the signals.
   const Interruption interruption;
-  const auto transport =
-      target.is_http
-          ? load::MakeWebSocketTransport(target.address.host, target.address.port, access.token)
-          : load::MakeGrpcTransport(ToString(target.address), access);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<load::Transport> transport,
+                               TransportTo(target, access));
   const auto process = load::ServerProcess::Find(target.address.host, target.address.port);
   std::optional<ProgressBar> bar(std::in_place, "load");
   const absl::StatusOr<load::Report> report =
@@ -106,7 +115,8 @@ Command AddLoad(CLI::App& app) {
   CLI::App* load = app.add_subcommand(
       "load", "Measure a server under many viewers of one session whose camera turns");
   load->add_option("SERVER", flags->server,
-                   "HOST:PORT of the server's gRPC, or http://HOST:PORT to come by WebSocket")
+                   "HOST:PORT of the server's gRPC, or http:// or https://HOST:PORT to come by "
+                   "WebSocket")
       ->required();
   load->add_option("--viewers", options.viewers, "Viewers who read all that comes")
       ->check(CLI::Range(1, 10000))
@@ -124,9 +134,10 @@ Command AddLoad(CLI::App& app) {
       ->check(CLI::Range(0.0, 240.0))
       ->capture_default_str();
   load->add_option("--kbit", flags->kbit_per_s,
-                   "kbit/s that throttled viewers read; they come besides the others")
+                   "kbit/s that each viewer reads at most; with --throttled those alone")
       ->check(CLI::Range(1.0, 1e7));
-  load->add_option("--throttled", flags->throttled, "Throttled viewers; with --kbit by default 1")
+  load->add_option("--throttled", flags->throttled,
+                   "Viewers besides the others who read at most --kbit, in place of all")
       ->check(CLI::Range(1, 10000));
   load->add_option("--stalled", options.stalled,
                    "Viewers besides the others who join and never read")
@@ -137,6 +148,10 @@ Command AddLoad(CLI::App& app) {
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
   AddClientAccessFlags(*load, flags->access);
+  load->get_option("--tls-roots")
+      ->description(
+          "PEM file of the certificates that may vouch for a server by TLS; without it no "
+          "TLS to HOST:PORT, and this machine's certificates for https://");
   load->add_option("--stills", options.stills.count,
                    "Single pictures besides, all asked for when the measured time begins")
       ->check(CLI::Range(0, 10000))

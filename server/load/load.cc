@@ -189,14 +189,17 @@ class RunningLoad {
 
   void Tell(double share) {
     Progress told{.share = share};
+    const ViewerKind counted = options_.viewers > 0 ? ViewerKind::kHealthy : ViewerKind::kThrottled;
+    int viewers = 0;
     std::uint64_t frames = 0;
     for (const auto& viewer : viewers_) {
       if (viewer->HasFrame()) ++told.joined;
-      if (viewer->kind() == ViewerKind::kHealthy) frames += viewer->Frames();
+      if (viewer->kind() != counted) continue;
+      ++viewers;
+      frames += viewer->Frames();
     }
     const double now_s = Now_s();
-    told.frames_per_s =
-        static_cast<double>(frames - told_frames_) / (now_s - told_s_) / options_.viewers;
+    told.frames_per_s = static_cast<double>(frames - told_frames_) / (now_s - told_s_) / viewers;
     told_frames_ = frames;
     told_s_ = now_s;
     for (const auto& [message, count] : errors_.Counts()) told.errors += count;
@@ -260,6 +263,11 @@ class RunningLoad {
 };
 
 }  // namespace
+
+void Throttle(double kbit_per_s, std::optional<int> throttled, LoadOptions& options) {
+  options.kbit_per_s = kbit_per_s;
+  options.throttled = throttled.has_value() ? *throttled : std::exchange(options.viewers, 0);
+}
 
 absl::StatusOr<Report> Run(const LoadOptions& options, Transport& transport,
                            const std::optional<ServerProcess>& server, const std::stop_token& stop,

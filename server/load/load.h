@@ -19,7 +19,7 @@ namespace thunderhead::load {
 enum class LoadCodec { kJpeg, kVp9 };
 
 struct LoadOptions {
-  int viewers = 10;   // healthy ones
+  int viewers = 10;   // healthy ones; 0 where all are throttled
   int throttled = 0;  // besides them
   int stalled = 0;    // besides them
   int passing = 0;    // besides them
@@ -32,11 +32,16 @@ struct LoadOptions {
   StillOptions stills;     // asked for when the measured time begins
 };
 
+// Makes viewers read at a limited rate: `throttled` besides the others, or all of them where no
+// number is given.
+void Throttle(double kbit_per_s, std::optional<int> throttled, LoadOptions& options);
+
 // Of a load that runs.
 struct Progress {
-  double share = 0.0;         // of the time
-  int joined = 0;             // viewers that have had a frame
-  double frames_per_s = 0.0;  // the mean of healthy viewers since the last call
+  double share = 0.0;  // of the time
+  int joined = 0;      // viewers that have had a frame
+  // The mean of healthy viewers since the last call; of throttled ones if there are no others.
+  double frames_per_s = 0.0;
   int errors = 0;
 };
 

@@ -85,6 +85,7 @@ Report ReportOf(const Recording& recording) {
   report.stalled = CountOf(recording, ViewerKind::kStalled);
   report.passing = CountOf(recording, ViewerKind::kPassing);
   report.healthy_first = FirstFramesOf(recording, ViewerKind::kHealthy);
+  report.throttled_first = FirstFramesOf(recording, ViewerKind::kThrottled);
   report.passing_first = FirstFramesOf(recording, ViewerKind::kPassing);
   const std::vector<double>& came_ms = recording.stills.came_ms;
   report.stills = {recording.stills.asked, static_cast<int>(came_ms.size()),

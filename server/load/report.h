@@ -56,6 +56,7 @@ struct Report {
   ViewerFigures throttled;
   int stalled = 0;
   FirstFrames healthy_first;
+  FirstFrames throttled_first;
   int passing = 0;
   FirstFrames passing_first;
   StillFigures stills;

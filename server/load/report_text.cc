@@ -30,6 +30,11 @@ std::string Json(const std::optional<Percentiles>& latency) {
 
 // The keys of `figures` in lines, without braces.
 std::string Keys(const ViewerFigures& figures) {
+  if (figures.viewers == 0) {
+    return absl::StrCat("\"fps_min\": null, \"fps_median\": null, \"latency_ms\": ",
+                        Json(std::optional<Percentiles>()),
+                        ", \"kbit_per_viewer\": null, \"bytes_per_frame\": null");
+  }
   return absl::StrFormat(
       "\"fps_min\": %.4g, \"fps_median\": %.4g, \"latency_ms\": %s, \"kbit_per_viewer\": %.5g, "
       "\"bytes_per_frame\": %.6g",
@@ -37,19 +42,19 @@ std::string Keys(const ViewerFigures& figures) {
       figures.bytes_per_frame);
 }
 
+std::string Json(const FirstFrames& first) {
+  return absl::StrCat("{\"median\": ", Json(first.median_ms), ", \"most\": ", Json(first.most_ms),
+                      "}");
+}
+
 std::string ThrottledJson(const Report& report) {
   const ViewerFigures& figures = report.throttled;
   if (figures.viewers == 0) return "null";
   return absl::StrFormat(
-      "{\"viewers\": %d, \"kbit_limit\": %.6g, %s, \"latency_first_third_ms\": %s, "
-      "\"latency_last_third_ms\": %s}",
-      figures.viewers, report.throttle_kbit_per_s, Keys(figures),
+      "{\"viewers\": %d, \"kbit_limit\": %.6g, %s, \"first_frame_ms\": %s, "
+      "\"latency_first_third_ms\": %s, \"latency_last_third_ms\": %s}",
+      figures.viewers, report.throttle_kbit_per_s, Keys(figures), Json(report.throttled_first),
       Json(figures.latency_growth.first_third_ms), Json(figures.latency_growth.last_third_ms));
-}
-
-std::string Json(const FirstFrames& first) {
-  return absl::StrCat("{\"median\": ", Json(first.median_ms), ", \"most\": ", Json(first.most_ms),
-                      "}");
 }
 
 std::string PassingJson(const Report& report) {
@@ -100,6 +105,7 @@ void AppendThrottled(const Report& report, std::string& text) {
   if (figures.viewers == 0) return;
   absl::StrAppendFormat(&text, "throttled: %d that read at most %.0f kbit/s\n%s", figures.viewers,
                         report.throttle_kbit_per_s, Text(figures));
+  AppendFirst(report.throttled_first, text);
   const Growth& growth = figures.latency_growth;
   if (growth.first_third_ms.has_value() && growth.last_third_ms.has_value()) {
     absl::StrAppendFormat(&text,
@@ -135,10 +141,12 @@ void AppendServer(const Report& report, std::string& text) {
 }  // namespace
 
 std::string ToText(const Report& report) {
-  std::string text =
-      absl::StrFormat("%d viewers by %s for %.1f s, %d x %d pixels, %g updates a second\n%s",
-                      report.healthy.viewers, report.transport, report.seconds, report.width_px,
-                      report.height_px, report.steer_hz, Text(report.healthy));
+  const bool all_throttled = report.healthy.viewers == 0;
+  std::string text = absl::StrFormat(
+      "%d viewers by %s for %.1f s, %d x %d pixels, %g updates a second\n",
+      all_throttled ? report.throttled.viewers : report.healthy.viewers, report.transport,
+      report.seconds, report.width_px, report.height_px, report.steer_hz);
+  if (!all_throttled) text += Text(report.healthy);
   AppendFirst(report.healthy_first, text);
   AppendThrottled(report, text);
   if (report.stalled > 0) absl::StrAppendFormat(&text, "stalled: %d\n", report.stalled);

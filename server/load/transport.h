@@ -51,8 +51,10 @@ class Transport {
 
 // What a guarded server asks for.
 struct Access {
-  std::string token;      // empty: none
-  std::string tls_roots;  // PEM of those who may vouch for the server by TLS; empty: no TLS
+  std::string token;  // empty: none
+  // PEM of those who may vouch for the server by TLS; empty: no TLS, or those of the machine where
+  // there must be.
+  std::string tls_roots;
 };
 
 // To HOST:PORT of a server's gRPC.
@@ -60,5 +62,10 @@ std::unique_ptr<Transport> MakeGrpcTransport(const std::string& address, const A
 // To the HTTP port of a server or of a proxy before it.
 std::unique_ptr<Transport> MakeWebSocketTransport(const std::string& host, int port,
                                                   const std::string& token = "");
+// The same by TLS; the machine's certificates vouch where `access` has none. INVALID_ARGUMENT if
+// its certificates cannot be read.
+absl::StatusOr<std::unique_ptr<Transport>> MakeSecureWebSocketTransport(const std::string& host,
+                                                                        int port,
+                                                                        const Access& access);
 
 }  // namespace thunderhead::load

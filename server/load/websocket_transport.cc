@@ -1,10 +1,15 @@
 #include <boost/asio/dispatch.hpp>
+#include <boost/asio/ip/address.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/ssl/context.hpp>
+#include <boost/asio/ssl/host_name_verification.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http.hpp>
+#include <boost/beast/ssl/ssl_stream.hpp>
+#include <boost/beast/websocket/ssl.hpp>
 #include <boost/beast/websocket/stream.hpp>
 #include <chrono>
 #include <cmath>
@@ -13,6 +18,7 @@
 #include <future>
 #include <memory>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -27,9 +33,14 @@ namespace {
 
 namespace net = boost::asio;
 namespace http = boost::beast::http;
+namespace ssl = boost::asio::ssl;
 namespace websocket = boost::beast::websocket;
+using boost::beast::get_lowest_layer;
 using boost::system::error_code;
 using net::ip::tcp;
+
+using Plain = boost::beast::tcp_stream;
+using Secure = boost::beast::ssl_stream<Plain>;  // by TLS
 
 constexpr std::chrono::seconds kPatience{60};
 constexpr char kService[] = "/thunderhead.v1.ThunderheadService/";
@@ -43,32 +54,56 @@ constexpr int kSlowReceiveBufferBytes = 64 << 10;
 struct Host {
   std::string name;
   int port = 0;
-  std::string token;  // shown to it; empty: none
+  std::string token;                  // shown to it; empty: none
+  std::shared_ptr<ssl::context> tls;  // null: none
 
   std::string ToString() const {
     const bool is_ipv6 = name.find(':') != std::string::npos;
     return absl::StrCat(is_ipv6 ? "[" : "", name, is_ipv6 ? "]" : "", ":", port);
   }
+  std::string Url() const {
+    return absl::StrCat(tls == nullptr ? "http://" : "https://", ToString());
+  }
 };
+
+// Calls `then` with an error or none: once the host has shown, where the stream is by TLS, that it
+// is who it says.
+template <typename Stream, typename Then>
+void HandshakeThen(Stream& stream, const Host& host, Then then) {
+  if constexpr (std::is_same_v<Stream, Secure>) {
+    error_code is_no_address;
+    net::ip::make_address(host.name, is_no_address);
+    // For servers that have certificates for several names.
+    if (is_no_address) SSL_set_tlsext_host_name(stream.native_handle(), host.name.c_str());
+    stream.set_verify_callback(ssl::host_name_verification(host.name));
+    stream.async_handshake(ssl::stream_base::client, std::move(then));
+  } else {
+    then(error_code());
+  }
+}
 
 absl::Status Unavailable(const Host& host, const char* doing, const error_code& error) {
   const bool is_http =
       error.category() == http::make_error_code(http::error::bad_version).category();
-  return absl::UnavailableError(absl::StrCat("cannot ", doing, " http://", host.ToString(), ": ",
+  return absl::UnavailableError(absl::StrCat("cannot ", doing, " ", host.Url(), ": ",
                                              error.message(),
                                              is_http ? "; is that the server's HTTP port?" : ""));
 }
 
 // One WebSocket. Everything runs on the transport's thread; handlers keep it alive.
-class WebSocketCall : public std::enable_shared_from_this<WebSocketCall> {
+template <typename Stream>
+class WebSocketCall : public std::enable_shared_from_this<WebSocketCall<Stream>> {
  public:
-  WebSocketCall(net::io_context& io, Host host, Listener& listener, const LinkOptions& options)
+  // `tls` is the host's, for a stream that takes it.
+  template <typename... Tls>
+  WebSocketCall(net::io_context& io, Host host, Listener& listener, const LinkOptions& options,
+                Tls&... tls)
       : host_(std::move(host)),
         listener_(&listener),
         options_(options),
         pace_(options.kbit_per_s),
         resolver_(io),
-        socket_(io),
+        socket_(io, tls...),
         delay_(io) {}
 
   void Start() {
@@ -92,22 +127,27 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall> {
     listener_ = nullptr;
     resolver_.cancel();
     delay_.cancel();
-    socket_.next_layer().close();
+    get_lowest_layer(socket_).close();
   }
 
  private:
+  using std::enable_shared_from_this<WebSocketCall<Stream>>::shared_from_this;
+
   void Connect(const tcp::resolver::results_type& found) {
     if (listener_ == nullptr) return;
-    socket_.next_layer().expires_after(kPatience);
-    socket_.next_layer().async_connect(
+    get_lowest_layer(socket_).expires_after(kPatience);
+    get_lowest_layer(socket_).async_connect(
         found, [self = shared_from_this()](error_code error, const tcp::endpoint&) {
           if (error) return self->Fail("connect to", error);
-          self->Upgrade();
+          HandshakeThen(self->socket_.next_layer(), self->host_, [self](error_code failed) {
+            if (failed) return self->Fail("speak TLS with", failed);
+            self->Upgrade();
+          });
         });
   }
 
   void Upgrade() {
-    tcp::socket& tcp_socket = socket_.next_layer().socket();
+    tcp::socket& tcp_socket = get_lowest_layer(socket_).socket();
     error_code ignored;
     tcp_socket.set_option(tcp::no_delay(true), ignored);
     if (!options_.reads || pace_.IsLimited()) {
@@ -128,7 +168,7 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall> {
   }
 
   void Opened() {
-    socket_.next_layer().expires_never();
+    get_lowest_layer(socket_).expires_never();
     open_ = true;
     WriteNext();
     if (options_.reads) Read();
@@ -178,7 +218,7 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall> {
   void End(const absl::Status& status) {
     if (listener_ == nullptr) return;
     std::exchange(listener_, nullptr)->OnEnd(status);
-    socket_.next_layer().close();
+    get_lowest_layer(socket_).close();
   }
 
   const Host host_;
@@ -186,7 +226,7 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall> {
   const LinkOptions options_;
   Pace pace_;
   tcp::resolver resolver_;
-  websocket::stream<boost::beast::tcp_stream> socket_;
+  websocket::stream<Stream> socket_;
   net::steady_timer delay_;
   boost::beast::flat_buffer received_;
   std::deque<std::string> unsent_;
@@ -195,11 +235,14 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall> {
   bool half_closed_ = false;
 };
 
+template <typename Stream>
 class WebSocketLink final : public Link {
  public:
+  template <typename... Tls>
   WebSocketLink(net::io_context& io, const Host& host, Listener& listener,
-                const LinkOptions& options)
-      : io_(io), call_(std::make_shared<WebSocketCall>(io, host, listener, options)) {
+                const LinkOptions& options, Tls&... tls)
+      : io_(io),
+        call_(std::make_shared<WebSocketCall<Stream>>(io, host, listener, options, tls...)) {
     net::post(io_, [call = call_] { call->Start(); });
   }
 
@@ -228,14 +271,17 @@ class WebSocketLink final : public Link {
   }
 
   net::io_context& io_;
-  const std::shared_ptr<WebSocketCall> call_;
+  const std::shared_ptr<WebSocketCall<Stream>> call_;
 };
 
 // A unary call by gRPC-Web, on an io_context of its own.
+template <typename Stream>
 class WebCall {
  public:
-  WebCall(Host host, const std::string& method, const std::string& message)
-      : host_(std::move(host)), stream_(io_) {
+  // `tls` is the host's, for a stream that takes it.
+  template <typename... Tls>
+  WebCall(Host host, const std::string& method, const std::string& message, Tls&... tls)
+      : host_(std::move(host)), stream_(io_, tls...) {
     const auto bytes = static_cast<std::uint32_t>(message.size());
     request_.method(http::verb::post);
     request_.target(absl::StrCat(kService, method));
@@ -258,10 +304,14 @@ class WebCall {
     error_code error;
     const auto found = resolver.resolve(host_.name, std::to_string(host_.port), error);
     if (error) return Unavailable(host_, "find", error);
-    stream_.expires_after(std::chrono::milliseconds(std::llround(1e3 * patience_s)));
-    stream_.async_connect(found, [this](error_code failed, const tcp::endpoint&) {
+    Plain& socket = get_lowest_layer(stream_);
+    socket.expires_after(std::chrono::milliseconds(std::llround(1e3 * patience_s)));
+    socket.async_connect(found, [this](error_code failed, const tcp::endpoint&) {
       if (failed) return Fail("connect to", failed);
-      Write();
+      HandshakeThen(stream_, host_, [this](error_code refused) {
+        if (refused) return Fail("speak TLS with", refused);
+        Write();
+      });
     });
     io_.run();
     return result_;
@@ -284,8 +334,8 @@ class WebCall {
 
   absl::StatusOr<std::string> Result() const {
     if (response_.result() != http::status::ok) {
-      return absl::UnavailableError(absl::StrCat("http://", host_.ToString(), " answered ",
-                                                 response_.result_int(), ": ", response_.body()));
+      return absl::UnavailableError(
+          absl::StrCat(host_.Url(), " answered ", response_.result_int(), ": ", response_.body()));
     }
     return UnaryMessage(response_.body());
   }
@@ -296,7 +346,7 @@ class WebCall {
 
   const Host host_;
   net::io_context io_;
-  boost::beast::tcp_stream stream_;
+  Stream stream_;
   boost::beast::flat_buffer buffer_;
   http::request<http::string_body> request_;
   http::response<http::string_body> response_;
@@ -310,12 +360,17 @@ class WebSocketTransport final : public Transport {
   std::string Name() const override { return "WebSocket"; }
 
   std::unique_ptr<Link> Interact(Listener& listener, const LinkOptions& options) override {
-    return std::make_unique<WebSocketLink>(thread_.io(), host_, listener, options);
+    if (host_.tls == nullptr) {
+      return std::make_unique<WebSocketLink<Plain>>(thread_.io(), host_, listener, options);
+    }
+    return std::make_unique<WebSocketLink<Secure>>(thread_.io(), host_, listener, options,
+                                                   *host_.tls);
   }
 
   absl::StatusOr<std::string> Call(const std::string& method, const std::string& request,
                                    double patience_s) override {
-    return WebCall(host_, method, request).Run(patience_s);
+    if (host_.tls == nullptr) return WebCall<Plain>(host_, method, request).Run(patience_s);
+    return WebCall<Secure>(host_, method, request, *host_.tls).Run(patience_s);
   }
 
  private:
@@ -327,7 +382,25 @@ class WebSocketTransport final : public Transport {
 
 std::unique_ptr<Transport> MakeWebSocketTransport(const std::string& host, int port,
                                                   const std::string& token) {
-  return std::make_unique<WebSocketTransport>(Host{host, port, token});
+  return std::make_unique<WebSocketTransport>(Host{host, port, token, nullptr});
+}
+
+absl::StatusOr<std::unique_ptr<Transport>> MakeSecureWebSocketTransport(const std::string& host,
+                                                                        int port,
+                                                                        const Access& access) {
+  auto tls = std::make_shared<ssl::context>(ssl::context::tls_client);
+  error_code error;
+  if (access.tls_roots.empty()) {
+    tls->set_default_verify_paths(error);
+  } else {
+    tls->add_certificate_authority(net::buffer(access.tls_roots), error);
+  }
+  if (error) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "cannot use the certificates that may vouch for a server by TLS: ", error.message()));
+  }
+  tls->set_verify_mode(ssl::verify_peer);
+  return std::make_unique<WebSocketTransport>(Host{host, port, access.token, std::move(tls)});
 }
 
 }  // namespace thunderhead::load

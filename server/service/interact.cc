@@ -306,23 +306,27 @@ class InteractCall : public InteractReactor,
     THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
     const v1::Join& join = request.join();
     THUNDERHEAD_ASSIGN_OR_RETURN(const std::string name, NameOf(join.name(), "join.name"));
+    THUNDERHEAD_ASSIGN_OR_RETURN(std::string participant_key,
+                                 ParticipantKeyOf(join.participant_key(), "join.participant_key"));
     THUNDERHEAD_ASSIGN_OR_RETURN(const session::FoundSession found,
                                  engine_.sessions.Find(join.session_key()));
     // Who is a viewer by their token stays one, whichever key was passed on to them.
     const session::Role role =
         access::MayPresent(caller_->identity().role) ? found.role : session::Role::kViewer;
     const std::size_t most = engine_.limits.max_viewers_per_session;
-    const std::optional<std::uint64_t> person_id =
-        found.session->audience().Join(role, name, shared_from_this(), Clock::now(), most);
+    const std::optional<std::uint64_t> person_id = found.session->audience().Join(
+        role, name, shared_from_this(), Clock::now(), most, participant_key);
     if (!person_id.has_value()) return TooManyViewers(most);
     v1::InteractResponse response;
     v1::Joined& joined = *response.mutable_joined();
     joined.set_viewer_id(*person_id);
     joined.set_role(RoleMessage(role));
     joined.set_viewer_key(found.session->keys().viewer);
+    joined.set_participant_key(participant_key);
     {
       const std::lock_guard lock(mutex_);
       person_id_ = *person_id;
+      participant_key_ = std::move(participant_key);
       answers_.push_back(ResponseOf(response));
       hidden_ = join.window().hidden();
       for (const int codec : join.codecs()) {
@@ -617,7 +621,7 @@ class InteractCall : public InteractReactor,
     return session_->audience().Draw(
         person_id_,
         [&](session::Board& board) {
-          return board.Add(person_id_, std::move(positions_m), color).status();
+          return board.Add(person_id_, std::move(positions_m), color, participant_key_).status();
         },
         Clock::now());
   }
@@ -649,6 +653,7 @@ class InteractCall : public InteractReactor,
   // Set by Join before anything else can use them.
   std::shared_ptr<session::Session> session_;
   std::uint64_t person_id_ = 0;
+  std::string participant_key_;
 
   std::atomic<bool> drawing_{false};  // a mark is on its way
   bool frame_next_ = false;

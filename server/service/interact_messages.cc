@@ -1,11 +1,13 @@
 #include "service/interact_messages.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
+#include "base/random_hex.h"
 #include "glm/geometric.hpp"
 #include "service/camera_messages.h"
 #include "service/scene_messages.h"
@@ -16,6 +18,7 @@ namespace thunderhead::service {
 namespace {
 
 constexpr std::size_t kMaxNameCharacters = 40;
+constexpr int kParticipantKeyWords = 4;  // of 8 hexadecimal digits
 // Clients add a random share of their own, so that they do not come back all at once.
 constexpr std::chrono::milliseconds kComeBackAfter{1000};
 
@@ -186,6 +189,16 @@ absl::StatusOr<session::Ray> RayOf(const v1::Ray& message, const std::string& pa
   }
   const v1::RayOrigin& from = message.origin();
   return session::Ray{glm::dvec3(from.x_m(), from.y_m(), from.z_m()), direction / length};
+}
+
+absl::StatusOr<std::string> ParticipantKeyOf(const std::string& key, const std::string& path) {
+  if (key.empty()) return base::RandomHex(kParticipantKeyWords);
+  const auto is_digit = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
+  if (key.size() != 8 * kParticipantKeyWords || !std::ranges::all_of(key, is_digit)) {
+    return base::InvalidField(
+        path, "is not one that Joined gave; leave it out to come as a new person", "KEY_MALFORMED");
+  }
+  return key;
 }
 
 absl::StatusOr<std::string> NameOf(const std::string& name, const std::string& path) {

@@ -12,19 +12,20 @@ constexpr std::chrono::milliseconds kAtOnce{0};
 }  // namespace
 
 Audience::Audience(const AudienceFormat& format, const Rules& rules, Board board, Time now,
-                   std::function<void()> on_due)
+                   std::function<void()> on_due, const RosterTimeouts& timeouts)
     : format_(format),
       on_due_(std::move(on_due)),
-      roster_(rules, now, board.LastPerson()),
+      roster_(rules, now, board.LastPerson(), timeouts),
       board_(std::move(board)) {}
 
 std::optional<std::uint64_t> Audience::Join(Role role, const std::string& name,
                                             std::shared_ptr<Viewer> member, Time now,
-                                            std::size_t most) {
+                                            std::size_t most, const std::string& owner_key) {
   std::unique_lock lock(mutex_);
   if (role == Role::kViewer && members_.size() >= most) return std::nullopt;
   const std::uint64_t id = roster_.Join(role, name);
   members_[id] = std::move(member);
+  board_.HandOver(owner_key, id);
   Settle(std::move(lock), now);
   return id;
 }

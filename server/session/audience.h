@@ -64,12 +64,14 @@ class Audience {
 
   // `on_due` is called, without the lock, when Tick is to be called soon.
   Audience(const AudienceFormat& format, const Rules& rules, Board board, Time now,
-           std::function<void()> on_due);
+           std::function<void()> on_due, const RosterTimeouts& timeouts = {});
 
-  // `member` is woken when it is to be told something. None for a viewer where `most` people are.
+  // `member` is woken when it is to be told something. The marks with `owner_key`, if there are
+  // any, become the newcomer's. None for a viewer where `most` people are.
   std::optional<std::uint64_t> Join(Role role, const std::string& name,
                                     std::shared_ptr<Viewer> member, Time now,
-                                    std::size_t most = std::numeric_limits<std::size_t>::max());
+                                    std::size_t most = std::numeric_limits<std::size_t>::max(),
+                                    const std::string& owner_key = "");
   void Leave(std::uint64_t id, Time now);
 
   // Changes the roster or the board.

@@ -27,7 +27,8 @@ Board::Board(std::vector<Mark> marks) : marks_(std::move(marks)), marks_revision
 
 absl::StatusOr<std::uint64_t> Board::Add(std::uint64_t person_id,
                                          std::vector<glm::dvec3> positions_m,
-                                         const std::optional<glm::vec3>& color) {
+                                         const std::optional<glm::vec3>& color,
+                                         const std::string& owner_key) {
   if (marks_.size() >= kMaxMarks) {
     return base::WithDetails(
         absl::ResourceExhaustedError(absl::StrCat("the session already has the maximum of ",
@@ -36,9 +37,21 @@ absl::StatusOr<std::uint64_t> Board::Add(std::uint64_t person_id,
          .metadata = {{"maximum", absl::StrCat(kMaxMarks)}, {"unit", "marks"}}});
   }
   const glm::vec3 own = kColors[person_id % kColors.size()];
-  marks_.push_back({++mark_count_, person_id, std::move(positions_m), color.value_or(own)});
+  marks_.push_back(
+      {++mark_count_, person_id, std::move(positions_m), color.value_or(own), owner_key});
   ++marks_revision_;
   return mark_count_;
+}
+
+void Board::HandOver(const std::string& owner_key, std::uint64_t person_id) {
+  if (owner_key.empty()) return;
+  bool changed = false;
+  for (Mark& mark : marks_) {
+    if (mark.owner_key != owner_key || mark.person_id == person_id) continue;
+    mark.person_id = person_id;
+    changed = true;
+  }
+  if (changed) ++marks_revision_;
 }
 
 std::uint64_t Board::LastPerson() const {

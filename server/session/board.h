@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -23,6 +24,8 @@ struct Mark {
   std::uint64_t person_id = 0;
   std::vector<glm::dvec3> positions_m;
   glm::vec3 color{1.0F};  // linear sRGB
+  // Secret of who drew it, by which the marks follow the person to a new connection; empty: none.
+  std::string owner_key{};
 
   bool operator==(const Mark&) const = default;
 };
@@ -36,7 +39,10 @@ class Board {
 
   // Without a colour, one of the person's own. RESOURCE_EXHAUSTED if there are too many marks.
   absl::StatusOr<std::uint64_t> Add(std::uint64_t person_id, std::vector<glm::dvec3> positions_m,
-                                    const std::optional<glm::vec3>& color);
+                                    const std::optional<glm::vec3>& color,
+                                    const std::string& owner_key = "");
+  // The marks with that key are now the person's, who has come back with another id.
+  void HandOver(const std::string& owner_key, std::uint64_t person_id);
   // Erases `ids`, or every mark if there are none: of anybody, or only of that person.
   void Erase(const std::vector<std::uint64_t>& ids, std::optional<std::uint64_t> person_id);
 

@@ -84,12 +84,12 @@ absl::Status Roster::AskControl(std::uint64_t id, Time now) {
     return absl::OkStatus();
   }
   const Time asked_at = person->asked_at.value_or(Time::min());
-  if (person->asked_at.has_value() && now < asked_at + kAskAgainAfter) {
+  if (person->asked_at.has_value() && now < asked_at + timeouts_.ask_again) {
     return base::WithDetails(
         absl::ResourceExhaustedError("you asked for control a moment ago; wait a few seconds"),
         {.reason = "ASKED_TOO_OFTEN",
          .retry_after = std::chrono::duration_cast<std::chrono::milliseconds>(
-             asked_at + kAskAgainAfter - now)});
+             asked_at + timeouts_.ask_again - now)});
   }
   person->asked_at = now;
   person->asks = true;
@@ -186,11 +186,11 @@ absl::Status Roster::MayMark(std::uint64_t id) const {
 
 void Roster::Advance(Time now) {
   for (Person& person : people_) {
-    if (!person.asks || now < *person.asked_at + kAnswerWithin) continue;
+    if (!person.asks || now < *person.asked_at + timeouts_.answer) continue;
     person.asks = false;
     ++revision_;
   }
-  if (away_since_.has_value() && rules_.free_when_away && now >= *away_since_ + kAwayAfter) {
+  if (away_since_.has_value() && rules_.free_when_away && now >= *away_since_ + timeouts_.away) {
     away_since_.reset();
     ++revision_;
   }
@@ -198,10 +198,10 @@ void Roster::Advance(Time now) {
 
 std::optional<Roster::Time> Roster::NextDeadline() const {
   std::optional<Time> next;
-  if (away_since_.has_value() && rules_.free_when_away) next = *away_since_ + kAwayAfter;
+  if (away_since_.has_value() && rules_.free_when_away) next = *away_since_ + timeouts_.away;
   for (const Person& person : people_) {
     if (!person.asks) continue;
-    const Time ends = *person.asked_at + kAnswerWithin;
+    const Time ends = *person.asked_at + timeouts_.answer;
     next = next.has_value() ? std::min(*next, ends) : ends;
   }
   return next;

@@ -40,19 +40,22 @@ struct Person {
   bool operator==(const Person&) const = default;
 };
 
+// How long people wait for one another.
+struct RosterTimeouts {
+  std::chrono::milliseconds answer = std::chrono::seconds(20);    // to a request for control
+  std::chrono::milliseconds ask_again = std::chrono::seconds(5);  // the least between two requests
+  std::chrono::milliseconds away = std::chrono::seconds(60);      // until control becomes free
+};
+
 class Roster {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  // Limits, in time, of what people wait for.
-  static constexpr std::chrono::seconds kAnswerWithin{20};
-  static constexpr std::chrono::seconds kAskAgainAfter{5};
-  static constexpr std::chrono::seconds kAwayAfter{60};
-
   // Control is kept for the presenter, who may be on the way. People are counted from `last_id`,
   // the largest id that somebody had before the server started again.
-  Roster(const Rules& rules, Time now, std::uint64_t last_id = 0)
-      : rules_(rules), away_since_(now), count_(last_id) {}
+  Roster(const Rules& rules, Time now, std::uint64_t last_id = 0,
+         const RosterTimeouts& timeouts = {})
+      : timeouts_(timeouts), rules_(rules), away_since_(now), count_(last_id) {}
 
   std::uint64_t Join(Role role, std::string name);
   void Leave(std::uint64_t id, Time now);
@@ -106,6 +109,7 @@ class Roster {
   // To a presenter, or kept for one.
   void GiveBack(Time now);
 
+  RosterTimeouts timeouts_;
   Rules rules_;
   std::vector<Person> people_;
   std::uint64_t steering_ = 0;

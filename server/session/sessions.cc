@@ -51,12 +51,13 @@ absl::Status TooMany(const char* who, std::size_t max_sessions) {
 }  // namespace
 
 Session::Session(std::string id, SessionKeys keys, const Rules& rules, Board board,
-                 const AudienceFormat& format, const SessionSignals& signals)
+                 const AudienceFormat& format, const SessionSignals& signals,
+                 const RosterTimeouts& timeouts)
     : id_(std::move(id)),
       keys_(std::move(keys)),
       signals_(signals),
       hub_(signals.on_work, signals.on_due),
-      audience_(format, rules, std::move(board), Clock::now(), signals.on_due) {}
+      audience_(format, rules, std::move(board), Clock::now(), signals.on_due, timeouts) {}
 
 std::uint64_t Session::TakeRevision() {
   const std::lock_guard lock(mutex_);
@@ -222,10 +223,10 @@ absl::StatusOr<std::shared_ptr<Session>> Sessions::Create(const Rules& rules,
   if (static_cast<std::size_t>(owned) >= options_.max_sessions_per_owner) {
     return TooMany("you already have", options_.max_sessions_per_owner);
   }
-  auto session =
-      std::make_shared<Session>(base::RandomHex(kIdWords),
-                                SessionKeys{base::RandomHex(kKeyWords), base::RandomHex(kKeyWords)},
-                                rules, Board{}, options_.format, signals_);
+  auto session = std::make_shared<Session>(
+      base::RandomHex(kIdWords),
+      SessionKeys{base::RandomHex(kKeyWords), base::RandomHex(kKeyWords)}, rules, Board{},
+      options_.format, signals_, options_.roster_timeouts);
   Add(session);
   if (!owner.empty()) owner_by_id_[session->id()] = owner;
   return session;
@@ -233,8 +234,9 @@ absl::StatusOr<std::shared_ptr<Session>> Sessions::Create(const Rules& rules,
 
 std::shared_ptr<Session> Sessions::Restore(const SessionRecord& record, scene::Scene scene,
                                            std::string serialized) {
-  auto session = std::make_shared<Session>(record.id, record.keys, record.rules,
-                                           Board(record.marks), options_.format, signals_);
+  auto session =
+      std::make_shared<Session>(record.id, record.keys, record.rules, Board(record.marks),
+                                options_.format, signals_, options_.roster_timeouts);
   session->ShowRestored(record, std::move(scene), std::move(serialized));
   const std::lock_guard lock(mutex_);
   Add(session);

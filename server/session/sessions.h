@@ -61,7 +61,8 @@ class Session {
  public:
   // `signals` are called from any thread.
   Session(std::string id, SessionKeys keys, const Rules& rules, Board board,
-          const AudienceFormat& format, const SessionSignals& signals);
+          const AudienceFormat& format, const SessionSignals& signals,
+          const RosterTimeouts& timeouts = {});
 
   // Names it in this process; not a secret.
   const std::string& id() const { return id_; }
@@ -151,6 +152,7 @@ struct SessionsOptions {
   Clock::duration idle_timeout = std::chrono::minutes(15);  // with nobody there
   // With people there who acknowledge and send nothing.
   Clock::duration watched_idle_timeout = std::chrono::hours(1);
+  RosterTimeouts roster_timeouts;
   AudienceFormat format;
 };
 

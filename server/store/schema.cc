@@ -63,6 +63,10 @@ constexpr std::array kSteps = {R"(
     fetched INTEGER NOT NULL,
     PRIMARY KEY (job_id, place)
   ) STRICT, WITHOUT ROWID;
+)",
+                               R"(
+  -- A line for each mark, in their order: its owner's key, or nothing.
+  ALTER TABLE marks ADD COLUMN owner_keys TEXT NOT NULL DEFAULT '';
 )"};
 
 absl::Status CheckOrigin(Database& database, const std::string& path) {

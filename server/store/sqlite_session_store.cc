@@ -1,7 +1,9 @@
 #include "store/sqlite_session_store.h"
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -28,12 +30,31 @@ constexpr char kSaveSession[] =
     "scene_revision = excluded.scene_revision, last_used_ms = excluded.last_used_ms";
 // Written only when they have changed.
 constexpr char kSaveMarks[] =
-    "INSERT INTO marks (session_id, marks) VALUES (?, ?) ON CONFLICT (session_id) DO UPDATE SET "
-    "marks = excluded.marks WHERE marks IS NOT excluded.marks";
+    "INSERT INTO marks (session_id, marks, owner_keys) VALUES (?, ?, ?) "
+    "ON CONFLICT (session_id) DO UPDATE SET "
+    "marks = excluded.marks, owner_keys = excluded.owner_keys "
+    "WHERE marks IS NOT excluded.marks OR owner_keys IS NOT excluded.owner_keys";
 constexpr char kLoad[] =
     "SELECT id, presenter_key, viewer_key, viewers_may_steer, control_locked, following_locked, "
-    "viewers_may_mark, free_when_away, scene, scene_revision, last_used_ms, marks FROM sessions "
+    "viewers_may_mark, free_when_away, scene, scene_revision, last_used_ms, marks, owner_keys "
+    "FROM sessions "
     "JOIN marks ON session_id = id ORDER BY id";
+
+std::string OwnerKeysOf(const std::vector<session::Mark>& marks) {
+  std::string keys;
+  for (const session::Mark& mark : marks) absl::StrAppend(&keys, mark.owner_key, "\n");
+  return keys;
+}
+
+// Marks for which there is no key are nobody's.
+void SetOwnerKeys(std::string_view keys, std::vector<session::Mark>* marks) {
+  for (session::Mark& mark : *marks) {
+    const std::size_t end = keys.find('\n');
+    if (end == std::string_view::npos) return;
+    mark.owner_key = keys.substr(0, end);
+    keys.remove_prefix(end + 1);
+  }
+}
 
 SessionRecord RecordOf(const Statement& row) {
   SessionRecord record;
@@ -65,6 +86,8 @@ class OpenStore final : public SqliteSessionStore {
       const std::string marks = ToBytes(record.marks);
       save_marks.Bind(1, record.id);
       save_marks.BindBlob(2, marks);
+      const std::string owner_keys = OwnerKeysOf(record.marks);
+      save_marks.Bind(3, owner_keys);
       THUNDERHEAD_RETURN_IF_ERROR(save_marks.Run());
     }
     return transaction.Commit();
@@ -91,6 +114,7 @@ class OpenStore final : public SqliteSessionStore {
       auto marks = MarksFrom(rows.Bytes(11));
       if (marks.ok()) {
         record.marks = *std::move(marks);
+        SetOwnerKeys(rows.Bytes(12), &record.marks);
       } else {
         base::LogError(base::Annotate(
             marks.status(), absl::StrCat("session ", record.id, " comes back without its marks")));

@@ -1,6 +1,8 @@
 // The hub alone: in flight, skipping, problems, closing.
 #include "session/frame_hub.h"
 
+#include <array>
+
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
@@ -129,10 +131,12 @@ TEST_F(FrameHubTest, ViewersAreWokenAndDemandIsTold) {
   EXPECT_FALSE(hub_.Acknowledge(id, 2));
 }
 
+using Made = std::array<int, kTiers>;  // of each tier
+
 // Counts what it makes.
-EncodeFrame CountingReduction(int* made) {
+EncodeFrame CountingReduction(Made* made) {
   return [made](const EncodedFrame& described, int tier) {
-    if (tier > 0) ++*made;
+    ++(*made)[static_cast<std::size_t>(tier)];
     EncodedFrame encoded = described;
     encoded.tier = tier;
     return encoded;
@@ -153,23 +157,26 @@ TEST_F(FrameHubTest, ASizeIsMadeOnceForAllWhoWantIt) {
   for (int i = 0; i < 5; ++i) {
     phones.push_back(*hub_.Join(std::make_shared<CountingViewer>(), {.window_width_px = 400}));
   }
-  const std::uint64_t wall = Join();
-  int made = 0;
+  std::vector<std::uint64_t> walls;
+  for (int i = 0; i < 5; ++i) walls.push_back(Join());
+  const Made once{1, 1, 0};
+  Made made{};
   hub_.Publish(frame, CountingReduction(&made));
-  EXPECT_EQ(made, 1) << "before anybody waits for it";
+  EXPECT_EQ(made, once) << "before anybody waits for it";
   for (const std::uint64_t phone : phones) EXPECT_EQ(TakeTier(hub_, phone, now), 1);
-  EXPECT_EQ(TakeTier(hub_, wall, now), 0);
-  EXPECT_EQ(made, 1);
+  for (const std::uint64_t wall : walls) EXPECT_EQ(TakeTier(hub_, wall, now), 0);
+  EXPECT_EQ(made, once);
   // A window that grows gets the same frame larger.
   hub_.SetWants(phones[0], {.window_width_px = 1280});
   EXPECT_EQ(TakeTier(hub_, phones[0], now), 0);
+  EXPECT_EQ(made, once) << "it was made for others";
 }
 
 TEST_F(FrameHubTest, ASlowLinkGetsSmallMovingPicturesAndFullStills) {
   const std::uint64_t viewer = *hub_.Join(std::make_shared<CountingViewer>(), {.adapts = true});
   const std::uint64_t other = Join();
   auto now = FrameHub::Time() + std::chrono::hours(1);
-  int made = 0;
+  Made made{};
   int tier = 0;
   for (int i = 0; i < 20; ++i) {
     hub_.Publish(FrameOf(1), CountingReduction(&made));

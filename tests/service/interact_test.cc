@@ -3,6 +3,7 @@
 #include <chrono>
 #include <thread>
 
+#include "access/door.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/service/fake_service.h"
@@ -90,9 +91,40 @@ const v1::Person* Find(const v1::Presence& presence, std::uint64_t viewer_id) {
   return at == presence.people().end() ? nullptr : &*at;
 }
 
+v1::InteractRequest Refuses(std::uint64_t viewer_id) {
+  v1::InteractRequest request;
+  request.mutable_refuse_control()->set_viewer_id(viewer_id);
+  return request;
+}
+
+v1::InteractRequest LocksControl(bool locked) {
+  v1::InteractRequest request;
+  request.mutable_set_rules()->mutable_rules()->set_control_locked(locked);
+  return request;
+}
+
+v1::InteractRequest Erases() {
+  v1::InteractRequest request;
+  request.mutable_erase_marks();
+  return request;
+}
+
+v1::SessionRules ViewersMayMark() {
+  v1::SessionRules rules;
+  rules.set_viewers_may_mark(true);
+  return rules;
+}
+
+service::ServerOptions With(const session::RosterTimeouts& timeouts) {
+  service::ServerOptions options;
+  options.sessions.roster_timeouts = timeouts;
+  return options;
+}
+
 // A session with its presenter, Ana and Ben.
 struct Class {
-  explicit Class(const v1::SessionRules& rules = {}) : created(Create(service, rules)) {
+  explicit Class(const v1::SessionRules& rules = {}, const service::ServerOptions& options = {})
+      : service(options), created(Create(service, rules)) {
     presenter =
         std::make_unique<Interacting>(service.stub(), created.session_id(), Named("Teacher"));
     EXPECT_GT(presenter->viewer_id(), 0U);
@@ -108,6 +140,13 @@ struct Class {
   static bool SteersFor(Interacting& person, std::uint64_t viewer_id) {
     return person.AwaitPresence([&](const v1::Presence& presence) {
       return presence.people_size() >= 3 && presence.steering_viewer_id() == viewer_id;
+    });
+  }
+
+  static bool AsksFor(Interacting& person, std::uint64_t viewer_id, bool asks) {
+    return person.AwaitPresence([&](const v1::Presence& presence) {
+      const v1::Person* const one = Find(presence, viewer_id);
+      return one != nullptr && one->asks_control() == asks;
     });
   }
 
@@ -230,6 +269,159 @@ TEST(InteractTest, AViewerDoesNotSteerUnlessGivenControl) {
   ASSERT_TRUE(Class::SteersFor(*group.ana, group.presenter->viewer_id()));
   EXPECT_EQ(group.ana->AnswerCode(group.ana->Send(SunTo(140.0F))),
             grpc::StatusCode::PERMISSION_DENIED);
+}
+
+TEST(InteractTest, LockedControlIsNotAskedFor) {
+  Class group;
+  group.ana->Send(Asks());
+  ASSERT_TRUE(Class::AsksFor(*group.presenter, group.ana->viewer_id(), true));
+  group.presenter->Send(LocksControl(true));
+  ASSERT_TRUE(group.ben->AwaitPresence(
+      [](const v1::Presence& presence) { return presence.rules().control_locked(); }));
+  EXPECT_TRUE(Class::AsksFor(*group.ben, group.ana->viewer_id(), false)) << "it was locked since";
+  const v1::Refused refused = group.ben->Answer(group.ben->Send(Asks())).refused();
+  EXPECT_EQ(refused.status().code(), static_cast<int>(grpc::StatusCode::PERMISSION_DENIED));
+  EXPECT_EQ(ReasonOf(refused.status()), "CONTROL_LOCKED");
+  group.presenter->Send(LocksControl(false));
+  ASSERT_TRUE(group.ben->AwaitPresence(
+      [](const v1::Presence& presence) { return !presence.rules().control_locked(); }));
+  group.ben->Send(Asks());
+  EXPECT_TRUE(Class::AsksFor(*group.presenter, group.ben->viewer_id(), true));
+}
+
+TEST(InteractTest, WhoAsksTooOftenIsToldWhenToAskAgain) {
+  constexpr std::chrono::milliseconds kPause{1000};
+  Class group({}, With({.ask_again = kPause}));
+  group.ana->Send(Asks());
+  const v1::Refused refused = group.ana->Answer(group.ana->Send(Asks())).refused();
+  EXPECT_EQ(refused.status().code(), static_cast<int>(grpc::StatusCode::RESOURCE_EXHAUSTED));
+  EXPECT_EQ(ReasonOf(refused.status()), "ASKED_TOO_OFTEN");
+  const std::chrono::milliseconds wait = RetryAfterOf(refused.status());
+  EXPECT_GT(wait, std::chrono::milliseconds(0));
+  EXPECT_LE(wait, kPause);
+  // Another person may.
+  group.ben->Send(Asks());
+  EXPECT_TRUE(Class::AsksFor(*group.presenter, group.ben->viewer_id(), true));
+  group.presenter->Send(Refuses(group.ana->viewer_id()));
+  ASSERT_TRUE(Class::AsksFor(*group.presenter, group.ana->viewer_id(), false));
+  std::this_thread::sleep_for(wait + std::chrono::milliseconds(2));
+  group.ana->Send(Asks());
+  EXPECT_TRUE(Class::AsksFor(*group.presenter, group.ana->viewer_id(), true));
+}
+
+TEST(InteractTest, ARefusedRequestEndsAndControlStays) {
+  Class group;
+  group.ana->Send(Asks());
+  ASSERT_TRUE(Class::AsksFor(*group.presenter, group.ana->viewer_id(), true));
+  const v1::Refused refused =
+      group.ben->Answer(group.ben->Send(Refuses(group.ana->viewer_id()))).refused();
+  EXPECT_EQ(refused.status().code(), static_cast<int>(grpc::StatusCode::PERMISSION_DENIED));
+  EXPECT_EQ(ReasonOf(refused.status()), "NOT_STEERING");
+  EXPECT_EQ(group.presenter->AnswerCode(group.presenter->Send(Refuses(99))),
+            grpc::StatusCode::NOT_FOUND);
+  EXPECT_TRUE(Class::AsksFor(*group.ana, group.ana->viewer_id(), true)) << "not yet answered";
+  group.presenter->Send(Refuses(group.ana->viewer_id()));
+  EXPECT_TRUE(Class::AsksFor(*group.ana, group.ana->viewer_id(), false));
+  EXPECT_TRUE(Class::SteersFor(*group.ana, group.presenter->viewer_id()));
+}
+
+TEST(InteractTest, ARequestThatNobodyAnswersEnds) {
+  constexpr std::chrono::milliseconds kAnswer{700};
+  Class group({}, With({.answer = kAnswer}));
+  const auto began = session::Clock::now();
+  group.ana->Send(Asks());
+  ASSERT_TRUE(Class::AsksFor(*group.presenter, group.ana->viewer_id(), true));
+  // Nobody does anything meanwhile.
+  EXPECT_TRUE(Class::AsksFor(*group.presenter, group.ana->viewer_id(), false));
+  EXPECT_TRUE(Class::AsksFor(*group.ana, group.ana->viewer_id(), false));
+  EXPECT_GE(session::Clock::now() - began, kAnswer);
+  EXPECT_TRUE(Class::SteersFor(*group.ana, group.presenter->viewer_id()));
+}
+
+TEST(InteractTest, FreeControlGoesToWhoAsksFirst) {
+  Class group;
+  group.presenter->Send(Gives(0));
+  ASSERT_TRUE(Class::SteersFor(*group.ben, 0));
+  EXPECT_EQ(group.presenter->AnswerCode(group.presenter->Send(SunTo(110.0F))),
+            grpc::StatusCode::PERMISSION_DENIED)
+      << "nobody steers";
+  group.ben->Send(Asks());
+  ASSERT_TRUE(Class::SteersFor(*group.ana, group.ben->viewer_id()));
+  EXPECT_EQ(group.ben->AnswerCode(group.ben->Send(SunTo(120.0F))), grpc::StatusCode::OK);
+  // The next has to wait for Ben's answer.
+  group.ana->Send(Asks());
+  ASSERT_TRUE(Class::AsksFor(*group.ben, group.ana->viewer_id(), true));
+  EXPECT_TRUE(Class::SteersFor(*group.ben, group.ben->viewer_id()));
+  group.ben->Send(Gives(group.ana->viewer_id()));
+  ASSERT_TRUE(Class::SteersFor(*group.ben, group.ana->viewer_id()));
+  // A viewer's control goes back to the presenter.
+  group.ana->Send(Gives(0));
+  EXPECT_TRUE(Class::SteersFor(*group.ana, group.presenter->viewer_id()));
+}
+
+TEST(InteractTest, FreeControlIsAskedForWhereViewersMayNotSteer) {
+  v1::SessionRules rules;
+  rules.set_viewers_may_steer(false);
+  Class group(rules);
+  group.presenter->Send(Gives(0));
+  ASSERT_TRUE(Class::SteersFor(*group.ana, 0));
+  group.ana->Send(Asks());
+  ASSERT_TRUE(Class::AsksFor(*group.presenter, group.ana->viewer_id(), true));
+  EXPECT_TRUE(Class::SteersFor(*group.presenter, 0));
+  group.presenter->Send(Gives(group.ana->viewer_id()));
+  EXPECT_TRUE(Class::SteersFor(*group.ben, group.ana->viewer_id()));
+}
+
+TEST(InteractTest, ControlOfAnAbsentPresenterBecomesFreeIfChosen) {
+  constexpr std::chrono::milliseconds kAway{700};
+  v1::SessionRules rules;
+  rules.set_free_when_away(true);
+  Class group(rules, With({.away = kAway}));
+  const auto began = session::Clock::now();
+  group.presenter->Cancel();
+  ASSERT_TRUE(group.ana->AwaitPresence(
+      [](const v1::Presence& presence) { return presence.presenter_away(); }));
+  // Nobody does anything meanwhile.
+  ASSERT_TRUE(group.ana->AwaitPresence([](const v1::Presence& presence) {
+    return !presence.presenter_away() && presence.steering_viewer_id() == 0;
+  }));
+  EXPECT_GE(session::Clock::now() - began, kAway);
+  group.ana->Send(Asks());
+  const auto ana_steers = [&](const v1::Presence& presence) {
+    return presence.steering_viewer_id() == group.ana->viewer_id();
+  };
+  ASSERT_TRUE(group.ben->AwaitPresence(ana_steers));
+  // A presenter who comes back takes it, but not by coming.
+  Interacting back(group.service.stub(), group.created.session_id(), {.name = "Teacher"});
+  ASSERT_TRUE(group.ben->AwaitPresence([&](const v1::Presence& presence) {
+    return presence.people_size() == 3 && ana_steers(presence);
+  }));
+  back.Send(Takes());
+  EXPECT_TRUE(Class::SteersFor(*group.ben, back.viewer_id()));
+}
+
+TEST(InteractTest, ControlOfAnAbsentPresenterStaysElse) {
+  constexpr std::chrono::milliseconds kAway{100};
+  Class group({}, With({.away = kAway}));
+  group.presenter->Cancel();
+  ASSERT_TRUE(group.ana->AwaitPresence(
+      [](const v1::Presence& presence) { return presence.presenter_away(); }));
+  std::this_thread::sleep_for(5 * kAway);
+  group.ana->Send(Asks());
+  ASSERT_TRUE(Class::AsksFor(*group.ben, group.ana->viewer_id(), true)) << "it waits";
+  EXPECT_TRUE(group.ben->AwaitPresence([](const v1::Presence& presence) {
+    return presence.presenter_away() && presence.steering_viewer_id() == 0;
+  }));
+}
+
+TEST(InteractTest, ASecondPresenterTakesOverFromOneWhoLeaves) {
+  Class group;
+  Interacting tablet(group.service.stub(), group.created.session_id(), {.name = "Tablet"});
+  ASSERT_GT(tablet.viewer_id(), 0U);
+  EXPECT_EQ(tablet.AnswerCode(tablet.Send(SunTo(120.0F))), grpc::StatusCode::PERMISSION_DENIED);
+  group.presenter->Leave();
+  ASSERT_TRUE(Class::SteersFor(*group.ana, tablet.viewer_id()));
+  EXPECT_EQ(tablet.AnswerCode(tablet.Send(SunTo(120.0F))), grpc::StatusCode::OK);
 }
 
 TEST(InteractTest, EverybodyIsToldWhichTimesAreInMemory) {
@@ -449,6 +641,144 @@ TEST(InteractTest, ViewersMarkIfAllowedAndEraseTheirOwn) {
             group.presenter->viewer_id());
   group.presenter->Send(erase);
   EXPECT_TRUE(marks_are(0));
+}
+
+TEST(InteractTest, WhoComesBackHasTheOwnMarksAgain) {
+  Class group(ViewersMayMark());
+  EXPECT_THAT(group.ana->participant_key(), ::testing::MatchesRegex("[0-9a-f]{32}"));
+  EXPECT_NE(group.ana->participant_key(), group.ben->participant_key());
+  group.presenter->Send(Draws());
+  group.ana->Send(Draws());
+  const auto drawn_by = [](const v1::Marks& marks, std::uint64_t viewer_id) {
+    return std::ranges::count(marks.marks(), viewer_id, &v1::Mark::viewer_id);
+  };
+  ASSERT_TRUE(group.ben->AwaitMarks([&](const v1::Marks& marks) {
+    return marks.marks_size() == 2 && drawn_by(marks, group.ana->viewer_id()) == 1;
+  }));
+  // The connection that she has lost still counts as hers here, as it may for a while.
+  Interacting back(group.service.stub(), group.created.viewer_key(),
+                   {.name = "Ana", .participant_key = group.ana->participant_key()});
+  EXPECT_EQ(back.participant_key(), group.ana->participant_key());
+  EXPECT_NE(back.viewer_id(), group.ana->viewer_id());
+  ASSERT_TRUE(group.ben->AwaitMarks(
+      [&](const v1::Marks& marks) { return drawn_by(marks, back.viewer_id()) == 1; }));
+  group.ana->Cancel();
+  // A person without the key has none of them.
+  Interacting other(group.service.stub(), group.created.viewer_key(), {.name = "Ana"});
+  other.Send(Erases());
+  v1::InteractRequest rename;
+  rename.mutable_set_name()->set_name("Anna");
+  other.Send(rename);
+  ASSERT_TRUE(group.ben->AwaitPresence([&](const v1::Presence& presence) {
+    const v1::Person* const person = Find(presence, other.viewer_id());
+    return person != nullptr && person->name() == "Anna";
+  })) << "it is not later than what was sent before";
+  EXPECT_EQ(Interacting(group.service.stub(), group.created.viewer_key())
+                .AwaitNewest(Response::kMarks)
+                .marks()
+                .marks_size(),
+            2);
+  back.Send(Erases());
+  EXPECT_TRUE(group.ben->AwaitMarks([&](const v1::Marks& marks) {
+    return marks.marks_size() == 1 && drawn_by(marks, group.presenter->viewer_id()) == 1;
+  }));
+}
+
+TEST(InteractTest, AParticipantKeyThatNobodyGaveIsRefused) {
+  Class group;
+  for (const std::string key : {"0123", "0123456789abcdef0123456789abcdeg"}) {
+    Interacting person(group.service.stub(), group.created.viewer_key(), {.participant_key = key});
+    const grpc::Status end = person.End();
+    EXPECT_EQ(end.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << key;
+    EXPECT_EQ(ReasonOf(end), "KEY_MALFORMED");
+    EXPECT_THAT(end.error_message(), HasSubstr("join.participant_key"));
+  }
+}
+
+// Threads of the executor, which finds the places of marks.
+constexpr int kExecutorThreads = 4;
+
+TEST(InteractTest, AMarkWaitsUntilTheLastOneHasItsPlace) {
+  Class group;
+  ASSERT_TRUE(group.ana->AwaitFrame(1));
+  const std::uint32_t shown = group.ana->AwaitScene(1).time_index();
+  group.service.store->reading.Close();
+  std::vector<std::thread> readers;
+  for (int i = 0; i < kExecutorThreads; ++i) {
+    readers.emplace_back([&] {
+      v1::DescribeStormRequest request;
+      request.set_storm_id("anvil");
+      request.set_time_index(shown == 0 ? 1 : 0);
+      v1::DescribeStormResponse response;
+      Call(group.service.stub(), &Stub::DescribeStorm, request, &response);
+    });
+  }
+  EXPECT_TRUE(group.service.store->reading.AwaitWaiting(kExecutorThreads));
+  group.presenter->Send(Draws());
+  const v1::Refused refused = group.presenter->Answer(group.presenter->Send(Draws())).refused();
+  EXPECT_EQ(refused.status().code(), static_cast<int>(grpc::StatusCode::RESOURCE_EXHAUSTED));
+  EXPECT_EQ(ReasonOf(refused.status()), "MARKS_TOO_FAST");
+  EXPECT_GT(RetryAfterOf(refused.status()), std::chrono::milliseconds(0));
+  group.service.store->reading.Open();
+  for (std::thread& reader : readers) reader.join();
+  ASSERT_TRUE(
+      group.ana->AwaitMarks([](const v1::Marks& marks) { return marks.marks_size() == 1; }));
+  group.presenter->Send(Draws());
+  EXPECT_TRUE(
+      group.ana->AwaitMarks([](const v1::Marks& marks) { return marks.marks_size() == 2; }));
+}
+
+// Answers alone wait for a slow client, so there is a limit to them: beyond it no further request
+// is read.
+TEST(InteractTest, WhoReadsNoAnswersIsNotHeardAnyMore) {
+  service::ServerOptions options;
+  options.address = "127.0.0.1:0";
+  options.door = std::make_shared<access::Door>(
+      access::TrustEverybody(), std::make_shared<access::Audit>([](const std::string&) {}),
+      access::QuotaLimits{.requests_per_second = 0.0});
+  Class group({}, options);
+  // Its connection takes 64 KiB that nobody reads, and no more.
+  grpc::ChannelArguments arguments;
+  arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
+  arguments.SetInt(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, 1 << 16);
+  const auto stub = v1::ThunderheadService::NewStub(
+      grpc::CreateCustomChannel("127.0.0.1:" + std::to_string(group.service.server().Port()),
+                                grpc::InsecureChannelCredentials(), arguments));
+  grpc::ClientContext context;
+  const auto call = stub->Interact(&context);
+  v1::InteractRequest join;
+  join.mutable_join()->set_session_key(group.created.viewer_key());
+  join.mutable_join()->set_name("Deaf");
+  join.mutable_join()->mutable_window()->set_hidden(true);
+  ASSERT_TRUE(call->Write(join));
+  // Their answers are more than that, they themselves less.
+  constexpr std::uint64_t kRequests = 1500;
+  for (std::uint64_t i = 1; i <= kRequests; ++i) {
+    v1::InteractRequest refused = Takes();
+    refused.set_request_id(i);
+    ASSERT_TRUE(call->Write(refused));
+  }
+  v1::InteractRequest rename;
+  rename.mutable_set_name()->set_name("Heard");
+  ASSERT_TRUE(call->Write(rename));
+  const auto is_called = [&](const std::string& name) {
+    return [name](const v1::Presence& presence) {
+      return std::ranges::any_of(presence.people(),
+                                 [&](const v1::Person& person) { return person.name() == name; });
+    };
+  };
+  ASSERT_TRUE(group.ana->AwaitPresence(is_called("Deaf")));
+  std::this_thread::sleep_for(std::chrono::seconds(2));
+  EXPECT_TRUE(is_called("Deaf")(group.ana->AwaitNewest(Response::kPresence).presence()));
+  std::uint64_t answers = 0;
+  v1::InteractResponse response;
+  while (answers < kRequests && call->Read(&response)) answers += response.has_refused() ? 1 : 0;
+  EXPECT_EQ(answers, kRequests) << "none is lost";
+  EXPECT_TRUE(group.ana->AwaitPresence(is_called("Heard")));
+  context.TryCancel();
+  while (call->Read(&response)) {
+  }
+  EXPECT_EQ(call->Finish().error_code(), grpc::StatusCode::CANCELLED);
 }
 
 TEST(InteractTest, APresenterWhoReloadsHasControlAgain) {

@@ -3,7 +3,32 @@
 #include <algorithm>
 #include <utility>
 
+#include "google/rpc/error_details.pb.h"
+
 namespace thunderhead::testing {
+
+std::string ReasonOf(const google::rpc::Status& refusal) {
+  google::rpc::ErrorInfo info;
+  for (const auto& detail : refusal.details()) {
+    if (detail.UnpackTo(&info)) return info.reason();
+  }
+  return "";
+}
+
+std::string ReasonOf(const grpc::Status& refusal) {
+  google::rpc::Status status;
+  return status.ParseFromString(refusal.error_details()) ? ReasonOf(status) : "";
+}
+
+std::chrono::milliseconds RetryAfterOf(const google::rpc::Status& refusal) {
+  google::rpc::RetryInfo retry;
+  for (const auto& detail : refusal.details()) {
+    if (!detail.UnpackTo(&retry)) continue;
+    return std::chrono::milliseconds(1000 * retry.retry_delay().seconds() +
+                                     retry.retry_delay().nanos() / 1'000'000);
+  }
+  return {};
+}
 
 Interacting::Interacting(v1::ThunderheadService::Stub& stub, const std::string& key,
                          Options options)
@@ -13,6 +38,7 @@ Interacting::Interacting(v1::ThunderheadService::Stub& stub, const std::string& 
   request.mutable_join()->set_name(options_.name);
   request.mutable_join()->mutable_window()->set_hidden(options_.hidden);
   request.mutable_join()->mutable_window()->set_saves_bytes(options_.saves_bytes);
+  request.mutable_join()->set_participant_key(options_.participant_key);
   for (const v1::Codec codec : options_.codecs) request.mutable_join()->add_codecs(codec);
   Send(request);
   thread_ = std::thread([this] { Run(); });
@@ -97,6 +123,14 @@ bool Interacting::AwaitPresence(const std::function<bool(const v1::Presence&)>& 
   });
 }
 
+bool Interacting::AwaitMarks(const std::function<bool(const v1::Marks&)>& wanted) {
+  return Await([&](const Messages& messages) {
+    const auto at = std::find_if(messages.rbegin(), messages.rend(),
+                                 [](const auto& message) { return message.has_marks(); });
+    return at != messages.rend() && wanted(at->marks());
+  });
+}
+
 v1::Scene Interacting::AwaitScene(std::uint64_t revision) {
   v1::Scene scene;
   Await([&](const Messages& messages) {
@@ -128,6 +162,10 @@ std::uint64_t Interacting::viewer_id() {
   // Without the lock once it is known, for conditions that wait for others' messages.
   if (viewer_id_ == 0) AwaitNewest(v1::InteractResponse::kJoined);
   return viewer_id_;
+}
+
+std::string Interacting::participant_key() {
+  return AwaitNewest(v1::InteractResponse::kJoined).joined().participant_key();
 }
 
 void Interacting::Leave() {

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "google/rpc/status.pb.h"
 #include "tests/service/fake_service.h"
 
 namespace thunderhead::testing {
@@ -21,7 +22,14 @@ struct InteractingOptions {
   bool acknowledges = true;
   std::vector<v1::Codec> codecs{};
   bool saves_bytes = false;
+  std::string participant_key;
 };
+
+// The reason in a refusal's details; empty if it has none.
+std::string ReasonOf(const google::rpc::Status& refusal);
+std::string ReasonOf(const grpc::Status& refusal);
+// The delay in a refusal's details; 0 if it has none.
+std::chrono::milliseconds RetryAfterOf(const google::rpc::Status& refusal);
 
 class Interacting {
  public:
@@ -50,8 +58,12 @@ class Interacting {
   bool AwaitFrame(std::uint64_t revision, bool own_view = false);
   Messages All();
 
+  // Waits until the newest marks are as wanted.
+  bool AwaitMarks(const std::function<bool(const v1::Marks&)>& wanted);
+
   // Of this person; known once joined.
   std::uint64_t viewer_id();
+  std::string participant_key();
 
   void Leave();  // half-closes
   void Cancel() { context_.TryCancel(); }

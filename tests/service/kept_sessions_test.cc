@@ -191,6 +191,57 @@ TEST_F(KeptSessionsTest, TheNextServerHasTheSameSession) {
   }));
 }
 
+TEST_F(KeptSessionsTest, AViewerHasTheOwnMarksAgain) {
+  v1::SessionRules rules;
+  rules.set_viewers_may_mark(true);
+  const auto created = Create(rules);
+  std::string participant_key;
+  {
+    Interacting viewer(service_->stub(), created.viewer_key());
+    participant_key = viewer.participant_key();
+    viewer.Send(DrawsDown());
+    ASSERT_TRUE(viewer.AwaitMarks([](const v1::Marks& marks) { return marks.marks_size() == 1; }));
+  }
+  Start();
+  Interacting other(service_->stub(), created.viewer_key());
+  Interacting back(service_->stub(), created.viewer_key(), {.participant_key = participant_key});
+  ASSERT_TRUE(other.AwaitMarks([&](const v1::Marks& marks) {
+    return marks.marks_size() == 1 && marks.marks(0).viewer_id() == back.viewer_id();
+  }));
+  v1::InteractRequest erase;
+  erase.mutable_erase_marks();
+  back.Send(erase);
+  EXPECT_TRUE(other.AwaitMarks([](const v1::Marks& marks) { return marks.marks_size() == 0; }));
+}
+
+TEST_F(KeptSessionsTest, ASessionHasAtMostSoManyMarks) {
+  const auto created = Create();
+  service_.reset();
+  store_->Change([](SessionRecord& record) {
+    for (std::uint64_t id = 1; id < session::Board::kMaxMarks; ++id) {
+      record.marks.push_back({.id = id, .person_id = 1, .positions_m = {{0.0, 0.0, 1000.0}}});
+    }
+  });
+  Start();
+  constexpr int kMaxMarks = session::Board::kMaxMarks;
+  Interacting presenter(service_->stub(), created.session_id());
+  presenter.Send(DrawsDown());
+  ASSERT_TRUE(
+      presenter.AwaitMarks([](const v1::Marks& marks) { return marks.marks_size() == kMaxMarks; }));
+  const v1::Refused refused = presenter.Answer(presenter.Send(DrawsDown())).refused();
+  EXPECT_EQ(refused.status().code(), static_cast<int>(grpc::StatusCode::RESOURCE_EXHAUSTED));
+  EXPECT_EQ(ReasonOf(refused.status()), "TOO_MANY_MARKS");
+  // One that goes makes room for another.
+  v1::InteractRequest erase;
+  erase.mutable_erase_marks()->add_mark_ids(7);
+  presenter.Send(erase);
+  ASSERT_TRUE(presenter.AwaitMarks(
+      [](const v1::Marks& marks) { return marks.marks_size() == kMaxMarks - 1; }));
+  presenter.Send(DrawsDown());
+  EXPECT_TRUE(
+      presenter.AwaitMarks([](const v1::Marks& marks) { return marks.marks_size() == kMaxMarks; }));
+}
+
 TEST_F(KeptSessionsTest, ASessionIsSavedBeforeItsClientKnowsIt) {
   store_->saving.Close();
   std::thread opener([this] { Create(); });

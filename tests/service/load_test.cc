@@ -3,20 +3,26 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <future>
 #include <memory>
 #include <stop_token>
 #include <string>
 #include <thread>
 
+#include "base/whole_file.h"
 #include "gateway/gateway.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/service/fake_service.h"
+#include "tests/support/self_signed.h"
+#include "tests/support/temporary_folder.h"
 
 namespace thunderhead::load {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::Ge;
 using ::testing::Gt;
@@ -131,6 +137,21 @@ TEST_P(LoadTest, StalledAndThrottledViewersDoNotSlowOthers) {
   EXPECT_THAT(report->throttled.fps_median, Le(0.7 * report->healthy.fps_min)) << ToText(*report);
 }
 
+TEST_P(LoadTest, ARateWithoutANumberThrottlesAllViewers) {
+  Throttle(16.0, std::nullopt, options_);
+  std::atomic<double> shown_fps{0.0};
+  const auto report = Run([&](const Progress& progress) {
+    shown_fps = std::max(shown_fps.load(), progress.frames_per_s);
+  });
+  ASSERT_TRUE(report.ok()) << report.status();
+  EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
+  EXPECT_EQ(report->healthy.viewers, 0);
+  EXPECT_EQ(report->throttled.viewers, 3);
+  EXPECT_THAT(report->throttled.kbit_per_viewer, AllOf(Gt(1.0), Le(1.5 * 16.0))) << ToText(*report);
+  EXPECT_EQ(report->throttled_first.count, 3U);
+  EXPECT_THAT(shown_fps.load(), AllOf(Gt(0.0), Le(1000.0)));
+}
+
 TEST_P(LoadTest, PassingViewersComeAndGetAFrameEachTime) {
   options_.passing = 40;
   options_.seconds = 3.0;
@@ -216,6 +237,45 @@ INSTANTIATE_TEST_SUITE_P(Transports, LoadTest, ::testing::Values(By::kGrpc, By::
                          [](const auto& by) {
                            return by.param == By::kGrpc ? "Grpc" : "WebSocket";
                          });
+
+TEST(SecureLoad, ComesByTlsToWhomItTrustsOnly) {
+  const testing::TemporaryFolder folder;
+  const std::string certificate = folder.File("certificate.pem");
+  testing::WriteSelfSigned(certificate, folder.File("key.pem"), 1);
+  testing::FakeService service;
+  gateway::GatewayOptions site;
+  site.address = "0.0.0.0";  // also where the certificate does not name it
+  site.tls_certificate = certificate;
+  site.tls_key = folder.File("key.pem");
+  const auto gateway = gateway::Gateway::Start(site, service.server().LocalChannel());
+  ASSERT_TRUE(gateway.ok()) << gateway.status();
+  const int port = (*gateway)->Port();
+  LoadOptions options;
+  options.viewers = 2;
+  options.seconds = 1.0;
+  options.width_px = 64;
+  options.height_px = 36;
+  const auto run = [&](const std::string& host, const std::string& roots) {
+    const auto transport = MakeSecureWebSocketTransport(host, port, {.tls_roots = roots});
+    if (!transport.ok()) return absl::StatusOr<Report>(transport.status());
+    return load::Run(options, **transport, std::nullopt, {}, [](auto&) {});
+  };
+  const std::string roots = *base::ReadWholeFile(certificate);
+  for (const std::string host : {"127.0.0.1", "localhost"}) {
+    const auto report = run(host, roots);
+    ASSERT_TRUE(report.ok()) << report.status();
+    EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
+    EXPECT_THAT(report->healthy.fps_min, Gt(1.0));
+  }
+  // The machine does not vouch for it, and it is not the one that it is asked for.
+  const auto stranger = run("127.0.0.1", "");
+  EXPECT_EQ(stranger.status().code(), absl::StatusCode::kUnavailable);
+  EXPECT_THAT(std::string(stranger.status().message()), HasSubstr("speak TLS with https://"));
+  const auto another = run("127.0.0.2", roots);
+  EXPECT_EQ(another.status().code(), absl::StatusCode::kUnavailable);
+  EXPECT_THAT(std::string(another.status().message()), HasSubstr("speak TLS with https://"));
+  EXPECT_EQ(run("127.0.0.1", "no PEM").status().code(), absl::StatusCode::kInvalidArgument);
+}
 
 TEST(ServerProcess, IsFoundByItsPort) {
   testing::FakeService service(OnFreePort());

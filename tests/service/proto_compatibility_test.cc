@@ -113,6 +113,8 @@ TEST(ProtoCompatibility, FormerNumbersStayReserved) {
   EXPECT_TRUE(v1::StageCost::descriptor()->IsReservedNumber(1));
   EXPECT_TRUE(v1::Modelled::descriptor()->IsReservedNumber(5));
   EXPECT_TRUE(v1::AccuracyReport::descriptor()->IsReservedNumber(10));
+  EXPECT_TRUE(v1::End_Reason_descriptor()->IsReservedNumber(3));
+  EXPECT_TRUE(v1::End_Reason_descriptor()->IsReservedName("REASON_IDLE"));
 }
 
 }  // namespace

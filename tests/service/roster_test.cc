@@ -11,6 +11,7 @@ namespace {
 using std::chrono::seconds;
 
 const Roster::Time kStart = Roster::Time() + std::chrono::hours(1);
+const RosterTimeouts kTimeouts;
 
 std::string ReasonOf(const absl::Status& status) { return base::DetailsOf(status).reason; }
 
@@ -68,10 +69,10 @@ TEST(RosterTest, WhoSteersIsAskedAndGives) {
 TEST(RosterTest, ARequestEndsUnanswered) {
   Class group;
   ASSERT_TRUE(group.roster.AskControl(group.ana, kStart).ok());
-  group.roster.Advance(kStart + Roster::kAnswerWithin - seconds(1));
+  group.roster.Advance(kStart + kTimeouts.answer - seconds(1));
   EXPECT_TRUE(group.roster.Find(group.ana)->asks);
   const std::uint64_t before = group.roster.revision();
-  group.roster.Advance(kStart + Roster::kAnswerWithin);
+  group.roster.Advance(kStart + kTimeouts.answer);
   EXPECT_FALSE(group.roster.Find(group.ana)->asks);
   EXPECT_GT(group.roster.revision(), before);
 }
@@ -91,7 +92,7 @@ TEST(RosterTest, AskingIsRateLimited) {
   EXPECT_TRUE(absl::IsResourceExhausted(again));
   EXPECT_EQ(base::DetailsOf(again).retry_after, std::chrono::milliseconds(4000));
   EXPECT_TRUE(group.roster.AskControl(group.ben, kStart + seconds(1)).ok()) << "another person";
-  EXPECT_TRUE(group.roster.AskControl(group.ana, kStart + Roster::kAskAgainAfter).ok());
+  EXPECT_TRUE(group.roster.AskControl(group.ana, kStart + kTimeouts.ask_again).ok());
 }
 
 TEST(RosterTest, FreeControlGoesToWhoAsksFirst) {
@@ -153,9 +154,9 @@ TEST(RosterTest, ControlIsKeptForAPresenterWhoReloads) {
 TEST(RosterTest, ControlOfAnAbsentPresenterBecomesFreeIfChosen) {
   Class group({.free_when_away = true});
   group.roster.Leave(group.presenter, kStart);
-  group.roster.Advance(kStart + Roster::kAwayAfter);
+  group.roster.Advance(kStart + kTimeouts.away);
   EXPECT_FALSE(group.roster.presenter_away());
-  ASSERT_TRUE(group.roster.AskControl(group.ana, kStart + Roster::kAwayAfter).ok());
+  ASSERT_TRUE(group.roster.AskControl(group.ana, kStart + kTimeouts.away).ok());
   EXPECT_EQ(group.roster.steering(), group.ana);
   // A presenter who comes back does not take it by coming.
   const std::uint64_t back = group.roster.Join(Role::kPresenter, "Teacher");

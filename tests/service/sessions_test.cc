@@ -7,6 +7,7 @@
 #include "physics/sun_position.h"
 #include "service/sun_messages.h"
 #include "tests/service/fake_service.h"
+#include "tests/service/interacting.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -302,7 +303,7 @@ TEST(SessionsTest, NoMoreThanTheMost) {
   service.Open(SmallScene());
 }
 
-TEST(SessionsTest, IdleSessionsExpireAndWatchedOnesDoNot) {
+TEST(SessionsTest, IdleSessionsExpireSoonerThanWatchedOnes) {
   service::ServerOptions options;
   options.sessions.idle_timeout = std::chrono::milliseconds(300);
   FakeService service(options);
@@ -313,6 +314,38 @@ TEST(SessionsTest, IdleSessionsExpireAndWatchedOnesDoNot) {
   std::this_thread::sleep_for(std::chrono::milliseconds(600));
   EXPECT_EQ(Close(service, idle).error_code(), grpc::StatusCode::NOT_FOUND);
   EXPECT_TRUE(Close(service, watched).ok());
+}
+
+TEST(SessionsTest, AWatchedSessionExpiresWhenNobodyDoesAnything) {
+  service::ServerOptions options;
+  options.sessions.idle_timeout = std::chrono::milliseconds(300);
+  options.sessions.watched_idle_timeout = std::chrono::milliseconds(1500);
+  FakeService service(options);
+  const v1::CreateSessionResponse created = Create(service, SmallScene());
+  Interacting person(service.stub(), created.viewer_key());
+  Watcher watcher(service.stub(), created.session_id());
+  ASSERT_TRUE(person.AwaitFrame(1));
+  // It is in use while somebody sends something.
+  for (int i = 0; i < 8; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    v1::InteractRequest rename;
+    rename.mutable_set_name()->set_name("Ana");
+    person.Send(rename);
+  }
+  for (const auto& message : person.All()) EXPECT_FALSE(message.has_end());
+  const auto silent_since = std::chrono::steady_clock::now();
+  ASSERT_TRUE(person.Await([](const auto& messages) { return messages.back().has_end(); }));
+  const grpc::Status end = person.End();
+  EXPECT_GT(std::chrono::steady_clock::now() - silent_since, std::chrono::milliseconds(1400));
+  EXPECT_EQ(end.error_code(), grpc::StatusCode::NOT_FOUND);
+  EXPECT_EQ(ReasonOf(end), "SESSION_EXPIRED");
+  EXPECT_EQ(end.error_message(), "the session has expired; create a new one");
+  const auto messages = person.All();
+  ASSERT_TRUE(messages.back().has_end());
+  EXPECT_EQ(messages.back().end().reason(), v1::End::REASON_EXPIRED);
+  EXPECT_FALSE(messages.back().end().has_retry_after_ms()) << "nothing to come back to";
+  EXPECT_EQ(ReasonOf(watcher.End()), "SESSION_EXPIRED");
+  EXPECT_EQ(Close(service, created.session_id()).error_code(), grpc::StatusCode::NOT_FOUND);
 }
 
 }  // namespace

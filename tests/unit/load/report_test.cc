@@ -4,6 +4,7 @@
 #include "google/protobuf/struct.pb.h"
 #include "google/protobuf/util/json_util.h"
 #include "gtest/gtest.h"
+#include "load/load.h"
 #include "load/pace.h"
 
 namespace thunderhead::load {
@@ -11,6 +12,8 @@ namespace {
 
 using std::chrono::milliseconds;
 using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
 
 ViewerRecord Record(ViewerKind kind, int frames, double late_s) {
   ViewerRecord record{.kind = kind, .first_frames_ms = {1e3 * late_s}};
@@ -105,6 +108,40 @@ TEST_F(ReportTest, IsWrittenAsJson) {
   EXPECT_EQ(memory.at("most").number_value(), 420);
   EXPECT_EQ(memory.at("over_time").list_value().values_size(), 3);
   EXPECT_EQ(json.at("throttled").struct_value().fields().at("viewers").number_value(), 1);
+}
+
+TEST_F(ReportTest, OfThrottledViewersAloneTellsOfThem) {
+  recording_.viewers = {&throttled_};
+  Report report = ReportOf(recording_);
+  report.throttle_kbit_per_s = 2000.0;
+  EXPECT_THAT(ToText(report), StartsWith("1 viewers by"));
+  EXPECT_THAT(ToText(report), HasSubstr("throttled: 1 that read at most 2000 kbit/s"));
+  EXPECT_THAT(ToText(report), HasSubstr("after 500 ms (median)"));
+  EXPECT_THAT(ToText(report), Not(HasSubstr("least 0.0")));
+  const auto json = Parsed(ToJson(report)).fields();
+  EXPECT_EQ(json.at("viewers").number_value(), 0);
+  EXPECT_TRUE(json.at("fps_min").has_null_value());
+  EXPECT_TRUE(json.at("kbit_per_viewer").has_null_value());
+  EXPECT_TRUE(json.at("latency_ms").struct_value().fields().at("p50").has_null_value());
+  const auto throttled = json.at("throttled").struct_value().fields();
+  EXPECT_EQ(throttled.at("viewers").number_value(), 1);
+  EXPECT_EQ(throttled.at("kbit_limit").number_value(), 2000);
+  EXPECT_EQ(throttled.at("fps_min").number_value(), 1);
+  EXPECT_EQ(throttled.at("first_frame_ms").struct_value().fields().at("most").number_value(), 500);
+}
+
+TEST(Throttle, IsForAllViewersOrForSoManyBesides) {
+  LoadOptions options;
+  options.viewers = 30;
+  Throttle(2000.0, std::nullopt, options);
+  EXPECT_EQ(options.kbit_per_s, 2000.0);
+  EXPECT_EQ(options.viewers, 0);
+  EXPECT_EQ(options.throttled, 30);
+  options = {};
+  options.viewers = 30;
+  Throttle(2000.0, 4, options);
+  EXPECT_EQ(options.viewers, 30);
+  EXPECT_EQ(options.throttled, 4);
 }
 
 TEST_F(ReportTest, WritesNullWhereThereIsNoFigure) {

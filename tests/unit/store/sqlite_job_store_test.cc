@@ -109,10 +109,11 @@ TEST_F(SqliteJobStoreTest, AFileFromBeforeThereWereJobsKeepsItsSessions) {
   }
   sqlite3* database = nullptr;
   ASSERT_EQ(sqlite3_open(path_.c_str(), &database), SQLITE_OK);
-  ASSERT_EQ(
-      sqlite3_exec(database, "DROP TABLE job_pictures; DROP TABLE jobs; PRAGMA user_version = 1",
-                   nullptr, nullptr, nullptr),
-      SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(database,
+                         "DROP TABLE job_pictures; DROP TABLE jobs; "
+                         "ALTER TABLE marks DROP COLUMN owner_keys; PRAGMA user_version = 1",
+                         nullptr, nullptr, nullptr),
+            SQLITE_OK);
   sqlite3_close(database);
   auto file = store::StateFile::Open(path_);
   ASSERT_TRUE(file.ok()) << file.status();

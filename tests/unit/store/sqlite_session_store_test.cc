@@ -35,7 +35,8 @@ SessionRecord Record(const std::string& id) {
                   .free_when_away = true};
   record.scene = std::string("a\0scene\xff", 8);
   record.scene_revision = 1ULL << 40;
-  record.marks = {{7, 3, {{1.5, -2e6, 0.1}, {4.0, 5.0, 6.0}}, {0.25F, 0.5F, 1.0F}}, {9, 4, {}, {}}};
+  record.marks = {{7, 3, {{1.5, -2e6, 0.1}, {4.0, 5.0, 6.0}}, {0.25F, 0.5F, 1.0F}, ""},
+                  {9, 4, {}, {}, "a secret"}};
   record.last_used =
       std::chrono::system_clock::time_point(std::chrono::milliseconds(1'700'000'000'123));
   return record;
@@ -115,6 +116,17 @@ TEST_F(SqliteSessionStoreTest, TheNewestIsKeptAndTheRemovedIsGone) {
   EXPECT_EQ(Rows(path_, "marks"), 2);
 }
 
+TEST_F(SqliteSessionStoreTest, MarksOfAFileWithoutOwnersComeBackWithoutThem) {
+  ASSERT_TRUE(Open()->Save({Record("a")}).ok());
+  Execute(path_, "ALTER TABLE marks DROP COLUMN owner_keys; PRAGMA user_version = 2");
+  SessionRecord without_owners = Record("a");
+  for (session::Mark& mark : without_owners.marks) mark.owner_key.clear();
+  EXPECT_THAT(Loaded(), ElementsAre(without_owners));
+  // They are written although the marks are the same.
+  ASSERT_TRUE(Open()->Save({Record("a")}).ok());
+  EXPECT_THAT(Loaded(), ElementsAre(Record("a")));
+}
+
 TEST_F(SqliteSessionStoreTest, AllRecordsAreSavedOrNone) {
   SessionRecord same_key = Record("b");
   same_key.keys = Record("a").keys;
@@ -182,8 +194,8 @@ TEST_F(SqliteSessionStoreTest, ANewerVersionIsRefusedAndLeftAsItIs) {
   const absl::Status refusal = Refusal();
   EXPECT_EQ(refusal.code(), absl::StatusCode::kFailedPrecondition);
   EXPECT_THAT(std::string(refusal.message()),
-              HasSubstr("newer Thunderhead (version 7; this one knows 2)"));
-  Execute(path_, "PRAGMA user_version = 2");
+              HasSubstr("newer Thunderhead (version 7; this one knows 3)"));
+  Execute(path_, "PRAGMA user_version = 3");
   EXPECT_THAT(Loaded(), ElementsAre(Record("a")));
 }
 
@@ -217,7 +229,9 @@ TEST_F(SqliteSessionStoreTest, AFolderThatIsNotThereIsNamed) {
 
 TEST(MarkBytesTest, CutBytesAreAnError) {
   const std::string whole = store::ToBytes(Record("a").marks);
-  ASSERT_EQ(*store::MarksFrom(whole), Record("a").marks);
+  std::vector<session::Mark> without_keys = Record("a").marks;
+  for (session::Mark& mark : without_keys) mark.owner_key.clear();
+  ASSERT_EQ(*store::MarksFrom(whole), without_keys);
   int accepted = 0;
   for (std::size_t size = 0; size < whole.size(); ++size) {
     accepted += store::MarksFrom(whole.substr(0, size)).ok() ? 1 : 0;

@@ -1,0 +1,309 @@
+// What the people of a session are told, and when: at a pace, the newest only, once for all of
+// them; and what runs out without anybody doing anything.
+#include "session/audience.h"
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+
+namespace thunderhead::session {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using ::testing::Gt;
+
+class CountingViewer : public Viewer {
+ public:
+  void Wake() override { ++wakes; }
+  int wakes = 0;
+};
+
+Ray RayTo(double x_m) { return {.origin_m = {x_m, 0.0, 0.0}}; }
+
+// Where its ray begins.
+glm::dvec3 PlaceOf(const Ray& ray) { return ray.origin_m; }
+
+// A presenter, Ana and Ben, who were told of one another a minute ago.
+class AudienceTest : public ::testing::Test {
+ protected:
+  AudienceTest() {
+    presenter_ = *audience_.Join(Role::kPresenter, "Teacher", viewers_[0], now_);
+    ana_ = *audience_.Join(Role::kViewer, "Ana", viewers_[1], now_);
+    ben_ = *audience_.Join(Role::kViewer, "Ben", viewers_[2], now_);
+    now_ += seconds(1);
+    Tick();
+    now_ += seconds(59);
+    Tick();
+  }
+
+  std::optional<Audience::Time> Tick() { return audience_.Tick(now_, PlaceOf); }
+
+  absl::Status Ask(std::uint64_t id) {
+    return audience_.Change([&](Roster& roster) { return roster.AskControl(id, now_); }, now_);
+  }
+
+  absl::Status Draw(std::uint64_t id) {
+    return audience_.Draw(
+        id, [&](Board& board) { return board.Add(id, {{}}, {}, "").status(); }, now_);
+  }
+
+  absl::Status SetRules(const Rules& rules) {
+    return audience_.Change([&](Roster& roster) { return roster.SetRules(presenter_, rules); },
+                            now_);
+  }
+
+  // How the subjects are written here: who asks and who steers; whose pointers, where; marks.
+  AudienceFormat Format() {
+    return {.presence =
+                [this](const Roster& roster) {
+                  ++formatted_;
+                  std::string text = absl::StrCat("steers ", roster.steering());
+                  for (const Person& person : roster.people()) {
+                    if (person.asks) absl::StrAppend(&text, ", asks ", person.id);
+                  }
+                  return text + (roster.presenter_away() ? ", away" : "");
+                },
+            .pointers =
+                [this](const std::vector<Pointer>& pointers) {
+                  ++formatted_;
+                  std::string text;
+                  for (const Pointer& pointer : pointers) {
+                    absl::StrAppend(&text, pointer.person_id, " at ", pointer.position_m.x, ";");
+                  }
+                  return text;
+                },
+            .marks =
+                [this](const std::vector<Mark>& marks) {
+                  ++formatted_;
+                  return std::to_string(marks.size());
+                }};
+  }
+
+  int formatted_ = 0;
+  int due_ = 0;
+  Audience::Time now_ = Audience::Time() + std::chrono::hours(1);
+  const std::vector<std::shared_ptr<CountingViewer>> viewers_ = {
+      std::make_shared<CountingViewer>(), std::make_shared<CountingViewer>(),
+      std::make_shared<CountingViewer>()};
+  Audience audience_{Format(), {.free_when_away = true}, {}, now_, [this] { ++due_; }};
+  std::uint64_t presenter_ = 0;
+  std::uint64_t ana_ = 0;
+  std::uint64_t ben_ = 0;
+};
+
+TEST_F(AudienceTest, EverybodyIsToldTheSameBytesMadeOnce) {
+  const int formatted = formatted_;
+  const std::uint64_t told = audience_.Presence().count;
+  const std::vector<int> wakes = {viewers_[0]->wakes, viewers_[1]->wakes, viewers_[2]->wakes};
+  ASSERT_TRUE(Ask(ana_).ok());
+  EXPECT_EQ(audience_.Presence().count, told + 1) << "at once after a pause";
+  EXPECT_EQ(*audience_.Presence().bytes, absl::StrCat("steers ", presenter_, ", asks ", ana_));
+  EXPECT_EQ(formatted_, formatted + 1) << "whatever the number of people";
+  EXPECT_EQ(audience_.Presence().bytes, audience_.Presence().bytes) << "the same, not a copy";
+  for (std::size_t i = 0; i < viewers_.size(); ++i) EXPECT_EQ(viewers_[i]->wakes, wakes[i] + 1);
+}
+
+TEST_F(AudienceTest, PresenceIsToldAtMostSoOften) {
+  const std::uint64_t told = audience_.Presence().count;
+  ASSERT_TRUE(Ask(ana_).ok());
+  ASSERT_TRUE(Ask(ben_).ok());
+  EXPECT_EQ(audience_.Presence().count, told + 1);
+  EXPECT_EQ(Tick(), now_ + Audience::kPresencePause);
+  now_ += Audience::kPresencePause - milliseconds(1);
+  Tick();
+  EXPECT_EQ(audience_.Presence().count, told + 1);
+  now_ += milliseconds(1);
+  Tick();
+  EXPECT_EQ(audience_.Presence().count, told + 2);
+  EXPECT_THAT(*audience_.Presence().bytes, ::testing::HasSubstr(absl::StrCat("asks ", ben_)));
+}
+
+TEST_F(AudienceTest, MarksAreToldAtMostSoOften) {
+  const std::uint64_t told = audience_.Marks().count;
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_TRUE(Draw(presenter_).ok());
+    now_ += milliseconds(1);
+  }
+  EXPECT_EQ(audience_.Marks().count, told + 1);
+  EXPECT_EQ(*audience_.Marks().bytes, "1");
+  now_ += Audience::kMarksPause;
+  Tick();
+  EXPECT_EQ(audience_.Marks().count, told + 2);
+  EXPECT_EQ(*audience_.Marks().bytes, "10");
+}
+
+// The page sends a place for each movement of the mouse.
+TEST_F(AudienceTest, PointersAreToldThirtyTimesASecondTheNewestOfThem) {
+  const std::uint64_t told = audience_.Pointers().count;
+  const Audience::Time start = now_;
+  int searches = 0;
+  for (int i = 0; i < 1000; ++i) {  // of one millisecond
+    ASSERT_TRUE(audience_.Point(presenter_, RayTo(i), now_).ok());
+    const std::uint64_t before = audience_.Pointers().count;
+    audience_.Tick(now_, [&](const Ray& ray) {
+      ++searches;
+      return PlaceOf(ray);
+    });
+    if (audience_.Pointers().count > before) {
+      EXPECT_EQ(*audience_.Pointers().bytes, absl::StrCat(presenter_, " at ", i, ";"));
+    }
+    now_ += milliseconds(1);
+  }
+  ASSERT_EQ(now_ - start, seconds(1));
+  const std::uint64_t times = audience_.Pointers().count - told;
+  EXPECT_LE(times, 31U) << "30 a second, and the first";
+  EXPECT_GE(times, 28U);
+  EXPECT_LE(searches, 31) << "places cost time, and those that nobody is told are not found";
+  // The last is told too.
+  EXPECT_TRUE(audience_.Point(presenter_, RayTo(5000.0), now_).ok());
+  const auto next = Tick();
+  if (next.has_value()) now_ = *next;
+  Tick();
+  EXPECT_EQ(*audience_.Pointers().bytes, absl::StrCat(presenter_, " at 5000;"));
+}
+
+TEST_F(AudienceTest, PointersThatGoAreToldAtThatPaceToo) {
+  ASSERT_TRUE(SetRules({.viewers_may_mark = true}).ok());
+  for (const std::uint64_t id : {presenter_, ana_, ben_}) {
+    ASSERT_TRUE(audience_.Point(id, RayTo(1.0), now_).ok());
+  }
+  Tick();
+  now_ += seconds(1);
+  const std::uint64_t told = audience_.Pointers().count;
+  for (const std::uint64_t id : {presenter_, ana_, ben_}) {
+    ASSERT_TRUE(audience_.Point(id, std::nullopt, now_).ok());
+    now_ += milliseconds(1);
+  }
+  EXPECT_EQ(audience_.Pointers().count, told + 1);
+  now_ += Audience::kPointersPause;
+  Tick();
+  EXPECT_EQ(audience_.Pointers().count, told + 2);
+  EXPECT_EQ(*audience_.Pointers().bytes, "");
+}
+
+TEST_F(AudienceTest, ManyWhoPointAreFoundInTurn) {
+  ASSERT_TRUE(SetRules({.viewers_may_mark = true}).ok());
+  constexpr std::size_t kPeople = 2 * Audience::kMostFound + 1;
+  std::vector<std::uint64_t> people;
+  for (std::size_t i = 0; i < kPeople; ++i) {
+    people.push_back(*audience_.Join(Role::kViewer, "", std::make_shared<CountingViewer>(), now_));
+  }
+  for (const std::uint64_t id : people) ASSERT_TRUE(audience_.Point(id, RayTo(1.0), now_).ok());
+  std::size_t found = 0;
+  for (int ticks = 0; ticks < 3; ++ticks) {
+    std::size_t searches = 0;
+    audience_.Tick(now_, [&](const Ray& ray) {
+      ++searches;
+      return PlaceOf(ray);
+    });
+    EXPECT_LE(searches, Audience::kMostFound);
+    found += searches;
+    now_ += Audience::kPointersPause;
+  }
+  EXPECT_EQ(found, kPeople);
+}
+
+TEST_F(AudienceTest, APointerThatGoesWhileItsPlaceIsFoundStaysAway) {
+  ASSERT_TRUE(audience_.Point(presenter_, RayTo(1.0), now_).ok());
+  audience_.Tick(now_, [&](const Ray& ray) {
+    EXPECT_TRUE(audience_.Point(presenter_, std::nullopt, now_).ok());
+    return PlaceOf(ray);
+  });
+  now_ += seconds(1);
+  Tick();
+  EXPECT_TRUE(audience_.Drawn().pointers().empty());
+}
+
+TEST_F(AudienceTest, ARequestEndsByItselfAndThatIsTold) {
+  ASSERT_TRUE(Ask(ana_).ok());
+  const Audience::Time asked = now_;
+  now_ += seconds(1);
+  EXPECT_EQ(Tick(), asked + seconds(20)) << "when it is to be called next";
+  now_ = asked + seconds(20) - milliseconds(1);
+  Tick();
+  EXPECT_THAT(*audience_.Presence().bytes, ::testing::HasSubstr("asks"));
+  now_ = asked + seconds(20);
+  const int wakes = viewers_[1]->wakes;
+  Tick();
+  EXPECT_EQ(*audience_.Presence().bytes, absl::StrCat("steers ", presenter_));
+  EXPECT_EQ(viewers_[1]->wakes, wakes + 1);
+}
+
+TEST_F(AudienceTest, ControlOfAnAbsentPresenterBecomesFreeByItselfAndThatIsTold) {
+  audience_.Leave(presenter_, now_);
+  const Audience::Time left = now_;
+  EXPECT_EQ(*audience_.Presence().bytes, "steers 0, away");
+  EXPECT_THAT(due_, Gt(0));
+  EXPECT_EQ(Tick(), left + seconds(60));
+  now_ = left + seconds(60) - milliseconds(1);
+  Tick();
+  EXPECT_EQ(*audience_.Presence().bytes, "steers 0, away");
+  now_ = left + seconds(60);
+  Tick();
+  EXPECT_EQ(*audience_.Presence().bytes, "steers 0");
+  now_ += seconds(1);
+  ASSERT_TRUE(Ask(ben_).ok());
+  EXPECT_EQ(*audience_.Presence().bytes, absl::StrCat("steers ", ben_));
+}
+
+TEST_F(AudienceTest, NothingIsToldWithoutNews) {
+  const Told presence = audience_.Presence();
+  const Told marks = audience_.Marks();
+  const int wakes = viewers_[0]->wakes;
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_EQ(Tick(), std::nullopt);
+    now_ += seconds(1);
+  }
+  audience_.Erase(presenter_, {}, now_);
+  EXPECT_EQ(audience_.Presence().count, presence.count);
+  EXPECT_EQ(audience_.Marks().count, marks.count);
+  EXPECT_EQ(viewers_[0]->wakes, wakes);
+}
+
+TEST_F(AudienceTest, ViewersEraseTheirOwnMarksAndWhoeverHasTheirKeyToo) {
+  ASSERT_TRUE(SetRules({.viewers_may_mark = true}).ok());
+  const auto draw = [&](std::uint64_t id, const std::string& key) {
+    return audience_.Draw(
+        id, [&](Board& board) { return board.Add(id, {{}}, {}, key).status(); }, now_);
+  };
+  ASSERT_TRUE(draw(ana_, "key of Ana").ok());
+  ASSERT_TRUE(draw(ben_, "key of Ben").ok());
+  audience_.Leave(ana_, now_);
+  const auto join = [&](const std::string& key) {
+    return *audience_.Join(Role::kViewer, "", viewers_[1], now_, 100, key);
+  };
+  audience_.Erase(join(""), {}, now_);
+  audience_.Erase(join("another key"), {}, now_);
+  ASSERT_EQ(audience_.Drawn().marks().size(), 2U);
+  const std::uint64_t revision = audience_.MarksRevision();
+  const std::uint64_t back = join("key of Ana");
+  EXPECT_THAT(audience_.MarksRevision(), Gt(revision)) << "others are told whose it is now";
+  EXPECT_EQ(audience_.Drawn().marks()[0].person_id, back);
+  audience_.Erase(back, {}, now_);
+  ASSERT_EQ(audience_.Drawn().marks().size(), 1U);
+  EXPECT_EQ(audience_.Drawn().marks()[0].person_id, ben_);
+}
+
+TEST(BoardTest, ThereIsAMaximumOfMarks) {
+  Board board;
+  for (std::size_t i = 0; i < Board::kMaxMarks; ++i) ASSERT_TRUE(board.Add(1, {{}}, {}).ok());
+  EXPECT_TRUE(absl::IsResourceExhausted(board.Add(1, {{}}, {}).status()));
+  board.Erase({5}, std::nullopt);
+  EXPECT_TRUE(board.Add(1, {{}}, {}).ok());
+}
+
+TEST(BoardTest, MarksWithoutAKeyAreHandedOverToNobody) {
+  Board board;
+  ASSERT_TRUE(board.Add(1, {{}}, {}).ok());
+  board.HandOver("", 2);
+  EXPECT_EQ(board.marks()[0].person_id, 1U);
+}
+
+}  // namespace
+}  // namespace thunderhead::session

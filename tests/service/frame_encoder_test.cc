@@ -1,0 +1,129 @@
+// The encoder and the hub together: a picture is encoded and serialized once for all who get it.
+#include "session/frame_encoder.h"
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <semaphore>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+
+namespace thunderhead::session {
+namespace {
+
+using ::testing::Pair;
+using ::testing::UnorderedElementsAre;
+
+constexpr std::chrono::seconds kPatience{20};
+
+class SilentViewer : public Viewer {
+ public:
+  void Wake() override {}
+};
+
+class FrameEncoderTest : public ::testing::Test {
+ protected:
+  // Encodes a picture of 64 x 36 pixels and waits until it is published.
+  void Encode(std::uint64_t revision) {
+    DrawnFrame drawn;
+    drawn.session = session_;
+    drawn.scene_revision = revision;
+    drawn.picture.width_px = 64;
+    drawn.picture.height_px = 36;
+    drawn.picture.rgb.assign(std::size_t{64} * 36 * 3, 100);
+    encoder_.Encode(std::move(drawn));
+    ASSERT_TRUE(encoded_.try_acquire_for(kPatience));
+  }
+
+  // So many viewers, who take all that comes.
+  std::vector<std::uint64_t> Join(int count, const ViewerWants& wants) {
+    std::vector<std::uint64_t> viewers;
+    for (int i = 0; i < count; ++i) {
+      viewers.push_back(*session_->hub().Join(std::make_shared<SilentViewer>(), wants));
+    }
+    return viewers;
+  }
+
+  // What the viewers take now, each in its own way; the same object counts once.
+  std::set<const EncodedFrame*> TakeAll(const std::vector<std::uint64_t>& viewers) {
+    std::set<const EncodedFrame*> frames;
+    for (const std::uint64_t viewer : viewers) {
+      const auto event = session_->hub().Take(viewer);
+      if (!event.has_value()) {
+        ADD_FAILURE() << "a viewer has nothing to take";
+        continue;
+      }
+      const auto frame = std::get<std::shared_ptr<const EncodedFrame>>(*event);
+      session_->hub().Acknowledge(viewer, frame->sequence);
+      kept_.push_back(frame);  // so that no other has its address
+      frames.insert(frame.get());
+    }
+    return frames;
+  }
+
+  std::map<std::string, int> Serialized() {
+    const std::lock_guard lock(mutex_);
+    return serialized_;
+  }
+
+  Sessions sessions_{SessionsOptions{}, {[] {}, [] {}}};
+  const std::shared_ptr<Session> session_ = *sessions_.Create();
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, int> serialized_;  // times, by what was
+  std::vector<std::shared_ptr<const EncodedFrame>> kept_;
+  std::counting_semaphore<> encoded_{0};
+
+ protected:
+  FrameEncoder encoder_{1,
+                        [this](const EncodedFrame& frame) {
+                          const std::string form = std::string(frame.vp9.empty() ? "jpeg" : "vp9") +
+                                                   " of tier " + std::to_string(frame.tier);
+                          const std::lock_guard lock(mutex_);
+                          ++serialized_[form];
+                          return form;
+                        },
+                        [this] { encoded_.release(); }};
+};
+
+TEST_F(FrameEncoderTest, APictureIsSerializedOnceATierWhateverTheViewers) {
+  const auto walls = Join(7, {});
+  const auto phones = Join(5, {.window_width_px = 32});
+  const auto watches = Join(3, {.window_width_px = 16});
+  Encode(1);
+  for (const auto& viewers : {walls, phones, watches}) EXPECT_EQ(TakeAll(viewers).size(), 1U);
+  EXPECT_THAT(Serialized(),
+              UnorderedElementsAre(Pair("jpeg of tier 0", 1), Pair("jpeg of tier 1", 1),
+                                   Pair("jpeg of tier 2", 1)));
+  // Who comes later gets the same bytes.
+  EXPECT_EQ(TakeAll(Join(4, {})).size(), 1U);
+  EXPECT_EQ(Serialized().at("jpeg of tier 0"), 1);
+  Encode(2);
+  for (const auto& viewers : {walls, phones, watches}) EXPECT_EQ(TakeAll(viewers).size(), 1U);
+  EXPECT_THAT(Serialized(),
+              UnorderedElementsAre(Pair("jpeg of tier 0", 2), Pair("jpeg of tier 1", 2),
+                                   Pair("jpeg of tier 2", 2)));
+}
+
+TEST_F(FrameEncoderTest, ATierThatNobodyWantsIsNotMade) {
+  const auto phones = Join(5, {.window_width_px = 32});
+  Encode(1);
+  EXPECT_EQ(TakeAll(phones).size(), 1U);
+  EXPECT_THAT(Serialized(), UnorderedElementsAre(Pair("jpeg of tier 1", 1)));
+}
+
+TEST_F(FrameEncoderTest, APictureOfVideoIsSerializedOnceForAllWhoFollowIt) {
+  const auto savers = Join(6, {.adapts = true, .takes_video = true, .saves_bytes = true});
+  Encode(1);
+  EXPECT_EQ(TakeAll(savers).size(), 1U);
+  EXPECT_THAT(Serialized(), UnorderedElementsAre(Pair("vp9 of tier 0", 1)));
+}
+
+}  // namespace
+}  // namespace thunderhead::session
