@@ -359,19 +359,24 @@ describe("back-off", () => {
   it("doubles its bound to eight seconds, and begins anew after a success", () => {
     const backOff = new BackOff(() => 1);
     expect(Array.from({ length: 7 }, () => backOff.next())).toEqual([
-      500, 1000, 2000, 4000, 8000, 8000, 8000,
+      1000, 2000, 4000, 8000, 8000, 8000, 8000,
     ]);
     backOff.reset();
-    expect(backOff.next()).toBe(500);
+    expect(backOff.next()).toBe(1000);
   });
 
   it("draws a delay anywhere below the bound, and never before the server's own", () => {
-    expect(new BackOff(() => 0.25).next()).toBe(125);
-    const backOff = new BackOff(() => 0.5);
-    expect(backOff.next(3000)).toBe(3250);
-    const delays = Array.from({ length: 500 }, () => new BackOff().next());
-    expect(Math.min(...delays)).toBeLessThan(100);
-    expect(Math.max(...delays)).toBeGreaterThan(400);
+    expect(new BackOff(() => 0.25).next()).toBe(250);
+    expect(new BackOff(() => 0.5).next(3000)).toBe(3500);
+  });
+
+  it("spreads a class over a second, also after a delay that is the same for all", () => {
+    for (const leastMs of [0, 3000]) {
+      const delays = Array.from({ length: 500 }, () => new BackOff().next(leastMs) - leastMs);
+      // Of 500 draws some are below 50 ms and some above 950 ms, but for one time in 10^10.
+      expect(Math.min(...delays)).toBeLessThan(50);
+      expect(Math.max(...delays)).toBeGreaterThan(950);
+    }
   });
 });
 
