@@ -309,6 +309,46 @@ describe("the page in a session", () => {
     expect(viewer.page.state.session.marks.value).toEqual([]);
   });
 
+  it("draws a line again that came while the one before was being placed", async () => {
+    const { teacher, viewer } = await classroom();
+    const { page, canvas } = teacher;
+    page.takeInHand("pen");
+    const line = (top: number) =>
+      canvas.dragOver([
+        [100, top],
+        [200, top],
+      ]);
+    session().placing = 3;
+    line(100);
+    line(150);
+    line(200);
+    await pass(20);
+    expect(page.state.session.pendingMarks.value).toHaveLength(3);
+    session().placing = 1;
+    await pass(1000);
+    expect(viewer.page.state.session.marks.value).toHaveLength(3);
+    expect(page.state.session.pendingMarks.value).toEqual([]);
+    expect(page.state.notices.value).toEqual([]);
+    expect(saidOf("addMark", 0)).toHaveLength(3 + 3 + 1);
+  });
+
+  it("says so in the end when a line is not taken", async () => {
+    const { page, canvas } = await visit();
+    page.takeInHand("pen");
+    session().placing = 1000;
+    canvas.dragOver([
+      [100, 100],
+      [200, 100],
+    ]);
+    await pass(6000);
+    expect(page.state.session.pendingMarks.value).toEqual([]);
+    expect(page.state.notices.value.map(({ text }) => text).join()).toMatch(/still being placed/);
+    const sendings = saidOf("addMark").length;
+    expect(sendings).toBeLessThan(30);
+    await pass(6000);
+    expect(saidOf("addMark")).toHaveLength(sendings);
+  });
+
   it("points at most thirty times a second, the newest place last, and withdraws the pointer", async () => {
     const { teacher, viewer } = await classroom();
     teacher.page.takeInHand("pointer");

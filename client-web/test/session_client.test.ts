@@ -43,7 +43,7 @@ function follow(network: FakeNetwork, key?: string, random = 1) {
         seen.frames.push(message.value);
         if (seen.acknowledge) client.acknowledge(message.value.sequence, message.value.ownView);
       },
-      refused: (subject, _, code) => seen.refused.push({ subject, code }),
+      refused: ({ subject, code }) => void seen.refused.push({ subject, code }),
       gone: (why) => {
         seen.gone.push(why);
         return seen.opensNew;

@@ -101,6 +101,7 @@ export class Page {
       client: () => this.#client,
       screen: () => this.screen,
       viewpoint: () => this.viewpoint,
+      marking: () => this.marking,
       state,
       keys,
       ledger,
