@@ -111,11 +111,11 @@ function Costs({ state }: { state: PageState }) {
   );
 }
 
-// What all see and what each sees for himself count as two where all move: own views get half of the time together.
+// All own views together get half of the server's time where the session's moves too (server/session/turns.h).
 function ownView({ session }: PageState): string {
   const count = session.othersLookingAround.value + 1;
   if (count === 1) return "Your own, drawn for you alone";
-  return `Your own; ${count} people look around and share half of the server's time, so pictures may come more slowly`;
+  return `Your own; ${count} people look around and share the server's time for that, so pictures may come more slowly`;
 }
 
 function Row({ name, text, testId }: { name: string; text: string; testId?: string }) {

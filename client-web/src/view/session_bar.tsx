@@ -2,6 +2,9 @@
 import type { SessionState } from "../core/session_state";
 import type { Page } from "./page";
 
+const WHY_SLOWER =
+  "The server draws for each who looks around singly; those who follow share one picture";
+
 export function SessionBar({ page }: { page: Page }) {
   const { session } = page.state;
   if (session.me.value === undefined) return null;
@@ -9,7 +12,7 @@ export function SessionBar({ page }: { page: Page }) {
     <div class="session-bar" data-testid="session-bar">
       <Control page={page} />
       {session.lookingAround.value && (
-        <span class="looking" data-testid="looking-around">
+        <span class="looking" title={WHY_SLOWER} data-testid="looking-around">
           {lookingAround(session.othersLookingAround.value)}
           <button type="button" class="primary" data-testid="follow" onClick={() => page.follow()}>
             Back to presenter
@@ -100,10 +103,10 @@ function whoSteers(session: SessionState): string {
   return steerer === undefined ? "Nobody steers" : `${session.nameOf(steerer)} steers`;
 }
 
-// Each own view is drawn singly, and where the session's moves too all of them get half of the time together.
 function lookingAround(others: number): string {
-  if (others === 0) return "Looking around";
-  return `Looking around, as ${others} ${others === 1 ? "other does" : "others do"}: pictures may come more slowly`;
+  return others === 0
+    ? "Looking around"
+    : `${others + 1} look around: pictures may come more slowly`;
 }
 
 function announcement(page: Page): string {

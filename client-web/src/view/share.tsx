@@ -65,8 +65,8 @@ function OnlyHere({ host }: { host: string | undefined }) {
   if (host === undefined) return null;
   return (
     <p class="only-here" role="note" data-testid="only-here">
-      <strong>Others cannot open this link:</strong> {host} is each one's own computer. Start the
-      server with <code>--http</code> on an address that they reach, and open this page by that
+      <strong>Others cannot open this link:</strong> {host} is only this computer. Start the server
+      with <code>--http</code> on an address that they can reach, and open this page by that
       address.
     </p>
   );
