@@ -1,5 +1,5 @@
 import { create } from "@bufbuild/protobuf";
-import { describe, expect, it } from "vitest";
+import { describe, expect, it, vi } from "vitest";
 import { BackOff } from "../src/core/back_off";
 import { cameraOfPose, homeCamera, zoom } from "../src/core/camera";
 import { Newest } from "../src/core/newest";
@@ -308,9 +308,62 @@ describe("scenes on their way to the server", () => {
     b.toTime(2);
     await b.refresh();
     expect(b.sent).toEqual([]);
-    b.sync.discard();
+    const lost = vi.fn();
+    b.sync.discard(lost);
     expect(b.page.scene.timeIndex).toBe(0);
     expect(b.sync.unsettled).toBe(false);
+    expect(lost).toHaveBeenCalledTimes(1);
+  });
+
+  it("that were taken before another steered stay, and are not said to be lost", async () => {
+    const b = steering();
+    b.toTime(2);
+    await b.refresh();
+    b.sync.hold();
+    const lost = vi.fn();
+    b.sync.discard(lost);
+    expect(b.page.scene.timeIndex).toBe(2);
+    b.sent[0]?.answer(taken(2n));
+    await b.settle();
+    b.sync.told(sceneOf(2), 2n);
+    await b.settle();
+    expect(b.page.scene.timeIndex).toBe(2);
+    expect(b.sync.unsettled).toBe(false);
+    expect(lost).not.toHaveBeenCalled();
+  });
+
+  it("that come too late as another steers are given up, with a word, for the scene that is there", async () => {
+    const b = steering();
+    b.toTime(2);
+    await b.refresh();
+    b.toTime(3);
+    b.sync.hold();
+    const lost = vi.fn();
+    b.sync.discard(lost);
+    b.sent[0]?.answer({ kind: "stale" });
+    await b.settle();
+    b.sync.told(sceneOf(1), 2n);
+    await b.refresh();
+    expect(b.page.scene.timeIndex).toBe(1);
+    expect(b.sent).toHaveLength(1);
+    expect(lost).toHaveBeenCalledTimes(1);
+  });
+
+  it("go on where this page steers again before the answer", async () => {
+    const b = steering();
+    b.toTime(2);
+    await b.refresh();
+    b.sync.hold();
+    const lost = vi.fn();
+    b.sync.discard(lost);
+    b.sync.allow();
+    b.sent[0]?.answer({ kind: "stale" });
+    await b.settle();
+    b.sync.told(sceneOf(1), 2n);
+    await b.refresh();
+    expect(b.page.scene.timeIndex).toBe(2);
+    expect(b.sent[1]?.expected).toBe(2n);
+    expect(lost).not.toHaveBeenCalled();
   });
 
   it("made while a session is opened follow its opening scene", async () => {

@@ -268,9 +268,10 @@ export class SessionLife implements SessionListener {
       if (this.#opened && presence.steeringViewerId === 0n) this.#parts.takeControl();
       else if (this.#resumesSteering && presenterSteers(presence)) this.#parts.takeControl();
       else if (this.#sync.unsettled) {
-        this.#sync.discard();
-        const why = session.editBlock.peek() ?? "";
-        notes.say("control", `Your last change was not taken. ${why}`);
+        this.#sync.discard(() => {
+          const why = session.editBlock.peek() ?? "";
+          notes.say("control", `Your last change was not taken. ${why}`);
+        });
       }
     }
     this.#opened = false;
