@@ -395,7 +395,6 @@ test("a student points and draws while the teacher allows it", async () => {
   await setRule("viewersMayMark", true);
   await student.getByTestId("tool-pen").click();
   await inStep();
-  // The second before the first is placed: neither is lost.
   for (const y of [220, 380]) await drawLine(student, { x: MIDDLE.x, y });
   for (const page of [teacher, student, classmate])
     await until("both lines and the teacher's", async () => (await marksOn(page)) === 3);
@@ -404,6 +403,13 @@ test("a student points and draws while the teacher allows it", async () => {
   assert.equal(await last(teacher), await last(student));
   const [, y] = middleOf((await last(teacher)).split(" ").map((corner) => corner.split(",").map(Number)));
   assert.ok(Math.abs(y - 385) < 10, `the line is at ${y}`);
+  // Those that come while the first is being placed are refused, and not lost.
+  await student.getByTestId("mark-middle").evaluate((button) => {
+    for (let i = 0; i < 3; i += 1) button.click();
+  });
+  for (const page of [teacher, classmate])
+    await until("three rings more", async () => (await marksOn(page)) === 6);
+  assert.equal(await student.getByTestId("pending-mark").count(), 0);
   await student.getByTestId("tool-pointer").click();
   await student.mouse.move(MIDDLE.x - 10, MIDDLE.y);
   await student.mouse.move(MIDDLE.x, MIDDLE.y);
@@ -540,12 +546,13 @@ test("a colleague presents by the presenter's link; of two who steer at once nob
   await colleague.getByTestId("let-go").waitFor();
   await teacher.getByTestId("take-control").waitFor();
   await until("the same on both pages", async () => {
-    const [mine, theirs] = [await canvasData(teacher), await canvasData(colleague)];
-    return mine.revision === theirs.revision && theirs.refined === "true";
+    const [one, other] = [await canvasData(teacher), await canvasData(colleague)];
+    const values = [await exposure(teacher).inputValue(), await exposure(colleague).inputValue()];
+    return one.revision === other.revision && other.refined === "true" && values[0] === values[1];
   });
-  const [mine, theirs] = [await exposure(teacher).inputValue(), await exposure(colleague).inputValue()];
-  assert.equal(mine, theirs);
-  if (mine !== "0.9") assert.match(await noticesOf(teacher), /last change was not taken/);
+  const mine = await exposure(teacher).inputValue();
+  if (mine === "0.9") assert.doesNotMatch(await noticesOf(teacher), /last change was not taken/);
+  else assert.match(await noticesOf(teacher), /last change was not taken|steers/);
 
   await changing(() => setNumber(colleague, "exposure", 0.3), colleague);
   await until("the colleague's change", async () => (await exposure(teacher).inputValue()) === "0.3");
@@ -564,8 +571,11 @@ test("a colleague presents by the presenter's link; of two who steer at once nob
 
 test("no answer within 20 s ends a request, and control is free a minute after the presenter left", async () => {
   const { viewer, atMs } = left;
-  await until("free control", async () => (await controlLabel(viewer)) === "Steer");
-  const seen = await viewer.evaluate(() => window.asking);
+  let seen = [];
+  await until("free control", async () => {
+    seen = await viewer.evaluate(() => window.asking);
+    return seen.at(-1).text === "Steer";
+  });
   assert.deepEqual(
     seen.map(({ text }) => text),
     ["Ask to steer", "Asked to steer …", "Ask to steer", "Steer"],
