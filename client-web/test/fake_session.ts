@@ -1,7 +1,9 @@
 // Test support: one session of the fake service: its scene, its people with their roles and control, frames to each of them,
 // pointers and marks. A coarse frame for each scene, and a refined one after a rest.
 import { create, type MessageInitShape } from "@bufbuild/protobuf";
+import { type Any, anyPack } from "@bufbuild/protobuf/wkt";
 import { Code } from "@connectrpc/connect";
+import { ErrorInfoSchema, RetryInfoSchema } from "../src/gen/google/rpc/error_details_pb";
 import { type Frame, FrameSchema, Stage } from "../src/gen/thunderhead/v1/frame_pb";
 import {
   End_Reason,
@@ -68,6 +70,8 @@ export class FakeSession {
   });
   readonly people: FakePerson[] = [];
   marks: Mark[] = [];
+  // So many marks are refused, as the one before is still being placed.
+  placing = 0;
   held: { stormId: string; timeIndices: number[] } = { stormId: "", timeIndices: [] };
   #steering: bigint | undefined;
   #presenterSteered = true;
@@ -148,10 +152,10 @@ export class FakeSession {
   receive(person: FakePerson, request: InteractRequest): void {
     person.heard.push(request);
     const { requestId, message } = request;
-    const refuse = (code: Code, text: string) =>
+    const refuse = (code: Code, text: string, details: Any[] = []) =>
       this.#tell(person, {
         case: "refused",
-        value: { requestId, status: { code, message: text } },
+        value: { requestId, status: { code, message: text, details } },
       });
     const presents = person.role === Role.PRESENTER;
     const steers = person.viewerId === this.#steering;
@@ -195,9 +199,12 @@ export class FakeSession {
         this.#tellPointers();
         break;
       case "addMark":
-        if (!presents && !this.rules.viewersMayMark)
+        if (!presents && !steers && !this.rules.viewersMayMark)
           refuse(Code.PermissionDenied, "viewers may not draw");
-        else this.#addMark(person, message.value.rays);
+        else if (this.placing > 0) {
+          this.placing -= 1;
+          refuse(Code.ResourceExhausted, "your last mark is still being placed", tooFast());
+        } else this.#addMark(person, message.value.rays);
         break;
       case "eraseMarks":
         this.marks = this.marks.filter(({ viewerId }) => !presents && viewerId !== person.viewerId);
@@ -441,3 +448,8 @@ export class FakeSession {
     person.say(create(InteractResponseSchema, { message }));
   }
 }
+
+const tooFast = () => [
+  anyPack(ErrorInfoSchema, create(ErrorInfoSchema, { reason: "MARKS_TOO_FAST" })),
+  anyPack(RetryInfoSchema, create(RetryInfoSchema, { retryDelay: { nanos: 200_000_000 } })),
+];

@@ -60,7 +60,8 @@ export class FakeWindow extends Target {
   readonly performance = performance;
   readonly devicePixelRatio = 1;
   readonly innerWidth = 1280;
-  readonly location: { href: string };
+  readonly location: { href: string; reload(): void };
+  reloads = 0;
   readonly history = {
     replaceState: (_: unknown, __: string, address: string) => {
       this.location.href = address;
@@ -71,7 +72,12 @@ export class FakeWindow extends Target {
     readonly localStorage: FakeStorage,
   ) {
     super();
-    this.location = { href: address };
+    this.location = {
+      href: address,
+      reload: () => {
+        this.reloads += 1;
+      },
+    };
   }
   requestAnimationFrame(callback: (nowMs: number) => void): number {
     return setTimeout(() => callback(performance.now()), 16) as unknown as number;

@@ -103,6 +103,72 @@ describe("the page in a session", () => {
     expect(network.called).not.toContain("CloseSession");
   });
 
+  it("hands presenting on by a link whose key goes from the address at once, and to nobody else", async () => {
+    const { teacher, viewer } = await classroom();
+    expect(viewer.page.addresses.presentersLink()).toBeUndefined();
+    const link = teacher.page.addresses.presentersLink() ?? "";
+    expect(new URL(link).hash).toBe(`#present=${session().presenterKey}`);
+    expect(teacher.page.addresses.viewersLink(true)).not.toContain(session().presenterKey);
+
+    const second = await visit(link);
+    expect(second.page.state.session.presenting.value).toBe(true);
+    expect(second.window.location.href).not.toContain(session().presenterKey);
+    expect(teacher.page.state.session.steering.value).toBe(true);
+    second.page.actions.takeControl();
+    await pass(50);
+    expect(second.page.state.session.steering.value).toBe(true);
+    const again = await reload(second);
+    expect(again.page.state.session.presenting.value).toBe(true);
+    expect(service.sessions).toHaveLength(1);
+  });
+
+  it("presents after a presenter's link is opened in a viewer's page", async () => {
+    const { teacher, viewer } = await classroom();
+    viewer.window.tell("hashchange");
+    expect(viewer.window.reloads).toBe(0);
+    viewer.window.location.href = teacher.page.addresses.presentersLink() ?? "";
+    viewer.window.tell("hashchange");
+    expect(viewer.window.reloads).toBe(1);
+    expect(viewer.window.location.href).not.toContain(session().presenterKey);
+    const after = await reload(viewer);
+    expect(after.page.state.session.presenting.value).toBe(true);
+  });
+
+  it("keeps its own key against a link with another", async () => {
+    const teacher = await visit();
+    const { viewerKey } = session();
+    leave(teacher);
+    const again = await visit(`${HOME}?session=${viewerKey}#present=made-up`, teacher.storage);
+    expect(again.page.state.session.presenting.value).toBe(true);
+    expect(service.sessions).toHaveLength(1);
+  });
+
+  it("says which links open for nobody else", async () => {
+    const here = [
+      "localhost:8080",
+      "a.localhost",
+      "127.0.0.1:8080",
+      "127.8.0.1",
+      "[::1]",
+      "0.0.0.0",
+    ];
+    for (const host of here) {
+      const { page } = await visit(`http://${host}/`);
+      expect(page.addresses.loopbackHost, host).toBe(new URL(`http://${host}`).hostname);
+    }
+    const reached = [
+      "storms.example",
+      "192.168.1.20:8080",
+      "[fd00::1]",
+      "localhost.example",
+      "10.127.0.1",
+    ];
+    for (const host of reached) {
+      const { page } = await visit(`https://${host}/`);
+      expect(page.addresses.loopbackHost, host).toBeUndefined();
+    }
+  });
+
   it("shows times and storms that come while it is open", async () => {
     const { page } = await visit();
     const camera = page.state.scene.value.camera;
@@ -307,6 +373,46 @@ describe("the page in a session", () => {
     teacher.page.actions.eraseMarks();
     await pass(20);
     expect(viewer.page.state.session.marks.value).toEqual([]);
+  });
+
+  it("draws a line again that came while the one before was being placed", async () => {
+    const { teacher, viewer } = await classroom();
+    const { page, canvas } = teacher;
+    page.takeInHand("pen");
+    const line = (top: number) =>
+      canvas.dragOver([
+        [100, top],
+        [200, top],
+      ]);
+    session().placing = 3;
+    line(100);
+    line(150);
+    line(200);
+    await pass(20);
+    expect(page.state.session.pendingMarks.value).toHaveLength(3);
+    session().placing = 1;
+    await pass(1000);
+    expect(viewer.page.state.session.marks.value).toHaveLength(3);
+    expect(page.state.session.pendingMarks.value).toEqual([]);
+    expect(page.state.notices.value).toEqual([]);
+    expect(saidOf("addMark", 0)).toHaveLength(3 + 3 + 1);
+  });
+
+  it("says so in the end when a line is not taken", async () => {
+    const { page, canvas } = await visit();
+    page.takeInHand("pen");
+    session().placing = 1000;
+    canvas.dragOver([
+      [100, 100],
+      [200, 100],
+    ]);
+    await pass(6000);
+    expect(page.state.session.pendingMarks.value).toEqual([]);
+    expect(page.state.notices.value.map(({ text }) => text).join()).toMatch(/still being placed/);
+    const sendings = saidOf("addMark").length;
+    expect(sendings).toBeLessThan(30);
+    await pass(6000);
+    expect(saidOf("addMark")).toHaveLength(sendings);
   });
 
   it("points at most thirty times a second, the newest place last, and withdraws the pointer", async () => {

@@ -1,5 +1,5 @@
 import { create } from "@bufbuild/protobuf";
-import { describe, expect, it } from "vitest";
+import { describe, expect, it, vi } from "vitest";
 import { BackOff } from "../src/core/back_off";
 import { cameraOfPose, homeCamera, zoom } from "../src/core/camera";
 import { Newest } from "../src/core/newest";
@@ -308,9 +308,62 @@ describe("scenes on their way to the server", () => {
     b.toTime(2);
     await b.refresh();
     expect(b.sent).toEqual([]);
-    b.sync.discard();
+    const lost = vi.fn();
+    b.sync.discard(lost);
     expect(b.page.scene.timeIndex).toBe(0);
     expect(b.sync.unsettled).toBe(false);
+    expect(lost).toHaveBeenCalledTimes(1);
+  });
+
+  it("that were taken before another steered stay, and are not said to be lost", async () => {
+    const b = steering();
+    b.toTime(2);
+    await b.refresh();
+    b.sync.hold();
+    const lost = vi.fn();
+    b.sync.discard(lost);
+    expect(b.page.scene.timeIndex).toBe(2);
+    b.sent[0]?.answer(taken(2n));
+    await b.settle();
+    b.sync.told(sceneOf(2), 2n);
+    await b.settle();
+    expect(b.page.scene.timeIndex).toBe(2);
+    expect(b.sync.unsettled).toBe(false);
+    expect(lost).not.toHaveBeenCalled();
+  });
+
+  it("that come too late as another steers are given up, with a word, for the scene that is there", async () => {
+    const b = steering();
+    b.toTime(2);
+    await b.refresh();
+    b.toTime(3);
+    b.sync.hold();
+    const lost = vi.fn();
+    b.sync.discard(lost);
+    b.sent[0]?.answer({ kind: "stale" });
+    await b.settle();
+    b.sync.told(sceneOf(1), 2n);
+    await b.refresh();
+    expect(b.page.scene.timeIndex).toBe(1);
+    expect(b.sent).toHaveLength(1);
+    expect(lost).toHaveBeenCalledTimes(1);
+  });
+
+  it("go on where this page steers again before the answer", async () => {
+    const b = steering();
+    b.toTime(2);
+    await b.refresh();
+    b.sync.hold();
+    const lost = vi.fn();
+    b.sync.discard(lost);
+    b.sync.allow();
+    b.sent[0]?.answer({ kind: "stale" });
+    await b.settle();
+    b.sync.told(sceneOf(1), 2n);
+    await b.refresh();
+    expect(b.page.scene.timeIndex).toBe(2);
+    expect(b.sent[1]?.expected).toBe(2n);
+    expect(lost).not.toHaveBeenCalled();
   });
 
   it("made while a session is opened follow its opening scene", async () => {
@@ -359,19 +412,24 @@ describe("back-off", () => {
   it("doubles its bound to eight seconds, and begins anew after a success", () => {
     const backOff = new BackOff(() => 1);
     expect(Array.from({ length: 7 }, () => backOff.next())).toEqual([
-      500, 1000, 2000, 4000, 8000, 8000, 8000,
+      1000, 2000, 4000, 8000, 8000, 8000, 8000,
     ]);
     backOff.reset();
-    expect(backOff.next()).toBe(500);
+    expect(backOff.next()).toBe(1000);
   });
 
   it("draws a delay anywhere below the bound, and never before the server's own", () => {
-    expect(new BackOff(() => 0.25).next()).toBe(125);
-    const backOff = new BackOff(() => 0.5);
-    expect(backOff.next(3000)).toBe(3250);
-    const delays = Array.from({ length: 500 }, () => new BackOff().next());
-    expect(Math.min(...delays)).toBeLessThan(100);
-    expect(Math.max(...delays)).toBeGreaterThan(400);
+    expect(new BackOff(() => 0.25).next()).toBe(250);
+    expect(new BackOff(() => 0.5).next(3000)).toBe(3500);
+  });
+
+  it("spreads a class over a second, also after a delay that is the same for all", () => {
+    for (const leastMs of [0, 3000]) {
+      const delays = Array.from({ length: 500 }, () => new BackOff().next(leastMs) - leastMs);
+      // Of 500 draws some are below 50 ms and some above 950 ms, but for one time in 10^10.
+      expect(Math.min(...delays)).toBeLessThan(50);
+      expect(Math.max(...delays)).toBeGreaterThan(950);
+    }
   });
 });
 

@@ -14,7 +14,7 @@ import {
 
 const person = (
   viewerId: bigint,
-  more: Partial<Pick<Person, "name" | "role" | "asksControl">> = {},
+  more: Partial<Pick<Person, "name" | "role" | "asksControl" | "follows" | "hidden">> = {},
 ) => create(PersonSchema, { viewerId, role: Role.VIEWER, follows: true, ...more });
 const TEACHER = person(1n, { name: "Ana", role: Role.PRESENTER });
 
@@ -91,17 +91,55 @@ describe("a session's state", () => {
     expect([viewer.mayLookAround.value, viewer.mayMark.value]).toEqual([true, true]);
   });
 
+  it("lets a viewer who steers point and draw, as the server does", () => {
+    const viewer = joined(2n, Role.VIEWER);
+    const rules = { viewersMayMark: false };
+    viewer.takePresence(presence([TEACHER, person(2n)], 2n, rules));
+    expect(viewer.mayMark.value).toBe(true);
+    viewer.takePresence(presence([TEACHER, person(2n)], 1n, rules));
+    expect(viewer.mayMark.value).toBe(false);
+  });
+
+  it("knows when who asks gets control at once", () => {
+    const viewer = joined(2n, Role.VIEWER);
+    const steers = (steeringId: bigint, rules: object, presenterAway = false) => {
+      const told = presence([TEACHER, person(2n)], steeringId, rules);
+      viewer.takePresence({ ...told, presenterAway });
+      return viewer.steersWhoAsks.value;
+    };
+    expect(steers(0n, { viewersMaySteer: true })).toBe(true);
+    expect(steers(1n, { viewersMaySteer: true })).toBe(false);
+    expect(steers(0n, { viewersMaySteer: true }, true)).toBe(false);
+    expect(steers(0n, { viewersMaySteer: false })).toBe(false);
+    expect(steers(0n, { viewersMaySteer: true, controlLocked: true })).toBe(false);
+  });
+
+  it("counts the others for whom the server draws a view of their own", () => {
+    const viewer = joined(2n, Role.VIEWER);
+    const looks = { follows: false };
+    viewer.takePresence(
+      presence([TEACHER, person(2n, looks), person(3n, looks), person(4n), person(5n, looks)], 1n),
+    );
+    expect(viewer.othersLookingAround.value).toBe(2);
+    const away = person(5n, { ...looks, hidden: true });
+    viewer.takePresence(presence([TEACHER, person(2n, looks), person(3n, looks), away], 1n));
+    expect(viewer.othersLookingAround.value).toBe(1);
+  });
+
   it("replaces a pending line by the server's, one by one, not by other people's", () => {
     const session = joined(2n, Role.VIEWER);
-    const pending = (requestId: bigint) => ({ requestId, pointsM: [] });
-    session.pendingMarks.value = [pending(5n), pending(6n)];
+    const pending = (requestId: bigint | undefined, id = Number(requestId)) => ({
+      id,
+      requestId,
+      pointsM: [],
+    });
+    session.pendingMarks.value = [pending(undefined, 4), pending(5n), pending(6n)];
     const others = create(MarkSchema, { markId: 1n, viewerId: 1n });
     session.takeMarks([others]);
-    expect(session.pendingMarks.value).toHaveLength(2);
+    expect(session.pendingMarks.value).toHaveLength(3);
     session.takeMarks([others, create(MarkSchema, { markId: 2n, viewerId: 2n })]);
-    expect(session.pendingMarks.value).toEqual([pending(6n)]);
-    session.dropPendingMark(6n);
-    expect(session.pendingMarks.value).toEqual([]);
+    // Not the one that waits to be sent again.
+    expect(session.pendingMarks.value).toEqual([pending(undefined, 4), pending(6n)]);
     expect(session.marks.value).toHaveLength(2);
   });
 

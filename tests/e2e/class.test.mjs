@@ -1,5 +1,9 @@
-// End-to-end test of a shared session: a teacher and students with pages of their own before the real server.
+// End-to-end test of a shared session: a teacher and students with pages of their own before the real server. The rules that
+// need a wait run in a second session meanwhile.
 import assert from "node:assert/strict";
+import { mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import { after, before, test } from "node:test";
 import {
   canvasData,
@@ -14,6 +18,7 @@ import {
   until,
 } from "./driver.mjs";
 import { difference, grabCanvas } from "./pictures.mjs";
+import { textOfCode } from "./qr.mjs";
 import { freePort, startServer } from "./server_process.mjs";
 
 const VIEWPORT = { width: 900, height: 560 };
@@ -23,10 +28,22 @@ const SAME_PLACE_PX = 2;
 // The server takes one request for control in five seconds from a person.
 const ASK_AGAIN_AFTER_MS = 5100;
 
+// Roster::kAnswerWithin and kAwayAfter; people are told at most 0.2 s later.
+const ANSWER_WITHIN_MS = 20_000;
+const AWAY_AFTER_MS = 60_000;
+const TOLD_WITHIN_MS = 300;
+// What a busy machine may add.
+const LATE_MS = 10_000;
+
 let server;
+let serverFlags;
+let stateFolder;
 let browser;
 let teacher;
 let student;
+let classmate;
+// The session whose presenter has gone.
+let left;
 const complaints = [];
 
 // Each person has a browser profile, and so keys, of their own.
@@ -50,9 +67,41 @@ async function viewersLink() {
 }
 
 async function setRule(name, on) {
-  await teacher.getByTestId("share").click();
-  await teacher.getByTestId(`rule-${name}`).setChecked(on);
-  await teacher.keyboard.press("Escape");
+  await setRuleOf(teacher, name, on);
+}
+
+async function setRuleOf(presenter, name, on) {
+  await presenter.getByTestId("share").click();
+  await presenter.getByTestId(`rule-${name}`).setChecked(on);
+  await presenter.keyboard.press("Escape");
+}
+
+const said = (page) => page.getByTestId("who-steers").innerText();
+
+const steers = async (page) => (await page.getByTestId("give-back").count()) === 1;
+
+const noticesOf = (page) => page.getByTestId("notices").innerText();
+
+// Whose turn to steer it is, in the words of each page's button.
+const controlLabel = (page) => page.getByTestId("ask-control").innerText();
+
+// In the page, with the time: each new text of the button that asks for control.
+const watchAsking = () => {
+  window.asking = [];
+  setInterval(() => {
+    const text = document.querySelector("[data-testid=ask-control]")?.textContent;
+    if (text !== undefined && window.asking.at(-1)?.text !== text)
+      window.asking.push({ text, atMs: Date.now() });
+  }, 20);
+};
+
+// A line of three corners, with the pen in the hand.
+async function drawLine(page, { x, y }) {
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 40, y + 10, { steps: 4 });
+  await page.mouse.move(x + 80, y, { steps: 4 });
+  await page.mouse.up();
 }
 
 const turn = (page, rightPx) => dragBetween(page, MIDDLE, { x: MIDDLE.x + rightPx, y: MIDDLE.y });
@@ -85,7 +134,9 @@ function middleOf(points) {
 }
 
 before(async () => {
-  server = await startServer({ httpPort: await freePort(), grpcPort: await freePort() });
+  stateFolder = mkdtempSync(join(tmpdir(), "thunderhead-class-"));
+  serverFlags = { httpPort: await freePort(), grpcPort: await freePort(), state: stateFolder };
+  server = await startServer(serverFlags);
   browser = await launchBrowser();
   teacher = await visit(server.url);
   await rested(teacher);
@@ -99,6 +150,25 @@ before(async () => {
 after(async () => {
   await browser?.close();
   await server?.stop();
+  rmSync(stateFolder, { recursive: true, force: true });
+});
+
+test("a presenter leaves, whose control is to be free after a minute; a viewer asks meanwhile", async () => {
+  const presenter = await visit(server.url);
+  await until("a session", async () => presenter.url().includes("?session="));
+  // The light of its picture, which nobody looks at, would be traced all the while.
+  await presenter.getByTestId("quality-choice").getByText("Fast", { exact: true }).click();
+  await setRuleOf(presenter, "freeWhenAway", true);
+  const viewer = await visit(presenter.url().replace(/#.*/, ""));
+  await viewer.getByTestId("ask-control").waitFor();
+  await viewer.evaluate(watchAsking);
+  left = { viewer, atMs: Date.now() };
+  await presenter.context().close();
+  await until("a presenter who is away", async () => (await said(viewer)) === "Nobody steers");
+  assert.match(await viewer.getByTestId("edit-block").innerText(), /away, and keeps control/);
+  assert.equal(await controlLabel(viewer), "Ask to steer");
+  await viewer.getByTestId("ask-control").click();
+  await until("a request", async () => (await controlLabel(viewer)) === "Asked to steer …");
 });
 
 test("the teacher shares a link and a code, and keeps the presenter's key", async () => {
@@ -106,8 +176,11 @@ test("the teacher shares a link and a code, and keeps the presenter's key", asyn
   await screenshot("20-share", teacher);
   const link = await teacher.getByTestId("viewers-link").inputValue();
   assert.match(link, /\?session=[^&#]+$/);
-  const modules = await teacher.locator("[data-testid=qr] path").getAttribute("d");
-  assert.ok(modules.length > 1000, "the code is empty");
+  assert.equal(await textOfCode(teacher), link);
+  await teacher.getByTestId("qr").click();
+  assert.equal(await textOfCode(teacher), link, "as large as the window");
+  await teacher.getByTestId("qr").click();
+  assert.match(await teacher.getByTestId("only-here").innerText(), /127\.0\.0\.1 is only this computer/);
   await teacher.getByTestId("copy-link").click();
   const copied = await teacher.evaluate(() => navigator.clipboard.readText());
   assert.ok(copied.startsWith(`${link}#scene=`), copied);
@@ -207,10 +280,62 @@ test("the teacher says not now, and locks control", async () => {
   await teacher.getByTestId("asks-give-not").click();
   await teacher.getByTestId("asks").waitFor({ state: "detached" });
   assert.equal(await student.getByTestId("give-back").count(), 0);
+  // Asked again at once, the teacher is not bothered.
+  await until("a button", () => student.getByTestId("ask-control").isEnabled());
+  await student.getByTestId("ask-control").click();
+  await student.getByText("asked for control a moment ago").waitFor();
+  assert.equal(await teacher.getByTestId("asks").count(), 0);
   await setRule("controlLocked", true);
   await until("a locked button", () => student.getByTestId("ask-control").isDisabled());
   await setRule("controlLocked", false);
   await until("an unlocked button", () => student.getByTestId("ask-control").isEnabled());
+});
+
+test("control that the teacher lets go is free: one of two who ask at once steers, the other asks that one", async () => {
+  await student.waitForTimeout(ASK_AGAIN_AFTER_MS);
+  classmate = await visit(await viewersLink());
+  await classmate.getByTestId("ask-control").waitFor();
+  await teacher.getByTestId("let-go").focus();
+  await teacher.keyboard.press("Enter");
+  await teacher.getByTestId("take-control").waitFor();
+  const focused = await teacher.evaluate(() => document.activeElement?.dataset.testid);
+  assert.equal(focused, "take-control", "the keyboard's place is lost");
+  assert.equal(await said(teacher), "Nobody steers");
+  assert.equal(await exposure(teacher).isDisabled(), true);
+  for (const page of [student, classmate])
+    await until("free control", async () => (await controlLabel(page)) === "Steer");
+  await screenshot("23b-free-control", student);
+  await Promise.all([student, classmate].map((page) => page.getByTestId("ask-control").click()));
+  await until("one who steers", async () => (await steers(student)) || (await steers(classmate)));
+  const [first, second] = (await steers(student)) ? [student, classmate] : [classmate, student];
+  await first.getByTestId("asks-give").waitFor();
+  assert.equal(await steers(second), false);
+  assert.equal(await controlLabel(second), "Asked to steer …");
+  assert.equal(await exposure(second).isDisabled(), true);
+  await changing(() => setNumber(first, "exposure", 0.2), first);
+  await first.getByTestId("asks-give").click();
+  await second.getByTestId("give-back").waitFor();
+  await first.getByTestId("ask-control").waitFor();
+  assert.equal(await exposure(second).inputValue(), "0.2");
+  await second.getByTestId("give-back").click();
+  await teacher.getByTestId("let-go").waitFor();
+  assert.equal(await exposure(teacher).isDisabled(), false);
+});
+
+test("where viewers may not steer, whoever asks for free control waits for the teacher", async () => {
+  await setRule("viewersMaySteer", false);
+  await teacher.getByTestId("let-go").click();
+  await until("nobody", async () => (await said(classmate)) === "Nobody steers");
+  await classmate.waitForTimeout(ASK_AGAIN_AFTER_MS);
+  assert.equal(await controlLabel(classmate), "Ask to steer");
+  await classmate.getByTestId("ask-control").click();
+  await teacher.getByTestId("asks-give").waitFor();
+  assert.equal(await said(student), "Nobody steers");
+  await teacher.getByTestId("asks-give").click();
+  await classmate.getByTestId("give-back").waitFor();
+  await teacher.getByTestId("take-control").click();
+  await classmate.getByTestId("ask-control").waitFor();
+  await setRule("viewersMaySteer", true);
 });
 
 test("a line that the teacher draws is on the student's picture at the same place, and stays on the storm", async () => {
@@ -263,6 +388,54 @@ test("the teacher's pointer is seen where it points, and goes with the tool", as
   await openTool(teacher, "look");
 });
 
+test("a student points and draws while the teacher allows it", async () => {
+  await openTool(student, "marks");
+  await student.getByText("has not allowed viewers to point and draw").waitFor();
+  assert.equal(await student.getByTestId("tool-pen").count(), 0);
+  await setRule("viewersMayMark", true);
+  await student.getByTestId("tool-pen").click();
+  await inStep();
+  for (const y of [220, 380]) await drawLine(student, { x: MIDDLE.x, y });
+  for (const page of [teacher, student, classmate])
+    await until("both lines and the teacher's", async () => (await marksOn(page)) === 3);
+  const last = (page) =>
+    page.getByTestId("mark").last().evaluate(({ dataset }) => dataset.corners);
+  assert.equal(await last(teacher), await last(student));
+  const [, y] = middleOf((await last(teacher)).split(" ").map((corner) => corner.split(",").map(Number)));
+  assert.ok(Math.abs(y - 385) < 10, `the line is at ${y}`);
+  // Those that come while the first is being placed are refused, and not lost.
+  await student.getByTestId("mark-middle").evaluate((button) => {
+    for (let i = 0; i < 3; i += 1) button.click();
+  });
+  for (const page of [teacher, classmate])
+    await until("three rings more", async () => (await marksOn(page)) === 6);
+  assert.equal(await student.getByTestId("pending-mark").count(), 0);
+  await student.getByTestId("tool-pointer").click();
+  await student.mouse.move(MIDDLE.x - 10, MIDDLE.y);
+  await student.mouse.move(MIDDLE.x, MIDDLE.y);
+  for (const page of [teacher, classmate]) await page.getByTestId("pointer").waitFor();
+  await screenshot("26b-students-marks", teacher);
+
+  await setRule("viewersMayMark", false);
+  for (const page of [teacher, classmate]) await page.getByTestId("pointer").waitFor({ state: "detached" });
+  await student.getByText("has not allowed viewers to point and draw").waitFor();
+  await student.mouse.move(MIDDLE.x + 5, MIDDLE.y);
+  await teacher.waitForTimeout(300);
+  assert.equal(await teacher.getByTestId("pointer").count(), 0);
+
+  // Who steers may, whatever the rule; a viewer erases the own ones alone.
+  await teacher.getByTestId("people").click();
+  await teacher.getByTestId("give-unasked").first().click();
+  await teacher.keyboard.press("Escape");
+  await student.getByTestId("give-back").waitFor();
+  assert.equal(await student.getByTestId("tool-pen").count(), 1);
+  await student.getByTestId("clear-marks").click();
+  await until("the teacher's line alone", async () => (await marksOn(teacher)) === 1);
+  await teacher.getByTestId("take-control").click();
+  await student.getByTestId("ask-control").waitFor();
+  await openTool(student, "look");
+});
+
 test("following locked, a student's drag does nothing but hint", async () => {
   await setRule("followingLocked", true);
   await student.waitForTimeout(300);
@@ -283,6 +456,20 @@ test("locking brings those back who look around", async () => {
   await inStep();
   assert.equal(await azimuthOf(student), await azimuthOf(teacher));
   await setRule("followingLocked", false);
+});
+
+test("those who look around are told that others do, and why that is slower", async () => {
+  await turn(student, 80);
+  await until("the own view", async () => (await canvasData(student)).ownView === "true");
+  assert.match(await student.getByTestId("looking-around").innerText(), /^Looking around\s+Back/);
+  await turn(classmate, -80);
+  for (const page of [student, classmate]) await page.getByText("2 look around").waitFor();
+  await student.getByTestId("readout-summary").click();
+  assert.match(await student.getByTestId("own-view").innerText(), /2 people look around and share/);
+  await screenshot("26c-two-look-around", student);
+  await student.getByTestId("readout-summary").click();
+  for (const page of [student, classmate]) await page.getByTestId("follow").click();
+  await inStep();
 });
 
 test("a hidden page gets no frames, and the newest one when it is seen again", async () => {
@@ -331,10 +518,125 @@ test("the teacher reloads by accident and loses nothing", async () => {
   await openTool(teacher, "marks");
   await teacher.getByTestId("clear-marks").click();
   await until("no marks", async () => (await marksOn(student)) === 0);
+  await openTool(teacher, "look");
+});
+
+test("a colleague presents by the presenter's link; of two who steer at once nobody loses a change without a word", async () => {
+  await teacher.getByTestId("share").click();
+  assert.equal(await teacher.getByTestId("presenters-link").count(), 0, "it is folded up");
+  await teacher.getByTestId("present-too").locator("summary").click();
+  const link = await teacher.getByTestId("presenters-link").inputValue();
+  await screenshot("27b-presenters-link", teacher);
+  await teacher.keyboard.press("Escape");
+  const key = new URLSearchParams(new URL(link).hash.slice(1)).get("present");
+  assert.ok(key.length > 10);
+  assert.ok(!(await viewersLink()).includes(key));
+
+  await classmate.context().close();
+  const colleague = await visit(link);
+  await colleague.getByTestId("take-control").waitFor();
+  assert.ok(!colleague.url().includes(key), "the key is in the address");
+  assert.equal(await said(colleague), "Presenter steers");
+  await until("two presenters", async () => (await said(student)) === "Presenter steers");
+
+  await Promise.all([
+    setNumber(teacher, "exposure", 0.9),
+    colleague.getByTestId("take-control").click(),
+  ]);
+  await colleague.getByTestId("let-go").waitFor();
+  await teacher.getByTestId("take-control").waitFor();
+  await until("the same on both pages", async () => {
+    const [one, other] = [await canvasData(teacher), await canvasData(colleague)];
+    const values = [await exposure(teacher).inputValue(), await exposure(colleague).inputValue()];
+    return one.revision === other.revision && other.refined === "true" && values[0] === values[1];
+  });
+  const mine = await exposure(teacher).inputValue();
+  if (mine === "0.9") assert.doesNotMatch(await noticesOf(teacher), /last change was not taken/);
+  else assert.match(await noticesOf(teacher), /last change was not taken|steers/);
+
+  await changing(() => setNumber(colleague, "exposure", 0.3), colleague);
+  await until("the colleague's change", async () => (await exposure(teacher).inputValue()) === "0.3");
+  // Both at once: one of them steers, and all pages agree on who.
+  await colleague.getByTestId("let-go").click();
+  await teacher.getByTestId("take-control").waitFor();
+  await Promise.all([teacher, colleague].map((page) => page.getByTestId("take-control").click()));
+  await until("one who steers", async () => {
+    const both = await Promise.all([teacher, colleague].map((page) => page.getByTestId("let-go").count()));
+    return both[0] + both[1] === 1;
+  });
+  await colleague.context().close();
+  // Its control went back to the presenter who is there.
+  await teacher.getByTestId("let-go").waitFor();
+});
+
+test("no answer within 20 s ends a request, and control is free a minute after the presenter left", async () => {
+  const { viewer, atMs } = left;
+  let seen = [];
+  await until("free control", async () => {
+    seen = await viewer.evaluate(() => window.asking);
+    return seen.at(-1).text === "Steer";
+  });
+  assert.deepEqual(
+    seen.map(({ text }) => text),
+    ["Ask to steer", "Asked to steer …", "Ask to steer", "Steer"],
+  );
+  const waitedMs = seen[2].atMs - seen[1].atMs;
+  assert.ok(waitedMs > ANSWER_WITHIN_MS - TOLD_WITHIN_MS, `the request ended after ${waitedMs} ms`);
+  assert.ok(waitedMs < ANSWER_WITHIN_MS + LATE_MS, `the request ended after ${waitedMs} ms`);
+  const awayMs = seen[3].atMs - atMs;
+  assert.ok(awayMs > AWAY_AFTER_MS, `control was free after ${awayMs} ms`);
+  assert.ok(awayMs < AWAY_AFTER_MS + LATE_MS, `control was free after ${awayMs} ms`);
+  await viewer.getByTestId("ask-control").click();
+  await viewer.getByTestId("give-back").waitFor();
+  await changing(() => setNumber(viewer, "exposure", 0.6), viewer);
+  await viewer.context().close();
 });
 
 test("no error reached the browsers' consoles", () => {
   assert.deepEqual(complaints, []);
+});
+
+test("the server is killed and comes back: teacher and student have their session, with marks, rules and keys", async () => {
+  await openTool(teacher, "marks");
+  await teacher.getByTestId("tool-pen").click();
+  await drawLine(teacher, { x: MIDDLE.x, y: 240 });
+  await until("a mark", async () => (await marksOn(student)) === 1);
+  await teacher.keyboard.press("Escape");
+  await openTool(teacher, "look");
+  await setRule("viewersMayMark", true);
+  // The store is at most half a second behind.
+  await student.waitForTimeout(1200);
+  await inStep();
+  const [address, drawn, mark] = [student.url(), await grabCanvas(student), await markOn(student)];
+  const { revision } = await canvasData(student);
+
+  await server.stop("SIGKILL");
+  for (const page of [teacher, student])
+    await page.getByTestId("connection-lost").waitFor({ timeout: 20_000 });
+  assert.equal(await marksOn(student), 1, "what was seen stays while nobody answers");
+  server = await startServer(serverFlags);
+  for (const page of [teacher, student])
+    await page.getByTestId("connection-lost").waitFor({ state: "detached", timeout: 30_000 });
+  await teacher.getByTestId("let-go").waitFor();
+  assert.equal(await said(student), "Presenter steers");
+  await until("two people", async () => /2/.test(await teacher.getByTestId("people").innerText()));
+  assert.equal(student.url(), address);
+  await inStep();
+  assert.ok(Number((await canvasData(student)).revision) >= Number(revision));
+  const apart = difference(drawn, await grabCanvas(student));
+  assert.ok(apart < 1, `after the restart the picture differs by ${apart}`);
+  for (const page of [teacher, student]) {
+    await until("the mark", async () => (await marksOn(page)) === 1);
+    assert.deepEqual(await markOn(page), mark);
+  }
+  // The keys have their rights: the teacher's to steer, the student's to follow, and to draw by the rule that was kept.
+  assert.equal(await exposure(student).isDisabled(), true);
+  await openTool(student, "marks");
+  await student.getByTestId("tool-pen").waitFor();
+  await openTool(student, "look");
+  await changing(() => setNumber(teacher, "exposure", 0.1), teacher);
+  await inStep();
+  assert.equal(await exposure(student).inputValue(), "0.1");
 });
 
 test("the teacher ends the session for everybody", async () => {

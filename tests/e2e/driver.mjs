@@ -19,9 +19,9 @@ const CHROMIUM_ARGS = [
 export const PICTURE_TIMEOUT_MS = 60_000;
 const REST_MS = 600;
 
-export function launchBrowser() {
+export function launchBrowser(more = []) {
   mkdirSync(OUTPUT, { recursive: true });
-  return chromium.launch({ executablePath: CHROMIUM, args: CHROMIUM_ARGS });
+  return chromium.launch({ executablePath: CHROMIUM, args: [...CHROMIUM_ARGS, ...more] });
 }
 
 // Errors of a page's scripts and console go into the list.

@@ -4,9 +4,16 @@ import { after, before, test } from "node:test";
 import { canvasData, dragBetween, launchBrowser, listenForErrors, rested, screenshot, until } from "./driver.mjs";
 import { PNG } from "pngjs";
 import { blockDifference, difference, grabCanvas, spread } from "./pictures.mjs";
+import { textOfCode } from "./qr.mjs";
 import { freePort, startServer } from "./server_process.mjs";
+import { throttledLink } from "./throttled_link.mjs";
 
 const WINDOW = { width: 1000, height: 700 };
+// A name that is not this machine's own, which Chromium is told to find here.
+const OTHER_HOST = "storms.test";
+// A frame of JPEG takes 0.4 s by it. The server tries a smaller one where one takes more than 0.1 s (session/link_estimate).
+const SLOW_LINK = { kbitPerS: 1000, roundTripMs: 150 };
+const SLOW_FOR_MS = 30_000;
 // Levels of 255: mean over all pixels. JPEG at its own quality is 1.2 from the picture.
 const ALIKE = 2.5;
 // Of means of blocks; colours of another range or matrix are 4 and more apart.
@@ -53,8 +60,9 @@ const watchCanvas = () => {
 };
 
 before(async () => {
-  server = await startServer({ httpPort: await freePort(), grpcPort: await freePort() });
-  browser = await launchBrowser();
+  const ports = { httpPort: await freePort(), grpcPort: await freePort() };
+  server = await startServer({ ...ports, more: ["--allow-host", OTHER_HOST] });
+  browser = await launchBrowser([`--host-resolver-rules=MAP ${OTHER_HOST} 127.0.0.1`]);
 });
 
 after(async () => {
@@ -71,7 +79,8 @@ test("a browser that saves data sees video while the camera turns, and a still o
   await viewer.evaluate(watchCanvas);
 
   let shown = 0;
-  for (let round = 0; round < 4; round += 1) {
+  // A busy machine shows few pictures a round.
+  for (let round = 0; round < 4 || (shown < 10 && round < 12); round += 1) {
     const x = round % 2 === 0 ? 300 : 500;
     await dragBetween(presenter, { x, y: 350 }, { x: 800 - x, y: 350 }, 30);
     shown = (await viewer.evaluate(() => window.seen.vp9?.count)) ?? 0;
@@ -96,6 +105,74 @@ test("a browser that saves data sees video while the camera turns, and a still o
   assert.match(await viewer.getByTestId("encoding").innerText(), /AVIF/);
   await screenshot("still-avif", viewer);
   assert.deepEqual(complaints, []);
+});
+
+// What the readout says of the picture shown.
+async function sentAs(page) {
+  await page.getByTestId("readout-summary").click();
+  const text = await page.getByTestId("encoding").innerText();
+  await page.getByTestId("readout-summary").click();
+  return text;
+}
+
+test("where there is no video the pictures are JPEG or stills, and the readout says why", async () => {
+  const old = await open(server.url, jpegOnly);
+  await rested(old);
+  assert.equal(await sentAs(old), "JPEG; this browser has no WebCodecs");
+  await old.context().close();
+
+  const plain = await open(server.url.replace("127.0.0.1", OTHER_HOST));
+  await rested(plain);
+  assert.equal(await plain.evaluate(() => isSecureContext), false);
+  await until("the still", async () => (await canvasData(plain)).encoding === "avif");
+  assert.equal(await sentAs(plain), "AVIF, 10 bits; video needs HTTPS or localhost");
+  // Others reach such an address, so Share does not warn.
+  await plain.getByTestId("share").click();
+  const link = await plain.getByTestId("viewers-link").inputValue();
+  assert.equal(new URL(link).hostname, OTHER_HOST);
+  assert.equal(await textOfCode(plain), link);
+  assert.equal(await plain.getByTestId("only-here").count(), 0);
+  await plain.keyboard.press("Escape");
+  await plain.getByTestId("readout-summary").click();
+  await screenshot("plain-http", plain);
+  await plain.context().close();
+});
+
+test("by a slow link come video, or smaller pictures where the browser decodes none", async () => {
+  const links = [];
+  for (let i = 0; i < 2; i += 1)
+    links.push(await throttledLink({ port: Number(new URL(server.url).port), ...SLOW_LINK }));
+  try {
+    const presenter = await open(server.url, jpegOnly);
+    await rested(presenter);
+    const session = new URL(presenter.url()).search;
+    const slow = await open(`http://127.0.0.1:${links[0].port}/${session}`);
+    const old = await open(`http://127.0.0.1:${links[1].port}/${session}`, jpegOnly);
+    for (const page of [slow, old]) await rested(page);
+    // At rest both have the full picture.
+    assert.equal((await canvasData(old)).tier, "0");
+
+    const reached = { video: false, smaller: false };
+    const end = Date.now() + SLOW_FOR_MS;
+    for (let step = 0; Date.now() < end && !(reached.video && reached.smaller); step += 1) {
+      const x = step % 2 === 0 ? 300 : 500;
+      await dragBetween(presenter, { x, y: 350 }, { x: 800 - x, y: 350 }, 30);
+      reached.video ||= (await canvasData(slow)).encoding === "vp9";
+      const { tier, encoding } = await canvasData(old);
+      assert.equal(encoding, "jpeg");
+      reached.smaller ||= tier !== "0";
+    }
+    assert.deepEqual(reached, { video: true, smaller: true });
+    await old.getByTestId("readout-summary").click();
+    await screenshot("slow-link", old);
+    // Stills are worth waiting for.
+    await until("the full picture at rest", async () => {
+      const { tier, refined } = await canvasData(old);
+      return tier === "0" && refined === "true";
+    });
+  } finally {
+    for (const link of links) await link.close();
+  }
 });
 
 test("the colours of video are those of JPEG", async () => {

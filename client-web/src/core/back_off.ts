@@ -1,7 +1,8 @@
 // Exponential back-off with full jitter: a delay is drawn at random below a bound that doubles, so that a whole class does
 // not come back at once.
 
-export const FIRST_BOUND_MS = 500;
+// Also after a delay that the server gave, which is the same for everybody.
+export const FIRST_BOUND_MS = 1000;
 export const LONGEST_BOUND_MS = 8000;
 
 export class BackOff {

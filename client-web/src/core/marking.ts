@@ -4,7 +4,7 @@ import { arrowStrokes, joined, letterStrokes, ringStroke } from "./lettering";
 import { type Later, Newest } from "./newest";
 import { type Box, picturePointAt } from "./picture_box";
 import { type Projection, pointOnRay, rayAt, type WorldRay } from "./projection";
-import type { SessionState } from "./session_state";
+import type { PendingMark, SessionState } from "./session_state";
 import { type StrokePoint, simplifiedStroke, strokeLengthPx } from "./stroke";
 
 // A tool in the hand: places are in CSS pixels of the window.
@@ -35,12 +35,22 @@ export interface MarkingSteps {
 }
 
 const POINT_EVERY_MS = 34;
+// A mark is sent so often at most, while the server is busy with the one before.
+const MOST_SENDINGS = 25;
+const MOST_REMEMBERED = 64;
 const MOST_CORNERS = 64;
 const LETTER_PX = 22;
 const RING_PX = 60;
 const ARROW_PX = 70;
 // Shorter strokes are clicks.
 const SHORTEST_STROKE_PX = 4;
+
+// A mark that was sent.
+interface SentMark {
+  readonly pending: PendingMark;
+  readonly rays: readonly WorldRay[];
+  readonly sendings: number;
+}
 
 export class Marking {
   // The line that is being drawn, in CSS pixels of the window.
@@ -50,6 +60,9 @@ export class Marking {
   readonly #session: SessionState;
   readonly #steps: MarkingSteps;
   readonly #points: Newest<WorldRay | undefined>;
+  readonly #sent = new Map<bigint, SentMark>();
+  readonly #resting = new Set<() => void>();
+  #lastMarkId = 0;
   #pointing = false;
   readonly #pointer: PictureTool;
   readonly #pen: PictureTool;
@@ -135,8 +148,32 @@ export class Marking {
     this.#points.offer(undefined);
   }
 
+  // The server did not take a mark. True if it is sent again, after the delay where there is one.
+  refused(requestId: bigint, afterMs: number | undefined): boolean {
+    const mark = this.#sent.get(requestId);
+    if (mark === undefined) return false;
+    this.#sent.delete(requestId);
+    const { pendingMarks } = this.#session;
+    const others = pendingMarks.peek().filter(({ id }) => id !== mark.pending.id);
+    if (afterMs === undefined || mark.sendings >= MOST_SENDINGS) {
+      pendingMarks.value = others;
+      return false;
+    }
+    const waiting = { ...mark.pending, requestId: undefined };
+    pendingMarks.value = [...others, waiting];
+    const withdraw = this.#steps.later(afterMs, () => {
+      this.#resting.delete(withdraw);
+      // Who has joined again begins without pending marks.
+      if (pendingMarks.peek().includes(waiting)) this.#send({ ...mark, pending: waiting });
+    });
+    this.#resting.add(withdraw);
+    return true;
+  }
+
   dispose(): void {
     this.#points.dispose();
+    for (const withdraw of this.#resting) withdraw();
+    this.#resting.clear();
   }
 
   #pointAt(place: StrokePoint): void {
@@ -175,11 +212,33 @@ export class Marking {
       return ray === undefined ? [] : [ray];
     });
     if (rays.length < 2) return;
-    const requestId = this.#steps.addMark(rays);
     const distanceM = this.#steps.picture()?.distanceM ?? 0;
-    if (requestId === undefined) return;
-    const pending = { requestId, pointsM: rays.map((ray) => pointOnRay(ray, distanceM)) };
-    this.#session.pendingMarks.value = [...this.#session.pendingMarks.peek(), pending];
+    const pointsM = rays.map((ray) => pointOnRay(ray, distanceM));
+    this.#lastMarkId += 1;
+    this.#send({
+      pending: { id: this.#lastMarkId, requestId: undefined, pointsM },
+      rays,
+      sendings: 0,
+    });
+  }
+
+  // The last of those that are pending, as the server takes them in the order in which they come.
+  #send({ pending, rays, sendings }: SentMark): void {
+    const { pendingMarks } = this.#session;
+    const others = pendingMarks.peek().filter(({ id }) => id !== pending.id);
+    const requestId = this.#steps.addMark(rays);
+    if (requestId === undefined) {
+      pendingMarks.value = others;
+      return;
+    }
+    const sent = { ...pending, requestId };
+    this.#sent.set(requestId, { pending: sent, rays, sendings: sendings + 1 });
+    // Those that were taken have no answer of their own.
+    for (const oldest of this.#sent.keys()) {
+      if (this.#sent.size <= MOST_REMEMBERED) break;
+      this.#sent.delete(oldest);
+    }
+    pendingMarks.value = [...others, sent];
   }
 
   #rayAt(place: StrokePoint): WorldRay | undefined {

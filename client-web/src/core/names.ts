@@ -77,7 +77,7 @@ const STAGE_NAMES: Readonly<Record<Stage, string>> = {
   [Stage.LIGHT]: "Light",
   [Stage.VIEW]: "View",
   [Stage.GROUND]: "Ground",
-  [Stage.AIR]: "air",
+  [Stage.AIR]: "Air",
   [Stage.COMPOSITE]: "Sky and ground",
   [Stage.TRACE]: "Traced so far",
   [Stage.CORRECTION]: "Light correction",

@@ -1,5 +1,5 @@
 // The storage that the page uses in the browser: the presenters' keys of its own sessions, by viewer key, and the person's name. A
-// presenter's key is never put into an address.
+// presenter's key is in no address but that of the presenter's link, which the page takes it out of at once.
 
 // The part of the DOM's Storage that is used.
 export interface TextStore {

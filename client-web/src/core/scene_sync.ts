@@ -55,6 +55,8 @@ export class SceneSync {
   // Nothing is sent before the newer scene is known.
   #stale = false;
   #openingEdits = 0;
+  // Another steers, and what was sent has no answer yet.
+  #onLost: (() => void) | undefined;
   #withdrawPaint: (() => void) | undefined;
   #withdrawRest: (() => void) | undefined;
 
@@ -101,6 +103,7 @@ export class SceneSync {
   // This page steers and is connected.
   allow(): void {
     this.#mayEdit = true;
+    this.#onLost = undefined;
     this.#schedule();
   }
 
@@ -111,11 +114,22 @@ export class SceneSync {
     this.#withdrawPaint = undefined;
   }
 
-  // Gives edits up that the server has not taken.
-  discard(): void {
+  // Another steers: gives edits up that the server does not take, and calls `onLost` if there are any. Those that were sent
+  // await their answer, as they may have come before the other took control.
+  discard(onLost: () => void): void {
+    this.#onLost = onLost;
+    this.#giveUp();
+  }
+
+  #giveUp(): void {
+    const onLost = this.#onLost;
+    if (onLost === undefined || this.#inFlight > 0) return;
+    this.#onLost = undefined;
+    if (this.#edits.length === 0) return;
     this.#edits = [];
     this.#unsent = false;
     if (this.#told !== undefined) this.#rebase(this.#told.scene, this.#told.revision);
+    onLost();
   }
 
   // The session's scene.
@@ -191,9 +205,11 @@ export class SceneSync {
       // The connection is lost: allow() is called once it is back.
       this.#inFlight -= 1;
       this.#drains = true;
+      this.#onLost = undefined;
       this.hold();
     }
     if (this.#inFlight === 0) this.#drains = false;
+    this.#giveUp();
     this.#adoptTold();
     this.#schedule();
   }

@@ -19,9 +19,12 @@ export interface Me {
   readonly role: Role;
 }
 
-// A line that was sent and is not among the server's marks yet.
+// A line that was drawn here and is not among the server's marks yet.
 export interface PendingMark {
-  readonly requestId: bigint;
+  // Counts those of this page.
+  readonly id: number;
+  // Of the message that it was sent with last; undefined while it waits to be sent again.
+  readonly requestId: bigint | undefined;
   readonly pointsM: readonly Vec3[];
 }
 
@@ -53,6 +56,12 @@ export class SessionState {
   readonly steerer = computed(() => this.person(this.steeringId.value));
   readonly asking = computed(() => this.people.value.filter((person) => person.asksControl));
   readonly iAsk = computed(() => this.asking.value.some((person) => this.isMe(person.viewerId)));
+  // Nobody steers, and whoever asks gets control at once.
+  readonly steersWhoAsks = computed(() => {
+    const { viewersMaySteer, controlLocked } = this.rules.value;
+    const free = this.steeringId.value === 0n && !this.presenterAway.value;
+    return free && viewersMaySteer === true && controlLocked !== true;
+  });
   // True for the people who answer those who ask.
   readonly answersAsking = computed(() => this.steering.value || this.presenting.value);
   readonly mayLookAround = computed(
@@ -61,7 +70,14 @@ export class SessionState {
   readonly mayMark = computed(
     () =>
       this.me.value !== undefined &&
-      (this.presenting.value || this.rules.value.viewersMayMark === true),
+      (this.presenting.value || this.steering.value || this.rules.value.viewersMayMark === true),
+  );
+  // Others who get pictures of a view of their own; the server draws for each of them singly.
+  readonly othersLookingAround = computed(
+    () =>
+      this.people.value.filter(
+        ({ viewerId, follows, hidden }) => !follows && !hidden && !this.isMe(viewerId),
+      ).length,
   );
   readonly alone = computed(() => this.people.value.length < 2);
 
@@ -120,20 +136,16 @@ export class SessionState {
     });
   }
 
-  // Each new mark of one's own takes the place of the oldest pending one.
+  // Each new mark of one's own takes the place of the pending one that was sent first.
   takeMarks(marks: readonly Mark[]): void {
     const known = new Set(this.marks.value.map((mark) => mark.markId));
     const fresh = marks.filter((mark) => !known.has(mark.markId) && this.isMe(mark.viewerId));
+    const pending = this.pendingMarks.value;
+    const placed = pending.filter((mark) => mark.requestId !== undefined).slice(0, fresh.length);
     batch(() => {
       this.marks.value = marks;
-      this.pendingMarks.value = this.pendingMarks.value.slice(fresh.length);
+      this.pendingMarks.value = pending.filter((mark) => !placed.includes(mark));
     });
-  }
-
-  dropPendingMark(requestId: bigint): void {
-    this.pendingMarks.value = this.pendingMarks.value.filter(
-      (pending) => pending.requestId !== requestId,
-    );
   }
 
   end(reason: string): void {

@@ -1,8 +1,8 @@
-// When the server asks to try again, from the details of its errors.
+// When the server asks to try again, and the reason that it gives programs, from the details of its errors.
 import { fromBinary } from "@bufbuild/protobuf";
 import { anyUnpack, type Duration } from "@bufbuild/protobuf/wkt";
 import type { ConnectError } from "@connectrpc/connect";
-import { RetryInfoSchema } from "../gen/google/rpc/error_details_pb";
+import { ErrorInfoSchema, RetryInfoSchema } from "../gen/google/rpc/error_details_pb";
 import { type Status, StatusSchema } from "../gen/google/rpc/status_pb";
 
 // 0 if the server gives no time.
@@ -16,6 +16,15 @@ export function retryAfterMsOfStatus(status: Status | undefined): number {
     if (retry !== undefined) return milliseconds(retry.retryDelay);
   }
   return 0;
+}
+
+// Empty if the server gives none.
+export function reasonOfStatus(status: Status | undefined): string {
+  for (const detail of status?.details ?? []) {
+    const info = anyUnpack(detail, ErrorInfoSchema);
+    if (info !== undefined) return info.reason;
+  }
+  return "";
 }
 
 // Of the trailer grpc-status-details-bin.

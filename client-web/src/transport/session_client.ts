@@ -18,7 +18,7 @@ import type {
 } from "../gen/thunderhead/v1/interact_pb";
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
 import type { BidiCall, BidiListener, CallEnd } from "./interact_socket";
-import { retryAfterMs } from "./retry_info";
+import { reasonOfStatus, retryAfterMs, retryAfterMsOfStatus } from "./retry_info";
 import type { ServerCalls } from "./server_calls";
 
 export interface OpenedSession {
@@ -43,9 +43,20 @@ export interface SessionListener {
   // Anything else that the session says.
   message(message: InteractResponse["message"]): void;
   // A message was not obeyed.
-  refused(subject: RequestCase, requestId: bigint, code: Code, message: string): void;
+  refused(refusal: Refusal): void;
   // The session is gone. Returns true if a new one is to be opened with the page's scene.
   gone(why: { readonly message: string; readonly forgotten: boolean }): boolean;
+}
+
+export interface Refusal {
+  readonly subject: RequestCase;
+  readonly requestId: bigint;
+  readonly code: Code;
+  readonly message: string;
+  // For programs; empty if the server gives none.
+  readonly reason: string;
+  // 0 if the server gives no time to try again.
+  readonly retryAfterMs: number;
 }
 
 export interface JoinDetails {
@@ -301,7 +312,10 @@ export class SessionClient {
     const message = status?.message ?? "";
     if (this.#answerScene(call, requestId, verdictOf(code, message))) return;
     const subject = call.requests.get(requestId);
-    if (subject !== undefined) this.#listener.refused(subject, requestId, code, message);
+    if (subject === undefined) return;
+    const reason = reasonOfStatus(status);
+    const retryAfterMs = retryAfterMsOfStatus(status);
+    this.#listener.refused({ subject, requestId, code, message, reason, retryAfterMs });
   }
 
   // False if the message was no scene.

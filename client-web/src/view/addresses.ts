@@ -1,8 +1,9 @@
-// The link for viewers, and the address of the presenter's page, which always opens the session, or in place of one that has
+// The links of a session, and the address of the presenter's page, which always opens the session, or in place of one that has
 // ended a new one with the same scene.
 import { effect } from "@preact/signals-core";
+import type { OwnKeys } from "../core/own_keys";
 import type { PageState } from "../core/state";
-import { linkTo } from "./link";
+import { isLoopback, linkTo, presentersLinkTo, readLink } from "./link";
 
 // The address has the scene of at least so long ago; browsers limit how often it changes.
 const REST_MS = 1000;
@@ -10,12 +11,14 @@ const REST_MS = 1000;
 export class Addresses {
   readonly #window: Window;
   readonly #state: PageState;
+  readonly #keys: OwnKeys;
   readonly #stopWatching: () => void;
   #timer: ReturnType<typeof setTimeout> | undefined;
 
-  constructor(window: Window, state: PageState) {
+  constructor(window: Window, state: PageState, keys: OwnKeys) {
     this.#window = window;
     this.#state = state;
+    this.#keys = keys;
     this.#stopWatching = effect(() => {
       if (state.scene.value !== undefined && state.session.presenting.value) this.#writeAfterRest();
     });
@@ -29,10 +32,36 @@ export class Addresses {
     return linkTo(this.#window.location.href, viewerKey, scene);
   }
 
+  // For another person or device that is to present too; undefined where this page does not.
+  presentersLink(): string | undefined {
+    const { viewerKey, presenting } = this.#state.session;
+    if (viewerKey.value === undefined || !presenting.value) return undefined;
+    const presenterKey = this.#keys.presenterKey(viewerKey.value);
+    if (presenterKey === undefined) return undefined;
+    return presentersLinkTo(this.#window.location.href, viewerKey.value, presenterKey);
+  }
+
+  // The host's name where links of this page mean the machine of whoever opens them; undefined where others reach it.
+  get loopbackHost(): string | undefined {
+    const { href } = this.#window.location;
+    return isLoopback(href) ? new URL(href).hostname : undefined;
+  }
+
+  // Keeps the key of a presenter's link and takes it out of the address. False for any other address. A key that is kept
+  // already stays: a link must not take it away.
+  adoptPresentersLink(): boolean {
+    const { viewerKey, presenterKey, scene } = readLink(this.#window.location.href);
+    if (viewerKey === undefined || presenterKey === undefined) return false;
+    if (this.#keys.presenterKey(viewerKey) === undefined) this.#keys.keep(viewerKey, presenterKey);
+    const address = linkTo(this.#window.location.href, viewerKey, scene);
+    this.#window.history.replaceState(null, "", address);
+    return true;
+  }
+
   // False where the browser denies the clipboard, as to pages without HTTPS or without focus.
-  async copyLink(): Promise<boolean> {
+  async copy(link: string): Promise<boolean> {
     try {
-      await this.#window.navigator.clipboard.writeText(this.viewersLink(true) ?? "");
+      await this.#window.navigator.clipboard.writeText(link);
       return true;
     } catch {
       return false;

@@ -1,18 +1,22 @@
 // Links to a session: ?session=VIEWER_KEY names it; #scene=... is a copy of the scene, to open a new session with if that
-// one has ended. Browsers do not send the fragment to the server.
+// one has ended; #present=PRESENTER_KEY lets another person or device present. Browsers do not send the fragment to the
+// server, so the presenter's key is in no log.
 import { sceneFromUrlText, sceneToUrlText } from "../core/scene";
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
 
 export interface Link {
   readonly viewerKey: string | undefined;
+  readonly presenterKey: string | undefined;
   readonly scene: Scene | undefined;
 }
 
 export function readLink(address: string): Link {
   const link = new URL(address);
-  const text = new URLSearchParams(link.hash.slice(1)).get("scene");
+  const fragment = new URLSearchParams(link.hash.slice(1));
+  const text = fragment.get("scene");
   return {
     viewerKey: link.searchParams.get("session") ?? undefined,
+    presenterKey: fragment.get("present") ?? undefined,
     scene: text === null ? undefined : sceneFromUrlText(text),
   };
 }
@@ -23,6 +27,18 @@ export function linkTo(address: string, viewerKey: string, scene?: Scene): strin
   link.searchParams.set("session", viewerKey);
   if (scene !== undefined) link.hash = `scene=${sceneToUrlText(scene)}`;
   return link.href;
+}
+
+export function presentersLinkTo(address: string, viewerKey: string, presenterKey: string): string {
+  const link = new URL(linkTo(address, viewerKey));
+  link.hash = `present=${presenterKey}`;
+  return link.href;
+}
+
+// True for an address that means the machine of whoever opens it.
+export function isLoopback(address: string): boolean {
+  const host = new URL(address).hostname;
+  return /^(localhost|.*\.localhost|127(\.\d+){3}|0\.0\.0\.0|\[::1?\])$/.test(host);
 }
 
 // The page's address without session and scene.

@@ -24,7 +24,7 @@ export function Overlay({ state, marking }: { state: PageState; marking: Marking
           ))}
           {session.pendingMarks.value.map((pending) => (
             <Line
-              key={`pending-${pending.requestId}`}
+              key={`pending-${pending.id}`}
               strokes={markStrokes(projection, pending.pointsM)}
               box={box}
               testId="pending-mark"

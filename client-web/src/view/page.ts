@@ -96,11 +96,13 @@ export class Page {
     this.probing = new Probing(this.calls, state);
     this.views = new NamedViews(storageOf(window), () => state.stormId.peek());
     this.keeper = new Keeper(transport, state, this.notes, () => this.views.all.peek());
-    this.addresses = new Addresses(window, state);
+    this.addresses = new Addresses(window, state, keys);
+    this.addresses.adoptPresentersLink();
     this.#life = new SessionLife({
       client: () => this.#client,
       screen: () => this.screen,
       viewpoint: () => this.viewpoint,
+      marking: () => this.marking,
       state,
       keys,
       ledger,
@@ -265,11 +267,20 @@ export class Page {
   }
 
   async copyLink(): Promise<void> {
-    if (await this.addresses.copyLink()) this.notes.say("link", "Link copied");
-    else {
-      const text = this.addresses.viewersLink(true) ?? "";
-      this.state.notify({ subject: "link", text, severity: "note" });
-    }
+    const link = this.addresses.viewersLink(true) ?? "";
+    if (await this.addresses.copy(link)) this.notes.say("link", "Link copied");
+    else this.state.notify({ subject: "link", text: link, severity: "note" });
+  }
+
+  // Its key is not for the eyes of those who watch: no notice has it.
+  async copyPresentersLink(): Promise<void> {
+    const link = this.addresses.presentersLink();
+    if (link === undefined) return;
+    const copied = await this.addresses.copy(link);
+    this.notes.say(
+      "link",
+      copied ? "Presenter's link copied" : "This browser lets the page copy nothing: copy the text",
+    );
   }
 
   dispose(): void {
@@ -301,6 +312,12 @@ export class Page {
     const options = { signal: this.#listening.signal };
     const window = this.#window;
     const { session } = this.state;
+    // A presenter's link that is opened in place of this session's address loads nothing anew by itself.
+    window.addEventListener(
+      "hashchange",
+      () => this.addresses.adoptPresentersLink() && window.location.reload(),
+      options,
+    );
     window.addEventListener("online", () => this.#client.retryNow(), options);
     window.document.addEventListener("visibilitychange", () => this.#life.sendWindow(), options);
     // A picture that was saved brings its view back.

@@ -56,7 +56,7 @@ function Costs({ state }: { state: PageState }) {
         <Row name="All stages" text={`${formatNumber(total)} ms`} />
         <Row name="Picture" text={`${frame.widthPx} × ${frame.heightPx}`} />
         {frame.tier > 0 && <Row name="Reduced by" text={`${frame.tier} steps, for this link`} />}
-        {frame.ownView && <Row name="View" text="Your own" />}
+        {frame.ownView && <Row name="View" testId="own-view" text={ownView(state)} />}
         <Row
           name="Sent as"
           testId="encoding"
@@ -109,6 +109,13 @@ function Costs({ state }: { state: PageState }) {
       </tbody>
     </table>
   );
+}
+
+// All own views together get half of the server's time where the session's moves too (server/session/turns.h).
+function ownView({ session }: PageState): string {
+  const count = session.othersLookingAround.value + 1;
+  if (count === 1) return "Your own, drawn for you alone";
+  return `Your own; ${count} people look around and share the server's time for that, so pictures may come more slowly`;
 }
 
 function Row({ name, text, testId }: { name: string; text: string; testId?: string }) {

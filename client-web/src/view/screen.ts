@@ -120,6 +120,7 @@ export class Screen {
       refined: String(frame.refined),
       encoding: encodingOf(frame),
       ownView: String(frame.ownView),
+      tier: String(frame.tier),
       time: String(shownTimeIndex ?? ""),
       camera: pose?.kind ?? "",
       azimuth: standingAzimuthDeg(pose)?.toFixed(2) ?? "",

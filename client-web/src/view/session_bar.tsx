@@ -1,5 +1,9 @@
 // Who steers, and the way back from looking around.
+import type { SessionState } from "../core/session_state";
 import type { Page } from "./page";
+
+const WHY_SLOWER =
+  "The server draws for each who looks around singly; those who follow share one picture";
 
 export function SessionBar({ page }: { page: Page }) {
   const { session } = page.state;
@@ -8,8 +12,8 @@ export function SessionBar({ page }: { page: Page }) {
     <div class="session-bar" data-testid="session-bar">
       <Control page={page} />
       {session.lookingAround.value && (
-        <span class="looking" data-testid="looking-around">
-          Looking around
+        <span class="looking" title={WHY_SLOWER} data-testid="looking-around">
+          {lookingAround(session.othersLookingAround.value)}
           <button type="button" class="primary" data-testid="follow" onClick={() => page.follow()}>
             Back to presenter
           </button>
@@ -24,48 +28,85 @@ export function SessionBar({ page }: { page: Page }) {
 
 function Control({ page }: { page: Page }) {
   const { session } = page.state;
-  const steerer = session.steerer.value;
-  if (session.steering.value) {
-    if (session.presenting.value) return session.alone.value ? null : <Said text="You steer" />;
-    return (
-      <button type="button" data-testid="give-back" onClick={() => page.actions.giveControl()}>
-        You steer · give back
-      </button>
-    );
-  }
+  const steers = session.steering.value;
+  if (steers && session.presenting.value && session.alone.value) return null;
+  const step = controlStep(page);
+  // One button whatever it does, so that it keeps the keyboard's focus.
   return (
     <>
-      <Said text={steerer === undefined ? "Nobody steers" : `${session.nameOf(steerer)} steers`} />
-      {session.presenting.value ? (
-        <button
-          type="button"
-          class="primary"
-          data-testid="take-control"
-          onClick={() => page.actions.takeControl()}
-        >
-          Take control
-        </button>
-      ) : (
-        <button
-          type="button"
-          data-testid="ask-control"
-          disabled={session.iAsk.value || session.rules.value.controlLocked === true}
-          title={session.rules.value.controlLocked ? "The presenter has locked control" : undefined}
-          onClick={() => page.actions.askControl()}
-        >
-          {session.iAsk.value ? "Asked to steer …" : "Ask to steer"}
-        </button>
-      )}
+      <span class="who-steers" data-testid="who-steers">
+        {whoSteers(session)}
+      </span>
+      <button
+        type="button"
+        class={step.primary ? "primary" : undefined}
+        data-testid={step.testId}
+        disabled={step.disabled}
+        title={step.title}
+        onClick={step.act}
+      >
+        {step.label}
+      </button>
     </>
   );
 }
 
-function Said({ text }: { text: string }) {
-  return (
-    <span class="who-steers" data-testid="who-steers">
-      {text}
-    </span>
-  );
+interface ControlStep {
+  readonly testId: string;
+  readonly label: string;
+  readonly title?: string;
+  readonly primary?: boolean;
+  readonly disabled?: boolean;
+  act(): void;
+}
+
+// What this person can do about who steers.
+function controlStep({ state: { session }, actions }: Page): ControlStep {
+  const letGo = () => actions.giveControl();
+  if (session.steering.value && session.presenting.value)
+    return {
+      testId: "let-go",
+      label: "Let control go",
+      title: session.rules.value.viewersMaySteer
+        ? "Nobody steers then, and who asks first gets control"
+        : "Nobody steers then, until you give or take control",
+      act: letGo,
+    };
+  if (session.steering.value)
+    return { testId: "give-back", label: "Give control back", act: letGo };
+  if (session.presenting.value)
+    return {
+      testId: "take-control",
+      label: "Take control",
+      primary: true,
+      act: () => actions.takeControl(),
+    };
+  const asked = session.iAsk.value;
+  const locked = session.rules.value.controlLocked === true;
+  const ask = { testId: "ask-control", act: () => actions.askControl() };
+  if (locked)
+    return {
+      ...ask,
+      label: "Ask to steer",
+      title: "The presenter has locked control",
+      disabled: true,
+    };
+  if (asked) return { ...ask, label: "Asked to steer …", disabled: true };
+  if (session.steersWhoAsks.value)
+    return { ...ask, label: "Steer", title: "Nobody steers: who asks first does" };
+  return { ...ask, label: "Ask to steer" };
+}
+
+function whoSteers(session: SessionState): string {
+  if (session.steering.value) return "You steer";
+  const steerer = session.steerer.value;
+  return steerer === undefined ? "Nobody steers" : `${session.nameOf(steerer)} steers`;
+}
+
+function lookingAround(others: number): string {
+  return others === 0
+    ? "Looking around"
+    : `${others + 1} look around: pictures may come more slowly`;
 }
 
 function announcement(page: Page): string {
@@ -74,7 +115,6 @@ function announcement(page: Page): string {
     const names = session.asking.value.map((person) => session.nameOf(person));
     return `${names.join(" and ")} ${names.length > 1 ? "ask" : "asks"} to steer. See People.`;
   }
-  const steerer = session.steerer.value;
-  if (session.steering.value) return session.alone.value ? "" : "You steer.";
-  return steerer === undefined ? "" : `${session.nameOf(steerer)} steers.`;
+  if (session.steering.value && session.alone.value) return "";
+  return session.people.value.length === 0 ? "" : `${whoSteers(session)}.`;
 }

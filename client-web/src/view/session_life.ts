@@ -3,6 +3,7 @@
 import { create } from "@bufbuild/protobuf";
 import { Code } from "@connectrpc/connect";
 import { poseOfCamera } from "../core/camera";
+import type { Marking } from "../core/marking";
 import type { Later } from "../core/newest";
 import type { OwnKeys } from "../core/own_keys";
 import type { RevisionLedger } from "../core/revision_ledger";
@@ -21,7 +22,7 @@ import { type Scene, SceneSchema } from "../gen/thunderhead/v1/scene_pb";
 import type {
   JoinDetails,
   OpenedSession,
-  RequestCase,
+  Refusal,
   SessionClient,
   SessionListener,
 } from "../transport/session_client";
@@ -34,6 +35,7 @@ export interface SessionLifeParts {
   client(): SessionClient;
   screen(): Screen;
   viewpoint(): Viewpoint;
+  marking(): Marking;
   readonly state: PageState;
   readonly keys: OwnKeys;
   readonly ledger: RevisionLedger;
@@ -213,7 +215,7 @@ export class SessionLife implements SessionListener {
     }
   }
 
-  refused(subject: RequestCase, requestId: bigint, code: Code, message: string): void {
+  refused({ subject, requestId, code, message, reason, retryAfterMs }: Refusal): void {
     const { ownView } = this.#parts.viewpoint();
     // A late or a second pointer, acknowledgement or motion is of no interest.
     if (subject === "point" || subject === "acknowledge") return;
@@ -222,7 +224,10 @@ export class SessionLife implements SessionListener {
       if (code === Code.FailedPrecondition) ownView.end();
       return;
     }
-    if (subject === "addMark") this.#parts.state.session.dropPendingMark(requestId);
+    if (subject === "addMark") {
+      const againMs = reason === "MARKS_TOO_FAST" ? retryAfterMs : undefined;
+      if (this.#parts.marking().refused(requestId, againMs)) return;
+    }
     if (subject === "detach") ownView.end();
     const text = code === Code.PermissionDenied && message === "" ? "This is not allowed" : message;
     this.#parts.notes.say("refused-request", text);
@@ -263,9 +268,10 @@ export class SessionLife implements SessionListener {
       if (this.#opened && presence.steeringViewerId === 0n) this.#parts.takeControl();
       else if (this.#resumesSteering && presenterSteers(presence)) this.#parts.takeControl();
       else if (this.#sync.unsettled) {
-        this.#sync.discard();
-        const why = session.editBlock.peek() ?? "";
-        notes.say("control", `Your last change was not taken. ${why}`);
+        this.#sync.discard(() => {
+          const why = session.editBlock.peek() ?? "";
+          notes.say("control", `Your last change was not taken. ${why}`);
+        });
       }
     }
     this.#opened = false;

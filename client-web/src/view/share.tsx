@@ -1,4 +1,4 @@
-// The viewers' link as text and as a QR code for a projector, and for the presenter the rules.
+// The viewers' link as text and as a QR code for a projector, and for the presenter the rules and a link to present by.
 
 import { useMemo, useState } from "preact/hooks";
 import qrcode from "qrcode-generator";
@@ -25,6 +25,7 @@ export function Share({ page }: { page: Page }) {
   return (
     <Popover page={page} name="share" title="Share" label="Share this session">
       <p class="quiet">Who opens this link watches with you. The code grows with a click.</p>
+      <OnlyHere host={page.addresses.loopbackHost} />
       <QrCode text={link} />
       <div class="link-row">
         <input
@@ -51,10 +52,65 @@ export function Share({ page }: { page: Page }) {
       {page.state.session.presenting.value && (
         <>
           <Rules page={page} />
+          <PresentersLink page={page} />
           <EndSession page={page} />
         </>
       )}
     </Popover>
+  );
+}
+
+// A link to localhost opens for nobody else.
+function OnlyHere({ host }: { host: string | undefined }) {
+  if (host === undefined) return null;
+  return (
+    <p class="only-here" role="note" data-testid="only-here">
+      <strong>Others cannot open this link:</strong> {host} is only this computer. Start the server
+      with <code>--http</code> on an address that they can reach, and open this page by that
+      address.
+    </p>
+  );
+}
+
+// Folded up, as its text is not for those who watch the screen.
+function PresentersLink({ page }: { page: Page }) {
+  const [open, setOpen] = useState(false);
+  const link = page.addresses.presentersLink();
+  if (link === undefined) return null;
+  return (
+    <details
+      class="presenters-link"
+      data-testid="present-too"
+      onToggle={(event) => setOpen(event.currentTarget.open)}
+    >
+      <summary>Presenter's link</summary>
+      {open && (
+        <>
+          <p class="quiet">
+            Who opens it presents as you do: takes control, sets the rules, ends the session. For
+            your second device or a colleague, not for the class.
+          </p>
+          <div class="link-row">
+            <input
+              type="text"
+              class="link"
+              readOnly
+              aria-label="Link for presenters"
+              data-testid="presenters-link"
+              value={link}
+              onFocus={(event) => event.currentTarget.select()}
+            />
+            <button
+              type="button"
+              data-testid="copy-presenters-link"
+              onClick={() => void page.copyPresentersLink()}
+            >
+              Copy link
+            </button>
+          </div>
+        </>
+      )}
+    </details>
   );
 }
 

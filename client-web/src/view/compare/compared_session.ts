@@ -1,6 +1,5 @@
 // The session of B: a second one of this page alone, whose scene follows A's. Closed when the comparison ends.
 import { create } from "@bufbuild/protobuf";
-import type { Code } from "@connectrpc/connect";
 import type { Later } from "../../core/newest";
 import { SceneSync } from "../../core/scene_sync";
 import type { Frame } from "../../gen/thunderhead/v1/frame_pb";
@@ -11,7 +10,7 @@ import {
   type JoinDetails,
   type OpenedSession,
   type OpenInteract,
-  type RequestCase,
+  type Refusal,
   SessionClient,
   type SessionListener,
 } from "../../transport/session_client";
@@ -144,7 +143,7 @@ export class ComparedSession implements SessionListener {
     }
   }
 
-  refused(_: RequestCase, _id: bigint, _code: Code, message: string): void {
+  refused({ message }: Refusal): void {
     this.#steps.problem(message);
   }
 

@@ -1,0 +1,8 @@
+// What a phone reads from the code in "Share": the pixels on the screen, decoded by another library than drew them.
+import jsQR from "jsqr";
+import { PNG } from "pngjs";
+
+export async function textOfCode(page) {
+  const { data, width, height } = PNG.sync.read(await page.getByTestId("qr").screenshot());
+  return jsQR(new Uint8ClampedArray(data), width, height)?.data;
+}
