@@ -45,14 +45,6 @@ pipeline::ProductKey KeyOf(const volume::CataloguedStorm& storm, int time_index,
   return key;
 }
 
-absl::Status MakeFolder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (!error) return absl::OkStatus();
-  return absl::FailedPreconditionError(
-      absl::StrCat(folder, ": the folder cannot be created (", error.message(), ")"));
-}
-
 // What the service says of its part.
 void AddStages(const v1::RenderImageResponse& response, PictureTimes& times) {
   for (const v1::StageCost& stage : response.stages()) {
@@ -132,7 +124,7 @@ bool SameStamp(const pipeline::InputFile& a, const pipeline::InputFile& b) {
 
 absl::StatusOr<std::unique_ptr<PictureRun>> PictureRun::Open(PictureRunOptions options) {
   const std::string folder = fs::path(options.manifest).parent_path().string();
-  THUNDERHEAD_RETURN_IF_ERROR(MakeFolder(folder.empty() ? "." : folder));
+  THUNDERHEAD_RETURN_IF_ERROR(base::MakeFolders(folder.empty() ? "." : folder));
   THUNDERHEAD_ASSIGN_OR_RETURN(pipeline::Manifest manifest,
                                pipeline::Manifest::Open(options.manifest, options.other_manifests));
   return std::unique_ptr<PictureRun>(new PictureRun(std::move(options), std::move(manifest)));
@@ -210,7 +202,12 @@ absl::Status PictureRun::Publish(const PlannedPicture& planned, v1::RenderImageR
   THUNDERHEAD_ASSIGN_OR_RETURN(const ProductFile file,
                                MakeProduct(options_.format, planned.key.storm, std::move(picture)));
   if (file.world_file.has_value()) {
-    THUNDERHEAD_RETURN_IF_ERROR(PublishFile(WorldFilePath(planned.path), *file.world_file, entry));
+    const std::string path = WorldFilePath(planned.path);
+    // A run that was killed before the picture has left it.
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        const bool made,
+        IsMade(path, entry.scene_sha256, entry.input, [] { return std::string("unknown"); }));
+    if (!made) THUNDERHEAD_RETURN_IF_ERROR(PublishFile(path, *file.world_file, entry));
   }
   return PublishFile(planned.path, file.bytes, entry);
 }
@@ -218,7 +215,7 @@ absl::Status PictureRun::Publish(const PlannedPicture& planned, v1::RenderImageR
 absl::Status PictureRun::PublishFile(const std::string& path, const std::string& bytes,
                                      pipeline::ManifestEntry entry) {
   const std::string folder = fs::path(path).parent_path().string();
-  if (!folder.empty()) THUNDERHEAD_RETURN_IF_ERROR(MakeFolder(folder));
+  if (!folder.empty()) THUNDERHEAD_RETURN_IF_ERROR(base::MakeFolders(folder));
   std::error_code ignored;
   fs::remove(path + ".done", ignored);
   THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(path, bytes));
