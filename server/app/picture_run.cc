@@ -204,9 +204,8 @@ absl::Status PictureRun::Publish(const PlannedPicture& planned, v1::RenderImageR
   if (file.world_file.has_value()) {
     const std::string path = WorldFilePath(planned.path);
     // A run that was killed before the picture has left it.
-    THUNDERHEAD_ASSIGN_OR_RETURN(
-        const bool made,
-        IsMade(path, entry.scene_sha256, entry.input, [] { return std::string("unknown"); }));
+    THUNDERHEAD_ASSIGN_OR_RETURN(const bool made, IsMade(path, entry.scene_sha256, entry.input,
+                                                         [] { return std::string("unknown"); }));
     if (!made) THUNDERHEAD_RETURN_IF_ERROR(PublishFile(path, *file.world_file, entry));
   }
   return PublishFile(planned.path, file.bytes, entry);
