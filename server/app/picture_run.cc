@@ -55,6 +55,10 @@ void AddStages(const v1::RenderImageResponse& response, PictureTimes& times) {
   }
 }
 
+absl::Status ChangedMeanwhile(const std::string& path) {
+  return absl::AbortedError(absl::StrCat(path, " was written to while it was drawn; try again"));
+}
+
 // An error of one input alone, which leaves other pictures alone.
 bool IsOfInput(const absl::Status& status) {
   return absl::IsDataLoss(status) || absl::IsNotFound(status) || absl::IsAborted(status);
@@ -141,6 +145,11 @@ std::string PictureRun::HashOf(const pipeline::InputFile& input) {
   hashed.sha256 = pipeline::Sha256OfFile(input.path).value_or("");
   const std::lock_guard lock(mutex_);
   return hashed_.insert_or_assign(input.path, std::move(hashed)).first->second.sha256;
+}
+
+bool PictureRun::IsAsBegun(const pipeline::InputFile& input) {
+  const std::lock_guard lock(mutex_);
+  return SameStamp(begun_.try_emplace(input.path, input).first->second, input);
 }
 
 absl::Status PictureRun::MarkDone(const std::string& path, const std::string& sha256) const {
@@ -241,6 +250,7 @@ absl::Status PictureRun::MakeOne(const PlannedPicture& picture, volume::StormSto
   const base::Stopwatch stopwatch;
   const View& view = options_.views[picture.view];
   THUNDERHEAD_ASSIGN_OR_RETURN(pipeline::InputFile input, StampOf(picture.input));
+  if (!IsAsBegun(input)) return ChangedMeanwhile(picture.input);
   // Read here, as the service does not tell a bad file from a bad request.
   if (const absl::Status read = store.Get(storm_id, picture.time_index, {}).status(); !read.ok()) {
     const absl::Status problem = AsFileProblem(read);
@@ -258,10 +268,7 @@ absl::Status PictureRun::MakeOne(const PlannedPicture& picture, volume::StormSto
   const base::Stopwatch writing;
   input.sha256 = HashOf(input);
   THUNDERHEAD_ASSIGN_OR_RETURN(const pipeline::InputFile after, StampOf(picture.input));
-  if (!SameStamp(input, after)) {
-    return absl::AbortedError(
-        absl::StrCat(picture.input, " was written to while it was drawn; try again"));
-  }
+  if (!SameStamp(input, after)) return ChangedMeanwhile(picture.input);
   pipeline::ManifestEntry entry = EntryOf(picture.key, view);
   entry.device = device;
   entry.milliseconds = milliseconds = stopwatch.ElapsedMs();
@@ -294,6 +301,7 @@ absl::Status PictureRun::Make(const std::vector<volume::CataloguedStorm>& storms
   }
   if (missing.empty()) return absl::OkStatus();
 
+  begun_.clear();
   volume::StormStoreOptions store_options;
   store_options.read_ahead = 0;
   const std::shared_ptr<volume::StormStore> store = volume::CachedStormStore::Owned(
