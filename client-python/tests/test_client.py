@@ -1,5 +1,6 @@
 """The client against the real server: $THUNDERHEAD_BINARY serves the repository's sample, in software."""
 
+import importlib.util
 import io
 import json
 import os
@@ -11,7 +12,9 @@ import sys
 import tempfile
 import threading
 import time
+import types
 import unittest
+import unittest.mock
 
 import grpc
 import numpy
@@ -210,6 +213,30 @@ class ClientTest(unittest.TestCase):
                 time.sleep(0.05)
             self.assertNotEqual(picture.value, before)
             self.assertEqual((session.get("sun.elevation_deg"), session.get("time_index")), (5.0, 0))
+
+    def test_a_notebook_shows_sliders_or_the_picture(self) -> None:
+        shown = []
+        notebook = types.ModuleType("IPython.display")
+        notebook.display = shown.append
+        modules = {"IPython": types.ModuleType("IPython"), "IPython.display": notebook}
+        with self.client.session("supercell", {**FAST, "camera": {"orbit": {}}}, SIZE) as session:
+            # None in sys.modules is how Python knows a module that is not there.
+            with unittest.mock.patch.dict(sys.modules, {**modules, "ipywidgets": None}):
+                session.display()
+                with self.assertRaisesRegex(RuntimeError, "sliders need ipywidgets"):
+                    session.widget()
+            self.assertEqual(shown, [session])
+            # By this a notebook shows it.
+            with Image.open(io.BytesIO(shown[0]._repr_jpeg_())) as picture:
+                self.assertEqual(picture.size, SIZE)
+            if importlib.util.find_spec("ipywidgets") is None:
+                self.skipTest("ipywidgets is not installed (Debian's python3-ipywidgets)")
+            import ipywidgets
+            with unittest.mock.patch.dict(sys.modules, modules):
+                session.display()
+            self.assertIsInstance(shown[1], ipywidgets.VBox)
+            self.assertIsInstance(shown[1].children[0], ipywidgets.Image)
+            self.assertEqual(len(shown[1].children), 5, "the picture and four sliders")
 
     def test_the_examples_run(self) -> None:
         for example in sorted((HERE.parent / "examples").glob("*.py")):

@@ -4,22 +4,43 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "absl/time/clock.h"
+#include "absl/time/time.h"
 #include "app/progress_bar.h"
+#include "base/file_stamp.h"
 #include "base/status.h"
 #include "session/gl_frame_source.h"
 
 namespace thunderhead::app {
+namespace {
+
+// A model that writes has written a part within so long.
+constexpr absl::Duration kStillWritten = absl::Minutes(2);
+
+}  // namespace
 
 absl::Status AsFileProblem(const absl::Status& status) {
   if (!absl::IsInvalidArgument(status) && !absl::IsFailedPrecondition(status)) return status;
   return absl::DataLossError(status.message());
 }
 
+absl::Status AsFileProblem(const std::string& path, const absl::Status& status) {
+  if (!absl::IsDataLoss(status)) return AsFileProblem(status);
+  const auto stamp = base::StampOf(path);
+  if (!stamp.has_value()) return status;
+  // Not by when its entry changed, as a change of owner is none of a writer's. A date further in
+  // the future than clocks differ says nothing.
+  const absl::Duration age = absl::Now() - absl::FromUnixNanos(stamp->modified_ns);
+  if (absl::AbsDuration(age) > kStillWritten) return status;
+  return absl::UnavailableError(
+      absl::StrCat(status.message(), "; as it changed just now, it may still be being written"));
+}
+
 absl::StatusOr<std::shared_ptr<volume::StormStore>> OpenStorm(const std::string& path) {
   volume::StormStoreOptions options;
   options.read_ahead = 0;
   auto opened = volume::StormStore::Open({path}, options);
-  if (!opened.ok()) return AsFileProblem(opened.status());
+  if (!opened.ok()) return AsFileProblem(path, opened.status());
   std::shared_ptr<volume::StormStore> store = *std::move(opened);
   const std::vector<volume::StormInfoPtr> storms = store->Storms();
   if (storms.size() == 1) return store;
@@ -44,6 +65,7 @@ absl::Status ReadWithProgress(volume::StormStore& store, int time_index) {
   const volume::StormInfo& storm = *store.Storms().front();
   ProgressBar bar(absl::StrCat("reading ", storm.id));
   return AsFileProblem(
+      storm.times[static_cast<std::size_t>(time_index)].file,
       store.Get(storm.id, time_index, [&bar](double share) { bar.Set(share); }).status());
 }
 

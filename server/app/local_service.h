@@ -25,6 +25,9 @@ absl::StatusOr<int> TimeOf(const volume::StormStore& store, const std::string& p
 // The error of a storm's file: whatever code the store gives a bad one, it is DATA_LOSS and no
 // wrong request.
 absl::Status AsFileProblem(const absl::Status& status);
+// The same of the file at `path`. What is damaged may still be being written if it changed within
+// the last two minutes: it is UNAVAILABLE then.
+absl::Status AsFileProblem(const std::string& path, const absl::Status& status);
 
 // Reads one time of the store's storm into its cache, with a progress bar.
 absl::Status ReadWithProgress(volume::StormStore& store, int time_index);

@@ -45,14 +45,6 @@ pipeline::ProductKey KeyOf(const volume::CataloguedStorm& storm, int time_index,
   return key;
 }
 
-absl::Status MakeFolder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (!error) return absl::OkStatus();
-  return absl::FailedPreconditionError(
-      absl::StrCat(folder, ": the folder cannot be created (", error.message(), ")"));
-}
-
 // What the service says of its part.
 void AddStages(const v1::RenderImageResponse& response, PictureTimes& times) {
   for (const v1::StageCost& stage : response.stages()) {
@@ -61,6 +53,10 @@ void AddStages(const v1::RenderImageResponse& response, PictureTimes& times) {
                                                           : times.draw_ms;
     time_ms += stage.milliseconds();
   }
+}
+
+absl::Status ChangedMeanwhile(const std::string& path) {
+  return absl::AbortedError(absl::StrCat(path, " was written to while it was drawn; try again"));
 }
 
 // An error of one input alone, which leaves other pictures alone.
@@ -132,7 +128,7 @@ bool SameStamp(const pipeline::InputFile& a, const pipeline::InputFile& b) {
 
 absl::StatusOr<std::unique_ptr<PictureRun>> PictureRun::Open(PictureRunOptions options) {
   const std::string folder = fs::path(options.manifest).parent_path().string();
-  THUNDERHEAD_RETURN_IF_ERROR(MakeFolder(folder.empty() ? "." : folder));
+  THUNDERHEAD_RETURN_IF_ERROR(base::MakeFolders(folder.empty() ? "." : folder));
   THUNDERHEAD_ASSIGN_OR_RETURN(pipeline::Manifest manifest,
                                pipeline::Manifest::Open(options.manifest, options.other_manifests));
   return std::unique_ptr<PictureRun>(new PictureRun(std::move(options), std::move(manifest)));
@@ -149,6 +145,11 @@ std::string PictureRun::HashOf(const pipeline::InputFile& input) {
   hashed.sha256 = pipeline::Sha256OfFile(input.path).value_or("");
   const std::lock_guard lock(mutex_);
   return hashed_.insert_or_assign(input.path, std::move(hashed)).first->second.sha256;
+}
+
+bool PictureRun::IsAsBegun(const pipeline::InputFile& input) {
+  const std::lock_guard lock(mutex_);
+  return SameStamp(begun_.try_emplace(input.path, input).first->second, input);
 }
 
 absl::Status PictureRun::MarkDone(const std::string& path, const std::string& sha256) const {
@@ -210,7 +211,11 @@ absl::Status PictureRun::Publish(const PlannedPicture& planned, v1::RenderImageR
   THUNDERHEAD_ASSIGN_OR_RETURN(const ProductFile file,
                                MakeProduct(options_.format, planned.key.storm, std::move(picture)));
   if (file.world_file.has_value()) {
-    THUNDERHEAD_RETURN_IF_ERROR(PublishFile(WorldFilePath(planned.path), *file.world_file, entry));
+    const std::string path = WorldFilePath(planned.path);
+    // A run that was killed before the picture has left it.
+    THUNDERHEAD_ASSIGN_OR_RETURN(const bool made, IsMade(path, entry.scene_sha256, entry.input,
+                                                         [] { return std::string("unknown"); }));
+    if (!made) THUNDERHEAD_RETURN_IF_ERROR(PublishFile(path, *file.world_file, entry));
   }
   return PublishFile(planned.path, file.bytes, entry);
 }
@@ -218,7 +223,7 @@ absl::Status PictureRun::Publish(const PlannedPicture& planned, v1::RenderImageR
 absl::Status PictureRun::PublishFile(const std::string& path, const std::string& bytes,
                                      pipeline::ManifestEntry entry) {
   const std::string folder = fs::path(path).parent_path().string();
-  if (!folder.empty()) THUNDERHEAD_RETURN_IF_ERROR(MakeFolder(folder));
+  if (!folder.empty()) THUNDERHEAD_RETURN_IF_ERROR(base::MakeFolders(folder));
   std::error_code ignored;
   fs::remove(path + ".done", ignored);
   THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(path, bytes));
@@ -245,6 +250,7 @@ absl::Status PictureRun::MakeOne(const PlannedPicture& picture, volume::StormSto
   const base::Stopwatch stopwatch;
   const View& view = options_.views[picture.view];
   THUNDERHEAD_ASSIGN_OR_RETURN(pipeline::InputFile input, StampOf(picture.input));
+  if (!IsAsBegun(input)) return ChangedMeanwhile(picture.input);
   // Read here, as the service does not tell a bad file from a bad request.
   if (const absl::Status read = store.Get(storm_id, picture.time_index, {}).status(); !read.ok()) {
     const absl::Status problem = AsFileProblem(read);
@@ -262,10 +268,7 @@ absl::Status PictureRun::MakeOne(const PlannedPicture& picture, volume::StormSto
   const base::Stopwatch writing;
   input.sha256 = HashOf(input);
   THUNDERHEAD_ASSIGN_OR_RETURN(const pipeline::InputFile after, StampOf(picture.input));
-  if (!SameStamp(input, after)) {
-    return absl::AbortedError(
-        absl::StrCat(picture.input, " was written to while it was drawn; try again"));
-  }
+  if (!SameStamp(input, after)) return ChangedMeanwhile(picture.input);
   pipeline::ManifestEntry entry = EntryOf(picture.key, view);
   entry.device = device;
   entry.milliseconds = milliseconds = stopwatch.ElapsedMs();
@@ -298,6 +301,7 @@ absl::Status PictureRun::Make(const std::vector<volume::CataloguedStorm>& storms
   }
   if (missing.empty()) return absl::OkStatus();
 
+  begun_.clear();
   volume::StormStoreOptions store_options;
   store_options.read_ahead = 0;
   const std::shared_ptr<volume::StormStore> store = volume::CachedStormStore::Owned(

@@ -100,12 +100,16 @@ class PictureRun {
   absl::Status PublishFile(const std::string& path, const std::string& bytes,
                            pipeline::ManifestEntry entry);
   std::string HashOf(const pipeline::InputFile& input);
+  // False if the file is another than when the first picture of it was begun: its fields, which the
+  // storm store keeps from view to view, are then not of this file.
+  bool IsAsBegun(const pipeline::InputFile& input);
   absl::Status MarkDone(const std::string& path, const std::string& sha256) const;
 
   const PictureRunOptions options_;
   std::mutex mutex_;  // of all below
   pipeline::Manifest manifest_;
   std::map<std::string, pipeline::InputFile> hashed_;  // by path
+  std::map<std::string, pipeline::InputFile> begun_;   // as pictures under way found them first
 };
 
 }  // namespace thunderhead::app

@@ -67,16 +67,18 @@ absl::StatusOr<std::vector<View>> ReadViews(const PipelineFlags& flags) {
   return views;
 }
 
-// Other manifests of the same folder, whose products need not be drawn again.
-std::vector<std::string> OtherManifests(const std::string& manifest) {
-  std::vector<std::string> others;
+// Other manifests of the same folder, whose products need not be drawn again. A run of all takes
+// over those of shares.
+pipeline::OtherManifests OthersOf(const std::string& manifest, bool takes_over) {
+  pipeline::OtherManifests others;
   std::error_code error;
   const fs::path folder = fs::path(manifest).parent_path();
   for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, error)) {
     const std::string name = entry.path().filename().string();
     if (absl::StartsWith(name, "manifest.") && absl::EndsWith(name, ".jsonl") &&
         name != fs::path(manifest).filename()) {
-      others.push_back(entry.path().string());
+      const bool taken = takes_over && pipeline::IsManifestOfShare(name);
+      (taken ? others.take_over : others.count).push_back(entry.path().string());
     }
   }
   return others;
@@ -149,7 +151,7 @@ absl::StatusOr<PictureRunOptions> RunOptionsOf(const PipelineFlags& flags,
   if (options.manifest.empty()) {
     options.manifest = (fs::path(options.product.Folder()) / ManifestName(shard)).string();
   }
-  options.other_manifests = OtherManifests(options.manifest);
+  options.other_manifests = OthersOf(options.manifest, flags.manifest.empty() && shard.count == 1);
   options.device = flags.device;
   options.jobs = flags.jobs;
   options.done_markers = flags.done_markers;

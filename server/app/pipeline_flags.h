@@ -10,6 +10,7 @@
 #include "app/run_progress.h"
 #include "app/scene_file.h"
 #include "app/server_link.h"
+#include "pipeline/manifest.h"
 #include "pipeline/plan.h"
 #include "pipeline/product_name.h"
 #include "thunderhead/v1/thunderhead.pb.h"
@@ -46,7 +47,7 @@ struct PictureRunOptions {
   ProductFormat format;
   std::vector<View> views;
   std::string manifest;
-  std::vector<std::string> other_manifests;  // of other shards
+  pipeline::OtherManifests other_manifests;
   std::string device;
   int jobs = 1;
   bool done_markers = false;

@@ -3,7 +3,9 @@
 #include <google/protobuf/util/json_util.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -27,8 +29,8 @@ nlohmann::ordered_json JsonOf(const std::string& text) {
   return nlohmann::ordered_json::parse(text, nullptr, false);
 }
 
-// What the movie shows, as JSON: the storm with its times, the scene, and where the first picture
-// tells it, where the camera stands.
+// What the movie shows, as JSON: the storm with its times, the largest estimated error of its
+// pictures, the scene, and where the first picture tells it, where the camera stands.
 std::string DescriptionOf(const pipeline::ManifestEntry& entry, const View& view,
                           const std::vector<const PlannedPicture*>& pictures) {
   nlohmann::ordered_json json;
@@ -40,6 +42,7 @@ std::string DescriptionOf(const pipeline::ManifestEntry& entry, const View& view
     json["valid"].push_back(
         absl::FormatTime("%E4Y-%m-%dT%H:%M:%SZ", picture->key.valid, absl::UTCTimeZone()));
   }
+  if (entry.estimated_error.has_value()) json["estimated_error"] = *entry.estimated_error;
   std::string scene;
   (void)google::protobuf::util::MessageToJsonString(view.scene, &scene);
   json["scene"] = JsonOf(scene);
@@ -58,11 +61,14 @@ absl::Status MakeMovie(const std::string& path, const View& view,
                        std::vector<const PlannedPicture*> pictures, PictureRun& run,
                        RunProgress& progress, const std::stop_token& stop) {
   const base::Stopwatch stopwatch;
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  if (!folder.empty()) THUNDERHEAD_RETURN_IF_ERROR(base::MakeFolders(folder));
   std::ranges::sort(pictures, {}, [](const PlannedPicture* picture) { return picture->key.valid; });
   pipeline::InputFile input;  // the pictures, by their hashes
   std::vector<absl::Time> valid;
   std::string hashes;
   pipeline::ManifestEntry entry;
+  std::optional<double> largest_error;
   for (const PlannedPicture* picture : pictures) {
     const pipeline::ManifestEntry* made = run.Records().Find(picture->path);
     if (made == nullptr) {
@@ -72,7 +78,11 @@ absl::Status MakeMovie(const std::string& path, const View& view,
     absl::StrAppend(&hashes, made->sha256, "\n");
     input.bytes += made->bytes;
     entry = *made;
+    if (made->estimated_error.has_value()) {
+      largest_error = std::max(largest_error.value_or(0.0), *made->estimated_error);
+    }
   }
+  entry.estimated_error = largest_error;
   input.path = run.Options().product.Text();
   input.sha256 = pipeline::Sha256(hashes);
   progress.Plan(1);
@@ -95,7 +105,6 @@ absl::Status MakeMovie(const std::string& path, const View& view,
                                                               : frame::DecodeJpeg(bytes);
       }));
   entry.milliseconds = stopwatch.ElapsedMs();
-  entry.estimated_error.reset();
   entry.input = std::move(input);
   THUNDERHEAD_ASSIGN_OR_RETURN(const pipeline::InputFile written, StampOf(path));
   entry.bytes = written.bytes;

@@ -1,9 +1,15 @@
+#include <algorithm>
+#include <iostream>
+#include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "app/commands.h"
+#include "app/exit_codes.h"
 #include "app/interruption.h"
 #include "app/job_run.h"
 #include "app/local_service.h"
@@ -14,6 +20,7 @@
 #include "pipeline/plan.h"
 #include "spdlog/spdlog.h"
 #include "volume/storm_catalogue.h"
+#include "volume/storm_format.h"
 
 namespace thunderhead::app {
 namespace {
@@ -25,9 +32,100 @@ struct Flags {
   PipelineFlags pipeline;
 };
 
+// What is there of the storms.
+struct Found {
+  std::vector<volume::CataloguedStorm> storms;
+  // The places of storms' files among all, in the order of their names, the unreadable ones
+  // included.
+  std::map<std::string, std::size_t> places;
+  // Files that are not there or not readable (yet), by path.
+  std::map<std::string, absl::Status> problems;
+};
+
+// What may come by another try goes before what never will.
+int RankOf(const absl::Status& status) {
+  switch (ExitCodeOf(status)) {
+    case ExitCode::kDone:
+      return 0;
+    case ExitCode::kBadInput:
+      return 1;
+    case ExitCode::kTryAgain:
+      return 3;
+    default:
+      return 2;
+  }
+}
+
+const absl::Status& Worse(const absl::Status& a, const absl::Status& b) {
+  return RankOf(b) > RankOf(a) ? b : a;
+}
+
+absl::Status WorstOf(const std::map<std::string, absl::Status>& problems) {
+  absl::Status worst;
+  for (const auto& [path, problem] : problems) worst = Worse(worst, problem);
+  return worst;
+}
+
+// Looks at each path. A file that cannot be read leaves the others alone.
+absl::StatusOr<Found> Find(const std::vector<std::string>& paths) {
+  Found found;
+  const volume::StormFormats formats = volume::StormFormats::BuiltIn();
+  const volume::StormSearch search{
+      .describe = [&](const std::string& path) -> absl::StatusOr<volume::StormFile> {
+        auto file = volume::DescribeFile(path, formats);
+        // A folder may also hold files of other kinds.
+        const bool other = absl::IsInvalidArgument(file.status());
+        if (other && std::ranges::find(paths, path) == paths.end()) return file;
+        found.places.emplace(path, found.places.size());
+        if (file.ok()) return file;
+        found.problems.emplace(path, AsFileProblem(path, file.status()));
+        return absl::CancelledError("told at the end");
+      },
+      .may_find_nothing = true,
+      .on_unlisted = {},
+      .on_folder = {},
+      .examples = formats.Examples()};
+  auto storms = volume::FindStorms(paths, search);
+  if (!storms.ok()) return AsFileProblem(storms.status());
+  found.storms = *std::move(storms);
+  for (const std::string& path : paths) {
+    const std::string below = absl::EndsWith(path, "/") ? path : path + "/";
+    const bool any = std::ranges::any_of(found.places, [&](const auto& place) {
+      return place.first == path || absl::StartsWith(place.first, below);
+    });
+    if (any) continue;
+    found.problems.emplace(path, absl::NotFoundError(absl::StrCat(
+                                     path, ": there is no storm; put the model's output files (",
+                                     search.examples, ") there, or check the path")));
+  }
+  if (found.storms.empty()) return WorstOf(found.problems);
+  return found;
+}
+
+// An error if what is asked for counts times, or begins with the first, while some are not known.
+absl::Status CheckCounts(const Found& found, const std::string& times,
+                         const PictureRunOptions& options, const MovieOptions& movie) {
+  if (found.problems.empty()) return absl::OkStatus();
+  const auto has = [&](const char* field) {
+    return options.product.Has(field) || (movie.name.has_value() && movie.name->Has(field));
+  };
+  const bool assumes_run =
+      std::ranges::any_of(found.storms,
+                          [](const auto& storm) { return !storm.info.run_start.has_value(); }) &&
+      (has("run") || has("lead") || has("lead_min"));
+  if (times == "all" && !has("time") && !assumes_run) return absl::OkStatus();
+  const absl::Status worst = WorstOf(found.problems);
+  return absl::Status(worst.code(),
+                      absl::StrCat(worst.message(), ". Nothing is drawn, as ",
+                                   times != "all" ? "--times"
+                                   : has("time")  ? "{time}"
+                                                 : "the start of the run, which is the first time,",
+                                   " is only known with all files"));
+}
+
 absl::StatusOr<std::vector<PlannedPicture>> PlanAll(
     const PictureRunOptions& options, const std::vector<volume::CataloguedStorm>& storms,
-    const std::string& times) {
+    const std::string& times, bool assume_run) {
   std::vector<PlannedPicture> all;
   for (std::size_t storm = 0; storm < storms.size(); ++storm) {
     THUNDERHEAD_ASSIGN_OR_RETURN(
@@ -35,20 +133,35 @@ absl::StatusOr<std::vector<PlannedPicture>> PlanAll(
         pipeline::ParseTimes(times, static_cast<int>(storms[storm].info.times.size())));
     THUNDERHEAD_ASSIGN_OR_RETURN(
         const std::vector<PlannedPicture> pictures,
-        PlanOf(options, storms, storm, storms[storm].info.id, chosen, true));
+        PlanOf(options, storms, storm, storms[storm].info.id, chosen, assume_run));
     all.insert(all.end(), pictures.begin(), pictures.end());
   }
   THUNDERHEAD_RETURN_IF_ERROR(CheckNames(options, all));
   return all;
 }
 
+// The number of a time that decides whose share it is. Of all times it is by the place in its file
+// and the file's among all, readable or not: shares that look before and after a file is complete
+// leave no time out between them.
+std::size_t NumberOf(const PlannedPicture& picture, std::size_t index, const Found& found,
+                     const std::string& times) {
+  const auto place = found.places.find(picture.input);
+  if (times != "all" || place == found.places.end()) return index;
+  const auto& sources = found.storms[picture.storm].sources;
+  return place->second + sources[static_cast<std::size_t>(picture.time_index)].record;
+}
+
 // Views of one time stay together, so that each process reads a time once.
 std::vector<PlannedPicture> ShareOf(const std::vector<PlannedPicture>& all, std::size_t views,
-                                    const pipeline::Shard& shard) {
+                                    const pipeline::Shard& shard, const Found& found,
+                                    const std::string& times) {
   std::vector<PlannedPicture> share;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto count = static_cast<std::size_t>(shard.count);
-    if (i / views % count == static_cast<std::size_t>(shard.index)) share.push_back(all[i]);
+    if (NumberOf(all[i], i / views, found, times) % count ==
+        static_cast<std::size_t>(shard.index)) {
+      share.push_back(all[i]);
+    }
   }
   return share;
 }
@@ -71,19 +184,26 @@ absl::StatusOr<std::vector<PlannedPicture>> PlanAll(const PictureRunOptions& opt
   return all;
 }
 
-// What is left undone: what may come by another try goes before what never will.
-absl::Status Summary(const std::vector<PlannedPicture>& pictures) {
-  absl::Status worst;
+// What is left undone.
+absl::Status Summary(const std::vector<PlannedPicture>& pictures, const Found& found) {
+  absl::Status worst = WorstOf(found.problems);
   int missing = 0;
   for (const PlannedPicture& picture : pictures) {
     if (picture.outcome.ok()) continue;
     ++missing;
-    if (worst.ok() || !absl::IsDataLoss(picture.outcome)) worst = picture.outcome;
+    worst = Worse(worst, absl::IsDataLoss(picture.outcome)
+                             ? AsFileProblem(picture.input, picture.outcome)
+                             : picture.outcome);
   }
-  if (missing == 0) return worst;
-  return absl::Status(worst.code(), absl::StrCat(missing, " of ", pictures.size(),
-                                                 " pictures could not be made; the reasons are "
-                                                 "above"));
+  if (worst.ok()) return worst;
+  std::string what = "the reasons are above";
+  if (missing > 0) {
+    what = absl::StrCat(missing, " of ", pictures.size(), " pictures could not be made; ", what);
+  }
+  if (!found.problems.empty()) {
+    what = absl::StrCat(found.problems.size(), " of the storms' files could not be read; ", what);
+  }
+  return absl::Status(worst.code(), what);
 }
 
 absl::Status Sequence(const Flags& flags) {
@@ -102,22 +222,24 @@ absl::Status Sequence(const Flags& flags) {
         "without --shard when all shares are done, with --movie; it draws nothing anew");
   }
   std::unique_ptr<ServerLink> server;
-  std::vector<volume::CataloguedStorm> storms;
+  Found found;
   std::vector<PlannedPicture> all;
   if (flags.pipeline.server.address.empty()) {
-    auto found = volume::FindStorms(flags.storms, volume::StormFormats::BuiltIn());
-    if (!found.ok()) return AsFileProblem(found.status());
-    storms = *std::move(found);
-    THUNDERHEAD_ASSIGN_OR_RETURN(all, PlanAll(options, storms, flags.times));
+    THUNDERHEAD_ASSIGN_OR_RETURN(found, Find(flags.storms));
+    THUNDERHEAD_RETURN_IF_ERROR(CheckCounts(found, flags.times, options, movie));
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        all, PlanAll(options, found.storms, flags.times, found.problems.empty()));
   } else {
     THUNDERHEAD_ASSIGN_OR_RETURN(server, ServerLink::Open(flags.pipeline.server));
     THUNDERHEAD_ASSIGN_OR_RETURN(all, PlanAll(options, *server, flags.storms, flags.times));
   }
-  std::vector<PlannedPicture> pictures = ShareOf(all, options.views.size(), shard);
+  std::vector<PlannedPicture> pictures =
+      ShareOf(all, options.views.size(), shard, found, flags.times);
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<PictureRun> run,
                                PictureRun::Open(std::move(options)));
   RunProgress progress(flags.pipeline.progress, "drawing");
-  const absl::Status made = server == nullptr ? run->Make(storms, pictures, progress, stop)
+  for (const auto& [path, problem] : found.problems) progress.Failed(path, problem);
+  const absl::Status made = server == nullptr ? run->Make(found.storms, pictures, progress, stop)
                                               : MakeByJobs(*server, *run, pictures, progress, stop);
   if (absl::IsCancelled(made)) {
     return absl::CancelledError(absl::StrCat(
@@ -125,8 +247,13 @@ absl::Status Sequence(const Flags& flags) {
         " pictures are made and in ", run->Records().Path(), "; the same command goes on"));
   }
   THUNDERHEAD_RETURN_IF_ERROR(made);
-  THUNDERHEAD_RETURN_IF_ERROR(Summary(pictures));
-  return MakeMovies(movie, pictures, *run, progress, stop);
+  // Of what there is, as the rest may never come.
+  const absl::Status missing = Summary(pictures, found);
+  const absl::Status movies = MakeMovies(movie, pictures, *run, progress, stop);
+  if (missing.ok() || movies.ok()) return missing.ok() ? movies : missing;
+  const bool movies_first = RankOf(movies) > RankOf(missing);
+  std::cerr << "thunderhead: " << (movies_first ? missing : movies).message() << std::endl;
+  return movies_first ? movies : missing;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -40,7 +41,7 @@ struct Flags {
   PipelineFlags pipeline;
 };
 
-// When to end: never by itself, or after some files, or at a time.
+// When to end: never by itself, or after some files, or at a time; whichever comes first.
 struct End {
   std::optional<int> files;
   absl::Time at = absl::InfiniteFuture();
@@ -48,21 +49,27 @@ struct End {
 
 absl::StatusOr<End> ParseUntil(const std::vector<std::string>& until) {
   End end;
-  if (until.empty()) return end;
-  int files = 0;
-  std::string error;
-  const bool counts = absl::SimpleAtoi(until.front(), &files) && files > 0;
-  if (counts && (until.size() == 1 || until[1] == "files" || until[1] == "file")) {
-    end.files = files;
-    return end;
+  bool good = true;
+  bool unit_may_follow = false;
+  for (const std::string& word : until) {
+    int files = 0;
+    std::string error;
+    const bool unit = word == "files" || word == "file";
+    if (unit) {
+      good = good && unit_may_follow;
+    } else if (!end.files.has_value() && absl::SimpleAtoi(word, &files) && files > 0) {
+      end.files = files;
+    } else {
+      good = good && end.at == absl::InfiniteFuture() &&
+             absl::ParseTime(absl::RFC3339_full, word, &end.at, &error);
+    }
+    unit_may_follow = !unit && files > 0;
   }
-  if (until.size() == 1 && absl::ParseTime(absl::RFC3339_full, until.front(), &end.at, &error)) {
-    return end;
-  }
+  if (good) return end;
   return absl::InvalidArgumentError(
       absl::StrCat("--until is '", absl::StrJoin(until, " "),
                    "'; it must be a number of files, such as 12, or a time, such as "
-                   "2030-05-20T06:00:00Z"));
+                   "2030-05-20T06:00:00Z, or both"));
 }
 
 // The pictures of every ready file; those of files that are done count as made.
@@ -107,6 +114,37 @@ bool IsPicture(const PictureRunOptions& options, const std::string& file) {
          std::filesystem::path(options.product.Text()).extension();
 }
 
+// The view of a picture that an earlier run made as this one would; null for other products.
+const View* ViewOf(const PictureRun& run, const pipeline::ManifestEntry& entry) {
+  const std::vector<View>& views = run.Options().views;
+  const auto view = std::ranges::find(views, entry.view, &View::name);
+  if (view == views.end() || view->sha256 != entry.scene_sha256 ||
+      entry.version != base::Version() || !IsPicture(run.Options(), entry.file) ||
+      !std::filesystem::exists(run.Records().PathOf(entry))) {
+    return nullptr;
+  }
+  return &*view;
+}
+
+// Files that earlier runs have drawn in every view count towards --until, also where they have been
+// moved away since.
+void RememberDone(const PictureRun& run, WatchedFolder& folder) {
+  std::map<std::string, std::map<std::string, std::size_t>> views;  // by input and valid time
+  std::map<std::string, pipeline::InputFile> inputs;
+  for (const pipeline::ManifestEntry& entry : run.Records().Entries()) {
+    if (ViewOf(run, entry) == nullptr) continue;
+    ++views[entry.input.path][entry.valid];
+    inputs[entry.input.path] = entry.input;
+  }
+  for (const auto& [path, times] : views) {
+    if (std::ranges::all_of(times, [&run](const auto& time) {
+          return time.second >= run.Options().views.size();
+        })) {
+      folder.RememberDone(inputs[path]);
+    }
+  }
+}
+
 // Pictures that earlier runs made as this one would and that are not in `planned`, as their files
 // are not ready again or gone: a movie has them too, and does not shrink when `watch` is restarted.
 std::vector<PlannedPicture> MadeBefore(const PictureRun& run,
@@ -115,16 +153,11 @@ std::vector<PlannedPicture> MadeBefore(const PictureRun& run,
   std::set<std::string> known;
   for (const PlannedPicture& picture : planned) known.insert(records.NameOf(picture.path));
   std::vector<PlannedPicture> pictures;
-  const std::vector<View>& views = run.Options().views;
   for (const pipeline::ManifestEntry& entry : records.Entries()) {
-    const auto view = std::ranges::find(views, entry.view, &View::name);
-    if (view == views.end() || view->sha256 != entry.scene_sha256 ||
-        entry.version != base::Version() || !IsPicture(run.Options(), entry.file) ||
-        known.contains(entry.file)) {
-      continue;
-    }
+    const View* view = ViewOf(run, entry);
+    if (view == nullptr || known.contains(entry.file)) continue;
     PlannedPicture picture;
-    picture.view = static_cast<std::size_t>(view - views.begin());
+    picture.view = static_cast<std::size_t>(view - run.Options().views.data());
     picture.key.storm = entry.storm;
     picture.key.view = entry.view;
     picture.path = records.PathOf(entry);
@@ -134,8 +167,7 @@ std::vector<PlannedPicture> MadeBefore(const PictureRun& run,
         absl::ParseTime(absl::RFC3339_full, *entry.run, &run_start, &error)) {
       picture.key.run = run_start;
     }
-    if (absl::ParseTime(absl::RFC3339_full, entry.valid, &picture.key.valid, &error) &&
-        std::filesystem::exists(picture.path)) {
+    if (absl::ParseTime(absl::RFC3339_full, entry.valid, &picture.key.valid, &error)) {
       pictures.push_back(std::move(picture));
     }
   }
@@ -167,8 +199,8 @@ absl::Status DrawReady(const MovieOptions& movie, WatchedFolder& folder, Picture
   return MakeMovies(movie, made, run, progress, stop);
 }
 
-absl::Status Ended(const WatchedFolder& folder) {
-  if (folder.WaitingCount() > 0) {
+absl::Status Ended(const WatchedFolder& folder, bool in_time) {
+  if (!in_time && folder.WaitingCount() > 0) {
     return absl::UnavailableError(absl::StrCat("the time has come, but ", folder.WaitingCount(),
                                                " files are not complete or not drawn"));
   }
@@ -228,13 +260,16 @@ absl::Status Watch(const Flags& flags) {
                                PictureRun::Open(std::move(options)));
   RunProgress progress(flags.pipeline.progress, absl::StrCat("watching ", flags.folder));
   WatchedFolder folder(flags.folder, flags.files, policy);
+  RememberDone(*run, folder);
   while (!stop.stop_requested()) {
     THUNDERHEAD_RETURN_IF_ERROR(folder.Look(progress));
     absl::Status drawn = DrawReady(movie, folder, *run, progress, stop);
     if (!drawn.ok() && !absl::IsCancelled(drawn)) return drawn;
     if (stop.stop_requested()) break;
-    if (end.files.has_value() && folder.DoneCount() >= *end.files) return absl::OkStatus();
-    if (absl::Now() >= end.at) return Ended(folder);
+    if (end.files.has_value() && folder.DoneCount() + folder.BadCount() >= *end.files) {
+      return Ended(folder, true);
+    }
+    if (absl::Now() >= end.at) return Ended(folder, false);
     const absl::Duration pause = folder.WaitingCount() > 0 ? policy.Patience() : kRescan;
     events.WaitUntil(
         std::chrono::steady_clock::now() +
@@ -265,9 +300,9 @@ Command AddWatch(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--until", flags->until,
-                   "End after so many files (12 or '12 files') or at a time "
-                   "(2030-05-20T06:00:00Z); by default never")
-      ->expected(1, 2);
+                   "End after so many files (12 or '12 files'), drawn or found bad, or at a time "
+                   "(2030-05-20T06:00:00Z), or at the earlier of both; by default never")
+      ->expected(1, 3);
   AddPipelineOptions(*command, flags->pipeline);
   return {command, [flags] { return Watch(*flags); }};
 }

@@ -1,7 +1,6 @@
 #include "app/watched_folder.h"
 
 #include <fnmatch.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -10,6 +9,7 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "base/file_stamp.h"
 #include "base/status.h"
 #include "volume/storm_format.h"
 
@@ -17,18 +17,6 @@ namespace thunderhead::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::optional<pipeline::SeenFile> See(const fs::path& path) {
-  struct stat status {};
-  if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
-  pipeline::SeenFile file;
-  file.name = path.filename().string();
-  file.bytes = static_cast<std::uint64_t>(status.st_size);
-  file.modified_ns = std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec;
-  file.changed =
-      std::max(absl::TimeFromTimespec(status.st_mtim), absl::TimeFromTimespec(status.st_ctim));
-  return file;
-}
 
 std::string NameOfFolder(const std::string& folder) {
   std::error_code error;
@@ -39,7 +27,7 @@ std::string NameOfFolder(const std::string& folder) {
 }  // namespace
 
 absl::Status WatchedFolder::List(std::vector<pipeline::SeenFile>& files,
-                                 std::vector<std::string>& names) const {
+                                 std::vector<std::string>& names, Time now) {
   std::error_code error;
   fs::directory_iterator entries(folder_, error);
   for (; !error && entries != fs::directory_iterator(); entries.increment(error)) {
@@ -47,31 +35,72 @@ absl::Status WatchedFolder::List(std::vector<pipeline::SeenFile>& files,
     if (absl::StartsWith(name, ".") || absl::EndsWith(name, ".partial")) continue;
     names.push_back(name);
     if (policy_.IsMarker(name) || fnmatch(files_.c_str(), name.c_str(), 0) != 0) continue;
-    if (auto seen = See(entries->path()); seen.has_value()) files.push_back(*std::move(seen));
+    std::error_code ignored;
+    if (!entries->is_regular_file(ignored)) continue;
+    const auto stamp = base::StampOf(entries->path().string());
+    if (!stamp.has_value()) continue;
+    pipeline::SeenFile& seen = files.emplace_back();
+    seen.name = name;
+    seen.bytes = static_cast<std::uint64_t>(stamp->size_bytes);
+    seen.modified_ns = stamp->modified_ns;
+    // The later one, as `cp -p` and rsync set the time of the contents back.
+    See((fs::path(folder_) / name).string(), seen, std::max(stamp->modified_ns, stamp->changed_ns),
+        now);
   }
   if (!error) return absl::OkStatus();
   return absl::UnavailableError(
       absl::StrCat(folder_, ": the folder cannot be listed (", error.message(), ")"));
 }
 
+void WatchedFolder::See(const std::string& path, pipeline::SeenFile& seen, std::int64_t changed_ns,
+                        Time now) {
+  const auto [entry, fresh] = known_.try_emplace(path);
+  File& file = entry->second;
+  if (fresh || file.gone || file.seen.bytes != seen.bytes ||
+      file.seen.modified_ns != seen.modified_ns) {
+    file = {};
+    file.unchanged_since = base::UnchangedSince(changed_ns, looked_, now);
+  }
+  seen.unchanged = absl::FromChrono(now - file.unchanged_since);
+  file.seen = seen;
+}
+
 absl::Status WatchedFolder::Look(RunProgress& progress) {
   std::vector<pipeline::SeenFile> files;
   std::vector<std::string> names;
-  THUNDERHEAD_RETURN_IF_ERROR(List(files, names));
+  const Time now = std::chrono::steady_clock::now();
+  THUNDERHEAD_RETURN_IF_ERROR(List(files, names, now));
+  looked_ = now;
   std::set<std::string> there;
   for (const pipeline::SeenFile& seen : files) {
     const std::string path = (fs::path(folder_) / seen.name).string();
     there.insert(path);
-    File& file = known_[path];
-    if (file.seen.bytes != seen.bytes || file.seen.modified_ns != seen.modified_ns) file = {};
-    file.seen = seen;
+    File& file = known_.at(path);
     if (file.state != State::kWaiting || file.refused) continue;
-    if (!policy_.WaitsFor(seen, files, names, absl::Now()).has_value()) {
+    if (!policy_.WaitsFor(seen, files, names).has_value()) {
       Open(path, file, progress);
     }
   }
-  std::erase_if(known_, [&there](const auto& file) { return !there.contains(file.first); });
+  ForgetGone(there);
   return absl::OkStatus();
+}
+
+void WatchedFolder::ForgetGone(const std::set<std::string>& there) {
+  std::set<std::pair<std::uint64_t, std::int64_t>> here;
+  for (auto& [path, file] : known_) {
+    if (there.contains(path)) {
+      here.emplace(file.seen.bytes, file.seen.modified_ns);
+    } else {
+      file.gone = true;
+      file.storm.reset();
+    }
+  }
+  std::erase_if(known_, [&here](const auto& entry) {
+    const File& file = entry.second;
+    const bool settled = file.state == State::kDone || file.state == State::kBad;
+    const bool renamed = here.contains({file.seen.bytes, file.seen.modified_ns});
+    return file.gone && (!settled || renamed);
+  });
 }
 
 void WatchedFolder::Open(const std::string& path, File& file, RunProgress& progress) const {
@@ -122,6 +151,19 @@ std::vector<std::string> WatchedFolder::Unsettled() const {
 void WatchedFolder::Settle(const std::string& path, bool bad) {
   const auto file = known_.find(path);
   if (file != known_.end()) file->second.state = bad ? State::kBad : State::kDone;
+}
+
+void WatchedFolder::RememberDone(const pipeline::InputFile& file) {
+  const std::string name = fs::path(file.path).filename().string();
+  if ((fs::path(folder_) / name).string() != file.path ||
+      fnmatch(files_.c_str(), name.c_str(), 0) != 0) {
+    return;
+  }
+  File& known = known_[file.path];
+  known.seen.bytes = file.bytes;
+  known.seen.modified_ns = file.modified_ns;
+  known.state = State::kDone;
+  known.gone = true;
 }
 
 bool WatchedFolder::IsDone(const std::string& path) const {

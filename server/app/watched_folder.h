@@ -2,14 +2,17 @@
 // the times of.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "app/run_progress.h"
+#include "pipeline/manifest.h"
 #include "pipeline/readiness.h"
 #include "volume/storm_catalogue.h"
 #include "volume/storm_file.h"
@@ -40,8 +43,13 @@ class WatchedFolder {
   // All of a file's pictures are made, or, if `bad`, never will be as long as it does not change.
   void Settle(const std::string& path, bool bad);
 
+  // Counts a file as done that an earlier run has drawn, for as long as it is not there (again).
+  void RememberDone(const pipeline::InputFile& file);
+
   bool IsDone(const std::string& path) const;
+  // Files that are gone since they were drawn, as into an archive, count as well.
   int DoneCount() const;
+  // Files that cannot be drawn as they are.
   int BadCount() const;
   // Files that are there but not ready, or not settled.
   int WaitingCount() const;
@@ -49,20 +57,29 @@ class WatchedFolder {
  private:
   enum class State { kWaiting, kOther, kReady, kDone, kBad };
 
+  using Time = std::chrono::steady_clock::time_point;
+
   struct File {
     pipeline::SeenFile seen;
+    Time unchanged_since;
+    bool gone = false;  // when it had been drawn or found bad
     State state = State::kWaiting;
     bool refused = false;  // waits for a change, as it does not open
     std::optional<volume::StormFile> storm;
   };
 
-  absl::Status List(std::vector<pipeline::SeenFile>& files, std::vector<std::string>& names) const;
+  absl::Status List(std::vector<pipeline::SeenFile>& files, std::vector<std::string>& names,
+                    Time now);
+  void See(const std::string& path, pipeline::SeenFile& seen, std::int64_t changed_ns, Time now);
+  // What is not `there` any more; what has another name now counts by that alone.
+  void ForgetGone(const std::set<std::string>& there);
   void Open(const std::string& path, File& file, RunProgress& progress) const;
   int Count(State state) const;
 
   const std::string folder_;
   const std::string files_;
   const pipeline::ReadinessPolicy policy_;
+  Time looked_ = Time::min();          // last
   std::map<std::string, File> known_;  // by path
 };
 

@@ -2,6 +2,8 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
+
 namespace thunderhead::base {
 namespace {
 
@@ -10,6 +12,16 @@ std::int64_t Nanoseconds(const timespec& time) {
 }
 
 }  // namespace
+
+std::chrono::steady_clock::time_point UnchangedSince(std::int64_t changed_ns,
+                                                     std::chrono::steady_clock::time_point earliest,
+                                                     std::chrono::steady_clock::time_point now) {
+  using std::chrono::nanoseconds;
+  constexpr nanoseconds kLongest = std::chrono::hours(24 * 365);
+  const nanoseconds wall = std::chrono::system_clock::now().time_since_epoch();
+  const nanoseconds age = std::clamp(wall - nanoseconds(changed_ns), nanoseconds(0), kLongest);
+  return std::max(earliest, now - age);
+}
 
 std::optional<FileStamp> StampOf(const std::string& path) {
   struct stat status {};

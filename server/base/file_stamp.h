@@ -1,6 +1,7 @@
 // Tells whether a file has changed, also where another took its place by a rename or a link.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -16,6 +17,15 @@ struct FileStamp {
 
   bool operator==(const FileStamp&) const = default;
 };
+
+// Since when a file has been unchanged, of which the system says that it changed at `changed_ns`
+// (since 1970). That is by the wall clock, which may be set back, be another machine's or be a
+// copy's: it counts only from `earliest` on, before which the file was not there or was another,
+// and never into the future. Counted on by the steady clock, a complete file is waited for no
+// longer than it rests.
+std::chrono::steady_clock::time_point UnchangedSince(std::int64_t changed_ns,
+                                                     std::chrono::steady_clock::time_point earliest,
+                                                     std::chrono::steady_clock::time_point now);
 
 // None if the file cannot be found.
 std::optional<FileStamp> StampOf(const std::string& path);

@@ -37,21 +37,10 @@ class Descriptor {
 // The error of the last system call on the way to `path`.
 absl::Status NotWritten(const std::string& path) {
   const int code = errno;
-  const std::string what =
+  return WriteProblem(
       absl::StrCat(path, " cannot be written (", std::strerror(code),
-                   "); check that its folder exists, may be written to and has room");
-  switch (code) {
-    case ENOENT:
-    case ENOTDIR:
-    case EISDIR:
-    case EACCES:
-    case EPERM:
-    case EROFS:
-    case ENAMETOOLONG:
-      return absl::FailedPreconditionError(what);
-    default:
-      return absl::UnavailableError(what);
-  }
+                   "); check that its folder exists, may be written to and has room"),
+      code);
 }
 
 bool WriteAll(int file, std::string_view bytes) {
@@ -76,6 +65,37 @@ absl::StatusOr<std::string> ReadWholeFile(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) return absl::NotFoundError(absl::StrCat(path, ": cannot be read; check the path"));
   return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+absl::Status WriteProblem(std::string_view message, int code) {
+  const absl::string_view what(message.data(), message.size());
+  switch (code) {
+    case ENOENT:
+    case ENOTDIR:
+    case EISDIR:
+    case EEXIST:
+    case ELOOP:
+    case EACCES:
+    case EPERM:
+    case EROFS:
+    case ENAMETOOLONG:
+    case EINVAL:
+    case ENOLCK:  // a network file system without locks
+    case ENOSYS:
+    case EOPNOTSUPP:
+      return absl::FailedPreconditionError(what);
+    default:
+      return absl::UnavailableError(what);
+  }
+}
+
+absl::Status MakeFolders(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!error) return absl::OkStatus();
+  return WriteProblem(
+      absl::StrCat(folder, ": the folder cannot be created (", error.message(), ")"),
+      error.value());
 }
 
 std::string PartialPath(std::string_view path) {

@@ -19,6 +19,14 @@ std::string PartialPath(std::string_view path);
 // UNAVAILABLE if it cannot take the file now, such as a full disk.
 absl::Status WriteWholeFile(const std::string& path, std::string_view bytes);
 
+// What a system call's error `code` means for whoever writes files: FAILED_PRECONDITION where a
+// folder is missing or may not be written to, so that somebody has to look; UNAVAILABLE for what
+// may pass, such as a full disk.
+absl::Status WriteProblem(std::string_view message, int code);
+
+// Creates the folder and those above it. Errors as WriteProblem.
+absl::Status MakeFolders(const std::string& folder);
+
 // Gives the file at PartialPath(path), which is complete, its name. Errors as above; the partial
 // file is gone then.
 absl::Status PublishFile(const std::string& path);

@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <thread>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -57,10 +59,9 @@ absl::StatusOr<std::vector<ManifestEntry>> ParseLines(const std::string& path,
 }
 
 absl::Status NotUsable(const std::string& path) {
-  const std::string what =
-      absl::StrCat(path, ": the manifest cannot be written (", std::strerror(errno), ")");
-  const bool may_pass = errno == ENOSPC || errno == EDQUOT || errno == EIO || errno == EFBIG;
-  return may_pass ? absl::UnavailableError(what) : absl::FailedPreconditionError(what);
+  const int code = errno;
+  return base::WriteProblem(
+      absl::StrCat(path, ": the manifest cannot be written (", std::strerror(code), ")"), code);
 }
 
 // True if the open file is still the one of that name: another process may have replaced it.
@@ -85,6 +86,47 @@ int OpenLocked(const std::string& path) {
     if (IsAt(file, path)) return file;
     close(file);
   }
+}
+
+std::string TextOf(const std::vector<ManifestEntry>& entries) {
+  std::string text;
+  for (const ManifestEntry& entry : entries) absl::StrAppend(&text, ToLine(entry), "\n");
+  return text;
+}
+
+// The entries of another manifest, none if it is gone.
+absl::StatusOr<std::vector<ManifestEntry>> Read(const std::string& path) {
+  auto text = base::ReadWholeFile(path);
+  if (absl::IsNotFound(text.status())) return std::vector<ManifestEntry>();
+  THUNDERHEAD_RETURN_IF_ERROR(text.status());
+  std::size_t whole_bytes = 0;
+  return ParseLines(path, *text, whole_bytes);
+}
+
+// The oldest first. The dates of one folder's files are of one clock.
+std::vector<std::string> ByDate(const std::vector<std::string>& manifests) {
+  std::vector<std::pair<fs::file_time_type, std::string>> dated;
+  for (const std::string& path : manifests) {
+    std::error_code error;
+    dated.emplace_back(fs::last_write_time(path, error), path);
+  }
+  std::ranges::sort(dated);
+  std::vector<std::string> sorted;
+  for (auto& [date, path] : dated) sorted.push_back(std::move(path));
+  return sorted;
+}
+
+// Locks another manifest, which a share may hold for as long as it takes out a line; -1 if a
+// process keeps it, or it is gone.
+int LockOther(const std::string& path) {
+  constexpr int kTries = 50;
+  std::error_code error;
+  for (int i = 0; i < kTries && fs::exists(path, error); ++i) {
+    const int file = OpenLocked(path);
+    if (file >= 0) return file;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return -1;
 }
 
 }  // namespace
@@ -140,8 +182,7 @@ absl::StatusOr<ManifestEntry> FromLine(std::string_view line) {
   }
 }
 
-absl::StatusOr<Manifest> Manifest::Open(const std::string& path,
-                                        const std::vector<std::string>& also) {
+absl::StatusOr<Manifest> Manifest::Open(const std::string& path, const OtherManifests& others) {
   Manifest manifest(path, OpenLocked(path));
   if (manifest.file_ < 0) {
     if (errno != EWOULDBLOCK) return NotUsable(path);
@@ -158,23 +199,90 @@ absl::StatusOr<Manifest> Manifest::Open(const std::string& path,
     return NotUsable(path);
   }
   unlink(base::PartialPath(path).c_str());
-  for (const std::string& other : also) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(const std::string lines, base::ReadWholeFile(other));
-    THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<ManifestEntry> entries,
-                                 ParseLines(other, lines, whole_bytes));
-    for (ManifestEntry& entry : entries) {
-      std::string file = entry.file;
-      manifest.others_.insert_or_assign(std::move(file), std::move(entry));
+  for (const std::string& other : ByDate(others.count)) {
+    THUNDERHEAD_RETURN_IF_ERROR(manifest.ReadOther(other));
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(manifest.TakeOver(others.take_over));
+  return manifest;
+}
+
+absl::Status Manifest::ReadOther(const std::string& manifest) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<ManifestEntry> entries, Read(manifest));
+  for (ManifestEntry& entry : entries) {
+    std::string file = entry.file;
+    others_[std::move(file)].push_back({manifest, std::move(entry)});
+  }
+  return absl::OkStatus();
+}
+
+// The lines reach the disk here before they leave it there: whoever is killed in between leaves
+// them twice, and the next run takes them over again.
+absl::Status Manifest::TakeOver(const std::vector<std::string>& manifests) {
+  std::vector<std::pair<std::string, int>> taken;  // locked
+  absl::Status read;
+  std::map<std::string, ManifestEntry> fresh;
+  for (const std::string& path : ByDate(manifests)) {
+    const int file = OpenLocked(path);
+    if (file < 0) {
+      read.Update(ReadOther(path));
+      continue;
+    }
+    taken.emplace_back(path, file);
+    auto entries = Read(path);
+    read.Update(entries.status());
+    if (!entries.ok()) continue;
+    for (ManifestEntry& entry : *entries) {
+      std::string name = entry.file;
+      fresh.insert_or_assign(std::move(name), std::move(entry));
     }
   }
-  return manifest;
+  std::set<std::string> own;
+  for (const ManifestEntry& entry : entries_) own.insert(entry.file);
+  const std::size_t before = entries_.size();
+  for (auto& [name, entry] : fresh) {
+    if (!own.contains(name)) entries_.push_back(std::move(entry));
+  }
+  absl::Status moved = read;
+  if (moved.ok() && entries_.size() > before) moved = Rewrite();
+  for (const auto& [path, file] : taken) {
+    if (moved.ok()) unlink(path.c_str());
+    close(file);
+  }
+  return moved;
+}
+
+// Before the line that takes its place is written: whoever is killed in between has a product
+// without a line, which is made again, and no line that is not true.
+absl::Status Manifest::RemoveFromOthers(const std::string& name) {
+  const auto others = others_.find(name);
+  if (others == others_.end()) return absl::OkStatus();
+  for (const Other& other : others->second) {
+    if (held_.contains(other.manifest)) continue;
+    const int file = LockOther(other.manifest);
+    if (file < 0) {
+      held_.insert(other.manifest);
+      continue;
+    }
+    auto entries = Read(other.manifest);
+    absl::Status removed = entries.status();
+    if (removed.ok() && std::erase_if(*entries, [&name](const ManifestEntry& entry) {
+                          return entry.file == name;
+                        }) > 0) {
+      removed = base::WriteWholeFile(other.manifest, TextOf(*entries));
+    }
+    close(file);
+    THUNDERHEAD_RETURN_IF_ERROR(removed);
+  }
+  others_.erase(others);
+  return absl::OkStatus();
 }
 
 Manifest::Manifest(Manifest&& other) noexcept
     : path_(std::move(other.path_)),
       file_(std::exchange(other.file_, -1)),
       entries_(std::move(other.entries_)),
-      others_(std::move(other.others_)) {}
+      others_(std::move(other.others_)),
+      held_(std::move(other.held_)) {}
 
 Manifest::~Manifest() {
   if (file_ >= 0) close(file_);
@@ -191,14 +299,14 @@ const ManifestEntry* Manifest::Find(const std::string& path) const {
   const auto own = std::ranges::find(entries_, name, &ManifestEntry::file);
   if (own != entries_.end()) return &*own;
   const auto other = others_.find(name);
-  return other == others_.end() ? nullptr : &other->second;
+  return other == others_.end() ? nullptr : &other->second.back().entry;
 }
 
 std::vector<ManifestEntry> Manifest::Entries() const {
   std::vector<ManifestEntry> all = entries_;
-  for (const auto& [name, entry] : others_) {
+  for (const auto& [name, entries] : others_) {
     const auto own = std::ranges::find(entries_, name, &ManifestEntry::file);
-    if (own == entries_.end()) all.push_back(entry);
+    if (own == entries_.end()) all.push_back(entries.back().entry);
   }
   return all;
 }
@@ -209,6 +317,7 @@ std::string Manifest::PathOf(const ManifestEntry& entry) const {
 
 absl::Status Manifest::Record(const std::string& path, ManifestEntry entry) {
   entry.file = NameOf(path);
+  THUNDERHEAD_RETURN_IF_ERROR(RemoveFromOthers(entry.file));
   const auto old = std::ranges::find(entries_, entry.file, &ManifestEntry::file);
   if (old != entries_.end()) {
     entries_.erase(old);
@@ -233,9 +342,7 @@ absl::Status Manifest::Append(const ManifestEntry& entry) const {
 }
 
 absl::Status Manifest::Rewrite() {
-  std::string text;
-  for (const ManifestEntry& entry : entries_) absl::StrAppend(&text, ToLine(entry), "\n");
-  THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(path_, text));
+  THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(path_, TextOf(entries_)));
   const int file = OpenLocked(path_);
   if (file < 0) return NotUsable(path_);
   close(std::exchange(file_, file));

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,30 +45,37 @@ std::string ToLine(const ManifestEntry& entry);
 // INVALID_ARGUMENT for what ToLine does not write.
 absl::StatusOr<ManifestEntry> FromLine(std::string_view line);
 
+// The manifests beside a manifest.
+struct OtherManifests {
+  std::vector<std::string> count;  // their products count as well
+  // Those of shares that have ended: their lines move to the manifest, and they are deleted. One
+  // that a process still holds counts as the others.
+  std::vector<std::string> take_over;
+};
+
 // The manifest of one process, which holds it until it ends, however that happens.
 class Manifest {
  public:
   // Creates it if it does not exist. Drops a last line that is torn; another that is no entry is
-  // DATA_LOSS. UNAVAILABLE if another process holds it. `also` are manifests of others, such as
-  // shards, whose products count as well.
-  static absl::StatusOr<Manifest> Open(const std::string& path,
-                                       const std::vector<std::string>& also);
+  // DATA_LOSS. UNAVAILABLE if another process holds it.
+  static absl::StatusOr<Manifest> Open(const std::string& path, const OtherManifests& others);
   Manifest(Manifest&& other) noexcept;
   Manifest& operator=(Manifest&&) = delete;
   ~Manifest();
 
-  // The newest entry of the product at `path`, or null.
+  // The entry of the product at `path`, or null: that of this manifest, else of the other that was
+  // written to last.
   const ManifestEntry* Find(const std::string& path) const;
 
-  // The newest entry of every product, those of other manifests included.
+  // The same of every product.
   std::vector<ManifestEntry> Entries() const;
   // Where an entry's product is.
   std::string PathOf(const ManifestEntry& entry) const;
   // The name by which entries know the product at `path`.
   std::string NameOf(const std::string& path) const;
 
-  // Adds the entry of the product at `path`, in place of an older one, and returns when it is on
-  // the disk. `entry.file` is set here.
+  // Adds the entry of the product at `path`, in place of an older one wherever that is, and returns
+  // when it is on the disk. `entry.file` is set here.
   absl::Status Record(const std::string& path, ManifestEntry entry);
 
   const std::string& Path() const { return path_; }
@@ -75,13 +83,23 @@ class Manifest {
  private:
   Manifest(std::string path, int file) : path_(std::move(path)), file_(file) {}
 
+  // An entry of another manifest.
+  struct Other {
+    std::string manifest;
+    ManifestEntry entry;
+  };
+
+  absl::Status ReadOther(const std::string& manifest);
+  absl::Status TakeOver(const std::vector<std::string>& manifests);
+  absl::Status RemoveFromOthers(const std::string& name);
   absl::Status Append(const ManifestEntry& entry) const;
   absl::Status Rewrite();
 
   std::string path_;
-  int file_;                            // locked; -1: none
-  std::vector<ManifestEntry> entries_;  // of this manifest, in order
-  std::map<std::string, ManifestEntry> others_;
+  int file_;                                          // locked; -1: none
+  std::vector<ManifestEntry> entries_;                // of this manifest, in order
+  std::map<std::string, std::vector<Other>> others_;  // by product, the newest last
+  std::set<std::string> held_;                        // others that a process keeps
 };
 
 }  // namespace thunderhead::pipeline

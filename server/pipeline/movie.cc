@@ -24,6 +24,9 @@ namespace {
 
 constexpr int kLongestGap = 1000;
 
+// libavcodec's own errors are four letters, far above those of the system.
+constexpr int kErrnos = 4096;
+
 // A kind of movie, by the ending of its name.
 struct Kind {
   const char* ending;
@@ -97,8 +100,12 @@ std::string Reason(int code) {
 }
 
 absl::Status Failed(const std::string& path, const std::string& what, int code) {
-  return absl::UnavailableError(absl::StrCat(path, " cannot be written: ", what, " (", Reason(code),
-                                             "); check that its folder exists and has room"));
+  const std::string message =
+      absl::StrCat(path, " cannot be written: ", what, " (", Reason(code),
+                   "); check that its folder exists, may be written to and has room");
+  // What is no error of the system's is of the pictures, such as a size that the encoder cannot do.
+  if (AVUNERROR(code) >= kErrnos) return absl::InvalidArgumentError(message);
+  return base::WriteProblem(message, AVUNERROR(code));
 }
 
 // One movie on its way to the partial file.

@@ -33,8 +33,8 @@ struct MovieText {
 using MoviePicture = std::function<absl::StatusOr<frame::RgbImage>(std::size_t)>;
 
 // Writes the movie at `path`, whole or not at all. `frames[i]` says for how many frames picture i
-// stands. Errors: those of `picture`, those of base::WriteWholeFile, and FAILED_PRECONDITION if
-// there is no encoder.
+// stands. Errors: those of `picture`, those of base::WriteWholeFile, FAILED_PRECONDITION if there
+// is no encoder, and INVALID_ARGUMENT for pictures that differ in size or that it cannot encode.
 absl::Status WriteMovie(const std::string& path, const std::vector<int>& frames,
                         int frames_per_second, const MovieText& text, const MoviePicture& picture);
 

@@ -94,6 +94,22 @@ std::string ManifestName(const Shard& shard) {
   return absl::StrCat("manifest.", shard.index, "-of-", shard.count, ".jsonl");
 }
 
+bool IsManifestOfShare(std::string_view file) {
+  constexpr std::string_view kBegin = "manifest.";
+  constexpr std::string_view kEnd = ".jsonl";
+  std::string_view name = file;
+  if (name.size() <= kBegin.size() + kEnd.size() || !name.starts_with(kBegin) ||
+      !name.ends_with(kEnd)) {
+    return false;
+  }
+  name.remove_prefix(kBegin.size());
+  name.remove_suffix(kEnd.size());
+  const std::pair<absl::string_view, absl::string_view> parts =
+      absl::StrSplit(View(name), absl::MaxSplits("-of-", 1));
+  const auto shard = ShardOf("", parts.first, parts.second);
+  return shard.ok() && ManifestName(*shard) == file;
+}
+
 bool MadeAlike(const ManifestEntry& entry, std::string_view scene_sha256, std::string_view version,
                const InputFile& input, const std::function<std::string()>& input_sha256) {
   if (entry.scene_sha256 != scene_sha256 || entry.version != version) return false;

@@ -33,6 +33,9 @@ absl::StatusOr<Shard> ShardOfEnvironment();
 // The manifest of a share: "manifest.jsonl", for one of several "manifest.2-of-4.jsonl".
 std::string ManifestName(const Shard& shard);
 
+// True for the name of the manifest of one of several shares.
+bool IsManifestOfShare(std::string_view file);
+
 // True if the entry's product is as it would be made now: of the same scene, by the same version,
 // of the same input: by its hash where `input` has it, else by path, size and time, and only if
 // those differ by the hash that `input_sha256` finds.

@@ -34,8 +34,8 @@ std::string_view StarOf(std::string_view glob, std::string_view name) {
   return name.substr(before.size(), name.size() - before.size() - after.size());
 }
 
-std::optional<std::string> WaitsForAge(const SeenFile& file, absl::Duration age, absl::Time now) {
-  if (now - file.changed >= age) return std::nullopt;
+std::optional<std::string> WaitsForAge(const SeenFile& file, absl::Duration age) {
+  if (file.unchanged >= age) return std::nullopt;
   return absl::StrCat("it changed less than ", absl::FormatDuration(age), " ago");
 }
 
@@ -77,22 +77,21 @@ absl::StatusOr<ReadinessPolicy> ReadinessPolicy::Parse(std::string_view text) {
 
 std::optional<std::string> ReadinessPolicy::WaitsFor(const SeenFile& file,
                                                      const std::vector<SeenFile>& files,
-                                                     const std::vector<std::string>& names,
-                                                     absl::Time now) const {
+                                                     const std::vector<std::string>& names) const {
   switch (kind_) {
     case Kind::kOpen:
-      return WaitsForAge(file, kSettled, now);
+      return WaitsForAge(file, kSettled);
     case Kind::kAge:
       if (file.bytes < min_bytes_) {
         return absl::StrCat("it has ", file.bytes, " of at least ", min_bytes_, " bytes");
       }
-      return WaitsForAge(file, *age_, now);
+      return WaitsForAge(file, *age_);
     case Kind::kNext:
       if (std::ranges::any_of(files,
                               [&](const SeenFile& other) { return other.name > file.name; })) {
         return std::nullopt;
       }
-      if (age_.has_value()) return WaitsForAge(file, *age_, now);
+      if (age_.has_value()) return WaitsForAge(file, *age_);
       return "the next file is not there";
     case Kind::kMarker: {
       const std::string_view name = file.name;

@@ -18,9 +18,7 @@ struct SeenFile {
   std::string name;
   std::uint64_t bytes = 0;
   std::int64_t modified_ns = 0;  // since 1970
-  // When it last changed for sure: the later of the times that the file system gives for contents
-  // and for the entry, as a copy may set the former back.
-  absl::Time changed;
+  absl::Duration unchanged;      // for how long, by a clock that is not set
 };
 
 class ReadinessPolicy {
@@ -37,7 +35,7 @@ class ReadinessPolicy {
   // What `file` waits for, for people; nothing if it is ready. `files` are the data files of its
   // folder, `names` all names there.
   std::optional<std::string> WaitsFor(const SeenFile& file, const std::vector<SeenFile>& files,
-                                      const std::vector<std::string>& names, absl::Time now) const;
+                                      const std::vector<std::string>& names) const;
 
   // True for a name that marks a file, which is no data file itself.
   bool IsMarker(std::string_view name) const;

@@ -8,17 +8,6 @@
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::volume {
-namespace {
-
-using std::chrono::nanoseconds;
-
-// By the wall clock, as dates of files are; negative for a date in the future.
-nanoseconds AgeOf(std::int64_t changed_ns) {
-  return std::chrono::system_clock::now().time_since_epoch() - nanoseconds(changed_ns);
-}
-
-}  // namespace
-
 std::optional<CatalogueScan::Stamp> CatalogueScan::StampOf(const std::string& path) {
   const std::optional<base::FileStamp> found = base::StampOf(path);
   if (!found.has_value()) return std::nullopt;
@@ -71,8 +60,10 @@ void CatalogueScan::Look(const std::string& path, const Stamp& stamp, Time now, 
       known.version = ++versions_;
     }
     known.stamp = stamp;
-    known.unchanged_since = now;
-    known.settled = fresh && scans_ == 1 && AgeOf(stamp.changed_ns) >= options_.settle;
+    // What was there before the first scan may have rested for long.
+    known.unchanged_since =
+        fresh && scans_ == 1 ? base::UnchangedSince(stamp.changed_ns, Time::min(), now) : now;
+    known.settled = false;
     known.tried_at.reset();
   }
   if (!known.settled && now - known.unchanged_since < options_.settle) {

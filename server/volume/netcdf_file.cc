@@ -1,7 +1,10 @@
 #include "volume/netcdf_file.h"
 
+#include <fcntl.h>
 #include <netcdf.h>
 #include <netcdf_mem.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cmath>
@@ -28,6 +31,21 @@ constexpr double kLargestValue = 1e30;
 // Of an attribute; longer ones are no text that a reader asks for.
 constexpr std::size_t kLongestText = 1 << 20;
 
+// True if a writer holds the file: HDF5 locks what it writes with flock(2), and its reader then
+// fails with what netCDF-C gives for any damage (NC_EHDFERR).
+bool IsHeldByWriter(const std::string& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  const bool held = flock(file, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  close(file);
+  return held;
+}
+
+absl::Status HeldByWriter(const std::string& path) {
+  return absl::UnavailableError(absl::StrCat(
+      path, ": another program is writing it; try again when the model has closed it"));
+}
+
 absl::Status OpenError(const std::string& path, int code) {
   const std::string what = absl::StrCat(path, ": ");
   switch (code) {
@@ -37,8 +55,7 @@ absl::Status OpenError(const std::string& path, int code) {
       return absl::PermissionDeniedError(
           absl::StrCat(what, "may not be read; give this user permission to read it"));
     case EAGAIN:
-      return absl::UnavailableError(absl::StrCat(
-          what, "another program is writing it; try again when the model has closed it"));
+      return HeldByWriter(path);
     case NC_ENOTNC:
       return absl::InvalidArgumentError(
           absl::StrCat(what, "is not a netCDF file; give the model's output file (wrfout_...)"));
@@ -162,7 +179,7 @@ absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path) {
   int handle = kNoHandle;
   const NetcdfLock lock(path);
   if (const int code = nc_open(path.c_str(), NC_NOWRITE, &handle); code != NC_NOERR) {
-    return OpenError(path, code);
+    return IsHeldByWriter(path) ? HeldByWriter(path) : OpenError(path, code);
   }
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
   return Checked(path, handle, error ? std::numeric_limits<std::uintmax_t>::max() : bytes);

@@ -32,8 +32,8 @@ class Ecflow(EngineTest):
     def client(self, *arguments: object) -> str:
         return run("ecflow_client", *arguments, env=self.environment)
 
-    def begin(self, **variables: str) -> None:
-        """Loads the suite as it is but for its variables."""
+    def begin(self, of_shares: dict[int, str] | None = None, **variables: str) -> None:
+        """Loads the suite as it is but for its variables, and lines for single shares."""
         text = (SUITE / "thunderhead.def").read_text()
         settings = {
             "ECF_HOME": str(self.folder), "ECF_FILES": str(SUITE / "files"), "ECF_INCLUDE": str(SUITE / "include"),
@@ -42,6 +42,8 @@ class Ecflow(EngineTest):
         for name, value in settings.items():
             text, changed = re.subn(rf"(edit {name} +)'.*?'", lambda line: f"{line[1]}'{value}'", text)
             self.assertEqual(changed, 1, name)
+        for share, line in (of_shares or {}).items():
+            text = text.replace(f"edit SHARE {share}\n", f"edit SHARE {share}\n      {line}\n")
         definition = self.folder / "suite.def"
         definition.write_text(text)
         self.client(f"--load={definition}")
@@ -82,14 +84,20 @@ class Ecflow(EngineTest):
         self.wait_for("the suite's end", lambda: self.state("/thunderhead") == "complete")
         self.expect_each_product_once(self.times, others=1)
 
-    def test_a_bad_request_is_not_tried_again(self) -> None:
-        self.begin(FLAGS="--size none")
-        draw = "/thunderhead/shares/0/draw"
-        self.wait_for("an aborted task", lambda: self.state(draw) == "aborted")
-        self.wait_for("the reason", lambda: "thunderhead ended with 64" in self.node(draw), 20)
+    def test_what_another_try_does_not_help_is_not_tried_again(self) -> None:
+        bad = self.folder / "bad.nc"
+        bad.write_text("no storm")
+        # A mistake of its own for each share.
+        wrong = {0: (64, "FLAGS", "--size none"), 1: (65, "STORM", str(bad)), 2: (78, "FLAGS", "--size 16x9 --device 99")}
+        self.begin({share: f"edit {name} '{value}'" for share, (_, name, value) in wrong.items()})
+        for share, (code, _, _) in wrong.items():
+            draw = f"/thunderhead/shares/{share}/draw"
+            self.wait_for("an aborted task", lambda: self.state(draw) == "aborted")
+            self.wait_for(f"the reason {code}", lambda: f"thunderhead ended with {code}" in self.node(draw), 20)
         # Long enough for another try to have failed as well.
         time.sleep(10)
-        self.assertIn("try:1 ", self.node(draw))
+        for share in wrong:
+            self.assertIn("try:1 ", self.node(f"/thunderhead/shares/{share}/draw"), share)
 
     def test_a_task_that_is_killed_aborts(self) -> None:
         self.begin(FLAGS="--size 2560x1440 --device software --quality true --jobs 1")

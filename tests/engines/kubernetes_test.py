@@ -1,8 +1,9 @@
-"""deploy/kubernetes against the API's schema, and its exit codes against the program's."""
+"""deploy/kubernetes against the API's schemas, the published ones and a stricter one, and its exit codes against the program's."""
 
 import copy
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 import unittest
@@ -19,9 +20,19 @@ except ImportError as missing:
 FOLDER = ROOT / "deploy/kubernetes"
 SCHEMA = json.loads((pathlib.Path(__file__).parent / "kubernetes_schema.json").read_text())
 
+VALIDATE = pathlib.Path(__file__).parent / "kubernetes_validate.mjs"
+
 
 def objects(name: str) -> list[dict]:
     return list(yaml.safe_load_all((FOLDER / name).read_text()))
+
+
+def published_errors(things: list[dict]) -> list[list[str]]:
+    """What is wrong with each by the schemas that the API publishes."""
+    done = subprocess.run(["node", VALIDATE], input=json.dumps(things), capture_output=True, text=True, timeout=120)
+    if done.returncode != 0:
+        raise AssertionError(done.stderr)
+    return json.loads(done.stdout)
 
 
 def errors(thing: dict) -> list[str]:
@@ -41,7 +52,19 @@ class Kubernetes(unittest.TestCase):
             for thing in objects(file.name):
                 self.assertEqual(errors(thing), [], file.name)
                 kinds.append(thing["kind"])
-        self.assertEqual(sorted(kinds), ["Deployment", "Job", "Service"])
+        self.assertEqual(sorted(kinds), ["Deployment", "Job", "Job", "PersistentVolumeClaim", "PersistentVolumeClaim", "Service"])
+
+    @unittest.skipUnless(shutil.which("node") and (VALIDATE.parent / "node_modules/kubernetes-models").is_dir(),
+                         "the npm package kubernetes-models is not installed; ./dev test does that")
+    def test_every_object_fits_the_published_schema(self) -> None:
+        things = [thing for file in sorted(FOLDER.glob("*.yaml")) for thing in objects(file.name)]
+        self.assertEqual(published_errors(things), [[] for _ in things])
+        # A mistake in each kind of object is found.
+        for thing in things:
+            thing["spec"].update({"Deployment": {"replicas": "2"}, "Job": {"backoffLimit": "3"}, "Service": {"ports": [{}]},
+                                  "PersistentVolumeClaim": {"accessModes": "ReadWriteMany"}}[thing["kind"]])
+        for thing, wrong in zip(things, published_errors(things)):
+            self.assertNotEqual(wrong, [], thing["kind"])
 
     def test_mistakes_do_not_fit_it(self) -> None:
         def mistaken(change) -> list[str]:
@@ -72,11 +95,23 @@ class Kubernetes(unittest.TestCase):
         volumes = {volume["name"] for volume in spec["template"]["spec"]["volumes"]}
         self.assertEqual({mount["name"] for mount in container["volumeMounts"]}, volumes)
 
+    def test_the_movies_are_of_the_same_run(self) -> None:
+        pods = [objects(name)[0]["spec"]["template"]["spec"] for name in ("sequence.yaml", "movie.yaml")]
+        pictures, movie = [pod["containers"][0] for pod in pods]
+        self.assertEqual([part for part in movie["args"] if not part.startswith("--movie=")], pictures["args"])
+        self.assertEqual(pods[0]["volumes"], pods[1]["volumes"])
+        self.assertEqual(movie["volumeMounts"], pictures["volumeMounts"])
+        self.assertNotIn("JOB_COMPLETIONS", str(movie["env"]), "the movie's job is no share")
+        claims = {claim["metadata"]["name"] for claim in objects("claims.yaml")}
+        self.assertEqual({volume["persistentVolumeClaim"]["claimName"] for volume in pods[0]["volumes"]
+                          if "persistentVolumeClaim" in volume}, claims)
+
     def test_its_exit_codes_are_the_programs(self) -> None:
         rules = objects("sequence.yaml")[0]["spec"]["podFailurePolicy"]["rules"]
         action = {code: rule["action"] for rule in rules for code in rule.get("onExitCodes", {}).get("values", [])}
         self.assertEqual(action, {64: "FailJob", 65: "FailIndex", 78: "FailJob"})
         arguments = objects("sequence.yaml")[0]["spec"]["template"]["spec"]["containers"][0]["args"]
+        arguments = [part.replace("/views/", f"{ROOT}/deploy/views/") for part in arguments]
         # As the pod calls it, where there is no such storm: 75 counts as a try. A flag that does not exist would be 64.
         done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=60,
                               env={"JOB_COMPLETION_INDEX": "1", "JOB_COMPLETIONS": "4"})

@@ -2,6 +2,7 @@
 
 import re
 import shlex
+import shutil
 import subprocess
 import tempfile
 import pathlib
@@ -44,6 +45,22 @@ class Systemd(unittest.TestCase):
         for setting in ("NoNewPrivileges=yes", "ProtectSystem=strict", "MemoryMax="):
             self.assertIn(setting, WATCH.read_text())
 
+    def test_others_can_read_the_products(self) -> None:
+        settings = dict(re.findall(r"^(\w+)=(.*)$", WATCH.read_text(), re.M))
+        # A dynamic user's folders are root's alone to enter.
+        self.assertNotIn("DynamicUser", settings)
+        self.assertEqual((settings["StateDirectoryMode"], settings["UMask"]), ("0755", "0022"))
+        server = dict(re.findall(r"^(\w+)=(.*)$", (FOLDER / "thunderhead.service").read_text(), re.M))
+        for name in ("StateDirectory", "LogsDirectory"):
+            self.assertNotEqual(settings["StateDirectory"].partition("/")[0], server[name])
+        self.assertEqual(settings["WorkingDirectory"], f"%S/{settings['StateDirectory']}")
+        users = (FOLDER / "thunderhead.sysusers").read_text()
+        self.assertRegex(users, rf"(?m)^u {settings['User']} ")
+        if shutil.which("systemd-sysusers"):
+            done = subprocess.run(["systemd-sysusers", "--dry-run", "--inline", *[line for line in users.splitlines() if line[0] != "#"]],
+                                  capture_output=True, text=True, timeout=60)
+            self.assertEqual(done.returncode, 0, done.stderr)
+
     def test_the_program_knows_the_flags(self) -> None:
         settings = dict(line.split("=", 1) for line in (FOLDER / "watch.conf").read_text().splitlines()
                         if line and not line.startswith("#"))
@@ -51,6 +68,7 @@ class Systemd(unittest.TestCase):
         words = shlex.split(command.replace("${FOLDER}", settings["FOLDER"]))
         # systemd splits $FLAGS at blanks, and leaves the rest as it is.
         arguments = [part for word in words for part in (settings["FLAGS"].split() if word == "$FLAGS" else [word])]
+        arguments = [part.replace("/usr/local/share/thunderhead/views", str(ROOT / "deploy/views")) for part in arguments]
         done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=60, cwd=self.unit.parent)
         # The folder is not there, which may change; a bad flag would be 64.
         self.assertEqual(done.returncode, 75, done.stderr)

@@ -41,9 +41,8 @@ void TakeName(const std::string& text) {
 void TakeReadiness(const std::string& text) {
   const auto policy = pipeline::ReadinessPolicy::Parse(text);
   if (!policy.ok()) return;
-  const pipeline::SeenFile file{"wrfout_d01", 100, 0, absl::FromUnixSeconds(0)};
-  static_cast<void>(
-      policy->WaitsFor(file, {file}, {"wrfout_d01", "wrfout_d01.done"}, absl::FromUnixSeconds(9)));
+  const pipeline::SeenFile file{"wrfout_d01", 100, 0, absl::Seconds(9)};
+  static_cast<void>(policy->WaitsFor(file, {file}, {"wrfout_d01", "wrfout_d01.done"}));
   policy->IsMarker(text);
   policy->Patience();
 }

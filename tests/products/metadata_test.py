@@ -105,6 +105,12 @@ class MetadataTest(ProductTest):
             self.assertEqual(told["view"], "west")
             self.assertEqual(told["scene"]["sun"]["azimuthDeg"], 120)
             self.assertLess(told["pose"]["eye"]["xM"], -80000)
+            # The largest of its pictures, as in the manifest.
+            lines = [json.loads(line) for line in (self.folder / "manifest.jsonl").read_text().splitlines()]
+            errors = [line["estimated_error"] for line in lines if line["file"].endswith(".png")]
+            self.assertGreater(min(errors), 0.0)
+            self.assertEqual(told["estimated_error"], max(errors))
+            self.assertEqual([line["estimated_error"] for line in lines if line["file"] == movie.name], [max(errors)])
 
 
 if __name__ == "__main__":

@@ -40,10 +40,12 @@ void ExpectWholePictures(const std::string& folder) {
   }
 }
 
-void ExpectFinished(const std::string& folder, const std::vector<std::string>& products) {
+void ExpectFinished(const std::string& folder, const std::vector<std::string>& products,
+                    const std::vector<std::string>& others) {
   const auto entries = EntriesOf((fs::path(folder) / "manifest.jsonl").string());
   std::vector<std::string> expected = products;
   expected.push_back("manifest.jsonl");
+  expected.insert(expected.end(), others.begin(), others.end());
   std::vector<std::string> there;
   for (const auto& file : fs::directory_iterator(folder)) {
     there.push_back(file.path().filename().string());

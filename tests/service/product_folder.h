@@ -19,7 +19,8 @@ std::map<std::string, pipeline::ManifestEntry> EntriesOf(const std::string& mani
 void ExpectWholePictures(const std::string& folder);
 
 // Fails the test unless the folder holds the products named, their manifest, whose hashes are
-// theirs, and nothing else.
-void ExpectFinished(const std::string& folder, const std::vector<std::string>& products);
+// theirs, and nothing else but `others`.
+void ExpectFinished(const std::string& folder, const std::vector<std::string>& products,
+                    const std::vector<std::string>& others = {});
 
 }  // namespace thunderhead::testing

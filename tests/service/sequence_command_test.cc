@@ -1,9 +1,15 @@
 // `thunderhead sequence` as a suite runs it: whole products, each once, whenever it is killed.
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <random>
 #include <string>
@@ -127,21 +133,47 @@ TEST_F(SequenceCommand, DrawsEveryTimeAndViewOnceAndOnlyWhatChangedAgain) {
   ExpectFinished(folder_.File("out"), Products());
 }
 
+// What a run leaves besides its pictures.
+struct Extras {
+  std::vector<std::string> flags;
+  std::vector<std::string> products;  // with a line in the manifest
+  bool done = false;                  // a marker for each product
+};
+
 TEST_F(SequenceCommand, KilledAtAnyMomentLosesNothingAndDoublesNothing) {
   const char* wanted = std::getenv("THUNDERHEAD_KILLS");
-  const int kills = wanted == nullptr ? 12 : std::atoi(wanted);
-  const auto begun = std::chrono::steady_clock::now();
-  ASSERT_EQ(Run(Arguments("measured")).code, 0) << Contents(err_);
-  const auto whole =
-      std::chrono::duration_cast<milliseconds>(std::chrono::steady_clock::now() - begun);
+  const int kills = wanted == nullptr ? 50 : std::atoi(wanted);
+  // World files are of maps, so both views are from above.
+  std::ofstream(west_) << R"({"camera": {"topDown": {}}, "sky": {"turbidity": 3}})";
+  const std::string movie = "film.webm";
+  std::vector<std::string> maps;
+  for (const std::string& product : Products()) {
+    maps.push_back(fs::path(product).replace_extension(".pgw").string());
+  }
+  const Extras with_movie{{"--done"}, {movie}, true};
+  const Extras with_maps{{"--world-file"}, maps, false};
   std::mt19937 random(7);
-  std::uniform_int_distribution<std::int64_t> moment(0, whole.count());
+  std::map<bool, milliseconds> whole;  // with a movie, or maps
   int killed = 0;
   for (int round = 0; killed < kills; ++round) {
     const std::string out = "out" + std::to_string(round);
+    const Extras& extras = round % 2 == 0 ? with_movie : with_maps;
+    std::vector<std::string> flags = extras.flags;
+    if (extras.done) flags.insert(flags.end(), {"--movie", folder_.File(out) + "/" + movie});
+    const std::vector<std::string> arguments = Arguments(out, flags);
+    // A moment of a whole run, from its start to the end: the first of a round is left to end by
+    // itself once, to know how long it takes.
+    if (!whole.contains(extras.done)) {
+      const auto begun = std::chrono::steady_clock::now();
+      ASSERT_EQ(Run(arguments).code, 0) << Contents(err_);
+      whole[extras.done] =
+          std::chrono::duration_cast<milliseconds>(std::chrono::steady_clock::now() - begun);
+      fs::remove_all(folder_.File(out));
+    }
+    std::uniform_int_distribution<std::int64_t> moment(0, whole[extras.done].count());
     std::string recorded;
     for (bool ended = false; !ended && killed < kills;) {
-      RunningProgram program(PROGRAM, Arguments(out), out_, err_);
+      RunningProgram program(PROGRAM, arguments, out_, err_);
       std::this_thread::sleep_for(milliseconds(moment(random)));
       program.Signal(SIGKILL);
       const Ending ending = program.Wait();
@@ -153,9 +185,20 @@ TEST_F(SequenceCommand, KilledAtAnyMomentLosesNothingAndDoublesNothing) {
       EXPECT_THAT(now, StartsWith(recorded));
       recorded = now.substr(0, now.rfind('\n') + 1);
     }
-    EXPECT_EQ(Run(Arguments(out)).code, 0) << Contents(err_);
+    EXPECT_EQ(Run(arguments).code, 0) << Contents(err_);
     EXPECT_THAT(Contents(folder_.File(out + "/manifest.jsonl")), StartsWith(recorded));
-    ExpectFinished(folder_.File(out), Products());
+    std::vector<std::string> products = Products();
+    products.insert(products.end(), extras.products.begin(), extras.products.end());
+    std::vector<std::string> markers;
+    if (extras.done) {
+      for (const std::string& product : products) markers.push_back(product + ".done");
+    }
+    ExpectFinished(folder_.File(out), products, markers);
+    if (extras.done) {
+      const std::string check =
+          "cd " + folder_.File(out) + " && sha256sum --quiet -c *.done > " + out_ + " 2>&1";
+      EXPECT_EQ(std::system(check.c_str()), 0) << Contents(out_);
+    }
   }
 }
 
@@ -169,6 +212,67 @@ TEST_F(SequenceCommand, ASignalEndsItWithTryAgain) {
   EXPECT_GE(before.size(), 1U);
   EXPECT_EQ(Run(Arguments("out")).code, 0);
   EXPECT_EQ(Drawn(), 2 * kTimes - static_cast<int>(before.size()));
+  ExpectFinished(folder_.File("out"), Products());
+}
+
+// A terminal for the program's standard error.
+class Terminal {
+ public:
+  Terminal() : master_(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK)) {
+    grantpt(master_);
+    unlockpt(master_);
+    name_ = ptsname(master_);
+    // Held, so that what the program says stays after it.
+    slave_ = open(name_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+  }
+  ~Terminal() {
+    close(slave_);
+    close(master_);
+  }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  const std::string& Name() const { return name_; }
+  // All that it has shown until now.
+  const std::string& Shown() {
+    char part[4096];
+    for (ssize_t got = 0; (got = read(master_, part, sizeof(part))) > 0;) {
+      shown_.append(part, static_cast<std::size_t>(got));
+    }
+    return shown_;
+  }
+
+ private:
+  const int master_;
+  int slave_ = -1;
+  std::string name_;
+  std::string shown_;
+};
+
+// A product that does not come to the disk, as on a file system that hangs: the bar on a terminal
+// says how far it is, a signal waits for it, and a second one does not.
+TEST_F(SequenceCommand, ASecondSignalEndsWhatHangsAndATerminalShowsABar) {
+  fs::create_directories(folder_.File("out"));
+  // Opening it for writing waits for a reader.
+  const std::string stuck = folder_.File("out/" + Products()[0]) + ".partial";
+  ASSERT_EQ(mkfifo(stuck.c_str(), 0600), 0);
+  Terminal terminal;
+  RunningProgram program(PROGRAM, Arguments("out"), out_, terminal.Name());
+  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (program.Runs() && std::chrono::steady_clock::now() < until &&
+         terminal.Shown().find("5 of 6") == std::string::npos) {
+    std::this_thread::sleep_for(milliseconds(20));
+  }
+  EXPECT_THAT(terminal.Shown(), ContainsRegex("drawing \\[#+\\.+\\]  83 %  5 of 6"));
+  EXPECT_EQ(Contents(out_), "") << "lines beside the bar";
+  program.Signal(SIGTERM);
+  std::this_thread::sleep_for(milliseconds(400));
+  EXPECT_TRUE(program.Runs()) << "it hangs, but did not wait";
+  program.Signal(SIGTERM);
+  EXPECT_EQ(program.Wait().signal, SIGTERM);
+  fs::remove(stuck);
+  EXPECT_EQ(Run(Arguments("out")).code, 0) << Contents(err_);
+  EXPECT_EQ(Drawn(), 1);
   ExpectFinished(folder_.File("out"), Products());
 }
 
@@ -191,9 +295,29 @@ TEST_F(SequenceCommand, SharesTogetherMakeAllAndThenTheMovie) {
   EXPECT_GT(fs::file_size(folder_.File("out/storms.webm")), 500U);
   ASSERT_EQ(Run(Arguments("out", {"--movie", movie})).code, 0) << Contents(err_);
   EXPECT_EQ(Drawn(), 0) << Contents(out_);
+  // All lines are in one manifest now, those of the shares included.
+  std::vector<std::string> all = Products();
+  all.push_back("storms.webm");
+  ExpectFinished(folder_.File("out"), all);
+  // Shares of another scene take the lines of what they draw anew from it: every line stays true.
+  std::ofstream(above_) << R"({"camera": {"topDown": {}}, "sky": {"turbidity": 3}})";
+  ASSERT_EQ(Run(Arguments("out", {"--shard", "0/2"})).code, 0) << Contents(err_);
+  EXPECT_EQ(Drawn(), 2) << Contents(out_);
+  std::map<std::string, std::string> sums;
+  for (const char* manifest : {"manifest.jsonl", "manifest.0-of-2.jsonl"}) {
+    for (const auto& [file, line] : EntriesOf(folder_.File("out/" + std::string(manifest)))) {
+      EXPECT_TRUE(sums.emplace(file, line.sha256).second) << file << " has two lines";
+      EXPECT_EQ(line.sha256, *pipeline::Sha256OfFile(folder_.File("out/" + file))) << file;
+    }
+  }
+  EXPECT_EQ(sums.size(), all.size());
 }
 
 TEST_F(SequenceCommand, TwoAtOnceDoNotMix) {
+  // Holds the first for as long as the second needs to start.
+  fs::create_directories(folder_.File("out"));
+  const std::string stuck = folder_.File("out/" + Products()[0]) + ".partial";
+  ASSERT_EQ(mkfifo(stuck.c_str(), 0600), 0);
   RunningProgram first(PROGRAM, Arguments("out"), out_, err_);
   while (first.Runs() && !fs::exists(folder_.File("out/manifest.jsonl"))) {
     std::this_thread::sleep_for(milliseconds(1));
@@ -202,7 +326,10 @@ TEST_F(SequenceCommand, TwoAtOnceDoNotMix) {
   RunningProgram second(PROGRAM, Arguments("out"), other, other);
   EXPECT_EQ(second.Wait().code, 75);
   EXPECT_THAT(Contents(other), HasSubstr("another thunderhead is writing this manifest"));
-  EXPECT_EQ(first.Wait().code, 0) << Contents(err_);
+  first.Signal(SIGKILL);
+  first.Wait();
+  fs::remove(stuck);
+  EXPECT_EQ(Run(Arguments("out")).code, 0) << Contents(err_);
   ExpectFinished(folder_.File("out"), Products());
 }
 
@@ -229,6 +356,8 @@ TEST_F(SequenceCommand, WhatIsWrongIsToldByItsExitCodeBeforeAnythingIsDrawn) {
   std::ofstream(folder_.File("text.nc")) << "no storm";
   expect(65, with(1, folder_.File("text.nc")), "text.nc");
   expect(78, with(3, out_ + "/{valid:%H%M}_{view}.png"), "cannot be created");
+  EXPECT_EQ(Run(Arguments("film", {"--movie", out_ + "/{storm}.webm"})).code, 78);
+  EXPECT_THAT(Contents(err_), HasSubstr("cannot be created"));
   std::vector<std::string> device = Arguments("out");
   device.back() = "99";
   EXPECT_EQ(Run(device).code, 78);
@@ -238,14 +367,67 @@ TEST_F(SequenceCommand, WhatIsWrongIsToldByItsExitCodeBeforeAnythingIsDrawn) {
 TEST_F(SequenceCommand, OneBadFileLeavesTheOthersAlone) {
   // Its description is sound; its fields are not.
   WriteRunFile(storms_, 2, 1.0, true);
-  const int code = Run(Arguments("out")).code;
-  EXPECT_EQ(code, 65) << Contents(err_);
-  EXPECT_EQ(Drawn(), 2 * (kTimes - 1));
+  EXPECT_EQ(Run(Arguments("out", {"--times", "2"})).code, 75) << "just written: " << Contents(err_);
+  LeaveAlone(RunFile(storms_, 2));
+  const std::vector<std::string> arguments =
+      Arguments("out", {"--movie", folder_.File("out/films/{storm}.webm"), "--progress", "json"});
+  EXPECT_EQ(Run(arguments).code, 65) << Contents(err_);
   EXPECT_THAT(Contents(err_), HasSubstr("2 of 6 pictures could not be made"));
+  EXPECT_EQ(EntriesOf(folder_.File("out/manifest.jsonl")).size(), 5U) << "four and their movie";
+  EXPECT_THAT(Contents(out_),
+              ContainsRegex("\"event\":\"failed\",\"file\":\"[^\"]*_2020_west.png\","
+                            "\"message\":\"[^\"]*holds nothing but fill values"));
+  const std::string short_movie = Contents(folder_.File("out/films/storms.webm"));
+  EXPECT_GT(short_movie.size(), 500U);
   WriteRunFile(storms_, 2);
-  EXPECT_EQ(Run(Arguments("out")).code, 0) << Contents(err_);
-  EXPECT_EQ(Drawn(), 2);
-  ExpectFinished(folder_.File("out"), Products());
+  EXPECT_EQ(Run(arguments).code, 0) << Contents(err_);
+  EXPECT_NE(Contents(folder_.File("out/films/storms.webm")), short_movie);
+  EXPECT_EQ(EntriesOf(folder_.File("out/manifest.jsonl")).size(), 7U);
+}
+
+TEST_F(SequenceCommand, AFileThatIsCutShortIsNamedAndLeavesTheOthersAlone) {
+  const std::string cut = RunFile(storms_, 1);
+  const std::string whole = Contents(cut);
+  std::ofstream(cut, std::ios::binary) << whole.substr(0, whole.size() / 2);
+  // Of a kind that is no storm's, as beside any run.
+  std::ofstream(storms_ + "/README") << "no storm";
+  // Alone as well as in its folder: it may still be being written, until it has rested.
+  EXPECT_EQ(RunningProgram(PROGRAM, {"inspect", cut}, out_, err_).Wait().code, 75);
+  EXPECT_EQ(Run(Arguments("out")).code, 75);
+  EXPECT_EQ(Drawn(), 2 * (kTimes - 1)) << Contents(err_);
+  EXPECT_THAT(Contents(err_), HasSubstr(cut));
+  EXPECT_THAT(Contents(err_), HasSubstr("1 of the storms' files could not be read"));
+  LeaveAlone(cut);
+  EXPECT_EQ(RunningProgram(PROGRAM, {"inspect", cut}, out_, err_).Wait().code, 65);
+  std::vector<std::string> alone = Arguments("alone");
+  alone[1] = cut;
+  EXPECT_EQ(Run(alone).code, 65) << Contents(err_);
+  EXPECT_EQ(Run(Arguments("out")).code, 65) << Contents(err_);
+  // Which time is the last, or has the number 1, only the missing file can tell.
+  EXPECT_EQ(Run(Arguments("out", {"--times", "last"})).code, 65);
+  EXPECT_THAT(Contents(err_), HasSubstr("Nothing is drawn, as --times is only known"));
+  std::vector<std::string> numbered = Arguments("numbered");
+  numbered[3] = folder_.File("numbered/{time}_{view}.png");
+  EXPECT_EQ(Run(numbered).code, 65);
+  EXPECT_THAT(Contents(err_), HasSubstr("{time} is only known with all files"));
+  EXPECT_FALSE(fs::exists(folder_.File("numbered")));
+}
+
+// Shares that look before and after a file is complete: each time is still in exactly one share.
+TEST_F(SequenceCommand, SharesThatSeeDifferentFilesLeaveNoTimeOut) {
+  const std::string first = RunFile(storms_, 0);
+  const std::string whole = Contents(first);
+  std::ofstream(first, std::ios::binary) << whole.substr(0, whole.size() / 2);
+  EXPECT_EQ(Run(Arguments("out", {"--shard", "0/2"})).code, 75) << Contents(err_);
+  EXPECT_EQ(Drawn(), 2) << "of the third file: " << Contents(out_);
+  std::ofstream(first, std::ios::binary) << whole;
+  EXPECT_EQ(Run(Arguments("out", {"--shard", "1/2"})).code, 0) << Contents(err_);
+  EXPECT_EQ(Drawn(), 2) << "of the second: " << Contents(out_);
+  EXPECT_EQ(Run(Arguments("out", {"--shard", "0/2"})).code, 0) << Contents(err_);
+  EXPECT_EQ(Drawn(), 2) << "of the first: " << Contents(out_);
+  for (const std::string& product : Products()) {
+    EXPECT_TRUE(fs::exists(folder_.File("out/" + product))) << product;
+  }
 }
 
 TEST_F(SequenceCommand, AnInputThatChangesWhileItIsReadNeverMakesAPicture) {

@@ -7,6 +7,8 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
+#include <functional>
 #include <memory>
 #include <string>
 #include <thread>
@@ -14,9 +16,11 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "pipeline/sha256.h"
 #include "tests/service/product_folder.h"
 #include "tests/service/running_program.h"
 #include "tests/service/synthetic_run.h"
+#include "tests/support/self_signed.h"
 #include "tests/support/temporary_folder.h"
 
 namespace thunderhead::testing {
@@ -56,14 +60,24 @@ class ServerSequence : public ::testing::Test {
     for (int time = 0; time < kTimes; ++time) WriteRunFile(storms_, time);
   }
 
-  std::unique_ptr<RunningProgram> Serve() const {
+  std::unique_ptr<RunningProgram> Serve(const std::vector<std::string>& more = {}) const {
     fs::remove(served_);
-    auto server = std::make_unique<RunningProgram>(
-        PROGRAM,
-        std::vector<std::string>{"serve", "--data", storms_, "--device", "software", "--http",
-                                 "127.0.0.1:0", "--grpc", address_, "--state",
-                                 folder_.File("state"), "--settle-seconds", "0.5"},
-        served_, folder_.File("server.err"));
+    std::vector<std::string> arguments = {"serve",
+                                          "--data",
+                                          storms_,
+                                          "--device",
+                                          "software",
+                                          "--http",
+                                          "127.0.0.1:0",
+                                          "--grpc",
+                                          address_,
+                                          "--state",
+                                          folder_.File("state"),
+                                          "--settle-seconds",
+                                          "0.5"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    auto server =
+        std::make_unique<RunningProgram>(PROGRAM, arguments, served_, folder_.File("server.err"));
     EXPECT_TRUE(Eventually([&] { return Contents(served_).find("ready") != std::string::npos; }))
         << Contents(folder_.File("server.err"));
     return server;
@@ -160,6 +174,77 @@ TEST_F(ServerSequence, SaysWhatItEndsFor) {
   client->Signal(SIGTERM);
   EXPECT_EQ(client->Wait().code, 75) << Errors();
   EXPECT_THAT(Errors(), HasSubstr("the same command goes on"));
+}
+
+// As an office would run it: TLS, a token with the role of pipelines, shares in two views, their
+// movie.
+TEST_F(ServerSequence, AServerWithTokensAndTlsServesSharesViewsAndMovies) {
+  const std::string token = folder_.File("token");
+  std::ofstream(token) << "a-token-of-32-letters-or-more-01\n";
+  const std::string other = folder_.File("other");
+  std::ofstream(other) << "another-token-that-nobody-gave-0\n";
+  const std::string tokens = folder_.File("tokens");
+  std::ofstream(tokens) << "suite pipeline " << pipeline::Sha256("a-token-of-32-letters-or-more-01")
+                        << "\n";
+  fs::permissions(tokens, fs::perms::owner_read | fs::perms::owner_write);
+  const std::string certificate = folder_.File("cert.pem");
+  const std::string key = folder_.File("key.pem");
+  WriteSelfSigned(certificate, key, 1);
+  fs::permissions(key, fs::perms::owner_read | fs::perms::owner_write);
+  const auto server =
+      Serve({"--auth", "tokens", tokens, "--tls-cert", certificate, "--tls-key", key});
+  const std::string west = folder_.File("west.json");
+  const std::string above = folder_.File("above.json");
+  std::ofstream(west) << R"({"camera": {"orbit": {"azimuthDeg": 270}}})";
+  std::ofstream(above) << R"({"camera": {"topDown": {}}})";
+  size_ = "64x36";
+  const std::string host = "localhost" + address_.substr(address_.find(':'));
+  const auto start = [&](const std::string& command, const std::vector<std::string>& more,
+                         const std::string& by) {
+    std::vector<std::string> arguments = {
+        "--server",     host,        "--tls-ca",
+        certificate,    "--views",   west,
+        above,          "--product", out_ + "/{valid:%H%M}_{view}.png",
+        "--token-file", by};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    std::vector<std::string> words = {command, "run", "--size", size_, "--quality", "fast"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    return std::make_unique<RunningProgram>(PROGRAM, words, folder_.File("out.log"),
+                                            folder_.File("err.log"));
+  };
+  EXPECT_EQ(start("sequence", {}, other)->Wait().code, 78) << Errors();
+  const auto first = start("sequence", {"--shard", "0/2"}, token);
+  const auto second = start("sequence", {"--shard", "1/2"}, token);
+  EXPECT_EQ(first->Wait().code, 0) << Errors();
+  EXPECT_EQ(second->Wait().code, 0) << Errors();
+  EXPECT_EQ(EntriesOf(out_ + "/manifest.0-of-2.jsonl").size(), 6U);
+  EXPECT_EQ(EntriesOf(out_ + "/manifest.1-of-2.jsonl").size(), 4U);
+  const std::vector<std::string> movie = {"--movie", out_ + "/{view}.webm"};
+  EXPECT_EQ(start("sequence", movie, token)->Wait().code, 0) << Errors();
+  std::vector<std::string> products = {"west.webm", "above.webm"};
+  for (int time = 0; time < kTimes; ++time) {
+    for (const char* view : {"west", "above"}) {
+      products.push_back(RunTime(time).substr(9) + "_" + view + ".png");
+    }
+  }
+  ExpectFinished(out_, products);
+  // By the same rules `watch` finds all made, and `render` gets one more.
+  std::vector<std::string> until = movie;
+  until.insert(until.end(), {"--until", std::to_string(kTimes)});
+  EXPECT_EQ(start("watch", until, token)->Wait().code, 0) << Errors();
+  ExpectFinished(out_, products);
+  const std::string one = folder_.File("one.png");
+  for (const std::string& by : {token, other}) {
+    const int code =
+        RunningProgram(PROGRAM,
+                       {"render", "run", "--server", host, "--tls-ca", certificate, "--token-file",
+                        by, "--size", size_, "--quality", "fast", "-o", one},
+                       folder_.File("out.log"), folder_.File("err.log"))
+            .Wait()
+            .code;
+    EXPECT_EQ(code, by == token ? 0 : 78) << Errors();
+  }
+  EXPECT_TRUE(fs::exists(one));
 }
 
 TEST_F(ServerSequence, WatchesAStormAsItsTimesCome) {

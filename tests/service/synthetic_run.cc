@@ -1,6 +1,8 @@
 #include "tests/service/synthetic_run.h"
 
+#include <chrono>
 #include <cmath>
+#include <filesystem>
 
 #include "absl/strings/str_format.h"
 #include "tests/support/synthetic_wrf.h"
@@ -29,6 +31,11 @@ void WriteRunFile(const std::string& folder, int time, double density, bool torn
   };
   if (torn) file.unwritten = {"QCLOUD"};
   WriteWrf(file, RunFile(folder, time));
+}
+
+void LeaveAlone(const std::string& file) {
+  std::filesystem::last_write_time(
+      file, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
 }
 
 }  // namespace thunderhead::testing

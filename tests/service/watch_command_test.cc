@@ -1,9 +1,13 @@
 // `thunderhead watch` as a suite runs it: files arrive as they do in life.
+#include <fcntl.h>
+#include <netcdf.h>
+
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <random>
 #include <string>
 #include <thread>
@@ -49,6 +53,18 @@ class WatchCommand : public ::testing::Test {
   std::string Bytes(int time) const {
     WriteRunFile(model_, time);
     return Contents(RunFile(model_, time));
+  }
+
+  // The time in so many seconds.
+  static std::string In(int seconds) {
+    return absl::FormatTime("%Y-%m-%dT%H:%M:%SZ", absl::Now() + absl::Seconds(seconds),
+                            absl::UTCTimeZone());
+  }
+
+  static void Await(const std::function<bool()>& holds, RunningProgram& program) {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (!holds() && program.Runs() && std::chrono::steady_clock::now() < until) Pause(5);
+    EXPECT_TRUE(holds());
   }
 
   void Put(int time, const std::string& bytes) const {
@@ -141,16 +157,140 @@ TEST_F(WatchCommand, AMarkedFileIsDrawnAndAnUnmarkedOneIsNot) {
   ExpectFinished(folder_.File("out"), second);
 }
 
+// WRF writes its marker before it has closed the file.
+TEST_F(WatchCommand, AMarkedFileThatIsNotWholeWaits) {
+  const std::string whole = Bytes(1);
+  Put(1, whole.substr(0, whole.size() / 2));
+  std::ofstream(folder_.File("inbox/wrfoutReady_d01_2013-05-20_20:10:00")) << "";
+  RunningProgram program(PROGRAM,
+                         Arguments({"--ready", "marker:wrfoutReady_*", "--files", "wrfout_d01_*",
+                                    "--until", "1", "--progress", "json"}),
+                         out_, err_);
+  Await([&] { return Contents(out_).find("\"waiting\"") != std::string::npos; }, program);
+  EXPECT_THAT(Contents(out_), HasSubstr("{\"event\":\"waiting\",\"file\":\"" + RunFile(inbox_, 1) +
+                                        "\",\"message\":\"waits until it"));
+  Put(1, whole);
+  EXPECT_EQ(program.Wait().code, 0) << Contents(err_);
+  std::vector<std::string> second = Products(2);
+  second.erase(second.begin(), second.begin() + 2);
+  ExpectFinished(folder_.File("out"), second);
+}
+
+// HDF5 locks a file that it writes; its readers cannot tell that from damage, and `watch` must.
+TEST_F(WatchCommand, AFileThatItsWriterHoldsOpenIsNotReady) {
+  Put(0, Bytes(0));
+  int writer = 0;
+  ASSERT_EQ(nc_open(RunFile(inbox_, 0).c_str(), NC_WRITE, &writer), NC_NOERR);
+  // The lock would live on in the programs that are started here.
+  for (const auto& file : fs::directory_iterator("/proc/self/fd")) {
+    std::error_code gone;
+    if (fs::read_symlink(file, gone) == RunFile(inbox_, 0)) {
+      fcntl(std::stoi(file.path().filename()), F_SETFD, FD_CLOEXEC);
+    }
+  }
+  LeaveAlone(RunFile(inbox_, 0));
+  EXPECT_EQ(RunningProgram(PROGRAM, {"inspect", RunFile(inbox_, 0)}, out_, err_).Wait().code, 75);
+  EXPECT_THAT(Contents(err_), HasSubstr("another program is writing it"));
+  RunningProgram program(PROGRAM, Arguments({"--ready", "age:0", "--until", "1"}), out_, err_);
+  while (program.Runs() && !fs::exists(folder_.File("out/manifest.jsonl"))) Pause(5);
+  Pause(700);
+  EXPECT_EQ(EntriesOf(folder_.File("out/manifest.jsonl")).size(), 0U);
+  ASSERT_EQ(nc_close(writer), NC_NOERR);
+  Await([&] { return !program.Runs(); }, program);
+  EXPECT_EQ(program.Wait().code, 0) << Contents(err_);
+  ExpectFinished(folder_.File("out"), Products(1));
+}
+
+TEST_F(WatchCommand, AFileWaitsForTheNextOrForItsSize) {
+  Put(0, Bytes(0));
+  Put(1, Bytes(1));
+  EXPECT_EQ(RunningProgram(PROGRAM, Arguments({"--ready", "next", "--until", "1"}), out_, err_)
+                .Wait()
+                .code,
+            0)
+      << Contents(err_);
+  ExpectFinished(folder_.File("out"), Products(1));
+  // Bytes behind the end are none of HDF5's.
+  Put(1, Bytes(1) + std::string(5000, '\0'));
+  const std::size_t between = Bytes(1).size() + 2500;
+  const std::string ready = "age:0,minsize:" + std::to_string(between);
+  fs::remove_all(folder_.File("out"));
+  EXPECT_EQ(RunningProgram(PROGRAM, Arguments({"--ready", ready, "--until", "1"}), out_, err_)
+                .Wait()
+                .code,
+            0)
+      << Contents(err_);
+  std::vector<std::string> second = Products(2);
+  second.erase(second.begin(), second.begin() + 2);
+  ExpectFinished(folder_.File("out"), second);
+}
+
+// The clock was set back by an hour since the file was written, or is another machine's.
+TEST_F(WatchCommand, AFileFromTheFutureWaitsNoLongerThanItRests) {
+  Put(0, Bytes(0));
+  fs::last_write_time(RunFile(inbox_, 0), fs::file_time_type::clock::now() + std::chrono::hours(1));
+  const auto begun = std::chrono::steady_clock::now();
+  EXPECT_EQ(RunningProgram(PROGRAM, Arguments({"--ready", "open", "--until", "1", "file", In(30)}),
+                           out_, err_)
+                .Wait()
+                .code,
+            0)
+      << Contents(err_);
+  EXPECT_GE(std::chrono::steady_clock::now() - begun, std::chrono::seconds(2)) << "did not rest";
+  ExpectFinished(folder_.File("out"), Products(1));
+}
+
+TEST_F(WatchCommand, ABadFileCountsAndTheEndTellsOfIt) {
+  Put(0, Bytes(0));
+  WriteRunFile(inbox_, 1, 1.0, true);
+  EXPECT_EQ(
+      RunningProgram(PROGRAM, Arguments({"--ready", "age:0", "--until", "2", "files", In(60)}),
+                     out_, err_)
+          .Wait()
+          .code,
+      65)
+      << Contents(err_);
+  EXPECT_THAT(Contents(err_), HasSubstr("1 files could not be drawn"));
+  ExpectFinished(folder_.File("out"), Products(1));
+}
+
+// A suite may move what is drawn to an archive, also while nobody watches.
+TEST_F(WatchCommand, FilesThatAreMovedAwayOnceDrawnStillCount) {
+  const std::vector<std::string> arguments =
+      Arguments({"--ready", "age:0", "--until", "3", "files", In(120), "--movie",
+                 folder_.File("out/{storm}.webm")});
+  const auto archive = [&](int time) {
+    fs::rename(RunFile(inbox_, time), folder_.File("archived" + std::to_string(time)));
+  };
+  // Two views and the movie of so many files.
+  const auto drawn = [&](std::size_t files) {
+    const auto entries = EntriesOf(folder_.File("out/manifest.jsonl"));
+    return entries.size() == 2 * files + 1 &&
+           Contents(out_).find("inbox.webm") != std::string::npos;
+  };
+  {
+    RunningProgram program(PROGRAM, arguments, out_, err_);
+    for (int time = 0; time < 2; ++time) {
+      Put(time, Bytes(time));
+      Await([&] { return drawn(static_cast<std::size_t>(time) + 1); }, program);
+      archive(time);
+    }
+  }
+  // Killed, and started again when both are gone.
+  RunningProgram program(PROGRAM, arguments, out_, err_);
+  Put(2, Bytes(2));
+  EXPECT_EQ(program.Wait().code, 0) << Contents(err_);
+  std::vector<std::string> products = Products(3);
+  products.push_back("inbox.webm");
+  ExpectFinished(folder_.File("out"), products);
+}
+
 TEST_F(WatchCommand, AtTheEndItSaysWhatIsMissing) {
   Put(0, Bytes(0));
   const std::string cut = Bytes(1);
   Put(1, cut.substr(0, cut.size() / 2));
   std::ofstream(folder_.File("inbox/README")) << "no storm";
-  const auto in_s = [](int seconds) {
-    return absl::FormatTime("%Y-%m-%dT%H:%M:%SZ", absl::Now() + absl::Seconds(seconds),
-                            absl::UTCTimeZone());
-  };
-  EXPECT_EQ(RunningProgram(PROGRAM, Arguments({"--ready", "age:0", "--until", in_s(6)}), out_, err_)
+  EXPECT_EQ(RunningProgram(PROGRAM, Arguments({"--ready", "age:0", "--until", In(6)}), out_, err_)
                 .Wait()
                 .code,
             75);
@@ -161,7 +301,7 @@ TEST_F(WatchCommand, AtTheEndItSaysWhatIsMissing) {
   EXPECT_THAT(Contents(err_), HasSubstr("1 files are not complete"));
   ExpectFinished(folder_.File("out"), Products(1));
   WriteRunFile(inbox_, 1, 1.0, true);
-  EXPECT_EQ(RunningProgram(PROGRAM, Arguments({"--ready", "age:0", "--until", in_s(6)}), out_, err_)
+  EXPECT_EQ(RunningProgram(PROGRAM, Arguments({"--ready", "age:0", "--until", In(6)}), out_, err_)
                 .Wait()
                 .code,
             65);
@@ -189,6 +329,7 @@ TEST_F(WatchCommand, WhatIsWrongIsToldBeforeAnyFileComes) {
   expect(64, {"--ready", "soon"}, "--ready is 'soon'");
   expect(64, {"--until", "soon"}, "--until is 'soon'");
   expect(64, {"--until", "5", "hours"}, "--until is '5 hours'");
+  expect(64, {"--until", "5", "6"}, "--until is '5 6'");
   expect(64, {"--product", folder_.File("{time}_{view}.png")}, "--product");
   std::ofstream(above_) << R"({"sky": {"turbidity": 1000}})";
   expect(64, {}, "turbidity");

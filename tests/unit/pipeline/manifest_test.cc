@@ -1,5 +1,7 @@
 #include "pipeline/manifest.h"
 
+#include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 
@@ -14,6 +16,7 @@ namespace thunderhead::pipeline {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 ManifestEntry Entry(const std::string& sha256) {
   ManifestEntry entry;
@@ -101,10 +104,67 @@ TEST_F(ManifestTest, ProductsOfOtherShardsCount) {
     ASSERT_TRUE(manifest.Record(folder_.File("a.png"), Entry("1")).ok());
     ASSERT_TRUE(manifest.Record(folder_.File("b.png"), Entry("2")).ok());
   }
-  auto manifest = *Manifest::Open(path_, {other});
-  ASSERT_TRUE(manifest.Record(folder_.File("b.png"), Entry("3")).ok());
-  EXPECT_EQ(manifest.Find(folder_.File("a.png"))->sha256, "1");
-  EXPECT_EQ(manifest.Find(folder_.File("b.png"))->sha256, "3");
+  {
+    auto manifest = *Manifest::Open(path_, {.count = {other}, .take_over = {}});
+    EXPECT_EQ(manifest.Find(folder_.File("b.png"))->sha256, "2");
+    ASSERT_TRUE(manifest.Record(folder_.File("b.png"), Entry("3")).ok());
+    EXPECT_EQ(manifest.Find(folder_.File("a.png"))->sha256, "1");
+    EXPECT_EQ(manifest.Find(folder_.File("b.png"))->sha256, "3");
+  }
+  // A product has one line in the folder, the one that is true.
+  EXPECT_THAT(*base::ReadWholeFile(other), Not(HasSubstr("b.png")));
+  EXPECT_THAT(*base::ReadWholeFile(other), HasSubstr("a.png"));
+  EXPECT_THAT(Text(), HasSubstr("b.png"));
+  // One that a process keeps stays as it is.
+  const auto kept = *Manifest::Open(other, {});
+  auto manifest = *Manifest::Open(path_, {.count = {other}, .take_over = {}});
+  ASSERT_TRUE(manifest.Record(folder_.File("a.png"), Entry("4")).ok());
+  EXPECT_THAT(*base::ReadWholeFile(other), HasSubstr("a.png"));
+}
+
+TEST_F(ManifestTest, OfTwoOthersTheOneWrittenToLastCounts) {
+  const std::string first = folder_.File("manifest.0-of-2.jsonl");
+  const std::string second = folder_.File("manifest.1-of-2.jsonl");
+  for (const std::string& path : {first, second}) {
+    auto manifest = *Manifest::Open(path, {});
+    ASSERT_TRUE(manifest.Record(folder_.File("a.png"), Entry(path)).ok());
+  }
+  const auto now = std::filesystem::last_write_time(second);
+  for (const std::string& newest : {first, second}) {
+    std::filesystem::last_write_time(first, now - std::chrono::seconds(newest == first ? 1 : 9));
+    std::filesystem::last_write_time(second, now - std::chrono::seconds(5));
+    const auto manifest = *Manifest::Open(path_, {.count = {first, second}, .take_over = {}});
+    EXPECT_EQ(manifest.Find(folder_.File("a.png"))->sha256, newest);
+    EXPECT_EQ(manifest.Entries().size(), 1U);
+  }
+}
+
+TEST_F(ManifestTest, ManifestsOfSharesThatHaveEndedAreTakenOver) {
+  const std::string ended = folder_.File("manifest.0-of-2.jsonl");
+  const std::string running = folder_.File("manifest.1-of-2.jsonl");
+  {
+    auto manifest = *Manifest::Open(ended, {});
+    ASSERT_TRUE(manifest.Record(folder_.File("a.png"), Entry("1")).ok());
+    ASSERT_TRUE(manifest.Record(folder_.File("b.png"), Entry("2")).ok());
+  }
+  // A share that was killed while it wrote a line.
+  std::ofstream(ended, std::ios::app) << ToLine(Entry("9")).substr(0, 30);
+  auto other = *Manifest::Open(running, {});
+  ASSERT_TRUE(other.Record(folder_.File("c.png"), Entry("3")).ok());
+  {
+    const auto manifest = *Manifest::Open(path_, {.count = {}, .take_over = {ended, running}});
+    EXPECT_FALSE(std::filesystem::exists(ended));
+    EXPECT_TRUE(std::filesystem::exists(running));
+    EXPECT_EQ(manifest.Entries().size(), 3U);
+    EXPECT_EQ(manifest.Find(folder_.File("c.png"))->sha256, "3");
+  }
+  const std::string text = Text();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2) << text;
+  // As after a kill before they were deleted: nothing is there twice.
+  std::ofstream(ended) << text;
+  const auto again = *Manifest::Open(path_, {.count = {}, .take_over = {ended}});
+  EXPECT_EQ(Text(), text);
+  EXPECT_FALSE(std::filesystem::exists(ended));
 }
 
 TEST_F(ManifestTest, AFolderThatMayNotBeWrittenToIsConfiguration) {

@@ -5,6 +5,9 @@ extern "C" {
 #include <libavformat/avformat.h>
 }
 
+#include <unistd.h>
+
+#include <algorithm>
 #include <filesystem>
 
 #include "absl/strings/str_cat.h"
@@ -25,6 +28,8 @@ frame::RgbImage Grey(int width_px, int height_px, std::uint8_t value) {
 
 struct Decoded {
   std::vector<int> brightness;  // of each frame, at its first pixel, as coded
+  AVCodecID codec = AV_CODEC_ID_NONE;
+  int pixels = AV_PIX_FMT_NONE;
   int width_px = 0;
   int height_px = 0;
   double seconds = 0.0;
@@ -50,6 +55,7 @@ Decoded Decode(const std::string& path) {
   decoded.description = TextOf(*format, "description");
   AVCodecContext* codec = avcodec_alloc_context3(nullptr);
   avcodec_parameters_to_context(codec, format->streams[0]->codecpar);
+  decoded.codec = codec->codec_id;
   avcodec_open2(codec, avcodec_find_decoder(codec->codec_id), nullptr);
   AVPacket* packet = av_packet_alloc();
   AVFrame* frame = av_frame_alloc();
@@ -59,6 +65,7 @@ Decoded Decode(const std::string& path) {
     avcodec_send_packet(codec, more ? packet : nullptr);
     while (avcodec_receive_frame(codec, frame) >= 0) {
       decoded.brightness.push_back(frame->data[0][0]);
+      decoded.pixels = frame->format;
       decoded.width_px = frame->width;
       decoded.height_px = frame->height;
     }
@@ -102,6 +109,8 @@ TEST_P(MovieKind, PlayersSeeEveryPictureInOrder) {
   EXPECT_NEAR(movie.brightness[1], 126, 3);
   EXPECT_NEAR(movie.brightness[2], 126, 3);
   EXPECT_NEAR(movie.brightness[3], 235, 3);
+  EXPECT_EQ(movie.codec, path.ends_with(".mp4") ? AV_CODEC_ID_H264 : AV_CODEC_ID_VP9);
+  EXPECT_EQ(movie.pixels, AV_PIX_FMT_YUV420P);
   EXPECT_EQ(movie.width_px, 64);
   EXPECT_EQ(movie.height_px, 36);
   EXPECT_NEAR(movie.seconds, 0.5, 0.01);
@@ -124,7 +133,42 @@ TEST(Movie, WhatFailsLeavesNothing) {
   const absl::Status nowhere =
       WriteMovie(folder.File("no/movie.webm"), {1}, 8, {},
                  [](std::size_t) { return absl::StatusOr<frame::RgbImage>(Grey(64, 36, 9)); });
-  EXPECT_EQ(nowhere.code(), absl::StatusCode::kUnavailable);
+  EXPECT_EQ(nowhere.code(), absl::StatusCode::kFailedPrecondition) << nowhere;
+  // A full device fails at once or when the end is written; that passes.
+  ASSERT_EQ(symlink("/dev/full", base::PartialPath(folder.File("full.webm")).c_str()), 0);
+  const absl::Status full = WriteMovie(folder.File("full.webm"), {1}, 8, {}, [](std::size_t) {
+    return absl::StatusOr<frame::RgbImage>(Grey(64, 36, 9));
+  });
+  EXPECT_EQ(full.code(), absl::StatusCode::kUnavailable) << full;
+  EXPECT_TRUE(std::filesystem::is_empty(folder.Path()));
+}
+
+// The names of an MP4 file's outermost boxes, in order (ISO 14496-12).
+std::vector<std::string> BoxesOf(const std::string& file) {
+  std::vector<std::string> names;
+  for (std::size_t at = 0; at + 8 <= file.size();) {
+    std::size_t size = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+      size = size << 8U | static_cast<unsigned char>(file[at + i]);
+    names.push_back(file.substr(at + 4, 4));
+    if (size < 8) break;  // to the end of the file, or of 64 bits, which these are not
+    at += size;
+  }
+  return names;
+}
+
+TEST(Movie, AnMp4BeginsWithItsIndex) {
+  const testing::TemporaryFolder folder;
+  const std::string path = folder.File("movie.mp4");
+  const absl::Status status = WriteMovie(path, {1, 1}, 8, {"title", "", ""}, [](std::size_t) {
+    return absl::StatusOr<frame::RgbImage>(Grey(64, 36, 9));
+  });
+  if (absl::IsFailedPrecondition(status)) GTEST_SKIP() << status;
+  ASSERT_TRUE(status.ok()) << status;
+  const std::vector<std::string> boxes = BoxesOf(*base::ReadWholeFile(path));
+  const auto index = std::ranges::find(boxes, "moov");
+  ASSERT_NE(index, boxes.end());
+  EXPECT_NE(std::find(index, boxes.end(), "mdat"), boxes.end()) << "the frames come first";
 }
 
 }  // namespace

@@ -50,6 +50,12 @@ TEST(Plan, ShardsComeFromTheFlagOrTheBatchSystem) {
   clear();
   EXPECT_EQ(ManifestName({0, 1}), "manifest.jsonl");
   EXPECT_EQ(ManifestName({2, 4}), "manifest.2-of-4.jsonl");
+  EXPECT_TRUE(IsManifestOfShare("manifest.2-of-4.jsonl"));
+  for (const char* other : {"manifest.jsonl", "manifest.west.jsonl", "manifest.4-of-4.jsonl",
+                            "manifest.02-of-4.jsonl", "manifest.-of-.jsonl", "manifest.2-of-4.txt",
+                            "manifest..jsonl", "x.manifest.2-of-4.jsonl"}) {
+    EXPECT_FALSE(IsManifestOfShare(other)) << other;
+  }
 }
 
 }  // namespace

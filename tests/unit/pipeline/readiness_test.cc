@@ -8,13 +8,11 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr absl::Time kNow = absl::FromUnixSeconds(1'700'000'000);
-
-SeenFile File(const std::string& name, double age_s, std::uint64_t bytes = 1000) {
+SeenFile File(const std::string& name, double unchanged_s, std::uint64_t bytes = 1000) {
   SeenFile file;
   file.name = name;
   file.bytes = bytes;
-  file.changed = kNow - absl::Seconds(age_s);
+  file.unchanged = absl::Seconds(unchanged_s);
   return file;
 }
 
@@ -22,7 +20,7 @@ SeenFile File(const std::string& name, double age_s, std::uint64_t bytes = 1000)
 std::string Waits(const std::string& policy, const std::vector<SeenFile>& files,
                   std::vector<std::string> names = {}) {
   for (const SeenFile& file : files) names.push_back(file.name);
-  return ReadinessPolicy::Parse(policy)->WaitsFor(files.front(), files, names, kNow).value_or("");
+  return ReadinessPolicy::Parse(policy)->WaitsFor(files.front(), files, names).value_or("");
 }
 
 TEST(Readiness, OpenAndAgeWaitForQuiet) {
