@@ -24,8 +24,9 @@ constexpr std::array<absl::string_view, 8> kNeeded = {
     "renderer",    "mode",         "transport",    "slices",
     "image_scale", "jpeg_quality", "milliseconds", "relative_rmse"};
 // Results that nothing is chosen by.
-constexpr std::array<absl::string_view, 4> kPassedOver = {"milliseconds_spread", "bytes",
-                                                          "relative_bias", "flip"};
+constexpr std::array<absl::string_view, 7> kPassedOver = {
+    "milliseconds_spread", "bytes",     "relative_bias", "flip",
+    "estimated_error",     "error_low", "error_high"};
 
 // What scenes cannot ask for: rows that differ from these values are not
 // offered.

@@ -30,6 +30,7 @@ struct Flags {
   std::string device = "auto";
   int samples_per_pixel = 256;
   std::vector<double> million_paths = {0.1, 0.3, 1.0, 3.0};
+  double error_seconds = 2.0;
   bool json = false;
 };
 
@@ -96,18 +97,22 @@ absl::Status MeasureRest(measure::Trade& trade, const std::string& path,
 }
 
 std::string Table(const std::vector<measure::TradeRow>& rows) {
-  std::string text = absl::StrFormat("%-13s %-28s %-11s %6s %5s %5s %-6s %6s %4s %9s %8s %8s %7s\n",
-                                     "renderer", "mode", "transport", "slices", "scale", "light",
-                                     "bits", "Mpaths", "jpeg", "ms", "RMSE", "bias", "FLIP");
+  std::string text =
+      absl::StrFormat("%-13s %-28s %-11s %6s %5s %5s %-6s %6s %4s %9s %8s %8s %7s  %s\n",
+                      "renderer", "mode", "transport", "slices", "scale", "light", "bits", "Mpaths",
+                      "jpeg", "ms", "RMSE", "bias", "FLIP", "RMSE estimated");
   for (const measure::TradeRow& row : rows) {
     const measure::Setting& setting = row.setting;
     absl::StrAppendFormat(
-        &text, "%-13s %-28s %-11s %6d %5g %5g %-6s %6g %4d %9.2f %8.4f %+8.4f %7.4f%s\n",
+        &text,
+        "%-13s %-28s %-11s %6d %5g %5g %-6s %6g %4d %9.2f %8.4f %+8.4f %7.4f  %6.4f (%.4f to "
+        "%.4f)%s\n",
         scene::NameOf(setting.technique), accuracy::ModeOf(setting.technique).name,
         accuracy::TransportNameOf(setting.technique), accuracy::CountOf(setting.technique),
         setting.image_scale, setting.light_detail, setting.single_precision ? "single" : "half",
         setting.million_paths, setting.jpeg_quality, row.milliseconds, row.relative_rmse,
-        row.relative_bias, row.flip, row.pareto ? "  *" : "");
+        row.relative_bias, row.flip, row.estimated_error.value, row.estimated_error.low,
+        row.estimated_error.high, row.pareto ? "  *" : "");
   }
   return text;
 }
@@ -121,7 +126,7 @@ absl::Status MeasureTrade(const Flags& flags) {
                                gl::Context::Create(flags.device));
   THUNDERHEAD_ASSIGN_OR_RETURN(const picture::LinearPicture truth,
                                TruthOf(flags, local, flags.output + ".truth.exr", interruption));
-  measure::Trade trade(local.scene, local.fields, truth);
+  measure::Trade trade(local.scene, local.fields, truth, flags.error_seconds);
   measure::TradeTitle title;
   title.storm = absl::StrCat(local.storm_id, ", time ", local.message.time_index());
   title.view = flags.scene.camera.empty() ? "orbit" : flags.scene.camera;
@@ -163,6 +168,13 @@ Command AddMeasureTrade(CLI::App& measure) {
           "--million-paths", flags->million_paths,
           "Also measure traced light, after this many million paths; several in ascending order")
       ->check(CLI::Range(0.0, 1e3))
+      ->capture_default_str();
+  trade
+      ->add_option(
+          "--error-seconds", flags->error_seconds,
+          "Also estimate each picture's error for so many seconds, as a server does that has "
+          "no truth; 0: not")
+      ->check(CLI::Range(0.0, 600.0))
       ->capture_default_str();
   trade->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();

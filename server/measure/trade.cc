@@ -108,10 +108,11 @@ scene::Scene TrueScene(scene::Scene scene) {
 }
 
 Trade::Trade(scene::Scene scene, std::shared_ptr<const volume::HydrometeorFields> fields,
-             picture::LinearPicture truth)
+             picture::LinearPicture truth, double error_seconds)
     : scene_(std::move(scene)),
       fields_(std::move(fields)),
       truth_(std::move(truth)),
+      error_seconds_(error_seconds),
       truth_noise_(RelativeNoise(truth_)) {
   scene_.output.width_px = truth_.size_px.x;
   scene_.output.height_px = truth_.size_px.y;
@@ -143,6 +144,16 @@ absl::StatusOr<std::shared_ptr<const renderers::LightCorrection>> Trade::Correct
   return corrector_->Correction();
 }
 
+absl::Status Trade::Estimate(const scene::Scene& scene, const picture::LinearPicture& image,
+                             const std::stop_token& stop, accuracy::Estimated* estimate) {
+  if (error_seconds_ <= 0.0) return absl::OkStatus();
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<accuracy::ErrorMeter> meter,
+                               accuracy::ErrorMeter::Create(scene, fields_, 0));
+  meter->Measure(image, error_seconds_, stop);
+  if (const auto error = meter->Result(); error.has_value()) *estimate = error->relative_rmse;
+  return absl::OkStatus();
+}
+
 absl::StatusOr<TradeRow> Trade::Measure(const Setting& setting, const std::stop_token& stop) {
   if (truth_display_.rgb.empty()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(truth_display_, Display(frame::TextureOf(truth_)));
@@ -172,6 +183,7 @@ absl::StatusOr<TradeRow> Trade::Measure(const Setting& setting, const std::stop_
     const picture::LinearPicture image = frame::PictureOf(*linear.radiance);
     row.relative_rmse = RelativeRmseWithout(truth_noise_, image, truth_);
     row.relative_bias = RelativeBias(image, truth_);
+    THUNDERHEAD_RETURN_IF_ERROR(Estimate(scene, image, stop, &row.estimated_error));
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(const frame::RgbImage seen, frame::DecodeJpeg(jpeg));
   row.flip = Flip({{seen.width_px, seen.height_px}, seen.rgb}, truth_display_);

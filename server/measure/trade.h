@@ -2,12 +2,14 @@
 // its picture against the reference. Owns GL objects: use it on the context's thread.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <stop_token>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "accuracy/error_meter.h"
 #include "accuracy/light_corrector.h"
 #include "accuracy/setting.h"
 #include "frame/tone_map.h"
@@ -21,6 +23,8 @@ namespace thunderhead::measure {
 
 using accuracy::Setting;
 
+inline constexpr double kUnmeasured = std::numeric_limits<double>::quiet_NaN();
+
 struct TradeRow {
   Setting setting;
   double milliseconds = 0.0;         // a frame with a moved camera, JPEG included: median
@@ -28,7 +32,9 @@ struct TradeRow {
   std::size_t bytes = 0;             // of the JPEG
   double relative_rmse = 0.0;        // of linear radiance, without the truth's own noise
   double relative_bias = 0.0;
-  double flip = 0.0;    // of the decoded JPEG
+  double flip = 0.0;  // of the decoded JPEG
+  // The relative RMSE as a server that has no truth measures it; not a number where nobody did.
+  accuracy::Estimated estimated_error{kUnmeasured, kUnmeasured, kUnmeasured};
   bool pareto = false;  // no other setting is both faster and more accurate
 };
 
@@ -46,9 +52,10 @@ scene::Scene TrueScene(scene::Scene scene);
 
 class Trade {
  public:
-  // `scene` gives the settings that are not swept; the truth has its size.
+  // `scene` gives the settings that are not swept; the truth has its size. Each picture's error is
+  // also estimated for `error_seconds`, 0: not.
   Trade(scene::Scene scene, std::shared_ptr<const volume::HydrometeorFields> fields,
-        picture::LinearPicture truth);
+        picture::LinearPicture truth, double error_seconds);
 
   // CANCELLED if `stop` was requested while paths were traced. Traced paths are kept for the next
   // setting, so settings that differ only in their number are best measured in ascending order.
@@ -58,6 +65,8 @@ class Trade {
   double TruthNoise() const { return truth_noise_; }
 
  private:
+  absl::Status Estimate(const scene::Scene& scene, const picture::LinearPicture& image,
+                        const std::stop_token& stop, accuracy::Estimated* estimate);
   absl::StatusOr<DisplayImage> Display(const gl::Texture2D& linear);
   // The correction by that many paths; null for none.
   absl::StatusOr<std::shared_ptr<const renderers::LightCorrection>> CorrectionOf(
@@ -66,6 +75,7 @@ class Trade {
   scene::Scene scene_;
   std::shared_ptr<const volume::HydrometeorFields> fields_;
   picture::LinearPicture truth_;
+  double error_seconds_;
   DisplayImage truth_display_;
   double truth_noise_ = 0.0;
   renderers::SceneRenderer renderer_;

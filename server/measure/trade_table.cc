@@ -20,8 +20,9 @@ namespace {
 constexpr char kColumns[] =
     "renderer,mode,transport,slices,image_scale,light_detail,precision,million_paths,jpeg_quality,"
     "milliseconds,"
-    "milliseconds_spread,bytes,relative_rmse,relative_bias,flip";
-constexpr std::size_t kColumnCount = 15;
+    "milliseconds_spread,bytes,relative_rmse,relative_bias,flip,estimated_error,error_low,error_"
+    "high";
+constexpr std::size_t kColumnCount = 18;
 
 constexpr char kHalf[] = "half";
 constexpr char kSingle[] = "single";
@@ -55,7 +56,10 @@ std::optional<TradeRow> RowOf(absl::string_view line) {
       absl::SimpleAtod(cells[9], &row.milliseconds) &&
       absl::SimpleAtod(cells[10], &row.milliseconds_spread) &&
       absl::SimpleAtoi(cells[11], &bytes) && absl::SimpleAtod(cells[12], &row.relative_rmse) &&
-      absl::SimpleAtod(cells[13], &row.relative_bias) && absl::SimpleAtod(cells[14], &row.flip);
+      absl::SimpleAtod(cells[13], &row.relative_bias) && absl::SimpleAtod(cells[14], &row.flip) &&
+      absl::SimpleAtod(cells[15], &row.estimated_error.value) &&
+      absl::SimpleAtod(cells[16], &row.estimated_error.low) &&
+      absl::SimpleAtod(cells[17], &row.estimated_error.high);
   setting.single_precision = cells[6] == kSingle;
   row.bytes = bytes;
   if (!read) return std::nullopt;
@@ -106,6 +110,14 @@ std::vector<std::pair<double, double>> FrontOf(const std::vector<TradeRow>& rows
   return front;
 }
 
+// JSON has no word for what is not a number.
+std::string EstimateJson(const TradeRow& row) {
+  const accuracy::Estimated& error = row.estimated_error;
+  if (std::isnan(error.value)) return "";
+  return absl::StrFormat("\"estimated_error\": %.5f, \"error_low\": %.5f, \"error_high\": %.5f, ",
+                         error.value, error.low, error.high);
+}
+
 }  // namespace
 
 std::string CsvHead(const TradeTitle& title) {
@@ -119,12 +131,14 @@ std::string CsvHead(const TradeTitle& title) {
 
 std::string CsvLine(const TradeRow& row) {
   const Setting& setting = row.setting;
-  return absl::StrFormat(
-      "%s,%s,%s,%d,%g,%g,%s,%g,%d,%.3f,%.3f,%d,%.5f,%.5f,%.5f\n", scene::NameOf(setting.technique),
-      accuracy::ModeOf(setting.technique).name, accuracy::TransportNameOf(setting.technique),
-      accuracy::CountOf(setting.technique), setting.image_scale, setting.light_detail,
-      PrecisionOf(setting), setting.million_paths, setting.jpeg_quality, row.milliseconds,
-      row.milliseconds_spread, row.bytes, row.relative_rmse, row.relative_bias, row.flip);
+  return absl::StrFormat("%s,%s,%s,%d,%g,%g,%s,%g,%d,%.3f,%.3f,%d,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f\n",
+                         scene::NameOf(setting.technique), accuracy::ModeOf(setting.technique).name,
+                         accuracy::TransportNameOf(setting.technique),
+                         accuracy::CountOf(setting.technique), setting.image_scale,
+                         setting.light_detail, PrecisionOf(setting), setting.million_paths,
+                         setting.jpeg_quality, row.milliseconds, row.milliseconds_spread, row.bytes,
+                         row.relative_rmse, row.relative_bias, row.flip, row.estimated_error.value,
+                         row.estimated_error.low, row.estimated_error.high);
 }
 
 absl::StatusOr<std::vector<TradeRow>> ReadCsv(std::string_view text, std::string_view head) {
@@ -162,12 +176,13 @@ std::string TradeJson(const TradeTitle& title, const std::vector<TradeRow>& rows
         "\"image_scale\": %g, \"light_detail\": %g, \"precision\": \"%s\", "
         "\"million_paths\": %g, \"jpeg_quality\": %d, \"milliseconds\": %.3f, "
         "\"milliseconds_spread\": %.3f, \"bytes\": %d, \"relative_rmse\": %.5f, "
-        "\"relative_bias\": %.5f, \"flip\": %.5f, \"pareto\": %s}",
+        "\"relative_bias\": %.5f, \"flip\": %.5f, %s\"pareto\": %s}",
         scene::NameOf(setting.technique), accuracy::ModeOf(setting.technique).name,
         accuracy::TransportNameOf(setting.technique), accuracy::CountOf(setting.technique),
         setting.image_scale, setting.light_detail, PrecisionOf(setting), setting.million_paths,
         setting.jpeg_quality, row.milliseconds, row.milliseconds_spread, row.bytes,
-        row.relative_rmse, row.relative_bias, row.flip, row.pareto ? "true" : "false");
+        row.relative_rmse, row.relative_bias, row.flip, EstimateJson(row),
+        row.pareto ? "true" : "false");
   }));
   return absl::StrCat(text, "\n  ]\n}\n");
 }

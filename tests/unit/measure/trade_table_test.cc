@@ -28,6 +28,7 @@ TEST(TradeTable, RowsComeBackFromTheirText) {
   row.bytes = 12345;
   row.relative_bias = -0.125;
   row.flip = 0.0625;
+  row.estimated_error = {0.26, 0.24, 0.28};
   const std::string head = CsvHead(kTitle);
   const auto rows = ReadCsv(head + CsvLine(row), head);
   ASSERT_TRUE(rows.ok()) << rows.status();
@@ -37,6 +38,7 @@ TEST(TradeTable, RowsComeBackFromTheirText) {
   EXPECT_EQ(rows->front().milliseconds, row.milliseconds);
   EXPECT_EQ(rows->front().relative_bias, row.relative_bias);
   EXPECT_EQ(rows->front().flip, row.flip);
+  EXPECT_EQ(rows->front().estimated_error, row.estimated_error);
 }
 
 TEST(TradeTable, AnInterruptedLineIsMeasuredAgain) {
