@@ -1,6 +1,7 @@
 // The page's entry: builds it, puts it into the document, and takes it down again on a hot reload.
 import { render } from "preact";
 import { AccessToken } from "./core/access_token";
+import { Participant } from "./core/participant";
 import { createSameOriginTransport, sameOriginInteract } from "./transport/grpc_web";
 import { App } from "./view/app";
 import { Page } from "./view/page";
@@ -9,11 +10,13 @@ const root = document.getElementById("page");
 if (root === null) throw new Error("index.html has no element #page");
 
 const token = new AccessToken(sessionStorageOf(window));
+const participant = new Participant(sessionStorageOf(window));
 const page = new Page(
   createSameOriginTransport(document.baseURI, () => token.value),
   sameOriginInteract(document.baseURI, () => token.value),
   window,
   token,
+  participant,
 );
 render(<App page={page} />, root);
 

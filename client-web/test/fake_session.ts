@@ -98,6 +98,7 @@ export class FakeSession {
   ): FakePerson | undefined {
     if (request.message.case !== "join") return undefined;
     const { sessionKey, name, window } = request.message.value;
+    const brought = request.message.value.participantKey;
     this.#lastViewerId += 1n;
     const person: FakePerson = {
       viewerId: this.#lastViewerId,
@@ -119,7 +120,11 @@ export class FakeSession {
       this.#steering = person.viewerId;
     }
     const { viewerId, role } = person;
-    this.#tell(person, { case: "joined", value: { viewerId, role, viewerKey: this.viewerKey } });
+    const participantKey = brought === "" ? `participant-${this.presenterKey}-${viewerId}` : brought;
+    this.#tell(person, {
+      case: "joined",
+      value: { viewerId, role, viewerKey: this.viewerKey, participantKey },
+    });
     this.#tell(person, { case: "scene", value: this.#sceneState() });
     this.#tell(person, { case: "marks", value: { marks: this.marks } });
     this.#tell(person, { case: "timesInMemory", value: this.held });

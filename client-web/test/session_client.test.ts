@@ -3,6 +3,7 @@ import { create } from "@bufbuild/protobuf";
 import { Code } from "@connectrpc/connect";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { BackOff } from "../src/core/back_off";
+import { Participant } from "../src/core/participant";
 import type { Connection } from "../src/core/state";
 import type { Frame } from "../src/gen/thunderhead/v1/frame_pb";
 import { type Joined, Role } from "../src/gen/thunderhead/v1/interact_pb";
@@ -11,7 +12,7 @@ import { type OpenedSession, SessionClient, SILENCE_MS } from "../src/transport/
 import { FakeNetwork } from "./fake_network";
 import { FakeService } from "./fake_service";
 
-function follow(network: FakeNetwork, key?: string, random = 1) {
+function follow(network: FakeNetwork, key?: string, random = 1, participant?: Participant) {
   const seen = {
     opened: [] as OpenedSession[],
     joined: [] as Joined[],
@@ -51,6 +52,7 @@ function follow(network: FakeNetwork, key?: string, random = 1) {
     },
     key,
     new BackOff(() => random),
+    participant,
   );
   return { seen, client };
 }
@@ -203,6 +205,37 @@ describe("the session client", () => {
     await pass(60_000);
     expect(network.joins).toBeGreaterThan(5);
     expect(network.joins).toBeLessThan(15);
+  });
+
+  it("comes back as the same person, also after a reload, but not to another session", async () => {
+    const { network, service } = setUp();
+    const kept = new Map<string, string>();
+    const store = {
+      getItem: (item: string) => kept.get(item) ?? null,
+      setItem: (item: string, text: string) => void kept.set(item, text),
+    };
+    const start = (key?: string) => {
+      const place = follow(network, key, 1, new Participant(store));
+      clients.push(place.client);
+      void place.client.run();
+      return place;
+    };
+    const { seen, client } = start();
+    await pass(2_500);
+    network.break();
+    await pass(2_500);
+    const key = seen.joined[0]?.participantKey;
+    expect(key).toMatch(/^participant-/);
+    expect(seen.joined.map(({ participantKey }) => participantKey)).toEqual([key, key]);
+    client.dispose();
+    const reloaded = start(seen.opened[0]?.presenterKey);
+    await pass(2_500);
+    expect(reloaded.seen.joined[0]?.participantKey).toBe(key);
+    reloaded.client.dispose();
+    const elsewhere = start();
+    await pass(2_500);
+    expect(elsewhere.seen.joined[0]?.participantKey).not.toBe(key);
+    expect(service.sessions).toHaveLength(2);
   });
 
   it("comes back to a server that restarts after the delay that it gave, and not before", async () => {

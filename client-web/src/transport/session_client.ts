@@ -3,6 +3,7 @@
 import type { MessageInitShape } from "@bufbuild/protobuf";
 import { Code, ConnectError } from "@connectrpc/connect";
 import { BackOff } from "../core/back_off";
+import { Participant } from "../core/participant";
 import type { SceneVerdict } from "../core/scene_sync";
 import type { Connection } from "../core/state";
 import type {
@@ -105,6 +106,7 @@ export class SessionClient {
   readonly #openInteract: OpenInteract;
   readonly #listener: SessionListener;
   readonly #backOff: BackOff;
+  readonly #participant: Participant;
   #sessionKey: string | undefined;
   #call: Call | undefined;
   #joined = false;
@@ -123,12 +125,14 @@ export class SessionClient {
     listener: SessionListener,
     sessionKey?: string,
     backOff = new BackOff(),
+    participant = new Participant(undefined),
   ) {
     this.#calls = calls;
     this.#openInteract = openInteract;
     this.#listener = listener;
     this.#sessionKey = sessionKey;
     this.#backOff = backOff;
+    this.#participant = participant;
   }
 
   // Runs until dispose().
@@ -262,7 +266,9 @@ export class SessionClient {
       const bidi = this.#openInteract({
         opened: () => {
           opened = true;
-          this.#sendBy(call, { case: "join", value: { sessionKey, ...this.#listener.joining() } });
+          const participantKey = this.#participant.keyFor(sessionKey);
+          const value = { sessionKey, participantKey, ...this.#listener.joining() };
+          this.#sendBy(call, { case: "join", value });
         },
         message: ({ message }) => {
           if (this.#call !== call) return;
@@ -272,6 +278,7 @@ export class SessionClient {
             clearTimeout(joinTimer);
             this.#joined = true;
             this.#reopened = false;
+            this.#participant.keep(sessionKey, message.value.participantKey);
             this.#listener.connection({ kind: "live" });
             this.#listener.joined(message.value);
           } else if (message.case === "end") {

@@ -4,11 +4,13 @@
 import type { Transport } from "@connectrpc/connect";
 import { effect, untracked } from "@preact/signals-core";
 import { AccessToken } from "../core/access_token";
+import { BackOff } from "../core/back_off";
 import type { CameraKind, Pose } from "../core/camera";
 import { Marking } from "../core/marking";
 import { NamedViews } from "../core/named_views";
 import type { Later } from "../core/newest";
 import { OwnKeys } from "../core/own_keys";
+import { Participant } from "../core/participant";
 import { Playback } from "../core/playback";
 import { RevisionLedger } from "../core/revision_ledger";
 import { withStorm, withTime } from "../core/scene";
@@ -68,6 +70,7 @@ export class Page {
     openInteract: OpenInteract,
     window: Window,
     token = new AccessToken(undefined),
+    participant = new Participant(undefined),
   ) {
     this.#window = window;
     this.#token = token;
@@ -115,7 +118,14 @@ export class Page {
       onNextPaint,
       later,
     });
-    this.#client = new SessionClient(this.calls, openInteract, this.#life, this.#life.key);
+    this.#client = new SessionClient(
+      this.calls,
+      openInteract,
+      this.#life,
+      this.#life.key,
+      new BackOff(),
+      participant,
+    );
     this.actions = new SessionActions(this.#client, this.calls, keys, state);
     this.screen = new Screen(window, state, ledger, {
       move: (motion) => this.move(motion),
