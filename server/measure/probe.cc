@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "frame/tone_map.h"
 #include "glm/geometric.hpp"
@@ -115,12 +116,15 @@ absl::StatusOr<Seen> Probe::Draw(const scene::Scene& scene, const volume::Hydrom
     THUNDERHEAD_RETURN_IF_ERROR(renderer.CarryLight(balls, medium.Content(), settings));
     THUNDERHEAD_RETURN_IF_ERROR(renderer.DrawView(settings));
     seen.eye = frame::ReadLinear(renderer.Eye());
-  } else {
+  } else if (std::holds_alternative<scene::LightVolume>(technique)) {
     renderers::LightVolumeRenderer renderer(programs_);
     THUNDERHEAD_RETURN_IF_ERROR(renderer.CarryLight(medium, settings));
     light = LightVolumeSoundness(renderer);
     THUNDERHEAD_RETURN_IF_ERROR(renderer.DrawView(medium, settings));
     seen.eye = frame::ReadLinear(renderer.Eye());
+  } else {
+    return absl::UnimplementedError(
+        absl::StrCat("no probe draws ", std::string(scene::NameOf(technique)), " without its sky"));
   }
   seen.unsound = UnsoundPicture(seen.eye);
   if (seen.unsound.empty()) seen.unsound = light.unsound;

@@ -1,7 +1,6 @@
-// A small picture of a medium, drawn by one path without sky and ground, and a check that holds for
-// every scene: all numbers are finite, no radiance is below 0, transmittance and light are from 0
-// to
-// 1. Uses the current GL context.
+// A small picture of a medium, drawn by one technique (light volume, half-angle or metaballs)
+// without sky and ground, and a check that holds for every scene: all numbers are finite, no
+// radiance is below 0, transmittance and light are from 0 to 1. Uses the current GL context.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,6 @@
 // The defaults of a scene agree everywhere: in the options of the messages' fields, in
 // scene/scene.h and in the messages that the server completes.
+#include <algorithm>
 #include <memory>
 #include <set>
 #include <string>
@@ -7,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "accuracy/presets.h"
 #include "google/protobuf/descriptor.h"
@@ -223,8 +225,8 @@ bool SetValue(Message& message, const FieldDescriptor& field, int i) {
       reflection.SetBool(&message, &field, i == 1);
       return i < 2;
     case FieldDescriptor::CPPTYPE_STRING:
-      reflection.SetString(&message, &field, "other");
-      return i < 1;
+      reflection.SetString(&message, &field, i == 0 ? "one" : "other");
+      return i < 2;
     case FieldDescriptor::CPPTYPE_ENUM:
       if (i + 1 >= field.enum_type()->value_count()) return false;
       reflection.SetEnum(&message, &field, field.enum_type()->value(i + 1));
@@ -237,18 +239,20 @@ bool SetValue(Message& message, const FieldDescriptor& field, int i) {
   return i < 2;
 }
 
-// True if some value of the field makes another scene. `message` is part of `scene`.
+// True if each value of the field makes another scene. `message` is part of `scene`.
 bool Matters(const v1::Scene& scene, Message& message, const FieldDescriptor& field) {
-  const scene::Scene before = ToScene(scene);
   const std::unique_ptr<Message> kept(message.New());
   kept->CopyFrom(message);
-  bool matters = false;
-  for (int i = 0; !matters && SetValue(message, field, i); ++i) {
-    matters = !(ToScene(scene) == before);
+  std::vector<scene::Scene> made;
+  bool different = true;
+  for (int i = 0; SetValue(message, field, i); ++i) {
+    const scene::Scene scene_made = ToScene(scene);
+    different = different && std::find(made.begin(), made.end(), scene_made) == made.end();
+    made.push_back(scene_made);
     message.CopyFrom(*kept);
   }
   message.CopyFrom(*kept);
-  return matters;
+  return different && made.size() > 1;
 }
 
 // Checks the fields of `message`, which is part of `scene`, and adds their names to `checked`.
@@ -317,6 +321,17 @@ TEST(SceneDefaults, OfTechniquesAreTheirOptionsAndTheValuesOwn) {
     v1::Rendering rendering;
     ToMessage(own, rendering);
     EXPECT_TRUE(ToTechnique(rendering) == own);
+  }
+}
+
+// The message's enumerators have the order and the names of the value's kinds.
+TEST(SceneDefaults, HydrometeorsAreNamedAlike) {
+  EXPECT_EQ(v1::Hydrometeor_descriptor()->value_count(),
+            static_cast<int>(physics::kHydrometeorCount) + 1);
+  for (const physics::Hydrometeor hydrometeor : physics::kHydrometeors) {
+    EXPECT_EQ(v1::Hydrometeor_Name(ToMessage(hydrometeor)),
+              absl::StrCat("HYDROMETEOR_",
+                           absl::AsciiStrToUpper(std::string(physics::NameOf(hydrometeor)))));
   }
 }
 
