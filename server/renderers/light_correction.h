@@ -1,5 +1,5 @@
 // Factors for the storm's radiance in a light volume's picture, by place and direction, fitted to
-// the reference (correction/correction_fit.h): a plain value. Each ray looks its factor up once, at
+// the reference (accuracy/correction_fit.h): a plain value. Each ray looks its factor up once, at
 // the mean place of what it sees. Knows no GL.
 #pragma once
 
