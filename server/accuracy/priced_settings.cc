@@ -27,8 +27,7 @@ constexpr std::array<absl::string_view, 8> kNeeded = {
 constexpr std::array<absl::string_view, 4> kPassedOver = {"milliseconds_spread", "bytes",
                                                           "relative_bias", "flip"};
 
-// What scenes cannot ask for: rows that differ from these values are not
-// offered.
+// Columns that scenes cannot choose: only rows with these values are offered.
 struct Fixed {
   absl::string_view column;
   absl::string_view value;

@@ -13,7 +13,7 @@
 
 namespace thunderhead::measure {
 
-// What a picture shows of a storm's strongest core (volume::StrongestCore), whose height is H. A
+// A storm's strongest core (volume::StrongestCore), of height H, as a picture shows it. A
 // pixel counts where the storm covers it (an opacity of 0.95) and the place that it shows
 // (scene::PlaceSeen, without detail) is
 //

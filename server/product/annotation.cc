@@ -149,7 +149,7 @@ class Pen {
     pango_font_description_set_absolute_size(font.get(), 0.8 * line_px_ * PANGO_SCALE);
     pango_layout_set_font_description(layout.get(), font.get());
     pango_layout_set_single_paragraph_mode(layout.get(), TRUE);
-    // What is not UTF-8, as in a file's attribute, becomes signs of replacement.
+    // Invalid UTF-8, as in a file's attribute, becomes U+FFFD.
     gchar* const valid = g_utf8_make_valid(text.data(), static_cast<gssize>(text.size()));
     pango_layout_set_text(layout.get(), valid, -1);
     g_free(valid);

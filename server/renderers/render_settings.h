@@ -50,7 +50,7 @@ struct DrawQuality {
   std::shared_ptr<const LightCorrection> correction{};
   // Of the light volume: LinearFrame::places in place of a picture.
   bool places = false;
-  // The sun's disc and its aureole, for whoever looks towards it.
+  // Draws the sun's disc and its aureole where they are in view.
   bool sun_seen = true;
 
   bool operator==(const DrawQuality&) const = default;

@@ -28,7 +28,7 @@ std::size_t Product(std::size_t a, std::size_t b) {
   return a != 0 && b > kMax / a ? kMax : a * b;
 }
 
-// What reading a time takes, from the storm's description alone.
+// Memory that reading a time takes, estimated from the storm's description alone.
 struct ReadMemory {
   std::size_t fields = 0;
   std::size_t scratch = 0;  // until it is read

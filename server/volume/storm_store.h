@@ -78,10 +78,10 @@ struct LiveCatalogueOptions {
 struct StormStoreOptions {
   // Of cached times; the newest one, and those that somebody holds, are kept even if they are more.
   std::size_t byte_budget = std::size_t{2} << 30;
-  // What times in memory count in, cached or not; null: they do not.
+  // The budget that times in memory count in, cached or not; null: none.
   std::shared_ptr<base::MemoryBudget> memory;
   int read_ahead = 1;  // times read ahead after each Get
-  // A storage that has not let a read go on for so long is taken to hang.
+  // A storage on which a read makes no progress for this long counts as hanging.
   std::chrono::milliseconds read_deadline{60'000};
   StormFormats formats = StormFormats::BuiltIn();
   // Absent: the storms are those of the start. With it, a folder without storms is no error.

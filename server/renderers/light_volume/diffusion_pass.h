@@ -1,7 +1,7 @@
 // The diffusion equation of a resident medium: takes its cells and the light that has arrived there
 // from the device, solves (diffuse_light.h), and puts the result back as textures for the march.
-// What depends on the cells alone is kept for all suns. Owns GL objects: use it on the context's
-// thread.
+// Results that depend on the cells alone are kept for all suns. Owns GL objects: use it on the
+// context's thread.
 #pragma once
 
 #include <cstdint>
@@ -51,7 +51,7 @@ class DiffusionPass {
 
   absl::StatusOr<DiffusionCells> SampleCells(const ResidentMedium& medium,
                                              const GroupWeights& weights);
-  // What follows from the cells alone.
+  // Solves for all that follows from the cells alone.
   void SolveCells(DiffusionCells cells);
   absl::Status SampleLight(const gl::Texture3D& arrived);
 

@@ -11,7 +11,7 @@ using ::testing::HasSubstr;
 
 constexpr int kWidth = 322;
 constexpr int kHeight = 178;
-// What a viewer hardly tells from the picture itself.
+// PSNR at which a viewer hardly sees a difference.
 constexpr double kGood_dB = 34.0;
 
 class Vp9Test : public ::testing::Test {
