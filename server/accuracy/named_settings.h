@@ -66,7 +66,7 @@ constexpr auto MeasuredOf(std::type_identity<std::variant<Settings...>> /*techni
 inline constexpr auto kPlainTechniques =
     internal::MeasuredOf(std::type_identity<scene::Technique>{});
 
-// Those that draw the fields cell by cell, so that their pictures have exact answers.
+// The techniques that draw the fields cell by cell, so that their pictures have exact answers.
 inline constexpr std::array<PlainTechnique, 2> kCellTechniques = {Plain<scene::HalfAngle>(),
                                                                   Plain<scene::LightVolume>()};
 

@@ -17,7 +17,7 @@
 
 namespace thunderhead::gl {
 
-// Of one kind of work: what an item (a pixel, a row, a cell) is believed to cost before any was
+// The guessed cost of an item (a pixel, a row, a cell) of one kind of work, until one has been
 // measured. Costs are learnt by name.
 struct PieceCost {
   std::string_view name;

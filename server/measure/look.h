@@ -25,7 +25,7 @@ namespace thunderhead::measure {
 // photograph, but the shaded side and the shadow of an anvil are not.
 enum class Region : std::uint8_t { kNeither, kTower, kBase };
 
-// Of each pixel, rows from top to bottom. `opacity` is that of the storm.
+// The region of each pixel, rows from top to bottom. `opacity` is that of the storm.
 std::vector<Region> RegionsOf(const scene::Scene& scene, const volume::HydrometeorFields& fields,
                               const std::vector<float>& opacity);
 
@@ -41,7 +41,7 @@ struct LookFigures {
 };
 
 LookFigures FiguresOf(const std::vector<Region>& regions, const picture::LinearPicture& picture);
-// Of the light that a screen shows. Black counts as half of the darkest grey.
+// Figures of the light that a screen shows. Black counts as half of the darkest grey.
 LookFigures FiguresOf(const std::vector<Region>& regions, const DisplayImage& display);
 
 }  // namespace thunderhead::measure

@@ -18,7 +18,7 @@
 namespace thunderhead::measure {
 namespace {
 
-// Of the round box, whose extinction falls to 0.25 % at its faces.
+// Exponent of the round box, whose extinction falls to 0.25 % at its faces.
 constexpr double kSteepness = 24.0;
 
 renderers::RenderSettings SettingsOf(const scene::Scene& scene,
@@ -86,7 +86,7 @@ std::shared_ptr<volume::HydrometeorFields> FieldsOf(const Box& box) {
 }
 
 std::shared_ptr<const volume::HydrometeorFields> SmoothCloud(double optical_depth) {
-  // Of a Gaussian over a side, whose ends are practically infinitely far.
+  // Mean of the Gaussian over a side, whose ends are practically infinitely far.
   const double mean = std::sqrt(std::numbers::pi / kSteepness);
   return FieldsOf({.cells = glm::ivec3(32),
                    .size_m = glm::dvec3(4000.0),

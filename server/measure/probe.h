@@ -40,7 +40,7 @@ struct Look {
       5.0;  // of the camera from the middle, in units of the box's longest side
   double field_of_view_deg = 2.0;
   int side_px = 9;  // odd: a pixel lies in the middle
-  // Of the light volume's buffers; those of other paths always are.
+  // Makes the light volume's buffers float; those of other techniques always are.
   bool single_precision = false;
 };
 

@@ -22,7 +22,7 @@ constexpr int kLimit = 2048;  // slices, in place of infinitely many
 // Relative rounding of half floats.
 constexpr double kFrameRounding = 0x1p-12;
 
-// In place of zero on a logarithmic axis.
+// Value drawn in place of zero on a logarithmic axis.
 constexpr double kLeastError = 1e-9;
 
 absl::StatusOr<picture::LinearPicture> DrawWith(

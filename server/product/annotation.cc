@@ -23,7 +23,7 @@ constexpr double kMinText_px = 10.0;
 constexpr double kMargin = 0.6;
 constexpr double kEdge = 0.16;
 constexpr double kSwatch = 0.7;
-// Of the picture's height and width.
+// Maximum size of the logo, as shares of the picture's height and width.
 constexpr double kLogoHeight = 1.0 / 6.0;
 constexpr double kLogoWidth = 1.0 / 4.0;
 
@@ -175,7 +175,7 @@ class Pen {
 bool HasFonts() {
   PangoFontFamily** families = nullptr;
   int count = 0;
-  // Of this thread.
+  // The default font map belongs to this thread.
   pango_font_map_list_families(pango_cairo_font_map_get_default(), &families, &count);
   g_free(families);
   return count > 0;

@@ -15,7 +15,7 @@ namespace thunderhead::renderers {
 struct LightCorrection {
   // Texels over the medium's box, x fastest.
   glm::ivec3 size{0};
-  // Of red, green and blue: the factor for a ray of direction d is dot(texel, (1, d)).
+  // For red, green and blue: the factor for a ray of direction d is dot(texel, (1, d)).
   std::array<std::vector<glm::vec4>, 3> texels;
 
   // Factors for skylight on level ground, which the storm hides in part and to which it adds its

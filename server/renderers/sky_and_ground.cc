@@ -22,7 +22,7 @@ constexpr std::size_t kMaxTables = 32;
 
 constexpr gl::PieceCost kPixel{"composite", 500.0};
 
-// Of post/composite.frag.
+// Variant of post/composite.frag.
 struct CompositeVariant {
   GroundVariant ground;
   GroundCoverVariant ground_cover;
@@ -173,7 +173,7 @@ Illumination SkyAndGround::IlluminationOf(const scene::Scene& scene) const {
         irradiance * atmosphere_->SunTransmittance({height_m, static_cast<float>(towards_sun_.z)}));
   }
   light.from_sky = sky_light_.mean_radiance * irradiance * static_cast<float>(scene.sky.brightness);
-  // Of unshadowed ground: most of the ground around the storm lies outside its shadow.
+  // Light of unshadowed ground: most of the ground around the storm lies outside its shadow.
   const float sine = std::max(static_cast<float>(towards_sun_.z), 0.0F);
   const glm::vec3 diffuse =
       sky_light_.irradiance * irradiance * static_cast<float>(scene.sky.brightness);

@@ -183,7 +183,7 @@ void CachedStormStore::ReadAhead() {
 void CachedStormStore::Read(Lock& lock, PendingRead& read, Activity& activity) {
   const TimeKey key = read.place.key;
   const bool is_asked = read.purpose == Purpose::kAsked;
-  // Whoever asked may have given up meanwhile.
+  // The caller may have given up meanwhile.
   Fields fields = absl::CancelledError("nobody waits for it any more");
   if (!is_asked || read.waiters > 0) {
     const StormFile& file =

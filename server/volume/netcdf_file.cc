@@ -25,7 +25,7 @@ constexpr int kNoHandle = -1;
 // is that large.
 constexpr double kLargestValue = 1e30;
 
-// Of an attribute; longer ones are no text that a reader asks for.
+// Maximum length of an attribute; readers ask for no longer ones.
 constexpr std::size_t kLongestText = 1 << 20;
 
 absl::Status OpenError(const std::string& path, int code) {

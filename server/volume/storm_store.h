@@ -45,7 +45,7 @@ struct StormInfo {
   std::optional<double> latitude_deg;        // of the middle; nothing for an idealised run
   std::optional<double> longitude_deg;
   std::optional<std::string> run_start;  // as valid times; nothing if the files do not tell
-  // Of the grid, whose middle is there, as PROJ writes it; empty if it has none.
+  // Projection of the grid, whose middle is there, as PROJ writes it; empty if it has none.
   std::string projection;
 };
 
@@ -76,7 +76,7 @@ struct LiveCatalogueOptions {
 };
 
 struct StormStoreOptions {
-  // Of cached times; the newest one, and those that somebody holds, are kept even if they are more.
+  // Bytes of cached times; the newest one and those in use are kept even if they are more.
   std::size_t byte_budget = std::size_t{2} << 30;
   // The budget that times in memory count in, cached or not; null: none.
   std::shared_ptr<base::MemoryBudget> memory;

@@ -52,7 +52,7 @@ class DiffuseLight {
     float slack[6];
   };
 
-  // Of the sun that is being solved for, by number.
+  // Sunlight in a cell, by number, of the sun that is being solved for.
   struct SunAt {
     float depth = 0.0F;      // optical, of sunlight that arrives
     float passed = 1.0F;     // its transmittance

@@ -65,7 +65,7 @@ class DiffusionPass {
   // Square root of the optical depth to the nearest exit; sky seen (DiffuseLight::SkySeen), and the
   // x of its net flux.
   gl::Texture3D ways_out_;
-  // Of sunlight; the fluence from other walls; the y of the sky's.
+  // Channels: net flux of sunlight; fluence from other walls; the y of the sky's.
   gl::Texture3D net_inward_;
   std::vector<float> arrived_root_;
   std::vector<glm::vec4> net_inward_texels_;
