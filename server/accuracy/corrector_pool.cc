@@ -9,8 +9,8 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// A correction, which takes as long to find as some steps, is found again when there are so many
-// times the paths, or it is so old.
+// A correction is fitted again when the number of paths has grown by this factor, or after this
+// time: a fit takes as long as several steps of tracing.
 constexpr double kPublishedGrowth = 1.2;
 constexpr double kMaxUnpublished_ms = 2000.0;
 

@@ -1,5 +1,5 @@
 // Light correctors for several scenes in view at once; each keeps its traced light, and publishes
-// corrections for whoever draws. Owns GL objects: use it on the context's thread.
+// corrections for threads that draw. Owns GL objects: use it on the context's thread.
 #pragma once
 
 #include <cstddef>

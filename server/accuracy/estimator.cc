@@ -10,7 +10,7 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// The setting of a frame of that quality, its light corrected by so many paths.
+// The setting of a frame of that quality, its light corrected by `traced_paths`.
 Setting DrawnWith(Setting setting, const FrameQuality& quality, std::int64_t traced_paths) {
   if (const auto slices = scene::SlicesOf(setting.technique); slices.has_value()) {
     const int drawn = static_cast<int>(std::ceil(*slices * quality.slice_share));

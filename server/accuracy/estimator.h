@@ -32,8 +32,8 @@ class Estimator {
   Estimator(const OfferTables& tables, const MachineCosts& costs)
       : tables_(tables), costs_(costs) {}
 
-  // Of a frame of `scene` (decided) with that quality; none where the tables do not know its
-  // technique, mode and transport.
+  // The report of a frame of `scene` (decided) with that quality; none where the tables do not know
+  // its technique, mode and transport.
   std::optional<AccuracyReport> Report(const scene::Scene& scene, const FrameQuality& quality,
                                        const Evidence& evidence) const;
 

@@ -71,7 +71,7 @@ scene::Scene ProbedScene(const scene::Scene& asked, const volume::HydrometeorFie
   return scene;
 }
 
-// Of which the storm's box is: fields that differ are taken as the model has them.
+// The sizes that the storm's box is of: fields that differ are taken as the model has them.
 physics::SizeSource SizesOf(const scene::Scene& scene) {
   const bool papers = std::ranges::all_of(scene.fields, [](const scene::FieldParameters& field) {
     return field.sizes == physics::SizeSource::kPapers;

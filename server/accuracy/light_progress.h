@@ -8,7 +8,7 @@
 namespace thunderhead::accuracy {
 
 // With fewer paths a correction is mostly noise: by the first picture's paths alone the error grew
-// by 21 to 48 % on two storms of three; with so many it was 14 to 47 % less on all
+// by 21 to 48 % on two storms of three; with this many it was 14 to 47 % less on all
 // (docs/decisions/0012).
 inline constexpr std::int64_t kMinCorrectingPaths = 25'000;
 

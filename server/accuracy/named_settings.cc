@@ -6,10 +6,9 @@
 
 namespace thunderhead::accuracy {
 
-std::optional<Path> PathNamed(std::string_view name) {
-  const auto* const found = std::find_if(kPaths.begin(), kPaths.end(),
-                                         [&](const Path& path) { return path.name == name; });
-  if (found == kPaths.end()) return std::nullopt;
+std::optional<PlainTechnique> PlainTechniqueNamed(std::string_view name) {
+  const auto* const found = std::ranges::find(kPlainTechniques, name, &PlainTechnique::name);
+  if (found == kPlainTechniques.end()) return std::nullopt;
   return *found;
 }
 
@@ -26,12 +25,18 @@ scene::Technique InMode(scene::Technique technique, const Mode& mode, scene::Tra
   return technique;
 }
 
+bool ShowsTransport(const scene::Technique& technique, scene::Transport transport) {
+  const auto& shown = scene::CapabilitiesOf(technique).transports;
+  return scene::MediumSettingsOf(technique) == nullptr ||
+         std::find(shown.begin(), shown.end(), transport) != shown.end();
+}
+
 const Mode& ModeOf(const scene::Technique& technique) {
   const scene::MediumSettings* medium = scene::MediumSettingsOf(technique);
-  if (medium == nullptr) return kModes[2];
-  if (!scene::IsTranslucent(medium->transport)) return kModes[0];
-  if (!medium->look.per_field_phase) return kModes[1];
-  return medium->look.detail ? kModes[3] : kModes[2];
+  if (medium == nullptr) return kPerFieldPhaseTranslucentMode;
+  if (!scene::IsTranslucent(medium->transport)) return kUniformPhaseLowAlbedoMode;
+  if (!medium->look.per_field_phase) return kUniformPhaseTranslucentMode;
+  return medium->look.detail ? kPerFieldPhaseDetailTranslucentMode : kPerFieldPhaseTranslucentMode;
 }
 
 std::string_view TransportNameOf(const scene::Technique& technique) {
@@ -50,16 +55,16 @@ std::string_view TransportNameOf(const scene::Technique& technique) {
   THUNDERHEAD_CHECK(false, "no such transport");
 }
 
-std::optional<scene::Technique> TechniqueNamed(std::string_view path, std::string_view mode,
+std::optional<scene::Technique> TechniqueNamed(std::string_view name, std::string_view mode,
                                                std::string_view transport) {
-  const auto named = [](std::string_view name) {
-    return [name](const auto& entry) { return entry.name == name; };
-  };
-  const std::optional<Path> known = PathNamed(path);
-  const auto* const in_mode = std::find_if(kModes.begin(), kModes.end(), named(mode));
-  const auto* const by = std::find_if(kTransports.begin(), kTransports.end(), named(transport));
-  if (!known.has_value() || in_mode == kModes.end() || by == kTransports.end()) return std::nullopt;
-  return InMode(known->plain(), *in_mode, by->value);
+  const std::optional<PlainTechnique> known = PlainTechniqueNamed(name);
+  const auto* const in_mode = std::ranges::find(kModes, mode, &Mode::name);
+  const auto* const by =
+      std::ranges::find(kTransportNames, transport, &Named<scene::Transport>::name);
+  if (!known.has_value() || in_mode == kModes.end() || by == kTransportNames.end()) {
+    return std::nullopt;
+  }
+  return InMode(known->settings(), *in_mode, by->value);
 }
 
 int CountOf(const scene::Technique& technique) {

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string_view>
+#include <type_traits>
+#include <variant>
 
 #include "scene/scene.h"
 
@@ -17,30 +20,58 @@ struct Named {
 
 // A technique in its plainest settings: consistent transport where it has a choice, neither detail
 // nor traced light. Techniques are measured from there.
-struct Path {
+struct PlainTechnique {
   std::string_view name;
-  scene::Technique (*plain)();
+  scene::Technique (*settings)();
 
-  bool operator==(const Path& other) const { return name == other.name; }
+  bool operator==(const PlainTechnique& other) const { return name == other.name; }
 };
 
-// Without the reference, which the others are measured against.
-inline constexpr std::array<Path, 4> kPaths = {{
-    {scene::HalfAngle::kName, [] { return scene::Technique(scene::HalfAngle{}); }},
-    {scene::LightVolume::kName,
-     [] {
-       return scene::Technique(
-           scene::LightVolume{.medium = {}, .traced_light = scene::TracedLight::kOff});
-     }},
-    {scene::Metaballs::kName, [] { return scene::Technique(scene::Metaballs{}); }},
-    {scene::Cumulus::kName, [] { return scene::Technique(scene::Cumulus{}); }},
-}};
+template <typename Settings>
+constexpr PlainTechnique Plain() {
+  return {Settings::kName, [] {
+            Settings settings;
+            if constexpr (requires { settings.medium; }) settings.medium = {};
+            if constexpr (requires { settings.traced_light; }) {
+              settings.traced_light = scene::TracedLight::kOff;
+            }
+            return scene::Technique(settings);
+          }};
+}
 
-// Those that draw the fields cell by cell, so that their pictures have exact answers.
-inline constexpr std::array<Path, 2> kFieldPaths = {{kPaths[0], kPaths[1]}};
+namespace internal {
 
-// The path of that name; none for others.
-std::optional<Path> PathNamed(std::string_view name);
+// True for techniques with settings of their own, but not for the reference, which the others are
+// measured against.
+template <typename Settings>
+constexpr bool IsMeasured() {
+  if constexpr (requires { Settings::kName; }) return Settings::kCapabilities.images;
+  return false;
+}
+
+template <typename... Settings>
+constexpr auto MeasuredOf(std::type_identity<std::variant<Settings...>> /*techniques*/) {
+  std::array<PlainTechnique, (std::size_t{IsMeasured<Settings>()} + ...)> measured{};
+  std::size_t count = 0;
+  const auto add = [&]<typename One>(std::type_identity<One>) {
+    if constexpr (IsMeasured<One>()) measured[count++] = Plain<One>();
+  };
+  (add(std::type_identity<Settings>{}), ...);
+  return measured;
+}
+
+}  // namespace internal
+
+// The techniques that tables have rows of, in the order of scene::Technique.
+inline constexpr auto kPlainTechniques =
+    internal::MeasuredOf(std::type_identity<scene::Technique>{});
+
+// The techniques that draw the fields cell by cell, so that their pictures have exact answers.
+inline constexpr std::array<PlainTechnique, 2> kCellTechniques = {Plain<scene::HalfAngle>(),
+                                                                  Plain<scene::LightVolume>()};
+
+// The technique of that name; none for others.
+std::optional<PlainTechnique> PlainTechniqueNamed(std::string_view name);
 
 // A mode of the papers' frame-rate table.
 struct Mode {
@@ -50,15 +81,22 @@ struct Mode {
   bool translucent = true;
 };
 
-// In the order of Riley et al. 2003 (AMS), Table IV.
-inline constexpr std::array<Mode, 4> kModes = {{
-    {"uniform_phase_low_albedo", false, false, false},
-    {"uniform_phase_translucent", false, false, true},
-    {"per_field_phase_translucent", true, false, true},
-    {"per_field_phase_detail_translucent", true, true, true},
-}};
+inline constexpr Mode kUniformPhaseLowAlbedoMode = {"uniform_phase_low_albedo", false, false,
+                                                    false};
+inline constexpr Mode kUniformPhaseTranslucentMode = {"uniform_phase_translucent", false, false,
+                                                      true};
+inline constexpr Mode kPerFieldPhaseTranslucentMode = {"per_field_phase_translucent", true, false,
+                                                       true};
+inline constexpr Mode kPerFieldPhaseDetailTranslucentMode = {"per_field_phase_detail_translucent",
+                                                             true, true, true};
 
-inline constexpr std::array<Named<scene::Transport>, 3> kTransports = {{
+// In the order of Riley et al. 2003 (AMS), Table IV.
+inline constexpr std::array<Mode, 4> kModes = {
+    {kUniformPhaseLowAlbedoMode, kUniformPhaseTranslucentMode, kPerFieldPhaseTranslucentMode,
+     kPerFieldPhaseDetailTranslucentMode}};
+
+// The transports of translucent modes, as tables name them.
+inline constexpr std::array<Named<scene::Transport>, 3> kTransportNames = {{
     {scene::Transport::kPaper, "paper"},
     {scene::Transport::kConsistent, "consistent"},
     {scene::Transport::kDiffusion, "diffusion"},
@@ -68,13 +106,16 @@ inline constexpr std::array<Named<scene::Transport>, 3> kTransports = {{
 // medium stays as it is.
 scene::Technique InMode(scene::Technique technique, const Mode& mode, scene::Transport transport);
 
+// True if the technique shows that transport, or draws no medium.
+bool ShowsTransport(const scene::Technique& technique, scene::Transport transport);
+
 // The mode that a technique's settings amount to, and its transport without regard to whether it is
-// translucent; those of kModes[2] and "consistent" for a technique without a medium.
+// translucent; kPerFieldPhaseTranslucentMode and "consistent" for a technique without a medium.
 const Mode& ModeOf(const scene::Technique& technique);
 std::string_view TransportNameOf(const scene::Technique& technique);
 
 // The technique that a table's names stand for; none if one of them is not known.
-std::optional<scene::Technique> TechniqueNamed(std::string_view path, std::string_view mode,
+std::optional<scene::Technique> TechniqueNamed(std::string_view name, std::string_view mode,
                                                std::string_view transport);
 
 // The number that a technique's pictures depend on, as tables have it: slices, samples or

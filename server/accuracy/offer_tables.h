@@ -16,7 +16,7 @@ namespace thunderhead::accuracy {
 // A table for each kind of camera, in the order of scene::Camera; why there is none otherwise.
 using OfferTables = std::array<absl::StatusOr<PricedSettings>, std::variant_size_v<scene::Camera>>;
 
-// Those that the program is built with.
+// The tables that the program is built with.
 OfferTables BuiltInOfferTables();
 
 // The table of the scene's kind of camera.

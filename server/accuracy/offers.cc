@@ -130,7 +130,7 @@ absl::StatusOr<scene::Scene> Offers::Decide(const scene::Scene& scene,
   decided.rendering.technique = WithTasteOf(scene.rendering.technique, setting.technique);
   decided.rendering.image_scale = setting.image_scale;
   if (auto* light_volume = std::get_if<scene::LightVolume>(&decided.rendering.technique)) {
-    // Who asks for an error that only tracing reaches waits for it.
+    // A request for an error that only tracing reaches waits for it.
     light_volume->traced_light =
         setting.million_paths > 0.0 ? scene::TracedLight::kAwaited : scene::TracedLight::kOff;
   }

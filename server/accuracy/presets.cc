@@ -1,6 +1,7 @@
 #include "accuracy/presets.h"
 
-#include "accuracy/named_settings.h"
+#include <algorithm>
+
 #include "base/status.h"
 
 namespace thunderhead::accuracy {
@@ -9,45 +10,32 @@ namespace {
 // docs/performance.md has what each costs and misses.
 constexpr int kFastSlices = 64;
 
-scene::Technique InPapersMode(const Mode& mode) {
-  return InMode(PathNamed(scene::LightVolume::kName)->plain(), mode, scene::Transport::kConsistent);
+const NamedPreset& RowOf(Preset preset) {
+  const auto* const row = std::ranges::find(kPresets, preset, &NamedPreset::preset);
+  THUNDERHEAD_CHECK(row != kPresets.end(), "no such preset");
+  return *row;
 }
 
 }  // namespace
 
 scene::Technique TechniqueOf(Preset preset) {
+  if (const Mode* mode = RowOf(preset).of_the_papers) {
+    return InMode(Plain<scene::LightVolume>().settings(), *mode, scene::Transport::kConsistent);
+  }
   scene::LightVolume light_volume;
-  switch (preset) {
-    case Preset::kFast:
-      light_volume.medium.look.detail = false;
-      light_volume.slices = kFastSlices;
-      light_volume.traced_light = scene::TracedLight::kOff;
-      return light_volume;
-    case Preset::kBalanced:
-      return light_volume;
-    case Preset::kTrue:
-      light_volume.traced_light = scene::TracedLight::kAwaited;
-      return light_volume;
-    case Preset::kUniformPhaseLowAlbedo:
-      return InPapersMode(kModes[0]);
-    case Preset::kUniformPhaseTranslucent:
-      return InPapersMode(kModes[1]);
-    case Preset::kPerFieldPhaseTranslucent:
-      return InPapersMode(kModes[2]);
-    case Preset::kPerFieldPhaseDetailTranslucent:
-      return InPapersMode(kModes[3]);
+  if (preset == Preset::kFast) {
+    light_volume.medium.look.detail = false;
+    light_volume.slices = kFastSlices;
+    light_volume.traced_light = scene::TracedLight::kOff;
+  } else if (preset == Preset::kTrue) {
+    light_volume.traced_light = scene::TracedLight::kAwaited;
   }
-  THUNDERHEAD_CHECK(false, "no such preset");
+  return light_volume;
 }
 
-bool IsOfThePapers(Preset preset) { return preset >= Preset::kUniformPhaseLowAlbedo; }
+bool IsOfThePapers(Preset preset) { return RowOf(preset).of_the_papers != nullptr; }
 
-std::string_view NameOf(Preset preset) {
-  for (const NamedPreset& named : kPresets) {
-    if (named.preset == preset) return named.name;
-  }
-  THUNDERHEAD_CHECK(false, "no such preset");
-}
+std::string_view NameOf(Preset preset) { return RowOf(preset).name; }
 
 std::optional<Preset> PresetNamed(std::string_view name) {
   for (const NamedPreset& named : kPresets) {

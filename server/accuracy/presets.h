@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "accuracy/named_settings.h"
 #include "scene/technique.h"
 
 namespace thunderhead::accuracy {
@@ -23,6 +24,7 @@ enum class Preset {
 struct NamedPreset {
   Preset preset;
   std::string_view name;
+  const Mode* of_the_papers = nullptr;  // the mode that it stands for, if it is one
 };
 
 // In the order in which to offer them.
@@ -30,10 +32,13 @@ inline constexpr std::array<NamedPreset, 7> kPresets = {{
     {Preset::kFast, "fast"},
     {Preset::kBalanced, "balanced"},
     {Preset::kTrue, "true"},
-    {Preset::kUniformPhaseLowAlbedo, "uniform_phase_low_albedo"},
-    {Preset::kUniformPhaseTranslucent, "uniform_phase_translucent"},
-    {Preset::kPerFieldPhaseTranslucent, "per_field_phase_translucent"},
-    {Preset::kPerFieldPhaseDetailTranslucent, "per_field_phase_detail_translucent"},
+    {Preset::kUniformPhaseLowAlbedo, kUniformPhaseLowAlbedoMode.name, &kUniformPhaseLowAlbedoMode},
+    {Preset::kUniformPhaseTranslucent, kUniformPhaseTranslucentMode.name,
+     &kUniformPhaseTranslucentMode},
+    {Preset::kPerFieldPhaseTranslucent, kPerFieldPhaseTranslucentMode.name,
+     &kPerFieldPhaseTranslucentMode},
+    {Preset::kPerFieldPhaseDetailTranslucent, kPerFieldPhaseDetailTranslucentMode.name,
+     &kPerFieldPhaseDetailTranslucentMode},
 }};
 
 inline constexpr Preset kDefaultPreset = Preset::kBalanced;

@@ -28,8 +28,7 @@ constexpr std::array<absl::string_view, 7> kPassedOver = {
     "milliseconds_spread", "bytes",     "relative_bias", "flip",
     "estimated_error",     "error_low", "error_high"};
 
-// What scenes cannot ask for: rows that differ from these values are not
-// offered.
+// Columns that scenes cannot choose: only rows with these values are offered.
 struct Fixed {
   absl::string_view column;
   absl::string_view value;

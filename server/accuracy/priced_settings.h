@@ -1,4 +1,4 @@
-// What settings cost and how wrong they are, as `thunderhead measure trade` found it: its tables
+// Costs and errors of settings as `thunderhead measure trade` found them: its tables
 // read back to choose from. Read by the names of their columns, and refused where one is not known,
 // for it may tell rows apart that would be taken for one. Pure functions.
 #pragma once

@@ -1,5 +1,5 @@
-// The corrections of light found by tracing so far, for whoever draws. Safe from any thread: one
-// thread traces (accuracy/corrector_pool.h), others draw.
+// The corrections of light found by tracing so far, for threads that draw. Safe from any thread:
+// one thread traces (accuracy/corrector_pool.h), others draw.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ class TracedLights {
   // None if there is no correction for the scene, or it shows none.
   std::optional<Found> Find(const scene::Scene& scene, const Fields& fields);
 
-  // A scene whose light is traced; by whoever traces.
+  // A scene whose light is traced; held by the tracing thread.
   class Entry {
    public:
     Entry(std::shared_ptr<TracedLights> lights, scene::Scene scene, Fields fields);

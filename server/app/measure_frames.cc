@@ -64,7 +64,7 @@ absl::Status MeasureFrames(const Flags& flags) {
         absl::StrCat("--slices is ", flags.slices, "; it must be from 1 to 4096"));
   }
   options.slices = flags.slices;
-  for (const auto& transport : accuracy::kTransports) {
+  for (const auto& transport : accuracy::kTransportNames) {
     if (transport.name == flags.transport) options.transport = transport.value;
   }
   if (flags.runs < 1) {

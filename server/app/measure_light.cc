@@ -179,7 +179,7 @@ absl::Status MeasureLight(const Flags& flags) {
                 interruption));
     const double noise = measure::RelativeNoise(truth);
     const Compared compared{flags, local, part, truth, noise, renderer};
-    for (const auto& transport : accuracy::kTransports) {
+    for (const auto& transport : accuracy::kTransportNames) {
       const bool once = part == LightPart::kOnce;
       if (once ? transport.value != scene::Transport::kConsistent
                : !Chosen(flags.transports, transport.name)) {

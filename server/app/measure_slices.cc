@@ -75,7 +75,9 @@ absl::Status MeasureSlices(const Flags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(Subject subject, SubjectOf(flags));
   // Procedural detail does not converge with the number of slices.
   const bool light_volume = flags.scene.technique == scene::LightVolume::kName;
-  subject.scene.rendering.technique = accuracy::kFieldPaths[light_volume ? 1 : 0].plain();
+  subject.scene.rendering.technique = light_volume
+                                          ? accuracy::Plain<scene::LightVolume>().settings()
+                                          : accuracy::Plain<scene::HalfAngle>().settings();
   subject.scene.output = {160, 160, 88};
   // Black sky and ground, so that only the light of the cloud is measured.
   subject.scene.sky = {0.0, 0.0};

@@ -14,7 +14,7 @@ class LooseThread {
  public:
   LooseThread() = default;
   LooseThread(std::string name, std::function<void()> run);
-  // Waits for its end, for a few seconds; whoever destroys it has told it to end.
+  // Waits for its end, for a few seconds; its owner must have told it to end before.
   ~LooseThread();
   LooseThread(LooseThread&&) noexcept = default;
   LooseThread& operator=(LooseThread&&) = delete;

@@ -12,10 +12,10 @@
 namespace thunderhead::base {
 namespace {
 
-// Others leave, or look at another storm, within seconds or never.
+// Retry delay: viewers leave, or look at another storm, within seconds or not at all.
 constexpr std::chrono::seconds kRetryAfter{10};
 
-// A turn of drawing, after which what is unused is given back.
+// The longest wait for memory: a turn of drawing, whose end gives back unused memory.
 constexpr std::chrono::seconds kLongestPatience{2};
 
 std::size_t IndexOf(MemoryUse use) { return static_cast<std::size_t>(use); }
@@ -90,7 +90,7 @@ std::size_t MemoryBudget::LimitOf(MemoryUse use) const {
 bool MemoryBudget::Take(MemoryUse use, std::size_t bytes) {
   const std::lock_guard lock(counting_);
   const std::size_t used = std::accumulate(used_.begin(), used_.end(), std::size_t{0});
-  // What drawing uses fills first what is kept for it.
+  // Drawing fills its own reserve first; other uses are not charged for memory within it.
   const std::size_t drawing = used_[IndexOf(MemoryUse::kDrawing)];
   const std::size_t counted =
       use == MemoryUse::kDrawing ? used : used - std::min(drawing, options_.kept_for_drawing);

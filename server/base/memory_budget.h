@@ -74,7 +74,7 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
     std::string name = "memory";  // for messages: "memory", "GPU memory"
     std::string flag = "--memory-budget";
     std::size_t bytes = std::numeric_limits<std::size_t>::max();
-    // Of them what only drawing may take, so that fields that many hold leave room to show them.
+    // The part of them that only drawing may take, so that fields leave room to show them.
     std::size_t kept_for_drawing = 0;
   };
 
@@ -119,8 +119,8 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
   std::size_t Bytes() const { return options_.bytes; }
   std::size_t Used() const;
   std::size_t Used(MemoryUse use) const;
-  // Awaited reservations for which there was no room so far: whoever sees it grow gives back what
-  // only it can (GL objects, which only their own thread may delete) and says so.
+  // Awaited reservations for which there was no room so far. A thread that sees it grow gives back
+  // what only it can (GL objects, which only their own thread may delete), and calls Answer.
   std::uint64_t Refusals() const { return refusals_; }
   void Answer(std::uint64_t refusals);
   // Called when Refusals has grown, on the thread that has no room; empty for nobody.

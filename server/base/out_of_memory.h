@@ -30,7 +30,7 @@ inline absl::Status OutOfMemory() {
                      {.reason = "OUT_OF_MEMORY", .retry_after = std::chrono::seconds(30)});
 }
 
-// What `work` returns, a status or StatusOr, or RESOURCE_EXHAUSTED if an allocation in it failed.
+// The status or StatusOr of `work`; RESOURCE_EXHAUSTED if an allocation in it failed.
 template <typename Work>
 auto OrOutOfMemory(const Work& work) -> decltype(work()) {
   try {

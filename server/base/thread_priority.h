@@ -5,8 +5,8 @@ namespace thunderhead::base {
 
 inline constexpr int kLowestPriority = 19;
 
-// Of the calling thread and of those that it starts: 0, usual, to 19, what nobody else wants.
-// Cannot be undone.
+// Sets the nice value of the calling thread and of those that it starts: 0, usual, to 19, idle
+// time. Cannot be undone.
 void LowerPriority(int niceness);
 
 }  // namespace thunderhead::base

@@ -12,7 +12,7 @@ namespace thunderhead::codec {
 namespace {
 
 constexpr int kBits = 10;
-// Of libavif's pixels: the fewest that hold all of a FineImage's.
+// Layout of libavif's pixels: the smallest that holds all of a FineImage's.
 constexpr int kPixelBits = 16;
 constexpr int kChannels = 3;
 constexpr int kMaxSide_px = 16384;

@@ -32,7 +32,7 @@ absl::Status VpxError(const char* action, vpx_codec_ctx_t* codec) {
                                           detail == nullptr ? "" : detail));
 }
 
-// Of one thread: an encoder thread serves many streams.
+// For one thread: an encoder thread serves many streams.
 vpx_codec_enc_cfg_t ConfigFor(int width_px, int height_px) {
   vpx_codec_enc_cfg_t config{};
   vpx_codec_enc_config_default(vpx_codec_vp9_cx(), &config, 0);

@@ -19,10 +19,10 @@ namespace {
 constexpr int kChannels = 3;
 // The largest side that JPEG allows.
 constexpr int kMaxSide_px = 65535;
-// Of a minimum coded unit of JPEG with 4:2:0 chroma.
+// Side of a minimum coded unit of JPEG with 4:2:0 chroma.
 constexpr int kUnitSide_px = 16;
 constexpr int kMaxRestartInterval = 65535;
-// Of a strip that is worth a thread: about half a millisecond.
+// Minimum size of a strip that is worth a thread: about half a millisecond.
 constexpr double kMinStripPixels = 3e5;
 
 struct TurboDeleter {
@@ -69,7 +69,7 @@ absl::Status TurboError(const char* action, void* handle) {
 int UnitsInRow(int width_px) { return (width_px + kUnitSide_px - 1) / kUnitSide_px; }
 
 // The first rows of the strips that a picture is encoded in, and its height. All strips but the
-// last have one height, so many rows of units that a restart interval holds them.
+// last have one height, whose rows of units fit in a restart interval.
 std::vector<int> StripRows(int width_px, int height_px) {
   const int unit_rows = (height_px + kUnitSide_px - 1) / kUnitSide_px;
   const double pixels = static_cast<double>(width_px) * height_px;

@@ -35,7 +35,7 @@ void AppendChunk(const std::string& keyword, const std::string& text, std::strin
   AppendNumber(static_cast<std::uint32_t>(crc32(0, data, static_cast<uInt>(chunk.size()))), bytes);
 }
 
-// What libpng reads from, and the message of its error.
+// The bytes that libpng reads, and the message of its error.
 struct Source {
   std::string_view rest;
   std::string error;

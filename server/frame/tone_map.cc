@@ -13,9 +13,9 @@ namespace {
 
 // Automatic exposures lie between these factors of 0 EV: nights stay dark.
 constexpr float kLeastFactor = 1.0F / 16.0F;
-constexpr float kMostFactor = 64.0F;
-// And at most this times the exposure of a white card in the sun: what is all in shadow stays dark.
-constexpr float kMostAboveCard = 2.0F;
+constexpr float kMaxFactor = 64.0F;
+// And at most this times the exposure of a white card in the sun: a storm in shadow stays dark.
+constexpr float kMaxAboveCard = 2.0F;
 
 constexpr gl::PieceCost kPixel{"tone map", 50.0};
 
@@ -50,9 +50,9 @@ absl::StatusOr<float> ToneMapper::ExposureOf(const gl::Texture2D& linear,
   float brightest = 0.0F;
   glGetTextureImage(brightest_.Get(), 0, GL_RED, GL_FLOAT, sizeof(brightest), &brightest);
   const float of_card = std::max(LuminanceOf(card.radiance), 1e-12F);
-  brightest = std::max(brightest, of_card / kMostAboveCard);
+  brightest = std::max(brightest, of_card / kMaxAboveCard);
   return std::clamp(kJustBelowWhite / brightest, kExposureAtZeroEv * kLeastFactor,
-                    kExposureAtZeroEv * kMostFactor);
+                    kExposureAtZeroEv * kMaxFactor);
 }
 
 absl::StatusOr<ToneMapped> ToneMapper::Map(const gl::Texture2D& linear, const scene::Scene& scene) {

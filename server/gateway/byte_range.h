@@ -21,8 +21,8 @@ struct ByteRange {
   std::uint64_t bytes = 0;
 };
 
-// What a Range header asks for of a file of so many bytes. One that is empty, has several parts or
-// cannot be read asks for all of it, as a server may answer.
+// The part of a file of this size that a Range header asks for. A header that is empty, has several
+// parts or cannot be read asks for all of it, as a server may answer.
 ByteRange RangeOf(std::string_view header, std::uint64_t file_bytes);
 
 // Beast's body of a part of a file, whose place it is at.

@@ -1,4 +1,4 @@
-// What gRPC-Web and WebSocket calls share: a call's HTTP header as an upstream request, and its
+// Shared by gRPC-Web and WebSocket calls: a call's HTTP header as an upstream request, and its
 // outcome as trailers. Knows no socket and no message.
 #pragma once
 

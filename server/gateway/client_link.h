@@ -21,7 +21,7 @@
 
 namespace thunderhead::gateway {
 
-// What a connection is busy with, the one that others can best do without first.
+// Uses of a connection, in the order in which connections make room for new ones.
 enum class LinkUse {
   kWaiting,    // for a request's first byte
   kReceiving,  // the rest of a request

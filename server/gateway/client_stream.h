@@ -50,8 +50,8 @@ class ByteCounts {
   uint64_t sent_ = 0;
 };
 
-// What is to be called after some bytes, of whatever type it was: all that Beast and OpenSSL do for
-// a read or write is then compiled once, not once for each of its callers.
+// The completion handler of a read or write, of whatever type it was: all that Beast and OpenSSL do
+// for one is then compiled once, not once for each of its callers.
 class BytesHandler {
  public:
   // Asio's names for where it is to be called.

@@ -46,9 +46,9 @@ struct GatewayOptions {
   // Largest request message; larger ones get RESOURCE_EXHAUSTED, or close a WebSocket with 1009.
   // Responses are limited only by the channel.
   size_t max_message_bytes = 4u << 20;
-  // At most so many connections, in all and of one address. Who comes when there are as many takes
-  // the place of the one that others can best do without: the longest that has sent no whole
-  // request, else one that takes long to read a file. Where all are calls, the newcomer is refused.
+  // Maximum numbers of connections, in all and from one address. At a maximum, a new connection
+  // takes the place of the most expendable one: the longest that has sent no whole request, else
+  // one that takes long to read a file. Where all are calls, the new connection is refused.
   size_t max_connections = 768;
   size_t max_connections_per_address = 512;
   // Closes a connection without a call on which no request begins within this time.

@@ -39,8 +39,7 @@ using Request = GrpcWebExchange::Request;
 
 constexpr uint32_t kMaxHeaderBytes = 16 << 10;
 constexpr size_t kFirstRead = 4 << 10;
-// A body may take so many times as long as a header, and so may a text or the first bytes of a
-// file.
+// Timeout of a body, of a text and of the first bytes of a file, in timeouts of a header.
 constexpr int kHeaderTimeouts = 3;
 constexpr char kPageMethods[] = "GET, HEAD";
 
@@ -358,7 +357,7 @@ net::awaitable<bool> HttpConnection::SendKept(const Request& request, const Kept
     keep = co_await SendText(request, http::status::not_found, "This file is gone.\n");
     co_return keep;
   }
-  // Of other contents than the client has a part of, all is sent.
+  // All is sent if the contents are not those that the client has a part of.
   const std::string_view only_if = View(request[http::field::if_range]);
   const ByteRange range =
       RangeOf(only_if.empty() || only_if == entity_tag ? View(request[http::field::range]) : "",

@@ -17,7 +17,7 @@ PeerLiveness::Verdict PeerLiveness::Judge(const Observation& seen, Clock::time_p
   const bool is_sending = seen.is_writing || seen.is_pinging;
   if (is_sending && now - last_sent_ >= limits_.write_stall_timeout) return Verdict::kDrop;
   if (seen.is_closing) {
-    // What was sent before the close frame may still be on its way over a slow link.
+    // Data sent before the close frame may still be on its way over a slow link.
     const Clock::time_point since = std::max(closing_since_, last_delivered_);
     return now - since >= limits_.close_timeout ? Verdict::kDrop : Verdict::kFine;
   }

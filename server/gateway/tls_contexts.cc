@@ -45,7 +45,7 @@ absl::Status TlsContexts::Load() {
 }
 
 std::shared_ptr<ssl::context> TlsContexts::Current() {
-  // Of the two files one is replaced before the other: until they fit, the old ones are used.
+  // One of the two files is replaced before the other: until they match, the old ones are used.
   if (const Stamps stamps = Look(); stamps != stamps_) {
     stamps_ = stamps;
     const absl::Status loaded = Load();

@@ -19,7 +19,7 @@ class TlsContexts {
   // cannot be read or do not belong together.
   static absl::StatusOr<TlsContexts> Open(std::string certificate, std::string key);
 
-  // Of the newest files that could be loaded.
+  // The context of the newest files that could be loaded.
   std::shared_ptr<boost::asio::ssl::context> Current();
 
  private:

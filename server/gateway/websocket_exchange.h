@@ -44,7 +44,7 @@ class WebSocketExchange : public std::enable_shared_from_this<WebSocketExchange>
   template <typename Task>
   void Spawn(Task task);
 
-  // Until the trailers are sent, or the client or the gateway ends the call early.
+  // Runs until the trailers are sent, or the client or the gateway ends the call early.
   boost::asio::awaitable<void> ForwardResponses();
   boost::asio::awaitable<bool> WriteMessage(const grpc::ByteBuffer& message);
   boost::asio::awaitable<bool> WriteTrailers();

@@ -1,4 +1,4 @@
-// What the thread's context draws with.
+// Properties of the device that the thread's context draws with.
 #pragma once
 
 namespace thunderhead::gl {

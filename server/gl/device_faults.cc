@@ -11,7 +11,7 @@ namespace {
 
 constexpr char kLostReason[] = "DEVICE_LOST";
 constexpr char kOutOfMemoryReason[] = "OUT_OF_DEVICE_MEMORY";
-// Until there is a device again, or others need less.
+// Retry delays: until there is a device again, and until other programs need less memory of it.
 constexpr std::chrono::seconds kLostFor{5};
 constexpr std::chrono::seconds kFullFor{10};
 // A lost context may report errors for ever.

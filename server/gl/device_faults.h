@@ -1,5 +1,5 @@
-// What may happen to the device while it draws: it is reset and forgets everything (a driver's
-// crash, a watchdog, another program), or has no memory left. Looked at at the end of each picture.
+// Faults of the device while it draws: a reset, after which it has forgotten everything (a driver's
+// crash, a watchdog, another program), or no memory left. Checked at the end of each picture.
 // Knows no scene.
 #pragma once
 

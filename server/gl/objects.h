@@ -146,7 +146,7 @@ class Framebuffer {
  public:
   Framebuffer() = default;
   explicit Framebuffer(const Texture2D& color);
-  // Of one size; drawn to in this order.
+  // All textures have one size; drawn to in this order.
   explicit Framebuffer(std::initializer_list<const Texture2D*> colors,
                        const Texture2D* depth = nullptr);
 

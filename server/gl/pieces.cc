@@ -10,23 +10,23 @@
 namespace thunderhead::gl {
 namespace {
 
-// A piece is to last so long, and no more than twice that where its content is denser than what was
-// measured.
+// Target duration of a piece. Where its content costs more than the measured one, it may take twice
+// as long.
 constexpr double kPiece_ms = 15.0;
-// What is left of a piece that was begun is used from so much on.
+// Minimum time left in a piece that is worth starting another pass in.
 constexpr double kLeast_ms = 4.0;
-// Before anything was measured a piece is made so much shorter than by the guess; with each that is
-// measured the next may be twice as large.
+// Safety factor on the guessed cost of an item while nothing has been measured; each measured piece
+// halves it.
 constexpr double kCaution = 2.0;
-// The next may cost so much more than the last.
+// Safety factor on the cost of an item in the last piece.
 constexpr double kAbove = 1.25;
-// The costliest item so far counts for so much, and is forgotten slowly: by half in 35 pieces.
+// Weight of the costliest item so far, whose cost is forgotten slowly: by half in 35 pieces.
 constexpr double kOfWorst = 0.5;
 constexpr double kForgetting = 0.98;
-// Tiles are whole blocks of so many pixels, which GPUs and software renderers draw together.
+// Tiles are whole blocks of this size, whose pixels GPUs and software renderers draw together.
 constexpr int kBlock_px = 8;
-// Where a picture's row is too much for a piece, tiles have so many rows: wide ones, whose parts
-// are drawn at the same time.
+// Height of tiles where a row of the picture is too much for a piece: such tiles stay wide, and
+// their parts are drawn at the same time.
 constexpr int kLeastRows = 8;
 
 }  // namespace

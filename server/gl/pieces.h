@@ -17,7 +17,7 @@
 
 namespace thunderhead::gl {
 
-// Of one kind of work: what an item (a pixel, a row, a cell) is believed to cost before any was
+// The guessed cost of an item (a pixel, a row, a cell) of one kind of work, until one has been
 // measured. Costs are learnt by name.
 struct PieceCost {
   std::string_view name;
@@ -64,14 +64,14 @@ class Pieces {
   absl::Status Tiles(const PieceCost& cost, const PixelRect& whole,
                      const std::function<void()>& draw);
 
-  // True the first time for a program: before its first piece it is to be compiled off turn.
+  // True the first time for a program, which must be compiled off turn before its first piece.
   bool IsNew(unsigned int program);
 
   // How long drawing has waited for turns in all.
   double WaitedMs() const { return waited_ms_; }
 
  private:
-  // What an item costs in units of the guess.
+  // Measured costs of an item, in units of the guess.
   struct Pace {
     double worst = 0.0;
     double last = 0.0;

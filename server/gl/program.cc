@@ -58,7 +58,7 @@ absl::StatusOr<std::string> TextOf(const std::string& path) {
   return text;
 }
 
-// What draws a pixel of a whole target, as a compute shader.
+// The text of a compute shader that draws each pixel of a whole target as `fragment` does.
 absl::StatusOr<std::string> ComputedTextOf(const std::string& fragment) {
   std::string text;
   std::set<std::string> included;

@@ -8,7 +8,6 @@
 namespace thunderhead::load {
 
 void Stills::Begin() {
-  missing_ = options_.count;
   for (int i = 0; i < options_.count; ++i) threads_.emplace_back([this, i] { Ask(i); });
 }
 
@@ -37,7 +36,6 @@ void Stills::Ask(int index) {
   } else {
     errors_.Add(absl::StrCat("a picture: ", answer.status().ToString()));
   }
-  --missing_;
 }
 
 }  // namespace thunderhead::load

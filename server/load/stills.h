@@ -1,7 +1,6 @@
 // A burst of single pictures beside a load: all are asked for at once, each by a call of its own.
 #pragma once
 
-#include <atomic>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -33,7 +32,6 @@ class Stills {
   void Begin();
   // Waits until each has come or was refused.
   void Join();
-  int Missing() const { return missing_; }
   // From asking to the picture; once joined.
   StillRecord Record() const { return {options_.count, came_ms_}; }
 
@@ -43,7 +41,6 @@ class Stills {
   const StillOptions options_;
   Transport& transport_;
   Errors& errors_;
-  std::atomic<int> missing_{0};
   std::mutex mutex_;
   std::vector<double> came_ms_;
   std::vector<std::thread> threads_;

@@ -29,9 +29,9 @@ Verdict Near(double got, double expected, double tolerance, double without) {
   return verdict;
 }
 
-Verdict TransmittanceNear(const accuracy::Path& path, const Seen& seen, double depth,
+Verdict TransmittanceNear(const accuracy::PlainTechnique& plain, const Seen& seen, double depth,
                           const DepthErrors& errors, int slices, bool single_precision) {
-  const bool light_volume = path.name == scene::LightVolume::kName;
+  const bool light_volume = plain.name == scene::LightVolume::kName;
   const double expected = std::exp(-depth);
   const double depth_error = light_volume ? errors.light_volume : errors.half_angle;
   const double rounding =
@@ -50,10 +50,10 @@ Verdict Sound(const Seen& seen, Verdict verdict) {
   return {verdict.expected, absl::StrCat(verdict.got, ", but ", seen.unsound), false};
 }
 
-scene::Scene PlainScene(const accuracy::Path& path) {
+scene::Scene PlainScene(const accuracy::PlainTechnique& plain) {
   scene::Scene scene;
   scene.rendering.technique =
-      InMode(path.plain(), accuracy::kModes[0], scene::Transport::kConsistent);
+      InMode(plain.settings(), accuracy::kUniformPhaseLowAlbedoMode, scene::Transport::kConsistent);
   for (scene::FieldParameters& field : scene.fields) {
     field.optics.phase = {physics::PhaseKind::kHenyeyGreenstein, 0.0F};
   }
@@ -65,10 +65,10 @@ scene::Scene PlainScene(const accuracy::Path& path) {
 std::vector<Extreme> Extremes() {
   std::vector<Extreme> extremes;
   internal::AppendInputExtremes(&extremes);
-  for (const auto& path : accuracy::kFieldPaths) {
-    internal::AppendDepthExtremes(path, &extremes);
-    internal::AppendShapeExtremes(path, &extremes);
-    internal::AppendViewExtremes(path, &extremes);
+  for (const auto& plain : accuracy::kCellTechniques) {
+    internal::AppendDepthExtremes(plain, &extremes);
+    internal::AppendShapeExtremes(plain, &extremes);
+    internal::AppendViewExtremes(plain, &extremes);
   }
   internal::AppendMetaballExtremes(&extremes);
   return extremes;

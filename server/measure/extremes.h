@@ -23,7 +23,7 @@ struct Extreme {
   std::function<absl::StatusOr<Verdict>(Probe& probe)> check;
 };
 
-// Cases of files and numbers, then cases of pictures by every path.
+// Cases of files and numbers, then cases of pictures by every technique.
 std::vector<Extreme> Extremes();
 
 }  // namespace thunderhead::measure

@@ -21,13 +21,13 @@ double Reflected(double depth) { return -std::expm1(-2.0 * depth) / 2.0 / (4 * s
 
 constexpr int kFewSlices = 8;
 
-Extreme DepthPerSlice(const accuracy::Path& path, double per_slice,
+Extreme DepthPerSlice(const accuracy::PlainTechnique& plain, double per_slice,
                       const accuracy::Named<scene::Transport>& transport) {
   const std::string name =
-      absl::StrFormat("%s: optical depth per slice %g, %s", path.name, per_slice, transport.name);
+      absl::StrFormat("%s: optical depth per slice %g, %s", plain.name, per_slice, transport.name);
   return {name, [=](Probe& probe) -> absl::StatusOr<Verdict> {
             scene::Scene scene;
-            scene.rendering.technique = path.plain();
+            scene.rendering.technique = plain.settings();
             scene::MediumSettingsOf(&scene.rendering.technique)->transport = transport.value;
             scene::SetSlices(&scene.rendering.technique, kFewSlices);
             const double depth = kFewSlices * per_slice;
@@ -41,9 +41,9 @@ Extreme DepthPerSlice(const accuracy::Path& path, double per_slice,
                 scene::GroupedFieldsOf(scene, *fields),
                 *scene::MediumSettingsOf(scene.rendering.technique));
             const bool similar = transport.value == scene::Transport::kDiffusion &&
-                                 path.name == scene::LightVolume::kName;
+                                 accuracy::ShowsTransport(plain.settings(), transport.value);
             const std::vector<double>& lost = similar ? weights.transport : weights.eye;
-            return TransmittanceNear(path, seen, depth * lost.front(), kUpright, kFewSlices, thin);
+            return TransmittanceNear(plain, seen, depth * lost.front(), kUpright, kFewSlices, thin);
           }};
 }
 
@@ -54,14 +54,14 @@ constexpr double kPaperBrightness = 2.0 * std::numbers::pi;
 
 // With slices so thin that light is scattered only once, radiance is proportional to the optical
 // depth. Transmittance could not show that: 1 - 1e-8 rounds to 1 in single precision.
-Extreme ThinSlices(const accuracy::Path& path, double per_slice,
+Extreme ThinSlices(const accuracy::PlainTechnique& plain, double per_slice,
                    const accuracy::Named<scene::Transport>& transport) {
   const std::string name = absl::StrFormat("%s: light scattered by slices of optical depth %g, %s",
-                                           path.name, per_slice, transport.name);
+                                           plain.name, per_slice, transport.name);
   return {name, [=](Probe& probe) -> absl::StatusOr<Verdict> {
-            scene::Scene scene = PlainScene(path);
-            scene.rendering.technique =
-                accuracy::InMode(path.plain(), accuracy::kModes[1], transport.value);
+            scene::Scene scene = PlainScene(plain);
+            scene.rendering.technique = accuracy::InMode(
+                plain.settings(), accuracy::kUniformPhaseTranslucentMode, transport.value);
             scene::SetSlices(&scene.rendering.technique, kFewSlices);
             const double depth = kFewSlices * per_slice;
             THUNDERHEAD_ASSIGN_OR_RETURN(
@@ -74,11 +74,11 @@ Extreme ThinSlices(const accuracy::Path& path, double per_slice,
           }};
 }
 
-Extreme ReflectedLight(const accuracy::Path& path, double depth, int slices) {
+Extreme ReflectedLight(const accuracy::PlainTechnique& plain, double depth, int slices) {
   const std::string name = absl::StrFormat("%s: reflected light, optical depth %g in %d slices",
-                                           path.name, depth, slices);
+                                           plain.name, depth, slices);
   return {name, [=](Probe& probe) -> absl::StatusOr<Verdict> {
-            scene::Scene scene = PlainScene(path);
+            scene::Scene scene = PlainScene(plain);
             scene::SetSlices(&scene.rendering.technique, slices);
             const auto fields = FieldsOf({.optical_depth = depth, .shape = Box::Shape::kLayer});
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *fields, {}));
@@ -86,20 +86,20 @@ Extreme ReflectedLight(const accuracy::Path& path, double depth, int slices) {
           }};
 }
 
-Extreme Slices(const accuracy::Path& path, int slices) {
-  return {absl::StrFormat("%s: %d slices, transmittance", path.name, slices),
+Extreme Slices(const accuracy::PlainTechnique& plain, int slices) {
+  return {absl::StrFormat("%s: %d slices, transmittance", plain.name, slices),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
-            scene::Scene scene = PlainScene(path);
+            scene::Scene scene = PlainScene(plain);
             scene::SetSlices(&scene.rendering.technique, slices);
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *FieldsOf({}), {}));
-            return TransmittanceNear(path, seen, 1.0, kUpright, slices);
+            return TransmittanceNear(plain, seen, 1.0, kUpright, slices);
           }};
 }
 
-Extreme Radius(const accuracy::Path& path, float radius_m) {
-  return {absl::StrFormat("%s: radius %g m", path.name, radius_m),
+Extreme Radius(const accuracy::PlainTechnique& plain, float radius_m) {
+  return {absl::StrFormat("%s: radius %g m", plain.name, radius_m),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
-            scene::Scene scene = PlainScene(path);
+            scene::Scene scene = PlainScene(plain);
             scene::FieldParameters& cloud =
                 scene.fields[physics::IndexOf(physics::Hydrometeor::kCloud)];
             // Extinction is inversely proportional to the radius.
@@ -109,19 +109,19 @@ Extreme Radius(const accuracy::Path& path, float radius_m) {
             cloud.optics.radius_m = radius_m;
             THUNDERHEAD_ASSIGN_OR_RETURN(
                 const Seen seen, probe.Draw(scene, *FieldsOf({}), {.single_precision = thin}));
-            return TransmittanceNear(path, seen, depth, kUpright,
+            return TransmittanceNear(plain, seen, depth, kUpright,
                                      *scene::SlicesOf(scene.rendering.technique), thin);
           }};
 }
 
 // All scattered light continues forwards; energy must not grow.
-Extreme LightEnergy(const accuracy::Path& path,
+Extreme LightEnergy(const accuracy::PlainTechnique& plain,
                     const accuracy::Named<scene::Transport>& transport) {
-  return {absl::StrFormat("%s: light is never more than came in, theta_f 90, %s", path.name,
+  return {absl::StrFormat("%s: light is never more than came in, theta_f 90, %s", plain.name,
                           transport.name),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
             scene::Scene scene;
-            scene.rendering.technique = path.plain();
+            scene.rendering.technique = plain.settings();
             scene::MediumSettingsOf(&scene.rendering.technique)->transport = transport.value;
             scene::MediumSettingsOf(&scene.rendering.technique)->theta_f_deg = 90.0;
             THUNDERHEAD_ASSIGN_OR_RETURN(
@@ -135,25 +135,25 @@ Extreme LightEnergy(const accuracy::Path& path,
 
 }  // namespace
 
-void AppendDepthExtremes(const accuracy::Path& path, std::vector<Extreme>* extremes) {
-  for (const auto& transport : accuracy::kTransports) {
+void AppendDepthExtremes(const accuracy::PlainTechnique& plain, std::vector<Extreme>* extremes) {
+  for (const auto& transport : accuracy::kTransportNames) {
     for (const double per_slice : {1e-8, 1e-4}) {
-      extremes->push_back(ThinSlices(path, per_slice, transport));
+      extremes->push_back(ThinSlices(plain, per_slice, transport));
     }
     for (const double per_slice : {1e-4, 1e-2, 1.0, 1e4, 1e8}) {
-      extremes->push_back(DepthPerSlice(path, per_slice, transport));
+      extremes->push_back(DepthPerSlice(plain, per_slice, transport));
     }
   }
   for (const double depth : {2e-3, 1e-2, 1.0, 100.0, 1e4, 1e9}) {
-    extremes->push_back(ReflectedLight(path, depth, 128));
+    extremes->push_back(ReflectedLight(plain, depth, 128));
   }
-  extremes->push_back(ReflectedLight(path, 0.01, 4096));
-  for (const int slices : {1, 2, 16, 4096}) extremes->push_back(Slices(path, slices));
+  extremes->push_back(ReflectedLight(plain, 0.01, 4096));
+  for (const int slices : {1, 2, 16, 4096}) extremes->push_back(Slices(plain, slices));
   for (const float radius_m : {1e-7F, 1e-6F, 1e-3F, 1e-1F}) {
-    extremes->push_back(Radius(path, radius_m));
+    extremes->push_back(Radius(plain, radius_m));
   }
-  for (const auto& transport : accuracy::kTransports)
-    extremes->push_back(LightEnergy(path, transport));
+  for (const auto& transport : accuracy::kTransportNames)
+    extremes->push_back(LightEnergy(plain, transport));
 }
 
 }  // namespace thunderhead::measure::internal

@@ -32,8 +32,8 @@ inline constexpr DepthErrors kUpright = {.half_angle = 0.005, .light_volume = 0.
 // faces in every direction.
 inline constexpr DepthErrors kSlanted = {.half_angle = 0.05, .light_volume = 0.0005};
 
-// The transmittance of `seen`, drawn by `path` with `slices`, is that of `depth`.
-Verdict TransmittanceNear(const accuracy::Path& path, const Seen& seen, double depth,
+// The transmittance of `seen`, drawn by `plain` with `slices`, is that of `depth`.
+Verdict TransmittanceNear(const accuracy::PlainTechnique& plain, const Seen& seen, double depth,
                           const DepthErrors& errors, int slices, bool single_precision = false);
 
 // Passes if `got` is at most `bound`.
@@ -42,14 +42,14 @@ Verdict AtMost(double got, double bound);
 // `verdict`, but failed if `seen` is not sound.
 Verdict Sound(const Seen& seen, Verdict verdict);
 
-// A scene of cloud water by one path: single scattering (low albedo, consistent) with an isotropic
-// phase function.
-scene::Scene PlainScene(const accuracy::Path& path);
+// A scene of cloud water by one technique: single scattering (low albedo, consistent) with an
+// isotropic phase function.
+scene::Scene PlainScene(const accuracy::PlainTechnique& plain);
 
 void AppendInputExtremes(std::vector<Extreme>* extremes);
-void AppendDepthExtremes(const accuracy::Path& path, std::vector<Extreme>* extremes);
-void AppendShapeExtremes(const accuracy::Path& path, std::vector<Extreme>* extremes);
-void AppendViewExtremes(const accuracy::Path& path, std::vector<Extreme>* extremes);
+void AppendDepthExtremes(const accuracy::PlainTechnique& plain, std::vector<Extreme>* extremes);
+void AppendShapeExtremes(const accuracy::PlainTechnique& plain, std::vector<Extreme>* extremes);
+void AppendViewExtremes(const accuracy::PlainTechnique& plain, std::vector<Extreme>* extremes);
 void AppendMetaballExtremes(std::vector<Extreme>* extremes);
 
 }  // namespace thunderhead::measure::internal

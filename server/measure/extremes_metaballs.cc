@@ -16,13 +16,13 @@
 namespace thunderhead::measure::internal {
 namespace {
 
-constexpr const accuracy::Path& kPath = accuracy::kPaths[2];
+constexpr accuracy::PlainTechnique kPlain = accuracy::Plain<scene::Metaballs>();
 constexpr int kBalls = 200;
 
 scene::Scene BallScene(scene::Transport transport) {
-  scene::Scene scene = PlainScene(kPath);
-  scene.rendering.technique =
-      accuracy::InMode(scene::Metaballs{.count = kBalls}, accuracy::kModes[0], transport);
+  scene::Scene scene = PlainScene(kPlain);
+  scene.rendering.technique = accuracy::InMode(scene::Metaballs{.count = kBalls},
+                                               accuracy::kUniformPhaseLowAlbedoMode, transport);
   return scene;
 }
 
@@ -41,7 +41,7 @@ Verdict Within(double got, double low, double high, double without) {
 // The middle ray's transmittance is from `low` to `high` for any fit.
 Extreme Between(const std::string& what, const Box& box, const Look& look, double low,
                 double high) {
-  return {absl::StrFormat("%s: %s", kPath.name, what),
+  return {absl::StrFormat("%s: %s", kPlain.name, what),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
             THUNDERHEAD_ASSIGN_OR_RETURN(
                 const Seen seen,
@@ -59,7 +59,7 @@ Extreme Depth(double depth) {
 
 // The same for the light scattered once by a thin box, even where 1 minus the depth rounds to 1.
 Extreme ThinLight(double depth) {
-  return {absl::StrFormat("%s: light scattered at optical depth %g", kPath.name, depth),
+  return {absl::StrFormat("%s: light scattered at optical depth %g", kPlain.name, depth),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen,
                                          probe.Draw(BallScene(scene::Transport::kConsistent),
@@ -70,7 +70,7 @@ Extreme ThinLight(double depth) {
 }
 
 Extreme Empty() {
-  return {absl::StrFormat("%s: empty volume", kPath.name),
+  return {absl::StrFormat("%s: empty volume", kPlain.name),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen,
                                          probe.Draw(BallScene(scene::Transport::kConsistent),
@@ -103,7 +103,7 @@ double PaperDepth(const std::vector<renderers::Ball>& balls, double tau, const g
 // on the storm's own optical depth.
 Extreme Paper(double depth) {
   return {
-      absl::StrFormat("%s: paper transport, optical depth %g", kPath.name, depth),
+      absl::StrFormat("%s: paper transport, optical depth %g", kPlain.name, depth),
       [=](Probe& probe) -> absl::StatusOr<Verdict> {
         scene::Scene scene = BallScene(scene::Transport::kPaper);
         auto& metaballs = std::get<scene::Metaballs>(scene.rendering.technique);

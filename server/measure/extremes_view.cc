@@ -15,18 +15,18 @@
 namespace thunderhead::measure::internal {
 namespace {
 
-Extreme AgainstLight(const accuracy::Path& path, const std::string& what, double azimuth_deg,
-                     double elevation_deg) {
-  return {absl::StrFormat("%s: view %s the light", path.name, what),
+Extreme AgainstLight(const accuracy::PlainTechnique& plain, const std::string& what,
+                     double azimuth_deg, double elevation_deg) {
+  return {absl::StrFormat("%s: view %s the light", plain.name, what),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
             const Look look{.view_azimuth_deg = azimuth_deg,
                             .view_elevation_deg = elevation_deg,
                             .sun_azimuth_deg = 70.0,
                             .sun_elevation_deg = 45.0};
-            const scene::Scene scene = PlainScene(path);
+            const scene::Scene scene = PlainScene(plain);
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen, probe.Draw(scene, *FieldsOf({}), look));
             const double sine = std::abs(std::sin(elevation_deg * std::numbers::pi / 180.0));
-            return TransmittanceNear(path, seen, 1.0 / sine, kSlanted,
+            return TransmittanceNear(plain, seen, 1.0 / sine, kSlanted,
                                      *scene::SlicesOf(scene.rendering.technique));
           }};
 }
@@ -39,12 +39,13 @@ double MeanRadiance(const Seen& seen) {
 
 // At 90 degrees from the sun half-angle slices change their orientation. The picture must not pop
 // there: the change over that step is like the mean of the steps before and after.
-Extreme Sweep(const accuracy::Path& path, const accuracy::Named<scene::Transport>& transport) {
-  return {absl::StrFormat("%s: pop when the view passes 90 degrees from the sun, %s", path.name,
+Extreme Sweep(const accuracy::PlainTechnique& plain,
+              const accuracy::Named<scene::Transport>& transport) {
+  return {absl::StrFormat("%s: pop when the view passes 90 degrees from the sun, %s", plain.name,
                           transport.name),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
             scene::Scene scene;
-            scene.rendering.technique = path.plain();
+            scene.rendering.technique = plain.settings();
             scene::MediumSettingsOf(&scene.rendering.technique)->transport = transport.value;
             const auto fields = FieldsOf({.cells = glm::ivec3(24),
                                           .size_m = glm::dvec3(4000.0),
@@ -68,13 +69,13 @@ Extreme Sweep(const accuracy::Path& path, const accuracy::Named<scene::Transport
 }
 
 // Half-float and float buffers give the same picture.
-Extreme HalfAgainstSingle(const accuracy::Path& path) {
-  return {absl::StrFormat("%s: half-float buffers against float buffers", path.name),
+Extreme HalfAgainstSingle(const accuracy::PlainTechnique& plain) {
+  return {absl::StrFormat("%s: half-float buffers against float buffers", plain.name),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
             const auto fields = SmoothCloud(20.0);
             Look look{.distance_in_boxes = 3.0, .field_of_view_deg = 25.0, .side_px = 33};
             scene::Scene scene;
-            scene.rendering.technique = path.plain();
+            scene.rendering.technique = plain.settings();
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen half, probe.Draw(scene, *fields, look));
             look.single_precision = true;
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen single, probe.Draw(scene, *fields, look));
@@ -87,11 +88,11 @@ Extreme HalfAgainstSingle(const accuracy::Path& path) {
           }};
 }
 
-Extreme InsideTheCloud(const accuracy::Path& path, double elevation_deg) {
-  return {absl::StrFormat("%s: camera in the middle of the cloud, looking %s", path.name,
+Extreme InsideTheCloud(const accuracy::PlainTechnique& plain, double elevation_deg) {
+  return {absl::StrFormat("%s: camera in the middle of the cloud, looking %s", plain.name,
                           elevation_deg > 0.0 ? "down" : "up"),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
-            const scene::Scene scene = PlainScene(path);
+            const scene::Scene scene = PlainScene(plain);
             THUNDERHEAD_ASSIGN_OR_RETURN(
                 const Seen seen,
                 probe.Draw(scene, *FieldsOf({.optical_depth = 2.0}),
@@ -100,7 +101,7 @@ Extreme InsideTheCloud(const accuracy::Path& path, double elevation_deg) {
             // with the eye counts completely or not at all.
             constexpr DepthErrors kInside = {.half_angle = 1.0 / 64.0 + kUpright.half_angle,
                                              .light_volume = kUpright.light_volume};
-            return TransmittanceNear(path, seen, 1.0, kInside,
+            return TransmittanceNear(plain, seen, 1.0, kInside,
                                      *scene::SlicesOf(scene.rendering.technique));
           }};
 }
@@ -120,9 +121,9 @@ absl::StatusOr<std::vector<float>> WholePicture(const scene::Scene& scene) {
   return colors;
 }
 
-scene::Scene LowSunScene(const accuracy::Path& path, double elevation_deg) {
+scene::Scene LowSunScene(const accuracy::PlainTechnique& plain, double elevation_deg) {
   scene::Scene scene;
-  scene.rendering.technique = path.plain();
+  scene.rendering.technique = plain.settings();
   scene::SetSlices(&scene.rendering.technique, 32);
   scene.sun.elevation_deg = elevation_deg;
   scene.output = {32, 18, 88};
@@ -161,10 +162,10 @@ Verdict LowSunVerdict(const scene::Scene& scene, const std::vector<float>& storm
               darkest >= 0.1};
 }
 
-Extreme LowSun(const accuracy::Path& path, double elevation_deg) {
-  return {absl::StrFormat("%s: sun at %g degrees", path.name, elevation_deg),
+Extreme LowSun(const accuracy::PlainTechnique& plain, double elevation_deg) {
+  return {absl::StrFormat("%s: sun at %g degrees", plain.name, elevation_deg),
           [=](Probe&) -> absl::StatusOr<Verdict> {
-            scene::Scene scene = LowSunScene(path, elevation_deg);
+            scene::Scene scene = LowSunScene(plain, elevation_deg);
             THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> storm, WholePicture(scene));
             for (scene::FieldParameters& field : scene.fields) field.visible = false;
             THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> bare, WholePicture(scene));
@@ -174,18 +175,19 @@ Extreme LowSun(const accuracy::Path& path, double elevation_deg) {
 
 }  // namespace
 
-void AppendViewExtremes(const accuracy::Path& path, std::vector<Extreme>* extremes) {
-  extremes->push_back(AgainstLight(path, "along", 70.0, 45.0));
-  extremes->push_back(AgainstLight(path, "against", 250.0, -45.0));
-  extremes->push_back(AgainstLight(path, "across", 250.0, 45.0));
-  extremes->push_back(AgainstLight(path, "a hair from across", 250.001, 45.0));
-  for (const auto& transport : accuracy::kTransports) extremes->push_back(Sweep(path, transport));
+void AppendViewExtremes(const accuracy::PlainTechnique& plain, std::vector<Extreme>* extremes) {
+  extremes->push_back(AgainstLight(plain, "along", 70.0, 45.0));
+  extremes->push_back(AgainstLight(plain, "against", 250.0, -45.0));
+  extremes->push_back(AgainstLight(plain, "across", 250.0, 45.0));
+  extremes->push_back(AgainstLight(plain, "a hair from across", 250.001, 45.0));
+  for (const auto& transport : accuracy::kTransportNames)
+    extremes->push_back(Sweep(plain, transport));
   // Half-angle's buffers are always floats.
-  if (path.name == scene::LightVolume::kName) extremes->push_back(HalfAgainstSingle(path));
-  extremes->push_back(InsideTheCloud(path, 89.9));
-  extremes->push_back(InsideTheCloud(path, -89.9));
+  if (plain.name == scene::LightVolume::kName) extremes->push_back(HalfAgainstSingle(plain));
+  extremes->push_back(InsideTheCloud(plain, 89.9));
+  extremes->push_back(InsideTheCloud(plain, -89.9));
   for (const double elevation_deg : {0.0, -0.5, -6.0, -18.0, -90.0}) {
-    extremes->push_back(LowSun(path, elevation_deg));
+    extremes->push_back(LowSun(plain, elevation_deg));
   }
 }
 

@@ -129,9 +129,9 @@ struct Case {
 // waits until the view rests.
 std::vector<Case> CasesOf(const FrameRateOptions& options) {
   std::vector<Case> cases;
-  for (const accuracy::Path& path : accuracy::kPaths) {
+  for (const accuracy::PlainTechnique& plain : accuracy::kPlainTechniques) {
     for (const accuracy::Mode& mode : accuracy::kModes) {
-      scene::Technique technique = accuracy::InMode(path.plain(), mode, options.transport);
+      scene::Technique technique = accuracy::InMode(plain.settings(), mode, options.transport);
       scene::SetSlices(&technique, options.slices);
       cases.push_back({technique, mode.name});
     }

@@ -58,8 +58,9 @@ scene::Scene SceneOf(LightPart part, scene::Scene scene) {
   if (part == LightPart::kSky) return scene;
   scene.sky.brightness = 0.0;
   if (part == LightPart::kSun) return scene;
-  scene.rendering.technique = accuracy::InMode(scene.rendering.technique, accuracy::kModes[0],
-                                               scene::Transport::kConsistent);
+  scene.rendering.technique =
+      accuracy::InMode(scene.rendering.technique, accuracy::kUniformPhaseLowAlbedoMode,
+                       scene::Transport::kConsistent);
   return scene;
 }
 

@@ -38,7 +38,7 @@ class Places {
         view_(scene::ViewOf(scene, fields)),
         towards_sun_(scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg)) {}
 
-  // Of the pixel at device coordinates from -1 to 1, y upwards.
+  // The region of the pixel at device coordinates from -1 to 1, y upwards.
   Region At(const glm::dvec2& at) const {
     const glm::dvec3 origin_m = view_.eye_m + at.x * view_.half_width_m * view_.right +
                                 at.y * view_.half_height_m * view_.up;

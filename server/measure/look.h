@@ -13,7 +13,7 @@
 
 namespace thunderhead::measure {
 
-// What a picture shows of a storm's strongest core (volume::StrongestCore), whose height is H. A
+// A storm's strongest core (volume::StrongestCore), of height H, as a picture shows it. A
 // pixel counts where the storm covers it (an opacity of 0.95) and the place that it shows
 // (scene::PlaceSeen, without detail) is
 //
@@ -25,7 +25,7 @@ namespace thunderhead::measure {
 // photograph, but the shaded side and the shadow of an anvil are not.
 enum class Region : std::uint8_t { kNeither, kTower, kBase };
 
-// Of each pixel, rows from top to bottom. `opacity` is that of the storm.
+// The region of each pixel, rows from top to bottom. `opacity` is that of the storm.
 std::vector<Region> RegionsOf(const scene::Scene& scene, const volume::HydrometeorFields& fields,
                               const std::vector<float>& opacity);
 
@@ -41,7 +41,7 @@ struct LookFigures {
 };
 
 LookFigures FiguresOf(const std::vector<Region>& regions, const picture::LinearPicture& picture);
-// Of the light that a screen shows. Black counts as half of the darkest grey.
+// Figures of the light that a screen shows. Black counts as half of the darkest grey.
 LookFigures FiguresOf(const std::vector<Region>& regions, const DisplayImage& display);
 
 }  // namespace thunderhead::measure

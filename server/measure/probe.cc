@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "frame/tone_map.h"
 #include "glm/geometric.hpp"
@@ -17,7 +18,7 @@
 namespace thunderhead::measure {
 namespace {
 
-// Of the round box, whose extinction falls to 0.25 % at its faces.
+// Exponent of the round box, whose extinction falls to 0.25 % at its faces.
 constexpr double kSteepness = 24.0;
 
 renderers::RenderSettings SettingsOf(const scene::Scene& scene,
@@ -85,7 +86,7 @@ std::shared_ptr<volume::HydrometeorFields> FieldsOf(const Box& box) {
 }
 
 std::shared_ptr<const volume::HydrometeorFields> SmoothCloud(double optical_depth) {
-  // Of a Gaussian over a side, whose ends are practically infinitely far.
+  // Mean of the Gaussian over a side, whose ends are practically infinitely far.
   const double mean = std::sqrt(std::numbers::pi / kSteepness);
   return FieldsOf({.cells = glm::ivec3(32),
                    .size_m = glm::dvec3(4000.0),
@@ -115,12 +116,15 @@ absl::StatusOr<Seen> Probe::Draw(const scene::Scene& scene, const volume::Hydrom
     THUNDERHEAD_RETURN_IF_ERROR(renderer.CarryLight(balls, medium.Content(), settings));
     THUNDERHEAD_RETURN_IF_ERROR(renderer.DrawView(settings));
     seen.eye = frame::ReadLinear(renderer.Eye());
-  } else {
+  } else if (std::holds_alternative<scene::LightVolume>(technique)) {
     renderers::LightVolumeRenderer renderer(programs_);
     THUNDERHEAD_RETURN_IF_ERROR(renderer.CarryLight(medium, settings));
     light = LightVolumeSoundness(renderer);
     THUNDERHEAD_RETURN_IF_ERROR(renderer.DrawView(medium, settings));
     seen.eye = frame::ReadLinear(renderer.Eye());
+  } else {
+    return absl::UnimplementedError(
+        absl::StrCat("no probe draws ", std::string(scene::NameOf(technique)), " without its sky"));
   }
   seen.unsound = UnsoundPicture(seen.eye);
   if (seen.unsound.empty()) seen.unsound = light.unsound;

@@ -1,7 +1,6 @@
-// A small picture of a medium, drawn by one path without sky and ground, and a check that holds for
-// every scene: all numbers are finite, no radiance is below 0, transmittance and light are from 0
-// to
-// 1. Uses the current GL context.
+// A small picture of a medium, drawn by one technique (light volume, half-angle or metaballs)
+// without sky and ground, and a check that holds for every scene: all numbers are finite, no
+// radiance is below 0, transmittance and light are from 0 to 1. Uses the current GL context.
 #pragma once
 
 #include <memory>
@@ -41,7 +40,7 @@ struct Look {
       5.0;  // of the camera from the middle, in units of the box's longest side
   double field_of_view_deg = 2.0;
   int side_px = 9;  // odd: a pixel lies in the middle
-  // Of the light volume's buffers; those of other paths always are.
+  // Makes the light volume's buffers float; those of other techniques always are.
   bool single_precision = false;
 };
 

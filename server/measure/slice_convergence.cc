@@ -22,7 +22,7 @@ constexpr int kLimit = 2048;  // slices, in place of infinitely many
 // Relative rounding of half floats.
 constexpr double kFrameRounding = 0x1p-12;
 
-// In place of zero on a logarithmic axis.
+// Value drawn in place of zero on a logarithmic axis.
 constexpr double kLeastError = 1e-9;
 
 absl::StatusOr<picture::LinearPicture> DrawWith(
@@ -69,14 +69,10 @@ absl::StatusOr<std::vector<SliceCurve>> MeasureSliceConvergence(
   std::vector<SliceCurve> curves;
   double done = 0.0;
   const auto step = [&] {
-    progress(++done / static_cast<double>(accuracy::kTransports.size() * (kCounts.size() + 1)));
+    progress(++done / static_cast<double>(accuracy::kTransportNames.size() * (kCounts.size() + 1)));
   };
-  for (const auto& transport : accuracy::kTransports) {
-    // Half-angle slices have no diffusion transport.
-    if (transport.value == scene::Transport::kDiffusion &&
-        std::holds_alternative<scene::HalfAngle>(scene.rendering.technique)) {
-      continue;
-    }
+  for (const auto& transport : accuracy::kTransportNames) {
+    if (!accuracy::ShowsTransport(scene.rendering.technique, transport.value)) continue;
     scene::Scene drawn = scene;
     scene::MediumSettingsOf(&drawn.rendering.technique)->transport = transport.value;
     THUNDERHEAD_ASSIGN_OR_RETURN(const picture::LinearPicture limit,
@@ -138,10 +134,10 @@ std::string ToCsv(const std::vector<SliceCurve>& curves) {
 }
 
 std::string ToSvg(const std::string& title, const std::vector<SliceCurve>& curves) {
-  constexpr std::array<const char*, accuracy::kTransports.size()> kColors = {"#d9730d", "#1f6fb4",
-                                                                             "#3a8f4a"};
-  constexpr std::array<const char*, accuracy::kTransports.size()> kColorNames = {"orange", "blue",
-                                                                                 "green"};
+  constexpr std::array<const char*, accuracy::kTransportNames.size()> kColors = {
+      "#d9730d", "#1f6fb4", "#3a8f4a"};
+  constexpr std::array<const char*, accuracy::kTransportNames.size()> kColorNames = {
+      "orange", "blue", "green"};
   std::vector<double> slices;
   std::vector<double> errors;
   std::vector<std::string> names;

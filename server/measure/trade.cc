@@ -22,8 +22,8 @@ double Quantile(std::vector<double> values, double share) {
 }
 
 scene::Technique LightVolume(scene::Transport transport,
-                             const accuracy::Mode& mode = accuracy::kModes[2]) {
-  return InMode(accuracy::PathNamed(scene::LightVolume::kName)->plain(), mode, transport);
+                             const accuracy::Mode& mode = accuracy::kPerFieldPhaseTranslucentMode) {
+  return InMode(accuracy::Plain<scene::LightVolume>().settings(), mode, transport);
 }
 
 Setting WithCount(scene::Technique technique, int count) {
@@ -63,16 +63,20 @@ std::vector<Setting> DefaultSweep(const std::vector<double>& million_paths) {
   const auto add = [&](const scene::Technique& technique, const auto& counts) {
     for (const int count : counts) settings.push_back(WithCount(technique, count));
   };
-  for (const std::string_view name : {scene::LightVolume::kName, scene::HalfAngle::kName}) {
-    for (const std::size_t mode : {2, 1, 0}) {
+  using accuracy::kPerFieldPhaseTranslucentMode;
+  using accuracy::kUniformPhaseLowAlbedoMode;
+  using accuracy::kUniformPhaseTranslucentMode;
+  for (const accuracy::PlainTechnique& plain :
+       {accuracy::Plain<scene::LightVolume>(), accuracy::Plain<scene::HalfAngle>()}) {
+    for (const accuracy::Mode& mode : {kPerFieldPhaseTranslucentMode, kUniformPhaseTranslucentMode,
+                                       kUniformPhaseLowAlbedoMode}) {
       for (const Transport transport : {Transport::kConsistent, Transport::kPaper}) {
-        const scene::Technique plain = accuracy::PathNamed(name)->plain();
-        add(accuracy::InMode(plain, accuracy::kModes[mode], transport), kCounts);
+        add(accuracy::InMode(plain.settings(), mode, transport), kCounts);
       }
     }
   }
-  for (const std::size_t mode : {2, 1}) {
-    add(LightVolume(Transport::kDiffusion, accuracy::kModes[mode]), kCounts);
+  for (const accuracy::Mode& mode : {kPerFieldPhaseTranslucentMode, kUniformPhaseTranslucentMode}) {
+    add(LightVolume(Transport::kDiffusion, mode), kCounts);
   }
   for (const Transport transport : {Transport::kConsistent, Transport::kPaper}) {
     add(scene::Metaballs{.medium = {.transport = transport}}, std::array{300, 1200, 3000, 10000});

@@ -31,7 +31,7 @@ const char* PrecisionOf(const Setting& setting) {
   return setting.single_precision ? kSingle : kHalf;
 }
 
-// In place of zero on a logarithmic axis.
+// Values drawn in place of zero on a logarithmic axis.
 constexpr double kLeastMilliseconds = 1e-3;
 constexpr double kLeastError = 1e-6;
 

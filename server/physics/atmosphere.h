@@ -84,7 +84,8 @@ class Atmosphere {
     float height_m = 0.0F;
     std::vector<Step> steps;
     glm::vec3 transmittance{1.0F};  // over the whole ray
-    // Of air and haze: amounts on the ray over those of a vertical column from sea level.
+    // Air masses of air and haze: amounts on the ray over those of a vertical column from sea
+    // level.
     glm::vec2 air_mass{0.0F};
     float end_m = 0.0F;
     float end_height_m = 0.0F;

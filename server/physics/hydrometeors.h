@@ -4,8 +4,8 @@
 // Radii: observed. Cloud droplets 10 um, ice crystals 30 um; the others are effective radii of the
 // exponential distributions that were observed, at 1 g/m3: rain by Marshall and Palmer 1948, snow
 // by Houze et al. 1979 at -20 C, graupel as in Rutledge and Hobbs 1984, hail by Federer and
-// Waldvogel 1975. The papers' radii are in particle_size.h. False colours: Riley et al. 2003 (AMS),
-// Table III; densities as in common bulk microphysics.
+// Waldvogel 1975. The papers' radii and false colours: Riley et al. 2003 (AMS), Tables II and III;
+// densities as in common bulk microphysics.
 #pragma once
 
 #include <array>
@@ -18,10 +18,10 @@ namespace thunderhead::physics {
 
 enum class Hydrometeor { kCloud, kRain, kIce, kSnow, kGraupel, kHail };
 
-inline constexpr std::size_t kHydrometeorCount = 6;
-inline constexpr std::array<Hydrometeor, kHydrometeorCount> kHydrometeors = {
-    Hydrometeor::kCloud, Hydrometeor::kRain,    Hydrometeor::kIce,
-    Hydrometeor::kSnow,  Hydrometeor::kGraupel, Hydrometeor::kHail};
+inline constexpr std::array kHydrometeors = {Hydrometeor::kCloud,   Hydrometeor::kRain,
+                                             Hydrometeor::kIce,     Hydrometeor::kSnow,
+                                             Hydrometeor::kGraupel, Hydrometeor::kHail};
+inline constexpr std::size_t kHydrometeorCount = kHydrometeors.size();
 
 constexpr std::size_t IndexOf(Hydrometeor hydrometeor) {
   return static_cast<std::size_t>(hydrometeor);
@@ -61,6 +61,9 @@ struct ParticleOptics {
 
 // The defaults of each hydrometeor.
 const ParticleOptics& DefaultOptics(Hydrometeor hydrometeor);
+
+// Riley et al. 2003 (AMS), Table II; hail, which it leaves out, 1 cm.
+float PapersRadius_m(Hydrometeor hydrometeor);
 
 // Mass extinction coefficient in m2/kg: extinction (1/m) per mass of condensate in a volume of air
 // (kg/m3), 3 / (2 rho_f R_f). Riley et al. 2003 (AMS), eq. 4, geometric optics with an extinction

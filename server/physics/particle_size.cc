@@ -1,18 +1,9 @@
 #include "physics/particle_size.h"
 
-#include <array>
 #include <cmath>
 #include <numbers>
 
 namespace thunderhead::physics {
-namespace {
-
-constexpr std::array<float, kHydrometeorCount> kPapersRadii_m = {1e-5F, 1e-3F,   1e-3F,
-                                                                 2e-3F, 2.5e-3F, 1e-2F};
-
-}  // namespace
-
-float PapersRadius_m(Hydrometeor hydrometeor) { return kPapersRadii_m[IndexOf(hydrometeor)]; }
 
 float ConstantRadius_m(Hydrometeor hydrometeor, SizeSource source, float given_m) {
   switch (source) {

@@ -19,9 +19,6 @@ enum class SizeSource {
   kGiven    // one radius that the scene gives
 };
 
-// Riley et al. 2003 (AMS), Table II; hail, which it leaves out, 1 cm.
-float PapersRadius_m(Hydrometeor hydrometeor);
-
 // The radius of all particles by `source` where no cell has its own; `given_m` is the scene's.
 float ConstantRadius_m(Hydrometeor hydrometeor, SizeSource source, float given_m);
 

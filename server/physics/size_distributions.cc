@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "base/status.h"
 #include "physics/particle_size.h"
@@ -61,8 +62,9 @@ Exponential Wsm6Snow(double temperature_K) {
   return {std::clamp(intercept_per_m4, 2e6, 1e11), 100.0, 1e5};
 }
 
-double Wsm6Radius_m(Hydrometeor hydrometeor, const Exponential& graupel, double content_kg_per_m3,
-                    double temperature_K) {
+// Nothing for fields that WSM6 does not have, such as hail apart from graupel.
+std::optional<double> Wsm6Radius_m(Hydrometeor hydrometeor, const Exponential& graupel,
+                                   double content_kg_per_m3, double temperature_K) {
   switch (hydrometeor) {
     case Hydrometeor::kCloud:
       return Wsm6Droplets_m(content_kg_per_m3);
@@ -74,10 +76,9 @@ double Wsm6Radius_m(Hydrometeor hydrometeor, const Exponential& graupel, double 
       return RadiusOf(Wsm6Snow(temperature_K), hydrometeor, content_kg_per_m3);
     case Hydrometeor::kGraupel:
       return RadiusOf(graupel, hydrometeor, content_kg_per_m3);
-    case Hydrometeor::kHail:
-      break;
+    default:
+      return std::nullopt;
   }
-  THUNDERHEAD_CHECK(false, "WSM6 has no separate hail");
 }
 
 // A gamma distribution of 1e8 droplets per m3, whose shape follows from that number: 12.
@@ -100,20 +101,26 @@ double ThompsonGraupel_m(double content_kg_per_m3) {
   return RadiusOf(graupel, Hydrometeor::kGraupel, content_kg_per_m3);
 }
 
-double Radius_m(Microphysics microphysics, Hydrometeor hydrometeor, double content_kg_per_m3,
-                double temperature_K) {
+// The others of Thompson's fields have no distribution that depends on their content alone.
+std::optional<double> ThompsonRadius_m(Hydrometeor hydrometeor, double content_kg_per_m3) {
+  if (hydrometeor == Hydrometeor::kCloud) return ThompsonDroplets_m(content_kg_per_m3);
+  if (hydrometeor == Hydrometeor::kGraupel) return ThompsonGraupel_m(content_kg_per_m3);
+  return std::nullopt;
+}
+
+std::optional<double> Radius_m(Microphysics microphysics, Hydrometeor hydrometeor,
+                               double content_kg_per_m3, double temperature_K) {
   switch (microphysics) {
     case Microphysics::kWsm6:
       return Wsm6Radius_m(hydrometeor, kWsm6Graupel, content_kg_per_m3, temperature_K);
     case Microphysics::kWsm6WithHail:
       return Wsm6Radius_m(hydrometeor, kWsm6Hail, content_kg_per_m3, temperature_K);
     case Microphysics::kThompson:
-      return hydrometeor == Hydrometeor::kCloud ? ThompsonDroplets_m(content_kg_per_m3)
-                                                : ThompsonGraupel_m(content_kg_per_m3);
+      return ThompsonRadius_m(hydrometeor, content_kg_per_m3);
     case Microphysics::kUnknown:
       break;
   }
-  THUNDERHEAD_CHECK(false, "no distribution is known of an unknown scheme");
+  return std::nullopt;
 }
 
 }  // namespace
@@ -133,24 +140,16 @@ std::string_view NameOf(Microphysics microphysics) {
 }
 
 bool HasDistribution(Microphysics microphysics, Hydrometeor hydrometeor) {
-  switch (microphysics) {
-    case Microphysics::kWsm6:
-    case Microphysics::kWsm6WithHail:
-      return hydrometeor != Hydrometeor::kHail;
-    case Microphysics::kThompson:
-      return hydrometeor == Hydrometeor::kCloud || hydrometeor == Hydrometeor::kGraupel;
-    case Microphysics::kUnknown:
-      break;
-  }
-  return false;
+  // Whether there is one depends on neither content nor temperature.
+  return Radius_m(microphysics, hydrometeor, 1e-3, 260.0).has_value();
 }
 
 float DistributionRadius_m(Microphysics microphysics, Hydrometeor hydrometeor,
                            float content_kg_per_m3, float temperature_K) {
-  THUNDERHEAD_CHECK(HasDistribution(microphysics, hydrometeor), "no distribution is known");
-  const auto radius_m =
-      static_cast<float>(Radius_m(microphysics, hydrometeor, content_kg_per_m3, temperature_K));
-  return std::clamp(radius_m, kMinRadius_m, kMaxRadius_m);
+  const std::optional<double> radius_m =
+      Radius_m(microphysics, hydrometeor, content_kg_per_m3, temperature_K);
+  THUNDERHEAD_CHECK(radius_m.has_value(), "no distribution is known");
+  return std::clamp(static_cast<float>(*radius_m), kMinRadius_m, kMaxRadius_m);
 }
 
 }  // namespace thunderhead::physics

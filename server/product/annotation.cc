@@ -23,7 +23,7 @@ constexpr double kMinText_px = 10.0;
 constexpr double kMargin = 0.6;
 constexpr double kEdge = 0.16;
 constexpr double kSwatch = 0.7;
-// Of the picture's height and width.
+// Maximum size of the logo, as shares of the picture's height and width.
 constexpr double kLogoHeight = 1.0 / 6.0;
 constexpr double kLogoWidth = 1.0 / 4.0;
 
@@ -149,7 +149,7 @@ class Pen {
     pango_font_description_set_absolute_size(font.get(), 0.8 * line_px_ * PANGO_SCALE);
     pango_layout_set_font_description(layout.get(), font.get());
     pango_layout_set_single_paragraph_mode(layout.get(), TRUE);
-    // What is not UTF-8, as in a file's attribute, becomes signs of replacement.
+    // Invalid UTF-8, as in a file's attribute, becomes U+FFFD.
     gchar* const valid = g_utf8_make_valid(text.data(), static_cast<gssize>(text.size()));
     pango_layout_set_text(layout.get(), valid, -1);
     g_free(valid);
@@ -175,7 +175,7 @@ class Pen {
 bool HasFonts() {
   PangoFontFamily** families = nullptr;
   int count = 0;
-  // Of this thread.
+  // The default font map belongs to this thread.
   pango_font_map_list_families(pango_cairo_font_map_get_default(), &families, &count);
   g_free(families);
   return count > 0;

@@ -1,5 +1,5 @@
-// What is burnt into a picture for those who see nothing but the picture: texts by Pango, in the
-// picture's corners, white with a dark edge, so that they can be read on any sky.
+// Annotations burnt into a picture for those who see nothing else: texts by Pango, in the picture's
+// corners, white with a dark edge, so that they can be read on any sky.
 #pragma once
 
 #include <string>

@@ -19,7 +19,7 @@ struct CfGridMapping {
   std::map<std::string, std::vector<double>> numbers;
 };
 
-// Of the projections that storm files have. INVALID_ARGUMENT for others.
+// The grid mapping of projections that storm files have. INVALID_ARGUMENT for others.
 absl::StatusOr<CfGridMapping> GridMappingOf(const MapProjection& projection);
 
 }  // namespace thunderhead::product

@@ -14,7 +14,7 @@ namespace thunderhead::product {
 
 // Named as GDAL names them, so that its manual is theirs.
 struct GdalLibrary {
-  // Of this one format: others use netCDF-C and HDF5, which allow one thread at a time.
+  // Registers this format alone: others use netCDF-C and HDF5, which allow one thread at a time.
   decltype(&::GDALRegister_GTiff) RegisterGTiff = nullptr;
   decltype(&::GDALGetDriverByName) GetDriverByName = nullptr;
   decltype(&::GDALCreate) Create = nullptr;

@@ -212,7 +212,7 @@ class LightFile {
 
   const LightMap& map_;
   NetcdfWriter file_;
-  // Of netCDF-C: x is declared first, and is the last dimension.
+  // Identifiers of netCDF-C: x is declared first, and is the last dimension.
   std::vector<int> dimensions_;
   std::vector<std::string> coordinates_;
   bool mapped_ = false;

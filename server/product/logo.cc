@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
 constexpr std::uint32_t kMaxSize_px = 4096;
-// Of IHDR, which is first in every PNG.
+// Places in IHDR, the first chunk of every PNG.
 constexpr std::size_t kWidthAt = 16;
 constexpr std::size_t kHeightAt = 20;
 

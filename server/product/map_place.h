@@ -19,7 +19,7 @@ struct Place {
   double longitude_deg = 0.0;
 };
 
-// Of one thread.
+// Used by one thread.
 class MapProjection {
  public:
   // As PROJ writes it, such as "+proj=lcc +lat_1=30 ...". INVALID_ARGUMENT if PROJ does not know
@@ -59,7 +59,7 @@ struct MapPlace {
   glm::dvec2 upper_left_m{0.0};  // the corner, not a pixel's middle
   glm::dvec2 pixel_m{0.0};       // width and height
 
-  // Of the middle of a pixel, counted from the upper left.
+  // Coordinates of the middle of a pixel, counted from the upper left.
   glm::dvec2 MiddleOf_m(int column, int row) const {
     return {upper_left_m.x + (column + 0.5) * pixel_m.x, upper_left_m.y - (row + 0.5) * pixel_m.y};
   }

@@ -11,8 +11,8 @@
 
 namespace thunderhead::reference {
 
-// Threads of its own, which have the caller's priority. Those of oneTBB have that of whoever first
-// made them need them, and are shared by all: a low priority would hold up who encodes pictures.
+// Threads of its own, which have the caller's priority. Those of oneTBB have that of their first
+// user and are shared by all: a low priority would hold up the encoding of pictures.
 void ParallelFor(int threads, int count, const std::function<void(int)>& work) {
   const int most = tbb::info::default_concurrency();
   const int used = std::min(threads > 0 ? std::min(threads, most) : most, count);

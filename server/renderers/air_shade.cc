@@ -20,7 +20,7 @@ constexpr int kHeights = 64;
 constexpr double kHighest_m = 3e4;  // air above is taken for as bright as there
 
 constexpr int kPixelsPerRay = 6;        // along each side
-constexpr glm::ivec2 kMinRays(48, 36);  // of pictures that have so many pixels
+constexpr glm::ivec2 kMinRays(48, 36);  // unless the picture has fewer pixels
 constexpr glm::ivec2 kMaxRays(160, 120);
 constexpr int kDistances = 25;
 

@@ -1,10 +1,10 @@
 // Air that the storm shades: the light that is missing from what the air sends to the eye, on each
 // ray of a coarse picture up to each of a number of distances. The sun is shaded as the ground is
-// (common/storm_shadow.glsl). Of light that the air has scattered before, a place gets what the
-// part of the sky sends that the storm leaves open, and from the storm what a layer of its depth
-// lets through, in its shadow, or reflects. How the storm stands in the sky is found once for a
-// medium. Owns
-// GL objects: use it on the context's thread.
+// (common/storm_shadow.glsl). Light that the air has scattered before reaches a place from the part
+// of the sky that the storm leaves open. From the part that it hides, a place gets the light of a
+// layer of the storm's depth: transmitted in its shadow, reflected elsewhere. The part of the sky
+// that the storm hides is found once for a medium.
+// Owns GL objects: use it on the context's thread.
 #pragma once
 
 #include <cstdint>

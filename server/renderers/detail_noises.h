@@ -21,9 +21,9 @@ struct DetailNoise {
 
 class DetailNoises {
  public:
-  // Of a medium: physics::DetailTile, down to one texel.
+  // Noise of a medium: physics::DetailTile, down to one texel.
   std::shared_ptr<const DetailNoise> Get(int octaves, std::uint32_t seed);
-  // Of a surface: physics::TurbulenceTile, one level.
+  // Noise of a surface: physics::TurbulenceTile, one level.
   std::shared_ptr<const DetailNoise> Roughness(int octaves, std::uint32_t seed);
 
  private:

@@ -46,7 +46,7 @@ class Ground {
   // True if there is one.
   bool Corrected() const { return correction_ != nullptr; }
 
-  // Of its lowest point, above sea level.
+  // Height of its lowest point above sea level.
   double Lowest_m() const { return lowest_m_; }
   GroundVariant Variant() const { return {.relief = relief_}; }
   // True if ground may stand between the eye and a storm. Level ground falls away from below the

@@ -1,4 +1,4 @@
-// What each group of a medium counts for in the sums of light transport: shares of its extinction
+// Weights of each group of a medium in the sums of light transport: shares of its extinction
 // for the eye and the light, its scattering, and how its phase function is cut and displayed. Light
 // buffers have no colours, so extinctions follow from the luminance of a phase function's colours.
 // Shared by the renderers that follow Riley et al. 2003 (Vis), section 4.4.

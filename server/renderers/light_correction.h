@@ -1,5 +1,5 @@
 // Factors for the storm's radiance in a light volume's picture, by place and direction, fitted to
-// the reference (correction/correction_fit.h): a plain value. Each ray looks its factor up once, at
+// the reference (accuracy/correction_fit.h): a plain value. Each ray looks its factor up once, at
 // the mean place of what it sees. Knows no GL.
 #pragma once
 
@@ -15,7 +15,7 @@ namespace thunderhead::renderers {
 struct LightCorrection {
   // Texels over the medium's box, x fastest.
   glm::ivec3 size{0};
-  // Of red, green and blue: the factor for a ray of direction d is dot(texel, (1, d)).
+  // For red, green and blue: the factor for a ray of direction d is dot(texel, (1, d)).
   std::array<std::vector<glm::vec4>, 3> texels;
 
   // Factors for skylight on level ground, which the storm hides in part and to which it adds its

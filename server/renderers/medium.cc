@@ -179,7 +179,7 @@ void ResidentMedium::BindDetails(const gl::Program& program) const {
   for (std::size_t i = 0; i < details_.size(); ++i) {
     const DetailLayer& layer = details_[i];
     sizes.emplace_back(layer.Tile_m() / extent_m);
-    // Not less whole tiles: fibres have others.
+    // Not reduced modulo the tile: the tile of fibres has another size.
     corners.emplace_back(-bounds_.grid.low_corner_m / extent_m);
     const std::vector<glm::vec4> packed = Packed(layer.share_by_group, 1.0);
     shares.insert(shares.end(), packed.begin(), packed.end());

@@ -82,7 +82,7 @@ class ResidentMedium {
   int BlockCount() const { return block_count_; }
   void BindBlocks(const gl::Program& program) const;
 
-  // Boxes around the occupied bricks, so few that going through them for each picture is nothing.
+  // Boxes around the occupied bricks; few, so that going through them costs a picture nothing.
   const Boxes& OccupiedBoxes() const { return occupied_boxes_; }
 
   // One weight a group as common/medium.glsl takes it: the value at which a texel counts, times the

@@ -46,11 +46,11 @@ struct DrawQuality {
   // Varied by sweeps only; sessions draw with these.
   double light_detail = 1.0;      // texels of the light volume, over the usual ones, along a side
   bool single_precision = false;  // in the light volume's buffers and the frame; half is usual
-  // Of the light volume, for the light that the scene has.
+  // Correction of the light volume, for the light that the scene has.
   std::shared_ptr<const LightCorrection> correction{};
-  // Of the light volume: LinearFrame::places in place of a picture.
+  // Makes the light volume fill LinearFrame::places in place of a picture.
   bool places = false;
-  // The sun's disc and its aureole, for whoever looks towards it.
+  // Draws the sun's disc and its aureole where they are in view.
   bool sun_seen = true;
 
   bool operator==(const DrawQuality&) const = default;
@@ -65,10 +65,10 @@ struct RenderSettings {
   DrawQuality quality{};   // its shares are in the sizes above already
   // Distance of the ground along each pixel's ray; none where nothing hides a part of the medium.
   const gl::Texture2D* ground_distance = nullptr;
-  // Of the medium in the eye buffer; none where that may be anywhere.
+  // Where in the eye buffer the medium is; none: it may be anywhere.
   const Cover* cover = nullptr;
 
-  // Of a technique that draws a medium.
+  // The settings of a technique that draws a medium.
   const scene::MediumSettings& Medium() const;
 };
 

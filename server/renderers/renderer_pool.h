@@ -35,7 +35,7 @@ class RendererPool {
   // Drops the least recently used renderer but the one that drew last, or draws now; false if there
   // is none.
   bool DropOldest();
-  // Drops those that have not drawn for so long; the frame may be gone with them.
+  // Drops those that have not drawn for this time; the frame may be gone with them.
   void DropUnusedFor(double seconds);
 
  private:

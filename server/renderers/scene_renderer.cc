@@ -19,7 +19,7 @@ glm::ivec2 EyeSize(const scene::Scene& scene, const DrawQuality& quality) {
   return glm::max(glm::ivec2(glm::ceil(size * scale)), glm::ivec2(1));
 }
 
-// Of techniques that have a number of slices; 0 for others.
+// The number of slices of techniques that have one; 0 for others.
 int SlicesAt(const scene::Scene& scene, const DrawQuality& quality) {
   const std::optional<int> slices = scene::SlicesOf(scene.rendering.technique);
   if (!slices.has_value()) return 0;

@@ -92,7 +92,7 @@ class SceneRenderer {
   SunGlow sun_glow_;
   gl::Texture2D nothing_;  // an eye buffer without medium
 
-  // What the kept results were drawn from.
+  // Inputs of the kept results.
   std::optional<scene::Scene> drawn_scene_;
   std::weak_ptr<const volume::HydrometeorFields> drawn_fields_;
   DrawQuality drawn_quality_;

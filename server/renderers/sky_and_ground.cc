@@ -22,7 +22,7 @@ constexpr std::size_t kMaxTables = 32;
 
 constexpr gl::PieceCost kPixel{"composite", 500.0};
 
-// Of post/composite.frag.
+// Variant of post/composite.frag.
 struct CompositeVariant {
   GroundVariant ground;
   GroundCoverVariant ground_cover;
@@ -121,9 +121,10 @@ const std::vector<glm::vec4>& SkyAndGround::TableOfStep(int step) {
   return tables_.emplace(step, seen.Table()).first->second;
 }
 
-// Such that a surface that faces the sun receives what the sky sends it: irradiance of the sun's
-// surroundings, x, and of the rest, of radiance a + b (1 - sine of the elevation), where
-// a = 3 I - 2 M and b = 6 (M - I) for the rest's irradiance from above over pi, I, and its mean M.
+// Splits skylight into a beam from the sun, of irradiance x, and the rest of the sky, of radiance
+// a + b (1 - sine of the elevation), so that a surface that faces the sun receives as much as from
+// the sky. a = 3 I - 2 M and b = 6 (M - I) for the rest's irradiance from above over pi, I, and its
+// mean M. Returns x.
 glm::vec3 SkyAndGround::AroundSun(const glm::vec3& sun) const {
   constexpr int kElevations = 24;
   constexpr int kAzimuths = 48;
@@ -172,7 +173,7 @@ Illumination SkyAndGround::IlluminationOf(const scene::Scene& scene) const {
         irradiance * atmosphere_->SunTransmittance({height_m, static_cast<float>(towards_sun_.z)}));
   }
   light.from_sky = sky_light_.mean_radiance * irradiance * static_cast<float>(scene.sky.brightness);
-  // Of ground without the storm's shadow: what shows of it around the storm is larger.
+  // Light of unshadowed ground: most of the ground around the storm lies outside its shadow.
   const float sine = std::max(static_cast<float>(towards_sun_.z), 0.0F);
   const glm::vec3 diffuse =
       sky_light_.irradiance * irradiance * static_cast<float>(scene.sky.brightness);

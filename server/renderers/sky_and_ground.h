@@ -1,6 +1,6 @@
-// What is around a storm: the sky and the ground that light it and stand behind it, and the air in
-// front of it. Keeps what depends on the sun and the air until they change. Owns GL objects: use it
-// on the context's thread.
+// The surroundings of a storm: sky and ground, which light it and stand behind it, and the air in
+// front of it. Keeps results that depend on the sun and the air until these change. Owns GL
+// objects: use it on the context's thread.
 #pragma once
 
 #include <map>

@@ -18,7 +18,7 @@
 namespace thunderhead::renderers {
 namespace {
 
-// What a sample of the medium and a pixel of the disc may cost.
+// Guessed costs of a sample of the medium and of a pixel of the disc.
 constexpr double kSample_ns = 15.0;
 constexpr double kDiscPixel_ns = 200.0;
 

@@ -33,7 +33,7 @@ namespace thunderhead::renderers {
 
 using StageTimes = std::vector<scene::StageTime>;
 
-// What the techniques of one scene renderer share; they must not outlive it.
+// Parts that the techniques of one scene renderer share; they must not outlive it.
 struct Workspace {
   explicit Workspace(std::shared_ptr<gl::ProgramCache> cache)
       : programs(std::move(cache)), ground(programs), surroundings(programs) {}

@@ -65,7 +65,7 @@ class Receiver {
   bool Ok() const { return failure_ == Failure::kNone; }
   Failure Why() const { return failure_; }
 
-  // What this end takes for nonsense although it could be received.
+  // Marks data as invalid that could be received.
   void Refuse() {
     if (Ok()) failure_ = Failure::kTooLarge;
   }

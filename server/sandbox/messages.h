@@ -1,5 +1,5 @@
-// What the server and the reader of an untrusted file tell each other, each as one list of its
-// members for both directions: `archive` is a Sender or a Receiver.
+// Messages between the server and the reader of an untrusted file, each as one list of its members
+// for both directions: `archive` is a Sender or a Receiver.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ struct Request {
   std::uint32_t processor_s = 0;
 };
 
-// What comes back: any number of the first two, then one of the others.
+// Replies: any number of the first two, then one of the others.
 enum class Reply : std::uint8_t { kProgress, kLog, kError, kProbed, kDescription, kGrid, kFields };
 
 // A line of the reader's log, or, of Reply::kError, a status.

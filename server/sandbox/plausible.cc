@@ -13,9 +13,9 @@ namespace thunderhead::sandbox {
 namespace {
 
 // Far beyond any storm, and near enough for arithmetic in single precision.
-constexpr int kMostCells = 2'000'000;  // along one axis
+constexpr int kMaxCells = 2'000'000;  // along one axis
 constexpr double kFarthest_m = 1e9;
-constexpr std::size_t kMostTimes = 1'000'000;
+constexpr std::size_t kMaxTimes = 1'000'000;
 
 absl::Status Require(bool condition, const std::string& what) {
   if (condition) return absl::OkStatus();
@@ -31,9 +31,13 @@ bool AtMost(Enum value, Enum last) {
   return static_cast<int>(value) >= 0 && static_cast<int>(value) <= static_cast<int>(last);
 }
 
+bool IsKnown(physics::Hydrometeor hydrometeor) {
+  return std::ranges::find(physics::kHydrometeors, hydrometeor) != physics::kHydrometeors.end();
+}
+
 bool AreCells(const glm::ivec3& cells) {
   return std::min({cells.x, cells.y, cells.z}) >= 1 &&
-         std::max({cells.x, cells.y, cells.z}) <= kMostCells;
+         std::max({cells.x, cells.y, cells.z}) <= kMaxCells;
 }
 
 bool AllFinite(const std::vector<float>& values, float least) {
@@ -69,9 +73,8 @@ bool CoverParticles(const volume::ParticleSizes& sizes, const std::vector<float>
 absl::Status CheckField(const volume::HydrometeorField& field, std::size_t cells) {
   const std::vector<float>& values = field.concentration_kg_per_m3;
   const volume::FieldStatistics& statistics = field.statistics;
-  const bool kinds = AtMost(field.hydrometeor, physics::Hydrometeor::kHail) &&
-                     AtMost(field.quantity, volume::Quantity::kExtinction) &&
-                     AtMost(field.sizes.origin, volume::SizeOrigin::kObserved);
+  const bool kinds = IsKnown(field.hydrometeor) && AtMost(field.quantity, volume::kLastQuantity) &&
+                     AtMost(field.sizes.origin, volume::kLastSizeOrigin);
   THUNDERHEAD_RETURN_IF_ERROR(Require(kinds, "the kind of a field"));
   const bool counts = std::isfinite(statistics.minimum) && std::isfinite(statistics.maximum) &&
                       std::isfinite(statistics.mean_water_path_kg_per_m2) &&
@@ -105,7 +108,7 @@ absl::Status CheckGround(const volume::HydrometeorFields& fields, std::size_t co
 absl::Status CheckMotion(const volume::AirMotion& motion, std::size_t cells) {
   const bool sizes = (motion.turbulence.empty() || motion.turbulence.size() == cells) &&
                      (motion.ascent.empty() || motion.ascent.size() == cells);
-  return Require(sizes && AtMost(motion.source, volume::TurbulenceSource::kEnergy) &&
+  return Require(sizes && AtMost(motion.source, volume::kLastTurbulenceSource) &&
                      std::isfinite(motion.shear_m_per_s.x) && std::isfinite(motion.shear_m_per_s.y),
                  "the motion of the air");
 }
@@ -130,16 +133,14 @@ absl::Status CheckPlausible(const volume::StormFile& file) {
       Require(Within(file.dx_m, 1e-6, kFarthest_m) && Within(file.dy_m, 1e-6, kFarthest_m),
               "the size of its cells"));
   THUNDERHEAD_RETURN_IF_ERROR(
-      Require(!file.times.empty() && file.times.size() <= kMostTimes, "the number of its times"));
+      Require(!file.times.empty() && file.times.size() <= kMaxTimes, "the number of its times"));
   static const absl::Time kFirst = absl::FromCivil(absl::CivilYear(0), absl::UTCTimeZone());
   static const absl::Time kLast = absl::FromCivil(absl::CivilYear(10'000), absl::UTCTimeZone());
   const bool in_time = std::ranges::all_of(
       file.times, [](absl::Time time) { return time >= kFirst && time < kLast; });
   THUNDERHEAD_RETURN_IF_ERROR(Require(in_time, "its times"));
   const bool fields = !file.fields.empty() && file.fields.size() <= physics::kHydrometeorCount &&
-                      std::ranges::all_of(file.fields, [](physics::Hydrometeor hydrometeor) {
-                        return AtMost(hydrometeor, physics::Hydrometeor::kHail);
-                      });
+                      std::ranges::all_of(file.fields, IsKnown);
   THUNDERHEAD_RETURN_IF_ERROR(Require(fields, "its fields"));
   const bool place = Within(file.latitude_deg.value_or(0.0), -90.0, 90.0) &&
                      Within(file.longitude_deg.value_or(0.0), -360.0, 360.0);
@@ -147,7 +148,7 @@ absl::Status CheckPlausible(const volume::StormFile& file) {
 }
 
 absl::Status CheckPlausible(const volume::VerticalGrid& grid) {
-  return Require(grid.cells >= 1 && grid.cells <= kMostCells &&
+  return Require(grid.cells >= 1 && grid.cells <= kMaxCells &&
                      Within(grid.low_m, -kFarthest_m, kFarthest_m) &&
                      Within(grid.spacing_m, 1e-6, kFarthest_m),
                  "its heights");

@@ -39,8 +39,8 @@ class KeptLog final : public spdlog::sinks::base_sink<std::mutex> {
 
  protected:
   void sink_it_(const spdlog::details::log_msg& message) override {
-    constexpr std::size_t kMost = 20;
-    if (notes_.size() >= kMost) return;
+    constexpr std::size_t kMaxNotes = 20;
+    if (notes_.size() >= kMaxNotes) return;
     notes_.push_back({static_cast<int>(message.level),
                       std::string(message.payload.data(), message.payload.size())});
   }

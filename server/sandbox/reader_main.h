@@ -12,7 +12,7 @@ inline constexpr int kFileDescriptor = 3;
 // The program's first argument by which it is this process.
 inline constexpr char kReaderCommand[] = "read-untrusted-file";
 
-// Returns the exit status; whoever calls it ends the process by _exit, as destructors of what a
+// Returns the exit status. The caller ends the process by _exit, as destructors of what a
 // hostile file may have overwritten must not run.
 int ReadUntrustedFile(const volume::StormFormats& formats);
 

@@ -127,7 +127,7 @@ class Child {
   pid_t process_;
 };
 
-// What a program needs to start; never this one's secrets.
+// Variables that a program needs to start; none of this one's secrets.
 std::vector<char*> Environment() {
   constexpr std::array<std::string_view, 5> kNames = {
       "LD_LIBRARY_PATH=", "ASAN_OPTIONS=", "UBSAN_OPTIONS=", "TSAN_OPTIONS=", "LSAN_OPTIONS="};
@@ -241,7 +241,7 @@ absl::Status StatusOf(const Note& note, const ReaderLimits& limits) {
   }
 }
 
-// What a Receiver that failed says of the reader.
+// The error of a reader whose answer could not be received.
 absl::Status Judge(const std::string& path, const Receiver& from_reader, Child& child,
                    const ReaderLimits& limits) {
   switch (from_reader.Why()) {
@@ -258,8 +258,8 @@ absl::Status Judge(const std::string& path, const Receiver& from_reader, Child& 
 absl::Status Listen(const std::string& path, Receiver& from_reader, Reply wanted,
                     const volume::ReadCheckpoint& checkpoint, const ReaderProcess::Take& take,
                     const ReaderLimits& limits) {
-  constexpr int kMostNotes = 10'000;
-  for (int notes = 0; notes < kMostNotes; ++notes) {
+  constexpr int kMaxNotes = 10'000;
+  for (int notes = 0; notes < kMaxNotes; ++notes) {
     Reply reply = Reply::kError;
     from_reader(reply);
     if (!from_reader.Ok()) return absl::OkStatus();

@@ -104,7 +104,7 @@ volume::DrawnMedium::Channels DetailedMedium::Largest_per_m() const {
     }
     first += channels;
   }
-  for (float& value : largest) value *= kMostFactor * volume_.extinction_per_m;
+  for (float& value : largest) value *= kMaxFactor * volume_.extinction_per_m;
   return largest;
 }
 

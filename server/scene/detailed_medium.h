@@ -33,7 +33,7 @@ class DetailedMedium {
   volume::DrawnMedium::Channels Largest_per_m() const;
 
   // Detail multiplies a field by at most this.
-  static constexpr float kMostFactor = 2.0F;
+  static constexpr float kMaxFactor = 2.0F;
 
  private:
   DetailedMedium() = default;

@@ -4,22 +4,17 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
+#include "scene/technique.h"
+#include "service/technique_messages.h"
 
 namespace thunderhead::service {
 namespace {
 
-// Who waits for a viewer to leave, or for a machine with less to do.
+// Retry delays: of a session that is full, and of a picture that this machine draws too slowly.
 constexpr std::chrono::seconds kViewerRetry{30};
 constexpr std::chrono::seconds kRenderRetry{60};
-// What is too large stays so until somebody sets another limit.
+// Retry delay of requests that are too large: only the operator can help.
 constexpr std::chrono::minutes kSizeRetry{60};
-
-// Those of the techniques that have slices; 1 for the others.
-std::uint64_t SlicesOf(const v1::Rendering& rendering) {
-  if (rendering.has_light_volume()) return rendering.light_volume().slices();
-  if (rendering.has_half_angle()) return rendering.half_angle().slices();
-  return 1;
-}
 
 absl::Status TooLarge(const std::string& what, std::uint64_t number, std::uint64_t maximum,
                       const char* unit, const char* reason) {
@@ -40,7 +35,8 @@ absl::Status CheckSize(const Limits& limits, const v1::Scene& scene) {
     return TooLarge("scene.output.width_px times scene.output.height_px", pixels, limits.max_pixels,
                     "pixels", "PICTURE_TOO_LARGE");
   }
-  const std::uint64_t samples = pixels * SlicesOf(scene.rendering());
+  const int slices = scene::SlicesOf(ToTechnique(scene.rendering())).value_or(1);
+  const std::uint64_t samples = pixels * static_cast<std::uint64_t>(slices);
   if (samples > limits.max_samples) {
     return TooLarge("the picture's pixels times its slices", samples, limits.max_samples, "samples",
                     "TOO_MANY_SAMPLES");

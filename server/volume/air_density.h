@@ -29,7 +29,7 @@ class AirDensityMeans {
  public:
   explicit AirDensityMeans(const RegularGrid& grid);
 
-  // One of so many columns along an axis is enough.
+  // The steps along each axis between columns that are enough for the mean.
   glm::ivec2 Stride() const;
 
   // Air of this density in column (x, y) from a height to another; NaN is left out.

@@ -12,6 +12,7 @@ namespace thunderhead::volume {
 // The source of the amplitude of turbulence: contrasts of the condensate between cells, the
 // deformation of the wind, or turbulent kinetic energy in the file.
 enum class TurbulenceSource { kGradient, kDeformation, kEnergy };
+inline constexpr TurbulenceSource kLastTurbulenceSource = TurbulenceSource::kEnergy;
 
 struct AirMotion {
   TurbulenceSource source = TurbulenceSource::kGradient;

@@ -63,7 +63,7 @@ class CachedStormStore final : public StormStore,
   using Fields = absl::StatusOr<std::shared_ptr<const HydrometeorFields>>;
   enum class Purpose { kAsked, kAhead };
 
-  // Of a caller, who takes it away when it stops waiting.
+  // A caller's listener, which is removed when the caller stops waiting.
   struct Listener {
     std::mutex mutex;  // held during a call; no lock is taken with it
     ReadProgress progress;

@@ -28,7 +28,7 @@ std::size_t Product(std::size_t a, std::size_t b) {
   return a != 0 && b > kMax / a ? kMax : a * b;
 }
 
-// What reading a time takes, from the storm's description alone.
+// Memory that reading a time takes, estimated from the storm's description alone.
 struct ReadMemory {
   std::size_t fields = 0;
   std::size_t scratch = 0;  // until it is read
@@ -183,7 +183,7 @@ void CachedStormStore::ReadAhead() {
 void CachedStormStore::Read(Lock& lock, PendingRead& read, Activity& activity) {
   const TimeKey key = read.place.key;
   const bool is_asked = read.purpose == Purpose::kAsked;
-  // Whoever asked may have given up meanwhile.
+  // The caller may have given up meanwhile.
   Fields fields = absl::CancelledError("nobody waits for it any more");
   if (!is_asked || read.waiters > 0) {
     const StormFile& file =

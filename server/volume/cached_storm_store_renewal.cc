@@ -99,8 +99,8 @@ void CachedStormStore::Renew(const std::vector<CataloguedStorm>& found) {
   if (listener_) listener_(changes);
 }
 
-// Puts `found` in the place of a storm that may be there. Of what it lacks stays what somebody
-// holds.
+// Replaces the storm at `place`, if there is one, by `found`. Times that `found` lacks stay while
+// somebody holds them.
 StormChange CachedStormStore::Replace(std::size_t place, std::optional<CataloguedStorm> found) {
   Held& held = storms_[place];
   StormChange change;

@@ -52,7 +52,7 @@ absl::StatusOr<StormFile> CatalogueScan::Describe(const std::string& path, Time 
 void CatalogueScan::Look(const std::string& path, const Stamp& stamp, Time now, Known& known) {
   const bool fresh = known.scan == 0;
   if (fresh || known.stamp != stamp) {
-    // What only grows keeps the times that it had.
+    // A file that only grows keeps its description.
     const bool grows = known.stamp.file == stamp.file && known.stamp.size_bytes <= stamp.size_bytes;
     if (fresh || !grows) {
       changed_ = changed_ || known.description.has_value();

@@ -48,7 +48,7 @@ class CatalogueScan {
   absl::StatusOr<Result> Scan(Time now);
 
  private:
-  // What tells one state of a file from another.
+  // Identity of one state of a file.
   struct Stamp {
     std::uint64_t file = 0;  // inode and device
     std::uint64_t size_bytes = 0;

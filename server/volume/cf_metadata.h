@@ -36,7 +36,7 @@ struct CfAirField {
   CfAir air;
 };
 
-// Of the sphere on which degrees become metres.
+// Radius of the sphere on which degrees become metres.
 inline constexpr double kCfEarthRadius_m = 6.371e6;
 
 struct CfMetadata {

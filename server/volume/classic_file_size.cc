@@ -19,9 +19,9 @@ struct HeaderWidths {
 
 // No larger than what can be counted: a header may promise anything.
 std::uintmax_t Product(std::uintmax_t a, std::uintmax_t b) {
-  constexpr std::uintmax_t kMost = std::numeric_limits<std::int64_t>::max() / 4096;
+  constexpr std::uintmax_t kMax = std::numeric_limits<std::int64_t>::max() / 4096;
   std::uintmax_t product = 0;
-  return __builtin_mul_overflow(a, b, &product) ? kMost : std::min(product, kMost);
+  return __builtin_mul_overflow(a, b, &product) ? kMax : std::min(product, kMax);
 }
 
 std::uintmax_t NameSize(const char* name, const HeaderWidths& widths) {

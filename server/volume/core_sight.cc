@@ -21,10 +21,10 @@ constexpr double kSkyBehind = 4.0;
 
 constexpr double kHighestBase_m = 2000.0;
 
-// The optical depth of the ground.
-constexpr double kOpaque = 100.0;
+// The optical depth that ground in the line of sight counts as.
+constexpr double kOpaqueDepth = 100.0;
 
-// Up to which an eye counts as clear of cloud and rain.
+// Maximum optical depth near an eye, towards the core, that counts as clear of cloud and rain.
 constexpr double kClearOpticalDepth = 0.05;
 
 bool Falls(physics::Hydrometeor hydrometeor) {
@@ -126,7 +126,7 @@ double CoreSight::OpticalDepth(const std::vector<Term>& terms, const glm::dvec3&
   double sum = 0.0;
   for (int i = 0; i < steps; ++i) {
     const glm::dvec3 point_m = glm::mix(from_m, to_m, (i + 0.5) / steps);
-    if (point_m.z < TerrainHeight_m(fields_, glm::dvec2(point_m))) return kOpaque;
+    if (point_m.z < TerrainHeight_m(fields_, glm::dvec2(point_m))) return kOpaqueDepth;
     sum += Extinction_per_m(terms, point_m);
   }
   return sum * glm::length(to_m - from_m) / steps;

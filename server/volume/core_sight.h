@@ -1,5 +1,5 @@
-// What an eye sees of a storm's core: how much of its base and of its tower condensate or terrain
-// hides. Of the optics only the particles' sizes are a scene's; knows no scene.
+// How much of the base and of the tower of a storm's core condensate or terrain hides from an eye.
+// Of the optics only the particles' sizes are a scene's; knows no scene.
 #pragma once
 
 #include <vector>

@@ -23,7 +23,7 @@ constexpr std::array<float, 2> kIceBillows_m_per_s = {1.0F, 5.0F};
 constexpr std::array<float, 2> kIceBillowsTurbulence = {0.3F,
                                                         0.7F};  // or opacities, if it is not known
 constexpr int kTurbulenceReach = 2;                             // cells
-// Where this opacity is not reached around a place, along a cell or this length, detail is weaker.
+// Detail is attenuated where the opacity along the longer of a cell and this length is below this.
 constexpr float kThinOpacity = 0.3F;
 constexpr double kThinLength_m = 200.0;
 

@@ -15,7 +15,7 @@ glm::ivec3 Floor(const glm::vec3& value) {
   return towards_zero - glm::ivec3(glm::lessThan(value, glm::vec3(towards_zero)));
 }
 
-// Of a linear interpolation between the corners of a cube; along x, then y, then z.
+// Weights of a linear interpolation between the corners of a cube; along x, then y, then z.
 std::array<float, 8> Weights(const glm::vec3& share) {
   const glm::vec3 rest = 1.0F - share;
   std::array<float, 8> weights;

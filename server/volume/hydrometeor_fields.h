@@ -20,6 +20,7 @@ namespace thunderhead::volume {
 // The quantity that a file has of a hydrometeor: mass per mass of air (kg/kg), mass per volume of
 // air (kg/m3), or the extinction of its particles (1/m).
 enum class Quantity { kMixingRatio, kMassConcentration, kExtinction };
+inline constexpr Quantity kLastQuantity = Quantity::kExtinction;
 
 // The unit of a quantity: "kg kg-1", "kg m-3" or "m-1".
 std::string_view UnitOf(Quantity quantity);

@@ -24,7 +24,7 @@ struct LandColumns {
 
 struct LandSurface {
   // nx * ny texels, x fastest: reflectance by colour, encoded as sRGB, and the share of water.
-  // Those of water have the colour of land beside them, so that none shows between the two.
+  // Texels of water have the colour of land beside them, so that none shows between the two.
   std::vector<glm::u8vec4> texels;
   double mean_albedo = 0.0;          // of land and water
   glm::vec3 mean_reflectance{0.0F};  // of land
@@ -32,7 +32,7 @@ struct LandSurface {
   bool Empty() const { return texels.empty(); }
 };
 
-// Of nx * ny columns with classes of land use.
+// The surface of nx * ny columns with classes of land use.
 LandSurface MakeLandSurface(const LandColumns& columns, const glm::ivec2& cells);
 
 struct LandSample {

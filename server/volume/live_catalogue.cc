@@ -30,7 +30,7 @@ LiveCatalogue::~LiveCatalogue() {
 }
 
 void LiveCatalogue::Running::Run() {
-  // What happened between the first scan and the watch has no event.
+  // Changes between the first scan and the watch have no event.
   bool again = WatchFolders();
   while (!stopping) {
     const Time pause_ends = steady_clock::now() + kShortestPause;

@@ -17,8 +17,8 @@ struct EarthPlace {
 
 class MapProjection {
  public:
-  // Of a grid whose middle is at `middle`. Nothing for an empty text, and for one that is not as
-  // this room writes it: lcc, stere on a pole, merc or eqc on a sphere.
+  // The projection of a grid whose middle is at `middle`. Nothing for an empty text, and for one
+  // that is not as this room writes it: lcc, stere on a pole, merc or eqc on a sphere.
   static std::optional<MapProjection> Of(std::string_view proj, const EarthPlace& middle);
 
   // The place of metres east and north of the middle of the domain; nothing beyond the map.

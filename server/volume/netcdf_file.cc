@@ -28,7 +28,7 @@ constexpr int kNoHandle = -1;
 // is that large.
 constexpr double kLargestValue = 1e30;
 
-// Of an attribute; longer ones are no text that a reader asks for.
+// Maximum length of an attribute; readers ask for no longer ones.
 constexpr std::size_t kLongestText = 1 << 20;
 
 // True if a writer holds the file: HDF5 locks what it writes with flock(2), and its reader then

@@ -8,7 +8,7 @@
 namespace thunderhead::volume {
 namespace {
 
-// Of zlib, where more saves little.
+// zlib's level; higher ones save little.
 constexpr int kCompression = 4;
 
 }  // namespace

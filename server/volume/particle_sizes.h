@@ -19,8 +19,9 @@ struct SizeVariable {
   bool is_count = false;  // particles per kg of dry air, not radii in m
 };
 
-// What a model's sizes follow from, in the order in which the first that there is counts.
+// Sources of a model's particle sizes, best first: the first that there is counts.
 enum class SizeOrigin { kEffectiveRadius, kNumber, kScheme, kObserved };
+inline constexpr SizeOrigin kLastSizeOrigin = SizeOrigin::kObserved;
 
 // The radii of one field; empty if all have the observed constant.
 struct ParticleSizes {

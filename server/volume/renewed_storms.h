@@ -1,5 +1,5 @@
-// What becomes of known storms when their files are found again: which is which, and which times
-// stay though their files are gone. Pure functions.
+// Matches known storms with files that are found again: which is which, and which times stay though
+// their files are gone. Pure functions.
 #pragma once
 
 #include <cstddef>

@@ -10,7 +10,7 @@
 namespace thunderhead::volume {
 namespace {
 
-// What holds for the files of every format, and other rooms rely on.
+// Checks conditions on files of every format that other rooms rely on.
 absl::Status CheckDescribed(StormFile& file) {
   const auto& cells = file.cells;
   THUNDERHEAD_RETURN_IF_ERROR(

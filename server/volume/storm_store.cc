@@ -18,7 +18,7 @@ namespace thunderhead::volume {
 
 namespace {
 
-// A path that is not there is a typing error, and a file that is named and no storm stays none.
+// A missing path is an error, probably of typing; so is a named file of no known format.
 absl::Status CheckPaths(const std::vector<std::string>& paths, const StormFormats& formats) {
   for (const std::string& path : paths) {
     std::error_code error;

@@ -45,7 +45,7 @@ struct StormInfo {
   std::optional<double> latitude_deg;        // of the middle; nothing for an idealised run
   std::optional<double> longitude_deg;
   std::optional<std::string> run_start;  // as valid times; nothing if the files do not tell
-  // Of the grid, whose middle is there, as PROJ writes it; empty if it has none.
+  // Projection of the grid, whose middle is there, as PROJ writes it; empty if it has none.
   std::string projection;
 };
 
@@ -76,12 +76,12 @@ struct LiveCatalogueOptions {
 };
 
 struct StormStoreOptions {
-  // Of cached times; the newest one, and those that somebody holds, are kept even if they are more.
+  // Bytes of cached times; the newest one and those in use are kept even if they are more.
   std::size_t byte_budget = std::size_t{2} << 30;
-  // What times in memory count in, cached or not; null: they do not.
+  // The budget that times in memory count in, cached or not; null: none.
   std::shared_ptr<base::MemoryBudget> memory;
   int read_ahead = 1;  // times read ahead after each Get
-  // A storage that has not let a read go on for so long is taken to hang.
+  // A storage on which a read makes no progress for this long counts as hanging.
   std::chrono::milliseconds read_deadline{60'000};
   StormFormats formats = StormFormats::BuiltIn();
   // Absent: the storms are those of the start. With it, a folder without storms is no error.

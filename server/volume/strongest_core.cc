@@ -16,7 +16,7 @@ namespace {
 constexpr double kWidestSmoothing_m = 3000.0;
 constexpr double kSmoothingPerHeight = 0.25;
 
-// Of an optical depth, what lies above the top.
+// Share of a column's optical depth that lies above its top.
 constexpr double kShareAboveTop = 1e-3;
 
 // Optical depth of every column of the domain, and extinction summed over every level; both of a

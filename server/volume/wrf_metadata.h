@@ -41,7 +41,7 @@ struct WrfMetadata {
   // there is none.
   std::array<SizeVariable, physics::kHydrometeorCount> sizes;
   physics::Microphysics microphysics = physics::Microphysics::kUnknown;
-  // Of turbulent kinetic energy, without a name if there is none: on interfaces, and doubled, as
+  // The variable of turbulent kinetic energy; no name: none. On interfaces, and doubled, as
   // boundary layer schemes have it.
   struct Energy {
     std::string name;

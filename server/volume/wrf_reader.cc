@@ -162,7 +162,7 @@ absl::Status TimeReader::ReadTerrain(HydrometeorFields& result) {
   return absl::OkStatus();
 }
 
-// Of the ground's cover only that of this time is kept: snow changes.
+// Keeps the ground's cover of this time alone, as snow changes.
 absl::Status TimeReader::ReadLand(HydrometeorFields& result) {
   const WrfLand& names = metadata_.land;
   if (names.land_use.empty()) return absl::OkStatus();

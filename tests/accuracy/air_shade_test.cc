@@ -162,14 +162,15 @@ TEST_F(AirShadeTest, AirStandsBeforeTheStormNotBeforeTheMiddleOfItsBox) {
   };
   scene_.sky.turbidity = 6.0;
   scene_.sun.azimuth_deg = 180.0;  // on the cloud, which is then brighter than the air
-  for (const accuracy::Path& path : {test_support::kHalfAngle, test_support::kLightVolume}) {
-    test_support::SetPath(&scene_.rendering.technique, path);
+  for (const accuracy::PlainTechnique& plain :
+       {test_support::kHalfAngle, test_support::kLightVolume}) {
+    test_support::SetTechnique(&scene_.rendering.technique, plain);
     fields_ = near_cloud(false);
     const glm::dvec3 alone = DrawnRow(Drawn(), kHeight_px / 2);
     fields_ = near_cloud(true);
     const glm::dvec3 with_another = DrawnRow(Drawn(), kHeight_px / 2);
     for (int color = 0; color < 3; ++color) {
-      EXPECT_NEAR(with_another[color], alone[color], 0.05 * alone[color]) << path.name;
+      EXPECT_NEAR(with_another[color], alone[color], 0.05 * alone[color]) << plain.name;
     }
   }
 }

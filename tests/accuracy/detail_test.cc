@@ -14,10 +14,10 @@
 namespace thunderhead::renderers {
 namespace {
 
-class DetailInSlab : public SlabView, public testing::WithParamInterface<accuracy::Path> {
+class DetailInSlab : public SlabView, public testing::WithParamInterface<accuracy::PlainTechnique> {
  protected:
   void SetUp() override {
-    test_support::SetPath(&scene_.rendering.technique, GetParam());
+    test_support::SetTechnique(&scene_.rendering.technique, GetParam());
     test_support::SetMode(&scene_.rendering.technique, test_support::kWithDetail);
     test_support::SetTransport(&scene_.rendering.technique,
                                scene::Transport::kPaper);  // unscaled extinction towards the eye

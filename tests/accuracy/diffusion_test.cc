@@ -12,7 +12,7 @@ namespace {
 class Diffusion : public SlabView {
  protected:
   void SetUp() override {
-    test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);
+    test_support::SetTechnique(&scene_.rendering.technique, test_support::kLightVolume);
     test_support::SetMode(&scene_.rendering.technique, test_support::kPerFieldPhase);
     test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kDiffusion);
     scene::SetSlices(&scene_.rendering.technique, 1024);  // steps shorter than the cells are high

@@ -14,7 +14,7 @@ namespace {
 class HalfAngle : public SlabView {
  protected:
   void SetUp() override {
-    test_support::SetPath(&scene_.rendering.technique, test_support::kHalfAngle);
+    test_support::SetTechnique(&scene_.rendering.technique, test_support::kHalfAngle);
   }
 };
 
@@ -237,7 +237,7 @@ TEST_F(HalfAngle, ThickSlabIsWhite) {
 class OpticalDepths : public HalfAngle, public testing::WithParamInterface<double> {};
 
 TEST_P(OpticalDepths, NothingBreaks) {
-  // The second number is of more than one slab.
+  // 40 slices need more than one slab.
   for (const int slices : {8, 40}) {
     for (const auto mode : {test_support::kLowAlbedo, test_support::kPerFieldPhase}) {
       for (const auto transport : {scene::Transport::kPaper, scene::Transport::kConsistent}) {

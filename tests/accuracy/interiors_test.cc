@@ -149,7 +149,7 @@ TEST_F(InteriorsTest, AMetreChangesLittle) {
 class InSlab : public SlabView {};
 
 TEST_F(InSlab, NothingIsClippedBeforeTheEye) {
-  scene_.rendering.technique = accuracy::PathNamed(scene::LightVolume::kName)->plain();
+  scene_.rendering.technique = accuracy::Plain<scene::LightVolume>().settings();
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
   constexpr double kDepth = 40.0;  // of the slab's 1000 m
   for (const double height_m : {1.0, 5.0, 30.0, 100.0}) {

@@ -13,7 +13,7 @@ namespace {
 class LightVolume : public SlabView {
  protected:
   void SetUp() override {
-    test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);
+    test_support::SetTechnique(&scene_.rendering.technique, test_support::kLightVolume);
   }
 
   void SingleScattering() {
@@ -106,10 +106,10 @@ TEST_F(LightVolume, AgreesWithHalfAngleSlicing) {
     test_support::SetMode(&scene_.rendering.technique, mode);
     for (const double depth : {0.1, 1.0, 10.0, 100.0}) {
       for (const double elevation_deg : {-60.0, 30.0, 80.0}) {
-        test_support::SetPath(&scene_.rendering.technique, test_support::kHalfAngle);
+        test_support::SetTechnique(&scene_.rendering.technique, test_support::kHalfAngle);
         scene::SetSlices(&scene_.rendering.technique, 512);
         const double slices = Look(depth, elevation_deg, 50.0).radiance;
-        test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);
+        test_support::SetTechnique(&scene_.rendering.technique, test_support::kLightVolume);
         scene::SetSlices(&scene_.rendering.technique, 128);
         const double volume = Look(depth, elevation_deg, 50.0).radiance;
         // Diffuse light is linear from cell to cell here; where a cell's optical depth is 12 that
@@ -125,9 +125,9 @@ TEST_F(LightVolume, PaperTransportDependsOnTheNumberOfSlicesAsPrinted) {
   // Seen from below, the light transmitted by the slab: more slices, less light (physics.md, 3).
   test_support::SetMode(&scene_.rendering.technique, test_support::kUniformPhase);
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
-  const auto seen = [&](int slices, const accuracy::Path& renderer) {
+  const auto seen = [&](int slices, const accuracy::PlainTechnique& renderer) {
     scene::SetSlices(&scene_.rendering.technique, slices);
-    test_support::SetPath(&scene_.rendering.technique, renderer);
+    test_support::SetTechnique(&scene_.rendering.technique, renderer);
     return Look(10.0, -89.9, 89.9).radiance;
   };
   const double coarse = seen(16, test_support::kLightVolume);

@@ -55,7 +55,7 @@ class PhaseTables : public testing::TestWithParam<physics::PhaseFunction> {
 
   // A row of pixels from below a slab of cloud: straight up in its middle, where the sun is, or
   // where it would be if it shone straight from below (which needs no ground).
-  std::vector<float> LookUp(double sun_elevation_deg, const accuracy::Path& renderer) {
+  std::vector<float> LookUp(double sun_elevation_deg, const accuracy::PlainTechnique& renderer) {
     const auto fields = support::MakeSlab(kWidth_m, kHeight_m, kOpticalDepth / kHeight_m);
     ResidentMedium::Cost cost;
     DetailNoises noises;

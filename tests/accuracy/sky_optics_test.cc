@@ -1,4 +1,4 @@
-// What the sky shows around the sun and opposite to it, in drawn pictures of thin slabs: the angles
+// The sky around the sun and opposite to it, in drawn pictures of thin slabs: the angles
 // and the order of the colours of bows, glory, corona and aureole against published ones.
 #include <algorithm>
 #include <array>

@@ -72,7 +72,7 @@ class SlabView : public testing::Test {
     settings.eye_size = {9, 9};
     settings.slices = *scene::SlicesOf(scene_.rendering.technique);
     Seen seen;
-    if (test_support::PathOf(scene_.rendering.technique) == test_support::kHalfAngle) {
+    if (test_support::PlainTechniqueOf(scene_.rendering.technique) == test_support::kHalfAngle) {
       HalfAngleRenderer renderer(std::make_shared<gl::ProgramCache>());
       EXPECT_TRUE(renderer.Render(medium, settings, true).ok());
       seen.eye = frame::ReadLinear(renderer.Eye());

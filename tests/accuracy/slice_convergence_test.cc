@@ -23,7 +23,7 @@ TEST(SliceConvergence, PaperIsFirstOrderConsistentSecond) {
   auto context = test_support::OpenContext();
   ASSERT_TRUE(context.ok()) << context.status();
   scene::Scene scene = test_support::PlainScene();
-  test_support::SetPath(&scene.rendering.technique, test_support::kHalfAngle);
+  test_support::SetTechnique(&scene.rendering.technique, test_support::kHalfAngle);
   scene.output = {48, 48, 88};
   scene.sun = {255.0, 35.0};
   scene.sky = {0.0, 0.0};

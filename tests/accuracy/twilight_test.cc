@@ -31,7 +31,7 @@ double ShadowHeight_m(double depression_deg) {
   return physics::kEffectiveEarthRadius_m * (1.0 / std::cos(glm::radians(depression_deg)) - 1.0);
 }
 
-class TwilightTest : public testing::TestWithParam<accuracy::Path> {
+class TwilightTest : public testing::TestWithParam<accuracy::PlainTechnique> {
  protected:
   static constexpr int kWidth_px = 8;
   static constexpr int kHeight_px = 80;
@@ -41,7 +41,7 @@ class TwilightTest : public testing::TestWithParam<accuracy::Path> {
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
     renderer_ = std::make_unique<SceneRenderer>();
-    test_support::SetPath(&scene_.rendering.technique, GetParam());
+    test_support::SetTechnique(&scene_.rendering.technique, GetParam());
     scene_.output = {kWidth_px, kHeight_px, 90};
     scene_.sun = {270.0, -kDepression_deg, 1.0};
     scene_.sky.brightness = 0.0;

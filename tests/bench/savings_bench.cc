@@ -69,14 +69,15 @@ Fields Refined(const Fields& fields, int factor) {
   return fine;
 }
 
-std::string Name(const std::string& part, const accuracy::Path& path, const std::string& what) {
-  return part + "/" + std::string(path.name) + "/" + what;
+std::string Name(const std::string& part, const accuracy::PlainTechnique& plain,
+                 const std::string& what) {
+  return part + "/" + std::string(plain.name) + "/" + what;
 }
 
 // The camera moves; and, where light is kept apart from the view, the sun.
 void RegisterBoth(const std::string& name, const scene::Scene& scene, const Fields& fields) {
   Register(name, scene, fields, Moving::kCamera);
-  if (test_support::PathOf(scene.rendering.technique) != test_support::kHalfAngle) {
+  if (test_support::PlainTechniqueOf(scene.rendering.technique) != test_support::kHalfAngle) {
     Register(name + "/light", scene, fields, Moving::kSun);
   }
 }
@@ -86,50 +87,50 @@ void RegisterBoth(const std::string& name, const scene::Scene& scene, const Fiel
 void RegisterSavings() {
   const Fields& fields = Sample::Get().fields;
   const Fields hazy = InHaze(fields);
-  for (const auto& path : accuracy::kFieldPaths) {
+  for (const auto& plain : accuracy::kCellTechniques) {
     scene::Scene scene = PaperScene();
-    test_support::SetPath(&scene.rendering.technique, path);
-    RegisterBoth(Name("saving", path, "five_fields_as_they_merge"), scene, fields);
-    RegisterBoth(Name("saving", path, "empty_space_drawn"), scene, hazy);
+    test_support::SetTechnique(&scene.rendering.technique, plain);
+    RegisterBoth(Name("saving", plain, "five_fields_as_they_merge"), scene, fields);
+    RegisterBoth(Name("saving", plain, "empty_space_drawn"), scene, hazy);
     scene::Scene detailed = scene;
     test_support::SetMode(&detailed.rendering.technique, test_support::kWithDetail);
-    RegisterBoth(Name("saving", path, "detail_on"), detailed, fields);
+    RegisterBoth(Name("saving", plain, "detail_on"), detailed, fields);
     scene::Scene parted = scene;
     PartFields(&parted);
-    RegisterBoth(Name("saving", path, "five_fields_apart"), parted, fields);
+    RegisterBoth(Name("saving", plain, "five_fields_apart"), parted, fields);
     ShowOnly(1, &parted);
-    RegisterBoth(Name("saving", path, "one_field"), parted, fields);
+    RegisterBoth(Name("saving", plain, "one_field"), parted, fields);
   }
 }
 
 void RegisterGrowth() {
   const Fields& fields = Sample::Get().fields;
-  for (const auto& path : accuracy::kFieldPaths) {
+  for (const auto& plain : accuracy::kCellTechniques) {
     scene::Scene paper = PaperScene();
-    test_support::SetPath(&paper.rendering.technique, path);
+    test_support::SetTechnique(&paper.rendering.technique, plain);
     for (const int slices : {32, 64, 128, 256, 512}) {
       scene::Scene scene = paper;
       scene::SetSlices(&scene.rendering.technique, slices);
-      Register(Name("growth", path, "slices_" + std::to_string(slices)), scene, fields,
+      Register(Name("growth", plain, "slices_" + std::to_string(slices)), scene, fields,
                Moving::kCamera);
     }
     for (const int side_px : {150, 300, 600, 1200}) {
       scene::Scene scene = paper;
       scene.output = {side_px, side_px, 88};
-      Register(Name("growth", path, "pixels_" + std::to_string(side_px * side_px)), scene, fields,
+      Register(Name("growth", plain, "pixels_" + std::to_string(side_px * side_px)), scene, fields,
                Moving::kCamera);
     }
     for (const std::size_t count : {1U, 2U, 3U, 4U, 5U}) {
       scene::Scene scene = paper;
       PartFields(&scene);
       ShowOnly(count, &scene);
-      Register(Name("growth", path, "fields_" + std::to_string(count)), scene, fields,
+      Register(Name("growth", plain, "fields_" + std::to_string(count)), scene, fields,
                Moving::kCamera);
     }
     const Fields coarse =
         std::make_shared<volume::HydrometeorFields>(volume::Coarsened(*fields, glm::ivec3(2)));
     for (const Fields& grid : {coarse, fields, Refined(fields, 2)}) {
-      RegisterBoth(Name("growth", path, "cells_" + std::to_string(grid->grid.CellCount())), paper,
+      RegisterBoth(Name("growth", plain, "cells_" + std::to_string(grid->grid.CellCount())), paper,
                    grid);
     }
   }

@@ -14,10 +14,10 @@ void RegisterModes() {
   // Riley et al. 2003 (AMS), Table IV, in the order of accuracy::kModes.
   constexpr std::array kPaperFps = {5.1, 4.3, 1.7, 1.2};
   const Fields& fields = Sample::Get().fields;
-  for (const auto& path : accuracy::kFieldPaths) {
+  for (const auto& plain : accuracy::kCellTechniques) {
     scene::Scene scene = PaperScene();
-    test_support::SetPath(&scene.rendering.technique, path);
-    const std::string prefix = std::string(path.name) + "/";
+    test_support::SetTechnique(&scene.rendering.technique, plain);
+    const std::string prefix = std::string(plain.name) + "/";
     for (std::size_t i = 0; i < accuracy::kModes.size(); ++i) {
       test_support::SetMode(&scene.rendering.technique, accuracy::kModes[i]);
       Register(prefix + std::string(accuracy::kModes[i].name), scene, fields, Moving::kCamera,
@@ -45,7 +45,7 @@ void RegisterPresets() {
 void RegisterMetaballs() {
   scene::Scene scene = PaperScene();
   scene.output = {1024, 768, 88};
-  test_support::SetPath(&scene.rendering.technique, test_support::kMetaball);
+  test_support::SetTechnique(&scene.rendering.technique, test_support::kMetaball);
   struct Row {
     const char* name;
     int asked;
@@ -54,7 +54,7 @@ void RegisterMetaballs() {
   const Fields& fields = Sample::Get().fields;
   for (const Row& row : {Row{"1200", 1660, 43.0}, Row{"10000", 11900, 7.0}}) {
     test_support::MetaballsOf(scene.rendering.technique).count = row.asked;
-    for (const auto& transport : accuracy::kTransports) {
+    for (const auto& transport : accuracy::kTransportNames) {
       if (transport.value == scene::Transport::kDiffusion) continue;  // drawn as consistent
       test_support::SetTransport(&scene.rendering.technique, transport.value);
       const std::string path =
@@ -68,7 +68,7 @@ void RegisterMetaballs() {
 void RegisterCumulus() {
   scene::Scene scene = PaperScene();
   scene.output = {600, 600, 88};
-  test_support::SetPath(&scene.rendering.technique, test_support::kCumulus);
+  test_support::SetTechnique(&scene.rendering.technique, test_support::kCumulus);
   struct Row {
     const char* name;
     scene::CumulusSource source;

@@ -267,7 +267,7 @@ TEST_F(CumulusRendererTest, ComponentsSumToTheWhole) {
   }
 }
 
-// What is lit evenly from everywhere and absorbs nothing looks like what is around it.
+// A white furnace: a cloud that absorbs nothing and is lit evenly from everywhere is not seen.
 TEST_F(CumulusRendererTest, AWhiteFurnaceHidesTheCloud) {
   settings_.illumination.sunlight = glm::vec3(0.0F);
   Cumulus().roughness = 0.6F;

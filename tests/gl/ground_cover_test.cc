@@ -1,4 +1,4 @@
-// What covers the ground in pictures: fields, land use with water, and rings; against the formulas
+// The cover of the ground in pictures: fields, land use with water, and rings; against the formulas
 // on the CPU and against the reference.
 #include <algorithm>
 #include <cmath>

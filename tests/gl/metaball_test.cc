@@ -55,7 +55,7 @@ class MetaballTest : public testing::Test {
     MediumGroup group;
     group.phase = {physics::PhaseKind::kHenyeyGreenstein, 0.0};
     content_.groups = {group};
-    test_support::SetPath(&settings_.technique, test_support::kMetaball);
+    test_support::SetTechnique(&settings_.technique, test_support::kMetaball);
     // Light that is scattered is lost, and no direction is special: single scattering.
     test_support::SetMode(&settings_.technique, test_support::kLowAlbedo);
     settings_.illumination = {{0.0, 0.0, 1.0}, glm::vec3(1.0F), glm::vec3(0.0F)};
@@ -468,7 +468,7 @@ class MetaballSceneTest : public testing::Test {
     context_ = *std::move(context);
     renderer_ = std::make_unique<SceneRenderer>();
     scene_.output = {48, 32, 90};
-    test_support::SetPath(&scene_.rendering.technique, test_support::kMetaball);
+    test_support::SetTechnique(&scene_.rendering.technique, test_support::kMetaball);
     test_support::MetaballsOf(scene_.rendering.technique).count = 60;
     auto& orbit = std::get<scene::OrbitCamera>(scene_.camera);
     orbit.target_m = {0.0, 0.0, 1000.0};
@@ -540,9 +540,9 @@ TEST_F(MetaballSceneTest, KeptStagesGiveThePictureThatAFreshRendererGives) {
     bool& false_colors = scene::MediumSettingsOf(&scene_.rendering.technique)->look.false_colors;
     false_colors = !false_colors;
     check("false colours");
-    test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);
+    test_support::SetTechnique(&scene_.rendering.technique, test_support::kLightVolume);
     check("another renderer");
-    test_support::SetPath(&scene_.rendering.technique, test_support::kMetaball);
+    test_support::SetTechnique(&scene_.rendering.technique, test_support::kMetaball);
     test_support::MetaballsOf(scene_.rendering.technique).count = 60;
     check("and back");
   }
@@ -565,7 +565,7 @@ TEST_F(MetaballSceneTest, TheFrameSaysWhatItIs) {
                                            "turbulent detail finer than the grid"));
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
   EXPECT_THAT(NotShown(Draw()), Contains(HasSubstr("albedo")));
-  test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);
+  test_support::SetTechnique(&scene_.rendering.technique, test_support::kLightVolume);
   EXPECT_THAT(NotShown(Draw()), IsEmpty());
   EXPECT_EQ(Draw().content.balls, 0);
 }
@@ -589,7 +589,7 @@ TEST_F(MetaballSceneTest, LightsBesidesTheSunAreShownOrSaidNotToBe) {
       << "the ground has no part in it";
   for (const auto renderer :
        {test_support::kLightVolume, test_support::kHalfAngle, test_support::kCumulus}) {
-    test_support::SetPath(&scene_.rendering.technique, renderer);
+    test_support::SetTechnique(&scene_.rendering.technique, renderer);
     EXPECT_THAT(NotShown(Draw()), Contains(HasSubstr("lights besides the sun")));
     scene_.lights.clear();
     EXPECT_THAT(Stages(), IsEmpty()) << "none to draw again";
@@ -606,8 +606,8 @@ TEST_F(MetaballSceneTest, NothingVisibleNeedsNoBalls) {
 
 TEST_F(MetaballSceneTest, IsNearTheLightVolume) {
   scene_.camera = scene::TopDownCamera{{0.0, 0.0}, 8e3};
-  const auto mean = [&](const accuracy::Path& renderer) {
-    test_support::SetPath(&scene_.rendering.technique, renderer);
+  const auto mean = [&](const accuracy::PlainTechnique& renderer) {
+    test_support::SetTechnique(&scene_.rendering.technique, renderer);
     if (auto* metaballs = std::get_if<scene::Metaballs>(&scene_.rendering.technique)) {
       metaballs->count = 2000;
     }
@@ -625,7 +625,7 @@ TEST_F(MetaballSceneTest, IsNearTheLightVolume) {
 TEST(BallFits, KeepsWhatItsStormAndOpticsAskFor) {
   BallFits fits(2);
   scene::Scene scene = test_support::PlainScene();
-  test_support::SetPath(&scene.rendering.technique, test_support::kMetaball);
+  test_support::SetTechnique(&scene.rendering.technique, test_support::kMetaball);
   test_support::MetaballsOf(scene.rendering.technique).count = 20;
   auto fields = support::MakeLayerInAir(4000.0, 2000.0, 8, 5.0);
   EXPECT_FALSE(fits.Has(scene, fields));
@@ -658,7 +658,7 @@ TEST(FitBalls, TheSumOfBallsIsTheMedium) {
     EXPECT_GT(ball.radius_m, 0.0);
     EXPECT_GE(ball.extinction_per_m, 0.0);
   }
-  // 5 optical depths over 4 x 4 km; balls reach beyond the faces, where nothing counts against.
+  // 5 optical depths over 4 x 4 km; balls reach beyond the faces, where the fit is not penalised.
   EXPECT_NEAR(sum / (5.0 * 4000.0 * 4000.0), 1.0, 0.2);
   // More balls than cells are as many as cells.
   const auto few = support::MakeSlab(100.0, 100.0, 0.01, glm::ivec3(2));

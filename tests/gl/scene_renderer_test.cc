@@ -63,7 +63,7 @@ class SceneRendererTest : public testing::Test {
 };
 
 TEST_F(SceneRendererTest, AChangeRerunsOnlyWhatItDirties) {
-  test_support::SetPath(&scene_.rendering.technique, test_support::kHalfAngle);
+  test_support::SetTechnique(&scene_.rendering.technique, test_support::kHalfAngle);
   EXPECT_THAT(StagesOf(),
               ElementsAre("extinction", "upload", "ground", "slices", "air", "composite"));
   EXPECT_THAT(StagesOf(), IsEmpty());
@@ -83,20 +83,20 @@ TEST_F(SceneRendererTest, AChangeRerunsOnlyWhatItDirties) {
 }
 
 TEST_F(SceneRendererTest, TheLightVolumeIsKeptWhileOnlyTheCameraMoves) {
-  test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);
+  test_support::SetTechnique(&scene_.rendering.technique, test_support::kLightVolume);
   EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "light", "view", "air", "composite"));
   Orbit().azimuth_deg += 5.0;
   EXPECT_THAT(StagesOf(), ElementsAre("view", "air", "composite"));
   scene_.sun.elevation_deg += 5.0;
   EXPECT_THAT(StagesOf(), ElementsAre("light", "view", "air", "composite"));
-  test_support::SetPath(&scene_.rendering.technique, test_support::kHalfAngle);
+  test_support::SetTechnique(&scene_.rendering.technique, test_support::kHalfAngle);
   EXPECT_THAT(StagesOf(), ElementsAre("ground", "slices", "air", "composite"));
-  test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);
+  test_support::SetTechnique(&scene_.rendering.technique, test_support::kLightVolume);
   EXPECT_THAT(StagesOf(), ElementsAre("light", "view", "air", "composite"));
 }
 
 TEST_F(SceneRendererTest, ACumulusRerunsOnlyWhatAChangeDirties) {
-  test_support::SetPath(&scene_.rendering.technique, test_support::kCumulus);
+  test_support::SetTechnique(&scene_.rendering.technique, test_support::kCumulus);
   scene::Cumulus& cumulus = test_support::CumulusOf(scene_.rendering.technique);
   EXPECT_THAT(StagesOf(), ElementsAre("surface", "light", "view", "air", "composite"));
   EXPECT_THAT(StagesOf(), IsEmpty());
@@ -112,14 +112,14 @@ TEST_F(SceneRendererTest, ACumulusRerunsOnlyWhatAChangeDirties) {
   EXPECT_THAT(StagesOf(), IsEmpty());
   cumulus.seed = 2;
   EXPECT_THAT(StagesOf(), ElementsAre("surface", "light", "view", "air", "composite"));
-  test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);
+  test_support::SetTechnique(&scene_.rendering.technique, test_support::kLightVolume);
   EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "light", "view", "air", "composite"));
   cumulus.seed = 3;  // not looked at
   EXPECT_THAT(StagesOf(), IsEmpty());
 }
 
 TEST_F(SceneRendererTest, ACumulusOfAStormStandsWhereTheStormIs) {
-  test_support::SetPath(&scene_.rendering.technique, test_support::kCumulus);
+  test_support::SetTechnique(&scene_.rendering.technique, test_support::kCumulus);
   scene_.camera = scene::TopDownCamera{{4000.0, 0.0}, 16e3};
   scene_.sun.elevation_deg = 90.0;  // its shadow lies below it
   const std::vector<float> with = Pixels(renderer_.get());
@@ -144,7 +144,7 @@ TEST_F(SceneRendererTest, ACumulusOfAStormStandsWhereTheStormIs) {
 TEST_F(SceneRendererTest, ACumulusWithoutSurfaceIsTheSkyAlone) {
   scene_.fields[0].visible = false;
   const std::vector<float> sky = Pixels(renderer_.get());
-  test_support::SetPath(&scene_.rendering.technique, test_support::kCumulus);
+  test_support::SetTechnique(&scene_.rendering.technique, test_support::kCumulus);
   EXPECT_EQ(Pixels(renderer_.get()), sky);
   scene_.fields[0].visible = true;
   test_support::CumulusOf(scene_.rendering.technique).least_extinction_per_m = 1.0F;
@@ -155,7 +155,7 @@ TEST_F(SceneRendererTest, ACumulusWithoutSurfaceIsTheSkyAlone) {
 }
 
 TEST_F(SceneRendererTest, ACumulusIsDarkAtNight) {
-  test_support::SetPath(&scene_.rendering.technique, test_support::kCumulus);
+  test_support::SetTechnique(&scene_.rendering.technique, test_support::kCumulus);
   test_support::CumulusOf(scene_.rendering.technique).source = scene::CumulusSource::kCauliflower;
   scene_.sun.elevation_deg = -1.0;
   const std::vector<float> dusk = Pixels(renderer_.get());
@@ -171,7 +171,7 @@ TEST_F(SceneRendererTest, ACumulusIsDarkAtNight) {
 }
 
 TEST_F(SceneRendererTest, ACumulusSaysWhatItCannotShow) {
-  test_support::SetPath(&scene_.rendering.technique, test_support::kCumulus);
+  test_support::SetTechnique(&scene_.rendering.technique, test_support::kCumulus);
   auto rainy = std::make_shared<volume::HydrometeorFields>(*fields_);
   rainy->fields.push_back(rainy->fields.front());
   rainy->fields.back().hydrometeor = physics::Hydrometeor::kRain;
@@ -192,7 +192,7 @@ TEST_F(SceneRendererTest, ACumulusSaysWhatItCannotShow) {
   scene_.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].detail.share = 0.0F;
   EXPECT_FALSE(leaves_out_detail()) << "the rain's, which is not drawn";
   scene_.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].detail.share = 1.0F;
-  test_support::SetPath(&scene_.rendering.technique, test_support::kLightVolume);
+  test_support::SetTechnique(&scene_.rendering.technique, test_support::kLightVolume);
   EXPECT_FALSE(leaves_out_detail()) << "where it is a setting";
 }
 
@@ -375,7 +375,7 @@ TEST_F(GroundTest, AMountainHidesWhatIsBehindIt) {
   camera.focal_length_mm = 60.0;
   scene_.camera = camera;
   for (const auto renderer : {test_support::kHalfAngle, test_support::kLightVolume}) {
-    test_support::SetPath(&scene_.rendering.technique, renderer);
+    test_support::SetTechnique(&scene_.rendering.technique, renderer);
     const auto storm_shows = [&] {
       scene_.fields[0].visible = true;
       const std::vector<float> with = Pixels(renderer_.get());

@@ -75,7 +75,7 @@ class FakePreparation final : public session::Preparation {
   explicit FakePreparation(std::shared_ptr<FakeMachine> machine) : machine_(std::move(machine)) {}
 
   bool IsNeeded(const scene::Scene& scene) const override {
-    return test_support::PathOf(scene.rendering.technique) == test_support::kMetaball;
+    return test_support::PlainTechniqueOf(scene.rendering.technique) == test_support::kMetaball;
   }
 
   bool IsDone(const scene::Scene& scene, const Fields& fields) override {

@@ -142,7 +142,7 @@ class RenderLoopTest : public ::testing::Test {
   static scene::Scene OfMetaballs(int count, int time_index = 0) {
     scene::Scene scene = Small(0.0);
     scene.time_index = time_index;
-    test_support::SetPath(&scene.rendering.technique, test_support::kMetaball);
+    test_support::SetTechnique(&scene.rendering.technique, test_support::kMetaball);
     test_support::MetaballsOf(scene.rendering.technique).count = count;
     return scene;
   }

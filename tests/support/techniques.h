@@ -13,30 +13,30 @@ namespace thunderhead::test_support {
 // A scene by the light volume with consistent transport, without detail and traced light.
 inline scene::Scene PlainScene() {
   scene::Scene scene;
-  scene.rendering.technique = accuracy::PathNamed(scene::LightVolume::kName)->plain();
+  scene.rendering.technique = accuracy::Plain<scene::LightVolume>().settings();
   return scene;
 }
 
-// The paths of accuracy::kPaths, for parameters of tests.
-inline constexpr accuracy::Path kHalfAngle = accuracy::kPaths[0];
-inline constexpr accuracy::Path kLightVolume = accuracy::kPaths[1];
-inline constexpr accuracy::Path kMetaball = accuracy::kPaths[2];
-inline constexpr accuracy::Path kCumulus = accuracy::kPaths[3];
+// For parameters of tests.
+inline constexpr auto kHalfAngle = accuracy::Plain<scene::HalfAngle>();
+inline constexpr auto kLightVolume = accuracy::Plain<scene::LightVolume>();
+inline constexpr auto kMetaball = accuracy::Plain<scene::Metaballs>();
+inline constexpr auto kCumulus = accuracy::Plain<scene::Cumulus>();
 
-inline constexpr accuracy::Mode kLowAlbedo = accuracy::kModes[0];
-inline constexpr accuracy::Mode kUniformPhase = accuracy::kModes[1];
-inline constexpr accuracy::Mode kPerFieldPhase = accuracy::kModes[2];
-inline constexpr accuracy::Mode kWithDetail = accuracy::kModes[3];
+inline constexpr accuracy::Mode kLowAlbedo = accuracy::kUniformPhaseLowAlbedoMode;
+inline constexpr accuracy::Mode kUniformPhase = accuracy::kUniformPhaseTranslucentMode;
+inline constexpr accuracy::Mode kPerFieldPhase = accuracy::kPerFieldPhaseTranslucentMode;
+inline constexpr accuracy::Mode kWithDetail = accuracy::kPerFieldPhaseDetailTranslucentMode;
 
 // None for the reference and techniques that the program was extended by.
-inline std::optional<accuracy::Path> PathOf(const scene::Technique& technique) {
-  return accuracy::PathNamed(scene::NameOf(technique));
+inline std::optional<accuracy::PlainTechnique> PlainTechniqueOf(const scene::Technique& technique) {
+  return accuracy::PlainTechniqueNamed(scene::NameOf(technique));
 }
 
 // The transport of the technique's translucent variant.
 inline scene::Transport TransportOf(const scene::Technique& technique) {
   const std::string_view name = accuracy::TransportNameOf(technique);
-  for (const auto& transport : accuracy::kTransports) {
+  for (const auto& transport : accuracy::kTransportNames) {
     if (transport.name == name) return transport.value;
   }
   return scene::Transport::kConsistent;
@@ -51,11 +51,11 @@ inline void SetTransport(scene::Technique* technique, scene::Transport transport
   *technique = accuracy::InMode(*technique, accuracy::ModeOf(*technique), transport);
 }
 
-// Its own settings, such as the number of metaballs, are the path's plain ones.
-inline void SetPath(scene::Technique* technique, const accuracy::Path& path) {
-  if (PathOf(*technique) == path) return;
+// Its own settings, such as the number of metaballs, are the plain ones.
+inline void SetTechnique(scene::Technique* technique, const accuracy::PlainTechnique& plain) {
+  if (PlainTechniqueOf(*technique) == plain) return;
   const scene::Technique before = *technique;
-  *technique = path.plain();
+  *technique = plain.settings();
   const scene::MediumSettings* from = scene::MediumSettingsOf(before);
   scene::MediumSettings* to = scene::MediumSettingsOf(technique);
   if (from != nullptr && to != nullptr) *to = *from;

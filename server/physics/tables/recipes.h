@@ -38,7 +38,7 @@ struct BuiltTable {
   PhaseTable table;
   std::string provenance;
 };
-// Of sunlight: seen under the sun's disc, and for water over each channel's band of wavelengths.
+// Tables for sunlight: averaged over the sun's disc, and for water over each channel's band.
 BuiltTable Build(const DropletRecipe& recipe, const WorkPlan& plan);
 BuiltTable Build(const IceRecipe& recipe, const WorkPlan& plan);
 

@@ -5,7 +5,7 @@
 
 namespace thunderhead::renderers {
 
-// Of cumulus/bubble.vert with cumulus/depth.frag.
+// Variant of cumulus/bubble.vert with cumulus/depth.frag.
 struct BubbleVariant {
   gl::DefineValue base;         // the surface is cut off at a height
   gl::DefineValue ground;       // may hide bubbles
@@ -16,7 +16,7 @@ struct BubbleVariant {
   }
 };
 
-// Of cumulus/bubble.vert with cumulus/shade.frag.
+// Variant of cumulus/bubble.vert with cumulus/shade.frag.
 struct ShadeVariant {
   BubbleVariant bubble;
   gl::DefineValue plain;  // Lambert's law alone

@@ -39,7 +39,7 @@ class HalfAngleRenderer {
   // The result of the last Render.
   const gl::Texture2D& Eye() const { return eye_[last_eye_].Texture(); }
   const gl::Texture2D& Distances_m() const { return eye_[last_eye_].Distances(); }
-  // What comes out of the last slice, before the exchange with neighbours that may be due: four
+  // Light that leaves the last slice, before the exchange with neighbours that may be due: four
   // floats a texel of the light buffer, of which the first is the share of sunlight.
   std::vector<float> Light() const { return light_.Download(static_cast<int>(last_layer_)); }
   std::size_t Bytes() const;

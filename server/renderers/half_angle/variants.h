@@ -7,7 +7,7 @@
 
 namespace thunderhead::renderers {
 
-// Of half_angle/carry.comp.
+// Variant of half_angle/carry.comp.
 struct SliceLightVariant {
   MediumVariant medium;
   gl::DefineValue consistent;   // transport
@@ -18,7 +18,7 @@ struct SliceLightVariant {
   }
 };
 
-// Of half_angle/eye.frag.
+// Variant of half_angle/eye.frag.
 struct SliceEyeVariant {
   MediumVariant medium;
   gl::DefineValue colored;      // groups have colours

@@ -19,12 +19,12 @@ namespace {
 constexpr float kEmptyDepth = 1e-4F;
 constexpr int kMaxIterations = 200;
 constexpr double kTolerance = 2e-4;
-// A face that light leaves aslant counts as at most so much farther from the surface.
+// Maximum factor by which leaving a face aslant lengthens the path to the surface.
 constexpr float kMaxSlant = 4.0F;
 
-// What faces receive of a sky of radiance a + b (1 - sine of the elevation), in shares of its
-// irradiance from above over pi and of its mean radiance: integrals over the half of the sphere,
-// for sides over a quarter.
+// Light that faces receive of a sky of radiance a + b (1 - sine of the elevation), as weights of
+// its irradiance from above over pi and of its mean radiance: integrals over the half of the
+// sphere, for sides over a quarter.
 constexpr glm::vec2 kSideSees(-0.227F, 0.727F);
 constexpr std::array<glm::vec2, 6> kSkySeen = {kSideSees, kSideSees,       kSideSees,
                                                kSideSees, glm::vec2(0.0F), glm::vec2(1.0F, 0.0F)};
@@ -338,7 +338,7 @@ void DiffuseLight::SolveSkyPart(int part) {
   }
 }
 
-// What passes to each cell, and on the way to its neighbour up each axis.
+// Transmittance of sunlight to each cell, and its mean on the way to the neighbour up each axis.
 void DiffuseLight::FindDecays(const std::vector<float>& arrived_root) {
   sun_.resize(cell_of_.size());
   ForShares(sun_.size(), [&](std::size_t begin, std::size_t end) {
@@ -362,7 +362,7 @@ void DiffuseLight::FindDecays(const std::vector<float>& arrived_root) {
   });
 }
 
-// Of sunlight, what cell number `n` makes diffuse.
+// Sunlight that cell number `n` makes diffuse.
 float DiffuseLight::SunlightScattered(std::size_t n, const glm::dvec3& towards_sun) const {
   const auto i = static_cast<std::size_t>(cell_of_[n]);
   const Links& links = links_[n];

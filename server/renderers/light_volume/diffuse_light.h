@@ -21,7 +21,7 @@ class DiffuseLight {
  public:
   explicit DiffuseLight(DiffusionCells cells);
 
-  // What follows from the cells alone, for each of them.
+  // Results that follow from the cells alone, for each of them.
   // The square root of the optical depth of `light` to the nearest exit.
   const std::vector<float>& ExitRoot() const { return exit_root_; }
   // How much of what comes in by the nearest ways out is skylight above a black ground, straight or
@@ -39,7 +39,6 @@ class DiffuseLight {
   // The fluence that other walls send in, of the last SolveSun.
   const std::vector<float>& FromWalls() const { return from_walls_; }
 
-  int Unknowns() const { return static_cast<int>(cell_of_.size()); }
   int LastIterations() const { return last_iterations_; }
 
  private:
@@ -53,7 +52,7 @@ class DiffuseLight {
     float slack[6];
   };
 
-  // Of the sun that is being solved for, by number.
+  // Sunlight in a cell, by number, of the sun that is being solved for.
   struct SunAt {
     float depth = 0.0F;      // optical, of sunlight that arrives
     float passed = 1.0F;     // its transmittance

@@ -1,7 +1,7 @@
 // The diffusion equation of a resident medium: takes its cells and the light that has arrived there
 // from the device, solves (diffuse_light.h), and puts the result back as textures for the march.
-// What depends on the cells alone is kept for all suns. Owns GL objects: use it on the context's
-// thread.
+// Results that depend on the cells alone are kept for all suns. Owns GL objects: use it on the
+// context's thread.
 #pragma once
 
 #include <cstdint>
@@ -51,7 +51,7 @@ class DiffusionPass {
 
   absl::StatusOr<DiffusionCells> SampleCells(const ResidentMedium& medium,
                                              const GroupWeights& weights);
-  // What follows from the cells alone.
+  // Solves for all that follows from the cells alone.
   void SolveCells(DiffusionCells cells);
   absl::Status SampleLight(const gl::Texture3D& arrived);
 
@@ -65,7 +65,7 @@ class DiffusionPass {
   // Square root of the optical depth to the nearest exit; sky seen (DiffuseLight::SkySeen), and the
   // x of its net flux.
   gl::Texture3D ways_out_;
-  // Of sunlight; the fluence from other walls; the y of the sky's.
+  // Channels: net flux of sunlight; fluence from other walls; the y of the sky's.
   gl::Texture3D net_inward_;
   std::vector<float> arrived_root_;
   std::vector<glm::vec4> net_inward_texels_;

@@ -6,7 +6,7 @@
 
 namespace thunderhead::renderers {
 
-// Of carry.comp and arrive.comp.
+// Variant of carry.comp and arrive.comp.
 struct CarryVariant {
   MediumVariant medium;
   gl::DefineValue consistent;   // transport
@@ -20,7 +20,7 @@ struct CarryVariant {
   }
 };
 
-// Of march.frag.
+// Variant of march.frag.
 struct MarchVariant {
   MediumVariant medium;
   gl::DefineValue colored;      // groups have colours

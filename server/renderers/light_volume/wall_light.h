@@ -25,7 +25,7 @@ class WallLight {
   std::vector<float> Arriving(const std::vector<float>& own) const;
 
  private:
-  // What one wall sees of another.
+  // The part of a wall's view that another wall takes.
   struct Seen {
     std::int32_t from;
     std::int32_t to;

@@ -14,7 +14,7 @@ struct Ball {
   glm::dvec3 middle_m{0.0};
   double radius_m = 1.0;          // R of Man, eq. 16
   double extinction_per_m = 0.0;  // in its middle, from 0
-  // Of its extinction, by the medium's group; their sum is 1.
+  // Shares of its extinction, by the medium's group; their sum is 1.
   std::array<float, volume::kMaxChannels> shares{1.0F};
 };
 

@@ -126,7 +126,7 @@ bool BallFits::Same(const Key& a, const Key& b) {
     return x.field == y.field && x.channel == y.channel && x.by_cell == y.by_cell &&
            x.mass_extinction_m2_per_kg == y.mass_extinction_m2_per_kg;
   };
-  // Of one owner: another storm at the same address does not count.
+  // Compares owners: another storm at the same address does not count.
   return !a.fields.owner_before(b.fields) && !b.fields.owner_before(a.fields) &&
          a.count == b.count &&
          std::equal(a.terms.begin(), a.terms.end(), b.terms.begin(), b.terms.end(), same_term);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMinTile_px = 16;
 
-// Of all lists together: 16 MB on the device.
+// Maximum entries of all lists together: 16 MB on the device.
 constexpr std::size_t kMaxListed = std::size_t{1} << 22U;
 
 // The rectangle around a ball in normalised device coordinates; empty if low is above high.

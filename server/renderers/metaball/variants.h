@@ -5,7 +5,7 @@
 
 namespace thunderhead::renderers {
 
-// Of metaball/light.comp.
+// Variant of metaball/light.comp.
 struct BallLightVariant {
   gl::DefineValue paper;    // transport as printed
   gl::DefineValue pass;     // 0 splats, 1 gives the light scattered many times
@@ -14,7 +14,7 @@ struct BallLightVariant {
   gl::Defines Defines() const { return {{"PAPER", paper}, {"PASS", pass}, {"DIFFUSE", diffuse}}; }
 };
 
-// Of metaball/source.comp.
+// Variant of metaball/source.comp.
 struct BallSourceVariant {
   gl::DefineValue lights;  // beams
   gl::DefineValue groups;
@@ -31,7 +31,7 @@ struct BallSourceVariant {
   }
 };
 
-// Of metaball/splat.frag.
+// Variant of metaball/splat.frag.
 struct SplatVariant {
   gl::DefineValue paper;   // transport as printed
   gl::DefineValue ground;  // may hide balls

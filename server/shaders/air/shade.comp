@@ -1,4 +1,4 @@
-// What the storm's shadow takes from the light of the air: for each ray of a coarse picture, the radiance that is missing
+// The light that the storm's shadow takes from the air: for each ray of a coarse picture, the radiance that is missing
 // from the eye up to each of a number of distances, a layer each. The first layer is at `near_m` and holds nothing. Rays go
 // on below the ground, so that layers change smoothly across the picture. Coordinates are metres from the eye.
 #include "common/bindings.glsl"

@@ -1,4 +1,4 @@
-// What a ray through the medium results in: the radiance that it sees; or that, corrected by traced light; or, where the
+// The result of a ray through the medium: the radiance that it sees; or that, corrected by traced light; or, where the
 // corrector asks what rays to trace, the place that it sees.
 // Variants: CORRECTED, PLACES.
 #if CORRECTED

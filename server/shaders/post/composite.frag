@@ -131,7 +131,7 @@ vec3 seen_ground(vec3 radiance, vec3 ray, float ground_m, vec3 sky_radiance, vec
 }
 
 #if FRONT
-// What is in the eye buffer, through the air, and the transmittance of the background.
+// The eye buffer seen through the air, and the transmittance of the background.
 vec4 seen_front(vec3 origin_m, vec3 world_ray, vec3 ray, float ground_m, vec3 sky_radiance, vec3 sky_depth) {
   vec4 front = texture(eye, 0.5 * position + 0.5);
   float opacity = 1.0 - front.a;

@@ -34,7 +34,7 @@ TEST(CostModelTest, FollowsAMachineThatSlowsDown) {
   CostModel model;
   for (int i = 0; i < 10; ++i) model.Observe(10.0, 10.0, {{scene::FrameStage::kSlices, 1.0}});
   for (int i = 0; i < 10; ++i) model.Observe(10.0, 40.0, {{scene::FrameStage::kSlices, 1.0}});
-  // What is left of the ten fast frames weighs 0.8^10 = 0.11.
+  // The ten fast frames still have a weight of 0.8^10 = 0.11.
   EXPECT_NEAR(model.EstimateMs(10.0, scene::Stage::kView), 40.0, 30.0 * 0.11);
 }
 

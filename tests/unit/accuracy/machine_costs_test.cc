@@ -14,7 +14,7 @@ constexpr double kTableMs = 10.0;
 OfferTables Tables() {
   PricedSettings table;
   table.size_px = {200, 100};
-  Setting setting{test_support::kLightVolume.plain()};
+  Setting setting{test_support::kLightVolume.settings()};
   SetCount(&setting.technique, 64);
   table.rows.push_back({setting, kTableMs, 0.3});
   OfferTables tables;
@@ -90,7 +90,7 @@ TEST_F(MachineCostsTest, ViewsAreEstimatedApartAndNewOnesByTheMachine) {
 
 TEST_F(MachineCostsTest, TechniquesAreEstimatedApart) {
   scene::Scene slices = scene_;
-  test_support::SetPath(&slices.rendering.technique, test_support::kHalfAngle);
+  test_support::SetTechnique(&slices.rendering.technique, test_support::kHalfAngle);
   for (const double ms : {500.0, 80.0}) {
     costs_.Observe(kView, {slices, {}, ms, {{scene::FrameStage::kSlices, ms}}});
   }

@@ -17,8 +17,8 @@ using scene::MaxError;
 using scene::MaxMilliseconds;
 using ::testing::HasSubstr;
 
-Setting Slices(int slices, const Path& path = test_support::kLightVolume) {
-  Setting setting{path.plain()};
+Setting Slices(int slices, const PlainTechnique& plain = test_support::kLightVolume) {
+  Setting setting{plain.settings()};
   SetCount(&setting.technique, slices);
   return setting;
 }
@@ -126,7 +126,8 @@ TEST_F(OffersTest, DecidesWhatTheSceneLeavesToThem) {
   scene_.output.jpeg_quality = 40;
   scene_.accuracy = MaxError{0.35};
   const scene::Scene decided = *desk_.Decide(scene_);
-  EXPECT_EQ(test_support::PathOf(decided.rendering.technique), test_support::kLightVolume);
+  EXPECT_EQ(test_support::PlainTechniqueOf(decided.rendering.technique),
+            test_support::kLightVolume);
   EXPECT_EQ(ModeOf(decided.rendering.technique).name, "per_field_phase_translucent");
   EXPECT_EQ(CountOf(decided.rendering.technique), 64);
   EXPECT_TRUE(scene::FieldLookOf(decided.rendering.technique).false_colors);

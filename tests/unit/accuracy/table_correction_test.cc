@@ -8,8 +8,8 @@
 namespace thunderhead::accuracy {
 namespace {
 
-Setting Slices(int slices, const Path& path = test_support::kLightVolume) {
-  Setting setting{path.plain()};
+Setting Slices(int slices, const PlainTechnique& plain = test_support::kLightVolume) {
+  Setting setting{plain.settings()};
   SetCount(&setting.technique, slices);
   return setting;
 }

@@ -11,7 +11,7 @@ using ::testing::HasSubstr;
 
 constexpr int kWidth = 322;
 constexpr int kHeight = 178;
-// What a viewer hardly tells from the picture itself.
+// PSNR at which a viewer hardly sees a difference.
 constexpr double kGood_dB = 34.0;
 
 class Vp9Test : public ::testing::Test {
@@ -53,7 +53,7 @@ TEST_F(Vp9Test, AKeyPictureComesOnDemandAndIsEnough) {
   EXPECT_GT(Decoded_dB(key, 18), kGood_dB);
 }
 
-// Whoever misses droppable pictures sees the others exactly as those who got them all.
+// A viewer that misses droppable pictures sees the others exactly as one that got them all.
 TEST_F(Vp9Test, DroppablePicturesCanBeDropped) {
   auto all = *Vp9Decoder::Create();
   for (int i = 0; i < 24; ++i) {

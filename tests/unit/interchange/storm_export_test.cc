@@ -113,7 +113,7 @@ class StormExportTest : public ::testing::Test {
   const std::string path_ = folder_.File("storm.vdb");
 };
 
-// What the file should hold, from the optics of the paper's eq. 4 alone.
+// The value that the file should hold, from the optics of the paper's eq. 4 alone.
 double ExtinctionOf(const HydrometeorField& field, std::size_t cell) {
   const physics::ParticleOptics& optics = physics::DefaultOptics(field.hydrometeor);
   return 1.5 /

@@ -1,4 +1,4 @@
-// What a load reads of the server's messages, on messages as the server writes them.
+// A load's reading of the server's messages, on messages as the server writes them.
 #include <string>
 
 #include "gmock/gmock.h"

@@ -170,7 +170,7 @@ class SeamFinder {
     }
   }
 
-  // What follows lies beyond an edge.
+  // Starts anew, as the next samples lie beyond an edge.
   void Lift() { count_ = 0; }
 
  private:

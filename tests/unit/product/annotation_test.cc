@@ -1,4 +1,4 @@
-// What is burnt into pictures, told by the pixels that it changes.
+// Annotations of pictures, recognised by the pixels that they change.
 #include "product/annotation.h"
 
 #include <algorithm>

@@ -24,7 +24,7 @@ using volume::HydrometeorField;
 using volume::HydrometeorFields;
 using volume::StormFile;
 
-// What a process that a file has taken over would try; returns what it could do.
+// Tries all that a process would which a file has taken over; returns the names of what succeeded.
 std::string TryEverything() {
   std::string could;
   const auto note = [&could](bool done, const char* what) {

@@ -1,4 +1,4 @@
-// What comes back of render jobs, and that a file of sessions from before there were any is kept.
+// Render jobs as they come back, and the keeping of a file of sessions from before jobs existed.
 #include "store/sqlite_job_store.h"
 
 #include <sqlite3.h>

@@ -80,7 +80,7 @@ class SqliteSessionStoreTest : public ::testing::Test {
     return status;
   }
 
-  // What a later run finds.
+  // The records that a later run finds.
   std::vector<SessionRecord> Loaded() const {
     const auto records = Open()->Load();
     EXPECT_TRUE(records.ok()) << records.status();

@@ -210,7 +210,7 @@ TEST_F(StormMemory, AStorageThatHangsIsNamedAndHoldsUpNothingThatIsInMemory) {
   EXPECT_LT(took, std::chrono::seconds(5));
   ASSERT_TRUE(store->Hung().has_value());
   EXPECT_THAT(store->Hung()->file, HasSubstr("far.cube"));
-  // What is in memory goes on; what would wait behind is told at once.
+  // Times in memory are still given; a read that would wait behind is refused at once.
   EXPECT_TRUE(store->Get("near.cube", 0, {}).ok());
   EXPECT_EQ(store->Storms().size(), 2U);
   const auto behind = steady_clock::now();
