@@ -46,7 +46,7 @@ ErrorMeter::ErrorMeter(std::shared_ptr<const reference::Medium> medium,
 absl::StatusOr<std::unique_ptr<ErrorMeter>> ErrorMeter::Create(
     const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
     int threads) {
-  // As the reference shows it: each field with its own phase function, whatever the technique's mode.
+  // As the reference shows it: each field with its own phase function.
   scene::Scene truth = scene;
   truth.rendering.technique = scene::Reference{};
   reference::MediumOptions options;
