@@ -186,7 +186,10 @@ void AddViewOptions(CLI::App& command, SceneFlags& flags) {
 
 void AddTechniqueOptions(CLI::App& command, SceneFlags& flags) {
   CLI::Option* quality =
-      command.add_option("--quality", flags.preset, "fast, balanced (the default) or true")
+      command
+          .add_option("--quality", flags.preset,
+                      "fast (half the samples, no detail), balanced (the default) or true (as "
+                      "balanced, and a picture waits for traced light, which takes minutes)")
           ->check(CLI::IsMember({"fast", "balanced", "true"}));
   CLI::Option* preset = command.add_option(
       "--preset", flags.preset, "A named setting, such as the papers' per_field_phase_translucent");

@@ -200,13 +200,37 @@ TEST_F(CommandLineTest, FailedRenderNamesTheCauseAndLeavesNoFile) {
 }
 
 TEST_F(CommandLineTest, RenderWaitsForTracedLightAndPrintsTheErrorReached) {
-  // An error that takes a tenth of the paths of `--quality true`, which is too long for a test.
-  const Outcome outcome = Run(render_ + " --time 1 --size 48x27 --max-error 0.09");
+  // An error that takes a tenth of the paths that `--quality true` alone waits for, which takes
+  // minutes.
+  const Outcome outcome = Run(render_ + " --time 1 --size 48x27 --quality true --max-error 0.09");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, IsEmpty());
   EXPECT_THAT(outcome.out, ContainsRegex("diffusion, .* error about 0\\.0[78][0-9]*, .*, "
                                          "0\\.1[0-9]* million traced paths\n"));
   EXPECT_TRUE(frame::DecodePng(Contents(picture_)).ok());
+  EXPECT_THAT(Contents(picture_), HasSubstr("TRACED_LIGHT_AWAITED"));
+}
+
+TEST_F(CommandLineTest, HelpSaysWhatQualityMeans) {
+  const Outcome outcome = Run("render --help");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("fast (half the samples, no detail)"));
+  EXPECT_THAT(outcome.out, HasSubstr("waits for traced light"));
+}
+
+TEST_F(CommandLineTest, QualityFastAndBalancedDoNotWait) {
+  const auto rendering = [&](const std::string& quality) {
+    const Outcome outcome = Run(render_ + " --time 1 --size 16x9 --json --quality " + quality);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    v1::RenderImageResponse said;
+    EXPECT_TRUE(google::protobuf::util::JsonStringToMessage(outcome.out, &said).ok());
+    EXPECT_EQ(said.modelled().traced_paths(), 0U) << quality;
+    return said.scene().rendering().light_volume();
+  };
+  EXPECT_EQ(rendering("fast").slices(), 64U);
+  EXPECT_FALSE(rendering("fast").detail());
+  EXPECT_EQ(rendering("balanced").slices(), 128U);
+  EXPECT_EQ(rendering("balanced").traced_light(), v1::TRACED_LIGHT_AT_REST);
 }
 
 TEST_F(CommandLineTest, AnInterruptedRenderLeavesNoFile) {
