@@ -30,7 +30,7 @@ struct Flags {
   std::string device = "auto";
   int samples_per_pixel = 256;
   std::vector<double> million_paths = {0.1, 0.3, 1.0, 3.0};
-  double error_seconds = 2.0;
+  double error_seconds = 0.0;
   bool json = false;
 };
 

@@ -1,5 +1,7 @@
 #include "base/memory_budget.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <map>
 #include <numeric>
@@ -158,6 +160,7 @@ bool MemoryBudget::MakeRoomAndTake(MemoryUse use, std::size_t bytes) {
   if (Take(use, bytes)) return true;
   if (bytes > LimitOf(use)) return false;
   const std::lock_guard lock(making_room_);
+  bool dropped = false;
   while (!Take(use, bytes)) {
     Cache* oldest = nullptr;
     std::chrono::steady_clock::time_point since;
@@ -169,7 +172,11 @@ bool MemoryBudget::MakeRoomAndTake(MemoryUse use, std::size_t bytes) {
     }
     if (oldest == nullptr) return false;
     oldest->DropOldestUnused();
+    dropped = true;
   }
+  // Freed blocks of a megabyte or so stay with the arena of the thread that took them, where others
+  // cannot use them: the process would grow beyond the budget.
+  if (dropped) malloc_trim(0);
   return true;
 }
 

@@ -60,10 +60,13 @@ void CatalogueScan::Look(const std::string& path, const Stamp& stamp, Time now, 
       known.version = ++versions_;
     }
     known.stamp = stamp;
-    // What was there before the first scan may have rested for long.
-    known.unchanged_since =
-        fresh && scans_ == 1 ? base::UnchangedSince(stamp.changed_ns, Time::min(), now) : now;
-    known.settled = false;
+    known.unchanged_since = now;
+    // A file that was there before the first scan may have rested for long. Those that have not are
+    // all waited for from now on, so that a folder's files settle together: the first of them alone
+    // would be a storm of its own name.
+    known.settled =
+        fresh && scans_ == 1 &&
+        now - base::UnchangedSince(stamp.changed_ns, Time::min(), now) >= options_.settle;
     known.tried_at.reset();
   }
   if (!known.settled && now - known.unchanged_since < options_.settle) {

@@ -152,6 +152,18 @@ TEST_F(LiveFolder, OffersOldFilesAtOnceAndNewOnesLater) {
   EXPECT_THAT(TimesAt(scan, seconds(3)), ElementsAre(2)) << "one series of both";
 }
 
+// One of them alone would be a storm of its own name.
+TEST_F(LiveFolder, FilesThatCameJustBeforeTheStartAreOfferedTogether) {
+  for (int hour = 0; hour < 2; ++hour) {
+    Put(File(hour), WrfBytes({hour}));
+    fs::last_write_time(File(hour), fs::file_time_type::clock::now() - seconds(2 * hour));
+  }
+  CatalogueScan scan = Scanner();
+  EXPECT_THAT(TimesAt(scan, seconds(0)), ElementsAre());
+  EXPECT_THAT(TimesAt(scan, seconds(2)), ElementsAre());
+  EXPECT_THAT(TimesAt(scan, seconds(3)), ElementsAre(2));
+}
+
 TEST_F(LiveFolder, KeepsTheTimesOfAFileThatGrows) {
   const std::string one = WrfBytes({0});
   const std::string two = WrfBytes({0, 1});
