@@ -235,7 +235,7 @@ test("every setting is found by its name, with its meaning, and can be set", asy
   await changing(() => setNumber(page, "setting-sky.ground_albedo", 0.6), page);
   await changing(() => setNumber(page, "setting-sky.ground_albedo", 0.2), page);
   await page.getByTestId("drawer-search").fill("no such thing");
-  await page.getByText("No setting is called that.").waitFor();
+  await page.getByText("No setting has such a name.").waitFor();
   await focusPicture();
   await key("Escape");
   assert.equal(await page.getByTestId("drawer").isVisible(), false);

@@ -20,7 +20,7 @@ export function EverySetting({ page, query }: SettingsProps) {
   const groups = new Map<string, Parameter[]>();
   for (const parameter of found)
     groups.set(parameter.group, [...(groups.get(parameter.group) ?? []), parameter]);
-  if (found.length === 0) return <p class="quiet">No setting is called that.</p>;
+  if (found.length === 0) return <p class="quiet">No setting has such a name.</p>;
   return (
     <>
       <p class="visually-hidden" role="status">

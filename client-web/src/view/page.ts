@@ -392,7 +392,7 @@ export class Page {
       const seen = await this.probing.seenAt(place);
       if (seen !== undefined) this.viewpoint.turnAround(seen);
     } catch {
-      this.notes.say("target", "The server does not say what is there");
+      this.notes.say("target", "The place could not be looked up");
     }
   }
 

@@ -42,7 +42,7 @@ export class Probing {
     } catch (error) {
       if (asked !== this.#asked) return;
       const why = error instanceof ConnectError ? error.rawMessage : String(error);
-      this.#state.probeProblem.value = `The server does not say what is there: ${why}`;
+      this.#state.probeProblem.value = `The probe failed: ${why}`;
     } finally {
       if (asked === this.#asked) this.#state.probing.value = false;
     }

@@ -24,7 +24,7 @@ export function Share({ page }: { page: Page }) {
   if (link === undefined) return null;
   return (
     <Popover page={page} name="share" title="Share" label="Share this session">
-      <p class="quiet">Who opens this link watches with you. The code grows with a click.</p>
+      <p class="quiet">Anyone with this link watches with you. Click the code to enlarge it.</p>
       <OnlyHere host={page.addresses.loopbackHost} />
       <QrCode text={link} />
       <div class="link-row">

@@ -61,7 +61,7 @@ export function TimeLine({ page }: { page: Page }) {
         data-testid="loop"
         aria-pressed={playback.loops.value}
         aria-label="Loop"
-        title="At the end, begin again"
+        title="Repeat from the start"
         disabled={fixed}
         onClick={() => {
           playback.loops.value = !playback.loops.value;

@@ -58,7 +58,7 @@ export function TimeTool({ page }: { page: Page }) {
         }}
       />
       <Switch
-        label="At the end, begin again"
+        label="Repeat from the start"
         testId="time-loop"
         checked={playback.loops.value}
         onChange={(loops) => {
