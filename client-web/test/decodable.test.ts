@@ -6,7 +6,7 @@ import { learnDecodable } from "../src/view/decodable";
 
 interface Browser {
   readonly secure?: boolean;
-  // What VideoDecoder.isConfigSupported gives; undefined without WebCodecs.
+  // The answer of VideoDecoder.isConfigSupported; undefined without WebCodecs.
   readonly vp9?: boolean | "throws";
   readonly avif?: boolean;
 }

@@ -120,7 +120,8 @@ export class FakeSession {
       this.#steering = person.viewerId;
     }
     const { viewerId, role } = person;
-    const participantKey = brought === "" ? `participant-${this.presenterKey}-${viewerId}` : brought;
+    const participantKey =
+      brought === "" ? `participant-${this.presenterKey}-${viewerId}` : brought;
     this.#tell(person, {
       case: "joined",
       value: { viewerId, role, viewerKey: this.viewerKey, participantKey },

@@ -29,8 +29,8 @@ nlohmann::ordered_json JsonOf(const std::string& text) {
   return nlohmann::ordered_json::parse(text, nullptr, false);
 }
 
-// What the movie shows, as JSON: the storm with its times, the largest estimated error of its
-// pictures, the scene, and where the first picture tells it, where the camera stands.
+// The description in a movie's metadata, as JSON: the storm with its times, the largest estimated
+// error of its pictures, the scene, and where the first picture tells it, where the camera stands.
 std::string DescriptionOf(const pipeline::ManifestEntry& entry, const View& view,
                           const std::vector<const PlannedPicture*>& pictures) {
   nlohmann::ordered_json json;

@@ -32,7 +32,7 @@ struct Flags {
   PipelineFlags pipeline;
 };
 
-// What is there of the storms.
+// The storms and their files, as found.
 struct Found {
   std::vector<volume::CataloguedStorm> storms;
   // The places of storms' files among all, in the order of their names, the unreadable ones
@@ -42,7 +42,7 @@ struct Found {
   std::map<std::string, absl::Status> problems;
 };
 
-// What may come by another try goes before what never will.
+// Orders outcomes for the exit code: another try may help before what never will.
 int RankOf(const absl::Status& status) {
   switch (ExitCodeOf(status)) {
     case ExitCode::kDone:
@@ -184,7 +184,7 @@ absl::StatusOr<std::vector<PlannedPicture>> PlanAll(const PictureRunOptions& opt
   return all;
 }
 
-// What is left undone.
+// The worst reason of all pictures and files that are left undone.
 absl::Status Summary(const std::vector<PlannedPicture>& pictures, const Found& found) {
   absl::Status worst = WorstOf(found.problems);
   int missing = 0;

@@ -60,7 +60,7 @@ interface ControlStep {
   act(): void;
 }
 
-// What this person can do about who steers.
+// The one button about who steers: ask, take, give back or let go.
 function controlStep({ state: { session }, actions }: Page): ControlStep {
   const letGo = () => actions.giveControl();
   if (session.steering.value && session.presenting.value)

@@ -27,20 +27,7 @@ export function Share({ page }: { page: Page }) {
       <p class="quiet">Anyone with this link watches with you. Click the code to enlarge it.</p>
       <OnlyHere host={page.addresses.loopbackHost} />
       <QrCode text={link} />
-      <div class="link-row">
-        <input
-          type="text"
-          class="link"
-          readOnly
-          aria-label="Link for viewers"
-          data-testid="viewers-link"
-          value={link}
-          onFocus={(event) => event.currentTarget.select()}
-        />
-        <button type="button" data-testid="copy-link" onClick={() => void page.copyLink()}>
-          Copy link
-        </button>
-      </div>
+      <LinkRow who="viewers" link={link} copyId="copy-link" copy={() => void page.copyLink()} />
       <button
         type="button"
         class="to-people"
@@ -57,6 +44,33 @@ export function Share({ page }: { page: Page }) {
         </>
       )}
     </Popover>
+  );
+}
+
+interface LinkRowProps {
+  readonly who: "viewers" | "presenters";
+  readonly link: string;
+  readonly copyId: string;
+  copy(): void;
+}
+
+// A link to select or copy.
+function LinkRow({ who, link, copyId, copy }: LinkRowProps) {
+  return (
+    <div class="link-row">
+      <input
+        type="text"
+        class="link"
+        readOnly
+        aria-label={`Link for ${who}`}
+        data-testid={`${who}-link`}
+        value={link}
+        onFocus={(event) => event.currentTarget.select()}
+      />
+      <button type="button" data-testid={copyId} onClick={copy}>
+        Copy link
+      </button>
+    </div>
   );
 }
 
@@ -90,24 +104,12 @@ function PresentersLink({ page }: { page: Page }) {
             Who opens it presents as you do: takes control, sets the rules, ends the session. For
             your second device or a colleague, not for the class.
           </p>
-          <div class="link-row">
-            <input
-              type="text"
-              class="link"
-              readOnly
-              aria-label="Link for presenters"
-              data-testid="presenters-link"
-              value={link}
-              onFocus={(event) => event.currentTarget.select()}
-            />
-            <button
-              type="button"
-              data-testid="copy-presenters-link"
-              onClick={() => void page.copyPresentersLink()}
-            >
-              Copy link
-            </button>
-          </div>
+          <LinkRow
+            who="presenters"
+            link={link}
+            copyId="copy-presenters-link"
+            copy={() => void page.copyPresentersLink()}
+          />
         </>
       )}
     </details>
