@@ -49,7 +49,7 @@ const char* NameOf(Role role) {
 }
 
 std::string NetworkOf(const std::string& peer) {
-  const std::string host = HostOf(peer);
+  std::string host = HostOf(peer);
   in6_addr address{};
   if (inet_pton(AF_INET6, host.c_str(), &address) != 1) return host;
   if (IN6_IS_ADDR_V4MAPPED(&address)) return host.substr(host.rfind(':') + 1);

@@ -3,6 +3,7 @@
 #include "gl/objects.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/gl_context.h"
 
 namespace thunderhead::gl {
 namespace {
@@ -36,7 +37,7 @@ TEST(Context, NamesWhatADeviceMayBe) {
 }
 
 TEST(Framebuffer, KeepsWhatItIsClearedTo) {
-  const auto context = Context::Create("software");
+  const auto context = test_support::OpenContext();
   ASSERT_TRUE(context.ok());
   const Texture2D texture(GL_RGBA32F, {3, 2});
   Framebuffer(texture).Clear(0.25F, 0.5F, 2.0F, 1.0F);

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cstdlib>
+#include <string>
 #include <string_view>
 
 #include "sandbox/reader_main.h"
@@ -13,6 +15,13 @@ int main(int argc, char** argv) {
   if (argc == 2 && std::string_view(argv[1]) == thunderhead::sandbox::kReaderCommand) {
     _exit(thunderhead::sandbox::ReadUntrustedFile(FormatsWithMisbehaving()));
   }
+#ifdef __SANITIZE_ADDRESS__
+  // A reader's signal is what these tests wait for, not AddressSanitizer's report of it.
+  const char* options = std::getenv("ASAN_OPTIONS");
+  const std::string all =
+      std::string(options == nullptr ? "" : options) + ":handle_segv=0:handle_sigbus=0";
+  setenv("ASAN_OPTIONS", all.c_str(), 1);
+#endif
   ::testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();
 }

@@ -1,0 +1,141 @@
+"""Runs clang-tidy on the files named on standard input, as many at once as there are processors.
+
+A file that passed is not examined again until it, a file of this repository that it includes, its compile command or a
+check changes: what passed is kept in BUILD/passed.json, so an interrupted run goes on where it ended. Headers of the
+system do not count; remove that file after an upgrade. Exits with 1 if clang-tidy found something.
+"""
+
+import argparse
+import concurrent.futures
+import hashlib
+import json
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+import threading
+import time
+
+INCLUDE = re.compile(rb'^\s*#\s*include\s*["<]([^">]+)[">]', re.MULTILINE)
+# Debian's clang-tidy, 14, does not know the coroutines of GCC's library, which Asio's need.
+COROUTINES = "gateway/awaitable.h"
+
+
+def say(text):
+    print(f"==> {text}", file=sys.stderr, flush=True)
+
+
+class Sources:
+    """The files of the repository, each read once."""
+
+    def __init__(self, root):
+        self.root = root
+        self.texts = {}
+
+    def text(self, path):
+        if path not in self.texts:
+            self.texts[path] = path.read_bytes() if path.is_file() else None
+        return self.texts[path]
+
+    def included(self, path, folders):
+        """`path` and every file of the repository that it includes, in whatever way."""
+        found, left = set(), [path]
+        while left:
+            file = left.pop()
+            if file in found:
+                continue
+            found.add(file)
+            for name in INCLUDE.findall(self.text(file)):
+                for folder in [file.parent, *folders]:
+                    candidate = folder / os.fsdecode(name)
+                    if self.text(candidate) is not None:
+                        left.append(candidate)
+                        break
+        return found
+
+    def folders(self, command):
+        words = shlex.split(command)
+        for word, following in zip(words, [*words[1:], ""]):
+            folder = following if word in ("-I", "-isystem") else word[2:] if word.startswith("-I") else ""
+            if folder and pathlib.Path(folder).is_relative_to(self.root):
+                yield pathlib.Path(folder)
+
+
+def key_of(sources, files, command, rules):
+    digest = hashlib.sha256((rules + command).encode())
+    for file in sorted(files):
+        digest.update(f"\n{file.relative_to(sources.root)}\n".encode() + sources.text(file))
+    return digest.hexdigest()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", help="folder of compile_commands.json")
+    parser.add_argument("--seconds", type=float, default=1e9, help="begin no file after so many")
+    parser.add_argument("--checks", default="", help="added to those of .clang-tidy, as clang-tidy's own --checks")
+    flags = parser.parse_args()
+    end = time.monotonic() + flags.seconds
+
+    root = pathlib.Path.cwd()
+    sources = Sources(root)
+    build = pathlib.Path(flags.build)
+    commands = {pathlib.Path(entry["file"]): entry["command"]
+                for entry in json.loads((build / "compile_commands.json").read_text())}
+    version = subprocess.run(["clang-tidy", "--version"], check=True, capture_output=True, text=True).stdout
+    rules = version + (root / ".clang-tidy").read_text() + flags.checks
+    kept = build / "passed.json"
+    passed = set(json.loads(kept.read_text())) if kept.exists() else set()
+
+    todo = []
+    known = 0
+    for name in sys.stdin.read().split():
+        path = root / name
+        if path not in commands:
+            sys.exit(f"{name} is not in {build}/compile_commands.json; configure that folder again")
+        files = sources.included(path, list(sources.folders(commands[path])))
+        if root / "server" / COROUTINES in files:
+            say(f"left out, as it has coroutines: {name}")
+            continue
+        key = key_of(sources, files, commands[path], rules)
+        if key in passed:
+            known += 1
+        else:
+            todo.append((name, key))
+    say(f"clang-tidy on {len(todo)} files; {known} passed before and did not change")
+
+    lock = threading.Lock()
+    failures, left, done = [], [], 0
+
+    def examine(name, key):
+        nonlocal done
+        if time.monotonic() > end:
+            left.append(name)
+            return
+        checks = [f"--checks={flags.checks}"] if flags.checks else []
+        result = subprocess.run(["clang-tidy", "-p", str(build), "--quiet", *checks, name], capture_output=True, text=True)
+        with lock:
+            done += 1
+            if result.returncode:
+                failures.append(name)
+                print(result.stdout, flush=True)
+            else:
+                passed.add(key)
+                fresh = kept.with_suffix(".new")
+                fresh.write_text(json.dumps(sorted(passed)))
+                fresh.replace(kept)
+            if done % 20 == 0:
+                say(f"{done} of {len(todo)} files")
+
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        for outcome in [pool.submit(examine, *item) for item in todo]:
+            outcome.result()
+    if left:
+        say(f"out of time: {len(left)} files, the last named, are left to ./dev check")
+    if failures:
+        sys.exit(f"clang-tidy found something in {' '.join(sorted(failures))}")
+
+
+if __name__ == "__main__":
+    main()
