@@ -31,8 +31,8 @@ absl::StatusOr<std::uint64_t> Board::Add(std::uint64_t person_id,
                                          const std::string& owner_key) {
   if (marks_.size() >= kMaxMarks) {
     return base::WithDetails(
-        absl::ResourceExhaustedError(absl::StrCat("the session already has the maximum of ",
-                                                  kMaxMarks, " marks; erase some first")),
+        absl::FailedPreconditionError(absl::StrCat("the session already has the maximum of ",
+                                                   kMaxMarks, " marks; erase some first")),
         {.reason = "TOO_MANY_MARKS",
          .metadata = {{"maximum", absl::StrCat(kMaxMarks)}, {"unit", "marks"}}});
   }

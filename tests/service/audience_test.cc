@@ -293,7 +293,7 @@ TEST_F(AudienceTest, ViewersEraseTheirOwnMarksAndWhoeverHasTheirKeyToo) {
 TEST(BoardTest, ThereIsAMaximumOfMarks) {
   Board board;
   for (std::size_t i = 0; i < Board::kMaxMarks; ++i) ASSERT_TRUE(board.Add(1, {{}}, {}).ok());
-  EXPECT_TRUE(absl::IsResourceExhausted(board.Add(1, {{}}, {}).status()));
+  EXPECT_TRUE(absl::IsFailedPrecondition(board.Add(1, {{}}, {}).status()));
   board.Erase({5}, std::nullopt);
   EXPECT_TRUE(board.Add(1, {{}}, {}).ok());
 }

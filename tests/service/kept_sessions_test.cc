@@ -229,7 +229,7 @@ TEST_F(KeptSessionsTest, ASessionHasAtMostSoManyMarks) {
   ASSERT_TRUE(
       presenter.AwaitMarks([](const v1::Marks& marks) { return marks.marks_size() == kMaxMarks; }));
   const v1::Refused refused = presenter.Answer(presenter.Send(DrawsDown())).refused();
-  EXPECT_EQ(refused.status().code(), static_cast<int>(grpc::StatusCode::RESOURCE_EXHAUSTED));
+  EXPECT_EQ(refused.status().code(), static_cast<int>(grpc::StatusCode::FAILED_PRECONDITION));
   EXPECT_EQ(ReasonOf(refused.status()), "TOO_MANY_MARKS");
   // One that goes makes room for another.
   v1::InteractRequest erase;
