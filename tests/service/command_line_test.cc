@@ -389,9 +389,16 @@ TEST_F(CommandLineTest, AnInterruptedExportLeavesNoFile) {
   EXPECT_FALSE(std::filesystem::exists(vdb + ".partial"));
 }
 
+// On a small cloud: it draws some ninety settings.
 TEST_F(CommandLineTest, MeasureTradeContinuesWhereItStopped) {
+  const std::string cloud = folder_.File("cloud.nc");
+  ASSERT_EQ(Run("generate --spacing 200 --cells 24x24x16 --ellipsoid 0,0,1600,1800,1800,1200 "
+                "--feature-size 800 --octaves 2 --threshold 0 --water 1 --base 200 -o " +
+                cloud)
+                .code,
+            0);
   const std::string trade = folder_.File("trade");
-  const std::string command = "measure trade " + kSample +
+  const std::string command = "measure trade " + cloud +
                               " --device software --size 24x16 --spp 16 --million-paths 0.01 -o " +
                               trade;
   const Outcome first = Run(command);
@@ -410,7 +417,7 @@ TEST_F(CommandLineTest, MeasureTradeContinuesWhereItStopped) {
             std::count(whole.begin(), whole.end(), '\n'));
   // Another picture's file is not touched.
   const Outcome other =
-      Run("measure trade " + kSample + " --device software --size 30x16 --spp 16 -o " + trade);
+      Run("measure trade " + cloud + " --device software --size 30x16 --spp 16 -o " + trade);
   EXPECT_EQ(other.code, 64);
   EXPECT_THAT(other.err, HasSubstr("cannot be continued"));
   EXPECT_EQ(Contents(trade + ".csv"), again);
