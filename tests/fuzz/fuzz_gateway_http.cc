@@ -23,18 +23,29 @@ namespace {
 
 namespace http = boost::beast::http;
 
+// A page of two files, removed when the program ends.
+class PageFolder {
+ public:
+  PageFolder()
+      : path_((std::filesystem::temp_directory_path() / "thunderhead-fuzz-XXXXXX").string()) {
+    if (mkdtemp(path_.data()) == nullptr) std::abort();
+    std::filesystem::create_directory(path_ + "/assets");
+    std::ofstream(path_ + "/index.html") << "page";
+    std::ofstream(path_ + "/assets/index.js") << "script";
+  }
+  ~PageFolder() { std::filesystem::remove_all(path_); }
+  PageFolder(const PageFolder&) = delete;
+  PageFolder& operator=(const PageFolder&) = delete;
+
+  const std::string& Path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
 StaticFiles Page() {
-  static std::string folder = [] {
-    std::string made =
-        (std::filesystem::temp_directory_path() / "thunderhead-fuzz-XXXXXX").string();
-    if (mkdtemp(made.data()) == nullptr) std::abort();
-    std::filesystem::create_directory(made + "/assets");
-    std::ofstream(made + "/index.html") << "page";
-    std::ofstream(made + "/assets/index.js") << "script";
-    std::atexit([] { std::filesystem::remove_all(folder); });
-    return made;
-  }();
-  return *StaticFiles::Open(folder);
+  static const PageFolder folder;
+  return *StaticFiles::Open(folder.Path());
 }
 
 void Must(bool condition) {
