@@ -141,8 +141,7 @@ class StormStore {
 
   // Tells `listener` of every change that the store finds by itself, from now on; an empty one ends
   // that, after a running call has returned. Without a live catalogue there is never one.
-  // NOLINTNEXTLINE(performance-unnecessary-value-param): a store that has a catalogue keeps it.
-  virtual void Listen(CatalogueListener /*listener*/) {}
+  virtual void Listen(CatalogueListener /*kept*/) {}  // NOLINT(performance-unnecessary-value-param)
 };
 
 }  // namespace thunderhead::volume
