@@ -78,11 +78,12 @@ class Ecflow(EngineTest):
             task = self.node(draw)
             return "state:aborted" in task and "try:3" in task and "thunderhead ended with 75" in task
         self.wait_for("tasks that gave up", gave_up)
-        self.assertEqual(self.state("/thunderhead/movie"), "queued")
-        (self.folder / "later").rename(self.storm)
         self.wait_for("all to have given up", lambda: all(
             self.state(f"/thunderhead/shares/{share}/draw") == "aborted"
             and "try:3" in self.node(f"/thunderhead/shares/{share}/draw") for share in range(4)))
+        self.assertEqual(self.state("/thunderhead/movie"), "queued")
+        # Not before: a share that comes late would find the storm at its third try.
+        (self.folder / "later").rename(self.storm)
         for share in range(4):
             self.client("--force=queued", f"/thunderhead/shares/{share}/draw")
         self.wait_for("the suite's end", lambda: self.state("/thunderhead") == "complete")
