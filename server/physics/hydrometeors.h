@@ -30,7 +30,7 @@ constexpr std::size_t IndexOf(Hydrometeor hydrometeor) {
 // "cloud", "rain", "ice", "snow", "graupel" or "hail".
 std::string_view NameOf(Hydrometeor hydrometeor);
 
-// Formulas, then tables (docs/phase_tables.md).
+// Formulas, then tables (docs/phase_tables.md); in the order of the message's enumerators.
 enum class PhaseKind {
   kHenyeyGreenstein,
   kCornetteShanks,

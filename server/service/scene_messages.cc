@@ -27,16 +27,15 @@ std::size_t IndexOf(v1::Hydrometeor hydrometeor) {
   return static_cast<std::size_t>(hydrometeor) - 1;
 }
 
-constexpr std::array kPhaseKinds = {
-    std::pair{v1::PhaseFunction::KIND_HENYEY_GREENSTEIN, physics::PhaseKind::kHenyeyGreenstein},
-    std::pair{v1::PhaseFunction::KIND_CORNETTE_SHANKS, physics::PhaseKind::kCornetteShanks},
-    std::pair{v1::PhaseFunction::KIND_RAYLEIGH, physics::PhaseKind::kRayleigh},
-    std::pair{v1::PhaseFunction::KIND_WATER_DROPLETS, physics::PhaseKind::kWaterDroplets},
-    std::pair{v1::PhaseFunction::KIND_ICE_COLUMNS, physics::PhaseKind::kIceColumns},
-    std::pair{v1::PhaseFunction::KIND_ICE_PLATES, physics::PhaseKind::kIcePlates},
-    std::pair{v1::PhaseFunction::KIND_ICE_ROUGH, physics::PhaseKind::kIceRough},
-    std::pair{v1::PhaseFunction::KIND_WATER_NARROW, physics::PhaseKind::kWaterNarrow},
-};
+// Enumerators of message and value are in the same order; the message's begin with UNSPECIFIED.
+v1::PhaseFunction::Kind ToMessage(physics::PhaseKind kind) {
+  return static_cast<v1::PhaseFunction::Kind>(static_cast<int>(kind) + 1);
+}
+
+physics::PhaseKind ToPhaseKind(v1::PhaseFunction::Kind kind) {
+  return static_cast<physics::PhaseKind>(static_cast<int>(kind) - 1);
+}
+
 constexpr std::array kSizeSources = {
     std::pair{v1::PARTICLE_SIZES_MODEL, physics::SizeSource::kModel},
     std::pair{v1::PARTICLE_SIZES_PAPERS, physics::SizeSource::kPapers},
@@ -120,7 +119,7 @@ void FillFieldDefaults(v1::FieldParameters& field, physics::Hydrometeor hydromet
   if (!field.has_albedo()) field.set_albedo(optics.albedo);
   v1::PhaseFunction& phase = *field.mutable_phase();
   if (phase.kind() == v1::PhaseFunction::KIND_UNSPECIFIED) {
-    phase.set_kind(MessageOf(kPhaseKinds, optics.phase.kind));
+    phase.set_kind(ToMessage(optics.phase.kind));
   }
   if (!phase.has_asymmetry()) phase.set_asymmetry(optics.phase.asymmetry);
   if (!field.has_false_color()) {
@@ -161,7 +160,7 @@ void SetField(const v1::FieldParameters& message, scene::FieldParameters& field)
   if (message.has_radius_m()) field.optics.radius_m = message.radius_m();
   field.optics.density_kg_per_m3 = message.density_kg_per_m3();
   field.optics.albedo = message.albedo();
-  field.optics.phase = {ValueOf(kPhaseKinds, message.phase().kind()), message.phase().asymmetry()};
+  field.optics.phase = {ToPhaseKind(message.phase().kind()), message.phase().asymmetry()};
   const v1::Color& color = message.false_color();
   field.optics.false_color = {color.red(), color.green(), color.blue()};
   const v1::Detail& detail = message.detail();

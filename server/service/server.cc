@@ -111,7 +111,7 @@ class RunningServer final : public Server {
     catalogue_ = std::make_unique<CatalogueFollower>(*store_, sessions_, *loop_);
     engine_ = std::make_unique<Engine>(Engine{*store_, sessions_, *loop_, wake_, executor_, clouds_,
                                               keeper_.get(), *catalogue_, drain_, limits_});
-    service_ = std::make_unique<ThunderheadService>(*engine_, *door_);
+    service_ = MakeThunderheadService(*engine_, *door_);
     job_service_ = std::make_unique<RenderJobService>(*engine_, *door_, jobs_.get());
     // Global settings, which apply to every server built later.
     static std::once_flag plugins;
@@ -227,7 +227,7 @@ class RunningServer final : public Server {
   std::unique_ptr<CatalogueFollower> catalogue_;
   std::unique_ptr<Engine> engine_;
   std::unique_ptr<jobs::Jobs> jobs_;  // null: none are kept
-  std::unique_ptr<ThunderheadService> service_;
+  std::unique_ptr<grpc::Service> service_;
   std::unique_ptr<RenderJobService> job_service_;
   std::unique_ptr<grpc::Server> server_;
   std::unique_ptr<LocalListener> local_;

@@ -5,129 +5,175 @@
 #include "service/admission.h"
 #include "service/finished.h"
 #include "service/handlers.h"
+#include "service/interact.h"
+#include "thunderhead/v1/thunderhead.grpc.pb.h"
 
 namespace thunderhead::service {
+namespace {
 
 using access::CallKind;
 
-grpc::ServerUnaryReactor* ThunderheadService::GetServerInfo(grpc::CallbackServerContext* context,
-                                                            const v1::GetServerInfoRequest* request,
-                                                            v1::GetServerInfoResponse* response) {
-  const CallerOr caller = Admit(door_, *context, "GetServerInfo", CallKind::kUnary);
-  if (!caller.ok()) return Finished(context, caller.status());
-  return service::GetServerInfo(engine_, context, request, response);
-}
+// The calls by messages, and Interact by bytes. This takes gRPC's generated class for each call.
+using Generated = v1::ThunderheadService;
+using Calls = Generated::WithCallbackMethod_GetServerInfo<Generated::WithCallbackMethod_ListStorms<
+    Generated::WithCallbackMethod_DescribeStorm<Generated::WithCallbackMethod_GenerateCloud<
+        Generated::WithCallbackMethod_DeleteCloud<Generated::WithCallbackMethod_CreateSession<
+            Generated::WithCallbackMethod_UpdateScene<Generated::WithCallbackMethod_WatchFrames<
+                Generated::WithCallbackMethod_AcknowledgeFrame<
+                    Generated::WithCallbackMethod_CloseSession<
+                        Generated::WithCallbackMethod_RenderImage<
+                            Generated::WithCallbackMethod_RenderImageWithProgress<
+                                Generated::WithCallbackMethod_GetStormMap<
+                                    Generated::WithCallbackMethod_ProbeRay<
+                                        Generated::WithRawCallbackMethod_Interact<
+                                            Generated::Service>>>>>>>>>>>>>>>;
 
-grpc::ServerUnaryReactor* ThunderheadService::ListStorms(grpc::CallbackServerContext* context,
-                                                         const v1::ListStormsRequest* request,
-                                                         v1::ListStormsResponse* response) {
-  const CallerOr caller = Admit(door_, *context, "ListStorms", CallKind::kUnary);
-  if (!caller.ok()) return Finished(context, caller.status());
-  return service::ListStorms(engine_, context, request, response);
-}
+class ThunderheadService final : public Calls {
+ public:
+  ThunderheadService(Engine& engine, access::Door& door) : engine_(engine), door_(door) {}
 
-grpc::ServerUnaryReactor* ThunderheadService::DescribeStorm(grpc::CallbackServerContext* context,
-                                                            const v1::DescribeStormRequest* request,
-                                                            v1::DescribeStormResponse* response) {
-  const CallerOr caller = Admit(door_, *context, "DescribeStorm", CallKind::kUnary);
-  if (!caller.ok()) return Finished(context, caller.status());
-  return service::DescribeStorm(engine_, context, request, response);
-}
-
-grpc::ServerUnaryReactor* ThunderheadService::GetStormMap(grpc::CallbackServerContext* context,
-                                                          const v1::GetStormMapRequest* request,
-                                                          v1::GetStormMapResponse* response) {
-  const CallerOr caller = Admit(door_, *context, "GetStormMap", CallKind::kUnary);
-  if (!caller.ok()) return Finished(context, caller.status());
-  return service::GetStormMap(engine_, context, request, response);
-}
-
-grpc::ServerUnaryReactor* ThunderheadService::ProbeRay(grpc::CallbackServerContext* context,
-                                                       const v1::ProbeRayRequest* request,
-                                                       v1::ProbeRayResponse* response) {
-  const CallerOr caller = Admit(door_, *context, "ProbeRay", CallKind::kUnary);
-  if (!caller.ok()) return Finished(context, caller.status());
-  return service::ProbeRay(engine_, context, request, response);
-}
-
-grpc::ServerUnaryReactor* ThunderheadService::GenerateCloud(grpc::CallbackServerContext* context,
-                                                            const v1::GenerateCloudRequest* request,
-                                                            v1::GenerateCloudResponse* response) {
-  const CallerOr caller = Admit(door_, *context, "GenerateCloud", CallKind::kUnary);
-  if (!caller.ok()) return Finished(context, caller.status());
-  return service::GenerateCloud(engine_, context, *caller, request, response);
-}
-
-grpc::ServerUnaryReactor* ThunderheadService::DeleteCloud(grpc::CallbackServerContext* context,
-                                                          const v1::DeleteCloudRequest* request,
-                                                          v1::DeleteCloudResponse* response) {
-  const CallerOr caller = Admit(door_, *context, "DeleteCloud", CallKind::kUnary);
-  if (!caller.ok()) return Finished(context, caller.status());
-  return service::DeleteCloud(engine_, context, *caller, request, response);
-}
-
-grpc::ServerUnaryReactor* ThunderheadService::CreateSession(grpc::CallbackServerContext* context,
-                                                            const v1::CreateSessionRequest* request,
-                                                            v1::CreateSessionResponse* response) {
-  const CallerOr caller = Admit(door_, *context, "CreateSession", CallKind::kUnary);
-  if (!caller.ok()) return Finished(context, caller.status());
-  return service::CreateSession(engine_, context, *caller, request, response);
-}
-
-InteractReactor* ThunderheadService::Interact(grpc::CallbackServerContext* context) {
-  CallerOr caller = Admit(door_, *context, "Interact", CallKind::kStream);
-  if (!caller.ok()) return new RefusedStream<InteractReactor>(caller.status());
-  return service::Interact(engine_, *std::move(caller), door_.limits().requests_per_second);
-}
-
-grpc::ServerUnaryReactor* ThunderheadService::UpdateScene(grpc::CallbackServerContext* context,
-                                                          const v1::UpdateSceneRequest* request,
-                                                          v1::UpdateSceneResponse* response) {
-  const CallerOr caller = Admit(door_, *context, "UpdateScene", CallKind::kUnary);
-  if (!caller.ok()) return Finished(context, caller.status());
-  return service::UpdateScene(engine_, context, *caller, request, response);
-}
-
-grpc::ServerUnaryReactor* ThunderheadService::AcknowledgeFrame(
-    grpc::CallbackServerContext* context, const v1::AcknowledgeFrameRequest* request,
-    v1::AcknowledgeFrameResponse* response) {
-  const CallerOr caller = Admit(door_, *context, "AcknowledgeFrame", CallKind::kUnary);
-  if (!caller.ok()) return Finished(context, caller.status());
-  return service::AcknowledgeFrame(engine_, context, request, response);
-}
-
-grpc::ServerUnaryReactor* ThunderheadService::CloseSession(grpc::CallbackServerContext* context,
-                                                           const v1::CloseSessionRequest* request,
-                                                           v1::CloseSessionResponse* response) {
-  const CallerOr caller = Admit(door_, *context, "CloseSession", CallKind::kUnary);
-  if (!caller.ok()) return Finished(context, caller.status());
-  return service::CloseSession(engine_, context, *caller, request, response);
-}
-
-grpc::ServerUnaryReactor* ThunderheadService::RenderImage(grpc::CallbackServerContext* context,
-                                                          const v1::RenderImageRequest* request,
-                                                          v1::RenderImageResponse* response) {
-  const CallerOr caller = Admit(door_, *context, "RenderImage", CallKind::kUnary);
-  if (!caller.ok()) return Finished(context, caller.status());
-  return service::RenderImage(engine_, context, *caller, request, response);
-}
-
-grpc::ServerWriteReactor<v1::RenderImageEvent>* ThunderheadService::RenderImageWithProgress(
-    grpc::CallbackServerContext* context, const v1::RenderImageRequest* request) {
-  CallerOr caller = Admit(door_, *context, "RenderImageWithProgress", CallKind::kStream);
-  if (!caller.ok()) {
-    return new RefusedStream<grpc::ServerWriteReactor<v1::RenderImageEvent>>(caller.status());
+  grpc::ServerUnaryReactor* GetServerInfo(grpc::CallbackServerContext* context,
+                                          const v1::GetServerInfoRequest* request,
+                                          v1::GetServerInfoResponse* response) override {
+    return Unary("GetServerInfo", context, [&](const CallerRef& /*caller*/) {
+      return service::GetServerInfo(engine_, context, request, response);
+    });
   }
-  return service::RenderImageWithProgress(engine_, context, *std::move(caller), request);
-}
 
-grpc::ServerWriteReactor<v1::WatchFramesResponse>* ThunderheadService::WatchFrames(
-    grpc::CallbackServerContext* context, const v1::WatchFramesRequest* request) {
-  CallerOr caller = Admit(door_, *context, "WatchFrames", CallKind::kStream);
-  if (!caller.ok()) {
-    return new RefusedStream<grpc::ServerWriteReactor<v1::WatchFramesResponse>>(caller.status());
+  grpc::ServerUnaryReactor* ListStorms(grpc::CallbackServerContext* context,
+                                       const v1::ListStormsRequest* request,
+                                       v1::ListStormsResponse* response) override {
+    return Unary("ListStorms", context, [&](const CallerRef& /*caller*/) {
+      return service::ListStorms(engine_, context, request, response);
+    });
   }
-  return service::WatchFrames(engine_, context, *std::move(caller), request);
+
+  grpc::ServerUnaryReactor* DescribeStorm(grpc::CallbackServerContext* context,
+                                          const v1::DescribeStormRequest* request,
+                                          v1::DescribeStormResponse* response) override {
+    return Unary("DescribeStorm", context, [&](const CallerRef& /*caller*/) {
+      return service::DescribeStorm(engine_, context, request, response);
+    });
+  }
+
+  grpc::ServerUnaryReactor* GetStormMap(grpc::CallbackServerContext* context,
+                                        const v1::GetStormMapRequest* request,
+                                        v1::GetStormMapResponse* response) override {
+    return Unary("GetStormMap", context, [&](const CallerRef& /*caller*/) {
+      return service::GetStormMap(engine_, context, request, response);
+    });
+  }
+
+  grpc::ServerUnaryReactor* ProbeRay(grpc::CallbackServerContext* context,
+                                     const v1::ProbeRayRequest* request,
+                                     v1::ProbeRayResponse* response) override {
+    return Unary("ProbeRay", context, [&](const CallerRef& /*caller*/) {
+      return service::ProbeRay(engine_, context, request, response);
+    });
+  }
+
+  grpc::ServerUnaryReactor* GenerateCloud(grpc::CallbackServerContext* context,
+                                          const v1::GenerateCloudRequest* request,
+                                          v1::GenerateCloudResponse* response) override {
+    return Unary("GenerateCloud", context, [&](const CallerRef& caller) {
+      return service::GenerateCloud(engine_, context, caller, request, response);
+    });
+  }
+
+  grpc::ServerUnaryReactor* DeleteCloud(grpc::CallbackServerContext* context,
+                                        const v1::DeleteCloudRequest* request,
+                                        v1::DeleteCloudResponse* response) override {
+    return Unary("DeleteCloud", context, [&](const CallerRef& caller) {
+      return service::DeleteCloud(engine_, context, caller, request, response);
+    });
+  }
+
+  grpc::ServerUnaryReactor* CreateSession(grpc::CallbackServerContext* context,
+                                          const v1::CreateSessionRequest* request,
+                                          v1::CreateSessionResponse* response) override {
+    return Unary("CreateSession", context, [&](const CallerRef& caller) {
+      return service::CreateSession(engine_, context, caller, request, response);
+    });
+  }
+
+  grpc::ServerUnaryReactor* UpdateScene(grpc::CallbackServerContext* context,
+                                        const v1::UpdateSceneRequest* request,
+                                        v1::UpdateSceneResponse* response) override {
+    return Unary("UpdateScene", context, [&](const CallerRef& caller) {
+      return service::UpdateScene(engine_, context, caller, request, response);
+    });
+  }
+
+  grpc::ServerUnaryReactor* AcknowledgeFrame(grpc::CallbackServerContext* context,
+                                             const v1::AcknowledgeFrameRequest* request,
+                                             v1::AcknowledgeFrameResponse* response) override {
+    return Unary("AcknowledgeFrame", context, [&](const CallerRef& /*caller*/) {
+      return service::AcknowledgeFrame(engine_, context, request, response);
+    });
+  }
+
+  grpc::ServerUnaryReactor* CloseSession(grpc::CallbackServerContext* context,
+                                         const v1::CloseSessionRequest* request,
+                                         v1::CloseSessionResponse* response) override {
+    return Unary("CloseSession", context, [&](const CallerRef& caller) {
+      return service::CloseSession(engine_, context, caller, request, response);
+    });
+  }
+
+  grpc::ServerUnaryReactor* RenderImage(grpc::CallbackServerContext* context,
+                                        const v1::RenderImageRequest* request,
+                                        v1::RenderImageResponse* response) override {
+    return Unary("RenderImage", context, [&](const CallerRef& caller) {
+      return service::RenderImage(engine_, context, caller, request, response);
+    });
+  }
+
+  InteractReactor* Interact(grpc::CallbackServerContext* context) override {
+    return Stream<InteractReactor>("Interact", context, [&](CallerRef caller) {
+      return service::Interact(engine_, std::move(caller), door_.limits().requests_per_second);
+    });
+  }
+
+  grpc::ServerWriteReactor<v1::RenderImageEvent>* RenderImageWithProgress(
+      grpc::CallbackServerContext* context, const v1::RenderImageRequest* request) override {
+    return Stream<grpc::ServerWriteReactor<v1::RenderImageEvent>>(
+        "RenderImageWithProgress", context, [&](CallerRef caller) {
+          return service::RenderImageWithProgress(engine_, context, std::move(caller), request);
+        });
+  }
+
+  grpc::ServerWriteReactor<v1::WatchFramesResponse>* WatchFrames(
+      grpc::CallbackServerContext* context, const v1::WatchFramesRequest* request) override {
+    return Stream<grpc::ServerWriteReactor<v1::WatchFramesResponse>>(
+        "WatchFrames", context, [&](CallerRef caller) {
+          return service::WatchFrames(engine_, context, std::move(caller), request);
+        });
+  }
+
+ private:
+  // The handler's answer, or the door's refusal.
+  template <typename Handler>
+  grpc::ServerUnaryReactor* Unary(const char* method, grpc::CallbackServerContext* context,
+                                  Handler handle) {
+    const CallerOr caller = Admit(door_, *context, method, CallKind::kUnary);
+    return caller.ok() ? handle(*caller) : Finished(context, caller.status());
+  }
+
+  template <typename Reactor, typename Handler>
+  Reactor* Stream(const char* method, grpc::CallbackServerContext* context, Handler handle) {
+    CallerOr caller = Admit(door_, *context, method, CallKind::kStream);
+    if (!caller.ok()) return new RefusedStream<Reactor>(caller.status());
+    return handle(*std::move(caller));
+  }
+
+  Engine& engine_;
+  access::Door& door_;
+};
+
+}  // namespace
+
+std::unique_ptr<grpc::Service> MakeThunderheadService(Engine& engine, access::Door& door) {
+  return std::make_unique<ThunderheadService>(engine, door);
 }
 
 }  // namespace thunderhead::service

@@ -335,6 +335,30 @@ TEST(SceneDefaults, HydrometeorsAreNamedAlike) {
   }
 }
 
+TEST(SceneDefaults, PhaseKindsAreNamedAlike) {
+  using physics::PhaseKind;
+  const std::vector<std::pair<std::string, PhaseKind>> kinds = {
+      {"KIND_HENYEY_GREENSTEIN", PhaseKind::kHenyeyGreenstein},
+      {"KIND_CORNETTE_SHANKS", PhaseKind::kCornetteShanks},
+      {"KIND_RAYLEIGH", PhaseKind::kRayleigh},
+      {"KIND_WATER_DROPLETS", PhaseKind::kWaterDroplets},
+      {"KIND_ICE_COLUMNS", PhaseKind::kIceColumns},
+      {"KIND_ICE_PLATES", PhaseKind::kIcePlates},
+      {"KIND_ICE_ROUGH", PhaseKind::kIceRough},
+      {"KIND_WATER_NARROW", PhaseKind::kWaterNarrow}};
+  ASSERT_EQ(v1::PhaseFunction::Kind_descriptor()->value_count(),
+            static_cast<int>(kinds.size()) + 1);
+  for (const auto& [name, kind] : kinds) {
+    v1::Scene scene;
+    v1::FieldParameters& cloud = *scene.add_fields();
+    cloud.set_hydrometeor(v1::HYDROMETEOR_CLOUD);
+    v1::PhaseFunction::Kind message;
+    ASSERT_TRUE(v1::PhaseFunction::Kind_Parse(name, &message)) << name;
+    cloud.mutable_phase()->set_kind(message);
+    EXPECT_EQ(ToScene(Completed(scene)).fields[0].optics.phase.kind, kind) << name;
+  }
+}
+
 // The sizes of cloud's particles in a scene as it is drawn.
 scene::FieldParameters Cloud(const v1::Scene& scene) { return ToScene(Completed(scene)).fields[0]; }
 

@@ -1,17 +1,48 @@
 // Display names of enum values and techniques.
 
+import type { DescEnum } from "@bufbuild/protobuf";
 import { Stage } from "../gen/thunderhead/v1/frame_pb";
 import {
   CumulusSchema,
   HalfAngleSchema,
+  type Hydrometeor,
+  HydrometeorSchema,
   LightVolumeSchema,
   MetaballsSchema,
+  PhaseFunction_Kind as PhaseKind,
+  PhaseFunction_KindSchema as PhaseKindSchema,
   Preset,
   ReferenceSchema,
   RenderingSchema,
   TracedLight,
   Transport,
 } from "../gen/thunderhead/v1/scene_pb";
+
+// "ICE_COLUMNS" is "Ice columns".
+function nameOfEnumerator(description: DescEnum, value: number): string {
+  const words = description.value[value]?.localName.toLowerCase().replaceAll("_", " ");
+  return words ? (words[0]?.toUpperCase() ?? "") + words.slice(1) : `${description.name} ${value}`;
+}
+
+export function nameOfHydrometeor(hydrometeor: Hydrometeor): string {
+  return nameOfEnumerator(HydrometeorSchema, hydrometeor);
+}
+
+// Those that are not named as their enumerator.
+const PHASE_NAMES: Readonly<Partial<Record<PhaseKind, string>>> = {
+  [PhaseKind.HENYEY_GREENSTEIN]: "Henyey–Greenstein",
+  [PhaseKind.CORNETTE_SHANKS]: "Cornette–Shanks",
+  [PhaseKind.ICE_ROUGH]: "Rough ice",
+  [PhaseKind.WATER_NARROW]: "Water droplets, all of 5 µm",
+};
+
+// Each phase function with its name.
+export function namesOfPhases(): [PhaseKind, string][] {
+  return PhaseKindSchema.values
+    .map(({ number }): PhaseKind => number)
+    .filter((kind) => kind !== PhaseKind.UNSPECIFIED)
+    .map((kind) => [kind, PHASE_NAMES[kind] ?? nameOfEnumerator(PhaseKindSchema, kind)]);
+}
 
 const TECHNIQUE_NAMES: Readonly<Record<string, string>> = {
   [LightVolumeSchema.typeName]: "Light volume",

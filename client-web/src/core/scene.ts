@@ -16,7 +16,7 @@ import {
   FieldParametersSchema,
   type Ground,
   GroundSchema,
-  Hydrometeor,
+  type Hydrometeor,
   MetaballsSchema,
   type Output,
   OutputSchema,
@@ -259,20 +259,6 @@ export function outputSize(
     widthPx: clampToLimits(widthPx * fit, LIMITS.width),
     heightPx: clampToLimits(heightPx * fit, LIMITS.height),
   };
-}
-
-const HYDROMETEOR_NAMES: Readonly<Record<Hydrometeor, string>> = {
-  [Hydrometeor.UNSPECIFIED]: "Unknown",
-  [Hydrometeor.CLOUD]: "Cloud",
-  [Hydrometeor.RAIN]: "Rain",
-  [Hydrometeor.ICE]: "Ice",
-  [Hydrometeor.SNOW]: "Snow",
-  [Hydrometeor.GRAUPEL]: "Graupel",
-  [Hydrometeor.HAIL]: "Hail",
-};
-
-export function hydrometeorName(hydrometeor: Hydrometeor): string {
-  return HYDROMETEOR_NAMES[hydrometeor] ?? `Field ${hydrometeor}`;
 }
 
 // A serialized scene for addresses, in the URL-safe base64 of RFC 4648, section 5.

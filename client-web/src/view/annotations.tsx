@@ -12,8 +12,9 @@ import {
 import type { Pose } from "../core/camera";
 import { hexOfColor } from "../core/color";
 import { momentOf } from "../core/moment";
+import { nameOfHydrometeor } from "../core/names";
 import type { Projection } from "../core/projection";
-import { effectiveField, hydrometeorName } from "../core/scene";
+import { effectiveField } from "../core/scene";
 import type { PageState } from "../core/state";
 import { formatElapsed } from "../core/units";
 
@@ -129,7 +130,7 @@ function legendOf(state: PageState): LegendEntry[] {
   return (state.storm.value?.fields ?? []).flatMap(({ hydrometeor, defaults }) => {
     const { visible, falseColor } = effectiveField(state.scene.peek(), hydrometeor, defaults);
     if (visible === false || falseColor === undefined) return [];
-    return [{ name: hydrometeorName(hydrometeor), color: hexOfColor(falseColor) }];
+    return [{ name: nameOfHydrometeor(hydrometeor), color: hexOfColor(falseColor) }];
   });
 }
 

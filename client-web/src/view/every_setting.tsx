@@ -1,6 +1,7 @@
 // The drawer's list, group by group.
+
+import { nameOfHydrometeor } from "../core/names";
 import { type Parameter, parametersOf, parameterValue, withParameter } from "../core/parameters";
-import { hydrometeorName } from "../core/scene";
 import type { PageState } from "../core/state";
 import { formatQuantity } from "../core/units";
 import { COMMENTS } from "../gen/comments";
@@ -114,5 +115,5 @@ function labelOf(state: PageState, { name, path, group }: Parameter): string {
   if (index === undefined) return name;
   if (group !== "fields") return `${Number(index) + 1}: ${name}`;
   const field = state.scene.value.fields[Number(index)];
-  return `${hydrometeorName(field?.hydrometeor ?? 0)}: ${name}`;
+  return `${nameOfHydrometeor(field?.hydrometeor ?? 0)}: ${name}`;
 }

@@ -1,9 +1,9 @@
 // The storm's fields, one row each: visibility, scale, colour, particles and detail.
 import { create, isMessage } from "@bufbuild/protobuf";
 import { colorOfHex, hexOfColor } from "../core/color";
+import { nameOfHydrometeor, namesOfPhases } from "../core/names";
 import {
   effectiveField,
-  hydrometeorName,
   LIMITS,
   withAsymmetry,
   withDetail,
@@ -25,17 +25,6 @@ import {
   FieldDescription_SizeOrigin as SizeOrigin,
 } from "../gen/thunderhead/v1/storm_pb";
 import { Choice, Slider, Switch } from "./controls";
-
-const PHASE_KINDS = [
-  [Kind.WATER_DROPLETS, "Water droplets"],
-  [Kind.WATER_NARROW, "Water droplets, all of 5 µm"],
-  [Kind.ICE_COLUMNS, "Ice columns"],
-  [Kind.ICE_PLATES, "Ice plates"],
-  [Kind.ICE_ROUGH, "Rough ice"],
-  [Kind.HENYEY_GREENSTEIN, "Henyey–Greenstein"],
-  [Kind.CORNETTE_SHANKS, "Cornette–Shanks"],
-  [Kind.RAYLEIGH, "Rayleigh"],
-] as const;
 
 const WITH_ASYMMETRY: readonly Kind[] = [Kind.HENYEY_GREENSTEIN, Kind.CORNETTE_SHANKS];
 
@@ -74,7 +63,7 @@ function FieldRow({ state, field }: { state: PageState; field: FieldDescription 
   // Subscribes the row to changes of the fields, not to those of the whole scene.
   void state.fields.value;
   const shown = effectiveField(state.scene.peek(), hydrometeor, defaults);
-  const name = hydrometeorName(hydrometeor);
+  const name = nameOfHydrometeor(hydrometeor);
   const id = name.toLowerCase();
   const edit = (change: Parameters<typeof withField>[2]) =>
     state.edit((scene) => withField(scene, hydrometeor, change));
@@ -162,7 +151,7 @@ function controlsOf(state: PageState, { hydrometeor, defaults }: FieldDescriptio
   void state.particleSizes.value;
   return {
     shown: effectiveField(state.scene.peek(), hydrometeor, defaults),
-    id: hydrometeorName(hydrometeor).toLowerCase(),
+    id: nameOfHydrometeor(hydrometeor).toLowerCase(),
     edit: (change: Parameters<typeof withField>[2]) =>
       state.edit((scene) => withField(scene, hydrometeor, change)),
   };
@@ -247,7 +236,7 @@ function OpticsSettings({ state, field }: { state: PageState; field: FieldDescri
         label="Phase"
         testId={`field-${id}-phase`}
         value={phase?.kind || Kind.HENYEY_GREENSTEIN}
-        options={PHASE_KINDS}
+        options={namesOfPhases()}
         onChange={(kind) =>
           edit({ phase: create(PhaseFunctionSchema, { kind, asymmetry: phase?.asymmetry }) })
         }
@@ -270,7 +259,7 @@ function DetailSettings({ state, field }: { state: PageState; field: FieldDescri
   const { hydrometeor, defaults } = field;
   void state.fields.value;
   const { detail } = effectiveField(state.scene.peek(), hydrometeor, defaults);
-  const id = hydrometeorName(hydrometeor).toLowerCase();
+  const id = nameOfHydrometeor(hydrometeor).toLowerCase();
   const edit = (change: Parameters<typeof withDetail>[2]) =>
     state.edit((scene) => withDetail(scene, hydrometeor, change));
   return (

@@ -2,7 +2,7 @@
 import { create } from "@bufbuild/protobuf";
 import { useState } from "preact/hooks";
 import { placeFrom } from "../../core/map_frame";
-import { hydrometeorName } from "../../core/scene";
+import { nameOfHydrometeor } from "../../core/names";
 import { compassPoint } from "../../core/sun";
 import { formatLength, lengthUnits } from "../../core/units";
 import type { FieldMaximum } from "../../gen/thunderhead/v1/probe_pb";
@@ -96,7 +96,7 @@ function StandOff({ page }: { page: Page }) {
 }
 
 function coreName({ hydrometeor, position }: FieldMaximum): readonly [number, string] {
-  const name = hydrometeorName(hydrometeor).toLowerCase();
+  const name = nameOfHydrometeor(hydrometeor).toLowerCase();
   const height = formatLength(position?.zM ?? 0, "height");
   return [hydrometeor, `the ${name} core, ${height} up`];
 }

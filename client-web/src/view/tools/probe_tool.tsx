@@ -1,6 +1,7 @@
 // What is there: a click on the picture asks the server for the place, and the values of every field along the ray.
+
+import { nameOfHydrometeor } from "../../core/names";
 import { placeInWords, readable, wayBetween } from "../../core/probe";
-import { hydrometeorName } from "../../core/scene";
 import type { PageState } from "../../core/state";
 import { compassPoint } from "../../core/sun";
 import { formatLength, formatNumber } from "../../core/units";
@@ -115,10 +116,10 @@ function Where({ place }: { place: RayPlace }) {
 function FieldRow({ field }: { field: FieldAlongRay }) {
   const { factor, symbol } = readable(field.units);
   return (
-    <tr data-testid={`probe-${hydrometeorName(field.hydrometeor).toLowerCase()}`}>
+    <tr data-testid={`probe-${nameOfHydrometeor(field.hydrometeor).toLowerCase()}`}>
       <th scope="row">
         <span class="key-swatch" style={{ background: colorOfField(field.hydrometeor) }} />
-        {hydrometeorName(field.hydrometeor)}
+        {nameOfHydrometeor(field.hydrometeor)}
       </th>
       <td>
         {amount(field.maximum * factor)} {symbol}
@@ -158,7 +159,7 @@ function Cores({ page }: { page: Page }) {
 
 function Core({ page, core }: { page: Page; core: FieldMaximum }) {
   const { factor, symbol } = readable(core.units);
-  const name = hydrometeorName(core.hydrometeor);
+  const name = nameOfHydrometeor(core.hydrometeor);
   const { position } = core;
   return (
     <li>

@@ -1,7 +1,7 @@
 // The fields along a ray as a chart. uPlot is loaded with the first chart.
 import { useEffect, useRef } from "preact/hooks";
+import { nameOfHydrometeor } from "../../core/names";
 import { readable } from "../../core/probe";
-import { hydrometeorName } from "../../core/scene";
 import { lengthUnits } from "../../core/units";
 import type { ProbeRayResponse } from "../../gen/thunderhead/v1/probe_pb";
 import { colorOfField } from "./field_colors";
@@ -44,7 +44,7 @@ export function RayChart({ found }: { found: ProbeRayResponse }) {
             series: [
               {},
               ...fields.map(({ hydrometeor }) => ({
-                label: hydrometeorName(hydrometeor),
+                label: nameOfHydrometeor(hydrometeor),
                 stroke: colorOfField(hydrometeor),
                 width: 1.5,
                 points: { show: false },
