@@ -1,4 +1,4 @@
-// Who calls, and in which role. Plain values.
+// The caller, and the role. Plain values.
 #pragma once
 
 #include <chrono>
@@ -10,7 +10,7 @@
 
 namespace thunderhead::access {
 
-// What somebody may do; docs/operating.md has the table, MayCall the rules.
+// The rights of a caller; docs/operating.md has the table, MayCall the rules.
 enum class Role {
   kViewer,     // watches sessions that others opened
   kPresenter,  // also opens sessions, makes clouds and single pictures
@@ -28,7 +28,7 @@ struct Identity {
   std::optional<std::chrono::system_clock::time_point> expires_at = {};
 };
 
-// What somebody shows at the door.
+// The credentials shown at the door.
 struct Credentials {
   std::string token;  // empty: none
   std::string peer;   // the client's address with its port; empty: this machine's local socket

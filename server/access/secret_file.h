@@ -18,7 +18,7 @@ namespace thunderhead::access {
 // that others may write, or that everybody may read.
 absl::StatusOr<std::string> ReadSecretFile(const std::string& path);
 
-// What a file says, read again when it has changed. What is wrong with a changed file is logged,
+// The text of a file, read again when it has changed. The error of a changed file is logged,
 // and the last good contents stay valid: a slip of the editor locks nobody out. Safe from any
 // thread.
 template <typename Value>

@@ -1,4 +1,4 @@
-// What an operator asks of `thunderhead serve`: its log, its operator's port, and its end.
+// An operator's side of `thunderhead serve`: its log, its operator's port, and its end.
 #pragma once
 
 #include <csignal>

@@ -45,7 +45,7 @@ pipeline::ProductKey KeyOf(const volume::CataloguedStorm& storm, int time_index,
   return key;
 }
 
-// What the service says of its part.
+// The description by the service.
 void AddStages(const v1::RenderImageResponse& response, PictureTimes& times) {
   for (const v1::StageCost& stage : response.stages()) {
     double& time_ms = stage.stage() == v1::STAGE_READ     ? times.read_ms

@@ -51,7 +51,7 @@ absl::Status CheckNames(const PictureRunOptions& options,
 // The size and time of a file, without its hash; UNAVAILABLE if there is none.
 absl::StatusOr<pipeline::InputFile> StampOf(const std::string& path);
 
-// What a product's entry says of what it shows.
+// The contents of a product, as its entry has them.
 pipeline::ManifestEntry EntryOf(const pipeline::ProductKey& key, const View& view);
 
 // Equal for a file that has not been written to in between.

@@ -203,7 +203,7 @@ void AddProductOptions(CLI::App& command, ProductFlags& flags) {
 
 v1::ImageFormat ProductFormat::Drawn() const {
   if (kind == ProductKind::kExr || kind == ProductKind::kNetcdf) return v1::IMAGE_FORMAT_EXR;
-  // What is made of it here loses nothing before that.
+  // Files made of it here lose nothing before that.
   return kind == ProductKind::kJpeg && !annotate && !world_file ? v1::IMAGE_FORMAT_JPEG
                                                                 : v1::IMAGE_FORMAT_PNG;
 }

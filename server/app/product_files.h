@@ -35,7 +35,7 @@ struct ProductFormat {
   // Of all that changes the file beside the scene; empty if nothing does.
   std::string fingerprint;
 
-  // What the service is asked for.
+  // The requested picture.
   v1::ImageFormat Drawn() const;
   // True for files that movies are made of.
   bool IsPicture() const { return kind == ProductKind::kPng || kind == ProductKind::kJpeg; }

@@ -39,7 +39,7 @@ struct ServeFlags {
   OperationFlags operation;
   JobsFlags jobs;
 
-  // Who may come.
+  // Access.
   std::vector<std::string> auth = {"none"};
   std::string jwt_issuer;
   std::string jwt_audience;
@@ -71,7 +71,7 @@ Budgets BudgetsOf(const ServeFlags& flags);
 
 void AddServeFlags(CLI::App& serve, ServeFlags& flags);
 
-// What --auth, and the flags that belong to it, stand for.
+// The meaning of --auth and the flags that belong to it.
 absl::StatusOr<std::shared_ptr<access::Door>> MakeDoor(const ServeFlags& flags);
 
 // Fills in what belongs together: limits in the units of the code, hosts, TLS.

@@ -10,7 +10,7 @@
 
 namespace thunderhead::app {
 
-// What outlives the server, each null if it ends with it.
+// State that outlives the server, each null if it ends with it.
 struct State {
   std::shared_ptr<session::SessionStore> sessions;
   std::shared_ptr<jobs::JobStore> jobs;

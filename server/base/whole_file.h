@@ -19,7 +19,7 @@ std::string PartialPath(std::string_view path);
 // UNAVAILABLE if it cannot take the file now, such as a full disk.
 absl::Status WriteWholeFile(const std::string& path, std::string_view bytes);
 
-// What a system call's error `code` means for whoever writes files: FAILED_PRECONDITION where a
+// The meaning of a system call's error `code` for writers of files: FAILED_PRECONDITION where a
 // folder is missing or may not be written to, so that somebody has to look; UNAVAILABLE for what
 // may pass, such as a full disk.
 absl::Status WriteProblem(std::string_view message, int code);

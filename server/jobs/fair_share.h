@@ -1,4 +1,4 @@
-// Who is next of those who wait: the one for whom least was done so far, in milliseconds. A plain
+// The next of those who wait: the one for whom least was done so far, in milliseconds. A plain
 // value.
 #pragma once
 

@@ -27,7 +27,7 @@ struct NewJob {
   std::vector<PictureOrder> pictures;
 };
 
-// Who asks about a job.
+// The person or program that asks about a job.
 struct Asker {
   std::string name;
   bool is_operator = false;  // who may ask about everybody's
@@ -102,7 +102,7 @@ class JobBoard {
 
   // NOT_FOUND, or PERMISSION_DENIED if it is another's.
   absl::Status Check(const std::string& id, const Asker& asker) const;
-  // What has changed after `version`; of 0 everything. Nothing for a job that is not there.
+  // Changes after `version`; of 0 everything. Nothing for a job that is not there.
   std::optional<JobNews> NewsOf(const std::string& id, std::uint64_t version) const;
   // In the order in which they were created.
   std::vector<JobView> All() const;
@@ -142,7 +142,7 @@ class JobBoard {
   // ended, the oldest first. Returns them.
   std::vector<ResultFile> MakeRoom();
 
-  // What a store does not have yet; it is taken to be saved.
+  // Changes that no store has yet; they are taken to be saved.
   std::vector<JobChange> TakeChanges();
   // The changes could not be saved.
   void GiveBack(const std::vector<JobChange>& changes);

@@ -1,4 +1,4 @@
-// What is kept of a job of pictures. Plain values; what a picture shows, and what is told of a
+// The kept state of a job of pictures. Plain values; what a picture shows, and what is told of a
 // drawn one, are bytes that the service makes and reads.
 #pragma once
 
@@ -37,7 +37,7 @@ struct Problem {
   bool operator==(const Problem&) const = default;
 };
 
-// What somebody asks for.
+// The request.
 struct PictureOrder {
   std::string name;  // the client's
   std::string request;

@@ -13,7 +13,7 @@
 
 namespace thunderhead::jobs {
 
-// What has changed of a job since it was saved.
+// Changes of a job since it was saved.
 struct JobChange {
   struct Picture {
     std::size_t place = 0;

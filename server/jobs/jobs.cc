@@ -30,7 +30,7 @@ void Count(const char* outcome, std::size_t pictures = 1) {
   telemetry::Counted().job_pictures.Of(outcome).Add(pictures);
 }
 
-// What was not the picture's own fault.
+// Failures that are not the picture's own fault.
 bool IsOfServer(const absl::Status& status) {
   const std::string reason = base::DetailsOf(status).reason;
   return reason == "SHUTTING_DOWN" || reason == "RENDER_QUEUE_FULL";

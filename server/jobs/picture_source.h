@@ -1,4 +1,4 @@
-// What draws the pictures of jobs, as jobs see it.
+// The source of jobs' pictures, as jobs see it.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// What a load records while it runs; its report is made of it.
+// The record of a running load; its report is made of it.
 #pragma once
 
 #include <chrono>

@@ -49,7 +49,7 @@ class Transport {
                                            double patience_s) = 0;
 };
 
-// What a guarded server asks for.
+// Credentials for a guarded server.
 struct Access {
   std::string token;  // empty: none
   // PEM of those who may vouch for the server by TLS; empty: no TLS, or those of the machine where

@@ -13,7 +13,7 @@
 
 namespace thunderhead::picture {
 
-// What a file tells of its picture, by name; in the header.
+// Texts about the picture, by name; in the header.
 struct ExrAttributes {
   std::map<std::string, std::string> texts;
   std::map<std::string, float> numbers;

@@ -103,7 +103,7 @@ absl::Status Failed(const std::string& path, const std::string& what, int code) 
   const std::string message =
       absl::StrCat(path, " cannot be written: ", what, " (", Reason(code),
                    "); check that its folder exists, may be written to and has room");
-  // What is no error of the system's is of the pictures, such as a size that the encoder cannot do.
+  // Other errors than the system's are of the pictures, such as a size that the encoder cannot do.
   if (AVUNERROR(code) >= kErrnos) return absl::InvalidArgumentError(message);
   return base::WriteProblem(message, AVUNERROR(code));
 }

@@ -13,7 +13,7 @@
 
 namespace thunderhead::pipeline {
 
-// What a product shows.
+// The contents of a product.
 struct ProductKey {
   std::string storm;
   std::optional<absl::Time> run;  // when the run began; nothing if that is not known

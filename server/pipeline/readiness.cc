@@ -22,7 +22,7 @@ absl::Status Wrong(std::string_view text, std::string_view why) {
                    " (open, age:SECONDS[,minsize:BYTES], next[,age:SECONDS] or marker:GLOB)"));
 }
 
-// What GLOB's star stands for in `name`; empty if it does not match.
+// The text that GLOB's star stands for in `name`; empty if it does not match.
 std::string_view StarOf(std::string_view glob, std::string_view name) {
   const std::size_t star = glob.find('*');
   const std::string_view before = glob.substr(0, star);

@@ -32,7 +32,7 @@ class ReadinessPolicy {
   // INVALID_ARGUMENT for anything else.
   static absl::StatusOr<ReadinessPolicy> Parse(std::string_view text);
 
-  // What `file` waits for, for people; nothing if it is ready. `files` are the data files of its
+  // Why `file` waits, for people; nothing if it is ready. `files` are the data files of its
   // folder, `names` all names there.
   std::optional<std::string> WaitsFor(const SeenFile& file, const std::vector<SeenFile>& files,
                                       const std::vector<std::string>& names) const;

@@ -97,7 +97,7 @@ int AllowReading(scmp_filter_ctx filter) {
   return error;
 }
 
-// Whatever is not allowed fails with EPERM, which libraries report as an error, rather than ending
+// A call that is not allowed fails with EPERM, which libraries report as an error; it does not end
 // the process: another version of the C library may try something first and do without.
 absl::Status FilterCalls() {
   const std::unique_ptr<void, void (*)(scmp_filter_ctx)> filter(seccomp_init(SCMP_ACT_ERRNO(EPERM)),

@@ -1,4 +1,4 @@
-// What a ray from an eye meets first: the storm, the ground, or neither. For pointing at a picture.
+// The first hit of a ray from an eye: the storm, the ground, or neither. For pointing at a picture.
 #pragma once
 
 #include "glm/vec3.hpp"

@@ -237,7 +237,7 @@ class InteractCall : public InteractReactor,
     return ResponseOf(response);
   }
 
-  // What the person sees: the session, the own view, or nothing. Needs mutex_.
+  // The person's picture: the session's, the own view, or nothing. Needs mutex_.
   std::shared_ptr<session::Session> Watched() {
     if (own_view_ != nullptr && session_->audience().Follows(person_id_)) own_view_.reset();
     if (hidden_) return nullptr;

@@ -67,7 +67,7 @@ class JobPicture final : public jobs::PictureInHand, private PictureListener {
     input_.set_storm_id(scene.storm_id());
     input_.set_valid_time(order.valid_time);
     input_.set_device(engine_.loop.Device().device);
-    // What it never had is found wrong as for any picture.
+    // An order without a time is found wrong as for any picture.
     if (order.valid_time.empty()) return absl::OkStatus();
     THUNDERHEAD_ASSIGN_OR_RETURN(const volume::StormInfoPtr storm,
                                  FindStorm(engine_.store, scene.storm_id()));

@@ -21,7 +21,7 @@ class LocalListener {
   LocalListener(const LocalListener&) = delete;
   LocalListener& operator=(const LocalListener&) = delete;
 
-  // What gRPC's clients call it.
+  // Its address as gRPC's clients write it.
   const std::string& address() const { return address_; }
 
  private:

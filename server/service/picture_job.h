@@ -26,7 +26,7 @@ class PictureListener {
   ~PictureListener() = default;
 };
 
-// Who waits for a picture: one that nobody waits for lets others go before.
+// Those who wait for a picture: one without any lets others go before.
 enum class Awaited { kByACall, kByNobody };
 
 // Reads, draws and encodes a picture in a lane of the render loop, which ends it; everything passed

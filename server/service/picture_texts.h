@@ -1,4 +1,4 @@
-// What a picture tells of itself, inside the file: as texts of a PNG or attributes of an OpenEXR
+// The description of a picture inside its file: as texts of a PNG or attributes of an OpenEXR
 // file, by the same names.
 #pragma once
 

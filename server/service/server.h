@@ -31,7 +31,7 @@ struct TlsFiles {
 struct ServerOptions {
   std::string address;  // HOST:PORT, port 0 for a free one; empty: no port
   TlsFiles tls;         // of that port
-  // Who may call; null: everybody may do everything, and nothing is written down.
+  // Decides who may call; null: everybody may do everything, and nothing is written down.
   std::shared_ptr<access::Door> door;
   Limits limits;
   std::string clouds_folder;  // for generated clouds; empty: none can be generated
@@ -41,7 +41,7 @@ struct ServerOptions {
   jobs::JobsOptions jobs;
 };
 
-// What a server has to do now.
+// The load of a server now.
 struct ServerLoad {
   int sessions = 0;
   int viewers = 0;  // of sessions and own views

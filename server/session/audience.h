@@ -38,7 +38,7 @@ struct AudienceFormat {
   std::function<std::string(const HeldTimes&)> held_times = [](const auto&) { return ""; };
 };
 
-// What people were told last of one subject.
+// The last that people were told of one subject.
 struct Told {
   std::uint64_t count = 0;  // of tellings; 0: nothing yet
   std::shared_ptr<const std::string> bytes;
@@ -87,7 +87,7 @@ class Audience {
 
   // The session shows a scene of that revision, which everybody is to be sent.
   void SceneChanged(std::uint64_t revision, Time now);
-  // What is in memory of the storm that the session shows; everybody is told if it is news.
+  // The times in memory of the storm that the session shows; everybody is told if it is news.
   void Hold(const HeldTimes& held, Time now);
   // Wakes everybody, when the session has ended.
   void WakeAll();

@@ -1,4 +1,4 @@
-// What people show one another on a session's picture: pointers, and marks that they draw. Both are
+// People show one another on a session's picture: pointers, and marks that they draw. Both are
 // places in the world, so they stay where they are when the camera turns. A plain value.
 #pragma once
 

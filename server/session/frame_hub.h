@@ -30,7 +30,7 @@ namespace thunderhead::session {
 
 using FrameEvent = std::variant<std::shared_ptr<const EncodedFrame>, Problem>;
 
-// What a viewer wants of the frames.
+// A viewer's wishes for the frames.
 struct ViewerWants {
   int window_width_px = 0;         // 0: as the scene asks
   double frames_per_second = 0.0;  // at most; 0: as many as there are

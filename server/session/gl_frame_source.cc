@@ -18,7 +18,7 @@
 namespace thunderhead::session {
 namespace {
 
-// What the sources of one device have in common.
+// Shared by the sources of one device.
 struct Shared {
   std::shared_ptr<const renderers::TechniqueRegistry> registry =
       std::make_shared<renderers::TechniqueRegistry>(renderers::TechniqueRegistry::BuiltIn());
@@ -135,12 +135,12 @@ class GlFrameSource final : public FrameSource {
     frame::ToneMapper* mapper;
   };
 
-  // What happened to the device since the last look.
+  // The device's fault since the last look, if any.
   absl::Status Look() { return gl::StatusOf(watch_->Look()); }
 
   bool DropOldest() { return renderers_.DropOldest() || correctors_.DropOldest(); }
 
-  // What `draw` returns, or why the device could not. Where the device has no memory left it is
+  // The result of `draw`, or why the device could not. Where the device has no memory left it is
   // given back all that is kept for other pictures, once. A renderer that did not get all its
   // memory is of no use.
   template <typename Draw>

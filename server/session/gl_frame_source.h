@@ -19,7 +19,7 @@ namespace thunderhead::session {
 std::vector<TechniqueInfo> TechniquesOf(const renderers::TechniqueRegistry& registry);
 
 struct GlSourceOptions {
-  // What GL objects count in: of the machine where its processors draw, else of the GPU. Null:
+  // The budget of GL objects: of the machine where its processors draw, else of the GPU. Null:
   // nothing is refused.
   std::shared_ptr<base::MemoryBudget> memory;
   std::shared_ptr<base::MemoryBudget> gpu_memory;

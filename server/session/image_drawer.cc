@@ -14,7 +14,7 @@
 namespace thunderhead::session {
 namespace {
 
-// What should be drawn within this time has a lane of its own.
+// A picture expected within this time has a lane of its own.
 constexpr double kQuick_ms = 5e3;
 // Pictures that hold their fields while their light is traced.
 constexpr std::ptrdiff_t kMaxTraced = 8;

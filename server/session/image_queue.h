@@ -24,7 +24,7 @@ struct ImageProgress {
   std::optional<double> estimated_error;  // of the picture with these paths
 };
 
-// What a picture is drawn from.
+// Fields and camera of a picture.
 struct ImageInput {
   std::shared_ptr<const volume::HydrometeorFields> fields;
   scene::Camera camera;  // the scene's, framed by the fields

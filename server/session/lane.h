@@ -60,7 +60,7 @@ class Lane {
   double LongestPieceMs() const;
 
  private:
-  // What the source takes.
+  // The source's turn at the device.
   class Turn final : public base::DeviceTurn {
    public:
     explicit Turn(Lane& lane) : lane_(lane) {}

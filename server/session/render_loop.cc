@@ -29,7 +29,7 @@ namespace {
 // Behind whoever waits, but before tracing, which could use all processors for ever.
 constexpr int kImageNiceness = 5;
 
-// Who draws beside the render loop.
+// Those who draw beside the render loop.
 class Lanes {
  public:
   struct Entry {
@@ -56,7 +56,7 @@ class Lanes {
   const std::vector<Entry> all_;
 };
 
-// Who looks at a scene again within this time should find it as it was.
+// A scene looked at again within this time should find it as it was.
 constexpr double kUnused_s = 3.0;
 constexpr std::chrono::milliseconds kBetweenAnswers{500};
 
@@ -253,7 +253,7 @@ bool RenderLoop::Recover(const FrameSourceFactory& make_source, const std::vecto
       if (options_.on_device_given_up) options_.on_device_given_up(why);
       return false;
     }
-    // What was made with a lost context is deleted before there is another.
+    // Objects of a lost context are deleted before there is another.
     ++device_generation_;
     for (Lane* lane : lanes) lane->RenewSource();
     source.Replace(nullptr);

@@ -44,9 +44,9 @@ struct RenderLoopOptions {
   std::size_t max_traced_sessions = 8;
   std::function<accuracy::OfferTables()> offer_tables = accuracy::BuiltInOfferTables;
   TruthSourceFactory make_truth_source = [] { return MakeReferenceTruthSource(); };
-  // What pictures count in; null: nothing is refused.
+  // The budget of pictures; null: nothing is refused.
   std::shared_ptr<base::MemoryBudget> memory;
-  // What GL objects count in; where one refuses, what sources keep is given back.
+  // The budget of GL objects; where it refuses, sources give back what they keep.
   std::vector<std::shared_ptr<base::MemoryBudget>> device_memory;
   LossLimits losses;
   // Called once, on the loop's thread, when the device was lost too often: nothing is drawn any

@@ -221,7 +221,7 @@ void Roster::Give(Person& to) {
   ++revision_;
   steering_ = to.id;
   away_since_.reset();
-  // Who steers sees what is steered.
+  // A steering person sees what is steered.
   to.follows = true;
   to.asks = false;
 }

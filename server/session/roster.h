@@ -17,7 +17,7 @@ namespace thunderhead::session {
 
 enum class Role { kPresenter, kViewer };
 
-// What a session allows.
+// The rules of a session.
 struct Rules {
   bool viewers_may_steer = true;  // control that is free is given to a viewer who asks
   bool control_locked = false;    // nobody may ask for it

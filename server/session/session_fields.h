@@ -41,7 +41,7 @@ class SessionFields {
   // that a time slider that moves faster than the disk still shows something.
   std::optional<NewestScene> Drawable(const NewestScene& newest, std::uint64_t shown_revision);
 
-  // What could not be read is asked for again.
+  // Fields that could not be read are asked for again.
   void TryAgain() { unreadable_revision_ = 0; }
 
   // The fields of the scene that Drawable returned last.

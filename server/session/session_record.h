@@ -1,4 +1,4 @@
-// What is kept of a session while the server is down. Plain values.
+// The kept state of a session while the server is down. Plain values.
 #pragma once
 
 #include <chrono>
@@ -11,7 +11,7 @@
 
 namespace thunderhead::session {
 
-// Who has one of these may open the session; neither tells the other.
+// Either of these opens the session; neither tells the other.
 struct SessionKeys {
   std::string presenter;
   std::string viewer;

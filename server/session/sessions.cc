@@ -13,7 +13,7 @@
 namespace thunderhead::session {
 namespace {
 
-// Who knows a key may open the session.
+// A key opens its session.
 constexpr int kKeyWords = 4;  // of 32 bits
 constexpr int kIdWords = 2;
 

@@ -49,7 +49,7 @@ struct SessionVersion {
   bool operator==(const SessionVersion&) const = default;
 };
 
-// What a session tells its server.
+// Events that a session tells its server of.
 struct SessionSignals {
   std::function<void()> on_work;  // it may need a frame
   std::function<void()> on_due;   // Audience::Tick is due soon
@@ -128,7 +128,7 @@ class OwnView {
   static std::shared_ptr<OwnView> Of(const std::shared_ptr<Session>& session, std::string id,
                                      const scene::Camera& camera);
 
-  // What is drawn.
+  // The session that draws it.
   const std::shared_ptr<Session>& drawn() const { return drawn_; }
 
   void MoveCamera(const scene::Camera& camera);

@@ -12,7 +12,7 @@ constexpr double kWorthATurn_ms = 7.5;
 
 std::size_t IndexOf(TurnClass turn_class) { return static_cast<std::size_t>(turn_class); }
 
-// What people see together and what one sees for himself, in each class.
+// Shared and private pictures, in each class.
 std::string GroupOf(const Contender& contender) {
   return std::to_string(IndexOf(*contender.work)) + (contender.own_view ? " own" : "");
 }

@@ -1,4 +1,4 @@
-// Who draws next: deficit round robin in milliseconds. What people wait for comes before what
+// The order of drawing: deficit round robin in ms. Pictures that people wait for come before what
 // becomes finer while they look, and that before pictures for nobody's eyes; but the later ones get
 // a tenth of the time however much the earlier have to do, so that they end. Within a class all get
 // the same time, however long each one's pieces are. What many people see and what one sees for
@@ -25,7 +25,7 @@ inline constexpr std::size_t kTurnClasses = 3;
 // Of the time that the classes before it use.
 inline constexpr double kLeastShare = 0.1;
 
-// Who may have a turn.
+// Those who may have a turn.
 struct Contender {
   std::string id;
   bool own_view = false;          // of one person

@@ -32,8 +32,8 @@ class VideoPlace {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  // Who has lost the stream waits so long for its next key picture, longer each time that it loses
-  // it again within kSound: key pictures cost everybody bytes.
+  // A viewer who lost the stream waits so long for its next key picture, longer with each loss
+  // of it within kSound: key pictures cost everybody bytes.
   static constexpr std::chrono::seconds kShortestWait{2};
   static constexpr std::chrono::seconds kLongestWait{64};
   static constexpr std::chrono::seconds kSound{30};

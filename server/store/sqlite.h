@@ -29,7 +29,7 @@ class Database {
   absl::StatusOr<Statement> Prepare(const std::string& sql);
   // The one number that the query has as its result.
   absl::StatusOr<std::int64_t> Number(const std::string& sql);
-  // What was wrong with the last call: DATA_LOSS for a damaged file, else UNAVAILABLE.
+  // The error of the last call: DATA_LOSS for a damaged file, else UNAVAILABLE.
   absl::Status Error() const;
 
  private:

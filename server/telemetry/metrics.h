@@ -1,4 +1,4 @@
-// What the server counts while it runs: counters and histograms that cost an atomic operation or
+// The figures of a running server: counters and histograms that cost an atomic operation or
 // two, in one place for the whole process. Knows nothing of what it counts but the names.
 #pragma once
 

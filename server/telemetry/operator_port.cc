@@ -24,7 +24,7 @@ using asio::ip::tcp;
 
 using std::chrono::steady_clock;
 
-// Who takes longer to ask or to listen is cut off, so that the next can be answered.
+// A client that takes longer to ask or to listen is cut off, so that the next can be answered.
 constexpr std::chrono::seconds kPatience{2};
 
 // False at the deadline.

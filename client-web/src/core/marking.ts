@@ -163,7 +163,7 @@ export class Marking {
     pendingMarks.value = [...others, waiting];
     const withdraw = this.#steps.later(afterMs, () => {
       this.#resting.delete(withdraw);
-      // Who has joined again begins without pending marks.
+      // A person who has joined again begins without pending marks.
       if (pendingMarks.peek().includes(waiting)) this.#send({ ...mark, pending: waiting });
     });
     this.#resting.add(withdraw);

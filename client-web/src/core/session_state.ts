@@ -113,7 +113,7 @@ export class SessionState {
     return person === undefined ? "" : this.nameOf(person);
   }
 
-  // Who steered before the connection was lost is taken to steer until the next presence, so that controls stay usable.
+  // A person who steered before the connection was lost is taken to steer until the next presence, so that controls stay usable.
   joined(joined: Joined): void {
     const steered = this.steering.peek();
     batch(() => {

@@ -240,7 +240,7 @@ export class PageState {
     () => this.#scene.value.camera?.kind.case ?? this.#shownPose.value?.kind ?? "orbit",
   );
 
-  // What is shown, in words.
+  // A description of the picture.
   readonly title = computed(() => {
     const known = this.storms.value.find(({ id }) => id === this.stormId.value);
     return known?.title || this.stormId.value || "Thunderhead";

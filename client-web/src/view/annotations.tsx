@@ -18,7 +18,7 @@ import { effectiveField } from "../core/scene";
 import type { PageState } from "../core/state";
 import { formatElapsed } from "../core/units";
 
-// What the page's own bars cover.
+// The part that the page's own bars cover.
 const BARS_PX = { left: 76, top: 106, right: 0, bottom: 88 };
 const NARROW_BARS_PX = { left: 0, top: 190, right: 0, bottom: 84 };
 const NARROW_PX = 900;
@@ -106,7 +106,7 @@ interface OtherPicture {
   readonly timeIndex: number | undefined;
 }
 
-// What there is to write over the picture that is shown, or over another one of its scene.
+// Texts over the picture that is shown, or over another one of its scene.
 export function annotated(state: PageState, other?: OtherPicture): Content | undefined {
   const { projection, pose } = other ?? state.frame.value ?? {};
   if (projection === undefined) return undefined;

@@ -1,4 +1,4 @@
-// What the page has to say: how the connection is, who asks for control, notices, the end of the session.
+// Messages: the connection, requests for control, notices, the end of the session.
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import type { PageState } from "../core/state";

@@ -386,7 +386,7 @@ export class Page {
     return this.state.session.editBlock.peek() === undefined;
   }
 
-  // What is seen there becomes what the camera turns around.
+  // The camera then turns around the place seen there.
   async #turnAround(place: StrokePoint): Promise<void> {
     try {
       const seen = await this.probing.seenAt(place);

@@ -1,4 +1,4 @@
-// Who is there: names, roles, who steers, who asks.
+// The people of the session: names, roles, who steers, who asks.
 import { LONGEST_NAME } from "../core/own_keys";
 import { type Person, Role } from "../gen/thunderhead/v1/interact_pb";
 import type { Page } from "./page";

@@ -1,4 +1,4 @@
-// What is on the screen: frames to the canvas, the canvas in its window, and what the frame that is shown tells the state.
+// The screen: frames to the canvas, the canvas in its window, and what the frame that is shown tells the state.
 import { poseOfCamera, standingAzimuthDeg } from "../core/camera";
 import { encodingOf, pictureBytes } from "../core/encoding";
 import { FrameRate } from "../core/frame_rate";

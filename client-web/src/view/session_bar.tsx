@@ -1,4 +1,4 @@
-// Who steers, and the way back from looking around.
+// The person who steers, and the way back from looking around.
 import type { SessionState } from "../core/session_state";
 import type { Page } from "./page";
 

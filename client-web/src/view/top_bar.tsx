@@ -1,4 +1,4 @@
-// What is shown, at a glance: storm, run, valid time in UTC and local, lead time; then the connection, and buttons for what is
+// The picture at a glance: storm, run, valid time in UTC and local, lead time; then the connection, and buttons for what is
 // kept and shared.
 
 import type { PanelName } from "../core/tools";

@@ -11,7 +11,7 @@
 
 namespace thunderhead::scene {
 
-// What the surface is made from: the storm's cloud water and ice, a heap of heaps of bubbles, the
+// The source of the surface: the storm's cloud water and ice, a heap of heaps of bubbles, the
 // ellipsoids of one of the generator's presets, or one ellipsoid. A source other than the storm
 // fills the storm's place.
 enum class CumulusSource {

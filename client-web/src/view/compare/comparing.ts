@@ -20,7 +20,7 @@ export interface ComparingSteps {
 }
 
 export class Comparing {
-  // What B is; undefined while nothing is compared.
+  // Picture B; undefined while nothing is compared.
   readonly choice = signal<ComparisonChoice | undefined>(undefined);
   readonly frame = signal<Frame | undefined>(undefined);
   readonly problem = signal<string | undefined>(undefined);

@@ -28,7 +28,7 @@ export class Keeper {
   readonly #notes: Notes;
   readonly #views: () => readonly NamedView[];
   #working: AbortController | undefined;
-  // What is being made; undefined if nothing is.
+  // The file being made; undefined if none is.
   readonly work = signal<Work | undefined>(undefined);
 
   constructor(

@@ -36,7 +36,7 @@ export function MapTool({ page }: { page: Page }) {
   );
 }
 
-// What is absent is the server's to choose: it looks at the storm.
+// Absent values are the server's to choose: it looks at the storm.
 function spotterAt([xM, yM]: readonly [number, number], azimuthDeg?: number): Camera {
   return create(CameraSchema, { kind: { case: "spotter", value: { xM, yM, azimuthDeg } } });
 }

@@ -1,4 +1,4 @@
-// What everybody sees over the picture: pen, arrow, words and a pointer, at their places in the world.
+// Marks that everybody sees over the picture: pen, arrow, words and a pointer, at their places in the world.
 import { MOST_LETTERS } from "../../core/lettering";
 import type { Tool } from "../../core/session_state";
 import { Icon } from "../icons";

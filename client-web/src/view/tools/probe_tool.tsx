@@ -1,4 +1,4 @@
-// What is there: a click on the picture asks the server for the place, and the values of every field along the ray.
+// The probe: a click on the picture asks the server for the place, and the values of every field along the ray.
 
 import { nameOfHydrometeor } from "../../core/names";
 import { placeInWords, readable, wayBetween } from "../../core/probe";
@@ -133,7 +133,7 @@ function FieldRow({ field }: { field: FieldAlongRay }) {
   );
 }
 
-// What models leave behind where there is nothing is not worth its digits.
+// Traces that models leave where there is nothing are not worth their digits.
 const LEAST = 0.001;
 
 function amount(value: number): string {
