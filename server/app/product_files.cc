@@ -122,7 +122,7 @@ absl::StatusOr<product::MapPlace> PlaceOf(const v1::RenderImageResponse& picture
       absl::StrCat("the middle of the domain is not on its own map (", place.projection, ")"));
 }
 
-absl::StatusOr<ProductFile> MakeNetcdf(v1::RenderImageResponse picture) {
+absl::StatusOr<ProductFile> MakeNetcdf(const v1::RenderImageResponse& picture) {
   THUNDERHEAD_ASSIGN_OR_RETURN(picture::ExrPicture light,
                                picture::DecodeExr(picture.image(), "the server's picture"));
   product::LightMap map;
@@ -264,7 +264,7 @@ std::string WorldFilePath(const std::string& path) {
 
 absl::StatusOr<ProductFile> MakeProduct(const ProductFormat& format, const std::string& storm,
                                         v1::RenderImageResponse picture) {
-  if (format.kind == ProductKind::kNetcdf) return MakeNetcdf(std::move(picture));
+  if (format.kind == ProductKind::kNetcdf) return MakeNetcdf(picture);
   if (format.Drawn() == v1::IMAGE_FORMAT_PNG) {
     return MakeFromPixels(format, storm, std::move(picture));
   }

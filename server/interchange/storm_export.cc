@@ -138,7 +138,7 @@ double Number(const VdbGrid& grid, const std::string& name) {
 
 }  // namespace
 
-absl::StatusOr<VdbFile> ExportOf(const scene::Scene& scene, Fields fields,
+absl::StatusOr<VdbFile> ExportOf(const scene::Scene& scene, const Fields& fields,
                                  const volume::StormInfo& storm, const ExportOptions& options) {
   // The fields as a technique shows them that leaves nothing out.
   scene::Scene shown = scene;

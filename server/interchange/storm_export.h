@@ -31,7 +31,7 @@ struct ExportOptions {
 // one, effective_radius_m. Of the file: what it is of, when and where. Keeps `fields` alive.
 // INVALID_ARGUMENT if an extinction is too large for a half float.
 absl::StatusOr<VdbFile> ExportOf(const scene::Scene& scene,
-                                 std::shared_ptr<const volume::HydrometeorFields> fields,
+                                 const std::shared_ptr<const volume::HydrometeorFields>& fields,
                                  const volume::StormInfo& storm, const ExportOptions& options);
 
 // The scene's settings for showing the grids of `file` in another program, as JSON: the view as in

@@ -127,8 +127,8 @@ class JobBoard {
   bool IsDrawing(const PicturePlace& picture) const;
   // False for one that Begin has just taken once too often.
   bool MayBegin(const PicturePlace& picture) const { return Attempts(picture) <= kMaxAttempts; }
-  // True if it may be begun once more.
-  bool MayTryAgain(const PicturePlace& picture) const { return Attempts(picture) < kMaxAttempts; }
+  // How often it was begun, but for tries that did not count; above kMaxAttempts if it is gone.
+  int Attempts(const PicturePlace& picture) const;
 
   void Fetched(const PicturePlace& picture);
   // Cancels what has not ended.
@@ -172,8 +172,6 @@ class JobBoard {
   Entry& Insert(JobRecord record);
   void Erase(Jobs::iterator job);
   JobView ViewOf(const Entry& entry) const;
-  // More than any for a picture that is not there.
-  int Attempts(const PicturePlace& picture) const;
   std::size_t Unended(const Entry& entry) const;
   absl::Status CheckPictures(const NewJob& job) const;
   absl::Status MakeRoomForJob(const std::string& owner);

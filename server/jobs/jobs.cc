@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "base/random_hex.h"
 #include "base/status.h"
+#include "jobs/next_try.h"
 #include "pipeline/sha256.h"
 #include "telemetry/metrics.h"
 
@@ -15,10 +16,6 @@ namespace thunderhead::jobs {
 namespace {
 
 constexpr int kIdWords = kIdDigits / 8;
-// Until a picture is tried again: that the server could not take now, or that failed by something
-// that may pass.
-constexpr std::chrono::seconds kBusyPause{1};
-constexpr std::chrono::seconds kFailedPause{5};
 // Until results are written again where one could not be, such as on a full disk.
 constexpr std::chrono::seconds kUnwrittenPause{5};
 // The clock may be set in between.
@@ -28,17 +25,6 @@ Time Now() { return std::chrono::system_clock::now(); }
 
 void Count(const char* outcome, std::size_t pictures = 1) {
   telemetry::Counted().job_pictures.Of(outcome).Add(pictures);
-}
-
-// Failures that are not the picture's own fault.
-bool IsOfServer(const absl::Status& status) {
-  const std::string reason = base::DetailsOf(status).reason;
-  return reason == "SHUTTING_DOWN" || reason == "RENDER_QUEUE_FULL";
-}
-
-bool MayPass(const absl::Status& status) {
-  return absl::IsUnavailable(status) || absl::IsAborted(status) || absl::IsCancelled(status) ||
-         base::DetailsOf(status).reason == "OUT_OF_MEMORY";
 }
 
 Problem ProblemOf(const absl::Status& status) {
@@ -96,7 +82,7 @@ void Jobs::Post(Task task) {
   changed_.notify_all();
 }
 
-void Jobs::Create(NewJob job, Done done) {
+void Jobs::Create(NewJob job, const Done& done) {
   const std::string id = base::RandomHex(kIdWords);
   absl::Status status;
   {
@@ -150,7 +136,7 @@ std::vector<JobView> Jobs::List(const std::string& owner, bool everybodys,
   return views;
 }
 
-void Jobs::Cancel(const std::string& id, const Asker& asker, bool forget, Done done) {
+void Jobs::Cancel(const std::string& id, const Asker& asker, bool forget, const Done& done) {
   absl::StatusOr<JobView> view = JobView();
   {
     const std::lock_guard lock(mutex_);
@@ -365,9 +351,9 @@ void Jobs::Keep(const PicturePlace& picture, const DrawnPicture& drawn, double m
 
 void Jobs::Refuse(const PicturePlace& picture, const absl::Status& why) {
   const Lock lock(mutex_);
-  const bool of_server = IsOfServer(why) || (absl::IsCancelled(why) && draining_);
-  if (of_server || (MayPass(why) && board_.MayTryAgain(picture))) {
-    board_.PutBack(picture, !of_server, Now() + (of_server ? kBusyPause : kFailedPause));
+  const std::optional<NextTry> next = NextTryAfter(why, board_.Attempts(picture), draining_);
+  if (next.has_value()) {
+    board_.PutBack(picture, next->counts, Now() + next->pause);
     return;
   }
   if (board_.Fail(picture, ProblemOf(why), Now())) Count("failed");

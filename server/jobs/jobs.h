@@ -76,13 +76,13 @@ class Jobs {
 
   // RESOURCE_EXHAUSTED beyond the limits; UNAVAILABLE while the server drains, or if the job cannot
   // be saved.
-  void Create(NewJob job, Done done);
+  void Create(NewJob job, const Done& done);
   absl::StatusOr<JobNews> Get(const std::string& id, const Asker& asker) const;
   // The asker's, or everybody's; of that label unless it is empty.
   std::vector<JobView> List(const std::string& owner, bool everybodys,
                             const std::string& label) const;
   // Ends the pictures at once; `done` follows when that outlives the server.
-  void Cancel(const std::string& id, const Asker& asker, bool forget, Done done);
+  void Cancel(const std::string& id, const Asker& asker, bool forget, const Done& done);
 
   // `watcher` is told of changes until it is gone.
   absl::Status Watch(const std::string& id, const Asker& asker, std::weak_ptr<JobWatcher> watcher);

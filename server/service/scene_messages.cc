@@ -28,7 +28,7 @@ std::size_t IndexOf(v1::Hydrometeor hydrometeor) {
 }
 
 // Enumerators of message and value are in the same order; the message's begin with UNSPECIFIED.
-v1::PhaseFunction::Kind ToMessage(physics::PhaseKind kind) {
+v1::PhaseFunction::Kind KindMessage(physics::PhaseKind kind) {
   return static_cast<v1::PhaseFunction::Kind>(static_cast<int>(kind) + 1);
 }
 
@@ -119,7 +119,7 @@ void FillFieldDefaults(v1::FieldParameters& field, physics::Hydrometeor hydromet
   if (!field.has_albedo()) field.set_albedo(optics.albedo);
   v1::PhaseFunction& phase = *field.mutable_phase();
   if (phase.kind() == v1::PhaseFunction::KIND_UNSPECIFIED) {
-    phase.set_kind(ToMessage(optics.phase.kind));
+    phase.set_kind(KindMessage(optics.phase.kind));
   }
   if (!phase.has_asymmetry()) phase.set_asymmetry(optics.phase.asymmetry);
   if (!field.has_false_color()) {
