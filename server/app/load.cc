@@ -7,6 +7,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 #include "absl/strings/strip.h"
 #include "app/address.h"
 #include "app/client_access.h"
@@ -15,6 +16,7 @@
 #include "app/picture_size.h"
 #include "app/progress_bar.h"
 #include "base/status.h"
+#include "load/bounds.h"
 #include "load/load.h"
 
 namespace thunderhead::app {
@@ -27,6 +29,7 @@ struct Flags {
   std::optional<double> kbit_per_s;
   std::optional<int> throttled;
   load::LoadOptions load;
+  load::Bounds bounds;
   bool json = false;
   ClientAccessFlags access;
 };
@@ -103,8 +106,22 @@ absl::Status Load(const Flags& flags) {
   bar.reset();
   THUNDERHEAD_RETURN_IF_ERROR(report.status());
   std::cout << (flags.json ? load::ToJson(*report) : load::ToText(*report));
-  if (report->ErrorCount() == 0) return absl::OkStatus();
-  return absl::AbortedError(absl::StrCat("errors during the load: ", report->ErrorCount()));
+  std::vector<std::string> wrong = load::NotKept(flags.bounds, *report);
+  if (report->ErrorCount() > 0) {
+    wrong.push_back(absl::StrCat("errors during the load: ", report->ErrorCount()));
+  }
+  return wrong.empty() ? absl::OkStatus() : absl::AbortedError(absl::StrJoin(wrong, "; "));
+}
+
+void AddBounds(CLI::App& load, load::Bounds& bounds) {
+  const auto add = [&load](const char* name, std::optional<double>& bound, const char* text) {
+    load.add_option(name, bound, text)->check(CLI::Range(0.0, 1e9));
+  };
+  add("--min-fps", bounds.min_fps, "Fail if a viewer gets fewer frames/s");
+  add("--max-p95", bounds.max_p95_ms,
+      "Fail if the 95th percentile of the latency is larger, in milliseconds");
+  add("--max-p99", bounds.max_p99_ms, "The same of the 99th percentile");
+  add("--max-growth", bounds.max_growth_mb, "Fail if the server's memory grows by more MB");
 }
 
 }  // namespace
@@ -162,6 +179,7 @@ Command AddLoad(CLI::App& app) {
                    "Slices of the single pictures; 0 for the default")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
+  AddBounds(*load, flags->bounds);
   load->add_flag("--json", flags->json, "Print JSON");
   return {load, [flags] { return Load(*flags); }};
 }

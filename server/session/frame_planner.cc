@@ -62,7 +62,13 @@ Decision FramePlanner::AtRest(const NewestScene& newest, Clock::time_point now,
   }
   const Clock::time_point settled_at = targets_.SettlesAt(newest);
   if (now < settled_at) return {std::nullopt, settled_at};
-  return {FramePlan{FrameQuality{}, true}, std::nullopt};
+  const FrameQuality finest = Finest(*newest.scene, first_dirty, targets_.longest_ms);
+  if (!IsFull(finest) && finest.image_scale <= drawn_.quality.image_scale) return {};
+  return {FramePlan{finest, true}, std::nullopt};
+}
+
+bool FramePlanner::DrawsWhole(const scene::Scene& scene) const {
+  return costs_.FrameMs(view_, scene, FrameQuality{}, scene::Stage::kView) <= targets_.longest_ms;
 }
 
 void FramePlanner::Drawn(std::uint64_t revision, const FramePlan& plan) {

@@ -20,6 +20,9 @@ struct PlannerTargets {
   // The first frame at rest: with the delay, encoding and network it is shown within 300 ms.
   double refined_ms = 180.0;
   Clock::duration rest_delay = std::chrono::milliseconds(80);
+  // Of a session's pictures: everybody's wait meanwhile, since one is drawn whole. A scene whose
+  // full frame is predicted to take longer stays at the finest quality that does not.
+  double longest_ms = 5000.0;
   // A full-quality frame that takes longer than refined_ms blocks the next change, so it waits
   // until the scene has very likely come to rest.
   Clock::duration settle_delay = std::chrono::milliseconds(500);
@@ -69,6 +72,9 @@ class FramePlanner {
   void Drawn(std::uint64_t revision, const FramePlan& plan);
   // Plans no more frames of that revision: it cannot be drawn, or is not drawn by this planner.
   void GiveUp(std::uint64_t revision);
+
+  // False where a frame at full quality is predicted to take longer than longest_ms.
+  bool DrawsWhole(const scene::Scene& scene) const;
 
   // Starts again with the revision drawn last, as its setting has changed.
   void Again();

@@ -195,13 +195,14 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
   MemoryPressure pressure(options_.device_memory, wake_);
   const std::vector<Lane*> all_lanes{&lanes->tracing, &lanes->quick_images, &lanes->images};
   while (!stopping_) {
+    BeginTurn();
     if (device_lost_.exchange(false) && !Recover(make_source, all_lanes, measured)) break;
     pressure.Answer([&] {
       drawer.YieldMemory();
       measured.FreeUnused(kUnused_s);
       for (Lane* lane : all_lanes) lane->FreeUnused(kUnused_s);
     });
-    turn_began_ = Clock::now().time_since_epoch().count();
+    BeginTurn();
     const std::vector<std::shared_ptr<Session>> sessions = sessions_.AllDrawn();
     drawer.ReleaseUnwatched(sessions);
     light_tracer.TakeOutcome(Clock::now());
@@ -259,8 +260,11 @@ bool RenderLoop::Recover(const FrameSourceFactory& make_source, const std::vecto
     source.Replace(nullptr);
     const double pause_s = std::chrono::duration<double>(*at - Clock::now()).count();
     spdlog::error("the device was lost; opening it again in {:.1f} s", std::max(pause_s, 0.0));
+    turn_began_ = 0;
     while (!stopping_ && Clock::now() < *at) wake_.Wait(*at);
     if (stopping_) return false;
+    // A driver may hang here as well as in a picture.
+    BeginTurn();
     auto made = make_source(nullptr);
     if (made.ok()) {
       source.Replace(*std::move(made));

@@ -73,7 +73,8 @@ class RenderLoop {
 
   void RenderImage(ImageJob job);
 
-  // Since the turn of drawing under way began; 0 while the loop waits for work.
+  // Since the turn of drawing under way began, or a lost device is being opened again; 0 while the
+  // loop waits for work.
   double TurnSeconds() const;
 
   // The device was lost, and is not ready again.
@@ -91,6 +92,8 @@ class RenderLoop {
 
   void Run(const FrameSourceFactory& make_source, std::promise<absl::Status> started);
   void DrawWith(std::unique_ptr<FrameSource> source, const FrameSourceFactory& make_source);
+  // From now on TurnSeconds counts.
+  void BeginTurn() { turn_began_ = Clock::now().time_since_epoch().count(); }
   // After a loss of the device: returns when there is one again, false if it is given up.
   bool Recover(const FrameSourceFactory& make_source, const std::vector<Lane*>& lanes,
                MeasuredSource& source);

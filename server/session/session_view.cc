@@ -81,7 +81,9 @@ std::optional<SessionWork> SessionView::Check(const Now& now) {
   if (!setting_.settled()) {
     const Clock::time_point settled_at = targets_.SettlesAt(now.newest);
     if (now.time < settled_at) return WaitUntil{settled_at};
-    if (setting_.NeedsCheck()) return CheckSlices{now.shown};
+    if (setting_.NeedsCheck() && planner_.DrawsWhole(*now.shown.scene)) {
+      return CheckSlices{now.shown};
+    }
     if (setting_.DecideAgain(now.newest)) {
       planner_.Again();
       state_ = State::kRefining;
@@ -94,7 +96,8 @@ std::optional<SessionWork> SessionView::Check(const Now& now) {
 
 std::optional<SessionWork> SessionView::Trace(const Now& now) {
   const scene::Technique& technique = now.shown.scene->rendering.technique;
-  if (scene::TracedLightOf(technique) != scene::TracedLight::kOff) {
+  if (scene::TracedLightOf(technique) != scene::TracedLight::kOff &&
+      planner_.DrawsWhole(*now.shown.scene)) {
     const Clock::time_point settled_at = targets_.SettlesAt(now.shown);
     if (now.time < settled_at) return WaitUntil{settled_at};
     light_.BeginFor(now.shown.revision, now.time);

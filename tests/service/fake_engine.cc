@@ -435,6 +435,7 @@ void FakeMachine::Add(Drawn drawn) {
 session::FrameSourceFactory FakeFrameSources(std::shared_ptr<FakeMachine> machine) {
   return
       [machine](base::DeviceTurn* turn) -> absl::StatusOr<std::unique_ptr<session::FrameSource>> {
+        std::this_thread::sleep_for(std::chrono::milliseconds(machine->opening_ms));
         if (TakeOne(machine->cannot_open)) return absl::UnavailableError("there is no device");
         ++machine->opened;
         return std::make_unique<FakeFrameSource>(machine, turn);

@@ -100,6 +100,7 @@ struct FakeMachine {
   std::atomic<double> loses_above_exposure_ev{1e9};
   std::atomic<int> cannot_open{0};  // the next sources
   std::atomic<int> opened{0};       // sources
+  std::atomic<int> opening_ms{0};   // of each source
   Gate preparing;                   // of scenes of metaballs; each number of them once a time
   std::atomic<int> cannot_prepare{-1};
   std::atomic<int> pieces{0};   // drawn in turns

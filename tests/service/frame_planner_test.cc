@@ -74,6 +74,26 @@ TEST_F(FramePlannerTest, FastMachineDrawsFullQualityAtOnceAndOnce) {
   EXPECT_FALSE(decision.ask_again_at.has_value());
 }
 
+// A frame is drawn whole, and everybody waits for it: one scene must not stall a server.
+TEST_F(FramePlannerTest, NoFrameIsDrawnThatEverybodyWouldWaitTooLongFor) {
+  Drag({4.0, 100.0}, 20);  // 12 s a full frame
+  int frames = 0;
+  while (const auto plan = Ask(milliseconds(10000)).plan) {
+    ASSERT_LT(++frames, 10) << "it must come to an end";
+    Draw({4.0, 100.0}, *plan);
+    EXPECT_LE(last_ms_, PlannerTargets{}.longest_ms);
+  }
+  EXPECT_GT(last_ms_, 0.3 * PlannerTargets{}.longest_ms);
+  EXPECT_TRUE(last_plan_.refined);
+  EXPECT_FALSE(Ask(milliseconds(10000)).ask_again_at.has_value());
+  EXPECT_FALSE(planner_.DrawsWhole(scene_));
+}
+
+TEST_F(FramePlannerTest, AFrameOfASecondIsDrawnWhole) {
+  Drag({4.0, 10.0}, 20);  // 1.2 s a full frame
+  EXPECT_TRUE(planner_.DrawsWhole(scene_));
+}
+
 TEST_F(FramePlannerTest, CoarseFramesComeToCostAboutTheTarget) {
   for (const double ms_per_mega_sample : {0.4, 1.0, 3.0, 10.0}) {
     Drag({4.0, ms_per_mega_sample}, 20);

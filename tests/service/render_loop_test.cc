@@ -511,6 +511,26 @@ TEST_F(DeviceLossTest, ADeviceThatCannotBeOpenedIsTriedAgain) {
   EXPECT_EQ(machine_->cannot_open, 0);
 }
 
+// The server asks for a restart when a turn takes too long, so a driver that hangs there must show.
+TEST_F(DeviceLossTest, OpeningTheDeviceAgainCountsAsATurn) {
+  Start(WithLosses(6));
+  const auto session = *sessions_.Create();
+  const auto viewer = Watch(session);
+  ASSERT_TRUE(viewer->Await(Show(*session, Small(0.0)), true));
+  machine_->opening_ms = 1500;
+  machine_->losses = 1;
+  const std::uint64_t revision = Show(*session, Small(10.0));
+  double longest_s = 0.0;
+  const auto end = Clock::now() + testing::kPatience;
+  while (machine_->losses > 0 && Clock::now() < end) std::this_thread::yield();
+  while (Clock::now() < end && longest_s < 0.5) {
+    longest_s = std::max(longest_s, loop_->TurnSeconds());
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_GE(longest_s, 0.5);
+  EXPECT_TRUE(viewer->Await(revision, true));
+}
+
 TEST_F(DeviceLossTest, ASceneThatTheDeviceDoesNotBearFailsAlone) {
   Start(WithLosses(6));
   machine_->loses_above_exposure_ev = 2.0;

@@ -4,6 +4,7 @@
 #include "google/protobuf/struct.pb.h"
 #include "google/protobuf/util/json_util.h"
 #include "gtest/gtest.h"
+#include "load/bounds.h"
 #include "load/load.h"
 #include "load/pace.h"
 
@@ -161,6 +162,29 @@ TEST(Pace, DelaysEachMessageByItsTimeOnTheWire) {
   EXPECT_EQ(pace.DelayOf(1250, now + milliseconds(4)), milliseconds(16));
   EXPECT_EQ(pace.DelayOf(125, now + milliseconds(100)), milliseconds(1));
   EXPECT_FALSE(Pace(0.0).IsLimited());
+}
+
+// Two healthy viewers of 4 and 2 frames/s, seen after 100 and 200 ms; the server grows by 10 MB.
+TEST_F(ReportTest, BoundsAreKeptOrSaidNotToBe) {
+  const Report report = ReportOf(recording_);
+  EXPECT_THAT(NotKept({}, report), testing::IsEmpty());
+  EXPECT_THAT(
+      NotKept({.min_fps = 2.0, .max_p95_ms = 200.5, .max_p99_ms = 201.0, .max_growth_mb = 10.0},
+              report),
+      testing::IsEmpty());
+  EXPECT_THAT(
+      NotKept({.min_fps = 2.1, .max_p95_ms = 150.0, .max_p99_ms = 150.0, .max_growth_mb = 9.0},
+              report),
+      testing::ElementsAre("least frames/s 2.0, at least 2.1 wanted",
+                           "latency p95 200 ms, at most 150 ms wanted",
+                           "latency p99 200 ms, at most 150 ms wanted",
+                           "growth of the server's memory 10 MB, at most 9 MB wanted"));
+}
+
+TEST_F(ReportTest, ABoundOfWhatWasNotMeasuredIsNotKept) {
+  recording_.server.clear();
+  EXPECT_THAT(NotKept({.max_growth_mb = 100.0}, ReportOf(recording_)),
+              testing::ElementsAre(HasSubstr("not measured")));
 }
 
 }  // namespace
