@@ -18,6 +18,8 @@ export interface FakeCall {
 
 export class FakeService {
   readonly sessions: FakeSession[] = [];
+  // No map is sent.
+  mapless = false;
   #count = 0;
   #later = 0;
   readonly #storms = [
@@ -67,7 +69,10 @@ export class FakeService {
       describeStorm: ({ stormId, timeIndex }) => ({
         storm: describeStorm(stormId, timeIndex, this.#later),
       }),
-      getStormMap: ({ stormId, timeIndex }) => fakeStormMap(stormId, timeIndex),
+      getStormMap: ({ stormId, timeIndex }) => {
+        if (this.mapless) throw new ConnectError("the file is gone", Code.NotFound);
+        return fakeStormMap(stormId, timeIndex);
+      },
       probeRay: (request) => fakeProbe(request),
       createSession: ({ scene }) => {
         this.#count += 1;

@@ -1,7 +1,7 @@
 // The page's state as signals: the scene being edited, the server's descriptions of itself and its storms, the frame on
 // the screen, the connection, and notices. Independent of network and document.
 
-import { create, equals } from "@bufbuild/protobuf";
+import { create, type DescMessage, equals, type MessageShape } from "@bufbuild/protobuf";
 import { batch, computed, type ReadonlySignal, signal } from "@preact/signals-core";
 import type {
   AccuracyReport,
@@ -14,6 +14,7 @@ import type { TimesInMemory } from "../gen/thunderhead/v1/interact_pb";
 import type { GetStormMapResponse } from "../gen/thunderhead/v1/probe_pb";
 import {
   type Camera,
+  FieldParametersSchema,
   type Preset,
   type Rendering,
   RenderingSchema,
@@ -281,7 +282,7 @@ export class PageState {
     const when = `${date} ${clock}`.trim();
     return [
       `${this.title.value}${when === "" ? "" : `, ${when}`}`,
-      describePose(this.pose.value),
+      describePose(this.viewPose.value),
       describeSun(this.sunDirection.value),
     ].join(". ");
   });
@@ -298,27 +299,25 @@ export class PageState {
     const before = this.#scene.value;
     const after = change(before);
     if (after === before) return;
-    if (record === "recorded") this.history.edited(before);
+    if (record === "recorded") this.history.edited(before, after);
     this.#scene.value = after;
     this.#onEdit?.(change);
   }
 
   undo(): void {
-    const scene = this.#editable() ? this.history.undo(this.#scene.peek()) : undefined;
-    if (scene !== undefined) this.restore(scene, "unrecorded");
+    const edit = this.#editable() ? this.history.undo() : undefined;
+    if (edit !== undefined) this.edit(edit, "unrecorded");
   }
 
   redo(): void {
-    const scene = this.#editable() ? this.history.redo(this.#scene.peek()) : undefined;
-    if (scene !== undefined) this.restore(scene, "unrecorded");
+    const edit = this.#editable() ? this.history.redo() : undefined;
+    if (edit !== undefined) this.edit(edit, "unrecorded");
   }
 
   // Shows another scene, at this page's size.
-  restore(scene: Scene, record: "recorded" | "unrecorded" = "recorded"): void {
-    this.edit(
-      (present) =>
-        withOutput(scene, { widthPx: present.output?.widthPx, heightPx: present.output?.heightPx }),
-      record,
+  restore(scene: Scene): void {
+    this.edit((present) =>
+      withOutput(scene, { widthPx: present.output?.widthPx, heightPx: present.output?.heightPx }),
     );
   }
 
@@ -341,16 +340,20 @@ export class PageState {
 
   // A scene from the server; not sent back to it.
   adoptScene(scene: Scene): void {
+    const before = this.#scene.peek().stormId;
+    if (before !== "" && scene.stormId !== before) this.history.clear();
     this.#scene.value = scene;
   }
 
-  // The scene's own rendering as completed by the server: a technique with every setting filled in.
-  adoptRendering(rendering: Rendering | undefined): void {
-    const scene = this.#scene.value;
-    if (rendering === undefined) return;
-    if (scene.rendering !== undefined && equals(RenderingSchema, scene.rendering, rendering))
-      return;
-    this.#scene.value = withRendering(scene, rendering);
+  // The scene's own rendering and fields as completed by the server: every setting filled in.
+  adoptCompleted({ rendering, fields }: Scene): void {
+    const scene = this.#scene.peek();
+    if (rendering !== undefined && !same(RenderingSchema, scene.rendering, rendering))
+      this.#scene.value = withRendering(scene, rendering);
+    const sameFields =
+      fields.length === scene.fields.length &&
+      fields.every((field, at) => same(FieldParametersSchema, scene.fields[at], field));
+    if (!sameFields) this.#scene.value = { ...this.#scene.peek(), fields };
   }
 
   // The camera of the frame on the screen. Fills in a camera that the scene leaves open.
@@ -410,4 +413,12 @@ export class PageState {
     const technique = this.drawnTechnique.value;
     return settings !== undefined && technique !== undefined && draws(settings, technique);
   }
+}
+
+function same<T extends DescMessage>(
+  schema: T,
+  a: MessageShape<T> | undefined,
+  b: MessageShape<T>,
+): boolean {
+  return a !== undefined && equals(schema, a, b);
 }

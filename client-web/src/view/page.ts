@@ -165,7 +165,7 @@ export class Page {
       timeCount: () => state.timeCount.value,
       timeIndex: () => state.timeIndex.value,
       isShown: (index) => this.#life.isTimeShown(index),
-      showTime: (index) => this.showTime(index),
+      showTime: (index, plays) => this.showTime(index, plays ? "unrecorded" : "recorded"),
       onNextPaint,
     });
     this.comparing = new Comparing(this.calls, openInteract, state, {
@@ -209,8 +209,9 @@ export class Page {
     this.#client.retryNow();
   }
 
-  showTime(index: number): void {
-    if (index !== this.state.timeIndex.value) this.state.edit((scene) => withTime(scene, index));
+  showTime(index: number, record: "recorded" | "unrecorded" = "recorded"): void {
+    if (index === this.state.timeIndex.value) return;
+    this.state.edit((scene) => withTime(scene, index), record);
   }
 
   // Shows a storm's last time, as the server does by default.
@@ -276,8 +277,17 @@ export class Page {
     this.#life.sendOutputSize();
   }
 
-  async copyLink(): Promise<void> {
-    const link = this.addresses.viewersLink(true) ?? "";
+  // To watch this session with.
+  copyLink(): Promise<void> {
+    return this.#copy(this.addresses.viewersLink(true) ?? "");
+  }
+
+  // To the view on this screen, also an own one, whatever becomes of the session.
+  copyViewLink(): Promise<void> {
+    return this.#copy(this.addresses.viewLink(this.keeper.sceneShown()));
+  }
+
+  async #copy(link: string): Promise<void> {
     if (await this.addresses.copy(link)) this.notes.say("link", "Link copied");
     else this.state.notify({ subject: "link", text: link, severity: "note" });
   }
@@ -298,6 +308,7 @@ export class Page {
     for (const dispose of this.#disposals) dispose();
     this.#storms.dispose();
     this.#map.dispose();
+    this.probing.dispose();
     this.keeper.dispose();
     this.comparing.dispose();
     this.addresses.dispose();

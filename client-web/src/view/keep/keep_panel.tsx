@@ -214,7 +214,7 @@ function SceneAndLink({ page }: { page: Page }) {
         <button type="button" data-testid="open-file" onClick={() => file.current?.click()}>
           Open a picture or scene
         </button>
-        <button type="button" data-testid="keep-link" onClick={() => void page.copyLink()}>
+        <button type="button" data-testid="keep-link" onClick={() => void page.copyViewLink()}>
           Copy a link to this view
         </button>
       </div>

@@ -53,7 +53,7 @@ export class Keeper {
 
   savePicture(widthPx: number, heightPx: number): Promise<void> {
     return this.#make("Picture", async (abort, progress) => {
-      const scene = withOutput(this.#sceneShown(), outputSize(widthPx, heightPx, 1));
+      const scene = withOutput(this.sceneShown(), outputSize(widthPx, heightPx, 1));
       const picture = await this.#calls.picture(scene, ImageFormat.PNG, abort, progress);
       const canvas = await this.#annotate(picture, scene);
       const blob = await canvas.convertToBlob({ type: "image/png" });
@@ -63,7 +63,7 @@ export class Keeper {
   }
 
   saveScene(): void {
-    const text = sceneToText(this.#sceneShown());
+    const text = sceneToText(this.sceneShown());
     this.#download(new TextEncoder().encode(text), "json", "application/json");
   }
 
@@ -83,7 +83,7 @@ export class Keeper {
   saveMovie(draft: MovieDraft): Promise<void> {
     return this.#make("Movie", async (abort, progress) => {
       const { startMovie } = await import("./movie_file");
-      const scenes = movieScenes(this.#sceneShown(), draft, this.#views());
+      const scenes = movieScenes(this.sceneShown(), draft, this.#views());
       const movie = await startMovie(draft);
       try {
         let done = 0;
@@ -126,7 +126,7 @@ export class Keeper {
   }
 
   // With the own view's camera, while this page looks around.
-  #sceneShown(): Scene {
+  sceneShown(): Scene {
     const scene = this.#state.scene.peek();
     const frame = this.#state.frame.peek();
     const own = frame?.ownView === true ? this.#state.shownCamera.peek() : undefined;

@@ -143,21 +143,37 @@ function amount(value: number): string {
 // Where each field is strongest in the whole storm; a click turns the camera around that place.
 function Cores({ page }: { page: Page }) {
   const { state } = page;
-  const cores = (state.stormMap.value?.maxima ?? []).filter(({ position }) => position);
+  const map = state.stormMap.value;
+  const problem = state.mapProblem.value;
+  if (map === undefined && problem !== undefined)
+    return (
+      <p class="unmet" role="alert" data-testid="cores-problem">
+        {problem}
+      </p>
+    );
+  const time = state.timeIndex.value;
+  const cores = (map?.maxima ?? []).filter(({ position }) => position);
   if (cores.length === 0) return null;
   return (
     <section aria-label="Cores" class="cores" data-testid="cores">
       <h3>Strongest in the storm</h3>
       <ul>
         {cores.map((core) => (
-          <Core key={core.variable} page={page} core={core} />
+          <Core key={core.variable} page={page} core={core} old={map?.timeIndex !== time} />
         ))}
       </ul>
     </section>
   );
 }
 
-function Core({ page, core }: { page: Page; core: FieldMaximum }) {
+interface CoreProps {
+  readonly page: Page;
+  readonly core: FieldMaximum;
+  // Of the time shown before, while that of this one is on its way.
+  readonly old: boolean;
+}
+
+function Core({ page, core, old }: CoreProps) {
   const { factor, symbol } = readable(core.units);
   const name = nameOfHydrometeor(core.hydrometeor);
   const { position } = core;
@@ -167,6 +183,7 @@ function Core({ page, core }: { page: Page; core: FieldMaximum }) {
         type="button"
         data-testid={`core-${name.toLowerCase()}`}
         title="Turn around this place"
+        disabled={old}
         onClick={() => {
           if (position !== undefined)
             page.viewpoint.turnAround([position.xM, position.yM, position.zM]);
