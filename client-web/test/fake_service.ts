@@ -20,6 +20,8 @@ export class FakeService {
   readonly sessions: FakeSession[] = [];
   // No map is sent.
   mapless = false;
+  // This storm cannot be described.
+  undescribed = "";
   #count = 0;
   #later = 0;
   readonly #storms = [
@@ -66,9 +68,10 @@ export class FakeService {
         this.#storms.splice(at, 1);
         return {};
       },
-      describeStorm: ({ stormId, timeIndex }) => ({
-        storm: describeStorm(stormId, timeIndex, this.#later),
-      }),
+      describeStorm: ({ stormId, timeIndex }) => {
+        if (stormId === this.undescribed) throw new ConnectError("the file is gone", Code.NotFound);
+        return { storm: describeStorm(stormId, timeIndex, this.#later) };
+      },
       getStormMap: ({ stormId, timeIndex }) => {
         if (this.mapless) throw new ConnectError("the file is gone", Code.NotFound);
         return fakeStormMap(stormId, timeIndex);

@@ -5,7 +5,7 @@ import { create, equals } from "@bufbuild/protobuf";
 import { expect, test } from "vitest";
 import { cameraOfPose, type OrbitPose, poseOfCamera, type SpotterPose } from "../src/core/camera";
 import { History } from "../src/core/history";
-import { cameraPath, type MovieDraft, movieScenes } from "../src/core/movie_plan";
+import { cameraPath, type MovieDraft, movieScenes, pictureCount } from "../src/core/movie_plan";
 import { NamedViews } from "../src/core/named_views";
 import { crc32, pngText, withPngText } from "../src/core/png_text";
 import { withDisplay, withField, withSun, withSunClock, withTime } from "../src/core/scene";
@@ -174,6 +174,24 @@ test("named views are kept for their storm", () => {
   expect(again.all.value.length).toBeLessThan(2);
 });
 
+test("two views of one name are two views", () => {
+  const views = new NamedViews(undefined, () => "a");
+  views.load();
+  const view = { camera: cameraOfPose(ORBIT), picture: "" };
+  views.keep({ ...view, name: "Inflow", timeIndex: 1 });
+  views.keep({ ...view, name: "Inflow", timeIndex: 2 });
+  expect(views.all.value.map(({ name }) => name)).toEqual(["Inflow", "Inflow 2"]);
+  views.forget("Inflow");
+  expect(views.all.value.map(({ timeIndex }) => timeIndex)).toEqual([2]);
+  // As an earlier page kept them.
+  const stored = JSON.stringify({
+    a: ["x", "x"].map((name) => ({ name, camera: { orbit: {} }, timeIndex: 0 })),
+  });
+  const old = new NamedViews({ getItem: () => stored, setItem: () => undefined }, () => "a");
+  old.load();
+  expect(old.all.value.map(({ name }) => name)).toEqual(["x", "x 2"]);
+});
+
 const DRAFT: MovieDraft = {
   from: 3,
   to: 1,
@@ -188,6 +206,7 @@ const DRAFT: MovieDraft = {
 test("a movie has each time from the first to the last, also backwards, at its size", () => {
   const scenes = movieScenes(someScene(), DRAFT, []);
   expect(scenes.map(({ timeIndex }) => timeIndex)).toEqual([3, 2, 1]);
+  expect(pictureCount(DRAFT, [])).toBe(3);
   expect(scenes[0]?.output?.widthPx).toBe(640);
   expect(poseOfCamera(scenes[0]?.camera)).toEqual(ORBIT);
 });

@@ -1,10 +1,13 @@
 // The tools' wiring before the fake service, in simulated time: links to a view, the probe, the map, undo, notices.
 import { create } from "@bufbuild/protobuf";
-import { afterEach, beforeEach, expect, it } from "vitest";
+import { afterEach, beforeEach, expect, it, vi } from "vitest";
+import { FIRST_ANNOTATIONS } from "../src/core/annotations";
 import { poseOfCamera } from "../src/core/camera";
 import { withDisplay } from "../src/core/scene";
+import { lengthUnits } from "../src/core/units";
 import { SceneSchema } from "../src/gen/thunderhead/v1/scene_pb";
 import { readLink } from "../src/view/link";
+import { FakeCanvas, FakeStorage } from "./fake_window";
 import { HOME, pass, Visits } from "./view_page";
 
 let visits: Visits;
@@ -129,4 +132,55 @@ it("a problem stays though a note on the same subject came just before it", asyn
   expect(page.state.notices.value).toHaveLength(1);
   await pass(3000);
   expect(page.state.notices.value).toHaveLength(0);
+});
+
+it("a named view brings its time back too; who looks around gets its camera", async () => {
+  const { teacher, viewer } = await classroom();
+  teacher.page.showTime(2);
+  await pass(500);
+  const camera = teacher.page.state.scene.value.camera;
+  if (camera === undefined) throw new Error("there is no camera");
+  teacher.page.showTime(0);
+  await pass(500);
+  viewer.page.showView({ name: "a", camera, timeIndex: 2, picture: "" });
+  await pass(500);
+  expect(viewer.page.state.session.lookingAround.value).toBe(true);
+  expect(visits.session.scene.timeIndex ?? 0).toBe(0);
+  teacher.page.showView({ name: "a", camera, timeIndex: 99, picture: "" });
+  await pass(500);
+  expect(visits.session.scene.timeIndex).toBe(3);
+});
+
+it("units and what is written over the picture outlast the page", async () => {
+  const storage = new FakeStorage();
+  const { page } = await visits.visit(HOME, storage);
+  lengthUnits.value = "aviation";
+  page.state.annotations.value = { ...page.state.annotations.value, rings: true };
+  page.dispose();
+  lengthUnits.value = "metric";
+  const again = await visits.visit(HOME, storage);
+  expect(lengthUnits.value).toBe("aviation");
+  expect(again.page.state.annotations.value).toEqual({ ...FIRST_ANNOTATIONS, rings: true });
+  lengthUnits.value = "metric";
+  storage.items.set("thunderhead.preferences", '{"units":"ells","annotations":7}');
+  expect((await visits.visit(HOME, storage)).page.state.annotations.value).toEqual(
+    FIRST_ANNOTATIONS,
+  );
+  expect(lengthUnits.value).toBe("metric");
+});
+
+it("B waits for its storm's times, and says where they do not come", async () => {
+  const { page } = await visits.visit();
+  vi.stubGlobal("window", { devicePixelRatio: 1 });
+  page.comparing.attach(new FakeCanvas() as never);
+  page.comparing.change({ stormId: "single" });
+  expect(visits.service.sessions).toHaveLength(1);
+  await pass(1000);
+  expect(visits.service.sessions).toHaveLength(2);
+  expect(page.comparing.time.value.index).toBe(0);
+  page.comparing.end();
+  visits.service.undescribed = "single";
+  page.comparing.change({ stormId: "single" });
+  await pass(1000);
+  expect(page.comparing.undescribed.value).toBe("The times of B are not known: the file is gone");
 });

@@ -107,7 +107,7 @@ test("where is the graupel core and how much is there, by keys alone", async () 
   const row = await text("probe-graupel");
   const along = Number(/([\d.]+) g\/kg/.exec(row)[1]);
   assert.ok(along > 0.8 * core && along < 1.01 * core, `along the ray through the core there are ${along} of ${core} g/kg`);
-  assert.match(await text("probe-found"), /Cloud\s+[\d.]+ k?m up · [\d.]+ km away/);
+  assert.match(await text("probe-found"), /Cloud\s+[\d.]+ k?m above sea · [\d.]+ km away/);
   assert.match(await text("probe-depth"), /Optical depth [\d.]+/);
   await page.locator("[data-testid=ray-chart] canvas").waitFor();
   await screenshot("tools-probe", page);

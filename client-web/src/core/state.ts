@@ -1,7 +1,7 @@
 // The page's state as signals: the scene being edited, the server's descriptions of itself and its storms, the frame on
 // the screen, the connection, and notices. Independent of network and document.
 
-import { create, type DescMessage, equals, type MessageShape } from "@bufbuild/protobuf";
+import { create } from "@bufbuild/protobuf";
 import { batch, computed, type ReadonlySignal, signal } from "@preact/signals-core";
 import type {
   AccuracyReport,
@@ -14,10 +14,8 @@ import type { TimesInMemory } from "../gen/thunderhead/v1/interact_pb";
 import type { GetStormMapResponse } from "../gen/thunderhead/v1/probe_pb";
 import {
   type Camera,
-  FieldParametersSchema,
   type Preset,
   type Rendering,
-  RenderingSchema,
   type Scene,
   SceneSchema,
   type Sun,
@@ -48,7 +46,7 @@ import {
   techniqueNameOf,
   withSettings,
 } from "./rendering";
-import { LIMITS, withCamera, withOutput, withRendering } from "./scene";
+import { LIMITS, withCamera, withCompleted, withOutput, withRendering } from "./scene";
 import type { Edit } from "./scene_sync";
 import { SessionState } from "./session_state";
 import { nameOfRun } from "./storm_names";
@@ -345,15 +343,9 @@ export class PageState {
     this.#scene.value = scene;
   }
 
-  // The scene's own rendering and fields as completed by the server: every setting filled in.
-  adoptCompleted({ rendering, fields }: Scene): void {
-    const scene = this.#scene.peek();
-    if (rendering !== undefined && !same(RenderingSchema, scene.rendering, rendering))
-      this.#scene.value = withRendering(scene, rendering);
-    const sameFields =
-      fields.length === scene.fields.length &&
-      fields.every((field, at) => same(FieldParametersSchema, scene.fields[at], field));
-    if (!sameFields) this.#scene.value = { ...this.#scene.peek(), fields };
+  // The page's own scene as the server completed it.
+  adoptCompleted(scene: Scene): void {
+    this.#scene.value = withCompleted(this.#scene.peek(), scene);
   }
 
   // The camera of the frame on the screen. Fills in a camera that the scene leaves open.
@@ -413,12 +405,4 @@ export class PageState {
     const technique = this.drawnTechnique.value;
     return settings !== undefined && technique !== undefined && draws(settings, technique);
   }
-}
-
-function same<T extends DescMessage>(
-  schema: T,
-  a: MessageShape<T> | undefined,
-  b: MessageShape<T>,
-): boolean {
-  return a !== undefined && equals(schema, a, b);
 }

@@ -2,6 +2,7 @@
 import type { ComponentType } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Page } from "./page";
+import { focusRail } from "./tool_rail";
 
 // Loaded when it opens first.
 export function ExpertDrawer({ page }: { page: Page }) {
@@ -10,7 +11,12 @@ export function ExpertDrawer({ page }: { page: Page }) {
   const search = useRef<HTMLInputElement>(null);
   const open = page.state.drawerOpen.value;
   const block = page.state.session.editBlock.value;
+  const wasOpen = useRef(false);
   useEffect(() => {
+    const closes = wasOpen.current && !open;
+    wasOpen.current = open;
+    // What had the focus in it is gone.
+    if (closes && document.activeElement === document.body) focusRail("settings");
     if (!open) return;
     search.current?.focus();
     void import("./every_setting").then(({ EverySetting }) => setSettings(() => EverySetting));

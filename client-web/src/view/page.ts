@@ -7,17 +7,19 @@ import { AccessToken } from "../core/access_token";
 import { BackOff } from "../core/back_off";
 import type { CameraKind, Pose } from "../core/camera";
 import { Marking } from "../core/marking";
-import { NamedViews } from "../core/named_views";
+import { type NamedView, NamedViews } from "../core/named_views";
 import type { Later } from "../core/newest";
 import { OwnKeys } from "../core/own_keys";
 import { Participant } from "../core/participant";
 import { Playback } from "../core/playback";
+import { keepPreferences, loadPreferences } from "../core/preferences";
 import { RevisionLedger } from "../core/revision_ledger";
-import { withStorm, withTime } from "../core/scene";
+import { withCamera, withStorm, withTime } from "../core/scene";
 import type { Tool } from "../core/session_state";
 import { PageState } from "../core/state";
 import type { StrokePoint } from "../core/stroke";
 import type { PanelName, ToolName } from "../core/tools";
+import { lengthUnits } from "../core/units";
 import { ServerCalls } from "../transport/server_calls";
 import { type OpenInteract, SessionClient } from "../transport/session_client";
 import { Addresses } from "./addresses";
@@ -89,7 +91,11 @@ export class Page {
       const timer = setTimeout(callback, delayMs);
       return () => clearTimeout(timer);
     };
-    const keys = new OwnKeys(storageOf(window));
+    const store = storageOf(window);
+    const keys = new OwnKeys(store);
+    const preferred = { units: lengthUnits, annotations: state.annotations };
+    loadPreferences(store, preferred);
+    this.#disposals.push(effect(() => keepPreferences(store, preferred)));
     const ledger = new RevisionLedger();
 
     this.notes = new Notes(state);
@@ -97,7 +103,7 @@ export class Page {
     this.#storms = new StormsOnServer(this.calls, state);
     this.#map = new StormMap(this.calls, state);
     this.probing = new Probing(this.calls, state);
-    this.views = new NamedViews(storageOf(window), () => state.stormId.peek());
+    this.views = new NamedViews(store, () => state.stormId.peek());
     this.keeper = new Keeper(transport, state, this.notes, () => this.views.all.peek());
     this.addresses = new Addresses(window, state, keys);
     this.addresses.adoptPresentersLink();
@@ -192,6 +198,18 @@ export class Page {
 
   showCamera(kind: CameraKind): void {
     this.viewpoint.showKind(kind);
+  }
+
+  // The camera and the time; who looks around has the session's time.
+  showView({ camera, timeIndex }: NamedView): void {
+    const { state } = this;
+    if (state.session.editBlock.peek() !== undefined) {
+      this.viewpoint.show(camera);
+      return;
+    }
+    this.playback.pause();
+    const last = Math.max(0, state.timeCount.peek() - 1);
+    state.edit((scene) => withCamera(withTime(scene, Math.min(timeIndex, last)), camera));
   }
 
   home(): void {
@@ -341,17 +359,7 @@ export class Page {
     );
     window.addEventListener("online", () => this.#client.retryNow(), options);
     window.document.addEventListener("visibilitychange", () => this.#life.sendWindow(), options);
-    // A picture that was saved brings its view back.
-    window.addEventListener("dragover", (event) => event.preventDefault(), options);
-    window.addEventListener(
-      "drop",
-      (event) => {
-        event.preventDefault();
-        const file = event.dataTransfer?.files[0];
-        if (file !== undefined) void this.keeper.open(file);
-      },
-      options,
-    );
+    this.keeper.listen(window, options);
     const stillHere = setInterval(() => {
       if (!window.document.hidden) this.#life.sendWindow();
     }, STILL_HERE_EVERY_MS);

@@ -25,6 +25,13 @@ export function Storms({ page }: { page: Page }) {
         {shown?.deletable && <DeleteCloud key={shown.id} page={page} />}
         <CloudSection page={page} />
       </fieldset>
+      <button
+        type="button"
+        data-testid="storms-compare"
+        onClick={() => page.togglePopover("compare")}
+      >
+        Compare with another storm, run or time
+      </button>
     </Popover>
   );
 }

@@ -57,7 +57,7 @@ export function CompareView({ page }: { page: Page }) {
 // Of what is different, in words.
 function namesOf({ state, comparing }: Page): { readonly a: string; readonly b: string } {
   const choice = comparing.choice.value;
-  const index = comparing.timeIndex.value;
+  const index = comparing.time.value.index;
   const aTime = timeName(state.storm.value, state.timeIndex.value);
   const settings = choice?.settings === undefined ? "" : ", kept settings";
   if (choice?.stormId === undefined)

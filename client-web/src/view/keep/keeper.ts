@@ -22,6 +22,11 @@ export interface Work {
   readonly share: number;
 }
 
+// "Movie: 34 %".
+export function workInWords({ what, share }: Work): string {
+  return `${what}: ${Math.round(100 * share)} %`;
+}
+
 export class Keeper {
   readonly #calls: RenderCalls;
   readonly #state: PageState;
@@ -41,6 +46,28 @@ export class Keeper {
     this.#state = state;
     this.#notes = notes;
     this.#views = views;
+  }
+
+  listen(window: Window, options: { readonly signal: AbortSignal }): void {
+    // A picture that was saved brings its view back.
+    window.addEventListener("dragover", (event) => event.preventDefault(), options);
+    window.addEventListener(
+      "drop",
+      (event) => {
+        event.preventDefault();
+        const file = event.dataTransfer?.files[0];
+        if (file !== undefined) void this.open(file);
+      },
+      options,
+    );
+    // What is being made would be lost: the browser asks.
+    window.addEventListener(
+      "beforeunload",
+      (event) => {
+        if (this.work.peek() !== undefined) event.preventDefault();
+      },
+      options,
+    );
   }
 
   cancel(): void {

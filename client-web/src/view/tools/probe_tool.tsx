@@ -75,7 +75,7 @@ function Found({ state, found }: { state: PageState; found: ProbeRayResponse }) 
           <tr>
             <th scope="col">Most on the ray</th>
             <th scope="col">Value</th>
-            <th scope="col">Height</th>
+            <th scope="col">Above sea</th>
           </tr>
         </thead>
         <tbody>
@@ -107,7 +107,8 @@ function Where({ place }: { place: RayPlace }) {
   return (
     <span data-testid="probe-place">
       {" "}
-      {formatLength(place.heightM, "height")} up · {formatLength(place.distanceM, "distance")} away
+      {formatLength(place.heightM, "height")} above sea ·{" "}
+      {formatLength(place.distanceM, "distance")} away
       {earth !== undefined && ` · ${placeInWords(earth.latitudeDeg, earth.longitudeDeg)}`}
     </span>
   );
@@ -191,7 +192,7 @@ function Core({ page, core, old }: CoreProps) {
       >
         <span class="key-swatch" style={{ background: colorOfField(core.hydrometeor) }} />
         {name} {formatNumber(core.value * factor)} {symbol},{" "}
-        {formatLength(position?.zM ?? 0, "height")} up
+        {formatLength(position?.zM ?? 0, "height")} above sea
       </button>
     </li>
   );
