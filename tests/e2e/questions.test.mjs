@@ -23,7 +23,8 @@ import {
 import { difference, grabCanvas, greyShare } from "./pictures.mjs";
 import { freePort, startServer } from "./server_process.mjs";
 
-const VIEWPORT = { width: 1000, height: 620 };
+// Wide enough for the run in the bar.
+const VIEWPORT = { width: 1280, height: 620 };
 const RUNS = [
   { start: 0, times: [0, 6, 7, 8], radiusM: 1800 },
   { start: 6, times: [6, 7, 8], radiusM: 3200 },
@@ -74,7 +75,13 @@ async function visit(url) {
   return opened;
 }
 
-const text = (id) => page.getByTestId(id).innerText();
+// Of what is on the screen: texts of what is hidden can be read too.
+async function text(id) {
+  const shown = page.getByTestId(id);
+  await shown.waitFor({ state: "visible" });
+  return shown.innerText();
+}
+
 const key = (name) => page.keyboard.press(name);
 const focusPicture = () => page.getByTestId("storm-canvas").focus();
 const focused = () => page.evaluate(() => document.activeElement?.dataset.testid);

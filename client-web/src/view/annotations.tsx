@@ -35,6 +35,8 @@ export function Annotations({ state }: { state: PageState }) {
   const content = annotated(state);
   if (box === undefined || content === undefined) return null;
   const narrow = window.innerWidth < NARROW_PX;
+  // It covers the picture.
+  if (narrow && state.drawerOpen.value) return null;
   const sheetPx = narrow && state.tool.value !== undefined ? SHEET_SHARE * window.innerHeight : 0;
   // Little is left of the picture, such as of a phone's that is held across.
   const leftPx = window.innerHeight - NARROW_BARS_PX.top - NARROW_BARS_PX.bottom - sheetPx;
