@@ -111,7 +111,11 @@ export function completeScene(scene: Scene): Scene {
   const rendering = completeRendering(scene.rendering);
   const asked = completeCamera(scene.camera);
   const camera = asked !== undefined && poseOfCamera(asked) !== undefined ? asked : HOME;
-  return withOutput(withCamera({ ...scene, stormId, rendering }, camera), {
+  const fields = describeStorm(stormId, 0).fields.flatMap(({ hydrometeor, defaults }) => {
+    const set = scene.fields.find((field) => field.hydrometeor === hydrometeor) ?? defaults;
+    return set === undefined ? [] : [set];
+  });
+  return withOutput(withCamera({ ...scene, stormId, rendering, fields }, camera), {
     widthPx: scene.output?.widthPx ?? LIMITS.width.defaultValue,
     heightPx: scene.output?.heightPx ?? LIMITS.height.defaultValue,
     jpegQuality: scene.output?.jpegQuality ?? LIMITS.jpegQuality.defaultValue,

@@ -18,6 +18,10 @@ export interface FakeCall {
 
 export class FakeService {
   readonly sessions: FakeSession[] = [];
+  // No map is sent.
+  mapless = false;
+  // This storm cannot be described.
+  undescribed = "";
   #count = 0;
   #later = 0;
   readonly #storms = [
@@ -64,10 +68,14 @@ export class FakeService {
         this.#storms.splice(at, 1);
         return {};
       },
-      describeStorm: ({ stormId, timeIndex }) => ({
-        storm: describeStorm(stormId, timeIndex, this.#later),
-      }),
-      getStormMap: ({ stormId, timeIndex }) => fakeStormMap(stormId, timeIndex),
+      describeStorm: ({ stormId, timeIndex }) => {
+        if (stormId === this.undescribed) throw new ConnectError("the file is gone", Code.NotFound);
+        return { storm: describeStorm(stormId, timeIndex, this.#later) };
+      },
+      getStormMap: ({ stormId, timeIndex }) => {
+        if (this.mapless) throw new ConnectError("the file is gone", Code.NotFound);
+        return fakeStormMap(stormId, timeIndex);
+      },
       probeRay: (request) => fakeProbe(request),
       createSession: ({ scene }) => {
         this.#count += 1;

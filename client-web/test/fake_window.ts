@@ -25,6 +25,8 @@ class Target {
 }
 
 export class FakeCanvas extends Target {
+  offsetLeft = 0;
+  offsetTop = 0;
   clientWidth = 640;
   clientHeight = 360;
   width = 0;

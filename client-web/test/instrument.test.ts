@@ -286,7 +286,7 @@ test("letters and arrows are one line that is parted again", () => {
   );
   // A session takes 256 corners.
   const longest = joined(letterStrokes("8".repeat(99), { left: 0, top: 0 }, 12));
-  expect(longest.length).toBeLessThanOrEqual(24 * 24);
+  expect(longest.length).toBeLessThanOrEqual(256);
 });
 
 test("every parameter of a scene is listed with limits, comment and value, and can be changed", () => {

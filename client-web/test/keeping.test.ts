@@ -5,12 +5,12 @@ import { create, equals } from "@bufbuild/protobuf";
 import { expect, test } from "vitest";
 import { cameraOfPose, type OrbitPose, poseOfCamera, type SpotterPose } from "../src/core/camera";
 import { History } from "../src/core/history";
-import { cameraPath, type MovieDraft, movieScenes } from "../src/core/movie_plan";
+import { cameraPath, type MovieDraft, movieScenes, pictureCount } from "../src/core/movie_plan";
 import { NamedViews } from "../src/core/named_views";
 import { crc32, pngText, withPngText } from "../src/core/png_text";
-import { withTime } from "../src/core/scene";
+import { withDisplay, withField, withSun, withSunClock, withTime } from "../src/core/scene";
 import { sceneOfFile, sceneToText, withScene } from "../src/core/scene_file";
-import { type Scene, SceneSchema } from "../src/gen/thunderhead/v1/scene_pb";
+import { Hydrometeor, type Scene, SceneSchema, ToneMap } from "../src/gen/thunderhead/v1/scene_pb";
 
 const ORBIT: OrbitPose = {
   kind: "orbit",
@@ -88,27 +88,63 @@ test("a file without a scene says so", () => {
   expect(() => sceneOfFile(new TextEncoder().encode("[1]"))).toThrow("no scene of Thunderhead");
 });
 
+const EMPTY = create(SceneSchema);
+
 test("edits in one gesture are undone together, and a new edit ends what could be redone", () => {
   let now = 0;
   const history = new History(() => now);
-  const [first, second, third] = [0, 1, 2].map((time) => withTime(create(SceneSchema), time)) as [
+  const [first, second, third] = [0, 1, 2].map((time) => withTime(EMPTY, time)) as [
     Scene,
     Scene,
     Scene,
   ];
-  history.edited(first);
+  history.edited(first, second);
   now += 100;
-  history.edited(second);
-  expect(history.undo(third)).toBe(first);
+  history.edited(second, third);
+  expect(history.undo()?.(third).timeIndex).toBe(0);
   expect(history.canUndo.value).toBe(false);
-  expect(history.redo(first)).toBe(third);
+  expect(history.redo()?.(first).timeIndex).toBe(2);
   expect(history.canRedo.value).toBe(false);
-  expect(history.undo(third)).toBe(first);
+  expect(history.undo()?.(third).timeIndex).toBe(0);
   now += 5000;
-  history.edited(first);
+  history.edited(first, second);
   expect(history.canRedo.value).toBe(false);
-  expect(history.undo(second)).toBe(first);
-  expect(history.undo(first)).toBeUndefined();
+  expect(history.undo()?.(second).timeIndex).toBe(0);
+  expect(history.undo()).toBeUndefined();
+});
+
+test("a step undone leaves what somebody else has changed meanwhile", () => {
+  const history = new History(() => 0);
+  const before = create(SceneSchema, {
+    timeIndex: 1,
+    fields: [{ hydrometeor: Hydrometeor.RAIN }, { hydrometeor: Hydrometeor.SNOW, scale: 1 }],
+  });
+  const after = withField(withDisplay(before, { exposureEv: 2 }), Hydrometeor.SNOW, { scale: 3 });
+  history.edited(before, after);
+  const theirs = withField(
+    withDisplay(withTime(after, 0), { toneMap: ToneMap.LINEAR }),
+    Hydrometeor.RAIN,
+    { scale: 5 },
+  );
+  const undone = history.undo()?.(theirs);
+  expect(undone?.timeIndex).toBe(0);
+  expect(undone?.display?.exposureEv).toBeUndefined();
+  expect(undone?.display?.toneMap).toBe(ToneMap.LINEAR);
+  expect(undone?.fields.map(({ scale }) => scale)).toEqual([5, 1]);
+  const done = history.redo()?.(undone ?? theirs);
+  expect(equals(SceneSchema, done ?? EMPTY, theirs)).toBe(true);
+});
+
+test("what an edit has added goes again where nobody put more into it", () => {
+  const history = new History(() => 0);
+  const after = withSunClock(EMPTY, { latitudeDeg: 35 });
+  history.edited(EMPTY, after);
+  expect(history.undo()?.(after).sun).toBeUndefined();
+  expect(history.redo()?.(EMPTY).sun?.clock?.latitudeDeg).toBe(35);
+  const theirs = withSun(after, { azimuthDeg: 90 });
+  const undone = history.undo()?.(theirs);
+  expect(undone?.sun?.azimuthDeg).toBe(90);
+  expect(undone?.sun?.clock).toBeUndefined();
 });
 
 test("named views are kept for their storm", () => {
@@ -138,6 +174,24 @@ test("named views are kept for their storm", () => {
   expect(again.all.value.length).toBeLessThan(2);
 });
 
+test("two views of one name are two views", () => {
+  const views = new NamedViews(undefined, () => "a");
+  views.load();
+  const view = { camera: cameraOfPose(ORBIT), picture: "" };
+  views.keep({ ...view, name: "Inflow", timeIndex: 1 });
+  views.keep({ ...view, name: "Inflow", timeIndex: 2 });
+  expect(views.all.value.map(({ name }) => name)).toEqual(["Inflow", "Inflow 2"]);
+  views.forget("Inflow");
+  expect(views.all.value.map(({ timeIndex }) => timeIndex)).toEqual([2]);
+  // As an earlier page kept them.
+  const stored = JSON.stringify({
+    a: ["x", "x"].map((name) => ({ name, camera: { orbit: {} }, timeIndex: 0 })),
+  });
+  const old = new NamedViews({ getItem: () => stored, setItem: () => undefined }, () => "a");
+  old.load();
+  expect(old.all.value.map(({ name }) => name)).toEqual(["x", "x 2"]);
+});
+
 const DRAFT: MovieDraft = {
   from: 3,
   to: 1,
@@ -152,6 +206,7 @@ const DRAFT: MovieDraft = {
 test("a movie has each time from the first to the last, also backwards, at its size", () => {
   const scenes = movieScenes(someScene(), DRAFT, []);
   expect(scenes.map(({ timeIndex }) => timeIndex)).toEqual([3, 2, 1]);
+  expect(pictureCount(DRAFT, [])).toBe(3);
   expect(scenes[0]?.output?.widthPx).toBe(640);
   expect(poseOfCamera(scenes[0]?.camera)).toEqual(ORBIT);
 });

@@ -259,12 +259,18 @@ describe("the page's rendering", () => {
   it("is completed by what the server made of it", () => {
     const state = stateWith(balanced);
     state.editRendering((rendering) => withTechnique(rendering, NAME.reference));
-    state.adoptRendering(completeRendering(state.scene.value.rendering));
+    state.adoptCompleted({
+      ...state.scene.value,
+      rendering: completeRendering(state.scene.value.rendering),
+    });
     expect(state.settings.value).toMatchObject({ perFieldPhase: true, falseColors: false });
     expect(state.technique.value).toMatchObject({ showsLights: true, drawsImages: false });
     // The same rendering again does not change the scene, so no control is rendered again.
     const { value } = state.scene;
-    state.adoptRendering(completeRendering(state.scene.value.rendering));
+    state.adoptCompleted({
+      ...state.scene.value,
+      rendering: completeRendering(state.scene.value.rendering),
+    });
     expect(state.scene.value).toBe(value);
   });
 

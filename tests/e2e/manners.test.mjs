@@ -36,10 +36,23 @@ async function visit(options) {
   return page;
 }
 
+// Letters lie over the picture on panels that let some of it through. With the picture gone and the page white behind them, as the brightest
+// cloud is, axe-core finds their contrast; what it still cannot find is a finding too, but for letters in a drawing,
+// whose ground it does not know, and for what a panel covers.
+const isRead = ({ html, any }) => !html.startsWith("<text") && any[0]?.data?.messageKey !== "bgOverlap";
+
 async function findings(page) {
   await page.evaluate(AXE);
-  const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
-  return violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html.slice(0, 120)).join(" | ")}`);
+  const style = await page.addStyleTag({ content: "canvas.storm, svg.annotations, svg.overlay { display: none } html, body { background: #fff !important }" });
+  const { violations, incomplete } = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations", "incomplete"] }));
+  await style.evaluate((element) => element.remove());
+  const unknown = incomplete
+    .filter(({ id }) => id === "color-contrast")
+    .map(({ id, nodes }) => ({ id, nodes: nodes.filter(isRead) }))
+    .filter(({ nodes }) => nodes.length > 0);
+  return [...violations, ...unknown].map(
+    ({ id, nodes }) => `${id}: ${nodes.map(({ html, any }) => `${html.slice(0, 120)} (${any[0]?.data?.messageKey ?? ""} ${any[0]?.data?.contrastRatio ?? ""})`).join(" | ")}`,
+  );
 }
 
 // Every details element, so that what is folded is looked at too.
@@ -73,18 +86,21 @@ for (const [name, options] of [
     await page.context().close();
   });
 
-test("fingers find every button and slider", async () => {
+// What is pressed for a box to tick is its label.
+const TARGETS = "button, select, summary, label:has(> input:is([type=checkbox], [type=radio])), input:not([type=checkbox], [type=radio], [type=file])";
+
+test("fingers find every button, slider and switch", async () => {
   const page = await visit({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
   const small = [];
   const measure = async (where) => {
-    const found = await page.evaluate((least) => {
-      const seen = [...document.querySelectorAll("button, select, summary, input:not([type=checkbox], [type=radio], [type=file])")];
+    const found = await page.evaluate(([least, targets]) => {
+      const seen = [...document.querySelectorAll(targets)];
       return seen
         .filter((element) => element.checkVisibility() && !element.closest(".visually-hidden"))
         .map((element) => [element, element.getBoundingClientRect()])
-        .filter(([, { width, height }]) => width > 0 && (height < least - 0.5 || width < 24))
-        .map(([element, { width, height }]) => `${element.dataset.testid ?? element.className ?? element.tagName} ${width.toFixed(0)} x ${height.toFixed(0)}`);
-    }, TOUCH_PX);
+        .filter(([, { width, height }]) => width > 0 && (height < least - 0.5 || width < least - 0.5))
+        .map(([element, { width, height }]) => `${element.dataset.testid ?? `${element.tagName} ${element.className} ${element.textContent.slice(0, 20)}`} ${width.toFixed(0)} x ${height.toFixed(0)}`);
+    }, [TOUCH_PX, TARGETS]);
     small.push(...found.map((each) => `${where}: ${each}`));
   };
   for (const tool of TOOLS) {
@@ -93,8 +109,8 @@ test("fingers find every button and slider", async () => {
     await measure(tool);
   }
   await openTool(page, undefined);
-  for (const panel of ["storms", "share", "keep", "help", "drawer"]) {
-    await openPanel(page, panel);
+  for (const panel of ["storms", "share", "keep", "drawer"]) {
+    assert.ok(await openPanel(page, panel), `there is no way to ${panel}`);
     await page.waitForTimeout(300);
     await unfold(page);
     await measure(panel);
@@ -116,7 +132,7 @@ const unreadable = (page) =>
         .map((element) => ({ name: element.textContent.slice(0, 30), box: element.getBoundingClientRect() }))
         .filter(({ box }) => box.width > 0);
     const texts = boxes("[data-testid=annotations] text");
-    const over = [...texts, ...boxes(".top-bar, .time-line, .rail, aside")];
+    const over = [...texts, ...boxes(".top-bar, .time-line, .rail, .truth, aside")];
     const meet = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
     return texts.flatMap(({ name, box }, at) => [
       ...(box.left < 0 || box.right > innerWidth || box.bottom > innerHeight ? [`${name} is clipped`] : []),
@@ -128,6 +144,9 @@ for (const [name, options] of [
   ["a phone", PHONE],
   ["a small phone", { ...PHONE, viewport: { width: 320, height: 640 } }],
   ["a phone held across", { ...PHONE, viewport: { width: 844, height: 390 } }],
+  ["a tablet", { viewport: { width: 900, height: 700 } }],
+  ["a small window", { viewport: { width: 1000, height: 620 } }],
+  ["a laptop", { viewport: { width: 1280, height: 720 } }],
 ])
   test(`all that is written over the picture is read on ${name}`, async () => {
     const page = await visit(options);
@@ -142,6 +161,150 @@ for (const [name, options] of [
       await openTool(page, tool);
       assert.deepEqual(await unreadable(page), [], `with ${tool} open`);
     }
+    await openTool(page, undefined);
+    if (await openPanel(page, "drawer")) {
+      await page.waitForTimeout(300);
+      assert.deepEqual(await unreadable(page), [], "with every setting open");
+    }
+    await page.context().close();
+  });
+
+// Of what is between the bars and an open tool.
+const probeCross = (page) =>
+  page.evaluate(() => {
+    const cross = document.querySelector("[data-testid=probe-marks] .aim").getBoundingClientRect();
+    const over = document.elementFromPoint(cross.x + cross.width / 2, cross.y + cross.height / 2);
+    return over?.dataset.testid ?? over?.outerHTML.slice(0, 80);
+  });
+
+for (const [name, options, most] of [
+  ["a phone", PHONE, 0.02],
+  ["a tablet", { viewport: { width: 900, height: 700 } }, 0.02],
+  ["a small window", { viewport: { width: 1000, height: 620 } }, 0.02],
+])
+  test(`an open tool covers next to nothing of the picture on ${name}, and the date stays in the bar`, async () => {
+    const page = await visit(options);
+    for (const tool of [undefined, "look", "probe"]) {
+      await openTool(page, tool);
+      await rested(page);
+      assert.match(await page.getByTestId("top-time").innerText(), /day 1\s+01:20Z/);
+    }
+    assert.equal(await probeCross(page), "storm-canvas");
+    const covered = await page.evaluate(() => {
+      const canvas = document.querySelector("[data-testid=storm-canvas]").getBoundingClientRect();
+      const panel = document.querySelector("[data-testid=tool-panel]").getBoundingClientRect();
+      const width = Math.max(0, Math.min(canvas.right, panel.right) - Math.max(canvas.left, panel.left));
+      const height = Math.max(0, Math.min(canvas.bottom, panel.bottom) - Math.max(canvas.top, panel.top));
+      return (width * height) / (canvas.width * canvas.height);
+    });
+    assert.ok(covered < most, `${covered} of the picture is covered`);
+    await page.context().close();
+  });
+
+test("pictures are compared on a phone too, and its keys are found", async () => {
+  const page = await visit(PHONE);
+  await page.getByTestId("storms").tap();
+  await page.getByTestId("storms-compare").tap();
+  await page.getByTestId("compare-time").selectOption("0");
+  await page.getByTestId("compared-canvas").waitFor();
+  await page.getByTestId("compare-end").tap();
+  assert.equal(await page.getByTestId("compared-canvas").count(), 0);
+  await page.keyboard.press("Escape");
+  await page.getByTestId("storms").tap();
+  await page.getByTestId("storms-help").tap();
+  await page.getByTestId("help-panel").waitFor();
+  await page.context().close();
+});
+
+test("the focus goes back to the rail when a tool or the list of settings is closed", async () => {
+  const page = await visit({ viewport: { width: 1280, height: 720 } });
+  const focused = () => page.evaluate(() => document.activeElement?.dataset.testid);
+  await page.getByTestId("rail-look").focus();
+  await page.keyboard.press("Enter");
+  await page.getByRole("button", { name: "Close Look" }).focus();
+  await page.keyboard.press("Enter");
+  assert.equal(await focused(), "rail-look");
+  for (const close of ["Escape", "Enter"]) {
+    await page.keyboard.press("x");
+    await page.waitForFunction(() => document.activeElement?.dataset.testid === "drawer-search");
+    if (close === "Enter") await page.getByRole("button", { name: "Close every setting" }).focus();
+    await page.keyboard.press(close);
+    await page.waitForFunction(() => document.activeElement?.dataset.testid === "rail-settings");
+  }
+  await page.context().close();
+});
+
+// Controls whose words do not fit, once every word is 1.4 times as long as in English, as German ones are.
+const cutWords = (page) =>
+  page.evaluate(() => {
+    const LONGER = 0.4;
+    const words = document.createTreeWalker(document.querySelector("main"), NodeFilter.SHOW_TEXT);
+    const inControl = "button, label, summary, h2, h3, dt, legend, option";
+    const before = [];
+    while (words.nextNode()) {
+      const { currentNode: node } = words;
+      const text = node.data.trim();
+      // Numbers, units and names of storms are as long in any language; so is what is no longer put there by the page.
+      if (!node.parentElement?.closest(inControl) || node.parentElement.closest(".storm-name, .visually-hidden, svg") || !/[a-z]{3}/.test(text)) continue;
+      before.push([node, node.data]);
+      node.data = node.data.replace(/[A-Za-z]{3,}/g, (word) => word + "n".repeat(Math.round(LONGER * word.length)));
+    }
+    const pen = document.createElement("canvas").getContext("2d");
+    const found = [];
+    for (const control of document.querySelectorAll("button, label, summary, select, h2, h3")) {
+      if (!control.checkVisibility() || control.closest(".visually-hidden, .storm-name")) continue;
+      const box = control.getBoundingClientRect();
+      const style = getComputedStyle(control);
+      const name = `${control.dataset.testid ?? control.className} "${control.textContent.slice(0, 30)}"`;
+      if (control.matches("select")) {
+        pen.font = style.font;
+        const chosen = control.selectedOptions[0]?.label ?? "";
+        const room = box.width - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight) - 20;
+        // A title of a storm may be of any length.
+        if (!control.matches("[data-testid=storm], [data-testid=compare-storm]") && pen.measureText(chosen).width > room)
+          found.push(`${control.dataset.testid} shows ${room.toFixed(0)} of ${pen.measureText(chosen).width.toFixed(0)} pixels of ${chosen}`);
+        continue;
+      }
+      const rects = [];
+      const texts = document.createTreeWalker(control, NodeFilter.SHOW_TEXT);
+      while (texts.nextNode()) {
+        const range = document.createRange();
+        range.selectNodeContents(texts.currentNode);
+        if (!texts.currentNode.parentElement.closest(".visually-hidden, option")) rects.push(...range.getClientRects());
+      }
+      const panel = control.closest("aside, .popover, .rail, .top-bar, .time-line") ?? document.documentElement;
+      const outer = panel.getBoundingClientRect();
+      const clips = style.overflow !== "visible" && control.scrollWidth > control.clientWidth + 1;
+      const shown = rects.filter(({ width, height }) => width > 1 && height > 1);
+      const leaves = shown.some(({ left, right }) => right > outer.right + 1 || left < outer.left - 1);
+      const spills = control.matches("button, summary, label") && shown.some(({ left, right }) => right > box.right + 1 || left < box.left - 1);
+      if (clips || leaves || spills) found.push(`${name} is cut${clips ? ", clipped" : ""}${leaves ? ", leaves its panel" : ""}${spills ? ", spills" : ""}`);
+    }
+    for (const [node, data] of before) node.data = data;
+    return found;
+  });
+
+for (const width of [1920, 900, 390])
+  test(`words 1.4 times as long fit into their controls at ${width} pixels`, async () => {
+    const phone = width < 900;
+    const page = await visit(phone ? PHONE : { viewport: { width, height: phone ? 844 : 900 } });
+    const cut = [];
+    for (const tool of TOOLS) {
+      await openTool(page, tool);
+      if (tool === "map") await page.locator("[data-testid=inset-map] canvas").waitFor();
+      await unfold(page);
+      await page.waitForTimeout(200);
+      for (const each of await cutWords(page)) cut.push(`${tool}: ${each}`);
+    }
+    await openTool(page, undefined);
+    for (const panel of PANELS.filter((each) => each !== "drawer")) {
+      if (!(await openPanel(page, panel))) continue;
+      await page.waitForTimeout(300);
+      await unfold(page);
+      for (const each of await cutWords(page)) cut.push(`${panel}: ${each}`);
+      await page.keyboard.press("Escape");
+    }
+    assert.deepEqual([...new Set(cut)], []);
     await page.context().close();
   });
 

@@ -495,10 +495,8 @@ test("a cumulus as a surface, and the parts of its light", async () => {
     assert.equal(await page.getByTestId(name).count(), 0, `a cumulus has no ${name}`);
   }
   assert.match(await page.getByTestId("not-shown").innerText(), /snow/);
-  await changing(async () => {
-    await page.getByTestId("cumulus-source").selectOption({ label: "Cauliflower" });
-    await setNumber(page, "exposure", 0); // the same for all parts
-  });
+  await changing(() => page.getByTestId("cumulus-source").selectOption({ label: "Cauliflower" }));
+  await changing(() => setNumber(page, "exposure", 0)); // the same for all parts
   const whole = await grabCanvas(page);
   await screenshot("10-cumulus");
   assert.ok(spread(whole).deviation > 8, "the picture is nearly uniform");

@@ -21,7 +21,7 @@ import {
   setNumber,
   until,
 } from "./driver.mjs";
-import { difference, grabCanvas } from "./pictures.mjs";
+import { blockDifference, difference, grabCanvas } from "./pictures.mjs";
 import { BINARY, freePort, startServer } from "./server_process.mjs";
 
 const SAMPLE = fileURLToPath(new URL("../../samples/supercell.nc", import.meta.url));
@@ -59,7 +59,13 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-const text = (id) => page.getByTestId(id).innerText();
+// Of what is on the screen: texts of what is hidden can be read too.
+async function text(id) {
+  const shown = page.getByTestId(id);
+  await shown.waitFor({ state: "visible" });
+  return shown.innerText();
+}
+
 const key = (name) => page.keyboard.press(name);
 const focusPicture = () => page.getByTestId("storm-canvas").focus();
 
@@ -107,7 +113,7 @@ test("where is the graupel core and how much is there, by keys alone", async () 
   const row = await text("probe-graupel");
   const along = Number(/([\d.]+) g\/kg/.exec(row)[1]);
   assert.ok(along > 0.8 * core && along < 1.01 * core, `along the ray through the core there are ${along} of ${core} g/kg`);
-  assert.match(await text("probe-found"), /Cloud\s+[\d.]+ k?m up · [\d.]+ km away/);
+  assert.match(await text("probe-found"), /Cloud\s+[\d.]+ k?m above sea · [\d.]+ km away/);
   assert.match(await text("probe-depth"), /Optical depth [\d.]+/);
   await page.locator("[data-testid=ray-chart] canvas").waitFor();
   await screenshot("tools-probe", page);
@@ -211,6 +217,7 @@ test("how wrong is this picture: it says so over it", async () => {
 test("Ctrl+Z takes a change back, Ctrl+Y does it again", async () => {
   await openTool(page, "look");
   const exposure = () => page.getByTestId("exposure-number").inputValue();
+  const atFirst = await exposure();
   await changing(() => setNumber(page, "exposure", 1.5), page);
   await page.waitForTimeout(800);
   await changing(() => setNumber(page, "exposure", -1), page);
@@ -220,6 +227,10 @@ test("Ctrl+Z takes a change back, Ctrl+Y does it again", async () => {
   await changing(() => key("Control+y"), page);
   assert.equal(await exposure(), "-1");
   await changing(() => key("Control+z"), page);
+  assert.equal(await exposure(), "1.5");
+  // Back to what the other tests see.
+  await changing(() => key("Control+z"), page);
+  assert.equal(await exposure(), atFirst);
   await openTool(page, undefined);
 });
 
@@ -243,6 +254,31 @@ test("every setting is found by its name, with its meaning, and can be set", asy
 
 let saved;
 
+const flipped = ({ data, width, height }) => {
+  const turned = { data: Buffer.alloc(data.length), width, height };
+  for (let y = 0; y < height; y += 1)
+    for (let x = 0; x < width; x += 1) data.copy(turned.data, 4 * (y * width + width - 1 - x), 4 * (y * width + x), 4 * (y * width + x + 1));
+  return turned;
+};
+
+// Alike but for letters and scales over one of them, and unlike its mirror image by far more.
+function assertSameColours(picture, view, what) {
+  const [apart, mirrored] = [blockDifference(picture, view), blockDifference(flipped(picture), view)];
+  console.log(`${what}: ${apart.toFixed(2)} from the view, its mirror image ${mirrored.toFixed(2)}`);
+  assert.ok(apart < 4 && mirrored > 3 * apart, `${what} differs from the view by ${apart}, its mirror image by ${mirrored}`);
+}
+
+const ffmpeg = (...args) => execFileSync("ffmpeg", ["-v", "error", "-y", ...args]);
+
+// The last picture of a movie, and the view made as small as it.
+function assertLastPictureIs(view, file) {
+  const [movie, canvas] = ["movie.png", "canvas.png"].map((name) => join(folder, name));
+  ffmpeg("-i", file, "-vf", "select=eq(n\\,3)", "-frames:v", "1", movie);
+  writeFileSync(canvas, PNG.sync.write(view));
+  ffmpeg("-i", canvas, "-vf", "scale=500:310", `${canvas}.small.png`);
+  assertSameColours(PNG.sync.read(readFileSync(movie)), PNG.sync.read(readFileSync(`${canvas}.small.png`)), "the movie's last picture");
+}
+
 test("a picture is saved, and dropped on a fresh page it brings the same view", async () => {
   await openPanel(page, "keep");
   const coming = page.waitForEvent("download", { timeout: PICTURE_TIMEOUT_MS });
@@ -252,6 +288,7 @@ test("a picture is saved, and dropped on a fresh page it brings the same view", 
   saved = readFileSync(await download.path());
   assert.ok(saved.includes("thunderhead.scene"));
   await page.keyboard.press("Escape");
+  assertSameColours(PNG.sync.read(saved), await grabCanvas(page), "the saved picture");
   const fresh = await (await browser.newContext({ viewport: VIEWPORT })).newPage();
   listenForErrors(fresh, complaints);
   try {
@@ -293,15 +330,17 @@ for (const format of ["webm", "mp4"])
   test(`a movie of all times as ${format}, by a job of the server`, { timeout: 240_000 }, async () => {
     await openPanel(page, "keep");
     await page.getByTestId("keep-movie").locator("summary").click();
-    await page.getByTestId("movie-from").selectOption("0");
+    assert.match(await text("movie-length"), /^4 pictures, 1 s/);
     await page.getByTestId("movie-size").selectOption("own");
-    await page.getByTestId("movie-size-width").fill("320");
+    await page.getByTestId("movie-size-width").fill("500");
     await page.getByTestId("movie-size-width").press("Enter");
-    await page.getByTestId("movie-size-height").fill("180");
+    await page.getByTestId("movie-size-height").fill("310");
     await page.getByTestId("movie-size-height").press("Enter");
     await page.getByTestId("movie-format").selectOption(format);
     const coming = page.waitForEvent("download", { timeout: 200_000 });
     await page.getByTestId("save-movie").click();
+    await page.keyboard.press("Escape");
+    await page.getByTestId("at-work").waitFor();
     const download = await coming;
     const file = await download.path();
     const probe = execFileSync(
@@ -310,8 +349,8 @@ for (const format of ["webm", "mp4"])
       { encoding: "utf8" },
     );
     const [stream] = JSON.parse(probe).streams;
-    assert.deepEqual([stream.width, stream.height, stream.nb_read_frames], [320, 180, "4"], probe);
-    await page.keyboard.press("Escape");
+    assert.deepEqual([stream.width, stream.height, stream.nb_read_frames], [500, 310, "4"], probe);
+    assertLastPictureIs(await grabCanvas(page), file);
   });
 
 test("two times are compared with one camera", async () => {
@@ -380,7 +419,7 @@ async function markedShare({ data, width, height }) {
     return places.split(" ").map((place) => ({ rgb, place: place.split(",").map(Number) }));
   });
   const isMarked = ({ rgb, place: [left, top] }) => {
-    const [x, y] = [Math.round((left * width) / box.width), Math.round((top * height) / box.height)];
+    const [x, y] = [Math.round(((left - box.x) * width) / box.width), Math.round(((top - box.y) * height) / box.height)];
     for (let row = y - 2; row <= y + 2; row += 1)
       for (let column = x - 2; column <= x + 2; column += 1)
         if (rgb.every((each, i) => Math.abs(data[4 * (row * width + column) + i] - each) < 40)) return true;

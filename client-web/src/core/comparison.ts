@@ -2,12 +2,14 @@
 
 import type { Camera, Scene } from "../gen/thunderhead/v1/scene_pb";
 import type { StormDescription } from "../gen/thunderhead/v1/storm_pb";
+import { secondsBetween } from "./moment";
 import { withCamera, withOutput, withStorm, withTime } from "./scene";
+import { formatElapsed } from "./units";
 
 export interface ComparisonChoice {
   // Absent: the storm that is shown.
   readonly stormId: string | undefined;
-  // Absent: the time that is shown, and of another storm its time of the same date.
+  // Absent: the time that is shown, and of another storm its time of the nearest date.
   readonly timeIndex: number | undefined;
   // Settings kept for B while those of A change; absent: B has A's.
   readonly settings: Scene | undefined;
@@ -26,31 +28,56 @@ export interface ComparedWith {
 export function comparedScene(a: Scene, choice: ComparisonChoice, w: ComparedWith): Scene {
   const stormId = choice.stormId ?? a.stormId;
   const base = choice.settings ?? a;
-  const timeIndex = timeOfB(a, choice, w);
+  const timeIndex = timeOfB(a, choice, w).index;
   const storm =
     base.stormId === stormId ? withTime(base, timeIndex) : withStorm(base, stormId, timeIndex);
   const seen = w.camera === undefined ? storm : withCamera(storm, w.camera);
   return withOutput(seen, { ...w.size, jpegQuality: a.output?.jpegQuality });
 }
 
-// B's time, as an index into those of its storm.
+// B's time, as an index into those of its storm; and how far it is from A's, where it was to be the same.
+export interface TimeOfB {
+  readonly index: number;
+  // Positive where B is later; undefined where the dates cannot be compared, and B has A's number.
+  readonly awayS: number | undefined;
+}
+
 export function timeOfB(
   a: Scene,
   choice: ComparisonChoice,
   w: Pick<ComparedWith, "storm" | "other">,
-): number {
-  return choice.timeIndex ?? timeOf(a, choice.stormId ?? a.stormId, w);
+): TimeOfB {
+  if (choice.timeIndex !== undefined) return { index: choice.timeIndex, awayS: 0 };
+  const index = a.timeIndex ?? 0;
+  const stormId = choice.stormId ?? a.stormId;
+  return stormId === a.stormId ? { index, awayS: 0 } : nearestTime(index, w);
 }
 
-// Of another storm the time with the same date; else the one as many steps after its first.
-function timeOf(
-  a: Scene,
-  stormId: string,
+// Runs farther apart have no times in common, such as an idealised one and a real one.
+const FARTHEST_S = 2 * 86_400;
+
+// Of another storm the time with the nearest date; else the one as many steps after its first.
+function nearestTime(
+  index: number,
   { storm, other }: Pick<ComparedWith, "storm" | "other">,
-): number {
-  const index = a.timeIndex ?? 0;
-  if (stormId === a.stormId || other === undefined) return index;
-  const date = storm?.times[index]?.validTime;
-  const same = other.times.findIndex(({ validTime }) => validTime === date);
-  return same >= 0 ? same : Math.min(index, Math.max(0, other.times.length - 1));
+): TimeOfB {
+  const date = storm?.times[index]?.validTime ?? "";
+  const times = other?.times ?? [];
+  let nearest: TimeOfB | undefined;
+  times.forEach(({ validTime }, at) => {
+    const awayS = date === validTime ? 0 : secondsBetween(date, validTime);
+    if (awayS === undefined || Math.abs(awayS) > FARTHEST_S) return;
+    if (Math.abs(awayS) < Math.abs(nearest?.awayS ?? Infinity)) nearest = { index: at, awayS };
+  });
+  const last = other === undefined ? index : Math.max(0, times.length - 1);
+  return nearest ?? { index: Math.min(index, last), awayS: undefined };
+}
+
+// What there is to say of it; undefined where B has A's time, or one that was chosen.
+export function awayInWords({ awayS }: TimeOfB): string | undefined {
+  if (awayS === 0) return undefined;
+  if (awayS === undefined)
+    return "The dates of A and B cannot be compared: B shows the time of the same number.";
+  const way = formatElapsed(Math.abs(awayS)).slice(1);
+  return `B has no such valid time: it shows the nearest, ${way} ${awayS < 0 ? "earlier" : "later"}.`;
 }

@@ -1,13 +1,18 @@
-// Changes made on this page, to be undone and done again. Edits that follow each other closely, as of a slider or a drag, count as one.
+// Changes made on this page, to be undone and done again. A step knows what it changed and leaves the rest of the scene as it is by then,
+// which somebody else may have changed. Edits that follow each other closely, as of a slider or a drag, count as one.
 import { computed, type Signal, signal } from "@preact/signals-core";
-import type { Scene } from "../gen/thunderhead/v1/scene_pb";
+import { type Scene, SceneSchema } from "../gen/thunderhead/v1/scene_pb";
+import { type Change, changeBetween, withChange } from "./scene_change";
 
 const ONE_GESTURE_MS = 700;
 const MOST_STEPS = 100;
 
+// The edits of one gesture, the first one first.
+type Step = readonly Change[];
+
 export class History {
-  readonly #past = signal<readonly Scene[]>([]);
-  readonly #future = signal<readonly Scene[]>([]);
+  readonly #past = signal<readonly Step[]>([]);
+  readonly #future = signal<readonly Step[]>([]);
   readonly #nowMs: () => number;
   #lastEditMs = Number.NEGATIVE_INFINITY;
 
@@ -18,34 +23,51 @@ export class History {
     this.#nowMs = nowMs;
   }
 
-  // The scene was edited; `before` is what it was.
-  edited(before: Scene): void {
+  // The scene was edited.
+  edited(before: Scene, after: Scene): void {
+    const change = changeBetween(SceneSchema, before, after);
+    if (change === undefined) return;
     const now = this.#nowMs();
     const sameGesture = now - this.#lastEditMs < ONE_GESTURE_MS;
     this.#lastEditMs = now;
     this.#future.value = [];
-    if (!sameGesture) this.#past.value = [...this.#past.value, before].slice(-MOST_STEPS);
+    const past = this.#past.value;
+    const last = sameGesture ? past.at(-1) : undefined;
+    this.#past.value =
+      last === undefined
+        ? [...past, [change]].slice(-MOST_STEPS)
+        : [...past.slice(0, -1), [...last, change]];
   }
 
-  // The scene before the last change, in place of `present`; undefined if there is none.
-  undo(present: Scene): Scene | undefined {
-    return this.#step(this.#past, this.#future, present);
+  // The edit that takes the last step back; undefined if there is none.
+  undo(): ((scene: Scene) => Scene) | undefined {
+    const step = this.#move(this.#past, this.#future);
+    return (
+      step &&
+      ((scene) => step.reduceRight((undone, change) => withChange(undone, change, "before"), scene))
+    );
   }
 
-  redo(present: Scene): Scene | undefined {
-    return this.#step(this.#future, this.#past, present);
+  redo(): ((scene: Scene) => Scene) | undefined {
+    const step = this.#move(this.#future, this.#past);
+    return (
+      step && ((scene) => step.reduce((done, change) => withChange(done, change, "after"), scene))
+    );
   }
 
-  #step(
-    from: Signal<readonly Scene[]>,
-    to: Signal<readonly Scene[]>,
-    present: Scene,
-  ): Scene | undefined {
-    const scene = from.value.at(-1);
-    if (scene === undefined) return undefined;
-    from.value = from.value.slice(0, -1);
-    to.value = [...to.value, present];
+  // The steps belong to another storm's scene.
+  clear(): void {
+    this.#past.value = [];
+    this.#future.value = [];
     this.#lastEditMs = Number.NEGATIVE_INFINITY;
-    return scene;
+  }
+
+  #move(from: Signal<readonly Step[]>, to: Signal<readonly Step[]>): Step | undefined {
+    const step = from.value.at(-1);
+    if (step === undefined) return undefined;
+    from.value = from.value.slice(0, -1);
+    to.value = [...to.value, step];
+    this.#lastEditMs = Number.NEGATIVE_INFINITY;
+    return step;
   }
 }

@@ -51,18 +51,60 @@ const LETTERS: Readonly<Record<string, string>> = {
   ":": "2222 2525",
   "/": "4006",
   "°": "20313222 1120",
+  Ä: "062246 1434 1011 3031",
+  Ö: "123243453616050312 1011 3031",
+  Ü: "020516364542 1011 3031",
+  "(": "30212536",
+  ")": "10212516",
+  "%": "4006 0010110100 3545463635",
+  "=": "1232 1434",
+  "<": "420344",
+  ">": "024304",
+  "'": "2021",
+  _: "0646",
+  " ": "",
 };
 
 const ADVANCE = 6;
 const HEIGHT = 6;
-// The points of a mark that the session takes, with some to spare.
-export const MOST_LETTERS = 24;
+// That the session takes for a mark.
+const MOST_CORNERS = 256;
+// Simple ones: others take more of the corners.
+export const MOST_LETTERS = 40;
 
-// Letters begin at `place`, `heightPx` high; what cannot be written is left out.
+interface Written {
+  // The strokes of each letter, as in LETTERS.
+  readonly letters: readonly string[];
+  readonly unknown: readonly string[];
+  // Beyond the corners of one mark.
+  readonly tooLong: string;
+}
+
+function written(words: string): Written {
+  const letters: string[] = [];
+  const unknown: string[] = [];
+  let corners = 0;
+  const all = [...words.normalize("NFC").toUpperCase()];
+  for (const [at, letter] of all.entries()) {
+    // An accent goes before the letter does.
+    const strokes = LETTERS[letter] ?? LETTERS[letter.normalize("NFD").charAt(0)];
+    if (strokes === undefined) {
+      unknown.push(letter);
+      continue;
+    }
+    // A lift of the pen repeats a corner.
+    corners += strokes.split(" ").reduce((sum, stroke) => sum + stroke.length / 2 + 1, 0);
+    if (corners > MOST_CORNERS) return { letters, unknown, tooLong: all.slice(at).join("") };
+    letters.push(strokes);
+  }
+  return { letters, unknown, tooLong: "" };
+}
+
+// Letters begin at `place`, `heightPx` high.
 export function letterStrokes(words: string, place: StrokePoint, heightPx: number): Strokes {
   const unit = heightPx / HEIGHT;
-  return [...words.toUpperCase().slice(0, MOST_LETTERS)].flatMap((letter, at) =>
-    (LETTERS[letter] ?? "").split(" ").flatMap((digits) => {
+  return written(words).letters.flatMap((letter, at) =>
+    letter.split(" ").flatMap((digits) => {
       const points = (digits.match(/\d\d/g) ?? []).map((pair) => ({
         left: place.left + unit * (at * ADVANCE + Number(pair[0])),
         top: place.top + unit * Number(pair[1]),
@@ -70,6 +112,16 @@ export function letterStrokes(words: string, place: StrokePoint, heightPx: numbe
       return points.length > 1 ? [points] : [];
     }),
   );
+}
+
+// What letterStrokes() leaves out; undefined where it writes everything.
+export function leftOutInWords(words: string): string | undefined {
+  const { unknown, tooLong } = written(words);
+  const said = [
+    unknown.length > 0 ? `Cannot be written: ${[...new Set(unknown)].join(" ")}` : "",
+    tooLong === "" ? "" : `Too long for one mark, left out: ${tooLong}`,
+  ].filter((part) => part !== "");
+  return said.length > 0 ? said.join(". ") : undefined;
 }
 
 const HEAD_PX = 16;

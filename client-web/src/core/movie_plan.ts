@@ -26,7 +26,15 @@ export function movieScenes(scene: Scene, draft: MovieDraft, views: readonly Nam
   );
 }
 
-function timesOf({ from, to }: MovieDraft): number[] {
+export function pictureCount(
+  draft: Pick<MovieDraft, "from" | "to" | "alongViews" | "picturesPerView">,
+  views: readonly NamedView[],
+): number {
+  if (draft.alongViews) return cameraPath(views, draft.picturesPerView).length;
+  return timesOf(draft).length;
+}
+
+function timesOf({ from, to }: Pick<MovieDraft, "from" | "to">): number[] {
   return Array.from(
     { length: Math.abs(to - from) + 1 },
     (_, at) => from + Math.sign(to - from) * at,

@@ -29,11 +29,12 @@ export class NamedViews {
   // Another storm is shown.
   load(): void {
     const stored = this.#read()[this.#stormId()];
-    this.all.value = Array.isArray(stored) ? stored.flatMap(viewOf) : [];
+    this.all.value = (Array.isArray(stored) ? stored.flatMap(viewOf) : []).reduce(withView, []);
   }
 
+  // A name that is taken gets a number.
   keep(view: NamedView): void {
-    this.#write([...this.all.peek(), view].slice(-MOST_VIEWS));
+    this.#write(withView(this.all.peek(), view).slice(-MOST_VIEWS));
   }
 
   forget(name: string): void {
@@ -66,6 +67,13 @@ export class NamedViews {
       return {};
     }
   }
+}
+
+function withView(views: readonly NamedView[], view: NamedView): readonly NamedView[] {
+  const taken = new Set(views.map(({ name }) => name));
+  let { name } = view;
+  for (let number = 2; taken.has(name); number += 1) name = `${view.name} ${number}`;
+  return [...views, { ...view, name }];
 }
 
 // Nothing for what another version of the page wrote.

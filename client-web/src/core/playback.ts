@@ -6,7 +6,8 @@ export interface PlaybackSteps {
   timeIndex(): number;
   // True once the picture of this time is on the screen.
   isShown(index: number): boolean;
-  showTime(index: number): void;
+  // `plays` where nobody has asked for this very time.
+  showTime(index: number, plays: boolean): void;
   // Requests one call at the next screen refresh; returns a function that cancels it.
   onNextPaint(callback: (nowMs: number) => void): () => void;
 }
@@ -37,7 +38,7 @@ export class Playback {
 
   play(): void {
     if (this.#playing.value || this.#steps.timeCount() < 2) return;
-    if (!this.loops.value && this.#atEnd()) this.#steps.showTime(0);
+    if (!this.loops.value && this.#atEnd()) this.#steps.showTime(0, true);
     this.#playing.value = true;
     this.#lastStepMs = undefined;
     this.#await();
@@ -51,13 +52,17 @@ export class Playback {
 
   // One time forward or back, wrapping around at the ends.
   step(by: number): void {
-    const count = this.#steps.timeCount();
-    if (count < 1) return;
-    this.#steps.showTime((((this.#steps.timeIndex() + by) % count) + count) % count);
+    this.#step(by, false);
   }
 
   dispose(): void {
     this.pause();
+  }
+
+  #step(by: number, plays: boolean): void {
+    const count = this.#steps.timeCount();
+    if (count < 1) return;
+    this.#steps.showTime((((this.#steps.timeIndex() + by) % count) + count) % count, plays);
   }
 
   #atEnd(): boolean {
@@ -79,7 +84,7 @@ export class Playback {
         return;
       }
       this.#lastStepMs = nowMs;
-      this.step(1);
+      this.#step(1, true);
     }
     this.#await();
   }

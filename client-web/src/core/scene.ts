@@ -1,6 +1,14 @@
 // Scenes as immutable values: a change returns a new scene that shares unchanged parts, so `===` detects changes. Absent
 // values mean their defaults, as in proto/thunderhead/v1/scene.proto.
-import { create, fromBinary, type Message, toBinary } from "@bufbuild/protobuf";
+import {
+  create,
+  type DescMessage,
+  equals,
+  fromBinary,
+  type Message,
+  type MessageShape,
+  toBinary,
+} from "@bufbuild/protobuf";
 import {
   type Accuracy,
   AccuracySchema,
@@ -24,6 +32,7 @@ import {
   PhaseFunctionSchema,
   type Preset,
   type Rendering,
+  RenderingSchema,
   type Scene,
   SceneSchema,
   type Sky,
@@ -123,6 +132,25 @@ export function withGround(scene: Scene, change: Change<Ground>): Scene {
 
 export function withRendering(scene: Scene, rendering: Rendering | undefined): Scene {
   return changed(scene, { rendering });
+}
+
+// The scene with rendering and fields as the server completed them: every setting filled in. Itself where nothing was missing.
+export function withCompleted(scene: Scene, { rendering, fields }: Scene): Scene {
+  const sameRendering =
+    rendering === undefined || isSame(RenderingSchema, scene.rendering, rendering);
+  const sameFields =
+    fields.length === scene.fields.length &&
+    fields.every((field, at) => isSame(FieldParametersSchema, scene.fields[at], field));
+  const next = sameRendering ? scene : withRendering(scene, rendering);
+  return sameFields ? next : changed(next, { fields });
+}
+
+function isSame<T extends DescMessage>(
+  schema: T,
+  a: MessageShape<T> | undefined,
+  b: MessageShape<T>,
+): boolean {
+  return a !== undefined && equals(schema, a, b);
 }
 
 // Replaces technique and settings by a preset, which also stands for where particles' sizes come from. Also drops an

@@ -1,7 +1,7 @@
 // The page's state as signals: the scene being edited, the server's descriptions of itself and its storms, the frame on
 // the screen, the connection, and notices. Independent of network and document.
 
-import { create, equals } from "@bufbuild/protobuf";
+import { create } from "@bufbuild/protobuf";
 import { batch, computed, type ReadonlySignal, signal } from "@preact/signals-core";
 import type {
   AccuracyReport,
@@ -16,7 +16,6 @@ import {
   type Camera,
   type Preset,
   type Rendering,
-  RenderingSchema,
   type Scene,
   SceneSchema,
   type Sun,
@@ -47,7 +46,7 @@ import {
   techniqueNameOf,
   withSettings,
 } from "./rendering";
-import { LIMITS, withCamera, withOutput, withRendering } from "./scene";
+import { LIMITS, withCamera, withCompleted, withOutput, withRendering } from "./scene";
 import type { Edit } from "./scene_sync";
 import { SessionState } from "./session_state";
 import { nameOfRun } from "./storm_names";
@@ -281,7 +280,7 @@ export class PageState {
     const when = `${date} ${clock}`.trim();
     return [
       `${this.title.value}${when === "" ? "" : `, ${when}`}`,
-      describePose(this.pose.value),
+      describePose(this.viewPose.value),
       describeSun(this.sunDirection.value),
     ].join(". ");
   });
@@ -298,27 +297,25 @@ export class PageState {
     const before = this.#scene.value;
     const after = change(before);
     if (after === before) return;
-    if (record === "recorded") this.history.edited(before);
+    if (record === "recorded") this.history.edited(before, after);
     this.#scene.value = after;
     this.#onEdit?.(change);
   }
 
   undo(): void {
-    const scene = this.#editable() ? this.history.undo(this.#scene.peek()) : undefined;
-    if (scene !== undefined) this.restore(scene, "unrecorded");
+    const edit = this.#editable() ? this.history.undo() : undefined;
+    if (edit !== undefined) this.edit(edit, "unrecorded");
   }
 
   redo(): void {
-    const scene = this.#editable() ? this.history.redo(this.#scene.peek()) : undefined;
-    if (scene !== undefined) this.restore(scene, "unrecorded");
+    const edit = this.#editable() ? this.history.redo() : undefined;
+    if (edit !== undefined) this.edit(edit, "unrecorded");
   }
 
   // Shows another scene, at this page's size.
-  restore(scene: Scene, record: "recorded" | "unrecorded" = "recorded"): void {
-    this.edit(
-      (present) =>
-        withOutput(scene, { widthPx: present.output?.widthPx, heightPx: present.output?.heightPx }),
-      record,
+  restore(scene: Scene): void {
+    this.edit((present) =>
+      withOutput(scene, { widthPx: present.output?.widthPx, heightPx: present.output?.heightPx }),
     );
   }
 
@@ -341,16 +338,14 @@ export class PageState {
 
   // A scene from the server; not sent back to it.
   adoptScene(scene: Scene): void {
+    const before = this.#scene.peek().stormId;
+    if (before !== "" && scene.stormId !== before) this.history.clear();
     this.#scene.value = scene;
   }
 
-  // The scene's own rendering as completed by the server: a technique with every setting filled in.
-  adoptRendering(rendering: Rendering | undefined): void {
-    const scene = this.#scene.value;
-    if (rendering === undefined) return;
-    if (scene.rendering !== undefined && equals(RenderingSchema, scene.rendering, rendering))
-      return;
-    this.#scene.value = withRendering(scene, rendering);
+  // The page's own scene as the server completed it.
+  adoptCompleted(scene: Scene): void {
+    this.#scene.value = withCompleted(this.#scene.peek(), scene);
   }
 
   // The camera of the frame on the screen. Fills in a camera that the scene leaves open.

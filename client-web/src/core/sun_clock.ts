@@ -1,6 +1,6 @@
 // The sun's clock at the time that is shown. A scene's clock is set at the storm's first time and goes on with the storm; people
 // set it for the picture before them, in local time.
-import { getTimes } from "suncalc";
+import { getPosition, getTimes } from "suncalc";
 import type { SunClock } from "../gen/thunderhead/v1/scene_pb";
 import { minutesAhead } from "./moment";
 
@@ -55,6 +55,25 @@ export function sunriseAndSunset(
     sunrise: sunrise === null ? undefined : minuteOfDay(sunrise, zone),
     sunset: sunset === null ? undefined : minuteOfDay(sunset, zone),
   };
+}
+
+// What the sun does on the local day: "Sunrise 06:12 · sunset 20:29".
+export function dayInWords(here: ClockHere, zone: string): string {
+  const { sunrise, sunset } = sunriseAndSunset(here, zone);
+  if (sunrise !== undefined && sunset !== undefined)
+    return `Sunrise ${clockOfMinute(sunrise)} · sunset ${clockOfMinute(sunset)}`;
+  if (sunrise !== undefined) return `Sunrise ${clockOfMinute(sunrise)}; the sun does not set`;
+  if (sunset !== undefined) return `Sunset ${clockOfMinute(sunset)}; the sun did not rise`;
+  const [, noonDeg = 0] = sunHeightsDeg(here, zone, 2);
+  return noonDeg > 0 ? "The sun does not set" : "The sun does not rise";
+}
+
+// The sun's height over the local day, from its first midnight to its last, at evenly spaced times.
+export function sunHeightsDeg(here: ClockHere, zone: string, steps: number): number[] {
+  return Array.from({ length: steps + 1 }, (_, at) => {
+    const then = atMinute(here.instant, (at * DAY_MINUTES) / steps, zone);
+    return getPosition(then, here.latitudeDeg, here.longitudeDeg).altitude;
+  });
 }
 
 // "18:30".

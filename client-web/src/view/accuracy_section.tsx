@@ -21,7 +21,7 @@ import { Choice, Section, Slider } from "./controls";
 type Goal = "none" | "maxError" | "maxMilliseconds";
 
 const GOALS = [
-  ["none", "As set under picture quality"],
+  ["none", "As the quality above"],
   ["maxError", "At most this error"],
   ["maxMilliseconds", "At most this time a frame"],
 ] as const;

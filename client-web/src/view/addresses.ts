@@ -3,7 +3,8 @@
 import { effect } from "@preact/signals-core";
 import type { OwnKeys } from "../core/own_keys";
 import type { PageState } from "../core/state";
-import { isLoopback, linkTo, presentersLinkTo, readLink } from "./link";
+import type { Scene } from "../gen/thunderhead/v1/scene_pb";
+import { isLoopback, linkTo, linkToView, presentersLinkTo, readLink } from "./link";
 
 // The address has the scene of at least so long ago; browsers limit how often it changes.
 const REST_MS = 1000;
@@ -30,6 +31,11 @@ export class Addresses {
     if (viewerKey === undefined) return undefined;
     const scene = withScene ? this.#state.scene.value : undefined;
     return linkTo(this.#window.location.href, viewerKey, scene);
+  }
+
+  // Shows that scene to whoever opens it, in a session of their own.
+  viewLink(scene: Scene): string {
+    return linkToView(this.#window.location.href, scene);
   }
 
   // For another person or device that is to present too; undefined where this page does not.

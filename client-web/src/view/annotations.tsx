@@ -20,6 +20,9 @@ import { formatElapsed } from "../core/units";
 
 // The part that the page's own bars cover.
 const BARS_PX = { left: 76, top: 106, right: 0, bottom: 88 };
+// With a tool beside the rail, with the drawer at the right.
+const TOOL_LEFT_PX = 374;
+const DRAWER_RIGHT_PX = 344;
 const NARROW_BARS_PX = { left: 0, top: 190, right: 0, bottom: 84 };
 const NARROW_PX = 900;
 // Between the bars.
@@ -32,11 +35,15 @@ export function Annotations({ state }: { state: PageState }) {
   const content = annotated(state);
   if (box === undefined || content === undefined) return null;
   const narrow = window.innerWidth < NARROW_PX;
+  // It covers the picture.
+  if (narrow && state.drawerOpen.value) return null;
   const sheetPx = narrow && state.tool.value !== undefined ? SHEET_SHARE * window.innerHeight : 0;
   // Little is left of the picture, such as of a phone's that is held across.
   const leftPx = window.innerHeight - NARROW_BARS_PX.top - NARROW_BARS_PX.bottom - sheetPx;
   if (narrow && leftPx < LEAST_ROOM_LETTERS * LETTER_PX) return null;
-  const bars = narrow ? { ...NARROW_BARS_PX, bottom: NARROW_BARS_PX.bottom + sheetPx } : BARS_PX;
+  const bars = narrow
+    ? { ...NARROW_BARS_PX, bottom: NARROW_BARS_PX.bottom + sheetPx }
+    : wideBars(state);
   const shapes = annotationsOf(
     {
       ...content,
@@ -44,9 +51,9 @@ export function Annotations({ state }: { state: PageState }) {
       heightPx: box.height,
       inset: {
         left: Math.max(0, bars.left - box.left),
-        right: Math.max(0, bars.right - box.left),
+        right: Math.max(0, bars.right - (window.innerWidth - box.left - box.width)),
         top: Math.max(0, bars.top - box.top),
-        bottom: Math.max(0, bars.bottom - box.top),
+        bottom: Math.max(0, bars.bottom - (window.innerHeight - box.top - box.height)),
       },
       letterPx: LETTER_PX,
     },
@@ -62,6 +69,14 @@ export function Annotations({ state }: { state: PageState }) {
       </g>
     </svg>
   );
+}
+
+function wideBars(state: PageState) {
+  return {
+    ...BARS_PX,
+    left: state.tool.value === undefined ? BARS_PX.left : TOOL_LEFT_PX,
+    right: state.drawerOpen.value ? DRAWER_RIGHT_PX : BARS_PX.right,
+  };
 }
 
 function Drawn({ shape }: { shape: Shape }) {

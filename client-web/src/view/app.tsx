@@ -19,6 +19,7 @@ export function App({ page }: { page: Page }) {
     state.tool.value !== undefined && "with-tool-open",
     state.drawerOpen.value && "with-drawer",
     state.popover.value !== undefined && "with-panel",
+    page.comparing.choice.value !== undefined && "compares",
     page.comparing.choice.value?.layout === "side" && "compares-beside",
   ].filter((name) => name !== false);
   return (

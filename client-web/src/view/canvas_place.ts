@@ -37,8 +37,11 @@ export class CanvasPlace {
   // Where a picture lies in the window, in CSS pixels.
   boxOf(picture: { readonly widthPx: number; readonly heightPx: number }): Box | undefined {
     if (this.#canvas === undefined) return undefined;
-    const size = { width: this.#canvas.clientWidth, height: this.#canvas.clientHeight };
-    return pictureBox(size, { width: picture.widthPx, height: picture.heightPx });
+    const { clientWidth, clientHeight, offsetLeft, offsetTop } = this.#canvas;
+    const { widthPx: width, heightPx: height } = picture;
+    const box = pictureBox({ width: clientWidth, height: clientHeight }, { width, height });
+    // The canvas itself may lie beside an open tool.
+    return { ...box, left: offsetLeft + box.left, top: offsetTop + box.top };
   }
 
   // Returns the function that detaches it.

@@ -1,7 +1,8 @@
 // Every setting of the scene with its unit, limits, default and meaning, from the schema; found by a search box.
 import type { ComponentType } from "preact";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import type { Page } from "./page";
+import { focusRail } from "./tool_rail";
 
 // Loaded when it opens first.
 export function ExpertDrawer({ page }: { page: Page }) {
@@ -10,9 +11,17 @@ export function ExpertDrawer({ page }: { page: Page }) {
   const search = useRef<HTMLInputElement>(null);
   const open = page.state.drawerOpen.value;
   const block = page.state.session.editBlock.value;
+  const wasOpen = useRef(false);
+  // Before the next key.
+  useLayoutEffect(() => {
+    const closes = wasOpen.current && !open;
+    wasOpen.current = open;
+    // What had the focus in it is gone.
+    if (closes && document.activeElement === document.body) focusRail("settings");
+    if (open) search.current?.focus();
+  }, [open]);
   useEffect(() => {
     if (!open) return;
-    search.current?.focus();
     void import("./every_setting").then(({ EverySetting }) => setSettings(() => EverySetting));
   }, [open]);
   return (

@@ -1,5 +1,5 @@
 // Links to a session: ?session=VIEWER_KEY names it; #scene=... is a copy of the scene, to open a new session with if that
-// one has ended; #present=PRESENTER_KEY lets another person or device present. Browsers do not send the fragment to the
+// one has ended, or where none is named: such a link is to a view; #present=PRESENTER_KEY lets another person or device present. Browsers do not send the fragment to the
 // server, so the presenter's key is in no log.
 import { sceneFromUrlText, sceneToUrlText } from "../core/scene";
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
@@ -26,6 +26,13 @@ export function linkTo(address: string, viewerKey: string, scene?: Scene): strin
   const link = new URL(withoutLink(address));
   link.searchParams.set("session", viewerKey);
   if (scene !== undefined) link.hash = `scene=${sceneToUrlText(scene)}`;
+  return link.href;
+}
+
+// Opens a session of one's own with that scene.
+export function linkToView(address: string, scene: Scene): string {
+  const link = new URL(withoutLink(address));
+  link.hash = `scene=${sceneToUrlText(scene)}`;
   return link.href;
 }
 

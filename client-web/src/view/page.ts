@@ -7,17 +7,19 @@ import { AccessToken } from "../core/access_token";
 import { BackOff } from "../core/back_off";
 import type { CameraKind, Pose } from "../core/camera";
 import { Marking } from "../core/marking";
-import { NamedViews } from "../core/named_views";
+import { type NamedView, NamedViews } from "../core/named_views";
 import type { Later } from "../core/newest";
 import { OwnKeys } from "../core/own_keys";
 import { Participant } from "../core/participant";
 import { Playback } from "../core/playback";
+import { keepPreferences, loadPreferences } from "../core/preferences";
 import { RevisionLedger } from "../core/revision_ledger";
-import { withStorm, withTime } from "../core/scene";
+import { withCamera, withStorm, withTime } from "../core/scene";
 import type { Tool } from "../core/session_state";
 import { PageState } from "../core/state";
 import type { StrokePoint } from "../core/stroke";
 import type { PanelName, ToolName } from "../core/tools";
+import { lengthUnits } from "../core/units";
 import { ServerCalls } from "../transport/server_calls";
 import { type OpenInteract, SessionClient } from "../transport/session_client";
 import { Addresses } from "./addresses";
@@ -89,7 +91,11 @@ export class Page {
       const timer = setTimeout(callback, delayMs);
       return () => clearTimeout(timer);
     };
-    const keys = new OwnKeys(storageOf(window));
+    const store = storageOf(window);
+    const keys = new OwnKeys(store);
+    const preferred = { units: lengthUnits, annotations: state.annotations };
+    loadPreferences(store, preferred);
+    this.#disposals.push(effect(() => keepPreferences(store, preferred)));
     const ledger = new RevisionLedger();
 
     this.notes = new Notes(state);
@@ -97,7 +103,7 @@ export class Page {
     this.#storms = new StormsOnServer(this.calls, state);
     this.#map = new StormMap(this.calls, state);
     this.probing = new Probing(this.calls, state);
-    this.views = new NamedViews(storageOf(window), () => state.stormId.peek());
+    this.views = new NamedViews(store, () => state.stormId.peek());
     this.keeper = new Keeper(transport, state, this.notes, () => this.views.all.peek());
     this.addresses = new Addresses(window, state, keys);
     this.addresses.adoptPresentersLink();
@@ -165,7 +171,7 @@ export class Page {
       timeCount: () => state.timeCount.value,
       timeIndex: () => state.timeIndex.value,
       isShown: (index) => this.#life.isTimeShown(index),
-      showTime: (index) => this.showTime(index),
+      showTime: (index, plays) => this.showTime(index, plays ? "unrecorded" : "recorded"),
       onNextPaint,
     });
     this.comparing = new Comparing(this.calls, openInteract, state, {
@@ -194,6 +200,18 @@ export class Page {
     this.viewpoint.showKind(kind);
   }
 
+  // The camera and the time; who looks around has the session's time.
+  showView({ camera, timeIndex }: NamedView): void {
+    const { state } = this;
+    if (state.session.editBlock.peek() !== undefined) {
+      this.viewpoint.show(camera);
+      return;
+    }
+    this.playback.pause();
+    const last = Math.max(0, state.timeCount.peek() - 1);
+    state.edit((scene) => withCamera(withTime(scene, Math.min(timeIndex, last)), camera));
+  }
+
   home(): void {
     this.showCamera(this.state.viewPose.value?.kind ?? this.state.cameraKind.value);
   }
@@ -209,8 +227,9 @@ export class Page {
     this.#client.retryNow();
   }
 
-  showTime(index: number): void {
-    if (index !== this.state.timeIndex.value) this.state.edit((scene) => withTime(scene, index));
+  showTime(index: number, record: "recorded" | "unrecorded" = "recorded"): void {
+    if (index === this.state.timeIndex.value) return;
+    this.state.edit((scene) => withTime(scene, index), record);
   }
 
   // Shows a storm's last time, as the server does by default.
@@ -276,8 +295,17 @@ export class Page {
     this.#life.sendOutputSize();
   }
 
-  async copyLink(): Promise<void> {
-    const link = this.addresses.viewersLink(true) ?? "";
+  // To watch this session with.
+  copyLink(): Promise<void> {
+    return this.#copy(this.addresses.viewersLink(true) ?? "");
+  }
+
+  // To the view on this screen, also an own one, whatever becomes of the session.
+  copyViewLink(): Promise<void> {
+    return this.#copy(this.addresses.viewLink(this.keeper.sceneShown()));
+  }
+
+  async #copy(link: string): Promise<void> {
     if (await this.addresses.copy(link)) this.notes.say("link", "Link copied");
     else this.state.notify({ subject: "link", text: link, severity: "note" });
   }
@@ -298,6 +326,7 @@ export class Page {
     for (const dispose of this.#disposals) dispose();
     this.#storms.dispose();
     this.#map.dispose();
+    this.probing.dispose();
     this.keeper.dispose();
     this.comparing.dispose();
     this.addresses.dispose();
@@ -330,17 +359,7 @@ export class Page {
     );
     window.addEventListener("online", () => this.#client.retryNow(), options);
     window.document.addEventListener("visibilitychange", () => this.#life.sendWindow(), options);
-    // A picture that was saved brings its view back.
-    window.addEventListener("dragover", (event) => event.preventDefault(), options);
-    window.addEventListener(
-      "drop",
-      (event) => {
-        event.preventDefault();
-        const file = event.dataTransfer?.files[0];
-        if (file !== undefined) void this.keeper.open(file);
-      },
-      options,
-    );
+    this.keeper.listen(window, options);
     const stillHere = setInterval(() => {
       if (!window.document.hidden) this.#life.sendWindow();
     }, STILL_HERE_EVERY_MS);

@@ -1,5 +1,6 @@
 // Asks the server what lies along the ray of a click, and keeps the last two answers: the second click measures from the first.
 import { ConnectError } from "@connectrpc/connect";
+import { effect, untracked } from "@preact/signals-core";
 import { cameraOfPose } from "../core/camera";
 import { picturePointAt } from "../core/picture_box";
 import { type PicturePoint, rayAt, type WorldRay } from "../core/projection";
@@ -12,11 +13,21 @@ import { rayMessage } from "./rays";
 export class Probing {
   readonly #calls: ServerCalls;
   readonly #state: PageState;
+  readonly #stop: () => void;
   #asked = 0;
 
   constructor(calls: ServerCalls, state: PageState) {
     this.#calls = calls;
     this.#state = state;
+    // What was found is of the storm and time that were shown.
+    this.#stop = effect(() => {
+      void [state.stormId.value, state.timeIndex.value];
+      untracked(() => this.forget());
+    });
+  }
+
+  dispose(): void {
+    this.#stop();
   }
 
   // At a place of the window, in CSS pixels.

@@ -72,7 +72,7 @@ export class SessionLife implements SessionListener {
     this.#sync = new SceneSync({
       scene: () => state.scene.peek(),
       adopt: (scene) => state.adoptScene(scene),
-      complete: (scene) => state.adoptRendering(scene.rendering),
+      complete: (scene) => state.adoptCompleted(scene),
       changedByOthers: (scene, revision) => ledger.told(scene.timeIndex ?? 0, revision),
       send: (scene, expectedRevision) => this.#send(scene, expectedRevision),
       taken: () => state.dismiss("refused"),

@@ -43,7 +43,10 @@ export class StormMap {
       this.#state.stormMap.value = map;
       this.#state.mapProblem.value = undefined;
     } catch (error) {
+      if (this.#asked !== asked) return;
       this.#asked = "";
+      // Of another time or storm.
+      this.#state.stormMap.value = undefined;
       const why = error instanceof ConnectError ? error.rawMessage : String(error);
       this.#state.mapProblem.value = `The server sends no map: ${why}`;
     }

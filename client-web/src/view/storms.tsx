@@ -25,6 +25,22 @@ export function Storms({ page }: { page: Page }) {
         {shown?.deletable && <DeleteCloud key={shown.id} page={page} />}
         <CloudSection page={page} />
       </fieldset>
+      <button
+        type="button"
+        class="narrow-only"
+        data-testid="storms-compare"
+        onClick={() => page.togglePopover("compare")}
+      >
+        Compare with another storm, run or time
+      </button>
+      <button
+        type="button"
+        class="narrow-only"
+        data-testid="storms-help"
+        onClick={() => page.togglePopover("help")}
+      >
+        Touch and keys
+      </button>
     </Popover>
   );
 }

@@ -9,9 +9,10 @@ import {
   type ClockHere,
   clockOfMinute,
   DAY_MINUTES,
+  dayInWords,
   firstDateTime,
   minuteOfDay,
-  sunriseAndSunset,
+  sunHeightsDeg,
 } from "../core/sun_clock";
 import { describeSun } from "../core/words";
 import { Sun_Source, type SunClock } from "../gen/thunderhead/v1/scene_pb";
@@ -91,7 +92,6 @@ interface DayProps {
 function DaySlider({ state, here, byTime }: DayProps) {
   const zone = state.sunZone.value;
   const minute = minuteOfDay(here.instant, zone);
-  const { sunrise, sunset } = sunriseAndSunset(here, zone);
   const elapsedS = state.shownTime.value?.elapsedS ?? 0;
   const set = (next: number) => {
     const dateTime = firstDateTime(atMinute(here.instant, next, zone), elapsedS);
@@ -99,13 +99,7 @@ function DaySlider({ state, here, byTime }: DayProps) {
       withSun(withSunClock(scene, { dateTime }), { source: Sun_Source.BY_TIME }),
     );
   };
-  const percent = (at: number) => `${(100 * at) / DAY_MINUTES}%`;
-  const night = "rgb(8 14 30)";
-  const day = "rgb(112 164 220)";
-  const sky =
-    sunrise === undefined || sunset === undefined || sunrise > sunset
-      ? night
-      : `linear-gradient(90deg, ${night} ${percent(sunrise - 40)}, #d9925b ${percent(sunrise)}, ${day} ${percent(sunrise + 60)}, ${day} ${percent(sunset - 60)}, #d9925b ${percent(sunset)}, ${night} ${percent(sunset + 40)})`;
+  const sky = `linear-gradient(90deg, ${sunHeightsDeg(here, zone, SKY_STEPS).map(skyColor).join(", ")})`;
   return (
     <div class={byTime ? "day" : "day off"}>
       <label for="day-time">
@@ -135,11 +129,29 @@ function DaySlider({ state, here, byTime }: DayProps) {
         onInput={(event) => set(event.currentTarget.valueAsNumber)}
       />
       <span class="quiet" data-testid="sun-rise-set">
-        {sunrise === undefined ? "The sun does not rise" : `Sunrise ${clockOfMinute(sunrise)}`}
-        {sunset === undefined ? ", or does not set" : ` · sunset ${clockOfMinute(sunset)}`}
+        {dayInWords(here, zone)}
       </span>
     </div>
   );
+}
+
+// Every half hour.
+const SKY_STEPS = 48;
+// Heights of the sun and colours of the sky; between them they are mixed.
+const SKY = [
+  [-8, [8, 14, 30]],
+  [-1, [217, 146, 91]],
+  [10, [112, 164, 220]],
+] as const;
+
+function skyColor(heightDeg: number): string {
+  const [lowest, , highest] = SKY;
+  if (heightDeg <= lowest[0]) return `rgb(${lowest[1].join(" ")})`;
+  if (heightDeg >= highest[0]) return `rgb(${highest[1].join(" ")})`;
+  const [below, above] = heightDeg < SKY[1][0] ? [SKY[0], SKY[1]] : [SKY[1], SKY[2]];
+  const share = (heightDeg - below[0]) / (above[0] - below[0]);
+  const mixed = ([0, 1, 2] as const).map((i) => (1 - share) * below[1][i] + share * above[1][i]);
+  return `rgb(${mixed.map(Math.round).join(" ")})`;
 }
 
 function ClockControls({ state, clock }: { state: PageState; clock: SunClock | undefined }) {

@@ -32,7 +32,9 @@ export function TimeLine({ page }: { page: Page }) {
       >
         <Icon name={playing ? "pause" : "play"} />
       </button>
+      <StepButton page={page} by={-1} fixed={fixed} />
       <Steps page={page} times={storm.times} index={index} fixed={fixed} />
+      <StepButton page={page} by={1} fixed={fixed} />
       <Shown page={page} index={index} count={count} />
       <label class="rate">
         <span class="visually-hidden">Times per second</span>
@@ -70,6 +72,33 @@ export function TimeLine({ page }: { page: Page }) {
         <Icon name="loop" />
       </button>
     </section>
+  );
+}
+
+interface StepButtonProps {
+  readonly page: Page;
+  readonly by: 1 | -1;
+  readonly fixed: boolean;
+}
+
+function StepButton({ page: { playback }, by, fixed }: StepButtonProps) {
+  const [name, label, key] =
+    by < 0 ? (["back", "Time before", ","] as const) : (["forward", "Next time", "."] as const);
+  return (
+    <button
+      type="button"
+      class="round"
+      data-testid={`step-${name}`}
+      aria-label={label}
+      title={`${label} (${key})`}
+      disabled={fixed}
+      onClick={() => {
+        playback.pause();
+        playback.step(by);
+      }}
+    >
+      <Icon name={name} />
+    </button>
   );
 }
 

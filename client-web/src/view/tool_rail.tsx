@@ -71,6 +71,11 @@ export function ToolRail({ page }: { page: Page }) {
   );
 }
 
+// Where a panel was opened from, once it is closed.
+export function focusRail(name: ToolName | "settings"): void {
+  document.querySelector<HTMLElement>(`[data-testid=rail-${name}]`)?.focus();
+}
+
 export function ToolPanel({ page }: { page: Page }) {
   const name = page.state.tool.value;
   if (name === undefined) return <aside id="tool" hidden />;
@@ -105,7 +110,10 @@ function OpenTool({ page, name }: { page: Page; name: ToolName }) {
           type="button"
           class="close"
           aria-label={`Close ${title}`}
-          onClick={() => page.toggleTool(name)}
+          onClick={() => {
+            page.toggleTool(name);
+            focusRail(name);
+          }}
         >
           ×
         </button>

@@ -4,6 +4,7 @@
 import type { PanelName } from "../core/tools";
 import { formatElapsed } from "../core/units";
 import { Icon, type IconName } from "./icons";
+import { workInWords } from "./keep/keeper";
 import type { Page } from "./page";
 import { Connection } from "./readout";
 
@@ -19,6 +20,7 @@ export function TopBar({ page }: { page: Page }) {
           <Asked page={page} />
         </PanelButton>
         <PanelButton page={page} name="compare" testId="compare" label="Compare" />
+        <AtWork page={page} />
         <PanelButton page={page} name="keep" testId="keep" label="Save" />
         <PanelButton page={page} name="share" testId="share" label="Share" primary />
         <FullScreen />
@@ -127,6 +129,28 @@ function PanelButton(props: PanelButtonProps) {
       {icon !== undefined && <span class="visually-hidden">{label}</span>}
       {children}
     </button>
+  );
+}
+
+// How far a movie or a picture is, while the panel that it was asked for in is closed.
+function AtWork({ page }: { page: Page }) {
+  const { keeper, state } = page;
+  const work = keeper.work.value;
+  if (work === undefined || state.popover.value === "keep") return null;
+  return (
+    <span class="at-work" data-testid="at-work">
+      <span role="status">{workInWords(work)}</span>
+      <button
+        type="button"
+        class="close"
+        data-testid="at-work-cancel"
+        aria-label={`Cancel: ${work.what}`}
+        title="Cancel"
+        onClick={() => keeper.cancel()}
+      >
+        ×
+      </button>
+    </span>
   );
 }
 

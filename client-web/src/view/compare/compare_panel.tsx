@@ -1,4 +1,5 @@
 // Chooses what to compare with: another time, another storm or run, or the settings as they are now.
+import { awayInWords } from "../../core/comparison";
 import { momentOf } from "../../core/moment";
 import { formatElapsed } from "../../core/units";
 import { Choice, Segments } from "../controls";
@@ -45,6 +46,7 @@ export function Compare({ page }: { page: Page }) {
         ]}
         onChange={(at) => comparing.change({ timeIndex: at === SAME ? undefined : at })}
       />
+      <TimeAway page={page} />
       <Choice
         label="Settings of B"
         testId="compare-settings"
@@ -87,5 +89,18 @@ export function Compare({ page }: { page: Page }) {
         </p>
       )}
     </Popover>
+  );
+}
+
+// That B is not of A's time, and how far from it.
+function TimeAway({ page: { comparing } }: { page: Page }) {
+  const known = comparing.other.value !== undefined;
+  const words =
+    comparing.undescribed.value ?? (known ? awayInWords(comparing.time.value) : undefined);
+  if (words === undefined) return null;
+  return (
+    <p class="unmet" role="status" data-testid="compare-away">
+      {words}
+    </p>
   );
 }

@@ -18,6 +18,7 @@ export function CompareView({ page }: { page: Page }) {
   const swipes = choice.layout === "swipe";
   const share = page.comparing.swipe.value;
   const clip = swipes ? { clipPath: `inset(0 0 0 ${(100 * share).toFixed(2)}%)` } : {};
+  const edge = swipes ? 100 * share : 50;
   const names = namesOf(page);
   return (
     <>
@@ -29,12 +30,17 @@ export function CompareView({ page }: { page: Page }) {
         role="img"
         aria-label={`To compare: ${names.b}`}
       />
-      <p class="compared-name a" data-testid="name-a">
-        A · {names.a}
-      </p>
-      <p class="compared-name b" data-testid="name-b">
-        B · {names.b}
-      </p>
+      {/* Each name in its half. */}
+      <div class="half" style={{ clipPath: `inset(0 ${100 - edge}% 0 0)` }}>
+        <p class="compared-name a" data-testid="name-a">
+          A · {names.a}
+        </p>
+      </div>
+      <div class="half" style={{ clipPath: `inset(0 0 0 ${edge}%)` }}>
+        <p class="compared-name b" data-testid="name-b">
+          B · {names.b}
+        </p>
+      </div>
       {swipes && (
         <input
           type="range"
@@ -57,7 +63,7 @@ export function CompareView({ page }: { page: Page }) {
 // Of what is different, in words.
 function namesOf({ state, comparing }: Page): { readonly a: string; readonly b: string } {
   const choice = comparing.choice.value;
-  const index = comparing.timeIndex.value;
+  const index = comparing.time.value.index;
   const aTime = timeName(state.storm.value, state.timeIndex.value);
   const settings = choice?.settings === undefined ? "" : ", kept settings";
   if (choice?.stormId === undefined)

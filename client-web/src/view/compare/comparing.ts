@@ -1,7 +1,8 @@
 // Compares: holds what B is, runs its session while there is a B, and keeps its scene beside A's.
+import { ConnectError } from "@connectrpc/connect";
 import { computed, effect, signal, untracked } from "@preact/signals-core";
 import { cameraOfPose, type Pose } from "../../core/camera";
-import { type ComparisonChoice, comparedScene, timeOfB } from "../../core/comparison";
+import { type ComparisonChoice, comparedScene, type TimeOfB, timeOfB } from "../../core/comparison";
 import type { Later } from "../../core/newest";
 import type { PageState } from "../../core/state";
 import type { Frame } from "../../gen/thunderhead/v1/frame_pb";
@@ -28,10 +29,11 @@ export class Comparing {
   readonly swipe = signal(0.5);
   // The description of B's storm, if it is another.
   readonly other = signal<StormDescription | undefined>(undefined);
-  // B's time, as an index into those of its storm.
-  readonly timeIndex = computed((): number => {
+  // Why B's storm is not described.
+  readonly undescribed = signal<string | undefined>(undefined);
+  readonly time = computed((): TimeOfB => {
     const [scene, choice] = [this.#state.scene.value, this.choice.value];
-    if (choice === undefined) return scene.timeIndex ?? 0;
+    if (choice === undefined) return { index: scene.timeIndex ?? 0, awayS: 0 };
     return timeOfB(scene, choice, { storm: this.#state.storm.value, other: this.other.value });
   });
   readonly #calls: ServerCalls;
@@ -123,6 +125,9 @@ export class Comparing {
     const size = this.#size.value;
     const pose = this.#state.viewPose.value;
     if (choice === undefined || size.widthPx === 0 || pose === undefined) return undefined;
+    // Which of its times is A's is not known yet.
+    const described = this.other.value !== undefined || this.undescribed.value !== undefined;
+    if (choice.stormId !== undefined && !described) return undefined;
     return comparedScene(this.#state.scene.value, choice, {
       camera: cameraOfPose(pose),
       size,
@@ -164,12 +169,15 @@ export class Comparing {
 
   async #describe(stormId: string | undefined): Promise<void> {
     this.other.value = undefined;
+    this.undescribed.value = undefined;
     if (stormId === undefined) return;
     try {
       const described = await this.#calls.describeStorm(stormId, 0);
       if (this.choice.peek()?.stormId === stormId) this.other.value = described;
-    } catch {
-      // B then has the time of the same number.
+    } catch (error) {
+      if (this.choice.peek()?.stormId !== stormId) return;
+      const why = error instanceof ConnectError ? error.rawMessage : String(error);
+      this.undescribed.value = `The times of B are not known: ${why}`;
     }
   }
 }

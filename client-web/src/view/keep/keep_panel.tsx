@@ -1,12 +1,13 @@
 // Keeps what is shown: as a picture, a scene, a link or a movie; and takes it back.
 import { useRef, useState } from "preact/hooks";
 import { momentOf } from "../../core/moment";
-import type { MovieDraft } from "../../core/movie_plan";
-import { formatElapsed } from "../../core/units";
+import { type MovieDraft, pictureCount } from "../../core/movie_plan";
+import { formatElapsed, formatNumber } from "../../core/units";
 import { Choice, NumberInput, Section, Switch } from "../controls";
 import { Icon } from "../icons";
 import type { Page } from "../page";
 import { Popover } from "../popover";
+import { workInWords } from "./keeper";
 
 const SIZES = [
   ["window", "As the window"],
@@ -44,7 +45,7 @@ export function Keep({ page }: { page: Page }) {
       {work !== undefined && (
         <div class="work" role="status" data-testid="keep-work">
           <label>
-            {work.what}: {Math.round(100 * work.share)} %
+            {workInWords(work)}
             <progress max={1} value={work.share} />
           </label>
           <button type="button" data-testid="keep-cancel" onClick={() => keeper.cancel()}>
@@ -126,7 +127,7 @@ function Movie({ page }: { page: Page }) {
   const last = times.length - 1;
   const chosen = useSize(page);
   const [draft, setDraft] = useState<Omit<MovieDraft, "widthPx" | "heightPx">>({
-    from: Math.min(state.timeIndex.peek(), last),
+    from: 0,
     to: last,
     picturesPerSecond: 4,
     picturesPerView: 24,
@@ -190,6 +191,9 @@ function Movie({ page }: { page: Page }) {
         ]}
         onChange={(format) => change({ format })}
       />
+      <p class="quiet" data-testid="movie-length">
+        {lengthInWords(pictureCount(draft, page.views.all.value), draft.picturesPerSecond)}
+      </p>
       <button
         type="button"
         class="primary"
@@ -203,6 +207,11 @@ function Movie({ page }: { page: Page }) {
   );
 }
 
+function lengthInWords(pictures: number, picturesPerSecond: number): string {
+  if (pictures === 1) return "One picture: nothing moves.";
+  return `${pictures} pictures, ${formatNumber(pictures / picturesPerSecond)} s.`;
+}
+
 function SceneAndLink({ page }: { page: Page }) {
   const file = useRef<HTMLInputElement>(null);
   return (
@@ -214,7 +223,7 @@ function SceneAndLink({ page }: { page: Page }) {
         <button type="button" data-testid="open-file" onClick={() => file.current?.click()}>
           Open a picture or scene
         </button>
-        <button type="button" data-testid="keep-link" onClick={() => void page.copyLink()}>
+        <button type="button" data-testid="keep-link" onClick={() => void page.copyViewLink()}>
           Copy a link to this view
         </button>
       </div>

@@ -22,6 +22,11 @@ export interface Work {
   readonly share: number;
 }
 
+// "Movie: 34 %".
+export function workInWords({ what, share }: Work): string {
+  return `${what}: ${Math.round(100 * share)} %`;
+}
+
 export class Keeper {
   readonly #calls: RenderCalls;
   readonly #state: PageState;
@@ -43,6 +48,28 @@ export class Keeper {
     this.#views = views;
   }
 
+  listen(window: Window, options: { readonly signal: AbortSignal }): void {
+    // A picture that was saved brings its view back.
+    window.addEventListener("dragover", (event) => event.preventDefault(), options);
+    window.addEventListener(
+      "drop",
+      (event) => {
+        event.preventDefault();
+        const file = event.dataTransfer?.files[0];
+        if (file !== undefined) void this.open(file);
+      },
+      options,
+    );
+    // What is being made would be lost: the browser asks.
+    window.addEventListener(
+      "beforeunload",
+      (event) => {
+        if (this.work.peek() !== undefined) event.preventDefault();
+      },
+      options,
+    );
+  }
+
   cancel(): void {
     this.#working?.abort();
   }
@@ -53,7 +80,7 @@ export class Keeper {
 
   savePicture(widthPx: number, heightPx: number): Promise<void> {
     return this.#make("Picture", async (abort, progress) => {
-      const scene = withOutput(this.#sceneShown(), outputSize(widthPx, heightPx, 1));
+      const scene = withOutput(this.sceneShown(), outputSize(widthPx, heightPx, 1));
       const picture = await this.#calls.picture(scene, ImageFormat.PNG, abort, progress);
       const canvas = await this.#annotate(picture, scene);
       const blob = await canvas.convertToBlob({ type: "image/png" });
@@ -63,7 +90,7 @@ export class Keeper {
   }
 
   saveScene(): void {
-    const text = sceneToText(this.#sceneShown());
+    const text = sceneToText(this.sceneShown());
     this.#download(new TextEncoder().encode(text), "json", "application/json");
   }
 
@@ -83,7 +110,7 @@ export class Keeper {
   saveMovie(draft: MovieDraft): Promise<void> {
     return this.#make("Movie", async (abort, progress) => {
       const { startMovie } = await import("./movie_file");
-      const scenes = movieScenes(this.#sceneShown(), draft, this.#views());
+      const scenes = movieScenes(this.sceneShown(), draft, this.#views());
       const movie = await startMovie(draft);
       try {
         let done = 0;
@@ -126,7 +153,7 @@ export class Keeper {
   }
 
   // With the own view's camera, while this page looks around.
-  #sceneShown(): Scene {
+  sceneShown(): Scene {
     const scene = this.#state.scene.peek();
     const frame = this.#state.frame.peek();
     const own = frame?.ownView === true ? this.#state.shownCamera.peek() : undefined;

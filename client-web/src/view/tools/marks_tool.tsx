@@ -1,5 +1,5 @@
 // Marks that everybody sees over the picture: pen, arrow, words and a pointer, at their places in the world.
-import { MOST_LETTERS } from "../../core/lettering";
+import { leftOutInWords, MOST_LETTERS } from "../../core/lettering";
 import type { Tool } from "../../core/session_state";
 import { Icon } from "../icons";
 import type { Page } from "../page";
@@ -25,6 +25,7 @@ export function MarksTool({ page }: { page: Page }) {
   const mine = session.marks.value.some(
     (mark) => session.presenting.value || session.isMe(mark.viewerId),
   );
+  const leftOut = leftOutInWords(page.marking.words.value.trim());
   if (!session.mayMark.value)
     return <p class="quiet">The presenter has not allowed viewers to point and draw.</p>;
   return (
@@ -61,6 +62,11 @@ export function MarksTool({ page }: { page: Page }) {
             page.marking.words.value = event.currentTarget.value;
           }}
         />
+      )}
+      {inHand === "text" && leftOut !== undefined && (
+        <p class="unmet" role="status" data-testid="mark-left-out">
+          {leftOut}
+        </p>
       )}
       <div class="buttons">
         {inHand !== "camera" && inHand !== "pointer" && (

@@ -30,7 +30,7 @@ export function NamedViews({ page }: { page: Page }) {
               class="view"
               data-testid="named-view"
               style={view.picture === "" ? {} : { backgroundImage: `url(${view.picture})` }}
-              onClick={() => page.viewpoint.show(view.camera)}
+              onClick={() => page.showView(view)}
             >
               <span>{view.name}</span>
             </button>

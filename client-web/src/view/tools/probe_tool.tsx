@@ -75,7 +75,7 @@ function Found({ state, found }: { state: PageState; found: ProbeRayResponse }) 
           <tr>
             <th scope="col">Most on the ray</th>
             <th scope="col">Value</th>
-            <th scope="col">Height</th>
+            <th scope="col">Above sea</th>
           </tr>
         </thead>
         <tbody>
@@ -107,7 +107,8 @@ function Where({ place }: { place: RayPlace }) {
   return (
     <span data-testid="probe-place">
       {" "}
-      {formatLength(place.heightM, "height")} up · {formatLength(place.distanceM, "distance")} away
+      {formatLength(place.heightM, "height")} above sea ·{" "}
+      {formatLength(place.distanceM, "distance")} away
       {earth !== undefined && ` · ${placeInWords(earth.latitudeDeg, earth.longitudeDeg)}`}
     </span>
   );
@@ -143,21 +144,37 @@ function amount(value: number): string {
 // Where each field is strongest in the whole storm; a click turns the camera around that place.
 function Cores({ page }: { page: Page }) {
   const { state } = page;
-  const cores = (state.stormMap.value?.maxima ?? []).filter(({ position }) => position);
+  const map = state.stormMap.value;
+  const problem = state.mapProblem.value;
+  if (map === undefined && problem !== undefined)
+    return (
+      <p class="unmet" role="alert" data-testid="cores-problem">
+        {problem}
+      </p>
+    );
+  const time = state.timeIndex.value;
+  const cores = (map?.maxima ?? []).filter(({ position }) => position);
   if (cores.length === 0) return null;
   return (
     <section aria-label="Cores" class="cores" data-testid="cores">
       <h3>Strongest in the storm</h3>
       <ul>
         {cores.map((core) => (
-          <Core key={core.variable} page={page} core={core} />
+          <Core key={core.variable} page={page} core={core} old={map?.timeIndex !== time} />
         ))}
       </ul>
     </section>
   );
 }
 
-function Core({ page, core }: { page: Page; core: FieldMaximum }) {
+interface CoreProps {
+  readonly page: Page;
+  readonly core: FieldMaximum;
+  // Of the time shown before, while that of this one is on its way.
+  readonly old: boolean;
+}
+
+function Core({ page, core, old }: CoreProps) {
   const { factor, symbol } = readable(core.units);
   const name = nameOfHydrometeor(core.hydrometeor);
   const { position } = core;
@@ -167,6 +184,7 @@ function Core({ page, core }: { page: Page; core: FieldMaximum }) {
         type="button"
         data-testid={`core-${name.toLowerCase()}`}
         title="Turn around this place"
+        disabled={old}
         onClick={() => {
           if (position !== undefined)
             page.viewpoint.turnAround([position.xM, position.yM, position.zM]);
@@ -174,7 +192,7 @@ function Core({ page, core }: { page: Page; core: FieldMaximum }) {
       >
         <span class="key-swatch" style={{ background: colorOfField(core.hydrometeor) }} />
         {name} {formatNumber(core.value * factor)} {symbol},{" "}
-        {formatLength(position?.zM ?? 0, "height")} up
+        {formatLength(position?.zM ?? 0, "height")} above sea
       </button>
     </li>
   );

@@ -2,11 +2,19 @@
 import { useEffect, useRef } from "preact/hooks";
 import { nameOfHydrometeor } from "../../core/names";
 import { readable } from "../../core/probe";
-import { lengthUnits } from "../../core/units";
-import type { ProbeRayResponse } from "../../gen/thunderhead/v1/probe_pb";
+import { formatNumber, lengthUnits } from "../../core/units";
+import type { FieldAlongRay, ProbeRayResponse } from "../../gen/thunderhead/v1/probe_pb";
 import { colorOfField } from "./field_colors";
 
-const HEIGHT_PX = 150;
+const HEIGHT_PX = 170;
+
+function valueInWords(value: number | null, units: string): string {
+  return value === null ? "–" : `${formatNumber(value)} ${readable(units).symbol}`;
+}
+
+function unitOfFields(fields: readonly FieldAlongRay[]): string {
+  return [...new Set(fields.map(({ units }) => readable(units).symbol))].join(", ");
+}
 
 export function RayChart({ found }: { found: ProbeRayResponse }) {
   const place = useRef<HTMLDivElement>(null);
@@ -28,7 +36,8 @@ export function RayChart({ found }: { found: ProbeRayResponse }) {
           {
             width: place.current.clientWidth,
             height: HEIGHT_PX,
-            legend: { show: false },
+            // With the values under the pointer.
+            legend: { live: true },
             cursor: { y: false },
             scales: { x: { time: false } },
             axes: [
@@ -39,12 +48,22 @@ export function RayChart({ found }: { found: ProbeRayResponse }) {
                 labelFont: "11px system-ui",
                 size: 28,
               },
-              { ...axis, size: 38 },
+              {
+                ...axis,
+                label: unitOfFields(fields),
+                labelSize: 18,
+                labelFont: "11px system-ui",
+                size: 38,
+              },
             ],
             series: [
-              {},
-              ...fields.map(({ hydrometeor }) => ({
+              {
+                label: "away",
+                value: (_, away) => (away === null ? "–" : `${formatNumber(away)} ${unit.symbol}`),
+              },
+              ...fields.map(({ hydrometeor, units }) => ({
                 label: nameOfHydrometeor(hydrometeor),
+                value: (_: unknown, value: number | null) => valueInWords(value, units),
                 stroke: colorOfField(hydrometeor),
                 width: 1.5,
                 points: { show: false },
