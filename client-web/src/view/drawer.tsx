@@ -8,6 +8,7 @@ import { focusRail } from "./tool_rail";
 export function ExpertDrawer({ page }: { page: Page }) {
   const [Settings, setSettings] = useState<ComponentType<SettingsProps> | undefined>(undefined);
   const [query, setQuery] = useState("");
+  const drawer = useRef<HTMLElement>(null);
   const search = useRef<HTMLInputElement>(null);
   const open = page.state.drawerOpen.value;
   const block = page.state.session.editBlock.value;
@@ -16,8 +17,11 @@ export function ExpertDrawer({ page }: { page: Page }) {
   useLayoutEffect(() => {
     const closes = wasOpen.current && !open;
     wasOpen.current = open;
-    // What had the focus in it is gone.
-    if (closes && document.activeElement === document.body) focusRail("settings");
+    // The focus was in it: browsers take it from what is hidden, but not at once.
+    const focused = document.activeElement;
+    if (closes && (focused === document.body || drawer.current?.contains(focused))) {
+      focusRail("settings");
+    }
     if (open) search.current?.focus();
   }, [open]);
   useEffect(() => {
@@ -27,6 +31,7 @@ export function ExpertDrawer({ page }: { page: Page }) {
   return (
     <aside
       id="drawer"
+      ref={drawer}
       class="drawer"
       aria-label="Every setting"
       data-testid="drawer"
