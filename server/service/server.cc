@@ -27,6 +27,7 @@
 #include "service/thunderhead_service.h"
 #include "session/session_keeper.h"
 #include "session/upkeep.h"
+#include "thunderhead/v1/thunderhead.grpc.pb.h"
 
 namespace thunderhead::service {
 namespace {
