@@ -112,6 +112,7 @@ std::vector<std::string> ByDate(const std::vector<std::string>& manifests) {
   }
   std::ranges::sort(dated);
   std::vector<std::string> sorted;
+  sorted.reserve(dated.size());
   for (auto& [date, path] : dated) sorted.push_back(std::move(path));
   return sorted;
 }

@@ -47,7 +47,7 @@ std::unique_ptr<StormStore> CachedStormStore::Owned(std::shared_ptr<CachedStormS
   return std::make_unique<Handle>(std::move(store));
 }
 
-CachedStormStore::CachedStormStore(std::vector<CataloguedStorm> storms,
+CachedStormStore::CachedStormStore(const std::vector<CataloguedStorm>& storms,
                                    const StormStoreOptions& options)
     : options_(options), cache_(options.byte_budget) {
   Renew(storms);

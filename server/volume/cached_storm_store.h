@@ -29,7 +29,7 @@ class CachedStormStore final : public StormStore,
                                private base::MemoryBudget::Cache {
  public:
   // Reads nothing until it is Owned.
-  CachedStormStore(std::vector<CataloguedStorm> storms, const StormStoreOptions& options);
+  CachedStormStore(const std::vector<CataloguedStorm>& storms, const StormStoreOptions& options);
 
   // The store, whose threads run until the owner destroys it; one that hangs keeps it in memory.
   static std::unique_ptr<StormStore> Owned(std::shared_ptr<CachedStormStore> store);
