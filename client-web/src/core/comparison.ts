@@ -73,7 +73,7 @@ function nearestTime(
   return nearest ?? { index: Math.min(index, last), awayS: undefined };
 }
 
-// What there is to say of it; undefined where B has A's time, or one that was chosen.
+// A sentence about B's time; undefined where it is A's, or one that was chosen.
 export function awayInWords({ awayS }: TimeOfB): string | undefined {
   if (awayS === 0) return undefined;
   if (awayS === undefined)

@@ -67,7 +67,7 @@ const LETTERS: Readonly<Record<string, string>> = {
 
 const ADVANCE = 6;
 const HEIGHT = 6;
-// That the session takes for a mark.
+// The most corners of a mark that the session takes.
 const MOST_CORNERS = 256;
 // Simple ones: others take more of the corners.
 export const MOST_LETTERS = 40;
@@ -114,7 +114,7 @@ export function letterStrokes(words: string, place: StrokePoint, heightPx: numbe
   );
 }
 
-// What letterStrokes() leaves out; undefined where it writes everything.
+// A sentence about the letters that letterStrokes() leaves out; undefined where it writes everything.
 export function leftOutInWords(words: string): string | undefined {
   const { unknown, tooLong } = written(words);
   const said = [

@@ -1,4 +1,4 @@
-// What a person has chosen for their own eyes, kept in the browser's storage: units, and what is written over the picture.
+// A person's own choices, kept in the browser's storage: units, and the texts over the picture.
 import type { Signal } from "@preact/signals-core";
 import { type AnnotationChoice, FIRST_ANNOTATIONS } from "./annotations";
 import type { TextStore } from "./own_keys";
@@ -11,7 +11,7 @@ export interface Preferred {
   readonly annotations: Signal<AnnotationChoice>;
 }
 
-// What is stored, into the signals.
+// Sets the signals to the stored choices.
 export function loadPreferences(store: TextStore | undefined, { units, annotations }: Preferred) {
   const stored = read(store);
   if (stored.units === "metric" || stored.units === "aviation") units.value = stored.units;

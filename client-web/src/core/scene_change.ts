@@ -1,4 +1,4 @@
-// What differs between two messages, member by member, so that it can be put into a third one that differs elsewhere.
+// The difference of two messages, member by member, to be applied to a third one that differs elsewhere.
 import { create, type DescMessage, equals, type Message } from "@bufbuild/protobuf";
 
 export type Side = "before" | "after";
