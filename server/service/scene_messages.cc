@@ -32,8 +32,9 @@ v1::PhaseFunction::Kind KindMessage(physics::PhaseKind kind) {
   return static_cast<v1::PhaseFunction::Kind>(static_cast<int>(kind) + 1);
 }
 
+// The first where none is given, as in a damaged record of a scene.
 physics::PhaseKind ToPhaseKind(v1::PhaseFunction::Kind kind) {
-  return static_cast<physics::PhaseKind>(static_cast<int>(kind) - 1);
+  return static_cast<physics::PhaseKind>(std::max(static_cast<int>(kind) - 1, 0));
 }
 
 constexpr std::array kSizeSources = {

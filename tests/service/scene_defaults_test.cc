@@ -359,6 +359,13 @@ TEST(SceneDefaults, PhaseKindsAreNamedAlike) {
   }
 }
 
+// As a damaged record of a session may have it.
+TEST(SceneDefaults, AFieldWithoutAPhaseKindHasTheFirst) {
+  v1::Scene scene;
+  scene.add_fields()->set_hydrometeor(v1::HYDROMETEOR_CLOUD);
+  EXPECT_EQ(ToScene(scene).fields[0].optics.phase.kind, physics::PhaseKind::kHenyeyGreenstein);
+}
+
 // The sizes of cloud's particles in a scene as it is drawn.
 scene::FieldParameters Cloud(const v1::Scene& scene) { return ToScene(Completed(scene)).fields[0]; }
 
