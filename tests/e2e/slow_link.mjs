@@ -10,6 +10,14 @@ const WINDOW = { width: 1280, height: 720 };
 const MIDDLE = { x: 640, y: 360 };
 const STEP_MS = 33;
 const REPORT_MS = 10_000;
+const SWING_PX = 300;
+const STEP_PX = 5;
+
+/** To and fro at one speed: a camera that turns ever slower would come to rest at the ends, where nothing is sent. */
+function swing(step) {
+  const along = (STEP_PX * step) % (4 * SWING_PX);
+  return SWING_PX - Math.abs(along - 2 * SWING_PX);
+}
 
 const server = await startServer({ httpPort: await freePort(), grpcPort: await freePort() });
 const link = await throttledLink({ port: Number(new URL(server.url).port), kbitPerS, roundTripMs });
@@ -28,7 +36,7 @@ try {
   await page.mouse.down();
   for (let step = 0; Date.now() < end; step += 1) {
     const began = Date.now();
-    await page.mouse.move(MIDDLE.x + 300 * Math.sin(step / 60), MIDDLE.y);
+    await page.mouse.move(MIDDLE.x + swing(step), MIDDLE.y);
     if (step % 15 === 0) {
       const { framesPerSecond, latencyMs } = await summary.evaluate((element) => ({ ...element.dataset }));
       const { encoding } = await canvasData(page);
