@@ -23,7 +23,7 @@ using Time = std::chrono::system_clock::time_point;
 constexpr std::size_t kMinSecretBytes = 32;
 constexpr int kMinRsaBits = 2048;
 constexpr std::size_t kMaxTokenBytes = 8192;
-constexpr std::size_t kMaxNameBytes = 64;
+constexpr std::size_t kMaxClaimBytes = 64;
 // Between the clocks of the issuer and the server.
 constexpr std::chrono::seconds kClockSkew{30};
 constexpr char kRoleClaim[] = "thunderhead_role";
@@ -117,8 +117,8 @@ absl::StatusOr<Identity> JwtKey::Verify(const std::string& token, const JwtClaim
     return Wrong("is for another audience (aud)");
   }
   const std::string name = TextClaim(decoded, "sub");
-  if (name.empty() || name.size() > kMaxNameBytes) {
-    return Wrong(absl::StrCat("names nobody in up to ", kMaxNameBytes, " bytes (sub)"));
+  if (name.empty() || name.size() > kMaxClaimBytes) {
+    return Wrong(absl::StrCat("names nobody in up to ", kMaxClaimBytes, " bytes (sub)"));
   }
   const absl::StatusOr<Role> role = ParseRole(TextClaim(decoded, kRoleClaim));
   if (!role.ok()) return Wrong(absl::StrCat("has no role (", kRoleClaim, ")"));

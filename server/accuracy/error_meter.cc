@@ -27,8 +27,8 @@ constexpr std::uint64_t kSeed = 0x6572726f72;
 // Pixel `index` of an endless sequence that covers the picture evenly (Roberts 2018, R2: multiples
 // of powers of the plastic number).
 glm::ivec2 PixelAt(std::uint64_t index, const glm::ivec2& size_px) {
-  constexpr glm::dvec2 kStep(0.7548776662466927, 0.5698402909980532);
-  const glm::dvec2 place = glm::fract(0.5 + static_cast<double>(index) * kStep);
+  constexpr glm::dvec2 kPlaceStep(0.7548776662466927, 0.5698402909980532);
+  const glm::dvec2 place = glm::fract(0.5 + static_cast<double>(index) * kPlaceStep);
   return glm::min(glm::ivec2(place * glm::dvec2(size_px)), size_px - 1);
 }
 

@@ -18,7 +18,7 @@
 namespace thunderhead::app {
 namespace {
 
-struct Flags {
+struct ExportFlags {
   std::string storm;
   std::string output;
   std::string view;
@@ -38,7 +38,7 @@ void Print(const interchange::VdbFile& file, const std::string& path) {
   }
 }
 
-absl::Status Export(const Flags& flags) {
+absl::Status Export(const ExportFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   if (!absl::EndsWithIgnoreCase(flags.output, ".vdb")) {
     return absl::InvalidArgumentError(
@@ -65,7 +65,7 @@ absl::Status Export(const Flags& flags) {
 }  // namespace
 
 Command AddExport(CLI::App& app) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<ExportFlags>();
   CLI::App* command = app.add_subcommand(
       "export", "Write a storm's extinction as OpenVDB, for renderers such as Blender's");
   command->add_option("STORM", flags->storm, "Storm file or folder")->required();

@@ -22,7 +22,7 @@
 namespace thunderhead::app {
 namespace {
 
-struct Flags {
+struct FitFlags {
   std::string storm;
   std::string output;
   std::string volume;
@@ -36,7 +36,7 @@ struct Flags {
 
 // The quantity to approximate: extinction (1/m) of all fields with their default optics, or the
 // mass of one (kg/m3).
-struct Target {
+struct FitTarget {
   std::string quantity;
   std::string units;
   std::vector<float> values;
@@ -49,8 +49,8 @@ std::string FieldNames(const volume::HydrometeorFields& fields) {
                        });
 }
 
-Target TotalExtinction(const volume::HydrometeorFields& fields) {
-  Target target{"extinction", "m-1", std::vector<float>(fields.grid.CellCount(), 0.0F)};
+FitTarget TotalExtinction(const volume::HydrometeorFields& fields) {
+  FitTarget target{"extinction", "m-1", std::vector<float>(fields.grid.CellCount(), 0.0F)};
   for (const volume::HydrometeorField& field : fields.fields) {
     const volume::MassExtinction mass_extinction = volume::MassExtinctionOf(
         field, physics::DefaultOptics(field.hydrometeor), physics::SizeSource::kModel);
@@ -60,12 +60,13 @@ Target TotalExtinction(const volume::HydrometeorFields& fields) {
   return target;
 }
 
-absl::StatusOr<Target> TargetOf(const volume::HydrometeorFields& fields, const std::string& name) {
+absl::StatusOr<FitTarget> TargetOf(const volume::HydrometeorFields& fields,
+                                   const std::string& name) {
   if (name == "extinction") return TotalExtinction(fields);
   for (const volume::HydrometeorField& field : fields.fields) {
     if (physics::NameOf(field.hydrometeor) != name) continue;
     if (field.quantity == volume::Quantity::kExtinction) break;
-    Target target{name, "kg/m3", field.concentration_kg_per_m3};
+    FitTarget target{name, "kg/m3", field.concentration_kg_per_m3};
     target.values.resize(fields.grid.CellCount(), 0.0F);
     return target;
   }
@@ -74,7 +75,7 @@ absl::StatusOr<Target> TargetOf(const volume::HydrometeorFields& fields, const s
                    "'; it must be extinction or a mass that the storm has: ", FieldNames(fields)));
 }
 
-absl::StatusOr<clouds::FitOptions> OptionsOf(const Flags& flags) {
+absl::StatusOr<clouds::FitOptions> OptionsOf(const FitFlags& flags) {
   clouds::FitOptions options = flags.options;
   if (flags.basis == "wyvill") {
     options.basis = clouds::Basis::kWyvill;
@@ -99,7 +100,7 @@ absl::StatusOr<clouds::FitOptions> OptionsOf(const Flags& flags) {
   return options;
 }
 
-void Print(const Flags& flags, const clouds::FitResult& fit, double seconds) {
+void Print(const FitFlags& flags, const clouds::FitResult& fit, double seconds) {
   if (!flags.json) {
     std::cout << absl::StrFormat(
         "%d balls for %d cells of cloud: H %.6g (%.2f %% of the field, root mean square), %d "
@@ -137,7 +138,7 @@ absl::StatusOr<clouds::FitResult> FitWithProgress(const volume::RegularGrid& gri
 }
 
 // Writes the balls' sum as a storm file, for comparison with the original.
-absl::Status WriteVolume(const Flags& flags, const clouds::MetaballCloud& cloud,
+absl::Status WriteVolume(const FitFlags& flags, const clouds::MetaballCloud& cloud,
                          const volume::RegularGrid& grid) {
   volume::CfCloud file;
   file.grid = grid;
@@ -150,7 +151,7 @@ absl::Status WriteVolume(const Flags& flags, const clouds::MetaballCloud& cloud,
   return volume::WriteCfCloud(file, flags.volume);
 }
 
-absl::Status Fit(const Flags& flags) {
+absl::Status Fit(const FitFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   THUNDERHEAD_ASSIGN_OR_RETURN(const clouds::FitOptions options, OptionsOf(flags));
   if (!flags.volume.empty() && flags.field != "extinction" && flags.field != "cloud") {
@@ -158,7 +159,7 @@ absl::Status Fit(const Flags& flags) {
         absl::StrCat("--volume can write extinction or cloud, not ", flags.field));
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, ReadStorm(flags.storm, flags.time_index));
-  THUNDERHEAD_ASSIGN_OR_RETURN(Target target, TargetOf(*fields, flags.field));
+  THUNDERHEAD_ASSIGN_OR_RETURN(FitTarget target, TargetOf(*fields, flags.field));
   const base::Stopwatch stopwatch;
   THUNDERHEAD_ASSIGN_OR_RETURN(clouds::FitResult fit,
                                FitWithProgress(fields->grid, target.values, options));
@@ -176,7 +177,7 @@ absl::Status Fit(const Flags& flags) {
 }  // namespace
 
 Command AddFit(CLI::App& app) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<FitFlags>();
   CLI::App* fit = app.add_subcommand("fit", "Approximate a storm by metaballs");
   fit->add_option("STORM", flags->storm, "Storm file or folder")->required();
   fit->add_option("--balls", flags->options.balls, "Number of balls")->required();

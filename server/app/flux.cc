@@ -24,7 +24,7 @@
 namespace thunderhead::app {
 namespace {
 
-struct Flags {
+struct FluxFlags {
   std::string storm;
   std::optional<double> slab;
   std::optional<int> time_index;
@@ -44,7 +44,7 @@ absl::Status CheckShare(const char* flag, double value) {
   return absl::InvalidArgumentError(absl::StrCat(flag, " is ", value, "; it must be from 0 to 1"));
 }
 
-absl::Status CheckFlags(const Flags& flags) {
+absl::Status CheckFlags(const FluxFlags& flags) {
   if (flags.storm.empty() == !flags.slab.has_value()) {
     return absl::InvalidArgumentError("flux needs either a STORM or --slab TAU");
   }
@@ -70,7 +70,7 @@ absl::Status CheckFlags(const Flags& flags) {
   return CheckShare("--ground-albedo", flags.ground_albedo);
 }
 
-absl::StatusOr<reference::FluxProblem> SlabProblem(const Flags& flags,
+absl::StatusOr<reference::FluxProblem> SlabProblem(const FluxFlags& flags,
                                                    const glm::dvec3& towards_sun) {
   const std::string phase_text = flags.phase.empty() ? "table:cloud_re10" : flags.phase;
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto phase, ParsePhase(phase_text));
@@ -87,7 +87,7 @@ reference::Interpolation InterpolationOf(const volume::HydrometeorFields& fields
   return direct ? reference::Interpolation::kConstant : reference::Interpolation::kLinear;
 }
 
-absl::StatusOr<reference::FluxProblem> StormProblem(const Flags& flags,
+absl::StatusOr<reference::FluxProblem> StormProblem(const FluxFlags& flags,
                                                     const glm::dvec3& towards_sun) {
   reference::MediumOptions options;
   if (!flags.phase.empty()) {
@@ -139,7 +139,7 @@ std::string Table(const reference::FluxResult& result) {
   return text;
 }
 
-absl::Status Flux(const Flags& flags) {
+absl::Status Flux(const FluxFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   THUNDERHEAD_RETURN_IF_ERROR(CheckFlags(flags));
   const glm::dvec3 towards_sun = scene::Direction(flags.sun_azimuth_deg, flags.sun_elevation_deg);
@@ -170,7 +170,7 @@ absl::Status Flux(const Flags& flags) {
 }  // namespace
 
 Command AddFlux(CLI::App& app) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<FluxFlags>();
   CLI::App* flux = app.add_subcommand("flux", "Compute the fluxes of sunlight through a storm");
   flux->add_option("STORM", flags->storm, "Storm file or folder");
   flux->add_option("--slab", flags->slab,

@@ -22,7 +22,7 @@ namespace {
 
 using clouds::CloudShape;
 
-struct Flags {
+struct GenerateFlags {
   std::string output;
   std::string preset = "fair-weather-cumulus";
   std::uint64_t seed = 1;
@@ -62,7 +62,7 @@ absl::StatusOr<clouds::Ellipsoid> ParseEllipsoid(const std::string& text) {
   return ellipsoid;
 }
 
-absl::Status SetNoise(const Flags& flags, CloudShape* shape) {
+absl::Status SetNoise(const GenerateFlags& flags, CloudShape* shape) {
   shape->noise.octaves = flags.octaves.value_or(shape->noise.octaves);
   shape->noise.persistence = flags.persistence.value_or(shape->noise.persistence);
   shape->feature_m = flags.feature_m.value_or(shape->feature_m);
@@ -79,7 +79,7 @@ absl::Status SetNoise(const Flags& flags, CloudShape* shape) {
   return absl::OkStatus();
 }
 
-absl::Status SetGrid(const Flags& flags, volume::RegularGrid* grid) {
+absl::Status SetGrid(const GenerateFlags& flags, volume::RegularGrid* grid) {
   if (!flags.cells.empty()) {
     const auto numbers = Numbers(flags.cells, 'x');
     if (!numbers.ok() || numbers->size() != 3) {
@@ -101,7 +101,7 @@ absl::Status SetGrid(const Flags& flags, volume::RegularGrid* grid) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<CloudShape> ShapeOf(const Flags& flags) {
+absl::StatusOr<CloudShape> ShapeOf(const GenerateFlags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(CloudShape shape, clouds::PresetNamed(flags.preset, flags.seed));
   THUNDERHEAD_RETURN_IF_ERROR(SetNoise(flags, &shape));
   THUNDERHEAD_RETURN_IF_ERROR(SetGrid(flags, &shape.grid));
@@ -120,7 +120,7 @@ absl::StatusOr<CloudShape> ShapeOf(const Flags& flags) {
   return shape;
 }
 
-absl::Status Generate(const Flags& flags) {
+absl::Status Generate(const GenerateFlags& flags) {
   if (!absl::EndsWithIgnoreCase(flags.output, ".nc")) {
     return absl::InvalidArgumentError(
         absl::StrCat("-o is '", flags.output, "'; its name must end in .nc"));
@@ -136,7 +136,7 @@ absl::Status Generate(const Flags& flags) {
 }  // namespace
 
 Command AddGenerate(CLI::App& app) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<GenerateFlags>();
   CLI::App* generate = app.add_subcommand("generate", "Generate a cloud without a model run");
   generate->add_option("-o,--output", flags->output, "Storm file to write: .nc")->required();
   generate->add_option("--preset", flags->preset, absl::StrJoin(clouds::PresetNames(), ", "))

@@ -18,7 +18,7 @@
 namespace thunderhead::app {
 namespace {
 
-struct Flags {
+struct InspectFlags {
   std::string storm;
   std::optional<int> time_index;
   bool json = false;
@@ -114,7 +114,7 @@ std::string Json(const v1::StormDescription& storm) {
   return json;
 }
 
-absl::Status Inspect(const Flags& flags) {
+absl::Status Inspect(const InspectFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store,
                                OpenStorm(flags.storm));
@@ -131,7 +131,7 @@ absl::Status Inspect(const Flags& flags) {
 }  // namespace
 
 Command AddInspect(CLI::App& app) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<InspectFlags>();
   CLI::App* inspect = app.add_subcommand("inspect", "Describe a storm file or folder");
   inspect->add_option("STORM", flags->storm, "Storm file or folder")->required();
   inspect->add_option("--time", flags->time_index,

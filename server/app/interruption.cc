@@ -25,7 +25,7 @@ bool Taken(const sigset_t& signals, milliseconds wait) {
 
 // One request may arrive as several signals: a terminal, a shell and coreutils' timeout each signal
 // the program and its process group.
-constexpr milliseconds kOneRequest(250);
+constexpr milliseconds kOneInterruption(250);
 
 }  // namespace
 
@@ -37,7 +37,7 @@ Interruption::Interruption() {
       if (ended.stop_requested()) return;
     }
     stop_.request_stop();
-    const auto whole = steady_clock::now() + kOneRequest;
+    const auto whole = steady_clock::now() + kOneInterruption;
     while (steady_clock::now() < whole) Taken(signals, milliseconds(20));
     // Only this thread does not block the next signal, which ends the program.
     pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);

@@ -21,7 +21,7 @@ namespace thunderhead::app {
 namespace {
 
 using JobStub = v1::RenderJobService::Stub;
-using State = v1::RenderJobPictureState;
+using PictureState = v1::RenderJobPictureState;
 using std::chrono::seconds;
 using std::chrono::steady_clock;
 
@@ -33,7 +33,7 @@ constexpr int kJobsAtATime = 2;
 constexpr seconds kServerPatience{60};
 constexpr seconds kServerPause{1};
 
-absl::Status Interrupted() { return absl::CancelledError("interrupted"); }
+absl::Status RunInterrupted() { return absl::CancelledError("interrupted"); }
 
 absl::StatusOr<absl::Time> ParseIso(const std::string& text) {
   absl::Time time;
@@ -47,7 +47,7 @@ bool MayComeBack(const absl::Status& status) {
          absl::IsCancelled(status);
 }
 
-void Pause(const std::stop_token& stop) {
+void PauseForServer(const std::stop_token& stop) {
   std::mutex mutex;
   std::condition_variable_any stopped;
   std::unique_lock lock(mutex);
@@ -95,7 +95,7 @@ pipeline::InputFile InputOf(const std::string& server, const std::string& storm,
 }
 
 // Pictures of one job by their place in it; without an id it is to be created.
-struct Share {
+struct JobShare {
   std::string job_id;
   std::map<std::uint32_t, PlannedPicture*> pictures;
 };
@@ -105,18 +105,18 @@ class JobRun {
   JobRun(ServerLink& server, PictureRun& run, RunProgress& progress)
       : server_(server), run_(run), progress_(progress), label_(LabelOf(run.Options().manifest)) {}
 
-  absl::StatusOr<std::vector<Share>> SharesOf(const std::vector<PlannedPicture*>& missing);
+  absl::StatusOr<std::vector<JobShare>> SharesOf(const std::vector<PlannedPicture*>& missing);
   // Returns when each picture of the share has its outcome.
-  absl::Status Make(Share& share, const std::stop_token& stop);
+  absl::Status Make(JobShare& share, const std::stop_token& stop);
 
  private:
-  absl::Status Create(Share& share);
-  absl::Status Watch(Share& share, const std::stop_token& stop);
-  absl::Status Take(Share& share, const State& state, const std::stop_token& stop);
-  absl::Status Fetch(const Share& share, const State& state, PlannedPicture& picture,
+  absl::Status Create(JobShare& share);
+  absl::Status Watch(JobShare& share, const std::stop_token& stop);
+  absl::Status Take(JobShare& share, const PictureState& state, const std::stop_token& stop);
+  absl::Status Fetch(const JobShare& share, const PictureState& state, PlannedPicture& picture,
                      const std::stop_token& stop);
   absl::StatusOr<v1::FetchRenderResultResponse> FetchWhole(const std::string& job_id,
-                                                           const State& state,
+                                                           const PictureState& state,
                                                            const std::stop_token& stop,
                                                            std::string* bytes);
   void Forget(const std::string& job_id);
@@ -127,12 +127,13 @@ class JobRun {
   const std::string label_;
 };
 
-absl::StatusOr<std::vector<Share>> JobRun::SharesOf(const std::vector<PlannedPicture*>& missing) {
+absl::StatusOr<std::vector<JobShare>> JobRun::SharesOf(
+    const std::vector<PlannedPicture*>& missing) {
   std::map<std::string, PlannedPicture*> by_name;
   for (PlannedPicture* picture : missing) {
     by_name[RequestOf(run_.Options(), *picture).name()] = picture;
   }
-  std::vector<Share> shares;
+  std::vector<JobShare> shares;
   v1::ListRenderJobsRequest list;
   list.set_label(label_);
   v1::ListRenderJobsResponse jobs;
@@ -142,11 +143,11 @@ absl::StatusOr<std::vector<Share>> JobRun::SharesOf(const std::vector<PlannedPic
     get.set_job_id(job.id());
     v1::GetRenderJobResponse got;
     if (!server_.Call(server_.Jobs(), &JobStub::GetRenderJob, get, &got).ok()) continue;
-    Share share{job.id(), {}};
-    for (const State& state : got.pictures()) {
-      const bool comes = state.state() == State::STATE_WAITING ||
-                         state.state() == State::STATE_DRAWING ||
-                         state.state() == State::STATE_DRAWN;
+    JobShare share{job.id(), {}};
+    for (const PictureState& state : got.pictures()) {
+      const bool comes = state.state() == PictureState::STATE_WAITING ||
+                         state.state() == PictureState::STATE_DRAWING ||
+                         state.state() == PictureState::STATE_DRAWN;
       const auto picture = by_name.find(state.name());
       if (!comes || picture == by_name.end()) continue;
       share.pictures[state.index()] = picture->second;
@@ -172,7 +173,7 @@ absl::StatusOr<std::vector<Share>> JobRun::SharesOf(const std::vector<PlannedPic
   return shares;
 }
 
-absl::Status JobRun::Create(Share& share) {
+absl::Status JobRun::Create(JobShare& share) {
   v1::CreateRenderJobRequest request;
   request.set_label(label_);
   for (const auto& [place, picture] : share.pictures) {
@@ -195,7 +196,7 @@ void JobRun::Forget(const std::string& job_id) {
 }
 
 absl::StatusOr<v1::FetchRenderResultResponse> JobRun::FetchWhole(const std::string& job_id,
-                                                                 const State& state,
+                                                                 const PictureState& state,
                                                                  const std::stop_token& stop,
                                                                  std::string* bytes) {
   grpc::ClientContext context;
@@ -213,13 +214,13 @@ absl::StatusOr<v1::FetchRenderResultResponse> JobRun::FetchWhole(const std::stri
     if (part.has_picture()) about = std::move(part);
   }
   const grpc::Status end = reader->Finish();
-  if (stop.stop_requested()) return Interrupted();
+  if (stop.stop_requested()) return RunInterrupted();
   THUNDERHEAD_RETURN_IF_ERROR(server_.StatusOf(end));
   return about;
 }
 
-absl::Status JobRun::Fetch(const Share& share, const State& state, PlannedPicture& picture,
-                           const std::stop_token& stop) {
+absl::Status JobRun::Fetch(const JobShare& share, const PictureState& state,
+                           PlannedPicture& picture, const std::stop_token& stop) {
   std::string bytes;
   THUNDERHEAD_ASSIGN_OR_RETURN(v1::FetchRenderResultResponse about,
                                FetchWhole(share.job_id, state, stop, &bytes));
@@ -246,19 +247,19 @@ absl::Status JobRun::Fetch(const Share& share, const State& state, PlannedPictur
   return run_.Publish(picture, std::move(drawn), entry);
 }
 
-absl::Status JobRun::Take(Share& share, const State& state, const std::stop_token& stop) {
+absl::Status JobRun::Take(JobShare& share, const PictureState& state, const std::stop_token& stop) {
   const auto found = share.pictures.find(state.index());
   if (found == share.pictures.end()) return absl::OkStatus();
   PlannedPicture& picture = *found->second;
   switch (state.state()) {
-    case State::STATE_DRAWN:
+    case PictureState::STATE_DRAWN:
       picture.outcome = Fetch(share, state, picture, stop);
       break;
-    case State::STATE_FAILED:
-    case State::STATE_DROPPED:
+    case PictureState::STATE_FAILED:
+    case PictureState::STATE_DROPPED:
       picture.outcome = StatusOf(state.problem());
       break;
-    case State::STATE_CANCELLED:
+    case PictureState::STATE_CANCELLED:
       picture.outcome = absl::AbortedError("its render job was cancelled; try again");
       break;
     default:
@@ -276,7 +277,7 @@ absl::Status JobRun::Take(Share& share, const State& state, const std::stop_toke
   return absl::OkStatus();
 }
 
-absl::Status JobRun::Watch(Share& share, const std::stop_token& stop) {
+absl::Status JobRun::Watch(JobShare& share, const std::stop_token& stop) {
   grpc::ClientContext context;
   server_.Prepare(context);
   const std::stop_callback cancel(stop, [&context] { context.TryCancel(); });
@@ -286,28 +287,28 @@ absl::Status JobRun::Watch(Share& share, const std::stop_token& stop) {
   v1::WatchRenderJobResponse news;
   absl::Status taken;
   while (taken.ok() && reader->Read(&news)) {
-    for (const State& state : news.pictures()) {
+    for (const PictureState& state : news.pictures()) {
       taken = Take(share, state, stop);
       if (!taken.ok()) break;
     }
   }
   if (!taken.ok()) context.TryCancel();
   const grpc::Status end = reader->Finish();
-  if (stop.stop_requested()) return Interrupted();
+  if (stop.stop_requested()) return RunInterrupted();
   return taken.ok() ? server_.StatusOf(end) : taken;
 }
 
-absl::Status JobRun::Make(Share& share, const std::stop_token& stop) {
+absl::Status JobRun::Make(JobShare& share, const std::stop_token& stop) {
   auto lost_since = steady_clock::now();
   while (true) {
     const std::size_t left = share.pictures.size();
     absl::Status status = share.job_id.empty() ? Create(share) : absl::OkStatus();
     if (status.ok()) status = Watch(share, stop);
-    if (stop.stop_requested()) return Interrupted();
+    if (stop.stop_requested()) return RunInterrupted();
     if (share.pictures.size() < left) lost_since = steady_clock::now();
     if (status.ok() || share.pictures.empty()) break;
     if (!MayComeBack(status) || steady_clock::now() - lost_since > kServerPatience) return status;
-    Pause(stop);
+    PauseForServer(stop);
   }
   // The job has ended, so these will not come.
   for (const auto& [place, picture] : share.pictures) {
@@ -365,7 +366,7 @@ absl::Status MakeByJobs(ServerLink& server, PictureRun& run, std::vector<Planned
   progress.Plan(static_cast<int>(pictures.size()));
   std::vector<PlannedPicture*> missing;
   for (PlannedPicture& picture : pictures) {
-    if (stop.stop_requested()) return Interrupted();
+    if (stop.stop_requested()) return RunInterrupted();
     // The server's files have no hash here, so their size and time decide alone.
     const auto no_hash = [] { return std::string("unknown"); };
     THUNDERHEAD_ASSIGN_OR_RETURN(const bool made,
@@ -379,7 +380,7 @@ absl::Status MakeByJobs(ServerLink& server, PictureRun& run, std::vector<Planned
   }
   if (missing.empty()) return absl::OkStatus();
   JobRun jobs(server, run, progress);
-  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<Share> shares, jobs.SharesOf(missing));
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<JobShare> shares, jobs.SharesOf(missing));
   std::stop_source ending;
   const std::stop_callback on_stop(stop, [&ending] { ending.request_stop(); });
   std::atomic<std::size_t> next{0};
@@ -400,7 +401,7 @@ absl::Status MakeByJobs(ServerLink& server, PictureRun& run, std::vector<Planned
     workers.reserve(kJobsAtATime);
     for (int i = 0; i < kJobsAtATime; ++i) workers.emplace_back(work);
   }
-  if (stop.stop_requested()) return Interrupted();
+  if (stop.stop_requested()) return RunInterrupted();
   return failure;
 }
 

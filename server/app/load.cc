@@ -22,7 +22,7 @@
 namespace thunderhead::app {
 namespace {
 
-struct Flags {
+struct LoadFlags {
   std::string server;
   std::string size = "640x360";
   std::string stills_size = "640x360";
@@ -36,13 +36,13 @@ struct Flags {
 
 enum class Protocol { kGrpc, kHttp, kHttps };
 
-struct Target {
+struct LoadTarget {
   Address address;
   Protocol protocol = Protocol::kGrpc;
 };
 
-absl::StatusOr<Target> ParseTarget(const std::string& server) {
-  Target target;
+absl::StatusOr<LoadTarget> ParseTarget(const std::string& server) {
+  LoadTarget target;
   if (absl::StartsWith(server, "http://")) target.protocol = Protocol::kHttp;
   if (absl::StartsWith(server, "https://")) target.protocol = Protocol::kHttps;
   std::string place = server.substr(target.protocol == Protocol::kGrpc ? 0 : server.find("//") + 2);
@@ -51,7 +51,7 @@ absl::StatusOr<Target> ParseTarget(const std::string& server) {
   return target;
 }
 
-absl::StatusOr<std::unique_ptr<load::Transport>> TransportTo(const Target& target,
+absl::StatusOr<std::unique_ptr<load::Transport>> TransportTo(const LoadTarget& target,
                                                              const load::Access& access) {
   const auto& [host, port] = target.address;
   switch (target.protocol) {
@@ -65,7 +65,7 @@ absl::StatusOr<std::unique_ptr<load::Transport>> TransportTo(const Target& targe
   return load::MakeGrpcTransport(ToString(target.address), access);
 }
 
-absl::StatusOr<load::LoadOptions> OptionsOf(const Flags& flags) {
+absl::StatusOr<load::LoadOptions> LoadOptionsOf(const LoadFlags& flags) {
   load::LoadOptions options = flags.load;
   THUNDERHEAD_ASSIGN_OR_RETURN(const PictureSize size, ParsePictureSize(flags.size));
   options.width_px = size.width_px;
@@ -88,9 +88,9 @@ std::string NoteOf(const load::Progress& progress) {
   return note;
 }
 
-absl::Status Load(const Flags& flags) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const Target target, ParseTarget(flags.server));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const load::LoadOptions options, OptionsOf(flags));
+absl::Status Load(const LoadFlags& flags) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const LoadTarget target, ParseTarget(flags.server));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const load::LoadOptions options, LoadOptionsOf(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(const load::Access access, ReadClientAccess(flags.access));
   // Before the transport starts threads, which must not take the signals.
   const Interruption interruption;
@@ -127,7 +127,7 @@ void AddBounds(CLI::App& load, load::Bounds& bounds) {
 }  // namespace
 
 Command AddLoad(CLI::App& app) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<LoadFlags>();
   load::LoadOptions& options = flags->load;
   CLI::App* load = app.add_subcommand(
       "load", "Measure a server under many viewers of one session whose camera turns");

@@ -15,7 +15,7 @@
 namespace thunderhead::app {
 namespace {
 
-struct Flags {
+struct ExtremesFlags {
   std::string device = "auto";
   bool json = false;
 };
@@ -62,7 +62,7 @@ std::string Json(const measure::Machine& machine, const std::vector<Row>& rows) 
   return text + "\n  ]\n}\n";
 }
 
-absl::Status MeasureExtremes(const Flags& flags) {
+absl::Status MeasureExtremes(const ExtremesFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,
                                gl::Context::Create(flags.device));
@@ -77,7 +77,7 @@ absl::Status MeasureExtremes(const Flags& flags) {
 }  // namespace
 
 Command AddMeasureExtremes(CLI::App& measure) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<ExtremesFlags>();
   CLI::App* extremes = measure.add_subcommand("extremes", "Check the response to extreme inputs");
   extremes->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();

@@ -16,9 +16,9 @@
 namespace thunderhead::app {
 namespace {
 
-using Fields = std::shared_ptr<const volume::HydrometeorFields>;
+using FieldsPtr = std::shared_ptr<const volume::HydrometeorFields>;
 
-struct Flags {
+struct FramesFlags {
   std::string storm;
   std::optional<int> time_index;
   std::string size = "300x300";
@@ -29,13 +29,13 @@ struct Flags {
   bool json = false;
 };
 
-absl::StatusOr<Fields> Read(volume::StormStore& store, int time_index) {
+absl::StatusOr<FieldsPtr> Read(volume::StormStore& store, int time_index) {
   THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(store, time_index));
   return store.Get(store.Storms().front()->id, time_index, {});
 }
 
 // The requested time, or the one with the most condensate.
-absl::StatusOr<Fields> Choose(const Flags& flags) {
+absl::StatusOr<FieldsPtr> Choose(const FramesFlags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store,
                                OpenStorm(flags.storm));
   if (flags.time_index.has_value()) {
@@ -43,9 +43,9 @@ absl::StatusOr<Fields> Choose(const Flags& flags) {
                                  TimeOf(*store, flags.storm, flags.time_index));
     return Read(*store, time_index);
   }
-  Fields best;
+  FieldsPtr best;
   for (std::size_t i = 0; i < store->Storms().front()->times.size(); ++i) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(const Fields fields, Read(*store, static_cast<int>(i)));
+    THUNDERHEAD_ASSIGN_OR_RETURN(const FieldsPtr fields, Read(*store, static_cast<int>(i)));
     if (best == nullptr || measure::Condensate_kg(*fields) > measure::Condensate_kg(*best)) {
       best = fields;
     }
@@ -53,7 +53,7 @@ absl::StatusOr<Fields> Choose(const Flags& flags) {
   return best;
 }
 
-absl::Status MeasureFrames(const Flags& flags) {
+absl::Status MeasureFrames(const FramesFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   measure::FrameRateOptions options;
   THUNDERHEAD_ASSIGN_OR_RETURN(const PictureSize size, ParsePictureSize(flags.size));
@@ -72,7 +72,7 @@ absl::Status MeasureFrames(const Flags& flags) {
         absl::StrCat("--runs is ", flags.runs, "; it must be 1 or more"));
   }
   options.runs = flags.runs;
-  THUNDERHEAD_ASSIGN_OR_RETURN(const Fields fields, Choose(flags));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const FieldsPtr fields, Choose(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,
                                gl::Context::Create(flags.device));
   absl::StatusOr<std::vector<measure::FrameRateRow>> rows;
@@ -89,7 +89,7 @@ absl::Status MeasureFrames(const Flags& flags) {
 }  // namespace
 
 Command AddMeasureFrames(CLI::App& measure) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<FramesFlags>();
   CLI::App* frames =
       measure.add_subcommand("frames", "Measure the frame rate of each technique and preset");
   frames->add_option("STORM", flags->storm, "Storm file or folder")->required();

@@ -32,7 +32,7 @@ using measure::LightPart;
 constexpr LightPart kParts[] = {LightPart::kOnce, LightPart::kSun, LightPart::kSky,
                                 LightPart::kAll};
 
-struct Flags {
+struct LightFlags {
   std::string storm;
   SceneFlags scene;
   std::string output = "light";
@@ -49,7 +49,7 @@ bool Chosen(const std::vector<std::string>& names, std::string_view name) {
   return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
 }
 
-absl::StatusOr<picture::LinearPicture> TruthOf(const Flags& flags, const LocalScene& local,
+absl::StatusOr<picture::LinearPicture> TruthOf(const LightFlags& flags, const LocalScene& local,
                                                LightPart part, const std::string& path,
                                                const Interruption& interruption) {
   v1::Scene message = local.message;
@@ -99,7 +99,7 @@ absl::Status WriteComparison(const picture::LinearPicture& truth,
 
 // Prints the table row of one drawn picture against the truth and writes the comparison.
 struct Compared {
-  const Flags& flags;
+  const LightFlags& flags;
   const LocalScene& local;
   LightPart part;
   picture::LinearPicture truth;
@@ -163,7 +163,7 @@ absl::Status MeasureTransport(const Compared& compared,
   return traces ? MeasureTracedLight(compared, scene, interruption) : absl::OkStatus();
 }
 
-absl::Status MeasureLight(const Flags& flags) {
+absl::Status MeasureLight(const LightFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   const Interruption interruption;
   THUNDERHEAD_ASSIGN_OR_RETURN(const LocalScene local, OpenScene(flags.storm, flags.scene));
@@ -194,7 +194,7 @@ absl::Status MeasureLight(const Flags& flags) {
 }  // namespace
 
 Command AddMeasureLight(CLI::App& measure) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<LightFlags>();
   flags->scene.size = "96x64";
   CLI::App* light = measure.add_subcommand(
       "light",

@@ -22,7 +22,7 @@
 namespace thunderhead::app {
 namespace {
 
-struct Flags {
+struct LookFlags {
   std::string storm;
   SceneFlags scene;
   std::string output;
@@ -31,7 +31,7 @@ struct Flags {
   reference::TraceOptions light;
 };
 
-absl::StatusOr<picture::LinearPicture> Traced(const Flags& flags, const LocalScene& local) {
+absl::StatusOr<picture::LinearPicture> Traced(const LookFlags& flags, const LocalScene& local) {
   const Interruption interruption;
   ProgressBar bar("tracing");
   THUNDERHEAD_ASSIGN_OR_RETURN(
@@ -49,7 +49,7 @@ std::string Stops(const std::optional<double>& stops) {
   return stops.has_value() ? absl::StrFormat("%.2f", *stops) : "-";
 }
 
-std::string Share(const std::optional<double>& share) {
+std::string ShareText(const std::optional<double>& share) {
   return share.has_value() ? absl::StrFormat("1/%.1f", 1.0 / *share) : "-";
 }
 
@@ -60,7 +60,7 @@ absl::Status WritePng(const std::string& path, const glm::ivec2& size_px,
 }
 
 // Prints the figures of a picture and writes it, if asked to.
-absl::Status Print(const Flags& flags, const std::string& name, const scene::Scene& scene,
+absl::Status Print(const LookFlags& flags, const std::string& name, const scene::Scene& scene,
                    const volume::HydrometeorFields& fields, const picture::LinearPicture& picture) {
   frame::ToneMapper tone_mapper;
   THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped mapped,
@@ -72,7 +72,7 @@ absl::Status Print(const Flags& flags, const std::string& name, const scene::Sce
   std::cout << absl::StrFormat("%-18s %7d %7d %7s %7s %7.2f %7.2f %7s %7s\n", name,
                                light.tower_pixels, light.base_pixels, Stops(light.tower_stops),
                                Stops(shown.tower_stops), light.frame_stops, shown.frame_stops,
-                               Share(light.base_share), Share(shown.base_share))
+                               ShareText(light.base_share), ShareText(shown.base_share))
             << std::flush;
   if (flags.output.empty()) return absl::OkStatus();
   std::vector<std::uint8_t> marked = mapped.rgb;
@@ -87,7 +87,7 @@ absl::Status Print(const Flags& flags, const std::string& name, const scene::Sce
   return absl::OkStatus();
 }
 
-absl::Status MeasureLook(const Flags& flags) {
+absl::Status MeasureLook(const LookFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,
                                gl::Context::Create(flags.device));
@@ -115,7 +115,7 @@ absl::Status MeasureLook(const Flags& flags) {
 }  // namespace
 
 Command AddMeasureLook(CLI::App& measure) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<LookFlags>();
   flags->scene.size = "480x300";
   CLI::App* look = measure.add_subcommand(
       "look", "Measure the stops of a storm's tower and picture, and how dark its base is");

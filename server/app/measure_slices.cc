@@ -21,7 +21,7 @@
 namespace thunderhead::app {
 namespace {
 
-struct Flags {
+struct SlicesFlags {
   std::string storm;
   std::optional<double> slab;
   SceneFlags scene;
@@ -36,7 +36,7 @@ struct Subject {
   std::shared_ptr<const volume::HydrometeorFields> fields;
 };
 
-absl::Status CheckFlags(const Flags& flags) {
+absl::Status CheckFlags(const SlicesFlags& flags) {
   if (flags.storm.empty() == !flags.slab.has_value()) {
     return absl::InvalidArgumentError("measure slices needs either a STORM or --slab TAU");
   }
@@ -63,13 +63,13 @@ Subject SlabOf(double optical_depth) {
   return subject;
 }
 
-absl::StatusOr<Subject> SubjectOf(const Flags& flags) {
+absl::StatusOr<Subject> SubjectOf(const SlicesFlags& flags) {
   if (flags.slab.has_value()) return SlabOf(*flags.slab);
   THUNDERHEAD_ASSIGN_OR_RETURN(const LocalScene local, OpenScene(flags.storm, flags.scene));
   return Subject{local.storm_id, local.scene, local.fields};
 }
 
-absl::Status MeasureSlices(const Flags& flags) {
+absl::Status MeasureSlices(const SlicesFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   THUNDERHEAD_RETURN_IF_ERROR(CheckFlags(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(Subject subject, SubjectOf(flags));
@@ -103,7 +103,7 @@ absl::Status MeasureSlices(const Flags& flags) {
 }  // namespace
 
 Command AddMeasureSlices(CLI::App& measure) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<SlicesFlags>();
   CLI::App* slices = measure.add_subcommand(
       "slices", "Measure the convergence of pictures with the number of slices");
   slices->add_option("STORM", flags->storm, "Storm file or folder");

@@ -23,7 +23,7 @@
 namespace thunderhead::app {
 namespace {
 
-struct Flags {
+struct TradeFlags {
   std::string storm;
   SceneFlags scene;
   std::string output = "trade";
@@ -34,13 +34,13 @@ struct Flags {
   bool json = false;
 };
 
-absl::Status CheckFlags(const Flags& flags) {
+absl::Status CheckFlags(const TradeFlags& flags) {
   if (flags.samples_per_pixel >= 16) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat("--spp is ", flags.samples_per_pixel,
                                                  "; the truth needs at least 16 samples a pixel"));
 }
 
-absl::StatusOr<picture::LinearPicture> TruthOf(const Flags& flags, const LocalScene& local,
+absl::StatusOr<picture::LinearPicture> TruthOf(const TradeFlags& flags, const LocalScene& local,
                                                const std::string& path,
                                                const Interruption& interruption) {
   Truth truth;
@@ -117,7 +117,7 @@ std::string Table(const std::vector<measure::TradeRow>& rows) {
   return text;
 }
 
-absl::Status MeasureTrade(const Flags& flags) {
+absl::Status MeasureTrade(const TradeFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   THUNDERHEAD_RETURN_IF_ERROR(CheckFlags(flags));
   const Interruption interruption;
@@ -151,7 +151,7 @@ absl::Status MeasureTrade(const Flags& flags) {
 }  // namespace
 
 Command AddMeasureTrade(CLI::App& measure) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<TradeFlags>();
   flags->scene.size = "240x160";
   CLI::App* trade = measure.add_subcommand(
       "trade", "Measure time and error of every setting; continues an interrupted run");

@@ -25,7 +25,7 @@
 namespace thunderhead::app {
 namespace {
 
-struct Flags {
+struct RenderFlags {
   std::string storm;
   std::string output;
   SceneFlags scene;
@@ -57,7 +57,7 @@ absl::StatusOr<v1::RenderImageResponse> Call(const std::shared_ptr<grpc::Channel
                         [&bar](const v1::RenderImageProgress& progress) { Show(progress, bar); });
 }
 
-absl::StatusOr<v1::RenderImageResponse> CallServer(const Flags& flags,
+absl::StatusOr<v1::RenderImageResponse> CallServer(const RenderFlags& flags,
                                                    v1::RenderImageRequest request,
                                                    const Interruption& interruption) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<ServerLink> server,
@@ -66,7 +66,7 @@ absl::StatusOr<v1::RenderImageResponse> CallServer(const Flags& flags,
   return Call(server->Channel(), request, interruption, server->Token());
 }
 
-absl::StatusOr<v1::RenderImageResponse> CallHere(const Flags& flags,
+absl::StatusOr<v1::RenderImageResponse> CallHere(const RenderFlags& flags,
                                                  const v1::RenderImageRequest& request,
                                                  const Interruption& interruption) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store,
@@ -106,7 +106,7 @@ void PrintAccuracy(const v1::RenderImageResponse& response) {
   std::cout << "\n";
 }
 
-absl::Status ByReference(const Flags& flags, const ProductFormat& format) {
+absl::Status ByReference(const RenderFlags& flags, const ProductFormat& format) {
   if (!flags.server.address.empty() || flags.json) {
     return absl::InvalidArgumentError(
         "--renderer reference works only in this process: omit --server and --json");
@@ -128,7 +128,7 @@ absl::Status Write(const std::string& output, const ProductFormat& format,
   return base::WriteWholeFile(output, file.bytes);
 }
 
-absl::Status Render(const Flags& flags) {
+absl::Status Render(const RenderFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   v1::RenderImageRequest request;
   THUNDERHEAD_ASSIGN_OR_RETURN(*request.mutable_scene(), ReadScene(flags.scene));
@@ -166,7 +166,7 @@ absl::Status Render(const Flags& flags) {
 }  // namespace
 
 Command AddRender(CLI::App& app) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<RenderFlags>();
   CLI::App* render = app.add_subcommand("render", "Render one picture of a storm");
   render->add_option("STORM", flags->storm, "Storm file or folder; with --server a storm's id")
       ->required();

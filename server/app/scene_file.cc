@@ -83,13 +83,13 @@ absl::Status SetCamera(const std::string& kind, v1::Camera& camera) {
   return absl::OkStatus();
 }
 
-using Fields = std::vector<const google::protobuf::FieldDescriptor*>;
+using Descriptors = std::vector<const google::protobuf::FieldDescriptor*>;
 
 // The fields of the techniques that have their own in Rendering.
-Fields TechniqueFields() {
+Descriptors TechniqueFields() {
   const google::protobuf::OneofDescriptor& techniques =
       *v1::Rendering::descriptor()->FindOneofByName("technique");
-  Fields fields;
+  Descriptors fields;
   for (int i = 0; i < techniques.field_count(); ++i) {
     const google::protobuf::FieldDescriptor* field = techniques.field(i);
     const google::protobuf::Descriptor* settings = field->message_type();
@@ -101,7 +101,7 @@ Fields TechniqueFields() {
 }
 
 // "a, b or c".
-std::string NamesOf(const Fields& fields, const std::string& before_last) {
+std::string NamesOf(const Descriptors& fields, const std::string& before_last) {
   std::string names;
   for (const auto* field : fields) {
     if (!names.empty()) names += field == fields.back() ? before_last : ", ";
@@ -112,7 +112,7 @@ std::string NamesOf(const Fields& fields, const std::string& before_last) {
 
 // Keeps the file's settings if it has that technique; otherwise starts with the defaults.
 absl::Status SetTechnique(const std::string& name, v1::Rendering& rendering) {
-  const Fields fields = TechniqueFields();
+  const Descriptors fields = TechniqueFields();
   const auto field = std::ranges::find(fields, name, [](const auto* each) { return each->name(); });
   if (field == fields.end()) {
     return absl::InvalidArgumentError(
@@ -140,7 +140,7 @@ absl::Status SetSlices(std::uint32_t slices, v1::Scene& scene) {
   v1::Rendering& rendering = *scene.mutable_rendering();
   service::FillSizesDefault(scene);
   service::FillTechniqueDefaults(rendering);
-  Fields sliced;
+  Descriptors sliced;
   for (const auto* field : TechniqueFields()) {
     const auto* setting = field->message_type()->FindFieldByName("slices");
     if (setting == nullptr) continue;

@@ -25,7 +25,7 @@
 namespace thunderhead::app {
 namespace {
 
-struct Flags {
+struct SequenceFlags {
   std::vector<std::string> storms;
   std::string times = "all";
   std::string shard;
@@ -123,7 +123,7 @@ absl::Status CheckCounts(const Found& found, const std::string& times,
                                    " is only known with all files"));
 }
 
-absl::StatusOr<std::vector<PlannedPicture>> PlanAll(
+absl::StatusOr<std::vector<PlannedPicture>> PlanSequence(
     const PictureRunOptions& options, const std::vector<volume::CataloguedStorm>& storms,
     const std::string& times, bool assume_run) {
   std::vector<PlannedPicture> all;
@@ -166,10 +166,10 @@ std::vector<PlannedPicture> ShareOf(const std::vector<PlannedPicture>& all, std:
   return share;
 }
 
-absl::StatusOr<std::vector<PlannedPicture>> PlanAll(const PictureRunOptions& options,
-                                                    ServerLink& server,
-                                                    const std::vector<std::string>& storms,
-                                                    const std::string& times) {
+absl::StatusOr<std::vector<PlannedPicture>> PlanSequence(const PictureRunOptions& options,
+                                                         ServerLink& server,
+                                                         const std::vector<std::string>& storms,
+                                                         const std::string& times) {
   std::vector<PlannedPicture> all;
   for (std::size_t i = 0; i < storms.size(); ++i) {
     THUNDERHEAD_ASSIGN_OR_RETURN(const v1::StormDescription storm,
@@ -206,7 +206,7 @@ absl::Status Summary(const std::vector<PlannedPicture>& pictures, const Found& f
   return absl::Status(worst.code(), what);
 }
 
-absl::Status Sequence(const Flags& flags) {
+absl::Status Sequence(const SequenceFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   const Interruption interruption;
   const std::stop_token stop = interruption.Token();
@@ -228,10 +228,10 @@ absl::Status Sequence(const Flags& flags) {
     THUNDERHEAD_ASSIGN_OR_RETURN(found, Find(flags.storms));
     THUNDERHEAD_RETURN_IF_ERROR(CheckCounts(found, flags.times, options, movie));
     THUNDERHEAD_ASSIGN_OR_RETURN(
-        all, PlanAll(options, found.storms, flags.times, found.problems.empty()));
+        all, PlanSequence(options, found.storms, flags.times, found.problems.empty()));
   } else {
     THUNDERHEAD_ASSIGN_OR_RETURN(server, ServerLink::Open(flags.pipeline.server));
-    THUNDERHEAD_ASSIGN_OR_RETURN(all, PlanAll(options, *server, flags.storms, flags.times));
+    THUNDERHEAD_ASSIGN_OR_RETURN(all, PlanSequence(options, *server, flags.storms, flags.times));
   }
   std::vector<PlannedPicture> pictures =
       ShareOf(all, options.views.size(), shard, found, flags.times);
@@ -259,7 +259,7 @@ absl::Status Sequence(const Flags& flags) {
 }  // namespace
 
 Command AddSequence(CLI::App& app) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<SequenceFlags>();
   CLI::App* command = app.add_subcommand(
       "sequence", "Render every time of storms in every view; goes on where it was stopped");
   command

@@ -33,7 +33,7 @@ namespace {
 // For file systems whose events do not arrive.
 constexpr absl::Duration kRescan = absl::Seconds(30);
 
-struct Flags {
+struct WatchFlags {
   std::string folder;
   std::string files = "*";
   std::string ready = "open";
@@ -73,7 +73,7 @@ absl::StatusOr<End> ParseUntil(const std::vector<std::string>& until) {
 }
 
 // The pictures of every ready file; those of files that are done count as made.
-absl::StatusOr<std::vector<PlannedPicture>> PlanAll(
+absl::StatusOr<std::vector<PlannedPicture>> PlanWatched(
     const PictureRunOptions& options, const std::vector<FolderStorm>& storms,
     const std::vector<volume::CataloguedStorm>& catalogue, const WatchedFolder& folder) {
   std::vector<PlannedPicture> all;
@@ -183,7 +183,7 @@ absl::Status DrawReady(const MovieOptions& movie, WatchedFolder& folder, Picture
   catalogue.reserve(storms.size());
   for (const FolderStorm& storm : storms) catalogue.push_back(storm.storm);
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<PlannedPicture> all,
-                               PlanAll(run.Options(), storms, catalogue, folder));
+                               PlanWatched(run.Options(), storms, catalogue, folder));
   std::vector<PlannedPicture> made;
   std::vector<PlannedPicture> missing;
   for (PlannedPicture& picture : all) {
@@ -211,7 +211,7 @@ absl::Status Ended(const WatchedFolder& folder, bool in_time) {
   return absl::OkStatus();
 }
 
-absl::Status WatchAtServer(const Flags& flags, const End& end, const MovieOptions& movie,
+absl::Status WatchAtServer(const WatchFlags& flags, const End& end, const MovieOptions& movie,
                            PictureRunOptions options, const std::stop_token& stop) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<ServerLink> server,
                                ServerLink::Open(flags.pipeline.server));
@@ -231,7 +231,7 @@ absl::Status WatchAtServer(const Flags& flags, const End& end, const MovieOption
   return WatchServer(watch, *server, *run, progress, stop);
 }
 
-absl::Status Watch(const Flags& flags) {
+absl::Status Watch(const WatchFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   const Interruption interruption;
   const std::stop_token stop = interruption.Token();
@@ -283,7 +283,7 @@ absl::Status Watch(const Flags& flags) {
 }  // namespace
 
 Command AddWatch(CLI::App& app) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<WatchFlags>();
   CLI::App* command = app.add_subcommand(
       "watch", "Render the files of a folder as a model writes them, each once it is complete");
   command

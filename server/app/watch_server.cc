@@ -20,7 +20,7 @@ using std::chrono::steady_clock;
 
 // Each look is a call that reads no storm, unless there is a new time.
 constexpr std::chrono::seconds kLook{2};
-constexpr std::chrono::seconds kServerPatience{60};
+constexpr std::chrono::seconds kWatchPatience{60};
 
 // How many times the storm has; nothing if it is not there (yet).
 absl::StatusOr<std::optional<int>> TimesOf(ServerLink& server, const std::string& id) {
@@ -33,7 +33,7 @@ absl::StatusOr<std::optional<int>> TimesOf(ServerLink& server, const std::string
   return static_cast<int>(storm->time_count());
 }
 
-void Pause(const std::stop_token& stop) {
+void PauseForLook(const std::stop_token& stop) {
   std::mutex mutex;
   std::condition_variable_any stopped;
   std::unique_lock lock(mutex);
@@ -102,11 +102,11 @@ absl::Status WatchServer(const ServerWatch& watch, ServerLink& server, PictureRu
     if (stop.stop_requested()) break;
     if (looked.ok()) {
       reached = steady_clock::now();
-    } else if (!absl::IsUnavailable(looked) || steady_clock::now() - reached > kServerPatience) {
+    } else if (!absl::IsUnavailable(looked) || steady_clock::now() - reached > kWatchPatience) {
       return looked;
     }
     if (watch.is_over(watching.TimesDone())) return watching.Bad();
-    Pause(stop);
+    PauseForLook(stop);
   }
   return absl::CancelledError(absl::StrCat("interrupted: the products of ", watching.TimesDone(),
                                            " times are made and in ", run.Records().Path(),

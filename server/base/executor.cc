@@ -10,14 +10,14 @@ namespace thunderhead::base {
 namespace {
 
 // A task is a read or a picture's encoding; a few threads end hundreds of them in this time.
-constexpr std::chrono::seconds kRetryAfter{10};
+constexpr std::chrono::seconds kQueueRetryAfter{10};
 
 absl::Status Full(std::size_t max_waiting) {
   return WithDetails(absl::ResourceExhaustedError(absl::StrCat("the server is busy: ", max_waiting,
                                                                " requests wait; try again later")),
                      {.reason = "REQUEST_QUEUE_FULL",
                       .metadata = {{"maximum", absl::StrCat(max_waiting)}, {"unit", "requests"}},
-                      .retry_after = kRetryAfter});
+                      .retry_after = kQueueRetryAfter});
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace thunderhead::base {
 namespace {
 
 // Retry delay: viewers leave, or look at another storm, within seconds or not at all.
-constexpr std::chrono::seconds kRetryAfter{10};
+constexpr std::chrono::seconds kMemoryRetryAfter{10};
 
 // The longest wait for memory: a turn of drawing, whose end gives back unused memory.
 constexpr std::chrono::seconds kLongestPatience{2};
@@ -205,11 +205,12 @@ absl::Status MemoryBudget::Refusal(MemoryUse use, std::size_t bytes, std::string
     }
   }
   metadata["used"] = absl::StrCat(total);
-  return WithDetails(
-      absl::ResourceExhaustedError(absl::StrCat(needs, "; ", InWords(total), " of ",
-                                                InWords(options_.bytes), " are in use: ", uses,
-                                                "; try again when others look at less")),
-      {.reason = "MEMORY_BUDGET", .metadata = std::move(metadata), .retry_after = kRetryAfter});
+  return WithDetails(absl::ResourceExhaustedError(absl::StrCat(
+                         needs, "; ", InWords(total), " of ", InWords(options_.bytes),
+                         " are in use: ", uses, "; try again when others look at less")),
+                     {.reason = "MEMORY_BUDGET",
+                      .metadata = std::move(metadata),
+                      .retry_after = kMemoryRetryAfter});
 }
 
 }  // namespace thunderhead::base

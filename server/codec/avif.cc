@@ -14,8 +14,8 @@ namespace {
 constexpr int kBits = 10;
 // Layout of libavif's pixels: the smallest that holds all of a FineImage's.
 constexpr int kPixelBits = 16;
-constexpr int kChannels = 3;
-constexpr int kMaxSide_px = 16384;
+constexpr int kAvifChannels = 3;
+constexpr int kMaxAvifSide_px = 16384;
 
 using Image = std::unique_ptr<avifImage, decltype(&avifImageDestroy)>;
 
@@ -30,7 +30,7 @@ avifRGBImage PixelsOf(const avifImage& image, std::uint16_t* pixels) {
   rgb.depth = kPixelBits;
   rgb.format = AVIF_RGB_FORMAT_RGB;
   rgb.pixels = reinterpret_cast<std::uint8_t*>(pixels);
-  rgb.rowBytes = image.width * kChannels * static_cast<std::uint32_t>(sizeof(std::uint16_t));
+  rgb.rowBytes = image.width * kAvifChannels * static_cast<std::uint32_t>(sizeof(std::uint16_t));
   return rgb;
 }
 
@@ -38,9 +38,9 @@ avifRGBImage PixelsOf(const avifImage& image, std::uint16_t* pixels) {
 
 absl::StatusOr<std::string> EncodeAvif(const frame::FineImage& image, const AvifOptions& options) {
   const auto values = static_cast<std::size_t>(image.width_px) *
-                      static_cast<std::size_t>(image.height_px) * kChannels;
-  if (image.width_px < 1 || image.height_px < 1 || image.width_px > kMaxSide_px ||
-      image.height_px > kMaxSide_px || image.rgb.size() != values) {
+                      static_cast<std::size_t>(image.height_px) * kAvifChannels;
+  if (image.width_px < 1 || image.height_px < 1 || image.width_px > kMaxAvifSide_px ||
+      image.height_px > kMaxAvifSide_px || image.rgb.size() != values) {
     return absl::InvalidArgumentError(
         absl::StrCat("a picture of ", image.width_px, " x ", image.height_px, " pixels with ",
                      image.rgb.size(), " values cannot be encoded as AVIF"));
@@ -87,7 +87,7 @@ absl::StatusOr<frame::FineImage> DecodeAvif(const std::string& avif) {
     return absl::InvalidArgumentError(absl::StrCat("not an AVIF: ", avifResultToString(result)));
   }
   frame::FineImage image{static_cast<int>(coded->width), static_cast<int>(coded->height), {}};
-  image.rgb.resize(static_cast<std::size_t>(coded->width) * coded->height * kChannels);
+  image.rgb.resize(static_cast<std::size_t>(coded->width) * coded->height * kAvifChannels);
   avifRGBImage rgb = PixelsOf(*coded, image.rgb.data());
   result = avifImageYUVToRGB(coded.get(), &rgb);
   if (result != AVIF_RESULT_OK) return AvifError("cannot convert the picture of the AVIF", result);

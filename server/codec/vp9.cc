@@ -16,8 +16,8 @@
 namespace thunderhead::codec {
 namespace {
 
-constexpr int kMaxSide_px = 16384;
-constexpr int kChannels = 3;
+constexpr int kMaxVp9Side_px = 16384;
+constexpr int kVp9Channels = 3;
 constexpr double kPicturesPerSecond = 30.0;
 // Measured in decision 28: finer than this costs bytes that a moving picture does not show.
 constexpr unsigned kFinestQuantizer = 24;
@@ -97,10 +97,10 @@ Vp9Encoder::Vp9Encoder(std::unique_ptr<State> state, int width_px, int height_px
 Vp9Encoder::~Vp9Encoder() = default;
 
 absl::StatusOr<std::unique_ptr<Vp9Encoder>> Vp9Encoder::Create(int width_px, int height_px) {
-  if (width_px < 1 || height_px < 1 || width_px > kMaxSide_px || height_px > kMaxSide_px) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("video of ", width_px, " x ", height_px,
-                     " pixels cannot be encoded; each side must be between 1 and ", kMaxSide_px));
+  if (width_px < 1 || height_px < 1 || width_px > kMaxVp9Side_px || height_px > kMaxVp9Side_px) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "video of ", width_px, " x ", height_px,
+        " pixels cannot be encoded; each side must be between 1 and ", kMaxVp9Side_px));
   }
   auto state = std::make_unique<State>();
   const vpx_codec_enc_cfg_t config = ConfigFor(width_px, height_px);
@@ -132,7 +132,7 @@ absl::StatusOr<Vp9Picture> Vp9Encoder::Encode(const frame::RgbImage& picture, Vp
                      " pixels does not belong to video of ", width_px_, " x ", height_px_));
   }
   vpx_image_t& image = *state_->image;
-  libyuv::RAWToJ420(picture.rgb.data(), width_px_ * kChannels, image.planes[VPX_PLANE_Y],
+  libyuv::RAWToJ420(picture.rgb.data(), width_px_ * kVp9Channels, image.planes[VPX_PLANE_Y],
                     image.stride[VPX_PLANE_Y], image.planes[VPX_PLANE_U], image.stride[VPX_PLANE_U],
                     image.planes[VPX_PLANE_V], image.stride[VPX_PLANE_V], width_px_, height_px_);
   vpx_codec_ctx_t* const codec = &state_->codec;
@@ -195,9 +195,9 @@ absl::StatusOr<frame::RgbImage> Vp9Decoder::Decode(const std::string& bytes) {
                      decoded->planes[VPX_PLANE_U], decoded->stride[VPX_PLANE_U],
                      decoded->planes[VPX_PLANE_V], decoded->stride[VPX_PLANE_V], argb.data(),
                      width * kWithAlpha, width, height);
-  frame::RgbImage picture{width, height, std::vector<std::uint8_t>(pixels * kChannels)};
-  libyuv::ARGBToRAW(argb.data(), width * kWithAlpha, picture.rgb.data(), width * kChannels, width,
-                    height);
+  frame::RgbImage picture{width, height, std::vector<std::uint8_t>(pixels * kVp9Channels)};
+  libyuv::ARGBToRAW(argb.data(), width * kWithAlpha, picture.rgb.data(), width * kVp9Channels,
+                    width, height);
   return picture;
 }
 

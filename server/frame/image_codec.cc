@@ -16,7 +16,7 @@
 namespace thunderhead::frame {
 namespace {
 
-constexpr int kChannels = 3;
+constexpr int kRgbChannels = 3;
 // The largest side that JPEG allows.
 constexpr int kMaxSide_px = 65535;
 // Side of a minimum coded unit of JPEG with 4:2:0 chroma.
@@ -44,7 +44,7 @@ struct PngImage {
 };
 
 std::size_t ByteCount(int width_px, int height_px) {
-  return static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px) * kChannels;
+  return static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px) * kRgbChannels;
 }
 
 absl::Status CheckPixels(int width_px, int height_px, std::size_t bytes) {
@@ -89,7 +89,7 @@ absl::StatusOr<std::string> EncodeStrip(int width_px, int height_px,
   if (handle == nullptr) return TurboError("cannot start the JPEG encoder", nullptr);
   unsigned char* buffer = nullptr;
   unsigned long size = 0;
-  const int result = tjCompress2(handle.get(), rgb.data(), width_px, width_px * kChannels,
+  const int result = tjCompress2(handle.get(), rgb.data(), width_px, width_px * kRgbChannels,
                                  height_px, TJPF_RGB, &buffer, &size, TJSAMP_420, quality, 0);
   const std::unique_ptr<unsigned char, TurboBufferDeleter> owned(buffer);
   if (result != 0) return TurboError("cannot encode the picture as JPEG", handle.get());
@@ -135,7 +135,7 @@ absl::StatusOr<RgbImage> DecodeJpeg(const std::string& jpeg) {
   }
   image.rgb.resize(ByteCount(image.width_px, image.height_px));
   if (tjDecompress2(handle.get(), data, jpeg.size(), image.rgb.data(), image.width_px,
-                    image.width_px * kChannels, image.height_px, TJPF_RGB, 0) != 0) {
+                    image.width_px * kRgbChannels, image.height_px, TJPF_RGB, 0) != 0) {
     return absl::InvalidArgumentError(absl::StrCat("broken JPEG: ", tjGetErrorStr2(handle.get())));
   }
   return image;

@@ -22,7 +22,7 @@ namespace {
 
 namespace net = boost::asio;
 
-constexpr char kService[] = "/thunderhead.v1.ThunderheadService/";
+constexpr char kGrpcService[] = "/thunderhead.v1.ThunderheadService/";
 
 absl::Status FromGrpc(const grpc::Status& status) {
   return {static_cast<absl::StatusCode>(status.error_code()), status.error_message()};
@@ -64,7 +64,7 @@ class GrpcLink final : public Link,
         reads_(options.reads),
         delay_(std::make_shared<net::steady_timer>(io)) {
     ShowToken(access, context_);
-    stub_.PrepareBidiStreamingCall(&context_, absl::StrCat(kService, "Interact"), {}, this);
+    stub_.PrepareBidiStreamingCall(&context_, absl::StrCat(kGrpcService, "Interact"), {}, this);
     AddHold();
     StartCall();
     if (reads_) StartRead(&received_);
@@ -204,7 +204,7 @@ class GrpcTransport final : public Transport {
     const grpc::ByteBuffer sent = BufferOf(request);
     grpc::ByteBuffer received;
     std::promise<grpc::Status> ended;
-    stub_.UnaryCall(&context, absl::StrCat(kService, method), {}, &sent, &received,
+    stub_.UnaryCall(&context, absl::StrCat(kGrpcService, method), {}, &sent, &received,
                     [&](const grpc::Status& status) { ended.set_value(status); });
     const grpc::Status status = ended.get_future().get();
     if (!status.ok()) return FromGrpc(status);

@@ -43,7 +43,7 @@ using Plain = boost::beast::tcp_stream;
 using Secure = boost::beast::ssl_stream<Plain>;  // by TLS
 
 constexpr std::chrono::seconds kPatience{60};
-constexpr char kService[] = "/thunderhead.v1.ThunderheadService/";
+constexpr char kBridgedService[] = "/thunderhead.v1.ThunderheadService/";
 constexpr char kSubprotocol[] = "grpc-websocket.v1";
 constexpr char kMessageKind = 0x00;
 constexpr char kHalfCloseKind = 0x01;
@@ -160,7 +160,7 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall<Stream>>
     }));
     socket_.read_message_max(0);
     socket_.binary(true);
-    socket_.async_handshake(host_.ToString(), absl::StrCat(kService, "Interact"),
+    socket_.async_handshake(host_.ToString(), absl::StrCat(kBridgedService, "Interact"),
                             [self = shared_from_this()](error_code error) {
                               if (error) return self->Fail("open a WebSocket to", error);
                               self->Opened();
@@ -284,7 +284,7 @@ class WebCall {
       : host_(std::move(host)), stream_(io_, tls...) {
     const auto bytes = static_cast<std::uint32_t>(message.size());
     request_.method(http::verb::post);
-    request_.target(absl::StrCat(kService, method));
+    request_.target(absl::StrCat(kBridgedService, method));
     request_.version(11);
     request_.set(http::field::host, host_.ToString());
     request_.set(http::field::content_type, "application/grpc-web+proto");

@@ -33,7 +33,7 @@ const char* PrecisionOf(const Setting& setting) {
 
 // Values drawn in place of zero on a logarithmic axis.
 constexpr double kLeastMilliseconds = 1e-3;
-constexpr double kLeastError = 1e-6;
+constexpr double kLeastTradeError = 1e-6;
 
 std::optional<TradeRow> RowOf(absl::string_view line) {
   const std::vector<absl::string_view> cells = absl::StrSplit(line, ',');
@@ -95,7 +95,7 @@ void AddDot(const TradeRow& row, LogPlot* plot) {
       row.setting.million_paths, row.setting.jpeg_quality, row.milliseconds, row.relative_rmse,
       row.flip);
   plot->Dot(std::max(row.milliseconds, kLeastMilliseconds),
-            std::max(row.relative_rmse, kLeastError), row.pareto ? 5 : 3,
+            std::max(row.relative_rmse, kLeastTradeError), row.pareto ? 5 : 3,
             hollow ? "#ffffff" : color, color, tip);
 }
 
@@ -104,7 +104,7 @@ std::vector<std::pair<double, double>> FrontOf(const std::vector<TradeRow>& rows
   for (const TradeRow& row : rows) {
     if (!row.pareto) continue;
     front.emplace_back(std::max(row.milliseconds, kLeastMilliseconds),
-                       std::max(row.relative_rmse, kLeastError));
+                       std::max(row.relative_rmse, kLeastTradeError));
   }
   std::sort(front.begin(), front.end());
   return front;
@@ -193,7 +193,7 @@ std::string TradeSvg(const TradeTitle& title, const std::vector<TradeRow>& rows)
   std::vector<double> errors;
   for (const TradeRow& row : rows) {
     times.push_back(std::max(row.milliseconds, kLeastMilliseconds));
-    errors.push_back(std::max(row.relative_rmse, kLeastError));
+    errors.push_back(std::max(row.relative_rmse, kLeastTradeError));
   }
   LogPlot plot(times, errors,
                absl::StrFormat("%s, %s: relative RMSE against milliseconds a frame (%dx%d)",

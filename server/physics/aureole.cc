@@ -13,7 +13,7 @@ namespace {
 
 // Rings around the sun that hold the cut light, by the square so that they are narrow in its
 // middle.
-constexpr int kRings = 600;
+constexpr int kAureoleRings = 600;
 // Wave numbers of the Hankel transform, in 1/rad: up to 15 over the disc's radius, beyond which the
 // tables, which hold it, have nothing left; so close that what wraps around is four times beyond
 // the largest angle.
@@ -26,14 +26,14 @@ struct Ring {
 };
 
 // The radius is 2 sin(angle / 2), which makes equal areas equal solid angles.
-double RadiusOf(double angle_rad) { return 2.0 * std::sin(0.5 * angle_rad); }
+double RingRadius(double angle_rad) { return 2.0 * std::sin(0.5 * angle_rad); }
 
 std::vector<Ring> RingsOf(const PhaseFunction& phase, double cut_rad) {
   const glm::dvec3 held = PhaseColors(phase, std::cos(cut_rad));
   std::vector<Ring> rings;
-  for (int i = 0; i < kRings; ++i) {
-    const double from = RadiusOf(cut_rad) * std::pow(static_cast<double>(i) / kRings, 2.0);
-    const double to = RadiusOf(cut_rad) * std::pow((i + 1.0) / kRings, 2.0);
+  for (int i = 0; i < kAureoleRings; ++i) {
+    const double from = RingRadius(cut_rad) * std::pow(static_cast<double>(i) / kAureoleRings, 2.0);
+    const double to = RingRadius(cut_rad) * std::pow((i + 1.0) / kAureoleRings, 2.0);
     const double radius = 0.5 * (from + to);
     const glm::dvec3 cut =
         glm::max(PhaseColors(phase, 1.0 - 0.5 * radius * radius) - held, glm::dvec3(0.0));
@@ -75,7 +75,7 @@ Aureole Aureole::Of(const PhaseFunction& phase, double cut_rad) {
   const std::vector<glm::dvec3> transform = TransformOf(RingsOf(phase, cut_rad));
   std::vector<double> bessel;  // by angle, then wave number, times the area of its ring
   for (int a = 0; a < kAngles; ++a) {
-    const double radius = RadiusOf(aureole.end_rad * Squared(a, kAngles));
+    const double radius = RingRadius(aureole.end_rad * Squared(a, kAngles));
     for (int k = 0; k < kWaves; ++k) {
       const double wave = kWaveStep * (k + 0.5);
       bessel.push_back(::j0(wave * radius) * wave * kWaveStep * 0.5 * std::numbers::inv_pi);

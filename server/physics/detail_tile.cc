@@ -12,8 +12,8 @@
 namespace thunderhead::physics {
 namespace {
 
-constexpr std::size_t kSide = DetailTile::kSide;
-constexpr std::size_t kTexels = kSide * kSide * kSide;
+constexpr std::size_t kTileSide = DetailTile::kSide;
+constexpr std::size_t kTexels = kTileSide * kTileSide * kTileSide;
 constexpr int kWarpOctaves = 2;
 constexpr double kBillowPersistence = 0.65;
 constexpr double kWarpDeviation = 0.4;  // of the full displacement
@@ -34,7 +34,7 @@ std::vector<float> Sum(int first, int octaves, double persistence, std::uint32_t
     const PerlinOctave octave = MakePerlinOctave(index, DetailTile::kSide, seed);
     float* row = sums.data();
     for (int z = 0; z < DetailTile::kSide; ++z) {
-      for (int y = 0; y < DetailTile::kSide; ++y, row += kSide) {
+      for (int y = 0; y < DetailTile::kSide; ++y, row += kTileSide) {
         AddPerlinRow(octave, y, z, [&](std::size_t texel, std::int64_t noise) {
           row[texel] += static_cast<float>(
               static_cast<double>(billows && noise < 0 ? -noise : noise) * amplitude);
@@ -132,7 +132,7 @@ glm::dvec3 DetailWarp_m(const glm::dvec3& cell_m, double wavelength_m) {
 }
 
 glm::dvec4 DetailNoiseAt(const DetailTile& tile, const glm::dvec3& place) {
-  const glm::dvec3 texel = (place - glm::floor(place)) * static_cast<double>(kSide) - 0.5;
+  const glm::dvec3 texel = (place - glm::floor(place)) * static_cast<double>(kTileSide) - 0.5;
   const glm::dvec3 floor = glm::floor(texel);
   const glm::dvec3 share = texel - floor;
   const auto wrap = [](double i) {
@@ -144,7 +144,7 @@ glm::dvec4 DetailNoiseAt(const DetailTile& tile, const glm::dvec3& place) {
     const glm::dvec3 weights = glm::mix(1.0 - share, share, step);
     const std::uint8_t* at =
         tile.texels.data() +
-        4 * ((wrap(floor.z + step.z) * kSide + wrap(floor.y + step.y)) * kSide +
+        4 * ((wrap(floor.z + step.z) * kTileSide + wrap(floor.y + step.y)) * kTileSide +
              wrap(floor.x + step.x));
     sum += weights.x * weights.y * weights.z * glm::dvec4(at[0], at[1], at[2], at[3]);
   }

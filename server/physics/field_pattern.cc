@@ -10,7 +10,7 @@
 namespace thunderhead::physics {
 namespace {
 
-constexpr int kSide = glsl::kFieldMapCells;
+constexpr int kPatternSide = glsl::kFieldMapCells;
 constexpr std::uint64_t kFieldSeed = 1862;
 constexpr std::uint64_t kGrainSeed = 1803;
 constexpr float kBrightest = 2.35F;  // the largest factor of reflectance, grain included
@@ -31,8 +31,8 @@ constexpr std::array kCrops = {
 };
 
 std::size_t At(int x, int y) {
-  return static_cast<std::size_t>((y + kSide) % kSide) * kSide +
-         static_cast<std::size_t>((x + kSide) % kSide);
+  return static_cast<std::size_t>((y + kPatternSide) % kPatternSide) * kPatternSide +
+         static_cast<std::size_t>((x + kPatternSide) % kPatternSide);
 }
 
 Crop RandomCrop(CounterRandom* random) {
@@ -46,9 +46,9 @@ Crop RandomCrop(CounterRandom* random) {
 // cells.
 class FieldMap {
  public:
-  FieldMap() : crops_(At(kSide - 1, kSide - 1) + 1), pivots_(crops_.size(), 0.0F) {
-    for (int y = 0; y < kSide; y += 4) {
-      for (int x = 0; x < kSide; x += 4) PlantSection(x, y);
+  FieldMap() : crops_(At(kPatternSide - 1, kPatternSide - 1) + 1), pivots_(crops_.size(), 0.0F) {
+    for (int y = 0; y < kPatternSide; y += 4) {
+      for (int x = 0; x < kPatternSide; x += 4) PlantSection(x, y);
     }
     Centre(&Crop::brightness);
     Centre(&Crop::dryness);
@@ -111,10 +111,10 @@ class FieldMap {
 
 // Value noise of octaves that each repeat over the map; mean 0, from -1 to 1.
 std::vector<float> GrainMap() {
-  std::vector<float> grain(At(kSide - 1, kSide - 1) + 1, 0.0F);
+  std::vector<float> grain(At(kPatternSide - 1, kPatternSide - 1) + 1, 0.0F);
   const int coarsest = static_cast<int>(glsl::kCoarsestGrain_m / glsl::kGrainCell_m);
   for (int wavelength = coarsest; wavelength >= 1; wavelength /= 2) {
-    const int nodes = kSide / wavelength;
+    const int nodes = kPatternSide / wavelength;
     const auto node = [&](int x, int y) {
       const int index = (y % nodes) * nodes + x % nodes;
       CounterRandom random(kGrainSeed + static_cast<std::uint64_t>(wavelength),
@@ -129,8 +129,8 @@ std::vector<float> GrainMap() {
       return nodes_of_row[static_cast<std::size_t>((y % nodes) * nodes + x % nodes)];
     };
     constexpr float kAmplitude = 0.3F;  // of each octave
-    for (int y = 0; y < kSide; ++y) {
-      for (int x = 0; x < kSide; ++x) {
+    for (int y = 0; y < kPatternSide; ++y) {
+      for (int x = 0; x < kPatternSide; ++x) {
         const auto smooth = [&](int at) {
           const float t = static_cast<float>(at % wavelength) / static_cast<float>(wavelength);
           return t * t * (3.0F - 2.0F * t);
@@ -173,7 +173,7 @@ FieldPattern::FieldPattern() {
     finest.push_back(glm::vec4(texels_.back()) / 255.0F);
   }
   levels_.push_back(std::move(finest));
-  for (int side = kSide / 2; side >= 1; side /= 2) {
+  for (int side = kPatternSide / 2; side >= 1; side /= 2) {
     const std::vector<glm::vec4>& below = levels_.back();
     std::vector<glm::vec4> level;
     for (int y = 0; y < side; ++y) {
@@ -189,7 +189,7 @@ FieldPattern::FieldPattern() {
 }
 
 glm::vec4 FieldPattern::Linear(const glm::vec2& cell, int level) const {
-  const int side = kSide >> level;
+  const int side = kPatternSide >> level;
   const glm::vec2 place = cell / static_cast<float>(1 << level) - 0.5F;
   const glm::vec2 corner = glm::floor(place);
   const glm::vec2 share = place - corner;

@@ -19,7 +19,7 @@ namespace {
 
 using glm::dvec3;
 
-constexpr int kChunks = 128;
+constexpr int kCrystalChunks = 128;
 
 // A ray ends below this share of its initial energy, or after this many encounters with faces.
 constexpr double kMinEnergy = 1e-5;
@@ -169,10 +169,10 @@ void Merge(const RayScattering& part, RayScattering& whole) {
 RayScattering TraceRays(const IceCrystal& crystal, const std::vector<double>& angles_deg,
                         std::int64_t rays, std::uint64_t seed, const WorkPlan& plan) {
   const HexagonalPrism prism(crystal.width_um, crystal.length_um);
-  std::vector<RayScattering> parts(kChunks, {PhaseAccumulator(angles_deg), {}});
-  ForEachChunk(kChunks, plan, [&](int chunk) {
+  std::vector<RayScattering> parts(kCrystalChunks, {PhaseAccumulator(angles_deg), {}});
+  ForEachChunk(kCrystalChunks, plan, [&](int chunk) {
     RayScattering& part = parts[static_cast<std::size_t>(chunk)];
-    for (std::int64_t ray = chunk; ray < rays; ray += kChunks) {
+    for (std::int64_t ray = chunk; ray < rays; ray += kCrystalChunks) {
       const auto stream = static_cast<std::uint64_t>(ray) + 1;
       const std::array<double, 5> point = EvenPoint(stream, seed);
       const dvec3 direction = DirectionOf(point[0], point[1]);

@@ -20,7 +20,7 @@ using glm::dvec2;
 using glm::dvec3;
 using Complex = std::complex<double>;
 
-constexpr int kChunks = 64;
+constexpr int kOutlineChunks = 64;
 
 double Cross(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
 
@@ -91,10 +91,10 @@ PhaseAccumulator Diffract(const IceCrystal& crystal, const std::vector<double>& 
   const auto ahead =
       std::upper_bound(angles.angles_rad.begin(), angles.angles_rad.end(), 0.5 * std::numbers::pi);
   angles.angles_rad.erase(ahead, angles.angles_rad.end());
-  std::vector<PhaseAccumulator> parts(kChunks, PhaseAccumulator(angles_deg));
-  ForEachChunk(kChunks, plan, [&](int chunk) {
+  std::vector<PhaseAccumulator> parts(kOutlineChunks, PhaseAccumulator(angles_deg));
+  ForEachChunk(kOutlineChunks, plan, [&](int chunk) {
     PhaseAccumulator& part = parts[static_cast<std::size_t>(chunk)];
-    for (int i = chunk; i < orientations; i += kChunks) {
+    for (int i = chunk; i < orientations; i += kOutlineChunks) {
       CounterRandom random(seed, static_cast<std::uint64_t>(i));
       const double z = 2.0 * random.Next() - 1.0;
       const double azimuth = 2.0 * std::numbers::pi * random.Next();

@@ -7,12 +7,12 @@
 
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
+#include "physics/optics.h"
 
 namespace thunderhead::physics {
 namespace {
 
-constexpr glm::vec3 kLuminance(0.2126F, 0.7152F, 0.0722F);  // ITU-R BT.709
-constexpr float kSnowAlbedo = 0.7F;                         // of settled snow
+constexpr float kSnowAlbedo = 0.7F;  // of settled snow
 constexpr float kAllGreen_percent = 70.0F;
 constexpr glm::vec3 kDry(1.25F, 0.98F, 0.62F);
 constexpr glm::vec3 kSnow(0.99F, 1.0F, 1.03F);
@@ -52,12 +52,12 @@ constexpr std::array<Appearance, 12> kLooks = {{
     {{0.30F, 1.00F, 2.00F}, false},  // water
 }};
 
-struct Row {
+struct LandUseRow {
   Look look;
   float albedo;
 };
 
-constexpr std::array<Row, 24> kUsgs = {{
+constexpr std::array<LandUseRow, 24> kUsgs = {{
     {kUrban, 0.15F},     {kCrops, 0.17F},     {kIrrigated, 0.18F}, {kCrops, 0.18F},
     {kCrops, 0.18F},     {kCrops, 0.16F},     {kGrass, 0.19F},     {kShrub, 0.22F},
     {kShrub, 0.20F},     {kShrub, 0.20F},     {kDeciduous, 0.16F}, {kDeciduous, 0.14F},
@@ -66,7 +66,7 @@ constexpr std::array<Row, 24> kUsgs = {{
     {kTundra, 0.15F},    {kTundra, 0.15F},    {kBarren, 0.25F},    {kIce, 0.55F},
 }};
 
-constexpr std::array<Row, 21> kModis = {{
+constexpr std::array<LandUseRow, 21> kModis = {{
     {kEvergreen, 0.12F}, {kEvergreen, 0.12F}, {kDeciduous, 0.14F}, {kDeciduous, 0.16F},
     {kEvergreen, 0.13F}, {kShrub, 0.22F},     {kShrub, 0.20F},     {kShrub, 0.20F},
     {kShrub, 0.20F},     {kGrass, 0.19F},     {kWetland, 0.14F},   {kCrops, 0.17F},
@@ -75,17 +75,20 @@ constexpr std::array<Row, 21> kModis = {{
     {kWater, 0.08F},
 }};
 
-constexpr Row kUnknown = {kGrass, 0.19F};
+constexpr LandUseRow kUnknown = {kGrass, 0.19F};
 
-glm::vec3 OfLuminanceOne(const glm::vec3& color) { return color / glm::dot(color, kLuminance); }
+glm::vec3 OfLuminanceOne(const glm::vec3& color) {
+  return color / glm::dot(color, glm::vec3(kLuminance));
+}
 
 }  // namespace
 
 LandUse LandUseOf(LandUseScheme scheme, int index) {
-  const std::span<const Row> rows =
-      scheme == LandUseScheme::kUsgs ? std::span<const Row>(kUsgs) : std::span<const Row>(kModis);
+  const std::span<const LandUseRow> rows = scheme == LandUseScheme::kUsgs
+                                               ? std::span<const LandUseRow>(kUsgs)
+                                               : std::span<const LandUseRow>(kModis);
   const bool known = index >= 1 && index <= static_cast<int>(rows.size());
-  const Row& row = known ? rows[static_cast<std::size_t>(index) - 1] : kUnknown;
+  const LandUseRow& row = known ? rows[static_cast<std::size_t>(index) - 1] : kUnknown;
   const Appearance& look = kLooks[row.look];
   return {OfLuminanceOne(look.color), row.albedo, row.look == kWater, look.ripens};
 }

@@ -17,7 +17,7 @@
 namespace thunderhead::physics {
 namespace {
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
+constexpr double kTableRadiansPerDegree = std::numbers::pi / 180.0;
 
 absl::Status CheckShape(const PhaseTableContent& content) {
   const std::vector<double>& angles = content.angles_deg;
@@ -71,7 +71,7 @@ PhaseTable::PhaseTable(PhaseTableContent content) : content_(std::move(content))
   const std::size_t count = content_.angles_deg.size();
   angles_rad_.reserve(count);
   for (const double angle_deg : content_.angles_deg) {
-    angles_rad_.push_back(angle_deg * kRadiansPerDegree);
+    angles_rad_.push_back(angle_deg * kTableRadiansPerDegree);
   }
   cumulative_.resize(count);
   for (std::size_t i = 0; i + 1 < count; ++i) {
@@ -135,7 +135,7 @@ double PhaseTable::SampleAngle(double u, std::size_t channel) const {
 }
 
 double PhaseTable::ForwardShare(std::size_t channel) const {
-  return CumulativeShare(kForwardAngleDeg * kRadiansPerDegree, channel);
+  return CumulativeShare(kForwardAngleDeg * kTableRadiansPerDegree, channel);
 }
 
 double PhaseTable::CutShare(double angle_rad, std::size_t channel) const {

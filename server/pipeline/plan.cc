@@ -15,7 +15,7 @@ namespace {
 // Neither 0 nor a reasonable number of processes.
 constexpr int kMaxShards = 1'000'000;
 
-absl::string_view View(std::string_view text) { return {text.data(), text.size()}; }
+absl::string_view PlanText(std::string_view text) { return {text.data(), text.size()}; }
 
 absl::StatusOr<Shard> ShardOf(std::string_view what, absl::string_view index,
                               absl::string_view count) {
@@ -26,7 +26,7 @@ absl::StatusOr<Shard> ShardOf(std::string_view what, absl::string_view index,
     return shard;
   }
   return absl::InvalidArgumentError(
-      absl::StrCat(View(what), " is '", index, "/", count,
+      absl::StrCat(PlanText(what), " is '", index, "/", count,
                    "'; it must be I/N, such as 0/4, with I from 0 to N - 1"));
 }
 
@@ -34,7 +34,7 @@ absl::StatusOr<Shard> ShardOf(std::string_view what, absl::string_view index,
 
 absl::StatusOr<std::vector<int>> ParseTimes(std::string_view text, int count) {
   std::set<int> times;
-  for (const absl::string_view part : absl::StrSplit(View(text), ',')) {
+  for (const absl::string_view part : absl::StrSplit(PlanText(text), ',')) {
     const std::pair<absl::string_view, absl::string_view> ends =
         absl::StrSplit(part, absl::MaxSplits('-', 1));
     int first = 0;
@@ -47,7 +47,7 @@ absl::StatusOr<std::vector<int>> ParseTimes(std::string_view text, int count) {
           !absl::SimpleAtoi(range ? ends.second : ends.first, &last) || first > last || first < 0 ||
           last >= count) {
         return absl::InvalidArgumentError(absl::StrCat(
-            "--times is '", View(text), "', of which '", part,
+            "--times is '", PlanText(text), "', of which '", part,
             "' is not all, last, an index or a range such as 2-5 within 0 to ", count - 1));
       }
     }
@@ -58,7 +58,7 @@ absl::StatusOr<std::vector<int>> ParseTimes(std::string_view text, int count) {
 
 absl::StatusOr<Shard> ParseShard(std::string_view text) {
   const std::pair<absl::string_view, absl::string_view> parts =
-      absl::StrSplit(View(text), absl::MaxSplits('/', 1));
+      absl::StrSplit(PlanText(text), absl::MaxSplits('/', 1));
   return ShardOf("--shard", parts.first, parts.second);
 }
 
@@ -105,7 +105,7 @@ bool IsManifestOfShare(std::string_view file) {
   name.remove_prefix(kBegin.size());
   name.remove_suffix(kEnd.size());
   const std::pair<absl::string_view, absl::string_view> parts =
-      absl::StrSplit(View(name), absl::MaxSplits("-of-", 1));
+      absl::StrSplit(PlanText(name), absl::MaxSplits("-of-", 1));
   const auto shard = ShardOf("", parts.first, parts.second);
   return shard.ok() && ManifestName(*shard) == file;
 }

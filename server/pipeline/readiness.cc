@@ -14,11 +14,11 @@ namespace {
 // Between two pieces of a slow copy.
 constexpr absl::Duration kSettled = absl::Seconds(2);
 
-absl::string_view View(std::string_view text) { return {text.data(), text.size()}; }
+absl::string_view AbslView(std::string_view text) { return {text.data(), text.size()}; }
 
 absl::Status Wrong(std::string_view text, std::string_view why) {
   return absl::InvalidArgumentError(
-      absl::StrCat("--ready is '", View(text), "'; ", View(why),
+      absl::StrCat("--ready is '", AbslView(text), "'; ", AbslView(why),
                    " (open, age:SECONDS[,minsize:BYTES], next[,age:SECONDS] or marker:GLOB)"));
 }
 
@@ -43,7 +43,7 @@ std::optional<std::string> WaitsForAge(const SeenFile& file, absl::Duration age)
 
 absl::StatusOr<ReadinessPolicy> ReadinessPolicy::Parse(std::string_view text) {
   ReadinessPolicy policy;
-  const absl::string_view all = View(text);
+  const absl::string_view all = AbslView(text);
   if (absl::StartsWith(all, "marker:")) {
     policy.kind_ = Kind::kMarker;
     policy.marker_ = std::string(absl::StripPrefix(all, "marker:"));

@@ -7,7 +7,7 @@
 namespace thunderhead::reference {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kEndless_m = std::numeric_limits<double>::infinity();
 
 // A horizontal ray through gaps of a periodic medium would never end, so it is assumed to leave
 // after this many periods. The probability that a scattered ray is as horizontal as that is about
@@ -51,7 +51,7 @@ BrickWalk::BrickWalk(const Medium& medium, const Ray& ray, double limit_m)
     const double direction = ray.direction[axis];
     step_[axis] = direction > 0.0 ? 1 : (direction < 0.0 ? -1 : 0);
     delta_m_[axis] =
-        step_[axis] == 0 ? kInfinity : medium.BrickSize_m()[axis] / std::abs(direction);
+        step_[axis] == 0 ? kEndless_m : medium.BrickSize_m()[axis] / std::abs(direction);
     Enter(axis);
   }
 }
@@ -66,7 +66,7 @@ void BrickWalk::Enter(int axis) {
     brick_[axis] = std::clamp(brick_[axis], 0, medium_.Bricks()[axis] - 1);
   }
   if (step_[axis] == 0) {
-    next_m_[axis] = kInfinity;
+    next_m_[axis] = kEndless_m;
     return;
   }
   const double face_m = low_m + (brick_[axis] + (step_[axis] > 0 ? 1 : 0)) * size_m;

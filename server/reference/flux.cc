@@ -21,7 +21,7 @@
 namespace thunderhead::reference {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 // Photons in one chunk of work.
 constexpr std::int64_t kPiece = 256;
@@ -65,7 +65,7 @@ struct Sums {
 enum class Face { kTop, kBottom, kSide };
 
 struct Exit {
-  double distance_m = kInfinity;
+  double distance_m = kNoBound;
   Face face = Face::kSide;
 };
 

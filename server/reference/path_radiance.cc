@@ -13,7 +13,7 @@
 namespace thunderhead::reference {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoEnd_m = std::numeric_limits<double>::infinity();
 
 // Below this throughput paths continue by Russian roulette.
 constexpr double kRouletteThroughput = 0.1;
@@ -66,7 +66,7 @@ class Path {
       return Scatter(ray_.At(*collision_m));
     }
     ShadeAir(ground_m);
-    if (ground_m < kInfinity) return Reflect(ground_m);
+    if (ground_m < kNoEnd_m) return Reflect(ground_m);
     const auto& sky =
         seen_from_eye_ && surroundings_.seen_sky ? surroundings_.seen_sky : surroundings_.sky;
     if (sky) radiance_ += Carried() * sky(ray_.direction);
@@ -83,7 +83,7 @@ class Path {
   }
 
   double GroundDistance_m() const {
-    if (!surroundings_.ground.has_value()) return kInfinity;
+    if (!surroundings_.ground.has_value()) return kNoEnd_m;
     const Ground& ground = *surroundings_.ground;
     const glm::dvec2 across(ray_.direction);
     const double above_m = ray_.origin_m.z - GroundHeight_m(ray_.origin_m);
@@ -92,7 +92,7 @@ class Path {
         ground.curvature_per_m * glm::dot(glm::dvec2(ray_.origin_m) - ground.touch_m, across);
     const double discriminant =
         closing * closing - 2.0 * ground.curvature_per_m * glm::dot(across, across) * above_m;
-    if (above_m <= 0.0 || closing <= 0.0 || discriminant < 0.0) return kInfinity;
+    if (above_m <= 0.0 || closing <= 0.0 || discriminant < 0.0) return kNoEnd_m;
     return 2.0 * above_m / (closing + std::sqrt(discriminant));
   }
 
@@ -126,11 +126,11 @@ class Path {
     const glm::dvec3 point_m = ray_.At(at_m);
     const glm::dvec3 weight = Carried() * length_m;
     const double of_sun = 1.0 - EstimateTransmittance(medium_, {point_m, surroundings_.towards_sun},
-                                                      kInfinity, random_);
+                                                      kNoEnd_m, random_);
     radiance_ -= weight * light.of_sun * of_sun;
     if (random_->Uniform() >= kAirPathShare) return;
     const Ray upward{point_m, SampleUpward(random_)};
-    const std::optional<double> collision_m = SampleCollision(medium_, upward, kInfinity, random_);
+    const std::optional<double> collision_m = SampleCollision(medium_, upward, kNoEnd_m, random_);
     if (!collision_m.has_value()) return;
     Path path(medium_, surroundings_, upward, random_, max_scatterings_);
     const glm::dvec3 from_storm = path.FollowFrom(*collision_m);
@@ -150,7 +150,7 @@ class Path {
 
   // The part of the ray up to `distance_m` from the first of the boxes to the last.
   Interval IntervalIn(const std::vector<Box>& boxes, double distance_m) const {
-    Interval all{kInfinity, 0.0};
+    Interval all{kNoEnd_m, 0.0};
     for (const Box& box : boxes) {
       Interval in{0.0, distance_m};
       for (int axis = 0; axis < 3; ++axis) {
@@ -267,7 +267,7 @@ class Path {
     const glm::dvec3 unshadowed = Carried() * reflected * light.irradiance;
     if (Largest(unshadowed) <= 0.0) return;
     const Ray ray{point_m, light.towards};
-    radiance_ += unshadowed * EstimateTransmittance(medium_, ray, kInfinity, random_);
+    radiance_ += unshadowed * EstimateTransmittance(medium_, ray, kNoEnd_m, random_);
   }
 
   bool GoOnAtLength() {

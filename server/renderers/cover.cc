@@ -11,7 +11,7 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kMinTile_px = 8;
+constexpr int kMinCoverTile_px = 8;
 constexpr int kMaxTiles = 256;  // along each side
 constexpr float kNowhere = 0.0F;
 constexpr double kBetween = 0.5;  // depth of whatever a cover limits
@@ -27,7 +27,8 @@ struct Tiles {
   std::vector<std::uint8_t> marked;
 
   explicit Tiles(const glm::ivec2& size_px)
-      : side_px(std::max(kMinTile_px, (std::max(size_px.x, size_px.y) / kMaxTiles + 3) / 4 * 4)),
+      : side_px(
+            std::max(kMinCoverTile_px, (std::max(size_px.x, size_px.y) / kMaxTiles + 3) / 4 * 4)),
         count((size_px + side_px - 1) / side_px),
         marked(static_cast<std::size_t>(count.x) * static_cast<std::size_t>(count.y)) {}
 

@@ -20,7 +20,7 @@ constexpr double kSkyStep_m = 2500.0;
 constexpr double kSkySteps = 16.0;
 constexpr std::size_t kMaxTables = 32;
 
-constexpr gl::PieceCost kPixel{"composite", 500.0};
+constexpr gl::PieceCost kCompositePixel{"composite", 500.0};
 
 // Variant of post/composite.frag.
 struct CompositeVariant {
@@ -255,7 +255,7 @@ absl::Status SkyAndGround::Composite(const scene::Scene& scene, const scene::Vie
     BindAir(*program, scene, view, ground, front.box);
     ground_cover.Bind(*program, scene, view, scene.output.height_px);
     const LimitedTo limited(where, cover);
-    return whole_target_.Draw(programs_->Pieces(), kPixel, *program, target.Target());
+    return whole_target_.Draw(programs_->Pieces(), kCompositePixel, *program, target.Target());
   };
   THUNDERHEAD_RETURN_IF_ERROR(draw(Where::kCovered));
   return cover == nullptr ? absl::OkStatus() : draw(Where::kElsewhere);

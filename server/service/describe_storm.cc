@@ -7,8 +7,8 @@
 namespace thunderhead::service {
 namespace {
 
-absl::StatusOr<volume::StormInfoPtr> Check(const Engine& engine,
-                                           const v1::DescribeStormRequest& request) {
+absl::StatusOr<volume::StormInfoPtr> CheckDescribe(const Engine& engine,
+                                                   const v1::DescribeStormRequest& request) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
   THUNDERHEAD_ASSIGN_OR_RETURN(volume::StormInfoPtr storm,
                                FindStorm(engine.store, request.storm_id()));
@@ -29,7 +29,7 @@ absl::Status Describe(Engine& engine, const volume::StormInfo& storm, int time_i
 grpc::ServerUnaryReactor* DescribeStorm(Engine& engine, grpc::CallbackServerContext* context,
                                         const v1::DescribeStormRequest* request,
                                         v1::DescribeStormResponse* response) {
-  const auto storm = Check(engine, *request);
+  const auto storm = CheckDescribe(engine, *request);
   if (!storm.ok()) return Finished(context, storm.status());
   return FinishedBy(engine.executor, context, [=, &engine] {
     return Describe(engine, **storm, static_cast<int>(request->time_index()), *response);

@@ -18,13 +18,13 @@
 namespace thunderhead::service {
 namespace {
 
-using Reactor = grpc::ServerWriteReactor<v1::FetchRenderResultResponse>;
+using ResultReactor = grpc::ServerWriteReactor<v1::FetchRenderResultResponse>;
 
 constexpr std::uint64_t kChunkBytes = std::uint64_t{1} << 20;
 
 // Sends a file, a chunk after another: each is read while none is written. Deletes itself when gRPC
 // calls OnDone, which comes after it has called Finish: never while a chunk is read.
-class ResultStream final : public Reactor {
+class ResultStream final : public ResultReactor {
  public:
   ResultStream(jobs::Jobs& jobs, base::Executor& reading, CallerRef caller,
                jobs::PicturePlace picture, jobs::ResultPlace place, std::uint64_t offset)
@@ -86,8 +86,8 @@ class ResultStream final : public Reactor {
   v1::FetchRenderResultResponse response_;  // gRPC reads it while it is written
 };
 
-absl::StatusOr<jobs::ResultPlace> Find(const jobs::Jobs& jobs, const access::Caller& caller,
-                                       const v1::FetchRenderResultRequest& request) {
+absl::StatusOr<jobs::ResultPlace> FindResult(const jobs::Jobs& jobs, const access::Caller& caller,
+                                             const v1::FetchRenderResultRequest& request) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
   THUNDERHEAD_ASSIGN_OR_RETURN(jobs::ResultPlace place,
                                jobs.Result({request.job_id(), request.index()}, AskerOf(caller)));
@@ -99,11 +99,11 @@ absl::StatusOr<jobs::ResultPlace> Find(const jobs::Jobs& jobs, const access::Cal
 
 }  // namespace
 
-Reactor* FetchRenderResult(jobs::Jobs& jobs, base::Executor& reading, CallerRef caller,
-                           const v1::FetchRenderResultRequest* request) {
-  absl::StatusOr<jobs::ResultPlace> place = Find(jobs, *caller, *request);
+ResultReactor* FetchRenderResult(jobs::Jobs& jobs, base::Executor& reading, CallerRef caller,
+                                 const v1::FetchRenderResultRequest* request) {
+  absl::StatusOr<jobs::ResultPlace> place = FindResult(jobs, *caller, *request);
   caller->ReportDenial("FetchRenderResult", place.status());
-  if (!place.ok()) return new RefusedStream<Reactor>(place.status());
+  if (!place.ok()) return new RefusedStream<ResultReactor>(place.status());
   auto* stream =
       new ResultStream(jobs, reading, std::move(caller), {request->job_id(), request->index()},
                        *std::move(place), request->offset());

@@ -19,8 +19,8 @@ bool IsExtinction(const volume::HydrometeorField& field) {
   return field.quantity == volume::Quantity::kExtinction;
 }
 
-absl::StatusOr<volume::StormInfoPtr> Check(const Engine& engine,
-                                           const v1::GetStormMapRequest& request) {
+absl::StatusOr<volume::StormInfoPtr> CheckMap(const Engine& engine,
+                                              const v1::GetStormMapRequest& request) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
   THUNDERHEAD_ASSIGN_OR_RETURN(volume::StormInfoPtr storm,
                                FindStorm(engine.store, request.storm_id()));
@@ -98,7 +98,7 @@ absl::Status Map(Engine& engine, const volume::StormInfo& storm,
 grpc::ServerUnaryReactor* GetStormMap(Engine& engine, grpc::CallbackServerContext* context,
                                       const v1::GetStormMapRequest* request,
                                       v1::GetStormMapResponse* response) {
-  const auto storm = Check(engine, *request);
+  const auto storm = CheckMap(engine, *request);
   if (!storm.ok()) return Finished(context, storm.status());
   return FinishedBy(engine.executor, context,
                     [=, &engine] { return Map(engine, **storm, *request, *response); });

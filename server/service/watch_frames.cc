@@ -14,15 +14,15 @@
 namespace thunderhead::service {
 namespace {
 
-using Reactor = grpc::ServerWriteReactor<v1::WatchFramesResponse>;
+using FramesReactor = grpc::ServerWriteReactor<v1::WatchFramesResponse>;
 
 // One viewer's stream. It lives until both gRPC and the hub have released it. There is at most one
 // pending write; Finish is called once, when there is none.
-class FrameStream : public Reactor,
+class FrameStream : public FramesReactor,
                     public session::Viewer,
                     public std::enable_shared_from_this<FrameStream> {
  public:
-  static Reactor* Start(std::shared_ptr<session::Session> session, CallerRef caller) {
+  static FramesReactor* Start(std::shared_ptr<session::Session> session, CallerRef caller) {
     auto stream = std::make_shared<FrameStream>(std::move(session), std::move(caller));
     stream->held_by_grpc_ = stream;
     const auto viewer_id = stream->session_->hub().Join(stream);
@@ -125,8 +125,8 @@ class FrameStream : public Reactor,
   bool finished_ = false;
 };
 
-absl::StatusOr<std::shared_ptr<session::Session>> Find(Engine& engine,
-                                                       const v1::WatchFramesRequest& request) {
+absl::StatusOr<std::shared_ptr<session::Session>> FindSession(
+    Engine& engine, const v1::WatchFramesRequest& request) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
   THUNDERHEAD_ASSIGN_OR_RETURN(const session::FoundSession found,
                                engine.sessions.Find(request.session_id()));
@@ -139,10 +139,10 @@ absl::StatusOr<std::shared_ptr<session::Session>> Find(Engine& engine,
 
 }  // namespace
 
-Reactor* WatchFrames(Engine& engine, grpc::CallbackServerContext* /*context*/, CallerRef caller,
-                     const v1::WatchFramesRequest* request) {
-  auto session = Find(engine, *request);
-  if (!session.ok()) return new RefusedStream<Reactor>(session.status());
+FramesReactor* WatchFrames(Engine& engine, grpc::CallbackServerContext* /*context*/,
+                           CallerRef caller, const v1::WatchFramesRequest* request) {
+  auto session = FindSession(engine, *request);
+  if (!session.ok()) return new RefusedStream<FramesReactor>(session.status());
   return FrameStream::Start(*std::move(session), std::move(caller));
 }
 

@@ -16,7 +16,7 @@
 namespace thunderhead::service {
 namespace {
 
-using Reactor = grpc::ServerWriteReactor<v1::WatchRenderJobResponse>;
+using JobReactor = grpc::ServerWriteReactor<v1::WatchRenderJobResponse>;
 
 absl::Status Forgotten(const std::string& id) {
   return base::WithDetails(
@@ -26,18 +26,18 @@ absl::Status Forgotten(const std::string& id) {
 
 // One client's stream. There is at most one pending write; what changes meanwhile comes with the
 // next. Lives until both gRPC and the jobs have released it.
-class JobStream final : public Reactor,
+class JobStream final : public JobReactor,
                         public jobs::JobWatcher,
                         public std::enable_shared_from_this<JobStream> {
  public:
   JobStream(jobs::Jobs& jobs, CallerRef caller, std::string id)
       : jobs_(jobs), caller_(std::move(caller)), id_(std::move(id)) {}
 
-  static Reactor* Start(jobs::Jobs& jobs, CallerRef caller, const std::string& id) {
+  static JobReactor* Start(jobs::Jobs& jobs, CallerRef caller, const std::string& id) {
     auto stream = std::make_shared<JobStream>(jobs, std::move(caller), id);
     const absl::Status known = jobs.Watch(id, AskerOf(*stream->caller_), stream);
     stream->caller_->ReportDenial("WatchRenderJob", known);
-    if (!known.ok()) return new RefusedStream<Reactor>(known);
+    if (!known.ok()) return new RefusedStream<JobReactor>(known);
     stream->held_by_grpc_ = stream;
     stream->OnJobChanged();
     return stream.get();
@@ -112,10 +112,10 @@ class JobStream final : public Reactor,
 
 }  // namespace
 
-Reactor* WatchRenderJob(jobs::Jobs& jobs, CallerRef caller,
-                        const v1::WatchRenderJobRequest* request) {
+JobReactor* WatchRenderJob(jobs::Jobs& jobs, CallerRef caller,
+                           const v1::WatchRenderJobRequest* request) {
   if (const absl::Status wrong = CheckLimits(*request); !wrong.ok()) {
-    return new RefusedStream<Reactor>(wrong);
+    return new RefusedStream<JobReactor>(wrong);
   }
   return JobStream::Start(jobs, std::move(caller), request->job_id());
 }

@@ -13,7 +13,7 @@ namespace thunderhead::session {
 namespace {
 
 // Time to draw a few pictures.
-constexpr std::chrono::seconds kRetryAfter{5};
+constexpr std::chrono::seconds kQueueRetryAfter{5};
 
 absl::Status TooMany(std::size_t waiting) {
   return base::WithDetails(
@@ -21,7 +21,7 @@ absl::Status TooMany(std::size_t waiting) {
                                                 " pictures wait to be drawn; try again later")),
       {.reason = "RENDER_QUEUE_FULL",
        .metadata = {{"maximum", absl::StrCat(waiting)}, {"unit", "pictures"}},
-       .retry_after = kRetryAfter});
+       .retry_after = kQueueRetryAfter});
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ Clock::duration AgeOf(std::chrono::system_clock::time_point time) {
 }
 
 // Abandoned sessions expire one after another.
-constexpr std::chrono::seconds kRetryAfter{30};
+constexpr std::chrono::seconds kSessionRetryAfter{30};
 
 absl::Status Gone(const std::string& message, const std::string& reason = "SESSION_NOT_FOUND") {
   return base::WithDetails(absl::NotFoundError(message), {.reason = reason});
@@ -45,7 +45,7 @@ absl::Status TooMany(const char* who, std::size_t max_sessions) {
                                                 " sessions; close one, or try again later")),
       {.reason = "TOO_MANY_SESSIONS",
        .metadata = {{"maximum", absl::StrCat(max_sessions)}, {"unit", "sessions"}},
-       .retry_after = kRetryAfter});
+       .retry_after = kSessionRetryAfter});
 }
 
 }  // namespace

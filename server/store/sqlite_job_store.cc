@@ -122,9 +122,9 @@ JobRecord JobOf(const Statement& row) {
   return job;
 }
 
-class OpenStore final : public SqliteJobStore {
+class OpenJobStore final : public SqliteJobStore {
  public:
-  OpenStore(std::shared_ptr<StateFile> file, Database database)
+  OpenJobStore(std::shared_ptr<StateFile> file, Database database)
       : file_(std::move(file)), database_(std::move(database)) {}
 
   absl::Status Add(const JobRecord& job) override {
@@ -220,7 +220,7 @@ class OpenStore final : public SqliteJobStore {
 absl::StatusOr<std::unique_ptr<SqliteJobStore>> SqliteJobStore::In(
     std::shared_ptr<StateFile> file) {
   THUNDERHEAD_ASSIGN_OR_RETURN(Database database, file->Connect(Durability::kAtOnce));
-  return std::make_unique<OpenStore>(std::move(file), std::move(database));
+  return std::make_unique<OpenJobStore>(std::move(file), std::move(database));
 }
 
 }  // namespace thunderhead::store

@@ -71,9 +71,9 @@ SessionRecord RecordOf(const Statement& row) {
   return record;
 }
 
-class OpenStore final : public SqliteSessionStore {
+class OpenSessionStore final : public SqliteSessionStore {
  public:
-  OpenStore(std::shared_ptr<StateFile> file, Database database)
+  OpenSessionStore(std::shared_ptr<StateFile> file, Database database)
       : file_(std::move(file)), database_(std::move(database)) {}
 
   absl::Status Save(const std::vector<SessionRecord>& records) override {
@@ -153,7 +153,7 @@ absl::StatusOr<std::unique_ptr<SqliteSessionStore>> SqliteSessionStore::Open(
 absl::StatusOr<std::unique_ptr<SqliteSessionStore>> SqliteSessionStore::In(
     std::shared_ptr<StateFile> file) {
   THUNDERHEAD_ASSIGN_OR_RETURN(Database database, file->Connect(Durability::kSoon));
-  return std::make_unique<OpenStore>(std::move(file), std::move(database));
+  return std::make_unique<OpenSessionStore>(std::move(file), std::move(database));
 }
 
 }  // namespace thunderhead::store

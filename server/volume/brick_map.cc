@@ -68,7 +68,7 @@ std::vector<std::uint8_t> FillingsOf(const ExtinctionVolume& volume, double thin
   return fillings;
 }
 
-struct Range {
+struct BrickRange {
   int first;
   int last;
 };
@@ -86,7 +86,7 @@ std::vector<std::uint8_t> MaxAlong(const std::vector<std::uint8_t>& fillings, in
   for (const std::uint8_t* in = fillings.data(); in != fillings.data() + fillings.size();
        in += layer) {
     for (int i = 0; i < count; ++i, out += row) {
-      const Range range = reach(i);
+      const BrickRange range = reach(i);
       for (int j = std::max(range.first, 0); j <= std::min(range.last, length - 1); ++j) {
         const std::uint8_t* from = in + static_cast<std::size_t>(j) * row;
         for (std::size_t k = 0; k < row; ++k) out[k] = std::max(out[k], from[k]);
@@ -220,7 +220,7 @@ BrickMap BrickMapOf(const ExtinctionVolume& volume) {
       MaxOf(FillingsOf(volume, BrickMap::kThinOpticalDepth / diagonal_m / channels), cells,
             map.bricks, [&](int axis, int brick) {
               const int n = across[axis];
-              return Range{brick * n - 1, (brick + 1) * n - 1};
+              return BrickRange{brick * n - 1, (brick + 1) * n - 1};
             });
   Distances distances(fillings, map.bricks);
   map.content.reserve(fillings.size());
@@ -247,7 +247,7 @@ BrickCubes OccupiedCubesOf(const BrickMap& map, std::size_t max_cubes) {
   while (occupied() > max_cubes) {
     const glm::ivec3 halved = (size + 1) / 2;
     fillings = MaxOf(fillings, size, halved, [](int, int cube) {
-      return Range{2 * cube, 2 * cube + 1};
+      return BrickRange{2 * cube, 2 * cube + 1};
     });
     size = halved;
     cubes.bricks_across *= 2;
@@ -266,7 +266,7 @@ CellBlocks CellBlocksOf(const BrickMap& map, const RegularGrid& grid) {
       MaxOf(FillingsOf(map), map.bricks, size, [&](int axis, int block) {
         const int side = blocks.cells_per_block[axis];
         const int n = map.cells_per_brick[axis];
-        return Range{block * side / n, (block + 1) * side / n};
+        return BrickRange{block * side / n, (block + 1) * side / n};
       });
   blocks.occupied = Places(fillings, size, CellBlocks::kThick);
   return blocks;

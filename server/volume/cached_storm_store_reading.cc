@@ -23,7 +23,7 @@ using std::chrono::steady_clock;
 constexpr std::chrono::seconds kRetryAfter{10};
 
 // Saturates.
-std::size_t Product(std::size_t a, std::size_t b) {
+std::size_t SaturatingProduct(std::size_t a, std::size_t b) {
   constexpr std::size_t kMax = std::numeric_limits<std::size_t>::max();
   return a != 0 && b > kMax / a ? kMax : a * b;
 }
@@ -39,13 +39,14 @@ ReadMemory MemoryFor(const StormFile& file, const std::optional<VerticalGrid>& g
   const std::size_t per_cell = file.fields.size() * 6 + 2;
   // Pressure, temperature, heights and the like, a float a cell of the file each.
   constexpr std::size_t kScratch = 10 * sizeof(float);
-  const auto columns =
-      Product(static_cast<std::size_t>(file.cells.x), static_cast<std::size_t>(file.cells.y));
+  const auto columns = SaturatingProduct(static_cast<std::size_t>(file.cells.x),
+                                         static_cast<std::size_t>(file.cells.y));
   const auto levels = static_cast<std::size_t>(file.cells.z);
   // ChooseVerticalGrid takes at most 1.25 times as many cells as levels.
   const std::size_t cells =
       grid.has_value() ? static_cast<std::size_t>(grid->cells) : levels + levels / 4 + 1;
-  return {Product(Product(columns, cells), per_cell), Product(Product(columns, levels), kScratch)};
+  return {SaturatingProduct(SaturatingProduct(columns, cells), per_cell),
+          SaturatingProduct(SaturatingProduct(columns, levels), kScratch)};
 }
 
 absl::Status Hangs(const HungRead& hung) {

@@ -216,7 +216,7 @@ std::optional<TimeUnits> ParseTimeUnits(const std::string& units) {
   return parsed;
 }
 
-absl::Status ReadTimes(const NetcdfFile& file, CfMetadata* metadata) {
+absl::Status ReadCfTimes(const NetcdfFile& file, CfMetadata* metadata) {
   // A storm without a date counts as idealised and gets year 1, as in WRF.
   const absl::Time nowhen = absl::FromCivil(absl::CivilSecond(1, 1, 1), absl::UTCTimeZone());
   const CfVariable& first = metadata->fields.front().variable;
@@ -293,7 +293,7 @@ absl::StatusOr<CfMetadata> ReadCfMetadata(const NetcdfFile& file) {
   for (const CfAirField& field : metadata.air) {
     THUNDERHEAD_RETURN_IF_ERROR(CheckSameAxes(file, field.variable, metadata));
   }
-  THUNDERHEAD_RETURN_IF_ERROR(ReadTimes(file, &metadata));
+  THUNDERHEAD_RETURN_IF_ERROR(ReadCfTimes(file, &metadata));
   metadata.surface = FindSurface(file, variables, metadata);
   metadata.source = file.TextAttribute("", "title").value_or("");
   if (metadata.source.empty()) metadata.source = file.TextAttribute("", "source").value_or("");

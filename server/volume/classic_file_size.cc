@@ -18,7 +18,7 @@ struct HeaderWidths {
 };
 
 // No larger than what can be counted: a header may promise anything.
-std::uintmax_t Product(std::uintmax_t a, std::uintmax_t b) {
+std::uintmax_t BoundedProduct(std::uintmax_t a, std::uintmax_t b) {
   constexpr std::uintmax_t kMax = std::numeric_limits<std::int64_t>::max() / 4096;
   std::uintmax_t product = 0;
   return __builtin_mul_overflow(a, b, &product) ? kMax : std::min(product, kMax);
@@ -46,8 +46,8 @@ std::uintmax_t AttributesSize(int handle, int variable, int attributes,
         nc_inq_att(handle, variable, name, &type, &length) != NC_NOERR) {
       continue;
     }
-    bytes +=
-        NameSize(name, widths) + 4 + widths.count + Padded(Product(length, TypeSize(handle, type)));
+    bytes += NameSize(name, widths) + 4 + widths.count +
+             Padded(BoundedProduct(length, TypeSize(handle, type)));
   }
   return bytes;
 }
@@ -76,9 +76,9 @@ VariableSizes SizesOf(int handle, int variable, int record_dimension, const Head
   for (int i = sizes.has_records ? 1 : 0; i < rank; ++i) {
     std::size_t length = 0;
     nc_inq_dimlen(handle, dimensions[i], &length);
-    cells = Product(cells, length);
+    cells = BoundedProduct(cells, length);
   }
-  sizes.data = Padded(Product(cells, TypeSize(handle, type)));
+  sizes.data = Padded(BoundedProduct(cells, TypeSize(handle, type)));
   return sizes;
 }
 
@@ -111,7 +111,7 @@ std::uintmax_t ClassicFileSize(int handle) {
   for (int variable = 0; variable < variables; ++variable) {
     const VariableSizes sizes = SizesOf(handle, variable, record_dimension, widths);
     bytes += sizes.header;
-    data += sizes.has_records ? Product(sizes.data, records) : sizes.data;
+    data += sizes.has_records ? BoundedProduct(sizes.data, records) : sizes.data;
     record_variables += sizes.has_records ? 1 : 0;
   }
   // A complete file may lack the padding after its last value, and a single record variable has

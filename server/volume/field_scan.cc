@@ -16,14 +16,14 @@ constexpr float kMinMixingRatio = -0.5F;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-struct Range {
+struct ScanRange {
   float minimum = kInfinity;
   float maximum = -kInfinity;
 };
 
 // One level: `values` in place, mass per area added to `water_path`.
 void ScanLevel(const LayerAir& air, int level, float* values, FieldStatistics& statistics,
-               Range& range, std::vector<double>& water_path) {
+               ScanRange& range, std::vector<double>& water_path) {
   const std::size_t offset = level * air.columns;
   const float* density = air.dry_air_density_kg_per_m3.data() + offset;
   const float* bottom_m = air.interface_height_m.data() + offset;
@@ -53,7 +53,7 @@ void ScanLevel(const LayerAir& air, int level, float* values, FieldStatistics& s
 
 FieldStatistics MixingRatioToConcentration(const LayerAir& air, std::vector<float>& values) {
   FieldStatistics statistics;
-  Range range;
+  ScanRange range;
   std::vector<double> water_path(air.columns, 0.0);
   for (int level = 0; level < air.levels; ++level) {
     ScanLevel(air, level, values.data() + level * air.columns, statistics, range, water_path);

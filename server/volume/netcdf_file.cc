@@ -119,13 +119,13 @@ Packing PackingOf(int handle, int variable) {
 // Comparisons are written so that NaN fails them. `Real` is the type as which values were read.
 template <typename Real>
 float Clean(Real packed, const Packing& packing) {
-  constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
   if (packed == static_cast<Real>(packing.fill) || packed == static_cast<Real>(packing.missing)) {
-    return kMissing;
+    return kNotANumber;
   }
   const auto value = static_cast<Real>(packed * packing.scale + packing.offset);
   const Real size = std::abs(value);
-  if (!(size < static_cast<Real>(kLargestValue))) return kMissing;
+  if (!(size < static_cast<Real>(kLargestValue))) return kNotANumber;
   return size < static_cast<Real>(std::numeric_limits<float>::min()) ? 0.0F
                                                                      : static_cast<float>(value);
 }

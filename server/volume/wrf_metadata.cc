@@ -184,7 +184,7 @@ absl::StatusOr<std::vector<absl::Time>> TimesFromMinutes(const NetcdfFile& file)
   return times;
 }
 
-absl::StatusOr<std::vector<absl::Time>> ReadTimes(const NetcdfFile& file) {
+absl::StatusOr<std::vector<absl::Time>> ReadWrfTimes(const NetcdfFile& file) {
   const std::size_t records = file.DimensionLength("Time").value_or(0);
   if (records == 0) return NoTimes(file);
   std::vector<absl::Time> times;
@@ -429,7 +429,7 @@ absl::StatusOr<WrfMetadata> ReadWrfMetadata(const NetcdfFile& file) {
   WrfMetadata metadata;
   metadata.path = file.Path();
   THUNDERHEAD_RETURN_IF_ERROR(ReadGrid(file, metadata));
-  THUNDERHEAD_ASSIGN_OR_RETURN(metadata.times, ReadTimes(file));
+  THUNDERHEAD_ASSIGN_OR_RETURN(metadata.times, ReadWrfTimes(file));
   THUNDERHEAD_RETURN_IF_ERROR(CheckVariables(file, metadata));
   THUNDERHEAD_RETURN_IF_ERROR(ReadPlace(file, metadata));
   metadata.land = FindLand(file, metadata);

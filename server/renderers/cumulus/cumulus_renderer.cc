@@ -24,7 +24,7 @@ constexpr int kRoughnessOctaves = 4;
 constexpr double kRoughnessInFinest = 1.6;  // wavelength over the radius of the finest bubbles
 constexpr double kMinCorona = 1e-3;         // of the finest radius: thinner is a division by zero
 
-constexpr gl::PieceCost kPixel{"resolve", 50.0};
+constexpr gl::PieceCost kResolvePixel{"resolve", 50.0};
 constexpr gl::PieceCost kBubbleDepth{"bubble's depth", 1e5};
 constexpr gl::PieceCost kBubbleShade{"bubble", 1e6};
 
@@ -208,7 +208,8 @@ absl::StatusOr<gl::Texture2D> CumulusRenderer::GroundShadow() {
   program->Set(uniform::place_of_depth, glm::vec2(from_m + shadow_reach_m_, -from_m) /
                                             static_cast<float>(shadow_frame_.half_depth_m));
   shadow_depth_.Bind(shaders::kSunDepthUnit);
-  THUNDERHEAD_RETURN_IF_ERROR(whole_target_.Draw(programs_->Pieces(), kPixel, *program, target));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      whole_target_.Draw(programs_->Pieces(), kResolvePixel, *program, target));
   return shadow;
 }
 
@@ -309,7 +310,7 @@ absl::Status CumulusRenderer::Resolve(double far_m, double middle_m) {
   core_depth_.Bind(shaders::kResolvedDepthUnit);
   program->Set(uniform::far_m, static_cast<float>(far_m));
   program->Set(uniform::middle_m, static_cast<float>(middle_m));
-  return whole_target_.Draw(programs_->Pieces(), kPixel, *program, eye_target_);
+  return whole_target_.Draw(programs_->Pieces(), kResolvePixel, *program, eye_target_);
 }
 
 std::size_t CumulusRenderer::Bytes() const {

@@ -13,8 +13,8 @@ namespace thunderhead::renderers {
 namespace {
 
 // More cells than this are coarsened first: the surface is no finer than its ellipsoids.
-constexpr std::size_t kMaxCells = 4'000'000;
-constexpr int kMaxBalls = 700;
+constexpr std::size_t kMaxSurfaceCells = 4'000'000;
+constexpr int kMaxSurfaceBalls = 700;
 
 // Precipitation has no surface.
 bool HasSurface(physics::Hydrometeor hydrometeor) {
@@ -24,7 +24,7 @@ bool HasSurface(physics::Hydrometeor hydrometeor) {
 // The smallest number of cells along each axis of which one is made so that few enough are left.
 int CoarseningOf(const volume::RegularGrid& grid) {
   int factor = 1;
-  while (grid.CellCount() / static_cast<std::size_t>(factor * factor * factor) > kMaxCells) {
+  while (grid.CellCount() / static_cast<std::size_t>(factor * factor * factor) > kMaxSurfaceCells) {
     ++factor;
   }
   return factor;
@@ -45,7 +45,7 @@ DrawnSurface SurfaceOfStorm(const scene::Scene& scene, const volume::Hydrometeor
   }
   clouds::InscribedBallsOptions options;
   options.level = SettingsOf(scene).least_extinction_per_m;
-  options.max_balls = kMaxBalls;
+  options.max_balls = kMaxSurfaceBalls;
   drawn.surface = clouds::InscribedBalls(fields.grid, extinction_per_m, options);
   std::size_t first = 0;
   for (int scale = 1; scale < SettingsOf(scene).scales; ++scale) {

@@ -18,9 +18,9 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kMaxLightTexels = 256;         // along the longer side of the light buffer
-constexpr double kLightTexelInCells = 0.75;  // size of a light texel
-constexpr int kThicknessSlices = 128;        // perpendicular to the light
+constexpr int kMaxBufferTexels = 256;         // along the longer side of the light buffer
+constexpr double kBufferTexelInCells = 0.75;  // size of a light texel
+constexpr int kThicknessSlices = 128;         // perpendicular to the light
 // Drawn to the picture in one pass. More change targets less often, but their light takes more
 // memory.
 constexpr int kSlabSlices = 16;
@@ -74,7 +74,7 @@ std::size_t HalfAngleRenderer::Bytes() const {
 void HalfAngleRenderer::Resize(const LightFrame& frame, double cell_m) {
   // Finer texels than cells would carry no more detail.
   const double longest_m = 2.0 * std::max(frame.half_extent_m.x, frame.half_extent_m.y);
-  const double texel_m = std::max(longest_m / kMaxLightTexels, kLightTexelInCells * cell_m);
+  const double texel_m = std::max(longest_m / kMaxBufferTexels, kBufferTexelInCells * cell_m);
   const glm::ivec2 light_size =
       glm::max(glm::ivec2(glm::ceil(2.0 * frame.half_extent_m / texel_m)), glm::ivec2(1));
   // The last frame's stores come before what fills here.

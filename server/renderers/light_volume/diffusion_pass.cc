@@ -14,7 +14,7 @@ namespace thunderhead::renderers {
 namespace {
 
 // Larger media are solved on fewer cells than their own.
-constexpr double kMaxCells = 4e6;
+constexpr double kMaxDiffusionCells = 4e6;
 
 // Memory that DiffuseLight, its inputs and this pass take for each cell, and for one with anything
 // in it besides.
@@ -29,7 +29,8 @@ std::size_t BytesFor(const DiffusionCells& cells) {
 
 glm::ivec3 SizeFor(const glm::ivec3& cells) {
   const double count = static_cast<double>(cells.x) * cells.y * cells.z;
-  const int factor = std::max(static_cast<int>(std::ceil(std::cbrt(count / kMaxCells))), 1);
+  const int factor =
+      std::max(static_cast<int>(std::ceil(std::cbrt(count / kMaxDiffusionCells))), 1);
   return glm::max((cells + factor - 1) / factor, glm::ivec3(1));
 }
 

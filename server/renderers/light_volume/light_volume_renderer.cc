@@ -24,9 +24,9 @@ constexpr double kNearInTexels = 1.5;  // sampled next to a cell
 // Texels from cells that scatter within which the carried light is read: towards the sun, and over
 // one more along each axis by interpolation.
 constexpr double kReadTexels = kNearInTexels + 1.74;
-constexpr int kMaxGroupsInRow = 65535;  // what OpenGL 4.5 guarantees along each axis
-constexpr double kSample_ns = 15.0;     // what a sample of the medium may cost
-constexpr gl::PieceCost kBlock{"arrive", 4000.0};
+constexpr int kMaxGroupsInRow = 65535;      // what OpenGL 4.5 guarantees along each axis
+constexpr double kMarchedSample_ns = 15.0;  // what a sample of the medium may cost
+constexpr gl::PieceCost kArriveBlock{"arrive", 4000.0};
 
 // Multiple scattering in closed form.
 bool IsDiffuse(const RenderSettings& settings) {
@@ -158,7 +158,7 @@ absl::Status LightVolumeRenderer::Carry(const ResidentMedium& medium, const Grou
   const double rays = static_cast<double>(box.size.x) * shaders::kLightGroupSide;
   const double steps = 2.0 * box.size.z * box.half_layer_steps;
   absl::Status carried = programs_->Pieces().Steps(
-      {"carry", rays * steps * kSample_ns}, groups.y, [&](int begin, int end) {
+      {"carry", rays * steps * kMarchedSample_ns}, groups.y, [&](int begin, int end) {
         program->Set(uniform::first_row, begin * shaders::kLightGroupSide);
         glDispatchCompute(static_cast<GLuint>(groups.x), static_cast<GLuint>(end - begin), 1);
       });
@@ -184,7 +184,7 @@ absl::Status LightVolumeRenderer::Arrive(const ResidentMedium& medium, const Gro
   arrived_.BindImage(shaders::kArrivedImage, GL_WRITE_ONLY);
   program->Use();
   absl::Status arrived =
-      programs_->Pieces().Steps(kBlock, medium.BlockCount(), [&](int begin, int end) {
+      programs_->Pieces().Steps(kArriveBlock, medium.BlockCount(), [&](int begin, int end) {
         const int count = end - begin;
         const int rows = (count + kMaxGroupsInRow - 1) / kMaxGroupsInRow;
         program->Set(uniform::first_block, begin);
@@ -266,8 +266,8 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
     eye_.Target().Clear(0.0F, 0.0F, 0.0F, 0.0F, 1);
   }
   const LimitedTo limited(Where::kCovered, settings.cover);
-  return whole_target_.Draw(programs_->Pieces(), {"march", kSample_ns * settings.slices}, *program,
-                            eye_.Target());
+  return whole_target_.Draw(programs_->Pieces(), {"march", kMarchedSample_ns * settings.slices},
+                            *program, eye_.Target());
 }
 
 }  // namespace thunderhead::renderers

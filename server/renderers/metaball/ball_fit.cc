@@ -15,7 +15,7 @@ namespace thunderhead::renderers {
 namespace {
 
 // Balls are far larger than the cells of a storm that has more, and a fit grows with them.
-constexpr double kMaxCells = 2e6;
+constexpr double kMaxFittedCells = 2e6;
 
 // The paper's u. With more the fit is nearer, but balls reach farther beyond the cloud's edge,
 // which costs pictures more (docs/performance.md).
@@ -28,7 +28,7 @@ glm::ivec3 CoarseningForFit(const volume::HydrometeorFields& fields) {
     const glm::dvec3 coarse = box / glm::dvec3(factor);
     return coarse.x * coarse.y * coarse.z;
   };
-  while (cells() > kMaxCells) {
+  while (cells() > kMaxFittedCells) {
     // The axis whose cells are shortest.
     const glm::dvec3 size_m = fields.grid.spacing_m * glm::dvec3(factor);
     if (size_m.z <= size_m.x && size_m.z <= size_m.y) {

@@ -20,11 +20,11 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kMinLightTexels = 64;  // along the longer side
-constexpr int kMaxLightTexels = 1024;
+constexpr int kMinBallLightTexels = 64;  // along the longer side
+constexpr int kMaxBallLightTexels = 1024;
 constexpr double kTexelsAcrossBall = 8.0;  // of the smaller balls
 
-constexpr gl::PieceCost kPixel{"splat", 1000.0};
+constexpr gl::PieceCost kSplatPixel{"splat", 1000.0};
 constexpr gl::PieceCost kBallLevel{"balls' light", 2e5};
 constexpr gl::PieceCost kDiffuseBall{"balls' diffuse light", 5000.0};
 
@@ -119,8 +119,8 @@ LightPlane LightPlaneOf(const std::vector<Ball>& balls, const BallBox& box,
   plane.frame = LightFrameOf({box.HalfExtent_m()}, towards);
   const glm::dvec2 across_m = 2.0 * plane.frame.half_extent_m;
   const double longest_m = std::max(across_m.x, across_m.y);
-  plane.texels_per_m = std::clamp(0.5 * kTexelsAcrossBall / *small, kMinLightTexels / longest_m,
-                                  kMaxLightTexels / longest_m);
+  plane.texels_per_m = std::clamp(0.5 * kTexelsAcrossBall / *small, kMinBallLightTexels / longest_m,
+                                  kMaxBallLightTexels / longest_m);
   plane.size = glm::max(glm::ivec2(glm::ceil(across_m * plane.texels_per_m)), glm::ivec2(1));
   return plane;
 }
@@ -350,7 +350,7 @@ absl::Status MetaballRenderer::Splat(const RenderSettings& settings) {
   sources_.BindStorage(shaders::kBallSourcesBinding);
   if (settings.ground_distance != nullptr)
     settings.ground_distance->Bind(shaders::kGroundDistanceUnit);
-  return whole_target_.Draw(programs_->Pieces(), kPixel, *program, eye_target_);
+  return whole_target_.Draw(programs_->Pieces(), kSplatPixel, *program, eye_target_);
 }
 
 std::size_t MetaballRenderer::Bytes() const {

@@ -10,18 +10,18 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kMinTile_px = 16;
+constexpr int kMinBallTile_px = 16;
 
 // Maximum entries of all lists together: 16 MB on the device.
 constexpr std::size_t kMaxListed = std::size_t{1} << 22U;
 
 // The rectangle around a ball in normalised device coordinates; empty if low is above high.
-struct Cover {
+struct BallCover {
   glm::dvec2 low{-1.0};
   glm::dvec2 high{1.0};
 };
 
-constexpr Cover kNothing = {glm::dvec2(1.0), glm::dvec2(-1.0)};
+constexpr BallCover kNothing = {glm::dvec2(1.0), glm::dvec2(-1.0)};
 
 // The interval of tangents under which a ball is seen along one axis, `x` across and `z` forward of
 // the eye, if the eye is before all of it.
@@ -30,7 +30,7 @@ glm::dvec2 Tangents(double x, double z, double radius) {
   return glm::dvec2(x * z - root, x * z + root) / (z * z - radius * radius);
 }
 
-Cover CoverOf(const Ball& ball, const scene::View& view) {
+BallCover CoverOf(const Ball& ball, const scene::View& view) {
   const glm::dvec3 off_m = ball.middle_m - view.eye_m;
   const double x = glm::dot(off_m, view.right);
   const double y = glm::dot(off_m, view.up);
@@ -58,7 +58,7 @@ struct TileRange {
   }
 };
 
-TileRange RangeOf(const Cover& cover, const glm::ivec2& size_px, int tile_px) {
+TileRange RangeOf(const BallCover& cover, const glm::ivec2& size_px, int tile_px) {
   if (cover.low.x >= cover.high.x || cover.low.y >= cover.high.y || cover.low.x >= 1.0 ||
       cover.low.y >= 1.0 || cover.high.x <= -1.0 || cover.high.y <= -1.0) {
     return {};
@@ -90,11 +90,11 @@ std::vector<std::uint32_t> NearestFirst(const std::vector<Ball>& balls, const sc
 
 BallTiles TilesOf(const std::vector<Ball>& balls, const scene::View& view,
                   const glm::ivec2& size_px) {
-  std::vector<Cover> covers;
+  std::vector<BallCover> covers;
   covers.reserve(balls.size());
   for (const Ball& ball : balls) covers.push_back(CoverOf(ball, view));
   BallTiles tiles;
-  tiles.tile_px = kMinTile_px;
+  tiles.tile_px = kMinBallTile_px;
   std::vector<TileRange> ranges(balls.size());
   std::size_t listed = 0;
   while (true) {
