@@ -19,10 +19,10 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr double kWidth_m = 40'000.0;
-constexpr double kHeight_m = 500.0;
+constexpr double kTableWidth_m = 40'000.0;
+constexpr double kTableEye_m = 500.0;
 constexpr double kOpticalDepth = 0.02;
-constexpr int kPixels = 801;
+constexpr int kTablePixels = 801;
 constexpr double kHalfWidth_deg = 60.0;
 
 // Extinction is stored in half floats, with an error of at most 2^-12. So are the light volume's
@@ -49,14 +49,14 @@ class PhaseTables : public testing::TestWithParam<physics::PhaseFunction> {
 
   // The angle between the middle of the picture and pixel `i`.
   static double Angle_rad(int i) {
-    const double across = (i + 0.5) / kPixels * 2.0 - 1.0;
+    const double across = (i + 0.5) / kTablePixels * 2.0 - 1.0;
     return std::atan(std::abs(across) * std::tan(glm::radians(kHalfWidth_deg)));
   }
 
   // A row of pixels from below a slab of cloud: straight up in its middle, where the sun is, or
   // where it would be if it shone straight from below (which needs no ground).
   std::vector<float> LookUp(double sun_elevation_deg, const accuracy::PlainTechnique& renderer) {
-    const auto fields = support::MakeSlab(kWidth_m, kHeight_m, kOpticalDepth / kHeight_m);
+    const auto fields = support::MakeSlab(kTableWidth_m, kTableEye_m, kOpticalDepth / kTableEye_m);
     ResidentMedium::Cost cost;
     DetailNoises noises;
     const ResidentMedium medium(scene_, *fields, &noises, &cost);
@@ -69,7 +69,7 @@ class PhaseTables : public testing::TestWithParam<physics::PhaseFunction> {
     settings.view.tan_half_height = 1e-3;
     settings.illumination = {scene::Direction(0.0, sun_elevation_deg), glm::vec3(kIrradiance),
                              glm::vec3(0.0F)};
-    settings.eye_size = {kPixels, 1};
+    settings.eye_size = {kTablePixels, 1};
     settings.slices = 64;
     const auto programs = std::make_shared<gl::ProgramCache>();
     if (renderer == test_support::kHalfAngle) {
@@ -107,7 +107,7 @@ TEST_P(PhaseTables, SingleScatteringFollowsTheCurve) {
     const std::vector<float> eye = LookUp(sun_elevation_deg, renderer);
     const double error = renderer == test_support::kHalfAngle ? kSlicingError : kMarchingError;
     double squares = 0.0;
-    for (int i = 0; i < kPixels; ++i) {
+    for (int i = 0; i < kTablePixels; ++i) {
       const double up = std::cos(Angle_rad(i));
       const double mu = sun_elevation_deg > 0.0 ? up : -up;
       // Light comes from above, or from below: the integral of exp(-t / up) exp(-depth towards the
@@ -125,7 +125,7 @@ TEST_P(PhaseTables, SingleScatteringFollowsTheCurve) {
       const glm::dvec3 high = glm::max(expected, glm::max(curve(-kTexel_rad), curve(kTexel_rad)));
       for (int c = 0; c < 3; ++c) {
         const double value = eye[4 * i + c];
-        squares += (value / expected[c] - 1.0) * (value / expected[c] - 1.0) / (3.0 * kPixels);
+        squares += (value / expected[c] - 1.0) * (value / expected[c] - 1.0) / (3.0 * kTablePixels);
         ASSERT_GE(value, low[c] * (1.0 - error)) << glm::degrees(std::acos(mu));
         ASSERT_LE(value, high[c] * (1.0 + error)) << glm::degrees(std::acos(mu));
       }
@@ -160,7 +160,7 @@ class Halos : public PhaseTables {
     Halo halo;
     double brightest = 0.0;
     double first = 0.0;
-    for (int i = kPixels / 2; i < kPixels; ++i) {
+    for (int i = kTablePixels / 2; i < kTablePixels; ++i) {
       const double angle_deg = glm::degrees(Angle_rad(i));
       if (angle_deg < low_deg || angle_deg > high_deg) continue;
       if (first == 0.0) first = source(i);

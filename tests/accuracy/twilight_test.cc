@@ -22,7 +22,7 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr double kHeight_m = 20e3;
+constexpr double kTwilightEye_m = 20e3;
 constexpr double kDepression_deg = 2.0;
 
 // Below it no part of the sun's disc is above the horizon: a ray that grazes a sphere of radius R
@@ -91,7 +91,7 @@ class TwilightTest : public testing::TestWithParam<accuracy::PlainTechnique> {
   std::unique_ptr<SceneRenderer> renderer_;
   // So thin, 0.02 from side to side, that light is scattered once.
   std::shared_ptr<const volume::HydrometeorFields> fields_ =
-      support::MakeSlab(10e3, kHeight_m, 0.02 / 10e3);
+      support::MakeSlab(10e3, kTwilightEye_m, 0.02 / 10e3);
   scene::Scene scene_ = test_support::PlainScene();
 };
 
@@ -111,7 +111,7 @@ TEST_P(TwilightTest, TheEarthsShadowEndsWhereTheSunRises) {
       ++dark;
     }
     // Where the whole disc has risen, red light has come through the air.
-    if (height_m > 2.0 * ShadowHeight_m(kDepression_deg) && height_m < kHeight_m - 2e3) {
+    if (height_m > 2.0 * ShadowHeight_m(kDepression_deg) && height_m < kTwilightEye_m - 2e3) {
       EXPECT_GT(column[static_cast<std::size_t>(row)].r, 0.1 * brightest) << height_m;
     }
   }

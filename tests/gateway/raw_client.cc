@@ -21,7 +21,7 @@ namespace http = boost::beast::http;
 using boost::system::error_code;
 using net::ip::tcp;
 
-constexpr std::chrono::seconds kPatience{10};
+constexpr std::chrono::seconds kRawPatience{10};
 
 void ThrowOn(const error_code& error, const char* what) {
   if (error) throw std::runtime_error(absl::StrCat(what, ": ", error.message()));
@@ -58,7 +58,7 @@ RawClient::RawClient(uint16_t port, int receive_buffer_bytes) : stream_(io_) {
 template <typename Start>
 error_code RawClient::Await(Start start) {
   error_code result;
-  stream_.expires_after(kPatience);
+  stream_.expires_after(kRawPatience);
   start([&result](error_code error, size_t) { result = error; });
   io_.restart();
   io_.run();

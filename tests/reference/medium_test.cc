@@ -13,7 +13,7 @@
 namespace thunderhead::reference {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoLimit_m = std::numeric_limits<double>::infinity();
 
 MediumDescription TwoCells(Interpolation interpolation, Sides sides) {
   MediumDescription two = EmptyDescription({2, 1, 1}, {10.0, 10.0, 10.0});
@@ -154,7 +154,7 @@ TEST(BrickWalk, StretchesBoundExtinction) {
   }
 }
 
-double OpticalDepth(const Medium& medium, const Ray& ray, double limit_m) {
+double DepthWithin(const Medium& medium, const Ray& ray, double limit_m) {
   constexpr int kSteps = 200000;
   const RayInterval interval = Clip(medium, ray, limit_m);
   const double step_m = std::max(interval.end_m - interval.begin_m, 0.0) / kSteps;
@@ -175,10 +175,10 @@ TEST(Tracking, TransmittanceIsThatOfQuadrature) {
     RandomStream rays(11, 0, 0);
     for (int r = 0; r < 6; ++r) {
       Ray ray = RandomRay(*medium, &rays);
-      double depth = OpticalDepth(*medium, ray, kLimit_m);
+      double depth = DepthWithin(*medium, ray, kLimit_m);
       for (int i = 0; i < 200 && depth < 0.1; ++i) {
         ray = RandomRay(*medium, &rays);
-        depth = OpticalDepth(*medium, ray, kLimit_m);
+        depth = DepthWithin(*medium, ray, kLimit_m);
       }
       ASSERT_GE(depth, 0.1);
       SampleMean ratio;
@@ -201,7 +201,7 @@ TEST(Tracking, SmallTransmittance) {
   SampleMean mean;
   for (std::uint32_t i = 0; i < 400000; ++i) {
     RandomStream random(29, 0, i);
-    mean.Add(EstimateTransmittance(*slab, down, kInfinity, &random));
+    mean.Add(EstimateTransmittance(*slab, down, kNoLimit_m, &random));
   }
   ExpectAgrees(mean.Share(), std::exp(-6.0), 0.0, 1e-4);
 }
@@ -212,9 +212,9 @@ TEST(Tracking, LevelRaysEnd) {
   const auto medium = Made(lines);
   const glm::dvec3 clear = medium->Low_m() + glm::dvec3(100.0, 1900.0, 100.0);
   RandomStream random(1, 0, 0);
-  EXPECT_FALSE(SampleCollision(*medium, {clear, {1.0, 0.0, 0.0}}, kInfinity, &random).has_value());
+  EXPECT_FALSE(SampleCollision(*medium, {clear, {1.0, 0.0, 0.0}}, kNoLimit_m, &random).has_value());
   const auto nothing = Made(Chessboard(0.0, 0.0, 1.0, 0.0));
-  EXPECT_EQ(EstimateTransmittance(*nothing, {clear, {0.0, 1.0, 0.0}}, kInfinity, &random), 1.0);
+  EXPECT_EQ(EstimateTransmittance(*nothing, {clear, {0.0, 1.0, 0.0}}, kNoLimit_m, &random), 1.0);
 }
 
 TEST(Deflect, TurnsByTheAngleAsked) {

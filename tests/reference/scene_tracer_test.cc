@@ -14,7 +14,7 @@ using picture::LinearPicture;
 
 using physics::Hydrometeor;
 
-std::shared_ptr<const volume::HydrometeorFields> SmallStorm() {
+std::shared_ptr<const volume::HydrometeorFields> TracedStorm() {
   auto fields = std::make_shared<volume::HydrometeorFields>();
   fields->grid = {{8, 7, 6}, {500.0, 400.0, 300.0}, {-2000.0, -1400.0, 100.0}};
   volume::HydrometeorField cloud;
@@ -62,7 +62,7 @@ class SceneTracerTest : public ::testing::Test {
 };
 
 TEST_F(SceneTracerTest, EveryChangeIsSeen) {
-  const auto storm = SmallStorm();
+  const auto storm = TracedStorm();
   scene::Scene scene = SceneFrom(200.0);
   EXPECT_EQ(Traced(scene, storm).radiance, AtOnce(scene, *storm, 4).radiance);
   scene = SceneFrom(80.0);
@@ -79,7 +79,7 @@ TEST_F(SceneTracerTest, EveryChangeIsSeen) {
 }
 
 TEST_F(SceneTracerTest, SizesOfAPictureShowTheSameView) {
-  const auto storm = SmallStorm();
+  const auto storm = TracedStorm();
   const scene::Scene scene = SceneFrom(200.0);
   const auto mean = [&](const glm::ivec2& size_px) {
     EXPECT_TRUE(tracer_.Begin(scene, storm, size_px).ok());
@@ -95,7 +95,7 @@ TEST_F(SceneTracerTest, SizesOfAPictureShowTheSameView) {
 
 // A pause may fall anywhere, before every pixel has had its first sample too.
 TEST_F(SceneTracerTest, PausesChangeNothing) {
-  const auto storm = SmallStorm();
+  const auto storm = TracedStorm();
   scene::Scene scene = SceneFrom(200.0);
   scene.output = {96, 64, 88};
   ASSERT_TRUE(tracer_.Begin(scene, storm, {96, 64}).ok());

@@ -41,7 +41,7 @@ scene::Scene SceneOfCloud() {
   return scene;
 }
 
-FluxShare MeanOf(const scene::Scene& scene, const TraceOptions& options) {
+FluxShare SceneMeanOf(const scene::Scene& scene, const TraceOptions& options) {
   RefineLimits limits;
   limits.samples_per_pixel = 1000;
   const auto traced = TraceScene(scene, ThinCloud(), options, limits, {}, {});
@@ -61,13 +61,13 @@ TEST(TraceSceneTest, WithoutAirTheSunIsThatAboveTheAtmosphere) {
   scene::Scene scene = SceneOfCloud();
   scene.sky.turbidity = 8.0;
   scene.sun.irradiance = 2.0;
-  const FluxShare traced = MeanOf(scene, {.peak_cut_deg = 0.0, .air = false});
+  const FluxShare traced = SceneMeanOf(scene, {.peak_cut_deg = 0.0, .air = false});
   // A light of the scene's own shines through no air.
   scene.lights = {{.azimuth_deg = scene.sun.azimuth_deg,
                    .elevation_deg = scene.sun.elevation_deg,
                    .irradiance = scene.sun.irradiance}};
   scene.sun.irradiance = 0.0;
-  const FluxShare expected = MeanOf(scene, {.peak_cut_deg = 0.0, .air = false});
+  const FluxShare expected = SceneMeanOf(scene, {.peak_cut_deg = 0.0, .air = false});
   EXPECT_GT(expected.value, 0.0);
   FluxShare difference = traced;
   difference.standard_error = std::hypot(traced.standard_error, expected.standard_error);
@@ -76,8 +76,8 @@ TEST(TraceSceneTest, WithoutAirTheSunIsThatAboveTheAtmosphere) {
 }
 
 TEST(TraceSceneTest, WithoutAirAndSunAllIsBlack) {
-  EXPECT_GT(MeanOf(SceneOfCloud(), {.sun = false}).value, 0.0) << "the sky";
-  EXPECT_EQ(MeanOf(SceneOfCloud(), {.sun = false, .air = false}).value, 0.0);
+  EXPECT_GT(SceneMeanOf(SceneOfCloud(), {.sun = false}).value, 0.0) << "the sky";
+  EXPECT_EQ(SceneMeanOf(SceneOfCloud(), {.sun = false, .air = false}).value, 0.0);
 }
 
 }  // namespace

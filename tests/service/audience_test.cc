@@ -18,7 +18,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using ::testing::Gt;
 
-class CountingViewer : public Viewer {
+class ToldViewer : public Viewer {
  public:
   void Wake() override { ++wakes; }
   int wakes = 0;
@@ -88,9 +88,9 @@ class AudienceTest : public ::testing::Test {
   int formatted_ = 0;
   int due_ = 0;
   Audience::Time now_ = Audience::Time() + std::chrono::hours(1);
-  const std::vector<std::shared_ptr<CountingViewer>> viewers_ = {
-      std::make_shared<CountingViewer>(), std::make_shared<CountingViewer>(),
-      std::make_shared<CountingViewer>()};
+  const std::vector<std::shared_ptr<ToldViewer>> viewers_ = {std::make_shared<ToldViewer>(),
+                                                             std::make_shared<ToldViewer>(),
+                                                             std::make_shared<ToldViewer>()};
   Audience audience_{Format(), {.free_when_away = true}, {}, now_, [this] { ++due_; }};
   std::uint64_t presenter_ = 0;
   std::uint64_t ana_ = 0;
@@ -192,7 +192,7 @@ TEST_F(AudienceTest, ManyWhoPointAreFoundInTurn) {
   constexpr std::size_t kPeople = 2 * Audience::kMostFound + 1;
   std::vector<std::uint64_t> people;
   for (std::size_t i = 0; i < kPeople; ++i) {
-    people.push_back(*audience_.Join(Role::kViewer, "", std::make_shared<CountingViewer>(), now_));
+    people.push_back(*audience_.Join(Role::kViewer, "", std::make_shared<ToldViewer>(), now_));
   }
   for (const std::uint64_t id : people) ASSERT_TRUE(audience_.Point(id, RayTo(1.0), now_).ok());
   std::size_t found = 0;

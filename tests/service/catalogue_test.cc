@@ -14,7 +14,7 @@ using service::StormPlace;
 using Response = v1::InteractResponse;
 using Stub = v1::ThunderheadService::Stub;
 
-volume::StormInfoPtr Storm(const std::string& id, const std::vector<int>& hours) {
+volume::StormInfoPtr StormOfHours(const std::string& id, const std::vector<int>& hours) {
   volume::StormInfo storm;
   storm.id = id;
   for (const int hour : hours) storm.times.push_back({"2013-05-20T0" + std::to_string(hour), 0.0});
@@ -22,18 +22,19 @@ volume::StormInfoPtr Storm(const std::string& id, const std::vector<int>& hours)
 }
 
 TEST(PlaceAfter, KeepsTheTimeAndFollowsTheNewest) {
-  const volume::StormChange grown{Storm("file", {2, 4}), Storm("series", {1, 2, 4, 5})};
+  const volume::StormChange grown{StormOfHours("file", {2, 4}),
+                                  StormOfHours("series", {1, 2, 4, 5})};
   EXPECT_EQ(PlaceAfter(grown, 0), (StormPlace{"series", 1}));
   EXPECT_EQ(PlaceAfter(grown, 1), (StormPlace{"series", 3}));
 }
 
 TEST(PlaceAfter, GoesToTheTimeBeforeOneThatIsGone) {
-  const volume::StormChange shrunk{Storm("a", {1, 2, 3, 4}), Storm("a", {1, 3, 4})};
+  const volume::StormChange shrunk{StormOfHours("a", {1, 2, 3, 4}), StormOfHours("a", {1, 3, 4})};
   EXPECT_EQ(PlaceAfter(shrunk, 1), (StormPlace{"a", 0}));
   EXPECT_EQ(PlaceAfter(shrunk, 2), (StormPlace{"a", 1}));
-  const volume::StormChange first_gone{Storm("a", {1, 2, 3}), Storm("a", {2, 3})};
+  const volume::StormChange first_gone{StormOfHours("a", {1, 2, 3}), StormOfHours("a", {2, 3})};
   EXPECT_EQ(PlaceAfter(first_gone, 0), (StormPlace{"a", 0}));
-  EXPECT_EQ(PlaceAfter({Storm("a", {1}), nullptr}, 0), std::nullopt);
+  EXPECT_EQ(PlaceAfter({StormOfHours("a", {1}), nullptr}, 0), std::nullopt);
 }
 
 class ChangingCatalogue : public ::testing::Test {

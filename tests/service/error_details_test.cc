@@ -76,7 +76,7 @@ void ExpectRefusal(const grpc::Status& refusal, grpc::StatusCode code, const std
   EXPECT_EQ(decoded.retry_s > 0.0, may_retry) << decoded.retry_s;
 }
 
-struct Case {
+struct DetailsCase {
   const char* scene;
   const char* field;
   const char* description;
@@ -84,9 +84,9 @@ struct Case {
   std::map<std::string, std::string> metadata = {};
 };
 
-void PrintTo(const Case& wrong, std::ostream* out) { *out << wrong.scene; }
+void PrintTo(const DetailsCase& wrong, std::ostream* out) { *out << wrong.scene; }
 
-class WrongFieldTest : public ::testing::TestWithParam<Case> {};
+class WrongFieldTest : public ::testing::TestWithParam<DetailsCase> {};
 
 TEST_P(WrongFieldTest, IsInTheDetails) {
   FakeService service;
@@ -107,51 +107,55 @@ TEST_P(WrongFieldTest, IsInTheDetails) {
 INSTANTIATE_TEST_SUITE_P(
     Scenes, WrongFieldTest,
     ::testing::Values(
-        Case{R"({"fields": [{"hydrometeor": 1}, {"hydrometeor": 2, "radiusM": 5}]})",
-             "scene.fields[1].radius_m",
-             "is 5; it must be between 1e-07 and 0.1 m",
-             "VALUE_OUT_OF_RANGE",
-             {{"minimum", "1e-07"}, {"maximum", "0.1"}, {"unit", "m"}}},
-        Case{R"({"fields": [{"hydrometeor": 77}]})",
-             "scene.fields[0].hydrometeor",
-             "is 77; it must be one of HYDROMETEOR_UNSPECIFIED, HYDROMETEOR_CLOUD, "
-             "HYDROMETEOR_RAIN, HYDROMETEOR_ICE, HYDROMETEOR_SNOW, HYDROMETEOR_GRAUPEL, "
-             "HYDROMETEOR_HAIL",
-             "VALUE_UNKNOWN",
-             {{"allowed",
-               "HYDROMETEOR_UNSPECIFIED, HYDROMETEOR_CLOUD, HYDROMETEOR_RAIN, HYDROMETEOR_ICE, "
-               "HYDROMETEOR_SNOW, HYDROMETEOR_GRAUPEL, HYDROMETEOR_HAIL"}}},
-        Case{R"({"lights": [{}, {}, {}, {}, {}]})",
-             "scene.lights",
-             "has 5 items; it may have at most 4",
-             "TOO_MANY_ITEMS",
-             {{"maximum", "4"}, {"unit", "items"}}},
-        Case{R"({"sun": {"clock": {"dateTime": "2013-05-20T20:00:00Z and some seconds later"}}})",
-             "scene.sun.clock.date_time",
-             "is 43 bytes long; it may be at most 40 bytes",
-             "TEXT_TOO_LONG",
-             {{"maximum", "40"}, {"unit", "bytes"}}},
-        Case{R"({"sun": {"clock": {"dateTime": "noon"}}})", "scene.sun.clock.date_time",
-             "is 'noon'; it must be a date and time like 2013-05-20T20:00:00Z",
-             "DATE_TIME_MALFORMED"},
-        Case{R"({"fields": [{"scale": 1}]})", "scene.fields[0].hydrometeor",
-             "is not given; it must name the field that the settings are for", "FIELD_MISSING"},
-        Case{R"({"fields": [{"hydrometeor": 2}, {"hydrometeor": 1}, {"hydrometeor": 2}]})",
-             "scene.fields[2].hydrometeor",
-             "is HYDROMETEOR_RAIN, as is scene.fields[0]; each hydrometeor may be "
-             "listed once",
-             "HYDROMETEOR_REPEATED"},
-        Case{R"({"output": {"widthPx": 8192, "heightPx": 8192}})",
-             "scene.output",
-             "scene.output.width_px times scene.output.height_px is 8192 x 8192 = 67108864; it "
-             "must be at most 33554432 pixels",
-             "PICTURE_TOO_LARGE",
-             {{"maximum", "33554432"}, {"unit", "pixels"}}},
-        Case{R"({"timeIndex": 4})",
-             "scene.time_index",
-             "is 4; storm 'anvil' has times 0 to 3",
-             "VALUE_OUT_OF_RANGE",
-             {{"minimum", "0"}, {"maximum", "3"}}}));
+        DetailsCase{R"({"fields": [{"hydrometeor": 1}, {"hydrometeor": 2, "radiusM": 5}]})",
+                    "scene.fields[1].radius_m",
+                    "is 5; it must be between 1e-07 and 0.1 m",
+                    "VALUE_OUT_OF_RANGE",
+                    {{"minimum", "1e-07"}, {"maximum", "0.1"}, {"unit", "m"}}},
+        DetailsCase{
+            R"({"fields": [{"hydrometeor": 77}]})",
+            "scene.fields[0].hydrometeor",
+            "is 77; it must be one of HYDROMETEOR_UNSPECIFIED, HYDROMETEOR_CLOUD, "
+            "HYDROMETEOR_RAIN, HYDROMETEOR_ICE, HYDROMETEOR_SNOW, HYDROMETEOR_GRAUPEL, "
+            "HYDROMETEOR_HAIL",
+            "VALUE_UNKNOWN",
+            {{"allowed",
+              "HYDROMETEOR_UNSPECIFIED, HYDROMETEOR_CLOUD, HYDROMETEOR_RAIN, HYDROMETEOR_ICE, "
+              "HYDROMETEOR_SNOW, HYDROMETEOR_GRAUPEL, HYDROMETEOR_HAIL"}}},
+        DetailsCase{R"({"lights": [{}, {}, {}, {}, {}]})",
+                    "scene.lights",
+                    "has 5 items; it may have at most 4",
+                    "TOO_MANY_ITEMS",
+                    {{"maximum", "4"}, {"unit", "items"}}},
+        DetailsCase{
+            R"({"sun": {"clock": {"dateTime": "2013-05-20T20:00:00Z and some seconds later"}}})",
+            "scene.sun.clock.date_time",
+            "is 43 bytes long; it may be at most 40 bytes",
+            "TEXT_TOO_LONG",
+            {{"maximum", "40"}, {"unit", "bytes"}}},
+        DetailsCase{R"({"sun": {"clock": {"dateTime": "noon"}}})", "scene.sun.clock.date_time",
+                    "is 'noon'; it must be a date and time like 2013-05-20T20:00:00Z",
+                    "DATE_TIME_MALFORMED"},
+        DetailsCase{R"({"fields": [{"scale": 1}]})", "scene.fields[0].hydrometeor",
+                    "is not given; it must name the field that the settings are for",
+                    "FIELD_MISSING"},
+        DetailsCase{R"({"fields": [{"hydrometeor": 2}, {"hydrometeor": 1}, {"hydrometeor": 2}]})",
+                    "scene.fields[2].hydrometeor",
+                    "is HYDROMETEOR_RAIN, as is scene.fields[0]; each hydrometeor may be "
+                    "listed once",
+                    "HYDROMETEOR_REPEATED"},
+        DetailsCase{
+            R"({"output": {"widthPx": 8192, "heightPx": 8192}})",
+            "scene.output",
+            "scene.output.width_px times scene.output.height_px is 8192 x 8192 = 67108864; it "
+            "must be at most 33554432 pixels",
+            "PICTURE_TOO_LARGE",
+            {{"maximum", "33554432"}, {"unit", "pixels"}}},
+        DetailsCase{R"({"timeIndex": 4})",
+                    "scene.time_index",
+                    "is 4; storm 'anvil' has times 0 to 3",
+                    "VALUE_OUT_OF_RANGE",
+                    {{"minimum", "0"}, {"maximum", "3"}}}));
 
 TEST(ErrorDetailsTest, WhatIsNotFoundHasItsReason) {
   FakeService service;

@@ -11,8 +11,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr Clock::time_point kStart{};
-constexpr const char* kView = "view";
+constexpr Clock::time_point kPlannedAt{};
+constexpr const char* kPlannedView = "view";
 
 scene::Scene Hd() { return {}; }  // 1280 x 720, 128 slices: 118 million samples
 
@@ -37,7 +37,8 @@ class FramePlannerTest : public ::testing::Test {
     for (int i = 0; i < count; ++i) {
       std::get<scene::OrbitCamera>(scene_.camera).azimuth_deg += 1.0;
       ++revision_;
-      const Decision decision = planner_.Decide(At(revision_, scene_, kStart), kStart, last_drawn_);
+      const Decision decision =
+          planner_.Decide(At(revision_, scene_, kPlannedAt), kPlannedAt, last_drawn_);
       ASSERT_TRUE(decision.plan.has_value());
       Draw(machine, *decision.plan);
     }
@@ -45,7 +46,7 @@ class FramePlannerTest : public ::testing::Test {
 
   void Draw(const Machine& machine, const FramePlan& plan) {
     const double ms = machine.Cost(scene_, plan.quality);
-    costs_.Observe(kView, {scene_, plan.quality, ms, {{scene::FrameStage::kSlices, ms}}});
+    costs_.Observe(kPlannedView, {scene_, plan.quality, ms, {{scene::FrameStage::kSlices, ms}}});
     planner_.Drawn(revision_, plan);
     last_drawn_ = LastDrawn{scene_, plan.quality};
     last_plan_ = plan;
@@ -53,12 +54,13 @@ class FramePlannerTest : public ::testing::Test {
   }
 
   Decision Ask(milliseconds since_change) {
-    return planner_.Decide(At(revision_, scene_, kStart), kStart + since_change, last_drawn_);
+    return planner_.Decide(At(revision_, scene_, kPlannedAt), kPlannedAt + since_change,
+                           last_drawn_);
   }
 
   const accuracy::OfferTables tables_;
   accuracy::MachineCosts costs_{tables_};
-  FramePlanner planner_{PlannerTargets{}, costs_, kView};
+  FramePlanner planner_{PlannerTargets{}, costs_, kPlannedView};
   scene::Scene scene_ = Hd();
   std::uint64_t revision_ = 0;
   std::optional<LastDrawn> last_drawn_;
@@ -115,7 +117,7 @@ TEST_F(FramePlannerTest, RefinesAfterTheDelayAtFullQualityWhenThatIsQuick) {
   EXPECT_FALSE(last_plan_.refined);
   const Decision early = Ask(milliseconds(79));
   EXPECT_FALSE(early.plan.has_value());
-  EXPECT_EQ(early.ask_again_at, kStart + milliseconds(80));
+  EXPECT_EQ(early.ask_again_at, kPlannedAt + milliseconds(80));
   const Decision decision = Ask(milliseconds(80));
   ASSERT_TRUE(decision.plan.has_value());
   EXPECT_EQ(*decision.plan, (FramePlan{FrameQuality{}, true}));
@@ -135,7 +137,7 @@ TEST_F(FramePlannerTest, SlowMachineRefinesInTwoSteps) {
   EXPECT_LE(last_ms_, 180.0);
   const Decision between = Ask(milliseconds(300));
   EXPECT_FALSE(between.plan.has_value());
-  EXPECT_EQ(between.ask_again_at, kStart + milliseconds(500));
+  EXPECT_EQ(between.ask_again_at, kPlannedAt + milliseconds(500));
   const Decision last = Ask(milliseconds(500));
   ASSERT_TRUE(last.plan.has_value());
   EXPECT_EQ(*last.plan, (FramePlan{FrameQuality{}, true}));

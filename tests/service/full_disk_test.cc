@@ -21,7 +21,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr int kTimes = 3;
+constexpr int kDiskTimes = 3;
 
 class FullDisk : public ::testing::Test {
  protected:
@@ -30,7 +30,7 @@ class FullDisk : public ::testing::Test {
       GTEST_SKIP() << "no namespaces here: unshare -rm is refused";
     }
     fs::create_directories(storms_);
-    for (int time = 0; time < kTimes; ++time) WriteRunFile(storms_, time);
+    for (int time = 0; time < kDiskTimes; ++time) WriteRunFile(storms_, time);
   }
 
   // Runs a script in a mount namespace of its own, with the functions `draw` and `watch` for the
@@ -64,7 +64,7 @@ class FullDisk : public ::testing::Test {
 
   static std::vector<std::string> Products() {
     std::vector<std::string> names;
-    for (int time = 0; time < kTimes; ++time) names.push_back(RunTime(time).substr(9) + ".png");
+    for (int time = 0; time < kDiskTimes; ++time) names.push_back(RunTime(time).substr(9) + ".png");
     return names;
   }
 
@@ -92,7 +92,7 @@ TEST_F(FullDisk, WhatItCannotHoldComesWhenThereIsRoom) {
   ASSERT_EQ(lines.size(), 5U) << Said();
   EXPECT_EQ(lines[0], "code 75") << Said();
   EXPECT_GE(std::stoi(lines[1]), 1) << "full from the beginning";
-  EXPECT_LT(std::stoi(lines[1]), kTimes) << "not full";
+  EXPECT_LT(std::stoi(lines[1]), kDiskTimes) << "not full";
   EXPECT_EQ(lines[2], "0");
   EXPECT_EQ(lines[3], "code 0") << Said();
   EXPECT_THAT(Said(), HasSubstr("cannot be written (No space left on device)"));

@@ -16,7 +16,7 @@ namespace {
 
 using ::testing::HasSubstr;
 using Stub = v1::ThunderheadService::Stub;
-using Request = v1::GenerateCloudRequest;
+using GenerateRequest = v1::GenerateCloudRequest;
 
 service::ServerOptions KeepingCloudsIn(const std::string& folder) {
   service::ServerOptions options;
@@ -26,7 +26,7 @@ service::ServerOptions KeepingCloudsIn(const std::string& folder) {
 
 class GenerateCloudTest : public ::testing::Test {
  protected:
-  grpc::Status Make(const Request& request) {
+  grpc::Status Make(const GenerateRequest& request) {
     return Call(service_.stub(), &Stub::GenerateCloud, request, &response_);
   }
 
@@ -57,7 +57,7 @@ class GenerateCloudTest : public ::testing::Test {
 };
 
 TEST_F(GenerateCloudTest, TheCloudIsAStormFromThenOn) {
-  Request request;
+  GenerateRequest request;
   request.set_seed(7);
   ASSERT_TRUE(Make(request).ok());
   EXPECT_EQ(response_.storm().id(), "fair-weather-cumulus-7");
@@ -71,7 +71,7 @@ TEST_F(GenerateCloudTest, TheCloudIsAStormFromThenOn) {
 }
 
 TEST_F(GenerateCloudTest, ACloudThatWasMadeCanBeDeleted) {
-  ASSERT_TRUE(Make(Request()).ok());
+  ASSERT_TRUE(Make(GenerateRequest()).ok());
   const std::string id = response_.storm().id();
   EXPECT_TRUE(response_.storm().deletable());
   EXPECT_FALSE(List().storms(0).deletable());
@@ -100,7 +100,7 @@ TEST_F(GenerateCloudTest, ACloudThatWasMadeCanBeDeleted) {
   EXPECT_THAT(refused.error_message(), HasSubstr(id));
   EXPECT_EQ(Delete(id).error_code(), grpc::StatusCode::NOT_FOUND);
   // A viewer of the deleted cloud must not get another one under its id.
-  ASSERT_TRUE(Make(Request()).ok());
+  ASSERT_TRUE(Make(GenerateRequest()).ok());
   EXPECT_NE(response_.storm().id(), id);
 }
 
@@ -139,14 +139,14 @@ TEST(CloudStore, KnowsTheCloudsOfAnEarlierServerFromOtherFiles) {
 }
 
 TEST_F(GenerateCloudTest, TheSameAgainIsAnotherStorm) {
-  ASSERT_TRUE(Make(Request()).ok());
-  ASSERT_TRUE(Make(Request()).ok());
+  ASSERT_TRUE(Make(GenerateRequest()).ok());
+  ASSERT_TRUE(Make(GenerateRequest()).ok());
   EXPECT_EQ(response_.storm().id(), "fair-weather-cumulus-1-2");
   EXPECT_EQ(Files(), 2U);
 }
 
 TEST_F(GenerateCloudTest, BadParametersAreNamedAndLeaveNothing) {
-  Request request;
+  GenerateRequest request;
   request.set_octaves(0);
   grpc::Status status = Make(request);
   EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
@@ -187,7 +187,8 @@ TEST_F(GenerateCloudTest, BadParametersAreNamedAndLeaveNothing) {
 TEST(GenerateCloud, AServerWithoutAFolderSaysSo) {
   FakeService service;
   v1::GenerateCloudResponse response;
-  const grpc::Status status = Call(service.stub(), &Stub::GenerateCloud, Request(), &response);
+  const grpc::Status status =
+      Call(service.stub(), &Stub::GenerateCloud, GenerateRequest(), &response);
   EXPECT_EQ(status.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
   EXPECT_THAT(status.error_message(), HasSubstr("--clouds"));
 }

@@ -18,7 +18,7 @@ namespace {
 using Response = v1::InteractResponse;
 using Stub = v1::ThunderheadService::Stub;
 
-const std::string kSample = std::string(THUNDERHEAD_SOURCE_DIR) + "/samples/supercell.nc";
+const std::string kServedSample = std::string(THUNDERHEAD_SOURCE_DIR) + "/samples/supercell.nc";
 constexpr int kViewers = 200;
 
 v1::Scene SmallSceneWithSun(float azimuth_deg) {
@@ -29,7 +29,7 @@ v1::Scene SmallSceneWithSun(float azimuth_deg) {
   return scene;
 }
 
-v1::InteractRequest DrawsDown() {
+v1::InteractRequest DrawsDownwards() {
   v1::InteractRequest request;
   v1::Ray& ray = *request.mutable_add_mark()->add_rays();
   ray.mutable_origin()->set_z_m(30000.0F);
@@ -40,7 +40,7 @@ v1::InteractRequest DrawsDown() {
 class KilledServerTest : public ::testing::Test {
  protected:
   std::unique_ptr<ServedProgram> Start() const {
-    return std::make_unique<ServedProgram>(PROGRAM, kSample, state_);
+    return std::make_unique<ServedProgram>(PROGRAM, kServedSample, state_);
   }
 
   const TemporaryFolder folder_;
@@ -74,7 +74,7 @@ TEST_F(KilledServerTest, EverybodyFindsTheSameSessionAgain) {
     const Response taken = presenter.Answer(presenter.Send(turns));
     ASSERT_TRUE(taken.has_scene_taken()) << taken.ShortDebugString();
     revision = taken.scene_taken().scene_revision();
-    presenter.Send(DrawsDown());
+    presenter.Send(DrawsDownwards());
     for (const auto& viewer : viewers) {
       ASSERT_TRUE(viewer->AwaitFrame(revision));
       marks = viewer->AwaitNewest(Response::kMarks).marks().SerializeAsString();

@@ -17,7 +17,7 @@
 namespace thunderhead::testing {
 namespace {
 
-constexpr char kSample[] = THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc";
+constexpr char kLitSample[] = THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc";
 
 // Each transport sees the background through less than the whole optical depth (below), so opacity
 // is never above 1 - exp(-depth), and 1 where the storm is deep.
@@ -46,8 +46,8 @@ class LightFile : public ::testing::TestWithParam<Renderer> {};
 TEST_P(LightFile, OpacityAndOpticalDepthAgree) {
   const TemporaryFolder folder;
   const std::string file = folder.File("storm.exr");
-  std::vector<std::string> arguments = {"render", kSample,  "-o",    file,       "--time",
-                                        "1",      "--size", "96x54", "--device", "software"};
+  std::vector<std::string> arguments = {"render", kLitSample, "-o",    file,       "--time",
+                                        "1",      "--size",   "96x54", "--device", "software"};
   arguments.insert(arguments.end(), GetParam().flags.begin(), GetParam().flags.end());
   const std::string log = folder.File("log");
   ASSERT_EQ(RunningProgram(PROGRAM, arguments, log, log).Wait().code, 0);
@@ -138,7 +138,7 @@ TEST_P(TransportOpacity, IsOfTheDepthThatItSeesThrough) {
   const std::string file = folder.File("storm.exr");
   const std::string log = folder.File("log");
   ASSERT_EQ(RunningProgram(PROGRAM,
-                           {"render", kSample, "-o", file, "--time", "1", "--size", "96x54",
+                           {"render", kLitSample, "-o", file, "--time", "1", "--size", "96x54",
                             "--scene", scene, "--device", "software"},
                            log, log)
                 .Wait()

@@ -10,14 +10,14 @@ namespace {
 
 using std::chrono::seconds;
 
-const Roster::Time kStart = Roster::Time() + std::chrono::hours(1);
+const Roster::Time kOpenedAt = Roster::Time() + std::chrono::hours(1);
 const RosterTimeouts kTimeouts;
 
 std::string ReasonOf(const absl::Status& status) { return base::DetailsOf(status).reason; }
 
 // A presenter, Ana and Ben.
 struct Class {
-  explicit Class(const Rules& rules = {}) : roster(rules, kStart) {
+  explicit Class(const Rules& rules = {}) : roster(rules, kOpenedAt) {
     presenter = roster.Join(Role::kPresenter, "Teacher");
     ana = roster.Join(Role::kViewer, "Ana");
     ben = roster.Join(Role::kViewer, "");
@@ -39,14 +39,14 @@ TEST(RosterTest, PresenterSteersOnComing) {
 
 TEST(RosterTest, NobodySteersWithTheIdOfNobody) {
   Class group;
-  ASSERT_TRUE(group.roster.GiveControl(group.presenter, 0, kStart).ok());
+  ASSERT_TRUE(group.roster.GiveControl(group.presenter, 0, kOpenedAt).ok());
   EXPECT_FALSE(group.roster.MaySteer(0).ok());
 }
 
 TEST(RosterTest, ViewersWaitForAPresenterWhoIsOnTheWay) {
-  Roster roster({}, kStart);
+  Roster roster({}, kOpenedAt);
   const std::uint64_t ana = roster.Join(Role::kViewer, "Ana");
-  ASSERT_TRUE(roster.AskControl(ana, kStart).ok());
+  ASSERT_TRUE(roster.AskControl(ana, kOpenedAt).ok());
   EXPECT_EQ(roster.steering(), 0U);
   EXPECT_TRUE(roster.presenter_away());
   const std::uint64_t presenter = roster.Join(Role::kPresenter, "");
@@ -56,11 +56,11 @@ TEST(RosterTest, ViewersWaitForAPresenterWhoIsOnTheWay) {
 
 TEST(RosterTest, WhoSteersIsAskedAndGives) {
   Class group;
-  ASSERT_TRUE(group.roster.AskControl(group.ana, kStart).ok());
+  ASSERT_TRUE(group.roster.AskControl(group.ana, kOpenedAt).ok());
   EXPECT_TRUE(group.roster.Find(group.ana)->asks);
   EXPECT_EQ(group.roster.steering(), group.presenter);
-  EXPECT_EQ(ReasonOf(group.roster.GiveControl(group.ben, group.ana, kStart)), "NOT_STEERING");
-  ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kStart).ok());
+  EXPECT_EQ(ReasonOf(group.roster.GiveControl(group.ben, group.ana, kOpenedAt)), "NOT_STEERING");
+  ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kOpenedAt).ok());
   EXPECT_EQ(group.roster.steering(), group.ana);
   EXPECT_FALSE(group.roster.Find(group.ana)->asks);
   EXPECT_FALSE(group.roster.MaySteer(group.presenter).ok());
@@ -68,18 +68,18 @@ TEST(RosterTest, WhoSteersIsAskedAndGives) {
 
 TEST(RosterTest, ARequestEndsUnanswered) {
   Class group;
-  ASSERT_TRUE(group.roster.AskControl(group.ana, kStart).ok());
-  group.roster.Advance(kStart + kTimeouts.answer - seconds(1));
+  ASSERT_TRUE(group.roster.AskControl(group.ana, kOpenedAt).ok());
+  group.roster.Advance(kOpenedAt + kTimeouts.answer - seconds(1));
   EXPECT_TRUE(group.roster.Find(group.ana)->asks);
   const std::uint64_t before = group.roster.revision();
-  group.roster.Advance(kStart + kTimeouts.answer);
+  group.roster.Advance(kOpenedAt + kTimeouts.answer);
   EXPECT_FALSE(group.roster.Find(group.ana)->asks);
   EXPECT_GT(group.roster.revision(), before);
 }
 
 TEST(RosterTest, ARefusedRequestEnds) {
   Class group;
-  ASSERT_TRUE(group.roster.AskControl(group.ana, kStart).ok());
+  ASSERT_TRUE(group.roster.AskControl(group.ana, kOpenedAt).ok());
   ASSERT_TRUE(group.roster.RefuseControl(group.presenter, group.ana).ok());
   EXPECT_FALSE(group.roster.Find(group.ana)->asks);
   EXPECT_EQ(group.roster.steering(), group.presenter);
@@ -87,43 +87,43 @@ TEST(RosterTest, ARefusedRequestEnds) {
 
 TEST(RosterTest, AskingIsRateLimited) {
   Class group;
-  ASSERT_TRUE(group.roster.AskControl(group.ana, kStart).ok());
-  const absl::Status again = group.roster.AskControl(group.ana, kStart + seconds(1));
+  ASSERT_TRUE(group.roster.AskControl(group.ana, kOpenedAt).ok());
+  const absl::Status again = group.roster.AskControl(group.ana, kOpenedAt + seconds(1));
   EXPECT_TRUE(absl::IsResourceExhausted(again));
   EXPECT_EQ(base::DetailsOf(again).retry_after, std::chrono::milliseconds(4000));
-  EXPECT_TRUE(group.roster.AskControl(group.ben, kStart + seconds(1)).ok()) << "another person";
-  EXPECT_TRUE(group.roster.AskControl(group.ana, kStart + kTimeouts.ask_again).ok());
+  EXPECT_TRUE(group.roster.AskControl(group.ben, kOpenedAt + seconds(1)).ok()) << "another person";
+  EXPECT_TRUE(group.roster.AskControl(group.ana, kOpenedAt + kTimeouts.ask_again).ok());
 }
 
 TEST(RosterTest, FreeControlGoesToWhoAsksFirst) {
   Class group;
-  ASSERT_TRUE(group.roster.GiveControl(group.presenter, 0, kStart).ok());
+  ASSERT_TRUE(group.roster.GiveControl(group.presenter, 0, kOpenedAt).ok());
   ASSERT_EQ(group.roster.steering(), 0U);
-  ASSERT_TRUE(group.roster.AskControl(group.ben, kStart).ok());
+  ASSERT_TRUE(group.roster.AskControl(group.ben, kOpenedAt).ok());
   EXPECT_EQ(group.roster.steering(), group.ben);
-  ASSERT_TRUE(group.roster.AskControl(group.ana, kStart).ok());
+  ASSERT_TRUE(group.roster.AskControl(group.ana, kOpenedAt).ok());
   EXPECT_EQ(group.roster.steering(), group.ben);
 }
 
 TEST(RosterTest, FreeControlIsNotGivenWhereViewersMayNotSteer) {
   Class group({.viewers_may_steer = false});
-  ASSERT_TRUE(group.roster.GiveControl(group.presenter, 0, kStart).ok());
-  ASSERT_TRUE(group.roster.AskControl(group.ana, kStart).ok());
+  ASSERT_TRUE(group.roster.GiveControl(group.presenter, 0, kOpenedAt).ok());
+  ASSERT_TRUE(group.roster.AskControl(group.ana, kOpenedAt).ok());
   EXPECT_EQ(group.roster.steering(), 0U);
   EXPECT_TRUE(group.roster.Find(group.ana)->asks) << "for a presenter to answer";
 }
 
 TEST(RosterTest, LockedControlIsRefusedAndEndsRequests) {
   Class group;
-  ASSERT_TRUE(group.roster.AskControl(group.ana, kStart).ok());
+  ASSERT_TRUE(group.roster.AskControl(group.ana, kOpenedAt).ok());
   ASSERT_TRUE(group.roster.SetRules(group.presenter, {.control_locked = true}).ok());
   EXPECT_FALSE(group.roster.Find(group.ana)->asks);
-  EXPECT_EQ(ReasonOf(group.roster.AskControl(group.ben, kStart)), "CONTROL_LOCKED");
+  EXPECT_EQ(ReasonOf(group.roster.AskControl(group.ben, kOpenedAt)), "CONTROL_LOCKED");
 }
 
 TEST(RosterTest, PresenterTakesControlBackAlways) {
   Class group({.control_locked = true});
-  ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kStart).ok());
+  ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kOpenedAt).ok());
   EXPECT_EQ(ReasonOf(group.roster.TakeControl(group.ben)), "NOT_PRESENTER");
   EXPECT_EQ(group.roster.steering(), group.ana);
   ASSERT_TRUE(group.roster.TakeControl(group.presenter).ok());
@@ -132,20 +132,20 @@ TEST(RosterTest, PresenterTakesControlBackAlways) {
 
 TEST(RosterTest, ViewersControlGoesBackToThePresenter) {
   Class group;
-  ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kStart).ok());
-  ASSERT_TRUE(group.roster.GiveControl(group.ana, 0, kStart).ok());
+  ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kOpenedAt).ok());
+  ASSERT_TRUE(group.roster.GiveControl(group.ana, 0, kOpenedAt).ok());
   EXPECT_EQ(group.roster.steering(), group.presenter);
-  ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ben, kStart).ok());
-  group.roster.Leave(group.ben, kStart);
+  ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ben, kOpenedAt).ok());
+  group.roster.Leave(group.ben, kOpenedAt);
   EXPECT_EQ(group.roster.steering(), group.presenter);
 }
 
 TEST(RosterTest, ControlIsKeptForAPresenterWhoReloads) {
   Class group({.free_when_away = true});
-  group.roster.Leave(group.presenter, kStart);
+  group.roster.Leave(group.presenter, kOpenedAt);
   EXPECT_TRUE(group.roster.presenter_away());
-  group.roster.Advance(kStart + seconds(59));
-  ASSERT_TRUE(group.roster.AskControl(group.ana, kStart + seconds(59)).ok());
+  group.roster.Advance(kOpenedAt + seconds(59));
+  ASSERT_TRUE(group.roster.AskControl(group.ana, kOpenedAt + seconds(59)).ok());
   EXPECT_EQ(group.roster.steering(), 0U);
   const std::uint64_t back = group.roster.Join(Role::kPresenter, "Teacher");
   EXPECT_EQ(group.roster.steering(), back);
@@ -153,10 +153,10 @@ TEST(RosterTest, ControlIsKeptForAPresenterWhoReloads) {
 
 TEST(RosterTest, ControlOfAnAbsentPresenterBecomesFreeIfChosen) {
   Class group({.free_when_away = true});
-  group.roster.Leave(group.presenter, kStart);
-  group.roster.Advance(kStart + kTimeouts.away);
+  group.roster.Leave(group.presenter, kOpenedAt);
+  group.roster.Advance(kOpenedAt + kTimeouts.away);
   EXPECT_FALSE(group.roster.presenter_away());
-  ASSERT_TRUE(group.roster.AskControl(group.ana, kStart + kTimeouts.away).ok());
+  ASSERT_TRUE(group.roster.AskControl(group.ana, kOpenedAt + kTimeouts.away).ok());
   EXPECT_EQ(group.roster.steering(), group.ana);
   // A presenter who comes back does not take it by coming.
   const std::uint64_t back = group.roster.Join(Role::kPresenter, "Teacher");
@@ -166,8 +166,8 @@ TEST(RosterTest, ControlOfAnAbsentPresenterBecomesFreeIfChosen) {
 
 TEST(RosterTest, ControlOfAnAbsentPresenterStaysElse) {
   Class group;
-  group.roster.Leave(group.presenter, kStart);
-  group.roster.Advance(kStart + std::chrono::hours(1));
+  group.roster.Leave(group.presenter, kOpenedAt);
+  group.roster.Advance(kOpenedAt + std::chrono::hours(1));
   EXPECT_TRUE(group.roster.presenter_away());
 }
 
@@ -175,7 +175,7 @@ TEST(RosterTest, SecondPresenterTakesOverFromOneWhoLeaves) {
   Class group;
   const std::uint64_t second = group.roster.Join(Role::kPresenter, "Tablet");
   EXPECT_EQ(group.roster.steering(), group.presenter);
-  group.roster.Leave(group.presenter, kStart);
+  group.roster.Leave(group.presenter, kOpenedAt);
   EXPECT_EQ(group.roster.steering(), second);
 }
 
@@ -192,7 +192,7 @@ TEST(RosterTest, LockedFollowingEndsLookingAround) {
 TEST(RosterTest, WhoGetsControlFollows) {
   Class group;
   ASSERT_TRUE(group.roster.Detach(group.ana).ok());
-  ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kStart).ok());
+  ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kOpenedAt).ok());
   EXPECT_TRUE(group.roster.Find(group.ana)->follows);
 }
 
@@ -208,9 +208,9 @@ TEST(RosterTest, ViewersMarkOnlyIfAllowed) {
 TEST(RosterTest, PresenterWithTheKeyAloneDoesNotInterruptAViewer) {
   Class group;
   EXPECT_TRUE(group.roster.PresenterMaySteer().ok());
-  ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kStart).ok());
+  ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kOpenedAt).ok());
   EXPECT_EQ(ReasonOf(group.roster.PresenterMaySteer()), "NOT_STEERING");
-  ASSERT_TRUE(group.roster.GiveControl(group.presenter, 0, kStart).ok());
+  ASSERT_TRUE(group.roster.GiveControl(group.presenter, 0, kOpenedAt).ok());
   EXPECT_TRUE(group.roster.PresenterMaySteer().ok());
 }
 

@@ -31,7 +31,7 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 using ::testing::HasSubstr;
 
-constexpr int kTimes = 5;
+constexpr int kSequenceTimes = 5;
 constexpr std::chrono::seconds kLongest{60};
 
 // A port that nobody uses now.
@@ -47,7 +47,7 @@ std::string FreePort() {
   return std::to_string(ntohs(address.sin_port));
 }
 
-bool Eventually(const std::function<bool()>& holds) {
+bool EventuallyTrue(const std::function<bool()>& holds) {
   const auto until = steady_clock::now() + kLongest;
   while (!holds() && steady_clock::now() < until) std::this_thread::sleep_for(milliseconds(5));
   return holds();
@@ -57,7 +57,7 @@ class ServerSequence : public ::testing::Test {
  protected:
   ServerSequence() {
     fs::create_directories(storms_);
-    for (int time = 0; time < kTimes; ++time) WriteRunFile(storms_, time);
+    for (int time = 0; time < kSequenceTimes; ++time) WriteRunFile(storms_, time);
   }
 
   std::unique_ptr<RunningProgram> Serve(const std::vector<std::string>& more = {}) const {
@@ -78,8 +78,9 @@ class ServerSequence : public ::testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     auto server =
         std::make_unique<RunningProgram>(PROGRAM, arguments, served_, folder_.File("server.err"));
-    EXPECT_TRUE(Eventually([&] { return Contents(served_).find("ready") != std::string::npos; }))
-        << Contents(folder_.File("server.err"));
+    EXPECT_TRUE(EventuallyTrue([&] {
+      return Contents(served_).find("ready") != std::string::npos;
+    })) << Contents(folder_.File("server.err"));
     return server;
   }
 
@@ -95,7 +96,7 @@ class ServerSequence : public ::testing::Test {
 
   std::string Errors() const { return Contents(folder_.File("err.log")); }
 
-  static std::vector<std::string> Products(int times = kTimes) {
+  static std::vector<std::string> Products(int times = kSequenceTimes) {
     std::vector<std::string> products;
     for (int time = 0; time < times; ++time) products.push_back(RunTime(time) + ".png");
     return products;
@@ -136,9 +137,9 @@ TEST_F(ServerSequence, MakesEveryProductAndLeavesNothingAtTheServer) {
 
 TEST_F(ServerSequence, AClientThatIsKilledGoesOnWhereItWas) {
   const auto server = Serve();
-  for (std::size_t made = 1; made < kTimes; made += 2) {
+  for (std::size_t made = 1; made < kSequenceTimes; made += 2) {
     const auto client = Start("sequence", "run");
-    ASSERT_TRUE(Eventually([&] { return Made() >= made || !client->Runs(); })) << Errors();
+    ASSERT_TRUE(EventuallyTrue([&] { return Made() >= made || !client->Runs(); })) << Errors();
     client->Signal(SIGKILL);
     client->Wait();
   }
@@ -150,12 +151,12 @@ TEST_F(ServerSequence, AClientThatIsKilledGoesOnWhereItWas) {
 TEST_F(ServerSequence, AServerThatIsKilledIsWaitedForAndGoesOn) {
   auto server = Serve();
   const auto client = Start("sequence", "run");
-  ASSERT_TRUE(Eventually([&] { return Made() >= 1; })) << Errors();
+  ASSERT_TRUE(EventuallyTrue([&] { return Made() >= 1; })) << Errors();
   for (std::size_t made = 2; made <= 4; made += 2) {
     server->Signal(SIGKILL);
     server->Wait();
     server = Serve();
-    ASSERT_TRUE(Eventually([&] { return Made() >= made; })) << Errors();
+    ASSERT_TRUE(EventuallyTrue([&] { return Made() >= made; })) << Errors();
   }
   EXPECT_EQ(client->Wait().code, 0) << Errors();
   ExpectFinished(out_, Products());
@@ -222,7 +223,7 @@ TEST_F(ServerSequence, AServerWithTokensAndTlsServesSharesViewsAndMovies) {
   const std::vector<std::string> movie = {"--movie", out_ + "/{view}.webm"};
   EXPECT_EQ(start("sequence", movie, token)->Wait().code, 0) << Errors();
   std::vector<std::string> products = {"west.webm", "above.webm"};
-  for (int time = 0; time < kTimes; ++time) {
+  for (int time = 0; time < kSequenceTimes; ++time) {
     for (const char* view : {"west", "above"}) {
       products.push_back(RunTime(time).substr(9) + "_" + view + ".png");
     }
@@ -230,7 +231,7 @@ TEST_F(ServerSequence, AServerWithTokensAndTlsServesSharesViewsAndMovies) {
   ExpectFinished(out_, products);
   // By the same rules `watch` finds all made, and `render` gets one more.
   std::vector<std::string> until = movie;
-  until.insert(until.end(), {"--until", std::to_string(kTimes)});
+  until.insert(until.end(), {"--until", std::to_string(kSequenceTimes)});
   EXPECT_EQ(start("watch", until, token)->Wait().code, 0) << Errors();
   ExpectFinished(out_, products);
   const std::string one = folder_.File("one.png");
@@ -249,11 +250,11 @@ TEST_F(ServerSequence, AServerWithTokensAndTlsServesSharesViewsAndMovies) {
 
 TEST_F(ServerSequence, WatchesAStormAsItsTimesCome) {
   const auto server = Serve();
-  const auto client = Start("watch", "run", {"--until", std::to_string(kTimes + 1)});
-  ASSERT_TRUE(Eventually([&] { return Made() >= kTimes; })) << Errors();
-  WriteRunFile(storms_, kTimes);
+  const auto client = Start("watch", "run", {"--until", std::to_string(kSequenceTimes + 1)});
+  ASSERT_TRUE(EventuallyTrue([&] { return Made() >= kSequenceTimes; })) << Errors();
+  WriteRunFile(storms_, kSequenceTimes);
   EXPECT_EQ(client->Wait().code, 0) << Errors();
-  ExpectFinished(out_, Products(kTimes + 1));
+  ExpectFinished(out_, Products(kSequenceTimes + 1));
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
 using Stub = v1::ThunderheadService::Stub;
 
-v1::CreateSessionResponse Create(FakeService& service, const v1::Scene& scene) {
+v1::CreateSessionResponse CreateWith(FakeService& service, const v1::Scene& scene) {
   v1::CreateSessionRequest request;
   *request.mutable_scene() = scene;
   v1::CreateSessionResponse response;
@@ -34,7 +34,7 @@ grpc::Status Close(FakeService& service, const std::string& session_id) {
 
 TEST(SessionsTest, EmptySceneComesBackWithEveryDefault) {
   FakeService service;
-  const v1::CreateSessionResponse created = Create(service, {});
+  const v1::CreateSessionResponse created = CreateWith(service, {});
   EXPECT_THAT(created.session_id(), MatchesRegex("[0-9a-f]{32}"));
   EXPECT_EQ(created.scene_revision(), 1U);
   const v1::Scene& scene = created.scene();
@@ -79,7 +79,7 @@ TEST(SessionsTest, ValuesGivenAreKept) {
   rain.set_hydrometeor(v1::HYDROMETEOR_RAIN);
   rain.set_visible(false);
   rain.mutable_phase()->set_kind(v1::PhaseFunction::KIND_RAYLEIGH);
-  const v1::Scene scene = Create(service, wanted).scene();
+  const v1::Scene scene = CreateWith(service, wanted).scene();
   EXPECT_EQ(scene.time_index(), 3U);
   EXPECT_EQ(scene.camera().orbit().target().x_m(), 123.0F);
   EXPECT_EQ(scene.camera().orbit().target().z_m(), 0.0F);
@@ -93,15 +93,15 @@ TEST(SessionsTest, ValuesGivenAreKept) {
 
 TEST(SessionsTest, CompletedSceneIsCompleteAlready) {
   FakeService service;
-  const v1::Scene once = Create(service, SmallScene()).scene();
-  EXPECT_EQ(Create(service, once).scene().SerializeAsString(), once.SerializeAsString());
+  const v1::Scene once = CreateWith(service, SmallScene()).scene();
+  EXPECT_EQ(CreateWith(service, once).scene().SerializeAsString(), once.SerializeAsString());
 }
 
 TEST(SessionsTest, StormWithoutCondensateFramesTheDomain) {
   FakeService service;
   v1::Scene wanted = SmallScene();
   wanted.set_storm_id("clear");
-  const v1::Scene scene = Create(service, wanted).scene();
+  const v1::Scene scene = CreateWith(service, wanted).scene();
   EXPECT_EQ(scene.camera().orbit().target().x_m(), 0.0F);
   EXPECT_EQ(scene.camera().orbit().target().z_m(), 1250.0F);
   EXPECT_GT(scene.camera().orbit().distance_m(), 10000.0F);
@@ -113,7 +113,7 @@ TEST(SessionsTest, CompleteCameraNeedsNoRead) {
   scene.mutable_camera()->mutable_orbit()->mutable_target();
   scene.mutable_camera()->mutable_orbit()->set_elevation_deg(4.0F);
   scene.mutable_camera()->mutable_orbit()->set_distance_m(50000.0F);
-  Create(service, scene);
+  CreateWith(service, scene);
   EXPECT_EQ(service.store->Reads(), 0);
 }
 
@@ -121,7 +121,7 @@ TEST(SessionsTest, OtherCamerasAreFramedToo) {
   FakeService service;
   v1::Scene wanted = SmallScene();
   wanted.mutable_camera()->mutable_spotter()->set_azimuth_deg(0.0F);
-  const v1::Scene spotted = Create(service, wanted).scene();
+  const v1::Scene spotted = CreateWith(service, wanted).scene();
   const v1::SpotterCamera& spotter = spotted.camera().spotter();
   EXPECT_EQ(spotter.azimuth_deg(), 0.0F);
   EXPECT_EQ(spotter.eye_height_m(), 1.7F);
@@ -132,12 +132,12 @@ TEST(SessionsTest, OtherCamerasAreFramedToo) {
   EXPECT_LT(spotter.y_m(), -500.0F - 1875.0F + 1.0F);
   EXPECT_GT(spotter.y_m(), -500.0F - 3150.0F);
   EXPECT_GT(spotter.elevation_deg(), 0.0F);
-  EXPECT_EQ(Create(service, spotted).scene().SerializeAsString(), spotted.SerializeAsString());
+  EXPECT_EQ(CreateWith(service, spotted).scene().SerializeAsString(), spotted.SerializeAsString());
   // Half a place stays, and it looks at the storm from there.
   wanted.mutable_camera()->mutable_spotter()->clear_azimuth_deg();
   wanted.mutable_camera()->mutable_spotter()->set_x_m(-4000.0F);
   wanted.mutable_camera()->mutable_spotter()->set_elevation_deg(3.0F);
-  const v1::SpotterCamera beside = Create(service, wanted).scene().camera().spotter();
+  const v1::SpotterCamera beside = CreateWith(service, wanted).scene().camera().spotter();
   EXPECT_EQ(beside.x_m(), -4000.0F);
   EXPECT_EQ(beside.elevation_deg(), 3.0F);
   EXPECT_NEAR(std::tan(glm::radians(beside.azimuth_deg())),
@@ -145,26 +145,26 @@ TEST(SessionsTest, OtherCamerasAreFramedToo) {
   // From a place of its own it looks at the storm.
   wanted.mutable_camera()->mutable_spotter()->set_x_m(-50000.0F);
   wanted.mutable_camera()->mutable_spotter()->set_y_m(-500.0F);
-  EXPECT_NEAR(Create(service, wanted).scene().camera().spotter().azimuth_deg(), 90.0F, 0.01);
+  EXPECT_NEAR(CreateWith(service, wanted).scene().camera().spotter().azimuth_deg(), 90.0F, 0.01);
 
   wanted.set_storm_id("clear");
   wanted.mutable_camera()->mutable_spotter()->Clear();
-  const v1::SpotterCamera clear = Create(service, wanted).scene().camera().spotter();
+  const v1::SpotterCamera clear = CreateWith(service, wanted).scene().camera().spotter();
   EXPECT_LT(clear.y_m(), -10000.0F);
   EXPECT_EQ(clear.azimuth_deg(), 20.0F);
   wanted.clear_storm_id();
 
   wanted.mutable_camera()->mutable_top_down();
-  const v1::Scene map = Create(service, wanted).scene();
+  const v1::Scene map = CreateWith(service, wanted).scene();
   EXPECT_EQ(map.camera().top_down().x_m(), -5500.0F);
   EXPECT_EQ(map.camera().top_down().y_m(), -500.0F);
   EXPECT_GT(map.camera().top_down().width_m(), 1000.0F);
-  EXPECT_EQ(Create(service, map).scene().SerializeAsString(), map.SerializeAsString());
+  EXPECT_EQ(CreateWith(service, map).scene().SerializeAsString(), map.SerializeAsString());
 }
 
 TEST(SessionsTest, AnIdealisedRunsSunIsSetByHand) {
   FakeService service;
-  const v1::Sun sun = Create(service, SmallScene()).scene().sun();
+  const v1::Sun sun = CreateWith(service, SmallScene()).scene().sun();
   EXPECT_EQ(sun.source(), v1::Sun::SOURCE_BY_HAND);
   EXPECT_EQ(sun.azimuth_deg(), 275.0F);
   EXPECT_EQ(sun.elevation_deg(), 18.0F);
@@ -181,21 +181,21 @@ TEST(SessionsTest, TheSunFollowsTheClockWhereAsked) {
   sun.mutable_clock()->set_date_time("2013-03-20T12:00:00Z");
   sun.mutable_clock()->set_latitude_deg(0.0F);
   sun.mutable_clock()->set_longitude_deg(0.0F);
-  const v1::Scene noon = Create(service, wanted).scene();
+  const v1::Scene noon = CreateWith(service, wanted).scene();
   EXPECT_GT(noon.sun().elevation_deg(), 87.0F);
-  EXPECT_EQ(Create(service, noon).scene().SerializeAsString(), noon.SerializeAsString());
+  EXPECT_EQ(CreateWith(service, noon).scene().SerializeAsString(), noon.SerializeAsString());
   // It moves with the storm's times, a quarter of a degree per minute.
   wanted.set_time_index(3);
   sun.mutable_clock()->set_date_time("2013-03-20T06:20:00Z");
-  const float later_deg = Create(service, wanted).scene().sun().elevation_deg();
+  const float later_deg = CreateWith(service, wanted).scene().sun().elevation_deg();
   wanted.set_time_index(0);
-  const float first_deg = Create(service, wanted).scene().sun().elevation_deg();
+  const float first_deg = CreateWith(service, wanted).scene().sun().elevation_deg();
   const double elapsed_min = service.store->Find("anvil")->times[3].elapsed_s / 60.0;
   EXPECT_GT(elapsed_min, 0.0);
   EXPECT_NEAR(later_deg - first_deg, elapsed_min / 4.0, 0.02);
   // The clock's defaults are an afternoon in Oklahoma.
   sun.clear_clock();
-  const v1::Sun open = Create(service, wanted).scene().sun();
+  const v1::Sun open = CreateWith(service, wanted).scene().sun();
   EXPECT_EQ(open.clock().date_time(), "2013-05-20T20:00:00Z");
   EXPECT_GT(open.azimuth_deg(), 180.0F);
   EXPECT_GT(open.elevation_deg(), 45.0F);
@@ -321,7 +321,7 @@ TEST(SessionsTest, AWatchedSessionExpiresWhenNobodyDoesAnything) {
   options.sessions.idle_timeout = std::chrono::milliseconds(300);
   options.sessions.watched_idle_timeout = std::chrono::milliseconds(1500);
   FakeService service(options);
-  const v1::CreateSessionResponse created = Create(service, SmallScene());
+  const v1::CreateSessionResponse created = CreateWith(service, SmallScene());
   Interacting person(service.stub(), created.viewer_key());
   Watcher watcher(service.stub(), created.session_id());
   ASSERT_TRUE(person.AwaitFrame(1));

@@ -22,7 +22,7 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 using ::testing::HasSubstr;
 
-double MsSince(steady_clock::time_point begun) {
+double MillisecondsSince(steady_clock::time_point begun) {
   return std::chrono::duration<double, std::milli>(steady_clock::now() - begun).count();
 }
 
@@ -78,7 +78,7 @@ class Asked {
   grpc::Status status_;
 };
 
-bool Eventually(const std::function<bool()>& holds) {
+bool ComesTrue(const std::function<bool()>& holds) {
   const auto until = steady_clock::now() + kPatience;
   while (!holds() && steady_clock::now() < until) std::this_thread::sleep_for(milliseconds(2));
   return holds();
@@ -91,14 +91,14 @@ TEST(StillsTest, ALongOneHoldsUpNoSession) {
   Watcher watcher(service.stub(), id);
   ASSERT_TRUE(watcher.AwaitFrame(1, true));
   Asked still(service, LongStill());
-  ASSERT_TRUE(Eventually([&] { return service.machine->pieces > 3; }));
+  ASSERT_TRUE(ComesTrue([&] { return service.machine->pieces > 3; }));
   std::vector<double> latencies_ms;
   for (int i = 0; i < 20; ++i) {
     v1::Scene scene = SmallScene();
     scene.mutable_camera()->mutable_orbit()->set_azimuth_deg(static_cast<float>(10 + i));
     const auto updated = steady_clock::now();
     ASSERT_TRUE(watcher.AwaitFrame(service.Update(id, scene), false));
-    latencies_ms.push_back(MsSince(updated));
+    latencies_ms.push_back(MillisecondsSince(updated));
   }
   EXPECT_FALSE(still.HasEnded()) << "too fast to tell";
   std::ranges::sort(latencies_ms);
@@ -113,7 +113,7 @@ TEST(StillsTest, OneThatNobodyWantsIsDrawnNoFurther) {
   FakeService service;
   service.machine->ms_per_mega_sample = 200.0;
   Asked still(service, LongStill());
-  ASSERT_TRUE(Eventually([&] { return service.machine->pieces > 3; }));
+  ASSERT_TRUE(ComesTrue([&] { return service.machine->pieces > 3; }));
   still.Cancel();
   EXPECT_EQ(still.End().error_code(), grpc::StatusCode::CANCELLED);
   std::this_thread::sleep_for(milliseconds(200));
@@ -154,7 +154,7 @@ TEST(StillsTest, OneThatTakesLongerThanPredictedEnds) {
   const grpc::Status end = still.End();
   EXPECT_EQ(end.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << end.error_message();
   EXPECT_THAT(end.error_message(), HasSubstr("drawing took more than"));
-  EXPECT_LT(MsSince(begun), 2000.0) << "of 3000";
+  EXPECT_LT(MillisecondsSince(begun), 2000.0) << "of 3000";
 }
 
 TEST(StillsTest, HundredsAtOnceWaitAndAllAreDrawn) {
@@ -187,7 +187,7 @@ TEST(StillsTest, QuickOnesPassThoseThatTakeLong) {
   // Believed to take 17 s each; they take 2.
   Asked first(service, Still(8192, 1024, 1024));
   Asked second(service, Still(8192, 1024, 1024));
-  ASSERT_TRUE(Eventually([&] { return service.machine->pieces > 3; }));
+  ASSERT_TRUE(ComesTrue([&] { return service.machine->pieces > 3; }));
   for (int i = 0; i < 5; ++i) {
     Asked quick(service, Still(64, 36, 16));
     EXPECT_TRUE(quick.End().ok());

@@ -14,7 +14,7 @@ using Kind = FrameForm::Kind;
 constexpr ViewerWants kVideo{
     .adapts = true, .takes_video = true, .takes_stills = true, .saves_bytes = true};
 
-class CountingViewer : public Viewer {
+class VideoViewer : public Viewer {
  public:
   void Wake() override { ++wakes; }
   int wakes = 0;
@@ -24,7 +24,7 @@ class CountingViewer : public Viewer {
 class VideoHubTest : public ::testing::Test {
  protected:
   std::uint64_t Join(const ViewerWants& wants) {
-    return *hub_.Join(std::make_shared<CountingViewer>(), wants);
+    return *hub_.Join(std::make_shared<VideoViewer>(), wants);
   }
 
   // Draws, encodes as asked and publishes a frame, a thirtieth of a second after the last.

@@ -54,7 +54,7 @@ double ValueAt(const MetaballCloud& cloud, const glm::dvec3& point_m) {
   return sum;
 }
 
-glm::dvec3 Middle_m(const volume::RegularGrid& grid, int x, int y, int z) {
+glm::dvec3 MiddleOf_m(const volume::RegularGrid& grid, int x, int y, int z) {
   return grid.low_corner_m + (glm::dvec3(x, y, z) + 0.5) * grid.spacing_m;
 }
 
@@ -64,7 +64,7 @@ std::vector<float> Cloud(const volume::RegularGrid& grid) {
   for (int z = 0; z < grid.cells.z; ++z) {
     for (int y = 0; y < grid.cells.y; ++y) {
       for (int x = 0; x < grid.cells.x; ++x) {
-        const glm::dvec3 p = Middle_m(grid, x, y, z) - glm::dvec3(0.0, 0.0, 825.0);
+        const glm::dvec3 p = MiddleOf_m(grid, x, y, z) - glm::dvec3(0.0, 0.0, 825.0);
         const double inside = 1.0 - glm::dot(p, p) / (350.0 * 350.0);
         const double lumps = std::sin(p.x / 45.0) * std::sin(p.y / 60.0) + std::cos(p.z / 50.0);
         values.push_back(static_cast<float>(std::max(0.0, inside * (0.6 + 0.4 * lumps))));
@@ -95,7 +95,7 @@ TEST(BasisOperator, IsTheSumOfBallsInEveryCell) {
       for (int y = 0; y < grid.cells.y; ++y) {
         for (int x = 0; x < grid.cells.x; ++x) {
           // At the cut-off a ball's value is 1.2e-4: rounding may put a cell there on either side.
-          EXPECT_NEAR(field[grid.Offset(x, y, z)], ValueAt(cloud, Middle_m(grid, x, y, z)), 2e-6);
+          EXPECT_NEAR(field[grid.Offset(x, y, z)], ValueAt(cloud, MiddleOf_m(grid, x, y, z)), 2e-6);
         }
       }
     }
@@ -229,7 +229,7 @@ TEST(Fit, ErrorIsThatOfTheBallsAndFallsAsTheirNumberGrows) {
     for (int z = 0; z < grid.cells.z; ++z) {
       for (int y = 0; y < grid.cells.y; ++y) {
         for (int x = 0; x < grid.cells.x; ++x) {
-          const glm::dvec3 p = Middle_m(grid, x, y, z);
+          const glm::dvec3 p = MiddleOf_m(grid, x, y, z);
           const bool in_box = glm::all(glm::greaterThan(p, fit->cloud.low_m)) &&
                               glm::all(glm::lessThan(p, fit->cloud.high_m));
           const double value = values[grid.Offset(x, y, z)];
@@ -277,7 +277,7 @@ TEST(Fit, RefusesWhatCannotBe) {
   options.overlap = 2.0;
   const auto fit = Fit(grid, values, options, {}, {});
   ASSERT_TRUE(fit.ok()) << fit.status();
-  EXPECT_NEAR(glm::length(fit->cloud.balls[0].centre_m - Middle_m(grid, 3, 4, 5)), 0.0, 1e-3);
+  EXPECT_NEAR(glm::length(fit->cloud.balls[0].centre_m - MiddleOf_m(grid, 3, 4, 5)), 0.0, 1e-3);
 }
 
 TEST(Fit, StopsWhenAsked) {

@@ -12,8 +12,8 @@
 namespace thunderhead::physics {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr std::size_t kGreen = 1;
+constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
+constexpr std::size_t kGreenColor = 1;
 
 TEST(RefractiveIndex, WaterIsAsPublished) {
   // Tilton and Taylor 1938, sodium light, water at 10 degrees against air: 1.33369.
@@ -45,12 +45,12 @@ TEST(Droplets, CloudIsAsPublished) {
   } cases[] = {{5.0, 0.846}, {10.0, 0.862}, {20.0, 0.872}};
   for (const auto& expected : cases) {
     const DropletOptics optics = OpticsOf({expected.radius_um, 0.1}, 2000);
-    EXPECT_NEAR(optics.asymmetry[kGreen], expected.asymmetry, 0.003) << expected.radius_um;
-    EXPECT_NEAR(optics.albedo[kGreen], 1.0, 1e-5);
+    EXPECT_NEAR(optics.asymmetry[kGreenColor], expected.asymmetry, 0.003) << expected.radius_um;
+    EXPECT_NEAR(optics.albedo[kGreenColor], 1.0, 1e-5);
   }
   const auto mass_extinction = [](double radius_um) {
     const DropletSizes sizes{radius_um, 0.1};
-    return MassExtinction_m2_per_kg(sizes, OpticsOf(sizes, 2000).extinction[kGreen]);
+    return MassExtinction_m2_per_kg(sizes, OpticsOf(sizes, 2000).extinction[kGreenColor]);
   };
   EXPECT_NEAR(mass_extinction(10.0) / 157.2, 1.0, 0.01);
   EXPECT_NEAR(mass_extinction(20.0) / 77.3, 1.0, 0.01);
@@ -60,8 +60,8 @@ TEST(Droplets, CloudIsAsPublished) {
 // section 17.26, Q = 2 + 1.992 x^(-2/3) for the edge term.
 TEST(Droplets, LargeDropsApproachGeometricOptics) {
   const DropletSizes sizes{100.0, 0.1};
-  const double x = 2.0 * std::numbers::pi * 100.0 / kWavelengthsUm[kGreen];
-  const double extinction = OpticsOf(sizes, 100).extinction[kGreen];
+  const double x = 2.0 * std::numbers::pi * 100.0 / kWavelengthsUm[kGreenColor];
+  const double extinction = OpticsOf(sizes, 100).extinction[kGreenColor];
   EXPECT_GT(extinction, 2.0);
   // The mean of x^(-2/3) over the sizes is within a tenth of its value at the effective one.
   EXPECT_NEAR(extinction, 2.0 + 1.992 * std::pow(x, -2.0 / 3.0),
@@ -103,8 +103,9 @@ TEST(Droplets, SmallRunAgreesWithTheFile) {
     EXPECT_NEAR(small.Asymmetry(c), file->Asymmetry(c), 1e-3);
     for (double angle_deg = 0.0; angle_deg <= 180.0; angle_deg += 1.5) {
       // A quarter of the sizes leaves the resonances of single drops less well averaged.
-      EXPECT_NEAR(small.Value(angle_deg * kDegree, c) / file->Value(angle_deg * kDegree, c), 1.0,
-                  0.1)
+      EXPECT_NEAR(small.Value(angle_deg * kRadiansPerDegree, c) /
+                      file->Value(angle_deg * kRadiansPerDegree, c),
+                  1.0, 0.1)
           << angle_deg << " channel " << c;
     }
   }
@@ -116,12 +117,12 @@ TEST(Droplets, RainbowOfAFewDropsAgreesWithTheFile) {
   ASSERT_TRUE(file.ok()) << file.status();
   const SizeQuadrature drops = QuadratureOf(DropletSizes{500.0, 0.1}, 40);
   std::vector<double> cosines;
-  for (int i = 0; i < 250; ++i) cosines.push_back(std::cos((136.0 + 0.02 * i) * kDegree));
+  for (int i = 0; i < 250; ++i) cosines.push_back(std::cos((136.0 + 0.02 * i) * kRadiansPerDegree));
   std::vector<double> sums(cosines.size());
   double scattering = 0.0;
   for (std::size_t i = 0; i < drops.radii_um.size(); ++i) {
-    const double x = 2.0 * std::numbers::pi * drops.radii_um[i] / kWavelengthsUm[kGreen];
-    const MieSeries series(x, WaterRefractiveIndex(kWavelengthsUm[kGreen]));
+    const double x = 2.0 * std::numbers::pi * drops.radii_um[i] / kWavelengthsUm[kGreenColor];
+    const MieSeries series(x, WaterRefractiveIndex(kWavelengthsUm[kGreenColor]));
     series.AddIntensities(cosines, drops.area_shares[i] / (x * x), sums);
     scattering += drops.area_shares[i] * series.Efficiencies().scattering;
   }
@@ -129,7 +130,7 @@ TEST(Droplets, RainbowOfAFewDropsAgreesWithTheFile) {
   double table = 0.0;
   for (int i = 0; i < 250; ++i) {
     few += 4.0 * sums[static_cast<std::size_t>(i)] / scattering;
-    table += file->Value((136.0 + 0.02 * i) * kDegree, kGreen);
+    table += file->Value((136.0 + 0.02 * i) * kRadiansPerDegree, kGreenColor);
   }
   // The mean over five degrees; what remains are the ripples of 40 sizes.
   EXPECT_NEAR(few / table, 1.0, 0.05);

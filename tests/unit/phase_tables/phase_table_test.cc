@@ -15,14 +15,14 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180.0;
+constexpr double kHalfTurn_rad = std::numbers::pi;
+constexpr double kDegree_rad = kHalfTurn_rad / 180.0;
 
 PhaseTable HenyeyGreensteinTable(double g) {
   PhaseTableContent content{"hg", kWavelengthsUm, AngleGrid({{20, 0.05}, {180, 0.25}}), {}};
   for (const double angle_deg : content.angles_deg) {
     const double value =
-        (1 - g * g) / std::pow(1 + g * g - 2 * g * std::cos(angle_deg * kDegree), 1.5);
+        (1 - g * g) / std::pow(1 + g * g - 2 * g * std::cos(angle_deg * kDegree_rad), 1.5);
     content.values.push_back({value, value, value});
   }
   auto table = PhaseTable::Create(std::move(content), 1e-3);
@@ -41,7 +41,7 @@ TEST(PhaseTable, IsotropicClosedForms) {
   ASSERT_TRUE(table.ok()) << table.status();
   EXPECT_EQ(table->name(), "test");
   EXPECT_NEAR(table->Asymmetry(0), 0.0, 1e-12);
-  for (const double angle : {0.0, 1e-5, 0.01, 0.7, 1.5707, 2.0, kPi}) {
+  for (const double angle : {0.0, 1e-5, 0.01, 0.7, 1.5707, 2.0, kHalfTurn_rad}) {
     const double share = std::pow(std::sin(0.5 * angle), 2);
     EXPECT_NEAR(table->Value(angle, 1), 1.0, 1e-12);
     EXPECT_NEAR(table->CumulativeShare(angle, 1), share, 1e-14 + 1e-9 * share) << angle;
@@ -61,13 +61,13 @@ TEST(PhaseTable, HenyeyGreensteinFigures) {
     return 1.0 - (1 - g * g) / (2 * g) * (1 / std::sqrt(1 + g * g - 2 * g * mu) - 1 / (1 + g));
   };
   for (const double angle_deg : {1.0, 5.0, 10.0, 60.0, 120.0}) {
-    EXPECT_NEAR(table.CumulativeShare(angle_deg * kDegree, 0), share(std::cos(angle_deg * kDegree)),
-                2e-5)
+    EXPECT_NEAR(table.CumulativeShare(angle_deg * kDegree_rad, 0),
+                share(std::cos(angle_deg * kDegree_rad)), 2e-5)
         << angle_deg;
   }
-  const double mu = std::cos(10.0 * kDegree);
-  const double cut = share(mu) - table.Value(10.0 * kDegree, 0) * 0.5 * (1.0 - mu);
-  EXPECT_NEAR(table.CutShare(10.0 * kDegree, 0), cut, 2e-5);
+  const double mu = std::cos(10.0 * kDegree_rad);
+  const double cut = share(mu) - table.Value(10.0 * kDegree_rad, 0) * 0.5 * (1.0 - mu);
+  EXPECT_NEAR(table.CutShare(10.0 * kDegree_rad, 0), cut, 2e-5);
 }
 
 TEST(PhaseTable, TextGoesRound) {
@@ -131,7 +131,7 @@ TEST(EmbeddedTables, AreAllThereAndSound) {
     EXPECT_EQ(table->name(), name);
     EXPECT_EQ(table->wavelengths_um(), kWavelengthsUm);
     for (std::size_t c = 0; c < kPhaseChannels; ++c) {
-      EXPECT_NEAR(table->CumulativeShare(kPi, c), 1.0, 1e-12) << name;
+      EXPECT_NEAR(table->CumulativeShare(kHalfTurn_rad, c), 1.0, 1e-12) << name;
       EXPECT_EQ(table->CumulativeShare(0.0, c), 0.0) << name;
       // Diffraction carries about half of the light of large particles.
       EXPECT_GT(table->ForwardShare(c), 0.4) << name;
@@ -159,7 +159,7 @@ TEST(EmbeddedTables, SamplingInvertsTheCumulativeShare) {
       // The midpoint rule over the shares.
       EXPECT_NEAR(cosine, table->Asymmetry(c), 1e-5) << name;
       EXPECT_NEAR(table->SampleAngle(0.0, c), 0.0, 1e-6) << name;
-      EXPECT_NEAR(table->SampleAngle(1.0, c), kPi, 1e-6) << name;
+      EXPECT_NEAR(table->SampleAngle(1.0, c), kHalfTurn_rad, 1e-6) << name;
     }
   }
 }
@@ -175,8 +175,8 @@ TEST(EmbeddedTables, CloudsHaveThePublishedAsymmetry) {
     EXPECT_NEAR(table->Asymmetry(1), expected.asymmetry, 0.003) << expected.name;
     // The cloudbow, and a glory: a ring or spot about straight back, brighter than what is around
     // it.
-    EXPECT_GT(table->Value(142.0 * kDegree, 1), 2.0 * table->Value(130.0 * kDegree, 1));
-    EXPECT_GT(table->Value(180.0 * kDegree, 1), 2.0 * table->Value(172.0 * kDegree, 1));
+    EXPECT_GT(table->Value(142.0 * kDegree_rad, 1), 2.0 * table->Value(130.0 * kDegree_rad, 1));
+    EXPECT_GT(table->Value(180.0 * kDegree_rad, 1), 2.0 * table->Value(172.0 * kDegree_rad, 1));
   }
 }
 
@@ -186,8 +186,8 @@ double RainbowDeg(int reflections, double index) {
   const double cosine = std::sqrt((index * index - 1.0) / (k * k - 1.0));
   const double incidence = std::acos(cosine);
   const double refraction = std::asin(std::sin(incidence) / index);
-  const double turned = reflections * kPi + 2.0 * incidence - 2.0 * k * refraction;
-  return (turned > kPi ? 2.0 * kPi - turned : turned) / kDegree;
+  const double turned = reflections * kHalfTurn_rad + 2.0 * incidence - 2.0 * k * refraction;
+  return (turned > kHalfTurn_rad ? 2.0 * kHalfTurn_rad - turned : turned) / kDegree_rad;
 }
 
 TEST(EmbeddedTables, RainHasBothRainbows) {
@@ -196,7 +196,8 @@ TEST(EmbeddedTables, RainHasBothRainbows) {
   const auto peak_deg = [&](std::size_t channel, double from_deg, double to_deg) {
     double best_deg = from_deg;
     for (double angle_deg = from_deg; angle_deg <= to_deg; angle_deg += 0.05) {
-      if (table->Value(angle_deg * kDegree, channel) > table->Value(best_deg * kDegree, channel)) {
+      if (table->Value(angle_deg * kDegree_rad, channel) >
+          table->Value(best_deg * kDegree_rad, channel)) {
         best_deg = angle_deg;
       }
     }
@@ -213,9 +214,9 @@ TEST(EmbeddedTables, RainHasBothRainbows) {
     EXPECT_LT(secondary, RainbowDeg(2, index)) << c;
     EXPECT_GT(secondary, RainbowDeg(2, index) - 1.2) << c;
     // Alexander's dark band lies between them.
-    const double dark = table->Value(134.0 * kDegree, c);
-    EXPECT_GT(table->Value(primary * kDegree, c), 20.0 * dark) << c;
-    EXPECT_GT(table->Value(secondary * kDegree, c), 4.0 * dark) << c;
+    const double dark = table->Value(134.0 * kDegree_rad, c);
+    EXPECT_GT(table->Value(primary * kDegree_rad, c), 20.0 * dark) << c;
+    EXPECT_GT(table->Value(secondary * kDegree_rad, c), 4.0 * dark) << c;
   }
   // Red is the outer colour of the primary bow and the inner one of the secondary.
   EXPECT_LT(peak_deg(0, 134, 145), peak_deg(2, 134, 145));

@@ -9,13 +9,13 @@
 namespace thunderhead::physics {
 namespace {
 
-double MeanOf(const DetailTile& tile, std::size_t channel) {
+double DetailMean(const DetailTile& tile, std::size_t channel) {
   double sum = 0.0;
   for (std::size_t i = channel; i < tile.texels.size(); i += 4) sum += tile.texels[i];
   return 4.0 * sum / static_cast<double>(tile.texels.size());
 }
 
-std::uint64_t HashOf(const DetailTile& tile) {
+std::uint64_t DetailHash(const DetailTile& tile) {
   std::uint64_t hash = 14695981039346656037U;  // FNV-1a
   for (const std::uint8_t texel : tile.texels) hash = (hash ^ texel) * 1099511628211U;
   return hash;
@@ -30,12 +30,12 @@ TEST(DetailTile, AllBillowsAreEquallyFrequent) {
   for (const std::size_t count : counts) {
     EXPECT_NEAR(static_cast<double>(count) / even, 1.0, 0.1);
   }
-  EXPECT_NEAR(MeanOf(tile, 0), 127.5, 0.2);
+  EXPECT_NEAR(DetailMean(tile, 0), 127.5, 0.2);
 }
 
 TEST(DetailTile, DisplacesNothingOnAverage) {
   const DetailTile tile = MakeDetailTile(4, 1);
-  for (const std::size_t axis : {1U, 2U, 3U}) EXPECT_NEAR(MeanOf(tile, axis), 127.5, 0.6);
+  for (const std::size_t axis : {1U, 2U, 3U}) EXPECT_NEAR(DetailMean(tile, axis), 127.5, 0.6);
 }
 
 TEST(DetailTile, HasNoSeam) {
@@ -66,15 +66,15 @@ TEST(DetailTile, RepeatsAndDependsOnTheSeed) {
 }
 
 TEST(DetailTile, HasTheSameBitsEverywhere) {
-  EXPECT_EQ(HashOf(MakeDetailTile(4, 1)), 9905576374110571487U);
+  EXPECT_EQ(DetailHash(MakeDetailTile(4, 1)), 9905576374110571487U);
 }
 
 TEST(DetailTile, CoarserLevelsKeepTheMean) {
   DetailTile tile = MakeDetailTile(4, 1);
-  const double mean = MeanOf(tile, 0);
+  const double mean = DetailMean(tile, 0);
   for (int side = DetailTile::kSide; side > 1; side /= 2) {
     tile.texels = CoarserLevel(tile.texels, side);
-    EXPECT_NEAR(MeanOf(tile, 0), mean, 0.6) << side;  // each level rounds
+    EXPECT_NEAR(DetailMean(tile, 0), mean, 0.6) << side;  // each level rounds
   }
   EXPECT_EQ(tile.texels.size(), 4U);
 }

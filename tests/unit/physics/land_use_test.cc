@@ -10,7 +10,7 @@ namespace {
 
 const float kUnknown = std::nanf("");
 
-float Luminance(const glm::vec3& rgb) {
+float LandLuminance(const glm::vec3& rgb) {
   return glm::dot(rgb, glm::vec3(0.2126F, 0.7152F, 0.0722F));
 }
 
@@ -40,8 +40,8 @@ TEST(LandReflectance, HasTheAlbedoAsItsLuminance) {
   for (int index = 1; index <= 21; ++index) {
     const LandUse use = LandUseOf(LandUseScheme::kModis, index);
     for (const float green_percent : {0.0F, 30.0F, 100.0F, kUnknown}) {
-      EXPECT_NEAR(Luminance(LandReflectance(use, {0.23F, green_percent, 0.3F})), 0.23F, 1e-4F);
-      EXPECT_NEAR(Luminance(LandReflectance(use, {kUnknown, green_percent, 0.0F})), use.albedo,
+      EXPECT_NEAR(LandLuminance(LandReflectance(use, {0.23F, green_percent, 0.3F})), 0.23F, 1e-4F);
+      EXPECT_NEAR(LandLuminance(LandReflectance(use, {kUnknown, green_percent, 0.0F})), use.albedo,
                   1e-4F);
     }
   }
@@ -50,17 +50,17 @@ TEST(LandReflectance, HasTheAlbedoAsItsLuminance) {
 // Idealised runs and night hours of some schemes have an albedo of 0.
 TEST(LandReflectance, TakesTheClassesAlbedoForNone) {
   const LandUse crops = LandUseOf(LandUseScheme::kUsgs, 2);
-  EXPECT_NEAR(Luminance(LandReflectance(crops, {0.0F, kUnknown, kUnknown})), 0.17F, 1e-4F);
+  EXPECT_NEAR(LandLuminance(LandReflectance(crops, {0.0F, kUnknown, kUnknown})), 0.17F, 1e-4F);
 }
 
 TEST(LandReflectance, SnowWhitensAndBrightens) {
   const LandUse crops = LandUseOf(LandUseScheme::kUsgs, 2);
   const glm::vec3 bare = LandReflectance(crops, {kUnknown, 50.0F, 0.0F});
   const glm::vec3 snow = LandReflectance(crops, {kUnknown, 50.0F, 1.0F});
-  EXPECT_GT(Luminance(snow), 3.0F * Luminance(bare));
+  EXPECT_GT(LandLuminance(snow), 3.0F * LandLuminance(bare));
   EXPECT_NEAR(snow.x, snow.z, 0.05F);
   // Where the model has an albedo, snow is in it already.
-  EXPECT_NEAR(Luminance(LandReflectance(crops, {0.6F, 50.0F, 1.0F})), 0.6F, 1e-4F);
+  EXPECT_NEAR(LandLuminance(LandReflectance(crops, {0.6F, 50.0F, 1.0F})), 0.6F, 1e-4F);
 }
 
 TEST(LandReflectance, PlantsThatAreNotGreenAreDry) {

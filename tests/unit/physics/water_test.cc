@@ -12,7 +12,7 @@ namespace {
 
 using glm::vec3;
 
-vec3 Towards(double elevation_deg, double azimuth_deg = 0.0) {
+vec3 TowardsFrom(double elevation_deg, double azimuth_deg = 0.0) {
   const double elevation = elevation_deg * std::numbers::pi / 180.0;
   const double azimuth = azimuth_deg * std::numbers::pi / 180.0;
   return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
@@ -52,34 +52,34 @@ double SampledReflectance(const vec3& towards_eye) {
 // Bruneton's fit; from low elevations it leaves out that facets hide each other.
 TEST(Water, MeanReflectanceIsThatOfItsFacets) {
   for (const double elevation_deg : {5.0, 10.0, 20.0, 40.0, 90.0}) {
-    const vec3 towards_eye = Towards(elevation_deg);
+    const vec3 towards_eye = TowardsFrom(elevation_deg);
     EXPECT_NEAR(glsl::water_reflectance(towards_eye.z), SampledReflectance(towards_eye), 0.06)
         << elevation_deg;
   }
-  EXPECT_GT(glsl::water_reflectance(Towards(3.0).z), 0.3F);
+  EXPECT_GT(glsl::water_reflectance(TowardsFrom(3.0).z), 0.3F);
   EXPECT_LT(glsl::water_reflectance(1.0F), 0.03F);
 }
 
 TEST(Water, GlintIsBrightestNearTheMirroredSun) {
-  const vec3 sun = Towards(40.0, 180.0);
-  const float mirrored = glsl::glint(Towards(40.0, 0.0), sun);
-  EXPECT_GT(mirrored, 20.0F * glsl::glint(Towards(40.0, 90.0), sun));
-  EXPECT_GT(mirrored, 20.0F * glsl::glint(Towards(40.0, 180.0), sun));
-  EXPECT_EQ(glsl::glint(Towards(40.0), Towards(-1.0)), 0.0F);
-  EXPECT_TRUE(std::isfinite(glsl::glint(Towards(0.01), Towards(0.01, 180.0))));
+  const vec3 sun = TowardsFrom(40.0, 180.0);
+  const float mirrored = glsl::glint(TowardsFrom(40.0, 0.0), sun);
+  EXPECT_GT(mirrored, 20.0F * glsl::glint(TowardsFrom(40.0, 90.0), sun));
+  EXPECT_GT(mirrored, 20.0F * glsl::glint(TowardsFrom(40.0, 180.0), sun));
+  EXPECT_EQ(glsl::glint(TowardsFrom(40.0), TowardsFrom(-1.0)), 0.0F);
+  EXPECT_TRUE(std::isfinite(glsl::glint(TowardsFrom(0.01), TowardsFrom(0.01, 180.0))));
 }
 
 // Over all directions it is the reflectance of water for the sun's irradiance on level ground.
 TEST(Water, GlintHoldsTheSunlightThatFacetsReflect) {
   for (const double elevation_deg : {30.0, 45.0, 80.0}) {
-    const vec3 sun = Towards(elevation_deg, 180.0);
+    const vec3 sun = TowardsFrom(elevation_deg, 180.0);
     double flux = 0.0;
     constexpr int kRows = 400;
     for (int i = 0; i < kRows; ++i) {
       const double sine = (i + 0.5) / kRows;
       for (int j = 0; j < kRows; ++j) {
         const double azimuth_deg = 360.0 * (j + 0.5) / kRows;
-        const vec3 out = Towards(std::asin(sine) * 180.0 / std::numbers::pi, azimuth_deg);
+        const vec3 out = TowardsFrom(std::asin(sine) * 180.0 / std::numbers::pi, azimuth_deg);
         flux += glsl::glint(out, sun) * sine * 2.0 * std::numbers::pi / (kRows * kRows);
       }
     }

@@ -16,7 +16,7 @@ constexpr double kAspectRatio = 16.0 / 9.0;
 
 // 60 x 60 x 16 km with a tower of 4 x 4 km from 1 to 12 km at its middle; fields are cloud and
 // rain.
-volume::HydrometeorFields Storm() {
+volume::HydrometeorFields SpottedStorm() {
   volume::HydrometeorFields fields;
   fields.grid = {{60, 60, 32}, {1000.0, 1000.0, 500.0}, {-30e3, -30e3, 0.0}};
   fields.condensate = {{0, 0, 0}, fields.grid.cells};
@@ -40,7 +40,7 @@ void Fill(volume::HydrometeorFields& fields, int field, const glm::ivec3& low,
 }
 
 volume::HydrometeorFields Thunderstorm() {
-  volume::HydrometeorFields fields = Storm();
+  volume::HydrometeorFields fields = SpottedStorm();
   Fill(fields, 0, {28, 28, 2}, {32, 32, 24});
   return fields;
 }
@@ -116,7 +116,7 @@ TEST(SpotterPlace, AWideLensIsNearAndALongLensKeepsTheBase) {
 }
 
 TEST(SpotterPlace, LowCloudsAreSeenFromNear) {
-  volume::HydrometeorFields fields = Storm();
+  volume::HydrometeorFields fields = SpottedStorm();
   fields.grid = {{100, 100, 25}, {100.0, 100.0, 100.0}, {-5e3, -5e3, 0.0}};
   fields.condensate = {{0, 0, 0}, fields.grid.cells};
   for (auto& field : fields.fields) {
@@ -130,7 +130,7 @@ TEST(SpotterPlace, LowCloudsAreSeenFromNear) {
 }
 
 TEST(SpotterPlace, ACoreAtTheEdgeIsSeenFromWithinTheDomain) {
-  volume::HydrometeorFields fields = Storm();
+  volume::HydrometeorFields fields = SpottedStorm();
   // Cut by the domain's western face.
   Fill(fields, 0, {0, 28, 2}, {3, 32, 24});
   EXPECT_GT(Spotted(fields).place_m.x, -30e3);

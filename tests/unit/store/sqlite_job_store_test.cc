@@ -18,7 +18,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-JobRecord Record(const std::string& id, int pictures) {
+JobRecord JobRecordOf(const std::string& id, int pictures) {
   JobRecord job;
   job.id = id;
   job.result_key = "key of " + id;
@@ -53,13 +53,13 @@ class SqliteJobStoreTest : public ::testing::Test {
 };
 
 TEST_F(SqliteJobStoreTest, GivesBackWhatItWasGiven) {
-  const JobRecord job = Record("a", 3);
+  const JobRecord job = JobRecordOf("a", 3);
   ASSERT_TRUE(Open()->Add(job).ok());
   EXPECT_THAT(Loaded(), ElementsAre(job));
 }
 
 TEST_F(SqliteJobStoreTest, KeepsEachStateOfAPictureButThatOfBeingDrawn) {
-  JobRecord job = Record("a", 3);
+  JobRecord job = JobRecordOf("a", 3);
   const auto store = Open();
   ASSERT_TRUE(store->Add(job).ok());
   PictureRecord& drawn = job.pictures[0];
@@ -88,11 +88,11 @@ TEST_F(SqliteJobStoreTest, KeepsEachStateOfAPictureButThatOfBeingDrawn) {
 
 TEST_F(SqliteJobStoreTest, RemovesAJobWithItsPictures) {
   const auto store = Open();
-  ASSERT_TRUE(store->Add(Record("a", 2)).ok());
-  ASSERT_TRUE(store->Add(Record("b", 2)).ok());
+  ASSERT_TRUE(store->Add(JobRecordOf("a", 2)).ok());
+  ASSERT_TRUE(store->Add(JobRecordOf("b", 2)).ok());
   ASSERT_TRUE(store->Remove({"a", "gone"}).ok());
   // The pictures of "a" would be in its way.
-  ASSERT_TRUE(store->Add(Record("a", 1)).ok());
+  ASSERT_TRUE(store->Add(JobRecordOf("a", 1)).ok());
   EXPECT_THAT(*store->Load(), SizeIs(2));
 }
 
@@ -121,7 +121,7 @@ TEST_F(SqliteJobStoreTest, AFileFromBeforeThereWereJobsKeepsItsSessions) {
   const auto jobs = store::SqliteJobStore::In(*file);
   EXPECT_THAT(*(*sessions)->Load(), SizeIs(1));
   EXPECT_THAT(*(*jobs)->Load(), IsEmpty());
-  EXPECT_TRUE((*jobs)->Add(Record("a", 1)).ok());
+  EXPECT_TRUE((*jobs)->Add(JobRecordOf("a", 1)).ok());
   session::SessionRecord record;
   record.id = "two";
   record.keys = {"p2", "v2"};

@@ -24,7 +24,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-SessionRecord Record(const std::string& id) {
+SessionRecord SessionRecordOf(const std::string& id) {
   SessionRecord record;
   record.id = id;
   record.keys = {"presenter of " + id, "viewers of " + id};
@@ -92,22 +92,23 @@ class SqliteSessionStoreTest : public ::testing::Test {
 };
 
 TEST_F(SqliteSessionStoreTest, EveryFieldComesBack) {
-  ASSERT_TRUE(Open()->Save({Record("b"), Record("a")}).ok());
-  EXPECT_THAT(Loaded(), ElementsAre(Record("a"), Record("b")));
+  ASSERT_TRUE(Open()->Save({SessionRecordOf("b"), SessionRecordOf("a")}).ok());
+  EXPECT_THAT(Loaded(), ElementsAre(SessionRecordOf("a"), SessionRecordOf("b")));
 }
 
 TEST_F(SqliteSessionStoreTest, TheNewestIsKeptAndTheRemovedIsGone) {
-  SessionRecord changed = Record("a");
+  SessionRecord changed = SessionRecordOf("a");
   changed.scene = "another";
   changed.scene_revision = 3;
   changed.rules = {};
   changed.marks.erase(changed.marks.begin());
   changed.last_used += std::chrono::hours(1);
-  SessionRecord moved = Record("c");
+  SessionRecord moved = SessionRecordOf("c");
   moved.scene = "another view of the same marks";
   {
     const auto store = Open();
-    ASSERT_TRUE(store->Save({Record("a"), Record("b"), Record("c")}).ok());
+    ASSERT_TRUE(
+        store->Save({SessionRecordOf("a"), SessionRecordOf("b"), SessionRecordOf("c")}).ok());
     ASSERT_TRUE(store->Save({changed, moved}).ok());
     ASSERT_TRUE(store->Remove({"b", "unknown"}).ok());
   }
@@ -117,46 +118,46 @@ TEST_F(SqliteSessionStoreTest, TheNewestIsKeptAndTheRemovedIsGone) {
 }
 
 TEST_F(SqliteSessionStoreTest, MarksOfAFileWithoutOwnersComeBackWithoutThem) {
-  ASSERT_TRUE(Open()->Save({Record("a")}).ok());
+  ASSERT_TRUE(Open()->Save({SessionRecordOf("a")}).ok());
   Execute(path_, "ALTER TABLE marks DROP COLUMN owner_keys; PRAGMA user_version = 2");
-  SessionRecord without_owners = Record("a");
+  SessionRecord without_owners = SessionRecordOf("a");
   for (session::Mark& mark : without_owners.marks) mark.owner_key.clear();
   EXPECT_THAT(Loaded(), ElementsAre(without_owners));
   // They are written although the marks are the same.
-  ASSERT_TRUE(Open()->Save({Record("a")}).ok());
-  EXPECT_THAT(Loaded(), ElementsAre(Record("a")));
+  ASSERT_TRUE(Open()->Save({SessionRecordOf("a")}).ok());
+  EXPECT_THAT(Loaded(), ElementsAre(SessionRecordOf("a")));
 }
 
 TEST_F(SqliteSessionStoreTest, AllRecordsAreSavedOrNone) {
-  SessionRecord same_key = Record("b");
-  same_key.keys = Record("a").keys;
+  SessionRecord same_key = SessionRecordOf("b");
+  same_key.keys = SessionRecordOf("a").keys;
   const auto store = Open();
-  EXPECT_FALSE(store->Save({Record("a"), same_key}).ok());
+  EXPECT_FALSE(store->Save({SessionRecordOf("a"), same_key}).ok());
   EXPECT_TRUE(store->Load()->empty());
   // It goes on after the error.
-  EXPECT_TRUE(store->Save({Record("a")}).ok());
+  EXPECT_TRUE(store->Save({SessionRecordOf("a")}).ok());
 }
 
 TEST_F(SqliteSessionStoreTest, ManyRecordsAreOneTransaction) {
   std::vector<SessionRecord> records;
-  for (int i = 1000; i < 3000; ++i) records.push_back(Record(std::to_string(i)));
+  for (int i = 1000; i < 3000; ++i) records.push_back(SessionRecordOf(std::to_string(i)));
   ASSERT_TRUE(Open()->Save(records).ok());
   EXPECT_EQ(Loaded(), records);
 }
 
 TEST_F(SqliteSessionStoreTest, MarksThatCannotBeReadAreLeftOut) {
-  ASSERT_TRUE(Open()->Save({Record("a"), Record("b")}).ok());
+  ASSERT_TRUE(Open()->Save({SessionRecordOf("a"), SessionRecordOf("b")}).ok());
   Execute(path_, "UPDATE marks SET marks = x'0102' WHERE session_id = 'a'");
-  SessionRecord without_marks = Record("a");
+  SessionRecord without_marks = SessionRecordOf("a");
   without_marks.marks.clear();
-  EXPECT_THAT(Loaded(), ElementsAre(without_marks, Record("b")));
+  EXPECT_THAT(Loaded(), ElementsAre(without_marks, SessionRecordOf("b")));
 }
 
 TEST_F(SqliteSessionStoreTest, OnlyThisUserReadsItsFiles) {
   std::ofstream{path_};
   std::filesystem::permissions(path_, std::filesystem::perms(0644));
   const auto store = Open();
-  ASSERT_TRUE(store->Save({Record("a")}).ok());
+  ASSERT_TRUE(store->Save({SessionRecordOf("a")}).ok());
   int files = 0;
   for (const auto& file : std::filesystem::directory_iterator(folder_.Path())) {
     EXPECT_EQ(file.status().permissions(), std::filesystem::perms(0600)) << file.path();
@@ -171,7 +172,7 @@ TEST_F(SqliteSessionStoreTest, WhatWasSavedOutlivesAKilledProcess) {
   const pid_t child = fork();
   if (child == 0) {
     auto store = SqliteSessionStore::Open(path_);
-    const bool done = store.ok() && (*store)->Save({Record("a")}).ok();
+    const bool done = store.ok() && (*store)->Save({SessionRecordOf("a")}).ok();
     (void)!write(saved[1], done ? "y" : "n", 1);
     pause();
   }
@@ -185,18 +186,18 @@ TEST_F(SqliteSessionStoreTest, WhatWasSavedOutlivesAKilledProcess) {
               AllOf(HasSubstr("held by another process"), HasSubstr("folder of its own")));
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
-  EXPECT_THAT(Loaded(), ElementsAre(Record("a")));
+  EXPECT_THAT(Loaded(), ElementsAre(SessionRecordOf("a")));
 }
 
 TEST_F(SqliteSessionStoreTest, ANewerVersionIsRefusedAndLeftAsItIs) {
-  ASSERT_TRUE(Open()->Save({Record("a")}).ok());
+  ASSERT_TRUE(Open()->Save({SessionRecordOf("a")}).ok());
   Execute(path_, "PRAGMA user_version = 7");
   const absl::Status refusal = Refusal();
   EXPECT_EQ(refusal.code(), absl::StatusCode::kFailedPrecondition);
   EXPECT_THAT(std::string(refusal.message()),
               HasSubstr("newer Thunderhead (version 7; this one knows 3)"));
   Execute(path_, "PRAGMA user_version = 3");
-  EXPECT_THAT(Loaded(), ElementsAre(Record("a")));
+  EXPECT_THAT(Loaded(), ElementsAre(SessionRecordOf("a")));
 }
 
 TEST_F(SqliteSessionStoreTest, AnotherProgramsDatabaseIsRefused) {
@@ -213,7 +214,7 @@ TEST_F(SqliteSessionStoreTest, ADamagedFileIsNamedWithTheRemedy) {
 }
 
 TEST_F(SqliteSessionStoreTest, DamageInTheMiddleIsFoundAtOnce) {
-  ASSERT_TRUE(Open()->Save({Record("a")}).ok());
+  ASSERT_TRUE(Open()->Save({SessionRecordOf("a")}).ok());
   std::fstream file(path_, std::ios::in | std::ios::out | std::ios::binary);
   ASSERT_GT(std::filesystem::file_size(path_), 8192U);
   file.seekp(4096);
@@ -228,8 +229,8 @@ TEST_F(SqliteSessionStoreTest, AFolderThatIsNotThereIsNamed) {
 }
 
 TEST(MarkBytesTest, CutBytesAreAnError) {
-  const std::string whole = store::ToBytes(Record("a").marks);
-  std::vector<session::Mark> without_keys = Record("a").marks;
+  const std::string whole = store::ToBytes(SessionRecordOf("a").marks);
+  std::vector<session::Mark> without_keys = SessionRecordOf("a").marks;
   for (session::Mark& mark : without_keys) mark.owner_key.clear();
   ASSERT_EQ(*store::MarksFrom(whole), without_keys);
   int accepted = 0;

@@ -250,7 +250,7 @@ TEST_F(CfReader, HydrometeorsByStandardNameOrNameInTheirUnits) {
   }
 }
 
-CfContent Uniform(const std::string& name, const std::string& units, double value) {
+CfContent UniformField(const std::string& name, const std::string& units, double value) {
   return {name, {"y", "z", "x"}, {{"units", units}}, [value](const Index&) { return value; }};
 }
 
@@ -259,9 +259,9 @@ TEST_F(CfReader, MixingRatiosTakeTheAirsDensity) {
   const double q_v = 0.01;
   const double dry = physics::DryAirDensity_kg_per_m3(9e4, 290.0, q_v);
   SyntheticCf file = Water("qc", {{"units", "g/kg"}}, 0.8);
-  file.variables.push_back(Uniform("prs", "hPa", 900.0));
-  file.variables.push_back(Uniform("temp", "K", 290.0));
-  file.variables.push_back(Uniform("qv", "kg/kg", q_v));
+  file.variables.push_back(UniformField("prs", "hPa", 900.0));
+  file.variables.push_back(UniformField("temp", "K", 290.0));
+  file.variables.push_back(UniformField("qv", "kg/kg", q_v));
   auto fields = Read(file);
   ASSERT_TRUE(fields.ok()) << fields.status();
   EXPECT_NEAR((*fields)->fields[0].concentration_kg_per_m3[3], 0.8e-3 * dry, 1e-9);
@@ -273,7 +273,7 @@ TEST_F(CfReader, MixingRatiosTakeTheAirsDensity) {
   fields = Read(file);
   ASSERT_TRUE(fields.ok()) << fields.status();
   EXPECT_NEAR((*fields)->fields[0].concentration_kg_per_m3[3], 0.8e-3 * dry * (1.0 + q_v), 1e-9);
-  file.variables = {file.variables[0], Uniform("rho", "kg m-3", 0.9)};
+  file.variables = {file.variables[0], UniformField("rho", "kg m-3", 0.9)};
   fields = Read(file);
   ASSERT_TRUE(fields.ok()) << fields.status();
   EXPECT_NEAR((*fields)->fields[0].concentration_kg_per_m3[3], 0.8e-3 * 0.9, 1e-9);

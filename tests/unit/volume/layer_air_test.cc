@@ -8,7 +8,7 @@
 namespace thunderhead::volume {
 namespace {
 
-constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
+constexpr float kMissingAir = std::numeric_limits<float>::quiet_NaN();
 
 TEST(DryAirDensity, AgreesWithAValueComputedByHand) {
   // T = 310 * 0.8^(2/7) = 290.853 K; rho = 80000 / (287 * 290.853 * (1 + 1.608 * 0.01)) = 0.94321
@@ -19,10 +19,10 @@ TEST(DryAirDensity, AgreesWithAValueComputedByHand) {
 }
 
 TEST(DryAirDensity, IsMissingWhereAnythingItNeedsIs) {
-  EXPECT_TRUE(std::isnan(DryAirDensity({{kMissing}, {310}, {0.01F}}, {0, 100}, 1)[0]));
-  EXPECT_TRUE(std::isnan(DryAirDensity({{80'000}, {kMissing}, {0.01F}}, {0, 100}, 1)[0]));
-  EXPECT_TRUE(std::isnan(DryAirDensity({{80'000}, {310}, {kMissing}}, {0, 100}, 1)[0]));
-  EXPECT_TRUE(std::isnan(DryAirDensity({{80'000}, {310}, {0.01F}}, {0, kMissing}, 1)[0]));
+  EXPECT_TRUE(std::isnan(DryAirDensity({{kMissingAir}, {310}, {0.01F}}, {0, 100}, 1)[0]));
+  EXPECT_TRUE(std::isnan(DryAirDensity({{80'000}, {kMissingAir}, {0.01F}}, {0, 100}, 1)[0]));
+  EXPECT_TRUE(std::isnan(DryAirDensity({{80'000}, {310}, {kMissingAir}}, {0, 100}, 1)[0]));
+  EXPECT_TRUE(std::isnan(DryAirDensity({{80'000}, {310}, {0.01F}}, {0, kMissingAir}, 1)[0]));
   EXPECT_TRUE(std::isnan(DryAirDensity({{80'000}, {310}, {0.01F}}, {100, 0}, 1)[0]));
   EXPECT_TRUE(std::isnan(DryAirDensity({{-999}, {310}, {0.01F}}, {0, 100}, 1)[0]));
   EXPECT_TRUE(std::isnan(DryAirDensity({{80'000}, {-699}, {0.01F}}, {0, 100}, 1)[0]));
@@ -34,7 +34,7 @@ TEST(DryAirDensity, TakesVapourThatUndershootsAsZero) {
 }
 
 TEST(GeopotentialToHeight, DividesTheSumByGravity) {
-  std::vector<float> values = {981, kMissing, 9.81e8F};
+  std::vector<float> values = {981, kMissingAir, 9.81e8F};
   GeopotentialToHeight({9810, 0, 0}, values);
   EXPECT_FLOAT_EQ(values[0], 1100.0F);
   EXPECT_TRUE(std::isnan(values[1]));

@@ -21,7 +21,7 @@ using testing::SyntheticWrf;
 using testing::WrfCell;
 
 // Density of SyntheticWrf's air (see layer_air_test).
-constexpr double kDensity_kg_per_m3 = 0.94321;
+constexpr double kAir_kg_per_m3 = 0.94321;
 
 class ParticleSizesTest : public ::testing::Test {
  protected:
@@ -80,7 +80,7 @@ TEST_F(ParticleSizesTest, ColumnsKeepTheOpticalDepthOfTheirLayers) {
         const WrfCell cell{x, y, level, 0};
         const double thickness_m =
             InterfaceHeight_m(file, {x, y, level + 1, 0}) - InterfaceHeight_m(file, cell);
-        expected += 3.0 * kDensity_kg_per_m3 * MixingRatio(cell) / (2.0 * 1000.0 * Radius_m(cell)) *
+        expected += 3.0 * kAir_kg_per_m3 * MixingRatio(cell) / (2.0 * 1000.0 * Radius_m(cell)) *
                     thickness_m;
       }
       EXPECT_NEAR(ColumnDepth(fields, by_cell, x, y) / expected, 1.0, 1e-3) << x << " " << y;

@@ -21,7 +21,7 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 using ::testing::HasSubstr;
 
-constexpr int kTimes = 64;
+constexpr int kManyTimes = 64;
 constexpr int kCells = 64;
 constexpr std::size_t kTimeBytes = std::size_t{kCells} * kCells * kCells * sizeof(float);
 
@@ -74,7 +74,7 @@ class CubeFormat final : public StormFormat {
     std::ifstream(file.path) >> described.cells.x;
     described.cells = glm::ivec3(described.cells.x);
     described.dx_m = described.dy_m = 100.0;
-    for (int i = 0; i < kTimes; ++i) described.times.push_back(absl::FromUnixSeconds(60 * i));
+    for (int i = 0; i < kManyTimes; ++i) described.times.push_back(absl::FromUnixSeconds(60 * i));
     described.fields = {physics::Hydrometeor::kRain};
     const bool far = file.path.find("/far") != std::string::npos;
     described.reader = std::make_shared<Reader>(far ? storage_ : nullptr, described.cells);
@@ -139,7 +139,7 @@ TEST_F(StormMemory, SixtyFourTimesThatAreHeldKeepWithinTheBudget) {
   const auto store = Open({Cube("storm", kCells)}, {.memory = budget, .read_ahead = 1});
   std::vector<std::shared_ptr<const HydrometeorFields>> held;
   int refused = 0;
-  for (int time = 0; time < kTimes; ++time) {
+  for (int time = 0; time < kManyTimes; ++time) {
     auto fields = store->Get("storm.cube", time, {});
     EXPECT_LE(budget->Used(), budget->Bytes());
     if (fields.ok()) {
@@ -153,12 +153,12 @@ TEST_F(StormMemory, SixtyFourTimesThatAreHeldKeepWithinTheBudget) {
   }
   // Reading takes room besides.
   EXPECT_GE(held.size(), 8U);
-  EXPECT_EQ(held.size() + static_cast<std::size_t>(refused), std::size_t{kTimes});
+  EXPECT_EQ(held.size() + static_cast<std::size_t>(refused), std::size_t{kManyTimes});
   EXPECT_GE(budget->Used(base::MemoryUse::kFields), held.size() * kTimeBytes);
   EXPECT_EQ(budget->Used(base::MemoryUse::kReading), 0U);
   // Those who are shown less leave room to others.
   held.clear();
-  EXPECT_TRUE(store->Get("storm.cube", kTimes - 1, {}).ok());
+  EXPECT_TRUE(store->Get("storm.cube", kManyTimes - 1, {}).ok());
   EXPECT_LE(budget->Used(), budget->Bytes());
 }
 
@@ -166,14 +166,14 @@ TEST_F(StormMemory, WhatNobodyHoldsGoesFirst) {
   const auto budget = base::MemoryBudget::Make({.bytes = 24 * kTimeBytes});
   const auto store = Open({Cube("storm", kCells)}, {.memory = budget, .read_ahead = 0});
   const auto held = store->Get("storm.cube", 0, {}).value();
-  for (int time = 1; time < kTimes; ++time) {
+  for (int time = 1; time < kManyTimes; ++time) {
     ASSERT_TRUE(store->Get("storm.cube", time, {}).ok()) << time;
     EXPECT_LE(budget->Used(), budget->Bytes());
   }
   EXPECT_EQ(store->Peek("storm.cube", 0), held)
       << "what is held is not dropped: that frees nothing";
   EXPECT_EQ(store->Peek("storm.cube", 1), nullptr);
-  EXPECT_NE(store->Peek("storm.cube", kTimes - 1), nullptr);
+  EXPECT_NE(store->Peek("storm.cube", kManyTimes - 1), nullptr);
 }
 
 TEST_F(StormMemory, CellsWhoseNumberOverflowsAreRefusedBeforeAnythingIsAllocated) {
