@@ -1,7 +1,7 @@
 // The render loop: one thread draws the sessions that have a viewer ready for a frame, and gives
-// turns on the device to them and to its lanes, in which single pictures are drawn and light is
-// traced. Reads, encoding and the reference run on other threads. Knows no GL (only the frame
-// sources do) and no messages.
+// turns on the device to them and to its lanes, in which their long frames and single pictures are
+// drawn and light is traced. Reads, encoding and the reference run on other threads. Knows no GL
+// (only the frame sources do) and no messages.
 #pragma once
 
 #include <atomic>

@@ -70,6 +70,16 @@ class EagerViewer : public Viewer, public std::enable_shared_from_this<EagerView
     });
   }
 
+  // True if there was a frame of that revision or a later one that is so.
+  template <typename Is>
+  bool Has(std::uint64_t revision, const Is& is) {
+    const std::lock_guard lock(mutex_);
+    return std::ranges::any_of(events_, [&](const FrameEvent& event) {
+      const auto* frame = std::get_if<std::shared_ptr<const EncodedFrame>>(&event);
+      return frame != nullptr && (*frame)->scene_revision >= revision && is(**frame);
+    });
+  }
+
   bool AwaitProblem(const std::string& message) {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, testing::kPatience, [&] {
@@ -153,6 +163,15 @@ class RenderLoopTest : public ::testing::Test {
     return revision;
   }
 
+  // The first frame of a setting, which counts for nothing, and a few more.
+  void LearnCosts(Session& session, EagerViewer& viewer) const {
+    const double ms_per_mega_sample = machine_->ms_per_mega_sample;
+    machine_->ms_per_mega_sample = 0.0;
+    ASSERT_TRUE(viewer.Await(Show(session, Small(300.0)), false));
+    machine_->ms_per_mega_sample = ms_per_mega_sample;
+    for (int i = 1; i < 5; ++i) ASSERT_TRUE(viewer.Await(Show(session, Small(300.0 + i)), false));
+  }
+
   std::future<absl::StatusOr<DisplayFrame>> Picture(
       double exposure_ev,
       std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false)) {
@@ -222,6 +241,54 @@ TEST_F(RenderLoopTest, PicturesAndSessionsDoNotStarveOneAnother) {
     // One, unless the threads that move or encode had no processor for the time of a picture.
     EXPECT_LE(pictures_in_a_row, 3);
   }
+}
+
+// A session's full frame of a second beside another whose camera moves.
+TEST_F(RenderLoopTest, AFrameAtRestHoldsUpNoMovingOne) {
+  machine_->ms_per_mega_sample = 27000.0;  // a second a full frame, 16 ms a coarse one
+  Start();
+  const auto resting = *sessions_.Create();
+  const auto moving = *sessions_.Create();
+  const auto resting_viewer = Watch(resting);
+  const auto moving_viewer = Watch(moving);
+  LearnCosts(*moving, *moving_viewer);
+  Show(*resting, Small(5.0));
+  std::vector<double> took_ms;
+  const auto began = Clock::now();
+  std::uint64_t shown = 0;
+  const auto is_shown = [&] {
+    return resting_viewer->Has(
+        1, [](const EncodedFrame& frame) { return frame.refined && frame.modelled.slices == 16; });
+  };
+  while (!is_shown() && Clock::now() - began < testing::kPatience) {
+    const auto changed = Clock::now();
+    shown = Show(*moving, Small(100.0 + static_cast<double>(shown % 100)));
+    ASSERT_TRUE(moving_viewer->Await(shown, false));
+    took_ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - changed).count());
+  }
+  EXPECT_TRUE(is_shown()) << "the frame at rest ends, too";
+  std::ranges::sort(took_ms);
+  // Whole, it would have held up one of them by a second.
+  EXPECT_LT(took_ms.back(), 500.0);
+  EXPECT_LT(took_ms[took_ms.size() * 95 / 100], 150.0);
+  EXPECT_GT(machine_->pieces, 50) << "of 10 ms";
+}
+
+TEST_F(RenderLoopTest, AFrameAtRestEndsWhenItsSceneChanges) {
+  machine_->ms_per_mega_sample = 27000.0 * 4;  // four seconds a full frame
+  Start();
+  const auto session = *sessions_.Create();
+  const auto viewer = Watch(session);
+  LearnCosts(*session, *viewer);
+  ASSERT_TRUE(viewer->Await(Show(*session, Small(5.0)), false));
+  for (int i = 0; i < 1000 && machine_->pieces < 10; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  ASSERT_GE(machine_->pieces, 10);
+  const auto changed = Clock::now();
+  const std::uint64_t revision = Show(*session, Small(6.0));
+  ASSERT_TRUE(viewer->Await(revision, false));
+  EXPECT_LT(Clock::now() - changed, std::chrono::milliseconds(1000));
 }
 
 TEST_F(RenderLoopTest, WhatAScenePreparesHoldsUpNobodyElse) {
