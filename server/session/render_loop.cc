@@ -133,12 +133,12 @@ RenderLoop::RenderLoop(const RenderLoopOptions& options, volume::StormStore& sto
       sessions_(sessions),
       wake_(wake),
       losses_(options.losses),
-      images_(options.max_waiting_images),
+      images_(options.max_waiting_images, options.max_waiting_images_each),
       reader_(std::make_unique<FieldsReader>(store, [&wake] { wake.Notify(); })),
       encoder_(std::make_unique<FrameEncoder>(options.encoder_threads, options.serialize_frame,
                                               [&wake] { wake.Notify(); })),
       tracer_(std::make_unique<TruthTracer>(options.make_truth_source, options.max_traced_sessions,
-                                            [&wake] { wake.Notify(); })) {}
+                                            options.memory, [&wake] { wake.Notify(); })) {}
 
 RenderLoop::~RenderLoop() { Stop(); }
 
@@ -147,6 +147,18 @@ double RenderLoop::TurnSeconds() const {
   if (began == 0) return 0.0;
   const Clock::duration took = Clock::now().time_since_epoch() - Clock::duration(began);
   return std::chrono::duration<double>(took).count();
+}
+
+void RenderLoop::NoteLanes(std::vector<const Lane*> lanes) {
+  const std::lock_guard lock(lanes_mutex_);
+  lanes_ = std::move(lanes);
+}
+
+double RenderLoop::StalledSeconds() const {
+  const std::lock_guard lock(lanes_mutex_);
+  double stalled_s = 0.0;
+  for (const Lane* lane : lanes_) stalled_s = std::max(stalled_s, lane->StalledSeconds());
+  return stalled_s;
 }
 
 void RenderLoop::RequestStop() {
@@ -202,6 +214,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
   MemoryPressure pressure(options_.device_memory, wake_);
   const std::vector<Lane*> all_lanes{&lanes->sessions, &lanes->tracing, &lanes->quick_images,
                                      &lanes->images};
+  NoteLanes({all_lanes.begin(), all_lanes.end()});
   while (!stopping_) {
     BeginTurn();
     if (device_lost_.exchange(false)) {
@@ -248,6 +261,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
     turns.Used(contenders[*next], stopwatch.ElapsedMs());
     turn_began_ = 0;
   }
+  NoteLanes({});
   lanes.reset();
   image_drawer.EndAll(base::ShuttingDown());
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <future>
 
+#include "base/error_details.h"
 #include "base/memory_budget.h"
 #include "gl/device_faults.h"
 #include "gmock/gmock.h"
@@ -182,7 +183,8 @@ class RenderLoopTest : public ::testing::Test {
 
   std::future<absl::StatusOr<DisplayFrame>> Picture(
       const scene::Scene& scene,
-      std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false)) {
+      std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false),
+      const std::string& owner = "") {
     auto promise = std::make_shared<std::promise<absl::StatusOr<DisplayFrame>>>();
     auto future = promise->get_future();
     loop_->RenderImage({scene,
@@ -192,7 +194,8 @@ class RenderLoopTest : public ::testing::Test {
                         [](DisplayFrame&) { return absl::OkStatus(); }, std::move(cancelled),
                         [promise](absl::StatusOr<DisplayFrame> picture) {
                           promise->set_value(std::move(picture));
-                        }});
+                        },
+                        nullptr, false, false, 1e15, absl::OkStatus(), owner});
     return future;
   }
 
@@ -415,6 +418,55 @@ TEST_F(RenderLoopTest, PicturesClaimTheLightThatTheyAwait) {
   EXPECT_EQ(waits.wait_for(std::chrono::milliseconds(100)), std::future_status::timeout);
   machine_->waits_to_trace_azimuth_deg = -1.0;
   EXPECT_TRUE(waits.get().ok());
+}
+
+// Forty of one, then two of another, who does not wait for all of them.
+TEST_F(RenderLoopTest, PicturesTakeTurnsByWhoAskedForThem) {
+  machine_->ms_per_mega_sample = 1000.0;  // 37 ms a picture
+  Start();
+  const auto ask = [&](const std::string& owner, double exposure_ev) {
+    scene::Scene scene = Small(0.0);
+    scene.display.exposure_ev = exposure_ev;
+    return Picture(scene, std::make_shared<std::atomic<bool>>(false), owner);
+  };
+  std::vector<std::future<absl::StatusOr<DisplayFrame>>> many;
+  for (int i = 0; i < 40; ++i) many.push_back(ask("pipeline", 1.0));
+  auto first = ask("ben", 2.0);
+  auto second = ask("ben", 2.0);
+  EXPECT_TRUE(first.get().ok());
+  EXPECT_TRUE(second.get().ok());
+  const auto log = machine_->Log();
+  const auto before = std::ranges::count_if(
+      log, [](const auto& drawn) { return drawn.scene.display.exposure_ev == 1.0; });
+  EXPECT_LE(before, 15) << "in the order of asking, 40";
+  for (auto& picture : many) EXPECT_TRUE(picture.get().ok());
+}
+
+TEST_F(RenderLoopTest, OneIdentityDoesNotFillTheQueue) {
+  RenderLoopOptions options;
+  options.max_waiting_images = 100;
+  options.max_waiting_images_each = 10;
+  Start(options);
+  machine_->drawing.Close();
+  std::vector<std::future<absl::StatusOr<DisplayFrame>>> many;
+  const auto ask = [&](const std::string& owner) {
+    return Picture(Small(0.0), std::make_shared<std::atomic<bool>>(false), owner);
+  };
+  many.push_back(ask("pipeline"));
+  ASSERT_TRUE(machine_->drawing.AwaitWaiting(1));
+  for (int i = 0; i < 20; ++i) many.push_back(ask("pipeline"));
+  auto other = ask("ben");
+  machine_->drawing.Open();
+  int refused = 0;
+  for (auto& picture : many) {
+    const absl::Status status = picture.get().status();
+    if (status.ok()) continue;
+    ++refused;
+    EXPECT_EQ(base::DetailsOf(status).reason, "RENDER_QUEUE_FULL");
+    EXPECT_THAT(std::string(status.message()), HasSubstr("of your pictures"));
+  }
+  EXPECT_GE(refused, 8);
+  EXPECT_TRUE(other.get().ok());
 }
 
 TEST_F(RenderLoopTest, CancelledPicturesAreDroppedAndSayso) {
