@@ -59,10 +59,12 @@ absl::Status Caller::StillKnown(std::chrono::steady_clock::time_point now) const
 }
 
 Door::Door(std::unique_ptr<Authenticator> authenticator, std::shared_ptr<Audit> audit,
-           const QuotaLimits& limits)
+           const QuotaLimits& limits, base::TrustedProxies proxies)
     : authenticator_(std::move(authenticator)),
       audit_(std::move(audit)),
       quotas_(limits),
+      wrong_tokens_(limits.wrong_tokens_per_second),
+      proxies_(std::move(proxies)),
       own_token_(RandomToken()) {}
 
 absl::Status Door::Check(std::string_view method, CallKind kind, Caller& caller) {
@@ -73,6 +75,18 @@ absl::Status Door::Check(std::string_view method, CallKind kind, Caller& caller)
   if (kind == CallKind::kUnary) return absl::OkStatus();
   THUNDERHEAD_ASSIGN_OR_RETURN(caller.place_, quotas_.TakeStream(identity.name));
   return absl::OkStatus();
+}
+
+absl::StatusOr<Identity> Door::Identify(const Credentials& shown) {
+  const auto now = std::chrono::steady_clock::now();
+  THUNDERHEAD_RETURN_IF_ERROR(wrong_tokens_.MayShow(shown, now));
+  absl::StatusOr<Identity> identity = authenticator_->Identify(shown);
+  if (identity.ok()) {
+    wrong_tokens_.WasRight(shown);
+  } else if (absl::IsUnauthenticated(identity.status())) {
+    wrong_tokens_.WasWrong(shown, now);
+  }
+  return identity;
 }
 
 absl::StatusOr<std::shared_ptr<const Caller>> Door::Admit(std::string_view method, CallKind kind,
@@ -87,7 +101,7 @@ absl::StatusOr<std::shared_ptr<const Caller>> Door::Admit(std::string_view metho
     caller->identity_.role = Role::kOperator;
   } else {
     caller->authenticator_ = authenticator_.get();
-    absl::StatusOr<Identity> identity = authenticator_->Identify(shown);
+    absl::StatusOr<Identity> identity = Identify(shown);
     status = identity.status();
     if (status.ok()) caller->identity_ = *std::move(identity);
   }

@@ -13,6 +13,8 @@
 #include "access/audit.h"
 #include "access/authenticator.h"
 #include "access/quotas.h"
+#include "access/wrong_tokens.h"
+#include "base/trusted_proxies.h"
 
 namespace thunderhead::access {
 
@@ -45,7 +47,7 @@ enum class CallKind { kUnary, kStream };
 class Door {
  public:
   Door(std::unique_ptr<Authenticator> authenticator, std::shared_ptr<Audit> audit,
-       const QuotaLimits& limits);
+       const QuotaLimits& limits, base::TrustedProxies proxies = {});
 
   // UNAUTHENTICATED, PERMISSION_DENIED or RESOURCE_EXHAUSTED. The caller must not outlive this.
   absl::StatusOr<std::shared_ptr<const Caller>> Admit(std::string_view method, CallKind kind,
@@ -54,13 +56,18 @@ class Door {
   // A token of this process' own, with which it calls itself as an operator.
   const std::string& OwnToken() const { return own_token_; }
   const QuotaLimits& limits() const { return quotas_.limits(); }
+  // Who may say for whom they ask.
+  const base::TrustedProxies& Proxies() const { return proxies_; }
 
  private:
   absl::Status Check(std::string_view method, CallKind kind, Caller& caller);
+  absl::StatusOr<Identity> Identify(const Credentials& shown);
 
   const std::unique_ptr<Authenticator> authenticator_;
   const std::shared_ptr<Audit> audit_;
   Quotas quotas_;
+  WrongTokens wrong_tokens_;
+  const base::TrustedProxies proxies_;
   const std::string own_token_;
 };
 

@@ -19,6 +19,8 @@ struct QuotaLimits {
   std::size_t max_streams_per_identity = 512;
   // The mean; twice as many at once after a second of rest. 0: no limit.
   double requests_per_second = 500.0;
+  // Of one network, that nobody has: after them it may show none that was not right before.
+  double wrong_tokens_per_second = 5.0;
 };
 
 // Requests that are allowed now: they come back with time.
@@ -31,13 +33,13 @@ class RequestBudget {
 
   // RESOURCE_EXHAUSTED if there is none left.
   absl::Status Take(double per_second, Time now);
+  // How many there are now.
+  double LeftAt(double per_second, Time now) const;
   // True if nothing was taken for so long that a new one would be the same.
   bool IsFull(double per_second, Time now) const;
 
  private:
   static constexpr double kBurst_s = 2.0;
-
-  double LeftAt(double per_second, Time now) const;
 
   double left_;
   Time at_;

@@ -25,6 +25,9 @@ using std::chrono::steady_clock;
 // One request may arrive as several signals (interruption.cc).
 constexpr milliseconds kOneRequest{250};
 
+// How many times as long as a turn of drawing a lane may work without one.
+constexpr double kLaneFactor = 5.0;
+
 // A signal of those, or 0 after a while.
 int Taken(const sigset_t& signals) {
   const timespec wait{0, std::chrono::nanoseconds(milliseconds(20)).count()};
@@ -53,7 +56,8 @@ void AddOperationFlags(CLI::App& command, OperationFlags& flags) {
       ->capture_default_str();
   command
       .add_option("--drain-seconds", flags.drain_s,
-                  "How long, after SIGTERM, single pictures that were begun may take to end")
+                  "How long, after SIGTERM, single pictures that were begun may take to end, and "
+                  "viewers, who are told, to leave")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
   command
@@ -124,6 +128,11 @@ std::string Operation::MetricsText() {
     add("pictures_waiting", "Single pictures that wait to be drawn", load.waiting_pictures);
     add("reading_stuck_seconds", "Since a storage that hangs gave something; 0 if none hangs",
         load.reading_stuck_s);
+    add("lane_stalled_seconds",
+        "Since a lane that works drew a piece; 0 where none works or it waits for its turn",
+        load.stalled_s);
+    add("jobs_stalled_seconds", "For how long the jobs' thread has been at one thing; 0 at rest",
+        load.jobs.stalled_s);
     add("render_turn_seconds", "Since the turn of drawing under way began; 0 at rest", load.turn_s);
   }
   AddBudget("memory_budget", memory_.get(), gauges);
@@ -142,10 +151,24 @@ telemetry::Health Operation::HealthNow() {
             .ready = false,
             .state = absl::StrFormat("not making progress: drawing for %.0f s", load.turn_s)};
   }
+  // Between two pieces a lane may read, fit or encode for minutes.
+  if (load.stalled_s > kLaneFactor * flags_.stuck_s) {
+    return {.alive = false,
+            .ready = false,
+            .state = absl::StrFormat("not making progress: a lane has drawn nothing for %.0f s",
+                                     load.stalled_s)};
+  }
   if (load.recovering) {
     return {.alive = true, .ready = false, .state = "the device was lost; opening it again"};
   }
   if (load.draining) return {.alive = true, .ready = false, .state = "draining"};
+  // A disk of results that hangs is not mended by another process.
+  if (load.jobs.stalled_s > flags_.stuck_s) {
+    return {.alive = true,
+            .ready = true,
+            .state = absl::StrFormat("serving; render jobs have made no progress for %.0f s",
+                                     load.jobs.stalled_s)};
+  }
   return {.alive = true, .ready = true, .state = "serving"};
 }
 
@@ -167,11 +190,18 @@ void Operation::WaitAndDrain(const sigset_t& signals, service::Server& server) {
   server.BeginDrain();
   const auto grace = std::chrono::duration_cast<steady_clock::duration>(
       std::chrono::duration<double>(flags_.drain_s));
-  while (server.Load().pictures > 0 && steady_clock::now() < began + grace) {
+  service::ServerLoad left = server.Load();
+  while ((left.pictures > 0 || left.viewers > 0) && steady_clock::now() < began + grace) {
     std::this_thread::sleep_for(milliseconds(20));
+    left = server.Load();
   }
-  if (const int left = server.Load().pictures; left > 0) {
-    spdlog::warn("{} pictures are not done after {} s and are given up", left, flags_.drain_s);
+  if (left.pictures > 0) {
+    spdlog::warn("{} pictures are not done after {} s and are given up", left.pictures,
+                 flags_.drain_s);
+  }
+  if (left.viewers > 0) {
+    spdlog::info("{} viewers have not left after {} s; their streams end", left.viewers,
+                 flags_.drain_s);
   }
   spdlog::info("stopping");
 }

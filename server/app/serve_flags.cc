@@ -64,6 +64,11 @@ void AddAccessFlags(CLI::App& serve, ServeFlags& flags) {
                   "Origins of other sites whose pages may call the server")
       ->group(kWho);
   serve
+      .add_option("--trusted-proxy", flags.trusted_proxies,
+                  "Addresses or networks (10.1.0.0/16) of proxies before both ports that say by "
+                  "X-Forwarded-For for whom they ask; what others say there is ignored")
+      ->group(kWho);
+  serve
       .add_option(
           "--audit-log", flags.audit_log,
           "File to which refusals and privileged acts are appended, a line each; without it "
@@ -102,12 +107,16 @@ void AddLimitFlags(CLI::App& serve, ServeFlags& flags) {
   AddLimit(serve, "--max-samples", flags.max_megasamples, 0.001, 137439,
            "Megasamples of a picture: its pixels times its slices");
   AddLimit(serve, "--max-render-time", flags.max_render_s, 0.001, 1e6,
-           "Seconds that a picture outside sessions may take, waiting included");
+           "Seconds that a picture outside sessions may take once it is begun");
   AddLimit(serve, "--max-predicted-render-time", flags.render_loop.image_limits.max_predicted_s,
            0.001, 1e6,
            "Seconds of drawing that a picture outside sessions may be predicted to take");
   AddLimit(serve, "--max-stills", flags.render_loop.max_waiting_images, 0, 1e6,
            "Pictures outside sessions that may wait to be drawn");
+  AddLimit(serve, "--max-stills-each", flags.render_loop.max_waiting_images_each, 0, 1e6,
+           "Those of one identity");
+  AddLimit(serve, "--max-wrong-tokens", flags.quotas.wrong_tokens_per_second, 0, 1e6,
+           "Wrong tokens a second of one address; 0 for no limit");
   AddLimit(serve, "--grpc-memory", flags.grpc_memory_mib, 16, 1 << 20,
            "MiB of gRPC's buffers, all connections together");
 }
@@ -182,6 +191,16 @@ Budgets BudgetsOf(const ServeFlags& flags) {
               {.name = "GPU memory", .flag = "--gpu-memory-budget", .bytes = gpu_bytes})};
 }
 
+namespace {
+
+absl::StatusOr<base::TrustedProxies> ProxiesOf(const ServeFlags& flags) {
+  auto proxies = base::TrustedProxies::Parse(flags.trusted_proxies);
+  if (!proxies.ok()) return base::Annotate(proxies.status(), "--trusted-proxy");
+  return proxies;
+}
+
+}  // namespace
+
 absl::StatusOr<std::shared_ptr<access::Door>> MakeDoor(const ServeFlags& flags) {
   const std::string& mode = flags.auth.front();
   const bool has_file = flags.auth.size() == 2;
@@ -199,7 +218,9 @@ absl::StatusOr<std::shared_ptr<access::Door>> MakeDoor(const ServeFlags& flags) 
                                                    "'; it must be none, tokens FILE or jwt FILE"));
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<access::Audit> audit, OpenAudit(flags.audit_log));
-  return std::make_shared<access::Door>(std::move(authenticator), std::move(audit), flags.quotas);
+  THUNDERHEAD_ASSIGN_OR_RETURN(base::TrustedProxies proxies, ProxiesOf(flags));
+  return std::make_shared<access::Door>(std::move(authenticator), std::move(audit), flags.quotas,
+                                        std::move(proxies));
 }
 
 absl::Status CompleteFlags(ServeFlags& flags) {
@@ -221,6 +242,7 @@ absl::Status CompleteFlags(ServeFlags& flags) {
   flags.gateway.tls_key = flags.tls.key;
   flags.gateway.allowed_hosts = flags.allowed_hosts;
   flags.gateway.allowed_origins = flags.allowed_origins;
+  THUNDERHEAD_ASSIGN_OR_RETURN(flags.gateway.trusted_proxies, ProxiesOf(flags));
   return absl::OkStatus();
 }
 

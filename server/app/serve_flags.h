@@ -47,6 +47,7 @@ struct ServeFlags {
   bool insecure = false;
   std::vector<std::string> allowed_hosts;
   std::vector<std::string> allowed_origins;
+  std::vector<std::string> trusted_proxies;
   std::string audit_log;
 
   // How much.

@@ -29,6 +29,10 @@ LooseThread::~LooseThread() {
   thread_.detach();
 }
 
+bool LooseThread::EndsWithin(std::chrono::milliseconds time) const {
+  return ended_.wait_for(time) == std::future_status::ready;
+}
+
 bool LooseThread::AnyLeftBehind() { return any_left_behind; }
 
 }  // namespace thunderhead::base

@@ -19,6 +19,9 @@ class LooseThread {
   LooseThread(LooseThread&&) noexcept = default;
   LooseThread& operator=(LooseThread&&) = delete;
 
+  // Waits for its end, for so long at most; true if it has ended.
+  bool EndsWithin(std::chrono::milliseconds time) const;
+
   // True if one was left behind in this process: it must end by _exit, as the thread may wake up
   // while what it uses is being destroyed.
   static bool AnyLeftBehind();

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
+
+#include "base/memory_budget.h"
 
 namespace thunderhead::frame {
 
@@ -12,6 +15,7 @@ struct FineImage {
   int width_px = 0;
   int height_px = 0;
   std::vector<std::uint16_t> rgb;
+  std::shared_ptr<const base::MemoryReservation> memory;  // that it counts in; null: in none
 };
 
 }  // namespace thunderhead::frame

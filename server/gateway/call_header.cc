@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "absl/strings/str_cat.h"
 #include "absl/time/time.h"
 #include "base/status.h"
 #include "gateway/text_view.h"
@@ -20,7 +21,7 @@ constexpr absl::Duration kLongestTimeout = absl::Hours(24 * 365);
 
 absl::StatusOr<UpstreamRequest> TranslateHeader(
     const boost::beast::http::request<boost::beast::http::string_body>& request,
-    const std::string& peer) {
+    const std::string& peer, const base::TrustedProxies& proxies) {
   UpstreamRequest upstream;
   const std::string_view target = View(request.target());
   upstream.method = std::string(target.substr(0, target.find('?')));
@@ -28,7 +29,13 @@ absl::StatusOr<UpstreamRequest> TranslateHeader(
     THUNDERHEAD_RETURN_IF_ERROR(
         AddRequestHeader(View(field.name_string()), View(field.value()), upstream.metadata));
   }
-  upstream.metadata.emplace_back("x-forwarded-for", peer);
+  std::string forwarded_for;
+  const auto [first, last] = request.equal_range("x-forwarded-for");
+  for (auto line = first; line != last; ++line) {
+    absl::StrAppend(&forwarded_for, forwarded_for.empty() ? "" : ",",
+                    absl::string_view(line->value().data(), line->value().size()));
+  }
+  upstream.metadata.emplace_back("x-forwarded-for", proxies.ClientOf(peer, forwarded_for));
   const auto [begin, end] = request.equal_range(boost::beast::http::field::sec_websocket_protocol);
   for (auto field = begin; field != end; ++field) {
     // Browsers cannot set a WebSocket's other headers.

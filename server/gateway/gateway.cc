@@ -71,7 +71,8 @@ class Gateway::Listener {
       : site_(std::move(site)),
         acceptor_(io_),
         tls_(std::move(tls)),
-        links_(site_.options.max_connections, site_.options.max_connections_per_address) {}
+        links_(site_.options.max_connections, site_.options.max_connections_per_address,
+               site_.options.trusted_proxies) {}
 
   ~Listener() {
     if (!thread_.joinable()) return;

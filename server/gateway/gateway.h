@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "base/trusted_proxies.h"
 #include "grpcpp/channel.h"
 
 namespace thunderhead::gateway {
@@ -43,6 +44,9 @@ struct GatewayOptions {
   // Origins of other pages that may call, for example "http://localhost:5173". The page served here
   // needs none.
   std::vector<std::string> allowed_origins;
+  // Proxies that say by X-Forwarded-For for whom they ask; they may have as many connections as
+  // there are in all.
+  base::TrustedProxies trusted_proxies;
   // Largest request message; larger ones get RESOURCE_EXHAUSTED, or close a WebSocket with 1009.
   // Responses are limited only by the channel.
   size_t max_message_bytes = 4u << 20;

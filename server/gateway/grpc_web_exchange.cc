@@ -42,7 +42,9 @@ net::awaitable<bool> GrpcWebExchange::Refuse(const absl::Status& status, bool ke
 }
 
 absl::StatusOr<UpstreamRequest> GrpcWebExchange::Translate() const {
-  THUNDERHEAD_ASSIGN_OR_RETURN(UpstreamRequest upstream, TranslateHeader(request_, link_.Peer()));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      UpstreamRequest upstream,
+      TranslateHeader(request_, link_.Peer(), site_.options.trusted_proxies));
   THUNDERHEAD_ASSIGN_OR_RETURN(upstream.only_message, TakeSingleMessage(request_.body()));
   return upstream;
 }

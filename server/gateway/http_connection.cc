@@ -182,7 +182,8 @@ net::awaitable<bool> HttpConnection::AnswerUpgrade(const Request& request) {
     keep = co_await SendText(request, refusal->status, refusal->text);
     co_return keep;
   }
-  const absl::StatusOr<UpstreamRequest> upstream = TranslateHeader(request, link_.Peer());
+  const absl::StatusOr<UpstreamRequest> upstream =
+      TranslateHeader(request, link_.Peer(), site_.options.trusted_proxies);
   if (!upstream.ok()) {
     keep = co_await SendText(request, http::status::bad_request,
                              absl::StrCat(upstream.status().message(), ".\n"));

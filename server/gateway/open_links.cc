@@ -36,7 +36,7 @@ auto Rank(const ClientLink& link) {
 bool OpenLinks::MakeRoom(const ClientLink& newcomer) {
   const auto own = std::ranges::count_if(
       links_, [&](const auto& link) { return link->Address() == newcomer.Address(); });
-  if (static_cast<size_t>(own) >= most_per_address_) {
+  if (static_cast<size_t>(own) >= most_per_address_ && !proxies_.Holds(newcomer.Peer())) {
     if (CloseLeastNeeded(&newcomer.Address())) return true;
   } else if (links_.size() < most_ || CloseLeastNeeded(nullptr)) {
     return true;

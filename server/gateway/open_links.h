@@ -6,15 +6,18 @@
 #include <cstdint>
 #include <memory>
 #include <unordered_set>
+#include <utility>
 
+#include "base/trusted_proxies.h"
 #include "gateway/client_link.h"
 
 namespace thunderhead::gateway {
 
 class OpenLinks {
  public:
-  OpenLinks(size_t most, size_t most_per_address)
-      : most_(most), most_per_address_(most_per_address) {}
+  // Those of `proxies` may have as many as there may be in all.
+  OpenLinks(size_t most, size_t most_per_address, base::TrustedProxies proxies)
+      : most_(most), most_per_address_(most_per_address), proxies_(std::move(proxies)) {}
 
   // Closes a connection for `newcomer` where there are as many as there may be. False if none can
   // be closed.
@@ -30,6 +33,7 @@ class OpenLinks {
 
   const size_t most_;
   const size_t most_per_address_;
+  const base::TrustedProxies proxies_;
   std::unordered_set<std::shared_ptr<ClientLink>> links_;
   ClientLink::Clock::time_point told_at_{};
   uint64_t untold_ = 0;

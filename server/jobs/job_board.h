@@ -14,7 +14,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "jobs/fair_share.h"
+#include "base/fair_share.h"
 #include "jobs/job_limits.h"
 #include "jobs/job_record.h"
 #include "jobs/job_store.h"
@@ -191,9 +191,9 @@ class JobBoard {
   std::set<PicturePlace> unsaved_;
   std::set<std::string> unsaved_jobs_;
   std::vector<std::string> forgotten_;
-  FairShare owners_;
-  std::map<std::string, FairShare> shares_;    // of an owner's jobs
-  std::map<PicturePlace, double> charged_ms_;  // of those being drawn
+  base::FairShare owners_;
+  std::map<std::string, base::FairShare> shares_;  // of an owner's jobs
+  std::map<PicturePlace, double> charged_ms_;      // of those being drawn
   double typical_ms_ = 1.0;
 };
 

@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
 #include "base/log.h"
+#include "base/out_of_memory.h"
 #include "base/random_hex.h"
 #include "base/status.h"
 #include "jobs/next_try.h"
@@ -217,7 +218,8 @@ JobsLoad Jobs::Load() const {
   const std::lock_guard lock(mutex_);
   const PictureCounts counts = board_.Counts();
   return {board_.Running(), counts[static_cast<std::size_t>(PictureState::kWaiting)],
-          counts[static_cast<std::size_t>(PictureState::kDrawing)], board_.ResultBytes()};
+          counts[static_cast<std::size_t>(PictureState::kDrawing)], board_.ResultBytes(),
+          busy_since_.has_value() ? 1e-3 * busy_since_->ElapsedMs() : 0.0};
 }
 
 void Jobs::Drain() {
@@ -257,13 +259,16 @@ void Jobs::Run() {
     BeginPictures(lock);
     (void)Save(lock);
     if (stopping_ && in_hand_.empty() && tasks_.empty()) break;
+    busy_since_.reset();
     if (tasks_.empty()) changed_.wait_until(lock, WakeTime());
+    busy_since_.emplace();
     while (!tasks_.empty()) {
       const Task task = std::move(tasks_.front());
       tasks_.pop_front();
       lock.unlock();
       task();
       lock.lock();
+      busy_since_.emplace();
     }
   }
   stopped_ = true;
@@ -297,11 +302,22 @@ void Jobs::BeginOne(const PicturePlace& picture, Lock& lock) {
   const auto hand = std::make_shared<InHand>();
   in_hand_[picture] = hand;
   lock.unlock();
-  std::unique_ptr<PictureInHand> begun =
-      begin_(order, [this, picture] { Post([this, picture] { EndPicture(picture); }); });
+  const auto ends = [this, picture] { Post([this, picture] { EndPicture(picture); }); };
+  std::unique_ptr<PictureInHand> begun;
+  const absl::Status begins = base::OrOutOfMemory([&] {
+    begun = begin_(order, ends);
+    return absl::OkStatus();
+  });
   lock.lock();
+  hand->begun = begins;
   hand->picture = std::move(begun);
-  if (hand->cancelled) hand->picture->Cancel();
+  if (hand->picture == nullptr) {
+    lock.unlock();
+    ends();
+    lock.lock();
+  } else if (hand->cancelled) {
+    hand->picture->Cancel();
+  }
 }
 
 void Jobs::EndPicture(const PicturePlace& picture) {
@@ -310,12 +326,13 @@ void Jobs::EndPicture(const PicturePlace& picture) {
   // The next is drawn while this one is written.
   BeginPictures(lock);
   lock.unlock();
-  const absl::StatusOr<DrawnPicture> drawn = hand->picture->Take();
-  if (drawn.ok()) {
-    Keep(picture, *drawn, hand->since_begun.ElapsedMs());
-  } else {
-    Refuse(picture, drawn.status());
-  }
+  const absl::Status kept = base::OrOutOfMemory([&]() -> absl::Status {
+    THUNDERHEAD_RETURN_IF_ERROR(hand->begun);
+    THUNDERHEAD_ASSIGN_OR_RETURN(const DrawnPicture drawn, hand->picture->Take());
+    Keep(picture, drawn, hand->since_begun.ElapsedMs());
+    return absl::OkStatus();
+  });
+  if (!kept.ok()) Refuse(picture, kept);
   lock.lock();
   (void)Save(lock);
 }

@@ -58,6 +58,7 @@ struct JobsLoad {
   std::size_t waiting = 0;  // pictures
   std::size_t drawing = 0;
   std::uint64_t result_bytes = 0;
+  double stalled_s = 0.0;  // for how long its thread has been at one thing; 0 at rest
 };
 
 class Jobs {
@@ -113,6 +114,7 @@ class Jobs {
   struct InHand {
     base::Stopwatch since_begun;
     std::unique_ptr<PictureInHand> picture;  // null until it has been begun
+    absl::Status begun;                      // or why it could not be
     bool cancelled = false;
   };
 
@@ -147,7 +149,8 @@ class Jobs {
   std::map<PicturePlace, std::shared_ptr<InHand>> in_hand_;
   std::multimap<std::string, std::weak_ptr<JobWatcher>> watchers_;
   std::deque<Task> tasks_;
-  Time paused_until_ = {};  // as nothing can be written
+  std::optional<base::Stopwatch> busy_since_;  // while the thread works
+  Time paused_until_ = {};                     // as nothing can be written
   bool started_ = false;
   bool draining_ = false;
   bool stopping_ = false;

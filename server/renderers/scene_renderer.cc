@@ -57,7 +57,8 @@ scene::Stage SceneRenderer::FirstStageAt(const scene::Scene& scene, const Fields
       quality.single_precision != drawn_quality_.single_precision) {
     return std::min(first, scene::Stage::kLight);
   }
-  return quality == drawn_quality_ ? first : std::min(first, scene::Stage::kView);
+  const bool as_before = view_is_drawn_ && quality == drawn_quality_;
+  return as_before ? first : std::min(first, scene::Stage::kView);
 }
 
 bool SceneRenderer::OnlyLightsDiffer(scene::Scene scene, const Fields& fields) const {
@@ -110,12 +111,16 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
     const Cover* cover = nullptr;
     if (!technique_->Empty()) {
       drawn_slices_ = SlicesAt(scene, quality);
-      THUNDERHEAD_ASSIGN_OR_RETURN(cover,
-                                   DrawContent(scene, fields,
-                                               {scene.rendering.technique, view,
-                                                workspace_.surroundings.IlluminationOf(scene),
-                                                EyeSize(scene, quality), drawn_slices_, quality},
-                                               first, &times));
+      RenderSettings settings{
+          scene.rendering.technique, view,          workspace_.surroundings.IlluminationOf(scene),
+          EyeSize(scene, quality),   drawn_slices_, quality};
+      if (first <= scene::Stage::kLight) {
+        THUNDERHEAD_RETURN_IF_ERROR(technique_->CarryLight(scene, fields, settings, &times));
+      }
+      THUNDERHEAD_RETURN_IF_ERROR(DrawGround(&settings, &times));
+      // Where drawing is cancelled from here on, the next picture need not carry the light again.
+      Keep(asked, fields, quality);
+      THUNDERHEAD_ASSIGN_OR_RETURN(cover, DrawContent(scene, std::move(settings), &times));
     } else {
       workspace_.ground.ClearShadow();
     }
@@ -125,9 +130,8 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
                                         [&] { return Composite(scene, view, quality, cover); }));
     }
   }
-  drawn_scene_ = asked;
-  drawn_fields_ = fields;
-  drawn_quality_ = quality;
+  Keep(asked, fields, quality);
+  view_is_drawn_ = true;
   LinearFrame frame = Report(scene, *fields);
   if (quality.places) {
     frame.radiance = nullptr;
@@ -135,6 +139,14 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
   }
   frame.stages = std::move(times);
   return frame;
+}
+
+void SceneRenderer::Keep(const scene::Scene& scene, const Fields& fields,
+                         const DrawQuality& quality) {
+  drawn_scene_ = scene;
+  drawn_fields_ = fields;
+  drawn_quality_ = quality;
+  view_is_drawn_ = false;
 }
 
 absl::Status SceneRenderer::MakeContent(const scene::Scene& scene, const Fields& fields,
@@ -158,13 +170,8 @@ absl::Status SceneRenderer::MakeContent(const scene::Scene& scene, const Fields&
 }
 
 absl::StatusOr<const Cover*> SceneRenderer::DrawContent(const scene::Scene& scene,
-                                                        const Fields& fields,
-                                                        RenderSettings settings, scene::Stage first,
+                                                        RenderSettings settings,
                                                         StageTimes* times) {
-  if (first <= scene::Stage::kLight) {
-    THUNDERHEAD_RETURN_IF_ERROR(technique_->CarryLight(scene, fields, settings, times));
-  }
-  THUNDERHEAD_RETURN_IF_ERROR(DrawGround(&settings, times));
   THUNDERHEAD_ASSIGN_OR_RETURN(settings.cover,
                                CoverOf(settings.view, settings.eye_size, 1.0, &eye_cover_));
   THUNDERHEAD_RETURN_IF_ERROR(technique_->DrawView(scene, settings, times));

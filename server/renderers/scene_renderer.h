@@ -62,9 +62,10 @@ class SceneRenderer {
   absl::Status MakeContent(const scene::Scene& scene, const Fields& fields, StageTimes* times);
   // Nothing but lights besides the sun differs up to the stage of light.
   bool OnlyLightsDiffer(scene::Scene scene, const Fields& fields) const;
-  // Reruns what `first` dirties of the light and the view. Returns the eye buffer's cover, if any.
-  absl::StatusOr<const Cover*> DrawContent(const scene::Scene& scene, const Fields& fields,
-                                           RenderSettings settings, scene::Stage first,
+  // Notes what is kept for the next picture: all but the view.
+  void Keep(const scene::Scene& scene, const Fields& fields, const DrawQuality& quality);
+  // Draws the view, whose light is carried. Returns the eye buffer's cover, if any.
+  absl::StatusOr<const Cover*> DrawContent(const scene::Scene& scene, RenderSettings settings,
                                            StageTimes* times);
   // The storm's shadow, and the distance of ground that hides a part of the storm.
   absl::Status DrawGround(RenderSettings* settings, StageTimes* times);
@@ -96,6 +97,7 @@ class SceneRenderer {
   std::optional<scene::Scene> drawn_scene_;
   std::weak_ptr<const volume::HydrometeorFields> drawn_fields_;
   DrawQuality drawn_quality_;
+  bool view_is_drawn_ = false;  // else drawing it was cancelled
   int drawn_slices_ = 0;
   bool sunlight_changed_ = true;  // since the frame before
 };

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/strip.h"
 #include "base/error_details.h"
@@ -21,12 +22,24 @@ std::optional<std::string> Metadata(const grpc::CallbackServerContext& context, 
   return std::string(begin->second.data(), begin->second.size());
 }
 
+// All of the header's lines, in their order.
+std::string ForwardedFor(const grpc::CallbackServerContext& context) {
+  const auto [begin, end] = context.client_metadata().equal_range("x-forwarded-for");
+  std::string all;
+  for (auto line = begin; line != end; ++line) {
+    absl::StrAppend(&all, all.empty() ? "" : ",",
+                    absl::string_view(line->second.data(), line->second.size()));
+  }
+  return all;
+}
+
 // "1.2.3.4:80" or "[::1]:80" of gRPC's "ipv4:1.2.3.4:80" or "ipv6:%5B::1%5D:80".
-std::string PeerOf(const grpc::CallbackServerContext& context) {
+std::string PeerOf(const access::Door& door, const grpc::CallbackServerContext& context) {
   const std::string peer = context.peer();
   absl::string_view address = peer;
   if (absl::ConsumePrefix(&address, "ipv4:") || absl::ConsumePrefix(&address, "ipv6:")) {
-    return absl::StrReplaceAll(address, {{"%5B", "["}, {"%5D", "]"}});
+    return door.Proxies().ClientOf(absl::StrReplaceAll(address, {{"%5B", "["}, {"%5D", "]"}}),
+                                   ForwardedFor(context));
   }
   // The local socket, to which only this user's processes connect: the gateway tells its client.
   return Metadata(context, "x-forwarded-for").value_or("");
@@ -36,12 +49,19 @@ std::string PeerOf(const grpc::CallbackServerContext& context) {
 
 CallerOr Admit(access::Door& door, const grpc::CallbackServerContext& context, const char* method,
                access::CallKind kind) {
-  access::Credentials credentials{"", PeerOf(context)};
+  access::Credentials credentials{"", PeerOf(door, context)};
   const std::string header = Metadata(context, "authorization").value_or("");
   if (absl::StartsWithIgnoreCase(header, kScheme)) {
     credentials.token = header.substr(sizeof(kScheme) - 1);
   }
   return door.Admit(method, kind, std::move(credentials));
+}
+
+CallerOr Entrance::Enter(const grpc::CallbackServerContext& context, const char* method,
+                         access::CallKind kind) const {
+  CallerOr caller = Admit(door_, context, method, kind);
+  if (caller.ok() && !closed_.ok()) return closed_;
+  return caller;
 }
 
 }  // namespace thunderhead::service

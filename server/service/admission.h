@@ -2,19 +2,54 @@
 #pragma once
 
 #include <grpcpp/server_context.h>
+#include <grpcpp/support/server_callback.h>
 
 #include <memory>
+#include <utility>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "access/door.h"
+#include "service/finished.h"
 
 namespace thunderhead::service {
 
 using CallerOr = absl::StatusOr<std::shared_ptr<const access::Caller>>;
 
 // By the header "authorization: Bearer TOKEN" and the client's address, which for calls of the
-// gateway is the browser's.
+// gateway and of trusted proxies is what they say.
 CallerOr Admit(access::Door& door, const grpc::CallbackServerContext& context, const char* method,
                access::CallKind kind);
+
+// The entrance of one service: each call is answered by its handler, or by a refusal.
+class Entrance {
+ public:
+  // `closed` is why those whom the door lets in are refused all the same; OK: they are not.
+  explicit Entrance(access::Door& door, absl::Status closed = absl::OkStatus())
+      : door_(door), closed_(std::move(closed)) {}
+
+  // `handle` takes the caller and returns the call's reactor.
+  template <typename Handler>
+  grpc::ServerUnaryReactor* Unary(const char* method, grpc::CallbackServerContext* context,
+                                  const Handler& handle) const {
+    const CallerOr caller = Enter(*context, method, access::CallKind::kUnary);
+    return caller.ok() ? handle(*caller) : Finished(context, caller.status());
+  }
+
+  template <typename Reactor, typename Handler>
+  Reactor* Stream(const char* method, grpc::CallbackServerContext* context,
+                  const Handler& handle) const {
+    CallerOr caller = Enter(*context, method, access::CallKind::kStream);
+    if (!caller.ok()) return new RefusedStream<Reactor>(caller.status());
+    return handle(*std::move(caller));
+  }
+
+ private:
+  CallerOr Enter(const grpc::CallbackServerContext& context, const char* method,
+                 access::CallKind kind) const;
+
+  access::Door& door_;
+  const absl::Status closed_;
+};
 
 }  // namespace thunderhead::service

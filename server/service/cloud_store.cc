@@ -15,6 +15,8 @@ namespace fs = std::filesystem;
 
 // The file of a cloud takes up to a few megabytes.
 constexpr std::size_t kMaxClouds = 64;
+// Of the grid: its water, and again as it is written.
+constexpr std::size_t kBytesPerCell = 8;
 
 constexpr std::chrono::seconds kRetryWhenBusy{3};  // the time to generate one
 // Somebody must delete one first.
@@ -36,8 +38,11 @@ bool LiesIn(const std::string& folder, const std::string& file) {
 
 }  // namespace
 
-CloudStore::CloudStore(std::string path, volume::StormStore& store)
-    : path_(std::move(path)), store_(store) {
+CloudStore::CloudStore(std::string path, volume::StormStore& store,
+                       std::shared_ptr<base::MemoryBudget> memory)
+    : path_(std::move(path)),
+      store_(store),
+      memory_(memory != nullptr ? std::move(memory) : base::MemoryBudget::Unlimited()) {
   if (path_.empty()) return;
   for (const volume::StormInfoPtr& storm : store_.Storms()) {
     if (storm->files.size() != 1 || !LiesIn(path_, storm->files[0])) continue;
@@ -69,6 +74,10 @@ absl::StatusOr<volume::StormInfoPtr> CloudStore::Make(const clouds::CloudShape& 
     }
     path = NewPath(origin);
   }
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const base::MemoryReservation reserved,
+      memory_->Reserve(base::MemoryUse::kReading, shape.grid.CellCount() * kBytesPerCell,
+                       "a cloud that is generated"));
   THUNDERHEAD_RETURN_IF_ERROR(clouds::WriteGenerated(shape, origin, path, observer, stop));
   THUNDERHEAD_ASSIGN_OR_RETURN(volume::StormInfoPtr storm, store_.Add(path));
   const std::lock_guard files(mutex_);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <stop_token>
@@ -10,6 +11,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "base/memory_budget.h"
 #include "clouds/cloud_file.h"
 #include "volume/storm_store.h"
 
@@ -19,10 +21,13 @@ class CloudStore {
  public:
   // `path` is the folder; if empty, no clouds are generated. Generated clouds that the storm store
   // has already loaded from the folder are those of an earlier server, and can be deleted too.
-  CloudStore(std::string path, volume::StormStore& store);
+  // What it takes to generate one counts in `memory`; null: in nothing.
+  CloudStore(std::string path, volume::StormStore& store,
+             std::shared_ptr<base::MemoryBudget> memory = nullptr);
 
   // Generates the cloud into a file of its own and adds it to the storm store. FAILED_PRECONDITION
-  // without a folder, RESOURCE_EXHAUSTED at the maximum number, UNAVAILABLE during another call.
+  // without a folder, RESOURCE_EXHAUSTED at the maximum number or without memory, UNAVAILABLE
+  // during another call.
   absl::StatusOr<volume::StormInfoPtr> Make(const clouds::CloudShape& shape,
                                             const clouds::CloudOrigin& origin,
                                             const clouds::GenerateObserver& observer,
@@ -40,6 +45,7 @@ class CloudStore {
 
   const std::string path_;
   volume::StormStore& store_;
+  const std::shared_ptr<base::MemoryBudget> memory_;
   std::mutex making_;  // held while a cloud is generated
   mutable std::mutex mutex_;
   std::map<std::string, std::string> files_;  // of the clouds, by storm id

@@ -1,4 +1,5 @@
 #include "absl/strings/str_cat.h"
+#include "base/out_of_memory.h"
 #include "base/status.h"
 #include "service/finished.h"
 #include "service/handlers.h"
@@ -35,7 +36,9 @@ grpc::ServerUnaryReactor* DeleteCloud(Engine& engine, grpc::CallbackServerContex
   }
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   engine.executor.Submit([=, &engine](const absl::Status& status) {
-    const absl::Status deleted = status.ok() ? Delete(engine, request->storm_id()) : status;
+    const absl::Status deleted =
+        status.ok() ? base::OrOutOfMemory([&] { return Delete(engine, request->storm_id()); })
+                    : status;
     caller->Report("DeleteCloud", deleted);
     reactor->Finish(ToGrpcStatus(deleted));
   });

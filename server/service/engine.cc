@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "base/error_details.h"
+#include "base/out_of_memory.h"
 #include "base/status.h"
 #include "service/camera_messages.h"
 #include "service/scene_messages.h"
@@ -91,14 +92,16 @@ void FrameThen(Engine& engine, v1::Scene& scene, std::function<void(const absl::
   if (!NeedsFraming(scene)) return then(absl::OkStatus());
   // Also where the fields are in memory: finding the storm in them takes a while.
   const int time_index = static_cast<int>(scene.time_index());
-  engine.executor.Submit([&engine, &scene, time_index,
-                          then = std::move(then)](const absl::Status& status) {
-    if (!status.ok()) return then(status);
-    const auto fields = ReadFields(engine.store, scene.storm_id(), time_index, "scene.storm_id");
-    if (!fields.ok()) return then(fields.status());
-    FrameCondensate(scene, **fields);
-    then(absl::OkStatus());
-  });
+  engine.executor.Submit(
+      [&engine, &scene, time_index, then = std::move(then)](const absl::Status& status) {
+        if (!status.ok()) return then(status);
+        then(base::OrOutOfMemory([&]() -> absl::Status {
+          THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, ReadFields(engine.store, scene.storm_id(),
+                                                                     time_index, "scene.storm_id"));
+          FrameCondensate(scene, *fields);
+          return absl::OkStatus();
+        }));
+      });
 }
 
 }  // namespace thunderhead::service

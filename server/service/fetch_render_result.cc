@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
+#include "base/out_of_memory.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 #include "service/finished.h"
@@ -37,7 +38,8 @@ class ResultStream final : public ResultReactor {
 
   void Next() {
     reading_.Submit([this](const absl::Status& status) {
-      const absl::Status read = status.ok() ? Read() : status;
+      const absl::Status read =
+          status.ok() ? base::OrOutOfMemory([this] { return Read(); }) : status;
       if (!read.ok()) return Finish(ToGrpcStatus(read));
       StartWrite(&response_);
     });

@@ -1,5 +1,6 @@
 #include <stop_token>
 
+#include "base/out_of_memory.h"
 #include "base/status.h"
 #include "service/cloud_messages.h"
 #include "service/finished.h"
@@ -40,8 +41,10 @@ grpc::ServerUnaryReactor* GenerateCloud(Engine& engine, grpc::CallbackServerCont
   if (!shape.ok()) return Finished(context, shape.status());
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   engine.executor.Submit([=, &engine, shape = *std::move(shape)](const absl::Status& status) {
-    const absl::Status made =
-        status.ok() ? Make(engine, shape, *request, *context, *response) : status;
+    const absl::Status made = status.ok() ? base::OrOutOfMemory([&] {
+      return Make(engine, shape, *request, *context, *response);
+    })
+                                          : status;
     caller->Report("GenerateCloud", made);
     reactor->Finish(ToGrpcStatus(made));
   });

@@ -16,6 +16,7 @@
 #include "absl/strings/str_cat.h"
 #include "access/rules.h"
 #include "base/error_details.h"
+#include "base/out_of_memory.h"
 #include "base/status.h"
 #include "glm/geometric.hpp"
 #include "service/camera_messages.h"
@@ -192,6 +193,10 @@ class InteractCall : public InteractReactor,
       end_told_ = true;
       return ResponseOf(EndResponse(closed));
     }
+    if (!drain_told_ && engine_.drain.HasBegun()) {
+      drain_told_ = true;
+      return ResponseOf(EndResponse(base::ShuttingDown()));
+    }
     Watch(Watched());
     // In turn, so that neither holds up the other on a slow link.
     std::optional<grpc::ByteBuffer> next = frame_next_ ? NextFrame() : NextNews();
@@ -303,6 +308,7 @@ class InteractCall : public InteractReactor,
 
   absl::Status Join(const v1::InteractRequest& request) {
     if (!request.has_join()) return NotJoined();
+    if (engine_.drain.HasBegun()) return base::ShuttingDown();
     THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
     const v1::Join& join = request.join();
     THUNDERHEAD_ASSIGN_OR_RETURN(const std::string name, NameOf(join.name(), "join.name"));
@@ -596,7 +602,8 @@ class InteractCall : public InteractReactor,
     AddUpdate();
     engine_.executor.Submit([self = shared_from_this(), request_id, rays = std::move(rays),
                              color](const absl::Status& status) {
-      const absl::Status drawn = status.ok() ? self->Draw(rays, color) : status;
+      const absl::Status drawn =
+          status.ok() ? base::OrOutOfMemory([&] { return self->Draw(rays, color); }) : status;
       self->drawing_ = false;
       self->UpdateDone(request_id, drawn);
     });
@@ -645,6 +652,7 @@ class InteractCall : public InteractReactor,
   bool reading_ = true;
   bool writing_ = false;
   bool finished_ = false;
+  bool drain_told_ = false;
   bool end_told_ = false;
   std::optional<grpc::Status> end_;
   std::deque<grpc::ByteBuffer> answers_;

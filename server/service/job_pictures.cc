@@ -1,6 +1,7 @@
 #include "service/job_pictures.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,7 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/strip.h"
 #include "base/error_details.h"
-#include "base/file_stamp.h"
+#include "base/patient_calls.h"
 #include "base/status.h"
 #include "service/catalogue_follower.h"
 #include "service/picture_job.h"
@@ -25,10 +26,30 @@ std::string ExtensionOf(v1::ImageFormat format) {
   return absl::AsciiStrToLower(absl::StripPrefix(name, "IMAGE_FORMAT_"));
 }
 
+// Looks at storms' files for the jobs' thread, which everybody's jobs need, so that a storage that
+// hangs holds it up for a while once, and others' pictures no more after that.
+class StormFiles {
+ public:
+  explicit StormFiles(const JobFiles& files) : stamp_(files.stamp), calls_(files.patience) {}
+
+  absl::StatusOr<std::optional<base::FileStamp>> StampOf(const std::string& path) {
+    const auto stamp = std::make_shared<std::optional<base::FileStamp>>();
+    const std::string folder = std::filesystem::path(path).parent_path();
+    THUNDERHEAD_RETURN_IF_ERROR(
+        calls_.Run(folder, [stamp, path, look = stamp_] { *stamp = look(path); }));
+    return *stamp;
+  }
+
+ private:
+  const std::function<std::optional<base::FileStamp>(const std::string&)> stamp_;
+  base::PatientCalls calls_;
+};
+
 class JobPicture final : public jobs::PictureInHand, private PictureListener {
  public:
-  JobPicture(Engine& engine, std::function<void()> done)
+  JobPicture(Engine& engine, std::shared_ptr<StormFiles> files, std::function<void()> done)
       : engine_(engine),
+        files_(std::move(files)),
         done_(std::move(done)),
         job_(engine, request_, picture_, *this, Awaited::kByNobody) {}
 
@@ -41,8 +62,11 @@ class JobPicture final : public jobs::PictureInHand, private PictureListener {
 
   absl::StatusOr<jobs::DrawnPicture> Take() override {
     THUNDERHEAD_RETURN_IF_ERROR(status_);
-    if (!path_.empty() && base::StampOf(path_) != stamp_) {
-      return absl::AbortedError(absl::StrCat(path_, " was written to while it was drawn"));
+    if (!path_.empty()) {
+      THUNDERHEAD_ASSIGN_OR_RETURN(const auto stamp, files_->StampOf(path_));
+      if (stamp != stamp_) {
+        return absl::AbortedError(absl::StrCat(path_, " was written to while it was drawn"));
+      }
     }
     jobs::DrawnPicture drawn;
     drawn.bytes = std::move(*picture_.mutable_image());
@@ -82,7 +106,7 @@ class JobPicture final : public jobs::PictureInHand, private PictureListener {
     scene.set_time_index(static_cast<std::uint32_t>(time - storm->times.begin()));
     path_ = time->file;
     if (path_.empty()) return absl::OkStatus();
-    stamp_ = base::StampOf(path_);
+    THUNDERHEAD_ASSIGN_OR_RETURN(stamp_, files_->StampOf(path_));
     ToMessage(path_, *input_.mutable_file());
     return absl::OkStatus();
   }
@@ -93,6 +117,7 @@ class JobPicture final : public jobs::PictureInHand, private PictureListener {
   }
 
   Engine& engine_;
+  const std::shared_ptr<StormFiles> files_;
   const std::function<void()> done_;
   v1::RenderImageRequest request_;
   v1::RenderImageResponse picture_;
@@ -105,9 +130,10 @@ class JobPicture final : public jobs::PictureInHand, private PictureListener {
 
 }  // namespace
 
-jobs::BeginPicture JobPictures(Engine& engine) {
-  return [&engine](const jobs::PictureOrder& order, std::function<void()> done) {
-    auto picture = std::make_unique<JobPicture>(engine, std::move(done));
+jobs::BeginPicture JobPictures(Engine& engine, const JobFiles& files) {
+  return [&engine, looks = std::make_shared<StormFiles>(files)](const jobs::PictureOrder& order,
+                                                                std::function<void()> done) {
+    auto picture = std::make_unique<JobPicture>(engine, looks, std::move(done));
     picture->Begin(order);
     return picture;
   };

@@ -17,7 +17,8 @@ struct Limits {
   // Width times height, and that times the technique's slices. By default what the schema allows.
   std::uint64_t max_pixels = std::uint64_t{1} << 25;
   std::uint64_t max_samples = std::uint64_t{1} << 37;
-  // Of one picture outside sessions, from the call to its answer.
+  // Of one picture outside sessions, from the reading of its fields on: waiting for others does not
+  // count.
   std::chrono::milliseconds max_render_time = std::chrono::minutes(30);
   // Until a client of Interact has joined.
   std::chrono::milliseconds join_timeout = std::chrono::seconds(10);

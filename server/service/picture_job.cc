@@ -1,6 +1,5 @@
 #include "service/picture_job.h"
 
-#include <chrono>
 #include <limits>
 #include <utility>
 
@@ -76,19 +75,14 @@ absl::Status OfScene(const absl::Status& status) {
 void PictureJob::Begin() {
   if (const absl::Status late = counted_.Check(); !late.ok()) return End(late);
   if (const absl::Status wrong = CompleteScene(); !wrong.ok()) return End(wrong);
-  deadline_.Set(std::chrono::system_clock::now() + engine_.limits.max_render_time,
-                [late = late_, cancelled = cancelled_, &wake = engine_.wake](bool rang) {
-                  if (!rang) return;
-                  *late = true;
-                  *cancelled = true;
-                  wake.Notify();
-                });
   engine_.loop.RenderImage(
       {ToScene(response_.scene()), [this] { return Read(); },
        [this](session::DisplayFrame& picture) { return EncodeTimed(picture); }, cancelled_,
        [this](const absl::StatusOr<session::DisplayFrame>& picture) { Drawn(picture); },
        [this](const session::ImageProgress& progress) { listener_.Progressed(progress); },
-       awaited_ == Awaited::kByNobody, request_.format() == v1::IMAGE_FORMAT_EXR});
+       awaited_ == Awaited::kByNobody, request_.format() == v1::IMAGE_FORMAT_EXR,
+       static_cast<double>(engine_.limits.max_render_time.count()),
+       RenderedTooLong(engine_.limits.max_render_time), owner_});
 }
 
 void PictureJob::Cancel() {
@@ -142,15 +136,12 @@ absl::Status PictureJob::EncodeTimed(session::DisplayFrame& picture) {
 
 void PictureJob::Drawn(const absl::StatusOr<session::DisplayFrame>& picture) {
   if (!picture.ok()) return End(OfScene(picture.status()));
+  memory_ = picture->memory;
   Describe(*picture, encode_ms_, response_);
   AddTexts(engine_.store.Find(response_.scene().storm_id()).get(), response_);
   End(absl::OkStatus());
 }
 
-void PictureJob::End(const absl::Status& status) {
-  listener_.Ended(absl::IsCancelled(status) && *late_
-                      ? RenderedTooLong(engine_.limits.max_render_time)
-                      : status);
-}
+void PictureJob::End(const absl::Status& status) { listener_.Ended(status); }
 
 }  // namespace thunderhead::service

@@ -2,10 +2,10 @@
 // jobs.
 #pragma once
 
-#include <grpcpp/alarm.h>
-
 #include <atomic>
 #include <memory>
+#include <string>
+#include <utility>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
@@ -30,16 +30,18 @@ class PictureListener {
 enum class Awaited { kByACall, kByNobody };
 
 // Reads, draws and encodes a picture in a lane of the render loop, which ends it; everything passed
-// to it must live until then.
+// to it must live until then. `owner` is the identity whose share of drawing it takes.
 class PictureJob {
  public:
   PictureJob(Engine& engine, const v1::RenderImageRequest& request,
-             v1::RenderImageResponse& response, PictureListener& listener, Awaited awaited)
+             v1::RenderImageResponse& response, PictureListener& listener, Awaited awaited,
+             std::string owner = "")
       : engine_(engine),
         request_(request),
         response_(response),
         listener_(listener),
-        awaited_(awaited) {}
+        awaited_(awaited),
+        owner_(std::move(owner)) {}
 
   void Begin();
   // Ends it at its next piece. Safe from any thread.
@@ -58,11 +60,11 @@ class PictureJob {
   v1::RenderImageResponse& response_;
   PictureListener& listener_;
   const Awaited awaited_;
+  const std::string owner_;
   double encode_ms_ = 0.0;
+  std::shared_ptr<const base::MemoryReservation> memory_;  // of the picture, until it is delivered
   std::shared_ptr<const volume::HydrometeorFields> fields_;  // of a picture as light, until then
   const std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
-  const std::shared_ptr<std::atomic<bool>> late_ = std::make_shared<std::atomic<bool>>(false);
-  grpc::Alarm deadline_;
 };
 
 }  // namespace thunderhead::service

@@ -15,7 +15,8 @@ class PictureReactor final : public grpc::ServerUnaryReactor, private PictureLis
  public:
   PictureReactor(Engine& engine, CallerRef caller, const v1::RenderImageRequest& request,
                  v1::RenderImageResponse& response)
-      : caller_(std::move(caller)), job_(engine, request, response, *this, Awaited::kByACall) {}
+      : caller_(std::move(caller)),
+        job_(engine, request, response, *this, Awaited::kByACall, caller_->identity().name) {}
 
   void Begin() { job_.Begin(); }
   void OnCancel() override { job_.Cancel(); }
@@ -39,7 +40,8 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
   PictureStream(Engine& engine, CallerRef caller, const v1::RenderImageRequest& request)
       : caller_(std::move(caller)),
         in_chunks_(request.in_chunks()),
-        job_(engine, request, *image_.mutable_image(), *this, Awaited::kByACall) {}
+        job_(engine, request, *image_.mutable_image(), *this, Awaited::kByACall,
+             caller_->identity().name) {}
 
   void Begin() { job_.Begin(); }
   void OnCancel() override { job_.Cancel(); }

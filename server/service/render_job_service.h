@@ -5,6 +5,7 @@
 #include "access/door.h"
 #include "base/executor.h"
 #include "jobs/jobs.h"
+#include "service/admission.h"
 #include "service/engine.h"
 #include "thunderhead/v1/job.grpc.pb.h"
 
@@ -13,8 +14,7 @@ namespace thunderhead::service {
 class RenderJobService final : public v1::RenderJobService::CallbackService {
  public:
   // `jobs` is null where the server keeps none; all must outlive this.
-  RenderJobService(Engine& engine, access::Door& door, jobs::Jobs* jobs)
-      : engine_(engine), door_(door), jobs_(jobs) {}
+  RenderJobService(Engine& engine, access::Door& door, jobs::Jobs* jobs);
 
   grpc::ServerUnaryReactor* CreateRenderJob(grpc::CallbackServerContext* context,
                                             const v1::CreateRenderJobRequest* request,
@@ -42,9 +42,9 @@ class RenderJobService final : public v1::RenderJobService::CallbackService {
   static constexpr std::size_t kMaxWaitingReads = 1024;
 
   Engine& engine_;
-  access::Door& door_;
   jobs::Jobs* const jobs_;
-  base::Executor reading_{kReadingThreads, kMaxWaitingReads};
+  const Entrance entrance_;
+  base::Executor reading_{{.threads = kReadingThreads, .max_waiting = kMaxWaitingReads}};
 };
 
 }  // namespace thunderhead::service

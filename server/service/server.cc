@@ -32,10 +32,6 @@
 namespace thunderhead::service {
 namespace {
 
-// For blocking work: reading fields, encoding pictures. The storm store reads one after another, so
-// a few are enough.
-constexpr int kExecutorThreads = 4;
-constexpr std::size_t kMaxWaitingTasks = 256;
 // The largest picture that CheckScene allows, uncompressed, with room to spare.
 constexpr int kMaxResponseBytes = 128 << 20;
 // A viewer that disappeared without closing its connection is detected after the sum of these.
@@ -75,10 +71,11 @@ class RunningServer final : public Server {
         session_store_(options.session_store),
         door_(options.door != nullptr ? options.door : OpenDoor()),
         limits_(options.limits),
+        job_files_(options.job_files),
         sessions_(WithFormat(options.sessions),
                   {[this] { wake_.Notify(); }, [this] { due_.Notify(); }}),
-        executor_(kExecutorThreads, kMaxWaitingTasks),
-        clouds_(options.clouds_folder, *store_) {}
+        executor_(options.executor),
+        clouds_(options.clouds_folder, *store_, options.render_loop.memory) {}
 
   ~RunningServer() override { RunningServer::Shutdown(); }
 
@@ -145,7 +142,7 @@ class RunningServer final : public Server {
     server_->GetHealthCheckService()->SetServingStatus(true);
     server_->GetHealthCheckService()->SetServingStatus(v1::ThunderheadService::service_full_name(),
                                                        true);
-    if (jobs_ != nullptr) jobs_->Start(JobPictures(*engine_));
+    if (jobs_ != nullptr) jobs_->Start(JobPictures(*engine_, job_files_));
     return absl::OkStatus();
   }
 
@@ -171,6 +168,7 @@ class RunningServer final : public Server {
     load.turn_s = loop_->TurnSeconds();
     load.waiting_pictures = static_cast<int>(loop_->WaitingImages());
     if (const auto hung = store_->Hung(); hung.has_value()) load.reading_stuck_s = hung->seconds;
+    load.stalled_s = loop_->StalledSeconds();
     load.recovering = loop_->IsRecovering();
     load.draining = drain_.HasBegun();
     if (jobs_ != nullptr) load.jobs = jobs_->Load();
@@ -188,7 +186,7 @@ class RunningServer final : public Server {
     server_->GetHealthCheckService()->SetServingStatus(false);
     drain_.Begin();
     if (jobs_ != nullptr) jobs_->Drain();
-    sessions_.CloseAll(base::ShuttingDown());
+    sessions_.RefuseNew(base::ShuttingDown());
   }
 
   void Shutdown() override {
@@ -218,6 +216,7 @@ class RunningServer final : public Server {
   const std::shared_ptr<session::SessionStore> session_store_;
   const std::shared_ptr<access::Door> door_;
   const Limits limits_;
+  const JobFiles job_files_;
   mutable session::Sessions sessions_;
   Drain drain_;
   session::Upkeep upkeep_{sessions_, *store_, due_};

@@ -11,7 +11,9 @@
 
 #include "absl/status/statusor.h"
 #include "access/door.h"
+#include "base/executor.h"
 #include "jobs/jobs.h"
+#include "service/job_files.h"
 #include "service/limits.h"
 #include "session/frame_source.h"
 #include "session/render_loop.h"
@@ -39,6 +41,10 @@ struct ServerOptions {
   std::shared_ptr<session::SessionStore> session_store;  // null: sessions end with the server
   session::RenderLoopOptions render_loop;
   jobs::JobsOptions jobs;
+  JobFiles job_files;
+  // Of blocking work: reading fields, making clouds. The storm store reads one after another, so a
+  // few threads are enough.
+  base::Executor::Limits executor;
 };
 
 // The load of a server now.
@@ -51,6 +57,7 @@ struct ServerLoad {
   int waiting_pictures = 0;      // of them, for a lane
   double reading_stuck_s = 0.0;  // since a storage that hangs gave something; 0: none hangs
   bool recovering = false;       // the device was lost
+  double stalled_s = 0.0;        // since a lane that works drew a piece; 0 while none works
   double turn_s = 0.0;           // since the render loop's turn began; 0 while it waits for work
   bool draining = false;
   jobs::JobsLoad jobs;
@@ -74,8 +81,9 @@ class Server {
   // The file of a render job's picture by its path at the HTTP port, "/results/KEY/INDEX"; nothing
   // if there is none.
   virtual std::optional<jobs::ResultPlace> FindResult(std::string_view path) const = 0;
-  // Ends every session's streams, which come back to the next server, refuses new sessions and
-  // pictures, and tells health checks. Pictures that were begun go on. Returns at once.
+  // Tells everybody in a session when to come back, to the next server, refuses new sessions,
+  // viewers and pictures, and tells health checks. Sessions, for those who stay, and pictures that
+  // were begun go on. Returns at once.
   virtual void BeginDrain() = 0;
   // Ends every stream with UNAVAILABLE, refuses queued work, and waits for running work. The
   // destructor does it too.

@@ -3,15 +3,12 @@
 #include <utility>
 
 #include "service/admission.h"
-#include "service/finished.h"
 #include "service/handlers.h"
 #include "service/interact.h"
 #include "thunderhead/v1/thunderhead.grpc.pb.h"
 
 namespace thunderhead::service {
 namespace {
-
-using access::CallKind;
 
 // The calls by messages, and Interact by bytes. This takes gRPC's generated class for each call.
 using Generated = v1::ThunderheadService;
@@ -35,7 +32,7 @@ class ThunderheadService final : public Calls {
   grpc::ServerUnaryReactor* GetServerInfo(grpc::CallbackServerContext* context,
                                           const v1::GetServerInfoRequest* request,
                                           v1::GetServerInfoResponse* response) override {
-    return Unary("GetServerInfo", context, [&](const CallerRef& /*caller*/) {
+    return entrance_.Unary("GetServerInfo", context, [&](const CallerRef& /*caller*/) {
       return service::GetServerInfo(engine_, context, request, response);
     });
   }
@@ -43,7 +40,7 @@ class ThunderheadService final : public Calls {
   grpc::ServerUnaryReactor* ListStorms(grpc::CallbackServerContext* context,
                                        const v1::ListStormsRequest* request,
                                        v1::ListStormsResponse* response) override {
-    return Unary("ListStorms", context, [&](const CallerRef& /*caller*/) {
+    return entrance_.Unary("ListStorms", context, [&](const CallerRef& /*caller*/) {
       return service::ListStorms(engine_, context, request, response);
     });
   }
@@ -51,7 +48,7 @@ class ThunderheadService final : public Calls {
   grpc::ServerUnaryReactor* DescribeStorm(grpc::CallbackServerContext* context,
                                           const v1::DescribeStormRequest* request,
                                           v1::DescribeStormResponse* response) override {
-    return Unary("DescribeStorm", context, [&](const CallerRef& /*caller*/) {
+    return entrance_.Unary("DescribeStorm", context, [&](const CallerRef& /*caller*/) {
       return service::DescribeStorm(engine_, context, request, response);
     });
   }
@@ -59,7 +56,7 @@ class ThunderheadService final : public Calls {
   grpc::ServerUnaryReactor* GetStormMap(grpc::CallbackServerContext* context,
                                         const v1::GetStormMapRequest* request,
                                         v1::GetStormMapResponse* response) override {
-    return Unary("GetStormMap", context, [&](const CallerRef& /*caller*/) {
+    return entrance_.Unary("GetStormMap", context, [&](const CallerRef& /*caller*/) {
       return service::GetStormMap(engine_, context, request, response);
     });
   }
@@ -67,7 +64,7 @@ class ThunderheadService final : public Calls {
   grpc::ServerUnaryReactor* ProbeRay(grpc::CallbackServerContext* context,
                                      const v1::ProbeRayRequest* request,
                                      v1::ProbeRayResponse* response) override {
-    return Unary("ProbeRay", context, [&](const CallerRef& /*caller*/) {
+    return entrance_.Unary("ProbeRay", context, [&](const CallerRef& /*caller*/) {
       return service::ProbeRay(engine_, context, request, response);
     });
   }
@@ -75,7 +72,7 @@ class ThunderheadService final : public Calls {
   grpc::ServerUnaryReactor* GenerateCloud(grpc::CallbackServerContext* context,
                                           const v1::GenerateCloudRequest* request,
                                           v1::GenerateCloudResponse* response) override {
-    return Unary("GenerateCloud", context, [&](const CallerRef& caller) {
+    return entrance_.Unary("GenerateCloud", context, [&](const CallerRef& caller) {
       return service::GenerateCloud(engine_, context, caller, request, response);
     });
   }
@@ -83,7 +80,7 @@ class ThunderheadService final : public Calls {
   grpc::ServerUnaryReactor* DeleteCloud(grpc::CallbackServerContext* context,
                                         const v1::DeleteCloudRequest* request,
                                         v1::DeleteCloudResponse* response) override {
-    return Unary("DeleteCloud", context, [&](const CallerRef& caller) {
+    return entrance_.Unary("DeleteCloud", context, [&](const CallerRef& caller) {
       return service::DeleteCloud(engine_, context, caller, request, response);
     });
   }
@@ -91,7 +88,7 @@ class ThunderheadService final : public Calls {
   grpc::ServerUnaryReactor* CreateSession(grpc::CallbackServerContext* context,
                                           const v1::CreateSessionRequest* request,
                                           v1::CreateSessionResponse* response) override {
-    return Unary("CreateSession", context, [&](const CallerRef& caller) {
+    return entrance_.Unary("CreateSession", context, [&](const CallerRef& caller) {
       return service::CreateSession(engine_, context, caller, request, response);
     });
   }
@@ -99,7 +96,7 @@ class ThunderheadService final : public Calls {
   grpc::ServerUnaryReactor* UpdateScene(grpc::CallbackServerContext* context,
                                         const v1::UpdateSceneRequest* request,
                                         v1::UpdateSceneResponse* response) override {
-    return Unary("UpdateScene", context, [&](const CallerRef& caller) {
+    return entrance_.Unary("UpdateScene", context, [&](const CallerRef& caller) {
       return service::UpdateScene(engine_, context, caller, request, response);
     });
   }
@@ -107,7 +104,7 @@ class ThunderheadService final : public Calls {
   grpc::ServerUnaryReactor* AcknowledgeFrame(grpc::CallbackServerContext* context,
                                              const v1::AcknowledgeFrameRequest* request,
                                              v1::AcknowledgeFrameResponse* response) override {
-    return Unary("AcknowledgeFrame", context, [&](const CallerRef& /*caller*/) {
+    return entrance_.Unary("AcknowledgeFrame", context, [&](const CallerRef& /*caller*/) {
       return service::AcknowledgeFrame(engine_, context, request, response);
     });
   }
@@ -115,7 +112,7 @@ class ThunderheadService final : public Calls {
   grpc::ServerUnaryReactor* CloseSession(grpc::CallbackServerContext* context,
                                          const v1::CloseSessionRequest* request,
                                          v1::CloseSessionResponse* response) override {
-    return Unary("CloseSession", context, [&](const CallerRef& caller) {
+    return entrance_.Unary("CloseSession", context, [&](const CallerRef& caller) {
       return service::CloseSession(engine_, context, caller, request, response);
     });
   }
@@ -123,20 +120,20 @@ class ThunderheadService final : public Calls {
   grpc::ServerUnaryReactor* RenderImage(grpc::CallbackServerContext* context,
                                         const v1::RenderImageRequest* request,
                                         v1::RenderImageResponse* response) override {
-    return Unary("RenderImage", context, [&](const CallerRef& caller) {
+    return entrance_.Unary("RenderImage", context, [&](const CallerRef& caller) {
       return service::RenderImage(engine_, context, caller, request, response);
     });
   }
 
   InteractReactor* Interact(grpc::CallbackServerContext* context) override {
-    return Stream<InteractReactor>("Interact", context, [&](CallerRef caller) {
+    return entrance_.Stream<InteractReactor>("Interact", context, [&](CallerRef caller) {
       return service::Interact(engine_, std::move(caller), door_.limits().requests_per_second);
     });
   }
 
   grpc::ServerWriteReactor<v1::RenderImageEvent>* RenderImageWithProgress(
       grpc::CallbackServerContext* context, const v1::RenderImageRequest* request) override {
-    return Stream<grpc::ServerWriteReactor<v1::RenderImageEvent>>(
+    return entrance_.Stream<grpc::ServerWriteReactor<v1::RenderImageEvent>>(
         "RenderImageWithProgress", context, [&](CallerRef caller) {
           return service::RenderImageWithProgress(engine_, context, std::move(caller), request);
         });
@@ -144,30 +141,16 @@ class ThunderheadService final : public Calls {
 
   grpc::ServerWriteReactor<v1::WatchFramesResponse>* WatchFrames(
       grpc::CallbackServerContext* context, const v1::WatchFramesRequest* request) override {
-    return Stream<grpc::ServerWriteReactor<v1::WatchFramesResponse>>(
+    return entrance_.Stream<grpc::ServerWriteReactor<v1::WatchFramesResponse>>(
         "WatchFrames", context, [&](CallerRef caller) {
           return service::WatchFrames(engine_, context, std::move(caller), request);
         });
   }
 
  private:
-  // The handler's answer, or the door's refusal.
-  template <typename Handler>
-  grpc::ServerUnaryReactor* Unary(const char* method, grpc::CallbackServerContext* context,
-                                  Handler handle) {
-    const CallerOr caller = Admit(door_, *context, method, CallKind::kUnary);
-    return caller.ok() ? handle(*caller) : Finished(context, caller.status());
-  }
-
-  template <typename Reactor, typename Handler>
-  Reactor* Stream(const char* method, grpc::CallbackServerContext* context, Handler handle) {
-    CallerOr caller = Admit(door_, *context, method, CallKind::kStream);
-    if (!caller.ok()) return new RefusedStream<Reactor>(caller.status());
-    return handle(*std::move(caller));
-  }
-
   Engine& engine_;
   access::Door& door_;
+  const Entrance entrance_{door_};
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <utility>
 #include <variant>
 
+#include "base/error_details.h"
 #include "base/status.h"
 #include "service/finished.h"
 #include "service/handlers.h"
@@ -128,6 +129,7 @@ class FrameStream : public FramesReactor,
 absl::StatusOr<std::shared_ptr<session::Session>> FindSession(
     Engine& engine, const v1::WatchFramesRequest& request) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
+  if (engine.drain.HasBegun()) return base::ShuttingDown();
   THUNDERHEAD_ASSIGN_OR_RETURN(const session::FoundSession found,
                                engine.sessions.Find(request.session_id()));
   if (found.role == session::Role::kViewer &&

@@ -3,11 +3,13 @@
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/status.h"
+#include "base/memory_budget.h"
 #include "scene/scene.h"
 #include "scene/view.h"
 #include "session/frame_source.h"
@@ -37,6 +39,9 @@ struct EncodedFrame {
   std::optional<AccuracyReport> accuracy;
   // When the scene became what it shows; none if that has changed since.
   std::optional<std::chrono::steady_clock::time_point> changed_at;
+  // What its pixels and bytes count in, while a frame made of the picture is kept or waits to be
+  // sent.
+  std::shared_ptr<const base::MemoryReservation> memory;
   // The frame without its sequence as the service serialized it, once for all viewers; opaque here.
   std::string serialized;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/out_of_memory.h"
 #include "base/stopwatch.h"
 
 namespace thunderhead::session {
@@ -57,10 +58,11 @@ void FieldsReader::Forget(const std::string& owner) {
 FieldsRead FieldsReader::Read(const Asked& work) {
   base::Stopwatch stopwatch;
   FieldsRead read;
-  read.fields = store_.Get(work.key.storm_id, work.key.time_index, {});
+  read.fields =
+      base::OrOutOfMemory([&] { return store_.Get(work.key.storm_id, work.key.time_index, {}); });
   read.milliseconds = stopwatch.Restart();
   if (!read.fields.ok() || !work.prepare) return read;
-  const absl::Status prepared = work.prepare(*read.fields);
+  const absl::Status prepared = base::OrOutOfMemory([&] { return work.prepare(*read.fields); });
   if (!prepared.ok()) read.fields = prepared;
   read.prepare_ms = stopwatch.ElapsedMs();
   return read;

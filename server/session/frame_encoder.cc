@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/log.h"
+#include "base/out_of_memory.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "frame/image_codec.h"
@@ -46,6 +47,7 @@ EncodedFrame Described(DrawnFrame& drawn) {
   frame.at_rest = drawn.refined && Clock::now() >= drawn.rests_at;
   frame.refinement = drawn.refinement;
   frame.accuracy = std::move(drawn.picture.accuracy);
+  frame.memory = std::move(drawn.picture.memory);
   if (const auto newest = drawn.session->Newest();
       newest.has_value() && newest->revision == drawn.scene_revision) {
     frame.changed_at = newest->changed_at;
@@ -100,7 +102,9 @@ std::vector<EncodedVideo> VideoOf(const EncodedFrame& described, Session& sessio
   std::vector<EncodedVideo> video;
   for (const VideoOrder& order :
        session.hub().OrderVideo(described.width_px, described.at_rest, still_follows)) {
-    auto encoded = WithVideo(described, order, pictures.At(order.tier), session.video(), serialize);
+    auto encoded = base::OrOutOfMemory([&] {
+      return WithVideo(described, order, pictures.At(order.tier), session.video(), serialize);
+    });
     if (encoded.ok()) {
       video.push_back(*std::move(encoded));
     } else {
@@ -117,7 +121,8 @@ EncodeFrame JpegEncoder(const std::shared_ptr<Session>& session,
   // The session keeps the frame, and the frame this.
   return [weak_session = std::weak_ptr(session), pictures, wanted_quality, serialize](
              const EncodedFrame& described, int tier) -> std::optional<EncodedFrame> {
-    auto frame = WithJpeg(described, tier, pictures->At(tier), wanted_quality, serialize);
+    auto frame = base::OrOutOfMemory(
+        [&] { return WithJpeg(described, tier, pictures->At(tier), wanted_quality, serialize); });
     if (frame.ok()) return *std::move(frame);
     if (const auto owner = weak_session.lock(); owner != nullptr) {
       owner->hub().Publish(ProblemOf(described.scene_revision, frame.status()));
@@ -195,7 +200,12 @@ void FrameEncoder::Run() {
     const std::shared_ptr<Session> session = drawn.session;
     encoding_.push_back(session.get());
     lock.unlock();
-    EncodeAndPublish(std::move(drawn), serialize_, stills_);
+    const std::uint64_t revision = drawn.scene_revision;
+    const absl::Status encoded = base::OrOutOfMemory([&] {
+      EncodeAndPublish(std::move(drawn), serialize_, stills_);
+      return absl::OkStatus();
+    });
+    if (!encoded.ok()) session->hub().Publish(ProblemOf(revision, encoded));
     lock.lock();
     encoding_.erase(std::find(encoding_.begin(), encoding_.end(), session.get()));
     lock.unlock();

@@ -20,9 +20,11 @@ struct PlannerTargets {
   // The first frame at rest: with the delay, encoding and network it is shown within 300 ms.
   double refined_ms = 180.0;
   Clock::duration rest_delay = std::chrono::milliseconds(80);
-  // Of a session's pictures: everybody's wait meanwhile, since one is drawn whole. A scene whose
+  // Of a session's pictures: how long others may wait for the lane that draws one. A scene whose
   // full frame is predicted to take longer stays at the finest quality that does not.
   double longest_ms = 5000.0;
+  // A frame at rest that is predicted to take longer is drawn in pieces, in a lane.
+  double whole_ms = 30.0;
   // A full-quality frame that takes longer than refined_ms blocks the next change, so it waits
   // until the scene has very likely come to rest.
   Clock::duration settle_delay = std::chrono::milliseconds(500);

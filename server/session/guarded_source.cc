@@ -10,6 +10,10 @@ namespace {
 
 // Display pixels, and as much again while they are encoded.
 constexpr std::size_t kBytesPerPixel = 6;
+// The same of a picture of 16 bits a channel, with its smaller sizes.
+constexpr std::size_t kFineBytesPerPixel = 16;
+// Radiance, opacity and optical depths.
+constexpr std::size_t kLinearBytesPerPixel = 24;
 
 class GuardedSource final : public FrameSource {
  public:
@@ -55,18 +59,33 @@ class GuardedSource final : public FrameSource {
     return frame;
   }
 
-  absl::StatusOr<picture::LinearPicture> Linear() override { return Noticed(source_->Linear()); }
-  absl::StatusOr<frame::FineImage> Fine() override { return Noticed(source_->Fine()); }
+  absl::StatusOr<picture::LinearPicture> Linear() override {
+    THUNDERHEAD_ASSIGN_OR_RETURN(linear_memory_, Reserved(kLinearBytesPerPixel));
+    return Noticed(source_->Linear());
+  }
+  absl::StatusOr<frame::FineImage> Fine() override {
+    THUNDERHEAD_ASSIGN_OR_RETURN(auto memory, Reserved(kFineBytesPerPixel));
+    auto fine = Noticed(source_->Fine());
+    if (fine.ok()) fine->memory = std::move(memory);
+    return fine;
+  }
   void FreeUnused(double unused_s) override { source_->FreeUnused(unused_s); }
 
  private:
   absl::StatusOr<std::shared_ptr<const base::MemoryReservation>> MemoryOf(
       const scene::Scene& scene) {
-    const std::size_t pixels = static_cast<std::size_t>(scene.output.width_px) *
-                               static_cast<std::size_t>(scene.output.height_px);
+    linear_memory_.reset();
+    pixels_ = static_cast<std::size_t>(scene.output.width_px) *
+              static_cast<std::size_t>(scene.output.height_px);
+    return Reserved(kBytesPerPixel);
+  }
+
+  // For the picture that was drawn last, or is about to be.
+  absl::StatusOr<std::shared_ptr<const base::MemoryReservation>> Reserved(
+      std::size_t bytes_per_pixel) {
     THUNDERHEAD_ASSIGN_OR_RETURN(
         base::MemoryReservation reserved,
-        guard_.memory->Reserve(base::MemoryUse::kPictures, pixels * kBytesPerPixel, "a picture"));
+        guard_.memory->Reserve(base::MemoryUse::kPictures, pixels_ * bytes_per_pixel, "a picture"));
     return std::make_shared<const base::MemoryReservation>(std::move(reserved));
   }
 
@@ -79,6 +98,9 @@ class GuardedSource final : public FrameSource {
   const std::unique_ptr<FrameSource> source_;
   const SourceGuard guard_;
   const std::uint64_t generation_;
+  std::size_t pixels_ = 0;
+  // Of the picture as light, which its caller has until the next is drawn.
+  std::shared_ptr<const base::MemoryReservation> linear_memory_;
 };
 
 }  // namespace

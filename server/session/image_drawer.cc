@@ -105,7 +105,8 @@ void ImageDrawer::WorkIn(Lane& lane, Begun& image) {
           return draws ? Draw(image, **source) : absl::OkStatus();
         });
       },
-      {image.job.cancelled, kPatience * 1e3 * limits_.max_predicted_s});
+      {image.job.cancelled, kPatience * 1e3 * limits_.max_predicted_s, image.job.max_work_ms,
+       image.job.too_long});
 }
 
 absl::Status ImageDrawer::Read(Begun& image, const std::shared_ptr<Preparation>& preparation) {
@@ -137,7 +138,8 @@ absl::Status ImageDrawer::Draw(Begun& image, FrameSource& source) {
 bool ImageDrawer::TriesAgain(Begun& image) {
   constexpr int kMaxAttempts = 3;
   const bool is_others = gl::IsDeviceLost(image.status) || absl::IsResourceExhausted(image.status);
-  const bool may_pass = base::DetailsOf(image.status).retry_after.has_value();
+  const bool may_pass = image.status != image.job.too_long &&
+                        base::DetailsOf(image.status).retry_after.has_value();
   if (image.fields == nullptr || *image.job.cancelled || !is_others || !may_pass) return false;
   if (++image.attempts >= kMaxAttempts) return false;
   image.status = absl::OkStatus();
@@ -196,6 +198,9 @@ void ImageDrawer::Report(const Begun& image, const accuracy::LightProgress& prog
 
 absl::StatusOr<DisplayFrame> ImageDrawer::Drawn(Begun& image) {
   source_.Learn("", *image.job.decided, FrameQuality{}, &*image.frame);
+  double drawn_ms = 0.0;
+  for (const StageTime& stage : image.frame->stages) drawn_ms += stage.milliseconds;
+  queue_.Drew(image.job, drawn_ms);
   image.frame->stages.insert(image.frame->stages.begin(), image.stages.begin(), image.stages.end());
   return *std::move(image.frame);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -15,9 +16,9 @@ namespace {
 // Time to draw a few pictures.
 constexpr std::chrono::seconds kQueueRetryAfter{5};
 
-absl::Status TooMany(std::size_t waiting) {
+absl::Status TooMany(const char* of_whom, std::size_t waiting) {
   return base::WithDetails(
-      absl::ResourceExhaustedError(absl::StrCat("the server is busy: ", waiting,
+      absl::ResourceExhaustedError(absl::StrCat("the server is busy: ", waiting, of_whom,
                                                 " pictures wait to be drawn; try again later")),
       {.reason = "RENDER_QUEUE_FULL",
        .metadata = {{"maximum", absl::StrCat(waiting)}, {"unit", "pictures"}},
@@ -26,6 +27,10 @@ absl::Status TooMany(std::size_t waiting) {
 
 }  // namespace
 
+std::size_t ImageQueue::WaitingOf(const std::string& owner) const {
+  return static_cast<std::size_t>(std::ranges::count(waiting_, owner, &ImageJob::owner));
+}
+
 bool ImageQueue::Add(ImageJob job) {
   absl::Status refusal;
   {
@@ -33,7 +38,9 @@ bool ImageQueue::Add(ImageJob job) {
     if (refuses_) {
       refusal = base::ShuttingDown();
     } else if (waiting_.size() >= max_waiting_) {
-      refusal = TooMany(waiting_.size());
+      refusal = TooMany("", waiting_.size());
+    } else if (!job.owner.empty() && WaitingOf(job.owner) >= max_waiting_each_) {
+      refusal = TooMany(" of your", max_waiting_each_);
     } else {
       waiting_.push_back(std::move(job));
       return true;
@@ -73,17 +80,31 @@ void ImageQueue::Admit(const std::function<absl::Status(ImageJob&)>& admit) {
 
 std::optional<ImageJob> ImageQueue::Take(const std::function<bool(const ImageJob&)>& suits) {
   const std::lock_guard lock(mutex_);
-  const auto find = [&](bool gives_way) {
-    return std::ranges::find_if(waiting_, [&](const ImageJob& job) {
-      return job.gives_way == gives_way && job.decided.has_value() && !*job.cancelled && suits(job);
-    });
-  };
-  auto found = find(false);
-  if (found == waiting_.end()) found = find(true);
+  std::map<std::string, std::deque<ImageJob>::iterator> first;  // by owner
+  std::vector<std::string> owners;
+  auto found = waiting_.end();  // of those that give way
+  for (auto job = waiting_.begin(); job != waiting_.end(); ++job) {
+    if (!job->decided.has_value() || *job->cancelled) continue;
+    if (!job->gives_way) owners.push_back(job->owner);
+    if (!suits(*job)) continue;
+    if (!job->gives_way) first.emplace(job->owner, job);
+    if (job->gives_way && found == waiting_.end()) found = job;
+  }
+  if (!owners.empty()) {
+    const auto owner =
+        owners_.Next(owners, [&](const std::string& one) { return first.contains(one); });
+    if (owner.has_value()) found = first.at(*owner);
+  }
   if (found == waiting_.end()) return std::nullopt;
   ImageJob job = std::move(*found);
   waiting_.erase(found);
+  if (!job.gives_way) owners_.Used(job.owner, job.predicted_ms);
   return job;
+}
+
+void ImageQueue::Drew(const ImageJob& job, double milliseconds) {
+  const std::lock_guard lock(mutex_);
+  if (!job.gives_way) owners_.Used(job.owner, milliseconds - job.predicted_ms);
 }
 
 void ImageQueue::DropCancelled() {

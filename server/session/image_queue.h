@@ -9,8 +9,11 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "base/fair_share.h"
 #include "scene/scene.h"
 #include "session/frame_source.h"
 #include "volume/hydrometeor_fields.h"
@@ -46,6 +49,12 @@ struct ImageJob {
   // Nobody waits for it: those for whom somebody does go before.
   bool gives_way = false;
   bool linear = false;  // the picture is also to be had as light
+  // What reading, drawing and encoding it may take, without waiting for others; more ends it with
+  // `too_long`.
+  double max_work_ms = 1e15;
+  absl::Status too_long = absl::OkStatus();
+  // Who asked for it; all get the same time to draw. Empty: nobody's share counts.
+  std::string owner = "";
   // Since it was admitted: the scene with its decided setting, and what drawing that should take.
   std::optional<scene::Scene> decided = std::nullopt;
   double predicted_ms = 0.0;
@@ -53,16 +62,20 @@ struct ImageJob {
 
 class ImageQueue {
  public:
-  explicit ImageQueue(std::size_t max_waiting) : max_waiting_(max_waiting) {}
+  // Pictures that may wait, in all and of one owner.
+  ImageQueue(std::size_t max_waiting, std::size_t max_waiting_each)
+      : max_waiting_(max_waiting), max_waiting_each_(max_waiting_each) {}
 
-  // False if the job was refused, as the queue is full or the server is stopping; `done` was called
-  // with the reason.
+  // False if the job was refused, as the queue is full, the owner has as many in it as one may, or
+  // the server is stopping; `done` was called with the reason.
   bool Add(ImageJob job);
   // Asks `admit` of each job that came since the last call; those refused are done with the reason.
   void Admit(const std::function<absl::Status(ImageJob&)>& admit);
-  // Takes the first admitted job for which `suits` is true; one that gives way only if there is no
-  // other.
+  // Takes the first admitted job for which `suits` is true of the owner for whom least was drawn;
+  // one that gives way only if there is no other.
   std::optional<ImageJob> Take(const std::function<bool(const ImageJob&)>& suits);
+  // Drawing a job that was taken has cost so much, instead of what was predicted.
+  void Drew(const ImageJob& job, double milliseconds);
   // Drops cancelled jobs and calls their `done`.
   void DropCancelled();
   std::size_t Waiting() const;
@@ -70,12 +83,15 @@ class ImageQueue {
   void RefuseAll();
 
  private:
+  std::size_t WaitingOf(const std::string& owner) const;  // needs mutex_
   // Takes the jobs for which `is` is true.
   std::deque<ImageJob> Extract(const std::function<bool(const ImageJob&)>& is);
 
   const std::size_t max_waiting_;
+  const std::size_t max_waiting_each_;
   mutable std::mutex mutex_;
   std::deque<ImageJob> waiting_;
+  base::FairShare owners_;
   bool refuses_ = false;
 };
 

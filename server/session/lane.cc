@@ -41,6 +41,9 @@ void Lane::Begin(Work work, Limits limits) {
     work_ = std::move(work);
     limits_ = std::move(limits);
     used_ms_ = 0.0;
+    waited_ms_ = 0.0;
+    since_begun_.Restart();
+    since_progress_.Restart();
   }
   changed_.notify_all();
 }
@@ -75,12 +78,21 @@ double Lane::GiveTurn() {
   std::unique_lock lock(mutex_);
   if (device_ != Device::kWanted || !Ended().ok()) return 0.0;
   device_ = Device::kHeld;
+  waited_ms_ += since_wanted_.ElapsedMs();
+  since_progress_.Restart();
   changed_.notify_all();
   changed_.wait(lock, [this] { return device_ != Device::kHeld; });
+  since_progress_.Restart();
   const double took_ms = stopwatch.ElapsedMs();
   used_ms_ += took_ms;
   longest_ms_ = std::max(longest_ms_, took_ms);
   return took_ms;
+}
+
+double Lane::StalledSeconds() const {
+  const std::lock_guard lock(mutex_);
+  if (!busy_ || device_ == Device::kWanted) return 0.0;
+  return 1e-3 * since_progress_.ElapsedMs();
 }
 
 double Lane::LongestPieceMs() const {
@@ -94,6 +106,7 @@ absl::Status Lane::Ended() const {
   if (limits_.cancelled != nullptr && *limits_.cancelled) {
     return absl::CancelledError("the call was cancelled");
   }
+  if (WorkedMs() > limits_.max_work_ms) return limits_.too_long;
   if (used_ms_ <= limits_.max_ms) return absl::OkStatus();
   return base::WithDetails(
       absl::ResourceExhaustedError(
@@ -103,10 +116,16 @@ absl::Status Lane::Ended() const {
        .metadata = {{"maximum", absl::StrCat(1e-3 * limits_.max_ms)}, {"unit", "s"}}});
 }
 
+double Lane::WorkedMs() const {
+  const double waiting_ms = device_ == Device::kWanted ? since_wanted_.ElapsedMs() : 0.0;
+  return since_begun_.ElapsedMs() - waited_ms_ - waiting_ms;
+}
+
 absl::Status Lane::Take() {
   std::unique_lock lock(mutex_);
   THUNDERHEAD_RETURN_IF_ERROR(Ended());
   device_ = Device::kWanted;
+  since_wanted_.Restart();
   lock.unlock();
   on_change_();
   lock.lock();

@@ -15,6 +15,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "base/device_turn.h"
+#include "base/stopwatch.h"
 #include "session/frame_source.h"
 
 namespace thunderhead::session {
@@ -30,6 +31,10 @@ class Lane {
     std::shared_ptr<const std::atomic<bool>> cancelled = nullptr;
     // Of all its pieces; more ends it with RESOURCE_EXHAUSTED.
     double max_ms = 1e15;
+    // Of all that it does, without waiting for its turn; more ends it with `too_long` at its next
+    // piece.
+    double max_work_ms = 1e15;
+    absl::Status too_long = absl::OkStatus();
   };
 
   // `on_change` is called on the lane's thread when it wants a turn or has done its work.
@@ -56,6 +61,9 @@ class Lane {
   // Returns when the piece is drawn, with the milliseconds that it took.
   double GiveTurn();
 
+  // For how long it has worked, on the processor or in a call that hangs, since its last piece; 0
+  // while it has no work or waits for its turn. Safe from any thread.
+  double StalledSeconds() const;
   // The longest piece so far.
   double LongestPieceMs() const;
 
@@ -77,6 +85,8 @@ class Lane {
   void GiveBack();
   // Why the work is to end; OK if it is not. With the mutex held.
   absl::Status Ended() const;
+  // Of this work, without waiting. With the mutex held.
+  double WorkedMs() const;
   void Run();
 
   const FrameSourceFactory make_source_;
@@ -93,7 +103,11 @@ class Lane {
   Limits limits_;
   bool busy_ = false;
   Device device_ = Device::kUnused;
-  double used_ms_ = 0.0;  // by this work
+  double used_ms_ = 0.0;    // by this work
+  double waited_ms_ = 0.0;  // by this work, for turns
+  base::Stopwatch since_begun_;
+  base::Stopwatch since_wanted_;
+  base::Stopwatch since_progress_;
   double longest_ms_ = 0.0;
   std::thread thread_;
 };

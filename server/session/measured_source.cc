@@ -47,8 +47,9 @@ absl::StatusOr<CheckedFrame> MeasuredSource::DrawChecked(const std::string& view
 }
 
 void MeasuredSource::Learn(const std::string& view, const scene::Scene& scene,
-                           const FrameQuality& quality, DisplayFrame* frame) {
-  Report(view, scene, quality, TotalMs(*frame), std::nullopt, frame);
+                           const FrameQuality& quality, DisplayFrame* frame,
+                           const std::optional<double>& discretisation_error) {
+  Report(view, scene, quality, TotalMs(*frame), discretisation_error, frame);
 }
 
 absl::StatusOr<DisplayFrame> MeasuredSource::Tone(const picture::LinearPicture& picture,

@@ -41,7 +41,7 @@ class MeasuredSource {
 
   // Reports a frame that another source drew.
   void Learn(const std::string& view, const scene::Scene& scene, const FrameQuality& quality,
-             DisplayFrame* frame);
+             DisplayFrame* frame, const std::optional<double>& discretisation_error = std::nullopt);
 
   // Forgets the costs of a view that is no longer drawn.
   void Forget(const std::string& view) { costs_.Forget(view); }

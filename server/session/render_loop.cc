@@ -19,6 +19,7 @@
 #include "session/light_tracer.h"
 #include "session/measured_source.h"
 #include "session/session_drawer.h"
+#include "session/session_lane.h"
 #include "session/turns.h"
 #include "spdlog/spdlog.h"
 #include "telemetry/metrics.h"
@@ -28,6 +29,8 @@ namespace {
 
 // Behind whoever waits, but before tracing, which could use all processors for ever.
 constexpr int kImageNiceness = 5;
+// Frames at rest, behind those that move.
+constexpr int kSessionNiceness = 1;
 
 // Those who draw beside the render loop.
 class Lanes {
@@ -39,15 +42,18 @@ class Lanes {
   };
 
   Lanes(const FrameSourceFactory& make_source, const std::function<void()>& wake)
-      : tracing(make_source, base::kLowestPriority, wake),
+      : sessions(make_source, kSessionNiceness, wake),
+        tracing(make_source, base::kLowestPriority, wake),
         quick_images(make_source, kImageNiceness, wake),
         images(make_source, kImageNiceness, wake),
         all_{{"/tracing", TurnClass::kRefining, tracing},
              {"/quick images", TurnClass::kBatch, quick_images},
              {"/images", TurnClass::kBatch, images}} {}
 
+  // Those that compete for turns themselves; sessions' does for the session whose frame it draws.
   const std::vector<Entry>& All() const { return all_; }
 
+  Lane sessions;
   Lane tracing;
   Lane quick_images;
   Lane images;
@@ -127,12 +133,12 @@ RenderLoop::RenderLoop(const RenderLoopOptions& options, volume::StormStore& sto
       sessions_(sessions),
       wake_(wake),
       losses_(options.losses),
-      images_(options.max_waiting_images),
+      images_(options.max_waiting_images, options.max_waiting_images_each),
       reader_(std::make_unique<FieldsReader>(store, [&wake] { wake.Notify(); })),
       encoder_(std::make_unique<FrameEncoder>(options.encoder_threads, options.serialize_frame,
                                               [&wake] { wake.Notify(); })),
       tracer_(std::make_unique<TruthTracer>(options.make_truth_source, options.max_traced_sessions,
-                                            [&wake] { wake.Notify(); })) {}
+                                            options.memory, [&wake] { wake.Notify(); })) {}
 
 RenderLoop::~RenderLoop() { Stop(); }
 
@@ -141,6 +147,18 @@ double RenderLoop::TurnSeconds() const {
   if (began == 0) return 0.0;
   const Clock::duration took = Clock::now().time_since_epoch() - Clock::duration(began);
   return std::chrono::duration<double>(took).count();
+}
+
+void RenderLoop::NoteLanes(std::vector<const Lane*> lanes) {
+  const std::lock_guard lock(lanes_mutex_);
+  lanes_ = std::move(lanes);
+}
+
+double RenderLoop::StalledSeconds() const {
+  const std::lock_guard lock(lanes_mutex_);
+  double stalled_s = 0.0;
+  for (const Lane* lane : lanes_) stalled_s = std::max(stalled_s, lane->StalledSeconds());
+  return stalled_s;
 }
 
 void RenderLoop::RequestStop() {
@@ -187,16 +205,22 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
   const auto wake = [this] { wake_.Notify(); };
   auto lanes = std::make_unique<Lanes>(make_source, wake);
   LightTracer light_tracer(lanes->tracing);
+  SessionLane session_lane(lanes->sessions);
   SessionDrawer drawer(options_.targets, {store_, *reader_, preparation_}, measured, *encoder_,
-                       *tracer_, light_tracer);
+                       *tracer_, light_tracer, session_lane);
   ImageDrawer image_drawer(options_.image_limits, images_, measured, preparation_, light_tracer,
                            {lanes->quick_images, lanes->images});
   Turns turns;
   MemoryPressure pressure(options_.device_memory, wake_);
-  const std::vector<Lane*> all_lanes{&lanes->tracing, &lanes->quick_images, &lanes->images};
+  const std::vector<Lane*> all_lanes{&lanes->sessions, &lanes->tracing, &lanes->quick_images,
+                                     &lanes->images};
+  NoteLanes({all_lanes.begin(), all_lanes.end()});
   while (!stopping_) {
     BeginTurn();
-    if (device_lost_.exchange(false) && !Recover(make_source, all_lanes, measured)) break;
+    if (device_lost_.exchange(false)) {
+      if (!Recover(make_source, all_lanes, measured)) break;
+      drawer.DeviceReplaced();
+    }
     pressure.Answer([&] {
       drawer.YieldMemory();
       measured.FreeUnused(kUnused_s);
@@ -205,6 +229,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
     BeginTurn();
     const std::vector<std::shared_ptr<Session>> sessions = sessions_.AllDrawn();
     drawer.ReleaseUnwatched(sessions);
+    drawer.TakeDrawn(sessions);
     light_tracer.TakeOutcome(Clock::now());
     image_drawer.Attend();
     std::optional<Clock::time_point> look_again_at;
@@ -236,6 +261,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
     turns.Used(contenders[*next], stopwatch.ElapsedMs());
     turn_began_ = 0;
   }
+  NoteLanes({});
   lanes.reset();
   image_drawer.EndAll(base::ShuttingDown());
 }

@@ -1,7 +1,7 @@
 // The render loop: one thread draws the sessions that have a viewer ready for a frame, and gives
-// turns on the device to them and to its lanes, in which single pictures are drawn and light is
-// traced. Reads, encoding and the reference run on other threads. Knows no GL (only the frame
-// sources do) and no messages.
+// turns on the device to them and to its lanes, in which their long frames and single pictures are
+// drawn and light is traced. Reads, encoding and the reference run on other threads. Knows no GL
+// (only the frame sources do) and no messages.
 #pragma once
 
 #include <atomic>
@@ -10,6 +10,7 @@
 #include <functional>
 #include <future>
 #include <memory>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -37,6 +38,7 @@ class MeasuredSource;
 struct RenderLoopOptions {
   PlannerTargets targets;
   std::size_t max_waiting_images = 1000;
+  std::size_t max_waiting_images_each = 600;  // of one owner
   ImageLimits image_limits;
   int encoder_threads = 1;
   SerializeFrame serialize_frame = [](const EncodedFrame&) { return ""; };
@@ -81,6 +83,9 @@ class RenderLoop {
   bool IsRecovering() const { return recovering_; }
   std::size_t WaitingImages() const { return images_.Waiting(); }
 
+  // For how long a lane has worked without drawing a piece or waiting for one; 0 while none works.
+  double StalledSeconds() const;
+
   // Stops drawing after the current frame or piece. Returns at once.
   void RequestStop();
   // Waits for the current frame or piece, refuses the waiting pictures and ends every thread.
@@ -92,6 +97,7 @@ class RenderLoop {
 
   void Run(const FrameSourceFactory& make_source, std::promise<absl::Status> started);
   void DrawWith(std::unique_ptr<FrameSource> source, const FrameSourceFactory& make_source);
+  void NoteLanes(std::vector<const Lane*> lanes);
   // From now on TurnSeconds counts.
   void BeginTurn() { turn_began_ = Clock::now().time_since_epoch().count(); }
   // After a loss of the device: returns when there is one again, false if it is given up.
@@ -111,6 +117,9 @@ class RenderLoop {
   std::atomic<bool> recovering_{false};
   DeviceLosses losses_;
   std::atomic<Clock::rep> turn_began_{0};  // since the clock's epoch; 0: none is under way
+
+  mutable std::mutex lanes_mutex_;
+  std::vector<const Lane*> lanes_;  // that exist
 
   ImageQueue images_;
   std::unique_ptr<FieldsReader> reader_;

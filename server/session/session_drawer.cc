@@ -21,6 +21,35 @@ namespace {
 // the device does not bear.
 constexpr int kMaxLosses = 2;
 
+// Of a frame that is also drawn with half the slices, over a frame.
+constexpr double kCheckedShare = 1.5;
+
+scene::Stage FirstDirty(const std::optional<LastDrawn>& last_drawn, const scene::Scene& scene) {
+  if (!last_drawn.has_value()) return scene::Stage::kStorm;
+  return scene::FirstDirtyStage(last_drawn->scene, scene);
+}
+
+// The scene that the work draws; null if it draws none.
+const NewestScene* ShownBy(const SessionWork& work) {
+  if (const auto* draw = std::get_if<DrawFrame>(&work)) return &draw->shown;
+  if (const auto* check = std::get_if<CheckSlices>(&work)) return &check->shown;
+  if (const auto* light = std::get_if<ShowLight>(&work)) return &light->shown;
+  return nullptr;
+}
+
+FrameQuality QualityOf(const SessionWork& work) {
+  const auto* draw = std::get_if<DrawFrame>(&work);
+  return draw != nullptr ? draw->plan.quality : FrameQuality{};
+}
+
+std::shared_ptr<Session> FindById(const std::vector<std::shared_ptr<Session>>& sessions,
+                                  const std::string& id) {
+  const auto found = std::lower_bound(
+      sessions.begin(), sessions.end(), id,
+      [](const auto& session, const std::string& wanted) { return session->id() < wanted; });
+  return found != sessions.end() && (*found)->id() == id ? *found : nullptr;
+}
+
 // Where the reason of a failure passes.
 std::optional<Clock::time_point> TryAgainAt(const absl::Status& why) {
   const auto after = base::DetailsOf(why).retry_after;
@@ -32,13 +61,14 @@ std::optional<Clock::time_point> TryAgainAt(const absl::Status& why) {
 
 SessionDrawer::SessionDrawer(const PlannerTargets& targets, const FieldsAccess& fields,
                              MeasuredSource& source, FrameEncoder& encoder, TruthTracer& tracer,
-                             LightTracer& light_tracer)
+                             LightTracer& light_tracer, SessionLane& lane)
     : targets_(targets),
       fields_(fields),
       source_(source),
       encoder_(encoder),
       tracer_(tracer),
-      light_tracer_(light_tracer) {}
+      light_tracer_(light_tracer),
+      lane_(lane) {}
 
 SessionDrawer::Wish SessionDrawer::Look(const std::shared_ptr<Session>& session) {
   const std::optional<NewestScene> newest = session->Newest();
@@ -47,18 +77,103 @@ SessionDrawer::Wish SessionDrawer::Look(const std::shared_ptr<Session>& session)
   turn.kept.work = WaitUntil{};
   TakeRead(turn);
   turn.kept.reference.EndUnless(*newest->scene);
+  turn.kept.gives_turn = false;
+  if (const auto in_lane = LookInLane(turn, *newest)) return *in_lane;
   if (!session->hub().HasReadyViewer() || encoder_.IsFullFor(*session)) return {};
   turn.kept.work = NextWork(turn, *newest);
   const bool traces = std::holds_alternative<TraceLight>(turn.kept.work) ||
                       std::holds_alternative<ShowLight>(turn.kept.work);
   if (!traces) light_tracer_.Stop(session->id());
-  return std::visit([&](const auto& work) { return Need(turn, work); }, turn.kept.work);
+  Wish wish = std::visit([&](const auto& work) { return Need(turn, work); }, turn.kept.work);
+  // Also of work that has only now been found to be due.
+  turn.kept.in_lane = turn.kept.in_lane || IsLong(turn, turn.kept.work);
+  if (turn.kept.in_lane && !lane_.IsFree()) wish.work.reset();
+  return wish;
+}
+
+std::optional<SessionDrawer::Wish> SessionDrawer::LookInLane(const Turn& turn,
+                                                             const NewestScene& newest) {
+  if (!in_lane_.has_value() || !lane_.IsFor(turn.session->id())) return std::nullopt;
+  // What is shown at once is soon ready; if each change ended it, none would be shown.
+  if (in_lane_->turn_class == TurnClass::kRefining &&
+      in_lane_->newest_revision != newest.revision) {
+    lane_.Cancel();
+    return std::nullopt;
+  }
+  turn.kept.gives_turn = lane_.WantsTurn();
+  if (!turn.kept.gives_turn) return Wish{};
+  return Wish{in_lane_->turn_class, std::nullopt};
 }
 
 void SessionDrawer::TakeTurn(const std::shared_ptr<Session>& session) {
   const Turn turn{session, KeptFor(session->id())};
   const SessionWork work = std::exchange(turn.kept.work, WaitUntil{});
+  if (std::exchange(turn.kept.gives_turn, false)) return lane_.GiveTurn();
+  if (std::exchange(turn.kept.in_lane, false)) return BeginInLane(turn, work);
   std::visit([&](const auto& found) { Do(turn, found); }, work);
+}
+
+void SessionDrawer::BeginInLane(const Turn& turn, const SessionWork& work) {
+  const NewestScene& shown = *ShownBy(work);
+  const auto* draw = std::get_if<DrawFrame>(&work);
+  const bool refined = draw == nullptr || draw->plan.refined;
+  const bool moves = turn.kept.view.state() == SessionView::State::kMoving;
+  in_lane_ = InLane{.work = work,
+                    .shown = shown,
+                    .fields = turn.kept.fields.Fields(),
+                    .newest_revision = turn.session->Newest()->revision,
+                    .turn_class = moves ? TurnClass::kInteractive : TurnClass::kRefining};
+  lane_.Begin({.session_id = turn.session->id(),
+               .scene = shown.scene,
+               .fields = turn.kept.fields.Fields(),
+               .quality = QualityOf(work),
+               .checked = std::holds_alternative<CheckSlices>(work),
+               .fine = refined && WantsFine(*turn.session, shown.scene->output.width_px)});
+}
+
+void SessionDrawer::TakeDrawn(const std::vector<std::shared_ptr<Session>>& sessions) {
+  alone_ = std::ranges::count_if(
+               sessions, [](const auto& session) { return session->hub().HasViewers(); }) <= 1;
+  if (!in_lane_.has_value()) return;
+  lane_.WantsTurn();  // lets what was cancelled end
+  const std::string session_id = lane_.For();
+  auto picture = lane_.Take();
+  if (!picture.has_value()) return;
+  const InLane drawn = *std::exchange(in_lane_, std::nullopt);
+  const auto session = FindById(sessions, session_id);
+  const auto kept = kept_.find(session_id);
+  if (session == nullptr || kept == kept_.end() || absl::IsCancelled(picture->status())) return;
+  const Turn turn{session, kept->second};
+  // It shows something else meanwhile, or gave its fields to others.
+  const std::uint64_t revision = drawn.shown.revision;
+  if (revision < turn.kept.view.shown_revision()) return;
+  if (picture->ok()) {
+    if (turn.kept.fields.Fields() == drawn.fields) Show(turn, drawn, **std::move(picture));
+  } else if (absl::IsResourceExhausted(picture->status()) && turn.kept.whole_revision != revision) {
+    // The render loop's source has what it needs, if only one can have it.
+    turn.kept.whole_revision = revision;
+  } else {
+    Fail(turn, revision, picture->status());
+  }
+}
+
+void SessionDrawer::Show(const Turn& turn, const InLane& drawn, SessionLane::Picture picture) {
+  const NewestScene& shown = drawn.shown;
+  const bool shows_light = std::holds_alternative<ShowLight>(drawn.work);
+  source_.Learn(turn.session->id(), *shown.scene, QualityOf(drawn.work), &picture.frame,
+                shows_light ? turn.kept.view.discretisation_error() : picture.discretisation_error);
+  if (shows_light) {
+    return SendLight(turn, shown, std::move(picture.frame), std::move(picture.fine));
+  }
+  bool refined = true;
+  if (const auto* draw = std::get_if<DrawFrame>(&drawn.work)) {
+    turn.kept.view.Drawn(*draw);
+    refined = draw->plan.refined;
+  } else {
+    turn.kept.view.Checked(*picture.discretisation_error);
+  }
+  Send(turn, shown, refined, std::move(picture.frame), std::move(picture.fine));
+  turn.kept.fields.PrepareNext(*shown.scene);
 }
 
 SessionDrawer::Kept& SessionDrawer::KeptFor(const std::string& session_id) {
@@ -73,17 +188,15 @@ SessionDrawer::Kept& SessionDrawer::KeptFor(const std::string& session_id) {
 
 void SessionDrawer::ReleaseUnwatched(const std::vector<std::shared_ptr<Session>>& sessions) {
   for (auto kept = kept_.begin(); kept != kept_.end();) {
-    const auto found = std::lower_bound(
-        sessions.begin(), sessions.end(), kept->first,
-        [](const auto& session, const std::string& id) { return session->id() < id; });
-    const bool exists = found != sessions.end() && (*found)->id() == kept->first;
-    if (!exists || !(*found)->hub().HasViewers()) {
+    const std::shared_ptr<Session> session = FindById(sessions, kept->first);
+    if (session == nullptr || !session->hub().HasViewers()) {
       kept->second.fields.Release();
       kept->second.reference.Release();
-      if (exists) (*found)->video().Release();
+      if (session != nullptr) session->video().Release();
       light_tracer_.Stop(kept->first);
+      if (lane_.IsFor(kept->first)) lane_.Cancel();
     }
-    if (exists) {
+    if (session != nullptr) {
       ++kept;  // keeps its view, as it may be watched again
     } else {
       source_.Forget(kept->first);
@@ -95,7 +208,7 @@ void SessionDrawer::ReleaseUnwatched(const std::vector<std::shared_ptr<Session>>
 void SessionDrawer::YieldMemory() {
   const Clock::time_point now = Clock::now();
   for (auto& [id, kept] : kept_) {
-    if (!kept.view.Yield(now)) continue;
+    if (lane_.IsFor(id) || !kept.view.Yield(now)) continue;
     kept.work = WaitUntil{};
     kept.fields.Yield();
     light_tracer_.Stop(id);
@@ -122,7 +235,42 @@ SessionWork SessionDrawer::NextWork(const Turn& turn, const NewestScene& newest)
   if (turn.kept.view.TriesAgain(now)) turn.kept.fields.TryAgain();
   if (const auto rests = turn.kept.view.Resting(**decided, now)) return *rests;
   const auto drawable = turn.kept.fields.Drawable(**decided, turn.kept.view.shown_revision());
-  return turn.kept.view.Next(newest, drawable, now, source_.Last());
+  return Placed(turn, newest, drawable, turn.kept.view.Next(newest, drawable, now, source_.Last()));
+}
+
+SessionWork SessionDrawer::Placed(const Turn& turn, const NewestScene& newest,
+                                  const std::optional<NewestScene>& drawable, SessionWork work) {
+  const auto* draw = std::get_if<DrawFrame>(&work);
+  const bool moves = turn.kept.view.state() == SessionView::State::kMoving;
+  turn.kept.in_lane = false;
+  if (draw != nullptr && moves) {
+    // Of a picture at rest whose tone changes the lane has the light.
+    const scene::Scene& scene = *draw->shown.scene;
+    const auto has_light = [&](const std::optional<LastDrawn>& last) {
+      return FirstDirty(last, scene) >= scene::Stage::kTone;
+    };
+    if (!lane_.IsFree() || !has_light(lane_.Last())) return work;
+    const bool is_finer = !has_light(source_.Last()) ||
+                          source_.Last()->quality.image_scale < lane_.Last()->quality.image_scale;
+    if (!is_finer) return work;
+  } else if (!IsLong(turn, work)) {
+    return work;
+  }
+  turn.kept.in_lane = true;
+  if (draw == nullptr) return work;
+  return turn.kept.view.Next(newest, drawable, Clock::now(), lane_.Last());
+}
+
+bool SessionDrawer::IsLong(const Turn& turn, const SessionWork& work) const {
+  const NewestScene* shown = ShownBy(work);
+  if (shown == nullptr || shown->revision == turn.kept.whole_revision) return false;
+  if (turn.kept.view.state() == SessionView::State::kMoving) return false;
+  const scene::Stage first_dirty =
+      std::min(FirstDirty(source_.Last(), *shown->scene), scene::Stage::kView);
+  double ms =
+      source_.Costs().FrameMs(turn.session->id(), *shown->scene, QualityOf(work), first_dirty);
+  if (std::holds_alternative<CheckSlices>(work)) ms *= kCheckedShare;
+  return ms > (alone_ ? targets_.refined_ms : targets_.whole_ms);
 }
 
 SessionDrawer::Wish SessionDrawer::Need(const Turn& /*turn*/, const WaitUntil& work) {
@@ -189,7 +337,8 @@ void SessionDrawer::Do(const Turn& turn, const DrawFrame& work) {
       source_.Draw(turn.session->id(), *shown.scene, turn.kept.fields.Fields(), work.plan.quality);
   if (!picture.ok()) return Fail(turn, shown.revision, picture.status());
   turn.kept.view.Drawn(work);
-  Send(turn, shown, work.plan.refined, *std::move(picture));
+  auto fine = work.plan.refined ? FineOf(turn, *picture) : std::nullopt;
+  Send(turn, shown, work.plan.refined, *std::move(picture), std::move(fine));
   turn.kept.fields.PrepareNext(*shown.scene);
 }
 
@@ -198,7 +347,8 @@ void SessionDrawer::Do(const Turn& turn, const CheckSlices& work) {
   auto checked = source_.DrawChecked(turn.session->id(), *shown.scene, turn.kept.fields.Fields());
   if (!checked.ok()) return Fail(turn, shown.revision, checked.status());
   turn.kept.view.Checked(checked->discretisation_error);
-  Send(turn, shown, true, std::move(checked->frame));
+  auto fine = FineOf(turn, checked->frame);
+  Send(turn, shown, true, std::move(checked->frame), std::move(fine));
 }
 
 void SessionDrawer::Do(const Turn& /*turn*/, const TraceLight& /*work*/) {}
@@ -213,11 +363,17 @@ absl::Status SessionDrawer::DrawLight(const Turn& turn, const NewestScene& shown
       DisplayFrame picture,
       source_.Draw(turn.session->id(), *shown.scene, turn.kept.fields.Fields(), FrameQuality{},
                    turn.kept.view.discretisation_error()));
+  auto fine = FineOf(turn, picture);
+  SendLight(turn, shown, std::move(picture), std::move(fine));
+  return absl::OkStatus();
+}
+
+void SessionDrawer::SendLight(const Turn& turn, const NewestScene& shown, DisplayFrame picture,
+                              std::optional<frame::FineImage> fine) {
   const auto not_shown = std::exchange(turn.kept.not_shown, std::nullopt);
   if (not_shown.has_value()) picture.modelled.content.not_shown.push_back(*not_shown);
   turn.kept.view.LightShown(Clock::now());
-  Send(turn, shown, true, std::move(picture));
-  return absl::OkStatus();
+  Send(turn, shown, true, std::move(picture), std::move(fine));
 }
 
 void SessionDrawer::Do(const Turn& turn, const ShowReference& work) {
@@ -237,12 +393,27 @@ absl::Status SessionDrawer::ShowTraced(const Turn& turn, const NewestScene& show
       scene::HydrometeorsOf(scene::DrawnFieldsOf(*shown.scene, *fields));
   renderers::AddNotShown(*shown.scene, scene::Reference::kCapabilities, &picture.modelled.content);
   picture.modelled.content.ground = scene::DrawnGround(*shown.scene, *fields);
-  Send(turn, shown, traced.full_size, std::move(picture), traced.refinement);
+  auto fine = traced.full_size ? FineOf(turn, picture) : std::nullopt;
+  Send(turn, shown, traced.full_size, std::move(picture), std::move(fine), traced.refinement);
   return absl::OkStatus();
 }
 
+bool SessionDrawer::WantsFine(Session& session, int width_px) {
+  const auto still_tiers = session.hub().StillTiers(width_px);
+  return std::ranges::find(still_tiers, true) != still_tiers.end();
+}
+
+std::optional<frame::FineImage> SessionDrawer::FineOf(const Turn& turn,
+                                                      const DisplayFrame& picture) {
+  if (!WantsFine(*turn.session, picture.width_px)) return std::nullopt;
+  // Those who would take it get JPEG where it cannot be had.
+  auto fine = source_.Fine();
+  return fine.ok() ? std::optional(*std::move(fine)) : std::nullopt;
+}
+
 void SessionDrawer::Send(const Turn& turn, const NewestScene& shown, bool refined,
-                         DisplayFrame picture, std::optional<Refinement> refinement) {
+                         DisplayFrame picture, std::optional<frame::FineImage> fine,
+                         std::optional<Refinement> refinement) {
   turn.kept.losses = 0;
   turn.kept.fields.AddStages(&picture.stages);
   DrawnFrame frame{.session = turn.session,
@@ -250,13 +421,9 @@ void SessionDrawer::Send(const Turn& turn, const NewestScene& shown, bool refine
                    .scene = *shown.scene,
                    .refined = refined,
                    .rests_at = targets_.RestsAt(shown),
+                   .fine = std::move(fine),
                    .refinement = refinement,
                    .view = scene::ViewOf(*shown.scene, *turn.kept.fields.Fields())};
-  const auto still_tiers = turn.session->hub().StillTiers(picture.width_px);
-  if (refined && std::ranges::find(still_tiers, true) != still_tiers.end()) {
-    // Those who would take it get JPEG where it cannot be had.
-    if (auto fine = source_.Fine(); fine.ok()) frame.fine = *std::move(fine);
-  }
   frame.picture = std::move(picture);
   encoder_.Encode(std::move(frame));
 }

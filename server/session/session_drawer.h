@@ -1,6 +1,6 @@
 // Does the work that sessions' views ask for, one item in each turn: draws with the source and
-// passes frames to the encoder. What needs no device it does while it looks for work. Used by the
-// render loop's thread only.
+// passes frames to the encoder; what would take long is drawn in pieces, in a lane. What needs no
+// device it does while it looks for work. Used by the render loop's thread only.
 #pragma once
 
 #include <map>
@@ -13,6 +13,7 @@
 #include "session/light_tracer.h"
 #include "session/measured_source.h"
 #include "session/session_fields.h"
+#include "session/session_lane.h"
 #include "session/session_reference.h"
 #include "session/session_view.h"
 #include "session/sessions.h"
@@ -24,19 +25,25 @@ class SessionDrawer {
  public:
   // All references must outlive it.
   SessionDrawer(const PlannerTargets& targets, const FieldsAccess& fields, MeasuredSource& source,
-                FrameEncoder& encoder, TruthTracer& tracer, LightTracer& light_tracer);
+                FrameEncoder& encoder, TruthTracer& tracer, LightTracer& light_tracer,
+                SessionLane& lane);
 
   struct Wish {
     std::optional<TurnClass> work;  // to be done in a turn
     std::optional<Clock::time_point> look_again_at;
   };
   Wish Look(const std::shared_ptr<Session>& session);
-  // Does the work that Look found for the session last.
+  // Does the work that Look found for the session last: whole, or a piece of it.
   void TakeTurn(const std::shared_ptr<Session>& session);
+  // Sends the frame that was drawn in the lane, if one is ready. `sessions` are in order of id.
+  void TakeDrawn(const std::vector<std::shared_ptr<Session>>& sessions);
 
   // Memory is short: sessions whose pictures are shown leave their fields to others, and have no
   // light traced, for a while.
   void YieldMemory();
+
+  // The device is another: what the sources kept is gone.
+  void DeviceReplaced() { lane_.Forget(); }
 
   // Frees the resources of sessions without viewers and of those not in `sessions`, which are in
   // order of id.
@@ -51,7 +58,19 @@ class SessionDrawer {
     SessionWork work = WaitUntil{};  // found last
     // Of that work, if it is to show traced light.
     std::optional<scene::NotShown> not_shown = std::nullopt;
-    int losses = 0;  // of the device, since the last frame
+    bool in_lane = false;     // where that work is to be done
+    bool gives_turn = false;  // to its frame that is in the lane; there is no other work
+    int losses = 0;           // of the device, since the last frame
+    // The revision whose frame at rest had no room in the lane; it is drawn whole.
+    std::uint64_t whole_revision = 0;
+  };
+  // The frame in the lane.
+  struct InLane {
+    SessionWork work;
+    NewestScene shown;
+    std::shared_ptr<const volume::HydrometeorFields> fields;
+    std::uint64_t newest_revision = 0;  // of the session when it was begun
+    TurnClass turn_class = TurnClass::kRefining;
   };
   // A session whose turn it is.
   struct Turn {
@@ -62,6 +81,15 @@ class SessionDrawer {
   Kept& KeptFor(const std::string& session_id);
   void TakeRead(const Turn& turn);
   SessionWork NextWork(const Turn& turn, const NewestScene& newest);
+  // The wish of a session whose frame is in the lane; none if that is not what it shows any more.
+  std::optional<Wish> LookInLane(const Turn& turn, const NewestScene& newest);
+  // The work with the stages that the lane's source can reuse, where it can reuse more, or where it
+  // is too long for the render loop's own turn.
+  SessionWork Placed(const Turn& turn, const NewestScene& newest,
+                     const std::optional<NewestScene>& drawable, SessionWork work);
+  bool IsLong(const Turn& turn, const SessionWork& work) const;
+  void BeginInLane(const Turn& turn, const SessionWork& work);
+  void Show(const Turn& turn, const InLane& drawn, SessionLane::Picture picture);
 
   // Each tells in which class the work is, if it needs a turn.
   Wish Need(const Turn& turn, const WaitUntil& work);
@@ -80,9 +108,15 @@ class SessionDrawer {
 
   // The picture once more, with the light traced so far; it says what is missing.
   absl::Status DrawLight(const Turn& turn, const NewestScene& shown);
+  void SendLight(const Turn& turn, const NewestScene& shown, DisplayFrame picture,
+                 std::optional<frame::FineImage> fine);
   absl::Status ShowTraced(const Turn& turn, const NewestScene& shown);
-  // Of the picture that the source has just given.
+  // True if a refined frame of that width is wanted with more bits.
+  static bool WantsFine(Session& session, int width_px);
+  // The same of the picture that the render loop's source has just given, if it is wanted.
+  std::optional<frame::FineImage> FineOf(const Turn& turn, const DisplayFrame& picture);
   void Send(const Turn& turn, const NewestScene& shown, bool refined, DisplayFrame picture,
+            std::optional<frame::FineImage> fine,
             std::optional<Refinement> refinement = std::nullopt);
   void Fail(const Turn& turn, std::uint64_t revision, const absl::Status& why);
 
@@ -92,6 +126,9 @@ class SessionDrawer {
   FrameEncoder& encoder_;
   TruthTracer& tracer_;
   LightTracer& light_tracer_;
+  SessionLane& lane_;
+  bool alone_ = true;                 // at most one session is watched
+  std::optional<InLane> in_lane_;     // the lane's, until its outcome was taken
   std::map<std::string, Kept> kept_;  // by session id
 };
 

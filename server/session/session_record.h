@@ -22,6 +22,7 @@ struct SessionKeys {
 struct SessionRecord {
   std::string id;
   SessionKeys keys;
+  std::string owner;  // the identity that opened it; empty: nobody's
   Rules rules;
   std::string scene;  // as the service serialized it; opaque here
   std::uint64_t scene_revision = 0;

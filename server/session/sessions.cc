@@ -52,9 +52,10 @@ absl::Status TooMany(const char* who, std::size_t max_sessions) {
 
 Session::Session(std::string id, SessionKeys keys, const Rules& rules, Board board,
                  const AudienceFormat& format, const SessionSignals& signals,
-                 const RosterTimeouts& timeouts)
+                 const RosterTimeouts& timeouts, std::string owner)
     : id_(std::move(id)),
       keys_(std::move(keys)),
+      owner_(std::move(owner)),
       signals_(signals),
       hub_(signals.on_work, signals.on_due),
       audience_(format, rules, std::move(board), Clock::now(), signals.on_due, timeouts) {}
@@ -155,7 +156,8 @@ SessionVersion Session::Version() const {
 }
 
 SessionRecord Session::Record() const {
-  SessionRecord record{.id = id_, .keys = keys_, .rules = audience_.CurrentRules()};
+  SessionRecord record{
+      .id = id_, .keys = keys_, .owner = owner_, .rules = audience_.CurrentRules()};
   if (const std::optional<NewestScene> newest = Newest(); newest.has_value()) {
     record.scene = *newest->serialized;
     record.scene_revision = newest->revision;
@@ -214,21 +216,21 @@ absl::StatusOr<std::shared_ptr<Session>> Sessions::Create(const Rules& rules,
                                                           const std::string& owner) {
   const std::lock_guard lock(mutex_);
   if (!closed_because_.ok()) return closed_because_;
+  if (!refuses_new_.ok()) return refuses_new_;
   DropExpired();
   if (sessions_.size() >= options_.max_sessions) {
     return TooMany("the server already has", options_.max_sessions);
   }
   const auto owned = std::ranges::count_if(
-      owner_by_id_, [&owner](const auto& entry) { return entry.second == owner; });
-  if (static_cast<std::size_t>(owned) >= options_.max_sessions_per_owner) {
+      sessions_, [&owner](const auto& entry) { return entry.second->owner() == owner; });
+  if (!owner.empty() && static_cast<std::size_t>(owned) >= options_.max_sessions_per_owner) {
     return TooMany("you already have", options_.max_sessions_per_owner);
   }
   auto session = std::make_shared<Session>(
       base::RandomHex(kIdWords),
       SessionKeys{base::RandomHex(kKeyWords), base::RandomHex(kKeyWords)}, rules, Board{},
-      options_.format, signals_, options_.roster_timeouts);
+      options_.format, signals_, options_.roster_timeouts, owner);
   Add(session);
-  if (!owner.empty()) owner_by_id_[session->id()] = owner;
   return session;
 }
 
@@ -236,7 +238,7 @@ std::shared_ptr<Session> Sessions::Restore(const SessionRecord& record, scene::S
                                            std::string serialized) {
   auto session =
       std::make_shared<Session>(record.id, record.keys, record.rules, Board(record.marks),
-                                options_.format, signals_, options_.roster_timeouts);
+                                options_.format, signals_, options_.roster_timeouts, record.owner);
   session->ShowRestored(record, std::move(scene), std::move(serialized));
   const std::lock_guard lock(mutex_);
   Add(session);
@@ -291,9 +293,18 @@ std::shared_ptr<Session> Sessions::Remove(Map::iterator at) {
   std::shared_ptr<Session> session = std::move(at->second);
   id_by_key_.erase(session->keys().presenter);
   id_by_key_.erase(session->keys().viewer);
-  owner_by_id_.erase(session->id());
   sessions_.erase(at);
   return session;
+}
+
+void Sessions::RefuseNew(const absl::Status& why) {
+  Map sessions;
+  {
+    const std::lock_guard lock(mutex_);
+    if (refuses_new_.ok()) refuses_new_ = why;
+    sessions = sessions_;
+  }
+  for (const auto& [id, session] : sessions) session->audience().WakeAll();
 }
 
 void Sessions::CloseAll(const absl::Status& why) {

@@ -62,11 +62,13 @@ class Session {
   // `signals` are called from any thread.
   Session(std::string id, SessionKeys keys, const Rules& rules, Board board,
           const AudienceFormat& format, const SessionSignals& signals,
-          const RosterTimeouts& timeouts = {});
+          const RosterTimeouts& timeouts = {}, std::string owner = "");
 
   // Names it in this process; not a secret.
   const std::string& id() const { return id_; }
   const SessionKeys& keys() const { return keys_; }
+  // The identity that opened it; empty: nobody's.
+  const std::string& owner() const { return owner_; }
   // True for what an OwnView draws, which nobody finds by a key.
   bool IsOwnView() const { return keys_.viewer.empty(); }
   FrameHub& hub() { return hub_; }
@@ -107,6 +109,7 @@ class Session {
 
   const std::string id_;
   const SessionKeys keys_;
+  const std::string owner_;
   const SessionSignals signals_;
   FrameHub hub_;
   VideoEncoders video_;
@@ -166,8 +169,8 @@ class Sessions {
  public:
   Sessions(const SessionsOptions& options, const SessionSignals& signals);
 
-  // RESOURCE_EXHAUSTED if there are too many, in all or of that owner, UNAVAILABLE after CloseAll.
-  // No owner has as many as there may be, and so have those that come back from a store.
+  // RESOURCE_EXHAUSTED if there are too many, in all or of that owner, UNAVAILABLE after RefuseNew
+  // and CloseAll. Those without an owner have as many as there may be.
   absl::StatusOr<std::shared_ptr<Session>> Create(const Rules& rules = {},
                                                   const std::string& owner = "");
   // The session of a record from another run, as if nothing had happened but that everybody left.
@@ -181,6 +184,9 @@ class Sessions {
   // Ends the session and its viewers' streams. NOT_FOUND as Find; PERMISSION_DENIED for the
   // viewers' key.
   absl::Status Close(const std::string& presenter_key);
+  // No session is created from now on, for this reason. Those that there are go on; whoever watches
+  // one is woken.
+  void RefuseNew(const absl::Status& why);
   // Ends every session with `why`; none can be created or found afterwards.
   void CloseAll(const absl::Status& why);
 
@@ -208,10 +214,10 @@ class Sessions {
   std::mutex mutex_;
   Map sessions_;                                         // by id
   std::map<std::string, std::string> id_by_key_;         // both keys
-  std::map<std::string, std::string> owner_by_id_;       // of sessions that have one
   std::map<std::string, std::weak_ptr<OwnView>> views_;  // by id
   std::uint64_t view_count_ = 0;
   absl::Status closed_because_;
+  absl::Status refuses_new_;
 };
 
 }  // namespace thunderhead::session

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/log.h"
+#include "base/out_of_memory.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "base/thread_priority.h"
@@ -61,6 +62,19 @@ void StillMaker::Run() {
   }
 }
 
+absl::StatusOr<EncodedFrame> StillMaker::Encoded(const StillToMake& still, int tier) const {
+  const base::Stopwatch stopwatch;
+  const frame::FineImage& image = still.fine->At(tier);
+  EncodedFrame frame = still.described;
+  THUNDERHEAD_ASSIGN_OR_RETURN(frame.avif, codec::EncodeAvif(image));
+  frame.width_px = image.width_px;
+  frame.height_px = image.height_px;
+  frame.tier = tier;
+  frame.stages.push_back({scene::FrameStage::kEncode, stopwatch.ElapsedMs()});
+  frame.serialized = serialize_(frame);
+  return frame;
+}
+
 void StillMaker::MakeNow(const StillToMake& still) const {
   const auto session = still.session.lock();
   if (session == nullptr || !session->hub().IsNewest(still.sequence)) return;
@@ -70,21 +84,12 @@ void StillMaker::MakeNow(const StillToMake& still) const {
   for (int tier = 0; tier < kTiers; ++tier) {
     if (!wanted[static_cast<std::size_t>(tier)]) continue;
     if (!session->hub().IsNewest(still.sequence)) return;
-    const base::Stopwatch stopwatch;
-    const frame::FineImage& image = still.fine->At(tier);
-    auto avif = codec::EncodeAvif(image);
-    if (!avif.ok()) {
-      base::LogError(base::Annotate(avif.status(), "making a still of higher quality"));
+    auto frame = base::OrOutOfMemory([&] { return Encoded(still, tier); });
+    if (!frame.ok()) {
+      base::LogError(base::Annotate(frame.status(), "making a still of higher quality"));
       return session->hub().NoStills(still.sequence);
     }
-    EncodedFrame frame = still.described;
-    frame.avif = *std::move(avif);
-    frame.width_px = image.width_px;
-    frame.height_px = image.height_px;
-    frame.tier = tier;
-    frame.stages.push_back({scene::FrameStage::kEncode, stopwatch.ElapsedMs()});
-    frame.serialized = serialize_(frame);
-    session->hub().AddStill(still.sequence, tier, std::move(frame));
+    session->hub().AddStill(still.sequence, tier, *std::move(frame));
   }
 }
 

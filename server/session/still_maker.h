@@ -52,6 +52,7 @@ class StillMaker {
   };
 
   void Run();
+  absl::StatusOr<EncodedFrame> Encoded(const StillToMake& still, int tier) const;
   void MakeNow(const StillToMake& still) const;
 
   const SerializeFrame serialize_;

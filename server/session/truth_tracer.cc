@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "base/out_of_memory.h"
+#include "base/status.h"
 #include "base/stopwatch.h"
 #include "base/thread_priority.h"
 #include "session/truth_schedule.h"
@@ -14,26 +16,43 @@ namespace {
 // Length of a turn.
 constexpr double kTurn_s = 0.25;
 
+// Mean and variance of radiance, opacity, distance, and a picture that waits to be shown.
+constexpr std::size_t kBytesPerPixel = 160;
+// Extinction and its bounds, of each field.
+constexpr std::size_t kBytesPerCell = 12;
+
+std::size_t BytesFor(const volume::HydrometeorFields& fields, const glm::ivec2& size_px) {
+  return static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y) *
+             kBytesPerPixel +
+         fields.grid.CellCount() * fields.fields.size() * kBytesPerCell;
+}
+
 }  // namespace
 
 // A picture being traced. Used by the tracing thread, except for `stop`.
 struct TruthTracer::Job {
   Job(std::string of_owner, std::shared_ptr<const scene::Scene> of_scene,
-      std::shared_ptr<const volume::HydrometeorFields> of_fields,
-      std::shared_ptr<TruthSource> with_source)
+      std::shared_ptr<const volume::HydrometeorFields> of_fields, const Owned& of)
       : owner(std::move(of_owner)),
         scene(std::move(of_scene)),
         fields(std::move(of_fields)),
-        source(std::move(with_source)),
+        source(of.source),
+        reserved(of.reserved),
         schedule({scene->output.width_px, scene->output.height_px}) {}
 
-  // Refines for a turn. Returns a picture if one is due, and whether it is the last.
-  std::pair<Found, bool> Refine();
+  // A picture if one is due, and whether it is the last.
+  struct Turn {
+    Found found;
+    bool ended = false;
+  };
+  // Refines for a turn. An error ends the picture.
+  absl::StatusOr<Turn> Refine(base::MemoryBudget& memory);
 
   const std::string owner;
   const std::shared_ptr<const scene::Scene> scene;
   const std::shared_ptr<const volume::HydrometeorFields> fields;
   const std::shared_ptr<TruthSource> source;
+  const std::shared_ptr<base::MemoryReservation> reserved;
   std::stop_source stop;
   TruthSchedule schedule;
   bool begun = false;
@@ -41,16 +60,17 @@ struct TruthTracer::Job {
   base::Stopwatch since_shown;
 };
 
-std::pair<TruthTracer::Found, bool> TruthTracer::Job::Refine() {
+absl::StatusOr<TruthTracer::Job::Turn> TruthTracer::Job::Refine(base::MemoryBudget& memory) {
   const base::Stopwatch stopwatch;
   if (!begun) {
-    const absl::Status status = source->Begin(*scene, fields, schedule.SizePx());
-    if (!status.ok()) return {status, true};
+    THUNDERHEAD_RETURN_IF_ERROR(memory.Resize(*reserved, BytesFor(*fields, schedule.SizePx()),
+                                              "a picture by the reference"));
+    THUNDERHEAD_RETURN_IF_ERROR(source->Begin(*scene, fields, schedule.SizePx()));
     begun = true;
   }
   const Refinement refinement = source->Refine(schedule.UntilSamples(), kTurn_s, stop.get_token());
   trace_ms += stopwatch.ElapsedMs();
-  if (stop.stop_requested()) return {std::nullopt, true};
+  if (stop.stop_requested()) return Turn{std::nullopt, true};
   Found found;
   const bool full_size = schedule.IsFull();
   if (schedule.ShowNow(refinement, since_shown.ElapsedMs() * 1e-3)) {
@@ -59,13 +79,15 @@ std::pair<TruthTracer::Found, bool> TruthTracer::Job::Refine() {
     since_shown.Restart();
   }
   if (schedule.GrowAt(refinement)) begun = false;
-  return {std::move(found), full_size && schedule.Finished(refinement)};
+  return Turn{std::move(found), full_size && schedule.Finished(refinement)};
 }
 
 TruthTracer::TruthTracer(TruthSourceFactory make_source, std::size_t max_owners,
+                         std::shared_ptr<base::MemoryBudget> memory,
                          std::function<void()> on_picture)
     : make_source_(std::move(make_source)),
       max_owners_(max_owners),
+      memory_(memory != nullptr ? std::move(memory) : base::MemoryBudget::Unlimited()),
       on_picture_(std::move(on_picture)),
       thread_([this] { Run(); }) {}
 
@@ -92,8 +114,12 @@ absl::Status TruthTracer::Trace(const std::string& owner, std::shared_ptr<const 
                        " pictures by the reference; choose another renderer"));
     }
     Owned& owned = owned_[owner];
-    if (owned.source == nullptr) owned.source = make_source_();
-    owned.job = std::make_shared<Job>(owner, std::move(scene), std::move(fields), owned.source);
+    if (owned.source == nullptr) {
+      owned.source = make_source_();
+      owned.reserved = std::make_shared<base::MemoryReservation>(
+          *memory_->Reserve(base::MemoryUse::kTracing, 0, "a picture by the reference"));
+    }
+    owned.job = std::make_shared<Job>(owner, std::move(scene), std::move(fields), owned);
   }
   changed_.notify_one();
   return absl::OkStatus();
@@ -154,8 +180,12 @@ void TruthTracer::Run() {
     if (stopping_) return;
     last_served_ = job->owner;
     lock.unlock();
-    auto [found, ended] = job->Refine();
-    Keep(*job, std::move(found), ended);
+    auto turn = base::OrOutOfMemory([&] { return job->Refine(*memory_); });
+    if (turn.ok()) {
+      Keep(*job, std::move(turn->found), turn->ended);
+    } else {
+      Keep(*job, turn.status(), true);
+    }
     // Frees its fields and pictures, maybe many megabytes, before taking the lock.
     job.reset();
     lock.lock();

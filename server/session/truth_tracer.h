@@ -16,6 +16,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "base/memory_budget.h"
 #include "scene/scene.h"
 #include "session/frame_source.h"
 #include "session/truth_source.h"
@@ -33,10 +34,11 @@ struct TruthPicture {
 
 class TruthTracer {
  public:
-  // Each owner has a source of its own, which keeps its buffers; `max_owners` bounds their memory.
+  // Each owner has a source of its own, which keeps its buffers; they count in `memory`, which may
+  // be null, and there are at most `max_owners`.
   // `on_picture` is called on the tracing thread when a picture can be taken.
   TruthTracer(TruthSourceFactory make_source, std::size_t max_owners,
-              std::function<void()> on_picture);
+              std::shared_ptr<base::MemoryBudget> memory, std::function<void()> on_picture);
   // Ends tracing at once.
   ~TruthTracer();
   TruthTracer(const TruthTracer&) = delete;
@@ -58,6 +60,8 @@ class TruthTracer {
   // Only the tracing thread uses the source.
   struct Owned {
     std::shared_ptr<TruthSource> source;
+    // What the source's buffers count in.
+    std::shared_ptr<base::MemoryReservation> reserved;
     std::shared_ptr<Job> job;
     Found found;
   };
@@ -68,6 +72,7 @@ class TruthTracer {
 
   const TruthSourceFactory make_source_;
   const std::size_t max_owners_;
+  const std::shared_ptr<base::MemoryBudget> memory_;
   const std::function<void()> on_picture_;
   std::mutex mutex_;
   std::condition_variable changed_;

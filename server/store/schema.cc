@@ -67,6 +67,10 @@ constexpr std::array kSteps = {R"(
                                R"(
   -- A line for each mark, in their order: its owner's key, or nothing.
   ALTER TABLE marks ADD COLUMN owner_keys TEXT NOT NULL DEFAULT '';
+)",
+                               R"(
+  -- The identity that opened it, or nothing.
+  ALTER TABLE sessions ADD COLUMN owner TEXT NOT NULL DEFAULT '';
 )"};
 
 absl::Status CheckOrigin(Database& database, const std::string& path) {

@@ -21,13 +21,15 @@ using session::SessionRecord;
 
 constexpr char kSaveSession[] =
     "INSERT INTO sessions (id, presenter_key, viewer_key, viewers_may_steer, control_locked, "
-    "following_locked, viewers_may_mark, free_when_away, scene, scene_revision, last_used_ms) "
-    "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (id) DO UPDATE SET "
+    "following_locked, viewers_may_mark, free_when_away, scene, scene_revision, last_used_ms, "
+    "owner) "
+    "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (id) DO UPDATE SET "
     "presenter_key = excluded.presenter_key, viewer_key = excluded.viewer_key, "
     "viewers_may_steer = excluded.viewers_may_steer, control_locked = excluded.control_locked, "
     "following_locked = excluded.following_locked, viewers_may_mark = excluded.viewers_may_mark, "
     "free_when_away = excluded.free_when_away, scene = excluded.scene, "
-    "scene_revision = excluded.scene_revision, last_used_ms = excluded.last_used_ms";
+    "scene_revision = excluded.scene_revision, last_used_ms = excluded.last_used_ms, "
+    "owner = excluded.owner";
 // Written only when they have changed.
 constexpr char kSaveMarks[] =
     "INSERT INTO marks (session_id, marks, owner_keys) VALUES (?, ?, ?) "
@@ -36,7 +38,8 @@ constexpr char kSaveMarks[] =
     "WHERE marks IS NOT excluded.marks OR owner_keys IS NOT excluded.owner_keys";
 constexpr char kLoad[] =
     "SELECT id, presenter_key, viewer_key, viewers_may_steer, control_locked, following_locked, "
-    "viewers_may_mark, free_when_away, scene, scene_revision, last_used_ms, marks, owner_keys "
+    "viewers_may_mark, free_when_away, scene, scene_revision, last_used_ms, marks, owner_keys, "
+    "owner "
     "FROM sessions "
     "JOIN marks ON session_id = id ORDER BY id";
 
@@ -68,6 +71,7 @@ SessionRecord RecordOf(const Statement& row) {
   record.scene = row.Bytes(8);
   record.scene_revision = static_cast<std::uint64_t>(row.Number(9));
   record.last_used = TimeOf(row.Number(10));
+  record.owner = row.Bytes(13);
   return record;
 }
 
@@ -136,6 +140,7 @@ class OpenSessionStore final : public SqliteSessionStore {
     save.BindBlob(9, record.scene);
     save.Bind(10, static_cast<std::int64_t>(record.scene_revision));
     save.Bind(11, MillisecondsOf(record.last_used));
+    save.Bind(12, record.owner);
   }
 
   const std::shared_ptr<StateFile> file_;

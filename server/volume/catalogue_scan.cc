@@ -1,6 +1,8 @@
 #include "volume/catalogue_scan.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "base/file_stamp.h"
@@ -8,6 +10,7 @@
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::volume {
+
 std::optional<CatalogueScan::Stamp> CatalogueScan::StampOf(const std::string& path) {
   const std::optional<base::FileStamp> found = base::StampOf(path);
   if (!found.has_value()) return std::nullopt;
@@ -29,14 +32,38 @@ absl::StatusOr<CatalogueScan::Result> CatalogueScan::Scan(Time now) {
             spdlog::warn("left out: {}", std::string(status.message()));
           },
       .on_folder = [&result](const std::string& path) { result.folders.push_back(path); },
-      .examples = options_.formats.Examples()};
+      .examples = options_.formats.Examples(),
+      .answers = [this](const std::string& path) { return Answers(path); },
+      .found = &found_};
   THUNDERHEAD_ASSIGN_OR_RETURN(result.storms, FindStorms(options_.paths, search));
-  const std::size_t gone =
-      std::erase_if(known_, [this](const auto& entry) { return entry.second.scan != scans_; });
+  const std::size_t gone = std::erase_if(known_, [this](const auto& entry) {
+    const auto hangs = [&entry](const std::string& path) { return entry.first.starts_with(path); };
+    return entry.second.scan != scans_ && std::ranges::none_of(hanging_, hangs);
+  });
   result.changed = changed_ || gone > 0;
   if (result.changed) LogNotes(result.storms);
   result.look_again_at = look_again_at_;
   return result;
+}
+
+void CatalogueScan::LookAtFolder(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::directory_iterator entries(path, error);
+  if (!error && entries != std::filesystem::directory_iterator()) {
+    (void)base::StampOf(entries->path().string());
+  }
+}
+
+bool CatalogueScan::Answers(const std::string& path) {
+  const absl::Status hangs = calls_.Run(path, [path, look = options_.look_at] { look(path); });
+  if (hangs.ok()) {
+    if (hanging_.erase(path) > 0) spdlog::info("{} answers again", path);
+    return true;
+  }
+  if (hanging_.insert(path).second) {
+    spdlog::warn("{}; its storms stay as they were", std::string(hangs.message()));
+  }
+  return false;
 }
 
 absl::StatusOr<StormFile> CatalogueScan::Describe(const std::string& path, Time now) {

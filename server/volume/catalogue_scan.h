@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "base/patient_calls.h"
 #include "volume/storm_catalogue.h"
 #include "volume/storm_format.h"
 
@@ -30,6 +31,10 @@ class CatalogueScan {
     std::chrono::milliseconds retry{};
     // Called before each file is opened; may wait.
     std::function<void()> before_file = [] {};
+    // How a path is looked at before it is searched; it may hang.
+    std::function<void(const std::string& path)> look_at = LookAtFolder;
+    // How long that may take; then the path's storage hangs, and its storms stay as they were.
+    std::chrono::milliseconds patience = std::chrono::seconds(10);
   };
 
   struct Result {
@@ -39,7 +44,11 @@ class CatalogueScan {
     bool changed = true;                // since the last Scan
   };
 
-  explicit CatalogueScan(Options options) : options_(std::move(options)) {}
+  explicit CatalogueScan(Options options)
+      : options_(std::move(options)), calls_(options_.patience) {}
+
+  // Opens it and reads its first entry, or the file's first byte.
+  static void LookAtFolder(const std::string& path);
 
   // Files of the first scan are complete if they are older than the settling time; what comes
   // later must have been seen unchanged for so long. A file that grows keeps the description that
@@ -68,6 +77,8 @@ class CatalogueScan {
     std::uint64_t scan = 0;  // that saw it last
   };
 
+  // False while the path's storage hangs.
+  bool Answers(const std::string& path);
   static std::optional<Stamp> StampOf(const std::string& path);
   absl::StatusOr<StormFile> Describe(const std::string& path, Time now);
   void Look(const std::string& path, const Stamp& stamp, Time now, Known& known);
@@ -75,6 +86,9 @@ class CatalogueScan {
   void LookAgainAt(Time time);
 
   const Options options_;
+  base::PatientCalls calls_;
+  FoundByPath found_;
+  std::set<std::string> hanging_;  // paths
   std::map<std::string, Known> known_;
   std::set<std::string> unlisted_;  // folders that were complained of
   std::uint64_t scans_ = 0;

@@ -289,8 +289,20 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
   std::vector<NamedStorm> named;
   for (std::size_t path = 0; path < paths.size(); ++path) {
     const std::size_t before = named.size();
-    THUNDERHEAD_RETURN_IF_ERROR(Search(paths[path], search, named));
+    if (search.answers && !search.answers(paths[path])) {
+      for (const NamedFiles& storm : (*search.found)[paths[path]]) {
+        named.push_back({storm.name, storm.files});
+      }
+    } else {
+      THUNDERHEAD_RETURN_IF_ERROR(Search(paths[path], search, named));
+    }
     for (std::size_t i = before; i < named.size(); ++i) named[i].path = path;
+    if (search.found == nullptr) continue;
+    std::vector<NamedFiles>& found = (*search.found)[paths[path]];
+    found.clear();
+    for (std::size_t i = before; i < named.size(); ++i) {
+      found.push_back({named[i].name, named[i].files});
+    }
   }
   if (named.empty() && !search.may_find_nothing) {
     return absl::InvalidArgumentError(absl::StrCat(

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,13 @@ struct CataloguedStorm {
   std::vector<std::string> notes;   // for the log: times that several files have
 };
 
+// The files of a storm before it has an id, and its name.
+struct NamedFiles {
+  std::string name;
+  std::vector<StormFile> files;
+};
+using FoundByPath = std::map<std::string, std::vector<NamedFiles>>;
+
 // How a search looks at files and takes what it meets.
 struct StormSearch {
   // Describes the file at a path. CANCELLED for a file that is to be passed over without a word.
@@ -38,6 +46,11 @@ struct StormSearch {
   // Called with every folder before it is listed; may be empty.
   std::function<void(const std::string&)> on_folder;
   std::string examples;  // of files, for messages
+  // Asked before each path is searched: false where its storage hangs, which then has the storms
+  // that it had in the search before. Empty: all answer.
+  std::function<bool(const std::string&)> answers = nullptr;
+  // What was found by path, for that; kept by who searches again and again.
+  FoundByPath* found = nullptr;
 };
 
 // Describes files by the formats; a file whose metadata exhausts the memory is an error.

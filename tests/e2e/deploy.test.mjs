@@ -41,7 +41,7 @@ describe("HAProxy", { skip: existsSync(HAPROXY) ? false : "needs Debian's haprox
     });
     port = await freePort();
     const ports = { httpPort: await freePort(), grpcPort: await freePort() };
-    server = await startServer(ports);
+    server = await startServer({ ...ports, more: ["--trusted-proxy", "127.0.0.1"] });
     proxy = spawn(HAPROXY, ["-db", "-f", `${ROOT}deploy/haproxy/haproxy.cfg`], {
       env: {
         THUNDERHEAD_BIND: `127.0.0.1:${port}`,
@@ -113,6 +113,28 @@ describe("HAProxy", { skip: existsSync(HAPROXY) ? false : "needs Debian's haprox
     const { fps_min, errors } = JSON.parse(load.stdout);
     assert.ok(fps_min > 0);
     assert.equal(errors, 0);
+  });
+
+  test("the server knows clients by the address that the proxy saw, whatever they say themselves", async () => {
+    const body = Buffer.from([0, 0, 0, 0, 7, 10, 5, ...Buffer.from("wrong")]);
+    await new Promise((resolve, reject) => {
+      const request = https.request(
+        {
+          host: "127.0.0.1",
+          port,
+          localAddress: "127.0.0.3",
+          method: "POST",
+          path: "/thunderhead.v1.ThunderheadService/CloseSession",
+          headers: { "content-type": "application/grpc-web+proto", "x-forwarded-for": "203.0.113.9" },
+          rejectUnauthorized: false,
+        },
+        (answer) => answer.resume().once("end", resolve),
+      );
+      request.once("error", reject);
+      request.end(body);
+    });
+    assert.match(server.log(), /peer="127\.0\.0\.3:0" act=CloseSession verdict=refused/);
+    assert.doesNotMatch(server.log(), /203\.0\.113\.9/);
   });
 
   test("too many requests of one address are refused with 429", async () => {

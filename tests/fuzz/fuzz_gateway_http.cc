@@ -79,8 +79,10 @@ void Take(const http::request<http::string_body>& request) {
   }
   IsMethodPath(path);
   static_cast<void>(FindUpgradeRefusal(request, policy));
-  if (const auto upstream = TranslateHeader(request, "192.0.2.7:1234"); upstream.ok()) {
-    CheckMetadata(upstream->metadata);
+  static const auto proxies = *base::TrustedProxies::Parse({"192.0.2.0/24", "2001:db8::/32"});
+  for (const char* peer : {"192.0.2.7:1234", "198.51.100.1:1234"}) {
+    const auto upstream = TranslateHeader(request, peer, proxies);
+    if (upstream.ok()) CheckMetadata(upstream->metadata);
   }
   if (!IsBinaryGrpcWeb(View(request[http::field::content_type]))) return;
   if (const auto message = TakeSingleMessage(request.body()); message.ok()) {

@@ -200,6 +200,23 @@ TEST_F(WebSocketTest, ATokenBesideTheSubprotocolIsAuthorization) {
   EXPECT_THAT(metadata["x-forwarded-for"], ::testing::StartsWith("127.0.0.1:"));
 }
 
+TEST(WebSocketBehindAProxy, ItsClientIsWhomTheProxyNames) {
+  GatewayOptions options;
+  options.trusted_proxies = *base::TrustedProxies::Parse({"127.0.0.1"});
+  const auto site = EchoSite::Start(options);
+  WebSocketClient client(site->Port(),
+                         {"Metadata", {{"X-Forwarded-For", "203.0.113.9, 192.0.2.7"}}, 0});
+  client.Send(std::string(1, kMessage));
+  client.Send(std::string(1, kHalfClose));
+  MetadataResponse response;
+  ASSERT_TRUE(response.ParseFromString(client.Receive().value_or(" ").substr(1)));
+  std::vector<std::string> clients;
+  for (const auto& entry : response.entries()) {
+    if (entry.name() == "x-forwarded-for") clients.push_back(entry.value());
+  }
+  EXPECT_THAT(clients, ::testing::ElementsAre("192.0.2.7:0"));
+}
+
 TEST_F(WebSocketTest, HeadersOfOtherProgramsAreMetadata) {
   WebSocketClient client(
       Site().Port(), {"Metadata", {{"Echo-Text", "some text"}, {"Cookie", "other=program"}}, 0});

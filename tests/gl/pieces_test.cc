@@ -161,6 +161,37 @@ TEST_F(PiecesTest, WhatIsCancelledEndsAtTheNextPieceAndIsDrawnRightAfterwards) {
   }
 }
 
+TEST_F(PiecesTest, WhatIsCancelledWithinItsViewKeepsItsLight) {
+  for (const auto& [name, technique] : Techniques()) {
+    SCOPED_TRACE(name);
+    scene_.rendering.technique = technique;
+    CountedTurn counted;
+    Drawing whole(&counted);
+    const auto expected = whole.Draw(scene_, fields_);
+    ASSERT_TRUE(expected.ok()) << expected.status();
+    CountedTurn turn;
+    Drawing cut(&turn);
+    const auto draw = [&] {
+      return cut.programs->Pieces().During([&] { return cut.renderer.Draw(scene_, fields_, {}); });
+    };
+    // Until it is cancelled late enough: the number of pieces depends on the machine's speed.
+    for (int piece = counted.Taken() * 3 / 4;
+         cut.renderer.FirstStage(scene_, fields_) < scene::Stage::kView && piece < 1000; ++piece) {
+      turn.Refuse(piece);
+      if (draw().ok()) break;
+    }
+    turn.Refuse(-1);
+    ASSERT_GE(cut.renderer.FirstStage(scene_, fields_), scene::Stage::kView);
+    const auto again = draw();
+    ASSERT_TRUE(again.ok()) << again.status();
+    for (const scene::StageTime& stage : again->stages) {
+      EXPECT_NE(stage.stage, scene::FrameStage::kExtinction);
+      EXPECT_NE(stage.stage, scene::FrameStage::kLight);
+    }
+    EXPECT_TRUE(frame::ReadLinear(*again->radiance) == *expected);
+  }
+}
+
 TEST_F(PiecesTest, StagesDoNotCountTheTimeThatTheyWaited) {
   class SlowTurn final : public base::DeviceTurn {
    public:

@@ -3,6 +3,8 @@
 #include <grpcpp/generic/generic_stub.h>
 #include <openssl/sha.h>
 
+#include <grpcpp/create_channel.h>
+
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -281,7 +283,7 @@ TEST(AccessTest, PicturesAreLimitedInPixelsSamplesAndTime) {
     return guarded.Call("pipeline", &Stub::RenderImage, request, &response);
   };
   EXPECT_TRUE(render().ok());
-  // One that waits for another for too long is not begun.
+  // Waiting for another does not count.
   FakeMachine& machine = *guarded.service().machine;
   machine.drawing.Close();
   std::thread first([&] {
@@ -295,6 +297,10 @@ TEST(AccessTest, PicturesAreLimitedInPixelsSamplesAndTime) {
   machine.drawing.Open();
   first.join();
   second.join();
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  machine.ms_per_mega_sample = 20'000.0;  // 0.7 s
+  status = render();
+  machine.ms_per_mega_sample = 0.0;
   EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
   EXPECT_THAT(status.error_message(), HasSubstr("not ready after the 200 ms"));
   request.mutable_scene()->mutable_rendering()->mutable_light_volume()->set_slices(17);
@@ -311,6 +317,47 @@ TEST(AccessTest, PicturesAreLimitedInPixelsSamplesAndTime) {
   v1::CreateSessionResponse created;
   EXPECT_EQ(guarded.Call("presenter", &Stub::CreateSession, create, &created).error_code(),
             grpc::StatusCode::RESOURCE_EXHAUSTED);
+}
+
+// A request a second each: by the address that a trusted proxy names, or else by its own.
+TEST(AccessTest, BehindATrustedProxyEachClientHasAShareOfItsOwn) {
+  for (const bool trusted : {true, false}) {
+    SCOPED_TRACE(trusted);
+    std::mutex mutex;
+    std::vector<std::string> lines;
+    service::ServerOptions options;
+    options.address = "127.0.0.1:0";
+    options.door = std::make_shared<access::Door>(
+        access::TrustEverybody(), std::make_shared<access::Audit>([&](const std::string& line) {
+          const std::lock_guard lock(mutex);
+          lines.push_back(line);
+        }),
+        access::QuotaLimits{.requests_per_second = 1.0},
+        trusted ? *base::TrustedProxies::Parse({"127.0.0.0/8"}) : base::TrustedProxies());
+    FakeService service(options);
+    const auto stub = v1::ThunderheadService::NewStub(grpc::CreateChannel(
+        absl::StrCat("127.0.0.1:", service.server().Port()), grpc::InsecureChannelCredentials()));
+    const auto ask = [&](const std::string& forwarded_for) {
+      v1::ListStormsRequest request;
+      v1::ListStormsResponse response;
+      grpc::ClientContext context;
+      context.set_deadline(std::chrono::system_clock::now() + kPatience);
+      context.AddMetadata("x-forwarded-for", forwarded_for);
+      return stub->ListStorms(&context, request, &response).error_code();
+    };
+    // What the client itself wrote stands before what the proxy adds.
+    bool refused = false;
+    for (int i = 0; i < 100 && !refused; ++i) {
+      refused = ask(absl::StrCat("203.0.113.", i, ", 192.0.2.7")) != grpc::StatusCode::OK;
+    }
+    EXPECT_TRUE(refused);
+    if (trusted) {
+      EXPECT_EQ(ask("192.0.2.8"), grpc::StatusCode::OK);
+    }
+    const std::lock_guard lock(mutex);
+    ASSERT_FALSE(lines.empty());
+    EXPECT_THAT(lines.front(), HasSubstr(trusted ? "192.0.2.7:0" : "127.0.0.1:"));
+  }
 }
 
 // Opens calls until one is refused, and gives them back.

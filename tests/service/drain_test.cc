@@ -80,6 +80,28 @@ TEST_F(DrainTest, TellsPeopleWhenToComeBack) {
   EXPECT_GT(end.retry_after_ms(), 0U);
 }
 
+// Who has been told may stay until the server ends, and goes on meanwhile.
+TEST_F(DrainTest, SessionsGoOnForThoseWhoStay) {
+  std::string key;
+  ASSERT_TRUE(CreateSession(&key).ok());
+  Interacting person(service_.stub(), key);
+  Watcher program(service_.stub(), key);
+  person.AwaitNewest(Response::kFrame);
+  service_.server().BeginDrain();
+  person.AwaitNewest(Response::kEnd);
+  v1::Scene scene = SmallScene();
+  scene.mutable_sun()->set_azimuth_deg(77.0F);
+  const std::uint64_t revision = service_.Update(key, scene);
+  person.AwaitFrame(revision);
+  EXPECT_TRUE(program.AwaitFrame(revision, false));
+  EXPECT_EQ(service_.server().Load().viewers, 2);
+  // Nobody joins any more.
+  Watcher late(service_.stub(), key);
+  EXPECT_EQ(late.End().error_code(), grpc::StatusCode::UNAVAILABLE);
+  service_.server().Shutdown();
+  EXPECT_EQ(program.End().error_code(), grpc::StatusCode::UNAVAILABLE);
+}
+
 TEST_F(DrainTest, ATurnThatTakesLongIsSeen) {
   EXPECT_LT(service_.server().Load().turn_s, 5.0);
   service_.machine->drawing.Close();
@@ -93,6 +115,23 @@ TEST_F(DrainTest, ATurnThatTakesLongIsSeen) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   EXPECT_EQ(service_.server().Load().turn_s, 0.0) << "nothing is to be done";
+}
+
+TEST_F(DrainTest, ALaneThatMakesNoProgressIsSeen) {
+  EXPECT_LT(service_.server().Load().stalled_s, 5.0);
+  service_.store->reading.Close();
+  std::thread caller([&] { Render(); });
+  for (int i = 0; i < 500 && service_.server().Load().stalled_s < 0.3; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_GE(service_.server().Load().stalled_s, 0.3);
+  EXPECT_LT(service_.server().Load().turn_s, 0.1) << "it is no turn of drawing";
+  service_.store->reading.Open();
+  caller.join();
+  for (int i = 0; i < 500 && service_.server().Load().stalled_s > 0.0; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_EQ(service_.server().Load().stalled_s, 0.0) << "nothing is to be done";
 }
 
 TEST_F(DrainTest, FramesAndTheirLatencyAreCounted) {

@@ -5,6 +5,8 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <new>
+#include <optional>
 #include <semaphore>
 #include <set>
 #include <string>
@@ -17,6 +19,7 @@ namespace thunderhead::session {
 namespace {
 
 using ::testing::Pair;
+using ::testing::StartsWith;
 using ::testing::UnorderedElementsAre;
 
 constexpr std::chrono::seconds kPatience{20};
@@ -71,12 +74,18 @@ class FrameEncoderTest : public ::testing::Test {
     return serialized_;
   }
 
+  void FailNext(int serializations) {
+    const std::lock_guard lock(mutex_);
+    without_memory_ = serializations;
+  }
+
   Sessions sessions_{SessionsOptions{}, {[] {}, [] {}}};
   const std::shared_ptr<Session> session_ = *sessions_.Create();
 
  private:
   std::mutex mutex_;
   std::map<std::string, int> serialized_;  // times, by what was
+  int without_memory_ = 0;                 // serializations that fail
   std::vector<std::shared_ptr<const EncodedFrame>> kept_;
   std::counting_semaphore<> encoded_{0};
 
@@ -86,6 +95,7 @@ class FrameEncoderTest : public ::testing::Test {
                           const std::string form = std::string(frame.vp9.empty() ? "jpeg" : "vp9") +
                                                    " of tier " + std::to_string(frame.tier);
                           const std::lock_guard lock(mutex_);
+                          if (without_memory_-- > 0) throw std::bad_alloc();
                           ++serialized_[form];
                           return form;
                         },
@@ -116,6 +126,32 @@ TEST_F(FrameEncoderTest, ATierThatNobodyWantsIsNotMade) {
   Encode(1);
   EXPECT_EQ(TakeAll(phones).size(), 1U);
   EXPECT_THAT(Serialized(), UnorderedElementsAre(Pair("jpeg of tier 1", 1)));
+}
+
+TEST_F(FrameEncoderTest, APictureWithoutMemoryFailsAlone) {
+  const auto viewers = Join(1, {});
+  FailNext(1000);
+  Encode(1);
+  std::optional<Problem> problem;
+  for (int i = 0; i < 10 && !problem.has_value(); ++i) {
+    const auto event = session_->hub().Take(viewers.front());
+    if (!event.has_value()) continue;
+    if (const auto* told = std::get_if<Problem>(&*event); told != nullptr) problem = *told;
+  }
+  ASSERT_TRUE(problem.has_value());
+  EXPECT_EQ(problem->code, Problem::Code::kBusy);
+  EXPECT_EQ(problem->scene_revision, 1U);
+  FailNext(0);
+  Encode(2);
+  EXPECT_EQ(TakeAll(viewers).size(), 1U);
+}
+
+TEST_F(FrameEncoderTest, VideoWithoutMemoryIsJpeg) {
+  const auto savers = Join(6, {.adapts = true, .takes_video = true, .saves_bytes = true});
+  FailNext(1);
+  Encode(1);
+  EXPECT_EQ(TakeAll(savers).size(), 1U);
+  EXPECT_THAT(Serialized(), UnorderedElementsAre(Pair(StartsWith("jpeg of tier"), 1)));
 }
 
 TEST_F(FrameEncoderTest, APictureOfVideoIsSerializedOnceForAllWhoFollowIt) {

@@ -191,6 +191,26 @@ TEST_F(KeptSessionsTest, TheNextServerHasTheSameSession) {
   }));
 }
 
+// Whoever opened them has no more than before.
+TEST_F(KeptSessionsTest, SessionsStillCountForWhoOpenedThem) {
+  options_.sessions.max_sessions_per_owner = 2;
+  Start();
+  const auto create = [this](const std::string& address) {
+    v1::CreateSessionRequest request;
+    *request.mutable_scene() = SmallScene();
+    v1::CreateSessionResponse response;
+    grpc::ClientContext context;
+    context.set_deadline(std::chrono::system_clock::now() + kPatience);
+    context.AddMetadata("x-forwarded-for", address + ":4711");  // as the gateway says
+    return service_->stub().CreateSession(&context, request, &response).error_code();
+  };
+  EXPECT_EQ(create("192.0.2.7"), grpc::StatusCode::OK);
+  EXPECT_EQ(create("192.0.2.7"), grpc::StatusCode::OK);
+  Start();
+  EXPECT_EQ(create("192.0.2.7"), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_EQ(create("192.0.2.8"), grpc::StatusCode::OK);
+}
+
 TEST_F(KeptSessionsTest, AViewerHasTheOwnMarksAgain) {
   v1::SessionRules rules;
   rules.set_viewers_may_mark(true);

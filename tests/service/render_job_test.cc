@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <map>
 #include <set>
 #include <sstream>
@@ -308,6 +309,28 @@ TEST_F(RenderJobTest, ATimeIsFoundAgainWhereItStandsNow) {
   ASSERT_TRUE(jobs.Watch(job.id(), &pictures).ok());
   EXPECT_EQ(jobs.Fetch(job.id(), 4).first.picture().scene().time_index(), 3U);
   EXPECT_EQ(jobs.Fetch(job.id(), 4).first.input().valid_time(), "0001-01-01T00:30:00Z");
+}
+
+// The file of one time lies on a storage that hangs, the others' elsewhere.
+TEST_F(RenderJobTest, AStorageThatHangsHoldsUpOnlyItsOwnPictures) {
+  std::promise<void> storage;
+  service::ServerOptions options = Options();
+  options.job_files.patience = milliseconds(100);
+  options.job_files.stamp = [answers = storage.get_future().share()](const std::string& path) {
+    if (path.starts_with("/gone/")) answers.wait();
+    return base::FileStamp{};
+  };
+  FakeService service(options);
+  service.store->Become("anvil", [](volume::StormInfo& storm) {
+    for (std::size_t i = 0; i < storm.times.size(); ++i) {
+      storm.times[i].file = absl::StrCat(i == 1 ? "/gone/" : "/data/", i);
+    }
+  });
+  Jobs jobs(service.server());
+  const v1::RenderJob job = jobs.Create({Picture(1), Picture(1), Picture(0), Picture(2)});
+  ASSERT_TRUE(Eventually([&] { return jobs.Get(job.id()).job().counts().drawn() == 2; }));
+  EXPECT_EQ(jobs.Get(job.id()).job().counts().waiting(), 2U) << "tried again later, none failed";
+  storage.set_value();
 }
 
 TEST_F(RenderJobTest, CancellingFreesTheDeviceWithin200Ms) {

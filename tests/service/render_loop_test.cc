@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <future>
 
+#include "base/error_details.h"
 #include "base/memory_budget.h"
 #include "gl/device_faults.h"
 #include "gmock/gmock.h"
@@ -67,6 +68,16 @@ class EagerViewer : public Viewer, public std::enable_shared_from_this<EagerView
         return frame != nullptr && (*frame)->scene_revision >= revision &&
                ((*frame)->refined || !refined);
       });
+    });
+  }
+
+  // True if there was a frame of that revision or a later one that is so.
+  template <typename Is>
+  bool Has(std::uint64_t revision, const Is& is) {
+    const std::lock_guard lock(mutex_);
+    return std::ranges::any_of(events_, [&](const FrameEvent& event) {
+      const auto* frame = std::get_if<std::shared_ptr<const EncodedFrame>>(&event);
+      return frame != nullptr && (*frame)->scene_revision >= revision && is(**frame);
     });
   }
 
@@ -153,6 +164,15 @@ class RenderLoopTest : public ::testing::Test {
     return revision;
   }
 
+  // The first frame of a setting, which counts for nothing, and a few more.
+  void LearnCosts(Session& session, EagerViewer& viewer) const {
+    const double ms_per_mega_sample = machine_->ms_per_mega_sample;
+    machine_->ms_per_mega_sample = 0.0;
+    ASSERT_TRUE(viewer.Await(Show(session, Small(300.0)), false));
+    machine_->ms_per_mega_sample = ms_per_mega_sample;
+    for (int i = 1; i < 5; ++i) ASSERT_TRUE(viewer.Await(Show(session, Small(300.0 + i)), false));
+  }
+
   std::future<absl::StatusOr<DisplayFrame>> Picture(
       double exposure_ev,
       std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false)) {
@@ -163,7 +183,8 @@ class RenderLoopTest : public ::testing::Test {
 
   std::future<absl::StatusOr<DisplayFrame>> Picture(
       const scene::Scene& scene,
-      std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false)) {
+      std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false),
+      const std::string& owner = "") {
     auto promise = std::make_shared<std::promise<absl::StatusOr<DisplayFrame>>>();
     auto future = promise->get_future();
     loop_->RenderImage({scene,
@@ -173,7 +194,8 @@ class RenderLoopTest : public ::testing::Test {
                         [](DisplayFrame&) { return absl::OkStatus(); }, std::move(cancelled),
                         [promise](absl::StatusOr<DisplayFrame> picture) {
                           promise->set_value(std::move(picture));
-                        }});
+                        },
+                        nullptr, false, false, 1e15, absl::OkStatus(), owner});
     return future;
   }
 
@@ -222,6 +244,54 @@ TEST_F(RenderLoopTest, PicturesAndSessionsDoNotStarveOneAnother) {
     // One, unless the threads that move or encode had no processor for the time of a picture.
     EXPECT_LE(pictures_in_a_row, 3);
   }
+}
+
+// A session's full frame of a second beside another whose camera moves.
+TEST_F(RenderLoopTest, AFrameAtRestHoldsUpNoMovingOne) {
+  machine_->ms_per_mega_sample = 27000.0;  // a second a full frame, 16 ms a coarse one
+  Start();
+  const auto resting = *sessions_.Create();
+  const auto moving = *sessions_.Create();
+  const auto resting_viewer = Watch(resting);
+  const auto moving_viewer = Watch(moving);
+  LearnCosts(*moving, *moving_viewer);
+  Show(*resting, Small(5.0));
+  std::vector<double> took_ms;
+  const auto began = Clock::now();
+  std::uint64_t shown = 0;
+  const auto is_shown = [&] {
+    return resting_viewer->Has(
+        1, [](const EncodedFrame& frame) { return frame.refined && frame.modelled.slices == 16; });
+  };
+  while (!is_shown() && Clock::now() - began < testing::kPatience) {
+    const auto changed = Clock::now();
+    shown = Show(*moving, Small(100.0 + static_cast<double>(shown % 100)));
+    ASSERT_TRUE(moving_viewer->Await(shown, false));
+    took_ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - changed).count());
+  }
+  EXPECT_TRUE(is_shown()) << "the frame at rest ends, too";
+  std::ranges::sort(took_ms);
+  // Whole, it would have held up one of them by a second.
+  EXPECT_LT(took_ms.back(), 500.0);
+  EXPECT_LT(took_ms[took_ms.size() * 95 / 100], 150.0);
+  EXPECT_GT(machine_->pieces, 50) << "of 10 ms";
+}
+
+TEST_F(RenderLoopTest, AFrameAtRestEndsWhenItsSceneChanges) {
+  machine_->ms_per_mega_sample = 27000.0 * 4;  // four seconds a full frame
+  Start();
+  const auto session = *sessions_.Create();
+  const auto viewer = Watch(session);
+  LearnCosts(*session, *viewer);
+  ASSERT_TRUE(viewer->Await(Show(*session, Small(5.0)), false));
+  for (int i = 0; i < 1000 && machine_->pieces < 10; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  ASSERT_GE(machine_->pieces, 10);
+  const auto changed = Clock::now();
+  const std::uint64_t revision = Show(*session, Small(6.0));
+  ASSERT_TRUE(viewer->Await(revision, false));
+  EXPECT_LT(Clock::now() - changed, std::chrono::milliseconds(1000));
 }
 
 TEST_F(RenderLoopTest, WhatAScenePreparesHoldsUpNobodyElse) {
@@ -348,6 +418,55 @@ TEST_F(RenderLoopTest, PicturesClaimTheLightThatTheyAwait) {
   EXPECT_EQ(waits.wait_for(std::chrono::milliseconds(100)), std::future_status::timeout);
   machine_->waits_to_trace_azimuth_deg = -1.0;
   EXPECT_TRUE(waits.get().ok());
+}
+
+// Forty of one, then two of another, who does not wait for all of them.
+TEST_F(RenderLoopTest, PicturesTakeTurnsByWhoAskedForThem) {
+  machine_->ms_per_mega_sample = 1000.0;  // 37 ms a picture
+  Start();
+  const auto ask = [&](const std::string& owner, double exposure_ev) {
+    scene::Scene scene = Small(0.0);
+    scene.display.exposure_ev = exposure_ev;
+    return Picture(scene, std::make_shared<std::atomic<bool>>(false), owner);
+  };
+  std::vector<std::future<absl::StatusOr<DisplayFrame>>> many;
+  for (int i = 0; i < 40; ++i) many.push_back(ask("pipeline", 1.0));
+  auto first = ask("ben", 2.0);
+  auto second = ask("ben", 2.0);
+  EXPECT_TRUE(first.get().ok());
+  EXPECT_TRUE(second.get().ok());
+  const auto log = machine_->Log();
+  const auto before = std::ranges::count_if(
+      log, [](const auto& drawn) { return drawn.scene.display.exposure_ev == 1.0; });
+  EXPECT_LE(before, 15) << "in the order of asking, 40";
+  for (auto& picture : many) EXPECT_TRUE(picture.get().ok());
+}
+
+TEST_F(RenderLoopTest, OneIdentityDoesNotFillTheQueue) {
+  RenderLoopOptions options;
+  options.max_waiting_images = 100;
+  options.max_waiting_images_each = 10;
+  Start(options);
+  machine_->drawing.Close();
+  std::vector<std::future<absl::StatusOr<DisplayFrame>>> many;
+  const auto ask = [&](const std::string& owner) {
+    return Picture(Small(0.0), std::make_shared<std::atomic<bool>>(false), owner);
+  };
+  many.push_back(ask("pipeline"));
+  ASSERT_TRUE(machine_->drawing.AwaitWaiting(1));
+  for (int i = 0; i < 20; ++i) many.push_back(ask("pipeline"));
+  auto other = ask("ben");
+  machine_->drawing.Open();
+  int refused = 0;
+  for (auto& picture : many) {
+    const absl::Status status = picture.get().status();
+    if (status.ok()) continue;
+    ++refused;
+    EXPECT_EQ(base::DetailsOf(status).reason, "RENDER_QUEUE_FULL");
+    EXPECT_THAT(std::string(status.message()), HasSubstr("of your pictures"));
+  }
+  EXPECT_GE(refused, 8);
+  EXPECT_TRUE(other.get().ok());
 }
 
 TEST_F(RenderLoopTest, CancelledPicturesAreDroppedAndSayso) {

@@ -85,7 +85,7 @@ TEST(ErrorDetails, AnInvalidFieldIsNamedInTheMessage) {
 }
 
 TEST(Executor, SaysWhyItRefusesAndWhenToComeAgain) {
-  Executor executor(0, 1);  // nothing ever runs
+  Executor executor({.threads = 0, .max_waiting = 1});  // nothing ever runs
   absl::Status first;
   absl::Status second;
   executor.Submit([&](const absl::Status& status) { first = status; });

@@ -28,6 +28,7 @@ SessionRecord SessionRecordOf(const std::string& id) {
   SessionRecord record;
   record.id = id;
   record.keys = {"presenter of " + id, "viewers of " + id};
+  record.owner = "anna";
   record.rules = {.viewers_may_steer = false,
                   .control_locked = true,
                   .following_locked = false,
@@ -119,8 +120,11 @@ TEST_F(SqliteSessionStoreTest, TheNewestIsKeptAndTheRemovedIsGone) {
 
 TEST_F(SqliteSessionStoreTest, MarksOfAFileWithoutOwnersComeBackWithoutThem) {
   ASSERT_TRUE(Open()->Save({SessionRecordOf("a")}).ok());
-  Execute(path_, "ALTER TABLE marks DROP COLUMN owner_keys; PRAGMA user_version = 2");
+  Execute(path_,
+          "ALTER TABLE sessions DROP COLUMN owner; ALTER TABLE marks DROP COLUMN owner_keys; "
+          "PRAGMA user_version = 2");
   SessionRecord without_owners = SessionRecordOf("a");
+  without_owners.owner.clear();
   for (session::Mark& mark : without_owners.marks) mark.owner_key.clear();
   EXPECT_THAT(Loaded(), ElementsAre(without_owners));
   // They are written although the marks are the same.

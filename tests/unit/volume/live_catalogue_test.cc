@@ -2,10 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <future>
 #include <iterator>
 #include <mutex>
 #include <thread>
@@ -119,6 +121,34 @@ class LiveFolder : public ::testing::Test {
   const std::string data_ = folder_.File("series");
   const std::string elsewhere_ = folder_.File("elsewhere");
 };
+
+// Of two folders one hangs: the other's news come, and the one's storms stay.
+TEST_F(LiveFolder, AFolderThatHangsHoldsUpNoOther) {
+  const std::string other = folder_.File("other");
+  fs::create_directories(other);
+  PutOld(File(0), WrfBytes({0}));
+  PutOld(other + "/wrfout_d01_00:00:00", WrfBytes({0}));
+  std::promise<void> storage;
+  const auto hangs = std::make_shared<std::atomic<bool>>(false);
+  CatalogueScan scan({.paths = {data_, other},
+                      .formats = StormFormats::BuiltIn(),
+                      .settle = seconds(3),
+                      .retry = seconds(30),
+                      .look_at =
+                          [hangs, answers = storage.get_future().share(),
+                           gone = data_](const std::string& path) {
+                            if (*hangs && path == gone) answers.wait();
+                          },
+                      .patience = milliseconds(100)});
+  EXPECT_THAT(TimesAt(scan, seconds(0)), ElementsAre(1, 1));
+  *hangs = true;
+  PutOld(other + "/wrfout_d01_01:00:00", WrfBytes({1}));
+  fs::remove(File(0));  // nobody can tell
+  EXPECT_THAT(TimesAt(scan, seconds(10)), ElementsAre(1, 1));
+  EXPECT_THAT(TimesAt(scan, seconds(20)), ElementsAre(1, 2));
+  storage.set_value();
+  EXPECT_TRUE(Eventually([&] { return TimesAt(scan, seconds(30)).size() == 1; }));
+}
 
 TEST_F(LiveFolder, OffersAFileThatComesInPiecesWhenItIsComplete) {
   const std::string whole = WrfBytes({0});

@@ -2,17 +2,22 @@
 // value.
 #pragma once
 
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
-namespace thunderhead::jobs {
+namespace thunderhead::base {
 
 class FairShare {
  public:
   // One of `waiting`, which must not be empty; of several the first. Who is new, or comes back
   // after not having waited, begins with what was done for the one with least.
   std::string Next(const std::vector<std::string>& waiting);
+  // One of those for whom `may` is true; none if there is none.
+  std::optional<std::string> Next(const std::vector<std::string>& waiting,
+                                  const std::function<bool(const std::string&)>& may);
 
   // So much was done for it, or less than was said if it is negative.
   void Used(const std::string& id, double milliseconds);
@@ -21,4 +26,4 @@ class FairShare {
   std::map<std::string, double> used_ms_;  // of those that waited last
 };
 
-}  // namespace thunderhead::jobs
+}  // namespace thunderhead::base

@@ -1,11 +1,16 @@
-#include "jobs/fair_share.h"
+#include "base/fair_share.h"
 
 #include <algorithm>
 #include <limits>
 
-namespace thunderhead::jobs {
+namespace thunderhead::base {
 
 std::string FairShare::Next(const std::vector<std::string>& waiting) {
+  return *Next(waiting, [](const std::string&) { return true; });
+}
+
+std::optional<std::string> FairShare::Next(const std::vector<std::string>& waiting,
+                                           const std::function<bool(const std::string&)>& may) {
   double least_ms = std::numeric_limits<double>::infinity();
   for (const std::string& id : waiting) {
     const auto known = used_ms_.find(id);
@@ -13,18 +18,18 @@ std::string FairShare::Next(const std::vector<std::string>& waiting) {
   }
   if (least_ms == std::numeric_limits<double>::infinity()) least_ms = 0.0;
   std::map<std::string, double> used_ms;
-  const std::string* next = &waiting.front();
+  std::optional<std::string> next;
   double next_ms = std::numeric_limits<double>::infinity();
   for (const std::string& id : waiting) {
     const auto known = used_ms_.find(id);
     const double ms = known != used_ms_.end() ? known->second : least_ms;
     used_ms[id] = ms;
-    if (ms >= next_ms) continue;
-    next = &id;
+    if (ms >= next_ms || !may(id)) continue;
+    next = id;
     next_ms = ms;
   }
   used_ms_ = std::move(used_ms);
-  return *next;
+  return next;
 }
 
 void FairShare::Used(const std::string& id, double milliseconds) {
@@ -32,4 +37,4 @@ void FairShare::Used(const std::string& id, double milliseconds) {
   if (known != used_ms_.end()) known->second += milliseconds;
 }
 
-}  // namespace thunderhead::jobs
+}  // namespace thunderhead::base

@@ -1,0 +1,55 @@
+#include "access/wrong_tokens.h"
+
+#include <openssl/sha.h>
+
+#include "base/error_details.h"
+
+namespace thunderhead::access {
+namespace {
+
+// Networks and tokens that are remembered.
+constexpr std::size_t kMax = 4096;
+
+std::string DigestOf(const std::string& token) {
+  std::string digest(SHA256_DIGEST_LENGTH, '\0');
+  SHA256(reinterpret_cast<const unsigned char*>(token.data()), token.size(),
+         reinterpret_cast<unsigned char*>(digest.data()));
+  return digest;
+}
+
+}  // namespace
+
+absl::Status WrongTokens::MayShow(const Credentials& shown, Time now) {
+  if (per_second_ <= 0.0 || shown.token.empty()) return absl::OkStatus();
+  const std::lock_guard lock(mutex_);
+  const auto left = left_.find(NetworkOf(shown.peer));
+  if (left == left_.end() || left->second.LeftAt(per_second_, now) >= 1.0) return absl::OkStatus();
+  if (right_.contains(DigestOf(shown.token))) return absl::OkStatus();
+  return base::WithDetails(
+      absl::ResourceExhaustedError(
+          "too many wrong tokens came from your address; try again in a few seconds"),
+      {.reason = "TOO_MANY_WRONG_TOKENS", .retry_after = std::chrono::seconds(2)});
+}
+
+void WrongTokens::WasRight(const Credentials& shown) {
+  if (per_second_ <= 0.0 || shown.token.empty()) return;
+  std::string digest = DigestOf(shown.token);
+  const std::lock_guard lock(mutex_);
+  if (right_.size() >= kMax) right_.clear();
+  right_.insert(std::move(digest));
+}
+
+void WrongTokens::WasWrong(const Credentials& shown, Time now) {
+  if (per_second_ <= 0.0 || shown.token.empty()) return;
+  const std::lock_guard lock(mutex_);
+  // A token that was right and is not any more is tried like any other.
+  right_.erase(DigestOf(shown.token));
+  if (left_.size() >= kMax) {
+    std::erase_if(left_, [&](const auto& entry) { return entry.second.IsFull(per_second_, now); });
+  }
+  const auto [left, is_new] =
+      left_.try_emplace(NetworkOf(shown.peer), RequestBudget(per_second_, now));
+  (void)left->second.Take(per_second_, now);
+}
+
+}  // namespace thunderhead::access

@@ -1,0 +1,76 @@
+// Sessions' frames that would hold up the render loop, drawn one after another in a lane: in
+// pieces, between which others have their turn on the device, and until the scene changes. Used by
+// the render loop's thread only.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "frame/fine_image.h"
+#include "session/frame_planner.h"
+#include "session/frame_source.h"
+#include "session/lane.h"
+
+namespace thunderhead::session {
+
+class SessionLane {
+ public:
+  // The lane must outlive it, and its work must have ended before this does.
+  explicit SessionLane(Lane& lane) : lane_(lane) {}
+
+  struct Request {
+    std::string session_id;
+    std::shared_ptr<const scene::Scene> scene;
+    std::shared_ptr<const volume::HydrometeorFields> fields;
+    FrameQuality quality;
+    bool checked = false;  // also with half the slices
+    bool fine = false;     // with more bits, too
+  };
+  struct Picture {
+    DisplayFrame frame;
+    std::optional<double> discretisation_error;  // of a checked one
+    std::optional<frame::FineImage> fine;        // none if it cannot be had
+  };
+
+  // Nothing is drawn, and no outcome waits.
+  bool IsFree() const { return outcome_ == nullptr; }
+  // True while the session's frame is drawn, or its outcome waits.
+  bool IsFor(const std::string& session_id) const {
+    return !IsFree() && request_.session_id == session_id;
+  }
+  // The session of the last request.
+  const std::string& For() const { return request_.session_id; }
+  // It must be free.
+  void Begin(Request request);
+  // Ends the drawing at its next piece; its outcome is CANCELLED.
+  void Cancel();
+  // The outcome of what was begun, once it is there.
+  std::optional<absl::StatusOr<Picture>> Take();
+
+  bool WantsTurn() { return lane_.WantsTurn(); }
+  // Returns when the next piece is drawn.
+  void GiveTurn() { lane_.GiveTurn(); }
+
+  // What the lane's source drew last, whose stages it can reuse; none after a failure.
+  const std::optional<LastDrawn>& Last() const { return last_drawn_; }
+  // The lane's source is another from now on.
+  void Forget() { last_drawn_.reset(); }
+
+ private:
+  struct Outcome {
+    std::mutex mutex;
+    std::optional<absl::StatusOr<Picture>> picture;
+  };
+
+  Lane& lane_;
+  Request request_;
+  std::shared_ptr<Outcome> outcome_;
+  std::shared_ptr<std::atomic<bool>> cancelled_;
+  std::optional<LastDrawn> last_drawn_;
+};
+
+}  // namespace thunderhead::session

@@ -1,0 +1,117 @@
+// What a client sends after the upgrade to a WebSocket, to a live gateway before a live service:
+// frames that are whole, cut, masked wrongly, fragmented, too long, and messages of any kind. The
+// connection must end once the client has sent all, and the gateway must answer the next one.
+#include <arpa/inet.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <string>
+
+#include "spdlog/spdlog.h"
+#include "tests/gateway/echo_service.h"
+
+namespace thunderhead::gateway {
+namespace {
+
+constexpr int kPatience_ms = 20'000;
+
+void Must(bool condition) {
+  if (!condition) std::abort();
+}
+
+std::uint16_t Port() {
+  static const std::unique_ptr<test::EchoSite> site = [] {
+    spdlog::set_level(spdlog::level::off);
+    return test::EchoSite::Start({.max_message_bytes = 1u << 16});
+  }();
+  return site->Port();
+}
+
+class Socket {
+ public:
+  Socket() : socket_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(Port());
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    Must(connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0);
+    // No ports wait for what was on its way.
+    const linger at_once{1, 0};
+    setsockopt(socket_, SOL_SOCKET, SO_LINGER, &at_once, sizeof(at_once));
+  }
+  ~Socket() { close(socket_); }
+  Socket(const Socket&) = delete;
+  Socket& operator=(const Socket&) = delete;
+
+  // The server may have closed it before all was sent.
+  void Send(const std::string& bytes) {
+    for (std::size_t sent = 0; sent < bytes.size();) {
+      const ssize_t now = send(socket_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
+      if (now <= 0) return;
+      sent += static_cast<std::size_t>(now);
+    }
+  }
+  void SendNoMore() { shutdown(socket_, SHUT_WR); }
+
+  // What comes until `end` has come or the server has closed.
+  std::string Read(const std::string& end) {
+    std::string read;
+    while (end.empty() || read.find(end) == std::string::npos) {
+      pollfd ready{socket_, POLLIN, 0};
+      Must(poll(&ready, 1, kPatience_ms) == 1);  // neither an answer nor an end
+      char part[4096];
+      const ssize_t now = recv(socket_, part, sizeof(part), 0);
+      if (now <= 0) break;
+      read.append(part, static_cast<std::size_t>(now));
+    }
+    return read;
+  }
+
+ private:
+  const int socket_;
+};
+
+// Frames by the input: each begins with its opcode and a size, and is masked as it should be.
+std::string Framed(const std::uint8_t* data, std::size_t size) {
+  std::string frames;
+  std::size_t at = 0;
+  while (at + 2 <= size) {
+    const std::uint8_t head = data[at];
+    const std::size_t length = std::min<std::size_t>(data[at + 1] % 126, size - at - 2);
+    frames.push_back(static_cast<char>(head));
+    frames.push_back(static_cast<char>(0x80 | length));
+    const char mask[4] = {1, 2, 3, 4};
+    frames.append(mask, 4);
+    for (std::size_t i = 0; i < length; ++i) {
+      frames.push_back(static_cast<char>(data[at + 2 + i] ^ mask[i % 4]));
+    }
+    at += 2 + length;
+  }
+  return frames;
+}
+
+}  // namespace
+}  // namespace thunderhead::gateway
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace thunderhead::gateway;
+  if (size == 0) return 0;
+  Socket socket;
+  socket.Send(
+      "GET /thunderhead.gateway.test.Echo/Converse HTTP/1.1\r\nHost: localhost\r\nUpgrade: "
+      "websocket\r\n"
+      "Connection: Upgrade\r\nSec-WebSocket-Key: AQIDBAUGBwgJCgsMDQ4PEA==\r\n"
+      "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: grpc-websocket.v1\r\n\r\n");
+  Must(socket.Read("\r\n\r\n").starts_with("HTTP/1.1 101"));
+  const bool framed = data[0] % 2 == 0;
+  socket.Send(framed ? Framed(data + 1, size - 1)
+                     : std::string(reinterpret_cast<const char*>(data + 1), size - 1));
+  socket.SendNoMore();
+  socket.Read("");
+  return 0;
+}
