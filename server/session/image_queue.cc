@@ -16,7 +16,7 @@ namespace {
 // Time to draw a few pictures.
 constexpr std::chrono::seconds kQueueRetryAfter{5};
 
-absl::Status TooMany(const char* of_whom, std::size_t waiting) {
+absl::Status TooManyWaiting(const char* of_whom, std::size_t waiting) {
   return base::WithDetails(
       absl::ResourceExhaustedError(absl::StrCat("the server is busy: ", waiting, of_whom,
                                                 " pictures wait to be drawn; try again later")),
@@ -38,9 +38,9 @@ bool ImageQueue::Add(ImageJob job) {
     if (refuses_) {
       refusal = base::ShuttingDown();
     } else if (waiting_.size() >= max_waiting_) {
-      refusal = TooMany("", waiting_.size());
+      refusal = TooManyWaiting("", waiting_.size());
     } else if (!job.owner.empty() && WaitingOf(job.owner) >= max_waiting_each_) {
-      refusal = TooMany(" of your", max_waiting_each_);
+      refusal = TooManyWaiting(" of your", max_waiting_each_);
     } else {
       waiting_.push_back(std::move(job));
       return true;

@@ -39,7 +39,7 @@ absl::Status NotFound(const std::string& key) {
                            "': it was closed or has expired; create a new one"));
 }
 
-absl::Status TooMany(const char* who, std::size_t max_sessions) {
+absl::Status TooManySessions(const char* who, std::size_t max_sessions) {
   return base::WithDetails(
       absl::ResourceExhaustedError(absl::StrCat(who, " the maximum of ", max_sessions,
                                                 " sessions; close one, or try again later")),
@@ -219,12 +219,12 @@ absl::StatusOr<std::shared_ptr<Session>> Sessions::Create(const Rules& rules,
   if (!refuses_new_.ok()) return refuses_new_;
   DropExpired();
   if (sessions_.size() >= options_.max_sessions) {
-    return TooMany("the server already has", options_.max_sessions);
+    return TooManySessions("the server already has", options_.max_sessions);
   }
   const auto owned = std::ranges::count_if(
       sessions_, [&owner](const auto& entry) { return entry.second->owner() == owner; });
   if (!owner.empty() && static_cast<std::size_t>(owned) >= options_.max_sessions_per_owner) {
-    return TooMany("you already have", options_.max_sessions_per_owner);
+    return TooManySessions("you already have", options_.max_sessions_per_owner);
   }
   auto session = std::make_shared<Session>(
       base::RandomHex(kIdWords),
