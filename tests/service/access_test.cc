@@ -70,7 +70,7 @@ std::optional<std::chrono::milliseconds> RetryOf(const grpc::Status& status) {
 }
 
 TEST(AccessTest, EveryRoleMayCallWhatTheTableSays) {
-  GuardedService guarded;
+  GuardedService guarded({}, {.wrong_tokens_per_second = 0});
   std::vector<const google::protobuf::MethodDescriptor*> methods;
   for (const char* name :
        {v1::ThunderheadService::service_full_name(), v1::RenderJobService::service_full_name()}) {
