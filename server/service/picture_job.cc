@@ -88,7 +88,8 @@ void PictureJob::Begin() {
        [this](session::DisplayFrame& picture) { return EncodeTimed(picture); }, cancelled_,
        [this](const absl::StatusOr<session::DisplayFrame>& picture) { Drawn(picture); },
        [this](const session::ImageProgress& progress) { listener_.Progressed(progress); },
-       awaited_ == Awaited::kByNobody, request_.format() == v1::IMAGE_FORMAT_EXR});
+       awaited_ == Awaited::kByNobody, request_.format() == v1::IMAGE_FORMAT_EXR,
+       request_.error_seconds()});
 }
 
 void PictureJob::Cancel() {

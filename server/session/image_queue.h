@@ -45,7 +45,8 @@ struct ImageJob {
   std::function<void(const ImageProgress&)> on_progress = nullptr;
   // Nobody waits for it: those for whom somebody does go before.
   bool gives_way = false;
-  bool linear = false;  // the picture is also to be had as light
+  bool linear = false;         // the picture is also to be had as light
+  double error_seconds = 0.0;  // of tracing, for its error to be measured
   // Since it was admitted: the scene with its decided setting, and what drawing that should take.
   std::optional<scene::Scene> decided = std::nullopt;
   double predicted_ms = 0.0;

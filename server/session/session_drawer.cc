@@ -145,13 +145,22 @@ SessionDrawer::Wish SessionDrawer::Need(const Turn& turn, const TraceLight& work
     turn.kept.view.LightIsOthers();
     return {};
   }
-  light_tracer_.Want(id, {work.shown.scene, turn.kept.fields.Fields()});
+  const bool error = work.error && turn.kept.tells;
+  if (!error) turn.kept.view.ErrorIsUntold();
+  if (!error && !work.light) return {};
+  light_tracer_.Want(id, {.scene = work.shown.scene,
+                          .fields = turn.kept.fields.Fields(),
+                          .light = work.light,
+                          .error = error});
   const auto news = light_tracer_.TakeNews(id);
   if (!news.has_value()) return {};
   if (news->ok()) {
-    const bool show = turn.kept.view.LightTraced(**news, Clock::now());
-    if (turn.kept.view.LightIsTraced()) light_tracer_.Stop(id);
-    if (!show) return {};
+    const Clock::time_point now = Clock::now();
+    const TracedStep& step = **news;
+    const bool lit = step.light.has_value() && turn.kept.view.LightTraced(*step.light, now);
+    const bool told = step.error.has_value() && turn.kept.view.ErrorMeasured(*step.error, now);
+    if (work.light && turn.kept.view.LightIsTraced()) light_tracer_.Stop(id);
+    if (!lit && !told) return {};
   } else {
     base::LogError(base::Annotate(
         news->status(), absl::StrCat("tracing the light of storm ", work.shown.scene->storm_id)));
@@ -212,7 +221,7 @@ absl::Status SessionDrawer::DrawLight(const Turn& turn, const NewestScene& shown
   THUNDERHEAD_ASSIGN_OR_RETURN(
       DisplayFrame picture,
       source_.Draw(turn.session->id(), *shown.scene, turn.kept.fields.Fields(), FrameQuality{},
-                   turn.kept.view.discretisation_error()));
+                   turn.kept.view.evidence()));
   const auto not_shown = std::exchange(turn.kept.not_shown, std::nullopt);
   if (not_shown.has_value()) picture.modelled.content.not_shown.push_back(*not_shown);
   turn.kept.view.LightShown(Clock::now());
@@ -244,6 +253,7 @@ absl::Status SessionDrawer::ShowTraced(const Turn& turn, const NewestScene& show
 void SessionDrawer::Send(const Turn& turn, const NewestScene& shown, bool refined,
                          DisplayFrame picture, std::optional<Refinement> refinement) {
   turn.kept.losses = 0;
+  turn.kept.tells = picture.accuracy.has_value();
   turn.kept.fields.AddStages(&picture.stages);
   DrawnFrame frame{.session = turn.session,
                    .scene_revision = shown.revision,

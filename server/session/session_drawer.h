@@ -51,7 +51,8 @@ class SessionDrawer {
     SessionWork work = WaitUntil{};  // found last
     // Of that work, if it is to show traced light.
     std::optional<scene::NotShown> not_shown = std::nullopt;
-    int losses = 0;  // of the device, since the last frame
+    int losses = 0;      // of the device, since the last frame
+    bool tells = false;  // the last frame said its error
   };
   // A session whose turn it is.
   struct Turn {
