@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import os
 import pathlib
-from typing import Any, Dict, Optional, Union
+from typing import Any, Dict, Optional, Tuple, Union
 
 import numpy
 import numpy.typing
@@ -43,6 +43,17 @@ class Picture:
         """The estimated root mean square error of its linear radiance, over the mean radiance; None where no table says."""
         accuracy: frame_pb2.AccuracyReport = self._response.accuracy
         return float(accuracy.estimated_error) if self._response.HasField("accuracy") else None
+
+    @property
+    def measured(self) -> bool:
+        """True if the error was measured by paths traced through this picture, False if a table says it."""
+        return bool(self._response.accuracy.measured)
+
+    @property
+    def error_interval(self) -> Optional[Tuple[float, float]]:
+        """The interval that holds the error in 95 of 100 cases; None unless it was measured."""
+        accuracy: frame_pb2.AccuracyReport = self._response.accuracy
+        return (float(accuracy.error_low), float(accuracy.error_high)) if accuracy.measured else None
 
     @property
     def milliseconds(self) -> Dict[str, float]:

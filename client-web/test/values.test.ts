@@ -1,6 +1,7 @@
-import { create, toBinary } from "@bufbuild/protobuf";
+import { create, type MessageInitShape, toBinary } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 import { colorOfHex, hexOfColor } from "../src/core/color";
+import { biasInWords, errorSource } from "../src/core/picture_error";
 import {
   effectiveField,
   LIMITS,
@@ -35,6 +36,7 @@ import {
   formatQuantity,
   formatValidTime,
 } from "../src/core/units";
+import { AccuracyReportSchema } from "../src/gen/thunderhead/v1/frame_pb";
 import {
   DirectionalLightSchema,
   FieldParametersSchema,
@@ -189,6 +191,29 @@ describe("colours", () => {
     expect(colorOfHex("#80FF00").red).toBeCloseTo(0.2158605, 6);
     for (const hex of ["#000000", "#0a0b0c", "#12fe80"])
       expect(hexOfColor(colorOfHex(hex))).toBe(hex);
+  });
+});
+
+describe("the error of a picture", () => {
+  const report = (init: MessageInitShape<typeof AccuracyReportSchema>) =>
+    create(AccuracyReportSchema, init);
+  const measured = report({
+    estimatedError: 0.0873,
+    measured: true,
+    errorLow: 0.0812,
+    errorHigh: 0.0941,
+    bias: -0.021,
+  });
+
+  it("says its interval once it is measured", () => {
+    expect(errorSource(measured)).toBe("measured: 8.12 to 9.41 %");
+    expect(biasInWords(measured)).toBe("2.1 % too dark");
+    expect(biasInWords(report({ measured: true, bias: 0.01 }))).toBe("1 % too bright");
+  });
+
+  it("says that it is a table's until then", () => {
+    expect(errorSource(report({ estimatedError: 0.2 }))).toBe("from a table, until measured");
+    expect(biasInWords(report({ estimatedError: 0.2 }))).toBe("");
   });
 });
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "accuracy/error_estimate.h"
 #include "scene/technique.h"
 
 namespace thunderhead::accuracy {
@@ -24,7 +25,8 @@ struct AccuracyReport {
   std::optional<double> expected_ms;  // of a frame at full quality, on this machine
   double model_error = 0.0;           // by the table
   std::optional<double> discretisation_error;
-  double estimated_error = 0.0;
+  double estimated_error = 0.0;           // as measured; until then both parts together
+  std::optional<MeasuredError> measured;  // by paths traced through the picture
   std::optional<Unmet> unmet;
 
   bool operator==(const AccuracyReport&) const = default;

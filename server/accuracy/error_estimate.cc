@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "base/status.h"
 
@@ -11,67 +13,151 @@ namespace {
 // Student's t at 97.5 % for kGroups - 1 = 39 degrees of freedom.
 constexpr double kStudent = 2.0227;
 constexpr std::int64_t kMinPixels = 160;
+// No interval is narrower: shares of the error and of the mean radiance by which a reference of
+// 1000 samples a pixel is itself uncertain.
+constexpr double kLeastReach = 0.03;
+constexpr double kLeastBiasReach = 0.002;
+
+// Half the width of the 95 % interval of `whole` by Tukey's jackknife: the same without each of the
+// groups.
+double Reach(double whole, const std::vector<double>& without) {
+  const auto count = static_cast<double>(without.size());
+  double squares = 0.0;
+  for (const double each : without) squares += (each - whole) * (each - whole);
+  return kStudent * std::sqrt((count - 1.0) / count * squares);
+}
+
+// How far the squared error can be off as clamped light is given back to other pixels than those
+// that lost it: by light of a root mean square of `lost`, all of it where the picture errs alike.
+double Misplaced(double squared_error, double lost) {
+  return 2.0 * std::sqrt(std::max(squared_error, 0.0)) * std::abs(lost) + lost * lost;
+}
 
 double MeanOf(const glm::dvec3& color) { return (color.x + color.y + color.z) / 3.0; }
 
 }  // namespace
 
+void PixelTruth::Add(const glm::dvec3& estimate) {
+  ++paths_;
+  const double brightness = MeanOf(estimate) / usual_;
+  for (std::size_t i = 0; i < kClamps.size(); ++i) {
+    const glm::dvec3 clamped =
+        brightness > kClamps[i] ? estimate * (kClamps[i] / brightness) : estimate;
+    sums_[i].first += clamped;
+    sums_[i].squares += clamped * clamped;
+  }
+}
+
 ErrorEstimate::Sums ErrorEstimate::Sums::operator-(const Sums& other) const {
-  return {pixels - other.pixels, squared_error - other.squared_error, truth - other.truth,
-          difference - other.difference};
+  return {truth - other.truth, drawn_truth - other.drawn_truth,
+          squared_truth - other.squared_truth};
 }
 
 void ErrorEstimate::Sums::operator+=(const Sums& other) {
-  pixels += other.pixels;
-  squared_error += other.squared_error;
   truth += other.truth;
-  difference += other.difference;
+  drawn_truth += other.drawn_truth;
+  squared_truth += other.squared_truth;
 }
 
-void ErrorEstimate::Add(const glm::dvec3& drawn, std::span<const glm::dvec3> estimates) {
-  const auto count = static_cast<double>(estimates.size());
-  THUNDERHEAD_CHECK(estimates.size() >= 2, "a pixel needs two estimates");
-  glm::dvec3 sum(0.0);
-  glm::dvec3 squares(0.0);
-  for (const glm::dvec3& estimate : estimates) {
-    const glm::dvec3 off = estimate - drawn;
-    sum += off;
-    squares += off * off;
+ErrorEstimate::Group ErrorEstimate::Group::operator-(const Group& other) const {
+  Group rest{pixels - other.pixels, drawn - other.drawn, squared_drawn - other.squared_drawn};
+  for (std::size_t i = 0; i < kClamps.size(); ++i) {
+    rest.clamped[i] = clamped[i] - other.clamped[i];
   }
-  const double squared_error = MeanOf((sum * sum - squares) / (count * (count - 1.0)));
-  const double variance = std::max(MeanOf((squares - sum * sum / count) / (count - 1.0)), 0.0);
-  const glm::dvec3 mean_off = sum / count;
-  groups_[static_cast<std::size_t>(pixels_) % kGroups] +=
-      {1.0, squared_error, MeanOf(drawn + mean_off), -MeanOf(mean_off)};
-  ++pixels_;
-  paths_ += static_cast<std::int64_t>(estimates.size());
-  variance_squares_ += variance * variance;
-  error_squares_ += squared_error * squared_error;
-  pair_noise_ += 2.0 * variance * variance / (count * (count - 1.0)) +
-                 4.0 * std::max(squared_error, 0.0) * variance / count;
+  return rest;
 }
 
-ErrorEstimate::Ratios ErrorEstimate::RatiosOf(const Sums& sums) {
-  const double truth = sums.truth / sums.pixels;
-  return {sums.squared_error / sums.pixels / (truth * truth), sums.difference / sums.truth};
+void ErrorEstimate::Group::operator+=(const Group& other) {
+  pixels += other.pixels;
+  drawn += other.drawn;
+  squared_drawn += other.squared_drawn;
+  for (std::size_t i = 0; i < kClamps.size(); ++i) clamped[i] += other.clamped[i];
+}
+
+void ErrorEstimate::Add(const glm::dvec3& drawn, const PixelTruth& truth) {
+  THUNDERHEAD_CHECK(truth.Paths() >= 2, "a pixel needs two paths");
+  const auto count = static_cast<double>(truth.Paths());
+  const double weight = truth.Weight();
+  Group& group = groups_[static_cast<std::size_t>(pixels_) % kGroups];
+  group.pixels += 1.0;
+  group.drawn += weight * MeanOf(drawn);
+  group.squared_drawn += weight * MeanOf(drawn * drawn);
+  for (std::size_t i = 0; i < kClamps.size(); ++i) {
+    const auto& [first, squares] = truth.Clamped(i);
+    const glm::dvec3 mean = first / count;
+    const double squared_truth = MeanOf((first * first - squares) / (count * (count - 1.0)));
+    group.clamped[i] +=
+        {weight * MeanOf(mean), weight * MeanOf(drawn * mean), weight * squared_truth};
+    const double squared_error =
+        weight * (MeanOf(drawn * drawn) - 2.0 * MeanOf(drawn * mean) + squared_truth);
+    const double variance =
+        weight * std::max(MeanOf((squares - first * mean) / (count - 1.0)), 0.0);
+    noise_[i].squared_error += squared_error;
+    noise_[i].variance_squares += variance * variance;
+    noise_[i].error_squares += squared_error * squared_error;
+    noise_[i].pair_noise += 2.0 * variance * variance / (count * (count - 1.0)) +
+                            4.0 * std::max(squared_error, 0.0) * variance / count;
+  }
+  ++pixels_;
+  paths_ += truth.Paths();
+}
+
+ErrorEstimate::Group ErrorEstimate::All() const {
+  Group all;
+  for (const Group& group : groups_) all += group;
+  return all;
+}
+
+ErrorEstimate::Ratios ErrorEstimate::RatiosOf(const Group& group, std::size_t clamp) const {
+  const Sums& clamped = group.clamped[clamp];
+  const double whole_truth = group.clamped.back().truth;
+  // Gives back what was clamped.
+  const double scale = clamped.truth > 0.0 ? whole_truth / clamped.truth : 1.0;
+  const double squared_error = group.squared_drawn - 2.0 * scale * clamped.drawn_truth +
+                               scale * scale * clamped.squared_truth;
+  const double difference = (group.drawn - whole_truth) / group.pixels;
+  const double truth = mean_drawn_ - difference;
+  return {squared_error / group.pixels / (truth * truth), difference / truth, scale - 1.0};
+}
+
+std::size_t ErrorEstimate::BestClamp(const Group& all) const {
+  std::size_t best = kClamps.size() - 1;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t clamp = 0; clamp < kClamps.size(); ++clamp) {
+    const Ratios whole = RatiosOf(all, clamp);
+    std::vector<double> without;
+    for (const Group& group : groups_) {
+      without.push_back(RatiosOf(all - group, clamp).squared_rmse);
+    }
+    const double reach =
+        Reach(whole.squared_rmse, without) + Misplaced(whole.squared_rmse, whole.lost);
+    if (reach < least) {
+      least = reach;
+      best = clamp;
+    }
+  }
+  return best;
 }
 
 std::optional<MeasuredError> ErrorEstimate::Result() const {
-  Sums all;
-  for (const Sums& group : groups_) all += group;
-  if (pixels_ < kMinPixels || !(all.truth > 0.0)) return std::nullopt;
-  const Ratios whole = RatiosOf(all);
-  // Tukey's jackknife: the ratios without each of the groups.
-  constexpr double kCount = kGroups;
-  Ratios squares;
-  for (const Sums& group : groups_) {
-    const Ratios without = RatiosOf(all - group);
-    squares.squared_rmse += std::pow(without.squared_rmse - whole.squared_rmse, 2);
-    squares.bias += std::pow(without.bias - whole.bias, 2);
+  const Group all = All();
+  // What is left is the true mean radiance.
+  if (pixels_ < kMinPixels || !(mean_drawn_ * all.pixels > all.drawn - all.clamped.back().truth)) {
+    return std::nullopt;
   }
-  const double share = (kCount - 1.0) / kCount;
-  const double squared_reach = kStudent * std::sqrt(share * squares.squared_rmse);
-  const double bias_reach = kStudent * std::sqrt(share * squares.bias);
+  const std::size_t clamp = BestClamp(all);
+  const Ratios whole = RatiosOf(all, clamp);
+  std::vector<double> squared_errors;
+  std::vector<double> biases;
+  for (const Group& group : groups_) {
+    const Ratios without = RatiosOf(all - group, clamp);
+    squared_errors.push_back(without.squared_rmse);
+    biases.push_back(without.bias);
+  }
+  const double squared_reach = Reach(whole.squared_rmse, squared_errors) +
+                               Misplaced(whole.squared_rmse, whole.lost) +
+                               2.0 * kLeastReach * std::max(whole.squared_rmse, 0.0);
+  const double bias_reach = Reach(whole.bias, biases) + kLeastBiasReach;
   const auto root = [](double square) { return std::sqrt(std::max(square, 0.0)); };
   MeasuredError error;
   error.relative_rmse = {root(whole.squared_rmse), root(whole.squared_rmse - squared_reach),
@@ -86,11 +172,10 @@ std::optional<MeasuredError> ErrorEstimate::Result() const {
 // paths' variance and E the variance of the squared error from pixel to pixel.
 int ErrorEstimate::BestPathsPerPixel(int most) const {
   const double pixels = std::max(static_cast<double>(pixels_), 1.0);
-  Sums all;
-  for (const Sums& group : groups_) all += group;
-  const double mean = all.squared_error / pixels;
-  const double between = (error_squares_ - pair_noise_) / pixels - mean * mean;
-  const double paths_noise = 2.0 * variance_squares_ / pixels;
+  const Noise& noise = noise_[BestClamp(All())];
+  const double mean = noise.squared_error / pixels;
+  const double between = (noise.error_squares - noise.pair_noise) / pixels - mean * mean;
+  const double paths_noise = 2.0 * noise.variance_squares / pixels;
   if (!(paths_noise > 0.0)) return 2;
   if (!(between > 0.0)) return most;
   const double best = 1.0 + std::sqrt(paths_noise / between);

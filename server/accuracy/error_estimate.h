@@ -1,12 +1,13 @@
 // Estimates a picture's error from independent estimates of the true radiance of some of its
 // pixels: relative RMSE and bias, as measure/image_error.h defines them, each with the interval
-// that holds it in 95 of 100 cases. Plain values; knows no scene.
+// that holds it in 95 of 100 cases (docs/decisions/0051-measured-error.md). Plain values; knows no
+// scene.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
 
 #include "glm/vec3.hpp"
 
@@ -29,15 +30,50 @@ struct MeasuredError {
   bool operator==(const MeasuredError&) const = default;
 };
 
+// Paths are clamped at these multiples of their pixel's usual radiance. A few paths are a hundred
+// times brighter than the rest, and squares of so few tell nothing; clamped paths lose a little
+// light, which is given back evenly. The last multiple clamps nothing.
+inline constexpr std::array<double, 8> kClamps = {4.0, 6.0, 9.0, 13.0, 20.0, 30.0, 60.0, 1e300};
+
+// Independent, unbiased estimates of the true radiance of one pixel.
+class PixelTruth {
+ public:
+  struct Sums {
+    glm::dvec3 first{0.0};
+    glm::dvec3 squares{0.0};
+  };
+
+  // `usual` is what its radiance is about, above 0. `weight`: the pixels of the picture that it
+  // stands for, over their mean: 1 over the number of pixels times the probability that it was
+  // chosen with.
+  explicit PixelTruth(double usual, double weight = 1.0) : usual_(usual), weight_(weight) {}
+
+  void Add(const glm::dvec3& estimate);
+
+  double Weight() const { return weight_; }
+  std::int64_t Paths() const { return paths_; }
+  // Of the estimates clamped by kClamps[clamp].
+  const Sums& Clamped(std::size_t clamp) const { return sums_[clamp]; }
+
+ private:
+  double usual_;
+  double weight_;
+  std::int64_t paths_ = 0;
+  std::array<Sums, kClamps.size()> sums_{};
+};
+
 class ErrorEstimate {
  public:
-  // Adds a pixel, chosen at random or evenly over the picture. `estimates` of its true radiance are
-  // independent and unbiased, at least two; their noise does not count as error: the mean product
-  // of two different ones' distances from `drawn` is the square of the true radiance's (a
-  // U-statistic).
-  void Add(const glm::dvec3& drawn, std::span<const glm::dvec3> estimates);
+  // `mean_drawn` is the mean over all pixels of the picture, and over colours. Knowing it, only the
+  // difference between drawn and true radiance is estimated.
+  explicit ErrorEstimate(double mean_drawn) : mean_drawn_(mean_drawn) {}
 
-  // None before 160 pixels, or while their mean radiance is not above 0.
+  // Adds a pixel, of at least two paths. Their noise does not count as error: the mean product of
+  // two different ones' distances from `drawn` is the square of the true radiance's (a
+  // U-statistic).
+  void Add(const glm::dvec3& drawn, const PixelTruth& truth);
+
+  // None before 160 pixels, or while the true mean radiance is not above 0.
   std::optional<MeasuredError> Result() const;
 
   // The number of paths through each pixel that would have given the smallest variance for the
@@ -48,34 +84,53 @@ class ErrorEstimate {
   std::int64_t Pixels() const { return pixels_; }
 
  private:
-  // Sums over pixels, each of the mean over colours.
+  // Sums over pixels, each of the mean over colours, by weight. Truth is of clamped paths.
   struct Sums {
-    double pixels = 0.0;
-    double squared_error = 0.0;
     double truth = 0.0;
-    double difference = 0.0;  // drawn - truth
+    double drawn_truth = 0.0;    // of the product
+    double squared_truth = 0.0;  // without the paths' noise
 
     Sums operator-(const Sums& other) const;
     void operator+=(const Sums& other);
   };
-  // Of the sums: the squared relative RMSE and the relative bias.
+  struct Group {
+    double pixels = 0.0;
+    double drawn = 0.0;
+    double squared_drawn = 0.0;
+    std::array<Sums, kClamps.size()> clamped{};
+
+    Group operator-(const Group& other) const;
+    void operator+=(const Group& other);
+  };
+  // Of the sums: the squared relative RMSE, the relative bias, and the share of the light that
+  // clamping takes.
   struct Ratios {
     double squared_rmse = 0.0;
     double bias = 0.0;
+    double lost = 0.0;
   };
-  static Ratios RatiosOf(const Sums& sums);
+  // For BestPathsPerPixel: sums over pixels of the paths' variance, squared, and of the squared
+  // error's estimate, squared.
+  struct Noise {
+    double squared_error = 0.0;
+    double variance_squares = 0.0;
+    double error_squares = 0.0;
+    double pair_noise = 0.0;  // what of `error_squares` is the paths' noise
+  };
+
+  Group All() const;
+  Ratios RatiosOf(const Group& group, std::size_t clamp) const;
+  // The lowest clamp that takes little light.
+  std::size_t BestClamp(const Group& all) const;
 
   // Pixels are dealt out to groups in turn, for the jackknife.
   static constexpr std::size_t kGroups = 40;
 
-  std::array<Sums, kGroups> groups_{};
+  double mean_drawn_;
+  std::array<Group, kGroups> groups_{};
+  std::array<Noise, kClamps.size()> noise_{};
   std::int64_t pixels_ = 0;
   std::int64_t paths_ = 0;
-  // For BestPathsPerPixel: sums over pixels of the paths' variance, squared, and of the squared
-  // error's estimate, squared.
-  double variance_squares_ = 0.0;
-  double error_squares_ = 0.0;
-  double pair_noise_ = 0.0;  // what of `error_squares_` is the paths' noise
 };
 
 }  // namespace thunderhead::accuracy

@@ -4,10 +4,11 @@
 #include <cmath>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "base/status.h"
 #include "base/stopwatch.h"
+#include "glm/common.hpp"
+#include "glm/geometric.hpp"
 #include "reference/philox.h"
 #include "reference/scene_problem.h"
 #include "reference/trace_rays.h"
@@ -19,33 +20,38 @@ namespace {
 // Before anything is known of the picture, and the pixels that are enough to know it.
 constexpr int kFirstPathsPerPixel = 16;
 constexpr std::int64_t kPilotPixels = 320;
-constexpr int kMaxPathsPerPixel = 128;
+constexpr int kMaxPathsPerPixel = 64;
 // Some tenths of a second on two cores.
 constexpr int kPathsPerBatch = 4096;
 constexpr std::uint64_t kSeed = 0x6572726f72;
 
-// Pixel `index` of an endless sequence that covers the picture evenly (Roberts 2018, R2: multiples
-// of powers of the plastic number).
-glm::ivec2 PixelAt(std::uint64_t index, const glm::ivec2& size_px) {
-  constexpr glm::dvec2 kPlaceStep(0.7548776662466927, 0.5698402909980532);
-  const glm::dvec2 place = glm::fract(0.5 + static_cast<double>(index) * kPlaceStep);
-  return glm::min(glm::ivec2(place * glm::dvec2(size_px)), size_px - 1);
+// Share of the pixels that are chosen evenly over the picture, so that no error is missed; of the
+// rest, the weight of those that show no storm.
+constexpr double kEvenShare = 0.2;
+constexpr double kWithoutStorm = 0.05;
+// Of the mean radiance; what is drawn darker may be brighter in truth.
+constexpr double kDark = 0.25;
+constexpr double kLeftOut = -1.0;
+
+double MeanOf(const glm::vec3& color) {
+  return (static_cast<double>(color.x) + color.y + color.z) / 3.0;
 }
 
 }  // namespace
 
 ErrorMeter::ErrorMeter(std::shared_ptr<const reference::Medium> medium,
                        reference::Surroundings surroundings, const reference::Camera& camera,
-                       int threads)
+                       int threads, std::uint64_t seed)
     : medium_(std::move(medium)),
       surroundings_(std::move(surroundings)),
       camera_(camera),
       threads_(threads),
+      seed_(seed + kSeed),
       paths_per_pixel_(kFirstPathsPerPixel) {}
 
 absl::StatusOr<std::unique_ptr<ErrorMeter>> ErrorMeter::Create(
     const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
-    int threads) {
+    int threads, std::uint64_t seed) {
   // As the reference shows it: each field with its own phase function.
   scene::Scene truth = scene;
   truth.rendering.technique = scene::Reference{};
@@ -55,45 +61,128 @@ absl::StatusOr<std::unique_ptr<ErrorMeter>> ErrorMeter::Create(
                                reference::MediumOf(truth, *fields, options));
   return std::unique_ptr<ErrorMeter>(new ErrorMeter(
       std::move(medium), reference::SurroundingsOf(truth, *fields, reference::GroundLight::kShaded),
-      reference::CameraOf(truth, *fields), threads));
+      reference::CameraOf(truth, *fields), threads, seed));
 }
 
-void ErrorMeter::Measure(const picture::LinearPicture& drawn, double seconds,
-                         const std::stop_token& stop) {
+void ErrorMeter::Show(picture::LinearPicture drawn) {
+  const bool keeps = drawn.size_px == drawn_.size_px;
+  drawn_ = std::move(drawn);
+  if (!keeps) {
+    Weigh();
+    traced_.clear();
+  }
+  double sum = 0.0;
+  for (std::size_t i = 0; i < drawn_.radiance.size(); ++i) {
+    if (ChanceOf(i) > 0.0) sum += MeanOf(drawn_.radiance[i]);
+  }
+  mean_drawn_ = sum / static_cast<double>(pixels_);
+  estimate_.emplace(mean_drawn_);
+  for (const TracedPixel& pixel : traced_) {
+    estimate_->Add(glm::dvec3(drawn_.radiance[pixel.index]), pixel.truth);
+  }
+}
+
+// Most of the noise and of the error is where the storm is bright. Pixels that show the sun's disc
+// are left out: it is drawn apart, and a thousand times brighter than all else.
+void ErrorMeter::Weigh() {
+  const glm::dvec2 size_px(drawn_.size_px);
+  const auto width = static_cast<std::size_t>(drawn_.size_px.x);
+  const auto towards = [&](const glm::dvec2& place_px) {
+    return camera_
+        .RayThrough(2.0 * place_px.x / size_px.x - 1.0, 1.0 - 2.0 * place_px.y / size_px.y)
+        .direction;
+  };
+  std::vector<double> worth(drawn_.radiance.size());
+  double sum = 0.0;
+  pixels_ = 0;
+  for (std::size_t i = 0; i < worth.size(); ++i) {
+    const glm::dvec2 corner_px(i % width, i / width);
+    const glm::dvec3 middle = towards(corner_px + 0.5);
+    const double to_sun = glm::length(middle - surroundings_.towards_sun);
+    const double reach =
+        glm::length(middle - towards(corner_px)) +
+        (surroundings_.disc.has_value() ? std::sqrt(2.0 - 2.0 * surroundings_.disc->cosine)
+                                        : -10.0);
+    worth[i] = kLeftOut;
+    if (to_sun < reach) continue;
+    const double opacity = drawn_.opacity.empty() ? 1.0 : static_cast<double>(drawn_.opacity[i]);
+    worth[i] = std::max(MeanOf(drawn_.radiance[i]), 0.0) *
+               (kWithoutStorm + (1.0 - kWithoutStorm) * std::clamp(opacity, 0.0, 1.0));
+    sum += worth[i];
+    ++pixels_;
+  }
+  const double even_share = sum > 0.0 ? kEvenShare : 1.0;
+  chances_.resize(worth.size());
+  double before = 0.0;
+  for (std::size_t i = 0; i < worth.size(); ++i) {
+    if (worth[i] != kLeftOut) {
+      before += even_share / static_cast<double>(pixels_);
+      if (sum > 0.0) before += (1.0 - even_share) * worth[i] / sum;
+    }
+    chances_[i] = before;
+  }
+}
+
+double ErrorMeter::ChanceOf(std::size_t index) const {
+  return chances_[index] - (index > 0 ? chances_[index - 1] : 0.0);
+}
+
+// Pixel `count` of an endless sequence that is even in chance (multiples of the golden ratio).
+std::size_t ErrorMeter::ChoosePixel(std::uint64_t count) const {
+  constexpr double kGolden = 0.6180339887498949;
+  const double place = glm::fract(0.5 + static_cast<double>(count) * kGolden) * chances_.back();
+  const auto found = std::ranges::upper_bound(chances_, place);
+  return std::min(static_cast<std::size_t>(found - chances_.begin()), chances_.size() - 1);
+}
+
+void ErrorMeter::Measure(double seconds, const std::stop_token& stop) {
   const base::Stopwatch stopwatch;
   do {
-    TraceBatch(drawn);
-    if (estimate_.Pixels() >= kPilotPixels) {
-      paths_per_pixel_ = estimate_.BestPathsPerPixel(kMaxPathsPerPixel);
-    }
+    Step();
   } while (!stop.stop_requested() && stopwatch.ElapsedMs() < 1e3 * seconds);
 }
 
-void ErrorMeter::TraceBatch(const picture::LinearPicture& drawn) {
+void ErrorMeter::Step() {
+  THUNDERHEAD_CHECK(estimate_.has_value(), "no picture was shown");
+  const base::Stopwatch stopwatch;
+  if (estimate_->Pixels() >= kPilotPixels) {
+    paths_per_pixel_ = estimate_->BestPathsPerPixel(kMaxPathsPerPixel);
+  }
   const auto per_pixel = static_cast<std::size_t>(paths_per_pixel_);
   const std::size_t pixels = std::max<std::size_t>(kPathsPerBatch / per_pixel, 1);
   const std::uint64_t batch = ++batches_;
+  const glm::dvec2 size_px(drawn_.size_px);
   std::vector<reference::Ray> rays;
-  std::vector<glm::dvec3> shown;
+  std::vector<std::size_t> indices;
   rays.reserve(pixels * per_pixel);
   for (std::size_t i = 0; i < pixels; ++i) {
-    const glm::ivec2 pixel =
-        PixelAt(static_cast<std::uint64_t>(estimate_.Pixels()) + i, drawn.size_px);
-    shown.emplace_back(drawn.radiance[static_cast<std::size_t>(pixel.y) *
-                                          static_cast<std::size_t>(drawn.size_px.x) +
-                                      static_cast<std::size_t>(pixel.x)]);
+    indices.push_back(ChoosePixel(traced_.size() + i));
+    const auto width = static_cast<std::size_t>(drawn_.size_px.x);
+    const glm::dvec2 corner_px(indices.back() % width, indices.back() / width);
     for (std::size_t path = 0; path < per_pixel; ++path) {
-      reference::RandomStream random(kSeed, batch, static_cast<std::uint32_t>(rays.size()));
-      const double x = 2.0 * (pixel.x + random.Uniform()) / drawn.size_px.x - 1.0;
-      const double y = 1.0 - 2.0 * (pixel.y + random.Uniform()) / drawn.size_px.y;
-      rays.push_back(camera_.RayThrough(x, y));
+      reference::RandomStream random(seed_, batch, static_cast<std::uint32_t>(rays.size()));
+      const double x = corner_px.x + random.Uniform();
+      const double y = corner_px.y + random.Uniform();
+      rays.push_back(camera_.RayThrough(2.0 * x / size_px.x - 1.0, 1.0 - 2.0 * y / size_px.y));
     }
   }
-  const std::vector<glm::dvec3> traced =
-      reference::TraceRays(*medium_, surroundings_, rays, {kSeed + batch, 1, threads_});
+  const std::vector<glm::dvec3> radiance =
+      reference::TraceRays(*medium_, surroundings_, rays, {seed_ + batch, 1, threads_});
   for (std::size_t i = 0; i < pixels; ++i) {
-    estimate_.Add(shown[i], std::span(traced).subspan(i * per_pixel, per_pixel));
+    const double weight = 1.0 / (ChanceOf(indices[i]) * static_cast<double>(pixels_));
+    const double usual = std::max(MeanOf(drawn_.radiance[indices[i]]), kDark * mean_drawn_);
+    TracedPixel pixel{indices[i], PixelTruth(usual, weight)};
+    for (const glm::dvec3& one : std::span(radiance).subspan(i * per_pixel, per_pixel)) {
+      pixel.truth.Add(one);
+    }
+    estimate_->Add(glm::dvec3(drawn_.radiance[pixel.index]), pixel.truth);
+    traced_.push_back(pixel);
   }
+  traced_s_ += 1e-3 * stopwatch.ElapsedMs();
+}
+
+std::optional<MeasuredError> ErrorMeter::Result() const {
+  return estimate_.has_value() ? estimate_->Result() : std::nullopt;
 }
 
 }  // namespace thunderhead::accuracy

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <stop_token>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "accuracy/error_estimate.h"
@@ -22,31 +23,53 @@ namespace thunderhead::accuracy {
 class ErrorMeter {
  public:
   // Of pictures of `scene` with any number of pixels, of the aspect that its output has. Fails as
-  // reference::MediumOf. Traces on `threads` threads, 0: all cores.
+  // reference::MediumOf. Traces on `threads` threads, 0: all cores; other random paths by `seed`.
   static absl::StatusOr<std::unique_ptr<ErrorMeter>> Create(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
-      int threads);
+      int threads, std::uint64_t seed = 0);
 
-  // Traces pixels of `drawn` (rows from top to bottom) for about `seconds`, or until `stop` asks to
-  // stop. Further calls must be given the same picture, and make the estimate finer.
-  void Measure(const picture::LinearPicture& drawn, double seconds, const std::stop_token& stop);
+  // The picture whose error is measured from now on. Paths traced before count for it too, if it
+  // has as many pixels as the one before; else they are given up.
+  void Show(picture::LinearPicture drawn);
 
-  // None while too few pixels are traced.
-  std::optional<MeasuredError> Result() const { return estimate_.Result(); }
+  // Traces pixels of the picture for some tenths of a second; it must have been shown.
+  void Step();
+  // Steps for about `seconds`, or until `stop` asks to stop.
+  void Measure(double seconds, const std::stop_token& stop);
+
+  // Of the picture shown last. None while too few pixels are traced.
+  std::optional<MeasuredError> Result() const;
+  // So far, by steps.
+  double TracedSeconds() const { return traced_s_; }
 
  private:
-  ErrorMeter(std::shared_ptr<const reference::Medium> medium, reference::Surroundings surroundings,
-             const reference::Camera& camera, int threads);
+  struct TracedPixel {
+    std::size_t index;
+    PixelTruth truth;
+  };
 
-  void TraceBatch(const picture::LinearPicture& drawn);
+  ErrorMeter(std::shared_ptr<const reference::Medium> medium, reference::Surroundings surroundings,
+             const reference::Camera& camera, int threads, std::uint64_t seed);
+
+  void Weigh();
+  std::size_t ChoosePixel(std::uint64_t count) const;
+  double ChanceOf(std::size_t index) const;
 
   const std::shared_ptr<const reference::Medium> medium_;
   const reference::Surroundings surroundings_;
   const reference::Camera camera_;
   const int threads_;
-  ErrorEstimate estimate_;
+  const std::uint64_t seed_;
+  picture::LinearPicture drawn_;
+  double mean_drawn_ = 0.0;
+  std::size_t pixels_ = 0;  // of it, without those that are left out
+  // Cumulative probability with which each pixel is chosen; by the picture shown first.
+  std::vector<double> chances_;
+  std::vector<TracedPixel> traced_;
+  std::optional<ErrorEstimate> estimate_;
   int paths_per_pixel_;
   std::uint64_t batches_ = 0;
+  double traced_s_ = 0.0;
 };
 
 }  // namespace thunderhead::accuracy

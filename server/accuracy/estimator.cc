@@ -57,6 +57,8 @@ std::optional<AccuracyReport> Estimator::Report(const scene::Scene& scene,
   // side.
   report.estimated_error =
       std::hypot(row->relative_rmse, evidence.discretisation_error.value_or(0.0));
+  report.measured = evidence.measured;
+  if (report.measured.has_value()) report.estimated_error = report.measured->relative_rmse.value;
   const double expected_ms = costs_.SettingMs(*table, *timed, scene);
   const bool asks = !std::holds_alternative<std::monostate>(scene.accuracy);
   if (asks || costs_.Knows(full)) report.expected_ms = expected_ms;
@@ -78,7 +80,7 @@ std::int64_t Estimator::PathsFor(const scene::Scene& scene) const {
   for (const PricedSetting& row : table->rows) {
     const std::int64_t paths = std::llround(1e6 * row.setting.million_paths);
     if (row.relative_rmse > limit->relative_rmse || paths >= fewest) continue;
-    const auto report = Report(scene, {}, {paths, std::nullopt});
+    const auto report = Report(scene, {}, {.traced_paths = paths});
     if (report.has_value() && report->estimated_error <= limit->relative_rmse) fewest = paths;
   }
   return fewest;

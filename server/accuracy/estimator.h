@@ -1,6 +1,7 @@
-// Estimates the error of a picture from everything that is known without the reference: the row of
-// its setting in the table (the error of the light model), the paths that corrected its light, and
-// how much half the slices change it. Plain values.
+// Tells the error of a picture: as measured by paths that were traced through it, or, where there
+// are none yet, from everything that is known without the reference: the row of its setting in the
+// table (the error of the light model), the paths that corrected its light, and how much half the
+// slices change it. Plain values.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +20,7 @@ namespace thunderhead::accuracy {
 struct Evidence {
   std::int64_t traced_paths = 0;               // that corrected its light
   std::optional<double> discretisation_error;  // by DiscretisationError
+  std::optional<MeasuredError> measured;       // of the whole picture
 };
 
 // Relative RMSE between a picture with half the slices and the full one, four values a pixel of

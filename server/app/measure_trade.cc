@@ -31,6 +31,7 @@ struct TradeFlags {
   int samples_per_pixel = 256;
   std::vector<double> million_paths = {0.1, 0.3, 1.0, 3.0};
   double error_seconds = 0.0;
+  bool transports_alone = false;
   bool json = false;
 };
 
@@ -137,8 +138,10 @@ absl::Status MeasureTrade(const TradeFlags& flags) {
   const std::string csv = flags.output + ".csv";
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<measure::TradeRow> rows,
                                RowsSoFar(csv, measure::CsvHead(title)));
-  THUNDERHEAD_RETURN_IF_ERROR(
-      MeasureRest(trade, csv, interruption, measure::DefaultSweep(flags.million_paths), &rows));
+  const std::vector<measure::Setting> sweep = flags.transports_alone
+                                                  ? measure::TransportSweep(flags.million_paths)
+                                                  : measure::DefaultSweep(flags.million_paths);
+  THUNDERHEAD_RETURN_IF_ERROR(MeasureRest(trade, csv, interruption, sweep, &rows));
   measure::MarkPareto(&rows);
   const std::string json = measure::TradeJson(title, rows);
   THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(flags.output + ".json", json));
@@ -176,6 +179,8 @@ Command AddMeasureTrade(CLI::App& measure) {
           "no truth; 0: not")
       ->check(CLI::Range(0.0, 600.0))
       ->capture_default_str();
+  trade->add_flag("--transports-alone", flags->transports_alone,
+                  "Measure the light volume's consistent, diffusion and traced light alone");
   trade->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();
   trade->add_flag("--json", flags->json, "Print JSON");

@@ -262,6 +262,7 @@ absl::Status PictureRun::MakeOne(const PlannedPicture& picture, volume::StormSto
   request.mutable_scene()->set_storm_id(storm_id);
   request.mutable_scene()->set_time_index(static_cast<std::uint32_t>(picture.time_index));
   request.set_format(options_.format.Drawn());
+  request.set_error_seconds(static_cast<float>(options_.error_seconds));
   THUNDERHEAD_ASSIGN_OR_RETURN(v1::RenderImageResponse response,
                                CallForPicture(channel, request, "", stop, {}));
   AddStages(response, times);
@@ -273,6 +274,10 @@ absl::Status PictureRun::MakeOne(const PlannedPicture& picture, volume::StormSto
   entry.device = device;
   entry.milliseconds = milliseconds = stopwatch.ElapsedMs();
   if (response.has_accuracy()) entry.estimated_error = response.accuracy().estimated_error();
+  if (response.accuracy().measured()) {
+    entry.error_low = response.accuracy().error_low();
+    entry.error_high = response.accuracy().error_high();
+  }
   entry.input = std::move(input);
   THUNDERHEAD_RETURN_IF_ERROR(Publish(picture, std::move(response), entry));
   times.write_ms += writing.ElapsedMs();

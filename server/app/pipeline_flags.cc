@@ -111,6 +111,12 @@ void AddPipelineOptions(CLI::App& command, PipelineFlags& flags) {
                   "Pictures under way at a time, so that reading and writing overlap drawing")
       ->check(CLI::Range(1, kMaxJobs))
       ->capture_default_str();
+  command
+      .add_option("--error-seconds", flags.error_seconds,
+                  "Measure each picture's error by tracing for at most so many seconds, in this "
+                  "process alone; 0: take it from a table")
+      ->check(CLI::Range(0.0, 60.0))
+      ->capture_default_str();
   AddProductOptions(command, flags.files);
   AddServerFlags(command, flags.server);
   command.add_option("--device", flags.device, "auto, software or a GPU's number")
@@ -133,6 +139,10 @@ absl::StatusOr<PictureRunOptions> RunOptionsOf(const PipelineFlags& flags,
                                                const pipeline::Shard& shard) {
   THUNDERHEAD_ASSIGN_OR_RETURN(pipeline::ProductName product,
                                pipeline::ProductName::Parse("--product", flags.product));
+  if (flags.error_seconds > 0.0 && !flags.server.address.empty()) {
+    return absl::InvalidArgumentError(
+        "--error-seconds works only in this process: omit it or --server");
+  }
   PictureRunOptions options{.product = std::move(product)};
   THUNDERHEAD_ASSIGN_OR_RETURN(options.format,
                                ProductFormatOf("--product", flags.product, flags.files));
@@ -154,6 +164,7 @@ absl::StatusOr<PictureRunOptions> RunOptionsOf(const PipelineFlags& flags,
   options.other_manifests = OthersOf(options.manifest, flags.manifest.empty() && shard.count == 1);
   options.device = flags.device;
   options.jobs = flags.jobs;
+  options.error_seconds = flags.error_seconds;
   options.done_markers = flags.done_markers;
   return options;
 }

@@ -26,6 +26,7 @@ struct PipelineFlags {
   ServerFlags server;    // without an address: in this process
   std::string device = "auto";
   int jobs = 2;
+  double error_seconds = 0.0;  // of tracing, for each picture's error to be measured
   bool done_markers = false;
   ProductFlags files;
   ProgressStyle progress = ProgressStyle::kAuto;
@@ -50,6 +51,7 @@ struct PictureRunOptions {
   pipeline::OtherManifests other_manifests;
   std::string device;
   int jobs = 1;
+  double error_seconds = 0.0;
   bool done_markers = false;
 };
 

@@ -33,6 +33,7 @@ struct RenderFlags {
   ServerFlags server;
   ProductFlags files;
   std::string device = "auto";
+  double error_seconds = 2.0;
   bool json = false;
 };
 
@@ -84,19 +85,25 @@ absl::StatusOr<v1::RenderImageResponse> CallHere(const RenderFlags& flags,
 }
 
 // Prints the setting and the error if the scene asks for an accuracy or a speed, or for traced
-// light.
+// light, or the error was measured.
 void PrintAccuracy(const v1::RenderImageResponse& response) {
   const v1::Scene& scene = response.scene();
   const bool awaited = scene.rendering().light_volume().traced_light() == v1::TRACED_LIGHT_AWAITED;
   const bool limited = scene.accuracy().limit_case() != v1::Accuracy::LIMIT_NOT_SET;
-  if (!response.has_accuracy() || (!awaited && !limited)) return;
   const v1::AccuracyReport& report = response.accuracy();
+  if (!response.has_accuracy() || (!awaited && !limited && !report.measured())) return;
   if (report.has_unmet()) std::cerr << "thunderhead: " << report.unmet().message() << "\n";
   const scene::Technique technique = service::ToTechnique(report.rendering());
   std::cout << absl::StrFormat("%s, %s, %s, %d slices, image scale %g: error about %.3g",
                                scene::NameOf(technique), accuracy::ModeOf(technique).name,
                                accuracy::TransportNameOf(technique), report.slices(),
                                report.image_scale(), report.estimated_error());
+  if (report.measured()) {
+    std::cout << absl::StrFormat(" (measured: %.3g to %.3g)", report.error_low(),
+                                 report.error_high());
+  } else {
+    std::cout << " (from a table)";
+  }
   if (limited)
     std::cout << absl::StrFormat(", about %.3g ms a frame", report.expected_milliseconds());
   if (response.modelled().traced_paths() > 0) {
@@ -144,6 +151,7 @@ absl::Status Render(const RenderFlags& flags) {
         "--renderer reference");
   }
   request.set_format(format.Drawn());
+  request.set_error_seconds(static_cast<float>(flags.error_seconds));
   const Interruption interruption;
   THUNDERHEAD_ASSIGN_OR_RETURN(v1::RenderImageResponse response,
                                flags.server.address.empty()
@@ -182,6 +190,12 @@ Command AddRender(CLI::App& app) {
                      "Draw with the cheapest setting of at most this error (relative RMSE)");
   render->add_option("--max-milliseconds", flags->scene.max_milliseconds,
                      "Draw with the most accurate setting of at most this time a frame");
+  render
+      ->add_option("--error-seconds", flags->error_seconds,
+                   "Measure the picture's error by tracing for at most so many seconds; 0: take it "
+                   "from a table")
+      ->check(CLI::Range(0.0, 60.0))
+      ->capture_default_str();
   render->add_option("--spp", flags->reference.samples_per_pixel,
                      "Reference: stop after this many samples a pixel");
   render->add_option("--seconds", flags->reference.seconds,

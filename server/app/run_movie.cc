@@ -83,6 +83,9 @@ absl::Status MakeMovie(const std::string& path, const View& view,
     }
   }
   entry.estimated_error = largest_error;
+  // Of one picture, and the largest may be another's.
+  entry.error_low.reset();
+  entry.error_high.reset();
   input.path = run.Options().product.Text();
   input.sha256 = pipeline::Sha256(hashes);
   progress.Plan(1);

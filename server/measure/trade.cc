@@ -95,6 +95,16 @@ std::vector<Setting> DefaultSweep(const std::vector<double>& million_paths) {
   return settings;
 }
 
+std::vector<Setting> TransportSweep(const std::vector<double>& million_paths) {
+  std::vector<Setting> settings{{LightVolume(scene::Transport::kConsistent)},
+                                {LightVolume(scene::Transport::kDiffusion)}};
+  for (const double paths : million_paths) {
+    settings.push_back(settings[1]);
+    settings.back().million_paths = paths;
+  }
+  return settings;
+}
+
 void MarkPareto(std::vector<TradeRow>* rows) {
   for (TradeRow& row : *rows) {
     row.pareto = std::none_of(rows->begin(), rows->end(), [&](const TradeRow& other) {
@@ -153,7 +163,8 @@ absl::Status Trade::Estimate(const scene::Scene& scene, const picture::LinearPic
   if (error_seconds_ <= 0.0) return absl::OkStatus();
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<accuracy::ErrorMeter> meter,
                                accuracy::ErrorMeter::Create(scene, fields_, 0));
-  meter->Measure(image, error_seconds_, stop);
+  meter->Show(image);
+  meter->Measure(error_seconds_, stop);
   if (const auto error = meter->Result(); error.has_value()) *estimate = error->relative_rmse;
   return absl::OkStatus();
 }

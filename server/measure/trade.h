@@ -44,6 +44,10 @@ struct TradeRow {
 // traced with each of `million_paths`.
 std::vector<Setting> DefaultSweep(const std::vector<double>& million_paths);
 
+// The light volume alone, as people see it: each field's own phase function, by consistent transport
+// and by diffusion, and with light traced with each of `million_paths`.
+std::vector<Setting> TransportSweep(const std::vector<double>& million_paths);
+
 // Marks the Pareto front of milliseconds and relative RMSE.
 void MarkPareto(std::vector<TradeRow>* rows);
 

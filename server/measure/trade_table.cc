@@ -113,9 +113,10 @@ std::vector<std::pair<double, double>> FrontOf(const std::vector<TradeRow>& rows
 // JSON has no word for what is not a number.
 std::string EstimateJson(const TradeRow& row) {
   const accuracy::Estimated& error = row.estimated_error;
-  if (std::isnan(error.value)) return "";
-  return absl::StrFormat("\"estimated_error\": %.5f, \"error_low\": %.5f, \"error_high\": %.5f, ",
-                         error.value, error.low, error.high);
+  if (std::isnan(error.value)) return "\"measured\": false, ";
+  return absl::StrFormat(
+      "\"estimated_error\": %.5f, \"error_low\": %.5f, \"error_high\": %.5f, \"measured\": true, ",
+      error.value, error.low, error.high);
 }
 
 }  // namespace

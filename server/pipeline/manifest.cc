@@ -147,6 +147,8 @@ std::string ToLine(const ManifestEntry& entry) {
   json["device"] = entry.device;
   json["milliseconds"] = entry.milliseconds;
   json["estimated_error"] = OrNull(entry.estimated_error);
+  json["error_low"] = OrNull(entry.error_low);
+  json["error_high"] = OrNull(entry.error_high);
   json["input"] = {{"file", entry.input.path},
                    {"bytes", entry.input.bytes},
                    {"modified_ns", entry.input.modified_ns},
@@ -172,6 +174,10 @@ absl::StatusOr<ManifestEntry> FromLine(std::string_view line) {
     json.at("device").get_to(entry.device);
     json.at("milliseconds").get_to(entry.milliseconds);
     entry.estimated_error = Optional<double>(json, "estimated_error");
+    if (json.contains("error_low")) {  // manifests before version 0.2 have none
+      entry.error_low = Optional<double>(json, "error_low");
+      entry.error_high = Optional<double>(json, "error_high");
+    }
     const Json& input = json.at("input");
     input.at("file").get_to(entry.input.path);
     input.at("bytes").get_to(entry.input.bytes);

@@ -37,6 +37,9 @@ struct ManifestEntry {
   std::string device;
   double milliseconds = 0.0;
   std::optional<double> estimated_error;
+  // The 95 % interval; none where the error was not measured but taken from a table.
+  std::optional<double> error_low;
+  std::optional<double> error_high;
   InputFile input;
 };
 

@@ -40,6 +40,10 @@ PictureTexts TextsOf(const v1::RenderImageResponse& picture, const volume::Storm
   }
   if (picture.has_accuracy()) {
     texts[kErrorText] = absl::StrCat(picture.accuracy().estimated_error());
+    if (picture.accuracy().measured()) {
+      texts[kErrorLowText] = absl::StrCat(picture.accuracy().error_low());
+      texts[kErrorHighText] = absl::StrCat(picture.accuracy().error_high());
+    }
   }
   return texts;
 }

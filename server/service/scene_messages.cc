@@ -412,6 +412,15 @@ void ToMessage(const session::AccuracyReport& report, v1::AccuracyReport& messag
     message.set_discretisation_error(static_cast<float>(*report.discretisation_error));
   }
   message.set_estimated_error(static_cast<float>(report.estimated_error));
+  if (report.measured.has_value()) {
+    const accuracy::MeasuredError& measured = *report.measured;
+    message.set_measured(true);
+    message.set_error_low(static_cast<float>(measured.relative_rmse.low));
+    message.set_error_high(static_cast<float>(measured.relative_rmse.high));
+    message.set_bias(static_cast<float>(measured.relative_bias.value));
+    message.set_bias_low(static_cast<float>(measured.relative_bias.low));
+    message.set_bias_high(static_cast<float>(measured.relative_bias.high));
+  }
   if (report.unmet.has_value()) {
     message.mutable_unmet()->set_code(MessageOf(kUnmetCodes, report.unmet->code));
     message.mutable_unmet()->set_message(report.unmet->message);

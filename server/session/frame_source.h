@@ -12,6 +12,7 @@
 
 #include "absl/status/statusor.h"
 #include "accuracy/accuracy_report.h"
+#include "accuracy/error_meters.h"
 #include "accuracy/frame_quality.h"
 #include "accuracy/light_progress.h"
 #include "base/device_turn.h"
@@ -117,6 +118,15 @@ class FrameSource {
   virtual absl::StatusOr<accuracy::LightProgress> TraceLight(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
       std::int64_t wanted_paths, accuracy::LightClaim* claim) = 0;
+
+  // Measures the error of the scene's picture at full quality, with the light traced so far, for
+  // some tenths of a second more: traces paths, or draws the picture where its light has become
+  // much better. RESOURCE_EXHAUSTED while too many other scenes are measured.
+  virtual absl::StatusOr<accuracy::ErrorProgress> MeasureError(
+      const scene::Scene& /*scene*/,
+      const std::shared_ptr<const volume::HydrometeorFields>& /*fields*/) {
+    return accuracy::ErrorProgress{.ended = true};
+  }
 
   // Tone maps a picture of `scene` computed elsewhere. Does not disturb the stages that Draw keeps.
   virtual absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "accuracy/corrector_pool.h"
+#include "accuracy/error_meters.h"
 #include "accuracy/estimator.h"
 #include "accuracy/traced_lights.h"
 #include "base/out_of_memory.h"
@@ -91,6 +92,21 @@ class GlFrameSource final : public FrameSource {
     return progress;
   }
 
+  absl::StatusOr<accuracy::ErrorProgress> MeasureError(
+      const scene::Scene& scene,
+      const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
+    const Correction correction = CorrectionOf(scene, fields);
+    return base::OrOutOfMemory([&] {
+      return meters_.Step(scene, fields, correction.paths, [&](const scene::Scene& measured) {
+        return Watched([&]() -> absl::StatusOr<picture::LinearPicture> {
+          THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame linear,
+                                       renderers_.Draw(measured, fields, Applied(correction, {})));
+          return frame::PictureOf(*linear.radiance);
+        });
+      });
+    });
+  }
+
   absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
                                     const scene::Scene& scene) override {
     return Watched([&]() -> absl::StatusOr<DisplayFrame> {
@@ -115,7 +131,7 @@ class GlFrameSource final : public FrameSource {
   void FreeUnused(double unused_s) override {
     tone_mapped_.reset();
     renderers_.DropUnusedFor(unused_s);
-    while (correctors_.DropOldest()) {
+    while (correctors_.DropOldest() || meters_.DropOldest()) {
     }
   }
 
@@ -138,7 +154,9 @@ class GlFrameSource final : public FrameSource {
   // The device's fault since the last look, if any.
   absl::Status Look() { return gl::StatusOf(watch_->Look()); }
 
-  bool DropOldest() { return renderers_.DropOldest() || correctors_.DropOldest(); }
+  bool DropOldest() {
+    return renderers_.DropOldest() || meters_.DropOldest() || correctors_.DropOldest();
+  }
 
   // The result of `draw`, or why the device could not. Where the device has no memory left it is
   // given back all that is kept for other pictures, once. A renderer that did not get all its
@@ -198,6 +216,7 @@ class GlFrameSource final : public FrameSource {
   std::shared_ptr<gl::ProgramCache> programs_;
   renderers::RendererPool renderers_{shared_.registry, programs_};
   accuracy::CorrectorPool correctors_{programs_, shared_.lights};
+  accuracy::ErrorMeters meters_;
   frame::ToneMapper tone_mapper_{programs_};
   frame::ToneMapper picture_tone_mapper_{programs_};  // of Tone, whose pictures have other sizes
   gl::Texture2D picture_;                             // that Tone was given

@@ -51,6 +51,12 @@ class GuardedSource final : public FrameSource {
     return Noticed(source_->TraceLight(scene, fields, wanted_paths, claim));
   }
 
+  absl::StatusOr<accuracy::ErrorProgress> MeasureError(
+      const scene::Scene& scene,
+      const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
+    return Noticed(source_->MeasureError(scene, fields));
+  }
+
   absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
                                     const scene::Scene& scene) override {
     THUNDERHEAD_ASSIGN_OR_RETURN(auto memory, MemoryOf(scene));

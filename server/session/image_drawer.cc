@@ -25,6 +25,9 @@ bool AwaitsLight(const scene::Scene& scene) {
   return scene::TracedLightOf(scene.rendering.technique) == scene::TracedLight::kAwaited;
 }
 
+// True if paths are traced before it is drawn.
+bool IsTraced(const ImageJob& job) { return AwaitsLight(*job.decided) || job.error_seconds > 0.0; }
+
 absl::Status TooCostly(double predicted_s, double max_s) {
   return base::InvalidField(
       "scene.output",
@@ -75,11 +78,11 @@ void ImageDrawer::Begin(Lane& lane) {
     return image.phase == Phase::kToDraw && Suits(lane, image.quick);
   });
   if (ready != begun_.end()) return WorkIn(lane, *ready);
-  const auto traced = std::ranges::count_if(
-      begun_, [](const Begun& image) { return AwaitsLight(*image.job.decided); });
+  const auto traced =
+      std::ranges::count_if(begun_, [](const Begun& image) { return IsTraced(image.job); });
   std::optional<ImageJob> job = queue_.Take([&](const ImageJob& waits) {
     return Suits(lane, waits.predicted_ms <= kQuick_ms) &&
-           (traced < kMaxTraced || !AwaitsLight(*waits.decided));
+           (traced < kMaxTraced || !IsTraced(waits));
   });
   if (!job.has_value()) return;
   const bool quick = job->predicted_ms <= kQuick_ms;
@@ -93,7 +96,7 @@ void ImageDrawer::Begin(Lane& lane) {
 void ImageDrawer::WorkIn(Lane& lane, Begun& image) {
   image.lane = &lane;
   if (image.phase == Phase::kToDraw) image.phase = Phase::kDrawing;
-  const bool draws = image.phase == Phase::kDrawing || !AwaitsLight(*image.job.decided);
+  const bool draws = image.phase == Phase::kDrawing || !IsTraced(image.job);
   // `begun_` keeps it until the lane is idle.
   lane.Begin(
       [&image, draws, preparation = preparation_](const absl::StatusOr<FrameSource*>& source) {
@@ -149,15 +152,14 @@ bool ImageDrawer::TriesAgain(Begun& image) {
 }
 
 bool ImageDrawer::Ends(Begun& image) {
-  if (image.phase == Phase::kTracing) return EndsTracing(image);
+  if (image.phase == Phase::kTracing || image.phase == Phase::kMeasuring) {
+    return EndsTracing(image);
+  }
   if (image.lane == nullptr || !image.lane->IsIdle()) return false;
   image.lane = nullptr;
   if (TriesAgain(image)) return false;
   if (image.status.ok() && !image.frame.has_value()) {
-    image.phase = Phase::kTracing;
-    image.wanted_paths = source_.Estimator().PathsFor(*image.job.decided);
-    tracer_.Want(image.name, {std::make_shared<const scene::Scene>(*image.job.decided),
-                              image.fields, image.wanted_paths, true});
+    AwaitsLight(*image.job.decided) ? Trace(image) : Measure(image);
     return false;
   }
   tracer_.Stop(image.name);
@@ -169,17 +171,46 @@ bool ImageDrawer::Ends(Begun& image) {
   return true;
 }
 
+void ImageDrawer::Trace(Begun& image) {
+  image.phase = Phase::kTracing;
+  image.wanted_paths = source_.Estimator().PathsFor(*image.job.decided);
+  tracer_.Want(image.name, {std::make_shared<const scene::Scene>(*image.job.decided), image.fields,
+                            image.wanted_paths, true});
+}
+
+// Where no table knows the technique nobody is told an error.
+void ImageDrawer::Measure(Begun& image) {
+  const bool tells = source_.Estimator().Report(*image.job.decided, {}, {}).has_value();
+  if (image.job.error_seconds <= 0.0 || !tells) {
+    image.phase = Phase::kToDraw;
+    return;
+  }
+  image.phase = Phase::kMeasuring;
+  tracer_.Want(image.name, {.scene = std::make_shared<const scene::Scene>(*image.job.decided),
+                            .fields = image.fields,
+                            .claims = true,
+                            .light = false,
+                            .error = true});
+}
+
+void ImageDrawer::TakeStep(Begun& image, const TracedStep& step) {
+  if (step.light.has_value()) {
+    Report(image, *step.light);
+    if (step.light->steps == 0 || step.light->HasTraced(image.wanted_paths)) Measure(image);
+  } else if (step.error.has_value()) {
+    image.error = step.error->error;
+    if (step.error->ended || step.error->traced_s >= image.job.error_seconds) {
+      image.phase = Phase::kToDraw;
+    }
+  }
+}
+
 bool ImageDrawer::EndsTracing(Begun& image) {
   absl::Status failed;
   if (*image.job.cancelled) failed = absl::CancelledError("the call was cancelled");
   if (const auto news = tracer_.TakeNews(image.name); failed.ok() && news.has_value()) {
     failed = news->status();
-    if (failed.ok()) {
-      Report(image, **news);
-      if ((*news)->steps == 0 || (*news)->HasTraced(image.wanted_paths)) {
-        image.phase = Phase::kToDraw;
-      }
-    }
+    if (failed.ok()) TakeStep(image, **news);
   }
   if (failed.ok()) return false;
   tracer_.Stop(image.name);
@@ -190,14 +221,14 @@ bool ImageDrawer::EndsTracing(Begun& image) {
 void ImageDrawer::Report(const Begun& image, const accuracy::LightProgress& progress) const {
   if (!image.job.on_progress || progress.steps == 0) return;
   const auto report =
-      source_.Estimator().Report(*image.job.decided, {}, {progress.paths, std::nullopt});
+      source_.Estimator().Report(*image.job.decided, {}, {.traced_paths = progress.paths});
   image.job.on_progress(
       {progress.ShareOf(image.wanted_paths), progress.paths,
        report.has_value() ? std::optional(report->estimated_error) : std::nullopt});
 }
 
 absl::StatusOr<DisplayFrame> ImageDrawer::Drawn(Begun& image) {
-  source_.Learn("", *image.job.decided, FrameQuality{}, &*image.frame);
+  source_.Learn("", *image.job.decided, FrameQuality{}, {.measured = image.error}, &*image.frame);
   double drawn_ms = 0.0;
   for (const StageTime& stage : image.frame->stages) drawn_ms += stage.milliseconds;
   queue_.Drew(image.job, drawn_ms);

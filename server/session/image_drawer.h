@@ -45,7 +45,7 @@ class ImageDrawer {
   void EndAll(const absl::Status& why);
 
  private:
-  enum class Phase { kReading, kTracing, kToDraw, kDrawing };
+  enum class Phase { kReading, kTracing, kMeasuring, kToDraw, kDrawing };
 
   // A picture that was begun.
   struct Begun {
@@ -57,6 +57,7 @@ class ImageDrawer {
     std::shared_ptr<const volume::HydrometeorFields> fields;
     std::vector<StageTime> stages;  // before drawing
     std::int64_t wanted_paths = 0;
+    std::optional<accuracy::MeasuredError> error;
     int attempts = 0;  // to draw it
     // By the lane.
     absl::Status status;
@@ -75,7 +76,11 @@ class ImageDrawer {
   static bool TriesAgain(Begun& image);
   // True if it is done.
   bool Ends(Begun& image);
+  // The picture's next phase, before it is drawn.
+  void Trace(Begun& image);
+  void Measure(Begun& image);
   bool EndsTracing(Begun& image);
+  void TakeStep(Begun& image, const TracedStep& step);
   void Report(const Begun& image, const accuracy::LightProgress& progress) const;
   absl::StatusOr<DisplayFrame> Drawn(Begun& image);
 

@@ -48,7 +48,8 @@ struct ImageJob {
   std::function<void(const ImageProgress&)> on_progress = nullptr;
   // Nobody waits for it: those for whom somebody does go before.
   bool gives_way = false;
-  bool linear = false;  // the picture is also to be had as light
+  bool linear = false;         // the picture is also to be had as light
+  double error_seconds = 0.0;  // of tracing, for its error to be measured
   // What reading, drawing and encoding it may take, without waiting for others; more ends it with
   // `too_long`.
   double max_work_ms = 1e15;

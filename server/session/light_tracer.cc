@@ -3,21 +3,27 @@
 #include <algorithm>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
+#include "base/error_details.h"
+#include "base/log.h"
 #include "base/out_of_memory.h"
+#include "base/status.h"
 #include "gl/device_faults.h"
 
 namespace thunderhead::session {
 
 void LightTracer::Want(const std::string& who, Request request) {
   Wanted& wanted = wanted_[who];
-  if (wanted.request.scene == request.scene && wanted.request.fields == request.fields) return;
+  if (wanted.request.scene == request.scene && wanted.request.fields == request.fields &&
+      wanted.request.light == request.light && wanted.request.error == request.error) {
+    return;
+  }
   wanted = Wanted{.request = std::move(request), .claim = std::move(wanted.claim)};
 }
 
 void LightTracer::Stop(const std::string& who) { wanted_.erase(who); }
 
-std::optional<absl::StatusOr<accuracy::LightProgress>> LightTracer::TakeNews(
-    const std::string& who) {
+std::optional<absl::StatusOr<TracedStep>> LightTracer::TakeNews(const std::string& who) {
   const auto found = wanted_.find(who);
   if (found == wanted_.end()) return std::nullopt;
   return std::exchange(found->second.news, std::nullopt);
@@ -30,17 +36,49 @@ void LightTracer::TakeOutcome(Clock::time_point now) {
   const auto found = wanted_.find(tracing_for_);
   if (found == wanted_.end() || found->second.request.scene != tracing_scene_) return;
   Wanted& wanted = found->second;
-  if (wanted.request.claims) wanted.claim = std::move(outcome->claim);
+  if (wanted.request.claims && wanted.request.light) wanted.claim = std::move(outcome->claim);
   const absl::Status& failed = outcome->progress->status();
   if (absl::IsResourceExhausted(failed) || gl::IsDeviceLost(failed)) {
     wanted.not_before = now + kTraceAgainAfter;
     return;
   }
-  const Progress& progress = *outcome->progress;
-  // A picture needs no more paths than it asked for; a session says when it has enough.
-  wanted.ended = !progress.ok() || progress->steps == 0 ||
-                 (wanted.request.claims && progress->HasTraced(wanted.request.wanted_paths));
+  wanted.ended = !outcome->progress->ok() || Ends(wanted.request, **outcome->progress);
   wanted.news = std::move(outcome->progress);
+}
+
+// A picture needs no more paths than it asked for; a session says when it has enough.
+bool LightTracer::Ends(const Request& request, const TracedStep& step) {
+  const bool traces = step.light.has_value() && step.light->steps > 0 &&
+                      !(request.claims && step.light->HasTraced(request.wanted_paths));
+  const bool measures = request.error && !(step.error.has_value() && step.error->ended);
+  return !traces && !measures;
+}
+
+LightTracer::Progress LightTracer::Trace(FrameSource& source, const Request& request,
+                                         accuracy::LightClaim* claim) {
+  TracedStep step;
+  if (request.light) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        step.light, source.TraceLight(*request.scene, request.fields, request.wanted_paths,
+                                      request.claims ? claim : nullptr));
+  }
+  if (!request.error) return step;
+  absl::StatusOr<accuracy::ErrorProgress> error =
+      source.MeasureError(*request.scene, request.fields);
+  if (error.ok()) {
+    step.error = *std::move(error);
+    return step;
+  }
+  if (gl::IsDeviceLost(error.status())) return error.status();
+  // The picture is as good without; what others keep busy is tried again with the next step.
+  if (absl::IsResourceExhausted(error.status())) {
+    if (!request.light) return error.status();
+    return step;
+  }
+  base::LogError(base::Annotate(
+      error.status(), absl::StrCat("measuring the error of storm ", request.scene->storm_id)));
+  step.error = accuracy::ErrorProgress{.ended = true};
+  return step;
 }
 
 std::optional<Clock::time_point> LightTracer::Begin(Clock::time_point now) {
@@ -63,8 +101,7 @@ std::optional<Clock::time_point> LightTracer::Begin(Clock::time_point now) {
           accuracy::LightClaim claim;
           Progress progress = base::OrOutOfMemory([&]() -> Progress {
             if (!source.ok()) return source.status();
-            return (*source)->TraceLight(*request.scene, request.fields, request.wanted_paths,
-                                         request.claims ? &claim : nullptr);
+            return Trace(**source, request, &claim);
           });
           const std::lock_guard lock(outcome->mutex);
           outcome->progress = std::move(progress);

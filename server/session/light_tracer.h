@@ -1,5 +1,6 @@
-// Traces light for whoever rests: sessions, and pictures that await it, a step for one after
-// another in a lane of its own. Used by the render loop's thread only.
+// Traces light for whoever rests, and measures the error of their pictures: of sessions, and of
+// pictures that await it, a step for one after another in a lane of its own. Used by the render
+// loop's thread only.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +12,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "accuracy/error_meters.h"
 #include "accuracy/light_progress.h"
 #include "scene/scene.h"
 #include "session/lane.h"
@@ -22,6 +24,12 @@ namespace thunderhead::session {
 // Delay before tracing is tried again when light is traced for too many other scenes.
 inline constexpr Clock::duration kTraceAgainAfter = std::chrono::milliseconds(500);
 
+// The progress of a step.
+struct TracedStep {
+  std::optional<accuracy::LightProgress> light;
+  std::optional<accuracy::ErrorProgress> error;
+};
+
 class LightTracer {
  public:
   // The lane must outlive it, and its work must have ended before this does.
@@ -32,12 +40,14 @@ class LightTracer {
     std::shared_ptr<const volume::HydrometeorFields> fields;
     std::int64_t wanted_paths = 0;
     bool claims = false;  // while it traces, the light is not given up for another's
+    bool light = true;    // it is traced
+    bool error = false;   // it is measured
   };
-  // Traces until Stop, or until a step fails or finds nothing to trace.
+  // Traces until Stop, or until a step fails or finds nothing to trace and nothing to measure.
   void Want(const std::string& who, Request request);
   void Stop(const std::string& who);
   // The progress since the last call, or why there is none.
-  std::optional<absl::StatusOr<accuracy::LightProgress>> TakeNews(const std::string& who);
+  std::optional<absl::StatusOr<TracedStep>> TakeNews(const std::string& who);
 
   // Takes what a step has brought since the last call.
   void TakeOutcome(Clock::time_point now);
@@ -45,15 +55,17 @@ class LightTracer {
   std::optional<Clock::time_point> Begin(Clock::time_point now);
 
  private:
-  using Progress = absl::StatusOr<accuracy::LightProgress>;
+  using Progress = absl::StatusOr<TracedStep>;
 
   struct Wanted {
     Request request;
-    accuracy::LightClaim claim;
-    std::optional<Progress> news;
+    accuracy::LightClaim claim = nullptr;
+    std::optional<Progress> news = std::nullopt;
     Clock::time_point not_before{};
     bool ended = false;
   };
+  static Progress Trace(FrameSource& source, const Request& request, accuracy::LightClaim* claim);
+  static bool Ends(const Request& request, const TracedStep& step);
   // The outcome of a step, by the lane's thread.
   struct Outcome {
     std::mutex mutex;

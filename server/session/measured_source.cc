@@ -20,16 +20,17 @@ double TotalMs(const DisplayFrame& frame) {
 MeasuredSource::MeasuredSource(std::unique_ptr<FrameSource> source, accuracy::OfferTables tables)
     : source_(std::move(source)), tables_(std::move(tables)) {}
 
-absl::StatusOr<DisplayFrame> MeasuredSource::Draw(
-    const std::string& view, const scene::Scene& scene, const Fields& fields,
-    const FrameQuality& quality, const std::optional<double>& discretisation_error) {
+absl::StatusOr<DisplayFrame> MeasuredSource::Draw(const std::string& view,
+                                                  const scene::Scene& scene, const Fields& fields,
+                                                  const FrameQuality& quality,
+                                                  const accuracy::Evidence& evidence) {
   last_drawn_.reset();
   const base::Stopwatch stopwatch;
   THUNDERHEAD_ASSIGN_OR_RETURN(DisplayFrame frame, base::OrOutOfMemory([&] {
                                  return source_->Draw(scene, fields, quality);
                                }));
   last_drawn_ = LastDrawn{scene, quality};
-  Report(view, scene, quality, stopwatch.ElapsedMs(), discretisation_error, &frame);
+  Report(view, scene, quality, stopwatch.ElapsedMs(), evidence, &frame);
   return frame;
 }
 
@@ -41,15 +42,15 @@ absl::StatusOr<CheckedFrame> MeasuredSource::DrawChecked(const std::string& view
                                  return source_->DrawChecked(scene, fields);
                                }));
   last_drawn_ = LastDrawn{scene, FrameQuality{}};
-  Report(view, scene, FrameQuality{}, TotalMs(checked.frame), checked.discretisation_error,
-         &checked.frame);
+  Report(view, scene, FrameQuality{}, TotalMs(checked.frame),
+         {.discretisation_error = checked.discretisation_error}, &checked.frame);
   return checked;
 }
 
 void MeasuredSource::Learn(const std::string& view, const scene::Scene& scene,
-                           const FrameQuality& quality, DisplayFrame* frame,
-                           const std::optional<double>& discretisation_error) {
-  Report(view, scene, quality, TotalMs(*frame), discretisation_error, frame);
+                           const FrameQuality& quality, const accuracy::Evidence& evidence,
+                           DisplayFrame* frame) {
+  Report(view, scene, quality, TotalMs(*frame), evidence, frame);
 }
 
 absl::StatusOr<DisplayFrame> MeasuredSource::Tone(const picture::LinearPicture& picture,
@@ -68,11 +69,10 @@ void MeasuredSource::Replace(std::unique_ptr<FrameSource> source) {
 
 void MeasuredSource::Report(const std::string& view, const scene::Scene& scene,
                             const FrameQuality& quality, double total_ms,
-                            const std::optional<double>& discretisation_error,
-                            DisplayFrame* frame) {
-  const std::int64_t paths = frame->modelled.traced_paths;
-  costs_.Observe(view, {scene, quality, total_ms, frame->stages, paths > 0});
-  frame->accuracy = estimator_.Report(scene, quality, {paths, discretisation_error});
+                            accuracy::Evidence evidence, DisplayFrame* frame) {
+  evidence.traced_paths = frame->modelled.traced_paths;
+  costs_.Observe(view, {scene, quality, total_ms, frame->stages, evidence.traced_paths > 0});
+  frame->accuracy = estimator_.Report(scene, quality, evidence);
 }
 
 }  // namespace thunderhead::session

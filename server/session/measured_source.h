@@ -24,10 +24,10 @@ class MeasuredSource {
   MeasuredSource& operator=(const MeasuredSource&) = delete;
 
   // Draws a frame of `view`: a session's id, or the empty string for pictures outside any session.
-  absl::StatusOr<DisplayFrame> Draw(
-      const std::string& view, const scene::Scene& scene, const Fields& fields,
-      const FrameQuality& quality,
-      const std::optional<double>& discretisation_error = std::nullopt);
+  // `evidence` is what is known of its error; the paths that corrected its light are added.
+  absl::StatusOr<DisplayFrame> Draw(const std::string& view, const scene::Scene& scene,
+                                    const Fields& fields, const FrameQuality& quality,
+                                    const accuracy::Evidence& evidence = {});
   absl::StatusOr<CheckedFrame> DrawChecked(const std::string& view, const scene::Scene& scene,
                                            const Fields& fields);
   // As FrameSource's.
@@ -41,7 +41,7 @@ class MeasuredSource {
 
   // Reports a frame that another source drew.
   void Learn(const std::string& view, const scene::Scene& scene, const FrameQuality& quality,
-             DisplayFrame* frame, const std::optional<double>& discretisation_error = std::nullopt);
+             const accuracy::Evidence& evidence, DisplayFrame* frame);
 
   // Forgets the costs of a view that is no longer drawn.
   void Forget(const std::string& view) { costs_.Forget(view); }
@@ -53,8 +53,7 @@ class MeasuredSource {
 
  private:
   void Report(const std::string& view, const scene::Scene& scene, const FrameQuality& quality,
-              double total_ms, const std::optional<double>& discretisation_error,
-              DisplayFrame* frame);
+              double total_ms, accuracy::Evidence evidence, DisplayFrame* frame);
 
   std::unique_ptr<FrameSource> source_;
   const accuracy::OfferTables tables_;

@@ -160,8 +160,10 @@ void SessionDrawer::TakeDrawn(const std::vector<std::shared_ptr<Session>>& sessi
 void SessionDrawer::Show(const Turn& turn, const InLane& drawn, SessionLane::Picture picture) {
   const NewestScene& shown = drawn.shown;
   const bool shows_light = std::holds_alternative<ShowLight>(drawn.work);
-  source_.Learn(turn.session->id(), *shown.scene, QualityOf(drawn.work), &picture.frame,
-                shows_light ? turn.kept.view.discretisation_error() : picture.discretisation_error);
+  source_.Learn(turn.session->id(), *shown.scene, QualityOf(drawn.work),
+                shows_light ? turn.kept.view.evidence()
+                            : accuracy::Evidence{.discretisation_error = picture.discretisation_error},
+                &picture.frame);
   if (shows_light) {
     return SendLight(turn, shown, std::move(picture.frame), std::move(picture.fine));
   }
@@ -293,13 +295,22 @@ SessionDrawer::Wish SessionDrawer::Need(const Turn& turn, const TraceLight& work
     turn.kept.view.LightIsOthers();
     return {};
   }
-  light_tracer_.Want(id, {work.shown.scene, turn.kept.fields.Fields()});
+  const bool error = work.error && turn.kept.tells;
+  if (!error) turn.kept.view.ErrorIsUntold();
+  if (!error && !work.light) return {};
+  light_tracer_.Want(id, {.scene = work.shown.scene,
+                          .fields = turn.kept.fields.Fields(),
+                          .light = work.light,
+                          .error = error});
   const auto news = light_tracer_.TakeNews(id);
   if (!news.has_value()) return {};
   if (news->ok()) {
-    const bool show = turn.kept.view.LightTraced(**news, Clock::now());
-    if (turn.kept.view.LightIsTraced()) light_tracer_.Stop(id);
-    if (!show) return {};
+    const Clock::time_point now = Clock::now();
+    const TracedStep& step = **news;
+    const bool lit = step.light.has_value() && turn.kept.view.LightTraced(*step.light, now);
+    const bool told = step.error.has_value() && turn.kept.view.ErrorMeasured(*step.error, now);
+    if (work.light && turn.kept.view.LightIsTraced()) light_tracer_.Stop(id);
+    if (!lit && !told) return {};
   } else {
     base::LogError(base::Annotate(
         news->status(), absl::StrCat("tracing the light of storm ", work.shown.scene->storm_id)));
@@ -362,7 +373,7 @@ absl::Status SessionDrawer::DrawLight(const Turn& turn, const NewestScene& shown
   THUNDERHEAD_ASSIGN_OR_RETURN(
       DisplayFrame picture,
       source_.Draw(turn.session->id(), *shown.scene, turn.kept.fields.Fields(), FrameQuality{},
-                   turn.kept.view.discretisation_error()));
+                   turn.kept.view.evidence()));
   auto fine = FineOf(turn, picture);
   SendLight(turn, shown, std::move(picture), std::move(fine));
   return absl::OkStatus();
@@ -415,6 +426,7 @@ void SessionDrawer::Send(const Turn& turn, const NewestScene& shown, bool refine
                          DisplayFrame picture, std::optional<frame::FineImage> fine,
                          std::optional<Refinement> refinement) {
   turn.kept.losses = 0;
+  turn.kept.tells = picture.accuracy.has_value();
   turn.kept.fields.AddStages(&picture.stages);
   DrawnFrame frame{.session = turn.session,
                    .scene_revision = shown.revision,

@@ -61,6 +61,7 @@ class SessionDrawer {
     bool in_lane = false;     // where that work is to be done
     bool gives_turn = false;  // to its frame that is in the lane; there is no other work
     int losses = 0;           // of the device, since the last frame
+    bool tells = false;       // the last frame said its error
     // The revision whose frame at rest had no room in the lane; it is drawn whole.
     std::uint64_t whole_revision = 0;
   };

@@ -96,13 +96,16 @@ std::optional<SessionWork> SessionView::Check(const Now& now) {
 
 std::optional<SessionWork> SessionView::Trace(const Now& now) {
   const scene::Technique& technique = now.shown.scene->rendering.technique;
-  if (scene::TracedLightOf(technique) != scene::TracedLight::kOff &&
-      planner_.DrawsWhole(*now.shown.scene)) {
+  if (planner_.DrawsWhole(*now.shown.scene)) {
     const Clock::time_point settled_at = targets_.SettlesAt(now.shown);
     if (now.time < settled_at) return WaitUntil{settled_at};
     light_.BeginFor(now.shown.revision, now.time);
-    if (light_.due()) return ShowLight{now.shown};
-    if (!light_.ended()) return TraceLight{now.shown};
+    error_.BeginFor(now.shown.revision);
+    if (light_.due() || error_.due()) return ShowLight{now.shown};
+    const bool light =
+        scene::TracedLightOf(technique) != scene::TracedLight::kOff && !light_.ended();
+    // Measured again as the light becomes better.
+    if (light || !error_.ended()) return TraceLight{now.shown, light, true};
   }
   state_ = State::kSettled;
   return std::nullopt;

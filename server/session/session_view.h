@@ -8,8 +8,10 @@
 #include <string>
 #include <variant>
 
+#include "accuracy/estimator.h"
 #include "accuracy/light_progress.h"
 #include "session/decided_setting.h"
+#include "session/error_measuring.h"
 #include "session/frame_planner.h"
 #include "session/light_tracing.h"
 #include "session/sessions.h"
@@ -28,11 +30,13 @@ struct DrawFrame {
 struct CheckSlices {
   NewestScene shown;
 };
-// Have light traced.
+// Have light traced, the picture's error measured, or both.
 struct TraceLight {
   NewestScene shown;
+  bool light = true;
+  bool error = false;
 };
-// Draw with the light traced so far.
+// Draw with the light traced so far, and tell the error measured so far.
 struct ShowLight {
   NewestScene shown;
 };
@@ -50,7 +54,7 @@ class SessionView {
     kMoving,        // the scene is newer than the shown frame: draw at once, possibly coarse
     kRefining,      // the scene rests and a finer frame follows
     kChecking,      // drawn at full quality: measure error and time, and decide the setting again
-    kTracingLight,  // correct the light by more and more paths
+    kTracingLight,  // correct the light, and measure the error, by more and more paths
     kReference,     // refined by the tracer
     kSettled,       // final
     kYielded,       // its picture stays; what it takes to draw was left to others
@@ -77,9 +81,21 @@ class SessionView {
   bool LightTraced(const accuracy::LightProgress& progress, Clock::time_point now);
   // The light stays as it was traced before; shown once more, to tell why.
   void LightFailed() { light_.GiveUp(true); }
-  // No light is traced for this view.
-  void LightIsOthers() { light_.GiveUp(false); }
-  void LightShown(Clock::time_point now) { light_.Shown(now); }
+  // No light is traced and no error measured for this view.
+  void LightIsOthers() {
+    light_.GiveUp(false);
+    error_.GiveUp();
+  }
+  // As LightTraced.
+  bool ErrorMeasured(const accuracy::ErrorProgress& progress, Clock::time_point now) {
+    return error_.Measured(progress, now);
+  }
+  // Nobody would be told the error.
+  void ErrorIsUntold() { error_.GiveUp(); }
+  void LightShown(Clock::time_point now) {
+    light_.Shown(now);
+    error_.Told(now);
+  }
   void ReferenceShown(std::uint64_t revision) { planner_.GiveUp(revision); }
   // That revision is not tried again, or from `try_again_at` on.
   void Failed(std::uint64_t revision, std::optional<Clock::time_point> try_again_at = std::nullopt);
@@ -97,8 +113,9 @@ class SessionView {
   // The newest revision that was shown, or has failed.
   std::uint64_t shown_revision() const { return planner_.revision(); }
   bool LightIsTraced() const { return light_.ended(); }
-  const std::optional<double>& discretisation_error() const {
-    return setting_.discretisation_error();
+  // What is known of the error of the picture at full quality.
+  accuracy::Evidence evidence() const {
+    return {.discretisation_error = setting_.discretisation_error(), .measured = error_.error()};
   }
 
  private:
@@ -123,6 +140,7 @@ class SessionView {
   FramePlanner planner_;
   DecidedSetting setting_;
   LightTracing light_;
+  ErrorMeasuring error_;
   std::optional<std::uint64_t> failed_revision_;
   std::optional<Clock::time_point> try_again_at_;  // what has failed
   std::optional<Clock::time_point> returns_at_;    // having yielded, to trace light

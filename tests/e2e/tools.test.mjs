@@ -206,11 +206,17 @@ test("how wrong is this picture: it says so over it", async () => {
   await until("an error in the line over the picture", async () =>
     /This picture is [\d.]+ % off/.test((await text("truth")).replaceAll("\n", " ")),
   );
+  const source = page.getByTestId("error-source");
+  await until("the error to be measured while the picture rests", async () =>
+    /^measured: [\d.]+ to [\d.]+ %$/.test(await source.innerText()),
+  );
   await focusPicture();
   await key("k");
   await page.getByTestId("accuracy-section").locator("summary").click();
-  const [line, report] = [await text("truth"), await text("accuracy-report")];
-  assert.equal(/([\d.]+) %/.exec(line)[1], /Estimated error ([\d.]+) %/.exec(report)[1]);
+  await until("the same error in the report", async () => {
+    const [line, report] = [await text("truth"), await text("accuracy-report")];
+    return /([\d.]+) %/.exec(line)[1] === /Measured error ([\d.]+) %/.exec(report)?.[1];
+  });
   await key("Escape");
 });
 

@@ -150,6 +150,68 @@ TEST_F(AccuracyTest, AViewWithoutATableIsAProblemOnce) {
   EXPECT_TRUE(watcher.AwaitFrame(service_.Update(id, WithMaxError(0.35F)), true));
 }
 
+TEST_F(AccuracyTest, TheErrorIsMeasuredAtRestAndReplacesTheTables) {
+  service_.machine->measured_error = 0.25;
+  const std::string id = service_.Open(WithMaxError(0.35F));
+  Watcher watcher(service_.stub(), id);
+  ASSERT_TRUE(watcher.Await([](const Messages& messages) {
+    return std::ranges::any_of(
+        messages, [](const auto& message) { return message.frame().accuracy().measured(); });
+  }));
+  bool first = true;
+  for (const v1::WatchFramesResponse& message : watcher.Messages()) {
+    const v1::AccuracyReport& report = message.frame().accuracy();
+    if (report.measured()) {
+      EXPECT_EQ(report.estimated_error(), 0.25F);
+      EXPECT_LT(report.error_low(), 0.25F);
+      EXPECT_GT(report.error_high(), 0.25F);
+      EXPECT_EQ(report.bias(), -0.125F);
+      EXPECT_LT(report.bias_low(), report.bias_high());
+    } else {
+      EXPECT_GE(report.estimated_error(), 0.3F) << "the table's";
+      EXPECT_FALSE(report.has_error_low());
+    }
+    if (first) EXPECT_FALSE(report.measured()) << "nobody waits for it";
+    first = false;
+  }
+  EXPECT_EQ(watcher.NewestFrame().accuracy().model_error(), 0.3F);
+  // Another camera, another picture.
+  v1::Scene turned = WithMaxError(0.35F);
+  turned.mutable_camera()->mutable_orbit()->set_azimuth_deg(10.0F);
+  const std::uint64_t revision = service_.Update(id, turned);
+  ASSERT_TRUE(watcher.AwaitFrame(revision, true));
+  const auto messages = watcher.Messages();
+  const auto changed = std::ranges::find_if(
+      messages, [&](const auto& message) { return message.frame().scene_revision() == revision; });
+  EXPECT_FALSE(changed->frame().accuracy().measured());
+}
+
+TEST_F(AccuracyTest, AMeasuredErrorAboveTheLimitIsTold) {
+  service_.machine->measured_error = 0.5;
+  Watcher watcher(service_.stub(), service_.Open(WithMaxError(0.35F)));
+  ASSERT_TRUE(watcher.Await(
+      [](const Messages& messages) { return messages.back().frame().accuracy().measured(); }));
+  EXPECT_THAT(watcher.NewestFrame().accuracy().unmet().message(), HasSubstr("0.5"));
+}
+
+TEST_F(AccuracyTest, APicturesErrorIsMeasuredForAsLongAsItAsks) {
+  service_.machine->measured_error = 0.25;
+  v1::RenderImageRequest request;
+  *request.mutable_scene() = WithMaxError(0.35F);
+  v1::RenderImageResponse response;
+  ASSERT_TRUE(Call(service_.stub(), &Stub::RenderImage, request, &response).ok());
+  EXPECT_FALSE(response.accuracy().measured());
+  EXPECT_EQ(service_.machine->measured_steps, 0);
+  request.set_error_seconds(0.5F);  // a fake step takes a tenth
+  ASSERT_TRUE(Call(service_.stub(), &Stub::RenderImage, request, &response).ok());
+  EXPECT_TRUE(response.accuracy().measured());
+  EXPECT_EQ(response.accuracy().estimated_error(), 0.25F);
+  EXPECT_EQ(service_.machine->measured_steps, 5);
+  request.set_error_seconds(61.0F);
+  EXPECT_EQ(Call(service_.stub(), &Stub::RenderImage, request, &response).error_code(),
+            grpc::StatusCode::INVALID_ARGUMENT);
+}
+
 TEST_F(AccuracyTest, PicturesAskToo) {
   v1::RenderImageRequest request;
   *request.mutable_scene() = WithMaxError(0.35F);

@@ -74,7 +74,8 @@ class CommandLineTest : public ::testing::Test {
 
   const TemporaryFolder folder_;
   const std::string picture_ = folder_.File("storm.png");
-  const std::string render_ = "render " + kSample + " --device software -o " + picture_;
+  const std::string render_ =
+      "render " + kSample + " --device software --error-seconds 0 -o " + picture_;
 };
 
 TEST_F(CommandLineTest, VersionAndHelp) {
@@ -157,6 +158,32 @@ TEST_F(CommandLineTest, RenderWritesThePictureAndItsCosts) {
   EXPECT_TRUE(said.scene().camera().orbit().has_distance_m());
   EXPECT_GT(said.modelled().device_bytes(), 0U);
   EXPECT_GT(said.stages_size(), 2);
+  EXPECT_FALSE(said.accuracy().measured());
+  EXPECT_FALSE(said.accuracy().has_error_low());
+  EXPECT_THAT(Contents(picture_), Not(HasSubstr("thunderhead.error_low")));
+}
+
+TEST_F(CommandLineTest, RenderMeasuresThePicturesError) {
+  const std::string render = "render " + kSample + " --device software -o " + picture_ +
+                             " --time 1 --size 80x45 --slices 64";
+  const Outcome outcome = Run(render + " --error-seconds 1 --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* key : {"estimatedError", "errorLow", "errorHigh", "bias", "biasLow"}) {
+    EXPECT_THAT(outcome.out, ContainsRegex("\"" + std::string(key) + "\": -?[0-9.]+")) << key;
+  }
+  EXPECT_THAT(outcome.out, HasSubstr("\"measured\": true"));
+  v1::RenderImageResponse said;
+  ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(outcome.out, &said).ok());
+  const v1::AccuracyReport& report = said.accuracy();
+  EXPECT_LE(report.error_low(), report.estimated_error());
+  EXPECT_LT(report.estimated_error(), report.error_high());
+  // Diffusion on the sample storm: 0.1 to 0.2, and not black or of one colour.
+  EXPECT_GT(report.error_high(), 0.05F);
+  EXPECT_LT(report.error_low(), 0.4F);
+  EXPECT_THAT(Contents(picture_), HasSubstr("thunderhead.error_low"));
+  const Outcome printed = Run(render);
+  ASSERT_EQ(printed.code, 0) << printed.err;
+  EXPECT_THAT(printed.out, ContainsRegex("error about [0-9.]+ .measured: [0-9.]+ to [0-9.]+.\n"));
 }
 
 TEST_F(CommandLineTest, FlagsOverrideTheSceneFile) {
@@ -205,8 +232,9 @@ TEST_F(CommandLineTest, RenderWaitsForTracedLightAndPrintsTheErrorReached) {
   const Outcome outcome = Run(render_ + " --time 1 --size 48x27 --quality true --max-error 0.09");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, IsEmpty());
-  EXPECT_THAT(outcome.out, ContainsRegex("diffusion, .* error about 0\\.0[78][0-9]*, .*, "
-                                         "0\\.1[0-9]* million traced paths\n"));
+  EXPECT_THAT(outcome.out,
+              ContainsRegex("diffusion, .* error about 0\\.0[78][0-9]* .from a table., .*, "
+                            "0\\.1[0-9]* million traced paths\n"));
   EXPECT_TRUE(frame::DecodePng(Contents(picture_)).ok());
   EXPECT_THAT(Contents(picture_), HasSubstr("TRACED_LIGHT_AWAITED"));
 }

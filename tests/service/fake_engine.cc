@@ -173,6 +173,22 @@ class FakeFrameSource final : public session::FrameSource {
                                    ++machine_->traced_steps};
   }
 
+  absl::StatusOr<accuracy::ErrorProgress> MeasureError(
+      const scene::Scene& /*scene*/,
+      const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
+    THUNDERHEAD_CHECK(fields != nullptr, "measured without fields");
+    const double error = machine_->measured_error;
+    if (error <= 0.0) return accuracy::ErrorProgress{.ended = true};
+    const int steps = ++machine_->measured_steps;
+    accuracy::ErrorProgress progress{.traced_s = 0.1 * steps, .ended = steps >= 10};
+    if (steps < 2) return progress;
+    const double reach = error / (1.0 + steps);
+    progress.error = {.relative_rmse = {error, error - reach, error + reach},
+                      .relative_bias = {-0.5 * error, -0.5 * error - reach, -0.5 * error + reach},
+                      .paths = 1000 * steps};
+    return progress;
+  }
+
   absl::StatusOr<session::DisplayFrame> Tone(const picture::LinearPicture& picture,
                                              const scene::Scene& scene) override {
     session::DisplayFrame frame;

@@ -112,6 +112,10 @@ struct FakeMachine {
   std::atomic<bool> traces_enough{false};                // for others
   std::atomic<double> waits_to_trace_azimuth_deg{-1.0};  // as others have their turn
   const accuracy::LightClaim light = std::make_shared<int>();
+  // Of pictures, from the second step on; each step takes a tenth of a second of tracing. 0: none
+  // can be measured.
+  std::atomic<double> measured_error{0.0};
+  std::atomic<int> measured_steps{0};
   Gate tracing;
 
   std::vector<Drawn> Log();

@@ -42,6 +42,15 @@ class SessionViewTest : public ::testing::Test {
     newest_ = {++revision_, std::make_shared<const scene::Scene>(scene_), kStart};
   }
 
+  // No error can be measured; that is known after the first step.
+  void EndMeasuring(milliseconds since_change) {
+    const SessionWork work = Next(since_change);
+    const auto* trace = std::get_if<TraceLight>(&work);
+    ASSERT_NE(trace, nullptr);
+    EXPECT_TRUE(trace->error);
+    EXPECT_FALSE(view_.ErrorMeasured({.ended = true}, kStart + since_change));
+  }
+
   // The next work at that time after the change, with the scene's fields available.
   SessionWork Next(milliseconds since_change) {
     decided_ = **view_.Decide(newest_);
@@ -119,6 +128,7 @@ TEST_F(SessionViewTest, FromMovingToRefiningToSettled) {
   EXPECT_EQ(view_.state(), State::kRefining);
   EXPECT_EQ(std::get<WaitUntil>(Next(milliseconds(10))).time, kStart + PlannerTargets{}.rest_delay);
   ComeToRest();
+  EndMeasuring(milliseconds(10000));
   EXPECT_TRUE(NextIsNothing(milliseconds(10000)));
   EXPECT_EQ(view_.state(), State::kSettled);
   Change();
@@ -158,7 +168,8 @@ TEST_F(SessionViewTest, WhatAsksForAnErrorIsCheckedOnceItHasSettled) {
   EXPECT_TRUE(NextIs<CheckSlices>(milliseconds(600)));
   EXPECT_EQ(view_.state(), State::kChecking);
   view_.Checked(0.02);
-  EXPECT_EQ(view_.discretisation_error(), 0.02);
+  EXPECT_EQ(view_.evidence().discretisation_error, 0.02);
+  EndMeasuring(milliseconds(600));
   EXPECT_TRUE(NextIsNothing(milliseconds(600)));
   EXPECT_EQ(view_.state(), State::kSettled);
 }
@@ -231,6 +242,7 @@ TEST_F(YieldingViewTest, AChangeIsDrawnAtOnceAndItsRefusalIsTold) {
 TEST_F(SessionViewTest, AFinalPictureNeedsNothingUntilAChange) {
   Change();
   ComeToRest();
+  EndMeasuring(milliseconds(10'000));
   ASSERT_TRUE(NextIsNothing(milliseconds(10'000)));
   ASSERT_TRUE(view_.Yield(kStart));
   const auto rests = view_.Resting(**view_.Decide(newest_), kStart + std::chrono::hours(1));
@@ -274,6 +286,7 @@ TEST_F(SessionViewTest, LightIsTracedAtRestUntilItHasEnoughPaths) {
       view_.LightTraced({100'000 + accuracy::kTracedPaths, 4}, kStart + milliseconds(6300)));
   ASSERT_TRUE(NextIs<ShowLight>(milliseconds(6300))) << "all that was traced";
   view_.LightShown(kStart + milliseconds(6300));
+  EndMeasuring(milliseconds(6300));
   EXPECT_TRUE(NextIsNothing(milliseconds(6300)));
   EXPECT_EQ(view_.state(), State::kSettled);
   Change();
@@ -289,12 +302,51 @@ TEST_F(SessionViewTest, LightThatCannotBeTracedLeavesThePictureSettled) {
   view_.LightFailed();
   ASSERT_TRUE(NextIs<ShowLight>(milliseconds(600))) << "to tell why";
   view_.LightShown(kStart + milliseconds(600));
+  EndMeasuring(milliseconds(600));
   EXPECT_TRUE(NextIsNothing(milliseconds(600)));
   EXPECT_EQ(view_.state(), State::kSettled);
   EXPECT_TRUE(NextIsNothing(milliseconds(9000))) << "it is not tried again";
   Change();
   ComeToRest();
   EXPECT_TRUE(NextIs<TraceLight>(milliseconds(600)));
+}
+
+accuracy::ErrorProgress Measured(double low, double value, double high, bool ended = false) {
+  accuracy::ErrorProgress progress{.ended = ended};
+  progress.error.emplace().relative_rmse = {value, low, high};
+  return progress;
+}
+
+TEST_F(SessionViewTest, TheErrorIsMeasuredAtRestAndToldAsItGetsClearer) {
+  Change();
+  ComeToRest();
+  const SessionWork work = Next(milliseconds(600));
+  const auto* trace = std::get_if<TraceLight>(&work);
+  ASSERT_NE(trace, nullptr);
+  EXPECT_FALSE(trace->light) << "it has none";
+  EXPECT_TRUE(trace->error);
+  const auto at = [](int ms) { return kStart + milliseconds(ms); };
+  EXPECT_FALSE(view_.ErrorMeasured({}, at(700)));
+  EXPECT_FALSE(view_.ErrorMeasured(Measured(0.0, 0.1, 0.5), at(800))) << "the table says more";
+  EXPECT_FALSE(view_.evidence().measured.has_value());
+  EXPECT_TRUE(view_.ErrorMeasured(Measured(0.1, 0.2, 0.3), at(900)));
+  ASSERT_TRUE(NextIs<ShowLight>(milliseconds(900)));
+  EXPECT_EQ(view_.evidence().measured->relative_rmse.high, 0.3);
+  view_.LightShown(at(900));
+  EXPECT_TRUE(NextIs<TraceLight>(milliseconds(900)));
+  EXPECT_FALSE(view_.ErrorMeasured(Measured(0.15, 0.2, 0.25), at(1000))) << "too soon";
+  EXPECT_FALSE(view_.ErrorMeasured(Measured(0.11, 0.2, 0.29), at(2000))) << "hardly clearer";
+  EXPECT_TRUE(view_.ErrorMeasured(Measured(0.15, 0.2, 0.25), at(2000)));
+  view_.LightShown(at(2000));
+  EXPECT_TRUE(view_.ErrorMeasured(Measured(0.18, 0.2, 0.22, true), at(2100))) << "the last";
+  ASSERT_TRUE(NextIs<ShowLight>(milliseconds(2100)));
+  view_.LightShown(at(2100));
+  EXPECT_TRUE(NextIsNothing(milliseconds(2100)));
+  EXPECT_EQ(view_.state(), State::kSettled);
+  Change();
+  ComeToRest();
+  EXPECT_TRUE(NextIs<TraceLight>(milliseconds(600)));
+  EXPECT_FALSE(view_.evidence().measured.has_value()) << "of another picture";
 }
 
 TEST_F(SessionViewTest, TheReferenceIsShownAndNothingDrawn) {
@@ -346,6 +398,7 @@ TEST_F(SessionViewTest, ASettingThatCannotBeDecidedIsAnErrorOnce) {
 TEST_F(SessionViewTest, FieldsThatComeBackBeginNothingAnew) {
   Change();
   ComeToRest();
+  EndMeasuring(milliseconds(10000));
   EXPECT_TRUE(NextIsNothing(milliseconds(10000)));
   view_.Next(newest_, std::nullopt, kStart, last_drawn_);
   EXPECT_EQ(view_.state(), State::kWaitingForFields);

@@ -2,6 +2,7 @@
 // their cost, and the estimated error.
 import { create, isMessage } from "@bufbuild/protobuf";
 import { nameOfTechnique, nameOfTransport } from "../core/names";
+import { biasInWords, errorSource } from "../core/picture_error";
 import {
   hasSetting,
   type Settings,
@@ -92,8 +93,10 @@ function Report({ state, report }: ReportProps) {
   const name = settings === undefined ? "" : techniqueNameOf(settings);
   const technique = state.server.value?.techniques.find((each) => each.name === name);
   const hasSlices = technique?.hasSlices ?? false;
-  const parts = [`light model ${percent(report.modelError)}`];
-  if (report.discretisationError !== undefined) {
+  const parts = report.measured
+    ? [errorSource(report), `${biasInWords(report)} on the whole`]
+    : [`light model ${percent(report.modelError)}`];
+  if (!report.measured && report.discretisationError !== undefined) {
     parts.push(`few slices ${percent(report.discretisationError)}`);
   }
   const traced = (state.frame.value?.modelled?.tracedPaths ?? 0n) > 0n;
@@ -103,12 +106,14 @@ function Report({ state, report }: ReportProps) {
         class="quiet"
         data-testid="accuracy-report"
         data-estimated-error={report.estimatedError}
+        data-measured={report.measured}
         data-discretisation-error={report.discretisationError}
         data-slices={report.slices}
         data-has-slices={hasSlices}
         data-expected-milliseconds={report.expectedMilliseconds}
       >
-        Estimated error {percent(report.estimatedError)} ({parts.join(", ")}), by{" "}
+        {report.measured ? "Measured" : "Estimated"} error {percent(report.estimatedError)} (
+        {parts.join(", ")}), by{" "}
         {[nameOfTechnique(name), ...settingsInWords(settings, technique)].join(", ").toLowerCase()}
         {traced && ", traced light"}
         {hasSlices && `, ${report.slices} slices`}

@@ -56,7 +56,26 @@ TEST_F(ManifestTest, AnEntryComesBackWhole) {
   EXPECT_EQ(back->input.modified_ns, 1'700'000'000'123'456'789);
   EXPECT_EQ(back->lead_s, 27600.0);
   EXPECT_FALSE(back->estimated_error.has_value());
+  EXPECT_FALSE(back->error_low.has_value());
   EXPECT_EQ(FromLine("{}").status().code(), absl::StatusCode::kInvalidArgument);
+}
+
+TEST_F(ManifestTest, AMeasuredErrorHasItsInterval) {
+  ManifestEntry entry = Entry("abc");
+  entry.estimated_error = 0.2;
+  entry.error_low = 0.15;
+  entry.error_high = 0.25;
+  const std::string line = ToLine(entry);
+  EXPECT_EQ(FromLine(line)->error_low, 0.15);
+  EXPECT_EQ(FromLine(line)->error_high, 0.25);
+  // As earlier versions wrote it.
+  const std::string interval = R"("error_low":0.15,"error_high":0.25,)";
+  std::string earlier = line;
+  ASSERT_NE(earlier.find(interval), std::string::npos) << line;
+  earlier.erase(earlier.find(interval), interval.size());
+  ASSERT_TRUE(FromLine(earlier).ok());
+  EXPECT_EQ(FromLine(earlier)->estimated_error, 0.2);
+  EXPECT_FALSE(FromLine(earlier)->error_low.has_value());
 }
 
 TEST_F(ManifestTest, EntriesOutliveTheProcessAndTheLastOfAProductCounts) {

@@ -1,0 +1,176 @@
+// The measured error of pictures that are wrong by a known amount, on a traced tower.
+#include "accuracy/error_meter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "accuracy/error_meters.h"
+#include "gtest/gtest.h"
+#include "reference/trace_scene.h"
+#include "tests/support/slab.h"
+
+namespace thunderhead::accuracy {
+namespace {
+
+// A tower in a wider domain of level ground.
+std::shared_ptr<volume::HydrometeorFields> MakeTower() {
+  auto fields = std::make_shared<volume::HydrometeorFields>(
+      *support::MakeSlab(8000.0, 6000.0, 0.02, {20, 20, 15}));
+  const volume::RegularGrid& grid = fields->grid;
+  for (int z = 0; z < grid.cells.z; ++z) {
+    for (int y = 0; y < grid.cells.y; ++y) {
+      for (int x = 0; x < grid.cells.x; ++x) {
+        const bool inside = x >= 6 && x < 14 && y >= 6 && y < 14 && z >= 2 && z < 13;
+        if (!inside) fields->fields[0].concentration_kg_per_m3[grid.Offset(x, y, z)] = 0.0F;
+      }
+    }
+  }
+  fields->condensate = {{6, 6, 2}, {14, 14, 13}};
+  return fields;
+}
+
+scene::Scene TowerScene() {
+  scene::Scene scene;
+  scene.camera = scene::OrbitCamera{.target_m = {0.0, 0.0, 3000.0},
+                                    .azimuth_deg = 200.0,
+                                    .elevation_deg = 25.0,
+                                    .distance_m = 1.5e4,
+                                    .field_of_view_deg = 30.0};
+  scene.output = {32, 24, 88};
+  scene.sun = {255.0, 35.0};
+  return scene;
+}
+
+picture::LinearPicture TruthOf(const scene::Scene& scene, const volume::HydrometeorFields& fields) {
+  scene::Scene truth = scene;
+  truth.rendering.technique = scene::Reference{};
+  reference::RefineLimits limits;
+  limits.samples_per_pixel = 400;
+  return reference::TraceScene(truth, fields, reference::TraceOptions{}, limits, {}, {})->image;
+}
+
+struct Wrong {
+  picture::LinearPicture picture;
+  double error = 0.0;
+  double bias = 0.0;
+};
+
+// The picture with every other block of pixels 40 % too bright and the rest 10 % too dark.
+Wrong WrongBy(const picture::LinearPicture& truth) {
+  Wrong wrong{truth};
+  double squares = 0.0;
+  double difference = 0.0;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < truth.radiance.size(); ++i) {
+    const auto width = static_cast<std::size_t>(truth.size_px.x);
+    const float factor = (i % width / 4 + i / width / 4) % 2 == 0 ? 1.4F : 0.9F;
+    wrong.picture.radiance[i] *= factor;
+    for (int color = 0; color < 3; ++color) {
+      const double right = truth.radiance[i][color];
+      const double noise = truth.standard_error[i][color];
+      // What is taken for right is off by its noise, and the picture with it.
+      squares += std::pow((factor - 1.0) * right, 2) + (2.0 * factor - 1.0) * noise * noise;
+      difference += (factor - 1.0) * right;
+      sum += right;
+    }
+  }
+  const double count = 3.0 * static_cast<double>(truth.radiance.size());
+  wrong.error = std::sqrt(squares / count) / (sum / count);
+  wrong.bias = difference / sum;
+  return wrong;
+}
+
+TEST(ErrorMeter, IntervalsHoldTheErrorOfAPictureThatIsWrongByAKnownAmount) {
+  const std::shared_ptr<volume::HydrometeorFields> fields = MakeTower();
+  const scene::Scene scene = TowerScene();
+  const Wrong wrong = WrongBy(TruthOf(scene, *fields));
+  constexpr int kTrials = 24;
+  int held = 0;
+  int too_low = 0;
+  int held_bias = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const auto meter =
+        *ErrorMeter::Create(scene, fields, 0, static_cast<std::uint64_t>(trial) << 20U);
+    meter->Show(wrong.picture);
+    for (int step = 0; step < 6; ++step) meter->Step();
+    const auto error = meter->Result();
+    ASSERT_TRUE(error.has_value());
+    const auto holds = [](const Estimated& interval, double value) {
+      return interval.low <= value && value <= interval.high;
+    };
+    held += holds(error->relative_rmse, wrong.error) ? 1 : 0;
+    too_low += error->relative_rmse.high < wrong.error ? 1 : 0;
+    held_bias += holds(error->relative_bias, wrong.bias) ? 1 : 0;
+    EXPECT_LT(error->relative_rmse.high - error->relative_rmse.low, wrong.error);
+  }
+  // 23 of 24, with a standard deviation of 1.1.
+  EXPECT_GE(held, 20) << wrong.error;
+  EXPECT_LE(too_low, 3);
+  EXPECT_GE(held_bias, 20) << wrong.bias;
+}
+
+TEST(ErrorMeter, PathsCountForTheNextPictureToo) {
+  const std::shared_ptr<volume::HydrometeorFields> fields = MakeTower();
+  const scene::Scene scene = TowerScene();
+  const picture::LinearPicture truth = TruthOf(scene, *fields);
+  const Wrong wrong = WrongBy(truth);
+  const auto meter = *ErrorMeter::Create(scene, fields, 0);
+  meter->Show(wrong.picture);
+  for (int step = 0; step < 8; ++step) meter->Step();
+  const std::int64_t paths = meter->Result()->paths;
+  meter->Show(truth);
+  EXPECT_EQ(meter->Result()->paths, paths);
+  EXPECT_LT(meter->Result()->relative_rmse.low, 0.05);
+  EXPECT_LT(meter->Result()->relative_rmse.value, 0.5 * wrong.error);
+  picture::LinearPicture smaller{{16, 12}, std::vector<glm::vec3>(192, glm::vec3(0.1F))};
+  meter->Show(smaller);
+  EXPECT_FALSE(meter->Result().has_value());
+}
+
+TEST(ErrorMeters, DrawThenTraceAndDrawAgainAsTheLightGetsBetter) {
+  const std::shared_ptr<volume::HydrometeorFields> fields = MakeTower();
+  scene::Scene scene = TowerScene();
+  scene.ground.rings = true;
+  int drawn = 0;
+  const ErrorMeters::Draw draw = [&](const scene::Scene& measured) {
+    ++drawn;
+    EXPECT_FALSE(measured.ground.rings);
+    EXPECT_FALSE(scene::MediumSettingsOf(measured.rendering.technique)->look.detail);
+    return picture::LinearPicture{{32, 24}, std::vector<glm::vec3>(768, glm::vec3(0.1F))};
+  };
+  ErrorMeters meters(1);
+  EXPECT_EQ(meters.Step(scene, fields, 0, draw)->traced_s, 0.0);
+  EXPECT_GT(meters.Step(scene, fields, 0, draw)->traced_s, 0.0);
+  EXPECT_EQ(drawn, 1);
+  scene.display.exposure_ev = 3.0;  // the same light
+  EXPECT_TRUE(meters.Step(scene, fields, 0, draw)->error.has_value());
+  EXPECT_EQ(drawn, 1);
+  ASSERT_TRUE(meters.Step(scene, fields, 100'000, draw).ok());
+  EXPECT_EQ(drawn, 2);
+  ASSERT_TRUE(meters.Step(scene, fields, 120'000, draw).ok());
+  EXPECT_EQ(drawn, 2);
+  const auto again = meters.Step(scene, fields, 200'000, draw);
+  EXPECT_EQ(drawn, 3);
+  EXPECT_GT(again->error->paths, 0) << "of before";
+  scene.sun.elevation_deg += 1.0;
+  EXPECT_TRUE(absl::IsResourceExhausted(meters.Step(scene, fields, 0, draw).status()));
+}
+
+TEST(ErrorMeters, UnevenGroundIsNotMeasured) {
+  const std::shared_ptr<volume::HydrometeorFields> fields = MakeTower();
+  EXPECT_TRUE(IsMeasurable(*fields));
+  fields->terrain_height_m.assign(400, 100.0F);
+  EXPECT_TRUE(IsMeasurable(*fields));
+  fields->terrain_height_m[7] = 250.0F;
+  EXPECT_FALSE(IsMeasurable(*fields));
+  ErrorMeters meters;
+  const auto progress = meters.Step(TowerScene(), fields, 0, {});
+  ASSERT_TRUE(progress.ok());
+  EXPECT_TRUE(progress->ended);
+  EXPECT_FALSE(progress->error.has_value());
+}
+
+}  // namespace
+}  // namespace thunderhead::accuracy
