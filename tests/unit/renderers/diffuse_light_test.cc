@@ -101,6 +101,30 @@ TEST(DiffuseLight, AWarmStartFindsTheSame) {
   EXPECT_NEAR(cold.SolveSun(Sun(0.8), layer.ArrivedRoot(0.8))[middle] / from_warm, 1.0, 0.01);
 }
 
+// Of a sun that is dragged: each step is solved for loosely from the last, and errors do not add
+// up.
+TEST(DiffuseLight, LooseSolutionsStayNearTheConvergedOne) {
+  const Layer layer(50.0);
+  DiffuseLight loose(layer.cells);
+  DiffuseLight exact(layer.cells);
+  double largest = 0.0;
+  double worst = 0.0;
+  int iterations = 0;
+  int exact_iterations = 0;
+  for (double sine = 0.3; sine < 0.9; sine += 0.02) {
+    const std::vector<float> near = loose.SolveSun(Sun(sine), layer.ArrivedRoot(sine), 4e-3);
+    iterations += loose.LastIterations();
+    const std::vector<float> converged = exact.SolveSun(Sun(sine), layer.ArrivedRoot(sine), 1e-6);
+    exact_iterations += exact.LastIterations();
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      largest = std::max(largest, static_cast<double>(std::abs(converged[i])));
+      worst = std::max(worst, static_cast<double>(std::abs(near[i] - converged[i])));
+    }
+  }
+  EXPECT_LT(worst, 0.005 * largest);
+  EXPECT_LT(iterations, exact_iterations);
+}
+
 // Many blocks of columns, cut at other places in the mirrored medium.
 TEST(DiffuseLight, OfAMirroredMediumIsTheMirroredLight) {
   const glm::ivec3 size(40, 41, 20);
