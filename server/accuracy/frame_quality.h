@@ -8,6 +8,10 @@ struct FrameQuality {
       1.0;  // of the eye buffer's width and height, (0, 1]; the frame keeps the scene's size
   double slice_share = 1.0;  // of the scene's slices, (0, 1]
 
+  // Rays where the picture needs them (accuracy/moving_picture.h), for techniques that draw such
+  // pictures: the smaller image_scale, the fewer.
+  bool sparse = false;
+
   bool operator==(const FrameQuality&) const = default;
 };
 

@@ -5,6 +5,13 @@
 #include "accuracy/named_settings.h"
 
 namespace thunderhead::accuracy {
+namespace {
+
+std::size_t ModelOf(const scene::Technique& technique, const FrameQuality& quality) {
+  return 2 * technique.index() + (quality.sparse ? 1 : 0);
+}
+
+}  // namespace
 
 void MachineCosts::Observe(const std::string& view, const MeasuredFrame& frame) {
   const scene::Technique& technique = frame.scene.rendering.technique;
@@ -16,7 +23,8 @@ void MachineCosts::Observe(const std::string& view, const MeasuredFrame& frame) 
   const double mega_samples = MegaSamples(frame.scene, frame.quality);
   Models& own = views_.try_emplace(view, machine_).first->second;
   for (Models* const models : {&own, &machine_}) {
-    (*models)[technique.index()].Observe(mega_samples, frame.total_ms, frame.stages);
+    (*models)[ModelOf(technique, frame.quality)].Observe(mega_samples, frame.total_ms,
+                                                         frame.stages);
   }
   const std::optional<double> view_ms = ViewMs(frame.total_ms, frame.stages);
   if (frame.quality == FrameQuality{} && view_ms.has_value()) {
@@ -38,8 +46,8 @@ double MachineCosts::FrameMs(const std::string& view, const scene::Scene& scene,
                              const FrameQuality& quality, scene::Stage first_dirty) const {
   const auto own = views_.find(view);
   const Models& models = own != views_.end() ? own->second : machine_;
-  return models[scene.rendering.technique.index()].EstimateMs(MegaSamples(scene, quality),
-                                                              first_dirty);
+  return models[ModelOf(scene.rendering.technique, quality)].EstimateMs(MegaSamples(scene, quality),
+                                                                        first_dirty);
 }
 
 void MachineCosts::Forget(const std::string& view) { views_.erase(view); }

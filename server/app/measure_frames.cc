@@ -26,6 +26,7 @@ struct FramesFlags {
   std::string transport = "consistent";
   int runs = 5;
   std::string device = "auto";
+  std::string mode;
   bool json = false;
 };
 
@@ -72,6 +73,7 @@ absl::Status MeasureFrames(const FramesFlags& flags) {
         absl::StrCat("--runs is ", flags.runs, "; it must be 1 or more"));
   }
   options.runs = flags.runs;
+  options.only_mode = flags.mode;
   THUNDERHEAD_ASSIGN_OR_RETURN(const FieldsPtr fields, Choose(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,
                                gl::Context::Create(flags.device));
@@ -109,6 +111,8 @@ Command AddMeasureFrames(CLI::App& measure) {
       ->capture_default_str();
   frames->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();
+  frames->add_option("--mode", flags->mode,
+                     "Only rows of this mode or preset; \"default\": the setting of a new scene");
   frames->add_flag("--json", flags->json, "Print JSON");
   return {frames, [flags] { return MeasureFrames(*flags); }};
 }

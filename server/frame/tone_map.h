@@ -43,7 +43,8 @@ class ToneMapper {
   // Maps `linear`, a picture of `scene` with the storm's opacity in alpha.
   absl::StatusOr<ToneMapped> Map(const gl::Texture2D& linear, const scene::Scene& scene);
 
-  // The picture that Map was given last, which must still be there, as it was mapped.
+  // The picture that Map was given last, which must still be there, as it was mapped; or another,
+  // with the tone of that.
   absl::StatusOr<FineImage> MapFine(const gl::Texture2D& linear);
 
  private:

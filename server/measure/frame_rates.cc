@@ -7,12 +7,14 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "accuracy/moving_picture.h"
 #include "accuracy/named_settings.h"
 #include "accuracy/presets.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "frame/image_codec.h"
 #include "frame/tone_map.h"
+#include "measure/image_error.h"
 #include "renderers/scene_renderer.h"
 #include "scene/view.h"
 #include "volume/visible_box.h"
@@ -44,15 +46,13 @@ class Frames {
 
   // Draws and encodes a frame; appends each stage's milliseconds to `stages`.
   absl::Status Draw(Samples* stages) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame linear,
-                                 renderer_.Draw(scene_, fields_, {}));
-    THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped mapped,
-                                 tone_mapper_.Map(*linear.radiance, scene_));
+    renderers::StageTimes times;
+    THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped mapped, DrawAsMoving(&times));
     const base::Stopwatch stopwatch;
     THUNDERHEAD_RETURN_IF_ERROR(frame::EncodeJpeg(scene_.output.width_px, scene_.output.height_px,
                                                   mapped.rgb, scene_.output.jpeg_quality)
                                     .status());
-    for (const scene::StageTime& stage : linear.stages) {
+    for (const scene::StageTime& stage : times) {
       (*stages)[stage.stage].push_back(stage.milliseconds);
     }
     (*stages)[FrameStage::kTone].push_back(mapped.tone_ms);
@@ -73,11 +73,43 @@ class Frames {
     return 1e3 * frames / stopwatch.ElapsedMs();
   }
 
+  // FLIP of the frame as it is drawn while something moves against the one that follows at rest, at
+  // the exposure of the former.
+  absl::StatusOr<std::optional<double>> MovingFlip() {
+    renderers::StageTimes times;
+    THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped moving, DrawAsMoving(&times));
+    if (!drawn_sparse_) return std::nullopt;
+    THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame linear,
+                                 renderer_.Draw(scene_, fields_, {}));
+    scene::Scene exposed = scene_;
+    exposed.display.exposure_ev = moving.exposure_ev;
+    THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped plain,
+                                 tone_mapper_.Map(*linear.radiance, exposed));
+    const glm::ivec2 size_px(scene_.output.width_px, scene_.output.height_px);
+    return Flip({size_px, moving.rgb}, {size_px, plain.rgb});
+  }
+
  private:
+  // As sessions do while something moves; appends the times of its stages.
+  absl::StatusOr<frame::ToneMapped> DrawAsMoving(renderers::StageTimes* times) {
+    const accuracy::FrameQuality quality{.sparse = accuracy::MovesSparsely(scene_)};
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        const renderers::LinearFrame linear,
+        renderer_.Draw(scene_, fields_, accuracy::MovingQuality(scene_, quality)));
+    *times = linear.stages;
+    drawn_sparse_ = linear.coarse;
+    if (!linear.coarse) return tone_mapper_.Map(*linear.radiance, scene_);
+    return accuracy::CompleteMoving(
+        linear, scene_, quality, tone_mapper_,
+        [this](const std::vector<glm::vec2>& places) { return renderer_.DrawChosen(places); },
+        times);
+  }
+
   scene::Scene scene_;
   std::shared_ptr<const volume::HydrometeorFields> fields_;
   renderers::SceneRenderer renderer_;
   frame::ToneMapper tone_mapper_;
+  bool drawn_sparse_ = false;
 };
 
 scene::Scene SceneOf(const volume::HydrometeorFields& fields, const FrameRateOptions& options) {
@@ -109,6 +141,15 @@ absl::StatusOr<FrameRateRow> MeasureRow(
     camera_fps.push_back(camera);
     sun_fps.push_back(sun);
   }
+  frames.MoveCamera();
+  THUNDERHEAD_ASSIGN_OR_RETURN(row.camera_flip, frames.MovingFlip());
+  // From light that was solved for in full the first step is as good as one can be.
+  for (int i = 0; i < kWarmFrames; ++i) {
+    frames.MoveSun();
+    THUNDERHEAD_RETURN_IF_ERROR(frames.Draw(&warming));
+  }
+  frames.MoveSun();
+  THUNDERHEAD_ASSIGN_OR_RETURN(row.sun_flip, frames.MovingFlip());
   row.camera_fps = Median(camera_fps);
   row.sun_fps = Median(sun_fps);
   if (sun_stages.contains(FrameStage::kLight)) {
@@ -125,8 +166,7 @@ struct Case {
   std::string_view mode;
 };
 
-// Presets and the default as sessions draw them while something moves: without traced light, which
-// waits until the view rests.
+// Presets and the default are without traced light, which waits until the view rests.
 std::vector<Case> CasesOf(const FrameRateOptions& options) {
   std::vector<Case> cases;
   for (const accuracy::PlainTechnique& plain : accuracy::kPlainTechniques) {
@@ -144,6 +184,12 @@ std::vector<Case> CasesOf(const FrameRateOptions& options) {
   return cases;
 }
 
+std::string FlipsJson(const FrameRateRow& row) {
+  if (!row.camera_flip.has_value() || !row.sun_flip.has_value()) return "";
+  return absl::StrFormat("\"camera_flip\": %.4f, \"sun_flip\": %.4f, ", *row.camera_flip,
+                         *row.sun_flip);
+}
+
 std::string StagesJson(const FrameRateRow& row) {
   return absl::StrJoin(row.stages, ", ", [](std::string* text, const StageMedian& stage) {
     absl::StrAppendFormat(text, "\"%s\": %.4g", scene::NameOf(stage.stage), stage.milliseconds);
@@ -159,6 +205,7 @@ absl::StatusOr<std::vector<FrameRateRow>> MeasureFrameRates(
   const std::vector<Case> cases = CasesOf(options);
   std::vector<FrameRateRow> rows;
   for (const Case& measured : cases) {
+    if (!options.only_mode.empty() && measured.mode != options.only_mode) continue;
     scene.rendering.technique = measured.technique;
     THUNDERHEAD_ASSIGN_OR_RETURN(
         FrameRateRow row,
@@ -175,8 +222,8 @@ std::string ToJson(const Machine& machine, const std::vector<FrameRateRow>& rows
       absl::StrJoin(rows, ",\n", [](std::string* text, const FrameRateRow& row) {
         absl::StrAppendFormat(text,
                               "    {\"renderer\": \"%s\", \"mode\": \"%s\", \"camera_fps\": %.4g, "
-                              "\"sun_fps\": %.4g, \"stages_ms\": {%s}}",
-                              row.technique, row.mode, row.camera_fps, row.sun_fps,
+                              "\"sun_fps\": %.4g, %s\"stages_ms\": {%s}}",
+                              row.technique, row.mode, row.camera_fps, row.sun_fps, FlipsJson(row),
                               StagesJson(row));
       });
   return absl::StrCat("{\n  \"machine\": ", ToJson(machine), ",\n  \"rows\": [\n", lines,

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +24,7 @@ struct FrameRateOptions {
   scene::Transport transport = scene::Transport::kConsistent;  // of the papers' translucent modes
   int runs = 5;                                                // results are their medians
   double seconds_a_run = 0.4;
+  std::string only_mode{};  // measures rows of that mode alone, if it is not empty
 };
 
 struct StageMedian {
@@ -37,6 +39,10 @@ struct FrameRateRow {
   double sun_fps = 0.0;     // the sun moves every frame
   // The stages that a camera move reruns, and the light, which only a sun move reruns.
   std::vector<StageMedian> stages;
+  // FLIP of such a frame against one ray a pixel and light solved in full, after the camera and
+  // after the sun has moved; none where frames are drawn in full anyway.
+  std::optional<double> camera_flip{};
+  std::optional<double> sun_flip{};
 };
 
 absl::StatusOr<std::vector<FrameRateRow>> MeasureFrameRates(

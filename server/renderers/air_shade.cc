@@ -116,10 +116,10 @@ void AirShade::SetDistances(const scene::View& view, const scene::ShadedAir& air
 }
 
 absl::Status AirShade::Cast(const scene::Scene& scene, const scene::View& view,
-                            const Ground& ground, const volume::WorldBox& box) {
+                            const Ground& ground, const volume::WorldBox& box,
+                            const glm::ivec2& picture_px) {
   const glm::dvec3 towards_sun = scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg);
   SetDistances(view, scene::ShadedAirOf(box, towards_sun, ground.Lowest_m()));
-  const glm::ivec2 picture_px(scene.output.width_px, scene.output.height_px);
   const glm::ivec3 size(glm::clamp((picture_px + kPixelsPerRay - 1) / kPixelsPerRay,
                                    glm::min(picture_px, kMinRays), kMaxRays),
                         kDistances);

@@ -37,9 +37,10 @@ class AirShade {
   absl::Status HideSky(const ResidentMedium& medium, const scene::Scene& scene, double ground_m);
 
   // Finds the missing light for a view, under the shadow that `ground` has. `box` is around what
-  // casts it. SetLight and HideSky come first.
+  // casts it; `picture_px` is the size of the picture that it is to suit. SetLight and HideSky come
+  // first.
   absl::Status Cast(const scene::Scene& scene, const scene::View& view, const Ground& ground,
-                    const volume::WorldBox& box);
+                    const volume::WorldBox& box, const glm::ivec2& picture_px);
   // Nothing is missing.
   void Clear() { present_ = false; }
   bool Present() const { return present_; }

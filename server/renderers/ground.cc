@@ -114,17 +114,27 @@ void Ground::PlaceShadow(const LightFrame& frame, const glm::dvec3& middle_m) {
   has_shadow_ = true;
 }
 
-absl::Status Ground::DrawDistance(const scene::View& view, const glm::ivec2& size) {
-  if (distance_.Size() != size) {
-    distance_ = gl::Texture2D(GL_R32F, size);
-    distance_target_ = gl::Framebuffer(distance_);
+absl::Status Ground::DrawDistance(const scene::View& view, const glm::ivec2& size,
+                                  const ChosenRays* chosen) {
+  drawn_distance_ = chosen == nullptr ? 0 : 1;
+  Distances& distances = distances_[drawn_distance_];
+  if (distances.distance_m.Size() != size) {
+    distances.distance_m = gl::Texture2D(GL_R32F, size);
+    distances.target = gl::Framebuffer(distances.distance_m);
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_->Get(gl::ProgramSource::WholeTarget("ground/distance.frag", Variant().Defines())));
+      programs_->Get(gl::ProgramSource::WholeTarget(
+          "ground/distance.frag",
+          gl::Joined(Variant().Defines(), {{"CHOSEN", chosen != nullptr ? 1 : 0}}))));
   BindRays(*program, view, view.eye_m);
   Bind(*program, view);
-  return whole_target_.Draw(programs_->Pieces(), kDistancePixel, *program, distance_target_);
+  if (chosen == nullptr) {
+    return whole_target_.Draw(programs_->Pieces(), kDistancePixel, *program, distances.target);
+  }
+  chosen->Bind();
+  return whole_target_.Draw(programs_->Pieces(), kDistancePixel, *program, distances.target,
+                            chosen->Rect());
 }
 
 void Ground::Bind(const gl::Program& program, const scene::View& view) const {

@@ -3,6 +3,8 @@
 // rays are marched over. Owns GL objects: use it on the context's thread.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <utility>
 
@@ -55,9 +57,11 @@ class Ground {
     return relief_ || (view.ground_curvature_per_m > 0.0 && view.eye_m.z < lowest_m_);
   }
 
-  // Distance of the ground along each pixel's ray, where rays through media end.
-  absl::Status DrawDistance(const scene::View& view, const glm::ivec2& size);
-  const gl::Texture2D& Distance() const { return distance_; }
+  // Distance of the ground along each pixel's ray, where rays through media end; or along each
+  // chosen one, for a picture of their size.
+  absl::Status DrawDistance(const scene::View& view, const glm::ivec2& size,
+                            const ChosenRays* chosen = nullptr);
+  const gl::Texture2D& Distance() const { return distances_[drawn_distance_].distance_m; }
 
   // Sets the uniforms and textures of common/ground.glsl for coordinates from the eye.
   void Bind(const gl::Program& program, const scene::View& view) const;
@@ -67,7 +71,8 @@ class Ground {
   void BindCorrection(const gl::Program& program, const scene::View& view) const;
 
   std::size_t Bytes() const {
-    return terrain_.Bytes() + shadow_.Bytes() + skylight_factor_.Bytes() + distance_.Bytes();
+    return terrain_.Bytes() + shadow_.Bytes() + skylight_factor_.Bytes() +
+           distances_[0].distance_m.Bytes() + distances_[1].distance_m.Bytes();
   }
 
  private:
@@ -94,8 +99,12 @@ class Ground {
   std::shared_ptr<const LightCorrection> correction_;
   gl::Texture2D skylight_factor_;
 
-  gl::Texture2D distance_;
-  gl::Framebuffer distance_target_;
+  struct Distances {
+    gl::Texture2D distance_m;
+    gl::Framebuffer target;
+  };
+  std::array<Distances, 2> distances_;  // the second is for chosen rays
+  std::size_t drawn_distance_ = 0;      // last
 };
 
 }  // namespace thunderhead::renderers

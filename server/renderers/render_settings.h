@@ -2,11 +2,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "gl/objects.h"
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
+#include "renderers/chosen_rays.h"
 #include "renderers/cover.h"
 #include "renderers/light_correction.h"
 #include "scene/scene.h"
@@ -40,6 +42,8 @@ struct Illumination {
 };
 
 // How well to draw a scene.
+inline constexpr double kLightTolerance = 2e-4;  // relative
+
 struct DrawQuality {
   double image_scale = 1.0;  // of the eye buffer's width and height, (0, 2]; 2 is 4 rays a pixel
   double slice_share = 1.0;  // of the scene's slices, (0, 1]
@@ -52,6 +56,12 @@ struct DrawQuality {
   bool places = false;
   // Draws the sun's disc and its aureole where they are in view.
   bool sun_seen = true;
+  // The size of the linear frame in place of the scene's, for pictures to which
+  // SceneRenderer::DrawChosen adds what they lack: detail suits the pixels of the scene's size. Not
+  // all techniques and devices do that (SceneRenderer::DrawsChosen); they draw the whole picture.
+  std::optional<glm::ivec2> coarse_px{};
+  // Of the light that the diffusion equation gives; light that is known better is kept.
+  double light_tolerance = kLightTolerance;
 
   bool operator==(const DrawQuality&) const = default;
 };
@@ -67,6 +77,11 @@ struct RenderSettings {
   const gl::Texture2D* ground_distance = nullptr;
   // Where in the eye buffer the medium is; none: it may be anywhere.
   const Cover* cover = nullptr;
+  // The picture whose pixels detail is to suit, if that is not the eye buffer.
+  std::optional<glm::ivec2> detail_size{};
+  // The rays to draw, of a picture of detail_size, if they are not those of the eye buffer's
+  // pixels, which then has the size of these.
+  const ChosenRays* chosen = nullptr;
 
   // The settings of a technique that draws a medium.
   const scene::MediumSettings& Medium() const;

@@ -32,6 +32,11 @@ class RendererPool {
                                    const std::shared_ptr<const volume::HydrometeorFields>& fields,
                                    const DrawQuality& quality);
 
+  // Rays of the frame drawn last, as SceneRenderer::DrawChosen.
+  absl::StatusOr<ChosenFrame> DrawChosen(const std::vector<glm::vec2>& places) {
+    return renderers_.front().renderer->DrawChosen(places);
+  }
+
   // Drops the least recently used renderer but the one that drew last, or draws now; false if there
   // is none.
   bool DropOldest();

@@ -7,11 +7,15 @@
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
+#include "gl/whole_target.h"
 #include "scene/ground.h"
 #include "scene/view.h"
 
 namespace thunderhead::renderers {
 namespace {
+
+// The air of coarse frames suits a picture so much larger along each side.
+constexpr int kCoarseAirScale = 2;
 
 glm::ivec2 EyeSize(const scene::Scene& scene, const DrawQuality& quality) {
   const glm::dvec2 size(scene.output.width_px, scene.output.height_px);
@@ -54,6 +58,7 @@ scene::Stage SceneRenderer::FirstStageAt(const scene::Scene& scene, const Fields
                                          const DrawQuality& quality) const {
   const scene::Stage first = FirstStage(scene, fields);
   if (quality.light_detail != drawn_quality_.light_detail ||
+      quality.light_tolerance < drawn_light_tolerance_ ||
       quality.single_precision != drawn_quality_.single_precision) {
     return std::min(first, scene::Stage::kLight);
   }
@@ -69,8 +74,9 @@ bool SceneRenderer::OnlyLightsDiffer(scene::Scene scene, const Fields& fields) c
 std::size_t SceneRenderer::Bytes() const {
   std::size_t bytes = workspace_.medium.Bytes() + workspace_.surroundings.Bytes() +
                       workspace_.ground.Bytes() + workspace_.ground_cover.Bytes() +
-                      linear_.Texture().Bytes() + eye_cover_.Bytes() + picture_cover_.Bytes() +
-                      sun_glow_.Bytes();
+                      linear_.Texture().Bytes() + chosen_.Bytes() +
+                      chosen_linear_.Texture().Bytes() + eye_cover_.Bytes() +
+                      picture_cover_.Bytes() + sun_glow_.Bytes();
   for (const auto& [name, technique] : techniques_) bytes += technique->Bytes();
   return bytes;
 }
@@ -93,6 +99,8 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
   const scene::Stage first = FirstStageAt(asked, fields, quality);
   sunlight_changed_ = first <= scene::Stage::kLight && !OnlyLightsDiffer(asked, fields);
   drawn_scene_.reset();
+  if (first <= scene::Stage::kView) coarse_settings_.reset();
+  if (first <= scene::Stage::kLight) drawn_light_tolerance_ = quality.light_tolerance;
   THUNDERHEAD_ASSIGN_OR_RETURN(technique_, Choose(scene));
   StageTimes times;
   if (first <= scene::Stage::kExtinction) {
@@ -108,31 +116,41 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
     workspace_.surroundings.Update(scene, view, workspace_.ground);
     workspace_.ground.SetCorrection(quality.correction);
     drawn_slices_ = 0;
-    const Cover* cover = nullptr;
+    const glm::ivec2 picture_px(scene.output.width_px, scene.output.height_px);
+    RenderSettings settings{.technique = scene.rendering.technique,
+                            .view = view,
+                            .eye_size = EyeSize(scene, quality),
+                            .quality = quality};
+    const bool coarse = quality.coarse_px.has_value() && DrawsChosen();
+    if (coarse) {
+      settings.detail_size = picture_px;
+      settings.eye_size = *quality.coarse_px;
+    }
     if (!technique_->Empty()) {
-      drawn_slices_ = SlicesAt(scene, quality);
-      RenderSettings settings{
-          scene.rendering.technique, view,          workspace_.surroundings.IlluminationOf(scene),
-          EyeSize(scene, quality),   drawn_slices_, quality};
+      settings.slices = drawn_slices_ = SlicesAt(scene, quality);
+      settings.illumination = workspace_.surroundings.IlluminationOf(scene);
       if (first <= scene::Stage::kLight) {
         THUNDERHEAD_RETURN_IF_ERROR(technique_->CarryLight(scene, fields, settings, &times));
       }
       THUNDERHEAD_RETURN_IF_ERROR(DrawGround(&settings, &times));
       // Where drawing is cancelled from here on, the next picture need not carry the light again.
       Keep(asked, fields, quality);
-      THUNDERHEAD_ASSIGN_OR_RETURN(cover, DrawContent(scene, std::move(settings), &times));
+      THUNDERHEAD_ASSIGN_OR_RETURN(settings.cover, DrawContent(scene, settings, &times));
     } else {
       workspace_.ground.ClearShadow();
     }
     if (!quality.places) {
-      THUNDERHEAD_RETURN_IF_ERROR(ShadeAir(scene, view, &times));
+      THUNDERHEAD_RETURN_IF_ERROR(ShadeAir(scene, settings, &times));
+      const glm::ivec2 size_px = coarse ? *quality.coarse_px : picture_px;
       THUNDERHEAD_RETURN_IF_ERROR(Timed(workspace_.Pieces(), scene::FrameStage::kComposite, &times,
-                                        [&] { return Composite(scene, view, quality, cover); }));
+                                        [&] { return Composite(scene, settings, size_px); }));
     }
+    if (coarse) coarse_settings_ = settings;
   }
   Keep(asked, fields, quality);
   view_is_drawn_ = true;
   LinearFrame frame = Report(scene, *fields);
+  frame.coarse = coarse_settings_.has_value();
   if (quality.places) {
     frame.radiance = nullptr;
     frame.places = &Eye();
@@ -170,7 +188,7 @@ absl::Status SceneRenderer::MakeContent(const scene::Scene& scene, const Fields&
 }
 
 absl::StatusOr<const Cover*> SceneRenderer::DrawContent(const scene::Scene& scene,
-                                                        RenderSettings settings,
+                                                        RenderSettings& settings,
                                                         StageTimes* times) {
   THUNDERHEAD_ASSIGN_OR_RETURN(settings.cover,
                                CoverOf(settings.view, settings.eye_size, 1.0, &eye_cover_));
@@ -195,15 +213,17 @@ absl::Status SceneRenderer::DrawGround(RenderSettings* settings, StageTimes* tim
   });
 }
 
-absl::Status SceneRenderer::ShadeAir(const scene::Scene& scene, const scene::View& view,
+absl::Status SceneRenderer::ShadeAir(const scene::Scene& scene, const RenderSettings& settings,
                                      StageTimes* times) {
   if (!workspace_.ground.HasShadow()) {
     workspace_.surroundings.LightAllAir();
     return absl::OkStatus();
   }
+  const glm::ivec2 picture_px(scene.output.width_px, scene.output.height_px);
   return Timed(workspace_.Pieces(), scene::FrameStage::kAir, times, [&] {
-    return workspace_.surroundings.ShadeAir(scene, view, workspace_.ground, Box(),
-                                            workspace_.medium);
+    return workspace_.surroundings.ShadeAir(
+        scene, settings.view, workspace_.ground, Box(), workspace_.medium,
+        settings.detail_size.has_value() ? kCoarseAirScale * settings.eye_size : picture_px);
   });
 }
 
@@ -224,30 +244,35 @@ absl::StatusOr<const Cover*> SceneRenderer::CoverOf(const scene::View& view,
   return cover;
 }
 
-absl::Status SceneRenderer::Composite(const scene::Scene& scene, const scene::View& view,
-                                      const DrawQuality& quality, const Cover* eye_cover) {
-  const glm::ivec2 size_px(scene.output.width_px, scene.output.height_px);
+absl::Status SceneRenderer::Composite(const scene::Scene& scene, const RenderSettings& settings,
+                                      const glm::ivec2& size_px) {
   if (nothing_.Get() == 0) {
     nothing_ = gl::Texture2D(GL_RGBA16F, glm::ivec2(1));
     gl::Framebuffer(nothing_).Clear(0.0F, 0.0F, 0.0F, 1.0F);
   }
-  const Cover* cover = eye_cover;
-  if (cover == nullptr || Eye().Size() != size_px) {
+  const Cover* cover = settings.cover;
+  const bool chosen = settings.chosen != nullptr;
+  if (!chosen && (cover == nullptr || Eye().Size() != size_px)) {
     // A pixel takes in the eye buffer's pixels around it.
     const double margin_px = 1.0 + std::ceil(static_cast<double>(size_px.x) / Eye().Size().x);
-    THUNDERHEAD_ASSIGN_OR_RETURN(cover, CoverOf(view, size_px, margin_px, &picture_cover_));
+    THUNDERHEAD_ASSIGN_OR_RETURN(cover,
+                                 CoverOf(settings.view, size_px, margin_px, &picture_cover_));
   }
-  linear_.Resize(quality.single_precision ? GL_RGBA32F : GL_RGBA16F, size_px, cover);
+  const DrawQuality& quality = settings.quality;
+  CoveredTarget& linear = chosen ? chosen_linear_ : linear_;
+  linear.Resize(quality.single_precision ? GL_RGBA32F : GL_RGBA16F, size_px, cover);
   const gl::Texture2D* distances_m = technique_->Empty() ? nullptr : technique_->Distances_m();
-  THUNDERHEAD_RETURN_IF_ERROR(
-      workspace_.surroundings.Composite(scene, view, workspace_.ground, workspace_.ground_cover,
-                                        {Eye(), distances_m, Box()}, linear_, cover));
-  return quality.sun_seen ? AddSun(scene, view) : absl::OkStatus();
+  THUNDERHEAD_RETURN_IF_ERROR(workspace_.surroundings.Composite(
+      scene, settings.view, workspace_.ground, workspace_.ground_cover, {Eye(), distances_m, Box()},
+      linear, cover, settings.chosen));
+  if (!quality.sun_seen) return absl::OkStatus();
+  return AddSun(scene, settings.view,
+                {linear.Target(), chosen ? *settings.detail_size : size_px, settings.chosen});
 }
 
-absl::Status SceneRenderer::AddSun(const scene::Scene& scene, const scene::View& view) {
+absl::Status SceneRenderer::AddSun(const scene::Scene& scene, const scene::View& view,
+                                   const SunGlow::Picture& picture) {
   const SunGlow::Sun sun = workspace_.surroundings.SunFrom(scene, view);
-  const SunGlow::Picture picture{linear_.Target(), linear_.Texture().Size()};
   const scene::MediumSettings* settings = scene::MediumSettingsOf(scene.rendering.technique);
   // By the paper's transport radiance is on the paper's scale of display.
   if (technique_->DrawsMedium() && !technique_->Empty() && settings != nullptr &&
@@ -256,6 +281,36 @@ absl::Status SceneRenderer::AddSun(const scene::Scene& scene, const scene::View&
                                 &workspace_.ground, picture);
   }
   return sun_glow_.AddBehind(Eye(), sun, view, workspace_.ground, picture);
+}
+
+bool SceneRenderer::DrawsChosen() const {
+  // Devices that compute whole targets draw all rays in less time than the choice takes.
+  return technique_->DrawsChosen() && !technique_->Empty() && !gl::ComputesWholeTargets();
+}
+
+absl::StatusOr<ChosenFrame> SceneRenderer::DrawChosen(const std::vector<glm::vec2>& places) {
+  THUNDERHEAD_CHECK(coarse_settings_.has_value() && drawn_scene_.has_value(),
+                    "rays are chosen for a coarse frame");
+  const std::shared_ptr<const volume::HydrometeorFields> fields = drawn_fields_.lock();
+  THUNDERHEAD_CHECK(fields != nullptr, "the fields of the frame are gone");
+  const scene::Scene scene = scene::WithGroundOf(*drawn_scene_, *fields);
+  chosen_.Choose(places);
+  RenderSettings settings = *coarse_settings_;
+  settings.chosen = &chosen_;
+  settings.eye_size = chosen_.Size();
+  settings.cover = nullptr;
+  ChosenFrame frame;
+  if (settings.ground_distance != nullptr) {
+    THUNDERHEAD_RETURN_IF_ERROR(
+        workspace_.ground.DrawDistance(settings.view, settings.eye_size, &chosen_));
+    settings.ground_distance = &workspace_.ground.Distance();
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(technique_->DrawView(scene, settings, &frame.stages));
+  THUNDERHEAD_RETURN_IF_ERROR(Timed(workspace_.Pieces(), scene::FrameStage::kComposite,
+                                    &frame.stages,
+                                    [&] { return Composite(scene, settings, settings.eye_size); }));
+  frame.radiance = &chosen_linear_.Texture();
+  return frame;
 }
 
 LinearFrame SceneRenderer::Report(const scene::Scene& scene,

@@ -10,6 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "gl/objects.h"
+#include "renderers/chosen_rays.h"
 #include "renderers/sun_glow.h"
 #include "renderers/technique.h"
 #include "renderers/technique_registry.h"
@@ -22,6 +23,8 @@ struct LinearFrame {
   // Float, the storm's opacity in alpha; lives until the next Draw. None where places were asked
   // for.
   const gl::Texture2D* radiance = nullptr;
+  // `radiance` has DrawQuality::coarse_px: chosen rays may add to it.
+  bool coarse = false;
   // Only if DrawQuality::places asked for it, and as long-lived: for each pixel of the eye buffer
   // the point in the medium's box, 0 to 1 on each axis, where its correction is looked up, and in
   // alpha the transmittance to the background.
@@ -30,6 +33,12 @@ struct LinearFrame {
   Content content;
   int slices = 0;
   std::size_t device_bytes = 0;
+};
+
+// Chosen rays of a frame.
+struct ChosenFrame {
+  const gl::Texture2D* radiance = nullptr;  // as LinearFrame's, where ChosenRays::PixelOf says
+  StageTimes stages;
 };
 
 class SceneRenderer {
@@ -51,10 +60,16 @@ class SceneRenderer {
   absl::StatusOr<LinearFrame> Draw(const scene::Scene& scene, const Fields& fields,
                                    const DrawQuality& quality);
 
+  // Draws the rays of chosen places of the frame drawn last, which must be coarse; the result lives
+  // until the next. Places run from (-1, -1), left and bottom, to (1, 1).
+  absl::StatusOr<ChosenFrame> DrawChosen(const std::vector<glm::vec2>& places);
+
   // On the device.
   std::size_t Bytes() const;
 
  private:
+  // True where the technique and the device draw chosen rays of the scene.
+  bool DrawsChosen() const;
   // The scene's technique, made if it was not used before.
   absl::StatusOr<Technique*> Choose(const scene::Scene& scene);
   scene::Stage FirstStageAt(const scene::Scene& scene, const Fields& fields,
@@ -65,11 +80,12 @@ class SceneRenderer {
   // Notes what is kept for the next picture: all but the view.
   void Keep(const scene::Scene& scene, const Fields& fields, const DrawQuality& quality);
   // Draws the view, whose light is carried. Returns the eye buffer's cover, if any.
-  absl::StatusOr<const Cover*> DrawContent(const scene::Scene& scene, RenderSettings settings,
+  absl::StatusOr<const Cover*> DrawContent(const scene::Scene& scene, RenderSettings& settings,
                                            StageTimes* times);
   // The storm's shadow, and the distance of ground that hides a part of the storm.
   absl::Status DrawGround(RenderSettings* settings, StageTimes* times);
-  absl::Status ShadeAir(const scene::Scene& scene, const scene::View& view, StageTimes* times);
+  absl::Status ShadeAir(const scene::Scene& scene, const RenderSettings& settings,
+                        StageTimes* times);
   const gl::Texture2D& Eye() const;
   // Around what was drawn.
   volume::WorldBox Box() const;
@@ -77,10 +93,11 @@ class SceneRenderer {
   // else; `margin_px` is how far it is spread there.
   absl::StatusOr<const Cover*> CoverOf(const scene::View& view, const glm::ivec2& size_px,
                                        double margin_px, Cover* cover);
-  absl::Status Composite(const scene::Scene& scene, const scene::View& view,
-                         const DrawQuality& quality, const Cover* eye_cover);
-  // Adds the sun to the composed frame.
-  absl::Status AddSun(const scene::Scene& scene, const scene::View& view);
+  absl::Status Composite(const scene::Scene& scene, const RenderSettings& settings,
+                         const glm::ivec2& size_px);
+  // Adds the sun to a composed frame.
+  absl::Status AddSun(const scene::Scene& scene, const scene::View& view,
+                      const SunGlow::Picture& picture);
   LinearFrame Report(const scene::Scene& scene, const volume::HydrometeorFields& fields) const;
 
   Workspace workspace_;
@@ -90,6 +107,8 @@ class SceneRenderer {
   Cover eye_cover_;                 // of the medium in the eye buffer
   Cover picture_cover_;             // and in a picture of another size
   CoveredTarget linear_;
+  ChosenRays chosen_;
+  CoveredTarget chosen_linear_;
   SunGlow sun_glow_;
   gl::Texture2D nothing_;  // an eye buffer without medium
 
@@ -98,6 +117,8 @@ class SceneRenderer {
   std::weak_ptr<const volume::HydrometeorFields> drawn_fields_;
   DrawQuality drawn_quality_;
   bool view_is_drawn_ = false;  // else drawing it was cancelled
+  double drawn_light_tolerance_ = kLightTolerance;
+  std::optional<RenderSettings> coarse_settings_;  // of the last frame, if that is coarse
   int drawn_slices_ = 0;
   bool sunlight_changed_ = true;  // since the frame before
 };

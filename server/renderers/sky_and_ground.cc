@@ -30,11 +30,15 @@ struct CompositeVariant {
   gl::DefineValue shaded;     // air and skylight, by AirShade
   gl::DefineValue front;      // there may be something in the eye buffer
   gl::DefineValue distances;  // its distance is known
+  gl::DefineValue chosen;     // the rays of ChosenRays
 
   gl::Defines Defines() const {
-    return gl::Joined(
-        gl::Joined(ground.Defines(), ground_cover.Defines()),
-        {{"CORRECTED", corrected}, {"SHADED", shaded}, {"FRONT", front}, {"DISTANCES", distances}});
+    return gl::Joined(gl::Joined(ground.Defines(), ground_cover.Defines()),
+                      {{"CORRECTED", corrected},
+                       {"SHADED", shaded},
+                       {"FRONT", front},
+                       {"DISTANCES", distances},
+                       {"CHOSEN", chosen}});
   }
 };
 
@@ -228,15 +232,15 @@ void SkyAndGround::BindAir(const gl::Program& program, const scene::Scene& scene
 
 absl::Status SkyAndGround::ShadeAir(const scene::Scene& scene, const scene::View& view,
                                     const Ground& ground, const volume::WorldBox& box,
-                                    const ResidentMedium& medium) {
+                                    const ResidentMedium& medium, const glm::ivec2& size_px) {
   THUNDERHEAD_RETURN_IF_ERROR(air_shade_.HideSky(medium, scene, ground.Lowest_m()));
-  return air_shade_.Cast(scene, view, ground, box);
+  return air_shade_.Cast(scene, view, ground, box, size_px);
 }
 
 absl::Status SkyAndGround::Composite(const scene::Scene& scene, const scene::View& view,
                                      const Ground& ground, const GroundCover& ground_cover,
                                      const Front& front, const CoveredTarget& target,
-                                     const Cover* cover) {
+                                     const Cover* cover, const ChosenRays* chosen) {
   front.eye.Bind(shaders::kEyeUnit);
   if (front.distances_m != nullptr) front.distances_m->Bind(shaders::kEyeDistanceUnit);
   sky_table_.Bind(shaders::kSkyTableUnit);
@@ -248,14 +252,20 @@ absl::Status SkyAndGround::Composite(const scene::Scene& scene, const scene::Vie
         .corrected = ground.Corrected(),
         .shaded = air_shade_.Present(),
         .front = where == Where::kCovered,
-        .distances = where == Where::kCovered && front.distances_m != nullptr};
+        .distances = where == Where::kCovered && front.distances_m != nullptr,
+        .chosen = chosen != nullptr};
     THUNDERHEAD_ASSIGN_OR_RETURN(
         const gl::Program* program,
         programs_->Get(gl::ProgramSource::WholeTarget("post/composite.frag", variant.Defines())));
     BindAir(*program, scene, view, ground, front.box);
     ground_cover.Bind(*program, scene, view, scene.output.height_px);
     const LimitedTo limited(where, cover);
-    return whole_target_.Draw(programs_->Pieces(), kCompositePixel, *program, target.Target());
+    if (chosen == nullptr) {
+      return whole_target_.Draw(programs_->Pieces(), kCompositePixel, *program, target.Target());
+    }
+    chosen->Bind();
+    return whole_target_.Draw(programs_->Pieces(), kCompositePixel, *program, target.Target(),
+                              chosen->Rect());
   };
   THUNDERHEAD_RETURN_IF_ERROR(draw(Where::kCovered));
   return cover == nullptr ? absl::OkStatus() : draw(Where::kElsewhere);

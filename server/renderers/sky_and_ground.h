@@ -44,9 +44,11 @@ class SkyAndGround {
 
   // Air and skylight without a storm's shadow.
   void LightAllAir() { air_shade_.Clear(); }
-  // Shades them by what is in `box`, whose shadow the ground has; `medium` may be empty.
+  // Shades them by what is in `box`, whose shadow the ground has, as finely as suits a picture of
+  // `size_px`; `medium` may be empty.
   absl::Status ShadeAir(const scene::Scene& scene, const scene::View& view, const Ground& ground,
-                        const volume::WorldBox& box, const ResidentMedium& medium);
+                        const volume::WorldBox& box, const ResidentMedium& medium,
+                        const glm::ivec2& size_px);
 
   // The eye buffer, drawn before sky and ground.
   struct Front {
@@ -55,10 +57,10 @@ class SkyAndGround {
     volume::WorldBox box;                        // around it; may be empty
   };
   // Draws `front` in front of sky and covered ground, all through the air, to `target`. `cover`, if
-  // any, is the target's: nothing was drawn beyond it.
+  // any, is the target's: nothing was drawn beyond it. With `chosen`, if any, for these rays.
   absl::Status Composite(const scene::Scene& scene, const scene::View& view, const Ground& ground,
                          const GroundCover& ground_cover, const Front& front,
-                         const CoveredTarget& target, const Cover* cover);
+                         const CoveredTarget& target, const Cover* cover, const ChosenRays* chosen);
 
   std::size_t Bytes() const {
     return sky_table_.Bytes() + ground_sky_table_.Bytes() + air_shade_.Bytes();

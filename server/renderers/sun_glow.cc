@@ -35,6 +35,10 @@ double PixelAngle_rad(const scene::View& view, const glm::ivec2& size_px) {
   return std::max(2.0 * view.tan_half_height / size_px.y, 1e-5);
 }
 
+gl::Defines ChosenBy(const SunGlow::Picture& picture) {
+  return {{"CHOSEN", picture.chosen != nullptr ? 1 : 0}};
+}
+
 }  // namespace
 
 PixelRect RectAround(const glm::dvec3& direction, double angle_rad, const scene::View& view,
@@ -101,10 +105,12 @@ void SunGlow::BindSun(const gl::Program& program, const Sun& sun, const scene::V
 
 absl::Status SunGlow::Add(const gl::Program& program, const gl::PieceCost& pixel,
                           const PixelRect& rect, const Picture& picture) {
+  if (picture.chosen != nullptr) picture.chosen->Bind();
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
   absl::Status added =
-      whole_target_.Draw(programs_->Pieces(), pixel, program, picture.target, rect);
+      whole_target_.Draw(programs_->Pieces(), pixel, program, picture.target,
+                         picture.chosen == nullptr ? rect : picture.chosen->Rect());
   glDisable(GL_BLEND);
   return added;
 }
@@ -121,10 +127,12 @@ absl::Status SunGlow::AddThrough(const ResidentMedium& medium,
   const PixelRect rect = RectAround(sun.towards, reach_rad, view, picture.size_px);
   if (rect.Empty()) return absl::OkStatus();
   Tabulate(medium.Content(), cut_rad);
-  THUNDERHEAD_RETURN_IF_ERROR(ground->DrawDistance(view, picture.size_px));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
-                               programs_->Get(gl::ProgramSource::BlendedWholeTarget(
-                                   "sun/aureole.frag", medium.Variant().Defines())));
+  THUNDERHEAD_RETURN_IF_ERROR(ground->DrawDistance(
+      view, picture.chosen == nullptr ? picture.size_px : picture.chosen->Size(), picture.chosen));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_->Get(gl::ProgramSource::BlendedWholeTarget(
+          "sun/aureole.frag", gl::Joined(medium.Variant().Defines(), ChosenBy(picture)))));
   medium.BindWithBricks(*program);
   weights.BindPhase(*program);
   BindRays(*program, view, medium.Middle_m());
@@ -148,9 +156,10 @@ absl::Status SunGlow::AddBehind(const gl::Texture2D& eye, const Sun& sun, const 
   if (IsDark(sun)) return absl::OkStatus();
   const PixelRect rect = RectAround(sun.towards, kDiscReach_rad, view, picture.size_px);
   if (rect.Empty()) return absl::OkStatus();
-  THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
-                               programs_->Get(gl::ProgramSource::BlendedWholeTarget(
-                                   "sun/disc.frag", ground.Variant().Defines())));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs_->Get(gl::ProgramSource::BlendedWholeTarget(
+          "sun/disc.frag", gl::Joined(ground.Variant().Defines(), ChosenBy(picture)))));
   BindRays(*program, view, view.eye_m);
   ground.Bind(*program, view);
   BindSun(*program, sun, view, picture);

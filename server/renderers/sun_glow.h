@@ -39,6 +39,7 @@ class SunGlow {
   struct Picture {
     const gl::Framebuffer& target;  // the linear frame
     glm::ivec2 size_px{1};
+    const ChosenRays* chosen = nullptr;  // that the frame is of, in place of the picture's pixels
   };
 
   // The disc and the aureole seen through `medium`, which is drawn with `settings`, `slices`

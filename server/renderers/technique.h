@@ -78,6 +78,8 @@ class Technique {
                                 StageTimes* times) = 0;
   // True if nothing is drawn away from the medium's occupied bricks.
   virtual bool KeepsToCover() const { return false; }
+  // True if DrawView draws RenderSettings::chosen.
+  virtual bool DrawsChosen() const { return false; }
   // The result of the last DrawView.
   virtual const gl::Texture2D& Eye() const = 0;
   // Its mean distance from the eye, weighted by what each part of the ray shows, times its opacity:

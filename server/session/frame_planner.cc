@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "accuracy/moving_picture.h"
+
 namespace thunderhead::session {
 namespace {
 
@@ -11,9 +13,9 @@ namespace {
 // the estimate do not change the size of the buffers.
 constexpr int kSteps = 8;
 
-FrameQuality Step(int step) {
+FrameQuality Step(int step, bool sparse) {
   const double share = kCoarsest * std::pow(1.0 / kCoarsest, static_cast<double>(step) / kSteps);
-  return step == kSteps ? FrameQuality{} : FrameQuality{share, share};
+  return step == kSteps ? FrameQuality{1.0, 1.0, sparse} : FrameQuality{share, share, sparse};
 }
 
 scene::Stage FirstDirty(const std::optional<LastDrawn>& last_drawn, const scene::Scene& scene) {
@@ -40,7 +42,10 @@ FramePlan FramePlanner::Coarse(const scene::Scene& scene,
                                const std::optional<LastDrawn>& last_drawn) const {
   const scene::Stage first_dirty = FirstDirty(last_drawn, scene);
   if (first_dirty < scene::Stage::kTone) {
-    const FrameQuality quality = Finest(scene, first_dirty, targets_.coarse_ms);
+    const bool sparse =
+        accuracy::MovesSparsely(scene) &&
+        costs_.FrameMs(view_, scene, FrameQuality{}, first_dirty) > targets_.smooth_ms;
+    const FrameQuality quality = Finest(scene, first_dirty, targets_.coarse_ms, sparse);
     return {quality, IsFull(quality)};
   }
   // Only the tone changes: the linear frame is reused at its quality, at no cost.
@@ -56,7 +61,7 @@ Decision FramePlanner::AtRest(const NewestScene& newest, Clock::time_point now,
       std::min(FirstDirty(last_drawn, *newest.scene), scene::Stage::kView);
   if (!drawn_.refined) {
     const FrameQuality quality = Finest(*newest.scene, first_dirty, targets_.refined_ms);
-    if (quality.image_scale > drawn_.quality.image_scale) {
+    if (IsFull(quality) || quality.image_scale > drawn_.quality.image_scale) {
       return {FramePlan{quality, true}, std::nullopt};
     }
   }
@@ -88,12 +93,12 @@ void FramePlanner::Again() {
 }
 
 FrameQuality FramePlanner::Finest(const scene::Scene& scene, scene::Stage first_dirty,
-                                  double budget_ms) const {
+                                  double budget_ms, bool sparse) const {
   for (int step = kSteps; step > 0; --step) {
-    const FrameQuality quality = Step(step);
+    const FrameQuality quality = Step(step, sparse);
     if (costs_.FrameMs(view_, scene, quality, first_dirty) <= budget_ms) return quality;
   }
-  return Step(0);
+  return Step(0, sparse);
 }
 
 }  // namespace thunderhead::session

@@ -17,6 +17,7 @@ namespace thunderhead::session {
 
 struct PlannerTargets {
   double coarse_ms = 33.0;  // a frame while the scene changes
+  double smooth_ms = 10.0;  // one that costs no more gets a ray for each pixel even then
   // The first frame at rest: with the delay, encoding and network it is shown within 300 ms.
   double refined_ms = 180.0;
   Clock::duration rest_delay = std::chrono::milliseconds(80);
@@ -88,7 +89,8 @@ class FramePlanner {
   FramePlan Coarse(const scene::Scene& scene, const std::optional<LastDrawn>& last_drawn) const;
   Decision AtRest(const NewestScene& newest, Clock::time_point now,
                   const std::optional<LastDrawn>& last_drawn) const;
-  FrameQuality Finest(const scene::Scene& scene, scene::Stage first_dirty, double budget_ms) const;
+  FrameQuality Finest(const scene::Scene& scene, scene::Stage first_dirty, double budget_ms,
+                      bool sparse = false) const;
 
   const PlannerTargets targets_;
   const accuracy::MachineCosts& costs_;

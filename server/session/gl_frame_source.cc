@@ -7,6 +7,7 @@
 #include "accuracy/corrector_pool.h"
 #include "accuracy/error_meters.h"
 #include "accuracy/estimator.h"
+#include "accuracy/moving_picture.h"
 #include "accuracy/traced_lights.h"
 #include "base/out_of_memory.h"
 #include "base/status.h"
@@ -56,6 +57,7 @@ class GlFrameSource final : public FrameSource {
                                     const FrameQuality& quality) override {
     return Watched([&]() -> absl::StatusOr<DisplayFrame> {
       const Correction correction = CorrectionOf(scene, fields);
+      if (quality.sparse) return DrawMoving(scene, fields, quality, correction);
       THUNDERHEAD_ASSIGN_OR_RETURN(
           const renderers::LinearFrame linear,
           renderers_.Draw(scene, fields,
@@ -145,6 +147,25 @@ class GlFrameSource final : public FrameSource {
   }
 
  private:
+  absl::StatusOr<DisplayFrame> DrawMoving(
+      const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
+      const FrameQuality& quality, const accuracy::TracedLights::Found& correction) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        const renderers::LinearFrame linear,
+        renderers_.Draw(scene, fields,
+                        Applied(correction, accuracy::MovingQuality(scene, quality))));
+    if (!linear.coarse) return Display(linear, scene, correction);
+    DisplayFrame frame = Described(linear, scene, correction);
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        frame::ToneMapped mapped,
+        accuracy::CompleteMoving(
+            linear, scene, quality, tone_mapper_,
+            [this](const std::vector<glm::vec2>& places) { return renderers_.DrawChosen(places); },
+            &frame.stages));
+    Fill({scene.output.width_px, scene.output.height_px}, std::move(mapped), &frame);
+    return frame;
+  }
+
   // The picture drawn last, until anything else is drawn.
   struct Drawn {
     const gl::Texture2D* linear;
@@ -192,11 +213,17 @@ class GlFrameSource final : public FrameSource {
     THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped,
                                  tone_mapper_.Map(*linear.radiance, scene));
     tone_mapped_ = {linear.radiance, &tone_mapper_};
+    DisplayFrame frame = Described(linear, scene, correction);
+    Fill(linear.radiance->Size(), std::move(mapped), &frame);
+    return frame;
+  }
+
+  static DisplayFrame Described(const renderers::LinearFrame& linear, const scene::Scene& scene,
+                                const Correction& correction) {
     DisplayFrame frame;
     frame.stages = linear.stages;
     frame.modelled = {std::string(scene::NameOf(scene.rendering.technique)), linear.content,
                       linear.slices, linear.device_bytes, correction.paths};
-    Fill(linear.radiance->Size(), std::move(mapped), &frame);
     return frame;
   }
 

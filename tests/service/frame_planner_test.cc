@@ -69,7 +69,12 @@ class FramePlannerTest : public ::testing::Test {
 };
 
 TEST_F(FramePlannerTest, FastMachineDrawsFullQualityAtOnceAndOnce) {
-  Drag({1.0, 0.05}, 10);  // 7 ms a full frame
+  const Machine machine{1.0, 0.05};  // 7 ms a full frame
+  Drag(machine, 10);
+  EXPECT_EQ(last_plan_.quality, (FrameQuality{1.0, 1.0, true}));
+  Draw(machine, *Ask(milliseconds(80)).plan);
+  // Now it is known what a ray for each pixel costs.
+  Drag(machine, 1);
   EXPECT_EQ(last_plan_, (FramePlan{FrameQuality{}, true}));
   const Decision decision = Ask(milliseconds(10000));
   EXPECT_FALSE(decision.plan.has_value());
@@ -107,9 +112,19 @@ TEST_F(FramePlannerTest, CoarseFramesComeToCostAboutTheTarget) {
   }
 }
 
+TEST_F(FramePlannerTest, OnlyPicturesThatCanBeSparseAre) {
+  const Machine machine{2.0, 0.15};  // 20 ms a full frame
+  Drag(machine, 5);
+  EXPECT_EQ(last_plan_, (FramePlan{FrameQuality{1.0, 1.0, true}, false}));
+  EXPECT_EQ(*Ask(milliseconds(80)).plan, (FramePlan{FrameQuality{}, true}));
+  scene_.rendering.technique = scene::HalfAngle{};
+  Drag(machine, 5);
+  EXPECT_EQ(last_plan_, (FramePlan{FrameQuality{}, true}));
+}
+
 TEST_F(FramePlannerTest, CoarsestIsAQuarter) {
   Drag({0.0, 1000.0}, 5);
-  EXPECT_EQ(last_plan_.quality, (FrameQuality{kCoarsest, kCoarsest}));
+  EXPECT_EQ(last_plan_.quality, (FrameQuality{kCoarsest, kCoarsest, true}));
 }
 
 TEST_F(FramePlannerTest, RefinesAfterTheDelayAtFullQualityWhenThatIsQuick) {

@@ -18,7 +18,7 @@ namespace {
 // Cells through which light loses less than this are empty.
 constexpr float kEmptyDepth = 1e-4F;
 constexpr int kMaxIterations = 200;
-constexpr double kTolerance = 2e-4;
+constexpr double kSkyTolerance = 2e-4;
 // Maximum factor by which leaving a face aslant lengthens the path to the surface.
 constexpr float kMaxSlant = 4.0F;
 
@@ -322,7 +322,7 @@ void DiffuseLight::SolveSkyPart(int part) {
     }
   }
   std::vector<float> share(right.size(), 0.5F * static_cast<float>(part));
-  Solve(right, kTolerance, &share);
+  Solve(right, kSkyTolerance, &share);
   std::vector<float> own(number_.size(), 0.0F);
   for (std::size_t n = 0; n < share.size(); ++n) {
     const auto i = static_cast<std::size_t>(cell_of_[n]);
@@ -399,7 +399,8 @@ float DiffuseLight::SunlightScattered(std::size_t n, const glm::dvec3& towards_s
 }
 
 const std::vector<float>& DiffuseLight::SolveSun(const glm::dvec3& towards_sun,
-                                                 const std::vector<float>& arrived_root) {
+                                                 const std::vector<float>& arrived_root,
+                                                 double tolerance) {
   THUNDERHEAD_CHECK(arrived_root.size() == number_.size(), std::to_string(arrived_root.size()));
   const std::size_t count = cell_of_.size();
   FindDecays(arrived_root);
@@ -407,7 +408,7 @@ const std::vector<float>& DiffuseLight::SolveSun(const glm::dvec3& towards_sun,
   ForShares(count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) right[n] = SunlightScattered(n, towards_sun);
   });
-  Solve(right, kTolerance, &fluence_);
+  Solve(right, tolerance, &fluence_);
   net_inward_.assign(number_.size(), 0.0F);
   std::vector<float> own(number_.size(), 0.0F);
   ForShares(count, [&](std::size_t begin, std::size_t end) {

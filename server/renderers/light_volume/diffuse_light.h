@@ -33,9 +33,11 @@ class DiffuseLight {
 
   // For sunlight of irradiance 1 that arrives in each cell with the root of its optical depth
   // `arrived_root`: the net flux into the cloud that fluence (shaders/physics/light_transport.glsl,
-  // diffuse_fluence) is made of. Starts from the last solution.
+  // diffuse_fluence) is made of. Starts from the last solution, and ends where the residual, in the
+  // preconditioner's norm, is less than `tolerance` times the right side.
   const std::vector<float>& SolveSun(const glm::dvec3& towards_sun,
-                                     const std::vector<float>& arrived_root);
+                                     const std::vector<float>& arrived_root,
+                                     double tolerance = 2e-4);
   // The fluence that other walls send in, of the last SolveSun.
   const std::vector<float>& FromWalls() const { return from_walls_; }
 

@@ -1,5 +1,8 @@
 #include "renderers/light_volume/diffusion_pass.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -15,6 +18,8 @@ namespace {
 
 // Larger media are solved on fewer cells than their own.
 constexpr double kMaxDiffusionCells = 4e6;
+
+constexpr std::size_t kTexelsInShare = 32768;  // that a thread works on at a time
 
 // Memory that DiffuseLight, its inputs and this pass take for each cell, and for one with anything
 // in it besides.
@@ -43,7 +48,8 @@ void Dispatch(const glm::ivec3& cells) {
 }  // namespace
 
 absl::Status DiffusionPass::Solve(const ResidentMedium& medium, const GroupWeights& weights,
-                                  const gl::Texture3D& arrived, const glm::dvec3& towards_sun) {
+                                  const gl::Texture3D& arrived, const glm::dvec3& towards_sun,
+                                  double tolerance) {
   Key key{medium.Id(), weights.light, weights.transport, weights.absorption};
   if (!light_.has_value() || key != key_) {
     light_.reset();
@@ -55,10 +61,14 @@ absl::Status DiffusionPass::Solve(const ResidentMedium& medium, const GroupWeigh
   }
   THUNDERHEAD_RETURN_IF_ERROR(SampleLight(arrived));
   return programs_->Pieces().OffTurn([&] {
-    const std::vector<float>& sun = light_->SolveSun(towards_sun, arrived_root_);
-    for (std::size_t i = 0; i < sun.size(); ++i) {
-      net_inward_texels_[i] = {sun[i], light_->FromWalls()[i], light_->SkyInward()[i].y, 0.0F};
-    }
+    const std::vector<float>& sun = light_->SolveSun(towards_sun, arrived_root_, tolerance);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sun.size(), kTexelsInShare),
+                      [&](const auto& share) {
+                        for (std::size_t i = share.begin(); i != share.end(); ++i) {
+                          net_inward_texels_[i] = {sun[i], light_->FromWalls()[i],
+                                                   light_->SkyInward()[i].y, 0.0F};
+                        }
+                      });
     net_inward_.Upload(GL_RGBA, GL_FLOAT, net_inward_texels_.data());
   });
 }

@@ -26,9 +26,9 @@ class DiffusionPass {
   explicit DiffusionPass(std::shared_ptr<gl::ProgramCache> programs)
       : programs_(std::move(programs)) {}
 
-  // `arrived` is that of arrive.comp.
+  // `arrived` is that of arrive.comp; `tolerance` as DiffuseLight::SolveSun has it.
   absl::Status Solve(const ResidentMedium& medium, const GroupWeights& weights,
-                     const gl::Texture3D& arrived, const glm::dvec3& towards_sun);
+                     const gl::Texture3D& arrived, const glm::dvec3& towards_sun, double tolerance);
 
   // For march.frag.
   void Bind() const;

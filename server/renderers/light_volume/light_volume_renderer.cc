@@ -128,7 +128,8 @@ absl::Status LightVolumeRenderer::CarryLight(const ResidentMedium& medium,
   THUNDERHEAD_RETURN_IF_ERROR(Carry(medium, weights, box, variant));
   THUNDERHEAD_RETURN_IF_ERROR(Arrive(medium, weights, box, variant));
   if (!Diffuses(settings)) return absl::OkStatus();
-  return diffusion_.Solve(medium, weights, arrived_, settings.illumination.towards_sun);
+  return diffusion_.Solve(medium, weights, arrived_, settings.illumination.towards_sun,
+                          settings.quality.light_tolerance);
 }
 
 absl::Status LightVolumeRenderer::Carry(const ResidentMedium& medium, const GroupWeights& weights,
@@ -230,8 +231,10 @@ void LightVolumeRenderer::BindCorrection(const std::shared_ptr<const LightCorrec
 
 absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
                                            const RenderSettings& settings) {
-  eye_.Resize(settings.quality.single_precision ? GL_RGBA32F : GL_RGBA16F, settings.eye_size,
-              settings.cover, true);
+  drawn_ = settings.chosen != nullptr ? 1 : 0;
+  CoveredTarget& eye = eyes_[drawn_];
+  eye.Resize(settings.quality.single_precision ? GL_RGBA32F : GL_RGBA16F, settings.eye_size,
+             settings.cover, true);
   const GroupWeights weights(medium.Content(), settings.Medium());
   const bool diffusion = Diffuses(settings);
   const MarchVariant variant{.medium = medium.Variant(),
@@ -242,7 +245,8 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
                              .diffusion = diffusion,
                              .tinted = diffusion && (weights.colored || weights.absorbs),
                              .corrected = settings.quality.correction != nullptr,
-                             .places = settings.quality.places};
+                             .places = settings.quality.places,
+                             .chosen = settings.chosen != nullptr};
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
       programs_->Get(gl::ProgramSource::WholeTarget("light_volume/march.frag", variant.Defines())));
@@ -251,7 +255,7 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
   const scene::View& view = settings.view;
   const double reach_m = glm::dot(glm::abs(view.forward), medium.HalfExtent_m());
   BindRays(*program, view, medium.Middle_m());
-  medium.BindPixel(*program, view, settings.eye_size);
+  medium.BindPixel(*program, view, settings.detail_size.value_or(settings.eye_size));
   program->Set(uniform::towards_sun, glm::vec3(settings.illumination.towards_sun));
   program->Set(uniform::step_m, static_cast<float>(2.0 * reach_m / settings.slices));
   program->Set(uniform::near_step, NearStep(settings.slices));
@@ -262,12 +266,24 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
   if (settings.ground_distance != nullptr)
     settings.ground_distance->Bind(shaders::kGroundDistanceUnit);
   if (settings.cover != nullptr) {
-    eye_.Target().Clear(0.0F, 0.0F, 0.0F, 1.0F);
-    eye_.Target().Clear(0.0F, 0.0F, 0.0F, 0.0F, 1);
+    eye.Target().Clear(0.0F, 0.0F, 0.0F, 1.0F);
+    eye.Target().Clear(0.0F, 0.0F, 0.0F, 0.0F, 1);
   }
   const LimitedTo limited(Where::kCovered, settings.cover);
-  return whole_target_.Draw(programs_->Pieces(), {"march", kMarchedSample_ns * settings.slices},
-                            *program, eye_.Target());
+  const gl::PieceCost ray{"march", kMarchedSample_ns * settings.slices};
+  if (settings.chosen == nullptr) {
+    return whole_target_.Draw(programs_->Pieces(), ray, *program, eye.Target());
+  }
+  settings.chosen->Bind();
+  return whole_target_.Draw(programs_->Pieces(), ray, *program, eye.Target(),
+                            settings.chosen->Rect());
+}
+
+std::size_t LightVolumeRenderer::Bytes() const {
+  std::size_t bytes = carried_.Bytes() + thickness_.Bytes() + shadow_.Bytes() + arrived_.Bytes() +
+                      diffusion_.Bytes();
+  for (const CoveredTarget& eye : eyes_) bytes += eye.Texture().Bytes() + eye.Distances().Bytes();
+  return bytes;
 }
 
 }  // namespace thunderhead::renderers

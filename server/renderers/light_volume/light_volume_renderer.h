@@ -47,12 +47,9 @@ class LightVolumeRenderer {
   absl::Status DrawView(const ResidentMedium& medium, const RenderSettings& settings);
 
   // The result of the last DrawView.
-  const gl::Texture2D& Eye() const { return eye_.Texture(); }
-  const gl::Texture2D& Distances_m() const { return eye_.Distances(); }
-  std::size_t Bytes() const {
-    return Eye().Bytes() + Distances_m().Bytes() + carried_.Bytes() + thickness_.Bytes() +
-           shadow_.Bytes() + arrived_.Bytes() + diffusion_.Bytes();
-  }
+  const gl::Texture2D& Eye() const { return eyes_[drawn_].Texture(); }
+  const gl::Texture2D& Distances_m() const { return eyes_[drawn_].Distances(); }
+  std::size_t Bytes() const;
 
  private:
   struct LightBox;
@@ -71,8 +68,9 @@ class LightVolumeRenderer {
 
   std::shared_ptr<gl::ProgramCache> programs_;
   gl::WholeTarget whole_target_;
-  CoveredTarget eye_;
-  gl::Texture3D carried_;  // along the sun's rays
+  std::array<CoveredTarget, 2> eyes_;  // the second is for chosen rays
+  std::size_t drawn_ = 0;              // by the last DrawView
+  gl::Texture3D carried_;              // along the sun's rays
   gl::Texture2D thickness_;
   gl::Texture2D shadow_;
   gl::Texture3D arrived_;  // at the medium's cells

@@ -16,6 +16,7 @@ class LightVolumeTechnique final : public Technique {
   volume::WorldBox Box() const override { return BoxOf(workspace_.medium); }
   bool CastsShadow() const override { return true; }
   bool KeepsToCover() const override { return true; }
+  bool DrawsChosen() const override { return true; }
   const gl::Texture2D& Eye() const override { return renderer_.Eye(); }
   const gl::Texture2D* Distances_m() const override { return &renderer_.Distances_m(); }
   std::size_t Bytes() const override { return renderer_.Bytes(); }

@@ -31,6 +31,7 @@ struct MarchVariant {
   gl::DefineValue tinted;       // that light is absorbed or coloured
   gl::DefineValue corrected;    // by renderers::LightCorrection
   gl::DefineValue places;       // in place of radiance, where a correction is looked up
+  gl::DefineValue chosen;       // the rays of renderers::ChosenRays
 
   gl::Defines Defines() const {
     return gl::Joined(medium.Defines(), {{"COLORED", colored},
@@ -40,7 +41,8 @@ struct MarchVariant {
                                          {"DIFFUSION", diffusion},
                                          {"TINTED", tinted},
                                          {"CORRECTED", corrected},
-                                         {"PLACES", places}});
+                                         {"PLACES", places},
+                                         {"CHOSEN", chosen}});
   }
 };
 

@@ -1,5 +1,8 @@
 #include "renderers/light_volume/wall_light.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -22,6 +25,7 @@ constexpr double kSameSlopeCells = 1.2;
 constexpr double kSameSlope = 0.3;
 constexpr float kMinTransmittance = 0.02F;
 constexpr int kTurns = 6;  // from wall to wall that are followed
+constexpr std::size_t kWallsInShare = 1024;
 constexpr int kRings = 3;
 constexpr int kRaysInRing = 4;
 
@@ -95,6 +99,20 @@ WallLight::WallLight(const DiffusionCells& cells)
   for (std::size_t i = 0; i < hidden_.size(); ++i) {
     if (IsWall(i)) Look(i);
   }
+  NumberWalls();
+}
+
+void WallLight::NumberWalls() {
+  constexpr std::int32_t kNone = -1;
+  std::vector<std::int32_t> number(hidden_.size(), kNone);
+  for (std::size_t n = 0; n < walls_.size(); ++n) {
+    number[static_cast<std::size_t>(walls_[n])] = static_cast<std::int32_t>(n);
+  }
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    if (i == 0 || seen_[i].from != seen_[i - 1].from) first_seen_.push_back(i);
+    seen_[i].to_wall = number[static_cast<std::size_t>(seen_[i].to)];
+  }
+  first_seen_.push_back(seen_.size());
 }
 
 bool WallLight::IsWall(std::size_t cell) const {
@@ -147,17 +165,29 @@ void WallLight::Follow(std::size_t wall, int side, const glm::dvec3& ray) {
 }
 
 std::vector<float> WallLight::Arriving(const std::vector<float>& own) const {
-  std::vector<float> arriving(own.size(), 0.0F);
+  std::vector<float> arriving(walls_.size(), 0.0F);
+  std::vector<float> next(walls_.size());
   for (int turn = 0; turn < kTurns && !seen_.empty(); ++turn) {
-    std::vector<float> next(own.size(), 0.0F);
-    for (const Seen& seen : seen_) {
-      const auto to = static_cast<std::size_t>(seen.to);
-      next[static_cast<std::size_t>(seen.from)] +=
-          seen.share * std::max(own[to] + arriving[to], 0.0F);
-    }
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, walls_.size(), kWallsInShare), [&](const auto& share) {
+          for (std::size_t wall = share.begin(); wall != share.end(); ++wall) {
+            float sum = 0.0F;
+            for (std::size_t i = first_seen_[wall]; i < first_seen_[wall + 1]; ++i) {
+              const Seen& seen = seen_[i];
+              const float back =
+                  seen.to_wall < 0 ? 0.0F : arriving[static_cast<std::size_t>(seen.to_wall)];
+              sum += seen.share * std::max(own[static_cast<std::size_t>(seen.to)] + back, 0.0F);
+            }
+            next[wall] = sum;
+          }
+        });
     std::swap(arriving, next);
   }
-  return WithNeighbours(std::move(arriving));
+  std::vector<float> values(own.size(), 0.0F);
+  for (std::size_t wall = 0; wall < walls_.size(); ++wall) {
+    values[static_cast<std::size_t>(walls_[wall])] = arriving[wall];
+  }
+  return WithNeighbours(std::move(values));
 }
 
 std::vector<float> WallLight::WithNeighbours(std::vector<float> values) const {

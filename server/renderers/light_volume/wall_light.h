@@ -29,19 +29,22 @@ class WallLight {
   struct Seen {
     std::int32_t from;
     std::int32_t to;
-    float share;  // of all that its open faces see
+    float share;                // of all that its open faces see
+    std::int32_t to_wall = -1;  // in walls_; none if that wall sees no others
   };
 
   bool IsWall(std::size_t cell) const;
   void Look(std::size_t wall);
+  void NumberWalls();
   void Follow(std::size_t wall, int side, const glm::dvec3& ray);
   std::vector<float> WithNeighbours(std::vector<float> values) const;
 
   DiffusionCells cells_;
   double wall_size_m_ = 0.0;
   float wall_per_m_ = 0.0F;
-  std::vector<Seen> seen_;           // ordered by `from`
-  std::vector<std::int32_t> walls_;  // those that see others
+  std::vector<Seen> seen_;               // ordered by `from`
+  std::vector<std::int32_t> walls_;      // those that see others
+  std::vector<std::size_t> first_seen_;  // in seen_, of each of these, and the end
   std::vector<float> hidden_;
 };
 

@@ -27,6 +27,7 @@ const int kGroundGrainUnit = 14;
 const int kGroundSkyUnit = 15;
 const int kEyeUnit = 4;
 const int kLinearFrameUnit = 4;
+const int kChosenPlacesUnit = 18;
 const int kAureoleUnit = 4;
 
 // Of whole targets that are computed.

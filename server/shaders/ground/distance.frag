@@ -1,11 +1,12 @@
-// Distance of the ground along each pixel's ray; very large where the ray meets none. Variant: RELIEF.
+// Distance of the ground along each pixel's ray; very large where the ray meets none. Variants: RELIEF, CHOSEN.
+#include "common/ray_place.glsl"
 #include "common/view.glsl"
 #include "common/ground.glsl"
 
-in vec2 position;
 out float distance_m;
 
 void main() {
+  begin_place();
   float ground_m = ground_distance_m(ray_origin(position), ray_direction(position));
   distance_m = ground_m > 0.0 ? ground_m : 1e30;
 }

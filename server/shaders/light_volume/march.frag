@@ -10,6 +10,7 @@
 #include "common/bricks.glsl"
 #include "common/ground_distance.glsl"
 #include "common/phase.glsl"
+#include "common/ray_place.glsl"
 #include "common/sunlight.glsl"
 #include "common/view.glsl"
 #define GLOWS (CONSISTENT && !DIFFUSION)
@@ -29,7 +30,6 @@ uniform float step_m;  // between samples, at most
 uniform vec2 near_step;  // the same near the eye: in paths through a cell, and by the metre of distance, whichever is longer
 uniform vec4 eye_weights[PLANES];  // texel to the extinction that the eye sees, 1/m
 
-in vec2 position;
 layout(location = 0) out vec4 radiance_and_transmittance;
 layout(location = 1) out float opacity_distance_m;  // the opacity times the mean distance of what shows
 
@@ -185,6 +185,7 @@ Seen march(MediumRay ray, float distance_m, float end_m) {
 }
 
 void main() {
+  begin_place();
   begin_march();
   vec3 direction = ray_direction(position);
   vec3 origin_m = ray_origin(position);

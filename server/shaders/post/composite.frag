@@ -4,6 +4,7 @@
 #include "common/box.glsl"
 #include "common/ground.glsl"
 #include "common/ground_cover.glsl"
+#include "common/ray_place.glsl"
 #include "common/sky.glsl"
 #include "common/storm_shadow.glsl"
 #include "common/view.glsl"
@@ -40,7 +41,6 @@ uniform vec3 skylight;           // irradiance on level ground
 uniform vec3 box_low_m;          // the medium's
 uniform vec3 box_high_m;
 
-in vec2 position;
 out vec4 rgb_and_opacity;  // the opacity is that of the storm
 
 const float kJustBelow = 1e-5;
@@ -133,11 +133,11 @@ vec3 seen_ground(vec3 radiance, vec3 ray, float ground_m, vec3 sky_radiance, vec
 #if FRONT
 // The eye buffer seen through the air, and the transmittance of the background.
 vec4 seen_front(vec3 origin_m, vec3 world_ray, vec3 ray, float ground_m, vec3 sky_radiance, vec3 sky_depth) {
-  vec4 front = texture(eye, 0.5 * position + 0.5);
+  vec4 front = at_pixel(eye);
   float opacity = 1.0 - front.a;
   if (opacity <= 0.0) return front;
 #if DISTANCES
-  float distance_m = texture(eye_distance, 0.5 * position + 0.5).r / opacity;
+  float distance_m = at_pixel(eye_distance).r / opacity;
 #else
   // The middle of the ray's path through the box.
   vec2 path_m = path_through_box(box_low_m, box_high_m, origin_m, safe_direction(world_ray));
@@ -152,6 +152,7 @@ vec4 seen_front(vec3 origin_m, vec3 world_ray, vec3 ray, float ground_m, vec3 sk
 #endif
 
 void main() {
+  begin_place();
   vec3 origin_m = ray_origin(position);
   vec3 world_ray = ray_direction(position);
   vec3 ray = local_from_world * world_ray;

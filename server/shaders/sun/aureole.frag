@@ -2,7 +2,7 @@
 // its phase functions (physics/aureole.h), added to the linear frame. View rays so near to the sun take the same path as
 // its light: only the optical depths along them count. Light scattered once within the peak has its exact phase
 // function; what is scattered more often is the mean of what each group alone would give at the same depth of the peak,
-// weighted by the groups' shares in it. Variants: those of renderers::MediumVariant.
+// weighted by the groups' shares in it. Variants: those of renderers::MediumVariant, CHOSEN.
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
 #define GROUND 1
@@ -10,6 +10,7 @@
 #define COLORED 1
 #define CONSISTENT 1
 #include "common/phase.glsl"
+#include "common/ray_place.glsl"
 #include "common/view.glsl"
 #include "sun/disc.glsl"
 
@@ -23,7 +24,6 @@ uniform float peak_share[GROUPS];         // of a group's scattering
 uniform float aureole_end_rad;
 uniform float aureole_max_depth;
 
-in vec2 position;
 out vec4 added;
 
 const float kNoGround_m = 1e8;
@@ -64,6 +64,7 @@ vec3 scattered_often(int group, float angle_rad, float peak_depth) {
 }
 
 void main() {
+  begin_place();
   added = vec4(0.0);
   vec3 direction = ray_direction(position);
   float haversine = haversine_between(direction, towards_sun);

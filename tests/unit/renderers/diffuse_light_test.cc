@@ -101,30 +101,57 @@ TEST(DiffuseLight, AWarmStartFindsTheSame) {
   EXPECT_NEAR(cold.SolveSun(Sun(0.8), layer.ArrivedRoot(0.8))[middle] / from_warm, 1.0, 0.01);
 }
 
+// Cores in haze, 40 by 41 by 20 cells.
+DiffusionCells HazeAndCores(bool mirrored) {
+  DiffusionCells cells;
+  cells.size = {40, 41, 20};
+  cells.cell_m = {1000.0, 1000.0, 400.0};
+  for (int z = 0; z < cells.size.z; ++z) {
+    for (int row = 0; row < cells.size.y; ++row) {
+      const int y = mirrored ? cells.size.y - 1 - row : row;
+      for (int x = 0; x < cells.size.x; ++x) {
+        const double wave = std::sin(0.4 * x) * std::sin(0.3 * y + 0.1 * x) + 0.5 * std::cos(z);
+        const auto per_m = static_cast<float>(1e-5 * std::exp(4.0 * wave));
+        cells.light_per_m.push_back(per_m);
+        cells.transport_per_m.push_back(0.25F * per_m);
+        cells.absorption_per_m.push_back(0.0F);
+      }
+    }
+  }
+  return cells;
+}
+
+// Of a sun that is dragged: each step is solved for loosely from the last, and errors do not add
+// up.
+TEST(DiffuseLight, LooseSolutionsStayNearTheConvergedOne) {
+  DiffuseLight loose(HazeAndCores(false));
+  DiffuseLight exact(HazeAndCores(false));
+  double largest = 0.0;
+  double worst = 0.0;
+  int iterations = 0;
+  int exact_iterations = 0;
+  for (double sine = 0.3; sine < 0.9; sine += 0.04) {
+    const std::vector<float> roots(loose.ExitRoot().size(),
+                                   static_cast<float>(0.5 / std::sqrt(sine)));
+    const std::vector<float> near = loose.SolveSun(Sun(sine), roots, 4e-3);
+    iterations += loose.LastIterations();
+    const std::vector<float> converged = exact.SolveSun(Sun(sine), roots, 1e-6);
+    exact_iterations += exact.LastIterations();
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      largest = std::max(largest, static_cast<double>(std::abs(converged[i])));
+      worst = std::max(worst, static_cast<double>(std::abs(near[i] - converged[i])));
+    }
+  }
+  EXPECT_LT(worst, 0.01 * largest);
+  EXPECT_LT(2 * iterations, exact_iterations);
+}
+
 // Many blocks of columns, cut at other places in the mirrored medium.
 TEST(DiffuseLight, OfAMirroredMediumIsTheMirroredLight) {
   const glm::ivec3 size(40, 41, 20);
-  const auto haze_and_cores = [&size](bool mirrored) {
-    DiffusionCells cells;
-    cells.size = size;
-    cells.cell_m = {1000.0, 1000.0, 400.0};
-    for (int z = 0; z < size.z; ++z) {
-      for (int row = 0; row < size.y; ++row) {
-        const int y = mirrored ? size.y - 1 - row : row;
-        for (int x = 0; x < size.x; ++x) {
-          const double wave = std::sin(0.4 * x) * std::sin(0.3 * y + 0.1 * x) + 0.5 * std::cos(z);
-          const auto per_m = static_cast<float>(1e-5 * std::exp(4.0 * wave));
-          cells.light_per_m.push_back(per_m);
-          cells.transport_per_m.push_back(0.25F * per_m);
-          cells.absorption_per_m.push_back(0.0F);
-        }
-      }
-    }
-    return cells;
-  };
   const std::vector<float> roots(static_cast<std::size_t>(size.x * size.y * size.z), 0.7F);
-  DiffuseLight light(haze_and_cores(false));
-  DiffuseLight mirrored(haze_and_cores(true));
+  DiffuseLight light(HazeAndCores(false));
+  DiffuseLight mirrored(HazeAndCores(true));
   const std::vector<float>& net = light.SolveSun({0.6, 0.3, 0.74}, roots);
   const std::vector<float>& net_mirrored = mirrored.SolveSun({0.6, -0.3, 0.74}, roots);
   double largest = 0.0;

@@ -1,0 +1,93 @@
+#include "accuracy/moving_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <variant>
+
+#include "base/status.h"
+#include "base/stopwatch.h"
+#include "frame/sparse_picture.h"
+#include "renderers/chosen_rays.h"
+
+namespace thunderhead::accuracy {
+namespace {
+
+constexpr std::size_t kChannels = 3;
+
+// The colours of the rays of `frame` in the order in which they were chosen.
+absl::StatusOr<std::vector<std::uint16_t>> ColorsOf(const renderers::ChosenFrame& frame,
+                                                    std::size_t count,
+                                                    frame::ToneMapper& tone_mapper) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const frame::FineImage picture,
+                               tone_mapper.MapFine(*frame.radiance));
+  const glm::ivec2 size = frame.radiance->Size();
+  const std::vector<std::uint16_t>& pixels = picture.rgb;
+  std::vector<std::uint16_t> colors;
+  colors.reserve(kChannels * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::ivec2 pixel = renderers::ChosenRays::PixelOf(i);
+    const auto row = static_cast<std::size_t>(size.y - 1 - pixel.y);
+    const std::size_t at =
+        kChannels * (row * static_cast<std::size_t>(size.x) + static_cast<std::size_t>(pixel.x));
+    colors.insert(colors.end(), {pixels[at], pixels[at + 1], pixels[at + 2]});
+  }
+  return colors;
+}
+
+void Add(const renderers::StageTimes& more, renderers::StageTimes* sums) {
+  for (const scene::StageTime& time : more) {
+    const auto same = std::ranges::find(*sums, time.stage, &scene::StageTime::stage);
+    if (same == sums->end()) {
+      sums->push_back(time);
+    } else {
+      same->milliseconds += time.milliseconds;
+    }
+  }
+}
+
+double Sum_ms(const renderers::StageTimes& times) {
+  double sum_ms = 0.0;
+  for (const scene::StageTime& time : times) sum_ms += time.milliseconds;
+  return sum_ms;
+}
+
+}  // namespace
+
+bool MovesSparsely(const scene::Scene& scene) {
+  return std::holds_alternative<scene::LightVolume>(scene.rendering.technique);
+}
+
+renderers::DrawQuality MovingQuality(const scene::Scene& scene, const FrameQuality& quality) {
+  renderers::DrawQuality drawn{quality.image_scale, quality.slice_share};
+  if (!MovesSparsely(scene)) return drawn;
+  drawn.coarse_px = frame::CoarsestOf({scene.output.width_px, scene.output.height_px});
+  drawn.light_tolerance = kMovingLightTolerance;
+  return drawn;
+}
+
+absl::StatusOr<frame::ToneMapped> CompleteMoving(
+    const renderers::LinearFrame& coarse, const scene::Scene& scene, const FrameQuality& quality,
+    frame::ToneMapper& tone_mapper, const DrawChosen& draw, renderers::StageTimes* stages) {
+  const base::Stopwatch stopwatch;
+  THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped, tone_mapper.Map(*coarse.radiance, scene));
+  THUNDERHEAD_ASSIGN_OR_RETURN(frame::FineImage coarsest, tone_mapper.MapFine(*coarse.radiance));
+  double drawing_ms = mapped.read_back_ms;
+  const frame::DrawPlaces draw_places =
+      [&](const std::vector<glm::vec2>& places) -> absl::StatusOr<std::vector<std::uint16_t>> {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::ChosenFrame chosen, draw(places));
+    Add(chosen.stages, stages);
+    drawing_ms += Sum_ms(chosen.stages);
+    return ColorsOf(chosen, places.size(), tone_mapper);
+  };
+  const double contrast = kMovingContrast / (quality.image_scale * quality.image_scale);
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      mapped.rgb,
+      frame::CompletePicture(std::move(coarsest), {scene.output.width_px, scene.output.height_px},
+                             static_cast<int>(std::lround(contrast)), draw_places));
+  mapped.tone_ms = stopwatch.ElapsedMs() - drawing_ms;
+  return mapped;
+}
+
+}  // namespace thunderhead::accuracy

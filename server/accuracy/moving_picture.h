@@ -1,0 +1,40 @@
+// Pictures while something moves: rays where the picture needs them (frame/sparse_picture.h), and
+// light that is solved for less exactly. What is drawn at rest is none of it
+// (docs/decisions/0052-sparse-pictures.md).
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "accuracy/frame_quality.h"
+#include "frame/tone_map.h"
+#include "glm/vec2.hpp"
+#include "renderers/scene_renderer.h"
+#include "scene/scene.h"
+
+namespace thunderhead::accuracy {
+
+// As frame::CompletePicture takes it, of pictures at the full image_scale; smaller ones take more,
+// in proportion to their pixels.
+inline constexpr int kMovingContrast = 18;
+
+// Of the light while the sun or a field changes (renderers::DrawQuality).
+inline constexpr double kMovingLightTolerance = 4e-3;
+
+// True for scenes that are drawn so while they move.
+bool MovesSparsely(const scene::Scene& scene);
+
+// To draw the coarsest picture of such a scene with; `quality` is sparse.
+renderers::DrawQuality MovingQuality(const scene::Scene& scene, const FrameQuality& quality);
+
+using DrawChosen =
+    std::function<absl::StatusOr<renderers::ChosenFrame>(const std::vector<glm::vec2>& places)>;
+
+// The whole picture from `coarse`, which was drawn with MovingQuality and is coarse; `draw` adds
+// to it. Adds the times of the stages of that to `stages`.
+absl::StatusOr<frame::ToneMapped> CompleteMoving(
+    const renderers::LinearFrame& coarse, const scene::Scene& scene, const FrameQuality& quality,
+    frame::ToneMapper& tone_mapper, const DrawChosen& draw, renderers::StageTimes* stages);
+
+}  // namespace thunderhead::accuracy

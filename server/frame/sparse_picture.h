@@ -1,0 +1,32 @@
+// A picture for display of which most pixels follow from pictures of a quarter and half its size:
+// only those get rays of their own that differ from what their neighbours lead to expect
+// (docs/decisions/0052-sparse-pictures.md). Knows no GL.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "frame/fine_image.h"
+#include "glm/vec2.hpp"
+
+namespace thunderhead::frame {
+
+// The first picture of one of `size_px`: a quarter of it along each side, rounded up.
+glm::ivec2 CoarsestOf(const glm::ivec2& size_px);
+
+// Gives the colours of chosen places, as FineImage has them, in their order. Places run from (-1,
+// -1), left and bottom, to (1, 1).
+using DrawPlaces =
+    std::function<absl::StatusOr<std::vector<std::uint16_t>>(const std::vector<glm::vec2>&)>;
+
+// The whole picture, 8-bit sRGB with the noise of post/tone_map.frag, from its coarsest. `contrast`
+// is how far a pixel may lie off the middle of its neighbours on both sides, twice, in steps of 255
+// of any colour, for those in its place in the next picture to follow from it. `draw` is called for
+// each of the two finer pictures, unless all of it follows.
+absl::StatusOr<std::vector<std::uint8_t>> CompletePicture(FineImage coarsest,
+                                                          const glm::ivec2& size_px, int contrast,
+                                                          const DrawPlaces& draw);
+
+}  // namespace thunderhead::frame
