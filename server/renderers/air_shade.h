@@ -49,12 +49,14 @@ class AirShade {
   // coordinates from the eye.
   void Bind(const gl::Program& program, const scene::View& view) const;
 
+  // Those of common/sky_hidden.glsl alone but faces_sunlight; HideSky comes first.
+  void BindSkyHidden(const gl::Program& program, const scene::View& view) const;
+
   std::size_t Bytes() const {
     return light_.Bytes() + sky_hidden_.Bytes() + storm_faces_.Bytes() + shade_.Bytes();
   }
 
  private:
-  void BindSkyHidden(const gl::Program& program, const scene::View& view) const;
   // Distances along the rays between which air is shaded.
   void SetDistances(const scene::View& view, const scene::ShadedAir& air);
 

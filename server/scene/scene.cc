@@ -36,6 +36,10 @@ Stage DirtiedByLights(const Scene& before, const Scene& after) {
 Stage DirtiedByTheRest(const Scene& before, const Scene& after) {
   const bool same_size = before.output.width_px == after.output.width_px &&
                          before.output.height_px == after.output.height_px;
+  // The storm sees the ground by the shares of sun and sky in its light and by its albedo.
+  const MediumSettings* medium = MediumSettingsOf(after.rendering.technique);
+  const bool diffuses = medium != nullptr && medium->transport == Transport::kDiffusion;
+  if (diffuses && (before.sky != after.sky || before.ground != after.ground)) return Stage::kLight;
   if (before.camera != after.camera || before.sky != after.sky || before.ground != after.ground ||
       !same_size) {
     return Stage::kView;

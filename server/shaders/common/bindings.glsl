@@ -22,6 +22,7 @@ const int kStormFacesUnit = 3;
 const int kAirShadeImage = 0;
 const int kSkyHiddenImage = 0;
 const int kStormFacesImage = 1;
+const int kGroundLightImage = 0;
 const int kMeterImage = 0;
 const int kSkyTableUnit = 6;
 const int kGroundCoverUnit = 13;

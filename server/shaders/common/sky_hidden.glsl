@@ -29,3 +29,9 @@ vec3 light_of_faces(StormInSky storm, vec3 towards_sun, vec3 skylight) {
   float sunlit = max(reflects / 4.0 - dot(storm.faces, towards_sun) / 3.0, 0.0);
   return sunlit * faces_sunlight + 0.5 * reflects * skylight;
 }
+
+// The irradiance of that on level ground, which gets of each direction the sine of its elevation, 1/2 in the mean over the sky.
+vec3 light_of_faces_on_ground(StormInSky storm, vec3 towards_sun, vec3 skylight) {
+  float raised = 2.0 * storm.faces.z / max(storm.hidden - storm.through, 1e-6);
+  return raised * light_of_faces(storm, towards_sun, skylight);
+}

@@ -76,9 +76,7 @@ vec3 ground_radiance(vec3 point_m, vec3 ray, float distance_m) {
 #elif SHADED
   StormInSky storm = storm_in_sky(point_m);
   vec3 through = storm.through * (sunlight * towards_sun.z + skylight);
-  // Level ground gets of each direction the sine of its elevation, 1/2 in the mean over the sky.
-  float raised = 2.0 * storm.faces.z / max(storm.hidden - storm.through, 1e-6);
-  vec3 reflected = raised * light_of_faces(storm, towards_sun, skylight);
+  vec3 reflected = light_of_faces_on_ground(storm, towards_sun, skylight);
   sky = (1.0 - storm.hidden) * sky + (0.5 + 0.5 * normal.z) * mix(reflected, through, blocked);
 #endif
   Cover cover = ground_cover(point_m, ray, distance_m);
