@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kTexel_m = 250.0;  // at least
 constexpr int kMaxTexels = 192;     // along each side
+// A base sees hardly more ground than this: coarser texels cannot tell its own from that beside it.
+constexpr double kCoarsest_m = 2000.0;
 
 }  // namespace
 
@@ -26,6 +28,7 @@ absl::StatusOr<LitGround> GroundLight::Find(const Ground& ground, const SkyAndGr
   const glm::dvec2 size_m = glm::dvec2(storm.high_m) + margin_m - low_m;
   const glm::ivec3 size(
       glm::clamp(glm::ivec2(size_m / kTexel_m), glm::ivec2(1), glm::ivec2(kMaxTexels)), 1);
+  if (std::max(size_m.x / size.x, size_m.y / size.y) > kCoarsest_m) return LitGround();
   if (map_.Size() != size) map_ = gl::Texture3D(GL_RG32F, size);
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,

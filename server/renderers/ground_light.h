@@ -23,7 +23,8 @@ class GroundLight {
   explicit GroundLight(std::shared_ptr<gl::ProgramCache> programs)
       : programs_(std::move(programs)) {}
 
-  // Around `storm`, whose shadow `ground` has and whose share of the sky `surroundings` know.
+  // Around `storm`, whose shadow `ground` has and whose share of the sky `surroundings` know. Open
+  // ground's, around more than some 380 km.
   absl::StatusOr<LitGround> Find(const Ground& ground, const SkyAndGround& surroundings,
                                  const volume::WorldBox& storm, const Illumination& light);
 

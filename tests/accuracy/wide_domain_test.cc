@@ -8,8 +8,6 @@
 #include "frame/white_balance.h"
 #include "gl/context.h"
 #include "gtest/gtest.h"
-#include "reference/scene_problem.h"
-#include "reference/trace_rays.h"
 #include "renderers/scene_renderer.h"
 #include "scene/view.h"
 #include "tests/support/gl_context.h"
@@ -59,58 +57,25 @@ class WideDomainTest : public testing::Test {
     return frame::PictureOf(*frame->radiance);
   }
 
-  // The mean luminance in the reference of the pixels whose indices are given.
-  double Traced(const scene::Scene& scene, const std::vector<int>& pixels) const {
-    const auto medium =
-        reference::MediumOf(scene, *fields_, reference::MediumOptions{.peak_cut_deg = 20.0});
-    EXPECT_TRUE(medium.ok()) << medium.status();
-    const reference::Surroundings surroundings =
-        reference::SurroundingsOf(scene, *fields_, reference::GroundLight::kShaded);
-    const reference::Camera camera = reference::CameraOf(scene, *fields_);
-    const glm::dvec2 size_px(scene.output.width_px, scene.output.height_px);
-    std::vector<reference::Ray> rays;
-    for (const int pixel : pixels) {
-      const glm::dvec2 at_px(pixel % scene.output.width_px, pixel / scene.output.width_px);
-      const glm::dvec2 at = 2.0 * (at_px + 0.5) / size_px - 1.0;
-      rays.push_back(camera.RayThrough(at.x, -at.y));
-    }
-    double sum = 0.0;
-    for (const glm::dvec3& radiance :
-         reference::TraceRays(**medium, surroundings, rays, {7, 300, 0})) {
-      sum += frame::LuminanceOf(glm::vec3(radiance));
-    }
-    return sum / static_cast<double>(rays.size());
-  }
-
   std::unique_ptr<gl::Context> context_;
   std::shared_ptr<const volume::HydrometeorFields> fields_;
   std::unique_ptr<renderers::SceneRenderer> renderer_;
 };
 
-// Storms far away stand in the light of a thousand kilometres of air. Near ones have bases in their
-// own shadow, which are as dark in the reference: what is darker than a hundredth of all must be so
-// there too. The 300 paths of each of some 60 pixels are good for 5 %, and their rays pass model
-// cells, while the picture has detail.
+// Storms far away stand in the light of a thousand kilometres of air.
 TEST_F(WideDomainTest, StormsAreBrightAsFarAsTheHorizon) {
   for (const double elevation_deg : {4.0, 35.0}) {
-    const scene::Scene scene = SceneFrom(elevation_deg, {640, 360});
-    const picture::LinearPicture picture = Draw(scene);
+    const picture::LinearPicture picture = Draw(SceneFrom(elevation_deg, {640, 360}));
     int storm = 0;
-    std::vector<int> dark;
-    double drawn = 0.0;
+    int dark = 0;
     for (std::size_t i = 0; i < picture.radiance.size(); ++i) {
       if (picture.opacity[i] < 0.9F) continue;
       ++storm;
       // Nor not a number.
-      const float luminance = frame::LuminanceOf(picture.radiance[i]);
-      if (luminance >= 0.02F) continue;
-      dark.push_back(static_cast<int>(i));
-      drawn += luminance;
+      if (!(frame::LuminanceOf(picture.radiance[i]) >= 0.02F)) ++dark;
     }
     EXPECT_GT(storm, 500);
-    EXPECT_LE(static_cast<int>(dark.size()), storm / 50) << elevation_deg;
-    if (static_cast<int>(dark.size()) <= storm / 100) continue;
-    EXPECT_GT(drawn / static_cast<double>(dark.size()), 0.8 * Traced(scene, dark)) << elevation_deg;
+    EXPECT_LE(dark, storm / 100) << elevation_deg;
   }
 }
 

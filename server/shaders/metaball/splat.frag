@@ -119,7 +119,8 @@ void main() {
     if (transmittance * taken > kLeastSeen) {
       // Where about half of what shows of the ball is in front: fields rise as the square of the depth below the surface.
       float before = half_chord * min(pow(1.4 / max(depth, 1e-6), 1.0 / 3.0), 1.0);
-      light = light_at(origin_m + (along_m + (before - half_chord) * middle_radius.w) * ray, first, end);
+      // Half of it: balls that lie deeper, which weigh more there, are darker than the surface.
+      light = 0.5 * (light + light_at(origin_m + (along_m + (before - half_chord) * middle_radius.w) * ray, first, end));
     }
 #endif
     radiance += transmittance * taken * light;
