@@ -22,6 +22,7 @@
 #include "gl/context.h"
 #include "measure/light_parts.h"
 #include "measure/trade.h"
+#include "picture/exr_file.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::app {
@@ -119,9 +120,10 @@ struct Compared {
                                  measure::RelativeBias(drawn, truth),
                                  measure::RelativeRmseWithout(noise, single, truth), noise)
               << std::flush;
-    return WriteComparison(truth, drawn, local.scene,
-                           absl::StrCat(flags.output, ".", measure::NameOf(part), ".",
-                                        absl::StrReplaceAll(name, {{" ", "_"}}), ".png"));
+    const std::string prefix = absl::StrCat(flags.output, ".", measure::NameOf(part), ".",
+                                            absl::StrReplaceAll(name, {{" ", "_"}}));
+    THUNDERHEAD_RETURN_IF_ERROR(picture::WriteExr(prefix + ".exr", drawn));
+    return WriteComparison(truth, drawn, local.scene, prefix + ".png");
   }
 };
 
@@ -202,8 +204,9 @@ Command AddMeasureLight(CLI::App& measure) {
   light->add_option("STORM", flags->storm, "Storm file or folder")->required();
   light
       ->add_option("-o,--output", flags->output,
-                   "Prefix of the files to write: truths (.PART.exr) and comparisons "
-                   "(.PART.TRANSPORT.png: truth, drawn, difference)")
+                   "Prefix of the files to write: truths (.PART.exr), what is drawn "
+                   "(.PART.TRANSPORT.exr) and comparisons (.PART.TRANSPORT.png: truth, drawn, "
+                   "difference)")
       ->capture_default_str();
   light->add_option("--part", flags->parts, "once, sun, sky or all; by default each");
   light->add_option("--transport", flags->transports, "Transports to measure; by default each");

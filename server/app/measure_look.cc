@@ -15,6 +15,7 @@
 #include "frame/tone_map.h"
 #include "gl/context.h"
 #include "measure/look.h"
+#include "measure/soundness.h"
 #include "reference/trace_scene.h"
 #include "renderers/scene_renderer.h"
 #include "spdlog/spdlog.h"
@@ -87,6 +88,13 @@ absl::Status Print(const LookFlags& flags, const std::string& name, const scene:
   return absl::OkStatus();
 }
 
+// The cameras to measure, empty for the scene's own.
+std::vector<std::string> CamerasOf(const SceneFlags& flags) {
+  if (!flags.camera.empty()) return {flags.camera};
+  if (!flags.file.empty()) return {""};
+  return {"orbit", "spotter"};
+}
+
 absl::Status MeasureLook(const LookFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,
@@ -95,19 +103,21 @@ absl::Status MeasureLook(const LookFlags& flags) {
                "picture              tower    base   light   shown   light   shown   light   "
                "shown\n";
   renderers::SceneRenderer renderer;
-  for (const std::string camera : {"orbit", "spotter"}) {
-    if (!flags.scene.camera.empty() && flags.scene.camera != camera) continue;
+  for (const std::string& camera : CamerasOf(flags.scene)) {
     SceneFlags with_camera = flags.scene;
     with_camera.camera = camera;
     THUNDERHEAD_ASSIGN_OR_RETURN(const LocalScene local, OpenScene(flags.storm, with_camera));
     THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame frame,
                                  renderer.Draw(local.scene, local.fields, {}));
+    const std::string name = camera.empty() ? "scene" : camera;
+    const std::string unsound = measure::UnsoundPicture(frame::ReadLinear(*frame.radiance));
+    if (!unsound.empty()) return absl::InternalError(absl::StrCat(name, ": ", unsound));
     THUNDERHEAD_RETURN_IF_ERROR(
-        Print(flags, camera, local.scene, *local.fields, frame::PictureOf(*frame.radiance)));
+        Print(flags, name, local.scene, *local.fields, frame::PictureOf(*frame.radiance)));
     if (flags.samples_per_pixel == 0) continue;
     THUNDERHEAD_ASSIGN_OR_RETURN(const picture::LinearPicture traced, Traced(flags, local));
     THUNDERHEAD_RETURN_IF_ERROR(
-        Print(flags, absl::StrCat(camera, "-reference"), local.scene, *local.fields, traced));
+        Print(flags, absl::StrCat(name, "-reference"), local.scene, *local.fields, traced));
   }
   return absl::OkStatus();
 }
@@ -118,7 +128,9 @@ Command AddMeasureLook(CLI::App& measure) {
   auto flags = std::make_shared<LookFlags>();
   flags->scene.size = "480x300";
   CLI::App* look = measure.add_subcommand(
-      "look", "Measure the stops of a storm's tower and picture, and how dark its base is");
+      "look",
+      "Measure the stops of a storm's tower and picture, and how dark its base is. Fails if any "
+      "radiance is not finite or below 0: the film's curve maps all others to 0 up to 1");
   look->add_option("STORM", flags->storm, "Storm file or folder")->required();
   AddSceneOptions(*look, flags->scene);
   look->add_option("-o,--output", flags->output,

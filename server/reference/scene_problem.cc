@@ -155,6 +155,7 @@ struct Around {
         seen_sky(atmosphere, glm::vec3(seen_from.local_from_world * glm::dvec3(towards_sun)),
                  {static_cast<float>(seen_from.altitude_m), ground_m}),
         view(seen_from),
+        brightness(scene.sky.brightness),
         scale(scene.sun.irradiance * scene.sky.brightness),
         turbidity(static_cast<float>(scene.sky.turbidity)) {}
 
@@ -169,6 +170,7 @@ struct Around {
   physics::ClearSky sky;       // from the ground, as it lights the storm
   physics::ClearSky seen_sky;  // from the eye
   scene::View view;
+  double brightness;
   double scale;
   float turbidity;
 };
@@ -215,7 +217,8 @@ AirLight LightOfAir(const Around& around, const Ray& ray, double distance_m,
                  air::sunlight_scattered_per_m(around.turbidity, densities, mu) *
                  around.atmosphere.SunTransmittance(place);
   light.of_sky = scale * scattered * around.atmosphere.DiffuseMeanRadiance(place);
-  light.per_radiance = scattered;  // the medium's light has the sun's irradiance in it
+  // The medium's light has the sun's irradiance in it.
+  light.per_radiance = static_cast<float>(around.brightness) * scattered;
   return light;
 }
 

@@ -43,15 +43,14 @@ void AirShade::SetLight(const physics::Atmosphere& atmosphere, double sun_sine,
                         const glm::vec3& sky_irradiance) {
   const glm::vec3 sun = atmosphere.SunTransmittance({0.0F, static_cast<float>(sun_sine)});
   level_irradiance_ = sky_irradiance + sun * static_cast<float>(std::max(sun_sine, 0.0));
-  // Faces turned every way around the sun's direction have half of its light in the mean.
-  face_irradiance_ = 0.5F * (sky_irradiance + sun);
-  std::vector<glm::vec3> texels;
-  texels.reserve(2 * static_cast<std::size_t>(kHeights));
+  level_skylight_ = sky_irradiance;
   const auto at = [&](int i) {
     const double height_m = kHighest_m * i / (kHeights - 1);
     return physics::AirPlace{static_cast<float>(height_m), static_cast<float>(sun_sine)};
   };
-  for (int i = 0; i < kHeights; ++i) texels.push_back(atmosphere.SunTransmittance(at(i)));
+  sunlight_.clear();
+  for (int i = 0; i < kHeights; ++i) sunlight_.push_back(atmosphere.SunTransmittance(at(i)));
+  std::vector<glm::vec3> texels = sunlight_;
   for (int i = 0; i < kHeights; ++i) texels.push_back(atmosphere.DiffuseMeanRadiance(at(i)));
   if (light_.Get() == 0) light_ = gl::Texture2D(GL_RGBA32F, {kHeights, 2});
   light_.Upload(GL_RGB, GL_FLOAT, texels.data());
@@ -63,6 +62,8 @@ absl::Status AirShade::HideSky(const ResidentMedium& medium, const scene::Scene&
     if (hidden_by_ != 0 || sky_hidden_.Get() == 0) {
       sky_hidden_ = gl::Texture3D(GL_RG16F, glm::ivec3(1));
       sky_hidden_.Clear();
+      storm_faces_ = gl::Texture3D(GL_RGBA16F, glm::ivec3(1));
+      storm_faces_.Clear();
       hidden_box_ = {glm::dvec3(0.0), glm::dvec3(1.0)};
       hidden_by_ = 0;
     }
@@ -75,7 +76,10 @@ absl::Status AirShade::HideSky(const ResidentMedium& medium, const scene::Scene&
                              medium.Middle_m() + medium.HalfExtent_m()};
   hidden_box_ = scene::ShadedAirOf(box, {0.0, 0.0, 1.0}, ground_m).from_sky;
   const glm::ivec3 points = HiddenPoints(hidden_box_);
-  if (sky_hidden_.Size() != points) sky_hidden_ = gl::Texture3D(GL_RG16F, points);
+  if (sky_hidden_.Size() != points) {
+    sky_hidden_ = gl::Texture3D(GL_RG16F, points);
+    storm_faces_ = gl::Texture3D(GL_RGBA16F, points);
+  }
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
       programs_->Get(gl::ProgramSource::Compute(
@@ -92,6 +96,7 @@ absl::Status AirShade::HideSky(const ResidentMedium& medium, const scene::Scene&
   program->Set(uniform::transport_weights, medium.Weights(weights.transport));
   program->Set(uniform::absorption_weights, medium.Weights(weights.absorption));
   sky_hidden_.BindImage(shaders::kSkyHiddenImage, GL_WRITE_ONLY);
+  storm_faces_.BindImage(shaders::kStormFacesImage, GL_WRITE_ONLY);
   program->Use();
   const glm::ivec3 groups = (points + shaders::kLightGroupSide - 1) / shaders::kLightGroupSide;
   glDispatchCompute(static_cast<GLuint>(groups.x), static_cast<GLuint>(groups.y),
@@ -120,6 +125,10 @@ absl::Status AirShade::Cast(const scene::Scene& scene, const scene::View& view,
                             const glm::ivec2& picture_px) {
   const glm::dvec3 towards_sun = scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg);
   SetDistances(view, scene::ShadedAirOf(box, towards_sun, ground.Lowest_m()));
+  const double middle_m = 0.5 * (box.low_m.z + box.high_m.z);
+  const auto level = std::lround((kHeights - 1) * std::clamp(middle_m / kHighest_m, 0.0, 1.0));
+  const glm::vec3 sunlight = sunlight_[static_cast<std::size_t>(level)];
+  faces_sunlight_ = static_cast<float>(scene.sun.irradiance) * sunlight;
   const glm::ivec3 size(glm::clamp((picture_px + kPixelsPerRay - 1) / kPixelsPerRay,
                                    glm::min(picture_px, kMinRays), kMaxRays),
                         kDistances);
@@ -135,7 +144,8 @@ absl::Status AirShade::Cast(const scene::Scene& scene, const scene::View& view,
   program->Set(uniform::towards_sun, glm::vec3(towards_sun));
   program->Set(uniform::sky_scale, static_cast<float>(scene.sun.irradiance * scene.sky.brightness));
   program->Set(uniform::level_irradiance, level_irradiance_);
-  program->Set(uniform::face_irradiance, face_irradiance_);
+  program->Set(uniform::level_skylight, level_skylight_);
+  program->Set(uniform::faces_sunlight, sunlight);
   program->Set(uniform::turbidity, static_cast<float>(scene.sky.turbidity));
   program->Set(uniform::altitude_m, altitude_m);
   program->Set(uniform::air_densities, physics::glsl::densities_of_air(altitude_m));
@@ -159,11 +169,13 @@ void AirShade::BindSkyHidden(const gl::Program& program, const scene::View& view
   program.Set(uniform::hidden_scale, glm::vec3(1.0 / size_m));
   program.Set(uniform::hidden_offset, glm::vec3((view.eye_m - hidden_box_.low_m) / size_m));
   sky_hidden_.Bind(shaders::kSkyHiddenUnit);
+  storm_faces_.Bind(shaders::kStormFacesUnit);
 }
 
 void AirShade::Bind(const gl::Program& program, const scene::View& view) const {
   if (!present_) return;
   BindSkyHidden(program, view);
+  program.Set(uniform::faces_sunlight, faces_sunlight_);
   program.Set(uniform::shade_near_m, static_cast<float>(near_m_));
   program.Set(uniform::shade_far_m, static_cast<float>(far_m_));
   shade_.Bind(shaders::kAirShadeUnit);

@@ -2,14 +2,15 @@
 // ray of a coarse picture up to each of a number of distances. The sun is shaded as the ground is
 // (common/storm_shadow.glsl). Light that the air has scattered before reaches a place from the part
 // of the sky that the storm leaves open. From the part that it hides, a place gets the light of a
-// layer of the storm's depth: transmitted in its shadow, reflected elsewhere. The part of the sky
-// that the storm hides is found once for a medium.
+// layer of the storm's depth in its shadow; elsewhere what the storm's faces reflect there, more on
+// the sun's side. The part of the sky that the storm hides is found once for a medium.
 // Owns GL objects: use it on the context's thread.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "gl/objects.h"
@@ -49,19 +50,27 @@ class AirShade {
   // coordinates from the eye.
   void Bind(const gl::Program& program, const scene::View& view) const;
 
-  std::size_t Bytes() const { return light_.Bytes() + sky_hidden_.Bytes() + shade_.Bytes(); }
+  // Those of common/sky_hidden.glsl alone but faces_sunlight; HideSky comes first.
+  void BindSkyHidden(const gl::Program& program, const scene::View& view) const;
+
+  std::size_t Bytes() const {
+    return light_.Bytes() + sky_hidden_.Bytes() + storm_faces_.Bytes() + shade_.Bytes();
+  }
 
  private:
-  void BindSkyHidden(const gl::Program& program, const scene::View& view) const;
   // Distances along the rays between which air is shaded.
   void SetDistances(const scene::View& view, const scene::ShadedAir& air);
 
   std::shared_ptr<gl::ProgramCache> programs_;
   bool present_ = false;
   gl::Texture2D light_;
+  // Of sunlight of irradiance 1.
   glm::vec3 level_irradiance_{0.0F};
-  glm::vec3 face_irradiance_{0.0F};
+  glm::vec3 level_skylight_{0.0F};
+  std::vector<glm::vec3> sunlight_;  // by height
+  glm::vec3 faces_sunlight_{0.0F};   // of the scene's sun, at the middle of the storm's height
   gl::Texture3D sky_hidden_;
+  gl::Texture3D storm_faces_;
   std::uint64_t hidden_by_ = 0;  // ResidentMedium::Id
   scene::MediumSettings hidden_settings_;
   volume::WorldBox hidden_box_;

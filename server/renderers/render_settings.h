@@ -36,6 +36,9 @@ struct Illumination {
   glm::vec3 around_sun{0.0F};
   glm::vec3 rest_of_sky{0.0F};
   glm::vec3 rest_of_sky_level{0.0F};
+  // The share of sunlight, by luminance, in the light that open ground receives.
+  float ground_sunlit = 1.0F;
+  float ground_albedo = 0.0F;  // by luminance
   // Sunlight at 0, shaders::kSunlightStep_m ... above sea level, shaders::kSunlightLevels of them;
   // none if it is the same everywhere.
   std::vector<glm::vec3> sunlight_levels{};

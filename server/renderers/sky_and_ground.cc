@@ -5,6 +5,8 @@
 #include <numbers>
 
 #include "base/status.h"
+#include "glm/geometric.hpp"
+#include "physics/optics.h"
 #include "renderers/light_map.h"
 #include "renderers/view_uniforms.h"
 #include "scene/ground.h"
@@ -177,7 +179,7 @@ Illumination SkyAndGround::IlluminationOf(const scene::Scene& scene) const {
         irradiance * atmosphere_->SunTransmittance({height_m, static_cast<float>(towards_sun_.z)}));
   }
   light.from_sky = sky_light_.mean_radiance * irradiance * static_cast<float>(scene.sky.brightness);
-  // Light of unshadowed ground: most of the ground around the storm lies outside its shadow.
+  // Of ground without the storm's shadow, which LitGround adds for those who can take it.
   const float sine = std::max(static_cast<float>(towards_sun_.z), 0.0F);
   const glm::vec3 diffuse =
       sky_light_.irradiance * irradiance * static_cast<float>(scene.sky.brightness);
@@ -186,7 +188,13 @@ Illumination SkyAndGround::IlluminationOf(const scene::Scene& scene) const {
       irradiance * static_cast<float>(scene.sky.brightness) * around_sun_.value_or(glm::vec3(0.0F));
   light.rest_of_sky = light.from_sky - light.around_sun * (0.5F * kInversePi);
   light.rest_of_sky_level = (diffuse - light.around_sun * sine) * kInversePi;
-  light.from_ground = GroundReflectance(scene) * (light.sunlight * sine + diffuse);
+  const glm::vec3 received = light.sunlight * sine + diffuse;
+  light.from_ground = GroundReflectance(scene) * received;
+  light.ground_albedo =
+      static_cast<float>(glm::dot(glm::dvec3(scene::PlainReflectance(scene)), physics::kLuminance));
+  const double luminance = glm::dot(glm::dvec3(received), physics::kLuminance);
+  const double sunlit = glm::dot(glm::dvec3(light.sunlight * sine), physics::kLuminance);
+  light.ground_sunlit = static_cast<float>(sunlit / std::max(luminance, 1e-30));
   light.ambient = 0.5F * (light.from_sky + light.from_ground);
   for (const scene::DirectionalLight& lamp : scene.lights) {
     light.beams.push_back({scene::Direction(lamp.azimuth_deg, lamp.elevation_deg),
@@ -233,7 +241,7 @@ void SkyAndGround::BindAir(const gl::Program& program, const scene::Scene& scene
 absl::Status SkyAndGround::ShadeAir(const scene::Scene& scene, const scene::View& view,
                                     const Ground& ground, const volume::WorldBox& box,
                                     const ResidentMedium& medium, const glm::ivec2& size_px) {
-  THUNDERHEAD_RETURN_IF_ERROR(air_shade_.HideSky(medium, scene, ground.Lowest_m()));
+  THUNDERHEAD_RETURN_IF_ERROR(HideSky(scene, ground, medium));
   return air_shade_.Cast(scene, view, ground, box, size_px);
 }
 

@@ -42,6 +42,16 @@ class SkyAndGround {
   // The light of sky and ground on a white surface, as LightMapOf gives it.
   std::vector<glm::vec3> LightMap(const scene::Scene& scene) const;
 
+  // Finds what share of the sky `medium` hides, unless it is known.
+  absl::Status HideSky(const scene::Scene& scene, const Ground& ground,
+                       const ResidentMedium& medium) {
+    return air_shade_.HideSky(medium, scene, ground.Lowest_m());
+  }
+  // Sets the uniforms and the texture of common/sky_hidden.glsl; HideSky comes first.
+  void BindSkyHidden(const gl::Program& program, const scene::View& view) const {
+    air_shade_.BindSkyHidden(program, view);
+  }
+
   // Air and skylight without a storm's shadow.
   void LightAllAir() { air_shade_.Clear(); }
   // Shades them by what is in `box`, whose shadow the ground has, as finely as suits a picture of

@@ -13,7 +13,9 @@ bool SameOptics(const physics::ParticleOptics& a, const physics::ParticleOptics&
 // The fields as they are drawn: without the detail that the technique ignores.
 std::array<FieldParameters, physics::kHydrometeorCount> FieldsShown(const Scene& scene) {
   auto fields = scene.fields;
-  if (FieldLookOf(scene.rendering.technique).detail) return fields;
+  // Metaballs take their roughness from it.
+  const bool balls = std::holds_alternative<Metaballs>(scene.rendering.technique);
+  if (balls || FieldLookOf(scene.rendering.technique).detail) return fields;
   for (FieldParameters& field : fields) field.detail = {};
   return fields;
 }
@@ -36,6 +38,10 @@ Stage DirtiedByLights(const Scene& before, const Scene& after) {
 Stage DirtiedByTheRest(const Scene& before, const Scene& after) {
   const bool same_size = before.output.width_px == after.output.width_px &&
                          before.output.height_px == after.output.height_px;
+  // The storm sees the ground by the shares of sun and sky in its light and by its albedo.
+  const MediumSettings* medium = MediumSettingsOf(after.rendering.technique);
+  const bool diffuses = medium != nullptr && medium->transport == Transport::kDiffusion;
+  if (diffuses && (before.sky != after.sky || before.ground != after.ground)) return Stage::kLight;
   if (before.camera != after.camera || before.sky != after.sky || before.ground != after.ground ||
       !same_size) {
     return Stage::kView;

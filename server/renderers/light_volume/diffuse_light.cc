@@ -144,6 +144,7 @@ void DiffuseLight::ScanExits(int axis, std::vector<float>* sum, std::vector<floa
         const float low = 1.0F / std::max(down[i] * down[i], 1e-18F);
         const float high = 1.0F / std::max(depth * depth, 1e-18F);
         (*all)[cell] += low + high;
+        outward_[cell][axis] = high - low;
         sky_seen_[cell] += low * kSkySeen[static_cast<std::size_t>(2 * axis)] +
                            high * kSkySeen[static_cast<std::size_t>(2 * axis + 1)];
       }
@@ -157,12 +158,14 @@ void DiffuseLight::FindExits() {
   std::vector<float> sum(number_.size(), 0.0F);
   std::vector<float> all(number_.size(), 0.0F);
   sky_seen_.assign(number_.size(), glm::vec2(0.0F));
+  outward_.assign(number_.size(), glm::vec3(0.0F));
   for (int axis = 0; axis < 3; ++axis) ScanExits(axis, &sum, &all);
   exit_root_.assign(number_.size(), 0.0F);
   for (const std::int32_t cell : cell_of_) {
     const auto i = static_cast<std::size_t>(cell);
     exit_root_[i] = std::pow(sum[i], -0.25F);
     sky_seen_[i] /= all[i];
+    outward_[i] /= all[i];
   }
   for (std::size_t i = 0; i < number_.size(); ++i) {
     if (number_[i] == kNone) sky_seen_[i] = glm::vec2(0.0F);
@@ -424,6 +427,18 @@ const std::vector<float>& DiffuseLight::SolveSun(const glm::dvec3& towards_sun,
   from_walls_ = walls_.Arriving(own);
   Spread(&net_inward_);
   return net_inward_;
+}
+
+std::vector<float> DiffuseLight::AtCells(const CellValue& value) const {
+  std::vector<float> values(number_.size(), 0.0F);
+  ForShares(cell_of_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const auto i = static_cast<std::size_t>(cell_of_[n]);
+      values[i] = value((glm::dvec3(cells_.CellAt(i)) + 0.5) * cells_.cell_m, outward_[i]);
+    }
+  });
+  Spread(&values);
+  return values;
 }
 
 void DiffuseLight::FindFringe() {

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "glm/vec2.hpp"
@@ -41,6 +42,14 @@ class DiffuseLight {
   // The fluence that other walls send in, of the last SolveSun.
   const std::vector<float>& FromWalls() const { return from_walls_; }
 
+  // A value of each cell that holds anything, and for empty ones beside them the mean of those; 0
+  // elsewhere. `value` is called on all threads with the place of the cell's middle from the cells'
+  // low corner, and the way out: by each axis the mean of 1 up and -1 down, weighted by how near
+  // either exit is.
+  using CellValue = std::function<float(const glm::dvec3& place_m, const glm::vec3& outward)>;
+  std::vector<float> AtCells(const CellValue& value) const;
+
+  int Unknowns() const { return static_cast<int>(cell_of_.size()); }
   int LastIterations() const { return last_iterations_; }
 
  private:
@@ -95,6 +104,7 @@ class DiffuseLight {
   std::vector<float> diagonal_;        // by number
   std::vector<float> inverse_pivot_;   // of the incomplete Cholesky factor
   std::vector<float> exit_root_;
+  std::vector<glm::vec3> outward_;  // of AtCells
   std::vector<glm::vec2> sky_seen_;
   std::vector<glm::vec2> sky_inward_;
   std::vector<float> from_walls_;

@@ -49,7 +49,7 @@ void Dispatch(const glm::ivec3& cells) {
 
 absl::Status DiffusionPass::Solve(const ResidentMedium& medium, const GroupWeights& weights,
                                   const gl::Texture3D& arrived, const glm::dvec3& towards_sun,
-                                  double tolerance) {
+                                  double tolerance, const LitGround& ground) {
   Key key{medium.Id(), weights.light, weights.transport, weights.absorption};
   if (!light_.has_value() || key != key_) {
     light_.reset();
@@ -62,11 +62,15 @@ absl::Status DiffusionPass::Solve(const ResidentMedium& medium, const GroupWeigh
   THUNDERHEAD_RETURN_IF_ERROR(SampleLight(arrived));
   return programs_->Pieces().OffTurn([&] {
     const std::vector<float>& sun = light_->SolveSun(towards_sun, arrived_root_, tolerance);
+    const std::vector<float> from_ground =
+        light_->AtCells([&](const glm::dvec3& from_corner_m, const glm::vec3& outward) {
+          return ground.ShareAt(medium.Bounds().grid.low_corner_m + from_corner_m, outward);
+        });
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sun.size(), kTexelsInShare),
                       [&](const auto& share) {
                         for (std::size_t i = share.begin(); i != share.end(); ++i) {
                           net_inward_texels_[i] = {sun[i], light_->FromWalls()[i],
-                                                   light_->SkyInward()[i].y, 0.0F};
+                                                   light_->SkyInward()[i].y, from_ground[i]};
                         }
                       });
     net_inward_.Upload(GL_RGBA, GL_FLOAT, net_inward_texels_.data());

@@ -17,6 +17,7 @@
 #include "gl/program.h"
 #include "renderers/group_weights.h"
 #include "renderers/light_volume/diffuse_light.h"
+#include "renderers/lit_ground.h"
 #include "renderers/medium.h"
 
 namespace thunderhead::renderers {
@@ -28,7 +29,8 @@ class DiffusionPass {
 
   // `arrived` is that of arrive.comp; `tolerance` as DiffuseLight::SolveSun has it.
   absl::Status Solve(const ResidentMedium& medium, const GroupWeights& weights,
-                     const gl::Texture3D& arrived, const glm::dvec3& towards_sun, double tolerance);
+                     const gl::Texture3D& arrived, const glm::dvec3& towards_sun, double tolerance,
+                     const LitGround& ground);
 
   // For march.frag.
   void Bind() const;
@@ -65,7 +67,7 @@ class DiffusionPass {
   // Square root of the optical depth to the nearest exit; sky seen (DiffuseLight::SkySeen), and the
   // x of its net flux.
   gl::Texture3D ways_out_;
-  // Channels: net flux of sunlight; fluence from other walls; the y of the sky's.
+  // Of sunlight; the fluence from other walls; the y of the sky's; LitGround::ShareAt.
   gl::Texture3D net_inward_;
   std::vector<float> arrived_root_;
   std::vector<glm::vec4> net_inward_texels_;

@@ -114,7 +114,8 @@ void LightVolumeRenderer::Resize(const glm::ivec3& carried, const glm::ivec3& ce
 }
 
 absl::Status LightVolumeRenderer::CarryLight(const ResidentMedium& medium,
-                                             const RenderSettings& settings) {
+                                             const RenderSettings& settings,
+                                             const GroundFinder& find_ground) {
   const LightBox box(medium, settings);
   const GroupWeights weights(medium.Content(), settings.Medium());
   const bool diffuse = IsDiffuse(settings);
@@ -128,8 +129,12 @@ absl::Status LightVolumeRenderer::CarryLight(const ResidentMedium& medium,
   THUNDERHEAD_RETURN_IF_ERROR(Carry(medium, weights, box, variant));
   THUNDERHEAD_RETURN_IF_ERROR(Arrive(medium, weights, box, variant));
   if (!Diffuses(settings)) return absl::OkStatus();
+  LitGround ground;
+  if (find_ground != nullptr) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(ground, find_ground());
+  }
   return diffusion_.Solve(medium, weights, arrived_, settings.illumination.towards_sun,
-                          settings.quality.light_tolerance);
+                          settings.quality.light_tolerance, ground);
 }
 
 absl::Status LightVolumeRenderer::Carry(const ResidentMedium& medium, const GroupWeights& weights,

@@ -8,10 +8,12 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <utility>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "gl/whole_target.h"
@@ -19,6 +21,7 @@
 #include "renderers/light_frame.h"
 #include "renderers/light_volume/diffusion_pass.h"
 #include "renderers/light_volume/variants.h"
+#include "renderers/lit_ground.h"
 #include "renderers/medium.h"
 #include "renderers/render_settings.h"
 
@@ -30,8 +33,13 @@ class LightVolumeRenderer {
   explicit LightVolumeRenderer(std::shared_ptr<gl::ProgramCache> programs)
       : programs_(std::move(programs)), diffusion_(programs_) {}
 
-  // Carries the light to the cells. `medium` must not be empty.
-  absl::Status CarryLight(const ResidentMedium& medium, const RenderSettings& settings);
+  // Finds the ground's light once Shadow is known.
+  using GroundFinder = std::function<absl::StatusOr<LitGround>()>;
+
+  // Carries the light to the cells. `medium` must not be empty. Diffusion transport takes the light
+  // of the ground from `ground`; without it, as other transports do, for that of open ground.
+  absl::Status CarryLight(const ResidentMedium& medium, const RenderSettings& settings,
+                          const GroundFinder& ground = nullptr);
 
   // The shadow of the last CarryLight's medium, as common/storm_shadow.glsl has it, over
   // LightFrameOf its box.

@@ -1,5 +1,6 @@
 #include "renderers/light_volume/light_volume_technique.h"
 
+#include "renderers/ground_light.h"
 #include "renderers/light_frame.h"
 #include "renderers/light_volume/light_volume_renderer.h"
 
@@ -9,7 +10,7 @@ namespace {
 class LightVolumeTechnique final : public Technique {
  public:
   explicit LightVolumeTechnique(Workspace& workspace)
-      : workspace_(workspace), renderer_(workspace.programs) {}
+      : workspace_(workspace), renderer_(workspace.programs), ground_light_(workspace.programs) {}
 
   bool DrawsMedium() const override { return true; }
   bool Empty() const override { return workspace_.medium.Empty(); }
@@ -19,13 +20,22 @@ class LightVolumeTechnique final : public Technique {
   bool DrawsChosen() const override { return true; }
   const gl::Texture2D& Eye() const override { return renderer_.Eye(); }
   const gl::Texture2D* Distances_m() const override { return &renderer_.Distances_m(); }
-  std::size_t Bytes() const override { return renderer_.Bytes(); }
+  std::size_t Bytes() const override { return renderer_.Bytes() + ground_light_.Bytes(); }
 
-  absl::Status CarryLight(const scene::Scene& /*scene*/, const Fields& /*fields*/,
+  absl::Status CarryLight(const scene::Scene& scene, const Fields& /*fields*/,
                           const RenderSettings& settings, StageTimes* times) override {
     return Timed(workspace_.Pieces(), scene::FrameStage::kLight, times, [&]() -> absl::Status {
-      THUNDERHEAD_RETURN_IF_ERROR(renderer_.CarryLight(workspace_.medium, settings));
-      ShareShadow(settings.illumination.towards_sun);
+      bool shares_shadow = false;
+      const auto find_ground = [&]() -> absl::StatusOr<LitGround> {
+        ShareShadow(settings.illumination.towards_sun);
+        shares_shadow = true;
+        THUNDERHEAD_RETURN_IF_ERROR(
+            workspace_.surroundings.HideSky(scene, workspace_.ground, workspace_.medium));
+        return ground_light_.Find(workspace_.ground, workspace_.surroundings, Box(),
+                                  settings.illumination);
+      };
+      THUNDERHEAD_RETURN_IF_ERROR(renderer_.CarryLight(workspace_.medium, settings, find_ground));
+      if (!shares_shadow) ShareShadow(settings.illumination.towards_sun);
       return absl::OkStatus();
     });
   }
@@ -58,6 +68,7 @@ class LightVolumeTechnique final : public Technique {
 
   Workspace& workspace_;
   LightVolumeRenderer renderer_;
+  GroundLight ground_light_;
 };
 
 class LightVolumeFactory final : public TechniqueFactory {

@@ -24,6 +24,8 @@ constexpr int kMinBallLightTexels = 64;  // along the longer side
 constexpr int kMaxBallLightTexels = 1024;
 constexpr double kTexelsAcrossBall = 8.0;  // of the smaller balls
 
+constexpr double kWaveInRadii = 1.5;  // of the longest wave of surfaces
+
 constexpr gl::PieceCost kSplatPixel{"splat", 1000.0};
 constexpr gl::PieceCost kBallLevel{"balls' light", 2e5};
 constexpr gl::PieceCost kDiffuseBall{"balls' diffuse light", 5000.0};
@@ -276,7 +278,8 @@ absl::Status MetaballRenderer::Carry(const Light& light, int index,
   return absl::OkStatus();
 }
 
-absl::Status MetaballRenderer::DrawView(const RenderSettings& settings) {
+absl::Status MetaballRenderer::DrawView(const RenderSettings& settings, const scene::Detail& detail,
+                                        DetailNoises* noises) {
   if (eye_.Size() != settings.eye_size) {
     eye_ = gl::Texture2D(GL_RGBA32F, settings.eye_size);
     distances_m_ = gl::Texture2D(GL_R32F, settings.eye_size);
@@ -288,7 +291,7 @@ absl::Status MetaballRenderer::DrawView(const RenderSettings& settings) {
     return absl::OkStatus();
   }
   THUNDERHEAD_RETURN_IF_ERROR(FindSources(settings));
-  return Splat(settings);
+  return Splat(settings, detail, noises);
 }
 
 absl::Status MetaballRenderer::FindSources(const RenderSettings& settings) {
@@ -332,9 +335,36 @@ absl::Status MetaballRenderer::FindSources(const RenderSettings& settings) {
   return absl::OkStatus();
 }
 
-absl::Status MetaballRenderer::Splat(const RenderSettings& settings) {
-  const SplatVariant variant{.paper = IsPaper(settings),
-                             .ground = settings.ground_distance != nullptr};
+// The longest wave is shorter than the mean ball is wide, the finest level the one whose
+// texels are as large as the pixels of the nearest ball.
+void MetaballRenderer::BindNoise(const gl::Program& program, const RenderSettings& settings,
+                                 float share) const {
+  double mean_radius_m = 0.0;
+  for (const Ball& ball : balls_) {
+    mean_radius_m += ball.radius_m / static_cast<double>(balls_.size());
+  }
+  const double tile_m = kWaveInRadii * mean_radius_m * physics::DetailTile::kWaves;
+  const glm::dvec3 corner = box_.Middle_m() / tile_m;
+  program.Set(uniform::noise_per_m, static_cast<float>(1.0 / tile_m));
+  program.Set(uniform::noise_offset, glm::vec3(corner - glm::floor(corner)));
+  program.Set(uniform::roughness, share);
+  const scene::View& view = settings.view;
+  const double away_m =
+      glm::length(glm::max(glm::abs(view.eye_m - box_.Middle_m()) - box_.HalfExtent_m(), 0.0));
+  const double across_m = view.Orthographic() ? view.half_height_m : view.tan_half_height * away_m;
+  const double pixel_m = 2.0 * across_m / settings.eye_size.y;
+  const double texels = pixel_m * physics::DetailTile::kSide / tile_m;
+  const auto level = static_cast<std::size_t>(std::floor(std::log2(std::max(texels, 1.0))));
+  noise_->levels[std::min(level, noise_->levels.size() - 1)].Bind(shaders::kDetailNoiseUnit);
+}
+
+absl::Status MetaballRenderer::Splat(const RenderSettings& settings, const scene::Detail& detail,
+                                     DetailNoises* noises) {
+  // Balls carry all fields at once, so that one noise stands for theirs.
+  const bool rough = noises != nullptr && detail.share > 0.0F && !IsPaper(settings);
+  if (rough) noise_ = noises->Get(detail.octaves, detail.seed);
+  const SplatVariant variant{
+      .paper = IsPaper(settings), .ground = settings.ground_distance != nullptr, .detail = rough};
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
       programs_->Get(gl::ProgramSource::WholeTarget("metaball/splat.frag", variant.Defines())));
@@ -342,6 +372,7 @@ absl::Status MetaballRenderer::Splat(const RenderSettings& settings) {
   tile_starts_ = BufferOf(tiles.starts);
   order_ = BufferOf(tiles.balls);
   BindRays(*program, settings.view, box_.Middle_m());
+  if (rough) BindNoise(*program, settings, detail.share);
   program->Set(uniform::tile_px, tiles.tile_px);
   program->Set(uniform::tiles_across, tiles.tiles.x);
   ball_buffer_.BindStorage(shaders::kBallsBinding);

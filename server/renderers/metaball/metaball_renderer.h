@@ -37,7 +37,10 @@ class MetaballRenderer {
                           const RenderSettings& settings);
 
   // The second pass, with the balls and the light of the last CarryLight.
-  absl::Status DrawView(const RenderSettings& settings);
+  // The balls' surfaces are as rough as the share of `detail` says; their wavelength follows from
+  // the balls' size. Without `noises`, and with paper transport, they are smooth.
+  absl::Status DrawView(const RenderSettings& settings, const scene::Detail& detail = {},
+                        DetailNoises* noises = nullptr);
 
   // The result of the last DrawView.
   const gl::Texture2D& Eye() const { return eye_; }
@@ -77,7 +80,9 @@ class MetaballRenderer {
   std::vector<int> KeepArrived(const std::vector<Light>& lights);
   absl::Status Carry(const Light& light, int index, const RenderSettings& settings);
   absl::Status FindSources(const RenderSettings& settings);
-  absl::Status Splat(const RenderSettings& settings);
+  absl::Status Splat(const RenderSettings& settings, const scene::Detail& detail,
+                     DetailNoises* noises);
+  void BindNoise(const gl::Program& program, const RenderSettings& settings, float share) const;
 
   std::shared_ptr<gl::ProgramCache> programs_;
   gl::WholeTarget whole_target_;
@@ -96,6 +101,7 @@ class MetaballRenderer {
   gl::Buffer tile_starts_;
   gl::Texture2D light_;
   PhaseCurves phase_curves_;
+  std::shared_ptr<const DetailNoise> noise_;  // once it was needed
   gl::Texture2D eye_;
   gl::Texture2D distances_m_;
   gl::Framebuffer eye_target_;

@@ -29,6 +29,15 @@ class BallPreparation final : public Preparation {
   std::shared_ptr<BallFits> fits_;
 };
 
+// The detail of the visible field that has most of it.
+scene::Detail RoughestOf(const scene::Scene& scene) {
+  scene::Detail roughest;
+  for (const scene::FieldParameters& field : scene.fields) {
+    if (field.visible && field.detail.share > roughest.share) roughest = field.detail;
+  }
+  return roughest;
+}
+
 class MetaballTechnique final : public Technique {
  public:
   MetaballTechnique(Workspace& workspace, std::shared_ptr<BallFits> fits)
@@ -56,10 +65,11 @@ class MetaballTechnique final : public Technique {
     });
   }
 
-  absl::Status DrawView(const scene::Scene& /*scene*/, const RenderSettings& settings,
+  absl::Status DrawView(const scene::Scene& scene, const RenderSettings& settings,
                         StageTimes* times) override {
-    return Timed(workspace_.Pieces(), scene::FrameStage::kView, times,
-                 [&] { return renderer_.DrawView(settings); });
+    return Timed(workspace_.Pieces(), scene::FrameStage::kView, times, [&] {
+      return renderer_.DrawView(settings, RoughestOf(scene), &workspace_.noises);
+    });
   }
 
   Content Describe(const scene::Scene& scene,
@@ -70,7 +80,9 @@ class MetaballTechnique final : public Technique {
       content.fit_error = balls_->relative_error;
     }
     using Code = scene::NotShown::Code;
-    content.not_shown.push_back({Code::kFineStructure, "structure finer than the metaballs"});
+    content.not_shown.push_back(
+        {Code::kFineStructure,
+         "structure finer than the metaballs, but for noise on their surfaces"});
     if (scene::IsPaper(scene::MediumSettingsOf(scene.rendering.technique)->transport)) {
       content.not_shown.push_back(
           {Code::kFieldOptics, "the fields' albedo, phase functions and false colours"});

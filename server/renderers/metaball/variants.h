@@ -35,8 +35,9 @@ struct BallSourceVariant {
 struct SplatVariant {
   gl::DefineValue paper;   // transport as printed
   gl::DefineValue ground;  // may hide balls
+  gl::DefineValue detail;  // noise on surfaces
 
-  gl::Defines Defines() const { return {{"PAPER", paper}, {"GROUND", ground}}; }
+  gl::Defines Defines() const { return {{"PAPER", paper}, {"GROUND", ground}, {"DETAIL", detail}}; }
 };
 
 }  // namespace thunderhead::renderers

@@ -19,7 +19,7 @@ uniform mat3 local_from_world;
 uniform vec3 towards_sun;
 uniform float sky_scale;
 uniform vec3 level_irradiance;  // of clear sky and sun on level ground
-uniform vec3 face_irradiance;   // and on the storm's sunlit faces
+uniform vec3 level_skylight;    // that of the sky
 uniform float turbidity;
 uniform float altitude_m;
 uniform vec2 air_densities;  // there
@@ -67,16 +67,16 @@ void main() {
     float column = (height_m * air_light_per_m * (size.x - 1.0) + 0.5) / size.x;
     vec3 sunlight = texture(air_light, vec2(column, 0.25)).rgb;
     vec3 skylight = texture(air_light, vec2(column, 0.75)).rgb;
-    vec2 storm = storm_in_sky(point_m);
-    // In its shadow the storm shows what comes through it; elsewhere half of it is what it reflects.
+    StormInSky storm = storm_in_sky(point_m);
+    // In its shadow the storm shows what comes through it; elsewhere half of that, and what it reflects.
     float blocked = mean_blocked(point_m, step_m * ray);
-    vec3 through = storm.y * level_irradiance;
-    vec3 reflected = (storm.x - storm.y) * face_irradiance;
-    vec3 of_storm = mix(0.5 * (through + reflected), through, blocked) * kInversePi;
+    vec3 through = storm.through * level_irradiance;
+    vec3 reflected = light_of_faces(storm, towards_sun, level_skylight);
+    vec3 of_storm = mix(0.5 * through + reflected, through, blocked) * kInversePi;
     vec3 air = densities.x * air_per_m;
     vec3 haze = densities.y * haze_per_m;
     vec3 lost = blocked * (air_phase_here * air + haze_phase_here * haze) * sunlight +
-                (air + kHazeAlbedo * haze) * (storm.x * skylight - of_storm);
+                (air + kHazeAlbedo * haze) * (storm.hidden * skylight - of_storm);
     vec3 of_step = step_m * (air + haze);
     missing += sky_scale * step_m * exp(-depth - 0.5 * of_step) * lost;
     depth += of_step;

@@ -1,7 +1,7 @@
 // The storm in the sky of each point of a coarse lattice around it, as common/sky_hidden.glsl has it: means over directions
 // spread evenly over the upper half of its opacity, and of that times the transmittance for diffuse light of a level layer of
 // as much vertical depth: two-stream, (1 - a / r) exp(-sqrt(3 a r)) / (1 + 3/4 r) for the depths r of transport (similarity
-// scaled) and a of absorption.
+// scaled) and a of absorption. The rest of the opacity reflects; its mean is kept as a vector.
 // Variants: GROUPS, DETAILS (none: the noise has a mean of 1).
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
@@ -9,6 +9,7 @@
 
 layout(local_size_x = kLightGroupSide, local_size_y = kLightGroupSide) in;
 layout(binding = kSkyHiddenImage, rg16f) uniform writeonly image3D hidden;
+layout(binding = kStormFacesImage, rgba16f) uniform writeonly image3D faces;
 
 uniform ivec3 point_count;
 uniform vec3 lattice_low_m;   // of the lattice's box, from the medium's middle
@@ -56,6 +57,7 @@ void main() {
   Depths of_step = Depths(scaled(light_weights, step_m), scaled(transport_weights, step_m),
                           scaled(absorption_weights, step_m));
   vec2 sum = vec2(0.0);
+  vec3 sum_of_faces = vec3(0.0);
   for (int i = 0; i < kDirections; ++i) {
     // Fibonacci spiral; its turn differs from point to point, so that all together miss nothing.
     float sine = 1.0 - (float(i) + 0.5) / float(kDirections);
@@ -67,10 +69,13 @@ void main() {
     float scattered = 1.0 - depths.z / max(depths.y, 1e-9);
     float diffuse = scattered * exp(-sqrt(3.0 * depths.y * depths.z) * sine) / (1.0 + 0.75 * depths.y * sine);
     sum += opacity * vec2(1.0, diffuse);
+    sum_of_faces += opacity * (1.0 - diffuse) * direction;
   }
   // The outermost points are beyond where air is shaded.
   bvec3 first = equal(point, ivec3(0));
   bvec3 last = equal(point, point_count - 1);
   bool rim = first.x || first.y || last.x || last.y || last.z;
-  imageStore(hidden, point, vec4(rim ? vec2(0.0) : sum / float(kDirections), 0.0, 0.0));
+  float share = rim ? 0.0 : 1.0 / float(kDirections);
+  imageStore(hidden, point, vec4(share * sum, 0.0, 0.0));
+  imageStore(faces, point, vec4(share * sum_of_faces, 0.0));
 }

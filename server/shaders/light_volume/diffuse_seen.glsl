@@ -8,14 +8,14 @@
 
 // Root of the optical depth to the nearest surface; sky seen there, and the x of its net flux (DiffuseLight::SkySeen).
 layout(binding = kWaysOutUnit) uniform sampler3D ways_out;
-// Of sunlight; fluence from other walls; the y of the sky's net flux.
+// Of sunlight; fluence from other walls; the y of the sky's net flux; share of open ground's light that comes from below.
 layout(binding = kNetInwardUnit) uniform sampler3D net_inward;
 
 uniform vec4 transport_weights[PLANES];  // texel to similarity-scaled extinction, 1/m
 uniform vec3 rest_of_sky;                // mean radiance, without the bright sky around the sun
 uniform vec3 rest_of_sky_level;          // its irradiance from above over pi
 uniform vec3 around_sun;                 // its irradiance, from the sun's direction
-uniform vec3 from_ground;
+uniform vec3 from_ground;                // radiance of open ground
 #if TINTED
 uniform vec4 red_weights[PLANES];  // texel to similarity-scaled scattering, 1/m
 uniform vec4 green_weights[PLANES];
@@ -67,7 +67,7 @@ struct DiffuseSeen {
   vec3 sun;       // fluence, over the sun's irradiance
   vec3 sky;       // over the sky's mean radiance
   vec3 level;     // over its irradiance from above
-  vec3 all;       // of light that is 1 everywhere
+  vec3 ground;    // over open ground's radiance
 };
 
 DiffuseSeen no_diffuse_seen() { return DiffuseSeen(1.0, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0)); }
@@ -101,7 +101,7 @@ float see_diffuse(inout DiffuseSeen seen, Taken taken, DiffuseSample there, floa
   seen.sun += (shown * fluence) * tint;
   seen.level += (shown * sky_shares.x) * tint;
   seen.sky += (shown * sky_shares.y) * tint;
-  seen.all += shown * tint;
+  seen.ground += (shown * (1.0 - sky_shares.x - sky_shares.y) * there.inward.w) * tint;
   seen.transmittance *= 1.0 - taken.share;
   return shown;
 }
@@ -113,11 +113,11 @@ void close_diffuse(inout DiffuseSeen seen) {
   seen.sun *= whole;
   seen.sky *= whole;
   seen.level *= whole;
-  seen.all *= whole;
+  seen.ground *= whole;
   seen.transmittance = 0.0;
 }
 
 vec3 diffuse_radiance(DiffuseSeen seen, vec3 sunlight) {
   return (sunlight + around_sun) * seen.sun / kFourPi + rest_of_sky * seen.sky + rest_of_sky_level * seen.level +
-         from_ground * (seen.all - seen.sky - seen.level);
+         from_ground * seen.ground;
 }

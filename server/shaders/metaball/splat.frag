@@ -2,8 +2,10 @@
 // Each tile of the picture has a list of the balls that may lie over it, in that order: the same sum as blending their
 // splats from back to front, without reading and writing the picture for each. A ball's optical depth is the integral of
 // its field along the ray, from the eye and up to the ground.
+// With DETAIL noise at all scales that pixels show moves the balls' surfaces inwards, and a place shows the light of all balls
+// there by their fields, so that no ball is to be told from its neighbours.
 // Variants: GROUND (what lies behind it is left out), PAPER (the field's own value is the depth: eq. 12 splatted as it
-// is).
+// is), DETAIL.
 #include "common/bindings.glsl"
 #include "common/ground_distance.glsl"
 #include "common/view.glsl"
@@ -17,12 +19,48 @@ layout(std430, binding = kBallSourcesBinding) readonly buffer Sources { vec4 sou
 
 uniform int tile_px;
 uniform int tiles_across;
+#if DETAIL
+layout(binding = kDetailNoiseUnit) uniform sampler3D noise;  // physics/detail_tile.h
+uniform float noise_per_m;   // tiles
+uniform vec3 noise_offset;
+uniform float roughness;     // 0 to 1
+#endif
 
 in vec2 position;
 layout(location = 0) out vec4 radiance_and_transmittance;
 layout(location = 1) out float opacity_distance_m;  // the opacity times the mean distance of what shows
 
 const float kOpaqueTransmittance = 5e-3;  // below which a ray ends, as in light_volume/march.frag
+
+#if DETAIL
+const float kRelief = 0.5;      // the deepest valley's share of a ball's squared radius
+const float kDisplaced = 0.5;   // radii
+// The logarithm of what a ball's optical depth, in the mean over its disc and over noise, is divided by where the roughness is 1.
+const float kEroded = 0.7;
+const float kLeastSeen = 0.01;  // share of a pixel below which a ball keeps its own light
+
+// The ball's w across its middle, 1 - (u / R)^2, as noise at its surface leaves it.
+float eroded(float s, vec3 origin_m, vec3 ray, vec3 across_m, float surface_m, float per_radius) {
+  vec4 here = texture(noise, (origin_m + surface_m * ray) * noise_per_m + noise_offset);
+  vec3 moved = across_m * per_radius + (roughness * kDisplaced) * (here.gba * 2.0 - 1.0);
+  return min(s, 1.0 - dot(moved, moved)) - roughness * kRelief * (1.0 - here.r) * (1.0 - 0.7 * s);
+}
+
+// The mean light of the tile's balls at a place, by their extinctions there.
+vec3 light_at(vec3 place_m, uint first, uint end) {
+  vec4 sum = vec4(0.0);
+  for (uint i = first; i < end; ++i) {
+    uint index = order[i];
+    vec4 middle_radius = balls[index].middle_radius;
+    vec3 off_m = (middle_radius.xyz - place_m) / middle_radius.w;
+    float w = 1.0 - dot(off_m, off_m);
+    if (w <= 0.0) continue;
+    vec4 source = sources[index];
+    sum += source.a * wyvill_field(w) * vec4(source.rgb, 1.0);
+  }
+  return sum.rgb / max(sum.a, 1e-30);
+}
+#endif
 
 void main() {
   ivec2 tile = ivec2(gl_FragCoord.xy) / tile_px;
@@ -36,6 +74,9 @@ void main() {
 #endif
   vec3 radiance = vec3(0.0);
   float transmittance = 1.0;
+#if DETAIL
+  float kept = exp(kEroded * roughness);
+#endif
   float shown_m = 0.0;
   for (uint i = first; i < end && transmittance > kOpaqueTransmittance; ++i) {
     uint index = order[i];
@@ -48,6 +89,11 @@ void main() {
     float s = 1.0 - dot(across_m, across_m) * (per_radius * per_radius);
     if (s <= 0.0) continue;
     vec4 source = sources[index];
+#if DETAIL
+    float surface_m = along_m - sqrt(s) * middle_radius.w;
+    s = eroded(s, origin_m, ray, across_m, surface_m, per_radius);
+    if (s <= 0.0) continue;
+#endif
     float half_chord = sqrt(s);
     float from = -along_m * per_radius;
     float to = half_chord;
@@ -63,9 +109,21 @@ void main() {
                        ? wyvill_column(s)
                        : wyvill_column_to(s, to) - wyvill_column_to(s, max(from, -half_chord));
     float depth = source.a * middle_radius.w * max(column, 0.0);
+#if DETAIL
+    depth *= kept;
+#endif
     float taken = depth * mean_transmittance(depth);  // 1 - exp(-depth)
 #endif
-    radiance += transmittance * taken * source.rgb;
+    vec3 light = source.rgb;
+#if DETAIL
+    if (transmittance * taken > kLeastSeen) {
+      // Where about half of what shows of the ball is in front: fields rise as the square of the depth below the surface.
+      float before = half_chord * min(pow(1.4 / max(depth, 1e-6), 1.0 / 3.0), 1.0);
+      // Half of it: balls that lie deeper, which weigh more there, are darker than the surface.
+      light = 0.5 * (light + light_at(origin_m + (along_m + (before - half_chord) * middle_radius.w) * ray, first, end));
+    }
+#endif
+    radiance += transmittance * taken * light;
     float passed = exp(-depth);
     shown_m += transmittance * (1.0 - passed) * max(along_m + 0.5 * (max(from, -half_chord) + to) * middle_radius.w, 0.0);
     transmittance *= passed;

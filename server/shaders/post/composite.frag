@@ -74,9 +74,10 @@ vec3 ground_radiance(vec3 point_m, vec3 ray, float distance_m) {
 #if CORRECTED
   sky *= texture(skylight_factor, point_m.xy * skylight_scale + skylight_offset).rgb;
 #elif SHADED
-  vec2 storm = storm_in_sky(point_m);
-  vec3 of_storm = (storm.y * blocked * (0.5 + 0.5 * normal.z)) * (sunlight * towards_sun.z + skylight);
-  sky = (1.0 - storm.x) * sky + of_storm;
+  StormInSky storm = storm_in_sky(point_m);
+  vec3 through = storm.through * (sunlight * towards_sun.z + skylight);
+  vec3 reflected = light_of_faces_on_ground(storm, towards_sun, skylight);
+  sky = (1.0 - storm.hidden) * sky + (0.5 + 0.5 * normal.z) * mix(reflected, through, blocked);
 #endif
   Cover cover = ground_cover(point_m, ray, distance_m);
   vec3 land = cover.reflectance * (sunlight * lit + sky);

@@ -38,6 +38,17 @@ TEST(Scene, EachChangeRerunsFromItsOwnStage) {
   EXPECT_EQ(After([](Scene* s) { s->display.exposure_ev = 1; }), Stage::kTone);
 }
 
+TEST(Scene, ANewSkyLightsTheGroundUnderDiffusion) {
+  for (const Transport transport : {Transport::kDiffusion, Transport::kConsistent}) {
+    Scene before;
+    MediumSettingsOf(&before.rendering.technique)->transport = transport;
+    Scene after = before;
+    after.sky.turbidity = 9.0;
+    EXPECT_EQ(FirstDirtyStage(before, after),
+              transport == Transport::kDiffusion ? Stage::kLight : Stage::kView);
+  }
+}
+
 TEST(Scene, EachTechniqueRerunsFromItsOwnStage) {
   const auto first = [](const Technique& before, const Technique& after) {
     Scene a;
