@@ -133,6 +133,11 @@ grpc::Status FakeService::Interact(grpc::ServerContext* context, Stream* stream)
 }
 
 void FakeService::Answer(Call& call, const v1::InteractRequest& request) {
+  {
+    const std::lock_guard lock(mutex_);
+    requests_.push_back(request);
+    changed_.notify_all();
+  }
   if (request.has_join()) {
     v1::InteractResponse response;
     v1::Joined& joined = *response.mutable_joined();
@@ -154,12 +159,10 @@ void FakeService::Answer(Call& call, const v1::InteractRequest& request) {
     }
     call.Write(response);
   }
+  if (!request.has_join()) return;
   const std::lock_guard lock(mutex_);
-  if (request.has_join()) {
-    call_ = &call;
-    ++joined_;
-  }
-  requests_.push_back(request);
+  call_ = &call;
+  ++joined_;
   changed_.notify_all();
 }
 

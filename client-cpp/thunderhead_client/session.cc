@@ -188,8 +188,9 @@ Session::Outcome Session::Interact() {
     state_.pointers.Clear();
     sync_.Rejoined();
   }
-  call.context.TryCancel();
   changed_.notify_all();
+  // A cancellation here would hide the status that the server ends with; a write that waits fails
+  // with the call.
   writer.join();
   watcher.join();
   const grpc::Status status = call.stream->Finish();

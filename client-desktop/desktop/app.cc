@@ -37,6 +37,7 @@ App::App(Flags flags, std::vector<v1::Scene> views, std::unique_ptr<Window> wind
          std::shared_ptr<const client::Connection> connection)
     : flags_(std::move(flags)),
       window_(std::move(window)),
+      told_window_(WindowOf(*window_, flags_.saves_bytes)),
       wake_event_(SDL_RegisterEvents(1)),
       flow_({[this] { Wake(); }, [this](const v1::Frame& frame) { session_.VideoLost(frame); },
              [this](const std::string& failure) {
@@ -50,8 +51,7 @@ App::App(Flags flags, std::vector<v1::Scene> views, std::unique_ptr<Window> wind
       kiosk_(std::move(views), flags_.view_seconds),
       status_(flags_.status_file),
       pointer_([this](const PointerInput::Motion& motion) { ui_.Move(motion); }),
-      keys_(MakeKeyActions()),
-      told_window_(WindowOf(*window_, flags_.saves_bytes)) {
+      keys_(MakeKeyActions()) {
   ui_.choices.name = flags_.name;
   ui_.toggle_full_screen = [this] { window_->ToggleFullScreen(); };
 }
@@ -65,7 +65,7 @@ client::SessionOptions App::MakeSessionOptions() const {
   options.name = flags_.name;
   options.scene.set_storm_id(flags_.storm);
   options.codecs = client::PictureDecoder::Codecs();
-  options.window = WindowOf(*window_, flags_.saves_bytes);
+  options.window = told_window_;
   options.never_gives_up = flags_.kiosk;
   return options;
 }

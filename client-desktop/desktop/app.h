@@ -62,6 +62,7 @@ class App final : private client::SessionListener {
 
   const Flags flags_;
   const std::unique_ptr<Window> window_;
+  v1::Window told_window_;  // that the server knows of
   client::Statistics statistics_;
   std::atomic<bool> woken_{false};
   Uint32 wake_event_ = 0;
@@ -82,7 +83,6 @@ class App final : private client::SessionListener {
   Clock::time_point redraw_until_{};
   Clock::time_point resized_at_{};
   Clock::time_point turned_at_{};
-  v1::Window told_window_;
 };
 
 // Runs the program; the exit status.

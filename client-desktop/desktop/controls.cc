@@ -103,13 +103,21 @@ bool Slider(const char* label, const Limits& limits, double& value) {
   const double minimum = limits.minimum * unit.factor;
   const double maximum = limits.maximum * unit.factor;
   double shown = value * unit.factor;
-  BeginLine(label);
+  Label(label);
   ImGui::PushID(label);
   const ImGuiSliderFlags flags = limits.logarithmic && limits.minimum >= 0.0
                                      ? ImGuiSliderFlags_Logarithmic
                                      : ImGuiSliderFlags_None;
-  const bool changed = ImGui::SliderScalar("##slider", ImGuiDataType_Double, &shown, &minimum,
-                                           &maximum, format.c_str(), flags);
+  // The number stands beside it, where the grab does not hide it, and can be typed.
+  const float number_width = 6.4F * ImGui::GetFontSize();
+  ImGui::SetNextItemWidth(-number_width - ImGui::GetStyle().ItemSpacing.x);
+  bool changed = ImGui::SliderScalar("##slider", ImGuiDataType_Double, &shown, &minimum, &maximum,
+                                     "", flags | ImGuiSliderFlags_NoInput);
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(-1.0F);
+  changed |= ImGui::InputDouble("##number", &shown, 0.0, 0.0, format.c_str(),
+                                ImGuiInputTextFlags_EnterReturnsTrue);
+  changed |= ImGui::IsItemDeactivatedAfterEdit();
   ImGui::PopID();
   if (changed) value = client::Clamp(shown / unit.factor, limits);
   return changed;
@@ -133,6 +141,9 @@ bool Segments(const char* id, const std::vector<const char*>& labels, int& chose
   ImGui::PushID(id);
   const float gap = 2.0F;
   const auto count = static_cast<float>(labels.size());
+  float height = 0.0F;
+  for (const char* const label : labels) height = std::max(height, ImGui::CalcTextSize(label).y);
+  height += 2.0F * ImGui::GetStyle().FramePadding.y;
   const float width = (ImGui::GetContentRegionAvail().x - gap * (count - 1.0F)) / count;
   bool changed = false;
   for (int i = 0; i < static_cast<int>(labels.size()); ++i) {
@@ -143,7 +154,7 @@ bool Segments(const char* id, const std::vector<const char*>& labels, int& chose
       ImGui::PushStyleColor(ImGuiCol_ButtonHovered, kAccent);
       ImGui::PushStyleColor(ImGuiCol_Text, kOnAccent);
     }
-    const bool pressed = ImGui::Button(labels[static_cast<std::size_t>(i)], {width, 0.0F});
+    const bool pressed = ImGui::Button(labels[static_cast<std::size_t>(i)], {width, height});
     if (is_chosen) ImGui::PopStyleColor(3);
     if (!pressed || is_chosen) continue;
     chosen = i;

@@ -47,14 +47,18 @@ void DrawPanel(Ui& ui, const Layout& layout) {
 }
 
 void HelpPanel(Ui& /*ui*/) {
-  if (!ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingStretchProp)) return;
+  if (!ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) return;
+  ImGui::TableSetupColumn("keys");
+  ImGui::TableSetupColumn("meaning", ImGuiTableColumnFlags_WidthStretch);
   for (const auto& [keys, meaning] : kKeyTexts) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     ImGui::PushFont(SmallFont());
     ImGui::TextUnformatted(keys);
     ImGui::TableNextColumn();
+    ImGui::PushTextWrapPos(0.0F);
     ImGui::TextDisabled("%s", meaning);
+    ImGui::PopTextWrapPos();
     ImGui::PopFont();
   }
   ImGui::EndTable();

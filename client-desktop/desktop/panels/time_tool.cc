@@ -15,7 +15,11 @@ namespace thunderhead::desktop {
 
 void TimeTool(Ui& ui) {
   const auto& storm = ui.storms.storm;
-  if (!storm.run_start().empty()) Quiet(absl::StrCat("Run of ", storm.run_start()));
+  if (!storm.run_start().empty()) {
+    v1::StormTime start;
+    start.set_valid_time(storm.run_start());
+    Quiet(absl::StrCat("Run of ", FormatValidTime(start)));
+  }
   ImGui::BeginDisabled(!ui.state.Steers());
   std::vector<std::pair<int, std::string>> rates;
   int chosen = 0;
