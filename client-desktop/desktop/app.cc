@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <tuple>
 #include <utility>
 
 #include "absl/strings/str_format.h"
@@ -25,6 +26,16 @@ v1::Window WindowOf(const Window& window, bool saves_bytes) {
   told.set_hidden(window.minimized());
   told.set_saves_bytes(saves_bytes);
   return told;
+}
+
+// The pointer at an event of it; where it is now for one that does not tell.
+ScreenPoint PlaceOf(const SDL_Event& event) {
+  int x = 0;
+  int y = 0;
+  SDL_GetMouseState(&x, &y);
+  if (event.type == SDL_MOUSEMOTION) std::tie(x, y) = std::pair(event.motion.x, event.motion.y);
+  if (event.type == SDL_MOUSEBUTTONDOWN) std::tie(x, y) = std::pair(event.button.x, event.button.y);
+  return {static_cast<float>(x), static_cast<float>(y)};
 }
 
 bool Differs(const v1::Window& a, const v1::Window& b) {
@@ -180,7 +191,8 @@ bool App::TakeEvent(const SDL_Event& event) {
     const bool controls = io.WantCaptureKeyboard && (io.NavVisible || ImGui::IsAnyItemActive());
     return TakeKey(event.key, {io.WantTextInput, controls}, keys_);
   }
-  return pointer_.Take(event, !io.WantCaptureMouse);
+  const ScreenPoint at = PlaceOf(event);
+  return pointer_.Take(event, !window_->IsOverPanel(at.x, at.y));
 }
 
 bool App::TakePicture() {

@@ -4,6 +4,7 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <backends/imgui_impl_sdl.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -118,6 +119,17 @@ void Window::Draw(const std::function<void()>& build) {
   glClear(GL_COLOR_BUFFER_BIT);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
   SDL_GL_SwapWindow(window_);
+}
+
+bool Window::IsOverPanel(float x, float y) const {
+  const ImGuiContext& context = *ImGui::GetCurrentContext();
+  if (context.OpenPopupStack.Size > 0) return true;
+  for (const ImGuiWindow* const panel : context.Windows) {
+    const bool takes =
+        panel->WasActive && !panel->Hidden && (panel->Flags & ImGuiWindowFlags_NoMouseInputs) == 0;
+    if (takes && panel->OuterRectClipped.Contains({x, y})) return true;
+  }
+  return false;
 }
 
 bool Window::full_screen() const {

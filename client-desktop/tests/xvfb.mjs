@@ -30,13 +30,14 @@ export async function startDisplay(width, height) {
     xdotool,
     key: (...keys) => xdotool("key", ...keys),
     move: (x, y) => xdotool("mousemove", x, y),
+    // As slowly as a person: a busy machine must draw between the steps.
     async click(x, y) {
       xdotool("mousemove", x, y);
-      await sleep(150);
+      await sleep(400);
       xdotool("mousedown", 1);
-      await sleep(80);
+      await sleep(250);
       xdotool("mouseup", 1);
-      await sleep(200);
+      await sleep(400);
     },
     async drag(from, to, button = 1, steps = 12) {
       xdotool("mousemove", from.x, from.y);
