@@ -151,6 +151,7 @@ void App::Run() {
     if (!TakeEvents(Timeout_ms(begin))) break;
     const auto now = Clock::now();
     stale |= ui_.Refresh();
+    if (std::exchange(ui_.texts_changed, false)) redraw_until_ = now + kSettles;
     Advance(now);
     stale |= TakePicture();
     // Once a second in any case: times and figures go on.

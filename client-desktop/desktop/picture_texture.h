@@ -19,7 +19,9 @@ class PictureTexture {
   // Needs the window's context, as the destructor does.
   void Upload(const client::Pixels& pixels);
   bool empty() const { return texture_ == 0; }
-  ImTextureID id() const { return reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture_)); }
+  ImTextureID id() const {
+    return reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture_));
+  }
   int width_px() const { return width_px_; }
   int height_px() const { return height_px_; }
 

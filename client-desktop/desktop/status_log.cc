@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdint>
 
 #include "absl/strings/str_format.h"
@@ -61,18 +62,22 @@ void StatusLog::Write(const Ui& ui, int view, std::chrono::steady_clock::time_po
   if (!file_.is_open() || now - last_ < kInterval) return;
   last_ = now;
   const View camera = ViewOf(ui);
+  const auto& people = ui.state.presence.people();
+  const auto asking = std::count_if(people.begin(), people.end(),
+                                    [](const v1::Person& each) { return each.asks_control(); });
   // The viewers' key, for others to join by; never the presenter's.
   file_
       << absl::StrFormat(
-             R"({"t_s":%.1f,"link":"%s","joined":%d,"role":"%s","steers":%s,"looks_around":%s,"people":%d,)"
+             R"({"t_s":%.1f,"link":"%s","joined":%d,"role":"%s","steers":%s,"looks_around":%s,"people":%d,"asking":%d,)"
              R"("viewer_key":"%s","storm":"%s","time_index":%d,"revision":%d,"shown_revision":%d,)"
              R"("camera":"%s","azimuth_deg":%.2f,"refined":%s,"marks":%d,"pointers":%d,"view":%d,)",
              std::chrono::duration<double>(now - start_).count(), NameOf(ui.state.link),
              ui.state.joined_count, ui.state.Presents() ? "presenter" : "viewer",
              ui.state.Steers() ? "true" : "false", ui.state.looks_around ? "true" : "false",
-             ui.state.presence.people_size(), ui.state.viewer_key, ui.state.scene.storm_id(),
-             ui.time_index(), ui.state.scene_revision, ui.frame.scene_revision(), camera.kind,
-             camera.azimuth_deg, ui.frame.refined() ? "true" : "false", ui.state.marks.marks_size(),
+             ui.state.presence.people_size(), asking, ui.state.viewer_key,
+             ui.state.scene.storm_id(), ui.time_index(), ui.state.scene_revision,
+             ui.frame.scene_revision(), camera.kind, camera.azimuth_deg,
+             ui.frame.refined() ? "true" : "false", ui.state.marks.marks_size(),
              ui.state.pointers.pointers_size(), view)
       << absl::StrFormat(
              R"("encoding":"%s","width_px":%d,"height_px":%d,"frames":%d,"frames_per_s":%.2f,)"

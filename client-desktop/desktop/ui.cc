@@ -70,6 +70,10 @@ bool Ui::Refresh() {
   const int joined = state.joined_count;
   const std::uint64_t catalogue_revision = state.catalogue_revision;
   if (auto newer = session.StateAfter(state.version)) {
+    texts_changed = texts_changed || newer->link != state.link || newer->reason != state.reason ||
+                    newer->notice_count != state.notice_count ||
+                    newer->problem.has_value() != state.problem.has_value() ||
+                    newer->presence.ByteSizeLong() != state.presence.ByteSizeLong();
     state = *std::move(newer);
     parameters = client::ParametersOf(state.scene);
     any = true;

@@ -60,6 +60,8 @@ struct Ui {
   bool IsShown() const;
   // Takes what is new; true if anything is.
   bool Refresh();
+  // Texts came or went, which the interface takes more than one drawing to make room for.
+  bool texts_changed = false;
 };
 
 }  // namespace thunderhead::desktop

@@ -31,8 +31,8 @@ class Window {
   void Take(const SDL_Event& event);
   // Draws the interface that `build` makes, and shows it.
   void Draw(const std::function<void()>& build);
-  // True if a panel of the last frame is there, in the window's units. The interface itself knows only once it is drawn again, too
-  // late for a press that follows a quick motion.
+  // True if a panel of the last frame is there, in the window's units. The interface itself knows
+  // only once it is drawn again, too late for a press that follows a quick motion.
   bool IsOverPanel(float x, float y) const;
   void ToggleFullScreen();
   bool full_screen() const;

@@ -94,6 +94,21 @@ function region({ width, rgb }, { x, y, width: w, height: h }) {
   return { rgb: Buffer.concat(rows) };
 }
 
+// The middle of what has the accent's colour: a button that is to be pressed.
+function accentIn(pixels, { x, y, width, height }) {
+  const found = [];
+  for (let row = y; row < y + height; row += 1) {
+    for (let column = x; column < x + width; column += 1) {
+      const at = 3 * (row * pixels.width + column);
+      const [r, g, b] = pixels.rgb.subarray(at, at + 3);
+      if (r > 245 && Math.abs(g - 209) < 12 && Math.abs(b - 107) < 16) found.push([column, row]);
+    }
+  }
+  assert.ok(found.length > 100, "no button to press");
+  const mean = (part) => Math.round(found.reduce((sum, each) => sum + each[part], 0) / found.length);
+  return { x: mean(0), y: mean(1) };
+}
+
 async function eventually(what, holds) {
   const deadline = Date.now() + 15_000;
   while (!holds()) {
@@ -141,10 +156,11 @@ test("a browser joins as a viewer and follows", async () => {
 
     // It asks to steer, gets control in the window, and the window follows.
     await page.getByTestId("ask-control").click();
-    await desktop.until("still steering", (now) => now.steers);
-    await sleep(700);
+    await desktop.until("a request", (now) => now.asking === 1);
+    await sleep(1000);
     display.screenshot("asked");
-    await display.click(646, 687);
+    const give = accentIn(display.pixels(), { x: 300, y: 660, width: 680, height: 36 });
+    await display.click(give.x, give.y);
     await desktop.until("gave control", (now) => !now.steers);
     const turnedBefore = desktop.status().azimuth_deg;
     await openTool(page, undefined).catch(() => {});

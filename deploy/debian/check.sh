@@ -2,25 +2,30 @@
 # Installs the packages of folder $1 in a clean Debian root, as root, and starts each: the server draws a picture for the Python
 # client, and the desktop shows one on a display without a screen.
 set -euo pipefail
+export DEBIAN_FRONTEND=noninteractive
 packages=$(realpath "$1")
 root=$(mktemp -d "${TMPDIR:-/var/tmp}/thunderhead-root.XXXXXX")
 trap 'rm -rf "$root"' EXIT
 
-# /etc/apt of this machine says where Debian's packages come from.
-mmdebstrap --mode=root --variant=apt --include=ca-certificates,xvfb,xauth bookworm "$root" \
-  /etc/apt/sources.list /etc/apt/sources.list.d/*.sources /etc/apt/sources.list.d/*.list 2>/dev/null ||
-  mmdebstrap --mode=root --variant=apt --include=ca-certificates,xvfb,xauth bookworm "$root"
+# The bare system is kept beside the packages for the next time.
+base=$packages/../packages-root.tar
+[ -f "$base" ] || mmdebstrap --mode=root --variant=apt --include=ca-certificates bookworm "$base"
+tar -C "$root" -xf "$base"
+cp /etc/resolv.conf "$root/etc/" 2>/dev/null || true
+mount -t proc proc "$root/proc"
+trap 'umount "$root/proc"; rm -rf "$root"' EXIT
+chroot "$root" apt-get update -qq
+chroot "$root" apt-get install -y -qq --no-install-recommends xvfb xauth >/dev/null
 cp "$packages"/*.deb "$root/root/"
 chroot "$root" sh -c 'apt-get install -y -qq --no-install-recommends /root/*.deb >/dev/null'
 chroot "$root" sh -euc '
   id thunderhead >/dev/null
   thunderhead --version
   test -f /usr/lib/systemd/system/thunderhead.service
-  . /etc/thunderhead/serve.conf 2>/dev/null || true
   thunderhead serve --data /usr/share/thunderhead/samples --http 127.0.0.1:58080 --grpc 127.0.0.1:58051 --state none >/tmp/serve.log 2>&1 &
   server=$!
   trap "kill $server" EXIT
-  for i in $(seq 60); do grep -q http:// /tmp/serve.log && break; sleep 1; done
+  for _ in $(seq 60); do grep -q http:// /tmp/serve.log && break; sleep 1; done
   python3 -c "
 import thunderhead
 with thunderhead.Client(\"127.0.0.1:58051\") as client:
