@@ -32,7 +32,7 @@ absl::Status WaitedTooLong(int hanging) {
           " requests hang, perhaps with a storage that does not answer; try again later")),
       {.reason = "REQUESTS_HANG",
        .metadata = {{"hanging", absl::StrCat(hanging)}},
-       .retry_after = kRetryAfter});
+       .retry_after = kQueueRetryAfter});
 }
 
 }  // namespace
