@@ -111,7 +111,8 @@ TEST_F(SqliteJobStoreTest, AFileFromBeforeThereWereJobsKeepsItsSessions) {
   ASSERT_EQ(sqlite3_open(path_.c_str(), &database), SQLITE_OK);
   ASSERT_EQ(sqlite3_exec(database,
                          "DROP TABLE job_pictures; DROP TABLE jobs; "
-                         "ALTER TABLE marks DROP COLUMN owner_keys; PRAGMA user_version = 1",
+                         "ALTER TABLE marks DROP COLUMN owner_keys; "
+                         "ALTER TABLE sessions DROP COLUMN owner; PRAGMA user_version = 1",
                          nullptr, nullptr, nullptr),
             SQLITE_OK);
   sqlite3_close(database);

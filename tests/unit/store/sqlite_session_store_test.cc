@@ -199,8 +199,8 @@ TEST_F(SqliteSessionStoreTest, ANewerVersionIsRefusedAndLeftAsItIs) {
   const absl::Status refusal = Refusal();
   EXPECT_EQ(refusal.code(), absl::StatusCode::kFailedPrecondition);
   EXPECT_THAT(std::string(refusal.message()),
-              HasSubstr("newer Thunderhead (version 7; this one knows 3)"));
-  Execute(path_, "PRAGMA user_version = 3");
+              HasSubstr("newer Thunderhead (version 7; this one knows 4)"));
+  Execute(path_, "PRAGMA user_version = 4");
   EXPECT_THAT(Loaded(), ElementsAre(SessionRecordOf("a")));
 }
 
