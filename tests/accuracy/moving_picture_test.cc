@@ -96,8 +96,9 @@ class MovingPictureTest : public testing::Test {
     return {kSize_px, std::move(mapped->rgb)};
   }
 
-  // With few rays, and at the same exposure, within 0.02 of FLIP; exposures of their own differ by
-  // less than a step of the meter's histogram and a half. 0.014 to 0.019 were found.
+  // With fewer than half of the rays, even of clouds that are rough all over (a third), and at the
+  // same exposure within 0.02 of FLIP; exposures of their own differ by less than a step of the
+  // meter's histogram and a half.
   void ExpectAlike(const std::string& what) {
     scene_.display.exposure_ev.reset();
     const measure::DisplayImage at_rest = AtRest();
@@ -107,7 +108,7 @@ class MovingPictureTest : public testing::Test {
     scene_.display.exposure_ev = metered_ev;
     int rays = kSize_px.x * kSize_px.y / 16;
     EXPECT_LE(measure::Flip(Moving(&rays), at_rest), 0.02) << what;
-    EXPECT_LT(rays, kSize_px.x * kSize_px.y / 3) << what;
+    EXPECT_LT(rays, kSize_px.x * kSize_px.y / 2) << what;
   }
 
   // From three sides, low and high.
