@@ -131,6 +131,24 @@ TEST_F(AirShadeTest, AirAboveAStormIsLit) {
   }
 }
 
+// Past the east side of a tower whose southern face the sun shines on.
+TEST_F(AirShadeTest, AirBesideASunlitTowerHasItsLight) {
+  test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kDiffusion);
+  fields_ = support::MakeSlab(20e3, 12e3, 0.02, {32, 32, 16});
+  scene_.sun.azimuth_deg = 180.0;
+  scene_.camera = scene::SpotterCamera{{0.0, -34e3}, 1.7, 40.0, 6.0, 40.0};
+  const std::vector<glm::vec3> picture = Drawn();
+  for (const int row : kRowsBelowRoof) {
+    const glm::dvec3 traced = TracedRow(row, true);
+    const glm::dvec3 lit = TracedRow(row, false);
+    const glm::dvec3 drawn = DrawnRow(picture, row);
+    for (int color = 0; color < 3; ++color) {
+      // Faces turned as a sphere's stand for the tower's two.
+      EXPECT_NEAR(drawn[color], traced[color], 0.04 * lit[color]) << row << ' ' << color;
+    }
+  }
+}
+
 TEST_F(AirShadeTest, WithoutAStormAirIsLit) {
   fields_ = MakeRoof(0.0);
   const std::vector<glm::vec3> picture = Drawn();
