@@ -32,11 +32,13 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>)
 endif()
 
-add_library(thunderhead_options INTERFACE)
-target_include_directories(thunderhead_options INTERFACE ${CMAKE_SOURCE_DIR}/server)
-target_compile_options(thunderhead_options INTERFACE
+add_library(thunderhead_warnings INTERFACE)
+target_compile_options(thunderhead_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Werror -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
   -Wno-missing-field-initializers)
+add_library(thunderhead_options INTERFACE)
+target_include_directories(thunderhead_options INTERFACE ${CMAKE_SOURCE_DIR}/server)
+target_link_libraries(thunderhead_options INTERFACE thunderhead_warnings)
 
 if(THUNDERHEAD_X86_64_V3)
   add_compile_options(-march=x86-64-v3)

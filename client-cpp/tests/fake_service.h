@@ -1,0 +1,81 @@
+// A service in this process that does as a test says: keeps one session, records what clients send,
+// and sends what it is told.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "thunderhead/v1/thunderhead.grpc.pb.h"
+#include "thunderhead_client/connection.h"
+
+namespace thunderhead::client::testing {
+
+inline constexpr std::chrono::seconds kPatience{15};
+
+class FakeService final : public v1::ThunderheadService::Service {
+ public:
+  using Requests = std::vector<v1::InteractRequest>;
+
+  FakeService();
+  ~FakeService() override;
+
+  std::shared_ptr<const Connection> Connect() const;
+  // Ends the server and starts it again on the same port; sessions stay.
+  void Stop();
+  void Start();
+
+  // Every request of every call so far; waits until it is as wanted.
+  bool Await(const std::function<bool(const Requests&)>& wanted);
+  Requests All();
+  // The metadata "authorization" of the last call.
+  std::string authorization();
+  int opened();  // sessions
+  int joined();  // calls
+
+  // Sends to the newest call.
+  void Send(v1::InteractResponse response);
+  // Sends presence with the client as person 7, steered by that person.
+  void SendPresence(std::uint64_t steering_viewer_id);
+  void SendScene(const v1::Scene& scene, std::uint64_t revision);
+  // Ends the newest call.
+  void EndCall(const grpc::Status& status);
+
+  // The answer to an update of the scene; by default it is taken. Called with its expected
+  // revision.
+  std::function<v1::InteractResponse(const v1::InteractRequest&)> answer_scene;
+  bool answers_scenes = true;
+  bool forgets_sessions = false;  // joins end with NOT_FOUND until another session is opened
+
+  static constexpr char kPresenterKey[] = "presenter-key";
+  static constexpr char kViewerKey[] = "viewer-key";
+  static constexpr std::uint64_t kClient = 7;
+
+ private:
+  using Stream = grpc::ServerReaderWriter<v1::InteractResponse, v1::InteractRequest>;
+  struct Call;
+
+  grpc::Status CreateSession(grpc::ServerContext* context, const v1::CreateSessionRequest* request,
+                             v1::CreateSessionResponse* response) override;
+  grpc::Status Interact(grpc::ServerContext* context, Stream* stream) override;
+  grpc::Status GetServerInfo(grpc::ServerContext* context, const v1::GetServerInfoRequest* request,
+                             v1::GetServerInfoResponse* response) override;
+  void Answer(Call& call, const v1::InteractRequest& request);
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  int port_ = 0;
+  std::unique_ptr<grpc::Server> server_;
+  Requests requests_;
+  std::string authorization_;
+  int opened_ = 0;
+  int joined_ = 0;
+  Call* call_ = nullptr;
+};
+
+}  // namespace thunderhead::client::testing

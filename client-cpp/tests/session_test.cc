@@ -1,0 +1,273 @@
+// A session against a service that does as told: joining, edits, control, and coming back.
+#include "thunderhead_client/session.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include "client-cpp/tests/fake_service.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "thunderhead_client/pose.h"
+
+namespace thunderhead::client::testing {
+namespace {
+
+using Requests = FakeService::Requests;
+
+class Listener final : public SessionListener {
+ public:
+  void Changed() override {
+    const std::lock_guard lock(mutex_);
+    ++changes_;
+    changed_.notify_all();
+  }
+  void StreamBegan() override {}
+  void Received(v1::Frame frame, std::size_t /*bytes*/) override {
+    const std::lock_guard lock(mutex_);
+    frames.push_back(std::move(frame));
+    changed_.notify_all();
+  }
+  void SceneTaken(std::uint64_t revision, std::chrono::steady_clock::time_point) override {
+    const std::lock_guard lock(mutex_);
+    taken.push_back(revision);
+  }
+  bool Await(const std::function<bool()>& wanted) {
+    std::unique_lock lock(mutex_);
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (!wanted()) {
+      if (std::chrono::steady_clock::now() > deadline) return false;
+      changed_.wait_for(lock, std::chrono::milliseconds(20));
+    }
+    return true;
+  }
+
+  std::vector<v1::Frame> frames;
+  std::vector<std::uint64_t> taken;
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  int changes_ = 0;
+};
+
+class SessionTest : public ::testing::Test {
+ protected:
+  void Begin(SessionOptions options = {}) {
+    session = std::make_unique<Session>(service.Connect(), std::move(options), listener);
+    ASSERT_TRUE(listener.Await([&] { return session->State().link == Link::kLive; }));
+  }
+  // As the one who steers, at revision 1.
+  void Steer() {
+    Begin();
+    service.SendScene({}, 1);
+    service.SendPresence(FakeService::kClient);
+    ASSERT_TRUE(listener.Await([&] { return session->State().Steers(); }));
+  }
+  static long Count(const Requests& requests, v1::InteractRequest::MessageCase part) {
+    return std::count_if(requests.begin(), requests.end(),
+                         [=](const auto& each) { return each.message_case() == part; });
+  }
+  bool AwaitCount(v1::InteractRequest::MessageCase part, long count) {
+    return service.Await([=](const Requests& requests) { return Count(requests, part) >= count; });
+  }
+  v1::InteractRequest Newest(v1::InteractRequest::MessageCase part) {
+    v1::InteractRequest newest;
+    for (const auto& each : service.All()) {
+      if (each.message_case() == part) newest = each;
+    }
+    return newest;
+  }
+  static SceneSync::Edit SunTo(float azimuth_deg) {
+    return [=](v1::Scene& scene) { scene.mutable_sun()->set_azimuth_deg(azimuth_deg); };
+  }
+
+  FakeService service;
+  Listener listener;
+  std::unique_ptr<Session> session;
+};
+
+TEST_F(SessionTest, OpensASessionAndTakesControlOfIt) {
+  SessionOptions options;
+  options.name = "Wall";
+  options.codecs = {v1::CODEC_VP9};
+  Begin(options);
+  EXPECT_EQ(service.opened(), 1);
+  const v1::Join join = service.All().front().join();
+  EXPECT_EQ(join.session_key(), FakeService::kPresenterKey);
+  EXPECT_EQ(join.name(), "Wall");
+  EXPECT_EQ(join.codecs(1), v1::CODEC_VP9);
+  service.SendPresence(0);
+  EXPECT_TRUE(AwaitCount(v1::InteractRequest::kTakeControl, 1));
+}
+
+TEST_F(SessionTest, JoinsBySomebodyElsesKeyWithoutOpening) {
+  SessionOptions options;
+  options.key = FakeService::kViewerKey;
+  Begin(options);
+  EXPECT_EQ(service.opened(), 0);
+  EXPECT_EQ(session->State().role, v1::ROLE_VIEWER);
+  EXPECT_TRUE(session->State().presenter_key.empty());
+  EXPECT_FALSE(session->Edit(SunTo(90.0F)));
+}
+
+TEST_F(SessionTest, EditsAreSentWithTheRevisionThatTheyWereMadeTo) {
+  Steer();
+  ASSERT_TRUE(session->Edit(SunTo(90.0F)));
+  ASSERT_TRUE(AwaitCount(v1::InteractRequest::kUpdateScene, 1));
+  const v1::SceneUpdate update = Newest(v1::InteractRequest::kUpdateScene).update_scene();
+  EXPECT_EQ(update.expected_revision(), 1U);
+  EXPECT_EQ(update.scene().sun().azimuth_deg(), 90.0F);
+  EXPECT_TRUE(listener.Await([&] { return session->State().scene_revision == 2; }));
+}
+
+TEST_F(SessionTest, WhileAnswersAreLateTheNewestEditWins) {
+  service.answers_scenes = false;
+  Steer();
+  for (int i = 0; i < 500; ++i) session->Edit(SunTo(static_cast<float>(i % 360)));
+  EXPECT_EQ(session->State().scene.sun().azimuth_deg(), 139.0F);
+  ASSERT_TRUE(AwaitCount(v1::InteractRequest::kUpdateScene, 1));
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_LE(Count(service.All(), v1::InteractRequest::kUpdateScene), 4);
+}
+
+TEST_F(SessionTest, AnEditOnAnOldSceneIsMadeAgainOnTheNewOne) {
+  service.answer_scene = [](const v1::InteractRequest& request) {
+    v1::InteractResponse response;
+    if (request.update_scene().expected_revision() == 1) {
+      response.mutable_refused()->set_request_id(request.request_id());
+      response.mutable_refused()->mutable_status()->set_code(grpc::StatusCode::ABORTED);
+    } else {
+      response.mutable_scene_taken()->set_request_id(request.request_id());
+      response.mutable_scene_taken()->set_scene_revision(
+          request.update_scene().expected_revision() + 1);
+    }
+    return response;
+  };
+  Steer();
+  session->Edit(SunTo(90.0F));
+  ASSERT_TRUE(AwaitCount(v1::InteractRequest::kUpdateScene, 1));
+  v1::Scene others;
+  others.mutable_sky()->set_turbidity(3.0F);
+  service.SendScene(others, 5);
+  ASSERT_TRUE(AwaitCount(v1::InteractRequest::kUpdateScene, 2));
+  const v1::SceneUpdate again = Newest(v1::InteractRequest::kUpdateScene).update_scene();
+  EXPECT_EQ(again.expected_revision(), 5U);
+  EXPECT_EQ(again.scene().sun().azimuth_deg(), 90.0F);
+  EXPECT_EQ(again.scene().sky().turbidity(), 3.0F);
+}
+
+TEST_F(SessionTest, ComesBackToTheSameSessionWhenTheServerRestarts) {
+  Steer();
+  service.Stop();
+  ASSERT_TRUE(listener.Await([&] { return session->State().link == Link::kLost; }));
+  service.Start();
+  ASSERT_TRUE(listener.Await([&] { return session->State().joined_count == 2; }));
+  EXPECT_EQ(service.opened(), 1);
+  const v1::Join join = Newest(v1::InteractRequest::kJoin).join();
+  EXPECT_EQ(join.session_key(), FakeService::kPresenterKey);
+  EXPECT_EQ(join.participant_key(), "participant-key");
+  // It steered, so it takes control again from the connection that the server may still see.
+  service.SendPresence(0);
+  EXPECT_TRUE(AwaitCount(v1::InteractRequest::kTakeControl, 1));
+}
+
+TEST_F(SessionTest, AnEditThatHadNoAnswerIsSentAgainAfterwards) {
+  service.answers_scenes = false;
+  Steer();
+  session->Edit(SunTo(90.0F));
+  ASSERT_TRUE(AwaitCount(v1::InteractRequest::kUpdateScene, 1));
+  service.EndCall(grpc::Status(grpc::StatusCode::UNAVAILABLE, "restart"));
+  ASSERT_TRUE(listener.Await([&] { return session->State().joined_count == 2; }));
+  service.answers_scenes = true;
+  service.SendScene({}, 9);
+  service.SendPresence(FakeService::kClient);
+  ASSERT_TRUE(AwaitCount(v1::InteractRequest::kUpdateScene, 2));
+  EXPECT_EQ(Newest(v1::InteractRequest::kUpdateScene).update_scene().expected_revision(), 9U);
+}
+
+TEST_F(SessionTest, OpensANewSessionWhenTheServerHasLostItsOwn) {
+  Steer();
+  service.forgets_sessions = true;
+  service.EndCall(grpc::Status::OK);
+  ASSERT_TRUE(listener.Await([&] { return service.opened() == 2; }));
+  EXPECT_TRUE(listener.Await([&] { return session->State().joined_count == 2; }));
+}
+
+TEST_F(SessionTest, SomebodyElsesSessionThatEndedIsGone) {
+  SessionOptions options;
+  options.key = FakeService::kViewerKey;
+  Begin(options);
+  v1::InteractResponse end;
+  end.mutable_end()->set_reason(v1::End::REASON_CLOSED);
+  end.mutable_end()->set_message("closed by the presenter");
+  service.Send(end);
+  service.EndCall(grpc::Status::OK);
+  ASSERT_TRUE(listener.Await([&] { return session->State().link == Link::kGone; }));
+  EXPECT_EQ(session->State().reason, "closed by the presenter");
+  EXPECT_EQ(service.opened(), 0);
+}
+
+TEST_F(SessionTest, WhoDoesNotSteerLooksAroundAndFollowsAgain) {
+  Begin();
+  service.SendPresence(3);
+  ASSERT_TRUE(listener.Await([&] { return session->State().presence.steering_viewer_id() == 3; }));
+  EXPECT_TRUE(session->ShowCamera(HomeCamera(v1::Camera::kTopDown)));
+  EXPECT_TRUE(AwaitCount(v1::InteractRequest::kDetach, 1));
+  for (int i = 0; i < 100; ++i) session->ShowCamera(HomeCamera(v1::Camera::kSpotter));
+  EXPECT_TRUE(AwaitCount(v1::InteractRequest::kMoveCamera, 1));
+  session->Follow();
+  EXPECT_TRUE(AwaitCount(v1::InteractRequest::kFollow, 1));
+  EXPECT_LT(Count(service.All(), v1::InteractRequest::kMoveCamera), 10);
+  EXPECT_FALSE(session->State().looks_around);
+}
+
+TEST_F(SessionTest, ShownFramesAreAcknowledged) {
+  Begin();
+  v1::InteractResponse response;
+  response.mutable_frame()->set_sequence(41);
+  service.Send(response);
+  ASSERT_TRUE(listener.Await([&] { return !listener.frames.empty(); }));
+  session->Shown(listener.frames.front());
+  ASSERT_TRUE(AwaitCount(v1::InteractRequest::kAcknowledge, 1));
+  EXPECT_EQ(Newest(v1::InteractRequest::kAcknowledge).acknowledge().sequence(), 41U);
+}
+
+TEST_F(SessionTest, PointersAreThinnedAndMarksAreNot) {
+  Begin();
+  service.SendPresence(FakeService::kClient);
+  ASSERT_TRUE(listener.Await([&] { return session->State().MayMark(); }));
+  v1::Ray ray;
+  ray.mutable_direction()->set_x(1.0F);
+  for (int i = 0; i < 100; ++i) session->Point(ray);
+  for (int i = 0; i < 5; ++i) session->AddMark({ray, ray});
+  EXPECT_TRUE(AwaitCount(v1::InteractRequest::kAddMark, 5));
+  EXPECT_TRUE(AwaitCount(v1::InteractRequest::kPoint, 1));
+  EXPECT_LT(Count(service.All(), v1::InteractRequest::kPoint), 10);
+}
+
+TEST_F(SessionTest, TheTokenIsShownAndReadAgainForEachCall) {
+  const std::string path = ::testing::TempDir() + "token";
+  std::ofstream(path) << "first\n";
+  const std::string address = service.Connect()->address();
+  auto connection = Connection::Open({address, "", path});
+  ASSERT_TRUE(connection.ok()) << connection.status();
+  session = std::make_unique<Session>(*connection, SessionOptions{}, listener);
+  ASSERT_TRUE(listener.Await([&] { return session->State().link == Link::kLive; }));
+  EXPECT_EQ(service.authorization(), "Bearer first");
+  std::ofstream(path) << "second\n";
+  service.EndCall(grpc::Status(grpc::StatusCode::UNAVAILABLE, ""));
+  ASSERT_TRUE(listener.Await([&] { return session->State().joined_count == 2; }));
+  EXPECT_EQ(service.authorization(), "Bearer second");
+}
+
+TEST(Connection, BadFilesAndAddressesAreNamed) {
+  EXPECT_THAT(std::string(Connection::Open({"localhost", "", ""}).status().message()),
+              ::testing::HasSubstr("'localhost' is no HOST:PORT"));
+  EXPECT_THAT(std::string(Connection::Open({"a:1", "/no/ca.pem", ""}).status().message()),
+              ::testing::HasSubstr("/no/ca.pem"));
+  EXPECT_THAT(std::string(Connection::Open({"a:1", "", "/no/token"}).status().message()),
+              ::testing::HasSubstr("/no/token"));
+}
+
+}  // namespace
+}  // namespace thunderhead::client::testing

@@ -1,0 +1,98 @@
+#include "thunderhead_client/catalogue.h"
+
+#include <chrono>
+
+namespace thunderhead::client {
+namespace {
+
+using Stub = v1::ThunderheadService::Stub;
+
+// A storm's first description reads its file.
+constexpr std::chrono::seconds kPatience{60};
+
+}  // namespace
+
+Catalogue::Catalogue(std::shared_ptr<const Connection> connection, std::function<void()> changed)
+    : connection_(std::move(connection)),
+      changed_listener_(std::move(changed)),
+      thread_([this] { Run(); }) {}
+
+Catalogue::~Catalogue() {
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void Catalogue::Refresh() {
+  const std::lock_guard lock(mutex_);
+  refresh_ = true;
+  if (!described_.first.empty()) wanted_ = std::exchange(described_, {});
+  changed_.notify_all();
+}
+
+void Catalogue::Describe(const std::string& storm_id, std::uint32_t time_index) {
+  const StormTime wanted{storm_id, time_index};
+  const std::lock_guard lock(mutex_);
+  if (storm_id.empty() || wanted == described_ || wanted_ == wanted) return;
+  wanted_ = wanted;
+  changed_.notify_all();
+}
+
+CatalogueState Catalogue::State() const {
+  const std::lock_guard lock(mutex_);
+  return state_;
+}
+
+std::optional<CatalogueState> Catalogue::StateAfter(std::uint64_t version) const {
+  const std::lock_guard lock(mutex_);
+  if (state_.version == version) return {};
+  return state_;
+}
+
+void Catalogue::Run() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [this] { return ends_ || refresh_ || wanted_; });
+    if (ends_) return;
+    const bool refresh = std::exchange(refresh_, false);
+    const std::optional<StormTime> wanted = std::exchange(wanted_, std::nullopt);
+    if (wanted) described_ = *wanted;
+    lock.unlock();
+    if (refresh) Learn();
+    if (wanted) LearnStorm(*wanted);
+    changed_listener_();
+    lock.lock();
+  }
+}
+
+void Catalogue::Learn() {
+  v1::ListStormsResponse storms;
+  const bool listed =
+      connection_->Call(&Stub::ListStorms, v1::ListStormsRequest(), &storms, kPatience).ok();
+  v1::GetServerInfoResponse server;
+  const bool told =
+      connection_->Call(&Stub::GetServerInfo, v1::GetServerInfoRequest(), &server, kPatience).ok();
+  const std::lock_guard lock(mutex_);
+  if (listed) state_.storms = std::move(storms);
+  if (told) state_.server = std::move(server);
+  ++state_.version;
+}
+
+// A storm that has gone keeps its last description, and is asked for again when the catalogue
+// changes.
+void Catalogue::LearnStorm(const StormTime& wanted) {
+  v1::DescribeStormRequest request;
+  request.set_storm_id(wanted.first);
+  request.set_time_index(wanted.second);
+  v1::DescribeStormResponse response;
+  const bool ok = connection_->Call(&Stub::DescribeStorm, request, &response, kPatience).ok();
+  const std::lock_guard lock(mutex_);
+  if (!ok) return;
+  state_.storm = std::move(*response.mutable_storm());
+  ++state_.version;
+}
+
+}  // namespace thunderhead::client

@@ -1,0 +1,62 @@
+// The server's storms and what it can draw, asked for on a thread of its own whenever they may have
+// changed.
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "thunderhead/v1/storm.pb.h"
+#include "thunderhead_client/connection.h"
+
+namespace thunderhead::client {
+
+struct CatalogueState {
+  std::uint64_t version = 0;  // counts the changes
+  v1::ListStormsResponse storms;
+  v1::StormDescription storm;  // the one described last, at one time
+  v1::GetServerInfoResponse server;
+};
+
+class Catalogue {
+ public:
+  // `changed` is called on the catalogue's thread.
+  Catalogue(std::shared_ptr<const Connection> connection, std::function<void()> changed);
+  ~Catalogue();
+  Catalogue(const Catalogue&) = delete;
+  Catalogue& operator=(const Catalogue&) = delete;
+
+  // Asks for the list and the server again. Returns at once, as the next does.
+  void Refresh();
+  // Asks for a storm at one time, unless that is the one described last.
+  void Describe(const std::string& storm_id, std::uint32_t time_index);
+
+  CatalogueState State() const;
+  std::optional<CatalogueState> StateAfter(std::uint64_t version) const;
+
+ private:
+  using StormTime = std::pair<std::string, std::uint32_t>;
+
+  void Run();
+  void Learn();
+  void LearnStorm(const StormTime& wanted);
+
+  const std::shared_ptr<const Connection> connection_;
+  const std::function<void()> changed_listener_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  CatalogueState state_;
+  bool refresh_ = true;
+  std::optional<StormTime> wanted_;
+  StormTime described_;
+  bool ends_ = false;
+  std::thread thread_;
+};
+
+}  // namespace thunderhead::client

@@ -1,0 +1,56 @@
+// A connection to one server: address, encryption and token. What a call needs besides its
+// messages.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "grpcpp/grpcpp.h"
+#include "thunderhead/v1/thunderhead.grpc.pb.h"
+
+namespace thunderhead::client {
+
+struct ServerAccess {
+  std::string address;      // HOST:PORT of the server's gRPC port
+  std::string tls_ca_file;  // PEM of who vouches for its certificate; empty: no encryption
+  std::string token_file;   // a bearer token, read again for each call; empty: none
+};
+
+class Connection {
+ public:
+  // Connects at the first call. An error names the file that cannot be read or the address that is
+  // none.
+  static absl::StatusOr<std::shared_ptr<Connection>> Open(ServerAccess access);
+
+  v1::ThunderheadService::Stub& stub() const { return *stub_; }
+  const std::string& address() const { return access_.address; }
+
+  // Adds the token. An error if its file cannot be read.
+  absl::Status Authorize(grpc::ClientContext& context) const;
+
+  // Calls one unary rpc: Call(&Stub::ListStorms, request, &response, patience).
+  template <typename Method, typename Request, typename Response>
+  grpc::Status Call(Method method, const Request& request, Response* response,
+                    std::chrono::milliseconds patience) const {
+    grpc::ClientContext context;
+    if (const absl::Status status = Authorize(context); !status.ok()) {
+      return {grpc::StatusCode::UNAUTHENTICATED, std::string(status.message())};
+    }
+    context.set_deadline(std::chrono::system_clock::now() + patience);
+    return (stub_.get()->*method)(&context, request, response);
+  }
+
+ private:
+  Connection(ServerAccess access, const std::shared_ptr<grpc::Channel>& channel);
+
+  const ServerAccess access_;
+  const std::unique_ptr<v1::ThunderheadService::Stub> stub_;
+};
+
+// The delay that the server asks for in the details of a refusal; 0 if it names none.
+std::chrono::milliseconds RetryAfter(const grpc::Status& status);
+
+}  // namespace thunderhead::client

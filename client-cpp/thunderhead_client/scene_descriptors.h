@@ -1,0 +1,11 @@
+// scene.proto as protoc describes it, comments included: a serialized
+// google.protobuf.FileDescriptorSet.
+#pragma once
+
+#include <string_view>
+
+namespace thunderhead::client {
+
+std::string_view SceneDescriptors();
+
+}  // namespace thunderhead::client

@@ -1,0 +1,129 @@
+#include "thunderhead_client/scene_sync.h"
+
+#include <utility>
+
+namespace thunderhead::client {
+namespace {
+
+// Over a far link a drag does not wait for each answer: 26 scenes a second leave where an answer
+// takes 150 ms.
+constexpr std::size_t kMostInFlight = 4;
+// Above that, edits become one: while nothing is answered they would pile up.
+constexpr std::size_t kMostEdits = 256;
+constexpr std::chrono::milliseconds kBusyRest{500};
+constexpr std::chrono::milliseconds kStaleRest{1000};
+
+}  // namespace
+
+void SceneSync::Edited(Edit edit) {
+  edit(scene_);
+  edits_.push_back({++last_edit_, std::move(edit)});
+  unsent_ = true;
+  if (edits_.size() > kMostEdits) Merge();
+}
+
+void SceneSync::Merge() {
+  edits_.clear();
+  edits_.push_back({last_edit_, [whole = scene_](v1::Scene& scene) { scene = whole; }});
+}
+
+void SceneSync::Told(const v1::Scene& scene, std::uint64_t revision) {
+  if (told_ && revision < told_->revision) return;
+  told_ = Version{scene, revision};
+  if (!revision_ || revision > *revision_) rests_until_.reset();
+  AdoptTold();
+}
+
+void SceneSync::AdoptTold() {
+  if (!told_ || !sent_.empty()) return;
+  if (revision_ && told_->revision < *revision_) return;
+  Rebase(*told_);
+}
+
+void SceneSync::Rebase(const Version& version) {
+  revision_ = version.revision;
+  scene_ = version.scene;
+  for (const Numbered& each : edits_) each.edit(scene_);
+}
+
+void SceneSync::Rejoined() {
+  revision_.reset();
+  told_.reset();
+  sent_.clear();
+  drains_ = false;
+  rests_until_.reset();
+  unsent_ = !edits_.empty();
+}
+
+bool SceneSync::Discard() {
+  if (edits_.empty()) return false;
+  edits_.clear();
+  sent_.clear();
+  drains_ = false;
+  unsent_ = false;
+  if (told_) Rebase(*told_);
+  return true;
+}
+
+std::optional<SceneSync::Outgoing> SceneSync::Next(TimePoint now) {
+  if (edits_.empty() || !revision_) return {};
+  if (rests_until_ && now < *rests_until_) return {};
+  if (!sent_.empty() && (drains_ || !unsent_ || sent_.size() >= kMostInFlight)) return {};
+  rests_until_.reset();
+  Outgoing outgoing{++last_ticket_, scene_, sent_.empty() ? *revision_ : awaited_};
+  awaited_ = outgoing.expected_revision + 1;
+  sent_[outgoing.ticket] = {last_edit_, outgoing.expected_revision, scene_};
+  unsent_ = false;
+  return outgoing;
+}
+
+std::optional<SceneSync::TimePoint> SceneSync::WakeAt() const {
+  return edits_.empty() ? std::nullopt : rests_until_;
+}
+
+void SceneSync::Taken(std::uint64_t ticket, std::uint64_t revision) {
+  const auto found = sent_.find(ticket);
+  if (found == sent_.end()) return;
+  const Sent sent = std::move(found->second);
+  sent_.erase(found);
+  if (revision != sent.expected_revision + 1) drains_ = true;
+  Drop(sent.last_edit);
+  if (!revision_ || revision > *revision_) revision_ = revision;
+  // What a later refusal goes back to: the server tells its scene only a few times a second.
+  if (!told_ || told_->revision < revision) told_ = Version{sent.scene, revision};
+  Answered();
+}
+
+void SceneSync::Refused(std::uint64_t ticket, Refusal refusal, TimePoint now) {
+  const auto found = sent_.find(ticket);
+  if (found == sent_.end()) return;
+  const std::uint64_t last_edit = found->second.last_edit;
+  sent_.erase(found);
+  const bool follows = drains_ && refusal == Refusal::kStale;  // one before it said why
+  drains_ = true;
+  if (!follows) {
+    if (refusal == Refusal::kRefused) {
+      Drop(last_edit);
+      if (told_) Rebase(*told_);
+    } else if (refusal == Refusal::kBusy) {
+      rests_until_ = now + kBusyRest;
+    } else if (!told_ || !revision_ || told_->revision <= *revision_) {
+      // The newer scene is told soon; else the one that was on its way cannot be drawn.
+      rests_until_ = now + kStaleRest;
+    }
+  }
+  Answered();
+}
+
+void SceneSync::Answered() {
+  if (!sent_.empty()) return;
+  drains_ = false;
+  unsent_ = !edits_.empty();
+  AdoptTold();
+}
+
+void SceneSync::Drop(std::uint64_t last_edit) {
+  while (!edits_.empty() && edits_.front().number <= last_edit) edits_.pop_front();
+}
+
+}  // namespace thunderhead::client

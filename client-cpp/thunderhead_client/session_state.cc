@@ -1,0 +1,48 @@
+#include "thunderhead_client/session_state.h"
+
+#include "absl/strings/str_cat.h"
+#include "thunderhead_client/pose.h"
+
+namespace thunderhead::client {
+
+bool SessionState::Steers() const {
+  return link == Link::kLive && viewer_id != 0 && presence.steering_viewer_id() == viewer_id;
+}
+
+bool SessionState::AsksControl() const {
+  const v1::Person* const me = PersonOf(viewer_id);
+  return me != nullptr && me->asks_control();
+}
+
+bool SessionState::MayLookAround() const {
+  return link == Link::kLive && (Presents() || !presence.rules().following_locked());
+}
+
+bool SessionState::MayMark() const {
+  return link == Link::kLive && (Presents() || presence.rules().viewers_may_mark());
+}
+
+const v1::Person* SessionState::Steerer() const { return PersonOf(presence.steering_viewer_id()); }
+
+const v1::Person* SessionState::PersonOf(std::uint64_t id) const {
+  for (const v1::Person& person : presence.people()) {
+    if (person.viewer_id() == id && id != 0) return &person;
+  }
+  return nullptr;
+}
+
+std::string SessionState::NameOf(const v1::Person& person) const {
+  if (!person.name().empty()) return person.name();
+  if (person.role() == v1::ROLE_PRESENTER) return "Presenter";
+  return absl::StrCat("Viewer ", person.viewer_id());
+}
+
+v1::Camera SessionState::ViewCamera() const {
+  const v1::Camera& wanted = looks_around ? own_camera : scene.camera();
+  const bool same_kind = wanted.kind_case() == shown_camera.kind_case() ||
+                         wanted.kind_case() == v1::Camera::KIND_NOT_SET;
+  if (PoseOf(wanted)) return wanted;
+  return same_kind ? shown_camera : v1::Camera();
+}
+
+}  // namespace thunderhead::client

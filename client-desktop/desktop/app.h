@@ -1,0 +1,91 @@
+// The program between its flags and its end: the window, the session and the loop that joins them.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "desktop/flags.h"
+#include "desktop/keyboard.h"
+#include "desktop/kiosk.h"
+#include "desktop/picture_texture.h"
+#include "desktop/pointer_input.h"
+#include "desktop/stage.h"
+#include "desktop/status_log.h"
+#include "desktop/ui.h"
+#include "desktop/window.h"
+#include "thunderhead_client/picture_flow.h"
+#include "thunderhead_client/session.h"
+#include "thunderhead_client/statistics.h"
+
+namespace thunderhead::desktop {
+
+class App final : private client::SessionListener {
+ public:
+  App(Flags flags, std::vector<v1::Scene> views, std::unique_ptr<Window> window,
+      std::shared_ptr<const client::Connection> connection);
+  ~App() override;
+
+  // Until the window is closed or its time is over.
+  void Run();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  // SessionListener, on the session's thread.
+  void Changed() override { Wake(); }
+  void StreamBegan() override;
+  void Received(v1::Frame frame, std::size_t bytes) override;
+  void SceneTaken(std::uint64_t revision, Clock::time_point sent_at) override;
+
+  // From any thread: the loop goes round.
+  void Wake();
+  bool TakeEvents(int timeout_ms);
+  bool TakeEvent(const SDL_Event& event);
+  bool TakePicture();
+  void Advance(Clock::time_point now);
+  void Turn(Clock::time_point now);
+  void TellWindow(Clock::time_point now);
+  void Draw();
+  void DrawKiosk();
+  void FocusPanel();
+  void Escape();
+  KeyActions MakeKeyActions();
+  client::SessionOptions MakeSessionOptions() const;
+  int Timeout_ms(Clock::time_point now) const;
+  void PrintSummary() const;
+
+  const Flags flags_;
+  const std::unique_ptr<Window> window_;
+  v1::Window told_window_;  // that the server knows of
+  client::Statistics statistics_;
+  std::atomic<bool> woken_{false};
+  Uint32 wake_event_ = 0;
+  PictureTexture texture_;
+  std::mutex failure_mutex_;
+  std::string failure_;
+  client::PictureFlow flow_;
+  client::Catalogue catalogue_;
+  client::Session session_;
+  Ui ui_;
+  Stage stage_;
+  Kiosk kiosk_;
+  StatusLog status_;
+  PointerInput pointer_;
+  KeyActions keys_;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point last_live_ = Clock::now();
+  Clock::time_point redraw_until_{};
+  Clock::time_point resized_at_{};
+  Clock::time_point turned_at_{};
+};
+
+// Runs the program; the exit status.
+int RunDesktop(Flags flags);
+
+}  // namespace thunderhead::desktop

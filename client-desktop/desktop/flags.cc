@@ -1,0 +1,65 @@
+#include "desktop/flags.h"
+
+#include <google/protobuf/util/json_util.h>
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iterator>
+
+#include "absl/strings/str_cat.h"
+
+namespace thunderhead::desktop {
+
+ParsedFlags ParseFlags(int argc, char** argv) {
+  CLI::App app("Shows the storms of a Thunderhead server in a window.");
+  Flags flags;
+  app.add_option("server", flags.access.address, "HOST:PORT of the server's gRPC port")->required();
+  app.add_option("--key", flags.key, "key of the session to join; without it a session is opened");
+  app.add_option("--name", flags.name, "name that others in the session see");
+  app.add_option("--storm", flags.storm, "id of the storm to begin with (default: the first)");
+  app.add_option("--tls-ca", flags.access.tls_ca_file,
+                 "PEM file of who vouches for the server's certificate; without it nothing is "
+                 "encrypted");
+  app.add_option("--token-file", flags.access.token_file, "file with the access token");
+  app.add_flag("--full-screen", flags.full_screen, "begins in full screen");
+  app.add_flag("--kiosk", flags.kiosk, "for a wall: full screen, no controls, never gives up");
+  app.add_option("--views", flags.views, "scene files (JSON) that a kiosk shows in turn");
+  app.add_option("--view-seconds", flags.view_seconds, "how long it shows each")
+      ->check(CLI::Range(1.0, 86400.0));
+  app.add_option("--width", flags.width, "of the window")->check(CLI::Range(320, 16384));
+  app.add_option("--height", flags.height, "of the window")->check(CLI::Range(240, 16384));
+  app.add_option("--scale", flags.scale, "of texts and controls (default: as the monitor asks)")
+      ->check(CLI::Range(0.5, 4.0));
+  app.add_flag("--save-bytes", flags.saves_bytes, "takes video however fast the link is");
+  app.add_option("--status", flags.status_file, "file that gets a line of JSON a second");
+  app.add_option("--seconds", flags.seconds, "ends after so long and prints what was shown")
+      ->check(CLI::Range(1.0, 1e7));
+  app.add_option("--turn", flags.turn_deg_per_s,
+                 "turns the camera, in degrees a second, to measure")
+      ->check(CLI::Range(-360.0, 360.0));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    constexpr int kUsage = 64;  // as the server's program says of wrong flags
+    return {{}, app.exit(error) == 0 ? 0 : kUsage};
+  }
+  return {std::move(flags), 0};
+}
+
+absl::StatusOr<v1::Scene> ReadScene(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    return absl::NotFoundError(
+        absl::StrCat("cannot read the view '", path, "'; check its path and permissions"));
+  }
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  v1::Scene scene;
+  const auto status = google::protobuf::util::JsonStringToMessage(text, &scene);
+  if (!status.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "'", path, "' is no scene: ", std::string(status.message()), "; docs/guide has examples"));
+  }
+  return scene;
+}
+
+}  // namespace thunderhead::desktop

@@ -1,0 +1,58 @@
+// The keys: those of the page (docs/guide/look-at-a-storm.md). Reads SDL's events and knows no
+// window.
+#pragma once
+
+#include <SDL.h>
+
+#include <array>
+#include <functional>
+#include <utility>
+
+#include "desktop/choices.h"
+#include "thunderhead_client/pose.h"
+
+namespace thunderhead::desktop {
+
+struct KeyActions {
+  std::function<void(const std::function<client::Pose(const client::Pose&)>&)> move;
+  std::function<void()> home;
+  std::function<void(Tool)> toggle_tool;
+  std::function<void(Panel)> toggle_panel;
+  std::function<void()> toggle_play;
+  std::function<void(int by)> step_time;
+  std::function<void()> undo;
+  std::function<void()> redo;
+  std::function<void()> full_screen;
+  std::function<void()> focus_panel;
+  std::function<void()> escape;  // closes what is open
+};
+
+// Whether controls of the interface have the keyboard.
+struct KeyFocus {
+  bool text = false;      // a text is being typed: it uses all keys
+  bool controls = false;  // the focus is on a control: it uses arrows, space and Enter
+};
+
+// True if the key did something.
+bool TakeKey(const SDL_KeyboardEvent& event, const KeyFocus& focus, const KeyActions& actions);
+
+inline constexpr std::array<std::pair<const char*, const char*>, 16> kKeyTexts{{
+    {"Drag, arrows", "turn"},
+    {"Right or shift drag, shift + arrows", "move"},
+    {"Wheel, pinch, + -", "nearer, farther"},
+    {"Home", "see the whole storm"},
+    {"Space", "play or pause"},
+    {", .", "one time back, forward"},
+    {"M T L K F D", "camera, time, light, look, fields, marks"},
+    {"1 2 3 4 5 7", "the same"},
+    {"X", "every setting"},
+    {"S", "storms"},
+    {"H", "people, keys and control"},
+    {"I", "figures of the pictures"},
+    {"Tab", "go into the open panel by keys"},
+    {"Ctrl + Z, Ctrl + Y", "undo, redo"},
+    {"W, F11", "full screen"},
+    {"?, Escape", "these keys; close what is open"},
+}};
+
+}  // namespace thunderhead::desktop

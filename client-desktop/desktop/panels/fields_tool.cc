@@ -1,0 +1,92 @@
+// A row for each field of the storm: on or off, its colour, its amount, and where its particles'
+// sizes come from.
+#include <imgui.h>
+
+#include <cmath>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "desktop/controls.h"
+#include "desktop/panels/panels.h"
+#include "desktop/style.h"
+#include "desktop/texts.h"
+
+namespace thunderhead::desktop {
+namespace {
+
+const v1::FieldParameters& ParametersIn(const v1::Scene& scene, const v1::FieldDescription& field) {
+  for (const v1::FieldParameters& each : scene.fields()) {
+    if (each.hydrometeor() == field.hydrometeor()) return each;
+  }
+  return field.defaults();
+}
+
+v1::FieldParameters& MutableIn(v1::Scene& scene, v1::Hydrometeor hydrometeor) {
+  for (v1::FieldParameters& each : *scene.mutable_fields()) {
+    if (each.hydrometeor() == hydrometeor) return each;
+  }
+  v1::FieldParameters& added = *scene.add_fields();
+  added.set_hydrometeor(hydrometeor);
+  return added;
+}
+
+// As the screen shows linear light.
+ImVec4 ScreenColor(const v1::Color& color) {
+  const auto encode = [](float linear) {
+    constexpr float kKnee = 0.0031308F;
+    return linear <= kKnee ? 12.92F * linear : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
+  };
+  return {encode(color.red()), encode(color.green()), encode(color.blue()), 1.0F};
+}
+
+void DrawField(Ui& ui, const v1::FieldDescription& field) {
+  const v1::Hydrometeor hydrometeor = field.hydrometeor();
+  const v1::FieldParameters now = ParametersIn(ui.state.scene, field);
+  const std::string name = NameOf(hydrometeor);
+  const std::string subject = absl::StrCat("fields.", name);
+  const v1::Color& color =
+      now.has_false_color() ? now.false_color() : field.defaults().false_color();
+  ImGui::ColorButton("##color", ScreenColor(color),
+                     ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop,
+                     {14.0F * ui.scale, ImGui::GetFrameHeight()});
+  ImGui::SameLine();
+  bool visible = !now.has_visible() || now.visible();
+  if (ImGui::Checkbox(name.c_str(), &visible)) {
+    ui.Edit(subject, [=](v1::Scene& scene) { MutableIn(scene, hydrometeor).set_visible(visible); });
+  }
+  const bool empty = field.maximum() <= 0.0F;
+  const std::string amount =
+      empty ? "none at this time"
+            : absl::StrCat("up to ", FormatNumber(field.maximum()), " ", field.units());
+  ImGui::PushFont(SmallFont());
+  ImGui::SameLine(ImGui::GetWindowWidth() - ImGui::CalcTextSize(amount.c_str()).x -
+                  ImGui::GetStyle().WindowPadding.x);
+  QuietLine(amount);
+  ImGui::PopFont();
+  if (empty || !visible) return;
+  double scale = now.has_scale() ? now.scale() : 1.0;
+  if (Slider("Amount, times the model's", client::LimitsOf<v1::FieldParameters>("scale"), scale)) {
+    ui.Edit(subject, [=](v1::Scene& scene) {
+      MutableIn(scene, hydrometeor).set_scale(static_cast<float>(scale));
+    });
+  }
+}
+
+}  // namespace
+
+void FieldsTool(Ui& ui) {
+  const auto& storm = ui.storms.storm;
+  ImGui::BeginDisabled(!ui.state.Steers());
+  if (storm.fields().empty()) Quiet("Waiting for the storm's description …");
+  for (const v1::FieldDescription& field : storm.fields()) {
+    ImGui::PushID(field.hydrometeor());
+    DrawField(ui, field);
+    ImGui::PopID();
+  }
+  ImGui::Spacing();
+  Setting(ui, "particle_sizes", "Sizes of the particles");
+  ImGui::EndDisabled();
+  Quiet("Radius, albedo and phase function of each field are among every setting (X).");
+}
+
+}  // namespace thunderhead::desktop

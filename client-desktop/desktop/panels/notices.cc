@@ -1,0 +1,84 @@
+// Below the bar at the right: how far the picture is off, and what went wrong or happened.
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "desktop/controls.h"
+#include "desktop/panels/panels.h"
+#include "desktop/style.h"
+
+namespace thunderhead::desktop {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// How long a notice stays.
+constexpr std::chrono::seconds kStays{8};
+
+constexpr ImGuiWindowFlags kFlags =
+    ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
+    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing;
+
+std::string AccuracyText(const v1::Frame& frame) {
+  if (frame.has_refinement()) {
+    const v1::Refinement& refinement = frame.refinement();
+    std::string text =
+        absl::StrCat("Reference · ", refinement.samples_per_pixel(), " paths a pixel");
+    if (refinement.has_relative_error()) {
+      absl::StrAppendFormat(&text, " · noise %.1f %%", 100.0F * refinement.relative_error());
+    }
+    return text;
+  }
+  if (!frame.has_accuracy()) return "";
+  return absl::StrFormat("This picture is about %.0f %% off",
+                         100.0F * frame.accuracy().estimated_error());
+}
+
+void Notice(const Layout& layout, const char* id, const std::string& text, const ImVec4& color,
+            float& y) {
+  if (text.empty()) return;
+  const float width =
+      std::min(440.0F / 12.0F * layout.margin, layout.window.x - 2.0F * layout.margin);
+  ImGui::SetNextWindowPos({layout.window.x - layout.margin, y}, ImGuiCond_Always, {1.0F, 0.0F});
+  if (ImGui::Begin(id, nullptr, kFlags)) {
+    ImGui::PushStyleColor(ImGuiCol_Text, color);
+    ImGui::PushTextWrapPos(width);
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+  }
+  y += ImGui::GetWindowHeight() + 0.5F * layout.margin;
+  ImGui::End();
+}
+
+}  // namespace
+
+void DrawAccuracy(Ui& ui, const Layout& layout) {
+  float y = layout.top();
+  if (ui.choices.panel != Panel::kNone) return;
+  Notice(layout, "accuracy", AccuracyText(ui.frame), ImGui::GetStyle().Colors[ImGuiCol_Text], y);
+}
+
+void DrawNotices(Ui& ui, const Layout& layout) {
+  static int seen_count = 0;
+  static Clock::time_point said_at{};
+  if (ui.state.notice_count != seen_count) {
+    seen_count = ui.state.notice_count;
+    said_at = Clock::now();
+  }
+  const bool open = ui.choices.panel != Panel::kNone;
+  float y =
+      open || AccuracyText(ui.frame).empty() ? layout.top() : layout.top() + 4.2F * layout.margin;
+  if (open) return;
+  if (ui.state.link != client::Link::kLive) Notice(layout, "link", ui.state.reason, kBad, y);
+  if (ui.state.problem) Notice(layout, "problem", ui.state.problem->message(), kBad, y);
+  Notice(layout, "failure", ui.failure, kBad, y);
+  if (ui.state.notice_count > 0 && Clock::now() - said_at < kStays) {
+    Notice(layout, "notice", ui.state.notice, kAccent, y);
+  }
+}
+
+}  // namespace thunderhead::desktop

@@ -1,0 +1,104 @@
+// Who is there, who steers, what viewers may, and the key for others.
+#include <imgui.h>
+
+#include <array>
+
+#include "absl/strings/str_cat.h"
+#include "desktop/controls.h"
+#include "desktop/panels/panels.h"
+#include "desktop/style.h"
+
+namespace thunderhead::desktop {
+namespace {
+
+void DrawPerson(Ui& ui, const v1::Person& person) {
+  const client::SessionState& state = ui.state;
+  const bool me = person.viewer_id() == state.viewer_id;
+  const bool steers = person.viewer_id() == state.presence.steering_viewer_id();
+  std::string text = state.NameOf(person);
+  if (me) absl::StrAppend(&text, " (you)");
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(text.c_str());
+  std::string notes;
+  const auto note = [&notes](bool holds, const char* words) {
+    if (holds) absl::StrAppend(&notes, notes.empty() ? "" : ", ", words);
+  };
+  note(steers, "steers");
+  note(person.role() == v1::ROLE_PRESENTER && !person.name().empty(), "presenter");
+  note(person.hidden(), "away");
+  note(!person.follows(), "looking around");
+  note(person.asks_control(), "asks to steer");
+  ImGui::SameLine();
+  QuietLine(notes);
+  const bool gives = (state.Steers() || state.Presents()) && !me && !steers;
+  if (!gives) return;
+  ImGui::SameLine(ImGui::GetWindowWidth() - 130.0F * ui.scale);
+  if (ImGui::Button("Give control")) ui.session.GiveControl(person.viewer_id());
+}
+
+struct Rule {
+  const char* label;
+  bool (v1::SessionRules::*get)() const;
+  void (v1::SessionRules::*set)(bool);
+};
+
+constexpr std::array<Rule, 5> kRules{{
+    {"Viewers who ask may steer while nobody does", &v1::SessionRules::viewers_may_steer,
+     &v1::SessionRules::set_viewers_may_steer},
+    {"Nobody may ask to steer", &v1::SessionRules::control_locked,
+     &v1::SessionRules::set_control_locked},
+    {"Viewers see what the presenter shows", &v1::SessionRules::following_locked,
+     &v1::SessionRules::set_following_locked},
+    {"Viewers may point and draw", &v1::SessionRules::viewers_may_mark,
+     &v1::SessionRules::set_viewers_may_mark},
+    {"Control is free when the presenter is away", &v1::SessionRules::free_when_away,
+     &v1::SessionRules::set_free_when_away},
+}};
+
+void DrawRules(Ui& ui) {
+  Label("Rules");
+  ImGui::BeginDisabled(!ui.state.Presents());
+  for (const Rule& rule : kRules) {
+    bool on = (ui.state.presence.rules().*rule.get)();
+    if (!ImGui::Checkbox(rule.label, &on)) continue;
+    v1::SessionRules rules;
+    (rules.*rule.set)(on);
+    ui.session.SetRules(rules);
+  }
+  ImGui::EndDisabled();
+}
+
+void DrawKey(const char* label, const std::string& key) {
+  if (key.empty()) return;
+  Label(label);
+  ImGui::PushID(label);
+  const std::string shown = key.substr(0, 24) + (key.size() > 24 ? "…" : "");
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(shown.c_str());
+  ImGui::SameLine(ImGui::GetWindowWidth() - ImGui::CalcTextSize("Copy").x -
+                  2.0F * ImGui::GetStyle().FramePadding.x - ImGui::GetStyle().WindowPadding.x);
+  if (ImGui::Button("Copy")) ImGui::SetClipboardText(key.c_str());
+  ImGui::PopID();
+}
+
+}  // namespace
+
+void PeoplePanel(Ui& ui) {
+  constexpr std::size_t kLongestName_bytes = 160;
+  if (TextField("Your name", ui.choices.name, kLongestName_bytes)) {
+    ui.session.SetName(ui.choices.name);
+  }
+  ImGui::Spacing();
+  for (const v1::Person& person : ui.state.presence.people()) {
+    ImGui::PushID(static_cast<int>(person.viewer_id()));
+    DrawPerson(ui, person);
+    ImGui::PopID();
+  }
+  ImGui::Spacing();
+  DrawRules(ui);
+  ImGui::Spacing();
+  DrawKey("Viewers' key: --key, or …/?session= in a browser", ui.state.viewer_key);
+  DrawKey("Presenter's key, for yourself alone", ui.state.presenter_key);
+}
+
+}  // namespace thunderhead::desktop

@@ -1,0 +1,52 @@
+// Every storm that the server found.
+#include <imgui.h>
+
+#include "absl/strings/str_cat.h"
+#include "desktop/controls.h"
+#include "desktop/panels/panels.h"
+
+namespace thunderhead::desktop {
+namespace {
+
+void DrawStorm(Ui& ui, const v1::StormSummary& storm) {
+  const bool shown = storm.id() == ui.state.scene.storm_id();
+  const float height = 2.0F * ImGui::GetTextLineHeight() + 10.0F * ui.scale;
+  const ImVec2 at = ImGui::GetCursorPos();
+  if (ImGui::Selectable("##storm", shown, 0, {0.0F, height})) {
+    ui.Edit("storm", [id = storm.id()](v1::Scene& scene) {
+      if (scene.storm_id() == id) return;
+      scene.set_storm_id(id);
+      // Those of the other storm's place; the server chooses.
+      scene.clear_time_index();
+      scene.clear_camera();
+    });
+  }
+  const ImVec2 below = ImGui::GetCursorPos();
+  ImGui::SetCursorPos({at.x + 8.0F * ui.scale, at.y + 3.0F * ui.scale});
+  ImGui::TextUnformatted(storm.title().c_str());
+  ImGui::SetCursorPos(
+      {at.x + 8.0F * ui.scale, at.y + 5.0F * ui.scale + ImGui::GetTextLineHeight()});
+  Quiet(absl::StrCat(storm.id(), " · ", storm.time_count(),
+                     storm.time_count() == 1 ? " time" : " times"));
+  ImGui::SetCursorPos(below);
+}
+
+}  // namespace
+
+void StormsPanel(Ui& ui) {
+  if (ui.storms.storms.storms().empty())
+    Quiet("The server has no storms, or has not told them yet.");
+  ImGui::BeginDisabled(!ui.state.Steers());
+  for (const v1::StormSummary& storm : ui.storms.storms.storms()) {
+    ImGui::PushID(storm.id().c_str());
+    DrawStorm(ui, storm);
+    ImGui::PopID();
+  }
+  ImGui::EndDisabled();
+  const auto& server = ui.storms.server;
+  if (!server.version().empty()) {
+    Quiet(absl::StrCat("Server ", server.version(), " on ", server.gl_renderer()));
+  }
+}
+
+}  // namespace thunderhead::desktop

@@ -1,0 +1,111 @@
+// Storm and time at the left, the connection at the right.
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "desktop/controls.h"
+#include "desktop/panels/panels.h"
+#include "desktop/style.h"
+#include "desktop/texts.h"
+
+namespace thunderhead::desktop {
+namespace {
+
+std::string LinkText(const Ui& ui) {
+  const auto left = ui.state.retry_at - std::chrono::steady_clock::now();
+  const auto seconds =
+      std::max<long long>(0, std::chrono::ceil<std::chrono::seconds>(left).count());
+  switch (ui.state.link) {
+    case client::Link::kConnecting:
+      return "connecting …";
+    case client::Link::kLive: {
+      const auto& latency = ui.figures.latency_ms;
+      return absl::StrCat("live", latency ? absl::StrFormat(" · %.0f ms", *latency) : "", " · ",
+                          FormatBitRate(ui.figures.bytes_per_s));
+    }
+    case client::Link::kLost:
+      return absl::StrCat("connection lost · again in ", seconds, " s");
+    case client::Link::kRefused:
+      return absl::StrCat("refused · again in ", seconds, " s");
+    case client::Link::kGone:
+      return "the session has ended";
+  }
+  return "";
+}
+
+void DrawStorm(Ui& ui) {
+  const auto& storm = ui.storms.storm;
+  const bool known = storm.id() == ui.state.scene.storm_id() && !storm.id().empty();
+  ImGui::PushFont(BoldFont());
+  const std::string title = known ? storm.title() : ui.state.scene.storm_id();
+  if (ImGui::Button(absl::StrCat(title.empty() ? "Storms" : title, "###storm").c_str())) {
+    ui.choices.Toggle(Panel::kStorms);
+  }
+  ImGui::PopFont();
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Storms (S)");
+  const int index = ui.time_index();
+  if (!known || index >= storm.times_size()) return;
+  ImGui::SameLine(0.0F, 16.0F * ui.scale);
+  ImGui::PushFont(BoldFont());
+  ImGui::TextUnformatted(FormatValidTime(storm.times(index)).c_str());
+  ImGui::PopFont();
+  ImGui::SameLine(0.0F, 16.0F * ui.scale);
+  QuietLine(FormatElapsed(storm.times(index).elapsed_s()));
+}
+
+ImVec4 LinkColor(client::Link link) {
+  if (link == client::Link::kLive) return kGood;
+  return link == client::Link::kConnecting ? kQuiet : kBad;
+}
+
+void DrawLink(Ui& ui) {
+  const std::string text = LinkText(ui);
+  ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(0.0F, 0.0F, 0.0F, 0.0F));
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float radius = 4.0F * ui.scale;
+  if (ImGui::Button(absl::StrCat("    ", text, "###link").c_str())) {
+    ui.choices.Toggle(Panel::kReadout);
+  }
+  ImGui::PopStyleColor();
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Figures of the pictures (I)");
+  const float middle = at.y + 0.5F * ImGui::GetFrameHeight();
+  ImGui::GetWindowDrawList()->AddCircleFilled({at.x + 14.0F * ui.scale, middle}, radius,
+                                              ImGui::GetColorU32(LinkColor(ui.state.link)));
+}
+
+float WidthOf(const std::string& text) {
+  return ImGui::CalcTextSize(text.c_str()).x + 2.0F * ImGui::GetStyle().FramePadding.x;
+}
+
+}  // namespace
+
+void DrawTopBar(Ui& ui, const Layout& layout) {
+  const ImVec2 place(layout.margin, layout.margin);
+  const ImVec2 size(layout.window.x - 2.0F * layout.margin, layout.bar_height);
+  if (BeginPanel("top bar", place, size, ImGuiWindowFlags_NoScrollbar)) {
+    ImGui::SetCursorPosY(0.5F * (layout.bar_height - ImGui::GetFrameHeight()));
+    DrawStorm(ui);
+    const std::string people =
+        ui.state.Alone() ? "People" : absl::StrCat("People ", ui.state.presence.people_size());
+    const float gap = ImGui::GetStyle().ItemSpacing.x;
+    const float width = WidthOf("    " + LinkText(ui)) + WidthOf(people) + WidthOf("Settings") +
+                        WidthOf("?") + 3.0F * gap;
+    ImGui::SameLine(size.x - width - ImGui::GetStyle().WindowPadding.x);
+    DrawLink(ui);
+    ImGui::SameLine();
+    if (ImGui::Button("Settings")) ui.choices.Toggle(Panel::kDrawer);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Every setting (X)");
+    ImGui::SameLine();
+    if (AccentButton(absl::StrCat(people, "###people").c_str())) {
+      ui.choices.Toggle(Panel::kPeople);
+    }
+    ImGui::SameLine();
+    if (ImGui::Button("?")) ui.choices.Toggle(Panel::kHelp);
+  }
+  ImGui::End();
+}
+
+}  // namespace thunderhead::desktop

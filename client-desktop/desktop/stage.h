@@ -1,0 +1,43 @@
+// The picture in the window, with the pointers and marks of all over it, and the tools that make
+// them.
+#pragma once
+
+#include <vector>
+
+#include "desktop/picture_texture.h"
+#include "desktop/pointer_input.h"
+#include "desktop/ui.h"
+
+namespace thunderhead::desktop {
+
+class Stage {
+ public:
+  explicit Stage(Ui& ui);
+
+  // Over everything that the panels leave free: as large as fits, in the middle.
+  void Draw(const PictureTexture& picture);
+  // Null for the camera.
+  const ToolSteps* HandTool() const;
+
+ private:
+  struct Box {
+    float left = 0.0F;
+    float top = 0.0F;
+    float width = 1.0F;
+    float height = 1.0F;
+  };
+
+  void DrawMarks();
+  void DrawPointers();
+  std::optional<v1::Ray> RayAt(ScreenPoint point) const;
+  std::optional<ScreenPoint> PlaceOf(const v1::Position& position) const;
+  void EndStroke(bool cancelled);
+
+  Ui& ui_;
+  Box box_;
+  std::vector<ScreenPoint> stroke_;
+  ToolSteps pen_;
+  ToolSteps pointer_;
+};
+
+}  // namespace thunderhead::desktop

@@ -1,0 +1,91 @@
+#include "desktop/status_log.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "absl/strings/str_format.h"
+#include "desktop/texts.h"
+
+namespace thunderhead::desktop {
+namespace {
+
+const char* NameOf(client::Link link) {
+  switch (link) {
+    case client::Link::kConnecting:
+      return "connecting";
+    case client::Link::kLive:
+      return "live";
+    case client::Link::kLost:
+      return "lost";
+    case client::Link::kRefused:
+      return "refused";
+    case client::Link::kGone:
+      return "gone";
+  }
+  return "";
+}
+
+struct View {
+  const char* kind = "none";
+  double azimuth_deg = 0.0;
+};
+
+View ViewOf(const Ui& ui) {
+  const auto pose = client::PoseOf(ui.state.shown_camera);
+  if (!pose) return {};
+  if (const auto* orbit = std::get_if<client::OrbitPose>(&*pose))
+    return {"orbit", orbit->azimuth_deg};
+  if (const auto* spotter = std::get_if<client::SpotterPose>(&*pose)) {
+    return {"spotter", spotter->azimuth_deg};
+  }
+  return {"top_down", 0.0};
+}
+
+}  // namespace
+
+std::int64_t ResidentBytes() {
+  std::ifstream file("/proc/self/statm");
+  std::int64_t size_pages = 0;
+  std::int64_t resident_pages = 0;
+  file >> size_pages >> resident_pages;
+  return resident_pages * sysconf(_SC_PAGESIZE);
+}
+
+StatusLog::StatusLog(const std::string& path) {
+  if (!path.empty()) file_.open(path, std::ios::trunc);
+}
+
+void StatusLog::Write(const Ui& ui, int view, std::chrono::steady_clock::time_point now) {
+  constexpr std::chrono::milliseconds kInterval{1000};
+  if (!file_.is_open() || now - last_ < kInterval) return;
+  last_ = now;
+  const View camera = ViewOf(ui);
+  const auto& people = ui.state.presence.people();
+  const auto asking = std::count_if(people.begin(), people.end(),
+                                    [](const v1::Person& each) { return each.asks_control(); });
+  // The viewers' key, for others to join by; never the presenter's.
+  file_
+      << absl::StrFormat(
+             R"({"t_s":%.1f,"link":"%s","joined":%d,"role":"%s","steers":%s,"looks_around":%s,"people":%d,"asking":%d,)"
+             R"("viewer_key":"%s","storm":"%s","time_index":%d,"revision":%d,"shown_revision":%d,)"
+             R"("camera":"%s","azimuth_deg":%.2f,"refined":%s,"marks":%d,"pointers":%d,"view":%d,)",
+             std::chrono::duration<double>(now - start_).count(), NameOf(ui.state.link),
+             ui.state.joined_count, ui.state.Presents() ? "presenter" : "viewer",
+             ui.state.Steers() ? "true" : "false", ui.state.looks_around ? "true" : "false",
+             ui.state.presence.people_size(), asking, ui.state.viewer_key,
+             ui.state.scene.storm_id(), ui.time_index(), ui.state.scene_revision,
+             ui.frame.scene_revision(), camera.kind, camera.azimuth_deg,
+             ui.frame.refined() ? "true" : "false", ui.state.marks.marks_size(),
+             ui.state.pointers.pointers_size(), view)
+      << absl::StrFormat(
+             R"("encoding":"%s","width_px":%d,"height_px":%d,"frames":%d,"frames_per_s":%.2f,)"
+             R"("latency_ms":%.1f,"bytes_per_s":%.0f,"decode_ms":%.2f,"dropped":%d,"resident_bytes":%d})",
+             ui.encoding, ui.frame.width_px(), ui.frame.height_px(), ui.figures.frames,
+             ui.figures.frames_per_s, ui.figures.latency_ms.value_or(0.0), ui.figures.bytes_per_s,
+             ui.figures.decode_ms, ui.dropped, ResidentBytes())
+      << std::endl;
+}
+
+}  // namespace thunderhead::desktop

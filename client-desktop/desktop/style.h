@@ -1,0 +1,26 @@
+// Colours, fonts and measures of the interface: dark, quiet glass over the picture.
+#pragma once
+
+#include <imgui.h>
+
+namespace thunderhead::desktop {
+
+inline const ImVec4 kAccent{1.0F, 0.82F, 0.42F, 1.0F};
+inline const ImVec4 kQuiet{0.67F, 0.72F, 0.79F, 1.0F};
+inline const ImVec4 kGood{0.43F, 0.91F, 0.72F, 1.0F};
+inline const ImVec4 kBad{1.0F, 0.55F, 0.48F, 1.0F};
+inline const ImVec4 kOnAccent{0.10F, 0.11F, 0.13F, 1.0F};
+
+// Sets style and fonts. `scale` is that of texts and controls, `pixels_per_unit` how many pixels of
+// the screen one unit of the window has.
+void ApplyStyle(float scale, float pixels_per_unit);
+
+ImFont* BoldFont();
+ImFont* SmallFont();
+
+// A panel over the picture: no title bar, does not move. Call ImGui::End() after it whatever it
+// returns.
+bool BeginPanel(const char* name, const ImVec2& place, const ImVec2& size,
+                ImGuiWindowFlags more = 0);
+
+}  // namespace thunderhead::desktop

@@ -1,0 +1,136 @@
+#include "desktop/texts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+
+namespace thunderhead::desktop {
+
+DisplayUnit DisplayUnitOf(const client::Limits& limits) {
+  if (limits.unit == "m" && limits.maximum <= 1.0) return {1e3, "mm"};
+  if (limits.unit == "m" && limits.maximum >= 1e5) return {1e-3, "km"};
+  if (limits.unit == "1") return {1.0, ""};
+  if (limits.unit == "deg") return {1.0, "°"};
+  if (limits.unit == "kg/m3") return {1.0, "kg/m³"};
+  return {1.0, limits.unit};
+}
+
+std::string FormatNumber(double value) {
+  if (!std::isfinite(value)) return "–";
+  const double magnitude = std::abs(value);
+  if (magnitude == 0.0) return "0";
+  if (magnitude >= 1e6 || magnitude < 1e-4) return absl::StrFormat("%.2e", value);
+  if (magnitude >= 100.0) return absl::StrFormat("%.0f", value);
+  const int decimals = std::max(0, 2 - static_cast<int>(std::floor(std::log10(magnitude))));
+  std::string text = absl::StrFormat("%.*f", decimals, value);
+  if (text.find('.') != std::string::npos) {
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+  }
+  return text;
+}
+
+std::string FormatQuantity(double value, const client::Limits& limits) {
+  const DisplayUnit unit = DisplayUnitOf(limits);
+  const bool close = unit.symbol.empty() || unit.symbol == "°";
+  return absl::StrCat(FormatNumber(value * unit.factor), close ? "" : " ", unit.symbol);
+}
+
+std::string FormatLength(double length_m) {
+  if (std::abs(length_m) < 1000.0) return FormatNumber(length_m) + " m";
+  return FormatNumber(length_m / 1000.0) + " km";
+}
+
+std::string FormatBytes(double bytes) {
+  constexpr std::array<const char*, 4> kSteps{"B", "kB", "MB", "GB"};
+  std::size_t step = 0;
+  while (bytes >= 999.5 && step + 1 < kSteps.size()) {
+    bytes /= 1000.0;
+    ++step;
+  }
+  return absl::StrCat(FormatNumber(bytes), " ", kSteps.at(step));
+}
+
+std::string FormatBitRate(double bytes_per_s) {
+  const double kbit = bytes_per_s * 8.0 / 1000.0;
+  if (kbit >= 999.5) return FormatNumber(kbit / 1000.0) + " Mbit/s";
+  return absl::StrFormat("%.0f kbit/s", kbit);
+}
+
+std::string FormatValidTime(const v1::StormTime& time) {
+  int year = 0;
+  int month = 0;
+  int day = 0;
+  int hour = 0;
+  int minute = 0;
+  int second = 0;
+  const int read = std::sscanf(time.valid_time().c_str(), "%d-%d-%d%*1[T_ ]%d:%d:%d", &year, &month,
+                               &day, &hour, &minute, &second);
+  if (read < 5) {
+    return time.valid_time().empty() ? FormatElapsed(time.elapsed_s()) : time.valid_time();
+  }
+  const std::string seconds = second > 0 ? absl::StrFormat(":%02d", second) : "";
+  if (year < 100) return absl::StrFormat("day %d, %02d:%02d%s", day, hour, minute, seconds);
+  return absl::StrFormat("%04d-%02d-%02d %02d:%02d%s UTC", year, month, day, hour, minute, seconds);
+}
+
+std::string FormatElapsed(double elapsed_s) {
+  const auto minutes = static_cast<int>(std::floor(elapsed_s / 60.0));
+  const auto seconds = static_cast<int>(std::lround(elapsed_s - minutes * 60.0));
+  const int hours = minutes / 60;
+  std::string text = "+";
+  const auto add = [&](int count, const char* unit) {
+    absl::StrAppend(&text, text.size() > 1 ? " " : "", count, " ", unit);
+  };
+  if (hours > 0) add(hours, "h");
+  if (minutes % 60 > 0 || (hours == 0 && seconds == 0)) add(minutes % 60, "min");
+  if (seconds > 0) add(seconds, "s");
+  return text;
+}
+
+std::string CompassPoint(double azimuth_deg) {
+  constexpr std::array<const char*, 16> kPoints{"N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE",
+                                                "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"};
+  const double sector = 360.0 / static_cast<double>(kPoints.size());
+  const auto at = static_cast<std::size_t>(std::lround(client::WrapDegrees(azimuth_deg) / sector));
+  return kPoints.at(at % kPoints.size());
+}
+
+std::string DescribePose(const client::Pose& pose) {
+  const auto whole = [](double degrees) {
+    return static_cast<int>(std::lround(client::WrapDegrees(degrees))) % 360;
+  };
+  if (const auto* orbit = std::get_if<client::OrbitPose>(&pose)) {
+    return absl::StrFormat("Seen from %s (%d°), %.0f° high, %s away",
+                           CompassPoint(orbit->azimuth_deg), whole(orbit->azimuth_deg),
+                           orbit->elevation_deg, FormatLength(orbit->distance_m));
+  }
+  if (const auto* spotter = std::get_if<client::SpotterPose>(&pose)) {
+    return absl::StrFormat("Looks to %s (%d°), %.0f° up, through a lens of %s mm",
+                           CompassPoint(spotter->azimuth_deg), whole(spotter->azimuth_deg),
+                           spotter->elevation_deg, FormatNumber(spotter->focal_length_mm));
+  }
+  return FormatLength(std::get<client::TopDownPose>(pose).width_m) +
+         " from left to right, north up";
+}
+
+std::string DescribeSun(const v1::Sun& sun) {
+  const double height_deg = sun.elevation_deg();
+  return absl::StrFormat("The sun is in %s, %.0f° %s", CompassPoint(sun.azimuth_deg()),
+                         std::abs(height_deg), height_deg < 0.0 ? "below the horizon" : "high");
+}
+
+std::string NameOf(v1::Hydrometeor hydrometeor) {
+  constexpr std::size_t kPrefix = sizeof("HYDROMETEOR_") - 1;
+  std::string name = absl::AsciiStrToLower(v1::Hydrometeor_Name(hydrometeor).substr(kPrefix));
+  if (!name.empty()) name[0] = absl::ascii_toupper(static_cast<unsigned char>(name[0]));
+  return name;
+}
+
+}  // namespace thunderhead::desktop

@@ -1,0 +1,34 @@
+// Numbers, times and views as people read them; the same words as the page's.
+#pragma once
+
+#include <string>
+
+#include "thunderhead/v1/scene.pb.h"
+#include "thunderhead/v1/storm.pb.h"
+#include "thunderhead_client/limits.h"
+#include "thunderhead_client/pose.h"
+
+namespace thunderhead::desktop {
+
+// The unit to show a number in: multiply a value in the schema's unit by `factor`.
+struct DisplayUnit {
+  double factor = 1.0;
+  std::string symbol;  // empty for a pure number
+};
+DisplayUnit DisplayUnitOf(const client::Limits& limits);
+
+// Three significant digits, without an exponent where the number is readable without.
+std::string FormatNumber(double value);
+std::string FormatQuantity(double value, const client::Limits& limits);
+std::string FormatLength(double length_m);      // "8.4 km"
+std::string FormatBytes(double bytes);          // "1.2 MB"
+std::string FormatBitRate(double bytes_per_s);  // "1.4 Mbit/s"
+// "2013-05-20 20:00 UTC"; of idealised runs, which begin in year 1, "day 1, 00:20".
+std::string FormatValidTime(const v1::StormTime& time);
+std::string FormatElapsed(double elapsed_s);   // "+1 h 20 min"
+std::string CompassPoint(double azimuth_deg);  // "NNE"
+std::string DescribePose(const client::Pose& pose);
+std::string DescribeSun(const v1::Sun& sun);
+std::string NameOf(v1::Hydrometeor hydrometeor);  // "Cloud"
+
+}  // namespace thunderhead::desktop

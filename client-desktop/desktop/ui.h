@@ -1,0 +1,67 @@
+// What the panels show and act upon: copies of what the session and the catalogue know, taken once
+// a frame, and what is chosen in this window.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "desktop/choices.h"
+#include "desktop/history.h"
+#include "thunderhead_client/catalogue.h"
+#include "thunderhead_client/parameters.h"
+#include "thunderhead_client/picture_flow.h"
+#include "thunderhead_client/playback.h"
+#include "thunderhead_client/pose.h"
+#include "thunderhead_client/session.h"
+#include "thunderhead_client/statistics.h"
+
+namespace thunderhead::desktop {
+
+struct Ui {
+  Ui(client::Session& the_session, client::Catalogue& the_catalogue)
+      : session(the_session), catalogue(the_catalogue) {}
+
+  client::Session& session;
+  client::Catalogue& catalogue;
+
+  client::SessionState state;
+  client::CatalogueState storms;
+  std::vector<client::Parameter> parameters;  // of the state's scene
+  client::Statistics::Figures figures;
+  std::uint64_t dropped = 0;
+  v1::Frame frame;       // shown, without its bytes
+  std::string encoding;  // of its picture
+  std::string failure;   // of the last picture that could not be decoded
+
+  Choices choices;
+  client::Playback playback;
+  History history;
+  std::function<void()> toggle_full_screen;
+  float scale = 1.0F;
+  float width = 0.0F;  // of the window, in its units
+  float height = 0.0F;
+
+  // Changes the scene, if this window steers. `subject` names what is changed, for undo.
+  void Edit(const std::string& subject, client::SceneSync::Edit edit);
+  // Moves the camera of the view shown.
+  void Move(const std::function<client::Pose(const client::Pose&)>& motion);
+  void ShowCamera(const v1::Camera& camera);
+  void ShowTime(int index);
+  void TogglePlay();
+  void StepTime(int by);
+  void Undo();
+  void Redo();
+
+  int time_count() const;
+  int time_index() const;
+  // True once the picture of the newest scene is on the screen.
+  bool IsShown() const;
+  // Takes what is new; true if anything is.
+  bool Refresh();
+  // Texts came or went, which the interface takes more than one drawing to make room for.
+  bool texts_changed = false;
+};
+
+}  // namespace thunderhead::desktop

@@ -1,0 +1,207 @@
+// Mouse, touch and keys as camera motions, from SDL's own events.
+#include <cmath>
+
+#include "desktop/history.h"
+#include "desktop/keyboard.h"
+#include "desktop/pointer_input.h"
+#include "desktop/texts.h"
+#include "gtest/gtest.h"
+
+namespace thunderhead::desktop {
+namespace {
+
+using client::OrbitPose;
+using client::Pose;
+
+class Pointer : public ::testing::Test {
+ protected:
+  Pointer() { input.SetSize(1280.0F, 720.0F); }
+
+  static SDL_Event Button(Uint32 type, Uint8 button, int x, int y) {
+    SDL_Event event{};
+    event.type = type;
+    event.button.button = button;
+    event.button.x = x;
+    event.button.y = y;
+    return event;
+  }
+  static SDL_Event Motion(int x, int y, int right, int down) {
+    SDL_Event event{};
+    event.type = SDL_MOUSEMOTION;
+    event.motion.x = x;
+    event.motion.y = y;
+    event.motion.xrel = right;
+    event.motion.yrel = down;
+    return event;
+  }
+  static SDL_Event Fingers(Uint16 count, float x, float y, float apart) {
+    SDL_Event event{};
+    event.type = SDL_MULTIGESTURE;
+    event.mgesture.numFingers = count;
+    event.mgesture.x = x;
+    event.mgesture.y = y;
+    event.mgesture.dDist = apart;
+    return event;
+  }
+  const OrbitPose& orbit() const { return std::get<OrbitPose>(pose); }
+
+  Pose pose = OrbitPose{{0.0, 0.0, 5000.0}, 180.0, 10.0, 50'000.0, 35.0};
+  PointerInput input{[this](const PointerInput::Motion& motion) { pose = motion(pose); }};
+};
+
+TEST_F(Pointer, TheLeftButtonTurnsAndTheRightOnePans) {
+  input.Take(Button(SDL_MOUSEBUTTONDOWN, SDL_BUTTON_LEFT, 600, 300), true);
+  input.Take(Motion(680, 300, 80, 0), true);
+  EXPECT_NEAR(orbit().azimuth_deg, 200.0, 1e-9);
+  input.Take(Button(SDL_MOUSEBUTTONUP, SDL_BUTTON_LEFT, 680, 300), true);
+  input.Take(Motion(700, 300, 20, 0), true);
+  EXPECT_NEAR(orbit().azimuth_deg, 200.0, 1e-9);
+  input.Take(Button(SDL_MOUSEBUTTONDOWN, SDL_BUTTON_RIGHT, 600, 300), true);
+  input.Take(Motion(700, 300, 100, 0), true);
+  EXPECT_NEAR(orbit().azimuth_deg, 200.0, 1e-9);
+  EXPECT_GT(std::hypot(orbit().target_m[0], orbit().target_m[1]), 1000.0);
+}
+
+TEST_F(Pointer, ADragThatBeganOverAPanelMovesNothing) {
+  input.Take(Button(SDL_MOUSEBUTTONDOWN, SDL_BUTTON_LEFT, 20, 300), false);
+  input.Take(Motion(680, 300, 660, 0), true);
+  EXPECT_NEAR(orbit().azimuth_deg, 180.0, 1e-9);
+}
+
+TEST_F(Pointer, OneThatBeganOverThePictureGoesOnOverAPanel) {
+  input.Take(Button(SDL_MOUSEBUTTONDOWN, SDL_BUTTON_LEFT, 600, 300), true);
+  input.Take(Motion(20, 300, 80, 0), false);
+  EXPECT_NEAR(orbit().azimuth_deg, 200.0, 1e-9);
+}
+
+TEST_F(Pointer, WheelAndTouchPadZoomByTheirSteps) {
+  SDL_Event event{};
+  event.type = SDL_MOUSEWHEEL;
+  event.wheel.y = 1;
+  event.wheel.preciseY = 1.0F;
+  input.Take(event, true);
+  const double one_notch_m = orbit().distance_m;
+  EXPECT_NEAR(one_notch_m, 50'000.0 * std::exp(-0.13), 1.0);
+  event.wheel.y = 0;
+  event.wheel.preciseY = 0.25F;
+  for (int i = 0; i < 4; ++i) input.Take(event, true);
+  EXPECT_NEAR(orbit().distance_m, one_notch_m * std::exp(-0.13), 1.0);
+}
+
+TEST_F(Pointer, TwoFingersPinchAndPanAndDoNotTurn) {
+  SDL_Event down{};
+  down.type = SDL_FINGERDOWN;
+  // SDL makes a mouse of the first finger.
+  input.Take(Button(SDL_MOUSEBUTTONDOWN, SDL_BUTTON_LEFT, 600, 300), true);
+  input.Take(down, true);
+  input.Take(down, true);
+  input.Take(Fingers(2, 0.5F, 0.5F, 0.1F), true);
+  EXPECT_LT(orbit().distance_m, 45'000.0);
+  input.Take(Motion(680, 300, 80, 0), true);
+  EXPECT_NEAR(orbit().azimuth_deg, 180.0, 1e-9);
+  input.Take(Fingers(2, 0.6F, 0.5F, 0.0F), true);
+  EXPECT_LT(orbit().target_m[0], -1000.0);
+}
+
+TEST_F(Pointer, AToolGetsTheLeftButton) {
+  int pressed = 0;
+  int dragged = 0;
+  int released = 0;
+  const ToolSteps tool{[&](ScreenPoint) { ++pressed; }, [&](ScreenPoint) { ++dragged; },
+                       [&](bool cancelled) { released += cancelled ? 0 : 1; },
+                       [](std::optional<ScreenPoint>) {}};
+  input.SetTool(&tool);
+  input.Take(Button(SDL_MOUSEBUTTONDOWN, SDL_BUTTON_LEFT, 600, 300), true);
+  input.Take(Motion(680, 300, 80, 0), true);
+  input.Take(Button(SDL_MOUSEBUTTONUP, SDL_BUTTON_LEFT, 680, 300), true);
+  EXPECT_EQ(pressed, 1);
+  EXPECT_EQ(dragged, 1);
+  EXPECT_EQ(released, 1);
+  EXPECT_NEAR(orbit().azimuth_deg, 180.0, 1e-9);
+}
+
+struct Keys {
+  Pose pose = OrbitPose{{0.0, 0.0, 5000.0}, 180.0, 10.0, 50'000.0, 35.0};
+  Choices choices;
+  int undone = 0;
+  int stepped = 0;
+  KeyActions actions;
+
+  Keys() {
+    actions.move = [this](const auto& motion) { pose = motion(pose); };
+    actions.toggle_tool = [this](Tool tool) { choices.Toggle(tool); };
+    actions.toggle_panel = [this](Panel panel) { choices.Toggle(panel); };
+    actions.undo = [this] { ++undone; };
+    actions.step_time = [this](int by) { stepped += by; };
+  }
+  bool Press(SDL_Keycode key, Uint16 modifiers = 0, const KeyFocus& focus = {}) {
+    SDL_KeyboardEvent event{};
+    event.keysym.sym = key;
+    event.keysym.mod = modifiers;
+    return TakeKey(event, focus, actions);
+  }
+};
+
+TEST(Keyboard, HasThePagesKeys) {
+  Keys keys;
+  keys.Press(SDLK_RIGHT);
+  EXPECT_NEAR(std::get<OrbitPose>(keys.pose).azimuth_deg, 183.0, 1e-9);
+  keys.Press(SDLK_k);
+  EXPECT_EQ(keys.choices.tool, Tool::kLook);
+  keys.Press(SDLK_4);
+  EXPECT_EQ(keys.choices.tool, Tool::kNone);
+  keys.Press(SDLK_x);
+  EXPECT_EQ(keys.choices.panel, Panel::kDrawer);
+  keys.Press(SDLK_SLASH, KMOD_LSHIFT);
+  EXPECT_EQ(keys.choices.panel, Panel::kHelp);
+  keys.Press(SDLK_PERIOD);
+  EXPECT_EQ(keys.stepped, 1);
+  keys.Press(SDLK_z, KMOD_LCTRL);
+  EXPECT_EQ(keys.undone, 1);
+}
+
+TEST(Keyboard, ATextUsesAllKeysAndAControlItsOwn) {
+  Keys keys;
+  EXPECT_FALSE(keys.Press(SDLK_k, 0, {true, true}));
+  EXPECT_EQ(keys.choices.tool, Tool::kNone);
+  EXPECT_FALSE(keys.Press(SDLK_RIGHT, 0, {false, true}));
+  EXPECT_TRUE(keys.Press(SDLK_k, 0, {false, true}));
+}
+
+TEST(History, OneDragIsOneStep) {
+  History history;
+  const History::TimePoint start{std::chrono::seconds(100)};
+  v1::Scene first;
+  first.set_time_index(1);
+  v1::Scene second;
+  second.set_time_index(2);
+  history.Record(first, "camera", start);
+  history.Record(second, "camera", start + std::chrono::milliseconds(100));
+  v1::Scene now;
+  now.set_time_index(3);
+  const auto undone = history.Undo(now);
+  ASSERT_TRUE(undone.has_value());
+  EXPECT_EQ(undone->time_index(), 1U);
+  EXPECT_FALSE(history.Undo(*undone).has_value());
+  EXPECT_EQ(history.Redo(*undone)->time_index(), 3U);
+}
+
+TEST(Texts, AreThePages) {
+  EXPECT_EQ(FormatNumber(0.02), "0.02");
+  EXPECT_EQ(FormatNumber(8.449), "8.45");
+  EXPECT_EQ(FormatNumber(50000.0), "50000");
+  EXPECT_EQ(FormatLength(50'000.0), "50 km");
+  EXPECT_EQ(FormatBitRate(175'000.0), "1.4 Mbit/s");
+  EXPECT_EQ(FormatElapsed(4800.0), "+1 h 20 min");
+  v1::StormTime time;
+  time.set_valid_time("2013-05-20T20:00:00Z");
+  EXPECT_EQ(FormatValidTime(time), "2013-05-20 20:00 UTC");
+  time.set_valid_time("0001-01-01T00:20:00Z");
+  EXPECT_EQ(FormatValidTime(time), "day 1, 00:20");
+  EXPECT_EQ(CompassPoint(22.0), "NNE");
+  EXPECT_EQ(DescribePose(OrbitPose{{}, 200.0, 4.0, 61'000.0, 35.0}),
+            "Seen from SSW (200°), 4° high, 61 km away");
+}
+
+}  // namespace
+}  // namespace thunderhead::desktop

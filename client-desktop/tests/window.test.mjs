@@ -1,0 +1,222 @@
+// The native client in a window of Xvfb, with real input events, before the real server; a browser as the other side of a session.
+import assert from "node:assert/strict";
+import { mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { setTimeout as sleep } from "node:timers/promises";
+import { canvasData, dragBetween, launchBrowser, openTool, rested, until } from "../../tests/e2e/driver.mjs";
+import { freePort, startServer } from "../../tests/e2e/server_process.mjs";
+import { rests, startDesktop } from "./desktop_process.mjs";
+import { startDisplay } from "./xvfb.mjs";
+
+const SIZE = { width: 1280, height: 800 };
+const WINDOW = ["--width", String(SIZE.width), "--height", String(SIZE.height), "--scale", "1"];
+const MIDDLE = { x: 700, y: 330 };
+
+let display;
+let server;
+let serverFlags;
+let state;
+let desktop;
+
+const azimuthOf = async (page) => Number((await canvasData(page)).azimuth);
+const apart = (a, b) => Math.abs(((a - b + 540) % 360) - 180);
+const brightness = ({ rgb }) => rgb.reduce((sum, value) => sum + value, 0) / rgb.length;
+// The share of pixels that differ clearly.
+function difference(a, b) {
+  let count = 0;
+  for (let i = 0; i < a.rgb.length; i += 3) if (Math.abs(a.rgb[i] - b.rgb[i]) > 12) count += 1;
+  return (3 * count) / a.rgb.length;
+}
+
+before(async () => {
+  display = await startDisplay(SIZE.width, SIZE.height);
+  state = mkdtempSync(join(tmpdir(), "thunderhead-state-"));
+  serverFlags = { httpPort: await freePort(), grpcPort: await freePort(), state };
+  server = await startServer(serverFlags);
+  desktop = startDesktop(display, serverFlags.grpcPort, [...WINDOW, "--name", "Wall"]);
+  await desktop.until("the first picture", rests);
+});
+
+after(async () => {
+  await desktop?.stop();
+  await server?.stop();
+  await display?.stop();
+  rmSync(state, { recursive: true, force: true });
+});
+
+test("it opens a session of its own, steers it and fills the window with a storm", async () => {
+  const status = desktop.status();
+  assert.equal(status.role, "presenter");
+  assert.equal(status.steers, true);
+  assert.equal(status.width_px, SIZE.width);
+  assert.equal(status.height_px, SIZE.height);
+  assert.ok(brightness(display.pixels()) > 25, "the window is black");
+  display.screenshot("plain");
+});
+
+test("a drag turns the camera, the wheel comes nearer, keys do the same", async () => {
+  const before = desktop.status().azimuth_deg;
+  const pictureBefore = display.pixels();
+  await display.drag(MIDDLE, { x: MIDDLE.x + 200, y: MIDDLE.y });
+  // 200 of 800 pixels are a quarter of half a turn.
+  const dragged = await desktop.until("a turned picture", (now) => rests(now) && apart(now.azimuth_deg, before + 45) < 1);
+  assert.ok(difference(pictureBefore, display.pixels()) > 0.05, "the picture is the same");
+  display.key("Right");
+  await desktop.until("turned by a key", (now) => rests(now) && apart(now.azimuth_deg, dragged.azimuth_deg + 3) < 0.5);
+  const revision = desktop.status().revision;
+  display.xdotool("click", 4);
+  await desktop.until("a nearer picture", (now) => rests(now) && now.revision > revision);
+  display.key("ctrl+z");
+  display.key("ctrl+z");
+  await desktop.until("undone", (now) => rests(now) && apart(now.azimuth_deg, dragged.azimuth_deg) < 0.5);
+});
+
+test("times are stepped and played by keys", async () => {
+  const { time_index: last } = desktop.status();
+  display.key("comma");
+  await desktop.until("the time before", (now) => rests(now) && now.time_index === last - 1);
+  display.key("space");
+  await desktop.until("another time", (now) => now.time_index !== last - 1);
+  display.key("space");
+});
+
+const PANELS = { camera: "m", time: "t", light: "l", look: "k", fields: "f", marks: "d" };
+const RIGHT = { storms: "s", people: "h", figures: "i", settings: "x", keys: "question" };
+
+// Where each side's panel has its title: over the sky, which hardly changes meanwhile.
+const TITLE = { left: { x: 110, y: 82, width: 200, height: 24 }, right: { x: 876, y: 82, width: 150, height: 24 } };
+
+function region({ width, rgb }, { x, y, width: w, height: h }) {
+  const rows = [];
+  for (let row = y; row < y + h; row += 1) rows.push(rgb.subarray(3 * (row * width + x), 3 * (row * width + x + w)));
+  return { rgb: Buffer.concat(rows) };
+}
+
+// The middle of what has the accent's colour: a button that is to be pressed.
+function accentIn(pixels, { x, y, width, height }) {
+  const found = [];
+  for (let row = y; row < y + height; row += 1) {
+    for (let column = x; column < x + width; column += 1) {
+      const at = 3 * (row * pixels.width + column);
+      const [r, g, b] = pixels.rgb.subarray(at, at + 3);
+      if (r > 245 && Math.abs(g - 209) < 12 && Math.abs(b - 107) < 16) found.push([column, row]);
+    }
+  }
+  assert.ok(found.length > 100, "no button to press");
+  const mean = (part) => Math.round(found.reduce((sum, each) => sum + each[part], 0) / found.length);
+  return { x: mean(0), y: mean(1) };
+}
+
+async function eventually(what, holds) {
+  const deadline = Date.now() + 15_000;
+  while (!holds()) {
+    assert.ok(Date.now() < deadline, what);
+    await sleep(100);
+  }
+}
+
+test("every tool and panel opens by its key and closes by Escape", async () => {
+  for (const [side, panels] of Object.entries({ left: PANELS, right: RIGHT })) {
+    for (const [name, key] of Object.entries(panels)) {
+      const before = region(display.pixels(), TITLE[side]);
+      const change = () => difference(before, region(display.pixels(), TITLE[side]));
+      display.key(key);
+      await eventually(`${name} does not open`, () => change() > 0.08);
+      await sleep(300);
+      display.screenshot(name);
+      display.key("Escape");
+      await eventually(`${name} does not close`, () => change() < 0.04);
+    }
+  }
+});
+
+test("a browser joins as a viewer and follows", async () => {
+  const browser = await launchBrowser();
+  try {
+    const page = await browser.newPage({ viewport: { width: 900, height: 560 } });
+    await page.goto(`${server.url.replace(/\/$/, "")}/?session=${desktop.status().viewer_key}`);
+    await rested(page);
+    await desktop.until("two people", (now) => now.people === 2);
+    await display.drag(MIDDLE, { x: MIDDLE.x - 100, y: MIDDLE.y });
+    const { azimuth_deg } = await desktop.until("a turned picture", rests);
+    await until("the browser follows", async () => apart(await azimuthOf(page), azimuth_deg) < 0.5);
+
+    // A line drawn in the window is seen by the browser, and the other way round.
+    display.key("d");
+    await sleep(300);
+    // The second of three segments below the title.
+    await display.click(265, 128);
+    await display.drag({ x: 640, y: 380 }, { x: 820, y: 420 });
+    await desktop.until("a mark", (now) => now.marks === 1);
+    display.screenshot("mark");
+    display.key("Escape");
+    display.key("Escape");
+
+    // It asks to steer, gets control in the window, and the window follows.
+    await page.getByTestId("ask-control").click();
+    await desktop.until("a request", (now) => now.asking === 1);
+    await sleep(1000);
+    display.screenshot("asked");
+    const give = accentIn(display.pixels(), { x: 300, y: 660, width: 680, height: 36 });
+    await display.click(give.x, give.y);
+    await desktop.until("gave control", (now) => !now.steers);
+    const turnedBefore = desktop.status().azimuth_deg;
+    await openTool(page, undefined).catch(() => {});
+    await dragBetween(page, { x: 620, y: 300 }, { x: 720, y: 300 });
+    await desktop.until("the window follows the browser", (now) => apart(now.azimuth_deg, turnedBefore) > 5);
+  } finally {
+    await browser.close();
+  }
+  await desktop.until("alone again", (now) => now.people === 1);
+});
+
+test("the server is killed and restarted: the same session comes back", async () => {
+  const { viewer_key, joined } = desktop.status();
+  await server.stop("SIGKILL");
+  await desktop.until("a lost connection", (now) => now.link === "lost");
+  await sleep(1000);
+  display.screenshot("lost");
+  server = await startServer(serverFlags);
+  const back = await desktop.until("back", (now) => rests(now) && now.joined > joined);
+  assert.equal(back.viewer_key, viewer_key);
+});
+
+test("a browser presents, the window views, looks around and comes back", async () => {
+  const browser = await launchBrowser();
+  let viewer;
+  try {
+    const page = await browser.newPage({ viewport: { width: 900, height: 560 } });
+    await page.goto(server.url);
+    await rested(page);
+    await until("a session in the address", async () => page.url().includes("session="));
+    const key = new URL(page.url()).searchParams.get("session");
+    await desktop.stop();
+    viewer = startDesktop(display, serverFlags.grpcPort, [...WINDOW, "--key", key]);
+    desktop = viewer;
+    await viewer.until("the presenter's picture", rests);
+    assert.equal(viewer.status().role, "viewer");
+    assert.equal(viewer.status().steers, false);
+    display.screenshot("viewer");
+    await dragBetween(page, { x: 620, y: 300 }, { x: 720, y: 300 });
+    const azimuth = await until("a turned page", async () => rested(page)).then(() => azimuthOf(page));
+    await viewer.until("it follows", (now) => apart(now.azimuth_deg, azimuth) < 0.5);
+    await display.drag(MIDDLE, { x: MIDDLE.x + 150, y: MIDDLE.y });
+    await viewer.until("it looks around", (now) => now.looks_around && apart(now.azimuth_deg, azimuth) > 10);
+    assert.ok(apart(await azimuthOf(page), azimuth) < 0.5, "the presenter's view moved");
+    await sleep(500);
+    display.screenshot("looking_around");
+  } finally {
+    await browser.close();
+  }
+});
+
+test("full screen comes and goes", async () => {
+  display.key("w");
+  await sleep(800);
+  display.screenshot("full_screen");
+  display.key("w");
+  await sleep(500);
+  assert.equal(desktop.child.exitCode, null);
+});

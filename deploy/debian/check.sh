@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# Installs the packages of folder $1 in a clean Debian root, as root, and starts each: the server draws a picture for the Python
+# client, and the desktop shows one on a display without a screen.
+set -euo pipefail
+export DEBIAN_FRONTEND=noninteractive
+packages=$(realpath "$1")
+root=$(mktemp -d "${TMPDIR:-/var/tmp}/thunderhead-root.XXXXXX")
+trap 'rm -rf "$root"' EXIT
+
+# The bare system is kept beside the packages for the next time.
+base=$packages/../packages-root.tar
+[ -f "$base" ] || mmdebstrap --mode=root --variant=apt --include=ca-certificates bookworm "$base"
+tar -C "$root" -xf "$base"
+cp /etc/resolv.conf "$root/etc/" 2>/dev/null || true
+mount -t proc proc "$root/proc"
+trap 'umount "$root/proc"; rm -rf "$root"' EXIT
+chroot "$root" apt-get update -qq
+chroot "$root" apt-get install -y -qq --no-install-recommends xvfb xauth >/dev/null
+cp "$packages"/*.deb "$root/root/"
+chroot "$root" sh -c 'apt-get install -y -qq --no-install-recommends /root/*.deb >/dev/null'
+chroot "$root" sh -euc '
+  id thunderhead >/dev/null
+  thunderhead --version
+  test -f /usr/lib/systemd/system/thunderhead.service
+  thunderhead serve --data /usr/share/thunderhead/samples --http 127.0.0.1:58080 --grpc 127.0.0.1:58051 --state none >/tmp/serve.log 2>&1 &
+  server=$!
+  trap "kill $server" EXIT
+  for _ in $(seq 60); do grep -q http:// /tmp/serve.log && break; sleep 1; done
+  python3 -c "
+import thunderhead
+with thunderhead.Client(\"127.0.0.1:58051\") as client:
+    picture = client.render(size=(160, 90))
+    assert picture.size == (160, 90), picture.size
+    assert picture.getextrema()[0][1] > 40, picture.getextrema()
+    print(\"Python client: a picture of\", client.storms()[0].title)
+"
+  xvfb-run -a -s "-screen 0 640x400x24" thunderhead-desktop 127.0.0.1:58051 --width 640 --height 400 --seconds 20 | tee /tmp/desktop.log
+  grep -Eq "^[1-9][0-9]* pictures" /tmp/desktop.log
+'
+echo "the packages install and start"
