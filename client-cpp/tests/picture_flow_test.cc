@@ -19,12 +19,13 @@ constexpr int kHeight = 48;
 constexpr auto kPatience = std::chrono::seconds(15);
 
 // A grey picture of that level.
-std::string JpegOf(std::uint8_t level) {
-  const std::vector<std::uint8_t> rgb(3U * kWidth * kHeight, level);
+std::string JpegOf(std::uint8_t level, int width = kWidth, int height = kHeight) {
+  const std::vector<std::uint8_t> rgb(
+      3U * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), level);
   tjhandle encoder = tjInitCompress();
   unsigned char* bytes = nullptr;
   unsigned long size = 0;
-  tjCompress2(encoder, rgb.data(), kWidth, 0, kHeight, TJPF_RGB, &bytes, &size, TJSAMP_420, 95, 0);
+  tjCompress2(encoder, rgb.data(), width, 0, height, TJPF_RGB, &bytes, &size, TJSAMP_420, 95, 0);
   const std::string jpeg(reinterpret_cast<const char*>(bytes), size);
   tjFree(bytes);
   tjDestroy(encoder);
@@ -128,8 +129,16 @@ TEST_F(PictureFlowTest, TheNewestOfManyIsShownAndTheOthersAreCounted) {
 }
 
 TEST_F(PictureFlowTest, VideoIsDecodedInOrderHoweverFewArePainted) {
+  // All at once, and while the decoder is busy with something large, so that they wait for it.
   Encoder encoder;
-  for (int i = 0; i < 20; ++i) flow.Offer(encoder.Next(static_cast<std::uint8_t>(60 + 5 * i)), 1);
+  std::vector<v1::Frame> frames;
+  for (int i = 0; i < 20; ++i)
+    frames.push_back(encoder.Next(static_cast<std::uint8_t>(60 + 5 * i)));
+  v1::Frame large;
+  large.set_jpeg(JpegOf(90, 6000, 4000));
+  flow.Offer(large, 1);
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  for (v1::Frame& frame : frames) flow.Offer(std::move(frame), 1);
   const auto picture = Await(20);
   ASSERT_NE(picture, nullptr);
   EXPECT_EQ(picture->encoding, "VP9");

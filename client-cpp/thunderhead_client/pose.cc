@@ -50,7 +50,7 @@ std::optional<Pose> SpotterOf(const v1::SpotterCamera& camera) {
   pose.place_m = {camera.x_m(), camera.y_m()};
   pose.eye_height_m = camera.has_eye_height_m() ? camera.eye_height_m()
                                                 : DefaultOf<v1::SpotterCamera>("eye_height_m");
-  pose.azimuth_deg = camera.azimuth_deg();
+  pose.azimuth_deg = WrapDegrees(camera.azimuth_deg());
   pose.elevation_deg = camera.elevation_deg();
   pose.focal_length_mm = camera.has_focal_length_mm()
                              ? camera.focal_length_mm()

@@ -45,12 +45,14 @@ try {
     await kiosk.until("a new picture", (now) => now.frames > frames);
   }
   const lines = kiosk.lines();
-  const views = new Set(lines.map((line) => line.view));
+  const views = new Set(lines.map((line) => line.view).filter((view) => view >= 0));
   const resident = lines.map((line) => line.resident_bytes);
   const peak = (from, to) => Math.max(...resident.slice(Math.floor(from * resident.length), Math.ceil(to * resident.length)));
   const [middle, end] = [peak(0.4, 0.5), peak(0.9, 1)];
   const report = { seconds, restarts, frames: lines.at(-1).frames, views: views.size, resident_middle: middle, resident_end: end };
   console.log(JSON.stringify(report));
+  const minutes = Array.from({ length: 12 }, (_, i) => (peak(i / 12, (i + 1) / 12) / 1e6).toFixed(1));
+  console.log(`largest resident size in each twelfth, MB: ${minutes.join(" ")}`);
   if (end - middle > MOST_GROWTH) throw new Error(`memory grew by ${((end - middle) / 1e6).toFixed(1)} MB`);
   if (views.size < VIEWS.length) throw new Error("not every view was shown");
 } catch (error) {
