@@ -33,7 +33,7 @@ constexpr double kWithoutStorm = 0.05;
 constexpr double kDark = 0.25;
 constexpr double kLeftOut = -1.0;
 
-double MeanOf(const glm::vec3& color) {
+double MeanColor(const glm::vec3& color) {
   return (static_cast<double>(color.x) + color.y + color.z) / 3.0;
 }
 
@@ -73,7 +73,7 @@ void ErrorMeter::Show(picture::LinearPicture drawn) {
   }
   double sum = 0.0;
   for (std::size_t i = 0; i < drawn_.radiance.size(); ++i) {
-    if (ChanceOf(i) > 0.0) sum += MeanOf(drawn_.radiance[i]);
+    if (ChanceOf(i) > 0.0) sum += MeanColor(drawn_.radiance[i]);
   }
   mean_drawn_ = sum / static_cast<double>(pixels_);
   estimate_.emplace(mean_drawn_);
@@ -106,7 +106,7 @@ void ErrorMeter::Weigh() {
     worth[i] = kLeftOut;
     if (to_sun < reach) continue;
     const double opacity = drawn_.opacity.empty() ? 1.0 : static_cast<double>(drawn_.opacity[i]);
-    worth[i] = std::max(MeanOf(drawn_.radiance[i]), 0.0) *
+    worth[i] = std::max(MeanColor(drawn_.radiance[i]), 0.0) *
                (kWithoutStorm + (1.0 - kWithoutStorm) * std::clamp(opacity, 0.0, 1.0));
     sum += worth[i];
     ++pixels_;
@@ -170,7 +170,7 @@ void ErrorMeter::Step() {
       reference::TraceRays(*medium_, surroundings_, rays, {seed_ + batch, 1, threads_});
   for (std::size_t i = 0; i < pixels; ++i) {
     const double weight = 1.0 / (ChanceOf(indices[i]) * static_cast<double>(pixels_));
-    const double usual = std::max(MeanOf(drawn_.radiance[indices[i]]), kDark * mean_drawn_);
+    const double usual = std::max(MeanColor(drawn_.radiance[indices[i]]), kDark * mean_drawn_);
     TracedPixel pixel{indices[i], PixelTruth(usual, weight)};
     for (const glm::dvec3& one : std::span(radiance).subspan(i * per_pixel, per_pixel)) {
       pixel.truth.Add(one);

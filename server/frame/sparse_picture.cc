@@ -16,7 +16,7 @@
 namespace thunderhead::frame {
 namespace {
 
-constexpr std::size_t kChannels = 3;
+constexpr std::size_t kSparseChannels = 3;
 constexpr int kRowsInShare = 16;
 constexpr int kOne = 64;         // of weights of interpolation
 constexpr int kFineSteps = 257;  // of a FineImage in one of 8 bits
@@ -58,20 +58,20 @@ void ForRows(int rows, const Work& work) {
 std::vector<std::uint8_t> Rough(const FineImage& picture, int contrast) {
   const glm::ivec2 size(picture.width_px, picture.height_px);
   const int most = contrast * kFineSteps;
-  std::vector<std::uint8_t> rough(picture.rgb.size() / kChannels, 0);
+  std::vector<std::uint8_t> rough(picture.rgb.size() / kSparseChannels, 0);
   ForRows(size.y, [&](int y) {
     const auto row = [&](int of) {
-      return picture.rgb.data() + kChannels * Offset(size, 0, std::clamp(of, 0, size.y - 1));
+      return picture.rgb.data() + kSparseChannels * Offset(size, 0, std::clamp(of, 0, size.y - 1));
     };
     const std::uint16_t* const above = row(y - 1);
     const std::uint16_t* const here = row(y);
     const std::uint16_t* const below = row(y + 1);
     for (int x = 0; x < size.x; ++x) {
-      const std::size_t middle = kChannels * static_cast<std::size_t>(x);
-      const std::size_t left = x > 0 ? middle - kChannels : middle;
-      const std::size_t right = x + 1 < size.x ? middle + kChannels : middle;
+      const std::size_t middle = kSparseChannels * static_cast<std::size_t>(x);
+      const std::size_t left = x > 0 ? middle - kSparseChannels : middle;
+      const std::size_t right = x + 1 < size.x ? middle + kSparseChannels : middle;
       int off = 0;
-      for (std::size_t c = 0; c < kChannels; ++c) {
+      for (std::size_t c = 0; c < kSparseChannels; ++c) {
         const int twice = 2 * here[middle + c];
         off = std::max({off, std::abs(here[left + c] + here[right + c] - twice),
                         std::abs(above[middle + c] + below[middle + c] - twice),
@@ -88,8 +88,8 @@ std::vector<std::uint8_t> Rough(const FineImage& picture, int contrast) {
 FineImage Spread(const FineImage& from, const glm::ivec2& size_px, const Places& columns,
                  const Places& rows) {
   FineImage to{size_px.x, size_px.y, {}};
-  const std::size_t width = kChannels * static_cast<std::size_t>(size_px.x);
-  const std::size_t from_width = kChannels * static_cast<std::size_t>(from.width_px);
+  const std::size_t width = kSparseChannels * static_cast<std::size_t>(size_px.x);
+  const std::size_t from_width = kSparseChannels * static_cast<std::size_t>(from.width_px);
   to.rgb.resize(width * static_cast<std::size_t>(size_px.y));
   ForRows(size_px.y, [&](int y) {
     const auto row = static_cast<std::size_t>(y);
@@ -105,12 +105,14 @@ FineImage Spread(const FineImage& from, const glm::ivec2& size_px, const Places&
       mixed[i] = ((kOne - up) * low[i] + up * high[i]) / kOne;
     }
     std::uint16_t* out = to.rgb.data() + width * row;
-    for (int x = 0; x < size_px.x; ++x, out += kChannels) {
+    for (int x = 0; x < size_px.x; ++x, out += kSparseChannels) {
       const auto column = static_cast<std::size_t>(x);
-      const int* const a = mixed + kChannels * static_cast<std::size_t>(columns.before[column]);
-      const int* const b = mixed + kChannels * static_cast<std::size_t>(columns.after[column]);
+      const int* const a =
+          mixed + kSparseChannels * static_cast<std::size_t>(columns.before[column]);
+      const int* const b =
+          mixed + kSparseChannels * static_cast<std::size_t>(columns.after[column]);
       const int right = columns.weight[column];
-      for (std::size_t c = 0; c < kChannels; ++c) {
+      for (std::size_t c = 0; c < kSparseChannels; ++c) {
         out[c] = static_cast<std::uint16_t>(((kOne - right) * a[c] + right * b[c]) / kOne);
       }
     }
@@ -125,7 +127,7 @@ std::vector<std::uint8_t> Dithered(const FineImage& picture) {
   constexpr auto kByColumn = static_cast<std::uint32_t>(0.06711056 * kWhole);
   constexpr auto kByRow = static_cast<std::uint32_t>(0.00583715 * kWhole);
   constexpr auto kFactor = static_cast<std::uint64_t>(52.9829189 * 16777216.0);
-  const std::size_t width = kChannels * static_cast<std::size_t>(picture.width_px);
+  const std::size_t width = kSparseChannels * static_cast<std::size_t>(picture.width_px);
   std::vector<std::uint8_t> rgb(picture.rgb.size());
   ForRows(picture.height_px, [&](int y) {
     const std::size_t begin = width * static_cast<std::size_t>(y);
@@ -136,7 +138,7 @@ std::vector<std::uint8_t> Dithered(const FineImage& picture) {
       const auto outer = static_cast<std::uint32_t>((inner * kFactor) >> 24U);
       // From 0 to just below a step of 8 bits.
       const std::uint32_t noise = (outer >> 16U) * kFineSteps >> 16U;
-      for (std::size_t c = 0; c < kChannels; ++c) {
+      for (std::size_t c = 0; c < kSparseChannels; ++c) {
         *out++ = static_cast<std::uint8_t>((*in++ + noise) / kFineSteps);
       }
     }
@@ -194,11 +196,13 @@ absl::StatusOr<std::vector<std::uint8_t>> CompletePicture(FineImage coarsest,
       places.emplace_back(place.x, -place.y);
     }
     THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::uint16_t> colors, draw(places));
-    THUNDERHEAD_CHECK(colors.size() == kChannels * places.size(), std::to_string(colors.size()));
+    THUNDERHEAD_CHECK(colors.size() == kSparseChannels * places.size(),
+                      std::to_string(colors.size()));
     for (std::size_t i = 0; i < chosen.size(); ++i) {
       const std::size_t at = Offset(finer_px, chosen[i].x, chosen[i].y);
-      std::copy_n(colors.begin() + static_cast<std::ptrdiff_t>(kChannels * i), kChannels,
-                  picture.rgb.begin() + static_cast<std::ptrdiff_t>(kChannels * at));
+      std::copy_n(colors.begin() + static_cast<std::ptrdiff_t>(kSparseChannels * i),
+                  kSparseChannels,
+                  picture.rgb.begin() + static_cast<std::ptrdiff_t>(kSparseChannels * at));
     }
   }
   return Dithered(picture);

@@ -6,7 +6,7 @@ namespace {
 // A frame tells the error again when its interval is narrower by this factor or does not hold what
 // was told; while more is measured at most this often.
 constexpr double kToldNarrowing = 0.8;
-constexpr Clock::duration kMinBetween = std::chrono::seconds(1);
+constexpr Clock::duration kMinBetweenErrors = std::chrono::seconds(1);
 
 double WidthOf(const accuracy::Estimated& error) { return error.high - error.low; }
 
@@ -30,8 +30,8 @@ bool ErrorMeasuring::Measured(const accuracy::ErrorProgress& progress, Clock::ti
   // Until it is known to be above 0 the table says more.
   if (!ended_ && !(measured.low > 0.0)) return due_;
   error_ = progress.error;
-  due_ = !told_.has_value() ||
-         ((ended_ || now - told_at_ >= kMinBetween) && SaysMore(measured, told_->relative_rmse));
+  due_ = !told_.has_value() || ((ended_ || now - told_at_ >= kMinBetweenErrors) &&
+                                SaysMore(measured, told_->relative_rmse));
   return due_;
 }
 

@@ -18,14 +18,14 @@ FrameQuality Step(int step, bool sparse) {
   return step == kSteps ? FrameQuality{1.0, 1.0, sparse} : FrameQuality{share, share, sparse};
 }
 
+bool IsFull(const FrameQuality& quality) { return quality == FrameQuality{}; }
+
+}  // namespace
+
 scene::Stage FirstDirty(const std::optional<LastDrawn>& last_drawn, const scene::Scene& scene) {
   if (!last_drawn.has_value()) return scene::Stage::kStorm;
   return scene::FirstDirtyStage(last_drawn->scene, scene);
 }
-
-bool IsFull(const FrameQuality& quality) { return quality == FrameQuality{}; }
-
-}  // namespace
 
 FramePlanner::FramePlanner(const PlannerTargets& targets, const accuracy::MachineCosts& costs,
                            std::string view)

@@ -49,6 +49,9 @@ struct LastDrawn {
   FrameQuality quality;
 };
 
+// The first stage that drawing `scene` would rerun; all of them after no frame.
+scene::Stage FirstDirty(const std::optional<LastDrawn>& last_drawn, const scene::Scene& scene);
+
 struct FramePlan {
   FrameQuality quality;
   bool refined = false;

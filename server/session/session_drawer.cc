@@ -24,11 +24,6 @@ constexpr int kMaxLosses = 2;
 // Of a frame that is also drawn with half the slices, over a frame.
 constexpr double kCheckedShare = 1.5;
 
-scene::Stage FirstDirty(const std::optional<LastDrawn>& last_drawn, const scene::Scene& scene) {
-  if (!last_drawn.has_value()) return scene::Stage::kStorm;
-  return scene::FirstDirtyStage(last_drawn->scene, scene);
-}
-
 // The scene that the work draws; null if it draws none.
 const NewestScene* ShownBy(const SessionWork& work) {
   if (const auto* draw = std::get_if<DrawFrame>(&work)) return &draw->shown;
@@ -161,8 +156,9 @@ void SessionDrawer::Show(const Turn& turn, const InLane& drawn, SessionLane::Pic
   const NewestScene& shown = drawn.shown;
   const bool shows_light = std::holds_alternative<ShowLight>(drawn.work);
   source_.Learn(turn.session->id(), *shown.scene, QualityOf(drawn.work),
-                shows_light ? turn.kept.view.evidence()
-                            : accuracy::Evidence{.discretisation_error = picture.discretisation_error},
+                shows_light
+                    ? turn.kept.view.evidence()
+                    : accuracy::Evidence{.discretisation_error = picture.discretisation_error},
                 &picture.frame);
   if (shows_light) {
     return SendLight(turn, shown, std::move(picture.frame), std::move(picture.fine));

@@ -20,12 +20,12 @@ constexpr double kSun_lx = 133'334.0;
 double Radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
 // Of channels in units of the sun's. The channels are read as those of sRGB.
-double Luminance(const glm::vec3& color) {
+double SkyLuminance(const glm::vec3& color) {
   return 0.2126 * static_cast<double>(color.r) + 0.7152 * static_cast<double>(color.g) +
          0.0722 * static_cast<double>(color.b);
 }
 
-glm::vec3 Towards(double elevation_deg, double azimuth_deg) {
+glm::vec3 TowardsSky(double elevation_deg, double azimuth_deg) {
   const double elevation = Radians(elevation_deg);
   const double azimuth = Radians(azimuth_deg);
   return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
@@ -33,7 +33,7 @@ glm::vec3 Towards(double elevation_deg, double azimuth_deg) {
 }
 
 ClearSky SkyWith(float turbidity, double sun_elevation_deg) {
-  return ClearSky(Atmosphere(turbidity, 0.2F), Towards(sun_elevation_deg, 0.0), {});
+  return ClearSky(Atmosphere(turbidity, 0.2F), TowardsSky(sun_elevation_deg, 0.0), {});
 }
 
 // CIE S 011 (ISO 15469:2004), type 12, the standard clear sky of low turbidity: luminance over the
@@ -52,13 +52,13 @@ double CieClearSky(double from_zenith, double from_sun, double sun_from_zenith) 
 // degrees and more than 20 degrees from the sun.
 double DistanceToCie(float turbidity, double sun_elevation_deg) {
   const ClearSky sky = SkyWith(turbidity, sun_elevation_deg);
-  const glm::vec3 sun = Towards(sun_elevation_deg, 0.0);
-  const double zenith = Luminance(sky.At({0.0F, 0.0F, 1.0F}).radiance);
+  const glm::vec3 sun = TowardsSky(sun_elevation_deg, 0.0);
+  const double zenith = SkyLuminance(sky.At({0.0F, 0.0F, 1.0F}).radiance);
   double squares = 0.0;
   double weights = 0.0;
   for (int elevation = 10; elevation <= 85; elevation += 5) {
     for (int azimuth = 0; azimuth < 360; azimuth += 15) {
-      const glm::vec3 direction = Towards(elevation, azimuth);
+      const glm::vec3 direction = TowardsSky(elevation, azimuth);
       const double from_sun =
           std::acos(std::clamp(static_cast<double>(glm::dot(direction, sun)), -1.0, 1.0));
       if (from_sun < Radians(20.0)) continue;
@@ -66,7 +66,8 @@ double DistanceToCie(float turbidity, double sun_elevation_deg) {
           CieClearSky(Radians(90.0 - elevation), from_sun, Radians(90.0 - sun_elevation_deg));
       const double weight = std::cos(Radians(elevation));
       squares +=
-          weight * std::pow(std::log(Luminance(sky.At(direction).radiance) / zenith / expected), 2);
+          weight *
+          std::pow(std::log(SkyLuminance(sky.At(direction).radiance) / zenith / expected), 2);
       weights += weight;
     }
   }
@@ -105,8 +106,8 @@ double AlmanacIlluminance_lx(double elevation_deg) {
 
 double Illuminance_lx(const ClearSky& sky, double elevation_deg) {
   const double direct =
-      std::max(std::sin(Radians(elevation_deg)), 0.0) * Luminance(sky.SunTransmittance());
-  return kSun_lx * (direct + Luminance(sky.Light().irradiance));
+      std::max(std::sin(Radians(elevation_deg)), 0.0) * SkyLuminance(sky.SunTransmittance());
+  return kSun_lx * (direct + SkyLuminance(sky.Light().irradiance));
 }
 
 TEST(PublishedSky, LightOnTheGroundIsTheAlmanacs) {
@@ -168,7 +169,7 @@ Zenith OurZenith(float turbidity, double sun_elevation_deg) {
   const double x = glm::dot(glm::dvec3(0.4124564, 0.3575761, 0.1804375), rgb);
   const double y = glm::dot(glm::dvec3(0.2126729, 0.7151522, 0.0721750), rgb);
   const double z = glm::dot(glm::dvec3(0.0193339, 0.1191920, 0.9503041), rgb);
-  return {1e-3 * kSun_lx * Luminance(glm::vec3(radiance)), x / (x + y + z), y / (x + y + z)};
+  return {1e-3 * kSun_lx * SkyLuminance(glm::vec3(radiance)), x / (x + y + z), y / (x + y + z)};
 }
 
 TEST(PublishedSky, TheZenithIsDarkerAndLessBlueThanPreethams) {
