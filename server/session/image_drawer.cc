@@ -138,8 +138,8 @@ absl::Status ImageDrawer::Draw(Begun& image, FrameSource& source) {
 bool ImageDrawer::TriesAgain(Begun& image) {
   constexpr int kMaxAttempts = 3;
   const bool is_others = gl::IsDeviceLost(image.status) || absl::IsResourceExhausted(image.status);
-  const bool may_pass = image.status != image.job.too_long &&
-                        base::DetailsOf(image.status).retry_after.has_value();
+  const bool may_pass =
+      image.status != image.job.too_long && base::DetailsOf(image.status).retry_after.has_value();
   if (image.fields == nullptr || *image.job.cancelled || !is_others || !may_pass) return false;
   if (++image.attempts >= kMaxAttempts) return false;
   image.status = absl::OkStatus();
