@@ -130,16 +130,16 @@ TEST_F(LiveFolder, AFolderThatHangsHoldsUpNoOther) {
   PutOld(other + "/wrfout_d01_00:00:00", WrfBytes({0}));
   std::promise<void> storage;
   const auto hangs = std::make_shared<std::atomic<bool>>(false);
-  CatalogueScan scan({.paths = {data_, other},
-                      .formats = StormFormats::BuiltIn(),
-                      .settle = seconds(3),
-                      .retry = seconds(30),
-                      .look_at =
-                          [hangs, answers = storage.get_future().share(),
-                           gone = data_](const std::string& path) {
-                            if (*hangs && path == gone) answers.wait();
-                          },
-                      .patience = milliseconds(100)});
+  CatalogueScan scan(
+      {.paths = {data_, other},
+       .formats = StormFormats::BuiltIn(),
+       .settle = seconds(3),
+       .retry = seconds(30),
+       .look_at =
+           [hangs, answers = storage.get_future().share(), gone = data_](const std::string& path) {
+             if (*hangs && path == gone) answers.wait();
+           },
+       .patience = milliseconds(100)});
   EXPECT_THAT(TimesAt(scan, seconds(0)), ElementsAre(1, 1));
   *hangs = true;
   PutOld(other + "/wrfout_d01_01:00:00", WrfBytes({1}));
