@@ -44,8 +44,8 @@ struct TradeRow {
 // traced with each of `million_paths`.
 std::vector<Setting> DefaultSweep(const std::vector<double>& million_paths);
 
-// The light volume alone, as people see it: each field's own phase function, by consistent transport
-// and by diffusion, and with light traced with each of `million_paths`.
+// The light volume alone, as people see it: each field's own phase function, by consistent
+// transport and by diffusion, and with light traced with each of `million_paths`.
 std::vector<Setting> TransportSweep(const std::vector<double>& million_paths);
 
 // Marks the Pareto front of milliseconds and relative RMSE.
