@@ -5,13 +5,6 @@
 #include "accuracy/named_settings.h"
 
 namespace thunderhead::accuracy {
-namespace {
-
-std::size_t ModelOf(const scene::Technique& technique, const FrameQuality& quality) {
-  return 2 * technique.index() + (quality.sparse ? 1 : 0);
-}
-
-}  // namespace
 
 void MachineCosts::Observe(const std::string& view, const MeasuredFrame& frame) {
   const scene::Technique& technique = frame.scene.rendering.technique;
@@ -23,8 +16,7 @@ void MachineCosts::Observe(const std::string& view, const MeasuredFrame& frame) 
   const double mega_samples = MegaSamples(frame.scene, frame.quality);
   Models& own = views_.try_emplace(view, machine_).first->second;
   for (Models* const models : {&own, &machine_}) {
-    (*models)[ModelOf(technique, frame.quality)].Observe(mega_samples, frame.total_ms,
-                                                         frame.stages);
+    (*models)[technique.index()].Observe(mega_samples, frame.total_ms, frame.stages);
   }
   const std::optional<double> view_ms = ViewMs(frame.total_ms, frame.stages);
   if (frame.quality == FrameQuality{} && view_ms.has_value()) {
@@ -46,8 +38,8 @@ double MachineCosts::FrameMs(const std::string& view, const scene::Scene& scene,
                              const FrameQuality& quality, scene::Stage first_dirty) const {
   const auto own = views_.find(view);
   const Models& models = own != views_.end() ? own->second : machine_;
-  return models[ModelOf(scene.rendering.technique, quality)].EstimateMs(MegaSamples(scene, quality),
-                                                                        first_dirty);
+  return models[scene.rendering.technique.index()].EstimateMs(MegaSamples(scene, quality),
+                                                              first_dirty);
 }
 
 void MachineCosts::Forget(const std::string& view) { views_.erase(view); }

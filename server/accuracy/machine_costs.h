@@ -53,9 +53,8 @@ class MachineCosts {
   bool Knows(const Setting& setting) const { return correction_.Knows(setting); }
 
  private:
-  // One for each kind of technique, and one for its sparse pictures: their costs have nothing in
-  // common.
-  using Models = std::array<CostModel, 2 * std::variant_size_v<scene::Technique>>;
+  // One for each kind of technique: their costs have nothing in common.
+  using Models = std::array<CostModel, std::variant_size_v<scene::Technique>>;
   // Names of technique, mode and transport; whether traced paths correct the light.
   using Shaders = std::tuple<std::string, std::string_view, std::string_view, bool>;
 

@@ -69,12 +69,7 @@ class FramePlannerTest : public ::testing::Test {
 };
 
 TEST_F(FramePlannerTest, FastMachineDrawsFullQualityAtOnceAndOnce) {
-  const Machine machine{1.0, 0.05};  // 7 ms a full frame
-  Drag(machine, 10);
-  EXPECT_EQ(last_plan_.quality, (FrameQuality{1.0, 1.0, true}));
-  Draw(machine, *Ask(milliseconds(80)).plan);
-  // Now it is known what a ray for each pixel costs.
-  Drag(machine, 1);
+  Drag({1.0, 0.05}, 10);  // 7 ms a full frame
   EXPECT_EQ(last_plan_, (FramePlan{FrameQuality{}, true}));
   const Decision decision = Ask(milliseconds(10000));
   EXPECT_FALSE(decision.plan.has_value());
