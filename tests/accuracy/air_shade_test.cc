@@ -143,8 +143,10 @@ TEST_F(AirShadeTest, AirBesideASunlitTowerHasItsLight) {
     const glm::dvec3 lit = TracedRow(row, false);
     const glm::dvec3 drawn = DrawnRow(picture, row);
     for (int color = 0; color < 3; ++color) {
-      // Faces turned as a sphere's stand for the tower's two.
-      EXPECT_NEAR(drawn[color], traced[color], 0.04 * lit[color]) << row << ' ' << color;
+      EXPECT_GT(traced[color], 1.03 * lit[color]) << row << ' ' << color;
+      EXPECT_GT(drawn[color], 1.01 * lit[color]) << row << ' ' << color;
+      // Faces turned as a sphere's stand for the tower's two, which the sun strikes more squarely.
+      EXPECT_NEAR(drawn[color], traced[color], 0.06 * lit[color]) << row << ' ' << color;
     }
   }
 }
