@@ -100,6 +100,19 @@ TEST_F(SessionTest, OpensASessionAndTakesControlOfIt) {
   EXPECT_TRUE(AwaitCount(v1::InteractRequest::kTakeControl, 1));
 }
 
+// Frames come only to who is known to be visible.
+TEST_F(SessionTest, AWindowToldWhileJoiningReachesTheServer) {
+  SessionOptions options;
+  options.window.set_hidden(true);
+  session = std::make_unique<Session>(service.Connect(), options, listener);
+  ASSERT_TRUE(service.Await([](const Requests& requests) { return !requests.empty(); }));
+  v1::Window visible;
+  visible.set_width_px(640);
+  session->SetWindow(visible);
+  ASSERT_TRUE(AwaitCount(v1::InteractRequest::kWindow, 1));
+  EXPECT_EQ(Newest(v1::InteractRequest::kWindow).window().width_px(), 640U);
+}
+
 TEST_F(SessionTest, JoinsBySomebodyElsesKeyWithoutOpening) {
   SessionOptions options;
   options.key = FakeService::kViewerKey;

@@ -82,7 +82,8 @@ void Session::VideoLost(const v1::Frame& frame) {
 void Session::SetWindow(const v1::Window& window) {
   const std::lock_guard lock(mutex_);
   window_ = window;
-  if (state_.link == Link::kLive) outbox_.Resize(window);
+  // Also while a join is on its way, which may carry the former one.
+  outbox_.Resize(window);
   changed_.notify_all();
 }
 

@@ -141,7 +141,8 @@ void Window::ToggleFullScreen() {
 }
 
 bool Window::minimized() const {
-  return (SDL_GetWindowFlags(window_) & (SDL_WINDOW_MINIMIZED | SDL_WINDOW_HIDDEN)) != 0;
+  // Not SDL_WINDOW_HIDDEN, which it also is until the display has mapped it.
+  return (SDL_GetWindowFlags(window_) & SDL_WINDOW_MINIMIZED) != 0;
 }
 
 int Window::width_px() const {
