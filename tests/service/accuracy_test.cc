@@ -25,10 +25,10 @@ accuracy::OfferTables Tables() {
   accuracy::PricedSettings table;
   table.size_px = {64, 36};
   accuracy::Setting setting{test_support::PlainScene().rendering.technique};
-  for (const auto& [slices, milliseconds, error] :
+  for (const auto& [slices, cost_ms, error] :
        {std::tuple{25, 5.0, 0.4}, std::tuple{50, 10.0, 0.3}, std::tuple{100, 20.0, 0.2}}) {
     accuracy::SetCount(&setting.technique, slices);
-    table.rows.push_back({setting, milliseconds, error});
+    table.rows.push_back({setting, cost_ms, error});
   }
   accuracy::OfferTables tables;
   tables.fill(table);
@@ -49,9 +49,9 @@ class AccuracyTest : public ::testing::Test {
     scene.mutable_accuracy()->set_max_error(error);
     return scene;
   }
-  static v1::Scene WithMaxMilliseconds(float milliseconds) {
+  static v1::Scene WithMaxMilliseconds(float limit_ms) {
     v1::Scene scene = SmallScene();
-    scene.mutable_accuracy()->set_max_milliseconds(milliseconds);
+    scene.mutable_accuracy()->set_max_milliseconds(limit_ms);
     return scene;
   }
 

@@ -187,15 +187,17 @@ class RenderLoopTest : public ::testing::Test {
       const std::string& owner = "") {
     auto promise = std::make_shared<std::promise<absl::StatusOr<DisplayFrame>>>();
     auto future = promise->get_future();
-    loop_->RenderImage({scene,
-                        [this, scene]() -> absl::StatusOr<ImageInput> {
+    loop_->RenderImage({.scene = scene,
+                        .read = [this, scene]() -> absl::StatusOr<ImageInput> {
                           return ImageInput{*store_.Get("anvil", 0, {}), scene.camera};
                         },
-                        [](DisplayFrame&) { return absl::OkStatus(); }, std::move(cancelled),
-                        [promise](absl::StatusOr<DisplayFrame> picture) {
-                          promise->set_value(std::move(picture));
-                        },
-                        nullptr, false, false, 1e15, absl::OkStatus(), owner});
+                        .encode = [](DisplayFrame&) { return absl::OkStatus(); },
+                        .cancelled = std::move(cancelled),
+                        .done =
+                            [promise](absl::StatusOr<DisplayFrame> picture) {
+                              promise->set_value(std::move(picture));
+                            },
+                        .owner = owner});
     return future;
   }
 
