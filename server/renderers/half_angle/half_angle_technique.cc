@@ -1,7 +1,6 @@
 #include "renderers/half_angle/half_angle_technique.h"
 
-#include <utility>
-
+#include "base/status.h"
 #include "renderers/half_angle/half_angle_renderer.h"
 
 namespace thunderhead::renderers {
@@ -29,9 +28,12 @@ class HalfAngleTechnique final : public Technique {
 
   absl::Status DrawView(const scene::Scene& /*scene*/, const RenderSettings& settings,
                         StageTimes* times) override {
-    return Timed(workspace_.Pieces(), scene::FrameStage::kSlices, times, [&] {
-      return renderer_.Render(workspace_.medium, settings, std::exchange(light_changed_, false));
-    });
+    THUNDERHEAD_RETURN_IF_ERROR(
+        Timed(workspace_.Pieces(), scene::FrameStage::kSlices, times,
+              [&] { return renderer_.Render(workspace_.medium, settings, light_changed_); }));
+    // Not where that was cancelled: its light may be half done.
+    light_changed_ = false;
+    return absl::OkStatus();
   }
 
   Content Describe(const scene::Scene& /*scene*/,

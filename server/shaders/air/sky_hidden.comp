@@ -1,7 +1,8 @@
 // The storm in the sky of each point of a coarse lattice around it, as common/sky_hidden.glsl has it: means over directions
 // spread evenly over the upper half of its opacity, and of that times the transmittance for diffuse light of a level layer of
 // as much vertical depth: two-stream, (1 - a / r) exp(-sqrt(3 a r)) / (1 + 3/4 r) for the depths r of transport (similarity
-// scaled) and a of absorption. The rest of the opacity reflects; its mean is kept as a vector.
+// scaled) and a of absorption. What such a layer does not let through where nothing absorbs, it reflects, times the
+// reflectance (1 - s) / (1 + s) of an endless one, s = sqrt(a / r); the mean of that is kept as a vector.
 // Variants: GROUPS, DETAILS (none: the noise has a mean of 1).
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
@@ -57,7 +58,7 @@ void main() {
   Depths of_step = Depths(scaled(light_weights, step_m), scaled(transport_weights, step_m),
                           scaled(absorption_weights, step_m));
   vec2 sum = vec2(0.0);
-  vec3 sum_of_faces = vec3(0.0);
+  vec4 sum_of_faces = vec4(0.0);
   for (int i = 0; i < kDirections; ++i) {
     // Fibonacci spiral; its turn differs from point to point, so that all together miss nothing.
     float sine = 1.0 - (float(i) + 0.5) / float(kDirections);
@@ -67,9 +68,12 @@ void main() {
     vec3 depths = depths_along(origin_m, direction, of_step);
     float opacity = 1.0 - exp(-depths.x);
     float scattered = 1.0 - depths.z / max(depths.y, 1e-9);
-    float diffuse = scattered * exp(-sqrt(3.0 * depths.y * depths.z) * sine) / (1.0 + 0.75 * depths.y * sine);
+    float unabsorbed = 1.0 / (1.0 + 0.75 * depths.y * sine);
+    float diffuse = scattered * exp(-sqrt(3.0 * depths.y * depths.z) * sine) * unabsorbed;
+    float s = sqrt(clamp(1.0 - scattered, 0.0, 1.0));
+    float reflected = opacity * (1.0 - unabsorbed) * (1.0 - s) / (1.0 + s);
     sum += opacity * vec2(1.0, diffuse);
-    sum_of_faces += opacity * (1.0 - diffuse) * direction;
+    sum_of_faces += reflected * vec4(direction, 1.0);
   }
   // The outermost points are beyond where air is shaded.
   bvec3 first = equal(point, ivec3(0));
@@ -77,5 +81,5 @@ void main() {
   bool rim = first.x || first.y || last.x || last.y || last.z;
   float share = rim ? 0.0 : 1.0 / float(kDirections);
   imageStore(hidden, point, vec4(share * sum, 0.0, 0.0));
-  imageStore(faces, point, vec4(share * sum_of_faces, 0.0));
+  imageStore(faces, point, share * sum_of_faces);
 }

@@ -12,26 +12,27 @@ struct StormInSky {
   float hidden;   // the share of the sky that the storm hides
   float through;  // the mean radiance that it sends in place of it to a point in its shadow, times pi, for an irradiance of 1 on
                   // level ground under the clear sky
-  vec3 faces;     // of the share that reflects, hidden - through, times the direction where it is seen: its mean
+  float reflects; // the share that it reflects of light from outside
+  vec3 faces;     // of that share times the direction where it is seen: its mean
 };
 
 StormInSky storm_in_sky(vec3 point_m) {
   vec3 place = point_m * hidden_scale + hidden_offset;
   vec2 shares = texture(sky_hidden, place).rg;
-  return StormInSky(shares.x, shares.y, texture(storm_faces, place).rgb);
+  vec4 reflected = texture(storm_faces, place);
+  return StormInSky(shares.x, shares.y, reflected.a, reflected.rgb);
 }
 
 // The mean radiance over the sky, times pi, of what the storm's faces reflect to a point that is not in its shadow. Faces are
 // turned as those of a white sphere, which has (sin a + (pi - a) cos a) / pi of its full brightness, 2/3 of a flat face's, at
 // the angle a from the sun: here 3/8 + cos(a) / 2. `skylight` is the irradiance on level ground, half of which they get.
 vec3 light_of_faces(StormInSky storm, vec3 towards_sun, vec3 skylight) {
-  float reflects = storm.hidden - storm.through;
-  float sunlit = max(reflects / 4.0 - dot(storm.faces, towards_sun) / 3.0, 0.0);
-  return sunlit * faces_sunlight + 0.5 * reflects * skylight;
+  float sunlit = max(storm.reflects / 4.0 - dot(storm.faces, towards_sun) / 3.0, 0.0);
+  return sunlit * faces_sunlight + 0.5 * storm.reflects * skylight;
 }
 
 // The irradiance of that on level ground, which gets of each direction the sine of its elevation, 1/2 in the mean over the sky.
 vec3 light_of_faces_on_ground(StormInSky storm, vec3 towards_sun, vec3 skylight) {
-  float raised = 2.0 * storm.faces.z / max(storm.hidden - storm.through, 1e-6);
+  float raised = 2.0 * storm.faces.z / max(storm.reflects, 1e-6);
   return raised * light_of_faces(storm, towards_sun, skylight);
 }

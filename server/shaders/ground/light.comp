@@ -31,6 +31,6 @@ void main() {
   float reflected = light_of_faces_on_ground(storm, towards_sun, vec3(1.0 - sunlit_share)).r;
   // As post/composite.frag lights the ground, and what ground and storm send to and fro.
   float share = sunlit_share * (1.0 - blocked) + (1.0 - sunlit_share) * (1.0 - storm.hidden) + mix(reflected, storm.through, blocked);
-  share /= 1.0 - mean_albedo * clamp(storm.hidden - storm.through, 0.0, 1.0);
+  share /= 1.0 - mean_albedo * clamp(storm.reflects, 0.0, 1.0);
   imageStore(light, point, vec4(min(share, kMaxShare), place_m.z, 0.0, 0.0));
 }
