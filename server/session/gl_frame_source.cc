@@ -97,13 +97,18 @@ class GlFrameSource final : public FrameSource {
   absl::StatusOr<accuracy::ErrorProgress> MeasureError(
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
+    // Where memory is short it is for pictures; the table's figure stays.
+    if (!HasRoomToMeasure(scene, *fields)) return accuracy::ErrorProgress{.ended = true};
     const Correction correction = CorrectionOf(scene, fields);
     return base::OrOutOfMemory([&] {
       return meters_.Step(scene, fields, correction.paths, [&](const scene::Scene& measured) {
         return Watched([&]() -> absl::StatusOr<picture::LinearPicture> {
           THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame linear,
                                        renderers_.Draw(measured, fields, Applied(correction, {})));
-          return frame::PictureOf(*linear.radiance);
+          auto picture = frame::PictureOf(*linear.radiance);
+          // The light's correction draws the storm with a renderer of its own.
+          if (!HasRoomToMeasure(scene, *fields)) renderers_.DropUnusedFor(0.0);
+          return picture;
         });
       });
     });
@@ -174,6 +179,17 @@ class GlFrameSource final : public FrameSource {
 
   // The device's fault since the last look, if any.
   absl::Status Look() { return gl::StatusOf(watch_->Look()); }
+
+  // Room for the storm on the device, with its light and a picture of the scene's size.
+  bool HasRoomToMeasure(const scene::Scene& scene, const volume::HydrometeorFields& fields) const {
+    constexpr std::size_t kBytesPerPixel = 64;
+    constexpr std::size_t kBytesPerCell = 160;  // 154 of five fields
+    const auto pixels = static_cast<std::size_t>(scene.output.width_px) *
+                        static_cast<std::size_t>(scene.output.height_px);
+    const std::shared_ptr<base::MemoryBudget> budget = BudgetOf(shared_.options);
+    return budget->Used() + kBytesPerPixel * pixels + kBytesPerCell * fields.grid.CellCount() <=
+           budget->Bytes();
+  }
 
   bool DropOldest() {
     return renderers_.DropOldest() || meters_.DropOldest() || correctors_.DropOldest();

@@ -205,7 +205,11 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
   const auto wake = [this] { wake_.Notify(); };
   auto lanes = std::make_unique<Lanes>(make_source, wake);
   LightTracer light_tracer(lanes->tracing);
-  SessionLane session_lane(lanes->sessions);
+  SessionLane session_lane(lanes->sessions, [this](std::uint64_t bytes) {
+    return std::ranges::all_of(options_.device_memory, [bytes](const auto& budget) {
+      return budget->Used() <= budget->Bytes() && bytes <= budget->Bytes() - budget->Used();
+    });
+  });
   SessionDrawer drawer(options_.targets, {store_, *reader_, preparation_}, measured, *encoder_,
                        *tracer_, light_tracer, session_lane);
   ImageDrawer image_drawer(options_.image_limits, images_, measured, preparation_, light_tracer,
@@ -222,6 +226,11 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
       drawer.DeviceReplaced();
     }
     pressure.Answer([&] {
+      // The sessions' lane draws what the render loop can draw as well: its copy goes first.
+      if (session_lane.IsFree() && session_lane.Last().has_value()) {
+        session_lane.Forget();
+        return lanes->sessions.FreeUnused(0.0);
+      }
       drawer.YieldMemory();
       measured.FreeUnused(kUnused_s);
       for (Lane* lane : all_lanes) lane->FreeUnused(kUnused_s);

@@ -263,6 +263,8 @@ bool SessionDrawer::IsLong(const Turn& turn, const SessionWork& work) const {
   const NewestScene* shown = ShownBy(work);
   if (shown == nullptr || shown->revision == turn.kept.whole_revision) return false;
   if (turn.kept.view.state() == SessionView::State::kMoving) return false;
+  // Else others would leave their memory to a second copy.
+  if (!lane_.HasRoomFor(*shown->scene, turn.kept.device_bytes)) return false;
   const scene::Stage first_dirty =
       std::min(FirstDirty(source_.Last(), *shown->scene), scene::Stage::kView);
   double ms =
@@ -423,6 +425,7 @@ void SessionDrawer::Send(const Turn& turn, const NewestScene& shown, bool refine
                          std::optional<Refinement> refinement) {
   turn.kept.losses = 0;
   turn.kept.tells = picture.accuracy.has_value();
+  turn.kept.device_bytes = picture.modelled.device_bytes;
   turn.kept.fields.AddStages(&picture.stages);
   DrawnFrame frame{.session = turn.session,
                    .scene_revision = shown.revision,

@@ -58,10 +58,11 @@ class SessionDrawer {
     SessionWork work = WaitUntil{};  // found last
     // Of that work, if it is to show traced light.
     std::optional<scene::NotShown> not_shown = std::nullopt;
-    bool in_lane = false;     // where that work is to be done
-    bool gives_turn = false;  // to its frame that is in the lane; there is no other work
-    int losses = 0;           // of the device, since the last frame
-    bool tells = false;       // the last frame said its error
+    bool in_lane = false;            // where that work is to be done
+    bool gives_turn = false;         // to its frame that is in the lane; there is no other work
+    int losses = 0;                  // of the device, since the last frame
+    bool tells = false;              // the last frame said its error
+    std::uint64_t device_bytes = 0;  // of the last frame
     // The revision whose frame at rest had no room in the lane; it is drawn whole.
     std::uint64_t whole_revision = 0;
   };

@@ -4,10 +4,13 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "absl/status/statusor.h"
 #include "frame/fine_image.h"
@@ -19,8 +22,10 @@ namespace thunderhead::session {
 
 class SessionLane {
  public:
-  // The lane must outlive it, and its work must have ended before this does.
-  explicit SessionLane(Lane& lane) : lane_(lane) {}
+  // `has_room` says whether so many bytes more may be taken on the device without asking others for
+  // theirs. The lane must outlive it, and its work must have ended before this does.
+  SessionLane(Lane& lane, std::function<bool(std::uint64_t bytes)> has_room)
+      : lane_(lane), has_room_(std::move(has_room)) {}
 
   struct Request {
     std::string session_id;
@@ -36,6 +41,10 @@ class SessionLane {
     std::optional<frame::FineImage> fine;        // none if it cannot be had
   };
 
+  // True if the lane has what the scene shows, or room for what took `bytes` elsewhere.
+  bool HasRoomFor(const scene::Scene& scene, std::uint64_t bytes) const {
+    return FirstDirty(last_drawn_, scene) > scene::Stage::kExtinction || has_room_(bytes);
+  }
   // Nothing is drawn, and no outcome waits.
   bool IsFree() const { return outcome_ == nullptr; }
   // True while the session's frame is drawn, or its outcome waits.
@@ -67,6 +76,7 @@ class SessionLane {
   };
 
   Lane& lane_;
+  std::function<bool(std::uint64_t bytes)> has_room_;
   Request request_;
   std::shared_ptr<Outcome> outcome_;
   std::shared_ptr<std::atomic<bool>> cancelled_;
