@@ -259,7 +259,8 @@ class GlFrameSource final : public FrameSource {
   std::shared_ptr<gl::ProgramCache> programs_;
   renderers::RendererPool renderers_{shared_.registry, programs_};
   accuracy::CorrectorPool correctors_{programs_, shared_.lights};
-  accuracy::ErrorMeters meters_;
+  // Two at a time, as each holds its storm's fields and a copy of their extinction.
+  accuracy::ErrorMeters meters_{2, 3.0, 5.0};
   frame::ToneMapper tone_mapper_{programs_};
   frame::ToneMapper picture_tone_mapper_{programs_};  // of Tone, whose pictures have other sizes
   gl::Texture2D picture_;                             // that Tone was given
