@@ -44,6 +44,8 @@ std::string_view LabelOf(MemoryUse use) {
   return use == MemoryUse::kFields ? "fields" : DescriptionOf(use);
 }
 
+void GiveBackFreedMemory() { malloc_trim(0); }
+
 std::string InWords(std::size_t bytes) {
   constexpr double kMib = 1 << 20;
   const double mib = static_cast<double>(bytes) / kMib;
@@ -176,7 +178,7 @@ bool MemoryBudget::MakeRoomAndTake(MemoryUse use, std::size_t bytes) {
   }
   // Freed blocks of a megabyte or so stay with the arena of the thread that took them, where others
   // cannot use them: the process would grow beyond the budget.
-  if (dropped) malloc_trim(0);
+  if (dropped) GiveBackFreedMemory();
   return true;
 }
 

@@ -151,6 +151,9 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
   std::vector<Cache*> caches_;
 };
 
+// Returns what the process has freed to the system; takes some milliseconds.
+void GiveBackFreedMemory();
+
 // "1.5 GiB", "312 MiB".
 std::string InWords(std::size_t bytes);
 

@@ -180,7 +180,8 @@ class GlFrameSource final : public FrameSource {
   // The device's fault since the last look, if any.
   absl::Status Look() { return gl::StatusOf(watch_->Look()); }
 
-  // Room for the storm on the device, with its light and a picture of the scene's size.
+  // Half of the budget is left beside the storm on the device, with its light and a picture of the
+  // scene's size: the paths' copy of the medium, and of others', is not counted.
   bool HasRoomToMeasure(const scene::Scene& scene, const volume::HydrometeorFields& fields) const {
     constexpr std::size_t kBytesPerPixel = 64;
     constexpr std::size_t kBytesPerCell = 160;  // 154 of five fields
@@ -188,7 +189,7 @@ class GlFrameSource final : public FrameSource {
                         static_cast<std::size_t>(scene.output.height_px);
     const std::shared_ptr<base::MemoryBudget> budget = BudgetOf(shared_.options);
     return budget->Used() + kBytesPerPixel * pixels + kBytesPerCell * fields.grid.CellCount() <=
-           budget->Bytes();
+           budget->Bytes() / 2;
   }
 
   bool DropOldest() {

@@ -229,11 +229,13 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
       // The sessions' lane draws what the render loop can draw as well: its copy goes first.
       if (session_lane.IsFree() && session_lane.Last().has_value()) {
         session_lane.Forget();
-        return lanes->sessions.FreeUnused(0.0);
+        lanes->sessions.FreeUnused(0.0);
+        return base::GiveBackFreedMemory();
       }
       drawer.YieldMemory();
       measured.FreeUnused(kUnused_s);
       for (Lane* lane : all_lanes) lane->FreeUnused(kUnused_s);
+      base::GiveBackFreedMemory();
     });
     BeginTurn();
     const std::vector<std::shared_ptr<Session>> sessions = sessions_.AllDrawn();
