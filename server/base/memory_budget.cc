@@ -73,7 +73,7 @@ MemoryBudget::Member::~Member() {
 std::shared_ptr<MemoryBudget> MemoryBudget::Make(Options options) {
   // Large blocks come from the system and go back to it: kept by the threads' arenas, what one lane
   // has freed would be of no use to another.
-  mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  mallopt(M_MMAP_THRESHOLD, 1 << 18);
   return std::shared_ptr<MemoryBudget>(new MemoryBudget(std::move(options)));
 }
 
