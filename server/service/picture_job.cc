@@ -81,8 +81,8 @@ void PictureJob::Begin() {
        [this](const absl::StatusOr<session::DisplayFrame>& picture) { Drawn(picture); },
        [this](const session::ImageProgress& progress) { listener_.Progressed(progress); },
        awaited_ == Awaited::kByNobody, request_.format() == v1::IMAGE_FORMAT_EXR,
-        request_.error_seconds(), static_cast<double>(engine_.limits.max_render_time.count()),
-        RenderedTooLong(engine_.limits.max_render_time), owner_});
+       request_.error_seconds(), static_cast<double>(engine_.limits.max_render_time.count()),
+       RenderedTooLong(engine_.limits.max_render_time), owner_});
 }
 
 void PictureJob::Cancel() {

@@ -28,9 +28,9 @@ class HalfAngleTechnique final : public Technique {
 
   absl::Status DrawView(const scene::Scene& /*scene*/, const RenderSettings& settings,
                         StageTimes* times) override {
-    THUNDERHEAD_RETURN_IF_ERROR(
-        Timed(workspace_.Pieces(), scene::FrameStage::kSlices, times,
-              [&] { return renderer_.Render(workspace_.medium, settings, light_changed_); }));
+    THUNDERHEAD_RETURN_IF_ERROR(Timed(workspace_.Pieces(), scene::FrameStage::kSlices, times, [&] {
+      return renderer_.Render(workspace_.medium, settings, light_changed_);
+    }));
     // Not where that was cancelled: its light may be half done.
     light_changed_ = false;
     return absl::OkStatus();
