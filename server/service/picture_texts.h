@@ -24,8 +24,8 @@ inline constexpr char kMiddleText[] = "thunderhead.middle_deg";
 // The places of the picture's pixels in the world: a View as JSON.
 inline constexpr char kViewText[] = "thunderhead.view";
 
-// The estimated error; in an OpenEXR file a number. Where it was measured, also the ends of its 95 %
-// interval, in a PNG alone.
+// The estimated error; in an OpenEXR file a number. Where it was measured, also the ends of its 95
+// % interval, in a PNG alone.
 inline constexpr char kErrorText[] = "thunderhead.estimated_error";
 inline constexpr char kErrorLowText[] = "thunderhead.error_low";
 inline constexpr char kErrorHighText[] = "thunderhead.error_high";

@@ -69,7 +69,8 @@ TEST(Scene, EachTechniqueRerunsFromItsOwnStage) {
   EXPECT_EQ(first(Reference{}, Reference{.false_colors = true}), Stage::kExtinction);
   EXPECT_EQ(first(OtherTechnique{"a", {}}, OtherTechnique{"b", {}}), Stage::kExtinction);
   // Techniques of a medium share it where they show the same of its fields.
-  const HalfAngle detailed{.medium = {.transport = Transport::kConsistent, .look = {.detail = true}}};
+  const HalfAngle detailed{
+      .medium = {.transport = Transport::kConsistent, .look = {.detail = true}}};
   EXPECT_EQ(first(detailed, LightVolume{}), Stage::kLight);
   EXPECT_EQ(first(HalfAngle{}, LightVolume{}), Stage::kExtinction);  // which has detail
   EXPECT_EQ(first(HalfAngle{}, Metaballs{}), Stage::kExtinction);    // whose surfaces have it
