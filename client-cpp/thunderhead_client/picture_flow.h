@@ -45,7 +45,7 @@ class PictureFlow {
   void Stop();
   // From any thread.
   void Offer(v1::Frame frame, std::size_t bytes);
-  // What comes next belongs to another call.
+  // The next message belongs to another call.
   void StartStream();
   // The newest decoded picture, once.
   std::unique_ptr<Picture> Take();

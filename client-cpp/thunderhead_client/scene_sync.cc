@@ -89,7 +89,8 @@ void SceneSync::Taken(std::uint64_t ticket, std::uint64_t revision) {
   if (revision != sent.expected_revision + 1) drains_ = true;
   Drop(sent.last_edit);
   if (!revision_ || revision > *revision_) revision_ = revision;
-  // What a later refusal goes back to: the server tells its scene only a few times a second.
+  // The scene that a later refusal goes back to: the server tells its own only a few times a
+  // second.
   if (!told_ || told_->revision < revision) told_ = Version{sent.scene, revision};
   Answered();
 }

@@ -1,4 +1,4 @@
-// What a session sends, taken one message after another.
+// The messages of a session, taken one after another.
 #include <utility>
 
 #include "google/rpc/status.pb.h"

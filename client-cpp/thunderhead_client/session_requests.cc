@@ -1,4 +1,4 @@
-// What a person does in a session: each method puts a message in the outbox.
+// The acts of a person in a session: each method puts a message in the outbox.
 #include <utility>
 
 #include "thunderhead_client/session.h"

@@ -1,4 +1,4 @@
-// What a client knows of its session: a plain value, copied to whoever shows it.
+// A client's knowledge of its session: a plain value, copied to whoever shows it.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// What is open and chosen in the window: nothing of it is part of the scene.
+// The open panels and choices of the window: nothing of it is part of the scene.
 #pragma once
 
 #include <string>
