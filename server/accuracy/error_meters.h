@@ -26,6 +26,7 @@ struct ErrorProgress {
   // True if more paths are not worth it while the light stays as it is, or nothing can be measured.
   bool ended = false;
 
+  bool HasTraced(double wanted_s) const { return ended || traced_s >= wanted_s; }
   bool operator==(const ErrorProgress&) const = default;
 };
 

@@ -190,7 +190,8 @@ void ImageDrawer::Measure(Begun& image) {
                             .fields = image.fields,
                             .claims = true,
                             .light = false,
-                            .error = true});
+                            .error = true,
+                            .wanted_error_s = image.job.error_seconds});
 }
 
 void ImageDrawer::TakeStep(Begun& image, const TracedStep& step) {
@@ -199,7 +200,7 @@ void ImageDrawer::TakeStep(Begun& image, const TracedStep& step) {
     if (step.light->steps == 0 || step.light->HasTraced(image.wanted_paths)) Measure(image);
   } else if (step.error.has_value()) {
     image.error = step.error->error;
-    if (step.error->ended || step.error->traced_s >= image.job.error_seconds) {
+    if (step.error->HasTraced(image.job.error_seconds)) {
       image.phase = Phase::kToDraw;
     }
   }

@@ -46,11 +46,12 @@ void LightTracer::TakeOutcome(Clock::time_point now) {
   wanted.news = std::move(outcome->progress);
 }
 
-// A picture needs no more paths than it asked for; a session says when it has enough.
+// A picture needs no more paths and seconds than it asked for; a session says when it has enough.
 bool LightTracer::Ends(const Request& request, const TracedStep& step) {
   const bool traces = step.light.has_value() && step.light->steps > 0 &&
                       !(request.claims && step.light->HasTraced(request.wanted_paths));
-  const bool measures = request.error && !(step.error.has_value() && step.error->ended);
+  const bool measures =
+      request.error && !(step.error.has_value() && step.error->HasTraced(request.wanted_error_s));
   return !traces && !measures;
 }
 

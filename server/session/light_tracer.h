@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -42,6 +43,7 @@ class LightTracer {
     bool claims = false;  // while it traces, the light is not given up for another's
     bool light = true;    // it is traced
     bool error = false;   // it is measured
+    double wanted_error_s = std::numeric_limits<double>::infinity();  // of tracing for the error
   };
   // Traces until Stop, or until a step fails or finds nothing to trace and nothing to measure.
   void Want(const std::string& who, Request request);

@@ -222,6 +222,7 @@ test("how wrong is this picture: it says so over it", async () => {
 
 test("Ctrl+Z takes a change back, Ctrl+Y does it again", async () => {
   await openTool(page, "look");
+  await rested(page); // the panel takes a part of the view, which is metered anew
   const exposure = () => page.getByTestId("exposure-number").inputValue();
   const atFirst = await exposure();
   await changing(() => setNumber(page, "exposure", 1.5), page);
