@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
+#include "reference/scene_problem.h"
 
 namespace thunderhead::accuracy {
 namespace {
@@ -82,9 +83,14 @@ absl::StatusOr<LightProgress> CorrectorPool::Trace(
   Kept* kept = Serving(scene, fields);
   if (kept == nullptr) {
     THUNDERHEAD_RETURN_IF_ERROR(MakeRoom());
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        base::MemoryReservation reserved,
+        memory_->Reserve(base::MemoryUse::kTracing, reference::MediumBytes(*fields),
+                         "tracing a storm's light", base::MemoryBudget::Urgency::kAhead));
     THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<LightCorrector> corrector,
                                  LightCorrector::Create(scene, fields, programs_, 0));
     kept = &kept_.emplace_back();
+    kept->reserved = std::move(reserved);
     kept->corrector = std::move(corrector);
     kept->published = std::make_unique<TracedLights::Entry>(lights_, scene, fields);
   }

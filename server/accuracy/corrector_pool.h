@@ -12,6 +12,7 @@
 #include "accuracy/light_corrector.h"
 #include "accuracy/setting.h"
 #include "accuracy/traced_lights.h"
+#include "base/memory_budget.h"
 #include "base/stopwatch.h"
 #include "gl/program.h"
 #include "scene/scene.h"
@@ -22,13 +23,16 @@ namespace thunderhead::accuracy {
 class CorrectorPool {
  public:
   // Programs are linked in `programs`. At most `max_correctors`, as each takes up to a hundred
-  // megabytes. One that was traced within `busy_s`, or that is claimed, is not replaced; one that
-  // was not used for `unused_s` goes with the next call.
-  explicit CorrectorPool(std::shared_ptr<gl::ProgramCache> programs,
-                         std::shared_ptr<TracedLights> lights = std::make_shared<TracedLights>(),
-                         std::size_t max_correctors = 8, double busy_s = 3.0,
-                         double unused_s = 300.0)
-      : max_correctors_(max_correctors),
+  // megabytes, besides the storm's extinction, which is reserved in `memory`. One that was traced
+  // within `busy_s`, or that is claimed, is not replaced; one that was not used for `unused_s` goes
+  // with the next call.
+  explicit CorrectorPool(
+      std::shared_ptr<gl::ProgramCache> programs,
+      std::shared_ptr<TracedLights> lights = std::make_shared<TracedLights>(),
+      std::shared_ptr<base::MemoryBudget> memory = base::MemoryBudget::Unlimited(),
+      std::size_t max_correctors = 8, double busy_s = 3.0, double unused_s = 300.0)
+      : memory_(std::move(memory)),
+        max_correctors_(max_correctors),
         busy_s_(busy_s),
         unused_s_(unused_s),
         programs_(std::move(programs)),
@@ -39,8 +43,9 @@ class CorrectorPool {
                              const std::shared_ptr<const volume::HydrometeorFields>& fields);
 
   // Traces one step for the scene. RESOURCE_EXHAUSTED if there are `max_correctors` already and all
-  // are busy or claimed. `claim`, which may be null, is given a claim on the scene's light. The
-  // correction is published now and then, and once `wanted_paths` are traced.
+  // are busy or claimed, or there is no memory for another storm. `claim`, which may be null, is
+  // given a claim on the scene's light. The correction is published now and then, and once
+  // `wanted_paths` are traced.
   absl::StatusOr<LightProgress> Trace(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
       LightClaim* claim = nullptr, std::int64_t wanted_paths = kTracedPaths);
@@ -51,6 +56,7 @@ class CorrectorPool {
 
  private:
   struct Kept {
+    base::MemoryReservation reserved;
     std::unique_ptr<LightCorrector> corrector;
     std::unique_ptr<TracedLights::Entry> published;
     base::Stopwatch since_traced;
@@ -68,6 +74,7 @@ class CorrectorPool {
   static void Publish(Kept& kept, std::int64_t wanted_paths);
   void DropUnused();
 
+  std::shared_ptr<base::MemoryBudget> memory_;
   std::size_t max_correctors_;
   double busy_s_;
   double unused_s_;

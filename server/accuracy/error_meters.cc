@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
+#include "reference/scene_problem.h"
 #include "scene/technique.h"
 
 namespace thunderhead::accuracy {
@@ -77,11 +78,16 @@ absl::StatusOr<ErrorMeters::Kept*> ErrorMeters::For(const scene::Scene& measured
     return absl::ResourceExhaustedError(
         absl::StrCat("the server measures the error of ", kept_.size(), " other scenes already"));
   }
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      base::MemoryReservation reserved,
+      memory_->Reserve(base::MemoryUse::kTracing, reference::MediumBytes(*fields),
+                       "measuring a picture's error", base::MemoryBudget::Urgency::kAhead));
   THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<ErrorMeter> meter,
                                ErrorMeter::Create(measured, fields, 0));
   Kept& kept = kept_.emplace_back();
   kept.scene = key;
   kept.fields = fields;
+  kept.reserved = std::move(reserved);
   kept.meter = std::move(meter);
   return &kept;
 }

@@ -9,9 +9,11 @@
 #include <list>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "absl/status/statusor.h"
 #include "accuracy/error_meter.h"
+#include "base/memory_budget.h"
 #include "base/stopwatch.h"
 #include "picture/linear_picture.h"
 #include "scene/scene.h"
@@ -43,14 +45,16 @@ class ErrorMeters {
   using Fields = std::shared_ptr<const volume::HydrometeorFields>;
   using Draw = std::function<absl::StatusOr<picture::LinearPicture>(const scene::Scene& measured)>;
 
-  // At most `max_meters`, as each has a copy of its storm's extinction. One that was used within
-  // `busy_s` is not replaced; one that was not for `unused_s` goes with the next call.
-  explicit ErrorMeters(std::size_t max_meters = 8, double busy_s = 3.0, double unused_s = 60.0)
-      : max_meters_(max_meters), busy_s_(busy_s), unused_s_(unused_s) {}
+  // At most `max_meters`, as each has a copy of its storm's extinction, reserved in `memory`. One
+  // that was used within `busy_s` is not replaced; one that was not for `unused_s` goes with the
+  // next call.
+  explicit ErrorMeters(std::shared_ptr<base::MemoryBudget> memory = base::MemoryBudget::Unlimited(),
+                       std::size_t max_meters = 8, double busy_s = 3.0, double unused_s = 60.0)
+      : memory_(std::move(memory)), max_meters_(max_meters), busy_s_(busy_s), unused_s_(unused_s) {}
 
   // A step for the scene: draws with `draw` if it is new or its light is corrected by many more
   // paths than it was (`light_paths`), and else traces, unless it has ended. RESOURCE_EXHAUSTED if
-  // too many other scenes are being measured.
+  // too many other scenes are being measured, or there is no memory for another storm.
   absl::StatusOr<ErrorProgress> Step(const scene::Scene& scene, const Fields& fields,
                                      std::int64_t light_paths, const Draw& draw);
 
@@ -61,6 +65,7 @@ class ErrorMeters {
   struct Kept {
     scene::Scene scene;
     Fields fields;
+    base::MemoryReservation reserved;
     std::unique_ptr<ErrorMeter> meter;
     std::optional<std::int64_t> drawn_paths;  // that corrected the light of the measured picture
     base::Stopwatch since_used;
@@ -69,6 +74,7 @@ class ErrorMeters {
   absl::StatusOr<Kept*> For(const scene::Scene& measured, const Fields& fields);
   void DropUnused();
 
+  std::shared_ptr<base::MemoryBudget> memory_;
   std::size_t max_meters_;
   double busy_s_;
   double unused_s_;

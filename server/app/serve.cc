@@ -128,6 +128,7 @@ absl::Status Serve(ServeFlags flags) {
   }
   RaiseFileLimit();
   volume::StormStoreOptions store_options;
+  base::ShareFreedBlocks();
   const Budgets budgets = BudgetsOf(flags);
   store_options.memory = budgets.memory;
   store_options.byte_budget = budgets.memory->Bytes();

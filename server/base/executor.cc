@@ -60,10 +60,11 @@ void Executor::Submit(Task task) {
       refusal = Full(shared_->limits.max_waiting);
     } else {
       shared_->waiting.push_back({std::move(task), Clock::now()});
+      shared_->changed.notify_all();
+      return;
     }
   }
-  if (!refusal.ok()) return task(refusal);
-  shared_->changed.notify_all();
+  task(refusal);
 }
 
 int Executor::Hanging() const {

@@ -16,6 +16,7 @@ namespace {
 
 // Retry delay: viewers leave, or look at another storm, within seconds or not at all.
 constexpr std::chrono::seconds kMemoryRetryAfter{10};
+constexpr char kTooLarge[] = "TOO_LARGE_FOR_MEMORY";
 
 // The longest wait for memory: a turn of drawing, whose end gives back unused memory.
 constexpr std::chrono::seconds kLongestPatience{2};
@@ -44,6 +45,12 @@ std::string_view LabelOf(MemoryUse use) {
   return use == MemoryUse::kFields ? "fields" : DescriptionOf(use);
 }
 
+bool IsTooLargeForMemory(const absl::Status& refused) {
+  return DetailsOf(refused).reason == kTooLarge;
+}
+
+void ShareFreedBlocks() { mallopt(M_MMAP_THRESHOLD, 1 << 18); }
+
 void GiveBackFreedMemory() { malloc_trim(0); }
 
 std::string InWords(std::size_t bytes) {
@@ -71,13 +78,16 @@ MemoryBudget::Member::~Member() {
 }
 
 std::shared_ptr<MemoryBudget> MemoryBudget::Make(Options options) {
-  // Large blocks come from the system and go back to it: kept by the threads' arenas, what one lane
-  // has freed would be of no use to another.
-  mallopt(M_MMAP_THRESHOLD, 1 << 18);
   return std::shared_ptr<MemoryBudget>(new MemoryBudget(std::move(options)));
 }
 
 std::shared_ptr<MemoryBudget> MemoryBudget::Unlimited() { return Make({}); }
+
+bool MemoryBudget::HasRoom(std::size_t bytes, double share) const {
+  const std::size_t used = Used();
+  const auto limit = static_cast<double>(options_.bytes) * share;
+  return static_cast<double>(used) + static_cast<double>(bytes) <= limit;
+}
 
 std::size_t MemoryBudget::Used() const {
   const std::lock_guard lock(counting_);
@@ -195,7 +205,7 @@ absl::Status MemoryBudget::Refusal(MemoryUse use, std::size_t bytes, std::string
     return WithDetails(absl::ResourceExhaustedError(absl::StrCat(
                            needs, ", and the server has ", InWords(limit),
                            " for all; ask for less, or give it more with ", options_.flag)),
-                       {.reason = "TOO_LARGE_FOR_MEMORY", .metadata = std::move(metadata)});
+                       {.reason = kTooLarge, .metadata = std::move(metadata)});
   }
   std::string uses;
   std::size_t total = 0;

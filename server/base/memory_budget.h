@@ -117,6 +117,9 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
   absl::Status Resize(MemoryReservation& reservation, std::size_t bytes, std::string_view what);
 
   std::size_t Bytes() const { return options_.bytes; }
+  // Whether so many bytes more would leave the budget filled to no more than `share` of it, without
+  // asking anybody for theirs.
+  bool HasRoom(std::size_t bytes, double share = 1.0) const;
   std::size_t Used() const;
   std::size_t Used(MemoryUse use) const;
   // Awaited reservations for which there was no room so far. A thread that sees it grow gives back
@@ -151,6 +154,12 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
   std::vector<Cache*> caches_;
 };
 
+// Whether `refused` is a refusal of more than the budget could ever hold.
+bool IsTooLargeForMemory(const absl::Status& refused);
+
+// Of the whole process: blocks from 256 KiB on come from the system and go back to it. Kept by the
+// threads' arenas, what one thread has freed would be of no use to another.
+void ShareFreedBlocks();
 // Returns what the process has freed to the system; takes some milliseconds.
 void GiveBackFreedMemory();
 

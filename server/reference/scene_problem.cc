@@ -265,6 +265,11 @@ std::function<SeenGround(const glm::dvec2&)> SeenGroundOf(const scene::Scene& sc
 
 }  // namespace
 
+std::size_t MediumBytes(const volume::HydrometeorFields& fields) {
+  constexpr std::size_t kBytesPerCell = 12;
+  return kBytesPerCell * fields.grid.CellCount() * fields.fields.size();
+}
+
 absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene,
                                                        const volume::HydrometeorFields& fields,
                                                        Sides sides) {

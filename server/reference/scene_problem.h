@@ -3,6 +3,7 @@
 // each field's own phase function, shadows on the ground. Knows no renderer.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 
 #include "absl/status/statusor.h"
@@ -39,6 +40,10 @@ absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene
 absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene,
                                                        const volume::HydrometeorFields& fields,
                                                        Sides sides);
+
+// Memory that such a medium takes at most, without detail: extinction and its bounds, of each
+// field.
+std::size_t MediumBytes(const volume::HydrometeorFields& fields);
 
 // kShaded is a Lambertian ground lit by sun and sky through the medium; renderers draw its shadow
 // from the sun. kUniform has the radiance that the same ground would have without any medium.

@@ -34,6 +34,11 @@ std::shared_ptr<base::MemoryBudget> BudgetOf(const GlSourceOptions& options) {
   return budget != nullptr ? budget : base::MemoryBudget::Unlimited();
 }
 
+// The budget of what tracing on the processors takes.
+std::shared_ptr<base::MemoryBudget> HostBudgetOf(const GlSourceOptions& options) {
+  return options.memory != nullptr ? options.memory : base::MemoryBudget::Unlimited();
+}
+
 class GlFrameSource final : public FrameSource {
  public:
   GlFrameSource(std::unique_ptr<gl::Context> context, Shared shared, base::DeviceTurn* turn)
@@ -181,15 +186,14 @@ class GlFrameSource final : public FrameSource {
   absl::Status Look() { return gl::StatusOf(watch_->Look()); }
 
   // Half of the budget is left beside the storm on the device, with its light and a picture of the
-  // scene's size: the paths' copy of the medium, and of others', is not counted.
+  // scene's size: errors are measured where nobody is in want of memory.
   bool HasRoomToMeasure(const scene::Scene& scene, const volume::HydrometeorFields& fields) const {
     constexpr std::size_t kBytesPerPixel = 64;
     constexpr std::size_t kBytesPerCell = 160;  // 154 of five fields
     const auto pixels = static_cast<std::size_t>(scene.output.width_px) *
                         static_cast<std::size_t>(scene.output.height_px);
-    const std::shared_ptr<base::MemoryBudget> budget = BudgetOf(shared_.options);
-    return budget->Used() + kBytesPerPixel * pixels + kBytesPerCell * fields.grid.CellCount() <=
-           budget->Bytes() / 2;
+    return BudgetOf(shared_.options)
+        ->HasRoom(kBytesPerPixel * pixels + kBytesPerCell * fields.grid.CellCount(), 0.5);
   }
 
   bool DropOldest() {
@@ -259,9 +263,9 @@ class GlFrameSource final : public FrameSource {
   const gl::DeviceMemory memory_;  // of the GL objects below
   std::shared_ptr<gl::ProgramCache> programs_;
   renderers::RendererPool renderers_{shared_.registry, programs_};
-  accuracy::CorrectorPool correctors_{programs_, shared_.lights};
+  accuracy::CorrectorPool correctors_{programs_, shared_.lights, HostBudgetOf(shared_.options)};
   // Two at a time, as each holds its storm's fields and a copy of their extinction.
-  accuracy::ErrorMeters meters_{2, 3.0, 5.0};
+  accuracy::ErrorMeters meters_{HostBudgetOf(shared_.options), 2, 3.0, 5.0};
   frame::ToneMapper tone_mapper_{programs_};
   frame::ToneMapper picture_tone_mapper_{programs_};  // of Tone, whose pictures have other sizes
   gl::Texture2D picture_;                             // that Tone was given

@@ -6,11 +6,20 @@
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
 #include "base/log.h"
+#include "base/memory_budget.h"
 #include "base/out_of_memory.h"
 #include "base/status.h"
 #include "gl/device_faults.h"
 
 namespace thunderhead::session {
+namespace {
+
+// Others keep busy what the step needs.
+bool MayPass(const absl::Status& failed) {
+  return absl::IsResourceExhausted(failed) && !base::IsTooLargeForMemory(failed);
+}
+
+}  // namespace
 
 void LightTracer::Want(const std::string& who, Request request) {
   Wanted& wanted = wanted_[who];
@@ -38,7 +47,7 @@ void LightTracer::TakeOutcome(Clock::time_point now) {
   Wanted& wanted = found->second;
   if (wanted.request.claims && wanted.request.light) wanted.claim = std::move(outcome->claim);
   const absl::Status& failed = outcome->progress->status();
-  if (absl::IsResourceExhausted(failed) || gl::IsDeviceLost(failed)) {
+  if (MayPass(failed) || gl::IsDeviceLost(failed)) {
     wanted.not_before = now + kTraceAgainAfter;
     return;
   }
@@ -72,7 +81,7 @@ LightTracer::Progress LightTracer::Trace(FrameSource& source, const Request& req
   }
   if (gl::IsDeviceLost(error.status())) return error.status();
   // The picture is as good without; what others keep busy is tried again with the next step.
-  if (absl::IsResourceExhausted(error.status())) {
+  if (MayPass(error.status())) {
     if (!request.light) return error.status();
     return step;
   }

@@ -206,9 +206,8 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
   auto lanes = std::make_unique<Lanes>(make_source, wake);
   LightTracer light_tracer(lanes->tracing);
   SessionLane session_lane(lanes->sessions, [this](std::uint64_t bytes) {
-    return std::ranges::all_of(options_.device_memory, [bytes](const auto& budget) {
-      return budget->Used() <= budget->Bytes() && bytes <= budget->Bytes() - budget->Used();
-    });
+    return std::ranges::all_of(options_.device_memory,
+                               [bytes](const auto& budget) { return budget->HasRoom(bytes); });
   });
   SessionDrawer drawer(options_.targets, {store_, *reader_, preparation_}, measured, *encoder_,
                        *tracer_, light_tracer, session_lane);

@@ -8,6 +8,7 @@
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "base/thread_priority.h"
+#include "reference/scene_problem.h"
 #include "session/truth_schedule.h"
 
 namespace thunderhead::session {
@@ -18,13 +19,11 @@ constexpr double kTurn_s = 0.25;
 
 // Mean and variance of radiance, opacity, distance, and a picture that waits to be shown.
 constexpr std::size_t kTracedBytesPerPixel = 160;
-// Extinction and its bounds, of each field.
-constexpr std::size_t kBytesPerCell = 12;
 
 std::size_t BytesFor(const volume::HydrometeorFields& fields, const glm::ivec2& size_px) {
   return static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y) *
              kTracedBytesPerPixel +
-         fields.grid.CellCount() * fields.fields.size() * kBytesPerCell;
+         reference::MediumBytes(fields);
 }
 
 }  // namespace

@@ -5,12 +5,14 @@
 
 #include "accuracy/corrector_pool.h"
 #include "accuracy/light_corrector.h"
+#include "base/memory_budget.h"
 #include "frame/tone_map.h"
 #include "gl/context.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "measure/image_error.h"
 #include "measure/light_parts.h"
+#include "reference/scene_problem.h"
 #include "reference/trace_scene.h"
 #include "tests/support/gl_context.h"
 #include "tests/support/slab.h"
@@ -221,7 +223,7 @@ TEST_F(LightCorrection, ServesScenesOfTheSameLight) {
 }
 
 TEST_F(LightCorrection, APoolKeepsWhatIsTracedAndRefusesOneTooMany) {
-  CorrectorPool pool(programs_, lights_, 1, 1e9);
+  CorrectorPool pool(programs_, lights_, base::MemoryBudget::Unlimited(), 1, 1e9);
   EXPECT_EQ(pool.Find(scene_, fields_), nullptr);
   const auto progress = pool.Trace(scene_, fields_);
   ASSERT_TRUE(progress.ok()) << progress.status();
@@ -233,15 +235,30 @@ TEST_F(LightCorrection, APoolKeepsWhatIsTracedAndRefusesOneTooMany) {
   EXPECT_THAT(std::string(pool.Trace(other, fields_).status().message()),
               HasSubstr("the light of 1 other scenes already"));
   EXPECT_EQ(pool.Trace(scene_, fields_)->steps, 2);
-  CorrectorPool idle(programs_, lights_, 1, 0.0);
+  CorrectorPool idle(programs_, lights_, base::MemoryBudget::Unlimited(), 1, 0.0);
   ASSERT_TRUE(idle.Trace(scene_, fields_).ok());
   ASSERT_TRUE(idle.Trace(other, fields_).ok());
   EXPECT_EQ(idle.Find(scene_, fields_), nullptr);
   EXPECT_NE(idle.Find(other, fields_), nullptr);
 }
 
+TEST_F(LightCorrection, APoolReservesItsCopiesOfTheStorm) {
+  const std::size_t bytes = reference::MediumBytes(*fields_);
+  const auto memory = base::MemoryBudget::Make({.bytes = bytes + bytes / 2});
+  CorrectorPool pool(programs_, lights_, memory, 8, 0.0);
+  ASSERT_TRUE(pool.Trace(scene_, fields_).ok());
+  EXPECT_EQ(memory->Used(base::MemoryUse::kTracing), bytes);
+  scene::Scene other = scene_;
+  other.sun.elevation_deg = 70.0;
+  EXPECT_TRUE(absl::IsResourceExhausted(pool.Trace(other, fields_).status()));
+  EXPECT_NE(pool.Find(scene_, fields_), nullptr);
+  ASSERT_TRUE(pool.DropOldest());
+  EXPECT_EQ(memory->Used(), 0U);
+  EXPECT_TRUE(pool.Trace(other, fields_).ok());
+}
+
 TEST_F(LightCorrection, APoolKeepsWhatIsClaimed) {
-  CorrectorPool pool(programs_, lights_, 1, 0.0, 0.0);
+  CorrectorPool pool(programs_, lights_, base::MemoryBudget::Unlimited(), 1, 0.0, 0.0);
   LightClaim claim;
   ASSERT_TRUE(pool.Trace(scene_, fields_, &claim).ok());
   scene::Scene other = scene_;

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "accuracy/error_meters.h"
+#include "base/memory_budget.h"
 #include "gtest/gtest.h"
+#include "reference/scene_problem.h"
 #include "reference/trace_scene.h"
 #include "tests/support/slab.h"
 
@@ -140,7 +142,7 @@ TEST(ErrorMeters, DrawThenTraceAndDrawAgainAsTheLightGetsBetter) {
     EXPECT_FALSE(scene::MediumSettingsOf(measured.rendering.technique)->look.detail);
     return picture::LinearPicture{{32, 24}, std::vector<glm::vec3>(768, glm::vec3(0.1F))};
   };
-  ErrorMeters meters(1);
+  ErrorMeters meters(base::MemoryBudget::Unlimited(), 1);
   EXPECT_EQ(meters.Step(scene, fields, 0, draw)->traced_s, 0.0);
   EXPECT_GT(meters.Step(scene, fields, 0, draw)->traced_s, 0.0);
   EXPECT_EQ(drawn, 1);
@@ -156,6 +158,29 @@ TEST(ErrorMeters, DrawThenTraceAndDrawAgainAsTheLightGetsBetter) {
   EXPECT_GT(again->error->paths, 0) << "of before";
   scene.sun.elevation_deg += 1.0;
   EXPECT_TRUE(absl::IsResourceExhausted(meters.Step(scene, fields, 0, draw).status()));
+}
+
+TEST(ErrorMeters, ReserveTheirCopyOfTheStorm) {
+  const std::shared_ptr<volume::HydrometeorFields> fields = MakeTower();
+  const std::size_t bytes = reference::MediumBytes(*fields);
+  const auto memory = base::MemoryBudget::Make({.bytes = bytes + bytes / 2});
+  const ErrorMeters::Draw draw = [](const scene::Scene&) {
+    return picture::LinearPicture{{32, 24}, std::vector<glm::vec3>(768, glm::vec3(0.1F))};
+  };
+  ErrorMeters meters(memory, 8, 0.0);
+  scene::Scene scene = TowerScene();
+  ASSERT_TRUE(meters.Step(scene, fields, 0, draw).ok());
+  EXPECT_EQ(memory->Used(base::MemoryUse::kTracing), bytes);
+  scene.sun.elevation_deg += 1.0;
+  const absl::Status refused = meters.Step(scene, fields, 0, draw).status();
+  EXPECT_TRUE(absl::IsResourceExhausted(refused)) << refused;
+  EXPECT_FALSE(base::IsTooLargeForMemory(refused));
+  ASSERT_TRUE(meters.DropOldest());
+  EXPECT_EQ(memory->Used(), 0U);
+  EXPECT_TRUE(meters.Step(scene, fields, 0, draw).ok());
+
+  ErrorMeters small(base::MemoryBudget::Make({.bytes = bytes - 1}));
+  EXPECT_TRUE(base::IsTooLargeForMemory(small.Step(scene, fields, 0, draw).status()));
 }
 
 TEST(ErrorMeters, UnevenGroundIsNotMeasured) {

@@ -71,6 +71,10 @@ TEST(MemoryBudgetTest, RefusesByNameWithWhatTheMemoryIsUsedFor) {
   EXPECT_TRUE(details.retry_after.has_value());
   EXPECT_EQ(budget->Refusals(), 1U);
   EXPECT_EQ(budget->Used(), 90 * kMib) << "a refusal takes nothing";
+  EXPECT_FALSE(IsTooLargeForMemory(refused));
+  EXPECT_TRUE(budget->HasRoom(10 * kMib));
+  EXPECT_FALSE(budget->HasRoom(10 * kMib + 1));
+  EXPECT_FALSE(budget->HasRoom(0, 0.5));
 }
 
 TEST(MemoryBudgetTest, WhatNeverFitsIsNotToBeTriedAgain) {
@@ -79,6 +83,7 @@ TEST(MemoryBudgetTest, WhatNeverFitsIsNotToBeTriedAgain) {
   const absl::Status refused =
       budget->Reserve(MemoryUse::kFields, std::numeric_limits<std::size_t>::max(), "it").status();
   EXPECT_EQ(DetailsOf(refused).reason, "TOO_LARGE_FOR_MEMORY");
+  EXPECT_TRUE(IsTooLargeForMemory(refused));
   EXPECT_FALSE(DetailsOf(refused).retry_after.has_value());
   EXPECT_EQ(kept.Left(), 2U) << "nothing is dropped for it";
 }
